@@ -1,0 +1,55 @@
+//! Answers to "does this theorem apply?", hypothesis by hypothesis.
+
+/// The theorems that were looked at, in the order in which they should be read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// The theorem that speaks about this setup, for example `Theorem 2`.
+    pub theorem: String,
+    /// What it promises, in one sentence.
+    pub promises: String,
+    /// Its hypotheses and what was found.
+    pub hypotheses: Vec<Hypothesis>,
+}
+
+/// One hypothesis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hypothesis {
+    /// What is required, in words.
+    pub requires: String,
+    /// What was found.
+    pub answer: Answer,
+    /// Certificate or witness in words: the smallest window and its root, the unreachable agent, …
+    pub because: String,
+}
+
+/// The four answers, from best to worst.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Answer {
+    /// For all time.
+    Holds,
+    /// Only shown on the horizon of the run.
+    HoldsOnHorizon,
+    /// The paper does not speak about this case.
+    NotCovered,
+    /// It fails, and `because` names a witness.
+    Violated,
+}
+
+impl Answer {
+    /// The words used in tables: `holds`, `holds on [0, end]`, `not covered by the paper`, `violated`.
+    pub fn words(self) -> &'static str {
+        match self {
+            Answer::Holds => "holds",
+            Answer::HoldsOnHorizon => "holds on [0, end]",
+            Answer::NotCovered => "not covered by the paper",
+            Answer::Violated => "violated",
+        }
+    }
+}
+
+impl Report {
+    /// The worst answer of all hypotheses; [`Answer::Holds`] when there are none.
+    pub fn worst(&self) -> Answer {
+        self.hypotheses.iter().map(|h| h.answer).max().unwrap_or(Answer::Holds)
+    }
+}

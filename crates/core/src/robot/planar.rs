@@ -1,0 +1,205 @@
+//! The two-link planar arm in closed form.
+//!
+//! q₁ is measured from the horizontal, q₂ from the first link, gravity points down. With l_c the distance from joint to
+//! centre of mass and I the inertia about it,
+//!
+//! ```text
+//! ϑ = [ I₁ + I₂ + m₁ l_c₁² + m₂ (l₁² + l_c₂²),  I₂ + m₂ l_c₂²,  m₂ l₁ l_c₂,  g (m₁ l_c₁ + m₂ l₁),  g m₂ l_c₂ ]
+//!
+//! M = [ ϑ₁ + 2 ϑ₃ cos q₂    ϑ₂ + ϑ₃ cos q₂ ]     C = ϑ₃ sin q₂ [ −q̇₂   −(q̇₁ + q̇₂) ]     g = [ ϑ₄ cos q₁ + ϑ₅ cos(q₁+q₂) ]
+//!     [ ϑ₂ + ϑ₃ cos q₂            ϑ₂       ]                   [  q̇₁        0       ]         [ ϑ₅ cos(q₁+q₂)             ]
+//! ```
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::{Lagrangian, TwoVelocity};
+use crate::{LengthError, Scalar};
+
+/// The two-link planar arm; all that distinguishes one from another is in ϑ, see [`PlanarLinks::theta`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PlanarArm;
+
+/// Masses and lengths of a two-link planar arm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlanarLinks {
+    /// m₁, m₂ in kg.
+    pub mass_kg: [f64; 2],
+    /// l₁, l₂ in m.
+    pub length_m: [f64; 2],
+    /// l_c₁, l_c₂ in m, from the joint to the centre of mass.
+    pub com_m: [f64; 2],
+    /// I₁, I₂ in kg m², about the centre of mass.
+    pub inertia_kg_m2: [f64; 2],
+    /// g in m/s².
+    pub gravity_m_s2: f64,
+}
+
+impl PlanarLinks {
+    /// Two uniform rods: l_c = l/2, I = m l²/12, g = 9.81 m/s².
+    pub fn uniform(mass_kg: [f64; 2], length_m: [f64; 2]) -> Self {
+        let rod = |k: usize| mass_kg[k] * length_m[k] * length_m[k] / 12.0;
+        PlanarLinks {
+            mass_kg,
+            length_m,
+            com_m: [length_m[0] / 2.0, length_m[1] / 2.0],
+            inertia_kg_m2: [rod(0), rod(1)],
+            gravity_m_s2: 9.81,
+        }
+    }
+
+    /// The five parameters ϑ of this arm.
+    pub fn theta(&self) -> [f64; 5] {
+        let ([m1, m2], [l1, _], [c1, c2], [i1, i2]) = (self.mass_kg, self.length_m, self.com_m, self.inertia_kg_m2);
+        let g = self.gravity_m_s2;
+        [
+            i1 + i2 + m1 * c1 * c1 + m2 * (l1 * l1 + c2 * c2),
+            i2 + m2 * c2 * c2,
+            m2 * l1 * c2,
+            g * (m1 * c1 + m2 * l1),
+            g * m2 * c2,
+        ]
+    }
+}
+
+/// The rows of Y, five columns each.
+#[inline(always)]
+fn rows<S: Scalar>(motion: TwoVelocity<'_, S>) -> [[S; 5]; 2] {
+    let ([q1, q2], [dq1, dq2]) = ([motion.q[0], motion.q[1]], [motion.dq[0], motion.dq[1]]);
+    let ([z1, z2], [dz1, dz2]) = ([motion.z[0], motion.z[1]], [motion.dz[0], motion.dz[1]]);
+    let (sin2, cos2) = q2.sin_cos();
+    let (_, cos1) = q1.sin_cos();
+    let (_, cos12) = (q1 + q2).sin_cos();
+    // ϑ₃: cos q₂ (2 ż₁ + ż₂) − sin q₂ (q̇₂ z₁ + (q̇₁ + q̇₂) z₂)  and  cos q₂ ż₁ + sin q₂ q̇₁ z₁
+    let coriolis = dq2.mul_add(z1, (dq1 + dq2) * z2);
+    let first = sin2.neg_mul_add(coriolis, cos2 * (dz1 + dz1 + dz2));
+    let second = sin2.mul_add(dq1 * z1, cos2 * dz1);
+    [[dz1, dz2, first, cos1, cos12], [S::ZERO, dz1 + dz2, second, S::ZERO, cos12]]
+}
+
+impl<S: Scalar> Lagrangian<S> for PlanarArm {
+    type Scratch = ();
+
+    fn dof(&self) -> usize {
+        2
+    }
+
+    fn parameter_count(&self) -> usize {
+        5
+    }
+
+    fn scratch(&self) {}
+
+    #[inline(always)]
+    fn regressor_products(
+        &self,
+        (): &mut (),
+        motion: TwoVelocity<'_, S>,
+        theta: &[S],
+        s: &[S],
+        y_theta: &mut [S],
+        yt_s: &mut [S],
+    ) -> Result<(), LengthError> {
+        motion.check(2)?;
+        LengthError::check("theta", 5, theta.len())?;
+        LengthError::check("s", 2, s.len())?;
+        LengthError::check("y_theta", 2, y_theta.len())?;
+        LengthError::check("yt_s", 5, yt_s.len())?;
+        let [first, second] = rows(motion);
+        let (mut a, mut b) = (S::ZERO, S::ZERO);
+        let mut k = 0;
+        while k < 5 {
+            a = first[k].mul_add(theta[k], a);
+            b = second[k].mul_add(theta[k], b);
+            yt_s[k] = first[k].mul_add(s[0], second[k] * s[1]);
+            k += 1;
+        }
+        y_theta[0] = a;
+        y_theta[1] = b;
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn forward_dynamics(
+        &self,
+        (): &mut (),
+        q: &[S],
+        dq: &[S],
+        theta: &[S],
+        tau: &[S],
+        ddq: &mut [S],
+    ) -> Result<(), LengthError> {
+        let still = [S::ZERO; 2];
+        let motion = TwoVelocity { q, dq, z: dq, dz: &still };
+        motion.check(2)?;
+        LengthError::check("theta", 5, theta.len())?;
+        LengthError::check("tau", 2, tau.len())?;
+        LengthError::check("ddq", 2, ddq.len())?;
+        let [first, second] = rows(motion);
+        let (mut r1, mut r2) = (tau[0], tau[1]);
+        let mut k = 2;
+        while k < 5 {
+            r1 = first[k].neg_mul_add(theta[k], r1);
+            r2 = second[k].neg_mul_add(theta[k], r2);
+            k += 1;
+        }
+        let [m11, m12, m22] = mass(q[1], theta);
+        let inverse = S::splat(1.0) / m12.neg_mul_add(m12, m11 * m22);
+        ddq[0] = m12.neg_mul_add(r2, m22 * r1) * inverse;
+        ddq[1] = m12.neg_mul_add(r1, m11 * r2) * inverse;
+        Ok(())
+    }
+
+    fn mass_matrix(&self, (): &mut (), q: &[S], theta: &[S], m: &mut [S]) -> Result<(), LengthError> {
+        LengthError::check("q", 2, q.len())?;
+        LengthError::check("theta", 5, theta.len())?;
+        LengthError::check("mass matrix", 4, m.len())?;
+        let [m11, m12, m22] = mass(q[1], theta);
+        m.copy_from_slice(&[m11, m12, m12, m22]);
+        Ok(())
+    }
+
+    fn coriolis_matrix(&self, (): &mut (), q: &[S], dq: &[S], theta: &[S], c: &mut [S]) -> Result<(), LengthError> {
+        LengthError::check("q", 2, q.len())?;
+        LengthError::check("dq", 2, dq.len())?;
+        LengthError::check("theta", 5, theta.len())?;
+        LengthError::check("Coriolis matrix", 4, c.len())?;
+        let h = theta[2] * q[1].sin_cos().0;
+        c.copy_from_slice(&[-(h * dq[1]), -(h * (dq[0] + dq[1])), h * dq[0], S::ZERO]);
+        Ok(())
+    }
+
+    fn gravity(&self, (): &mut (), q: &[S], theta: &[S], g: &mut [S]) -> Result<(), LengthError> {
+        LengthError::check("q", 2, q.len())?;
+        LengthError::check("theta", 5, theta.len())?;
+        LengthError::check("gravity", 2, g.len())?;
+        let elbow = theta[4] * (q[0] + q[1]).sin_cos().1;
+        g[0] = theta[3].mul_add(q[0].sin_cos().1, elbow);
+        g[1] = elbow;
+        Ok(())
+    }
+
+    fn regressor(&self, (): &mut (), motion: TwoVelocity<'_, S>, y: &mut [S]) -> Result<(), LengthError> {
+        motion.check(2)?;
+        LengthError::check("regressor", 10, y.len())?;
+        let [first, second] = rows(motion);
+        y[..5].copy_from_slice(&first);
+        y[5..].copy_from_slice(&second);
+        Ok(())
+    }
+
+    fn adaptation_scale(&self, _q: &[f64], theta: &[f64]) -> Vec<f64> {
+        // ϑ₁…ϑ₃ are inertias, m r²; ϑ₄, ϑ₅ are gravity torques, g m r. With M ≈ ϑ₁ the gravity columns act on M⁻¹YΓYᵀ as
+        // Γ/ϑ₁ and the inertia columns as Γ z̈²/ϑ₁ with z̈ ≈ 1 rad/s².
+        let m = theta.first().copied().unwrap_or(1.0);
+        vec![m; 5]
+    }
+}
+
+/// M₁₁, M₁₂, M₂₂.
+#[inline(always)]
+fn mass<S: Scalar>(q2: S, theta: &[S]) -> [S; 3] {
+    let (_, cos2) = q2.sin_cos();
+    let half = theta[2] * cos2;
+    [theta[0] + half + half, theta[1] + half, theta[1]]
+}

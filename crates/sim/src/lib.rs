@@ -1,0 +1,18 @@
+//! Networks of forwardstepping agents in continuous time: switching digraphs, discontinuous delays, the closed loop as a
+//! delay-differential equation, and an integrator whose steps land on every break-point.
+//!
+//! The layers, each of which uses only those before it: [`graph`] and [`schedule`], [`delay`] and [`network`]; the
+//! integrator with its history and break-points; the closed loop; [`recording`] and [`simulate`].
+
+pub mod delay;
+pub mod graph;
+pub mod network;
+pub mod recording;
+pub mod schedule;
+pub mod setup;
+
+pub use network::Network;
+pub use recording::{Breakdown, Ending, Outcome, Recording, Signal};
+pub use setup::{
+    AgentSetup, Axis, AxisUnit, Exchange, Law, Method, RobotKind, RobotSetup, Setup, Solver, Start, TimeSpan,
+};

@@ -1,0 +1,181 @@
+//! Everything a run needs, as plain data: built by a scenario reader or by hand, checked when the closed loop is built.
+
+use std::sync::Arc;
+
+use forwardstep_core::Gain;
+use forwardstep_core::robot::tree::Tree;
+
+use crate::network::Network;
+
+/// A network of agents and how long to watch it.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// The agents, in the order of the network's vertices.
+    pub agents: Vec<AgentSetup>,
+    /// What the agents tell each other.
+    pub exchange: Exchange,
+    /// Who hears whom, when, and how late.
+    pub network: Network,
+    /// Horizon and recording.
+    pub time: TimeSpan,
+    /// How to integrate.
+    pub solver: Solver,
+}
+
+/// What an agent transmits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exchange {
+    /// q_j: the family (24).
+    Position,
+    /// q_j and q̇_j: the family (a5), of which (aa10) is order 1 and (a1) order 2.
+    PositionVelocity,
+}
+
+/// One agent.
+#[derive(Clone, Debug)]
+pub struct AgentSetup {
+    /// Unique name, used in tables and messages.
+    pub name: String,
+    /// Its robot.
+    pub robot: RobotSetup,
+    /// κ₀ … κ_{ℓ−1} in 1/s, all positive; their number is the order ℓ of the reference dynamics.
+    pub roots_per_s: Vec<f64>,
+    /// Its tracking law.
+    pub law: Law,
+    /// Where it starts.
+    pub start: Start,
+    /// Clip the torque at the effort limits of the robot's axes, and end the run when an axis leaves its position
+    /// limits. Off, limits are only reported.
+    pub enforce_limits: bool,
+}
+
+/// A robot with its true parameters.
+#[derive(Clone, Debug)]
+pub struct RobotSetup {
+    /// Geometry and kernels.
+    pub kind: RobotKind,
+    /// The true ϑ.
+    pub theta: Vec<f64>,
+    /// A name for each entry of ϑ, for tables, for example `forearm_link.mass`.
+    pub theta_names: Vec<String>,
+    /// One entry per degree of freedom.
+    pub axes: Vec<Axis>,
+}
+
+/// The robots that can be simulated.
+#[derive(Clone, Debug)]
+pub enum RobotKind {
+    /// A fixed-base tree of rigid bodies.
+    Tree(Arc<Tree>),
+    /// The two-link planar arm in closed form.
+    PlanarArm,
+    /// A point mass in ℝᵐ.
+    PointMass {
+        /// m.
+        dimension: usize,
+    },
+}
+
+/// One degree of freedom of a robot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// The joint's name.
+    pub name: String,
+    /// rad or m.
+    pub unit: AxisUnit,
+    /// Lowest and highest position.
+    pub position_limits: Option<[f64; 2]>,
+    /// Highest speed, rad/s or m/s.
+    pub velocity_limit: Option<f64>,
+    /// Highest torque or force, N m or N.
+    pub effort_limit: Option<f64>,
+}
+
+/// The unit of an axis position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AxisUnit {
+    /// A revolute joint.
+    Radian,
+    /// A prismatic joint or a coordinate.
+    Metre,
+}
+
+/// The tracking law (6)–(7) of one agent.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Law {
+    /// τ = −K s + Y ϑ̂ with ϑ̂' = −Γ Yᵀ s.
+    Adaptive {
+        /// K; a [`Gain::Bandwidth`] is multiplied by diag M(q₀).
+        damping: Gain,
+        /// Γ; a [`Gain::Bandwidth`] ω gives ω² · [`forwardstep_core::robot::Lagrangian::adaptation_scale`].
+        adaptation: Gain,
+        /// ϑ̂(0).
+        estimate_start: Vec<f64>,
+    },
+    /// τ = −K s + Y ϑ with the true parameters.
+    Known {
+        /// K.
+        damping: Gain,
+    },
+}
+
+/// Initial values of one agent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Start {
+    /// q(0).
+    pub q: Vec<f64>,
+    /// q̇(0).
+    pub dq: Vec<f64>,
+    /// z(0), ż(0), … z^(ℓ−1)(0); missing ones take z(0) = q̇(0) and zero derivatives.
+    pub reference: Vec<Vec<f64>>,
+}
+
+/// Horizon and recording interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeSpan {
+    /// The run covers [0, `end_s`].
+    pub end_s: f64,
+    /// Rows of the recording are this far apart; the last row is at `end_s`.
+    pub record_every_s: f64,
+}
+
+/// How to integrate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solver {
+    /// Adaptive pair or fixed step.
+    pub method: Method,
+    /// No step is longer.
+    pub max_step_s: Option<f64>,
+    /// The run breaks down when the error control asks for a shorter step.
+    pub min_step_s: f64,
+    /// Integrate sᵀ(K + D)s − sᵀτ_ext of every agent as an extra state, so that V + ∫ … = V(0) can be checked.
+    pub ledger: bool,
+}
+
+/// The time-stepping method.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Method {
+    /// The Dormand–Prince pair of order 5(4) with its continuous extension of order 4.
+    Adaptive {
+        /// Relative tolerance.
+        rtol: f64,
+        /// Absolute tolerance.
+        atol: f64,
+    },
+    /// The classical Runge–Kutta method of order 4 with steps of at most this length, cut at break-points.
+    Fixed {
+        /// In s.
+        step_s: f64,
+    },
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Solver {
+            method: Method::Adaptive { rtol: 1e-6, atol: 1e-8 },
+            max_step_s: None,
+            min_step_s: 1e-12,
+            ledger: true,
+        }
+    }
+}
