@@ -1,1 +1,7 @@
-//! Stub.
+//! Scenario and URDF files in, tables, plots and reports out.
+//!
+//! Text comes in here and leaves as the plain structs of the rooms below; serialisation lives in this crate only.
+
+pub mod diagnostic;
+
+pub use diagnostic::{InputError, Problem, SourceText};
