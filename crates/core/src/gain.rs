@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::{GainError, LengthError};
+use crate::{GainError, LengthError, Scalar};
 
 /// A gain as a user states it.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +32,8 @@ pub enum ResolvedGain {
         size: usize,
         /// size² entries, row by row.
         entries: Vec<f64>,
+        /// Its lower Cholesky factor, row by row.
+        factor: Vec<f64>,
     },
 }
 
@@ -84,8 +86,8 @@ fn matrix(size: usize, entries: &[f64]) -> Result<ResolvedGain, GainError> {
             }
         }
     }
-    cholesky(size, entries).map_err(|order| GainError::NotPositiveDefinite { order })?;
-    Ok(ResolvedGain::Matrix { size, entries: entries.to_vec() })
+    let factor = cholesky(size, entries).map_err(|order| GainError::NotPositiveDefinite { order })?;
+    Ok(ResolvedGain::Matrix { size, entries: entries.to_vec(), factor })
 }
 
 /// Lower factor L of A = L Lᵀ, or the order of the first leading minor that is not positive.
@@ -121,18 +123,18 @@ impl ResolvedGain {
 
     /// out = gain · x. Entries beyond [`ResolvedGain::size`] are left alone.
     #[inline(always)]
-    pub fn apply(&self, x: &[f64], out: &mut [f64]) {
+    pub fn apply<S: Scalar>(&self, x: &[S], out: &mut [S]) {
         match self {
             ResolvedGain::Diagonal(k) => {
                 for ((out, k), x) in out.iter_mut().zip(k).zip(x) {
-                    *out = k * x;
+                    *out = S::splat(*k) * *x;
                 }
             }
-            ResolvedGain::Matrix { size, entries } => {
+            ResolvedGain::Matrix { size, entries, .. } => {
                 for (out, row) in out.iter_mut().zip(entries.chunks_exact(*size)) {
-                    let mut sum = 0.0;
+                    let mut sum = S::ZERO;
                     for (a, x) in row.iter().zip(x) {
-                        sum = crate::Scalar::mul_add(*a, *x, sum);
+                        sum = S::splat(*a).mul_add(*x, sum);
                     }
                     *out = sum;
                 }
@@ -140,25 +142,50 @@ impl ResolvedGain {
         }
     }
 
-    /// xᵀ · gain⁻¹ · x, for Lyapunov-like functions.
-    pub fn inverse_quadratic(&self, x: &[f64]) -> f64 {
+    /// out −= gain · x. Entries beyond [`ResolvedGain::size`] are left alone.
+    #[inline(always)]
+    pub fn subtract_from<S: Scalar>(&self, x: &[S], out: &mut [S]) {
         match self {
-            ResolvedGain::Diagonal(k) => k.iter().zip(x).map(|(k, x)| x * x / k).sum(),
-            ResolvedGain::Matrix { size, entries } => {
-                // gain = L Lᵀ, so the value is |L⁻¹x|²; the gain was checked when it was built.
-                let Ok(l) = cholesky(*size, entries) else { return f64::NAN };
-                let mut y = vec![0.0; *size];
-                let mut sum = 0.0;
-                for i in 0..*size {
-                    let mut v = x[i];
-                    for k in 0..i {
-                        v -= l[i * size + k] * y[k];
-                    }
-                    y[i] = v / l[i * size + i];
-                    sum += y[i] * y[i];
+            ResolvedGain::Diagonal(k) => {
+                for ((out, k), x) in out.iter_mut().zip(k).zip(x) {
+                    *out = S::splat(*k).neg_mul_add(*x, *out);
                 }
-                sum
+            }
+            ResolvedGain::Matrix { size, entries, .. } => {
+                for (out, row) in out.iter_mut().zip(entries.chunks_exact(*size)) {
+                    for (a, x) in row.iter().zip(x) {
+                        *out = S::splat(*a).neg_mul_add(*x, *out);
+                    }
+                }
             }
         }
+    }
+
+    /// xᵀ · gain⁻¹ · x, for Lyapunov-like functions. `work` has [`ResolvedGain::size`] entries.
+    pub fn inverse_quadratic(&self, x: &[f64], work: &mut [f64]) -> f64 {
+        let mut sum = 0.0;
+        match self {
+            ResolvedGain::Diagonal(k) => {
+                for (k, x) in k.iter().zip(x) {
+                    sum += x * x / k;
+                }
+            }
+            ResolvedGain::Matrix { size, factor, .. } => {
+                // gain = L Lᵀ, so the value is |L⁻¹ x|².
+                for (i, (row, x)) in factor.chunks_exact(*size).zip(x).enumerate() {
+                    let (done, rest) = work.split_at_mut(i.min(work.len()));
+                    let mut v = *x;
+                    for (l, y) in row.iter().zip(&*done) {
+                        v -= l * y;
+                    }
+                    let y = v / row[i];
+                    if let Some(slot) = rest.first_mut() {
+                        *slot = y;
+                    }
+                    sum += y * y;
+                }
+            }
+        }
+        sum
     }
 }

@@ -1,5 +1,8 @@
 //! Weighted digraphs in which an edge says who hears whom.
 
+use petgraph::algo::tarjan_scc;
+use petgraph::graph::DiGraph;
+
 /// "`to` hears `from` with weight w": the entry w_ij of the adjacency matrix with i = `to`, j = `from`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
@@ -11,4 +14,110 @@ pub struct Edge {
     pub weight: f64,
     /// Index into [`crate::network::Network::delays`].
     pub delay: usize,
+}
+
+/// The answer to "does this graph contain a directed spanning tree?", with a certificate or a witness.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SpanningTree {
+    /// What any of these agents says reaches everybody.
+    Rooted {
+        /// All the agents that can be the root: one strongly connected component.
+        roots: Vec<usize>,
+    },
+    /// At least two groups hear nobody outside themselves, so nothing one says reaches the other.
+    Missing {
+        /// The closed groups, each sorted, in order of their first agent.
+        closed_groups: Vec<Vec<usize>>,
+    },
+}
+
+/// Whether some agent's messages reach all others along `edges`, on `agents` vertices.
+///
+/// In the paper's words a root k* is a vertex that every other has a directed path to, along edges (i, j) "i hears j".
+pub fn spanning_tree<'a>(agents: usize, edges: impl IntoIterator<Item = &'a Edge>) -> SpanningTree {
+    let edges: Vec<(usize, usize)> = edges.into_iter().map(|edge| (edge.from, edge.to)).collect();
+    let components = strong_components(agents, &edges);
+    let mut home = vec![0; agents];
+    for (index, component) in components.iter().enumerate() {
+        for &agent in component {
+            home[agent] = index;
+        }
+    }
+    let mut closed = vec![true; components.len()];
+    for &(from, to) in &edges {
+        if home[from] != home[to] {
+            closed[home[to]] = false;
+        }
+    }
+    let mut closed_groups: Vec<Vec<usize>> =
+        components.into_iter().zip(closed).filter(|(_, closed)| *closed).map(|(component, _)| component).collect();
+    closed_groups.sort();
+    match closed_groups.len() {
+        1 => SpanningTree::Rooted { roots: closed_groups.swap_remove(0) },
+        _ => SpanningTree::Missing { closed_groups },
+    }
+}
+
+/// The strongly connected components, each sorted, in order of their first agent.
+pub fn strong_components(agents: usize, edges: &[(usize, usize)]) -> Vec<Vec<usize>> {
+    let mut graph = DiGraph::<(), (), usize>::with_capacity(agents, edges.len());
+    let vertices: Vec<_> = (0..agents).map(|_| graph.add_node(())).collect();
+    for &(from, to) in edges {
+        graph.add_edge(vertices[from], vertices[to], ());
+    }
+    let mut components: Vec<Vec<usize>> = tarjan_scc(&graph)
+        .into_iter()
+        .map(|component| {
+            let mut agents: Vec<usize> = component.into_iter().map(|vertex| vertex.index()).collect();
+            agents.sort_unstable();
+            agents
+        })
+        .collect();
+    components.sort();
+    components
+}
+
+/// The Laplacian L_w, row by row: Σ_k w_ik on the diagonal, −w_ij elsewhere.
+pub fn laplacian(agents: usize, edges: &[Edge]) -> Vec<f64> {
+    let mut l = vec![0.0; agents * agents];
+    for edge in edges {
+        l[edge.to * agents + edge.to] += edge.weight;
+        l[edge.to * agents + edge.from] -= edge.weight;
+    }
+    l
+}
+
+/// 𝒩_i: those that agent `i` hears, in the order of the edges.
+pub fn neighbours(edges: &[Edge], i: usize) -> impl Iterator<Item = usize> + '_ {
+    edges.iter().filter(move |edge| edge.to == i).map(|edge| edge.from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn edges(pairs: &[(usize, usize)]) -> Vec<Edge> {
+        pairs.iter().map(|&(from, to)| Edge { from, to, weight: 2.0, delay: 0 }).collect()
+    }
+
+    #[test]
+    fn spanning_tree_names_all_roots() {
+        let graph = edges(&[(0, 1), (1, 0), (1, 2), (2, 3)]);
+        assert_eq!(spanning_tree(4, &graph), SpanningTree::Rooted { roots: vec![0, 1] });
+        assert_eq!(spanning_tree(1, &[]), SpanningTree::Rooted { roots: vec![0] });
+    }
+
+    #[test]
+    fn missing_tree_names_the_closed_groups() {
+        let graph = edges(&[(0, 1), (3, 2), (2, 3), (3, 1)]);
+        assert_eq!(spanning_tree(4, &graph), SpanningTree::Missing { closed_groups: vec![vec![0], vec![2, 3]] });
+    }
+
+    #[test]
+    fn laplacian_rows_sum_to_zero() {
+        let graph = edges(&[(0, 1), (2, 1), (1, 2)]);
+        let l = laplacian(3, &graph);
+        assert_eq!(l, vec![0.0, 0.0, 0.0, -2.0, 4.0, -2.0, 0.0, -2.0, 2.0]);
+        assert_eq!(neighbours(&graph, 1).collect::<Vec<_>>(), vec![0, 2]);
+    }
 }

@@ -4,15 +4,20 @@
 //! The layers, each of which uses only those before it: [`graph`] and [`schedule`], [`delay`] and [`network`]; the
 //! integrator with its history and break-points; the closed loop; [`recording`] and [`simulate`].
 
+mod closed_loop;
 pub mod delay;
+mod engine;
 pub mod graph;
 pub mod network;
 pub mod recording;
 pub mod schedule;
 pub mod setup;
+mod simulate;
 
+pub use closed_loop::SetupError;
 pub use network::Network;
-pub use recording::{Breakdown, Ending, Outcome, Recording, Signal};
+pub use recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal, Statistics};
 pub use setup::{
     AgentSetup, Axis, AxisUnit, Exchange, Law, Method, RobotKind, RobotSetup, Setup, Solver, Start, TimeSpan,
 };
+pub use simulate::simulate;

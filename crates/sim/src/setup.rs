@@ -62,6 +62,13 @@ pub struct RobotSetup {
     pub axes: Vec<Axis>,
 }
 
+impl RobotSetup {
+    /// D: the true viscous damping of every axis, N m s/rad or N s/m; zero where there is none.
+    pub fn viscous(&self) -> Vec<f64> {
+        vec![0.0; self.axes.len()]
+    }
+}
+
 /// The robots that can be simulated.
 #[derive(Clone, Debug)]
 pub enum RobotKind {

@@ -1,1 +1,138 @@
 //! From a setup to an outcome.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use crate::closed_loop::{ClosedLoop, SetupError};
+use crate::engine::{Integrator, Step};
+use crate::recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal};
+use crate::setup::Setup;
+
+/// Rows are made room for in chunks of this many.
+const ROWS_PER_CHUNK: usize = 4096;
+
+/// Simulates `setup` until its horizon, a breakdown, or until `observer`, which is called after every step, says stop.
+///
+/// Rows of the recording at a break-point hold the values just after it; the last row those just before the horizon.
+/// The same setup gives the same bits every time.
+///
+/// # Errors
+/// [`SetupError`] when the setup has no meaning; nothing was computed then. A run that breaks down is not an error: see
+/// [`Ending::BrokeDown`].
+pub fn simulate(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Result<Outcome, SetupError> {
+    let started = Instant::now();
+    let mut closed_loop = ClosedLoop::new(setup)?;
+    let (ports, entries) = closed_loop.ports();
+    let end_s = setup.time.end_s;
+    let mut integrator = Integrator::new(&setup.network, &setup.solver, end_s, closed_loop.start(), ports, entries);
+    let mut recorder = Recorder::new(setup, &closed_loop);
+
+    let ending = loop {
+        match integrator.advance(&mut closed_loop) {
+            Ok(None) => break Ending::Completed,
+            Ok(Some(step)) => {
+                if let Some(breakdown) = recorder.record(&mut integrator, &mut closed_loop, step) {
+                    break Ending::BrokeDown(breakdown);
+                }
+                let progress = Progress { t_s: step.end_s, end_s };
+                if observer(progress).is_break() && step.end_s < end_s {
+                    break Ending::Interrupted { t_s: step.end_s };
+                }
+            }
+            Err(failure) => {
+                let (agent, signal, axis) = closed_loop.locate(failure.state);
+                let cause = match failure.step_s {
+                    Some(step_s) => BreakdownCause::StepUnderFloor { step_s },
+                    None => BreakdownCause::NotFinite,
+                };
+                break Ending::BrokeDown(Breakdown { t_s: failure.t_s, agent, signal, axis, cause });
+            }
+        }
+    };
+    let mut statistics = integrator.statistics();
+    statistics.wall = started.elapsed();
+    Ok(Outcome { recording: recorder.recording, ending, statistics })
+}
+
+/// Writes rows as steps go by.
+struct Recorder<'a> {
+    setup: &'a Setup,
+    recording: Recording,
+    /// First column of every agent.
+    first_column: Vec<usize>,
+    /// Rows written so far; row k belongs to t = k · record_every.
+    rows: usize,
+}
+
+impl<'a> Recorder<'a> {
+    fn new(setup: &'a Setup, closed_loop: &ClosedLoop) -> Self {
+        let mut recording = Recording::default();
+        let mut first_column = Vec::new();
+        for (agent, signals) in closed_loop.signals(setup.agents.len()).into_iter().enumerate() {
+            first_column.push(recording.columns.len());
+            let column = |(signal, axis)| Column { agent, signal, axis, values: Vec::new() };
+            recording.columns.extend(signals.into_iter().map(column));
+        }
+        Recorder { setup, recording, first_column, rows: 0 }
+    }
+
+    /// Writes the rows that fall into `step`; the breakdown, if an enforced limit was left.
+    fn record(
+        &mut self,
+        integrator: &mut Integrator<'_>,
+        closed_loop: &mut ClosedLoop,
+        step: Step,
+    ) -> Option<Breakdown> {
+        let end_s = self.setup.time.end_s;
+        loop {
+            let t_s = self.rows as f64 * self.setup.time.record_every_s;
+            // A row that the horizon rounds away is the last row.
+            let last = t_s >= end_s * (1.0 - 1e-12);
+            let t_s = if last { end_s } else { t_s };
+            let inside = t_s < step.end_s || last && step.end_s >= end_s;
+            if !inside || self.recording.t_s.last() == Some(&end_s) {
+                return None;
+            }
+            self.row(integrator, closed_loop, t_s);
+            if let Some(breakdown) = self.limit_left(t_s) {
+                return Some(breakdown);
+            }
+        }
+    }
+
+    fn row(&mut self, integrator: &mut Integrator<'_>, closed_loop: &mut ClosedLoop, t_s: f64) {
+        if self.rows.is_multiple_of(ROWS_PER_CHUNK) {
+            let left = (self.setup.time.end_s / self.setup.time.record_every_s) as usize + 2 - self.rows.min(1);
+            let chunk = ROWS_PER_CHUNK.min(left.saturating_sub(self.rows) + 2);
+            self.recording.t_s.reserve_exact(chunk);
+            for column in &mut self.recording.columns {
+                column.values.reserve_exact(chunk);
+            }
+        }
+        self.rows += 1;
+        self.recording.t_s.push(t_s);
+        let (x, heard) = integrator.look_inside(t_s);
+        let (columns, first) = (&mut self.recording.columns, &self.first_column);
+        closed_loop.record(x, heard, |agent, values| {
+            for (column, value) in columns[first[agent]..].iter_mut().zip(values) {
+                column.values.push(*value);
+            }
+        });
+    }
+
+    fn limit_left(&self, t_s: f64) -> Option<Breakdown> {
+        for (agent, setup) in self.setup.agents.iter().enumerate().filter(|(_, agent)| agent.enforce_limits) {
+            for (axis, description) in setup.robot.axes.iter().enumerate() {
+                // Positions are an agent's first columns.
+                let value = *self.recording.columns[self.first_column[agent] + axis].values.last()?;
+                if let Some(limits) = description.position_limits
+                    && !(limits[0]..=limits[1]).contains(&value)
+                {
+                    let cause = BreakdownCause::PositionLimit { value, limits };
+                    return Some(Breakdown { t_s, agent, signal: Signal::Position, axis, cause });
+                }
+            }
+        }
+        None
+    }
+}

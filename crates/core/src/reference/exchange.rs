@@ -1,0 +1,104 @@
+//! What agents tell each other, as types: a design that must not see its neighbours' velocities cannot read them.
+
+use crate::{LengthError, Scalar};
+
+/// What an agent transmits and what the sums over its neighbours look like on the receiving side.
+///
+/// Agents transmit raw measurements; the receiver applies its own coefficients. A sender's message of m axes has
+/// [`Exchange::CHANNELS`] · m numbers.
+pub trait Exchange: Copy + Send + Sync + 'static {
+    /// How many vectors of ℝᵐ a message holds.
+    const CHANNELS: usize;
+
+    /// Σ_j w_ij · message_j(t − T_ij), one column per axis and channel.
+    type Sums<'a, S: Scalar>: Copy;
+
+    /// Reads the sums out of one buffer that holds the channels one after the other, `channel` entries each.
+    ///
+    /// `None` when the buffer is too short.
+    fn split<S: Scalar>(buffer: &[S], channel: usize) -> Option<Self::Sums<'_, S>>;
+
+    /// Checks that every channel has `channel` entries.
+    ///
+    /// # Errors
+    /// [`LengthError`] for the first that has not.
+    fn check<S: Scalar>(sums: Self::Sums<'_, S>, channel: usize) -> Result<(), LengthError>;
+
+    /// The part of the receiver's law that these sums enter, on entry `k`: α₀ Σ w q_j, and (α₀/κ₀) Σ w q̇_j if it is sent.
+    fn term<S: Scalar>(sums: Self::Sums<'_, S>, k: usize, alpha_0: S, alpha_0_over_kappa_0: S) -> S;
+}
+
+/// Everything a linear design needs to know of its neighbours: Σ_j w_ij and the weighted sums of their messages.
+#[derive(Clone, Copy, Debug)]
+pub struct Heard<'a, S: Scalar, X: Exchange> {
+    /// Σ_j w_ij, one entry per agent.
+    pub degree: &'a [S],
+    /// Σ_j w_ij · message_j(t − T_ij).
+    pub sums: X::Sums<'a, S>,
+}
+
+/// Transmits q_j.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Position;
+
+/// Transmits q_j and q̇_j.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PositionVelocity;
+
+/// Σ_j w_ij q_j(t − T_ij).
+#[derive(Clone, Copy, Debug)]
+pub struct PositionSums<'a, S> {
+    /// One column per axis.
+    pub q: &'a [S],
+}
+
+/// Σ_j w_ij q_j(t − T_ij) and Σ_j w_ij q̇_j(t − T_ij).
+#[derive(Clone, Copy, Debug)]
+pub struct PositionVelocitySums<'a, S> {
+    /// One column per axis.
+    pub q: &'a [S],
+    /// One column per axis.
+    pub dq: &'a [S],
+}
+
+impl Exchange for Position {
+    const CHANNELS: usize = 1;
+    type Sums<'a, S: Scalar> = PositionSums<'a, S>;
+
+    #[inline(always)]
+    fn split<S: Scalar>(buffer: &[S], channel: usize) -> Option<PositionSums<'_, S>> {
+        Some(PositionSums { q: buffer.get(..channel)? })
+    }
+
+    #[inline(always)]
+    fn check<S: Scalar>(sums: PositionSums<'_, S>, channel: usize) -> Result<(), LengthError> {
+        LengthError::check("sum of positions heard", channel, sums.q.len())
+    }
+
+    #[inline(always)]
+    fn term<S: Scalar>(sums: PositionSums<'_, S>, k: usize, alpha_0: S, _: S) -> S {
+        alpha_0 * sums.q[k]
+    }
+}
+
+impl Exchange for PositionVelocity {
+    const CHANNELS: usize = 2;
+    type Sums<'a, S: Scalar> = PositionVelocitySums<'a, S>;
+
+    #[inline(always)]
+    fn split<S: Scalar>(buffer: &[S], channel: usize) -> Option<PositionVelocitySums<'_, S>> {
+        let (q, dq) = buffer.split_at_checked(channel)?;
+        Some(PositionVelocitySums { q, dq: dq.get(..channel)? })
+    }
+
+    #[inline(always)]
+    fn check<S: Scalar>(sums: PositionVelocitySums<'_, S>, channel: usize) -> Result<(), LengthError> {
+        LengthError::check("sum of positions heard", channel, sums.q.len())?;
+        LengthError::check("sum of velocities heard", channel, sums.dq.len())
+    }
+
+    #[inline(always)]
+    fn term<S: Scalar>(sums: PositionVelocitySums<'_, S>, k: usize, alpha_0: S, alpha_0_over_kappa_0: S) -> S {
+        alpha_0.mul_add(sums.q[k], alpha_0_over_kappa_0 * sums.dq[k])
+    }
+}

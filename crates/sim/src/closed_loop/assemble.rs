@@ -1,0 +1,386 @@
+//! From a setup to populations, with everything checked.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use forwardstep_core::law::SlotineLi;
+use forwardstep_core::reference::{Consensus, Exchange as CoreExchange, Position, PositionVelocity, RootsError};
+use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass};
+use forwardstep_core::{Gain, GainError, LengthError, ResolvedGain};
+use thiserror::Error;
+
+use super::population::{Columns, Member, Population};
+use crate::engine::{DelaySystem, Heard, Port};
+use crate::network::NetworkError;
+use crate::recording::Signal;
+use crate::setup::{AgentSetup, Exchange, Law, Method, RobotKind, Setup};
+
+/// Why a setup cannot be simulated.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SetupError {
+    /// The network has no meaning.
+    #[error("network: {0}")]
+    Network(#[from] NetworkError),
+    /// The network was made for another number of agents.
+    #[error("the network has {network} agents, but {agents} are described")]
+    AgentCount {
+        /// Vertices of the network.
+        network: usize,
+        /// Agents described.
+        agents: usize,
+    },
+    /// Consensus needs all agents in the same space.
+    #[error("agent `{agent}` has {axes} axes, but `{first}` has {first_axes}; agents can only agree in the same space")]
+    AxesDiffer {
+        /// The agent that differs.
+        agent: String,
+        /// Its number of axes.
+        axes: usize,
+        /// The first agent.
+        first: String,
+        /// The first agent's number of axes.
+        first_axes: usize,
+    },
+    /// A vector of one agent has the wrong length.
+    #[error("agent `{agent}`: {error}")]
+    Length {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: LengthError,
+    },
+    /// A number of one agent is not finite.
+    #[error("agent `{agent}`: {what} has the entry {value}, which is not a finite number")]
+    NotFinite {
+        /// The agent.
+        agent: String,
+        /// Which vector.
+        what: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// The roots of one agent.
+    #[error("agent `{agent}`: {error}")]
+    Roots {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: RootsError,
+    },
+    /// A gain of one agent.
+    #[error("agent `{agent}`: {gain}: {error}")]
+    Gain {
+        /// The agent.
+        agent: String,
+        /// `K` or `Γ`.
+        gain: &'static str,
+        /// What is wrong.
+        error: GainError,
+    },
+    /// Limits are to be enforced, but an axis has none.
+    #[error("agent `{agent}`: limits are to be enforced, but axis `{axis}` has no effort limit")]
+    NoEffortLimit {
+        /// The agent.
+        agent: String,
+        /// The axis.
+        axis: String,
+    },
+    /// A time, tolerance or step that is not positive.
+    #[error("{what} is {value}, but must be positive and finite")]
+    NotPositive {
+        /// What it is.
+        what: &'static str,
+        /// The value.
+        value: f64,
+    },
+}
+
+/// All populations and where their blocks stand.
+pub(crate) struct ClosedLoop {
+    blocks: Vec<Block>,
+    ports: Vec<Port>,
+    entries: usize,
+    start: Vec<f64>,
+}
+
+struct Block {
+    columns: Box<dyn Columns>,
+    state: Range<usize>,
+    degree: Range<usize>,
+    sums: Range<usize>,
+}
+
+impl ClosedLoop {
+    /// Checks a setup and builds its closed loop.
+    pub(crate) fn new(setup: &Setup) -> Result<Self, SetupError> {
+        check(setup)?;
+        match setup.exchange {
+            Exchange::Position => Self::with_exchange::<Position>(setup),
+            Exchange::PositionVelocity => Self::with_exchange::<PositionVelocity>(setup),
+        }
+    }
+
+    fn with_exchange<X: CoreExchange>(setup: &Setup) -> Result<Self, SetupError> {
+        let axes = setup.agents[0].robot.axes.len();
+        let entries = X::CHANNELS * axes;
+        let mut closed_loop = ClosedLoop {
+            blocks: Vec::new(),
+            ports: vec![Port { state: 0, sums: 0, degree: 0, stride: 0 }; setup.agents.len()],
+            entries,
+            start: Vec::new(),
+        };
+        let mut placed = 0;
+        for group in populations(&setup.agents) {
+            let n = group.len();
+            let columns = population::<X>(setup, &group)?;
+            let first = closed_loop.start.len();
+            closed_loop.append_start(setup, &group, columns.state_len());
+            for (i, &agent) in group.iter().enumerate() {
+                closed_loop.ports[agent] =
+                    Port { state: first + i, sums: placed * entries + i, degree: placed + i, stride: n };
+            }
+            closed_loop.blocks.push(Block {
+                state: first..closed_loop.start.len(),
+                degree: placed..placed + n,
+                sums: placed * entries..(placed + n) * entries,
+                columns,
+            });
+            placed += n;
+        }
+        Ok(closed_loop)
+    }
+
+    /// The initial state of one block, in the order that [`super::population`] documents.
+    fn append_start(&mut self, setup: &Setup, group: &[usize], state_len: usize) {
+        let first = self.start.len();
+        let agents = || group.iter().map(|&agent| &setup.agents[agent]);
+        let axes = setup.agents[group[0]].robot.axes.len();
+        let order = setup.agents[group[0]].roots_per_s.len();
+        for axis in 0..axes {
+            self.start.extend(agents().map(|a| a.start.q[axis]));
+        }
+        for axis in 0..axes {
+            self.start.extend(agents().map(|a| a.start.dq[axis]));
+        }
+        for r in 0..order {
+            for axis in 0..axes {
+                let default = |a: &AgentSetup| if r == 0 { a.start.dq[axis] } else { 0.0 };
+                self.start.extend(agents().map(|a| a.start.reference.get(r).map_or(default(a), |z| z[axis])));
+            }
+        }
+        for k in 0..setup.agents[group[0]].robot.theta.len() {
+            self.start.extend(agents().filter_map(|a| match &a.law {
+                Law::Adaptive { estimate_start, .. } => Some(estimate_start[k]),
+                Law::Known { .. } => None,
+            }));
+        }
+        self.start.resize(first + state_len, 0.0);
+    }
+
+    /// The initial state.
+    pub(crate) fn start(&self) -> Vec<f64> {
+        self.start.clone()
+    }
+
+    /// Where messages stand, and how many numbers one has.
+    pub(crate) fn ports(&self) -> (Vec<Port>, usize) {
+        (self.ports.clone(), self.entries)
+    }
+
+    /// Agent, signal and axis of a state.
+    pub(crate) fn locate(&self, state: usize) -> (usize, Signal, usize) {
+        let block = self.blocks.iter().find(|block| block.state.contains(&state));
+        block.map_or((0, Signal::Position, 0), |block| block.columns.locate(state - block.state.start))
+    }
+
+    /// The signals of every agent, in the order of agents.
+    pub(crate) fn signals(&self, agents: usize) -> Vec<Vec<(Signal, usize)>> {
+        let mut signals = vec![Vec::new(); agents];
+        for block in &self.blocks {
+            for (agent, port) in self.ports.iter().enumerate() {
+                if block.degree.contains(&port.degree) {
+                    signals[agent] = block.columns.signals();
+                }
+            }
+        }
+        signals
+    }
+
+    /// Hands every agent's signals at one instant to `write`.
+    pub(crate) fn record(&mut self, x: &[f64], heard: &Heard, mut write: impl FnMut(usize, &[f64])) {
+        for Block { columns, state, degree, sums } in &mut self.blocks {
+            columns.record(&x[state.clone()], &heard.degree[degree.clone()], &heard.sums[sums.clone()], &mut write);
+        }
+    }
+}
+
+impl DelaySystem for ClosedLoop {
+    fn rates(&mut self, x: &[f64], heard: &Heard, dx: &mut [f64]) {
+        for Block { columns, state, degree, sums } in &mut self.blocks {
+            columns.rates(
+                &x[state.clone()],
+                &heard.degree[degree.clone()],
+                &heard.sums[sums.clone()],
+                &mut dx[state.clone()],
+            );
+        }
+    }
+}
+
+/// Agents that can stand side by side: one robot model, one order, all adaptive or none. Groups in order of their first
+/// agent.
+fn populations(agents: &[AgentSetup]) -> Vec<Vec<usize>> {
+    let alike = |a: &AgentSetup, b: &AgentSetup| {
+        let same_model = match (&a.robot.kind, &b.robot.kind) {
+            (RobotKind::Tree(a), RobotKind::Tree(b)) => Arc::ptr_eq(a, b),
+            (RobotKind::PlanarArm, RobotKind::PlanarArm) => true,
+            (RobotKind::PointMass { dimension: a }, RobotKind::PointMass { dimension: b }) => a == b,
+            _ => false,
+        };
+        same_model
+            && a.roots_per_s.len() == b.roots_per_s.len()
+            && matches!(a.law, Law::Adaptive { .. }) == matches!(b.law, Law::Adaptive { .. })
+    };
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (index, agent) in agents.iter().enumerate() {
+        match groups.iter_mut().find(|group| alike(&agents[group[0]], agent)) {
+            Some(group) => group.push(index),
+            None => groups.push(vec![index]),
+        }
+    }
+    groups
+}
+
+fn population<X: CoreExchange>(setup: &Setup, group: &[usize]) -> Result<Box<dyn Columns>, SetupError> {
+    let first = &setup.agents[group[0]];
+    match &first.robot.kind {
+        RobotKind::Tree(_tree) => Err(SetupError::NotPositive { what: "TEMPORARY", value: 0.0 }),
+        RobotKind::PlanarArm => boxed::<PlanarArm, X>(PlanarArm, setup, group),
+        RobotKind::PointMass { dimension } => boxed::<PointMass, X>(PointMass { dimension: *dimension }, setup, group),
+    }
+}
+
+fn boxed<R, X>(robot: R, setup: &Setup, group: &[usize]) -> Result<Box<dyn Columns>, SetupError>
+where
+    R: Lagrangian<f64> + 'static,
+    X: CoreExchange,
+{
+    let mut members = Vec::new();
+    for &agent in group {
+        members.push(member(&robot, &setup.agents[agent], agent)?);
+    }
+    let roots = group.iter().map(|&agent| &setup.agents[agent].roots_per_s[..]);
+    let first = &setup.agents[group[0]];
+    let consensus =
+        Consensus::<X>::new(roots).map_err(|error| SetupError::Roots { agent: first.name.clone(), error })?;
+    let adaptive = matches!(first.law, Law::Adaptive { .. });
+    Ok(Box::new(Population::new(robot, members, consensus, adaptive, setup.solver.ledger)))
+}
+
+fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Result<Member, SetupError> {
+    let (m, p) = (robot.dof(), robot.parameter_count());
+    let name = || agent.name.clone();
+    let length = |what, need, got| {
+        LengthError::check(what, need, got).map_err(|error| SetupError::Length { agent: name(), error })
+    };
+    length("axes", m, agent.robot.axes.len())?;
+    length("theta", p, agent.robot.theta.len())?;
+    let mut mass = vec![0.0; m * m];
+    robot
+        .mass_matrix(&mut robot.scratch(), &agent.start.q, &agent.robot.theta, &mut mass)
+        .map_err(|error| SetupError::Length { agent: name(), error })?;
+    let diagonal: Vec<f64> = mass.iter().step_by(m + 1).copied().collect();
+
+    let resolve = |gain: &Gain, which, size, scale: &[f64]| -> Result<ResolvedGain, SetupError> {
+        gain.resolve(size, scale).map_err(|error| SetupError::Gain { agent: name(), gain: which, error })
+    };
+    let (damping, adaptation) = match &agent.law {
+        Law::Known { damping } => (damping, None),
+        Law::Adaptive { damping, adaptation, estimate_start } => {
+            length("start of the estimate", p, estimate_start.len())?;
+            (damping, Some(adaptation))
+        }
+    };
+    let adaptation = match adaptation {
+        Some(gain) => {
+            // Γ = ω² diag(scale): one ω is multiplied in here, the other by `resolve`.
+            let omega = if let Gain::Bandwidth(omega) = gain { *omega } else { 1.0 };
+            let scale = robot.adaptation_scale(&agent.start.q, &agent.robot.theta);
+            let scale: Vec<f64> = scale.iter().map(|scale| omega * scale).collect();
+            Some(resolve(gain, "Γ", p, &scale)?)
+        }
+        None => None,
+    };
+    let law = SlotineLi { damping: resolve(damping, "K", m, &diagonal)?, adaptation };
+    let effort_limits = if agent.enforce_limits {
+        let limit = |axis: &crate::setup::Axis| {
+            axis.effort_limit.ok_or_else(|| SetupError::NoEffortLimit { agent: name(), axis: axis.name.clone() })
+        };
+        Some(agent.robot.axes.iter().map(limit).collect::<Result<_, _>>()?)
+    } else {
+        None
+    };
+    Ok(Member { agent: index, theta: agent.robot.theta.clone(), viscous: agent.robot.viscous(), law, effort_limits })
+}
+
+/// Everything that does not need a robot's kernels.
+fn check(setup: &Setup) -> Result<(), SetupError> {
+    setup.network.validate()?;
+    if setup.network.agents != setup.agents.len() {
+        return Err(SetupError::AgentCount { network: setup.network.agents, agents: setup.agents.len() });
+    }
+    let positive = |what, value: f64| {
+        if value > 0.0 && value.is_finite() { Ok(()) } else { Err(SetupError::NotPositive { what, value }) }
+    };
+    positive("the horizon", setup.time.end_s)?;
+    positive("the recording interval", setup.time.record_every_s)?;
+    positive("the smallest step", setup.solver.min_step_s)?;
+    setup.solver.max_step_s.map_or(Ok(()), |step| positive("the largest step", step))?;
+    match setup.solver.method {
+        Method::Adaptive { rtol, atol } => {
+            positive("the relative tolerance", rtol)?;
+            positive("the absolute tolerance", atol)?;
+        }
+        Method::Fixed { step_s } => positive("the step", step_s)?,
+    }
+    let first = &setup.agents[0];
+    let axes = first.robot.axes.len();
+    for agent in &setup.agents {
+        check_agent(agent, first, axes)?;
+    }
+    Ok(())
+}
+
+fn check_agent(agent: &AgentSetup, first: &AgentSetup, axes: usize) -> Result<(), SetupError> {
+    if agent.robot.axes.len() != axes {
+        return Err(SetupError::AxesDiffer {
+            agent: agent.name.clone(),
+            axes: agent.robot.axes.len(),
+            first: first.name.clone(),
+            first_axes: axes,
+        });
+    }
+    let vector = |what: &'static str, need: usize, values: &[f64]| {
+        LengthError::check(what, need, values.len())
+            .map_err(|error| SetupError::Length { agent: agent.name.clone(), error })?;
+        match values.iter().find(|value| !value.is_finite()) {
+            Some(value) => Err(SetupError::NotFinite { agent: agent.name.clone(), what, value: *value }),
+            None => Ok(()),
+        }
+    };
+    vector("the start position", axes, &agent.start.q)?;
+    vector("the start velocity", axes, &agent.start.dq)?;
+    for z in &agent.start.reference {
+        vector("the start of the reference", axes, z)?;
+    }
+    if agent.start.reference.len() > agent.roots_per_s.len() {
+        let (need, got) = (agent.roots_per_s.len(), agent.start.reference.len());
+        let error = LengthError { what: "the start of the reference", need, got };
+        return Err(SetupError::Length { agent: agent.name.clone(), error });
+    }
+    vector("theta", agent.robot.theta.len(), &agent.robot.theta)?;
+    if let Law::Adaptive { estimate_start, .. } = &agent.law {
+        vector("the start of the estimate", agent.robot.theta.len(), estimate_start)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,209 @@
+//! The weighted sums of delayed messages at one instant, gathered for all agents at once.
+
+use forwardstep_core::{Kernel, dispatch};
+
+use super::history::{History, Place};
+use super::kernels::{evaluate, fma};
+use super::tableau::basis;
+use super::timeline::Timeline;
+use crate::graph::Edge;
+
+/// Where an agent's message stands in the state and where its sums go.
+///
+/// Agents of one population are interleaved: entry c of an agent's message is at `state + c · stride`, and likewise for
+/// its sums.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Port {
+    /// Index of the first transmitted number in the state.
+    pub(crate) state: usize,
+    /// Index of the first sum in [`Heard::sums`].
+    pub(crate) sums: usize,
+    /// Index in [`Heard::degree`].
+    pub(crate) degree: usize,
+    /// Distance between consecutive entries.
+    pub(crate) stride: usize,
+}
+
+/// What all agents hear.
+#[derive(Debug)]
+pub(crate) struct Heard {
+    /// Σ_j w_ij.
+    pub(crate) degree: Vec<f64>,
+    /// Σ_j w_ij · message_j(t − T_ij).
+    pub(crate) sums: Vec<f64>,
+}
+
+/// An edge with everything looked up.
+#[derive(Clone, Copy, Debug)]
+struct Link {
+    sender: usize,
+    receiver: usize,
+    weight: f64,
+    /// Index into [`Hearing::sources`].
+    source: usize,
+}
+
+/// One delay that is in use by the graph in force.
+#[derive(Clone, Copy, Debug)]
+struct Source {
+    clock: usize,
+    cursor: u64,
+    read: Read,
+}
+
+/// Where the messages of one delay come from at the instant looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Read {
+    Initial,
+    /// No delay at all: the state itself.
+    Now,
+    Piece {
+        offset: usize,
+        basis: [f64; 4],
+    },
+}
+
+/// Which messages an instant needs that are not history yet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Needs {
+    /// Some delay is zero: the sums depend on the state handed over.
+    pub(crate) present: bool,
+    /// Some delay is shorter than the step: the sums depend on the draft of the current piece.
+    pub(crate) draft: bool,
+}
+
+/// The network in force, ready to gather.
+#[derive(Debug)]
+pub(crate) struct Hearing {
+    ports: Vec<Port>,
+    entries: usize,
+    links: Vec<Link>,
+    sources: Vec<Source>,
+    initial: Vec<f64>,
+}
+
+impl Hearing {
+    /// `entries` numbers are sent by every agent; `x` is the state at t = 0, which everybody is taken to have sent before.
+    pub(crate) fn new(ports: Vec<Port>, entries: usize, x: &[f64]) -> Self {
+        let initial = ports.iter().flat_map(|p| (0..entries).map(move |c| x[p.state + c * p.stride])).collect();
+        Hearing { ports, entries, links: Vec::new(), sources: Vec::new(), initial }
+    }
+
+    /// Numbers that a piece of history holds.
+    pub(crate) fn piece_width(&self) -> usize {
+        self.ports.len() * self.entries * 5
+    }
+
+    /// Visits every transmitted number as (index in the piece of its r₁, distance between its coefficients, state).
+    #[inline(always)]
+    pub(crate) fn for_each_sent(&self, mut visit: impl FnMut(usize, usize, usize)) {
+        for (agent, port) in self.ports.iter().enumerate() {
+            for c in 0..self.entries {
+                visit(agent * self.entries * 5 + c, self.entries, port.state + c * port.stride);
+            }
+        }
+    }
+
+    /// Takes the edges of the graph in force.
+    pub(crate) fn rewire(&mut self, timeline: &Timeline<'_>, edges: &[Edge], heard: &mut Heard) {
+        self.links.clear();
+        self.sources.clear();
+        heard.degree.fill(0.0);
+        for edge in edges {
+            let Some(clock) = timeline.clock_of(edge.delay) else { continue };
+            let source = self.sources.iter().position(|source| source.clock == clock).unwrap_or_else(|| {
+                self.sources.push(Source { clock, cursor: u64::MAX, read: Read::Initial });
+                self.sources.len() - 1
+            });
+            self.links.push(Link { sender: edge.from, receiver: edge.to, weight: edge.weight, source });
+            heard.degree[self.ports[edge.to].degree] += edge.weight;
+        }
+        // Receivers in order, senders in order within: sums do not depend on how a file lists its edges.
+        self.links.sort_by_key(|link| (link.receiver, link.sender));
+    }
+
+    /// Looks up where every message comes from at `t_s`; `draft` is (start, length, offset) of the piece being made.
+    #[inline(always)]
+    pub(crate) fn look(
+        &mut self,
+        timeline: &Timeline<'_>,
+        history: &History,
+        t_s: f64,
+        (start_s, length_s, offset): (f64, f64, usize),
+    ) -> Needs {
+        let mut needs = Needs::default();
+        for source in &mut self.sources {
+            let delay_s = timeline.delay_s(source.clock, t_s);
+            source.read = if delay_s == 0.0 {
+                needs.present = true;
+                Read::Now
+            } else {
+                match history.find(t_s - delay_s, &mut source.cursor) {
+                    Place::Before => Read::Initial,
+                    Place::Piece { offset, theta } => Read::Piece { offset, basis: basis(theta) },
+                    Place::Ahead => {
+                        needs.draft = true;
+                        let theta = (t_s - delay_s - start_s) / length_s;
+                        Read::Piece { offset, basis: basis(theta.clamp(0.0, 1.0)) }
+                    }
+                }
+            };
+        }
+        needs
+    }
+
+    /// Adds up what was looked up; `x` is the state at that instant.
+    pub(crate) fn gather(&self, history: &History, x: &[f64], heard: &mut Heard) {
+        dispatch(Gather { hearing: self, data: history.data(), x, sums: &mut heard.sums });
+    }
+}
+
+struct Gather<'a> {
+    hearing: &'a Hearing,
+    data: &'a [f64],
+    x: &'a [f64],
+    sums: &'a mut [f64],
+}
+
+impl Kernel for Gather<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Gather { hearing, data, x, sums } = self;
+        let entries = hearing.entries;
+        sums.fill(0.0);
+        for link in &hearing.links {
+            let to = hearing.ports[link.receiver];
+            let w = link.weight;
+            match hearing.sources[link.source].read {
+                Read::Piece { offset, basis } => {
+                    let piece = &data[offset + link.sender * entries * 5..][..entries * 5];
+                    let (r1, rest) = piece.split_at(entries);
+                    let (r2, rest) = rest.split_at(entries);
+                    let (r3, rest) = rest.split_at(entries);
+                    let (r4, r5) = rest.split_at(entries);
+                    for c in 0..entries {
+                        let value = evaluate([r1[c], r2[c], r3[c], r4[c], r5[c]], basis);
+                        let sum = &mut sums[to.sums + c * to.stride];
+                        *sum = fma(w, value, *sum);
+                    }
+                }
+                Read::Now => {
+                    let from = hearing.ports[link.sender];
+                    for c in 0..entries {
+                        let sum = &mut sums[to.sums + c * to.stride];
+                        *sum = fma(w, x[from.state + c * from.stride], *sum);
+                    }
+                }
+                Read::Initial => {
+                    let message = &hearing.initial[link.sender * entries..][..entries];
+                    for (c, value) in message.iter().enumerate() {
+                        let sum = &mut sums[to.sums + c * to.stride];
+                        *sum = fma(w, *value, *sum);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! What was transmitted, as self-contained polynomial pieces.
+//!
+//! One piece per accepted step, holding r₁ … r₅ of every transmitted number and nothing else: memory grows with what is
+//! sent, not with the state. A piece needs none of its neighbours, so at a break-point the past has a left and a right
+//! side for free. Pieces older than the largest delay are dropped; the ring grows by doubling and then stays.
+
+/// A place to read from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Place {
+    /// Before t = 0: the initial message.
+    Before,
+    /// In a kept piece: where its numbers begin, and θ ∈ [0, 1] within it.
+    Piece {
+        /// Offset into [`History::data`].
+        offset: usize,
+        /// Position within the piece.
+        theta: f64,
+    },
+    /// After the last piece.
+    Ahead,
+}
+
+/// The pieces in a ring; they are numbered from the start of the run.
+#[derive(Debug)]
+pub(crate) struct History {
+    /// Numbers per piece.
+    width: usize,
+    /// Pieces that fit, a power of two.
+    capacity: usize,
+    data: Vec<f64>,
+    /// Start and length of each piece, s.
+    spans: Vec<[f64; 2]>,
+    /// Number of the first piece kept.
+    first: u64,
+    /// Number of the piece to come.
+    next: u64,
+    /// End of the last piece, s.
+    end_s: f64,
+}
+
+impl History {
+    /// An empty history of pieces of `width` numbers.
+    pub(crate) fn new(width: usize) -> Self {
+        let capacity = 16;
+        History {
+            width,
+            capacity,
+            data: vec![0.0; width * capacity],
+            spans: vec![[0.0; 2]; capacity],
+            first: 0,
+            next: 0,
+            end_s: 0.0,
+        }
+    }
+
+    /// End of the last piece, s.
+    pub(crate) fn end_s(&self) -> f64 {
+        self.end_s
+    }
+
+    /// All numbers; see [`Place::Piece`] for where a piece begins.
+    pub(crate) fn data(&self) -> &[f64] {
+        &self.data
+    }
+
+    fn slot(&self, number: u64) -> usize {
+        (number & (self.capacity as u64 - 1)) as usize
+    }
+
+    /// The piece to come, to be filled before it is [committed](History::commit), and where it begins.
+    pub(crate) fn draft(&mut self) -> (usize, &mut [f64]) {
+        let offset = self.slot(self.next) * self.width;
+        (offset, &mut self.data[offset..offset + self.width])
+    }
+
+    /// Keeps the draft as the piece of [`start_s`, `end_s`] and drops what ended before `forget_s`.
+    pub(crate) fn commit(&mut self, start_s: f64, end_s: f64, forget_s: f64) {
+        let slot = self.slot(self.next);
+        self.spans[slot] = [start_s, end_s - start_s];
+        self.next += 1;
+        self.end_s = end_s;
+        while self.first + 1 < self.next {
+            let [start, length] = self.spans[self.slot(self.first)];
+            if start + length >= forget_s {
+                break;
+            }
+            self.first += 1;
+        }
+        // One place must stay free for the draft.
+        if self.next - self.first >= self.capacity as u64 {
+            self.grow();
+        }
+    }
+
+    fn grow(&mut self) {
+        let capacity = 2 * self.capacity;
+        let mut data = vec![0.0; self.width * capacity];
+        let mut spans = vec![[0.0; 2]; capacity];
+        for number in self.first..self.next {
+            let (old, new) = (self.slot(number), (number & (capacity as u64 - 1)) as usize);
+            data[new * self.width..(new + 1) * self.width]
+                .copy_from_slice(&self.data[old * self.width..(old + 1) * self.width]);
+            spans[new] = self.spans[old];
+        }
+        (self.capacity, self.data, self.spans) = (capacity, data, spans);
+    }
+
+    /// Finds `t_s`, starting from where `cursor` left off.
+    #[inline(always)]
+    pub(crate) fn find(&self, t_s: f64, cursor: &mut u64) -> Place {
+        if t_s < 0.0 {
+            return Place::Before;
+        }
+        if t_s > self.end_s || self.next == 0 {
+            return Place::Ahead;
+        }
+        let mut number = (*cursor).clamp(self.first, self.next - 1);
+        loop {
+            let slot = self.slot(number);
+            let [start, length] = self.spans[slot];
+            if t_s < start && number > self.first {
+                number -= 1;
+            } else if t_s > start + length && number + 1 < self.next {
+                number += 1;
+            } else {
+                *cursor = number;
+                return Place::Piece { offset: slot * self.width, theta: ((t_s - start) / length).clamp(0.0, 1.0) };
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn old_pieces_go_and_the_ring_stays_small() {
+        let mut history = History::new(1);
+        for k in 0..10_000 {
+            let t = 0.01 * f64::from(k);
+            history.draft().1[0] = f64::from(k);
+            history.commit(t, t + 0.01, t - 0.5);
+        }
+        assert_eq!(history.capacity, 64);
+        let mut cursor = 0;
+        let Place::Piece { offset, theta } = history.find(99.755, &mut cursor) else { panic!() };
+        assert_eq!(history.data()[offset], 9975.0);
+        assert!((theta - 0.5).abs() < 1e-6);
+        assert_eq!(history.find(-1e-9, &mut cursor), Place::Before);
+        assert_eq!(history.find(100.5, &mut cursor), Place::Ahead);
+    }
+}

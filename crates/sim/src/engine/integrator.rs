@@ -1,0 +1,381 @@
+//! The stepping itself.
+
+use super::hearing::{Heard, Hearing, Needs, Port};
+use super::history::History;
+use super::kernels::{PieceSource, combine, error_norm};
+use super::tableau::{CLASSICAL, DORMAND_PRINCE, Tableau};
+use super::timeline::Timeline;
+use crate::network::Network;
+use crate::recording::Statistics;
+use crate::setup::{Method, Solver};
+
+/// A right-hand side that knows the past only through what is heard.
+pub(crate) trait DelaySystem {
+    /// dx = f(x, heard).
+    fn rates(&mut self, x: &[f64], heard: &Heard, dx: &mut [f64]);
+}
+
+/// Why a step could not be made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Failure {
+    /// Where it happened, s.
+    pub(crate) t_s: f64,
+    /// Index of the state to blame.
+    pub(crate) state: usize,
+    /// The step that was asked for; `None` when the state is no longer finite.
+    pub(crate) step_s: Option<f64>,
+}
+
+/// An accepted step. Its interior can be read until the next one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Step {
+    /// Start, s.
+    pub(crate) start_s: f64,
+    /// End, s.
+    pub(crate) end_s: f64,
+}
+
+/// Second-generation images are worth landing on below this relative tolerance: they cost steps and leave errors of a few
+/// parts in 10⁹ where they are not.
+const SECOND_GENERATION_BELOW: f64 = 1e-8;
+
+/// Rounds of the fixed point when a delay is shorter than the step; it contracts by about h·w per round.
+const DRAFT_ROUNDS: u32 = 12;
+
+/// The draft is good enough when the next one differs by this part of the tolerance.
+const DRAFT_ACCURACY: f64 = 0.02;
+
+/// Steps through a [`DelaySystem`] on a [`Network`].
+#[derive(Debug)]
+pub(crate) struct Integrator<'a> {
+    network: &'a Network,
+    timeline: Timeline<'a>,
+    hearing: Hearing,
+    history: History,
+    heard: Heard,
+    tableau: &'static Tableau,
+    /// Tolerances of the error control; with a fixed step only those of the draft.
+    rtol: f64,
+    atol: f64,
+    fixed_step_s: Option<f64>,
+    min_step_s: f64,
+    max_step_s: f64,
+    forget_s: f64,
+    end_s: f64,
+
+    step: Step,
+    /// State at the start of the step, at its end, and of the stage at hand.
+    x0: Vec<f64>,
+    x1: Vec<f64>,
+    stage: Vec<f64>,
+    /// Derivatives at the stages.
+    k: [Vec<f64>; 7],
+    /// The piece that the last round made, to compare the draft with.
+    piece: Vec<f64>,
+    /// k[0] must be computed anew: at the start and after a jump of the right-hand side.
+    stale: bool,
+    /// The step that the error control would like next, s.
+    wish_s: f64,
+    statistics: Statistics,
+}
+
+impl<'a> Integrator<'a> {
+    /// Prepares a run over [0, `end_s`] from the state `x`.
+    ///
+    /// `ports` says where every agent's message of `entries` numbers stands; `sums` and `agents` are the sizes of what is
+    /// heard.
+    pub(crate) fn new(
+        network: &'a Network,
+        solver: &Solver,
+        end_s: f64,
+        x: Vec<f64>,
+        ports: Vec<Port>,
+        entries: usize,
+    ) -> Self {
+        let (tableau, rtol, atol, fixed_step_s) = match solver.method {
+            Method::Adaptive { rtol, atol } => (&DORMAND_PRINCE, rtol, atol, None),
+            Method::Fixed { step_s } => (&CLASSICAL, 1e-10, 1e-12, Some(step_s)),
+        };
+        let generations = if rtol < SECOND_GENERATION_BELOW || fixed_step_s.is_some() { 2 } else { 1 };
+        let timeline = Timeline::new(network, end_s, generations);
+        let mut heard = Heard { degree: vec![0.0; ports.len()], sums: vec![0.0; ports.len() * entries] };
+        let mut hearing = Hearing::new(ports, entries, &x);
+        hearing.rewire(&timeline, network.schedule.graph(timeline.graph()), &mut heard);
+        let width = hearing.piece_width();
+        let n = x.len();
+        let stages = tableau.c.len();
+        Integrator {
+            network,
+            timeline,
+            history: History::new(width),
+            hearing,
+            heard,
+            tableau,
+            rtol,
+            atol,
+            fixed_step_s,
+            min_step_s: solver.min_step_s,
+            max_step_s: solver.max_step_s.unwrap_or(f64::INFINITY),
+            forget_s: network.max_delay_s(),
+            end_s,
+            step: Step { start_s: 0.0, end_s: 0.0 },
+            x0: x.clone(),
+            x1: x,
+            stage: vec![0.0; n],
+            k: std::array::from_fn(|s| if s < stages { vec![0.0; n] } else { Vec::new() }),
+            piece: vec![0.0; width],
+            stale: true,
+            wish_s: 0.0,
+            statistics: Statistics::default(),
+        }
+    }
+
+    /// Work done so far.
+    pub(crate) fn statistics(&self) -> Statistics {
+        self.statistics
+    }
+
+    /// Makes one step. `None` when the horizon has been reached.
+    pub(crate) fn advance(&mut self, system: &mut impl DelaySystem) -> Result<Option<Step>, Failure> {
+        let t = self.step.end_s;
+        if t >= self.end_s {
+            return Ok(None);
+        }
+        self.begin(t);
+        if self.stale {
+            self.derivative_at_start(system, t)?;
+        }
+        if self.wish_s == 0.0 {
+            self.wish_s = self.fixed_step_s.unwrap_or_else(|| self.first_step());
+        }
+        let mut limit_s = self.max_step_s;
+        loop {
+            let next = self.timeline.next_s();
+            let left = next - t;
+            let h = self.wish_s.min(limit_s);
+            // Never leave a sliver before a break-point: land on it, or go half-way.
+            let (h, lands) = if h >= left * (1.0 - 1e-9) {
+                (left, true)
+            } else if self.fixed_step_s.is_none() && 2.0 * h > left {
+                (0.5 * left, false)
+            } else {
+                (h, false)
+            };
+            if h < self.min_step_s && !lands || t + h <= t {
+                return Err(Failure { t_s: t, state: self.worst_state(), step_s: Some(h) });
+            }
+            let converged = self.stages(system, t, h);
+            let (error, finite) = self.judge(h);
+            if !finite {
+                if h <= self.min_step_s * 4.0 || self.fixed_step_s.is_some() {
+                    return Err(Failure { t_s: t, state: self.first_not_finite(), step_s: None });
+                }
+                limit_s = 0.25 * h;
+                self.wish_s = limit_s;
+                self.statistics.rejected += 1;
+                continue;
+            }
+            if !converged || error > 1.0 {
+                limit_s = h * if converged { (0.9 * libm::pow(error, -0.2)).max(0.2) } else { 0.5 };
+                if self.fixed_step_s.is_none() {
+                    self.wish_s = limit_s;
+                }
+                self.statistics.rejected += 1;
+                continue;
+            }
+            if self.fixed_step_s.is_none() {
+                let growth = if error == 0.0 { 5.0 } else { (0.9 * libm::pow(error, -0.2)).clamp(0.2, 5.0) };
+                // A step cut short by a break-point says little about the step that would have been possible.
+                self.wish_s = if h < self.wish_s { self.wish_s.max(h * growth) } else { h * growth };
+            }
+            let end_s = if lands { next } else { t + h };
+            self.keep(t, h, end_s);
+            return Ok(Some(self.step));
+        }
+    }
+
+    /// Moves to the start of the next step: what happens at this instant happens now.
+    fn begin(&mut self, t: f64) {
+        if self.statistics.steps > 0 {
+            std::mem::swap(&mut self.x0, &mut self.x1);
+            self.k.swap(0, self.tableau.c.len() - 1);
+        }
+        if t > 0.0 && self.timeline.next_s() <= t {
+            self.statistics.break_points += 1;
+            let passed = self.timeline.pass(t);
+            if passed.switched {
+                let edges = self.network.schedule.graph(self.timeline.graph());
+                self.hearing.rewire(&self.timeline, edges, &mut self.heard);
+            }
+            self.stale |= passed.jumped;
+        }
+    }
+
+    fn derivative_at_start(&mut self, system: &mut impl DelaySystem, t: f64) -> Result<(), Failure> {
+        let offset = self.history.draft().0;
+        self.hearing.look(&self.timeline, &self.history, t, (t, 1.0, offset));
+        self.hearing.gather(&self.history, &self.x0, &mut self.heard);
+        system.rates(&self.x0, &self.heard, &mut self.k[0]);
+        self.statistics.evaluations += 1;
+        self.stale = false;
+        match self.k[0].iter().position(|rate| !rate.is_finite()) {
+            Some(state) => Err(Failure { t_s: t, state, step_s: None }),
+            None => Ok(()),
+        }
+    }
+
+    /// A first step from the size of the state and its rate; the error control corrects it.
+    fn first_step(&self) -> f64 {
+        let (mut size, mut rate) = (0.0_f64, 0.0_f64);
+        for (x, k) in self.x0.iter().zip(&self.k[0]) {
+            let scale = self.rtol * x.abs() + self.atol;
+            size = size.max(x.abs() / scale);
+            rate = rate.max(k.abs() / scale);
+        }
+        let h = if size < 1e-5 || rate < 1e-5 { 1e-6 } else { 0.01 * size / rate };
+        h.min(self.end_s)
+    }
+
+    /// Fills k and `x1`. False when a delay is shorter than the step and the fixed point on it does not settle.
+    fn stages(&mut self, system: &mut impl DelaySystem, t: f64, h: f64) -> bool {
+        let tableau = self.tableau;
+        let last = tableau.c.len() - 1;
+        let mut drafted = false;
+        for _ in 0..DRAFT_ROUNDS {
+            let mut any = Needs::default();
+            let mut gathered_at = -1.0;
+            for s in 1..=last {
+                let mut weights = [0.0; 7];
+                for (weight, a) in weights.iter_mut().zip(tableau.a[s]) {
+                    *weight = h * a;
+                }
+                let row = &weights[..tableau.a[s].len()];
+                let state = if s == last { &mut self.x1 } else { &mut self.stage };
+                combine(&self.x0, row, &self.k, state);
+                let stage_s = t + tableau.c[s] * h;
+                if tableau.c[s] != gathered_at || any.present {
+                    let offset = self.history.draft().0;
+                    let needs = self.hearing.look(&self.timeline, &self.history, stage_s, (t, h, offset));
+                    if needs.draft && !drafted {
+                        self.predict(h);
+                        drafted = true;
+                    }
+                    any.draft |= needs.draft;
+                    any.present |= needs.present;
+                    let state = if s == last { &self.x1 } else { &self.stage };
+                    self.hearing.gather(&self.history, state, &mut self.heard);
+                    gathered_at = tableau.c[s];
+                }
+                let state = if s == last { &self.x1 } else { &self.stage };
+                system.rates(state, &self.heard, &mut self.k[s]);
+            }
+            self.statistics.evaluations += last as u64;
+            if !any.draft {
+                return true;
+            }
+            if self.redraft(h) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// A first draft of the current piece: a straight line.
+    fn predict(&mut self, h: f64) {
+        let (_, draft) = self.history.draft();
+        let (x0, k0) = (&self.x0, &self.k[0]);
+        self.hearing.for_each_sent(|entry, stride, state| {
+            for (c, r) in [x0[state], h * k0[state], 0.0, 0.0, 0.0].into_iter().enumerate() {
+                draft[entry + c * stride] = r;
+            }
+        });
+    }
+
+    /// Makes the piece anew from the stages; true when it agrees with the draft they were computed from.
+    fn redraft(&mut self, h: f64) -> bool {
+        self.make_piece(h);
+        let (rtol, atol) = (self.rtol, self.atol);
+        let piece = &self.piece;
+        let (_, draft) = self.history.draft();
+        let mut settled = true;
+        self.hearing.for_each_sent(|entry, stride, _| {
+            let scale = DRAFT_ACCURACY * (rtol * piece[entry].abs() + atol);
+            for c in 0..5 {
+                let at = entry + c * stride;
+                // Negated, so that not-a-number does not pass for agreement.
+                if !((piece[at] - draft[at]).abs() <= scale) {
+                    settled = false;
+                }
+            }
+        });
+        draft.copy_from_slice(piece);
+        settled
+    }
+
+    fn make_piece(&mut self, h: f64) {
+        let mut dense = [0.0; 7];
+        for (dense, d) in dense.iter_mut().zip(self.tableau.dense) {
+            *dense = h * d;
+        }
+        let stages = self.tableau.c.len();
+        let source = PieceSource { x0: &self.x0, x1: &self.x1, k: &self.k[..stages], dense, h };
+        let piece = &mut self.piece;
+        self.hearing.for_each_sent(|entry, stride, state| {
+            for (c, r) in source.coefficients(state).into_iter().enumerate() {
+                piece[entry + c * stride] = r;
+            }
+        });
+    }
+
+    /// The error as a part of the tolerance, and whether everything is finite.
+    fn judge(&self, h: f64) -> (f64, bool) {
+        if self.tableau.error.is_empty() {
+            return (0.0, self.x1.iter().all(|x| x.is_finite()));
+        }
+        let mut weights = [0.0; 7];
+        for (weight, e) in weights.iter_mut().zip(self.tableau.error) {
+            *weight = h * e;
+        }
+        error_norm(&self.x0, &self.x1, &weights, &self.k, self.atol, self.rtol)
+    }
+
+    fn keep(&mut self, t: f64, h: f64, end_s: f64) {
+        self.make_piece(h);
+        self.history.draft().1.copy_from_slice(&self.piece);
+        self.history.commit(t, end_s, end_s - self.forget_s);
+        self.step = Step { start_s: t, end_s };
+        self.statistics.steps += 1;
+    }
+
+    fn first_not_finite(&self) -> usize {
+        self.x1.iter().position(|x| !x.is_finite()).unwrap_or(0)
+    }
+
+    /// The state with the largest estimated error in the last attempt.
+    fn worst_state(&self) -> usize {
+        let ratio = |i: usize| {
+            let error: f64 = self.tableau.error.iter().zip(&self.k).map(|(e, k)| e * k[i]).sum();
+            error.abs() / (self.rtol * self.x0[i].abs() + self.atol)
+        };
+        (0..self.x0.len()).max_by(|a, b| ratio(*a).total_cmp(&ratio(*b))).unwrap_or(0)
+    }
+
+    /// The state and what is heard at `t_s` within the last step; at its ends from the inside.
+    pub(crate) fn look_inside(&mut self, t_s: f64) -> (&[f64], &Heard) {
+        let Step { start_s, end_s } = self.step;
+        let h = end_s - start_s;
+        if t_s >= end_s {
+            self.stage.copy_from_slice(&self.x1);
+        } else {
+            let mut weights = self.tableau.dense_weights((t_s - start_s) / h);
+            for weight in &mut weights {
+                *weight *= h;
+            }
+            combine(&self.x0, &weights[..self.tableau.c.len()], &self.k, &mut self.stage);
+        }
+        let offset = self.history.draft().0;
+        self.hearing.look(&self.timeline, &self.history, t_s, (end_s, 1.0, offset));
+        self.hearing.gather(&self.history, &self.stage, &mut self.heard);
+        (&self.stage, &self.heard)
+    }
+}

@@ -1,0 +1,155 @@
+//! Loops over columns, compiled for the widest vectors of the processor.
+
+use forwardstep_core::{Kernel, Scalar, dispatch};
+
+/// out = x + Σ cᵢ · kᵢ, terms added in order.
+pub(crate) fn combine(x: &[f64], weights: &[f64], k: &[Vec<f64>], out: &mut [f64]) {
+    dispatch(Combine { x, weights, k, out });
+}
+
+struct Combine<'a> {
+    x: &'a [f64],
+    weights: &'a [f64],
+    k: &'a [Vec<f64>],
+    out: &'a mut [f64],
+}
+
+impl Kernel for Combine<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let n = self.x.len();
+        match (self.weights, self.k) {
+            ([w0], [k0, ..]) => terms([*w0], [k0], self.x, self.out, n),
+            ([w0, w1], [k0, k1, ..]) => terms([*w0, *w1], [k0, k1], self.x, self.out, n),
+            ([w0, w1, w2], [k0, k1, k2, ..]) => terms([*w0, *w1, *w2], [k0, k1, k2], self.x, self.out, n),
+            ([w0, w1, w2, w3], [k0, k1, k2, k3, ..]) => {
+                terms([*w0, *w1, *w2, *w3], [k0, k1, k2, k3], self.x, self.out, n)
+            }
+            ([w0, w1, w2, w3, w4], [k0, k1, k2, k3, k4, ..]) => {
+                terms([*w0, *w1, *w2, *w3, *w4], [k0, k1, k2, k3, k4], self.x, self.out, n)
+            }
+            ([w0, w1, w2, w3, w4, w5], [k0, k1, k2, k3, k4, k5, ..]) => {
+                terms([*w0, *w1, *w2, *w3, *w4, *w5], [k0, k1, k2, k3, k4, k5], self.x, self.out, n)
+            }
+            (weights, k) => {
+                self.out.copy_from_slice(self.x);
+                for (w, k) in weights.iter().zip(k) {
+                    for (out, k) in self.out.iter_mut().zip(k) {
+                        *out = w.mul_add(*k, *out);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn terms<const N: usize>(w: [f64; N], k: [&Vec<f64>; N], x: &[f64], out: &mut [f64], n: usize) {
+    let k = k.map(|column| &column[..n]);
+    let (x, out) = (&x[..n], &mut out[..n]);
+    for i in 0..n {
+        let mut sum = x[i];
+        let mut j = 0;
+        while j < N {
+            sum = w[j].mul_add(k[j][i], sum);
+            j += 1;
+        }
+        out[i] = sum;
+    }
+}
+
+/// The largest |h Σ eᵢ kᵢ| / (atol + rtol max(|x₀|, |x₁|)) over all states, and whether all of `x1` and that are finite.
+pub(crate) fn error_norm(
+    x0: &[f64],
+    x1: &[f64],
+    weights: &[f64; 7],
+    k: &[Vec<f64>; 7],
+    atol: f64,
+    rtol: f64,
+) -> (f64, bool) {
+    dispatch(ErrorNorm { x0, x1, weights, k, atol, rtol })
+}
+
+struct ErrorNorm<'a> {
+    x0: &'a [f64],
+    x1: &'a [f64],
+    weights: &'a [f64; 7],
+    k: &'a [Vec<f64>; 7],
+    atol: f64,
+    rtol: f64,
+}
+
+impl Kernel for ErrorNorm<'_> {
+    type Output = (f64, bool);
+
+    #[inline(always)]
+    fn run(self) -> (f64, bool) {
+        let n = self.x0.len();
+        let [k0, k1, k2, k3, k4, k5, k6] = self.k;
+        let k = [&k0[..n], &k1[..n], &k2[..n], &k3[..n], &k4[..n], &k5[..n], &k6[..n]];
+        let (x0, x1) = (&self.x0[..n], &self.x1[..n]);
+        let w = self.weights;
+        // The maximum drops not-a-number, so finiteness is asked apart: x − x is zero only for finite x.
+        let (mut worst, mut defect) = (0.0_f64, 0.0_f64);
+        for i in 0..n {
+            let mut e = w[0] * k[0][i];
+            let mut j = 1;
+            while j < 7 {
+                e = w[j].mul_add(k[j][i], e);
+                j += 1;
+            }
+            let scale = self.rtol.mul_add(x0[i].abs().max(x1[i].abs()), self.atol);
+            let ratio = e.abs() / scale;
+            worst = if ratio > worst { ratio } else { worst };
+            defect += (x1[i] - x1[i]) + (e - e);
+        }
+        (worst, defect == 0.0)
+    }
+}
+
+/// Where the messages of one step stand in the state, and what to make of them.
+pub(crate) struct PieceSource<'a> {
+    /// State at the start of the step.
+    pub(crate) x0: &'a [f64],
+    /// State at its end.
+    pub(crate) x1: &'a [f64],
+    /// Derivatives at the stages.
+    pub(crate) k: &'a [Vec<f64>],
+    /// h · dᵢ.
+    pub(crate) dense: [f64; 7],
+    /// Step, s.
+    pub(crate) h: f64,
+}
+
+impl PieceSource<'_> {
+    /// r₁ … r₅ of one state.
+    #[inline(always)]
+    pub(crate) fn coefficients(&self, state: usize) -> [f64; 5] {
+        let (first, last) = (self.k[0][state], self.k[self.k.len() - 1][state]);
+        let r1 = self.x0[state];
+        let r2 = self.x1[state] - r1;
+        let r3 = self.h.mul_add(first, -r2);
+        let r4 = (-self.h).mul_add(last, r2 - r3);
+        let mut r5 = 0.0;
+        for (d, k) in self.dense.iter().zip(self.k) {
+            r5 = d.mul_add(k[state], r5);
+        }
+        [r1, r2, r3, r4, r5]
+    }
+}
+
+/// Σ over the terms of one message entry: r₁ + b₂ r₂ + … + b₅ r₅.
+#[inline(always)]
+pub(crate) fn evaluate(r: [f64; 5], b: [f64; 4]) -> f64 {
+    let tail = b[3].mul_add(r[4], r[0]);
+    let tail = b[2].mul_add(r[3], tail);
+    let tail = b[1].mul_add(r[2], tail);
+    b[0].mul_add(r[1], tail)
+}
+
+#[inline(always)]
+pub(crate) fn fma(a: f64, b: f64, c: f64) -> f64 {
+    Scalar::mul_add(a, b, c)
+}

@@ -1,0 +1,20 @@
+//! The integrator of delay-differential equations with break-points.
+//!
+//! It knows a right-hand side ([`DelaySystem`]), a [`crate::Network`] and a tolerance; robots and laws are above it.
+//!
+//! - `tableau`: the Runge–Kutta methods and their continuous extensions, as numbers.
+//! - `history`: what was transmitted, as self-contained polynomial pieces.
+//! - `timeline`: switches, delay jumps, and the arrival of their images, in order.
+//! - `hearing`: the weighted sums of delayed messages at one instant.
+//! - `kernels`: loops over columns.
+//! - `integrator`: the stepping itself.
+
+mod hearing;
+mod history;
+mod integrator;
+mod kernels;
+mod tableau;
+mod timeline;
+
+pub(crate) use hearing::{Heard, Port};
+pub(crate) use integrator::{DelaySystem, Failure, Integrator, Step};

@@ -1,0 +1,212 @@
+//! Switches, delay jumps and the arrival of their images, in order.
+//!
+//! A *primary* break-point is where the right-hand side itself jumps: t = 0, a switch, a jump or kink of a delay. What was
+//! sent there is heard, through every delay, at its *images*; the right-hand side has a kink there. The first
+//! generation of images is always landed on; the second when the tolerance is tight enough to see it, within a budget.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use crate::delay::{Delay, DelayPiece};
+use crate::network::Network;
+use crate::schedule::{Segment, Segments};
+
+/// Events closer than this are one, s.
+const MERGE_S: f64 = 1e-12;
+
+/// Second-generation images waiting at once; beyond it they are left to the error control.
+const SECOND_GENERATION_BUDGET: usize = 256;
+
+/// Where every schedule and delay is now, and what comes next.
+#[derive(Debug)]
+pub(crate) struct Timeline<'a> {
+    network: &'a Network,
+    segments: Segments<'a>,
+    segment: Segment,
+    /// Indices of the delays in use, with the piece each is on.
+    clocks: Vec<(usize, DelayPiece)>,
+    images: BinaryHeap<Reverse<Image>>,
+    second_waiting: usize,
+    generations: u8,
+    end_s: f64,
+    arrivals: Vec<f64>,
+}
+
+/// The arrival of a break-point through a delay. Ordered by time, then generation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Image {
+    t_s: f64,
+    generation: u8,
+}
+
+impl Eq for Image {}
+impl PartialOrd for Image {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Image {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.t_s.total_cmp(&other.t_s).then(self.generation.cmp(&other.generation))
+    }
+}
+
+/// What happened at a break-point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Passed {
+    /// The graph changed.
+    pub(crate) switched: bool,
+    /// The right-hand side may have jumped: a switch or a delay's piece ended.
+    pub(crate) jumped: bool,
+}
+
+impl<'a> Timeline<'a> {
+    /// Starts at t = 0. `generations` is how many generations of images to land on.
+    pub(crate) fn new(network: &'a Network, end_s: f64, generations: u8) -> Self {
+        let mut segments = network.schedule.segments();
+        let for_ever = Segment { start_s: 0.0, end_s: f64::INFINITY, graph: 0 };
+        let segment = segments.next().unwrap_or(for_ever);
+        let clocks = network.used_delays().map(|index| (index, network.delays[index].first_piece())).collect();
+        let mut timeline = Timeline {
+            network,
+            segments,
+            segment,
+            clocks,
+            images: BinaryHeap::new(),
+            second_waiting: 0,
+            generations,
+            end_s,
+            arrivals: Vec::new(),
+        };
+        timeline.send_images(0.0, 0);
+        timeline
+    }
+
+    /// Index of the graph in force.
+    pub(crate) fn graph(&self) -> usize {
+        self.segment.graph
+    }
+
+    /// T(t) of one delay, by the formula in force.
+    #[inline(always)]
+    pub(crate) fn delay_s(&self, clock: usize, t_s: f64) -> f64 {
+        let (index, piece) = self.clocks[clock];
+        self.network.delays[index].value_on(piece, t_s)
+    }
+
+    /// The delays in use: (clock, index of the delay).
+    pub(crate) fn clocks(&self) -> impl Iterator<Item = (usize, &'a Delay)> + '_ {
+        let network = self.network;
+        self.clocks.iter().enumerate().map(move |(clock, (index, _))| (clock, &network.delays[*index]))
+    }
+
+    /// The clock of a delay, by the delay's index.
+    pub(crate) fn clock_of(&self, delay: usize) -> Option<usize> {
+        self.clocks.iter().position(|(index, _)| *index == delay)
+    }
+
+    /// The next break-point, s; the horizon when nothing comes before it.
+    pub(crate) fn next_s(&self) -> f64 {
+        let mut next = self.end_s.min(self.segment.end_s);
+        for (_, piece) in &self.clocks {
+            next = next.min(piece.end_s);
+        }
+        match self.images.peek() {
+            Some(Reverse(image)) => next.min(image.t_s),
+            None => next,
+        }
+    }
+
+    /// Moves past everything that happens at `t_s`.
+    pub(crate) fn pass(&mut self, t_s: f64) -> Passed {
+        let merge = t_s + MERGE_S.max(4.0 * (t_s.next_up() - t_s));
+        let mut passed = Passed::default();
+        while self.segment.end_s <= merge {
+            match self.segments.next() {
+                Some(segment) => self.segment = segment,
+                None => self.segment.end_s = f64::INFINITY,
+            }
+            passed = Passed { switched: true, jumped: true };
+        }
+        for (index, piece) in &mut self.clocks {
+            while piece.end_s <= merge {
+                *piece = self.network.delays[*index].next_piece(*piece);
+                passed.jumped = true;
+            }
+        }
+        let mut generation = if passed.jumped { 0 } else { u8::MAX };
+        while let Some(Reverse(image)) = self.images.peek().copied() {
+            if image.t_s > merge {
+                break;
+            }
+            self.images.pop();
+            self.second_waiting -= usize::from(image.generation == 2);
+            generation = generation.min(image.generation);
+        }
+        if generation < self.generations {
+            self.send_images(t_s, generation);
+        }
+        passed
+    }
+
+    fn send_images(&mut self, t_s: f64, generation: u8) {
+        let generation = generation + 1;
+        let mut arrivals = std::mem::take(&mut self.arrivals);
+        for (index, _) in &self.clocks {
+            arrivals.clear();
+            self.network.delays[*index].arrivals(t_s, &mut arrivals);
+            for &arrival in &arrivals {
+                let budget_left = generation < 2 || self.second_waiting < SECOND_GENERATION_BUDGET;
+                if arrival > t_s + MERGE_S && arrival < self.end_s && budget_left {
+                    self.second_waiting += usize::from(generation == 2);
+                    self.images.push(Reverse(Image { t_s: arrival, generation }));
+                }
+            }
+        }
+        self.arrivals = arrivals;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graph::Edge;
+    use crate::schedule::{Phase, Schedule};
+
+    fn break_points(network: &Network, end_s: f64, generations: u8) -> Vec<f64> {
+        let mut timeline = Timeline::new(network, end_s, generations);
+        let mut out = Vec::new();
+        loop {
+            let next = timeline.next_s();
+            if next >= end_s {
+                return out;
+            }
+            out.push((next * 1e9).round() / 1e9);
+            timeline.pass(next);
+        }
+    }
+
+    fn network(delay: Delay) -> Network {
+        let edge = |from, to| Edge { from, to, weight: 1.0, delay: 0 };
+        let schedule = Schedule::Periodic(vec![
+            Phase { edges: vec![edge(0, 1)], dwell_s: 1.0 },
+            Phase { edges: vec![edge(1, 0)], dwell_s: 1.0 },
+        ]);
+        Network { agents: 2, schedule, delays: vec![delay] }
+    }
+
+    #[test]
+    fn switches_and_their_images_are_landed_on() {
+        let network = network(Delay::Constant { s: 0.3 });
+        assert_eq!(break_points(&network, 2.5, 1), vec![0.3, 1.0, 1.3, 2.0, 2.3]);
+        assert_eq!(break_points(&network, 2.5, 2), vec![0.3, 0.6, 1.0, 1.3, 1.6, 2.0, 2.3]);
+    }
+
+    #[test]
+    fn coinciding_events_are_one() {
+        // 0.1 + 0.2 is not 0.3 in binary; the image of 0 and the jump at 0.3 are one event all the same.
+        let delay =
+            Delay::PiecewiseConstant { times_s: vec![0.0, 0.1 + 0.2], values_s: vec![0.3, 0.3], period_s: None };
+        assert_eq!(break_points(&network(delay), 0.9, 1), vec![0.3, 0.6]);
+    }
+}
