@@ -95,7 +95,7 @@ fn val_trajectories_fixed_step_converges_with_order_four() {
             setup.solver.method = Method::Fixed { step_s };
             difference(&case, &setup, case.samples.times_s.len() - 1)
         };
-        let (coarse, fine) = (error(0.02), error(0.01));
+        let (coarse, fine) = (error(0.004), error(0.002));
         let order = (coarse / fine).log2();
         println!("{name}: {coarse:.2e} → {fine:.2e}, order {order:.2}");
         assert!(order > 3.5, "{name}: order {order}");

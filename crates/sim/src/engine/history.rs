@@ -53,11 +53,6 @@ impl History {
         }
     }
 
-    /// End of the last piece, s.
-    pub(crate) fn end_s(&self) -> f64 {
-        self.end_s
-    }
-
     /// All numbers; see [`Place::Piece`] for where a piece begins.
     pub(crate) fn data(&self) -> &[f64] {
         &self.data

@@ -7,7 +7,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use crate::delay::{Delay, DelayPiece};
+use crate::delay::DelayPiece;
 use crate::network::Network;
 use crate::schedule::{Segment, Segments};
 
@@ -94,12 +94,6 @@ impl<'a> Timeline<'a> {
         self.network.delays[index].value_on(piece, t_s)
     }
 
-    /// The delays in use: (clock, index of the delay).
-    pub(crate) fn clocks(&self) -> impl Iterator<Item = (usize, &'a Delay)> + '_ {
-        let network = self.network;
-        self.clocks.iter().enumerate().map(move |(clock, (index, _))| (clock, &network.delays[*index]))
-    }
-
     /// The clock of a delay, by the delay's index.
     pub(crate) fn clock_of(&self, delay: usize) -> Option<usize> {
         self.clocks.iter().position(|(index, _)| *index == delay)
@@ -170,6 +164,7 @@ impl<'a> Timeline<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::delay::Delay;
     use crate::graph::Edge;
     use crate::schedule::{Phase, Schedule};
 

@@ -1,0 +1,120 @@
+//! A directed ring with constant delays, 20 s: the network of `validation/peers/jitcdde_ring.py`.
+//!
+//! Prints one line of JSON per case: thread CPU time per simulated second over repeated runs, and the error at the end
+//! against a run with a tolerance of 1e-10. `validation/peers/ring.sh` runs this beside the peer and prints ratios.
+
+use std::ops::ControlFlow;
+
+use forwardstep_core::Gain;
+use forwardstep_core::robot::PlanarLinks;
+use forwardstep_sim::delay::Delay;
+use forwardstep_sim::graph::Edge;
+use forwardstep_sim::schedule::Schedule;
+use forwardstep_sim::{
+    AgentSetup, Axis, AxisUnit, Exchange, Law, Method, Network, Outcome, RobotKind, RobotSetup, Setup, Signal, Solver,
+    Start, TimeSpan, simulate,
+};
+
+const END_S: f64 = 20.0;
+const REPEATS: usize = 9;
+
+#[derive(Clone, Copy)]
+enum Model {
+    Linear,
+    Arms,
+}
+
+fn ring(model: Model, n: usize, tolerance: f64) -> Setup {
+    let axis = |k: usize| Axis {
+        name: format!("{}", k + 1),
+        unit: AxisUnit::Radian,
+        position_limits: None,
+        velocity_limit: None,
+        effort_limit: None,
+    };
+    let agent = |i: usize| {
+        let position = (i as f64).sin();
+        let (kind, theta, m) = match model {
+            Model::Linear => (RobotKind::PointMass { dimension: 1 }, vec![1.0], 1),
+            Model::Arms => (RobotKind::PlanarArm, PlanarLinks::uniform([1.0, 1.0], [1.0, 1.0]).theta().to_vec(), 2),
+        };
+        let damping = Gain::Number(8.0);
+        let law = match model {
+            Model::Linear => Law::Known { damping },
+            Model::Arms => {
+                Law::Adaptive { damping, adaptation: Gain::Number(10.0), estimate_start: vec![0.0; theta.len()] }
+            }
+        };
+        AgentSetup {
+            name: format!("agent-{i}"),
+            robot: RobotSetup {
+                kind,
+                theta_names: vec![String::new(); theta.len()],
+                theta,
+                axes: (0..m).map(axis).collect(),
+            },
+            roots_per_s: vec![1.0],
+            law,
+            start: Start {
+                q: (0..m).map(|k| if k == 0 { position } else { (i as f64).cos() }).collect(),
+                dq: vec![0.0; m],
+                reference: Vec::new(),
+            },
+            enforce_limits: false,
+        }
+    };
+    let edge = |i: usize| Edge { from: (i + n - 1) % n, to: i, weight: 1.0, delay: i };
+    let delay = |i: usize| Delay::Constant { s: 0.1 + 0.3 * (i % 7) as f64 / 7.0 };
+    Setup {
+        agents: (0..n).map(agent).collect(),
+        exchange: Exchange::PositionVelocity,
+        network: Network {
+            agents: n,
+            schedule: Schedule::Fixed((0..n).map(edge).collect()),
+            delays: (0..n).map(delay).collect(),
+        },
+        time: TimeSpan { end_s: END_S, record_every_s: END_S },
+        solver: Solver {
+            method: Method::Adaptive { rtol: tolerance, atol: tolerance },
+            ledger: false,
+            ..Solver::default()
+        },
+    }
+}
+
+fn run(setup: &Setup) -> Result<Outcome, forwardstep_sim::SetupError> {
+    simulate(setup, &mut |_| ControlFlow::Continue(()))
+}
+
+fn positions(outcome: &Outcome) -> Vec<f64> {
+    let positions = outcome.recording.columns.iter().filter(|c| c.signal == Signal::Position);
+    positions.filter_map(|c| c.values.last().copied()).collect()
+}
+
+fn main() -> Result<(), forwardstep_sim::SetupError> {
+    let tolerance = 1e-6;
+    let cases = [(Model::Linear, "linear", &[4, 16, 64, 256][..]), (Model::Arms, "arms", &[4, 16, 64][..])];
+    for (model, name, sizes) in cases {
+        for &n in sizes {
+            let truth = positions(&run(&ring(model, n, 1e-10))?);
+            let setup = ring(model, n, tolerance);
+            let outcome = run(&setup)?;
+            let error = positions(&outcome).iter().zip(&truth).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let mut times: Vec<f64> = Vec::new();
+            for _ in 0..REPEATS {
+                times.push(run(&setup)?.statistics.wall.as_secs_f64() * 1e3 / END_S);
+            }
+            times.sort_by(f64::total_cmp);
+            println!(
+                "{{\"model\": \"{name}\", \"agents\": {n}, \"end_s\": {END_S}, \"ms_per_simulated_second\": {:.6}, \
+                 \"min\": {:.6}, \"max\": {:.6}, \"max_error\": {error:.3e}, \"steps\": {}, \"evaluations\": {}}}",
+                times[REPEATS / 2],
+                times[0],
+                times[REPEATS - 1],
+                outcome.statistics.steps,
+                outcome.statistics.evaluations
+            );
+        }
+    }
+    Ok(())
+}
