@@ -67,25 +67,26 @@ def largest(difference):
     return float(np.abs(difference).max())
 
 
-def jitcdde_step(problem):
-    """Below the shortest constant delay, as jitcdde extrapolates otherwise."""
+def shortest_constant_delay(problem):
     phases = phase_starts(problem["schedule"], problem["end_s"])
-    smallest = min((e["delay"]["s"] for _, edges in phases for e in edges
-                    if e["delay"]["kind"] == "constant" and e["delay"]["s"] > 0), default=1.0)
-    return min(2.5e-4, smallest / 2)
+    return min((e["delay"]["s"] for _, edges in phases for e in edges
+                if e["delay"]["kind"] == "constant" and e["delay"]["s"] > 0), default=1.0)
 
 
 def agreement(problem, times, states, loop):
     """How far other computations of the same case are from this one."""
     from jitcdde_check import Check
 
-    finer, _ = solve(problem, times, rtol=5e-14, atol=5e-15, generations=3, longest_step=0.007)
+    shortest = shortest_constant_delay(problem)
+    finer, _ = solve(problem, times, rtol=5e-14, atol=5e-15, generations=3,
+                     longest_step=min(0.007, 0.7 * shortest))
     found = {"halved_tolerances": largest(finer - states)}
 
     energy = np.array([loop.storage(y) + loop.unpack(y)[2] for y in states])
     found["energy_balance"] = largest(energy - energy[0])
 
-    check, step = Check(problem), jitcdde_step(problem)
+    # Below the shortest delay: with longer steps jitcdde extrapolates.
+    check, step = Check(problem), min(2.5e-4, shortest / 2)
     coarse, fine = check.run(times, step), check.run(times, step / 2)
     mine = by_agent(states, loop)
     found["jitcdde"] = {

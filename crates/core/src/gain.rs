@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::{GainError, LengthError, Scalar};
+use crate::{GainError, LengthError, Packed, Scalar};
 
 /// A gain as a user states it.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,19 +21,19 @@ pub enum Gain {
     Bandwidth(f64),
 }
 
-/// A gain of known size, checked to be symmetric positive definite.
+/// A gain of known size, checked to be symmetric positive definite when it was [resolved](Gain::resolve).
+///
+/// In lanes it is the gains of several agents side by side.
 #[derive(Clone, Debug, PartialEq)]
-pub enum ResolvedGain {
+pub enum ResolvedGain<S = f64> {
     /// diag(k₁ … kₙ).
-    Diagonal(Vec<f64>),
+    Diagonal(Vec<S>),
     /// A full matrix, row by row.
     Matrix {
         /// Number of rows.
         size: usize,
         /// size² entries, row by row.
-        entries: Vec<f64>,
-        /// Its lower Cholesky factor, row by row.
-        factor: Vec<f64>,
+        entries: Vec<S>,
     },
 }
 
@@ -86,8 +86,8 @@ fn matrix(size: usize, entries: &[f64]) -> Result<ResolvedGain, GainError> {
             }
         }
     }
-    let factor = cholesky(size, entries).map_err(|order| GainError::NotPositiveDefinite { order })?;
-    Ok(ResolvedGain::Matrix { size, entries: entries.to_vec(), factor })
+    cholesky(size, entries).map_err(|order| GainError::NotPositiveDefinite { order })?;
+    Ok(ResolvedGain::Matrix { size, entries: entries.to_vec() })
 }
 
 /// Lower factor L of A = L Lᵀ, or the order of the first leading minor that is not positive.
@@ -112,7 +112,7 @@ fn cholesky(size: usize, a: &[f64]) -> Result<Vec<f64>, usize> {
     Ok(l)
 }
 
-impl ResolvedGain {
+impl<S: Scalar> ResolvedGain<S> {
     /// Number of rows.
     pub fn size(&self) -> usize {
         match self {
@@ -123,20 +123,27 @@ impl ResolvedGain {
 
     /// out = gain · x. Entries beyond [`ResolvedGain::size`] are left alone.
     #[inline(always)]
-    pub fn apply<S: Scalar>(&self, x: &[S], out: &mut [S]) {
+    pub fn apply(&self, x: &[S], out: &mut [S]) {
+        for out in out.iter_mut().take(self.size()) {
+            *out = S::ZERO;
+        }
+        self.add_to(x, out);
+    }
+
+    /// out += gain · x. Entries beyond [`ResolvedGain::size`] are left alone.
+    #[inline(always)]
+    pub fn add_to(&self, x: &[S], out: &mut [S]) {
         match self {
             ResolvedGain::Diagonal(k) => {
                 for ((out, k), x) in out.iter_mut().zip(k).zip(x) {
-                    *out = S::splat(*k) * *x;
+                    *out = k.mul_add(*x, *out);
                 }
             }
-            ResolvedGain::Matrix { size, entries, .. } => {
+            ResolvedGain::Matrix { size, entries } => {
                 for (out, row) in out.iter_mut().zip(entries.chunks_exact(*size)) {
-                    let mut sum = S::ZERO;
                     for (a, x) in row.iter().zip(x) {
-                        sum = S::splat(*a).mul_add(*x, sum);
+                        *out = a.mul_add(*x, *out);
                     }
-                    *out = sum;
                 }
             }
         }
@@ -144,47 +151,88 @@ impl ResolvedGain {
 
     /// out −= gain · x. Entries beyond [`ResolvedGain::size`] are left alone.
     #[inline(always)]
-    pub fn subtract_from<S: Scalar>(&self, x: &[S], out: &mut [S]) {
+    pub fn subtract_from(&self, x: &[S], out: &mut [S]) {
         match self {
             ResolvedGain::Diagonal(k) => {
                 for ((out, k), x) in out.iter_mut().zip(k).zip(x) {
-                    *out = S::splat(*k).neg_mul_add(*x, *out);
+                    *out = k.neg_mul_add(*x, *out);
                 }
             }
-            ResolvedGain::Matrix { size, entries, .. } => {
+            ResolvedGain::Matrix { size, entries } => {
                 for (out, row) in out.iter_mut().zip(entries.chunks_exact(*size)) {
                     for (a, x) in row.iter().zip(x) {
-                        *out = S::splat(*a).neg_mul_add(*x, *out);
+                        *out = a.neg_mul_add(*x, *out);
                     }
                 }
             }
         }
     }
+}
 
-    /// xᵀ · gain⁻¹ · x, for Lyapunov-like functions. `work` has [`ResolvedGain::size`] entries.
-    pub fn inverse_quadratic(&self, x: &[f64], work: &mut [f64]) -> f64 {
+impl<S: Packed> ResolvedGain<S> {
+    /// The gains of several agents side by side: `gain(k)` is that of lane k. All must have the same size. A diagonal one
+    /// beside a full matrix is written out in full; the products keep their bits.
+    pub fn pack<'a>(gain: impl Fn(usize) -> &'a ResolvedGain) -> Self {
+        let size = gain(0).size();
+        let entry = |lane: usize, row: usize, column: usize| match gain(lane) {
+            ResolvedGain::Diagonal(k) if row == column => k[row],
+            ResolvedGain::Diagonal(_) => 0.0,
+            ResolvedGain::Matrix { size, entries } => entries[row * size + column],
+        };
+        if (0..S::WIDTH).all(|lane| matches!(gain(lane), ResolvedGain::Diagonal(_))) {
+            ResolvedGain::Diagonal((0..size).map(|k| S::from_lanes(|lane| entry(lane, k, k))).collect())
+        } else {
+            let entries = (0..size * size).map(|at| S::from_lanes(|lane| entry(lane, at / size, at % size))).collect();
+            ResolvedGain::Matrix { size, entries }
+        }
+    }
+}
+
+/// xᵀ · gain⁻¹ · x for one fixed gain, for Lyapunov-like functions: the factorisation is made once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InverseQuadratic {
+    /// Lower Cholesky factor, row by row; only its diagonal for a diagonal gain.
+    factor: Vec<f64>,
+    size: usize,
+    diagonal: bool,
+    work: Vec<f64>,
+}
+
+impl InverseQuadratic {
+    /// Factorises `gain`.
+    ///
+    /// # Errors
+    /// [`GainError::NotPositiveDefinite`] for a matrix that did not come from [`Gain::resolve`].
+    pub fn new(gain: &ResolvedGain) -> Result<Self, GainError> {
+        let size = gain.size();
+        let (factor, diagonal) = match gain {
+            ResolvedGain::Diagonal(k) => (k.clone(), true),
+            ResolvedGain::Matrix { size, entries } => {
+                let not_positive = |order| GainError::NotPositiveDefinite { order };
+                (cholesky(*size, entries).map_err(not_positive)?, false)
+            }
+        };
+        Ok(InverseQuadratic { factor, size, diagonal, work: vec![0.0; size] })
+    }
+
+    /// xᵀ · gain⁻¹ · x. Entries of `x` beyond the size of the gain do not count, missing ones count as zero.
+    pub fn of(&mut self, x: &[f64]) -> f64 {
         let mut sum = 0.0;
-        match self {
-            ResolvedGain::Diagonal(k) => {
-                for (k, x) in k.iter().zip(x) {
-                    sum += x * x / k;
-                }
+        if self.diagonal {
+            for (k, x) in self.factor.iter().zip(x) {
+                sum += x * x / k;
             }
-            ResolvedGain::Matrix { size, factor, .. } => {
-                // gain = L Lᵀ, so the value is |L⁻¹ x|².
-                for (i, (row, x)) in factor.chunks_exact(*size).zip(x).enumerate() {
-                    let (done, rest) = work.split_at_mut(i.min(work.len()));
-                    let mut v = *x;
-                    for (l, y) in row.iter().zip(&*done) {
-                        v -= l * y;
-                    }
-                    let y = v / row[i];
-                    if let Some(slot) = rest.first_mut() {
-                        *slot = y;
-                    }
-                    sum += y * y;
-                }
+            return sum;
+        }
+        // gain = L Lᵀ, so the value is |L⁻¹ x|².
+        for (i, row) in self.factor.chunks_exact(self.size).enumerate() {
+            let mut v = x.get(i).copied().unwrap_or(0.0);
+            for (l, y) in row.iter().zip(&self.work[..i]) {
+                v -= l * y;
             }
+            let y = v / row[i];
+            self.work[i] = y;
+            sum += y * y;
         }
         sum
     }

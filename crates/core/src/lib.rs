@@ -25,5 +25,5 @@ mod trig;
 
 pub use dispatch::{Kernel, dispatch};
 pub use error::{GainError, LengthError};
-pub use gain::{Gain, ResolvedGain};
-pub use scalar::{Lanes, Scalar};
+pub use gain::{Gain, InverseQuadratic, ResolvedGain};
+pub use scalar::{Lanes, Packed, Scalar};

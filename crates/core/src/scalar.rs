@@ -36,9 +36,107 @@ pub trait Scalar:
         (-self).mul_add(a, b)
     }
 
+    /// The number itself, or ±`limit` where it is beyond; not-a-number stays.
+    fn saturate(self, limit: Self) -> Self;
+
     /// Sine and cosine of an angle in radians, to about one unit in the last place for |angle| < 10⁵ and to full
     /// accuracy, slowly, beyond.
     fn sin_cos(self) -> (Self, Self);
+}
+
+/// A scalar that holds the same quantity of [`Packed::WIDTH`] agents, read from and written to columns.
+pub trait Packed: Scalar {
+    /// How many agents.
+    const WIDTH: usize;
+
+    /// Makes one from the value of every lane, numbered from zero.
+    fn from_lanes(lane: impl FnMut(usize) -> f64) -> Self;
+
+    /// The value of one lane; not-a-number for a lane that does not exist.
+    fn lane(self, lane: usize) -> f64;
+
+    /// Reads the first entries of `column`; lanes beyond its end repeat the last entry, zero if there is none.
+    fn load(column: &[f64]) -> Self;
+
+    /// Writes the first entries of `column`, as many as there are.
+    fn store(self, column: &mut [f64]);
+}
+
+impl Packed for f64 {
+    const WIDTH: usize = 1;
+
+    #[inline(always)]
+    fn from_lanes(mut lane: impl FnMut(usize) -> f64) -> f64 {
+        lane(0)
+    }
+
+    #[inline(always)]
+    fn lane(self, lane: usize) -> f64 {
+        if lane == 0 { self } else { f64::NAN }
+    }
+
+    #[inline(always)]
+    fn load(column: &[f64]) -> f64 {
+        match column.first() {
+            Some(value) => *value,
+            None => 0.0,
+        }
+    }
+
+    #[inline(always)]
+    fn store(self, column: &mut [f64]) {
+        if let Some(value) = column.first_mut() {
+            *value = self;
+        }
+    }
+}
+
+impl<const N: usize> Packed for Lanes<N> {
+    const WIDTH: usize = N;
+
+    #[inline(always)]
+    fn from_lanes(lane: impl FnMut(usize) -> f64) -> Self {
+        Lanes(core::array::from_fn(lane))
+    }
+
+    #[inline(always)]
+    fn lane(self, lane: usize) -> f64 {
+        match self.0.get(lane) {
+            Some(value) => *value,
+            None => f64::NAN,
+        }
+    }
+
+    #[inline(always)]
+    fn load(column: &[f64]) -> Self {
+        match column.first_chunk() {
+            Some(full) => Lanes(*full),
+            None => {
+                let mut lanes = [f64::load(column); N];
+                let mut i = 1;
+                while i < N {
+                    lanes[i] = match column.get(i) {
+                        Some(value) => *value,
+                        None => lanes[i - 1],
+                    };
+                    i += 1;
+                }
+                Lanes(lanes)
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn store(self, column: &mut [f64]) {
+        match column.first_chunk_mut() {
+            Some(full) => *full = self.0,
+            None => {
+                for (value, lane) in column.iter_mut().zip(self.0) {
+                    *value = lane;
+                }
+            }
+        }
+    }
 }
 
 impl Scalar for f64 {
@@ -58,6 +156,17 @@ impl Scalar for f64 {
         #[cfg(not(feature = "std"))]
         {
             libm::fma(self, a, b)
+        }
+    }
+
+    #[inline(always)]
+    fn saturate(self, limit: Self) -> Self {
+        if self > limit {
+            limit
+        } else if self < -limit {
+            -limit
+        } else {
+            self
         }
     }
 
@@ -88,6 +197,17 @@ impl Scalar for f32 {
     }
 
     #[inline(always)]
+    fn saturate(self, limit: Self) -> Self {
+        if self > limit {
+            limit
+        } else if self < -limit {
+            -limit
+        } else {
+            self
+        }
+    }
+
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         // Through double precision: correctly rounded but for ties, and one reduction to keep right.
         let (sin, cos) = trig::sin_cos(self as f64);
@@ -99,16 +219,6 @@ impl Scalar for f32 {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(transparent)]
 pub struct Lanes<const N: usize>(pub [f64; N]);
-
-impl<const N: usize> Lanes<N> {
-    /// Reads one lane from each of the first `N` entries of `column`.
-    ///
-    /// `None` when `column` is shorter than `N`.
-    #[inline(always)]
-    pub fn load(column: &[f64]) -> Option<Self> {
-        column.first_chunk().copied().map(Lanes)
-    }
-}
 
 macro_rules! lanewise {
     ($($operator:ident :: $method:ident),+) => {$(
@@ -154,6 +264,16 @@ impl<const N: usize> Scalar for Lanes<N> {
         let mut i = 0;
         while i < N {
             self.0[i] = Scalar::mul_add(self.0[i], a.0[i], b.0[i]);
+            i += 1;
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn saturate(mut self, limit: Self) -> Self {
+        let mut i = 0;
+        while i < N {
+            self.0[i] = self.0[i].saturate(limit.0[i]);
             i += 1;
         }
         self

@@ -17,11 +17,11 @@ use crate::{LengthError, ResolvedGain, Scalar};
 /// **Requires**: K and Γ symmetric positive definite, guaranteed by [`ResolvedGain`].
 /// **Guarantees**: s square-integrable and bounded, ϑ̂ bounded, for any bounded ż and any ϑ̂(0).
 #[derive(Clone, Debug, PartialEq)]
-pub struct SlotineLi {
+pub struct SlotineLi<S = f64> {
     /// K, m × m.
-    pub damping: ResolvedGain,
+    pub damping: ResolvedGain<S>,
     /// Γ, p × p; `None` when ϑ is known and nothing is adapted.
-    pub adaptation: Option<ResolvedGain>,
+    pub adaptation: Option<ResolvedGain<S>>,
 }
 
 /// Where [`SlotineLi::output`] puts its results.
@@ -35,13 +35,13 @@ pub struct SlotineLiOutput<'a, S> {
     pub yt_s: &'a mut [S],
 }
 
-impl SlotineLi {
+impl<S: Scalar> SlotineLi<S> {
     /// s, τ and Yᵀs; needs ż, hence comes after the reference dynamics' output and before their rate.
     ///
     /// # Errors
     /// [`LengthError`] when a slice has the wrong length.
     #[inline(always)]
-    pub fn output<S: Scalar, R: Lagrangian<S>>(
+    pub fn output<R: Lagrangian<S>>(
         &self,
         robot: &R,
         scratch: &mut R::Scratch,
@@ -63,13 +63,11 @@ impl SlotineLi {
 
     /// ϑ̂' from Yᵀs. Zero when ϑ is known.
     #[inline(always)]
-    pub fn adaptation_rate<S: Scalar>(&self, yt_s: &[S], d_theta_hat: &mut [S]) {
+    pub fn adaptation_rate(&self, yt_s: &[S], d_theta_hat: &mut [S]) {
         match &self.adaptation {
             Some(gamma) => {
-                gamma.apply(yt_s, d_theta_hat);
-                for d in d_theta_hat {
-                    *d = -*d;
-                }
+                d_theta_hat.fill(S::ZERO);
+                gamma.subtract_from(yt_s, d_theta_hat);
             }
             None => d_theta_hat.fill(S::ZERO),
         }

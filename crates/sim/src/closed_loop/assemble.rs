@@ -6,7 +6,7 @@ use std::sync::Arc;
 use forwardstep_core::law::SlotineLi;
 use forwardstep_core::reference::{Consensus, Exchange as CoreExchange, Position, PositionVelocity, RootsError};
 use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass};
-use forwardstep_core::{Gain, GainError, LengthError, ResolvedGain};
+use forwardstep_core::{Gain, GainError, InverseQuadratic, Lanes, LengthError, ResolvedGain};
 use thiserror::Error;
 
 use super::population::{Columns, Member, Population};
@@ -94,6 +94,9 @@ pub enum SetupError {
         value: f64,
     },
 }
+
+/// Populations of at least so many agents are worked on in lanes.
+const LANES_FROM: usize = 3;
 
 /// All populations and where their blocks stand.
 pub(crate) struct ClosedLoop {
@@ -262,7 +265,7 @@ fn population<X: CoreExchange>(setup: &Setup, group: &[usize]) -> Result<Box<dyn
 
 fn boxed<R, X>(robot: R, setup: &Setup, group: &[usize]) -> Result<Box<dyn Columns>, SetupError>
 where
-    R: Lagrangian<f64> + 'static,
+    R: Lagrangian<f64> + Lagrangian<Lanes<8>> + 'static,
     X: CoreExchange,
 {
     let mut members = Vec::new();
@@ -273,8 +276,12 @@ where
     let first = &setup.agents[group[0]];
     let consensus =
         Consensus::<X>::new(roots).map_err(|error| SetupError::Roots { agent: first.name.clone(), error })?;
-    let adaptive = matches!(first.law, Law::Adaptive { .. });
-    Ok(Box::new(Population::new(robot, members, consensus, adaptive, setup.solver.ledger)))
+    // Eight lanes cost about as much as two or three robots one at a time, so idle lanes pay from three robots on.
+    if members.len() < LANES_FROM {
+        Ok(Box::new(Population::<R, X, f64>::new(robot, members, consensus, setup.solver.ledger)))
+    } else {
+        Ok(Box::new(Population::<R, X, Lanes<8>>::new(robot, members, consensus, setup.solver.ledger)))
+    }
 }
 
 fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Result<Member, SetupError> {
@@ -311,6 +318,12 @@ fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Re
         }
         None => None,
     };
+    let estimate_cost = match &adaptation {
+        Some(gamma) => {
+            Some(InverseQuadratic::new(gamma).map_err(|error| SetupError::Gain { agent: name(), gain: "Γ", error })?)
+        }
+        None => None,
+    };
     let law = SlotineLi { damping: resolve(damping, "K", m, &diagonal)?, adaptation };
     let effort_limits = if agent.enforce_limits {
         let limit = |axis: &crate::setup::Axis| {
@@ -320,7 +333,14 @@ fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Re
     } else {
         None
     };
-    Ok(Member { agent: index, theta: agent.robot.theta.clone(), viscous: agent.robot.viscous(), law, effort_limits })
+    Ok(Member {
+        agent: index,
+        theta: agent.robot.theta.clone(),
+        viscous: agent.robot.viscous(),
+        law,
+        estimate_cost,
+        effort_limits,
+    })
 }
 
 /// Everything that does not need a robot's kernels.

@@ -122,6 +122,12 @@ impl Hearing {
         self.links.sort_by_key(|link| (link.receiver, link.sender));
     }
 
+    /// The shortest delay at `t_s` that is not zero; infinite when there is none.
+    pub(crate) fn shortest_delay(&self, timeline: &Timeline<'_>, t_s: f64) -> f64 {
+        let delays = self.sources.iter().map(|source| timeline.delay_s(source.clock, t_s));
+        delays.filter(|delay| *delay > 0.0).fold(f64::INFINITY, f64::min)
+    }
+
     /// Looks up where every message comes from at `t_s`; `draft` is (start, length, offset) of the piece being made.
     #[inline(always)]
     pub(crate) fn look(

@@ -4,6 +4,9 @@
 //! sent, not with the state. A piece needs none of its neighbours, so at a break-point the past has a left and a right
 //! side for free. Pieces older than the largest delay are dropped; the ring grows by doubling and then stays.
 
+/// Reading this far beyond the end of the last piece is reading its end, s.
+const SLACK_S: f64 = 1e-12;
+
 /// A place to read from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Place {
@@ -106,7 +109,8 @@ impl History {
         if t_s < 0.0 {
             return Place::Before;
         }
-        if t_s > self.end_s || self.next == 0 {
+        // A step as long as the delay reads its very end, give or take rounding.
+        if t_s > self.end_s + SLACK_S || self.next == 0 {
             return Place::Ahead;
         }
         let mut number = (*cursor).clamp(self.first, self.next - 1);

@@ -49,6 +49,10 @@ const SECOND_GENERATION_BELOW: f64 = 1e-5;
 /// Rounds of the fixed point when a delay is shorter than the step; it contracts by about h·w per round.
 const DRAFT_ROUNDS: u32 = 12;
 
+/// A step is cut down to the shortest delay when it is not longer than this many times that delay: the fixed point takes
+/// about four rounds.
+const WORTH_CUTTING: f64 = 4.0;
+
 /// The draft is good enough when the next one differs by this part of the tolerance.
 const DRAFT_ACCURACY: f64 = 0.02;
 
@@ -156,6 +160,11 @@ impl<'a> Integrator<'a> {
             self.wish_s = self.fixed_step_s.unwrap_or_else(|| self.first_step());
         }
         let mut limit_s = self.max_step_s;
+        // A delay somewhat shorter than the step is met by a shorter step; one much shorter by a fixed point.
+        let shortest_s = self.hearing.shortest_delay(&self.timeline, t);
+        if self.wish_s > shortest_s && self.wish_s < WORTH_CUTTING * shortest_s {
+            limit_s = limit_s.min(shortest_s);
+        }
         loop {
             let next = self.timeline.next_s();
             let left = next - t;

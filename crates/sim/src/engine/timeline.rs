@@ -23,7 +23,7 @@ pub(crate) struct Timeline<'a> {
     network: &'a Network,
     segments: Segments<'a>,
     segment: Segment,
-    /// Indices of the delays in use, with the piece each is on.
+    /// The delays in use, equal ones once, by the index of the first, with the piece each is on.
     clocks: Vec<(usize, DelayPiece)>,
     images: BinaryHeap<Reverse<Image>>,
     second_waiting: usize,
@@ -66,7 +66,13 @@ impl<'a> Timeline<'a> {
         let mut segments = network.schedule.segments();
         let for_ever = Segment { start_s: 0.0, end_s: f64::INFINITY, graph: 0 };
         let segment = segments.next().unwrap_or(for_ever);
-        let clocks = network.used_delays().map(|index| (index, network.delays[index].first_piece())).collect();
+        let mut clocks: Vec<(usize, DelayPiece)> = Vec::new();
+        for index in network.used_delays() {
+            let delay = &network.delays[index];
+            if !clocks.iter().any(|(known, _)| network.delays[*known] == *delay) {
+                clocks.push((index, delay.first_piece()));
+            }
+        }
         let mut timeline = Timeline {
             network,
             segments,
@@ -96,7 +102,8 @@ impl<'a> Timeline<'a> {
 
     /// The clock of a delay, by the delay's index.
     pub(crate) fn clock_of(&self, delay: usize) -> Option<usize> {
-        self.clocks.iter().position(|(index, _)| *index == delay)
+        let wanted = self.network.delays.get(delay)?;
+        self.clocks.iter().position(|(index, _)| self.network.delays[*index] == *wanted)
     }
 
     /// The next break-point, s; the horizon when nothing comes before it.
