@@ -128,7 +128,7 @@ impl ClosedLoop {
         let entries = X::CHANNELS * axes;
         let mut closed_loop = ClosedLoop {
             blocks: Vec::new(),
-            ports: vec![Port { state: 0, sums: 0, degree: 0, stride: 0 }; setup.agents.len()],
+            ports: vec![Port { state: 0, entry: 0, degree: 0, stride: 0 }; setup.agents.len()],
             entries,
             start: Vec::new(),
         };
@@ -140,7 +140,7 @@ impl ClosedLoop {
             closed_loop.append_start(setup, &group, columns.state_len());
             for (i, &agent) in group.iter().enumerate() {
                 closed_loop.ports[agent] =
-                    Port { state: first + i, sums: placed * entries + i, degree: placed + i, stride: n };
+                    Port { state: first + i, entry: placed * entries + i, degree: placed + i, stride: n };
             }
             closed_loop.blocks.push(Block {
                 state: first..closed_loop.start.len(),

@@ -10,14 +10,14 @@ use crate::graph::Edge;
 
 /// Where an agent's message stands in the state and where its sums go.
 ///
-/// Agents of one population are interleaved: entry c of an agent's message is at `state + c · stride`, and likewise for
-/// its sums.
+/// Agents of one population are interleaved: entry c of an agent's message is at `state + c · stride`. In what is heard,
+/// and in a column of a piece of history, it is at `entry + c · stride`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Port {
     /// Index of the first transmitted number in the state.
     pub(crate) state: usize,
-    /// Index of the first sum in [`Heard::sums`].
-    pub(crate) sums: usize,
+    /// Index of the first entry among all that are sent, and among [`Heard::sums`].
+    pub(crate) entry: usize,
     /// Index in [`Heard::degree`].
     pub(crate) degree: usize,
     /// Distance between consecutive entries.
@@ -76,7 +76,10 @@ pub(crate) struct Needs {
 #[derive(Debug)]
 pub(crate) struct Hearing {
     ports: Vec<Port>,
+    /// Entries of one message.
     entries: usize,
+    /// States that are sent, in runs: (first state, first entry, how many).
+    blocks: Vec<(usize, usize, usize)>,
     links: Vec<Link>,
     sources: Vec<Source>,
     initial: Vec<f64>,
@@ -85,23 +88,28 @@ pub(crate) struct Hearing {
 impl Hearing {
     /// `entries` numbers are sent by every agent; `x` is the state at t = 0, which everybody is taken to have sent before.
     pub(crate) fn new(ports: Vec<Port>, entries: usize, x: &[f64]) -> Self {
-        let initial = ports.iter().flat_map(|p| (0..entries).map(move |c| x[p.state + c * p.stride])).collect();
-        Hearing { ports, entries, links: Vec::new(), sources: Vec::new(), initial }
-    }
-
-    /// Numbers that a piece of history holds.
-    pub(crate) fn piece_width(&self) -> usize {
-        self.ports.len() * self.entries * 5
-    }
-
-    /// Visits every transmitted number as (index in the piece of its r₁, distance between its coefficients, state).
-    #[inline(always)]
-    pub(crate) fn for_each_sent(&self, mut visit: impl FnMut(usize, usize, usize)) {
-        for (agent, port) in self.ports.iter().enumerate() {
-            for c in 0..self.entries {
-                visit(agent * self.entries * 5 + c, self.entries, port.state + c * port.stride);
+        let mut sent: Vec<(usize, usize)> =
+            ports.iter().flat_map(|p| (0..entries).map(|c| (p.entry + c * p.stride, p.state + c * p.stride))).collect();
+        sent.sort_unstable();
+        let mut blocks: Vec<(usize, usize, usize)> = Vec::new();
+        for &(entry, state) in &sent {
+            match blocks.last_mut() {
+                Some((first, _, n)) if *first + *n == state => *n += 1,
+                _ => blocks.push((state, entry, 1)),
             }
         }
+        let initial = sent.iter().map(|(_, state)| x[*state]).collect();
+        Hearing { ports, entries, blocks, links: Vec::new(), sources: Vec::new(), initial }
+    }
+
+    /// Numbers that are sent by all agents together: the height of a column of a piece of history.
+    pub(crate) fn width(&self) -> usize {
+        self.initial.len()
+    }
+
+    /// States that are sent, in runs: (first state, first entry, how many).
+    pub(crate) fn blocks(&self) -> &[(usize, usize, usize)] {
+        &self.blocks
     }
 
     /// Takes the edges of the graph in force.
@@ -177,36 +185,33 @@ impl Kernel for Gather<'_> {
     #[inline(always)]
     fn run(self) {
         let Gather { hearing, data, x, sums } = self;
-        let entries = hearing.entries;
+        let width = hearing.width();
         sums.fill(0.0);
         for link in &hearing.links {
-            let to = hearing.ports[link.receiver];
-            let w = link.weight;
+            let (from, to, w) = (hearing.ports[link.sender], hearing.ports[link.receiver], link.weight);
             match hearing.sources[link.source].read {
                 Read::Piece { offset, basis } => {
-                    let piece = &data[offset + link.sender * entries * 5..][..entries * 5];
-                    let (r1, rest) = piece.split_at(entries);
-                    let (r2, rest) = rest.split_at(entries);
-                    let (r3, rest) = rest.split_at(entries);
-                    let (r4, r5) = rest.split_at(entries);
-                    for c in 0..entries {
-                        let value = evaluate([r1[c], r2[c], r3[c], r4[c], r5[c]], basis);
-                        let sum = &mut sums[to.sums + c * to.stride];
+                    let (r1, rest) = data[offset..offset + 5 * width].split_at(width);
+                    let (r2, rest) = rest.split_at(width);
+                    let (r3, rest) = rest.split_at(width);
+                    let (r4, r5) = rest.split_at(width);
+                    for c in 0..hearing.entries {
+                        let at = from.entry + c * from.stride;
+                        let value = evaluate([r1[at], r2[at], r3[at], r4[at], r5[at]], basis);
+                        let sum = &mut sums[to.entry + c * to.stride];
                         *sum = fma(w, value, *sum);
                     }
                 }
                 Read::Now => {
-                    let from = hearing.ports[link.sender];
-                    for c in 0..entries {
-                        let sum = &mut sums[to.sums + c * to.stride];
+                    for c in 0..hearing.entries {
+                        let sum = &mut sums[to.entry + c * to.stride];
                         *sum = fma(w, x[from.state + c * from.stride], *sum);
                     }
                 }
                 Read::Initial => {
-                    let message = &hearing.initial[link.sender * entries..][..entries];
-                    for (c, value) in message.iter().enumerate() {
-                        let sum = &mut sums[to.sums + c * to.stride];
-                        *sum = fma(w, *value, *sum);
+                    for c in 0..hearing.entries {
+                        let sum = &mut sums[to.entry + c * to.stride];
+                        *sum = fma(w, hearing.initial[from.entry + c * from.stride], *sum);
                     }
                 }
             }

@@ -2,7 +2,7 @@
 
 use super::hearing::{Heard, Hearing, Needs, Port};
 use super::history::History;
-use super::kernels::{PieceSource, combine, error_norm};
+use super::kernels::{PieceSource, combine, error_norm, make_piece};
 use super::tableau::{CLASSICAL, DORMAND_PRINCE, Tableau};
 use super::timeline::Timeline;
 use crate::network::Network;
@@ -112,7 +112,7 @@ impl<'a> Integrator<'a> {
         let mut heard = Heard { degree: vec![0.0; ports.len()], sums: vec![0.0; ports.len() * entries] };
         let mut hearing = Hearing::new(ports, entries, &x);
         hearing.rewire(&timeline, network.schedule.graph(timeline.graph()), &mut heard);
-        let width = hearing.piece_width();
+        let width = 5 * hearing.width();
         let n = x.len();
         let stages = tableau.c.len();
         Integrator {
@@ -303,49 +303,30 @@ impl<'a> Integrator<'a> {
 
     /// A first draft of the current piece: a straight line.
     fn predict(&mut self, h: f64) {
+        let width = self.hearing.width();
         let (_, draft) = self.history.draft();
-        let (x0, k0) = (&self.x0, &self.k[0]);
-        self.hearing.for_each_sent(|entry, stride, state| {
-            for (c, r) in [x0[state], h * k0[state], 0.0, 0.0, 0.0].into_iter().enumerate() {
-                draft[entry + c * stride] = r;
+        draft.fill(0.0);
+        for &(state, entry, n) in self.hearing.blocks() {
+            for i in 0..n {
+                draft[entry + i] = self.x0[state + i];
+                draft[width + entry + i] = h * self.k[0][state + i];
             }
-        });
+        }
     }
 
     /// Makes the piece anew from the stages; true when it agrees with the draft they were computed from.
     fn redraft(&mut self, h: f64) -> bool {
-        self.make_piece(h);
-        let (rtol, atol) = (self.rtol, self.atol);
-        let piece = &self.piece;
+        let (source, blocks, width) = piece_source(self.tableau, &self.x0, &self.x1, &self.k, h, &self.hearing);
+        make_piece(source, blocks, width, &mut self.piece);
         let (_, draft) = self.history.draft();
-        let mut settled = true;
-        self.hearing.for_each_sent(|entry, stride, _| {
-            let scale = DRAFT_ACCURACY * (rtol * piece[entry].abs() + atol);
-            for c in 0..5 {
-                let at = entry + c * stride;
-                // Negated, so that not-a-number does not pass for agreement.
-                if !((piece[at] - draft[at]).abs() <= scale) {
-                    settled = false;
-                }
-            }
-        });
-        draft.copy_from_slice(piece);
+        let agree = |entry: usize| {
+            let scale = DRAFT_ACCURACY * (self.rtol * self.piece[entry].abs() + self.atol);
+            // Written so that not-a-number does not pass for agreement.
+            (0..5).all(|c| (self.piece[c * width + entry] - draft[c * width + entry]).abs() <= scale)
+        };
+        let settled = (0..width).all(agree);
+        draft.copy_from_slice(&self.piece);
         settled
-    }
-
-    fn make_piece(&mut self, h: f64) {
-        let mut dense = [0.0; 7];
-        for (dense, d) in dense.iter_mut().zip(self.tableau.dense) {
-            *dense = h * d;
-        }
-        let stages = self.tableau.c.len();
-        let source = PieceSource { x0: &self.x0, x1: &self.x1, k: &self.k[..stages], dense, h };
-        let piece = &mut self.piece;
-        self.hearing.for_each_sent(|entry, stride, state| {
-            for (c, r) in source.coefficients(state).into_iter().enumerate() {
-                piece[entry + c * stride] = r;
-            }
-        });
     }
 
     /// The error as a part of the tolerance, and whether everything is finite.
@@ -361,8 +342,8 @@ impl<'a> Integrator<'a> {
     }
 
     fn keep(&mut self, t: f64, h: f64, end_s: f64) {
-        self.make_piece(h);
-        self.history.draft().1.copy_from_slice(&self.piece);
+        let (source, blocks, width) = piece_source(self.tableau, &self.x0, &self.x1, &self.k, h, &self.hearing);
+        make_piece(source, blocks, width, self.history.draft().1);
         self.history.commit(t, end_s, end_s - self.forget_s);
         self.step = Step { start_s: t, end_s };
         self.statistics.steps += 1;
@@ -399,4 +380,20 @@ impl<'a> Integrator<'a> {
         self.hearing.gather(&self.history, &self.stage, &mut self.heard);
         (&self.stage, &self.heard)
     }
+}
+
+/// What [`make_piece`] needs.
+fn piece_source<'a>(
+    tableau: &Tableau,
+    x0: &'a [f64],
+    x1: &'a [f64],
+    k: &'a [Vec<f64>; 7],
+    h: f64,
+    hearing: &'a Hearing,
+) -> (PieceSource<'a>, &'a [(usize, usize, usize)], usize) {
+    let mut dense = [0.0; 7];
+    for (dense, d) in dense.iter_mut().zip(tableau.dense) {
+        *dense = h * d;
+    }
+    (PieceSource { x0, x1, k: &k[..tableau.c.len()], dense, h }, hearing.blocks(), hearing.width())
 }

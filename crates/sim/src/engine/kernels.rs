@@ -109,7 +109,8 @@ impl Kernel for ErrorNorm<'_> {
     }
 }
 
-/// Where the messages of one step stand in the state, and what to make of them.
+/// The step that a piece of history describes.
+#[derive(Clone, Copy)]
 pub(crate) struct PieceSource<'a> {
     /// State at the start of the step.
     pub(crate) x0: &'a [f64],
@@ -123,20 +124,53 @@ pub(crate) struct PieceSource<'a> {
     pub(crate) h: f64,
 }
 
-impl PieceSource<'_> {
-    /// r₁ … r₅ of one state.
+/// Writes r₁ … r₅ of the states that are sent, one column of `width` numbers per coefficient; `blocks` says which states
+/// stand next to each other: (first state, first entry, how many).
+pub(crate) fn make_piece(source: PieceSource<'_>, blocks: &[(usize, usize, usize)], width: usize, piece: &mut [f64]) {
+    dispatch(MakePiece { source, blocks, width, piece });
+}
+
+struct MakePiece<'a> {
+    source: PieceSource<'a>,
+    blocks: &'a [(usize, usize, usize)],
+    width: usize,
+    piece: &'a mut [f64],
+}
+
+impl Kernel for MakePiece<'_> {
+    type Output = ();
+
     #[inline(always)]
-    pub(crate) fn coefficients(&self, state: usize) -> [f64; 5] {
-        let (first, last) = (self.k[0][state], self.k[self.k.len() - 1][state]);
-        let r1 = self.x0[state];
-        let r2 = self.x1[state] - r1;
-        let r3 = self.h.mul_add(first, -r2);
-        let r4 = (-self.h).mul_add(last, r2 - r3);
-        let mut r5 = 0.0;
-        for (d, k) in self.dense.iter().zip(self.k) {
-            r5 = d.mul_add(k[state], r5);
+    fn run(self) {
+        let MakePiece { source: PieceSource { x0, x1, k, dense, h }, blocks, width, piece } = self;
+        let (r1, rest) = piece.split_at_mut(width);
+        let (r2, rest) = rest.split_at_mut(width);
+        let (r3, rest) = rest.split_at_mut(width);
+        let (r4, r5) = rest.split_at_mut(width);
+        let (Some(first), Some(last)) = (k.first(), k.last()) else { return };
+        for &(state, entry, n) in blocks {
+            let (x0, x1) = (&x0[state..state + n], &x1[state..state + n]);
+            let (first, last) = (&first[state..state + n], &last[state..state + n]);
+            let (r1, r2) = (&mut r1[entry..entry + n], &mut r2[entry..entry + n]);
+            let (r3, r4, r5) = (&mut r3[entry..entry + n], &mut r4[entry..entry + n], &mut r5[entry..entry + n]);
+            for i in 0..n {
+                let difference = x1[i] - x0[i];
+                let third = fma(h, first[i], -difference);
+                r1[i] = x0[i];
+                r2[i] = difference;
+                r3[i] = third;
+                r4[i] = fma(-h, last[i], difference - third);
+                r5[i] = 0.0;
+            }
+            for (d, k) in dense.iter().zip(k) {
+                let k = &k[state..state + n];
+                if *d != 0.0 {
+                    for i in 0..n {
+                        r5[i] = fma(*d, k[i], r5[i]);
+                    }
+                }
+            }
         }
-        [r1, r2, r3, r4, r5]
     }
 }
 
