@@ -229,6 +229,12 @@ impl Delay {
     /// A stretch on which t − T(t) stands still (a held packet) has no inner solutions: its ends are jumps of the delay
     /// and break-points anyway.
     pub fn arrivals(&self, sent_s: f64, arrivals: &mut Vec<f64>) {
+        if let Delay::Constant { s } = self {
+            if *s > 0.0 {
+                arrivals.push(sent_s + s);
+            }
+            return;
+        }
         // Rounded up, so that the arrival of a constant delay is inside the stretch searched.
         let last = (sent_s + self.max_s()).next_up().next_up();
         let mut piece = self.piece_at(sent_s.max(0.0));

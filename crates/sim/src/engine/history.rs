@@ -31,8 +31,8 @@ pub(crate) struct History {
     /// Pieces that fit, a power of two.
     capacity: usize,
     data: Vec<f64>,
-    /// Start and length of each piece, s.
-    spans: Vec<[f64; 2]>,
+    /// Start, end and inverse length of each piece, s.
+    spans: Vec<[f64; 3]>,
     /// Number of the first piece kept.
     first: u64,
     /// Number of the piece to come.
@@ -49,7 +49,7 @@ impl History {
             width,
             capacity,
             data: vec![0.0; width * capacity],
-            spans: vec![[0.0; 2]; capacity],
+            spans: vec![[0.0; 3]; capacity],
             first: 0,
             next: 0,
             end_s: 0.0,
@@ -74,12 +74,12 @@ impl History {
     /// Keeps the draft as the piece of [`start_s`, `end_s`] and drops what ended before `forget_s`.
     pub(crate) fn commit(&mut self, start_s: f64, end_s: f64, forget_s: f64) {
         let slot = self.slot(self.next);
-        self.spans[slot] = [start_s, end_s - start_s];
+        self.spans[slot] = [start_s, end_s, 1.0 / (end_s - start_s)];
         self.next += 1;
         self.end_s = end_s;
         while self.first + 1 < self.next {
-            let [start, length] = self.spans[self.slot(self.first)];
-            if start + length >= forget_s {
+            let [_, end, _] = self.spans[self.slot(self.first)];
+            if end >= forget_s {
                 break;
             }
             self.first += 1;
@@ -93,7 +93,7 @@ impl History {
     fn grow(&mut self) {
         let capacity = 2 * self.capacity;
         let mut data = vec![0.0; self.width * capacity];
-        let mut spans = vec![[0.0; 2]; capacity];
+        let mut spans = vec![[0.0; 3]; capacity];
         for number in self.first..self.next {
             let (old, new) = (self.slot(number), (number & (capacity as u64 - 1)) as usize);
             data[new * self.width..(new + 1) * self.width]
@@ -116,14 +116,14 @@ impl History {
         let mut number = (*cursor).clamp(self.first, self.next - 1);
         loop {
             let slot = self.slot(number);
-            let [start, length] = self.spans[slot];
+            let [start, end, inverse] = self.spans[slot];
             if t_s < start && number > self.first {
                 number -= 1;
-            } else if t_s > start + length && number + 1 < self.next {
+            } else if t_s > end && number + 1 < self.next {
                 number += 1;
             } else {
                 *cursor = number;
-                return Place::Piece { offset: slot * self.width, theta: ((t_s - start) / length).clamp(0.0, 1.0) };
+                return Place::Piece { offset: slot * self.width, theta: ((t_s - start) * inverse).clamp(0.0, 1.0) };
             }
         }
     }

@@ -192,7 +192,7 @@ impl<'a> Integrator<'a> {
                 continue;
             }
             if !converged || error > 1.0 {
-                limit_s = h * if converged { (0.9 * libm::pow(error, -0.2)).max(0.2) } else { 0.5 };
+                limit_s = h * if converged { step_factor(error) } else { 0.5 };
                 if self.fixed_step_s.is_none() {
                     self.wish_s = limit_s;
                 }
@@ -200,7 +200,7 @@ impl<'a> Integrator<'a> {
                 continue;
             }
             if self.fixed_step_s.is_none() {
-                let growth = if error == 0.0 { 5.0 } else { (0.9 * libm::pow(error, -0.2)).clamp(0.2, 5.0) };
+                let growth = step_factor(error);
                 // A step cut short by a break-point says little about the step that would have been possible.
                 self.wish_s = if h < self.wish_s { self.wish_s.max(h * growth) } else { h * growth };
             }
@@ -380,6 +380,14 @@ impl<'a> Integrator<'a> {
         self.hearing.gather(&self.history, &self.stage, &mut self.heard);
         (&self.stage, &self.heard)
     }
+}
+
+/// By how much the next step may differ from one with this `error`, which goes with its fifth power.
+fn step_factor(error: f64) -> f64 {
+    const SAFETY: f64 = 0.9;
+    const GROWTH: f64 = 5.0;
+    // (SAFETY/GROWTH)⁵: below it the root would only be cut off.
+    if error < 1.88e-4 { GROWTH } else { (SAFETY * libm::pow(error, -0.2)).clamp(1.0 / GROWTH, GROWTH) }
 }
 
 /// What [`make_piece`] needs.
