@@ -1,5 +1,12 @@
-//! What the theorems promise for a given network, with witnesses.
+//! What the theorems promise for a given network, with certificates and witnesses, and what can be predicted before a run.
+//!
+//! Never "proved" outside the theorems: a hypothesis *holds* for all time, holds *on the horizon*, is *not covered by the
+//! paper*, or is *violated* with a witness.
 
-pub mod verdict;
+mod agreement;
+mod hypotheses;
+mod verdict;
 
+pub use agreement::{NoPrediction, Prediction, predict};
+pub use hypotheses::check;
 pub use verdict::{Answer, Hypothesis, Report};

@@ -91,7 +91,7 @@ impl Kernel for ErrorNorm<'_> {
         let k = [&k0[..n], &k1[..n], &k2[..n], &k3[..n], &k4[..n], &k5[..n], &k6[..n]];
         let (x0, x1) = (&self.x0[..n], &self.x1[..n]);
         let w = self.weights;
-        // The maximum drops not-a-number, so finiteness is asked apart: x − x is zero only for finite x.
+        // The maximum drops not-a-number, so finiteness is asked apart: 0 · x is zero only for finite x.
         let (mut worst, mut defect) = (0.0_f64, 0.0_f64);
         for i in 0..n {
             let mut e = w[0] * k[0][i];
@@ -103,7 +103,7 @@ impl Kernel for ErrorNorm<'_> {
             let scale = self.rtol.mul_add(x0[i].abs().max(x1[i].abs()), self.atol);
             let ratio = e.abs() / scale;
             worst = if ratio > worst { ratio } else { worst };
-            defect += (x1[i] - x1[i]) + (e - e);
+            defect = (x1[i] + e).mul_add(0.0, defect);
         }
         (worst, defect == 0.0)
     }

@@ -1,5 +1,8 @@
 //! Reads the problems and trajectories under `validation/trajectories/cases`.
 
+// Shared by several tests, none of which uses all of it.
+#![allow(unreachable_pub, dead_code)]
+
 use std::path::PathBuf;
 
 use forwardstep_core::Gain;

@@ -1,0 +1,155 @@
+//! The value agreed upon, known before the run.
+//!
+//! Let Xᵢ = Σ_{r≤ℓ} αᵣ xᵣ be agent i's own part of the family (x₀ = q, x₁ = q̇, xᵣ = z^(r−1)) and α₀ = αᵢ,₀. Along every
+//! run, whatever the torque,
+//!
+//! ```text
+//! Bᵢ = Xᵢ − α₁ sᵢ          Ḃᵢ = − Σⱼ w_ij [ Xᵢ − α₀ q_j(t−T_ij) − (α₀/κ₀) q̇_j(t−T_ij) ]
+//! Wᵢ = α₁ qᵢ + Σ_{r≥2} αᵣ z^(r−2)                Ẇᵢ = Xᵢ − α₀ qᵢ
+//! ```
+//!
+//! (the last term only when velocities are sent). With a fixed graph, constant delays and u the left null vector of the
+//! Laplacian, Σᵢ uᵢ Σⱼ w_ij (qᵢ − q_j) = 0, and q_j − q_j(t−T) is the derivative of ∫_{t−T}^t q_j. Hence
+//!
+//! ```text
+//! Q = Σᵢ uᵢ [ (Bᵢ + dᵢ Wᵢ)/α₀ + Σⱼ w_ij ( ∫_{t−T_ij}^t q_j dσ − R_j(t−T_ij)/κ₀ ) ],        dᵢ = Σⱼ w_ij
+//! ```
+//!
+//! is conserved, where R_j = q_j for t ≥ 0 and q_j(0) + t q̇_j(0) before: the velocities sent before t = 0 are q̇_j(0), not
+//! zero. When everybody has come to rest at c, Q = c Σᵢ uᵢ [1 + dᵢ α₁/α₀ + Σⱼ w_ij (T_ij − 1/κ₀)].
+
+use forwardstep_core::reference::polynomial;
+use forwardstep_sim::graph::{Edge, SpanningTree, laplacian, spanning_tree};
+use forwardstep_sim::schedule::Schedule;
+use forwardstep_sim::{AgentSetup, Exchange, Setup};
+use nalgebra::DMatrix;
+use thiserror::Error;
+
+/// The value that all agents will agree on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prediction {
+    /// c, one entry per axis.
+    pub value: Vec<f64>,
+    /// How much each agent's initial data counts: the left null vector of the Laplacian, summing to one.
+    pub influence: Vec<f64>,
+}
+
+/// Why the value agreed upon cannot be known before the run.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum NoPrediction {
+    /// The graph changes.
+    #[error("the graph switches")]
+    Switching,
+    /// A delay changes.
+    #[error("a delay varies with time")]
+    VaryingDelay,
+    /// There is no single value.
+    #[error("no agent reaches all others, so nothing makes them agree")]
+    NoSpanningTree,
+    /// A root is not positive.
+    #[error("the reference dynamics of agent {agent} are not stable")]
+    Roots {
+        /// Index of the agent.
+        agent: usize,
+    },
+    /// The arithmetic failed.
+    #[error("the left null vector of the Laplacian could not be computed")]
+    NullVector,
+}
+
+/// Predicts the value agreed upon for a fixed graph with constant delays.
+///
+/// **Guarantees**: if the agents of such a network come to rest in agreement, as Theorems 2 and 3 promise, it is at this
+/// value, whatever the robots, the gains, the adaptation and the torques.
+///
+/// # Errors
+/// [`NoPrediction`] says why there is none.
+pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
+    let edges = constant_graph(&setup.network.schedule).ok_or(NoPrediction::Switching)?;
+    if !edges.iter().all(|edge| setup.network.delays[edge.delay].is_constant()) {
+        return Err(NoPrediction::VaryingDelay);
+    }
+    let n = setup.agents.len();
+    let influence = left_null_vector(n, edges)?;
+    let alpha: Vec<Vec<f64>> = setup
+        .agents
+        .iter()
+        .enumerate()
+        .map(|(agent, a)| polynomial(&a.roots_per_s).map_err(|_| NoPrediction::Roots { agent }))
+        .collect::<Result<_, _>>()?;
+    let axes = setup.agents[0].start.q.len();
+    let value = (0..axes)
+        .map(|axis| {
+            let (mut quantity, mut weight) = (0.0, 0.0);
+            for i in 0..n {
+                let (share, at_rest) = contribution(setup, edges, &alpha[i], i, axis);
+                quantity += influence[i] * share;
+                weight += influence[i] * at_rest;
+            }
+            quantity / weight
+        })
+        .collect();
+    Ok(Prediction { value, influence })
+}
+
+/// The one graph of a schedule that never switches.
+fn constant_graph(schedule: &Schedule) -> Option<&[Edge]> {
+    match schedule {
+        Schedule::Fixed(edges) => Some(edges),
+        Schedule::Periodic(phases) | Schedule::Once(phases) if phases.len() == 1 => Some(&phases[0].edges),
+        _ => None,
+    }
+}
+
+/// u ≥ 0 with uᵀL = 0 and Σu = 1. Only the agents that reach all others count.
+fn left_null_vector(n: usize, edges: &[Edge]) -> Result<Vec<f64>, NoPrediction> {
+    let SpanningTree::Rooted { roots } = spanning_tree(n, edges) else { return Err(NoPrediction::NoSpanningTree) };
+    let l = laplacian(n, edges);
+    // Lᵀu = 0 on the roots, with its last equation, which the others imply, replaced by Σu = 1.
+    let m = roots.len();
+    let entry = |row: usize, column: usize| {
+        if row + 1 == m { 1.0 } else { l[roots[column] * n + roots[row]] }
+    };
+    let mut right = nalgebra::DVector::zeros(m);
+    right[m - 1] = 1.0;
+    let solution = DMatrix::from_fn(m, m, entry).lu().solve(&right).ok_or(NoPrediction::NullVector)?;
+    let mut influence = vec![0.0; n];
+    for (root, share) in roots.iter().zip(solution.iter()) {
+        influence[*root] = *share;
+    }
+    Ok(influence)
+}
+
+/// Agent i's term of Q at t = 0, and what it is per unit of c at rest.
+fn contribution(setup: &Setup, edges: &[Edge], alpha: &[f64], i: usize, axis: usize) -> (f64, f64) {
+    let start = &setup.agents[i].start;
+    let z = |k: usize| reference_start(&setup.agents[i], k, axis);
+    let (q, dq) = (start.q[axis], start.dq[axis]);
+    let mut b = alpha[0] * q + alpha[1] * dq - alpha[1] * (dq - z(0));
+    let mut w = alpha[1] * q;
+    for (r, alpha) in alpha.iter().enumerate().skip(2) {
+        b += alpha * z(r - 1);
+        w += alpha * z(r - 2);
+    }
+    let kappa_0 = setup.agents[i].roots_per_s[0];
+    let velocity = if setup.exchange == Exchange::PositionVelocity { 1.0 / kappa_0 } else { 0.0 };
+    let (mut degree, mut past, mut past_at_rest) = (0.0, 0.0, 0.0);
+    for edge in edges.iter().filter(|edge| edge.to == i) {
+        let delay_s = setup.network.delays[edge.delay].max_s();
+        let sender = &setup.agents[edge.from].start;
+        let ramp = sender.q[axis] - delay_s * sender.dq[axis];
+        degree += edge.weight;
+        past += edge.weight * (delay_s * sender.q[axis] - velocity * ramp);
+        past_at_rest += edge.weight * (delay_s - velocity);
+    }
+    ((b + degree * w) / alpha[0] + past, 1.0 + degree * alpha[1] / alpha[0] + past_at_rest)
+}
+
+/// z^(k)(0), with the defaults of [`forwardstep_sim::Start`].
+fn reference_start(agent: &AgentSetup, k: usize, axis: usize) -> f64 {
+    match agent.start.reference.get(k) {
+        Some(z) => z[axis],
+        None if k == 0 => agent.start.dq[axis],
+        None => 0.0,
+    }
+}

@@ -1,0 +1,199 @@
+//! The hypotheses of Theorems 2 and 3, one function each.
+
+use forwardstep_sim::graph::{Edge, strong_components};
+use forwardstep_sim::schedule::{Schedule, Window};
+use forwardstep_sim::{Exchange, Law, Setup};
+
+use crate::verdict::{Answer, Hypothesis, Report};
+
+/// Which theorem speaks about `setup`, and whether its hypotheses hold.
+///
+/// `setup` should be one that [`forwardstep_sim::simulate`] accepts; what makes a setup meaningless is not looked at again.
+///
+/// **Source**: Theorem 2 for (a1), Theorem 3 for (a5) and (24); Section III-A for (aa10), which is (a5) of order one.
+pub fn check(setup: &Setup) -> Report {
+    let order = setup.agents.iter().map(|agent| agent.roots_per_s.len()).max().unwrap_or(0);
+    let mut hypotheses =
+        vec![spanning_tree(setup), dwell_time(setup), bounded_delays(setup), real_roots(setup), common_order(setup)];
+    if setup.exchange == Exchange::PositionVelocity {
+        hypotheses.push(common_first_root(setup));
+    }
+    hypotheses.push(gains(setup));
+    hypotheses.push(unlimited_torque(setup));
+    Report { theorem: theorem(setup, order), promises: promises(setup, order), hypotheses }
+}
+
+fn theorem(setup: &Setup, order: usize) -> String {
+    match (setup.exchange, order) {
+        (Exchange::PositionVelocity, 1) => "Theorem 3 with (a5) of order 1, which is (aa10)".into(),
+        (Exchange::PositionVelocity, 2) if same_roots(setup) => "Theorem 2, reference dynamics (a1)".into(),
+        (Exchange::PositionVelocity, order) => format!("Theorem 3, reference dynamics (a5) of order {order}"),
+        (Exchange::Position, order) => format!("Theorem 3, reference dynamics (24) of order {order}"),
+    }
+}
+
+fn promises(setup: &Setup, order: usize) -> String {
+    let smooth = match order {
+        0 | 1 => "the torque jumps at switches and delay jumps but stays bounded".to_owned(),
+        2 => "the torque stays continuous through switches and delay jumps".to_owned(),
+        order => format!("the torque stays {} times differentiable through switches and delay jumps", order - 2),
+    };
+    let agents = if setup.agents.len() == 1 { "the agent comes to rest" } else { "all agents agree and come to rest" };
+    format!("{agents}: q_i − q_j → 0 and dq_i → 0; {smooth}")
+}
+
+fn same_roots(setup: &Setup) -> bool {
+    setup.agents.windows(2).all(|pair| pair[0].roots_per_s == pair[1].roots_per_s)
+}
+
+/// Names of agents for a sentence; long lists are cut.
+fn names(setup: &Setup, agents: &[usize]) -> String {
+    const SHOWN: usize = 6;
+    let shown: Vec<&str> = agents.iter().take(SHOWN).map(|agent| setup.agents[*agent].name.as_str()).collect();
+    let rest = agents.len().saturating_sub(SHOWN);
+    if rest > 0 { format!("{} and {rest} more", shown.join(", ")) } else { shown.join(", ") }
+}
+
+fn spanning_tree(setup: &Setup) -> Hypothesis {
+    let network = &setup.network;
+    let requires = "the union of the graphs over uniformly bounded windows contains a directed spanning tree".into();
+    let (answer, because) = match network.schedule.window(network.agents, setup.time.end_s) {
+        Window::Uniform { length_s, roots, for_all_time, .. } if length_s == 0.0 => (
+            if for_all_time { Answer::Holds } else { Answer::HoldsOnHorizon },
+            format!("one graph stays for ever and has a tree rooted at {}", names(setup, &roots)),
+        ),
+        Window::Uniform { length_s, worst_start_s, roots, for_all_time } => (
+            if for_all_time { Answer::Holds } else { Answer::HoldsOnHorizon },
+            format!(
+                "the smallest uniform window lasts {length_s:.6} s (needed from t = {worst_start_s:.6} s, rooted at {})",
+                names(setup, &roots)
+            ),
+        ),
+        Window::Missing { start_s, closed_groups } => {
+            let groups: Vec<String> =
+                closed_groups.iter().take(3).map(|group| format!("[{}]", names(setup, group))).collect();
+            let more =
+                if closed_groups.len() > 3 { format!(" and {} more", closed_groups.len() - 3) } else { String::new() };
+            (
+                Answer::Violated,
+                format!(
+                    "from t = {start_s:.6} s on, whatever the window, no agent reaches all others: {}{more} hear nobody outside themselves",
+                    groups.join(" and ")
+                ),
+            )
+        }
+    };
+    Hypothesis { requires, answer, because }
+}
+
+fn dwell_time(setup: &Setup) -> Hypothesis {
+    let requires = "graphs stay for at least some positive dwell time".into();
+    let because = match &setup.network.schedule {
+        Schedule::Fixed(_) => "the graph never switches".into(),
+        Schedule::Periodic(phases) => {
+            format!("the shortest phase lasts {} s", phases.iter().map(|p| p.dwell_s).fold(f64::INFINITY, f64::min))
+        }
+        Schedule::Once(phases) if phases.len() == 1 => "the graph never switches".into(),
+        Schedule::Once(phases) => {
+            let phases = &phases[..phases.len() - 1];
+            format!("the shortest phase lasts {} s", phases.iter().map(|p| p.dwell_s).fold(f64::INFINITY, f64::min))
+        }
+        Schedule::Random { dwell_s: [low, _], .. } => format!("no phase is shorter than {low} s"),
+    };
+    Hypothesis { requires, answer: Answer::Holds, because }
+}
+
+fn bounded_delays(setup: &Setup) -> Hypothesis {
+    Hypothesis {
+        requires: "delays are piecewise uniformly continuous and uniformly bounded".into(),
+        answer: Answer::Holds,
+        because: format!("no delay exceeds {:.6} s", setup.network.max_delay_s()),
+    }
+}
+
+fn real_roots(setup: &Setup) -> Hypothesis {
+    let smallest = setup.agents.iter().flat_map(|agent| &agent.roots_per_s).copied().fold(f64::INFINITY, f64::min);
+    Hypothesis {
+        requires: "the polynomial (25) is Hurwitz with real roots".into(),
+        answer: if smallest > 0.0 { Answer::Holds } else { Answer::Violated },
+        because: format!("roots −κ were given; the smallest κ is {smallest} per second"),
+    }
+}
+
+fn common_order(setup: &Setup) -> Hypothesis {
+    let requires = "all agents have reference dynamics of the same order".into();
+    let order = |agent: usize| setup.agents[agent].roots_per_s.len();
+    match (1..setup.agents.len()).find(|agent| order(*agent) != order(0)) {
+        None => Hypothesis { requires, answer: Answer::Holds, because: format!("the order is {}", order(0)) },
+        Some(other) => Hypothesis {
+            requires,
+            answer: Answer::NotCovered,
+            because: format!(
+                "{} has order {} and {} has order {}",
+                setup.agents[0].name,
+                order(0),
+                setup.agents[other].name,
+                order(other)
+            ),
+        },
+    }
+}
+
+/// The condition that the paper's Theorem 3 leaves out for (a5), of which (aa10) and (a1) are members.
+///
+/// What agent i hears is α₀[(κ₀ⱼ/κ₀ᵢ) ψ_j + (1 − κ₀ⱼ/κ₀ᵢ) q_j]: a weighting that is only convex when κ₀ⱼ ≤ κ₀ᵢ along j → i.
+/// Around a cycle that means equality. With a fixed graph and constant delays p + κ₀ᵢ factors out and nothing is needed.
+fn common_first_root(setup: &Setup) -> Hypothesis {
+    let requires =
+        "κ₀ is common within each strongly connected component of the union graph, unless graph and delays are constant".into();
+    let graphs = setup.network.schedule.graphs();
+    let constant_delays = setup.network.used_delays().all(|index| setup.network.delays[index].is_constant());
+    let first_root = |agent: usize| setup.agents[agent].roots_per_s.first().copied().unwrap_or(f64::NAN);
+    let edges: Vec<(usize, usize)> = graphs.iter().copied().flatten().map(|edge: &Edge| (edge.from, edge.to)).collect();
+    let witness = strong_components(setup.network.agents, &edges).into_iter().find_map(|component| {
+        let first = component[0];
+        component.into_iter().find(|agent| first_root(*agent) != first_root(first)).map(|other| (first, other))
+    });
+    let (answer, because) = match witness {
+        None => (Answer::Holds, "κ₀ is common wherever agents hear each other in a cycle".to_owned()),
+        Some(_) if graphs.len() == 1 && constant_delays => {
+            (Answer::Holds, "κ₀ differs, but the graph and the delays are constant".to_owned())
+        }
+        Some((a, b)) => (
+            Answer::NotCovered,
+            format!(
+                "{} has κ₀ = {} and {} has κ₀ = {} per second, and each reaches the other; such networks can diverge. \
+                 Give them one κ₀, or exchange positions only: (24) has no such condition",
+                setup.agents[a].name,
+                first_root(a),
+                setup.agents[b].name,
+                first_root(b)
+            ),
+        ),
+    };
+    Hypothesis { requires, answer, because }
+}
+
+fn gains(setup: &Setup) -> Hypothesis {
+    let known = setup.agents.iter().filter(|agent| matches!(agent.law, Law::Known { .. })).count();
+    let parameters = match known {
+        0 => "parameters are adapted".to_owned(),
+        known if known == setup.agents.len() => "parameters are known".to_owned(),
+        known => format!("parameters are known to {known} of {} agents and adapted by the others", setup.agents.len()),
+    };
+    Hypothesis {
+        requires: "K and Γ are symmetric positive definite".into(),
+        answer: Answer::Holds,
+        because: format!("checked when the gains were read; {parameters}"),
+    }
+}
+
+fn unlimited_torque(setup: &Setup) -> Hypothesis {
+    let limited: Vec<usize> = (0..setup.agents.len()).filter(|agent| setup.agents[*agent].enforce_limits).collect();
+    let (answer, because) = if limited.is_empty() {
+        (Answer::Holds, "limits are reported, not enforced".to_owned())
+    } else {
+        (Answer::NotCovered, format!("limits are enforced on {}", names(setup, &limited)))
+    };
+    Hypothesis { requires: "the torque that the law asks for is applied".into(), answer, because }
+}

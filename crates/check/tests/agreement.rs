@@ -1,0 +1,279 @@
+//! The conserved quantity, the spread that never grows, and the case in which it does.
+
+use std::ops::ControlFlow;
+
+use forwardstep_check::{Answer, NoPrediction, check, predict};
+use forwardstep_core::Gain;
+use forwardstep_core::reference::polynomial;
+use forwardstep_core::robot::PlanarLinks;
+use forwardstep_sim::delay::Delay;
+use forwardstep_sim::graph::Edge;
+use forwardstep_sim::schedule::{Phase, Schedule};
+use forwardstep_sim::{
+    AgentSetup, Axis, AxisUnit, Ending, Exchange, Law, Method, Network, Outcome, RobotKind, RobotSetup, Setup, Signal,
+    Solver, Start, TimeSpan, simulate,
+};
+
+/// Numbers that look arbitrary but are always the same.
+fn noise(seed: usize) -> f64 {
+    (12.9898 * seed as f64 + 0.7).sin()
+}
+
+fn arm(index: usize, roots_per_s: &[f64]) -> AgentSetup {
+    let links = PlanarLinks::uniform([1.0 + 0.2 * index as f64, 1.0], [1.0, 0.8]);
+    AgentSetup {
+        name: format!("arm-{}", index + 1),
+        robot: RobotSetup {
+            kind: RobotKind::PlanarArm,
+            theta: links.theta().to_vec(),
+            theta_names: vec![String::new(); 5],
+            axes: vec![axis("shoulder"), axis("elbow")],
+        },
+        roots_per_s: roots_per_s.to_vec(),
+        law: Law::Adaptive { damping: Gain::Number(8.0), adaptation: Gain::Number(10.0), estimate_start: vec![0.0; 5] },
+        start: Start {
+            q: vec![noise(index), noise(index + 10)],
+            dq: vec![0.3 * noise(index + 20), 0.3 * noise(index + 30)],
+            reference: Vec::new(),
+        },
+        enforce_limits: false,
+    }
+}
+
+fn axis(name: &str) -> Axis {
+    Axis { name: name.into(), unit: AxisUnit::Radian, position_limits: None, velocity_limit: None, effort_limit: None }
+}
+
+fn edge(from: usize, to: usize, weight: f64, delay: usize) -> Edge {
+    Edge { from, to, weight, delay }
+}
+
+fn setup(agents: Vec<AgentSetup>, exchange: Exchange, schedule: Schedule, delays: Vec<Delay>, end_s: f64) -> Setup {
+    Setup {
+        network: Network { agents: agents.len(), schedule, delays },
+        agents,
+        exchange,
+        time: TimeSpan { end_s, record_every_s: 0.01 },
+        solver: Solver { method: Method::Adaptive { rtol: 1e-9, atol: 1e-10 }, ..Solver::default() },
+    }
+}
+
+fn run(setup: &Setup) -> Outcome {
+    let outcome = simulate(setup, &mut |_| ControlFlow::Continue(())).unwrap();
+    assert_eq!(outcome.ending, Ending::Completed);
+    outcome
+}
+
+fn column(outcome: &Outcome, agent: usize, signal: Signal, axis: usize) -> &[f64] {
+    let found = outcome.recording.columns.iter().find(|c| (c.agent, c.signal, c.axis) == (agent, signal, axis));
+    &found.unwrap().values
+}
+
+/// A strongly connected triangle with different weights and delays, and a fourth that only listens.
+fn uneven() -> (Vec<Edge>, Vec<Delay>) {
+    let edges =
+        vec![edge(0, 1, 1.5, 0), edge(1, 2, 0.7, 1), edge(2, 0, 1.1, 2), edge(1, 0, 0.4, 0), edge(2, 3, 0.9, 1)];
+    let delays = vec![Delay::Constant { s: 0.3 }, Delay::Constant { s: 0.0 }, Delay::Constant { s: 0.75 }];
+    (edges, delays)
+}
+
+#[test]
+fn prop_agreed_value_is_known_before_the_run() {
+    // For every member of the family, adaptation on, agents in motion, roots of their own: to 1e-6.
+    for exchange in [Exchange::Position, Exchange::PositionVelocity] {
+        for order in 1..=4 {
+            let agents = (0..4)
+                .map(|i| {
+                    let roots: Vec<f64> = (0..order).map(|r| 1.2 + 0.8 * r as f64 + 0.15 * i as f64).collect();
+                    let mut agent = arm(i, &roots);
+                    let entry = |k: usize| vec![0.4 * noise(50 + i + k), 0.4 * noise(70 + i + k)];
+                    agent.start.reference = (0..order).map(entry).collect();
+                    agent
+                })
+                .collect();
+            let (edges, delays) = uneven();
+            let mut setup = setup(agents, exchange, Schedule::Fixed(edges), delays, 160.0);
+            setup.time.record_every_s = 10.0;
+            let prediction = predict(&setup).unwrap();
+            assert!((prediction.influence.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+            assert_eq!(prediction.influence[3], 0.0, "who is heard by nobody has no influence");
+            let outcome = run(&setup);
+            for agent in 0..4 {
+                for axis in 0..2 {
+                    let q = *column(&outcome, agent, Signal::Position, axis).last().unwrap();
+                    let c = prediction.value[axis];
+                    assert!((q - c).abs() < 1e-6, "{exchange:?} order {order} agent {agent}: {q} is not {c}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn prediction_says_why_there_is_none() {
+    let agents = || (0..2).map(|i| arm(i, &[1.0, 2.0])).collect::<Vec<_>>();
+    let constant = vec![Delay::Constant { s: 0.1 }];
+    let one_way = Schedule::Fixed(vec![edge(0, 1, 1.0, 0)]);
+    let saw = vec![Delay::SawTooth { min_s: 0.0, max_s: 0.1, period_s: 1.0, offset_s: 0.0 }];
+    let case = |schedule, delays| predict(&setup(agents(), Exchange::Position, schedule, delays, 1.0));
+    assert_eq!(case(one_way.clone(), saw), Err(NoPrediction::VaryingDelay));
+    assert_eq!(case(Schedule::Fixed(vec![]), constant.clone()), Err(NoPrediction::NoSpanningTree));
+    let phase = |from, to| Phase { edges: vec![edge(from, to, 1.0, 0)], dwell_s: 1.0 };
+    assert_eq!(
+        case(Schedule::Periodic(vec![phase(0, 1), phase(1, 0)]), constant.clone()),
+        Err(NoPrediction::Switching)
+    );
+    assert_eq!(case(one_way, constant).unwrap().influence, vec![1.0, 0.0]);
+}
+
+/// Spread (max − min) at every row over the chain variables of all agents and the delay window, on one axis.
+///
+/// φ_r = ∏_{k<r} (1 + p/κ_k) q; the chain is φ₀ … φ_ℓ for (24) and φ₁ … φ_ℓ for (a5), whose first entry is what is heard.
+fn spreads(setup: &Setup, outcome: &Outcome, axis: usize) -> Vec<f64> {
+    let rows = outcome.recording.t_s.len();
+    let window = (setup.network.max_delay_s() / setup.time.record_every_s).ceil() as usize + 1;
+    let mut lowest_heard = vec![f64::INFINITY; rows];
+    let mut highest_heard = vec![f64::NEG_INFINITY; rows];
+    let (mut lowest, mut highest) = (lowest_heard.clone(), highest_heard.clone());
+    for (agent, description) in setup.agents.iter().enumerate() {
+        let roots = &description.roots_per_s;
+        let first = usize::from(setup.exchange == Exchange::PositionVelocity);
+        for r in first..=roots.len() {
+            let alpha = if r == 0 { vec![1.0] } else { polynomial(&roots[..r]).unwrap() };
+            for row in 0..rows {
+                let derivative = |k: usize| match k {
+                    0 => column(outcome, agent, Signal::Position, axis)[row],
+                    1 => column(outcome, agent, Signal::Velocity, axis)[row],
+                    k => column(outcome, agent, Signal::Reference(k as u8 - 1), axis)[row],
+                };
+                let phi: f64 = alpha.iter().enumerate().map(|(k, a)| a * derivative(k)).sum::<f64>() / alpha[0];
+                (lowest[row], highest[row]) = (lowest[row].min(phi), highest[row].max(phi));
+                if r == first {
+                    (lowest_heard[row], highest_heard[row]) = (lowest_heard[row].min(phi), highest_heard[row].max(phi));
+                }
+            }
+        }
+    }
+    (0..rows)
+        .map(|row| {
+            let past = row.saturating_sub(window)..=row;
+            let low = lowest_heard[past.clone()].iter().copied().fold(lowest[row], f64::min);
+            let high = highest_heard[past].iter().copied().fold(highest[row], f64::max);
+            high - low
+        })
+        .collect()
+}
+
+/// Five point masses in motion with ϑ known and z(0) = q̇(0), so that s ≡ 0.
+fn masses(exchange: Exchange, order: usize, schedule: Schedule, delays: Vec<Delay>) -> Setup {
+    let agents = (0..5)
+        .map(|i| {
+            let mut agent = arm(i, &(0..order).map(|r| 1.0 + 0.7 * r as f64).collect::<Vec<_>>());
+            agent.robot.kind = RobotKind::PointMass { dimension: 2 };
+            agent.robot.theta = vec![1.0 + i as f64];
+            agent.robot.theta_names = vec!["mass".into()];
+            agent.law = Law::Known { damping: Gain::Number(5.0) };
+            agent
+        })
+        .collect();
+    let mut setup = setup(agents, exchange, schedule, delays, 12.0);
+    setup.time.record_every_s = 0.004;
+    setup
+}
+
+#[test]
+fn prop_spread_never_grows_whatever_switches_or_jumps() {
+    let phase = |edges: &[(usize, usize, usize)], dwell_s| Phase {
+        edges: edges.iter().map(|&(from, to, delay)| edge(from, to, 1.3, delay)).collect(),
+        dwell_s,
+    };
+    let delays = vec![
+        Delay::SawTooth { min_s: 0.0, max_s: 0.5, period_s: 0.37, offset_s: 0.1 },
+        Delay::PiecewiseConstant { times_s: vec![0.0, 0.4, 0.9], values_s: vec![0.6, 0.0, 0.2], period_s: Some(1.3) },
+        Delay::Sinusoid { mean_s: 0.3, amplitude_s: 0.3, period_s: 0.8, phase_rad: 1.0 },
+    ];
+    let schedule = Schedule::Periodic(vec![
+        phase(&[(0, 1, 0), (2, 3, 1)], 0.31),
+        phase(&[(1, 2, 2), (3, 4, 0), (4, 0, 1)], 0.23),
+        phase(&[], 0.1),
+        phase(&[(4, 2, 2), (0, 3, 0)], 0.47),
+    ]);
+    for exchange in [Exchange::Position, Exchange::PositionVelocity] {
+        for order in 1..=4 {
+            let setup = masses(exchange, order, schedule.clone(), delays.clone());
+            let outcome = run(&setup);
+            for axis in 0..2 {
+                let spread = spreads(&setup, &outcome, axis);
+                for (row, pair) in spread.windows(2).enumerate() {
+                    // What is left is the distance between two rows, over which a crest can hide.
+                    assert!(
+                        pair[1] <= pair[0] + 2e-5 * spread[0],
+                        "{exchange:?} order {order}: {} → {} at row {row}",
+                        pair[0],
+                        pair[1]
+                    );
+                }
+                assert!(spread[spread.len() - 1] < 0.9 * spread[0]);
+            }
+        }
+    }
+}
+
+#[test]
+fn thm3_a5_with_unequal_first_roots_diverges_and_24_does_not() {
+    // Two agents without delay, κ₀ = 4 and 0.2; nothing for 4 s, then both hear each other strongly for 0.5 s, repeated.
+    let diverging = |exchange| {
+        let both = vec![edge(0, 1, 4.0, 0), edge(1, 0, 4.0, 0)];
+        let schedule =
+            Schedule::Periodic(vec![Phase { edges: vec![], dwell_s: 4.0 }, Phase { edges: both, dwell_s: 0.5 }]);
+        let mut setup = masses(exchange, 1, schedule, vec![Delay::Constant { s: 0.0 }]);
+        setup.agents.truncate(2);
+        setup.network.agents = 2;
+        setup.agents[0].roots_per_s = vec![4.0];
+        setup.agents[1].roots_per_s = vec![0.2];
+        setup.time = TimeSpan { end_s: 54.0, record_every_s: 4.5 };
+        setup
+    };
+    let disagreement = |setup: &Setup| -> Vec<f64> {
+        let outcome = run(setup);
+        let (a, b) = (column(&outcome, 0, Signal::Position, 0), column(&outcome, 1, Signal::Position, 0));
+        a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect()
+    };
+
+    let bad = diverging(Exchange::PositionVelocity);
+    let gap = disagreement(&bad);
+    let growth = gap[gap.len() - 1] / gap[gap.len() - 2];
+    assert!((growth - 3.8).abs() < 0.1, "grows {growth}× per period");
+    let report = check(&bad);
+    assert_eq!(report.worst(), Answer::NotCovered);
+    let witness = report.hypotheses.iter().find(|h| h.answer == Answer::NotCovered).unwrap();
+    assert!(witness.because.contains("arm-1 has κ₀ = 4 and arm-2 has κ₀ = 0.2"), "{}", witness.because);
+
+    let good = diverging(Exchange::Position);
+    let gap = disagreement(&good);
+    assert!(gap[gap.len() - 1] < 1e-2 * gap[0]);
+    assert_eq!(check(&good).worst(), Answer::Holds);
+}
+
+#[test]
+fn thm2_hypotheses_hold_with_a_certificate_or_fail_with_a_witness() {
+    let agents = || (0..4).map(|i| arm(i, &[1.0, 2.0])).collect::<Vec<_>>();
+    let phase = |from, to| Phase { edges: vec![edge(from, to, 1.0, 0)], dwell_s: 1.5 };
+    let delays = vec![Delay::Constant { s: 0.1 }];
+    let joint = Schedule::Periodic(vec![phase(0, 1), phase(1, 2), phase(2, 3)]);
+    let report = check(&setup(agents(), Exchange::PositionVelocity, joint, delays.clone(), 1.0));
+    assert_eq!(report.worst(), Answer::Holds);
+    assert!(report.theorem.starts_with("Theorem 2"));
+    assert!(report.hypotheses[0].because.contains("4.500000 s"), "{}", report.hypotheses[0].because);
+
+    let split = Schedule::Periodic(vec![phase(0, 1), phase(2, 3)]);
+    let report = check(&setup(agents(), Exchange::PositionVelocity, split, delays.clone(), 1.0));
+    assert_eq!(report.worst(), Answer::Violated);
+    let because = &report.hypotheses[0].because;
+    assert!(because.contains("[arm-1] and [arm-3] hear nobody outside themselves"), "{because}");
+
+    let graphs = vec![vec![edge(0, 1, 1.0, 0), edge(1, 2, 1.0, 0)], vec![edge(2, 3, 1.0, 0)]];
+    let random = Schedule::Random { graphs, dwell_s: [0.1, 0.2], seed: 1 };
+    let report = check(&setup(agents(), Exchange::Position, random, delays, 30.0));
+    assert_eq!(report.worst(), Answer::HoldsOnHorizon);
+}
