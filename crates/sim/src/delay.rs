@@ -271,18 +271,21 @@ impl Delay {
             let omega = core::f64::consts::TAU / period_s;
             let cosine = 1.0 / (amplitude_s * omega);
             if cosine.abs() < 1.0 {
+                // Two families of turning points, one period apart each; taken in turn, the earlier first.
                 let angle = libm::acos(cosine);
-                let mut turning: Vec<f64> = Vec::new();
-                for sign in [-1.0, 1.0] {
+                let first = |sign: f64| {
                     let base = (sign * angle - phase_rad) / omega;
-                    let mut k = ((from - base) / period_s).ceil();
-                    while base + k * period_s < to {
-                        turning.push(base + k * period_s);
-                        k += 1.0;
+                    base + ((from - base) / period_s).ceil() * period_s
+                };
+                let mut next = [first(-1.0), first(1.0)];
+                loop {
+                    let earlier = usize::from(next[1] < next[0]);
+                    if next[earlier] >= to {
+                        break;
                     }
+                    visit(next[earlier]);
+                    next[earlier] += period_s;
                 }
-                turning.sort_by(f64::total_cmp);
-                turning.into_iter().for_each(&mut visit);
             }
         }
         visit(to);

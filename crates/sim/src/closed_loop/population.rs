@@ -108,6 +108,8 @@ struct Work<S, T> {
 struct RecordWork<T> {
     scratch: T,
     d_reference: Vec<f64>,
+    q: Vec<f64>,
+    s: Vec<f64>,
     mass: Vec<f64>,
     delta: Vec<f64>,
     row: Vec<f64>,
@@ -144,6 +146,8 @@ where
         let record = RecordWork {
             scratch: Lagrangian::<f64>::scratch(&robot),
             d_reference: vec![0.0; layout.theta_hat - layout.reference],
+            q: vec![0.0; m],
+            s: vec![0.0; m],
             mass: vec![0.0; m * m],
             delta: vec![0.0; p],
             row: Vec::new(),
@@ -186,24 +190,25 @@ where
                 at += 1;
             }
         };
-        let lanes = |values: &[S]| values.iter().map(|value| value.lane(lane)).collect::<Vec<f64>>();
-        let s = lanes(&w.s);
-        put(&mut w.q.iter().map(|v| v.lane(lane)));
+        for (own, squad) in r.q.iter_mut().zip(&w.q).chain(r.s.iter_mut().zip(&w.s)) {
+            *own = squad.lane(lane);
+        }
+        put(&mut r.q.iter().copied());
         put(&mut w.dq.iter().map(|v| v.lane(lane)));
         put(&mut w.z.iter().map(|v| v.lane(lane)));
         put(&mut w.dz.iter().map(|v| v.lane(lane)));
         put(&mut (2 * l.m..l.order * l.m).map(|column| x[l.reference + column * l.n + member]));
-        put(&mut s.iter().copied());
+        put(&mut r.s.iter().copied());
         put(&mut w.applied.iter().map(|v| v.lane(lane)));
         if l.adaptive {
             put(&mut w.theta_hat.iter().map(|v| v.lane(lane)));
         }
 
-        let (q, agent) = (lanes(&w.q), &mut self.members[member]);
-        Lagrangian::<f64>::mass_matrix(&self.robot, &mut r.scratch, &q, &agent.theta, &mut r.mass)?;
+        let agent = &mut self.members[member];
+        Lagrangian::<f64>::mass_matrix(&self.robot, &mut r.scratch, &r.q, &agent.theta, &mut r.mass)?;
         let mut lyapunov = 0.0;
-        for (row, s_row) in r.mass.chunks_exact(l.m).zip(&s) {
-            for (mass, s_column) in row.iter().zip(&s) {
+        for (row, s_row) in r.mass.chunks_exact(l.m).zip(&r.s) {
+            for (mass, s_column) in row.iter().zip(&r.s) {
                 lyapunov += 0.5 * mass * s_row * s_column;
             }
         }

@@ -1,0 +1,33 @@
+//! The same setup gives the same bits: again, beside other runs in other threads, and as on the machine that wrote the
+//! digests.
+
+mod cases;
+
+use std::ops::ControlFlow;
+
+use cases::{Case, cases, setup};
+use forwardstep_sim::simulate;
+
+/// FNV-1a over the bits of every number recorded.
+fn digest(case: &Case) -> u64 {
+    let outcome = simulate(&setup(case), &mut |_| ControlFlow::Continue(())).unwrap();
+    let numbers = outcome.recording.t_s.iter().chain(outcome.recording.columns.iter().flat_map(|c| &c.values));
+    numbers
+        .flat_map(|number| number.to_bits().to_le_bytes())
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
+}
+
+#[test]
+fn digest_same_bits_on_repeat_and_beside_other_threads() {
+    let cases = cases();
+    let alone: Vec<u64> = cases.iter().map(digest).collect();
+    for threads in [2, 7] {
+        let together: Vec<u64> = std::thread::scope(|scope| {
+            let chunks = cases.chunks(cases.len().div_ceil(threads));
+            let running: Vec<_> =
+                chunks.map(|chunk| scope.spawn(|| chunk.iter().map(digest).collect::<Vec<_>>())).collect();
+            running.into_iter().flat_map(|thread| thread.join().unwrap()).collect()
+        });
+        assert_eq!(alone, together, "{threads} threads");
+    }
+}
