@@ -1,7 +1,15 @@
 //! Fixed-base trees of rigid bodies with revolute and prismatic joints.
 
+mod articulated;
 mod assemble;
+mod composite;
+mod lagrangian;
 mod model;
+mod motion;
+mod placement;
+mod spatial;
+mod sweep;
 
-pub use assemble::{JointKind, LinkJoint, LinkSpec, Placement, TreeError, inertia_about_frame};
-pub use model::Tree;
+pub use assemble::{Anchor, Assembled, LinkJoint, LinkSpec, TreeError, inertia_about_frame};
+pub use model::{JointKind, Tree, TreeScratch};
+pub use placement::Placement;

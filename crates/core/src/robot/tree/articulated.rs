@@ -1,0 +1,201 @@
+//! Forward dynamics by articulated bodies, O(n).
+//!
+//! The wrenches w⁰ that the motion would take at q̈ = 0, gravity and all products of velocities included, come from the
+//! same sweep as the torque of the law. What is left is linear in q̈: with δ the accelerations that q̈ adds, a body needs
+//! w⁰ + I δ, and the outermost first
+//!
+//! ```text
+//! I_A = I + Σ X I_a Xᵀ        p = w⁰ + Σ X p_a          over the children
+//! U = I_A S,  D = Sᵀ U,  e = τ − Sᵀ p
+//! I_a = I_A − U Uᵀ / D        p_a = p + U e / D
+//! ```
+//!
+//! then outwards q̈ = (e − Uᵀ Xᵀδ_parent) / D, δ = Xᵀδ_parent + S q̈. This is Featherstone's recursion with the velocity
+//! terms moved out of it.
+
+use super::model::{Slot, Tree};
+use super::motion::{Seat, Wrench};
+use super::spatial::{Inertia, Mat3, Sym3, Vec3};
+use super::{JointKind, TreeScratch};
+use crate::robot::TwoVelocity;
+use crate::{LengthError, Scalar};
+
+/// What the way in leaves for the way out, and the inertia gathered so far.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Articulated<S> {
+    inertia: Coupled<S>,
+    /// U: moment and force per unit of joint acceleration.
+    u: Wrench<S>,
+    /// 1 / D
+    inverse: S,
+    /// e / D
+    drive: S,
+    /// δ: what q̈ adds to α and to a.
+    delta: [Vec3<S>; 2],
+}
+
+impl<S: Scalar> Articulated<S> {
+    pub(super) const ZERO: Self = Articulated {
+        inertia: Coupled { a: Sym3::ZERO, h: Mat3::ZERO, m: Sym3::ZERO },
+        u: Wrench::ZERO,
+        inverse: S::ZERO,
+        drive: S::ZERO,
+        delta: [Vec3::ZERO; 2],
+    };
+}
+
+/// An inertia with n = A α + H a and f = Hᵀ α + M a.
+#[derive(Clone, Copy, Debug)]
+struct Coupled<S> {
+    a: Sym3<S>,
+    h: Mat3<S>,
+    m: Sym3<S>,
+}
+
+impl<S: Scalar> Coupled<S> {
+    /// n = I α + h × a and f = m a − h × α.
+    #[inline(always)]
+    fn of(body: &Inertia<S>) -> Self {
+        let Vec3 { x, y, z } = body.h;
+        let zero = S::ZERO;
+        Coupled {
+            a: body.i,
+            h: Mat3 { x: Vec3::new(zero, z, -y), y: Vec3::new(-z, zero, x), z: Vec3::new(y, -x, zero) },
+            m: Sym3 { xx: body.m, yy: body.m, zz: body.m, ..Sym3::ZERO },
+        }
+    }
+
+    #[inline(always)]
+    fn plus(&self, b: &Self) -> Self {
+        Coupled { a: self.a.plus(&b.a), h: self.h.plus(&b.h), m: self.m.plus(&b.m) }
+    }
+
+    /// U = I_A S
+    #[inline(always)]
+    fn column(&self, kind: JointKind) -> Wrench<S> {
+        match kind {
+            JointKind::Revolute => Wrench {
+                n: Vec3::new(self.a.xz, self.a.yz, self.a.zz),
+                f: Vec3::new(self.h.x.z, self.h.y.z, self.h.z.z),
+            },
+            JointKind::Prismatic => Wrench { n: self.h.z, f: Vec3::new(self.m.xz, self.m.yz, self.m.zz) },
+        }
+    }
+
+    /// I_A − U Uᵀ k
+    #[inline(always)]
+    fn minus_outer(&self, u: &Wrench<S>, k: S) -> Self {
+        let n = Vec3::new(-(u.n.x * k), -(u.n.y * k), -(u.n.z * k));
+        Coupled {
+            a: self.a.minus_outer(u.n, k),
+            h: Mat3 {
+                x: n.scaled_plus(u.f.x, self.h.x),
+                y: n.scaled_plus(u.f.y, self.h.y),
+                z: n.scaled_plus(u.f.z, self.h.z),
+            },
+            m: self.m.minus_outer(u.f, k),
+        }
+    }
+
+    /// The same about the origin and in the axes of the parent.
+    ///
+    /// Turning all blocks by E leaves the shift α, a − \[p\]α of the arguments and n + \[p\]f of the results:
+    /// M′ = M, H′ = H + \[p\]M, A′ = A − H\[p\] + \[p\]H′ᵀ, where −H\[p\] = (\[p\]Hᵀ)ᵀ.
+    #[inline(always)]
+    fn seen_from_parent(&self, seat: &Seat<S>) -> Self {
+        let turn = seat.e.transpose();
+        let m = self.m.turned(&seat.e);
+        let h = seat.e.product(&self.h.product(&turn));
+        let a = self.a.turned(&seat.e);
+        let shifted = h.plus(&m.full().crossed_by(seat.p));
+        let left = h.transpose().crossed_by(seat.p);
+        let right = shifted.transpose().crossed_by(seat.p);
+        let a = Sym3 {
+            xx: a.xx + (left.x.x + right.x.x),
+            xy: a.xy + (left.x.y + right.y.x),
+            yy: a.yy + (left.y.y + right.y.y),
+            xz: a.xz + (left.x.z + right.z.x),
+            yz: a.yz + (left.y.z + right.z.y),
+            zz: a.zz + (left.z.z + right.z.z),
+        };
+        Coupled { a, h: shifted, m }
+    }
+}
+
+impl Tree {
+    /// `ddq` solves M q̈ = τ − C q̇ − g − D q̇.
+    #[inline(always)]
+    pub(super) fn articulated<S: Scalar>(
+        &self,
+        scratch: &mut TreeScratch<S>,
+        q: &[S],
+        dq: &[S],
+        theta: &[S],
+        tau: &[S],
+        ddq: &mut [S],
+    ) -> Result<(), LengthError> {
+        let n = self.bodies.len();
+        LengthError::check("q", n, q.len())?;
+        LengthError::check("dq", n, dq.len())?;
+        LengthError::check("theta", self.theta_len(), theta.len())?;
+        LengthError::check("tau", n, tau.len())?;
+        LengthError::check("ddq", n, ddq.len())?;
+        LengthError::check("scratch", n, scratch.articulated.len())?;
+        let TreeScratch { slots, articulated, unit: still, column: drive, .. } = scratch;
+
+        still.fill(S::ZERO);
+        self.wrenches(slots, self.base(), TwoVelocity { q, dq, z: dq, dz: still }, theta);
+        drive.copy_from_slice(tau);
+        for (k, joint) in self.damped.iter().enumerate() {
+            drive[*joint] = theta[10 * n + k].neg_mul_add(dq[*joint], drive[*joint]);
+        }
+
+        let inertias = theta.as_chunks::<10>().0;
+        let mut i = 0;
+        while i < n {
+            articulated[i].inertia = Coupled::of(&self.bodies[i].inner(&inertias[i]));
+            i += 1;
+        }
+        while i > 0 {
+            i -= 1;
+            let body = &self.bodies[i];
+            let Slot { seat, wrench, .. } = slots[i + 1];
+            let gathered = articulated[i].inertia;
+            let u = gathered.column(body.kind);
+            let inverse = S::splat(1.0) / u.along(body.kind);
+            let drive = (drive[i] * S::splat(body.sign) - wrench.along(body.kind)) * inverse;
+            articulated[i].u = u;
+            articulated[i].inverse = inverse;
+            articulated[i].drive = drive;
+            if body.parent_slot > 0 {
+                let parent = body.parent_slot - 1;
+                let free = gathered.minus_outer(&u, inverse).seen_from_parent(&seat);
+                articulated[parent].inertia = articulated[parent].inertia.plus(&free);
+                let reaction = Wrench { f: u.f.scaled_plus(drive, wrench.f), n: u.n.scaled_plus(drive, wrench.n) };
+                let held = &mut slots[body.parent_slot].wrench;
+                *held = held.plus(&seat.felt_by_parent(&reaction));
+            }
+        }
+        while i < n {
+            let body = &self.bodies[i];
+            let seat = &slots[i + 1].seat;
+            let Articulated { u, inverse, drive, .. } = articulated[i];
+            let [alpha, accel] = match body.parent_slot {
+                0 => [Vec3::ZERO; 2],
+                slot => articulated[slot - 1].delta,
+            };
+            let mut accel = seat.e.transpose_times(alpha.cross_plus(seat.p, accel));
+            let mut alpha = seat.e.transpose_times(alpha);
+            let resisted = u.n.dot(alpha) + u.f.dot(accel);
+            let joint = resisted.neg_mul_add(inverse, drive);
+            match body.kind {
+                JointKind::Revolute => alpha.z = alpha.z + joint,
+                JointKind::Prismatic => accel.z = accel.z + joint,
+            }
+            articulated[i].delta = [alpha, accel];
+            ddq[i] = joint * S::splat(body.sign);
+            i += 1;
+        }
+        Ok(())
+    }
+}
