@@ -65,7 +65,18 @@ pub struct RobotSetup {
 impl RobotSetup {
     /// D: the true viscous damping of every axis, N m s/rad or N s/m; zero where there is none.
     pub fn viscous(&self) -> Vec<f64> {
-        vec![0.0; self.axes.len()]
+        let mut viscous = vec![0.0; self.axes.len()];
+        if let RobotKind::Tree(tree) = &self.kind {
+            // A tree's damping parameters close its ϑ, one per damped joint.
+            let damped = tree.damped_joints();
+            let first = self.theta.len().saturating_sub(damped.len());
+            for (joint, damping) in damped.iter().zip(&self.theta[first..]) {
+                if let Some(axis) = viscous.get_mut(*joint) {
+                    *axis = *damping;
+                }
+            }
+        }
+        viscous
     }
 }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use forwardstep_core::law::SlotineLi;
 use forwardstep_core::reference::{Consensus, Exchange as CoreExchange, Position, PositionVelocity, RootsError};
+use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass};
 use forwardstep_core::{Gain, GainError, InverseQuadratic, Lanes, LengthError, ResolvedGain};
 use thiserror::Error;
@@ -257,7 +258,7 @@ fn populations(agents: &[AgentSetup]) -> Vec<Vec<usize>> {
 fn population<X: CoreExchange>(setup: &Setup, group: &[usize]) -> Result<Box<dyn Columns>, SetupError> {
     let first = &setup.agents[group[0]];
     match &first.robot.kind {
-        RobotKind::Tree(_tree) => Err(SetupError::NotPositive { what: "TEMPORARY", value: 0.0 }),
+        RobotKind::Tree(tree) => boxed::<Tree, X>(Tree::clone(tree), setup, group),
         RobotKind::PlanarArm => boxed::<PlanarArm, X>(PlanarArm, setup, group),
         RobotKind::PointMass { dimension } => boxed::<PointMass, X>(PointMass { dimension: *dimension }, setup, group),
     }
