@@ -10,7 +10,8 @@ use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass};
 use forwardstep_core::{Gain, GainError, InverseQuadratic, Lanes, LengthError, ResolvedGain};
 use thiserror::Error;
 
-use super::population::{Columns, Member, Population};
+use super::fleet::Member;
+use super::population::{Columns, Population};
 use crate::engine::{DelaySystem, Heard, Port};
 use crate::network::NetworkError;
 use crate::recording::Signal;

@@ -1,9 +1,11 @@
 //! Robots, reference dynamics, laws and network joined into one delay-differential equation.
 //!
-//! - `population`: agents of one kind, side by side in columns; the staged right-hand side.
+//! - `fleet`: robots with their tracking laws, several at once.
+//! - `population`: agents of one kind, side by side in columns: reference dynamics, then the fleet.
 //! - `assemble`: from a [`crate::Setup`] to populations, with everything checked.
 
 mod assemble;
+mod fleet;
 mod population;
 
 pub(crate) use assemble::ClosedLoop;

@@ -1,0 +1,262 @@
+//! The robots of a population with their tracking laws, worked on in squads.
+//!
+//! A squad is as many neighbouring members as the scalar `S` has lanes; the bits do not depend on how many that is. Which
+//! reference the robots follow is not known here.
+
+use forwardstep_core::law::{SlotineLi, SlotineLiOutput};
+use forwardstep_core::robot::{Lagrangian, TwoVelocity};
+use forwardstep_core::{InverseQuadratic, Kernel, LengthError, Packed, ResolvedGain, dispatch};
+
+/// One agent of a population.
+#[derive(Debug)]
+pub(crate) struct Member {
+    /// Index among all agents.
+    pub(crate) agent: usize,
+    /// The true ϑ.
+    pub(crate) theta: Vec<f64>,
+    /// D, one entry per axis.
+    pub(crate) viscous: Vec<f64>,
+    /// Its law.
+    pub(crate) law: SlotineLi,
+    /// xᵀ Γ⁻¹ x, when ϑ is adapted.
+    pub(crate) estimate_cost: Option<InverseQuadratic>,
+    /// Torque limits to be enforced, one entry per axis.
+    pub(crate) effort_limits: Option<Vec<f64>>,
+}
+
+/// Where the parts of a block begin.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Layout {
+    /// Agents, axes, parameters, order.
+    pub(crate) n: usize,
+    pub(crate) m: usize,
+    pub(crate) p: usize,
+    pub(crate) order: usize,
+    /// First entries.
+    pub(crate) dq: usize,
+    pub(crate) reference: usize,
+    pub(crate) theta_hat: usize,
+    pub(crate) ledger: usize,
+    pub(crate) len: usize,
+    pub(crate) adaptive: bool,
+    pub(crate) ledger_on: bool,
+}
+
+impl Layout {
+    pub(crate) fn new([n, m, p, order]: [usize; 4], adaptive: bool, ledger_on: bool) -> Self {
+        let (dq, reference) = (m * n, 2 * m * n);
+        let theta_hat = reference + order * m * n;
+        let ledger = theta_hat + if adaptive { p * n } else { 0 };
+        let len = ledger + if ledger_on { n } else { 0 };
+        Layout { n, m, p, order, dq, reference, theta_hat, ledger, len, adaptive, ledger_on }
+    }
+
+    /// Numbers of one vector of every member.
+    pub(crate) fn block(&self) -> usize {
+        self.m * self.n
+    }
+}
+
+/// Robots `R` with their laws, worked on in lanes of `S`.
+pub(crate) struct Fleet<R: Lagrangian<S>, S: Packed> {
+    pub(crate) robot: R,
+    pub(crate) layout: Layout,
+    squads: Vec<Squad<S>>,
+    pub(crate) work: Work<S, R::Scratch>,
+}
+
+impl<R: Lagrangian<S>, S: Packed> Fleet<R, S> {
+    /// `members` share the robot and the order; all adapt or none.
+    pub(crate) fn new(robot: R, members: &[Member], layout: Layout) -> Self {
+        let squads = (0..members.len()).step_by(S::WIDTH).map(|first| Squad::new(first, members)).collect();
+        let (vector, parameters) = (|| vec![S::ZERO; layout.m], || vec![S::ZERO; layout.p]);
+        let work = Work {
+            scratch: robot.scratch(),
+            q: vector(),
+            dq: vector(),
+            z: vector(),
+            dz: vector(),
+            s: vector(),
+            tau: vector(),
+            applied: vector(),
+            ddq: vector(),
+            damped: vector(),
+            theta_hat: parameters(),
+            yt_s: parameters(),
+            d_theta_hat: parameters(),
+        };
+        Fleet { robot, layout, squads, work }
+    }
+
+    /// Number of squads.
+    pub(crate) fn squads(&self) -> usize {
+        self.squads.len()
+    }
+
+    /// Index of the first member of a squad.
+    pub(crate) fn first(&self, squad: usize) -> usize {
+        self.squads[squad].first
+    }
+
+    /// s, τ, Yᵀs and q̈ of one squad into the working memory and, if there is a `dx`, the rates of q̇, ϑ̂ and the ledger
+    /// into it. `dz` is a block of its own because it is a state for some orders and a rate for others.
+    pub(crate) fn act(
+        &mut self,
+        squad: usize,
+        x: &[f64],
+        dz: &[f64],
+        dx: Option<&mut [f64]>,
+    ) -> Result<(), LengthError> {
+        dispatch(Act { fleet: self, squad, x, dz, dx })
+    }
+}
+
+struct Act<'a, R: Lagrangian<S>, S: Packed> {
+    fleet: &'a mut Fleet<R, S>,
+    squad: usize,
+    x: &'a [f64],
+    dz: &'a [f64],
+    dx: Option<&'a mut [f64]>,
+}
+
+impl<R: Lagrangian<S>, S: Packed> Kernel for Act<'_, R, S> {
+    type Output = Result<(), LengthError>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Fleet { robot, layout, squads, work } = self.fleet;
+        let squad = &squads[self.squad];
+        work.read(*layout, squad.first, self.x, self.dz);
+        squad.act(*layout, robot, work)?;
+        if let Some(dx) = self.dx {
+            work.write(*layout, squad, dx);
+        }
+        Ok(())
+    }
+}
+
+/// The constants of as many neighbouring members as `S` has lanes. Lanes beyond the last member repeat it.
+struct Squad<S> {
+    /// Index of the first member.
+    first: usize,
+    law: SlotineLi<S>,
+    theta: Vec<S>,
+    viscous: Vec<S>,
+    effort_limits: Option<Vec<S>>,
+}
+
+/// Working memory of one squad.
+pub(crate) struct Work<S, T> {
+    pub(crate) scratch: T,
+    pub(crate) q: Vec<S>,
+    pub(crate) dq: Vec<S>,
+    pub(crate) z: Vec<S>,
+    pub(crate) dz: Vec<S>,
+    pub(crate) s: Vec<S>,
+    pub(crate) tau: Vec<S>,
+    pub(crate) applied: Vec<S>,
+    pub(crate) ddq: Vec<S>,
+    pub(crate) damped: Vec<S>,
+    pub(crate) theta_hat: Vec<S>,
+    pub(crate) yt_s: Vec<S>,
+    pub(crate) d_theta_hat: Vec<S>,
+}
+
+impl<S: Packed> Squad<S> {
+    fn new(first: usize, members: &[Member]) -> Self {
+        let member = |lane: usize| &members[(first + lane).min(members.len() - 1)];
+        let pack = |entries: fn(&Member) -> &[f64]| -> Vec<S> {
+            (0..entries(member(0)).len()).map(|k| S::from_lanes(|lane| entries(member(lane))[k])).collect()
+        };
+        let adaptation = member(0)
+            .law
+            .adaptation
+            .as_ref()
+            .map(|own| ResolvedGain::pack(|lane| member(lane).law.adaptation.as_ref().unwrap_or(own)));
+        let damping = ResolvedGain::pack(|lane| &member(lane).law.damping);
+        // A member without limits beside one with limits has limits that are never reached.
+        let limit = |lane: usize, k: usize| member(lane).effort_limits.as_ref().map_or(f64::INFINITY, |l| l[k]);
+        let limited = (0..S::WIDTH).any(|lane| member(lane).effort_limits.is_some());
+        let axes = member(0).viscous.len();
+        Squad {
+            first,
+            law: SlotineLi { damping, adaptation },
+            theta: pack(|member| &member.theta),
+            viscous: pack(|member| &member.viscous),
+            effort_limits: limited.then(|| (0..axes).map(|k| S::from_lanes(|lane| limit(lane, k))).collect()),
+        }
+    }
+
+    /// s, τ, Yᵀs and q̈ of the squad whose q, q̇, z, ż and ϑ̂ are in the working memory.
+    #[inline(always)]
+    fn act<R: Lagrangian<S>>(&self, l: Layout, robot: &R, w: &mut Work<S, R::Scratch>) -> Result<(), LengthError> {
+        let estimate = if l.adaptive { &w.theta_hat } else { &self.theta };
+        let motion = TwoVelocity { q: &w.q, dq: &w.dq, z: &w.z, dz: &w.dz };
+        let out = SlotineLiOutput { s: &mut w.s, tau: &mut w.tau, yt_s: &mut w.yt_s };
+        self.law.output(robot, &mut w.scratch, motion, estimate, out)?;
+        w.applied.copy_from_slice(&w.tau);
+        if let Some(limits) = &self.effort_limits {
+            for (tau, limit) in w.applied.iter_mut().zip(limits) {
+                *tau = tau.saturate(*limit);
+            }
+        }
+        robot.forward_dynamics(&mut w.scratch, &w.q, &w.dq, &self.theta, &w.applied, &mut w.ddq)
+    }
+
+    /// sᵀ(K + D)s − sᵀτ_ext. What a limit takes away from the torque acts like an external one.
+    #[inline(always)]
+    fn dissipation<T>(&self, l: Layout, w: &mut Work<S, T>) -> S {
+        self.law.damping.apply(&w.s, &mut w.damped);
+        let mut dissipation = S::ZERO;
+        for k in 0..l.m {
+            let external = w.applied[k] - w.tau[k];
+            let damped = self.viscous[k].mul_add(w.s[k], w.damped[k] - external);
+            dissipation = w.s[k].mul_add(damped, dissipation);
+        }
+        dissipation
+    }
+}
+
+impl<S: Packed, T> Work<S, T> {
+    /// Loads the members from `first` on.
+    #[inline(always)]
+    fn read(&mut self, l: Layout, first: usize, x: &[f64], dz: &[f64]) {
+        take(l, first, x, &mut self.q);
+        take(l, first, &x[l.dq..], &mut self.dq);
+        take(l, first, &x[l.reference..], &mut self.z);
+        take(l, first, dz, &mut self.dz);
+        if l.adaptive {
+            take(l, first, &x[l.theta_hat..], &mut self.theta_hat);
+        }
+    }
+
+    /// Stores q̈, ϑ̂' and the dissipation of `squad`; needs what [`Squad::act`] left.
+    #[inline(always)]
+    fn write(&mut self, l: Layout, squad: &Squad<S>, dx: &mut [f64]) {
+        give(l, squad.first, &self.ddq, &mut dx[l.dq..]);
+        if l.adaptive {
+            squad.law.adaptation_rate(&self.yt_s, &mut self.d_theta_hat);
+            give(l, squad.first, &self.d_theta_hat, &mut dx[l.theta_hat..]);
+        }
+        if l.ledger_on {
+            let dissipation = squad.dissipation(l, self);
+            dissipation.store(&mut dx[l.ledger + squad.first..l.ledger + l.n]);
+        }
+    }
+}
+
+/// Loads the members from `first` on out of a block of columns.
+#[inline(always)]
+fn take<S: Packed>(l: Layout, first: usize, columns: &[f64], out: &mut [S]) {
+    for (k, out) in out.iter_mut().enumerate() {
+        *out = S::load(&columns[k * l.n + first..(k + 1) * l.n]);
+    }
+}
+
+/// Stores the members from `first` on into a block of columns.
+#[inline(always)]
+fn give<S: Packed>(l: Layout, first: usize, values: &[S], columns: &mut [f64]) {
+    for (k, value) in values.iter().enumerate() {
+        value.store(&mut columns[k * l.n + first..(k + 1) * l.n]);
+    }
+}
