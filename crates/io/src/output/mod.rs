@@ -16,14 +16,18 @@
 //! `timings` object of `summary.json` is the same for the same run, bit for bit.
 
 mod csv;
+mod decimate;
 mod error;
 mod folder;
 mod metrics;
 pub mod names;
+mod palette;
 mod parquet;
 mod record;
+mod report;
 pub mod summary;
 mod table;
+mod timeline;
 
 use std::path::PathBuf;
 
@@ -60,6 +64,8 @@ pub fn write_run(folder: &RunFolder, record: &RunRecord<'_>, options: Options) -
     if options.csv {
         staging.write("trajectory.csv", |out| Ok(csv::write(out, record.setup, recording)?))?;
     }
+    staging
+        .write("report.html", |out| Ok(std::io::Write::write_all(out, report::page(record, &metrics).as_bytes())?))?;
     staging.write("summary.json", |out| Ok(summary::Summary::of(record, &metrics).write(out)?))?;
     staging.publish()
 }
