@@ -114,11 +114,11 @@ const cards = {
   torque: perJoint(signals.tau, force, (axis) => limitLines(axis, (a) => both(a.effort_limit), "limit")),
   reference: {
     picks: [{ id: "order", options: signals.reference.slice(1).map((_, k) => [String(k + 1), referenceName(k + 1)]) }, jointPick],
-    build: ([order, joint]) => ({ unit: unitOf(+joint, rate(+order + 1)), series: order == null ? [] : ofAgents(signals.reference[+order], +joint) }),
+    build: ([order, joint]) => ({ unit: order == null ? "" : unitOf(+joint, rate(+order + 1)), series: order == null ? [] : ofAgents(signals.reference[+order], +joint) }),
   },
   estimate: {
     picks: [
-      { id: "who", options: withEstimates.length === 0 ? [] : [...withEstimates.map((i) => [String(i), agents[i].name]), ["all", "compare agents"]] },
+      { id: "who", options: withEstimates.length === 0 ? [] : [...withEstimates.map((i) => [String(i), agents[i].name]), ...(withEstimates.length > 1 ? [["all", "compare agents"]] : [])] },
       { id: "what", options: (picks) => (picks[0] == null ? [] : parameterOptions(picks[0])) },
     ],
     build: ([who, what]) => ({ grid: "estimates", unit: "SI units", series: who == null || what == null ? [] : estimateSeries(who, what), key: who !== "all" }),

@@ -28,7 +28,9 @@ const fill = (card, height) => {
   if (built.series.length === 0 || times.length === 0) return empty(card.dataset.empty);
   if (built.series.every((s) => s.values.every((v) => v === null))) return empty("no value can be drawn: all are zero or not finite");
   mine.series = built.series;
-  mine.plot = drawPlot(canvas, { ...built, times, height });
+  const far = built.log ? null : outliers(built.series);
+  mine.plot = drawPlot(canvas, { ...built, times, height, within: far?.usual });
+  if (far) canvas.append(element("p", { className: "note", textContent: `Some values leave this axis; the largest is ${number(far.largest)}.` }));
   if (built.key) card.append(key(built.series, mine.plot));
 };
 

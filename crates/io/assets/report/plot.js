@@ -22,11 +22,11 @@ const decades = (min, max) => {
   return ticks;
 };
 
-// Whole decades, and not more of them below the greatest value than double precision can tell from it.
+// Whole decades, but none below what double precision can tell from one, or from the greatest value.
 const logRange = (u, min, max) => {
   if (!(min > 0) || !(max > 0)) return [1e-3, 1];
   const high = Math.ceil(Math.log10(max) + 1e-9);
-  const low = Math.max(Math.floor(Math.log10(min) - 1e-9), high - 18);
+  const low = Math.max(Math.floor(Math.log10(min) - 1e-9), Math.min(high, 0) - 18);
   return [10 ** Math.min(low, high - 1), 10 ** high];
 };
 
@@ -39,6 +39,15 @@ const linearRange = (u, min, max) => {
   const pad = 0.06 * (max - min);
   return [min - pad, max + pad];
 };
+
+// A run that blew up would flatten everything before: the axis then shows what nearly all values keep to.
+const outliers = (series) => {
+  const sizes = series.flatMap((s) => s.values.filter((v) => v !== null).map(Math.abs)).sort((a, b) => a - b);
+  const usual = sizes[Math.floor(0.97 * (sizes.length - 1))] ?? 0;
+  const largest = sizes[sizes.length - 1] ?? 0;
+  return usual > 0 && largest > 100 * usual ? { usual, largest } : null;
+};
+const rangeWithin = (usual) => (u, min, max) => linearRange(u, min == null ? min : Math.max(min, -1.5 * usual), max == null ? max : Math.min(max, 1.5 * usual));
 
 const clipped = (u, draw) => {
   const { left, top, width, height } = u.bbox;
@@ -75,16 +84,24 @@ const drawLines = (u, lines) =>
     for (const { value, label } of lines) {
       const y = u.valToPos(value, "y", true);
       if (!Number.isFinite(y) || y < u.bbox.top || y > u.bbox.top + u.bbox.height) continue;
-      ctx.strokeStyle = ctx.fillStyle = colour("--muted");
+      ctx.strokeStyle = colour("--muted");
       ctx.lineWidth = scale;
       ctx.setLineDash([6 * scale, 4 * scale]);
       ctx.beginPath();
       ctx.moveTo(u.bbox.left, y);
       ctx.lineTo(u.bbox.left + u.bbox.width, y);
       ctx.stroke();
+      const right = u.bbox.left + u.bbox.width - 5 * scale;
+      const baseline = y + (y - u.bbox.top < 18 * scale ? 14 : -5) * scale;
+      const wide = ctx.measureText(label).width + 6 * scale;
+      ctx.globalAlpha = 0.8;
+      ctx.fillStyle = colour("--surface");
+      ctx.fillRect(right + 3 * scale - wide, baseline - 10 * scale, wide, 13 * scale);
+      ctx.globalAlpha = 1;
+      ctx.fillStyle = colour("--soft");
       ctx.textAlign = "right";
-      const below = y - u.bbox.top < 16 * scale;
-      ctx.fillText(label, u.bbox.left + u.bbox.width - 5 * scale, y + (below ? 13 : -4) * scale);
+      ctx.textBaseline = "alphabetic";
+      ctx.fillText(label, right, baseline);
     }
   });
 
@@ -124,12 +141,12 @@ const readout = (log) => {
 };
 
 // Draws `series` = [{label, colour, dash, width, values}] over `times` into `target`.
-const drawPlot = (target, { times, series, log = false, lines = [], height, y = {}, draw = [], cursor = true }) => {
+const drawPlot = (target, { times, series, log = false, lines = [], height, y = {}, draw = [], cursor = true, within = null }) => {
   const axis = { stroke: colour("--muted"), font: axisFont, ticks: { show: false }, grid: { stroke: colour("--grid"), width: 1 } };
   const options = {
     width: Math.max(120, target.clientWidth),
     height: height ?? (innerWidth < 640 ? 220 : 270),
-    padding: [10, 10, 0, 0],
+    padding: [10, 20, 0, 0],
     legend: { show: false },
     focus: { alpha: 0.25 },
     cursor: {
@@ -140,7 +157,7 @@ const drawPlot = (target, { times, series, log = false, lines = [], height, y = 
       bind: { dblclick: () => () => (zoomTo(null), null) },
       sync: { key: "run", scales: ["x", null], filters: { pub: (type) => type === "mousemove" || type === "mouseleave" } },
     },
-    scales: { x: { time: false, range: () => view.zoom ?? whole }, y: { distr: log ? 3 : 1, range: log ? logRange : linearRange, ...y.scale } },
+    scales: { x: { time: false, range: () => view.zoom ?? whole }, y: { distr: log ? 3 : 1, range: log ? logRange : within ? rangeWithin(within) : linearRange, ...y.scale } },
     axes: [
       { ...axis, size: 30, gap: 6, space: 70, values: (u, splits, a, s, step) => splits.map((v) => `${tick(v, step)} s`) },
       {

@@ -23,6 +23,7 @@ mod metrics;
 pub mod names;
 mod palette;
 mod parquet;
+mod plots;
 mod record;
 mod report;
 pub mod summary;
@@ -66,6 +67,14 @@ pub fn write_run(folder: &RunFolder, record: &RunRecord<'_>, options: Options) -
     }
     staging
         .write("report.html", |out| Ok(std::io::Write::write_all(out, report::page(record, &metrics).as_bytes())?))?;
+    let plots = plots::Plots::of(record);
+    let mut plot = |name, svg: Result<String, EncodeError>| {
+        staging.write(name, |out| Ok(std::io::Write::write_all(out, svg?.as_bytes())?))
+    };
+    plot("plots/positions.svg", plots.positions())?;
+    plot("plots/torques.svg", plots.torques())?;
+    plot("plots/estimates.svg", plots.estimates())?;
+    plot("plots/disagreement.svg", plots.disagreement())?;
     staging.write("summary.json", |out| Ok(summary::Summary::of(record, &metrics).write(out)?))?;
     staging.publish()
 }

@@ -23,6 +23,12 @@ pub fn axis_name(setup: &Setup, agent: usize, axis: usize) -> String {
     .unwrap_or_else(|| (axis + 1).to_string())
 }
 
+/// The name of an axis in running text: `elbow_joint`, or `axis 2` where it has a number only.
+pub fn axis_words(setup: &Setup, agent: usize, axis: usize) -> String {
+    let name = axis_name(setup, agent, axis);
+    if name.bytes().all(|b| b.is_ascii_digit()) { format!("axis {name}") } else { name }
+}
+
 /// The name of a parameter of an agent.
 pub fn parameter_name(setup: &Setup, agent: usize, index: usize) -> String {
     setup

@@ -141,8 +141,9 @@ fn jumps(delay: &Delay, until_s: f64) -> Vec<f64> {
 /// Delays sampled on common times; at a jump there are two samples at the same time.
 pub(crate) fn sample_delays(delays: &[Delay], jumps: &[f64], until_s: f64) -> (Vec<f64>, Vec<Vec<f32>>) {
     const SAMPLES: usize = 800;
-    let even = (0..=SAMPLES).map(|k| (until_s * k as f64 / SAMPLES as f64, 0.0));
     let aside = 1e-9 * until_s.max(1e-3);
+    // The end is seen from the left.
+    let even = (0..=SAMPLES).map(|k| (until_s * k as f64 / SAMPLES as f64, if k == SAMPLES { -aside } else { 0.0 }));
     let mut places: Vec<(f64, f64)> = even.chain(jumps.iter().flat_map(|t| [(*t, -aside), (*t, aside)])).collect();
     places.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     // An even sample on a jump has no side, so it goes.

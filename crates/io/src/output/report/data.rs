@@ -20,7 +20,7 @@ const MOST_ESTIMATE_POINTS: usize = 500;
 /// Fewer would not show anything.
 const FEWEST_POINTS: usize = 64;
 /// Numbers of all signals together, four bytes each before encoding.
-const ROOM: usize = 800_000;
+const ROOM: usize = 650_000;
 /// Numbers of all estimates together.
 const ESTIMATE_ROOM: usize = 300_000;
 /// More vertical lines would hide the plots.

@@ -5,10 +5,11 @@
 
 mod data;
 mod network;
-mod sections;
+pub(crate) mod sections;
 pub(crate) mod text;
 
 use forwardstep_sim::recording::Ending;
+use forwardstep_sim::setup::{AgentSetup, Law};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::metrics::{Absence, Disagreement, Metrics};
@@ -66,7 +67,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
                         section.notices aria-label="Notices" { ul { @for notice in &record.notices { li { (notice) } } } }
                     }
                     (sections::verdicts(record, metrics))
-                    (signals(absence))
+                    (signals(absence, &record.setup.agents))
                     (network(record, &timeline))
                     (sections::loads(record.setup, metrics))
                     (sections::provenance(record))
@@ -89,7 +90,8 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
 }
 
 /// The plots; the script fills their cards.
-fn signals(absence: Option<Absence>) -> Markup {
+fn signals(absence: Option<Absence>, agents: &[AgentSetup]) -> Markup {
+    let adaptive = agents.iter().any(|agent| matches!(agent.law, Law::Adaptive { .. }));
     let card = |id: &str, title: &str, what: &str, empty: &str| {
         html! {
             article.card.plot data-plot=(id) data-empty=(empty) {
@@ -117,7 +119,7 @@ fn signals(absence: Option<Absence>) -> Markup {
                 (card("velocity", "Speed and reference", "q̇, and z dashed", ""))
                 (card("error", "Tracking error", "s = q̇ − z", ""))
                 (card("reference", "Reference derivatives", "", ""))
-                (card("estimate", "Parameter estimates", "ϑ̂, the truth dashed", "no agent estimates parameters"))
+                (card("estimate", "Parameter estimates", "ϑ̂, the truth dashed", if adaptive { "" } else { "no agent estimates parameters" }))
                 (card("ledger", "Energy ledger", "", ""))
             }
             p.note.hint { "Drag across a plot to zoom all of them; double-click to see everything again." }

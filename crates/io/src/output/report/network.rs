@@ -133,7 +133,7 @@ pub(crate) fn graphs(setup: &Setup, timeline: &Timeline<'_>) -> Markup {
 fn circle(setup: &Setup, edges: &[Edge]) -> Markup {
     const RADIUS: f64 = 62.0;
     let count = setup.agents.len();
-    let dot = if count <= 12 { 9.0 } else { 3.5 };
+    let dot = if count <= 12 { 9.0 } else { (0.3 * RADIUS * TAU / count as f64).min(5.0) };
     let place = |agent: usize| {
         let angle = TAU * (agent as f64 / count.max(1) as f64 - 0.25);
         let radius = if count == 1 { 0.0 } else { RADIUS };
@@ -147,8 +147,8 @@ fn circle(setup: &Setup, edges: &[Edge]) -> Markup {
         // Arrows in both directions keep to their sides.
         let aside = if two_way(e) { dot * 0.32 } else { 0.0 };
         let (sx, sy) = (-uy * aside, ux * aside);
-        let head = if count <= 12 { 6.0 } else { 3.5 };
-        let tip = (x1 - ux * (dot + 1.5) + sx, y1 - uy * (dot + 1.5) + sy);
+        let head = if count <= 12 { 6.0 } else { (dot * 1.2).min(4.0) };
+        let tip = (x1 - ux * (dot + 0.15 * dot) + sx, y1 - uy * (dot + 0.15 * dot) + sy);
         let neck = (tip.0 - ux * head, tip.1 - uy * head);
         let half = head * 0.45;
         html! {

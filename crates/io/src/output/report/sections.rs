@@ -56,8 +56,13 @@ pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
     }
 }
 
+/// A number with its unit; without, when it is none.
+fn quantity(x: f64, unit: &str) -> String {
+    if x.is_finite() { format!("{} {unit}", number(x)) } else { number(x) }
+}
+
 fn figure(name: &str, value: &str, unit: &str) -> Markup {
-    html! { div { dt { (name) } dd { (value) @if !unit.is_empty() { span.unit { " " (unit) } } } } }
+    html! { div { dt { (name) } dd { (value) @if !unit.is_empty() && !value.starts_with("not") { span.unit { " " (unit) } } } } }
 }
 
 fn unit_at(setup: &Setup, signal: Signal, agent: usize, axis: usize) -> String {
@@ -80,6 +85,7 @@ fn length_unit(setup: &Setup) -> &'static str {
 /// What was promised beside what happened.
 pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
     let report = record.verdicts;
+    let unit = length_unit(record.setup);
     html! {
         section #promises {
             h2 { "Promised and happened" }
@@ -106,11 +112,11 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                     table.facts { tbody { (happened(record, metrics)) } }
                     @if let Some(agreement) = &metrics.agreement {
                         table.numbers {
-                            thead { tr { th { "Agreement" } th { "predicted" } th { "reached" } th { "farthest agent" } } }
+                            thead { tr { th { "Agreement" @if !unit.is_empty() { " in " (unit) } } th { "predicted" } th { "reached" } th { "farthest agent" } } }
                             tbody {
                                 @for a in agreement.iter().take(32) {
                                     tr {
-                                        th { (names::axis_name(record.setup, 0, a.axis)) }
+                                        th { (names::axis_words(record.setup, 0, a.axis)) }
                                         td { (number(a.predicted)) }
                                         td { (number(a.reached)) }
                                         td { (number(a.distance)) }
@@ -148,7 +154,7 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
         @match metrics.disagreement {
             Disagreement::Measured { initial, last, largest } => (fact("Disagreement", html! {
                 (number(initial)) " at the start, " (number(largest)) " at most, "
-                strong { (number(last)) " " (unit) } " at the end"
+                strong { (quantity(last, unit)) } " at the end"
             })),
             Disagreement::Absent(absence) => (fact("Disagreement", html! { "none: " (absence.words()) })),
         }
@@ -160,8 +166,8 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
         @if let Some(speed) = metrics.speed {
             @let at = speed.largest;
             (fact("Speed", html! {
-                (number(at.value)) " " (unit_at(setup, Signal::Velocity, at.agent, at.axis)) " at most ("
-                (names::agent_name(setup, at.agent)) ", joint " (names::axis_name(setup, at.agent, at.axis))
+                (quantity(at.value, &unit_at(setup, Signal::Velocity, at.agent, at.axis))) " at most ("
+                (names::agent_name(setup, at.agent)) ", " (names::axis_words(setup, at.agent, at.axis))
                 ", t = " (number(at.t_s)) " s), " (number(speed.last)) " at the end"
             }))
         }
@@ -171,7 +177,9 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
         }))
         @if let Some(ledger) = metrics.ledger_error {
             (fact("Ledger", html! {
-                "V + ∫ dissipation = V(0) holds to " (number(ledger.relative)) " of V(0) (worst: "
+                @if ledger.relative.is_finite() {
+                    "V + ∫ dissipation = V(0) holds to " (number(ledger.relative)) " of V(0) (worst: "
+                } @else { "V is no longer finite (" }
                 (names::agent_name(setup, ledger.agent)) ", t = " (number(ledger.t_s)) " s)"
             }))
         }
@@ -193,7 +201,7 @@ pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
                 div.card.scroll {
                     h3 { "Peak torque" span.by { "largest |τ|, the time, and its share of the limit where one is known" } }
                     table.numbers.peaks {
-                        thead { tr { th {} @for axis in 0..most_axes { th { (shared_axis_name(setup, axis)) } } } }
+                        thead { tr { th {} @for axis in 0..most_axes { th { (shared_axis_words(setup, axis)) } } } }
                         tbody {
                             @for agent in 0..setup.agents.len().min(MOST_TORQUE_ROWS) {
                                 tr {
@@ -220,7 +228,7 @@ pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
                             };
                             @let unit = unit_at(setup, signal, limit.agent, limit.axis);
                             tr {
-                                th { span.dot.{ "a" (limit.agent) } {} (names::agent_name(setup, limit.agent)) " · " (names::axis_name(setup, limit.agent, limit.axis)) }
+                                th { span.dot.{ "a" (limit.agent) } {} (names::agent_name(setup, limit.agent)) " · " (names::axis_words(setup, limit.agent, limit.axis)) }
                                 td { (kind) }
                                 td { (number(limit.limit)) " " (unit) }
                                 td { (number(limit.worst)) " " (unit) }
@@ -255,13 +263,13 @@ fn torque(setup: &Setup, agent: usize, axis: usize, value: f64, t_s: f64) -> Mar
     }
 }
 
-/// The name of an axis if all agents that have it agree, its number otherwise.
-pub(crate) fn shared_axis_name(setup: &Setup, axis: usize) -> String {
+/// The name of an axis if all agents that have it agree, its number otherwise, for headings.
+pub(crate) fn shared_axis_words(setup: &Setup, axis: usize) -> String {
     let owners = (0..setup.agents.len()).filter(|agent| axis < setup.agents[*agent].robot.axes.len());
-    let mut all = owners.map(|agent| names::axis_name(setup, agent, axis));
+    let mut all = owners.map(|agent| names::axis_words(setup, agent, axis));
     match all.next() {
         Some(first) if all.all(|name| name == first) => first,
-        _ => format!("{}", axis + 1),
+        _ => format!("axis {}", axis + 1),
     }
 }
 
