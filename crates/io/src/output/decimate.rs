@@ -155,3 +155,75 @@ fn least_and_greatest(rows: Range<usize>, value: impl Fn(usize) -> f64) -> [f32;
         _ => [f32::NAN; 2],
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows(count: usize, step: f64) -> Vec<f64> {
+        (0..count).map(|k| k as f64 * step).collect()
+    }
+
+    #[test]
+    fn a_jump_between_rows_is_upright_and_a_slope_stays_a_slope() {
+        let t_s = rows(11, 0.1);
+        let grid = Grid::new(&t_s, &[0.25], 100);
+        let jump: Vec<f64> = t_s.iter().map(|t| if *t < 0.25 { 1.0 + t } else { 5.0 + t }).collect();
+        let at: Vec<usize> = (0..grid.t_s.len()).filter(|k| grid.t_s[*k] == 0.25).collect();
+        assert_eq!(at.len(), 2);
+        let drawn = grid.sample(&t_s, &jump, true);
+        assert_eq!((drawn[at[0]], drawn[at[1]]), (1.2, 5.3));
+        let smooth = grid.sample(&t_s, &t_s, true);
+        assert_eq!((smooth[at[0]], smooth[at[1]]), (0.25, 0.25));
+    }
+
+    #[test]
+    fn a_row_on_a_jump_goes_to_the_side_it_belongs_to() {
+        let t_s = rows(11, 0.1);
+        let grid = Grid::new(&t_s, &[0.5], 100);
+        let place = grid.t_s.iter().position(|t| *t == 0.5).unwrap();
+        let drawn =
+            |values: &[f64]| -> [f32; 2] { grid.sample(&t_s, values, true)[place..place + 2].try_into().unwrap() };
+        let right: Vec<f64> = (0..11).map(|k| if k < 5 { 1.0 } else { 2.0 }).collect();
+        let left: Vec<f64> = (0..11).map(|k| if k <= 5 { 1.0 } else { 2.0 }).collect();
+        assert_eq!(drawn(&right), [1.0, 2.0]);
+        assert_eq!(drawn(&left), [1.0, 2.0]);
+    }
+
+    #[test]
+    fn two_rows_at_one_time_are_its_two_sides() {
+        let t_s = [0.0, 1.0, 1.0, 2.0];
+        let grid = Grid::new(&t_s, &[1.0], 100);
+        assert_eq!(grid.t_s, [0.0, 1.0, 1.0, 2.0]);
+        assert_eq!(grid.sample(&t_s, &[0.0, 1.0, 7.0, 8.0], true), [0.0, 1.0, 7.0, 8.0]);
+    }
+
+    #[test]
+    fn decimation_keeps_extremes_ends_and_order() {
+        let t_s = rows(100_000, 0.001);
+        let mut values: Vec<f64> = t_s.iter().map(|t| t.sin()).collect();
+        values[54_321] = 99.0;
+        values[77_777] = -98.0;
+        values[77_778] = f64::NAN;
+        let breaks: Vec<f64> = (1..50).map(|k| k as f64 * 1.9).collect();
+        let grid = Grid::new(&t_s, &breaks, 2000);
+        assert!(grid.decimated && grid.t_s.len() <= 2200, "{}", grid.t_s.len());
+        assert!(grid.t_s.windows(2).all(|w| w[0] <= w[1]));
+        let drawn = grid.sample(&t_s, &values, false);
+        assert_eq!(drawn.len(), grid.t_s.len());
+        assert!(drawn.contains(&99.0) && drawn.contains(&-98.0) && !drawn.iter().any(|v| v.is_nan()));
+        assert_eq!((drawn[0], drawn[drawn.len() - 1]), (values[0] as f32, values[99_999] as f32));
+    }
+
+    #[test]
+    fn break_points_outside_of_or_crowding_the_rows_do_no_harm() {
+        for breaks in [vec![-1.0, 0.0, 5.0, 9.9], vec![0.11, 0.12, 0.13, 0.19, 0.2, 0.21, 1.0]] {
+            for count in [0, 1, 2, 3, 11] {
+                let t_s = rows(count, 0.1);
+                let grid = Grid::new(&t_s, &breaks, 64);
+                assert!(grid.t_s.windows(2).all(|w| w[0] <= w[1]), "{:?}", grid.t_s);
+                assert_eq!(grid.sample(&t_s, &t_s, true).len(), grid.t_s.len());
+            }
+        }
+    }
+}

@@ -89,7 +89,7 @@ fn unroll(phases: &[Phase], again: bool, until_s: f64) -> Vec<Span> {
             spans.push(Span { start_s, end_s, graph });
             start_s = end_s;
         }
-        if !again || !(round > 0.0) || start_s >= until_s || spans.len() > MOST_SPANS {
+        if !again || round.is_nan() || round <= 0.0 || start_s >= until_s || spans.len() > MOST_SPANS {
             break;
         }
     }
@@ -132,7 +132,11 @@ fn jumps(delay: &Delay, until_s: f64) -> Vec<f64> {
     match delay {
         Delay::Constant { .. } | Delay::Sinusoid { .. } => Vec::new(),
         Delay::PiecewiseConstant { times_s, period_s, .. } => {
-            times_s.iter().flat_map(|first| repeat(*first, period_s.unwrap_or(f64::INFINITY))).collect()
+            let all = |first: &f64| match period_s {
+                Some(period_s) => repeat(*first, *period_s).collect(),
+                None => Vec::from_iter(Some(*first).filter(|t| *t > 0.0 && *t < until_s)),
+            };
+            times_s.iter().flat_map(all).collect()
         }
         Delay::SawTooth { period_s, offset_s, .. } => repeat(-offset_s.rem_euclid(*period_s), *period_s).collect(),
     }
@@ -150,4 +154,64 @@ pub(crate) fn sample_delays(delays: &[Delay], jumps: &[f64], until_s: f64) -> (V
     places.retain(|(t, side)| *side != 0.0 || jumps.binary_search_by(|jump| jump.total_cmp(t)).is_err());
     let values = delays.iter().map(|d| places.iter().map(|(t, side)| delay_at(d, t + side) as f32).collect());
     (places.iter().map(|(t, _)| *t).collect(), values.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn network(schedule: Schedule, delay: Delay) -> Network {
+        Network { agents: 2, schedule, delays: vec![delay] }
+    }
+
+    fn phase(dwell_s: f64) -> Phase {
+        Phase { edges: vec![Edge { from: 0, to: 1, weight: 1.0, delay: 0 }], dwell_s }
+    }
+
+    fn starts(timeline: &Timeline<'_>) -> Vec<(f64, usize)> {
+        timeline.spans.iter().flatten().map(|span| (span.start_s, span.graph)).collect()
+    }
+
+    #[test]
+    fn schedules_are_unrolled_up_to_the_end() {
+        let constant = Delay::Constant { s: 0.1 };
+        let periodic = network(Schedule::Periodic(vec![phase(1.0), phase(2.0)]), constant.clone());
+        let timeline = Timeline::of(&periodic, None, 5.0);
+        assert_eq!(starts(&timeline), [(0.0, 0), (1.0, 1), (3.0, 0), (4.0, 1)]);
+        assert_eq!(timeline.spans.as_ref().unwrap()[3].end_s, 5.0);
+        assert_eq!(timeline.break_points(), [1.0, 3.0, 4.0]);
+
+        let once = network(Schedule::Once(vec![phase(1.0), phase(2.0)]), constant.clone());
+        assert_eq!(starts(&Timeline::of(&once, None, 5.0)), [(0.0, 0), (1.0, 1)]);
+
+        let random = Schedule::Random { graphs: vec![vec![], vec![]], dwell_s: [0.1, 0.2], seed: 1 };
+        let random = network(random, constant);
+        assert!(Timeline::of(&random, None, 5.0).spans.is_none());
+        let drawn = [(0.0, 1), (2.5, 0), (3.0, 9)];
+        assert_eq!(starts(&Timeline::of(&random, Some(&drawn), 5.0)), [(0.0, 1), (2.5, 0)]);
+    }
+
+    #[test]
+    fn schedules_that_never_move_on_end() {
+        for dwell_s in [0.0, 1e-9, f64::NAN] {
+            let network = network(Schedule::Periodic(vec![phase(dwell_s)]), Delay::Constant { s: 0.0 });
+            assert!(Timeline::of(&network, None, 1e6).spans.unwrap().len() <= MOST_SPANS);
+        }
+    }
+
+    #[test]
+    fn delays_jump_where_they_should() {
+        let saw = Delay::SawTooth { min_s: 0.1, max_s: 0.5, period_s: 2.0, offset_s: 0.5 };
+        assert_eq!(jumps(&saw, 6.0), [1.5, 3.5, 5.5]);
+        assert!((delay_at(&saw, 0.5) - 0.3).abs() < 1e-15);
+        let steps = Delay::PiecewiseConstant { times_s: vec![0.0, 1.0], values_s: vec![0.2, 0.4], period_s: Some(3.0) };
+        assert_eq!(jumps(&steps, 5.0), [3.0, 1.0, 4.0]);
+        assert_eq!([0.5, 1.0, 2.9, 3.0].map(|t| delay_at(&steps, t)), [0.2, 0.4, 0.4, 0.2]);
+        let once = Delay::PiecewiseConstant { times_s: vec![0.0, 1.0], values_s: vec![0.2, 0.4], period_s: None };
+        assert_eq!(jumps(&once, 5.0), [1.0]);
+        let (t_s, values) = sample_delays(&[saw], &[1.5, 3.5, 5.5], 6.0);
+        let at = t_s.iter().position(|t| *t == 1.5).unwrap();
+        assert_eq!(t_s[at + 1], 1.5);
+        assert!((values[0][at] - 0.5).abs() < 1e-6 && (values[0][at + 1] - 0.1).abs() < 1e-6);
+    }
 }

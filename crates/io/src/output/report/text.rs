@@ -53,3 +53,29 @@ pub(crate) fn unit(plain: &str) -> String {
 pub(crate) fn count(n: usize, what: &str) -> String {
     if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        let cases = [
+            (0.0, "0"),
+            (60.0, "60"),
+            (-0.25, "−0.25"),
+            (1234.56, "1235"),
+            (0.009_687_6, "0.009688"),
+            (6.28e-8, "6.28 × 10⁻⁸"),
+            (-1e30, "−1 × 10³⁰"),
+            (999_999.9, "1 × 10⁶"),
+            (f64::NAN, "not a number"),
+            (f64::NEG_INFINITY, "−∞"),
+        ];
+        for (x, text) in cases {
+            assert_eq!(number(x), text);
+        }
+        assert_eq!(unit("rad/s^2"), "rad/s²");
+        assert_eq!(superscript(-12), "⁻¹²");
+    }
+}
