@@ -40,14 +40,16 @@ const linearRange = (u, min, max) => {
   return [min - pad, max + pad];
 };
 
-// A run that blew up would flatten everything before: the axis then shows what nearly all values keep to.
+// A run that blew up at its end would flatten everything before: the axis then shows what the signals kept to until then.
 const outliers = (series) => {
-  const sizes = series.flatMap((s) => s.values.filter((v) => v !== null).map(Math.abs)).sort((a, b) => a - b);
-  const usual = sizes[Math.floor(0.97 * (sizes.length - 1))] ?? 0;
-  const largest = sizes[sizes.length - 1] ?? 0;
+  const sizeUpTo = (share) => series.reduce((most, { values }) => {
+    for (let k = 0; k < Math.ceil(share * values.length); k++) if (Math.abs(values[k]) > most) most = Math.abs(values[k]);
+    return most;
+  }, 0);
+  const [usual, largest] = [sizeUpTo(0.95), sizeUpTo(1)];
   return usual > 0 && largest > 100 * usual ? { usual, largest } : null;
 };
-const rangeWithin = (usual) => (u, min, max) => linearRange(u, min == null ? min : Math.max(min, -1.5 * usual), max == null ? max : Math.min(max, 1.5 * usual));
+const rangeWithin = (size) => (u, min, max) => linearRange(u, min == null ? min : Math.max(min, -size), max == null ? max : Math.min(max, size));
 
 const clipped = (u, draw) => {
   const { left, top, width, height } = u.bbox;

@@ -141,12 +141,11 @@ impl Panel {
         let unit = unit.pos(Pos::new(side, VPos::Center));
         area.draw(&Text::new(self.y.clone(), place(x, 12), unit)).map_err(failed)?;
 
-        let on_axis = |v: f64| if self.log { if v > 0.0 { v.log10() } else { f64::NAN } } else { v };
+        let on_axis = |v: f64| on_axis(v, self.log);
         let times = || self.lines.iter().flat_map(|line| line.points.iter().map(|p| p.0));
         let (t0, t1) = (0.0, times().fold(0.0, f64::max));
         let t1 = if t1 > t0 { t1 } else { t0 + 1.0 };
-        let values = self.lines.iter().flat_map(|line| line.points.iter().map(|p| on_axis(p.1)));
-        let Some((low, high)) = range(values.filter(|v| v.is_finite()).collect(), self.log) else {
+        let Some((low, high)) = range(&self.lines, self.log) else {
             let style = style(12, SOFT).pos(Pos::new(HPos::Left, VPos::Center));
             area.draw(&Text::new("no value can be drawn", place(LABELS, 40), style)).map_err(failed)?;
             return Ok(());
@@ -226,24 +225,39 @@ impl Ranged for Ticked {
     }
 }
 
-/// What the vertical axis covers: whole decades, or a little more than the values. A run that blew up does not flatten
-/// everything before: then it is what nearly all values keep to.
-fn range(mut values: Vec<f64>, log: bool) -> Option<(f64, f64)> {
-    values.sort_by(f64::total_cmp);
-    let (&least, &greatest) = (values.first()?, values.last()?);
+/// What the vertical axis covers: whole decades, or a little more than the values. A run that blew up at its end does not
+/// flatten everything before: then it is what the signals kept to until then.
+fn range(lines: &[Line], log: bool) -> Option<(f64, f64)> {
+    let finite = |points: &[(f64, f64)]| {
+        let values: Vec<f64> = points.iter().map(|p| on_axis(p.1, log)).filter(|v| v.is_finite()).collect();
+        let least = values.iter().copied().reduce(f64::min)?;
+        Some((least, values.iter().copied().fold(least, f64::max)))
+    };
+    let join = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
+    let (least, greatest) = lines.iter().filter_map(|line| finite(&line.points)).reduce(join)?;
     if log {
         let high = (greatest + 1e-9).ceil();
         let low = (least - 1e-9).floor().max(high.min(0.0) - 18.0);
         return Some((low.min(high - 1.0), high));
     }
-    let mut sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
-    sizes.sort_by(f64::total_cmp);
-    let usual = sizes[(0.97 * (sizes.len() - 1) as f64) as usize];
+    let early = |line: &Line| finite(&line.points[..(line.points.len() * 95).div_ceil(100)]);
+    let usual = lines.iter().filter_map(early).reduce(join).map_or(0.0, |(low, high)| low.abs().max(high.abs()));
     let largest = least.abs().max(greatest.abs());
-    let most = if usual > 0.0 && largest > 100.0 * usual { 1.5 * usual } else { largest };
+    let most = if usual > 0.0 && largest > 100.0 * usual { usual } else { largest };
     let (low, high) = (least.max(-most), greatest.min(most));
+    // Half of the greatest double and its opposite are still apart by a double.
+    let (low, high) = (low.clamp(-f64::MAX / 4.0, f64::MAX / 4.0), high.clamp(-f64::MAX / 4.0, f64::MAX / 4.0));
     let pad = if high > low { 0.06 * (high - low) } else { (0.1 * high.abs()).max(1e-3) };
     Some((low - pad, high + pad))
+}
+
+/// A value where it stands on the axis: its logarithm, or itself.
+fn on_axis(v: f64, log: bool) -> f64 {
+    match log {
+        false => v,
+        true if v > 0.0 => v.log10(),
+        true => f64::NAN,
+    }
 }
 
 /// At most about `count` round numbers from `low` to `high`.

@@ -118,9 +118,9 @@ fn signals(absence: Option<Absence>, agents: &[AgentSetup]) -> Markup {
                 (card("torque", "Torques", "τ, after any limit", ""))
                 (card("velocity", "Speed and reference", "q̇, and z dashed", ""))
                 (card("error", "Tracking error", "s = q̇ − z", ""))
-                (card("reference", "Reference derivatives", "", ""))
+                (card("reference", "Reference derivatives", "ż and higher", ""))
                 (card("estimate", "Parameter estimates", "ϑ̂, the truth dashed", if adaptive { "" } else { "no agent estimates parameters" }))
-                (card("ledger", "Energy ledger", "", ""))
+                (card("ledger", "Energy ledger", "V + ∫ dissipation = V(0)", ""))
             }
             p.note.hint { "Drag across a plot to zoom all of them; double-click to see everything again." }
         }
