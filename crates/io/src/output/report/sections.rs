@@ -111,15 +111,17 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                     h3 { "Happened" }
                     table.facts { tbody { (happened(record, metrics)) } }
                     @if let Some(agreement) = &metrics.agreement {
-                        table.numbers {
-                            thead { tr { th { "Agreement" @if !unit.is_empty() { " in " (unit) } } th { "predicted" } th { "reached" } th { "farthest agent" } } }
-                            tbody {
-                                @for a in agreement.iter().take(32) {
-                                    tr {
-                                        th { (names::axis_words(record.setup, 0, a.axis)) }
-                                        td { (number(a.predicted)) }
-                                        td { (number(a.reached)) }
-                                        td { (number(a.distance)) }
+                        div.scroll {
+                            table.numbers {
+                                thead { tr { th { "Agreement" @if !unit.is_empty() { " in " (unit) } } th { "predicted" } th { "reached" } th { "farthest agent" } } }
+                                tbody {
+                                    @for a in agreement.iter().take(32) {
+                                        tr {
+                                            th { (names::axis_words(record.setup, 0, a.axis)) }
+                                            td { (number(a.predicted)) }
+                                            td { (number(a.reached)) }
+                                            td { (number(a.distance)) }
+                                        }
                                     }
                                 }
                             }
