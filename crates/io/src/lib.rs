@@ -3,5 +3,6 @@
 //! Text comes in here and leaves as the plain structs of the rooms below; serialisation lives in this crate only.
 
 pub mod diagnostic;
+pub mod output;
 
 pub use diagnostic::{InputError, Problem, SourceText};

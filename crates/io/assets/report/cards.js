@@ -1,0 +1,195 @@
+// What each card shows. A card has picks (a joint, a signal, an agent) and turns them into series.
+
+const agents = index.agents;
+const shownAgents = new Set(agents.keys());
+const signals = index.signals;
+const mostAxes = Math.max(0, ...agents.map((a) => a.axes.length));
+const SAME = (items) => (new Set(items).size === 1 ? items[0] : null);
+
+// Joints by number; a name when all agents that have the joint call it the same.
+const joints = Array.from({ length: mostAxes }, (_, axis) => {
+  const owners = agents.filter((a) => axis < a.axes.length);
+  return { axis, name: SAME(owners.map((a) => a.axes[axis].name)) ?? String(axis + 1), units: [...new Set(owners.map((a) => a.axes[axis].unit))] };
+});
+const unitOf = (axis, write) => (joints[axis]?.units ?? []).map(write).join(" or ");
+const rate = (order) => (unit) => (order === 0 ? unit : order === 1 ? `${unit}/s` : `${unit}/s${raise(order)}`);
+const force = (unit) => (unit === "m" ? "N" : "N m");
+
+const ofAgents = (columns, axis, style = {}, log = false) =>
+  agents.flatMap((agent, i) => {
+    const k = axis === null ? columns[i] : columns[i]?.[axis];
+    if (k == null) return [];
+    return [{ label: agent.name + (style.suffix ?? ""), colour: colour(`--a${i}`), agent: i, show: shownAgents.has(i), values: data.values("main", k, log), ...style }];
+  });
+
+// The distinct limits of a joint, both signs.
+const limitLines = (axis, read, label) => {
+  const values = new Set(agents.flatMap((a) => (a.axes[axis] ? read(a.axes[axis]) : [])).filter((v) => v != null));
+  return values.size > 6 ? [] : [...values].map((value) => ({ value, label }));
+};
+const both = (v) => (v == null ? [] : [v, -v]);
+
+const jointPick = { id: "joint", options: joints.map((j) => [String(j.axis), j.name]) };
+
+const perJoint = (columns, write, lines = () => []) => ({
+  picks: [jointPick],
+  build: ([joint]) => ({ unit: unitOf(+joint, write), series: ofAgents(columns, +joint), lines: lines(+joint) }),
+});
+
+const dots = ["z", "ż", "z̈", "z⃛"];
+const referenceName = (k) => dots[k] ?? `z${raise(`${k}`)}`;
+const velocity = perJoint(signals.dq, rate(1), (axis) => limitLines(axis, (a) => both(a.velocity_limit), "limit"));
+
+const groupOf = (name) => (name.includes(".") ? name.slice(0, name.lastIndexOf(".")) : null);
+const withEstimates = [...agents.keys()].filter((i) => agents[i].parameters.some((p) => p.series != null));
+const parameterOptions = (who) => {
+  if (who === "all") {
+    const names = new Set(withEstimates.flatMap((i) => agents[i].parameters.map((p) => p.name)));
+    return [...names].map((name) => [`one:${name}`, name]);
+  }
+  const { parameters } = agents[+who];
+  const groups = [...new Set(parameters.map((p) => groupOf(p.name)))].filter((g) => g !== null);
+  const options = (groups.length > 1 ? groups : []).map((g) => [`group:${g}`, g]);
+  const every = ["every", `all ${parameters.length}`];
+  return parameters.length <= 12 ? [every, ...options] : [...options, every];
+};
+
+const estimateSeries = (who, what) => {
+  const truthOf = (p, c) => (p.truth == null ? [] : [{ label: `${p.name}, truth`, colour: c, dash: [5, 4], width: 1, values: data.t("estimates").map(() => p.truth) }]);
+  if (who === "all") {
+    const name = what.slice(4);
+    return withEstimates.flatMap((i) => {
+      const p = agents[i].parameters.find((p) => p.name === name);
+      if (p?.series == null) return [];
+      const c = colour(`--a${i}`);
+      const mine = [{ label: agents[i].name, colour: c, values: data.values("estimates", p.series) }, ...truthOf({ ...p, name: agents[i].name }, c)];
+      return mine.map((s) => ({ ...s, agent: i, show: shownAgents.has(i) }));
+    });
+  }
+  const chosen = agents[+who].parameters.filter((p) => p.series != null && (what === "every" || groupOf(p.name) === what.slice(6)));
+  return chosen.flatMap((p, k) => {
+    const c = ramp(k, chosen.length);
+    return [{ label: p.name, colour: c, values: data.values("estimates", p.series) }, ...(chosen.length <= 12 ? truthOf(p, c) : [])];
+  });
+};
+
+const ledgers = {
+  v: { columns: signals.lyapunov, log: true, unit: "J" },
+  sum: { columns: signals.ledger_sum, log: false, unit: "J, flat when the proof’s identity holds" },
+  error: { columns: signals.ledger_error, log: true, unit: "of V(0)" },
+};
+
+const cards = {
+  disagreement: {
+    picks: [],
+    build: () => {
+      const d = index.disagreement;
+      if (!d) return { series: [] };
+      const axes = d.per_axis.length > 1 ? d.per_axis : [];
+      return {
+        unit: [...new Set(joints.flatMap((j) => j.units))].join(" or "),
+        log: true,
+        lines: index.goal == null ? [] : [{ value: index.goal, label: "goal" }],
+        key: true,
+        series: [
+          ...axes.map((k, axis) => ({ label: joints[axis].name, colour: ramp(axis, axes.length), width: 1.1, values: data.values("main", k, true) })),
+          { label: axes.length ? "largest" : "disagreement", colour: colour("--ink"), width: 2.2, values: data.values("main", d.overall, true) },
+        ],
+      };
+    },
+  },
+  position: perJoint(signals.q, rate(0), (axis) => [
+    ...limitLines(axis, (a) => a.position_limits ?? [], "limit"),
+    ...(index.predicted?.[axis] == null ? [] : [{ value: index.predicted[axis], label: "predicted agreement" }]),
+  ]),
+  velocity: {
+    ...velocity,
+    build: (picks) => {
+      const built = velocity.build(picks);
+      const z = signals.reference[0] ? ofAgents(signals.reference[0], +picks[0], { suffix: ", z", dash: [4, 3], width: 1.1 }) : [];
+      return { ...built, series: [...built.series, ...z] };
+    },
+  },
+  error: perJoint(signals.s, rate(1)),
+  torque: perJoint(signals.tau, force, (axis) => limitLines(axis, (a) => both(a.effort_limit), "limit")),
+  reference: {
+    picks: [{ id: "order", options: signals.reference.slice(1).map((_, k) => [String(k + 1), referenceName(k + 1)]) }, jointPick],
+    build: ([order, joint]) => ({ unit: order == null ? "" : unitOf(+joint, rate(+order + 1)), series: order == null ? [] : ofAgents(signals.reference[+order], +joint) }),
+  },
+  estimate: {
+    picks: [
+      { id: "who", options: withEstimates.length === 0 ? [] : [...withEstimates.map((i) => [String(i), agents[i].name]), ...(withEstimates.length > 1 ? [["all", "compare agents"]] : [])] },
+      { id: "what", options: (picks) => (picks[0] == null ? [] : parameterOptions(picks[0])) },
+    ],
+    build: ([who, what]) => ({ grid: "estimates", unit: "SI units", series: who == null || what == null ? [] : estimateSeries(who, what), key: who !== "all" }),
+  },
+  ledger: {
+    picks: [{ id: "ledger", options: [["v", "V"], ["sum", "V + ∫ dissipation"], ["error", "error"]] }],
+    build: ([which]) => ({ unit: ledgers[which].unit, log: ledgers[which].log, series: ofAgents(ledgers[which].columns, null, {}, ledgers[which].log) }),
+  },
+  delay: {
+    picks: [],
+    build: () => ({
+      grid: "delays",
+      unit: "s",
+      key: index.delays.length > 1,
+      series: index.delays.map((d, k) => ({ label: d.label, colour: ramp(k, index.delays.length), values: data.values("delays", d.series) })),
+    }),
+  },
+};
+
+// The Gantt strip is drawn by hand on an empty plot, so that it zooms with the others.
+const ganttCard = () => {
+  const { rows, bars, spans, by_receiver } = index.gantt;
+  const strip = new Set(spans.map((s) => s[2])).size > 1 ? 1 : 0;
+  const most = Math.max(1, ...bars.map((b) => b[3]));
+  const rowHeight = rows.length > 40 ? 11 : 19;
+  const names = [...(strip ? ["graph"] : []), ...rows.map((r) => r[0])];
+  const short = (name) => (name.length > 22 ? `${name.slice(0, 21)}…` : name);
+  const width = Math.min(innerWidth < 640 ? 110 : 170, 16 + 6.4 * Math.max(4, ...names.map((n) => short(n).length)));
+  const draw = (u) =>
+    clipped(u, (ctx, scale) => {
+      const x = (t) => u.valToPos(t, "x", true);
+      const y = (row) => u.valToPos(row, "y", true);
+      const box = (start, end, row, inset) => [x(start), y(row) + inset * scale, Math.max(scale, x(end) - x(start)), y(row + 1) - y(row) - 2 * inset * scale];
+      const { min, max } = u.scales.x;
+      if (strip) {
+        ctx.font = `600 ${10.5 * scale}px ui-sans-serif, system-ui, sans-serif`;
+        ctx.textAlign = "center";
+        ctx.textBaseline = "middle";
+        for (const [start, end, graph] of spans) {
+          if (end < min || start > max) continue;
+          const [left, top, w, h] = box(start, end, 0, 2);
+          ctx.fillStyle = colour(graph % 2 ? "--strip-b" : "--strip-a");
+          ctx.fillRect(left, top, w, h);
+          ctx.fillStyle = colour("--muted");
+          if (w > 16 * scale) ctx.fillText(String(graph + 1), left + w / 2, top + h / 2 + 0.5 * scale);
+        }
+      }
+      for (const [start, end, row, edges] of bars) {
+        if (end < min || start > max) continue;
+        ctx.globalAlpha = by_receiver ? 0.25 + (0.7 * edges) / most : 0.85;
+        ctx.fillStyle = colour(`--a${rows[row][1]}`);
+        ctx.fillRect(...box(start, end, row + strip, rowHeight > 12 ? 3 : 1));
+      }
+      ctx.globalAlpha = 1;
+    });
+  return {
+    times: whole,
+    series: [{ label: "", colour: "transparent", values: [null, null] }],
+    height: names.length * rowHeight + 42,
+    cursor: false,
+    y: {
+      scale: { range: () => [0, names.length], dir: -1 },
+      axis: {
+        size: width,
+        splits: () => names.map((_, k) => k + 0.5),
+        values: () => names.map(short),
+        filter: (u, splits) => splits,
+        space: 1,
+        grid: { show: false },
+      },
+    },
+    draw: [draw],
+  };
+};

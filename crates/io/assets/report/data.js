@@ -1,0 +1,62 @@
+// What went wrong stands on the page, where a reader sees it, and a test too.
+const banner = document.getElementById("error-banner");
+window.addEventListener("error", (event) => {
+  banner.textContent += `The plots could not be drawn: ${event.message} `;
+});
+
+const index = JSON.parse(document.getElementById("index").textContent);
+
+// The block: times of the three grids as f64, then the series of the same grids as f32.
+const data = (() => {
+  const text = atob(document.getElementById("block").textContent);
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
+  const g = index.grids;
+  const times = new Float64Array(bytes.buffer, 0, g.main + g.estimates + g.delays);
+  const numbers = new Float32Array(bytes.buffer, times.byteLength);
+  const estimateStart = g.main * g.main_series;
+  const grids = {
+    main: { t: times.subarray(0, g.main), start: 0 },
+    estimates: { t: times.subarray(g.main, g.main + g.estimates), start: estimateStart },
+    delays: { t: times.subarray(g.main + g.estimates), start: estimateStart + g.estimates * g.estimate_series },
+  };
+  // A gap where a number is missing, or cannot stand on a logarithmic axis.
+  const values = (grid, k, log) => {
+    const { t, start } = grids[grid];
+    const from = start + k * t.length;
+    return Array.from(numbers.subarray(from, from + t.length), (v) => (Number.isFinite(v) && (!log || v > 0) ? v : null));
+  };
+  return { t: (grid) => Array.from(grids[grid].t), values };
+})();
+
+const element = (tag, properties = {}, ...children) => {
+  const e = Object.assign(document.createElement(tag), properties);
+  e.append(...children);
+  return e;
+};
+const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const RAMP = 16;
+const ramp = (k, n) => colour(`--r${n > 1 ? Math.round((k * (RAMP - 1)) / (n - 1)) : RAMP / 2}`);
+
+const raise = (n) => String(n).replace(/./g, (c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[+c]));
+const minus = (text) => text.replace("-", "−");
+const power = (exponent) => (exponent === 0 ? "1" : exponent === 1 ? "10" : `10${raise(exponent)}`);
+
+// A number with about `digits` significant digits.
+const number = (v, digits = 4) => {
+  if (v == null) return "–";
+  if (v === 0) return "0";
+  const size = Math.abs(v);
+  if (size >= 1e-3 && size < 1e6) return minus(String(+v.toPrecision(digits)));
+  const [mantissa, exponent] = v.toExponential(digits - 1).split("e");
+  return minus(`${+mantissa} × 10${raise(+exponent)}`);
+};
+
+// The label of a tick when neighbours are `step` apart.
+const tick = (v, step) => {
+  const size = Math.max(Math.abs(v), step);
+  if (size >= 1e5 || size < 1e-3) return v === 0 ? "0" : number(v, 3);
+  let places = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  if (Math.abs(step * 10 ** places - Math.round(step * 10 ** places)) > 1e-6) places += 1; // 0.25
+  return minus(v.toFixed(Math.min(6, places)));
+};

@@ -1,0 +1,210 @@
+// One plot: uPlot with our axes, a cursor shared by all plots, one zoom for all, and a box that says what is under the cursor.
+
+const plots = new Set();
+const view = { zoom: null, breakPoints: true };
+const whole = [0, index.until_s > 0 ? index.until_s : 1];
+
+const zoomTo = (range) => {
+  view.zoom = range;
+  document.getElementById("reset").disabled = range === null;
+  const [min, max] = range ?? whole;
+  for (const plot of plots) plot.setScale("x", { min, max });
+};
+
+const axisFont = '11px ui-sans-serif, system-ui, "Segoe UI", Roboto, "Helvetica Neue", sans-serif';
+
+const decades = (min, max) => {
+  const low = Math.ceil(Math.log10(min) - 1e-9);
+  const high = Math.floor(Math.log10(max) + 1e-9);
+  const step = Math.max(1, Math.ceil((high - low) / 6));
+  const ticks = [];
+  for (let e = high; e >= low; e -= step) ticks.unshift(10 ** e);
+  return ticks;
+};
+
+// Whole decades, but none below what double precision can tell from one, or from the greatest value.
+const logRange = (u, min, max) => {
+  if (!(min > 0) || !(max > 0)) return [1e-3, 1];
+  const high = Math.ceil(Math.log10(max) + 1e-9);
+  const low = Math.max(Math.floor(Math.log10(min) - 1e-9), Math.min(high, 0) - 18);
+  return [10 ** Math.min(low, high - 1), 10 ** high];
+};
+
+const linearRange = (u, min, max) => {
+  if (min == null || max == null) return [-1, 1];
+  if (min === max) {
+    const pad = Math.abs(min) * 0.1 || 1;
+    return [min - pad, max + pad];
+  }
+  const pad = 0.06 * (max - min);
+  return [min - pad, max + pad];
+};
+
+// A run that blew up at its end would flatten everything before: the axis then shows what the signals kept to until then.
+const outliers = (series) => {
+  const sizeUpTo = (share) => series.reduce((most, { values }) => {
+    for (let k = 0; k < Math.ceil(share * values.length); k++) if (Math.abs(values[k]) > most) most = Math.abs(values[k]);
+    return most;
+  }, 0);
+  const [usual, largest] = [sizeUpTo(0.95), sizeUpTo(1)];
+  return usual > 0 && largest > 100 * usual ? { usual, largest } : null;
+};
+const rangeWithin = (size) => (u, min, max) => linearRange(u, min == null ? min : Math.max(min, -size), max == null ? max : Math.min(max, size));
+
+const clipped = (u, draw) => {
+  const { left, top, width, height } = u.bbox;
+  u.ctx.save();
+  u.ctx.beginPath();
+  u.ctx.rect(left, top, width, height);
+  u.ctx.clip();
+  draw(u.ctx, devicePixelRatio);
+  u.ctx.restore();
+};
+
+const drawBreakPoints = (u) => {
+  if (!view.breakPoints) return;
+  const { min, max } = u.scales.x;
+  const times = index.break_points.filter((t) => t >= min && t <= max);
+  if (times.length > Math.max(24, u.width / 8)) return;
+  clipped(u, (ctx, scale) => {
+    ctx.strokeStyle = colour("--break");
+    ctx.lineWidth = scale;
+    ctx.beginPath();
+    for (const t of times) {
+      const x = Math.round(u.valToPos(t, "x", true)) + 0.5;
+      ctx.moveTo(x, u.bbox.top);
+      ctx.lineTo(x, u.bbox.top + u.bbox.height);
+    }
+    ctx.stroke();
+  });
+};
+
+// Horizontal lines with a word above: limits, goals, predictions. They do not widen the axis.
+const drawLines = (u, lines) =>
+  clipped(u, (ctx, scale) => {
+    ctx.font = `${10.5 * scale}px ui-sans-serif, system-ui, sans-serif`;
+    for (const { value, label } of lines) {
+      const y = u.valToPos(value, "y", true);
+      if (!Number.isFinite(y) || y < u.bbox.top || y > u.bbox.top + u.bbox.height) continue;
+      ctx.strokeStyle = colour("--muted");
+      ctx.lineWidth = scale;
+      ctx.setLineDash([6 * scale, 4 * scale]);
+      ctx.beginPath();
+      ctx.moveTo(u.bbox.left, y);
+      ctx.lineTo(u.bbox.left + u.bbox.width, y);
+      ctx.stroke();
+      const right = u.bbox.left + u.bbox.width - 5 * scale;
+      const baseline = y + (y - u.bbox.top < 18 * scale ? 14 : -5) * scale;
+      const wide = ctx.measureText(label).width + 6 * scale;
+      ctx.globalAlpha = 0.8;
+      ctx.fillStyle = colour("--surface");
+      ctx.fillRect(right + 3 * scale - wide, baseline - 10 * scale, wide, 13 * scale);
+      ctx.globalAlpha = 1;
+      ctx.fillStyle = colour("--soft");
+      ctx.textAlign = "right";
+      ctx.textBaseline = "alphabetic";
+      ctx.fillText(label, right, baseline);
+    }
+  });
+
+// The values under the cursor, nearest first.
+const readout = (log) => {
+  const box = element("div", { className: "readout", hidden: true });
+  const update = (u) => {
+    const { left, top, idx } = u.cursor;
+    if (left == null || left < 0 || idx == null || !u.over.matches(":hover")) {
+      box.hidden = true;
+      return;
+    }
+    const near = [];
+    for (let k = 1; k < u.series.length; k++) {
+      const v = u.data[k][idx];
+      if (u.series[k].show && v != null) near.push({ k, v, distance: Math.abs(u.valToPos(v, "y") - top) });
+    }
+    near.sort((a, b) => a.distance - b.distance);
+    const shown = near.slice(0, 8);
+    shown.sort((a, b) => b.v - a.v);
+    box.replaceChildren(
+      element("div", { className: "time", textContent: `t = ${number(u.data[0][idx], 6)} s` }),
+      ...shown.map(({ k, v }) => {
+        const dot = element("span", { className: "dot" });
+        dot.style.background = u.series[k]._colour;
+        return element("div", {}, dot, element("span", { textContent: u.series[k].label }), element("b", { textContent: number(v) }));
+      }),
+    );
+    if (near.length > shown.length) box.append(element("div", { className: "more", textContent: `and ${near.length - shown.length} more` }));
+    box.hidden = false;
+    const right = left > u.over.clientWidth / 2;
+    box.style.left = right ? "auto" : `${left + 14}px`;
+    box.style.right = right ? `${u.over.clientWidth - left + 14}px` : "auto";
+    box.style.top = "6px";
+  };
+  return { hooks: { init: [(u) => u.over.append(box)], setCursor: [update] } };
+};
+
+// Draws `series` = [{label, colour, dash, width, values}] over `times` into `target`.
+const drawPlot = (target, { times, series, log = false, lines = [], height, y = {}, draw = [], cursor = true, within = null }) => {
+  const axis = { stroke: colour("--muted"), font: axisFont, ticks: { show: false }, grid: { stroke: colour("--grid"), width: 1 } };
+  const options = {
+    width: Math.max(120, target.clientWidth),
+    height: height ?? (innerWidth < 640 ? 220 : 270),
+    padding: [10, 20, 0, 0],
+    legend: { show: false },
+    focus: { alpha: 0.25 },
+    cursor: {
+      y: false,
+      focus: { prox: 14 },
+      points: { size: 6 },
+      drag: { x: true, y: false, setScale: false },
+      bind: { dblclick: () => () => (zoomTo(null), null) },
+      sync: { key: "run", scales: ["x", null], filters: { pub: (type) => type === "mousemove" || type === "mouseleave" } },
+    },
+    scales: { x: { time: false, range: () => view.zoom ?? whole }, y: { distr: log ? 3 : 1, range: log ? logRange : within ? rangeWithin(within) : linearRange, ...y.scale } },
+    axes: [
+      { ...axis, size: 30, gap: 6, space: 70, values: (u, splits, a, s, step) => splits.map((v) => `${tick(v, step)} s`) },
+      {
+        ...axis,
+        size: 62,
+        gap: 6,
+        space: 34,
+        values: (u, splits, a, s, step) => splits.map((v) => (log ? power(Math.round(Math.log10(v))) : tick(v, step))),
+        ...(log ? { splits: (u, a, min, max) => decades(min, max), filter: (u, splits) => splits } : {}),
+        ...y.axis,
+      },
+    ],
+    series: [
+      {},
+      ...series.map((s) => ({
+        label: s.label,
+        stroke: s.colour,
+        width: s.width ?? 1.5,
+        dash: s.dash,
+        show: s.show ?? true,
+        points: { show: times.length < 2 },
+        _colour: s.colour,
+      })),
+    ],
+    hooks: {
+      drawAxes: [drawBreakPoints],
+      draw: [(u) => drawLines(u, lines), ...draw],
+      setSelect: [
+        (u) => {
+          if (u.select.width < 4) return;
+          const from = u.posToVal(u.select.left, "x");
+          const to = u.posToVal(u.select.left + u.select.width, "x");
+          u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+          zoomTo([Math.max(from, whole[0]), Math.min(to, whole[1])]);
+        },
+      ],
+    },
+    plugins: cursor ? [readout(log)] : [],
+  };
+  const plot = new uPlot(options, [times, ...series.map((s) => s.values)], target);
+  plots.add(plot);
+  return plot;
+};
+
+const removePlot = (plot) => {
+  plots.delete(plot);
+  plot.destroy();
+};

@@ -1,0 +1,32 @@
+//! `trajectory.csv`: the numbers of the Parquet table with all digits needed to read the same numbers back.
+
+use std::io::Write;
+
+use forwardstep_sim::recording::Recording;
+use forwardstep_sim::setup::Setup;
+
+use super::names;
+
+/// Writes header and rows; values that are not finite are `NaN`, `inf` and `-inf`.
+pub(crate) fn write(out: &mut impl Write, setup: &Setup, recording: &Recording) -> std::io::Result<()> {
+    let mut table = ::csv::Writer::from_writer(out);
+    table.write_record(names::table_header(setup, recording)).map_err(io_error)?;
+    let mut field = Vec::new();
+    for (row, t_s) in recording.t_s.iter().enumerate() {
+        let columns = recording.columns.iter().map(|c| c.values.get(row).copied().unwrap_or(f64::NAN));
+        for value in std::iter::once(*t_s).chain(columns) {
+            field.clear();
+            write!(field, "{value:?}")?; // the shortest text that reads back as the same number
+            table.write_field(&field).map_err(io_error)?;
+        }
+        table.write_record(None::<&[u8]>).map_err(io_error)?;
+    }
+    table.flush()
+}
+
+fn io_error(error: ::csv::Error) -> std::io::Error {
+    match error.into_kind() {
+        ::csv::ErrorKind::Io(error) => error,
+        other => std::io::Error::other(format!("{other:?}")),
+    }
+}

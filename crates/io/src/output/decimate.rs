@@ -1,0 +1,229 @@
+//! Fewer points for display that look the same: the least and greatest value of every bucket of rows, and break-points
+//! at which a signal that jumps is drawn as a jump.
+
+use std::ops::Range;
+
+/// Where the points of a picture come from; shared by all signals of a recording, so that they share their times.
+pub(crate) struct Grid {
+    /// Rising; a break-point occurs twice.
+    pub(crate) t_s: Vec<f64>,
+    places: Vec<Place>,
+    /// Rows were left out.
+    pub(crate) decimated: bool,
+}
+
+enum Place {
+    /// One row as it is.
+    Row(usize),
+    /// Two points: least and greatest of the rows, the earlier one first.
+    Bucket(Range<usize>),
+    /// Two points: before and after.
+    Break(Break),
+}
+
+struct Break {
+    t_s: f64,
+    /// Rows before it, back to the break-point before.
+    before: Range<usize>,
+    /// Rows at this very time.
+    on: Range<usize>,
+    /// Rows after it, up to the next break-point.
+    after: Range<usize>,
+}
+
+impl Grid {
+    /// About `budget` points for rows at `rows_t_s`. Break-points are kept, unless they alone would take half of them.
+    pub(crate) fn new(rows_t_s: &[f64], break_points: &[f64], budget: usize) -> Grid {
+        let breaks = if break_points.len() * 4 > budget { &[] } else { break_points };
+        let breaks = split(rows_t_s, breaks);
+        let rows: usize = rows_t_s.len();
+        let available = budget.saturating_sub(2 * breaks.len()).max(8);
+        let rows_per_bucket = if rows <= available { 1 } else { rows.div_ceil(available / 2) };
+
+        let mut grid = Grid { t_s: Vec::new(), places: Vec::new(), decimated: rows_per_bucket > 1 };
+        let mut start = 0;
+        for found in breaks {
+            grid.fill(rows_t_s, start..found.before.end, rows_per_bucket);
+            start = found.on.end;
+            grid.t_s.extend([found.t_s, found.t_s]);
+            grid.places.push(Place::Break(found));
+        }
+        grid.fill(rows_t_s, start..rows, rows_per_bucket);
+        grid
+    }
+
+    /// First and last row of the recording stay as they are; the rest goes into buckets.
+    fn fill(&mut self, rows_t_s: &[f64], mut rows: Range<usize>, rows_per_bucket: usize) {
+        let last = (rows.end == rows_t_s.len()).then(|| rows.next_back()).flatten();
+        if rows.start == 0 {
+            self.row(rows_t_s, rows.next());
+        }
+        while !rows.is_empty() {
+            let bucket = rows.start..(rows.start + rows_per_bucket).min(rows.end);
+            rows.start = bucket.end;
+            if bucket.len() <= 2 {
+                bucket.for_each(|row| self.row(rows_t_s, Some(row)));
+            } else {
+                self.t_s.extend([rows_t_s[bucket.start], rows_t_s[bucket.end - 1]]);
+                self.places.push(Place::Bucket(bucket));
+            }
+        }
+        self.row(rows_t_s, last);
+    }
+
+    fn row(&mut self, rows_t_s: &[f64], row: Option<usize>) {
+        if let Some(row) = row {
+            self.t_s.push(rows_t_s[row]);
+            self.places.push(Place::Row(row));
+        }
+    }
+
+    /// The values of a signal at the grid's times; missing ones are NaN.
+    pub(crate) fn sample(&self, rows_t_s: &[f64], values: &[f64], may_jump: bool) -> Vec<f32> {
+        let value = |row: usize| values.get(row).copied().unwrap_or(f64::NAN);
+        let mut points = Vec::with_capacity(self.t_s.len());
+        for place in &self.places {
+            match place {
+                Place::Row(row) => points.push(value(*row) as f32),
+                Place::Bucket(rows) => points.extend(least_and_greatest(rows.clone(), value)),
+                Place::Break(at) => points.extend(at.sides(rows_t_s, value, may_jump).map(|v| v as f32)),
+            }
+        }
+        points
+    }
+}
+
+fn split(rows_t_s: &[f64], break_points: &[f64]) -> Vec<Break> {
+    let mut breaks: Vec<Break> = Vec::new();
+    for &t_s in break_points {
+        let near = 1e-9 * (1.0 + t_s.abs());
+        let on = rows_t_s.partition_point(|t| *t < t_s - near)..rows_t_s.partition_point(|t| *t <= t_s + near);
+        let start = breaks.last().map_or(0, |last| last.on.end);
+        // Between two rows there is room for one break-point only, and none outside of the recording.
+        if on.start <= start || on.end >= rows_t_s.len() {
+            continue;
+        }
+        if let Some(last) = breaks.last_mut() {
+            last.after.end = on.start;
+        }
+        breaks.push(Break { t_s, before: start..on.start, after: on.end..rows_t_s.len(), on });
+    }
+    breaks
+}
+
+impl Break {
+    /// Values just before and just after. A jump is told from a slope by continuing both sides to the break-point; what is
+    /// drawn are recorded values, held up to the jump, or a line where there is none.
+    fn sides(&self, rows_t_s: &[f64], value: impl Fn(usize) -> f64, may_jump: bool) -> [f64; 2] {
+        let (left, right) = (self.before.end - 1, self.after.start);
+        if self.on.len() > 1 {
+            return [value(self.on.start), value(self.on.end - 1)];
+        }
+        let jump = may_jump && {
+            let continued = |near: usize, far: usize| {
+                let slope = (value(near) - value(far)) / (rows_t_s[near] - rows_t_s[far]);
+                value(near) + slope * (self.t_s - rows_t_s[near])
+            };
+            let from_left = if self.before.len() > 1 { continued(left, left - 1) } else { value(left) };
+            let from_right = if self.after.len() > 1 { continued(right, right + 1) } else { value(right) };
+            let difference = (value(right) - value(left)).abs();
+            difference > 0.0 && (from_right - from_left).abs() >= 0.5 * difference
+        };
+        match (self.on.clone().next(), jump) {
+            (Some(on), false) => [value(on), value(on)],
+            (Some(on), true) => {
+                let to_left = (value(on) - value(left)).abs();
+                let to_right = (value(on) - value(right)).abs();
+                if to_right <= to_left { [value(left), value(on)] } else { [value(on), value(right)] }
+            }
+            (None, true) => [value(left), value(right)],
+            (None, false) => {
+                let part = (self.t_s - rows_t_s[left]) / (rows_t_s[right] - rows_t_s[left]);
+                [value(left) + part * (value(right) - value(left)); 2]
+            }
+        }
+    }
+}
+
+/// Both in the order in which they occur, leaving out what is not finite as long as anything is.
+fn least_and_greatest(rows: Range<usize>, value: impl Fn(usize) -> f64) -> [f32; 2] {
+    let finite = || rows.clone().filter(|row| value(*row).is_finite());
+    let least = finite().reduce(|a, b| if value(b) < value(a) { b } else { a });
+    let greatest = finite().reduce(|a, b| if value(b) > value(a) { b } else { a });
+    match (least, greatest) {
+        (Some(least), Some(greatest)) => [least.min(greatest), least.max(greatest)].map(|row| value(row) as f32),
+        _ => [f32::NAN; 2],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows(count: usize, step: f64) -> Vec<f64> {
+        (0..count).map(|k| k as f64 * step).collect()
+    }
+
+    #[test]
+    fn a_jump_between_rows_is_upright_and_a_slope_stays_a_slope() {
+        let t_s = rows(11, 0.1);
+        let grid = Grid::new(&t_s, &[0.25], 100);
+        let jump: Vec<f64> = t_s.iter().map(|t| if *t < 0.25 { 1.0 + t } else { 5.0 + t }).collect();
+        let at: Vec<usize> = (0..grid.t_s.len()).filter(|k| grid.t_s[*k] == 0.25).collect();
+        assert_eq!(at.len(), 2);
+        let drawn = grid.sample(&t_s, &jump, true);
+        assert_eq!((drawn[at[0]], drawn[at[1]]), (1.2, 5.3));
+        let smooth = grid.sample(&t_s, &t_s, true);
+        assert_eq!((smooth[at[0]], smooth[at[1]]), (0.25, 0.25));
+    }
+
+    #[test]
+    fn a_row_on_a_jump_goes_to_the_side_it_belongs_to() {
+        let t_s = rows(11, 0.1);
+        let grid = Grid::new(&t_s, &[0.5], 100);
+        let place = grid.t_s.iter().position(|t| *t == 0.5).unwrap();
+        let drawn =
+            |values: &[f64]| -> [f32; 2] { grid.sample(&t_s, values, true)[place..place + 2].try_into().unwrap() };
+        let right: Vec<f64> = (0..11).map(|k| if k < 5 { 1.0 } else { 2.0 }).collect();
+        let left: Vec<f64> = (0..11).map(|k| if k <= 5 { 1.0 } else { 2.0 }).collect();
+        assert_eq!(drawn(&right), [1.0, 2.0]);
+        assert_eq!(drawn(&left), [1.0, 2.0]);
+    }
+
+    #[test]
+    fn two_rows_at_one_time_are_its_two_sides() {
+        let t_s = [0.0, 1.0, 1.0, 2.0];
+        let grid = Grid::new(&t_s, &[1.0], 100);
+        assert_eq!(grid.t_s, [0.0, 1.0, 1.0, 2.0]);
+        assert_eq!(grid.sample(&t_s, &[0.0, 1.0, 7.0, 8.0], true), [0.0, 1.0, 7.0, 8.0]);
+    }
+
+    #[test]
+    fn decimation_keeps_extremes_ends_and_order() {
+        let t_s = rows(100_000, 0.001);
+        let mut values: Vec<f64> = t_s.iter().map(|t| t.sin()).collect();
+        values[54_321] = 99.0;
+        values[77_777] = -98.0;
+        values[77_778] = f64::NAN;
+        let breaks: Vec<f64> = (1..50).map(|k| k as f64 * 1.9).collect();
+        let grid = Grid::new(&t_s, &breaks, 2000);
+        assert!(grid.decimated && grid.t_s.len() <= 2200, "{}", grid.t_s.len());
+        assert!(grid.t_s.windows(2).all(|w| w[0] <= w[1]));
+        let drawn = grid.sample(&t_s, &values, false);
+        assert_eq!(drawn.len(), grid.t_s.len());
+        assert!(drawn.contains(&99.0) && drawn.contains(&-98.0) && !drawn.iter().any(|v| v.is_nan()));
+        assert_eq!((drawn[0], drawn[drawn.len() - 1]), (values[0] as f32, values[99_999] as f32));
+    }
+
+    #[test]
+    fn break_points_outside_of_or_crowding_the_rows_do_no_harm() {
+        for breaks in [vec![-1.0, 0.0, 5.0, 9.9], vec![0.11, 0.12, 0.13, 0.19, 0.2, 0.21, 1.0]] {
+            for count in [0, 1, 2, 3, 11] {
+                let t_s = rows(count, 0.1);
+                let grid = Grid::new(&t_s, &breaks, 64);
+                assert!(grid.t_s.windows(2).all(|w| w[0] <= w[1]), "{:?}", grid.t_s);
+                assert_eq!(grid.sample(&t_s, &t_s, true).len(), grid.t_s.len());
+            }
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! What can go wrong while results are written.
+
+use std::io;
+use std::path::PathBuf;
+
+/// Something could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    /// The folder holds files already and was not to be replaced.
+    #[error("{} already exists and is not empty", path.display())]
+    FolderNotEmpty {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// There is a file where the folder should be.
+    #[error("{} exists and is not a folder", path.display())]
+    NotAFolder {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The operating system refused.
+    #[error("could not {action} {}: {source}", path.display())]
+    Io {
+        /// What was tried.
+        action: Action,
+        /// With which file or folder.
+        path: PathBuf,
+        /// The reason.
+        source: io::Error,
+    },
+    /// A table or plot could not be encoded.
+    #[error("could not encode {}: {reason}", path.display())]
+    Encode {
+        /// The file.
+        path: PathBuf,
+        /// The reason the encoder gave.
+        reason: EncodeError,
+    },
+}
+
+/// Why an encoder failed.
+#[derive(Debug, thiserror::Error)]
+pub enum EncodeError {
+    /// The Parquet table.
+    #[error(transparent)]
+    Parquet(#[from] parquet::errors::ParquetError),
+    /// A JSON document.
+    #[error(transparent)]
+    Json(#[from] serde_json::Error),
+    /// A plot; the drawing library's own words.
+    #[error("drawing failed: {0}")]
+    Plot(String),
+}
+
+/// What was tried with a file or folder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Action {
+    /// Make a folder.
+    CreateFolder,
+    /// List a folder.
+    ReadFolder,
+    /// Find out whether files can be written into a folder.
+    WriteInto,
+    /// Open a new file.
+    CreateFile,
+    /// Write to a file, or bring what was written to the disk.
+    WriteFile,
+    /// Give a finished file its final name.
+    RenameFile,
+    /// Remove a file of an earlier run.
+    RemoveFile,
+}
+
+impl std::fmt::Display for Action {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Action::CreateFolder => "create the folder",
+            Action::ReadFolder => "look into the folder",
+            Action::WriteInto => "write into the folder",
+            Action::CreateFile => "create",
+            Action::WriteFile => "write",
+            Action::RenameFile => "finish",
+            Action::RemoveFile => "replace",
+        })
+    }
+}
+
+impl OutputError {
+    /// What the user can do about it.
+    pub fn help(&self) -> Option<&'static str> {
+        match self {
+            OutputError::FolderNotEmpty { .. } => {
+                Some("choose another folder, or replace the files of the earlier run with --force")
+            }
+            OutputError::NotAFolder { .. } => Some("choose another folder"),
+            OutputError::Io { source, .. } => match source.kind() {
+                io::ErrorKind::PermissionDenied => Some("choose a folder you may write to"),
+                io::ErrorKind::StorageFull => Some("free some space on the disk, or choose a folder on another one"),
+                io::ErrorKind::ReadOnlyFilesystem => Some("choose a folder on a disk that can be written to"),
+                _ => None,
+            },
+            OutputError::Encode { .. } => None,
+        }
+    }
+}

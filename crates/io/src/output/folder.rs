@@ -1,0 +1,215 @@
+//! The folder of a run, and files that appear in it only when they are complete.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use super::error::{Action, EncodeError, OutputError};
+
+/// The file whose presence says that a folder is complete: removed first and renamed last.
+const SEAL: &str = "summary.json";
+
+/// Every file that a run may write.
+pub(crate) const FILES: [&str; 9] = [
+    "scenario.toml",
+    "trajectory.parquet",
+    "trajectory.csv",
+    "report.html",
+    "plots/positions.svg",
+    "plots/torques.svg",
+    "plots/estimates.svg",
+    "plots/disagreement.svg",
+    SEAL,
+];
+
+/// A folder that is there, can be written to, and holds nothing that must be kept under the names of a run's files.
+#[derive(Debug)]
+pub struct RunFolder {
+    path: PathBuf,
+}
+
+impl RunFolder {
+    /// Prepares `path` for a run, before the run, so that hours of work are not lost to a folder that cannot be written.
+    ///
+    /// Missing folders are created, parents too. A folder that holds anything is refused unless `force`; then files that a
+    /// run writes will be replaced, and all others stay as they are. Remains of a writer that was killed do not count.
+    ///
+    /// # Errors
+    /// [`OutputError`] when the folder is not empty, is a file, or cannot be created or written to.
+    pub fn create(path: impl Into<PathBuf>, force: bool) -> Result<RunFolder, OutputError> {
+        let path = path.into();
+        match fs::metadata(&path) {
+            Ok(meta) if !meta.is_dir() => return Err(OutputError::NotAFolder { path }),
+            Ok(_) if !force && !is_empty(&path)? => return Err(OutputError::FolderNotEmpty { path }),
+            Ok(_) => {}
+            Err(_) => fs::create_dir_all(&path).map_err(io_error(Action::CreateFolder, &path))?,
+        }
+        let probe = path.join(".forwardstep.partial");
+        File::create(&probe).map_err(io_error(Action::WriteInto, &path))?;
+        fs::remove_file(&probe).map_err(io_error(Action::WriteInto, &path))?;
+        Ok(RunFolder { path })
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Starts to write files into it.
+    pub(crate) fn stage(&self) -> Staging<'_> {
+        Staging { folder: self, names: Vec::new() }
+    }
+
+    fn partial(&self, name: &str) -> PathBuf {
+        let (folder, file) = name.rsplit_once('/').map_or(("", name), |(folder, file)| (folder, file));
+        self.path.join(folder).join(format!(".{file}.partial"))
+    }
+}
+
+/// Nothing but leftovers under temporary names, and the folder for plots if it holds nothing else either.
+fn is_empty(path: &Path) -> Result<bool, OutputError> {
+    let entries = fs::read_dir(path).map_err(io_error(Action::ReadFolder, path))?;
+    for entry in entries {
+        let entry = entry.map_err(io_error(Action::ReadFolder, path))?;
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let is_plots = name == "plots" && entry.file_type().is_ok_and(|kind| kind.is_dir());
+        let is_leftover = name == ".forwardstep.partial"
+            || FILES.iter().filter_map(|f| f.rsplit('/').next()).any(|f| name == format!(".{f}.partial"));
+        if !(is_leftover || is_plots && is_empty(&entry.path())?) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+fn io_error(action: Action, path: &Path) -> impl FnOnce(io::Error) -> OutputError {
+    let path = path.to_owned();
+    move |source| OutputError::Io { action, path, source }
+}
+
+/// Files written under temporary names; those that were not [published](Staging::publish) vanish when this is dropped.
+pub(crate) struct Staging<'f> {
+    folder: &'f RunFolder,
+    names: Vec<&'static str>,
+}
+
+impl Staging<'_> {
+    /// Writes one file under its temporary name, to the disk.
+    pub(crate) fn write(
+        &mut self,
+        name: &'static str,
+        fill: impl FnOnce(&mut StagedFile) -> Result<(), FillError>,
+    ) -> Result<(), OutputError> {
+        let path = self.folder.path.join(name);
+        let partial = self.folder.partial(name);
+        if let Some(parent) = partial.parent() {
+            fs::create_dir_all(parent).map_err(io_error(Action::CreateFolder, parent))?;
+        }
+        let _ = fs::remove_file(&partial); // of a writer that was killed
+        let file = OpenOptions::new()
+            .write(true)
+            .create_new(true)
+            .open(&partial)
+            .map_err(io_error(Action::CreateFile, &path))?;
+        self.names.push(name);
+        let mut staged = StagedFile { file: BufWriter::with_capacity(1 << 16, file), failure: None };
+        let filled = fill(&mut staged).and_then(|()| staged.finish().map_err(FillError::Io));
+        filled.map_err(|error| match (staged.failure.take(), error) {
+            (Some(source), _) | (None, FillError::Io(source)) => {
+                OutputError::Io { action: Action::WriteFile, path, source }
+            }
+            (None, FillError::Encode(reason)) => OutputError::Encode { path, reason },
+        })
+    }
+
+    /// Gives all files their names, the seal last, and removes those of an earlier run that this one did not write.
+    pub(crate) fn publish(mut self) -> Result<Vec<PathBuf>, OutputError> {
+        let folder = self.folder;
+        let remove = |name: &str| {
+            let path = folder.path.join(name);
+            match fs::remove_file(&path) {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                    Err(io_error(Action::RemoveFile, &path)(error))
+                }
+                _ => Ok(()),
+            }
+        };
+        remove(SEAL)?;
+        for name in FILES.iter().filter(|name| !self.names.contains(name)) {
+            remove(name)?;
+        }
+        self.names.sort_by_key(|name| *name == SEAL);
+        let mut published = Vec::new();
+        for name in &self.names {
+            let path = folder.path.join(name);
+            fs::rename(folder.partial(name), &path).map_err(io_error(Action::RenameFile, &path))?;
+            published.push(path);
+        }
+        Ok(published)
+    }
+}
+
+impl Drop for Staging<'_> {
+    fn drop(&mut self) {
+        for name in &self.names {
+            let _ = fs::remove_file(self.folder.partial(name));
+        }
+        let _ = fs::remove_dir(self.folder.path.join("plots")); // only succeeds when it is empty
+    }
+}
+
+/// Why a file could not be filled.
+pub(crate) enum FillError {
+    Io(io::Error),
+    Encode(EncodeError),
+}
+
+impl From<io::Error> for FillError {
+    fn from(error: io::Error) -> Self {
+        FillError::Io(error)
+    }
+}
+
+impl<E: Into<EncodeError>> From<E> for FillError {
+    fn from(error: E) -> Self {
+        FillError::Encode(error.into())
+    }
+}
+
+/// A file under its temporary name, which remembers the system's refusal whatever an encoder makes of it.
+pub(crate) struct StagedFile {
+    file: BufWriter<File>,
+    failure: Option<io::Error>,
+}
+
+impl StagedFile {
+    fn finish(&mut self) -> io::Result<()> {
+        self.flush()?;
+        let synced = self.file.get_ref().sync_all();
+        self.watch(synced)
+    }
+
+    fn watch<T>(&mut self, result: io::Result<T>) -> io::Result<T> {
+        if let Err(error) = &result {
+            let copy = match error.raw_os_error() {
+                Some(code) => io::Error::from_raw_os_error(code),
+                None => io::Error::new(error.kind(), error.to_string()),
+            };
+            self.failure.get_or_insert(copy);
+        }
+        result
+    }
+}
+
+impl Write for StagedFile {
+    fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
+        let result = self.file.write(buffer);
+        self.watch(result)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let result = self.file.flush();
+        self.watch(result)
+    }
+}

@@ -1,0 +1,396 @@
+//! A run in a few numbers.
+
+use forwardstep_sim::recording::{Recording, Signal};
+use forwardstep_sim::setup::Setup;
+use serde::Serialize;
+
+use super::record::Goal;
+use super::table::Table;
+
+/// V(0) is not taken to be smaller than this, in J, when the error of the ledger is put in relation to it: an agent that
+/// starts without any error has V(0) = 0.
+pub const LEDGER_FLOOR_J: f64 = 1e-6;
+
+/// What a run comes to. Agents and axes are indices from zero; numbers that are not finite are `null` in JSON.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Metrics {
+    /// Rows of the recording.
+    pub rows: usize,
+    /// Time of the last row, s.
+    pub last_t_s: Option<f64>,
+    /// How far the agents are apart.
+    pub disagreement: Disagreement,
+    /// The time from which on the disagreement stays below the goal until the end, s.
+    pub settled_s: Option<f64>,
+    /// Largest and final speed over all agents and axes.
+    pub speed: Option<Speed>,
+    /// The largest |τ| of every agent and axis.
+    pub peak_torques: Vec<Peak>,
+    /// Limits that were exceeded, or reached where they are enforced.
+    pub limits_reached: Vec<LimitReached>,
+    /// How well V + ∫ dissipation = V(0) holds; absent without the ledger.
+    pub ledger_error: Option<LedgerError>,
+    /// Predicted beside reached value, per axis; absent without a prediction or where the agents' axes differ.
+    pub agreement: Option<Vec<Agreement>>,
+}
+
+/// max |q_i − q_j| over agents and axes, rad or m, or why there is no such number.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Disagreement {
+    /// At the first and last row, and the largest of all rows.
+    Measured {
+        /// At the first row.
+        initial: f64,
+        /// At the last row.
+        last: f64,
+        /// The largest of all rows.
+        largest: f64,
+    },
+    /// There is none.
+    Absent(Absence),
+}
+
+impl Disagreement {
+    /// The disagreement at the last row.
+    pub fn last(&self) -> Option<f64> {
+        match *self {
+            Disagreement::Measured { last, .. } => Some(last),
+            Disagreement::Absent(_) => None,
+        }
+    }
+}
+
+/// Why there is no disagreement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Absence {
+    /// Nothing was recorded.
+    NoRows,
+    /// One agent alone, or none, agrees with itself.
+    FewerThanTwoAgents,
+    /// These agents have different numbers of axes, or axes in different units.
+    DifferentAxes {
+        /// The first agent.
+        first: usize,
+        /// The one that differs from it.
+        other: usize,
+    },
+    /// The positions of this agent were not recorded.
+    NotRecorded {
+        /// The agent.
+        agent: usize,
+    },
+}
+
+impl Absence {
+    /// The reason in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Absence::NoRows => "nothing was recorded",
+            Absence::FewerThanTwoAgents => "there are no two agents to compare",
+            Absence::DifferentAxes { .. } => "the agents do not have the same axes",
+            Absence::NotRecorded { .. } => "not all positions were recorded",
+        }
+    }
+}
+
+/// A value, where and when.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Peak {
+    /// The agent.
+    pub agent: usize,
+    /// The axis.
+    pub axis: usize,
+    /// When, s.
+    pub t_s: f64,
+    /// The value.
+    pub value: f64,
+}
+
+/// The speeds of a run, rad/s or m/s.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Speed {
+    /// The largest |q̇|.
+    pub largest: Peak,
+    /// The largest |q̇| at the last row.
+    pub last: f64,
+}
+
+/// The limit that was reached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LimitKind {
+    /// Lowest or highest position.
+    Position,
+    /// Highest speed.
+    Velocity,
+    /// Highest torque or force.
+    Effort,
+}
+
+/// A limit of an axis that was exceeded at some row; for efforts of agents that enforce their limits, that was reached.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LimitReached {
+    /// The agent.
+    pub agent: usize,
+    /// The axis.
+    pub axis: usize,
+    /// Which limit.
+    pub kind: LimitKind,
+    /// Whether the simulation kept to it; otherwise it is only reported.
+    pub enforced: bool,
+    /// The first row at which it was exceeded, s.
+    pub first_t_s: f64,
+    /// When it was exceeded most, s.
+    pub worst_t_s: f64,
+    /// The value then.
+    pub worst: f64,
+    /// The limit on that side.
+    pub limit: f64,
+    /// By how much.
+    pub excess: f64,
+    /// The share of rows at which it was exceeded, from 0 to 1.
+    pub share: f64,
+}
+
+/// The largest |V + ∫ dissipation − V(0)| relative to V(0), but at least [`LEDGER_FLOOR_J`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LedgerError {
+    /// Relative error.
+    pub relative: f64,
+    /// Of this agent.
+    pub agent: usize,
+    /// At this time, s.
+    pub t_s: f64,
+}
+
+/// Predicted and reached value on one axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Agreement {
+    /// The axis.
+    pub axis: usize,
+    /// What the agents were predicted to agree on.
+    pub predicted: f64,
+    /// The mean of their last positions.
+    pub reached: f64,
+    /// The largest distance of a last position from the prediction.
+    pub distance: f64,
+}
+
+/// The disagreement row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DisagreementSeries {
+    /// Over all axes.
+    pub overall: Vec<f64>,
+    /// On each axis.
+    pub per_axis: Vec<Vec<f64>>,
+}
+
+impl DisagreementSeries {
+    /// max |q_i − q_j| at every row.
+    ///
+    /// # Errors
+    /// [`Absence`] when the agents cannot be compared.
+    pub fn of(setup: &Setup, recording: &Recording) -> Result<Self, Absence> {
+        Self::of_table(&Table::new(setup, recording))
+    }
+
+    pub(crate) fn of_table(table: &Table<'_>) -> Result<Self, Absence> {
+        let agents = &table.setup.agents;
+        let [first, others @ ..] = agents.as_slice() else { return Err(Absence::FewerThanTwoAgents) };
+        if others.is_empty() {
+            return Err(Absence::FewerThanTwoAgents);
+        }
+        let units = |axes: &[forwardstep_sim::Axis]| axes.iter().map(|a| a.unit).collect::<Vec<_>>();
+        let differs = |other: &forwardstep_sim::AgentSetup| units(&other.robot.axes) != units(&first.robot.axes);
+        if let Some(other) = others.iter().position(differs) {
+            return Err(Absence::DifferentAxes { first: 0, other: other + 1 });
+        }
+        if table.t_s.is_empty() {
+            return Err(Absence::NoRows);
+        }
+        let rows = table.t_s.len();
+        let mut per_axis = Vec::new();
+        for axis in 0..first.robot.axes.len() {
+            let mut low = vec![f64::INFINITY; rows];
+            let mut high = vec![f64::NEG_INFINITY; rows];
+            for agent in 0..agents.len() {
+                let q = table.column(agent, Signal::Position, axis).ok_or(Absence::NotRecorded { agent })?;
+                for row in 0..rows {
+                    let q = q.get(row).copied().unwrap_or(f64::NAN);
+                    low[row] = lesser(low[row], q);
+                    high[row] = greater(high[row], q);
+                }
+            }
+            per_axis.push(low.iter().zip(&high).map(|(low, high)| high - low).collect::<Vec<_>>());
+        }
+        let overall = (0..rows).map(|row| per_axis.iter().map(|axis| axis[row]).fold(0.0, greater)).collect();
+        Ok(DisagreementSeries { overall, per_axis })
+    }
+}
+
+/// The greater of two numbers, NaN as soon as one is.
+fn greater(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
+fn lesser(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a < b { a } else { b }
+}
+
+impl Metrics {
+    /// Reduces a recording to its metrics. `predicted` is the agreement per axis, `goal` sets the bound for settling.
+    pub fn of(setup: &Setup, recording: &Recording, predicted: Option<&[f64]>, goal: Option<Goal>) -> Metrics {
+        let table = Table::new(setup, recording);
+        let series = DisagreementSeries::of_table(&table);
+        Metrics {
+            rows: table.t_s.len(),
+            last_t_s: table.t_s.last().copied(),
+            settled_s: match (&series, goal) {
+                (Ok(series), Some(Goal::DisagreementBelow(bound))) => settled(table.t_s, &series.overall, bound),
+                _ => None,
+            },
+            disagreement: match &series {
+                Ok(DisagreementSeries { overall, .. }) => Disagreement::Measured {
+                    initial: overall.first().copied().unwrap_or(f64::NAN),
+                    last: overall.last().copied().unwrap_or(f64::NAN),
+                    largest: overall.iter().copied().fold(0.0, greater),
+                },
+                Err(absence) => Disagreement::Absent(*absence),
+            },
+            speed: speed(&table),
+            peak_torques: table.axes(Signal::Torque).filter_map(|(i, axis, tau)| peak(&table, i, axis, tau)).collect(),
+            limits_reached: limits_reached(&table),
+            ledger_error: ledger_error(&table),
+            agreement: if series.is_ok() { predicted.and_then(|p| agreement(&table, p)) } else { None },
+        }
+    }
+}
+
+/// Whether the disagreement ends non-finite or exceeds, in the last quarter of the rows, all of the first quarter.
+pub(crate) fn grows(setup: &Setup, recording: &Recording) -> bool {
+    let Ok(series) = DisagreementSeries::of(setup, recording) else { return false };
+    let overall = &series.overall;
+    let quarter = overall.len().div_ceil(4);
+    let largest = |part: &[f64]| part.iter().copied().fold(0.0, greater);
+    let last = largest(&overall[overall.len() - quarter..]);
+    !last.is_finite() || last > largest(&overall[..quarter])
+}
+
+/// The largest |value| of a column with its sign, the first of equals; a value that is not a number wins.
+fn peak(table: &Table<'_>, agent: usize, axis: usize, values: &[f64]) -> Option<Peak> {
+    let worse = |(_, best): (_, &f64), (_, next): (_, &f64)| next.abs() > best.abs() || next.is_nan() && !best.is_nan();
+    let (t_s, value) = table.t_s.iter().zip(values).reduce(|best, next| if worse(best, next) { next } else { best })?;
+    Some(Peak { agent, axis, t_s: *t_s, value: *value })
+}
+
+fn speed(table: &Table<'_>) -> Option<Speed> {
+    let peaks = table.axes(Signal::Velocity).filter_map(|(agent, axis, dq)| peak(table, agent, axis, dq));
+    let largest = peaks.reduce(|best, next| {
+        if next.value.abs() > best.value.abs() || next.value.is_nan() && !best.value.is_nan() { next } else { best }
+    })?;
+    let last = table.axes(Signal::Velocity).filter_map(|(.., dq)| dq.last()).map(|dq| dq.abs()).fold(0.0, greater);
+    Some(Speed { largest: Peak { value: largest.value.abs(), ..largest }, last })
+}
+
+fn settled(t_s: &[f64], overall: &[f64], bound: f64) -> Option<f64> {
+    // "not below" rather than "above or equal": a disagreement that is not a number has not settled.
+    let above = |d: &f64| !matches!(d.partial_cmp(&bound), Some(std::cmp::Ordering::Less));
+    let first_settled = overall.iter().rposition(above).map_or(0, |last_above| last_above + 1);
+    t_s.get(first_settled).copied()
+}
+
+fn limits_reached(table: &Table<'_>) -> Vec<LimitReached> {
+    let mut found = Vec::new();
+    for (agent, setup) in table.setup.agents.iter().enumerate() {
+        for (axis, limits) in setup.robot.axes.iter().enumerate() {
+            let symmetric = |limit: Option<f64>| limit.map(|limit| [-limit, limit]);
+            for (kind, signal, range) in [
+                (LimitKind::Position, Signal::Position, limits.position_limits),
+                (LimitKind::Velocity, Signal::Velocity, symmetric(limits.velocity_limit)),
+                (LimitKind::Effort, Signal::Torque, symmetric(limits.effort_limit)),
+            ] {
+                let (Some(range), Some(values)) = (range, table.column(agent, signal, axis)) else { continue };
+                let enforced = setup.enforce_limits && kind != LimitKind::Velocity;
+                let place = LimitReached {
+                    agent,
+                    axis,
+                    kind,
+                    enforced,
+                    first_t_s: 0.0,
+                    worst_t_s: 0.0,
+                    worst: 0.0,
+                    limit: 0.0,
+                    excess: 0.0,
+                    share: 0.0,
+                };
+                found.extend(beyond(table.t_s, values, range, place));
+            }
+        }
+    }
+    found
+}
+
+/// `place` with its numbers filled in, if any value lies outside of `range`, or on its border for an enforced effort.
+fn beyond(t_s: &[f64], values: &[f64], [low, high]: [f64; 2], place: LimitReached) -> Option<LimitReached> {
+    let clipped = place.enforced && place.kind == LimitKind::Effort;
+    let mut result: Option<LimitReached> = None;
+    let mut rows = 0_usize;
+    for (&t_s, &value) in t_s.iter().zip(values) {
+        let (limit, excess) = if value - high > low - value { (high, value - high) } else { (low, low - value) };
+        if excess > 0.0 || clipped && excess == 0.0 {
+            rows += 1;
+            let seen = result.get_or_insert(LimitReached {
+                first_t_s: t_s,
+                worst_t_s: t_s,
+                worst: value,
+                limit,
+                excess,
+                ..place
+            });
+            if excess > seen.excess {
+                *seen = LimitReached { worst_t_s: t_s, worst: value, limit, excess, ..*seen };
+            }
+        }
+    }
+    result.map(|seen| LimitReached { share: rows as f64 / t_s.len() as f64, ..seen })
+}
+
+fn ledger_error(table: &Table<'_>) -> Option<LedgerError> {
+    let mut worst: Option<LedgerError> = None;
+    for agent in 0..table.agents() {
+        let Some(errors) = ledger_errors(table, agent) else { continue };
+        for (&t_s, error) in table.t_s.iter().zip(errors) {
+            let relative = error.abs();
+            if worst.is_none_or(|w| relative > w.relative || relative.is_nan() && !w.relative.is_nan()) {
+                worst = Some(LedgerError { relative, agent, t_s });
+            }
+        }
+    }
+    worst
+}
+
+/// (V + ∫ dissipation − V(0)) / V(0) row by row.
+pub(crate) fn ledger_errors(table: &Table<'_>, agent: usize) -> Option<Vec<f64>> {
+    let v = table.column(agent, Signal::Lyapunov, 0)?;
+    let dissipated = table.column(agent, Signal::Dissipation, 0)?;
+    let start = *v.first()?;
+    let scale = start.max(LEDGER_FLOOR_J);
+    Some(v.iter().zip(dissipated).map(|(v, d)| (v + d - start) / scale).collect())
+}
+
+fn agreement(table: &Table<'_>, predicted: &[f64]) -> Option<Vec<Agreement>> {
+    predicted
+        .iter()
+        .enumerate()
+        .map(|(axis, &predicted)| {
+            let last: Option<Vec<f64>> =
+                (0..table.agents()).map(|agent| table.column(agent, Signal::Position, axis)?.last().copied()).collect();
+            let last = last.filter(|last| !last.is_empty())?;
+            let reached = last.iter().sum::<f64>() / last.len() as f64;
+            let distance = last.iter().map(|q| (q - predicted).abs()).fold(0.0, greater);
+            Some(Agreement { axis, predicted, reached, distance })
+        })
+        .collect()
+}

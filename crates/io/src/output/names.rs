@@ -1,0 +1,91 @@
+//! What columns, axes and units are called, everywhere: in tables, plots and messages.
+//!
+//! A column is called `<agent>.<signal>.<axis>`: [`Signal::name`], and the joint's name for trees, a number from one for
+//! planar arms and point masses, the parameter's name for `theta_hat`; `lyapunov` and `dissipation` have no axis part.
+
+use std::collections::HashSet;
+
+use forwardstep_sim::recording::{Recording, Signal};
+use forwardstep_sim::setup::{AxisUnit, RobotKind, Setup};
+
+/// The name of an agent; a number when the setup has no such agent.
+pub fn agent_name(setup: &Setup, agent: usize) -> String {
+    setup.agents.get(agent).map_or_else(|| format!("agent-{}", agent + 1), |a| a.name.clone())
+}
+
+/// The name of an axis of an agent: the joint's name for trees, a number from one otherwise.
+pub fn axis_name(setup: &Setup, agent: usize, axis: usize) -> String {
+    let robot = setup.agents.get(agent).map(|a| &a.robot);
+    match robot {
+        Some(robot) if matches!(robot.kind, RobotKind::Tree(_)) => robot.axes.get(axis).map(|a| a.name.clone()),
+        _ => None,
+    }
+    .unwrap_or_else(|| (axis + 1).to_string())
+}
+
+/// The name of an axis in running text: `elbow_joint`, or `axis 2` where it has a number only.
+pub fn axis_words(setup: &Setup, agent: usize, axis: usize) -> String {
+    let name = axis_name(setup, agent, axis);
+    if name.bytes().all(|b| b.is_ascii_digit()) { format!("axis {name}") } else { name }
+}
+
+/// The name of a parameter of an agent.
+pub fn parameter_name(setup: &Setup, agent: usize, index: usize) -> String {
+    setup
+        .agents
+        .get(agent)
+        .and_then(|a| a.robot.theta_names.get(index).cloned())
+        .unwrap_or_else(|| (index + 1).to_string())
+}
+
+/// The name of a recorded column.
+pub fn column_name(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String {
+    let agent_name = agent_name(setup, agent);
+    let signal_name = signal.name();
+    match signal {
+        Signal::Lyapunov | Signal::Dissipation => format!("{agent_name}.{signal_name}"),
+        Signal::Estimate => format!("{agent_name}.{signal_name}.{}", parameter_name(setup, agent, axis)),
+        _ => format!("{agent_name}.{signal_name}.{}", axis_name(setup, agent, axis)),
+    }
+}
+
+/// The names of all columns of a table, `t_s` first. Should two be the same, later ones get a `~2`, `~3`, … at the end,
+/// because tables need distinct names.
+pub fn table_header(setup: &Setup, recording: &Recording) -> Vec<String> {
+    let mut taken = HashSet::new();
+    let mut header = vec!["t_s".to_owned()];
+    taken.insert("t_s".to_owned());
+    for column in &recording.columns {
+        let plain = column_name(setup, column.agent, column.signal, column.axis);
+        let mut name = plain.clone();
+        let mut copy = 2;
+        while !taken.insert(name.clone()) {
+            name = format!("{plain}~{copy}");
+            copy += 1;
+        }
+        header.push(name);
+    }
+    header
+}
+
+/// The unit of an axis of an agent, if the setup has it.
+pub fn axis_unit(setup: &Setup, agent: usize, axis: usize) -> Option<AxisUnit> {
+    setup.agents.get(agent)?.robot.axes.get(axis).map(|a| a.unit)
+}
+
+/// The unit of a recorded column, for example `rad/s^2`; `SI` for parameters, whose units differ.
+pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String {
+    let length = match axis_unit(setup, agent, axis) {
+        Some(AxisUnit::Metre) => "m",
+        _ => "rad",
+    };
+    match signal {
+        Signal::Position => length.into(),
+        Signal::Velocity | Signal::TrackingError | Signal::Reference(0) => format!("{length}/s"),
+        Signal::Reference(k) => format!("{length}/s^{}", u32::from(k) + 1),
+        Signal::Torque if length == "m" => "N".into(),
+        Signal::Torque => "N m".into(),
+        Signal::Estimate => "SI".into(),
+        Signal::Lyapunov | Signal::Dissipation => "J".into(),
+    }
+}

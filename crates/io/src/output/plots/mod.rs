@@ -1,0 +1,223 @@
+//! `plots/*.svg`: figures for print, one panel per joint, one colour per agent as in the report.
+
+mod figure;
+
+use forwardstep_sim::recording::Signal;
+
+use self::figure::{Figure, Line, Panel};
+use super::decimate::Grid;
+use super::error::EncodeError;
+use super::metrics::DisagreementSeries;
+use super::names;
+use super::palette::{self, Ground};
+use super::record::{Goal, RunRecord};
+use super::report::{sections::shared_axis_words, text};
+use super::table::Table;
+use super::timeline::Timeline;
+
+/// Points of all lines of a figure together.
+const ROOM: usize = 150_000;
+/// More names would outgrow the panels.
+const MOST_NAMES: usize = 24;
+/// More agents do not fit on a page.
+const MOST_ESTIMATE_PANELS: usize = 24;
+
+/// What figures are drawn from.
+pub(crate) struct Plots<'a> {
+    record: &'a RunRecord<'a>,
+    table: Table<'a>,
+    break_points: Vec<f64>,
+}
+
+impl<'a> Plots<'a> {
+    pub(crate) fn of(record: &'a RunRecord<'a>) -> Self {
+        let table = Table::new(record.setup, &record.outcome.recording);
+        let until_s = table.t_s.last().copied().unwrap_or(0.0);
+        let timeline = Timeline::of(&record.setup.network, record.drawn_switches.as_deref(), until_s);
+        Plots { record, break_points: timeline.break_points(), table }
+    }
+
+    /// q, one panel per joint.
+    pub(crate) fn positions(&self) -> Result<String, EncodeError> {
+        let predicted = |axis: usize| {
+            let value = self.record.predicted_agreement.as_ref()?.get(axis)?;
+            Some((*value, "predicted agreement".to_owned()))
+        };
+        self.per_joint("Positions", "q", Signal::Position, predicted)
+    }
+
+    /// τ, one panel per joint.
+    pub(crate) fn torques(&self) -> Result<String, EncodeError> {
+        self.per_joint("Torques", "τ", Signal::Torque, |_| None)
+    }
+
+    fn per_joint(
+        &self,
+        what: &str,
+        letter: &str,
+        signal: Signal,
+        guide: impl Fn(usize) -> Option<(f64, String)>,
+    ) -> Result<String, EncodeError> {
+        let (setup, table) = (self.record.setup, &self.table);
+        let grid = self.grid(table.axes(signal).count());
+        let panel = |axis: usize| {
+            let owners: Vec<_> = (0..table.agents())
+                .filter_map(|agent| Some((agent, table.column(agent, signal, axis)?)))
+                .filter(|(agent, _)| axis < table.dof(*agent))
+                .collect();
+            let mut units: Vec<String> =
+                owners.iter().map(|(agent, _)| text::unit(&names::unit(setup, *agent, signal, axis))).collect();
+            units.dedup();
+            let line = |&(agent, values): &(usize, &[f64])| {
+                self.line(&grid, values, signal == Signal::Torque, self.colour(agent))
+            };
+            Panel {
+                title: shared_axis_words(setup, axis),
+                y: format!("{letter} in {}", units.join(" or ")),
+                log: false,
+                lines: owners.iter().map(line).collect(),
+                guide: guide(axis),
+            }
+        };
+        let panels: Vec<_> =
+            if table.t_s.is_empty() { Vec::new() } else { (0..table.largest_dof()).map(panel).collect() };
+        let panels: Vec<_> = panels.into_iter().filter(|panel| !panel.lines.is_empty()).collect();
+        Figure {
+            title: self.title(what),
+            legend: self.agents_legend(),
+            columns: columns(panels.len()),
+            panels,
+            panel: (380, 230),
+            empty: "Nothing was recorded.",
+        }
+        .svg()
+    }
+
+    /// ϑ̂, one panel per agent.
+    pub(crate) fn estimates(&self) -> Result<String, EncodeError> {
+        let (setup, table) = (self.record.setup, &self.table);
+        let count =
+            |agent: usize| setup.agents[agent].robot.theta_names.len().max(setup.agents[agent].robot.theta.len());
+        let of = |agent: usize| -> Vec<&[f64]> {
+            (0..count(agent)).filter_map(|k| table.column(agent, Signal::Estimate, k)).collect()
+        };
+        let estimates: Vec<_> =
+            (0..table.agents()).map(|agent| (agent, of(agent))).filter(|(_, e)| !e.is_empty()).collect();
+        let shown = &estimates[..estimates.len().min(MOST_ESTIMATE_PANELS)];
+        let grid = self.grid(shown.iter().map(|(_, e)| e.len()).sum());
+        let colour = |k: usize, n: usize| palette::ramp(k, n, Ground::Light);
+        let panel = |(agent, columns): &(usize, Vec<&[f64]>)| Panel {
+            title: format!("{}, {}", names::agent_name(setup, *agent), text::count(columns.len(), "parameter")),
+            y: "estimate in SI units".into(),
+            log: false,
+            lines: (columns.iter().enumerate())
+                .map(|(k, values)| self.line(&grid, values, false, colour(k, columns.len())))
+                .collect(),
+            guide: None,
+        };
+        let panels: Vec<_> = if table.t_s.is_empty() { Vec::new() } else { shown.iter().map(panel).collect() };
+        // Names are only worth their room when they are few, and hold for all panels.
+        let names_of =
+            |agent: usize| (0..count(agent)).map(|k| names::parameter_name(setup, agent, k)).collect::<Vec<_>>();
+        let first = shown.first().map(|(agent, _)| names_of(*agent)).unwrap_or_default();
+        let shared = first.len() <= MOST_NAMES && shown.iter().all(|(agent, _)| names_of(*agent) == first);
+        let n = first.len();
+        Figure {
+            title: match estimates.len() - shown.len() {
+                0 => self.title("Parameter estimates"),
+                _ => self.title(&format!("Parameter estimates of the first {MOST_ESTIMATE_PANELS} agents")),
+            },
+            legend: if shared {
+                first.into_iter().enumerate().map(|(k, name)| (name, colour(k, n))).collect()
+            } else {
+                Vec::new()
+            },
+            columns: columns(panels.len()),
+            panels,
+            panel: (380, 230),
+            empty: "No agent estimates parameters.",
+        }
+        .svg()
+    }
+
+    /// max |qᵢ − qⱼ| on a logarithmic axis.
+    pub(crate) fn disagreement(&self) -> Result<String, EncodeError> {
+        let series = DisagreementSeries::of_table(&self.table);
+        let mut legend = Vec::new();
+        let mut panels = Vec::new();
+        let ink = [0x16, 0x19, 0x1f];
+        if let Ok(series) = &series {
+            let axes = if series.per_axis.len() > 1 { series.per_axis.as_slice() } else { &[] };
+            let grid = self.grid(axes.len() + 1);
+            let colour = |axis| palette::ramp(axis, axes.len(), Ground::Light);
+            let mut lines: Vec<_> =
+                axes.iter().enumerate().map(|(axis, values)| self.line(&grid, values, false, colour(axis))).collect();
+            lines.push(Line { width: 2, ..self.line(&grid, &series.overall, false, ink) });
+            if !axes.is_empty() {
+                legend = (0..axes.len().min(MOST_NAMES))
+                    .map(|axis| (shared_axis_words(self.record.setup, axis), colour(axis)))
+                    .collect();
+                legend.push(("largest".into(), ink));
+            }
+            let unit = text::unit(&names::unit(self.record.setup, 0, Signal::Position, 0));
+            let guide = self.record.goal.and_then(|outcome| match outcome.goal {
+                Goal::DisagreementBelow(bound) => Some((bound, "goal".to_owned())),
+                Goal::ExpectDiverges => None,
+            });
+            panels.push(Panel {
+                title: String::new(), y: format!("max |qᵢ − qⱼ| in {unit}"), log: true, lines, guide
+            });
+        }
+        Figure {
+            title: self.title("Disagreement"),
+            legend,
+            panels,
+            columns: 1,
+            panel: (760, 400),
+            empty: match series {
+                Err(absence) => absence.words(),
+                Ok(_) => "",
+            },
+        }
+        .svg()
+    }
+
+    fn title(&self, what: &str) -> String {
+        let title = self.record.title;
+        if title.is_empty() || title.chars().count() > 70 { what.to_owned() } else { format!("{what} – {title}") }
+    }
+
+    fn colour(&self, agent: usize) -> [u8; 3] {
+        palette::agent(agent, self.table.agents(), Ground::Light)
+    }
+
+    /// All agents by name, or the first and last few where colours run through a ramp.
+    fn agents_legend(&self) -> Vec<(String, [u8; 3])> {
+        let agents = self.table.agents();
+        let entry = |agent| (names::agent_name(self.record.setup, agent), self.colour(agent));
+        if agents <= MOST_NAMES {
+            return (0..agents).map(entry).collect();
+        }
+        (0..8).map(|k| k * (agents - 1) / 7).map(entry).collect()
+    }
+
+    fn grid(&self, lines: usize) -> Grid {
+        Grid::new(self.table.t_s, &self.break_points, (ROOM / lines.max(1)).clamp(60, 700))
+    }
+
+    fn line(&self, grid: &Grid, values: &[f64], may_jump: bool, colour: [u8; 3]) -> Line {
+        let sampled = grid.sample(self.table.t_s, values, may_jump);
+        let points = grid.t_s.iter().copied().zip(sampled.into_iter().map(f64::from)).collect();
+        Line { colour, width: 1, points }
+    }
+}
+
+/// Columns for this many panels: wide rather than tall.
+fn columns(panels: usize) -> usize {
+    match panels {
+        0..=3 => panels.max(1),
+        4 => 2,
+        5..=12 => 3,
+        _ => 4,
+    }
+}

@@ -1,0 +1,110 @@
+//! Everything that is known about a finished run.
+
+use forwardstep_check::verdict::Report;
+use forwardstep_sim::recording::{BreakdownCause, Ending, Outcome};
+use forwardstep_sim::setup::Setup;
+
+use super::metrics::Metrics;
+use super::names;
+
+/// A finished run with all that was said about it before: what [`super::write_run`] writes.
+#[derive(Clone, Debug)]
+pub struct RunRecord<'a> {
+    /// The scenario's title, for headings.
+    pub title: &'a str,
+    /// The scenario's name: its file or the name of a built-in one.
+    pub scenario_name: &'a str,
+    /// The scenario's text as it was read; copied to `scenario.toml`.
+    pub scenario_text: &'a str,
+    /// The version of forwardstep.
+    pub version: &'a str,
+    /// What was simulated.
+    pub setup: &'a Setup,
+    /// What came out.
+    pub outcome: &'a Outcome,
+    /// What was promised before the run.
+    pub verdicts: &'a Report,
+    /// The value the agents are predicted to agree on, per axis, when a theorem or a certificate tells.
+    pub predicted_agreement: Option<Vec<f64>>,
+    /// The scenario's goal and whether it was met.
+    pub goal: Option<GoalOutcome>,
+    /// Remarks for the reader of the report.
+    pub notices: Vec<String>,
+    /// For [`forwardstep_sim::schedule::Schedule::Random`]: when each drawn graph came into force, s, and its index. Other
+    /// schedules need none; a random one without is reported by its graphs only.
+    pub drawn_switches: Option<Vec<(f64, usize)>>,
+}
+
+impl RunRecord<'_> {
+    /// The BLAKE3 digest of the scenario's text, in hexadecimal.
+    pub fn digest(&self) -> String {
+        blake3::hash(self.scenario_text.as_bytes()).to_hex().to_string()
+    }
+}
+
+/// What a scenario asks of its run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// The run completes and max |q_i − q_j| at its end is below this, rad or m.
+    DisagreementBelow(f64),
+    /// The run must not agree: see [`Goal::is_met`].
+    ExpectDiverges,
+}
+
+impl Goal {
+    /// Whether `outcome` meets the goal.
+    ///
+    /// A run diverges when it breaks down without leaving an enforced limit, or when its disagreement is no longer
+    /// finite, or exceeds in the last quarter of the run everything seen in the first quarter.
+    pub fn is_met(&self, setup: &Setup, outcome: &Outcome, metrics: &Metrics) -> bool {
+        match *self {
+            Goal::DisagreementBelow(bound) => {
+                outcome.ending == Ending::Completed && metrics.disagreement.last().is_some_and(|last| last < bound)
+            }
+            Goal::ExpectDiverges => match &outcome.ending {
+                Ending::BrokeDown(breakdown) => !matches!(breakdown.cause, BreakdownCause::PositionLimit { .. }),
+                _ => super::metrics::grows(setup, &outcome.recording),
+            },
+        }
+    }
+
+    /// The goal in words.
+    pub fn words(&self) -> String {
+        match self {
+            Goal::DisagreementBelow(bound) => format!("disagreement below {bound} at the end"),
+            Goal::ExpectDiverges => "the run is expected to diverge".into(),
+        }
+    }
+}
+
+/// A goal and whether it was met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GoalOutcome {
+    /// What was asked.
+    pub goal: Goal,
+    /// What happened.
+    pub met: bool,
+}
+
+/// How a run ended, as one sentence that names the agent and the signal that broke it.
+pub fn ending_sentence(setup: &Setup, ending: &Ending) -> String {
+    match ending {
+        Ending::Completed => format!("Reached the horizon of {} s.", setup.time.end_s),
+        Ending::Interrupted { t_s } => {
+            format!("Interrupted at t = {t_s} s of {} s; everything until then is kept.", setup.time.end_s)
+        }
+        Ending::BrokeDown(breakdown) => {
+            let column = names::column_name(setup, breakdown.agent, breakdown.signal, breakdown.axis);
+            let cause = match breakdown.cause {
+                BreakdownCause::NotFinite => "is no longer a finite number".to_owned(),
+                BreakdownCause::StepUnderFloor { step_s } => {
+                    format!("asks for a step of {step_s:e} s, under the floor of {:e} s", setup.solver.min_step_s)
+                }
+                BreakdownCause::PositionLimit { value, limits: [low, high] } => {
+                    format!("left its limits [{low}, {high}]: it is {value}")
+                }
+            };
+            format!("Broke down at t = {} s of {} s: {column} {cause}.", breakdown.t_s, setup.time.end_s)
+        }
+    }
+}

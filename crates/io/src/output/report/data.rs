@@ -1,0 +1,275 @@
+//! What the page's plots are drawn from: a JSON index and one block of numbers.
+
+use base64::Engine;
+use forwardstep_sim::recording::Signal;
+use forwardstep_sim::setup::{AxisUnit, Law};
+use serde::Serialize;
+
+use super::super::decimate::Grid;
+use super::super::metrics::{DisagreementSeries, ledger_errors};
+use super::super::names;
+use super::super::record::{Goal, RunRecord};
+use super::super::table::Table;
+use super::super::timeline::{self, Timeline};
+use super::network::{self, Gantt};
+
+/// Points of a signal on the page, as far as space allows.
+const MOST_POINTS: usize = 2000;
+/// Points of an estimate.
+const MOST_ESTIMATE_POINTS: usize = 500;
+/// Fewer would not show anything.
+const FEWEST_POINTS: usize = 64;
+/// Numbers of all signals together, four bytes each before encoding.
+const ROOM: usize = 650_000;
+/// Numbers of all estimates together.
+const ESTIMATE_ROOM: usize = 300_000;
+/// More vertical lines would hide the plots.
+const MOST_LINES: usize = 400;
+
+/// Everything the plots need.
+pub(crate) struct Payload {
+    /// The index, safe inside a script element.
+    pub(crate) json: String,
+    /// Little-endian numbers in base64: first the times of all grids as f64, then all series as f32.
+    pub(crate) block: String,
+    /// What was left out, for the reader.
+    pub(crate) notes: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Index {
+    until_s: f64,
+    agents: Vec<AgentIndex>,
+    grids: Grids,
+    signals: Signals,
+    disagreement: Option<DisagreementIndex>,
+    goal: Option<f64>,
+    predicted: Option<Vec<f64>>,
+    break_points: Vec<f64>,
+    gantt: Option<Gantt>,
+    delays: Vec<DelayIndex>,
+}
+
+#[derive(Serialize)]
+struct AgentIndex {
+    name: String,
+    axes: Vec<AxisIndex>,
+    parameters: Vec<ParameterIndex>,
+}
+
+#[derive(Serialize)]
+struct AxisIndex {
+    name: String,
+    /// `rad` or `m`.
+    unit: &'static str,
+    position_limits: Option<[f64; 2]>,
+    velocity_limit: Option<f64>,
+    effort_limit: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct ParameterIndex {
+    name: String,
+    truth: Option<f64>,
+    /// Index of its series, if it is on the page.
+    series: Option<usize>,
+}
+
+/// Numbers of points.
+#[derive(Serialize)]
+struct Grids {
+    main: usize,
+    estimates: usize,
+    delays: usize,
+    /// Series on the main grid, which come first; then estimates, then delays.
+    main_series: usize,
+    estimate_series: usize,
+}
+
+/// Indices of series by agent and axis.
+#[derive(Serialize, Default)]
+struct Signals {
+    q: Vec<Vec<Option<usize>>>,
+    dq: Vec<Vec<Option<usize>>>,
+    s: Vec<Vec<Option<usize>>>,
+    tau: Vec<Vec<Option<usize>>>,
+    /// z, ż, …
+    reference: Vec<Vec<Vec<Option<usize>>>>,
+    lyapunov: Vec<Option<usize>>,
+    ledger_sum: Vec<Option<usize>>,
+    ledger_error: Vec<Option<usize>>,
+}
+
+#[derive(Serialize)]
+struct DisagreementIndex {
+    overall: usize,
+    per_axis: Vec<usize>,
+}
+
+#[derive(Serialize)]
+struct DelayIndex {
+    label: String,
+    series: usize,
+}
+
+/// Series on one grid.
+struct Series<'a> {
+    grid: Grid,
+    rows_t_s: &'a [f64],
+    values: Vec<f32>,
+    count: usize,
+}
+
+impl<'a> Series<'a> {
+    fn new(grid: Grid, rows_t_s: &'a [f64]) -> Self {
+        Series { grid, rows_t_s, values: Vec::new(), count: 0 }
+    }
+
+    fn add(&mut self, values: &[f64], may_jump: bool) -> usize {
+        self.values.extend(self.grid.sample(self.rows_t_s, values, may_jump));
+        self.count += 1;
+        self.count - 1
+    }
+}
+
+impl Payload {
+    pub(crate) fn of(record: &RunRecord<'_>, table: &Table<'_>, timeline: &Timeline<'_>, until_s: f64) -> Payload {
+        let mut notes = Vec::new();
+        let break_points = timeline.break_points();
+        let columns = &record.outcome.recording.columns;
+        let signals = columns.iter().filter(|c| c.signal != Signal::Estimate).count() + table.agents() + 1;
+        let budget = (ROOM / (signals + table.largest_dof())).clamp(FEWEST_POINTS, MOST_POINTS);
+        let mut main = Series::new(Grid::new(table.t_s, &break_points, budget), table.t_s);
+        if main.grid.decimated {
+            notes.push(format!(
+                "For display, rows are gathered in buckets of which the least and the greatest value are kept: about {} of {} \
+                 points per signal. The tables have every row.",
+                main.grid.t_s.len(),
+                table.t_s.len()
+            ));
+        }
+
+        let references = columns.iter().filter_map(|c| match c.signal {
+            Signal::Reference(k) => Some(usize::from(k) + 1),
+            _ => None,
+        });
+        let references = references.max().unwrap_or(0);
+        let mut take = |signal: Signal, may_jump: bool| -> Vec<Vec<Option<usize>>> {
+            let axes = |agent| 0..table.dof(agent);
+            let mut one = |agent, axis| table.column(agent, signal, axis).map(|values| main.add(values, may_jump));
+            (0..table.agents()).map(|agent| axes(agent).map(|axis| one(agent, axis)).collect()).collect()
+        };
+        let mut index = Signals {
+            q: take(Signal::Position, false),
+            dq: take(Signal::Velocity, false),
+            s: take(Signal::TrackingError, false),
+            tau: take(Signal::Torque, true),
+            reference: (0..references).map(|k| take(Signal::Reference(k as u8), k > 0)).collect(),
+            ..Signals::default()
+        };
+        for agent in 0..table.agents() {
+            let v = table.column(agent, Signal::Lyapunov, 0);
+            let dissipated = table.column(agent, Signal::Dissipation, 0);
+            let sum = v.zip(dissipated).map(|(v, d)| v.iter().zip(d).map(|(v, d)| v + d).collect::<Vec<_>>());
+            let error = ledger_errors(table, agent).map(|e| e.iter().map(|e| e.abs()).collect::<Vec<_>>());
+            index.lyapunov.push(v.map(|v| main.add(v, false)));
+            index.ledger_sum.push(sum.map(|sum| main.add(&sum, false)));
+            index.ledger_error.push(error.map(|error| main.add(&error, false)));
+        }
+        let disagreement = DisagreementSeries::of_table(table).ok().map(|series| DisagreementIndex {
+            overall: main.add(&series.overall, false),
+            per_axis: series.per_axis.iter().map(|axis| main.add(axis, false)).collect(),
+        });
+
+        let (agents, estimates) = agents(record, table, &mut notes);
+        let (delay_t_s, delay_values) =
+            timeline::sample_delays(&record.setup.network.delays, &timeline.delay_jumps, until_s);
+        let shown_delays = network::shown_delays(record.setup, timeline);
+        let delays: Vec<DelayIndex> = (shown_delays.iter().enumerate())
+            .map(|(series, (_, label))| DelayIndex { label: label.clone(), series })
+            .collect();
+
+        let index = Index {
+            until_s,
+            agents,
+            grids: Grids {
+                main: main.grid.t_s.len(),
+                estimates: estimates.grid.t_s.len(),
+                delays: delay_t_s.len(),
+                main_series: main.count,
+                estimate_series: estimates.count,
+            },
+            signals: index,
+            disagreement,
+            goal: record.goal.and_then(|outcome| match outcome.goal {
+                Goal::DisagreementBelow(bound) => Some(bound),
+                Goal::ExpectDiverges => None,
+            }),
+            predicted: record.predicted_agreement.clone(),
+            break_points: if break_points.len() <= MOST_LINES { break_points } else { Vec::new() },
+            gantt: Gantt::of(record.setup, timeline, &mut notes),
+            delays,
+        };
+        let times = [&main.grid.t_s, &estimates.grid.t_s, &delay_t_s];
+        let delays = shown_delays.iter().filter_map(|(k, _)| delay_values.get(*k));
+        let mut bytes: Vec<u8> = times.into_iter().flatten().flat_map(|t| t.to_le_bytes()).collect();
+        let series = [&main.values, &estimates.values].into_iter().chain(delays);
+        bytes.extend(series.flatten().flat_map(|v| v.to_le_bytes()));
+        Payload {
+            // "<" never stands in the index as itself, so no name can end the script element.
+            json: serde_json::to_string(&index).unwrap_or_else(|_| "null".into()).replace('<', "\\u003c"),
+            block: base64::engine::general_purpose::STANDARD.encode(bytes),
+            notes,
+        }
+    }
+}
+
+/// Names, limits and parameters of all agents, and the series of those estimates that there is room for.
+fn agents<'a>(record: &RunRecord<'_>, table: &Table<'a>, notes: &mut Vec<String>) -> (Vec<AgentIndex>, Series<'a>) {
+    let setup = record.setup;
+    let count =
+        |agent: usize| setup.agents.get(agent).map_or(0, |a| a.robot.theta_names.len().max(a.robot.theta.len()));
+    let estimated =
+        |agent: usize| (0..count(agent)).filter(|k| table.column(agent, Signal::Estimate, *k).is_some()).count();
+    let all: usize = (0..table.agents()).map(estimated).sum();
+    let budget = (ESTIMATE_ROOM / all.max(1)).clamp(FEWEST_POINTS, MOST_ESTIMATE_POINTS);
+    let mut series = Series::new(Grid::new(table.t_s, &[], budget), table.t_s);
+    let room = ESTIMATE_ROOM / series.grid.t_s.len().max(1);
+    let mut agents_left_out = 0;
+    let agents = (0..table.agents())
+        .map(|agent| {
+            let fits = series.count + estimated(agent) <= room;
+            agents_left_out += usize::from(!fits);
+            let mut parameter = |k: usize| ParameterIndex {
+                name: names::parameter_name(setup, agent, k),
+                truth: setup.agents[agent].robot.theta.get(k).copied(),
+                series: table.column(agent, Signal::Estimate, k).filter(|_| fits).map(|v| series.add(v, false)),
+            };
+            let adaptive = matches!(setup.agents[agent].law, Law::Adaptive { .. });
+            let parameters = if adaptive { (0..count(agent)).map(&mut parameter).collect() } else { Vec::new() };
+            AgentIndex { name: names::agent_name(setup, agent), axes: axes(setup, agent), parameters }
+        })
+        .collect();
+    if agents_left_out > 0 {
+        notes.push(format!(
+            "The estimates of {agents_left_out} of {} agents are not on this page to keep it small; the tables have them.",
+            table.agents()
+        ));
+    }
+    (agents, series)
+}
+
+fn axes(setup: &forwardstep_sim::Setup, agent: usize) -> Vec<AxisIndex> {
+    let axes = setup.agents[agent].robot.axes.iter().enumerate();
+    axes.map(|(axis, limits)| AxisIndex {
+        name: names::axis_name(setup, agent, axis),
+        unit: match limits.unit {
+            AxisUnit::Radian => "rad",
+            AxisUnit::Metre => "m",
+        },
+        position_limits: limits.position_limits,
+        velocity_limit: limits.velocity_limit,
+        effort_limit: limits.effort_limit,
+    })
+    .collect()
+}

@@ -1,0 +1,166 @@
+//! `report.html`: one self-contained page that opens offline.
+//!
+//! The page is written here in words and tables; `assets/report` has its style and the script that draws the plots with
+//! uPlot. All text goes through maud, which escapes it, or through the JSON index.
+
+mod data;
+mod network;
+pub(crate) mod sections;
+pub(crate) mod text;
+
+use forwardstep_sim::recording::Ending;
+use forwardstep_sim::setup::{AgentSetup, Law};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::metrics::{Absence, Disagreement, Metrics};
+use super::palette::{self, Ground};
+use super::record::RunRecord;
+use super::table::Table;
+use super::timeline::Timeline;
+
+const UPLOT_JS: &str = include_str!("../../../assets/uplot/uPlot.iife.min.js");
+const UPLOT_CSS: &str = include_str!("../../../assets/uplot/uPlot.min.css");
+const PAGE_CSS: &str = include_str!("../../../assets/report/page.css");
+/// In the order in which they build on each other.
+const PAGE_JS: [&str; 4] = [
+    include_str!("../../../assets/report/data.js"),
+    include_str!("../../../assets/report/plot.js"),
+    include_str!("../../../assets/report/cards.js"),
+    include_str!("../../../assets/report/page.js"),
+];
+/// Nothing is fetched, whatever the page says.
+const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:";
+
+/// The whole page.
+pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
+    let table = Table::new(record.setup, &record.outcome.recording);
+    let reached_s = match &record.outcome.ending {
+        Ending::Completed => record.setup.time.end_s,
+        Ending::Interrupted { t_s } => *t_s,
+        Ending::BrokeDown(breakdown) => breakdown.t_s,
+    };
+    let until_s = table.t_s.last().copied().unwrap_or(0.0).max(if reached_s.is_finite() { reached_s } else { 0.0 });
+    let timeline = Timeline::of(&record.setup.network, record.drawn_switches.as_deref(), until_s);
+    let payload = data::Payload::of(record, &table, &timeline, until_s);
+    let absence = match metrics.disagreement {
+        Disagreement::Absent(absence) => Some(absence),
+        Disagreement::Measured { .. } => None,
+    };
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                meta name="generator" content={ "forwardstep " (record.version) };
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                title { (record.title) " – forwardstep" }
+                style { (PreEscaped(UPLOT_CSS)) }
+                style { (PreEscaped(PAGE_CSS)) (PreEscaped(colours(record.setup.agents.len()))) }
+            }
+            body {
+                div #error-banner role="alert" {}
+                main {
+                    (sections::header(record, metrics))
+                    @if !record.notices.is_empty() {
+                        section.notices aria-label="Notices" { ul { @for notice in &record.notices { li { (notice) } } } }
+                    }
+                    (sections::verdicts(record, metrics))
+                    (signals(absence, &record.setup.agents))
+                    (network(record, &timeline))
+                    (sections::loads(record.setup, metrics))
+                    (sections::provenance(record))
+                    footer {
+                        @for note in &payload.notes { p { (note) } }
+                        p {
+                            "Beside this page: " code { "trajectory.parquet" } " with every recorded number, " code { "summary.json" }
+                            " for programs, " code { "plots/" } " for print, and " code { "scenario.toml" } " to run it again."
+                        }
+                    }
+                }
+                script #index type="application/json" { (PreEscaped(payload.json)) }
+                script #block type="text/plain" { (payload.block) }
+                script { (PreEscaped(UPLOT_JS)) }
+                script { (PreEscaped("(() => {\n\"use strict\";\n")) @for part in PAGE_JS { (PreEscaped(part)) } "})();" }
+            }
+        }
+    }
+    .into_string()
+}
+
+/// The plots; the script fills their cards.
+fn signals(absence: Option<Absence>, agents: &[AgentSetup]) -> Markup {
+    let adaptive = agents.iter().any(|agent| matches!(agent.law, Law::Adaptive { .. }));
+    let card = |id: &str, title: &str, what: &str, empty: &str| {
+        html! {
+            article.card.plot data-plot=(id) data-empty=(empty) {
+                div.head { h3 { (title) span.by { (what) } } div.pick {} }
+                div.canvas {}
+            }
+        }
+    };
+    html! {
+        section #signals {
+            h2 { "Signals" }
+            div #toolbar {
+                div #legend role="group" aria-label="Agents" {}
+                div.tools {
+                    label #joint-label { "Joint " select #joint {} }
+                    label { input #break-points type="checkbox" checked; " break-points" }
+                    button #reset type="button" disabled { "Reset zoom" }
+                }
+            }
+            noscript { p.note { "The plots need JavaScript; the same plots lie in " code { "plots/" } " as SVG." } }
+            div.grid {
+                (card("disagreement", "Disagreement", "max |qᵢ − qⱼ|", absence.map_or("", Absence::words)))
+                (card("position", "Positions", "q", ""))
+                (card("torque", "Torques", "τ, after any limit", ""))
+                (card("velocity", "Speed and reference", "q̇, and z dashed", ""))
+                (card("error", "Tracking error", "s = q̇ − z", ""))
+                (card("reference", "Reference derivatives", "ż and higher", ""))
+                (card("estimate", "Parameter estimates", "ϑ̂, the truth dashed", if adaptive { "" } else { "no agent estimates parameters" }))
+                (card("ledger", "Energy ledger", "V + ∫ dissipation = V(0)", ""))
+            }
+            p.note.hint { "Drag across a plot to zoom all of them; double-click to see everything again." }
+        }
+    }
+}
+
+fn network(record: &RunRecord<'_>, timeline: &Timeline<'_>) -> Markup {
+    html! {
+        section #network {
+            h2 { "Network" }
+            div.card {
+                h3 { "Graphs" }
+                (network::graphs(record.setup, timeline))
+            }
+            article.card.plot data-plot="gantt" data-empty="The graphs were drawn at random, and the draws were not kept." {
+                div.head { h3 { "Active edges" span.by #gantt-by { "sender → receiver, in the sender’s colour" } } }
+                div.canvas {}
+            }
+            article.card.plot data-plot="delay" data-empty="no edge has a delay" {
+                div.head { h3 { "Delays" span.by { "T(t)" } } div.pick {} }
+                div.canvas {}
+            }
+        }
+    }
+}
+
+/// The agents' colours as CSS variables and classes, for both grounds.
+fn colours(agents: usize) -> String {
+    let variables = |ground| -> String {
+        let agent = (0..agents).map(|k| format!("--a{k}:{};", palette::css(palette::agent(k, agents, ground))));
+        let ramp = (0..RAMP).map(|k| format!("--r{k}:{};", palette::css(palette::ramp(k, RAMP, ground))));
+        agent.chain(ramp).collect()
+    };
+    let classes: String = (0..agents).map(|k| format!(".a{k}{{--c:var(--a{k})}}")).collect();
+    format!(
+        ":root{{{}}}@media screen and (prefers-color-scheme:dark){{:root:not(.printing){{{}}}}}{classes}",
+        variables(Ground::Light),
+        variables(Ground::Dark)
+    )
+}
+
+/// Steps of the colour ramp for things that are not agents.
+const RAMP: usize = 16;

@@ -1,0 +1,182 @@
+//! Pictures of the network: its edges over time, its graphs, its delays.
+
+use std::f64::consts::TAU;
+
+use forwardstep_sim::graph::Edge;
+use forwardstep_sim::setup::Setup;
+use maud::{Markup, html};
+use serde::Serialize;
+
+use super::super::names::agent_name;
+use super::super::timeline::Timeline;
+use super::text;
+
+/// With more edges, a row stands for everything that one agent hears.
+const MOST_EDGE_ROWS: usize = 40;
+/// More bars would make the page large.
+const MOST_BARS: usize = 20_000;
+/// More graphs are not drawn one by one.
+const MOST_GRAPHS: usize = 12;
+/// More delays cannot be told apart.
+const MOST_DELAYS: usize = 24;
+
+/// Which edges are active when.
+#[derive(Serialize)]
+pub(crate) struct Gantt {
+    /// A label and the agent whose colour the row has.
+    rows: Vec<(String, usize)>,
+    /// Start, end, row, and how many edges it stands for.
+    bars: Vec<(f64, f64, usize, usize)>,
+    /// Start, end and number from zero of the graph in force.
+    spans: Vec<(f64, f64, usize)>,
+    by_receiver: bool,
+}
+
+impl Gantt {
+    pub(crate) fn of(setup: &Setup, timeline: &Timeline<'_>, notes: &mut Vec<String>) -> Option<Gantt> {
+        let spans = timeline.spans.as_deref()?;
+        let mut edges: Vec<(usize, usize)> =
+            timeline.graphs.iter().flat_map(|graph| graph.iter().map(|e| (e.from, e.to))).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        let by_receiver = edges.len() > MOST_EDGE_ROWS;
+        let rows: Vec<(String, usize)> = if by_receiver {
+            (0..setup.agents.len()).map(|i| (agent_name(setup, i), i)).collect()
+        } else {
+            let label = |&(j, i): &(usize, usize)| (format!("{} → {}", agent_name(setup, j), agent_name(setup, i)), j);
+            edges.iter().map(label).collect()
+        };
+        let row_of = |edge: &Edge| {
+            if by_receiver { Some(edge.to) } else { edges.binary_search(&(edge.from, edge.to)).ok() }
+        };
+        let mut gantt = Gantt { rows, bars: Vec::new(), spans: Vec::new(), by_receiver };
+        // The bar of a row that goes on as long as nothing changes.
+        let mut open: Vec<Option<usize>> = vec![None; gantt.rows.len()];
+        for span in spans {
+            if gantt.bars.len() > MOST_BARS {
+                break;
+            }
+            gantt.spans.push((span.start_s, span.end_s, span.graph));
+            let mut active = vec![0_usize; gantt.rows.len()];
+            for row in timeline.graphs[span.graph].iter().filter_map(row_of) {
+                if let Some(active) = active.get_mut(row) {
+                    *active += 1;
+                }
+            }
+            for (row, &edges) in active.iter().enumerate() {
+                match open[row].and_then(|bar| gantt.bars.get_mut(bar)) {
+                    Some(bar) if bar.3 == edges && bar.1 == span.start_s => bar.1 = span.end_s,
+                    _ if edges > 0 => {
+                        open[row] = Some(gantt.bars.len());
+                        gantt.bars.push((span.start_s, span.end_s, row, edges));
+                    }
+                    _ => open[row] = None,
+                }
+            }
+        }
+        if timeline.cut || gantt.spans.len() < spans.len() {
+            let end_s = gantt.spans.last().map_or(0.0, |span| span.1);
+            notes.push(format!("The network switches very often; it is drawn until t = {} s.", text::number(end_s)));
+        }
+        Some(gantt)
+    }
+}
+
+/// The delays to draw, by index, with the edges that have them.
+pub(crate) fn shown_delays(setup: &Setup, timeline: &Timeline<'_>) -> Vec<(usize, String)> {
+    let mut edges: Vec<(usize, usize, usize)> =
+        timeline.graphs.iter().flat_map(|graph| graph.iter().map(|e| (e.delay, e.from, e.to))).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    let used: Vec<usize> = (0..setup.network.delays.len()).filter(|k| edges.iter().any(|e| e.0 == *k)).collect();
+    let label = |k: usize| {
+        let mine: Vec<_> = edges.iter().filter(|e| e.0 == k).collect();
+        match mine.as_slice() {
+            _ if used.len() == 1 => "all edges".to_owned(),
+            [(_, from, to)] => format!("{} → {}", agent_name(setup, *from), agent_name(setup, *to)),
+            more => format!("delay {}, {}", k + 1, text::count(more.len(), "edge")),
+        }
+    };
+    used.iter().take(MOST_DELAYS).map(|k| (*k, label(*k))).collect()
+}
+
+/// One small picture per graph.
+pub(crate) fn graphs(setup: &Setup, timeline: &Timeline<'_>) -> Markup {
+    let time_of = |graph: usize| -> f64 {
+        let spans = timeline.spans.iter().flatten().filter(|span| span.graph == graph);
+        spans.map(|span| span.end_s - span.start_s).sum()
+    };
+    let agents = setup.agents.len();
+    html! {
+        div.graphs {
+            @for (k, graph) in timeline.graphs.iter().take(MOST_GRAPHS).enumerate() {
+                figure {
+                    (circle(setup, graph))
+                    figcaption {
+                        strong { @if timeline.graphs.len() == 1 { "The graph" } @else { "Graph " (k + 1) } }
+                        " " (text::count(graph.len(), "edge"))
+                        @if timeline.spans.is_some() && timeline.graphs.len() > 1 {
+                            ", in force " (text::number(time_of(k))) " s"
+                        }
+                    }
+                }
+            }
+        }
+        @if timeline.graphs.len() > MOST_GRAPHS {
+            p.note { "The first " (MOST_GRAPHS) " of " (timeline.graphs.len()) " graphs." }
+        }
+        @if agents > 0 { p.note { "An arrow from j to i: i hears j." } }
+    }
+}
+
+/// Agents on a circle, an arrow for every edge from the sender to the receiver.
+fn circle(setup: &Setup, edges: &[Edge]) -> Markup {
+    const RADIUS: f64 = 62.0;
+    let count = setup.agents.len();
+    let dot = if count <= 12 { 9.0 } else { (0.3 * RADIUS * TAU / count as f64).min(5.0) };
+    let place = |agent: usize| {
+        let angle = TAU * (agent as f64 / count.max(1) as f64 - 0.25);
+        let radius = if count == 1 { 0.0 } else { RADIUS };
+        (radius * angle.cos(), radius * angle.sin())
+    };
+    let two_way = |e: &Edge| edges.iter().any(|other| other.from == e.to && other.to == e.from);
+    let arrow = |e: &Edge| {
+        let ((x0, y0), (x1, y1)) = (place(e.from), place(e.to));
+        let length = (x1 - x0).hypot(y1 - y0).max(1e-9);
+        let (ux, uy) = ((x1 - x0) / length, (y1 - y0) / length);
+        // Arrows in both directions keep to their sides.
+        let aside = if two_way(e) { dot * 0.32 } else { 0.0 };
+        let (sx, sy) = (-uy * aside, ux * aside);
+        let head = if count <= 12 { 6.0 } else { (dot * 1.2).min(4.0) };
+        let tip = (x1 - ux * (dot + 0.15 * dot) + sx, y1 - uy * (dot + 0.15 * dot) + sy);
+        let neck = (tip.0 - ux * head, tip.1 - uy * head);
+        let half = head * 0.45;
+        html! {
+            g class={ "a" (e.from) } {
+                line x1=(short(x0 + ux * dot + sx)) y1=(short(y0 + uy * dot + sy)) x2=(short(neck.0)) y2=(short(neck.1)) {}
+                polygon points={
+                    (short(tip.0)) "," (short(tip.1)) " "
+                    (short(neck.0 - uy * half)) "," (short(neck.1 + ux * half)) " "
+                    (short(neck.0 + uy * half)) "," (short(neck.1 - ux * half))
+                } {}
+            }
+        }
+    };
+    html! {
+        svg.graph viewBox="-80 -80 160 160" role="img" aria-label="graph" {
+            @for edge in edges.iter().filter(|e| e.from < count && e.to < count).take(2000) { (arrow(edge)) }
+            @for (agent, this) in setup.agents.iter().enumerate() {
+                @let (x, y) = place(agent);
+                g class={ "node a" (agent) } {
+                    title { (this.name) }
+                    circle cx=(short(x)) cy=(short(y)) r=(dot) {}
+                    @if count <= 12 { text x=(short(x)) y=(short(y + 3.4)) { (agent + 1) } }
+                }
+            }
+        }
+    }
+}
+
+fn short(x: f64) -> String {
+    format!("{x:.1}")
+}

@@ -1,0 +1,312 @@
+//! The parts of the page that are words and tables.
+
+use forwardstep_check::verdict::Answer;
+use forwardstep_sim::recording::{Ending, Signal};
+use forwardstep_sim::setup::{AxisUnit, Exchange, Method, Setup};
+use maud::{Markup, html};
+
+use super::super::metrics::{Disagreement, LimitKind, Metrics};
+use super::super::names;
+use super::super::record::{RunRecord, ending_sentence};
+use super::text::{self, number};
+
+/// More rows would only repeat themselves.
+const MOST_LIMIT_ROWS: usize = 24;
+const MOST_TORQUE_ROWS: usize = 64;
+
+/// Title, how it ended, and the few numbers one looks for first.
+pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
+    let setup = record.setup;
+    let (class, word) = match record.outcome.ending {
+        Ending::Completed => ("good", "Completed"),
+        Ending::Interrupted { .. } => ("warn", "Interrupted"),
+        Ending::BrokeDown(_) => ("bad", "Broke down"),
+    };
+    html! {
+        header.top {
+            p.eyebrow { "forwardstep run" span.sep { "/" } (record.scenario_name) }
+            h1 { (record.title) }
+            p.ending {
+                span.badge.(class) { (word) }
+                @if let Some(outcome) = record.goal {
+                    @let (class, word) = if outcome.met { ("good", "Goal met") } else { ("bad", "Goal missed") };
+                    span.badge.(class) { (word) }
+                }
+                span { (ending_sentence(setup, &record.outcome.ending)) }
+            }
+            dl.figures {
+                @match metrics.disagreement {
+                    Disagreement::Measured { last, .. } => {
+                        (figure("Final disagreement", &number(last), length_unit(setup)))
+                    }
+                    Disagreement::Absent(_) => (figure("Final disagreement", "–", "")),
+                }
+                @if let Some(t_s) = metrics.settled_s { (figure("Settled after", &number(t_s), "s")) }
+                @if let Some(speed) = metrics.speed {
+                    (figure("Largest speed", &number(speed.largest.value), &unit_at(setup, Signal::Velocity, speed.largest.agent, speed.largest.axis)))
+                }
+                @let peaks = metrics.peak_torques.iter();
+                @if let Some(peak) = peaks.reduce(|a, b| if b.value.abs() > a.value.abs() { b } else { a }) {
+                    (figure("Peak torque", &number(peak.value.abs()), &unit_at(setup, Signal::Torque, peak.agent, peak.axis)))
+                }
+                @if let Some(ledger) = metrics.ledger_error { (figure("Ledger error", &number(ledger.relative), "")) }
+                (figure("Agents", &setup.agents.len().to_string(), ""))
+            }
+        }
+    }
+}
+
+/// A number with its unit; without, when it is none.
+fn quantity(x: f64, unit: &str) -> String {
+    if x.is_finite() { format!("{} {unit}", number(x)) } else { number(x) }
+}
+
+fn figure(name: &str, value: &str, unit: &str) -> Markup {
+    html! { div { dt { (name) } dd { (value) @if !unit.is_empty() && !value.starts_with("not") { span.unit { " " (unit) } } } } }
+}
+
+fn unit_at(setup: &Setup, signal: Signal, agent: usize, axis: usize) -> String {
+    text::unit(&names::unit(setup, agent, signal, axis))
+}
+
+fn length_unit(setup: &Setup) -> &'static str {
+    let mut units = setup.agents.iter().flat_map(|a| &a.robot.axes).map(|axis| axis.unit);
+    let first = units.next();
+    match first {
+        Some(first) if units.all(|unit| unit == first) => match first {
+            AxisUnit::Radian => "rad",
+            AxisUnit::Metre => "m",
+        },
+        Some(_) => "rad or m",
+        None => "",
+    }
+}
+
+/// What was promised beside what happened.
+pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
+    let report = record.verdicts;
+    let unit = length_unit(record.setup);
+    html! {
+        section #promises {
+            h2 { "Promised and happened" }
+            div.beside {
+                div.card {
+                    h3 { "Promised" span.by { (report.theorem) } }
+                    p.promise { (report.promises) }
+                    @if report.hypotheses.is_empty() { p.note { "No hypotheses were checked." } }
+                    ul.hypotheses {
+                        @for hypothesis in &report.hypotheses {
+                            @let (class, sign) = answer_style(hypothesis.answer);
+                            li class=(class) {
+                                span.sign aria-hidden="true" { (sign) }
+                                div {
+                                    p { strong { (hypothesis.requires) } " " em { (hypothesis.answer.words()) } }
+                                    p.because { (hypothesis.because) }
+                                }
+                            }
+                        }
+                    }
+                }
+                div.card {
+                    h3 { "Happened" }
+                    table.facts { tbody { (happened(record, metrics)) } }
+                    @if let Some(agreement) = &metrics.agreement {
+                        div.scroll {
+                            table.numbers {
+                                thead { tr { th { "Agreement" @if !unit.is_empty() { " in " (unit) } } th { "predicted" } th { "reached" } th { "farthest agent" } } }
+                                tbody {
+                                    @for a in agreement.iter().take(32) {
+                                        tr {
+                                            th { (names::axis_words(record.setup, 0, a.axis)) }
+                                            td { (number(a.predicted)) }
+                                            td { (number(a.reached)) }
+                                            td { (number(a.distance)) }
+                                        }
+                                    }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn answer_style(answer: Answer) -> (&'static str, &'static str) {
+    match answer {
+        Answer::Holds => ("good", "✓"),
+        Answer::HoldsOnHorizon => ("fair", "✓"),
+        Answer::NotCovered => ("warn", "?"),
+        Answer::Violated => ("bad", "✗"),
+    }
+}
+
+fn happened(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
+    let setup = record.setup;
+    let unit = length_unit(setup);
+    html! {
+        (fact("Ending", html! { (ending_sentence(setup, &record.outcome.ending)) }))
+        @if let Some(outcome) = record.goal {
+            (fact("Goal", html! {
+                (outcome.goal.words()) ": "
+                @if outcome.met { strong.good { "met" } } @else { strong.bad { "missed" } }
+            }))
+        }
+        @match metrics.disagreement {
+            Disagreement::Measured { initial, last, largest } => (fact("Disagreement", html! {
+                (number(initial)) " at the start, " (number(largest)) " at most, "
+                strong { (quantity(last, unit)) } " at the end"
+            })),
+            Disagreement::Absent(absence) => (fact("Disagreement", html! { "none: " (absence.words()) })),
+        }
+        @if record.goal.is_some() {
+            @if let Some(t_s) = metrics.settled_s {
+                (fact("Settled", html! { "below the goal from t = " (number(t_s)) " s on" }))
+            }
+        }
+        @if let Some(speed) = metrics.speed {
+            @let at = speed.largest;
+            (fact("Speed", html! {
+                (quantity(at.value, &unit_at(setup, Signal::Velocity, at.agent, at.axis))) " at most ("
+                (names::agent_name(setup, at.agent)) ", " (names::axis_words(setup, at.agent, at.axis))
+                ", t = " (number(at.t_s)) " s), " (number(speed.last)) " at the end"
+            }))
+        }
+        (fact("Limits", html! {
+            @if metrics.limits_reached.is_empty() { "none exceeded, of those that are known" }
+            @else { a href="#limits" { (text::count(metrics.limits_reached.len(), "limit")) " reached or exceeded" } }
+        }))
+        @if let Some(ledger) = metrics.ledger_error {
+            (fact("Ledger", html! {
+                @if ledger.relative.is_finite() {
+                    "V + ∫ dissipation = V(0) holds to " (number(ledger.relative)) " of V(0) (worst: "
+                } @else { "V is no longer finite (" }
+                (names::agent_name(setup, ledger.agent)) ", t = " (number(ledger.t_s)) " s)"
+            }))
+        }
+    }
+}
+
+fn fact(name: &str, what: Markup) -> Markup {
+    html! { tr { th { (name) } td { (what) } } }
+}
+
+/// Peak torques, agents by axes, and the limits that were reached.
+pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
+    let most_axes = setup.agents.iter().map(|a| a.robot.axes.len()).max().unwrap_or(0);
+    let peak = |agent, axis| metrics.peak_torques.iter().find(|p| p.agent == agent && p.axis == axis);
+    html! {
+        section #loads {
+            h2 { "Loads and limits" }
+            @if metrics.peak_torques.is_empty() { p.note { "No torques were recorded." } } @else {
+                div.card.scroll {
+                    h3 { "Peak torque" span.by { "largest |τ|, the time, and its share of the limit where one is known" } }
+                    table.numbers.peaks {
+                        thead { tr { th {} @for axis in 0..most_axes { th { (shared_axis_words(setup, axis)) } } } }
+                        tbody {
+                            @for agent in 0..setup.agents.len().min(MOST_TORQUE_ROWS) {
+                                tr {
+                                    th { span.dot.{ "a" (agent) } {} (names::agent_name(setup, agent)) }
+                                    @for axis in 0..most_axes {
+                                        td { @if let Some(p) = peak(agent, axis) { (torque(setup, p.agent, p.axis, p.value, p.t_s)) } }
+                                    }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+            div.card.scroll #limits {
+                h3 { "Limits" span.by { "reported; enforced only where the scenario asks for it" } }
+                @if metrics.limits_reached.is_empty() { p.note { "No known limit was exceeded." } } @else {
+                    table.numbers {
+                        thead { tr { th { "Joint" } th { "limit" } th { "value" } th { "worst" } th { "exceeded by" } th { "first at" } th { "of the rows" } th { "enforced" } } }
+                        tbody { @for limit in metrics.limits_reached.iter().take(MOST_LIMIT_ROWS) {
+                            @let (kind, signal) = match limit.kind {
+                                LimitKind::Position => ("position", Signal::Position),
+                                LimitKind::Velocity => ("speed", Signal::Velocity),
+                                LimitKind::Effort => ("torque", Signal::Torque),
+                            };
+                            @let unit = unit_at(setup, signal, limit.agent, limit.axis);
+                            tr {
+                                th { span.dot.{ "a" (limit.agent) } {} (names::agent_name(setup, limit.agent)) " · " (names::axis_words(setup, limit.agent, limit.axis)) }
+                                td { (kind) }
+                                td { (number(limit.limit)) " " (unit) }
+                                td { (number(limit.worst)) " " (unit) }
+                                td { @if limit.excess > 0.0 { (number(limit.excess)) } @else { "reached" } }
+                                td { (number(limit.first_t_s)) " s" }
+                                td { (number((1000.0 * limit.share).ceil() / 10.0)) " %" }
+                                td { @if limit.enforced { "yes" } @else { "no" } }
+                            }
+                        } }
+                    }
+                    @if metrics.limits_reached.len() > MOST_LIMIT_ROWS {
+                        p.note { "The first " (MOST_LIMIT_ROWS) " of " (metrics.limits_reached.len()) "; summary.json has all." }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn torque(setup: &Setup, agent: usize, axis: usize, value: f64, t_s: f64) -> Markup {
+    let limit = setup.agents[agent].robot.axes[axis].effort_limit;
+    html! {
+        span.value { (number(value.abs())) }
+        span.unit { " " (unit_at(setup, Signal::Torque, agent, axis)) }
+        small {
+            (number(t_s)) " s"
+            @if let Some(limit) = limit {
+                @let share = value.abs() / limit;
+                " · " span.bad[share > 1.0] { (number((100.0 * share).round())) " %" }
+            }
+        }
+    }
+}
+
+/// The name of an axis if all agents that have it agree, its number otherwise, for headings.
+pub(crate) fn shared_axis_words(setup: &Setup, axis: usize) -> String {
+    let owners = (0..setup.agents.len()).filter(|agent| axis < setup.agents[*agent].robot.axes.len());
+    let mut all = owners.map(|agent| names::axis_words(setup, agent, axis));
+    match all.next() {
+        Some(first) if all.all(|name| name == first) => first,
+        _ => format!("axis {}", axis + 1),
+    }
+}
+
+/// How it was computed, and from what.
+pub(crate) fn provenance(record: &RunRecord<'_>) -> Markup {
+    let setup = record.setup;
+    let statistics = &record.outcome.statistics;
+    html! {
+        section #provenance {
+            h2 { "How it was computed" }
+            div.card {
+                table.facts { tbody {
+                    (fact("Method", match setup.solver.method {
+                        Method::Adaptive { rtol, atol } => html! {
+                            "Dormand–Prince 5(4), relative tolerance " (number(rtol)) ", absolute " (number(atol))
+                        },
+                        Method::Fixed { step_s } => html! { "Runge–Kutta of order 4, steps of " (number(step_s)) " s" },
+                    }))
+                    (fact("Steps", html! {
+                        (statistics.steps) " accepted, " (statistics.rejected) " rejected, " (statistics.break_points)
+                        " of them ended on a break-point; " (statistics.evaluations) " evaluations"
+                    }))
+                    (fact("Recording", html! {
+                        (text::count(record.outcome.recording.t_s.len(), "row")) ", every "
+                        (number(setup.time.record_every_s)) " s"
+                    }))
+                    (fact("Exchanged", html! { @match setup.exchange {
+                        Exchange::Position => "positions",
+                        Exchange::PositionVelocity => "positions and velocities",
+                    } }))
+                    (fact("Scenario", html! { (record.scenario_name) br; code { (record.digest()) } " (BLAKE3)" }))
+                    (fact("Version", html! { "forwardstep " (record.version) }))
+                } }
+                details { summary { "The scenario" } pre { (record.scenario_text) } }
+            }
+        }
+    }
+}

@@ -1,0 +1,436 @@
+//! What a run leaves on disk, read back.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+
+mod support;
+
+use std::collections::HashMap;
+use std::fs;
+use std::path::Path;
+
+use forwardstep_io::output::{
+    Absence, Action, Disagreement, DisagreementSeries, Goal, GoalOutcome, LimitKind, Metrics, Options, OutputError,
+    RunFolder, ending_sentence, names, write_run,
+};
+use forwardstep_sim::recording::{BreakdownCause, Column};
+use forwardstep_sim::{AxisUnit, Breakdown, Ending, Law, Outcome, Recording, RobotKind, Setup, Signal};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
+use support::{agent, outcome, record, setup, verdicts};
+
+fn two_arms() -> (Setup, Outcome) {
+    let setup = setup(vec![agent("arm-1", 2, 3), agent("arm-2", 2, 3)], 2.0, 0.01);
+    let outcome = outcome(&setup);
+    (setup, outcome)
+}
+
+fn write(path: &Path, setup: &Setup, outcome: &Outcome) {
+    let report = verdicts();
+    write_run(&RunFolder::create(path, false).unwrap(), &record(setup, outcome, &report), Options { csv: true })
+        .unwrap();
+}
+
+/// What a Parquet file holds.
+struct Contents {
+    columns: Vec<String>,
+    rows: Vec<Vec<f64>>,
+    metadata: HashMap<String, String>,
+    row_groups: usize,
+}
+
+fn read_parquet(path: &Path) -> Contents {
+    let reader = SerializedFileReader::new(fs::File::open(path).unwrap()).unwrap();
+    let file = reader.metadata().file_metadata();
+    let columns = file.schema_descr().columns().iter().map(|c| c.name().to_owned()).collect();
+    let pairs = file.key_value_metadata().unwrap().iter();
+    let metadata = pairs.map(|kv| (kv.key.clone(), kv.value.clone().unwrap())).collect();
+    let number = |field: &Field| match field {
+        Field::Double(v) => *v,
+        other => panic!("{other:?} is not a double"),
+    };
+    let rows = reader.get_row_iter(None).unwrap();
+    let rows = rows.map(|row| row.unwrap().get_column_iter().map(|(_, field)| number(field)).collect()).collect();
+    Contents { columns, rows, metadata, row_groups: reader.metadata().num_row_groups() }
+}
+
+fn bits(rows: &[Vec<f64>]) -> Vec<Vec<u64>> {
+    rows.iter().map(|row| row.iter().map(|v| v.to_bits()).collect()).collect()
+}
+
+fn rows_of(recording: &Recording) -> Vec<Vec<f64>> {
+    let row = |k: usize| std::iter::once(recording.t_s[k]).chain(recording.columns.iter().map(move |c| c.values[k]));
+    (0..recording.t_s.len()).map(|k| row(k).collect()).collect()
+}
+
+#[test]
+fn parquet_reads_back_bit_for_bit_in_several_row_groups() {
+    let setup = setup(vec![agent("arm-1", 1, 1)], 200.0, 0.01);
+    let mut outcome = outcome(&setup);
+    outcome.recording.columns[0].values[5] = f64::NAN;
+    outcome.recording.columns[1].values[6] = f64::NEG_INFINITY;
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), &setup, &outcome);
+    let Contents { columns, rows, metadata, row_groups } = read_parquet(&folder.path().join("trajectory.parquet"));
+    assert_eq!(columns[..4], ["t_s", "arm-1.q.1", "arm-1.dq.1", "arm-1.z.1"]);
+    assert_eq!(columns[columns.len() - 3..], ["arm-1.theta_hat.link_1.mass", "arm-1.lyapunov", "arm-1.dissipation"]);
+    assert_eq!(bits(&rows), bits(&rows_of(&outcome.recording)));
+    assert!(row_groups > 1, "{row_groups} row group for {} rows", rows.len());
+    let value = |key: &str| metadata[key].as_str();
+    assert_eq!(value("forwardstep.version"), "0.1.0");
+    assert_eq!(value("forwardstep.scenario_digest_blake3").len(), 64);
+    let units: serde_json::Value = serde_json::from_str(value("forwardstep.units")).unwrap();
+    assert_eq!(units["arm-1.dz.1"], "rad/s^2");
+    assert_eq!(units["t_s"], "s");
+}
+
+#[test]
+fn csv_reads_back_bit_for_bit() {
+    let (setup, mut outcome) = two_arms();
+    outcome.recording.columns[0].values[..4].copy_from_slice(&[1e-300, -0.1 - 0.2, f64::INFINITY, 1.0]);
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), &setup, &outcome);
+    let mut reader = csv::Reader::from_path(folder.path().join("trajectory.csv")).unwrap();
+    assert_eq!(reader.headers().unwrap(), &names::table_header(&setup, &outcome.recording)[..]);
+    let rows = reader.records().map(|row| row.unwrap().iter().map(|v| v.parse().unwrap()).collect::<Vec<f64>>());
+    assert_eq!(bits(&rows.collect::<Vec<_>>()), bits(&rows_of(&outcome.recording)));
+}
+
+#[test]
+fn tables_have_distinct_column_names() {
+    let (mut setup, outcome) = two_arms();
+    setup.agents[1].name = "arm-1".into();
+    let header = names::table_header(&setup, &outcome.recording);
+    let distinct: std::collections::HashSet<_> = header.iter().collect();
+    assert_eq!(distinct.len(), header.len());
+    assert!(header.contains(&"arm-1.q.1~2".to_owned()));
+}
+
+#[test]
+fn a_run_is_written_the_same_twice_but_for_timings() {
+    let (setup, mut outcome) = two_arms();
+    let (one, two) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    write(one.path(), &setup, &outcome);
+    outcome.statistics.wall *= 3;
+    write(two.path(), &setup, &outcome);
+    let text = |folder: &tempfile::TempDir, name: &str| fs::read(folder.path().join(name)).unwrap();
+    for name in ["trajectory.parquet", "trajectory.csv", "report.html", "scenario.toml", "plots/positions.svg"] {
+        assert!(text(&one, name) == text(&two, name), "{name} differs");
+    }
+    let summary = |folder| serde_json::from_slice::<serde_json::Value>(&text(folder, "summary.json")).unwrap();
+    let (mut first, mut second) = (summary(&one), summary(&two));
+    assert_ne!(first["timings"], second["timings"]);
+    first["timings"].take();
+    second["timings"].take();
+    assert_eq!(first, second);
+    assert_eq!(first["format"], 1);
+    assert_eq!(first["ending"]["kind"], "completed");
+    assert_eq!(first["verdicts"]["worst"], "not covered by the paper");
+    assert_eq!(first["goal"], serde_json::json!({ "disagreement_below": 0.05, "met": true }));
+}
+
+#[test]
+fn all_files_are_named_and_the_summary_comes_last() {
+    let (setup, outcome) = two_arms();
+    let (folder, report) = (tempfile::tempdir().unwrap(), verdicts());
+    let run = RunFolder::create(folder.path().join("deep/er"), false).unwrap();
+    let files = write_run(&run, &record(&setup, &outcome, &report), Options::default()).unwrap();
+    assert_eq!(files.len(), 8);
+    assert!(files.iter().all(|file| file.is_file()));
+    assert_eq!(files.last(), Some(&run.path().join("summary.json")));
+    assert!(!run.path().join("trajectory.csv").exists());
+    let hidden = fs::read_dir(run.path()).unwrap().any(|e| e.unwrap().file_name().to_string_lossy().starts_with('.'));
+    assert!(!hidden, "temporary files were left");
+}
+
+#[test]
+fn a_folder_that_is_not_empty_is_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("thesis.tex"), "years of work").unwrap();
+    let refused = RunFolder::create(folder.path(), false).unwrap_err();
+    assert!(matches!(refused, OutputError::FolderNotEmpty { .. }));
+    assert!(refused.help().unwrap().contains("--force"));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn force_replaces_what_a_run_writes_and_nothing_else() {
+    let (setup, outcome) = two_arms();
+    let (folder, report) = (tempfile::tempdir().unwrap(), verdicts());
+    let path = folder.path();
+    write(path, &setup, &outcome);
+    fs::write(path.join("notes.md"), "mine").unwrap();
+    fs::write(path.join("plots/mine.svg"), "mine").unwrap();
+    fs::write(path.join("report.html"), "old").unwrap();
+    let run = RunFolder::create(path, true).unwrap();
+    write_run(&run, &record(&setup, &outcome, &report), Options { csv: false }).unwrap();
+    assert_eq!(fs::read_to_string(path.join("notes.md")).unwrap(), "mine");
+    assert_eq!(fs::read_to_string(path.join("plots/mine.svg")).unwrap(), "mine");
+    assert!(fs::read_to_string(path.join("report.html")).unwrap().len() > 10_000);
+    assert!(!path.join("trajectory.csv").exists(), "the earlier run's table would pass for this run's");
+}
+
+#[test]
+fn leftovers_of_a_killed_writer_do_not_count() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("plots")).unwrap();
+    fs::write(folder.path().join(".summary.json.partial"), "{").unwrap();
+    fs::write(folder.path().join("plots/.torques.svg.partial"), "<svg").unwrap();
+    let (setup, outcome) = two_arms();
+    write(folder.path(), &setup, &outcome);
+    assert!(!folder.path().join(".summary.json.partial").exists());
+}
+
+#[test]
+fn a_file_in_the_way_is_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    fs::write(&file, "").unwrap();
+    assert!(matches!(RunFolder::create(&file, true), Err(OutputError::NotAFolder { .. })));
+    match RunFolder::create(file.join("run"), false) {
+        Err(OutputError::Io { action: Action::CreateFolder, path, .. }) => assert_eq!(path, file.join("run")),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_that_cannot_be_written_to_is_an_error_before_the_run() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o555)).unwrap();
+    let is_privileged = fs::write(folder.path().join("probe"), "").is_ok();
+    let _ = fs::remove_file(folder.path().join("probe"));
+    match RunFolder::create(folder.path(), false) {
+        Ok(_) => assert!(is_privileged, "only the superuser may write here"),
+        Err(OutputError::Io { action, source, .. }) => {
+            assert_eq!(action, Action::WriteInto);
+            assert_eq!(source.kind(), std::io::ErrorKind::PermissionDenied);
+        }
+        Err(other) => panic!("{other}"),
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_system_without_files_is_an_error() {
+    let error = RunFolder::create("/proc/forwardstep-run", false).unwrap_err();
+    assert!(matches!(error, OutputError::Io { action: Action::CreateFolder, .. }), "{error}");
+    assert!(error.to_string().contains("/proc/forwardstep-run"));
+}
+
+#[test]
+fn a_failure_half_way_leaves_an_earlier_run_whole() {
+    let (setup, outcome) = two_arms();
+    let (folder, report) = (tempfile::tempdir().unwrap(), verdicts());
+    write(folder.path(), &setup, &outcome);
+    let before = fs::read(folder.path().join("summary.json")).unwrap();
+    // A folder under a temporary name cannot be opened as a file.
+    fs::create_dir(folder.path().join(".report.html.partial")).unwrap();
+    let run = RunFolder::create(folder.path(), true).unwrap();
+    let error = write_run(&run, &record(&setup, &outcome, &report), Options::default()).unwrap_err();
+    assert!(matches!(error, OutputError::Io { action: Action::CreateFile, .. }), "{error}");
+    assert_eq!(fs::read(folder.path().join("summary.json")).unwrap(), before);
+    let partial =
+        |e: fs::DirEntry| e.file_type().unwrap().is_file() && e.file_name().to_string_lossy().starts_with('.');
+    assert!(!fs::read_dir(folder.path()).unwrap().any(|e| partial(e.unwrap())), "half a run was left");
+}
+
+#[test]
+fn names_given_by_users_are_escaped_everywhere() {
+    let mut setup = setup(vec![agent("<script>alert(1)</script>", 1, 1), agent("a&\"b\"", 1, 1)], 1.0, 0.1);
+    setup.agents[0].robot.theta_names[0] = "</script><img src=x onerror=alert(2)>".into();
+    let outcome = outcome(&setup);
+    let (folder, mut report) = (tempfile::tempdir().unwrap(), verdicts());
+    report.hypotheses[0].because = "<b onclick=alert(3)>".into();
+    let mut it = record(&setup, &outcome, &report);
+    (it.title, it.scenario_text) = ("</title><script>alert(4)</script>", "# </pre><script>alert(5)</script>");
+    it.notices = vec!["<script>alert(6)</script>".into()];
+    write_run(&RunFolder::create(folder.path(), false).unwrap(), &it, Options::default()).unwrap();
+    let html = fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert_eq!(html.matches("<script").count(), 4, "index, block, uPlot and the page's own");
+    for hostile in ["<script>alert", "<img", "<b onclick", "</title><script"] {
+        assert!(!html.contains(hostile), "{hostile}");
+    }
+    for name in ["positions", "torques", "estimates", "disagreement"] {
+        let svg = fs::read_to_string(folder.path().join(format!("plots/{name}.svg"))).unwrap();
+        assert!(!svg.contains("<script"), "{name}");
+        roxmltree::Document::parse(&svg).unwrap();
+    }
+}
+
+/// Two agents with one axis, by hand: q₁ = 0, 1, 1, 1 and q₂ = 2, 2, 1.5, 1.25 at t = 0, 1, 2, 3.
+fn by_hand() -> (Setup, Recording) {
+    let setup = setup(vec![agent("a", 1, 0), agent("b", 1, 0)], 3.0, 1.0);
+    let column = |agent, signal, values: [f64; 4]| Column { agent, signal, axis: 0, values: values.to_vec() };
+    let columns = vec![
+        column(0, Signal::Position, [0.0, 1.0, 1.0, 1.0]),
+        column(0, Signal::Velocity, [0.0, -4.0, 3.5, 0.25]),
+        column(0, Signal::Torque, [10.0, -200.0, 160.0, 0.0]),
+        column(0, Signal::Lyapunov, [4.0, 3.0, 2.0, 1.0]),
+        column(0, Signal::Dissipation, [0.0, 1.0, 2.0, 3.0]),
+        column(1, Signal::Position, [2.0, 2.0, 1.5, 1.25]),
+        column(1, Signal::Velocity, [0.0, 1.0, 2.0, -0.5]),
+        column(1, Signal::Torque, [0.0, 0.0, 7.0, -7.0]),
+        column(1, Signal::Lyapunov, [2.0, 1.5, 1.0, 0.5]),
+        column(1, Signal::Dissipation, [0.0, 0.5, 1.1, 1.5]),
+    ];
+    (setup, Recording { t_s: vec![0.0, 1.0, 2.0, 3.0], columns })
+}
+
+#[test]
+fn metrics_are_what_one_computes_by_hand() {
+    let (setup, recording) = by_hand();
+    let m = Metrics::of(&setup, &recording, Some(&[1.0]), Some(Goal::DisagreementBelow(0.75)));
+    assert_eq!(DisagreementSeries::of(&setup, &recording).unwrap().overall, [2.0, 1.0, 0.5, 0.25]);
+    assert_eq!(m.disagreement, Disagreement::Measured { initial: 2.0, last: 0.25, largest: 2.0 });
+    assert_eq!(m.settled_s, Some(2.0));
+    let speed = m.speed.unwrap();
+    assert_eq!((speed.largest.agent, speed.largest.t_s, speed.largest.value, speed.last), (0, 1.0, 4.0, 0.5));
+    assert_eq!((m.peak_torques[0].t_s, m.peak_torques[0].value), (1.0, -200.0));
+    assert_eq!((m.peak_torques[1].t_s, m.peak_torques[1].value), (2.0, 7.0), "the first of equals");
+    let ledger = m.ledger_error.unwrap();
+    assert!((ledger.relative - 0.05).abs() < 1e-15, "{}", ledger.relative);
+    assert_eq!((ledger.agent, ledger.t_s), (1, 2.0));
+    let agreement = m.agreement.unwrap()[0];
+    assert_eq!((agreement.predicted, agreement.reached, agreement.distance), (1.0, 1.125, 0.25));
+
+    let found: Vec<_> = m.limits_reached.iter().map(|l| (l.agent, l.kind, l.first_t_s, l.worst, l.excess)).collect();
+    let expected = [(0, LimitKind::Velocity, 1.0, -4.0, 1.0), (0, LimitKind::Effort, 1.0, -200.0, 50.0)];
+    assert_eq!(found, expected);
+    assert!(m.limits_reached.iter().all(|l| !l.enforced && l.share == 0.5));
+}
+
+#[test]
+fn a_torque_clipped_at_an_enforced_limit_counts_as_reached() {
+    let (mut setup, mut recording) = by_hand();
+    setup.agents[0].enforce_limits = true;
+    recording.columns[2].values = vec![10.0, -150.0, 150.0, 0.0];
+    let m = Metrics::of(&setup, &recording, None, None);
+    let effort = m.limits_reached.iter().find(|l| l.kind == LimitKind::Effort).unwrap();
+    assert_eq!((effort.enforced, effort.first_t_s, effort.excess, effort.share), (true, 1.0, 0.0, 0.5));
+}
+
+#[test]
+fn agents_that_cannot_be_compared_have_no_disagreement() {
+    let (mut setup, recording) = by_hand();
+    setup.agents[1].robot.axes[0].unit = AxisUnit::Metre;
+    let disagreement = |setup: &Setup, recording| Metrics::of(setup, recording, Some(&[1.0]), None).disagreement;
+    let different = Disagreement::Absent(Absence::DifferentAxes { first: 0, other: 1 });
+    assert_eq!(disagreement(&setup, &recording), different);
+    setup.agents.truncate(1);
+    assert_eq!(disagreement(&setup, &recording), Disagreement::Absent(Absence::FewerThanTwoAgents));
+    let (setup, _) = by_hand();
+    assert_eq!(disagreement(&setup, &Recording::default()), Disagreement::Absent(Absence::NoRows));
+}
+
+#[test]
+fn numbers_that_are_not_finite_show_in_the_metrics() {
+    let (setup, mut recording) = by_hand();
+    recording.columns[0].values[3] = f64::NAN;
+    recording.columns[1].values[3] = f64::NAN;
+    let m = Metrics::of(&setup, &recording, None, Some(Goal::DisagreementBelow(10.0)));
+    assert!(m.disagreement.last().unwrap().is_nan());
+    assert_eq!(m.settled_s, None);
+    assert!(m.speed.unwrap().largest.value.is_nan());
+}
+
+#[test]
+fn goals_are_judged() {
+    let (setup, outcome) = two_arms();
+    let mut run = Outcome { recording: by_hand().1, ..outcome };
+    let setup = Setup { agents: by_hand().0.agents, ..setup };
+    let met =
+        |goal: Goal, run: &Outcome| goal.is_met(&setup, run, &Metrics::of(&setup, &run.recording, None, Some(goal)));
+    assert!(met(Goal::DisagreementBelow(0.3), &run));
+    assert!(!met(Goal::DisagreementBelow(0.25), &run));
+    assert!(!met(Goal::ExpectDiverges, &run));
+    run.ending = Ending::Interrupted { t_s: 3.0 };
+    assert!(!met(Goal::DisagreementBelow(0.3), &run), "an interrupted run has not met a goal for its end");
+    run.recording.columns[0].values.reverse();
+    run.recording.columns[5].values.reverse();
+    run.recording.columns[0].values[3] = -1.0;
+    assert!(met(Goal::ExpectDiverges, &run));
+    let mut breakdown =
+        Breakdown { t_s: 1.0, agent: 1, signal: Signal::Estimate, axis: 0, cause: BreakdownCause::NotFinite };
+    run.ending = Ending::BrokeDown(breakdown.clone());
+    assert!(met(Goal::ExpectDiverges, &run));
+    breakdown.cause = BreakdownCause::PositionLimit { value: 3.0, limits: [-2.0, 2.0] };
+    run.ending = Ending::BrokeDown(breakdown);
+    assert!(!met(Goal::ExpectDiverges, &run));
+}
+
+#[test]
+fn a_broken_run_says_who_and_what_and_is_written() {
+    let (setup, mut outcome) = two_arms();
+    outcome.ending = Ending::BrokeDown(Breakdown {
+        t_s: 0.5,
+        agent: 1,
+        signal: Signal::Velocity,
+        axis: 1,
+        cause: BreakdownCause::StepUnderFloor { step_s: 1e-14 },
+    });
+    let sentence = ending_sentence(&setup, &outcome.ending);
+    let expected = "Broke down at t = 0.5 s of 2 s: arm-2.dq.2 asks for a step of 1e-14 s, under the floor of 1e-12 s.";
+    assert_eq!(sentence, expected);
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), &setup, &outcome);
+    assert!(fs::read_to_string(folder.path().join("report.html")).unwrap().contains(expected));
+    let summary = fs::read_to_string(folder.path().join("summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(summary["ending"]["breakdown"]["column"], "arm-2.dq.2");
+    assert_eq!(summary["ending"]["breakdown"]["cause"]["step_under_floor"]["step_s"], 1e-14);
+}
+
+/// Shapes at the edges: no agents, no rows, one row, nothing finite, many of everything, columns that are missing or short.
+#[test]
+fn every_shape_of_run_is_written() {
+    let mut shapes: Vec<(Setup, Outcome)> = Vec::new();
+    let mut add = |setup: Setup, change: &dyn Fn(&mut Outcome)| {
+        let mut outcome = outcome(&setup);
+        change(&mut outcome);
+        shapes.push((setup, outcome));
+    };
+    let arms = |n: usize, dof, parameters| (0..n).map(|k| agent(&format!("r{k}"), dof, parameters)).collect::<Vec<_>>();
+    add(setup(Vec::new(), 1.0, 0.1), &|_| {});
+    add(setup(arms(1, 1, 0), 1.0, 0.1), &|_| {});
+    add(setup(arms(2, 0, 0), 1.0, 0.1), &|_| {});
+    add(setup(arms(2, 2, 2), 1.0, 0.1), &|o| o.recording = Recording::default());
+    for rows in 0..4 {
+        add(setup(arms(2, 2, 2), 1.0, 0.1), &|o| {
+            o.recording.t_s.truncate(rows);
+            o.recording.columns.iter_mut().for_each(|c| c.values.truncate(rows));
+        });
+    }
+    for value in [f64::NAN, f64::INFINITY, 0.0, f64::MAX, -f64::MAX, f64::MIN_POSITIVE] {
+        add(setup(arms(2, 2, 2), 1.0, 0.01), &|o| o.recording.columns.iter_mut().for_each(|c| c.values.fill(value)));
+    }
+    add(setup(arms(2, 2, 2), 1.0, 0.1), &|o| o.recording.columns.retain(|c| c.agent == 1 && c.axis == 1));
+    add(setup(arms(2, 2, 2), 1.0, 0.1), &|o| o.recording.columns.iter_mut().for_each(|c| c.values.truncate(3)));
+    add(setup(arms(64, 2, 3), 1.0, 0.01), &|_| {});
+    add(setup(arms(2, 32, 3), 1.0, 0.01), &|_| {});
+    add(setup([arms(1, 2, 2), arms(1, 5, 0)].concat(), 1.0, 0.1), &|_| {});
+    let mut known = setup(arms(2, 1, 2), 1.0, 0.1);
+    known.agents.iter_mut().for_each(|a| a.law = Law::Known { damping: forwardstep_core::Gain::Number(1.0) });
+    known.agents[0].robot.kind = RobotKind::PlanarArm;
+    add(known, &|o| o.recording.columns.retain(|c| c.signal != Signal::Estimate));
+
+    let report = verdicts();
+    for (setup, outcome) in &shapes {
+        let folder = tempfile::tempdir().unwrap();
+        let mut it = record(setup, outcome, &report);
+        it.goal = Some(GoalOutcome { goal: Goal::ExpectDiverges, met: false });
+        write_run(&RunFolder::create(folder.path(), false).unwrap(), &it, Options { csv: true }).unwrap();
+        let Contents { columns, rows, .. } = read_parquet(&folder.path().join("trajectory.parquet"));
+        assert_eq!((columns.len(), rows.len()), (outcome.recording.columns.len() + 1, outcome.recording.t_s.len()));
+    }
+}
+
+#[test]
+fn a_page_of_six_arms_stays_under_six_megabytes() {
+    let six = setup((1..=6).map(|k| agent(&format!("arm-{k}"), 6, 60)).collect(), 600.0, 0.02);
+    let (outcome, folder) = (outcome(&six), tempfile::tempdir().unwrap());
+    let report = verdicts();
+    write_run(&RunFolder::create(folder.path(), false).unwrap(), &record(&six, &outcome, &report), Options::default())
+        .unwrap();
+    let size = fs::metadata(folder.path().join("report.html")).unwrap().len();
+    assert!(size < 6_000_000, "{size} bytes");
+}

@@ -1,0 +1,185 @@
+//! Synthetic runs in closed form, of any shape.
+#![allow(unreachable_pub, reason = "shared by several test programs")]
+
+use std::time::Duration;
+
+use forwardstep_check::{Answer, Hypothesis, Report};
+use forwardstep_core::Gain;
+use forwardstep_io::output::{Goal, GoalOutcome, RunRecord};
+use forwardstep_sim::delay::Delay;
+use forwardstep_sim::graph::Edge;
+use forwardstep_sim::recording::{Column, Statistics};
+use forwardstep_sim::schedule::{Phase, Schedule};
+use forwardstep_sim::{
+    AgentSetup, Axis, AxisUnit, Ending, Exchange, Law, Method, Network, Outcome, Recording, RobotKind, RobotSetup,
+    Setup, Signal, Solver, Start, TimeSpan,
+};
+
+/// One agent with `dof` axes and `parameters` estimated parameters.
+pub fn agent(name: &str, dof: usize, parameters: usize) -> AgentSetup {
+    let axes = (0..dof).map(|k| Axis {
+        name: format!("joint_{}", k + 1),
+        unit: AxisUnit::Radian,
+        position_limits: Some([-2.9, 2.9]),
+        velocity_limit: Some(3.0),
+        effort_limit: Some(150.0),
+    });
+    let quantity = ["mass", "mass_x", "mass_y", "mass_z", "xx", "xy", "xz", "yy", "yz", "zz"];
+    AgentSetup {
+        name: name.into(),
+        robot: RobotSetup {
+            kind: RobotKind::PointMass { dimension: dof },
+            theta: (0..parameters).map(|k| 2.0 / (1.0 + (k % 10) as f64)).collect(),
+            theta_names: (0..parameters).map(|k| format!("link_{}.{}", k / 10 + 1, quantity[k % 10])).collect(),
+            axes: axes.collect(),
+        },
+        roots_per_s: vec![1.0, 2.0],
+        law: Law::Adaptive {
+            damping: Gain::Number(8.0),
+            adaptation: Gain::Number(10.0),
+            estimate_start: vec![0.0; parameters],
+        },
+        start: Start { q: vec![0.0; dof], dq: vec![0.0; dof], reference: Vec::new() },
+        enforce_limits: false,
+    }
+}
+
+/// Agents on a switching ring with a saw-tooth and a sinusoidal delay.
+pub fn setup(agents: Vec<AgentSetup>, end_s: f64, record_every_s: f64) -> Setup {
+    let count = agents.len();
+    let edge = |from: usize, to: usize, delay| Edge { from, to, weight: 1.0, delay };
+    let ring = |rest: usize| -> Vec<Edge> {
+        (0..count.saturating_sub(1)).filter(|k| k % 3 == rest).map(|k| edge(k, k + 1, k % 2)).collect()
+    };
+    let mut back = ring(2);
+    if count > 1 {
+        back.push(edge(count - 1, 0, 0));
+    }
+    let phases = [ring(0), ring(1), back].into_iter().map(|edges| Phase { edges, dwell_s: end_s / 20.0 });
+    Setup {
+        agents,
+        exchange: Exchange::PositionVelocity,
+        network: Network {
+            agents: count,
+            schedule: Schedule::Periodic(phases.collect()),
+            delays: vec![
+                Delay::SawTooth { min_s: 0.05, max_s: 0.4, period_s: end_s / 12.0, offset_s: 0.0 },
+                Delay::Sinusoid { mean_s: 0.2, amplitude_s: 0.1, period_s: end_s / 5.0, phase_rad: 0.0 },
+            ],
+        },
+        time: TimeSpan { end_s, record_every_s },
+        solver: Solver {
+            method: Method::Adaptive { rtol: 1e-6, atol: 1e-8 },
+            max_step_s: None,
+            min_step_s: 1e-12,
+            ledger: true,
+        },
+    }
+}
+
+/// A run that looks like consensus: positions decay towards 0.3 (axis + 1), torques jump with the phases.
+pub fn outcome(setup: &Setup) -> Outcome {
+    let end_s = setup.time.end_s;
+    let rows = (end_s / setup.time.record_every_s).round() as usize;
+    let t_s: Vec<f64> = (0..=rows).map(|k| k as f64 * setup.time.record_every_s).collect();
+    let mut columns = Vec::new();
+    for (i, agent) in setup.agents.iter().enumerate() {
+        let mut add = |signal, axis, f: &dyn Fn(f64) -> f64| {
+            columns.push(Column { agent: i, signal, axis, values: t_s.iter().map(|t| f(*t)).collect() });
+        };
+        let dof = agent.robot.axes.len();
+        let shift = (i as f64 * 2.4).sin();
+        let decay = |axis: usize| (5.0 + axis as f64) / end_s;
+        let swing = |axis: usize| 2.0 + axis as f64 * 0.7 + 0.1 * i as f64;
+        let wave = |t: f64, axis: usize| (-decay(axis) * t).exp() * (swing(axis) * t + i as f64).cos();
+        let slope = |t: f64, axis: usize| {
+            (-decay(axis) * t).exp()
+                * (-decay(axis) * (swing(axis) * t + i as f64).cos() - swing(axis) * (swing(axis) * t + i as f64).sin())
+        };
+        let phase = |t: f64| ((t / (end_s / 20.0) + 1e-9).floor() as i64).rem_euclid(3) as f64;
+        for axis in 0..dof {
+            add(Signal::Position, axis, &|t| 0.3 * (axis + 1) as f64 + (shift + 0.4) * wave(t, axis));
+        }
+        for axis in 0..dof {
+            add(Signal::Velocity, axis, &|t| (shift + 0.4) * slope(t, axis));
+        }
+        for (k, size) in [(0_u8, 1.0), (1, 0.4)] {
+            for axis in 0..dof {
+                add(Signal::Reference(k), axis, &|t| {
+                    size * (shift + 0.4) * slope(t, axis) * (1.0 - 0.5 * (-20.0 * t / end_s).exp())
+                });
+            }
+        }
+        for axis in 0..dof {
+            add(Signal::TrackingError, axis, &|t| 0.5 * (shift + 0.4) * slope(t, axis) * (-20.0 * t / end_s).exp());
+        }
+        for axis in 0..dof {
+            add(Signal::Torque, axis, &|t| {
+                let fading = (-4.0 * t / end_s).exp();
+                60.0 / (1.0 + axis as f64)
+                    * (1.0 + 3.0 * fading * wave(t, axis) + 0.8 * fading * (phase(t) - 1.0) * shift)
+            });
+        }
+        for (k, truth) in agent.robot.theta.iter().enumerate() {
+            add(Signal::Estimate, k, &|t| {
+                truth * (1.0 - (-(6.0 + shift) * t / end_s).exp() * (1.0 + 0.2 * (3.0 * t).sin()))
+            });
+        }
+        let v = |t: f64| (2.0 + shift) * (-12.0 * t / end_s).exp() + 0.01;
+        add(Signal::Lyapunov, 0, &v);
+        add(Signal::Dissipation, 0, &|t| v(0.0) - v(t) + 1e-7 * (1.0 + shift) * (t * 2.0).sin() * (t / end_s));
+    }
+    Outcome {
+        recording: Recording { t_s, columns },
+        ending: Ending::Completed,
+        statistics: Statistics {
+            steps: 41_233,
+            rejected: 812,
+            evaluations: 252_271,
+            break_points: 180,
+            wall: Duration::from_millis(1234),
+        },
+    }
+}
+
+/// What a check might have said.
+pub fn verdicts() -> Report {
+    let hypothesis = |requires: &str, answer, because: &str| Hypothesis {
+        requires: requires.into(),
+        answer,
+        because: because.into(),
+    };
+    Report {
+        theorem: "Theorem 2".into(),
+        promises: "All positions converge to one value and all velocities to zero, whatever the delays do.".into(),
+        hypotheses: vec![
+            hypothesis(
+                "The graphs jointly contain a directed spanning tree",
+                Answer::Holds,
+                "In every window of 3 s their union has the root arm-1; the schedule is periodic.",
+            ),
+            hypothesis("Delays are bounded", Answer::Holds, "They never exceed 0.4 s."),
+            hypothesis("Weights are bounded away from zero", Answer::HoldsOnHorizon, "The least weight seen is 1."),
+            hypothesis("Delays are slowly varying", Answer::NotCovered, "The saw-tooth drops by 0.35 s every 5 s."),
+        ],
+    }
+}
+
+/// Everything about a run, with a goal that was met.
+pub fn record<'a>(setup: &'a Setup, outcome: &'a Outcome, verdicts: &'a Report) -> RunRecord<'a> {
+    RunRecord {
+        title: "Six arms agree over a switching network with jumping delays",
+        scenario_name: "theorem-2.toml",
+        scenario_text: "format = 1\ntitle = \"Six arms agree over a switching network with jumping delays\"\n",
+        version: "0.1.0",
+        setup,
+        outcome,
+        verdicts,
+        predicted_agreement: Some(
+            (0..setup.agents.first().map_or(0, |a| a.robot.axes.len())).map(|axis| 0.3 * (axis + 1) as f64).collect(),
+        ),
+        goal: Some(GoalOutcome { goal: Goal::DisagreementBelow(0.05), met: true }),
+        notices: Vec::new(),
+        drawn_switches: None,
+    }
+}

@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# Opens reports in a headless chromium from PATH, and fails unless every plot is drawn and nothing goes wrong.
+#
+#   FORWARDSTEP_SAMPLES=$PWD/target/samples cargo test --release -p forwardstep-io --test samples -- --ignored
+#   validation/browser/check_report.sh target/samples/*/report.html
+set -euo pipefail
+
+chromium=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || {
+  echo "no chromium on PATH" >&2
+  exit 2
+}
+[ $# -gt 0 ] || { echo "usage: $0 report.html ..." >&2; exit 2; }
+
+profile=$(mktemp -d)
+trap 'rm -rf "$profile"' EXIT
+failed=0
+for report in "$@"; do
+  rm -rf "${profile:?}"/*
+  dom=$profile/dom.html
+  log=$profile/log.txt
+  "$chromium" --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking \
+    --disable-component-update --disable-sync --user-data-dir="$profile/data" --window-size=1280,2000 \
+    --virtual-time-budget=8000 --enable-logging=stderr --dump-dom "file://$(realpath "$report")" >"$dom" 2>"$log"
+  canvases=$(grep -o '<canvas' "$dom" | wc -l)
+  plots=$(grep -o 'data-ready="[0-9]*"' "$dom" | grep -o '[0-9]*' || echo none)
+  words=$(grep -o '<p class="none">[^<]*' "$dom" | wc -l || true)
+  problem=""
+  [ "$plots" != none ] || problem="the script did not finish"
+  [ "$canvases" = "$plots" ] || problem="$canvases canvases for $plots plots"
+  [ $((canvases + words)) -ge 10 ] || problem="only $canvases plots and $words explanations for 10 cards"
+  grep -q '<div id="error-banner" role="alert"></div>' "$dom" || problem="the error banner is not empty"
+  ! grep -q 'CONSOLE' "$log" || problem="console: $(grep -m1 CONSOLE "$log")"
+  if [ -n "$problem" ]; then
+    echo "FAILED $report: $problem"
+    failed=1
+  else
+    echo "ok     $report: $canvases plots, $words cards without"
+  fi
+done
+exit $failed
