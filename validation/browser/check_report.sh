@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Opens reports in a headless chromium from PATH, and fails unless every plot is drawn and nothing goes wrong.
 #
-#   FORWARDSTEP_SAMPLES=$PWD/target/samples cargo test --release -p forwardstep-io --test samples -- --ignored
+#   cargo run --release -p forwardstep-io --example sample_reports -- target/samples
 #   validation/browser/check_report.sh target/samples/*/report.html
 set -euo pipefail
 

@@ -14,7 +14,7 @@ const fill = (card, height) => {
   const empty = (why) => canvas.replaceChildren(element("p", { className: "none", textContent: why || "nothing was recorded" }));
 
   if (kind === "gantt") {
-    if (!index.gantt || index.gantt.rows.length === 0) return empty(index.gantt ? "no agent hears another" : card.dataset.empty);
+    if (index.gantt.rows.length === 0) return empty("no agent hears another");
     if (index.gantt.by_receiver) document.getElementById("gantt-by").textContent = "per receiver; the stronger, the more agents it hears";
     mine.plot = drawPlot(canvas, ganttCard());
     return;

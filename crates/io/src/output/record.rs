@@ -1,6 +1,6 @@
 //! Everything that is known about a finished run.
 
-use forwardstep_check::verdict::Report;
+use forwardstep_check::Report;
 use forwardstep_sim::recording::{BreakdownCause, Ending, Outcome};
 use forwardstep_sim::setup::Setup;
 
@@ -30,9 +30,6 @@ pub struct RunRecord<'a> {
     pub goal: Option<GoalOutcome>,
     /// Remarks for the reader of the report.
     pub notices: Vec<String>,
-    /// For [`forwardstep_sim::schedule::Schedule::Random`]: when each drawn graph came into force, s, and its index. Other
-    /// schedules need none; a random one without is reported by its graphs only.
-    pub drawn_switches: Option<Vec<(f64, usize)>>,
 }
 
 impl RunRecord<'_> {

@@ -180,6 +180,5 @@ pub fn record<'a>(setup: &'a Setup, outcome: &'a Outcome, verdicts: &'a Report) 
         ),
         goal: Some(GoalOutcome { goal: Goal::DisagreementBelow(0.05), met: true }),
         notices: Vec::new(),
-        drawn_switches: None,
     }
 }

@@ -46,7 +46,7 @@ struct Index {
     goal: Option<f64>,
     predicted: Option<Vec<f64>>,
     break_points: Vec<f64>,
-    gantt: Option<Gantt>,
+    gantt: Gantt,
     delays: Vec<DelayIndex>,
 }
 

@@ -40,7 +40,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
         Ending::BrokeDown(breakdown) => breakdown.t_s,
     };
     let until_s = table.t_s.last().copied().unwrap_or(0.0).max(if reached_s.is_finite() { reached_s } else { 0.0 });
-    let timeline = Timeline::of(&record.setup.network, record.drawn_switches.as_deref(), until_s);
+    let timeline = Timeline::of(&record.setup.network, until_s);
     let payload = data::Payload::of(record, &table, &timeline, until_s);
     let absence = match metrics.disagreement {
         Disagreement::Absent(absence) => Some(absence),
@@ -135,7 +135,7 @@ fn network(record: &RunRecord<'_>, timeline: &Timeline<'_>) -> Markup {
                 h3 { "Graphs" }
                 (network::graphs(record.setup, timeline))
             }
-            article.card.plot data-plot="gantt" data-empty="The graphs were drawn at random, and the draws were not kept." {
+            article.card.plot data-plot="gantt" {
                 div.head { h3 { "Active edges" span.by #gantt-by { "sender → receiver, in the sender’s colour" } } }
                 div.canvas {}
             }

@@ -33,8 +33,8 @@ pub(crate) struct Gantt {
 }
 
 impl Gantt {
-    pub(crate) fn of(setup: &Setup, timeline: &Timeline<'_>, notes: &mut Vec<String>) -> Option<Gantt> {
-        let spans = timeline.spans.as_deref()?;
+    pub(crate) fn of(setup: &Setup, timeline: &Timeline<'_>, notes: &mut Vec<String>) -> Gantt {
+        let spans = &timeline.spans;
         let mut edges: Vec<(usize, usize)> =
             timeline.graphs.iter().flat_map(|graph| graph.iter().map(|e| (e.from, e.to))).collect();
         edges.sort_unstable();
@@ -78,7 +78,7 @@ impl Gantt {
             let end_s = gantt.spans.last().map_or(0.0, |span| span.1);
             notes.push(format!("The network switches very often; it is drawn until t = {} s.", text::number(end_s)));
         }
-        Some(gantt)
+        gantt
     }
 }
 
@@ -103,7 +103,7 @@ pub(crate) fn shown_delays(setup: &Setup, timeline: &Timeline<'_>) -> Vec<(usize
 /// One small picture per graph.
 pub(crate) fn graphs(setup: &Setup, timeline: &Timeline<'_>) -> Markup {
     let time_of = |graph: usize| -> f64 {
-        let spans = timeline.spans.iter().flatten().filter(|span| span.graph == graph);
+        let spans = timeline.spans.iter().filter(|span| span.graph == graph);
         spans.map(|span| span.end_s - span.start_s).sum()
     };
     let agents = setup.agents.len();
@@ -115,7 +115,7 @@ pub(crate) fn graphs(setup: &Setup, timeline: &Timeline<'_>) -> Markup {
                     figcaption {
                         strong { @if timeline.graphs.len() == 1 { "The graph" } @else { "Graph " (k + 1) } }
                         " " (text::count(graph.len(), "edge"))
-                        @if timeline.spans.is_some() && timeline.graphs.len() > 1 {
+                        @if timeline.graphs.len() > 1 {
                             ", in force " (text::number(time_of(k))) " s"
                         }
                     }

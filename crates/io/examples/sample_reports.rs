@@ -1,6 +1,7 @@
-//! Sample runs for the eye and for `validation/browser/check_report.sh`; not part of the usual tests.
+//! Sample runs for the eye and for `validation/browser/check_report.sh`: `sample_reports DIR`.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
+#[path = "../tests/support/mod.rs"]
 mod support;
 
 use std::path::PathBuf;
@@ -11,13 +12,11 @@ use forwardstep_sim::{Breakdown, Ending, Recording, RobotKind, Signal};
 use support::{agent, outcome, record, setup, verdicts};
 
 fn folder(name: &str) -> RunFolder {
-    let base = std::env::var_os("FORWARDSTEP_SAMPLES").map_or_else(|| PathBuf::from("target/samples"), PathBuf::from);
+    let base = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("target/samples"), PathBuf::from);
     RunFolder::create(base.join(name), true).unwrap()
 }
 
-#[test]
-#[ignore = "writes files to look at"]
-fn samples_for_the_eye() {
+fn main() {
     let report = verdicts();
     let csv = Options { csv: true };
 
