@@ -3,5 +3,7 @@
 //! Text comes in here and leaves as the plain structs of the rooms below; serialisation lives in this crate only.
 
 pub mod diagnostic;
+pub mod urdf;
 
 pub use diagnostic::{InputError, Problem, SourceText};
+pub use urdf::{UrdfOptions, UrdfRobot, read_urdf};
