@@ -4,6 +4,7 @@
 
 mod hostile;
 mod notices;
+mod pinocchio;
 mod refusals;
 mod robots;
 
