@@ -4,5 +4,7 @@
 
 pub mod diagnostic;
 pub mod output;
+pub mod urdf;
 
 pub use diagnostic::{InputError, Problem, SourceText};
+pub use urdf::{UrdfOptions, UrdfRobot, read_urdf};

@@ -1,0 +1,151 @@
+//! URDF in, a robot out.
+//!
+//! Read are robots on a fixed base: trees of any number of revolute, continuous, prismatic and fixed joints. What is
+//! rigid together is one body with ten parameters; every moving joint adds its viscous damping to ϑ.
+//!
+//! **Order.** Degrees of freedom are numbered as Pinocchio does: depth first from the base, the joints of one link in
+//! the bytewise order of their names. For an arm this is the order from base to tool, whatever the order in the file.
+//!
+//! **Angles** are real numbers that are never wrapped; a continuous joint is a revolute one without position limits.
+//!
+//! **Nothing is dropped in silence.** What has no meaning is refused with its line and column ([`UrdfProblem`]); what
+//! was accepted but is odd, assumed or left out is listed in the robot's [`Notice`]s.
+
+mod dynamics;
+mod ignored;
+mod joint;
+mod link;
+mod lock;
+mod notice;
+mod problem;
+mod shipped;
+mod subject;
+mod tree;
+mod wording;
+mod xml;
+
+use forwardstep_sim::setup::RobotSetup;
+
+pub use ignored::{IgnoreReason, IgnoredItem};
+pub use notice::{Notice, NoticeKind};
+pub use problem::UrdfProblem;
+pub use shipped::{SHIPPED_ROBOTS, shipped_robot};
+pub use subject::{AttributeOf, End, Named, NamedLine, Owner, Size};
+
+use crate::{InputError, SourceText};
+use ignored::IgnoreReason as Reason;
+use link::Link;
+use xml::{Element, Reading, UrdfError};
+
+/// What to make of a URDF file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UrdfOptions {
+    /// Joints that are held at a value, in rad or m, and so lose their degree of freedom.
+    pub locked: Vec<(String, f64)>,
+    /// What to do about Coulomb friction.
+    pub friction: FrictionPolicy,
+    /// Acceleration of free fall in the frame of the base, in m/s².
+    pub gravity: [f64; 3],
+}
+
+impl Default for UrdfOptions {
+    fn default() -> Self {
+        UrdfOptions { locked: Vec::new(), friction: FrictionPolicy::Refuse, gravity: [0.0, 0.0, -9.81] }
+    }
+}
+
+/// What to do about Coulomb friction, which is not part of the model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FrictionPolicy {
+    /// Refuse the file.
+    #[default]
+    Refuse,
+    /// Leave it out, with a notice.
+    Ignore,
+}
+
+/// A robot read from a URDF file.
+#[derive(Clone, Debug)]
+pub struct UrdfRobot {
+    /// The name the file gives it.
+    pub name: String,
+    /// The robot, with the parameters of the file as its true ϑ.
+    pub robot: RobotSetup,
+    /// The link that is fixed to the world.
+    pub base: String,
+    /// The moving bodies in the order of the degrees of freedom, each by the link that its joint carries.
+    pub bodies: Vec<String>,
+    /// All links, depth first from the base.
+    pub links: Vec<String>,
+    /// What the user should know, in the order of the file.
+    pub notices: Vec<Notice>,
+}
+
+/// Reads a URDF file.
+///
+/// ```
+/// use forwardstep_io::urdf::shipped_robot;
+/// use forwardstep_io::{SourceText, UrdfOptions, read_urdf};
+///
+/// let text = shipped_robot("ur5e").ok_or("not shipped")?;
+/// let options = UrdfOptions { locked: vec![("wrist_3_joint".to_owned(), 0.0)], ..UrdfOptions::default() };
+/// let arm = read_urdf(&SourceText::new("ur5e.urdf", text), &options)?;
+/// assert_eq!(arm.robot.axes.len(), 5);
+/// assert!(arm.notices.is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// The first problem met, at its place in the file: see [`UrdfProblem`]. Any text gives a result; none panics.
+pub fn read_urdf(source: &SourceText, options: &UrdfOptions) -> Result<UrdfRobot, InputError<UrdfProblem>> {
+    let mut reading = Reading::new(source);
+    let document = xml::parse(&reading)?;
+    let root = Element::new(document.root_element(), Some(Owner::Robot));
+    let (name, links, joints) = read_robot(&mut reading, &root, options)?;
+
+    let arranged = tree::arrange(&reading, &links, &joints)?;
+    let locks = lock::locks(&mut reading, &joints, &options.locked)?;
+    let moving = dynamics::build(&mut reading, &links, &joints, &arranged, &locks, options)?;
+
+    let Reading { mut notices, ignored, .. } = reading;
+    let items = ignored.into_items(|offset| source.line_column(offset).0);
+    if !items.is_empty() {
+        notices.push(Notice { source: source.clone(), span: None, kind: NoticeKind::Ignored { items } });
+    }
+    // Stable, and those without a place last.
+    notices.sort_by_key(|notice| notice.span.as_ref().map_or(usize::MAX, |span| span.start));
+    let links: Vec<String> = arranged.iter().map(|held| links[held.link].name.clone()).collect();
+    let base = links.first().cloned().unwrap_or_default();
+    Ok(UrdfRobot { name, robot: moving.robot, base, bodies: moving.bodies, links, notices })
+}
+
+fn read_robot(
+    reading: &mut Reading<'_>,
+    root: &Element<'_>,
+    options: &UrdfOptions,
+) -> Result<(String, Vec<Link>, Vec<joint::Joint>), UrdfError> {
+    root.refuse_xacro(reading)?;
+    if root.name() != "robot" {
+        return Err(reading.error(root.span(), UrdfProblem::NotARobot { found: root.name().to_owned() }));
+    }
+    let name = root.required_text(reading, "name", "robot")?.value.to_owned();
+    root.only_attributes(reading, &["name", "version"]);
+    let (mut links, mut joints) = (Vec::new(), Vec::new());
+    for element in root.children(reading)? {
+        match element.name() {
+            "link" => links.push(link::read_link(reading, element)?),
+            "joint" => {
+                let is_locked = |joint: &str| options.locked.iter().any(|(name, _)| name == joint);
+                joints.push(joint::read_joint(reading, element, is_locked)?);
+            }
+            _ => element.ignore(reading, &["link", "joint"], |name| match name {
+                "material" => Some(Reason::Shape),
+                "transmission" => Some(Reason::Transmission),
+                "sensor" => Some(Reason::Sensor),
+                "gazebo" | "mujoco" | "ros2_control" => Some(Reason::Simulator),
+                _ => None,
+            }),
+        }
+    }
+    Ok((name, links, joints))
+}

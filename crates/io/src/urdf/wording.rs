@@ -1,0 +1,91 @@
+//! Numbers and near matches in messages.
+
+use std::fmt;
+
+/// A number as a person would write it: plain, or with a power of ten when it is very large or small.
+pub(super) fn number(value: f64) -> Number {
+    Number(value)
+}
+
+/// See [`number`].
+#[derive(Clone, Copy)]
+pub(super) struct Number(f64);
+
+impl fmt::Display for Number {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let size = self.0.abs();
+        if size == 0.0 || (1e-4..1e7).contains(&size) || !size.is_finite() {
+            write!(f, "{}", self.0)
+        } else {
+            write!(f, "{:e}", self.0)
+        }
+    }
+}
+
+/// "a, b and c", or "a, b and 17 more".
+pub(super) fn enumerate(items: impl ExactSizeIterator<Item = String>) -> String {
+    const MOST: usize = 8;
+    let count = items.len();
+    let mut text = String::new();
+    for (k, item) in items.take(MOST).enumerate() {
+        if k > 0 {
+            text.push_str(if k + 1 == count { " and " } else { ", " });
+        }
+        text.push_str(&item);
+    }
+    if count > MOST {
+        text.push_str(&format!(" and {} more", count - MOST));
+    }
+    text
+}
+
+/// The candidate nearest to `word`, if it is near enough to be a slip of the pen.
+pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    let folded = word.to_lowercase();
+    let slips = (folded.chars().count() / 3).max(1);
+    candidates
+        .into_iter()
+        .filter_map(|candidate| {
+            let other = candidate.to_lowercase();
+            let (distance, likeness) = (strsim::osa_distance(&folded, &other), strsim::jaro_winkler(&folded, &other));
+            (distance <= slips || likeness > 0.9).then_some((distance, likeness, candidate))
+        })
+        .min_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)))
+        .map(|(_, _, candidate)| candidate.to_owned())
+}
+
+/// "did you mean `x`?"
+pub(super) fn did_you_mean(nearest: Option<&str>) -> Option<String> {
+    nearest.map(|name| format!("did you mean `{name}`?"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_as_written() {
+        let written: Vec<String> = [0.0, -1.5, 1234567.0, 1e7, 1e-4, 9e-5, -1e300, f64::INFINITY]
+            .into_iter()
+            .map(|value| number(value).to_string())
+            .collect();
+        assert_eq!(written, ["0", "-1.5", "1234567", "1e7", "0.0001", "9e-5", "-1e300", "inf"]);
+    }
+
+    #[test]
+    fn nearest_forgives_slips_only() {
+        let joints = ["elbow_joint", "wrist_1_joint", "wrist_2_joint"];
+        assert_eq!(nearest("wrist1_joint", joints).as_deref(), Some("wrist_1_joint"));
+        assert_eq!(nearest("ELBOW_JOINT", joints).as_deref(), Some("elbow_joint"));
+        assert_eq!(nearest("gripper", joints), None);
+        assert_eq!(nearest("", joints), None);
+        assert_eq!(nearest("arm", ["amr", "base"]).as_deref(), Some("amr"));
+    }
+
+    #[test]
+    fn long_lists_are_cut() {
+        let list = |count: usize| enumerate((0..count).map(|k| k.to_string()));
+        assert_eq!([list(0), list(1), list(2), list(3)], ["", "0", "0 and 1", "0, 1 and 2"]);
+        assert_eq!(list(11), "0, 1, 2, 3, 4, 5, 6, 7 and 3 more");
+    }
+}
