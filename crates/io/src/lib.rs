@@ -5,6 +5,7 @@
 pub mod diagnostic;
 pub mod output;
 pub mod urdf;
+mod wording;
 
 pub use diagnostic::{InputError, Problem, SourceText};
 pub use urdf::{UrdfOptions, UrdfRobot, read_urdf};

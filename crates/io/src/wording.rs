@@ -3,13 +3,13 @@
 use std::fmt;
 
 /// A number as a person would write it: plain, or with a power of ten when it is very large or small.
-pub(super) fn number(value: f64) -> Number {
+pub(crate) fn number(value: f64) -> Number {
     Number(value)
 }
 
 /// See [`number`].
 #[derive(Clone, Copy)]
-pub(super) struct Number(f64);
+pub(crate) struct Number(f64);
 
 impl fmt::Display for Number {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -23,7 +23,7 @@ impl fmt::Display for Number {
 }
 
 /// "a, b and c", or "a, b and 17 more".
-pub(super) fn enumerate(items: impl ExactSizeIterator<Item = String>) -> String {
+pub(crate) fn enumerate(items: impl ExactSizeIterator<Item = String>) -> String {
     const MOST: usize = 8;
     let count = items.len();
     let mut text = String::new();
@@ -40,7 +40,7 @@ pub(super) fn enumerate(items: impl ExactSizeIterator<Item = String>) -> String 
 }
 
 /// The candidate nearest to `word`, if it is near enough to be a slip of the pen.
-pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
+pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let folded = word.to_lowercase();
     let slips = (folded.chars().count() / 3).max(1);
     candidates
@@ -55,7 +55,7 @@ pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a s
 }
 
 /// "did you mean `x`?"
-pub(super) fn did_you_mean(nearest: Option<&str>) -> Option<String> {
+pub(crate) fn did_you_mean(nearest: Option<&str>) -> Option<String> {
     nearest.map(|name| format!("did you mean `{name}`?"))
 }
 
