@@ -1,6 +1,6 @@
 //! Everything that is known about a finished run.
 
-use forwardstep_check::verdict::Report;
+use forwardstep_check::Report;
 use forwardstep_sim::recording::{BreakdownCause, Ending, Outcome};
 use forwardstep_sim::setup::Setup;
 

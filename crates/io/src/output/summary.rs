@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use forwardstep_check::verdict::{Answer, Report};
+use forwardstep_check::{Answer, Report};
 use forwardstep_sim::recording::{BreakdownCause, Ending};
 use forwardstep_sim::setup::Setup;
 use serde::Serialize;

@@ -1,6 +1,6 @@
 //! The parts of the page that are words and tables.
 
-use forwardstep_check::verdict::Answer;
+use forwardstep_check::Answer;
 use forwardstep_sim::recording::{Ending, Signal};
 use forwardstep_sim::setup::{AxisUnit, Exchange, Method, Setup};
 use maud::{Markup, html};
