@@ -4,6 +4,7 @@
 
 pub mod diagnostic;
 pub mod output;
+pub mod scenario;
 pub mod urdf;
 mod wording;
 

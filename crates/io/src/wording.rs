@@ -22,6 +22,16 @@ impl fmt::Display for Number {
     }
 }
 
+/// A number to two digits: enough to judge by.
+pub(crate) fn about(value: f64) -> Number {
+    Number(format!("{value:.1e}").parse().unwrap_or(value))
+}
+
+/// "1 entry", "2 entries".
+pub(crate) fn entry_count(number: usize) -> String {
+    if number == 1 { "1 entry".into() } else { format!("{number} entries") }
+}
+
 /// "a, b and c", or "a, b and 17 more".
 pub(crate) fn enumerate(items: impl ExactSizeIterator<Item = String>) -> String {
     const MOST: usize = 8;
@@ -57,6 +67,19 @@ pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a s
 /// "did you mean `x`?"
 pub(crate) fn did_you_mean(nearest: Option<&str>) -> Option<String> {
     nearest.map(|name| format!("did you mean `{name}`?"))
+}
+
+/// "did you mean `x`? `kind` are `a`, `b`, `c`": the near match, if any, and what there is.
+pub(crate) fn choose(word: &str, kind: &str, candidates: &[impl AsRef<str>]) -> String {
+    const SHOWN: usize = 24;
+    let names = || candidates.iter().map(AsRef::as_ref);
+    let listed: Vec<_> = names().take(SHOWN).map(|name| format!("`{name}`")).collect();
+    let more = if candidates.len() > SHOWN { ", …" } else { "" };
+    let listed = format!("{kind} {}{more}", listed.join(", "));
+    match did_you_mean(nearest(word, names()).as_deref()) {
+        Some(question) => format!("{question} {listed}"),
+        None => listed,
+    }
 }
 
 #[cfg(test)]
