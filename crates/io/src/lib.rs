@@ -4,7 +4,9 @@
 
 pub mod diagnostic;
 pub mod output;
+pub mod scenario;
 pub mod urdf;
+mod wording;
 
 pub use diagnostic::{InputError, Problem, SourceText};
 pub use urdf::{UrdfOptions, UrdfRobot, read_urdf};

@@ -312,8 +312,11 @@ fn a_torque_clipped_at_an_enforced_limit_counts_as_reached() {
 #[test]
 fn agents_that_cannot_be_compared_have_no_disagreement() {
     let (mut setup, recording) = by_hand();
-    setup.agents[1].robot.axes[0].unit = AxisUnit::Metre;
     let disagreement = |setup: &Setup, recording| Metrics::of(setup, recording, Some(&[1.0]), None).disagreement;
+    setup.agents[1].robot.axes[0].unit = AxisUnit::Metre;
+    assert!(disagreement(&setup, &recording).last().is_some(), "numbers agree, whatever their units");
+    let axis = setup.agents[1].robot.axes[0].clone();
+    setup.agents[1].robot.axes.push(axis);
     let different = Disagreement::Absent(Absence::DifferentAxes { first: 0, other: 1 });
     assert_eq!(disagreement(&setup, &recording), different);
     setup.agents.truncate(1);

@@ -69,7 +69,7 @@ pub enum Absence {
     NoRows,
     /// One agent alone, or none, agrees with itself.
     FewerThanTwoAgents,
-    /// These agents have different numbers of axes, or axes in different units.
+    /// These agents have different numbers of axes.
     DifferentAxes {
         /// The first agent.
         first: usize,
@@ -202,8 +202,8 @@ impl DisagreementSeries {
         if others.is_empty() {
             return Err(Absence::FewerThanTwoAgents);
         }
-        let units = |axes: &[forwardstep_sim::Axis]| axes.iter().map(|a| a.unit).collect::<Vec<_>>();
-        let differs = |other: &forwardstep_sim::AgentSetup| units(&other.robot.axes) != units(&first.robot.axes);
+        // Agreement is on numbers: an arm in rad and a cart in m can agree.
+        let differs = |other: &forwardstep_sim::AgentSetup| other.robot.axes.len() != first.robot.axes.len();
         if let Some(other) = others.iter().position(differs) {
             return Err(Absence::DifferentAxes { first: 0, other: other + 1 });
         }

@@ -7,8 +7,8 @@ use super::link::{Origin, read_origin};
 use super::notice::NoticeKind;
 use super::problem::UrdfProblem;
 use super::subject::Owner;
-use super::wording::nearest;
 use super::xml::{Element, Located, Reading, UrdfError};
+use crate::wording::nearest;
 
 /// A joint as the file states it.
 #[derive(Clone, Debug)]

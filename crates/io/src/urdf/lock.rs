@@ -3,8 +3,8 @@
 use super::joint::Joint;
 use super::notice::NoticeKind;
 use super::problem::UrdfProblem;
-use super::wording::nearest;
 use super::xml::{Reading, UrdfError};
+use crate::wording::nearest;
 
 /// The value at which each joint is held, for each joint of the file.
 pub(super) fn locks(

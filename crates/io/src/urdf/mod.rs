@@ -21,7 +21,6 @@ mod problem;
 mod shipped;
 mod subject;
 mod tree;
-mod wording;
 mod xml;
 
 use forwardstep_sim::setup::RobotSetup;

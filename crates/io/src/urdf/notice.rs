@@ -4,8 +4,8 @@ use std::fmt;
 use std::ops::Range;
 
 use super::ignored::{IgnoredItem, write_grouped};
-use super::wording::{enumerate, number};
 use crate::SourceText;
+use crate::wording::{enumerate, number};
 
 /// Something in an accepted file that the user should know about.
 #[derive(Clone, Debug)]

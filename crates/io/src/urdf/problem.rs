@@ -4,8 +4,8 @@ use forwardstep_core::robot::tree::TreeError;
 use thiserror::Error;
 
 use super::subject::{AttributeOf, End, Named, NamedLine, Owner, Size};
-use super::wording::{did_you_mean, enumerate, number};
 use crate::Problem;
+use crate::wording::{did_you_mean, enumerate, number};
 
 /// Why a URDF file, or what was asked of it, has no meaning here.
 #[derive(Clone, Debug, PartialEq, Error)]

@@ -10,8 +10,8 @@ use super::joint::Joint;
 use super::link::Link;
 use super::problem::UrdfProblem;
 use super::subject::{End, Named, NamedLine};
-use super::wording::nearest;
 use super::xml::{Located, Reading, UrdfError};
+use crate::wording::nearest;
 
 /// A link with the joint that holds it.
 #[derive(Clone, Copy, Debug)]

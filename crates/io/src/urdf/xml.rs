@@ -8,7 +8,7 @@ use super::ignored::{IgnoreReason, Tally};
 use super::notice::{Notice, NoticeKind};
 use super::problem::UrdfProblem;
 use super::subject::{AttributeOf, Owner, Size};
-use super::wording::nearest;
+use crate::wording::nearest;
 use crate::{InputError, SourceText};
 
 /// Bytes accepted; the largest robots in use have less than one million.

@@ -3,13 +3,13 @@
 use std::fmt;
 
 /// A number as a person would write it: plain, or with a power of ten when it is very large or small.
-pub(super) fn number(value: f64) -> Number {
+pub(crate) fn number(value: f64) -> Number {
     Number(value)
 }
 
 /// See [`number`].
 #[derive(Clone, Copy)]
-pub(super) struct Number(f64);
+pub(crate) struct Number(f64);
 
 impl fmt::Display for Number {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -22,8 +22,18 @@ impl fmt::Display for Number {
     }
 }
 
+/// A number to two digits: enough to judge by.
+pub(crate) fn about(value: f64) -> Number {
+    Number(format!("{value:.1e}").parse().unwrap_or(value))
+}
+
+/// "1 entry", "2 entries".
+pub(crate) fn entry_count(number: usize) -> String {
+    if number == 1 { "1 entry".into() } else { format!("{number} entries") }
+}
+
 /// "a, b and c", or "a, b and 17 more".
-pub(super) fn enumerate(items: impl ExactSizeIterator<Item = String>) -> String {
+pub(crate) fn enumerate(items: impl ExactSizeIterator<Item = String>) -> String {
     const MOST: usize = 8;
     let count = items.len();
     let mut text = String::new();
@@ -40,7 +50,7 @@ pub(super) fn enumerate(items: impl ExactSizeIterator<Item = String>) -> String 
 }
 
 /// The candidate nearest to `word`, if it is near enough to be a slip of the pen.
-pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
+pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let folded = word.to_lowercase();
     let slips = (folded.chars().count() / 3).max(1);
     candidates
@@ -55,8 +65,21 @@ pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a s
 }
 
 /// "did you mean `x`?"
-pub(super) fn did_you_mean(nearest: Option<&str>) -> Option<String> {
+pub(crate) fn did_you_mean(nearest: Option<&str>) -> Option<String> {
     nearest.map(|name| format!("did you mean `{name}`?"))
+}
+
+/// "did you mean `x`? `kind` are `a`, `b`, `c`": the near match, if any, and what there is.
+pub(crate) fn choose(word: &str, kind: &str, candidates: &[impl AsRef<str>]) -> String {
+    const SHOWN: usize = 24;
+    let names = || candidates.iter().map(AsRef::as_ref);
+    let listed: Vec<_> = names().take(SHOWN).map(|name| format!("`{name}`")).collect();
+    let more = if candidates.len() > SHOWN { ", …" } else { "" };
+    let listed = format!("{kind} {}{more}", listed.join(", "));
+    match did_you_mean(nearest(word, names()).as_deref()) {
+        Some(question) => format!("{question} {listed}"),
+        None => listed,
+    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,22 @@
+//! `forwardstep check`
+
+use forwardstep::check::Answer;
+use forwardstep::io::scenario::open_scenario;
+
+use super::promise::{promise, show};
+use crate::console::{Console, complain};
+use crate::status::Status;
+
+/// Says which theorem speaks about a scenario and whether its hypotheses hold.
+pub(crate) fn check(scenario: &str, console: &mut Console) -> Status {
+    let scenario = match open_scenario(scenario) {
+        Ok(scenario) => scenario,
+        Err(error) => return complain(&error),
+    };
+    let promise = promise(&scenario.setup);
+    show(&scenario, &promise, console);
+    match promise.report.worst() {
+        Answer::Holds | Answer::HoldsOnHorizon => Status::Fine,
+        Answer::NotCovered | Answer::Violated => Status::Missed,
+    }
+}

@@ -1,0 +1,57 @@
+//! What the theorems promise for a setup, and how it is shown.
+
+use forwardstep::check::{self, Answer, NoPrediction, Report};
+use forwardstep::io::scenario::Scenario;
+use forwardstep::sim::Setup;
+
+use crate::console::{BAD, BOLD, Console, DIM, FAIR, GOOD};
+
+/// What was promised before a run.
+pub(crate) struct Promise {
+    pub(crate) report: Report,
+    /// The value that the agents will agree on, per axis, or why it is not known.
+    pub(crate) agreement: Result<Vec<f64>, NoPrediction>,
+}
+
+/// Looks at the hypotheses.
+pub(crate) fn promise(setup: &Setup) -> Promise {
+    let agreement = check::predict(setup).map(|prediction| prediction.value);
+    Promise { report: check::check(setup), agreement }
+}
+
+/// The scenario in one line, and the verdicts.
+pub(crate) fn show(scenario: &Scenario, promise: &Promise, console: &mut Console) {
+    let Promise { report, agreement } = promise;
+    console.line(format_args!("{BOLD}{}{BOLD:#}", scenario.title));
+    console.line("");
+    console.line(format_args!("{BOLD}{}{BOLD:#}: {}", report.theorem, report.promises));
+    for hypothesis in &report.hypotheses {
+        let (style, words) = (style(hypothesis.answer), hypothesis.answer.words());
+        console.line(format_args!("  {style}{words}{style:#}: {}", hypothesis.requires));
+        if !hypothesis.because.is_empty() {
+            console.line(format_args!("    {DIM}{}{DIM:#}", hypothesis.because));
+        }
+    }
+    match agreement {
+        Ok(value) => console.line(format_args!("  predicted agreement: {}", list(value))),
+        Err(reason) => console.line(format_args!("  {DIM}predicted agreement: none, since {reason}{DIM:#}")),
+    }
+    for notice in &scenario.notices {
+        console.line(format_args!("{FAIR}note{FAIR:#}: {notice}"));
+    }
+}
+
+/// The colour of an answer.
+pub(crate) fn style(answer: Answer) -> anstyle::Style {
+    match answer {
+        Answer::Holds => GOOD,
+        Answer::HoldsOnHorizon | Answer::NotCovered => FAIR,
+        Answer::Violated => BAD,
+    }
+}
+
+/// Numbers to a precision that people compare by.
+pub(crate) fn list(values: &[f64]) -> String {
+    let values: Vec<_> = values.iter().map(|value| format!("{value:.6}")).collect();
+    format!("({})", values.join(", "))
+}

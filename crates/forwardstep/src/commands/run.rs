@@ -1,0 +1,105 @@
+//! `forwardstep run`
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use forwardstep::io::output::{self, GoalOutcome, Metrics, OutputError, RunFolder, RunRecord, ending_sentence};
+use forwardstep::io::scenario::{Scenario, open_scenario};
+use forwardstep::sim::{Ending, Outcome, simulate};
+
+use super::progress::Bar;
+use super::promise::{Promise, promise, show};
+use super::summary::summary;
+use crate::arguments::RunOptions;
+use crate::console::{Console, Plain, complain, remark};
+use crate::status::Status;
+
+/// Simulates a scenario, writes its folder and prints a summary.
+pub(crate) fn run(options: &RunOptions, console: &mut Console) -> Status {
+    finish(options, console).unwrap_or_else(|status| status)
+}
+
+fn finish(options: &RunOptions, console: &mut Console) -> Result<Status, Status> {
+    let stop = stop_on_interrupt();
+    let scenario = open_scenario(&options.scenario).map_err(|error| complain(&error))?;
+    let promise = promise(&scenario.setup);
+    let path = options.out.clone().unwrap_or_else(|| Path::new("forwardstep-runs").join(&scenario.name));
+    // Before the run, so that no work is lost to a folder that cannot be written to.
+    let new = missing_folders(&path);
+    let folder = RunFolder::create(&path, options.force).map_err(refused)?;
+    show(&scenario, &promise, console);
+    console.line("");
+
+    let mut bar = Bar::new();
+    let outcome = simulate(&scenario.setup, &mut |progress| {
+        bar.update(progress);
+        if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    bar.clear();
+    let outcome = outcome.map_err(|error| {
+        new.iter().for_each(|folder| drop(std::fs::remove_dir(folder)));
+        complain(&Plain::new(error))
+    })?;
+
+    let setup = &scenario.setup;
+    let metrics = Metrics::of(setup, &outcome.recording, promise.agreement.as_deref().ok(), scenario.goal);
+    let goal = scenario.goal.map(|goal| GoalOutcome { goal, met: goal.is_met(setup, &outcome, &metrics) });
+    let record = record(&scenario, &promise, &outcome, goal);
+    let files = output::write_run(&folder, &record, output::Options { csv: options.csv }).map_err(refused)?;
+    if outcome.ending != Ending::Completed {
+        remark(ending_sentence(setup, &outcome.ending));
+    }
+    console.text(summary(&record, &metrics, &path, &files));
+    Ok(match outcome.ending {
+        Ending::BrokeDown(_) => Status::BrokeDown,
+        Ending::Interrupted { .. } => Status::Interrupted,
+        Ending::Completed if goal.is_some_and(|goal| !goal.met) => Status::Missed,
+        Ending::Completed => Status::Fine,
+    })
+}
+
+fn record<'a>(
+    scenario: &'a Scenario,
+    promise: &'a Promise,
+    outcome: &'a Outcome,
+    goal: Option<GoalOutcome>,
+) -> RunRecord<'a> {
+    RunRecord {
+        title: &scenario.title,
+        scenario_name: &scenario.name,
+        scenario_text: scenario.source.text(),
+        version: env!("CARGO_PKG_VERSION"),
+        setup: &scenario.setup,
+        outcome,
+        verdicts: &promise.report,
+        predicted_agreement: promise.agreement.clone().ok(),
+        goal,
+        notices: scenario.notices.iter().map(ToString::to_string).collect(),
+    }
+}
+
+fn refused(error: OutputError) -> Status {
+    let help = error.help();
+    complain(&Plain::with_help(error, help))
+}
+
+/// The folders on the way to `path` that do not exist yet, innermost first.
+fn missing_folders(path: &Path) -> Vec<PathBuf> {
+    let named = path.ancestors().filter(|folder| !folder.as_os_str().is_empty());
+    named.take_while(|folder| !folder.exists()).map(Path::to_owned).collect()
+}
+
+/// Set by the first Ctrl-C, which lets the run end in order; the second ends the program.
+fn stop_on_interrupt() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stop);
+    // Without a handler Ctrl-C still ends the program, only nothing is kept.
+    let _ = ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(Status::Interrupted as i32);
+        }
+    });
+    stop
+}

@@ -1,0 +1,29 @@
+//! `forwardstep scenarios`
+
+use forwardstep::io::scenario::{OpenError, SHIPPED_SCENARIOS, open_scenario, shipped_scenario};
+
+use crate::console::{BOLD, Console, complain};
+use crate::status::Status;
+
+/// Lists the shipped scenarios with a line each, or prints the text of one.
+pub(crate) fn scenarios(name: Option<&str>, console: &mut Console) -> Status {
+    match name {
+        None => {
+            for shipped in SHIPPED_SCENARIOS {
+                let title = match open_scenario(shipped.name) {
+                    Ok(scenario) => scenario.title,
+                    Err(error) => return complain(&error),
+                };
+                console.line(format_args!("{BOLD}{:22}{BOLD:#} {title}", shipped.name));
+            }
+            Status::Fine
+        }
+        Some(name) => match shipped_scenario(name.trim_end_matches(".toml")) {
+            Some(shipped) => {
+                console.text(shipped.text);
+                Status::Fine
+            }
+            None => complain(&OpenError::Unknown { name: name.to_owned() }),
+        },
+    }
+}

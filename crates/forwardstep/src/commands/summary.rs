@@ -1,0 +1,80 @@
+//! The table at the end of a run.
+
+use std::path::{Path, PathBuf};
+
+use comfy_table::{ContentArrangement, Table, presets};
+use forwardstep::check::Report;
+use forwardstep::io::output::names::{agent_name, axis_name, unit};
+use forwardstep::io::output::{Disagreement, Metrics, RunRecord};
+use forwardstep::sim::{AxisUnit, Setup, Signal};
+
+use super::progress::speed;
+use super::promise::list;
+
+/// A few lines: what was promised, what happened, what it cost, and where it is.
+pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, files: &[PathBuf]) -> String {
+    let RunRecord { setup, outcome, .. } = record;
+    let mut rows: Vec<(&str, String)> = vec![("verdict", verdict(record.verdicts))];
+    if let Some(goal) = &record.goal {
+        rows.push(("goal", format!("{}: {}", if goal.met { "met" } else { "missed" }, goal.goal.words())));
+    }
+    rows.push(("final disagreement", disagreement(setup, metrics)));
+    if let Some(settled_s) = metrics.settled_s {
+        rows.push(("settled after", format!("{settled_s:.2} s")));
+    }
+    if let Some(agreement) = &metrics.agreement {
+        let predicted: Vec<f64> = agreement.iter().map(|axis| axis.predicted).collect();
+        let reached: Vec<f64> = agreement.iter().map(|axis| axis.reached).collect();
+        rows.push(("predicted agreement", list(&predicted)));
+        rows.push(("reached agreement", list(&reached)));
+    }
+    if let Some(peak) = metrics.peak_torques.iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs())) {
+        let unit = unit(setup, peak.agent, Signal::Torque, peak.axis);
+        let (agent, axis) = (agent_name(setup, peak.agent), axis_name(setup, peak.agent, peak.axis));
+        rows.push(("peak torque", format!("{:.1} {unit}, {agent} axis {axis} at {:.2} s", peak.value.abs(), peak.t_s)));
+    }
+    if !metrics.limits_reached.is_empty() {
+        rows.push(("limits exceeded", format!("{}, see the report", metrics.limits_reached.len())));
+    }
+    let statistics = &outcome.statistics;
+    let steps = format!("{}, {} of them to break-points", statistics.steps, statistics.break_points);
+    rows.push(("steps", format!("{steps}; {} rejected", statistics.rejected)));
+    let wall_s = statistics.wall.as_secs_f64();
+    let factor = metrics.last_t_s.unwrap_or(0.0) / wall_s.max(1e-9);
+    rows.push(("wall time", format!("{wall_s:.2} s, {} × real time", speed(factor))));
+    rows.push(("files", names(folder, files)));
+
+    let mut table = Table::new();
+    table.load_preset(presets::NOTHING).set_content_arrangement(ContentArrangement::Disabled);
+    for (name, value) in rows {
+        table.add_row([name, value.as_str()]);
+    }
+    let lines: Vec<_> = table.lines().map(|line| line.trim_end().to_owned() + "\n").collect();
+    lines.concat()
+}
+
+fn verdict(report: &Report) -> String {
+    format!("{}: {}", report.theorem, report.worst().words())
+}
+
+fn disagreement(setup: &Setup, metrics: &Metrics) -> String {
+    let mut units = setup.agents.iter().flat_map(|agent| &agent.robot.axes).map(|axis| match axis.unit {
+        AxisUnit::Radian => "rad",
+        AxisUnit::Metre => "m",
+    });
+    let unit = units.next().unwrap_or_default();
+    let unit = if units.all(|other| other == unit) { unit } else { "rad or m" };
+    match metrics.disagreement {
+        Disagreement::Measured { initial, last, .. } => format!("{last:.2e} {unit}, from {initial:.2}"),
+        Disagreement::Absent(absence) => format!("none: {}", absence.words()),
+    }
+}
+
+/// The folder, and in it the report by name, which is what to open.
+fn names(folder: &Path, files: &[PathBuf]) -> String {
+    let report = files.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));
+    match report {
+        Some(report) => format!("{} and {} others in that folder", report.display(), files.len() - 1),
+        None => folder.display().to_string(),
+    }
+}

@@ -1,0 +1,234 @@
+//! The program as a user meets it: what it prints, what it writes, and how it exits.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command as Process, Stdio};
+
+use assert_cmd::Command;
+use assert_cmd::assert::Assert;
+use forwardstep::io::scenario::SHIPPED_SCENARIOS;
+use tempfile::TempDir;
+
+/// Two arms that agree within a few seconds; a `[goal]` or `[solver]` may follow.
+const QUICK: &str = r#"
+format = 1
+title = "Two arms"
+time = { end_s = 30, record_every_s = 0.1 }
+[[agents]]
+name = "arm"
+count = 2
+robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }
+start.position_rad = [[0.1, 0.2], [0.3, 0.4]]
+[reference.consensus]
+roots_per_s = [1.0, 2.0]
+exchange = "position_velocity"
+[law.known]
+[network]
+delay.constant_s = 0.1
+edges = [["arm-1", "arm-2"], ["arm-2", "arm-1"]]
+"#;
+
+fn folder() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+fn forwardstep(folder: &TempDir, arguments: &[&str]) -> Assert {
+    Command::cargo_bin("forwardstep").unwrap().current_dir(folder).args(arguments).assert()
+}
+
+fn stdout(assert: &Assert) -> String {
+    String::from_utf8(assert.get_output().stdout.clone()).unwrap()
+}
+
+fn stderr(assert: &Assert) -> String {
+    String::from_utf8(assert.get_output().stderr.clone()).unwrap()
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<_> =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+fn summary(folder: &Path) -> serde_json::Value {
+    serde_json::from_str(&fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn scenarios_are_listed_and_printed() {
+    let folder = folder();
+    let list = stdout(&forwardstep(&folder, &["scenarios"]).success());
+    for scenario in SHIPPED_SCENARIOS {
+        assert!(list.lines().any(|line| line.starts_with(scenario.name)), "{list}");
+        assert_eq!(stdout(&forwardstep(&folder, &["scenarios", scenario.name]).success()), scenario.text);
+    }
+    let error = stderr(&forwardstep(&folder, &["scenarios", "six-amrs"]).code(2));
+    assert!(error.contains("did you mean `six-arms`?"), "{error}");
+}
+
+#[test]
+fn the_schema_is_json() {
+    let text = stdout(&forwardstep(&folder(), &["schema"]).success());
+    let schema: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(schema["title"], "forwardstep scenario");
+}
+
+#[test]
+fn a_shipped_scenario_runs_by_name_in_any_folder() {
+    let folder = folder();
+    let run = forwardstep(&folder, &["run", "first-order"]).success();
+    let text = stdout(&run);
+    assert!(text.starts_with("First order (aa10)"), "{text}");
+    for row in ["verdict", "goal", "final disagreement", "peak torque", "steps", "wall time", "files"] {
+        assert!(text.lines().any(|line| line.trim_start().starts_with(row)), "no {row} in {text}");
+    }
+    assert_eq!(stderr(&run), "", "no progress unless a person looks at it");
+    assert!(!text.contains('\u{1b}'), "no colours unless a person looks at them");
+    let files = names(&folder.path().join("forwardstep-runs/first-order"));
+    for file in ["report.html", "scenario.toml", "summary.json", "trajectory.parquet"] {
+        assert!(files.iter().any(|name| name == file), "no {file} in {files:?}");
+    }
+}
+
+#[test]
+fn a_file_runs_with_csv_into_a_folder_of_choice() {
+    let folder = folder();
+    fs::write(folder.path().join("two.toml"), QUICK).unwrap();
+    forwardstep(&folder, &["run", "two.toml", "--out", "a/b", "--csv"]).success();
+    let table = fs::read_to_string(folder.path().join("a/b/trajectory.csv")).unwrap();
+    assert!(table.starts_with("t_s,arm-1.q.1,"), "{}", &table[..40]);
+    assert_eq!(table.lines().count(), 1 + 301);
+    assert_eq!(names(folder.path()), ["a", "two.toml"]);
+}
+
+#[test]
+fn the_same_scenario_gives_the_same_bits() {
+    let folder = folder();
+    fs::write(folder.path().join("two.toml"), QUICK).unwrap();
+    for out in ["a", "b"] {
+        forwardstep(&folder, &["run", "two.toml", "--out", out]).success();
+    }
+    for file in ["trajectory.parquet", "report.html"] {
+        let bytes = |out: &str| fs::read(folder.path().join(out).join(file)).unwrap();
+        assert!(bytes("a") == bytes("b"), "{file} differs");
+    }
+}
+
+#[test]
+fn an_existing_folder_is_kept_unless_forced() {
+    let folder = folder();
+    fs::write(folder.path().join("two.toml"), QUICK).unwrap();
+    let out = folder.path().join("forwardstep-runs/two");
+    fs::create_dir_all(&out).unwrap();
+    fs::write(out.join("summary.json"), "mine").unwrap();
+    fs::write(out.join("notes.txt"), "mine too").unwrap();
+    let error = stderr(&forwardstep(&folder, &["run", "two.toml"]).code(2));
+    assert!(error.contains("already exists") && error.contains("--force"), "{error}");
+    assert_eq!(names(&out), ["notes.txt", "summary.json"]);
+    assert_eq!(fs::read_to_string(out.join("summary.json")).unwrap(), "mine");
+    forwardstep(&folder, &["run", "two.toml", "--force"]).success();
+    assert_eq!(summary(&out)["title"], "Two arms");
+    assert_eq!(fs::read_to_string(out.join("notes.txt")).unwrap(), "mine too");
+}
+
+#[test]
+fn bad_input_writes_nothing() {
+    let folder = folder();
+    fs::write(folder.path().join("two.toml"), QUICK.replace("\"arm-2\"]", "\"arm-3\"]")).unwrap();
+    for command in ["run", "check"] {
+        let error = stderr(&forwardstep(&folder, &[command, "two.toml"]).code(2));
+        assert!(error.contains("two.toml:16:20: there is no agent `arm-3`"), "{error}");
+        assert!(error.contains("did you mean"), "{error}");
+    }
+    let error = stderr(&forwardstep(&folder, &["run", "tow.toml"]).code(2));
+    assert!(error.contains("cannot read `tow.toml`") && error.contains("did you mean `two.toml`?"), "{error}");
+    let error = stderr(&forwardstep(&folder, &["run", "theorem-4"]).code(2));
+    assert!(
+        error.contains("there is no scenario `theorem-4`") && error.contains("did you mean `theorem-2`?"),
+        "{error}"
+    );
+    forwardstep(&folder, &["run", "six-arms", "--fast"]).code(2);
+    assert_eq!(names(folder.path()), ["two.toml"]);
+}
+
+#[test]
+fn a_missed_goal_is_status_one() {
+    let folder = folder();
+    let cases = [
+        ("disagreement_below = 1e-3", 0, "met"),
+        ("disagreement_below = 1e-300", 1, "missed"),
+        ("expect = \"diverges\"", 1, "missed"),
+    ];
+    for (goal, status, word) in cases {
+        fs::write(folder.path().join("two.toml"), format!("{QUICK}[goal]\n{goal}")).unwrap();
+        let text = stdout(&forwardstep(&folder, &["run", "two.toml", "--force"]).code(status));
+        let line = text.lines().find(|line| line.trim_start().starts_with("goal")).unwrap();
+        assert!(line.contains(word), "{line}");
+    }
+}
+
+#[test]
+fn a_breakdown_is_status_three_and_keeps_what_was_computed() {
+    let folder = folder();
+    let solver = "[solver]\nmin_step_s = 5e-3\nmethod.adaptive = { rtol = 1e-13, atol = 1e-13 }";
+    fs::write(folder.path().join("two.toml"), format!("{QUICK}{solver}")).unwrap();
+    let run = forwardstep(&folder, &["run", "two.toml"]).code(3);
+    let error = stderr(&run);
+    assert!(error.contains("t = ") && error.contains("arm-") && error.contains("step"), "when, who and what: {error}");
+    assert_eq!(summary(&folder.path().join("forwardstep-runs/two"))["ending"]["kind"], "broke_down");
+}
+
+#[test]
+fn a_reader_who_leaves_early_is_no_error() {
+    for arguments in [&["schema"][..], &["scenarios", "six-arms"], &["scenarios"]] {
+        let binary = assert_cmd::cargo::cargo_bin("forwardstep");
+        let mut process =
+            Process::new(binary).args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(process.stdout.take());
+        let output = process.wait_with_output().unwrap();
+        assert_eq!((output.status.code(), String::from_utf8(output.stderr).unwrap().as_str()), (Some(0), ""));
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn text_that_cannot_be_written_is_an_error() {
+    let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let binary = assert_cmd::cargo::cargo_bin("forwardstep");
+    let output = Process::new(binary).arg("schema").stdout(full).stderr(Stdio::piped()).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(!output.stderr.is_empty());
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_what_was_computed() {
+    use std::io::{BufRead, BufReader};
+
+    let folder = folder();
+    // Years of simulated time, so that it cannot end by itself.
+    let long = QUICK.replace("end_s = 30, record_every_s = 0.1", "end_s = 1e8, record_every_s = 100");
+    fs::write(folder.path().join("two.toml"), long).unwrap();
+    let mut process = Process::new(assert_cmd::cargo::cargo_bin("forwardstep"))
+        .current_dir(&folder)
+        .args(["run", "two.toml"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(process.stdout.take().unwrap()).lines();
+    // The verdicts are printed before the run, when the handler is in place.
+    assert_eq!(lines.next().unwrap().unwrap(), "Two arms");
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    Process::new("kill").args(["-INT", &process.id().to_string()]).status().unwrap();
+    let text: Vec<_> = lines.map(Result::unwrap).collect();
+    let output = process.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    assert!(String::from_utf8(output.stderr).unwrap().starts_with("Interrupted at t = "));
+    assert!(text.iter().any(|line| line.contains("final disagreement")), "{text:?}");
+    let summary = summary(&folder.path().join("forwardstep-runs/two"));
+    assert_eq!(summary["ending"]["kind"], "interrupted");
+    assert!(summary["ending"]["t_s"].as_f64().unwrap() > 0.0);
+}

@@ -1,0 +1,44 @@
+//! Every shipped scenario shows what it says: its hypotheses hold, it completes, and it meets its goal.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::ops::ControlFlow;
+
+use forwardstep::check::{Answer, check};
+use forwardstep::io::output::Metrics;
+use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
+use forwardstep::sim::{Ending, simulate};
+
+fn shows_what_it_says(name: &str) {
+    let scenario = open_scenario(name).unwrap_or_else(|error| panic!("{error}"));
+    let setup = &scenario.setup;
+    let worst = check(setup).worst();
+    assert!(matches!(worst, Answer::Holds | Answer::HoldsOnHorizon), "{name}: {}", worst.words());
+    let outcome = simulate(setup, &mut |_| ControlFlow::Continue(())).unwrap();
+    assert_eq!(outcome.ending, Ending::Completed);
+    let metrics = Metrics::of(setup, &outcome.recording, None, scenario.goal);
+    let goal = scenario.goal.unwrap();
+    assert!(goal.is_met(setup, &outcome, &metrics), "{}: {:?}", goal.words(), metrics.disagreement);
+}
+
+macro_rules! shipped {
+    ($($test:ident: $name:literal),* $(,)?) => {
+        $(#[test]
+        fn $test() {
+            shows_what_it_says($name);
+        })*
+
+        #[test]
+        fn all_of_them_are_tested() {
+            assert_eq!([$($name),*], SHIPPED_SCENARIOS.map(|scenario| scenario.name));
+        }
+    };
+}
+
+shipped! {
+    six_arms: "six-arms",
+    first_order: "first-order",
+    theorem_2: "theorem-2",
+    theorem_3_a5_order_3: "theorem-3-a5-order-3",
+    theorem_3_24_order_4: "theorem-3-24-order-4",
+    ten_different_robots: "ten-different-robots",
+}

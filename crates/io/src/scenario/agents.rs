@@ -1,0 +1,142 @@
+//! `[[agents]]` → [`AgentSetup`]s.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use forwardstep_sim::AgentSetup;
+
+use super::at::At;
+use super::fault::{Fault, count, fault, filled, positive};
+use super::file::{AgentFile, AgentReferenceFile, ReferenceFile, ScenarioFile};
+use super::law::law;
+use super::notice::Notice;
+use super::problem::ScenarioProblem;
+use super::robots::{ReadRobot, Stop, robot};
+use super::start::{Shared, Starter, start};
+use crate::SourceText;
+
+/// Agents that are accepted.
+const MOST_AGENTS: u32 = 10_000;
+/// The highest order of reference dynamics that is accepted.
+const MOST_ROOTS: usize = 32;
+
+/// An entry of `[[agents]]` with the names that it stands for.
+struct Population<'a> {
+    file: &'a AgentFile,
+    names: Vec<String>,
+    read: ReadRobot,
+}
+
+/// Builds all agents, in the order of the file.
+pub(super) fn agents(
+    file: &ScenarioFile,
+    source: &SourceText,
+    folder: Option<&Path>,
+    notices: &mut Vec<Notice>,
+) -> Result<Vec<AgentSetup>, Stop> {
+    let mut populations: Vec<Population<'_>> = Vec::new();
+    let mut seen = HashMap::new();
+    let mut total = 0;
+    for entry in filled("agents", &file.agents)? {
+        let names = names(&entry.value)?;
+        total += names.len() as u64;
+        if total > u64::from(MOST_AGENTS) {
+            let problem = ScenarioProblem::TooManyAgents { total, most: u64::from(MOST_AGENTS) };
+            return Err(fault(&file.agents, problem).into());
+        }
+        for name in &names {
+            if let Some(start) = seen.insert(name.clone(), entry.value.name.span.start) {
+                let (first_line, _) = source.line_column(start);
+                let problem = ScenarioProblem::AgentTwice { name: name.clone(), first_line };
+                return Err(fault(&entry.value.name, problem).into());
+            }
+        }
+        let read = robot(&entry.value.robot, folder)?;
+        let population = Population { file: &entry.value, names, read };
+        if let Some(first) = populations.first() {
+            same_axes(first, &population)?;
+        }
+        populations.push(population);
+    }
+
+    let mut agents = Vec::with_capacity(total as usize);
+    for Population { file: entry, names, read } in populations {
+        let span = match names.as_slice() {
+            [first, .., last] => format!("{first} … {last}"),
+            _ => names.concat(),
+        };
+        notices.extend(
+            read.notices.iter().cloned().map(|notice| Notice::Robot { agents: span.clone(), notice: Box::new(notice) }),
+        );
+        let enforce_limits = limits(entry, &names, &read)?;
+        let (index, of) = (agents.len(), total as usize);
+        for (k, name) in names.iter().enumerate() {
+            let robot = &read.robot;
+            let roots_per_s = roots(file, entry, name)?;
+            let own = entry.start.as_ref().map(|file| Shared { file, index: k, of: names.len() });
+            let common = file.start.as_ref().map(|file| Shared { file, index: index + k, of });
+            agents.push(AgentSetup {
+                law: law(entry.law.as_ref().or(file.law.as_ref()), name, robot)?,
+                start: start(Starter { name, robot, order: roots_per_s.len() }, own, common)?,
+                robot: robot.clone(),
+                roots_per_s,
+                enforce_limits,
+                name: name.clone(),
+            });
+        }
+    }
+    Ok(agents)
+}
+
+/// The names of a population: its own, or numbered from one when it is counted.
+fn names(file: &AgentFile) -> Result<Vec<String>, Fault> {
+    let name = &file.name;
+    if name.value.is_empty() || !name.value.chars().all(|c| c.is_alphanumeric() || matches!(c, '-' | '_')) {
+        return Err(fault(name, ScenarioProblem::AgentName { name: name.value.clone() }));
+    }
+    Ok(match &file.count {
+        None => vec![name.value.clone()],
+        Some(number) => {
+            let number = count("count", number, MOST_AGENTS)?;
+            (1..=number).map(|k| format!("{}-{k}", name.value)).collect()
+        }
+    })
+}
+
+/// Positions that are to agree need the same length.
+fn same_axes(first: &Population<'_>, other: &Population<'_>) -> Result<(), Fault> {
+    let (first_axes, other_axes) = (first.read.robot.axes.len(), other.read.robot.axes.len());
+    if first_axes == other_axes {
+        return Ok(());
+    }
+    let name = |population: &Population<'_>| population.names.first().cloned().unwrap_or_default();
+    let problem = ScenarioProblem::AxesDiffer { first: name(first), first_axes, other: name(other), other_axes };
+    Err(fault(&other.file.robot, problem))
+}
+
+/// Whether limits are enforced, which needs limits.
+fn limits(entry: &AgentFile, names: &[String], read: &ReadRobot) -> Result<bool, Fault> {
+    let Some(place @ At { value: true, .. }) = &entry.enforce_limits else { return Ok(false) };
+    match read.robot.axes.iter().find(|axis| axis.effort_limit.is_none()) {
+        None => Ok(true),
+        Some(axis) => {
+            let (agent, axis) = (names.first().cloned().unwrap_or_default(), axis.name.clone());
+            Err(fault(place, ScenarioProblem::NoEffortLimit { agent, axis }))
+        }
+    }
+}
+
+/// The agent's own roots, else those of all.
+fn roots(file: &ScenarioFile, entry: &AgentFile, agent: &str) -> Result<Vec<f64>, Fault> {
+    let ReferenceFile::Consensus(common) = &file.reference.value;
+    let list: &At<Vec<At<f64>>> = match (&entry.reference, &common.roots_per_s) {
+        (Some(AgentReferenceFile::Consensus(own)), _) => &own.roots_per_s,
+        (None, Some(common)) => common,
+        (None, None) => return Err(fault(&file.reference, ScenarioProblem::NoRoots { agent: agent.to_owned() })),
+    };
+    let roots = filled("roots_per_s", list)?;
+    if roots.len() > MOST_ROOTS {
+        return Err(fault(list, ScenarioProblem::Order { found: roots.len(), most: MOST_ROOTS }));
+    }
+    roots.iter().map(|root| positive("roots_per_s", root)).collect()
+}

@@ -1,0 +1,431 @@
+//! From TOML's tree with places to the structs of a scenario file.
+//!
+//! The deserialiser that comes with `toml` reports what is wrong as text. This one walks the same tree and reports a
+//! [`ScenarioProblem`] with the bytes it is about, so that near matches can be offered and every message reads the same.
+
+use std::fmt::Display;
+use std::ops::Range;
+
+use serde::de::value::{StrDeserializer, UsizeDeserializer};
+use serde::de::{
+    DeserializeSeed, Deserializer, EnumAccess, Error, Expected, IntoDeserializer, MapAccess, SeqAccess, Unexpected,
+    VariantAccess, Visitor,
+};
+use serde::forward_to_deserialize_any;
+use toml::Spanned;
+use toml::de::{DeInteger, DeString, DeTable, DeValue};
+
+use super::at::AT;
+use super::fault::Fault;
+use super::problem::ScenarioProblem;
+
+impl Error for Fault {
+    fn custom<T: Display>(message: T) -> Self {
+        Fault::new(ScenarioProblem::Unreadable { message: message.to_string() })
+    }
+
+    fn invalid_type(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
+        let found = match found {
+            Unexpected::Bool(value) => value.to_string(),
+            Unexpected::Signed(value) => value.to_string(),
+            Unexpected::Unsigned(value) => value.to_string(),
+            Unexpected::Float(value) => value.to_string(),
+            Unexpected::Str(text) => quoted(text),
+            Unexpected::Seq => "a list".into(),
+            Unexpected::Map => "a table".into(),
+            other => other.to_string(),
+        };
+        Fault::new(ScenarioProblem::WrongType { found, expected: expected.to_string() })
+    }
+
+    fn unknown_variant(found: &str, allowed: &'static [&'static str]) -> Self {
+        Fault::new(ScenarioProblem::UnknownChoice { found: found.into(), allowed: allowed.to_vec() })
+    }
+
+    fn unknown_field(key: &str, allowed: &'static [&'static str]) -> Self {
+        Fault::new(ScenarioProblem::UnknownKey { key: key.into(), allowed: allowed.to_vec() })
+    }
+
+    fn invalid_length(found: usize, expected: &dyn Expected) -> Self {
+        let found = format!("a list of {found}");
+        Fault::new(ScenarioProblem::WrongType { found, expected: expected.to_string() })
+    }
+
+    fn missing_field(key: &'static str) -> Self {
+        Fault::new(ScenarioProblem::MissingKey { key })
+    }
+}
+
+/// A string as messages show it: in quotes, and not for ever.
+fn quoted(text: &str) -> String {
+    match text.char_indices().nth(40) {
+        Some((cut, _)) => format!("{:?}…", &text[..cut]),
+        None => format!("{text:?}"),
+    }
+}
+
+/// A place in the tree.
+#[derive(Clone, Copy)]
+pub(super) struct ValueDe<'a, 'i>(pub(super) &'a Spanned<DeValue<'i>>);
+
+impl<'a, 'i> ValueDe<'a, 'i> {
+    fn wrong(self, expected: &str) -> Fault {
+        let found = match self.0.get_ref() {
+            DeValue::String(text) => quoted(text),
+            DeValue::Integer(value) => value.to_string(),
+            DeValue::Float(value) => value.as_str().into(),
+            DeValue::Boolean(value) => value.to_string(),
+            DeValue::Datetime(value) => format!("the date {value}"),
+            DeValue::Array(_) => "a list".into(),
+            DeValue::Table(_) => "a table".into(),
+        };
+        Fault::new(ScenarioProblem::WrongType { found, expected: expected.into() }).at(&self.0.span())
+    }
+
+    fn integer(self, integer: &DeInteger<'_>) -> Result<i64, Fault> {
+        i64::from_str_radix(integer.as_str(), integer.radix()).map_err(|_| self.too_large(integer.to_string()))
+    }
+
+    fn too_large(self, found: String) -> Fault {
+        Fault::new(ScenarioProblem::NumberTooLarge { found }).at(&self.0.span())
+    }
+
+    /// Any number. Nothing in a scenario may be infinite, or no number at all.
+    fn number(self) -> Result<f64, Fault> {
+        match self.0.get_ref() {
+            DeValue::Integer(integer) => Ok(self.integer(integer)? as f64),
+            DeValue::Float(float) => match float.as_str().parse::<f64>() {
+                Ok(value) if value.is_finite() => Ok(value),
+                Ok(_) if !float.as_str().contains(['i', 'n']) => Err(self.too_large(float.as_str().into())),
+                _ => Err(Fault::new(ScenarioProblem::NotFinite { found: float.as_str().into() }).at(&self.0.span())),
+            },
+            _ => Err(self.wrong("a number")),
+        }
+    }
+
+    fn table(self, expected: &str) -> Result<Entries<'a, 'i>, Fault> {
+        match self.0.get_ref() {
+            DeValue::Table(table) => Ok(Entries::new(table)),
+            _ => Err(self.wrong(expected)),
+        }
+    }
+
+    fn list<'de, V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        match self.0.get_ref() {
+            DeValue::Array(array) => visitor.visit_seq(Elements(array.iter())),
+            _ => Err(self.wrong("a list")),
+        }
+    }
+}
+
+macro_rules! forward {
+    ($($method:ident),*) => {
+        $(fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+            self.deserialize_any(visitor)
+        })*
+    };
+}
+
+macro_rules! whole {
+    ($($method:ident),*) => {
+        $(fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+            match self.0.get_ref() {
+                DeValue::Integer(integer) => visitor.visit_i64(self.integer(integer)?),
+                _ => Err(self.wrong("a whole number")),
+            }
+            .map_err(|error: Fault| error.at(&self.0.span()))
+        })*
+    };
+}
+
+macro_rules! text {
+    ($($method:ident),*) => {
+        $(fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+            match self.0.get_ref() {
+                DeValue::String(text) => visitor.visit_str(text),
+                _ => Err(self.wrong("a text in quotes")),
+            }
+            .map_err(|error: Fault| error.at(&self.0.span()))
+        })*
+    };
+}
+
+impl<'de> Deserializer<'de> for ValueDe<'_, '_> {
+    type Error = Fault;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        match self.0.get_ref() {
+            DeValue::String(text) => visitor.visit_str(text),
+            DeValue::Integer(_) | DeValue::Float(_) => self.number().and_then(|value| visitor.visit_f64(value)),
+            DeValue::Boolean(value) => visitor.visit_bool(*value),
+            DeValue::Datetime(_) => Err(self.wrong("a number, a text, a list or a table")),
+            DeValue::Array(array) => visitor.visit_seq(Elements(array.iter())),
+            DeValue::Table(table) => visitor.visit_map(Entries::new(table)),
+        }
+        .map_err(|error| error.at(&self.0.span()))
+    }
+
+    forward! {
+        deserialize_bytes, deserialize_byte_buf, deserialize_unit, deserialize_identifier, deserialize_char
+    }
+
+    whole! {
+        deserialize_i8, deserialize_i16, deserialize_i32, deserialize_i64, deserialize_u8, deserialize_u16,
+        deserialize_u32, deserialize_u64
+    }
+
+    text! { deserialize_str, deserialize_string }
+
+    fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        match self.0.get_ref() {
+            DeValue::Boolean(value) => visitor.visit_bool(*value),
+            _ => Err(self.wrong("true or false")),
+        }
+    }
+
+    fn deserialize_f32<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        self.deserialize_f64(visitor)
+    }
+
+    fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        visitor.visit_f64(self.number()?)
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        visitor.visit_some(self)
+    }
+
+    fn deserialize_unit_struct<V: Visitor<'de>>(self, _: &'static str, visitor: V) -> Result<V::Value, Fault> {
+        self.deserialize_any(visitor)
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(self, name: &'static str, visitor: V) -> Result<V::Value, Fault> {
+        if name == AT {
+            visitor.visit_seq(Placed { de: self, span: self.0.span(), part: 0 })
+        } else {
+            visitor.visit_newtype_struct(self)
+        }
+    }
+
+    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        self.list(visitor).map_err(|error| error.at(&self.0.span()))
+    }
+
+    fn deserialize_tuple<V: Visitor<'de>>(self, length: usize, visitor: V) -> Result<V::Value, Fault> {
+        match self.0.get_ref() {
+            DeValue::Array(array) if array.len() != length => {
+                let problem = ScenarioProblem::ListLength { found: array.len(), need: length };
+                Err(Fault::new(problem).at(&self.0.span()))
+            }
+            _ => self.deserialize_seq(visitor),
+        }
+    }
+
+    fn deserialize_tuple_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        length: usize,
+        visitor: V,
+    ) -> Result<V::Value, Fault> {
+        self.deserialize_tuple(length, visitor)
+    }
+
+    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        visitor.visit_map(self.table("a table")?).map_err(|error| error.at(&self.0.span()))
+    }
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        fields: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Fault> {
+        let entries = self.table(&format!("a table of {}", fields.join(", ")))?;
+        visitor.visit_map(entries).map_err(|error| error.at(&self.0.span()))
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        choices: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Fault> {
+        let span = self.0.span();
+        let unknown = |key: &str| Fault::unknown_variant(key, choices);
+        let choice = match self.0.get_ref() {
+            DeValue::String(text) => Choice { key: text, span: span.clone(), content: None },
+            DeValue::Table(_) => {
+                let mut entries = self.table("a table")?;
+                let Some((key, content)) = entries.next() else {
+                    let problem = ScenarioProblem::NoChoice { allowed: choices.to_vec() };
+                    return Err(Fault::new(problem).at(&span));
+                };
+                if let Some((second, _)) = entries.next() {
+                    let stranger = [key, second].into_iter().find(|key| !choices.contains(&key.get_ref().as_ref()));
+                    return Err(match stranger {
+                        Some(key) => unknown(key.get_ref()).at(&key.span()),
+                        None => Fault::new(ScenarioProblem::TwoChoices {
+                            first: key.get_ref().to_string(),
+                            second: second.get_ref().to_string(),
+                        })
+                        .at(&second.span()),
+                    });
+                }
+                Choice { key: key.get_ref(), span: key.span(), content: Some(content) }
+            }
+            _ => return Err(self.wrong(&format!("a choice of {}", choices.join(", ")))),
+        };
+        if !choices.contains(&choice.key) {
+            return Err(unknown(choice.key).at(&choice.span));
+        }
+        visitor.visit_enum(choice).map_err(|error| error.at(&span))
+    }
+
+    fn deserialize_ignored_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        visitor.visit_unit()
+    }
+}
+
+/// The parts of an [`super::At`]: start, end, value.
+struct Placed<D> {
+    de: D,
+    span: Range<usize>,
+    part: u8,
+}
+
+impl<'de, D: Deserializer<'de, Error = Fault> + Copy> SeqAccess<'de> for Placed<D> {
+    type Error = Fault;
+
+    fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Fault> {
+        self.part += 1;
+        let bound = |bytes: usize| -> UsizeDeserializer<Fault> { bytes.into_deserializer() };
+        match self.part {
+            1 => seed.deserialize(bound(self.span.start)),
+            2 => seed.deserialize(bound(self.span.end)),
+            _ => seed.deserialize(self.de),
+        }
+        .map(Some)
+    }
+}
+
+struct Elements<'a, 'i>(std::slice::Iter<'a, Spanned<DeValue<'i>>>);
+
+impl<'de> SeqAccess<'de> for Elements<'_, '_> {
+    type Error = Fault;
+
+    fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Fault> {
+        self.0.next().map(|value| seed.deserialize(ValueDe(value))).transpose()
+    }
+}
+
+type Entry<'a, 'i> = (&'a Spanned<DeString<'i>>, &'a Spanned<DeValue<'i>>);
+
+/// The entries of a table in the order of the file, so that the first mistake is the one reported.
+struct Entries<'a, 'i> {
+    entries: std::vec::IntoIter<Entry<'a, 'i>>,
+    value: Option<&'a Spanned<DeValue<'i>>>,
+}
+
+impl<'a, 'i> Entries<'a, 'i> {
+    fn new(table: &'a DeTable<'i>) -> Self {
+        let mut entries: Vec<_> = table.iter().collect();
+        entries.sort_by_key(|(key, _)| key.span().start);
+        Entries { entries: entries.into_iter(), value: None }
+    }
+
+    fn next(&mut self) -> Option<Entry<'a, 'i>> {
+        self.entries.next()
+    }
+}
+
+impl<'de> MapAccess<'de> for Entries<'_, '_> {
+    type Error = Fault;
+
+    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Fault> {
+        let Some((key, value)) = self.next() else { return Ok(None) };
+        self.value = Some(value);
+        seed.deserialize(KeyDe(key)).map(Some).map_err(|error| error.at(&key.span()))
+    }
+
+    fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Fault> {
+        match self.value.take() {
+            Some(value) => seed.deserialize(ValueDe(value)),
+            None => Err(Fault::custom("a key without a value")),
+        }
+    }
+}
+
+/// A key, which may be asked for its place like a value.
+#[derive(Clone, Copy)]
+struct KeyDe<'a, 'i>(&'a Spanned<DeString<'i>>);
+
+impl<'de> Deserializer<'de> for KeyDe<'_, '_> {
+    type Error = Fault;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        visitor.visit_str(self.0.get_ref())
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(self, name: &'static str, visitor: V) -> Result<V::Value, Fault> {
+        if name == AT {
+            visitor.visit_seq(Placed { de: self, span: self.0.span(), part: 0 })
+        } else {
+            visitor.visit_newtype_struct(self)
+        }
+    }
+
+    forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf option unit unit_struct seq
+        tuple tuple_struct map struct enum identifier ignored_any
+    }
+}
+
+/// A choice among several, with what belongs to it.
+struct Choice<'a, 'i> {
+    key: &'a str,
+    span: Range<usize>,
+    content: Option<&'a Spanned<DeValue<'i>>>,
+}
+
+impl<'de, 'a, 'i> EnumAccess<'de> for Choice<'a, 'i> {
+    type Error = Fault;
+    type Variant = Self;
+
+    fn variant_seed<V: DeserializeSeed<'de>>(self, seed: V) -> Result<(V::Value, Self), Fault> {
+        let key: StrDeserializer<'_, Fault> = self.key.into_deserializer();
+        Ok((seed.deserialize(key)?, self))
+    }
+}
+
+impl<'a, 'i> Choice<'a, 'i> {
+    fn content(&self) -> Result<ValueDe<'a, 'i>, Fault> {
+        let missing = || ScenarioProblem::ChoiceNeedsValue { choice: self.key.into() };
+        self.content.map(ValueDe).ok_or_else(|| Fault::new(missing()).at(&self.span))
+    }
+}
+
+impl<'de> VariantAccess<'de> for Choice<'_, '_> {
+    type Error = Fault;
+
+    fn unit_variant(self) -> Result<(), Fault> {
+        match self.content {
+            None => Ok(()),
+            Some(_) => {
+                let problem = ScenarioProblem::ChoiceTakesNoValue { choice: self.key.into() };
+                Err(Fault::new(problem).at(&self.span))
+            }
+        }
+    }
+
+    fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, Fault> {
+        seed.deserialize(self.content()?)
+    }
+
+    fn tuple_variant<V: Visitor<'de>>(self, length: usize, visitor: V) -> Result<V::Value, Fault> {
+        self.content()?.deserialize_tuple(length, visitor)
+    }
+
+    fn struct_variant<V: Visitor<'de>>(self, fields: &'static [&'static str], visitor: V) -> Result<V::Value, Fault> {
+        self.content()?.deserialize_struct("", fields, visitor)
+    }
+}

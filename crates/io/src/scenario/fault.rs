@@ -1,0 +1,83 @@
+//! A problem on its way up, and the checks of single numbers that raise one.
+
+use std::fmt;
+use std::ops::Range;
+
+use super::at::At;
+use super::problem::ScenarioProblem;
+
+/// A problem, and where once that is known.
+#[derive(Debug)]
+pub(super) struct Fault {
+    pub(super) problem: Box<ScenarioProblem>,
+    pub(super) span: Option<Range<usize>>,
+}
+
+impl Fault {
+    pub(super) fn new(problem: ScenarioProblem) -> Self {
+        Fault { problem: Box::new(problem), span: None }
+    }
+
+    /// Adds the place unless a closer one is known.
+    pub(super) fn at(mut self, span: &Range<usize>) -> Self {
+        self.span.get_or_insert_with(|| span.clone());
+        self
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.problem.fmt(f)
+    }
+}
+
+impl std::error::Error for Fault {}
+
+/// A problem with a value.
+pub(super) fn fault<T>(value: &At<T>, problem: ScenarioProblem) -> Fault {
+    Fault::new(problem).at(&value.span)
+}
+
+pub(super) fn positive(key: &'static str, number: &At<f64>) -> Result<f64, Fault> {
+    let value = number.value;
+    if value > 0.0 { Ok(value) } else { Err(fault(number, ScenarioProblem::NotPositive { key, value })) }
+}
+
+pub(super) fn not_negative(key: &'static str, number: &At<f64>) -> Result<f64, Fault> {
+    let value = number.value;
+    if value >= 0.0 { Ok(value) } else { Err(fault(number, ScenarioProblem::Negative { key, value })) }
+}
+
+pub(super) fn between(key: &'static str, number: &At<f64>, low: f64, high: f64) -> Result<f64, Fault> {
+    let value = number.value;
+    if (low..=high).contains(&value) {
+        Ok(value)
+    } else {
+        Err(fault(number, ScenarioProblem::OutOfRange { key, value, low, high }))
+    }
+}
+
+/// A whole number from one up to `most`.
+pub(super) fn count(key: &'static str, number: &At<i64>, most: u32) -> Result<usize, Fault> {
+    match u32::try_from(number.value) {
+        Ok(value) if (1..=most).contains(&value) => Ok(value as usize),
+        _ => {
+            let (value, high) = (number.value as f64, f64::from(most));
+            Err(fault(number, ScenarioProblem::OutOfRange { key, value, low: 1.0, high }))
+        }
+    }
+}
+
+pub(super) fn seed(number: &At<i64>) -> Result<u64, Fault> {
+    u64::try_from(number.value)
+        .map_err(|_| fault(number, ScenarioProblem::Negative { key: "seed", value: number.value as f64 }))
+}
+
+/// A list with at least one entry.
+pub(super) fn filled<'a, T>(key: &'static str, list: &'a At<Vec<T>>) -> Result<&'a [T], Fault> {
+    if list.value.is_empty() { Err(fault(list, ScenarioProblem::Empty { key })) } else { Ok(&list.value) }
+}
+
+pub(super) fn values(list: &[At<f64>]) -> Vec<f64> {
+    list.iter().map(|number| number.value).collect()
+}

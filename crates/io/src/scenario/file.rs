@@ -1,0 +1,328 @@
+//! The scenario file as it is written. The doc comments of this file are the descriptions of the published JSON schema.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::at::At;
+use super::network_file::NetworkFile;
+use super::values::{GainFile, GainOrBandwidth, Named, StartValues};
+
+/// A forwardstep scenario: a network of robots, how they are controlled, and how long to watch them.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "forwardstep scenario")]
+pub struct ScenarioFile {
+    /// The version of this format.
+    #[schemars(extend("const" = 1))]
+    pub format: At<i64>,
+    /// What the scenario shows, in one line.
+    pub title: Option<String>,
+    /// How long to simulate, and how often to record.
+    pub time: TimeFile,
+    /// The agents, one by one or as counted populations.
+    pub agents: At<Vec<At<AgentFile>>>,
+    /// The reference dynamics of all agents.
+    pub reference: At<ReferenceFile>,
+    /// The tracking law of all agents that have none of their own.
+    pub law: Option<LawFile>,
+    /// Where agents start that say nothing of their own.
+    pub start: Option<At<StartFile>>,
+    /// Who hears whom, when, and how late.
+    pub network: At<NetworkFile>,
+    /// How to integrate.
+    pub solver: Option<SolverFile>,
+    /// What the run is expected to show.
+    pub goal: Option<At<GoalFile>>,
+}
+
+/// Horizon and recording.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TimeFile {
+    /// The run covers [0, `end_s`], in s.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub end_s: At<f64>,
+    /// Rows of the tables are this far apart, in s. Default: 0.02.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub record_every_s: Option<At<f64>>,
+}
+
+/// One agent, or a population of agents of one kind.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AgentFile {
+    /// The agent's name; letters, digits, `-` and `_`. With a `count`, agents are named `name-1`, `name-2`, …
+    pub name: At<String>,
+    /// How many agents of this kind there are.
+    #[schemars(range(min = 1))]
+    pub count: Option<At<i64>>,
+    /// Its robot.
+    pub robot: At<RobotFile>,
+    /// Where it starts. Default: at rest at zero.
+    pub start: Option<At<StartFile>>,
+    /// Reference dynamics of its own.
+    pub reference: Option<AgentReferenceFile>,
+    /// A tracking law of its own.
+    pub law: Option<LawFile>,
+    /// Clip torques at the effort limits of the robot, and end the run when a joint leaves its position limits.
+    /// Otherwise limits are only reported. Default: false.
+    pub enforce_limits: Option<At<bool>>,
+}
+
+/// The robots that can be simulated.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum RobotFile {
+    /// An arm, or any tree of rigid bodies on a fixed base, from a URDF.
+    Urdf(UrdfFile),
+    /// The two-link planar arm in closed form: the first angle from the horizontal, the second relative to the first link.
+    PlanarArm(PlanarArmFile),
+    /// A point mass that is pushed along every axis.
+    PointMass(PointMassFile),
+}
+
+/// A robot from a URDF.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct UrdfFile {
+    /// The URDF, beside the scenario file, or the name of a shipped robot: `ur5e.urdf`, `panda.urdf`.
+    pub file: At<String>,
+    /// Joints held at a value, in rad or m; each removes one axis.
+    #[serde(default)]
+    pub locked: Named,
+    /// What to do with Coulomb friction in the URDF, which the law does not cover.
+    pub friction: Option<FrictionFile>,
+    /// Gravity in the base frame, in m/s². Default: [0, 0, -9.81].
+    pub gravity_m_s2: Option<[f64; 3]>,
+}
+
+/// What to do with Coulomb friction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FrictionFile {
+    /// Simulate without it.
+    Ignore,
+}
+
+/// Masses and lengths of a two-link planar arm.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlanarArmFile {
+    /// Mass of each link, in kg.
+    pub mass_kg: [At<f64>; 2],
+    /// Length of each link, in m.
+    pub length_m: [At<f64>; 2],
+    /// From each joint to the centre of mass of its link, in m. Default: the middle of the link.
+    pub com_m: Option<[At<f64>; 2]>,
+    /// Inertia of each link about its centre of mass, in kg m². Default: that of a uniform rod, m l²/12.
+    pub inertia_kg_m2: Option<[At<f64>; 2]>,
+    /// Gravity, pointing down, in m/s². Default: 9.81.
+    pub gravity_m_s2: Option<At<f64>>,
+}
+
+/// A point mass.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointMassFile {
+    /// The number of axes.
+    #[schemars(range(min = 1))]
+    pub dimension: At<i64>,
+    /// Its mass, in kg.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub mass_kg: At<f64>,
+}
+
+/// Where agents start. Everything that is not given is zero; the reference velocity then starts at the velocity.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StartFile {
+    /// Positions of robots whose axes are all angles, in rad.
+    pub position_rad: Option<At<StartValues>>,
+    /// Positions of robots whose axes are all lengths, in m.
+    pub position_m: Option<At<StartValues>>,
+    /// Positions of any robot, in rad or m as each axis has it.
+    pub position: Option<At<StartValues>>,
+    /// Velocities of robots whose axes are all angles, in rad/s.
+    pub velocity_rad_s: Option<At<StartValues>>,
+    /// Velocities of robots whose axes are all lengths, in m/s.
+    pub velocity_m_s: Option<At<StartValues>>,
+    /// Velocities of any robot, in rad/s or m/s as each axis has it.
+    pub velocity: Option<At<StartValues>>,
+    /// The state of the reference dynamics.
+    pub reference: Option<At<ReferenceStartFile>>,
+}
+
+/// The initial state of the reference dynamics, in the units of the axes.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ReferenceStartFile {
+    /// The reference velocity. Default: the velocity of the robot.
+    pub z: Option<At<StartValues>>,
+    /// Its first, second, … derivative, at most one fewer than the order has. Default: zero.
+    #[serde(default)]
+    pub derivatives: Vec<At<StartValues>>,
+}
+
+/// The reference dynamics of all agents.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum ReferenceFile {
+    /// Agreement on a position: the designs (aa10), (a1), (a5) and (24) of the paper.
+    Consensus(ConsensusFile),
+}
+
+/// Reference dynamics that lead to agreement.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ConsensusFile {
+    /// The positive numbers κ₀, κ₁, … in 1/s; as many as the order of the reference dynamics. Agents may have their own.
+    pub roots_per_s: Option<At<Vec<At<f64>>>>,
+    /// What the agents tell each other.
+    pub exchange: ExchangeFile,
+}
+
+/// What an agent transmits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ExchangeFile {
+    /// Its position and velocity: (a5), of which (aa10) is order 1 and (a1) order 2.
+    PositionVelocity,
+    /// Its position only: (24).
+    Position,
+}
+
+/// Reference dynamics of one agent; what is exchanged is the same for all.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum AgentReferenceFile {
+    /// Agreement on a position.
+    Consensus(AgentConsensusFile),
+}
+
+/// Reference dynamics of one agent.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AgentConsensusFile {
+    /// The positive numbers κ₀, κ₁, … in 1/s of this agent.
+    pub roots_per_s: At<Vec<At<f64>>>,
+}
+
+/// How the velocity is made to follow the reference velocity.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum LawFile {
+    /// The parameters of the robot are unknown and estimated: (6) and (7) of the paper.
+    Adaptive(AdaptiveFile),
+    /// The parameters of the robot are known.
+    Known(KnownFile),
+}
+
+/// The adaptive tracking law.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AdaptiveFile {
+    /// The gain K. Default: a bandwidth of 20 1/s for a URDF, 8 otherwise.
+    pub damping: Option<DampingFile>,
+    /// The gain Γ. Default: a bandwidth of 5 1/s for a URDF, 10 otherwise.
+    pub adaptation_gain: Option<At<GainOrBandwidth>>,
+    /// The estimate at the start. Default: zero.
+    pub estimate_start: Option<EstimateStartFile>,
+}
+
+/// The tracking law with known parameters.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct KnownFile {
+    /// The gain K. Default: a bandwidth of 20 1/s for a URDF, 8 otherwise.
+    pub damping: Option<DampingFile>,
+}
+
+/// The gain K of the tracking law.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum DampingFile {
+    /// A number, the diagonal, or the rows of a symmetric positive definite matrix; in N m s/rad or N s/m.
+    Gain(At<GainFile>),
+    /// In 1/s; multiplied by the diagonal of the mass matrix at the start.
+    BandwidthPerS(At<f64>),
+}
+
+/// The parameter estimate at the start.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum EstimateStartFile {
+    /// Nothing is known: all zero.
+    Zero,
+    /// The true parameters.
+    True,
+    /// The true parameters times this number.
+    Scaled(At<f64>),
+    /// These numbers.
+    Given(At<Vec<At<f64>>>),
+}
+
+/// How to integrate.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SolverFile {
+    /// Adaptive or fixed steps. Default: adaptive.
+    pub method: Option<MethodFile>,
+    /// No step is longer, in s.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub max_step_s: Option<At<f64>>,
+    /// The run breaks down when a shorter step would be needed, in s. Default: 1e-12.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub min_step_s: Option<At<f64>>,
+    /// Keep the books of the Lyapunov function along the run. Default: true.
+    pub ledger: Option<bool>,
+}
+
+/// The time-stepping method.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum MethodFile {
+    /// Steps chosen so that the error stays within a tolerance.
+    Adaptive(AdaptiveMethodFile),
+    /// Steps of one length, cut where the network changes.
+    Fixed(FixedMethodFile),
+}
+
+/// Tolerances of the adaptive method.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AdaptiveMethodFile {
+    /// Relative tolerance. Default: 1e-6.
+    pub rtol: Option<At<f64>>,
+    /// Absolute tolerance. Default: 1e-8.
+    pub atol: Option<At<f64>>,
+}
+
+/// The fixed step.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FixedMethodFile {
+    /// Length of a step, in s.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub step_s: At<f64>,
+}
+
+/// What the run is expected to show; missing it makes the exit status 1.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GoalFile {
+    /// Agreement: at the end no two agents are further apart than this on any axis, in rad or m.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub disagreement_below: Option<At<f64>>,
+    /// Whether the agents are expected to agree (the default) or to end further apart than they began.
+    pub expect: Option<At<ExpectFile>>,
+}
+
+/// What is expected of the agents.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ExpectFile {
+    /// They come closer than `disagreement_below`.
+    Agrees,
+    /// They end further apart than they began.
+    Diverges,
+}

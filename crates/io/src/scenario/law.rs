@@ -1,0 +1,117 @@
+//! `law` of an agent → [`Law`].
+
+use forwardstep_core::{Gain, GainError};
+use forwardstep_sim::{Law, RobotKind, RobotSetup};
+
+use super::at::At;
+use super::fault::{Fault, fault, positive, values};
+use super::file::{AdaptiveFile, DampingFile, EstimateStartFile, KnownFile, LawFile};
+use super::problem::ScenarioProblem;
+use super::values::{GainFile, GainOrBandwidth, Item};
+
+/// The gains of arms from a URDF, whose inertias span decades.
+const DAMPING_BANDWIDTH_PER_S: f64 = 20.0;
+const ADAPTATION_BANDWIDTH_PER_S: f64 = 5.0;
+/// The gains of planar arms and point masses, as in the paper.
+const DAMPING_GAIN: f64 = 8.0;
+const ADAPTATION_GAIN: f64 = 10.0;
+
+/// Builds the law of `agent`; without a file, the adaptive one with default gains.
+pub(super) fn law(file: Option<&LawFile>, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
+    let default = LawFile::Adaptive(AdaptiveFile::default());
+    match file.unwrap_or(&default) {
+        LawFile::Known(KnownFile { damping }) => {
+            Ok(Law::Known { damping: self::damping(damping.as_ref(), agent, robot)? })
+        }
+        LawFile::Adaptive(file) => Ok(Law::Adaptive {
+            damping: damping(file.damping.as_ref(), agent, robot)?,
+            adaptation: adaptation(file.adaptation_gain.as_ref(), agent, robot)?,
+            estimate_start: estimate(file.estimate_start.as_ref(), agent, robot)?,
+        }),
+    }
+}
+
+fn damping(file: Option<&DampingFile>, agent: &str, robot: &RobotSetup) -> Result<Gain, Fault> {
+    match file {
+        Some(DampingFile::Gain(place)) => gain("damping.gain", &place.value, place, agent, robot.axes.len()),
+        Some(DampingFile::BandwidthPerS(bandwidth)) => {
+            Ok(Gain::Bandwidth(positive("damping.bandwidth_per_s", bandwidth)?))
+        }
+        None if is_tree(robot) => Ok(Gain::Bandwidth(DAMPING_BANDWIDTH_PER_S)),
+        None => Ok(Gain::Number(DAMPING_GAIN)),
+    }
+}
+
+fn adaptation(file: Option<&At<GainOrBandwidth>>, agent: &str, robot: &RobotSetup) -> Result<Gain, Fault> {
+    let Some(place) = file else {
+        let (tree, other) = (Gain::Bandwidth(ADAPTATION_BANDWIDTH_PER_S), Gain::Number(ADAPTATION_GAIN));
+        return Ok(if is_tree(robot) { tree } else { other });
+    };
+    match &place.value {
+        GainOrBandwidth::Gain(file) => gain("adaptation_gain", file, place, agent, robot.theta.len()),
+        GainOrBandwidth::Bandwidth(file) => Ok(Gain::Bandwidth(positive("bandwidth_per_s", &file.bandwidth_per_s)?)),
+    }
+}
+
+fn is_tree(robot: &RobotSetup) -> bool {
+    matches!(robot.kind, RobotKind::Tree(_))
+}
+
+/// Reads a gain and checks that it is symmetric positive definite and of the right size.
+fn gain<T>(key: &'static str, file: &GainFile, place: &At<T>, agent: &str, size: usize) -> Result<Gain, Fault> {
+    let rows = match file {
+        GainFile::Number(value) => {
+            let number = At { value: *value, span: place.span.clone() };
+            return Ok(Gain::Number(positive(key, &number)?));
+        }
+        GainFile::Rows(rows) => rows,
+    };
+    let lists = rows.iter().filter(|row| matches!(row.value, Item::List(_))).count();
+    let gain = match lists {
+        0 => {
+            let mut diagonal = Vec::with_capacity(rows.len());
+            for row in rows {
+                let number = At { value: row.value.number().unwrap_or_default(), span: row.span.clone() };
+                diagonal.push(positive(key, &number)?);
+            }
+            Gain::Diagonal(diagonal)
+        }
+        lists if lists < rows.len() => return Err(fault(place, ScenarioProblem::MixedList { key })),
+        _ => {
+            let mut entries = Vec::new();
+            for (k, row) in rows.iter().enumerate() {
+                let Item::List(list) = &row.value else { continue };
+                if list.len() != rows.len() {
+                    let (rows, row_number, entries) = (rows.len(), k + 1, list.len());
+                    return Err(fault(row, ScenarioProblem::NotSquare { key, rows, row: row_number, entries }));
+                }
+                entries.extend(values(list));
+            }
+            Gain::Matrix(entries)
+        }
+    };
+    // It is no bandwidth, so no scale is needed.
+    let Err(error) = gain.resolve(size, &[]) else { return Ok(gain) };
+    let agent = agent.to_owned();
+    let problem = match error {
+        // Rows, as they were written, whether of a diagonal or of a matrix.
+        GainError::Length(_) => ScenarioProblem::VectorLength { key, found: rows.len(), need: size, agent },
+        error => ScenarioProblem::Gain { key, agent, error },
+    };
+    Err(fault(place, problem))
+}
+
+fn estimate(file: Option<&EstimateStartFile>, agent: &str, robot: &RobotSetup) -> Result<Vec<f64>, Fault> {
+    let theta = &robot.theta;
+    match file {
+        None | Some(EstimateStartFile::Zero) => Ok(vec![0.0; theta.len()]),
+        Some(EstimateStartFile::True) => Ok(theta.clone()),
+        Some(EstimateStartFile::Scaled(factor)) => Ok(theta.iter().map(|entry| factor.value * entry).collect()),
+        Some(EstimateStartFile::Given(list)) if list.value.len() == theta.len() => Ok(values(&list.value)),
+        Some(EstimateStartFile::Given(list)) => {
+            let (found, need) = (list.value.len(), theta.len());
+            let agent = agent.to_owned();
+            Err(fault(list, ScenarioProblem::VectorLength { key: "estimate_start.given", found, need, agent }))
+        }
+    }
+}

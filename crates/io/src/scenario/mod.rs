@@ -1,0 +1,260 @@
+//! Scenario files: TOML in, a [`Setup`] out.
+//!
+//! [`file`] is the format as it is written and the source of its JSON schema ([`schema`]); the other files of this room
+//! turn it into the plain structs of `forwardstep-sim`, one table each, and report what has no meaning at its place.
+//!
+//! ```
+//! use forwardstep_io::SourceText;
+//! use forwardstep_io::scenario::read_scenario;
+//!
+//! let text = r#"
+//!     format = 1
+//!     time = { end_s = 20 }
+//!     [[agents]]
+//!     name = "cart"
+//!     count = 2
+//!     robot.point_mass = { dimension = 1, mass_kg = 2 }
+//!     start.position_m = [[0], [1]]
+//!     [reference.consensus]
+//!     roots_per_s = [1, 2]
+//!     exchange = "position_velocity"
+//!     [network]
+//!     delay.constant_s = 0.1
+//!     edges = [["cart-1", "cart-2"], ["cart-2", "cart-1"]]
+//! "#;
+//! let scenario = read_scenario("carts", &SourceText::new("carts.toml", text), None)?;
+//! assert_eq!(scenario.setup.agents[1].start.q, [1.0]);
+//!
+//! let wrong = text.replace("cart-1\"]]", "card-1\"]]");
+//! let error = read_scenario("carts", &SourceText::new("carts.toml", wrong), None).unwrap_err();
+//! assert_eq!(error.to_string(), "carts.toml:14:47: there is no agent `card-1`");
+//! # Ok::<(), forwardstep_io::scenario::ScenarioError>(())
+//! ```
+
+mod agents;
+pub mod at;
+mod de;
+mod fault;
+pub mod file;
+mod law;
+mod network;
+pub mod network_file;
+mod notice;
+mod open;
+mod problem;
+mod robots;
+mod shipped;
+mod start;
+pub mod values;
+
+use std::fmt;
+use std::path::Path;
+
+use forwardstep_sim::{AgentSetup, Exchange, Law, Method, Setup, Solver, TimeSpan};
+use miette::Diagnostic;
+use serde::Deserialize;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+pub use notice::Notice;
+pub use open::{OpenError, open_scenario};
+pub use problem::ScenarioProblem;
+pub use shipped::{SHIPPED_SCENARIOS, ShippedScenario, shipped_scenario};
+
+use crate::output::Goal;
+use crate::urdf::UrdfProblem;
+use crate::{InputError, SourceText};
+use at::At;
+use de::ValueDe;
+use fault::{Fault, between, fault, positive};
+use file::{
+    AdaptiveMethodFile, ExchangeFile, ExpectFile, GoalFile, MethodFile, ReferenceFile, ScenarioFile, SolverFile,
+};
+use robots::Stop;
+
+/// Numbers that a recording may hold; eight bytes each.
+const MOST_RECORDED: f64 = 1e8;
+const RECORD_EVERY_S: f64 = 0.02;
+
+/// A scenario that has been read.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    /// The name of the shipped scenario, or of the file without its ending.
+    pub name: String,
+    /// Its text.
+    pub source: SourceText,
+    /// What it shows, in one line; its name if it does not say.
+    pub title: String,
+    /// What to simulate.
+    pub setup: Setup,
+    /// What the run is expected to show.
+    pub goal: Option<Goal>,
+    /// What the user should know.
+    pub notices: Vec<Notice>,
+}
+
+/// A mistake in a scenario, or in a robot file that it names.
+#[derive(Clone, Debug)]
+pub enum ScenarioError {
+    /// In the scenario.
+    Scenario(Box<InputError<ScenarioProblem>>),
+    /// In a robot file.
+    Robot(Box<InputError<UrdfProblem>>),
+}
+
+impl ScenarioError {
+    fn diagnostic(&self) -> &dyn Diagnostic {
+        match self {
+            ScenarioError::Scenario(error) => error.as_ref(),
+            ScenarioError::Robot(error) => error.as_ref(),
+        }
+    }
+}
+
+impl fmt::Display for ScenarioError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self.diagnostic(), f)
+    }
+}
+
+impl std::error::Error for ScenarioError {}
+
+impl Diagnostic for ScenarioError {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.diagnostic().help()
+    }
+
+    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
+        self.diagnostic().source_code()
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = miette::LabeledSpan> + '_>> {
+        self.diagnostic().labels()
+    }
+}
+
+/// Reads a scenario. Robot files that it names are looked for in `folder` first, then among the shipped robots.
+///
+/// # Errors
+/// The first mistake, at its place in the scenario or in a robot file. Any text gives a result; none panics.
+pub fn read_scenario(name: &str, source: &SourceText, folder: Option<&Path>) -> Result<Scenario, ScenarioError> {
+    read(name, source, folder).map_err(|stop| stop.in_file(source))
+}
+
+fn read(name: &str, source: &SourceText, folder: Option<&Path>) -> Result<Scenario, Stop> {
+    let file = parse(source)?;
+    if file.format.value != 1 {
+        return Err(fault(&file.format, ScenarioProblem::Format { found: file.format.value }).into());
+    }
+    let mut notices = Vec::new();
+    let end_s = positive("end_s", &file.time.end_s)?;
+    let every = file.time.record_every_s.as_ref();
+    let record_every_s = every.map_or(Ok(RECORD_EVERY_S), |every| positive("record_every_s", every))?;
+    let agents = agents::agents(&file, source, folder, &mut notices)?;
+    let names: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
+    let network = network::network(&file.network.value, &names, end_s, source, &mut notices)
+        .map_err(|fault| fault.at(&file.network.span))?;
+    let ReferenceFile::Consensus(consensus) = &file.reference.value;
+    let setup = Setup {
+        agents,
+        exchange: match consensus.exchange {
+            ExchangeFile::Position => Exchange::Position,
+            ExchangeFile::PositionVelocity => Exchange::PositionVelocity,
+        },
+        network,
+        time: TimeSpan { end_s, record_every_s },
+        solver: solver(file.solver.as_ref())?,
+    };
+    recording_fits(&setup, every.unwrap_or(&file.time.end_s))?;
+    Ok(Scenario {
+        name: name.to_owned(),
+        source: source.clone(),
+        title: file.title.unwrap_or_else(|| name.to_owned()),
+        setup,
+        goal: file.goal.as_ref().map(goal).transpose()?,
+        notices,
+    })
+}
+
+/// TOML → the file's structs.
+fn parse(source: &SourceText) -> Result<ScenarioFile, Fault> {
+    let unreadable = |error: toml::de::Error| {
+        let fault = Fault::new(ScenarioProblem::Unreadable { message: error.message().to_owned() });
+        match error.span() {
+            Some(span) => fault.at(&span),
+            None => fault,
+        }
+    };
+    let table = DeTable::parse(source.text()).map_err(unreadable)?;
+    let span = table.span();
+    let root = Spanned::new(span.clone(), DeValue::Table(table.into_inner()));
+    ScenarioFile::deserialize(ValueDe(&root)).map_err(|mut fault| {
+        // What is missing from the file as a whole has no place in it.
+        if fault.span == Some(span) {
+            fault.span = None;
+        }
+        fault
+    })
+}
+
+fn solver(file: Option<&SolverFile>) -> Result<Solver, Fault> {
+    let default = Solver::default();
+    let Some(file) = file else { return Ok(default) };
+    let method = match &file.method {
+        None => default.method,
+        Some(MethodFile::Fixed(fixed)) => Method::Fixed { step_s: positive("step_s", &fixed.step_s)? },
+        Some(MethodFile::Adaptive(AdaptiveMethodFile { rtol, atol })) => {
+            let (usual_rtol, usual_atol) = match default.method {
+                Method::Adaptive { rtol, atol } => (rtol, atol),
+                Method::Fixed { .. } => (1e-6, 1e-8),
+            };
+            Method::Adaptive {
+                // Below a few units in the last place no error estimate means anything.
+                rtol: rtol.as_ref().map_or(Ok(usual_rtol), |rtol| between("rtol", rtol, 1e-14, 0.1))?,
+                atol: atol.as_ref().map_or(Ok(usual_atol), |atol| positive("atol", atol))?,
+            }
+        }
+    };
+    Ok(Solver {
+        method,
+        max_step_s: file.max_step_s.as_ref().map(|step| positive("max_step_s", step)).transpose()?,
+        min_step_s: file.min_step_s.as_ref().map_or(Ok(default.min_step_s), |step| positive("min_step_s", step))?,
+        ledger: file.ledger.unwrap_or(default.ledger),
+    })
+}
+
+fn goal(file: &At<GoalFile>) -> Result<Goal, Fault> {
+    let below = &file.value.disagreement_below;
+    match (file.value.expect.as_ref().map(|expect| expect.value), below) {
+        (Some(ExpectFile::Diverges), None) => Ok(Goal::ExpectDiverges),
+        (Some(ExpectFile::Diverges), Some(below)) => Err(fault(below, ScenarioProblem::ThresholdUnused)),
+        (_, Some(below)) => Ok(Goal::DisagreementBelow(positive("disagreement_below", below)?)),
+        (_, None) => Err(fault(file, ScenarioProblem::EmptyGoal)),
+    }
+}
+
+/// Refuses a recording beyond any memory, before anything is computed. `place` is what is too small, or too large.
+fn recording_fits(setup: &Setup, place: &At<f64>) -> Result<(), Fault> {
+    let columns: usize = setup.agents.iter().map(columns).sum();
+    let rows = (setup.time.end_s / setup.time.record_every_s).floor() + 2.0;
+    if rows * columns as f64 <= MOST_RECORDED {
+        return Ok(());
+    }
+    let least_s = setup.time.end_s / (MOST_RECORDED / columns as f64 - 2.0);
+    Err(fault(place, ScenarioProblem::RecordingTooLarge { rows, columns, most: MOST_RECORDED, least_s }))
+}
+
+/// How many columns an agent has: q, q̇, s, τ and z with its derivatives on every axis, ϑ̂, V and its dissipation.
+fn columns(agent: &AgentSetup) -> usize {
+    let per_axis = 4 + agent.roots_per_s.len().max(2);
+    let estimates = match agent.law {
+        Law::Adaptive { .. } => agent.robot.theta.len(),
+        Law::Known { .. } => 0,
+    };
+    per_axis * agent.robot.axes.len() + estimates + 2
+}
+
+/// The JSON schema of the format, for editors.
+pub fn schema() -> schemars::Schema {
+    schemars::schema_for!(ScenarioFile)
+}

@@ -1,0 +1,196 @@
+//! The `[network]` of a scenario file as it is written.
+
+use std::borrow::Cow;
+use std::fmt;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::Deserialize;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
+
+use super::at::At;
+
+/// Who hears whom, when, and how late: one graph (`edges`) or several in turn (`phases`).
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NetworkFile {
+    /// The weight of every edge that has none of its own. Default: 1.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub weight: Option<At<f64>>,
+    /// The delay of every edge that has none of its own. Default: none.
+    pub delay: Option<At<DelayFile>>,
+    /// The edges of a graph that never changes.
+    pub edges: Option<At<Vec<At<EdgeFile>>>>,
+    /// How the phases follow each other. Default: repeat.
+    pub switching: Option<At<SwitchingFile>>,
+    /// The graphs of a network that switches.
+    pub phases: Option<At<Vec<At<PhaseFile>>>>,
+}
+
+/// A graph that stays in force for a while.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PhaseFile {
+    /// How long, in s. Not used by the last phase of a network that switches `once`, nor by random switching.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub dwell_s: Option<At<f64>>,
+    /// Its edges.
+    pub edges: At<Vec<At<EdgeFile>>>,
+}
+
+/// How the phases of a network follow each other.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SwitchingFile {
+    /// In turn, again and again.
+    Repeat,
+    /// In turn; the last one stays for ever.
+    Once,
+    /// Drawn at random.
+    Random(RandomSwitchingFile),
+}
+
+/// At every switch one of the phases is drawn, each equally likely.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RandomSwitchingFile {
+    /// The same seed gives the same switches, always.
+    #[schemars(range(min = 0))]
+    pub seed: At<i64>,
+    /// Shortest and longest dwell, in s.
+    pub dwell_s: At<[At<f64>; 2]>,
+}
+
+/// An edge says who is heard by whom: `["from", "to"]`, or `{ from = …, to = … }` with a weight or delay of its own.
+#[derive(Clone, Debug)]
+pub struct EdgeFile {
+    /// The agent that is heard.
+    pub from: At<String>,
+    /// The agent that hears it.
+    pub to: At<String>,
+    /// A weight of its own.
+    pub weight: Option<At<f64>>,
+    /// A delay of its own.
+    pub delay: Option<At<DelayFile>>,
+}
+
+/// An edge written as a table.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct EdgeTable {
+    /// The agent that is heard.
+    from: At<String>,
+    /// The agent that hears it.
+    to: At<String>,
+    /// The weight of this edge.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    weight: Option<At<f64>>,
+    /// The delay of this edge.
+    delay: Option<At<DelayFile>>,
+}
+
+/// How old a message is when it is heard.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum DelayFile {
+    /// Always the same, in s.
+    ConstantS(At<f64>),
+    /// mean + amplitude · sin(2π t / period + phase).
+    Sinusoid(SinusoidFile),
+    /// Jumps from value to value.
+    PiecewiseConstant(PiecewiseConstantFile),
+    /// Rises from min to max over every period, then drops.
+    SawTooth(SawToothFile),
+}
+
+/// A delay that swings.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SinusoidFile {
+    /// In s.
+    #[schemars(range(min = 0))]
+    pub mean_s: At<f64>,
+    /// In s; at most the mean.
+    #[schemars(range(min = 0))]
+    pub amplitude_s: At<f64>,
+    /// In s.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub period_s: At<f64>,
+    /// In rad. Default: 0.
+    #[serde(default)]
+    pub phase_rad: f64,
+}
+
+/// A delay that jumps.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PiecewiseConstantFile {
+    /// When each value begins, in s; rising from 0.
+    pub times_s: At<Vec<At<f64>>>,
+    /// The values, in s; as many as times.
+    pub values_s: At<Vec<At<f64>>>,
+    /// Begin again after this long, in s. Default: the last value stays.
+    pub period_s: Option<At<f64>>,
+}
+
+/// A delay that rises and drops.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SawToothFile {
+    /// In s.
+    #[schemars(range(min = 0))]
+    pub min_s: At<f64>,
+    /// In s.
+    #[schemars(range(min = 0))]
+    pub max_s: At<f64>,
+    /// In s.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub period_s: At<f64>,
+    /// How far the first tooth has come at t = 0, in s. Default: 0.
+    #[serde(default)]
+    pub offset_s: f64,
+}
+
+impl<'de> Deserialize<'de> for EdgeFile {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct EdgeVisitor;
+        impl<'de> Visitor<'de> for EdgeVisitor {
+            type Value = EdgeFile;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(r#"an edge, ["from", "to"] or { from = "…", to = "…" }"#)
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<EdgeFile, A::Error> {
+                let names: Vec<At<String>> = Vec::deserialize(SeqAccessDeserializer::new(seq))?;
+                let found = names.len();
+                match <[At<String>; 2]>::try_from(names) {
+                    Ok([from, to]) => Ok(EdgeFile { from, to, weight: None, delay: None }),
+                    Err(_) => Err(serde::de::Error::invalid_length(found, &self)),
+                }
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<EdgeFile, A::Error> {
+                let EdgeTable { from, to, weight, delay } = EdgeTable::deserialize(MapAccessDeserializer::new(map))?;
+                Ok(EdgeFile { from, to, weight, delay })
+            }
+        }
+        deserializer.deserialize_any(EdgeVisitor)
+    }
+}
+
+impl JsonSchema for EdgeFile {
+    fn schema_name() -> Cow<'static, str> {
+        "Edge".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "description": "Who is heard by whom.",
+            "anyOf": [
+                { "type": "array", "items": { "type": "string" }, "minItems": 2, "maxItems": 2 },
+                generator.subschema_for::<EdgeTable>()
+            ]
+        })
+    }
+}

@@ -1,0 +1,91 @@
+//! From what a user types to a scenario.
+
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use miette::Diagnostic;
+use thiserror::Error;
+
+use super::robots::{neighbours, read_text};
+use super::shipped::{SHIPPED_SCENARIOS, shipped_scenario};
+use super::{Scenario, ScenarioError, read_scenario};
+use crate::SourceText;
+use crate::wording::choose;
+
+/// Why there is no scenario to run.
+#[derive(Clone, Debug, Error)]
+pub enum OpenError {
+    /// Neither a shipped scenario nor a file.
+    #[error("there is no scenario `{name}`")]
+    Unknown {
+        /// What was asked for.
+        name: String,
+    },
+    /// A file that cannot be read.
+    #[error("cannot read `{}`: {reason}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        reason: ErrorKind,
+    },
+    /// A file with a mistake.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+}
+
+impl Diagnostic for OpenError {
+    fn help<'a>(&'a self) -> Option<Box<dyn std::fmt::Display + 'a>> {
+        match self {
+            OpenError::Unknown { name } => {
+                let shipped: Vec<&str> = SHIPPED_SCENARIOS.iter().map(|scenario| scenario.name).collect();
+                let text = choose(name, "shipped scenarios are", &shipped);
+                Some(Box::new(format!("{text}; for a file of your own give its path, such as `my-fleet.toml`")))
+            }
+            OpenError::File { path, reason: ErrorKind::NotFound } => {
+                let known = neighbours(path);
+                let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+                (!known.is_empty()).then(|| Box::new(choose(name, "in that folder:", &known)) as Box<_>)
+            }
+            OpenError::File { .. } => None,
+            OpenError::Scenario(error) => error.help(),
+        }
+    }
+
+    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
+        match self {
+            OpenError::Scenario(error) => error.source_code(),
+            _ => None,
+        }
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = miette::LabeledSpan> + '_>> {
+        match self {
+            OpenError::Scenario(error) => error.labels(),
+            _ => None,
+        }
+    }
+}
+
+/// Opens the shipped scenario of this name, else the file at this path. A path with a folder, such as `./six-arms`, is
+/// always a file.
+///
+/// # Errors
+/// [`OpenError`] when there is no such scenario, or it cannot be read or has a mistake.
+pub fn open_scenario(name_or_path: &str) -> Result<Scenario, OpenError> {
+    if let Some(shipped) = shipped_scenario(name_or_path) {
+        let source = SourceText::new(shipped.name, shipped.text);
+        return Ok(read_scenario(shipped.name, &source, None)?);
+    }
+    let path = Path::new(name_or_path);
+    let text = read_text(path).map_err(|reason| {
+        let looks_like_a_name = path.extension().is_none() && path.components().count() <= 1;
+        if reason == ErrorKind::NotFound && looks_like_a_name {
+            OpenError::Unknown { name: name_or_path.to_owned() }
+        } else {
+            OpenError::File { path: path.to_owned(), reason }
+        }
+    })?;
+    let name = path.file_stem().map_or_else(|| "scenario".into(), |stem| stem.to_string_lossy());
+    Ok(read_scenario(&name, &SourceText::new(name_or_path, text), path.parent())?)
+}

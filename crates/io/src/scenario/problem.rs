@@ -1,0 +1,475 @@
+//! Why a scenario is refused.
+
+use forwardstep_core::GainError;
+use thiserror::Error;
+
+use crate::Problem;
+use crate::wording::{about, choose, entry_count, number};
+
+/// Why a scenario has no meaning.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ScenarioProblem {
+    // The text.
+    /// The text is not TOML.
+    #[error("not valid TOML: {message}")]
+    Unreadable {
+        /// What the TOML parser says.
+        message: String,
+    },
+    /// A value of another kind was expected.
+    #[error("found {found} where {expected} should stand")]
+    WrongType {
+        /// What was found.
+        found: String,
+        /// What should be there.
+        expected: String,
+    },
+    /// A list of fixed length has another.
+    #[error("found a list of {found} where {need} are needed")]
+    ListLength {
+        /// Entries that were found.
+        found: usize,
+        /// Entries that are needed.
+        need: usize,
+    },
+    /// A key that means nothing here.
+    #[error("unknown key `{key}`")]
+    UnknownKey {
+        /// The key.
+        key: String,
+        /// The keys that mean something.
+        allowed: Vec<&'static str>,
+    },
+    /// A key that must be there is not.
+    #[error("the key `{key}` is missing")]
+    MissingKey {
+        /// The key.
+        key: &'static str,
+    },
+    /// A choice that does not exist.
+    #[error("unknown choice `{found}`")]
+    UnknownChoice {
+        /// What was written.
+        found: String,
+        /// What can be chosen.
+        allowed: Vec<&'static str>,
+    },
+    /// Nothing was chosen.
+    #[error("nothing is chosen here")]
+    NoChoice {
+        /// What can be chosen.
+        allowed: Vec<&'static str>,
+    },
+    /// Two things were chosen where one is needed.
+    #[error("both `{first}` and `{second}` are given, but only one can be")]
+    TwoChoices {
+        /// The first.
+        first: String,
+        /// The second.
+        second: String,
+    },
+    /// A choice was made without what belongs to it.
+    #[error("`{choice}` needs a value")]
+    ChoiceNeedsValue {
+        /// The choice.
+        choice: String,
+    },
+    /// A value was given to a choice that has none.
+    #[error("`{choice}` takes no value")]
+    ChoiceTakesNoValue {
+        /// The choice.
+        choice: String,
+    },
+
+    // Numbers.
+    /// A number that is infinite, or none.
+    #[error("{found} is not a finite number")]
+    NotFinite {
+        /// What was written.
+        found: String,
+    },
+    /// A number beyond what a computer's numbers reach.
+    #[error("{found} is too large a number")]
+    NumberTooLarge {
+        /// What was written.
+        found: String,
+    },
+    /// A number that must be positive is not.
+    #[error("`{key}` is {}, but must be positive", number(*.value))]
+    NotPositive {
+        /// The key.
+        key: &'static str,
+        /// The number.
+        value: f64,
+    },
+    /// A number that must not be negative is.
+    #[error("`{key}` is {}, but must not be negative", number(*.value))]
+    Negative {
+        /// The key.
+        key: &'static str,
+        /// The number.
+        value: f64,
+    },
+    /// A number is outside its range.
+    #[error("`{key}` is {}, but must be from {} to {}", number(*.value), number(*.low), number(*.high))]
+    OutOfRange {
+        /// The key.
+        key: &'static str,
+        /// The number.
+        value: f64,
+        /// The smallest that is allowed.
+        low: f64,
+        /// The largest that is allowed.
+        high: f64,
+    },
+    /// Lowest and highest value in the wrong order.
+    #[error("`{key}` is [{}, {}], but the first must not exceed the second", number(*.low), number(*.high))]
+    Interval {
+        /// The key.
+        key: &'static str,
+        /// The first.
+        low: f64,
+        /// The second.
+        high: f64,
+    },
+    /// A list that needs an entry has none.
+    #[error("`{key}` is empty")]
+    Empty {
+        /// The key.
+        key: &'static str,
+    },
+    /// A version of the format that this program does not read.
+    #[error("`format` is {found}, but this version reads format 1")]
+    Format {
+        /// The version.
+        found: i64,
+    },
+
+    // Agents.
+    /// A name that would not work in tables.
+    #[error("{name:?} cannot be the name of an agent")]
+    AgentName {
+        /// The name.
+        name: String,
+    },
+    /// Two agents of one name.
+    #[error("a second agent is named `{name}`; the first is on line {first_line}")]
+    AgentTwice {
+        /// The name.
+        name: String,
+        /// Where the first is.
+        first_line: usize,
+    },
+    /// More agents than can be simulated.
+    #[error("there are {total} agents, but at most {most} are accepted")]
+    TooManyAgents {
+        /// How many there are.
+        total: u64,
+        /// How many are accepted.
+        most: u64,
+    },
+    /// Agents that can never agree, because their positions have different lengths.
+    #[error("`{first}` has {first_axes} axes and `{other}` has {other_axes}, but agents that agree need as many")]
+    AxesDiffer {
+        /// The first agent.
+        first: String,
+        /// Its number of axes.
+        first_axes: usize,
+        /// The agent that differs.
+        other: String,
+        /// Its number of axes.
+        other_axes: usize,
+    },
+    /// A robot file that cannot be read.
+    #[error("cannot read the robot file `{file}`: {reason}")]
+    RobotFile {
+        /// The name as written.
+        file: String,
+        /// Why not.
+        reason: std::io::ErrorKind,
+        /// What might be meant.
+        known: Vec<String>,
+    },
+    /// A joint that cannot be locked.
+    #[error(transparent)]
+    Lock(Box<crate::urdf::UrdfProblem>),
+    /// Limits are to be enforced where there are none.
+    #[error("`enforce_limits` is true, but axis `{axis}` of `{agent}` has no effort limit")]
+    NoEffortLimit {
+        /// The agent.
+        agent: String,
+        /// The axis.
+        axis: String,
+    },
+    /// A planar arm whose mass matrix is not positive definite.
+    #[error("the mass matrix of this arm is not positive definite: its second link resists no torque")]
+    MassMatrix,
+
+    // Start, reference and law.
+    /// A vector of the wrong length.
+    #[error("`{key}` has {}, but `{agent}` needs {need}", entry_count(*.found))]
+    VectorLength {
+        /// The key.
+        key: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many are needed.
+        need: usize,
+        /// By whom.
+        agent: String,
+    },
+    /// One list per agent, but not as many as agents.
+    #[error("`{key}` has {found} lists, but there are {agents} agents")]
+    ListPerAgent {
+        /// The key.
+        key: &'static str,
+        /// How many lists there are.
+        found: usize,
+        /// How many agents there are.
+        agents: usize,
+    },
+    /// Numbers and lists side by side.
+    #[error("`{key}` mixes numbers and lists")]
+    MixedList {
+        /// The key.
+        key: &'static str,
+    },
+    /// One quantity under two keys.
+    #[error("both `{first}` and `{second}` are given, but they say the same")]
+    SameQuantity {
+        /// One key.
+        first: &'static str,
+        /// The other.
+        second: &'static str,
+    },
+    /// A key whose unit is not that of the robot's axes.
+    #[error("`{key}` does not fit `{agent}`, whose axis `{axis}` is measured in {unit}")]
+    Unit {
+        /// The key.
+        key: &'static str,
+        /// The agent.
+        agent: String,
+        /// An axis with another unit.
+        axis: String,
+        /// Its unit.
+        unit: &'static str,
+        /// The key that fits any robot.
+        any: &'static str,
+    },
+    /// An agent without roots.
+    #[error("`{agent}` has no `roots_per_s`")]
+    NoRoots {
+        /// The agent.
+        agent: String,
+    },
+    /// Reference dynamics of an order beyond use.
+    #[error("`roots_per_s` has {}, but at most {most} are accepted", entry_count(*.found))]
+    Order {
+        /// How many there are.
+        found: usize,
+        /// How many are accepted.
+        most: usize,
+    },
+    /// More derivatives than the reference dynamics have.
+    #[error("`derivatives` has {}, but the reference of `{agent}` is of order {order}", entry_count(*.found))]
+    Derivatives {
+        /// How many there are.
+        found: usize,
+        /// The agent.
+        agent: String,
+        /// The order of its reference.
+        order: usize,
+    },
+    /// A gain that cannot be used.
+    #[error("`{key}` of `{agent}`: {error}")]
+    Gain {
+        /// The key.
+        key: &'static str,
+        /// The agent.
+        agent: String,
+        /// What is wrong with it.
+        error: GainError,
+    },
+    /// A matrix whose rows have different lengths.
+    #[error("`{key}` has {rows} rows, but row {row} has {}", entry_count(*.entries))]
+    NotSquare {
+        /// The key.
+        key: &'static str,
+        /// The number of rows.
+        rows: usize,
+        /// The row that differs, from one.
+        row: usize,
+        /// How many entries it has.
+        entries: usize,
+    },
+
+    // Network.
+    /// An edge from or to an agent that does not exist.
+    #[error("there is no agent `{name}`")]
+    NoSuchAgent {
+        /// The name.
+        name: String,
+        /// The agents there are.
+        agents: Vec<String>,
+    },
+    /// An edge from an agent to itself.
+    #[error("`{name}` cannot hear itself")]
+    SelfLoop {
+        /// The agent.
+        name: String,
+    },
+    /// An edge that is there twice.
+    #[error("a second edge from `{from}` to `{to}` in one graph; the first is on line {first_line}")]
+    EdgeTwice {
+        /// The sender.
+        from: String,
+        /// The receiver.
+        to: String,
+        /// Where the first is.
+        first_line: usize,
+    },
+    /// Both a fixed graph and phases.
+    #[error("`edges` and `phases` are both given, but a network is either fixed or switches")]
+    EdgesAndPhases,
+    /// Neither a fixed graph nor phases.
+    #[error("the network has neither `edges` nor `phases`")]
+    NoGraph,
+    /// Switching without anything to switch.
+    #[error("`switching` is given, but there are no `phases`")]
+    NothingToSwitch,
+    /// A phase that does not say how long it lasts.
+    #[error("phase {phase} has no `dwell_s`")]
+    NoDwell {
+        /// Its number, from one.
+        phase: usize,
+    },
+    /// A saw-tooth that falls.
+    #[error("`min_s` is {}, but must not exceed `max_s`, which is {}", number(*.min_s), number(*.max_s))]
+    SawTooth {
+        /// The least delay.
+        min_s: f64,
+        /// The largest delay.
+        max_s: f64,
+    },
+    /// A sinusoid that would be negative at times.
+    #[error(
+        "`amplitude_s` is {}, but must not exceed `mean_s`, which is {}: a delay is never negative",
+        number(*.amplitude_s), number(*.mean_s)
+    )]
+    Amplitude {
+        /// The amplitude.
+        amplitude_s: f64,
+        /// The mean.
+        mean_s: f64,
+    },
+    /// A piecewise constant delay that does not begin at zero.
+    #[error("`times_s` begins at {}, but must begin at 0", number(*.first_s))]
+    TimesBegin {
+        /// The first time.
+        first_s: f64,
+    },
+    /// Times that do not rise.
+    #[error("`times_s` goes from {} to {}, but must rise", number(*.before_s), number(*.after_s))]
+    TimesRise {
+        /// A time.
+        before_s: f64,
+        /// The next.
+        after_s: f64,
+    },
+    /// Times and values that do not match.
+    #[error("`values_s` has {}, but `times_s` has {}", entry_count(*.values), entry_count(*.times))]
+    TimesAndValues {
+        /// How many times.
+        times: usize,
+        /// How many values.
+        values: usize,
+    },
+    /// A period that ends before the last time.
+    #[error("`period_s` is {}, but must exceed the last time, {}", number(*.period_s), number(*.last_s))]
+    PeriodTooShort {
+        /// The period.
+        period_s: f64,
+        /// The last time.
+        last_s: f64,
+    },
+    /// More switches or jumps than any run could land on.
+    #[error("about {} {what} until the end of the run, but at most {} are accepted", about(*.events), number(*.most))]
+    TooManyEvents {
+        /// Switches of the graph, or jumps of the delay.
+        what: &'static str,
+        /// How many.
+        events: f64,
+        /// How many are accepted.
+        most: f64,
+    },
+
+    // Recording and goal.
+    /// A recording that would not fit into memory.
+    #[error(
+        "the recording would hold {} numbers, {} rows of {columns} columns, but at most {} fit",
+        about(*.rows * *.columns as f64), about(*.rows), number(*.most)
+    )]
+    RecordingTooLarge {
+        /// How many rows.
+        rows: f64,
+        /// How many columns.
+        columns: usize,
+        /// How many numbers are accepted.
+        most: f64,
+        /// The shortest `record_every_s` that would do.
+        least_s: f64,
+    },
+    /// A goal that asks for nothing.
+    #[error("the goal says nothing about the disagreement")]
+    EmptyGoal,
+    /// A threshold that is not used.
+    #[error("`disagreement_below` says nothing about agents that diverge")]
+    ThresholdUnused,
+}
+
+impl Problem for ScenarioProblem {
+    fn help(&self) -> Option<String> {
+        let text = match self {
+            ScenarioProblem::UnknownKey { key, allowed } => choose(key, "allowed here:", allowed),
+            ScenarioProblem::UnknownChoice { found, allowed } => choose(found, "choose one of", allowed),
+            ScenarioProblem::NoChoice { allowed } => choose("", "choose one of", allowed),
+            ScenarioProblem::ChoiceTakesNoValue { choice } => format!("write it as a text: \"{choice}\""),
+            ScenarioProblem::AgentName { .. } => "use letters, digits, `-` and `_`".into(),
+            ScenarioProblem::AgentTwice { .. } => {
+                "agents of a counted population are named after it: `arm` with `count = 2` gives `arm-1` and `arm-2`"
+                    .into()
+            }
+            ScenarioProblem::AxesDiffer { .. } => {
+                "agreement is on one vector of axes; `locked` removes joints of a URDF".into()
+            }
+            ScenarioProblem::RobotFile { file, known, .. } if !known.is_empty() => choose(file, "there are", known),
+            ScenarioProblem::Lock(problem) => return problem.help(),
+            ScenarioProblem::NoEffortLimit { .. } => {
+                "only a URDF states limits, as <limit effort=\"…\"> of a joint".into()
+            }
+            ScenarioProblem::MassMatrix => "give the second link inertia, or a centre of mass off its joint".into(),
+            ScenarioProblem::Unit { any, .. } => format!("`{any}` takes rad or m as each axis has it"),
+            ScenarioProblem::NoRoots { .. } => {
+                "add `roots_per_s` to [reference.consensus], or `reference.consensus.roots_per_s` to the agent".into()
+            }
+            ScenarioProblem::Derivatives { .. } => "an order of l has the derivatives 1 to l − 1".into(),
+            ScenarioProblem::NoSuchAgent { name, agents } => choose(name, "the agents are", agents),
+            ScenarioProblem::EdgesAndPhases => "move the edges into a phase, or delete the phases".into(),
+            ScenarioProblem::NoGraph => "for agents that never hear each other write `edges = []`".into(),
+            ScenarioProblem::NoDwell { .. } => {
+                "only the last phase of a network that switches \"once\" needs none, and random switching".into()
+            }
+            ScenarioProblem::RecordingTooLarge { least_s, .. } => {
+                format!("for this `end_s` let `record_every_s` be at least {}", about(1.05 * least_s))
+            }
+            ScenarioProblem::TooManyEvents { .. } => "is a unit of time mistaken? All of them are seconds".into(),
+            ScenarioProblem::EmptyGoal => {
+                "set `disagreement_below = 1e-3`, or `expect = \"diverges\"`, or delete the goal".into()
+            }
+            ScenarioProblem::ThresholdUnused => "delete one of the two".into(),
+            _ => return None,
+        };
+        Some(text)
+    }
+}

@@ -1,0 +1,187 @@
+//! `robot` of an agent → [`RobotSetup`].
+
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+
+use forwardstep_core::robot::PlanarLinks;
+use forwardstep_sim::{Axis, AxisUnit, RobotKind, RobotSetup};
+
+use super::ScenarioError;
+use super::at::At;
+use super::fault::{Fault, count, fault, not_negative, positive};
+use super::file::{FrictionFile, PlanarArmFile, PointMassFile, RobotFile, UrdfFile};
+use super::problem::ScenarioProblem;
+use crate::urdf::{self, FrictionPolicy, UrdfOptions, UrdfProblem};
+use crate::{InputError, SourceText};
+
+/// Axes a point mass may have.
+const MOST_DIMENSIONS: u32 = 100;
+/// Text files larger than this are not read.
+const MOST_BYTES: u64 = 1 << 26;
+
+/// A mistake in the scenario, or in a file that it names.
+pub(super) enum Stop {
+    Here(Fault),
+    Robot(Box<InputError<UrdfProblem>>),
+}
+
+impl From<Fault> for Stop {
+    fn from(fault: Fault) -> Self {
+        Stop::Here(fault)
+    }
+}
+
+impl Stop {
+    /// Names the scenario file.
+    pub(super) fn in_file(self, source: &SourceText) -> ScenarioError {
+        match self {
+            Stop::Robot(error) => ScenarioError::Robot(error),
+            Stop::Here(Fault { problem, span }) => {
+                ScenarioError::Scenario(Box::new(InputError { source: source.clone(), span, problem: *problem }))
+            }
+        }
+    }
+}
+
+/// A robot, and what its file's reader had to remark.
+pub(super) struct ReadRobot {
+    pub(super) robot: RobotSetup,
+    pub(super) notices: Vec<urdf::Notice>,
+}
+
+/// Builds a robot; `folder` is where files that it names are looked for before the shipped ones.
+pub(super) fn robot(file: &At<RobotFile>, folder: Option<&Path>) -> Result<ReadRobot, Stop> {
+    let robot = match &file.value {
+        RobotFile::Urdf(file) => return from_urdf(file, folder),
+        RobotFile::PlanarArm(arm) => planar_arm(arm).map_err(|fault| fault.at(&file.span))?,
+        RobotFile::PointMass(mass) => point_mass(mass)?,
+    };
+    Ok(ReadRobot { robot, notices: Vec::new() })
+}
+
+fn from_urdf(file: &UrdfFile, folder: Option<&Path>) -> Result<ReadRobot, Stop> {
+    let source = robot_text(&file.file, folder)?;
+    let usual = UrdfOptions::default();
+    let options = UrdfOptions {
+        locked: file.locked.0.iter().map(|(joint, value)| (joint.value.clone(), value.value)).collect(),
+        friction: match file.friction {
+            Some(FrictionFile::Ignore) => FrictionPolicy::Ignore,
+            None => usual.friction,
+        },
+        gravity: file.gravity_m_s2.unwrap_or(usual.gravity),
+    };
+    match urdf::read_urdf(&source, &options) {
+        Ok(read) => Ok(ReadRobot { robot: read.robot, notices: read.notices }),
+        Err(error) => match lock_of(&error.problem) {
+            // What is wrong stands in the scenario, not in the URDF.
+            Some(joint) => {
+                let place = file.locked.0.iter().find(|(name, _)| name.value == *joint);
+                let fault = Fault::new(ScenarioProblem::Lock(Box::new(error.problem.clone())));
+                Err(Stop::Here(fault.at(place.map_or(&file.file.span, |(name, _)| &name.span))))
+            }
+            None => Err(Stop::Robot(Box::new(error))),
+        },
+    }
+}
+
+fn lock_of(problem: &UrdfProblem) -> Option<&String> {
+    match problem {
+        UrdfProblem::LockUnknown { joint, .. } | UrdfProblem::LockFixed { joint } => Some(joint),
+        _ => None,
+    }
+}
+
+/// The text of a robot file: beside the scenario if there is one, else the shipped robot of that name.
+fn robot_text(file: &At<String>, folder: Option<&Path>) -> Result<SourceText, Fault> {
+    let name = file.value.as_str();
+    let mut reason = ErrorKind::NotFound;
+    let mut known: Vec<String> = urdf::SHIPPED_ROBOTS.iter().map(|(name, _)| format!("{name}.urdf")).collect();
+    if let Some(folder) = folder {
+        let path = folder.join(name);
+        match read_text(&path) {
+            Ok(text) => return Ok(SourceText::new(path.display().to_string(), text)),
+            Err(kind) => reason = kind,
+        }
+        known.extend(neighbours(&path));
+    }
+    if reason == ErrorKind::NotFound
+        && let Some(text) = urdf::shipped_robot(name)
+    {
+        return Ok(SourceText::new(name, text));
+    }
+    Err(fault(file, ScenarioProblem::RobotFile { file: name.into(), reason, known }))
+}
+
+/// Files beside `path` with the same extension.
+pub(super) fn neighbours(path: &Path) -> Vec<String> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
+    let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let mut names: Vec<_> = names.filter(|name| Path::new(name).extension() == path.extension()).collect();
+    names.sort();
+    names
+}
+
+/// Reads a text file of reasonable size.
+pub(super) fn read_text(path: &Path) -> Result<String, ErrorKind> {
+    let file = std::fs::File::open(path).map_err(|error| error.kind())?;
+    let mut text = String::new();
+    let read = file.take(MOST_BYTES + 1).read_to_string(&mut text).map_err(|error| error.kind())?;
+    if read as u64 > MOST_BYTES { Err(ErrorKind::FileTooLarge) } else { Ok(text) }
+}
+
+fn planar_arm(file: &PlanarArmFile) -> Result<RobotSetup, Fault> {
+    let pair = |key, [first, second]: &[At<f64>; 2]| Ok([positive(key, first)?, positive(key, second)?]);
+    let mut links = PlanarLinks::uniform(pair("mass_kg", &file.mass_kg)?, pair("length_m", &file.length_m)?);
+    if let Some([first, second]) = &file.com_m {
+        links.com_m = [first.value, second.value];
+    }
+    if let Some([first, second]) = &file.inertia_kg_m2 {
+        links.inertia_kg_m2 = [not_negative("inertia_kg_m2", first)?, not_negative("inertia_kg_m2", second)?];
+    }
+    if let Some(gravity) = &file.gravity_m_s2 {
+        links.gravity_m_s2 = not_negative("gravity_m_s2", gravity)?;
+    }
+    let theta = links.theta();
+    // det M = ϑ₂(ϑ₁ − ϑ₂) − ϑ₃² cos² q₂, smallest where the arm is straight.
+    let [whole, outer, coupling, ..] = theta;
+    let determinant = outer * (whole - outer) - coupling * coupling;
+    if !(outer > 0.0 && determinant > 0.0 && theta.iter().all(|entry| entry.is_finite())) {
+        return Err(Fault::new(ScenarioProblem::MassMatrix));
+    }
+    Ok(RobotSetup {
+        kind: RobotKind::PlanarArm,
+        theta: theta.to_vec(),
+        theta_names: [
+            "inertia.both_links",
+            "inertia.outer_link",
+            "inertia.coupling",
+            "gravity.shoulder",
+            "gravity.elbow",
+        ]
+        .map(String::from)
+        .to_vec(),
+        axes: vec![axis("shoulder", AxisUnit::Radian), axis("elbow", AxisUnit::Radian)],
+    })
+}
+
+fn point_mass(file: &PointMassFile) -> Result<RobotSetup, Fault> {
+    let dimension = count("dimension", &file.dimension, MOST_DIMENSIONS)?;
+    let name = |k: usize| match (dimension <= 3, ["x", "y", "z"].get(k)) {
+        (true, Some(letter)) => axis(letter, AxisUnit::Metre),
+        _ => axis(&format!("x{}", k + 1), AxisUnit::Metre),
+    };
+    Ok(RobotSetup {
+        kind: RobotKind::PointMass { dimension },
+        theta: vec![positive("mass_kg", &file.mass_kg)?],
+        theta_names: vec!["mass".into()],
+        axes: (0..dimension).map(name).collect(),
+    })
+}
+
+fn axis(name: &str, unit: AxisUnit) -> Axis {
+    Axis { name: name.into(), unit, position_limits: None, velocity_limit: None, effort_limit: None }
+}

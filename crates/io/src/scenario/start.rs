@@ -1,0 +1,158 @@
+//! `start` → [`Start`].
+
+use forwardstep_sim::{AxisUnit, RobotSetup, Start};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
+
+use super::at::At;
+use super::fault::{Fault, fault, seed, values};
+use super::file::StartFile;
+use super::problem::ScenarioProblem;
+use super::values::{Item, RandomFile, StartValues};
+
+/// The `start` of one agent with the position of the agent among those that share it.
+#[derive(Clone, Copy)]
+pub(super) struct Shared<'a> {
+    pub(super) file: &'a At<StartFile>,
+    /// The agent's index among those that share this table.
+    pub(super) index: usize,
+    /// How many share it.
+    pub(super) of: usize,
+}
+
+/// The agent that starts.
+#[derive(Clone, Copy)]
+pub(super) struct Starter<'a> {
+    pub(super) name: &'a str,
+    pub(super) robot: &'a RobotSetup,
+    pub(super) order: usize,
+}
+
+/// Streams of the random numbers, so that one seed used twice does not make velocities follow positions.
+const POSITION: u64 = 0;
+const VELOCITY: u64 = 1;
+const REFERENCE: u64 = 2;
+
+/// A key of the start table and the unit that all axes must have for it.
+type Key<'a> = (&'static str, Option<AxisUnit>, &'a Option<At<StartValues>>);
+
+/// Takes each quantity from the agent's own table, else from the scenario's, else zero.
+pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<Shared<'_>>) -> Result<Start, Fault> {
+    use AxisUnit::{Metre, Radian};
+    let tables = || [own, common].into_iter().flatten();
+    let quantity = |stream, keys: fn(&StartFile) -> [Key<'_>; 3]| {
+        for table in tables() {
+            if let Some(found) = agent.one_of(table, stream, keys(&table.file.value))? {
+                return Ok(found);
+            }
+        }
+        Ok(vec![0.0; agent.robot.axes.len()])
+    };
+    let q = quantity(POSITION, |file| {
+        [
+            ("position_rad", Some(Radian), &file.position_rad),
+            ("position_m", Some(Metre), &file.position_m),
+            ("position", None, &file.position),
+        ]
+    })?;
+    let dq = quantity(VELOCITY, |file| {
+        [
+            ("velocity_rad_s", Some(Radian), &file.velocity_rad_s),
+            ("velocity_m_s", Some(Metre), &file.velocity_m_s),
+            ("velocity", None, &file.velocity),
+        ]
+    })?;
+    let mut reference = Vec::new();
+    if let Some((table, state)) = tables().find_map(|table| Some((table, table.file.value.reference.as_ref()?))) {
+        let derivatives = &state.value.derivatives;
+        let z = state.value.z.as_ref().map(|z| agent.vector("z", z, table, REFERENCE)).transpose()?;
+        reference.push(z.unwrap_or_else(|| dq.clone()));
+        for (k, derivative) in derivatives.iter().enumerate() {
+            if k + 1 >= agent.order {
+                let (found, name) = (derivatives.len(), agent.name.to_owned());
+                let problem = ScenarioProblem::Derivatives { found, agent: name, order: agent.order };
+                return Err(fault(derivative, problem));
+            }
+            reference.push(agent.vector("derivatives", derivative, table, REFERENCE + 1 + k as u64)?);
+        }
+    }
+    Ok(Start { q, dq, reference })
+}
+
+impl Starter<'_> {
+    fn one_of(&self, table: Shared<'_>, stream: u64, keys: [Key<'_>; 3]) -> Result<Option<Vec<f64>>, Fault> {
+        let any = keys[2].0;
+        let mut given = keys.into_iter().filter_map(|(key, unit, value)| Some((key, unit, value.as_ref()?)));
+        let Some((key, unit, value)) = given.next() else { return Ok(None) };
+        if let Some((second, _, place)) = given.next() {
+            return Err(fault(place, ScenarioProblem::SameQuantity { first: key, second }));
+        }
+        if let Some(unit) = unit
+            && let Some(axis) = self.robot.axes.iter().find(|axis| axis.unit != unit)
+        {
+            let unit = match axis.unit {
+                AxisUnit::Radian => "rad",
+                AxisUnit::Metre => "m",
+            };
+            let (agent, axis) = (self.name.to_owned(), axis.name.clone());
+            return Err(fault(value, ScenarioProblem::Unit { key, agent, axis, unit, any }));
+        }
+        self.vector(key, value, table, stream).map(Some)
+    }
+
+    fn vector(
+        &self,
+        key: &'static str,
+        value: &At<StartValues>,
+        table: Shared<'_>,
+        stream: u64,
+    ) -> Result<Vec<f64>, Fault> {
+        let need = self.robot.axes.len();
+        let length = |found: usize, place: &std::ops::Range<usize>| {
+            if found == need {
+                return Ok(());
+            }
+            let agent = self.name.to_owned();
+            Err(Fault::new(ScenarioProblem::VectorLength { key, found, need, agent }).at(place))
+        };
+        let rows = match &value.value {
+            StartValues::Random(random) => return draw(random, stream, table.index, need),
+            StartValues::Rows(rows) => rows,
+        };
+        let lists: Vec<_> = rows.iter().filter(|row| matches!(row.value, Item::List(_))).collect();
+        if lists.is_empty() {
+            length(rows.len(), &value.span)?;
+            return Ok(rows.iter().filter_map(|row| row.value.number()).collect());
+        }
+        if lists.len() != rows.len() {
+            return Err(fault(value, ScenarioProblem::MixedList { key }));
+        }
+        if rows.len() != table.of {
+            return Err(fault(value, ScenarioProblem::ListPerAgent { key, found: rows.len(), agents: table.of }));
+        }
+        match rows.get(table.index).map(|row| (&row.value, &row.span)) {
+            Some((Item::List(list), span)) => {
+                length(list.len(), span)?;
+                Ok(values(list))
+            }
+            _ => Ok(vec![0.0; need]),
+        }
+    }
+}
+
+/// Every agent has its place in one stream of numbers, so that adding agents leaves the others where they were.
+fn draw(random: &RandomFile, stream: u64, index: usize, length: usize) -> Result<Vec<f64>, Fault> {
+    let [low, high] = random.within.value;
+    if low > high {
+        return Err(fault(&random.within, ScenarioProblem::Interval { key: "within", low, high }));
+    }
+    let mut generator = ChaCha8Rng::seed_from_u64(seed(&random.seed)?);
+    generator.set_stream(stream);
+    // A draw of 64 bits takes two words.
+    generator.set_word_pos(2 * index as u128 * length as u128);
+    let mut next = || {
+        let unit = (generator.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64);
+        low * (1.0 - unit) + high * unit
+    };
+    Ok((0..length).map(|_| next()).collect())
+}

@@ -1,0 +1,215 @@
+//! What a sound scenario turns into.
+
+use forwardstep_core::Gain;
+use forwardstep_io::output::Goal;
+use forwardstep_sim::delay::Delay;
+use forwardstep_sim::schedule::Schedule;
+use forwardstep_sim::{Exchange, Law, Method, RobotKind, Setup};
+
+use super::{SOUND, changed, read};
+
+fn setup(text: &str) -> Setup {
+    read(text).unwrap_or_else(|error| panic!("{error}")).setup
+}
+
+#[test]
+fn the_sound_scenario_is_read_as_written() {
+    let scenario = read(SOUND).unwrap();
+    assert_eq!(scenario.title, "test");
+    assert_eq!(scenario.goal, Some(Goal::DisagreementBelow(1e-3)));
+    let setup = scenario.setup;
+    let names: Vec<_> = setup.agents.iter().map(|agent| agent.name.as_str()).collect();
+    assert_eq!(names, ["arm-1", "arm-2", "cart"]);
+    assert_eq!(setup.exchange, Exchange::PositionVelocity);
+    assert_eq!((setup.time.end_s, setup.time.record_every_s), (10.0, 0.1));
+    let [arm, _, cart] = setup.agents.as_slice() else { panic!("three agents") };
+    assert!(matches!(arm.robot.kind, RobotKind::PlanarArm));
+    assert_eq!((arm.robot.theta.len(), arm.robot.theta_names.len()), (5, 5));
+    assert_eq!(arm.roots_per_s, [1.0, 2.0]);
+    assert_eq!((arm.start.q.as_slice(), arm.start.dq.as_slice()), ([0.1, 0.2].as_slice(), [0.0, 0.0].as_slice()));
+    assert_eq!(setup.agents[1].start.q, [0.3, 0.4]);
+    assert_eq!(
+        arm.law,
+        Law::Adaptive { damping: Gain::Number(8.0), adaptation: Gain::Number(10.0), estimate_start: vec![0.0; 5] }
+    );
+    assert_eq!((cart.start.q.as_slice(), cart.robot.theta.as_slice()), ([0.0, 0.0].as_slice(), [4.0].as_slice()));
+    let Schedule::Periodic(phases) = &setup.network.schedule else { panic!("it repeats") };
+    let edges: Vec<_> = phases.iter().flat_map(|phase| &phase.edges).map(|edge| (edge.from, edge.to)).collect();
+    assert_eq!(edges, [(0, 1), (1, 2), (2, 0)]);
+    assert_eq!(setup.network.delays, [Delay::SawTooth { min_s: 0.1, max_s: 0.4, period_s: 0.6, offset_s: 0.0 }]);
+}
+
+#[test]
+fn arms_from_a_urdf_have_bandwidths_by_default_and_others_numbers() {
+    let text = changed("dimension = 2", "dimension = 6").replace("damping.gain = 8\nadaptation_gain = 10\n", "");
+    let planar = "robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }\n\
+                  start.position_rad = [[0.1, 0.2], [0.3, 0.4]]";
+    let setup = setup(&text.replace(planar, "robot.urdf.file = \"ur5e.urdf\""));
+    let gains = |k: usize| match &setup.agents[k].law {
+        Law::Adaptive { damping, adaptation, .. } => (damping.clone(), adaptation.clone()),
+        Law::Known { damping } => (damping.clone(), Gain::Number(0.0)),
+    };
+    assert_eq!(gains(0), (Gain::Bandwidth(20.0), Gain::Bandwidth(5.0)));
+    assert_eq!(gains(2), (Gain::Number(8.0), Gain::Number(10.0)));
+}
+
+#[test]
+fn an_agents_own_tables_win() {
+    let own = "name = \"cart\"\nlaw.known.damping.gain = [[3, 1], [1, 3]]\nreference.consensus.roots_per_s = [1, 4, 9]\n\
+               start = { velocity = [1, 2], reference = { z = [3, 4], derivatives = [[5, 6]] } }\nenforce_limits = false";
+    let text = changed("name = \"cart\"", own) + "\n[start]\nposition = [7, 8]\nvelocity = [9, 9]\n";
+    let setup = setup(&text);
+    let [arm, _, cart] = setup.agents.as_slice() else { panic!("three agents") };
+    assert_eq!(cart.law, Law::Known { damping: Gain::Matrix(vec![3.0, 1.0, 1.0, 3.0]) });
+    assert_eq!(cart.roots_per_s, [1.0, 4.0, 9.0]);
+    assert_eq!((cart.start.q.as_slice(), cart.start.dq.as_slice()), ([7.0, 8.0].as_slice(), [1.0, 2.0].as_slice()));
+    assert_eq!(cart.start.reference, [[3.0, 4.0], [5.0, 6.0]]);
+    assert!(!cart.enforce_limits && !arm.enforce_limits);
+    // Key by key: the arms have positions of their own, but no velocity.
+    assert_eq!((arm.start.q.as_slice(), arm.start.dq.as_slice()), ([0.1, 0.2].as_slice(), [9.0, 9.0].as_slice()));
+    assert!(arm.start.reference.is_empty());
+}
+
+#[test]
+fn estimates_start_as_they_are_told() {
+    let first = |choice: &str| {
+        let setup = setup(
+            &changed("estimate_start = \"zero\"", choice)
+                .replace("name = \"cart\"", "name = \"cart\"\nlaw = { adaptive = {} }"),
+        );
+        let arm = &setup.agents[0];
+        match &arm.law {
+            Law::Adaptive { estimate_start, .. } => {
+                estimate_start.iter().zip(&arm.robot.theta).map(|(a, b)| a / b).collect()
+            }
+            Law::Known { .. } => Vec::new(),
+        }
+    };
+    assert_eq!(first("estimate_start = \"true\""), [1.0; 5]);
+    assert_eq!(first("estimate_start.scaled = 0.5"), [0.5; 5]);
+    assert_eq!(first(""), [0.0; 5]);
+    assert_eq!(first("estimate_start.given = [0, 0, 0, 0, 0]"), [0.0; 5]);
+}
+
+#[test]
+fn random_starts_repeat_and_stay_when_agents_are_added() {
+    let random = |count: &str, seed: u64| {
+        let text =
+            changed("[[0.1, 0.2], [0.3, 0.4]]", &format!("{{ random = {{ seed = {seed}, within = [-2, 3] }} }}"));
+        let agents = setup(&text.replace("count = 2", count)).agents;
+        agents.iter().filter(|agent| agent.name != "cart").flat_map(|agent| agent.start.q.clone()).collect::<Vec<_>>()
+    };
+    let two = random("count = 2", 7);
+    assert_eq!(two, random("count = 2", 7));
+    assert_ne!(two, random("count = 2", 8));
+    let many = random("count = 500", 7);
+    assert_eq!(many[..4], two[..]);
+    assert!(many.iter().all(|q| (-2.0..=3.0).contains(q)));
+    let mean = many.iter().sum::<f64>() / many.len() as f64;
+    assert!((mean - 0.5).abs() < 0.15, "uniform on [-2, 3], but the mean is {mean}");
+}
+
+#[test]
+fn networks_of_every_kind() {
+    let phases = &SOUND[SOUND.find("[[network.phases]]").unwrap()..SOUND.find("[goal]").unwrap()];
+    let fixed = SOUND.replace(
+        phases,
+        "edges = [[\"cart\", \"arm-1\"], { from = \"arm-1\", to = \"cart\", weight = 2, delay.constant_s = 0 }]\n",
+    );
+    let network = setup(&fixed).network;
+    let Schedule::Fixed(edges) = network.schedule else { panic!("it is fixed") };
+    assert_eq!((edges[0].from, edges[0].to, edges[0].weight, edges[0].delay), (2, 0, 1.0, 0));
+    assert_eq!((edges[1].from, edges[1].to, edges[1].weight), (0, 2, 2.0));
+    assert_eq!(network.delays[edges[1].delay], Delay::Constant { s: 0.0 });
+
+    let once = read(&changed("weight = 1.0", "switching = \"once\"")).unwrap();
+    assert!(matches!(once.setup.network.schedule, Schedule::Once(phases) if phases.len() == 2));
+    let notices: Vec<String> = once.notices.iter().map(ToString::to_string).collect();
+    assert_eq!(notices, ["`dwell_s` on line 34 is not used"]);
+    assert!(
+        read(&changed("weight = 1.0", "switching = \"once\"").replace("dwell_s = 2.0\n", ""))
+            .unwrap()
+            .notices
+            .is_empty()
+    );
+
+    let random = read(&changed("weight = 1.0", "switching.random = { seed = 3, dwell_s = [1, 2] }")).unwrap();
+    assert!(matches!(
+        random.setup.network.schedule,
+        Schedule::Random { graphs, dwell_s: [1.0, 2.0], seed: 3 } if graphs.len() == 2
+    ));
+    assert_eq!(random.notices.len(), 2);
+}
+
+#[test]
+fn delays_of_every_kind() {
+    let delay = |text: &str| {
+        let saw_tooth = "delay.saw_tooth = { min_s = 0.1, max_s = 0.4, period_s = 0.6 }";
+        setup(&changed(saw_tooth, text)).network.delays.remove(0)
+    };
+    assert_eq!(delay(""), Delay::Constant { s: 0.0 });
+    assert_eq!(
+        delay("delay.sinusoid = { mean_s = 0.2, amplitude_s = 0.2, period_s = 2, phase_rad = 1 }"),
+        Delay::Sinusoid { mean_s: 0.2, amplitude_s: 0.2, period_s: 2.0, phase_rad: 1.0 }
+    );
+    assert_eq!(
+        delay("delay.piecewise_constant = { times_s = [0, 1], values_s = [0.1, 0], period_s = 2 }"),
+        Delay::PiecewiseConstant { times_s: vec![0.0, 1.0], values_s: vec![0.1, 0.0], period_s: Some(2.0) }
+    );
+    assert_eq!(
+        delay("delay.saw_tooth = { min_s = 0, max_s = 0.4, period_s = 0.6, offset_s = 0.1 }"),
+        Delay::SawTooth { min_s: 0.0, max_s: 0.4, period_s: 0.6, offset_s: 0.1 }
+    );
+}
+
+#[test]
+fn solver_and_goal() {
+    let solver = |text: &str| setup(&changed("[goal]", &format!("[solver]\n{text}\n[goal]"))).solver;
+    assert_eq!(solver("method.fixed.step_s = 0.01").method, Method::Fixed { step_s: 0.01 });
+    assert_eq!(solver("method.adaptive.rtol = 1e-9").method, Method::Adaptive { rtol: 1e-9, atol: 1e-8 });
+    let rest = solver("max_step_s = 0.5\nledger = false\nmin_step_s = 1e-9");
+    assert_eq!((rest.max_step_s, rest.ledger, rest.min_step_s), (Some(0.5), false, 1e-9));
+    let goal = |text: &str| read(&changed("disagreement_below = 1e-3", text)).unwrap().goal;
+    assert_eq!(goal("expect = \"diverges\""), Some(Goal::ExpectDiverges));
+    assert_eq!(goal("disagreement_below = 1\nexpect = \"agrees\""), Some(Goal::DisagreementBelow(1.0)));
+    assert_eq!(read(&changed("[goal]\ndisagreement_below = 1e-3\n", "")).unwrap().goal, None);
+}
+
+#[test]
+fn files_are_looked_for_beside_the_scenario_before_the_shipped_ones() {
+    use forwardstep_io::scenario::open_scenario;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fleet.toml");
+    let text = changed("robot.point_mass = { dimension = 2, mass_kg = 4.0 }", "robot.urdf.file = \"panda.urdf\"");
+    std::fs::write(&path, text.replace("count = 2", "count = 1").replace("[[0.1, 0.2], [0.3, 0.4]]", "[0, 0]"))
+        .unwrap();
+    let open = || open_scenario(path.to_str().unwrap()).unwrap_err().to_string();
+    assert!(open().ends_with("`arm-1` has 2 axes and `cart` has 7, but agents that agree need as many"), "{}", open());
+    std::fs::write(folder.path().join("panda.urdf"), "<sdf/>").unwrap();
+    assert!(open().contains("panda.urdf:1:"), "{}", open());
+    std::fs::write(folder.path().join("panda.urdf"), [0xff, 0xfe]).unwrap();
+    assert!(open().contains("cannot read the robot file `panda.urdf`: invalid data"), "{}", open());
+}
+
+#[test]
+fn near_matches_for_names_and_paths() {
+    use forwardstep_io::scenario::open_scenario;
+    use miette::Diagnostic;
+    let open = |name: &str| {
+        let error = open_scenario(name).unwrap_err();
+        (error.to_string(), error.help().map(|help| help.to_string()).unwrap_or_default())
+    };
+    let (error, help) = open("theorem2");
+    assert_eq!(error, "there is no scenario `theorem2`");
+    assert!(help.starts_with("did you mean `theorem-2`?"), "{help}");
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("fleet.toml"), SOUND).unwrap();
+    let missing = folder.path().join("flet.toml");
+    let (error, help) = open(missing.to_str().unwrap());
+    assert_eq!(error, format!("cannot read `{}`: entity not found", missing.display()));
+    assert!(help.starts_with("did you mean `fleet.toml`?"), "{help}");
+    assert_eq!(
+        open(folder.path().to_str().unwrap()).0,
+        format!("cannot read `{}`: is a directory", folder.path().display())
+    );
+}

@@ -1,0 +1,68 @@
+//! Any text gives a scenario or an error, never a panic, and every error can be shown.
+
+use forwardstep_io::scenario::SHIPPED_SCENARIOS;
+use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
+use proptest::prelude::*;
+
+use super::{SOUND, read};
+
+fn texts() -> Vec<&'static str> {
+    SHIPPED_SCENARIOS.iter().map(|scenario| scenario.text).chain([SOUND]).collect()
+}
+
+/// Reads and, if that fails, shows the error.
+fn survives(text: &str) {
+    if let Err(error) = read(text) {
+        assert!(!error.to_string().contains('\n'), "one line: {error}");
+        let mut shown = String::new();
+        let handler = GraphicalReportHandler::new_themed(GraphicalTheme::none());
+        handler.render_report(&mut shown, &error as &dyn Diagnostic).unwrap();
+    }
+}
+
+#[test]
+fn prop_every_prefix_gives_a_result() {
+    for (end, _) in SOUND.char_indices() {
+        survives(&SOUND[..end]);
+    }
+}
+
+#[test]
+fn prop_every_line_may_be_missing_or_doubled() {
+    for text in texts() {
+        let lines: Vec<&str> = text.lines().collect();
+        for k in 0..lines.len() {
+            survives(&[&lines[..k], &lines[k + 1..]].concat().join("\n"));
+            survives(&[&lines[..=k], &lines[k..]].concat().join("\n"));
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn prop_mutated_text_never_panics(
+        which in 0..7usize,
+        edits in prop::collection::vec((any::<prop::sample::Index>(), 0..6usize, "[ -~é\\n]{0,6}"), 1..6),
+        tokens in prop::collection::vec(prop::sample::select(vec![
+            "nan", "-inf", "1e999", "-1", "0", "1e-300", "[]", "{}", "[[]]", "[[1],2]", "\"\"", "true", "[1, 2, 3]", "1e308",
+            "9223372036854775807", "{ random = { seed = 0, within = [-1e308, 1e308] } }",
+        ]), 6),
+    ) {
+        let mut text = texts()[which].to_owned();
+        for ((place, length, junk), token) in edits.into_iter().zip(tokens) {
+            let starts: Vec<usize> = text.char_indices().map(|(start, _)| start).collect();
+            let start = starts[place.index(starts.len())];
+            let end = starts[(place.index(starts.len()) + length).min(starts.len() - 1)].max(start);
+            // Half of the time a whole value is exchanged, which goes deeper than broken syntax.
+            match text[start..].find("= ") {
+                Some(equals) if length % 2 == 0 => {
+                    let value = start + equals + 2;
+                    let stop = text[value..].find(['\n', ',', '}']).map_or(text.len(), |offset| value + offset);
+                    text.replace_range(value..stop, token);
+                }
+                _ => text.replace_range(start..end, &junk),
+            }
+        }
+        survives(&text);
+    }
+}
