@@ -10,8 +10,8 @@ use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, Ending, Exchange, Law, Method, Network, Outcome, RobotKind, RobotSetup, Setup, Signal,
-    Solver, Start, TimeSpan, simulate,
+    AgentSetup, Axis, AxisUnit, Ending, Exchange, Law, Method, Network, Outcome, ReferenceKind, RobotKind, RobotSetup,
+    Setup, Signal, Solver, Start, TimeSpan, simulate,
 };
 
 /// Numbers that look arbitrary but are always the same.
@@ -30,6 +30,7 @@ fn arm(index: usize, roots_per_s: &[f64]) -> AgentSetup {
             axes: vec![axis("shoulder"), axis("elbow")],
         },
         roots_per_s: roots_per_s.to_vec(),
+        manipulability: 0.0,
         law: Law::Adaptive { damping: Gain::Number(8.0), adaptation: Gain::Number(10.0), estimate_start: vec![0.0; 5] },
         start: Start {
             q: vec![noise(index), noise(index + 10)],
@@ -52,6 +53,7 @@ fn setup(agents: Vec<AgentSetup>, exchange: Exchange, schedule: Schedule, delays
     Setup {
         network: Network { agents: agents.len(), schedule, delays },
         agents,
+        reference: ReferenceKind::Consensus,
         exchange,
         time: TimeSpan { end_s, record_every_s: 0.01 },
         solver: Solver { method: Method::Adaptive { rtol: 1e-9, atol: 1e-10 }, ..Solver::default() },

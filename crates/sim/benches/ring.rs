@@ -11,8 +11,8 @@ use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, Exchange, Law, Method, Network, Outcome, RobotKind, RobotSetup, Setup, Signal, Solver,
-    Start, TimeSpan, simulate,
+    AgentSetup, Axis, AxisUnit, Exchange, Law, Method, Network, Outcome, ReferenceKind, RobotKind, RobotSetup, Setup,
+    Signal, Solver, Start, TimeSpan, simulate,
 };
 
 const END_S: f64 = 20.0;
@@ -54,6 +54,7 @@ fn ring(model: Model, n: usize, tolerance: f64) -> Setup {
                 axes: (0..m).map(axis).collect(),
             },
             roots_per_s: vec![1.0],
+            manipulability: 0.0,
             law,
             start: Start {
                 q: (0..m).map(|k| if k == 0 { position } else { (i as f64).cos() }).collect(),
@@ -67,6 +68,7 @@ fn ring(model: Model, n: usize, tolerance: f64) -> Setup {
     let delay = |i: usize| Delay::Constant { s: 0.1 + 0.3 * (i % 7) as f64 / 7.0 };
     Setup {
         agents: (0..n).map(agent).collect(),
+        reference: ReferenceKind::Consensus,
         exchange: Exchange::PositionVelocity,
         network: Network {
             agents: n,

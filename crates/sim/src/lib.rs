@@ -18,6 +18,7 @@ pub use closed_loop::SetupError;
 pub use network::Network;
 pub use recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal, Statistics};
 pub use setup::{
-    AgentSetup, Axis, AxisUnit, Exchange, Law, Method, RobotKind, RobotSetup, Setup, Solver, Start, TimeSpan,
+    AgentSetup, Axis, AxisUnit, Exchange, Law, Method, ReferenceKind, RobotKind, RobotSetup, Setup, Solver, Start,
+    TimeSpan,
 };
 pub use simulate::simulate;

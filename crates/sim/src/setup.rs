@@ -12,6 +12,8 @@ use crate::network::Network;
 pub struct Setup {
     /// The agents, in the order of the network's vertices.
     pub agents: Vec<AgentSetup>,
+    /// What produces their reference velocities.
+    pub reference: ReferenceKind,
     /// What the agents tell each other.
     pub exchange: Exchange,
     /// Who hears whom, when, and how late.
@@ -20,6 +22,33 @@ pub struct Setup {
     pub time: TimeSpan,
     /// How to integrate.
     pub solver: Solver,
+}
+
+/// Reference dynamics, see [`forwardstep_core::reference`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ReferenceKind {
+    /// The family (aa10), (a1), (a5), (24).
+    Consensus,
+    /// (3) or, when only positions are exchanged, (23): order two, fixed graphs.
+    PureIntegral,
+    /// The baseline (aa6): exchanges positions, has no roots.
+    Backstepping {
+        /// Time constant ε of the filter that differentiates, s.
+        filter_s: f64,
+        /// Limit of the reference acceleration, rad/s² or m/s²; none for no limit.
+        acceleration_limit: Option<f64>,
+    },
+}
+
+impl ReferenceKind {
+    /// How many of z(0), ż(0), … an agent's start may give.
+    pub fn vectors(&self, agent: &AgentSetup) -> usize {
+        match self {
+            ReferenceKind::Consensus => agent.roots_per_s.len(),
+            ReferenceKind::PureIntegral => 2,
+            ReferenceKind::Backstepping { .. } => 1,
+        }
+    }
 }
 
 /// What an agent transmits.
@@ -38,8 +67,11 @@ pub struct AgentSetup {
     pub name: String,
     /// Its robot.
     pub robot: RobotSetup,
-    /// κ₀ … κ_{ℓ−1} in 1/s, all positive; their number is the order ℓ of the reference dynamics.
+    /// κ₀ … κ_{ℓ−1} in 1/s, all positive; their number is the order ℓ of the reference dynamics. None for
+    /// [`ReferenceKind::Backstepping`].
     pub roots_per_s: Vec<f64>,
+    /// λ of Remark 4, 1/s^ℓ: how much the reference gives way to the motion; zero for not at all.
+    pub manipulability: f64,
     /// Its tracking law.
     pub law: Law,
     /// Where it starts.

@@ -10,80 +10,21 @@
 //! ```
 //!
 //! which is (a5); without the last term, when only positions are sent, it is (24). Order 1 with velocities is (aa10),
-//! since x₁ = q̇ stands in both sums; order 2 with κ = (α, β) is (a1); order 3 of (24) is (49).
+//! since x₁ = q̇ stands in both sums; order 2 with κ = (α, β) is (a1); order 3 of (24) is (49). Remark 4 adds λ (q̇ − z) to
+//! each of them, which makes the loop easy to move by hand.
 //!
 //! Writing Xᵢ for the own part Σ_{r≤ℓ} αᵣ xᵣ, differentiation gives d/dt (Xᵢ − α₁ s) = −Σ_j w_ij (Xᵢ − heard_j) whatever s
 //! does (α₁ = 1 for ℓ = 1): the conserved quantity that predicts the agreed value starts here.
 
-use alloc::vec;
-use alloc::vec::Vec;
-
-use thiserror::Error;
-
-use super::{Exchange, Heard};
+use super::polynomial::{Coefficients, RootsError};
+use super::{Exchange, Heard, Measured, Reference, ReferenceOut, check};
 use crate::{LengthError, Scalar};
-
-/// What every member of the family measures of its own robot, `axes · agents` entries each.
-#[derive(Clone, Copy, Debug)]
-pub struct Measured<'a, S> {
-    /// Joint positions.
-    pub q: &'a [S],
-    /// Joint velocities.
-    pub dq: &'a [S],
-}
-
-/// A root that does not make a Hurwitz polynomial with real roots.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum RootsError {
-    /// No roots at all.
-    #[error("the reference dynamics need at least one root")]
-    Empty,
-    /// A root that is not a positive number.
-    #[error("root {index} is {value} per second, but every root must be positive and finite")]
-    NotPositive {
-        /// Position in the list, from zero.
-        index: usize,
-        /// The offending value, 1/s.
-        value: f64,
-    },
-    /// Agents of one population must share the order.
-    #[error("{got} roots were given where the population has order {need}")]
-    Order {
-        /// The order of the population.
-        need: usize,
-        /// The number of roots given.
-        got: usize,
-    },
-}
-
-/// The coefficients α₀ … α_{ℓ−1}, α_ℓ = 1 of ∏ᵣ (p + κᵣ): polynomial (25).
-///
-/// # Errors
-/// [`RootsError`] when there are no roots or one is not positive and finite.
-pub fn polynomial(roots_per_s: &[f64]) -> Result<Vec<f64>, RootsError> {
-    if roots_per_s.is_empty() {
-        return Err(RootsError::Empty);
-    }
-    let mut alpha = vec![1.0];
-    for (index, kappa) in roots_per_s.iter().enumerate() {
-        if !(*kappa > 0.0 && kappa.is_finite()) {
-            return Err(RootsError::NotPositive { index, value: *kappa });
-        }
-        // (p + κ) · Σ αᵣ pʳ
-        alpha.insert(0, 0.0);
-        for r in 0..alpha.len() - 1 {
-            alpha[r] += kappa * alpha[r + 1];
-        }
-    }
-    Ok(alpha)
-}
 
 /// Reference dynamics of order ℓ for a population of agents, each with roots of its own.
 ///
-/// State: `[z, ż, …, z^(ℓ−1)]`, each m axes, each axis a column of one entry per agent: entry `(r·m + axis)·n + agent`.
-/// One agent is a population of one.
+/// State: `[z, ż, …, z^(ℓ−1)]`.
 ///
-/// **Source**: (aa10), (a1), (a5), (24), (25).
+/// **Source**: (aa10), (a1), (a5), (24), (25); Remark 4 for λ.
 /// **Measures**: q, q̇. **Transmits**: what `X` says.
 /// **Requires**: positive real roots; (a5) over a switching graph or a varying delay also needs a common κ₀ within each
 /// strongly connected component of the union graph.
@@ -93,105 +34,112 @@ pub fn polynomial(roots_per_s: &[f64]) -> Result<Vec<f64>, RootsError> {
 #[derive(Clone, Debug)]
 pub struct Consensus<X> {
     exchange: core::marker::PhantomData<X>,
-    order: usize,
-    agents: usize,
-    /// αᵣ of every agent: entry `r · agents + agent`, r = 0 … ℓ.
-    alpha: Vec<f64>,
-    /// α₀/κ₀ of every agent.
-    alpha_0_over_kappa_0: Vec<f64>,
+    coefficients: Coefficients,
 }
 
 impl<X: Exchange> Consensus<X> {
-    /// Builds the dynamics from the roots κ₀ … κ_{ℓ−1} of every agent.
+    /// Builds the dynamics from the roots κ₀ … κ_{ℓ−1} and the manipulability gain λ (zero for none) of every agent.
     ///
     /// # Errors
-    /// [`RootsError`] when there are none, one is not positive, or agents differ in their number.
-    pub fn new<'a>(roots_per_s: impl IntoIterator<Item = &'a [f64]>) -> Result<Self, RootsError> {
-        let mut columns = Vec::new();
-        let mut alpha_0_over_kappa_0 = Vec::new();
-        for roots in roots_per_s {
-            let alpha = polynomial(roots)?;
-            if let Some(first) = columns.first().map(Vec::len)
-                && first != alpha.len()
-            {
-                return Err(RootsError::Order { need: first - 1, got: roots.len() });
-            }
-            alpha_0_over_kappa_0.push(alpha[0] / roots[0]);
-            columns.push(alpha);
-        }
-        let Some(order) = columns.first().map(|alpha| alpha.len() - 1) else { return Err(RootsError::Empty) };
-        let agents = columns.len();
-        let alpha = (0..=order).flat_map(|r| columns.iter().map(move |alpha| alpha[r])).collect();
-        Ok(Consensus { exchange: core::marker::PhantomData, order, agents, alpha, alpha_0_over_kappa_0 })
+    /// [`RootsError`] when there are no roots, one is not positive, agents differ in their number, or a λ is negative.
+    pub fn new<'a>(designs: impl IntoIterator<Item = (&'a [f64], f64)>) -> Result<Self, RootsError> {
+        Ok(Consensus { exchange: core::marker::PhantomData, coefficients: Coefficients::new(designs)? })
     }
 
     /// ℓ.
     pub fn order(&self) -> usize {
-        self.order
+        self.coefficients.order
+    }
+}
+
+impl<X: Exchange> Reference for Consensus<X> {
+    type Exchange = X;
+
+    fn agents(&self) -> usize {
+        self.coefficients.agents
     }
 
-    /// Number of agents.
-    pub fn agents(&self) -> usize {
-        self.agents
+    fn vectors(&self) -> usize {
+        self.coefficients.order
     }
 
-    /// d/dt of the state `[z, ż, …, z^(ℓ−1)]` for `axes` axes of every agent.
-    ///
-    /// # Errors
-    /// [`LengthError`] when a slice has the wrong length.
+    fn derivatives(&self) -> usize {
+        self.coefficients.order
+    }
+
     #[inline(always)]
-    pub fn rate<S: Scalar>(
+    fn evaluate<S: Scalar>(
         &self,
         axes: usize,
         measured: Measured<'_, S>,
         state: &[S],
         heard: Heard<'_, S, X>,
-        d_state: &mut [S],
+        out: ReferenceOut<'_, S>,
     ) -> Result<(), LengthError> {
-        let (n, block) = (self.agents, axes * self.agents);
-        LengthError::check("q", block, measured.q.len())?;
-        LengthError::check("dq", block, measured.dq.len())?;
-        LengthError::check("reference state", self.order * block, state.len())?;
-        LengthError::check("reference rate", self.order * block, d_state.len())?;
-        LengthError::check("degree", n, heard.degree.len())?;
-        X::check(heard.sums, block)?;
+        let Coefficients { order, agents: n, .. } = self.coefficients;
+        check([axes, n, order], measured, state, heard, &out)?;
+        let block = axes * n;
 
         // z^(r) ← z^(r+1) below the top, then the one equation of the family at the top.
-        let top = (self.order - 1) * block;
-        d_state[..top].copy_from_slice(&state[block..]);
+        let top = (order - 1) * block;
+        out.d_state[..top].copy_from_slice(&state[block..]);
         for axis in 0..axes {
             let columns = axis * n..(axis + 1) * n;
-            let out = &mut d_state[top..][columns.clone()];
+            let rate = &mut out.d_state[top..][columns.clone()];
+            let (dq, z) = (&measured.dq[columns.clone()], &state[columns.clone()]);
             for i in 0..n {
-                let (alpha_0, ratio) = (S::splat(self.alpha[i]), S::splat(self.alpha_0_over_kappa_0[i]));
-                out[i] = X::term(heard.sums, columns.start + i, alpha_0, ratio);
+                let (alpha_0, ratio) = (self.coefficients.alpha[i], self.coefficients.alpha_0_over_kappa_0[i]);
+                let told = X::term(heard.sums, columns.start + i, S::splat(alpha_0), S::splat(ratio));
+                rate[i] = S::splat(self.coefficients.lambda[i]).mul_add(dq[i] - z[i], told);
             }
-            for r in 0..=self.order {
+            for r in 0..=order {
                 let x = match r {
                     0 => &measured.q[columns.clone()],
-                    1 => &measured.dq[columns.clone()],
+                    1 => dq,
                     _ => &state[(r - 1) * block..][columns.clone()],
                 };
-                let alpha = &self.alpha[r * n..(r + 1) * n];
+                let alpha = self.coefficients.alpha(r);
                 if r == 0 {
                     for i in 0..n {
-                        out[i] = (heard.degree[i] * S::splat(alpha[i])).neg_mul_add(x[i], out[i]);
+                        rate[i] = (heard.degree[i] * S::splat(alpha[i])).neg_mul_add(x[i], rate[i]);
                     }
                 } else {
-                    let below = &self.alpha[(r - 1) * n..r * n];
+                    let below = self.coefficients.alpha(r - 1);
                     for i in 0..n {
                         let c = heard.degree[i].mul_add(S::splat(alpha[i]), S::splat(below[i]));
-                        out[i] = c.neg_mul_add(x[i], out[i]);
+                        rate[i] = c.neg_mul_add(x[i], rate[i]);
                     }
                 }
             }
         }
+
+        out.z.copy_from_slice(&state[..block]);
+        // ż is a state, but for order one, where it is the rate just computed.
+        out.dz.copy_from_slice(&out.d_state[..block]);
+        Ok(())
+    }
+
+    fn start(
+        &self,
+        axes: usize,
+        _: Measured<'_, f64>,
+        given: &[f64],
+        _: Heard<'_, f64, X>,
+        state: &mut [f64],
+    ) -> Result<(), LengthError> {
+        let need = self.vectors() * axes * self.agents();
+        LengthError::check("start of the reference", need, given.len())?;
+        LengthError::check("reference state", need, state.len())?;
+        state.copy_from_slice(given);
         Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use alloc::vec;
+    use alloc::vec::Vec;
+
     use super::super::{Position, PositionSums, PositionVelocity, PositionVelocitySums};
     use super::*;
 
@@ -201,30 +149,26 @@ mod tests {
     const DQ_J: [f64; 2] = [0.2, -0.8];
     const W: f64 = 1.5;
 
-    fn sums<'a>(storage: &'a [[f64; 2]; 2]) -> PositionVelocitySums<'a, f64> {
-        PositionVelocitySums { q: &storage[0], dq: &storage[1] }
-    }
-
-    fn weighted() -> [[f64; 2]; 2] {
-        [Q_J.map(|x| W * x), DQ_J.map(|x| W * x)]
-    }
-
-    #[test]
-    fn eq_25_roots_give_the_polynomial() {
-        assert_eq!(polynomial(&[2.0]), Ok(vec![2.0, 1.0]));
-        assert_eq!(polynomial(&[1.0, 2.0, 3.0]), Ok(vec![6.0, 11.0, 6.0, 1.0]));
-        assert_eq!(polynomial(&[]), Err(RootsError::Empty));
-        assert_eq!(polynomial(&[1.0, -2.0]), Err(RootsError::NotPositive { index: 1, value: -2.0 }));
+    /// z, ż and the rate of the state of one agent with two axes.
+    fn evaluate<R: Reference>(
+        law: &R,
+        state: &[f64],
+        sums: <R::Exchange as Exchange>::Sums<'_, f64>,
+    ) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+        let (mut z, mut dz, mut rate) = (vec![0.0; 2], vec![0.0; 2], vec![0.0; state.len()]);
+        let heard = Heard { degree: &[W], sums };
+        let out = ReferenceOut { z: &mut z, dz: &mut dz, d_state: &mut rate };
+        law.evaluate(2, Measured { q: &Q, dq: &DQ }, state, heard, out).unwrap();
+        (z, dz, rate)
     }
 
     #[test]
     fn eq_aa10_is_order_1_with_velocities() {
         let alpha = 1.3;
-        let law = Consensus::<PositionVelocity>::new([&[alpha][..]]).unwrap();
-        let storage = weighted();
-        let mut dz = [0.0; 2];
-        law.rate(2, Measured { q: &Q, dq: &DQ }, &[9.0; 2], Heard { degree: &[W], sums: sums(&storage) }, &mut dz)
-            .unwrap();
+        let law = Consensus::<PositionVelocity>::new([(&[alpha][..], 0.0)]).unwrap();
+        let (q_sum, dq_sum) = (Q_J.map(|x| W * x), DQ_J.map(|x| W * x));
+        let (z, dz, rate) = evaluate(&law, &[9.0; 2], PositionVelocitySums { q: &q_sum, dq: &dq_sum });
+        assert_eq!((z, &rate), (vec![9.0; 2], &dz));
         for k in 0..2 {
             let (xi, xi_j) = (DQ[k] + alpha * Q[k], DQ_J[k] + alpha * Q_J[k]);
             assert!((dz[k] - (-alpha * DQ[k] - W * (xi - xi_j))).abs() < 1e-14);
@@ -232,19 +176,18 @@ mod tests {
     }
 
     #[test]
-    fn eq_a1_is_order_2_with_velocities() {
-        let (alpha, beta) = (1.3, 0.6);
-        let law = Consensus::<PositionVelocity>::new([&[alpha, beta][..]]).unwrap();
-        let storage = weighted();
+    fn eq_a1_is_order_2_with_velocities_and_remark_4_adds_lambda() {
+        let (alpha, beta, lambda) = (1.3, 0.6, 0.9);
+        let law = Consensus::<PositionVelocity>::new([(&[alpha, beta][..], lambda)]).unwrap();
+        let (q_sum, dq_sum) = (Q_J.map(|x| W * x), DQ_J.map(|x| W * x));
         let state = [0.1, -0.2, 0.5, 0.8];
-        let mut rate = [0.0; 4];
-        law.rate(2, Measured { q: &Q, dq: &DQ }, &state, Heard { degree: &[W], sums: sums(&storage) }, &mut rate)
-            .unwrap();
+        let (z, dz, rate) = evaluate(&law, &state, PositionVelocitySums { q: &q_sum, dq: &dq_sum });
+        assert_eq!((&z[..], &dz[..], &rate[..2]), (&state[..2], &state[2..], &state[2..]));
         for k in 0..2 {
-            let dz = state[2 + k];
             let (xi, xi_j) = (DQ[k] + alpha * Q[k], DQ_J[k] + alpha * Q_J[k]);
-            let ddz = -(alpha + beta) * dz - alpha * beta * DQ[k] - W * (dz + alpha * DQ[k] + beta * xi - beta * xi_j);
-            assert_eq!(rate[k], dz);
+            let ddz =
+                -(alpha + beta) * dz[k] - alpha * beta * DQ[k] - W * (dz[k] + alpha * DQ[k] + beta * xi - beta * xi_j)
+                    + lambda * (DQ[k] - z[k]);
             assert!((rate[2 + k] - ddz).abs() < 1e-14);
         }
     }
@@ -252,27 +195,28 @@ mod tests {
     #[test]
     fn eq_24_order_3_is_eq_49() {
         let (a, b, c) = (1.0, 2.0, 0.5);
-        let law = Consensus::<Position>::new([&[a, b, c][..]]).unwrap();
-        let q_sum = [W * Q_J[0]];
-        let state = [0.1, 0.5, -0.7];
-        let mut rate = [0.0; 3];
-        let heard = Heard { degree: &[W], sums: PositionSums { q: &q_sum } };
-        law.rate(1, Measured { q: &Q[..1], dq: &DQ[..1] }, &state, heard, &mut rate).unwrap();
-        let (dz, ddz) = (state[1], state[2]);
+        let law = Consensus::<Position>::new([(&[a, b, c][..], 0.0)]).unwrap();
+        let q_sum = Q_J.map(|x| W * x);
+        let state = [0.1, 0.2, 0.5, -0.4, -0.7, 0.3];
+        let (_, dz, rate) = evaluate(&law, &state, PositionSums { q: &q_sum });
         let pairs = a * b + a * c + b * c;
-        let dddz = -(a + b + c) * ddz
-            - pairs * dz
-            - a * b * c * DQ[0]
-            - W * (ddz + (a + b + c) * dz + pairs * DQ[0] + a * b * c * (Q[0] - Q_J[0]));
-        assert_eq!(rate[..2], state[1..]);
-        assert!((rate[2] - dddz).abs() < 1e-14);
+        assert_eq!(rate[..4], state[2..]);
+        for k in 0..2 {
+            let ddz = state[4 + k];
+            let dddz = -(a + b + c) * ddz
+                - pairs * dz[k]
+                - a * b * c * DQ[k]
+                - W * (ddz + (a + b + c) * dz[k] + pairs * DQ[k] + a * b * c * (Q[k] - Q_J[k]));
+            assert!((rate[4 + k] - dddz).abs() < 1e-14);
+        }
     }
 
     #[test]
     fn wrong_lengths_are_errors() {
-        let law = Consensus::<Position>::new([&[1.0][..]]).unwrap();
+        let law = Consensus::<Position>::new([(&[1.0][..], 0.0)]).unwrap();
         let heard = Heard { degree: &[W], sums: PositionSums { q: &[0.0] } };
-        let result = law.rate(1, Measured { q: &Q, dq: &DQ }, &[0.0], heard, &mut [0.0]);
+        let out = ReferenceOut { z: &mut [0.0], dz: &mut [0.0], d_state: &mut [0.0] };
+        let result = law.evaluate(1, Measured { q: &Q, dq: &DQ }, &[0.0], heard, out);
         assert_eq!(result, Err(LengthError { what: "q", need: 1, got: 2 }));
     }
 }

@@ -1,7 +1,105 @@
 //! Reference dynamics: what produces the reference velocity z and the reference acceleration ż.
+//!
+//! - `consensus`: the family (aa10), (a1), (a5), (24), which only integrates what it constructed itself.
+//! - `pure_integral`: (3) and (23), which contain q̈ and are realised by their integral.
+//! - `backstepping`: (aa6), the baseline, which differentiates.
+//! - `exchange`: what agents tell each other.
 
+mod backstepping;
 mod consensus;
 mod exchange;
+mod polynomial;
+mod pure_integral;
 
-pub use consensus::{Consensus, Measured, RootsError, polynomial};
+pub use backstepping::{Backstepping, BacksteppingError};
+pub use consensus::Consensus;
 pub use exchange::{Exchange, Heard, Position, PositionSums, PositionVelocity, PositionVelocitySums};
+pub use polynomial::{RootsError, polynomial};
+pub use pure_integral::PureIntegral;
+
+use crate::{LengthError, Scalar};
+
+/// What reference dynamics measure of their own robots, `axes · agents` entries each.
+#[derive(Clone, Copy, Debug)]
+pub struct Measured<'a, S> {
+    /// Joint positions.
+    pub q: &'a [S],
+    /// Joint velocities.
+    pub dq: &'a [S],
+}
+
+/// Where reference dynamics put their results.
+#[derive(Debug)]
+pub struct ReferenceOut<'a, S> {
+    /// z, `axes · agents` entries.
+    pub z: &'a mut [S],
+    /// ż, `axes · agents` entries.
+    pub dz: &'a mut [S],
+    /// d/dt of the state.
+    pub d_state: &'a mut [S],
+}
+
+/// Reference dynamics of a population of agents.
+///
+/// All columns are laid out as `axis · agents + agent`; the state is [`Reference::vectors`] such blocks, one after the
+/// other. One agent is a population of one. z̈ never enters a torque, so outputs and rates are computed together, before it.
+pub trait Reference: Send + Sync + 'static {
+    /// What agents tell each other; what is not in it cannot be read.
+    type Exchange: Exchange;
+
+    /// Number of agents.
+    fn agents(&self) -> usize;
+
+    /// Blocks of state.
+    fn vectors(&self) -> usize;
+
+    /// How many of them are z, ż, z̈, … in this order.
+    fn derivatives(&self) -> usize;
+
+    /// z, ż and the rate of the state.
+    ///
+    /// # Errors
+    /// [`LengthError`] when a slice has the wrong length.
+    fn evaluate<S: Scalar>(
+        &self,
+        axes: usize,
+        measured: Measured<'_, S>,
+        state: &[S],
+        heard: Heard<'_, S, Self::Exchange>,
+        out: ReferenceOut<'_, S>,
+    ) -> Result<(), LengthError>;
+
+    /// The state that gives z and its derivatives the values `given`, as far as the dynamics leave them free: `given`
+    /// holds [`Reference::vectors`] blocks z(0), ż(0), ….
+    ///
+    /// # Errors
+    /// [`LengthError`] when a slice has the wrong length.
+    fn start(
+        &self,
+        axes: usize,
+        measured: Measured<'_, f64>,
+        given: &[f64],
+        heard: Heard<'_, f64, Self::Exchange>,
+        state: &mut [f64],
+    ) -> Result<(), LengthError>;
+}
+
+/// Checks the lengths that all reference dynamics share.
+#[inline(always)]
+fn check<S: Scalar, X: Exchange>(
+    [axes, agents, vectors]: [usize; 3],
+    measured: Measured<'_, S>,
+    state: &[S],
+    heard: Heard<'_, S, X>,
+    out: &ReferenceOut<'_, S>,
+) -> Result<(), LengthError> {
+    let block = axes * agents;
+    LengthError::check("q", block, measured.q.len())?;
+    LengthError::check("dq", block, measured.dq.len())?;
+    LengthError::check("reference state", vectors * block, state.len())?;
+    LengthError::check("reference rate", vectors * block, out.d_state.len())?;
+    LengthError::check("z", block, out.z.len())?;
+    LengthError::check("dz", block, out.dz.len())?;
+    LengthError::check("degree", agents, heard.degree.len())?;
+    X::check(heard.sums, block)
+}

@@ -4,7 +4,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use forwardstep_core::law::SlotineLi;
-use forwardstep_core::reference::{Consensus, Exchange as CoreExchange, Position, PositionVelocity, RootsError};
+use forwardstep_core::reference::{
+    Backstepping, BacksteppingError, Consensus, Exchange as CoreExchange, Position, PositionVelocity, PureIntegral,
+    Reference, RootsError,
+};
 use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass};
 use forwardstep_core::{Gain, GainError, InverseQuadratic, Lanes, LengthError, ResolvedGain};
@@ -15,7 +18,7 @@ use super::population::{Columns, Population};
 use crate::engine::{DelaySystem, Heard, Port};
 use crate::network::NetworkError;
 use crate::recording::Signal;
-use crate::setup::{AgentSetup, Exchange, Law, Method, RobotKind, Setup};
+use crate::setup::{AgentSetup, Exchange, Law, Method, ReferenceKind, RobotKind, Setup};
 
 /// Why a setup cannot be simulated.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -69,6 +72,12 @@ pub enum SetupError {
         /// What is wrong.
         error: RootsError,
     },
+    /// The filter of the backstepping baseline.
+    #[error(transparent)]
+    Backstepping(#[from] BacksteppingError),
+    /// The reference dynamics do not go with what is exchanged.
+    #[error("the backstepping baseline exchanges positions only")]
+    BacksteppingExchange,
     /// A gain of one agent.
     #[error("agent `{agent}`: {gain}: {error}")]
     Gain {
@@ -152,6 +161,7 @@ impl ClosedLoop {
             });
             placed += n;
         }
+        closed_loop.start_references(setup)?;
         Ok(closed_loop)
     }
 
@@ -160,14 +170,14 @@ impl ClosedLoop {
         let first = self.start.len();
         let agents = || group.iter().map(|&agent| &setup.agents[agent]);
         let axes = setup.agents[group[0]].robot.axes.len();
-        let order = setup.agents[group[0]].roots_per_s.len();
+        let vectors = setup.reference.vectors(&setup.agents[group[0]]);
         for axis in 0..axes {
             self.start.extend(agents().map(|a| a.start.q[axis]));
         }
         for axis in 0..axes {
             self.start.extend(agents().map(|a| a.start.dq[axis]));
         }
-        for r in 0..order {
+        for r in 0..vectors {
             for axis in 0..axes {
                 let default = |a: &AgentSetup| if r == 0 { a.start.dq[axis] } else { 0.0 };
                 self.start.extend(agents().map(|a| a.start.reference.get(r).map_or(default(a), |z| z[axis])));
@@ -180,6 +190,28 @@ impl ClosedLoop {
             }));
         }
         self.start.resize(first + state_len, 0.0);
+    }
+
+    /// From the wanted z(0), ż(0), … to reference states, with what everybody hears at t = 0: the initial messages.
+    fn start_references(&mut self, setup: &Setup) -> Result<(), SetupError> {
+        let graph = setup.network.schedule.segments().next().map_or(0, |segment| segment.graph);
+        let mut degree = vec![0.0; setup.agents.len()];
+        let mut sums = vec![0.0; setup.agents.len() * self.entries];
+        for edge in setup.network.schedule.graph(graph) {
+            let (from, to) = (self.ports[edge.from], self.ports[edge.to]);
+            degree[to.degree] += edge.weight;
+            for c in 0..self.entries {
+                sums[to.entry + c * to.stride] += edge.weight * self.start[from.state + c * from.stride];
+            }
+        }
+        for block in &self.blocks {
+            let (degree, sums) = (&degree[block.degree.clone()], &sums[block.sums.clone()]);
+            block
+                .columns
+                .start(&mut self.start[block.state.clone()], degree, sums)
+                .map_err(|error| SetupError::Length { agent: setup.agents[0].name.clone(), error })?;
+        }
+        Ok(())
     }
 
     /// The initial state.
@@ -274,15 +306,32 @@ where
     for &agent in group {
         members.push(member(&robot, &setup.agents[agent], agent)?);
     }
-    let roots = group.iter().map(|&agent| &setup.agents[agent].roots_per_s[..]);
     let first = &setup.agents[group[0]];
-    let consensus =
-        Consensus::<X>::new(roots).map_err(|error| SetupError::Roots { agent: first.name.clone(), error })?;
+    let ledger = setup.solver.ledger;
+    let designs = || group.iter().map(|&agent| &setup.agents[agent]).map(|a| (&a.roots_per_s[..], a.manipulability));
+    let roots = |error| SetupError::Roots { agent: first.name.clone(), error };
+    Ok(match setup.reference {
+        ReferenceKind::Consensus => columns(robot, members, Consensus::<X>::new(designs()).map_err(roots)?, ledger),
+        ReferenceKind::PureIntegral => {
+            columns(robot, members, PureIntegral::<X>::new(designs()).map_err(roots)?, ledger)
+        }
+        ReferenceKind::Backstepping { filter_s, acceleration_limit } => {
+            let limit = acceleration_limit.unwrap_or(f64::INFINITY);
+            columns(robot, members, Backstepping::new(group.iter().map(|_| (filter_s, limit)))?, ledger)
+        }
+    })
+}
+
+fn columns<R, F>(robot: R, members: Vec<Member>, reference: F, ledger: bool) -> Box<dyn Columns>
+where
+    R: Lagrangian<f64> + Lagrangian<Lanes<8>> + 'static,
+    F: Reference,
+{
     // Eight lanes cost about as much as two or three robots one at a time, so idle lanes pay from three robots on.
     if members.len() < LANES_FROM {
-        Ok(Box::new(Population::<R, X, f64>::new(robot, members, consensus, setup.solver.ledger)))
+        Box::new(Population::<R, F, f64>::new(robot, members, reference, ledger))
     } else {
-        Ok(Box::new(Population::<R, X, Lanes<8>>::new(robot, members, consensus, setup.solver.ledger)))
+        Box::new(Population::<R, F, Lanes<8>>::new(robot, members, reference, ledger))
     }
 }
 
@@ -365,15 +414,18 @@ fn check(setup: &Setup) -> Result<(), SetupError> {
         }
         Method::Fixed { step_s } => positive("the step", step_s)?,
     }
+    if matches!(setup.reference, ReferenceKind::Backstepping { .. }) && setup.exchange != Exchange::Position {
+        return Err(SetupError::BacksteppingExchange);
+    }
     let first = &setup.agents[0];
     let axes = first.robot.axes.len();
     for agent in &setup.agents {
-        check_agent(agent, first, axes)?;
+        check_agent(agent, first, axes, setup.reference.vectors(agent))?;
     }
     Ok(())
 }
 
-fn check_agent(agent: &AgentSetup, first: &AgentSetup, axes: usize) -> Result<(), SetupError> {
+fn check_agent(agent: &AgentSetup, first: &AgentSetup, axes: usize, vectors: usize) -> Result<(), SetupError> {
     if agent.robot.axes.len() != axes {
         return Err(SetupError::AxesDiffer {
             agent: agent.name.clone(),
@@ -395,8 +447,8 @@ fn check_agent(agent: &AgentSetup, first: &AgentSetup, axes: usize) -> Result<()
     for z in &agent.start.reference {
         vector("the start of the reference", axes, z)?;
     }
-    if agent.start.reference.len() > agent.roots_per_s.len() {
-        let (need, got) = (agent.roots_per_s.len(), agent.start.reference.len());
+    if agent.start.reference.len() > vectors {
+        let (need, got) = (vectors, agent.start.reference.len());
         let error = LengthError { what: "the start of the reference", need, got };
         return Err(SetupError::Length { agent: agent.name.clone(), error });
     }

@@ -27,11 +27,11 @@ pub(crate) struct Member {
 /// Where the parts of a block begin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layout {
-    /// Agents, axes, parameters, order.
+    /// Agents, axes, parameters, vectors of reference state.
     pub(crate) n: usize,
     pub(crate) m: usize,
     pub(crate) p: usize,
-    pub(crate) order: usize,
+    pub(crate) vectors: usize,
     /// First entries.
     pub(crate) dq: usize,
     pub(crate) reference: usize,
@@ -43,12 +43,12 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    pub(crate) fn new([n, m, p, order]: [usize; 4], adaptive: bool, ledger_on: bool) -> Self {
+    pub(crate) fn new([n, m, p, vectors]: [usize; 4], adaptive: bool, ledger_on: bool) -> Self {
         let (dq, reference) = (m * n, 2 * m * n);
-        let theta_hat = reference + order * m * n;
+        let theta_hat = reference + vectors * m * n;
         let ledger = theta_hat + if adaptive { p * n } else { 0 };
         let len = ledger + if ledger_on { n } else { 0 };
-        Layout { n, m, p, order, dq, reference, theta_hat, ledger, len, adaptive, ledger_on }
+        Layout { n, m, p, vectors, dq, reference, theta_hat, ledger, len, adaptive, ledger_on }
     }
 
     /// Numbers of one vector of every member.
@@ -99,15 +99,16 @@ impl<R: Lagrangian<S>, S: Packed> Fleet<R, S> {
     }
 
     /// s, τ, Yᵀs and q̈ of one squad into the working memory and, if there is a `dx`, the rates of q̇, ϑ̂ and the ledger
-    /// into it. `dz` is a block of its own because it is a state for some orders and a rate for others.
+    /// into it. z and ż are blocks of their own because they are states for some references and not for others.
     pub(crate) fn act(
         &mut self,
         squad: usize,
         x: &[f64],
+        z: &[f64],
         dz: &[f64],
         dx: Option<&mut [f64]>,
     ) -> Result<(), LengthError> {
-        dispatch(Act { fleet: self, squad, x, dz, dx })
+        dispatch(Act { fleet: self, squad, x, z, dz, dx })
     }
 }
 
@@ -115,6 +116,7 @@ struct Act<'a, R: Lagrangian<S>, S: Packed> {
     fleet: &'a mut Fleet<R, S>,
     squad: usize,
     x: &'a [f64],
+    z: &'a [f64],
     dz: &'a [f64],
     dx: Option<&'a mut [f64]>,
 }
@@ -126,7 +128,7 @@ impl<R: Lagrangian<S>, S: Packed> Kernel for Act<'_, R, S> {
     fn run(self) -> Self::Output {
         let Fleet { robot, layout, squads, work } = self.fleet;
         let squad = &squads[self.squad];
-        work.read(*layout, squad.first, self.x, self.dz);
+        work.read(*layout, squad.first, self.x, self.z, self.dz);
         squad.act(*layout, robot, work)?;
         if let Some(dx) = self.dx {
             work.write(*layout, squad, dx);
@@ -220,10 +222,10 @@ impl<S: Packed> Squad<S> {
 impl<S: Packed, T> Work<S, T> {
     /// Loads the members from `first` on.
     #[inline(always)]
-    fn read(&mut self, l: Layout, first: usize, x: &[f64], dz: &[f64]) {
+    fn read(&mut self, l: Layout, first: usize, x: &[f64], z: &[f64], dz: &[f64]) {
         take(l, first, x, &mut self.q);
         take(l, first, &x[l.dq..], &mut self.dq);
-        take(l, first, &x[l.reference..], &mut self.z);
+        take(l, first, z, &mut self.z);
         take(l, first, dz, &mut self.dz);
         if l.adaptive {
             take(l, first, &x[l.theta_hat..], &mut self.theta_hat);

@@ -3,13 +3,14 @@
 //! The state of a population of n agents with m axes, order ℓ and p parameters is a block of columns of n numbers,
 //!
 //! ```text
-//! q [m]   q̇ [m]   z, ż, …, z^(ℓ−1) [ℓ·m]   ϑ̂ [p, if adapted]   ∫ sᵀ(K+D)s − sᵀτ_ext [1, if the ledger is on]
+//! q [m]   q̇ [m]   reference state [v·m]   ϑ̂ [p, if adapted]   ∫ sᵀ(K+D)s − sᵀτ_ext [1, if the ledger is on]
 //! ```
 //!
-//! and its right-hand side is computed in stages: heard → reference dynamics (which give ż) → τ and Yᵀs → q̈ → rates.
+//! (v = ℓ and z, ż, …, z^(ℓ−1) for the consensus family), and its right-hand side is computed in stages: heard → reference
+//! dynamics (which give z and ż) → τ and Yᵀs → q̈ → rates.
 //! There is no algebraic loop, since z̈ never enters τ.
 
-use forwardstep_core::reference::{Consensus, Exchange, Heard, Measured};
+use forwardstep_core::reference::{Exchange, Heard, Measured, Reference, ReferenceOut};
 use forwardstep_core::robot::Lagrangian;
 use forwardstep_core::{Kernel, LengthError, Packed, dispatch};
 
@@ -20,6 +21,8 @@ use crate::recording::Signal;
 pub(crate) trait Columns {
     /// Numbers of state.
     fn state_len(&self) -> usize;
+    /// Replaces the wanted z(0), ż(0), … in the block `x` by the reference state that gives them.
+    fn start(&self, x: &mut [f64], degree: &[f64], sums: &[f64]) -> Result<(), LengthError>;
     /// d/dt of the block `x`; `degree` and `sums` are the population's part of what is heard.
     fn rates(&mut self, x: &[f64], degree: &[f64], sums: &[f64], dx: &mut [f64]);
     /// Hands the signals of every member in turn to `write`, in the order of [`Columns::signals`].
@@ -30,12 +33,19 @@ pub(crate) trait Columns {
     fn locate(&self, state: usize) -> (usize, Signal, usize);
 }
 
-/// A population of robots `R` that exchange `X`, worked on in lanes of `S`.
-pub(crate) struct Population<R: Lagrangian<f64> + Lagrangian<S>, X: Exchange, S: Packed> {
+/// A population of robots `R` that follow the reference `F`, worked on in lanes of `S`.
+pub(crate) struct Population<R: Lagrangian<f64> + Lagrangian<S>, F: Reference, S: Packed> {
     members: Vec<Member>,
-    consensus: Consensus<X>,
+    reference: F,
     fleet: Fleet<R, S>,
+    output: Output,
     record: RecordWork<<R as Lagrangian<f64>>::Scratch>,
+}
+
+/// What the reference asks for at the instant at hand.
+struct Output {
+    z: Vec<f64>,
+    dz: Vec<f64>,
 }
 
 /// Working memory of recording, one member at a time.
@@ -49,17 +59,17 @@ struct RecordWork<T> {
     row: Vec<f64>,
 }
 
-impl<R, X, S> Population<R, X, S>
+impl<R, F, S> Population<R, F, S>
 where
     R: Lagrangian<f64> + Lagrangian<S>,
-    X: Exchange,
+    F: Reference,
     S: Packed,
 {
-    /// `members` share the robot and the order; all adapt or none.
-    pub(crate) fn new(robot: R, members: Vec<Member>, consensus: Consensus<X>, ledger_on: bool) -> Self {
+    /// `members` share the robot and the reference dynamics; all adapt or none.
+    pub(crate) fn new(robot: R, members: Vec<Member>, reference: F, ledger_on: bool) -> Self {
         let (m, p) = (Lagrangian::<f64>::dof(&robot), Lagrangian::<f64>::parameter_count(&robot));
         let adaptive = members.iter().all(|member| member.law.adaptation.is_some());
-        let layout = Layout::new([members.len(), m, p, consensus.order()], adaptive, ledger_on);
+        let layout = Layout::new([members.len(), m, p, reference.vectors()], adaptive, ledger_on);
         let record = RecordWork {
             scratch: Lagrangian::<f64>::scratch(&robot),
             d_reference: vec![0.0; layout.theta_hat - layout.reference],
@@ -69,25 +79,23 @@ where
             delta: vec![0.0; p],
             row: Vec::new(),
         };
+        let output = Output { z: vec![0.0; layout.block()], dz: vec![0.0; layout.block()] };
         let fleet = Fleet::new(robot, &members, layout);
-        let mut population = Population { members, consensus, fleet, record };
+        let mut population = Population { members, reference, fleet, output, record };
         population.record.row = vec![0.0; population.signals().len()];
         population
     }
 
-    /// Reference rates of everybody, then everything else squad by squad.
+    /// The reference of everybody, then everything else squad by squad.
     fn try_rates(&mut self, x: &[f64], degree: &[f64], sums: &[f64], dx: &mut [f64]) -> Result<(), LengthError> {
         let l = self.fleet.layout;
         LengthError::check("state", l.len, x.len())?;
         LengthError::check("rate", l.len, dx.len())?;
         dx[..l.block()].copy_from_slice(&x[l.dq..l.reference]);
-        reference_rate(&self.consensus, l, x, degree, sums, &mut dx[l.reference..l.theta_hat])?;
-        // ż is a state but for order one, where it is the rate just computed; it moves out of the way of what is written.
-        if l.order == 1 {
-            self.record.d_reference.copy_from_slice(&dx[l.reference..l.theta_hat]);
-        }
-        let dz = reference_acceleration(l, x, &self.record.d_reference);
-        (0..self.fleet.squads()).try_for_each(|squad| self.fleet.act(squad, x, dz, Some(&mut *dx)))
+        let Output { z, dz } = &mut self.output;
+        let out = ReferenceOut { z, dz, d_state: &mut dx[l.reference..l.theta_hat] };
+        evaluate(&self.reference, l, x, degree, sums, out)?;
+        (0..self.fleet.squads()).try_for_each(|squad| self.fleet.act(squad, x, z, dz, Some(&mut *dx)))
     }
 
     fn try_record(
@@ -98,10 +106,11 @@ where
         write: &mut dyn FnMut(usize, &[f64]),
     ) -> Result<(), LengthError> {
         let l = self.fleet.layout;
-        reference_rate(&self.consensus, l, x, degree, sums, &mut self.record.d_reference)?;
+        let out =
+            ReferenceOut { z: &mut self.output.z, dz: &mut self.output.dz, d_state: &mut self.record.d_reference };
+        evaluate(&self.reference, l, x, degree, sums, out)?;
         for squad in 0..self.fleet.squads() {
-            let dz = reference_acceleration(l, x, &self.record.d_reference);
-            self.fleet.act(squad, x, dz, None)?;
+            self.fleet.act(squad, x, &self.output.z, &self.output.dz, None)?;
             let first = self.fleet.first(squad);
             for lane in 0..S::WIDTH.min(l.n - first) {
                 self.fill_row(first + lane, lane, x)?;
@@ -125,7 +134,7 @@ where
         };
         r.q.iter().copied().for_each(&mut put);
         w.dq.iter().chain(&w.z).chain(&w.dz).for_each(|v| put(v.lane(lane)));
-        (2 * l.m..l.order * l.m).for_each(|column| put(x[l.reference + column * l.n + member]));
+        (2 * l.m..self.reference.derivatives() * l.m).for_each(|column| put(x[l.reference + column * l.n + member]));
         r.s.iter().copied().for_each(&mut put);
         w.applied.iter().for_each(|v| put(v.lane(lane)));
         if l.adaptive {
@@ -155,52 +164,61 @@ where
     }
 }
 
-/// d/dt [z, ż, …, z^(ℓ−1)] of everybody.
-fn reference_rate<X: Exchange>(
-    consensus: &Consensus<X>,
-    l: Layout,
+/// z, ż and the rate of the reference state of everybody.
+fn evaluate<F: Reference>(
+    reference: &F,
+    layout: Layout,
     x: &[f64],
     degree: &[f64],
     sums: &[f64],
-    d_reference: &mut [f64],
+    out: ReferenceOut<'_, f64>,
 ) -> Result<(), LengthError> {
-    LengthError::check("heard", X::CHANNELS * l.block(), sums.len())?;
-    let Some(sums) = X::split(sums, l.block()) else { return Ok(()) };
-    dispatch(ReferenceRate { consensus, layout: l, x, heard: Heard { degree, sums }, d_reference })
+    let heard = heard::<F::Exchange>(layout, degree, sums)?;
+    dispatch(Evaluate { reference, layout, x, heard, out })
 }
 
-struct ReferenceRate<'a, X: Exchange> {
-    consensus: &'a Consensus<X>,
+/// The population's part of what is heard, channel by channel.
+fn heard<'a, X: Exchange>(l: Layout, degree: &'a [f64], sums: &'a [f64]) -> Result<Heard<'a, f64, X>, LengthError> {
+    let need = X::CHANNELS * l.block();
+    let too_short = LengthError { what: "heard", need, got: sums.len() };
+    Ok(Heard { degree, sums: X::split(sums, l.block()).ok_or(too_short)? })
+}
+
+struct Evaluate<'a, F: Reference> {
+    reference: &'a F,
     layout: Layout,
     x: &'a [f64],
-    heard: Heard<'a, f64, X>,
-    d_reference: &'a mut [f64],
+    heard: Heard<'a, f64, F::Exchange>,
+    out: ReferenceOut<'a, f64>,
 }
 
-impl<X: Exchange> Kernel for ReferenceRate<'_, X> {
+impl<F: Reference> Kernel for Evaluate<'_, F> {
     type Output = Result<(), LengthError>;
 
     #[inline(always)]
     fn run(self) -> Self::Output {
         let (l, x) = (self.layout, self.x);
         let measured = Measured { q: &x[..l.dq], dq: &x[l.dq..l.reference] };
-        self.consensus.rate(l.m, measured, &x[l.reference..l.theta_hat], self.heard, self.d_reference)
+        self.reference.evaluate(l.m, measured, &x[l.reference..l.theta_hat], self.heard, self.out)
     }
 }
 
-/// ż of everybody: a state, but for order one, where it is the first block of the rate.
-fn reference_acceleration<'a>(l: Layout, x: &'a [f64], d_reference: &'a [f64]) -> &'a [f64] {
-    if l.order == 1 { &d_reference[..l.block()] } else { &x[l.reference + l.block()..l.reference + 2 * l.block()] }
-}
-
-impl<R, X, S> Columns for Population<R, X, S>
+impl<R, F, S> Columns for Population<R, F, S>
 where
     R: Lagrangian<f64> + Lagrangian<S>,
-    X: Exchange,
+    F: Reference,
     S: Packed,
 {
     fn state_len(&self) -> usize {
         self.fleet.layout.len
+    }
+
+    fn start(&self, x: &mut [f64], degree: &[f64], sums: &[f64]) -> Result<(), LengthError> {
+        let l = self.fleet.layout;
+        let given = x[l.reference..l.theta_hat].to_vec();
+        let (measured, state) = x[..l.theta_hat].split_at_mut(l.reference);
+        let measured = Measured { q: &measured[..l.dq], dq: &measured[l.dq..] };
+        self.reference.start(l.m, measured, &given, heard(l, degree, sums)?, state)
     }
 
     fn rates(&mut self, x: &[f64], degree: &[f64], sums: &[f64], dx: &mut [f64]) {
@@ -222,7 +240,7 @@ where
         let mut axes = |signal, count| signals.extend((0..count).map(|axis| (signal, axis)));
         axes(Signal::Position, l.m);
         axes(Signal::Velocity, l.m);
-        for r in 0..l.order.max(2) {
+        for r in 0..self.reference.derivatives().max(2) {
             axes(Signal::Reference(r as u8), l.m);
         }
         axes(Signal::TrackingError, l.m);

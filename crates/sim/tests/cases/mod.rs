@@ -10,7 +10,8 @@ use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, Exchange, Law, Network, RobotKind, RobotSetup, Setup, Solver, Start, TimeSpan,
+    AgentSetup, Axis, AxisUnit, Exchange, Law, Network, ReferenceKind, RobotKind, RobotSetup, Setup, Solver, Start,
+    TimeSpan,
 };
 use serde::Deserialize;
 
@@ -122,6 +123,7 @@ pub fn setup(case: &Case) -> Setup {
     };
     Setup {
         agents: case.agents.iter().enumerate().map(agent).collect(),
+        reference: ReferenceKind::Consensus,
         exchange: match case.exchange.as_str() {
             "position" => Exchange::Position,
             "position_velocity" => Exchange::PositionVelocity,
@@ -192,6 +194,7 @@ fn agent((index, case): (usize, &AgentCase)) -> AgentSetup {
             axes: (1..=case.start.q.len()).map(axis).collect(),
         },
         roots_per_s: case.roots.clone(),
+        manipulability: 0.0,
         law,
         start: Start { q: case.start.q.clone(), dq: case.start.dq.clone(), reference: case.start.reference.clone() },
         enforce_limits: false,

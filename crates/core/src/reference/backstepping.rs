@@ -1,0 +1,132 @@
+//! (aa6): the backstepping baseline, which needs the derivative of what it hears.
+//!
+//! ```text
+//! z = q̇_r = −Σ_j w_ij [ q − q_j(t−T_ij) ]           ż = q̈_r
+//! ```
+//!
+//! At a switch or a delay jump q̇_r jumps and q̈_r is infinite. What a user would do is differentiate through a filter and
+//! limit the result:
+//!
+//! ```text
+//! ε ḟ = q̇_r − f        ż ≈ sat( (q̇_r − f)/ε )
+//! ```
+//!
+//! At a jump of size Δ that is Δ/ε for a while: the torque grows as the filter narrows, which is the point.
+
+use alloc::vec::Vec;
+
+use thiserror::Error;
+
+use super::{Exchange, Heard, Measured, Position, Reference, ReferenceOut, check};
+use crate::{LengthError, Scalar};
+
+/// A filter that cannot differentiate.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum BacksteppingError {
+    /// ε is not positive.
+    #[error("the filter of the derivative has the time constant {value} s, but it must be positive and finite")]
+    Filter {
+        /// ε, s.
+        value: f64,
+    },
+    /// The limit is not positive.
+    #[error("the derivative is limited to {value}, but the limit must be positive")]
+    Limit {
+        /// The limit, rad/s² or m/s²; infinity for none.
+        value: f64,
+    },
+}
+
+/// The backstepping baseline for a population of agents. State: `[f]`.
+///
+/// **Source**: (aa6) and the display before it; the filter is ours.
+/// **Measures**: q (and q̇, for the tracking law). **Transmits**: q.
+/// **Guarantees**: nothing that the paper states: its derivative does not exist at switches and delay jumps.
+/// **Deviates from the paper**: q̈_r comes from a filter with the time constant ε, and is limited.
+#[derive(Clone, Debug)]
+pub struct Backstepping {
+    /// 1/ε of every agent.
+    rate: Vec<f64>,
+    /// Limit of ż of every agent.
+    limit: Vec<f64>,
+}
+
+impl Backstepping {
+    /// Builds the dynamics from the time constant ε of the filter, s, and the limit of ż (infinity for none) of every
+    /// agent.
+    ///
+    /// # Errors
+    /// [`BacksteppingError`] when one of them is not positive.
+    pub fn new(filters: impl IntoIterator<Item = (f64, f64)>) -> Result<Self, BacksteppingError> {
+        let (mut rate, mut limit) = (Vec::new(), Vec::new());
+        for (epsilon, bound) in filters {
+            if !(epsilon > 0.0 && epsilon.is_finite()) {
+                return Err(BacksteppingError::Filter { value: epsilon });
+            }
+            if bound.is_nan() || bound <= 0.0 {
+                return Err(BacksteppingError::Limit { value: bound });
+            }
+            rate.push(1.0 / epsilon);
+            limit.push(bound);
+        }
+        Ok(Backstepping { rate, limit })
+    }
+}
+
+impl Reference for Backstepping {
+    type Exchange = Position;
+
+    fn agents(&self) -> usize {
+        self.rate.len()
+    }
+
+    fn vectors(&self) -> usize {
+        1
+    }
+
+    fn derivatives(&self) -> usize {
+        0
+    }
+
+    #[inline(always)]
+    fn evaluate<S: Scalar>(
+        &self,
+        axes: usize,
+        measured: Measured<'_, S>,
+        state: &[S],
+        heard: Heard<'_, S, Position>,
+        out: ReferenceOut<'_, S>,
+    ) -> Result<(), LengthError> {
+        let n = self.rate.len();
+        check([axes, n, 1], measured, state, heard, &out)?;
+        for k in 0..axes * n {
+            let i = k % n;
+            let z = heard.degree[i].neg_mul_add(measured.q[k], heard.sums.q[k]);
+            let rate = S::splat(self.rate[i]) * (z - state[k]);
+            out.z[k] = z;
+            out.dz[k] = rate.saturate(S::splat(self.limit[i]));
+            out.d_state[k] = rate;
+        }
+        Ok(())
+    }
+
+    fn start(
+        &self,
+        axes: usize,
+        measured: Measured<'_, f64>,
+        _: &[f64],
+        heard: Heard<'_, f64, Position>,
+        state: &mut [f64],
+    ) -> Result<(), LengthError> {
+        let block = axes * self.rate.len();
+        LengthError::check("q", block, measured.q.len())?;
+        LengthError::check("reference state", block, state.len())?;
+        LengthError::check("degree", self.rate.len(), heard.degree.len())?;
+        Position::check(heard.sums, block)?;
+        for k in 0..block {
+            // The filter has settled: no derivative at the start.
+            state[k] = heard.sums.q[k] - heard.degree[k % self.rate.len()] * measured.q[k];
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,117 @@
+//! (3) and (23): reference dynamics with q̈, realised by their integral (Remark 2).
+//!
+//! With roots κ₀ = α, κ₁ = β, α₁ = α + β, α₀ = α β and d = Σ_j w_ij both read
+//!
+//! ```text
+//! z̈ = −α₁ q̈ − α₀ q̇ − Σ_j w_ij [ q̈ + α₁ q̇ + α₀ q − β q̇_j(t−T_ij) − α₀ q_j(t−T_ij) ] + λ (q̇ − z)
+//! ```
+//!
+//! where (23), which hears positions only, lacks β q̇_j; the last term is (31). For a fixed graph everything that carries a
+//! derivative integrates to what is measured, and what is left is one integrated variable η:
+//!
+//! ```text
+//! ż = −α₁ q̇ − α₀ q − d (q̇ + α₁ q) + η        η̇ = −d α₀ q + Σ_j w_ij [ β q̇_j + α₀ q_j ](t−T_ij) + λ (q̇ − z)
+//! ```
+//!
+//! No acceleration is measured. When the graph switches d jumps, and ż and the torque jump with it: these designs are for
+//! fixed graphs; (a1) is the one for switching graphs.
+
+use super::polynomial::{Coefficients, RootsError};
+use super::{Exchange, Heard, Measured, Reference, ReferenceOut, check};
+use crate::{LengthError, Scalar};
+
+/// Reference dynamics of order two that contain q̈. State: `[z, η]`.
+///
+/// **Source**: (3) when velocities are exchanged, (23) when only positions are; (31) for λ > 0.
+/// **Measures**: q, q̇. **Transmits**: what `X` says.
+/// **Requires**: a fixed graph with a directed spanning tree; bounded, piecewise continuous delays.
+/// **Guarantees**: Theorem 1 for (3), Remark 3 for (23): ż is differentiable, so the torque is, even where a delay jumps.
+/// **Deviates from the paper**: realised by the integral above; over a switching graph it runs, but nothing is promised.
+#[derive(Clone, Debug)]
+pub struct PureIntegral<X> {
+    exchange: core::marker::PhantomData<X>,
+    coefficients: Coefficients,
+}
+
+impl<X: Exchange> PureIntegral<X> {
+    /// Builds the dynamics from the two roots κ₀ = α, κ₁ = β and the manipulability gain λ (zero for none) of every agent.
+    ///
+    /// # Errors
+    /// [`RootsError`] when an agent has not two roots, one is not positive, or a λ is negative.
+    pub fn new<'a>(designs: impl IntoIterator<Item = (&'a [f64], f64)>) -> Result<Self, RootsError> {
+        let coefficients = Coefficients::new(designs)?;
+        if coefficients.order != 2 {
+            return Err(RootsError::Order { need: 2, got: coefficients.order });
+        }
+        Ok(PureIntegral { exchange: core::marker::PhantomData, coefficients })
+    }
+}
+
+impl<X: Exchange> Reference for PureIntegral<X> {
+    type Exchange = X;
+
+    fn agents(&self) -> usize {
+        self.coefficients.agents
+    }
+
+    fn vectors(&self) -> usize {
+        2
+    }
+
+    fn derivatives(&self) -> usize {
+        1
+    }
+
+    #[inline(always)]
+    fn evaluate<S: Scalar>(
+        &self,
+        axes: usize,
+        measured: Measured<'_, S>,
+        state: &[S],
+        heard: Heard<'_, S, X>,
+        out: ReferenceOut<'_, S>,
+    ) -> Result<(), LengthError> {
+        let n = self.coefficients.agents;
+        check([axes, n, 2], measured, state, heard, &out)?;
+        let (z, eta) = state.split_at(axes * n);
+        let (z_rate, eta_rate) = out.d_state.split_at_mut(axes * n);
+        for k in 0..axes * n {
+            let i = k % n;
+            let [alpha_0, alpha_1] = [0, 1].map(|r| S::splat(self.coefficients.alpha(r)[i]));
+            let (ratio, lambda) = (self.coefficients.alpha_0_over_kappa_0[i], self.coefficients.lambda[i]);
+            let (q, dq, d) = (measured.q[k], measured.dq[k], heard.degree[i]);
+            let told = X::term(heard.sums, k, alpha_0, S::splat(ratio));
+            // −(α₁ + d) q̇ − (α₀ + d α₁) q + η
+            let dz = (alpha_1 + d).neg_mul_add(dq, d.mul_add(alpha_1, alpha_0).neg_mul_add(q, eta[k]));
+            out.z[k] = z[k];
+            out.dz[k] = dz;
+            z_rate[k] = dz;
+            eta_rate[k] = (d * alpha_0).neg_mul_add(q, S::splat(lambda).mul_add(dq - z[k], told));
+        }
+        Ok(())
+    }
+
+    fn start(
+        &self,
+        axes: usize,
+        measured: Measured<'_, f64>,
+        given: &[f64],
+        heard: Heard<'_, f64, X>,
+        state: &mut [f64],
+    ) -> Result<(), LengthError> {
+        let (n, block) = (self.coefficients.agents, axes * self.coefficients.agents);
+        LengthError::check("start of the reference", 2 * block, given.len())?;
+        LengthError::check("reference state", 2 * block, state.len())?;
+        LengthError::check("q", block, measured.q.len())?;
+        LengthError::check("dq", block, measured.dq.len())?;
+        LengthError::check("degree", n, heard.degree.len())?;
+        let (z, eta) = state.split_at_mut(block);
+        z.copy_from_slice(&given[..block]);
+        for k in 0..block {
+            let [alpha_0, alpha_1] = [0, 1].map(|r| self.coefficients.alpha(r)[k % n]);
+            let d = heard.degree[k % n];
+            eta[k] = given[block + k] + (alpha_1 + d) * measured.dq[k] + (alpha_0 + d * alpha_1) * measured.q[k];
+        }
+        Ok(())
+    }
+}
