@@ -36,7 +36,10 @@ fn promises(setup: &Setup, order: usize) -> String {
     let smooth = match order {
         0 | 1 => "the torque jumps at switches and delay jumps but stays bounded".to_owned(),
         2 => "the torque stays continuous through switches and delay jumps".to_owned(),
-        order => format!("the torque stays {} times differentiable through switches and delay jumps", order - 2),
+        3 => "the torque stays once continuously differentiable through switches and delay jumps".to_owned(),
+        order => {
+            format!("the torque stays {} times continuously differentiable through switches and delay jumps", order - 2)
+        }
     };
     let agents = if setup.agents.len() == 1 { "the agent comes to rest" } else { "all agents agree and come to rest" };
     format!("{agents}: q_i − q_j → 0 and dq_i → 0; {smooth}")
@@ -54,6 +57,11 @@ fn names(setup: &Setup, agents: &[usize]) -> String {
     if rest > 0 { format!("{} and {rest} more", shown.join(", ")) } else { shown.join(", ") }
 }
 
+/// A time without the digits that rounding left behind.
+fn seconds(t_s: f64) -> f64 {
+    (t_s * 1e6).round() / 1e6
+}
+
 fn spanning_tree(setup: &Setup) -> Hypothesis {
     let network = &setup.network;
     let requires = "the union of the graphs over uniformly bounded windows contains a directed spanning tree".into();
@@ -65,7 +73,9 @@ fn spanning_tree(setup: &Setup) -> Hypothesis {
         Window::Uniform { length_s, worst_start_s, roots, for_all_time } => (
             if for_all_time { Answer::Holds } else { Answer::HoldsOnHorizon },
             format!(
-                "the smallest uniform window lasts {length_s:.6} s (needed from t = {worst_start_s:.6} s, rooted at {})",
+                "the smallest uniform window lasts {} s (needed from t = {} s, rooted at {})",
+                seconds(length_s),
+                seconds(worst_start_s),
                 names(setup, &roots)
             ),
         ),
@@ -77,7 +87,8 @@ fn spanning_tree(setup: &Setup) -> Hypothesis {
             (
                 Answer::Violated,
                 format!(
-                    "from t = {start_s:.6} s on, whatever the window, no agent reaches all others: {}{more} hear nobody outside themselves",
+                    "from t = {} s on, whatever the window, no agent reaches all others: {}{more} hear nobody outside themselves",
+                    seconds(start_s),
                     groups.join(" and ")
                 ),
             )
@@ -107,7 +118,7 @@ fn bounded_delays(setup: &Setup) -> Hypothesis {
     Hypothesis {
         requires: "delays are piecewise uniformly continuous and uniformly bounded".into(),
         answer: Answer::Holds,
-        because: format!("no delay exceeds {:.6} s", setup.network.max_delay_s()),
+        because: format!("no delay exceeds {} s", seconds(setup.network.max_delay_s())),
     }
 }
 

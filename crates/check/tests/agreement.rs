@@ -264,7 +264,7 @@ fn thm2_hypotheses_hold_with_a_certificate_or_fail_with_a_witness() {
     let report = check(&setup(agents(), Exchange::PositionVelocity, joint, delays.clone(), 1.0));
     assert_eq!(report.worst(), Answer::Holds);
     assert!(report.theorem.starts_with("Theorem 2"));
-    assert!(report.hypotheses[0].because.contains("4.500000 s"), "{}", report.hypotheses[0].because);
+    assert!(report.hypotheses[0].because.contains("lasts 4.5 s"), "{}", report.hypotheses[0].because);
 
     let split = Schedule::Periodic(vec![phase(0, 1), phase(2, 3)]);
     let report = check(&setup(agents(), Exchange::PositionVelocity, split, delays.clone(), 1.0));

@@ -1,6 +1,6 @@
 //! A directed ring with constant delays, 20 s: the network of `validation/peers/jitcdde_ring.py`.
 //!
-//! Prints one line of JSON per case: thread CPU time per simulated second over repeated runs, and the error at the end
+//! Prints one line of JSON per case: wall time per simulated second over repeated runs, and the error at the end
 //! against a run with a tolerance of 1e-10. `validation/peers/ring.sh` runs this beside the peer and prints ratios.
 
 use std::ops::ControlFlow;
@@ -93,24 +93,29 @@ fn positions(outcome: &Outcome) -> Vec<f64> {
 
 fn main() -> Result<(), forwardstep_sim::SetupError> {
     let tolerance = 1e-6;
+    // cargo bench --bench ring -- [MODEL [AGENTS]]; cargo itself adds --bench.
+    let wanted: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with("--")).collect();
+    let wants = |position: usize, value: &str| wanted.get(position).is_none_or(|wanted| wanted == value);
     let cases = [(Model::Linear, "linear", &[4, 16, 64, 256][..]), (Model::Arms, "arms", &[4, 16, 64][..])];
     for (model, name, sizes) in cases {
-        for &n in sizes {
+        for &n in sizes.iter().filter(|n| wants(0, name) && wants(1, &n.to_string())) {
             let truth = positions(&run(&ring(model, n, 1e-10))?);
             let setup = ring(model, n, tolerance);
             let outcome = run(&setup)?;
             let error = positions(&outcome).iter().zip(&truth).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             let mut times: Vec<f64> = Vec::new();
-            for _ in 0..REPEATS {
+            // At least a tenth of a second, so that short runs are not at the mercy of one interruption.
+            let started = std::time::Instant::now();
+            while times.len() < REPEATS || started.elapsed().as_secs_f64() < 0.1 {
                 times.push(run(&setup)?.statistics.wall.as_secs_f64() * 1e3 / END_S);
             }
             times.sort_by(f64::total_cmp);
             println!(
                 "{{\"model\": \"{name}\", \"agents\": {n}, \"end_s\": {END_S}, \"ms_per_simulated_second\": {:.6}, \
                  \"min\": {:.6}, \"max\": {:.6}, \"max_error\": {error:.3e}, \"steps\": {}, \"evaluations\": {}}}",
-                times[REPEATS / 2],
+                times[times.len() / 2],
                 times[0],
-                times[REPEATS - 1],
+                times[times.len() - 1],
                 outcome.statistics.steps,
                 outcome.statistics.evaluations
             );

@@ -4,6 +4,8 @@
 //! sent, not with the state. A piece needs none of its neighbours, so at a break-point the past has a left and a right
 //! side for free. Pieces older than the largest delay are dropped; the ring grows by doubling and then stays.
 
+use super::kernels::continue_piece;
+
 /// Reading this far beyond the end of the last piece is reading its end, s.
 const SLACK_S: f64 = 1e-12;
 
@@ -71,6 +73,24 @@ impl History {
         (offset, &mut self.data[offset..offset + self.width])
     }
 
+    /// Drafts a piece of length `h` from `t_s` on by continuing the last one; `width` numbers per coefficient. Does nothing
+    /// when there is none.
+    pub(crate) fn extrapolate(&mut self, width: usize, t_s: f64, h: f64) {
+        if self.next == self.first {
+            return;
+        }
+        let (last, draft) = (self.slot(self.next - 1) * self.width, self.slot(self.next) * self.width);
+        let [start, _, inverse] = self.spans[last / self.width];
+        // The ring has at least two places, so one lies before the other.
+        let (low, high) = self.data.split_at_mut(last.max(draft));
+        let (last, draft) = if last < draft {
+            (&low[last..last + self.width], &mut high[..self.width])
+        } else {
+            (&high[..self.width], &mut low[draft..draft + self.width])
+        };
+        continue_piece(last, draft, width, (t_s - start) * inverse, h * inverse);
+    }
+
     /// Keeps the draft as the piece of [`start_s`, `end_s`] and drops what ended before `forget_s`.
     pub(crate) fn commit(&mut self, start_s: f64, end_s: f64, forget_s: f64) {
         let slot = self.slot(self.next);
@@ -131,7 +151,24 @@ impl History {
 
 #[cfg(test)]
 mod tests {
+    use super::super::kernels::evaluate;
+    use super::super::tableau::basis;
     use super::*;
+
+    #[test]
+    fn continuing_a_quartic_gives_the_same_quartic() {
+        // r₁ … r₅ of a piece on [1, 1.5], continued on [1.5, 2.2] and compared where both speak.
+        let r = [0.3, -1.2, 0.7, 2.0, -0.9];
+        let mut history = History::new(5);
+        history.draft().1.copy_from_slice(&r);
+        history.commit(1.0, 1.5, 0.0);
+        history.extrapolate(1, 1.5, 0.7);
+        let continued: [f64; 5] = std::array::from_fn(|c| history.draft().1[c]);
+        for t in [1.5, 1.7, 2.0, 2.2] {
+            let (old, new) = (evaluate(r, basis((t - 1.0) / 0.5)), evaluate(continued, basis((t - 1.5) / 0.7)));
+            assert!((old - new).abs() < 1e-12, "{old} {new} at {t}");
+        }
+    }
 
     #[test]
     fn old_pieces_go_and_the_ring_stays_small() {

@@ -2,7 +2,7 @@
 
 use super::hearing::{Heard, Hearing, Needs, Port};
 use super::history::History;
-use super::kernels::{PieceSource, combine, error_norm, make_piece};
+use super::kernels::{PieceSource, combine, error_norm, make_piece, piece_gap};
 use super::tableau::{CLASSICAL, DORMAND_PRINCE, Tableau};
 use super::timeline::Timeline;
 use crate::network::Network;
@@ -49,12 +49,13 @@ const SECOND_GENERATION_BELOW: f64 = 1e-5;
 /// Rounds of the fixed point when a delay is shorter than the step; it contracts by about h·w per round.
 const DRAFT_ROUNDS: u32 = 12;
 
-/// A step is cut down to the shortest delay when it is not longer than this many times that delay: the fixed point takes
-/// about four rounds.
-const WORTH_CUTTING: f64 = 4.0;
+/// The draft is good enough when it differs from the piece that it led to by no more than this part of the tolerance; what
+/// is left in the piece is smaller by the contraction.
+const DRAFT_ACCURACY: f64 = 0.3;
 
-/// The draft is good enough when the next one differs by this part of the tolerance.
-const DRAFT_ACCURACY: f64 = 0.02;
+/// After a jump there is nothing to draft from. A step is then cut down to the shortest delay, if it is not longer than
+/// this many times that delay: the fixed point would take about four rounds.
+const WORTH_CUTTING: f64 = 4.0;
 
 /// Steps through a [`DelaySystem`] on a [`Network`].
 #[derive(Debug)]
@@ -85,6 +86,8 @@ pub(crate) struct Integrator<'a> {
     piece: Vec<f64>,
     /// k[0] must be computed anew: at the start and after a jump of the right-hand side.
     stale: bool,
+    /// The last piece of history goes on smoothly into this step.
+    smooth: bool,
     /// The step that the error control would like next, s.
     wish_s: f64,
     statistics: Statistics,
@@ -136,6 +139,7 @@ impl<'a> Integrator<'a> {
             k: std::array::from_fn(|s| if s < stages { vec![0.0; n] } else { Vec::new() }),
             piece: vec![0.0; width],
             stale: true,
+            smooth: false,
             wish_s: 0.0,
             statistics: Statistics::default(),
         }
@@ -153,6 +157,7 @@ impl<'a> Integrator<'a> {
             return Ok(None);
         }
         self.begin(t);
+        self.smooth = !self.stale;
         if self.stale {
             self.derivative_at_start(system, t)?;
         }
@@ -160,10 +165,11 @@ impl<'a> Integrator<'a> {
             self.wish_s = self.fixed_step_s.unwrap_or_else(|| self.first_step());
         }
         let mut limit_s = self.max_step_s;
-        // A delay somewhat shorter than the step is met by a shorter step; one much shorter by a fixed point.
-        let shortest_s = self.hearing.shortest_delay(&self.timeline, t);
-        if self.wish_s > shortest_s && self.wish_s < WORTH_CUTTING * shortest_s {
-            limit_s = limit_s.min(shortest_s);
+        if !self.smooth {
+            let shortest_s = self.hearing.shortest_delay(&self.timeline, t);
+            if self.wish_s > shortest_s && self.wish_s < WORTH_CUTTING * shortest_s {
+                limit_s = limit_s.min(shortest_s);
+            }
         }
         loop {
             let next = self.timeline.next_s();
@@ -180,7 +186,7 @@ impl<'a> Integrator<'a> {
             if h < self.min_step_s && !lands || t + h <= t {
                 return Err(Failure { t_s: t, state: self.worst_state(), step_s: Some(h) });
             }
-            let converged = self.stages(system, t, h);
+            let draft_wish_s = self.stages(system, t, h);
             let (error, finite) = self.judge(h);
             if !finite {
                 if h <= self.min_step_s * 4.0 || self.fixed_step_s.is_some() {
@@ -191,8 +197,8 @@ impl<'a> Integrator<'a> {
                 self.statistics.rejected += 1;
                 continue;
             }
-            if !converged || error > 1.0 {
-                limit_s = h * if converged { step_factor(error) } else { 0.5 };
+            if draft_wish_s.is_none() || error > 1.0 {
+                limit_s = h * if draft_wish_s.is_some() { step_factor(error) } else { 0.5 };
                 if self.fixed_step_s.is_none() {
                     self.wish_s = limit_s;
                 }
@@ -203,6 +209,7 @@ impl<'a> Integrator<'a> {
                 let growth = step_factor(error);
                 // A step cut short by a break-point says little about the step that would have been possible.
                 self.wish_s = if h < self.wish_s { self.wish_s.max(h * growth) } else { h * growth };
+                self.wish_s = self.wish_s.min(draft_wish_s.unwrap_or(f64::INFINITY));
             }
             let end_s = if lands { next } else { t + h };
             self.keep(t, h, end_s);
@@ -257,12 +264,14 @@ impl<'a> Integrator<'a> {
         h.min(self.end_s)
     }
 
-    /// Fills k and `x1`. False when a delay is shorter than the step and the fixed point on it does not settle.
-    fn stages(&mut self, system: &mut impl DelaySystem, t: f64, h: f64) -> bool {
+    /// Fills k and `x1`. Where a delay is shorter than the step the piece being made is drafted, used, made, and compared
+    /// with its draft until they agree. The step for which one round would do; `None` when no number of rounds did.
+    fn stages(&mut self, system: &mut impl DelaySystem, t: f64, h: f64) -> Option<f64> {
         let tableau = self.tableau;
         let last = tableau.c.len() - 1;
         let mut drafted = false;
-        for _ in 0..DRAFT_ROUNDS {
+        let (mut first, mut before) = (0.0, f64::INFINITY);
+        for round in 0..DRAFT_ROUNDS {
             let mut any = Needs::default();
             let mut gathered_at = -1.0;
             for s in 1..=last {
@@ -278,7 +287,7 @@ impl<'a> Integrator<'a> {
                     let offset = self.history.draft().0;
                     let needs = self.hearing.look(&self.timeline, &self.history, stage_s, (t, h, offset));
                     if needs.draft && !drafted {
-                        self.predict(h);
+                        self.predict(t, h);
                         drafted = true;
                     }
                     any.draft |= needs.draft;
@@ -292,18 +301,31 @@ impl<'a> Integrator<'a> {
             }
             self.statistics.evaluations += last as u64;
             if !any.draft {
-                return true;
+                return Some(f64::INFINITY);
             }
-            if self.redraft(h) {
-                return true;
+            let gap = self.redraft(h);
+            if round == 0 {
+                first = gap;
+            }
+            // What the next round would still change, by the contraction seen between the last two.
+            let contraction = (gap / before).min(1.0);
+            before = gap;
+            if gap <= DRAFT_ACCURACY || contraction < 0.5 && contraction * gap <= DRAFT_ACCURACY {
+                // A step a little shorter that needs one round is cheaper; one less than half as long is not.
+                let factor = fifth_root_factor(first / DRAFT_ACCURACY);
+                return Some(if (0.5..1.0).contains(&factor) { h * factor } else { f64::INFINITY });
             }
         }
-        false
+        None
     }
 
-    /// A first draft of the current piece: a straight line.
-    fn predict(&mut self, h: f64) {
+    /// A first draft of the current piece: the last piece continued or, after a jump, a straight line.
+    fn predict(&mut self, t: f64, h: f64) {
         let width = self.hearing.width();
+        if self.smooth {
+            self.history.extrapolate(width, t, h);
+            return;
+        }
         let (_, draft) = self.history.draft();
         draft.fill(0.0);
         for &(state, entry, n) in self.hearing.blocks() {
@@ -314,19 +336,15 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    /// Makes the piece anew from the stages; true when it agrees with the draft they were computed from.
-    fn redraft(&mut self, h: f64) -> bool {
+    /// Makes the piece anew from the stages and puts it in the place of its draft; the largest difference between the two
+    /// as a part of the tolerance.
+    fn redraft(&mut self, h: f64) -> f64 {
         let (source, blocks, width) = piece_source(self.tableau, &self.x0, &self.x1, &self.k, h, &self.hearing);
         make_piece(source, blocks, width, &mut self.piece);
         let (_, draft) = self.history.draft();
-        let agree = |entry: usize| {
-            let scale = DRAFT_ACCURACY * (self.rtol * self.piece[entry].abs() + self.atol);
-            // Written so that not-a-number does not pass for agreement.
-            (0..5).all(|c| (self.piece[c * width + entry] - draft[c * width + entry]).abs() <= scale)
-        };
-        let settled = (0..width).all(agree);
+        let gap = piece_gap(&self.piece, draft, width, self.atol, self.rtol);
         draft.copy_from_slice(&self.piece);
-        settled
+        gap
     }
 
     /// The error as a part of the tolerance, and whether everything is finite.
@@ -386,8 +404,12 @@ impl<'a> Integrator<'a> {
 fn step_factor(error: f64) -> f64 {
     const SAFETY: f64 = 0.9;
     const GROWTH: f64 = 5.0;
-    // (SAFETY/GROWTH)⁵: below it the root would only be cut off.
-    if error < 1.88e-4 { GROWTH } else { (SAFETY * libm::pow(error, -0.2)).clamp(1.0 / GROWTH, GROWTH) }
+    (SAFETY * fifth_root_factor(error)).clamp(1.0 / GROWTH, GROWTH)
+}
+
+/// error^(−1/5), cut off outside [1/8, 8].
+fn fifth_root_factor(error: f64) -> f64 {
+    if error < 3.0e-5 { 8.0 } else { libm::pow(error, -0.2).max(0.125) }
 }
 
 /// What [`make_piece`] needs.

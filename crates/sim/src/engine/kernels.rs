@@ -2,6 +2,8 @@
 
 use forwardstep_core::{Kernel, Scalar, dispatch};
 
+use super::tableau::{basis, slope};
+
 /// out = x + Σ cᵢ · kᵢ, terms added in order.
 pub(crate) fn combine(x: &[f64], weights: &[f64], k: &[Vec<f64>], out: &mut [f64]) {
     dispatch(Combine { x, weights, k, out });
@@ -172,6 +174,98 @@ impl Kernel for MakePiece<'_> {
             }
         }
     }
+}
+
+/// The largest difference between a piece and its draft, as a part of the tolerance; `width` numbers per coefficient.
+pub(crate) fn piece_gap(piece: &[f64], draft: &[f64], width: usize, atol: f64, rtol: f64) -> f64 {
+    dispatch(PieceGap { piece, draft, width, atol, rtol })
+}
+
+struct PieceGap<'a> {
+    piece: &'a [f64],
+    draft: &'a [f64],
+    width: usize,
+    atol: f64,
+    rtol: f64,
+}
+
+impl Kernel for PieceGap<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run(self) -> f64 {
+        let n = self.width;
+        let (p1, p2, p3, p4, p5) = columns(self.piece, n);
+        let (_, d2, d3, d4, d5) = columns(self.draft, n);
+        let mut gap = 0.0_f64;
+        for i in 0..n {
+            // |Δr₂| + |Δr₃|/4 + 4|Δr₄|/27 + |Δr₅|/16 bounds the difference on [0, 1].
+            let change = fma(0.25, (p3[i] - d3[i]).abs(), (p2[i] - d2[i]).abs());
+            let change = fma(4.0 / 27.0, (p4[i] - d4[i]).abs(), change);
+            let change = fma(0.0625, (p5[i] - d5[i]).abs(), change);
+            let ratio = change / fma(self.rtol, p1[i].abs(), self.atol);
+            // Written so that not-a-number stays.
+            gap = if ratio <= gap { gap } else { ratio };
+        }
+        gap
+    }
+}
+
+/// Continues a piece beyond its end: `draft` is the same quartic on [θ, θ + scale] of `last`.
+///
+/// A quartic is fixed by its value and slope at both ends and its value half-way.
+pub(crate) fn continue_piece(last: &[f64], draft: &mut [f64], width: usize, theta: f64, scale: f64) {
+    dispatch(ContinuePiece { last, draft, width, theta, scale });
+}
+
+struct ContinuePiece<'a> {
+    last: &'a [f64],
+    draft: &'a mut [f64],
+    width: usize,
+    theta: f64,
+    scale: f64,
+}
+
+impl Kernel for ContinuePiece<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let n = self.width;
+        let (p1, p2, p3, p4, p5) = columns(self.last, n);
+        let (r1, rest) = self.draft.split_at_mut(n);
+        let (r2, rest) = rest.split_at_mut(n);
+        let (r3, rest) = rest.split_at_mut(n);
+        let (r4, r5) = rest.split_at_mut(n);
+        let r5 = &mut r5[..n];
+        let end = self.theta + self.scale;
+        let value = [basis(self.theta), basis(fma(0.5, self.scale, self.theta)), basis(end)];
+        let slope = [slope(self.theta), slope(end)];
+        for i in 0..n {
+            let p = [p1[i], p2[i], p3[i], p4[i], p5[i]];
+            let without_value = [0.0, p[1], p[2], p[3], p[4]];
+            let (start, middle, end) = (evaluate(p, value[0]), evaluate(p, value[1]), evaluate(p, value[2]));
+            let second = end - start;
+            let third = fma(self.scale, evaluate(without_value, slope[0]), -second);
+            let fourth = fma(-self.scale, evaluate(without_value, slope[1]), second - third);
+            let cubic = fma(0.125, fourth, fma(0.25, third, fma(0.5, second, start)));
+            r1[i] = start;
+            r2[i] = second;
+            r3[i] = third;
+            r4[i] = fourth;
+            r5[i] = 16.0 * (middle - cubic);
+        }
+    }
+}
+
+/// r₁ … r₅ of a piece, one column each.
+#[inline(always)]
+fn columns(piece: &[f64], n: usize) -> (&[f64], &[f64], &[f64], &[f64], &[f64]) {
+    let (r1, rest) = piece.split_at(n);
+    let (r2, rest) = rest.split_at(n);
+    let (r3, rest) = rest.split_at(n);
+    let (r4, r5) = rest.split_at(n);
+    (r1, r2, r3, r4, &r5[..n])
 }
 
 /// Σ over the terms of one message entry: r₁ + b₂ r₂ + … + b₅ r₅.

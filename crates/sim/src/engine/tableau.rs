@@ -65,6 +65,12 @@ pub(crate) fn basis(theta: f64) -> [f64; 4] {
     [theta, b3, b4, b4 * rest]
 }
 
+/// The derivatives of [`basis`].
+pub(crate) fn slope(theta: f64) -> [f64; 4] {
+    let rest = 1.0 - theta;
+    [1.0, rest - theta, theta * (2.0 - 3.0 * theta), 2.0 * theta * rest * (rest - theta)]
+}
+
 impl Tableau {
     /// The weights of h kᵢ in x(t + θh) − x₀, at most seven.
     pub(crate) fn dense_weights(&self, theta: f64) -> [f64; 7] {
