@@ -1,0 +1,201 @@
+//! The rules of ARCHITECTURE.md that can be read off manifests and sources.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use toml::{Table, Value};
+
+/// Crates from the ground up; each may depend on those before it.
+const FLOORS: [&str; 5] = ["core", "sim", "check", "io", "forwardstep"];
+
+fn crates() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn manifest(floor: &str) -> Table {
+    fs::read_to_string(crates().join(floor).join("Cargo.toml")).unwrap().parse().unwrap()
+}
+
+/// What a crate needs when it is not being tested.
+fn dependencies(floor: &str) -> BTreeSet<String> {
+    let manifest = manifest(floor);
+    assert!(!manifest.contains_key("target"), "{floor}: dependencies of single targets are not looked at");
+    let tables = ["dependencies", "build-dependencies"].into_iter().filter_map(|key| manifest.get(key)?.as_table());
+    tables.flat_map(|table| table.keys().cloned()).collect()
+}
+
+/// A source file without comments and without its own tests.
+struct Source {
+    path: String,
+    code: String,
+}
+
+fn sources(below: &str) -> Vec<Source> {
+    let mut found = Vec::new();
+    collect(&crates().join(below), &mut found);
+    assert!(!found.is_empty(), "nothing in {below}");
+    found
+}
+
+fn collect(path: &Path, found: &mut Vec<Source>) {
+    if path.is_dir() {
+        let mut entries: Vec<_> = fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path()).collect();
+        entries.sort();
+        entries.iter().for_each(|entry| collect(entry, found));
+    } else if path.extension().is_some_and(|extension| extension == "rs") {
+        let text = fs::read_to_string(path).unwrap();
+        let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+        let code: Vec<_> = code.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+        found.push(Source { path: path.display().to_string(), code: code.join("\n") });
+    }
+}
+
+/// Whether `code` has `word`, and not as a part of a longer one.
+fn says(code: &str, word: &str) -> bool {
+    let continues = |c: char| c.is_alphanumeric() || c == '_';
+    code.match_indices(word).any(|(at, _)| {
+        let (before, after) = (&code[..at], &code[at + word.len()..]);
+        !(word.starts_with(continues) && before.ends_with(continues)
+            || word.ends_with(continues) && after.starts_with(continues))
+    })
+}
+
+/// Fails when a file below `below` says one of `words`.
+fn never_says(below: &str, words: &[&str]) {
+    let mut said = Vec::new();
+    for Source { path, code } in sources(below) {
+        said.extend(words.iter().filter(|word| says(&code, word)).map(|word| format!("{path}: {word}")));
+    }
+    assert!(said.is_empty(), "\n{}", said.join("\n"));
+}
+
+#[test]
+fn imports_run_downwards_only() {
+    for (height, floor) in FLOORS.iter().enumerate() {
+        let below: BTreeSet<String> = FLOORS[..height].iter().map(|floor| format!("forwardstep-{floor}")).collect();
+        let own = dependencies(floor).into_iter().filter(|name| name.starts_with("forwardstep"));
+        let upwards: Vec<_> = own.filter(|name| !below.contains(name)).collect();
+        assert!(upwards.is_empty(), "{floor} must not depend on {upwards:?}");
+    }
+    let on_disk: BTreeSet<_> =
+        fs::read_dir(crates()).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    assert_eq!(on_disk, FLOORS.map(String::from).into(), "every crate has its floor");
+}
+
+#[test]
+fn the_core_needs_next_to_nothing() {
+    let allowed: BTreeSet<String> = ["libm", "pulp", "thiserror"].map(String::from).into();
+    assert_eq!(dependencies("core"), allowed);
+    let pulp = &manifest("core")["dependencies"]["pulp"];
+    assert_eq!(pulp.get("optional"), Some(&Value::Boolean(true)), "without `std` there is no dispatch");
+    let root = fs::read_to_string(crates().join("core/src/lib.rs")).unwrap();
+    assert!(root.contains("#![cfg_attr(not(feature = \"std\"), no_std)]"));
+}
+
+#[test]
+fn serialisation_lives_in_io_only() {
+    let formats = ["serde", "serde_json", "toml", "schemars", "csv", "parquet", "roxmltree"].map(String::from).into();
+    for floor in FLOORS {
+        let own = dependencies(floor);
+        let found: Vec<_> = own.intersection(&formats).collect();
+        assert!(floor == "io" || found.is_empty(), "{floor} must not depend on {found:?}");
+    }
+}
+
+#[test]
+fn laws_know_no_clock_no_file_and_keep_no_secret() {
+    let outside = ["std::", "Instant", "SystemTime", "t_s"];
+    let hidden_state = [
+        "static mut",
+        "Cell",
+        "RefCell",
+        "OnceCell",
+        "Mutex",
+        "AtomicUsize",
+        "AtomicU64",
+        "AtomicBool",
+        "thread_local!",
+    ];
+    never_says("core/src", &outside);
+    never_says("core/src", &hidden_state);
+}
+
+#[test]
+fn simulation_and_verdicts_touch_no_files() {
+    let world =
+        ["std::fs", "std::io", "std::env", "std::net", "std::process", "print!", "println!", "eprintln!", "dbg!"];
+    never_says("sim/src", &world);
+    never_says("check/src", &world);
+}
+
+#[test]
+fn the_clock_on_the_wall_is_read_for_statistics_only() {
+    for below in ["sim/src", "check/src"] {
+        for Source { path, code } in sources(below) {
+            let reads = says(&code, "Instant") || says(&code, "SystemTime");
+            assert!(!reads || path.ends_with("simulate.rs"), "{path} reads the clock");
+        }
+    }
+}
+
+#[test]
+fn the_engine_knows_no_robots() {
+    never_says(
+        "sim/src/engine",
+        &["crate::closed_loop", "forwardstep_core::robot", "forwardstep_core::law", "forwardstep_core::reference"],
+    );
+    for file in ["graph", "schedule", "delay", "network"] {
+        let above = ["engine", "closed_loop", "setup", "recording", "simulate"];
+        never_says(
+            &format!("sim/src/{file}.rs"),
+            &above.map(|room| format!("crate::{room}")).each_ref().map(|s| &s[..]),
+        );
+    }
+}
+
+/// Functions of the platform's library differ in their last bits from one machine to another.
+#[test]
+fn no_number_depends_on_the_platform() {
+    let functions = [
+        ".sin()",
+        ".cos()",
+        ".tan()",
+        ".asin()",
+        ".acos()",
+        ".atan()",
+        ".atan2(",
+        ".exp()",
+        ".exp2()",
+        ".ln()",
+        ".log(",
+        ".log2()",
+        ".log10()",
+        ".powf(",
+        ".powi(",
+        ".cbrt()",
+        ".hypot(",
+        ".sinh()",
+        ".cosh()",
+        ".tanh()",
+        "f64::sin",
+        "f64::cos",
+        "f64::sin_cos",
+        "f64::exp",
+        "f64::ln",
+        "f64::powf",
+        "f64::powi",
+    ];
+    for below in ["core/src", "sim/src", "check/src"] {
+        never_says(below, &functions);
+    }
+}
+
+#[test]
+fn the_lints_of_the_workspace_hold_everywhere() {
+    for floor in FLOORS {
+        assert_eq!(manifest(floor)["lints"]["workspace"], Value::Boolean(true), "{floor}");
+        never_says(&format!("{floor}/src"), &["unsafe {", "unsafe fn", "unsafe impl", "allow(unsafe_code"]);
+    }
+}

@@ -1,0 +1,79 @@
+//! A population large enough for lanes computes, bit for bit, what its members compute one at a time.
+#![allow(clippy::unwrap_used)]
+
+use std::ops::ControlFlow;
+
+use forwardstep_core::Gain;
+use forwardstep_core::robot::PlanarLinks;
+use forwardstep_sim::delay::Delay;
+use forwardstep_sim::graph::Edge;
+use forwardstep_sim::schedule::{Phase, Schedule};
+use forwardstep_sim::{
+    AgentSetup, Axis, AxisUnit, Exchange, Law, Method, Network, RobotKind, RobotSetup, Setup, Solver, Start, TimeSpan,
+    simulate,
+};
+
+fn arm(index: usize, order: usize) -> AgentSetup {
+    let some = |k: usize| (12.9898 * (index + 10 * k) as f64 + 0.7).sin();
+    let theta = PlanarLinks::uniform([1.0 + 0.2 * index as f64, 1.0], [1.0, 0.8]).theta().to_vec();
+    let axis = |name: &str| Axis {
+        name: name.into(),
+        unit: AxisUnit::Radian,
+        position_limits: None,
+        velocity_limit: None,
+        effort_limit: None,
+    };
+    AgentSetup {
+        name: format!("arm-{}", index + 1),
+        robot: RobotSetup {
+            kind: RobotKind::PlanarArm,
+            theta,
+            theta_names: vec![String::new(); 5],
+            axes: vec![axis("shoulder"), axis("elbow")],
+        },
+        roots_per_s: (0..order).map(|r| 1.0 + 0.7 * r as f64 + 0.1 * index as f64).collect(),
+        law: Law::Adaptive {
+            // One agent with a full matrix beside others with a diagonal.
+            damping: if index == 1 { Gain::Matrix(vec![9.0, 1.0, 1.0, 7.0]) } else { Gain::Number(8.0 + index as f64) },
+            adaptation: Gain::Number(10.0),
+            estimate_start: vec![0.1 * index as f64; 5],
+        },
+        start: Start { q: vec![some(1), some(2)], dq: vec![0.3 * some(3), 0.3 * some(4)], reference: Vec::new() },
+        enforce_limits: false,
+    }
+}
+
+/// The first two of `agents` arms hear each other, the others nobody. Fixed steps, so that the others have no say.
+fn bits_of_the_first_two(agents: usize, order: usize) -> Vec<u64> {
+    let edge = |from, to, delay| Edge { from, to, weight: 1.3, delay };
+    let phase = |edges, dwell_s| Phase { edges, dwell_s };
+    let setup = Setup {
+        agents: (0..agents).map(|index| arm(index, order)).collect(),
+        exchange: Exchange::PositionVelocity,
+        network: Network {
+            agents,
+            schedule: Schedule::Periodic(vec![phase(vec![edge(0, 1, 0)], 0.4), phase(vec![edge(1, 0, 1)], 0.3)]),
+            delays: vec![
+                Delay::SawTooth { min_s: 0.0, max_s: 0.3, period_s: 0.25, offset_s: 0.1 },
+                Delay::Sinusoid { mean_s: 0.2, amplitude_s: 0.1, period_s: 0.9, phase_rad: 0.3 },
+            ],
+        },
+        time: TimeSpan { end_s: 3.0, record_every_s: 0.1 },
+        solver: Solver { method: Method::Fixed { step_s: 0.01 }, ..Solver::default() },
+    };
+    let outcome = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap();
+    let columns = outcome.recording.columns.iter().filter(|column| column.agent < 2);
+    columns.flat_map(|column| column.values.iter().map(|value| value.to_bits())).collect()
+}
+
+#[test]
+fn digest_lanes_carry_the_bits_of_single_agents() {
+    for order in [1, 3] {
+        let alone = bits_of_the_first_two(2, order);
+        assert!(alone.len() > 2 * 31);
+        // Lanes that are partly idle, full, and full with a second squad.
+        for agents in [3, 8, 11] {
+            assert!(bits_of_the_first_two(agents, order) == alone, "{agents} agents, order {order}");
+        }
+    }
+}
