@@ -17,11 +17,15 @@
 //!
 //! is conserved, where R_j = q_j for t ≥ 0 and q_j(0) + t q̇_j(0) before: the velocities sent before t = 0 are q̇_j(0), not
 //! zero. When everybody has come to rest at c, Q = c Σᵢ uᵢ [1 + dᵢ α₁/α₀ + Σⱼ w_ij (T_ij − 1/κ₀)].
+//!
+//! (3) and (23) have q̈ in the place of ż: with Bᵢ = żᵢ + α₁ q̇ᵢ + α₀ qᵢ and Wᵢ = q̇ᵢ + α₁ qᵢ the same Q is conserved.
+//!
+//! With λ > 0 (Remark 4) Ḃᵢ gains λ sᵢ, so Q moves by Σᵢ uᵢ (λ/α₀) ∫ sᵢ dt, which only the run knows.
 
 use forwardstep_core::reference::polynomial;
 use forwardstep_sim::graph::{Edge, SpanningTree, laplacian, spanning_tree};
 use forwardstep_sim::schedule::Schedule;
-use forwardstep_sim::{AgentSetup, Exchange, Setup};
+use forwardstep_sim::{AgentSetup, Exchange, ReferenceKind, Setup};
 use nalgebra::DMatrix;
 use thiserror::Error;
 
@@ -43,6 +47,15 @@ pub enum NoPrediction {
     /// A delay changes.
     #[error("a delay varies with time")]
     VaryingDelay,
+    /// The value depends on the tracking errors.
+    #[error("the manipulability gain of agent {agent} lets tracking errors move it")]
+    Manipulability {
+        /// Index of the agent.
+        agent: usize,
+    },
+    /// The baseline conserves nothing.
+    #[error("under backstepping tracking errors move it")]
+    Backstepping,
     /// There is no single value.
     #[error("no agent reaches all others, so nothing makes them agree")]
     NoSpanningTree,
@@ -65,6 +78,12 @@ pub enum NoPrediction {
 /// # Errors
 /// [`NoPrediction`] says why there is none.
 pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
+    if matches!(setup.reference, ReferenceKind::Backstepping { .. }) {
+        return Err(NoPrediction::Backstepping);
+    }
+    if let Some(agent) = setup.agents.iter().position(|agent| agent.manipulability > 0.0) {
+        return Err(NoPrediction::Manipulability { agent });
+    }
     let edges = constant_graph(&setup.network.schedule).ok_or(NoPrediction::Switching)?;
     if !edges.iter().all(|edge| setup.network.delays[edge.delay].is_constant()) {
         return Err(NoPrediction::VaryingDelay);
@@ -125,12 +144,13 @@ fn contribution(setup: &Setup, edges: &[Edge], alpha: &[f64], i: usize, axis: us
     let start = &setup.agents[i].start;
     let z = |k: usize| reference_start(&setup.agents[i], k, axis);
     let (q, dq) = (start.q[axis], start.dq[axis]);
-    let mut b = alpha[0] * q + alpha[1] * dq - alpha[1] * (dq - z(0));
-    let mut w = alpha[1] * q;
-    for (r, alpha) in alpha.iter().enumerate().skip(2) {
-        b += alpha * z(r - 1);
-        w += alpha * z(r - 2);
-    }
+    let (b, w) = if setup.reference == ReferenceKind::PureIntegral {
+        (alpha[0] * q + alpha[1] * dq + z(1), alpha[1] * q + dq)
+    } else {
+        let above = || alpha.iter().enumerate().skip(2);
+        let b = alpha[0] * q + alpha[1] * dq - alpha[1] * (dq - z(0));
+        (b + above().map(|(r, a)| a * z(r - 1)).sum::<f64>(), alpha[1] * q + above().map(|(r, a)| a * z(r - 2)).sum::<f64>())
+    };
     let kappa_0 = setup.agents[i].roots_per_s[0];
     let velocity = if setup.exchange == Exchange::PositionVelocity { 1.0 / kappa_0 } else { 0.0 };
     let (mut degree, mut past, mut past_at_rest) = (0.0, 0.0, 0.0);

@@ -1,8 +1,8 @@
-//! The hypotheses of Theorems 2 and 3, one function each.
+//! The hypotheses of Theorems 1 to 3, one function each.
 
 use forwardstep_sim::graph::{Edge, strong_components};
 use forwardstep_sim::schedule::{Schedule, Window};
-use forwardstep_sim::{Exchange, Law, Setup};
+use forwardstep_sim::{Exchange, Law, ReferenceKind, Setup};
 
 use crate::verdict::{Answer, Hypothesis, Report};
 
@@ -24,6 +24,12 @@ pub fn check(setup: &Setup) -> Report {
 }
 
 fn theorem(setup: &Setup, order: usize) -> String {
+    match (setup.reference, setup.exchange) {
+        (ReferenceKind::PureIntegral, Exchange::PositionVelocity) => return "Theorem 1, reference dynamics (3)".into(),
+        (ReferenceKind::PureIntegral, Exchange::Position) => return "Remark 3, reference dynamics (23)".into(),
+        (ReferenceKind::Backstepping { .. }, _) => return "no theorem: the backstepping baseline (aa6)".into(),
+        (ReferenceKind::Consensus, _) => {}
+    }
     match (setup.exchange, order) {
         (Exchange::PositionVelocity, 1) => "Theorem 3 with (a5) of order 1, which is (aa10)".into(),
         (Exchange::PositionVelocity, 2) if same_roots(setup) => "Theorem 2, reference dynamics (a1)".into(),
@@ -33,6 +39,9 @@ fn theorem(setup: &Setup, order: usize) -> String {
 }
 
 fn promises(setup: &Setup, order: usize) -> String {
+    if matches!(setup.reference, ReferenceKind::Backstepping { .. }) {
+        return "nothing: the torque is unbounded at switches and delay jumps but for the filter and its limit".into();
+    }
     let smooth = match order {
         0 | 1 => "the torque jumps at switches and delay jumps but stays bounded".to_owned(),
         2 => "the torque stays continuous through switches and delay jumps".to_owned(),
@@ -120,6 +129,43 @@ fn bounded_delays(setup: &Setup) -> Hypothesis {
         answer: Answer::Holds,
         because: format!("no delay exceeds {} s", seconds(setup.network.max_delay_s())),
     }
+}
+
+fn fixed_graph(setup: &Setup) -> Hypothesis {
+    let requires = "the graph is fixed".into();
+    let graphs = setup.network.schedule.graphs();
+    let (answer, because) = match graphs.len() {
+        1 => (Answer::Holds, "one graph stays for ever".to_owned()),
+        graphs => {
+            let instead = match setup.exchange {
+                Exchange::PositionVelocity => "(a1), which is `reference.consensus` of order two",
+                Exchange::Position => "(24), which is `reference.consensus`",
+            };
+            let because = format!(
+                "{graphs} graphs take turns: the reference acceleration, and the torque with it, jumps at every switch; \
+                 {instead}, is made for that"
+            );
+            (Answer::NotCovered, because)
+        }
+    };
+    Hypothesis { requires, answer, because }
+}
+
+fn differentiable(filter_s: f64) -> Hypothesis {
+    Hypothesis {
+        requires: "what is heard has a derivative that can be measured".into(),
+        answer: Answer::NotCovered,
+        because: format!("it is estimated by a filter with the time constant {filter_s} s"),
+    }
+}
+
+fn manipulability(setup: &Setup) -> Option<Hypothesis> {
+    let largest = setup.agents.iter().map(|agent| agent.manipulability).fold(0.0, f64::max);
+    (largest > 0.0).then(|| Hypothesis {
+        requires: "the manipulability gain λ of Remark 4 is positive".into(),
+        answer: Answer::Holds,
+        because: format!("the largest λ is {largest}; tracking errors move the value agreed upon"),
+    })
 }
 
 fn real_roots(setup: &Setup) -> Hypothesis {

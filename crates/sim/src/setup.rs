@@ -42,11 +42,11 @@ pub enum ReferenceKind {
 
 impl ReferenceKind {
     /// How many of z(0), ż(0), … an agent's start may give.
-    pub fn vectors(&self, agent: &AgentSetup) -> usize {
+    pub fn free_derivatives(&self, agent: &AgentSetup) -> usize {
         match self {
             ReferenceKind::Consensus => agent.roots_per_s.len(),
             ReferenceKind::PureIntegral => 2,
-            ReferenceKind::Backstepping { .. } => 1,
+            ReferenceKind::Backstepping { .. } => 0,
         }
     }
 }

@@ -72,14 +72,15 @@ pub(super) fn agents(
         let (index, of) = (agents.len(), total as usize);
         for (k, name) in names.iter().enumerate() {
             let robot = &read.robot;
-            let roots_per_s = roots(file, entry, name)?;
+            let Design { roots_per_s, manipulability, free_derivatives } = design(file, entry, name)?;
             let own = entry.start.as_ref().map(|file| Shared { file, index: k, of: names.len() });
             let common = file.start.as_ref().map(|file| Shared { file, index: index + k, of });
             agents.push(AgentSetup {
                 law: law(entry.law.as_ref().or(file.law.as_ref()), name, robot)?,
-                start: start(Starter { name, robot, order: roots_per_s.len() }, own, common)?,
+                start: start(Starter { name, robot, order: free_derivatives }, own, common)?,
                 robot: robot.clone(),
                 roots_per_s,
+                manipulability,
                 enforce_limits,
                 name: name.clone(),
             });
@@ -126,17 +127,47 @@ fn limits(entry: &AgentFile, names: &[String], read: &ReadRobot) -> Result<bool,
     }
 }
 
-/// The agent's own roots, else those of all.
-fn roots(file: &ScenarioFile, entry: &AgentFile, agent: &str) -> Result<Vec<f64>, Fault> {
-    let ReferenceFile::Consensus(common) = &file.reference.value;
-    let list: &At<Vec<At<f64>>> = match (&entry.reference, &common.roots_per_s) {
-        (Some(AgentReferenceFile::Consensus(own)), _) => &own.roots_per_s,
-        (None, Some(common)) => common,
-        (None, None) => return Err(fault(&file.reference, ScenarioProblem::NoRoots { agent: agent.to_owned() })),
+/// What one agent's reference dynamics are made of.
+struct Design {
+    roots_per_s: Vec<f64>,
+    manipulability: f64,
+    /// How many of z(0), ż(0), … a start may give.
+    free_derivatives: usize,
+}
+
+/// The agent's own roots and gain, else those of all.
+fn design(file: &ScenarioFile, entry: &AgentFile, agent: &str) -> Result<Design, Fault> {
+    let own = entry.reference.as_ref();
+    let (common, own) = match (&file.reference.value, own.map(|own| &own.value)) {
+        (ReferenceFile::Consensus(common) | ReferenceFile::PureIntegral(common), None) => (common, None),
+        (ReferenceFile::Consensus(common), Some(AgentReferenceFile::Consensus(own)))
+        | (ReferenceFile::PureIntegral(common), Some(AgentReferenceFile::PureIntegral(own))) => (common, Some(own)),
+        (ReferenceFile::Backstepping(_), None) => {
+            return Ok(Design { roots_per_s: Vec::new(), manipulability: 0.0, free_derivatives: 0 });
+        }
+        (common, Some(_)) => {
+            let problem = ScenarioProblem::ReferenceDiffers { agent: agent.to_owned(), common: common.key() };
+            let span = own.map_or(0..0, |own| own.span.clone());
+            return Err(Fault::new(problem).at(&span));
+        }
+    };
+    let list = own.and_then(|own| own.roots_per_s.as_ref()).or(common.roots_per_s.as_ref());
+    let Some(list) = list else {
+        return Err(fault(&file.reference, ScenarioProblem::NoRoots { agent: agent.to_owned() }));
     };
     let roots = filled("roots_per_s", list)?;
     if roots.len() > MOST_ROOTS {
         return Err(fault(list, ScenarioProblem::Order { found: roots.len(), most: MOST_ROOTS }));
     }
-    roots.iter().map(|root| positive("roots_per_s", root)).collect()
+    if matches!(file.reference.value, ReferenceFile::PureIntegral(_)) && roots.len() != 2 {
+        return Err(fault(list, ScenarioProblem::TwoRoots { found: roots.len() }));
+    }
+    let roots_per_s = roots.iter().map(|root| positive("roots_per_s", root)).collect::<Result<Vec<_>, _>>()?;
+    let gain = own.and_then(|own| own.manipulability_gain.as_ref()).or(common.manipulability_gain.as_ref());
+    let manipulability = match gain {
+        None => 0.0,
+        Some(gain) if gain.value == 0.0 => 0.0,
+        Some(gain) => positive("manipulability_gain", gain)?,
+    };
+    Ok(Design { free_derivatives: roots_per_s.len(), roots_per_s, manipulability })
 }

@@ -61,7 +61,7 @@ pub struct AgentFile {
     /// Where it starts. Default: at rest at zero.
     pub start: Option<At<StartFile>>,
     /// Reference dynamics of its own.
-    pub reference: Option<AgentReferenceFile>,
+    pub reference: Option<At<AgentReferenceFile>>,
     /// A tracking law of its own.
     pub law: Option<LawFile>,
     /// Clip torques at the effort limits of the robot, and end the run when a joint leaves its position limits.
@@ -169,6 +169,21 @@ pub struct ReferenceStartFile {
 pub enum ReferenceFile {
     /// Agreement on a position: the designs (aa10), (a1), (a5) and (24) of the paper.
     Consensus(ConsensusFile),
+    /// Agreement over a fixed graph: (3) of the paper or, when only positions are exchanged, (23); two roots.
+    PureIntegral(ConsensusFile),
+    /// The baseline (aa6) that differentiates what it hears; positions are exchanged.
+    Backstepping(BacksteppingFile),
+}
+
+impl ReferenceFile {
+    /// The key that it has in a file.
+    pub(super) fn key(&self) -> &'static str {
+        match self {
+            ReferenceFile::Consensus(_) => "consensus",
+            ReferenceFile::PureIntegral(_) => "pure_integral",
+            ReferenceFile::Backstepping(_) => "backstepping",
+        }
+    }
 }
 
 /// Reference dynamics that lead to agreement.
@@ -179,6 +194,18 @@ pub struct ConsensusFile {
     pub roots_per_s: Option<At<Vec<At<f64>>>>,
     /// What the agents tell each other.
     pub exchange: ExchangeFile,
+    /// The gain λ of Remark 4, in 1/s to the power of the order: how much the reference gives way to the motion. Default: 0.
+    pub manipulability_gain: Option<At<f64>>,
+}
+
+/// The backstepping baseline.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BacksteppingFile {
+    /// The time constant of the filter that differentiates.
+    pub filter_s: At<f64>,
+    /// The largest reference acceleration, rad/s² or m/s². Default: none.
+    pub acceleration_limit: Option<At<f64>>,
 }
 
 /// What an agent transmits.
@@ -197,6 +224,8 @@ pub enum ExchangeFile {
 pub enum AgentReferenceFile {
     /// Agreement on a position.
     Consensus(AgentConsensusFile),
+    /// Agreement over a fixed graph.
+    PureIntegral(AgentConsensusFile),
 }
 
 /// Reference dynamics of one agent.
@@ -204,7 +233,9 @@ pub enum AgentReferenceFile {
 #[serde(deny_unknown_fields)]
 pub struct AgentConsensusFile {
     /// The positive numbers κ₀, κ₁, … in 1/s of this agent.
-    pub roots_per_s: At<Vec<At<f64>>>,
+    pub roots_per_s: Option<At<Vec<At<f64>>>>,
+    /// The gain λ of Remark 4 of this agent.
+    pub manipulability_gain: Option<At<f64>>,
 }
 
 /// How the velocity is made to follow the reference velocity.

@@ -154,13 +154,11 @@ fn read(name: &str, source: &SourceText, folder: Option<&Path>) -> Result<Scenar
     let names: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
     let network = network::network(&file.network.value, &names, end_s, source, &mut notices)
         .map_err(|fault| fault.at(&file.network.span))?;
-    let ReferenceFile::Consensus(consensus) = &file.reference.value;
+    let (reference, exchange) = reference(&file.reference.value)?;
     let setup = Setup {
         agents,
-        exchange: match consensus.exchange {
-            ExchangeFile::Position => Exchange::Position,
-            ExchangeFile::PositionVelocity => Exchange::PositionVelocity,
-        },
+        reference,
+        exchange,
         network,
         time: TimeSpan { end_s, record_every_s },
         solver: solver(file.solver.as_ref())?,
@@ -194,6 +192,24 @@ fn parse(source: &SourceText) -> Result<ScenarioFile, Fault> {
             fault.span = None;
         }
         fault
+    })
+}
+
+/// What produces the reference velocities, and what is exchanged for it.
+fn reference(file: &ReferenceFile) -> Result<(ReferenceKind, Exchange), Fault> {
+    let exchange = |file: &ConsensusFile| match file.exchange {
+        ExchangeFile::Position => Exchange::Position,
+        ExchangeFile::PositionVelocity => Exchange::PositionVelocity,
+    };
+    Ok(match file {
+        ReferenceFile::Consensus(file) => (ReferenceKind::Consensus, exchange(file)),
+        ReferenceFile::PureIntegral(file) => (ReferenceKind::PureIntegral, exchange(file)),
+        ReferenceFile::Backstepping(file) => {
+            let filter_s = positive("filter_s", &file.filter_s)?;
+            let limit = file.acceleration_limit.as_ref();
+            let acceleration_limit = limit.map(|limit| positive("acceleration_limit", limit)).transpose()?;
+            (ReferenceKind::Backstepping { filter_s, acceleration_limit }, Exchange::Position)
+        }
     })
 }
 

@@ -148,7 +148,7 @@ impl ClosedLoop {
             let n = group.len();
             let columns = population::<X>(setup, &group)?;
             let first = closed_loop.start.len();
-            closed_loop.append_start(setup, &group, columns.state_len());
+            closed_loop.append_start(setup, &group, &*columns);
             for (i, &agent) in group.iter().enumerate() {
                 closed_loop.ports[agent] =
                     Port { state: first + i, entry: placed * entries + i, degree: placed + i, stride: n };
@@ -166,18 +166,19 @@ impl ClosedLoop {
     }
 
     /// The initial state of one block, in the order that [`super::population`] documents.
-    fn append_start(&mut self, setup: &Setup, group: &[usize], state_len: usize) {
+    ///
+    /// The reference state is filled with the wanted z(0), ż(0), … for [`ClosedLoop::start_references`] to replace.
+    fn append_start(&mut self, setup: &Setup, group: &[usize], columns: &dyn Columns) {
         let first = self.start.len();
         let agents = || group.iter().map(|&agent| &setup.agents[agent]);
         let axes = setup.agents[group[0]].robot.axes.len();
-        let vectors = setup.reference.vectors(&setup.agents[group[0]]);
         for axis in 0..axes {
             self.start.extend(agents().map(|a| a.start.q[axis]));
         }
         for axis in 0..axes {
             self.start.extend(agents().map(|a| a.start.dq[axis]));
         }
-        for r in 0..vectors {
+        for r in 0..columns.reference_vectors() {
             for axis in 0..axes {
                 let default = |a: &AgentSetup| if r == 0 { a.start.dq[axis] } else { 0.0 };
                 self.start.extend(agents().map(|a| a.start.reference.get(r).map_or(default(a), |z| z[axis])));
@@ -189,7 +190,7 @@ impl ClosedLoop {
                 Law::Known { .. } => None,
             }));
         }
-        self.start.resize(first + state_len, 0.0);
+        self.start.resize(first + columns.state_len(), 0.0);
     }
 
     /// From the wanted z(0), ż(0), … to reference states, with what everybody hears at t = 0: the initial messages.
@@ -420,7 +421,7 @@ fn check(setup: &Setup) -> Result<(), SetupError> {
     let first = &setup.agents[0];
     let axes = first.robot.axes.len();
     for agent in &setup.agents {
-        check_agent(agent, first, axes, setup.reference.vectors(agent))?;
+        check_agent(agent, first, axes, setup.reference.free_derivatives(agent))?;
     }
     Ok(())
 }

@@ -27,11 +27,10 @@ pub(crate) struct Member {
 /// Where the parts of a block begin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layout {
-    /// Agents, axes, parameters, vectors of reference state.
+    /// Agents, axes, parameters.
     pub(crate) n: usize,
     pub(crate) m: usize,
     pub(crate) p: usize,
-    pub(crate) vectors: usize,
     /// First entries.
     pub(crate) dq: usize,
     pub(crate) reference: usize,
@@ -43,12 +42,13 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
+    /// For `vectors` blocks of reference state.
     pub(crate) fn new([n, m, p, vectors]: [usize; 4], adaptive: bool, ledger_on: bool) -> Self {
         let (dq, reference) = (m * n, 2 * m * n);
         let theta_hat = reference + vectors * m * n;
         let ledger = theta_hat + if adaptive { p * n } else { 0 };
         let len = ledger + if ledger_on { n } else { 0 };
-        Layout { n, m, p, vectors, dq, reference, theta_hat, ledger, len, adaptive, ledger_on }
+        Layout { n, m, p, dq, reference, theta_hat, ledger, len, adaptive, ledger_on }
     }
 
     /// Numbers of one vector of every member.
