@@ -85,9 +85,8 @@ fn digest_kernels_give_the_same_bits_dispatched_and_in_lanes() {
     let mut random = moderate(4);
     for _ in 0..500 {
         // q, q̇, z, ż, s, τ of eight robots.
-        let states: Vec<Vec<[f64; 8]>> = (0..6)
-            .map(|_| (0..n).map(|_| std::array::from_fn(|_| random.next().unwrap())).collect())
-            .collect();
+        let states: Vec<Vec<[f64; 8]>> =
+            (0..6).map(|_| (0..n).map(|_| std::array::from_fn(|_| random.next().unwrap())).collect()).collect();
         let packed: Vec<Vec<Lanes<8>>> = states.iter().map(|state| state.iter().map(|x| Lanes(*x)).collect()).collect();
         let theta_lanes: Vec<Lanes<8>> = theta.iter().map(|x| Lanes::splat(*x)).collect();
         let zero = Lanes::<8>::ZERO;

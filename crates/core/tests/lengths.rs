@@ -45,9 +45,7 @@ fn every_method_checks<R: Lagrangian<f64>>(name: &str, robot: &R) {
     every_length(name, [m, m, p, m, m], |[q, dq, theta, tau, ddq]| {
         robot.forward_dynamics(scratch, q, dq, theta, tau, &mut out[..ddq.len()])
     });
-    every_length(name, [m, p, m * m], |[q, theta, mass]| {
-        robot.mass_matrix(scratch, q, theta, &mut out[..mass.len()])
-    });
+    every_length(name, [m, p, m * m], |[q, theta, mass]| robot.mass_matrix(scratch, q, theta, &mut out[..mass.len()]));
     every_length(name, [m, m, p, m * m], |[q, dq, theta, c]| {
         robot.coriolis_matrix(scratch, q, dq, theta, &mut out[..c.len()])
     });
@@ -80,8 +78,10 @@ fn two_joints() -> Tree {
         joint: LinkJoint::Moving { kind, axis, damping },
         inertia: [2.0, 0.1, 0.2, 0.3, 1.0, 0.01, 1.1, 0.02, 0.03, 1.2],
     };
-    let links =
-        [link(None, JointKind::Revolute, [0.0, 1.0, 0.0], 0.2), link(Some(0), JointKind::Prismatic, [0.6, 0.8, 0.0], 0.0)];
+    let links = [
+        link(None, JointKind::Revolute, [0.0, 1.0, 0.0], 0.2),
+        link(Some(0), JointKind::Prismatic, [0.6, 0.8, 0.0], 0.0),
+    ];
     Tree::assemble(&links, [0.0, 0.0, -9.81]).unwrap().tree
 }
 

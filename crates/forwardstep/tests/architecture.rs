@@ -107,14 +107,25 @@ fn serialisation_lives_in_io_only() {
 #[test]
 fn laws_know_no_clock_no_file_and_keep_no_secret() {
     let outside = ["std::", "Instant", "SystemTime", "t_s"];
-    let hidden_state = ["static mut", "Cell", "RefCell", "OnceCell", "Mutex", "AtomicUsize", "AtomicU64", "AtomicBool", "thread_local!"];
+    let hidden_state = [
+        "static mut",
+        "Cell",
+        "RefCell",
+        "OnceCell",
+        "Mutex",
+        "AtomicUsize",
+        "AtomicU64",
+        "AtomicBool",
+        "thread_local!",
+    ];
     never_says("core/src", &outside);
     never_says("core/src", &hidden_state);
 }
 
 #[test]
 fn simulation_and_verdicts_touch_no_files() {
-    let world = ["std::fs", "std::io", "std::env", "std::net", "std::process", "print!", "println!", "eprintln!", "dbg!"];
+    let world =
+        ["std::fs", "std::io", "std::env", "std::net", "std::process", "print!", "println!", "eprintln!", "dbg!"];
     never_says("sim/src", &world);
     never_says("check/src", &world);
 }
@@ -131,10 +142,16 @@ fn the_clock_on_the_wall_is_read_for_statistics_only() {
 
 #[test]
 fn the_engine_knows_no_robots() {
-    never_says("sim/src/engine", &["crate::closed_loop", "forwardstep_core::robot", "forwardstep_core::law", "forwardstep_core::reference"]);
+    never_says(
+        "sim/src/engine",
+        &["crate::closed_loop", "forwardstep_core::robot", "forwardstep_core::law", "forwardstep_core::reference"],
+    );
     for file in ["graph", "schedule", "delay", "network"] {
         let above = ["engine", "closed_loop", "setup", "recording", "simulate"];
-        never_says(&format!("sim/src/{file}.rs"), &above.map(|room| format!("crate::{room}")).each_ref().map(|s| &s[..]));
+        never_says(
+            &format!("sim/src/{file}.rs"),
+            &above.map(|room| format!("crate::{room}")).each_ref().map(|s| &s[..]),
+        );
     }
 }
 
@@ -142,9 +159,33 @@ fn the_engine_knows_no_robots() {
 #[test]
 fn no_number_depends_on_the_platform() {
     let functions = [
-        ".sin()", ".cos()", ".tan()", ".asin()", ".acos()", ".atan()", ".atan2(", ".exp()", ".exp2()", ".ln()", ".log(",
-        ".log2()", ".log10()", ".powf(", ".powi(", ".cbrt()", ".hypot(", ".sinh()", ".cosh()", ".tanh()", "f64::sin",
-        "f64::cos", "f64::sin_cos", "f64::exp", "f64::ln", "f64::powf", "f64::powi",
+        ".sin()",
+        ".cos()",
+        ".tan()",
+        ".asin()",
+        ".acos()",
+        ".atan()",
+        ".atan2(",
+        ".exp()",
+        ".exp2()",
+        ".ln()",
+        ".log(",
+        ".log2()",
+        ".log10()",
+        ".powf(",
+        ".powi(",
+        ".cbrt()",
+        ".hypot(",
+        ".sinh()",
+        ".cosh()",
+        ".tanh()",
+        "f64::sin",
+        "f64::cos",
+        "f64::sin_cos",
+        "f64::exp",
+        "f64::ln",
+        "f64::powf",
+        "f64::powi",
     ];
     for below in ["core/src", "sim/src", "check/src"] {
         never_says(below, &functions);

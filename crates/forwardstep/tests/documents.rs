@@ -195,7 +195,9 @@ fn every_definition_is_used() {
     for document in Document::all() {
         let used: BTreeSet<String> = document.links().into_iter().map(|link| link.text).collect();
         let defined = document.definitions().into_iter().map(|link| link.text);
-        unused.extend(defined.filter(|text| !used.contains(text)).map(|text| format!("{}: {text}", document.path.display())));
+        unused.extend(
+            defined.filter(|text| !used.contains(text)).map(|text| format!("{}: {text}", document.path.display())),
+        );
     }
     assert!(unused.is_empty(), "\n{}", unused.join("\n"));
 }
