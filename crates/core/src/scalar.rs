@@ -39,9 +39,21 @@ pub trait Scalar:
     /// The number itself, or ±`limit` where it is beyond; not-a-number stays.
     fn saturate(self, limit: Self) -> Self;
 
-    /// Sine and cosine of an angle in radians, to about one unit in the last place for |angle| < 10⁵ and to full
+    /// Sine and cosine of an angle in radians, within 2.2 units in the last place for |angle| < 10⁵ and to full
     /// accuracy, slowly, beyond.
     fn sin_cos(self) -> (Self, Self);
+
+    /// [`Scalar::sin_cos`] of every angle, as far as the shortest of the three slices goes. The same bits, but several
+    /// angles at once where the scalar is a single number.
+    #[inline(always)]
+    fn sin_cos_each(angles: &[Self], sin: &mut [Self], cos: &mut [Self]) {
+        let n = angles.len().min(sin.len()).min(cos.len());
+        let mut i = 0;
+        while i < n {
+            (sin[i], cos[i]) = angles[i].sin_cos();
+            i += 1;
+        }
+    }
 }
 
 /// A scalar that holds the same quantity of [`Packed::WIDTH`] agents, read from and written to columns.
@@ -173,6 +185,21 @@ impl Scalar for f64 {
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         trig::sin_cos(self)
+    }
+
+    #[inline(always)]
+    fn sin_cos_each(angles: &[Self], sin: &mut [Self], cos: &mut [Self]) {
+        let n = angles.len().min(sin.len()).min(cos.len());
+        let mut i = 0;
+        while i < n {
+            let count = (n - i).min(8);
+            let mut chunk = Lanes([0.0; 8]);
+            chunk.0[..count].copy_from_slice(&angles[i..i + count]);
+            let (s, c) = trig::sin_cos_lanes(chunk);
+            sin[i..i + count].copy_from_slice(&s.0[..count]);
+            cos[i..i + count].copy_from_slice(&c.0[..count]);
+            i += count;
+        }
     }
 }
 

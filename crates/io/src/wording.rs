@@ -32,6 +32,11 @@ pub(crate) fn entry_count(number: usize) -> String {
     if number == 1 { "1 entry".into() } else { format!("{number} entries") }
 }
 
+/// A computed number without the noise of its last digits.
+pub(crate) fn rounded(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
 /// "a, b and c", or "a, b and 17 more".
 pub(crate) fn enumerate(items: impl ExactSizeIterator<Item = String>) -> String {
     const MOST: usize = 8;
@@ -93,6 +98,13 @@ mod tests {
             .map(|value| number(value).to_string())
             .collect();
         assert_eq!(written, ["0", "-1.5", "1234567", "1e7", "0.0001", "9e-5", "-1e300", "inf"]);
+    }
+
+    #[test]
+    fn noise_is_rounded_away() {
+        let values = [0.1 + 0.2, -1.0 / 3.0, 0.0, 4e-300, f64::MAX];
+        assert_eq!(values.map(rounded), [0.3, -0.333333, 0.0, 4e-300, 1.79769e308]);
+        assert!(rounded(f64::NAN).is_nan());
     }
 
     #[test]

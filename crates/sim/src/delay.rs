@@ -225,10 +225,11 @@ impl Delay {
     }
 
     /// Appends every t > `sent_s` at which something sent at `sent_s` is heard: the solutions of t − T(t) = `sent_s`.
+    /// Nothing is looked for after `until_s`, since a delay may be longer than any run.
     ///
     /// A stretch on which t − T(t) stands still (a held packet) has no inner solutions: its ends are jumps of the delay
     /// and break-points anyway.
-    pub fn arrivals(&self, sent_s: f64, arrivals: &mut Vec<f64>) {
+    pub fn arrivals(&self, sent_s: f64, until_s: f64, arrivals: &mut Vec<f64>) {
         if let Delay::Constant { s } = self {
             if *s > 0.0 {
                 arrivals.push(sent_s + s);
@@ -236,7 +237,7 @@ impl Delay {
             return;
         }
         // Rounded up, so that the arrival of a constant delay is inside the stretch searched.
-        let last = (sent_s + self.max_s()).next_up().next_up();
+        let last = (sent_s + self.max_s()).next_up().next_up().min(until_s);
         let mut piece = self.piece_at(sent_s.max(0.0));
         loop {
             let from = piece.start_s.max(sent_s);
@@ -319,7 +320,7 @@ mod tests {
 
     fn arrivals(delay: &Delay, sent_s: f64) -> Vec<f64> {
         let mut out = Vec::new();
-        delay.arrivals(sent_s, &mut out);
+        delay.arrivals(sent_s, f64::INFINITY, &mut out);
         for t in &out {
             assert!((t - delay.value(*t) - sent_s).abs() < 1e-12, "{t} is no arrival of {sent_s}");
         }
@@ -339,6 +340,20 @@ mod tests {
         let counts: Vec<usize> = (0..20).map(|k| arrivals(&delay, 5.0 + 0.05 * k as f64).len()).collect();
         assert!(counts.iter().all(|c| c % 2 == 1), "{counts:?}");
         assert!(counts.contains(&3), "{counts:?}");
+    }
+
+    #[test]
+    fn a_delay_beyond_the_horizon_is_not_searched_to_its_end() {
+        let until = |delay: Delay| {
+            let mut out = Vec::new();
+            delay.arrivals(0.5, 10.0, &mut out);
+            out
+        };
+        let far = Delay::SawTooth { min_s: 0.0, max_s: 1e30, period_s: 0.6, offset_s: 0.0 };
+        // From every tooth's start the delay rises past all that was sent since, but for the first instant.
+        assert!(until(far).iter().all(|t| *t <= 10.0));
+        let wide = Delay::Sinusoid { mean_s: 1e12, amplitude_s: 1e12, period_s: 0.1, phase_rad: 0.0 };
+        assert!(until(wide).iter().all(|t| *t <= 10.0));
     }
 
     #[test]

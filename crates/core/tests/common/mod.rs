@@ -1,6 +1,9 @@
 //! Models and states that Pinocchio has computed, and plain linear algebra to compare with.
 #![allow(dead_code, clippy::unwrap_used)] // Every test binary uses its own part; a broken fixture should stop a test.
 
+pub(crate) mod dual;
+pub(crate) mod random;
+
 use forwardstep_core::robot::tree::{Assembled, JointKind, LinkJoint, LinkSpec, Placement, Tree};
 use serde::Deserialize;
 

@@ -16,7 +16,7 @@ use toml::Spanned;
 use toml::de::{DeInteger, DeString, DeTable, DeValue};
 
 use super::at::AT;
-use super::fault::Fault;
+use super::fault::{Fault, LARGEST};
 use super::problem::ScenarioProblem;
 
 impl Error for Fault {
@@ -90,12 +90,12 @@ impl<'a, 'i> ValueDe<'a, 'i> {
         Fault::new(ScenarioProblem::NumberTooLarge { found }).at(&self.0.span())
     }
 
-    /// Any number. Nothing in a scenario may be infinite, or no number at all.
+    /// Any number. Nothing in a scenario may be infinite, no number at all, or so large that products overflow.
     fn number(self) -> Result<f64, Fault> {
         match self.0.get_ref() {
             DeValue::Integer(integer) => Ok(self.integer(integer)? as f64),
             DeValue::Float(float) => match float.as_str().parse::<f64>() {
-                Ok(value) if value.is_finite() => Ok(value),
+                Ok(value) if value.abs() <= LARGEST => Ok(value),
                 Ok(_) if !float.as_str().contains(['i', 'n']) => Err(self.too_large(float.as_str().into())),
                 _ => Err(Fault::new(ScenarioProblem::NotFinite { found: float.as_str().into() }).at(&self.0.span())),
             },

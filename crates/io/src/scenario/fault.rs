@@ -6,6 +6,11 @@ use std::ops::Range;
 use super::at::At;
 use super::problem::ScenarioProblem;
 
+/// Numbers beyond this are refused, so that no product of a few of them overflows.
+pub(super) const LARGEST: f64 = 1e30;
+/// Positive numbers below this are refused, so that no product of a few of them vanishes.
+const SMALLEST: f64 = 1e-30;
+
 /// A problem, and where once that is known.
 #[derive(Debug)]
 pub(super) struct Fault {
@@ -40,7 +45,11 @@ pub(super) fn fault<T>(value: &At<T>, problem: ScenarioProblem) -> Fault {
 
 pub(super) fn positive(key: &'static str, number: &At<f64>) -> Result<f64, Fault> {
     let value = number.value;
-    if value > 0.0 { Ok(value) } else { Err(fault(number, ScenarioProblem::NotPositive { key, value })) }
+    if value > 0.0 {
+        between(key, number, SMALLEST, LARGEST)
+    } else {
+        Err(fault(number, ScenarioProblem::NotPositive { key, value }))
+    }
 }
 
 pub(super) fn not_negative(key: &'static str, number: &At<f64>) -> Result<f64, Fault> {

@@ -1,6 +1,6 @@
 //! Scenario files: TOML in, a [`Setup`] out.
 //!
-//! [`file`] is the format as it is written and the source of its JSON schema ([`schema`]); the other files of this room
+//! [`mod@file`] is the format as it is written and the source of its JSON schema ([`schema`]); the other files of this room
 //! turn it into the plain structs of `forwardstep-sim`, one table each, and report what has no meaning at its place.
 //!
 //! ```

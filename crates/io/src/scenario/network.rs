@@ -1,6 +1,7 @@
 //! `[network]` → [`Network`].
 
 use std::collections::HashMap;
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 use forwardstep_sim::Network;
@@ -168,7 +169,7 @@ impl NetworkReader<'_> {
                 }
                 let period_s = positive("period_s", &file.period_s)?;
                 self.few("swings of the delay", self.end_s / period_s, &file.period_s.span)?;
-                Ok(Delay::Sinusoid { mean_s, amplitude_s, period_s, phase_rad: file.phase_rad })
+                Ok(Delay::Sinusoid { mean_s, amplitude_s, period_s, phase_rad: file.phase_rad.rem_euclid(TAU) })
             }
             DelayFile::PiecewiseConstant(file) => {
                 let times_s = filled("times_s", &file.times_s)?;
@@ -209,7 +210,9 @@ impl NetworkReader<'_> {
                 }
                 let period_s = positive("period_s", &file.period_s)?;
                 self.few("jumps of the delay", self.end_s / period_s, &file.period_s.span)?;
-                Ok(Delay::SawTooth { min_s, max_s, period_s, offset_s: file.offset_s })
+                // The same tooth, and no precision lost to a large offset.
+                let offset_s = file.offset_s.rem_euclid(period_s);
+                Ok(Delay::SawTooth { min_s, max_s, period_s, offset_s })
             }
         }
     }

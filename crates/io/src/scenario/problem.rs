@@ -89,7 +89,7 @@ pub enum ScenarioProblem {
         /// What was written.
         found: String,
     },
-    /// A number beyond what a computer's numbers reach.
+    /// A number so large that it cannot be computed with.
     #[error("{found} is too large a number")]
     NumberTooLarge {
         /// What was written.
@@ -434,6 +434,9 @@ impl Problem for ScenarioProblem {
             ScenarioProblem::UnknownKey { key, allowed } => choose(key, "allowed here:", allowed),
             ScenarioProblem::UnknownChoice { found, allowed } => choose(found, "choose one of", allowed),
             ScenarioProblem::NoChoice { allowed } => choose("", "choose one of", allowed),
+            ScenarioProblem::NumberTooLarge { .. } => {
+                "numbers may be up to 1e30 in size, whole numbers up to 9e18".into()
+            }
             ScenarioProblem::ChoiceTakesNoValue { choice } => format!("write it as a text: \"{choice}\""),
             ScenarioProblem::AgentName { .. } => "use letters, digits, `-` and `_`".into(),
             ScenarioProblem::AgentTwice { .. } => {

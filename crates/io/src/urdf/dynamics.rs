@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use forwardstep_core::robot::tree::{Assembled, JointKind, LinkJoint, LinkSpec, Placement, Tree, TreeError};
+use forwardstep_core::LengthError;
+use forwardstep_core::robot::tree::{
+    Assembled, JointKind, LinkJoint, LinkSpec, MassMatrixError, Placement, Tree, TreeError, inertia_defects,
+};
 use forwardstep_sim::setup::{Axis, AxisUnit, RobotKind, RobotSetup};
 
 use super::joint::{Joint, Motion, MotionKind};
@@ -61,13 +64,16 @@ pub(super) fn build(
         return Err(reading.error(link.span.clone(), UrdfProblem::Overflow { link: link.name.clone() }));
     }
     let bodies: Vec<String> = assembled.moving.iter().map(|held| links[arranged[*held].link].name.clone()).collect();
+    check_mass_matrix(reading, &assembled, &bodies, &freedoms)?;
+    look_at_inertias(reading, links, arranged, &specs, &carrier);
     for (body, held) in assembled.moving.iter().enumerate() {
         if assembled.theta[10 * body] == 0.0 {
             let link = &links[arranged[*held].link];
             reading.notice(&link.span, NoticeKind::Massless { body: link.name.clone() });
         }
     }
-    let theta_names = theta_names(&assembled, &bodies, &freedoms);
+    let theta_names =
+        theta_names(&assembled, &bodies, &freedoms).map_err(|error| reading.error_overall(error.into()))?;
     let axes = freedoms.iter().map(|freedom| axis(freedom.joint, freedom.motion)).collect();
     let robot =
         RobotSetup { kind: RobotKind::Tree(Arc::new(assembled.tree)), theta: assembled.theta, theta_names, axes };
@@ -92,16 +98,72 @@ fn tree_error<'l>(reading: &Reading<'_>, error: TreeError, link_of: impl Fn(usiz
     }
 }
 
+/// Refuses a robot that some motion costs no energy.
+fn check_mass_matrix(
+    reading: &Reading<'_>,
+    assembled: &Assembled,
+    bodies: &[String],
+    freedoms: &[Freedom<'_>],
+) -> Result<(), UrdfError> {
+    let anywhere = [f64::NEG_INFINITY, f64::INFINITY];
+    let range: Vec<[f64; 2]> = freedoms.iter().map(|f| f.motion.position_limits.unwrap_or(anywhere)).collect();
+    let samples = if freedoms.len() <= 64 { 16 } else { 2 };
+    match assembled.tree.check_mass_matrix(&assembled.theta, &range, samples) {
+        Ok(()) => Ok(()),
+        Err(MassMatrixError::NotPositiveDefinite { body, pivot, q, .. }) => {
+            let Freedom { joint, motion, .. } = &freedoms[body];
+            let unit = if motion.kind == MotionKind::Prismatic { "kg" } else { "kg m²" };
+            let problem = UrdfProblem::NotPositiveDefinite {
+                joint: joint.name.clone(),
+                body: bodies[body].clone(),
+                pivot,
+                unit,
+                q: q.into(),
+            };
+            Err(reading.error(joint.span.clone(), problem))
+        }
+        Err(MassMatrixError::Length(error)) => Err(reading.error_overall(error.into())),
+    }
+}
+
+/// Notes implausible inertias of links that move.
+fn look_at_inertias(
+    reading: &mut Reading<'_>,
+    links: &[Link],
+    arranged: &[Held],
+    specs: &[LinkSpec],
+    carrier: &[Option<usize>],
+) {
+    // How large a link is: how far it reaches from the joint before it, or to any joint after it.
+    let mut sizes = vec![0.0_f64; specs.len()];
+    for (k, spec) in specs.iter().enumerate() {
+        let [x, y, z] = spec.x_parent_joint.translation;
+        let distance = x.hypot(y).hypot(z);
+        sizes[k] = sizes[k].max(distance);
+        if let Some(parent) = spec.parent {
+            sizes[parent] = sizes[parent].max(distance);
+        }
+    }
+    for (k, spec) in specs.iter().enumerate() {
+        let link = &links[arranged[k].link];
+        if let (Some(_), Some(inertial)) = (carrier[k], &link.inertial) {
+            for defect in inertia_defects(&spec.inertia, sizes[k]) {
+                reading.notice(&inertial.span, NoticeKind::Implausible { link: link.name.clone(), defect });
+            }
+        }
+    }
+}
+
 /// Inertias are named after the link that leads the body, dampings after the joint.
-fn theta_names(assembled: &Assembled, bodies: &[String], freedoms: &[Freedom<'_>]) -> Vec<String> {
+fn theta_names(assembled: &Assembled, bodies: &[String], freedoms: &[Freedom<'_>]) -> Result<Vec<String>, LengthError> {
     let bodies: Vec<&str> = bodies.iter().map(String::as_str).collect();
-    let mut names = assembled.tree.theta_names(&bodies).unwrap_or_default();
+    let mut names = assembled.tree.theta_names(&bodies)?;
     for (name, joint) in names.iter_mut().skip(10 * bodies.len()).zip(assembled.tree.damped_joints()) {
         if let Some(((_, quantity), freedom)) = name.rsplit_once('.').zip(freedoms.get(*joint)) {
             *name = format!("{}.{quantity}", freedom.joint.name);
         }
     }
-    names
+    Ok(names)
 }
 
 /// The joints that move, in the order of their links.

@@ -3,9 +3,11 @@
 use std::fmt;
 use std::ops::Range;
 
+use forwardstep_core::robot::tree::InertiaDefect;
+
 use super::ignored::{IgnoredItem, write_grouped};
 use crate::SourceText;
-use crate::wording::{enumerate, number};
+use crate::wording::{enumerate, number, rounded};
 
 /// Something in an accepted file that the user should know about.
 #[derive(Clone, Debug)]
@@ -123,14 +125,12 @@ pub enum NoticeKind {
         /// The link that leads the body.
         body: String,
     },
-    /// No rigid body has this inertia, although the mass matrix is positive definite.
-    Unphysical {
+    /// A link has an inertia that no body has, or none in its place, although the mass matrix is positive definite.
+    Implausible {
         /// The link.
         link: String,
-        /// The failed test with its values.
-        defect: String,
-        /// A value that would pass it.
-        plausible: Option<String>,
+        /// The failed test with its values and a plausible one.
+        defect: InertiaDefect,
     },
 }
 
@@ -203,19 +203,34 @@ impl fmt::Display for NoticeKind {
             NoticeKind::HeldByBase { links, mass } => write!(
                 f,
                 "the base does not move, so the inertia of what is rigid with it ({} kg: {}) does not enter",
-                number((mass * 1e6).round() / 1e6),
+                number(rounded(*mass)),
                 enumerate(links.iter().map(|link| format!("`{link}`")))
             ),
             NoticeKind::Massless { body } => {
                 write!(f, "the body of link `{body}` has no mass, although a joint moves it")
             }
-            NoticeKind::Unphysical { link, defect, plausible } => {
-                write!(f, "no rigid body has the inertia of link `{link}`: {defect}")?;
-                match plausible {
-                    Some(value) => write!(f, "; {value} would be plausible"),
-                    None => Ok(()),
-                }
+            NoticeKind::Implausible { link, defect } => {
+                write!(f, "the inertia of link `{link}` is implausible: {}", without_noise(defect))
             }
         }
     }
+}
+
+/// The same defect with its computed numbers rounded.
+fn without_noise(defect: &InertiaDefect) -> InertiaDefect {
+    let mut defect = defect.clone();
+    let numbers: &mut [&mut f64] = match &mut defect {
+        InertiaDefect::NegativeMass { mass_kg } => &mut [mass_kg],
+        InertiaDefect::WithoutMass { first_moment_kg_m, inertia_kg_m2 } => &mut [first_moment_kg_m, inertia_kg_m2],
+        InertiaDefect::FarCentre { distance_m, size_m, plausible_m } => &mut [distance_m, size_m, plausible_m],
+        InertiaDefect::ZeroInertia { mass_kg, plausible_kg_m2 } => &mut [mass_kg, plausible_kg_m2],
+        InertiaDefect::NegativeMoment { moments_kg_m2: [a, b, c], plausible_kg_m2 }
+        | InertiaDefect::TriangleInequality { moments_kg_m2: [a, b, c], plausible_kg_m2 } => {
+            &mut [a, b, c, plausible_kg_m2]
+        }
+    };
+    for number in numbers {
+        **number = rounded(**number);
+    }
+    defect
 }

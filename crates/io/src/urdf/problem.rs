@@ -1,11 +1,12 @@
 //! Why a URDF file is refused.
 
+use forwardstep_core::LengthError;
 use forwardstep_core::robot::tree::TreeError;
 use thiserror::Error;
 
 use super::subject::{AttributeOf, End, Named, NamedLine, Owner, Size};
 use crate::Problem;
-use crate::wording::{did_you_mean, enumerate, number};
+use crate::wording::{did_you_mean, enumerate, number, rounded};
 
 /// Why a URDF file, or what was asked of it, has no meaning here.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -210,14 +211,22 @@ pub enum UrdfProblem {
         link: String,
     },
     /// The mass matrix is not positive definite.
-    #[error("the mass matrix is not positive definite at the joint `{joint}` that carries `{body}`: {reason}")]
+    #[error(
+        "the mass matrix is not positive definite: joint `{joint}` feels the inertia {} {unit} of `{body}` and what it \
+         carries, at q = {}",
+        number(rounded(*.pivot)), enumerate(.q.iter().map(|q| number(rounded(*q)).to_string()))
+    )]
     NotPositiveDefinite {
-        /// The joint of the first pivot that fails.
+        /// The outermost joint to blame.
         joint: String,
         /// The body it carries.
         body: String,
-        /// The test that failed, with its value.
-        reason: String,
+        /// The inertia it feels while the joints further out hang free, which should be positive.
+        pivot: f64,
+        /// The unit of `pivot`: kg m² or kg.
+        unit: &'static str,
+        /// Where, in rad or m.
+        q: Box<[f64]>,
     },
     /// No joint moves.
     #[error("no joint moves (fixed: {fixed}, locked: {locked})")]
@@ -267,6 +276,9 @@ pub enum UrdfProblem {
         /// What the kernels say; they number the links depth first from the base, which is 0.
         error: TreeError,
     },
+    /// Sizes that do not fit together: a defect of this reader.
+    #[error(transparent)]
+    Length(#[from] LengthError),
 }
 
 impl Problem for UrdfProblem {

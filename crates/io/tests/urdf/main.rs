@@ -24,6 +24,13 @@ fn joint(kind: &str, inside: &str) -> String {
     format!(r#"<joint name="turn" type="{kind}"><parent link="base"/><child link="arm"/>{inside}</joint>"#)
 }
 
+/// `<inertial>` with this centre of mass and these moments about it.
+fn inertial(com: &str, mass: f64, [xx, yy, zz]: [f64; 3]) -> String {
+    format!(
+        r#"<inertial><origin xyz="{com}"/><mass value="{mass}"/><inertia ixx="{xx}" iyy="{yy}" izz="{zz}" ixy="0" ixz="0" iyz="0"/></inertial>"#
+    )
+}
+
 fn read(text: &str) -> Result<UrdfRobot, String> {
     read_with(text, &UrdfOptions::default())
 }

@@ -3,13 +3,14 @@
 use forwardstep_io::UrdfOptions;
 use forwardstep_io::urdf::FrictionPolicy;
 
-use super::{ARM, BASE, LIMIT, joint, locked, notices, read_with, robot};
+use super::{ARM, BASE, LIMIT, inertial, joint, locked, notices, read_with, robot};
 
 fn noted() -> Vec<(String, UrdfOptions, &'static [&'static str])> {
     let default = UrdfOptions::default;
     let z = r#"<axis xyz="0 0 1"/>"#;
     let turning = joint("revolute", &format!("{z}{LIMIT}"));
     let with_joint = |kind: &str, inside: &str| robot(&[BASE, ARM, &joint(kind, inside)]);
+    let with_arm = |inertial: &str| robot(&[BASE, &format!(r#"<link name="arm">{inertial}</link>"#), &turning]);
     let ignore_friction = || UrdfOptions { friction: FrictionPolicy::Ignore, ..default() };
     vec![
         (robot(&[BASE, ARM, &turning]), default(), &[]),
@@ -109,6 +110,54 @@ fn noted() -> Vec<(String, UrdfOptions, &'static [&'static str])> {
             with_joint("prismatic", &format!(r#"{z}<limit lower="1" upper="1" effort="1" velocity="1"/>"#)),
             default(),
             &["r.urdf:4:96: the limits of joint `turn` allow the position 1 only"],
+        ),
+        // inertia
+        (
+            with_arm(&inertial("0.5 0 0", 2.0, [0.01, 0.01, 0.1])),
+            default(),
+            &[
+                "r.urdf:3:18: the inertia of link `arm` is implausible: the largest principal moment of inertia, 0.1 kg m², exceeds the sum of the two others, 0.01 + 0.01; no body has that, at most 0.02 kg m² would be plausible",
+            ],
+        ),
+        (
+            with_arm(&inertial("0.5 0 0", 2.0, [-0.01, 0.02, 0.02])),
+            default(),
+            &[
+                "r.urdf:3:18: the inertia of link `arm` is implausible: the principal moments of inertia are -0.01, 0.02 and 0.02 kg m², but none may be negative; 0.002 kg m² each would be plausible",
+            ],
+        ),
+        (
+            with_arm(&inertial("0.5 0 0", 2.0, [0.0; 3])),
+            default(),
+            &[
+                "r.urdf:3:18: the inertia of link `arm` is implausible: the inertia about the centre of mass is zero for a mass of 2 kg; 0.002 kg m² would be plausible",
+            ],
+        ),
+        (
+            with_arm(&inertial("20 0 0", 2.0, [0.01; 3])),
+            default(),
+            &[
+                "r.urdf:3:18: the inertia of link `arm` is implausible: the centre of mass is 20 m from the joint, but the body measures about 0.1 m; 0.05 m would be plausible",
+            ],
+        ),
+        (
+            with_arm(&inertial("0 0 0", 0.0, [0.01; 3])),
+            default(),
+            &[
+                "r.urdf:3:13: the body of link `arm` has no mass, although a joint moves it",
+                "r.urdf:3:18: the inertia of link `arm` is implausible: the mass is zero, but the body has first moment 0 kg m and inertia 0.01 kg m²",
+            ],
+        ),
+        (
+            robot(&[
+                BASE,
+                r#"<link name="arm"/>"#,
+                &turning,
+                &ARM.replace("arm", "tool"),
+                r#"<joint name="tilt" type="continuous"><parent link="arm"/><child link="tool"/><axis xyz="0 1 0"/></joint>"#,
+            ]),
+            default(),
+            &["r.urdf:3:13: the body of link `arm` has no mass, although a joint moves it"],
         ),
         // mimicry, friction, locks
         (

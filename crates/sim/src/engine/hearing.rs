@@ -3,7 +3,7 @@
 use forwardstep_core::{Kernel, dispatch};
 
 use super::history::{History, Place};
-use super::kernels::{evaluate, fma};
+use super::kernels::{columns, evaluate, fma};
 use super::tableau::basis;
 use super::timeline::Timeline;
 use crate::graph::Edge;
@@ -191,10 +191,7 @@ impl Kernel for Gather<'_> {
             let (from, to, w) = (hearing.ports[link.sender], hearing.ports[link.receiver], link.weight);
             match hearing.sources[link.source].read {
                 Read::Piece { offset, basis } => {
-                    let (r1, rest) = data[offset..offset + 5 * width].split_at(width);
-                    let (r2, rest) = rest.split_at(width);
-                    let (r3, rest) = rest.split_at(width);
-                    let (r4, r5) = rest.split_at(width);
+                    let [r1, r2, r3, r4, r5] = columns(&data[offset..offset + 5 * width], width);
                     for c in 0..hearing.entries {
                         let at = from.entry + c * from.stride;
                         let value = evaluate([r1[at], r2[at], r3[at], r4[at], r5[at]], basis);

@@ -195,8 +195,8 @@ impl Kernel for PieceGap<'_> {
     #[inline(always)]
     fn run(self) -> f64 {
         let n = self.width;
-        let (p1, p2, p3, p4, p5) = columns(self.piece, n);
-        let (_, d2, d3, d4, d5) = columns(self.draft, n);
+        let [p1, p2, p3, p4, p5] = columns(self.piece, n);
+        let [_, d2, d3, d4, d5] = columns(self.draft, n);
         let mut gap = 0.0_f64;
         for i in 0..n {
             // |Δr₂| + |Δr₃|/4 + 4|Δr₄|/27 + |Δr₅|/16 bounds the difference on [0, 1].
@@ -232,7 +232,7 @@ impl Kernel for ContinuePiece<'_> {
     #[inline(always)]
     fn run(self) {
         let n = self.width;
-        let (p1, p2, p3, p4, p5) = columns(self.last, n);
+        let [p1, p2, p3, p4, p5] = columns(self.last, n);
         let (r1, rest) = self.draft.split_at_mut(n);
         let (r2, rest) = rest.split_at_mut(n);
         let (r3, rest) = rest.split_at_mut(n);
@@ -260,12 +260,12 @@ impl Kernel for ContinuePiece<'_> {
 
 /// r₁ … r₅ of a piece, one column each.
 #[inline(always)]
-fn columns(piece: &[f64], n: usize) -> (&[f64], &[f64], &[f64], &[f64], &[f64]) {
+pub(crate) fn columns(piece: &[f64], n: usize) -> [&[f64]; 5] {
     let (r1, rest) = piece.split_at(n);
     let (r2, rest) = rest.split_at(n);
     let (r3, rest) = rest.split_at(n);
     let (r4, r5) = rest.split_at(n);
-    (r1, r2, r3, r4, &r5[..n])
+    [r1, r2, r3, r4, &r5[..n]]
 }
 
 /// Σ over the terms of one message entry: r₁ + b₂ r₂ + … + b₅ r₅.

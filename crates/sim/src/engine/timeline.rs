@@ -155,7 +155,7 @@ impl<'a> Timeline<'a> {
         let mut arrivals = std::mem::take(&mut self.arrivals);
         for (index, _) in &self.clocks {
             arrivals.clear();
-            self.network.delays[*index].arrivals(t_s, &mut arrivals);
+            self.network.delays[*index].arrivals(t_s, self.end_s, &mut arrivals);
             for &arrival in &arrivals {
                 let budget_left = generation < 2 || self.second_waiting < SECOND_GENERATION_BUDGET;
                 if arrival > t_s + MERGE_S && arrival < self.end_s && budget_left {

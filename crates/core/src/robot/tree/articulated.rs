@@ -141,6 +141,7 @@ impl Tree {
         LengthError::check("tau", n, tau.len())?;
         LengthError::check("ddq", n, ddq.len())?;
         LengthError::check("scratch", n, scratch.articulated.len())?;
+        self.seat(scratch, q);
         let TreeScratch { slots, articulated, unit: still, column: drive, .. } = scratch;
 
         still.fill(S::ZERO);
@@ -159,27 +160,29 @@ impl Tree {
         while i > 0 {
             i -= 1;
             let body = &self.bodies[i];
-            let Slot { seat, wrench, .. } = slots[i + 1];
-            let gathered = articulated[i].inertia;
+            let Slot { seat, wrench, .. } = &slots[i + 1];
+            let gathered = &articulated[i].inertia;
             let u = gathered.column(body.kind);
             let inverse = S::splat(1.0) / u.along(body.kind);
             let drive = (drive[i] * S::splat(body.sign) - wrench.along(body.kind)) * inverse;
+            let free = gathered.minus_outer(&u, inverse);
             articulated[i].u = u;
             articulated[i].inverse = inverse;
             articulated[i].drive = drive;
             if body.parent_slot > 0 {
                 let parent = body.parent_slot - 1;
-                let free = gathered.minus_outer(&u, inverse).seen_from_parent(&seat);
+                let free = free.seen_from_parent(seat);
                 articulated[parent].inertia = articulated[parent].inertia.plus(&free);
                 let reaction = Wrench { f: u.f.scaled_plus(drive, wrench.f), n: u.n.scaled_plus(drive, wrench.n) };
+                let felt = seat.felt_by_parent(&reaction);
                 let held = &mut slots[body.parent_slot].wrench;
-                *held = held.plus(&seat.felt_by_parent(&reaction));
+                *held = held.plus(&felt);
             }
         }
         while i < n {
             let body = &self.bodies[i];
             let seat = &slots[i + 1].seat;
-            let Articulated { u, inverse, drive, .. } = articulated[i];
+            let Articulated { u, inverse, drive, .. } = &articulated[i];
             let [alpha, accel] = match body.parent_slot {
                 0 => [Vec3::ZERO; 2],
                 slot => articulated[slot - 1].delta,
@@ -187,7 +190,7 @@ impl Tree {
             let mut accel = seat.e.transpose_times(alpha.cross_plus(seat.p, accel));
             let mut alpha = seat.e.transpose_times(alpha);
             let resisted = u.n.dot(alpha) + u.f.dot(accel);
-            let joint = resisted.neg_mul_add(inverse, drive);
+            let joint = resisted.neg_mul_add(*inverse, *drive);
             match body.kind {
                 JointKind::Revolute => alpha.z = alpha.z + joint,
                 JointKind::Prismatic => accel.z = accel.z + joint,

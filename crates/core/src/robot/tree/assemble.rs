@@ -149,7 +149,8 @@ impl Tree {
     /// Lumps rigidly held links into the moving body that carries them, or drops them with the base, and numbers the
     /// moving bodies in the order of their links. `gravity` in the base frame, m/s², usually `[0, 0, -9.81]`.
     ///
-    /// Whether the inertias make physical sense is another question, see `physical.rs`.
+    /// Whether the inertias make physical sense is another question: see [`inertia_defects`](super::inertia_defects) and
+    /// [`Tree::check_mass_matrix`].
     ///
     /// # Errors
     /// [`TreeError`] for the first link that is malformed.

@@ -5,7 +5,7 @@
 
 use super::JointKind;
 use super::model::{Tree, TreeScratch};
-use super::motion::{Seat, Wrench};
+use super::motion::Wrench;
 use super::spatial::Vec3;
 use crate::{LengthError, Scalar};
 
@@ -24,12 +24,12 @@ impl Tree {
         LengthError::check("theta", self.theta_len(), theta.len())?;
         LengthError::check("mass matrix", n * n, m.len())?;
         LengthError::check("scratch", n, scratch.composite.len())?;
+        self.seat(scratch, q);
         let TreeScratch { slots, composite, .. } = scratch;
 
         let inertias = theta.as_chunks::<10>().0;
         let mut i = 0;
         while i < n {
-            slots[i + 1].seat = Seat::of(&self.bodies[i], q[i]);
             composite[i] = self.bodies[i].inner(&inertias[i]);
             i += 1;
         }

@@ -33,7 +33,7 @@ impl<S: Scalar> Lagrangian<S> for Tree {
         y_theta: &mut [S],
         yt_s: &mut [S],
     ) -> Result<(), LengthError> {
-        self.fused(&mut scratch.slots, motion, theta, s, y_theta, yt_s)
+        self.fused(scratch, motion, theta, s, y_theta, yt_s)
     }
 
     #[inline(always)]
@@ -171,7 +171,7 @@ impl<S: Scalar> Kernel for Fused<'_, '_, S> {
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        self.tree.fused(&mut self.scratch.slots, self.motion, self.theta, self.s, self.y_theta, self.yt_s)
+        self.tree.fused(self.scratch, self.motion, self.theta, self.s, self.y_theta, self.yt_s)
     }
 }
 
@@ -233,6 +233,7 @@ impl<S: Scalar> Kernel for CoriolisMatrix<'_, S> {
         LengthError::check("theta", tree.theta_len(), theta.len())?;
         LengthError::check("Coriolis matrix", n * n, c.len())?;
         LengthError::check("scratch", n, scratch.unit.len())?;
+        tree.seat(scratch, q);
         let mut j = 0;
         while j < n {
             scratch.point_at(j);
@@ -271,6 +272,7 @@ impl<S: Scalar> Kernel for Gravity<'_, S> {
         LengthError::check("theta", tree.theta_len(), theta.len())?;
         LengthError::check("gravity", n, g.len())?;
         LengthError::check("scratch", n, scratch.unit.len())?;
+        tree.seat(scratch, q);
         let TreeScratch { slots, unit: still, .. } = scratch;
         still.fill(S::ZERO);
         tree.wrenches(slots, tree.base(), TwoVelocity { q, dq: still, z: still, dz: still }, theta);
@@ -297,6 +299,7 @@ impl<S: Scalar> Kernel for Regressor<'_, '_, S> {
         motion.check(n)?;
         LengthError::check("regressor", n * width, y.len())?;
         LengthError::check("scratch", n, scratch.unit.len())?;
+        tree.seat(scratch, motion.q);
         let mut i = 0;
         while i < n {
             scratch.point_at(i);

@@ -6,10 +6,12 @@ mod composite;
 mod lagrangian;
 mod model;
 mod motion;
+mod physical;
 mod placement;
 mod spatial;
 mod sweep;
 
 pub use assemble::{Anchor, Assembled, LinkJoint, LinkSpec, TreeError, inertia_about_frame};
 pub use model::{JointKind, Tree, TreeScratch};
+pub use physical::{InertiaDefect, MassMatrixError, inertia_defects};
 pub use placement::Placement;

@@ -264,6 +264,8 @@ impl Tree {
             slots: vec![Slot::BASE; n + 1],
             articulated: vec![Articulated::ZERO; n],
             composite: vec![Inertia::ZERO; n],
+            sin: vec![S::ZERO; n],
+            cos: vec![S::ZERO; n],
             unit: vec![S::ZERO; n],
             column: vec![S::ZERO; n],
             row: vec![S::ZERO; 10 * n + self.damped.len()],
@@ -285,6 +287,8 @@ pub struct TreeScratch<S> {
     pub(super) slots: Vec<Slot<S>>,
     pub(super) articulated: Vec<Articulated<S>>,
     pub(super) composite: Vec<Inertia<S>>,
+    pub(super) sin: Vec<S>,
+    pub(super) cos: Vec<S>,
     /// A unit vector or zeros, for columns of the Coriolis matrix and rows of Y.
     pub(super) unit: Vec<S>,
     pub(super) column: Vec<S>,

@@ -48,13 +48,13 @@ impl<S: Scalar> Seat<S> {
     pub(super) const AT_PARENT: Self = Seat { e: Mat3::ZERO, p: Vec3::ZERO };
 
     #[inline(always)]
-    pub(super) fn of(body: &Body, q: S) -> Self {
+    pub(super) fn of(body: &Body, q: S, sin: S, cos: S) -> Self {
         let Mat3 { x, y, z }: Mat3<S> = Mat3::splat(&body.rotation);
         let p = Vec3::splat(body.translation);
-        let q = q * S::splat(body.sign);
+        let sign = S::splat(body.sign);
         match body.kind {
             JointKind::Revolute => {
-                let (sin, cos) = q.sin_cos();
+                let sin = sin * sign;
                 let turned_x =
                     Vec3::new(y.x.mul_add(sin, x.x * cos), y.y.mul_add(sin, x.y * cos), y.z.mul_add(sin, x.z * cos));
                 let turned_y = Vec3::new(
@@ -64,7 +64,7 @@ impl<S: Scalar> Seat<S> {
                 );
                 Seat { e: Mat3 { x: turned_x, y: turned_y, z }, p }
             }
-            JointKind::Prismatic => Seat { e: Mat3 { x, y, z }, p: z.scaled_plus(q, p) },
+            JointKind::Prismatic => Seat { e: Mat3 { x, y, z }, p: z.scaled_plus(q * sign, p) },
         }
     }
 

@@ -1,16 +1,29 @@
 //! The fused sweep: Y(q, q̇, z, ż) ϑ and Yᵀs in one pass up the tree and one back. The derivation is in `motion.rs`.
 
-use super::model::{Slot, Tree, TreeScratch};
+use super::JointKind;
+use super::model::{Body, Slot, Tree, TreeScratch};
 use super::motion::{Motion, Rates, Seat, Wrench};
 use crate::robot::TwoVelocity;
 use crate::{LengthError, Scalar};
 
 impl Tree {
+    /// Places every body on its parent.
+    #[inline(always)]
+    pub(super) fn seat<S: Scalar>(&self, scratch: &mut TreeScratch<S>, q: &[S]) {
+        let TreeScratch { slots, sin, cos, .. } = scratch;
+        S::sin_cos_each(q, sin, cos);
+        let mut i = 0;
+        while i < self.bodies.len() {
+            slots[i + 1].seat = Seat::of(&self.bodies[i], q[i], sin[i], cos[i]);
+            i += 1;
+        }
+    }
+
     /// `y_theta` = Yϑ and `yt_s` = Yᵀs.
     #[inline(always)]
     pub(super) fn fused<S: Scalar>(
         &self,
-        slots: &mut [Slot<S>],
+        scratch: &mut TreeScratch<S>,
         motion: TwoVelocity<'_, S>,
         theta: &[S],
         s: &[S],
@@ -23,23 +36,26 @@ impl Tree {
         LengthError::check("s", n, s.len())?;
         LengthError::check("y_theta", n, y_theta.len())?;
         LengthError::check("yt_s", self.theta_len(), yt_s.len())?;
-        LengthError::check("scratch", n + 1, slots.len())?;
+        LengthError::check("scratch", n, scratch.sin.len())?;
 
+        self.seat(scratch, motion.q);
+        let slots = scratch.slots.as_mut_slice();
         slots[0].motion = self.base();
         let (inertias, dampings) = theta.split_at(10 * n);
         let (gradients, damping_gradients) = yt_s.split_at_mut(10 * n);
         let (inertias, gradients) = (inertias.as_chunks::<10>().0, gradients.as_chunks_mut::<10>().0);
-        let half = S::splat(0.5);
         let mut i = 0;
         while i < n {
             let body = &self.bodies[i];
-            let sign = S::splat(body.sign);
-            let rates = Rates { dq: motion.dq[i] * sign, half_z: motion.z[i] * sign * half, dz: motion.dz[i] * sign };
-            let parent = slots[body.parent_slot].motion;
-            let seat = Seat::of(body, motion.q[i]);
-            let moved = parent.child(&seat, body.kind, rates).with_test(&parent, &seat, body.kind, s[i] * sign);
-            gradients[i] = body.outer(moved.gradient());
-            slots[i + 1] = Slot { seat, motion: moved, wrench: moved.wrench(&body.inner(&inertias[i])) };
+            let (done, rest) = slots.split_at_mut(i + 1);
+            let (parent, slot) = (&done[body.parent_slot].motion, &mut rest[0]);
+            let rates = rates(motion, i, body.sign);
+            let test = s[i] * S::splat(body.sign);
+            // One copy of the code per kind: a choice per number would cost more than the branch.
+            gradients[i] = match body.kind {
+                JointKind::Revolute => step(body, parent, slot, JointKind::Revolute, rates, test, &inertias[i]),
+                JointKind::Prismatic => step(body, parent, slot, JointKind::Prismatic, rates, test, &inertias[i]),
+            };
             i += 1;
         }
         self.fold_back(slots, y_theta);
@@ -50,7 +66,7 @@ impl Tree {
         Ok(())
     }
 
-    /// Yᵀs alone.
+    /// Yᵀs alone, with the bodies seated.
     #[inline(always)]
     pub(super) fn pairing<S: Scalar>(
         &self,
@@ -63,17 +79,15 @@ impl Tree {
         slots[0].motion = self.base();
         let (gradients, damping_gradients) = yt_s.split_at_mut(10 * n);
         let gradients = gradients.as_chunks_mut::<10>().0;
-        let half = S::splat(0.5);
         let mut i = 0;
         while i < n {
             let body = &self.bodies[i];
-            let sign = S::splat(body.sign);
-            let rates = Rates { dq: motion.dq[i] * sign, half_z: motion.z[i] * sign * half, dz: motion.dz[i] * sign };
-            let parent = slots[body.parent_slot].motion;
-            let seat = Seat::of(body, motion.q[i]);
-            let moved = parent.child(&seat, body.kind, rates).with_test(&parent, &seat, body.kind, s[i] * sign);
+            let (done, rest) = slots.split_at_mut(i + 1);
+            let (parent, slot) = (&done[body.parent_slot].motion, &mut rest[0]);
+            let test = s[i] * S::splat(body.sign);
+            let moved = moved_and_tested(parent, &slot.seat, body.kind, rates(motion, i, body.sign), test);
             gradients[i] = body.outer(moved.gradient());
-            slots[i + 1] = Slot { seat, motion: moved, wrench: Wrench::ZERO };
+            slot.motion = moved;
             i += 1;
         }
         for (gradient, joint) in damping_gradients.iter_mut().zip(&self.damped) {
@@ -81,8 +95,7 @@ impl Tree {
         }
     }
 
-    /// M ż + C z + g, without damping and without the test motion; `fold` says whether to go back down for the torque
-    /// or to leave the wrenches of single bodies in `slots`.
+    /// M ż + C z + g, without damping and without the test motion: the wrenches of single bodies, seated before.
     #[inline(always)]
     pub(super) fn wrenches<S: Scalar>(
         &self,
@@ -93,15 +106,18 @@ impl Tree {
     ) {
         slots[0].motion = base;
         let inertias = theta.as_chunks::<10>().0;
-        let half = S::splat(0.5);
         let mut i = 0;
         while i < self.bodies.len() {
             let body = &self.bodies[i];
-            let sign = S::splat(body.sign);
-            let rates = Rates { dq: motion.dq[i] * sign, half_z: motion.z[i] * sign * half, dz: motion.dz[i] * sign };
-            let seat = Seat::of(body, motion.q[i]);
-            let moved = slots[body.parent_slot].motion.child(&seat, body.kind, rates);
-            slots[i + 1] = Slot { seat, motion: moved, wrench: moved.wrench(&body.inner(&inertias[i])) };
+            let (done, rest) = slots.split_at_mut(i + 1);
+            let (parent, slot) = (&done[body.parent_slot].motion, &mut rest[0]);
+            let rates = rates(motion, i, body.sign);
+            let moved = match body.kind {
+                JointKind::Revolute => parent.child(&slot.seat, JointKind::Revolute, rates),
+                JointKind::Prismatic => parent.child(&slot.seat, JointKind::Prismatic, rates),
+            };
+            slot.wrench = moved.wrench(&body.inner(&inertias[i]));
+            slot.motion = moved;
             i += 1;
         }
     }
@@ -109,18 +125,61 @@ impl Tree {
     /// Adds every body's wrench to its parent's, outermost first, and reads off the joint torques.
     #[inline(always)]
     pub(super) fn fold_back<S: Scalar>(&self, slots: &mut [Slot<S>], torque: &mut [S]) {
+        // Along a chain the wrench is handed on and never waits for memory.
+        let mut carried = Wrench::ZERO;
         let mut i = self.bodies.len();
         while i > 0 {
             i -= 1;
             let body = &self.bodies[i];
-            let Slot { seat, wrench, .. } = slots[i + 1];
+            let Slot { seat, wrench, .. } = &slots[i + 1];
+            let wrench = wrench.plus(&carried);
             torque[i] = wrench.along(body.kind) * S::splat(body.sign);
+            carried = Wrench::ZERO;
             if body.parent_slot > 0 {
-                let parent = &mut slots[body.parent_slot].wrench;
-                *parent = parent.plus(&seat.felt_by_parent(&wrench));
+                let felt = seat.felt_by_parent(&wrench);
+                if body.parent_slot == i {
+                    carried = felt;
+                } else {
+                    let parent = &mut slots[body.parent_slot].wrench;
+                    *parent = parent.plus(&felt);
+                }
             }
         }
     }
+}
+
+#[inline(always)]
+fn rates<S: Scalar>(motion: TwoVelocity<'_, S>, i: usize, sign: f64) -> Rates<S> {
+    let sign = S::splat(sign);
+    Rates { dq: motion.dq[i] * sign, half_z: motion.z[i] * sign * S::splat(0.5), dz: motion.dz[i] * sign }
+}
+
+/// Moves one body, leaves what it takes in `slot`, and returns its part of Yᵀs.
+#[inline(always)]
+fn step<S: Scalar>(
+    body: &Body,
+    parent: &Motion<S>,
+    slot: &mut Slot<S>,
+    kind: JointKind,
+    rates: Rates<S>,
+    test: S,
+    inertia: &[S; 10],
+) -> [S; 10] {
+    let moved = parent.child(&slot.seat, kind, rates).with_test(parent, &slot.seat, kind, test);
+    slot.wrench = moved.wrench(&body.inner(inertia));
+    slot.motion = moved;
+    body.outer(moved.gradient())
+}
+
+#[inline(always)]
+fn moved_and_tested<S: Scalar>(
+    parent: &Motion<S>,
+    seat: &Seat<S>,
+    kind: JointKind,
+    rates: Rates<S>,
+    test: S,
+) -> Motion<S> {
+    parent.child(seat, kind, rates).with_test(parent, seat, kind, test)
 }
 
 /// Builds the rows and columns of matrices: the kernels' results for unit vectors.

@@ -1,0 +1,173 @@
+//! Properties 1–3 of Lagrangian robots, and that all methods of one robot tell the same story: trees, the planar arm, the
+//! point mass.
+
+#![allow(clippy::unwrap_used)] // In helpers too.
+
+mod common;
+
+use common::dual::{Dual, constants, duals};
+use common::random::Random;
+use common::{dot, error, times, transpose_times};
+use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkSpec, Placement, Tree, inertia_about_frame};
+use forwardstep_core::robot::{Lagrangian, PlanarArm, PlanarLinks, PointMass, TwoVelocity};
+use proptest::prelude::*;
+
+const TOLERANCE: f64 = 1.0e-11;
+
+/// Positions, velocities, reference, s and τ for a robot.
+struct Case {
+    q: Vec<f64>,
+    dq: Vec<f64>,
+    z: Vec<f64>,
+    dz: Vec<f64>,
+    s: Vec<f64>,
+}
+
+impl Case {
+    fn new(random: &mut Random, n: usize) -> Self {
+        let mut column = |scale| random.column(n, scale);
+        Case { q: column(3.0), dq: column(2.0), z: column(2.0), dz: column(5.0), s: column(3.0) }
+    }
+
+    fn motion(&self) -> TwoVelocity<'_, f64> {
+        TwoVelocity { q: &self.q, dq: &self.dq, z: &self.z, dz: &self.dz }
+    }
+}
+
+/// Yϑ and Yᵀs.
+fn products<R: Lagrangian<f64>>(robot: &R, case: &Case, theta: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let (mut y_theta, mut yt_s) = (vec![0.0; robot.dof()], vec![0.0; robot.parameter_count()]);
+    let motion = case.motion();
+    robot.regressor_products(&mut robot.scratch(), motion, theta, &case.s, &mut y_theta, &mut yt_s).unwrap();
+    (y_theta, yt_s)
+}
+
+/// Everything a robot claims, for parameters ϑ that need not be physical; `damping` is diag D.
+fn consistent<R: Lagrangian<f64> + Lagrangian<Dual>>(robot: &R, case: &Case, theta: &[f64], damping: &[f64]) {
+    let n = Lagrangian::<f64>::dof(robot);
+    let width = Lagrangian::<f64>::parameter_count(robot);
+    let mut scratch = Lagrangian::<f64>::scratch(robot);
+    let (y_theta, yt_s) = products(robot, case, theta);
+
+    // Linear in ϑ: Y ϑ with Y itself; and Yᵀs.
+    let mut y = vec![0.0; n * width];
+    robot.regressor(&mut scratch, case.motion(), &mut y).unwrap();
+    assert!(error(&times(&y, theta), &y_theta) < TOLERANCE, "Yϑ");
+    assert!(error(&transpose_times(&y, &case.s), &yt_s) < TOLERANCE, "Yᵀs");
+    let (left, right) = (dot(&case.s, &y_theta), dot(theta, &yt_s));
+    assert!((left - right).abs() < TOLERANCE * (1.0 + left.abs()), "sᵀYϑ");
+
+    // M ż + C z + g + D z.
+    let (mut m, mut c, mut g) = (vec![0.0; n * n], vec![0.0; n * n], vec![0.0; n]);
+    robot.mass_matrix(&mut scratch, &case.q, theta, &mut m).unwrap();
+    robot.coriolis_matrix(&mut scratch, &case.q, &case.dq, theta, &mut c).unwrap();
+    robot.gravity(&mut scratch, &case.q, theta, &mut g).unwrap();
+    let (inertial, coriolis) = (times(&m, &case.dz), times(&c, &case.z));
+    let sum: Vec<f64> = (0..n).map(|i| inertial[i] + coriolis[i] + g[i] + damping[i] * case.z[i]).collect();
+    assert!(error(&sum, &y_theta) < TOLERANCE, "M ż + C z + g + D z");
+
+    // Symmetry of M; skew-symmetry of Ṁ − 2C, from which Ṁ = C + Cᵀ with the symmetry of M.
+    let transposed: Vec<f64> = (0..n * n).map(|k| m[k % n * n + k / n]).collect();
+    assert!(error(&m, &transposed) < TOLERANCE, "M − Mᵀ");
+    let mut dm = vec![Dual { value: 0.0, slope: 0.0 }; n * n];
+    let mut dual_scratch = Lagrangian::<Dual>::scratch(robot);
+    robot.mass_matrix(&mut dual_scratch, &duals(&case.q, &case.dq), &constants(theta), &mut dm).unwrap();
+    let rate: Vec<f64> = dm.iter().map(|m| m.slope).collect();
+    let sum: Vec<f64> = (0..n * n).map(|k| c[k] + c[k % n * n + k / n]).collect();
+    assert!(error(&sum, &rate) < TOLERANCE, "Ṁ − C − Cᵀ");
+
+    // The Coriolis matrix is the one of Christoffel symbols: C(q, x) y = C(q, y) x.
+    let mut other = vec![0.0; n * n];
+    robot.coriolis_matrix(&mut scratch, &case.q, &case.z, theta, &mut other).unwrap();
+    assert!(error(&times(&other, &case.dq), &coriolis) < TOLERANCE, "C(q, z) q̇ − C(q, q̇) z");
+}
+
+/// For physical ϑ: forward dynamics undoes inverse dynamics, and M is positive definite.
+fn invertible<R: Lagrangian<f64>>(robot: &R, case: &Case, theta: &[f64]) {
+    let n = robot.dof();
+    let mut scratch = robot.scratch();
+    let mut ddq = vec![0.0; n];
+    robot.forward_dynamics(&mut scratch, &case.q, &case.dq, theta, &case.s, &mut ddq).unwrap();
+    let forward = Case { q: case.q.clone(), dq: case.dq.clone(), z: case.dq.clone(), dz: ddq, s: case.s.clone() };
+    let (tau, _) = products(robot, &forward, theta);
+    // By the residual, relative to the terms that cancel in it.
+    let size = forward.dz.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
+    let residual = tau.iter().zip(&case.s).fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()));
+    assert!(residual < 1.0e-10 * size, "{residual:e} of {size:e}");
+
+    let mut m = vec![0.0; n * n];
+    robot.mass_matrix(&mut scratch, &case.q, theta, &mut m).unwrap();
+    let energy = dot(&case.s, &times(&m, &case.s));
+    assert!(energy > 0.0, "sᵀMs = {energy}");
+}
+
+/// diag D of a tree.
+fn damping_of(tree: &Tree, theta: &[f64]) -> Vec<f64> {
+    let mut damping = vec![0.0; tree.joint_count()];
+    for (joint, d) in tree.damped_joints().iter().zip(&theta[10 * tree.joint_count()..]) {
+        damping[*joint] = *d;
+    }
+    damping
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn prop_tree_is_lagrangian(seed in any::<u64>(), joints in 1_usize..9) {
+        let mut random = Random::new(seed);
+        let assembled = random.tree(joints);
+        let tree = &assembled.tree;
+        let case = Case::new(&mut random, joints);
+        consistent(tree, &case, &assembled.theta, &damping_of(tree, &assembled.theta));
+        invertible(tree, &case, &assembled.theta);
+        // An estimate ϑ̂ may be anything.
+        let estimate = random.column(assembled.theta.len(), 3.0);
+        consistent(tree, &case, &estimate, &damping_of(tree, &estimate));
+        consistent(tree, &case, &vec![0.0; estimate.len()], &vec![0.0; joints]);
+        let samples = tree.check_mass_matrix(&assembled.theta, &vec![[f64::NEG_INFINITY, f64::INFINITY]; joints], 20);
+        prop_assert_eq!(samples, Ok(()));
+    }
+
+    #[test]
+    fn prop_planar_arm_is_lagrangian(seed in any::<u64>()) {
+        let mut random = Random::new(seed);
+        let case = Case::new(&mut random, 2);
+        consistent(&PlanarArm, &case, &random.column(5, 3.0), &[0.0; 2]);
+        let mut positive = || 1.5 + random.number();
+        let arm = PlanarLinks::uniform([positive(), positive()], [positive(), positive()]);
+        invertible(&PlanarArm, &case, &arm.theta());
+    }
+
+    #[test]
+    fn prop_point_mass_is_lagrangian(seed in any::<u64>(), dimension in 1_usize..5) {
+        let mut random = Random::new(seed);
+        let case = Case::new(&mut random, dimension);
+        let robot = PointMass { dimension };
+        consistent(&robot, &case, &random.column(1, 3.0), &vec![0.0; dimension]);
+        invertible(&robot, &case, &[1.5 + random.number()]);
+    }
+
+    /// Two uniform rods that turn about −y, seen as a tree: x forward, z up, q₁ from the horizontal.
+    #[test]
+    fn prop_planar_arm_is_a_tree(seed in any::<u64>()) {
+        let mut random = Random::new(seed);
+        let mut positive = || 1.5 + random.number();
+        let links = PlanarLinks::uniform([positive(), positive()], [positive(), positive()]);
+        let rod = |k: usize, parent, x: f64| {
+            let (m, i, c) = (links.mass_kg[k], links.inertia_kg_m2[k], links.com_m[k]);
+            LinkSpec {
+                parent,
+                x_parent_joint: Placement { translation: [x, 0.0, 0.0], ..Placement::IDENTITY },
+                joint: LinkJoint::Moving { kind: JointKind::Revolute, axis: [0.0, -1.0, 0.0], damping: 0.0 },
+                inertia: inertia_about_frame(m, [c, 0.0, 0.0], [0.0, 0.0, i, 0.0, 0.0, i]),
+            }
+        };
+        let specs = [rod(0, None, 0.0), rod(1, Some(0), links.length_m[0])];
+        let assembled = Tree::assemble(&specs, [0.0, 0.0, -links.gravity_m_s2]).unwrap();
+        let case = Case::new(&mut random, 2);
+        let (tree, _) = products(&assembled.tree, &case, &assembled.theta);
+        let (closed, _) = products(&PlanarArm, &case, &links.theta());
+        prop_assert!(error(&tree, &closed) < TOLERANCE);
+    }
+}

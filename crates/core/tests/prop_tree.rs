@@ -1,0 +1,278 @@
+//! What is particular to trees: lumping, locking, lengths, bits.
+
+#![allow(clippy::unwrap_used)] // In helpers too.
+
+mod common;
+
+use common::error;
+use common::random::{Random, inertia_of};
+use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkSpec, Placement, Tree, TreeScratch};
+use forwardstep_core::robot::{Lagrangian, TwoVelocity};
+use forwardstep_core::{Lanes, LengthError, Scalar};
+use proptest::prelude::*;
+
+const TOLERANCE: f64 = 1.0e-11;
+const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
+
+/// q, dq, z, dz, s.
+type Columns<S> = [Vec<S>; 5];
+
+fn columns(random: &mut Random, n: usize) -> Columns<f64> {
+    [random.column(n, 3.0), random.column(n, 2.0), random.column(n, 2.0), random.column(n, 5.0), random.column(n, 3.0)]
+}
+
+fn motion<S>([q, dq, z, dz, _]: &Columns<S>) -> TwoVelocity<'_, S> {
+    TwoVelocity { q, dq, z, dz }
+}
+
+/// Yϑ, Yᵀs and q̈, with run-time dispatch.
+fn dispatched<S: Scalar>(tree: &Tree, x: &Columns<S>, theta: &[S]) -> [Vec<S>; 3] {
+    let n = tree.joint_count();
+    let mut scratch = tree.scratch();
+    let [mut y_theta, mut yt_s, mut ddq] = [vec![S::ZERO; n], vec![S::ZERO; theta.len()], vec![S::ZERO; n]];
+    tree.slotine_li(&mut scratch, motion(x), theta, &x[4], &mut y_theta, &mut yt_s).unwrap();
+    tree.acceleration(&mut scratch, &x[0], &x[1], theta, &x[4], &mut ddq).unwrap();
+    [y_theta, yt_s, ddq]
+}
+
+/// The same compiled for the baseline instruction set, where a multiply-add is a call of software.
+#[inline(never)]
+fn plain<S: Scalar>(tree: &Tree, x: &Columns<S>, theta: &[S]) -> [Vec<S>; 3] {
+    let n = tree.joint_count();
+    let mut scratch = tree.scratch();
+    let [mut y_theta, mut yt_s, mut ddq] = [vec![S::ZERO; n], vec![S::ZERO; theta.len()], vec![S::ZERO; n]];
+    tree.regressor_products(&mut scratch, motion(x), theta, &x[4], &mut y_theta, &mut yt_s).unwrap();
+    tree.forward_dynamics(&mut scratch, &x[0], &x[1], theta, &x[4], &mut ddq).unwrap();
+    [y_theta, yt_s, ddq]
+}
+
+fn bits(x: &[f64]) -> Vec<u64> {
+    x.iter().map(|x| x.to_bits()).collect()
+}
+
+/// The eight robots of a vector, and each of them alone.
+fn lanes_against_single<const N: usize>(tree: &Tree, random: &mut Random) {
+    let (n, width) = (tree.joint_count(), tree.theta_len());
+    let robots: [Columns<f64>; N] = std::array::from_fn(|_| columns(random, n));
+    let thetas: [Vec<f64>; N] = std::array::from_fn(|_| random.column(width, 3.0));
+    let packed: Columns<Lanes<N>> =
+        std::array::from_fn(|k| (0..n).map(|i| Lanes(std::array::from_fn(|robot| robots[robot][k][i]))).collect());
+    let theta: Vec<_> = (0..width).map(|i| Lanes(std::array::from_fn(|robot| thetas[robot][i]))).collect();
+    let (fast, slow) = (dispatched(tree, &packed, &theta), plain(tree, &packed, &theta));
+    for robot in 0..N {
+        let (single, plain) =
+            (dispatched(tree, &robots[robot], &thetas[robot]), plain(tree, &robots[robot], &thetas[robot]));
+        for k in 0..3 {
+            let lane = |result: &[Vec<Lanes<N>>; 3]| result[k].iter().map(|x| x.0[robot].to_bits()).collect::<Vec<_>>();
+            assert_eq!(lane(&fast), bits(&single[k]), "lanes, output {k}");
+            assert_eq!(lane(&slow), bits(&single[k]), "lanes without dispatch, output {k}");
+            assert_eq!(bits(&plain[k]), bits(&single[k]), "one robot without dispatch, output {k}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(100))]
+
+    #[test]
+    fn prop_same_bits_in_every_lane_and_without_dispatch(seed in any::<u64>(), joints in 1_usize..8) {
+        let mut random = Random::new(seed);
+        let assembled = random.tree(joints);
+        lanes_against_single::<8>(&assembled.tree, &mut random);
+        lanes_against_single::<4>(&assembled.tree, &mut random);
+        lanes_against_single::<3>(&assembled.tree, &mut random);
+    }
+
+    /// Half of every body's points are stated in a frame of their own, held rigidly, and once more rigidly by that.
+    #[test]
+    fn prop_lumping_a_fixed_link_changes_nothing(seed in any::<u64>(), joints in 1_usize..7) {
+        let mut random = Random::new(seed);
+        let mut whole = random.links(joints);
+        let mut split = vec![LinkSpec {
+            parent: None,
+            x_parent_joint: random.placement(),
+            joint: LinkJoint::Fixed,
+            inertia: inertia_of(&random.cloud()),
+        }];
+        let base = split[0].x_parent_joint;
+        let mut renumbered = Vec::new();
+        for link in &mut whole {
+            let (own, second, third) = (random.cloud(), random.cloud(), random.cloud());
+            let (x_link_second, x_second_third) = (random.placement(), random.placement());
+            let seen = |cloud: &[(f64, [f64; 3])], x: Placement| cloud.iter().map(|(m, r)| (*m, x.point(*r))).collect();
+            let second_seen: Vec<_> = seen(&second, x_link_second);
+            let third_seen: Vec<_> = seen(&third, x_link_second.compose(&x_second_third));
+            link.inertia = inertia_of(&[own.clone(), second_seen, third_seen].concat());
+            let at = split.len();
+            split.push(LinkSpec {
+                // What the base carries sits on its fixed link instead.
+                parent: Some(link.parent.map_or(0, |parent| renumbered[parent])),
+                x_parent_joint: match link.parent {
+                    None => base.inverse().compose(&link.x_parent_joint),
+                    Some(_) => link.x_parent_joint,
+                },
+                inertia: inertia_of(&own),
+                ..*link
+            });
+            let held = |parent, x_parent_joint, cloud: &[_]| LinkSpec {
+                parent: Some(parent),
+                x_parent_joint,
+                joint: LinkJoint::Fixed,
+                inertia: inertia_of(cloud),
+            };
+            split.push(held(at, x_link_second, &second));
+            split.push(held(at + 1, x_second_third, &third));
+            renumbered.push(at);
+        }
+        let (whole, split) = (Tree::assemble(&whole, GRAVITY).unwrap(), Tree::assemble(&split, GRAVITY).unwrap());
+        prop_assert!(error(&split.theta, &whole.theta) < TOLERANCE);
+        prop_assert_eq!(&split.moving, &renumbered);
+        let x = columns(&mut random, joints);
+        let ours = dispatched(&split.tree, &x, &split.theta);
+        let theirs = dispatched(&whole.tree, &x, &whole.theta);
+        for k in 0..2 {
+            prop_assert!(error(&ours[k], &theirs[k]) < TOLERANCE, "output {}", k);
+        }
+    }
+
+    /// A joint locked at a value behaves as one that stands still there.
+    #[test]
+    fn prop_locking_a_joint_leaves_the_others(seed in any::<u64>(), joints in 2_usize..7) {
+        let mut random = Random::new(seed);
+        let mut links = random.links(joints);
+        // A link lumped into the base would change no joint's torque, so the locked joint is not the first.
+        links[1].parent = Some(0);
+        let free = Tree::assemble(&links, GRAVITY).unwrap();
+        let locked_at = 1 + random.below(joints - 1);
+        let mut x = columns(&mut random, joints);
+        links[locked_at] = links[locked_at].locked(x[0][locked_at]);
+        let locked = Tree::assemble(&links, GRAVITY).unwrap();
+        for column in &mut x[1..4] {
+            column[locked_at] = 0.0;
+        }
+        let [mut torque, ..] = dispatched(&free.tree, &x, &free.theta);
+        torque.remove(locked_at);
+        for column in &mut x {
+            column.remove(locked_at);
+        }
+        let [of_locked, ..] = dispatched(&locked.tree, &x, &locked.theta);
+        prop_assert!(error(&of_locked, &torque) < TOLERANCE);
+    }
+
+    #[test]
+    fn prop_placements_form_a_group(seed in any::<u64>()) {
+        let mut random = Random::new(seed);
+        let (a, b, point) = (random.placement(), random.placement(), random.vector(2.0));
+        prop_assert!(error(&a.compose(&b).point(point), &a.point(b.point(point))) < 1e-14);
+        prop_assert!(error(&a.inverse().point(a.point(point)), &point) < 1e-14);
+        // Roll, pitch, yaw are turns about the fixed axes x, y, z, in this order.
+        let [roll, pitch, yaw] = random.vector(3.0);
+        let about = |axis, value| Placement::of_joint(JointKind::Revolute, axis, value);
+        let turned = about([0.0, 0.0, 1.0], yaw)
+            .compose(&about([0.0, 1.0, 0.0], pitch))
+            .compose(&about([1.0, 0.0, 0.0], roll));
+        let stated = Placement::from_xyz_rpy([0.0; 3], [roll, pitch, yaw]);
+        prop_assert!(error(turned.rotation.as_flattened(), stated.rotation.as_flattened()) < 1e-14);
+    }
+
+    /// Whatever the numbers: no panic.
+    #[test]
+    fn prop_any_numbers_give_an_answer_or_an_error(
+        numbers in proptest::collection::vec(any::<f64>(), 40),
+        parents in proptest::collection::vec(proptest::option::of(0_usize..4), 3),
+        kinds in proptest::collection::vec(0_u8..3, 3),
+    ) {
+        let mut numbers = numbers.into_iter().cycle();
+        let mut next = || numbers.next().unwrap_or(0.0);
+        let mut links = Vec::new();
+        for (parent, kind) in parents.into_iter().zip(kinds) {
+            links.push(LinkSpec {
+                parent,
+                x_parent_joint: Placement { translation: [next(), next(), next()], ..Placement::IDENTITY },
+                joint: match kind {
+                    0 => LinkJoint::Fixed,
+                    1 => LinkJoint::Moving { kind: JointKind::Prismatic, axis: [0.0, 1.0, 0.0], damping: next().abs() },
+                    _ => LinkJoint::Moving { kind: JointKind::Revolute, axis: [0.6, 0.0, 0.8], damping: 0.0 },
+                },
+                inertia: std::array::from_fn(|_| next()),
+            });
+        }
+        if let Ok(assembled) = Tree::assemble(&links, GRAVITY) {
+            let tree = &assembled.tree;
+            let n = tree.joint_count();
+            let x: Columns<f64> = std::array::from_fn(|_| (0..n).map(|_| next()).collect());
+            dispatched(tree, &x, &assembled.theta);
+            let _ = tree.check_mass_matrix(&assembled.theta, &vec![[next(), next()]; n], 3);
+            let scale = Lagrangian::<f64>::adaptation_scale(tree, &x[0], &assembled.theta);
+            prop_assert!(scale.iter().all(|x| *x >= 0.0));
+        }
+    }
+}
+
+/// Every slice of every method, one entry short and one too long.
+#[test]
+fn prop_wrong_lengths_are_errors() {
+    let mut random = Random::new(5);
+    let assembled = random.tree(4);
+    let (tree, width) = (&assembled.tree, assembled.theta.len());
+    let mut scratch = tree.scratch::<f64>();
+    // [q, dq, z, dz, s, y_theta, theta, yt_s, matrix, regressor]
+    let right = [4, 4, 4, 4, 4, 4, width, width, 16, 4 * width];
+    for wrong in 0..right.len() {
+        for by in [-1_isize, 1] {
+            let mut lengths = right;
+            lengths[wrong] = lengths[wrong].saturating_add_signed(by);
+            let [q, dq, z, dz, s, mut out, theta, mut yt_s, mut matrix, mut y] =
+                lengths.map(|length| vec![0.5; length]);
+            let motion = TwoVelocity { q: &q, dq: &dq, z: &z, dz: &dz };
+            let results: [(&[usize], Result<(), LengthError>); 6] = [
+                (&[0, 1, 2, 3, 4, 5, 6, 7], tree.slotine_li(&mut scratch, motion, &theta, &s, &mut out, &mut yt_s)),
+                (&[0, 1, 4, 5, 6], tree.acceleration(&mut scratch, &q, &dq, &theta, &s, &mut out)),
+                (&[0, 6, 8], tree.mass_matrix(&mut scratch, &q, &theta, &mut matrix)),
+                (&[0, 1, 6, 8], tree.coriolis_matrix(&mut scratch, &q, &dq, &theta, &mut matrix)),
+                (&[0, 5, 6], tree.gravity(&mut scratch, &q, &theta, &mut out)),
+                (&[0, 1, 2, 3, 9], tree.regressor(&mut scratch, motion, &mut y)),
+            ];
+            for (call, (uses, result)) in results.into_iter().enumerate() {
+                assert_eq!(result.is_err(), uses.contains(&wrong), "call {call}, slice {wrong} {by:+}");
+            }
+        }
+    }
+}
+
+/// The working memory of another tree is refused, larger or smaller.
+#[test]
+fn prop_foreign_scratch_is_an_error() {
+    let mut random = Random::new(6);
+    for joints in [3, 5] {
+        let (assembled, other) = (random.tree(4), random.tree(joints));
+        let tree = &assembled.tree;
+        let mut scratch: TreeScratch<f64> = other.tree.scratch();
+        let (x, theta) = (columns(&mut random, 4), &assembled.theta);
+        let (mut out, mut yt_s, mut matrix) = (vec![0.0; 4], vec![0.0; theta.len()], vec![0.0; 16]);
+        let mut y = vec![0.0; 4 * theta.len()];
+        let want = Err(LengthError { what: "scratch", need: 4, got: joints });
+        assert_eq!(tree.slotine_li(&mut scratch, motion(&x), theta, &x[4], &mut out, &mut yt_s), want);
+        assert_eq!(tree.acceleration(&mut scratch, &x[0], &x[1], theta, &x[4], &mut out), want);
+        assert_eq!(tree.mass_matrix(&mut scratch, &x[0], theta, &mut matrix), want);
+        assert_eq!(tree.coriolis_matrix(&mut scratch, &x[0], &x[1], theta, &mut matrix), want);
+        assert_eq!(tree.gravity(&mut scratch, &x[0], theta, &mut out), want);
+        assert_eq!(tree.regressor(&mut scratch, motion(&x), &mut y), want);
+    }
+}
+
+/// Single precision follows double precision to its own accuracy.
+#[test]
+fn prop_single_precision_follows() {
+    let mut random = Random::new(7);
+    for _ in 0..20 {
+        let assembled = random.tree(6);
+        let x = columns(&mut random, 6);
+        let narrow = |column: &Vec<f64>| column.iter().map(|x| *x as f32).collect::<Vec<_>>();
+        let wide = |column: &Vec<f32>| column.iter().map(|x| f64::from(*x)).collect::<Vec<_>>();
+        let single = dispatched(&assembled.tree, &x.each_ref().map(narrow), &narrow(&assembled.theta));
+        let double = dispatched(&assembled.tree, &x, &assembled.theta);
+        assert!(error(&wide(&single[0]), &double[0]) < 1e-5);
+        assert!(error(&wide(&single[1]), &double[1]) < 1e-5);
+    }
+}
