@@ -66,7 +66,7 @@ fn spanning_tree(setup: &Setup) -> Hypothesis {
     let network = &setup.network;
     let requires = "the union of the graphs over uniformly bounded windows contains a directed spanning tree".into();
     let (answer, because) = match network.schedule.window(network.agents, setup.time.end_s) {
-        Window::Uniform { length_s, roots, for_all_time, .. } if length_s == 0.0 => (
+        Window::Uniform { length_s: 0.0, roots, for_all_time, .. } => (
             if for_all_time { Answer::Holds } else { Answer::HoldsOnHorizon },
             format!("one graph stays for ever and has a tree rooted at {}", names(setup, &roots)),
         ),

@@ -1,5 +1,7 @@
 //! The conserved quantity, the spread that never grows, and the case in which it does.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 use std::ops::ControlFlow;
 
 use forwardstep_check::{Answer, NoPrediction, check, predict};

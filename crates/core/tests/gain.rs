@@ -1,6 +1,6 @@
 //! Gains as users state them.
 
-use forwardstep_core::{Gain, GainError, LengthError, ResolvedGain};
+use forwardstep_core::{Gain, GainError, InverseQuadratic, LengthError, ResolvedGain};
 
 #[test]
 fn regress_gains_resolve() {
@@ -18,11 +18,11 @@ fn regress_gains_resolve() {
     matrix.apply(&[1.0, -3.0], &mut out);
     assert_eq!(out, [-1.0, -5.0]);
     // gain⁻¹ = [2 −1; −1 2] / 3
-    assert!((matrix.inverse_quadratic(&[1.0, -3.0]) - 26.0 / 3.0).abs() < 1e-14);
+    assert!((InverseQuadratic::new(&matrix).unwrap().of(&[1.0, -3.0]) - 26.0 / 3.0).abs() < 1e-14);
     let diagonal = ResolvedGain::Diagonal(vec![2.0, 4.0]);
     diagonal.apply(&[1.0, -3.0], &mut out);
     assert_eq!(out, [2.0, -12.0]);
-    assert_eq!(diagonal.inverse_quadratic(&[1.0, -3.0]), 0.5 + 2.25);
+    assert_eq!(InverseQuadratic::new(&diagonal).unwrap().of(&[1.0, -3.0]), 0.5 + 2.25);
 }
 
 #[test]

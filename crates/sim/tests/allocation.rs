@@ -1,5 +1,7 @@
 //! Steps do not allocate: only history, waiting events and the recording grow, in chunks.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 mod cases;
 
 use std::alloc::{GlobalAlloc, Layout, System};

@@ -1,5 +1,7 @@
 //! Closed-loop trajectories against solvers that nobody here wrote: see `validation/trajectories/README.md`.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 mod cases;
 
 use std::ops::ControlFlow;

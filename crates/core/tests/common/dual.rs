@@ -68,6 +68,16 @@ impl Scalar for Dual {
         self * a + b
     }
 
+    fn saturate(self, limit: Self) -> Self {
+        if self.value > limit.value {
+            limit
+        } else if self.value < -limit.value {
+            -limit
+        } else {
+            self
+        }
+    }
+
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.value.sin_cos();
         (Dual { value: sin, slope: cos * self.slope }, Dual { value: cos, slope: -sin * self.slope })

@@ -1,7 +1,7 @@
 //! Reads the problems and trajectories under `validation/trajectories/cases`.
 
-// Shared by several tests, none of which uses all of it.
-#![allow(unreachable_pub, dead_code)]
+#![allow(unreachable_pub, dead_code, reason = "shared by several tests, none of which uses all of it")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 use std::path::PathBuf;
 
