@@ -4,13 +4,17 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-/// Simulate and check networks of robots under forwardstepping control.
+/// Simulate and check networks of robots under forwardstepping control. Without a command, runs six arms.
 #[derive(Debug, Parser)]
 #[command(version, max_term_width = 100, after_help = EXIT_STATUS)]
 pub(crate) struct Arguments {
+    /// Without one, `run`.
     #[command(subcommand)]
-    pub(crate) command: Command,
+    pub(crate) command: Option<Command>,
 }
+
+/// The scenario to begin with.
+const SIX_ARMS: &str = "six-arms";
 
 const EXIT_STATUS: &str = "\
 Exit status:
@@ -27,7 +31,7 @@ pub(crate) enum Command {
     /// Say which theorem speaks about a scenario, and whether its hypotheses hold
     Check {
         /// A shipped scenario by name, or a file by its path
-        #[arg(default_value = "six-arms")]
+        #[arg(default_value = SIX_ARMS)]
         scenario: String,
     },
     /// List the shipped scenarios, or print one
@@ -39,10 +43,17 @@ pub(crate) enum Command {
     Schema,
 }
 
+/// The main job: the six arms, into the usual folder.
+impl Default for Command {
+    fn default() -> Self {
+        Command::Run(RunOptions { scenario: SIX_ARMS.into(), out: None, force: false, csv: false })
+    }
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct RunOptions {
     /// A shipped scenario by name, or a file by its path
-    #[arg(default_value = "six-arms")]
+    #[arg(default_value = SIX_ARMS)]
     pub(crate) scenario: String,
     /// The folder to write to [default: forwardstep-runs/ and the scenario's name]
     #[arg(long, value_name = "DIR")]

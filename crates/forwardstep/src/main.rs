@@ -16,7 +16,7 @@ use status::Status;
 fn main() -> ExitCode {
     let Arguments { command } = Arguments::parse();
     let mut console = Console::new();
-    let status = match command {
+    let status = match command.unwrap_or_default() {
         Command::Run(options) => commands::run(&options, &mut console),
         Command::Check { scenario } => commands::check(&scenario, &mut console),
         Command::Scenarios { name } => commands::scenarios(name.as_deref(), &mut console),

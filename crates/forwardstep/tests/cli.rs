@@ -93,6 +93,14 @@ fn a_shipped_scenario_runs_by_name_in_any_folder() {
 }
 
 #[test]
+fn without_a_command_the_six_arms_run() {
+    let folder = folder();
+    let text = stdout(&forwardstep(&folder, &[]).success());
+    assert!(text.starts_with("Six UR5e arms agree"), "{text}");
+    assert!(folder.path().join("forwardstep-runs/six-arms/report.html").is_file());
+}
+
+#[test]
 fn a_file_runs_with_csv_into_a_folder_of_choice() {
     let folder = folder();
     fs::write(folder.path().join("two.toml"), QUICK).unwrap();

@@ -46,6 +46,13 @@ pub struct Position;
 pub struct PositionVelocity;
 
 /// Σ_j w_ij q_j(t − T_ij).
+///
+/// A design that hears positions only has nothing else to read:
+///
+/// ```compile_fail,E0609
+/// let heard = forwardstep_core::reference::PositionSums { q: &[0.0] };
+/// let velocities = heard.dq;
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct PositionSums<'a, S> {
     /// One column per axis.

@@ -215,3 +215,18 @@ impl Kernel for Gather<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn history_is_as_wide_as_what_is_sent() {
+        // Two populations: two agents side by side with ten states each, then one with five; two numbers are sent.
+        let port = |state, entry, degree, stride| Port { state, entry, degree, stride };
+        let ports = vec![port(0, 0, 0, 2), port(1, 1, 1, 2), port(20, 4, 2, 1)];
+        let hearing = Hearing::new(ports, 2, &[0.0; 25]);
+        assert_eq!(hearing.width(), 6);
+        assert_eq!(hearing.blocks(), [(0, 0, 4), (20, 4, 2)]);
+    }
+}

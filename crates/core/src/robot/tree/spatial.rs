@@ -31,6 +31,12 @@ impl<S: Scalar> Vec3<S> {
         Vec3 { x: self.x + b.x, y: self.y + b.y, z: self.z + b.z }
     }
 
+    /// self · k
+    #[inline(always)]
+    pub(super) fn scaled(self, k: S) -> Self {
+        Vec3 { x: self.x * k, y: self.y * k, z: self.z * k }
+    }
+
     /// self · k + b
     #[inline(always)]
     pub(super) fn scaled_plus(self, k: S, b: Self) -> Self {
