@@ -149,7 +149,10 @@ fn contribution(setup: &Setup, edges: &[Edge], alpha: &[f64], i: usize, axis: us
     } else {
         let above = || alpha.iter().enumerate().skip(2);
         let b = alpha[0] * q + alpha[1] * dq - alpha[1] * (dq - z(0));
-        (b + above().map(|(r, a)| a * z(r - 1)).sum::<f64>(), alpha[1] * q + above().map(|(r, a)| a * z(r - 2)).sum::<f64>())
+        (
+            b + above().map(|(r, a)| a * z(r - 1)).sum::<f64>(),
+            alpha[1] * q + above().map(|(r, a)| a * z(r - 2)).sum::<f64>(),
+        )
     };
     let kappa_0 = setup.agents[i].roots_per_s[0];
     let velocity = if setup.exchange == Exchange::PositionVelocity { 1.0 / kappa_0 } else { 0.0 };

@@ -10,11 +10,17 @@ use crate::verdict::{Answer, Hypothesis, Report};
 ///
 /// `setup` should be one that [`forwardstep_sim::simulate`] accepts; what makes a setup meaningless is not looked at again.
 ///
-/// **Source**: Theorem 2 for (a1), Theorem 3 for (a5) and (24); Section III-A for (aa10), which is (a5) of order one.
+/// **Source**: Theorem 1 for (3), Remark 3 for (23), Theorem 2 for (a1), Theorem 3 for (a5) and (24); Section III-A for
+/// (aa10), which is (a5) of order one, and for the baseline (aa6), about which the paper promises nothing.
 pub fn check(setup: &Setup) -> Report {
     let order = setup.agents.iter().map(|agent| agent.roots_per_s.len()).max().unwrap_or(0);
-    let mut hypotheses =
-        vec![spanning_tree(setup), dwell_time(setup), bounded_delays(setup), real_roots(setup), common_order(setup)];
+    let mut hypotheses = vec![spanning_tree(setup), dwell_time(setup), bounded_delays(setup)];
+    match setup.reference {
+        ReferenceKind::Consensus => hypotheses.extend([real_roots(setup), common_order(setup)]),
+        ReferenceKind::PureIntegral => hypotheses.extend([fixed_graph(setup), real_roots(setup)]),
+        ReferenceKind::Backstepping { filter_s, .. } => hypotheses.push(differentiable(filter_s)),
+    }
+    hypotheses.extend(manipulability(setup));
     if setup.exchange == Exchange::PositionVelocity {
         hypotheses.push(common_first_root(setup));
     }

@@ -114,6 +114,83 @@ fn prop_agreed_value_is_known_before_the_run() {
 }
 
 #[test]
+fn thm1_agreed_value_is_known_for_the_pure_integrals_too() {
+    for exchange in [Exchange::Position, Exchange::PositionVelocity] {
+        let agents = (0..4)
+            .map(|i| {
+                let mut agent = arm(i, &[1.2 + 0.15 * i as f64, 2.0]);
+                agent.start.reference = vec![vec![0.4 * noise(50 + i); 2], vec![0.3 * noise(60 + i); 2]];
+                agent
+            })
+            .collect();
+        let (edges, delays) = uneven();
+        let mut setup = setup(agents, exchange, Schedule::Fixed(edges), delays, 160.0);
+        setup.reference = ReferenceKind::PureIntegral;
+        setup.time.record_every_s = 10.0;
+        let report = check(&setup);
+        assert_eq!(report.worst(), Answer::Holds);
+        assert!(report.theorem.starts_with(if exchange == Exchange::Position { "Remark 3" } else { "Theorem 1" }));
+        let prediction = predict(&setup).unwrap();
+        let outcome = run(&setup);
+        for agent in 0..4 {
+            for axis in 0..2 {
+                let q = *column(&outcome, agent, Signal::Position, axis).last().unwrap();
+                let c = prediction.value[axis];
+                assert!((q - c).abs() < 1e-6, "{exchange:?} agent {agent}: {q} is not {c}");
+            }
+        }
+    }
+}
+
+/// Two arms that first hear nobody and then each other; the largest torque within 0.1 s of the switch.
+fn torque_at_a_switch(reference: ReferenceKind, exchange: Exchange) -> f64 {
+    let roots: &[f64] = if reference == ReferenceKind::Consensus { &[1.0, 2.0] } else { &[] };
+    let both = vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)];
+    let schedule = Schedule::Once(vec![
+        Phase { edges: vec![edge(0, 1, 1.0, 0)], dwell_s: 3.0 },
+        Phase { edges: both, dwell_s: 1.0 },
+    ]);
+    let mut setup =
+        setup((0..2).map(|i| arm(i, roots)).collect(), exchange, schedule, vec![Delay::Constant { s: 0.2 }], 3.1);
+    setup.reference = reference;
+    for agent in &mut setup.agents {
+        agent.law = Law::Known { damping: Gain::Number(8.0) };
+    }
+    setup.agents[0].start.q = vec![1.0, 0.5];
+    setup.agents[1].start.q = vec![-0.6, 0.2];
+    setup.time.record_every_s = 1e-4;
+    let outcome = run(&setup);
+    let after = outcome.recording.t_s.iter().position(|t| *t >= 3.0).unwrap();
+    let torques = outcome.recording.columns.iter().filter(|c| c.signal == Signal::Torque);
+    torques.flat_map(|c| c.values[after..].iter().map(|tau| tau.abs())).fold(0.0, f64::max)
+}
+
+#[test]
+fn eq_aa6_torque_at_a_switch_grows_as_the_filter_narrows_and_that_of_a1_does_not() {
+    let filter = |filter_s| ReferenceKind::Backstepping { filter_s, acceleration_limit: None };
+    let peaks = [1e-2, 1e-3, 1e-4].map(|filter_s| torque_at_a_switch(filter(filter_s), Exchange::Position));
+    // The part that goes like 1/ε, without gravity and damping.
+    let growth = (peaks[2] - peaks[1]) / (peaks[1] - peaks[0]);
+    assert!((growth - 10.0).abs() < 0.5, "{peaks:?} grow by {growth}");
+    assert!(peaks[2] > 20.0 * torque_at_a_switch(ReferenceKind::Consensus, Exchange::PositionVelocity));
+
+    let limited = ReferenceKind::Backstepping { filter_s: 1e-4, acceleration_limit: Some(5.0) };
+    assert!(torque_at_a_switch(limited, Exchange::Position) < 0.1 * peaks[2]);
+}
+
+#[test]
+fn eq_3_over_a_switching_graph_is_not_covered() {
+    let phase = |from, to| Phase { edges: vec![edge(from, to, 1.0, 0)], dwell_s: 1.0 };
+    let schedule = Schedule::Periodic(vec![phase(0, 1), phase(1, 0)]);
+    let agents = (0..2).map(|i| arm(i, &[1.0, 2.0])).collect();
+    let mut setup = setup(agents, Exchange::PositionVelocity, schedule, vec![Delay::Constant { s: 0.1 }], 1.0);
+    setup.reference = ReferenceKind::PureIntegral;
+    let report = check(&setup);
+    assert_eq!(report.worst(), Answer::NotCovered);
+    assert!(report.hypotheses.iter().any(|h| h.answer == Answer::NotCovered && h.because.contains("(a1)")));
+}
+
+#[test]
 fn prediction_says_why_there_is_none() {
     let agents = || (0..2).map(|i| arm(i, &[1.0, 2.0])).collect::<Vec<_>>();
     let constant = vec![Delay::Constant { s: 0.1 }];

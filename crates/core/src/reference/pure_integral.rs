@@ -115,3 +115,59 @@ impl<X: Exchange> Reference for PureIntegral<X> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Position, PositionSums, PositionVelocity, PositionVelocitySums};
+    use super::*;
+
+    const W: f64 = 1.5;
+    const LAMBDA: f64 = 0.7;
+    const ALPHA: f64 = 1.3;
+    const BETA: f64 = 0.6;
+
+    /// ż and the rates of z and η of one agent with one axis.
+    fn evaluate<X: Exchange>(sums: X::Sums<'_, f64>, [q, dq, z, eta]: [f64; 4]) -> [f64; 3] {
+        let law = PureIntegral::<X>::new([(&[ALPHA, BETA][..], LAMBDA)]).unwrap();
+        let (mut z_out, mut dz, mut rate) = ([0.0], [0.0], [0.0; 2]);
+        let out = ReferenceOut { z: &mut z_out, dz: &mut dz, d_state: &mut rate };
+        law.evaluate(1, Measured { q: &[q], dq: &[dq] }, &[z, eta], Heard { degree: &[W], sums }, out).unwrap();
+        [dz[0], rate[0], rate[1]]
+    }
+
+    #[test]
+    fn eq_3_and_eq_23_are_their_literal_forms_with_the_acceleration() {
+        // ż is linear in q, q̇ and η, so its derivative is the same function of q̇, q̈ and η̇.
+        let [q, dq, ddq, z, eta, q_j, dq_j] = [0.3, -0.7, 1.9, 0.4, -1.1, 0.8, -0.2];
+        let own = ddq + (ALPHA + BETA) * dq + ALPHA * BETA * q;
+        let literal = |told: f64| -(ALPHA + BETA) * ddq - ALPHA * BETA * dq - W * (own - told) + LAMBDA * (dq - z);
+
+        let sums = PositionVelocitySums { q: &[W * q_j], dq: &[W * dq_j] };
+        let [dz, z_rate, eta_rate] = evaluate::<PositionVelocity>(sums, [q, dq, z, eta]);
+        let none = PositionVelocitySums { q: &[0.0], dq: &[0.0] };
+        let [ddz, ..] = evaluate::<PositionVelocity>(none, [dq, ddq, 0.0, eta_rate]);
+        assert_eq!(z_rate, dz);
+        assert!((ddz - literal(BETA * dq_j + ALPHA * BETA * q_j)).abs() < 1e-14);
+
+        let [.., eta_rate] = evaluate::<Position>(PositionSums { q: &[W * q_j] }, [q, dq, z, eta]);
+        let [ddz, ..] = evaluate::<Position>(PositionSums { q: &[0.0] }, [dq, ddq, 0.0, eta_rate]);
+        assert!((ddz - literal(ALPHA * BETA * q_j)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn the_start_gives_the_wanted_reference_acceleration() {
+        let law = PureIntegral::<Position>::new([(&[ALPHA, BETA][..], 0.0)]).unwrap();
+        let (q, dq, z, dz) = (0.3, -0.7, 0.4, 2.5);
+        let mut state = [0.0; 2];
+        let heard = Heard { degree: &[W], sums: PositionSums { q: &[0.2] } };
+        law.start(1, Measured { q: &[q], dq: &[dq] }, &[z, dz], heard, &mut state).unwrap();
+        let [got, ..] = evaluate::<Position>(PositionSums { q: &[0.2] }, [q, dq, state[0], state[1]]);
+        assert!((got - dz).abs() < 1e-14 && state[0] == z);
+    }
+
+    #[test]
+    fn other_orders_are_refused() {
+        let error = PureIntegral::<Position>::new([(&[1.0][..], 0.0)]).unwrap_err();
+        assert_eq!(error, RootsError::Order { need: 2, got: 1 });
+    }
+}

@@ -50,7 +50,7 @@ pub mod values;
 use std::fmt;
 use std::path::Path;
 
-use forwardstep_sim::{AgentSetup, Exchange, Law, Method, Setup, Solver, TimeSpan};
+use forwardstep_sim::{AgentSetup, Exchange, Law, Method, ReferenceKind, Setup, Solver, TimeSpan};
 use miette::Diagnostic;
 use serde::Deserialize;
 use toml::Spanned;
@@ -68,7 +68,8 @@ use at::At;
 use de::ValueDe;
 use fault::{Fault, between, fault, positive};
 use file::{
-    AdaptiveMethodFile, ExchangeFile, ExpectFile, GoalFile, MethodFile, ReferenceFile, ScenarioFile, SolverFile,
+    AdaptiveMethodFile, ConsensusFile, ExchangeFile, ExpectFile, GoalFile, MethodFile, ReferenceFile, ScenarioFile,
+    SolverFile,
 };
 use robots::Stop;
 

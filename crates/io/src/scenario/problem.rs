@@ -263,6 +263,20 @@ pub enum ScenarioProblem {
         /// The agent.
         agent: String,
     },
+    /// An agent's reference dynamics are of another kind than everybody's.
+    #[error("`{agent}` cannot have reference dynamics of its own kind; those of all are `{common}`")]
+    ReferenceDiffers {
+        /// The agent.
+        agent: String,
+        /// The key of everybody's.
+        common: &'static str,
+    },
+    /// A design of order two with another number of roots.
+    #[error("`roots_per_s` has {}, but `pure_integral` takes 2 of them", entry_count(*.found))]
+    TwoRoots {
+        /// How many there are.
+        found: usize,
+    },
     /// Reference dynamics of an order beyond use.
     #[error("`roots_per_s` has {}, but at most {most} are accepted", entry_count(*.found))]
     Order {
@@ -455,6 +469,13 @@ impl Problem for ScenarioProblem {
             ScenarioProblem::Unit { any, .. } => format!("`{any}` takes rad or m as each axis has it"),
             ScenarioProblem::NoRoots { .. } => {
                 "add `roots_per_s` to [reference.consensus], or `reference.consensus.roots_per_s` to the agent".into()
+            }
+            ScenarioProblem::ReferenceDiffers { common, .. } => match *common {
+                "backstepping" => "remove it: the baseline has nothing that an agent could have of its own".into(),
+                common => format!("an agent may have `reference.{common}` with roots and a gain of its own"),
+            },
+            ScenarioProblem::TwoRoots { .. } => {
+                "(3) and (23) are of order two; other orders are `reference.consensus`".into()
             }
             ScenarioProblem::Derivatives { .. } => "an order of l has the derivatives 1 to l − 1".into(),
             ScenarioProblem::NoSuchAgent { name, agents } => choose(name, "the agents are", agents),

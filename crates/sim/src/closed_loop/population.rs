@@ -24,10 +24,6 @@ pub(crate) trait Columns {
     /// Blocks of reference state.
     fn reference_vectors(&self) -> usize;
     /// Replaces the wanted z(0), ż(0), … in the block `x` by the reference state that gives them.
-    fn reference_vectors(&self) -> usize {
-        self.reference.vectors()
-    }
-
     fn start(&self, x: &mut [f64], degree: &[f64], sums: &[f64]) -> Result<(), LengthError>;
     /// d/dt of the block `x`; `degree` and `sums` are the population's part of what is heard.
     fn rates(&mut self, x: &[f64], degree: &[f64], sums: &[f64], dx: &mut [f64]);
