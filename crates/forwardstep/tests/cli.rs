@@ -152,9 +152,9 @@ fn bad_input_writes_nothing() {
     }
     let error = stderr(&forwardstep(&folder, &["run", "tow.toml"]).code(2));
     assert!(error.contains("cannot read `tow.toml`") && error.contains("did you mean `two.toml`?"), "{error}");
-    let error = stderr(&forwardstep(&folder, &["run", "theorem-4"]).code(2));
+    let error = stderr(&forwardstep(&folder, &["run", "theorm-2"]).code(2));
     assert!(
-        error.contains("there is no scenario `theorem-4`") && error.contains("did you mean `theorem-2`?"),
+        error.contains("there is no scenario `theorm-2`") && error.contains("did you mean `theorem-2`?"),
         "{error}"
     );
     forwardstep(&folder, &["run", "six-arms", "--fast"]).code(2);

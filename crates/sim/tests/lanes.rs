@@ -9,8 +9,8 @@ use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, Exchange, Law, Method, Network, RobotKind, RobotSetup, Setup, Solver, Start, TimeSpan,
-    simulate,
+    AgentSetup, Axis, AxisUnit, Exchange, Law, Method, Network, ReferenceKind, RobotKind, RobotSetup, Setup, Solver,
+    Start, TimeSpan, simulate,
 };
 
 fn arm(index: usize, order: usize) -> AgentSetup {
@@ -32,6 +32,7 @@ fn arm(index: usize, order: usize) -> AgentSetup {
             axes: vec![axis("shoulder"), axis("elbow")],
         },
         roots_per_s: (0..order).map(|r| 1.0 + 0.7 * r as f64 + 0.1 * index as f64).collect(),
+        manipulability: 0.0,
         law: Law::Adaptive {
             // One agent with a full matrix beside others with a diagonal.
             damping: if index == 1 { Gain::Matrix(vec![9.0, 1.0, 1.0, 7.0]) } else { Gain::Number(8.0 + index as f64) },
@@ -49,6 +50,7 @@ fn bits_of_the_first_two(agents: usize, order: usize) -> Vec<u64> {
     let phase = |edges, dwell_s| Phase { edges, dwell_s };
     let setup = Setup {
         agents: (0..agents).map(|index| arm(index, order)).collect(),
+        reference: ReferenceKind::Consensus,
         exchange: Exchange::PositionVelocity,
         network: Network {
             agents,

@@ -11,8 +11,8 @@ use forwardstep_sim::graph::Edge;
 use forwardstep_sim::recording::{Column, Statistics};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, Ending, Exchange, Law, Method, Network, Outcome, Recording, RobotKind, RobotSetup,
-    Setup, Signal, Solver, Start, TimeSpan,
+    AgentSetup, Axis, AxisUnit, Ending, Exchange, Law, Method, Network, Outcome, Recording, ReferenceKind, RobotKind,
+    RobotSetup, Setup, Signal, Solver, Start, TimeSpan,
 };
 
 /// One agent with `dof` axes and `parameters` estimated parameters.
@@ -34,6 +34,7 @@ pub fn agent(name: &str, dof: usize, parameters: usize) -> AgentSetup {
             axes: axes.collect(),
         },
         roots_per_s: vec![1.0, 2.0],
+        manipulability: 0.0,
         law: Law::Adaptive {
             damping: Gain::Number(8.0),
             adaptation: Gain::Number(10.0),
@@ -58,6 +59,7 @@ pub fn setup(agents: Vec<AgentSetup>, end_s: f64, record_every_s: f64) -> Setup 
     let phases = [ring(0), ring(1), back].into_iter().map(|edges| Phase { edges, dwell_s: end_s / 20.0 });
     Setup {
         agents,
+        reference: ReferenceKind::Consensus,
         exchange: Exchange::PositionVelocity,
         network: Network {
             agents: count,
