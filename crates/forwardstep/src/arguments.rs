@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use thiserror::Error;
 
 /// Simulate and check networks of robots under forwardstepping control. Without a command, runs six arms.
 #[derive(Debug, Parser)]
@@ -41,6 +42,8 @@ pub(crate) enum Command {
     },
     /// Print the JSON schema of scenario files
     Schema,
+    /// Describe a robot, or compute its dynamics at a state
+    Robot(RobotOptions),
 }
 
 /// The main job: the six arms, into the usual folder.
@@ -64,4 +67,46 @@ pub(crate) struct RunOptions {
     /// Write the trajectory as CSV too
     #[arg(long)]
     pub(crate) csv: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RobotOptions {
+    /// A URDF by its path, or a shipped robot by name
+    #[arg(value_name = "FILE.urdf")]
+    pub(crate) robot: String,
+    /// Hold a joint at a position, in rad or m; may be given several times
+    #[arg(long, value_name = "JOINT=VALUE", value_parser = lock)]
+    pub(crate) lock: Vec<(String, f64)>,
+    /// Leave Coulomb friction out instead of refusing a robot that has some; `--at` always does
+    #[arg(long)]
+    pub(crate) ignore_friction: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Compute M, g, tau = M dz + C(q, dq) z + g and the acceleration ddq under tau, without friction and damping, at the
+    /// state in this file: { "joint": { "q": 0, "dq": 0, "z": 0, "dz": 0 }, ... } in rad or m and s; all but q may be
+    /// left out and are then 0
+    #[arg(long, value_name = "STATE.json")]
+    pub(crate) at: Option<PathBuf>,
+}
+
+/// Why a lock cannot be understood.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub(crate) enum LockError {
+    /// No joint, or no value.
+    #[error("a lock is written JOINT=VALUE, such as wrist_3_joint=0.5")]
+    Form,
+    /// The value is not a number.
+    #[error("`{0}` is not a number; give rad or m")]
+    NotANumber(String),
+}
+
+fn lock(text: &str) -> Result<(String, f64), LockError> {
+    match text.rsplit_once('=') {
+        Some((joint, value)) if !joint.is_empty() => match value.trim().parse() {
+            Ok(number) => Ok((joint.to_owned(), number)),
+            Err(_) => Err(LockError::NotANumber(value.to_owned())),
+        },
+        _ => Err(LockError::Form),
+    }
 }
