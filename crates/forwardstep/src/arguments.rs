@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
 use thiserror::Error;
 
 /// Simulate and check networks of robots under forwardstepping control. Without a command, runs six arms.
@@ -44,6 +45,11 @@ pub(crate) enum Command {
     Schema,
     /// Describe a robot, or compute its dynamics at a state
     Robot(RobotOptions),
+    /// Print a script that completes commands and options in a shell
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
 }
 
 /// The main job: the six arms, into the usual folder.

@@ -22,6 +22,7 @@ fn main() -> ExitCode {
         Command::Scenarios { name } => commands::scenarios(name.as_deref(), &mut console),
         Command::Schema => commands::schema(&mut console),
         Command::Robot(options) => commands::robot(&options, &mut console),
+        Command::Completions { shell } => commands::completions(shell, &mut console),
     };
     // Text that could not be written is a failure of its own, but must not hide another.
     match console.finish() {

@@ -1,6 +1,7 @@
 //! One file per command.
 
 mod check;
+mod completions;
 mod dynamics;
 mod progress;
 mod promise;
@@ -11,6 +12,7 @@ mod schema;
 mod summary;
 
 pub(crate) use check::check;
+pub(crate) use completions::completions;
 pub(crate) use robot::robot;
 pub(crate) use run::run;
 pub(crate) use scenarios::scenarios;
