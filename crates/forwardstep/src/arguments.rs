@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use thiserror::Error;
 
@@ -43,6 +43,8 @@ pub(crate) enum Command {
     },
     /// Print the JSON schema of scenario files
     Schema,
+    /// Write a commented scenario to start from
+    New(NewOptions),
     /// Describe a robot, or compute its dynamics at a state
     Robot(RobotOptions),
     /// Print a script that completes commands and options in a shell
@@ -115,4 +117,82 @@ fn lock(text: &str) -> Result<(String, f64), LockError> {
         },
         _ => Err(LockError::Form),
     }
+}
+
+// What is not given is asked for when there is a person to ask, and is as usual otherwise.
+#[derive(Debug, Args)]
+pub(crate) struct NewOptions {
+    /// The file to write, which must not exist yet [default: standard output]
+    pub(crate) file: Option<PathBuf>,
+    /// The title of the scenario [default: the name of the file]
+    #[arg(long)]
+    pub(crate) name: Option<String>,
+    /// How many agents there are, 2 to 100 [default: 4]
+    #[arg(long, value_name = "N", value_parser = count_of_agents)]
+    pub(crate) agents: Option<u32>,
+    /// Their robot: planar_arm, point_mass, ur5e, panda or the path of a URDF [default: planar_arm]
+    #[arg(long, value_name = "ROBOT")]
+    pub(crate) robot: Option<String>,
+    /// The order of the reference dynamics, 1 to 8 [default: 2]
+    #[arg(long, value_name = "L", value_parser = order)]
+    pub(crate) order: Option<u32>,
+    /// What agents tell each other [default: position_velocity]
+    #[arg(long, value_enum)]
+    pub(crate) exchange: Option<ExchangeChoice>,
+    /// Who hears whom [default: ring]
+    #[arg(long, value_enum)]
+    pub(crate) graph: Option<GraphChoice>,
+    /// How late [default: constant]
+    #[arg(long, value_enum)]
+    pub(crate) delay: Option<DelayChoice>,
+}
+
+/// As scenarios spell it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub(crate) enum ExchangeChoice {
+    #[value(alias = "position-velocity")]
+    PositionVelocity,
+    Position,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum GraphChoice {
+    /// One way round
+    Ring,
+    /// Both ways between neighbours in a row
+    Path,
+    /// Everybody hears everybody
+    Complete,
+}
+
+/// As scenarios spell it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub(crate) enum DelayChoice {
+    Constant,
+    #[value(alias = "saw-tooth")]
+    SawTooth,
+    None,
+}
+
+/// Why a number cannot be used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("must be a whole number from {low} to {high}")]
+pub(crate) struct NotBetween {
+    low: u32,
+    high: u32,
+}
+
+fn between(text: &str, low: u32, high: u32) -> Result<u32, NotBetween> {
+    text.parse().ok().filter(|number| (low..=high).contains(number)).ok_or(NotBetween { low, high })
+}
+
+/// A complete graph of more agents makes a file that nobody wants to read.
+pub(crate) fn count_of_agents(text: &str) -> Result<u32, NotBetween> {
+    between(text, 2, 100)
+}
+
+pub(crate) fn order(text: &str) -> Result<u32, NotBetween> {
+    between(text, 1, 8)
 }

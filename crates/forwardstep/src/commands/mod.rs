@@ -1,8 +1,10 @@
 //! One file per command.
 
+mod ask;
 mod check;
 mod completions;
 mod dynamics;
+mod new;
 mod progress;
 mod promise;
 mod robot;
@@ -13,6 +15,7 @@ mod summary;
 
 pub(crate) use check::check;
 pub(crate) use completions::completions;
+pub(crate) use new::new;
 pub(crate) use robot::robot;
 pub(crate) use run::run;
 pub(crate) use scenarios::scenarios;
