@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+use thiserror::Error;
 
 /// Simulate and check networks of robots under forwardstepping control. Without a command, runs six arms.
 #[derive(Debug, Parser)]
@@ -41,6 +43,15 @@ pub(crate) enum Command {
     },
     /// Print the JSON schema of scenario files
     Schema,
+    /// Write a commented scenario to start from
+    New(NewOptions),
+    /// Describe a robot, or compute its dynamics at a state
+    Robot(RobotOptions),
+    /// Print a script that completes commands and options in a shell
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
 }
 
 /// The main job: the six arms, into the usual folder.
@@ -64,4 +75,124 @@ pub(crate) struct RunOptions {
     /// Write the trajectory as CSV too
     #[arg(long)]
     pub(crate) csv: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RobotOptions {
+    /// A URDF by its path, or a shipped robot by name
+    #[arg(value_name = "FILE.urdf")]
+    pub(crate) robot: String,
+    /// Hold a joint at a position, in rad or m; may be given several times
+    #[arg(long, value_name = "JOINT=VALUE", value_parser = lock)]
+    pub(crate) lock: Vec<(String, f64)>,
+    /// Leave Coulomb friction out instead of refusing a robot that has some; `--at` always does
+    #[arg(long)]
+    pub(crate) ignore_friction: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Compute M, g, tau = M dz + C(q, dq) z + g and the acceleration ddq under tau, without friction and damping, at the
+    /// state in this file: { "joint": { "q": 0, "dq": 0, "z": 0, "dz": 0 }, ... } in rad or m and s; all but q may be
+    /// left out and are then 0
+    #[arg(long, value_name = "STATE.json")]
+    pub(crate) at: Option<PathBuf>,
+}
+
+/// Why a lock cannot be understood.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub(crate) enum LockError {
+    /// No joint, or no value.
+    #[error("a lock is written JOINT=VALUE, such as wrist_3_joint=0.5")]
+    Form,
+    /// The value is not a number.
+    #[error("`{0}` is not a number; give rad or m")]
+    NotANumber(String),
+}
+
+fn lock(text: &str) -> Result<(String, f64), LockError> {
+    match text.rsplit_once('=') {
+        Some((joint, value)) if !joint.is_empty() => match value.trim().parse() {
+            Ok(number) => Ok((joint.to_owned(), number)),
+            Err(_) => Err(LockError::NotANumber(value.to_owned())),
+        },
+        _ => Err(LockError::Form),
+    }
+}
+
+// What is not given is asked for when there is a person to ask, and is as usual otherwise.
+#[derive(Debug, Args)]
+pub(crate) struct NewOptions {
+    /// The file to write, which must not exist yet [default: standard output]
+    pub(crate) file: Option<PathBuf>,
+    /// The title of the scenario [default: the name of the file]
+    #[arg(long)]
+    pub(crate) name: Option<String>,
+    /// How many agents there are, 2 to 100 [default: 4]
+    #[arg(long, value_name = "N", value_parser = count_of_agents)]
+    pub(crate) agents: Option<u32>,
+    /// Their robot: planar_arm, point_mass, ur5e, panda or the path of a URDF [default: planar_arm]
+    #[arg(long, value_name = "ROBOT")]
+    pub(crate) robot: Option<String>,
+    /// The order of the reference dynamics, 1 to 8 [default: 2]
+    #[arg(long, value_name = "L", value_parser = order)]
+    pub(crate) order: Option<u32>,
+    /// What agents tell each other [default: position_velocity]
+    #[arg(long, value_enum)]
+    pub(crate) exchange: Option<ExchangeChoice>,
+    /// Who hears whom [default: ring]
+    #[arg(long, value_enum)]
+    pub(crate) graph: Option<GraphChoice>,
+    /// How late [default: constant]
+    #[arg(long, value_enum)]
+    pub(crate) delay: Option<DelayChoice>,
+}
+
+/// As scenarios spell it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub(crate) enum ExchangeChoice {
+    #[value(alias = "position-velocity")]
+    PositionVelocity,
+    Position,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum GraphChoice {
+    /// One way round
+    Ring,
+    /// Both ways between neighbours in a row
+    Path,
+    /// Everybody hears everybody
+    Complete,
+}
+
+/// As scenarios spell it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub(crate) enum DelayChoice {
+    Constant,
+    #[value(alias = "saw-tooth")]
+    SawTooth,
+    None,
+}
+
+/// Why a number cannot be used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("must be a whole number from {low} to {high}")]
+pub(crate) struct NotBetween {
+    low: u32,
+    high: u32,
+}
+
+fn between(text: &str, low: u32, high: u32) -> Result<u32, NotBetween> {
+    text.parse().ok().filter(|number| (low..=high).contains(number)).ok_or(NotBetween { low, high })
+}
+
+/// A complete graph of more agents makes a file that nobody wants to read.
+pub(crate) fn count_of_agents(text: &str) -> Result<u32, NotBetween> {
+    between(text, 2, 100)
+}
+
+pub(crate) fn order(text: &str) -> Result<u32, NotBetween> {
+    between(text, 1, 8)
 }

@@ -21,6 +21,9 @@ fn main() -> ExitCode {
         Command::Check { scenario } => commands::check(&scenario, &mut console),
         Command::Scenarios { name } => commands::scenarios(name.as_deref(), &mut console),
         Command::Schema => commands::schema(&mut console),
+        Command::New(options) => commands::new(&options, &mut console),
+        Command::Robot(options) => commands::robot(&options, &mut console),
+        Command::Completions { shell } => commands::completions(shell, &mut console),
     };
     // Text that could not be written is a failure of its own, but must not hide another.
     match console.finish() {

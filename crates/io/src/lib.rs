@@ -3,7 +3,9 @@
 //! Text comes in here and leaves as the plain structs of the rooms below; serialisation lives in this crate only.
 
 pub mod diagnostic;
+mod files;
 pub mod output;
+pub mod robot;
 pub mod scenario;
 pub mod urdf;
 mod wording;

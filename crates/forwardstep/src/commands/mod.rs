@@ -1,14 +1,22 @@
 //! One file per command.
 
+mod ask;
 mod check;
+mod completions;
+mod dynamics;
+mod new;
 mod progress;
 mod promise;
+mod robot;
 mod run;
 mod scenarios;
 mod schema;
 mod summary;
 
 pub(crate) use check::check;
+pub(crate) use completions::completions;
+pub(crate) use new::new;
+pub(crate) use robot::robot;
 pub(crate) use run::run;
 pub(crate) use scenarios::scenarios;
 pub(crate) use schema::schema;

@@ -45,6 +45,7 @@ mod problem;
 mod robots;
 mod shipped;
 mod start;
+mod template;
 pub mod values;
 
 use std::fmt;
@@ -60,6 +61,7 @@ pub use notice::Notice;
 pub use open::{OpenError, open_scenario};
 pub use problem::ScenarioProblem;
 pub use shipped::{SHIPPED_SCENARIOS, ShippedScenario, shipped_scenario};
+pub use template::{Template, TemplateDelay, TemplateGraph, TemplateRobot};
 
 use crate::output::Goal;
 use crate::urdf::UrdfProblem;

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use miette::Diagnostic;
 use thiserror::Error;
 
-use super::robots::{neighbours, read_text};
 use super::shipped::{SHIPPED_SCENARIOS, shipped_scenario};
 use super::{Scenario, ScenarioError, read_scenario};
 use crate::SourceText;
+use crate::files::{neighbours, read_text};
 use crate::wording::choose;
 
 /// Why there is no scenario to run.

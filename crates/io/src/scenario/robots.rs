@@ -1,6 +1,6 @@
 //! `robot` of an agent → [`RobotSetup`].
 
-use std::io::{ErrorKind, Read};
+use std::io::ErrorKind;
 use std::path::Path;
 
 use forwardstep_core::robot::PlanarLinks;
@@ -11,13 +11,12 @@ use super::at::At;
 use super::fault::{Fault, count, fault, not_negative, positive};
 use super::file::{FrictionFile, PlanarArmFile, PointMassFile, RobotFile, UrdfFile};
 use super::problem::ScenarioProblem;
+use crate::files::{neighbours, read_text};
 use crate::urdf::{self, FrictionPolicy, UrdfOptions, UrdfProblem};
 use crate::{InputError, SourceText};
 
 /// Axes a point mass may have.
 const MOST_DIMENSIONS: u32 = 100;
-/// Text files larger than this are not read.
-const MOST_BYTES: u64 = 1 << 26;
 
 /// A mistake in the scenario, or in a file that it names.
 pub(super) enum Stop {
@@ -110,27 +109,6 @@ fn robot_text(file: &At<String>, folder: Option<&Path>) -> Result<SourceText, Fa
         return Ok(SourceText::new(name, text));
     }
     Err(fault(file, ScenarioProblem::RobotFile { file: name.into(), reason, known }))
-}
-
-/// Files beside `path` with the same extension.
-pub(super) fn neighbours(path: &Path) -> Vec<String> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
-    let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    let mut names: Vec<_> = names.filter(|name| Path::new(name).extension() == path.extension()).collect();
-    names.sort();
-    names
-}
-
-/// Reads a text file of reasonable size.
-pub(super) fn read_text(path: &Path) -> Result<String, ErrorKind> {
-    let file = std::fs::File::open(path).map_err(|error| error.kind())?;
-    let mut text = String::new();
-    let read = file.take(MOST_BYTES + 1).read_to_string(&mut text).map_err(|error| error.kind())?;
-    if read as u64 > MOST_BYTES { Err(ErrorKind::FileTooLarge) } else { Ok(text) }
 }
 
 fn planar_arm(file: &PlanarArmFile) -> Result<RobotSetup, Fault> {

@@ -23,8 +23,12 @@ const MOST_MOVING: usize = 1000;
 /// What moves.
 pub(super) struct Moving {
     pub(super) robot: RobotSetup,
+    /// The types of the joints, one per degree of freedom.
+    pub(super) kinds: Vec<MotionKind>,
     /// The links that moving joints carry, one per degree of freedom.
     pub(super) bodies: Vec<String>,
+    /// The mass that is rigid with the base.
+    pub(super) held_mass_kg: f64,
 }
 
 /// A degree of freedom: where its link stands in the arranged list, and its joint.
@@ -56,7 +60,7 @@ pub(super) fn build(
 
     let specs = link_specs(reading, links, joints, arranged, locks)?;
     let carrier = carriers(arranged, &freedoms);
-    look_at_base(reading, links, arranged, &carrier);
+    let held_mass_kg = look_at_base(reading, links, arranged, &carrier);
     let assembled = Tree::assemble(&specs, options.gravity)
         .map_err(|error| tree_error(reading, error, |spec| &links[arranged[spec].link]))?;
     if let Some(k) = assembled.theta.iter().position(|entry| !entry.is_finite()) {
@@ -77,7 +81,8 @@ pub(super) fn build(
     let axes = freedoms.iter().map(|freedom| axis(freedom.joint, freedom.motion)).collect();
     let robot =
         RobotSetup { kind: RobotKind::Tree(Arc::new(assembled.tree)), theta: assembled.theta, theta_names, axes };
-    Ok(Moving { robot, bodies })
+    let kinds = freedoms.iter().map(|freedom| freedom.motion.kind).collect();
+    Ok(Moving { robot, kinds, bodies, held_mass_kg })
 }
 
 /// The kernels' error, at the link it is about.
@@ -281,8 +286,8 @@ fn carriers(arranged: &[Held], freedoms: &[Freedom<'_>]) -> Vec<Option<usize>> {
     carrier
 }
 
-/// Notes the inertia that does not enter because it is rigid with the base.
-fn look_at_base(reading: &mut Reading<'_>, links: &[Link], arranged: &[Held], carrier: &[Option<usize>]) {
+/// Notes the inertia that does not enter because it is rigid with the base, and adds up its mass.
+fn look_at_base(reading: &mut Reading<'_>, links: &[Link], arranged: &[Held], carrier: &[Option<usize>]) -> f64 {
     let mut names = Vec::new();
     let mut mass = 0.0;
     let mut first = None;
@@ -296,4 +301,5 @@ fn look_at_base(reading: &mut Reading<'_>, links: &[Link], arranged: &[Held], ca
     if let Some(span) = first {
         reading.notice(&span, NoticeKind::HeldByBase { links: names, mass });
     }
+    mass
 }

@@ -39,10 +39,14 @@ pub(super) struct Motion {
     pub(super) mimic: Option<Located<Option<String>>>,
 }
 
+/// The type of a joint that moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum MotionKind {
+pub enum MotionKind {
+    /// Turns about its axis, usually between limits.
     Revolute,
+    /// Turns about its axis without end.
     Continuous,
+    /// Slides along its axis.
     Prismatic,
 }
 

@@ -26,12 +26,14 @@ mod xml;
 use forwardstep_sim::setup::RobotSetup;
 
 pub use ignored::{IgnoreReason, IgnoredItem};
+pub use joint::MotionKind;
 pub use notice::{Notice, NoticeKind};
 pub use problem::UrdfProblem;
 pub use shipped::{SHIPPED_ROBOTS, shipped_robot};
 pub use subject::{AttributeOf, End, Named, NamedLine, Owner, Size};
 
 use crate::{InputError, SourceText};
+use dynamics::Moving;
 use ignored::IgnoreReason as Reason;
 use link::Link;
 use xml::{Element, Reading, UrdfError};
@@ -72,8 +74,12 @@ pub struct UrdfRobot {
     pub robot: RobotSetup,
     /// The link that is fixed to the world.
     pub base: String,
+    /// What each degree of freedom does.
+    pub kinds: Vec<MotionKind>,
     /// The moving bodies in the order of the degrees of freedom, each by the link that its joint carries.
     pub bodies: Vec<String>,
+    /// The mass that is rigid with the base and so does not enter, in kg.
+    pub held_mass_kg: f64,
     /// All links, depth first from the base.
     pub links: Vec<String>,
     /// What the user should know, in the order of the file.
@@ -115,7 +121,8 @@ pub fn read_urdf(source: &SourceText, options: &UrdfOptions) -> Result<UrdfRobot
     notices.sort_by_key(|notice| notice.span.as_ref().map_or(usize::MAX, |span| span.start));
     let links: Vec<String> = arranged.iter().map(|held| links[held.link].name.clone()).collect();
     let base = links.first().cloned().unwrap_or_default();
-    Ok(UrdfRobot { name, robot: moving.robot, base, bodies: moving.bodies, links, notices })
+    let Moving { robot, kinds, bodies, held_mass_kg } = moving;
+    Ok(UrdfRobot { name, robot, base, kinds, bodies, held_mass_kg, links, notices })
 }
 
 fn read_robot(

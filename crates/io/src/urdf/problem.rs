@@ -307,7 +307,8 @@ impl Problem for UrdfProblem {
                 _ => "write it as three revolute joints whose axes meet, through light links".to_owned(),
             },
             UrdfProblem::Friction { .. } => {
-                "set `friction = \"ignore\"` to leave it out, or delete it from the file".to_owned()
+                "set `friction = \"ignore\"` in the scenario, or say `--ignore-friction` to `robot`, to leave it out"
+                    .to_owned()
             }
             UrdfProblem::NotPositiveDefinite { .. } => {
                 "give the body mass and inertia that resist its joint, or lock the joint".to_owned()

@@ -166,7 +166,7 @@ fn refusals() -> Vec<(String, UrdfOptions, &'static str)> {
             with_joint("revolute", r#"<dynamics damping="0.1" friction="0.2"/>"#),
             default(),
             r#"r.urdf:4:110: joint `turn` has Coulomb friction 0.2, which is not modelled
-  help: set `friction = "ignore"` to leave it out, or delete it from the file"#,
+  help: set `friction = "ignore"` in the scenario, or say `--ignore-friction` to `robot`, to leave it out"#,
         ),
         (
             with_arm(

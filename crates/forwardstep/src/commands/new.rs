@@ -1,0 +1,138 @@
+//! `forwardstep new`
+
+use std::fs::OpenOptions;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use forwardstep::io::robot::open_robot;
+use forwardstep::io::scenario::{Template, TemplateDelay, TemplateGraph, TemplateRobot, read_scenario};
+use forwardstep::io::urdf::{FrictionPolicy, NoticeKind, shipped_robot};
+use forwardstep::io::{SourceText, UrdfOptions};
+use forwardstep::sim::Exchange;
+use thiserror::Error;
+
+use super::ask::Asker;
+use crate::arguments::{DelayChoice, ExchangeChoice, GraphChoice, NewOptions, count_of_agents, order};
+use crate::console::{Console, Plain, complain};
+use crate::status::Status;
+
+/// Why nothing was written.
+#[derive(Clone, Debug, PartialEq, Error)]
+enum NewError {
+    #[error("`{}` already exists", .0.display())]
+    Exists(PathBuf),
+    #[error("cannot write `{}`: {reason}", path.display())]
+    Write { path: PathBuf, reason: ErrorKind },
+    #[error("the path of the robot, `{}`, cannot be written down in a scenario", .0.display())]
+    NotText(PathBuf),
+}
+
+impl NewError {
+    fn help(&self) -> Option<&'static str> {
+        match self {
+            NewError::Exists(_) => Some("give another name; nothing is ever overwritten"),
+            NewError::Write { reason: ErrorKind::NotFound, .. } => Some("make its folder first"),
+            NewError::Write { .. } => None,
+            NewError::NotText(_) => Some("copy the robot beside the scenario"),
+        }
+    }
+}
+
+fn refused(error: NewError) -> Status {
+    let help = error.help();
+    complain(&Plain::with_help(error, help))
+}
+
+/// Writes a commented scenario to start from.
+pub(crate) fn new(options: &NewOptions, console: &mut Console) -> Status {
+    write(options, console).err().unwrap_or(Status::Fine)
+}
+
+fn write(options: &NewOptions, console: &mut Console) -> Result<(), Status> {
+    if let Some(file) = options.file.as_ref().filter(|file| file.exists()) {
+        return Err(refused(NewError::Exists(file.clone())));
+    }
+    let text = template(options)?.text();
+    // Nobody should start from what is refused, for instance because the robot changed in between.
+    let folder = options.file.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
+    read_scenario("new", &SourceText::new("new scenario", text.as_str()), Some(folder))
+        .map_err(|error| complain(&error))?;
+    match &options.file {
+        None => console.text(text),
+        Some(file) => {
+            write_new(file, &text).map_err(refused)?;
+            console.line(format_args!("wrote {0}; next: forwardstep run {0}", file.display()));
+        }
+    }
+    Ok(())
+}
+
+fn template(options: &NewOptions) -> Result<Template, Status> {
+    let asker = Asker::new();
+    let usual = Template::default();
+    let NewOptions { file, name, agents, robot: given, order: given_order, exchange, graph, delay } = options;
+    let stem = || file.as_ref()?.file_stem()?.to_str().map(str::to_owned);
+    let question = "robot: planar_arm, point_mass, ur5e, panda or the path of a URDF";
+    let given = asker.ask(given.clone(), question, "planar_arm".to_owned(), |answer| Ok::<_, &str>(answer.to_owned()));
+    Ok(Template {
+        title: name.clone().or_else(stem).unwrap_or(usual.title),
+        // First, since it can be refused.
+        robot: robot(&given, file.as_deref())?,
+        agents: asker.ask(*agents, "number of agents", usual.agents, count_of_agents),
+        order: asker.ask(*given_order, "order of the reference dynamics", usual.order, order),
+        exchange: match asker.choose(*exchange, "exchange", ExchangeChoice::PositionVelocity) {
+            ExchangeChoice::Position => Exchange::Position,
+            ExchangeChoice::PositionVelocity => Exchange::PositionVelocity,
+        },
+        graph: match asker.choose(*graph, "graph", GraphChoice::Ring) {
+            GraphChoice::Ring => TemplateGraph::Ring,
+            GraphChoice::Path => TemplateGraph::Path,
+            GraphChoice::Complete => TemplateGraph::Complete,
+        },
+        delay: match asker.choose(*delay, "delay", DelayChoice::Constant) {
+            DelayChoice::Constant => TemplateDelay::Constant,
+            DelayChoice::SawTooth => TemplateDelay::SawTooth,
+            DelayChoice::None => TemplateDelay::None,
+        },
+    })
+}
+
+/// The robot of this name, else that in the file at this path, as the scenario at `scenario` has to name it.
+fn robot(name_or_path: &str, scenario: Option<&Path>) -> Result<TemplateRobot, Status> {
+    match name_or_path {
+        "planar_arm" | "planar-arm" => return Ok(TemplateRobot::PlanarArm),
+        "point_mass" | "point-mass" => return Ok(TemplateRobot::PointMass),
+        _ => {}
+    }
+    let options = UrdfOptions { friction: FrictionPolicy::Ignore, ..UrdfOptions::default() };
+    let robot = open_robot(name_or_path, &options).map_err(|error| complain(&error))?;
+    let has_friction = robot.notices.iter().any(|notice| matches!(notice.kind, NoticeKind::FrictionIgnored { .. }));
+    let path = Path::new(name_or_path);
+    let is_elsewhere = scenario.and_then(Path::parent).is_some_and(|folder| !folder.as_os_str().is_empty());
+    let file = match path.exists() {
+        false => match shipped_robot(name_or_path) {
+            Some(_) => format!("{}.urdf", name_or_path.trim_end_matches(".urdf")),
+            None => name_or_path.to_owned(),
+        },
+        true if is_elsewhere => {
+            let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+            let text = absolute.to_str().map(str::to_owned);
+            text.ok_or_else(|| refused(NewError::NotText(absolute)))?
+        }
+        true => name_or_path.to_owned(),
+    };
+    Ok(TemplateRobot::Urdf { file, has_friction })
+}
+
+/// Writes a file that must not exist yet.
+fn write_new(path: &Path, text: &str) -> Result<(), NewError> {
+    let failed = |error: std::io::Error| match error.kind() {
+        ErrorKind::AlreadyExists => NewError::Exists(path.to_owned()),
+        reason => NewError::Write { path: path.to_owned(), reason },
+    };
+    let mut file = OpenOptions::new().write(true).create_new(true).open(path).map_err(failed)?;
+    file.write_all(text.as_bytes()).map_err(|error| {
+        drop(std::fs::remove_file(path));
+        failed(error)
+    })
+}
