@@ -34,6 +34,8 @@
 mod agents;
 pub mod at;
 mod de;
+mod edges;
+pub mod edges_file;
 mod fault;
 pub mod file;
 mod law;
@@ -45,6 +47,7 @@ mod problem;
 mod robots;
 mod shipped;
 mod start;
+mod table;
 pub mod values;
 
 use std::fmt;
@@ -60,6 +63,7 @@ pub use notice::Notice;
 pub use open::{OpenError, open_scenario};
 pub use problem::ScenarioProblem;
 pub use shipped::{SHIPPED_SCENARIOS, ShippedScenario, shipped_scenario};
+pub use table::TableProblem;
 
 use crate::output::Goal;
 use crate::urdf::UrdfProblem;
@@ -93,10 +97,10 @@ pub struct Scenario {
     pub notices: Vec<Notice>,
 }
 
-/// A mistake in a scenario, or in a robot file that it names.
+/// A mistake in a scenario, or in a file that it names.
 #[derive(Clone, Debug)]
 pub enum ScenarioError {
-    /// In the scenario.
+    /// In the scenario, or in a table that it names.
     Scenario(Box<InputError<ScenarioProblem>>),
     /// In a robot file.
     Robot(Box<InputError<UrdfProblem>>),
@@ -133,10 +137,10 @@ impl Diagnostic for ScenarioError {
     }
 }
 
-/// Reads a scenario. Robot files that it names are looked for in `folder` first, then among the shipped robots.
+/// Reads a scenario. Files that it names are looked for in `folder`; robots then among the shipped ones.
 ///
 /// # Errors
-/// The first mistake, at its place in the scenario or in a robot file. Any text gives a result; none panics.
+/// The first mistake, at its place in the scenario or in a file that it names. Any text gives a result; none panics.
 pub fn read_scenario(name: &str, source: &SourceText, folder: Option<&Path>) -> Result<Scenario, ScenarioError> {
     read(name, source, folder).map_err(|stop| stop.in_file(source))
 }
@@ -152,7 +156,7 @@ fn read(name: &str, source: &SourceText, folder: Option<&Path>) -> Result<Scenar
     let record_every_s = every.map_or(Ok(RECORD_EVERY_S), |every| positive("record_every_s", every))?;
     let agents = agents::agents(&file, source, folder, &mut notices)?;
     let names: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
-    let network = network::network(&file.network.value, &names, end_s, source, &mut notices)
+    let network = network::network(&file.network.value, &names, end_s, source, folder, &mut notices)
         .map_err(|fault| fault.at(&file.network.span))?;
     let ReferenceFile::Consensus(consensus) = &file.reference.value;
     let setup = Setup {

@@ -1,8 +1,10 @@
 //! Why a scenario is refused.
 
 use forwardstep_core::GainError;
+use forwardstep_sim::topology::TopologyError;
 use thiserror::Error;
 
+use super::table::TableProblem;
 use crate::Problem;
 use crate::wording::{about, choose, entry_count, number};
 
@@ -329,6 +331,26 @@ pub enum ScenarioProblem {
         /// Where the first is.
         first_line: usize,
     },
+    /// A rule for edges that has no meaning for so many agents.
+    #[error(transparent)]
+    Topology(TopologyError),
+    /// An agent that is named twice where each can be once.
+    #[error("`{name}` is named twice in `among`")]
+    AmongTwice {
+        /// The agent.
+        name: String,
+    },
+    /// More edges by rule or from tables than fit into memory.
+    #[error("there are {edges} edges, but at most {most} are accepted")]
+    TooManyEdges {
+        /// How many there are.
+        edges: u64,
+        /// How many are accepted.
+        most: u64,
+    },
+    /// A table that has no meaning, or cannot be read.
+    #[error(transparent)]
+    Table(#[from] TableProblem),
     /// Both a fixed graph and phases.
     #[error("`edges` and `phases` are both given, but a network is either fixed or switches")]
     EdgesAndPhases,
@@ -458,6 +480,8 @@ impl Problem for ScenarioProblem {
             }
             ScenarioProblem::Derivatives { .. } => "an order of l has the derivatives 1 to l − 1".into(),
             ScenarioProblem::NoSuchAgent { name, agents } => choose(name, "the agents are", agents),
+            ScenarioProblem::Topology(_) => "an agent hears nobody twice, and never itself".into(),
+            ScenarioProblem::Table(problem) => return problem.help(),
             ScenarioProblem::EdgesAndPhases => "move the edges into a phase, or delete the phases".into(),
             ScenarioProblem::NoGraph => "for agents that never hear each other write `edges = []`".into(),
             ScenarioProblem::NoDwell { .. } => {

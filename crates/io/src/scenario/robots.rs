@@ -36,8 +36,9 @@ impl Stop {
     pub(super) fn in_file(self, source: &SourceText) -> ScenarioError {
         match self {
             Stop::Robot(error) => ScenarioError::Robot(error),
-            Stop::Here(Fault { problem, span }) => {
-                ScenarioError::Scenario(Box::new(InputError { source: source.clone(), span, problem: *problem }))
+            Stop::Here(Fault { problem, span, source: other }) => {
+                let source = other.unwrap_or_else(|| source.clone());
+                ScenarioError::Scenario(Box::new(InputError { source, span, problem: *problem }))
             }
         }
     }
