@@ -208,6 +208,16 @@ pub enum ScenarioProblem {
     #[error("the mass matrix of this arm is not positive definite: its second link resists no torque")]
     MassMatrix,
 
+    /// A spread where there is nothing to differ from.
+    #[error("`spread` is given, but there is no `count`")]
+    SpreadOfOne,
+    /// A robot that its spread has made impossible.
+    #[error("with this spread the mass matrix of `{agent}` is not positive definite")]
+    SpreadMassMatrix {
+        /// The agent.
+        agent: String,
+    },
+
     // Start, reference and law.
     /// A vector of the wrong length.
     #[error("`{key}` has {}, but `{agent}` needs {need}", entry_count(*.found))]
@@ -474,6 +484,10 @@ impl Problem for ScenarioProblem {
                 "only a URDF states limits, as <limit effort=\"…\"> of a joint".into()
             }
             ScenarioProblem::MassMatrix => "give the second link inertia, or a centre of mass off its joint".into(),
+            ScenarioProblem::SpreadOfOne => "a population of `count = 1` may have a spread, too".into(),
+            ScenarioProblem::SpreadMassMatrix { .. } => {
+                "some body has an inertia that no body can have; correct it, or let `relative` be smaller".into()
+            }
             ScenarioProblem::Unit { any, .. } => format!("`{any}` takes rad or m as each axis has it"),
             ScenarioProblem::NoRoots { .. } => {
                 "add `roots_per_s` to [reference.consensus], or `reference.consensus.roots_per_s` to the agent".into()

@@ -18,6 +18,7 @@ time = { end_s = 2 }
 [[agents]]
 name = "cart"
 count = 5
+spread = { seed = 2, relative = 0.3 }
 robot.point_mass = { dimension = 1, mass_kg = 2 }
 start.position = { random = { seed = 1, within = [-1, 1] } }
 [reference.consensus]
@@ -129,7 +130,7 @@ fn large_rings_are_read_at_once() {
 #[test]
 fn more_edges_than_fit_are_refused() {
     let error = fixed("edges.complete = {}", 2000).unwrap_err();
-    assert_eq!(error.to_string(), "test.toml:13:1: there are 3998000 edges, but at most 1000000 are accepted");
+    assert_eq!(error.to_string(), "test.toml:14:1: there are 3998000 edges, but at most 1000000 are accepted");
 }
 
 /// The sound scenario with the edges of a table beside it.

@@ -6,6 +6,7 @@ mod malformed;
 mod meaning;
 mod mutated;
 mod shipped;
+mod spread;
 
 use forwardstep_io::SourceText;
 use forwardstep_io::scenario::{Scenario, ScenarioError, read_scenario};
