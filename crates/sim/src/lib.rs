@@ -1,7 +1,7 @@
 //! Networks of forwardstepping agents in continuous time: switching digraphs, discontinuous delays, the closed loop as a
 //! delay-differential equation, and an integrator whose steps land on every break-point.
 //!
-//! The layers, each of which uses only those before it: [`graph`] and [`schedule`], [`delay`] and [`network`]; the
+//! The layers, each of which uses only those before it: [`graph`], [`topology`] and [`schedule`], [`delay`] and [`network`]; the
 //! integrator with its history and break-points; the closed loop; [`recording`] and [`simulate`].
 
 mod closed_loop;
@@ -13,6 +13,7 @@ pub mod recording;
 pub mod schedule;
 pub mod setup;
 mod simulate;
+pub mod topology;
 
 pub use closed_loop::SetupError;
 pub use network::Network;

@@ -12,6 +12,7 @@ use super::law::law;
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
 use super::robots::{ReadRobot, Stop, robot};
+use super::spread::spread;
 use super::start::{Shared, Starter, start};
 use crate::SourceText;
 
@@ -71,7 +72,7 @@ pub(super) fn agents(
         let enforce_limits = limits(entry, &names, &read)?;
         let (index, of) = (agents.len(), total as usize);
         for (k, name) in names.iter().enumerate() {
-            let robot = &read.robot;
+            let robot = &spread(entry, &read.robot, k, name)?;
             let Design { roots_per_s, manipulability, free_derivatives } = design(file, entry, name)?;
             let own = entry.start.as_ref().map(|file| Shared { file, index: k, of: names.len() });
             let common = file.start.as_ref().map(|file| Shared { file, index: index + k, of });

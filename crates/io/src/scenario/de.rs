@@ -16,6 +16,7 @@ use toml::Spanned;
 use toml::de::{DeInteger, DeString, DeTable, DeValue};
 
 use super::at::AT;
+use super::edges_file::LIST_OR_CHOICE;
 use super::fault::{Fault, LARGEST};
 use super::problem::ScenarioProblem;
 
@@ -57,7 +58,7 @@ impl Error for Fault {
 }
 
 /// A string as messages show it: in quotes, and not for ever.
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     match text.char_indices().nth(40) {
         Some((cut, _)) => format!("{:?}…", &text[..cut]),
         None => format!("{text:?}"),
@@ -202,6 +203,8 @@ impl<'de> Deserializer<'de> for ValueDe<'_, '_> {
     fn deserialize_newtype_struct<V: Visitor<'de>>(self, name: &'static str, visitor: V) -> Result<V::Value, Fault> {
         if name == AT {
             visitor.visit_seq(Placed { de: self, span: self.0.span(), part: 0 })
+        } else if name == LIST_OR_CHOICE && !matches!(self.0.get_ref(), DeValue::Table(_)) {
+            self.deserialize_any(visitor)
         } else {
             visitor.visit_newtype_struct(self)
         }

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::at::At;
 use super::problem::ScenarioProblem;
+use crate::SourceText;
 
 /// Numbers beyond this are refused, so that no product of a few of them overflows.
 pub(super) const LARGEST: f64 = 1e30;
@@ -16,16 +17,26 @@ const SMALLEST: f64 = 1e-30;
 pub(super) struct Fault {
     pub(super) problem: Box<ScenarioProblem>,
     pub(super) span: Option<Range<usize>>,
+    /// The file that the span is of, if it is not the scenario.
+    pub(super) source: Option<SourceText>,
 }
 
 impl Fault {
     pub(super) fn new(problem: ScenarioProblem) -> Self {
-        Fault { problem: Box::new(problem), span: None }
+        Fault { problem: Box::new(problem), span: None, source: None }
     }
 
     /// Adds the place unless a closer one is known.
     pub(super) fn at(mut self, span: &Range<usize>) -> Self {
-        self.span.get_or_insert_with(|| span.clone());
+        if self.source.is_none() {
+            self.span.get_or_insert_with(|| span.clone());
+        }
+        self
+    }
+
+    /// Says that the problem, and its place, are in another file than the scenario.
+    pub(super) fn within(mut self, source: &SourceText) -> Self {
+        self.source.get_or_insert_with(|| source.clone());
         self
     }
 }

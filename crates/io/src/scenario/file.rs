@@ -58,6 +58,8 @@ pub struct AgentFile {
     pub count: Option<At<i64>>,
     /// Its robot.
     pub robot: At<RobotFile>,
+    /// Lets the robots of a counted population differ. Default: they are all the same.
+    pub spread: Option<At<SpreadFile>>,
     /// Where it starts. Default: at rest at zero.
     pub start: Option<At<StartFile>>,
     /// Reference dynamics of its own.
@@ -130,6 +132,20 @@ pub struct PointMassFile {
     /// Its mass, in kg.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub mass_kg: At<f64>,
+}
+
+/// How the robots of a population differ from what is written, each number by a random factor of its own: the masses and
+/// lengths of planar arms (centres of mass and inertias follow), the masses of point masses, all inertia of each body of a
+/// URDF.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpreadFile {
+    /// The same seed gives the same robots, however many there are.
+    #[schemars(range(min = 0))]
+    pub seed: At<i64>,
+    /// Factors are drawn uniformly from 1 − this to 1 + this.
+    #[schemars(range(min = 0, max = 0.9))]
+    pub relative: At<f64>,
 }
 
 /// Where agents start. Everything that is not given is zero; the reference velocity then starts at the velocity.

@@ -34,6 +34,8 @@
 mod agents;
 pub mod at;
 mod de;
+mod edges;
+pub mod edges_file;
 mod fault;
 pub mod file;
 mod law;
@@ -42,9 +44,12 @@ pub mod network_file;
 mod notice;
 mod open;
 mod problem;
+mod random;
 mod robots;
 mod shipped;
+mod spread;
 mod start;
+mod table;
 mod template;
 pub mod values;
 
@@ -61,6 +66,7 @@ pub use notice::Notice;
 pub use open::{OpenError, open_scenario};
 pub use problem::ScenarioProblem;
 pub use shipped::{SHIPPED_SCENARIOS, ShippedScenario, shipped_scenario};
+pub use table::TableProblem;
 pub use template::{Template, TemplateDelay, TemplateGraph, TemplateRobot};
 
 use crate::output::Goal;
@@ -96,10 +102,10 @@ pub struct Scenario {
     pub notices: Vec<Notice>,
 }
 
-/// A mistake in a scenario, or in a robot file that it names.
+/// A mistake in a scenario, or in a file that it names.
 #[derive(Clone, Debug)]
 pub enum ScenarioError {
-    /// In the scenario.
+    /// In the scenario, or in a table that it names.
     Scenario(Box<InputError<ScenarioProblem>>),
     /// In a robot file.
     Robot(Box<InputError<UrdfProblem>>),
@@ -136,10 +142,10 @@ impl Diagnostic for ScenarioError {
     }
 }
 
-/// Reads a scenario. Robot files that it names are looked for in `folder` first, then among the shipped robots.
+/// Reads a scenario. Files that it names are looked for in `folder`; robots then among the shipped ones.
 ///
 /// # Errors
-/// The first mistake, at its place in the scenario or in a robot file. Any text gives a result; none panics.
+/// The first mistake, at its place in the scenario or in a file that it names. Any text gives a result; none panics.
 pub fn read_scenario(name: &str, source: &SourceText, folder: Option<&Path>) -> Result<Scenario, ScenarioError> {
     read(name, source, folder).map_err(|stop| stop.in_file(source))
 }
@@ -155,7 +161,7 @@ fn read(name: &str, source: &SourceText, folder: Option<&Path>) -> Result<Scenar
     let record_every_s = every.map_or(Ok(RECORD_EVERY_S), |every| positive("record_every_s", every))?;
     let agents = agents::agents(&file, source, folder, &mut notices)?;
     let names: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
-    let network = network::network(&file.network.value, &names, end_s, source, &mut notices)
+    let network = network::network(&file.network.value, &names, end_s, source, folder, &mut notices)
         .map_err(|fault| fault.at(&file.network.span))?;
     let (reference, exchange) = reference(&file.reference.value)?;
     let setup = Setup {

@@ -3,15 +3,15 @@
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::ops::Range;
+use std::path::Path;
 
 use forwardstep_sim::Network;
 use forwardstep_sim::delay::Delay;
-use forwardstep_sim::graph::Edge;
 use forwardstep_sim::schedule::{Phase, Schedule};
 
 use super::at::At;
 use super::fault::{Fault, fault, filled, not_negative, positive, seed, values};
-use super::network_file::{DelayFile, EdgeFile, NetworkFile, PhaseFile, SwitchingFile};
+use super::network_file::{DelayFile, NetworkFile, PhaseFile, SwitchingFile};
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
 use crate::SourceText;
@@ -19,12 +19,13 @@ use crate::SourceText;
 /// Switches or jumps until the end of the run that are accepted; each ends a step.
 const MOST_EVENTS: f64 = 1e7;
 
-/// Builds the network of the agents `names`.
+/// Builds the network of the agents `names`; `folder` is where tables are looked for.
 pub(super) fn network(
     file: &NetworkFile,
     names: &[String],
     end_s: f64,
     source: &SourceText,
+    folder: Option<&Path>,
     notices: &mut Vec<Notice>,
 ) -> Result<Network, Fault> {
     let mut reader = NetworkReader {
@@ -33,8 +34,11 @@ pub(super) fn network(
         weight: file.weight.as_ref().map_or(Ok(1.0), |weight| positive("weight", weight))?,
         default_delay: None,
         delays: Vec::new(),
+        constants: HashMap::new(),
+        edges_so_far: 0,
         end_s,
         source,
+        folder,
     };
     let default = file.delay.as_ref().map_or(Ok(Delay::Constant { s: 0.0 }), |delay| reader.delay(delay))?;
     reader.default_delay = Some(default);
@@ -50,14 +54,21 @@ pub(super) fn network(
     Ok(Network { agents: names.len(), schedule, delays: reader.delays })
 }
 
-struct NetworkReader<'a> {
-    names: &'a [String],
-    index: HashMap<&'a str, usize>,
-    weight: f64,
-    default_delay: Option<Delay>,
+/// What is known while a network is read.
+pub(super) struct NetworkReader<'a> {
+    pub(super) names: &'a [String],
+    pub(super) index: HashMap<&'a str, usize>,
+    /// The weight and the delay of edges that have none of their own.
+    pub(super) weight: f64,
+    pub(super) default_delay: Option<Delay>,
+    /// All delays so far, and where constant ones are among them.
     delays: Vec<Delay>,
+    constants: HashMap<u64, usize>,
+    /// Edges by rule and from tables so far.
+    pub(super) edges_so_far: u64,
     end_s: f64,
-    source: &'a SourceText,
+    pub(super) source: &'a SourceText,
+    pub(super) folder: Option<&'a Path>,
 }
 
 impl NetworkReader<'_> {
@@ -117,48 +128,21 @@ impl NetworkReader<'_> {
         Err(Fault::new(ScenarioProblem::TooManyEvents { what, events: events.round(), most: MOST_EVENTS }).at(span))
     }
 
-    fn edges(&mut self, edges: &At<Vec<At<EdgeFile>>>) -> Result<Vec<Edge>, Fault> {
-        let mut seen: HashMap<(usize, usize), usize> = HashMap::with_capacity(edges.value.len());
-        let mut read = Vec::with_capacity(edges.value.len());
-        for place in &edges.value {
-            let EdgeFile { from, to, weight, delay } = &place.value;
-            let (j, i) = (self.agent(from)?, self.agent(to)?);
-            if i == j {
-                return Err(fault(place, ScenarioProblem::SelfLoop { name: to.value.clone() }));
-            }
-            if let Some(start) = seen.insert((j, i), place.span.start) {
-                let (first_line, _) = self.source.line_column(start);
-                let (from, to) = (from.value.clone(), to.value.clone());
-                return Err(fault(place, ScenarioProblem::EdgeTwice { from, to, first_line }));
-            }
-            let weight = weight.as_ref().map_or(Ok(self.weight), |weight| positive("weight", weight))?;
-            let delay = match (delay, &self.default_delay) {
-                (Some(delay), _) => self.delay(delay)?,
-                (None, Some(delay)) => delay.clone(),
-                (None, None) => Delay::Constant { s: 0.0 },
-            };
-            read.push(Edge { from: j, to: i, weight, delay: self.delay_index(delay) });
-        }
-        Ok(read)
-    }
-
-    fn agent(&self, name: &At<String>) -> Result<usize, Fault> {
-        self.index.get(name.value.as_str()).copied().ok_or_else(|| {
-            let problem = ScenarioProblem::NoSuchAgent { name: name.value.clone(), agents: self.names.to_vec() };
-            fault(name, problem)
-        })
-    }
-
     /// Equal delays share an entry, so that a message to several receivers is looked up once.
-    fn delay_index(&mut self, delay: Delay) -> usize {
-        let known = self.delays.iter().position(|known| *known == delay);
-        known.unwrap_or_else(|| {
+    pub(super) fn delay_index(&mut self, delay: Delay) -> usize {
+        let next = self.delays.len();
+        let index = match &delay {
+            // A table may give every edge another.
+            Delay::Constant { s } => *self.constants.entry((s + 0.0).to_bits()).or_insert(next),
+            _ => self.delays.iter().position(|known| *known == delay).unwrap_or(next),
+        };
+        if index == next {
             self.delays.push(delay);
-            self.delays.len() - 1
-        })
+        }
+        index
     }
 
-    fn delay(&self, delay: &At<DelayFile>) -> Result<Delay, Fault> {
+    pub(super) fn delay(&self, delay: &At<DelayFile>) -> Result<Delay, Fault> {
         match &delay.value {
             DelayFile::ConstantS(s) => Ok(Delay::Constant { s: not_negative("constant_s", s)? }),
             DelayFile::Sinusoid(file) => {

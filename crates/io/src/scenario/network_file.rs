@@ -1,14 +1,10 @@
 //! The `[network]` of a scenario file as it is written.
 
-use std::borrow::Cow;
-use std::fmt;
-
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::JsonSchema;
 use serde::Deserialize;
-use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 
 use super::at::At;
+use super::edges_file::EdgesFile;
 
 /// Who hears whom, when, and how late: one graph (`edges`) or several in turn (`phases`).
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -20,7 +16,7 @@ pub struct NetworkFile {
     /// The delay of every edge that has none of its own. Default: none.
     pub delay: Option<At<DelayFile>>,
     /// The edges of a graph that never changes.
-    pub edges: Option<At<Vec<At<EdgeFile>>>>,
+    pub edges: Option<At<EdgesFile>>,
     /// How the phases follow each other. Default: repeat.
     pub switching: Option<At<SwitchingFile>>,
     /// The graphs of a network that switches.
@@ -35,7 +31,7 @@ pub struct PhaseFile {
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub dwell_s: Option<At<f64>>,
     /// Its edges.
-    pub edges: At<Vec<At<EdgeFile>>>,
+    pub edges: At<EdgesFile>,
 }
 
 /// How the phases of a network follow each other.
@@ -59,34 +55,6 @@ pub struct RandomSwitchingFile {
     pub seed: At<i64>,
     /// Shortest and longest dwell, in s.
     pub dwell_s: At<[At<f64>; 2]>,
-}
-
-/// An edge says who is heard by whom: `["from", "to"]`, or `{ from = …, to = … }` with a weight or delay of its own.
-#[derive(Clone, Debug)]
-pub struct EdgeFile {
-    /// The agent that is heard.
-    pub from: At<String>,
-    /// The agent that hears it.
-    pub to: At<String>,
-    /// A weight of its own.
-    pub weight: Option<At<f64>>,
-    /// A delay of its own.
-    pub delay: Option<At<DelayFile>>,
-}
-
-/// An edge written as a table.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct EdgeTable {
-    /// The agent that is heard.
-    from: At<String>,
-    /// The agent that hears it.
-    to: At<String>,
-    /// The weight of this edge.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    weight: Option<At<f64>>,
-    /// The delay of this edge.
-    delay: Option<At<DelayFile>>,
 }
 
 /// How old a message is when it is heard.
@@ -149,48 +117,4 @@ pub struct SawToothFile {
     /// How far the first tooth has come at t = 0, in s. Default: 0.
     #[serde(default)]
     pub offset_s: f64,
-}
-
-impl<'de> Deserialize<'de> for EdgeFile {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct EdgeVisitor;
-        impl<'de> Visitor<'de> for EdgeVisitor {
-            type Value = EdgeFile;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(r#"an edge, ["from", "to"] or { from = "…", to = "…" }"#)
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<EdgeFile, A::Error> {
-                let names: Vec<At<String>> = Vec::deserialize(SeqAccessDeserializer::new(seq))?;
-                let found = names.len();
-                match <[At<String>; 2]>::try_from(names) {
-                    Ok([from, to]) => Ok(EdgeFile { from, to, weight: None, delay: None }),
-                    Err(_) => Err(serde::de::Error::invalid_length(found, &self)),
-                }
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<EdgeFile, A::Error> {
-                let EdgeTable { from, to, weight, delay } = EdgeTable::deserialize(MapAccessDeserializer::new(map))?;
-                Ok(EdgeFile { from, to, weight, delay })
-            }
-        }
-        deserializer.deserialize_any(EdgeVisitor)
-    }
-}
-
-impl JsonSchema for EdgeFile {
-    fn schema_name() -> Cow<'static, str> {
-        "Edge".into()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        json_schema!({
-            "description": "Who is heard by whom.",
-            "anyOf": [
-                { "type": "array", "items": { "type": "string" }, "minItems": 2, "maxItems": 2 },
-                generator.subschema_for::<EdgeTable>()
-            ]
-        })
-    }
 }

@@ -1,8 +1,10 @@
 //! Why a scenario is refused.
 
 use forwardstep_core::GainError;
+use forwardstep_sim::topology::TopologyError;
 use thiserror::Error;
 
+use super::table::TableProblem;
 use crate::Problem;
 use crate::wording::{about, choose, entry_count, number};
 
@@ -206,6 +208,16 @@ pub enum ScenarioProblem {
     #[error("the mass matrix of this arm is not positive definite: its second link resists no torque")]
     MassMatrix,
 
+    /// A spread where there is nothing to differ from.
+    #[error("`spread` is given, but there is no `count`")]
+    SpreadOfOne,
+    /// A robot that its spread has made impossible.
+    #[error("with this spread the mass matrix of `{agent}` is not positive definite")]
+    SpreadMassMatrix {
+        /// The agent.
+        agent: String,
+    },
+
     // Start, reference and law.
     /// A vector of the wrong length.
     #[error("`{key}` has {}, but `{agent}` needs {need}", entry_count(*.found))]
@@ -343,6 +355,26 @@ pub enum ScenarioProblem {
         /// Where the first is.
         first_line: usize,
     },
+    /// A rule for edges that has no meaning for so many agents.
+    #[error(transparent)]
+    Topology(TopologyError),
+    /// An agent that is named twice where each can be once.
+    #[error("`{name}` is named twice in `among`")]
+    AmongTwice {
+        /// The agent.
+        name: String,
+    },
+    /// More edges by rule or from tables than fit into memory.
+    #[error("there are {edges} edges, but at most {most} are accepted")]
+    TooManyEdges {
+        /// How many there are.
+        edges: u64,
+        /// How many are accepted.
+        most: u64,
+    },
+    /// A table that has no meaning, or cannot be read.
+    #[error(transparent)]
+    Table(#[from] TableProblem),
     /// Both a fixed graph and phases.
     #[error("`edges` and `phases` are both given, but a network is either fixed or switches")]
     EdgesAndPhases,
@@ -466,6 +498,10 @@ impl Problem for ScenarioProblem {
                 "only a URDF states limits, as <limit effort=\"…\"> of a joint".into()
             }
             ScenarioProblem::MassMatrix => "give the second link inertia, or a centre of mass off its joint".into(),
+            ScenarioProblem::SpreadOfOne => "a population of `count = 1` may have a spread, too".into(),
+            ScenarioProblem::SpreadMassMatrix { .. } => {
+                "some body has an inertia that no body can have; correct it, or let `relative` be smaller".into()
+            }
             ScenarioProblem::Unit { any, .. } => format!("`{any}` takes rad or m as each axis has it"),
             ScenarioProblem::NoRoots { .. } => {
                 "add `roots_per_s` to [reference.consensus], or `reference.consensus.roots_per_s` to the agent".into()
@@ -479,6 +515,8 @@ impl Problem for ScenarioProblem {
             }
             ScenarioProblem::Derivatives { .. } => "an order of l has the derivatives 1 to l − 1".into(),
             ScenarioProblem::NoSuchAgent { name, agents } => choose(name, "the agents are", agents),
+            ScenarioProblem::Topology(_) => "an agent hears nobody twice, and never itself".into(),
+            ScenarioProblem::Table(problem) => return problem.help(),
             ScenarioProblem::EdgesAndPhases => "move the edges into a phase, or delete the phases".into(),
             ScenarioProblem::NoGraph => "for agents that never hear each other write `edges = []`".into(),
             ScenarioProblem::NoDwell { .. } => {

@@ -35,8 +35,9 @@ impl Stop {
     pub(super) fn in_file(self, source: &SourceText) -> ScenarioError {
         match self {
             Stop::Robot(error) => ScenarioError::Robot(error),
-            Stop::Here(Fault { problem, span }) => {
-                ScenarioError::Scenario(Box::new(InputError { source: source.clone(), span, problem: *problem }))
+            Stop::Here(Fault { problem, span, source: other }) => {
+                let source = other.unwrap_or_else(|| source.clone());
+                ScenarioError::Scenario(Box::new(InputError { source, span, problem: *problem }))
             }
         }
     }
@@ -52,7 +53,9 @@ pub(super) struct ReadRobot {
 pub(super) fn robot(file: &At<RobotFile>, folder: Option<&Path>) -> Result<ReadRobot, Stop> {
     let robot = match &file.value {
         RobotFile::Urdf(file) => return from_urdf(file, folder),
-        RobotFile::PlanarArm(arm) => planar_arm(arm).map_err(|fault| fault.at(&file.span))?,
+        RobotFile::PlanarArm(arm) => {
+            planar_links(arm).and_then(|links| planar_robot(&links)).map_err(|fault| fault.at(&file.span))?
+        }
         RobotFile::PointMass(mass) => point_mass(mass)?,
     };
     Ok(ReadRobot { robot, notices: Vec::new() })
@@ -111,7 +114,8 @@ fn robot_text(file: &At<String>, folder: Option<&Path>) -> Result<SourceText, Fa
     Err(fault(file, ScenarioProblem::RobotFile { file: name.into(), reason, known }))
 }
 
-fn planar_arm(file: &PlanarArmFile) -> Result<RobotSetup, Fault> {
+/// The links of a planar arm as its table says.
+pub(super) fn planar_links(file: &PlanarArmFile) -> Result<PlanarLinks, Fault> {
     let pair = |key, [first, second]: &[At<f64>; 2]| Ok([positive(key, first)?, positive(key, second)?]);
     let mut links = PlanarLinks::uniform(pair("mass_kg", &file.mass_kg)?, pair("length_m", &file.length_m)?);
     if let Some([first, second]) = &file.com_m {
@@ -123,6 +127,11 @@ fn planar_arm(file: &PlanarArmFile) -> Result<RobotSetup, Fault> {
     if let Some(gravity) = &file.gravity_m_s2 {
         links.gravity_m_s2 = not_negative("gravity_m_s2", gravity)?;
     }
+    Ok(links)
+}
+
+/// The arm with these links.
+pub(super) fn planar_robot(links: &PlanarLinks) -> Result<RobotSetup, Fault> {
     let theta = links.theta();
     // det M = ϑ₂(ϑ₁ − ϑ₂) − ϑ₃² cos² q₂, smallest where the arm is straight.
     let [whole, outer, coupling, ..] = theta;

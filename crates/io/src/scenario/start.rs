@@ -1,13 +1,12 @@
 //! `start` → [`Start`].
 
 use forwardstep_sim::{AxisUnit, RobotSetup, Start};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use super::at::At;
 use super::fault::{Fault, fault, seed, values};
 use super::file::StartFile;
 use super::problem::ScenarioProblem;
+use super::random::{Stream, draws};
 use super::values::{Item, RandomFile, StartValues};
 
 /// The `start` of one agent with the position of the agent among those that share it.
@@ -28,11 +27,6 @@ pub(super) struct Starter<'a> {
     pub(super) order: usize,
 }
 
-/// Streams of the random numbers, so that one seed used twice does not make velocities follow positions.
-const POSITION: u64 = 0;
-const VELOCITY: u64 = 1;
-const REFERENCE: u64 = 2;
-
 /// A key of the start table and the unit that all axes must have for it.
 type Key<'a> = (&'static str, Option<AxisUnit>, &'a Option<At<StartValues>>);
 
@@ -48,14 +42,14 @@ pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<
         }
         Ok(vec![0.0; agent.robot.axes.len()])
     };
-    let q = quantity(POSITION, |file| {
+    let q = quantity(Stream::Position, |file| {
         [
             ("position_rad", Some(Radian), &file.position_rad),
             ("position_m", Some(Metre), &file.position_m),
             ("position", None, &file.position),
         ]
     })?;
-    let dq = quantity(VELOCITY, |file| {
+    let dq = quantity(Stream::Velocity, |file| {
         [
             ("velocity_rad_s", Some(Radian), &file.velocity_rad_s),
             ("velocity_m_s", Some(Metre), &file.velocity_m_s),
@@ -65,7 +59,7 @@ pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<
     let mut reference = Vec::new();
     if let Some((table, state)) = tables().find_map(|table| Some((table, table.file.value.reference.as_ref()?))) {
         let derivatives = &state.value.derivatives;
-        let z = state.value.z.as_ref().map(|z| agent.vector("z", z, table, REFERENCE)).transpose()?;
+        let z = state.value.z.as_ref().map(|z| agent.vector("z", z, table, Stream::Reference(0))).transpose()?;
         reference.push(z.unwrap_or_else(|| dq.clone()));
         for (k, derivative) in derivatives.iter().enumerate() {
             if k + 1 >= agent.order {
@@ -73,14 +67,14 @@ pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<
                 let problem = ScenarioProblem::Derivatives { found, agent: name, order: agent.order };
                 return Err(fault(derivative, problem));
             }
-            reference.push(agent.vector("derivatives", derivative, table, REFERENCE + 1 + k as u64)?);
+            reference.push(agent.vector("derivatives", derivative, table, Stream::Reference(k + 1))?);
         }
     }
     Ok(Start { q, dq, reference })
 }
 
 impl Starter<'_> {
-    fn one_of(&self, table: Shared<'_>, stream: u64, keys: [Key<'_>; 3]) -> Result<Option<Vec<f64>>, Fault> {
+    fn one_of(&self, table: Shared<'_>, stream: Stream, keys: [Key<'_>; 3]) -> Result<Option<Vec<f64>>, Fault> {
         let any = keys[2].0;
         let mut given = keys.into_iter().filter_map(|(key, unit, value)| Some((key, unit, value.as_ref()?)));
         let Some((key, unit, value)) = given.next() else { return Ok(None) };
@@ -105,7 +99,7 @@ impl Starter<'_> {
         key: &'static str,
         value: &At<StartValues>,
         table: Shared<'_>,
-        stream: u64,
+        stream: Stream,
     ) -> Result<Vec<f64>, Fault> {
         let need = self.robot.axes.len();
         let length = |found: usize, place: &std::ops::Range<usize>| {
@@ -140,19 +134,12 @@ impl Starter<'_> {
     }
 }
 
-/// Every agent has its place in one stream of numbers, so that adding agents leaves the others where they were.
-fn draw(random: &RandomFile, stream: u64, index: usize, length: usize) -> Result<Vec<f64>, Fault> {
+/// One number per axis, drawn uniformly.
+fn draw(random: &RandomFile, stream: Stream, index: usize, length: usize) -> Result<Vec<f64>, Fault> {
     let [low, high] = random.within.value;
     if low > high {
         return Err(fault(&random.within, ScenarioProblem::Interval { key: "within", low, high }));
     }
-    let mut generator = ChaCha8Rng::seed_from_u64(seed(&random.seed)?);
-    generator.set_stream(stream);
-    // A draw of 64 bits takes two words.
-    generator.set_word_pos(2 * index as u128 * length as u128);
-    let mut next = || {
-        let unit = (generator.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64);
-        low * (1.0 - unit) + high * unit
-    };
-    Ok((0..length).map(|_| next()).collect())
+    let units = draws(seed(&random.seed)?, stream, index, length);
+    Ok(units.map(|unit| low * (1.0 - unit) + high * unit).collect())
 }

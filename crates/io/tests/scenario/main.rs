@@ -1,10 +1,12 @@
 //! Scenario files: what is read, and what every mistake gets.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod edges;
 mod malformed;
 mod meaning;
 mod mutated;
 mod shipped;
+mod spread;
 
 use forwardstep_io::SourceText;
 use forwardstep_io::scenario::{Scenario, ScenarioError, read_scenario};

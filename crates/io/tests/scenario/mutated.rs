@@ -6,10 +6,11 @@ use forwardstep_io::scenario::{SHIPPED_SCENARIOS, ScenarioError};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 use proptest::prelude::*;
 
+use super::edges::RULES;
 use super::{SOUND, read};
 
 fn texts() -> Vec<&'static str> {
-    SHIPPED_SCENARIOS.iter().map(|scenario| scenario.text).chain([SOUND]).collect()
+    SHIPPED_SCENARIOS.iter().map(|scenario| scenario.text).chain([SOUND, RULES]).collect()
 }
 
 /// Reads; then shows the error, or begins to simulate: what the reader lets pass, the rooms below accept.
@@ -53,7 +54,7 @@ fn prop_every_line_may_be_missing_or_doubled() {
 proptest! {
     #[test]
     fn prop_mutated_text_never_panics(
-        which in 0..7usize,
+        which in 0..8usize,
         edits in prop::collection::vec((any::<prop::sample::Index>(), 0..6usize, "[ -~é\\n]{0,6}"), 1..6),
         tokens in prop::collection::vec(prop::sample::select(vec![
             "nan", "-inf", "1e999", "-1", "0", "1e-30", "[]", "{}", "[[]]", "[[1],2]", "\"\"", "true", "[1, 2, 3]", "1e30",

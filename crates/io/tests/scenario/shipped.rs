@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use forwardstep_io::scenario::{SHIPPED_SCENARIOS, open_scenario, schema};
 
 use super::SOUND;
+use super::edges::RULES;
 
 #[test]
 fn every_shipped_scenario_is_sound() {
@@ -51,7 +52,7 @@ fn the_schema_knows_every_key_and_describes_it() {
     collect(&schema, &mut known, &mut undescribed);
     assert!(undescribed.is_empty(), "without a description: {undescribed:?}");
     let mut used = BTreeSet::new();
-    for text in SHIPPED_SCENARIOS.iter().map(|scenario| scenario.text).chain([SOUND]) {
+    for text in SHIPPED_SCENARIOS.iter().map(|scenario| scenario.text).chain([SOUND, RULES]) {
         keys(&text.parse().unwrap(), &mut used);
     }
     let unknown: Vec<_> = used.difference(&known).collect();

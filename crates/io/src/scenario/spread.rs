@@ -1,0 +1,59 @@
+//! `spread` of a population → agents whose robots differ.
+
+use forwardstep_sim::{RobotKind, RobotSetup};
+
+use super::fault::{Fault, between, fault, seed};
+use super::file::{AgentFile, RobotFile};
+use super::problem::ScenarioProblem;
+use super::random::{Stream, draws};
+use super::robots::{planar_links, planar_robot};
+
+/// The largest spread: nothing may weigh next to nothing.
+const MOST_RELATIVE: f64 = 0.9;
+/// Positions at which the mass matrix of a tree is looked at.
+const SAMPLES: usize = 16;
+
+/// The robot of the agent `index` of a population whose file says `read`.
+pub(super) fn spread(entry: &AgentFile, read: &RobotSetup, index: usize, agent: &str) -> Result<RobotSetup, Fault> {
+    let Some(place) = &entry.spread else { return Ok(read.clone()) };
+    if entry.count.is_none() {
+        return Err(fault(place, ScenarioProblem::SpreadOfOne));
+    }
+    let relative = between("relative", &place.value.relative, 0.0, MOST_RELATIVE)?;
+    let seed = seed(&place.value.seed)?;
+    let factors =
+        |length| draws(seed, Stream::Spread, index, length).map(move |unit| 1.0 + relative * (2.0 * unit - 1.0));
+    let unsound = || fault(place, ScenarioProblem::SpreadMassMatrix { agent: agent.to_owned() });
+    match &entry.robot.value {
+        RobotFile::PlanarArm(file) => {
+            let mut links = planar_links(file)?;
+            let factors: Vec<f64> = factors(4).collect();
+            for (k, (mass, length)) in factors[..2].iter().zip(&factors[2..]).enumerate() {
+                links.mass_kg[k] *= mass;
+                links.length_m[k] *= length;
+                links.com_m[k] *= length;
+                links.inertia_kg_m2[k] *= mass * length * length;
+            }
+            planar_robot(&links).map_err(|_| unsound())
+        }
+        RobotFile::PointMass(_) => {
+            let mut robot = read.clone();
+            robot.theta.iter_mut().zip(factors(1)).for_each(|(mass, factor)| *mass *= factor);
+            Ok(robot)
+        }
+        RobotFile::Urdf(_) => {
+            let mut robot = read.clone();
+            let RobotKind::Tree(tree) = &read.kind else { return Ok(robot) };
+            // Ten parameters per body come first; they scale together, and dampings stay.
+            let bodies = robot.theta.chunks_exact_mut(10).zip(factors(read.axes.len()));
+            bodies.for_each(|(body, factor)| body.iter_mut().for_each(|entry| *entry *= factor));
+            let range: Vec<[f64; 2]> = read
+                .axes
+                .iter()
+                .map(|axis| axis.position_limits.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]))
+                .collect();
+            tree.check_mass_matrix(&robot.theta, &range, SAMPLES).map_err(|_| unsound())?;
+            Ok(robot)
+        }
+    }
+}

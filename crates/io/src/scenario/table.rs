@@ -1,0 +1,331 @@
+//! CSV tables that a scenario names: cells with their places, columns by name in any order.
+//!
+//! Cells are separated by commas; blanks around them do not count, nor do empty lines. A cell may stand in quotation marks,
+//! `"a ""quoted"" cell"`, and then ends on its own line.
+
+use std::borrow::Cow;
+use std::io::ErrorKind;
+use std::ops::Range;
+use std::path::Path;
+
+use thiserror::Error;
+
+use super::at::At;
+use super::de::quoted;
+use super::fault::{Fault, LARGEST, fault};
+use super::problem::ScenarioProblem;
+use crate::SourceText;
+use crate::files::{neighbours, read_text};
+use crate::wording::{choose, entry_count};
+
+/// Why a table has no meaning.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum TableProblem {
+    /// A table that cannot be read.
+    #[error("cannot read the table `{file}`: {reason}")]
+    File {
+        /// The name as written.
+        file: String,
+        /// Why not.
+        reason: ErrorKind,
+        /// What might be meant.
+        known: Vec<String>,
+    },
+    /// Nothing at all.
+    #[error("the table is empty")]
+    NoHeader {
+        /// The columns that are known.
+        columns: Vec<&'static str>,
+    },
+    /// A column that means nothing here.
+    #[error("unknown column `{name}`")]
+    UnknownColumn {
+        /// Its name.
+        name: String,
+        /// The columns that are known.
+        columns: Vec<&'static str>,
+    },
+    /// A column that must be there is not.
+    #[error("the column `{name}` is missing")]
+    MissingColumn {
+        /// Its name.
+        name: &'static str,
+        /// The columns that are known.
+        columns: Vec<&'static str>,
+    },
+    /// Two columns of one name.
+    #[error("a second column is named `{name}`")]
+    ColumnTwice {
+        /// The name.
+        name: &'static str,
+    },
+    /// A line with more or fewer cells than there are columns.
+    #[error("this line has {}, but there are {columns} columns", entry_count(*.found))]
+    LineLength {
+        /// How many cells.
+        found: usize,
+        /// How many columns.
+        columns: usize,
+    },
+    /// A quotation mark without its partner.
+    #[error("this quotation mark is not closed on its line")]
+    OpenQuote,
+    /// Text behind a cell in quotation marks.
+    #[error("found {found} behind a cell in quotation marks, where a comma or the end of the line should stand")]
+    AfterQuote {
+        /// What was found.
+        found: String,
+    },
+}
+
+impl TableProblem {
+    pub(super) fn help(&self) -> Option<String> {
+        const HEADER: &str = "the first line names the columns;";
+        match self {
+            TableProblem::File { file, known, .. } if !known.is_empty() => Some(choose(file, "there are", known)),
+            TableProblem::NoHeader { columns } | TableProblem::MissingColumn { columns, .. } => {
+                Some(choose("", &format!("{HEADER} they are"), columns))
+            }
+            TableProblem::UnknownColumn { name, columns } => Some(choose(name, &format!("{HEADER} they are"), columns)),
+            TableProblem::OpenQuote => Some("a quotation mark inside a quoted cell is written twice: \"\"".into()),
+            _ => None,
+        }
+    }
+}
+
+/// A column that a table may have.
+#[derive(Clone, Copy)]
+pub(super) struct Column {
+    pub(super) name: &'static str,
+    /// Whether the column must be there, with something in every line.
+    pub(super) required: bool,
+}
+
+pub(super) type Cell<'a> = At<Cow<'a, str>>;
+
+/// The text of a table beside the scenario.
+pub(super) fn table_text(file: &At<String>, folder: Option<&Path>) -> Result<SourceText, Fault> {
+    let name = file.value.as_str();
+    let (reason, known) = match folder.map(|folder| folder.join(name)) {
+        None => (ErrorKind::NotFound, Vec::new()),
+        Some(path) => match read_text(&path) {
+            Ok(text) => return Ok(SourceText::new(path.display().to_string(), text)),
+            Err(kind) => (kind, neighbours(&path)),
+        },
+    };
+    Err(fault(file, TableProblem::File { file: name.into(), reason, known }.into()))
+}
+
+/// The lines of a table below its header, each with one cell per column of `columns`, in their order. A cell is empty where
+/// its column is not there, or nothing stands in it; a required one never is.
+pub(super) fn read_table<const N: usize>(text: &str, columns: [Column; N]) -> Result<Vec<At<[Cell<'_>; N]>>, Fault> {
+    let mut lines = lines(text);
+    let names = || columns.iter().map(|column| column.name).collect::<Vec<_>>();
+    let Some(header) = lines.next().transpose()? else {
+        return Err(Fault::new(TableProblem::NoHeader { columns: names() }.into()));
+    };
+    let mut place: [Option<usize>; N] = [None; N];
+    for (k, cell) in header.value.iter().enumerate() {
+        let Some(column) = columns.iter().position(|column| column.name == cell.value) else {
+            let problem = TableProblem::UnknownColumn { name: cell.value.to_string(), columns: names() };
+            return Err(fault(cell, problem.into()));
+        };
+        if place[column].replace(k).is_some() {
+            return Err(fault(cell, TableProblem::ColumnTwice { name: columns[column].name }.into()));
+        }
+    }
+    let missing = columns.iter().zip(place).find(|(column, place)| column.required && place.is_none());
+    if let Some((Column { name, .. }, _)) = missing {
+        return Err(fault(&header, TableProblem::MissingColumn { name, columns: names() }.into()));
+    }
+    let mut rows = Vec::new();
+    for line in lines {
+        let line = line?;
+        if line.value.len() != header.value.len() {
+            let problem = TableProblem::LineLength { found: line.value.len(), columns: header.value.len() };
+            return Err(fault(&line, problem.into()));
+        }
+        let cell = |k: usize| {
+            let found = place[k].and_then(|k| line.value.get(k));
+            found.cloned().unwrap_or_else(|| At { value: Cow::Borrowed(""), span: line.span.clone() })
+        };
+        let row: [Cell<'_>; N] = std::array::from_fn(cell);
+        if let Some((column, cell)) = columns.iter().zip(&row).find(|(c, cell)| c.required && cell.value.is_empty()) {
+            return Err(fault(cell, ScenarioProblem::Empty { key: column.name }));
+        }
+        rows.push(At { value: row, span: line.span.clone() });
+    }
+    Ok(rows)
+}
+
+/// The number in a cell; none in an empty one.
+pub(super) fn cell_number(cell: &Cell<'_>) -> Result<Option<At<f64>>, Fault> {
+    let text = cell.value.as_ref();
+    if text.is_empty() {
+        return Ok(None);
+    }
+    match text.parse::<f64>() {
+        Ok(value) if value.abs() <= LARGEST => Ok(Some(At { value, span: cell.span.clone() })),
+        Ok(_) if text.contains(['i', 'I', 'n', 'N']) => {
+            Err(fault(cell, ScenarioProblem::NotFinite { found: text.into() }))
+        }
+        Ok(_) => Err(fault(cell, ScenarioProblem::NumberTooLarge { found: text.into() })),
+        Err(_) => {
+            let problem = ScenarioProblem::WrongType { found: quoted(text), expected: "a number".into() };
+            Err(fault(cell, problem))
+        }
+    }
+}
+
+type Line<'a> = At<Vec<Cell<'a>>>;
+
+/// The lines on which something stands, in cells.
+fn lines(text: &str) -> impl Iterator<Item = Result<Line<'_>, Fault>> {
+    // Some programs begin a file with a mark of its byte order.
+    let mut next = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
+    std::iter::from_fn(move || {
+        loop {
+            let rest = text.get(next..).filter(|rest| !rest.is_empty())?;
+            let start = next;
+            let length = rest.find('\n').map_or(rest.len(), |end| end + 1);
+            next += length;
+            let line = rest[..length].trim_end();
+            if !line.is_empty() {
+                return Some(cells(line, start));
+            }
+        }
+    })
+}
+
+/// The cells of one line that starts at byte `start`.
+fn cells(line: &str, start: usize) -> Result<Line<'_>, Fault> {
+    let at = |span: Range<usize>| start + span.start..start + span.end;
+    let mut cells = Vec::new();
+    let mut next = 0;
+    loop {
+        let first = next + blanks(&line[next..]);
+        let end = if line[first..].starts_with('"') {
+            let (value, length) = quoted_cell(&line[first..])
+                .ok_or_else(|| Fault::new(TableProblem::OpenQuote.into()).at(&at(first..line.len())))?;
+            cells.push(At { value, span: at(first..first + length) });
+            let end = first + length + blanks(&line[first + length..]);
+            if !line[end..].is_empty() && !line[end..].starts_with(',') {
+                let problem = TableProblem::AfterQuote { found: quoted(&line[end..]) };
+                return Err(Fault::new(problem.into()).at(&at(end..line.len())));
+            }
+            end
+        } else {
+            let end = line[first..].find(',').map_or(line.len(), |length| first + length);
+            let value = line[first..end].trim_end();
+            cells.push(At { value: Cow::Borrowed(value), span: at(first..first + value.len()) });
+            end
+        };
+        if end == line.len() {
+            return Ok(At { value: cells, span: at(blanks(line)..line.len()) });
+        }
+        next = end + 1;
+    }
+}
+
+/// How many bytes of blanks a text begins with.
+fn blanks(text: &str) -> usize {
+    text.len() - text.trim_start().len()
+}
+
+/// A cell in quotation marks at the start of a text, and its length with them; `None` if it does not end.
+fn quoted_cell(text: &str) -> Option<(Cow<'_, str>, usize)> {
+    let mut from = 1;
+    loop {
+        let mark = from + text.get(from..)?.find('"')?;
+        if text[mark + 1..].starts_with('"') {
+            from = mark + 2;
+            continue;
+        }
+        let inner = &text[1..mark];
+        let value = if from == 1 { Cow::Borrowed(inner) } else { Cow::Owned(inner.replace("\"\"", "\"")) };
+        return Some((value, mark + 1));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// The cells, or a message and its place.
+    type Read = Result<Vec<[String; 3]>, (String, Option<Range<usize>>)>;
+
+    fn columns() -> [Column; 3] {
+        [("a", true), ("b", true), ("c", false)].map(|(name, required)| Column { name, required })
+    }
+
+    fn read(text: &str) -> Read {
+        let rows = read_table(text, columns()).map_err(|fault| (fault.to_string(), fault.span))?;
+        Ok(rows.into_iter().map(|row| row.value.map(|cell| cell.value.into_owned())).collect())
+    }
+
+    fn table(rows: &[[&str; 3]]) -> Read {
+        Ok(rows.iter().map(|row| row.map(String::from)).collect())
+    }
+
+    #[test]
+    fn cells_are_found_under_their_columns() {
+        assert_eq!(read("a,b,c\n1,2,3\n4,5,\n"), table(&[["1", "2", "3"], ["4", "5", ""]]));
+        assert_eq!(read("b,a\n1,2"), table(&[["2", "1", ""]]));
+        assert_eq!(read("\u{feff}a, b\r\n\r\n 1 ,\t2 \r\n   \r\n"), table(&[["1", "2", ""]]));
+        assert_eq!(read("\"a\",\"b\"\n \"x, y\" , \"say \"\"é\"\"\"\n"), table(&[["x, y", "say \"é\"", ""]]));
+        assert_eq!(read("a,b"), table(&[]));
+    }
+
+    #[test]
+    fn cells_know_their_places() {
+        let text = "a,b,c\n é , \"2\",3\n";
+        let rows = read_table(text, columns()).unwrap();
+        let places: Vec<_> = rows[0].value.iter().map(|cell| &text[cell.span.clone()]).collect();
+        assert_eq!(places, ["é", "\"2\"", "3"]);
+        assert_eq!(&text[rows[0].span.clone()], "é , \"2\",3");
+    }
+
+    #[test]
+    fn what_is_no_table_is_refused_at_its_place() {
+        let wrong = |text: &str| read(text).unwrap_err();
+        let says = |message: &str, span| (message.to_owned(), span);
+        assert_eq!(wrong(""), says("the table is empty", None));
+        assert_eq!(wrong("a,b\n1,\"2\n"), says("this quotation mark is not closed on its line", Some(6..8)));
+        let behind = "found \"3\" behind a cell in quotation marks, where a comma or the end of the line should stand";
+        assert_eq!(wrong("a,b\n1,\"2\"3\n"), says(behind, Some(9..10)));
+        assert_eq!(wrong("a,b\n1,\n"), says("`b` is empty", Some(6..6)));
+        assert_eq!(wrong("a,b\n1\n"), says("this line has 1 entry, but there are 2 columns", Some(4..5)));
+        assert_eq!(wrong("a,b,a\n"), says("a second column is named `a`", Some(4..5)));
+        assert_eq!(wrong("a,c\n"), says("the column `b` is missing", Some(0..3)));
+        assert_eq!(wrong("a,d\n"), says("unknown column `d`", Some(2..3)));
+    }
+
+    proptest! {
+        #[test]
+        fn prop_any_text_gives_cells_or_a_place(
+            pieces in prop::collection::vec(
+                prop::sample::select(vec!["a", "b", "c", ",", "\"", "\"\"", "\n", "\r\n", " ", "é", "\u{feff}", "\u{3000}", "1e999"]),
+                0..40,
+            ),
+            header in prop::sample::select(vec!["", "a,b\n", "a,b,c\r\n"]),
+        ) {
+            let text = format!("{header}{}", pieces.concat());
+            let shown = |span: Range<usize>| text.get(span).is_some();
+            match read_table(&text, columns()) {
+                Ok(rows) => {
+                    for row in rows {
+                        prop_assert!(shown(row.span) && row.value.iter().all(|cell| shown(cell.span.clone())));
+                        prop_assert!(row.value[..2].iter().all(|cell| !cell.value.is_empty()));
+                        for cell in &row.value {
+                            let _ = cell_number(cell);
+                        }
+                    }
+                }
+                Err(fault) => prop_assert!(fault.span.is_none_or(shown)),
+            }
+        }
+    }
+}
