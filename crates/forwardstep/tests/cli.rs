@@ -141,6 +141,45 @@ fn an_existing_folder_is_kept_unless_forced() {
     assert_eq!(fs::read_to_string(out.join("notes.txt")).unwrap(), "mine too");
 }
 
+#[cfg(unix)]
+#[test]
+fn two_runs_never_share_a_folder() {
+    let folder = folder();
+    // Years of simulated time, so that it cannot end by itself.
+    let long = QUICK.replace("end_s = 30, record_every_s = 0.1", "end_s = 1e8, record_every_s = 100");
+    fs::write(folder.path().join("long.toml"), long).unwrap();
+    let mut first = Process::new(assert_cmd::cargo::cargo_bin("forwardstep"))
+        .current_dir(&folder)
+        .args(["run", "long.toml", "--out", "shared"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut line = String::new();
+    // The verdicts are printed once the folder is taken.
+    std::io::BufRead::read_line(&mut std::io::BufReader::new(first.stdout.as_mut().unwrap()), &mut line).unwrap();
+    for arguments in
+        [&["run", "first-order", "--out", "shared"][..], &["run", "first-order", "--out", "shared", "--force"]]
+    {
+        let error = stderr(&forwardstep(&folder, arguments).code(2));
+        assert!(error.contains("another run is writing to shared"), "{error}");
+    }
+    first.kill().unwrap();
+    first.wait().unwrap();
+    // What was left behind by a run that was killed is in nobody's way.
+    forwardstep(&folder, &["run", "first-order", "--out", "shared"]).success();
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_to_nowhere_is_no_folder() {
+    let folder = folder();
+    std::os::unix::fs::symlink("nowhere", folder.path().join("link")).unwrap();
+    let error = stderr(&forwardstep(&folder, &["run", "first-order", "--out", "link"]).code(2));
+    assert!(error.contains("link exists and is not a folder"), "{error}");
+    assert_eq!(names(folder.path()), ["link"]);
+}
+
 #[test]
 fn bad_input_writes_nothing() {
     let folder = folder();
