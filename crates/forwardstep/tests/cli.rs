@@ -217,6 +217,25 @@ fn a_missed_goal_is_status_one() {
 }
 
 #[test]
+fn check_says_for_which_time_a_tree_is_missing() {
+    let folder = folder();
+    let phases = "[[network.phases]]\ndwell_s = 1\nedges = [[\"arm-1\", \"arm-2\"]]\n[[network.phases]]\ndwell_s = 1\nedges = []\n";
+    let (agents, _) = QUICK.split_once("edges").unwrap();
+    let once = "switching = \"once\"\n";
+    let random = "switching.random = { seed = 1, dwell_s = [40, 50] }\n";
+    for (switching, status, words) in [
+        ("", 0, "the smallest uniform window lasts 2 s"),
+        (once, 1, "from t = 1 s on, whatever the window, no agent reaches all others: [arm-1] and [arm-2] hear nobody"),
+        // One graph is drawn within the run; what a longer run would show is not claimed.
+        (random, 1, "from t = 0 s to the end of the run at 30 s, no agent reaches all others"),
+    ] {
+        fs::write(folder.path().join("two.toml"), format!("{agents}{switching}{phases}")).unwrap();
+        let text = stdout(&forwardstep(&folder, &["check", "two.toml"]).code(status));
+        assert!(text.contains(words), "{text}");
+    }
+}
+
+#[test]
 fn a_breakdown_is_status_three_and_keeps_what_was_computed() {
     let folder = folder();
     let solver = "[solver]\nmin_step_s = 5e-3\nmethod.adaptive = { rtol = 1e-13, atol = 1e-13 }";
