@@ -141,6 +141,45 @@ fn an_existing_folder_is_kept_unless_forced() {
     assert_eq!(fs::read_to_string(out.join("notes.txt")).unwrap(), "mine too");
 }
 
+#[cfg(unix)]
+#[test]
+fn two_runs_never_share_a_folder() {
+    let folder = folder();
+    // Years of simulated time, so that it cannot end by itself.
+    let long = QUICK.replace("end_s = 30, record_every_s = 0.1", "end_s = 1e8, record_every_s = 100");
+    fs::write(folder.path().join("long.toml"), long).unwrap();
+    let mut first = Process::new(assert_cmd::cargo::cargo_bin("forwardstep"))
+        .current_dir(&folder)
+        .args(["run", "long.toml", "--out", "shared"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut line = String::new();
+    // The verdicts are printed once the folder is taken.
+    std::io::BufRead::read_line(&mut std::io::BufReader::new(first.stdout.as_mut().unwrap()), &mut line).unwrap();
+    for arguments in
+        [&["run", "first-order", "--out", "shared"][..], &["run", "first-order", "--out", "shared", "--force"]]
+    {
+        let error = stderr(&forwardstep(&folder, arguments).code(2));
+        assert!(error.contains("another run is writing to shared"), "{error}");
+    }
+    first.kill().unwrap();
+    first.wait().unwrap();
+    // What was left behind by a run that was killed is in nobody's way.
+    forwardstep(&folder, &["run", "first-order", "--out", "shared"]).success();
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_to_nowhere_is_no_folder() {
+    let folder = folder();
+    std::os::unix::fs::symlink("nowhere", folder.path().join("link")).unwrap();
+    let error = stderr(&forwardstep(&folder, &["run", "first-order", "--out", "link"]).code(2));
+    assert!(error.contains("link exists and is not a folder"), "{error}");
+    assert_eq!(names(folder.path()), ["link"]);
+}
+
 #[test]
 fn bad_input_writes_nothing() {
     let folder = folder();
@@ -174,6 +213,25 @@ fn a_missed_goal_is_status_one() {
         let text = stdout(&forwardstep(&folder, &["run", "two.toml", "--force"]).code(status));
         let line = text.lines().find(|line| line.trim_start().starts_with("goal")).unwrap();
         assert!(line.contains(word), "{line}");
+    }
+}
+
+#[test]
+fn check_says_for_which_time_a_tree_is_missing() {
+    let folder = folder();
+    let phases = "[[network.phases]]\ndwell_s = 1\nedges = [[\"arm-1\", \"arm-2\"]]\n[[network.phases]]\ndwell_s = 1\nedges = []\n";
+    let (agents, _) = QUICK.split_once("edges").unwrap();
+    let once = "switching = \"once\"\n";
+    let random = "switching.random = { seed = 1, dwell_s = [40, 50] }\n";
+    for (switching, status, words) in [
+        ("", 0, "the smallest uniform window lasts 2 s"),
+        (once, 1, "from t = 1 s on, whatever the window, no agent reaches all others: [arm-1] and [arm-2] hear nobody"),
+        // One graph is drawn within the run; what a longer run would show is not claimed.
+        (random, 1, "from t = 0 s to the end of the run at 30 s, no agent reaches all others"),
+    ] {
+        fs::write(folder.path().join("two.toml"), format!("{agents}{switching}{phases}")).unwrap();
+        let text = stdout(&forwardstep(&folder, &["check", "two.toml"]).code(status));
+        assert!(text.contains(words), "{text}");
     }
 }
 

@@ -4,40 +4,105 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use miette::{Diagnostic, LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
+
+/// Lines longer than this are not shown whole, in bytes.
+const LONGEST_LINE: usize = 400;
+/// What is shown before and after the place in such a line, and of what is marked, in bytes.
+const AROUND: usize = 60;
 
 /// A file's name and text, shared by all that is said about it.
 #[derive(Clone, Debug)]
 pub struct SourceText {
-    named: Arc<NamedSource<String>>,
+    file: Arc<File>,
+}
+
+#[derive(Debug)]
+struct File {
+    name: String,
+    text: String,
+    /// The text as it may be shown, where that differs.
+    shown: Option<String>,
 }
 
 impl SourceText {
     /// Keeps `text` under `name`, the path as the user wrote it.
     pub fn new(name: impl AsRef<str>, text: impl Into<String>) -> Self {
-        SourceText { named: Arc::new(NamedSource::new(name, text.into())) }
+        let text = text.into();
+        let shown = text.contains(steers_terminals).then(|| printable(&text));
+        SourceText { file: Arc::new(File { name: name.as_ref().to_owned(), text, shown }) }
     }
 
     /// The file's name.
     pub fn name(&self) -> &str {
-        self.named.name()
+        &self.file.name
     }
 
     /// The file's text.
     pub fn text(&self) -> &str {
-        self.named.inner()
+        &self.file.text
+    }
+
+    /// The text without characters that would steer a terminal, byte for byte as long as [`text`](Self::text).
+    fn shown(&self) -> &str {
+        self.file.shown.as_deref().unwrap_or(&self.file.text)
     }
 
     /// Line and column, both from one, of a byte offset; columns count characters.
     pub fn line_column(&self, offset: usize) -> (usize, usize) {
-        let text = self.text();
-        let mut end = offset.min(text.len());
-        while !text.is_char_boundary(end) {
-            end -= 1;
-        }
-        let before = &text[..end];
+        let before = &self.text()[..boundary(self.text(), offset)];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+    }
+}
+
+/// Whether a character of a file would do something to a terminal rather than appear on it.
+pub(crate) fn steers_terminals(c: char) -> bool {
+    c.is_control() && !matches!(c, '\t' | '\n' | '\r') || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// The same text with question marks in place of such characters, as many as they have bytes.
+fn printable(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        if steers_terminals(c) { (0..c.len_utf8()).for_each(|_| shown.push('?')) } else { shown.push(c) }
+    }
+    shown
+}
+
+/// The nearest place between two characters at or before `offset`.
+fn boundary(text: &str, offset: usize) -> usize {
+    let mut offset = offset.min(text.len());
+    while !text.is_char_boundary(offset) {
+        offset -= 1;
+    }
+    offset
+}
+
+impl SourceCode for SourceText {
+    /// The lines around a place; of a very long line the part around it, so that no message is as long as its file.
+    fn read_span<'a>(
+        &'a self,
+        span: &SourceSpan,
+        lines_before: usize,
+        lines_after: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        let text = self.shown();
+        let contents = text.read_span(span, lines_before, lines_after)?;
+        let (mut data, mut whole) = (contents.data(), *contents.span());
+        let (mut line, mut column, mut lines) = (contents.line(), contents.column(), contents.line_count());
+        if data.split(|byte| *byte == b'\n').any(|line| line.len() > LONGEST_LINE) {
+            let offset = span.offset();
+            let line_start = text[..boundary(text, offset)].rfind('\n').map_or(0, |newline| newline + 1);
+            let start = if lines_before == 0 { offset } else { line_start.max(offset.saturating_sub(AROUND)) };
+            let start = boundary(text, start);
+            let end = boundary(text, offset + span.len().min(AROUND) + AROUND);
+            let end = text[start..end].find('\n').map_or(end, |newline| start + newline);
+            (data, whole) = (&text.as_bytes()[start..end], (start, end - start).into());
+            let (one, at) = self.line_column(start);
+            (line, column, lines) = (one - 1, at - 1, 1);
+        }
+        Ok(Box::new(MietteSpanContents::new_named(self.name().to_owned(), data, whole, line, column, lines)))
     }
 }
 
@@ -78,11 +143,14 @@ impl<P: Problem> Diagnostic for InputError<P> {
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.span.as_ref().map(|_| &*self.source.named as &dyn SourceCode)
+        self.span.as_ref().map(|_| &self.source as &dyn SourceCode)
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         let span = self.span.clone()?;
-        Some(Box::new(std::iter::once(LabeledSpan::underline(span))))
+        // Of something very long the beginning is marked.
+        let text = self.source.text();
+        let end = if span.len() > LONGEST_LINE { boundary(text, span.start + AROUND) } else { span.end };
+        Some(Box::new(std::iter::once(LabeledSpan::underline(span.start..end))))
     }
 }

@@ -3,26 +3,87 @@
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-/// Text files larger than this are not read.
+use thiserror::Error;
+
+/// Files larger than this are not read.
 const MOST_BYTES: u64 = 1 << 26;
 
-/// Files beside `path` with the same extension.
-pub(crate) fn neighbours(path: &Path) -> Vec<String> {
+/// Why a text file cannot be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// There is none of that name.
+    #[error("there is no such file")]
+    Missing,
+    /// It is a folder.
+    #[error("it is a folder")]
+    Folder,
+    /// It is larger than anything that is meant to be read.
+    #[error("it is larger than {} MiB", MOST_BYTES >> 20)]
+    TooLarge,
+    /// It holds something else than UTF-8.
+    #[error("it is no UTF-8 text: byte {byte:#04x} in line {line}, column {column}")]
+    NotUtf8 {
+        /// The first byte that is wrong.
+        byte: u8,
+        /// Its line, from one.
+        line: usize,
+        /// Its column in characters, from one.
+        column: usize,
+    },
+    /// The operating system refused.
+    #[error("{0}")]
+    Refused(ErrorKind),
+}
+
+impl From<std::io::Error> for ReadError {
+    fn from(error: std::io::Error) -> Self {
+        match error.kind() {
+            ErrorKind::NotFound => ReadError::Missing,
+            ErrorKind::IsADirectory => ReadError::Folder,
+            kind => ReadError::Refused(kind),
+        }
+    }
+}
+
+impl ReadError {
+    /// What the user can do about it, apart from naming another file.
+    pub(crate) fn help(self) -> Option<&'static str> {
+        matches!(self, ReadError::NotUtf8 { .. }).then_some("save it as UTF-8")
+    }
+}
+
+/// Reads a text file of reasonable size.
+pub(crate) fn read_text(path: &Path) -> Result<String, ReadError> {
+    let mut bytes = Vec::new();
+    std::fs::File::open(path)?.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MOST_BYTES {
+        return Err(ReadError::TooLarge);
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let (sound, rest) = error.as_bytes().split_at(error.utf8_error().valid_up_to());
+        let before = String::from_utf8_lossy(sound);
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        ReadError::NotUtf8 {
+            byte: rest.first().copied().unwrap_or_default(),
+            line: before.matches('\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+        }
+    })
+}
+
+/// Other files beside `path` that end in `.extension`.
+pub(crate) fn neighbours(path: &Path, extension: &str) -> Vec<String> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
     let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
     let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    let mut names: Vec<_> = names.filter(|name| Path::new(name).extension() == path.extension()).collect();
+    let mut names: Vec<_> = names
+        .filter(|name| Path::new(name).extension().is_some_and(|found| found == extension))
+        .filter(|name| path.file_name().is_none_or(|own| own != name.as_str()))
+        .collect();
     names.sort();
     names
-}
-
-/// Reads a text file of reasonable size.
-pub(crate) fn read_text(path: &Path) -> Result<String, ErrorKind> {
-    let file = std::fs::File::open(path).map_err(|error| error.kind())?;
-    let mut text = String::new();
-    let read = file.take(MOST_BYTES + 1).read_to_string(&mut text).map_err(|error| error.kind())?;
-    if read as u64 > MOST_BYTES { Err(ErrorKind::FileTooLarge) } else { Ok(text) }
 }

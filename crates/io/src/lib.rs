@@ -11,4 +11,5 @@ pub mod urdf;
 mod wording;
 
 pub use diagnostic::{InputError, Problem, SourceText};
+pub use files::ReadError;
 pub use urdf::{UrdfOptions, UrdfRobot, read_urdf};

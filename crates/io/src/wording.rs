@@ -27,6 +27,16 @@ pub(crate) fn about(value: f64) -> Number {
     Number(format!("{value:.1e}").parse().unwrap_or(value))
 }
 
+/// "1 list", "2 lists".
+pub(crate) fn count(number: usize, what: &str) -> String {
+    if number == 1 { format!("1 {what}") } else { format!("{number} {what}s") }
+}
+
+/// "is 1 agent", "are 2 agents".
+pub(crate) fn are(number: usize, what: &str) -> String {
+    format!("{} {}", if number == 1 { "is" } else { "are" }, count(number, what))
+}
+
 /// "1 entry", "2 entries".
 pub(crate) fn entry_count(number: usize) -> String {
     if number == 1 { "1 entry".into() } else { format!("{number} entries") }

@@ -211,6 +211,15 @@ fn a_folder_that_cannot_be_written_to_is_an_error_before_the_run() {
 
 #[cfg(target_os = "linux")]
 #[test]
+fn folders_made_for_a_run_that_left_nothing_vanish() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("mine")).unwrap();
+    drop(RunFolder::create(folder.path().join("mine/made/too"), false).unwrap());
+    drop(RunFolder::create(folder.path().join("mine"), false).unwrap());
+    assert_eq!(fs::read_dir(folder.path().join("mine")).unwrap().count(), 0, "the folder that was there stays");
+}
+
+#[test]
 fn a_file_system_without_files_is_an_error() {
     let error = RunFolder::create("/proc/forwardstep-run", false).unwrap_err();
     assert!(matches!(error, OutputError::Io { action: Action::CreateFolder, .. }), "{error}");

@@ -50,8 +50,12 @@ pub(crate) fn style(answer: Answer) -> anstyle::Style {
     }
 }
 
-/// Numbers to a precision that people compare by.
+/// Numbers to a precision that people compare by; of many the first few.
 pub(crate) fn list(values: &[f64]) -> String {
-    let values: Vec<_> = values.iter().map(|value| format!("{value:.6}")).collect();
-    format!("({})", values.join(", "))
+    const SHOWN: usize = 8;
+    let shown: Vec<_> = values.iter().take(SHOWN).map(|value| format!("{value:.6}")).collect();
+    match values.len().saturating_sub(SHOWN) {
+        0 => format!("({})", shown.join(", ")),
+        more => format!("({}, and {more} more)", shown.join(", ")),
+    }
 }

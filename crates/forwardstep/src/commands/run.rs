@@ -1,7 +1,7 @@
 //! `forwardstep run`
 
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -22,12 +22,12 @@ pub(crate) fn run(options: &RunOptions, console: &mut Console) -> Status {
 }
 
 fn finish(options: &RunOptions, console: &mut Console) -> Result<Status, Status> {
-    let stop = stop_on_interrupt();
     let scenario = open_scenario(&options.scenario).map_err(|error| complain(&error))?;
     let promise = promise(&scenario.setup);
     let path = options.out.clone().unwrap_or_else(|| Path::new("forwardstep-runs").join(&scenario.name));
+    // Only now: until there is something to keep, Ctrl-C just ends the program.
+    let stop = stop_on_interrupt();
     // Before the run, so that no work is lost to a folder that cannot be written to.
-    let new = missing_folders(&path);
     let folder = RunFolder::create(&path, options.force).map_err(refused)?;
     show(&scenario, &promise, console);
     console.line("");
@@ -38,10 +38,7 @@ fn finish(options: &RunOptions, console: &mut Console) -> Result<Status, Status>
         if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     bar.clear();
-    let outcome = outcome.map_err(|error| {
-        new.iter().for_each(|folder| drop(std::fs::remove_dir(folder)));
-        complain(&Plain::new(error))
-    })?;
+    let outcome = outcome.map_err(|error| complain(&Plain::new(error)))?;
 
     let setup = &scenario.setup;
     let metrics = Metrics::of(setup, &outcome.recording, promise.agreement.as_deref().ok(), scenario.goal);
@@ -83,12 +80,6 @@ fn record<'a>(
 fn refused(error: OutputError) -> Status {
     let help = error.help();
     complain(&Plain::with_help(error, help))
-}
-
-/// The folders on the way to `path` that do not exist yet, innermost first.
-fn missing_folders(path: &Path) -> Vec<PathBuf> {
-    let named = path.ancestors().filter(|folder| !folder.as_os_str().is_empty());
-    named.take_while(|folder| !folder.exists()).map(Path::to_owned).collect()
 }
 
 /// Set by the first Ctrl-C, which lets the run end in order; the second ends the program.

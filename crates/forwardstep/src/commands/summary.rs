@@ -31,7 +31,10 @@ pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, 
     if let Some(peak) = metrics.peak_torques.iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs())) {
         let unit = unit(setup, peak.agent, Signal::Torque, peak.axis);
         let (agent, axis) = (agent_name(setup, peak.agent), axis_name(setup, peak.agent, peak.axis));
-        rows.push(("peak torque", format!("{:.1} {unit}, {agent} axis {axis} at {:.2} s", peak.value.abs(), peak.t_s)));
+        rows.push((
+            "peak torque",
+            format!("{} {unit}, {agent} axis {axis} at {:.2} s", short(peak.value.abs()), peak.t_s),
+        ));
     }
     if !metrics.limits_reached.is_empty() {
         rows.push(("limits exceeded", format!("{}, see the report", metrics.limits_reached.len())));
@@ -53,6 +56,19 @@ pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, 
     lines.concat()
 }
 
+/// Three digits, with a power of ten where the number is very small or large.
+fn short(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 {
+        "0".into()
+    } else if (0.01..1e5).contains(&size) {
+        let places = (2.0 - size.log10().floor()).max(0.0) as usize;
+        format!("{value:.places$}")
+    } else {
+        format!("{value:.2e}")
+    }
+}
+
 fn verdict(report: &Report) -> String {
     format!("{}: {}", report.theorem, report.worst().words())
 }
@@ -65,7 +81,7 @@ fn disagreement(setup: &Setup, metrics: &Metrics) -> String {
     let unit = units.next().unwrap_or_default();
     let unit = if units.all(|other| other == unit) { unit } else { "rad or m" };
     match metrics.disagreement {
-        Disagreement::Measured { initial, last, .. } => format!("{last:.2e} {unit}, from {initial:.2}"),
+        Disagreement::Measured { initial, last, .. } => format!("{} {unit}, from {}", short(last), short(initial)),
         Disagreement::Absent(absence) => format!("none: {}", absence.words()),
     }
 }
@@ -76,5 +92,17 @@ fn names(folder: &Path, files: &[PathBuf]) -> String {
     match report {
         Some(report) => format!("{} and {} others in that folder", report.display(), files.len() - 1),
         None => folder.display().to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short;
+
+    #[test]
+    fn numbers_of_any_size_stay_short() {
+        let values = [0.0, 66.8123, 0.4, 3600.0, 0.0123456, 2.59e-4, 6.69e169, f64::NAN, f64::INFINITY];
+        let expected = ["0", "66.8", "0.400", "3600", "0.0123", "2.59e-4", "6.69e169", "NaN", "inf"];
+        assert_eq!(values.map(short), expected);
     }
 }

@@ -11,6 +11,7 @@ const joints = Array.from({ length: mostAxes }, (_, axis) => {
   const owners = agents.filter((a) => axis < a.axes.length);
   return { axis, name: SAME(owners.map((a) => a.axes[axis].name)) ?? String(axis + 1), units: [...new Set(owners.map((a) => a.axes[axis].unit))] };
 });
+const axisWords = (name) => (/^\d+$/.test(name) ? `axis ${name}` : name);
 const unitOf = (axis, write) => (joints[axis]?.units ?? []).map(write).join(" or ");
 const rate = (order) => (unit) => (order === 0 ? unit : order === 1 ? `${unit}/s` : `${unit}/s${raise(order)}`);
 const force = (unit) => (unit === "m" ? "N" : "N m");
@@ -54,6 +55,20 @@ const parameterOptions = (who) => {
   return parameters.length <= 12 ? [every, ...options] : [...options, every];
 };
 
+// The group of parameters that moves most, where not all of them can be shown at once.
+const liveliest = (who, options) => {
+  if (who === "all" || options[0]?.[0] === "every") return options[0]?.[0];
+  const move = (p) => {
+    let [low, high] = [Infinity, -Infinity];
+    for (const v of p.series == null ? [] : data.values("estimates", p.series)) if (v != null) [low, high] = [Math.min(low, v), Math.max(high, v)];
+    return Math.max(0, high - low);
+  };
+  const moves = new Map();
+  for (const p of agents[+who].parameters) moves.set(groupOf(p.name), Math.max(moves.get(groupOf(p.name)) ?? 0, move(p)));
+  const groups = options.map(([value]) => value).filter((value) => value.startsWith("group:"));
+  return groups.sort((a, b) => moves.get(b.slice(6)) - moves.get(a.slice(6)))[0] ?? options[0]?.[0];
+};
+
 const estimateSeries = (who, what) => {
   const truthOf = (p, c) => (p.truth == null ? [] : [{ label: `${p.name}, truth`, colour: c, dash: [5, 4], width: 1, values: data.t("estimates").map(() => p.truth) }]);
   if (who === "all") {
@@ -69,8 +84,15 @@ const estimateSeries = (who, what) => {
   const chosen = agents[+who].parameters.filter((p) => p.series != null && (what === "every" || groupOf(p.name) === what.slice(6)));
   return chosen.flatMap((p, k) => {
     const c = ramp(k, chosen.length);
-    return [{ label: p.name, colour: c, values: data.values("estimates", p.series) }, ...(chosen.length <= 12 ? truthOf(p, c) : [])];
+    const name = what === "every" ? p.name : p.name.slice(what.length - 5);
+    return [{ label: name, colour: c, values: data.values("estimates", p.series) }, ...(chosen.length <= 12 ? truthOf(p, c) : [])];
   });
+};
+
+const spansDecades = (series) => {
+  let [low, high] = [Infinity, 0];
+  for (const { values } of series) for (const v of values) if (v > 0) [low, high] = [Math.min(low, v), Math.max(high, v)];
+  return high > 30 * low;
 };
 
 const ledgers = {
@@ -92,7 +114,7 @@ const cards = {
         lines: index.goal == null ? [] : [{ value: index.goal, label: "goal" }],
         key: true,
         series: [
-          ...axes.map((k, axis) => ({ label: joints[axis].name, colour: ramp(axis, axes.length), width: 1.1, values: data.values("main", k, true) })),
+          ...axes.map((k, axis) => ({ label: axisWords(joints[axis].name), colour: ramp(axis, axes.length), width: 1.1, values: data.values("main", k, true) })),
           { label: axes.length ? "largest" : "disagreement", colour: colour("--ink"), width: 2.2, values: data.values("main", d.overall, true) },
         ],
       };
@@ -119,13 +141,18 @@ const cards = {
   estimate: {
     picks: [
       { id: "who", options: withEstimates.length === 0 ? [] : [...withEstimates.map((i) => [String(i), agents[i].name]), ...(withEstimates.length > 1 ? [["all", "compare agents"]] : [])] },
-      { id: "what", options: (picks) => (picks[0] == null ? [] : parameterOptions(picks[0])) },
+      { id: "what", options: (picks) => (picks[0] == null ? [] : parameterOptions(picks[0])), first: (picks, options) => liveliest(picks[0], options) },
     ],
     build: ([who, what]) => ({ grid: "estimates", unit: "SI units", series: who == null || what == null ? [] : estimateSeries(who, what), key: who !== "all" }),
   },
   ledger: {
     picks: [{ id: "ledger", options: [["v", "V"], ["sum", "V + ∫ dissipation"], ["error", "error"]] }],
-    build: ([which]) => ({ unit: ledgers[which].unit, log: ledgers[which].log, series: ofAgents(ledgers[which].columns, null, {}, ledgers[which].log) }),
+    build: ([which]) => {
+      const { columns, unit } = ledgers[which];
+      // V often falls by little, since it need not vanish: a logarithmic axis is for what spans decades.
+      const log = ledgers[which].log && spansDecades(ofAgents(columns, null, {}, true));
+      return { unit, log, series: ofAgents(columns, null, {}, log) };
+    },
   },
   delay: {
     picks: [],

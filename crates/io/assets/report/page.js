@@ -56,7 +56,7 @@ const drawPicks = (card, spec, chosen) => {
   spec.picks.forEach((pick, k) => {
     const options = typeof pick.options === "function" ? pick.options(picks) : pick.options;
     const values = options.map(([value]) => value);
-    picks.push(values.includes(chosen[k]) ? chosen[k] : values[0]);
+    picks.push(values.includes(chosen[k]) ? chosen[k] : (pick.first?.(picks, options) ?? values[0]));
     if (options.length < 2) return;
     const choose = (value) => {
       const mine = state.get(card);

@@ -18,6 +18,12 @@ pub enum OutputError {
         /// The file.
         path: PathBuf,
     },
+    /// Another run writes into the folder.
+    #[error("another run is writing to {}", path.display())]
+    FolderInUse {
+        /// The folder.
+        path: PathBuf,
+    },
     /// The operating system refused.
     #[error("could not {action} {}: {source}", path.display())]
     Io {
@@ -94,6 +100,7 @@ impl OutputError {
                 Some("choose another folder, or replace the files of the earlier run with --force")
             }
             OutputError::NotAFolder { .. } => Some("choose another folder"),
+            OutputError::FolderInUse { .. } => Some("wait until it has ended, or choose another folder with --out"),
             OutputError::Io { source, .. } => match source.kind() {
                 io::ErrorKind::PermissionDenied => Some("choose a folder you may write to"),
                 io::ErrorKind::StorageFull => Some("free some space on the disk, or choose a folder on another one"),

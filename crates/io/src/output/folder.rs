@@ -1,6 +1,6 @@
 //! The folder of a run, and files that appear in it only when they are complete.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -23,9 +23,16 @@ pub(crate) const FILES: [&str; 9] = [
 ];
 
 /// A folder that is there, can be written to, and holds nothing that must be kept under the names of a run's files.
+///
+/// As long as this lives, no other run gets the folder. Folders that were made for it and are still empty when it is
+/// dropped vanish.
 #[derive(Debug)]
 pub struct RunFolder {
     path: PathBuf,
+    /// Folders that were made, innermost first.
+    made: Vec<PathBuf>,
+    /// Held open for its lock, which ends with the process at the latest.
+    _lock: Option<File>,
 }
 
 impl RunFolder {
@@ -35,19 +42,29 @@ impl RunFolder {
     /// run writes will be replaced, and all others stay as they are. Remains of a writer that was killed do not count.
     ///
     /// # Errors
-    /// [`OutputError`] when the folder is not empty, is a file, or cannot be created or written to.
+    /// [`OutputError`] when the folder is not empty, is a file, is being written by another run, or cannot be created or
+    /// written to.
     pub fn create(path: impl Into<PathBuf>, force: bool) -> Result<RunFolder, OutputError> {
-        let path = path.into();
-        match fs::metadata(&path) {
-            Ok(meta) if !meta.is_dir() => return Err(OutputError::NotAFolder { path }),
-            Ok(_) if !force && !is_empty(&path)? => return Err(OutputError::FolderNotEmpty { path }),
+        let mut folder = RunFolder { path: path.into(), made: Vec::new(), _lock: None };
+        let path = &folder.path;
+        match fs::metadata(path) {
+            Ok(meta) if !meta.is_dir() => return Err(OutputError::NotAFolder { path: path.clone() }),
             Ok(_) => {}
-            Err(_) => fs::create_dir_all(&path).map_err(io_error(Action::CreateFolder, &path))?,
+            // A link to nowhere.
+            Err(_) if fs::symlink_metadata(path).is_ok() => return Err(OutputError::NotAFolder { path: path.clone() }),
+            Err(_) => {
+                folder.made = missing_folders(path);
+                fs::create_dir_all(path).map_err(io_error(Action::CreateFolder, path))?;
+            }
+        }
+        folder._lock = lock(path)?;
+        if !force && !is_empty(path)? {
+            return Err(OutputError::FolderNotEmpty { path: path.clone() });
         }
         let probe = path.join(".forwardstep.partial");
-        File::create(&probe).map_err(io_error(Action::WriteInto, &path))?;
-        fs::remove_file(&probe).map_err(io_error(Action::WriteInto, &path))?;
-        Ok(RunFolder { path })
+        File::create(&probe).map_err(io_error(Action::WriteInto, path))?;
+        fs::remove_file(&probe).map_err(io_error(Action::WriteInto, path))?;
+        Ok(folder)
     }
 
     /// Where it is.
@@ -63,6 +80,30 @@ impl RunFolder {
     fn partial(&self, name: &str) -> PathBuf {
         let (folder, file) = name.rsplit_once('/').map_or(("", name), |(folder, file)| (folder, file));
         self.path.join(folder).join(format!(".{file}.partial"))
+    }
+}
+
+impl Drop for RunFolder {
+    fn drop(&mut self) {
+        for folder in &self.made {
+            let _ = fs::remove_dir(folder); // only succeeds when it is empty
+        }
+    }
+}
+
+/// The folders on the way to `path` that do not exist yet, innermost first.
+fn missing_folders(path: &Path) -> Vec<PathBuf> {
+    let named = path.ancestors().filter(|folder| !folder.as_os_str().is_empty());
+    named.take_while(|folder| !folder.exists()).map(Path::to_owned).collect()
+}
+
+/// Keeps other runs out. Systems and disks that cannot lock a folder go without.
+fn lock(path: &Path) -> Result<Option<File>, OutputError> {
+    let Ok(folder) = File::open(path) else { return Ok(None) };
+    match folder.try_lock() {
+        Ok(()) => Ok(Some(folder)),
+        Err(TryLockError::WouldBlock) => Err(OutputError::FolderInUse { path: path.to_owned() }),
+        Err(TryLockError::Error(_)) => Ok(None),
     }
 }
 

@@ -1,7 +1,6 @@
 //! From what a user types to a robot, and to a state of it.
 
 use std::fmt;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use miette::{Diagnostic, LabeledSpan, SourceCode};
@@ -9,7 +8,7 @@ use thiserror::Error;
 
 use super::state::{JointState, read_state};
 use super::state_problem::StateProblem;
-use crate::files::{neighbours, read_text};
+use crate::files::{ReadError, neighbours, read_text};
 use crate::urdf::{self, SHIPPED_ROBOTS, UrdfOptions, UrdfProblem, UrdfRobot};
 use crate::wording::choose;
 use crate::{InputError, SourceText};
@@ -29,7 +28,7 @@ pub enum OpenRobotError {
         /// The file.
         path: PathBuf,
         /// Why not.
-        reason: ErrorKind,
+        reason: ReadError,
     },
     /// A mistake in the robot, or in what was asked of it.
     #[error(transparent)]
@@ -58,8 +57,8 @@ impl Diagnostic for OpenRobotError {
                 let text = choose(name, "shipped robots are", &shipped);
                 Some(Box::new(format!("{text}; for a file of your own give its path, such as `my-arm.urdf`")))
             }
-            OpenRobotError::File { path, reason: ErrorKind::NotFound } => {
-                let known = neighbours(path);
+            OpenRobotError::File { path, reason: ReadError::Missing } => {
+                let known = neighbours(path, "urdf");
                 let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
                 (!known.is_empty()).then(|| Box::new(choose(name, "in that folder:", &known)) as Box<_>)
             }
@@ -84,16 +83,16 @@ impl Diagnostic for OpenRobotError {
 pub fn open_robot(name_or_path: &str, options: &UrdfOptions) -> Result<UrdfRobot, OpenRobotError> {
     let source = match (read_text(Path::new(name_or_path)), urdf::shipped_robot(name_or_path)) {
         (Ok(text), _) => SourceText::new(name_or_path, text),
-        (Err(ErrorKind::NotFound), Some(text)) => SourceText::new(name_or_path, text),
+        (Err(ReadError::Missing), Some(text)) => SourceText::new(name_or_path, text),
         (Err(reason), _) => return Err(unreadable(name_or_path, reason)),
     };
     urdf::read_urdf(&source, options).map_err(|error| OpenRobotError::Robot(Box::new(error)))
 }
 
-fn unreadable(name_or_path: &str, reason: ErrorKind) -> OpenRobotError {
+fn unreadable(name_or_path: &str, reason: ReadError) -> OpenRobotError {
     let path = Path::new(name_or_path);
     let looks_like_a_name = path.extension().is_none() && path.components().count() <= 1;
-    if reason == ErrorKind::NotFound && looks_like_a_name {
+    if reason == ReadError::Missing && looks_like_a_name {
         OpenRobotError::Unknown { name: name_or_path.to_owned() }
     } else {
         OpenRobotError::File { path: path.to_owned(), reason }

@@ -18,6 +18,8 @@ use crate::SourceText;
 
 /// Agents that are accepted.
 const MOST_AGENTS: u32 = 10_000;
+/// Letters that a name may have, without the number that a population adds.
+const LONGEST_NAME: usize = 64;
 /// The highest order of reference dynamics that is accepted.
 const MOST_ROOTS: usize = 32;
 
@@ -93,7 +95,10 @@ pub(super) fn agents(
 /// The names of a population: its own, or numbered from one when it is counted.
 fn names(file: &AgentFile) -> Result<Vec<String>, Fault> {
     let name = &file.name;
-    if name.value.is_empty() || !name.value.chars().all(|c| c.is_alphanumeric() || matches!(c, '-' | '_')) {
+    let length = name.value.chars().count();
+    if !(1..=LONGEST_NAME).contains(&length)
+        || !name.value.chars().all(|c| c.is_alphanumeric() || matches!(c, '-' | '_'))
+    {
         return Err(fault(name, ScenarioProblem::AgentName { name: name.value.clone() }));
     }
     Ok(match &file.count {

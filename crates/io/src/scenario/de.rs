@@ -19,6 +19,10 @@ use super::at::AT;
 use super::edges_file::LIST_OR_CHOICE;
 use super::fault::{Fault, LARGEST};
 use super::problem::ScenarioProblem;
+use crate::diagnostic::steers_terminals;
+
+/// Bytes that a text may have.
+const LONGEST_TEXT: usize = 500;
 
 impl Error for Fault {
     fn custom<T: Display>(message: T) -> Self {
@@ -63,6 +67,14 @@ pub(super) fn quoted(text: &str) -> String {
         Some((cut, _)) => format!("{:?}…", &text[..cut]),
         None => format!("{text:?}"),
     }
+}
+
+/// A text that fits into a line: every text of a scenario is a name, a choice or a title.
+fn plain(text: &str) -> Result<&str, Fault> {
+    if text.len() > LONGEST_TEXT || text.contains(char::is_control) || text.contains(steers_terminals) {
+        return Err(Fault::new(ScenarioProblem::Text { found: quoted(text), most: LONGEST_TEXT }));
+    }
+    Ok(text)
 }
 
 /// A place in the tree.
@@ -143,7 +155,7 @@ macro_rules! text {
     ($($method:ident),*) => {
         $(fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
             match self.0.get_ref() {
-                DeValue::String(text) => visitor.visit_str(text),
+                DeValue::String(text) => plain(text).and_then(|text| visitor.visit_str(text)),
                 _ => Err(self.wrong("a text in quotes")),
             }
             .map_err(|error: Fault| error.at(&self.0.span()))
@@ -156,7 +168,7 @@ impl<'de> Deserializer<'de> for ValueDe<'_, '_> {
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
         match self.0.get_ref() {
-            DeValue::String(text) => visitor.visit_str(text),
+            DeValue::String(text) => plain(text).and_then(|text| visitor.visit_str(text)),
             DeValue::Integer(_) | DeValue::Float(_) => self.number().and_then(|value| visitor.visit_f64(value)),
             DeValue::Boolean(value) => visitor.visit_bool(*value),
             DeValue::Datetime(_) => Err(self.wrong("a number, a text, a list or a table")),
@@ -256,7 +268,9 @@ impl<'de> Deserializer<'de> for ValueDe<'_, '_> {
         let span = self.0.span();
         let unknown = |key: &str| Fault::unknown_variant(key, choices);
         let choice = match self.0.get_ref() {
-            DeValue::String(text) => Choice { key: text, span: span.clone(), content: None },
+            DeValue::String(text) => {
+                Choice { key: plain(text).map_err(|fault| fault.at(&span))?, span: span.clone(), content: None }
+            }
             DeValue::Table(_) => {
                 let mut entries = self.table("a table")?;
                 let Some((key, content)) = entries.next() else {
@@ -266,7 +280,7 @@ impl<'de> Deserializer<'de> for ValueDe<'_, '_> {
                 if let Some((second, _)) = entries.next() {
                     let stranger = [key, second].into_iter().find(|key| !choices.contains(&key.get_ref().as_ref()));
                     return Err(match stranger {
-                        Some(key) => unknown(key.get_ref()).at(&key.span()),
+                        Some(key) => plain(key.get_ref()).map_or_else(|fault| fault, unknown).at(&key.span()),
                         None => Fault::new(ScenarioProblem::TwoChoices {
                             first: key.get_ref().to_string(),
                             second: second.get_ref().to_string(),
@@ -274,7 +288,8 @@ impl<'de> Deserializer<'de> for ValueDe<'_, '_> {
                         .at(&second.span()),
                     });
                 }
-                Choice { key: key.get_ref(), span: key.span(), content: Some(content) }
+                let name = plain(key.get_ref()).map_err(|fault| fault.at(&key.span()))?;
+                Choice { key: name, span: key.span(), content: Some(content) }
             }
             _ => return Err(self.wrong(&format!("a choice of {}", choices.join(", ")))),
         };
@@ -366,7 +381,7 @@ impl<'de> Deserializer<'de> for KeyDe<'_, '_> {
     type Error = Fault;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        visitor.visit_str(self.0.get_ref())
+        visitor.visit_str(plain(self.0.get_ref())?)
     }
 
     fn deserialize_newtype_struct<V: Visitor<'de>>(self, name: &'static str, visitor: V) -> Result<V::Value, Fault> {

@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::at::At;
 use super::network_file::NetworkFile;
-use super::values::{GainFile, GainOrBandwidth, Named, StartValues};
+use super::values::{GainFile, GainOrBandwidth, Named, NotNegative, Positive, StartValues};
 
 /// A forwardstep scenario: a network of robots, how they are controlled, and how long to watch them.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -20,6 +20,7 @@ pub struct ScenarioFile {
     /// How long to simulate, and how often to record.
     pub time: TimeFile,
     /// The agents, one by one or as counted populations.
+    #[schemars(length(min = 1))]
     pub agents: At<Vec<At<AgentFile>>>,
     /// The reference dynamics of all agents.
     pub reference: At<ReferenceFile>,
@@ -52,6 +53,8 @@ pub struct TimeFile {
 #[serde(deny_unknown_fields)]
 pub struct AgentFile {
     /// The agent's name; letters, digits, `-` and `_`. With a `count`, agents are named `name-1`, `name-2`, …
+    // Everything in ASCII but these; not all readers of a schema know the classes of Unicode.
+    #[schemars(length(max = 64), extend("pattern" = r"^[^\x00-,./:-@\[-^`{-\x7f]+$"))]
     pub name: At<String>,
     /// How many agents of this kind there are.
     #[schemars(range(min = 1))]
@@ -111,14 +114,18 @@ pub enum FrictionFile {
 #[serde(deny_unknown_fields)]
 pub struct PlanarArmFile {
     /// Mass of each link, in kg.
+    #[schemars(with = "[Positive; 2]")]
     pub mass_kg: [At<f64>; 2],
     /// Length of each link, in m.
+    #[schemars(with = "[Positive; 2]")]
     pub length_m: [At<f64>; 2],
     /// From each joint to the centre of mass of its link, in m. Default: the middle of the link.
     pub com_m: Option<[At<f64>; 2]>,
     /// Inertia of each link about its centre of mass, in kg m². Default: that of a uniform rod, m l²/12.
+    #[schemars(with = "Option<[NotNegative; 2]>")]
     pub inertia_kg_m2: Option<[At<f64>; 2]>,
     /// Gravity, pointing down, in m/s². Default: 9.81.
+    #[schemars(range(min = 0))]
     pub gravity_m_s2: Option<At<f64>>,
 }
 
@@ -207,6 +214,7 @@ impl ReferenceFile {
 #[serde(deny_unknown_fields)]
 pub struct ConsensusFile {
     /// The positive numbers κ₀, κ₁, … in 1/s; as many as the order of the reference dynamics. Agents may have their own.
+    #[schemars(with = "Option<Vec<Positive>>", length(min = 1, max = 32))]
     pub roots_per_s: Option<At<Vec<At<f64>>>>,
     /// What the agents tell each other.
     pub exchange: ExchangeFile,
@@ -249,6 +257,7 @@ pub enum AgentReferenceFile {
 #[serde(deny_unknown_fields)]
 pub struct AgentConsensusFile {
     /// The positive numbers κ₀, κ₁, … in 1/s of this agent.
+    #[schemars(with = "Option<Vec<Positive>>", length(min = 1, max = 32))]
     pub roots_per_s: Option<At<Vec<At<f64>>>>,
     /// The gain λ of Remark 4 of this agent.
     pub manipulability_gain: Option<At<f64>>,
@@ -291,7 +300,7 @@ pub enum DampingFile {
     /// A number, the diagonal, or the rows of a symmetric positive definite matrix; in N m s/rad or N s/m.
     Gain(At<GainFile>),
     /// In 1/s; multiplied by the diagonal of the mass matrix at the start.
-    BandwidthPerS(At<f64>),
+    BandwidthPerS(#[schemars(with = "Positive")] At<f64>),
 }
 
 /// The parameter estimate at the start.
@@ -339,8 +348,10 @@ pub enum MethodFile {
 #[serde(deny_unknown_fields)]
 pub struct AdaptiveMethodFile {
     /// Relative tolerance. Default: 1e-6.
+    #[schemars(range(min = 1e-14, max = 0.1))]
     pub rtol: Option<At<f64>>,
     /// Absolute tolerance. Default: 1e-8.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub atol: Option<At<f64>>,
 }
 
@@ -356,6 +367,7 @@ pub struct FixedMethodFile {
 /// What the run is expected to show; missing it makes the exit status 1.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("minProperties" = 1))]
 pub struct GoalFile {
     /// Agreement: at the end no two agents are further apart than this on any axis, in rad or m.
     #[schemars(extend("exclusiveMinimum" = 0))]

@@ -240,12 +240,18 @@ fn solver(file: Option<&SolverFile>) -> Result<Solver, Fault> {
             }
         }
     };
-    Ok(Solver {
-        method,
-        max_step_s: file.max_step_s.as_ref().map(|step| positive("max_step_s", step)).transpose()?,
-        min_step_s: file.min_step_s.as_ref().map_or(Ok(default.min_step_s), |step| positive("min_step_s", step))?,
-        ledger: file.ledger.unwrap_or(default.ledger),
-    })
+    let min_step_s = file.min_step_s.as_ref().map_or(Ok(default.min_step_s), |step| positive("min_step_s", step))?;
+    let max_step_s = file.max_step_s.as_ref().map(|step| positive("max_step_s", step)).transpose()?;
+    let fixed = match &file.method {
+        Some(MethodFile::Fixed(fixed)) => Some(("step_s", &fixed.step_s)),
+        _ => None,
+    };
+    for (key, step) in fixed.into_iter().chain(file.max_step_s.as_ref().map(|step| ("max_step_s", step))) {
+        if step.value < min_step_s {
+            return Err(fault(step, ScenarioProblem::StepUnderFloor { key, value: step.value, min_step_s }));
+        }
+    }
+    Ok(Solver { method, max_step_s, min_step_s, ledger: file.ledger.unwrap_or(default.ledger) })
 }
 
 fn goal(file: &At<GoalFile>) -> Result<Goal, Fault> {

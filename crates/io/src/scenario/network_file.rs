@@ -5,10 +5,12 @@ use serde::Deserialize;
 
 use super::at::At;
 use super::edges_file::EdgesFile;
+use super::values::{NotNegative, Positive};
 
 /// Who hears whom, when, and how late: one graph (`edges`) or several in turn (`phases`).
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{ "required": ["edges"] }, { "required": ["phases"] }]))]
 pub struct NetworkFile {
     /// The weight of every edge that has none of its own. Default: 1.
     #[schemars(extend("exclusiveMinimum" = 0))]
@@ -20,6 +22,7 @@ pub struct NetworkFile {
     /// How the phases follow each other. Default: repeat.
     pub switching: Option<At<SwitchingFile>>,
     /// The graphs of a network that switches.
+    #[schemars(length(min = 1))]
     pub phases: Option<At<Vec<At<PhaseFile>>>>,
 }
 
@@ -54,6 +57,7 @@ pub struct RandomSwitchingFile {
     #[schemars(range(min = 0))]
     pub seed: At<i64>,
     /// Shortest and longest dwell, in s.
+    #[schemars(with = "[Positive; 2]")]
     pub dwell_s: At<[At<f64>; 2]>,
 }
 
@@ -62,7 +66,7 @@ pub struct RandomSwitchingFile {
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum DelayFile {
     /// Always the same, in s.
-    ConstantS(At<f64>),
+    ConstantS(#[schemars(with = "NotNegative")] At<f64>),
     /// mean + amplitude · sin(2π t / period + phase).
     Sinusoid(SinusoidFile),
     /// Jumps from value to value.
@@ -94,10 +98,13 @@ pub struct SinusoidFile {
 #[serde(deny_unknown_fields)]
 pub struct PiecewiseConstantFile {
     /// When each value begins, in s; rising from 0.
+    #[schemars(with = "Vec<NotNegative>", length(min = 1))]
     pub times_s: At<Vec<At<f64>>>,
     /// The values, in s; as many as times.
+    #[schemars(with = "Vec<NotNegative>", length(min = 1))]
     pub values_s: At<Vec<At<f64>>>,
     /// Begin again after this long, in s. Default: the last value stays.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub period_s: Option<At<f64>>,
 }
 

@@ -1,6 +1,5 @@
-//! From what a user types to a scenario.
+//! From what a user types to a scenario, and the text files that a scenario names.
 
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use miette::Diagnostic;
@@ -9,7 +8,7 @@ use thiserror::Error;
 use super::shipped::{SHIPPED_SCENARIOS, shipped_scenario};
 use super::{Scenario, ScenarioError, read_scenario};
 use crate::SourceText;
-use crate::files::{neighbours, read_text};
+use crate::files::{ReadError, neighbours, read_text};
 use crate::wording::choose;
 
 /// Why there is no scenario to run.
@@ -27,7 +26,7 @@ pub enum OpenError {
         /// The file.
         path: PathBuf,
         /// Why not.
-        reason: ErrorKind,
+        reason: ReadError,
     },
     /// A file with a mistake.
     #[error(transparent)]
@@ -38,16 +37,20 @@ impl Diagnostic for OpenError {
     fn help<'a>(&'a self) -> Option<Box<dyn std::fmt::Display + 'a>> {
         match self {
             OpenError::Unknown { name } => {
+                let file = format!("{name}.toml");
+                if !name.is_empty() && Path::new(&file).is_file() {
+                    return Some(Box::new(format!("did you mean the file `{file}`?")));
+                }
                 let shipped: Vec<&str> = SHIPPED_SCENARIOS.iter().map(|scenario| scenario.name).collect();
                 let text = choose(name, "shipped scenarios are", &shipped);
                 Some(Box::new(format!("{text}; for a file of your own give its path, such as `my-fleet.toml`")))
             }
-            OpenError::File { path, reason: ErrorKind::NotFound } => {
-                let known = neighbours(path);
+            OpenError::File { path, reason: ReadError::Missing } => {
+                let known = neighbours(path, "toml");
                 let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
                 (!known.is_empty()).then(|| Box::new(choose(name, "in that folder:", &known)) as Box<_>)
             }
-            OpenError::File { .. } => None,
+            OpenError::File { reason, .. } => reason.help().map(|help| Box::new(help) as Box<_>),
             OpenError::Scenario(error) => error.help(),
         }
     }
@@ -80,7 +83,7 @@ pub fn open_scenario(name_or_path: &str) -> Result<Scenario, OpenError> {
     let path = Path::new(name_or_path);
     let text = read_text(path).map_err(|reason| {
         let looks_like_a_name = path.extension().is_none() && path.components().count() <= 1;
-        if reason == ErrorKind::NotFound && looks_like_a_name {
+        if reason == ReadError::Missing && looks_like_a_name {
             OpenError::Unknown { name: name_or_path.to_owned() }
         } else {
             OpenError::File { path: path.to_owned(), reason }

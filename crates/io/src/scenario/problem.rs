@@ -6,7 +6,8 @@ use thiserror::Error;
 
 use super::table::TableProblem;
 use crate::Problem;
-use crate::wording::{about, choose, entry_count, number};
+use crate::files::ReadError;
+use crate::wording::{about, are, choose, count, entry_count, number};
 
 /// Why a scenario has no meaning.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -34,6 +35,14 @@ pub enum ScenarioProblem {
         found: usize,
         /// Entries that are needed.
         need: usize,
+    },
+    /// A text that is too long, or holds more than letters.
+    #[error("the text {found} does not fit into a line")]
+    Text {
+        /// How it begins.
+        found: String,
+        /// How many bytes it may have.
+        most: usize,
     },
     /// A key that means nothing here.
     #[error("unknown key `{key}`")]
@@ -189,7 +198,7 @@ pub enum ScenarioProblem {
         /// The name as written.
         file: String,
         /// Why not.
-        reason: std::io::ErrorKind,
+        reason: ReadError,
         /// What might be meant.
         known: Vec<String>,
     },
@@ -232,7 +241,7 @@ pub enum ScenarioProblem {
         agent: String,
     },
     /// One list per agent, but not as many as agents.
-    #[error("`{key}` has {found} lists, but there are {agents} agents")]
+    #[error("`{key}` has {}, but there {}", count(*found, "list"), are(*agents, "agent"))]
     ListPerAgent {
         /// The key.
         key: &'static str,
@@ -450,6 +459,18 @@ pub enum ScenarioProblem {
         most: f64,
     },
 
+    // Solver.
+    /// No step is long enough and short enough.
+    #[error("`{key}` is {}, but must not be less than `min_step_s`, which is {}", number(*.value), number(*.min_step_s))]
+    StepUnderFloor {
+        /// The key.
+        key: &'static str,
+        /// The step.
+        value: f64,
+        /// The floor.
+        min_step_s: f64,
+    },
+
     // Recording and goal.
     /// A recording that would not fit into memory.
     #[error(
@@ -483,14 +504,23 @@ impl Problem for ScenarioProblem {
             ScenarioProblem::NumberTooLarge { .. } => {
                 "numbers may be up to 1e30 in size, whole numbers up to 9e18".into()
             }
+            ScenarioProblem::Text { most, .. } => {
+                format!("names, choices and titles are one line of at most {most} bytes without control characters")
+            }
+            ScenarioProblem::WrongType { found, expected } if found == "a table" && expected == "a list" => {
+                "a list of tables has its name in double brackets, such as [[agents]]".into()
+            }
             ScenarioProblem::ChoiceTakesNoValue { choice } => format!("write it as a text: \"{choice}\""),
-            ScenarioProblem::AgentName { .. } => "use letters, digits, `-` and `_`".into(),
+            ScenarioProblem::AgentName { .. } => "use up to 64 letters, digits, `-` and `_`".into(),
             ScenarioProblem::AgentTwice { .. } => {
                 "agents of a counted population are named after it: `arm` with `count = 2` gives `arm-1` and `arm-2`"
                     .into()
             }
             ScenarioProblem::AxesDiffer { .. } => {
                 "agreement is on one vector of axes; `locked` removes joints of a URDF".into()
+            }
+            ScenarioProblem::RobotFile { reason, .. } if reason.help().is_some() => {
+                reason.help().unwrap_or_default().into()
             }
             ScenarioProblem::RobotFile { file, known, .. } if !known.is_empty() => choose(file, "there are", known),
             ScenarioProblem::Lock(problem) => return problem.help(),

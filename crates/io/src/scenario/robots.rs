@@ -1,6 +1,5 @@
 //! `robot` of an agent → [`RobotSetup`].
 
-use std::io::ErrorKind;
 use std::path::Path;
 
 use forwardstep_core::robot::PlanarLinks;
@@ -11,7 +10,8 @@ use super::at::At;
 use super::fault::{Fault, count, fault, not_negative, positive};
 use super::file::{FrictionFile, PlanarArmFile, PointMassFile, RobotFile, UrdfFile};
 use super::problem::ScenarioProblem;
-use crate::files::{neighbours, read_text};
+use super::values::Named;
+use crate::files::{ReadError, neighbours, read_text};
 use crate::urdf::{self, FrictionPolicy, UrdfOptions, UrdfProblem};
 use crate::{InputError, SourceText};
 
@@ -74,21 +74,24 @@ fn from_urdf(file: &UrdfFile, folder: Option<&Path>) -> Result<ReadRobot, Stop> 
     };
     match urdf::read_urdf(&source, &options) {
         Ok(read) => Ok(ReadRobot { robot: read.robot, notices: read.notices }),
-        Err(error) => match lock_of(&error.problem) {
+        Err(error) => match lock_of(&error.problem, &file.locked) {
             // What is wrong stands in the scenario, not in the URDF.
-            Some(joint) => {
-                let place = file.locked.0.iter().find(|(name, _)| name.value == *joint);
+            Some((joint, _)) => {
                 let fault = Fault::new(ScenarioProblem::Lock(Box::new(error.problem.clone())));
-                Err(Stop::Here(fault.at(place.map_or(&file.file.span, |(name, _)| &name.span))))
+                Err(Stop::Here(fault.at(&joint.span)))
             }
             None => Err(Stop::Robot(Box::new(error))),
         },
     }
 }
 
-fn lock_of(problem: &UrdfProblem) -> Option<&String> {
+/// The lock that a problem is about: that of the joint it names, or the last one when nothing is left to move.
+fn lock_of<'a>(problem: &UrdfProblem, locked: &'a Named) -> Option<&'a (At<String>, At<f64>)> {
     match problem {
-        UrdfProblem::LockUnknown { joint, .. } | UrdfProblem::LockFixed { joint } => Some(joint),
+        UrdfProblem::LockUnknown { joint, .. } | UrdfProblem::LockFixed { joint } => {
+            locked.0.iter().find(|(name, _)| name.value == *joint)
+        }
+        UrdfProblem::NothingMoves { .. } => locked.0.last(),
         _ => None,
     }
 }
@@ -96,17 +99,17 @@ fn lock_of(problem: &UrdfProblem) -> Option<&String> {
 /// The text of a robot file: beside the scenario if there is one, else the shipped robot of that name.
 fn robot_text(file: &At<String>, folder: Option<&Path>) -> Result<SourceText, Fault> {
     let name = file.value.as_str();
-    let mut reason = ErrorKind::NotFound;
+    let mut reason = ReadError::Missing;
     let mut known: Vec<String> = urdf::SHIPPED_ROBOTS.iter().map(|(name, _)| format!("{name}.urdf")).collect();
     if let Some(folder) = folder {
         let path = folder.join(name);
         match read_text(&path) {
             Ok(text) => return Ok(SourceText::new(path.display().to_string(), text)),
-            Err(kind) => reason = kind,
+            Err(error) => reason = error,
         }
-        known.extend(neighbours(&path));
+        known.extend(neighbours(&path, "urdf"));
     }
-    if reason == ErrorKind::NotFound
+    if reason == ReadError::Missing
         && let Some(text) = urdf::shipped_robot(name)
     {
         return Ok(SourceText::new(name, text));

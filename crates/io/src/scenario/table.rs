@@ -4,7 +4,6 @@
 //! `"a ""quoted"" cell"`, and then ends on its own line.
 
 use std::borrow::Cow;
-use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::Path;
 
@@ -15,7 +14,7 @@ use super::de::quoted;
 use super::fault::{Fault, LARGEST, fault};
 use super::problem::ScenarioProblem;
 use crate::SourceText;
-use crate::files::{neighbours, read_text};
+use crate::files::{ReadError, neighbours, read_text};
 use crate::wording::{choose, entry_count};
 
 /// Why a table has no meaning.
@@ -28,7 +27,7 @@ pub enum TableProblem {
         /// The name as written.
         file: String,
         /// Why not.
-        reason: ErrorKind,
+        reason: ReadError,
         /// What might be meant.
         known: Vec<String>,
     },
@@ -108,10 +107,10 @@ pub(super) type Cell<'a> = At<Cow<'a, str>>;
 pub(super) fn table_text(file: &At<String>, folder: Option<&Path>) -> Result<SourceText, Fault> {
     let name = file.value.as_str();
     let (reason, known) = match folder.map(|folder| folder.join(name)) {
-        None => (ErrorKind::NotFound, Vec::new()),
+        None => (ReadError::Missing, Vec::new()),
         Some(path) => match read_text(&path) {
             Ok(text) => return Ok(SourceText::new(path.display().to_string(), text)),
-            Err(kind) => (kind, neighbours(&path)),
+            Err(kind) => (kind, neighbours(&path, "csv")),
         },
     };
     Err(fault(file, TableProblem::File { file: name.into(), reason, known }.into()))

@@ -87,6 +87,12 @@ pub struct RandomFile {
     pub within: At<[f64; 2]>,
 }
 
+/// Stands for a positive number in the schema.
+pub(super) struct Positive;
+
+/// Stands for a number that is not negative in the schema.
+pub(super) struct NotNegative;
+
 /// Numbers by name, in the order of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Named(pub Vec<(At<String>, At<f64>)>);
@@ -232,6 +238,8 @@ fn numbers() -> Schema {
     json_schema!({ "type": "array", "items": { "type": "number" } })
 }
 
+inline_schema!(Positive, "Positive", |_generator| json_schema!({ "type": "number", "exclusiveMinimum": 0 }));
+inline_schema!(NotNegative, "NotNegative", |_generator| json_schema!({ "type": "number", "minimum": 0 }));
 inline_schema!(Item, "Item", |_generator| json_schema!({ "anyOf": [{ "type": "number" }, numbers()] }));
 inline_schema!(GainFile, "Gain", |_generator| json_schema!({
     "anyOf": [

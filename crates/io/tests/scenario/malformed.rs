@@ -46,6 +46,12 @@ const CASES: &[Case] = &[
         "test.toml:5:9: 2e30 is too large a number", "numbers may be up to 1e30 in size, whole numbers up to 9e18"),
     ("end_s = 10", "end_s = 1e-300",
         "test.toml:5:9: `end_s` is 1e-300, but must be from 1e-30 to 1e30", ""),
+    ("title = \"test\"", "title = \"two\\nlines\"",
+        "test.toml:2:9: the text \"two\\nlines\" does not fit into a line", "names, choices and titles are one line of at most 500 bytes without control characters"),
+    ("[\"arm-2\", \"cart\"]", "[\"arm-2\", \"\\u001b[31m\"]",
+        "test.toml:35:20: the text \"\\u{1b}[31m\" does not fit into a line", "control characters"),
+    ("weight = 1.0", "\"\\u202e\" = 1.0",
+        "test.toml:28:1: the text \"\\u{202e}\" does not fit into a line", "control characters"),
     // Time.
     ("end_s = 10", "end_s = 0",
         "test.toml:5:9: `end_s` is 0, but must be positive", ""),
@@ -59,7 +65,9 @@ const CASES: &[Case] = &[
     ("name = \"cart\"", "name = \"arm-2\"",
         "test.toml:15:8: a second agent is named `arm-2`; the first is on line 9", "agents of a counted population are named after it: `arm` with `count = 2` gives `arm-1` and `arm-2`"),
     ("name = \"cart\"", "name = \"cart.left\"",
-        "test.toml:15:8: \"cart.left\" cannot be the name of an agent", "use letters, digits, `-` and `_`"),
+        "test.toml:15:8: \"cart.left\" cannot be the name of an agent", "use up to 64 letters, digits, `-` and `_`"),
+    ("name = \"cart\"", "name = \"a_name_of_more_than_sixty-four_letters_which_no_column_of_a_table_needs\"",
+        "test.toml:15:8: \"a_name_of_more_than_sixty-four_letters_which_no_column_of_a_table_needs\" cannot be the name of an agent", "use up to 64 letters"),
     ("name = \"cart\"", "nme = \"cart\"",
         "test.toml:15:1: unknown key `nme`", "did you mean `name`?"),
     ("count = 2", "count = 0",
@@ -91,7 +99,7 @@ const CASES: &[Case] = &[
     ("length_m = [1.0, 0.8]", "length_m = [1.0, 0.8], com_m = [0.5, 0], inertia_kg_m2 = [0.1, 0]",
         "test.toml:11:1: the mass matrix of this arm is not positive definite: its second link resists no torque", "give the second link inertia, or a centre of mass off its joint"),
     ("robot.point_mass = { dimension = 2, mass_kg = 4.0 }", "robot.urdf = { file = \"ur6e.urdf\" }",
-        "test.toml:16:23: cannot read the robot file `ur6e.urdf`: entity not found", "did you mean `ur5e.urdf`?"),
+        "test.toml:16:23: cannot read the robot file `ur6e.urdf`: there is no such file", "did you mean `ur5e.urdf`?"),
     ("robot.point_mass = { dimension = 2, mass_kg = 4.0 }", "robot.urdf = { file = \"ur5e.urdf\" }",
         "test.toml:16:1: `arm-1` has 2 axes and `cart` has 6, but agents that agree need as many", "agreement is on one vector of axes; `locked` removes joints of a URDF"),
     ("robot.point_mass = { dimension = 2, mass_kg = 4.0 }", "robot.urdf = { file = \"ur5e.urdf\", locked = { wrist_4_joint = 0 } }",
@@ -304,6 +312,10 @@ const CASES: &[Case] = &[
         "test.toml:38:27: `step_s` is -1, but must be positive", ""),
     ("[goal]", "[solver]\nmethod = \"euler\"\n[goal]",
         "test.toml:38:10: unknown choice `euler`", "choose one of `adaptive`, `fixed`"),
+    ("[goal]", "[solver]\nmethod.fixed.step_s = 1e-20\n[goal]",
+        "test.toml:38:23: `step_s` is 1e-20, but must not be less than `min_step_s`, which is 1e-12", ""),
+    ("[goal]", "[solver]\nmin_step_s = 1e-3\nmax_step_s = 1e-5\n[goal]",
+        "test.toml:39:14: `max_step_s` is 1e-5, but must not be less than `min_step_s`, which is 0.001", ""),
     ("[goal]", "[solver]\nmax_step_s = 0\n[goal]",
         "test.toml:38:14: `max_step_s` is 0, but must be positive", ""),
     ("disagreement_below = 1e-3", "disagreement_below = -1",
@@ -315,6 +327,58 @@ const CASES: &[Case] = &[
     ("disagreement_below = 1e-3", "disagreement_below = true",
         "test.toml:38:22: found true where a number should stand", ""),
 ];
+
+#[test]
+fn a_table_in_single_brackets_is_told_from_a_list_of_them() {
+    let text = "format = 1\n[time]\nend_s = 1\n[agents]\nname = \"arm\"\n";
+    let error = read(text).unwrap_err();
+    assert_eq!(error.to_string(), "test.toml:4:1: found a table where a list should stand");
+    assert!(error.help().unwrap().to_string().contains("[[agents]]"));
+}
+
+/// As the program prints it.
+fn printed(text: &str) -> String {
+    let (error, mut shown) = (read(text).unwrap_err(), String::new());
+    miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::unicode_nocolor())
+        .render_report(&mut shown, &error)
+        .unwrap();
+    shown
+}
+
+#[test]
+fn a_message_is_short_however_long_the_line() {
+    let long = "x".repeat(1_000_000);
+    let lists = "[".repeat(100_000);
+    for (to, place) in [
+        (format!("weight = [\"{long}\"]"), "28:10"),
+        (format!("\"{long}\" = 1"), "28:1"),
+        (format!("weight = \"{long}\""), "28:10"),
+        (format!("weight = {lists}"), "28:"),
+        (format!("switching = \"once\" # {long}\nweigth = 1"), "29:1"),
+        (format!("# {long}\nweigth = 1 # {long}"), "29:1"),
+    ] {
+        let shown = printed(&changed("weight = 1.0", &to));
+        assert!(shown.len() < 2_500, "{} bytes", shown.len());
+        assert!(shown.contains(&format!("[test.toml:{place}")), "{shown}");
+    }
+    // The part around a place far to the right, with the place marked.
+    let edges = " ".repeat(2000) + "[\"arm-1\", \"cärt\"]";
+    let shown = printed(&changed("[\"arm-2\", \"cart\"]", &edges));
+    let lines: Vec<&str> = shown.lines().collect();
+    let at = lines.iter().position(|line| line.contains("cärt\"]")).unwrap();
+    let column = |line: &str, what: char| line.chars().position(|c| c == what).unwrap();
+    assert!(
+        column(lines[at + 1], '─') < column(lines[at], 'ä') && column(lines[at], 'ä') < lines[at + 1].chars().count()
+    );
+}
+
+#[test]
+fn nothing_in_a_file_steers_the_terminal() {
+    for to in ["title = \u{1b}[31m", "\u{9b}31m = 1", "# \u{202e}\ntitle = 7", "\0", "title = \"\u{7f}"] {
+        let shown = printed(&changed("title = \"test\"", to));
+        assert!(!shown.contains(|c: char| c.is_control() && c != '\n' || c == '\u{202e}'), "{shown:?}");
+    }
+}
 
 #[test]
 fn every_mistake_is_reported_at_its_place() {

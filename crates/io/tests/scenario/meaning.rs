@@ -188,7 +188,21 @@ fn files_are_looked_for_beside_the_scenario_before_the_shipped_ones() {
     std::fs::write(folder.path().join("panda.urdf"), "<sdf/>").unwrap();
     assert!(open().contains("panda.urdf:1:"), "{}", open());
     std::fs::write(folder.path().join("panda.urdf"), [0xff, 0xfe]).unwrap();
-    assert!(open().contains("cannot read the robot file `panda.urdf`: invalid data"), "{}", open());
+    assert!(
+        open().contains("cannot read the robot file `panda.urdf`: it is no UTF-8 text: byte 0xff in line 1, column 1"),
+        "{}",
+        open()
+    );
+}
+
+#[test]
+fn a_robot_of_which_nothing_moves_is_reported_at_its_locks() {
+    let joints = ["shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3"];
+    let locks: Vec<String> = joints.iter().map(|joint| format!("{joint}_joint = 0")).collect();
+    let robot = format!("robot.urdf = {{ file = \"ur5e.urdf\", locked = {{ {} }} }}", locks.join(", "));
+    let error = read(&changed("robot.point_mass = { dimension = 2, mass_kg = 4.0 }", &robot)).unwrap_err();
+    assert!(error.to_string().starts_with("test.toml:16:"), "{error}");
+    assert!(error.to_string().ends_with("no joint moves (fixed: 1, locked: 6)"), "{error}");
 }
 
 #[test]
@@ -204,12 +218,17 @@ fn near_matches_for_names_and_paths() {
     assert!(help.starts_with("did you mean `theorem-2`?"), "{help}");
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("fleet.toml"), SOUND).unwrap();
+    let latin = folder.path().join("latin.toml");
+    std::fs::write(&latin, b"format = 1\ntitle = \"\xc3\xa9caf\xe9\"\n").unwrap();
+    let (error, help) = open(latin.to_str().unwrap());
+    assert!(error.ends_with("it is no UTF-8 text: byte 0xe9 in line 2, column 14"), "{error}");
+    assert_eq!(help, "save it as UTF-8");
     let missing = folder.path().join("flet.toml");
     let (error, help) = open(missing.to_str().unwrap());
-    assert_eq!(error, format!("cannot read `{}`: entity not found", missing.display()));
+    assert_eq!(error, format!("cannot read `{}`: there is no such file", missing.display()));
     assert!(help.starts_with("did you mean `fleet.toml`?"), "{help}");
     assert_eq!(
         open(folder.path().to_str().unwrap()).0,
-        format!("cannot read `{}`: is a directory", folder.path().display())
+        format!("cannot read `{}`: it is a folder", folder.path().display())
     );
 }

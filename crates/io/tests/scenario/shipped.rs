@@ -86,3 +86,21 @@ fn the_schema_refuses_unknown_keys() {
     assert_eq!(schema["properties"]["format"]["const"], 1);
     assert_eq!(schema["required"], serde_json::json!(["format", "time", "agents", "reference", "network"]));
 }
+
+#[test]
+fn the_schema_refuses_what_the_reader_refuses_of_single_values() {
+    let schema = serde_json::to_value(schema()).unwrap();
+    let parts = &schema["$defs"];
+    for (place, bound) in [
+        (&schema["properties"]["agents"], "minItems"),
+        (&parts["AgentFile"]["properties"]["name"], "pattern"),
+        (&parts["NetworkFile"], "oneOf"),
+        (&parts["NetworkFile"]["properties"]["phases"], "minItems"),
+        (&parts["ConsensusFile"]["properties"]["roots_per_s"], "minItems"),
+        (&parts["ConsensusFile"]["properties"]["roots_per_s"]["items"], "exclusiveMinimum"),
+        (&parts["PlanarArmFile"]["properties"]["mass_kg"]["items"], "exclusiveMinimum"),
+        (&parts["GoalFile"], "minProperties"),
+    ] {
+        assert!(place.get(bound).is_some(), "no {bound} in {place}");
+    }
+}

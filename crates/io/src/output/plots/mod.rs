@@ -19,6 +19,8 @@ use super::timeline::Timeline;
 const ROOM: usize = 150_000;
 /// More names would outgrow the panels.
 const MOST_NAMES: usize = 24;
+/// Of more parameters than this, those that move most are drawn, as many.
+const MOST_PARAMETERS: usize = 12;
 /// More agents do not fit on a page.
 const MOST_ESTIMATE_PANELS: usize = 24;
 
@@ -65,15 +67,13 @@ impl<'a> Plots<'a> {
                 .filter_map(|agent| Some((agent, table.column(agent, signal, axis)?)))
                 .filter(|(agent, _)| axis < table.dof(*agent))
                 .collect();
-            let mut units: Vec<String> =
-                owners.iter().map(|(agent, _)| text::unit(&names::unit(setup, *agent, signal, axis))).collect();
-            units.dedup();
+            let units = units(owners.iter().map(|(agent, _)| names::unit(setup, *agent, signal, axis)));
             let line = |&(agent, values): &(usize, &[f64])| {
                 self.line(&grid, values, signal == Signal::Torque, self.colour(agent))
             };
             Panel {
                 title: shared_axis_words(setup, axis),
-                y: format!("{letter} in {}", units.join(" or ")),
+                y: format!("{letter} in {units}"),
                 log: false,
                 lines: owners.iter().map(line).collect(),
                 guide: guide(axis),
@@ -104,34 +104,43 @@ impl<'a> Plots<'a> {
         let estimates: Vec<_> =
             (0..table.agents()).map(|agent| (agent, of(agent))).filter(|(_, e)| !e.is_empty()).collect();
         let shown = &estimates[..estimates.len().min(MOST_ESTIMATE_PANELS)];
-        let grid = self.grid(shown.iter().map(|(_, e)| e.len()).sum());
-        let colour = |k: usize, n: usize| palette::ramp(k, n, Ground::Light);
-        let panel = |(agent, columns): &(usize, Vec<&[f64]>)| Panel {
-            title: format!("{}, {}", names::agent_name(setup, *agent), text::count(columns.len(), "parameter")),
-            y: "estimate in SI units".into(),
-            log: false,
-            lines: (columns.iter().enumerate())
-                .map(|(k, values)| self.line(&grid, values, false, colour(k, columns.len())))
-                .collect(),
-            guide: None,
-        };
-        let panels: Vec<_> = if table.t_s.is_empty() { Vec::new() } else { shown.iter().map(panel).collect() };
-        // Names are only worth their room when they are few, and hold for all panels.
         let names_of =
             |agent: usize| (0..count(agent)).map(|k| names::parameter_name(setup, agent, k)).collect::<Vec<_>>();
+        // One legend for all panels, if the same parameters are estimated in all.
         let first = shown.first().map(|(agent, _)| names_of(*agent)).unwrap_or_default();
-        let shared = first.len() <= MOST_NAMES && shown.iter().all(|(agent, _)| names_of(*agent) == first);
-        let n = first.len();
+        let shared = shown.iter().all(|(agent, e)| e.len() == first.len() && names_of(*agent) == first);
+        let common =
+            if shared { largest_moves(shown.iter().map(|(_, columns)| columns.as_slice())) } else { Vec::new() };
+        let drawn = |columns: &[&[f64]]| if shared { common.clone() } else { largest_moves([columns].into_iter()) };
+        let grid = self.grid(shown.iter().map(|(_, e)| e.len().min(MOST_PARAMETERS)).sum());
+        let colour = |k: usize, n: usize| palette::ramp(k, n, Ground::Light);
+        let panel = |(agent, columns): &(usize, Vec<&[f64]>)| {
+            let drawn = drawn(columns);
+            let (name, all) = (names::agent_name(setup, *agent), text::count(columns.len(), "parameter"));
+            let part = if drawn.len() < columns.len() {
+                format!("the {} that move most of ", drawn.len())
+            } else {
+                String::new()
+            };
+            Panel {
+                title: format!("{name}, {part}{all}"),
+                y: "in SI units".into(),
+                log: false,
+                lines: (drawn.iter().enumerate())
+                    .map(|(k, column)| self.line(&grid, columns[*column], false, colour(k, drawn.len())))
+                    .collect(),
+                guide: None,
+            }
+        };
+        let panels: Vec<_> = if table.t_s.is_empty() { Vec::new() } else { shown.iter().map(panel).collect() };
         Figure {
             title: match estimates.len() - shown.len() {
                 0 => self.title("Parameter estimates"),
                 _ => self.title(&format!("Parameter estimates of the first {MOST_ESTIMATE_PANELS} agents")),
             },
-            legend: if shared {
-                first.into_iter().enumerate().map(|(k, name)| (name, colour(k, n))).collect()
-            } else {
-                Vec::new()
-            },
+            legend: (common.iter().enumerate())
+                .filter_map(|(k, parameter)| Some((first.get(*parameter)?.clone(), colour(k, common.len()))))
+                .collect(),
             columns: columns(panels.len()),
             panels,
             panel: (380, 230),
@@ -159,7 +168,9 @@ impl<'a> Plots<'a> {
                     .collect();
                 legend.push(("largest".into(), ink));
             }
-            let unit = text::unit(&names::unit(self.record.setup, 0, Signal::Position, 0));
+            let positions = self.table.axes(Signal::Position);
+            let unit =
+                units(positions.map(|(agent, axis, _)| names::unit(self.record.setup, agent, Signal::Position, axis)));
             let guide = self.record.goal.and_then(|outcome| match outcome.goal {
                 Goal::DisagreementBelow(bound) => Some((bound, "goal".to_owned())),
                 Goal::ExpectDiverges => None,
@@ -212,6 +223,35 @@ impl<'a> Plots<'a> {
     }
 }
 
+/// Which columns move most in any of the panels, at most [`MOST_PARAMETERS`] of them, in their order.
+fn largest_moves<'c>(panels: impl Iterator<Item = &'c [&'c [f64]]>) -> Vec<usize> {
+    let mut moves: Vec<f64> = Vec::new();
+    for columns in panels {
+        moves.resize(moves.len().max(columns.len()), 0.0);
+        for (most, values) in moves.iter_mut().zip(columns) {
+            let finite = || values.iter().copied().filter(|value| value.is_finite());
+            let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+            *most = most.max(high - low);
+        }
+    }
+    let mut order: Vec<usize> = (0..moves.len()).collect();
+    order.sort_by(|a, b| moves[*b].total_cmp(&moves[*a]));
+    order.truncate(MOST_PARAMETERS);
+    order.sort_unstable();
+    order
+}
+
+/// The distinct units, for reading: `rad or m`.
+fn units(all: impl Iterator<Item = String>) -> String {
+    let mut distinct: Vec<String> = Vec::new();
+    for unit in all.map(|unit| text::unit(&unit)) {
+        if !distinct.contains(&unit) {
+            distinct.push(unit);
+        }
+    }
+    distinct.join(" or ")
+}
+
 /// Columns for this many panels: wide rather than tall.
 fn columns(panels: usize) -> usize {
     match panels {
@@ -219,5 +259,29 @@ fn columns(panels: usize) -> usize {
         4 => 2,
         5..=12 => 3,
         _ => 4,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_are_named_once() {
+        let all = ["rad", "m", "rad", "m"].map(String::from).into_iter();
+        assert_eq!(units(all), "rad or m");
+        assert_eq!(units(["rad/s^2".to_owned()].into_iter()), "rad/s²");
+    }
+
+    #[test]
+    fn of_many_parameters_those_that_move_most_in_any_panel_are_drawn_in_order() {
+        let columns: Vec<[f64; 3]> =
+            (0..40).map(|k| [0.0, f64::NAN, if k % 3 == 0 { k as f64 } else { 0.1 }]).collect();
+        let still = [[5.0; 3]; 40];
+        let panel = |columns: &'static [[f64; 3]]| columns.iter().map(|c| &c[..]).collect::<Vec<&[f64]>>();
+        let (moving, still) = (panel(Vec::leak(columns)), panel(Vec::leak(still.to_vec())));
+        let drawn = largest_moves([still.as_slice(), &moving].into_iter());
+        assert_eq!(drawn, (1..=12).map(|k| 3 * k + 3).filter(|k| *k < 40).collect::<Vec<_>>());
+        assert_eq!(largest_moves([&moving[..5]].into_iter()), [0, 1, 2, 3, 4]);
     }
 }
