@@ -42,7 +42,7 @@ fn every_combination_is_a_scenario_that_runs() {
             for (delay, agents, order) in
                 delays.iter().flat_map(|delay| [(*delay, 2, 1), (*delay, 3, 8), (*delay, 5, 3)])
             {
-                let title = format!("{robot:?}, \"{exchange:?}\",\n{graph:?}, {delay:?} \\ {agents}, {order}");
+                let title = format!("{robot:?}, \"{exchange:?}\", {graph:?}, {delay:?} \\ {agents}, {order}");
                 let template = Template { title, agents, robot: robot.clone(), order, exchange, graph, delay };
                 let text = template.text();
                 let mut scenario = read_scenario("new", &SourceText::new("new", text.as_str()), None)

@@ -220,6 +220,6 @@ fn every_mistake_in_a_table_is_reported_at_its_place() {
 fn tables_with_other_names_are_offered() {
     let (folder, _) = tabled("from,to\n");
     let error = beside("edge.csv", folder.path()).unwrap_err();
-    assert_eq!(error.to_string(), "test.toml:32:18: cannot read the table `edge.csv`: entity not found");
+    assert_eq!(error.to_string(), "test.toml:32:18: cannot read the table `edge.csv`: there is no such file");
     assert!(error.help().unwrap().to_string().starts_with("did you mean `edges.csv`?"));
 }

@@ -277,7 +277,7 @@ const CASES: &[Case] = &[
     ("edges = [[\"arm-1\", \"arm-2\"]]", "edges.csv = \"edges.csv\"",
         "test.toml:32:13: found \"edges.csv\" where a table of file should stand", ""),
     ("edges = [[\"arm-1\", \"arm-2\"]]", "edges.csv.file = \"edges.csv\"",
-        "test.toml:32:18: cannot read the table `edges.csv`: entity not found", ""),
+        "test.toml:32:18: cannot read the table `edges.csv`: there is no such file", ""),
     // Delays.
     ("delay.saw_tooth = {", "delay.sawtooth = {",
         "test.toml:29:7: unknown choice `sawtooth`", "did you mean `saw_tooth`?"),
