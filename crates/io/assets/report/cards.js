@@ -57,7 +57,7 @@ const parameterOptions = (who) => {
 
 // The group of parameters that moves most, where not all of them can be shown at once.
 const liveliest = (who, options) => {
-  if (who === "all" || options[0]?.[0] === "every") return options[0]?.[0];
+  if (who == null || who === "all" || options[0]?.[0] === "every") return options[0]?.[0];
   const move = (p) => {
     let [low, high] = [Infinity, -Infinity];
     for (const v of p.series == null ? [] : data.values("estimates", p.series)) if (v != null) [low, high] = [Math.min(low, v), Math.max(high, v)];

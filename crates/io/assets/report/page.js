@@ -82,7 +82,15 @@ const drawPicks = (card, spec, chosen) => {
 };
 
 const all = [...document.querySelectorAll("[data-plot]")];
-const fillAll = () => all.forEach((card) => fill(card));
+// A card that fails says so in the banner and leaves the others alone.
+const fillAll = () =>
+  all.forEach((card) => {
+    try {
+      fill(card);
+    } catch (error) {
+      reportError(error);
+    }
+  });
 
 // The legend switches agents on and off in every plot; a double click leaves one alone.
 const legend = document.getElementById("legend");
