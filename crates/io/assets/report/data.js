@@ -55,7 +55,7 @@ const number = (v, digits = 4) => {
 // The label of a tick when neighbours are `step` apart.
 const tick = (v, step) => {
   const size = Math.max(Math.abs(v), step);
-  if (size >= 1e5 || size < 1e-3) return v === 0 ? "0" : number(v, 3);
+  if (size >= 1e5 || size < 1e-3) return Math.abs(v) < 1e-6 * step ? "0" : number(v, 3);
   let places = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   if (Math.abs(step * 10 ** places - Math.round(step * 10 ** places)) > 1e-6) places += 1; // 0.25
   return minus(v.toFixed(Math.min(6, places)));

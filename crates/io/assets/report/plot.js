@@ -22,6 +22,9 @@ const decades = (min, max) => {
   return ticks;
 };
 
+// Distances of ticks for all sizes a single-precision number can have; the library's own end at 1e16.
+const increments = Array.from({ length: 80 }, (_, k) => [1, 2, 2.5, 5].map((m) => +`${m}e${k - 40}`)).flat();
+
 // Whole decades, but none below what double precision can tell from one, or from the greatest value.
 const logRange = (u, min, max) => {
   if (!(min > 0) || !(max > 0)) return [1e-3, 1];
@@ -167,6 +170,7 @@ const drawPlot = (target, { times, series, log = false, lines = [], height, y = 
         size: 62,
         gap: 6,
         space: 34,
+        incrs: increments,
         values: (u, splits, a, s, step) => splits.map((v) => (log ? power(Math.round(Math.log10(v))) : tick(v, step))),
         ...(log ? { splits: (u, a, min, max) => decades(min, max), filter: (u, splits) => splits } : {}),
         ...y.axis,
