@@ -113,7 +113,7 @@ impl<'a> Recorder<'a> {
         self.recording.t_s.push(t_s);
         let (x, heard) = integrator.look_inside(t_s);
         let (columns, first) = (&mut self.recording.columns, &self.first_column);
-        closed_loop.record(x, heard, |agent, values| {
+        closed_loop.record(t_s, x, heard, |agent, values| {
             for (column, value) in columns[first[agent]..].iter_mut().zip(values) {
                 column.values.push(*value);
             }

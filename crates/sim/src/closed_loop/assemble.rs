@@ -14,7 +14,7 @@ use forwardstep_core::{Gain, GainError, InverseQuadratic, Lanes, LengthError, Re
 use thiserror::Error;
 
 use super::fleet::Member;
-use super::population::{Columns, Population};
+use super::population::{Columns, Inputs, Population};
 use crate::engine::{DelaySystem, Heard, Port};
 use crate::network::NetworkError;
 use crate::recording::Signal;
@@ -245,22 +245,27 @@ impl ClosedLoop {
     }
 
     /// Hands every agent's signals at one instant to `write`.
-    pub(crate) fn record(&mut self, x: &[f64], heard: &Heard, mut write: impl FnMut(usize, &[f64])) {
-        for Block { columns, state, degree, sums } in &mut self.blocks {
-            columns.record(&x[state.clone()], &heard.degree[degree.clone()], &heard.sums[sums.clone()], &mut write);
+    pub(crate) fn record(&mut self, _t_s: f64, x: &[f64], heard: &Heard, mut write: impl FnMut(usize, &[f64])) {
+        for block in &mut self.blocks {
+            let inputs = Inputs {
+                degree: &heard.degree[block.degree.clone()],
+                sums: &heard.sums[block.sums.clone()],
+                external: None,
+            };
+            block.columns.record(&x[block.state.clone()], inputs, &mut write);
         }
     }
 }
 
 impl DelaySystem for ClosedLoop {
-    fn rates(&mut self, x: &[f64], heard: &Heard, dx: &mut [f64]) {
-        for Block { columns, state, degree, sums } in &mut self.blocks {
-            columns.rates(
-                &x[state.clone()],
-                &heard.degree[degree.clone()],
-                &heard.sums[sums.clone()],
-                &mut dx[state.clone()],
-            );
+    fn rates(&mut self, _t_s: f64, x: &[f64], heard: &Heard, dx: &mut [f64]) {
+        for block in &mut self.blocks {
+            let inputs = Inputs {
+                degree: &heard.degree[block.degree.clone()],
+                sums: &heard.sums[block.sums.clone()],
+                external: None,
+            };
+            block.columns.rates(&x[block.state.clone()], inputs, &mut dx[block.state.clone()]);
         }
     }
 }

@@ -79,6 +79,8 @@ impl<R: Lagrangian<S>, S: Packed> Fleet<R, S> {
             s: vector(),
             tau: vector(),
             applied: vector(),
+            external: vector(),
+            net: vector(),
             ddq: vector(),
             damped: vector(),
             theta_hat: parameters(),
@@ -99,16 +101,18 @@ impl<R: Lagrangian<S>, S: Packed> Fleet<R, S> {
     }
 
     /// s, τ, Yᵀs and q̈ of one squad into the working memory and, if there is a `dx`, the rates of q̇, ϑ̂ and the ledger
-    /// into it. z and ż are blocks of their own because they are states for some references and not for others.
+    /// into it. z and ż are blocks of their own because they are states for some references and not for others;
+    /// `external` is the block of what acts from outside, if anything does.
     pub(crate) fn act(
         &mut self,
         squad: usize,
         x: &[f64],
         z: &[f64],
         dz: &[f64],
+        external: Option<&[f64]>,
         dx: Option<&mut [f64]>,
     ) -> Result<(), LengthError> {
-        dispatch(Act { fleet: self, squad, x, z, dz, dx })
+        dispatch(Act { fleet: self, squad, x, z, dz, external, dx })
     }
 }
 
@@ -118,6 +122,7 @@ struct Act<'a, R: Lagrangian<S>, S: Packed> {
     x: &'a [f64],
     z: &'a [f64],
     dz: &'a [f64],
+    external: Option<&'a [f64]>,
     dx: Option<&'a mut [f64]>,
 }
 
@@ -129,7 +134,10 @@ impl<R: Lagrangian<S>, S: Packed> Kernel for Act<'_, R, S> {
         let Fleet { robot, layout, squads, work } = self.fleet;
         let squad = &squads[self.squad];
         work.read(*layout, squad.first, self.x, self.z, self.dz);
-        squad.act(*layout, robot, work)?;
+        if let Some(external) = self.external {
+            take(*layout, squad.first, external, &mut work.external);
+        }
+        squad.act(*layout, robot, work, self.external.is_some())?;
         if let Some(dx) = self.dx {
             work.write(*layout, squad, dx);
         }
@@ -157,6 +165,9 @@ pub(crate) struct Work<S, T> {
     pub(crate) s: Vec<S>,
     pub(crate) tau: Vec<S>,
     pub(crate) applied: Vec<S>,
+    /// What acts from outside, when anything does.
+    external: Vec<S>,
+    net: Vec<S>,
     pub(crate) ddq: Vec<S>,
     pub(crate) damped: Vec<S>,
     pub(crate) theta_hat: Vec<S>,
@@ -191,7 +202,13 @@ impl<S: Packed> Squad<S> {
 
     /// s, τ, Yᵀs and q̈ of the squad whose q, q̇, z, ż and ϑ̂ are in the working memory.
     #[inline(always)]
-    fn act<R: Lagrangian<S>>(&self, l: Layout, robot: &R, w: &mut Work<S, R::Scratch>) -> Result<(), LengthError> {
+    fn act<R: Lagrangian<S>>(
+        &self,
+        l: Layout,
+        robot: &R,
+        w: &mut Work<S, R::Scratch>,
+        pushed: bool,
+    ) -> Result<(), LengthError> {
         let estimate = if l.adaptive { &w.theta_hat } else { &self.theta };
         let motion = TwoVelocity { q: &w.q, dq: &w.dq, z: &w.z, dz: &w.dz };
         let out = SlotineLiOutput { s: &mut w.s, tau: &mut w.tau, yt_s: &mut w.yt_s };
@@ -202,7 +219,13 @@ impl<S: Packed> Squad<S> {
                 *tau = tau.saturate(*limit);
             }
         }
-        robot.forward_dynamics(&mut w.scratch, &w.q, &w.dq, &self.theta, &w.applied, &mut w.ddq)
+        w.net.copy_from_slice(&w.applied);
+        if pushed {
+            for (net, external) in w.net.iter_mut().zip(&w.external) {
+                *net = *net + *external;
+            }
+        }
+        robot.forward_dynamics(&mut w.scratch, &w.q, &w.dq, &self.theta, &w.net, &mut w.ddq)
     }
 
     /// sᵀ(K + D)s − sᵀτ_ext. What a limit takes away from the torque acts like an external one.
@@ -211,7 +234,7 @@ impl<S: Packed> Squad<S> {
         self.law.damping.apply(&w.s, &mut w.damped);
         let mut dissipation = S::ZERO;
         for k in 0..l.m {
-            let external = w.applied[k] - w.tau[k];
+            let external = w.net[k] - w.tau[k];
             let damped = self.viscous[k].mul_add(w.s[k], w.damped[k] - external);
             dissipation = w.s[k].mul_add(damped, dissipation);
         }

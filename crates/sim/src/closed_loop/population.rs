@@ -17,6 +17,17 @@ use forwardstep_core::{Kernel, LengthError, Packed, dispatch};
 use super::fleet::{Fleet, Layout, Member};
 use crate::recording::Signal;
 
+/// What reaches a population from outside at one instant.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Inputs<'a> {
+    /// Σ_j w_ij, one entry per agent.
+    pub(crate) degree: &'a [f64],
+    /// The sums of messages.
+    pub(crate) sums: &'a [f64],
+    /// External torques or forces, one column per axis, when anybody is pushed.
+    pub(crate) external: Option<&'a [f64]>,
+}
+
 /// What the closed loop asks of a population, whatever its robots and its exchange.
 pub(crate) trait Columns {
     /// Numbers of state.
@@ -25,10 +36,10 @@ pub(crate) trait Columns {
     fn reference_vectors(&self) -> usize;
     /// Replaces the wanted z(0), ż(0), … in the block `x` by the reference state that gives them.
     fn start(&self, x: &mut [f64], degree: &[f64], sums: &[f64]) -> Result<(), LengthError>;
-    /// d/dt of the block `x`; `degree` and `sums` are the population's part of what is heard.
-    fn rates(&mut self, x: &[f64], degree: &[f64], sums: &[f64], dx: &mut [f64]);
+    /// d/dt of the block `x`.
+    fn rates(&mut self, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]);
     /// Hands the signals of every member in turn to `write`, in the order of [`Columns::signals`].
-    fn record(&mut self, x: &[f64], degree: &[f64], sums: &[f64], write: &mut dyn FnMut(usize, &[f64]));
+    fn record(&mut self, x: &[f64], inputs: Inputs<'_>, write: &mut dyn FnMut(usize, &[f64]));
     /// Signals and axes of one member, in the order in which they are recorded.
     fn signals(&self) -> Vec<(Signal, usize)>;
     /// Which member, signal and axis a state of the block is.
@@ -89,30 +100,29 @@ where
     }
 
     /// The reference of everybody, then everything else squad by squad.
-    fn try_rates(&mut self, x: &[f64], degree: &[f64], sums: &[f64], dx: &mut [f64]) -> Result<(), LengthError> {
+    fn try_rates(&mut self, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) -> Result<(), LengthError> {
         let l = self.fleet.layout;
         LengthError::check("state", l.len, x.len())?;
         LengthError::check("rate", l.len, dx.len())?;
         dx[..l.block()].copy_from_slice(&x[l.dq..l.reference]);
         let Output { z, dz } = &mut self.output;
         let out = ReferenceOut { z, dz, d_state: &mut dx[l.reference..l.theta_hat] };
-        evaluate(&self.reference, l, x, degree, sums, out)?;
-        (0..self.fleet.squads()).try_for_each(|squad| self.fleet.act(squad, x, z, dz, Some(&mut *dx)))
+        evaluate(&self.reference, l, x, inputs, out)?;
+        (0..self.fleet.squads()).try_for_each(|squad| self.fleet.act(squad, x, z, dz, inputs.external, Some(&mut *dx)))
     }
 
     fn try_record(
         &mut self,
         x: &[f64],
-        degree: &[f64],
-        sums: &[f64],
+        inputs: Inputs<'_>,
         write: &mut dyn FnMut(usize, &[f64]),
     ) -> Result<(), LengthError> {
         let l = self.fleet.layout;
         let out =
             ReferenceOut { z: &mut self.output.z, dz: &mut self.output.dz, d_state: &mut self.record.d_reference };
-        evaluate(&self.reference, l, x, degree, sums, out)?;
+        evaluate(&self.reference, l, x, inputs, out)?;
         for squad in 0..self.fleet.squads() {
-            self.fleet.act(squad, x, &self.output.z, &self.output.dz, None)?;
+            self.fleet.act(squad, x, &self.output.z, &self.output.dz, inputs.external, None)?;
             let first = self.fleet.first(squad);
             for lane in 0..S::WIDTH.min(l.n - first) {
                 self.fill_row(first + lane, lane, x)?;
@@ -171,11 +181,10 @@ fn evaluate<F: Reference>(
     reference: &F,
     layout: Layout,
     x: &[f64],
-    degree: &[f64],
-    sums: &[f64],
+    inputs: Inputs<'_>,
     out: ReferenceOut<'_, f64>,
 ) -> Result<(), LengthError> {
-    let heard = heard::<F::Exchange>(layout, degree, sums)?;
+    let heard = heard::<F::Exchange>(layout, inputs.degree, inputs.sums)?;
     dispatch(Evaluate { reference, layout, x, heard, out })
 }
 
@@ -227,16 +236,16 @@ where
         self.reference.start(l.m, measured, &given, heard(l, degree, sums)?, state)
     }
 
-    fn rates(&mut self, x: &[f64], degree: &[f64], sums: &[f64], dx: &mut [f64]) {
-        let checked = self.try_rates(x, degree, sums, dx);
+    fn rates(&mut self, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) {
+        let checked = self.try_rates(x, inputs, dx);
         debug_assert_eq!(checked, Ok(()), "lengths are fixed when the population is built");
         if checked.is_err() {
             dx.fill(f64::NAN);
         }
     }
 
-    fn record(&mut self, x: &[f64], degree: &[f64], sums: &[f64], write: &mut dyn FnMut(usize, &[f64])) {
-        let checked = self.try_record(x, degree, sums, write);
+    fn record(&mut self, x: &[f64], inputs: Inputs<'_>, write: &mut dyn FnMut(usize, &[f64])) {
+        let checked = self.try_record(x, inputs, write);
         debug_assert_eq!(checked, Ok(()), "lengths are fixed when the population is built");
     }
 

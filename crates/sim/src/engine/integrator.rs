@@ -4,15 +4,37 @@ use super::hearing::{Heard, Hearing, Needs, Port};
 use super::history::History;
 use super::kernels::{PieceSource, combine, error_norm, make_piece, piece_gap};
 use super::tableau::{CLASSICAL, DORMAND_PRINCE, Tableau};
-use super::timeline::Timeline;
+use super::timeline::{Timeline, merge_until};
 use crate::network::Network;
 use crate::recording::Statistics;
 use crate::setup::{Method, Solver};
 
 /// A right-hand side that knows the past only through what is heard.
 pub(crate) trait DelaySystem {
-    /// dx = f(x, heard).
-    fn rates(&mut self, x: &[f64], heard: &Heard, dx: &mut [f64]);
+    /// dx = f(t, x, heard). Time enters through what acts from outside only.
+    fn rates(&mut self, t_s: f64, x: &[f64], heard: &Heard, dx: &mut [f64]);
+
+    /// When something happens next that the network does not know of, s: a push begins, a controller samples.
+    fn next_event_s(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Lets everything happen that is due until `until_s`, a rounding error after the instant at hand; may change `x`.
+    fn happen(&mut self, until_s: f64, x: &mut [f64]) -> Happened {
+        let _ = (until_s, x);
+        Happened::Nothing
+    }
+}
+
+/// What an event did to the right-hand side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Happened {
+    /// It goes on as before.
+    Nothing,
+    /// Held inputs changed. What follows is as smooth as what was before, so steps stay as long as they were.
+    Sampled,
+    /// It jumped: fast transients may start, and what is sent has a kink.
+    Jumped,
 }
 
 /// Why a step could not be made.
@@ -156,7 +178,7 @@ impl<'a> Integrator<'a> {
         if t >= self.end_s {
             return Ok(None);
         }
-        self.begin(t);
+        self.begin(system, t);
         self.smooth = !self.stale;
         if self.stale {
             self.derivative_at_start(system, t)?;
@@ -172,7 +194,7 @@ impl<'a> Integrator<'a> {
             }
         }
         loop {
-            let next = self.timeline.next_s();
+            let next = self.timeline.next_s().min(system.next_event_s());
             let left = next - t;
             let h = self.wish_s.min(limit_s);
             // Never leave a sliver before a break-point: land on it, or go half-way.
@@ -218,7 +240,7 @@ impl<'a> Integrator<'a> {
     }
 
     /// Moves to the start of the next step: what happens at this instant happens now.
-    fn begin(&mut self, t: f64) {
+    fn begin(&mut self, system: &mut impl DelaySystem, t: f64) {
         if self.statistics.steps > 0 {
             std::mem::swap(&mut self.x0, &mut self.x1);
             self.k.swap(0, self.tableau.c.len() - 1);
@@ -231,11 +253,27 @@ impl<'a> Integrator<'a> {
                 self.hearing.rewire(&self.timeline, edges, &mut self.heard);
             }
             if passed.jumped {
-                self.stale = true;
-                if self.fixed_step_s.is_none() {
-                    self.wish_s *= RESTART;
+                self.restart();
+            }
+        }
+        let until_s = merge_until(t);
+        if system.next_event_s() <= until_s {
+            match system.happen(until_s, &mut self.x0) {
+                Happened::Nothing => {}
+                Happened::Sampled => self.stale = true,
+                Happened::Jumped => {
+                    self.restart();
+                    self.timeline.send_images(t, 0);
                 }
             }
+        }
+    }
+
+    /// The right-hand side has jumped.
+    fn restart(&mut self) {
+        self.stale = true;
+        if self.fixed_step_s.is_none() {
+            self.wish_s *= RESTART;
         }
     }
 
@@ -243,7 +281,7 @@ impl<'a> Integrator<'a> {
         let offset = self.history.draft().0;
         self.hearing.look(&self.timeline, &self.history, t, (t, 1.0, offset));
         self.hearing.gather(&self.history, &self.x0, &mut self.heard);
-        system.rates(&self.x0, &self.heard, &mut self.k[0]);
+        system.rates(t, &self.x0, &self.heard, &mut self.k[0]);
         self.statistics.evaluations += 1;
         self.stale = false;
         match self.k[0].iter().position(|rate| !rate.is_finite()) {
@@ -297,7 +335,7 @@ impl<'a> Integrator<'a> {
                     gathered_at = tableau.c[s];
                 }
                 let state = if s == last { &self.x1 } else { &self.stage };
-                system.rates(state, &self.heard, &mut self.k[s]);
+                system.rates(stage_s, state, &self.heard, &mut self.k[s]);
             }
             self.statistics.evaluations += last as u64;
             if !any.draft {

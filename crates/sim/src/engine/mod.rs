@@ -17,4 +17,4 @@ mod tableau;
 mod timeline;
 
 pub(crate) use hearing::{Heard, Port};
-pub(crate) use integrator::{DelaySystem, Integrator, Step};
+pub(crate) use integrator::{DelaySystem, Happened, Integrator, Step};

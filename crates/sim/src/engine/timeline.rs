@@ -120,7 +120,7 @@ impl<'a> Timeline<'a> {
 
     /// Moves past everything that happens at `t_s`.
     pub(crate) fn pass(&mut self, t_s: f64) -> Passed {
-        let merge = t_s + MERGE_S.max(4.0 * (t_s.next_up() - t_s));
+        let merge = merge_until(t_s);
         let mut passed = Passed::default();
         while self.segment.end_s <= merge {
             match self.segments.next() {
@@ -150,7 +150,8 @@ impl<'a> Timeline<'a> {
         passed
     }
 
-    fn send_images(&mut self, t_s: f64, generation: u8) {
+    /// Notes when a break-point at `t_s` will be heard.
+    pub(crate) fn send_images(&mut self, t_s: f64, generation: u8) {
         let generation = generation + 1;
         let mut arrivals = std::mem::take(&mut self.arrivals);
         for (index, _) in &self.clocks {
@@ -166,6 +167,11 @@ impl<'a> Timeline<'a> {
         }
         self.arrivals = arrivals;
     }
+}
+
+/// What happens up to here happens at `t_s`.
+pub(crate) fn merge_until(t_s: f64) -> f64 {
+    t_s + MERGE_S.max(4.0 * (t_s.next_up() - t_s))
 }
 
 #[cfg(test)]
