@@ -59,6 +59,7 @@ fn setup(agents: Vec<AgentSetup>, exchange: Exchange, schedule: Schedule, delays
         exchange,
         time: TimeSpan { end_s, record_every_s: 0.01 },
         solver: Solver { method: Method::Adaptive { rtol: 1e-9, atol: 1e-10 }, ..Solver::default() },
+        control: None,
     }
 }
 

@@ -14,6 +14,7 @@
 
 extern crate alloc;
 
+pub mod agent;
 mod dispatch;
 mod error;
 mod gain;

@@ -81,6 +81,7 @@ fn ring(model: Model, n: usize, tolerance: f64) -> Setup {
             ledger: false,
             ..Solver::default()
         },
+        control: None,
     }
 }
 

@@ -173,6 +173,11 @@ impl Delay {
         }
     }
 
+    /// t − T(t), when what is heard at `t_s` was sent, by the formula of `piece`.
+    pub fn sent_on(&self, piece: DelayPiece, t_s: f64) -> f64 {
+        t_s - self.value_on(piece, t_s)
+    }
+
     /// T(t), from the right where it jumps.
     pub fn value(&self, t_s: f64) -> f64 {
         self.value_on(self.piece_at(t_s), t_s)

@@ -19,7 +19,7 @@ pub use closed_loop::SetupError;
 pub use network::Network;
 pub use recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal, Statistics};
 pub use setup::{
-    AgentSetup, Axis, AxisUnit, Exchange, Law, Method, ReferenceKind, RobotKind, RobotSetup, Setup, Solver, Start,
-    TimeSpan,
+    Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Law, Method, ReferenceKind, RobotKind, RobotSetup,
+    Sensors, Setup, Solver, Start, TimeSpan, VelocitySensor,
 };
 pub use simulate::simulate;

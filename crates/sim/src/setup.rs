@@ -22,6 +22,8 @@ pub struct Setup {
     pub time: TimeSpan,
     /// How to integrate.
     pub solver: Solver,
+    /// How the controllers sample; `None` when they work in continuous time, as in the paper.
+    pub control: Option<Control>,
 }
 
 /// Reference dynamics, see [`forwardstep_core::reference`].
@@ -187,6 +189,73 @@ pub struct TimeSpan {
     pub end_s: f64,
     /// Rows of the recording are this far apart; the last row is at `end_s`.
     pub record_every_s: f64,
+}
+
+/// Digital control: at every sample all agents measure, send, hear and compute, and hold the torque until the next.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Control {
+    /// Samples per second.
+    pub sample_hz: f64,
+    /// How long after the sample the torque changes, s; at most a period.
+    pub computation_delay_s: f64,
+    /// What the agents measure.
+    pub sensors: Sensors,
+    /// What the actuators can do, besides the limits of the robots if those are enforced.
+    pub actuators: Actuators,
+}
+
+/// What agents measure: the truth, then noise, then quantisation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensors {
+    /// Where velocities come from.
+    pub velocity: VelocitySensor,
+    /// Standard deviation of the noise of positions, rad or m.
+    pub position_noise: f64,
+    /// Standard deviation of the noise of velocities, rad/s or m/s; not used with [`VelocitySensor::Filtered`].
+    pub velocity_noise: f64,
+    /// Seed of the noise; every agent has a stream of its own.
+    pub seed: u64,
+    /// Step of the positions, rad or m; zero for none.
+    pub position_quantum: f64,
+    /// Step of the velocities, rad/s or m/s; zero for none; not used with [`VelocitySensor::Filtered`].
+    pub velocity_quantum: f64,
+}
+
+impl Default for Sensors {
+    /// Exact measurements.
+    fn default() -> Self {
+        Sensors {
+            velocity: VelocitySensor::Measured,
+            position_noise: 0.0,
+            velocity_noise: 0.0,
+            seed: 0,
+            position_quantum: 0.0,
+            velocity_quantum: 0.0,
+        }
+    }
+}
+
+/// Where velocities come from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum VelocitySensor {
+    /// They are measured.
+    Measured,
+    /// There are encoders only: see [`forwardstep_core::agent::VelocityFilter`].
+    Filtered {
+        /// Cut-off of the filter, Hz.
+        cut_off_hz: f64,
+    },
+}
+
+/// What actuators can do.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Actuators {
+    /// Largest torque of every axis, N m or N.
+    pub torque_limit: Option<Vec<f64>>,
+    /// Fastest change of the torque of every axis, N m/s or N/s.
+    pub torque_rate_limit: Option<Vec<f64>>,
+    /// Step of the torques, N m or N; zero for none.
+    pub torque_quantum: f64,
 }
 
 /// How to integrate.

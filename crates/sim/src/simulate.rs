@@ -5,7 +5,9 @@ use std::time::Instant;
 
 use crate::closed_loop::{ClosedLoop, SetupError};
 use crate::engine::{Integrator, Step};
+use crate::network::Network;
 use crate::recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal};
+use crate::schedule::Schedule;
 use crate::setup::Setup;
 
 /// Rows are made room for in chunks of this many.
@@ -24,7 +26,10 @@ pub fn simulate(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow
     let mut closed_loop = ClosedLoop::new(setup)?;
     let (ports, entries) = closed_loop.ports();
     let end_s = setup.time.end_s;
-    let mut integrator = Integrator::new(&setup.network, &setup.solver, end_s, closed_loop.start(), ports, entries);
+    // Messages of sampled controllers do not flow: nothing of the network enters the motion between two samples.
+    let silent = Network { agents: setup.agents.len(), schedule: Schedule::Fixed(Vec::new()), delays: Vec::new() };
+    let network = if setup.control.is_some() { &silent } else { &setup.network };
+    let mut integrator = Integrator::new(network, &setup.solver, end_s, closed_loop.start(), ports, entries);
     let mut recorder = Recorder::new(setup, &closed_loop);
 
     let ending = loop {
@@ -65,7 +70,7 @@ struct Recorder<'a> {
 }
 
 impl<'a> Recorder<'a> {
-    fn new(setup: &'a Setup, closed_loop: &ClosedLoop) -> Self {
+    fn new(setup: &'a Setup, closed_loop: &ClosedLoop<'_>) -> Self {
         let mut recording = Recording::default();
         let mut first_column = Vec::new();
         for (agent, signals) in closed_loop.signals(setup.agents.len()).into_iter().enumerate() {
@@ -80,7 +85,7 @@ impl<'a> Recorder<'a> {
     fn record(
         &mut self,
         integrator: &mut Integrator<'_>,
-        closed_loop: &mut ClosedLoop,
+        closed_loop: &mut ClosedLoop<'_>,
         step: Step,
     ) -> Option<Breakdown> {
         let end_s = self.setup.time.end_s;
@@ -100,7 +105,7 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    fn row(&mut self, integrator: &mut Integrator<'_>, closed_loop: &mut ClosedLoop, t_s: f64) {
+    fn row(&mut self, integrator: &mut Integrator<'_>, closed_loop: &mut ClosedLoop<'_>, t_s: f64) {
         if self.rows.is_multiple_of(ROWS_PER_CHUNK) {
             let left = (self.setup.time.end_s / self.setup.time.record_every_s) as usize + 2 - self.rows.min(1);
             let chunk = ROWS_PER_CHUNK.min(left.saturating_sub(self.rows) + 2);

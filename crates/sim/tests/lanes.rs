@@ -62,6 +62,7 @@ fn bits_of_the_first_two(agents: usize, order: usize) -> Vec<u64> {
         },
         time: TimeSpan { end_s: 3.0, record_every_s: 0.1 },
         solver: Solver { method: Method::Fixed { step_s: 0.01 }, ..Solver::default() },
+        control: None,
     };
     let outcome = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap();
     let columns = outcome.recording.columns.iter().filter(|column| column.agent < 2);

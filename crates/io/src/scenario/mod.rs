@@ -171,6 +171,7 @@ fn read(name: &str, source: &SourceText, folder: Option<&Path>) -> Result<Scenar
         network,
         time: TimeSpan { end_s, record_every_s },
         solver: solver(file.solver.as_ref())?,
+        control: None,
     };
     recording_fits(&setup, every.unwrap_or(&file.time.end_s))?;
     Ok(Scenario {

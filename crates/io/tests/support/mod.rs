@@ -76,6 +76,7 @@ pub fn setup(agents: Vec<AgentSetup>, end_s: f64, record_every_s: f64) -> Setup 
             min_step_s: 1e-12,
             ledger: true,
         },
+        control: None,
     }
 }
 

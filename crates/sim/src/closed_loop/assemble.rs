@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use forwardstep_core::agent::{Agent, FilterError, Limiter, LimiterError, VelocityFilter};
 use forwardstep_core::law::SlotineLi;
 use forwardstep_core::reference::{
     Backstepping, BacksteppingError, Consensus, Exchange as CoreExchange, Position, PositionVelocity, PureIntegral,
@@ -15,10 +16,12 @@ use thiserror::Error;
 
 use super::fleet::Member;
 use super::population::{Columns, Inputs, Population};
-use crate::engine::{DelaySystem, Heard, Port};
+use super::sampler::{Sampler, Sensor};
+use super::sampling::Sampling;
+use crate::engine::{DelaySystem, Happened, Heard, Port};
 use crate::network::NetworkError;
 use crate::recording::Signal;
-use crate::setup::{AgentSetup, Exchange, Law, Method, ReferenceKind, RobotKind, Setup};
+use crate::setup::{AgentSetup, Control, Exchange, Law, Method, ReferenceKind, RobotKind, Setup, VelocitySensor};
 
 /// Why a setup cannot be simulated.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -96,6 +99,27 @@ pub enum SetupError {
         /// The axis.
         axis: String,
     },
+    /// A torque limit of one agent.
+    #[error("agent `{agent}`: {error}")]
+    Limiter {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: LimiterError,
+    },
+    /// The filter that gives velocities.
+    #[error(transparent)]
+    VelocityFilter(FilterError),
+    /// A number of the digital control that makes no sense.
+    #[error("{what} is {value}, but {requirement}")]
+    Control {
+        /// What it is.
+        what: &'static str,
+        /// The value.
+        value: f64,
+        /// What it must be.
+        requirement: &'static str,
+    },
     /// A time, tolerance or step that is not positive.
     #[error("{what} is {value}, but must be positive and finite")]
     NotPositive {
@@ -110,23 +134,33 @@ pub enum SetupError {
 const LANES_FROM: usize = 3;
 
 /// All populations and where their blocks stand.
-pub(crate) struct ClosedLoop {
+pub(crate) struct ClosedLoop<'a> {
     blocks: Vec<Block>,
     ports: Vec<Port>,
     entries: usize,
     start: Vec<f64>,
+    /// When control is digital.
+    sampling: Option<Sampling<'a>>,
 }
 
-struct Block {
-    columns: Box<dyn Columns>,
-    state: Range<usize>,
-    degree: Range<usize>,
-    sums: Range<usize>,
+/// One population and its part of everything.
+pub(super) struct Block {
+    pub(super) columns: Box<dyn Columns>,
+    pub(super) state: Range<usize>,
+    pub(super) degree: Range<usize>,
+    pub(super) sums: Range<usize>,
 }
 
-impl ClosedLoop {
+impl Block {
+    /// The population's part of what is heard.
+    pub(super) fn inputs<'a>(&self, heard: &'a Heard) -> Inputs<'a> {
+        Inputs { degree: &heard.degree[self.degree.clone()], sums: &heard.sums[self.sums.clone()], external: None }
+    }
+}
+
+impl<'a> ClosedLoop<'a> {
     /// Checks a setup and builds its closed loop.
-    pub(crate) fn new(setup: &Setup) -> Result<Self, SetupError> {
+    pub(crate) fn new(setup: &'a Setup) -> Result<Self, SetupError> {
         check(setup)?;
         match setup.exchange {
             Exchange::Position => Self::with_exchange::<Position>(setup),
@@ -134,7 +168,7 @@ impl ClosedLoop {
         }
     }
 
-    fn with_exchange<X: CoreExchange>(setup: &Setup) -> Result<Self, SetupError> {
+    fn with_exchange<X: CoreExchange>(setup: &'a Setup) -> Result<Self, SetupError> {
         let axes = setup.agents[0].robot.axes.len();
         let entries = X::CHANNELS * axes;
         let mut closed_loop = ClosedLoop {
@@ -142,6 +176,7 @@ impl ClosedLoop {
             ports: vec![Port { state: 0, entry: 0, degree: 0, stride: 0 }; setup.agents.len()],
             entries,
             start: Vec::new(),
+            sampling: None,
         };
         let mut placed = 0;
         for group in populations(&setup.agents) {
@@ -162,6 +197,10 @@ impl ClosedLoop {
             placed += n;
         }
         closed_loop.start_references(setup)?;
+        if let Some(control) = &setup.control {
+            let ClosedLoop { ports, start, .. } = &closed_loop;
+            closed_loop.sampling = Some(Sampling::new(setup, control, ports.clone(), entries, start));
+        }
         Ok(closed_loop)
     }
 
@@ -220,9 +259,9 @@ impl ClosedLoop {
         self.start.clone()
     }
 
-    /// Where messages stand, and how many numbers one has.
+    /// Where the messages that flow stand, and how many numbers one has: none when control is digital.
     pub(crate) fn ports(&self) -> (Vec<Port>, usize) {
-        (self.ports.clone(), self.entries)
+        (self.ports.clone(), if self.sampling.is_some() { 0 } else { self.entries })
     }
 
     /// Agent, signal and axis of a state.
@@ -246,26 +285,31 @@ impl ClosedLoop {
 
     /// Hands every agent's signals at one instant to `write`.
     pub(crate) fn record(&mut self, _t_s: f64, x: &[f64], heard: &Heard, mut write: impl FnMut(usize, &[f64])) {
+        let heard = self.sampling.as_ref().map_or(heard, Sampling::heard);
         for block in &mut self.blocks {
-            let inputs = Inputs {
-                degree: &heard.degree[block.degree.clone()],
-                sums: &heard.sums[block.sums.clone()],
-                external: None,
-            };
+            let inputs = block.inputs(heard);
             block.columns.record(&x[block.state.clone()], inputs, &mut write);
         }
     }
 }
 
-impl DelaySystem for ClosedLoop {
+impl DelaySystem for ClosedLoop<'_> {
     fn rates(&mut self, _t_s: f64, x: &[f64], heard: &Heard, dx: &mut [f64]) {
+        let heard = self.sampling.as_ref().map_or(heard, Sampling::heard);
         for block in &mut self.blocks {
-            let inputs = Inputs {
-                degree: &heard.degree[block.degree.clone()],
-                sums: &heard.sums[block.sums.clone()],
-                external: None,
-            };
+            let inputs = block.inputs(heard);
             block.columns.rates(&x[block.state.clone()], inputs, &mut dx[block.state.clone()]);
+        }
+    }
+
+    fn next_event_s(&self) -> f64 {
+        self.sampling.as_ref().map_or(f64::INFINITY, Sampling::next_s)
+    }
+
+    fn happen(&mut self, until_s: f64, x: &mut [f64]) -> Happened {
+        match &mut self.sampling {
+            Some(sampling) => sampling.happen(until_s, &mut self.blocks, x),
+            None => Happened::Nothing,
         }
     }
 }
@@ -305,7 +349,7 @@ fn population<X: CoreExchange>(setup: &Setup, group: &[usize]) -> Result<Box<dyn
 
 fn boxed<R, X>(robot: R, setup: &Setup, group: &[usize]) -> Result<Box<dyn Columns>, SetupError>
 where
-    R: Lagrangian<f64> + Lagrangian<Lanes<8>> + 'static,
+    R: Lagrangian<f64> + Lagrangian<Lanes<8>> + Clone + 'static,
     X: CoreExchange,
 {
     let mut members = Vec::new();
@@ -313,32 +357,95 @@ where
         members.push(member(&robot, &setup.agents[agent], agent)?);
     }
     let first = &setup.agents[group[0]];
-    let ledger = setup.solver.ledger;
-    let designs = || group.iter().map(|&agent| &setup.agents[agent]).map(|a| (&a.roots_per_s[..], a.manipulability));
+    let design = |agent: usize| (&setup.agents[agent].roots_per_s[..], setup.agents[agent].manipulability);
     let roots = |error| SetupError::Roots { agent: first.name.clone(), error };
-    Ok(match setup.reference {
-        ReferenceKind::Consensus => columns(robot, members, Consensus::<X>::new(designs()).map_err(roots)?, ledger),
-        ReferenceKind::PureIntegral => {
-            columns(robot, members, PureIntegral::<X>::new(designs()).map_err(roots)?, ledger)
-        }
-        ReferenceKind::Backstepping { filter_s, acceleration_limit } => {
+    match setup.reference {
+        ReferenceKind::Consensus => columns(robot, members, setup, |group| {
+            Consensus::<X>::new(group.iter().map(|&agent| design(agent))).map_err(roots)
+        }),
+        ReferenceKind::PureIntegral => columns(robot, members, setup, |group| {
+            PureIntegral::<X>::new(group.iter().map(|&agent| design(agent))).map_err(roots)
+        }),
+        ReferenceKind::Backstepping { filter_s, acceleration_limit } => columns(robot, members, setup, |group| {
             let limit = acceleration_limit.unwrap_or(f64::INFINITY);
-            columns(robot, members, Backstepping::new(group.iter().map(|_| (filter_s, limit)))?, ledger)
+            Ok(Backstepping::new(group.iter().map(|_| (filter_s, limit)))?)
+        }),
+    }
+}
+
+/// A population with the reference dynamics that `reference` makes for a group of agents; under digital control every
+/// agent has its own.
+fn columns<R, F>(
+    robot: R,
+    members: Vec<Member>,
+    setup: &Setup,
+    reference: impl Fn(&[usize]) -> Result<F, SetupError>,
+) -> Result<Box<dyn Columns>, SetupError>
+where
+    R: Lagrangian<f64> + Lagrangian<Lanes<8>> + Clone + 'static,
+    F: Reference,
+{
+    let group: Vec<usize> = members.iter().map(|member| member.agent).collect();
+    let sampler = match &setup.control {
+        None => None,
+        Some(control) => {
+            let (mut agents, mut sensors) = (Vec::new(), Vec::new());
+            for member in &members {
+                agents.push(digital(&robot, member, reference(&[member.agent])?, setup, control)?);
+                sensors.push(sensor(member.agent, setup, control)?);
+            }
+            Some(Sampler::new(agents, sensors, control, setup.agents[group[0]].robot.axes.len()))
         }
+    };
+    let reference = reference(&group)?;
+    // What a held torque does is not what the ledger balances.
+    let ledger = setup.solver.ledger && sampler.is_none();
+    // Eight lanes cost about as much as two or three robots one at a time, so idle lanes pay from three robots on.
+    Ok(if members.len() < LANES_FROM {
+        Box::new(Population::<R, F, f64>::new(robot, members, reference, sampler, ledger))
+    } else {
+        Box::new(Population::<R, F, Lanes<8>>::new(robot, members, reference, sampler, ledger))
     })
 }
 
-fn columns<R, F>(robot: R, members: Vec<Member>, reference: F, ledger: bool) -> Box<dyn Columns>
-where
-    R: Lagrangian<f64> + Lagrangian<Lanes<8>> + 'static,
-    F: Reference,
-{
-    // Eight lanes cost about as much as two or three robots one at a time, so idle lanes pay from three robots on.
-    if members.len() < LANES_FROM {
-        Box::new(Population::<R, F, f64>::new(robot, members, reference, ledger))
-    } else {
-        Box::new(Population::<R, F, Lanes<8>>::new(robot, members, reference, ledger))
+/// The sampled controller of one member.
+fn digital<R: Lagrangian<f64> + Clone, F: Reference>(
+    robot: &R,
+    member: &Member,
+    reference: F,
+    setup: &Setup,
+    control: &Control,
+) -> Result<Agent<R, F>, SetupError> {
+    let agent = &setup.agents[member.agent];
+    let name = || agent.name.clone();
+    let axes = agent.robot.axes.len();
+    let unlimited = || vec![f64::INFINITY; axes];
+    let mut limit = control.actuators.torque_limit.clone().unwrap_or_else(unlimited);
+    for (limit, effort) in limit.iter_mut().zip(member.effort_limits.iter().flatten()) {
+        *limit = limit.min(*effort);
     }
+    let rate = control.actuators.torque_rate_limit.clone().unwrap_or_else(unlimited);
+    for (what, values) in [("the torque limits", &limit), ("the torque rate limits", &rate)] {
+        LengthError::check(what, axes, values.len()).map_err(|error| SetupError::Length { agent: name(), error })?;
+    }
+    let limiter = Limiter::new(limit, rate).map_err(|error| SetupError::Limiter { agent: name(), error })?;
+    let theta_hat = match &agent.law {
+        Law::Adaptive { estimate_start, .. } => estimate_start.clone(),
+        Law::Known { .. } => agent.robot.theta.clone(),
+    };
+    Agent::new(robot.clone(), reference, member.law.clone(), theta_hat, limiter)
+        .map_err(|error| SetupError::Length { agent: name(), error })
+}
+
+fn sensor(agent: usize, setup: &Setup, control: &Control) -> Result<Sensor, SetupError> {
+    let filter = match control.sensors.velocity {
+        VelocitySensor::Measured => None,
+        VelocitySensor::Filtered { cut_off_hz } => Some(
+            VelocityFilter::new(core::f64::consts::TAU * cut_off_hz, setup.agents[agent].robot.axes.len())
+                .map_err(SetupError::VelocityFilter)?,
+        ),
+    };
+    Ok(Sensor::new(control.sensors, agent, filter))
 }
 
 fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Result<Member, SetupError> {
@@ -420,6 +527,7 @@ fn check(setup: &Setup) -> Result<(), SetupError> {
         }
         Method::Fixed { step_s } => positive("the step", step_s)?,
     }
+    setup.control.as_ref().map_or(Ok(()), check_control)?;
     if matches!(setup.reference, ReferenceKind::Backstepping { .. }) && setup.exchange != Exchange::Position {
         return Err(SetupError::BacksteppingExchange);
     }
@@ -427,6 +535,29 @@ fn check(setup: &Setup) -> Result<(), SetupError> {
     let axes = first.robot.axes.len();
     for agent in &setup.agents {
         check_agent(agent, first, axes, setup.reference.free_derivatives(agent))?;
+    }
+    Ok(())
+}
+
+fn check_control(control: &Control) -> Result<(), SetupError> {
+    let wrong = |what, value, requirement| Err(SetupError::Control { what, value, requirement });
+    let Control { sample_hz, computation_delay_s, sensors, actuators } = control;
+    if !(*sample_hz > 0.0 && sample_hz.is_finite()) {
+        return wrong("the sample rate", *sample_hz, "must be positive and finite");
+    }
+    if !(*computation_delay_s >= 0.0 && *computation_delay_s <= 1.0 / sample_hz) {
+        return wrong("the computation delay", *computation_delay_s, "must be from 0 to one period");
+    }
+    for (what, value) in [
+        ("the noise of positions", sensors.position_noise),
+        ("the noise of velocities", sensors.velocity_noise),
+        ("the step of positions", sensors.position_quantum),
+        ("the step of velocities", sensors.velocity_quantum),
+        ("the step of torques", actuators.torque_quantum),
+    ] {
+        if !(value >= 0.0 && value.is_finite()) {
+            return wrong(what, value, "must be finite and not negative");
+        }
     }
     Ok(())
 }

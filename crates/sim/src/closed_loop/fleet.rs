@@ -100,29 +100,36 @@ impl<R: Lagrangian<S>, S: Packed> Fleet<R, S> {
         self.squads[squad].first
     }
 
-    /// s, τ, Yᵀs and q̈ of one squad into the working memory and, if there is a `dx`, the rates of q̇, ϑ̂ and the ledger
-    /// into it. z and ż are blocks of their own because they are states for some references and not for others;
-    /// `external` is the block of what acts from outside, if anything does.
+    /// s, τ, q̈ (and Yᵀs, unless the torque is held) of one squad into the working memory and, if there is a `dx`, the rates
+    /// of q̇, ϑ̂ and the ledger into it.
     pub(crate) fn act(
         &mut self,
         squad: usize,
         x: &[f64],
-        z: &[f64],
-        dz: &[f64],
-        external: Option<&[f64]>,
+        drive: Drive<'_>,
         dx: Option<&mut [f64]>,
     ) -> Result<(), LengthError> {
-        dispatch(Act { fleet: self, squad, x, z, dz, external, dx })
+        dispatch(Act { fleet: self, squad, x, drive, dx })
     }
+}
+
+/// What moves a fleet at one instant, as blocks of columns.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Drive<'a> {
+    /// z and ż, which are states for some references and not for others.
+    pub(crate) z: &'a [f64],
+    pub(crate) dz: &'a [f64],
+    /// The torque that sampled controllers hold; without one the law gives the torque of this instant.
+    pub(crate) held: Option<&'a [f64]>,
+    /// What acts from outside, if anything does.
+    pub(crate) external: Option<&'a [f64]>,
 }
 
 struct Act<'a, R: Lagrangian<S>, S: Packed> {
     fleet: &'a mut Fleet<R, S>,
     squad: usize,
     x: &'a [f64],
-    z: &'a [f64],
-    dz: &'a [f64],
-    external: Option<&'a [f64]>,
+    drive: Drive<'a>,
     dx: Option<&'a mut [f64]>,
 }
 
@@ -131,15 +138,19 @@ impl<R: Lagrangian<S>, S: Packed> Kernel for Act<'_, R, S> {
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        let Fleet { robot, layout, squads, work } = self.fleet;
+        let Fleet { robot, layout: l, squads, work } = self.fleet;
         let squad = &squads[self.squad];
-        work.read(*layout, squad.first, self.x, self.z, self.dz);
-        if let Some(external) = self.external {
-            take(*layout, squad.first, external, &mut work.external);
+        work.read(*l, squad.first, self.x, self.drive);
+        match self.drive.held {
+            None => squad.track(*l, robot, work)?,
+            Some(torque) => work.hold(*l, squad.first, torque),
         }
-        squad.act(*layout, robot, work, self.external.is_some())?;
+        squad.accelerate(robot, work, self.drive.external.is_some())?;
         if let Some(dx) = self.dx {
-            work.write(*layout, squad, dx);
+            give(*l, squad.first, &work.ddq, &mut dx[l.dq..]);
+            if self.drive.held.is_none() {
+                work.write(*l, squad, dx);
+            }
         }
         Ok(())
     }
@@ -200,15 +211,9 @@ impl<S: Packed> Squad<S> {
         }
     }
 
-    /// s, τ, Yᵀs and q̈ of the squad whose q, q̇, z, ż and ϑ̂ are in the working memory.
+    /// s, τ and Yᵀs of the squad whose q, q̇, z, ż and ϑ̂ are in the working memory.
     #[inline(always)]
-    fn act<R: Lagrangian<S>>(
-        &self,
-        l: Layout,
-        robot: &R,
-        w: &mut Work<S, R::Scratch>,
-        pushed: bool,
-    ) -> Result<(), LengthError> {
+    fn track<R: Lagrangian<S>>(&self, l: Layout, robot: &R, w: &mut Work<S, R::Scratch>) -> Result<(), LengthError> {
         let estimate = if l.adaptive { &w.theta_hat } else { &self.theta };
         let motion = TwoVelocity { q: &w.q, dq: &w.dq, z: &w.z, dz: &w.dz };
         let out = SlotineLiOutput { s: &mut w.s, tau: &mut w.tau, yt_s: &mut w.yt_s };
@@ -219,6 +224,17 @@ impl<S: Packed> Squad<S> {
                 *tau = tau.saturate(*limit);
             }
         }
+        Ok(())
+    }
+
+    /// q̈ under the torque that is applied and what acts from outside.
+    #[inline(always)]
+    fn accelerate<R: Lagrangian<S>>(
+        &self,
+        robot: &R,
+        w: &mut Work<S, R::Scratch>,
+        pushed: bool,
+    ) -> Result<(), LengthError> {
         w.net.copy_from_slice(&w.applied);
         if pushed {
             for (net, external) in w.net.iter_mut().zip(&w.external) {
@@ -245,20 +261,31 @@ impl<S: Packed> Squad<S> {
 impl<S: Packed, T> Work<S, T> {
     /// Loads the members from `first` on.
     #[inline(always)]
-    fn read(&mut self, l: Layout, first: usize, x: &[f64], z: &[f64], dz: &[f64]) {
+    fn read(&mut self, l: Layout, first: usize, x: &[f64], drive: Drive<'_>) {
         take(l, first, x, &mut self.q);
         take(l, first, &x[l.dq..], &mut self.dq);
-        take(l, first, z, &mut self.z);
-        take(l, first, dz, &mut self.dz);
+        take(l, first, drive.z, &mut self.z);
+        take(l, first, drive.dz, &mut self.dz);
         if l.adaptive {
             take(l, first, &x[l.theta_hat..], &mut self.theta_hat);
         }
+        if let Some(external) = drive.external {
+            take(l, first, external, &mut self.external);
+        }
     }
 
-    /// Stores q̈, ϑ̂' and the dissipation of `squad`; needs what [`Squad::act`] left.
+    /// Takes the torque as it is held, and s as it is now.
+    #[inline(always)]
+    fn hold(&mut self, l: Layout, first: usize, torque: &[f64]) {
+        take(l, first, torque, &mut self.applied);
+        for k in 0..l.m {
+            self.s[k] = self.dq[k] - self.z[k];
+        }
+    }
+
+    /// Stores ϑ̂' and the dissipation of `squad`; needs what [`Squad::track`] left.
     #[inline(always)]
     fn write(&mut self, l: Layout, squad: &Squad<S>, dx: &mut [f64]) {
-        give(l, squad.first, &self.ddq, &mut dx[l.dq..]);
         if l.adaptive {
             squad.law.adaptation_rate(&self.yt_s, &mut self.d_theta_hat);
             give(l, squad.first, &self.d_theta_hat, &mut dx[l.theta_hat..]);

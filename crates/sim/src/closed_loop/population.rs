@@ -9,12 +9,15 @@
 //! (v = ℓ and z, ż, …, z^(ℓ−1) for the consensus family), and its right-hand side is computed in stages: heard → reference
 //! dynamics (which give z and ż) → τ and Yᵀs → q̈ → rates.
 //! There is no algebraic loop, since z̈ never enters τ.
+//!
+//! Under digital control q and q̇ flow and everything else stands still between two samples, when it jumps.
 
 use forwardstep_core::reference::{Exchange, Heard, Measured, Reference, ReferenceOut};
 use forwardstep_core::robot::Lagrangian;
 use forwardstep_core::{Kernel, LengthError, Packed, dispatch};
 
-use super::fleet::{Fleet, Layout, Member};
+use super::fleet::{Drive, Fleet, Layout, Member};
+use super::sampler::Sampler;
 use crate::recording::Signal;
 
 /// What reaches a population from outside at one instant.
@@ -40,6 +43,13 @@ pub(crate) trait Columns {
     fn rates(&mut self, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]);
     /// Hands the signals of every member in turn to `write`, in the order of [`Columns::signals`].
     fn record(&mut self, x: &[f64], inputs: Inputs<'_>, write: &mut dyn FnMut(usize, &[f64]));
+    /// Measures the state `x` and puts everybody's message into `sent`, laid out like the sums. Does nothing, like the
+    /// two below, when the controllers work in continuous time.
+    fn sense(&mut self, x: &[f64], sent: &mut [f64]);
+    /// Steps the controllers at the sample of time `now_s` and puts their new state into `x`.
+    fn command(&mut self, now_s: f64, inputs: Inputs<'_>, x: &mut [f64]);
+    /// Applies the torques that were commanded last.
+    fn apply(&mut self);
     /// Signals and axes of one member, in the order in which they are recorded.
     fn signals(&self) -> Vec<(Signal, usize)>;
     /// Which member, signal and axis a state of the block is.
@@ -52,6 +62,7 @@ pub(crate) struct Population<R: Lagrangian<f64> + Lagrangian<S>, F: Reference, S
     reference: F,
     fleet: Fleet<R, S>,
     output: Output,
+    sampler: Option<Sampler<R, F>>,
     record: RecordWork<<R as Lagrangian<f64>>::Scratch>,
 }
 
@@ -78,8 +89,14 @@ where
     F: Reference,
     S: Packed,
 {
-    /// `members` share the robot and the reference dynamics; all adapt or none.
-    pub(crate) fn new(robot: R, members: Vec<Member>, reference: F, ledger_on: bool) -> Self {
+    /// `members` share the robot and the reference dynamics; all adapt or none. With a `sampler` control is digital.
+    pub(crate) fn new(
+        robot: R,
+        members: Vec<Member>,
+        reference: F,
+        sampler: Option<Sampler<R, F>>,
+        ledger_on: bool,
+    ) -> Self {
         let (m, p) = (Lagrangian::<f64>::dof(&robot), Lagrangian::<f64>::parameter_count(&robot));
         let adaptive = members.iter().all(|member| member.law.adaptation.is_some());
         let layout = Layout::new([members.len(), m, p, reference.vectors()], adaptive, ledger_on);
@@ -94,7 +111,7 @@ where
         };
         let output = Output { z: vec![0.0; layout.block()], dz: vec![0.0; layout.block()] };
         let fleet = Fleet::new(robot, &members, layout);
-        let mut population = Population { members, reference, fleet, output, record };
+        let mut population = Population { members, reference, fleet, output, sampler, record };
         population.record.row = vec![0.0; population.signals().len()];
         population
     }
@@ -105,10 +122,19 @@ where
         LengthError::check("state", l.len, x.len())?;
         LengthError::check("rate", l.len, dx.len())?;
         dx[..l.block()].copy_from_slice(&x[l.dq..l.reference]);
-        let Output { z, dz } = &mut self.output;
-        let out = ReferenceOut { z, dz, d_state: &mut dx[l.reference..l.theta_hat] };
-        evaluate(&self.reference, l, x, inputs, out)?;
-        (0..self.fleet.squads()).try_for_each(|squad| self.fleet.act(squad, x, z, dz, inputs.external, Some(&mut *dx)))
+        let drive = match &self.sampler {
+            Some(sampler) => {
+                dx[l.reference..].fill(0.0);
+                sampler.drive(inputs.external)
+            }
+            None => {
+                let Output { z, dz } = &mut self.output;
+                let out = ReferenceOut { z, dz, d_state: &mut dx[l.reference..l.theta_hat] };
+                evaluate(&self.reference, l, x, inputs, out)?;
+                Drive { z, dz, held: None, external: inputs.external }
+            }
+        };
+        (0..self.fleet.squads()).try_for_each(|squad| self.fleet.act(squad, x, drive, Some(&mut *dx)))
     }
 
     fn try_record(
@@ -118,11 +144,19 @@ where
         write: &mut dyn FnMut(usize, &[f64]),
     ) -> Result<(), LengthError> {
         let l = self.fleet.layout;
-        let out =
-            ReferenceOut { z: &mut self.output.z, dz: &mut self.output.dz, d_state: &mut self.record.d_reference };
-        evaluate(&self.reference, l, x, inputs, out)?;
         for squad in 0..self.fleet.squads() {
-            self.fleet.act(squad, x, &self.output.z, &self.output.dz, inputs.external, None)?;
+            let drive = match &self.sampler {
+                Some(sampler) => sampler.drive(inputs.external),
+                None => {
+                    let Output { z, dz } = &mut self.output;
+                    if squad == 0 {
+                        let out = ReferenceOut { z, dz, d_state: &mut self.record.d_reference };
+                        evaluate(&self.reference, l, x, inputs, out)?;
+                    }
+                    Drive { z, dz, held: None, external: inputs.external }
+                }
+            };
+            self.fleet.act(squad, x, drive, None)?;
             let first = self.fleet.first(squad);
             for lane in 0..S::WIDTH.min(l.n - first) {
                 self.fill_row(first + lane, lane, x)?;
@@ -247,6 +281,28 @@ where
     fn record(&mut self, x: &[f64], inputs: Inputs<'_>, write: &mut dyn FnMut(usize, &[f64])) {
         let checked = self.try_record(x, inputs, write);
         debug_assert_eq!(checked, Ok(()), "lengths are fixed when the population is built");
+    }
+
+    fn sense(&mut self, x: &[f64], sent: &mut [f64]) {
+        let l = self.fleet.layout;
+        if let Some(sampler) = &mut self.sampler {
+            sampler.sense(&x[..l.dq], &x[l.dq..l.reference], sent);
+        }
+    }
+
+    fn command(&mut self, now_s: f64, inputs: Inputs<'_>, x: &mut [f64]) {
+        let l = self.fleet.layout;
+        let (reference, rest) = x[l.reference..].split_at_mut(l.theta_hat - l.reference);
+        let theta_hat = if l.adaptive { &mut rest[..l.ledger - l.theta_hat] } else { &mut [] };
+        if let Some(sampler) = &mut self.sampler {
+            sampler.command(now_s, inputs, reference, theta_hat);
+        }
+    }
+
+    fn apply(&mut self) {
+        if let Some(sampler) = &mut self.sampler {
+            sampler.apply();
+        }
     }
 
     fn signals(&self) -> Vec<(Signal, usize)> {

@@ -61,6 +61,10 @@ enum Read {
         offset: usize,
         basis: [f64; 4],
     },
+    /// A message as it was sent.
+    Sample {
+        offset: usize,
+    },
 }
 
 /// Which messages an instant needs that are not history yet.
@@ -166,9 +170,21 @@ impl Hearing {
         needs
     }
 
+    /// Looks up where every message comes from at the sample at `t_s`; `place` says where what was sent by then stands.
+    pub(crate) fn look_at_samples(&mut self, timeline: &Timeline<'_>, t_s: f64, place: impl Fn(f64) -> usize) {
+        for source in &mut self.sources {
+            source.read = Read::Sample { offset: place(timeline.sent_s(source.clock, t_s)) };
+        }
+    }
+
     /// Adds up what was looked up; `x` is the state at that instant.
     pub(crate) fn gather(&self, history: &History, x: &[f64], heard: &mut Heard) {
-        dispatch(Gather { hearing: self, data: history.data(), x, sums: &mut heard.sums });
+        self.gather_from(history.data(), x, heard);
+    }
+
+    /// Adds up what was looked up in `data`.
+    pub(crate) fn gather_from(&self, data: &[f64], x: &[f64], heard: &mut Heard) {
+        dispatch(Gather { hearing: self, data, x, sums: &mut heard.sums });
     }
 }
 
@@ -197,6 +213,12 @@ impl Kernel for Gather<'_> {
                         let value = evaluate([r1[at], r2[at], r3[at], r4[at], r5[at]], basis);
                         let sum = &mut sums[to.entry + c * to.stride];
                         *sum = fma(w, value, *sum);
+                    }
+                }
+                Read::Sample { offset } => {
+                    for c in 0..hearing.entries {
+                        let sum = &mut sums[to.entry + c * to.stride];
+                        *sum = fma(w, data[offset + from.entry + c * from.stride], *sum);
                     }
                 }
                 Read::Now => {

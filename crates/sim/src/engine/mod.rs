@@ -8,13 +8,16 @@
 //! - `hearing`: the weighted sums of delayed messages at one instant.
 //! - `kernels`: loops over columns.
 //! - `integrator`: the stepping itself.
+//! - `radio`: what is sent and heard at the samples of digital controllers.
 
 mod hearing;
 mod history;
 mod integrator;
 mod kernels;
+mod radio;
 mod tableau;
 mod timeline;
 
 pub(crate) use hearing::{Heard, Port};
 pub(crate) use integrator::{DelaySystem, Happened, Integrator, Step};
+pub(crate) use radio::Radio;

@@ -84,7 +84,9 @@ impl<'a> Timeline<'a> {
             end_s,
             arrivals: Vec::new(),
         };
-        timeline.send_images(0.0, 0);
+        if generations > 0 {
+            timeline.send_images(0.0, 0);
+        }
         timeline
     }
 
@@ -98,6 +100,12 @@ impl<'a> Timeline<'a> {
     pub(crate) fn delay_s(&self, clock: usize, t_s: f64) -> f64 {
         let (index, piece) = self.clocks[clock];
         self.network.delays[index].value_on(piece, t_s)
+    }
+
+    /// When what is heard at `t_s` through one delay was sent, by the formula in force.
+    pub(crate) fn sent_s(&self, clock: usize, t_s: f64) -> f64 {
+        let (index, piece) = self.clocks[clock];
+        self.network.delays[index].sent_on(piece, t_s)
     }
 
     /// The clock of a delay, by the delay's index.

@@ -132,6 +132,7 @@ pub fn setup(case: &Case) -> Setup {
         network: Network { agents: case.agents.len(), schedule, delays },
         time: TimeSpan { end_s: case.end_s, record_every_s: 1.0 },
         solver: Solver::default(),
+        control: None,
     }
 }
 

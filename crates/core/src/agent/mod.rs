@@ -1,0 +1,319 @@
+//! A controller that samples: the same reference dynamics and the same law, stepped.
+//!
+//! Between two samples nothing is measured and nothing is heard, so the inputs are held. Over such a period of length h
+//!
+//! ```text
+//! reference state      ẋ = A x + b with b held: stepped exactly            (`hold`)
+//! estimate             ϑ̂ ← ϑ̂ − h Γ Yᵀs                                      (Euler)
+//! torque               computed once from the sample, then held
+//! ```
+//!
+//! As h → 0 the loop becomes the continuous one, with an error proportional to h. An [`Agent`] knows no clock: it is told the
+//! time of its sample. The simulator steps this very struct, so what runs there is what runs on a robot.
+
+mod hold;
+mod limiter;
+mod velocity;
+
+pub use limiter::{Limiter, LimiterError};
+pub use velocity::{FilterError, VelocityFilter};
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use thiserror::Error;
+
+use crate::law::{SlotineLi, SlotineLiOutput};
+use crate::reference::{Exchange, Heard, Measured, Reference, ReferenceOut};
+use crate::robot::{Lagrangian, TwoVelocity};
+use crate::{Kernel, LengthError, dispatch};
+use hold::Hold;
+
+/// What an agent knows of its neighbours at one instant: the sums that a linear design needs.
+///
+/// A message of an agent with m axes is [`Exchange::CHANNELS`] · m numbers: its positions, then its velocities if they are
+/// sent.
+#[derive(Clone, Copy, Debug)]
+pub struct Inbox<'a> {
+    /// Σ_j w_ij.
+    pub degree: f64,
+    /// Σ_j w_ij · message_j, entry by entry.
+    pub sums: &'a [f64],
+}
+
+/// What an agent asks of its robot until the next sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Command<'a> {
+    /// τ, N m or N per axis, within the limits.
+    pub tau: &'a [f64],
+    /// The reference velocity z.
+    pub z: &'a [f64],
+    /// The reference acceleration ż.
+    pub dz: &'a [f64],
+    /// s = q̇ − z.
+    pub s: &'a [f64],
+}
+
+/// Why an agent could not step. Its state is what it was.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum StepError {
+    /// A slice of the wrong length.
+    #[error(transparent)]
+    Length(#[from] LengthError),
+    /// Time did not move on.
+    #[error("the sample at {now_s} s does not come after the one at {last_s} s")]
+    Time {
+        /// The time handed over, s.
+        now_s: f64,
+        /// The time of the sample before, s.
+        last_s: f64,
+    },
+    /// A measurement or a message that is not a number.
+    #[error("{what} has the entry {value}, which is not a finite number")]
+    NotFinite {
+        /// Which one.
+        what: &'static str,
+        /// The entry.
+        value: f64,
+    },
+}
+
+/// One robot's controller: reference dynamics and tracking law, stepped at samples.
+///
+/// **Source**: (5), (6), (7) with any [`Reference`] for one agent.
+/// **Measures**: q, q̇ (see [`VelocityFilter`] when there are only encoders). **Transmits**: what the reference says.
+/// **Requires**: a period h with h · λ_max(M⁻¹K) well below 2, beyond which the held damping itself is unstable.
+/// **Guarantees**: no allocation and no panic in [`Agent::step`]; the continuous law in the limit of short periods.
+/// Nothing that the paper states for a fixed period.
+///
+/// ```
+/// use forwardstep_core::agent::{Agent, Inbox, Limiter};
+/// use forwardstep_core::law::SlotineLi;
+/// use forwardstep_core::reference::{Consensus, Measured, Position};
+/// use forwardstep_core::robot::PointMass;
+/// use forwardstep_core::Gain;
+///
+/// let reference = Consensus::<Position>::new([(&[1.0, 2.0][..], 0.0)]).expect("two positive roots");
+/// let damping = Gain::Scalar(8.0).resolve(1, &[]).expect("a positive gain");
+/// let law = SlotineLi { damping, adaptation: None };
+/// let mut agent = Agent::new(PointMass { dimension: 1 }, reference, law, vec![2.0], Limiter::none(1))?;
+///
+/// // One neighbour stands at 1 m and counts 0.5. The agent is at rest at 0 m, and nothing jumps.
+/// let inbox = Inbox { degree: 0.5, sums: &[0.5 * 1.0] };
+/// let at_rest = Measured { q: &[0.0], dq: &[0.0] };
+/// assert_eq!(agent.step(0.0, at_rest, inbox)?.tau, [0.0]);
+/// // A period later it has begun to accelerate towards the neighbour.
+/// assert!(agent.step(0.001, at_rest, inbox)?.tau[0] > 0.0);
+/// # Ok::<(), forwardstep_core::agent::StepError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Agent<R: Lagrangian<f64>, F> {
+    robot: R,
+    scratch: R::Scratch,
+    reference: F,
+    law: SlotineLi,
+    limiter: Limiter,
+    /// Time of the last sample, s.
+    last_s: Option<f64>,
+    /// The reference state was set from outside.
+    started: bool,
+    state: Vec<f64>,
+    theta_hat: Vec<f64>,
+    /// What was measured and heard at the last sample.
+    held: Held,
+    out: Out,
+    hold: Hold,
+}
+
+/// Inputs of the last sample.
+#[derive(Clone, Debug)]
+struct Held {
+    q: Vec<f64>,
+    dq: Vec<f64>,
+    degree: [f64; 1],
+    sums: Vec<f64>,
+}
+
+/// What followed from them.
+#[derive(Clone, Debug)]
+struct Out {
+    z: Vec<f64>,
+    dz: Vec<f64>,
+    d_state: Vec<f64>,
+    s: Vec<f64>,
+    tau: Vec<f64>,
+    yt_s: Vec<f64>,
+    d_theta_hat: Vec<f64>,
+}
+
+impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
+    /// Builds the controller of one robot. `theta_hat` is ϑ̂(0), or ϑ when `law` does not adapt.
+    ///
+    /// Until [`Agent::set_reference`] is called, the first sample sets z(0) = q̇(0) and the derivatives of z to zero.
+    ///
+    /// # Errors
+    /// [`LengthError`] when the parts are not made for one agent with the robot's axes and parameters.
+    pub fn new(
+        robot: R,
+        reference: F,
+        law: SlotineLi,
+        theta_hat: Vec<f64>,
+        limiter: Limiter,
+    ) -> Result<Self, LengthError> {
+        let (m, p) = (robot.dof(), robot.parameter_count());
+        LengthError::check("agents of the reference", 1, reference.agents())?;
+        LengthError::check("gain K", m, law.damping.size())?;
+        if let Some(gamma) = &law.adaptation {
+            LengthError::check("gain Γ", p, gamma.size())?;
+        }
+        LengthError::check("theta", p, theta_hat.len())?;
+        LengthError::check("limits", m, limiter.axes())?;
+        let n = reference.vectors() * m;
+        let vector = || vec![0.0; m];
+        Ok(Agent {
+            scratch: robot.scratch(),
+            robot,
+            law,
+            limiter,
+            last_s: None,
+            started: false,
+            state: vec![0.0; n],
+            theta_hat,
+            held: Held {
+                q: vector(),
+                dq: vector(),
+                degree: [0.0],
+                sums: vec![0.0; <F::Exchange as Exchange>::CHANNELS * m],
+            },
+            out: Out {
+                z: vector(),
+                dz: vector(),
+                d_state: vec![0.0; n],
+                s: vector(),
+                tau: vector(),
+                yt_s: vec![0.0; p],
+                d_theta_hat: vec![0.0; p],
+            },
+            hold: Hold::new(m, n),
+            reference,
+        })
+    }
+
+    /// The state of the reference dynamics at the last sample, block by block.
+    pub fn reference_state(&self) -> &[f64] {
+        &self.state
+    }
+
+    /// ϑ̂ at the last sample.
+    pub fn estimate(&self) -> &[f64] {
+        &self.theta_hat
+    }
+
+    /// Sets the state of the reference dynamics.
+    ///
+    /// # Errors
+    /// [`LengthError`] when it is not [`Reference::vectors`] blocks of an entry per axis.
+    pub fn set_reference(&mut self, state: &[f64]) -> Result<(), LengthError> {
+        LengthError::check("reference state", self.state.len(), state.len())?;
+        self.state.copy_from_slice(state);
+        self.started = true;
+        Ok(())
+    }
+
+    /// Takes the sample of time `now_s` and says what to do until the next one.
+    ///
+    /// The state is moved from the last sample to this one with the inputs of the last, over the time that really passed;
+    /// then the new inputs give the torque.
+    ///
+    /// # Errors
+    /// [`StepError`], before anything has changed.
+    pub fn step(
+        &mut self,
+        now_s: f64,
+        measured: Measured<'_, f64>,
+        inbox: Inbox<'_>,
+    ) -> Result<Command<'_>, StepError> {
+        let m = self.held.q.len();
+        LengthError::check("q", m, measured.q.len())?;
+        LengthError::check("dq", m, measured.dq.len())?;
+        LengthError::check("sums heard", self.held.sums.len(), inbox.sums.len())?;
+        finite("time", &[now_s])?;
+        finite("q", measured.q)?;
+        finite("dq", measured.dq)?;
+        finite("what is heard", &[inbox.degree])?;
+        finite("what is heard", inbox.sums)?;
+        let passed_s = match self.last_s {
+            Some(last_s) if now_s > last_s => Some(now_s - last_s),
+            Some(last_s) => return Err(StepError::Time { now_s, last_s }),
+            None => None,
+        };
+        dispatch(Step { agent: self, now_s, passed_s, measured, inbox })?;
+        let Out { z, dz, s, tau, .. } = &self.out;
+        Ok(Command { tau, z, dz, s })
+    }
+}
+
+fn finite(what: &'static str, values: &[f64]) -> Result<(), StepError> {
+    match values.iter().find(|value| !value.is_finite()) {
+        Some(value) => Err(StepError::NotFinite { what, value: *value }),
+        None => Ok(()),
+    }
+}
+
+struct Step<'a, R: Lagrangian<f64>, F> {
+    agent: &'a mut Agent<R, F>,
+    now_s: f64,
+    passed_s: Option<f64>,
+    measured: Measured<'a, f64>,
+    inbox: Inbox<'a>,
+}
+
+impl<R: Lagrangian<f64>, F: Reference> Kernel for Step<'_, R, F> {
+    type Output = Result<(), LengthError>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Agent { robot, scratch, reference, law, limiter, state, theta_hat, held, out, hold, .. } = self.agent;
+        let m = held.q.len();
+
+        // From the last sample to this one.
+        if let Some(h) = self.passed_s {
+            let measured = Measured { q: &held.q, dq: &held.dq };
+            let heard = heard::<F::Exchange>(&held.degree, &held.sums, m)?;
+            hold.advance(reference, measured, heard, h, state, &out.d_state)?;
+            for (estimate, rate) in theta_hat.iter_mut().zip(&out.d_theta_hat) {
+                *estimate = crate::Scalar::mul_add(h, *rate, *estimate);
+            }
+        }
+
+        held.q.copy_from_slice(self.measured.q);
+        held.dq.copy_from_slice(self.measured.dq);
+        held.degree = [self.inbox.degree];
+        held.sums.copy_from_slice(self.inbox.sums);
+        let measured = Measured { q: &held.q, dq: &held.dq };
+        let heard = heard::<F::Exchange>(&held.degree, &held.sums, m)?;
+        if !self.agent.started {
+            out.d_state.fill(0.0);
+            out.d_state[..m].copy_from_slice(&held.dq);
+            reference.start(m, measured, &out.d_state, heard, state)?;
+            self.agent.started = true;
+        }
+
+        // (5)–(7) at this sample.
+        let reference_out = ReferenceOut { z: &mut out.z, dz: &mut out.dz, d_state: &mut out.d_state };
+        reference.evaluate(m, measured, state, heard, reference_out)?;
+        let motion = TwoVelocity { q: &held.q, dq: &held.dq, z: &out.z, dz: &out.dz };
+        let law_out = SlotineLiOutput { s: &mut out.s, tau: &mut out.tau, yt_s: &mut out.yt_s };
+        law.output(robot, scratch, motion, theta_hat, law_out)?;
+        law.adaptation_rate(&out.yt_s, &mut out.d_theta_hat);
+        limiter.apply(self.passed_s, &mut out.tau);
+        self.agent.last_s = Some(self.now_s);
+        Ok(())
+    }
+}
+
+#[inline(always)]
+fn heard<'a, X: Exchange>(degree: &'a [f64], sums: &'a [f64], axes: usize) -> Result<Heard<'a, f64, X>, LengthError> {
+    let too_short = LengthError { what: "sums heard", need: X::CHANNELS * axes, got: sums.len() };
+    Ok(Heard { degree, sums: X::split(sums, axes).ok_or(too_short)? })
+}

@@ -1,0 +1,80 @@
+//! The instants at which digital controllers sample, and at which their torques change.
+
+use super::assemble::Block;
+use crate::engine::{Happened, Heard, Port, Radio};
+use crate::setup::{Control, Setup};
+
+/// The clock that all agents share: sample k is taken at k / `sample_hz`.
+pub(crate) struct Sampling<'a> {
+    sample_hz: f64,
+    computation_delay_s: f64,
+    radio: Radio<'a>,
+    heard: Heard,
+    /// The sample to come.
+    sample: u64,
+    /// When the last commands reach the actuators, s; infinite when they have.
+    apply_s: f64,
+}
+
+impl<'a> Sampling<'a> {
+    /// `x` is the state at t = 0; the first sample is taken there.
+    pub(super) fn new(setup: &'a Setup, control: &Control, ports: Vec<Port>, entries: usize, x: &[f64]) -> Self {
+        Sampling {
+            sample_hz: control.sample_hz,
+            computation_delay_s: control.computation_delay_s,
+            heard: Heard { degree: vec![0.0; ports.len()], sums: vec![0.0; ports.len() * entries] },
+            radio: Radio::new(&setup.network, setup.time.end_s, control.sample_hz, ports, entries, x),
+            sample: 0,
+            apply_s: f64::INFINITY,
+        }
+    }
+
+    /// What was heard at the last sample.
+    pub(super) fn heard(&self) -> &Heard {
+        &self.heard
+    }
+
+    fn sample_s(&self) -> f64 {
+        self.sample as f64 / self.sample_hz
+    }
+
+    /// The next event, s.
+    pub(super) fn next_s(&self) -> f64 {
+        self.sample_s().min(self.apply_s)
+    }
+
+    /// Everything that is due until `until_s`: torques that were on their way first, then the sample.
+    pub(super) fn happen(&mut self, until_s: f64, blocks: &mut [Block], x: &mut [f64]) -> Happened {
+        let mut happened = Happened::Nothing;
+        if self.apply_s <= until_s {
+            self.apply_s = f64::INFINITY;
+            blocks.iter_mut().for_each(|block| block.columns.apply());
+            happened = Happened::Sampled;
+        }
+        let now_s = self.sample_s();
+        if now_s <= until_s {
+            self.take_sample(now_s, blocks, x);
+            self.sample += 1;
+            self.apply_s = now_s + self.computation_delay_s;
+            if self.apply_s <= until_s {
+                self.apply_s = f64::INFINITY;
+                blocks.iter_mut().for_each(|block| block.columns.apply());
+            }
+            happened = Happened::Sampled;
+        }
+        happened
+    }
+
+    /// Everybody measures and sends, then hears and computes.
+    fn take_sample(&mut self, now_s: f64, blocks: &mut [Block], x: &mut [f64]) {
+        let sent = self.radio.sending(self.sample);
+        for block in blocks.iter_mut() {
+            block.columns.sense(&x[block.state.clone()], &mut sent[block.sums.clone()]);
+        }
+        self.radio.hear(self.sample, &mut self.heard);
+        for block in blocks {
+            let inputs = block.inputs(&self.heard);
+            block.columns.command(now_s, inputs, &mut x[block.state.clone()]);
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! Digital control: the continuous loop in the limit, and the very controller that runs on a robot.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+mod cases;
+
+use std::ops::ControlFlow;
+
+use cases::{cases, setup};
+use forwardstep_core::agent::{Agent, Inbox, Limiter};
+use forwardstep_core::law::SlotineLi;
+use forwardstep_core::reference::{Consensus, Measured, PositionVelocity};
+use forwardstep_core::robot::PlanarArm;
+use forwardstep_sim::schedule::Schedule;
+use forwardstep_sim::{
+    Actuators, Control, Ending, Exchange, Law, Method, Outcome, Sensors, Setup, Signal, VelocitySensor, simulate,
+};
+
+fn run(setup: &Setup) -> Outcome {
+    let outcome = simulate(setup, &mut |_| ControlFlow::Continue(())).unwrap();
+    assert_eq!(outcome.ending, Ending::Completed);
+    outcome
+}
+
+fn control(sample_hz: f64) -> Control {
+    Control { sample_hz, computation_delay_s: 0.0, sensors: Sensors::default(), actuators: Actuators::default() }
+}
+
+/// A case by its name, over a short horizon, at tight tolerance.
+fn case(name: &str, end_s: f64) -> Setup {
+    let case = cases().into_iter().find(|case| case.name == name).unwrap();
+    let mut setup = setup(&case);
+    setup.time.end_s = end_s;
+    setup.time.record_every_s = 0.25;
+    setup.solver.method = Method::Adaptive { rtol: 1e-9, atol: 1e-10 };
+    setup
+}
+
+fn column(outcome: &Outcome, agent: usize, signal: Signal, axis: usize) -> &[f64] {
+    let wanted = |c: &&forwardstep_sim::Column| (c.agent, c.signal, c.axis) == (agent, signal, axis);
+    &outcome.recording.columns.iter().find(wanted).unwrap().values
+}
+
+/// The largest difference of positions.
+fn gap(a: &Outcome, b: &Outcome) -> f64 {
+    let positions = |o: &Outcome| -> Vec<f64> {
+        let columns = o.recording.columns.iter().filter(|c| c.signal == Signal::Position);
+        columns.flat_map(|c| c.values.clone()).collect()
+    };
+    let (a, b) = (positions(a), positions(b));
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn prop_sampled_runs_converge_to_the_continuous_one_with_the_period() {
+    let (mut slowest, mut fastest) = (f64::INFINITY, 0.0_f64);
+    for case_name in cases().iter().map(|case| case.name.clone()) {
+        let mut setup = case(&case_name, 4.0);
+        let continuous = run(&setup);
+        // From rates that resolve the roots, the damping and the shortest delays of the cases.
+        let gaps = [1000.0, 2000.0, 4000.0].map(|sample_hz| {
+            setup.control = Some(control(sample_hz));
+            gap(&run(&setup), &continuous)
+        });
+        let orders = [(gaps[0] / gaps[1]).log2(), (gaps[1] / gaps[2]).log2()];
+        println!("{case_name}: {gaps:?} {orders:?}");
+        slowest = slowest.min(orders[1]);
+        fastest = fastest.max(orders[1]);
+    }
+    assert!(slowest > 0.95 && fastest < 1.1, "order from {slowest} to {fastest}");
+}
+
+#[test]
+fn regress_the_simulator_steps_the_agent_that_runs_on_a_robot() {
+    let mut setup = case("03-order2-both-zero-delay", 2.0);
+    setup.control = Some(control(256.0));
+    // Exact in binary, so that rows and samples are the same instants.
+    setup.time.record_every_s = 1.0 / 256.0;
+    setup.network.schedule = Schedule::Fixed(Vec::new());
+    let outcome = run(&setup);
+
+    let agent = &setup.agents[0];
+    let Law::Adaptive { damping, adaptation, estimate_start } = &agent.law else { unreachable!() };
+    let law =
+        SlotineLi { damping: damping.resolve(2, &[]).unwrap(), adaptation: Some(adaptation.resolve(5, &[]).unwrap()) };
+    assert_eq!(setup.exchange, Exchange::PositionVelocity);
+    let reference = Consensus::<PositionVelocity>::new([(&agent.roots_per_s[..], 0.0)]).unwrap();
+    let mut twin = Agent::new(PlanarArm, reference, law, estimate_start.clone(), Limiter::none(2)).unwrap();
+    let read = |signal, row: usize| [0, 1].map(|axis| column(&outcome, 0, signal, axis)[row]);
+    let start: Vec<f64> = (0..2).flat_map(|r| read(Signal::Reference(r), 0)).collect();
+    twin.set_reference(&start).unwrap();
+    let inbox = Inbox { degree: 0.0, sums: &[0.0; 4] };
+    for row in 0..400 {
+        let (q, dq) = (read(Signal::Position, row), read(Signal::Velocity, row));
+        let command = twin.step(row as f64 / 256.0, Measured { q: &q, dq: &dq }, inbox).unwrap();
+        assert_eq!(command.tau, read(Signal::Torque, row), "sample {row}");
+        assert_eq!(command.z, read(Signal::Reference(0), row), "sample {row}");
+    }
+}
+
+#[test]
+fn commands_wait_for_the_computation_and_stay_within_the_limits() {
+    let mut setup = case("03-order2-both-zero-delay", 0.5);
+    let mut digital = control(250.0);
+    digital.computation_delay_s = 0.003;
+    setup.control = Some(digital.clone());
+    setup.time.record_every_s = 0.001;
+    let late = run(&setup);
+    let torque = column(&late, 0, Signal::Torque, 0);
+    // Nothing is applied before the first command is there, and that one asks for nothing. Then torques change 3 ms after every sample and only there.
+    assert_eq!(torque[..3], [0.0; 3]);
+    for (row, pair) in torque.windows(2).enumerate().skip(4) {
+        assert_eq!(pair[0] != pair[1], (row + 1) % 4 == 3, "row {row}");
+    }
+
+    let limits = [0.2 * peak(torque), 0.2 * peak(column(&late, 0, Signal::Torque, 1))];
+    digital.actuators = Actuators {
+        torque_limit: Some(limits.to_vec()),
+        torque_rate_limit: Some(vec![500.0, 200.0]),
+        torque_quantum: 0.125,
+    };
+    setup.control = Some(digital);
+    let limited = run(&setup);
+    for (axis, rate) in [500.0, 200.0].into_iter().enumerate() {
+        let torque = column(&limited, 0, Signal::Torque, axis);
+        assert!(torque.iter().all(|tau| (tau / 0.125).fract() == 0.0));
+        // Quanta are rounded to the nearest: half of one beyond each limit.
+        assert!(torque.iter().all(|tau| tau.abs() <= limits[axis] + 0.0625));
+        assert!(torque[4..].windows(2).all(|pair| (pair[1] - pair[0]).abs() <= rate * 0.004 + 0.125));
+        assert!(peak(torque) >= limits[axis] - 0.0625, "the limit is reached");
+    }
+}
+
+fn peak(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |peak, value| peak.max(value.abs()))
+}
+
+#[test]
+fn noise_is_the_same_for_the_same_seed_and_its_own_for_every_agent() {
+    let mut setup = case("03-order2-both-zero-delay", 1.0);
+    let with = |seed| {
+        let mut control = control(100.0);
+        control.sensors = Sensors { position_noise: 1e-3, velocity_noise: 1e-2, seed, ..Sensors::default() };
+        Some(control)
+    };
+    let mut torques = |seed| {
+        setup.control = with(seed);
+        let outcome = run(&setup);
+        column(&outcome, 0, Signal::Torque, 0).to_vec()
+    };
+    let first = torques(1);
+    assert_eq!(first, torques(1));
+    assert_ne!(first, torques(2));
+}
+
+#[test]
+fn encoders_alone_are_enough_for_agreement() {
+    let mut setup = case("03-order2-both-zero-delay", 60.0);
+    let mut digital = control(500.0);
+    digital.sensors.velocity = VelocitySensor::Filtered { cut_off_hz: 40.0 };
+    digital.sensors.position_quantum = 1e-5;
+    setup.control = Some(digital);
+    setup.solver.method = Method::Adaptive { rtol: 1e-6, atol: 1e-8 };
+    let outcome = run(&setup);
+    let ends = |axis| (0..setup.agents.len()).map(move |agent| (agent, axis));
+    for axis in 0..2 {
+        let last: Vec<f64> =
+            ends(axis).map(|(agent, axis)| *column(&outcome, agent, Signal::Position, axis).last().unwrap()).collect();
+        let spread = last.iter().fold(f64::MIN, |a, b| a.max(*b)) - last.iter().fold(f64::MAX, |a, b| a.min(*b));
+        assert!(spread < 2e-2, "{last:?}");
+    }
+}
