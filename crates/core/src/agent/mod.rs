@@ -247,7 +247,18 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
             Some(last_s) => return Err(StepError::Time { now_s, last_s }),
             None => None,
         };
-        dispatch(Step { agent: self, now_s, passed_s, measured, inbox })?;
+        let Agent { robot, scratch, reference, law, limiter, state, theta_hat, held, out, hold, .. } = self;
+        let started = self.started;
+        dispatch(Refer { reference, hold, started, passed_s, measured, inbox, state, held, out })?;
+        self.started = true;
+        if let Some(h) = passed_s {
+            for (estimate, rate) in theta_hat.iter_mut().zip(&out.d_theta_hat) {
+                *estimate += h * rate;
+            }
+        }
+        dispatch(Track { robot, scratch, law, theta_hat, held, out })?;
+        limiter.apply(passed_s, &mut out.tau);
+        self.last_s = Some(now_s);
         let Out { z, dz, s, tau, .. } = &self.out;
         Ok(Command { tau, z, dz, s })
     }
@@ -260,54 +271,67 @@ fn finite(what: &'static str, values: &[f64]) -> Result<(), StepError> {
     }
 }
 
-struct Step<'a, R: Lagrangian<f64>, F> {
-    agent: &'a mut Agent<R, F>,
-    now_s: f64,
+/// The reference dynamics: from the last sample to this one, then z and ż.
+struct Refer<'a, F> {
+    reference: &'a F,
+    hold: &'a mut Hold,
+    started: bool,
     passed_s: Option<f64>,
     measured: Measured<'a, f64>,
     inbox: Inbox<'a>,
+    state: &'a mut [f64],
+    held: &'a mut Held,
+    out: &'a mut Out,
 }
 
-impl<R: Lagrangian<f64>, F: Reference> Kernel for Step<'_, R, F> {
+impl<F: Reference> Kernel for Refer<'_, F> {
     type Output = Result<(), LengthError>;
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        let Agent { robot, scratch, reference, law, limiter, state, theta_hat, held, out, hold, .. } = self.agent;
+        let Refer { reference, hold, started, passed_s, measured, inbox, state, held, out } = self;
         let m = held.q.len();
-
-        // From the last sample to this one.
-        if let Some(h) = self.passed_s {
+        if let Some(h) = passed_s {
             let measured = Measured { q: &held.q, dq: &held.dq };
             let heard = heard::<F::Exchange>(&held.degree, &held.sums, m)?;
             hold.advance(reference, measured, heard, h, state, &out.d_state)?;
-            for (estimate, rate) in theta_hat.iter_mut().zip(&out.d_theta_hat) {
-                *estimate = crate::Scalar::mul_add(h, *rate, *estimate);
-            }
         }
-
-        held.q.copy_from_slice(self.measured.q);
-        held.dq.copy_from_slice(self.measured.dq);
-        held.degree = [self.inbox.degree];
-        held.sums.copy_from_slice(self.inbox.sums);
+        held.q.copy_from_slice(measured.q);
+        held.dq.copy_from_slice(measured.dq);
+        held.degree = [inbox.degree];
+        held.sums.copy_from_slice(inbox.sums);
         let measured = Measured { q: &held.q, dq: &held.dq };
         let heard = heard::<F::Exchange>(&held.degree, &held.sums, m)?;
-        if !self.agent.started {
+        if !started {
             out.d_state.fill(0.0);
             out.d_state[..m].copy_from_slice(&held.dq);
             reference.start(m, measured, &out.d_state, heard, state)?;
-            self.agent.started = true;
         }
-
-        // (5)–(7) at this sample.
         let reference_out = ReferenceOut { z: &mut out.z, dz: &mut out.dz, d_state: &mut out.d_state };
-        reference.evaluate(m, measured, state, heard, reference_out)?;
+        reference.evaluate(m, measured, state, heard, reference_out)
+    }
+}
+
+/// (5)–(7) at this sample.
+struct Track<'a, R: Lagrangian<f64>> {
+    robot: &'a R,
+    scratch: &'a mut R::Scratch,
+    law: &'a SlotineLi,
+    theta_hat: &'a [f64],
+    held: &'a Held,
+    out: &'a mut Out,
+}
+
+impl<R: Lagrangian<f64>> Kernel for Track<'_, R> {
+    type Output = Result<(), LengthError>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Track { robot, scratch, law, theta_hat, held, out } = self;
         let motion = TwoVelocity { q: &held.q, dq: &held.dq, z: &out.z, dz: &out.dz };
         let law_out = SlotineLiOutput { s: &mut out.s, tau: &mut out.tau, yt_s: &mut out.yt_s };
         law.output(robot, scratch, motion, theta_hat, law_out)?;
         law.adaptation_rate(&out.yt_s, &mut out.d_theta_hat);
-        limiter.apply(self.passed_s, &mut out.tau);
-        self.agent.last_s = Some(self.now_s);
         Ok(())
     }
 }
