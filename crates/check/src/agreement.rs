@@ -53,6 +53,9 @@ pub enum NoPrediction {
         /// Index of the agent.
         agent: usize,
     },
+    /// Held inputs conserve the quantity only in the limit of short periods.
+    #[error("the controllers sample")]
+    Sampled,
     /// The baseline conserves nothing.
     #[error("under backstepping tracking errors move it")]
     Backstepping,
@@ -80,6 +83,9 @@ pub enum NoPrediction {
 pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     if matches!(setup.reference, ReferenceKind::Backstepping { .. }) {
         return Err(NoPrediction::Backstepping);
+    }
+    if setup.control.is_some() {
+        return Err(NoPrediction::Sampled);
     }
     if let Some(agent) = setup.agents.iter().position(|agent| agent.manipulability > 0.0) {
         return Err(NoPrediction::Manipulability { agent });

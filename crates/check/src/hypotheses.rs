@@ -4,6 +4,7 @@ use forwardstep_sim::graph::{Edge, strong_components};
 use forwardstep_sim::schedule::{Schedule, Window};
 use forwardstep_sim::{Exchange, Law, ReferenceKind, Setup};
 
+use crate::sampled::{digital, limited_actuators};
 use crate::verdict::{Answer, Hypothesis, Report};
 
 /// Which theorem speaks about `setup`, and whether its hypotheses hold.
@@ -26,6 +27,7 @@ pub fn check(setup: &Setup) -> Report {
     }
     hypotheses.push(gains(setup));
     hypotheses.push(unlimited_torque(setup));
+    hypotheses.extend(digital(setup));
     Report { theorem: theorem(setup, order), promises: promises(setup, order), hypotheses }
 }
 
@@ -256,10 +258,14 @@ fn gains(setup: &Setup) -> Hypothesis {
 
 fn unlimited_torque(setup: &Setup) -> Hypothesis {
     let limited: Vec<usize> = (0..setup.agents.len()).filter(|agent| setup.agents[*agent].enforce_limits).collect();
-    let (answer, because) = if limited.is_empty() {
+    let mut reasons: Vec<String> = limited_actuators(setup).into_iter().map(str::to_owned).collect();
+    if !limited.is_empty() {
+        reasons.push(format!("limits are enforced on {}", names(setup, &limited)));
+    }
+    let (answer, because) = if reasons.is_empty() {
         (Answer::Holds, "limits are reported, not enforced".to_owned())
     } else {
-        (Answer::NotCovered, format!("limits are enforced on {}", names(setup, &limited)))
+        (Answer::NotCovered, reasons.join(", "))
     };
     Hypothesis { requires: "the torque that the law asks for is applied".into(), answer, because }
 }

@@ -5,8 +5,10 @@
 
 mod agreement;
 mod hypotheses;
+mod sampled;
 mod verdict;
 
 pub use agreement::{NoPrediction, Prediction, predict};
 pub use hypotheses::check;
+pub use sampled::{SampledDamping, sampled_damping};
 pub use verdict::{Answer, Hypothesis, Report};

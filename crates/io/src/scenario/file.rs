@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::at::At;
+use super::control_file::ControlFile;
 use super::network_file::NetworkFile;
 use super::values::{GainFile, GainOrBandwidth, Named, NotNegative, Positive, StartValues};
 
@@ -30,6 +31,8 @@ pub struct ScenarioFile {
     pub start: Option<At<StartFile>>,
     /// Who hears whom, when, and how late.
     pub network: At<NetworkFile>,
+    /// How the controllers sample. Default: they work in continuous time, as in the paper.
+    pub control: Option<ControlFile>,
     /// How to integrate.
     pub solver: Option<SolverFile>,
     /// What the run is expected to show.

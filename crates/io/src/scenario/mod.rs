@@ -33,6 +33,8 @@
 
 mod agents;
 pub mod at;
+mod control;
+pub mod control_file;
 mod de;
 mod edges;
 pub mod edges_file;
@@ -164,6 +166,8 @@ fn read(name: &str, source: &SourceText, folder: Option<&Path>) -> Result<Scenar
     let network = network::network(&file.network.value, &names, end_s, source, folder, &mut notices)
         .map_err(|fault| fault.at(&file.network.span))?;
     let (reference, exchange) = reference(&file.reference.value)?;
+    let axes = agents.first().map_or(0, |agent| agent.robot.axes.len());
+    let control = file.control.as_ref().map(|file| control::control(file, axes, end_s)).transpose()?;
     let setup = Setup {
         agents,
         reference,
@@ -171,8 +175,9 @@ fn read(name: &str, source: &SourceText, folder: Option<&Path>) -> Result<Scenar
         network,
         time: TimeSpan { end_s, record_every_s },
         solver: solver(file.solver.as_ref())?,
-        control: None,
+        control,
     };
+    notices.extend(Notice::coarse_sampling(&setup));
     recording_fits(&setup, every.unwrap_or(&file.time.end_s))?;
     Ok(Scenario {
         name: name.to_owned(),

@@ -2,7 +2,11 @@
 
 use std::fmt;
 
+use forwardstep_check::{SampledDamping, sampled_damping};
+use forwardstep_sim::Setup;
+
 use crate::urdf;
+use crate::wording::about;
 
 /// Something in an accepted scenario that the user should know about.
 #[derive(Clone, Debug)]
@@ -20,12 +24,41 @@ pub enum Notice {
         /// Its line in the scenario.
         line: usize,
     },
+    /// Held damping that overshoots.
+    CoarseSampling {
+        /// The agent whose damping is fastest.
+        agent: String,
+        /// h · λ_max(M⁻¹K) at its start.
+        value: f64,
+        /// A sample rate that would be enough, Hz.
+        enough_hz: f64,
+    },
+}
+
+impl Notice {
+    /// Digital control whose period is too long for its gain K.
+    pub(super) fn coarse_sampling(setup: &Setup) -> Option<Notice> {
+        let SampledDamping { value, agent, period_s } = sampled_damping(setup)?;
+        (value > 1.0).then(|| Notice::CoarseSampling {
+            agent: setup.agents[agent].name.clone(),
+            value,
+            // A little more, since it is shown rounded.
+            enough_hz: 1.05 * value / period_s,
+        })
+    }
 }
 
 impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Notice::Robot { agents, notice } => write!(f, "{agents}: {notice}"),
+            Notice::CoarseSampling { agent, value, enough_hz } => write!(
+                f,
+                "`sample_hz` is low for the gain K: h · λ_max(M⁻¹K) is {} for {agent}, and above 2 the held damping is \
+                 unstable; below 1 needs {} Hz, or a smaller K",
+                about(*value),
+                about(*enough_hz)
+            ),
             Notice::UnusedDwell { line } => write!(f, "`dwell_s` on line {line} is not used"),
         }
     }

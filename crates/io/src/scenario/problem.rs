@@ -487,6 +487,32 @@ pub enum ScenarioProblem {
         /// The shortest `record_every_s` that would do.
         least_s: f64,
     },
+    // Control.
+    /// A computation that takes longer than a period.
+    #[error("`computation_delay_s` is {}, but the next sample is taken after {} s", number(*.delay_s), number(*.period_s))]
+    ComputationDelay {
+        /// The delay, s.
+        delay_s: f64,
+        /// The period, s.
+        period_s: f64,
+    },
+    /// A property of measured velocities where none are measured.
+    #[error("`{key}` has no effect: velocities are not measured, but come from filtered differences")]
+    VelocityNotMeasured {
+        /// The key.
+        key: &'static str,
+    },
+    /// A list with an entry for each axis has another length.
+    #[error("`{key}` has {found} where the agents have {need} {}", if *.need == 1 { "axis" } else { "axes" })]
+    AxisCount {
+        /// The key.
+        key: &'static str,
+        /// Entries that were found.
+        found: usize,
+        /// Axes.
+        need: usize,
+    },
+
     /// A goal that asks for nothing.
     #[error("the goal says nothing about the disagreement")]
     EmptyGoal,
@@ -556,6 +582,13 @@ impl Problem for ScenarioProblem {
                 format!("for this `end_s` let `record_every_s` be at least {}", about(1.05 * least_s))
             }
             ScenarioProblem::TooManyEvents { .. } => "is a unit of time mistaken? All of them are seconds".into(),
+            ScenarioProblem::ComputationDelay { .. } => {
+                "a computation must be done before the next begins; sample more slowly, or compute faster".into()
+            }
+            ScenarioProblem::VelocityNotMeasured { .. } => {
+                "delete it, or let `velocity` be \"measured\"; noise and steps of positions count".into()
+            }
+            ScenarioProblem::AxisCount { .. } => "a single number stands for all axes".into(),
             ScenarioProblem::EmptyGoal => {
                 "set `disagreement_below = 1e-3`, or `expect = \"diverges\"`, or delete the goal".into()
             }

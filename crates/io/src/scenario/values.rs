@@ -41,6 +41,15 @@ pub enum GainFile {
     Rows(Rows),
 }
 
+/// A number for all axes, or one for each.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AxisValues {
+    /// The same for all.
+    All(f64),
+    /// One for each.
+    Each(Vec<At<f64>>),
+}
+
 /// A gain, or a bandwidth that is multiplied by a natural scale.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GainOrBandwidth {
@@ -109,6 +118,7 @@ macro_rules! deserialize_any {
 }
 
 deserialize_any!(Item, ItemVisitor);
+deserialize_any!(AxisValues, AxisVisitor);
 deserialize_any!(GainFile, GainVisitor);
 deserialize_any!(GainOrBandwidth, GainOrBandwidthVisitor);
 deserialize_any!(StartValues, StartVisitor);
@@ -132,6 +142,24 @@ impl<'de> Visitor<'de> for ItemVisitor {
 
     fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Item, A::Error> {
         Vec::deserialize(SeqAccessDeserializer::new(seq)).map(Item::List)
+    }
+}
+
+struct AxisVisitor;
+
+impl<'de> Visitor<'de> for AxisVisitor {
+    type Value = AxisValues;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number, or a list with one for each axis")
+    }
+
+    fn visit_f64<E>(self, value: f64) -> Result<AxisValues, E> {
+        Ok(AxisValues::All(value))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<AxisValues, A::Error> {
+        Vec::deserialize(SeqAccessDeserializer::new(seq)).map(AxisValues::Each)
     }
 }
 
@@ -240,6 +268,12 @@ fn numbers() -> Schema {
 
 inline_schema!(Positive, "Positive", |_generator| json_schema!({ "type": "number", "exclusiveMinimum": 0 }));
 inline_schema!(NotNegative, "NotNegative", |_generator| json_schema!({ "type": "number", "minimum": 0 }));
+inline_schema!(AxisValues, "AxisValues", |_generator| json_schema!({
+    "anyOf": [
+        { "type": "number", "exclusiveMinimum": 0 },
+        { "type": "array", "items": { "type": "number", "exclusiveMinimum": 0 } },
+    ],
+}));
 inline_schema!(Item, "Item", |_generator| json_schema!({ "anyOf": [{ "type": "number" }, numbers()] }));
 inline_schema!(GainFile, "Gain", |_generator| json_schema!({
     "anyOf": [
