@@ -22,4 +22,4 @@ pub use setup::{
     AgentSetup, Axis, AxisUnit, Exchange, Law, Method, ReferenceKind, RobotKind, RobotSetup, Setup, Solver, Start,
     TimeSpan,
 };
-pub use simulate::simulate;
+pub use simulate::{recorded_columns, simulate};
