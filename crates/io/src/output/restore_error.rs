@@ -207,6 +207,7 @@ impl RestoreError {
                 }
                 _ => format!("restore it from a copy, or {AGAIN}"),
             },
+            RestoreError::Folder(OutputError::FolderInUse { .. }) => "wait until it has ended".into(),
             RestoreError::Folder(error) => return error.help().map(str::to_owned),
             RestoreError::Scenario(_) => return None,
         })
