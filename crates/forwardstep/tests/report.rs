@@ -450,7 +450,10 @@ fn a_folder_that_is_closed_to_us_is_an_error() {
     let is_privileged = fs::write(run.join("probe"), "").is_ok();
     if !is_privileged {
         let error = stderr(&forwardstep(&folder, &["report", "run"]).code(2));
-        assert!(error.contains("could not write into the folder run") && error.contains("you may write to"), "{error}");
+        assert!(
+            error.contains("could not write into the folder run") && error.contains("make the folder writable"),
+            "{error}"
+        );
     }
     mode(&run, 0o755);
     mode(&run.join("trajectory.parquet"), 0o000);

@@ -106,13 +106,17 @@ impl SavedRun {
     /// # Errors
     /// [`RestoreError`] with the file and what is wrong with it.
     pub fn open(path: &Path) -> Result<SavedRun, RestoreError> {
-        if !path.exists() {
-            let meant = Some(Path::new("forwardstep-runs").join(path)).filter(|meant| is_run(meant));
-            return Err(RestoreError::NoFolder { path: path.to_owned(), meant });
-        }
-        if !path.is_dir() {
-            let meant = path.parent().filter(|parent| is_run(parent)).map(Path::to_owned);
-            return Err(RestoreError::NotAFolder { path: path.to_owned(), meant });
+        match path.metadata().map_err(ReadError::from) {
+            Ok(found) if found.is_dir() => {}
+            Ok(_) => {
+                let meant = path.parent().filter(|parent| is_run(parent)).map(Path::to_owned);
+                return Err(RestoreError::NotAFolder { path: path.to_owned(), meant });
+            }
+            Err(ReadError::Missing) => {
+                let meant = Some(Path::new("forwardstep-runs").join(path)).filter(|meant| is_run(meant));
+                return Err(RestoreError::NoFolder { path: path.to_owned(), meant });
+            }
+            Err(reason) => return Err(RestoreError::File { path: path.to_owned(), reason }),
         }
         let (summary, text) = (text_of(path, SUMMARY)?, text_of(path, SCENARIO)?);
         let summary =

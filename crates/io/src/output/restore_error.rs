@@ -208,6 +208,9 @@ impl RestoreError {
                 _ => format!("restore it from a copy, or {AGAIN}"),
             },
             RestoreError::Folder(OutputError::FolderInUse { .. }) => "wait until it has ended".into(),
+            RestoreError::Folder(OutputError::Io { source, .. }) if source.kind() == ErrorKind::PermissionDenied => {
+                "make the folder writable for yourself, or copy it to where you may write".into()
+            }
             RestoreError::Folder(error) => return error.help().map(str::to_owned),
             RestoreError::Scenario(_) => return None,
         })
