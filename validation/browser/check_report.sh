@@ -3,17 +3,37 @@
 #
 #   cargo run --release -p forwardstep-io --example sample_reports -- target/samples
 #   validation/browser/check_report.sh target/samples/*/report.html
+#
+# With --shipped and the program, runs every shipped scenario, has its report built anew from its tables, which must not change
+# a byte, and looks at that:
+#
+#   validation/browser/check_report.sh --shipped target/release/forwardstep
 set -euo pipefail
 
 chromium=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || {
   echo "no chromium on PATH" >&2
   exit 2
 }
-[ $# -gt 0 ] || { echo "usage: $0 report.html ..." >&2; exit 2; }
+[ $# -gt 0 ] || { echo "usage: $0 report.html ... | --shipped FORWARDSTEP" >&2; exit 2; }
 
 profile=$(mktemp -d)
-trap 'rm -rf "$profile"' EXIT
+runs=$(mktemp -d)
+trap 'rm -rf "$profile" "$runs"' EXIT
 failed=0
+if [ "$1" = --shipped ]; then
+  [ $# = 2 ] || { echo "usage: $0 --shipped FORWARDSTEP" >&2; exit 2; }
+  program=$(realpath "$2")
+  set --
+  for name in $("$program" scenarios | awk '/^[a-z0-9]/ { print $1 }'); do
+    report=$runs/$name/report.html
+    "$program" run "$name" --out "$runs/$name" >/dev/null
+    mv "$report" "$runs/written.html"
+    "$program" report "$runs/$name" >/dev/null
+    cmp "$report" "$runs/written.html" || { echo "FAILED $name: the report built anew differs"; failed=1; }
+    set -- "$@" "$report"
+  done
+  [ $# -gt 0 ] || { echo "$program lists no scenarios" >&2; exit 2; }
+fi
 for report in "$@"; do
   rm -rf "${profile:?}"/*
   dom=$profile/dom.html

@@ -22,7 +22,7 @@ const EXIT_STATUS: &str = "\
 Exit status:
     0  fine
     1  check: a hypothesis does not hold, or the paper does not cover the case; run: the goal was missed
-    2  input without meaning, or a folder that cannot be written to
+    2  input without meaning, or a folder that cannot be written to or is not that of a run
     3  the run broke down; what was computed is written
   130  interrupted by Ctrl-C; what was computed is written";
 
@@ -30,6 +30,12 @@ Exit status:
 pub(crate) enum Command {
     /// Simulate a scenario and write tables and a report
     Run(RunOptions),
+    /// Build the report and the plots of a run anew from its tables, without simulating again
+    Report {
+        /// The folder of the run
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+    },
     /// Say which theorem speaks about a scenario, and whether its hypotheses hold
     Check {
         /// A shipped scenario by name, or a file by its path

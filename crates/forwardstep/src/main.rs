@@ -18,6 +18,7 @@ fn main() -> ExitCode {
     let mut console = Console::new();
     let status = match command.unwrap_or_default() {
         Command::Run(options) => commands::run(&options, &mut console),
+        Command::Report { folder } => commands::report(&folder, &mut console),
         Command::Check { scenario } => commands::check(&scenario, &mut console),
         Command::Scenarios { name } => commands::scenarios(name.as_deref(), &mut console),
         Command::Schema => commands::schema(&mut console),

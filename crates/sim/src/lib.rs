@@ -22,4 +22,4 @@ pub use setup::{
     Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Law, Method, ReferenceKind, RobotKind, RobotSetup,
     Sensors, Setup, Solver, Start, TimeSpan, VelocitySensor,
 };
-pub use simulate::simulate;
+pub use simulate::{recorded_columns, simulate};

@@ -59,6 +59,25 @@ pub fn simulate(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow
     Ok(Outcome { recording: recorder.recording, ending, statistics })
 }
 
+/// The columns that a run of `setup` records, without any rows: what its tables are read back into.
+///
+/// # Errors
+/// [`SetupError`] when the setup has no meaning.
+pub fn recorded_columns(setup: &Setup) -> Result<Vec<Column>, SetupError> {
+    Ok(empty_columns(&ClosedLoop::new(setup)?, setup.agents.len()).0)
+}
+
+/// All columns, and the first one of every agent.
+fn empty_columns(closed_loop: &ClosedLoop<'_>, agents: usize) -> (Vec<Column>, Vec<usize>) {
+    let (mut columns, mut first_column) = (Vec::new(), Vec::new());
+    for (agent, signals) in closed_loop.signals(agents).into_iter().enumerate() {
+        first_column.push(columns.len());
+        let column = |(signal, axis)| Column { agent, signal, axis, values: Vec::new() };
+        columns.extend(signals.into_iter().map(column));
+    }
+    (columns, first_column)
+}
+
 /// Writes rows as steps go by.
 struct Recorder<'a> {
     setup: &'a Setup,
@@ -71,14 +90,8 @@ struct Recorder<'a> {
 
 impl<'a> Recorder<'a> {
     fn new(setup: &'a Setup, closed_loop: &ClosedLoop<'_>) -> Self {
-        let mut recording = Recording::default();
-        let mut first_column = Vec::new();
-        for (agent, signals) in closed_loop.signals(setup.agents.len()).into_iter().enumerate() {
-            first_column.push(recording.columns.len());
-            let column = |(signal, axis)| Column { agent, signal, axis, values: Vec::new() };
-            recording.columns.extend(signals.into_iter().map(column));
-        }
-        Recorder { setup, recording, first_column, rows: 0 }
+        let (columns, first_column) = empty_columns(closed_loop, setup.agents.len());
+        Recorder { setup, recording: Recording { t_s: Vec::new(), columns }, first_column, rows: 0 }
     }
 
     /// Writes the rows that fall into `step`; the breakdown, if an enforced limit was left.

@@ -67,6 +67,7 @@ fn record<'a>(
         title: &scenario.title,
         scenario_name: &scenario.name,
         scenario_text: scenario.source.text(),
+        inputs: &scenario.inputs,
         version: env!("CARGO_PKG_VERSION"),
         setup: &scenario.setup,
         outcome,
@@ -77,7 +78,7 @@ fn record<'a>(
     }
 }
 
-fn refused(error: OutputError) -> Status {
+pub(super) fn refused(error: OutputError) -> Status {
     let help = error.help();
     complain(&Plain::with_help(error, help))
 }

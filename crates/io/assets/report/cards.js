@@ -160,7 +160,7 @@ const cards = {
       grid: "delays",
       unit: "s",
       key: index.delays.length > 1,
-      series: index.delays.map((d, k) => ({ label: d.label, colour: ramp(k, index.delays.length), values: data.values("delays", d.series) })),
+      series: index.delays.map((d, k) => ({ label: d.label, colour: ramp(k, index.delays.length), exact: true, values: data.values("delays", d.series) })),
     }),
   },
 };

@@ -13,6 +13,15 @@ const zoomTo = (range) => {
 
 const axisFont = '11px ui-sans-serif, system-ui, "Segoe UI", Roboto, "Helvetica Neue", sans-serif';
 
+// Room for the labels beside the vertical axis: the usual, or as much as the widest needs, such as −2.5 × 10³³.
+const labelRoom = (u, labels) => {
+  u.ctx.save();
+  u.ctx.font = axisFont;
+  const widest = Math.max(0, ...(labels ?? []).map((label) => u.ctx.measureText(label).width));
+  u.ctx.restore();
+  return Math.max(62, Math.ceil(widest) + 14);
+};
+
 const decades = (min, max) => {
   const low = Math.ceil(Math.log10(min) - 1e-9);
   const high = Math.floor(Math.log10(max) + 1e-9);
@@ -167,7 +176,7 @@ const drawPlot = (target, { times, series, log = false, lines = [], height, y = 
       { ...axis, size: 30, gap: 6, space: 70, values: (u, splits, a, s, step) => splits.map((v) => `${tick(v, step)} s`) },
       {
         ...axis,
-        size: 62,
+        size: labelRoom,
         gap: 6,
         space: 34,
         incrs: increments,
@@ -183,6 +192,7 @@ const drawPlot = (target, { times, series, log = false, lines = [], height, y = 
         stroke: s.colour,
         width: s.width ?? 1.5,
         dash: s.dash,
+        pxAlign: s.exact ? 0 : 1,
         show: s.show ?? true,
         points: { show: times.length < 2 },
         _colour: s.colour,

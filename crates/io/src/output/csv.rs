@@ -1,11 +1,13 @@
 //! `trajectory.csv`: the numbers of the Parquet table with all digits needed to read the same numbers back.
 
-use std::io::Write;
+use std::io::{Read, Write};
 
 use forwardstep_sim::recording::Recording;
 use forwardstep_sim::setup::Setup;
 
 use super::names;
+use super::restore_error::TableError;
+use super::table::NamedColumns;
 
 /// Writes header and rows; values that are not finite are `NaN`, `inf` and `-inf`.
 pub(crate) fn write(out: &mut impl Write, setup: &Setup, recording: &Recording) -> std::io::Result<()> {
@@ -29,4 +31,22 @@ fn io_error(error: ::csv::Error) -> std::io::Error {
         ::csv::ErrorKind::Io(error) => error,
         other => std::io::Error::other(format!("{other:?}")),
     }
+}
+
+/// Reads columns back, whatever their names.
+pub(crate) fn read(input: impl Read) -> Result<NamedColumns, TableError> {
+    let mut table = ::csv::Reader::from_reader(input);
+    let mut columns: NamedColumns = table.headers()?.iter().map(|name| (name.to_owned(), Vec::new())).collect();
+    let mut row = ::csv::StringRecord::new();
+    while table.read_record(&mut row)? {
+        // A line of another length was refused by the reader.
+        for (field, (name, values)) in row.iter().zip(&mut columns) {
+            let Ok(value) = field.parse() else {
+                let line = row.position().map_or(0, ::csv::Position::line);
+                return Err(TableError::NotANumber { line, column: name.clone(), found: field.to_owned() });
+            };
+            values.push(value);
+        }
+    }
+    Ok(columns)
 }

@@ -5,11 +5,13 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::error::{Action, EncodeError, OutputError};
+use super::inputs;
+use crate::scenario::inputs::INPUTS;
 
 /// The file whose presence says that a folder is complete: removed first and renamed last.
 const SEAL: &str = "summary.json";
 
-/// Every file that a run may write.
+/// Every file that a run may write, but for the copies of its inputs.
 pub(crate) const FILES: [&str; 9] = [
     "scenario.toml",
     "trajectory.parquet",
@@ -58,13 +60,32 @@ impl RunFolder {
             }
         }
         folder._lock = lock(path)?;
-        if !force && !is_empty(path)? {
+        if !force && !is_empty(path, false)? {
             return Err(OutputError::FolderNotEmpty { path: path.clone() });
         }
-        let probe = path.join(".forwardstep.partial");
-        File::create(&probe).map_err(io_error(Action::WriteInto, path))?;
-        fs::remove_file(&probe).map_err(io_error(Action::WriteInto, path))?;
+        folder.probe()?;
         Ok(folder)
+    }
+
+    /// Prepares a folder that is there for files that are written anew.
+    ///
+    /// # Errors
+    /// [`OutputError`] when it is no folder, is being written by a run, or cannot be written to.
+    pub fn open(path: impl Into<PathBuf>) -> Result<RunFolder, OutputError> {
+        let path = path.into();
+        if !path.is_dir() {
+            return Err(OutputError::NotAFolder { path });
+        }
+        let folder = RunFolder { _lock: lock(&path)?, path, made: Vec::new() };
+        folder.probe()?;
+        Ok(folder)
+    }
+
+    /// Finds out whether files can be written.
+    fn probe(&self) -> Result<(), OutputError> {
+        let probe = self.path.join(".forwardstep.partial");
+        File::create(&probe).map_err(io_error(Action::WriteInto, &self.path))?;
+        fs::remove_file(&probe).map_err(io_error(Action::WriteInto, &self.path))
     }
 
     /// Where it is.
@@ -75,6 +96,13 @@ impl RunFolder {
     /// Starts to write files into it.
     pub(crate) fn stage(&self) -> Staging<'_> {
         Staging { folder: self, names: Vec::new() }
+    }
+
+    /// Removes the folders between this one and a file of it that are empty.
+    fn remove_empty_above(&self, name: &str) {
+        for above in Path::new(name).ancestors().skip(1).filter(|above| !above.as_os_str().is_empty()) {
+            let _ = fs::remove_dir(self.path.join(above)); // only succeeds when it is empty
+        }
     }
 
     fn partial(&self, name: &str) -> PathBuf {
@@ -107,17 +135,25 @@ fn lock(path: &Path) -> Result<Option<File>, OutputError> {
     }
 }
 
-/// Nothing but leftovers under temporary names, and the folder for plots if it holds nothing else either.
-fn is_empty(path: &Path) -> Result<bool, OutputError> {
+/// Nothing but leftovers under temporary names, and the folders for plots and inputs if they hold nothing else either. Inputs
+/// may have any name, so among them whatever is named like a temporary file is one.
+fn is_empty(path: &Path, among_inputs: bool) -> Result<bool, OutputError> {
     let entries = fs::read_dir(path).map_err(io_error(Action::ReadFolder, path))?;
     for entry in entries {
         let entry = entry.map_err(io_error(Action::ReadFolder, path))?;
         let name = entry.file_name();
         let name = name.to_string_lossy();
-        let is_plots = name == "plots" && entry.file_type().is_ok_and(|kind| kind.is_dir());
+        let holds_inputs = among_inputs || name == INPUTS;
+        if (name == "plots" || holds_inputs) && entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+            if !is_empty(&entry.path(), holds_inputs)? {
+                return Ok(false);
+            }
+            continue;
+        }
         let is_leftover = name == ".forwardstep.partial"
-            || FILES.iter().filter_map(|f| f.rsplit('/').next()).any(|f| name == format!(".{f}.partial"));
-        if !(is_leftover || is_plots && is_empty(&entry.path())?) {
+            || FILES.iter().filter_map(|f| f.rsplit('/').next()).any(|f| name == format!(".{f}.partial"))
+            || among_inputs && name.starts_with('.') && name.ends_with(".partial");
+        if !is_leftover {
             return Ok(false);
         }
     }
@@ -132,16 +168,16 @@ fn io_error(action: Action, path: &Path) -> impl FnOnce(io::Error) -> OutputErro
 /// Files written under temporary names; those that were not [published](Staging::publish) vanish when this is dropped.
 pub(crate) struct Staging<'f> {
     folder: &'f RunFolder,
-    names: Vec<&'static str>,
+    names: Vec<String>,
 }
 
 impl Staging<'_> {
-    /// Writes one file under its temporary name, to the disk.
+    /// Writes one file under its temporary name, to the disk; its digest.
     pub(crate) fn write(
         &mut self,
-        name: &'static str,
+        name: &str,
         fill: impl FnOnce(&mut StagedFile) -> Result<(), FillError>,
-    ) -> Result<(), OutputError> {
+    ) -> Result<blake3::Hash, OutputError> {
         let path = self.folder.path.join(name);
         let partial = self.folder.partial(name);
         if let Some(parent) = partial.parent() {
@@ -153,20 +189,30 @@ impl Staging<'_> {
             .create_new(true)
             .open(&partial)
             .map_err(io_error(Action::CreateFile, &path))?;
-        self.names.push(name);
-        let mut staged = StagedFile { file: BufWriter::with_capacity(1 << 16, file), failure: None };
+        self.names.push(name.to_owned());
+        let mut staged = StagedFile::new(file);
         let filled = fill(&mut staged).and_then(|()| staged.finish().map_err(FillError::Io));
-        filled.map_err(|error| match (staged.failure.take(), error) {
+        let failed = |error| match (staged.failure.take(), error) {
             (Some(source), _) | (None, FillError::Io(source)) => {
                 OutputError::Io { action: Action::WriteFile, path, source }
             }
             (None, FillError::Encode(reason)) => OutputError::Encode { path, reason },
-        })
+        };
+        match filled {
+            Ok(()) => Ok(staged.digest.finalize()),
+            Err(error) => Err(failed(error)),
+        }
+    }
+
+    /// Writes a text.
+    pub(crate) fn write_text(&mut self, name: &str, text: &str) -> Result<blake3::Hash, OutputError> {
+        self.write(name, |out| Ok(out.write_all(text.as_bytes())?))
     }
 
     /// Gives all files their names, the seal last, and removes those of an earlier run that this one did not write.
     pub(crate) fn publish(mut self) -> Result<Vec<PathBuf>, OutputError> {
         let folder = self.folder;
+        let earlier = inputs::of_earlier_run(&folder.path);
         let remove = |name: &str| {
             let path = folder.path.join(name);
             match fs::remove_file(&path) {
@@ -177,10 +223,22 @@ impl Staging<'_> {
             }
         };
         remove(SEAL)?;
-        for name in FILES.iter().filter(|name| !self.names.contains(name)) {
+        let is_old = |name: &str| !self.names.iter().any(|new| new == name);
+        for name in FILES.into_iter().chain(earlier.iter().map(String::as_str)).filter(|name| is_old(name)) {
             remove(name)?;
+            folder.remove_empty_above(name);
         }
         self.names.sort_by_key(|name| *name == SEAL);
+        self.name_all()
+    }
+
+    /// Gives all files their names and leaves everything else in the folder as it is.
+    pub(crate) fn replace(self) -> Result<Vec<PathBuf>, OutputError> {
+        self.name_all()
+    }
+
+    fn name_all(self) -> Result<Vec<PathBuf>, OutputError> {
+        let folder = self.folder;
         let mut published = Vec::new();
         for name in &self.names {
             let path = folder.path.join(name);
@@ -195,8 +253,8 @@ impl Drop for Staging<'_> {
     fn drop(&mut self) {
         for name in &self.names {
             let _ = fs::remove_file(self.folder.partial(name));
+            self.folder.remove_empty_above(name);
         }
-        let _ = fs::remove_dir(self.folder.path.join("plots")); // only succeeds when it is empty
     }
 }
 
@@ -222,9 +280,15 @@ impl<E: Into<EncodeError>> From<E> for FillError {
 pub(crate) struct StagedFile {
     file: BufWriter<File>,
     failure: Option<io::Error>,
+    /// Of what was written so far.
+    digest: blake3::Hasher,
 }
 
 impl StagedFile {
+    fn new(file: File) -> Self {
+        StagedFile { file: BufWriter::with_capacity(1 << 16, file), failure: None, digest: blake3::Hasher::new() }
+    }
+
     fn finish(&mut self) -> io::Result<()> {
         self.flush()?;
         let synced = self.file.get_ref().sync_all();
@@ -246,6 +310,9 @@ impl StagedFile {
 impl Write for StagedFile {
     fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
         let result = self.file.write(buffer);
+        if let Some(written) = result.as_ref().ok().and_then(|written| buffer.get(..*written)) {
+            self.digest.update(written);
+        }
         self.watch(result)
     }
 

@@ -2,8 +2,9 @@
 
 use forwardstep_sim::recording::{Recording, Signal};
 use forwardstep_sim::setup::Setup;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use super::number;
 use super::record::Goal;
 use super::table::Table;
 
@@ -12,7 +13,7 @@ use super::table::Table;
 pub const LEDGER_FLOOR_J: f64 = 1e-6;
 
 /// What a run comes to. Agents and axes are indices from zero; numbers that are not finite are `null` in JSON.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Metrics {
     /// Rows of the recording.
     pub rows: usize,
@@ -35,16 +36,19 @@ pub struct Metrics {
 }
 
 /// max |q_i − q_j| over agents and axes, rad or m, or why there is no such number.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Disagreement {
     /// At the first and last row, and the largest of all rows.
     Measured {
         /// At the first row.
+        #[serde(deserialize_with = "number::or_nan")]
         initial: f64,
         /// At the last row.
+        #[serde(deserialize_with = "number::or_nan")]
         last: f64,
         /// The largest of all rows.
+        #[serde(deserialize_with = "number::or_nan")]
         largest: f64,
     },
     /// There is none.
@@ -62,7 +66,7 @@ impl Disagreement {
 }
 
 /// Why there is no disagreement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Absence {
     /// Nothing was recorded.
@@ -96,29 +100,32 @@ impl Absence {
 }
 
 /// A value, where and when.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peak {
     /// The agent.
     pub agent: usize,
     /// The axis.
     pub axis: usize,
     /// When, s.
+    #[serde(deserialize_with = "number::or_nan")]
     pub t_s: f64,
     /// The value.
+    #[serde(deserialize_with = "number::or_nan")]
     pub value: f64,
 }
 
 /// The speeds of a run, rad/s or m/s.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Speed {
     /// The largest |q̇|.
     pub largest: Peak,
     /// The largest |q̇| at the last row.
+    #[serde(deserialize_with = "number::or_nan")]
     pub last: f64,
 }
 
 /// The limit that was reached.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LimitKind {
     /// Lowest or highest position.
@@ -130,7 +137,7 @@ pub enum LimitKind {
 }
 
 /// A limit of an axis that was exceeded at some row; for efforts of agents that enforce their limits, that was reached.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LimitReached {
     /// The agent.
     pub agent: usize,
@@ -141,40 +148,51 @@ pub struct LimitReached {
     /// Whether the simulation kept to it; otherwise it is only reported.
     pub enforced: bool,
     /// The first row at which it was exceeded, s.
+    #[serde(deserialize_with = "number::or_nan")]
     pub first_t_s: f64,
     /// When it was exceeded most, s.
+    #[serde(deserialize_with = "number::or_nan")]
     pub worst_t_s: f64,
     /// The value then.
+    #[serde(deserialize_with = "number::or_nan")]
     pub worst: f64,
     /// The limit on that side.
+    #[serde(deserialize_with = "number::or_nan")]
     pub limit: f64,
     /// By how much.
+    #[serde(deserialize_with = "number::or_nan")]
     pub excess: f64,
     /// The share of rows at which it was exceeded, from 0 to 1.
+    #[serde(deserialize_with = "number::or_nan")]
     pub share: f64,
 }
 
 /// The largest |V + ∫ dissipation − V(0)| relative to V(0), but at least [`LEDGER_FLOOR_J`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LedgerError {
     /// Relative error.
+    #[serde(deserialize_with = "number::or_nan")]
     pub relative: f64,
     /// Of this agent.
     pub agent: usize,
     /// At this time, s.
+    #[serde(deserialize_with = "number::or_nan")]
     pub t_s: f64,
 }
 
 /// Predicted and reached value on one axis.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Agreement {
     /// The axis.
     pub axis: usize,
     /// What the agents were predicted to agree on.
+    #[serde(deserialize_with = "number::or_nan")]
     pub predicted: f64,
     /// The mean of their last positions.
+    #[serde(deserialize_with = "number::or_nan")]
     pub reached: f64,
     /// The largest distance of a last position from the prediction.
+    #[serde(deserialize_with = "number::or_nan")]
     pub distance: f64,
 }
 

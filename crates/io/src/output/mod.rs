@@ -11,6 +11,9 @@
 //! | `report.html` | one self-contained page that opens offline |
 //! | `plots/*.svg` | positions, torques, estimates and disagreement, one panel per joint |
 //! | `scenario.toml` | the text the run was made from |
+//! | `inputs/` | the files that this text names, so that the folder holds all that went into the run |
+//!
+//! [`SavedRun`] reads such a folder back, and writes the report and the plots anew from its tables.
 //!
 //! A run that broke down or was interrupted is written the same way, with the reason in front. Everything but the
 //! `timings` object of `summary.json` is the same for the same run, bit for bit.
@@ -19,26 +22,37 @@ mod csv;
 mod decimate;
 mod error;
 mod folder;
+mod inputs;
 mod metrics;
 pub mod names;
+mod number;
 mod palette;
 mod parquet;
 mod plots;
 mod record;
 mod report;
+mod restore;
+mod restore_error;
 pub mod summary;
 mod table;
 mod timeline;
 
+use std::collections::HashSet;
 use std::path::PathBuf;
 
 pub use error::{Action, EncodeError, OutputError};
 pub use folder::RunFolder;
+use folder::Staging;
 pub use metrics::{
     Absence, Agreement, Disagreement, DisagreementSeries, LEDGER_FLOOR_J, LedgerError, LimitKind, LimitReached,
     Metrics, Peak, Speed,
 };
 pub use record::{Goal, GoalOutcome, RunRecord, ending_sentence};
+pub use restore::{Remark, SavedRun};
+pub use restore_error::{RestoreError, SummaryError, TableError};
+
+const PARQUET: &str = "trajectory.parquet";
+const CSV: &str = "trajectory.csv";
 
 /// What to write besides the files that are always written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -57,16 +71,44 @@ pub struct Options {
 /// of an earlier one unless it fails while renaming.
 pub fn write_run(folder: &RunFolder, record: &RunRecord<'_>, options: Options) -> Result<Vec<PathBuf>, OutputError> {
     let recording = &record.outcome.recording;
-    let goal = record.goal.map(|outcome| outcome.goal);
-    let metrics = Metrics::of(record.setup, recording, record.predicted_agreement.as_deref(), goal);
+    let metrics = metrics(record);
     let mut staging = folder.stage();
-    staging.write("scenario.toml", |out| Ok(std::io::Write::write_all(out, record.scenario_text.as_bytes())?))?;
-    staging.write("trajectory.parquet", |out| Ok(parquet::write(out, record)?))?;
-    if options.csv {
-        staging.write("trajectory.csv", |out| Ok(csv::write(out, record.setup, recording)?))?;
+    staging.write_text("scenario.toml", record.scenario_text)?;
+    let mut copied = HashSet::new();
+    for (input, text) in inputs::copies(record.inputs) {
+        if !copied.contains(&input.file) {
+            staging.write_text(&input.file, text)?;
+            copied.insert(input.file);
+        }
     }
-    staging
-        .write("report.html", |out| Ok(std::io::Write::write_all(out, report::page(record, &metrics).as_bytes())?))?;
+    let mut tables = Vec::new();
+    let mut table = |file: &str, digest: blake3::Hash| {
+        tables.push(summary::TableFile { file: file.into(), digest_blake3: digest.to_hex().to_string() });
+    };
+    table(PARQUET, staging.write(PARQUET, |out| Ok(parquet::write(out, record)?))?);
+    if options.csv {
+        table(CSV, staging.write(CSV, |out| Ok(csv::write(out, record.setup, recording)?))?);
+    }
+    write_pictures(&mut staging, record, &metrics)?;
+    staging.write("summary.json", |out| Ok(summary::Summary::of(record, metrics, tables).write(out)?))?;
+    staging.publish()
+}
+
+/// Writes what is drawn from the tables, `report.html` and `plots/*.svg`, anew into a folder of a run, and leaves everything
+/// else in it as it is. Returns the files written.
+pub(crate) fn write_report(folder: &RunFolder, record: &RunRecord<'_>) -> Result<Vec<PathBuf>, OutputError> {
+    let mut staging = folder.stage();
+    write_pictures(&mut staging, record, &metrics(record))?;
+    staging.replace()
+}
+
+fn metrics(record: &RunRecord<'_>) -> Metrics {
+    let goal = record.goal.map(|outcome| outcome.goal);
+    Metrics::of(record.setup, &record.outcome.recording, record.predicted_agreement.as_deref(), goal)
+}
+
+fn write_pictures(staging: &mut Staging<'_>, record: &RunRecord<'_>, metrics: &Metrics) -> Result<(), OutputError> {
+    staging.write_text("report.html", &report::page(record, metrics))?;
     let plots = plots::Plots::of(record);
     let mut plot = |name, svg: Result<String, EncodeError>| {
         staging.write(name, |out| Ok(std::io::Write::write_all(out, svg?.as_bytes())?))
@@ -75,6 +117,5 @@ pub fn write_run(folder: &RunFolder, record: &RunRecord<'_>, options: Options) -
     plot("plots/torques.svg", plots.torques())?;
     plot("plots/estimates.svg", plots.estimates())?;
     plot("plots/disagreement.svg", plots.disagreement())?;
-    staging.write("summary.json", |out| Ok(summary::Summary::of(record, &metrics).write(out)?))?;
-    staging.publish()
+    Ok(())
 }

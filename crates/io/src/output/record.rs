@@ -6,6 +6,7 @@ use forwardstep_sim::setup::Setup;
 
 use super::metrics::Metrics;
 use super::names;
+use crate::scenario::InputFile;
 
 /// A finished run with all that was said about it before: what [`super::write_run`] writes.
 #[derive(Clone, Debug)]
@@ -16,6 +17,8 @@ pub struct RunRecord<'a> {
     pub scenario_name: &'a str,
     /// The scenario's text as it was read; copied to `scenario.toml`.
     pub scenario_text: &'a str,
+    /// The files that the scenario names; copied to `inputs/`.
+    pub inputs: &'a [InputFile],
     /// The version of forwardstep.
     pub version: &'a str,
     /// What was simulated.

@@ -1,74 +1,108 @@
 //! `summary.json`: what was promised and what happened, for programs.
+//!
+//! The structs below are the format: they write the document and read it back. What a report shows and neither the tables nor
+//! the scenario tell (how the run ended, what it cost, its notices) comes from here when a report is built anew.
 
 use std::io::Write;
+use std::time::Duration;
 
 use forwardstep_check::{Answer, Report};
-use forwardstep_sim::recording::{BreakdownCause, Ending};
+use forwardstep_sim::recording::{Breakdown, BreakdownCause, Column, Ending, Recording, Statistics};
 use forwardstep_sim::setup::Setup;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use super::inputs;
 use super::metrics::Metrics;
-use super::names;
 use super::record::{Goal, RunRecord, ending_sentence};
+use super::{names, number};
+use crate::scenario::inputs::content_digest;
 
 /// The format of this document; it grows when fields change their meaning or vanish, not when some are added.
 pub const FORMAT: u32 = 1;
 
-/// The whole document. Numbers that are not finite are `null`.
-#[derive(Clone, Debug, Serialize)]
-pub struct Summary<'a> {
+/// The whole document. Numbers that are not finite are `null`, and are NaN when read back.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
     /// [`FORMAT`].
     pub format: u32,
     /// The version of forwardstep.
-    pub version: &'a str,
+    pub version: String,
     /// The scenario's title.
-    pub title: &'a str,
+    pub title: String,
     /// The scenario.
-    pub scenario: Scenario<'a>,
+    pub scenario: Scenario,
     /// The agents, in the order that indices refer to.
-    pub agents: Vec<Agent<'a>>,
+    pub agents: Vec<Agent>,
     /// How the run ended.
     pub ending: How,
     /// The scenario's goal, if it has one.
     pub goal: Option<GoalMet>,
+    /// The files that the scenario names, and their copies.
+    pub inputs: Vec<Input>,
+    /// The tables with every recorded number.
+    pub tables: Vec<TableFile>,
     /// What was promised before the run.
-    pub verdicts: Verdicts<'a>,
+    pub verdicts: Verdicts,
     /// What happened.
-    pub metrics: &'a Metrics,
+    pub metrics: Metrics,
     /// Work of the integrator.
     pub solver: Solver,
     /// Remarks.
-    pub notices: &'a [String],
+    pub notices: Vec<String>,
     /// The only part that differs between two runs of the same scenario by the same version.
     pub timings: Timings,
 }
 
 /// Which scenario it was.
-#[derive(Clone, Debug, Serialize)]
-pub struct Scenario<'a> {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scenario {
     /// Its name.
-    pub name: &'a str,
+    pub name: String,
     /// The BLAKE3 digest of its text, in hexadecimal.
+    pub digest_blake3: String,
+    /// The digest of what it says apart from its title: comments and layout do not enter.
+    pub content_digest_blake3: Option<String>,
+}
+
+/// A file that the scenario names. Shipped robots are not among them.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Input {
+    /// Its name in the scenario.
+    pub name: String,
+    /// Its copy in the folder of the run.
+    pub file: String,
+    /// The BLAKE3 digest of the copy, in hexadecimal.
+    pub digest_blake3: String,
+}
+
+/// A table of the run.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TableFile {
+    /// Its name in the folder of the run.
+    pub file: String,
+    /// The BLAKE3 digest of the file, in hexadecimal.
     pub digest_blake3: String,
 }
 
 /// What indices of agents and axes refer to.
-#[derive(Clone, Debug, Serialize)]
-pub struct Agent<'a> {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Agent {
     /// The agent's name.
-    pub name: &'a str,
+    pub name: String,
     /// The names of its axes, as in the column names of the tables.
     pub axes: Vec<String>,
 }
 
 /// How a run ended.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct How {
     /// `completed`, `interrupted` or `broke_down`.
     pub kind: EndingKind,
     /// The simulated time that was reached, s.
+    #[serde(deserialize_with = "number::or_nan")]
     pub t_s: f64,
     /// The horizon, s.
+    #[serde(deserialize_with = "number::or_nan")]
     pub end_s: f64,
     /// The ending in one sentence.
     pub sentence: String,
@@ -77,7 +111,7 @@ pub struct How {
 }
 
 /// The three endings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EndingKind {
     /// The horizon was reached.
@@ -89,7 +123,7 @@ pub enum EndingKind {
 }
 
 /// The signal that broke a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BrokenSignal {
     /// The agent.
     pub agent: usize,
@@ -100,7 +134,7 @@ pub struct BrokenSignal {
 }
 
 /// Why a run broke down.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
     /// A number was no longer finite.
@@ -108,56 +142,59 @@ pub enum Cause {
     /// The error control asked for a step under the floor.
     StepUnderFloor {
         /// The step asked for, s.
+        #[serde(deserialize_with = "number::or_nan")]
         step_s: f64,
     },
     /// An enforced position limit was left.
     PositionLimit {
         /// The position, rad or m.
+        #[serde(deserialize_with = "number::or_nan")]
         value: f64,
         /// The limits.
+        #[serde(deserialize_with = "number::pair_or_nan")]
         limits: [f64; 2],
     },
 }
 
 /// A goal and whether it was met.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GoalMet {
     /// Bound on the final disagreement.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub disagreement_below: Option<f64>,
     /// True when the run was expected to diverge.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub expect_diverges: bool,
     /// Whether it was met.
     pub met: bool,
 }
 
 /// A [`Report`] in words.
-#[derive(Clone, Debug, Serialize)]
-pub struct Verdicts<'a> {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Verdicts {
     /// The theorem.
-    pub theorem: &'a str,
+    pub theorem: String,
     /// What it promises.
-    pub promises: &'a str,
+    pub promises: String,
     /// The worst answer.
-    pub worst: &'static str,
+    pub worst: String,
     /// Its hypotheses.
-    pub hypotheses: Vec<Verdict<'a>>,
+    pub hypotheses: Vec<Verdict>,
 }
 
 /// One hypothesis.
-#[derive(Clone, Debug, Serialize)]
-pub struct Verdict<'a> {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
     /// What is required.
-    pub requires: &'a str,
+    pub requires: String,
     /// `holds`, `holds on [0, end]`, `not covered by the paper` or `violated`.
-    pub answer: &'static str,
+    pub answer: String,
     /// Certificate or witness.
-    pub because: &'a str,
+    pub because: String,
 }
 
 /// Work of the integrator.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Solver {
     /// Accepted steps.
     pub steps: u64,
@@ -170,29 +207,37 @@ pub struct Solver {
 }
 
 /// Times that depend on the machine.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Timings {
     /// Time spent simulating, s.
+    #[serde(deserialize_with = "number::or_nan")]
     pub wall_s: f64,
     /// Simulated time per time spent.
+    #[serde(deserialize_with = "number::or_nan")]
     pub simulated_per_wall: f64,
 }
 
-impl<'a> Summary<'a> {
-    /// The summary of a run; `metrics` are those of its recording.
-    pub fn of(record: &'a RunRecord<'_>, metrics: &'a Metrics) -> Summary<'a> {
+impl Summary {
+    /// The summary of a run; `metrics` are those of its recording, `tables` the files that were written from it.
+    pub fn of(record: &RunRecord<'_>, metrics: Metrics, tables: Vec<TableFile>) -> Summary {
         let setup = record.setup;
         let statistics = &record.outcome.statistics;
         let ending = How::of(setup, &record.outcome.ending);
         let wall_s = statistics.wall.as_secs_f64();
         Summary {
             format: FORMAT,
-            version: record.version,
-            title: record.title,
-            scenario: Scenario { name: record.scenario_name, digest_blake3: record.digest() },
+            version: record.version.to_owned(),
+            title: record.title.to_owned(),
+            scenario: Scenario {
+                name: record.scenario_name.to_owned(),
+                digest_blake3: record.digest(),
+                content_digest_blake3: content_digest(record.scenario_text),
+            },
+            inputs: inputs::copies(record.inputs).into_iter().map(|(input, _)| input).collect(),
+            tables,
             agents: (setup.agents.iter().enumerate())
                 .map(|(i, agent)| Agent {
-                    name: &agent.name,
+                    name: agent.name.clone(),
                     axes: (0..agent.robot.axes.len()).map(|axis| names::axis_name(setup, i, axis)).collect(),
                 })
                 .collect(),
@@ -212,10 +257,17 @@ impl<'a> Summary<'a> {
                 evaluations: statistics.evaluations,
                 break_points: statistics.break_points,
             },
-            notices: &record.notices,
+            notices: record.notices.clone(),
             timings: Timings { wall_s, simulated_per_wall: ending.t_s / wall_s },
             ending,
         }
+    }
+
+    /// What the run cost.
+    pub(crate) fn statistics(&self) -> Statistics {
+        let Solver { steps, rejected, evaluations, break_points } = self.solver;
+        let wall = Duration::try_from_secs_f64(self.timings.wall_s).unwrap_or_default();
+        Statistics { steps, rejected, evaluations, break_points, wall }
     }
 
     /// Writes it as indented JSON.
@@ -243,17 +295,47 @@ impl How {
         };
         How { kind, t_s, end_s: setup.time.end_s, sentence: ending_sentence(setup, ending), breakdown }
     }
+
+    /// The ending again; nothing when `setup` has no signal of the name that broke down. `recording` is that of the run.
+    pub(crate) fn restore(&self, setup: &Setup, recording: &Recording) -> Option<Ending> {
+        let t_s = self.t_s;
+        Some(match (self.kind, &self.breakdown) {
+            (EndingKind::Completed, _) => Ending::Completed,
+            (EndingKind::Interrupted, _) => Ending::Interrupted { t_s },
+            (EndingKind::BrokeDown, None) => return None,
+            (EndingKind::BrokeDown, Some(BrokenSignal { agent, column, cause })) => {
+                let is_it =
+                    |c: &&Column| c.agent == *agent && names::column_name(setup, c.agent, c.signal, c.axis) == *column;
+                let broken = recording.columns.iter().find(is_it)?;
+                let cause = match *cause {
+                    Cause::NotFinite => BreakdownCause::NotFinite,
+                    Cause::StepUnderFloor { step_s } => BreakdownCause::StepUnderFloor { step_s },
+                    Cause::PositionLimit { value, limits } => {
+                        // JSON has no infinity. The table has, and ends with the row that broke the run.
+                        let last = broken.values.last().copied().unwrap_or(f64::NAN);
+                        BreakdownCause::PositionLimit { value: if value.is_finite() { value } else { last }, limits }
+                    }
+                };
+                let Column { agent, signal, axis, .. } = *broken;
+                Ending::BrokeDown(Breakdown { t_s, agent, signal, axis, cause })
+            }
+        })
+    }
 }
 
-impl<'a> Verdicts<'a> {
-    fn of(report: &'a Report) -> Self {
+impl Verdicts {
+    pub(crate) fn of(report: &Report) -> Self {
         let worst: Answer = report.worst();
         Verdicts {
-            theorem: &report.theorem,
-            promises: &report.promises,
-            worst: worst.words(),
+            theorem: report.theorem.clone(),
+            promises: report.promises.clone(),
+            worst: worst.words().to_owned(),
             hypotheses: (report.hypotheses.iter())
-                .map(|h| Verdict { requires: &h.requires, answer: h.answer.words(), because: &h.because })
+                .map(|h| Verdict {
+                    requires: h.requires.clone(),
+                    answer: h.answer.words().to_owned(),
+                    because: h.because.clone(),
+                })
                 .collect(),
         }
     }

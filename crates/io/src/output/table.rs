@@ -5,6 +5,9 @@ use std::collections::HashMap;
 use forwardstep_sim::recording::{Recording, Signal};
 use forwardstep_sim::setup::Setup;
 
+/// Columns of a table as they stand in a file, by their names.
+pub(crate) type NamedColumns = Vec<(String, Vec<f64>)>;
+
 /// Looks columns up; the map is never walked, so its order does not matter.
 pub(crate) struct Table<'a> {
     pub(crate) setup: &'a Setup,

@@ -1,13 +1,13 @@
 //! `[[agents]]` → [`AgentSetup`]s.
 
 use std::collections::HashMap;
-use std::path::Path;
 
 use forwardstep_sim::AgentSetup;
 
 use super::at::At;
 use super::fault::{Fault, count, fault, filled, positive};
 use super::file::{AgentFile, AgentReferenceFile, ReferenceFile, ScenarioFile};
+use super::inputs::InputFolder;
 use super::law::law;
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
@@ -34,7 +34,7 @@ struct Population<'a> {
 pub(super) fn agents(
     file: &ScenarioFile,
     source: &SourceText,
-    folder: Option<&Path>,
+    folder: &mut InputFolder,
     notices: &mut Vec<Notice>,
 ) -> Result<Vec<AgentSetup>, Stop> {
     let mut populations: Vec<Population<'_>> = Vec::new();

@@ -135,8 +135,8 @@ pub struct RandomGraphFile {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CsvFile {
-    /// The CSV file, beside the scenario file. Its first line names its columns: `from`, `to` and, if wanted, `weight` and
-    /// `delay_s`. Where one of these two is left empty, the network's own holds.
+    /// The CSV file, beside the scenario file or in `inputs` beside it. Its first line names its columns: `from`, `to` and, if
+    /// wanted, `weight` and `delay_s`. Where one of these two is left empty, the network's own holds.
     pub file: At<String>,
 }
 

@@ -40,6 +40,7 @@ mod edges;
 pub mod edges_file;
 mod fault;
 pub mod file;
+pub(crate) mod inputs;
 mod law;
 mod network;
 pub mod network_file;
@@ -56,7 +57,7 @@ mod template;
 pub mod values;
 
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use forwardstep_sim::{AgentSetup, Exchange, Law, Method, ReferenceKind, Setup, Solver, TimeSpan};
 use miette::Diagnostic;
@@ -64,6 +65,7 @@ use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+pub use inputs::InputFile;
 pub use notice::Notice;
 pub use open::{OpenError, open_scenario};
 pub use problem::ScenarioProblem;
@@ -81,6 +83,7 @@ use file::{
     AdaptiveMethodFile, ConsensusFile, ExchangeFile, ExpectFile, GoalFile, MethodFile, ReferenceFile, ScenarioFile,
     SolverFile,
 };
+use inputs::InputFolder;
 use robots::Stop;
 
 /// Numbers that a recording may hold; eight bytes each.
@@ -102,6 +105,8 @@ pub struct Scenario {
     pub goal: Option<Goal>,
     /// What the user should know.
     pub notices: Vec<Notice>,
+    /// The files that it names, as they were read, each once; shipped robots are not among them.
+    pub inputs: Vec<InputFile>,
 }
 
 /// A mistake in a scenario, or in a file that it names.
@@ -144,15 +149,30 @@ impl Diagnostic for ScenarioError {
     }
 }
 
-/// Reads a scenario. Files that it names are looked for in `folder`; robots then among the shipped ones.
+/// Reads a scenario. Files that it names are looked for in `folder`, then in `folder/inputs`; robots then among the shipped
+/// ones.
 ///
 /// # Errors
 /// The first mistake, at its place in the scenario or in a file that it names. Any text gives a result; none panics.
 pub fn read_scenario(name: &str, source: &SourceText, folder: Option<&Path>) -> Result<Scenario, ScenarioError> {
+    read_with(name, source, InputFolder::new(folder, Vec::new()))
+}
+
+/// The same with some of its files elsewhere: `moved` has their names and paths.
+pub(crate) fn read_moved_scenario(
+    name: &str,
+    source: &SourceText,
+    folder: &Path,
+    moved: Vec<(String, PathBuf)>,
+) -> Result<Scenario, ScenarioError> {
+    read_with(name, source, InputFolder::new(Some(folder), moved))
+}
+
+fn read_with(name: &str, source: &SourceText, folder: InputFolder) -> Result<Scenario, ScenarioError> {
     read(name, source, folder).map_err(|stop| stop.in_file(source))
 }
 
-fn read(name: &str, source: &SourceText, folder: Option<&Path>) -> Result<Scenario, Stop> {
+fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scenario, Stop> {
     let file = parse(source)?;
     if file.format.value != 1 {
         return Err(fault(&file.format, ScenarioProblem::Format { found: file.format.value }).into());
@@ -161,9 +181,9 @@ fn read(name: &str, source: &SourceText, folder: Option<&Path>) -> Result<Scenar
     let end_s = positive("end_s", &file.time.end_s)?;
     let every = file.time.record_every_s.as_ref();
     let record_every_s = every.map_or(Ok(RECORD_EVERY_S), |every| positive("record_every_s", every))?;
-    let agents = agents::agents(&file, source, folder, &mut notices)?;
+    let agents = agents::agents(&file, source, &mut folder, &mut notices)?;
     let names: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
-    let network = network::network(&file.network.value, &names, end_s, source, folder, &mut notices)
+    let network = network::network(&file.network.value, &names, end_s, source, &mut folder, &mut notices)
         .map_err(|fault| fault.at(&file.network.span))?;
     let (reference, exchange) = reference(&file.reference.value)?;
     let axes = agents.first().map_or(0, |agent| agent.robot.axes.len());
@@ -186,6 +206,7 @@ fn read(name: &str, source: &SourceText, folder: Option<&Path>) -> Result<Scenar
         setup,
         goal: file.goal.as_ref().map(goal).transpose()?,
         notices,
+        inputs: folder.into_read(),
     })
 }
 

@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::ops::Range;
-use std::path::Path;
 
 use forwardstep_sim::Network;
 use forwardstep_sim::delay::Delay;
@@ -11,6 +10,7 @@ use forwardstep_sim::schedule::{Phase, Schedule};
 
 use super::at::At;
 use super::fault::{Fault, fault, filled, not_negative, positive, seed, values};
+use super::inputs::InputFolder;
 use super::network_file::{DelayFile, NetworkFile, PhaseFile, SwitchingFile};
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
@@ -25,7 +25,7 @@ pub(super) fn network(
     names: &[String],
     end_s: f64,
     source: &SourceText,
-    folder: Option<&Path>,
+    folder: &mut InputFolder,
     notices: &mut Vec<Notice>,
 ) -> Result<Network, Fault> {
     let mut reader = NetworkReader {
@@ -68,7 +68,7 @@ pub(super) struct NetworkReader<'a> {
     pub(super) edges_so_far: u64,
     end_s: f64,
     pub(super) source: &'a SourceText,
-    pub(super) folder: Option<&'a Path>,
+    pub(super) folder: &'a mut InputFolder,
 }
 
 impl NetworkReader<'_> {

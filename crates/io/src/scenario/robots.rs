@@ -1,7 +1,5 @@
 //! `robot` of an agent → [`RobotSetup`].
 
-use std::path::Path;
-
 use forwardstep_core::robot::PlanarLinks;
 use forwardstep_sim::{Axis, AxisUnit, RobotKind, RobotSetup};
 
@@ -9,9 +7,10 @@ use super::ScenarioError;
 use super::at::At;
 use super::fault::{Fault, count, fault, not_negative, positive};
 use super::file::{FrictionFile, PlanarArmFile, PointMassFile, RobotFile, UrdfFile};
+use super::inputs::InputFolder;
 use super::problem::ScenarioProblem;
 use super::values::Named;
-use crate::files::{ReadError, neighbours, read_text};
+use crate::files::ReadError;
 use crate::urdf::{self, FrictionPolicy, UrdfOptions, UrdfProblem};
 use crate::{InputError, SourceText};
 
@@ -50,7 +49,7 @@ pub(super) struct ReadRobot {
 }
 
 /// Builds a robot; `folder` is where files that it names are looked for before the shipped ones.
-pub(super) fn robot(file: &At<RobotFile>, folder: Option<&Path>) -> Result<ReadRobot, Stop> {
+pub(super) fn robot(file: &At<RobotFile>, folder: &mut InputFolder) -> Result<ReadRobot, Stop> {
     let robot = match &file.value {
         RobotFile::Urdf(file) => return from_urdf(file, folder),
         RobotFile::PlanarArm(arm) => {
@@ -61,7 +60,7 @@ pub(super) fn robot(file: &At<RobotFile>, folder: Option<&Path>) -> Result<ReadR
     Ok(ReadRobot { robot, notices: Vec::new() })
 }
 
-fn from_urdf(file: &UrdfFile, folder: Option<&Path>) -> Result<ReadRobot, Stop> {
+fn from_urdf(file: &UrdfFile, folder: &mut InputFolder) -> Result<ReadRobot, Stop> {
     let source = robot_text(&file.file, folder)?;
     let usual = UrdfOptions::default();
     let options = UrdfOptions {
@@ -97,23 +96,21 @@ fn lock_of<'a>(problem: &UrdfProblem, locked: &'a Named) -> Option<&'a (At<Strin
 }
 
 /// The text of a robot file: beside the scenario if there is one, else the shipped robot of that name.
-fn robot_text(file: &At<String>, folder: Option<&Path>) -> Result<SourceText, Fault> {
+fn robot_text(file: &At<String>, folder: &mut InputFolder) -> Result<SourceText, Fault> {
     let name = file.value.as_str();
-    let mut reason = ReadError::Missing;
-    let mut known: Vec<String> = urdf::SHIPPED_ROBOTS.iter().map(|(name, _)| format!("{name}.urdf")).collect();
-    if let Some(folder) = folder {
-        let path = folder.join(name);
-        match read_text(&path) {
-            Ok(text) => return Ok(SourceText::new(path.display().to_string(), text)),
-            Err(error) => reason = error,
-        }
-        known.extend(neighbours(&path, "urdf"));
-    }
+    let reason = match folder.text(name) {
+        Ok(source) => return Ok(source),
+        Err(reason) => reason,
+    };
+    // A shipped robot must not stand in for a file that is known to have been read.
     if reason == ReadError::Missing
+        && folder.moved(name).is_none()
         && let Some(text) = urdf::shipped_robot(name)
     {
         return Ok(SourceText::new(name, text));
     }
+    let mut known: Vec<String> = urdf::SHIPPED_ROBOTS.iter().map(|(name, _)| format!("{name}.urdf")).collect();
+    known.extend(folder.neighbours(name, "urdf"));
     Err(fault(file, ScenarioProblem::RobotFile { file: name.into(), reason, known }))
 }
 

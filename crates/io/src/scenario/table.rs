@@ -5,16 +5,16 @@
 
 use std::borrow::Cow;
 use std::ops::Range;
-use std::path::Path;
 
 use thiserror::Error;
 
 use super::at::At;
 use super::de::quoted;
 use super::fault::{Fault, LARGEST, fault};
+use super::inputs::InputFolder;
 use super::problem::ScenarioProblem;
 use crate::SourceText;
-use crate::files::{ReadError, neighbours, read_text};
+use crate::files::ReadError;
 use crate::wording::{choose, entry_count};
 
 /// Why a table has no meaning.
@@ -104,16 +104,12 @@ pub(super) struct Column {
 pub(super) type Cell<'a> = At<Cow<'a, str>>;
 
 /// The text of a table beside the scenario.
-pub(super) fn table_text(file: &At<String>, folder: Option<&Path>) -> Result<SourceText, Fault> {
+pub(super) fn table_text(file: &At<String>, folder: &mut InputFolder) -> Result<SourceText, Fault> {
     let name = file.value.as_str();
-    let (reason, known) = match folder.map(|folder| folder.join(name)) {
-        None => (ReadError::Missing, Vec::new()),
-        Some(path) => match read_text(&path) {
-            Ok(text) => return Ok(SourceText::new(path.display().to_string(), text)),
-            Err(kind) => (kind, neighbours(&path, "csv")),
-        },
-    };
-    Err(fault(file, TableProblem::File { file: name.into(), reason, known }.into()))
+    folder.text(name).map_err(|reason| {
+        let known = folder.neighbours(name, "csv");
+        fault(file, TableProblem::File { file: name.into(), reason, known }.into())
+    })
 }
 
 /// The lines of a table below its header, each with one cell per column of `columns`, in their order. A cell is empty where

@@ -75,7 +75,9 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
                         @for note in &payload.notes { p { (note) } }
                         p {
                             "Beside this page: " code { "trajectory.parquet" } " with every recorded number, " code { "summary.json" }
-                            " for programs, " code { "plots/" } " for print, and " code { "scenario.toml" } " to run it again."
+                            " for programs, " code { "plots/" } " for print, and " code { "scenario.toml" } " to run it again"
+                            @if !record.inputs.is_empty() { ", with the files that it names in " code { "inputs/" } }
+                            "."
                         }
                     }
                 }

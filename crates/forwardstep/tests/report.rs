@@ -1,0 +1,464 @@
+//! `forwardstep report`: the report of a run, built anew from its folder.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use assert_cmd::assert::Assert;
+use tempfile::TempDir;
+
+/// Two arms that estimate; a `[goal]` or `[solver]` may follow.
+const ARMS: &str = r#"
+format = 1
+title = "Two arms"
+time = { end_s = 3, record_every_s = 0.1 }
+[[agents]]
+name = "arm"
+count = 2
+robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }
+start.position_rad = [[0.1, 0.2], [0.3, 0.4]]
+[reference.consensus]
+roots_per_s = [1.0, 2.0]
+exchange = "position_velocity"
+[network]
+delay.saw_tooth = { min_s = 0.1, max_s = 0.2, period_s = 0.7 }
+edges = [["arm-1", "arm-2"], ["arm-2", "arm-1"]]
+"#;
+
+/// Three pendulums from files beside the scenario, below it, and elsewhere.
+const FILES: &str = r#"
+format = 1
+title = "Three pendulums"
+time = { end_s = 2, record_every_s = 0.1 }
+[[agents]]
+name = "here"
+count = 2
+robot.urdf.file = "pendulum.urdf"
+start.position_rad = [[0.1], [0.5]]
+[[agents]]
+name = "there"
+robot.urdf.file = "../elsewhere.urdf"
+start.position_rad = [0.9]
+[reference.consensus]
+roots_per_s = [1.0, 2.0]
+exchange = "position_velocity"
+[law.known]
+[network]
+delay.constant_s = 0.1
+edges.csv.file = "./tables/edges.csv"
+"#;
+
+const PENDULUM: &str = r#"<robot name="pendulum">
+  <link name="base"/>
+  <link name="rod">
+    <inertial>
+      <origin xyz="0 0 -0.5"/><mass value="2"/>
+      <inertia ixx="0.2" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.01"/>
+    </inertial>
+    <visual><geometry><box size="1 1 1"/></geometry></visual>
+  </link>
+  <joint name="hinge" type="revolute">
+    <parent link="base"/><child link="rod"/><axis xyz="0 1 0"/>
+    <limit lower="-2" upper="2" effort="50" velocity="5"/>
+  </joint>
+</robot>
+"#;
+
+fn folder() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+fn forwardstep(folder: &TempDir, arguments: &[&str]) -> Assert {
+    Command::cargo_bin("forwardstep").unwrap().current_dir(folder).args(arguments).assert()
+}
+
+fn stderr(assert: &Assert) -> String {
+    String::from_utf8(assert.get_output().stderr.clone()).unwrap()
+}
+
+/// Every file below a folder.
+fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    fn collect(folder: &Path, prefix: &str, found: &mut BTreeMap<String, Vec<u8>>) {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = format!("{prefix}{}", path.file_name().unwrap().to_str().unwrap());
+            if path.is_dir() {
+                collect(&path, &format!("{name}/"), found);
+            } else {
+                found.insert(name, fs::read(&path).unwrap());
+            }
+        }
+    }
+    let mut found = BTreeMap::new();
+    collect(folder, "", &mut found);
+    found
+}
+
+/// The names of files that differ, or that only one of two folders has.
+fn differences(one: &BTreeMap<String, Vec<u8>>, other: &BTreeMap<String, Vec<u8>>) -> Vec<String> {
+    let names = one.keys().chain(other.keys().filter(|name| !one.contains_key(*name)));
+    names.filter(|name| one.get(*name) != other.get(*name)).cloned().collect()
+}
+
+fn remove_pictures(run: &Path) {
+    fs::remove_file(run.join("report.html")).unwrap();
+    fs::remove_dir_all(run.join("plots")).unwrap();
+}
+
+/// Takes the pictures out of a folder and has them built again: the folder must be what it was, byte for byte.
+fn is_rebuilt(folder: &TempDir, run: &str) {
+    let path = folder.path().join(run);
+    let before = contents(&path);
+    assert!(before.contains_key("report.html") && before.contains_key("plots/torques.svg"));
+    remove_pictures(&path);
+    let again = forwardstep(folder, &["report", run]).success();
+    assert_eq!(stderr(&again), "", "nothing changed, so nothing is remarked");
+    let files = String::from_utf8(again.get_output().stdout.clone()).unwrap();
+    assert_eq!(files.lines().count(), 5, "{files}");
+    assert!(files.contains("report.html"), "{files}");
+    assert_eq!(differences(&before, &contents(&path)), [""; 0]);
+}
+
+#[test]
+fn shipped_scenarios_are_rebuilt_byte_for_byte() {
+    let folder = folder();
+    for scenario in ["six-arms", "first-order", "theorem-2", "ten-different-robots", "backstepping"] {
+        forwardstep(&folder, &["run", scenario]).success();
+        is_rebuilt(&folder, &format!("forwardstep-runs/{scenario}"));
+    }
+}
+
+#[test]
+fn broken_runs_are_rebuilt_byte_for_byte() {
+    let folder = folder();
+    let step = "[solver]\nmin_step_s = 5e-3\nmethod.adaptive = { rtol = 1e-13, atol = 1e-13 }";
+    fs::write(folder.path().join("step.toml"), format!("{ARMS}{step}")).unwrap();
+    forwardstep(&folder, &["run", "step.toml"]).code(3);
+    is_rebuilt(&folder, "forwardstep-runs/step");
+
+    let limit = FILES.replace("\"there\"\n", "\"there\"\nenforce_limits = true\nstart.velocity_rad_s = [30]\n");
+    fs::create_dir_all(folder.path().join("a/tables")).unwrap();
+    fs::write(folder.path().join("a/limit.toml"), limit).unwrap();
+    fs::write(folder.path().join("a/pendulum.urdf"), PENDULUM).unwrap();
+    fs::write(folder.path().join("elsewhere.urdf"), PENDULUM).unwrap();
+    fs::write(folder.path().join("a/tables/edges.csv"), "from,to\nhere-1,there\nthere,here-2\nhere-2,here-1\n")
+        .unwrap();
+    let broken = stderr(&forwardstep(&folder, &["run", "a/limit.toml"]).code(3));
+    assert!(broken.contains("there.q.hinge left its limits"), "{broken}");
+    is_rebuilt(&folder, "forwardstep-runs/limit");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_is_rebuilt_byte_for_byte_when_it_has_ended() {
+    use std::io::{BufRead, BufReader};
+    use std::process::{Command as Process, Stdio};
+
+    let folder = folder();
+    // Years of simulated time, so that it cannot end by itself.
+    let long = ARMS
+        .replace("end_s = 3, record_every_s = 0.1", "end_s = 1e8, record_every_s = 100")
+        .replace("saw_tooth = { min_s = 0.1, max_s = 0.2, period_s = 0.7 }", "constant_s = 0.1");
+    fs::write(folder.path().join("long.toml"), long).unwrap();
+    let mut run = Process::new(assert_cmd::cargo::cargo_bin("forwardstep"))
+        .current_dir(&folder)
+        .args(["run", "long.toml", "--out", "long"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(run.stdout.take().unwrap()).lines();
+    // The verdicts are printed when the folder is taken and the handler is in place.
+    assert_eq!(lines.next().unwrap().unwrap(), "Two arms");
+    let error = stderr(&forwardstep(&folder, &["report", "long"]).code(2));
+    assert!(error.contains("there is no summary.json in it") && error.contains("was not finished"), "{error}");
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    Process::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap();
+    lines.for_each(drop);
+    assert_eq!(run.wait().unwrap().code(), Some(130));
+    is_rebuilt(&folder, "long");
+}
+
+#[test]
+fn csv_serves_where_there_is_no_parquet() {
+    let folder = folder();
+    fs::write(folder.path().join("arms.toml"), ARMS).unwrap();
+    forwardstep(&folder, &["run", "arms.toml", "--csv", "--out", "run"]).success();
+    let run = folder.path().join("run");
+    fs::remove_file(run.join("trajectory.parquet")).unwrap();
+    is_rebuilt(&folder, "run");
+    // One that was saved by another program may differ in its text.
+    let table = fs::read_to_string(run.join("trajectory.csv")).unwrap();
+    fs::write(run.join("trajectory.csv"), table.replace('\n', "\r\n")).unwrap();
+    let report = fs::read_to_string(run.join("report.html")).unwrap();
+    let note = stderr(&forwardstep(&folder, &["report", "run"]).success());
+    assert!(note.starts_with("note: trajectory.csv is not as the run wrote it"), "{note}");
+    let data = |page: &str| page.split_once("<script id=\"block\"").unwrap().1.to_owned();
+    let page = fs::read_to_string(run.join("report.html")).unwrap();
+    assert!(page.contains("trajectory.csv is not as the run wrote it"));
+    assert!(data(&page) == data(&report), "the same numbers are drawn");
+}
+
+#[test]
+fn a_folder_holds_all_that_went_into_its_run() {
+    let folder = folder();
+    let path = folder.path();
+    fs::create_dir_all(path.join("mine/tables")).unwrap();
+    fs::write(path.join("mine/fleet.toml"), FILES).unwrap();
+    fs::write(path.join("mine/pendulum.urdf"), PENDULUM).unwrap();
+    fs::write(path.join("elsewhere.urdf"), PENDULUM.replace("value=\"2\"", "value=\"3\"")).unwrap();
+    fs::write(path.join("mine/tables/edges.csv"), "from,to\nhere-1,there\nthere,here-2\nhere-2,here-1\n").unwrap();
+    forwardstep(&folder, &["run", "mine/fleet.toml", "--out", "run"]).success();
+    let files = contents(&path.join("run"));
+    assert_eq!(files["scenario.toml"], FILES.as_bytes());
+    assert_eq!(files["inputs/pendulum.urdf"], PENDULUM.as_bytes());
+    for name in ["inputs/tables/edges.csv", "inputs/outside/elsewhere.urdf"] {
+        assert!(files.contains_key(name), "{:?}", files.keys());
+    }
+
+    // The report needs nothing but the folder, wherever it is.
+    fs::remove_dir_all(path.join("mine")).unwrap();
+    fs::remove_file(path.join("elsewhere.urdf")).unwrap();
+    fs::create_dir(path.join("archive")).unwrap();
+    fs::rename(path.join("run"), path.join("archive/run")).unwrap();
+    is_rebuilt(&folder, "archive/run");
+
+    // Nor does a run of its scenario, when all names lead downwards.
+    let error = stderr(&forwardstep(&folder, &["run", "archive/run/scenario.toml", "--out", "again"]).code(2));
+    assert!(error.contains("`../elsewhere.urdf`: there is no such file"), "{error}");
+    fs::write(path.join("archive/elsewhere.urdf"), &files["inputs/outside/elsewhere.urdf"]).unwrap();
+    forwardstep(&folder, &["run", "archive/run/scenario.toml", "--out", "again"]).success();
+    let again = contents(&path.join("again"));
+    for name in ["inputs/pendulum.urdf", "inputs/tables/edges.csv", "plots/positions.svg", "plots/torques.svg"] {
+        assert!(again[name] == files[name], "{name} differs");
+    }
+
+    // What an earlier run left goes, unless somebody changed it.
+    fs::write(path.join("again/inputs/tables/edges.csv"), "mine now").unwrap();
+    forwardstep(&folder, &["run", "first-order", "--out", "again", "--force"]).success();
+    let names: Vec<_> = contents(&path.join("again")).into_keys().filter(|name| name.contains("inputs")).collect();
+    assert_eq!(names, ["inputs/tables/edges.csv"]);
+}
+
+/// The text of a page before its numbers.
+fn words(run: &Path) -> String {
+    let page = fs::read_to_string(run.join("report.html")).unwrap();
+    page.split_once("<script id=\"index\"").unwrap().0.to_owned()
+}
+
+#[test]
+fn what_changed_since_the_run_is_said() {
+    let folder = folder();
+    let path = folder.path();
+    fs::write(path.join("pendulum.urdf"), PENDULUM).unwrap();
+    fs::write(
+        path.join("fleet.toml"),
+        FILES.replace("../elsewhere", "pendulum").replace(".csv.file = \"./tables/edges.csv\"", ".ring = {}"),
+    )
+    .unwrap();
+    forwardstep(&folder, &["run", "fleet.toml", "--out", "run"]).success();
+    let run = path.join("run");
+    let sound = contents(&run);
+    let text = |name: &str| String::from_utf8(sound[name].clone()).unwrap();
+    let changed = |name: &str, from: &str, to: &str| {
+        let old = text(name);
+        assert!(old.contains(from), "{from}");
+        fs::write(run.join(name), old.replace(from, to)).unwrap();
+        let note = stderr(&forwardstep(&folder, &["report", "run"]).success());
+        fs::write(run.join(name), old).unwrap();
+        assert_eq!(contents(&run)["summary.json"], sound["summary.json"], "the record of the run stays");
+        note
+    };
+    // A title may change, and so may comments.
+    assert_eq!(changed("scenario.toml", "title = \"Three pendulums\"", "# Mine\ntitle = \"A better title\""), "");
+    assert!(words(&run).contains("<h1>A better title</h1>"));
+    let note = changed("scenario.toml", "delay.constant_s = 0.1", "delay.constant_s = 0.2");
+    assert!(note.starts_with("note: scenario.toml was changed after the run"), "{note}");
+    assert!(note.contains("note: the verdicts were worked out anew"), "no delay exceeds another number: {note}");
+    assert!(words(&run).contains("scenario.toml was changed after the run"));
+    let note = changed("inputs/pendulum.urdf", "effort=\"50\"", "effort=\"1\"");
+    assert!(note.starts_with("note: `pendulum.urdf`, which the scenario names, is not what it was"), "{note}");
+    let note = changed("summary.json", "\"version\": \"", "\"version\": \"0.0.");
+    assert!(note.starts_with("note: simulated by forwardstep 0.0."), "{note}");
+    assert!(words(&run).contains("this page was made by forwardstep"));
+    // With everything as it was, so is the report.
+    forwardstep(&folder, &["report", "run"]).success();
+    assert_eq!(differences(&sound, &contents(&run)), [""; 0]);
+}
+
+#[test]
+fn what_is_wrong_is_said_and_nothing_is_harmed() {
+    let folder = folder();
+    fs::write(folder.path().join("arms.toml"), ARMS).unwrap();
+    forwardstep(&folder, &["run", "arms.toml", "--csv", "--out", "run"]).success();
+    let run = folder.path().join("run");
+    let sound = contents(&run);
+    let text = |name: &str| String::from_utf8(sound[name].clone()).unwrap();
+    let table = text("trajectory.csv");
+    let cut = table.len() * 2 / 3;
+    let whole_lines = table[..cut].rfind('\n').unwrap() + 1;
+    let half_a_table = sound["trajectory.parquet"][..sound["trajectory.parquet"].len() / 2].to_vec();
+    let mut one_bit = sound["trajectory.parquet"].clone();
+    one_bit[1000] ^= 1;
+    let replaced = |name: &str, from: &str, to: &str| {
+        assert!(text(name).contains(from), "{from}");
+        text(name).replacen(from, to, 1).into_bytes()
+    };
+    let without = "trajectory.parquet";
+    // The file, what stands in it instead, whether Parquet is out of the way, and what is said about it.
+    let cases: Vec<(&str, Option<Vec<u8>>, &str, &str)> = vec![
+        ("summary.json", None, "", "holds no whole run: there is no summary.json in it"),
+        ("summary.json", Some(b"{".to_vec()), "", "not a summary as runs write it: EOF while parsing"),
+        ("summary.json", Some(b"[]".to_vec()), "", "not a summary as runs write it"),
+        ("summary.json", Some(vec![0xff]), "", "it is no UTF-8 text"),
+        (
+            "summary.json",
+            Some(b"{\"format\": 2}".to_vec()),
+            "",
+            "its format is 2, and this version of forwardstep reads",
+        ),
+        ("summary.json", Some(replaced("summary.json", "\"kind\"", "\"king\"")), "", "missing field `kind` at line"),
+        (
+            "summary.json",
+            Some(replaced("summary.json", "\"kind\": \"completed\"", "\"kind\": \"broke_down\"")),
+            "",
+            "it says that nothing broke down, and the scenario has no such signal",
+        ),
+        (
+            "summary.json",
+            Some(replaced(
+                "summary.json",
+                "\"inputs\": []",
+                "\"inputs\": [{\"name\": \"a\", \"file\": \"../a\", \"digest_blake3\": \"\"}]",
+            )),
+            "",
+            "the copy of an input is `../a`, which is not in `inputs/`",
+        ),
+        ("scenario.toml", None, "", "there is no scenario.toml in it"),
+        (
+            "scenario.toml",
+            Some(replaced("scenario.toml", "end_s", "ens_s")),
+            "",
+            "run/scenario.toml:4:10: unknown key `ens_s`",
+        ),
+        ("scenario.toml", Some(replaced("scenario.toml", "\"arm\"", "\"leg\"")), "", "there is no agent `arm-1`"),
+        (
+            "scenario.toml",
+            Some(text("scenario.toml").replace("\"arm", "\"leg").into_bytes()),
+            "",
+            "there is no column `leg-1.q.1`",
+        ),
+        (
+            "scenario.toml",
+            Some(replaced("scenario.toml", "[network]", "[law.known]\n[network]")),
+            "",
+            "records the column `arm-1.theta_hat.",
+        ),
+        ("trajectory.parquet", Some(half_a_table), "", "trajectory.parquet`: it was changed or damaged since the run"),
+        ("trajectory.parquet", Some(one_bit), "", "trajectory.parquet`: it was changed or damaged since the run"),
+        ("trajectory.parquet", Some(Vec::new()), "", "trajectory.parquet`: it was changed or damaged since the run"),
+        ("trajectory.csv", None, without, "there is no trajectory.parquet or trajectory.csv in it"),
+        ("trajectory.csv", Some(Vec::new()), without, "there is no column `t_s`"),
+        ("trajectory.csv", Some(table.as_bytes()[..cut].to_vec()), without, "found record with"),
+        ("trajectory.csv", Some(table.as_bytes()[..whole_lines].to_vec()), without, "rows, and the run wrote 31"),
+        (
+            "trajectory.csv",
+            Some(replaced("trajectory.csv", "\n0.1,", "\nsoon,")),
+            without,
+            "line 3: `soon` in the column `t_s` is no number",
+        ),
+        ("trajectory.csv", Some(replaced("trajectory.csv", "\n0.1,", "\n7,")), without, "time does not rise at row 3"),
+        (
+            "trajectory.csv",
+            Some(replaced("trajectory.csv", "arm-1.q.1", "arm-1.p.1")),
+            without,
+            "there is no column `arm-1.q.1`",
+        ),
+        (
+            "trajectory.csv",
+            Some(replaced("trajectory.csv", "arm-1.q.1", "arm-1.q.2")),
+            without,
+            "two columns `arm-1.q.2`",
+        ),
+    ];
+    for (name, instead, out_of_the_way, expected) in cases {
+        match instead {
+            Some(bytes) => fs::write(run.join(name), bytes).unwrap(),
+            None => fs::remove_file(run.join(name)).unwrap(),
+        }
+        if !out_of_the_way.is_empty() {
+            fs::remove_file(run.join(out_of_the_way)).unwrap();
+        }
+        let before = contents(&run);
+        let error = stderr(&forwardstep(&folder, &["report", "run"]).code(2));
+        assert!(error.contains(expected), "{expected}: {error}");
+        assert!(error.contains("help: "), "what to do: {error}");
+        assert_eq!(differences(&before, &contents(&run)), [""; 0], "{expected}");
+        for (name, bytes) in &sound {
+            fs::write(run.join(name), bytes).unwrap();
+        }
+    }
+    is_rebuilt(&folder, "run");
+}
+
+#[test]
+fn what_is_no_folder_of_a_run_is_refused() {
+    let folder = folder();
+    fs::write(folder.path().join("arms.toml"), ARMS).unwrap();
+    forwardstep(&folder, &["run", "arms.toml"]).success();
+    let cases = [
+        ("arms", "there is no folder `arms`", "did you mean `forwardstep-runs/arms`?"),
+        ("forwardstep-runs/arms/report.html", "is not a folder", "did you mean `forwardstep-runs/arms`?"),
+        ("elsewhere", "there is no folder `elsewhere`", "give the folder of a run"),
+        (".", "`.` holds no whole run", "run the scenario again"),
+    ];
+    for (asked, error, help) in cases {
+        let said = stderr(&forwardstep(&folder, &["report", asked]).code(2));
+        assert!(said.contains(error) && said.contains(help), "{said}");
+    }
+    assert_eq!(contents(folder.path()).keys().filter(|name| !name.starts_with("forwardstep-runs")).count(), 1);
+}
+
+#[test]
+fn a_failure_while_writing_leaves_the_old_report_whole() {
+    let folder = folder();
+    fs::write(folder.path().join("arms.toml"), ARMS).unwrap();
+    forwardstep(&folder, &["run", "arms.toml", "--out", "run"]).success();
+    let run = folder.path().join("run");
+    fs::write(run.join("report.html"), "old").unwrap();
+    // A folder under a temporary name cannot be opened as a file.
+    fs::create_dir(run.join("plots/.estimates.svg.partial")).unwrap();
+    let before = contents(&run);
+    let error = stderr(&forwardstep(&folder, &["report", "run"]).code(2));
+    assert!(error.contains("could not create run/plots/estimates.svg"), "{error}");
+    assert_eq!(differences(&before, &contents(&run)), [""; 0]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_that_is_closed_to_us_is_an_error() {
+    use std::os::unix::fs::PermissionsExt;
+
+    let folder = folder();
+    fs::write(folder.path().join("arms.toml"), ARMS).unwrap();
+    forwardstep(&folder, &["run", "arms.toml", "--out", "run"]).success();
+    let run = folder.path().join("run");
+    let mode = |path: &Path, mode| fs::set_permissions(path, fs::Permissions::from_mode(mode)).unwrap();
+    mode(&run, 0o555);
+    let is_privileged = fs::write(run.join("probe"), "").is_ok();
+    if !is_privileged {
+        let error = stderr(&forwardstep(&folder, &["report", "run"]).code(2));
+        assert!(
+            error.contains("could not write into the folder run") && error.contains("make the folder writable"),
+            "{error}"
+        );
+    }
+    mode(&run, 0o755);
+    mode(&run.join("trajectory.parquet"), 0o000);
+    if !is_privileged {
+        let error = stderr(&forwardstep(&folder, &["report", "run"]).code(2));
+        assert!(error.contains("trajectory.parquet`: permission denied") && error.contains("readable"), "{error}");
+    }
+}

@@ -1,0 +1,114 @@
+//! Copies of the files that a scenario names, in `inputs/`: with them a folder holds all that went into its run.
+//!
+//! A file keeps its name where that is a name below the scenario, so that `scenario.toml` finds it there. One whose name
+//! leads elsewhere (`../arm.urdf`, `/robots/arm.urdf`) gets a name below `inputs/outside`, which only `summary.json` tells.
+
+use std::fs::File;
+use std::path::Path;
+
+use serde::Deserialize;
+
+use super::summary::Input;
+use crate::files::read_text;
+use crate::scenario::InputFile;
+use crate::scenario::inputs::{INPUTS, plain_name};
+
+/// What is copied: the entry of the summary and the text.
+pub(crate) fn copies(inputs: &[InputFile]) -> Vec<(Input, &str)> {
+    let mut copies: Vec<(Input, &str)> = Vec::new();
+    let (plain, outside): (Vec<_>, Vec<_>) = inputs.iter().partition(|input| plain_name(&input.name).is_some());
+    for input in plain.into_iter().chain(outside) {
+        let text = input.source.text();
+        let digest_blake3 = blake3::hash(text.as_bytes()).to_hex().to_string();
+        let base = input.name.rsplit(['/', '\\']).next().unwrap_or_default();
+        let own = plain_name(&input.name).into_iter().map(|name| format!("{INPUTS}/{name}"));
+        let others = (1_u64..).map(|k| match k {
+            1 => format!("{INPUTS}/outside/{base}"),
+            _ => format!("{INPUTS}/outside-{k}/{base}"),
+        });
+        let free = |file: &String| {
+            // The same text under two spellings of one name is one file.
+            let same = |other: &Input| other.file == *file && other.digest_blake3 == digest_blake3;
+            copies.iter().all(|(other, _)| same(other) || !clash(&other.file, file))
+        };
+        if let Some(file) = own.chain(others).find(free) {
+            copies.push((Input { name: input.name.clone(), file, digest_blake3 }, text));
+        }
+    }
+    copies
+}
+
+/// Whether two names cannot both be files, on some disk at least: they differ in their letters' case only, or one would have
+/// to be a folder.
+fn clash(one: &str, other: &str) -> bool {
+    let (one, other) = (one.to_lowercase(), other.to_lowercase());
+    let below = |long: &str, short: &str| long.strip_prefix(short).is_some_and(|rest| rest.starts_with('/'));
+    one == other || below(&one, &other) || below(&other, &one)
+}
+
+/// The copies that an earlier run left in `folder` and that nobody changed since.
+pub(crate) fn of_earlier_run(folder: &Path) -> Vec<String> {
+    /// The part of a summary that matters here, whatever its format.
+    #[derive(Deserialize)]
+    struct Inputs {
+        #[serde(default)]
+        inputs: Vec<Input>,
+    }
+    let text = read_text(&folder.join("summary.json")).unwrap_or_default();
+    let Ok(Inputs { inputs }) = serde_json::from_str(&text) else { return Vec::new() };
+    let own = inputs.into_iter().filter(|input| is_copy(&input.file));
+    own.filter(|input| file_digest(&folder.join(&input.file)).is_ok_and(|digest| digest == input.digest_blake3))
+        .map(|input| input.file)
+        .collect()
+}
+
+/// Whether a copy may have this name. A summary may have been edited, and must not lead out of its folder.
+pub(crate) fn is_copy(file: &str) -> bool {
+    plain_name(file).is_some_and(|plain| plain == file && plain.starts_with(&format!("{INPUTS}/")))
+}
+
+/// The BLAKE3 digest of a file, in hexadecimal.
+pub(crate) fn file_digest(path: &Path) -> std::io::Result<String> {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(File::open(path)?)?;
+    Ok(hasher.finalize().to_hex().to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SourceText;
+
+    fn files(names: &[(&str, &str)]) -> Vec<String> {
+        let inputs: Vec<_> = (names.iter())
+            .map(|(name, text)| InputFile { name: (*name).into(), source: SourceText::new(name, *text) })
+            .collect();
+        copies(&inputs).into_iter().map(|(copy, _)| copy.file).collect()
+    }
+
+    #[test]
+    fn copies_keep_their_names_where_they_can() {
+        assert_eq!(files(&[("arm.urdf", "1"), ("a/./b.csv", "2")]), ["inputs/arm.urdf", "inputs/a/b.csv"]);
+        let outside = [("../arm.urdf", "1"), ("/robots/arm.urdf", "2"), ("a/../arm.urdf", "3")];
+        assert_eq!(
+            files(&outside),
+            ["inputs/outside/arm.urdf", "inputs/outside-2/arm.urdf", "inputs/outside-3/arm.urdf"]
+        );
+    }
+
+    #[test]
+    fn no_copy_takes_the_place_of_another() {
+        assert_eq!(files(&[("../a", "1"), ("outside", "2")]), ["inputs/outside", "inputs/outside-2/a"]);
+        assert_eq!(files(&[("arm", "1"), ("ARM", "2")]), ["inputs/arm", "inputs/outside/ARM"]);
+        assert_eq!(files(&[("arm", "1"), ("./arm", "1")]), ["inputs/arm", "inputs/arm"]);
+    }
+
+    #[test]
+    fn a_summary_cannot_lead_out_of_its_folder() {
+        assert!(is_copy("inputs/arm.urdf") && is_copy("inputs/outside/arm.urdf"));
+        for file in ["arm.urdf", "inputs", "inputs/../arm.urdf", "/inputs/arm.urdf", "../inputs/arm.urdf", "inputs//a"]
+        {
+            assert!(!is_copy(file), "{file}");
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! Folders of runs, read back whole and after somebody was at them.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use forwardstep_io::SourceText;
+use forwardstep_io::output::summary::Summary;
+use forwardstep_io::output::{Options, RestoreError, RunFolder, RunRecord, SavedRun, TableError, write_run};
+use forwardstep_io::scenario::read_scenario;
+use forwardstep_sim::{Breakdown, BreakdownCause, Ending, Outcome, Setup, Signal, recorded_columns, simulate};
+use proptest::prelude::*;
+
+const CARTS: &str = r#"format = 1
+title = "Two carts"
+time = { end_s = 0.5, record_every_s = 0.1 }
+[[agents]]
+name = "cart"
+count = 2
+robot.point_mass = { dimension = 1, mass_kg = 2 }
+start.position_m = [[0], [1]]
+[reference.consensus]
+roots_per_s = [1, 2]
+exchange = "position_velocity"
+[network]
+delay.constant_s = 0.1
+edges = [["cart-1", "cart-2"], ["cart-2", "cart-1"]]
+"#;
+
+/// Runs the carts, lets `change` have its way with the outcome, and writes their folder.
+fn write(folder: &Path, change: impl FnOnce(&Setup, &mut Outcome)) -> Outcome {
+    let scenario = read_scenario("carts", &SourceText::new("carts.toml", CARTS), None).unwrap();
+    let mut outcome = simulate(&scenario.setup, &mut |_| ControlFlow::Continue(())).unwrap();
+    change(&scenario.setup, &mut outcome);
+    let record = RunRecord {
+        title: &scenario.title,
+        scenario_name: &scenario.name,
+        scenario_text: CARTS,
+        inputs: &scenario.inputs,
+        version: "0.1.0",
+        setup: &scenario.setup,
+        outcome: &outcome,
+        verdicts: &forwardstep_check::check(&scenario.setup),
+        predicted_agreement: None,
+        goal: None,
+        notices: vec!["one".into()],
+    };
+    write_run(&RunFolder::create(folder, true).unwrap(), &record, Options { csv: true }).unwrap();
+    outcome
+}
+
+/// Reads a folder and writes its report anew.
+fn rebuild(folder: &Path) -> Result<(), RestoreError> {
+    let run = SavedRun::open(folder)?;
+    let verdicts = forwardstep_check::check(run.setup());
+    let remarks = run.remarks(&verdicts, "0.1.0");
+    run.write_report(&run.record(&verdicts, None, &remarks))?;
+    Ok(())
+}
+
+#[test]
+fn a_run_comes_back_as_it_was() {
+    let endings = [
+        Ending::Completed,
+        Ending::Interrupted { t_s: 0.1 + 0.2 },
+        Ending::BrokeDown(Breakdown {
+            t_s: 0.5,
+            agent: 1,
+            signal: Signal::Estimate,
+            axis: 0,
+            cause: BreakdownCause::StepUnderFloor { step_s: 1.1e-13 },
+        }),
+        Ending::BrokeDown(Breakdown {
+            t_s: 0.5,
+            agent: 1,
+            signal: Signal::Position,
+            axis: 0,
+            cause: BreakdownCause::PositionLimit { value: f64::INFINITY, limits: [-1.0, 1.0] },
+        }),
+    ];
+    for ending in endings {
+        let folder = tempfile::tempdir().unwrap();
+        let written = write(folder.path(), |_, outcome| {
+            outcome.ending = ending;
+            let position = |c: &&mut forwardstep_sim::Column| c.agent == 1 && c.signal == Signal::Position;
+            *outcome.recording.columns.iter_mut().find(position).unwrap().values.last_mut().unwrap() = f64::INFINITY;
+        });
+        let run = SavedRun::open(folder.path()).unwrap();
+        let verdicts = forwardstep_check::check(run.setup());
+        assert_eq!(run.remarks(&verdicts, "0.1.0"), []);
+        let record = run.record(&verdicts, None, &[]);
+        assert_eq!(record.outcome.recording, written.recording);
+        assert_eq!((&record.outcome.ending, &record.outcome.statistics), (&written.ending, &written.statistics));
+        assert_eq!((record.title, record.scenario_name, record.version), ("Two carts", "carts", "0.1.0"));
+        assert_eq!(record.notices, ["one"]);
+    }
+}
+
+#[test]
+fn a_summary_reads_back_as_it_was_written() {
+    let folder = tempfile::tempdir().unwrap();
+    // Numbers that are not finite become null, and null again.
+    write(folder.path(), |_, outcome| outcome.recording.columns[1].values[2] = f64::NAN);
+    let text = fs::read_to_string(folder.path().join("summary.json")).unwrap();
+    assert!(text.contains("\"value\": null"), "{text}");
+    let summary: Summary = serde_json::from_str(&text).unwrap();
+    assert_eq!(serde_json::to_string_pretty(&summary).unwrap() + "\n", text);
+}
+
+#[test]
+fn columns_are_known_before_a_run() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), |setup, outcome| {
+        let mut columns = outcome.recording.columns.clone();
+        columns.iter_mut().for_each(|column| column.values.clear());
+        assert_eq!(recorded_columns(setup).unwrap(), columns);
+    });
+}
+
+#[test]
+fn columns_may_stand_in_any_order_and_some_may_be_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let written = write(folder.path(), |_, _| {});
+    fs::remove_file(folder.path().join("trajectory.parquet")).unwrap();
+    let path = folder.path().join("trajectory.csv");
+    let table = fs::read_to_string(&path).unwrap();
+    let reversed = |line: &str| line.split(',').rev().collect::<Vec<_>>().join(",") + "\n";
+    fs::write(&path, table.lines().map(reversed).collect::<String>()).unwrap();
+    let run = SavedRun::open(folder.path()).unwrap();
+    let verdicts = forwardstep_check::check(run.setup());
+    assert_eq!(run.record(&verdicts, None, &[]).outcome.recording, written.recording);
+    drop(run);
+    // A version that records more meets the tables of one that did not.
+    let shorter = |line: &str| line.rsplit_once(',').unwrap().0.to_owned() + "\n";
+    fs::write(&path, table.lines().map(shorter).collect::<String>()).unwrap();
+    let run = SavedRun::open(folder.path()).unwrap();
+    let said: Vec<_> = run.remarks(&verdicts, "0.1.0").iter().map(ToString::to_string).collect();
+    assert!(said.contains(&"the tables have no column `cart-2.dissipation`".to_owned()), "{said:?}");
+    let columns = run.record(&verdicts, None, &[]).outcome.recording.columns.len();
+    assert_eq!(columns, written.recording.columns.len() - 1);
+}
+
+#[test]
+fn a_table_of_another_kind_is_refused() {
+    use std::sync::Arc;
+
+    use parquet::data_type::Int64Type;
+    use parquet::file::writer::SerializedFileWriter;
+    use parquet::schema::parser::parse_message_type;
+
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), |_, _| {});
+    let path = folder.path().join("trajectory.parquet");
+    let schema = Arc::new(parse_message_type("message other { required int64 t_s; }").unwrap());
+    let mut file = SerializedFileWriter::new(fs::File::create(&path).unwrap(), schema, Arc::default()).unwrap();
+    let mut group = file.next_row_group().unwrap();
+    let mut column = group.next_column().unwrap().unwrap();
+    column.typed::<Int64Type>().write_batch(&[1, 2], None, None).unwrap();
+    column.close().unwrap();
+    group.close().unwrap();
+    file.close().unwrap();
+    let reason = |folder: &Path| match SavedRun::open(folder) {
+        Err(RestoreError::Table { reason, .. }) => reason,
+        other => panic!("{other:?}"),
+    };
+    assert!(matches!(reason(folder.path()), TableError::Digest));
+    // Even when somebody makes the summary fit.
+    let summary = fs::read_to_string(folder.path().join("summary.json")).unwrap();
+    let digest = |bytes: &[u8]| blake3::hash(bytes).to_hex().to_string();
+    let mut value: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    value["tables"][0]["digest_blake3"] = digest(&fs::read(&path).unwrap()).into();
+    fs::write(folder.path().join("summary.json"), value.to_string()).unwrap();
+    assert!(matches!(reason(folder.path()), TableError::NotNumbers { .. }));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+
+    #[test]
+    fn prop_no_edit_of_a_folder_panics(
+        file in prop::sample::select(vec!["summary.json", "scenario.toml", "trajectory.csv", "trajectory.parquet"]),
+        edits in prop::collection::vec(
+            (any::<prop::sample::Index>(), 0..8usize, prop::sample::select(vec![
+                "", "0", "-1", "9", "1e999", "NaN", "null", "\"", ",", "{", "]", "\n", "é", "inputs/../x", "\u{0}",
+            ])),
+            1..4,
+        ),
+    ) {
+        let folder = tempfile::tempdir().unwrap();
+        write(folder.path(), |_, _| {});
+        if file == "trajectory.csv" {
+            fs::remove_file(folder.path().join("trajectory.parquet")).unwrap();
+        }
+        let path = folder.path().join(file);
+        let mut bytes = fs::read(&path).unwrap();
+        for (at, length, text) in edits {
+            let start = at.index(bytes.len() + 1);
+            let end = (start + length).min(bytes.len());
+            bytes.splice(start..end, text.bytes());
+        }
+        fs::write(&path, bytes).unwrap();
+        let _ = rebuild(folder.path());
+    }
+}
