@@ -72,7 +72,7 @@ def reference(model, count, end):
     if path.exists():
         return json.loads(path.read_text())
     times = sampled_times(end)
-    states, loop = solve(ring_problem(model, count, end), times,
+    states, loop, _ = solve(ring_problem(model, count, end), times,
                          rtol=REFERENCE_TOLERANCE, atol=REFERENCE_TOLERANCE)
     motions = [loop.unpack(state)[0] for state in states]
     result = {

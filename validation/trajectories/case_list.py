@@ -1,7 +1,8 @@
 """The problems."""
 
-from problem import (agent, constant, edge, fixed, once, piecewise_constant, planar_arm,
-                     point_mass, problem, repeat, saw_tooth, sinusoid)
+from problem import (PURE_INTEGRAL, agent, backstepping, constant, edge, fixed, once,
+                     piecewise_constant, planar_arm, point_mass, problem, repeat, saw_tooth,
+                     sinusoid)
 
 POSITION, BOTH = "position", "position_velocity"
 
@@ -228,6 +229,106 @@ def own_settings():
         fixed(ring(3, piecewise_constant([0.0, 0.6, 1.0], [0.2, 0.5, 0.1], 1.6))))
 
 
+def accelerations():
+    """(3) and (23), with the acceleration of the robot in the reference."""
+    yield problem(
+        "27-pure-both-constant", "Four arms under (3), ring, distinct constant delays.",
+        12.0, BOTH, arms(4, 2),
+        fixed(ring(4, [constant(0.3), constant(0.2), constant(0.45), constant(0.1)])),
+        PURE_INTEGRAL)
+
+    yield problem(
+        "28-pure-position-varying", "Three arms under (23), ring, sinusoidal and saw-tooth delays.",
+        12.0, POSITION, arms(3, 2), fixed(ring(3, [
+            sinusoid(0.3, 0.2, 2.0), saw_tooth(0.1, 0.4, 1.1, 0.3), constant(0.25)])),
+        PURE_INTEGRAL)
+
+    yield problem(
+        "29-pure-both-jumping", "Arms under (3) that start in motion, with references of their own; "
+        "delays jump, and one is zero.",
+        12.0, BOTH, [
+            agent(ARMS[0], [1.2, 0.7], q=[0.6, -0.3], dq=[0.5, -0.8],
+                  reference=[[0.1, 0.2], [0.4, -0.6]]),
+            agent(ARMS[1], [1.2, 0.7], q=[-0.4, 0.8], dq=[-0.3, 0.2], K=[7.0, 9.0]),
+            agent(ARMS[2], [1.2, 0.7], q=[1.1, 0.2], dq=[0.0, 0.6],
+                  reference=[[-0.5, 0.0], [0.0, 0.3]], theta_hat=[1.0, 0.3, 0.4, 12.0, 5.0])],
+        fixed(ring(3, [piecewise_constant([0.0, 0.6, 1.0], [0.2, 0.5, 0.1], 1.6), constant(0.0),
+                       piecewise_constant([0.0, 2.5], [0.6, 0.15])], 0.8)
+              + [edge(0, 2, 0.5, sinusoid(0.25, 0.1, 3.0))]),
+        PURE_INTEGRAL)
+
+    yield problem(
+        "30-pure-position-jumping", "An arm and two point masses in the plane under (23), jumping "
+        "delays; the masses know theirs.",
+        12.0, POSITION, [
+            agent(ARMS[4], [0.9, 1.6], q=[0.2, 1.3]),
+            agent(point_mass(2, 1.7), [0.9, 1.6], q=[-0.8, 0.5], dq=[0.4, 0.0], knows_theta=True),
+            agent(point_mass(2, 0.6), [0.9, 1.6], q=[1.2, 0.1], knows_theta=True,
+                  reference=[[0.3, -0.2], [0.0, 0.5]])],
+        fixed(ring(3, piecewise_constant([0.0, 0.8], [0.15, 0.4], 1.7), 1.3)),
+        PURE_INTEGRAL)
+
+
+def manipulability():
+    """Remark 4: lambda (dq - z) is added to the highest derivative."""
+    def yielding(count, order, gains):
+        return [agent(ARMS[i], kappa(order), q=ARM_STARTS[i], manipulability=gains[i])
+                for i in range(count)]
+
+    yield problem(
+        "31-lambda-order1-both", "Four arms that give way, each in its own measure, one not at all; "
+        "switching graph.",
+        12.0, BOTH, yielding(4, 1, [0.8, 2.0, 0.0, 0.3]), repeat(
+            (0.7, [edge(0, 1, 1.0, constant(0.2)), edge(2, 3, 1.0, constant(0.3))]),
+            (0.9, [edge(1, 2, 1.0, constant(0.2)), edge(3, 0, 1.0, constant(0.3))])))
+
+    yield problem(
+        "32-lambda-order2-both", "Three arms that give way, jumping and saw-tooth delays.",
+        12.0, BOTH, yielding(3, 2, [1.5, 0.5, 3.0]), fixed(ring(3, [
+            piecewise_constant([0.0, 0.7], [0.3, 0.1], 1.9), saw_tooth(0.1, 0.4, 1.0),
+            constant(0.2)])))
+
+    yield problem(
+        "33-lambda-order3-position", "Three arms that give way, of order three, switching graph.",
+        12.0, POSITION, yielding(3, 3, [2.0, 1.0, 4.0]), repeat(
+            (1.1, ring(3, constant(0.3))),
+            (0.6, [edge(0, 2, 1.0, sinusoid(0.3, 0.1, 2.0)), edge(2, 1, 2.0, constant(0.15))])))
+
+    yield problem(
+        "34-lambda-pure-both", "Three arms under (3) that give way, which is (31); varying and "
+        "jumping delays.",
+        12.0, BOTH, yielding(3, 2, [1.5, 0.5, 3.0]), fixed(ring(3, [
+            sinusoid(0.3, 0.2, 2.0), piecewise_constant([0.0, 0.7], [0.3, 0.1], 1.9),
+            constant(0.2)])), PURE_INTEGRAL)
+
+    yield problem(
+        "35-lambda-pure-position", "Two arms under (23) that give way, jumping delays.",
+        12.0, POSITION, yielding(2, 2, [2.0, 0.6]), fixed(ring(2, [
+            piecewise_constant([0.0, 1.3], [0.1, 0.35], 2.1), constant(0.3)])), PURE_INTEGRAL)
+
+
+def baseline():
+    """(aa6) with a filter that differentiates."""
+    yield problem(
+        "36-backstepping-varying", "Three arms, ring, sinusoidal and constant delays.",
+        10.0, POSITION, [agent(ARMS[i], [], q=ARM_STARTS[i]) for i in range(3)],
+        fixed(ring(3, [sinusoid(0.3, 0.2, 2.0), constant(0.2), constant(0.0)])),
+        backstepping(0.2))
+
+    yield problem(
+        "37-backstepping-switching", "Two arms and two point masses; the reference jumps with graph "
+        "and delays.",
+        10.0, POSITION, [
+            agent(ARMS[0], [], q=[0.6, -0.3], dq=[0.3, -0.2]),
+            agent(point_mass(2, 1.7), [], q=[-0.8, 0.5]),
+            agent(ARMS[3], [], q=[-0.9, -0.5], knows_theta=True),
+            agent(point_mass(2, 0.6), [], q=[1.2, 0.1], K=3.0, knows_theta=True)],
+        repeat((1.1, ring(4, piecewise_constant([0.0, 0.8], [0.2, 0.5], 1.7))),
+               (0.6, [edge(3, 0, 1.0, saw_tooth(0.1, 0.3, 0.8)), edge(0, 2, 2.0, constant(0.15))])),
+        backstepping(0.1))
+
+
 def all_cases():
-    for group in (fixed_graphs, switching_graphs, other_robots, own_settings):
+    for group in (fixed_graphs, switching_graphs, other_robots, own_settings, accelerations,
+                  manipulability, baseline):
         yield from group()

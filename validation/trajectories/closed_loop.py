@@ -1,13 +1,18 @@
 """Right-hand side of the closed loop, all agents at once.
 
-The state is one flat vector: q, dq, z, z', .., z^(l-1), theta_hat and the
-integral of s^T K s, agent after agent within each block.  Parameter vectors
-of different length are padded with zeros.
+The state is one flat vector: q, dq, the vectors of the reference, theta_hat
+and the integral of s^T K s, agent after agent within each block.  Parameter
+vectors of different length are padded with zeros.
+
+The vectors of the reference are z, z', .., z^(l-1), or the filter's for the
+baseline.  The designs with accelerations, (3) and (23), are integrated as
+they are printed: z and z' are state, and z'' gets the acceleration that the
+plant has under the torque of the moment, which needs z' and not z''.
 """
 
 import numpy as np
 
-from problem import as_matrix, dimension
+from problem import (as_matrix, dimension, reference_of, reference_start, reference_vectors)
 
 
 class ClosedLoop:
@@ -15,7 +20,10 @@ class ClosedLoop:
         agents = problem["agents"]
         self.n = len(agents)
         self.m = dimension(agents[0]["robot"])
-        self.l = problem["order"]
+        reference = reference_of(problem)
+        self.kind = reference["kind"]
+        self.filter_s = reference.get("filter_s")
+        self.l = reference_vectors(problem)
         self.p = max(len(a["robot"]["theta"]) for a in agents)
         self.sizes = [len(a["robot"]["theta"]) for a in agents]
         n, m, l, p = self.n, self.m, self.l, self.p
@@ -30,6 +38,7 @@ class ClosedLoop:
         self.Gamma_inverse = np.zeros((n, p, p))
         alpha = np.ones((l + 1, n))
         velocity_gain = np.zeros(n)
+        self.manipulability = np.zeros((n, 1))
         start = np.zeros((2 + l, n, m))
         theta_start = np.zeros((n, p))
         for i, a in enumerate(agents):
@@ -40,12 +49,14 @@ class ClosedLoop:
                 Gamma = as_matrix(a["Gamma"], size)
                 self.Gamma[i, :size, :size] = Gamma
                 self.Gamma_inverse[i, :size, :size] = np.linalg.inv(Gamma)
-            alpha[:l, i] = a["alpha"]
-            velocity_gain[i] = a["alpha"][0] / a["roots"][0]
+            self.manipulability[i] = a.get("lambda", 0.0)
+            if self.kind != "backstepping":
+                alpha[:l, i] = a["alpha"]
+                velocity_gain[i] = a["alpha"][0] / a["roots"][0]
             start[0, i] = a["start"]["q"]
             start[1, i] = a["start"]["dq"]
-            start[2:, i] = a["start"]["reference"]
             theta_start[i, :size] = a["start"]["theta_hat"]
+        start[2:] = np.array(reference_start(problem)).swapaxes(0, 1)
         if problem["exchange"] == "position":
             velocity_gain[:] = 0.0
         self.alpha = alpha[:, :, None]
@@ -62,32 +73,49 @@ class ClosedLoop:
         theta_hat = y[self.motion_size : self.theta_end].reshape(self.n, self.p)
         return motion, theta_hat, y[self.theta_end :]
 
+    def asked(self, y, heard, total_weight):
+        """z and dz; dz of order one is left to `rate`."""
+        motion, _, _ = self.unpack(y)
+        if self.kind != "backstepping":
+            return motion[2], motion[3] if self.l > 1 else None
+        z = heard - total_weight * motion[0]
+        return z, (z - motion[2]) / self.filter_s
+
     def rate(self, y, heard, total_weight):
         """`heard` is sum_j w_ij (what i hears of j, gains applied), (n, m);
         `total_weight` is sum_j w_ij, (n, 1)."""
         motion, theta_hat, _ = self.unpack(y)
         l = self.l
-        q, dq, z = motion[0], motion[1], motion[2]
-        own = np.empty((l + 1, self.n, self.m))  # q, dq, z', .., z^(l-1)
-        own[:2] = motion[:2]
-        own[2:] = motion[3:]
-        highest = (heard - (self.alpha[:l] * own[1:]).sum(axis=0)
-                   - total_weight * (self.alpha * own).sum(axis=0))
-        dz = highest if l == 1 else motion[3]
+        q, dq = motion[:2]
+        z, dz = self.asked(y, heard, total_weight)
 
+        def highest(own):
+            """The top of the reference, from x_0 .. x_l."""
+            return (heard - (self.alpha[:l] * own[1:]).sum(axis=0)
+                    - total_weight * (self.alpha * own).sum(axis=0)
+                    + self.manipulability * (dq - z))
+
+        if self.kind == "consensus":
+            top = highest(np.concatenate([motion[:2], motion[3:]]))  # q, dq, z', .., z^(l-1)
+            dz = top if l == 1 else dz
         s = dq - z
         Ks = np.einsum("nab,nb->na", self.K, s)
         Y = self.regressor(q, dq, z, dz)
         tau = np.einsum("nap,np->na", Y, theta_hat) - Ks
         dtheta_hat = -np.einsum("npr,nar,na->np", self.Gamma, Y, s) if self.Gamma.any() \
             else np.zeros((self.n, self.p))
+        ddq = self.acceleration(q, dq, tau)
+        if self.kind == "pure_integral":
+            top = highest(np.stack([q, dq, ddq]))
+        elif self.kind == "backstepping":
+            top = dz  # of the filter: (z - f) / epsilon
 
         dy = np.empty_like(y)
         dmotion = dy[: self.motion_size].reshape(2 + l, self.n, self.m)
         dmotion[0] = dq
-        dmotion[1] = self.acceleration(q, dq, tau)
+        dmotion[1] = ddq
         dmotion[2:-1] = motion[3:]
-        dmotion[-1] = highest
+        dmotion[-1] = top
         dy[self.motion_size : self.theta_end] = dtheta_hat.ravel()
         dy[self.theta_end :] = (s * Ks).sum(axis=1)
         return dy
@@ -140,10 +168,10 @@ class ClosedLoop:
             ddq[a, 1] = (m11 * f2 - m12 * f1) / determinant
         return ddq
 
-    def storage(self, y):
+    def storage(self, y, z):
         """V = 1/2 s^T M s + 1/2 (theta_hat - theta)^T Gamma^-1 (theta_hat - theta)."""
         motion, theta_hat, _ = self.unpack(y)
-        s = motion[1] - motion[2]
+        s = motion[1] - z
         error = theta_hat - self.theta
         return (np.einsum("na,nab,nb->n", s, self.inertia(motion[0]), s)
                 + np.einsum("np,npr,nr->n", error, self.Gamma_inverse, error)) / 2

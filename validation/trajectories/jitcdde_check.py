@@ -17,7 +17,8 @@ from jitcdde import jitcdde, t, y
 from symengine import Matrix, Symbol, cos, sin, sympify
 
 from break_points import SAME_TIME, break_points
-from problem import as_matrix, delay_at, dimension, edges_at
+from problem import (as_matrix, delay_at, dimension, edges_at, reference_of, reference_start,
+                     reference_vectors)
 
 # jitcdde puts a second, corrected derivative on a break-point this long
 # after the first one.
@@ -86,7 +87,7 @@ def place_state(problem):
     places, total = [], 0
     for a in problem["agents"]:
         places.append(total)
-        total += (2 + problem["order"]) * dimension(a["robot"]) + len(a["robot"]["theta"])
+        total += (2 + reference_vectors(problem)) * dimension(a["robot"]) + len(a["robot"]["theta"])
     return places, total
 
 
@@ -123,7 +124,8 @@ def longest_delay(delay):
 
 def equations(problem, edges):
     """Right-hand sides, parameters (a weight per edge, then those of delays)."""
-    l = problem["order"]
+    l, kind = problem["order"], reference_of(problem)["kind"]
+    count = reference_vectors(problem)
     places, total = place_state(problem)
     weights = [Symbol(f"weight_{k}") for k in range(len(edges))]
     delays = [delay_expression(e["delay"], k) for k, e in enumerate(edges)]
@@ -132,32 +134,53 @@ def equations(problem, edges):
     for i, a in enumerate(problem["agents"]):
         robot, m, base = a["robot"], dimension(a["robot"]), places[i]
         block = lambda r: [y(base + r * m + axis) for axis in range(m)]
-        q, dq, reference = block(0), block(1), [block(2 + r) for r in range(l)]
-        alpha = a["alpha"] + [1.0]
-        own = [q, dq] + reference[1:]
-        highest = [-sum(alpha[r] * own[r + 1][axis] for r in range(l)) for axis in range(m)]
-        for k, e in enumerate(edges):
-            if e["to"] != i:
-                continue
-            sender = places[e["from"]]
-            delay, _ = delays[k]
-            then = t if delay == 0 else t - delay
-            for axis in range(m):
-                message = alpha[0] * y(sender + axis, then)
-                if problem["exchange"] == "position_velocity":
-                    message += alpha[0] / a["roots"][0] * y(sender + m + axis, then)
-                mine = sum(alpha[r] * own[r][axis] for r in range(l + 1))
-                highest[axis] -= weights[k] * (mine - message)
-        rates = reference[1:] + [highest]
-        theta_place = base + (2 + l) * m
+        q, dq, reference = block(0), block(1), [block(2 + r) for r in range(count)]
+        theta_place = base + (2 + count) * m
         size = len(robot["theta"])
         theta_hat = Matrix(size, 1, [y(theta_place + c) for c in range(size)])
-        s = Matrix(m, 1, [dq[axis] - reference[0][axis] for axis in range(m)])
-        Y = Matrix(regressor(robot, q, dq, reference[0], rates[0]))
-        tau = Y * theta_hat - Matrix(as_matrix(a["K"], m).tolist()) * s
-        Gamma = as_matrix(0.0 if a["knows_theta"] else a["Gamma"], size)
-        adapt = -(Matrix(Gamma.tolist()) * (Y.T * s))
-        ddq = plant_acceleration(robot, q, dq, [tau[axis, 0] for axis in range(m)])
+        hears = []  # weight, (q_j, dq_j) as heard
+        for k, e in enumerate(edges):
+            if e["to"] == i:
+                sender, (delay, _) = places[e["from"]], delays[k]
+                then = t if delay == 0 else t - delay
+                hears.append((weights[k], [[y(sender + r * m + axis, then) for axis in range(m)]
+                                           for r in range(2)]))
+
+        def act(z, dz):
+            """The acceleration and the rate of the estimate."""
+            s = Matrix(m, 1, [dq[axis] - z[axis] for axis in range(m)])
+            Y = Matrix(regressor(robot, q, dq, z, dz))
+            tau = Y * theta_hat - Matrix(as_matrix(a["K"], m).tolist()) * s
+            Gamma = as_matrix(0.0 if a["knows_theta"] else a["Gamma"], size)
+            return (plant_acceleration(robot, q, dq, [tau[axis, 0] for axis in range(m)]),
+                    -(Matrix(Gamma.tolist()) * (Y.T * s)))
+
+        def highest(own):
+            """The equation of the reference, from x_0 .. x_l."""
+            alpha, result = a["alpha"] + [1.0], []
+            for axis in range(m):
+                rate = -sum(alpha[r] * own[r + 1][axis] for r in range(l))
+                rate += a.get("lambda", 0.0) * (dq[axis] - reference[0][axis])
+                for weight, told in hears:
+                    message = alpha[0] * told[0][axis]
+                    if problem["exchange"] == "position_velocity":
+                        message += alpha[0] / a["roots"][0] * told[1][axis]
+                    rate -= weight * (sum(alpha[r] * own[r][axis] for r in range(l + 1)) - message)
+                result.append(rate)
+            return result
+
+        if kind == "backstepping":
+            z = [sum(weight * (told[0][axis] - q[axis]) for weight, told in hears)
+                 for axis in range(m)]
+            rates = [[(z[axis] - reference[0][axis]) / reference_of(problem)["filter_s"]
+                      for axis in range(m)]]
+            ddq, adapt = act(z, rates[0])
+        elif kind == "pure_integral":
+            ddq, adapt = act(*reference)
+            rates = [reference[1], highest([q, dq, ddq])]
+        else:
+            rates = reference[1:] + [highest([q, dq] + reference[1:])]
+            ddq, adapt = act(reference[0], rates[0])
         rows = dq + ddq + sum(rates, []) + [adapt[c, 0] for c in range(size)]
         f[base : base + len(rows)] = rows
     return f, parameters, weights, delays
@@ -165,9 +188,9 @@ def equations(problem, edges):
 
 def start_state(problem):
     values = []
-    for a in problem["agents"]:
+    for a, reference in zip(problem["agents"], reference_start(problem)):
         start = a["start"]
-        values += start["q"] + start["dq"] + sum(start["reference"], []) + start["theta_hat"]
+        values += start["q"] + start["dq"] + sum(reference, []) + start["theta_hat"]
     return np.array(values, dtype=float)
 
 

@@ -92,7 +92,8 @@ class Links:
 
 
 def solve(problem, sample_times, rtol=1e-13, atol=1e-14, generations=2, longest_step=0.02):
-    """States at the sample times, shape (times, state), and the closed loop.
+    """States at the sample times, shape (times, state), the closed loop, and what
+    is asked for at those times, z and dz: from the left, but at t = 0.
 
     Error control sees the ends of steps only; the longest step keeps the dense
     output between them, which others hear, as good as the ends.
@@ -114,7 +115,7 @@ def solve(problem, sample_times, rtol=1e-13, atol=1e-14, generations=2, longest_
     now_of = lambda y: y[: 2 * n * m].reshape(2, n, m).swapaxes(0, 1)
     y = loop.start
     history = History(now_of(y).copy())
-    at_stop = [y.copy()]
+    at_stop, asked_at_stop = [y.copy()], []
     for begin, stop in zip(stops, stops[1:]):
         middle = (begin + stop) / 2
         phase = int(np.searchsorted(starts, middle, side="right")) - 1
@@ -124,6 +125,11 @@ def solve(problem, sample_times, rtol=1e-13, atol=1e-14, generations=2, longest_
         def rate(t, y):
             return loop.rate(y, links.heard(t, now_of(y), history), links.total_weight)
 
+        def asked(t, y):
+            return loop.asked(y, links.heard(t, now_of(y), history), links.total_weight)
+
+        if begin == 0.0:
+            asked_at_stop.append(asked(begin, y))
         solver = DOP853(rate, begin, y, stop, rtol=rtol, atol=atol,
                         max_step=min(links.largest_step, longest_step))
         while solver.status == "running":
@@ -133,6 +139,7 @@ def solve(problem, sample_times, rtol=1e-13, atol=1e-14, generations=2, longest_
             history.append(solver.dense_output(), n, m)
         y = solver.y
         at_stop.append(y.copy())
+        asked_at_stop.append(asked(stop, y))
 
     nearest = [int(np.abs(stops - t).argmin()) for t in sample_times]
-    return np.array([at_stop[k] for k in nearest]), loop
+    return np.array([at_stop[k] for k in nearest]), loop, [asked_at_stop[k] for k in nearest]

@@ -56,19 +56,20 @@ def polynomial_of_roots(roots):
 
 
 def agent(robot, roots, K=8.0, Gamma=10.0, knows_theta=False, q=None, dq=None,
-          reference=None, theta_hat=None):
-    """One agent with every default written out."""
+          reference=None, theta_hat=None, manipulability=0.0):
+    """One agent with every default written out, but for `lambda`, which is zero where it is missing."""
     m = dimension(robot)
     q = [0.0] * m if q is None else list(q)
     dq = [0.0] * m if dq is None else list(dq)
     if reference is None:
-        reference = [list(dq)] + [[0.0] * m for _ in roots[1:]]
+        reference = [list(dq)] * bool(roots) + [[0.0] * m for _ in roots[1:]]
     if theta_hat is None:
         theta_hat = robot["theta"] if knows_theta else [0.0] * len(robot["theta"])
     return {
         "robot": robot,
         "roots": list(roots),
         "alpha": polynomial_of_roots(roots),
+    } | ({"lambda": manipulability} if manipulability else {}) | {
         "K": K,
         "Gamma": Gamma,
         "knows_theta": knows_theta,
@@ -184,12 +185,45 @@ def edges_at(schedule, t):
 
 # ---------------------------------------------------------------- whole problems
 
-def problem(name, description, end, exchange, agents, schedule):
+CONSENSUS = {"kind": "consensus"}
+PURE_INTEGRAL = {"kind": "pure_integral"}
+
+
+def backstepping(filter_s):
+    return {"kind": "backstepping", "filter_s": filter_s}
+
+
+def reference_of(problem):
+    return problem.get("reference", CONSENSUS)
+
+
+def reference_vectors(problem):
+    """How many vectors of state the reference dynamics have: z, z', .., or the filter."""
+    return 1 if reference_of(problem)["kind"] == "backstepping" else problem["order"]
+
+
+def reference_start(problem):
+    """Those vectors at t = 0, agent by agent.  The filter starts settled, at
+    sum_j w_ij (q_j - q_i), and everybody hears initial positions."""
+    agents = problem["agents"]
+    if reference_of(problem)["kind"] != "backstepping":
+        return [a["start"]["reference"] for a in agents]
+    settled = [[0.0] * dimension(a["robot"]) for a in agents]
+    for e in edges_at(problem["schedule"], 0.0):
+        mine, told = (agents[e[end]]["start"]["q"] for end in ("to", "from"))
+        for axis in range(len(mine)):
+            settled[e["to"]][axis] += e["weight"] * (told[axis] - mine[axis])
+    return [[vector] for vector in settled]
+
+
+def problem(name, description, end, exchange, agents, schedule, reference=CONSENSUS):
+    """`reference` is left out of the file for the consensus family."""
     return {
         "format": "forwardstep trajectory, version 1",
         "name": name,
         "description": description,
         "end_s": end,
+    } | ({} if reference == CONSENSUS else {"reference": reference}) | {
         "order": len(agents[0]["roots"]),
         "exchange": exchange,
         "agents": agents,

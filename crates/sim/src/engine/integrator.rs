@@ -194,7 +194,7 @@ impl<'a> Integrator<'a> {
             }
         }
         loop {
-            let next = self.timeline.next_s().min(system.next_event_s());
+            let next = self.timeline.next_s().min(self.timeline.or_horizon(system.next_event_s()));
             let left = next - t;
             let h = self.wish_s.min(limit_s);
             // Never leave a sliver before a break-point: land on it, or go half-way.

@@ -14,6 +14,11 @@ use crate::schedule::{Segment, Segments};
 /// Events closer than this are one, s.
 const MERGE_S: f64 = 1e-12;
 
+/// The same at a time so late that neighbouring numbers are farther apart.
+fn merge_s(t_s: f64) -> f64 {
+    MERGE_S.max(4.0 * (t_s.next_up() - t_s))
+}
+
 /// Second-generation images waiting at once; beyond it they are left to the error control.
 const SECOND_GENERATION_BUDGET: usize = 256;
 
@@ -114,16 +119,22 @@ impl<'a> Timeline<'a> {
         self.clocks.iter().position(|(index, _)| self.network.delays[*index] == *wanted)
     }
 
-    /// The next break-point, s; the horizon when nothing comes before it.
+    /// The next break-point, s; the horizon when nothing comes before it. What rounding puts just before the horizon
+    /// happens at the horizon, which is seen from the left.
     pub(crate) fn next_s(&self) -> f64 {
         let mut next = self.end_s.min(self.segment.end_s);
         for (_, piece) in &self.clocks {
             next = next.min(piece.end_s);
         }
-        match self.images.peek() {
-            Some(Reverse(image)) => next.min(image.t_s),
-            None => next,
+        if let Some(Reverse(image)) = self.images.peek() {
+            next = next.min(image.t_s);
         }
+        self.or_horizon(next)
+    }
+
+    /// The horizon for what happens a rounding before it.
+    pub(crate) fn or_horizon(&self, t_s: f64) -> f64 {
+        if t_s >= self.end_s - merge_s(self.end_s) { self.end_s } else { t_s }
     }
 
     /// Moves past everything that happens at `t_s`.
@@ -179,7 +190,7 @@ impl<'a> Timeline<'a> {
 
 /// What happens up to here happens at `t_s`.
 pub(crate) fn merge_until(t_s: f64) -> f64 {
-    t_s + MERGE_S.max(4.0 * (t_s.next_up() - t_s))
+    t_s + merge_s(t_s)
 }
 
 #[cfg(test)]
@@ -216,6 +227,29 @@ mod tests {
         let network = network(Delay::Constant { s: 0.3 });
         assert_eq!(break_points(&network, 2.5, 1), vec![0.3, 1.0, 1.3, 2.0, 2.3]);
         assert_eq!(break_points(&network, 2.5, 2), vec![0.3, 0.6, 1.0, 1.3, 1.6, 2.0, 2.3]);
+    }
+
+    #[test]
+    fn regress_nothing_happens_a_rounding_before_the_horizon() {
+        // What the first delay's jump at 3 · 1.7 + 0.8 sends is heard 0.5 s later, a rounding before 6.4, where the saw-tooth
+        // jumps. Landing on it made the two one event, and the row at the horizon showed what is heard after the jump.
+        let edge = |delay| Edge { from: 0, to: 1, weight: 1.0, delay };
+        let steps = Delay::PiecewiseConstant { times_s: vec![0.0, 0.8], values_s: vec![0.2, 0.5], period_s: Some(1.7) };
+        let saw_tooth = Delay::SawTooth { min_s: 0.1, max_s: 0.3, period_s: 0.8, offset_s: 0.0 };
+        let network =
+            Network { agents: 2, schedule: Schedule::Fixed(vec![edge(0), edge(1)]), delays: vec![steps, saw_tooth] };
+        let mut longer = Timeline::new(&network, 10.0, 1);
+        while longer.next_s() < 6.3 {
+            longer.pass(longer.next_s());
+        }
+        assert!((6.4 - 1e-12..6.4).contains(&longer.next_s()));
+
+        let mut timeline = Timeline::new(&network, 6.4, 1);
+        while timeline.next_s() < 6.4 {
+            assert!(timeline.next_s() < 6.4 - 1e-6);
+            timeline.pass(timeline.next_s());
+        }
+        assert!((timeline.delay_s(1, 6.4) - 0.3).abs() < 1e-12);
     }
 
     #[test]

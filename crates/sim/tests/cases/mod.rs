@@ -20,15 +20,31 @@ pub struct Case {
     pub name: String,
     pub end_s: f64,
     pub exchange: String,
+    /// The consensus family where a case says nothing.
+    #[serde(default)]
+    pub reference: ReferenceCase,
     pub agents: Vec<AgentCase>,
     pub schedule: ScheduleCase,
     pub samples: Samples,
+}
+
+#[derive(Clone, Default, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum ReferenceCase {
+    #[default]
+    Consensus,
+    PureIntegral,
+    Backstepping {
+        filter_s: f64,
+    },
 }
 
 #[derive(Clone, Deserialize)]
 pub struct AgentCase {
     pub robot: RobotCase,
     pub roots: Vec<f64>,
+    #[serde(default)]
+    pub lambda: f64,
     #[serde(rename = "K")]
     pub k: GainCase,
     #[serde(rename = "Gamma")]
@@ -123,7 +139,13 @@ pub fn setup(case: &Case) -> Setup {
     };
     Setup {
         agents: case.agents.iter().enumerate().map(agent).collect(),
-        reference: ReferenceKind::Consensus,
+        reference: match case.reference {
+            ReferenceCase::Consensus => ReferenceKind::Consensus,
+            ReferenceCase::PureIntegral => ReferenceKind::PureIntegral,
+            ReferenceCase::Backstepping { filter_s } => {
+                ReferenceKind::Backstepping { filter_s, acceleration_limit: None }
+            }
+        },
         exchange: match case.exchange.as_str() {
             "position" => Exchange::Position,
             "position_velocity" => Exchange::PositionVelocity,
@@ -195,7 +217,7 @@ fn agent((index, case): (usize, &AgentCase)) -> AgentSetup {
             axes: (1..=case.start.q.len()).map(axis).collect(),
         },
         roots_per_s: case.roots.clone(),
-        manipulability: 0.0,
+        manipulability: case.lambda,
         law,
         start: Start { q: case.start.q.clone(), dq: case.start.dq.clone(), reference: case.start.reference.clone() },
         enforce_limits: false,
