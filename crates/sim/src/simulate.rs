@@ -21,6 +21,7 @@ const ROWS_PER_CHUNK: usize = 4096;
 /// [`Ending::BrokeDown`].
 pub fn simulate(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Result<Outcome, SetupError> {
     let started = Instant::now();
+    setup.network.lasts_until(setup.time.end_s)?;
     let mut closed_loop = ClosedLoop::new(setup)?;
     let (ports, entries) = closed_loop.ports();
     let end_s = setup.time.end_s;

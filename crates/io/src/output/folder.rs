@@ -10,10 +10,11 @@ use super::error::{Action, EncodeError, OutputError};
 const SEAL: &str = "summary.json";
 
 /// Every file that a run may write.
-pub(crate) const FILES: [&str; 9] = [
+pub(crate) const FILES: [&str; 10] = [
     "scenario.toml",
     "trajectory.parquet",
     "trajectory.csv",
+    "packets.csv",
     "report.html",
     "plots/positions.svg",
     "plots/torques.svg",

@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `trajectory.parquet` | every recorded signal, one column each ([`names`] says how they are called) |
 //! | `trajectory.csv` | the same numbers with all their digits, when asked for |
+//! | `packets.csv` | every packet of every link, where links carry packets; `delay.log` replays it |
 //! | `summary.json` | [`summary::Summary`]: verdicts, metrics, how it ended |
 //! | `report.html` | one self-contained page that opens offline |
 //! | `plots/*.svg` | positions, torques, estimates and disagreement, one panel per joint |
@@ -21,6 +22,7 @@ mod error;
 mod folder;
 mod metrics;
 pub mod names;
+mod packets;
 mod palette;
 mod parquet;
 mod plots;
@@ -38,6 +40,7 @@ pub use metrics::{
     Absence, Agreement, Disagreement, DisagreementSeries, LEDGER_FLOOR_J, LedgerError, LimitKind, LimitReached,
     Metrics, Peak, Speed,
 };
+pub use packets::Link;
 pub use record::{Goal, GoalOutcome, RunRecord, ending_sentence};
 
 /// What to write besides the files that are always written.
@@ -64,6 +67,9 @@ pub fn write_run(folder: &RunFolder, record: &RunRecord<'_>, options: Options) -
     staging.write("trajectory.parquet", |out| Ok(parquet::write(out, record)?))?;
     if options.csv {
         staging.write("trajectory.csv", |out| Ok(csv::write(out, record.setup, recording)?))?;
+    }
+    if !packets::links(&record.setup.network).is_empty() {
+        staging.write("packets.csv", |out| Ok(packets::write(out, record.setup)?))?;
     }
     staging
         .write("report.html", |out| Ok(std::io::Write::write_all(out, report::page(record, &metrics).as_bytes())?))?;

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::metrics::Metrics;
 use super::names;
+use super::packets::Link;
 use super::record::{Goal, RunRecord, ending_sentence};
 
 /// The format of this document; it grows when fields change their meaning or vanish, not when some are added.
@@ -37,6 +38,8 @@ pub struct Summary<'a> {
     pub metrics: &'a Metrics,
     /// Work of the integrator.
     pub solver: Solver,
+    /// Links that carried packets; empty where none does.
+    pub links: Vec<Link>,
     /// Remarks.
     pub notices: &'a [String],
     /// The only part that differs between two runs of the same scenario by the same version.
@@ -212,6 +215,7 @@ impl<'a> Summary<'a> {
                 evaluations: statistics.evaluations,
                 break_points: statistics.break_points,
             },
+            links: Link::all(&setup.network),
             notices: &record.notices,
             timings: Timings { wall_s, simulated_per_wall: ending.t_s / wall_s },
             ending,

@@ -40,6 +40,8 @@ mod fault;
 pub mod file;
 pub mod formula;
 mod law;
+mod links;
+pub mod links_file;
 mod network;
 pub mod network_file;
 mod notice;
@@ -66,7 +68,7 @@ use toml::de::{DeTable, DeValue};
 pub use notice::Notice;
 pub use open::{OpenError, open_scenario};
 pub use problem::ScenarioProblem;
-pub use shipped::{SHIPPED_SCENARIOS, ShippedScenario, shipped_scenario};
+pub use shipped::{SHIPPED_SCENARIOS, SHIPPED_TABLES, ShippedScenario, ShippedTable, shipped_scenario};
 pub use table::TableProblem;
 pub use template::{Template, TemplateDelay, TemplateGraph, TemplateRobot};
 

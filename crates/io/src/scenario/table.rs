@@ -13,6 +13,7 @@ use super::at::At;
 use super::de::quoted;
 use super::fault::{Fault, LARGEST, fault};
 use super::problem::ScenarioProblem;
+use super::shipped::{SHIPPED_TABLES, shipped_table};
 use crate::SourceText;
 use crate::files::{ReadError, neighbours, read_text};
 use crate::wording::{choose, entry_count};
@@ -103,16 +104,22 @@ pub(super) struct Column {
 
 pub(super) type Cell<'a> = At<Cow<'a, str>>;
 
-/// The text of a table beside the scenario.
+/// The text of a table beside the scenario, else of a shipped one.
 pub(super) fn table_text(file: &At<String>, folder: Option<&Path>) -> Result<SourceText, Fault> {
     let name = file.value.as_str();
-    let (reason, known) = match folder.map(|folder| folder.join(name)) {
+    let (reason, mut known) = match folder.map(|folder| folder.join(name)) {
         None => (ReadError::Missing, Vec::new()),
         Some(path) => match read_text(&path) {
             Ok(text) => return Ok(SourceText::new(path.display().to_string(), text)),
             Err(kind) => (kind, neighbours(&path, "csv")),
         },
     };
+    if reason == ReadError::Missing
+        && let Some(shipped) = shipped_table(name)
+    {
+        return Ok(SourceText::new(shipped.name, shipped.text));
+    }
+    known.extend(SHIPPED_TABLES.map(|table| table.name.to_owned()));
     Err(fault(file, TableProblem::File { file: name.into(), reason, known }.into()))
 }
 

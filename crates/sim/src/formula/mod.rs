@@ -286,6 +286,51 @@ impl Formula {
     }
 }
 
+/// A formula with what it keeps within.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BoundedFormula {
+    formula: Formula,
+    until_s: f64,
+    within: Interval,
+    for_ever: Interval,
+}
+
+impl BoundedFormula {
+    /// Encloses `formula` on [0, `until_s`], and for ever.
+    pub fn new(formula: Formula, until_s: f64) -> Self {
+        let within = formula.bounds(0.0, until_s);
+        let for_ever = if formula.is_constant() { within } else { formula.bounds(0.0, f64::INFINITY) };
+        BoundedFormula { formula, until_s, within, for_ever }
+    }
+
+    /// The formula.
+    pub fn formula(&self) -> &Formula {
+        &self.formula
+    }
+
+    /// Its bounds hold until here, s.
+    pub fn until_s(&self) -> f64 {
+        self.until_s
+    }
+
+    /// What it keeps within until [`until_s`](Self::until_s).
+    pub fn within(&self) -> Interval {
+        self.within
+    }
+
+    /// What it keeps within for ever, as far as that could be shown; see [`Formula::bounds`].
+    pub fn for_ever(&self) -> Interval {
+        self.for_ever
+    }
+
+    /// Its value at `t_s`. Beyond [`until_s`](Self::until_s) it is kept within the bounds.
+    #[inline]
+    pub fn value(&self, t_s: f64) -> f64 {
+        // Not f64::clamp, which lets not-a-number through.
+        self.formula.eval(t_s).max(self.within.low).min(self.within.high)
+    }
+}
+
 /// A stretch of time and what the formula does not exceed on it; ordered by that bound.
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
