@@ -13,7 +13,7 @@ use super::at::At;
 use super::de::quoted;
 use super::fault::{Fault, LARGEST, fault};
 use super::problem::ScenarioProblem;
-use super::shipped::{SHIPPED_TABLES, shipped_table};
+use super::shipped::shipped_table;
 use crate::SourceText;
 use crate::files::{ReadError, neighbours, read_text};
 use crate::wording::{choose, entry_count};
@@ -107,7 +107,7 @@ pub(super) type Cell<'a> = At<Cow<'a, str>>;
 /// The text of a table beside the scenario, else of a shipped one.
 pub(super) fn table_text(file: &At<String>, folder: Option<&Path>) -> Result<SourceText, Fault> {
     let name = file.value.as_str();
-    let (reason, mut known) = match folder.map(|folder| folder.join(name)) {
+    let (reason, known) = match folder.map(|folder| folder.join(name)) {
         None => (ReadError::Missing, Vec::new()),
         Some(path) => match read_text(&path) {
             Ok(text) => return Ok(SourceText::new(path.display().to_string(), text)),
@@ -119,7 +119,6 @@ pub(super) fn table_text(file: &At<String>, folder: Option<&Path>) -> Result<Sou
     {
         return Ok(SourceText::new(shipped.name, shipped.text));
     }
-    known.extend(SHIPPED_TABLES.map(|table| table.name.to_owned()));
     Err(fault(file, TableProblem::File { file: name.into(), reason, known }.into()))
 }
 
