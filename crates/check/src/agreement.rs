@@ -47,6 +47,9 @@ pub enum NoPrediction {
     /// A delay changes.
     #[error("a delay varies with time")]
     VaryingDelay,
+    /// A weight changes.
+    #[error("a weight varies with time")]
+    VaryingWeight,
     /// The value depends on the tracking errors.
     #[error("the manipulability gain of agent {agent} lets tracking errors move it")]
     Manipulability {
@@ -95,7 +98,8 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
         return Err(NoPrediction::VaryingDelay);
     }
     let n = setup.agents.len();
-    let influence = left_null_vector(n, edges)?;
+    let l = laplacian(n, edges).ok_or(NoPrediction::VaryingWeight)?;
+    let influence = left_null_vector(n, edges, &l)?;
     let alpha: Vec<Vec<f64>> = setup
         .agents
         .iter()
@@ -127,9 +131,8 @@ fn constant_graph(schedule: &Schedule) -> Option<&[Edge]> {
 }
 
 /// u ≥ 0 with uᵀL = 0 and Σu = 1. Only the agents that reach all others count.
-fn left_null_vector(n: usize, edges: &[Edge]) -> Result<Vec<f64>, NoPrediction> {
+fn left_null_vector(n: usize, edges: &[Edge], l: &[f64]) -> Result<Vec<f64>, NoPrediction> {
     let SpanningTree::Rooted { roots } = spanning_tree(n, edges) else { return Err(NoPrediction::NoSpanningTree) };
-    let l = laplacian(n, edges);
     // Lᵀu = 0 on the roots, with its last equation, which the others imply, replaced by Σu = 1.
     let m = roots.len();
     let entry = |row: usize, column: usize| {
@@ -163,13 +166,14 @@ fn contribution(setup: &Setup, edges: &[Edge], alpha: &[f64], i: usize, axis: us
     let kappa_0 = setup.agents[i].roots_per_s[0];
     let velocity = if setup.exchange == Exchange::PositionVelocity { 1.0 / kappa_0 } else { 0.0 };
     let (mut degree, mut past, mut past_at_rest) = (0.0, 0.0, 0.0);
-    for edge in edges.iter().filter(|edge| edge.to == i) {
+    let weighted = edges.iter().filter(|edge| edge.to == i).filter_map(|edge| Some((edge, edge.weight.constant()?)));
+    for (edge, weight) in weighted {
         let delay_s = setup.network.delays[edge.delay].max_s();
         let sender = &setup.agents[edge.from].start;
         let ramp = sender.q[axis] - delay_s * sender.dq[axis];
-        degree += edge.weight;
-        past += edge.weight * (delay_s * sender.q[axis] - velocity * ramp);
-        past_at_rest += edge.weight * (delay_s - velocity);
+        degree += weight;
+        past += weight * (delay_s * sender.q[axis] - velocity * ramp);
+        past_at_rest += weight * (delay_s - velocity);
     }
     ((b + degree * w) / alpha[0] + past, 1.0 + degree * alpha[1] / alpha[0] + past_at_rest)
 }

@@ -4,6 +4,7 @@ use forwardstep_sim::graph::{Edge, strong_components};
 use forwardstep_sim::schedule::{Schedule, Window};
 use forwardstep_sim::{Exchange, Law, ReferenceKind, Setup};
 
+use crate::links;
 use crate::sampled::{digital, limited_actuators};
 use crate::verdict::{Answer, Hypothesis, Report};
 
@@ -15,7 +16,8 @@ use crate::verdict::{Answer, Hypothesis, Report};
 /// (aa10), which is (a5) of order one, and for the baseline (aa6), about which the paper promises nothing.
 pub fn check(setup: &Setup) -> Report {
     let order = setup.agents.iter().map(|agent| agent.roots_per_s.len()).max().unwrap_or(0);
-    let mut hypotheses = vec![spanning_tree(setup), dwell_time(setup), bounded_delays(setup)];
+    let mut hypotheses = vec![spanning_tree(setup), dwell_time(setup), links::bounded_delays(setup)];
+    hypotheses.extend(links::bounded_weights(setup));
     match setup.reference {
         ReferenceKind::Consensus => hypotheses.extend([real_roots(setup), common_order(setup)]),
         ReferenceKind::PureIntegral => hypotheses.extend([fixed_graph(setup), real_roots(setup)]),
@@ -75,7 +77,7 @@ fn names(setup: &Setup, agents: &[usize]) -> String {
 }
 
 /// A time without the digits that rounding left behind.
-fn seconds(t_s: f64) -> f64 {
+pub(crate) fn seconds(t_s: f64) -> f64 {
     (t_s * 1e6).round() / 1e6
 }
 
@@ -134,18 +136,14 @@ fn dwell_time(setup: &Setup) -> Hypothesis {
     Hypothesis { requires, answer: Answer::Holds, because }
 }
 
-fn bounded_delays(setup: &Setup) -> Hypothesis {
-    Hypothesis {
-        requires: "delays are piecewise uniformly continuous and uniformly bounded".into(),
-        answer: Answer::Holds,
-        because: format!("no delay exceeds {} s", seconds(setup.network.max_delay_s())),
-    }
-}
-
 fn fixed_graph(setup: &Setup) -> Hypothesis {
     let requires = "the graph is fixed".into();
     let graphs = setup.network.schedule.graphs();
     let (answer, because) = match graphs.len() {
+        1 if links::varying_weights(setup).next().is_some() => (
+            Answer::NotCovered,
+            "a weight changes with time: the torque that follows from it is not the one proved".to_owned(),
+        ),
         1 => (Answer::Holds, "one graph stays for ever".to_owned()),
         graphs => {
             let instead = match setup.exchange {
@@ -224,7 +222,7 @@ fn common_first_root(setup: &Setup) -> Hypothesis {
     });
     let (answer, because) = match witness {
         None => (Answer::Holds, "κ₀ is common wherever agents hear each other in a cycle".to_owned()),
-        Some(_) if graphs.len() == 1 && constant_delays => {
+        Some(_) if graphs.len() == 1 && constant_delays && links::varying_weights(setup).next().is_none() => {
             (Answer::Holds, "κ₀ differs, but the graph and the delays are constant".to_owned())
         }
         Some((a, b)) => (

@@ -5,6 +5,7 @@
 
 mod agreement;
 mod hypotheses;
+mod links;
 mod sampled;
 mod verdict;
 

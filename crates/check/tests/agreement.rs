@@ -8,8 +8,10 @@ use forwardstep_check::{Answer, NoPrediction, check, predict};
 use forwardstep_core::Gain;
 use forwardstep_core::reference::polynomial;
 use forwardstep_core::robot::PlanarLinks;
-use forwardstep_sim::delay::Delay;
-use forwardstep_sim::graph::Edge;
+use forwardstep_sim::delay::{Delay, Loss, Packet, PacketLink, RandomHold, Trace};
+use forwardstep_sim::formula::FormulaStep::{Add, Multiply, Number, Sin, Time};
+use forwardstep_sim::formula::{BoundedFormula, Formula};
+use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
     AgentSetup, Axis, AxisUnit, Ending, Exchange, Law, Method, Network, Outcome, ReferenceKind, RobotKind, RobotSetup,
@@ -48,12 +50,12 @@ fn axis(name: &str) -> Axis {
 }
 
 fn edge(from: usize, to: usize, weight: f64, delay: usize) -> Edge {
-    Edge { from, to, weight, delay }
+    Edge { from, to, weight: weight.into(), delay }
 }
 
 fn setup(agents: Vec<AgentSetup>, exchange: Exchange, schedule: Schedule, delays: Vec<Delay>, end_s: f64) -> Setup {
     Setup {
-        network: Network { agents: agents.len(), schedule, delays },
+        network: Network { agents: agents.len(), schedule, delays, weights: Vec::new() },
         agents,
         reference: ReferenceKind::Consensus,
         exchange,
@@ -299,6 +301,137 @@ fn prop_spread_never_grows_whatever_switches_or_jumps() {
             }
         }
     }
+}
+
+#[test]
+fn prop_spread_never_grows_over_random_packets_and_weights() {
+    // Lossy, jittering, overtaking packets of four kinds, weights that swing, and a switching graph.
+    let end_s = 12.0;
+    let link = |seed, loss, jitter_s| PacketLink {
+        every_s: 0.11,
+        first_s: 0.03,
+        latency_s: 0.05,
+        jitter_s,
+        loss,
+        most_in_a_row: None,
+        seed,
+    };
+    let swing = Formula::new(vec![Number(1.3), Number(1.2), Number(2.0), Time, Multiply, Sin, Multiply, Add]).unwrap();
+    for seed in 0..4 {
+        let links = [
+            link(seed, Loss::Never, 0.0),
+            link(seed, Loss::Random { probability: 0.4 }, 0.3),
+            link(seed, Loss::Bursts { enter: 0.1, leave: 0.3 }, 0.5),
+        ];
+        let pairs = [(0, 1), (1, 2), (2, 3), (3, 4), (4, 0), (0, 3)];
+        let mut delays: Vec<Delay> = pairs
+            .iter()
+            .enumerate()
+            .map(|(k, pair)| Delay::Packets(links[k % 3].trace(*pair, end_s).unwrap().into()))
+            .collect();
+        delays.push(Delay::RandomHold(RandomHold::draw(seed, (4, 2), [0.0, 0.5], [0.05, 0.4], end_s).unwrap().into()));
+        let mut edges: Vec<Edge> = pairs.iter().enumerate().map(|(k, pair)| edge(pair.0, pair.1, 1.3, k)).collect();
+        edges.push(edge(4, 2, 0.7, 6));
+        edges[1].weight = Weight::Formula(0);
+        edges[4].weight = Weight::Formula(0);
+        let some = |which: &[usize]| which.iter().map(|k| edges[*k]).collect::<Vec<_>>();
+        let schedule = Schedule::Periodic(vec![
+            Phase { edges: some(&[0, 2, 4]), dwell_s: 0.7 },
+            Phase { edges: some(&[1, 3, 5, 6]), dwell_s: 0.9 },
+        ]);
+        let exchange = if seed % 2 == 0 { Exchange::Position } else { Exchange::PositionVelocity };
+        let mut setup = masses(exchange, 1 + seed as usize % 3, schedule, delays);
+        setup.network.weights = vec![BoundedFormula::new(swing.clone(), end_s)];
+        let outcome = run(&setup);
+        for axis in 0..2 {
+            let spread = spreads(&setup, &outcome, axis);
+            for (row, pair) in spread.windows(2).enumerate() {
+                assert!(pair[1] <= pair[0] + 2e-5 * spread[0], "seed {seed}: {} → {} at row {row}", pair[0], pair[1]);
+            }
+            assert!(spread[spread.len() - 1] < 0.9 * spread[0]);
+        }
+        assert_eq!(predict(&setup), Err(NoPrediction::Switching));
+    }
+}
+
+/// The answer to the hypothesis on delays, and on weights if there is one, of two agents that hear each other.
+fn links(delay: Delay, weight: Option<Formula>) -> (Answer, String, Option<(Answer, String)>) {
+    let end_s = 20.0;
+    let mut setup =
+        masses(Exchange::Position, 2, Schedule::Fixed(vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)]), vec![delay]);
+    setup.agents.truncate(2);
+    setup.network.agents = 2;
+    setup.time.end_s = end_s;
+    if let Some(formula) = weight {
+        setup.network.weights = vec![BoundedFormula::new(formula, end_s)];
+        setup.network.schedule = Schedule::Fixed(vec![
+            Edge { weight: Weight::Formula(0), ..edge(0, 1, 1.0, 0) },
+            Edge { weight: Weight::Formula(0), ..edge(1, 0, 1.0, 0) },
+        ]);
+        assert!(matches!(predict(&setup), Err(NoPrediction::VaryingWeight | NoPrediction::VaryingDelay)));
+    }
+    let report = check(&setup);
+    let find = |words: &str| {
+        report.hypotheses.iter().find(|h| h.requires.starts_with(words)).map(|h| (h.answer, h.because.clone()))
+    };
+    let (answer, because) = find("delays").unwrap();
+    (answer, because, find("weights"))
+}
+
+#[test]
+fn only_a_bounded_loss_gives_a_bounded_delay() {
+    let link = |loss, most_in_a_row| {
+        let link =
+            PacketLink { every_s: 0.02, first_s: 0.0, latency_s: 0.03, jitter_s: 0.02, loss, most_in_a_row, seed: 1 };
+        links(Delay::Packets(link.trace((0, 1), 20.0).unwrap().into()), None)
+    };
+    let (answer, because, _) = link(Loss::Never, None);
+    assert_eq!(
+        (answer, because.as_str()),
+        (Answer::Holds, "no delay exceeds 0.07 s; between the arrivals of packets it grows like t")
+    );
+    let (answer, because, _) = link(Loss::Bursts { enter: 0.1, leave: 0.2 }, Some(4));
+    assert_eq!(
+        (answer, because.as_str()),
+        (Answer::Holds, "no delay exceeds 0.15 s; between the arrivals of packets it grows like t")
+    );
+    for loss in [
+        Loss::Random { probability: 0.1 },
+        Loss::Bursts { enter: 0.01, leave: 0.2 },
+        Loss::Random { probability: 1e-9 },
+    ] {
+        let (answer, because, _) = link(loss, None);
+        assert_eq!(answer, Answer::HoldsOnHorizon);
+        assert!(because.contains("any number of packets may be lost one after another"), "{because}");
+    }
+    let packets = vec![Packet { send_s: 0.0, delay_s: Some(0.5) }, Packet { send_s: 1.0, delay_s: None }];
+    let (answer, because, _) = links(Delay::Packets(Trace::new(packets, 20.0).unwrap().into()), None);
+    assert_eq!(answer, Answer::HoldsOnHorizon);
+    assert!(
+        because.starts_with("no delay exceeds 20 s until the end of the run at 20 s") && because.contains("replayed"),
+        "{because}"
+    );
+    let hold = RandomHold::draw(1, (0, 1), [0.05, 0.4], [0.1, 0.8], 20.0).unwrap();
+    let (answer, because, _) = links(Delay::RandomHold(hold.into()), None);
+    assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 0.4 s"));
+}
+
+#[test]
+fn formulas_hold_for_ever_only_where_that_is_shown() {
+    let swing = |mean| Formula::new(vec![Number(mean), Number(0.5), Time, Sin, Multiply, Add]).unwrap();
+    let growing = Formula::new(vec![Number(0.1), Number(0.01), Time, Multiply, Add]).unwrap();
+    let delay = |formula: Formula| Delay::Formula(BoundedFormula::new(formula, 20.0).into());
+    let (answer, because, _) = links(delay(swing(0.5)), None);
+    assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 1 s"));
+    let (answer, because, _) = links(delay(growing.clone()), None);
+    assert_eq!(answer, Answer::HoldsOnHorizon);
+    assert!(because.starts_with("no delay exceeds 0.3 s until the end of the run"), "{because}");
+    let constant = || Delay::Constant { s: 0.1 };
+    let (_, _, weight) = links(constant(), Some(swing(1.0)));
+    assert_eq!(weight.unwrap(), (Answer::Holds, "weights that follow a formula stay from 0.5 to 1.5".to_owned()));
+    let (_, _, weight) = links(constant(), Some(growing));
+    assert_eq!(weight.unwrap().0, Answer::HoldsOnHorizon);
+    assert_eq!(links(constant(), None).2, None);
 }
 
 #[test]

@@ -47,4 +47,5 @@ shipped! {
     theorem_3_24_order_4: "theorem-3-24-order-4",
     ten_different_robots: "ten-different-robots",
     backstepping: "backstepping",
+    from_a_log: "from-a-log",
 }

@@ -64,7 +64,7 @@ fn ring(model: Model, n: usize, tolerance: f64) -> Setup {
             enforce_limits: false,
         }
     };
-    let edge = |i: usize| Edge { from: (i + n - 1) % n, to: i, weight: 1.0, delay: i };
+    let edge = |i: usize| Edge { from: (i + n - 1) % n, to: i, weight: 1.0.into(), delay: i };
     let delay = |i: usize| Delay::Constant { s: 0.1 + 0.3 * (i % 7) as f64 / 7.0 };
     Setup {
         agents: (0..n).map(agent).collect(),
@@ -74,6 +74,7 @@ fn ring(model: Model, n: usize, tolerance: f64) -> Setup {
             agents: n,
             schedule: Schedule::Fixed((0..n).map(edge).collect()),
             delays: (0..n).map(delay).collect(),
+            weights: Vec::new(),
         },
         time: TimeSpan { end_s: END_S, record_every_s: END_S },
         solver: Solver {

@@ -11,9 +11,34 @@ pub struct Edge {
     /// The receiver i.
     pub to: usize,
     /// w_ij > 0.
-    pub weight: f64,
+    pub weight: Weight,
     /// Index into [`crate::network::Network::delays`].
     pub delay: usize,
+}
+
+/// The weight of an edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Weight {
+    /// Always the same.
+    Constant(f64),
+    /// A formula in t: index into [`crate::network::Network::weights`].
+    Formula(usize),
+}
+
+impl Weight {
+    /// The weight, if it never changes.
+    pub fn constant(self) -> Option<f64> {
+        match self {
+            Weight::Constant(weight) => Some(weight),
+            Weight::Formula(_) => None,
+        }
+    }
+}
+
+impl From<f64> for Weight {
+    fn from(weight: f64) -> Self {
+        Weight::Constant(weight)
+    }
 }
 
 /// The answer to "does this graph contain a directed spanning tree?", with a certificate or a witness.
@@ -77,14 +102,15 @@ pub fn strong_components(agents: usize, edges: &[(usize, usize)]) -> Vec<Vec<usi
     components
 }
 
-/// The Laplacian L_w, row by row: Σ_k w_ik on the diagonal, −w_ij elsewhere.
-pub fn laplacian(agents: usize, edges: &[Edge]) -> Vec<f64> {
+/// The Laplacian L_w, row by row: Σ_k w_ik on the diagonal, −w_ij elsewhere; `None` when a weight changes with time.
+pub fn laplacian(agents: usize, edges: &[Edge]) -> Option<Vec<f64>> {
     let mut l = vec![0.0; agents * agents];
     for edge in edges {
-        l[edge.to * agents + edge.to] += edge.weight;
-        l[edge.to * agents + edge.from] -= edge.weight;
+        let weight = edge.weight.constant()?;
+        l[edge.to * agents + edge.to] += weight;
+        l[edge.to * agents + edge.from] -= weight;
     }
-    l
+    Some(l)
 }
 
 /// 𝒩_i: those that agent `i` hears, in the order of the edges.
@@ -97,7 +123,7 @@ mod tests {
     use super::*;
 
     fn edges(pairs: &[(usize, usize)]) -> Vec<Edge> {
-        pairs.iter().map(|&(from, to)| Edge { from, to, weight: 2.0, delay: 0 }).collect()
+        pairs.iter().map(|&(from, to)| Edge { from, to, weight: 2.0.into(), delay: 0 }).collect()
     }
 
     #[test]
@@ -116,7 +142,7 @@ mod tests {
     #[test]
     fn laplacian_rows_sum_to_zero() {
         let graph = edges(&[(0, 1), (2, 1), (1, 2)]);
-        let l = laplacian(3, &graph);
+        let l = laplacian(3, &graph).unwrap();
         assert_eq!(l, vec![0.0, 0.0, 0.0, -2.0, 4.0, -2.0, 0.0, -2.0, 2.0]);
         assert_eq!(neighbours(&graph, 1).collect::<Vec<_>>(), vec![0, 2]);
     }

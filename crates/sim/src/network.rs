@@ -3,6 +3,8 @@
 use thiserror::Error;
 
 use crate::delay::Delay;
+use crate::formula::{BoundedFormula, Interval};
+use crate::graph::Weight;
 use crate::schedule::Schedule;
 
 /// A switching digraph with delays.
@@ -14,6 +16,8 @@ pub struct Network {
     pub schedule: Schedule,
     /// The delays that edges refer to by index.
     pub delays: Vec<Delay>,
+    /// The weights that change with time, which edges refer to by index.
+    pub weights: Vec<BoundedFormula>,
 }
 
 /// Why a network has no meaning.
@@ -69,6 +73,38 @@ pub enum NetworkError {
         /// The weight.
         weight: f64,
     },
+    /// An edge refers to a weight that does not exist.
+    #[error("graph {graph} refers to weight {weight}, but there are {weights}")]
+    NoSuchWeight {
+        /// Index of the graph.
+        graph: usize,
+        /// Index of the weight.
+        weight: usize,
+        /// Number of weights.
+        weights: usize,
+    },
+    /// A formula for a weight that could not be shown to stay positive and finite.
+    #[error("weight {weight} could only be shown to stay within [{low}, {high}]; it must stay positive and finite")]
+    WeightBounds {
+        /// Index of the weight.
+        weight: usize,
+        /// Its lower bound.
+        low: f64,
+        /// Its upper bound.
+        high: f64,
+    },
+    /// A delay or a weight that is known for less than the run.
+    #[error(
+        "delay or weight {index} is known until {until_s} s, but the run ends at {end_s} s; make it for the whole run"
+    )]
+    EndsEarly {
+        /// Index of the delay or of the weight.
+        index: usize,
+        /// Until when it is known, s.
+        until_s: f64,
+        /// The end of the run, s.
+        end_s: f64,
+    },
     /// An edge refers to a delay that does not exist.
     #[error("graph {graph} refers to delay {delay}, but there are {delays}")]
     NoSuchDelay {
@@ -117,7 +153,7 @@ impl Network {
         for (graph, edges) in graphs.into_iter().enumerate() {
             let mut seen = std::collections::HashSet::new();
             for edge in edges {
-                let (from, to, weight) = (edge.from, edge.to, edge.weight);
+                let (from, to) = (edge.from, edge.to);
                 if from >= self.agents || to >= self.agents {
                     return Err(NetworkError::NoSuchAgent { graph, from, to, agents: self.agents });
                 }
@@ -127,12 +163,24 @@ impl Network {
                 if !seen.insert((from, to)) {
                     return Err(NetworkError::DuplicateEdge { graph, from, to });
                 }
-                if !(weight > 0.0 && weight.is_finite()) {
-                    return Err(NetworkError::Weight { graph, from, to, weight });
+                match edge.weight {
+                    Weight::Constant(weight) if !(weight > 0.0 && weight.is_finite()) => {
+                        return Err(NetworkError::Weight { graph, from, to, weight });
+                    }
+                    Weight::Formula(weight) if weight >= self.weights.len() => {
+                        return Err(NetworkError::NoSuchWeight { graph, weight, weights: self.weights.len() });
+                    }
+                    _ => {}
                 }
                 if edge.delay >= self.delays.len() {
                     return Err(NetworkError::NoSuchDelay { graph, delay: edge.delay, delays: self.delays.len() });
                 }
+            }
+        }
+        for (weight, formula) in self.weights.iter().enumerate() {
+            let Interval { low, high } = formula.within();
+            if !(low > 0.0 && high.is_finite()) {
+                return Err(NetworkError::WeightBounds { weight, low, high });
             }
         }
         self.check_dwell()?;
@@ -160,6 +208,30 @@ impl Network {
         match dwells.iter().position(|dwell| !(*dwell > 0.0 && dwell.is_finite())) {
             Some(graph) => Err(NetworkError::Dwell { graph, dwell_s: dwells[graph] }),
             None => Ok(()),
+        }
+    }
+
+    /// Checks that packets, random holds and formulas are known until `end_s`.
+    ///
+    /// # Errors
+    /// [`NetworkError::EndsEarly`] for the first that is not.
+    pub fn lasts_until(&self, end_s: f64) -> Result<(), NetworkError> {
+        let delays = self.delays.iter().map(Delay::known_until_s);
+        let weights = self.weights.iter().map(|formula| Some(formula.until_s()));
+        for (index, until_s) in delays.enumerate().chain(weights.enumerate()) {
+            if let Some(until_s) = until_s.filter(|until_s| *until_s < end_s) {
+                return Err(NetworkError::EndsEarly { index, until_s, end_s });
+            }
+        }
+        Ok(())
+    }
+
+    /// The value of a weight at `t_s`.
+    #[inline]
+    pub fn weight_at(&self, weight: Weight, t_s: f64) -> f64 {
+        match weight {
+            Weight::Constant(weight) => weight,
+            Weight::Formula(index) => self.weights.get(index).map_or(f64::NAN, |formula| formula.value(t_s)),
         }
     }
 

@@ -210,7 +210,10 @@ mod tests {
     use super::*;
 
     fn phase(dwell_s: f64, pairs: &[(usize, usize)]) -> Phase {
-        Phase { dwell_s, edges: pairs.iter().map(|&(from, to)| Edge { from, to, weight: 1.0, delay: 0 }).collect() }
+        Phase {
+            dwell_s,
+            edges: pairs.iter().map(|&(from, to)| Edge { from, to, weight: 1.0.into(), delay: 0 }).collect(),
+        }
     }
 
     #[test]

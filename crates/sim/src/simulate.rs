@@ -23,11 +23,17 @@ const ROWS_PER_CHUNK: usize = 4096;
 /// [`Ending::BrokeDown`].
 pub fn simulate(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Result<Outcome, SetupError> {
     let started = Instant::now();
+    setup.network.lasts_until(setup.time.end_s)?;
     let mut closed_loop = ClosedLoop::new(setup)?;
     let (ports, entries) = closed_loop.ports();
     let end_s = setup.time.end_s;
     // Messages of sampled controllers do not flow: nothing of the network enters the motion between two samples.
-    let silent = Network { agents: setup.agents.len(), schedule: Schedule::Fixed(Vec::new()), delays: Vec::new() };
+    let silent = Network {
+        agents: setup.agents.len(),
+        schedule: Schedule::Fixed(Vec::new()),
+        delays: Vec::new(),
+        weights: Vec::new(),
+    };
     let network = if setup.control.is_some() { &silent } else { &setup.network };
     let mut integrator = Integrator::new(network, &setup.solver, end_s, closed_loop.start(), ports, entries);
     let mut recorder = Recorder::new(setup, &closed_loop);

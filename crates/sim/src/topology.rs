@@ -195,7 +195,8 @@ mod tests {
 
     fn roots(topology: Topology, agents: usize) -> Option<Vec<usize>> {
         let edges = topology.edges(agents).unwrap();
-        let edges: Vec<Edge> = edges.into_iter().map(|(from, to)| Edge { from, to, weight: 1.0, delay: 0 }).collect();
+        let edges: Vec<Edge> =
+            edges.into_iter().map(|(from, to)| Edge { from, to, weight: 1.0.into(), delay: 0 }).collect();
         match spanning_tree(agents, &edges) {
             SpanningTree::Rooted { roots } => Some(roots),
             SpanningTree::Missing { .. } => None,

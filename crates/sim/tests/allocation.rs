@@ -9,7 +9,12 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use cases::{cases, setup};
-use forwardstep_sim::simulate;
+use forwardstep_sim::delay::Delay;
+use forwardstep_sim::formula::FormulaStep::{Add, Multiply, Number, Sin, Time};
+use forwardstep_sim::formula::{BoundedFormula, Formula};
+use forwardstep_sim::graph::Weight;
+use forwardstep_sim::schedule::Schedule;
+use forwardstep_sim::{Setup, simulate};
 
 struct Counting;
 
@@ -36,11 +41,37 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
+/// Lets the weight of every edge, and every delay that varies, follow a formula.
+fn weights_swing(setup: &mut Setup) {
+    let end_s = setup.time.end_s;
+    let swing = |mean, amplitude| {
+        let steps = vec![Number(mean), Number(amplitude), Time, Sin, Multiply, Add];
+        BoundedFormula::new(Formula::new(steps).unwrap(), end_s)
+    };
+    setup.network.weights = vec![swing(1.0, 0.5)];
+    let phases = match &mut setup.network.schedule {
+        Schedule::Fixed(edges) => vec![edges],
+        Schedule::Periodic(phases) | Schedule::Once(phases) => {
+            phases.iter_mut().map(|phase| &mut phase.edges).collect()
+        }
+        Schedule::Random { graphs, .. } => graphs.iter_mut().collect(),
+    };
+    for edge in phases.into_iter().flatten() {
+        edge.weight = Weight::Formula(0);
+    }
+    for delay in setup.network.delays.iter_mut().filter(|delay| matches!(delay, Delay::Sinusoid { .. })) {
+        *delay = Delay::Formula(swing(0.3, 0.1).into());
+    }
+}
+
 #[test]
 fn alloc_steps_do_not_allocate() {
-    for case in cases() {
+    for (case, formulas) in cases().into_iter().flat_map(|case| [(case.clone(), false), (case, true)]) {
         let mut setup = setup(&case);
         setup.time.record_every_s = 0.01;
+        if formulas {
+            weights_swing(&mut setup);
+        }
         let (mut before, mut steps) = (None, 0_u64);
         simulate(&setup, &mut |progress| {
             // The first quarter fills the ring of history and the queue of events.

@@ -46,7 +46,7 @@ fn arm(index: usize, order: usize) -> AgentSetup {
 
 /// The first two of `agents` arms hear each other, the others nobody. Fixed steps, so that the others have no say.
 fn bits_of_the_first_two(agents: usize, order: usize) -> Vec<u64> {
-    let edge = |from, to, delay| Edge { from, to, weight: 1.3, delay };
+    let edge = |from, to, delay| Edge { from, to, weight: 1.3.into(), delay };
     let phase = |edges, dwell_s| Phase { edges, dwell_s };
     let setup = Setup {
         agents: (0..agents).map(|index| arm(index, order)).collect(),
@@ -59,6 +59,7 @@ fn bits_of_the_first_two(agents: usize, order: usize) -> Vec<u64> {
                 Delay::SawTooth { min_s: 0.0, max_s: 0.3, period_s: 0.25, offset_s: 0.1 },
                 Delay::Sinusoid { mean_s: 0.2, amplitude_s: 0.1, period_s: 0.9, phase_rad: 0.3 },
             ],
+            weights: Vec::new(),
         },
         time: TimeSpan { end_s: 3.0, record_every_s: 0.1 },
         solver: Solver { method: Method::Fixed { step_s: 0.01 }, ..Solver::default() },

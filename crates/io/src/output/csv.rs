@@ -26,7 +26,7 @@ pub(crate) fn write(out: &mut impl Write, setup: &Setup, recording: &Recording) 
     table.flush()
 }
 
-fn io_error(error: ::csv::Error) -> std::io::Error {
+pub(super) fn io_error(error: ::csv::Error) -> std::io::Error {
     match error.into_kind() {
         ::csv::ErrorKind::Io(error) => error,
         other => std::io::Error::other(format!("{other:?}")),

@@ -12,10 +12,11 @@ use crate::scenario::inputs::INPUTS;
 const SEAL: &str = "summary.json";
 
 /// Every file that a run may write, but for the copies of its inputs.
-pub(crate) const FILES: [&str; 9] = [
+pub(crate) const FILES: [&str; 10] = [
     "scenario.toml",
     "trajectory.parquet",
     "trajectory.csv",
+    "packets.csv",
     "report.html",
     "plots/positions.svg",
     "plots/torques.svg",

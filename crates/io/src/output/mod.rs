@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `trajectory.parquet` | every recorded signal, one column each ([`names`] says how they are called) |
 //! | `trajectory.csv` | the same numbers with all their digits, when asked for |
+//! | `packets.csv` | every packet of every link, where links carry packets; `delay.log` replays it |
 //! | `summary.json` | [`summary::Summary`]: verdicts, metrics, how it ended |
 //! | `report.html` | one self-contained page that opens offline |
 //! | `plots/*.svg` | positions, torques, estimates and disagreement, one panel per joint |
@@ -26,6 +27,7 @@ mod inputs;
 mod metrics;
 pub mod names;
 mod number;
+mod packets;
 mod palette;
 mod parquet;
 mod plots;
@@ -47,6 +49,7 @@ pub use metrics::{
     Absence, Agreement, Disagreement, DisagreementSeries, LEDGER_FLOOR_J, LedgerError, LimitKind, LimitReached,
     Metrics, Peak, Speed,
 };
+pub use packets::Link;
 pub use record::{Goal, GoalOutcome, RunRecord, ending_sentence};
 pub use restore::{Remark, SavedRun};
 pub use restore_error::{RestoreError, SummaryError, TableError};
@@ -88,6 +91,9 @@ pub fn write_run(folder: &RunFolder, record: &RunRecord<'_>, options: Options) -
     table(PARQUET, staging.write(PARQUET, |out| Ok(parquet::write(out, record)?))?);
     if options.csv {
         table(CSV, staging.write(CSV, |out| Ok(csv::write(out, record.setup, recording)?))?);
+    }
+    if !packets::links(&record.setup.network).is_empty() {
+        staging.write("packets.csv", |out| Ok(packets::write(out, record.setup)?))?;
     }
     write_pictures(&mut staging, record, &metrics)?;
     staging.write("summary.json", |out| Ok(summary::Summary::of(record, metrics, tables).write(out)?))?;

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::inputs;
 use super::metrics::Metrics;
+use super::packets::Link;
 use super::record::{Goal, RunRecord, ending_sentence};
 use super::{names, number};
 use crate::scenario::inputs::content_digest;
@@ -47,6 +48,8 @@ pub struct Summary {
     pub metrics: Metrics,
     /// Work of the integrator.
     pub solver: Solver,
+    /// Links that carried packets; empty where none does.
+    pub links: Vec<Link>,
     /// Remarks.
     pub notices: Vec<String>,
     /// The only part that differs between two runs of the same scenario by the same version.
@@ -257,6 +260,7 @@ impl Summary {
                 evaluations: statistics.evaluations,
                 break_points: statistics.break_points,
             },
+            links: Link::all(&setup.network),
             notices: record.notices.clone(),
             timings: Timings { wall_s, simulated_per_wall: ending.t_s / wall_s },
             ending,

@@ -8,12 +8,15 @@ use forwardstep_sim::schedule::Segment;
 /// No picture shows more phases, or more jumps of delays.
 pub(crate) const MOST_SPANS: usize = 4000;
 
+/// With more arrivals of packets than this they are no jumps that a picture could show one by one.
+const MOST_ARRIVALS: usize = 400;
+
 /// The schedule unrolled over [0, `until_s`].
 pub(crate) struct Timeline<'a> {
     pub(crate) graphs: Vec<&'a [Edge]>,
     /// Which graph is in force when; cut at `until_s`.
     pub(crate) spans: Vec<Segment>,
-    /// Jumps of the delays that edges use, rising.
+    /// Jumps of the delays that edges use, rising; without arrivals of packets where these are very many.
     pub(crate) delay_jumps: Vec<f64>,
     /// More happened than [`MOST_SPANS`].
     pub(crate) cut: bool,
@@ -28,8 +31,11 @@ impl<'a> Timeline<'a> {
             .take(MOST_SPANS + 1)
             .map(|span| Segment { end_s: span.end_s.min(until_s), ..span })
             .collect();
-        let used = network.used_delays().map(|index| &network.delays[index]);
-        let mut delay_jumps: Vec<f64> = used.flat_map(|delay| jumps(delay, until_s)).collect();
+        let used = || network.used_delays().map(|index| &network.delays[index]);
+        let arrivals: usize =
+            used().map(|delay| if let Delay::Packets(trace) = delay { trace.arrivals() } else { 0 }).sum();
+        let shown = used().filter(|delay| arrivals <= MOST_ARRIVALS || !matches!(delay, Delay::Packets(_)));
+        let mut delay_jumps: Vec<f64> = shown.flat_map(|delay| jumps(delay, until_s)).collect();
         delay_jumps.sort_by(f64::total_cmp);
         delay_jumps.dedup();
         let cut = spans.len() > MOST_SPANS || delay_jumps.len() > MOST_SPANS;
@@ -68,8 +74,34 @@ pub(crate) fn sample_delays(delays: &[Delay], jumps: &[f64], until_s: f64) -> (V
     places.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     // An even sample on a jump has no side, so it goes.
     places.retain(|(t, side)| *side != 0.0 || jumps.binary_search_by(|jump| jump.total_cmp(t)).is_err());
-    let values = delays.iter().map(|d| places.iter().map(|(t, side)| d.value((t + side).max(0.0)) as f32).collect());
-    (places.iter().map(|(t, _)| *t).collect(), values.collect())
+    let spacing_s = until_s / SAMPLES as f64;
+    let sampled = |delay: &Delay| -> Vec<f32> {
+        let dense = matches!(delay, Delay::Packets(trace) if trace.arrivals() > MOST_ARRIVALS);
+        let value = |(place, (t, side)): (usize, &(f64, f64))| {
+            if dense { extreme(delay, *t, spacing_s, place % 2 == 0) } else { delay.value((t + side).max(0.0)) }
+        };
+        places.iter().enumerate().map(|place| value(place) as f32).collect()
+    };
+    let values = delays.iter().map(sampled).collect();
+    (places.iter().map(|(t, _)| *t).collect(), values)
+}
+
+/// The largest or the least delay around `t_s`: a line through both in turn covers the band in which a delay moves that
+/// jumps more often than there are samples.
+fn extreme(delay: &Delay, t_s: f64, spacing_s: f64, largest: bool) -> f64 {
+    let (from, to) = ((t_s - spacing_s).max(0.0), t_s + spacing_s);
+    let mut piece = delay.piece_at(from);
+    let mut extreme = delay.value_on(piece, from);
+    loop {
+        for t in [piece.start_s.max(from), piece.end_s.min(to)] {
+            let value = delay.value_on(piece, t);
+            extreme = if largest { extreme.max(value) } else { extreme.min(value) };
+        }
+        if piece.end_s >= to {
+            return extreme;
+        }
+        piece = delay.next_piece(piece);
+    }
 }
 
 #[cfg(test)]
@@ -78,11 +110,11 @@ mod tests {
     use forwardstep_sim::schedule::{Phase, Schedule};
 
     fn network(schedule: Schedule, delay: Delay) -> Network {
-        Network { agents: 2, schedule, delays: vec![delay] }
+        Network { agents: 2, schedule, delays: vec![delay], weights: Vec::new() }
     }
 
     fn phase(dwell_s: f64) -> Phase {
-        Phase { edges: vec![Edge { from: 0, to: 1, weight: 1.0, delay: 0 }], dwell_s }
+        Phase { edges: vec![Edge { from: 0, to: 1, weight: 1.0.into(), delay: 0 }], dwell_s }
     }
 
     fn starts(timeline: &Timeline<'_>) -> Vec<(f64, usize)> {
@@ -111,6 +143,29 @@ mod tests {
         let network = network(Schedule::Periodic(vec![phase(1e-9)]), Delay::Constant { s: 0.0 });
         let timeline = Timeline::of(&network, 1e6);
         assert!(timeline.cut && timeline.spans.len() == MOST_SPANS);
+    }
+
+    #[test]
+    fn many_packets_are_drawn_as_a_band() {
+        let link = forwardstep_sim::delay::PacketLink {
+            every_s: 0.01,
+            first_s: 0.0,
+            latency_s: 0.05,
+            jitter_s: 0.0,
+            loss: forwardstep_sim::delay::Loss::Never,
+            most_in_a_row: None,
+            seed: 1,
+        };
+        let delay = Delay::Packets(link.trace((0, 1), 100.0).unwrap().into());
+        let network = network(Schedule::Fixed(phase(1.0).edges), delay.clone());
+        let timeline = Timeline::of(&network, 100.0);
+        assert!(timeline.delay_jumps.is_empty() && !timeline.cut);
+        let (t_s, values) = sample_delays(&[delay], &timeline.delay_jumps, 100.0);
+        assert_eq!(t_s.len(), values[0].len());
+        for (k, value) in values[0].iter().enumerate().skip(2).take(700) {
+            let wanted = if k % 2 == 0 { 0.06 } else { 0.05 };
+            assert!((value - wanted).abs() < 1e-6, "{k}: {value}");
+        }
     }
 
     #[test]

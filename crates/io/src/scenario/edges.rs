@@ -3,13 +3,14 @@
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-use forwardstep_sim::delay::Delay;
-use forwardstep_sim::graph::Edge;
+use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::topology::{Along, Spokes, Topology};
 
 use super::at::At;
 use super::edges_file::{AlongDirection, AlongFile, CsvFile, EdgeFile, EdgesFile, RuleFile, StarDirection, StarFile};
-use super::fault::{Fault, fault, filled, not_negative, positive, seed};
+use super::fault::{Fault, fault, filled, not_negative, seed};
+use super::links::{DelayPlan, cell_weight};
+use super::links_file::WeightFile;
 use super::network::NetworkReader;
 use super::network_file::DelayFile;
 use super::problem::ScenarioProblem;
@@ -23,7 +24,7 @@ const MOST_EDGES: u64 = 1_000_000;
 struct Rule<'a> {
     topology: Topology,
     members: Vec<usize>,
-    weight: &'a Option<At<f64>>,
+    weight: &'a Option<At<WeightFile>>,
     delay: &'a Option<At<DelayFile>>,
 }
 
@@ -51,7 +52,9 @@ impl NetworkReader<'_> {
                 let (from, to) = (from.value.clone(), to.value.clone());
                 return Err(fault(place, ScenarioProblem::EdgeTwice { from, to, first_line }));
             }
-            let (weight, delay) = self.terms(weight, delay)?;
+            let (weight, plan) = self.terms(weight, delay)?;
+            let span = delay.as_ref().map_or(&place.span, |delay| &delay.span);
+            let delay = self.delay_of(&plan, j, i, span)?;
             read.push(Edge { from: j, to: i, weight, delay });
         }
         Ok(read)
@@ -91,11 +94,17 @@ impl NetworkReader<'_> {
             RuleFile::Csv(file) => return self.tabled(file, span),
         };
         let Rule { topology, members, weight, delay } = rule;
-        let (weight, delay) = self.terms(weight, delay)?;
+        let span_of_delay = delay.as_ref().map_or(span, |delay| &delay.span);
+        let (weight, plan) = self.terms(weight, delay)?;
         let refused = |error| Fault::new(ScenarioProblem::Topology(error)).at(place);
         self.few_edges(topology.edge_count(members.len()).map_err(refused)?, span)?;
         let pairs = topology.edges(members.len()).map_err(refused)?;
-        Ok(pairs.into_iter().map(|(j, i)| Edge { from: members[j], to: members[i], weight, delay }).collect())
+        let mut edges = Vec::with_capacity(pairs.len());
+        for (j, i) in pairs {
+            let (from, to) = (members[j], members[i]);
+            edges.push(Edge { from, to, weight, delay: self.delay_of(&plan, from, to, span_of_delay)? });
+        }
+        Ok(edges)
     }
 
     fn along<'a>(&self, topology: fn(Along) -> Topology, file: &'a AlongFile) -> Result<Rule<'a>, Fault> {
@@ -140,15 +149,18 @@ impl NetworkReader<'_> {
         Ok(members)
     }
 
-    /// Weight and index of the delay of an edge: its own, else the network's.
-    fn terms(&mut self, weight: &Option<At<f64>>, delay: &Option<At<DelayFile>>) -> Result<(f64, usize), Fault> {
-        let weight = weight.as_ref().map_or(Ok(self.weight), |weight| positive("weight", weight))?;
-        let delay = match (delay, &self.default_delay) {
-            (Some(delay), _) => self.delay(delay)?,
-            (None, Some(delay)) => delay.clone(),
-            (None, None) => Delay::Constant { s: 0.0 },
+    /// Weight and delay of an edge: its own, else the network's.
+    fn terms(
+        &mut self,
+        weight: &Option<At<WeightFile>>,
+        delay: &Option<At<DelayFile>>,
+    ) -> Result<(Weight, DelayPlan), Fault> {
+        let weight = weight.as_ref().map_or(Ok(self.weight), |weight| self.weight(weight))?;
+        let plan = match delay {
+            Some(delay) => self.plan(delay)?,
+            None => self.default_delay.clone(),
         };
-        Ok((weight, self.delay_index(delay)))
+        Ok((weight, plan))
     }
 
     /// Refuses more edges than fit into memory.
@@ -183,7 +195,7 @@ fn edges_of(text: &str) -> Result<Vec<At<EdgeFile>>, Fault> {
         let edge = EdgeFile {
             from: At { value: from.value.into_owned(), span: from.span },
             to: At { value: to.value.into_owned(), span: to.span },
-            weight: cell_number(&weight)?,
+            weight: cell_weight(&weight)?,
             delay: delay.transpose()?,
         };
         edges.push(At { value: edge, span });

@@ -9,6 +9,7 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 
 use super::at::At;
+use super::links_file::WeightFile;
 use super::network_file::DelayFile;
 
 /// The name under which [`EdgesFile`] asks its deserialiser for a list or a choice.
@@ -51,8 +52,7 @@ pub struct AlongFile {
     /// The agents it runs through, in this order. Default: all.
     pub among: Option<At<Vec<At<String>>>>,
     /// The weight of these edges.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub weight: Option<At<f64>>,
+    pub weight: Option<At<WeightFile>>,
     /// The delay of these edges.
     pub delay: Option<At<DelayFile>>,
 }
@@ -80,8 +80,7 @@ pub struct StarFile {
     /// The agents around it. Default: all others.
     pub among: Option<At<Vec<At<String>>>>,
     /// The weight of these edges.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub weight: Option<At<f64>>,
+    pub weight: Option<At<WeightFile>>,
     /// The delay of these edges.
     pub delay: Option<At<DelayFile>>,
 }
@@ -106,8 +105,7 @@ pub struct CompleteFile {
     /// The agents that hear each other. Default: all.
     pub among: Option<At<Vec<At<String>>>>,
     /// The weight of these edges.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub weight: Option<At<f64>>,
+    pub weight: Option<At<WeightFile>>,
     /// The delay of these edges.
     pub delay: Option<At<DelayFile>>,
 }
@@ -125,8 +123,7 @@ pub struct RandomGraphFile {
     /// The agents that hear each other. Default: all.
     pub among: Option<At<Vec<At<String>>>>,
     /// The weight of these edges.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub weight: Option<At<f64>>,
+    pub weight: Option<At<WeightFile>>,
     /// The delay of these edges.
     pub delay: Option<At<DelayFile>>,
 }
@@ -136,7 +133,8 @@ pub struct RandomGraphFile {
 #[serde(deny_unknown_fields)]
 pub struct CsvFile {
     /// The CSV file, beside the scenario file or in `inputs` beside it. Its first line names its columns: `from`, `to` and, if
-    /// wanted, `weight` and `delay_s`. Where one of these two is left empty, the network's own holds.
+    /// wanted, `weight` and `delay_s`; a weight may be a formula in t. Where one of these two is left empty, the network's
+    /// own holds.
     pub file: At<String>,
 }
 
@@ -148,7 +146,7 @@ pub struct EdgeFile {
     /// The agent that hears it.
     pub to: At<String>,
     /// A weight of its own.
-    pub weight: Option<At<f64>>,
+    pub weight: Option<At<WeightFile>>,
     /// A delay of its own.
     pub delay: Option<At<DelayFile>>,
 }
@@ -162,8 +160,7 @@ struct EdgeTable {
     /// The agent that hears it.
     to: At<String>,
     /// The weight of this edge.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    weight: Option<At<f64>>,
+    weight: Option<At<WeightFile>>,
     /// The delay of this edge.
     delay: Option<At<DelayFile>>,
 }

@@ -6,11 +6,14 @@ use std::ops::Range;
 
 use forwardstep_sim::Network;
 use forwardstep_sim::delay::Delay;
+use forwardstep_sim::formula::BoundedFormula;
+use forwardstep_sim::graph::Weight;
 use forwardstep_sim::schedule::{Phase, Schedule};
 
 use super::at::At;
 use super::fault::{Fault, fault, filled, not_negative, positive, seed, values};
 use super::inputs::InputFolder;
+use super::links::{DelayPlan, Links};
 use super::network_file::{DelayFile, NetworkFile, PhaseFile, SwitchingFile};
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
@@ -31,17 +34,23 @@ pub(super) fn network(
     let mut reader = NetworkReader {
         names,
         index: names.iter().enumerate().map(|(k, name)| (name.as_str(), k)).collect(),
-        weight: file.weight.as_ref().map_or(Ok(1.0), |weight| positive("weight", weight))?,
-        default_delay: None,
+        weight: Weight::Constant(1.0),
+        default_delay: DelayPlan::Shared(Delay::Constant { s: 0.0 }),
         delays: Vec::new(),
         constants: HashMap::new(),
+        weights: Vec::new(),
+        links: Links::default(),
         edges_so_far: 0,
         end_s,
         source,
         folder,
     };
-    let default = file.delay.as_ref().map_or(Ok(Delay::Constant { s: 0.0 }), |delay| reader.delay(delay))?;
-    reader.default_delay = Some(default);
+    if let Some(weight) = &file.weight {
+        reader.weight = reader.weight(weight)?;
+    }
+    if let Some(delay) = &file.delay {
+        reader.default_delay = reader.plan(delay)?;
+    }
     let schedule = match (&file.edges, &file.phases) {
         (Some(_), Some(phases)) => return Err(fault(phases, ScenarioProblem::EdgesAndPhases)),
         (None, None) => return Err(Fault::new(ScenarioProblem::NoGraph)),
@@ -51,7 +60,8 @@ pub(super) fn network(
         },
         (None, Some(phases)) => reader.schedule(phases, file.switching.as_ref(), notices)?,
     };
-    Ok(Network { agents: names.len(), schedule, delays: reader.delays })
+    reader.link_notices(notices);
+    Ok(Network { agents: names.len(), schedule, delays: reader.delays, weights: reader.weights })
 }
 
 /// What is known while a network is read.
@@ -59,14 +69,18 @@ pub(super) struct NetworkReader<'a> {
     pub(super) names: &'a [String],
     pub(super) index: HashMap<&'a str, usize>,
     /// The weight and the delay of edges that have none of their own.
-    pub(super) weight: f64,
-    pub(super) default_delay: Option<Delay>,
+    pub(super) weight: Weight,
+    pub(super) default_delay: DelayPlan,
     /// All delays so far, and where constant ones are among them.
-    delays: Vec<Delay>,
+    pub(super) delays: Vec<Delay>,
     constants: HashMap<u64, usize>,
+    /// The weights that follow a formula so far.
+    pub(super) weights: Vec<BoundedFormula>,
+    /// What single edges have of their own so far.
+    pub(super) links: Links,
     /// Edges by rule and from tables so far.
     pub(super) edges_so_far: u64,
-    end_s: f64,
+    pub(super) end_s: f64,
     pub(super) source: &'a SourceText,
     pub(super) folder: &'a mut InputFolder,
 }
@@ -142,6 +156,13 @@ impl NetworkReader<'_> {
         index
     }
 
+    /// A delay that no other edge has.
+    pub(super) fn new_delay(&mut self, delay: Delay) -> usize {
+        self.delays.push(delay);
+        self.delays.len() - 1
+    }
+
+    /// A delay that does not depend on the edge.
     pub(super) fn delay(&self, delay: &At<DelayFile>) -> Result<Delay, Fault> {
         match &delay.value {
             DelayFile::ConstantS(s) => Ok(Delay::Constant { s: not_negative("constant_s", s)? }),
@@ -197,6 +218,10 @@ impl NetworkReader<'_> {
                 // The same tooth, and no precision lost to a large offset.
                 let offset_s = file.offset_s.rem_euclid(period_s);
                 Ok(Delay::SawTooth { min_s, max_s, period_s, offset_s })
+            }
+            // These are planned, see there.
+            DelayFile::FormulaS(_) | DelayFile::RandomHold(_) | DelayFile::Packets(_) | DelayFile::Log(_) => {
+                Ok(Delay::Constant { s: 0.0 })
             }
         }
     }

@@ -5,6 +5,7 @@ use serde::Deserialize;
 
 use super::at::At;
 use super::edges_file::EdgesFile;
+use super::links_file::{LogFile, PacketsFile, RandomHoldFile, WeightFile};
 use super::values::{NotNegative, Positive};
 
 /// Who hears whom, when, and how late: one graph (`edges`) or several in turn (`phases`).
@@ -12,9 +13,8 @@ use super::values::{NotNegative, Positive};
 #[serde(deny_unknown_fields)]
 #[schemars(extend("oneOf" = [{ "required": ["edges"] }, { "required": ["phases"] }]))]
 pub struct NetworkFile {
-    /// The weight of every edge that has none of its own. Default: 1.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub weight: Option<At<f64>>,
+    /// The weight of every edge that has none of its own: a number, or a formula in t. Default: 1.
+    pub weight: Option<At<WeightFile>>,
     /// The delay of every edge that has none of its own. Default: none.
     pub delay: Option<At<DelayFile>>,
     /// The edges of a graph that never changes.
@@ -73,6 +73,15 @@ pub enum DelayFile {
     PiecewiseConstant(PiecewiseConstantFile),
     /// Rises from min to max over every period, then drops.
     SawTooth(SawToothFile),
+    /// A formula in t, in s, such as "0.2 + 0.1*sin(2*pi*t/3)"; it must be shown not to become negative. It may contain
+    /// t, pi, e, + - * / ^, sin, cos, exp, log, sqrt, abs, tanh, atan, min and max.
+    FormulaS(At<String>),
+    /// Random values, each held for a random time.
+    RandomHold(RandomHoldFile),
+    /// Packets that are late, lost and overtaken; the newest that has arrived is heard.
+    Packets(PacketsFile),
+    /// Packets replayed from a CSV file.
+    Log(LogFile),
 }
 
 /// A delay that swings.

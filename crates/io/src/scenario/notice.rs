@@ -6,7 +6,7 @@ use forwardstep_check::{SampledDamping, sampled_damping};
 use forwardstep_sim::Setup;
 
 use crate::urdf;
-use crate::wording::about;
+use crate::wording::{about, enumerate};
 
 /// Something in an accepted scenario that the user should know about.
 #[derive(Clone, Debug)]
@@ -32,6 +32,18 @@ pub enum Notice {
         value: f64,
         /// A sample rate that would be enough, Hz.
         enough_hz: f64,
+    },
+    /// A log has packets of edges that the network does not have.
+    UnusedInLog {
+        /// The log.
+        file: String,
+        /// Names of sender and receiver.
+        links: Vec<(String, String)>,
+    },
+    /// Links on which no packet arrives before the end of the run.
+    NothingArrives {
+        /// Names of sender and receiver.
+        links: Vec<(String, String)>,
     },
 }
 
@@ -60,6 +72,21 @@ impl fmt::Display for Notice {
                 about(*enough_hz)
             ),
             Notice::UnusedDwell { line } => write!(f, "`dwell_s` on line {line} is not used"),
+            Notice::UnusedInLog { file, links } => {
+                write!(f, "the packets of {} in `{file}` are not used: the network has no such edge", named(links))
+            }
+            Notice::NothingArrives { links } => {
+                write!(
+                    f,
+                    "no packet of {} arrives before the end of the run: the initial message is heard",
+                    named(links)
+                )
+            }
         }
     }
+}
+
+/// "a → b and c → d".
+fn named(links: &[(String, String)]) -> String {
+    enumerate(links.iter().map(|(from, to)| format!("{from} → {to}")))
 }

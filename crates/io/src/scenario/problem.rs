@@ -1,13 +1,15 @@
 //! Why a scenario is refused.
 
 use forwardstep_core::GainError;
+use forwardstep_sim::delay::packets::PacketError;
 use forwardstep_sim::topology::TopologyError;
 use thiserror::Error;
 
+use super::formula::FormulaProblem;
 use super::table::TableProblem;
 use crate::Problem;
 use crate::files::ReadError;
-use crate::wording::{about, are, choose, count, entry_count, number};
+use crate::wording::{about, are, choose, count, entry_count, number, rounded};
 
 /// Why a scenario has no meaning.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -150,6 +152,9 @@ pub enum ScenarioProblem {
         /// The key.
         key: &'static str,
     },
+    /// A text that is no formula in t.
+    #[error(transparent)]
+    Formula(FormulaProblem),
     /// A version of the format that this program does not read.
     #[error("`format` is {found}, but this version reads format 1")]
     Format {
@@ -448,6 +453,75 @@ pub enum ScenarioProblem {
         /// The last time.
         last_s: f64,
     },
+    /// A formula for a delay that could not be shown to be one.
+    #[error("{}", bounds_words("the delay", "must not be negative", *.low, *.high, *.witness, *.end_s))]
+    DelayBounds {
+        /// The lower bound that was found.
+        low: f64,
+        /// The upper bound that was found.
+        high: f64,
+        /// A time at which it is no delay, and its value there, if one was met.
+        witness: Option<(f64, f64)>,
+        /// The end of the run.
+        end_s: f64,
+    },
+    /// A formula for a weight that could not be shown to be one.
+    #[error("{}", bounds_words("the weight", "must be positive", *.low, *.high, *.witness, *.end_s))]
+    WeightBounds {
+        /// The lower bound that was found.
+        low: f64,
+        /// The upper bound that was found.
+        high: f64,
+        /// A time at which it is no weight, and its value there, if one was met.
+        witness: Option<(f64, f64)>,
+        /// The end of the run.
+        end_s: f64,
+    },
+    /// A formula without t that has no value.
+    #[error("the formula for `{key}` has no finite value")]
+    NoValue {
+        /// The key.
+        key: &'static str,
+    },
+    /// More formulas than can be looked at.
+    #[error("there are more than {most} different formulas for weights")]
+    TooManyFormulas {
+        /// How many are accepted.
+        most: usize,
+    },
+    /// Packets or random values that make no delay.
+    #[error(transparent)]
+    Link(PacketError),
+    /// One edge with packets of two kinds.
+    #[error("the edge from `{from}` to `{to}` has other packets in another graph, but it is one link")]
+    LinkDiffers {
+        /// The sender.
+        from: String,
+        /// The receiver.
+        to: String,
+    },
+    /// An edge that a log says nothing about.
+    #[error("the log `{file}` has no packet from `{from}` to `{to}`")]
+    NotInLog {
+        /// The log.
+        file: String,
+        /// The sender.
+        from: String,
+        /// The receiver.
+        to: String,
+    },
+    /// Two packets of one edge sent at one time.
+    #[error("a second packet from `{from}` to `{to}` sent at {} s; the first is on line {first_line}", number(*.send_s))]
+    PacketTwice {
+        /// The sender.
+        from: String,
+        /// The receiver.
+        to: String,
+        /// When they were sent.
+        send_s: f64,
+        /// Where the first is.
+        first_line: usize,
+    },
     /// More switches or jumps than any run could land on.
     #[error("about {} {what} until the end of the run, but at most {} are accepted", about(*.events), number(*.most))]
     TooManyEvents {
@@ -573,6 +647,7 @@ impl Problem for ScenarioProblem {
             ScenarioProblem::NoSuchAgent { name, agents } => choose(name, "the agents are", agents),
             ScenarioProblem::Topology(_) => "an agent hears nobody twice, and never itself".into(),
             ScenarioProblem::Table(problem) => return problem.help(),
+            ScenarioProblem::Formula(problem) => return problem.help(),
             ScenarioProblem::EdgesAndPhases => "move the edges into a phase, or delete the phases".into(),
             ScenarioProblem::NoGraph => "for agents that never hear each other write `edges = []`".into(),
             ScenarioProblem::NoDwell { .. } => {
@@ -580,6 +655,19 @@ impl Problem for ScenarioProblem {
             }
             ScenarioProblem::RecordingTooLarge { least_s, .. } => {
                 format!("for this `end_s` let `record_every_s` be at least {}", about(1.05 * least_s))
+            }
+            ScenarioProblem::DelayBounds { .. } => {
+                "write `max(0, …)` or `abs(…)` around it, or in a simpler way: bounds are best where t appears once"
+                    .into()
+            }
+            ScenarioProblem::WeightBounds { .. } => {
+                "write `max(0.1, …)` around it; an edge that is not there for a while is left out of a phase".into()
+            }
+            ScenarioProblem::LinkDiffers { .. } => {
+                "packets are those of a radio, whatever the graph: give `delay.packets` once, for the network".into()
+            }
+            ScenarioProblem::NotInLog { .. } => {
+                "every edge of the network needs at least one row; a lost packet has an empty `delay_s`".into()
             }
             ScenarioProblem::TooManyEvents { .. } => "is a unit of time mistaken? All of them are seconds".into(),
             ScenarioProblem::ComputationDelay { .. } => {
@@ -596,5 +684,21 @@ impl Problem for ScenarioProblem {
             _ => return None,
         };
         Some(text)
+    }
+}
+
+/// Why a formula is no delay or weight: at a time that was met, else by its bounds.
+fn bounds_words(what: &str, must: &str, low: f64, high: f64, witness: Option<(f64, f64)>, end_s: f64) -> String {
+    match witness {
+        Some((t_s, value)) if value.is_finite() => {
+            format!("{what} is {} at t = {} s, but {must}", number(rounded(value)), number(rounded(t_s)))
+        }
+        Some((t_s, _)) => format!("{what} has no finite value at t = {} s", number(rounded(t_s))),
+        None => format!(
+            "{what} {must}, but could only be shown to lie between {} and {} until the end of the run at {} s",
+            number(rounded(low)),
+            number(rounded(high)),
+            number(end_s)
+        ),
     }
 }

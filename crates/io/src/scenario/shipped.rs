@@ -16,7 +16,7 @@ macro_rules! shipped {
 }
 
 /// All of them; the first is the one to begin with.
-pub const SHIPPED_SCENARIOS: [ShippedScenario; 9] = shipped![
+pub const SHIPPED_SCENARIOS: [ShippedScenario; 10] = shipped![
     "six-arms",
     "first-order",
     "theorem-1",
@@ -26,9 +26,28 @@ pub const SHIPPED_SCENARIOS: [ShippedScenario; 9] = shipped![
     "theorem-3-24-order-4",
     "ten-different-robots",
     "backstepping",
+    "from-a-log",
 ];
 
 /// The shipped scenario of this name.
 pub fn shipped_scenario(name: &str) -> Option<ShippedScenario> {
     SHIPPED_SCENARIOS.into_iter().find(|scenario| scenario.name == name)
+}
+
+/// A table embedded in the program, which shipped scenarios name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShippedTable {
+    /// Its name in scenarios.
+    pub name: &'static str,
+    /// Its text.
+    pub text: &'static str,
+}
+
+/// All of them. A file of the same name beside a scenario is read in its place.
+pub const SHIPPED_TABLES: [ShippedTable; 1] =
+    [ShippedTable { name: "radio-log.csv", text: include_str!("../../scenarios/radio-log.csv") }];
+
+/// The shipped table of this name.
+pub(super) fn shipped_table(name: &str) -> Option<ShippedTable> {
+    SHIPPED_TABLES.into_iter().find(|table| table.name == name)
 }

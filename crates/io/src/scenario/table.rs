@@ -13,6 +13,7 @@ use super::de::quoted;
 use super::fault::{Fault, LARGEST, fault};
 use super::inputs::InputFolder;
 use super::problem::ScenarioProblem;
+use super::shipped::shipped_table;
 use crate::SourceText;
 use crate::files::ReadError;
 use crate::wording::{choose, entry_count};
@@ -103,12 +104,15 @@ pub(super) struct Column {
 
 pub(super) type Cell<'a> = At<Cow<'a, str>>;
 
-/// The text of a table beside the scenario.
+/// The text of a table beside the scenario, else of a shipped one.
 pub(super) fn table_text(file: &At<String>, folder: &mut InputFolder) -> Result<SourceText, Fault> {
     let name = file.value.as_str();
-    folder.text(name).map_err(|reason| {
-        let known = folder.neighbours(name, "csv");
-        fault(file, TableProblem::File { file: name.into(), reason, known }.into())
+    folder.text(name).or_else(|reason| match shipped_table(name) {
+        Some(shipped) if reason == ReadError::Missing => Ok(SourceText::new(shipped.name, shipped.text)),
+        _ => {
+            let known = folder.neighbours(name, "csv");
+            Err(fault(file, TableProblem::File { file: name.into(), reason, known }.into()))
+        }
     })
 }
 

@@ -118,8 +118,8 @@ fn networks_of_every_kind() {
     );
     let network = setup(&fixed).network;
     let Schedule::Fixed(edges) = network.schedule else { panic!("it is fixed") };
-    assert_eq!((edges[0].from, edges[0].to, edges[0].weight, edges[0].delay), (2, 0, 1.0, 0));
-    assert_eq!((edges[1].from, edges[1].to, edges[1].weight), (0, 2, 2.0));
+    assert_eq!((edges[0].from, edges[0].to, edges[0].weight, edges[0].delay), (2, 0, 1.0.into(), 0));
+    assert_eq!((edges[1].from, edges[1].to, edges[1].weight), (0, 2, 2.0.into()));
     assert_eq!(network.delays[edges[1].delay], Delay::Constant { s: 0.0 });
 
     let once = read(&changed("weight = 1.0", "switching = \"once\"")).unwrap();

@@ -7,10 +7,11 @@ use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 use proptest::prelude::*;
 
 use super::edges::RULES;
+use super::links::LINKS;
 use super::{SOUND, read};
 
 fn texts() -> Vec<&'static str> {
-    SHIPPED_SCENARIOS.iter().map(|scenario| scenario.text).chain([SOUND, RULES]).collect()
+    SHIPPED_SCENARIOS.iter().map(|scenario| scenario.text).chain([SOUND, RULES, LINKS]).collect()
 }
 
 /// Reads; then shows the error, or begins to simulate: what the reader lets pass, the rooms below accept.

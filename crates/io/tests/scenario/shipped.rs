@@ -2,10 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use forwardstep_io::scenario::{SHIPPED_SCENARIOS, open_scenario, schema};
+use forwardstep_io::scenario::{SHIPPED_SCENARIOS, SHIPPED_TABLES, open_scenario, schema};
 
 use super::SOUND;
 use super::edges::RULES;
+use super::links::LINKS;
 
 #[test]
 fn every_shipped_scenario_is_sound() {
@@ -23,6 +24,7 @@ fn every_scenario_file_is_shipped() {
     let mut files: Vec<_> =
         std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     let mut shipped: Vec<_> = SHIPPED_SCENARIOS.iter().map(|scenario| format!("{}.toml", scenario.name)).collect();
+    shipped.extend(SHIPPED_TABLES.iter().map(|table| table.name.to_owned()));
     files.sort();
     shipped.sort();
     assert_eq!(files, shipped);
@@ -52,7 +54,7 @@ fn the_schema_knows_every_key_and_describes_it() {
     collect(&schema, &mut known, &mut undescribed);
     assert!(undescribed.is_empty(), "without a description: {undescribed:?}");
     let mut used = BTreeSet::new();
-    for text in SHIPPED_SCENARIOS.iter().map(|scenario| scenario.text).chain([SOUND, RULES]) {
+    for text in SHIPPED_SCENARIOS.iter().map(|scenario| scenario.text).chain([SOUND, RULES, LINKS]) {
         keys(&text.parse().unwrap(), &mut used);
     }
     let unknown: Vec<_> = used.difference(&known).collect();

@@ -48,7 +48,7 @@ pub fn agent(name: &str, dof: usize, parameters: usize) -> AgentSetup {
 /// Agents on a switching ring with a saw-tooth and a sinusoidal delay.
 pub fn setup(agents: Vec<AgentSetup>, end_s: f64, record_every_s: f64) -> Setup {
     let count = agents.len();
-    let edge = |from: usize, to: usize, delay| Edge { from, to, weight: 1.0, delay };
+    let edge = |from: usize, to: usize, delay| Edge { from, to, weight: 1.0.into(), delay };
     let ring = |rest: usize| -> Vec<Edge> {
         (0..count.saturating_sub(1)).filter(|k| k % 3 == rest).map(|k| edge(k, k + 1, k % 2)).collect()
     };
@@ -68,6 +68,7 @@ pub fn setup(agents: Vec<AgentSetup>, end_s: f64, record_every_s: f64) -> Setup 
                 Delay::SawTooth { min_s: 0.05, max_s: 0.4, period_s: end_s / 12.0, offset_s: 0.0 },
                 Delay::Sinusoid { mean_s: 0.2, amplitude_s: 0.1, period_s: end_s / 5.0, phase_rad: 0.0 },
             ],
+            weights: Vec::new(),
         },
         time: TimeSpan { end_s, record_every_s },
         solver: Solver {

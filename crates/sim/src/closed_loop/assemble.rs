@@ -239,9 +239,10 @@ impl<'a> ClosedLoop<'a> {
         let mut sums = vec![0.0; setup.agents.len() * self.entries];
         for edge in setup.network.schedule.graph(graph) {
             let (from, to) = (self.ports[edge.from], self.ports[edge.to]);
-            degree[to.degree] += edge.weight;
+            let weight = setup.network.weight_at(edge.weight, 0.0);
+            degree[to.degree] += weight;
             for c in 0..self.entries {
-                sums[to.entry + c * to.stride] += edge.weight * self.start[from.state + c * from.stride];
+                sums[to.entry + c * to.stride] += weight * self.start[from.state + c * from.stride];
             }
         }
         for block in &self.blocks {

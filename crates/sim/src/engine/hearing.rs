@@ -1,12 +1,14 @@
 //! The weighted sums of delayed messages at one instant, gathered for all agents at once.
 
+use std::ops::Range;
+
 use forwardstep_core::{Kernel, dispatch};
 
 use super::history::{History, Place};
 use super::kernels::{columns, evaluate, fma};
 use super::tableau::basis;
 use super::timeline::Timeline;
-use crate::graph::Edge;
+use crate::graph::{Edge, Weight};
 
 /// Where an agent's message stands in the state and where its sums go.
 ///
@@ -76,6 +78,17 @@ pub(crate) struct Needs {
     pub(crate) draft: bool,
 }
 
+/// A receiver with a weight that changes.
+#[derive(Debug)]
+struct Varying {
+    /// Index in [`Heard::degree`].
+    degree: usize,
+    /// Σ_j w_ij at the instant looked at.
+    sum: f64,
+    /// Its links.
+    links: Range<usize>,
+}
+
 /// The network in force, ready to gather.
 #[derive(Debug)]
 pub(crate) struct Hearing {
@@ -85,6 +98,9 @@ pub(crate) struct Hearing {
     /// States that are sent, in runs: (first state, first entry, how many).
     blocks: Vec<(usize, usize, usize)>,
     links: Vec<Link>,
+    /// Their weights as the graph has them, if any changes.
+    weights: Vec<Weight>,
+    varying: Vec<Varying>,
     sources: Vec<Source>,
     initial: Vec<f64>,
 }
@@ -103,7 +119,16 @@ impl Hearing {
             }
         }
         let initial = sent.iter().map(|(_, state)| x[*state]).collect();
-        Hearing { ports, entries, blocks, links: Vec::new(), sources: Vec::new(), initial }
+        Hearing {
+            ports,
+            entries,
+            blocks,
+            links: Vec::new(),
+            weights: Vec::new(),
+            varying: Vec::new(),
+            sources: Vec::new(),
+            initial,
+        }
     }
 
     /// Numbers that are sent by all agents together: the height of a column of a piece of history.
@@ -127,16 +152,53 @@ impl Hearing {
                 self.sources.push(Source { clock, cursor: u64::MAX, read: Read::Initial });
                 self.sources.len() - 1
             });
-            self.links.push(Link { sender: edge.from, receiver: edge.to, weight: edge.weight, source });
-            heard.degree[self.ports[edge.to].degree] += edge.weight;
+            // A weight that changes is looked up anew at every instant.
+            let weight = edge.weight.constant().unwrap_or(0.0);
+            self.links.push(Link { sender: edge.from, receiver: edge.to, weight, source });
+            heard.degree[self.ports[edge.to].degree] += weight;
         }
         // Receivers in order, senders in order within: sums do not depend on how a file lists its edges.
         self.links.sort_by_key(|link| (link.receiver, link.sender));
+        self.rewire_varying(edges.iter().filter(|edge| timeline.clock_of(edge.delay).is_some()));
+    }
+
+    /// Finds the receivers with weights that change.
+    fn rewire_varying<'a>(&mut self, edges: impl Iterator<Item = &'a Edge> + Clone) {
+        self.weights.clear();
+        self.varying.clear();
+        if edges.clone().all(|edge| edge.weight.constant().is_some()) {
+            return;
+        }
+        let mut sorted: Vec<(usize, usize, Weight)> = edges.map(|e| (e.to, e.from, e.weight)).collect();
+        sorted.sort_by_key(|(to, from, _)| (*to, *from));
+        self.weights.extend(sorted.iter().map(|(_, _, weight)| *weight));
+        let mut start = 0;
+        for receiver in self.links.chunk_by(|a, b| a.receiver == b.receiver) {
+            let links = start..start + receiver.len();
+            start = links.end;
+            if self.weights[links.clone()].iter().any(|weight| weight.constant().is_none()) {
+                let degree = self.ports[receiver[0].receiver].degree;
+                self.varying.push(Varying { degree, sum: 0.0, links });
+            }
+        }
+    }
+
+    /// Evaluates the weights that change.
+    fn weigh(&mut self, timeline: &Timeline<'_>, t_s: f64) {
+        for varying in &mut self.varying {
+            varying.sum = 0.0;
+            for (link, weight) in self.links[varying.links.clone()].iter_mut().zip(&self.weights[varying.links.clone()])
+            {
+                link.weight = timeline.weight(*weight, t_s);
+                varying.sum += link.weight;
+            }
+        }
     }
 
     /// The shortest delay at `t_s` that is not zero; infinite when there is none.
     pub(crate) fn shortest_delay(&self, timeline: &Timeline<'_>, t_s: f64) -> f64 {
-        let delays = self.sources.iter().map(|source| timeline.delay_s(source.clock, t_s));
+        let ahead = self.sources.iter().filter(|source| !timeline.is_held(source.clock));
+        let delays = ahead.map(|source| timeline.delay_s(source.clock, t_s));
         delays.filter(|delay| *delay > 0.0).fold(f64::INFINITY, f64::min)
     }
 
@@ -149,19 +211,22 @@ impl Hearing {
         t_s: f64,
         (start_s, length_s, offset): (f64, f64, usize),
     ) -> Needs {
+        if !self.varying.is_empty() {
+            self.weigh(timeline, t_s);
+        }
         let mut needs = Needs::default();
         for source in &mut self.sources {
-            let delay_s = timeline.delay_s(source.clock, t_s);
-            source.read = if delay_s == 0.0 {
+            let sent_s = timeline.sent_s(source.clock, t_s);
+            source.read = if sent_s == t_s {
                 needs.present = true;
                 Read::Now
             } else {
-                match history.find(t_s - delay_s, &mut source.cursor) {
+                match history.find(sent_s, &mut source.cursor) {
                     Place::Before => Read::Initial,
                     Place::Piece { offset, theta } => Read::Piece { offset, basis: basis(theta) },
                     Place::Ahead => {
                         needs.draft = true;
-                        let theta = (t_s - delay_s - start_s) / length_s;
+                        let theta = (sent_s - start_s) / length_s;
                         Read::Piece { offset, basis: basis(theta.clamp(0.0, 1.0)) }
                     }
                 }
@@ -172,6 +237,9 @@ impl Hearing {
 
     /// Looks up where every message comes from at the sample at `t_s`; `place` says where what was sent by then stands.
     pub(crate) fn look_at_samples(&mut self, timeline: &Timeline<'_>, t_s: f64, place: impl Fn(f64) -> usize) {
+        if !self.varying.is_empty() {
+            self.weigh(timeline, t_s);
+        }
         for source in &mut self.sources {
             source.read = Read::Sample { offset: place(timeline.sent_s(source.clock, t_s)) };
         }
@@ -184,6 +252,9 @@ impl Hearing {
 
     /// Adds up what was looked up in `data`.
     pub(crate) fn gather_from(&self, data: &[f64], x: &[f64], heard: &mut Heard) {
+        for varying in &self.varying {
+            heard.degree[varying.degree] = varying.sum;
+        }
         dispatch(Gather { hearing: self, data, x, sums: &mut heard.sums });
     }
 }

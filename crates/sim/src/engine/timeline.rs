@@ -7,7 +7,8 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use crate::delay::DelayPiece;
+use crate::delay::{Delay, DelayPiece};
+use crate::graph::Weight;
 use crate::network::Network;
 use crate::schedule::{Segment, Segments};
 
@@ -30,6 +31,8 @@ pub(crate) struct Timeline<'a> {
     segment: Segment,
     /// The delays in use, equal ones once, by the index of the first, with the piece each is on.
     clocks: Vec<(usize, DelayPiece)>,
+    /// The clock of every delay.
+    clock_of: Vec<Option<usize>>,
     images: BinaryHeap<Reverse<Image>>,
     second_waiting: usize,
     generations: u8,
@@ -72,17 +75,21 @@ impl<'a> Timeline<'a> {
         let for_ever = Segment { start_s: 0.0, end_s: f64::INFINITY, graph: 0 };
         let segment = segments.next().unwrap_or(for_ever);
         let mut clocks: Vec<(usize, DelayPiece)> = Vec::new();
+        let mut clock_of = vec![None; network.delays.len()];
         for index in network.used_delays() {
             let delay = &network.delays[index];
-            if !clocks.iter().any(|(known, _)| network.delays[*known] == *delay) {
+            let clock = clocks.iter().position(|(known, _)| network.delays[*known].shares(delay));
+            clock_of[index] = Some(clock.unwrap_or_else(|| {
                 clocks.push((index, delay.first_piece()));
-            }
+                clocks.len() - 1
+            }));
         }
         let mut timeline = Timeline {
             network,
             segments,
             segment,
             clocks,
+            clock_of,
             images: BinaryHeap::new(),
             second_waiting: 0,
             generations,
@@ -107,16 +114,26 @@ impl<'a> Timeline<'a> {
         self.network.delays[index].value_on(piece, t_s)
     }
 
+    /// The clock of a delay, by the delay's index.
+    pub(crate) fn clock_of(&self, delay: usize) -> Option<usize> {
+        *self.clock_of.get(delay)?
+    }
+
     /// When what is heard at `t_s` through one delay was sent, by the formula in force.
+    #[inline(always)]
     pub(crate) fn sent_s(&self, clock: usize, t_s: f64) -> f64 {
         let (index, piece) = self.clocks[clock];
         self.network.delays[index].sent_on(piece, t_s)
     }
 
-    /// The clock of a delay, by the delay's index.
-    pub(crate) fn clock_of(&self, delay: usize) -> Option<usize> {
-        let wanted = self.network.delays.get(delay)?;
-        self.clocks.iter().position(|(index, _)| self.network.delays[*index] == *wanted)
+    /// Whether what is heard through a delay is older than the step that begins: held packets always are.
+    pub(crate) fn is_held(&self, clock: usize) -> bool {
+        matches!(self.network.delays[self.clocks[clock].0], Delay::Packets(_))
+    }
+
+    /// The value of a weight at `t_s`.
+    pub(crate) fn weight(&self, weight: Weight, t_s: f64) -> f64 {
+        self.network.weight_at(weight, t_s)
     }
 
     /// The next break-point, s; the horizon when nothing comes before it. What rounding puts just before the horizon
@@ -196,7 +213,6 @@ pub(crate) fn merge_until(t_s: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::delay::Delay;
     use crate::graph::Edge;
     use crate::schedule::{Phase, Schedule};
 
@@ -214,12 +230,12 @@ mod tests {
     }
 
     fn network(delay: Delay) -> Network {
-        let edge = |from, to| Edge { from, to, weight: 1.0, delay: 0 };
+        let edge = |from, to| Edge { from, to, weight: 1.0.into(), delay: 0 };
         let schedule = Schedule::Periodic(vec![
             Phase { edges: vec![edge(0, 1)], dwell_s: 1.0 },
             Phase { edges: vec![edge(1, 0)], dwell_s: 1.0 },
         ]);
-        Network { agents: 2, schedule, delays: vec![delay] }
+        Network { agents: 2, schedule, delays: vec![delay], weights: Vec::new() }
     }
 
     #[test]

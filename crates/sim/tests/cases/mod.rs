@@ -151,7 +151,7 @@ pub fn setup(case: &Case) -> Setup {
             "position_velocity" => Exchange::PositionVelocity,
             other => panic!("exchange {other}"),
         },
-        network: Network { agents: case.agents.len(), schedule, delays },
+        network: Network { agents: case.agents.len(), schedule, delays, weights: Vec::new() },
         time: TimeSpan { end_s: case.end_s, record_every_s: 1.0 },
         solver: Solver::default(),
         control: None,
@@ -169,7 +169,7 @@ fn wire(edges: &[EdgeCase], delays: &mut Vec<Delay>) -> Vec<Edge> {
             delays.push(kind);
             delays.len() - 1
         });
-        Edge { from: edge.from, to: edge.to, weight: edge.weight, delay: index }
+        Edge { from: edge.from, to: edge.to, weight: edge.weight.into(), delay: index }
     };
     edges.iter().map(edge).collect()
 }

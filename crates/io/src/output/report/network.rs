@@ -8,6 +8,7 @@ use maud::{Markup, html};
 use serde::Serialize;
 
 use super::super::names::agent_name;
+use super::super::packets::Link;
 use super::super::timeline::Timeline;
 use super::text;
 
@@ -17,6 +18,8 @@ const MOST_EDGE_ROWS: usize = 40;
 const MOST_BARS: usize = 20_000;
 /// More graphs are not drawn one by one.
 const MOST_GRAPHS: usize = 12;
+/// More links make a long table.
+const MOST_LINKS: usize = 40;
 /// More delays cannot be told apart.
 const MOST_DELAYS: usize = 24;
 
@@ -98,6 +101,50 @@ pub(crate) fn shown_delays(setup: &Setup, timeline: &Timeline<'_>) -> Vec<(usize
         }
     };
     used.iter().take(MOST_DELAYS).map(|k| (*k, label(*k))).collect()
+}
+
+/// What happened to packets, link by link; nothing where no link carries any.
+pub(crate) fn links(setup: &Setup) -> Markup {
+    let mut links = Link::all(&setup.network);
+    let all = links.len();
+    if all > MOST_LINKS {
+        links.sort_by(|a, b| b.largest_age_s.total_cmp(&a.largest_age_s));
+        links.truncate(MOST_LINKS);
+    }
+    let share = |part: usize, link: &Link| text::number(100.0 * part as f64 / link.sent.max(1) as f64);
+    html! {
+        @if all > 0 {
+            div.card {
+                h3 { "Packets" }
+                div.scroll {
+                    table #packets {
+                        thead {
+                            tr { th { "link" } th { "sent" } th { "lost" } th { "late, dropped" } th { "largest age heard" } }
+                        }
+                        tbody {
+                            @for link in &links {
+                                tr {
+                                    td { (agent_name(setup, link.from)) " → " (agent_name(setup, link.to)) }
+                                    td { (link.sent) }
+                                    td { (link.lost) " (" (share(link.lost, link)) " %)" }
+                                    td { (link.late) " (" (share(link.late, link)) " %)" }
+                                    td { (text::number(link.largest_age_s)) " s" }
+                                }
+                            }
+                        }
+                    }
+                }
+                @if all > MOST_LINKS {
+                    p.note { "The " (MOST_LINKS) " of " (all) " links on which messages grew oldest; " code { "summary.json" } " has all." }
+                }
+                p.note {
+                    "The newest message that has arrived is heard; one that comes after a newer one is dropped. Until the first \
+                     arrives the initial message ages from t = 0. " code { "packets.csv" } " has every packet, and "
+                    code { "delay.log" } " replays them."
+                }
+            }
+        }
+    }
 }
 
 /// One small picture per graph.

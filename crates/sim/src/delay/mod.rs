@@ -2,8 +2,23 @@
 //!
 //! A delay is smooth on *pieces*; it may jump from one to the next. The integrator lands on every piece's end and keeps
 //! to one piece during a step, so that a jump has a left and a right side.
+//!
+//! Links that carry packets hold the newest message that has arrived until a newer one does ([`packets`]): a saw-tooth of
+//! slope one, drawn for every edge from a stream of its own. So are the values of a [`RandomHold`].
+
+pub mod packets;
+mod random_hold;
+
+use std::sync::Arc;
 
 use forwardstep_core::Scalar;
+
+use crate::formula::{BoundedFormula, Interval};
+pub use packets::{Loss, Packet, PacketLink, Trace};
+pub use random_hold::RandomHold;
+
+/// Halvings of a stretch in which arrivals through a formula are looked for.
+const CUTS: usize = 12;
 
 /// A delay as a function of time; all of its values are non-negative and finite.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +60,12 @@ pub enum Delay {
         /// In s.
         offset_s: f64,
     },
+    /// A formula in t, shown not to be negative up to the end of the run.
+    Formula(Arc<BoundedFormula>),
+    /// Values drawn at random, each held for a time drawn at random.
+    RandomHold(Arc<RandomHold>),
+    /// The newest packet that has arrived is held until a newer one does.
+    Packets(Arc<Trace>),
 }
 
 /// A stretch of time on which a delay is smooth.
@@ -111,6 +132,23 @@ impl Delay {
                 non_negative("the size of the offset", offset_s.abs())?;
                 if max_s >= min_s { Ok(()) } else { Err(("the maximum", *max_s, "must not be below the minimum")) }
             }
+            Delay::Formula(formula) => {
+                let within = formula.within();
+                non_negative("the lower bound of the formula", within.low)?;
+                non_negative("the upper bound of the formula", within.high)
+            }
+            // Both are made by functions that check.
+            Delay::RandomHold(_) | Delay::Packets(_) => Ok(()),
+        }
+    }
+
+    /// Until when this is known, s; `None` for ever.
+    pub(crate) fn known_until_s(&self) -> Option<f64> {
+        match self {
+            Delay::Formula(formula) => Some(formula.until_s()),
+            Delay::RandomHold(hold) => Some(hold.until_s()),
+            Delay::Packets(trace) => Some(trace.until_s()),
+            _ => None,
         }
     }
 
@@ -126,7 +164,9 @@ impl Delay {
 
     fn piece(&self, index: u64) -> DelayPiece {
         let (start_s, end_s) = match self {
-            Delay::Constant { .. } | Delay::Sinusoid { .. } => (0.0, f64::INFINITY),
+            Delay::Constant { .. } | Delay::Sinusoid { .. } | Delay::Formula(_) => (0.0, f64::INFINITY),
+            Delay::RandomHold(hold) => hold.span(index),
+            Delay::Packets(trace) => trace.span(index),
             Delay::PiecewiseConstant { times_s, period_s, .. } => {
                 let (repeat, k) = self.repeat_of(index, times_s.len());
                 match period_s {
@@ -170,12 +210,21 @@ impl Delay {
             Delay::SawTooth { min_s, max_s, period_s, .. } => {
                 Scalar::mul_add((max_s - min_s) / period_s, t_s - piece.start_s, *min_s).clamp(*min_s, *max_s)
             }
+            Delay::Formula(formula) => formula.value(t_s),
+            Delay::RandomHold(hold) => hold.value(piece.index),
+            // Before anything has arrived the initial message is heard, which was sent again, one may say, at t = 0.
+            Delay::Packets(trace) => (t_s - trace.sent_s(piece.index).max(0.0)).max(0.0),
         }
     }
 
-    /// t − T(t), when what is heard at `t_s` was sent, by the formula of `piece`.
+    /// When what is heard at `t_s` was sent, by the formula of `piece`: t − T(t), and exactly the packet's own time where
+    /// packets are held; −∞ before any has arrived.
+    #[inline]
     pub fn sent_on(&self, piece: DelayPiece, t_s: f64) -> f64 {
-        t_s - self.value_on(piece, t_s)
+        match self {
+            Delay::Packets(trace) => trace.sent_s(piece.index),
+            _ => t_s - self.value_on(piece, t_s),
+        }
     }
 
     /// T(t), from the right where it jumps.
@@ -186,7 +235,9 @@ impl Delay {
     /// The piece in force at `t_s` ≥ 0, from the right.
     pub fn piece_at(&self, t_s: f64) -> DelayPiece {
         let guess = match self {
-            Delay::Constant { .. } | Delay::Sinusoid { .. } => 0,
+            Delay::Constant { .. } | Delay::Sinusoid { .. } | Delay::Formula(_) => 0,
+            Delay::RandomHold(hold) => return self.piece(hold.index_at(t_s)),
+            Delay::Packets(trace) => return self.piece(trace.index_at(t_s)),
             Delay::PiecewiseConstant { times_s, period_s, .. } => {
                 let repeat = period_s.map_or(0.0, |period| (t_s / period).floor().max(0.0));
                 let within = t_s - repeat * period_s.unwrap_or(0.0);
@@ -204,29 +255,48 @@ impl Delay {
         piece
     }
 
-    /// An upper bound of T over all time, s.
+    /// An upper bound of T over all time, or for as long as T is known, s.
     pub fn max_s(&self) -> f64 {
         match self {
             Delay::Constant { s } => *s,
             Delay::Sinusoid { mean_s, amplitude_s, .. } => mean_s + amplitude_s.abs(),
             Delay::PiecewiseConstant { values_s, .. } => values_s.iter().copied().fold(0.0, f64::max),
             Delay::SawTooth { max_s, .. } => *max_s,
+            Delay::Formula(formula) => formula.within().high,
+            Delay::RandomHold(hold) => hold.value_s[1],
+            Delay::Packets(trace) => trace.max_s(),
         }
     }
 
-    /// A lower bound of T over all time, s.
+    /// A lower bound of T over all time, or for as long as T is known, s.
     pub fn min_s(&self) -> f64 {
         match self {
             Delay::Constant { s } => *s,
             Delay::Sinusoid { mean_s, amplitude_s, .. } => (mean_s - amplitude_s.abs()).max(0.0),
             Delay::PiecewiseConstant { values_s, .. } => values_s.iter().copied().fold(f64::INFINITY, f64::min),
             Delay::SawTooth { min_s, .. } => *min_s,
+            Delay::Formula(formula) => formula.within().low,
+            Delay::RandomHold(hold) => hold.value_s[0],
+            Delay::Packets(trace) => trace.min_s(),
         }
     }
 
     /// Whether T does not change with time.
     pub fn is_constant(&self) -> bool {
-        self.min_s() == self.max_s()
+        match self {
+            Delay::Packets(_) => false,
+            Delay::Formula(formula) => formula.formula().is_constant(),
+            _ => self.min_s() == self.max_s(),
+        }
+    }
+
+    /// Whether the two are the same without looking at every packet.
+    pub(crate) fn shares(&self, other: &Delay) -> bool {
+        match (self, other) {
+            (Delay::Packets(trace), Delay::Packets(other)) => Arc::ptr_eq(trace, other),
+            (Delay::RandomHold(hold), Delay::RandomHold(other)) => Arc::ptr_eq(hold, other),
+            _ => self == other,
+        }
     }
 
     /// Appends every t > `sent_s` at which something sent at `sent_s` is heard: the solutions of t − T(t) = `sent_s`.
@@ -239,6 +309,9 @@ impl Delay {
             if *s > 0.0 {
                 arrivals.push(sent_s + s);
             }
+            return;
+        }
+        if let Delay::Packets(_) = self {
             return;
         }
         // Rounded up, so that the arrival of a constant delay is inside the stretch searched.
@@ -260,6 +333,37 @@ impl Delay {
     fn arrivals_on(&self, piece: DelayPiece, [from, to]: [f64; 2], sent_s: f64, arrivals: &mut Vec<f64>) {
         // Between its turning points t − T(t) is monotone, so a change of sign brackets exactly one arrival.
         let early = |t: f64| t - self.value_on(piece, t) - sent_s;
+        if let Delay::Formula(formula) = self {
+            // Nothing is known of its slope: the stretch is cut until t − T(t) cannot be `sent_s` on a part, or the part
+            // is short. Two arrivals within one short part may be missed; they are kinks that the error control sees.
+            let mut waiting = [(0.0, 0.0); CUTS + 2];
+            waiting[0] = (from, to);
+            let (mut count, shortest_s) = (1, (to - from) / f64::from(1 << CUTS));
+            while count > 0 {
+                count -= 1;
+                let (left, right) = waiting[count];
+                let delay = formula.formula().enclose(Interval { low: left, high: right });
+                if left - delay.high > sent_s || right - delay.low < sent_s {
+                    continue;
+                }
+                let middle = left + 0.5 * (right - left);
+                if right - left <= shortest_s || middle <= left || middle >= right {
+                    let (early_left, early_right) = (early(left), early(right));
+                    if early_left < 0.0 && early_right >= 0.0 || early_left > 0.0 && early_right <= 0.0 {
+                        let arrival = bisect(early, left, right, early_left < 0.0);
+                        if arrival > sent_s {
+                            arrivals.push(arrival);
+                        }
+                    }
+                    continue;
+                }
+                // The earlier half on top; the stack is never higher than the number of cuts.
+                waiting[count] = (middle, right);
+                waiting[count + 1] = (left, middle);
+                count += 2;
+            }
+            return;
+        }
         let mut left = from;
         let mut f_left = early(left);
         let mut visit = |right: f64| {
@@ -320,87 +424,4 @@ fn bisect(f: impl Fn(f64) -> f64, mut left: f64, mut right: f64, rising: bool) -
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn arrivals(delay: &Delay, sent_s: f64) -> Vec<f64> {
-        let mut out = Vec::new();
-        delay.arrivals(sent_s, f64::INFINITY, &mut out);
-        for t in &out {
-            assert!((t - delay.value(*t) - sent_s).abs() < 1e-12, "{t} is no arrival of {sent_s}");
-        }
-        out
-    }
-
-    #[test]
-    fn constant_arrives_once() {
-        assert_eq!(arrivals(&Delay::Constant { s: 0.25 }, 1.5), vec![1.75]);
-        assert_eq!(arrivals(&Delay::Constant { s: 0.0 }, 1.5), Vec::<f64>::new());
-    }
-
-    #[test]
-    fn steep_sinusoid_arrives_several_times() {
-        // |dT/dt| up to 3: t − T(t) turns back, so one message is heard three times.
-        let delay = Delay::Sinusoid { mean_s: 0.6, amplitude_s: 0.5, period_s: 1.0, phase_rad: 0.0 };
-        let counts: Vec<usize> = (0..20).map(|k| arrivals(&delay, 5.0 + 0.05 * k as f64).len()).collect();
-        assert!(counts.iter().all(|c| c % 2 == 1), "{counts:?}");
-        assert!(counts.contains(&3), "{counts:?}");
-    }
-
-    #[test]
-    fn a_delay_beyond_the_horizon_is_not_searched_to_its_end() {
-        let until = |delay: Delay| {
-            let mut out = Vec::new();
-            delay.arrivals(0.5, 10.0, &mut out);
-            out
-        };
-        let far = Delay::SawTooth { min_s: 0.0, max_s: 1e30, period_s: 0.6, offset_s: 0.0 };
-        // From every tooth's start the delay rises past all that was sent since, but for the first instant.
-        assert!(until(far).iter().all(|t| *t <= 10.0));
-        let wide = Delay::Sinusoid { mean_s: 1e12, amplitude_s: 1e12, period_s: 0.1, phase_rad: 0.0 };
-        assert!(until(wide).iter().all(|t| *t <= 10.0));
-    }
-
-    #[test]
-    fn saw_tooth_and_piecewise_jump_where_they_say() {
-        let saw = Delay::SawTooth { min_s: 0.05, max_s: 0.4, period_s: 0.6, offset_s: 0.2 };
-        let piece = saw.piece_at(0.5);
-        assert!((piece.start_s - 0.4).abs() < 1e-15 && (piece.end_s - 1.0).abs() < 1e-15);
-        assert_eq!(saw.value_on(piece, piece.start_s), 0.05);
-        assert!((saw.value_on(piece, piece.end_s) - 0.4).abs() < 1e-15);
-        assert!((saw.value(0.0) - (0.05 + 0.35 / 3.0)).abs() < 1e-15);
-
-        let steps = Delay::PiecewiseConstant { times_s: vec![0.0, 0.3], values_s: vec![0.1, 0.2], period_s: Some(1.0) };
-        assert_eq!([0.0, 0.29, 0.3, 0.99, 1.0, 7.31].map(|t| steps.value(t)), [0.1, 0.1, 0.2, 0.2, 0.1, 0.2]);
-        // Sent at 0.15: heard at 0.25 with the first value and at 0.35 with the second.
-        let heard = arrivals(&steps, 0.15);
-        assert_eq!(heard.len(), 2);
-        let once = Delay::PiecewiseConstant { times_s: vec![0.0, 0.3], values_s: vec![0.1, 0.2], period_s: None };
-        assert_eq!(once.value(50.0), 0.2);
-        assert_eq!(once.piece_at(0.2).end_s, 0.3);
-    }
-
-    #[test]
-    fn pieces_follow_one_another_without_gaps() {
-        let delays = [
-            Delay::SawTooth { min_s: 0.0, max_s: 0.1, period_s: 0.1, offset_s: 0.03 },
-            Delay::PiecewiseConstant {
-                times_s: vec![0.0, 0.1, 0.7],
-                values_s: vec![0.3, 0.0, 0.2],
-                period_s: Some(0.9),
-            },
-        ];
-        for delay in delays {
-            let mut piece = delay.first_piece();
-            for _ in 0..10_000 {
-                let next = delay.next_piece(piece);
-                assert_eq!(piece.end_s, next.start_s);
-                assert!(next.end_s > next.start_s);
-                let middle = 0.5 * (next.start_s + next.end_s);
-                assert_eq!(delay.piece_at(middle), next);
-                assert_eq!(delay.piece_at(next.start_s), next);
-                piece = next;
-            }
-        }
-    }
-}
+mod tests;

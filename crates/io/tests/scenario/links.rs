@@ -1,0 +1,328 @@
+//! Links as they are: what is read, what every mistake gets, and a run replayed from its own log.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use forwardstep_check::{Report, check};
+use forwardstep_io::SourceText;
+use forwardstep_io::output::{Options, RunFolder, RunRecord, write_run};
+use forwardstep_io::scenario::{Notice, Scenario, ScenarioError, open_scenario, read_scenario};
+use forwardstep_sim::delay::{Delay, Loss, Packet, PacketLink, Trace};
+use forwardstep_sim::graph::Weight;
+use forwardstep_sim::{Outcome, simulate};
+use miette::Diagnostic;
+
+use super::{changed, read};
+
+/// Every way to say how late a message is once, but for logs, which need a folder.
+pub(super) const LINKS: &str = r#"format = 1
+time = { end_s = 3, record_every_s = 0.01 }
+[[agents]]
+name = "cart"
+count = 4
+robot.point_mass = { dimension = 2, mass_kg = 2 }
+start.position = { random = { seed = 1, within = [-1, 1] } }
+[reference.consensus]
+roots_per_s = [1, 2]
+exchange = "position_velocity"
+[network]
+weight = "1 + 0.5*sin(t)"
+delay.packets = { every_s = 0.05, first_s = 0.01, latency_s = 0.03, jitter_s = 0.2, seed = 5, loss.random = { probability = 0.2 } }
+[[network.phases]]
+dwell_s = 0.5
+edges = [["cart-1", "cart-2"], ["cart-3", "cart-4"], { from = "cart-2", to = "cart-1", weight = "exp(-t) + 1", delay.formula_s = "0.2 + 0.1*sin(2*pi*t/3)" }]
+[[network.phases]]
+dwell_s = 0.7
+edges = [["cart-1", "cart-2"], ["cart-2", "cart-3"], { from = "cart-4", to = "cart-1", delay.random_hold = { seed = 3, value_s = [0.05, 0.4], hold_s = [0.1, 0.8] } }, { from = "cart-4", to = "cart-2", delay.packets = { every_s = 0.1, latency_s = 0, seed = 1, loss.bursts = { enter = 0.1, leave = 0.5, most_in_a_row = 3 } } }]
+[goal]
+disagreement_below = 10
+"#;
+
+fn network(text: &str) -> forwardstep_sim::Network {
+    read(text).unwrap_or_else(|error| panic!("{error}")).setup.network
+}
+
+#[test]
+fn links_are_what_they_say() {
+    let network = network(LINKS);
+    let [first, second] = network.schedule.graphs()[..] else { panic!() };
+    // One link, whatever the graph; every other edge has its own.
+    assert_eq!(first[0].delay, second[0].delay);
+    let radio = PacketLink {
+        every_s: 0.05,
+        first_s: 0.01,
+        latency_s: 0.03,
+        jitter_s: 0.2,
+        loss: Loss::Random { probability: 0.2 },
+        most_in_a_row: None,
+        seed: 5,
+    };
+    for edge in [first[0], first[1], second[1]] {
+        let trace = radio.trace((edge.from, edge.to), 3.0).unwrap();
+        assert_eq!(network.delays[edge.delay], Delay::Packets(trace.into()));
+    }
+    let Delay::Packets(trace) = &network.delays[second[3].delay] else { panic!() };
+    assert_eq!(trace.link().unwrap().most_in_a_row, Some(3));
+    assert_eq!(trace.link().unwrap().loss, Loss::Bursts { enter: 0.1, leave: 0.5 });
+    let Delay::RandomHold(hold) = &network.delays[second[2].delay] else { panic!() };
+    assert_eq!((hold.value_s(), hold.hold_s()), ([0.05, 0.4], [0.1, 0.8]));
+    let swing = &network.delays[first[2].delay];
+    for t in [0.0, 0.4, 2.9] {
+        let wanted = 0.2 + 0.1 * (2.0 * std::f64::consts::PI * t / 3.0_f64).sin();
+        assert!((swing.value(t) - wanted).abs() < 1e-15);
+    }
+    assert_eq!((first[0].weight, first[2].weight), (Weight::Formula(0), Weight::Formula(1)));
+    assert_eq!(network.weight_at(first[2].weight, 0.0), 2.0);
+    // A formula without t is a number.
+    let number = super::links::network(&changed("weight = 1.0", "weight = \"2*pi\""));
+    assert_eq!(number.schedule.graphs()[0][0].weight, Weight::Constant(2.0 * std::f64::consts::PI));
+}
+
+/// What to put in the place of the saw-tooth, the first line of the error, and a part of the help.
+type Case = (&'static str, &'static str, &'static str);
+
+#[rustfmt::skip]
+const CASES: &[Case] = &[
+    // Formulas.
+    ("formula_s = 0.2", "test.toml:29:19: found 0.2 where a text in quotes should stand", ""),
+    ("formula_s = \"\"", "test.toml:29:19: the formula is empty", "a formula in t is for example"),
+    ("formula_s = \"0.2 + sine(t)\"", "test.toml:29:26: there is no function `sine`", "did you mean `sin`?"),
+    ("formula_s = \"0.2 + 0.1*sin(2*pi*time/3)\"", "test.toml:29:39: there is no `time` in a formula", "there are `t`, `pi`"),
+    ("formula_s = \"0.2 + 2t\"", "test.toml:29:27: found \"t\" in a formula where an operator (+ - * / ^) or the end should stand", "products are written with a star"),
+    ("formula_s = \"0.2*(t + 1\"", "test.toml:29:24: this parenthesis is not closed", ""),
+    ("formula_s = \"floor(t)\"", "test.toml:29:20: `floor` jumps, but formulas are continuous", "`delay.piecewise_constant`"),
+    ("formula_s = \"t > 2\"", "test.toml:29:22: `>` jumps, but formulas are continuous", "`delay.piecewise_constant`"),
+    ("formula_s = \"2^t\"", "test.toml:29:22: the exponent changes with t", "exponents are constant"),
+    ("formula_s = \"0.1*sin(t)\"", "test.toml:29:19: the delay is -0.00140746 at t = 3.16 s, but must not be negative", "`max(0, …)`"),
+    ("formula_s = \"1/(t - 3.333)\"", "test.toml:29:19: the delay is -0.30003 at t = 0 s, but must not be negative", "`max(0, …)`"),
+    ("formula_s = \"sqrt(t - 1)\"", "test.toml:29:19: the delay has no finite value at t = 0 s", "`max(0, …)`"),
+    ("formula_s = \"1/abs(t - 3.3331)\"", "test.toml:29:19: the delay must not be negative, but could only be shown to lie between -inf and inf until the end of the run at 10 s", "`max(0, …)`"),
+    ("formula_s = \"1 - 2\"", "test.toml:29:19: `formula_s` is -1, but must not be negative", ""),
+    ("formula_s = \"1/0\"", "test.toml:29:19: the formula for `formula_s` has no finite value", ""),
+    // Random holds.
+    ("random_hold = { value_s = [0.1, 0.2], hold_s = [1, 2] }", "test.toml:29:7: the key `seed` is missing", ""),
+    ("random_hold = { seed = 1, value_s = [0.3, 0.2], hold_s = [1, 2] }", "test.toml:29:43: `value_s` is [0.3, 0.2], but the first must not exceed the second", ""),
+    ("random_hold = { seed = 1, value_s = [-0.1, 0.2], hold_s = [1, 2] }", "test.toml:29:44: `value_s` is -0.1, but must not be negative", ""),
+    ("random_hold = { seed = 1, value_s = [0.1, 0.2], hold_s = [0, 2] }", "test.toml:29:65: `hold_s` is 0, but must be positive", ""),
+    ("random_hold = { seed = 1, value_s = [0.1, 0.2], hold_s = [1, 2, 3] }", "test.toml:29:64: found a list of 3 where 2 are needed", ""),
+    ("random_hold = { seed = 1, value_s = [0.1, 0.2], hold_s = [1e-9, 1e-9] }", "test.toml:32:10: about 1e10 jumps of the delay until the end of the run, but at most 5e6 are accepted", "is a unit of time mistaken?"),
+    // Packets.
+    ("packets = { latency_s = 0.1, seed = 1 }", "test.toml:29:7: the key `every_s` is missing", ""),
+    ("packets = { every_s = 0.1, seed = 1 }", "test.toml:29:7: the key `latency_s` is missing", ""),
+    ("packets = { every_s = 0.1, latency_s = 0.1 }", "test.toml:29:7: the key `seed` is missing", ""),
+    ("packets = { every_s = 0, latency_s = 0.1, seed = 1 }", "test.toml:29:29: `every_s` is 0, but must be positive", ""),
+    ("packets = { every_s = 1e-7, latency_s = 0.1, seed = 1 }", "test.toml:32:10: about 1e8 packets until the end of the run, but at most 5e6 are accepted", "is a unit of time mistaken?"),
+    ("packets = { every_s = 0.1, first_s = 0.2, latency_s = 0.1, seed = 1 }", "test.toml:29:44: `first_s` is 0.2, but must be from 0 to 0.1", ""),
+    ("packets = { every_s = 0.1, latency_s = -0.1, seed = 1 }", "test.toml:29:46: `latency_s` is -0.1, but must not be negative", ""),
+    ("packets = { every_s = 0.1, latency_s = 0, jitter_s = -1, seed = 1 }", "test.toml:29:60: `jitter_s` is -1, but must not be negative", ""),
+    ("packets = { every_s = 0.1, latency_s = 0, seed = -1 }", "test.toml:29:56: `seed` is -1, but must not be negative", ""),
+    ("packets = { every_s = 0.1, latency_s = 0, seed = 1, lost = 0.1 }", "test.toml:29:59: unknown key `lost`", "did you mean `loss`?"),
+    ("packets = { every_s = 0.1, latency_s = 0, seed = 1, loss = 0.1 }", "test.toml:29:66: found 0.1 where a choice of random, bursts should stand", ""),
+    ("packets = { every_s = 0.1, latency_s = 0, seed = 1, loss.burst = {} }", "test.toml:29:64: unknown choice `burst`", "did you mean `bursts`?"),
+    ("packets = { every_s = 0.1, latency_s = 0, seed = 1, loss.random = { probability = 1.1 } }", "test.toml:29:89: `probability` is 1.1, but must be from 0 to 1", ""),
+    ("packets = { every_s = 0.1, latency_s = 0, seed = 1, loss.random = { probability = 0.1, most_in_a_row = 0 } }", "test.toml:29:110: `most_in_a_row` is 0, but must be from 1 to 1000000", ""),
+    ("packets = { every_s = 0.1, latency_s = 0, seed = 1, loss.bursts = { enter = -0.1, leave = 0.1 } }", "test.toml:29:83: `enter` is -0.1, but must be from 0 to 1", ""),
+    ("packets = { every_s = 0.1, latency_s = 0, seed = 1, loss.bursts = { enter = 0.1, leave = 0 } }", "test.toml:29:96: `leave` is 0, but must be positive", ""),
+    ("packets = { every_s = 0.1, latency_s = 0, seed = 1, loss.bursts = { enter = 0.1 } }", "test.toml:29:64: the key `leave` is missing", ""),
+    // Logs, without a folder to look in.
+    ("log = \"packets.csv\"", "test.toml:29:13: found \"packets.csv\" where a table of file should stand", ""),
+    ("log = {}", "test.toml:29:7: the key `file` is missing", ""),
+    ("log.file = \"packets.csv\"", "test.toml:29:18: cannot read the table `packets.csv`: there is no such file", ""),
+    ("log.file = \"radio-log.csv\"", "test.toml:32:10: the log `radio-log.csv` has no packet from `cart` to `arm-1`", "every edge of the network needs at least one row"),
+];
+
+/// What to put in the place of the weight, and the same.
+#[rustfmt::skip]
+const WEIGHTS: &[Case] = &[
+    ("\"1 + sin(t)*2\"", "test.toml:28:10: the weight is -0.000129265 at t = 3.67 s, but must be positive", "`max(0.1, …)`"),
+    ("\"sin(t)\"", "test.toml:28:10: the weight is 0 at t = 0 s, but must be positive", "`max(0.1, …)`"),
+    ("\"heavy\"", "test.toml:28:11: there is no `heavy` in a formula", "there are `t`"),
+    ("\"0\"", "test.toml:28:10: `weight` is 0, but must be positive", ""),
+    ("\"log(0)\"", "test.toml:28:10: the formula for `weight` has no finite value", ""),
+    ("\"\\u0031 + q\"", "test.toml:28:10: there is no `q` in a formula", "there are `t`"),
+    ("[1]", "test.toml:28:10: found a list where a number or a formula in t in quotes should stand", ""),
+    ("true", "test.toml:28:10: found true where a number or a formula in t in quotes should stand", ""),
+];
+
+#[test]
+fn every_mistake_in_a_link_is_reported_at_its_place() {
+    const SAW_TOOTH: &str = "delay.saw_tooth = { min_s = 0.1, max_s = 0.4, period_s = 0.6 }";
+    let links = CASES.iter().map(|case| (changed(SAW_TOOTH, &format!("delay.{}", case.0)), case));
+    let weights = WEIGHTS.iter().map(|case| (changed("weight = 1.0", &format!("weight = {}", case.0)), case));
+    let mut wrong = Vec::new();
+    for (text, (to, line, help)) in links.chain(weights) {
+        let Err(error) = read(&text) else {
+            wrong.push(format!("{to}\n    was accepted"));
+            continue;
+        };
+        let found = error.to_string();
+        let found_help = error.help().map(|help| help.to_string()).unwrap_or_default();
+        if found != *line || !found_help.contains(help) || found_help.is_empty() != help.is_empty() {
+            wrong.push(format!("{to}\n    {found}\n    {found_help}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{} are wrong:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+#[test]
+fn one_edge_is_one_link() {
+    let other = "edges = [[\"cart-1\", \"cart-2\"], [\"cart-2\", \"cart-3\"]";
+    let differs = LINKS.replace(
+        other,
+        "edges = [{ from = \"cart-1\", to = \"cart-2\", delay.packets = { every_s = 1, latency_s = 0, seed = 1 } }",
+    );
+    assert_ne!(differs, LINKS);
+    let error = read(&differs).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "test.toml:19:55: the edge from `cart-1` to `cart-2` has other packets in another graph, but it is one link"
+    );
+}
+
+/// [`LINKS`] with a log beside it for the edges that hear packets.
+fn logged(log: &str) -> Result<Scenario, ScenarioError> {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("radio.csv"), log).unwrap();
+    let text =
+        replayed("radio.csv").replace(", { from = \"cart-4\", to = \"cart-2\", delay.log.file = \"radio.csv\" }", "");
+    beside(&text, folder.path())
+}
+
+fn beside(text: &str, folder: &Path) -> Result<Scenario, ScenarioError> {
+    read_scenario("test", &SourceText::new("test.toml", text), Some(folder))
+}
+
+/// [`LINKS`] with a log in the place of its packets.
+fn replayed(file: &str) -> String {
+    let log = format!("log.file = \"{file}\"");
+    let network = "packets = { every_s = 0.05, first_s = 0.01, latency_s = 0.03, jitter_s = 0.2, seed = 5, loss.random = { probability = 0.2 } }";
+    let edge = "packets = { every_s = 0.1, latency_s = 0, seed = 1, loss.bursts = { enter = 0.1, leave = 0.5, most_in_a_row = 3 } }";
+    assert!(LINKS.contains(network) && LINKS.contains(edge));
+    LINKS.replace(network, &log).replace(edge, &log)
+}
+
+const LOG: &str =
+    "from,to,send_s,delay_s\ncart-1,cart-2,0.5,0.1\ncart-2,cart-3,1,\ncart-3,cart-4,2,0.25\ncart-1,cart-2,0.25,1e-2\n";
+
+#[test]
+fn a_log_is_read_in_any_order() {
+    let scenario = logged(LOG).unwrap_or_else(|error| panic!("{error}"));
+    let network = &scenario.setup.network;
+    let edge = network.schedule.graphs()[0][0];
+    let packet = |send_s, delay_s| Packet { send_s, delay_s: Some(delay_s) };
+    let trace = Trace::new(vec![packet(0.25, 0.01), packet(0.5, 0.1)], 3.0).unwrap();
+    assert_eq!(network.delays[edge.delay], Delay::Packets(trace.into()));
+    // Nothing arrives on one of them.
+    let said: Vec<String> = scenario.notices.iter().map(Notice::to_string).collect();
+    assert_eq!(said, ["no packet of cart-2 → cart-3 arrives before the end of the run: the initial message is heard"]);
+    let more = format!("{LOG}cart-4,cart-3,0,0\nsensor-9,cart-1,0,0\ncart-4,cart-3,1,0\n");
+    let said: Vec<String> = logged(&more).unwrap().notices.iter().map(Notice::to_string).collect();
+    assert_eq!(said.len(), 2);
+    let unused = "the packets of cart-4 → cart-3 and sensor-9 → cart-1 in `radio.csv` are not used: the network has no such edge";
+    assert_eq!(said[0], unused);
+}
+
+#[rustfmt::skip]
+const LOGS: &[Case] = &[
+    ("", "radio.csv: the table is empty", "they are `from`, `to`, `send_s`, `delay_s`"),
+    ("from,to,send_s\ncart-1,cart-2,0\n", "radio.csv: the column `delay_s` is missing", "they are `from`, `to`, `send_s`, `delay_s`"),
+    ("from,to,delay_s\ncart-1,cart-2,0\n", "radio.csv:1:1: the column `send_s` is missing", "they are `from`, `to`, `send_s`, `delay_s`"),
+    ("from,to,sent_s,delay_s\n", "radio.csv:1:9: unknown column `sent_s`", "did you mean `send_s`?"),
+    ("from,to,send_s,delay_s\ncart-1,cart-2,,0.1\n", "radio.csv:2:15: `send_s` is empty", ""),
+    ("from,to,send_s,delay_s\ncart-1,cart-2,0.1,-0.1\n", "radio.csv:2:19: `delay_s` is -0.1, but must not be negative", ""),
+    ("from,to,send_s,delay_s\ncart-1,cart-2,-1,0.1\n", "radio.csv:2:15: `send_s` is -1, but must not be negative", ""),
+    ("from,to,send_s,delay_s\ncart-1,cart-2,0.1,nan\n", "radio.csv:2:19: nan is not a finite number", ""),
+    ("from,to,send_s,delay_s\ncart-1,cart-2,inf,0\n", "radio.csv:2:15: inf is not a finite number", ""),
+    ("from,to,send_s,delay_s\ncart-1,cart-2,0.1,1e40\n", "radio.csv:2:19: 1e40 is too large a number", "numbers may be up to 1e30"),
+    ("from,to,send_s,delay_s\ncart-1,cart-2,soon,0\n", "radio.csv:2:15: found \"soon\" where a number should stand", ""),
+    ("from,to,send_s,delay_s\ncart-1,cart-2,1,0\ncart-2,cart-3,1,0\n cart-1,cart-2,1.0,\n", "radio.csv:4:16: a second packet from `cart-1` to `cart-2` sent at 1 s; the first is on line 2", ""),
+    ("from,to,send_s,delay_s\ncart-1,cart-2,1,0\ncart-2,cart-3,1,0\n", "test.toml:16:32: the log `radio.csv` has no packet from `cart-3` to `cart-4`", "every edge of the network needs at least one row"),
+];
+
+#[test]
+fn every_mistake_in_a_log_is_reported_at_its_place() {
+    let mut wrong = Vec::new();
+    for (log, line, help) in LOGS {
+        let Err(error) = logged(log) else {
+            wrong.push(format!("{log}\n    was accepted"));
+            continue;
+        };
+        // Without the folder.
+        let found = error.to_string();
+        let found = found.rsplit_once("/radio.csv").map_or(found.clone(), |(_, rest)| format!("radio.csv{rest}"));
+        let found_help = error.help().map(|help| help.to_string()).unwrap_or_default();
+        if found != *line || !found_help.contains(help) || found_help.is_empty() != help.is_empty() {
+            wrong.push(format!("{log}\n    {found}\n    {found_help}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{} are wrong:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+fn run(scenario: &Scenario, folder: &Path) -> Outcome {
+    let outcome = simulate(&scenario.setup, &mut |_| ControlFlow::Continue(())).unwrap();
+    let verdicts: Report = check(&scenario.setup);
+    let record = RunRecord {
+        title: &scenario.title,
+        scenario_name: &scenario.name,
+        scenario_text: scenario.source.text(),
+        version: "0.0.0",
+        setup: &scenario.setup,
+        outcome: &outcome,
+        verdicts: &verdicts,
+        predicted_agreement: None,
+        goal: None,
+        notices: Vec::new(),
+    };
+    let folder = RunFolder::create(folder, false).unwrap();
+    write_run(&folder, &record, Options::default()).unwrap();
+    outcome
+}
+
+#[test]
+fn regress_a_run_replayed_from_its_own_log_has_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let (first, second) = (folder.path().join("first"), folder.path().join("second"));
+    let scenario = beside(LINKS, folder.path()).unwrap();
+    let outcome = run(&scenario, &first);
+    let log = std::fs::read_to_string(first.join("packets.csv")).unwrap();
+    assert!(log.starts_with("from,to,send_s,delay_s\ncart-1,cart-2,0.01,"), "{}", &log[..100]);
+    let summary: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(first.join("summary.json")).unwrap()).unwrap();
+    let links = summary["links"].as_array().unwrap();
+    assert_eq!(links.len(), 4);
+    let total = |key: &str| links.iter().map(|link| link[key].as_u64().unwrap()).sum::<u64>();
+    assert_eq!(total("sent"), log.lines().count() as u64 - 1);
+    assert_eq!(total("lost"), log.lines().filter(|line| line.ends_with(',')).count() as u64);
+    assert!(total("lost") > 5 && total("late") > 20, "{summary}");
+
+    std::fs::copy(first.join("packets.csv"), folder.path().join("packets.csv")).unwrap();
+    let again = beside(&replayed("packets.csv"), folder.path()).unwrap_or_else(|error| panic!("{error}"));
+    assert!(again.notices.is_empty());
+    let replay = run(&again, &second);
+    assert_eq!(outcome.recording, replay.recording);
+    assert_eq!(outcome.statistics.steps, replay.statistics.steps);
+    assert_eq!(std::fs::read_to_string(second.join("packets.csv")).unwrap(), log);
+    // And it is the packets that make the difference.
+    let other = beside(&LINKS.replace("seed = 5", "seed = 6"), folder.path()).unwrap();
+    let other = simulate(&other.setup, &mut |_| ControlFlow::Continue(())).unwrap();
+    assert_ne!(outcome.recording, other.recording);
+    // A run without packets writes no log.
+    let plain = read(&changed("end_s = 10", "end_s = 0.5")).unwrap();
+    run(&plain, &folder.path().join("plain"));
+    assert!(!folder.path().join("plain/packets.csv").exists());
+}
+
+#[test]
+fn the_shipped_log_is_that_of_the_run_it_names() {
+    let scenario = open_scenario("from-a-log").unwrap();
+    let comment = scenario.source.text().lines().find(|line| line.contains("delay.packets")).unwrap();
+    let packets = comment.trim_start_matches(['#', ' ']);
+    let text = scenario.source.text().replace("delay.log = { file = \"radio-log.csv\" }", packets);
+    let drawn = read(&text).unwrap_or_else(|error| panic!("{error}")).setup.network;
+    let logged = &scenario.setup.network;
+    assert_eq!(drawn.delays.len(), logged.delays.len());
+    for (drawn, logged) in drawn.delays.iter().zip(&logged.delays) {
+        let (Delay::Packets(drawn), Delay::Packets(logged)) = (drawn, logged) else { panic!() };
+        assert_eq!(drawn.packets(), logged.packets());
+    }
+}

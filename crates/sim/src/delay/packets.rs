@@ -1,0 +1,358 @@
+//! Links that carry packets: sent at their own times, late, lost, overtaken.
+//!
+//! A receiver keeps the message with the latest *send* time among those that have arrived; a packet that was overtaken is
+//! dropped when it comes. So what is heard only ever gets newer, and between two arrivals the delay grows like t.
+//!
+//! ```
+//! use forwardstep_sim::delay::{Delay, Loss, PacketLink};
+//!
+//! let radio = PacketLink {
+//!     every_s: 0.02,
+//!     first_s: 0.0,
+//!     latency_s: 0.03,
+//!     jitter_s: 0.05,
+//!     loss: Loss::Random { probability: 0.2 },
+//!     most_in_a_row: None,
+//!     seed: 7,
+//! };
+//! // The link from agent 0 to agent 1 for ten seconds.
+//! let trace = radio.trace((0, 1), 10.0)?;
+//! let statistics = trace.statistics();
+//! assert_eq!(statistics.sent, 501);
+//! assert!(statistics.lost > 60 && statistics.late > 60);
+//! let delay = Delay::Packets(trace.into());
+//! assert!(delay.value(5.0) >= 0.03);
+//! # Ok::<(), forwardstep_sim::delay::packets::PacketError>(())
+//! ```
+
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use thiserror::Error;
+
+/// A link as a random process. Every pair of agents has its own stream of random numbers, which depends on the seed and on
+/// the two agents alone: neither other links nor the graph in force change it, nor does anything but `loss` change which
+/// packets are lost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PacketLink {
+    /// From one packet to the next, s.
+    pub every_s: f64,
+    /// When the first is sent, s; at most `every_s`.
+    pub first_s: f64,
+    /// The least time that a packet takes, s.
+    pub latency_s: f64,
+    /// A packet takes up to this much longer, each time equally likely, s. When it exceeds `every_s` packets overtake each
+    /// other.
+    pub jitter_s: f64,
+    /// How packets are lost.
+    pub loss: Loss,
+    /// No more packets than this are lost one after another; the next one then arrives.
+    pub most_in_a_row: Option<u32>,
+    /// The same seed gives the same packets.
+    pub seed: u64,
+}
+
+/// How packets are lost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Loss {
+    /// None is.
+    Never,
+    /// Each by itself.
+    Random {
+        /// From 0 to 1.
+        probability: f64,
+    },
+    /// In bursts, as Gilbert described them: the link is good or bad, and loses every packet while it is bad. It is good
+    /// before the first packet. In the long run enter / (enter + leave) of the packets are lost, 1 / leave at a time.
+    Bursts {
+        /// How likely a good link is bad at the next packet, from 0 to 1.
+        enter: f64,
+        /// How likely a bad link is good at the next packet, above 0, up to 1.
+        leave: f64,
+    },
+}
+
+/// One packet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Packet {
+    /// When it was sent, s.
+    pub send_s: f64,
+    /// How long it took, s; none if it was lost.
+    pub delay_s: Option<f64>,
+}
+
+/// Why packets make no link.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum PacketError {
+    /// A parameter out of its range.
+    #[error("{parameter} is {value}, but {requirement}")]
+    Parameter {
+        /// The parameter.
+        parameter: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        requirement: &'static str,
+    },
+    /// A packet whose times are no times.
+    #[error("packet {packet} was sent at {send_s} s and took {delay_s} s; both must be finite and not negative")]
+    Times {
+        /// Its number from zero.
+        packet: usize,
+        /// When it was sent, s.
+        send_s: f64,
+        /// How long it took, s.
+        delay_s: f64,
+    },
+    /// Packets that do not follow one another.
+    #[error("packet {packet}, sent at {send_s} s, does not come after the one before it")]
+    Order {
+        /// Its number from zero.
+        packet: usize,
+        /// When it was sent, s.
+        send_s: f64,
+    },
+    /// More packets than fit into memory.
+    #[error("the link would carry {packets} packets, but at most {most} are accepted")]
+    TooMany {
+        /// How many.
+        packets: f64,
+        /// How many are accepted.
+        most: f64,
+    },
+}
+
+/// Packets that one link may carry.
+const MOST_PACKETS: f64 = 1e8;
+
+impl PacketLink {
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// [`PacketError::Parameter`] for the first that is out of its range.
+    pub fn validate(&self) -> Result<(), PacketError> {
+        let check = |parameter, value: f64, good: bool, requirement| {
+            if good && value.is_finite() {
+                Ok(())
+            } else {
+                Err(PacketError::Parameter { parameter, value, requirement })
+            }
+        };
+        let share =
+            |parameter, value: f64| check(parameter, value, (0.0..=1.0).contains(&value), "must be from 0 to 1");
+        check("the time between packets", self.every_s, self.every_s > 0.0, "must be positive and finite")?;
+        let first = (0.0..=self.every_s).contains(&self.first_s);
+        check("the time of the first packet", self.first_s, first, "must be from 0 to the time between packets")?;
+        check("the latency", self.latency_s, self.latency_s >= 0.0, "must be finite and not negative")?;
+        check("the jitter", self.jitter_s, self.jitter_s >= 0.0, "must be finite and not negative")?;
+        match self.loss {
+            Loss::Never => Ok(()),
+            Loss::Random { probability } => share("the probability of loss", probability),
+            Loss::Bursts { enter, leave } => {
+                share("the probability of entering a burst", enter)?;
+                share("the probability of leaving a burst", leave)?;
+                check("the probability of leaving a burst", leave, leave > 0.0, "must be positive")
+            }
+        }
+    }
+
+    /// How many packets are sent up to `until_s`, which counts.
+    pub fn packets(&self, until_s: f64) -> f64 {
+        if until_s < self.first_s { 0.0 } else { ((until_s - self.first_s) / self.every_s).floor() + 1.0 }
+    }
+
+    /// No message is older than this when it is heard, s; infinite when any number of packets may be lost in a row.
+    ///
+    /// With at most n lost in a row, packets that arrive were sent at most (n + 1) · every apart, the first of them at
+    /// most (n + 1) · every after t = 0. Let s be the latest send time of those with s + latency + jitter ≤ t: that packet
+    /// has arrived for sure, so what is heard is no older. The next that arrives, s' ≤ s + (n + 1) · every, has
+    /// s' + latency + jitter > t. Hence t − s < (n + 1) · every + latency + jitter.
+    pub fn bound_s(&self) -> f64 {
+        let lost = match (self.loss, self.most_in_a_row) {
+            (Loss::Never, _) => 0.0,
+            (Loss::Random { probability: 0.0 }, _) | (Loss::Bursts { enter: 0.0, .. }, _) => 0.0,
+            // Every burst ends with its first packet.
+            (Loss::Bursts { leave: 1.0, .. }, most) => most.map_or(1.0, |most| f64::from(most).min(1.0)),
+            (_, Some(most)) => f64::from(most),
+            (_, None) => f64::INFINITY,
+        };
+        (lost + 1.0) * self.every_s + self.latency_s + self.jitter_s
+    }
+
+    /// The packets of the link between two agents (from, to) up to `until_s`, which counts.
+    ///
+    /// # Errors
+    /// [`PacketError`] when a parameter is out of its range, or there are more packets than any memory holds.
+    pub fn trace(&self, (from, to): (usize, usize), until_s: f64) -> Result<Trace, PacketError> {
+        self.validate()?;
+        let packets = self.packets(until_s);
+        // The negation also refuses what is not a number.
+        if !(packets <= MOST_PACKETS) {
+            return Err(PacketError::TooMany { packets, most: MOST_PACKETS });
+        }
+        let mut draw = stream(self.seed, from, to);
+        let (mut bad, mut in_a_row) = (false, 0);
+        let mut sent = Vec::with_capacity(packets as usize);
+        for k in 0..packets as u64 {
+            let send_s = self.first_s + k as f64 * self.every_s;
+            // Two numbers per packet, used or not.
+            let (fate, share): (f64, f64) = (draw.random(), draw.random());
+            bad = match self.loss {
+                Loss::Never => false,
+                Loss::Random { probability } => fate < probability,
+                Loss::Bursts { enter, .. } if !bad => fate < enter,
+                Loss::Bursts { leave, .. } => fate >= leave,
+            };
+            if bad && self.most_in_a_row.is_some_and(|most| in_a_row >= most) {
+                bad = false;
+            }
+            in_a_row = if bad { in_a_row + 1 } else { 0 };
+            let delay_s = (!bad).then_some(self.latency_s + share * self.jitter_s);
+            sent.push(Packet { send_s, delay_s });
+        }
+        let trace = Trace::new(sent, until_s)?;
+        Ok(Trace { link: Some(*self), ..trace })
+    }
+}
+
+/// The random numbers of one ordered pair of agents.
+pub(super) fn stream(seed: u64, from: usize, to: usize) -> ChaCha8Rng {
+    let mut draw = ChaCha8Rng::seed_from_u64(seed);
+    draw.set_stream((from as u64) << 32 | to as u64);
+    draw
+}
+
+/// A stretch of time during which one message is heard.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Held {
+    /// From its arrival on, s.
+    from_s: f64,
+    /// When it was sent, s; −∞ for the initial message.
+    sent_s: f64,
+}
+
+/// The packets of one link up to the end of a run, and what is heard when.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace {
+    packets: Vec<Packet>,
+    held: Vec<Held>,
+    until_s: f64,
+    max_s: f64,
+    min_s: f64,
+    link: Option<PacketLink>,
+}
+
+/// A link in a few numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkStatistics {
+    /// Packets sent.
+    pub sent: usize,
+    /// Packets that never arrived.
+    pub lost: usize,
+    /// Packets that arrived before the end, but after a newer one, and were dropped.
+    pub late: usize,
+    /// The largest age of what was heard, s; before anything has arrived the initial message ages from t = 0.
+    pub largest_age_s: f64,
+}
+
+impl Trace {
+    /// Packets of one link in the order in which they were sent; those sent after `until_s`, the end of the run, are left
+    /// out. A packet arrives at
+    /// `send_s + delay_s` as floating-point numbers add.
+    ///
+    /// # Errors
+    /// [`PacketError`] when a time is negative or not finite, or send times do not rise.
+    pub fn new(mut packets: Vec<Packet>, until_s: f64) -> Result<Trace, PacketError> {
+        for (packet, &Packet { send_s, delay_s }) in packets.iter().enumerate() {
+            let delay_s = delay_s.unwrap_or(0.0);
+            if !(send_s >= 0.0 && delay_s >= 0.0 && (send_s + delay_s).is_finite()) {
+                return Err(PacketError::Times { packet, send_s, delay_s });
+            }
+            if packet > 0 && packets[packet - 1].send_s >= send_s {
+                return Err(PacketError::Order { packet, send_s });
+            }
+        }
+        packets.retain(|packet| packet.send_s <= until_s);
+        let mut arrivals: Vec<Held> = packets
+            .iter()
+            .filter_map(|packet| Some(Held { from_s: packet.send_s + packet.delay_s?, sent_s: packet.send_s }))
+            .filter(|held| held.from_s <= until_s)
+            .collect();
+        arrivals.sort_by(|a, b| a.from_s.total_cmp(&b.from_s).then(a.sent_s.total_cmp(&b.sent_s)));
+        let mut held = vec![Held { from_s: 0.0, sent_s: f64::NEG_INFINITY }];
+        for arrival in arrivals {
+            let Some(last) = held.last_mut() else { break };
+            if arrival.sent_s <= last.sent_s {
+                continue;
+            }
+            // Of what arrives at one instant the newest counts.
+            if arrival.from_s <= last.from_s { *last = arrival } else { held.push(arrival) }
+        }
+        let ends = held.iter().skip(1).map(|next| next.from_s).chain([until_s]);
+        let ages = || held.iter().map(|held| held.from_s - held.sent_s.max(0.0));
+        // Rounded up, so that no age computed on the way exceeds it.
+        let oldest = ends.zip(&held).map(|(end_s, held)| end_s - held.sent_s.max(0.0)).fold(0.0, f64::max);
+        let (max_s, min_s) = (oldest.next_up(), ages().fold(f64::INFINITY, f64::min));
+        Ok(Trace { packets, held, until_s, max_s, min_s, link: None })
+    }
+
+    /// All packets, in the order in which they were sent, those that were lost among them.
+    pub fn packets(&self) -> &[Packet] {
+        &self.packets
+    }
+
+    /// The random process that they are drawn from; `None` for packets that were given.
+    pub fn link(&self) -> Option<&PacketLink> {
+        self.link.as_ref()
+    }
+
+    /// The end of the run that this was made for, s.
+    pub fn until_s(&self) -> f64 {
+        self.until_s
+    }
+
+    /// How many messages are heard, one after another; those that arrive late or after the end are not.
+    pub fn arrivals(&self) -> usize {
+        self.held.iter().filter(|held| held.sent_s >= 0.0).count()
+    }
+
+    /// What happened until the end of the run.
+    pub fn statistics(&self) -> LinkStatistics {
+        let lost = self.packets.iter().filter(|packet| packet.delay_s.is_none()).count();
+        let arrived = |packet: &&Packet| packet.delay_s.is_some_and(|delay_s| packet.send_s + delay_s <= self.until_s);
+        let arrived = self.packets.iter().filter(arrived).count();
+        LinkStatistics { sent: self.packets.len(), lost, late: arrived - self.arrivals(), largest_age_s: self.max_s }
+    }
+
+    pub(super) fn max_s(&self) -> f64 {
+        self.max_s
+    }
+
+    pub(super) fn min_s(&self) -> f64 {
+        self.min_s
+    }
+
+    /// Start and end of a piece.
+    pub(super) fn span(&self, index: u64) -> (f64, f64) {
+        let index = self.clamped(index);
+        (self.held[index].from_s, self.held.get(index + 1).map_or(f64::INFINITY, |next| next.from_s))
+    }
+
+    /// When what is heard on a piece was sent, s.
+    #[inline]
+    pub(super) fn sent_s(&self, index: u64) -> f64 {
+        self.held[self.clamped(index)].sent_s
+    }
+
+    /// The piece at `t_s`, from the right.
+    pub(super) fn index_at(&self, t_s: f64) -> u64 {
+        self.held.partition_point(|held| held.from_s <= t_s).saturating_sub(1) as u64
+    }
+
+    fn clamped(&self, index: u64) -> usize {
+        (index as usize).min(self.held.len() - 1)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,100 @@
+//! Delays drawn at random, each held for a time drawn at random.
+
+use rand::Rng;
+
+use super::packets::{PacketError, stream};
+
+/// Values that one delay may take one after another.
+const MOST_VALUES: f64 = 1e8;
+
+/// A delay that takes a new value, each equally likely, after times of which each is equally likely.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RandomHold {
+    /// Least and largest value, s.
+    pub(super) value_s: [f64; 2],
+    hold_s: [f64; 2],
+    until_s: f64,
+    times_s: Vec<f64>,
+    values_s: Vec<f64>,
+}
+
+impl RandomHold {
+    /// Draws the delay of the edge between two agents (from, to) up to `until_s`: values from `value_s`, held for times
+    /// from `hold_s`. Every ordered pair of agents has its own stream of random numbers.
+    ///
+    /// # Errors
+    /// [`PacketError`] when a bound is negative or not finite, a shortest hold is not positive, a pair falls, or there are
+    /// more values than any memory holds.
+    pub fn draw(
+        seed: u64,
+        (from, to): (usize, usize),
+        value_s: [f64; 2],
+        hold_s: [f64; 2],
+        until_s: f64,
+    ) -> Result<Self, PacketError> {
+        let check = |parameter, value: f64, good: bool, requirement| {
+            if good && value.is_finite() {
+                Ok(())
+            } else {
+                Err(PacketError::Parameter { parameter, value, requirement })
+            }
+        };
+        check("the least delay", value_s[0], value_s[0] >= 0.0, "must be finite and not negative")?;
+        check("the largest delay", value_s[1], value_s[1] >= value_s[0], "must not be below the least")?;
+        check("the shortest hold", hold_s[0], hold_s[0] > 0.0, "must be positive and finite")?;
+        check("the longest hold", hold_s[1], hold_s[1] >= hold_s[0], "must not be below the shortest")?;
+        let packets = until_s / hold_s[0];
+        if !(packets <= MOST_VALUES) {
+            return Err(PacketError::TooMany { packets, most: MOST_VALUES });
+        }
+        let mut draw = stream(seed, from, to);
+        let mut between = |[low, high]: [f64; 2]| {
+            let share: f64 = draw.random();
+            // Rounding must not lead outside.
+            (low + share * (high - low)).clamp(low, high)
+        };
+        let (mut times_s, mut values_s) = (Vec::new(), Vec::new());
+        let mut t_s = 0.0;
+        loop {
+            times_s.push(t_s);
+            values_s.push(between(value_s));
+            let next = t_s + between(hold_s);
+            if !(next > t_s && next <= until_s) {
+                break;
+            }
+            t_s = next;
+        }
+        Ok(RandomHold { value_s, hold_s, until_s, times_s, values_s })
+    }
+
+    /// Least and largest value, s.
+    pub fn value_s(&self) -> [f64; 2] {
+        self.value_s
+    }
+
+    /// Shortest and longest hold, s.
+    pub fn hold_s(&self) -> [f64; 2] {
+        self.hold_s
+    }
+
+    pub(super) fn until_s(&self) -> f64 {
+        self.until_s
+    }
+
+    pub(super) fn span(&self, index: u64) -> (f64, f64) {
+        let index = self.clamped(index);
+        (self.times_s[index], self.times_s.get(index + 1).copied().unwrap_or(f64::INFINITY))
+    }
+
+    pub(super) fn value(&self, index: u64) -> f64 {
+        self.values_s[self.clamped(index)]
+    }
+
+    pub(super) fn index_at(&self, t_s: f64) -> u64 {
+        self.times_s.partition_point(|start| *start <= t_s).saturating_sub(1) as u64
+    }
+
+    fn clamped(&self, index: u64) -> usize {
+        (index as usize).min(self.times_s.len() - 1)
+    }
+}
