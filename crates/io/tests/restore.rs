@@ -44,6 +44,7 @@ fn write(folder: &Path, change: impl FnOnce(&Setup, &mut Outcome)) -> Outcome {
         verdicts: &forwardstep_check::check(&scenario.setup),
         predicted_agreement: None,
         goal: None,
+        digital: None,
         notices: vec!["one".into()],
     };
     write_run(&RunFolder::create(folder, true).unwrap(), &record, Options { csv: true }).unwrap();

@@ -14,7 +14,7 @@ use forwardstep_sim::formula::FormulaStep::{Add, Multiply, Number, Sin, Time};
 use forwardstep_sim::formula::{BoundedFormula, Formula};
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::schedule::Schedule;
-use forwardstep_sim::{Setup, simulate};
+use forwardstep_sim::{Actuators, Control, Sensors, Setup, VelocitySensor, simulate};
 
 struct Counting;
 
@@ -64,13 +64,29 @@ fn weights_swing(setup: &mut Setup) {
     }
 }
 
+/// Digital control with everything that it can have.
+fn sampled() -> Control {
+    let sensors = Sensors {
+        velocity: VelocitySensor::Filtered { cut_off_hz: 50.0 },
+        position_noise: 1e-5,
+        position_quantum: 1e-6,
+        ..Sensors::default()
+    };
+    let actuators = Actuators { torque_quantum: 1e-3, ..Actuators::default() };
+    Control { sample_hz: 500.0, computation_delay_s: 0.001, sensors, actuators }
+}
+
 #[test]
 fn alloc_steps_do_not_allocate() {
-    for (case, formulas) in cases().into_iter().flat_map(|case| [(case.clone(), false), (case, true)]) {
+    for (case, how) in
+        cases().into_iter().flat_map(|case| ["plain", "formulas", "sampled"].map(|how| (case.clone(), how)))
+    {
         let mut setup = setup(&case);
         setup.time.record_every_s = 0.01;
-        if formulas {
-            weights_swing(&mut setup);
+        match how {
+            "formulas" => weights_swing(&mut setup),
+            "sampled" => setup.control = Some(sampled()),
+            _ => {}
         }
         let (mut before, mut steps) = (None, 0_u64);
         simulate(&setup, &mut |progress| {

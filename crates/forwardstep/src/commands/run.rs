@@ -5,7 +5,9 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use forwardstep::io::output::{self, GoalOutcome, Metrics, OutputError, RunFolder, RunRecord, ending_sentence};
+use forwardstep::io::output::{
+    self, DigitalCost, GoalOutcome, Metrics, OutputError, RunFolder, RunRecord, continuous_twin, ending_sentence,
+};
 use forwardstep::io::scenario::{Scenario, open_scenario};
 use forwardstep::sim::{Ending, Outcome, simulate};
 
@@ -43,7 +45,10 @@ fn finish(options: &RunOptions, console: &mut Console) -> Result<Status, Status>
     let setup = &scenario.setup;
     let metrics = Metrics::of(setup, &outcome.recording, promise.agreement.as_deref().ok(), scenario.goal);
     let goal = scenario.goal.map(|goal| GoalOutcome { goal, met: goal.is_met(setup, &outcome, &metrics) });
-    let record = record(&scenario, &promise, &outcome, goal);
+    let mut record = record(&scenario, &promise, &outcome, goal);
+    if setup.control.is_some() && !matches!(outcome.ending, Ending::Interrupted { .. }) {
+        record.digital = digital_cost(&scenario, &outcome, &stop);
+    }
     let files = output::write_run(&folder, &record, output::Options { csv: options.csv }).map_err(refused)?;
     if outcome.ending != Ending::Completed {
         remark(ending_sentence(setup, &outcome.ending));
@@ -74,8 +79,20 @@ fn record<'a>(
         verdicts: &promise.report,
         predicted_agreement: promise.agreement.clone().ok(),
         goal,
+        digital: None,
         notices: scenario.notices.iter().map(ToString::to_string).collect(),
     }
+}
+
+/// Simulates the same in continuous time. Whoever does not want to wait for it may interrupt: the run itself is kept.
+fn digital_cost(scenario: &Scenario, outcome: &Outcome, stop: &AtomicBool) -> Option<DigitalCost> {
+    let mut bar = Bar::new();
+    let twin = simulate(&continuous_twin(&scenario.setup), &mut |progress| {
+        bar.update(progress);
+        if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    bar.clear();
+    DigitalCost::of(&scenario.setup, outcome, &twin.ok()?, scenario.goal)
 }
 
 pub(super) fn refused(error: OutputError) -> Status {

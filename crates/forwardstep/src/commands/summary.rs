@@ -39,6 +39,12 @@ pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, 
     if !metrics.limits_reached.is_empty() {
         rows.push(("limits exceeded", format!("{}, see the report", metrics.limits_reached.len())));
     }
+    if let Some(gap) = record.digital.as_ref().and_then(|cost| cost.largest_gap) {
+        let unit = unit(setup, gap.agent, Signal::Position, gap.axis);
+        let agent = agent_name(setup, gap.agent);
+        let gap = format!("{} {unit} from the continuous run ({agent} at {:.2} s)", short(gap.value.abs()), gap.t_s);
+        rows.push(("cost of going digital", gap));
+    }
     let statistics = &outcome.statistics;
     let steps = format!("{}, {} of them to break-points", statistics.steps, statistics.break_points);
     rows.push(("steps", format!("{steps}; {} rejected", statistics.rejected)));

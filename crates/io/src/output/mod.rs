@@ -21,6 +21,7 @@
 
 mod csv;
 mod decimate;
+mod digital;
 mod error;
 mod folder;
 mod inputs;
@@ -42,6 +43,7 @@ mod timeline;
 use std::collections::HashSet;
 use std::path::PathBuf;
 
+pub use digital::{DigitalCost, Figures, continuous_twin};
 pub use error::{Action, EncodeError, OutputError};
 pub use folder::RunFolder;
 use folder::Staging;

@@ -4,6 +4,7 @@ use forwardstep_check::Report;
 use forwardstep_sim::recording::{BreakdownCause, Ending, Outcome};
 use forwardstep_sim::setup::Setup;
 
+use super::digital::DigitalCost;
 use super::metrics::Metrics;
 use super::names;
 use crate::scenario::InputFile;
@@ -31,6 +32,8 @@ pub struct RunRecord<'a> {
     pub predicted_agreement: Option<Vec<f64>>,
     /// The scenario's goal and whether it was met.
     pub goal: Option<GoalOutcome>,
+    /// What digital control cost, when there was any and the run was not interrupted.
+    pub digital: Option<DigitalCost>,
     /// Remarks for the reader of the report.
     pub notices: Vec<String>,
 }

@@ -174,6 +174,7 @@ impl SavedRun {
             verdicts,
             predicted_agreement,
             goal,
+            digital: summary.digital.clone(),
             notices: summary.notices.iter().cloned().chain(remarks.iter().map(Remark::to_string)).collect(),
         }
     }

@@ -11,6 +11,7 @@ use forwardstep_sim::recording::{Breakdown, BreakdownCause, Column, Ending, Reco
 use forwardstep_sim::setup::Setup;
 use serde::{Deserialize, Serialize};
 
+use super::digital::DigitalCost;
 use super::inputs;
 use super::metrics::Metrics;
 use super::packets::Link;
@@ -49,7 +50,11 @@ pub struct Summary {
     /// Work of the integrator.
     pub solver: Solver,
     /// Links that carried packets; empty where none does.
+    #[serde(default)]
     pub links: Vec<Link>,
+    /// What digital control cost, when there was any.
+    #[serde(default)]
+    pub digital: Option<DigitalCost>,
     /// Remarks.
     pub notices: Vec<String>,
     /// The only part that differs between two runs of the same scenario by the same version.
@@ -261,6 +266,7 @@ impl Summary {
                 break_points: statistics.break_points,
             },
             links: Link::all(&setup.network),
+            digital: record.digital.clone(),
             notices: record.notices.clone(),
             timings: Timings { wall_s, simulated_per_wall: ending.t_s / wall_s },
             ending,

@@ -16,7 +16,7 @@ macro_rules! shipped {
 }
 
 /// All of them; the first is the one to begin with.
-pub const SHIPPED_SCENARIOS: [ShippedScenario; 10] = shipped![
+pub const SHIPPED_SCENARIOS: [ShippedScenario; 11] = shipped![
     "six-arms",
     "first-order",
     "theorem-1",
@@ -27,6 +27,7 @@ pub const SHIPPED_SCENARIOS: [ShippedScenario; 10] = shipped![
     "ten-different-robots",
     "backstepping",
     "from-a-log",
+    "six-arms-over-radio",
 ];
 
 /// The shipped scenario of this name.

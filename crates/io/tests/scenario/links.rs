@@ -265,12 +265,14 @@ fn run(scenario: &Scenario, folder: &Path) -> Outcome {
         title: &scenario.title,
         scenario_name: &scenario.name,
         scenario_text: scenario.source.text(),
+        inputs: &scenario.inputs,
         version: "0.0.0",
         setup: &scenario.setup,
         outcome: &outcome,
         verdicts: &verdicts,
         predicted_agreement: None,
         goal: None,
+        digital: None,
         notices: Vec::new(),
     };
     let folder = RunFolder::create(folder, false).unwrap();

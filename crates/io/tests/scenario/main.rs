@@ -1,6 +1,7 @@
 //! Scenario files: what is read, and what every mistake gets.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod control;
 mod edges;
 mod links;
 mod malformed;

@@ -249,11 +249,15 @@ mod tests {
     fn regress_nothing_happens_a_rounding_before_the_horizon() {
         // What the first delay's jump at 3 · 1.7 + 0.8 sends is heard 0.5 s later, a rounding before 6.4, where the saw-tooth
         // jumps. Landing on it made the two one event, and the row at the horizon showed what is heard after the jump.
-        let edge = |delay| Edge { from: 0, to: 1, weight: 1.0, delay };
+        let edge = |delay| Edge { from: 0, to: 1, weight: 1.0.into(), delay };
         let steps = Delay::PiecewiseConstant { times_s: vec![0.0, 0.8], values_s: vec![0.2, 0.5], period_s: Some(1.7) };
         let saw_tooth = Delay::SawTooth { min_s: 0.1, max_s: 0.3, period_s: 0.8, offset_s: 0.0 };
-        let network =
-            Network { agents: 2, schedule: Schedule::Fixed(vec![edge(0), edge(1)]), delays: vec![steps, saw_tooth] };
+        let network = Network {
+            agents: 2,
+            schedule: Schedule::Fixed(vec![edge(0), edge(1)]),
+            delays: vec![steps, saw_tooth],
+            weights: Vec::new(),
+        };
         let mut longer = Timeline::new(&network, 10.0, 1);
         while longer.next_s() < 6.3 {
             longer.pass(longer.next_s());

@@ -69,6 +69,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
                     (sections::verdicts(record, metrics))
                     (signals(absence, &record.setup.agents))
                     (network(record, &timeline))
+                    (sections::digital(record))
                     (sections::loads(record.setup, metrics))
                     (sections::provenance(record))
                     footer {

@@ -192,6 +192,51 @@ fn fact(name: &str, what: Markup) -> Markup {
     html! { tr { th { (name) } td { (what) } } }
 }
 
+/// The run beside the same run in continuous time.
+pub(crate) fn digital(record: &RunRecord<'_>) -> Markup {
+    let setup = record.setup;
+    let Some(cost) = &record.digital else { return html! {} };
+    let unit = length_unit(setup);
+    let torque = unit_at(setup, Signal::Torque, 0, 0);
+    let speed = unit_at(setup, Signal::Velocity, 0, 0);
+    let (digital, continuous) = (&cost.digital, &cost.continuous);
+    let rows = [
+        ("Final disagreement", unit, continuous.final_disagreement, digital.final_disagreement),
+        ("Settled after", "s", continuous.settled_s, digital.settled_s),
+        ("Peak torque", &*torque, continuous.peak_torque, digital.peak_torque),
+        ("Torque, root mean square", &*torque, Some(continuous.rms_torque), Some(digital.rms_torque)),
+        ("s, root mean square", &*speed, Some(continuous.rms_tracking_error), Some(digital.rms_tracking_error)),
+    ];
+    let cell = |value: Option<f64>, unit: &str| value.map_or_else(|| "–".to_owned(), |value| quantity(value, unit));
+    html! {
+        section #digital {
+            h2 { "The cost of going digital" }
+            div.card.scroll {
+                h3 {
+                    "At " (number(cost.sample_hz)) " Hz, beside the same run in continuous time"
+                    span.by { "with exact measurements and unlimited actuators" }
+                }
+                table.numbers {
+                    thead { tr { th {} th { "continuous" } th { "digital" } } }
+                    tbody { @for (name, unit, continuous, digital) in rows {
+                        tr { th { (name) } td { (cell(continuous, unit)) } td { (cell(digital, unit)) } }
+                    } }
+                }
+                @if let Some(gap) = cost.largest_gap {
+                    p.note {
+                        "Positions differ by " (quantity(gap.value.abs(), &unit_at(setup, Signal::Position, gap.agent, gap.axis)))
+                        " at most (" (names::agent_name(setup, gap.agent)) ", " (names::axis_words(setup, gap.agent, gap.axis))
+                        ", t = " (number(gap.t_s)) " s)."
+                    }
+                }
+                @if let Some(t_s) = cost.twin_ended_at_s {
+                    p.note { "In continuous time the run ended at t = " (number(t_s)) " s; rows until then are compared." }
+                }
+            }
+        }
+    }
+}
+
 /// Peak torques, agents by axes, and the limits that were reached.
 pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
     let most_axes = setup.agents.iter().map(|a| a.robot.axes.len()).max().unwrap_or(0);

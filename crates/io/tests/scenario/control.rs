@@ -1,0 +1,129 @@
+//! `[control]`: what is read, and what every mistake gets.
+
+use forwardstep_sim::{Actuators, Control, Sensors, VelocitySensor};
+use miette::Diagnostic;
+
+use super::{changed, read};
+
+/// The sound scenario with lines of `[control]`, which begins on line 37.
+fn with(lines: &str) -> String {
+    changed("[goal]", &format!("[control]\n{lines}\n[goal]"))
+}
+
+/// The lines, the first line of the error, and a part of the help.
+type Case = (&'static str, &'static str, &'static str);
+
+#[rustfmt::skip]
+const CASES: &[Case] = &[
+    ("",
+        "test.toml:37:1: the key `sample_hz` is missing", ""),
+    ("sample_hz = 0",
+        "test.toml:38:13: `sample_hz` is 0, but must be positive", ""),
+    ("sample_hz = -500",
+        "test.toml:38:13: `sample_hz` is -500, but must be positive", ""),
+    ("sample_hz = \"fast\"",
+        "test.toml:38:13: found \"fast\" where a number should stand", ""),
+    ("sample_hz = 1e9",
+        "test.toml:38:13: 1e10 samples would fall into the run, but at most 1e7 are accepted", "All of them are seconds"),
+    ("sample_Hz = 500",
+        "test.toml:38:1: unknown key `sample_Hz`", "did you mean `sample_hz`?"),
+    ("sample_hz = 500\nsample_hz = 500",
+        "test.toml:39:1: not valid TOML: duplicate key", ""),
+    ("sample_hz = 500\ncomputation_delay_s = -0.001",
+        "test.toml:39:23: `computation_delay_s` is -0.001, but must not be negative", ""),
+    ("sample_hz = 500\ncomputation_delay_s = 0.1",
+        "test.toml:39:23: `computation_delay_s` is 0.1, but the next sample is taken after 0.002 s", "before the next begins"),
+    ("sample_hz = 500\nvelocity = \"guessed\"",
+        "test.toml:39:12: unknown choice `guessed`", "choose one of"),
+    ("sample_hz = 500\nvelocity = \"filtered_difference\"",
+        "test.toml:39:12: `filtered_difference` needs a value", ""),
+    ("sample_hz = 500\nvelocity.filtered_difference = {}",
+        "test.toml:39:32: the key `cut_off_hz` is missing", ""),
+    ("sample_hz = 500\nvelocity.filtered_difference.cut_off_hz = 0",
+        "test.toml:39:43: `cut_off_hz` is 0, but must be positive", ""),
+    ("sample_hz = 500\nvelocity.filtered_difference.cutoff_hz = 50",
+        "test.toml:39:30: unknown key `cutoff_hz`", "did you mean `cut_off_hz`?"),
+    ("sample_hz = 500\nnoise.position = 1e-4",
+        "test.toml:39:1: the key `seed` is missing", ""),
+    ("sample_hz = 500\nnoise = { seed = -1 }",
+        "test.toml:39:18: `seed` is -1, but must not be negative", ""),
+    ("sample_hz = 500\nnoise = { seed = 1, position = -1e-4 }",
+        "test.toml:39:32: `noise.position` is -0.0001, but must not be negative", ""),
+    ("sample_hz = 500\nnoise = { seed = 1, torque = 1 }",
+        "test.toml:39:21: unknown key `torque`", "allowed here"),
+    ("sample_hz = 500\nnoise = { seed = 1, velocity = 1e-3 }\nvelocity.filtered_difference.cut_off_hz = 50",
+        "test.toml:39:32: `noise.velocity` has no effect: velocities are not measured, but come from filtered differences", "delete it"),
+    ("sample_hz = 500\nquantisation.velocity = 1e-3\nvelocity.filtered_difference.cut_off_hz = 50",
+        "test.toml:39:25: `quantisation.velocity` has no effect: velocities are not measured, but come from filtered differences", "delete it"),
+    ("sample_hz = 500\nquantisation.position = 0",
+        "test.toml:39:25: `quantisation.position` is 0, but must be positive", ""),
+    ("sample_hz = 500\nquantization.position = 1e-4",
+        "test.toml:39:1: unknown key `quantization`", "did you mean `quantisation`?"),
+    ("sample_hz = 500\ntorque_limit = 0",
+        "test.toml:39:16: `torque_limit` is 0, but must be positive", ""),
+    ("sample_hz = 500\ntorque_limit = [1, -2]",
+        "test.toml:39:20: `torque_limit` is -2, but must be positive", ""),
+    ("sample_hz = 500\ntorque_limit = [1, 2, 3]",
+        "test.toml:39:16: `torque_limit` has 3 where the agents have 2 axes", "a single number stands for all axes"),
+    ("sample_hz = 500\ntorque_rate_limit_per_s = []",
+        "test.toml:39:27: `torque_rate_limit_per_s` has 0 where the agents have 2 axes", "a single number"),
+    ("sample_hz = 500\ntorque_rate_limit_per_s = \"none\"",
+        "test.toml:39:27: found \"none\" where a number, or a list with one for each axis should stand", ""),
+];
+
+#[test]
+fn every_mistake_in_control_is_reported_at_its_place() {
+    let mut wrong = Vec::new();
+    for (lines, message, help) in CASES {
+        let Err(error) = read(&with(lines)) else {
+            wrong.push(format!("{lines}\n    was accepted"));
+            continue;
+        };
+        let (found, found_help) = (error.to_string(), error.help().map(|h| h.to_string()).unwrap_or_default());
+        if found != *message || !found_help.contains(help) || found_help.is_empty() != help.is_empty() {
+            wrong.push(format!("{lines}\n    {found:?}\n    {found_help:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), CASES.len(), wrong.join("\n"));
+}
+
+#[test]
+fn control_is_read_as_it_is_written() {
+    let lines = "sample_hz = 500\ncomputation_delay_s = 0.002\nvelocity.filtered_difference.cut_off_hz = 40\n\
+                 noise = { seed = 9, position = 1e-4 }\nquantisation = { position = 1e-5, torque = 0.5 }\n\
+                 torque_limit = 20\ntorque_rate_limit_per_s = [100, 200]";
+    let control = Control {
+        sample_hz: 500.0,
+        computation_delay_s: 0.002,
+        sensors: Sensors {
+            velocity: VelocitySensor::Filtered { cut_off_hz: 40.0 },
+            position_noise: 1e-4,
+            velocity_noise: 0.0,
+            seed: 9,
+            position_quantum: 1e-5,
+            velocity_quantum: 0.0,
+        },
+        actuators: Actuators {
+            torque_limit: Some(vec![20.0, 20.0]),
+            torque_rate_limit: Some(vec![100.0, 200.0]),
+            torque_quantum: 0.5,
+        },
+    };
+    assert_eq!(read(&with(lines)).unwrap().setup.control, Some(control));
+    let default = read(&with("sample_hz = 1000\nvelocity = \"measured\"")).unwrap().setup.control.unwrap();
+    assert_eq!(default.sensors, Sensors::default());
+    assert_eq!(default.actuators, Actuators::default());
+    assert_eq!(read(super::SOUND).unwrap().setup.control, None);
+}
+
+#[test]
+fn sampling_that_is_too_slow_for_the_gain_is_said() {
+    let notices = |lines| {
+        let scenario = read(&with(lines)).unwrap();
+        scenario.notices.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    assert_eq!(notices("sample_hz = 1000"), Vec::<String>::new());
+    let coarse = notices("sample_hz = 20");
+    assert_eq!(coarse.len(), 1);
+    assert!(coarse[0].starts_with("`sample_hz` is low for the gain K: h · λ_max(M⁻¹K) is "), "{coarse:?}");
+}
