@@ -51,7 +51,9 @@ fn weights_swing(setup: &mut Setup) {
     setup.network.weights = vec![swing(1.0, 0.5)];
     let phases = match &mut setup.network.schedule {
         Schedule::Fixed(edges) => vec![edges],
-        Schedule::Periodic(phases) | Schedule::Once(phases) => phases.iter_mut().map(|phase| &mut phase.edges).collect(),
+        Schedule::Periodic(phases) | Schedule::Once(phases) => {
+            phases.iter_mut().map(|phase| &mut phase.edges).collect()
+        }
         Schedule::Random { graphs, .. } => graphs.iter_mut().collect(),
     };
     for edge in phases.into_iter().flatten() {
