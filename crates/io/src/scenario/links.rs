@@ -258,11 +258,14 @@ pub(super) fn packets(file: &PacketsFile) -> Result<DelayPlan, Fault> {
     Ok(DelayPlan::Packets(link))
 }
 
+/// The packets of one edge, and where each stands.
+type Rows = Vec<(Packet, Range<usize>)>;
+
 /// The packets of a log; `line_of` says on which line a byte stands.
 fn log_of(text: &str, line_of: impl Fn(usize) -> usize) -> Result<Log, Fault> {
     let columns = [("from", true), ("to", true), ("send_s", true), ("delay_s", false)]
         .map(|(name, required)| Column { name, required });
-    let mut rows: BTreeMap<(String, String), Vec<(Packet, Range<usize>)>> = BTreeMap::new();
+    let mut rows: BTreeMap<(String, String), Rows> = BTreeMap::new();
     for At { value: [from, to, send, delay], span } in read_table(text, columns)? {
         // The cell of a column that is not there is the line.
         if delay.span == span {
