@@ -331,7 +331,7 @@ impl Parser<'_> {
     }
 
     fn number(&mut self, at: usize) -> Result<(), FormulaFault> {
-        let rest = self.text[at..].as_bytes();
+        let rest = &self.text.as_bytes()[at..];
         let digits = |from: usize| rest[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
         let mut length = digits(0);
         if rest.get(length) == Some(&b'.') {

@@ -11,9 +11,8 @@ use forwardstep_sim::graph::Weight;
 use super::at::At;
 use super::fault::{Fault, between, fault, not_negative, positive, seed};
 use super::formula::formula;
-use super::links_file::{BurstsFile, LossFile, PacketsFile, RandomHoldFile, RandomLossFile, WeightFile};
+use super::links_file::{BurstsFile, LogFile, LossFile, PacketsFile, RandomHoldFile, RandomLossFile, WeightFile};
 use super::network::NetworkReader;
-use super::network_file::DelayFile;
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
 use super::table::{Cell, Column, TableProblem, cell_number, read_table, table_text};
@@ -55,26 +54,18 @@ pub(super) struct Links {
 }
 
 impl NetworkReader<'_> {
-    /// What a delay says, with everything checked that does not depend on the edge.
-    pub(super) fn plan(&mut self, delay: &At<DelayFile>) -> Result<DelayPlan, Fault> {
-        Ok(match &delay.value {
-            DelayFile::RandomHold(file) => random_hold(file)?,
-            DelayFile::Packets(file) => DelayPlan::Packets(packet_link(file)?),
-            DelayFile::Log(file) => {
-                let name = &file.file.value;
-                if !self.links.logs.contains_key(name) {
-                    let table = table_text(&file.file, self.folder)?;
-                    let log = log_of(table.text(), |offset| table.line_column(offset).0);
-                    self.links.logs.insert(name.clone(), log.map_err(|fault| fault.within(&table))?);
-                }
-                DelayPlan::Log(name.clone())
-            }
-            DelayFile::FormulaS(text) => DelayPlan::Shared(self.formula_delay(text)?),
-            _ => DelayPlan::Shared(self.delay(delay)?),
-        })
+    /// Reads a log, once.
+    pub(super) fn log(&mut self, file: &LogFile) -> Result<DelayPlan, Fault> {
+        let name = &file.file.value;
+        if !self.links.logs.contains_key(name) {
+            let table = table_text(&file.file, self.folder)?;
+            let log = log_of(table.text(), |offset| table.line_column(offset).0);
+            self.links.logs.insert(name.clone(), log.map_err(|fault| fault.within(&table))?);
+        }
+        Ok(DelayPlan::Log(name.clone()))
     }
 
-    fn formula_delay(&self, text: &At<String>) -> Result<Delay, Fault> {
+    pub(super) fn formula_delay(&self, text: &At<String>) -> Result<Delay, Fault> {
         let formula = formula(text)?;
         if formula.is_constant() {
             let value = At { value: formula.eval(0.0), span: text.span.clone() };
@@ -227,7 +218,7 @@ fn witness(formula: &Formula, end_s: f64, good: impl Fn(f64) -> bool) -> Option<
     })
 }
 
-fn random_hold(file: &RandomHoldFile) -> Result<DelayPlan, Fault> {
+pub(super) fn random_hold(file: &RandomHoldFile) -> Result<DelayPlan, Fault> {
     let pair = |key: &'static str, pair: &At<[At<f64>; 2]>, least: fn(&'static str, &At<f64>) -> Result<f64, Fault>| {
         let [low, high] = &pair.value;
         let (low, high) = (least(key, low)?, least(key, high)?);
@@ -240,7 +231,7 @@ fn random_hold(file: &RandomHoldFile) -> Result<DelayPlan, Fault> {
     })
 }
 
-fn packet_link(file: &PacketsFile) -> Result<PacketLink, Fault> {
+pub(super) fn packets(file: &PacketsFile) -> Result<DelayPlan, Fault> {
     let every_s = positive("every_s", &file.every_s)?;
     let first_s = file.first_s.as_ref().map_or(Ok(0.0), |first| between("first_s", first, 0.0, every_s))?;
     let (loss, most_in_a_row) = match file.loss.as_ref().map(|loss| &loss.value) {
@@ -255,7 +246,7 @@ fn packet_link(file: &PacketsFile) -> Result<PacketLink, Fault> {
         }
     };
     let most = most_in_a_row.as_ref().map(|most| super::fault::count("most_in_a_row", most, MOST_IN_A_ROW));
-    Ok(PacketLink {
+    let link = PacketLink {
         every_s,
         first_s,
         latency_s: not_negative("latency_s", &file.latency_s)?,
@@ -263,14 +254,18 @@ fn packet_link(file: &PacketsFile) -> Result<PacketLink, Fault> {
         loss,
         most_in_a_row: most.transpose()?.map(|most| most as u32),
         seed: seed(&file.seed)?,
-    })
+    };
+    Ok(DelayPlan::Packets(link))
 }
+
+/// The packets of one edge, and where each stands.
+type Rows = Vec<(Packet, Range<usize>)>;
 
 /// The packets of a log; `line_of` says on which line a byte stands.
 fn log_of(text: &str, line_of: impl Fn(usize) -> usize) -> Result<Log, Fault> {
     let columns = [("from", true), ("to", true), ("send_s", true), ("delay_s", false)]
         .map(|(name, required)| Column { name, required });
-    let mut rows: BTreeMap<(String, String), Vec<(Packet, Range<usize>)>> = BTreeMap::new();
+    let mut rows: BTreeMap<(String, String), Rows> = BTreeMap::new();
     for At { value: [from, to, send, delay], span } in read_table(text, columns)? {
         // The cell of a column that is not there is the line.
         if delay.span == span {

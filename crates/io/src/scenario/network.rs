@@ -13,7 +13,7 @@ use forwardstep_sim::schedule::{Phase, Schedule};
 use super::at::At;
 use super::fault::{Fault, fault, filled, not_negative, positive, seed, values};
 use super::inputs::InputFolder;
-use super::links::{DelayPlan, Links};
+use super::links::{self, DelayPlan, Links};
 use super::network_file::{DelayFile, NetworkFile, PhaseFile, SwitchingFile};
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
@@ -162,10 +162,14 @@ impl NetworkReader<'_> {
         self.delays.len() - 1
     }
 
-    /// A delay that does not depend on the edge.
-    pub(super) fn delay(&self, delay: &At<DelayFile>) -> Result<Delay, Fault> {
-        match &delay.value {
-            DelayFile::ConstantS(s) => Ok(Delay::Constant { s: not_negative("constant_s", s)? }),
+    /// What a delay says, with everything checked that does not depend on the edge.
+    pub(super) fn plan(&mut self, delay: &At<DelayFile>) -> Result<DelayPlan, Fault> {
+        let shared = match &delay.value {
+            DelayFile::RandomHold(file) => return links::random_hold(file),
+            DelayFile::Packets(file) => return links::packets(file),
+            DelayFile::Log(file) => return self.log(file),
+            DelayFile::FormulaS(text) => self.formula_delay(text)?,
+            DelayFile::ConstantS(s) => Delay::Constant { s: not_negative("constant_s", s)? },
             DelayFile::Sinusoid(file) => {
                 let mean_s = not_negative("mean_s", &file.mean_s)?;
                 let amplitude_s = not_negative("amplitude_s", &file.amplitude_s)?;
@@ -174,7 +178,7 @@ impl NetworkReader<'_> {
                 }
                 let period_s = positive("period_s", &file.period_s)?;
                 self.few("swings of the delay", self.end_s / period_s, &file.period_s.span)?;
-                Ok(Delay::Sinusoid { mean_s, amplitude_s, period_s, phase_rad: file.phase_rad.rem_euclid(TAU) })
+                Delay::Sinusoid { mean_s, amplitude_s, period_s, phase_rad: file.phase_rad.rem_euclid(TAU) }
             }
             DelayFile::PiecewiseConstant(file) => {
                 let times_s = filled("times_s", &file.times_s)?;
@@ -205,7 +209,7 @@ impl NetworkReader<'_> {
                     self.few("jumps of the delay", self.end_s / period_s * times as f64, &place.span)?;
                 }
                 let (times_s, values_s) = (values(times_s), values(&file.values_s.value));
-                Ok(Delay::PiecewiseConstant { times_s, values_s, period_s })
+                Delay::PiecewiseConstant { times_s, values_s, period_s }
             }
             DelayFile::SawTooth(file) => {
                 let min_s = not_negative("min_s", &file.min_s)?;
@@ -217,12 +221,9 @@ impl NetworkReader<'_> {
                 self.few("jumps of the delay", self.end_s / period_s, &file.period_s.span)?;
                 // The same tooth, and no precision lost to a large offset.
                 let offset_s = file.offset_s.rem_euclid(period_s);
-                Ok(Delay::SawTooth { min_s, max_s, period_s, offset_s })
+                Delay::SawTooth { min_s, max_s, period_s, offset_s }
             }
-            // These are planned, see there.
-            DelayFile::FormulaS(_) | DelayFile::RandomHold(_) | DelayFile::Packets(_) | DelayFile::Log(_) => {
-                Ok(Delay::Constant { s: 0.0 })
-            }
-        }
+        };
+        Ok(DelayPlan::Shared(shared))
     }
 }

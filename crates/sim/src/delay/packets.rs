@@ -186,8 +186,7 @@ impl PacketLink {
     pub fn trace(&self, (from, to): (usize, usize), until_s: f64) -> Result<Trace, PacketError> {
         self.validate()?;
         let packets = self.packets(until_s);
-        // The negation also refuses what is not a number.
-        if !(packets <= MOST_PACKETS) {
+        if packets > MOST_PACKETS || packets.is_nan() {
             return Err(PacketError::TooMany { packets, most: MOST_PACKETS });
         }
         let mut draw = stream(self.seed, from, to);

@@ -44,7 +44,7 @@ impl RandomHold {
         check("the shortest hold", hold_s[0], hold_s[0] > 0.0, "must be positive and finite")?;
         check("the longest hold", hold_s[1], hold_s[1] >= hold_s[0], "must not be below the shortest")?;
         let packets = until_s / hold_s[0];
-        if !(packets <= MOST_VALUES) {
+        if packets > MOST_VALUES || packets.is_nan() {
             return Err(PacketError::TooMany { packets, most: MOST_VALUES });
         }
         let mut draw = stream(seed, from, to);

@@ -98,8 +98,8 @@ pub(crate) struct Hearing {
     /// States that are sent, in runs: (first state, first entry, how many).
     blocks: Vec<(usize, usize, usize)>,
     links: Vec<Link>,
-    /// Their weights as the graph has them, if any changes.
-    weights: Vec<Weight>,
+    /// Receiver, sender and weight of each as the graph has them, if any weight changes.
+    weights: Vec<(usize, usize, Weight)>,
     varying: Vec<Varying>,
     sources: Vec<Source>,
     initial: Vec<f64>,
@@ -169,14 +169,13 @@ impl Hearing {
         if edges.clone().all(|edge| edge.weight.constant().is_some()) {
             return;
         }
-        let mut sorted: Vec<(usize, usize, Weight)> = edges.map(|e| (e.to, e.from, e.weight)).collect();
-        sorted.sort_by_key(|(to, from, _)| (*to, *from));
-        self.weights.extend(sorted.iter().map(|(_, _, weight)| *weight));
+        self.weights.extend(edges.map(|edge| (edge.to, edge.from, edge.weight)));
+        self.weights.sort_unstable_by_key(|(to, from, _)| (*to, *from));
         let mut start = 0;
         for receiver in self.links.chunk_by(|a, b| a.receiver == b.receiver) {
             let links = start..start + receiver.len();
             start = links.end;
-            if self.weights[links.clone()].iter().any(|weight| weight.constant().is_none()) {
+            if self.weights[links.clone()].iter().any(|(_, _, weight)| weight.constant().is_none()) {
                 let degree = self.ports[receiver[0].receiver].degree;
                 self.varying.push(Varying { degree, sum: 0.0, links });
             }
@@ -187,7 +186,8 @@ impl Hearing {
     fn weigh(&mut self, timeline: &Timeline<'_>, t_s: f64) {
         for varying in &mut self.varying {
             varying.sum = 0.0;
-            for (link, weight) in self.links[varying.links.clone()].iter_mut().zip(&self.weights[varying.links.clone()])
+            for (link, (_, _, weight)) in
+                self.links[varying.links.clone()].iter_mut().zip(&self.weights[varying.links.clone()])
             {
                 link.weight = timeline.weight(*weight, t_s);
                 varying.sum += link.weight;

@@ -171,8 +171,7 @@ impl Interval {
     fn wave(self, crest: f64) -> Self {
         let Interval { low, high } = self;
         let full = Interval { low: -1.0, high: 1.0 };
-        // The negation also catches what is not a number.
-        if !(high - low < TAU) || low.abs().max(high.abs()) > FAR_RAD {
+        if (high - low).is_nan() || high - low >= TAU || low.abs().max(high.abs()) > FAR_RAD {
             return full;
         }
         // Whether a point at `phase` plus whole turns lies inside, asked generously.

@@ -20,7 +20,7 @@ const MOST_POWER: f64 = 64.0;
 /// Evaluations that one search for bounds may cost.
 const SEARCH: usize = 2000;
 /// Bounds this close to values that are taken are close enough, as a part of the range.
-const CLOSE: f64 = 1e-3;
+const CLOSE: f64 = 1e-4;
 
 /// One step of a formula. Each takes its operands from the stack and leaves its value there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -224,8 +224,9 @@ impl Formula {
         for _ in 0..SEARCH {
             let Some(Stretch { bound: highest, from_s, to_s }) = stretches.peek().copied() else { break };
             let middle = from_s + 0.5 * (to_s - from_s);
-            // The negation also ends the search for a formula that has no value somewhere.
-            if !(highest - taken > CLOSE * (taken - least)) || middle <= from_s || middle >= to_s {
+            let gap = highest - taken;
+            // A formula that has no value somewhere has no gap either.
+            if gap.is_nan() || gap <= CLOSE * (taken - least) || middle <= from_s || middle >= to_s {
                 break;
             }
             stretches.pop();

@@ -117,7 +117,7 @@ pub(crate) fn links(setup: &Setup) -> Markup {
             div.card {
                 h3 { "Packets" }
                 div.scroll {
-                    table #packets {
+                    table.numbers #packets {
                         thead {
                             tr { th { "link" } th { "sent" } th { "lost" } th { "late, dropped" } th { "largest age heard" } }
                         }
