@@ -5,6 +5,8 @@ mod edges;
 mod malformed;
 mod meaning;
 mod mutated;
+#[path = "../support/seeds.rs"]
+mod seeds;
 mod shipped;
 mod spread;
 
@@ -59,5 +61,6 @@ fn changed(from: &str, to: &str) -> String {
 }
 
 fn read(text: &str) -> Result<Scenario, ScenarioError> {
+    seeds::keep("scenario", text);
     read_scenario("test", &SourceText::new("test.toml", text), None)
 }
