@@ -125,7 +125,7 @@ impl SourceCode for SourceText {
             let start = if lines_before == 0 { offset } else { line_start.max(offset.saturating_sub(AROUND)) };
             let start = boundary(text, start);
             let end = boundary(text, offset + span.len().min(AROUND) + AROUND);
-            let end = text[start..end].find('\n').map_or(end, |newline| start + newline);
+            let end = text[start..end].find(['\r', '\n']).map_or(end, |newline| start + newline);
             (data, whole) = (&text.as_bytes()[start..end], (start, end - start).into());
             let (one, at) = self.line_column(start);
             (line, column, lines) = (one - 1, at - 1, 1);

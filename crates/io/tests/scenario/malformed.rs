@@ -381,7 +381,9 @@ fn nothing_in_a_file_steers_the_terminal() {
 }
 
 #[test]
-fn lines_may_end_as_on_other_systems() {
+fn regress_lines_may_end_as_on_other_systems() {
+    let long = printed(&changed("end_s = 10", &format!("end_s = {}ten", " ".repeat(500))).replace('\n', "\r\n"));
+    assert!(long.contains("\n 5 │") && !long.contains('\r'), "{long:?}");
     let shown = printed(&changed("end_s = 10", "end_s = ten").replace('\n', "\r\n"));
     assert!(shown.contains("│ end_s = ten\n") && !shown.contains('\r'), "{shown:?}");
 }
