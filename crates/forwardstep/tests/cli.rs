@@ -106,7 +106,7 @@ fn a_file_runs_with_csv_into_a_folder_of_choice() {
     fs::write(folder.path().join("two.toml"), QUICK).unwrap();
     forwardstep(&folder, &["run", "two.toml", "--out", "a/b", "--csv"]).success();
     let table = fs::read_to_string(folder.path().join("a/b/trajectory.csv")).unwrap();
-    assert!(table.starts_with("t_s,arm-1.q.1,"), "{}", &table[..40]);
+    assert!(table.starts_with("t_s,arm-1.q.shoulder,"), "{}", &table[..40]);
     assert_eq!(table.lines().count(), 1 + 301);
     assert_eq!(names(folder.path()), ["a", "two.toml"]);
 }

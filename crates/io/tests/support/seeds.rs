@@ -7,13 +7,12 @@ use std::path::Path;
 const LONGEST: usize = 16_384;
 
 /// Keeps `text` in the folder `kind` of the one that `FORWARDSTEP_SEEDS` names, if it names one; see `fuzz/README.md`.
-pub fn keep(kind: &str, text: &str) {
+pub(crate) fn keep(kind: &str, text: &str) {
     let Some(folder) = std::env::var_os("FORWARDSTEP_SEEDS") else { return };
     if text.len() > LONGEST {
         return;
     }
     let mut hasher = DefaultHasher::new();
     text.hash(&mut hasher);
-    let path = Path::new(&folder).join(kind).join(format!("{:016x}", hasher.finish()));
-    std::fs::write(&path, text).unwrap_or_else(|error| panic!("cannot write {}: {error}", path.display()));
+    std::fs::write(Path::new(&folder).join(kind).join(format!("{:016x}", hasher.finish())), text).unwrap();
 }
