@@ -24,7 +24,9 @@ Exit status:
     1  check: a hypothesis does not hold, or the paper does not cover the case; run: the goal was missed
     2  input without meaning, or a folder that cannot be written to or is not that of a run
     3  the run broke down; what was computed is written
-  130  interrupted by Ctrl-C; what was computed is written";
+  130  interrupted by Ctrl-C; what was computed is written
+  143  terminated (SIGTERM), and
+  129  hung up (SIGHUP), the same";
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {

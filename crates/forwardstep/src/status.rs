@@ -15,6 +15,10 @@ pub(crate) enum Status {
     BrokeDown = 3,
     /// Ctrl-C; what was computed is written.
     Interrupted = 130,
+    /// SIGTERM; what was computed is written.
+    Terminated = 143,
+    /// SIGHUP; what was computed is written.
+    HungUp = 129,
 }
 
 impl From<Status> for ExitCode {

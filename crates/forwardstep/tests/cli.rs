@@ -106,7 +106,7 @@ fn a_file_runs_with_csv_into_a_folder_of_choice() {
     fs::write(folder.path().join("two.toml"), QUICK).unwrap();
     forwardstep(&folder, &["run", "two.toml", "--out", "a/b", "--csv"]).success();
     let table = fs::read_to_string(folder.path().join("a/b/trajectory.csv")).unwrap();
-    assert!(table.starts_with("t_s,arm-1.q.1,"), "{}", &table[..40]);
+    assert!(table.starts_with("t_s,arm-1.q.shoulder,"), "{}", &table[..40]);
     assert_eq!(table.lines().count(), 1 + 301);
     assert_eq!(names(folder.path()), ["a", "two.toml"]);
 }
@@ -268,17 +268,17 @@ fn text_that_cannot_be_written_is_an_error() {
     assert!(!output.stderr.is_empty());
 }
 
+/// A run of years of simulated time, so that it cannot end by itself, told to stop by `signals`, one after the other:
+/// what it exits with and what it says.
 #[cfg(unix)]
-#[test]
-fn ctrl_c_keeps_what_was_computed() {
+fn stopped(folder: &TempDir, mut command: Process, signals: &[&str]) -> (Option<i32>, String) {
     use std::io::{BufRead, BufReader};
 
-    let folder = folder();
-    // Years of simulated time, so that it cannot end by itself.
     let long = QUICK.replace("end_s = 30, record_every_s = 0.1", "end_s = 1e8, record_every_s = 100");
     fs::write(folder.path().join("two.toml"), long).unwrap();
-    let mut process = Process::new(assert_cmd::cargo::cargo_bin("forwardstep"))
-        .current_dir(&folder)
+    let mut process = command
+        .arg(assert_cmd::cargo::cargo_bin("forwardstep"))
+        .current_dir(folder)
         .args(["run", "two.toml"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -287,14 +287,46 @@ fn ctrl_c_keeps_what_was_computed() {
     let mut lines = BufReader::new(process.stdout.take().unwrap()).lines();
     // The verdicts are printed before the run, when the handler is in place.
     assert_eq!(lines.next().unwrap().unwrap(), "Two arms");
-    std::thread::sleep(std::time::Duration::from_millis(500));
-    Process::new("kill").args(["-INT", &process.id().to_string()]).status().unwrap();
+    for signal in signals {
+        std::thread::sleep(std::time::Duration::from_millis(500));
+        assert!(process.try_wait().unwrap().is_none(), "ended before {signal}");
+        Process::new("kill").args([signal, process.id().to_string().as_str()]).status().unwrap();
+    }
     let text: Vec<_> = lines.map(Result::unwrap).collect();
     let output = process.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(130));
-    assert!(String::from_utf8(output.stderr).unwrap().starts_with("Interrupted at t = "));
     assert!(text.iter().any(|line| line.contains("final disagreement")), "{text:?}");
     let summary = summary(&folder.path().join("forwardstep-runs/two"));
     assert_eq!(summary["ending"]["kind"], "interrupted");
     assert!(summary["ending"]["t_s"].as_f64().unwrap() > 0.0);
+    (output.status.code(), String::from_utf8(output.stderr).unwrap())
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_what_was_computed() {
+    let (status, error) = stopped(&folder(), Process::new("env"), &["-INT"]);
+    assert_eq!(status, Some(130));
+    assert!(error.starts_with("Interrupted at t = "), "{error}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn regress_other_signals_keep_what_was_computed() {
+    for (signal, status) in [("-TERM", 143), ("-HUP", 129)] {
+        // Whoever runs the tests may do so under `nohup`.
+        let mut command = Process::new("env");
+        command.arg("--default-signal=HUP");
+        let (found, error) = stopped(&folder(), command, &[signal]);
+        assert_eq!(found, Some(status), "{signal}");
+        assert!(error.starts_with("Interrupted at t = "), "{error}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_under_nohup_outlives_its_terminal() {
+    let mut command = Process::new("env");
+    command.arg("--ignore-signal=HUP");
+    let (status, _) = stopped(&folder(), command, &["-HUP", "-TERM"]);
+    assert_eq!(status, Some(143));
 }

@@ -10,6 +10,8 @@ use miette::{Diagnostic, LabeledSpan, MietteError, MietteSpanContents, SourceCod
 const LONGEST_LINE: usize = 400;
 /// What is shown before and after the place in such a line, and of what is marked, in bytes.
 const AROUND: usize = 60;
+/// Messages longer than this are cut, in bytes.
+const LONGEST_MESSAGE: usize = 2000;
 
 /// A file's name and text, shared by all that is said about it.
 #[derive(Clone, Debug)]
@@ -29,7 +31,7 @@ impl SourceText {
     /// Keeps `text` under `name`, the path as the user wrote it.
     pub fn new(name: impl AsRef<str>, text: impl Into<String>) -> Self {
         let text = text.into();
-        let shown = text.contains(steers_terminals).then(|| printable(&text));
+        let shown = text.contains(|c| c == '\r' || steers_terminals(c)).then(|| printable(&text));
         SourceText { file: Arc::new(File { name: name.as_ref().to_owned(), text, shown }) }
     }
 
@@ -61,13 +63,39 @@ pub(crate) fn steers_terminals(c: char) -> bool {
     c.is_control() && !matches!(c, '\t' | '\n' | '\r') || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-/// The same text with question marks in place of such characters, as many as they have bytes.
+/// Whether a character does not belong into a line of text.
+pub(crate) fn breaks_lines(c: char) -> bool {
+    // The separators of lines and paragraphs are no control characters.
+    c.is_control() || steers_terminals(c) || matches!(c, '\u{2028}' | '\u{2029}')
+}
+
+/// The same text with question marks in place of such characters, and of returns that end no line, as many as they have
+/// bytes.
 fn printable(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
-    for c in text.chars() {
-        if steers_terminals(c) { (0..c.len_utf8()).for_each(|_| shown.push('?')) } else { shown.push(c) }
+    for (start, c) in text.char_indices() {
+        let returns = c == '\r' && !text[start + 1..].starts_with('\n');
+        if returns || steers_terminals(c) { (0..c.len_utf8()).for_each(|_| shown.push('?')) } else { shown.push(c) }
     }
     shown
+}
+
+/// A message as one line of reasonable length, whatever of a file it quotes.
+pub(crate) fn one_line(message: impl fmt::Display) -> String {
+    let message = message.to_string();
+    let mut line = String::with_capacity(message.len().min(LONGEST_MESSAGE));
+    for c in message.chars() {
+        if line.len() + c.len_utf8() > LONGEST_MESSAGE {
+            line.push('…');
+            break;
+        }
+        if breaks_lines(c) {
+            line.extend(c.escape_debug());
+        } else {
+            line.push(c);
+        }
+    }
+    line
 }
 
 /// The nearest place between two characters at or before `offset`.
@@ -97,7 +125,7 @@ impl SourceCode for SourceText {
             let start = if lines_before == 0 { offset } else { line_start.max(offset.saturating_sub(AROUND)) };
             let start = boundary(text, start);
             let end = boundary(text, offset + span.len().min(AROUND) + AROUND);
-            let end = text[start..end].find('\n').map_or(end, |newline| start + newline);
+            let end = text[start..end].find(['\r', '\n']).map_or(end, |newline| start + newline);
             (data, whole) = (&text.as_bytes()[start..end], (start, end - start).into());
             let (one, at) = self.line_column(start);
             (line, column, lines) = (one - 1, at - 1, 1);
@@ -128,9 +156,9 @@ impl<P: Problem> fmt::Display for InputError<P> {
         match &self.span {
             Some(span) => {
                 let (line, column) = self.source.line_column(span.start);
-                write!(f, "{}:{line}:{column}: {}", self.source.name(), self.problem)
+                write!(f, "{}:{line}:{column}: {}", self.source.name(), one_line(&self.problem))
             }
-            None => write!(f, "{}: {}", self.source.name(), self.problem),
+            None => write!(f, "{}: {}", self.source.name(), one_line(&self.problem)),
         }
     }
 }
@@ -139,7 +167,7 @@ impl<P: Problem> std::error::Error for InputError<P> {}
 
 impl<P: Problem> Diagnostic for InputError<P> {
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.problem.help().map(|help| Box::new(help) as Box<dyn fmt::Display>)
+        self.problem.help().map(|help| Box::new(one_line(help)) as Box<dyn fmt::Display>)
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {

@@ -66,10 +66,16 @@ pub(crate) fn enumerate(items: impl ExactSizeIterator<Item = String>) -> String 
 
 /// The candidate nearest to `word`, if it is near enough to be a slip of the pen.
 pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    // Comparing takes as long as the product of both lengths, and nobody types so much by hand.
+    const LONGEST: usize = 200;
+    if word.len() > LONGEST {
+        return None;
+    }
     let folded = word.to_lowercase();
     let slips = (folded.chars().count() / 3).max(1);
     candidates
         .into_iter()
+        .filter(|candidate| candidate.len() <= LONGEST)
         .filter_map(|candidate| {
             let other = candidate.to_lowercase();
             let (distance, likeness) = (strsim::osa_distance(&folded, &other), strsim::jaro_winkler(&folded, &other));

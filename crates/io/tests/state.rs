@@ -1,6 +1,9 @@
 //! States of robots as JSON: what they say, and what is refused where.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+#[path = "support/seeds.rs"]
+mod seeds;
+
 use forwardstep_io::robot::{JointState, read_state};
 use forwardstep_io::{Problem, SourceText};
 use proptest::prelude::*;
@@ -9,6 +12,7 @@ const JOINTS: [&str; 2] = ["shoulder", "elbow"];
 
 /// The state, or the error and its help as the user sees them.
 fn read(text: &str) -> Result<JointState, String> {
+    seeds::keep("state", text);
     read_state(&SourceText::new("s.json", text), &JOINTS).map_err(|error| match error.problem.help() {
         Some(help) => format!("{error}; {help}"),
         None => error.to_string(),
@@ -53,6 +57,10 @@ fn mistakes_are_reported_at_their_place() {
         ("{\"elbow\": {\"q\": 1}, \"elbow\": {}}", "s.json:1:21: joint `elbow` is given twice".to_owned()),
         ("{\n\"elbow\": {\"q\" 1}}", "s.json:2:15: not well-formed JSON: expected `:`".to_owned()),
         ("{\"elbow\": {\"q\": 01}}", "s.json:1:18: not well-formed JSON: invalid number".to_owned()),
+        (
+            "{\"\\u001b\\n\": {}}",
+            "s.json:1:2: the robot has no moving joint `\\u{1b}\\n`; its joints are `shoulder`, `elbow`".to_owned(),
+        ),
         ("{\"é\": {\"q\": x}}", "s.json:1:13: not well-formed JSON: expected value".to_owned()),
     ];
     for (text, message) in cases {

@@ -1,5 +1,7 @@
 //! Which graph is in force when.
 
+use std::collections::HashMap;
+
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -124,29 +126,28 @@ impl Schedule {
         };
         let last_for_ever = segments.last().is_some_and(|s| s.end_s.is_infinite());
         let (mut length_s, mut worst_start_s, mut worst_roots) = (-1.0, 0.0, Vec::new());
+        // The run from a later phase never ends earlier, so both ends of it only move forwards.
+        let (mut union, mut next) = (Union::new(self, agents), 0);
         for first in 0..starts {
-            let mut union: Vec<Edge> = Vec::new();
-            let mut found = None;
-            for segment in &segments[first..] {
-                union.extend_from_slice(self.graph(segment.graph));
-                if let SpanningTree::Rooted { roots } = spanning_tree(agents, &union) {
-                    found = Some((segment, roots));
-                    break;
-                }
+            while next < segments.len() && (next <= first || union.roots().is_none()) {
+                union.add(segments[next].graph);
+                next += 1;
             }
             let start_s = segments[first].start_s;
-            let Some((last, roots)) = found else {
+            let Some(roots) = union.roots() else {
                 if !for_all_time && first > 0 {
                     break;
                 }
-                let SpanningTree::Missing { closed_groups } = spanning_tree(agents, &union) else { break };
+                let SpanningTree::Missing { closed_groups } = spanning_tree(agents, union.edges()) else { break };
                 return Window::Missing { start_s, closed_groups };
             };
+            let last = segments[next - 1];
             // A last graph that stays for ever can be cut into windows as short as one likes.
             let end = if last.end_s.is_infinite() { last.start_s } else { last.end_s };
             if end - start_s > length_s {
-                (length_s, worst_start_s, worst_roots) = (end - start_s, start_s, roots);
+                (length_s, worst_start_s, worst_roots) = (end - start_s, start_s, roots.to_vec());
             }
+            union.remove(segments[first].graph);
         }
         // A schedule that ends needs infinitely many windows in its last graph.
         if last_for_ever
@@ -156,6 +157,61 @@ impl Schedule {
             return Window::Missing { start_s: last.start_s, closed_groups };
         }
         Window::Uniform { length_s, worst_start_s, roots: worst_roots, for_all_time }
+    }
+}
+
+/// Unions that are remembered.
+const MOST_UNIONS: usize = 4096;
+
+/// The union of the graphs of a run of phases.
+struct Union<'a> {
+    schedule: &'a Schedule,
+    agents: usize,
+    /// How many phases of the run have each graph.
+    count: Vec<u32>,
+    /// The graphs that some phase has, as bits, and the roots of every such union seen so far, if it has a spanning tree:
+    /// a schedule of a million switches shows a few unions again and again.
+    present: Vec<u64>,
+    known: HashMap<Vec<u64>, Option<Vec<usize>>>,
+}
+
+impl<'a> Union<'a> {
+    fn new(schedule: &'a Schedule, agents: usize) -> Self {
+        let graphs = schedule.graphs().len();
+        let (count, present) = (vec![0; graphs], vec![0; graphs.div_ceil(64)]);
+        Union { schedule, agents, count, present, known: HashMap::new() }
+    }
+
+    fn add(&mut self, graph: usize) {
+        self.count[graph] += 1;
+        self.present[graph / 64] |= 1 << (graph % 64);
+    }
+
+    fn remove(&mut self, graph: usize) {
+        self.count[graph] -= 1;
+        if self.count[graph] == 0 {
+            self.present[graph / 64] &= !(1 << (graph % 64));
+        }
+    }
+
+    fn edges(&self) -> impl Iterator<Item = &'a Edge> {
+        let present = self.count.iter().enumerate().filter(|(_, count)| **count > 0);
+        present.flat_map(|(graph, _)| self.schedule.graph(graph))
+    }
+
+    /// The agents that can be the root of a spanning tree.
+    fn roots(&mut self) -> Option<&[usize]> {
+        if !self.known.contains_key(&self.present) {
+            if self.known.len() >= MOST_UNIONS {
+                self.known.clear();
+            }
+            let roots = match spanning_tree(self.agents, self.edges()) {
+                SpanningTree::Rooted { roots } => Some(roots),
+                SpanningTree::Missing { .. } => None,
+            };
+            self.known.insert(self.present.clone(), roots);
+        }
+        self.known.get(&self.present)?.as_deref()
     }
 }
 
@@ -233,6 +289,42 @@ mod tests {
         assert_eq!(schedule.window(3, 10.0), Window::Missing { start_s: 1.0, closed_groups: vec![vec![0], vec![2]] });
         let turned = Schedule::Once(vec![phase(1.0, &[(0, 1)]), phase(1.0, &[(0, 1), (1, 2)])]);
         assert!(matches!(turned.window(3, 10.0), Window::Uniform { length_s: 1.0, for_all_time: true, .. }));
+    }
+
+    /// The length of the longest run that was needed, found the long way round.
+    fn longest_run_s(schedule: &Schedule, agents: usize, end_s: f64) -> f64 {
+        let segments: Vec<Segment> = schedule.segments().take_while(|s| s.start_s < end_s).collect();
+        let run_s = |first: usize| {
+            (first..segments.len()).find_map(|last| {
+                let union: Vec<Edge> =
+                    segments[first..=last].iter().flat_map(|s| schedule.graph(s.graph)).copied().collect();
+                let rooted = matches!(spanning_tree(agents, &union), SpanningTree::Rooted { .. });
+                rooted.then(|| segments[last].end_s - segments[first].start_s)
+            })
+        };
+        (0..segments.len()).map_while(run_s).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn windows_are_those_found_the_long_way_round() {
+        let graphs: Vec<Vec<Edge>> =
+            [&[(0, 1)][..], &[(1, 2), (2, 1)], &[(2, 3)], &[], &[(3, 0)]].map(|pairs| phase(0.0, pairs).edges).into();
+        for seed in 0..20 {
+            let schedule = Schedule::Random { graphs: graphs.clone(), dwell_s: [0.5, 1.5], seed };
+            let Window::Uniform { length_s, .. } = schedule.window(4, 100.0) else { panic!("{seed}") };
+            assert_eq!(length_s, longest_run_s(&schedule, 4, 100.0), "{seed}");
+        }
+    }
+
+    #[test]
+    fn regress_a_million_switches_are_judged_at_once() {
+        let graphs: Vec<Vec<Edge>> = vec![phase(0.0, &[(0, 1)]).edges, phase(0.0, &[]).edges];
+        let schedule = Schedule::Random { graphs, dwell_s: [1.0, 1.0], seed: 3 };
+        let began = std::time::Instant::now();
+        assert_eq!(schedule.window(3, 1e6), Window::Missing { start_s: 0.0, closed_groups: vec![vec![0], vec![2]] });
+        assert!(matches!(schedule.window(2, 1e6), Window::Uniform { for_all_time: false, .. }));
+        let took_s = began.elapsed().as_secs_f64();
+        assert!(took_s < 10.0, "{took_s} s");
     }
 
     #[test]

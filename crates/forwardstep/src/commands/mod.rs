@@ -12,6 +12,7 @@ mod robot;
 mod run;
 mod scenarios;
 mod schema;
+mod stop;
 mod summary;
 
 pub(crate) use check::check;

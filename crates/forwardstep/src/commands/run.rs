@@ -2,8 +2,6 @@
 
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use forwardstep::io::output::{
     self, DigitalCost, GoalOutcome, Metrics, OutputError, RunFolder, RunRecord, continuous_twin, ending_sentence,
@@ -13,6 +11,7 @@ use forwardstep::sim::{Ending, Outcome, simulate};
 
 use super::progress::Bar;
 use super::promise::{Promise, promise, show};
+use super::stop::Stop;
 use super::summary::summary;
 use crate::arguments::RunOptions;
 use crate::console::{Console, Plain, complain, remark};
@@ -28,7 +27,7 @@ fn finish(options: &RunOptions, console: &mut Console) -> Result<Status, Status>
     let promise = promise(&scenario.setup);
     let path = options.out.clone().unwrap_or_else(|| Path::new("forwardstep-runs").join(&scenario.name));
     // Only now: until there is something to keep, Ctrl-C just ends the program.
-    let stop = stop_on_interrupt();
+    let stop = Stop::listen();
     // Before the run, so that no work is lost to a folder that cannot be written to.
     let folder = RunFolder::create(&path, options.force).map_err(refused)?;
     show(&scenario, &promise, console);
@@ -37,7 +36,7 @@ fn finish(options: &RunOptions, console: &mut Console) -> Result<Status, Status>
     let mut bar = Bar::new();
     let outcome = simulate(&scenario.setup, &mut |progress| {
         bar.update(progress);
-        if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if stop.asked().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     bar.clear();
     let outcome = outcome.map_err(|error| complain(&Plain::new(error)))?;
@@ -56,7 +55,7 @@ fn finish(options: &RunOptions, console: &mut Console) -> Result<Status, Status>
     console.text(summary(&record, &metrics, &path, &files));
     Ok(match outcome.ending {
         Ending::BrokeDown(_) => Status::BrokeDown,
-        Ending::Interrupted { .. } => Status::Interrupted,
+        Ending::Interrupted { .. } => stop.asked().unwrap_or(Status::Interrupted),
         Ending::Completed if goal.is_some_and(|goal| !goal.met) => Status::Missed,
         Ending::Completed => Status::Fine,
     })
@@ -98,17 +97,4 @@ fn digital_cost(scenario: &Scenario, outcome: &Outcome, stop: &AtomicBool) -> Op
 pub(super) fn refused(error: OutputError) -> Status {
     let help = error.help();
     complain(&Plain::with_help(error, help))
-}
-
-/// Set by the first Ctrl-C, which lets the run end in order; the second ends the program.
-fn stop_on_interrupt() -> Arc<AtomicBool> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&stop);
-    // Without a handler Ctrl-C still ends the program, only nothing is kept.
-    let _ = ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
-            std::process::exit(Status::Interrupted as i32);
-        }
-    });
-    stop
 }

@@ -1,7 +1,7 @@
 //! What columns, axes and units are called, everywhere: in tables, plots and messages.
 //!
-//! A column is called `<agent>.<signal>.<axis>`: [`Signal::name`], and the joint's name for trees, a number from one for
-//! planar arms and point masses, the parameter's name for `theta_hat`; `lyapunov` and `dissipation` have no axis part.
+//! A column is called `<agent>.<signal>.<axis>`: [`Signal::name`], and the joint's name for arms, a number from one for
+//! point masses, the parameter's name for `theta_hat`; `lyapunov` and `dissipation` have no axis part.
 
 use std::collections::HashSet;
 
@@ -13,11 +13,13 @@ pub fn agent_name(setup: &Setup, agent: usize) -> String {
     setup.agents.get(agent).map_or_else(|| format!("agent-{}", agent + 1), |a| a.name.clone())
 }
 
-/// The name of an axis of an agent: the joint's name for trees, a number from one otherwise.
+/// The name of an axis of an agent: the joint's name for arms, a number from one for point masses.
 pub fn axis_name(setup: &Setup, agent: usize, axis: usize) -> String {
     let robot = setup.agents.get(agent).map(|a| &a.robot);
     match robot {
-        Some(robot) if matches!(robot.kind, RobotKind::Tree(_)) => robot.axes.get(axis).map(|a| a.name.clone()),
+        Some(robot) if !matches!(robot.kind, RobotKind::PointMass { .. }) => {
+            robot.axes.get(axis).map(|a| a.name.clone())
+        }
         _ => None,
     }
     .unwrap_or_else(|| (axis + 1).to_string())

@@ -19,7 +19,7 @@ use super::at::AT;
 use super::edges_file::LIST_OR_CHOICE;
 use super::fault::{Fault, LARGEST};
 use super::problem::ScenarioProblem;
-use crate::diagnostic::steers_terminals;
+use crate::diagnostic::breaks_lines;
 
 /// Bytes that a text may have.
 const LONGEST_TEXT: usize = 500;
@@ -71,7 +71,7 @@ pub(super) fn quoted(text: &str) -> String {
 
 /// A text that fits into a line: every text of a scenario is a name, a choice or a title.
 fn plain(text: &str) -> Result<&str, Fault> {
-    if text.len() > LONGEST_TEXT || text.contains(char::is_control) || text.contains(steers_terminals) {
+    if text.len() > LONGEST_TEXT || text.contains(breaks_lines) {
         return Err(Fault::new(ScenarioProblem::Text { found: quoted(text), most: LONGEST_TEXT }));
     }
     Ok(text)

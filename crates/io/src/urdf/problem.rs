@@ -47,6 +47,16 @@ pub enum UrdfProblem {
         /// Which.
         attribute: Box<AttributeOf>,
     },
+    /// A name that is too long, or holds more than letters.
+    #[error("{attribute} is {found:?}, which does not fit into a line")]
+    Name {
+        /// Which.
+        attribute: Box<AttributeOf>,
+        /// How it begins.
+        found: String,
+        /// How many bytes it may have.
+        most: usize,
+    },
     /// A required element is missing.
     #[error("{}{owner} has no <{element}>", within(.parent))]
     MissingElement {
@@ -287,6 +297,9 @@ impl Problem for UrdfProblem {
             UrdfProblem::Doctype => "delete it; a robot needs no entities".to_owned(),
             UrdfProblem::Xacro { .. } => "expand with xacro first: `xacro robot.urdf.xacro > robot.urdf`".to_owned(),
             UrdfProblem::NotARobot { .. } => "only URDF is read; convert SDF, MJCF or COLLADA to URDF first".to_owned(),
+            UrdfProblem::Name { most, .. } => {
+                format!("names are one line of at most {most} bytes without control characters")
+            }
             UrdfProblem::MissingElement { element: "inertia", .. } => {
                 "a mass needs its rotational inertia about the centre of mass; for a point mass write zeros".to_owned()
             }

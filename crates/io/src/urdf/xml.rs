@@ -8,6 +8,7 @@ use super::ignored::{IgnoreReason, Tally};
 use super::notice::{Notice, NoticeKind};
 use super::problem::UrdfProblem;
 use super::subject::{AttributeOf, Owner, Size};
+use crate::diagnostic::breaks_lines;
 use crate::wording::nearest;
 use crate::{InputError, SourceText};
 
@@ -17,6 +18,8 @@ const MOST_BYTES: usize = 1 << 26;
 const MOST_NODES: u32 = 1 << 21;
 /// Namespace declarations accepted: the parser's memory can grow with their square.
 const MOST_NAMESPACES: usize = 1000;
+/// Bytes that a name may have.
+const LONGEST_NAME: usize = 200;
 
 /// A value and the bytes it was read from.
 #[derive(Clone, Debug)]
@@ -250,7 +253,7 @@ impl<'a> Element<'a> {
         Ok(Some(Located { value, span }))
     }
 
-    /// The text of an attribute that must be there.
+    /// The name in an attribute that must be there.
     pub(super) fn required_text(
         &self,
         reading: &Reading<'_>,
@@ -262,6 +265,11 @@ impl<'a> Element<'a> {
             None => Err(reading.error(self.span(), UrdfProblem::MissingAttribute { attribute: attribute() })),
             Some(located) if located.value.trim().is_empty() => {
                 Err(reading.error(located.span, UrdfProblem::Empty { attribute: attribute() }))
+            }
+            // Names head columns and stand in messages.
+            Some(located) if located.value.len() > LONGEST_NAME || located.value.contains(breaks_lines) => {
+                let (attribute, found) = (attribute(), excerpt(located.value));
+                Err(reading.error(located.span, UrdfProblem::Name { attribute, found, most: LONGEST_NAME }))
             }
             Some(located) => Ok(located),
         }

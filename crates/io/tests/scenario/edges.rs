@@ -135,6 +135,7 @@ fn more_edges_than_fit_are_refused() {
 
 /// The sound scenario with the edges of a table beside it.
 fn tabled(table: &str) -> (TempDir, Result<Scenario, ScenarioError>) {
+    super::seeds::keep("csv", table);
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("edges.csv"), table).unwrap();
     let scenario = beside("edges.csv", folder.path());
@@ -179,6 +180,8 @@ type Case = (&'static str, &'static str, &'static str);
 const CASES: &[Case] = &[
     ("", "edges.csv: the table is empty", "the first line names the columns; they are `from`, `to`, `weight`, `delay_s`"),
     ("arm-1,arm-2\n", "edges.csv:1:1: unknown column `arm-1`", "the first line names the columns; they are `from`"),
+    ("\0from,to\n", "edges.csv:1:1: unknown column `\\0from`", "did you mean `from`?"),
+    ("from,to\n\u{1b}[31m,\u{202e}\n", "edges.csv:2:1: there is no agent `\\u{1b}[31m`", "agents are"),
     ("form,to\n", "edges.csv:1:1: unknown column `form`", "did you mean `from`?"),
     ("from,to,delay\n", "edges.csv:1:9: unknown column `delay`", "did you mean `delay_s`?"),
     ("from,weight\n", "edges.csv:1:1: the column `to` is missing", "they are `from`, `to`"),
@@ -216,6 +219,15 @@ fn every_mistake_in_a_table_is_reported_at_its_place() {
         }
     }
     assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), CASES.len(), wrong.join("\n"));
+}
+
+#[test]
+fn regress_a_long_cell_is_not_quoted_whole() {
+    for table in [format!("{}\n", "x".repeat(10_000)), format!("from,to\n{},cart\n", "é".repeat(10_000))] {
+        let (_folder, scenario) = tabled(&table);
+        let message = scenario.unwrap_err().to_string();
+        assert!(message.len() < 2200 && message.ends_with('…'), "{message}");
+    }
 }
 
 #[test]

@@ -7,6 +7,8 @@ mod links;
 mod malformed;
 mod meaning;
 mod mutated;
+#[path = "../support/seeds.rs"]
+mod seeds;
 mod shipped;
 mod spread;
 
@@ -61,5 +63,6 @@ fn changed(from: &str, to: &str) -> String {
 }
 
 fn read(text: &str) -> Result<Scenario, ScenarioError> {
+    seeds::keep("scenario", text);
     read_scenario("test", &SourceText::new("test.toml", text), None)
 }

@@ -374,10 +374,18 @@ fn a_message_is_short_however_long_the_line() {
 
 #[test]
 fn nothing_in_a_file_steers_the_terminal() {
-    for to in ["title = \u{1b}[31m", "\u{9b}31m = 1", "# \u{202e}\ntitle = 7", "\0", "title = \"\u{7f}"] {
+    for to in ["title = \u{1b}[31m", "[[agen\r\r", "\u{9b}31m = 1", "# \u{202e}\ntitle = 7", "\0", "title = \"\u{7f}"] {
         let shown = printed(&changed("title = \"test\"", to));
         assert!(!shown.contains(|c: char| c.is_control() && c != '\n' || c == '\u{202e}'), "{shown:?}");
     }
+}
+
+#[test]
+fn regress_lines_may_end_as_on_other_systems() {
+    let long = printed(&changed("end_s = 10", &format!("end_s = {}ten", " ".repeat(500))).replace('\n', "\r\n"));
+    assert!(long.contains("\n 5 │") && !long.contains('\r'), "{long:?}");
+    let shown = printed(&changed("end_s = 10", "end_s = ten").replace('\n', "\r\n"));
+    assert!(shown.contains("│ end_s = ten\n") && !shown.contains('\r'), "{shown:?}");
 }
 
 #[test]

@@ -58,6 +58,16 @@ fn refusals() -> Vec<(String, UrdfOptions, &'static str)> {
         ("<robot/>".to_owned(), default(), "r.urdf:1:1: `name` of <robot> is missing"),
         (robot(&["<link/>"]), default(), "r.urdf:2:1: `name` of <link> is missing"),
         (robot(&[r#"<link name=" "/>"#]), default(), "r.urdf:2:13: `name` of <link> is empty"),
+        (
+            robot(&[r#"<link name="a&#10;b"/>"#]),
+            default(),
+            "r.urdf:2:13: `name` of <link> is \"a\\nb\", which does not fit into a line\n  help: names are one line of at most 200 bytes without control characters",
+        ),
+        (
+            robot(&["<link name='a' b\u{8}='c'/>"]),
+            default(),
+            "r.urdf:2:17: not well-formed XML: expected '=' not '\\u{8}'",
+        ),
         (robot(&[BASE, ARM, r#"<joint name="turn"/>"#]), default(), "r.urdf:4:1: `type` of joint `turn` is missing"),
         (
             robot(&[BASE, ARM, r#"<joint name="turn" type="fixed"><child link="arm"/></joint>"#]),
