@@ -7,6 +7,7 @@
 mod closed_loop;
 pub mod delay;
 mod engine;
+pub mod formula;
 pub mod graph;
 pub mod network;
 pub mod recording;

@@ -38,6 +38,7 @@ mod edges;
 pub mod edges_file;
 mod fault;
 pub mod file;
+pub mod formula;
 mod law;
 mod network;
 pub mod network_file;

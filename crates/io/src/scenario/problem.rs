@@ -4,6 +4,7 @@ use forwardstep_core::GainError;
 use forwardstep_sim::topology::TopologyError;
 use thiserror::Error;
 
+use super::formula::FormulaProblem;
 use super::table::TableProblem;
 use crate::Problem;
 use crate::files::ReadError;
@@ -150,6 +151,9 @@ pub enum ScenarioProblem {
         /// The key.
         key: &'static str,
     },
+    /// A text that is no formula in t.
+    #[error(transparent)]
+    Formula(FormulaProblem),
     /// A version of the format that this program does not read.
     #[error("`format` is {found}, but this version reads format 1")]
     Format {
@@ -547,6 +551,7 @@ impl Problem for ScenarioProblem {
             ScenarioProblem::NoSuchAgent { name, agents } => choose(name, "the agents are", agents),
             ScenarioProblem::Topology(_) => "an agent hears nobody twice, and never itself".into(),
             ScenarioProblem::Table(problem) => return problem.help(),
+            ScenarioProblem::Formula(problem) => return problem.help(),
             ScenarioProblem::EdgesAndPhases => "move the edges into a phase, or delete the phases".into(),
             ScenarioProblem::NoGraph => "for agents that never hear each other write `edges = []`".into(),
             ScenarioProblem::NoDwell { .. } => {

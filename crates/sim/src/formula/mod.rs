@@ -1,0 +1,351 @@
+//! Formulas in t: delays, weights and pushes that change continuously.
+//!
+//! A formula is a short programme for a stack of numbers, in the order in which a pocket calculator would be given it. It is
+//! evaluated without allocating and with the same bits on every machine, and enclosed on intervals of time, which is how
+//! a delay is shown never to be negative and a weight to stay positive.
+
+mod interval;
+
+use forwardstep_core::Scalar;
+use thiserror::Error;
+
+pub use interval::Interval;
+
+/// Steps that a formula may have.
+pub const MOST_STEPS: usize = 256;
+/// Numbers that may wait on the stack at once.
+pub const MOST_WAITING: usize = 32;
+/// Whole exponents up to this are products.
+const MOST_POWER: f64 = 64.0;
+/// Evaluations that one search for bounds may cost.
+const SEARCH: usize = 2000;
+/// Bounds this close to values that are taken are close enough, as a part of the range.
+const CLOSE: f64 = 1e-3;
+
+/// One step of a formula. Each takes its operands from the stack and leaves its value there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FormulaStep {
+    /// A constant.
+    Number(f64),
+    /// t, s.
+    Time,
+    /// −a.
+    Negate,
+    /// a + b.
+    Add,
+    /// a − b.
+    Subtract,
+    /// a b.
+    Multiply,
+    /// a / b.
+    Divide,
+    /// aᶜ for a constant c; a must not be negative unless c is a whole number.
+    Power(f64),
+    /// sin a.
+    Sin,
+    /// cos a.
+    Cos,
+    /// eᵃ.
+    Exp,
+    /// The natural logarithm of a.
+    Log,
+    /// √a.
+    Sqrt,
+    /// |a|.
+    Abs,
+    /// The smaller of a and b.
+    Min,
+    /// The larger of a and b.
+    Max,
+    /// tanh a.
+    Tanh,
+    /// arctan a.
+    Atan,
+}
+
+impl FormulaStep {
+    /// How many numbers it takes from the stack.
+    pub fn operands(self) -> usize {
+        use FormulaStep::{Add, Divide, Max, Min, Multiply, Number, Subtract, Time};
+        match self {
+            Number(_) | Time => 0,
+            Add | Subtract | Multiply | Divide | Min | Max => 2,
+            _ => 1,
+        }
+    }
+}
+
+/// A formula in t. All of its functions are continuous where they are defined.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Formula {
+    steps: Vec<FormulaStep>,
+}
+
+/// Why steps make no formula.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum FormulaError {
+    /// An operand is missing, or values are left over.
+    #[error("the steps do not make one value")]
+    Unbalanced,
+    /// Too many steps.
+    #[error("the formula has {steps} steps, but at most {MOST_STEPS} are accepted")]
+    TooLong {
+        /// How many there are.
+        steps: usize,
+    },
+    /// Too many numbers wait for their operator.
+    #[error("the formula is nested too deeply: {waiting} numbers wait at once, but at most {MOST_WAITING} may")]
+    TooDeep {
+        /// How many wait.
+        waiting: usize,
+    },
+    /// A constant that is no number.
+    #[error("a constant of the formula is not finite")]
+    NotFinite,
+}
+
+impl Formula {
+    /// A formula from its steps, operands before operators.
+    ///
+    /// ```
+    /// use forwardstep_sim::formula::{Formula, FormulaStep::*};
+    /// // 0.2 + 0.1 sin t
+    /// let formula = Formula::new(vec![Number(0.2), Number(0.1), Time, Sin, Multiply, Add])?;
+    /// assert_eq!(formula.eval(0.0), 0.2);
+    /// let bounds = formula.bounds(0.0, f64::INFINITY);
+    /// assert!(bounds.low >= 0.1 - 1e-12 && bounds.high <= 0.3 + 1e-12);
+    /// # Ok::<(), forwardstep_sim::formula::FormulaError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`FormulaError`] when the steps do not make one value, or are too many.
+    pub fn new(steps: Vec<FormulaStep>) -> Result<Self, FormulaError> {
+        if steps.len() > MOST_STEPS {
+            return Err(FormulaError::TooLong { steps: steps.len() });
+        }
+        let mut waiting = 0_usize;
+        for step in &steps {
+            match step {
+                FormulaStep::Number(value) | FormulaStep::Power(value) if !value.is_finite() => {
+                    return Err(FormulaError::NotFinite);
+                }
+                _ => {}
+            }
+            waiting = waiting.checked_sub(step.operands()).ok_or(FormulaError::Unbalanced)? + 1;
+            if waiting > MOST_WAITING {
+                return Err(FormulaError::TooDeep { waiting });
+            }
+        }
+        if waiting == 1 { Ok(Formula { steps }) } else { Err(FormulaError::Unbalanced) }
+    }
+
+    /// Its steps.
+    pub fn steps(&self) -> &[FormulaStep] {
+        &self.steps
+    }
+
+    /// Whether t does not appear in it.
+    pub fn is_constant(&self) -> bool {
+        !self.steps.contains(&FormulaStep::Time)
+    }
+
+    /// Its value at `t_s`; not-a-number or infinite where it has none.
+    pub fn eval(&self, t_s: f64) -> f64 {
+        use FormulaStep as S;
+        let mut stack = [0.0; MOST_WAITING];
+        let mut top = 0;
+        for step in &self.steps {
+            // The constructor has counted: `top` never passes either end.
+            let first = top - step.operands();
+            let (a, b) = (stack[first], stack[(first + 1).min(MOST_WAITING - 1)]);
+            stack[first] = match *step {
+                S::Number(value) => value,
+                S::Time => t_s,
+                S::Negate => -a,
+                S::Add => a + b,
+                S::Subtract => a - b,
+                S::Multiply => a * b,
+                S::Divide => a / b,
+                S::Power(exponent) => power(a, exponent),
+                S::Sin => sine(a).0,
+                S::Cos => sine(a).1,
+                S::Exp => libm::exp(a),
+                S::Log => libm::log(a),
+                S::Sqrt => libm::sqrt(a),
+                S::Abs => a.abs(),
+                // Unlike f64::min, these let not-a-number through.
+                S::Min => {
+                    if b < a || b.is_nan() {
+                        b
+                    } else {
+                        a
+                    }
+                }
+                S::Max => {
+                    if b > a || b.is_nan() {
+                        b
+                    } else {
+                        a
+                    }
+                }
+                S::Tanh => libm::tanh(a),
+                S::Atan => libm::atan(a),
+            };
+            top = first + 1;
+        }
+        stack[0]
+    }
+
+    /// An interval that holds every value from `from_s` to `to_s`, which may be infinite; unbounded where nothing better
+    /// could be shown, so also where the formula has no value.
+    ///
+    /// For an infinite stretch that is what exact arithmetic would give; a number on the way may overflow all the same.
+    ///
+    /// The interval is narrowed by cutting the stretch of time until the bounds are close to values that are taken.
+    pub fn bounds(&self, from_s: f64, to_s: f64) -> Interval {
+        let whole = self.enclose(Interval::new(from_s, to_s));
+        if !(to_s - from_s).is_finite() {
+            return whole;
+        }
+        Interval::new(-self.search(from_s, to_s, -1.0), self.search(from_s, to_s, 1.0))
+    }
+
+    /// An upper bound of `sign` times the formula: the stretch whose bound is highest is cut until that bound is close to
+    /// a value that is taken, or the work is done.
+    fn search(&self, from_s: f64, to_s: f64, sign: f64) -> f64 {
+        let bound = |from: f64, to: f64| {
+            let Interval { low, high } = self.enclose(Interval::new(from, to));
+            if sign > 0.0 { high } else { -low }
+        };
+        let mut taken = (sign * self.eval(from_s)).max(sign * self.eval(to_s));
+        let mut least = taken;
+        let mut stretches = std::collections::BinaryHeap::new();
+        stretches.push(Stretch { bound: bound(from_s, to_s), from_s, to_s });
+        for _ in 0..SEARCH {
+            let Some(Stretch { bound: highest, from_s, to_s }) = stretches.peek().copied() else { break };
+            let middle = from_s + 0.5 * (to_s - from_s);
+            // The negation also ends the search for a formula that has no value somewhere.
+            if !(highest - taken > CLOSE * (taken - least)) || middle <= from_s || middle >= to_s {
+                break;
+            }
+            stretches.pop();
+            let value = sign * self.eval(middle);
+            taken = taken.max(value);
+            least = least.min(value);
+            for (from_s, to_s) in [(from_s, middle), (middle, to_s)] {
+                stretches.push(Stretch { bound: bound(from_s, to_s), from_s, to_s });
+            }
+        }
+        stretches.peek().map_or(f64::INFINITY, |stretch| stretch.bound)
+    }
+
+    /// An interval that holds the value at every time in `time_s`, in one pass.
+    pub fn enclose(&self, time_s: Interval) -> Interval {
+        use FormulaStep as S;
+        let mut stack = [Interval::WHOLE; MOST_WAITING];
+        let mut top = 0;
+        let mut defined = true;
+        for step in &self.steps {
+            let first = top - step.operands();
+            let (a, b) = (stack[first], stack[(first + 1).min(MOST_WAITING - 1)]);
+            let value = match *step {
+                S::Number(value) => Interval::new(value, value),
+                S::Time => time_s,
+                S::Negate => a.neg(),
+                S::Add => a.add(b),
+                S::Subtract => a.sub(b),
+                S::Multiply => a.mul(b),
+                S::Divide => a.div(b),
+                S::Power(exponent) => match whole(exponent) {
+                    Some(n) => a.powi(n),
+                    None => a.powf(exponent),
+                },
+                S::Sin => a.sin(),
+                S::Cos => a.cos(),
+                S::Exp => a.exp(),
+                S::Log => a.log(),
+                S::Sqrt => a.sqrt(),
+                S::Abs => a.abs(),
+                S::Min => a.min(b),
+                S::Max => a.max(b),
+                S::Tanh => a.tanh(),
+                S::Atan => a.atan(),
+            };
+            // What leaves the finite numbers may come back as not-a-number, and what has no value stays without one,
+            // whatever is done with it: tanh √x is bounded, but not where x is negative.
+            let operands = &stack[first..first + step.operands()];
+            let finite = operands.iter().all(|operand| operand.is_finite());
+            let partial = matches!(step, S::Divide | S::Log | S::Sqrt | S::Power(_));
+            if *step != S::Time && (finite && !value.is_finite() || partial && value == Interval::WHOLE) {
+                defined = false;
+            }
+            stack[first] = value;
+            top = first + 1;
+        }
+        if defined { stack[0] } else { Interval::WHOLE }
+    }
+}
+
+/// A stretch of time and what the formula does not exceed on it; ordered by that bound.
+#[derive(Clone, Copy, Debug)]
+struct Stretch {
+    bound: f64,
+    from_s: f64,
+    to_s: f64,
+}
+
+impl PartialEq for Stretch {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+impl Eq for Stretch {}
+impl PartialOrd for Stretch {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Stretch {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        // Of equal bounds the longest stretch first, so that a bound that is unbounded everywhere is cut evenly.
+        let length = |stretch: &Self| stretch.to_s - stretch.from_s;
+        self.bound.total_cmp(&other.bound).then(length(self).total_cmp(&length(other)))
+    }
+}
+
+/// sin and cos, never larger than one.
+fn sine(x: f64) -> (f64, f64) {
+    let (sin, cos) = Scalar::sin_cos(x);
+    (sin.clamp(-1.0, 1.0), cos.clamp(-1.0, 1.0))
+}
+
+/// The exponent, if it is a whole number small enough for products.
+fn whole(exponent: f64) -> Option<i32> {
+    (exponent.abs() <= MOST_POWER && exponent.fract() == 0.0).then_some(exponent as i32)
+}
+
+fn power(base: f64, exponent: f64) -> f64 {
+    match whole(exponent) {
+        Some(n) if n < 0 => 1.0 / powi(base, -n),
+        Some(n) => powi(base, n),
+        None => libm::pow(base, exponent),
+    }
+}
+
+/// baseⁿ for n ≥ 0 by repeated squaring.
+fn powi(base: f64, n: i32) -> f64 {
+    let (mut result, mut square, mut left) = (1.0, base, n);
+    while left > 0 {
+        if left & 1 == 1 {
+            result *= square;
+        }
+        left >>= 1;
+        if left > 0 {
+            square *= square;
+        }
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests;
