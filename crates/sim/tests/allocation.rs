@@ -9,6 +9,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use cases::{cases, setup};
+use forwardstep_sim::push::{Between, Course, Effect, Push, Table};
 use forwardstep_sim::simulate;
 
 struct Counting;
@@ -41,6 +42,13 @@ fn alloc_steps_do_not_allocate() {
     for case in cases() {
         let mut setup = setup(&case);
         setup.time.record_every_s = 0.01;
+        let axes = setup.agents[0].robot.axes.len();
+        let times_s: Vec<f64> = (0..200).map(|k| 0.05 * k as f64).collect();
+        let values = (0..200 * axes).map(|k| 0.01 * k as f64).collect();
+        let table = Course::Table(Table { times_s, values, between: Between::Linear });
+        let (stiffness, damping) = (vec![3.0; axes], vec![1.0; axes]);
+        let hand = Effect::HandOnAxes { axes: (0..axes).collect(), stiffness, damping, target: table };
+        setup.agents[0].pushes = vec![Push { effect: hand, from_s: 0.1, until_s: f64::INFINITY }];
         let (mut before, mut steps) = (None, 0_u64);
         simulate(&setup, &mut |progress| {
             // The first quarter fills the ring of history and the queue of events.

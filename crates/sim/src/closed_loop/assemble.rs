@@ -15,8 +15,10 @@ use thiserror::Error;
 
 use super::fleet::Member;
 use super::population::{Columns, Inputs, Population};
-use crate::engine::{DelaySystem, Heard, Port};
+use super::pushes::Pushes;
+use crate::engine::{DelaySystem, Happened, Heard, Port};
 use crate::network::NetworkError;
+use crate::push::PushError;
 use crate::recording::Signal;
 use crate::setup::{AgentSetup, Exchange, Law, Method, ReferenceKind, RobotKind, Setup};
 
@@ -88,6 +90,16 @@ pub enum SetupError {
         /// What is wrong.
         error: GainError,
     },
+    /// A push on one agent.
+    #[error("agent `{agent}`, push {push}: {error}")]
+    Push {
+        /// The agent.
+        agent: String,
+        /// Which of its pushes, from one.
+        push: usize,
+        /// What is wrong.
+        error: PushError,
+    },
     /// Limits are to be enforced, but an axis has none.
     #[error("agent `{agent}`: limits are to be enforced, but axis `{axis}` has no effort limit")]
     NoEffortLimit {
@@ -115,6 +127,9 @@ pub(crate) struct ClosedLoop {
     ports: Vec<Port>,
     entries: usize,
     start: Vec<f64>,
+    pushes: Pushes,
+    /// A row of the recording of an agent that is pushed.
+    row: Vec<f64>,
 }
 
 struct Block {
@@ -122,6 +137,7 @@ struct Block {
     state: Range<usize>,
     degree: Range<usize>,
     sums: Range<usize>,
+    external: Range<usize>,
 }
 
 impl ClosedLoop {
@@ -142,6 +158,8 @@ impl ClosedLoop {
             ports: vec![Port { state: 0, entry: 0, degree: 0, stride: 0 }; setup.agents.len()],
             entries,
             start: Vec::new(),
+            pushes: Pushes::default(),
+            row: Vec::new(),
         };
         let mut placed = 0;
         for group in populations(&setup.agents) {
@@ -157,11 +175,18 @@ impl ClosedLoop {
                 state: first..closed_loop.start.len(),
                 degree: placed..placed + n,
                 sums: placed * entries..(placed + n) * entries,
+                external: placed * axes..(placed + n) * axes,
                 columns,
             });
             placed += n;
         }
         closed_loop.start_references(setup)?;
+        let first_of = |blocks: &[Block], degree: usize| {
+            blocks.iter().find(|block| block.degree.contains(&degree)).map_or(0, |block| block.degree.start)
+        };
+        closed_loop.pushes = Pushes::new(setup, &closed_loop.ports, |degree| first_of(&closed_loop.blocks, degree));
+        let longest = closed_loop.blocks.iter().map(|block| block.columns.signals().len()).max();
+        closed_loop.row = Vec::with_capacity(longest.unwrap_or(0) + axes);
         Ok(closed_loop)
     }
 
@@ -241,31 +266,56 @@ impl ClosedLoop {
                 }
             }
         }
+        for (agent, signals) in signals.iter_mut().enumerate().filter(|(agent, _)| self.pushes.concern(*agent)) {
+            signals.extend((0..self.pushes.felt_by(agent).len()).map(|axis| (Signal::External, axis)));
+        }
         signals
     }
 
     /// Hands every agent's signals at one instant to `write`.
-    pub(crate) fn record(&mut self, _t_s: f64, x: &[f64], heard: &Heard, mut write: impl FnMut(usize, &[f64])) {
+    pub(crate) fn record(&mut self, t_s: f64, x: &[f64], heard: &Heard, mut write: impl FnMut(usize, &[f64])) {
+        self.pushes.feel(t_s, x);
+        let (pushes, row) = (&self.pushes, &mut self.row);
         for block in &mut self.blocks {
-            let inputs = Inputs {
-                degree: &heard.degree[block.degree.clone()],
-                sums: &heard.sums[block.sums.clone()],
-                external: None,
-            };
-            block.columns.record(&x[block.state.clone()], inputs, &mut write);
+            let inputs = block.inputs(heard, pushes.felt());
+            let (columns, state) = (&mut block.columns, &x[block.state.clone()]);
+            columns.record(state, inputs, &mut |agent, values| match pushes.felt_by(agent) {
+                [] => write(agent, values),
+                felt => {
+                    row.clear();
+                    row.extend_from_slice(values);
+                    row.extend_from_slice(felt);
+                    write(agent, row);
+                }
+            });
         }
     }
 }
 
 impl DelaySystem for ClosedLoop {
-    fn rates(&mut self, _t_s: f64, x: &[f64], heard: &Heard, dx: &mut [f64]) {
+    fn rates(&mut self, t_s: f64, x: &[f64], heard: &Heard, dx: &mut [f64]) {
+        self.pushes.feel(t_s, x);
         for block in &mut self.blocks {
-            let inputs = Inputs {
-                degree: &heard.degree[block.degree.clone()],
-                sums: &heard.sums[block.sums.clone()],
-                external: None,
-            };
+            let inputs = block.inputs(heard, self.pushes.felt());
             block.columns.rates(&x[block.state.clone()], inputs, &mut dx[block.state.clone()]);
+        }
+    }
+
+    fn next_event_s(&self) -> f64 {
+        self.pushes.next_event_s()
+    }
+
+    fn happen(&mut self, until_s: f64, _x: &mut [f64]) -> Happened {
+        self.pushes.happen(until_s)
+    }
+}
+
+impl Block {
+    fn inputs<'a>(&self, heard: &'a Heard, felt: Option<&'a [f64]>) -> Inputs<'a> {
+        Inputs {
+            degree: &heard.degree[self.degree.clone()],
+            sums: &heard.sums[self.sums.clone()],
+            external: felt.map(|felt| &felt[self.external.clone()]),
         }
     }
 }
@@ -461,6 +511,10 @@ fn check_agent(agent: &AgentSetup, first: &AgentSetup, axes: usize, vectors: usi
     vector("theta", agent.robot.theta.len(), &agent.robot.theta)?;
     if let Law::Adaptive { estimate_start, .. } = &agent.law {
         vector("the start of the estimate", agent.robot.theta.len(), estimate_start)?;
+    }
+    for (k, push) in agent.pushes.iter().enumerate() {
+        let problem = |error| SetupError::Push { agent: agent.name.clone(), push: k + 1, error };
+        push.check(&agent.robot).map_err(problem)?;
     }
     Ok(())
 }

@@ -2,11 +2,13 @@
 //!
 //! - `fleet`: robots with their tracking laws, several at once.
 //! - `population`: agents of one kind, side by side in columns: reference dynamics, then the fleet.
+//! - `pushes`: what acts on the robots from outside.
 //! - `assemble`: from a [`crate::Setup`] to populations, with everything checked.
 
 mod assemble;
 mod fleet;
 mod population;
+mod pushes;
 
 pub(crate) use assemble::ClosedLoop;
 pub use assemble::SetupError;
