@@ -5,6 +5,7 @@
 
 mod agreement;
 mod hypotheses;
+mod manipulation;
 mod verdict;
 
 pub use agreement::{NoPrediction, Prediction, predict};

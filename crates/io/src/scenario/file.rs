@@ -5,6 +5,7 @@ use serde::Deserialize;
 
 use super::at::At;
 use super::network_file::NetworkFile;
+use super::push_file::PushFile;
 use super::values::{GainFile, GainOrBandwidth, Named, NotNegative, Positive, StartValues};
 
 /// A forwardstep scenario: a network of robots, how they are controlled, and how long to watch them.
@@ -30,6 +31,9 @@ pub struct ScenarioFile {
     pub start: Option<At<StartFile>>,
     /// Who hears whom, when, and how late.
     pub network: At<NetworkFile>,
+    /// What acts on the agents from outside: forces, torques and hands.
+    #[serde(default)]
+    pub pushes: Vec<At<PushFile>>,
     /// How to integrate.
     pub solver: Option<SolverFile>,
     /// What the run is expected to show.

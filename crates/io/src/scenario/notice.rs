@@ -20,6 +20,11 @@ pub enum Notice {
         /// Its line in the scenario.
         line: usize,
     },
+    /// A push that has no effect on the run.
+    IdlePush {
+        /// Its line in the scenario.
+        line: usize,
+    },
 }
 
 impl fmt::Display for Notice {
@@ -27,6 +32,7 @@ impl fmt::Display for Notice {
         match self {
             Notice::Robot { agents, notice } => write!(f, "{agents}: {notice}"),
             Notice::UnusedDwell { line } => write!(f, "`dwell_s` on line {line} is not used"),
+            Notice::IdlePush { line } => write!(f, "the push on line {line} does not act during the run"),
         }
     }
 }

@@ -5,6 +5,7 @@ mod edges;
 mod malformed;
 mod meaning;
 mod mutated;
+mod pushes;
 mod shipped;
 mod spread;
 
