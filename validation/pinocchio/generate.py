@@ -131,9 +131,14 @@ def joint_model(kind, axis):
 
 
 def build(links):
+    return build_held(links)[0]
+
+
+def build_held(links):
+    """The model and, for every link, the joint that carries it and the placement of the link in it."""
     model = pin.Model()
     model.gravity.linear = np.array(GRAVITY)
-    held = []  # for every link: (joint, placement of the link in it)
+    held = []
     for k, spec in enumerate(links):
         joint, x_joint_parent = (0, pin.SE3.Identity()) if spec["parent"] is None else held[spec["parent"]]
         x = x_joint_parent * pin.SE3(np.array(spec["rotation"]), np.array(spec["translation"]))
@@ -145,7 +150,7 @@ def build(links):
             joint = model.addJoint(joint, joint_model(spec["kind"], spec["axis"]), x, f"joint_{k}")
             model.appendBodyToJoint(joint, inertia, pin.SE3.Identity())
             held.append((joint, pin.SE3.Identity()))
-    return model
+    return model, held
 
 
 def state(model, rng, with_regressor):

@@ -20,7 +20,8 @@
 //!
 //! (3) and (23) have q̈ in the place of ż: with Bᵢ = żᵢ + α₁ q̇ᵢ + α₀ qᵢ and Wᵢ = q̇ᵢ + α₁ qᵢ the same Q is conserved.
 //!
-//! With λ > 0 (Remark 4) Ḃᵢ gains λ sᵢ, so Q moves by Σᵢ uᵢ (λ/α₀) ∫ sᵢ dt, which only the run knows.
+//! With λ > 0 (Remark 4) Ḃᵢ gains λ sᵢ, so Q moves by Σᵢ uᵢ (λᵢ/α₀) ∫ sᵢ dt: in general only the run knows by how much, see
+//! `manipulation` for where it is known before. With λ = 0 no push moves Q, since no torque enters Bᵢ and Wᵢ.
 
 use forwardstep_core::reference::polynomial;
 use forwardstep_sim::graph::{Edge, SpanningTree, laplacian, spanning_tree};
@@ -28,6 +29,8 @@ use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{AgentSetup, Exchange, ReferenceKind, Setup};
 use nalgebra::DMatrix;
 use thiserror::Error;
+
+use crate::manipulation::error_integral;
 
 /// The value that all agents will agree on.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,7 +82,9 @@ pub enum NoPrediction {
 /// Predicts the value agreed upon for a fixed graph with constant delays.
 ///
 /// **Guarantees**: if the agents of such a network come to rest in agreement, as Theorems 2 and 3 promise, it is at this
-/// value, whatever the robots, the gains, the adaptation and the torques.
+/// value, whatever the robots, the gains, the adaptation, the torques and whoever pushes. With λ > 0 a value is given where
+/// tracking errors are known before the run: for known parameters and as long as nobody pushes, and for pushed point masses
+/// with known parameters.
 ///
 /// # Errors
 /// [`NoPrediction`] says why there is none.
@@ -89,9 +94,6 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     }
     if setup.control.is_some() {
         return Err(NoPrediction::Sampled);
-    }
-    if let Some(agent) = setup.agents.iter().position(|agent| agent.manipulability > 0.0) {
-        return Err(NoPrediction::Manipulability { agent });
     }
     let edges = constant_graph(&setup.network.schedule).ok_or(NoPrediction::Switching)?;
     if !edges.iter().all(|edge| setup.network.delays[edge.delay].is_constant()) {
@@ -112,12 +114,12 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
             let (mut quantity, mut weight) = (0.0, 0.0);
             for i in 0..n {
                 let (share, at_rest) = contribution(setup, edges, &alpha[i], i, axis);
-                quantity += influence[i] * share;
+                quantity += influence[i] * (share + shift(setup, &alpha[i], i, axis, influence[i])?);
                 weight += influence[i] * at_rest;
             }
-            quantity / weight
+            Ok(quantity / weight)
         })
-        .collect();
+        .collect::<Result<_, _>>()?;
     Ok(Prediction { value, influence })
 }
 
@@ -176,6 +178,16 @@ fn contribution(setup: &Setup, edges: &[Edge], alpha: &[f64], i: usize, axis: us
         past_at_rest += weight * (delay_s - velocity);
     }
     ((b + degree * w) / alpha[0] + past, 1.0 + degree * alpha[1] / alpha[0] + past_at_rest)
+}
+
+/// What Remark 4 adds to agent i's term of Q in the course of time.
+fn shift(setup: &Setup, alpha: &[f64], i: usize, axis: usize, influence: f64) -> Result<f64, NoPrediction> {
+    let agent = &setup.agents[i];
+    if agent.manipulability == 0.0 || influence == 0.0 {
+        return Ok(0.0);
+    }
+    let integral = error_integral(agent, axis, reference_start(agent, 0, axis));
+    integral.map(|s| agent.manipulability / alpha[0] * s).ok_or(NoPrediction::Manipulability { agent: i })
 }
 
 /// z^(k)(0), with the defaults of [`forwardstep_sim::Start`].

@@ -1,6 +1,7 @@
 //! The hypotheses of Theorems 1 to 3, one function each.
 
 use forwardstep_sim::graph::{Edge, strong_components};
+use forwardstep_sim::push::Push;
 use forwardstep_sim::schedule::{Schedule, Window};
 use forwardstep_sim::{Exchange, Law, ReferenceKind, Setup};
 
@@ -24,6 +25,7 @@ pub fn check(setup: &Setup) -> Report {
         ReferenceKind::Backstepping { filter_s, .. } => hypotheses.push(differentiable(filter_s)),
     }
     hypotheses.extend(manipulability(setup));
+    hypotheses.extend(external_torques(setup));
     if setup.exchange == Exchange::PositionVelocity {
         hypotheses.push(common_first_root(setup));
     }
@@ -175,6 +177,56 @@ fn manipulability(setup: &Setup) -> Option<Hypothesis> {
         answer: Answer::Holds,
         because: format!("the largest λ is {largest}; tracking errors move the value agreed upon"),
     })
+}
+
+/// τ_ext feeds V by sᵀτ_ext. What ends leaves V finite, and from then on everything is as without it.
+fn external_torques(setup: &Setup) -> Option<Hypothesis> {
+    let acts = |push: &&Push| {
+        let [begins_s, ends_s] = push.span_s();
+        begins_s < ends_s
+    };
+    let pushed = |some: fn(&Push) -> bool| -> Vec<usize> {
+        let agents = setup.agents.iter().enumerate();
+        agents.filter(|(_, agent)| agent.pushes.iter().filter(acts).any(some)).map(|(index, _)| index).collect()
+    };
+    let all = pushed(|_| true);
+    if all.is_empty() {
+        return None;
+    }
+    let torques = pushed(|push| endless(push) && !push.is_hand());
+    let hands = pushed(|push| endless(push) && push.is_hand());
+    let requires = "external torques end, so that s is square-integrable all the same".into();
+    let mut because = Vec::new();
+    if !torques.is_empty() {
+        because.push(format!(
+            "{} pushed for ever: s does not vanish but, where parameters are known and the push settles, comes to rest at \
+             K s = tau_ext",
+            is_or_are(setup, &torques)
+        ));
+    }
+    if !hands.is_empty() {
+        because.push(format!(
+            "a hand never lets go of {}: while its target stands still it takes energy out of the motion, but the proof counts \
+             the power of torques with s and not with dq",
+            names(setup, &hands)
+        ));
+    }
+    let answer = if because.is_empty() { Answer::Holds } else { Answer::NotCovered };
+    if because.is_empty() {
+        let pushes = setup.agents.iter().flat_map(|agent| &agent.pushes).filter(acts);
+        let last_s = pushes.map(|push| push.span_s()[1]).fold(0.0, f64::max);
+        because.push(format!("{} pushed, and the last push ends at t = {} s", is_or_are(setup, &all), seconds(last_s)));
+    }
+    Some(Hypothesis { requires, answer, because: because.join("; ") })
+}
+
+fn endless(push: &Push) -> bool {
+    push.span_s()[1] == f64::INFINITY
+}
+
+/// "a is", "a, b are".
+fn is_or_are(setup: &Setup, agents: &[usize]) -> String {
+    format!("{} {}", names(setup, agents), if agents.len() == 1 { "is" } else { "are" })
 }
 
 fn real_roots(setup: &Setup) -> Hypothesis {

@@ -6,6 +6,7 @@
 mod agreement;
 mod hypotheses;
 mod links;
+mod manipulation;
 mod sampled;
 mod verdict;
 

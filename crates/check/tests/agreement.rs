@@ -42,6 +42,7 @@ fn arm(index: usize, roots_per_s: &[f64]) -> AgentSetup {
             reference: Vec::new(),
         },
         enforce_limits: false,
+        pushes: Vec::new(),
     }
 }
 

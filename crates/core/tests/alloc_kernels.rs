@@ -5,6 +5,7 @@
 mod common;
 
 use common::random::Random;
+use forwardstep_core::robot::tree::{Axes, LinkPoint, PointWrench};
 use forwardstep_core::robot::{Lagrangian, TwoVelocity};
 use forwardstep_core::{Lanes, Scalar};
 
@@ -18,6 +19,8 @@ fn allocations<S: Scalar>(splat: impl Fn(f64) -> S) {
     let (mut yt_s, mut matrix) = (theta.clone(), vec![S::ZERO; 49]);
     let mut scratch = tree.scratch::<S>();
     let motion = TwoVelocity { q: &q, dq: &dq, z: &z, dz: &dz };
+    let point = LinkPoint { link: assembled.anchors[assembled.anchors.len() - 1], at: [0.1, 0.2, 0.3] };
+    let wrench = PointWrench { force: [splat(1.0); 3], moment: [splat(2.0); 3], axes: Axes::Base };
     let counted = allocation_counter::measure(|| {
         tree.regressor_products(&mut scratch, motion, &theta, &s, &mut out, &mut yt_s).unwrap();
         tree.slotine_li(&mut scratch, motion, &theta, &s, &mut out, &mut yt_s).unwrap();
@@ -26,6 +29,8 @@ fn allocations<S: Scalar>(splat: impl Fn(f64) -> S) {
         tree.mass_matrix(&mut scratch, &q, &theta, &mut matrix).unwrap();
         tree.coriolis_matrix(&mut scratch, &q, &dq, &theta, &mut matrix).unwrap();
         tree.gravity(&mut scratch, &q, &theta, &mut out).unwrap();
+        tree.add_wrench(&mut scratch, &q, &point, &wrench, &mut out).unwrap();
+        tree.point_motion(&mut scratch, &q, &dq, &point).unwrap();
     });
     assert_eq!(counted.count_total, 0);
 }

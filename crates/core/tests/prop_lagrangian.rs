@@ -9,7 +9,7 @@ use common::dual::{Dual, constants, duals};
 use common::random::Random;
 use common::{dot, error, times, transpose_times};
 use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkSpec, Placement, Tree, inertia_about_frame};
-use forwardstep_core::robot::{Lagrangian, PlanarArm, PlanarLinks, PointMass, TwoVelocity};
+use forwardstep_core::robot::{Lagrangian, PlanarArm, PlanarLinks, PlanarTip, PointMass, TwoVelocity};
 use proptest::prelude::*;
 
 const TOLERANCE: f64 = 1.0e-11;
@@ -169,5 +169,25 @@ proptest! {
         let (tree, _) = products(&assembled.tree, &case, &assembled.theta);
         let (closed, _) = products(&PlanarArm, &case, &links.theta());
         prop_assert!(error(&tree, &closed) < TOLERANCE);
+    }
+}
+
+#[test]
+fn prop_planar_tip_has_the_same_power_as_the_joints_and_moves_as_it_says() {
+    let tip = PlanarTip { length_m: [1.1, 0.7] };
+    let mut random = Random::new(8);
+    for _ in 0..50 {
+        let pair = |v: Vec<f64>| [v[0], v[1]];
+        let (q, dq, force) = (pair(random.column(2, 3.0)), pair(random.column(2, 2.0)), pair(random.column(2, 9.0)));
+        let moment = random.number();
+        let tau = tip.torques(q, force, moment);
+        let (position, velocity) = tip.motion(q, dq);
+        let power = force[0] * velocity[0] + force[1] * velocity[1] + moment * (dq[0] + dq[1]);
+        assert!((tau[0] * dq[0] + tau[1] * dq[1] - power).abs() < 1e-13 * power.abs().max(1.0));
+        let h = 1e-6;
+        let later = tip.motion([q[0] + h * dq[0], q[1] + h * dq[1]], dq).0;
+        for k in 0..2 {
+            assert!(((later[k] - position[k]) / h - velocity[k]).abs() < 1e-4);
+        }
     }
 }

@@ -6,7 +6,9 @@ mod common;
 
 use common::error;
 use common::random::{Random, inertia_of};
-use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkSpec, Placement, Tree, TreeScratch};
+use forwardstep_core::robot::tree::{
+    Anchor, Axes, JointKind, LinkJoint, LinkPoint, LinkSpec, Placement, PointWrench, Tree, TreeScratch,
+};
 use forwardstep_core::robot::{Lagrangian, TwoVelocity};
 use forwardstep_core::{Lanes, LengthError, Scalar};
 use proptest::prelude::*;
@@ -274,5 +276,72 @@ fn prop_single_precision_follows() {
         let double = dispatched(&assembled.tree, &x, &assembled.theta);
         assert!(error(&wide(&single[0]), &double[0]) < 1e-5);
         assert!(error(&wide(&single[1]), &double[1]) < 1e-5);
+    }
+}
+
+/// (Jᵀw)ᵀ q̇ = fᵀ v + mᵀ ω, where the moment's share is that of two opposite forces.
+#[test]
+fn prop_a_force_has_the_same_power_on_the_joints_as_at_its_point() {
+    let mut random = Random::new(11);
+    for joints in 1..12 {
+        let assembled = random.tree(joints);
+        let tree = &assembled.tree;
+        let n = tree.joint_count();
+        let link = assembled.anchors[random.below(assembled.anchors.len())];
+        let (q, dq) = (random.column(n, 3.0), random.column(n, 2.0));
+        let (at, force, lever) = (random.vector(0.5), random.vector(20.0), random.vector(0.3));
+        let mut scratch = tree.scratch();
+        let point = LinkPoint { link, at };
+        let add = |scratch: &mut TreeScratch<f64>, at: [f64; 3], force: [f64; 3], moment: [f64; 3], axes| {
+            let mut tau = vec![0.0; n];
+            let wrench = PointWrench { force, moment, axes };
+            tree.add_wrench(scratch, &q, &LinkPoint { link, at }, &wrench, &mut tau).unwrap();
+            tau
+        };
+        let power = |tau: &[f64]| tau.iter().zip(&dq).map(|(tau, dq)| tau * dq).sum::<f64>();
+        let tau = add(&mut scratch, at, force, [0.0; 3], Axes::Base);
+        let motion = tree.point_motion(&mut scratch, &q, &dq, &point).unwrap();
+        let spent: f64 = force.iter().zip(&motion.velocity).map(|(f, v)| f * v).sum();
+        assert!((power(&tau) - spent).abs() < TOLERANCE * spent.abs().max(1.0), "{joints} joints");
+
+        // A pair of forces ±f at ±l is the moment 2 l × f, in the axes of the link.
+        let pair = [1.0, -1.0].map(|sign: f64| {
+            let shifted = std::array::from_fn(|k| at[k] + sign * lever[k]);
+            add(&mut scratch, shifted, force.map(|f| sign * f), [0.0; 3], Axes::Link)
+        });
+        let [l, f] = [lever.map(|l| 2.0 * l), force];
+        let moment = [l[1] * f[2] - l[2] * f[1], l[2] * f[0] - l[0] * f[2], l[0] * f[1] - l[1] * f[0]];
+        let pure = add(&mut scratch, at, [0.0; 3], moment, Axes::Link);
+        let sum: Vec<f64> = pair[0].iter().zip(&pair[1]).map(|(a, b)| a + b).collect();
+        assert!(error(&sum, &pure) < TOLERANCE, "{joints} joints");
+
+        // Same bits in lanes.
+        let lane = |x: &[f64]| x.iter().map(|x| Lanes([*x; 8])).collect::<Vec<_>>();
+        let mut wide = vec![Lanes([0.0; 8]); n];
+        let wrench =
+            PointWrench { force: force.map(|f| Lanes([f; 8])), moment: [Lanes([0.0; 8]); 3], axes: Axes::Base };
+        tree.add_wrench(&mut tree.scratch(), &lane(&q), &point, &wrench, &mut wide).unwrap();
+        assert_eq!(bits(&wide.iter().map(|x| x.0[5]).collect::<Vec<_>>()), bits(&tau));
+    }
+}
+
+#[test]
+fn wrenches_check_lengths_and_the_base_feels_nothing() {
+    let assembled = Random::new(5).tree(3);
+    let tree = &assembled.tree;
+    let mut scratch = tree.scratch::<f64>();
+    let base = LinkPoint { link: Anchor { body: None, x_body_link: Placement::IDENTITY }, at: [1.0, 2.0, 3.0] };
+    let wrench = PointWrench { force: [1.0; 3], moment: [1.0; 3], axes: Axes::Base };
+    let mut tau = [0.5; 3];
+    tree.add_wrench(&mut scratch, &[0.1; 3], &base, &wrench, &mut tau).unwrap();
+    assert_eq!(tau, [0.5; 3]);
+    let motion = tree.point_motion(&mut scratch, &[0.1; 3], &[0.2; 3], &base).unwrap();
+    assert_eq!((motion.position, motion.velocity), ([1.0, 2.0, 3.0], [0.0; 3]));
+    for length in [0, 2, 4] {
+        let q = vec![0.1; length];
+        assert!(tree.add_wrench(&mut scratch, &q, &base, &wrench, &mut tau).is_err());
+        assert!(tree.add_wrench(&mut scratch, &[0.1; 3], &base, &wrench, &mut vec![0.0; length]).is_err());
+        assert!(tree.point_motion(&mut scratch, &q, &[0.1; 3], &base).is_err());
+        assert!(tree.point_motion(&mut scratch, &[0.1; 3], &q, &base).is_err());
     }
 }

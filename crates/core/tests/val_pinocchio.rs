@@ -2,7 +2,8 @@
 
 mod common;
 
-use common::{dot, error, models, times, transpose_times};
+use common::{dot, error, model, models, times, transpose_times};
+use forwardstep_core::robot::tree::{Axes, LinkPoint, PointWrench};
 use forwardstep_core::robot::{Lagrangian, TwoVelocity};
 
 const TOLERANCE: f64 = 1.0e-11;
@@ -79,5 +80,46 @@ fn val_pinocchio_forward_dynamics() {
             let (ours, theirs) = (error(&torque(&ddq), &state.tau), error(&torque(&state.aba), &state.tau));
             assert!(ours < TOLERANCE.max(3.0 * theirs), "{}: {ours:e}, Pinocchio {theirs:e}", model.name);
         }
+    }
+}
+
+#[derive(serde::Deserialize)]
+struct Pushes {
+    cases: Vec<Push>,
+}
+
+#[derive(serde::Deserialize)]
+struct Push {
+    model: String,
+    link: usize,
+    axes: String,
+    at: [f64; 3],
+    force: [f64; 3],
+    moment: [f64; 3],
+    q: Vec<f64>,
+    dq: Vec<f64>,
+    tau: Vec<f64>,
+    position: Vec<f64>,
+    velocity: Vec<f64>,
+}
+
+#[test]
+fn val_pinocchio_wrenches_and_points_of_links() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation/pinocchio/fixtures/wrenches.json");
+    let pushes: Pushes = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    assert!(pushes.cases.len() > 50);
+    for push in &pushes.cases {
+        let assembled = model(&push.model).assemble();
+        let tree = &assembled.tree;
+        let axes = if push.axes == "base" { Axes::Base } else { Axes::Link };
+        let point = LinkPoint { link: assembled.anchors[push.link], at: push.at };
+        let wrench = PointWrench { force: push.force, moment: push.moment, axes };
+        let (mut scratch, mut tau) = (tree.scratch::<f64>(), vec![0.0; tree.joint_count()]);
+        tree.add_wrench(&mut scratch, &push.q, &point, &wrench, &mut tau).unwrap();
+        let what = format!("link {} of {}", push.link, push.model);
+        assert!(error(&tau, &push.tau) < TOLERANCE, "Jᵀw at {what}: {:e}", error(&tau, &push.tau));
+        let motion = tree.point_motion(&mut scratch, &push.q, &push.dq, &point).unwrap();
+        assert!(error(&motion.position, &push.position) < TOLERANCE, "position of {what}");
+        assert!(error(&motion.velocity, &push.velocity) < TOLERANCE, "velocity of {what}");
     }
 }

@@ -44,6 +44,8 @@ shipped! {
     first_order: "first-order",
     theorem_1: "theorem-1",
     remark_3: "remark-3",
+    remark_4: "remark-4",
+    teleoperation: "teleoperation",
     theorem_2: "theorem-2",
     theorem_3_a5_order_3: "theorem-3-a5-order-3",
     theorem_3_24_order_4: "theorem-3-24-order-4",

@@ -62,6 +62,7 @@ fn ring(model: Model, n: usize, tolerance: f64) -> Setup {
                 reference: Vec::new(),
             },
             enforce_limits: false,
+            pushes: Vec::new(),
         }
     };
     let edge = |i: usize| Edge { from: (i + n - 1) % n, to: i, weight: 1.0.into(), delay: i };

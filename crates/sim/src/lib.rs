@@ -1,7 +1,7 @@
 //! Networks of forwardstepping agents in continuous time: switching digraphs, discontinuous delays, the closed loop as a
 //! delay-differential equation, and an integrator whose steps land on every break-point.
 //!
-//! The layers, each of which uses only those before it: [`graph`], [`topology`] and [`schedule`], [`delay`] and [`network`]; the
+//! The layers, each of which uses only those before it: [`graph`], [`topology`] and [`schedule`], [`delay`] and [`network`]; [`push`]; the
 //! integrator with its history and break-points; the closed loop; [`recording`] and [`simulate`].
 
 mod closed_loop;
@@ -10,6 +10,7 @@ mod engine;
 pub mod formula;
 pub mod graph;
 pub mod network;
+pub mod push;
 pub mod recording;
 pub mod schedule;
 pub mod setup;

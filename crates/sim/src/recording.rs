@@ -44,11 +44,13 @@ pub enum Signal {
     Lyapunov,
     /// ∫ sᵀ(K + D)s − sᵀτ_ext dt; present when the ledger is on.
     Dissipation,
+    /// τ_ext; only of agents that are pushed.
+    External,
 }
 
 impl Signal {
     /// The name used in column headers: `q`, `dq`, `z`, `dz`, `d2z`, …, `s`, `tau`, `theta_hat`, `lyapunov`,
-    /// `dissipation`.
+    /// `dissipation`, `tau_ext`.
     pub fn name(self) -> String {
         match self {
             Signal::Position => "q".into(),
@@ -61,6 +63,7 @@ impl Signal {
             Signal::Estimate => "theta_hat".into(),
             Signal::Lyapunov => "lyapunov".into(),
             Signal::Dissipation => "dissipation".into(),
+            Signal::External => "tau_ext".into(),
         }
     }
 }

@@ -6,6 +6,7 @@ use forwardstep_core::Gain;
 use forwardstep_core::robot::tree::Tree;
 
 use crate::network::Network;
+use crate::push::Push;
 
 /// A network of agents and how long to watch it.
 #[derive(Clone, Debug)]
@@ -81,6 +82,8 @@ pub struct AgentSetup {
     /// Clip the torque at the effort limits of the robot's axes, and end the run when an axis leaves its position
     /// limits. Off, limits are only reported.
     pub enforce_limits: bool,
+    /// What acts on it from outside, all at once where they overlap.
+    pub pushes: Vec<Push>,
 }
 
 /// A robot with its true parameters.

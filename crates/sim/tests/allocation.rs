@@ -13,6 +13,7 @@ use forwardstep_sim::delay::Delay;
 use forwardstep_sim::formula::FormulaStep::{Add, Multiply, Number, Sin, Time};
 use forwardstep_sim::formula::{BoundedFormula, Formula};
 use forwardstep_sim::graph::Weight;
+use forwardstep_sim::push::{Between, Course, Effect, Push, Table};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{Actuators, Control, Sensors, Setup, VelocitySensor, simulate};
 
@@ -64,6 +65,17 @@ fn weights_swing(setup: &mut Setup) {
     }
 }
 
+/// Lets a hand lead the first agent along a table.
+fn a_hand_leads(setup: &mut Setup) {
+    let axes = setup.agents[0].robot.axes.len();
+    let times_s: Vec<f64> = (0..200).map(|k| 0.05 * k as f64).collect();
+    let values = (0..200 * axes).map(|k| 0.01 * k as f64).collect();
+    let table = Course::Table(Table { times_s, values, between: Between::Linear });
+    let (stiffness, damping) = (vec![3.0; axes], vec![1.0; axes]);
+    let hand = Effect::HandOnAxes { axes: (0..axes).collect(), stiffness, damping, target: table };
+    setup.agents[0].pushes = vec![Push { effect: hand, from_s: 0.1, until_s: f64::INFINITY }];
+}
+
 /// Digital control with everything that it can have.
 fn sampled() -> Control {
     let sensors = Sensors {
@@ -79,12 +91,13 @@ fn sampled() -> Control {
 #[test]
 fn alloc_steps_do_not_allocate() {
     for (case, how) in
-        cases().into_iter().flat_map(|case| ["plain", "formulas", "sampled"].map(|how| (case.clone(), how)))
+        cases().into_iter().flat_map(|case| ["plain", "formulas", "pushed", "sampled"].map(|how| (case.clone(), how)))
     {
         let mut setup = setup(&case);
         setup.time.record_every_s = 0.01;
         match how {
             "formulas" => weights_swing(&mut setup),
+            "pushed" => a_hand_leads(&mut setup),
             "sampled" => setup.control = Some(sampled()),
             _ => {}
         }

@@ -4,9 +4,10 @@
 use std::ops::ControlFlow;
 
 use forwardstep_core::Gain;
-use forwardstep_core::robot::PlanarLinks;
+use forwardstep_core::robot::{PlanarLinks, PlanarTip};
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
+use forwardstep_sim::push::{Course, Effect, Function, Grip, Push};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
     AgentSetup, Axis, AxisUnit, Exchange, Law, Method, Network, ReferenceKind, RobotKind, RobotSetup, Setup, Solver,
@@ -23,6 +24,9 @@ fn arm(index: usize, order: usize) -> AgentSetup {
         velocity_limit: None,
         effort_limit: None,
     };
+    let grip = Grip::Tip(PlanarTip { length_m: [1.0, 0.8] });
+    let wrench = Course::Each([2.0, -3.0, 0.5].map(Function::Constant).to_vec());
+    let wrench = Push { effect: Effect::Wrench { grip, wrench }, from_s: 0.45, until_s: 1.25 };
     AgentSetup {
         name: format!("arm-{}", index + 1),
         robot: RobotSetup {
@@ -41,6 +45,7 @@ fn arm(index: usize, order: usize) -> AgentSetup {
         },
         start: Start { q: vec![some(1), some(2)], dq: vec![0.3 * some(3), 0.3 * some(4)], reference: Vec::new() },
         enforce_limits: false,
+        pushes: if index == 1 { vec![wrench] } else { Vec::new() },
     }
 }
 

@@ -7,7 +7,7 @@ mod planar;
 mod point_mass;
 pub mod tree;
 
-pub use planar::{PlanarArm, PlanarLinks};
+pub use planar::{PlanarArm, PlanarLinks, PlanarTip};
 pub use point_mass::PointMass;
 
 use alloc::vec::Vec;

@@ -62,6 +62,42 @@ impl PlanarLinks {
     }
 }
 
+/// The tip of a planar arm whose links have the lengths `[l₁, l₂]`, m.
+///
+/// ```text
+/// x = l₁ cos q₁ + l₂ cos(q₁+q₂)     y = l₁ sin q₁ + l₂ sin(q₁+q₂)
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlanarTip {
+    /// l₁, l₂ in m.
+    pub length_m: [f64; 2],
+}
+
+impl PlanarTip {
+    /// Jᵀw: the joint torques that do what the `force` (x, y) at the tip and the `moment` on the outer link do.
+    pub fn torques<S: Scalar>(&self, q: [S; 2], force: [S; 2], moment: S) -> [S; 2] {
+        let [inner, outer] = self.links(q);
+        // Moments of the force about the elbow and, with the inner link as lever on top, about the shoulder.
+        let elbow = outer[1].neg_mul_add(force[0], outer[0].mul_add(force[1], moment));
+        [inner[1].neg_mul_add(force[0], inner[0].mul_add(force[1], elbow)), elbow]
+    }
+
+    /// Position and velocity of the tip, from the shoulder.
+    pub fn motion<S: Scalar>(&self, q: [S; 2], dq: [S; 2]) -> ([S; 2], [S; 2]) {
+        let [inner, outer] = self.links(q);
+        let both = dq[0] + dq[1];
+        let velocity = [-(inner[1].mul_add(dq[0], outer[1] * both)), inner[0].mul_add(dq[0], outer[0] * both)];
+        ([inner[0] + outer[0], inner[1] + outer[1]], velocity)
+    }
+
+    /// The two links as vectors.
+    fn links<S: Scalar>(&self, q: [S; 2]) -> [[S; 2]; 2] {
+        let [l1, l2] = self.length_m.map(S::splat);
+        let ((s1, c1), (s12, c12)) = (q[0].sin_cos(), (q[0] + q[1]).sin_cos());
+        [[l1 * c1, l1 * s1], [l2 * c12, l2 * s12]]
+    }
+}
+
 /// The rows of Y, five columns each.
 #[inline(always)]
 fn rows<S: Scalar>(motion: TwoVelocity<'_, S>) -> [[S; 5]; 2] {

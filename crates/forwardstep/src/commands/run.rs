@@ -84,11 +84,11 @@ fn record<'a>(
 }
 
 /// Simulates the same in continuous time. Whoever does not want to wait for it may interrupt: the run itself is kept.
-fn digital_cost(scenario: &Scenario, outcome: &Outcome, stop: &AtomicBool) -> Option<DigitalCost> {
+fn digital_cost(scenario: &Scenario, outcome: &Outcome, stop: &Stop) -> Option<DigitalCost> {
     let mut bar = Bar::new();
     let twin = simulate(&continuous_twin(&scenario.setup), &mut |progress| {
         bar.update(progress);
-        if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if stop.asked().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     bar.clear();
     DigitalCost::of(&scenario.setup, outcome, &twin.ok()?, scenario.goal)

@@ -134,6 +134,7 @@ const cards = {
   },
   error: perJoint(signals.s, rate(1)),
   torque: perJoint(signals.tau, force, (axis) => limitLines(axis, (a) => both(a.effort_limit), "limit")),
+  external: perJoint(signals.tau_ext, force),
   reference: {
     picks: [{ id: "order", options: signals.reference.slice(1).map((_, k) => [String(k + 1), referenceName(k + 1)]) }, jointPick],
     build: ([order, joint]) => ({ unit: order == null ? "" : unitOf(+joint, rate(+order + 1)), series: order == null ? [] : ofAgents(signals.reference[+order], +joint) }),

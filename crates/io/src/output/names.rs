@@ -85,8 +85,8 @@ pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String 
         Signal::Position => length.into(),
         Signal::Velocity | Signal::TrackingError | Signal::Reference(0) => format!("{length}/s"),
         Signal::Reference(k) => format!("{length}/s^{}", u32::from(k) + 1),
-        Signal::Torque if length == "m" => "N".into(),
-        Signal::Torque => "N m".into(),
+        Signal::Torque | Signal::External if length == "m" => "N".into(),
+        Signal::Torque | Signal::External => "N m".into(),
         Signal::Estimate => "SI".into(),
         Signal::Lyapunov | Signal::Dissipation => "J".into(),
     }

@@ -4,6 +4,7 @@ use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::network::Network;
 use forwardstep_sim::schedule::Segment;
+use forwardstep_sim::setup::Setup;
 
 /// No picture shows more phases, or more jumps of delays.
 pub(crate) const MOST_SPANS: usize = 4000;
@@ -18,6 +19,8 @@ pub(crate) struct Timeline<'a> {
     pub(crate) spans: Vec<Segment>,
     /// Jumps of the delays that edges use, rising; without arrivals of packets where these are very many.
     pub(crate) delay_jumps: Vec<f64>,
+    /// When pushes begin and end.
+    pub(crate) push_edges: Vec<f64>,
     /// More happened than [`MOST_SPANS`].
     pub(crate) cut: bool,
 }
@@ -41,7 +44,16 @@ impl<'a> Timeline<'a> {
         let cut = spans.len() > MOST_SPANS || delay_jumps.len() > MOST_SPANS;
         spans.truncate(MOST_SPANS);
         delay_jumps.truncate(MOST_SPANS);
-        Timeline { graphs: network.schedule.graphs(), spans, delay_jumps, cut }
+        Timeline { graphs: network.schedule.graphs(), spans, delay_jumps, push_edges: Vec::new(), cut }
+    }
+
+    /// The same with the edges of all pushes.
+    pub(crate) fn of_setup(setup: &'a Setup, until_s: f64) -> Self {
+        let mut timeline = Timeline::of(&setup.network, until_s);
+        let pushes = setup.agents.iter().flat_map(|agent| &agent.pushes);
+        let edges = pushes.map(|push| push.span_s()).filter(|[begins_s, ends_s]| begins_s < ends_s).flatten();
+        timeline.push_edges = edges.filter(|t_s| *t_s > 0.0 && *t_s < until_s).take(MOST_SPANS).collect();
+        timeline
     }
 
     /// Times at which the graph changes.
@@ -49,9 +61,10 @@ impl<'a> Timeline<'a> {
         self.spans.windows(2).filter(|pair| pair[0].graph != pair[1].graph).map(|pair| pair[1].start_s)
     }
 
-    /// Switches and jumps together, rising.
+    /// Switches, jumps of delays and edges of pushes together, rising.
     pub(crate) fn break_points(&self) -> Vec<f64> {
-        let mut times: Vec<f64> = self.switches().chain(self.delay_jumps.iter().copied()).collect();
+        let mut times: Vec<f64> =
+            self.switches().chain(self.delay_jumps.iter().chain(&self.push_edges).copied()).collect();
         times.sort_by(f64::total_cmp);
         times.dedup_by(|b, a| *b - *a <= 1e-9);
         times

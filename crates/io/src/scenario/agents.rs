@@ -1,7 +1,11 @@
 //! `[[agents]]` → [`AgentSetup`]s.
 
 use std::collections::HashMap;
+use std::ops::Range;
+use std::rc::Rc;
 
+use forwardstep_core::robot::PlanarTip;
+use forwardstep_core::robot::tree::Anchor;
 use forwardstep_sim::AgentSetup;
 
 use super::at::At;
@@ -12,7 +16,7 @@ use super::law::law;
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
 use super::robots::{ReadRobot, Stop, robot};
-use super::spread::spread;
+use super::spread::{spread, tip};
 use super::start::{Shared, Starter, start};
 use crate::SourceText;
 
@@ -30,13 +34,30 @@ struct Population<'a> {
     read: ReadRobot,
 }
 
+/// All agents, and what else is known about them while a scenario is read.
+pub(super) struct Agents {
+    pub(super) agents: Vec<AgentSetup>,
+    /// Where each agent can be held.
+    pub(super) bodies: Vec<Body>,
+    /// Counted populations by name, with their members.
+    pub(super) populations: Vec<(String, Range<usize>)>,
+}
+
+/// Where a robot can be held.
+pub(super) struct Body {
+    /// The links of a URDF.
+    pub(super) links: Rc<[(String, Anchor)]>,
+    /// The tip of a planar arm.
+    pub(super) tip: Option<PlanarTip>,
+}
+
 /// Builds all agents, in the order of the file.
 pub(super) fn agents(
     file: &ScenarioFile,
     source: &SourceText,
     folder: &mut InputFolder,
     notices: &mut Vec<Notice>,
-) -> Result<Vec<AgentSetup>, Stop> {
+) -> Result<Agents, Stop> {
     let mut populations: Vec<Population<'_>> = Vec::new();
     let mut seen = HashMap::new();
     let mut total = 0;
@@ -63,6 +84,7 @@ pub(super) fn agents(
     }
 
     let mut agents = Vec::with_capacity(total as usize);
+    let (mut bodies, mut counted) = (Vec::with_capacity(total as usize), Vec::new());
     for Population { file: entry, names, read } in populations {
         let span = match names.as_slice() {
             [first, .., last] => format!("{first} … {last}"),
@@ -73,7 +95,11 @@ pub(super) fn agents(
         );
         let enforce_limits = limits(entry, &names, &read)?;
         let (index, of) = (agents.len(), total as usize);
+        if entry.count.is_some() {
+            counted.push((entry.name.value.clone(), index..index + names.len()));
+        }
         for (k, name) in names.iter().enumerate() {
+            bodies.push(Body { links: Rc::clone(&read.links), tip: tip(entry, k)? });
             let robot = &spread(entry, &read.robot, k, name)?;
             let Design { roots_per_s, manipulability, free_derivatives } = design(file, entry, name)?;
             let own = entry.start.as_ref().map(|file| Shared { file, index: k, of: names.len() });
@@ -85,11 +111,12 @@ pub(super) fn agents(
                 roots_per_s,
                 manipulability,
                 enforce_limits,
+                pushes: Vec::new(),
                 name: name.clone(),
             });
         }
     }
-    Ok(agents)
+    Ok(Agents { agents, bodies, populations: counted })
 }
 
 /// The names of a population: its own, or numbered from one when it is counted.

@@ -6,6 +6,7 @@ use serde::Deserialize;
 use super::at::At;
 use super::control_file::ControlFile;
 use super::network_file::NetworkFile;
+use super::push_file::PushFile;
 use super::values::{GainFile, GainOrBandwidth, Named, NotNegative, Positive, StartValues};
 
 /// A forwardstep scenario: a network of robots, how they are controlled, and how long to watch them.
@@ -33,6 +34,9 @@ pub struct ScenarioFile {
     pub network: At<NetworkFile>,
     /// How the controllers sample. Default: they work in continuous time, as in the paper.
     pub control: Option<ControlFile>,
+    /// What acts on the agents from outside: forces, torques and hands.
+    #[serde(default)]
+    pub pushes: Vec<At<PushFile>>,
     /// How to integrate.
     pub solver: Option<SolverFile>,
     /// What the run is expected to show.

@@ -269,8 +269,8 @@ fn log_of(text: &str, line_of: impl Fn(usize) -> usize) -> Result<Log, Fault> {
     for At { value: [from, to, send, delay], span } in read_table(text, columns)? {
         // The cell of a column that is not there is the line.
         if delay.span == span {
-            let columns = columns.map(|column| column.name).to_vec();
-            return Err(Fault::new(TableProblem::MissingColumn { name: "delay_s", columns }.into()));
+            let columns = columns.map(|column| column.name.to_owned()).to_vec();
+            return Err(Fault::new(TableProblem::MissingColumn { name: "delay_s".into(), columns }.into()));
         }
         let time = |key: &'static str, cell: &Cell<'_>| {
             // Adding zero takes the sign from a zero.

@@ -50,6 +50,9 @@ pub mod network_file;
 mod notice;
 mod open;
 mod problem;
+pub mod push_file;
+mod push_problem;
+mod pushes;
 mod random;
 mod robots;
 mod shipped;
@@ -72,6 +75,7 @@ pub use inputs::InputFile;
 pub use notice::Notice;
 pub use open::{OpenError, open_scenario};
 pub use problem::ScenarioProblem;
+pub use push_problem::PushProblem;
 pub use shipped::{SHIPPED_SCENARIOS, SHIPPED_TABLES, ShippedScenario, ShippedTable, shipped_scenario};
 pub use table::TableProblem;
 pub use template::{Template, TemplateDelay, TemplateGraph, TemplateRobot};
@@ -184,7 +188,9 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
     let end_s = positive("end_s", &file.time.end_s)?;
     let every = file.time.record_every_s.as_ref();
     let record_every_s = every.map_or(Ok(RECORD_EVERY_S), |every| positive("record_every_s", every))?;
-    let agents = agents::agents(&file, source, &mut folder, &mut notices)?;
+    let mut read = agents::agents(&file, source, &mut folder, &mut notices)?;
+    pushes::pushes(&file.pushes, &mut read, end_s, source, &mut folder, &mut notices)?;
+    let agents = read.agents;
     let names: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
     let network = network::network(&file.network.value, &names, end_s, source, &mut folder, &mut notices)
         .map_err(|fault| fault.at(&file.network.span))?;
@@ -305,9 +311,10 @@ fn recording_fits(setup: &Setup, place: &At<f64>) -> Result<(), Fault> {
     Err(fault(place, ScenarioProblem::RecordingTooLarge { rows, columns, most: MOST_RECORDED, least_s }))
 }
 
-/// How many columns an agent has: q, q̇, s, τ and z with its derivatives on every axis, ϑ̂, V and its dissipation.
+/// How many columns an agent has: q, q̇, s, τ and z with its derivatives on every axis, ϑ̂, V and its dissipation, and τ_ext
+/// if it is pushed.
 fn columns(agent: &AgentSetup) -> usize {
-    let per_axis = 4 + agent.roots_per_s.len().max(2);
+    let per_axis = 4 + agent.roots_per_s.len().max(2) + usize::from(!agent.pushes.is_empty());
     let estimates = match agent.law {
         Law::Adaptive { .. } => agent.robot.theta.len(),
         Law::Known { .. } => 0,

@@ -45,6 +45,11 @@ pub enum Notice {
         /// Names of sender and receiver.
         links: Vec<(String, String)>,
     },
+    /// A push that has no effect on the run.
+    IdlePush {
+        /// Its line in the scenario.
+        line: usize,
+    },
 }
 
 impl Notice {
@@ -82,6 +87,7 @@ impl fmt::Display for Notice {
                     named(links)
                 )
             }
+            Notice::IdlePush { line } => write!(f, "the push on line {line} does not act during the run"),
         }
     }
 }

@@ -6,6 +6,7 @@ use forwardstep_sim::topology::TopologyError;
 use thiserror::Error;
 
 use super::formula::FormulaProblem;
+use super::push_problem::PushProblem;
 use super::table::TableProblem;
 use crate::Problem;
 use crate::files::ReadError;
@@ -533,6 +534,10 @@ pub enum ScenarioProblem {
         most: f64,
     },
 
+    /// A push that has no meaning.
+    #[error(transparent)]
+    Push(#[from] PushProblem),
+
     // Solver.
     /// No step is long enough and short enough.
     #[error("`{key}` is {}, but must not be less than `min_step_s`, which is {}", number(*.value), number(*.min_step_s))]
@@ -647,6 +652,7 @@ impl Problem for ScenarioProblem {
             ScenarioProblem::NoSuchAgent { name, agents } => choose(name, "the agents are", agents),
             ScenarioProblem::Topology(_) => "an agent hears nobody twice, and never itself".into(),
             ScenarioProblem::Table(problem) => return problem.help(),
+            ScenarioProblem::Push(problem) => return problem.help(),
             ScenarioProblem::Formula(problem) => return problem.help(),
             ScenarioProblem::EdgesAndPhases => "move the edges into a phase, or delete the phases".into(),
             ScenarioProblem::NoGraph => "for agents that never hear each other write `edges = []`".into(),

@@ -1,6 +1,9 @@
 //! `robot` of an agent → [`RobotSetup`].
 
+use std::rc::Rc;
+
 use forwardstep_core::robot::PlanarLinks;
+use forwardstep_core::robot::tree::Anchor;
 use forwardstep_sim::{Axis, AxisUnit, RobotKind, RobotSetup};
 
 use super::ScenarioError;
@@ -46,6 +49,8 @@ impl Stop {
 pub(super) struct ReadRobot {
     pub(super) robot: RobotSetup,
     pub(super) notices: Vec<urdf::Notice>,
+    /// The links of a URDF and where they are held.
+    pub(super) links: Rc<[(String, Anchor)]>,
 }
 
 /// Builds a robot; `folder` is where files that it names are looked for before the shipped ones.
@@ -57,7 +62,7 @@ pub(super) fn robot(file: &At<RobotFile>, folder: &mut InputFolder) -> Result<Re
         }
         RobotFile::PointMass(mass) => point_mass(mass)?,
     };
-    Ok(ReadRobot { robot, notices: Vec::new() })
+    Ok(ReadRobot { robot, notices: Vec::new(), links: Rc::new([]) })
 }
 
 fn from_urdf(file: &UrdfFile, folder: &mut InputFolder) -> Result<ReadRobot, Stop> {
@@ -72,7 +77,10 @@ fn from_urdf(file: &UrdfFile, folder: &mut InputFolder) -> Result<ReadRobot, Sto
         gravity: file.gravity_m_s2.unwrap_or(usual.gravity),
     };
     match urdf::read_urdf(&source, &options) {
-        Ok(read) => Ok(ReadRobot { robot: read.robot, notices: read.notices }),
+        Ok(read) => {
+            let links = read.links.into_iter().zip(read.anchors).collect();
+            Ok(ReadRobot { robot: read.robot, notices: read.notices, links })
+        }
         Err(error) => match lock_of(&error.problem, &file.locked) {
             // What is wrong stands in the scenario, not in the URDF.
             Some((joint, _)) => {

@@ -36,7 +36,7 @@ pub enum TableProblem {
     #[error("the table is empty")]
     NoHeader {
         /// The columns that are known.
-        columns: Vec<&'static str>,
+        columns: Vec<String>,
     },
     /// A column that means nothing here.
     #[error("unknown column `{name}`")]
@@ -44,21 +44,21 @@ pub enum TableProblem {
         /// Its name.
         name: String,
         /// The columns that are known.
-        columns: Vec<&'static str>,
+        columns: Vec<String>,
     },
     /// A column that must be there is not.
     #[error("the column `{name}` is missing")]
     MissingColumn {
         /// Its name.
-        name: &'static str,
+        name: String,
         /// The columns that are known.
-        columns: Vec<&'static str>,
+        columns: Vec<String>,
     },
     /// Two columns of one name.
     #[error("a second column is named `{name}`")]
     ColumnTwice {
         /// The name.
-        name: &'static str,
+        name: String,
     },
     /// A line with more or fewer cells than there are columns.
     #[error("this line has {}, but there are {columns} columns", entry_count(*.found))]
@@ -67,6 +67,12 @@ pub enum TableProblem {
         found: usize,
         /// How many columns.
         columns: usize,
+    },
+    /// Nothing where something must stand.
+    #[error("`{name}` is empty")]
+    EmptyCell {
+        /// The column.
+        name: String,
     },
     /// A quotation mark without its partner.
     #[error("this quotation mark is not closed on its line")]
@@ -119,24 +125,43 @@ pub(super) fn table_text(file: &At<String>, folder: &mut InputFolder) -> Result<
 /// The lines of a table below its header, each with one cell per column of `columns`, in their order. A cell is empty where
 /// its column is not there, or nothing stands in it; a required one never is.
 pub(super) fn read_table<const N: usize>(text: &str, columns: [Column; N]) -> Result<Vec<At<[Cell<'_>; N]>>, Fault> {
+    let rows = read_rows(text, &columns.map(|Column { name, required }| (name, required)))?;
+    Ok(rows.into_iter().map(in_order).collect())
+}
+
+fn in_order<const N: usize>(row: At<Vec<Cell<'_>>>) -> At<[Cell<'_>; N]> {
+    let At { value, span } = row;
+    let mut cells = value.into_iter();
+    let nothing = || At { value: Cow::Borrowed(""), span: span.clone() };
+    At { value: std::array::from_fn(|_| cells.next().unwrap_or_else(nothing)), span }
+}
+
+/// The same for columns that are known only now, all of them required.
+pub(super) fn read_columns<'a>(text: &'a str, names: &[&str]) -> Result<Vec<At<Vec<Cell<'a>>>>, Fault> {
+    read_rows(text, &names.iter().map(|name| (*name, true)).collect::<Vec<_>>())
+}
+
+/// Columns by name, with whether they are required.
+fn read_rows<'a>(text: &'a str, columns: &[(&str, bool)]) -> Result<Vec<At<Vec<Cell<'a>>>>, Fault> {
     let mut lines = lines(text);
-    let names = || columns.iter().map(|column| column.name).collect::<Vec<_>>();
+    let names = || columns.iter().map(|(name, _)| (*name).to_owned()).collect::<Vec<_>>();
     let Some(header) = lines.next().transpose()? else {
         return Err(Fault::new(TableProblem::NoHeader { columns: names() }.into()));
     };
-    let mut place: [Option<usize>; N] = [None; N];
+    let mut place: Vec<Option<usize>> = vec![None; columns.len()];
     for (k, cell) in header.value.iter().enumerate() {
-        let Some(column) = columns.iter().position(|column| column.name == cell.value) else {
+        let Some(column) = columns.iter().position(|(name, _)| *name == cell.value) else {
             let problem = TableProblem::UnknownColumn { name: cell.value.to_string(), columns: names() };
             return Err(fault(cell, problem.into()));
         };
         if place[column].replace(k).is_some() {
-            return Err(fault(cell, TableProblem::ColumnTwice { name: columns[column].name }.into()));
+            return Err(fault(cell, TableProblem::ColumnTwice { name: cell.value.to_string() }.into()));
         }
     }
-    let missing = columns.iter().zip(place).find(|(column, place)| column.required && place.is_none());
-    if let Some((Column { name, .. }, _)) = missing {
-        return Err(fault(&header, TableProblem::MissingColumn { name, columns: names() }.into()));
+    let missing = columns.iter().zip(&place).find(|((_, required), place)| *required && place.is_none());
+    if let Some(((name, _), _)) = missing {
+        let problem = TableProblem::MissingColumn { name: (*name).to_owned(), columns: names() };
+        return Err(fault(&header, problem.into()));
     }
     let mut rows = Vec::new();
     for line in lines {
@@ -145,13 +170,14 @@ pub(super) fn read_table<const N: usize>(text: &str, columns: [Column; N]) -> Re
             let problem = TableProblem::LineLength { found: line.value.len(), columns: header.value.len() };
             return Err(fault(&line, problem.into()));
         }
-        let cell = |k: usize| {
-            let found = place[k].and_then(|k| line.value.get(k));
+        let cell = |k: &Option<usize>| {
+            let found = k.and_then(|k| line.value.get(k));
             found.cloned().unwrap_or_else(|| At { value: Cow::Borrowed(""), span: line.span.clone() })
         };
-        let row: [Cell<'_>; N] = std::array::from_fn(cell);
-        if let Some((column, cell)) = columns.iter().zip(&row).find(|(c, cell)| c.required && cell.value.is_empty()) {
-            return Err(fault(cell, ScenarioProblem::Empty { key: column.name }));
+        let row: Vec<Cell<'_>> = place.iter().map(cell).collect();
+        let empty = columns.iter().zip(&row).find(|((_, required), cell)| *required && cell.value.is_empty());
+        if let Some(((name, _), cell)) = empty {
+            return Err(fault(cell, TableProblem::EmptyCell { name: (*name).to_owned() }.into()));
         }
         rows.push(At { value: row, span: line.span.clone() });
     }

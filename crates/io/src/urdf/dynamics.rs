@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use forwardstep_core::LengthError;
 use forwardstep_core::robot::tree::{
-    Assembled, JointKind, LinkJoint, LinkSpec, MassMatrixError, Placement, Tree, TreeError, inertia_defects,
+    Anchor, Assembled, JointKind, LinkJoint, LinkSpec, MassMatrixError, Placement, Tree, TreeError, inertia_defects,
 };
 use forwardstep_sim::setup::{Axis, AxisUnit, RobotKind, RobotSetup};
 
@@ -29,6 +29,8 @@ pub(super) struct Moving {
     pub(super) bodies: Vec<String>,
     /// The mass that is rigid with the base.
     pub(super) held_mass_kg: f64,
+    /// Where the arranged links are held.
+    pub(super) anchors: Vec<Anchor>,
 }
 
 /// A degree of freedom: where its link stands in the arranged list, and its joint.
@@ -82,7 +84,7 @@ pub(super) fn build(
     let robot =
         RobotSetup { kind: RobotKind::Tree(Arc::new(assembled.tree)), theta: assembled.theta, theta_names, axes };
     let kinds = freedoms.iter().map(|freedom| freedom.motion.kind).collect();
-    Ok(Moving { robot, kinds, bodies, held_mass_kg })
+    Ok(Moving { robot, kinds, bodies, held_mass_kg, anchors: assembled.anchors })
 }
 
 /// The kernels' error, at the link it is about.

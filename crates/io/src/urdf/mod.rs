@@ -23,6 +23,7 @@ mod subject;
 mod tree;
 mod xml;
 
+use forwardstep_core::robot::tree::Anchor;
 use forwardstep_sim::setup::RobotSetup;
 
 pub use ignored::{IgnoreReason, IgnoredItem};
@@ -82,6 +83,8 @@ pub struct UrdfRobot {
     pub held_mass_kg: f64,
     /// All links, depth first from the base.
     pub links: Vec<String>,
+    /// Where each of them is held, by a moving body or by the base.
+    pub anchors: Vec<Anchor>,
     /// What the user should know, in the order of the file.
     pub notices: Vec<Notice>,
 }
@@ -121,8 +124,8 @@ pub fn read_urdf(source: &SourceText, options: &UrdfOptions) -> Result<UrdfRobot
     notices.sort_by_key(|notice| notice.span.as_ref().map_or(usize::MAX, |span| span.start));
     let links: Vec<String> = arranged.iter().map(|held| links[held.link].name.clone()).collect();
     let base = links.first().cloned().unwrap_or_default();
-    let Moving { robot, kinds, bodies, held_mass_kg } = moving;
-    Ok(UrdfRobot { name, robot, base, kinds, bodies, held_mass_kg, links, notices })
+    let Moving { robot, kinds, bodies, held_mass_kg, anchors } = moving;
+    Ok(UrdfRobot { name, robot, base, kinds, bodies, held_mass_kg, links, anchors, notices })
 }
 
 fn read_robot(

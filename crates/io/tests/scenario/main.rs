@@ -7,6 +7,7 @@ mod links;
 mod malformed;
 mod meaning;
 mod mutated;
+mod pushes;
 #[path = "../support/seeds.rs"]
 mod seeds;
 mod shipped;

@@ -7,6 +7,7 @@ use forwardstep_io::scenario::{SHIPPED_SCENARIOS, SHIPPED_TABLES, open_scenario,
 use super::SOUND;
 use super::edges::RULES;
 use super::links::LINKS;
+use super::pushes::PUSHES;
 
 #[test]
 fn every_shipped_scenario_is_sound() {
@@ -54,7 +55,7 @@ fn the_schema_knows_every_key_and_describes_it() {
     collect(&schema, &mut known, &mut undescribed);
     assert!(undescribed.is_empty(), "without a description: {undescribed:?}");
     let mut used = BTreeSet::new();
-    for text in SHIPPED_SCENARIOS.iter().map(|scenario| scenario.text).chain([SOUND, RULES, LINKS]) {
+    for text in SHIPPED_SCENARIOS.iter().map(|scenario| scenario.text).chain([SOUND, RULES, LINKS, PUSHES]) {
         keys(&text.parse().unwrap(), &mut used);
     }
     let unknown: Vec<_> = used.difference(&known).collect();

@@ -42,6 +42,7 @@ pub fn agent(name: &str, dof: usize, parameters: usize) -> AgentSetup {
         },
         start: Start { q: vec![0.0; dof], dq: vec![0.0; dof], reference: Vec::new() },
         enforce_limits: false,
+        pushes: Vec::new(),
     }
 }
 

@@ -16,10 +16,12 @@ use thiserror::Error;
 
 use super::fleet::Member;
 use super::population::{Columns, Inputs, Population};
+use super::pushes::Pushes;
 use super::sampler::{Sampler, Sensor};
 use super::sampling::Sampling;
 use crate::engine::{DelaySystem, Happened, Heard, Port};
 use crate::network::NetworkError;
+use crate::push::PushError;
 use crate::recording::Signal;
 use crate::setup::{AgentSetup, Control, Exchange, Law, Method, ReferenceKind, RobotKind, Setup, VelocitySensor};
 
@@ -91,6 +93,16 @@ pub enum SetupError {
         /// What is wrong.
         error: GainError,
     },
+    /// A push on one agent.
+    #[error("agent `{agent}`, push {push}: {error}")]
+    Push {
+        /// The agent.
+        agent: String,
+        /// Which of its pushes, from one.
+        push: usize,
+        /// What is wrong.
+        error: PushError,
+    },
     /// Limits are to be enforced, but an axis has none.
     #[error("agent `{agent}`: limits are to be enforced, but axis `{axis}` has no effort limit")]
     NoEffortLimit {
@@ -141,6 +153,9 @@ pub(crate) struct ClosedLoop<'a> {
     start: Vec<f64>,
     /// When control is digital.
     sampling: Option<Sampling<'a>>,
+    pushes: Pushes,
+    /// A row of the recording of an agent that is pushed.
+    row: Vec<f64>,
 }
 
 /// One population and its part of everything.
@@ -149,12 +164,17 @@ pub(super) struct Block {
     pub(super) state: Range<usize>,
     pub(super) degree: Range<usize>,
     pub(super) sums: Range<usize>,
+    external: Range<usize>,
 }
 
 impl Block {
-    /// The population's part of what is heard.
-    pub(super) fn inputs<'a>(&self, heard: &'a Heard) -> Inputs<'a> {
-        Inputs { degree: &heard.degree[self.degree.clone()], sums: &heard.sums[self.sums.clone()], external: None }
+    /// The population's part of what is heard and felt.
+    pub(super) fn inputs<'a>(&self, heard: &'a Heard, felt: Option<&'a [f64]>) -> Inputs<'a> {
+        Inputs {
+            degree: &heard.degree[self.degree.clone()],
+            sums: &heard.sums[self.sums.clone()],
+            external: felt.map(|felt| &felt[self.external.clone()]),
+        }
     }
 }
 
@@ -177,6 +197,8 @@ impl<'a> ClosedLoop<'a> {
             entries,
             start: Vec::new(),
             sampling: None,
+            pushes: Pushes::default(),
+            row: Vec::new(),
         };
         let mut placed = 0;
         for group in populations(&setup.agents) {
@@ -192,6 +214,7 @@ impl<'a> ClosedLoop<'a> {
                 state: first..closed_loop.start.len(),
                 degree: placed..placed + n,
                 sums: placed * entries..(placed + n) * entries,
+                external: placed * axes..(placed + n) * axes,
                 columns,
             });
             placed += n;
@@ -201,6 +224,12 @@ impl<'a> ClosedLoop<'a> {
             let ClosedLoop { ports, start, .. } = &closed_loop;
             closed_loop.sampling = Some(Sampling::new(setup, control, ports.clone(), entries, start));
         }
+        let first_of = |blocks: &[Block], degree: usize| {
+            blocks.iter().find(|block| block.degree.contains(&degree)).map_or(0, |block| block.degree.start)
+        };
+        closed_loop.pushes = Pushes::new(setup, &closed_loop.ports, |degree| first_of(&closed_loop.blocks, degree));
+        let longest = closed_loop.blocks.iter().map(|block| block.columns.signals().len()).max();
+        closed_loop.row = Vec::with_capacity(longest.unwrap_or(0) + axes);
         Ok(closed_loop)
     }
 
@@ -281,36 +310,53 @@ impl<'a> ClosedLoop<'a> {
                 }
             }
         }
+        for (agent, signals) in signals.iter_mut().enumerate().filter(|(agent, _)| self.pushes.concern(*agent)) {
+            signals.extend((0..self.pushes.felt_by(agent).len()).map(|axis| (Signal::External, axis)));
+        }
         signals
     }
 
     /// Hands every agent's signals at one instant to `write`.
-    pub(crate) fn record(&mut self, _t_s: f64, x: &[f64], heard: &Heard, mut write: impl FnMut(usize, &[f64])) {
+    pub(crate) fn record(&mut self, t_s: f64, x: &[f64], heard: &Heard, mut write: impl FnMut(usize, &[f64])) {
         let heard = self.sampling.as_ref().map_or(heard, Sampling::heard);
+        self.pushes.feel(t_s, x);
+        let (pushes, row) = (&self.pushes, &mut self.row);
         for block in &mut self.blocks {
-            let inputs = block.inputs(heard);
-            block.columns.record(&x[block.state.clone()], inputs, &mut write);
+            let inputs = block.inputs(heard, pushes.felt());
+            let (columns, state) = (&mut block.columns, &x[block.state.clone()]);
+            columns.record(state, inputs, &mut |agent, values| match pushes.felt_by(agent) {
+                [] => write(agent, values),
+                felt => {
+                    row.clear();
+                    row.extend_from_slice(values);
+                    row.extend_from_slice(felt);
+                    write(agent, row);
+                }
+            });
         }
     }
 }
 
 impl DelaySystem for ClosedLoop<'_> {
-    fn rates(&mut self, _t_s: f64, x: &[f64], heard: &Heard, dx: &mut [f64]) {
+    fn rates(&mut self, t_s: f64, x: &[f64], heard: &Heard, dx: &mut [f64]) {
         let heard = self.sampling.as_ref().map_or(heard, Sampling::heard);
+        self.pushes.feel(t_s, x);
         for block in &mut self.blocks {
-            let inputs = block.inputs(heard);
+            let inputs = block.inputs(heard, self.pushes.felt());
             block.columns.rates(&x[block.state.clone()], inputs, &mut dx[block.state.clone()]);
         }
     }
 
     fn next_event_s(&self) -> f64 {
-        self.sampling.as_ref().map_or(f64::INFINITY, Sampling::next_s)
+        let sample_s = self.sampling.as_ref().map_or(f64::INFINITY, Sampling::next_s);
+        sample_s.min(self.pushes.next_event_s())
     }
 
     fn happen(&mut self, until_s: f64, x: &mut [f64]) -> Happened {
+        let pushed = self.pushes.happen(until_s);
         match &mut self.sampling {
-            Some(sampling) => sampling.happen(until_s, &mut self.blocks, x),
-            None => Happened::Nothing,
+            Some(sampling) => pushed.max(sampling.happen(until_s, &mut self.blocks, x)),
+            None => pushed,
         }
     }
 }
@@ -593,6 +639,10 @@ fn check_agent(agent: &AgentSetup, first: &AgentSetup, axes: usize, vectors: usi
     vector("theta", agent.robot.theta.len(), &agent.robot.theta)?;
     if let Law::Adaptive { estimate_start, .. } = &agent.law {
         vector("the start of the estimate", agent.robot.theta.len(), estimate_start)?;
+    }
+    for (k, push) in agent.pushes.iter().enumerate() {
+        let problem = |error| SetupError::Push { agent: agent.name.clone(), push: k + 1, error };
+        push.check(&agent.robot).map_err(problem)?;
     }
     Ok(())
 }

@@ -4,11 +4,13 @@
 //! - `population`: agents of one kind, side by side in columns: reference dynamics, then the fleet.
 //! - `sampler`: the digital controllers of a population, with their sensors.
 //! - `sampling`: the instants at which they sample and act.
+//! - `pushes`: what acts on the robots from outside.
 //! - `assemble`: from a [`crate::Setup`] to populations, with everything checked.
 
 mod assemble;
 mod fleet;
 mod population;
+mod pushes;
 mod sampler;
 mod sampling;
 

@@ -73,7 +73,7 @@ impl<'a> Sampling<'a> {
         }
         self.radio.hear(self.sample, &mut self.heard);
         for block in blocks {
-            let inputs = block.inputs(&self.heard);
+            let inputs = block.inputs(&self.heard, None);
             block.columns.command(now_s, inputs, &mut x[block.state.clone()]);
         }
     }

@@ -221,6 +221,7 @@ fn agent((index, case): (usize, &AgentCase)) -> AgentSetup {
         law,
         start: Start { q: case.start.q.clone(), dq: case.start.dq.clone(), reference: case.start.reference.clone() },
         enforce_limits: false,
+        pushes: Vec::new(),
     }
 }
 

@@ -168,6 +168,17 @@ impl Body {
         }
     }
 
+    /// A vector of the joint frame in the inner frame.
+    #[inline(always)]
+    pub(super) fn inner_vector<S: Scalar>(&self, v: Vec3<S>) -> Vec3<S> {
+        match &self.coordinates {
+            Coordinates::Z => v,
+            Coordinates::X => Vec3 { x: v.y, y: v.z, z: v.x },
+            Coordinates::Y => Vec3 { x: v.z, y: v.x, z: v.y },
+            Coordinates::Turned(e) => Mat3::splat(e).transpose_times(v),
+        }
+    }
+
     /// The body's parameters in its inner frame.
     #[inline(always)]
     pub(super) fn inner<S: Scalar>(&self, pi: &[S; 10]) -> Inertia<S> {

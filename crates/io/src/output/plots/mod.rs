@@ -35,7 +35,7 @@ impl<'a> Plots<'a> {
     pub(crate) fn of(record: &'a RunRecord<'a>) -> Self {
         let table = Table::new(record.setup, &record.outcome.recording);
         let until_s = table.t_s.last().copied().unwrap_or(0.0);
-        let timeline = Timeline::of(&record.setup.network, until_s);
+        let timeline = Timeline::of_setup(record.setup, until_s);
         Plots { record, break_points: timeline.break_points(), table }
     }
 

@@ -93,6 +93,7 @@ struct Signals {
     dq: Vec<Vec<Option<usize>>>,
     s: Vec<Vec<Option<usize>>>,
     tau: Vec<Vec<Option<usize>>>,
+    tau_ext: Vec<Vec<Option<usize>>>,
     /// z, ż, …
     reference: Vec<Vec<Vec<Option<usize>>>>,
     lyapunov: Vec<Option<usize>>,
@@ -164,6 +165,7 @@ impl Payload {
             dq: take(Signal::Velocity, false),
             s: take(Signal::TrackingError, false),
             tau: take(Signal::Torque, true),
+            tau_ext: take(Signal::External, true),
             reference: (0..references).map(|k| take(Signal::Reference(k as u8), k > 0)).collect(),
             ..Signals::default()
         };

@@ -40,7 +40,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
         Ending::BrokeDown(breakdown) => breakdown.t_s,
     };
     let until_s = table.t_s.last().copied().unwrap_or(0.0).max(if reached_s.is_finite() { reached_s } else { 0.0 });
-    let timeline = Timeline::of(&record.setup.network, until_s);
+    let timeline = Timeline::of_setup(record.setup, until_s);
     let payload = data::Payload::of(record, &table, &timeline, until_s);
     let absence = match metrics.disagreement {
         Disagreement::Absent(absence) => Some(absence),
@@ -119,6 +119,9 @@ fn signals(absence: Option<Absence>, agents: &[AgentSetup]) -> Markup {
                 (card("disagreement", "Disagreement", "max |qᵢ − qⱼ|", absence.map_or("", Absence::words)))
                 (card("position", "Positions", "q", ""))
                 (card("torque", "Torques", "τ, after any limit", ""))
+                @if agents.iter().any(|agent| !agent.pushes.is_empty()) {
+                    (card("external", "External torques", "τ_ext, what pushes do to the axes", ""))
+                }
                 (card("velocity", "Speed and reference", "q̇, and z dashed", ""))
                 (card("error", "Tracking error", "s = q̇ − z", ""))
                 (card("reference", "Reference derivatives", "ż and higher", ""))

@@ -1,0 +1,278 @@
+//! What pushes do to the value agreed upon: nothing without λ, and with it what Remark 4 says.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use std::ops::ControlFlow;
+
+use forwardstep_check::{Answer, NoPrediction, check, predict};
+use forwardstep_core::Gain;
+use forwardstep_core::reference::polynomial;
+use forwardstep_core::robot::{PlanarLinks, PlanarTip};
+use forwardstep_sim::delay::Delay;
+use forwardstep_sim::graph::Edge;
+use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push, Table};
+use forwardstep_sim::schedule::Schedule;
+use forwardstep_sim::{
+    AgentSetup, Axis, AxisUnit, Ending, Exchange, Law, Method, Network, Outcome, ReferenceKind, RobotKind, RobotSetup,
+    Setup, Signal, Solver, Start, TimeSpan, simulate,
+};
+
+const DAMPING: f64 = 5.0;
+
+fn agent(index: usize, roots_per_s: &[f64], kind: RobotKind, theta: Vec<f64>, law: Law) -> AgentSetup {
+    let axis = |name: &str| Axis {
+        name: name.into(),
+        unit: AxisUnit::Radian,
+        position_limits: None,
+        velocity_limit: None,
+        effort_limit: None,
+    };
+    let start = |k: f64| (12.9898 * (index as f64 + k) + 0.7).sin();
+    AgentSetup {
+        name: format!("agent-{}", index + 1),
+        robot: RobotSetup {
+            kind,
+            theta_names: vec![String::new(); theta.len()],
+            theta,
+            axes: vec![axis("a"), axis("b")],
+        },
+        roots_per_s: roots_per_s.to_vec(),
+        manipulability: 0.0,
+        law,
+        start: Start { q: vec![start(0.0), start(10.0)], dq: vec![0.3 * start(20.0), 0.0], reference: Vec::new() },
+        enforce_limits: false,
+        pushes: Vec::new(),
+    }
+}
+
+fn arm(index: usize, roots_per_s: &[f64], law: Law) -> AgentSetup {
+    let links = PlanarLinks::uniform([1.0 + 0.2 * index as f64, 1.0], [1.0, 0.8]);
+    agent(index, roots_per_s, RobotKind::PlanarArm, links.theta().to_vec(), law)
+}
+
+fn mass(index: usize, roots_per_s: &[f64]) -> AgentSetup {
+    let known = Law::Known { damping: Gain::Number(DAMPING) };
+    agent(index, roots_per_s, RobotKind::PointMass { dimension: 2 }, vec![1.0 + index as f64], known)
+}
+
+/// A ring with different weights and constant delays, one of which is none.
+fn ring(agents: Vec<AgentSetup>, exchange: Exchange, end_s: f64) -> Setup {
+    let edge = |from, to, weight, delay| Edge { from, to, weight, delay };
+    let edges: Vec<Edge> = match agents.len() {
+        1 => Vec::new(),
+        2 => vec![edge(0, 1, 1.5, 0), edge(1, 0, 0.7, 1)],
+        _ => vec![edge(0, 1, 1.5, 0), edge(1, 2, 0.7, 1), edge(2, 0, 1.1, 2), edge(1, 0, 0.4, 0)],
+    };
+    Setup {
+        network: Network {
+            agents: agents.len(),
+            schedule: Schedule::Fixed(edges),
+            delays: [0.3, 0.0, 0.75].map(|s| Delay::Constant { s }).to_vec(),
+        },
+        agents,
+        reference: ReferenceKind::Consensus,
+        exchange,
+        time: TimeSpan { end_s, record_every_s: 5.0 },
+        solver: Solver { method: Method::Adaptive { rtol: 1e-10, atol: 1e-11 }, ..Solver::default() },
+    }
+}
+
+fn run(setup: &Setup) -> Outcome {
+    let outcome = simulate(setup, &mut |_| ControlFlow::Continue(())).unwrap();
+    assert_eq!(outcome.ending, Ending::Completed);
+    outcome
+}
+
+fn column(outcome: &Outcome, agent: usize, signal: Signal, axis: usize) -> &[f64] {
+    let found = outcome.recording.columns.iter().find(|c| (c.agent, c.signal, c.axis) == (agent, signal, axis));
+    &found.unwrap().values
+}
+
+fn ends_at(setup: &Setup, outcome: &Outcome, axis: usize, want: f64) {
+    for agent in 0..setup.agents.len() {
+        let q = *column(outcome, agent, Signal::Position, axis).last().unwrap();
+        assert!((q - want).abs() < 1e-6, "agent {agent}, axis {axis}: {q} is not {want}");
+    }
+}
+
+fn constant(values: &[f64]) -> Course {
+    Course::Each(values.iter().map(|value| Function::Constant(*value)).collect())
+}
+
+fn pulse(effect: Effect) -> Push {
+    Push { effect, from_s: 2.0, until_s: 3.5 }
+}
+
+/// Everything that can push a planar arm, at once.
+fn rough_handling() -> Vec<Push> {
+    let grip = Grip::Tip(PlanarTip { length_m: [1.0, 0.8] });
+    let hand = Effect::HandOnAxes {
+        axes: vec![1],
+        stiffness: vec![20.0],
+        damping: vec![2.0],
+        target: Course::Table(Table {
+            times_s: vec![4.0, 5.0, 6.0],
+            values: vec![0.0, 1.5, 0.3],
+            between: Between::Linear,
+        }),
+    };
+    vec![
+        pulse(Effect::Torque(constant(&[9.0, -4.0]))),
+        pulse(Effect::Wrench { grip, wrench: constant(&[6.0, 3.0, 0.5]) }),
+        Push { effect: hand, from_s: 0.0, until_s: f64::INFINITY },
+        Push {
+            effect: Effect::HandOnPoint { grip, stiffness: 30.0, damping: 4.0, target: constant(&[0.2, 1.4]) },
+            from_s: 7.0,
+            until_s: 9.0,
+        },
+    ]
+}
+
+#[test]
+fn prop_without_lambda_no_push_moves_the_agreement() {
+    let adaptive =
+        Law::Adaptive { damping: Gain::Number(8.0), adaptation: Gain::Number(10.0), estimate_start: vec![0.0; 5] };
+    for exchange in [Exchange::Position, Exchange::PositionVelocity] {
+        for order in 1..=3 {
+            let roots = |i: usize| (0..order).map(|r| 1.2 + 0.8 * r as f64 + 0.1 * i as f64).collect::<Vec<_>>();
+            let agents = (0..3).map(|i| arm(i, &roots(i), adaptive.clone())).collect();
+            let mut setup = ring(agents, exchange, 150.0);
+            let untouched = predict(&setup).unwrap();
+            setup.agents[0].pushes = rough_handling();
+            setup.agents[2].pushes = vec![pulse(Effect::Torque(constant(&[-5.0, 2.0])))];
+            assert_eq!(predict(&setup).unwrap(), untouched);
+            let outcome = run(&setup);
+            (0..2).for_each(|axis| ends_at(&setup, &outcome, axis, untouched.value[axis]));
+        }
+    }
+}
+
+/// Σ uᵢ [1 + dᵢ α₁/α₀ + Σⱼ w_ij (T_ij − 1/κ₀)], by which the conserved quantity is divided.
+fn normaliser(setup: &Setup, influence: &[f64]) -> f64 {
+    let edges = setup.network.schedule.graph(0);
+    let term = |(i, agent): (usize, &AgentSetup)| {
+        let alpha = polynomial(&agent.roots_per_s).unwrap();
+        let heard = edges.iter().filter(|edge| edge.to == i).map(|edge| {
+            let velocity = if setup.exchange == Exchange::PositionVelocity { 1.0 / agent.roots_per_s[0] } else { 0.0 };
+            edge.weight * (alpha[1] / alpha[0] + setup.network.delays[edge.delay].max_s() - velocity)
+        });
+        influence[i] * (1.0 + heard.sum::<f64>())
+    };
+    setup.agents.iter().enumerate().map(term).sum()
+}
+
+/// By Simpson's rule over equal rows.
+fn integral(values: &[f64], step_s: f64) -> f64 {
+    assert_eq!(values.len() % 2, 1);
+    let pairs = values.windows(3).step_by(2).map(|v| v[0] + 4.0 * v[1] + v[2]);
+    pairs.sum::<f64>() * step_s / 3.0
+}
+
+#[test]
+fn eq_31_with_lambda_the_agreement_moves_by_the_integral_of_s() {
+    // Arms with known parameters: s is not known before the run, but what it moved is known after it.
+    let known = Law::Known { damping: Gain::Number(8.0) };
+    for (reference, exchange) in [
+        (ReferenceKind::Consensus, Exchange::PositionVelocity),
+        (ReferenceKind::Consensus, Exchange::Position),
+        (ReferenceKind::PureIntegral, Exchange::PositionVelocity),
+    ] {
+        let agents = (0..2).map(|i| arm(i, &[1.0 + 0.2 * i as f64, 2.0], known.clone())).collect();
+        let mut setup = ring(agents, exchange, 80.0);
+        setup.reference = reference;
+        setup.time.record_every_s = 1e-3;
+        let before = predict(&setup).unwrap();
+        setup.agents[0].manipulability = 3.0;
+        setup.agents[1].manipulability = 2.0;
+        assert_eq!(predict(&setup).unwrap(), before, "known parameters and nobody pushes: s = 0");
+        setup.agents[0].pushes = rough_handling();
+        assert_eq!(predict(&setup), Err(NoPrediction::Manipulability { agent: 0 }));
+        let outcome = run(&setup);
+        for axis in 0..2 {
+            let moved: f64 = (0..2)
+                .map(|i| {
+                    let alpha_0 = polynomial(&setup.agents[i].roots_per_s).unwrap()[0];
+                    let s = integral(column(&outcome, i, Signal::TrackingError, axis), 1e-3);
+                    before.influence[i] * setup.agents[i].manipulability / alpha_0 * s
+                })
+                .sum::<f64>()
+                / normaliser(&setup, &before.influence);
+            assert!(moved.abs() > 0.05, "it moves");
+            ends_at(&setup, &outcome, axis, before.value[axis] + moved);
+        }
+    }
+}
+
+#[test]
+fn eq_31_the_push_of_a_known_mass_moves_the_agreement_by_its_impulse() {
+    // K ∫ s = ∫ τ_ext: known before the run.
+    for exchange in [Exchange::Position, Exchange::PositionVelocity] {
+        for order in 1..=3 {
+            let roots: Vec<f64> = (0..order).map(|r| 1.0 + 0.7 * r as f64).collect();
+            let mut setup = ring((0..3).map(|i| mass(i, &roots)).collect(), exchange, 150.0);
+            let before = predict(&setup).unwrap();
+            for agent in &mut setup.agents {
+                agent.manipulability = 1.5;
+            }
+            let table = |between| {
+                let (times_s, values) = (vec![4.0, 5.0, 7.0], vec![2.0, 0.0, 4.0, -1.0, 8.0, 3.0]);
+                let course = Course::Table(Table { times_s, values, between });
+                Push { effect: Effect::Torque(course), from_s: 4.5, until_s: 6.0 }
+            };
+            setup.agents[0].pushes = vec![pulse(Effect::Torque(constant(&[4.0, -2.0]))), table(Between::Linear)];
+            setup.agents[1].pushes = vec![table(Between::Hold)];
+            let after = predict(&setup).unwrap();
+            let alpha_0 = polynomial(&roots).unwrap()[0];
+            // 1.5 s of 4; the line from 3 over 4 to 6; 0.5 s of 2 and 1 s of 4.
+            let impulses = [6.0 + 1.75 + 5.0, 1.0 + 4.0, 0.0];
+            let weighted: f64 = before.influence.iter().zip(impulses).map(|(u, impulse)| u * impulse).sum();
+            let moved = 1.5 / (alpha_0 * DAMPING) * weighted / normaliser(&setup, &before.influence);
+            assert!((after.value[0] - before.value[0] - moved).abs() < 1e-12);
+            let outcome = run(&setup);
+            (0..2).for_each(|axis| ends_at(&setup, &outcome, axis, after.value[axis]));
+        }
+    }
+}
+
+#[test]
+fn eq_31_one_agent_moves_by_lambda_over_alpha_beta_k_times_the_impulse() {
+    // q = (p² + λ) s / (p (p + α)(p + β)) with s = τ_ext / (M p + K): one pole at the origin, and none for λ = 0.
+    let (alpha, beta) = (1.3, 2.1);
+    for (lambda, reference) in
+        [(0.0, ReferenceKind::PureIntegral), (2.5, ReferenceKind::PureIntegral), (2.5, ReferenceKind::Consensus)]
+    {
+        let mut setup = ring(vec![mass(0, &[alpha, beta])], Exchange::Position, 40.0);
+        setup.reference = reference;
+        setup.agents[0].start = Start { q: vec![0.4, -0.2], dq: vec![0.0; 2], reference: Vec::new() };
+        setup.agents[0].manipulability = lambda;
+        setup.agents[0].pushes = vec![pulse(Effect::Torque(constant(&[4.0, 0.0])))];
+        let moved = lambda / (alpha * beta * DAMPING) * 4.0 * 1.5;
+        let outcome = run(&setup);
+        ends_at(&setup, &outcome, 0, 0.4 + moved);
+        ends_at(&setup, &outcome, 1, -0.2);
+        assert!((predict(&setup).unwrap().value[0] - 0.4 - moved).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn thm_verdicts_on_pushes_that_end_and_that_do_not() {
+    let verdict = |pushes: Vec<Push>| {
+        let mut setup = ring((0..2).map(|i| mass(i, &[1.0, 2.0])).collect(), Exchange::PositionVelocity, 10.0);
+        setup.agents[1].pushes = pushes;
+        let mut hypotheses = check(&setup).hypotheses;
+        hypotheses.retain(|h| h.requires.starts_with("external torques"));
+        assert!(hypotheses.len() < 2);
+        hypotheses.pop().map(|h| (h.answer, h.because))
+    };
+    let forever = |effect| Push { effect, from_s: 1.0, until_s: f64::INFINITY };
+    let hand = |target| Effect::HandOnAxes { axes: vec![0], stiffness: vec![5.0], damping: vec![1.0], target };
+    assert_eq!(verdict(Vec::new()), None);
+    let nothing = Push { from_s: 1.0, until_s: 1.0, ..pulse(Effect::Torque(constant(&[1.0; 2]))) };
+    assert_eq!(verdict(vec![nothing]), None);
+    let ends = verdict(vec![pulse(Effect::Torque(constant(&[1.0; 2]))), pulse(hand(constant(&[0.1])))]).unwrap();
+    assert_eq!(ends, (Answer::Holds, "agent-2 is pushed, and the last push ends at t = 3.5 s".into()));
+    let (answer, because) = verdict(vec![forever(Effect::Torque(constant(&[1.0; 2])))]).unwrap();
+    assert!(answer == Answer::NotCovered && because.contains("K s = tau_ext"), "{because}");
+    let (answer, because) = verdict(vec![forever(hand(constant(&[0.1])))]).unwrap();
+    assert!(answer == Answer::NotCovered && because.contains("never lets go of agent-2"), "{because}");
+}

@@ -1,0 +1,354 @@
+//! Pushes: what is read of them, and what every mistake gets.
+
+use std::path::Path;
+
+use forwardstep_core::robot::tree::Axes;
+use forwardstep_io::SourceText;
+use forwardstep_io::scenario::{Scenario, ScenarioError, read_scenario};
+use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push};
+use forwardstep_sim::simulate;
+use miette::Diagnostic;
+
+use super::read;
+
+/// Every way to push once, but for CSV files, which need a folder.
+pub(super) const PUSHES: &str = r#"format = 1
+time = { end_s = 10 }
+[[agents]]
+name = "arm"
+count = 2
+robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }
+[[agents]]
+name = "ur"
+robot.urdf = { file = "ur5e.urdf", locked = { shoulder_lift_joint = 0, elbow_joint = 1, wrist_2_joint = 0, wrist_3_joint = 0 } }
+[[agents]]
+name = "cart"
+robot.point_mass = { dimension = 2, mass_kg = 4.0 }
+[reference.consensus]
+roots_per_s = [1.0, 2.0]
+exchange = "position_velocity"
+manipulability_gain = 2.0
+[law.known]
+[network]
+edges.ring = {}
+[[pushes]]
+on = ["arm", "ur"]
+from_s = 1
+for_s = 0.5
+by.torque_n_m = [5, "2*sin(3*t)"]
+[[pushes]]
+on = ["cart"]
+by.force_n.rows = { times_s = [2, 3, 4], values = [[0, 0], [1, 2], [0, 0]], interpolate = "hold" }
+[[pushes]]
+on = ["cart", "arm-1"]
+from_s = 3
+by.effort = [0.5, 0]
+[[pushes]]
+on = ["ur"]
+from_s = 2
+for_s = 1
+by.wrench = { link = "tool0", at_m = [0, 0, 0.1], axes = "link", force_n = [0, 0, 9], torque_n_m = [1, 0, 0] }
+[[pushes]]
+on = ["arm-2"]
+from_s = 2
+for_s = 1
+by.wrench = { force_n = [3, 4], torque_n_m = [0.5] }
+[[pushes]]
+on = ["arm-1"]
+from_s = 5
+for_s = 2
+by.hand_on_axes = { axes = ["elbow"], stiffness = 40, damping = [3], target_rad.rows = { times_s = [5, 7], values = [0, 1] } }
+[[pushes]]
+on = ["ur"]
+from_s = 6
+for_s = 1
+by.hand_on_point = { link = "tool0", stiffness_n_per_m = 200, damping_n_s_m = 20, target_m = [0.4, "0.1*t", 0.5] }
+"#;
+
+fn pushes(text: &str) -> Vec<Vec<Push>> {
+    let scenario = read(text).unwrap_or_else(|error| panic!("{error}"));
+    scenario.setup.agents.into_iter().map(|agent| agent.pushes).collect()
+}
+
+fn numbers(course: &Course) -> Vec<f64> {
+    match course {
+        Course::Each(functions) => functions
+            .iter()
+            .map(|function| match function {
+                Function::Constant(value) => *value,
+                Function::Formula(formula) => formula.eval(1.0),
+            })
+            .collect(),
+        Course::Table(table) => table.values.clone(),
+    }
+}
+
+#[test]
+fn pushes_reach_the_agents_they_name() {
+    let [first, second, ur, cart] = <[Vec<Push>; 4]>::try_from(pushes(PUSHES)).unwrap();
+    assert_eq!([first.len(), second.len(), ur.len(), cart.len()], [3, 3, 4, 2]);
+
+    // A population by its name, every member alike.
+    assert_eq!((first[0].from_s, first[0].until_s), (1.0, 1.5));
+    assert_eq!(first[0], second[0]);
+    let Effect::Torque(course) = &first[0].effect else { panic!("{first:?}") };
+    assert!((numbers(course)[1] - 2.0 * 3.0_f64.sin()).abs() < 1e-14);
+
+    assert_eq!(cart[0].span_s(), [2.0, 4.0]);
+    let Effect::Torque(Course::Table(table)) = &cart[0].effect else { panic!("{cart:?}") };
+    assert_eq!((table.between, &table.values), (Between::Hold, &vec![0.0, 0.0, 1.0, 2.0, 0.0, 0.0]));
+    assert_eq!(cart[1].span_s(), [3.0, f64::INFINITY]);
+
+    // Force and torque apart, each with zeros for the other.
+    for (push, want) in ur[1..3].iter().zip([[0.0, 0.0, 9.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0, 0.0, 0.0]]) {
+        let Effect::Wrench { grip: Grip::Link { point, axes }, wrench } = &push.effect else { panic!("{push:?}") };
+        assert_eq!((numbers(wrench).as_slice(), point.at, *axes), (&want[..], [0.0, 0.0, 0.1], Axes::Link));
+        // tool0 is rigid with the last joint that is not locked.
+        assert_eq!(point.link.body, Some(1));
+    }
+    for (push, want) in second[1..3].iter().zip([[3.0, 4.0, 0.0], [0.0, 0.0, 0.5]]) {
+        let Effect::Wrench { grip: Grip::Tip(tip), wrench } = &push.effect else { panic!("{push:?}") };
+        assert_eq!((numbers(wrench).as_slice(), tip.length_m), (&want[..], [1.0, 0.8]));
+    }
+
+    let Effect::HandOnAxes { axes, stiffness, damping, target } = &first[2].effect else { panic!("{first:?}") };
+    assert_eq!((axes, stiffness, damping, numbers(target)), (&vec![1], &vec![40.0], &vec![3.0], vec![0.0, 1.0]));
+    let Effect::HandOnPoint { stiffness, damping, target, .. } = &ur[3].effect else { panic!("{ur:?}") };
+    assert_eq!((*stiffness, *damping, numbers(target)), (200.0, 20.0, vec![0.4, 0.1, 0.5]));
+}
+
+#[test]
+fn pushed_scenarios_run() {
+    let scenario = read(PUSHES).unwrap();
+    let mut setup = scenario.setup;
+    setup.time.end_s = 0.5;
+    assert!(simulate(&setup, &mut |_| std::ops::ControlFlow::Continue(())).is_ok());
+    assert!(scenario.notices.iter().all(|notice| !notice.to_string().contains("push")));
+}
+
+#[test]
+fn arms_that_differ_are_held_at_their_own_tips() {
+    let text = PUSHES.replace("count = 2\n", "count = 2\nspread = { seed = 1, relative = 0.2 }\n");
+    let agents = pushes(&text.replace("on = [\"arm-2\"]", "on = [\"arm\"]"));
+    let tip = |pushes: &[Push]| {
+        pushes.iter().find_map(|push| match push.effect {
+            Effect::Wrench { grip: Grip::Tip(tip), .. } => Some(tip.length_m),
+            _ => None,
+        })
+    };
+    let (first, second) = (tip(&agents[0]).unwrap(), tip(&agents[1]).unwrap());
+    assert_ne!(first, second);
+    assert!(first != [1.0, 0.8] && (0.8..1.2).contains(&first[0]));
+}
+
+#[test]
+fn pushes_that_come_too_late_are_noted() {
+    for late in ["from_s = 10\n", "from_s = 20\nfor_s = 1\n"] {
+        let text = PUSHES.replace("on = [\"cart\", \"arm-1\"]\nfrom_s = 3\n", &format!("on = [\"cart\"]\n{late}"));
+        let notices: Vec<_> = read(&text).unwrap().notices.iter().map(ToString::to_string).collect();
+        assert!(notices.contains(&"the push on line 27 does not act during the run".into()), "{notices:?}");
+    }
+}
+
+/// What to replace in [`PUSHES`], by what, the first line of the error, and a part of the help.
+type Case = (&'static str, &'static str, &'static str, &'static str);
+
+#[rustfmt::skip]
+const CASES: &[Case] = &[
+    ("[[pushes]]\non = [\"cart\"]", "[pushes]\non = [\"cart\"]",
+        "", ""),
+    ("on = [\"arm\", \"ur\"]", "on = []",
+        "test.toml:20:6: `on` is empty", ""),
+    ("on = [\"arm\", \"ur\"]", "on = \"arm\"",
+        "test.toml:20:6: found \"arm\" where a list should stand", ""),
+    ("on = [\"arm\", \"ur\"]", "on = [\"arm\", \"ur3\"]",
+        "test.toml:20:14: there is no agent `ur3`", "did you mean `ur`? the agents are `arm-1`, `arm-2`, `ur`, `cart`, `arm`"),
+    ("on = [\"arm\", \"ur\"]", "on = [\"arm\", \"arm-2\"]",
+        "test.toml:20:14: `arm-2` is named twice in `on`", "the name of a counted population stands for all of it"),
+    ("on = [\"arm\", \"ur\"]\n", "",
+        "test.toml:19:1: the key `on` is missing", ""),
+    ("by.torque_n_m = [5, \"2*sin(3*t)\"]\n", "",
+        "test.toml:19:1: the key `by` is missing", ""),
+    ("from_s = 1\nfor_s = 0.5", "from_s = -1\nfor_s = 0.5",
+        "test.toml:21:10: `from_s` is -1, but must not be negative", ""),
+    ("from_s = 1\nfor_s = 0.5", "from_s = 1\nfor_s = 0",
+        "test.toml:22:9: `for_s` is 0, but must be positive", ""),
+    ("from_s = 1\nfor_s = 0.5", "from = 1\nfor_s = 0.5",
+        "test.toml:21:1: unknown key `from`", "did you mean `from_s`?"),
+    ("from_s = 1\nfor_s = 0.5", "from_s = 1\nuntil_s = 0.5",
+        "test.toml:22:1: unknown key `until_s`", "allowed here: `on`, `from_s`, `for_s`, `by`"),
+    ("by.torque_n_m = [5,", "by.torque_nm = [5,",
+        "test.toml:23:4: unknown choice `torque_nm`", "did you mean `torque_n_m`?"),
+    ("by.torque_n_m = [5,", "by.effort = [0, 0]\nby.torque_n_m = [5,",
+        "test.toml:24:4: both `effort` and `torque_n_m` are given, but only one can be", ""),
+    ("by.torque_n_m = [5,", "by.torque_n_m = [5, 6,",
+        "test.toml:23:17: `torque_n_m` has 3 entries, but `arm-1` needs 2", ""),
+    ("by.torque_n_m = [5, \"2*sin(3*t)\"]", "by.torque_n_m = 5",
+        "test.toml:23:17: found 5 where a list of numbers and formulas, or a table of csv or rows should stand", ""),
+    ("by.torque_n_m = [5, \"2*sin(3*t)\"]", "by.torque_n_m = [5, true]",
+        "test.toml:23:21: found true where a number or a formula in t should stand", ""),
+    ("by.torque_n_m = [5, \"2*sin(3*t)\"]", "by.torque_n_m = {}",
+        "test.toml:23:17: nothing is chosen here", "choose one of `csv`, `rows`"),
+    ("by.torque_n_m = [5, \"2*sin(3*t)\"]", "by = \"torque_n_m\"",
+        "test.toml:23:6: `torque_n_m` needs a value", ""),
+    ("\"2*sin(3*t)\"", "\"2*sine(3*t)\"",
+        "test.toml:23:24: there is no function `sine`", "did you mean `sin`?"),
+    ("\"2*sin(3*t)\"", "\"2*sin(3*t\"",
+        "test.toml:23:27: this parenthesis is not closed", ""),
+    ("\"2*sin(3*t)\"", "\"sqrt(1.2 - t)\"",
+        "test.toml:23:21: this formula cannot be shown to have a value at all times from 1 s to 1.5 s", "let the push begin later or end sooner"),
+    ("by.force_n.rows", "by.torque_n_m.rows",
+        "test.toml:26:20: `torque_n_m` does not fit `cart`, whose axis `x` is measured in m", "`effort` takes N m or N as each axis has it"),
+    ("by.torque_n_m = [5,", "by.force_n = [5,",
+        "test.toml:23:14: `force_n` does not fit `arm-1`, whose axis `shoulder` is measured in rad", "`effort` takes N m or N as each axis has it"),
+    ("times_s = [2, 3, 4]", "times_s = [2, 3, 3]",
+        "test.toml:26:39: `times_s` goes from 3 to 3, but must rise", ""),
+    ("times_s = [2, 3, 4]", "times_s = [2, 3]",
+        "test.toml:26:52: `values` has 3 entries, but `times_s` has 2 entries", ""),
+    ("times_s = [2, 3, 4], values = [[0, 0], [1, 2], [0, 0]]", "times_s = [2], values = [[0, 0]]",
+        "test.toml:26:17: a table over time needs at least 2 rows, but this one has 1", ""),
+    ("[1, 2], [0, 0]]", "[1], [0, 0]]",
+        "test.toml:26:64: `force_n` has 1 entry, but `cart` needs 2", ""),
+    ("[1, 2], [0, 0]]", "1, [0, 0]]",
+        "test.toml:26:64: `force_n` has 1 entry, but `cart` needs 2", ""),
+    ("interpolate = \"hold\"", "interpolate = \"cubic\"",
+        "test.toml:26:95: unknown choice `cubic`", "choose one of `linear`, `hold`"),
+    ("link = \"tool0\", at_m", "link = \"tool\", at_m",
+        "test.toml:35:23: `ur` has no link `tool`", "did you mean `tool0`?"),
+    ("link = \"tool0\", at_m", "link = \"base_link\", at_m",
+        "test.toml:35:23: the link `base_link` of `ur` is fixed to the base, so that pushing it does nothing", ""),
+    ("link = \"tool0\", at_m", "at_m",
+        "test.toml:35:1: `ur` has 8 links, but the push does not say on which it acts", "name one, such as `link = \"tool0\"`"),
+    ("axes = \"link\"", "axes = \"tool\"",
+        "test.toml:35:57: unknown choice `tool`", "choose one of `base`, `link`"),
+    ("at_m = [0, 0, 0.1]", "at_m = [0, 0.1]",
+        "test.toml:35:39: found a list of 2 where 3 are needed", ""),
+    ("force_n = [0, 0, 9]", "force_n = [0, 9]",
+        "test.toml:35:75: `force_n` has 2 entries, but `ur` needs 3", ""),
+    ("force_n = [0, 0, 9], torque_n_m = [1, 0, 0] }", "}",
+        "test.toml:35:1: the wrench has neither `force_n` nor `torque_n_m`", "for example `force_n = [0, 0, 10]`"),
+    ("{ force_n = [3, 4]", "{ link = \"tip\", force_n = [3, 4]",
+        "test.toml:40:22: `arm-2` is a planar arm, which is pushed at its tip", "delete `link`"),
+    ("{ force_n = [3, 4]", "{ axes = \"link\", force_n = [3, 4]",
+        "test.toml:40:22: `arm-2` is a planar arm, which is pushed at its tip", "delete `axes`"),
+    ("{ force_n = [3, 4]", "{ at_m = [0, 0, 1], force_n = [3, 4]",
+        "test.toml:40:22: `arm-2` is a planar arm, which is pushed at its tip", "delete `at_m`"),
+    ("{ force_n = [3, 4]", "{ force_n = [3, 4, 5]",
+        "test.toml:40:25: `force_n` has 3 entries, but `arm-2` needs 2", ""),
+    ("torque_n_m = [0.5]", "torque_n_m = [0, 0, 0.5]",
+        "test.toml:40:46: `torque_n_m` has 3 entries, but `arm-2` needs 1", ""),
+    ("on = [\"arm-2\"]", "on = [\"cart\"]",
+        "test.toml:40:1: `cart` is a point mass and has no links", "use `by.force_n`"),
+    ("axes = [\"elbow\"]", "axes = [\"elbo\"]",
+        "test.toml:45:28: `arm-1` has no axis `elbo`", "did you mean `elbow`? its axes are `shoulder`, `elbow`"),
+    ("axes = [\"elbow\"]", "axes = [\"elbow\", \"elbow\"]",
+        "test.toml:45:37: the axis `elbow` is named twice", ""),
+    ("axes = [\"elbow\"]", "axes = []",
+        "test.toml:45:27: `axes` is empty", ""),
+    ("stiffness = 40", "stiffness = -40",
+        "test.toml:45:51: `stiffness` is -40, but must not be negative", ""),
+    ("stiffness = 40", "stiffness = [40, 40]",
+        "test.toml:45:51: `stiffness` has 2 entries, but the hand holds 1 of the axes of `arm-1`", ""),
+    ("stiffness = 40, ", "",
+        "test.toml:45:1: the key `stiffness` is missing", ""),
+    ("damping = [3]", "damping = [-3]",
+        "test.toml:45:66: `damping` is -3, but must not be negative", ""),
+    ("target_rad.rows", "target_m.rows",
+        "test.toml:45:79: `target_m` does not fit `arm-1`, whose axis `elbow` is measured in rad", "`target` takes rad or m as each axis has it"),
+    ("target_rad.rows", "target = [1], target_rad.rows",
+        "test.toml:45:95: both `target_rad` and `target` are given, but they say the same", ""),
+    (", target_rad.rows = { times_s = [5, 7], values = [0, 1] }", "",
+        "test.toml:45:1: the hand has no target", "`target_rad`, `target_m`, or `target` for any axes"),
+    ("stiffness_n_per_m = 200", "stiffness_n_m = 200",
+        "test.toml:50:40: unknown key `stiffness_n_m`", "did you mean `stiffness_n_per_m`?"),
+    ("stiffness_n_per_m = 200", "stiffness_n_per_m = -200",
+        "test.toml:50:60: `stiffness_n_per_m` is -200, but must not be negative", ""),
+    ("target_m = [0.4, \"0.1*t\", 0.5]", "target_m = [0.4, \"0.1*t\"]",
+        "test.toml:50:96: `target_m` has 2 entries, but `ur` needs 3", ""),
+    ("target_m = [0.4, \"0.1*t\", 0.5]", "target_m = [0.4, \"log(t-8)\", 0.5]",
+        "test.toml:50:102: this formula cannot be shown to have a value at all times from 6 s to 7 s", "keep roots, logarithms and quotients"),
+    ("by.force_n.rows = {", "by.force_n.csv = { file = \"push.csv\", interpolate = \"hold\" } #",
+        "test.toml:26:27: cannot read the table `push.csv`: there is no such file", ""),
+];
+
+fn changed(from: &str, to: &str) -> String {
+    assert_eq!(PUSHES.matches(from).count(), 1, "{from:?} must occur once");
+    PUSHES.replace(from, to)
+}
+
+/// The cases that differ, as they were found.
+fn differences<'a>(
+    cases: impl Iterator<Item = (String, Result<Scenario, ScenarioError>, &'a str, &'a str)>,
+) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for (what, result, line, help) in cases {
+        let Err(error) = result else {
+            wrong.push(format!("{what}\n    was accepted"));
+            continue;
+        };
+        let found = error.to_string();
+        let found_help = error.help().map(|help| help.to_string()).unwrap_or_default();
+        if found != line || !found_help.contains(help) || found_help.is_empty() != help.is_empty() {
+            wrong.push(format!("{what}\n    {found:?}\n    {found_help:?}"));
+        }
+    }
+    wrong
+}
+
+#[test]
+fn every_mistake_in_a_push_is_reported_at_its_place() {
+    let cases = CASES.iter().map(|(from, to, line, help)| ((*to).to_owned(), read(&changed(from, to)), *line, *help));
+    let wrong = differences(cases);
+    assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), CASES.len(), wrong.join("\n"));
+}
+
+fn beside(folder: &Path, interpolate: &str) -> Result<Scenario, ScenarioError> {
+    let csv = format!("by.torque_n_m.csv = {{ file = \"push.csv\"{interpolate} }}");
+    let text = changed("by.torque_n_m = [5, \"2*sin(3*t)\"]", &csv).replace("[\"arm\", \"ur\"]", "[\"arm\"]");
+    read_scenario("test", &SourceText::new("test.toml", text), Some(folder))
+}
+
+#[test]
+fn tables_over_time_are_read_by_the_names_of_the_axes() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("push.csv"), "elbow, t_s, shoulder\n1,0.5,2\n3,1.25,4\n5,3,6\n").unwrap();
+    for (interpolate, between) in [("", Between::Linear), (", interpolate = \"hold\"", Between::Hold)] {
+        let scenario = beside(folder.path(), interpolate).unwrap_or_else(|error| panic!("{error}"));
+        for agent in &scenario.setup.agents[..2] {
+            let Effect::Torque(Course::Table(table)) = &agent.pushes[0].effect else { panic!("{agent:?}") };
+            assert_eq!(table.times_s, [0.5, 1.25, 3.0]);
+            assert_eq!((&table.values, table.between), (&vec![2.0, 1.0, 4.0, 3.0, 6.0, 5.0], between));
+            // Cut to the times of the push.
+            assert_eq!(agent.pushes[0].span_s(), [1.0, 1.5]);
+        }
+    }
+}
+
+/// A table, the first line of the error after the folder, and a part of the help.
+#[rustfmt::skip]
+const TABLES: &[(&str, &str, &str)] = &[
+    ("", "push.csv: the table is empty", "they are `t_s`, `shoulder`, `elbow`"),
+    ("t_s,shoulder\n", "push.csv:1:1: the column `elbow` is missing", "they are `t_s`, `shoulder`, `elbow`"),
+    ("t_s,shoulder,elbo\n", "push.csv:1:14: unknown column `elbo`", "did you mean `elbow`?"),
+    ("t_s,shoulder,elbow,elbow\n", "push.csv:1:20: a second column is named `elbow`", ""),
+    ("t_s,shoulder,elbow\n1,2,\n", "push.csv:2:5: `elbow` is empty", ""),
+    ("t_s,shoulder,elbow\n1,2,x\n", "push.csv:2:5: found \"x\" where a number should stand", ""),
+    ("t_s,shoulder,elbow\n1,2,inf\n", "push.csv:2:5: inf is not a finite number", ""),
+    ("t_s,shoulder,elbow\n1,2,3\n1,4,5\n", "push.csv:3:1: `t_s` goes from 1 to 1, but must rise", ""),
+    ("t_s,shoulder,elbow\n1,2\n", "push.csv:2:1: this line has 2 entries, but there are 3 columns", ""),
+    ("t_s,shoulder,elbow\n1,2,3\n", "test.toml:23:21: a table over time needs at least 2 rows, but this one has 1", ""),
+];
+
+#[test]
+fn every_mistake_in_a_table_over_time_is_reported_at_its_place() {
+    let mut wrong = Vec::new();
+    for (table, line, help) in TABLES {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("push.csv"), table).unwrap();
+        let prefix = format!("{}/", folder.path().display());
+        let line = if line.starts_with("push") { format!("{prefix}{line}") } else { (*line).to_owned() };
+        let case = [((*table).to_owned(), beside(folder.path(), ""), line.as_str(), *help)];
+        wrong.extend(differences(case.into_iter()));
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

@@ -1,0 +1,252 @@
+//! Pushes as the closed loop feels them: which piece of each is in force, and the external torque that it gives.
+
+use std::sync::Arc;
+
+use forwardstep_core::LengthError;
+use forwardstep_core::robot::tree::{Axes, PointWrench, Tree, TreeScratch};
+
+use crate::engine::{Happened, Port};
+use crate::push::{Between, Course, Effect, Grip, Push};
+use crate::setup::{AgentSetup, RobotKind, Setup};
+
+/// Everybody who is pushed.
+#[derive(Debug, Default)]
+pub(crate) struct Pushes {
+    people: Vec<Placed>,
+    /// τ_ext of all agents, a block of columns for every population; empty when nobody is pushed.
+    external: Vec<f64>,
+}
+
+/// An agent that is pushed, and where its numbers stand.
+#[derive(Debug)]
+struct Placed {
+    pushed: Pushed,
+    /// First entry of q in the state.
+    state: usize,
+    /// First entry in `external`.
+    external: usize,
+    /// Distance between two axes in either.
+    stride: usize,
+    q: Vec<f64>,
+    dq: Vec<f64>,
+    torque: Vec<f64>,
+}
+
+impl Pushes {
+    /// `ports` says where the agents' numbers stand; a population begins with the agent `first_of` of its members.
+    pub(crate) fn new(setup: &Setup, ports: &[Port], first_of: impl Fn(usize) -> usize) -> Self {
+        let axes = setup.agents.first().map_or(0, |agent| agent.robot.axes.len());
+        let mut pushes = Pushes::default();
+        for (index, (agent, port)) in setup.agents.iter().zip(ports).enumerate() {
+            let Some(pushed) = Pushed::new(index, agent) else { continue };
+            let first = first_of(port.degree);
+            let vector = || vec![0.0; axes];
+            pushes.people.push(Placed {
+                pushed,
+                state: port.state,
+                external: first * axes + (port.degree - first),
+                stride: port.stride,
+                q: vector(),
+                dq: vector(),
+                torque: vector(),
+            });
+            pushes.external = vec![0.0; axes * setup.agents.len()];
+        }
+        // What begins at t = 0 is there from the start.
+        let _ = pushes.happen(0.0);
+        pushes
+    }
+
+    /// Whether an agent is pushed at some time.
+    pub(crate) fn concern(&self, agent: usize) -> bool {
+        self.people.iter().any(|placed| placed.pushed.agent == agent)
+    }
+
+    /// Computes τ_ext of everybody at `t_s` in the state `x`.
+    pub(crate) fn feel(&mut self, t_s: f64, x: &[f64]) {
+        for placed in &mut self.people {
+            let Placed { pushed, state, external, stride, q, dq, torque } = placed;
+            let axes = q.len();
+            for k in 0..axes {
+                q[k] = x[*state + k * *stride];
+                dq[k] = x[*state + (axes + k) * *stride];
+            }
+            let checked = pushed.torque(t_s, q, dq, torque);
+            debug_assert_eq!(checked, Ok(()), "lengths are fixed when the closed loop is built");
+            for (k, torque) in torque.iter().enumerate() {
+                self.external[*external + k * *stride] = *torque;
+            }
+        }
+    }
+
+    /// What [`Pushes::feel`] computed; `None` when nobody is ever pushed.
+    pub(crate) fn felt(&self) -> Option<&[f64]> {
+        if self.people.is_empty() { None } else { Some(&self.external) }
+    }
+
+    /// τ_ext of an agent as [`Pushes::feel`] left it.
+    pub(crate) fn felt_by(&self, agent: usize) -> &[f64] {
+        let placed = self.people.iter().find(|placed| placed.pushed.agent == agent);
+        placed.map_or(&[], |placed| &placed.torque)
+    }
+
+    /// When a push begins, ends or enters another piece next, s.
+    pub(crate) fn next_event_s(&self) -> f64 {
+        let actions = self.people.iter().flat_map(|placed| &placed.pushed.actions);
+        actions.map(Action::next_event_s).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Lets everything happen that is due until `until_s`.
+    pub(crate) fn happen(&mut self, until_s: f64) -> Happened {
+        let actions = self.people.iter_mut().flat_map(|placed| &mut placed.pushed.actions);
+        actions.map(|action| action.pass(until_s)).max().unwrap_or(Happened::Nothing)
+    }
+}
+
+/// One agent with all that acts on it.
+#[derive(Debug)]
+pub(crate) struct Pushed {
+    agent: usize,
+    actions: Vec<Action>,
+    /// What carries forces to the joints, if the robot is a tree.
+    tree: Option<(Arc<Tree>, TreeScratch<f64>)>,
+}
+
+impl Pushed {
+    /// `None` when nothing ever acts on the agent.
+    pub(crate) fn new(index: usize, agent: &AgentSetup) -> Option<Self> {
+        let actions: Vec<Action> = agent.pushes.iter().map(|push| Action::new(push.clone())).collect();
+        let tree = match &agent.robot.kind {
+            RobotKind::Tree(tree) => Some((Arc::clone(tree), tree.scratch())),
+            RobotKind::PlanarArm | RobotKind::PointMass { .. } => None,
+        };
+        (!actions.is_empty()).then_some(Pushed { agent: index, actions, tree })
+    }
+
+    /// τ_ext = the sum of what all pushes do to the agent at `t_s`.
+    ///
+    /// # Errors
+    /// [`LengthError`] when a slice has the wrong length.
+    pub(crate) fn torque(&mut self, t_s: f64, q: &[f64], dq: &[f64], torque: &mut [f64]) -> Result<(), LengthError> {
+        torque.fill(0.0);
+        for action in &self.actions {
+            let Some(piece) = action.piece() else { continue };
+            let tree = self.tree.as_mut().map(|(tree, scratch)| (&**tree, scratch));
+            act(&action.push.effect, (piece, t_s), tree, (q, dq), torque)?;
+        }
+        Ok(())
+    }
+}
+
+/// Adds what one push does at `t_s` by the piece in force.
+fn act(
+    effect: &Effect,
+    (piece, t_s): (usize, f64),
+    tree: Option<(&Tree, &mut TreeScratch<f64>)>,
+    (q, dq): (&[f64], &[f64]),
+    torque: &mut [f64],
+) -> Result<(), LengthError> {
+    let at = |course: &Course, k: usize| course.value_on(piece, k, t_s);
+    match effect {
+        Effect::Torque(course) => {
+            for (k, torque) in torque.iter_mut().enumerate() {
+                *torque += at(course, k);
+            }
+        }
+        Effect::HandOnAxes { axes, stiffness, damping, target } => {
+            for (k, axis) in axes.iter().enumerate() {
+                torque[*axis] += stiffness[k] * (at(target, k) - q[*axis]) - damping[k] * dq[*axis];
+            }
+        }
+        Effect::Wrench { grip: Grip::Tip(tip), wrench } => {
+            let [shoulder, elbow] = tip.torques([q[0], q[1]], [at(wrench, 0), at(wrench, 1)], at(wrench, 2));
+            torque[0] += shoulder;
+            torque[1] += elbow;
+        }
+        Effect::HandOnPoint { grip: Grip::Tip(tip), stiffness, damping, target } => {
+            let (x, dx) = tip.motion([q[0], q[1]], [dq[0], dq[1]]);
+            let pull = [0, 1].map(|k| stiffness * (at(target, k) - x[k]) - damping * dx[k]);
+            let [shoulder, elbow] = tip.torques([q[0], q[1]], pull, 0.0);
+            torque[0] += shoulder;
+            torque[1] += elbow;
+        }
+        Effect::Wrench { grip: Grip::Link { point, axes }, wrench } => {
+            let Some((tree, scratch)) = tree else { return Ok(()) };
+            let [force, moment] = [0, 3].map(|first| [0, 1, 2].map(|k| at(wrench, first + k)));
+            tree.add_wrench(scratch, q, point, &PointWrench { force, moment, axes: *axes }, torque)?;
+        }
+        Effect::HandOnPoint { grip: Grip::Link { point, .. }, stiffness, damping, target } => {
+            let Some((tree, scratch)) = tree else { return Ok(()) };
+            let moves = tree.point_motion(scratch, q, dq, point)?;
+            let force =
+                [0, 1, 2].map(|k| stiffness * (at(target, k) - moves.position[k]) - damping * moves.velocity[k]);
+            tree.add_wrench(scratch, q, point, &PointWrench { force, moment: [0.0; 3], axes: Axes::Base }, torque)?;
+        }
+    }
+    Ok(())
+}
+
+/// A push and how far it has come.
+#[derive(Debug)]
+struct Action {
+    push: Push,
+    span_s: [f64; 2],
+    phase: Phase,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Phase {
+    Waiting,
+    /// Between these rows of its table, if it has one.
+    Acting {
+        piece: usize,
+    },
+    Over,
+}
+
+impl Action {
+    fn new(push: Push) -> Self {
+        let span_s = push.span_s();
+        let phase = if span_s[0] < span_s[1] { Phase::Waiting } else { Phase::Over };
+        Action { push, span_s, phase }
+    }
+
+    fn piece(&self) -> Option<usize> {
+        match self.phase {
+            Phase::Acting { piece } => Some(piece),
+            Phase::Waiting | Phase::Over => None,
+        }
+    }
+
+    fn next_event_s(&self) -> f64 {
+        match (self.phase, self.push.course()) {
+            (Phase::Waiting, _) => self.span_s[0],
+            (Phase::Acting { piece }, Course::Table(table)) => table.times_s[piece + 1].min(self.span_s[1]),
+            (Phase::Acting { .. }, Course::Each(_)) => self.span_s[1],
+            (Phase::Over, _) => f64::INFINITY,
+        }
+    }
+
+    fn pass(&mut self, until_s: f64) -> Happened {
+        let mut happened = Happened::Nothing;
+        while self.next_event_s() <= until_s {
+            let ends = self.span_s[1] <= until_s;
+            let (phase, what) = match (self.phase, self.push.course()) {
+                (Phase::Waiting, Course::Table(table)) => {
+                    let begun = table.times_s.partition_point(|t_s| *t_s <= self.span_s[0]);
+                    (Phase::Acting { piece: begun.clamp(1, table.times_s.len() - 1) - 1 }, Happened::Jumped)
+                }
+                (Phase::Waiting, Course::Each(_)) => (Phase::Acting { piece: 0 }, Happened::Jumped),
+                (Phase::Acting { piece }, Course::Table(table)) if !ends => {
+                    // A polygon has a kink where rows meet: the rate is continuous there, and steps may stay long.
+                    let what = if table.between == Between::Linear { Happened::Sampled } else { Happened::Jumped };
+                    (Phase::Acting { piece: piece + 1 }, what)
+                }
+                _ => (Phase::Over, Happened::Jumped),
+            };
+            self.phase = phase;
+            happened = happened.max(what);
+        }
+        happened
+    }
+}
