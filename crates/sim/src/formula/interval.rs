@@ -113,33 +113,33 @@ impl Interval {
         Interval::new(f(self.low), f(self.high)).widened()
     }
 
-    pub(super) fn sqrt(self) -> Self {
+    pub(super) fn sqrt_of(self) -> Self {
         if self.low >= 0.0 { Interval::new(libm::sqrt(self.low), libm::sqrt(self.high)) } else { Interval::WHOLE }
     }
 
-    pub(super) fn exp(self) -> Self {
+    pub(super) fn exp_of(self) -> Self {
         let Interval { low, high } = self.rising(libm::exp);
         Interval::new(low.max(0.0), high)
     }
 
-    pub(super) fn log(self) -> Self {
+    pub(super) fn log_of(self) -> Self {
         if self.low >= 0.0 { self.rising(libm::log) } else { Interval::WHOLE }
     }
 
-    pub(super) fn tanh(self) -> Self {
+    pub(super) fn tanh_of(self) -> Self {
         let Interval { low, high } = self.rising(libm::tanh);
         Interval::new(low.max(-1.0), high.min(1.0))
     }
 
-    pub(super) fn atan(self) -> Self {
+    pub(super) fn atan_of(self) -> Self {
         self.rising(libm::atan)
     }
 
     /// By products of sizes, each of which is monotone as computed.
-    pub(super) fn powi(self, n: i32) -> Self {
+    pub(super) fn powi_of(self, n: i32) -> Self {
         let even = n % 2 == 0;
         if n < 0 {
-            return Interval::new(1.0, 1.0).div(self.powi(-n));
+            return Interval::new(1.0, 1.0).div(self.powi_of(-n));
         }
         if even {
             let Interval { low, high } = self.abs();
@@ -150,7 +150,7 @@ impl Interval {
     }
 
     /// To a constant power that is not a small whole number.
-    pub(super) fn powf(self, exponent: f64) -> Self {
+    pub(super) fn powf_of(self, exponent: f64) -> Self {
         if self.low < 0.0 || self.low == 0.0 && exponent < 0.0 {
             return Interval::WHOLE;
         }
@@ -159,11 +159,11 @@ impl Interval {
         Interval::new(low.max(0.0), high)
     }
 
-    pub(super) fn sin(self) -> Self {
+    pub(super) fn sin_of(self) -> Self {
         self.wave(FRAC_PI_2)
     }
 
-    pub(super) fn cos(self) -> Self {
+    pub(super) fn cos_of(self) -> Self {
         self.wave(0.0)
     }
 

@@ -132,7 +132,7 @@ fn what_makes_no_link_is_refused() {
         "the probability of leaving a burst is 0, but must be positive"
     );
     assert_eq!(
-        wrong(|l| l.every_s = 2.0_f64.powi(-30)),
+        wrong(|l| l.every_s = 1.0 / f64::from(1_u32 << 30)),
         "the link would carry 1073741825 packets, but at most 100000000 are accepted"
     );
     let packet = |send_s, delay_s| Packet { send_s, delay_s: Some(delay_s) };
