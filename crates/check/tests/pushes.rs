@@ -57,7 +57,7 @@ fn mass(index: usize, roots_per_s: &[f64]) -> AgentSetup {
 
 /// A ring with different weights and constant delays, one of which is none.
 fn ring(agents: Vec<AgentSetup>, exchange: Exchange, end_s: f64) -> Setup {
-    let edge = |from, to, weight, delay| Edge { from, to, weight, delay };
+    let edge = |from, to, weight: f64, delay| Edge { from, to, weight: weight.into(), delay };
     let edges: Vec<Edge> = match agents.len() {
         1 => Vec::new(),
         2 => vec![edge(0, 1, 1.5, 0), edge(1, 0, 0.7, 1)],
@@ -68,12 +68,14 @@ fn ring(agents: Vec<AgentSetup>, exchange: Exchange, end_s: f64) -> Setup {
             agents: agents.len(),
             schedule: Schedule::Fixed(edges),
             delays: [0.3, 0.0, 0.75].map(|s| Delay::Constant { s }).to_vec(),
+            weights: Vec::new(),
         },
         agents,
         reference: ReferenceKind::Consensus,
         exchange,
         time: TimeSpan { end_s, record_every_s: 5.0 },
         solver: Solver { method: Method::Adaptive { rtol: 1e-10, atol: 1e-11 }, ..Solver::default() },
+        control: None,
     }
 }
 
@@ -154,7 +156,7 @@ fn normaliser(setup: &Setup, influence: &[f64]) -> f64 {
         let alpha = polynomial(&agent.roots_per_s).unwrap();
         let heard = edges.iter().filter(|edge| edge.to == i).map(|edge| {
             let velocity = if setup.exchange == Exchange::PositionVelocity { 1.0 / agent.roots_per_s[0] } else { 0.0 };
-            edge.weight * (alpha[1] / alpha[0] + setup.network.delays[edge.delay].max_s() - velocity)
+            edge.weight.constant().unwrap() * (alpha[1] / alpha[0] + setup.network.delays[edge.delay].max_s() - velocity)
         });
         influence[i] * (1.0 + heard.sum::<f64>())
     };
