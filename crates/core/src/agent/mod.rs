@@ -94,7 +94,7 @@ pub enum StepError {
 /// use forwardstep_core::Gain;
 ///
 /// let reference = Consensus::<Position>::new([(&[1.0, 2.0][..], 0.0)]).expect("two positive roots");
-/// let damping = Gain::Scalar(8.0).resolve(1, &[]).expect("a positive gain");
+/// let damping = Gain::Number(8.0).resolve(1, &[]).expect("a positive gain");
 /// let law = SlotineLi { damping, adaptation: None };
 /// let mut agent = Agent::new(PointMass { dimension: 1 }, reference, law, vec![2.0], Limiter::none(1))?;
 ///
