@@ -120,7 +120,7 @@ fn signals(absence: Option<Absence>, agents: &[AgentSetup]) -> Markup {
                 (card("position", "Positions", "q", ""))
                 (card("torque", "Torques", "τ, after any limit", ""))
                 @if agents.iter().any(|agent| !agent.pushes.is_empty()) {
-                    (card("external", "External torques", "τ_ext, what pushes do to the axes", ""))
+                    (card("external", "External torques", "τ_ext, by pushes", ""))
                 }
                 (card("velocity", "Speed and reference", "q̇, and z dashed", ""))
                 (card("error", "Tracking error", "s = q̇ − z", ""))
