@@ -156,7 +156,8 @@ fn normaliser(setup: &Setup, influence: &[f64]) -> f64 {
         let alpha = polynomial(&agent.roots_per_s).unwrap();
         let heard = edges.iter().filter(|edge| edge.to == i).map(|edge| {
             let velocity = if setup.exchange == Exchange::PositionVelocity { 1.0 / agent.roots_per_s[0] } else { 0.0 };
-            edge.weight.constant().unwrap() * (alpha[1] / alpha[0] + setup.network.delays[edge.delay].max_s() - velocity)
+            edge.weight.constant().unwrap()
+                * (alpha[1] / alpha[0] + setup.network.delays[edge.delay].max_s() - velocity)
         });
         influence[i] * (1.0 + heard.sum::<f64>())
     };

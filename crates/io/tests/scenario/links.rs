@@ -183,6 +183,7 @@ fn one_edge_is_one_link() {
 fn logged(log: &str) -> Result<Scenario, ScenarioError> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("radio.csv"), log).unwrap();
+    super::seeds::keep("csv", log);
     let text =
         replayed("radio.csv").replace(", { from = \"cart-4\", to = \"cart-2\", delay.log.file = \"radio.csv\" }", "");
     beside(&text, folder.path())

@@ -345,6 +345,7 @@ fn every_mistake_in_a_table_over_time_is_reported_at_its_place() {
     for (table, line, help) in TABLES {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("push.csv"), table).unwrap();
+        super::seeds::keep("csv", table);
         let prefix = format!("{}/", folder.path().display());
         let line = if line.starts_with("push") { format!("{prefix}{line}") } else { (*line).to_owned() };
         let case = [((*table).to_owned(), beside(folder.path(), ""), line.as_str(), *help)];
