@@ -348,7 +348,7 @@ fn what_is_wrong_is_said_and_nothing_is_harmed() {
             "scenario.toml",
             Some(text("scenario.toml").replace("\"arm", "\"leg").into_bytes()),
             "",
-            "there is no column `leg-1.q.1`",
+            "there is no column `leg-1.q.shoulder`",
         ),
         (
             "scenario.toml",
@@ -372,15 +372,15 @@ fn what_is_wrong_is_said_and_nothing_is_harmed() {
         ("trajectory.csv", Some(replaced("trajectory.csv", "\n0.1,", "\n7,")), without, "time does not rise at row 3"),
         (
             "trajectory.csv",
-            Some(replaced("trajectory.csv", "arm-1.q.1", "arm-1.p.1")),
+            Some(replaced("trajectory.csv", "arm-1.q.shoulder", "arm-1.p.shoulder")),
             without,
-            "there is no column `arm-1.q.1`",
+            "there is no column `arm-1.q.shoulder`",
         ),
         (
             "trajectory.csv",
-            Some(replaced("trajectory.csv", "arm-1.q.1", "arm-1.q.2")),
+            Some(replaced("trajectory.csv", "arm-1.q.shoulder", "arm-1.q.elbow")),
             without,
-            "two columns `arm-1.q.2`",
+            "two columns `arm-1.q.elbow`",
         ),
     ];
     for (name, instead, out_of_the_way, expected) in cases {

@@ -8,11 +8,15 @@ mod cases;
 use std::ops::ControlFlow;
 
 use cases::{Case, cases, setup};
-use forwardstep_sim::simulate;
+use forwardstep_sim::{Actuators, Control, Sensors, Setup, VelocitySensor, simulate};
 
 /// FNV-1a over the bits of every number recorded.
 fn digest(case: &Case) -> u64 {
-    let outcome = simulate(&setup(case), &mut |_| ControlFlow::Continue(())).unwrap();
+    digest_of(&setup(case))
+}
+
+fn digest_of(setup: &Setup) -> u64 {
+    let outcome = simulate(setup, &mut |_| ControlFlow::Continue(())).unwrap();
     let numbers = outcome.recording.t_s.iter().chain(outcome.recording.columns.iter().flat_map(|c| &c.values));
     numbers
         .flat_map(|number| number.to_bits().to_le_bytes())
@@ -32,6 +36,23 @@ fn digest_same_bits_on_repeat_and_beside_other_threads() {
         });
         assert_eq!(alone, together, "{threads} threads");
     }
+}
+
+#[test]
+fn digest_sampled_runs_have_the_same_bits_as_on_the_machine_that_wrote_them() {
+    let mut setup = cases::setup(&cases()[14]);
+    setup.control = Some(Control {
+        sample_hz: 400.0,
+        computation_delay_s: 0.001,
+        sensors: Sensors {
+            velocity: VelocitySensor::Filtered { cut_off_hz: 50.0 },
+            position_noise: 1e-5,
+            seed: 3,
+            ..Sensors::default()
+        },
+        actuators: Actuators { torque_rate_limit: Some(vec![500.0; 2]), ..Actuators::default() },
+    });
+    assert_eq!(format!("{:016x}", digest_of(&setup)), "f9d5a9eb3808e13b");
 }
 
 #[test]

@@ -10,8 +10,8 @@ use forwardstep_sim::graph::Edge;
 use forwardstep_sim::push::{Course, Effect, Function, Grip, Push};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, Exchange, Law, Method, Network, ReferenceKind, RobotKind, RobotSetup, Setup, Solver,
-    Start, TimeSpan, simulate,
+    Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Law, Method, Network, ReferenceKind, RobotKind,
+    RobotSetup, Sensors, Setup, Solver, Start, TimeSpan, simulate,
 };
 
 fn arm(index: usize, order: usize) -> AgentSetup {
@@ -50,7 +50,7 @@ fn arm(index: usize, order: usize) -> AgentSetup {
 }
 
 /// The first two of `agents` arms hear each other, the others nobody. Fixed steps, so that the others have no say.
-fn bits_of_the_first_two(agents: usize, order: usize) -> Vec<u64> {
+fn bits_of_the_first_two(agents: usize, order: usize, control: &Option<Control>) -> Vec<u64> {
     let edge = |from, to, delay| Edge { from, to, weight: 1.3.into(), delay };
     let phase = |edges, dwell_s| Phase { edges, dwell_s };
     let setup = Setup {
@@ -68,7 +68,7 @@ fn bits_of_the_first_two(agents: usize, order: usize) -> Vec<u64> {
         },
         time: TimeSpan { end_s: 3.0, record_every_s: 0.1 },
         solver: Solver { method: Method::Fixed { step_s: 0.01 }, ..Solver::default() },
-        control: None,
+        control: control.clone(),
     };
     let outcome = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap();
     let columns = outcome.recording.columns.iter().filter(|column| column.agent < 2);
@@ -77,12 +77,20 @@ fn bits_of_the_first_two(agents: usize, order: usize) -> Vec<u64> {
 
 #[test]
 fn digest_lanes_carry_the_bits_of_single_agents() {
-    for order in [1, 3] {
-        let alone = bits_of_the_first_two(2, order);
+    let noisy = Sensors { position_noise: 1e-4, velocity_noise: 1e-3, seed: 5, ..Sensors::default() };
+    let sampled = Control {
+        sample_hz: 250.0,
+        computation_delay_s: 0.001,
+        sensors: noisy,
+        actuators: Actuators { torque_rate_limit: Some(vec![900.0, 500.0]), ..Actuators::default() },
+    };
+    for (order, control) in [(1, None), (3, None), (2, Some(sampled))] {
+        let alone = bits_of_the_first_two(2, order, &control);
         assert!(alone.len() > 2 * 31);
         // Lanes that are partly idle, full, and full with a second squad.
         for agents in [3, 8, 11] {
-            assert!(bits_of_the_first_two(agents, order) == alone, "{agents} agents, order {order}");
+            let together = bits_of_the_first_two(agents, order, &control);
+            assert!(together == alone, "{agents} agents, order {order}, {control:?}");
         }
     }
 }

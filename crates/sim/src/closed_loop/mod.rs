@@ -5,14 +5,18 @@
 //! - `sampler`: the digital controllers of a population, with their sensors.
 //! - `sampling`: the instants at which they sample and act.
 //! - `pushes`: what acts on the robots from outside.
-//! - `assemble`: from a [`crate::Setup`] to populations, with everything checked.
+//! - `members`: from agents to populations.
+//! - `valid`: what makes a [`crate::Setup`] meaningless.
+//! - `assemble`: all populations and what joins them: the right-hand side as a whole, and its events.
 
 mod assemble;
 mod fleet;
+mod members;
 mod population;
 mod pushes;
 mod sampler;
 mod sampling;
+mod valid;
 
 pub(crate) use assemble::ClosedLoop;
-pub use assemble::SetupError;
+pub use valid::SetupError;

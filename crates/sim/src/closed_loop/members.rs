@@ -1,0 +1,211 @@
+//! From agents to populations: robots, reference dynamics, laws and, under digital control, samplers.
+
+use std::sync::Arc;
+
+use forwardstep_core::agent::{Agent, Limiter, VelocityFilter};
+use forwardstep_core::law::SlotineLi;
+use forwardstep_core::reference::{Backstepping, Consensus, Exchange as CoreExchange, PureIntegral, Reference};
+use forwardstep_core::robot::tree::Tree;
+use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass};
+use forwardstep_core::{Gain, InverseQuadratic, Lanes, LengthError, ResolvedGain};
+
+use super::fleet::Member;
+use super::population::{Columns, Population};
+use super::sampler::{Sampler, Sensor};
+use super::valid::SetupError;
+use crate::setup::{AgentSetup, Control, Law, ReferenceKind, RobotKind, Setup, VelocitySensor};
+
+/// Populations of at least so many agents are worked on in lanes.
+const LANES_FROM: usize = 3;
+/// Agents that can stand side by side: one robot model, one order, all adaptive or none. Groups in order of their first
+/// agent.
+pub(super) fn populations(agents: &[AgentSetup]) -> Vec<Vec<usize>> {
+    let alike = |a: &AgentSetup, b: &AgentSetup| {
+        let same_model = match (&a.robot.kind, &b.robot.kind) {
+            (RobotKind::Tree(a), RobotKind::Tree(b)) => Arc::ptr_eq(a, b),
+            (RobotKind::PlanarArm, RobotKind::PlanarArm) => true,
+            (RobotKind::PointMass { dimension: a }, RobotKind::PointMass { dimension: b }) => a == b,
+            _ => false,
+        };
+        same_model
+            && a.roots_per_s.len() == b.roots_per_s.len()
+            && matches!(a.law, Law::Adaptive { .. }) == matches!(b.law, Law::Adaptive { .. })
+    };
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (index, agent) in agents.iter().enumerate() {
+        match groups.iter_mut().find(|group| alike(&agents[group[0]], agent)) {
+            Some(group) => group.push(index),
+            None => groups.push(vec![index]),
+        }
+    }
+    groups
+}
+
+pub(super) fn population<X: CoreExchange>(setup: &Setup, group: &[usize]) -> Result<Box<dyn Columns>, SetupError> {
+    let first = &setup.agents[group[0]];
+    match &first.robot.kind {
+        RobotKind::Tree(tree) => boxed::<Tree, X>(Tree::clone(tree), setup, group),
+        RobotKind::PlanarArm => boxed::<PlanarArm, X>(PlanarArm, setup, group),
+        RobotKind::PointMass { dimension } => boxed::<PointMass, X>(PointMass { dimension: *dimension }, setup, group),
+    }
+}
+
+fn boxed<R, X>(robot: R, setup: &Setup, group: &[usize]) -> Result<Box<dyn Columns>, SetupError>
+where
+    R: Lagrangian<f64> + Lagrangian<Lanes<8>> + Clone + 'static,
+    X: CoreExchange,
+{
+    let mut members = Vec::new();
+    for &agent in group {
+        members.push(member(&robot, &setup.agents[agent], agent)?);
+    }
+    let first = &setup.agents[group[0]];
+    let design = |agent: usize| (&setup.agents[agent].roots_per_s[..], setup.agents[agent].manipulability);
+    let roots = |error| SetupError::Roots { agent: first.name.clone(), error };
+    match setup.reference {
+        ReferenceKind::Consensus => columns(robot, members, setup, |group| {
+            Consensus::<X>::new(group.iter().map(|&agent| design(agent))).map_err(roots)
+        }),
+        ReferenceKind::PureIntegral => columns(robot, members, setup, |group| {
+            PureIntegral::<X>::new(group.iter().map(|&agent| design(agent))).map_err(roots)
+        }),
+        ReferenceKind::Backstepping { filter_s, acceleration_limit } => columns(robot, members, setup, |group| {
+            let limit = acceleration_limit.unwrap_or(f64::INFINITY);
+            Ok(Backstepping::new(group.iter().map(|_| (filter_s, limit)))?)
+        }),
+    }
+}
+
+/// A population with the reference dynamics that `reference` makes for a group of agents; under digital control every
+/// agent has its own.
+fn columns<R, F>(
+    robot: R,
+    members: Vec<Member>,
+    setup: &Setup,
+    reference: impl Fn(&[usize]) -> Result<F, SetupError>,
+) -> Result<Box<dyn Columns>, SetupError>
+where
+    R: Lagrangian<f64> + Lagrangian<Lanes<8>> + Clone + 'static,
+    F: Reference,
+{
+    let group: Vec<usize> = members.iter().map(|member| member.agent).collect();
+    let sampler = match &setup.control {
+        None => None,
+        Some(control) => {
+            let (mut agents, mut sensors) = (Vec::new(), Vec::new());
+            for member in &members {
+                agents.push(digital(&robot, member, reference(&[member.agent])?, setup, control)?);
+                sensors.push(sensor(member.agent, setup, control)?);
+            }
+            Some(Sampler::new(agents, sensors, control, setup.agents[group[0]].robot.axes.len()))
+        }
+    };
+    let reference = reference(&group)?;
+    // What a held torque does is not what the ledger balances.
+    let ledger = setup.solver.ledger && sampler.is_none();
+    // Eight lanes cost about as much as two or three robots one at a time, so idle lanes pay from three robots on.
+    Ok(if members.len() < LANES_FROM {
+        Box::new(Population::<R, F, f64>::new(robot, members, reference, sampler, ledger))
+    } else {
+        Box::new(Population::<R, F, Lanes<8>>::new(robot, members, reference, sampler, ledger))
+    })
+}
+
+/// The sampled controller of one member.
+fn digital<R: Lagrangian<f64> + Clone, F: Reference>(
+    robot: &R,
+    member: &Member,
+    reference: F,
+    setup: &Setup,
+    control: &Control,
+) -> Result<Agent<R, F>, SetupError> {
+    let agent = &setup.agents[member.agent];
+    let name = || agent.name.clone();
+    let axes = agent.robot.axes.len();
+    let unlimited = || vec![f64::INFINITY; axes];
+    let mut limit = control.actuators.torque_limit.clone().unwrap_or_else(unlimited);
+    for (limit, effort) in limit.iter_mut().zip(member.effort_limits.iter().flatten()) {
+        *limit = limit.min(*effort);
+    }
+    let rate = control.actuators.torque_rate_limit.clone().unwrap_or_else(unlimited);
+    for (what, values) in [("the torque limits", &limit), ("the torque rate limits", &rate)] {
+        LengthError::check(what, axes, values.len()).map_err(|error| SetupError::Length { agent: name(), error })?;
+    }
+    let limiter = Limiter::new(limit, rate).map_err(|error| SetupError::Limiter { agent: name(), error })?;
+    let theta_hat = match &agent.law {
+        Law::Adaptive { estimate_start, .. } => estimate_start.clone(),
+        Law::Known { .. } => agent.robot.theta.clone(),
+    };
+    Agent::new(robot.clone(), reference, member.law.clone(), theta_hat, limiter)
+        .map_err(|error| SetupError::Length { agent: name(), error })
+}
+
+fn sensor(agent: usize, setup: &Setup, control: &Control) -> Result<Sensor, SetupError> {
+    let filter = match control.sensors.velocity {
+        VelocitySensor::Measured => None,
+        VelocitySensor::Filtered { cut_off_hz } => Some(
+            VelocityFilter::new(core::f64::consts::TAU * cut_off_hz, setup.agents[agent].robot.axes.len())
+                .map_err(SetupError::VelocityFilter)?,
+        ),
+    };
+    Ok(Sensor::new(control.sensors, agent, filter))
+}
+
+fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Result<Member, SetupError> {
+    let (m, p) = (robot.dof(), robot.parameter_count());
+    let name = || agent.name.clone();
+    let length = |what, need, got| {
+        LengthError::check(what, need, got).map_err(|error| SetupError::Length { agent: name(), error })
+    };
+    length("axes", m, agent.robot.axes.len())?;
+    length("theta", p, agent.robot.theta.len())?;
+    let mut mass = vec![0.0; m * m];
+    robot
+        .mass_matrix(&mut robot.scratch(), &agent.start.q, &agent.robot.theta, &mut mass)
+        .map_err(|error| SetupError::Length { agent: name(), error })?;
+    let diagonal: Vec<f64> = mass.iter().step_by(m + 1).copied().collect();
+
+    let resolve = |gain: &Gain, which, size, scale: &[f64]| -> Result<ResolvedGain, SetupError> {
+        gain.resolve(size, scale).map_err(|error| SetupError::Gain { agent: name(), gain: which, error })
+    };
+    let (damping, adaptation) = match &agent.law {
+        Law::Known { damping } => (damping, None),
+        Law::Adaptive { damping, adaptation, estimate_start } => {
+            length("start of the estimate", p, estimate_start.len())?;
+            (damping, Some(adaptation))
+        }
+    };
+    let adaptation = match adaptation {
+        Some(gain) => {
+            // Γ = ω² diag(scale): one ω is multiplied in here, the other by `resolve`.
+            let omega = if let Gain::Bandwidth(omega) = gain { *omega } else { 1.0 };
+            let scale = robot.adaptation_scale(&agent.start.q, &agent.robot.theta);
+            let scale: Vec<f64> = scale.iter().map(|scale| omega * scale).collect();
+            Some(resolve(gain, "Γ", p, &scale)?)
+        }
+        None => None,
+    };
+    let estimate_cost = match &adaptation {
+        Some(gamma) => {
+            Some(InverseQuadratic::new(gamma).map_err(|error| SetupError::Gain { agent: name(), gain: "Γ", error })?)
+        }
+        None => None,
+    };
+    let law = SlotineLi { damping: resolve(damping, "K", m, &diagonal)?, adaptation };
+    let effort_limits = if agent.enforce_limits {
+        let limit = |axis: &crate::setup::Axis| {
+            axis.effort_limit.ok_or_else(|| SetupError::NoEffortLimit { agent: name(), axis: axis.name.clone() })
+        };
+        Some(agent.robot.axes.iter().map(limit).collect::<Result<_, _>>()?)
+    } else {
+        None
+    };
+    Ok(Member {
+        agent: index,
+        theta: agent.robot.theta.clone(),
+        viscous: agent.robot.viscous(),
+        law,
+        estimate_cost,
+        effort_limits,
+    })
+}

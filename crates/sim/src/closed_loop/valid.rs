@@ -1,0 +1,220 @@
+//! What makes a setup meaningless.
+
+use forwardstep_core::agent::{FilterError, LimiterError};
+use forwardstep_core::reference::{BacksteppingError, RootsError};
+use forwardstep_core::{GainError, LengthError};
+use thiserror::Error;
+
+use crate::network::NetworkError;
+use crate::push::PushError;
+use crate::setup::{AgentSetup, Control, Exchange, Law, Method, ReferenceKind, Setup};
+
+/// Why a setup cannot be simulated.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SetupError {
+    /// The network has no meaning.
+    #[error("network: {0}")]
+    Network(#[from] NetworkError),
+    /// The network was made for another number of agents.
+    #[error("the network has {network} agents, but {agents} are described")]
+    AgentCount {
+        /// Vertices of the network.
+        network: usize,
+        /// Agents described.
+        agents: usize,
+    },
+    /// Consensus needs all agents in the same space.
+    #[error("agent `{agent}` has {axes} axes, but `{first}` has {first_axes}; agents can only agree in the same space")]
+    AxesDiffer {
+        /// The agent that differs.
+        agent: String,
+        /// Its number of axes.
+        axes: usize,
+        /// The first agent.
+        first: String,
+        /// The first agent's number of axes.
+        first_axes: usize,
+    },
+    /// A vector of one agent has the wrong length.
+    #[error("agent `{agent}`: {error}")]
+    Length {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: LengthError,
+    },
+    /// A number of one agent is not finite.
+    #[error("agent `{agent}`: {what} has the entry {value}, which is not a finite number")]
+    NotFinite {
+        /// The agent.
+        agent: String,
+        /// Which vector.
+        what: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// The roots of one agent.
+    #[error("agent `{agent}`: {error}")]
+    Roots {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: RootsError,
+    },
+    /// The filter of the backstepping baseline.
+    #[error(transparent)]
+    Backstepping(#[from] BacksteppingError),
+    /// The reference dynamics do not go with what is exchanged.
+    #[error("the backstepping baseline exchanges positions only")]
+    BacksteppingExchange,
+    /// A gain of one agent.
+    #[error("agent `{agent}`: {gain}: {error}")]
+    Gain {
+        /// The agent.
+        agent: String,
+        /// `K` or `Γ`.
+        gain: &'static str,
+        /// What is wrong.
+        error: GainError,
+    },
+    /// A push on one agent.
+    #[error("agent `{agent}`, push {push}: {error}")]
+    Push {
+        /// The agent.
+        agent: String,
+        /// Which of its pushes, from one.
+        push: usize,
+        /// What is wrong.
+        error: PushError,
+    },
+    /// Limits are to be enforced, but an axis has none.
+    #[error("agent `{agent}`: limits are to be enforced, but axis `{axis}` has no effort limit")]
+    NoEffortLimit {
+        /// The agent.
+        agent: String,
+        /// The axis.
+        axis: String,
+    },
+    /// A torque limit of one agent.
+    #[error("agent `{agent}`: {error}")]
+    Limiter {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: LimiterError,
+    },
+    /// The filter that gives velocities.
+    #[error(transparent)]
+    VelocityFilter(FilterError),
+    /// A number of the digital control that makes no sense.
+    #[error("{what} is {value}, but {requirement}")]
+    Control {
+        /// What it is.
+        what: &'static str,
+        /// The value.
+        value: f64,
+        /// What it must be.
+        requirement: &'static str,
+    },
+    /// A time, tolerance or step that is not positive.
+    #[error("{what} is {value}, but must be positive and finite")]
+    NotPositive {
+        /// What it is.
+        what: &'static str,
+        /// The value.
+        value: f64,
+    },
+}
+
+/// Everything that does not need a robot's kernels.
+pub(super) fn check(setup: &Setup) -> Result<(), SetupError> {
+    setup.network.validate()?;
+    if setup.network.agents != setup.agents.len() {
+        return Err(SetupError::AgentCount { network: setup.network.agents, agents: setup.agents.len() });
+    }
+    let positive = |what, value: f64| {
+        if value > 0.0 && value.is_finite() { Ok(()) } else { Err(SetupError::NotPositive { what, value }) }
+    };
+    positive("the horizon", setup.time.end_s)?;
+    positive("the recording interval", setup.time.record_every_s)?;
+    positive("the smallest step", setup.solver.min_step_s)?;
+    setup.solver.max_step_s.map_or(Ok(()), |step| positive("the largest step", step))?;
+    match setup.solver.method {
+        Method::Adaptive { rtol, atol } => {
+            positive("the relative tolerance", rtol)?;
+            positive("the absolute tolerance", atol)?;
+        }
+        Method::Fixed { step_s } => positive("the step", step_s)?,
+    }
+    setup.control.as_ref().map_or(Ok(()), check_control)?;
+    if matches!(setup.reference, ReferenceKind::Backstepping { .. }) && setup.exchange != Exchange::Position {
+        return Err(SetupError::BacksteppingExchange);
+    }
+    let first = &setup.agents[0];
+    let axes = first.robot.axes.len();
+    for agent in &setup.agents {
+        check_agent(agent, first, axes, setup.reference.free_derivatives(agent))?;
+    }
+    Ok(())
+}
+
+fn check_control(control: &Control) -> Result<(), SetupError> {
+    let wrong = |what, value, requirement| Err(SetupError::Control { what, value, requirement });
+    let Control { sample_hz, computation_delay_s, sensors, actuators } = control;
+    if !(*sample_hz > 0.0 && sample_hz.is_finite()) {
+        return wrong("the sample rate", *sample_hz, "must be positive and finite");
+    }
+    if !(*computation_delay_s >= 0.0 && *computation_delay_s <= 1.0 / sample_hz) {
+        return wrong("the computation delay", *computation_delay_s, "must be from 0 to one period");
+    }
+    for (what, value) in [
+        ("the noise of positions", sensors.position_noise),
+        ("the noise of velocities", sensors.velocity_noise),
+        ("the step of positions", sensors.position_quantum),
+        ("the step of velocities", sensors.velocity_quantum),
+        ("the step of torques", actuators.torque_quantum),
+    ] {
+        if !(value >= 0.0 && value.is_finite()) {
+            return wrong(what, value, "must be finite and not negative");
+        }
+    }
+    Ok(())
+}
+
+fn check_agent(agent: &AgentSetup, first: &AgentSetup, axes: usize, vectors: usize) -> Result<(), SetupError> {
+    if agent.robot.axes.len() != axes {
+        return Err(SetupError::AxesDiffer {
+            agent: agent.name.clone(),
+            axes: agent.robot.axes.len(),
+            first: first.name.clone(),
+            first_axes: axes,
+        });
+    }
+    let vector = |what: &'static str, need: usize, values: &[f64]| {
+        LengthError::check(what, need, values.len())
+            .map_err(|error| SetupError::Length { agent: agent.name.clone(), error })?;
+        match values.iter().find(|value| !value.is_finite()) {
+            Some(value) => Err(SetupError::NotFinite { agent: agent.name.clone(), what, value: *value }),
+            None => Ok(()),
+        }
+    };
+    vector("the start position", axes, &agent.start.q)?;
+    vector("the start velocity", axes, &agent.start.dq)?;
+    for z in &agent.start.reference {
+        vector("the start of the reference", axes, z)?;
+    }
+    if agent.start.reference.len() > vectors {
+        let (need, got) = (vectors, agent.start.reference.len());
+        let error = LengthError { what: "the start of the reference", need, got };
+        return Err(SetupError::Length { agent: agent.name.clone(), error });
+    }
+    vector("theta", agent.robot.theta.len(), &agent.robot.theta)?;
+    if let Law::Adaptive { estimate_start, .. } = &agent.law {
+        vector("the start of the estimate", agent.robot.theta.len(), estimate_start)?;
+    }
+    for (k, push) in agent.pushes.iter().enumerate() {
+        let problem = |error| SetupError::Push { agent: agent.name.clone(), push: k + 1, error };
+        push.check(&agent.robot).map_err(problem)?;
+    }
+    Ok(())
+}
