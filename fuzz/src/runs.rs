@@ -115,6 +115,7 @@ fn write(
         verdicts,
         predicted_agreement,
         goal: scenario.goal.map(|goal| GoalOutcome { goal, met: goal.is_met(setup, outcome, metrics) }),
+        digital: None,
         notices: scenario.notices.iter().map(ToString::to_string).collect(),
     };
     let folder = RunFolder::create(&scratch.folder().join("run"), true).expect("a folder for the run");
