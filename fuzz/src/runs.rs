@@ -109,6 +109,7 @@ fn write(
         title: &scenario.title,
         scenario_name: &scenario.name,
         scenario_text: scenario.source.text(),
+        inputs: &scenario.inputs,
         version: "0",
         setup,
         outcome,
