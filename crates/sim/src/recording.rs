@@ -118,6 +118,13 @@ pub enum BreakdownCause {
         /// The step asked for, s.
         step_s: f64,
     },
+    /// Under digital control it moves so fast that this many steps did not reach the next sample: nothing holds it any more.
+    RanAway {
+        /// Its velocity, rad/s or m/s.
+        value: f64,
+        /// Steps since the last sample.
+        steps: u64,
+    },
     /// It left the limits that the scenario asked to enforce.
     PositionLimit {
         /// Where it was, rad or m.

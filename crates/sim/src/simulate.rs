@@ -13,6 +13,12 @@ use crate::setup::Setup;
 /// Rows are made room for in chunks of this many.
 const ROWS_PER_CHUNK: usize = 4096;
 
+/// Between two samples a robot needs one step, or a few, unless a period is long: at least so many are granted.
+const STEPS_PER_SAMPLE: f64 = 1000.0;
+
+/// No robot whose motion is of any use needs shorter steps than this for a whole period, s.
+const SHORTEST_USEFUL_STEP_S: f64 = 1e-5;
+
 /// Simulates `setup` until its horizon, a breakdown, or until `observer`, which is called after every step, says stop.
 ///
 /// Rows of the recording at a break-point hold the values just after it; the last row those just before the horizon.
@@ -37,12 +43,16 @@ pub fn simulate(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow
     let network = if setup.control.is_some() { &silent } else { &setup.network };
     let mut integrator = Integrator::new(network, &setup.solver, end_s, closed_loop.start(), ports, entries);
     let mut recorder = Recorder::new(setup, &closed_loop);
+    let mut pace = Pace::new(setup);
 
     let ending = loop {
         match integrator.advance(&mut closed_loop) {
             Ok(None) => break Ending::Completed,
             Ok(Some(step)) => {
                 if let Some(breakdown) = recorder.record(&mut integrator, &mut closed_loop, step) {
+                    break Ending::BrokeDown(breakdown);
+                }
+                if let Some(breakdown) = pace.ran_away(&integrator, &closed_loop, step.end_s) {
                     break Ending::BrokeDown(breakdown);
                 }
                 let progress = Progress { t_s: step.end_s, end_s };
@@ -82,6 +92,33 @@ fn empty_columns(closed_loop: &ClosedLoop<'_>, agents: usize) -> (Vec<Column>, V
         columns.extend(signals.into_iter().map(column));
     }
     (columns, first_column)
+}
+
+/// Steps since the last sample. Held torques that feed an instability make robots spin ever faster, long before a number is
+/// no longer finite, and every step shorter.
+struct Pace {
+    most_steps: u64,
+    samples: u64,
+    steps: u64,
+}
+
+impl Pace {
+    fn new(setup: &Setup) -> Self {
+        let period_s = setup.control.as_ref().map_or(0.0, |control| 1.0 / control.sample_hz);
+        Pace { most_steps: (period_s / SHORTEST_USEFUL_STEP_S).max(STEPS_PER_SAMPLE) as u64, samples: 0, steps: 0 }
+    }
+
+    fn ran_away(&mut self, integrator: &Integrator<'_>, closed_loop: &ClosedLoop<'_>, t_s: f64) -> Option<Breakdown> {
+        let samples = closed_loop.samples()?;
+        self.steps = if samples == self.samples { self.steps + 1 } else { 1 };
+        self.samples = samples;
+        if self.steps < self.most_steps {
+            return None;
+        }
+        let (agent, axis, value) = closed_loop.fastest(integrator.state())?;
+        let cause = BreakdownCause::RanAway { value, steps: self.steps };
+        Some(Breakdown { t_s, agent, signal: Signal::Velocity, axis, cause })
+    }
 }
 
 /// Writes rows as steps go by.

@@ -13,7 +13,8 @@ use forwardstep_core::reference::{Consensus, Measured, PositionVelocity};
 use forwardstep_core::robot::PlanarArm;
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
-    Actuators, Control, Ending, Exchange, Law, Method, Outcome, Sensors, Setup, Signal, VelocitySensor, simulate,
+    Actuators, Breakdown, BreakdownCause, Control, Ending, Exchange, Law, Method, Outcome, Sensors, Setup, Signal,
+    VelocitySensor, simulate,
 };
 
 fn run(setup: &Setup) -> Outcome {
@@ -134,6 +135,20 @@ fn commands_wait_for_the_computation_and_stay_within_the_limits() {
 
 fn peak(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |peak, value| peak.max(value.abs()))
+}
+
+#[test]
+fn sampling_that_is_too_slow_ends_a_run_and_says_who_ran_away() {
+    let mut setup = case("03-order2-both-zero-delay", 10.0);
+    let mut slow = control(40.0);
+    slow.computation_delay_s = 0.025;
+    setup.control = Some(slow);
+    let outcome = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap();
+    let Ending::BrokeDown(Breakdown { t_s, signal: Signal::Velocity, cause, .. }) = outcome.ending else {
+        unreachable!("{:?}", outcome.ending)
+    };
+    assert!(matches!(cause, BreakdownCause::RanAway { value, steps: 2500 } if value.abs() > 100.0), "{cause:?}");
+    assert!(t_s < 10.0 && outcome.recording.t_s.last().is_some_and(|last| *last <= t_s));
 }
 
 #[test]

@@ -103,6 +103,10 @@ pub fn ending_sentence(setup: &Setup, ending: &Ending) -> String {
                 BreakdownCause::StepUnderFloor { step_s } => {
                     format!("asks for a step of {step_s:e} s, under the floor of {:e} s", setup.solver.min_step_s)
                 }
+                BreakdownCause::RanAway { value, steps } => format!(
+                    "ran away: it is {value:.2e}, and {steps} steps did not reach the next sample; sample faster, or let K or \
+                     the delay of the torque be smaller"
+                ),
                 BreakdownCause::PositionLimit { value, limits: [low, high] } => {
                     format!("left its limits [{low}, {high}]: it is {value}")
                 }

@@ -153,6 +153,14 @@ pub enum Cause {
         #[serde(deserialize_with = "number::or_nan")]
         step_s: f64,
     },
+    /// Under digital control a velocity grew so far that steps no longer reached the next sample.
+    RanAway {
+        /// The velocity, rad/s or m/s.
+        #[serde(deserialize_with = "number::or_nan")]
+        value: f64,
+        /// Steps since the last sample.
+        steps: u64,
+    },
     /// An enforced position limit was left.
     PositionLimit {
         /// The position, rad or m.
@@ -296,6 +304,7 @@ impl How {
                 let cause = match breakdown.cause {
                     BreakdownCause::NotFinite => Cause::NotFinite,
                     BreakdownCause::StepUnderFloor { step_s } => Cause::StepUnderFloor { step_s },
+                    BreakdownCause::RanAway { value, steps } => Cause::RanAway { value, steps },
                     BreakdownCause::PositionLimit { value, limits } => Cause::PositionLimit { value, limits },
                 };
                 let column = names::column_name(setup, breakdown.agent, breakdown.signal, breakdown.axis);
@@ -320,6 +329,7 @@ impl How {
                 let cause = match *cause {
                     Cause::NotFinite => BreakdownCause::NotFinite,
                     Cause::StepUnderFloor { step_s } => BreakdownCause::StepUnderFloor { step_s },
+                    Cause::RanAway { value, steps } => BreakdownCause::RanAway { value, steps },
                     Cause::PositionLimit { value, limits } => {
                         // JSON has no infinity. The table has, and ends with the row that broke the run.
                         let last = broken.values.last().copied().unwrap_or(f64::NAN);

@@ -206,6 +206,9 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
         solver: solver(file.solver.as_ref())?,
         control,
     };
+    if let Some(file) = &file.control {
+        messages_fit(&setup, &file.sample_hz)?;
+    }
     notices.extend(Notice::coarse_sampling(&setup));
     recording_fits(&setup, every.unwrap_or(&file.time.end_s))?;
     Ok(Scenario {
@@ -309,6 +312,21 @@ fn recording_fits(setup: &Setup, place: &At<f64>) -> Result<(), Fault> {
     }
     let least_s = setup.time.end_s / (MOST_RECORDED / columns as f64 - 2.0);
     Err(fault(place, ScenarioProblem::RecordingTooLarge { rows, columns, most: MOST_RECORDED, least_s }))
+}
+
+/// Refuses more messages on their way than fit into any memory. `sample_hz` is how often they are sent.
+fn messages_fit(setup: &Setup, sample_hz: &At<f64>) -> Result<(), Fault> {
+    let oldest_s = setup.network.max_delay_s().min(setup.time.end_s);
+    let vectors = match setup.exchange {
+        Exchange::Position => 1,
+        Exchange::PositionVelocity => 2,
+    };
+    let sent: usize = setup.agents.iter().map(|agent| vectors * agent.robot.axes.len()).sum();
+    let numbers = sent as f64 * (oldest_s * sample_hz.value + 3.0);
+    if numbers <= MOST_RECORDED {
+        return Ok(());
+    }
+    Err(fault(sample_hz, ScenarioProblem::MessagesTooLarge { oldest_s, numbers, most: MOST_RECORDED }))
 }
 
 /// How many columns an agent has: q, q̇, s, τ and z with its derivatives on every axis, ϑ̂, V and its dissipation, and τ_ext

@@ -575,6 +575,19 @@ pub enum ScenarioProblem {
         /// The period, s.
         period_s: f64,
     },
+    /// Messages that are on their way for so long that they do not fit into memory.
+    #[error(
+        "messages are up to {} s old when they are heard, so {} numbers have to be kept, but at most {} are accepted",
+        number(*.oldest_s), about(*.numbers), about(*.most)
+    )]
+    MessagesTooLarge {
+        /// The oldest, s.
+        oldest_s: f64,
+        /// Numbers in all messages that are kept.
+        numbers: f64,
+        /// How many are accepted.
+        most: f64,
+    },
     /// A property of measured velocities where none are measured.
     #[error("`{key}` has no effect: velocities are not measured, but come from filtered differences")]
     VelocityNotMeasured {
@@ -679,6 +692,7 @@ impl Problem for ScenarioProblem {
             ScenarioProblem::ComputationDelay { .. } => {
                 "a computation must be done before the next begins; sample more slowly, or compute faster".into()
             }
+            ScenarioProblem::MessagesTooLarge { .. } => "sample more slowly, or let delays be shorter".into(),
             ScenarioProblem::VelocityNotMeasured { .. } => {
                 "delete it, or let `velocity` be \"measured\"; noise and steps of positions count".into()
             }

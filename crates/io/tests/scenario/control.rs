@@ -88,6 +88,16 @@ fn every_mistake_in_control_is_reported_at_its_place() {
 }
 
 #[test]
+fn more_messages_than_fit_into_memory_are_refused() {
+    let text = with("sample_hz = 1e6")
+        .replace("delay.saw_tooth = { min_s = 0.1, max_s = 0.4, period_s = 0.6 }", "delay.constant_s = 1e6");
+    let error = read(&text).unwrap_err();
+    let message = "messages are up to 10 s old when they are heard, so 1.2e8 numbers have to be kept, but at most 1e8 are accepted";
+    assert_eq!(error.to_string(), format!("test.toml:38:13: {message}"));
+    assert_eq!(error.help().unwrap().to_string(), "sample more slowly, or let delays be shorter");
+}
+
+#[test]
 fn control_is_read_as_it_is_written() {
     let lines = "sample_hz = 500\ncomputation_delay_s = 0.002\nvelocity.filtered_difference.cut_off_hz = 40\n\
                  noise = { seed = 9, position = 1e-4 }\nquantisation = { position = 1e-5, torque = 0.5 }\n\

@@ -168,6 +168,20 @@ impl<'a> ClosedLoop<'a> {
         block.map_or((0, Signal::Position, 0), |block| block.columns.locate(state - block.state.start))
     }
 
+    /// Samples taken so far; `None` when control is continuous.
+    pub(crate) fn samples(&self) -> Option<u64> {
+        self.sampling.as_ref().map(Sampling::taken)
+    }
+
+    /// Agent, axis and value of the largest velocity in the state `x`.
+    pub(crate) fn fastest(&self, x: &[f64]) -> Option<(usize, usize, f64)> {
+        let velocities = x.iter().enumerate().filter_map(|(state, value)| match self.locate(state) {
+            (agent, Signal::Velocity, axis) => Some((agent, axis, *value)),
+            _ => None,
+        });
+        velocities.reduce(|a, b| if b.2.abs() > a.2.abs() { b } else { a })
+    }
+
     /// The signals of every agent, in the order of agents.
     pub(crate) fn signals(&self, agents: usize) -> Vec<Vec<(Signal, usize)>> {
         let mut signals = vec![Vec::new(); agents];

@@ -34,6 +34,11 @@ impl<'a> Sampling<'a> {
         &self.heard
     }
 
+    /// Samples taken so far.
+    pub(super) fn taken(&self) -> u64 {
+        self.sample
+    }
+
     fn sample_s(&self) -> f64 {
         self.sample as f64 / self.sample_hz
     }

@@ -167,6 +167,11 @@ impl<'a> Integrator<'a> {
         }
     }
 
+    /// The state at the end of the last step.
+    pub(crate) fn state(&self) -> &[f64] {
+        &self.x1
+    }
+
     /// Work done so far.
     pub(crate) fn statistics(&self) -> Statistics {
         self.statistics

@@ -4,7 +4,7 @@
 //! was sent by then; before the first one everybody is taken to have sent it.
 
 use super::hearing::{Heard, Hearing, Port};
-use super::timeline::Timeline;
+use super::timeline::{Timeline, merge_until};
 use crate::network::Network;
 
 /// A delay that is a whole number of periods, give or take rounding, is that number.
@@ -62,7 +62,8 @@ impl<'a> Radio<'a> {
     /// What everybody hears at sample `k`, once everybody has sent.
     pub(crate) fn hear(&mut self, k: u64, heard: &mut Heard) {
         let t_s = k as f64 / self.sample_hz;
-        if self.timeline.next_s() <= t_s {
+        // What arrives a rounding later arrives now.
+        if self.timeline.next_s() <= merge_until(t_s) {
             self.rewire |= self.timeline.pass(t_s).switched;
         }
         if self.rewire {
