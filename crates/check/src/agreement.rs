@@ -22,6 +22,7 @@
 //!
 //! With λ > 0 (Remark 4) Ḃᵢ gains λ sᵢ, so Q moves by Σᵢ uᵢ (λᵢ/α₀) ∫ sᵢ dt: in general only the run knows by how much, see
 //! `manipulation` for where it is known before. With λ = 0 no push moves Q, since no torque enters Bᵢ and Wᵢ.
+//! A push that never ends leaves sᵢ = K⁻¹τ_ext and zᵢ = −sᵢ, and where z is in Bᵢ and Wᵢ the network then rests elsewhere.
 
 use forwardstep_core::reference::polynomial;
 use forwardstep_sim::graph::{Edge, SpanningTree, laplacian, spanning_tree};
@@ -54,8 +55,14 @@ pub enum NoPrediction {
     #[error("a weight varies with time")]
     VaryingWeight,
     /// The value depends on the tracking errors.
-    #[error("the manipulability gain of agent {agent} lets tracking errors move it")]
+    #[error("the manipulability gain of agent number {} lets tracking errors move it", agent + 1)]
     Manipulability {
+        /// Index of the agent.
+        agent: usize,
+    },
+    /// Its tracking error does not vanish, and takes part in what is conserved.
+    #[error("agent number {} is pushed for ever", agent + 1)]
+    PushedForEver {
         /// Index of the agent.
         agent: usize,
     },
@@ -69,7 +76,7 @@ pub enum NoPrediction {
     #[error("no agent reaches all others, so nothing makes them agree")]
     NoSpanningTree,
     /// A root is not positive.
-    #[error("the reference dynamics of agent {agent} are not stable")]
+    #[error("the reference dynamics of agent number {} are not stable", agent + 1)]
     Roots {
         /// Index of the agent.
         agent: usize,
@@ -82,7 +89,7 @@ pub enum NoPrediction {
 /// Predicts the value agreed upon for a fixed graph with constant delays.
 ///
 /// **Guarantees**: if the agents of such a network come to rest in agreement, as Theorems 2 and 3 promise, it is at this
-/// value, whatever the robots, the gains, the adaptation, the torques and whoever pushes. With λ > 0 a value is given where
+/// value, whatever the robots, the gains, the adaptation, the torques and whoever pushes for a while. With λ > 0 a value is given where
 /// tracking errors are known before the run: for known parameters and as long as nobody pushes, and for pushed point masses
 /// with known parameters.
 ///
@@ -102,6 +109,11 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     let n = setup.agents.len();
     let l = laplacian(n, edges).ok_or(NoPrediction::VaryingWeight)?;
     let influence = left_null_vector(n, edges, &l)?;
+    // (3) and (23) hold no z in what they conserve.
+    let counts = |agent: &usize| setup.reference == ReferenceKind::Consensus && influence[*agent] > 0.0;
+    if let Some(agent) = (0..n).filter(counts).find(|agent| pushed_for_ever(&setup.agents[*agent])) {
+        return Err(NoPrediction::PushedForEver { agent });
+    }
     let alpha: Vec<Vec<f64>> = setup
         .agents
         .iter()
@@ -121,6 +133,11 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
         })
         .collect::<Result<_, _>>()?;
     Ok(Prediction { value, influence })
+}
+
+/// Whether something acts on the agent without end.
+fn pushed_for_ever(agent: &AgentSetup) -> bool {
+    agent.pushes.iter().any(|push| push.span_s()[1] == f64::INFINITY)
 }
 
 /// The one graph of a schedule that never switches.

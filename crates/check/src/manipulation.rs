@@ -61,6 +61,9 @@ fn impulse(push: &Push, axis: usize) -> Option<f64> {
 /// The area under one column between two times.
 fn area(table: &Table, axis: usize, begins_s: f64, ends_s: f64) -> f64 {
     let width = table.components();
+    if axis >= width {
+        return 0.0;
+    }
     let pieces =
         table.times_s.windows(2).zip(table.values.chunks_exact(width).zip(table.values.chunks_exact(width).skip(1)));
     pieces

@@ -9,12 +9,22 @@ use crate::verdict::{Answer, Hypothesis};
 
 /// How far one held sample of the damping goes: h · λ_max(M⁻¹K), largest over the agents, at their starts.
 ///
-/// Held for a period h, τ = −K s multiplies s along each mode by about 1 − h λ: above one it overshoots, above two it grows.
-/// M changes with the position, so this is a guide, not a bound.
+/// Held for a period h and applied δ h late, τ = −K s moves s along a mode of x = h λ as
+///
+/// ```text
+/// s_{k+1} = (1 − x (1 − δ)) s_k − x δ s_{k−1}
+/// ```
+///
+/// which is stable for x δ < 1 and x (1 − 2δ) < 2, and does not overshoot for x ≤ 1/(1 + √δ)². M changes with the position, and a
+/// filter of velocities comes later still, so this is a guide, not a bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampledDamping {
-    /// h · λ_max(M⁻¹K).
+    /// x = h · λ_max(M⁻¹K).
     pub value: f64,
+    /// Above this the held damping overshoots: one, and less when torques come late.
+    pub overshoots_above: f64,
+    /// Above this it is unstable: two, and less when torques come late.
+    pub unstable_above: f64,
     /// Index of the agent.
     pub agent: usize,
     /// The period h, s.
@@ -23,11 +33,16 @@ pub struct SampledDamping {
 
 /// [`SampledDamping`] of a setup under digital control; `None` when control is continuous or no mass matrix can be factored.
 pub fn sampled_damping(setup: &Setup) -> Option<SampledDamping> {
-    let period_s = 1.0 / setup.control.as_ref()?.sample_hz;
+    let control = setup.control.as_ref()?;
+    let period_s = 1.0 / control.sample_hz;
+    let late = control.computation_delay_s * control.sample_hz;
+    let slow = if late < 0.5 { 2.0 / (1.0 - 2.0 * late) } else { f64::INFINITY };
+    let root = 1.0 + late.sqrt();
+    let [overshoots_above, unstable_above] = [1.0 / (root * root), slow.min(1.0 / late)];
     let all = setup.agents.iter().enumerate();
     let values = all.filter_map(|(agent, a)| fastest(a).map(|lambda| (agent, lambda)));
     let (agent, lambda) = values.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    Some(SampledDamping { value: period_s * lambda, agent, period_s })
+    Some(SampledDamping { value: period_s * lambda, overshoots_above, unstable_above, agent, period_s })
 }
 
 /// λ_max(M⁻¹K) at the start, 1/s.
@@ -72,11 +87,17 @@ pub(crate) fn digital(setup: &Setup) -> Vec<Hypothesis> {
     let Some(control) = &setup.control else { return Vec::new() };
     let damping = sampled_damping(setup).map_or_else(String::new, |damping| {
         let name = &setup.agents[damping.agent].name;
-        let value = (damping.value * 1000.0).round() / 1000.0;
-        let meaning = if damping.value > 1.0 {
-            "above 1 the held damping overshoots, above 2 it is unstable: sample faster or let K be smaller"
+        let short = |value: f64| (value * 1000.0).round() / 1000.0;
+        let (value, overshoots) = (short(damping.value), short(damping.overshoots_above));
+        let meaning = if damping.value > damping.overshoots_above {
+            let unstable = short(damping.unstable_above);
+            format!(
+                "above {overshoots} the held damping overshoots, above {unstable} it is unstable: sample faster or let K be smaller"
+            )
+        } else if let VelocitySensor::Filtered { .. } = control.sensors.velocity {
+            format!("up to {overshoots} the held damping would not overshoot, if the filter of the velocities did not lag")
         } else {
-            "below 1 the held damping does not overshoot"
+            format!("up to {overshoots} the held damping does not overshoot")
         };
         format!("; h · λ_max(M⁻¹K) is {value} at the start ({name}): {meaning}")
     });
@@ -89,7 +110,7 @@ pub(crate) fn digital(setup: &Setup) -> Vec<Hypothesis> {
         requires: "the controllers work in continuous time".into(),
         answer: Answer::NotCovered,
         because: format!(
-            "they sample at {} Hz{late}; as h → 0 the loop tends to the one the theorem speaks of{damping}",
+            "they sample at {} Hz{late}; what is heard is up to a period older; as h → 0 the loop tends to the one the theorem speaks of{damping}",
             control.sample_hz
         ),
     }];

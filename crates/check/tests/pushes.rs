@@ -279,3 +279,19 @@ fn thm_verdicts_on_pushes_that_end_and_that_do_not() {
     let (answer, because) = verdict(vec![forever(hand(constant(&[0.1])))]).unwrap();
     assert!(answer == Answer::NotCovered && because.contains("never lets go of agent-2"), "{because}");
 }
+
+#[test]
+fn regress_agents_that_are_pushed_for_ever_rest_where_nobody_predicts() {
+    // s does not vanish, and z = −s takes part in what is conserved.
+    let push = Push {
+        effect: Effect::Torque(Course::Each(vec![Function::Constant(6.0), Function::Constant(0.0)])),
+        from_s: 1.0,
+        until_s: f64::INFINITY,
+    };
+    let mut setup = ring(vec![mass(0, &[1.0, 2.0]), mass(1, &[1.0, 2.0])], Exchange::Position, 60.0);
+    assert!(predict(&setup).is_ok());
+    setup.agents[1].pushes = vec![push.clone()];
+    assert_eq!(predict(&setup), Err(NoPrediction::PushedForEver { agent: 1 }));
+    setup.agents[1].pushes = vec![Push { until_s: 5.0, ..push }];
+    assert!(predict(&setup).is_ok());
+}

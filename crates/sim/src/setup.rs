@@ -199,7 +199,7 @@ pub struct TimeSpan {
 pub struct Control {
     /// Samples per second.
     pub sample_hz: f64,
-    /// How long after the sample the torque changes, s; at most a period.
+    /// How long after the sample the torque changes, s; at most a period. Until the first command arrives it is zero.
     pub computation_delay_s: f64,
     /// What the agents measure.
     pub sensors: Sensors,
@@ -257,7 +257,8 @@ pub struct Actuators {
     pub torque_limit: Option<Vec<f64>>,
     /// Fastest change of the torque of every axis, N m/s or N/s.
     pub torque_rate_limit: Option<Vec<f64>>,
-    /// Step of the torques, N m or N; zero for none.
+    /// Step of the torques, N m or N; zero for none. Torques are limited, then rounded: they keep their limit, and change by
+    /// at most half a step more than their rate allows.
     pub torque_quantum: f64,
 }
 

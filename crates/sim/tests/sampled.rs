@@ -5,16 +5,19 @@
 mod cases;
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use cases::{cases, setup};
+use forwardstep_core::Gain;
 use forwardstep_core::agent::{Agent, Inbox, Limiter};
 use forwardstep_core::law::SlotineLi;
 use forwardstep_core::reference::{Consensus, Measured, PositionVelocity};
 use forwardstep_core::robot::PlanarArm;
+use forwardstep_sim::delay::{Delay, Loss, PacketLink};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
-    Actuators, Breakdown, BreakdownCause, Control, Ending, Exchange, Law, Method, Outcome, Sensors, Setup, Signal,
-    VelocitySensor, simulate,
+    Actuators, AgentSetup, Breakdown, BreakdownCause, Control, Ending, Exchange, Law, Method, Outcome, Sensors, Setup,
+    Signal, VelocitySensor, simulate,
 };
 
 fn run(setup: &Setup) -> Outcome {
@@ -55,7 +58,6 @@ fn gap(a: &Outcome, b: &Outcome) -> f64 {
 
 #[test]
 fn prop_sampled_runs_converge_to_the_continuous_one_with_the_period() {
-    let (mut slowest, mut fastest) = (f64::INFINITY, 0.0_f64);
     for case_name in cases().iter().map(|case| case.name.clone()) {
         let mut setup = case(&case_name, 4.0);
         let continuous = run(&setup);
@@ -65,11 +67,8 @@ fn prop_sampled_runs_converge_to_the_continuous_one_with_the_period() {
             gap(&run(&setup), &continuous)
         });
         let orders = [(gaps[0] / gaps[1]).log2(), (gaps[1] / gaps[2]).log2()];
-        println!("{case_name}: {gaps:?} {orders:?}");
-        slowest = slowest.min(orders[1]);
-        fastest = fastest.max(orders[1]);
+        assert!(orders.iter().all(|order| (0.9..1.15).contains(order)), "{case_name}: {gaps:?}, of orders {orders:?}");
     }
-    assert!(slowest > 0.95 && fastest < 1.1, "order from {slowest} to {fastest}");
 }
 
 #[test]
@@ -126,11 +125,10 @@ fn commands_wait_for_the_computation_and_stay_within_the_limits() {
     for (axis, rate) in [500.0, 200.0].into_iter().enumerate() {
         let torque = column(&limited, 0, Signal::Torque, axis);
         assert!(torque.iter().all(|tau| (tau / 0.125).fract() == 0.0));
-        // Quanta are rounded to the nearest: half of one beyond each limit.
-        assert!(torque.iter().all(|tau| tau.abs() <= limits[axis] + 0.0625));
+        assert!(torque.iter().all(|tau| tau.abs() <= limits[axis]));
         assert!(torque[4..].windows(2).all(|pair| (pair[1] - pair[0]).abs() <= rate * 0.004 + 0.125));
     }
-    assert!(peak(column(&limited, 0, Signal::Torque, 0)) >= limits[0] - 0.0625, "the limit is reached");
+    assert!(peak(column(&limited, 0, Signal::Torque, 0)) > limits[0] - 0.125, "the limit is reached");
 }
 
 fn peak(values: &[f64]) -> f64 {
@@ -159,14 +157,18 @@ fn noise_is_the_same_for_the_same_seed_and_its_own_for_every_agent() {
         control.sensors = Sensors { position_noise: 1e-3, velocity_noise: 1e-2, seed, ..Sensors::default() };
         Some(control)
     };
+    setup.network.schedule = Schedule::Fixed(Vec::new());
+    setup.agents[1] = AgentSetup { name: setup.agents[1].name.clone(), ..setup.agents[0].clone() };
     let mut torques = |seed| {
         setup.control = with(seed);
         let outcome = run(&setup);
-        column(&outcome, 0, Signal::Torque, 0).to_vec()
+        [0, 1].map(|agent| column(&outcome, agent, Signal::Torque, 0).to_vec())
     };
     let first = torques(1);
     assert_eq!(first, torques(1));
     assert_ne!(first, torques(2));
+    // Two agents that are the same but for their noise.
+    assert_ne!(first[0], first[1]);
 }
 
 #[test]
@@ -183,6 +185,35 @@ fn encoders_alone_are_enough_for_agreement() {
         let last: Vec<f64> =
             ends(axis).map(|(agent, axis)| *column(&outcome, agent, Signal::Position, axis).last().unwrap()).collect();
         let spread = last.iter().fold(f64::MIN, |a, b| a.max(*b)) - last.iter().fold(f64::MAX, |a, b| a.min(*b));
+        // A quantum of position, differenced, is 5e-3 rad/s of velocity noise; damped, it leaves this much.
         assert!(spread < 2e-2, "{last:?}");
+    }
+}
+
+#[test]
+fn regress_packets_that_arrive_at_a_sample_are_heard_at_it() {
+    // Packets at every sample that take two periods are a delay of two periods, however 0.1 + 0.2 is rounded.
+    let mut setup = case("03-order2-both-zero-delay", 2.0);
+    for sample_hz in [8.0, 10.0, 50.0, 500.0] {
+        let mut digital = control(sample_hz);
+        digital.actuators.torque_limit = Some(vec![20.0, 20.0]);
+        setup.control = Some(digital);
+        for agent in &mut setup.agents {
+            agent.law = Law::Known { damping: Gain::Number(0.4) };
+        }
+        let latency_s = 2.0 / sample_hz;
+        let link = PacketLink {
+            first_s: 0.0,
+            every_s: 1.0 / sample_hz,
+            latency_s,
+            jitter_s: 0.0,
+            loss: Loss::Never,
+            most_in_a_row: None,
+            seed: 1,
+        };
+        setup.network.delays = vec![Delay::Constant { s: latency_s }];
+        let constant = run(&setup);
+        setup.network.delays = vec![Delay::Packets(Arc::new(link.trace((0, 1), 2.0).unwrap()))];
+        assert_eq!(constant.recording, run(&setup).recording, "{sample_hz} Hz");
     }
 }

@@ -5,18 +5,24 @@ use alloc::vec::Vec;
 
 use thiserror::Error;
 
-use crate::Scalar;
+use crate::{LengthError, Scalar};
 
-/// A limit that is not positive.
+/// Limits that cannot be kept.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error("axis {axis} has the {what} {value}, but it must be positive")]
-pub struct LimiterError {
-    /// `torque limit` or `torque rate limit`.
-    pub what: &'static str,
-    /// The axis, from zero.
-    pub axis: usize,
-    /// The value.
-    pub value: f64,
+pub enum LimiterError {
+    /// A limit that is not positive.
+    #[error("axis {axis} has the {what} {value}, but it must be positive")]
+    NotPositive {
+        /// `torque limit` or `torque rate limit`.
+        what: &'static str,
+        /// The axis, from zero.
+        axis: usize,
+        /// The value.
+        value: f64,
+    },
+    /// Not one rate for each limit.
+    #[error(transparent)]
+    Length(#[from] LengthError),
 }
 
 /// Clips torques and the speed at which they change, axis by axis.
@@ -39,13 +45,13 @@ impl Limiter {
     /// Limits of torque, N m or N, and of its rate, N m/s or N/s, one entry per axis each; infinity for none.
     ///
     /// # Errors
-    /// [`LimiterError`] for the first that is not positive, or when there are fewer rates than limits.
+    /// [`LimiterError`] when there are not as many rates as limits, or for the first that is not positive.
     pub fn new(limit: Vec<f64>, rate: Vec<f64>) -> Result<Self, LimiterError> {
+        LengthError::check("torque rate limits", limit.len(), rate.len())?;
         for (what, values) in [("torque limit", &limit), ("torque rate limit", &rate)] {
-            for axis in 0..limit.len() {
-                let value = values.get(axis).copied().unwrap_or(f64::NAN);
+            for (axis, &value) in values.iter().enumerate() {
                 if value.is_nan() || value <= 0.0 {
-                    return Err(LimiterError { what, axis, value });
+                    return Err(LimiterError::NotPositive { what, axis, value });
                 }
             }
         }
@@ -93,7 +99,7 @@ mod tests {
     #[test]
     fn limits_that_are_not_positive_are_refused() {
         let error = Limiter::new(vec![1.0, 0.0], vec![1.0, 1.0]).unwrap_err();
-        assert_eq!(error, LimiterError { what: "torque limit", axis: 1, value: 0.0 });
+        assert_eq!(error, LimiterError::NotPositive { what: "torque limit", axis: 1, value: 0.0 });
         assert!(Limiter::new(vec![1.0], vec![]).is_err());
     }
 }

@@ -82,9 +82,9 @@ pub enum StepError {
 ///
 /// **Source**: (5), (6), (7) with any [`Reference`] for one agent.
 /// **Measures**: q, q̇ (see [`VelocityFilter`] when there are only encoders). **Transmits**: what the reference says.
-/// **Requires**: a period h with h · λ_max(M⁻¹K) well below 2, beyond which the held damping itself is unstable.
+/// **Requires**: dynamics that are affine in their own state, the same for each axis, as all of the paper's are; a period h with h · λ_max(M⁻¹K) well below 2, beyond which the held damping itself is unstable.
 /// **Guarantees**: no allocation and no panic in [`Agent::step`]; the continuous law in the limit of short periods.
-/// Nothing that the paper states for a fixed period.
+/// Nothing that the paper states for a fixed period. Numbers beyond 1e308 on the way give a torque that is not finite.
 ///
 /// ```
 /// use forwardstep_core::agent::{Agent, Inbox, Limiter};
@@ -194,7 +194,7 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
                 yt_s: vec![0.0; p],
                 d_theta_hat: vec![0.0; p],
             },
-            hold: Hold::new(m, n),
+            hold: Hold::new(m, reference.vectors(), <F::Exchange as Exchange>::CHANNELS),
             reference,
         })
     }
@@ -292,9 +292,7 @@ impl<F: Reference> Kernel for Refer<'_, F> {
         let Refer { reference, hold, started, passed_s, measured, inbox, state, held, out } = self;
         let m = held.q.len();
         if let Some(h) = passed_s {
-            let measured = Measured { q: &held.q, dq: &held.dq };
-            let heard = heard::<F::Exchange>(&held.degree, &held.sums, m)?;
-            hold.advance(reference, measured, heard, h, state, &out.d_state)?;
+            hold.advance(reference, &held.degree, h, state, &out.d_state)?;
         }
         held.q.copy_from_slice(measured.q);
         held.dq.copy_from_slice(measured.dq);

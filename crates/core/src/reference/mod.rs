@@ -56,7 +56,8 @@ pub trait Reference: Send + Sync + 'static {
     /// How many of them are z, ż, z̈, … in this order.
     fn derivatives(&self) -> usize;
 
-    /// z, ż and the rate of the state.
+    /// z, ż and the rate of the state, which is affine in the state and the same function for each axis: what sampled agents
+    /// step exactly depends on it.
     ///
     /// # Errors
     /// [`LengthError`] when a slice has the wrong length.

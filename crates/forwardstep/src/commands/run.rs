@@ -52,9 +52,14 @@ fn finish(options: &RunOptions, console: &mut Console) -> Result<Status, Status>
     if outcome.ending != Ending::Completed {
         remark(ending_sentence(setup, &outcome.ending));
     }
+    let cut_short = stop.asked().filter(|_| !matches!(outcome.ending, Ending::Interrupted { .. }));
+    if cut_short.is_some() {
+        remark("Interrupted while comparing with continuous time; the run itself is complete.");
+    }
     console.text(summary(&record, &metrics, &path, &files));
     Ok(match outcome.ending {
         Ending::BrokeDown(_) => Status::BrokeDown,
+        _ if cut_short.is_some() => cut_short.unwrap_or(Status::Interrupted),
         Ending::Interrupted { .. } => stop.asked().unwrap_or(Status::Interrupted),
         Ending::Completed if goal.is_some_and(|goal| !goal.met) => Status::Missed,
         Ending::Completed => Status::Fine,
@@ -83,10 +88,12 @@ fn record<'a>(
     }
 }
 
-/// Simulates the same in continuous time. Whoever does not want to wait for it may interrupt: the run itself is kept.
+/// Simulates the same in continuous time, as far as the run came. Whoever does not want to wait for it may interrupt: the run
+/// itself is kept.
 fn digital_cost(scenario: &Scenario, outcome: &Outcome, stop: &Stop) -> Option<DigitalCost> {
     let mut bar = Bar::new();
-    let twin = simulate(&continuous_twin(&scenario.setup), &mut |progress| {
+    let until_s = outcome.recording.t_s.last().copied().filter(|last| *last > 0.0)?;
+    let twin = simulate(&continuous_twin(&scenario.setup, until_s), &mut |progress| {
         bar.update(progress);
         if stop.asked().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });

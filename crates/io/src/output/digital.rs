@@ -1,6 +1,6 @@
 //! What going digital cost: a run under digital control beside the same run in continuous time.
 
-use forwardstep_sim::recording::{Ending, Outcome, Signal};
+use forwardstep_sim::recording::{Ending, Outcome, Recording, Signal};
 use forwardstep_sim::setup::Setup;
 use serde::{Deserialize, Serialize};
 
@@ -9,8 +9,8 @@ use super::number;
 use super::record::Goal;
 use super::table::Table;
 
-/// A run under digital control against its continuous twin: the same robots, network and pushes, exact measurements, and
-/// the law in continuous time.
+/// A run under digital control against its continuous twin: the same robots, network and pushes, but exact measurements, no
+/// limits, and the law in continuous time. Both are looked at until the earlier of their ends.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DigitalCost {
     /// Samples per second.
@@ -34,7 +34,7 @@ pub struct Figures {
     pub settled_s: Option<f64>,
     /// The largest |τ|, N m or N.
     pub peak_torque: Option<f64>,
-    /// The root of the mean over time of |τ|², all agents and axes together, N m or N.
+    /// The root of the mean of τ² over time, agents and axes, N m or N.
     #[serde(deserialize_with = "number::or_nan")]
     pub rms_torque: f64,
     /// The same of s, rad/s or m/s.
@@ -56,15 +56,27 @@ impl DigitalCost {
             sample_hz: control.sample_hz,
             twin_ended_at_s,
             largest_gap: largest_gap(setup, digital, twin),
-            digital: Figures::of(setup, digital, goal),
-            continuous: Figures::of(setup, twin, goal),
+            digital: Figures::of(setup, &common(digital, twin), goal),
+            continuous: Figures::of(setup, &common(twin, digital), goal),
         })
     }
 }
 
-/// `setup` with its law in continuous time.
-pub fn continuous_twin(setup: &Setup) -> Setup {
-    Setup { control: None, ..setup.clone() }
+/// `setup` with its law in continuous time and without limits, until `until_s`.
+pub fn continuous_twin(setup: &Setup, until_s: f64) -> Setup {
+    let mut twin = Setup { control: None, ..setup.clone() };
+    twin.agents.iter_mut().for_each(|agent| agent.enforce_limits = false);
+    twin.time.end_s = twin.time.end_s.min(until_s);
+    twin
+}
+
+/// The rows of `one` that are rows of `other` too.
+fn common(one: &Outcome, other: &Outcome) -> Recording {
+    let rows = one.recording.t_s.len().min(other.recording.t_s.len());
+    let mut recording = one.recording.clone();
+    recording.t_s.truncate(rows);
+    recording.columns.iter_mut().for_each(|column| column.values.truncate(rows));
+    recording
 }
 
 fn largest_gap(setup: &Setup, digital: &Outcome, twin: &Outcome) -> Option<Peak> {
@@ -78,12 +90,12 @@ fn largest_gap(setup: &Setup, digital: &Outcome, twin: &Outcome) -> Option<Peak>
 }
 
 impl Figures {
-    fn of(setup: &Setup, outcome: &Outcome, goal: Option<Goal>) -> Figures {
-        let metrics = Metrics::of(setup, &outcome.recording, None, goal);
-        let table = Table::new(setup, &outcome.recording);
+    fn of(setup: &Setup, recording: &Recording, goal: Option<Goal>) -> Figures {
+        let metrics = Metrics::of(setup, recording, None, goal);
+        let table = Table::new(setup, recording);
         let rms = |signal| {
-            let squares: f64 = table.axes(signal).flat_map(|(_, _, values)| values).map(|value| value * value).sum();
-            (squares / table.t_s.len().max(1) as f64).sqrt()
+            let values = || table.axes(signal).flat_map(|(_, _, values)| values);
+            (values().map(|value| value * value).sum::<f64>() / values().count().max(1) as f64).sqrt()
         };
         Figures {
             final_disagreement: metrics.disagreement.last(),

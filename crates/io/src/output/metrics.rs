@@ -321,16 +321,24 @@ fn settled(t_s: &[f64], overall: &[f64], bound: f64) -> Option<f64> {
 
 fn limits_reached(table: &Table<'_>) -> Vec<LimitReached> {
     let mut found = Vec::new();
+    let stated = table.setup.control.as_ref().and_then(|control| control.actuators.torque_limit.as_ref());
     for (agent, setup) in table.setup.agents.iter().enumerate() {
         for (axis, limits) in setup.robot.axes.iter().enumerate() {
+            // The limit of the controllers is kept in any case; that of the robot where it is enforced, or only reported.
+            let kept = stated.and_then(|limits| limits.get(axis)).copied();
+            let kept = kept.filter(|kept| limits.effort_limit.is_none_or(|effort| *kept <= effort));
             let symmetric = |limit: Option<f64>| limit.map(|limit| [-limit, limit]);
             for (kind, signal, range) in [
                 (LimitKind::Position, Signal::Position, limits.position_limits),
                 (LimitKind::Velocity, Signal::Velocity, symmetric(limits.velocity_limit)),
-                (LimitKind::Effort, Signal::Torque, symmetric(limits.effort_limit)),
+                (LimitKind::Effort, Signal::Torque, symmetric(kept.or(limits.effort_limit))),
             ] {
                 let (Some(range), Some(values)) = (range, table.column(agent, signal, axis)) else { continue };
-                let enforced = setup.enforce_limits && kind != LimitKind::Velocity;
+                let enforced = match kind {
+                    LimitKind::Position => setup.enforce_limits,
+                    LimitKind::Velocity => false,
+                    LimitKind::Effort => setup.enforce_limits || kept.is_some(),
+                };
                 let place = LimitReached {
                     agent,
                     axis,
@@ -389,12 +397,14 @@ fn ledger_error(table: &Table<'_>) -> Option<LedgerError> {
     worst
 }
 
-/// (V + ∫ dissipation − V(0)) / V(0) row by row.
+/// (V + ∫ dissipation − V(0)) / V(0) row by row; as a part of the largest V where pushes put energy in.
 pub(crate) fn ledger_errors(table: &Table<'_>, agent: usize) -> Option<Vec<f64>> {
     let v = table.column(agent, Signal::Lyapunov, 0)?;
     let dissipated = table.column(agent, Signal::Dissipation, 0)?;
     let start = *v.first()?;
-    let scale = start.max(LEDGER_FLOOR_J);
+    let pushed = table.setup.agents.get(agent).is_some_and(|agent| !agent.pushes.is_empty());
+    let whole = if pushed { v.iter().copied().fold(start, f64::max) } else { start };
+    let scale = whole.max(LEDGER_FLOOR_J);
     Some(v.iter().zip(dissipated).map(|(v, d)| (v + d - start) / scale).collect())
 }
 

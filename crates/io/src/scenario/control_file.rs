@@ -13,7 +13,8 @@ pub struct ControlFile {
     /// Samples per second, the same for all agents.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub sample_hz: At<f64>,
-    /// How long after a sample its torque is applied, in s; at most one period. Default: 0.
+    /// How long after a sample its torque is applied, in s; at most one period. Until then the torque before is held; at the
+    /// start there is none. Default: 0.
     #[schemars(range(min = 0))]
     pub computation_delay_s: Option<At<f64>>,
     /// Where velocities come from. Default: they are measured.

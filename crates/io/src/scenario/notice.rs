@@ -30,7 +30,11 @@ pub enum Notice {
         agent: String,
         /// h · λ_max(M⁻¹K) at its start.
         value: f64,
-        /// A sample rate that would be enough, Hz.
+        /// Above this it overshoots.
+        overshoots_above: f64,
+        /// Above this it is unstable.
+        unstable_above: f64,
+        /// A sample rate that would be enough without a delay of the torque, Hz.
         enough_hz: f64,
     },
     /// A log has packets of edges that the network does not have.
@@ -55,12 +59,14 @@ pub enum Notice {
 impl Notice {
     /// Digital control whose period is too long for its gain K.
     pub(super) fn coarse_sampling(setup: &Setup) -> Option<Notice> {
-        let SampledDamping { value, agent, period_s } = sampled_damping(setup)?;
-        (value > 1.0).then(|| Notice::CoarseSampling {
+        let SampledDamping { value, overshoots_above, unstable_above, agent, period_s } = sampled_damping(setup)?;
+        (value > overshoots_above).then(|| Notice::CoarseSampling {
             agent: setup.agents[agent].name.clone(),
             value,
+            overshoots_above,
+            unstable_above,
             // A little more, since it is shown rounded.
-            enough_hz: 1.05 * value / period_s,
+            enough_hz: 1.05 * value / overshoots_above / period_s,
         })
     }
 }
@@ -69,11 +75,10 @@ impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Notice::Robot { agents, notice } => write!(f, "{agents}: {notice}"),
-            Notice::CoarseSampling { agent, value, enough_hz } => write!(
+            Notice::CoarseSampling { agent, value, overshoots_above, unstable_above, enough_hz } => write!(
                 f,
-                "`sample_hz` is low for the gain K: h · λ_max(M⁻¹K) is {} for {agent}, and above 2 the held damping is \
-                 unstable; below 1 needs {} Hz, or a smaller K",
-                about(*value),
+                "`sample_hz` is low for the gain K: h · λ_max(M⁻¹K) is {value:.3} for {agent}; above {overshoots_above:.3} the \
+                 held damping overshoots, above {unstable_above:.3} it is unstable; sample at {} Hz, or let K be smaller",
                 about(*enough_hz)
             ),
             Notice::UnusedDwell { line } => write!(f, "`dwell_s` on line {line} is not used"),

@@ -688,6 +688,9 @@ impl Problem for ScenarioProblem {
             ScenarioProblem::NotInLog { .. } => {
                 "every edge of the network needs at least one row; a lost packet has an empty `delay_s`".into()
             }
+            ScenarioProblem::TooManyEvents { what: "samples", .. } => {
+                "sample more slowly, or let the run end sooner".into()
+            }
             ScenarioProblem::TooManyEvents { .. } => "is a unit of time mistaken? All of them are seconds".into(),
             ScenarioProblem::ComputationDelay { .. } => {
                 "a computation must be done before the next begins; sample more slowly, or compute faster".into()

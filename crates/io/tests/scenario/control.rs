@@ -24,7 +24,7 @@ const CASES: &[Case] = &[
     ("sample_hz = \"fast\"",
         "test.toml:38:13: found \"fast\" where a number should stand", ""),
     ("sample_hz = 1e9",
-        "test.toml:38:13: about 1e10 samples until the end of the run, but at most 1e7 are accepted", "All of them are seconds"),
+        "test.toml:38:13: about 1e10 samples until the end of the run, but at most 1e7 are accepted", "sample more slowly"),
     ("sample_Hz = 500",
         "test.toml:38:1: unknown key `sample_Hz`", "did you mean `sample_hz`?"),
     ("sample_hz = 500\nsample_hz = 500",

@@ -61,6 +61,13 @@ where
     }
     let first = &setup.agents[group[0]];
     let design = |agent: usize| (&setup.agents[agent].roots_per_s[..], setup.agents[agent].manipulability);
+    // Every agent's own design first, so that the one to blame is named.
+    for &agent in group {
+        if let ReferenceKind::Consensus | ReferenceKind::PureIntegral = setup.reference {
+            let name = || setup.agents[agent].name.clone();
+            Consensus::<X>::new([design(agent)]).map_err(|error| SetupError::Roots { agent: name(), error })?;
+        }
+    }
     let roots = |error| SetupError::Roots { agent: first.name.clone(), error };
     match setup.reference {
         ReferenceKind::Consensus => columns(robot, members, setup, |group| {
@@ -126,6 +133,11 @@ fn digital<R: Lagrangian<f64> + Clone, F: Reference>(
     let mut limit = control.actuators.torque_limit.clone().unwrap_or_else(unlimited);
     for (limit, effort) in limit.iter_mut().zip(member.effort_limits.iter().flatten()) {
         *limit = limit.min(*effort);
+    }
+    // A rounded torque must not exceed its limit either.
+    let quantum = control.actuators.torque_quantum;
+    if quantum > 0.0 {
+        limit.iter_mut().for_each(|limit| *limit = quantum * (*limit / quantum).floor());
     }
     let rate = control.actuators.torque_rate_limit.clone().unwrap_or_else(unlimited);
     for (what, values) in [("the torque limits", &limit), ("the torque rate limits", &rate)] {

@@ -217,7 +217,8 @@ impl Hearing {
         let mut needs = Needs::default();
         for source in &mut self.sources {
             let sent_s = timeline.sent_s(source.clock, t_s);
-            source.read = if sent_s == t_s {
+            // What arrives a rounding later is heard now, and was sent now.
+            source.read = if sent_s >= t_s {
                 needs.present = true;
                 Read::Now
             } else {

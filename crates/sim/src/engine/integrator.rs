@@ -250,7 +250,7 @@ impl<'a> Integrator<'a> {
             std::mem::swap(&mut self.x0, &mut self.x1);
             self.k.swap(0, self.tableau.c.len() - 1);
         }
-        if t > 0.0 && self.timeline.next_s() <= t {
+        if t > 0.0 && self.timeline.next_s() <= merge_until(t) {
             self.statistics.break_points += 1;
             let passed = self.timeline.pass(t);
             if passed.switched {

@@ -180,7 +180,7 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
         @if let Some(ledger) = metrics.ledger_error {
             (fact("Ledger", html! {
                 @if ledger.relative.is_finite() {
-                    "V + ∫ dissipation = V(0) holds to " (number(ledger.relative)) " of V(0) (worst: "
+                    "V + ∫ dissipation = V(0) holds to " (number(ledger.relative)) @if setup.agents[ledger.agent].pushes.is_empty() { " of V(0)" } @else { " of the largest V" } " (worst: "
                 } @else { "V is no longer finite (" }
                 (names::agent_name(setup, ledger.agent)) ", t = " (number(ledger.t_s)) " s)"
             }))
@@ -204,8 +204,13 @@ pub(crate) fn digital(record: &RunRecord<'_>) -> Markup {
         ("Final disagreement", unit, continuous.final_disagreement, digital.final_disagreement),
         ("Settled after", "s", continuous.settled_s, digital.settled_s),
         ("Peak torque", &*torque, continuous.peak_torque, digital.peak_torque),
-        ("Torque, root mean square", &*torque, Some(continuous.rms_torque), Some(digital.rms_torque)),
-        ("s, root mean square", &*speed, Some(continuous.rms_tracking_error), Some(digital.rms_tracking_error)),
+        ("Torque of an axis, root mean square", &*torque, Some(continuous.rms_torque), Some(digital.rms_torque)),
+        (
+            "s of an axis, root mean square",
+            &*speed,
+            Some(continuous.rms_tracking_error),
+            Some(digital.rms_tracking_error),
+        ),
     ];
     let cell = |value: Option<f64>, unit: &str| value.map_or_else(|| "–".to_owned(), |value| quantity(value, unit));
     html! {
@@ -214,7 +219,7 @@ pub(crate) fn digital(record: &RunRecord<'_>) -> Markup {
             div.card.scroll {
                 h3 {
                     "At " (number(cost.sample_hz)) " Hz, beside the same run in continuous time"
-                    span.by { "with exact measurements and unlimited actuators" }
+                    span.by { "with exact measurements and no limits; both until the earlier end" }
                 }
                 table.numbers {
                     thead { tr { th {} th { "continuous" } th { "digital" } } }
@@ -230,7 +235,7 @@ pub(crate) fn digital(record: &RunRecord<'_>) -> Markup {
                     }
                 }
                 @if let Some(t_s) = cost.twin_ended_at_s {
-                    p.note { "In continuous time the run ended at t = " (number(t_s)) " s; rows until then are compared." }
+                    p.note { "In continuous time the run ended at t = " (number(t_s)) " s." }
                 }
             }
         }
