@@ -17,7 +17,7 @@ use forwardstep_sim::delay::{Delay, Loss, PacketLink};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
     Actuators, AgentSetup, Breakdown, BreakdownCause, Control, Ending, Exchange, Law, Method, Outcome, Sensors, Setup,
-    Signal, VelocitySensor, simulate,
+    SetupError, Signal, VelocitySensor, simulate,
 };
 
 fn run(setup: &Setup) -> Outcome {
@@ -215,5 +215,22 @@ fn regress_packets_that_arrive_at_a_sample_are_heard_at_it() {
         let constant = run(&setup);
         setup.network.delays = vec![Delay::Packets(Arc::new(link.trace((0, 1), 2.0).unwrap()))];
         assert_eq!(constant.recording, run(&setup).recording, "{sample_hz} Hz");
+    }
+}
+
+#[test]
+fn a_run_that_no_memory_holds_is_refused_before_it_begins() {
+    let mut setup = case("03-order2-both-zero-delay", 2.0);
+    for (sample_hz, end_s, delay_s) in [(1e300, 2.0, 0.0), (f64::NAN, 2.0, 0.0), (1e7, 2.0, 0.0), (9e3, 1e3, 1e9)] {
+        setup.control = Some(control(sample_hz));
+        setup.time.end_s = end_s;
+        setup.network.delays = vec![Delay::Constant { s: delay_s }];
+        // Many agents make messages large, and rows are few.
+        let agents = if delay_s > 0.0 { 12 } else { 3 };
+        setup.agents =
+            (0..agents).map(|k| AgentSetup { name: format!("agent-{k}"), ..setup.agents[0].clone() }).collect();
+        setup.network.agents = agents;
+        let refused = simulate(&setup, &mut |_| ControlFlow::Break(()));
+        assert!(matches!(refused, Err(SetupError::Control { .. })), "{sample_hz} Hz, {end_s} s, {delay_s} s");
     }
 }

@@ -126,6 +126,12 @@ pub enum SetupError {
     },
 }
 
+/// Samples that a run may have.
+const MOST_SAMPLES: f64 = 1e7;
+
+/// Numbers in all messages that can still be heard; eight bytes each.
+const MOST_KEPT: f64 = 2e8;
+
 /// Everything that does not need a robot's kernels.
 pub(super) fn check(setup: &Setup) -> Result<(), SetupError> {
     setup.network.validate()?;
@@ -146,7 +152,7 @@ pub(super) fn check(setup: &Setup) -> Result<(), SetupError> {
         }
         Method::Fixed { step_s } => positive("the step", step_s)?,
     }
-    setup.control.as_ref().map_or(Ok(()), check_control)?;
+    setup.control.as_ref().map_or(Ok(()), |control| check_control(control, setup))?;
     if matches!(setup.reference, ReferenceKind::Backstepping { .. }) && setup.exchange != Exchange::Position {
         return Err(SetupError::BacksteppingExchange);
     }
@@ -158,11 +164,20 @@ pub(super) fn check(setup: &Setup) -> Result<(), SetupError> {
     Ok(())
 }
 
-fn check_control(control: &Control) -> Result<(), SetupError> {
+fn check_control(control: &Control, setup: &Setup) -> Result<(), SetupError> {
     let wrong = |what, value, requirement| Err(SetupError::Control { what, value, requirement });
     let Control { sample_hz, computation_delay_s, sensors, actuators } = control;
     if !(*sample_hz > 0.0 && sample_hz.is_finite()) {
         return wrong("the sample rate", *sample_hz, "must be positive and finite");
+    }
+    if setup.time.end_s * sample_hz > MOST_SAMPLES {
+        return wrong("the number of samples", setup.time.end_s * sample_hz, "must not exceed 1e7");
+    }
+    // Messages are kept until nobody can hear them any more: at most positions and velocities.
+    let axes: usize = setup.agents.iter().map(|agent| agent.robot.axes.len()).sum();
+    let kept = 2.0 * axes as f64 * (setup.network.max_delay_s().min(setup.time.end_s) * sample_hz + 3.0);
+    if kept > MOST_KEPT {
+        return wrong("the number of numbers on their way", kept, "must not exceed 2e8: sample more slowly");
     }
     if !(*computation_delay_s >= 0.0 && *computation_delay_s <= 1.0 / sample_hz) {
         return wrong("the computation delay", *computation_delay_s, "must be from 0 to one period");

@@ -78,6 +78,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
                             "Beside this page: " code { "trajectory.parquet" } " with every recorded number, " code { "summary.json" }
                             " for programs, " code { "plots/" } " for print, and " code { "scenario.toml" } " to run it again"
                             @if !record.inputs.is_empty() { ", with the files that it names in " code { "inputs/" } }
+                            @if !super::packets::links(&record.setup.network).is_empty() { "; " code { "packets.csv" } " has every packet" }
                             "."
                         }
                     }

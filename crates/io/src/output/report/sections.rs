@@ -344,6 +344,9 @@ pub(crate) fn provenance(record: &RunRecord<'_>) -> Markup {
                         (statistics.steps) " accepted, " (statistics.rejected) " rejected, " (statistics.break_points)
                         " of them ended on a break-point; " (statistics.evaluations) " evaluations"
                     }))
+                    @if let Some(control) = &setup.control {
+                        (fact("Control", html! { "sampled at " (number(control.sample_hz)) " Hz, torques held; every sample ends a step" }))
+                    }
                     (fact("Recording", html! {
                         (text::count(record.outcome.recording.t_s.len(), "row")) ", every "
                         (number(setup.time.record_every_s)) " s"
