@@ -26,7 +26,7 @@ fn known(delay: &Delay) -> Known {
         Delay::Formula(formula) => {
             let Interval { low, high } = formula.for_ever();
             if low >= 0.0 && high.is_finite() {
-                Known::ForEver(formula.within().high)
+                Known::ForEver(high)
             } else {
                 Known::OnHorizon(formula.within().high, "a formula could not be shown to be bounded for ever")
             }
@@ -99,13 +99,13 @@ pub(crate) fn bounded_weights(setup: &Setup) -> Option<Hypothesis> {
         bounds.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), b| (low.min(b.low), high.max(b.high)))
     };
     varying_weights(setup).next()?;
-    let ((low, high), for_ever) = (hull(BoundedFormula::within), hull(BoundedFormula::for_ever));
-    let within = format!("weights that follow a formula stay from {} to {}", seconds(low), seconds(high));
+    let (within, for_ever) = (hull(BoundedFormula::within), hull(BoundedFormula::for_ever));
+    let stay = |(low, high)| format!("weights that follow a formula stay from {} to {}", seconds(low), seconds(high));
     let (answer, because) = if for_ever.0 > 0.0 && for_ever.1.is_finite() {
-        (Answer::Holds, within)
+        (Answer::Holds, stay(for_ever))
     } else {
-        let end_s = seconds(setup.time.end_s);
-        (Answer::HoldsOnHorizon, format!("{within} until the end of the run at {end_s} s; for ever could not be shown"))
+        let (stay, end_s) = (stay(within), seconds(setup.time.end_s));
+        (Answer::HoldsOnHorizon, format!("{stay} until the end of the run at {end_s} s; for ever could not be shown"))
     };
     Some(Hypothesis {
         requires: "weights are bounded, and bounded away from zero while their edge is there".into(),
