@@ -21,14 +21,20 @@ enum Known {
     OnHorizon(f64, &'static str),
 }
 
+/// On a bounded time a continuous formula is uniformly continuous; for ever it may swing faster and faster.
+const SWINGS: &str = "a formula could not be shown to be uniformly continuous for ever, as it is on the run";
+
 fn known(delay: &Delay) -> Known {
     match delay {
         Delay::Formula(formula) => {
             let Interval { low, high } = formula.for_ever();
-            if low >= 0.0 && high.is_finite() {
-                Known::ForEver(formula.within().high)
+            let seen = formula.within().high;
+            if !(low >= 0.0 && high.is_finite()) {
+                Known::OnHorizon(seen, "a formula could not be shown to be bounded for ever")
+            } else if !formula.formula().is_uniformly_continuous() {
+                Known::OnHorizon(seen, SWINGS)
             } else {
-                Known::OnHorizon(formula.within().high, "a formula could not be shown to be bounded for ever")
+                Known::ForEver(high)
             }
         }
         Delay::Packets(trace) => match trace.link() {
@@ -99,16 +105,21 @@ pub(crate) fn bounded_weights(setup: &Setup) -> Option<Hypothesis> {
         bounds.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), b| (low.min(b.low), high.max(b.high)))
     };
     varying_weights(setup).next()?;
-    let ((low, high), for_ever) = (hull(BoundedFormula::within), hull(BoundedFormula::for_ever));
-    let within = format!("weights that follow a formula stay from {} to {}", seconds(low), seconds(high));
-    let (answer, because) = if for_ever.0 > 0.0 && for_ever.1.is_finite() {
-        (Answer::Holds, within)
+    let (within, for_ever) = (hull(BoundedFormula::within), hull(BoundedFormula::for_ever));
+    let stay = |(low, high)| format!("weights that follow a formula stay from {} to {}", seconds(low), seconds(high));
+    let bounded = for_ever.0 > 0.0 && for_ever.1.is_finite();
+    let uniform = varying_weights(setup).all(|weight| weight.formula().is_uniformly_continuous());
+    let (answer, because) = if bounded && uniform {
+        (Answer::Holds, stay(for_ever))
     } else {
-        let end_s = seconds(setup.time.end_s);
-        (Answer::HoldsOnHorizon, format!("{within} until the end of the run at {end_s} s; for ever could not be shown"))
+        let (stay, end_s) = (stay(within), seconds(setup.time.end_s));
+        let reason = if bounded { SWINGS } else { "for ever could not be shown" };
+        (Answer::HoldsOnHorizon, format!("{stay} until the end of the run at {end_s} s; {reason}"))
     };
     Some(Hypothesis {
-        requires: "weights are bounded, and bounded away from zero while their edge is there".into(),
+        requires:
+            "weights are piecewise uniformly continuous, bounded, and bounded away from zero while their edge is there"
+                .into(),
         answer,
         because,
     })

@@ -9,7 +9,7 @@ use forwardstep_core::Gain;
 use forwardstep_core::reference::polynomial;
 use forwardstep_core::robot::PlanarLinks;
 use forwardstep_sim::delay::{Delay, Loss, Packet, PacketLink, RandomHold, Trace};
-use forwardstep_sim::formula::FormulaStep::{Add, Multiply, Number, Sin, Time};
+use forwardstep_sim::formula::FormulaStep::{Add, Divide, Multiply, Number, Sin, Tanh, Time};
 use forwardstep_sim::formula::{BoundedFormula, Formula};
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::schedule::{Phase, Schedule};
@@ -433,6 +433,28 @@ fn formulas_hold_for_ever_only_where_that_is_shown() {
     let (_, _, weight) = links(constant(), Some(growing));
     assert_eq!(weight.unwrap().0, Answer::HoldsOnHorizon);
     assert_eq!(links(constant(), None).2, None);
+
+    // What is said for ever is the bound for ever, not what the run happens to see of it: 0.2 + 0.1 tanh(t / 1000).
+    let rising =
+        Formula::new(vec![Number(0.2), Number(0.1), Time, Number(1000.0), Divide, Tanh, Multiply, Add]).unwrap();
+    let (answer, because, weight) = links(delay(rising.clone()), Some(rising));
+    assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 0.3 s"));
+    assert_eq!(weight.unwrap(), (Answer::Holds, "weights that follow a formula stay from 0.2 to 0.3".to_owned()));
+
+    // 0.2 + 0.1 sin t² swings faster and faster; the run sees a part of it on which it is uniformly continuous.
+    let swings =
+        |argument: &[_]| Formula::new([&[Number(0.2), Number(0.1)], argument, &[Sin, Multiply, Add]].concat()).unwrap();
+    let faster = swings(&[Time, Time, Multiply]);
+    let (answer, because, weight) = links(delay(faster.clone()), Some(faster));
+    assert_eq!(answer, Answer::HoldsOnHorizon);
+    assert!(because.contains("could not be shown to be uniformly continuous for ever"), "{because}");
+    let (answer, because) = weight.unwrap();
+    assert_eq!(answer, Answer::HoldsOnHorizon);
+    assert!(because.contains("could not be shown to be uniformly continuous for ever"), "{because}");
+    let steady = swings(&[Number(core::f64::consts::TAU), Time, Multiply, Number(3.0), Divide]);
+    let (answer, because, weight) = links(delay(steady.clone()), Some(steady));
+    assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 0.3 s"));
+    assert_eq!(weight.unwrap().0, Answer::Holds);
 }
 
 #[test]

@@ -31,8 +31,8 @@ use rand_chacha::rand_core::SeedableRng;
 use thiserror::Error;
 
 /// A link as a random process. Every pair of agents has its own stream of random numbers, which depends on the seed and on
-/// the two agents alone: neither other links nor the graph in force change it, nor does anything but `loss` change which
-/// packets are lost.
+/// the two agents alone: neither other links nor the graph in force change it. Whether the k-th packet is lost depends on
+/// `loss` and `most_in_a_row` besides, but on no time: not on the latency, the jitter, or when packets are sent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PacketLink {
     /// From one packet to the next, s.
@@ -119,6 +119,12 @@ pub enum PacketError {
         packets: f64,
         /// How many are accepted.
         most: f64,
+    },
+    /// More values of a random hold than fit into memory.
+    #[error("the delay would take more than {most} values one after another; hold each for longer")]
+    TooManyValues {
+        /// How many are accepted.
+        most: usize,
     },
 }
 
@@ -248,7 +254,7 @@ pub struct LinkStatistics {
     pub sent: usize,
     /// Packets that never arrived.
     pub lost: usize,
-    /// Packets that arrived before the end, but after a newer one, and were dropped.
+    /// Packets that arrived until the end, but not before a newer one, and were dropped: after it or at the same instant.
     pub late: usize,
     /// The largest age of what was heard, s; before anything has arrived the initial message ages from t = 0.
     pub largest_age_s: f64,

@@ -5,7 +5,7 @@ use rand::Rng;
 use super::packets::{PacketError, stream};
 
 /// Values that one delay may take one after another.
-const MOST_VALUES: f64 = 1e8;
+const MOST_VALUES: usize = 100_000_000;
 
 /// A delay that takes a new value, each equally likely, after times of which each is equally likely.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,9 +43,10 @@ impl RandomHold {
         check("the largest delay", value_s[1], value_s[1] >= value_s[0], "must not be below the least")?;
         check("the shortest hold", hold_s[0], hold_s[0] > 0.0, "must be positive and finite")?;
         check("the longest hold", hold_s[1], hold_s[1] >= hold_s[0], "must not be below the shortest")?;
-        let packets = until_s / hold_s[0];
-        if packets > MOST_VALUES || packets.is_nan() {
-            return Err(PacketError::TooMany { packets, most: MOST_VALUES });
+        let too_many = || PacketError::TooManyValues { most: MOST_VALUES };
+        // Too many even if every hold were the longest.
+        if until_s / hold_s[1] > MOST_VALUES as f64 {
+            return Err(too_many());
         }
         let mut draw = stream(seed, from, to);
         let mut between = |[low, high]: [f64; 2]| {
@@ -54,12 +55,20 @@ impl RandomHold {
             (low + share * (high - low)).clamp(low, high)
         };
         let (mut times_s, mut values_s) = (Vec::new(), Vec::new());
-        let mut t_s = 0.0;
+        let (mut t_s, mut drawn) = (0.0, 0);
         loop {
-            times_s.push(t_s);
-            values_s.push(between(value_s));
+            drawn += 1;
+            if drawn > MOST_VALUES {
+                return Err(too_many());
+            }
+            let value = between(value_s);
             let next = t_s + between(hold_s);
-            if !(next > t_s && next <= until_s) {
+            // A hold so short that it is lost to rounding is over at once.
+            if next > t_s {
+                times_s.push(t_s);
+                values_s.push(value);
+            }
+            if next > until_s || until_s.is_nan() {
                 break;
             }
             t_s = next;
@@ -75,6 +84,11 @@ impl RandomHold {
     /// Shortest and longest hold, s.
     pub fn hold_s(&self) -> [f64; 2] {
         self.hold_s
+    }
+
+    /// When each value begins, s.
+    pub fn times_s(&self) -> &[f64] {
+        &self.times_s
     }
 
     pub(super) fn until_s(&self) -> f64 {

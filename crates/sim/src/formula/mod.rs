@@ -5,11 +5,13 @@
 //! a delay is shown never to be negative and a weight to stay positive.
 
 mod interval;
+mod uniform;
 
 use forwardstep_core::Scalar;
 use thiserror::Error;
 
 pub use interval::Interval;
+use uniform::Part;
 
 /// Steps that a formula may have.
 pub const MOST_STEPS: usize = 256;
@@ -71,6 +73,39 @@ impl FormulaStep {
             Number(_) | Time => 0,
             Add | Subtract | Multiply | Divide | Min | Max => 2,
             _ => 1,
+        }
+    }
+
+    /// Whether it has no value for some operands.
+    fn is_partial(self) -> bool {
+        matches!(self, FormulaStep::Divide | FormulaStep::Log | FormulaStep::Sqrt | FormulaStep::Power(_))
+    }
+
+    /// What its value keeps within when its operands keep within `a` and `b`.
+    fn enclose(self, a: Interval, b: Interval, time_s: Interval) -> Interval {
+        use FormulaStep as S;
+        match self {
+            S::Number(value) => Interval::new(value, value),
+            S::Time => time_s,
+            S::Negate => a.neg(),
+            S::Add => a.add(b),
+            S::Subtract => a.sub(b),
+            S::Multiply => a.mul(b),
+            S::Divide => a.div(b),
+            S::Power(exponent) => match whole(exponent) {
+                Some(n) => a.powi_of(n),
+                None => a.powf_of(exponent),
+            },
+            S::Sin => a.sin_of(),
+            S::Cos => a.cos_of(),
+            S::Exp => a.exp_of(),
+            S::Log => a.log_of(),
+            S::Sqrt => a.sqrt_of(),
+            S::Abs => a.abs(),
+            S::Min => a.min(b),
+            S::Max => a.max(b),
+            S::Tanh => a.tanh_of(),
+            S::Atan => a.atan_of(),
         }
     }
 }
@@ -210,6 +245,12 @@ impl Formula {
         Interval::new(-self.search(from_s, to_s, -1.0), self.search(from_s, to_s, 1.0))
     }
 
+    /// Whether it is shown to have a finite value everywhere from `from_s` to `to_s`; cheaper than [`bounds`](Self::bounds),
+    /// since mostly one look tells.
+    pub fn is_bounded(&self, from_s: f64, to_s: f64) -> bool {
+        self.enclose(Interval::new(from_s, to_s)).is_finite() || self.bounds(from_s, to_s).is_finite()
+    }
+
     /// An upper bound of `sign` times the formula: the stretch whose bound is highest is cut until that bound is close to
     /// a value that is taken, or the work is done.
     fn search(&self, from_s: f64, to_s: f64, sign: f64) -> f64 {
@@ -242,48 +283,44 @@ impl Formula {
 
     /// An interval that holds the value at every time in `time_s`, in one pass.
     pub fn enclose(&self, time_s: Interval) -> Interval {
-        use FormulaStep as S;
         let mut stack = [Interval::WHOLE; MOST_WAITING];
         let mut top = 0;
         let mut defined = true;
         for step in &self.steps {
             let first = top - step.operands();
             let (a, b) = (stack[first], stack[(first + 1).min(MOST_WAITING - 1)]);
-            let value = match *step {
-                S::Number(value) => Interval::new(value, value),
-                S::Time => time_s,
-                S::Negate => a.neg(),
-                S::Add => a.add(b),
-                S::Subtract => a.sub(b),
-                S::Multiply => a.mul(b),
-                S::Divide => a.div(b),
-                S::Power(exponent) => match whole(exponent) {
-                    Some(n) => a.powi_of(n),
-                    None => a.powf_of(exponent),
-                },
-                S::Sin => a.sin_of(),
-                S::Cos => a.cos_of(),
-                S::Exp => a.exp_of(),
-                S::Log => a.log_of(),
-                S::Sqrt => a.sqrt_of(),
-                S::Abs => a.abs(),
-                S::Min => a.min(b),
-                S::Max => a.max(b),
-                S::Tanh => a.tanh_of(),
-                S::Atan => a.atan_of(),
-            };
+            let value = step.enclose(a, b, time_s);
             // What leaves the finite numbers may come back as not-a-number, and what has no value stays without one,
             // whatever is done with it: tanh √x is bounded, but not where x is negative.
             let operands = &stack[first..first + step.operands()];
             let finite = operands.iter().all(|operand| operand.is_finite());
-            let partial = matches!(step, S::Divide | S::Log | S::Sqrt | S::Power(_));
-            if *step != S::Time && (finite && !value.is_finite() || partial && value == Interval::WHOLE) {
+            let partial = step.is_partial();
+            if *step != FormulaStep::Time && (finite && !value.is_finite() || partial && value == Interval::WHOLE) {
                 defined = false;
             }
             stack[first] = value;
             top = first + 1;
         }
         if defined { stack[0] } else { Interval::WHOLE }
+    }
+
+    /// Whether it is shown to be bounded and uniformly continuous on [0, ∞), as exact arithmetic would evaluate it.
+    pub fn is_uniformly_continuous(&self) -> bool {
+        let for_ever = Interval::new(0.0, f64::INFINITY);
+        // Bounded also says that it has a value everywhere.
+        if !self.enclose(for_ever).is_finite() {
+            return false;
+        }
+        let mut stack = [(Interval::WHOLE, Part::UNKNOWN); MOST_WAITING];
+        let mut top = 0;
+        for step in &self.steps {
+            let first = top - step.operands();
+            let ((a, part), (b, other)) = (stack[first], stack[(first + 1).min(MOST_WAITING - 1)]);
+            let within = step.enclose(a, b, for_ever);
+            stack[first] = (within, Part::after(*step, part, other, within));
+            top = first + 1;
+        }
+        stack[0].1.is_uniform()
     }
 }
 

@@ -81,6 +81,7 @@ fn steps_that_make_no_value_are_refused() {
 fn bounds_are_tight_where_t_appears_once() {
     let swing = formula(&[Number(0.3), Number(0.3), Time, Sin, Multiply, Add]);
     assert_eq!(swing.bounds(0.0, f64::INFINITY), Interval { low: 0.0, high: 0.6 });
+    assert!(swing.is_bounded(0.0, f64::INFINITY) && swing.is_bounded(0.0, 1.0));
     let part = swing.bounds(0.0, 1.0);
     assert!(part.low >= 0.3 - 1e-12 && part.high <= 0.3 + 0.3 * 1.0_f64.sin() + 1e-12, "{part:?}");
     let fading = formula(&[Time, Negate, Exp]);
@@ -89,6 +90,11 @@ fn bounds_are_tight_where_t_appears_once() {
     assert_eq!(formula(&[Time]).bounds(0.0, f64::INFINITY), Interval { low: 0.0, high: f64::INFINITY });
     assert!(!formula(&[Number(1.0), Time, Number(3.0), Subtract, Divide]).bounds(0.0, 10.0).is_finite());
     assert!(!formula(&[Time, Number(1.0), Subtract, Sqrt]).bounds(0.0, 10.0).is_finite());
+    assert!(!formula(&[Time, Number(1.0), Subtract, Sqrt]).is_bounded(0.0, 10.0));
+    // 1 / (t² − 2 t + 2), whose divisor one pass does not tell from zero.
+    let hill = [&[Number(1.0), Time, Power(2.0), Number(2.0), Time, Multiply, Subtract, Number(2.0), Add, Divide][..]];
+    let hill = formula(&hill.concat());
+    assert!(!hill.enclose(Interval { low: 0.0, high: 10.0 }).is_finite() && hill.is_bounded(0.0, 10.0));
 }
 
 #[test]
@@ -98,6 +104,46 @@ fn cutting_narrows_what_one_pass_overestimates() {
     assert_eq!(parabola.enclose(Interval { low: 0.0, high: 10.0 }).low, -50.0);
     let bounds = parabola.bounds(0.0, 10.0);
     assert!(bounds.low > 0.9 && bounds.low <= 1.0 && bounds.high >= 50.0 && bounds.high < 50.1, "{bounds:?}");
+}
+
+#[test]
+fn uniform_continuity_is_shown_or_not_claimed() {
+    let swing = |argument: &[FormulaStep]| [&[Number(0.2), Number(0.1)], argument, &[Sin, Multiply, Add]].concat();
+    let turns = [Number(2.0), Number(core::f64::consts::PI), Multiply, Time, Multiply, Number(3.0), Divide];
+    let square = [Time, Time, Multiply];
+    let shown = [
+        vec![Number(0.3)],
+        swing(&turns),
+        swing(&[Time, Sqrt]),
+        swing(&[Time, Number(1.0), Add, Log]),
+        // Products and quotients of swings.
+        [swing(&turns), swing(&[Time]), vec![Multiply]].concat(),
+        [swing(&turns), swing(&[Time]), vec![Divide]].concat(),
+        // Slopes without a bound at t = 0, or on the way: continuous, bounded and monotone.
+        vec![Time, Sqrt, Negate, Exp],
+        vec![Time, Power(2.0), Negate, Exp],
+        [vec![Number(1.0), Number(1.0)], square.to_vec(), vec![Add, Divide]].concat(),
+        [square.to_vec(), vec![Tanh, Cos]].concat(),
+        vec![Number(5.0), Time, Number(2.0), Multiply, Subtract, Power(3.0), Atan],
+    ];
+    for steps in shown {
+        assert!(formula(&steps).is_uniformly_continuous(), "{steps:?}");
+    }
+    let not = [
+        swing(&square),
+        swing(&[Time, Power(1.5)]),
+        swing(&[Time, Exp]),
+        swing(&[Time, Time, Sin, Multiply]),
+        [swing(&square), swing(&[Time]), vec![Multiply]].concat(),
+        vec![Time, Power(2.0), Cos, Power(2.0)],
+        vec![Time, Power(2.0), Cos, Number(2.0), Add, Power(-1.0)],
+        // Not bounded, or without a value.
+        vec![Time],
+        vec![Number(1.0), Time, Number(3.0), Subtract, Divide],
+    ];
+    for steps in not {
+        assert!(!formula(&steps).is_uniformly_continuous(), "{steps:?}");
+    }
 }
 
 proptest! {

@@ -143,6 +143,18 @@ fn what_makes_no_link_is_refused() {
     ));
     assert!(RandomHold::draw(1, (0, 1), [0.2, 0.1], [1.0, 2.0], 5.0).is_err());
     assert!(RandomHold::draw(1, (0, 1), [0.1, 0.2], [0.0, 2.0], 5.0).is_err());
+    assert_eq!(
+        RandomHold::draw(1, (0, 1), [0.1, 0.2], [1e-9, 1e-8], 5.0).unwrap_err().to_string(),
+        "the delay would take more than 100000000 values one after another; hold each for longer"
+    );
+}
+
+#[test]
+fn a_short_least_hold_is_not_taken_for_every_hold() {
+    for shortest in [1e-8, 1e-300] {
+        let hold = RandomHold::draw(1, (0, 1), [0.1, 0.2], [shortest, 2.0], 10.0).unwrap();
+        assert!((5..30).contains(&hold.times_s().len()), "{}", hold.times_s().len());
+    }
 }
 
 #[test]
