@@ -19,7 +19,7 @@ use super::table::{Cell, Column, TableProblem, cell_number, read_table, table_te
 
 /// Packets and values of random holds on all edges together; forty bytes each.
 const MOST_PACKETS: f64 = 5e6;
-/// Formulas for weights that are told apart; each is searched for its bounds.
+/// Formulas for weights, and for delays, that are told apart; each is searched for its bounds.
 const MOST_FORMULAS: usize = 1000;
 /// Packets lost one after another that a bound may allow.
 const MOST_IN_A_ROW: u32 = 1_000_000;
@@ -50,6 +50,8 @@ pub(super) struct Links {
     drawn: HashMap<(usize, usize, bool), (DelayPlan, usize)>,
     logs: BTreeMap<String, Log>,
     weights: HashMap<String, Weight>,
+    /// The delays that are written as formulas, by their texts.
+    formulas: HashMap<String, Delay>,
     packets: f64,
 }
 
@@ -65,21 +67,29 @@ impl NetworkReader<'_> {
         Ok(DelayPlan::Log(name.clone()))
     }
 
-    pub(super) fn formula_delay(&self, text: &At<String>) -> Result<Delay, Fault> {
+    /// A delay that is written as a formula; equal texts are one delay.
+    pub(super) fn formula_delay(&mut self, text: &At<String>) -> Result<Delay, Fault> {
+        if let Some(known) = self.links.formulas.get(&text.value) {
+            return Ok(known.clone());
+        }
         let formula = formula(text)?;
-        if formula.is_constant() {
+        let delay = if formula.is_constant() {
             let value = At { value: formula.eval(0.0), span: text.span.clone() };
-            return Ok(Delay::Constant {
-                s: finite("formula_s", &value).and_then(|value| not_negative("formula_s", &value))?,
-            });
-        }
-        let bounded = BoundedFormula::new(formula, self.end_s);
-        let Interval { low, high } = bounded.within();
-        if low >= 0.0 && high.is_finite() {
-            return Ok(Delay::Formula(bounded.into()));
-        }
-        let (witness, end_s) = (witness(bounded.formula(), self.end_s, |value| value >= 0.0), self.end_s);
-        Err(fault(text, ScenarioProblem::DelayBounds { low, high, witness, end_s }))
+            Delay::Constant { s: finite("formula_s", &value).and_then(|value| not_negative("formula_s", &value))? }
+        } else {
+            if self.links.formulas.len() >= MOST_FORMULAS {
+                return Err(fault(text, ScenarioProblem::TooManyFormulas { most: MOST_FORMULAS }));
+            }
+            let bounded = BoundedFormula::new(formula, self.end_s);
+            let Interval { low, high } = bounded.within();
+            if !(low >= 0.0 && high.is_finite()) {
+                let (witness, end_s) = (witness(bounded.formula(), self.end_s, |value| value >= 0.0), self.end_s);
+                return Err(fault(text, ScenarioProblem::DelayBounds { low, high, witness, end_s }));
+            }
+            Delay::Formula(bounded.into())
+        };
+        self.links.formulas.insert(text.value.clone(), delay.clone());
+        Ok(delay)
     }
 
     /// Index of the delay of one edge; `span` is where the edge is written.

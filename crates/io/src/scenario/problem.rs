@@ -485,7 +485,7 @@ pub enum ScenarioProblem {
         key: &'static str,
     },
     /// More formulas than can be looked at.
-    #[error("there are more than {most} different formulas for weights")]
+    #[error("there are more than {most} different formulas for delays or for weights")]
     TooManyFormulas {
         /// How many are accepted.
         most: usize,

@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use forwardstep_core::robot::tree::{Axes, LinkPoint};
+use forwardstep_sim::formula::Formula;
 use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push, Table};
 use forwardstep_sim::{AgentSetup, AxisUnit, RobotKind};
 
@@ -34,7 +35,7 @@ pub(super) fn pushes(
     folder: &mut InputFolder,
     notices: &mut Vec<Notice>,
 ) -> Result<(), Fault> {
-    let mut tables = Tables { folder, texts: HashMap::new(), numbers: 0 };
+    let mut tables = Tables { folder, texts: HashMap::new(), numbers: 0, formulas: HashMap::new() };
     for At { value: file, span } in list {
         let from_s = file.from_s.as_ref().map_or(Ok(0.0), |from| not_negative("from_s", from))?;
         let lasts_s = file.for_s.as_ref().map_or(Ok(f64::INFINITY), |lasts| positive("for_s", lasts))?;
@@ -86,11 +87,14 @@ fn who(on: &At<Vec<At<String>>>, read: &Agents) -> Result<Vec<usize>, Fault> {
     Ok(found)
 }
 
-/// Tables, each read from its file once.
+/// Tables, each read from its file once, and formulas, each looked at once.
 struct Tables<'a> {
     folder: &'a mut InputFolder,
     texts: HashMap<String, SourceText>,
     numbers: usize,
+    /// By their text and the bits of the times between which they have a value: every axis of every agent of a population
+    /// asks for the same ones.
+    formulas: HashMap<(String, [u64; 2]), Formula>,
 }
 
 /// A push on its way to one agent.
@@ -314,15 +318,20 @@ impl Reader<'_, '_> {
         }
     }
 
-    fn function(&self, entry: &At<FunctionFile>) -> Result<Function, Fault> {
+    fn function(&mut self, entry: &At<FunctionFile>) -> Result<Function, Fault> {
         match &entry.value {
             FunctionFile::Number(value) => Ok(Function::Constant(*value)),
             FunctionFile::Formula(text) => {
+                let key = (text.clone(), self.times_s.map(f64::to_bits));
+                if let Some(known) = self.tables.formulas.get(&key) {
+                    return Ok(Function::Formula(known.clone()));
+                }
                 let formula = formula(&At { value: text.clone(), span: entry.span.clone() })?;
                 let [from_s, until_s] = self.times_s;
-                if from_s < until_s && !formula.bounds(from_s, until_s).is_finite() {
+                if from_s < until_s && !formula.is_bounded(from_s, until_s) {
                     return Err(fault(entry, PushProblem::FormulaValue { from_s, until_s }.into()));
                 }
+                self.tables.formulas.insert(key, formula.clone());
                 Ok(Function::Formula(formula))
             }
         }

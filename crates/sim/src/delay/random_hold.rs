@@ -2,7 +2,7 @@
 
 use rand::Rng;
 
-use super::packets::{PacketError, stream};
+use super::packets::{Kind, PacketError, stream};
 
 /// Values that one delay may take one after another.
 const MOST_VALUES: usize = 100_000_000;
@@ -48,7 +48,7 @@ impl RandomHold {
         if until_s / hold_s[1] > MOST_VALUES as f64 {
             return Err(too_many());
         }
-        let mut draw = stream(seed, from, to);
+        let mut draw = stream(Kind::Holds, seed, from, to);
         let mut between = |[low, high]: [f64; 2]| {
             let share: f64 = draw.random();
             // Rounding must not lead outside.

@@ -158,6 +158,22 @@ fn a_short_least_hold_is_not_taken_for_every_hold() {
 }
 
 #[test]
+fn packets_holds_and_noise_share_no_random_numbers() {
+    use rand::Rng;
+    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+    // Agent 1's noise and the link from 0 to 1 have the same stream of the same seed.
+    let mut noise = ChaCha8Rng::seed_from_u64(11);
+    noise.set_stream(1);
+    let mut packets = stream(Kind::Packets, 11, 0, 1);
+    let mut holds = stream(Kind::Holds, 11, 0, 1);
+    let mut numbers: Vec<u64> =
+        (0..100).flat_map(|_| [noise.random::<u64>(), packets.random(), holds.random()]).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    assert_eq!(numbers.len(), 300);
+}
+
+#[test]
 fn random_holds_keep_within_their_bounds() {
     let hold = RandomHold::draw(3, (0, 1), [0.05, 0.4], [0.1, 0.8], 500.0).unwrap();
     let delay = Delay::RandomHold(hold.into());
