@@ -101,7 +101,7 @@ fn composed(step: FormulaStep, a: Part, b: Part) -> bool {
         S::Divide => both && b.is_away_from_zero() && (b.is_still() || bounded(a)),
         S::Exp => a.uniform && a.within.high < f64::INFINITY,
         S::Log => a.uniform && a.within.low > 0.0,
-        S::Power(exponent) if exponent == 0.0 => true,
+        S::Power(0.0) => true,
         S::Power(exponent) if exponent < 0.0 => a.uniform && a.is_away_from_zero(),
         // A power up to one of what is not negative has the modulus of continuity |a − a′|ᶜ.
         S::Power(exponent) if exponent <= 1.0 => a.uniform,
