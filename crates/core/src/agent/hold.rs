@@ -19,7 +19,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::reference::{Exchange, Heard, Measured, Reference, ReferenceOut};
+use crate::reference::{Heard, Measured, Reference, ReferenceOut};
 use crate::{LengthError, Scalar};
 
 /// Terms of the series for |A h| ≤ ½; the next would be 2^−17/18! of the first.
@@ -89,9 +89,7 @@ impl Hold {
     #[inline(always)]
     fn linearise<F: Reference>(&mut self, reference: &F, degree: &[f64]) -> Result<(), LengthError> {
         let nothing = Measured { q: &self.zeros[..self.axes], dq: &self.zeros[..self.axes] };
-        let sums = <F::Exchange as Exchange>::split(&self.zeros, self.axes);
-        let need = <F::Exchange as Exchange>::CHANNELS * self.axes;
-        let sums = sums.ok_or(LengthError { what: "sums heard", need, got: self.zeros.len() })?;
+        let silence = Heard::new(degree, &self.zeros, self.axes)?;
         for column in 0..self.order {
             self.unit.fill(0.0);
             if let Some(one) = self.unit.get_mut(column * self.axes) {
@@ -99,7 +97,7 @@ impl Hold {
             }
             let [z, dz] = &mut self.unused;
             let out = ReferenceOut { z, dz, d_state: &mut self.rate };
-            reference.evaluate(self.axes, nothing, &self.unit, Heard { degree, sums }, out)?;
+            reference.evaluate(self.axes, nothing, &self.unit, silence, out)?;
             for row in 0..self.order {
                 self.a[row * self.order + column] = self.rate.get(row * self.axes).copied().unwrap_or(0.0);
             }
@@ -161,7 +159,7 @@ fn multiply(n: usize, a: &[f64], b: &[f64], out: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reference::{Backstepping, Consensus, Position, PositionVelocity, PureIntegral};
+    use crate::reference::{Backstepping, Consensus, Exchange, Position, PositionVelocity, PureIntegral};
 
     /// Steps once over `h`, then in `parts` parts with the inputs held all along; both states.
     fn both_ways<F: Reference>(law: &F, start: &[f64], h: f64, parts: u32) -> [Vec<f64>; 2] {

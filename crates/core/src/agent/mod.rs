@@ -299,7 +299,7 @@ impl<F: Reference> Kernel for Refer<'_, F> {
         held.degree = [inbox.degree];
         held.sums.copy_from_slice(inbox.sums);
         let measured = Measured { q: &held.q, dq: &held.dq };
-        let heard = heard::<F::Exchange>(&held.degree, &held.sums, m)?;
+        let heard = Heard::new(&held.degree, &held.sums, m)?;
         if !started {
             out.d_state.fill(0.0);
             out.d_state[..m].copy_from_slice(&held.dq);
@@ -332,10 +332,4 @@ impl<R: Lagrangian<f64>> Kernel for Track<'_, R> {
         law.adaptation_rate(&out.yt_s, &mut out.d_theta_hat);
         Ok(())
     }
-}
-
-#[inline(always)]
-fn heard<'a, X: Exchange>(degree: &'a [f64], sums: &'a [f64], axes: usize) -> Result<Heard<'a, f64, X>, LengthError> {
-    let too_short = LengthError { what: "sums heard", need: X::CHANNELS * axes, got: sums.len() };
-    Ok(Heard { degree, sums: X::split(sums, axes).ok_or(too_short)? })
 }

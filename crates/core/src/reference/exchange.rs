@@ -37,6 +37,18 @@ pub struct Heard<'a, S: Scalar, X: Exchange> {
     pub sums: X::Sums<'a, S>,
 }
 
+impl<'a, S: Scalar, X: Exchange> Heard<'a, S, X> {
+    /// Reads `sums`, channels of `channel` entries one after the other.
+    ///
+    /// # Errors
+    /// [`LengthError`] when they are too few.
+    #[inline(always)]
+    pub fn new(degree: &'a [S], sums: &'a [S], channel: usize) -> Result<Self, LengthError> {
+        let too_short = LengthError { what: "sums heard", need: X::CHANNELS * channel, got: sums.len() };
+        Ok(Heard { degree, sums: X::split(sums, channel).ok_or(too_short)? })
+    }
+}
+
 /// Transmits q_j.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Position;

@@ -4,6 +4,7 @@ use forwardstep_sim::{Actuators, Control, Sensors, VelocitySensor};
 
 use super::at::At;
 use super::control_file::{ControlFile, NoiseFile, QuantisationFile, VelocityFile};
+use super::control_problem::ControlProblem;
 use super::fault::{Fault, fault, not_negative, positive, seed};
 use super::problem::ScenarioProblem;
 use super::values::AxisValues;
@@ -22,7 +23,7 @@ pub(super) fn control(file: &ControlFile, axes: usize, end_s: f64) -> Result<Con
     let computation_delay_s = match &file.computation_delay_s {
         None => 0.0,
         Some(delay) if delay.value > 1.0 / sample_hz => {
-            let problem = ScenarioProblem::ComputationDelay { delay_s: delay.value, period_s: 1.0 / sample_hz };
+            let problem = ControlProblem::ComputationDelay { delay_s: delay.value, period_s: 1.0 / sample_hz };
             return Err(fault(delay, problem));
         }
         Some(delay) => not_negative("computation_delay_s", delay)?,
@@ -57,7 +58,7 @@ fn sensors(file: &ControlFile) -> Result<Sensors, Fault> {
         ];
         for (key, place) in unused {
             if let Some(place) = place {
-                return Err(fault(place, ScenarioProblem::VelocityNotMeasured { key }));
+                return Err(fault(place, ControlProblem::VelocityNotMeasured { key }));
             }
         }
     }
@@ -81,6 +82,6 @@ fn per_axis(key: &'static str, values: &At<AxisValues>, axes: usize) -> Result<V
     match &values.value {
         AxisValues::All(value) => Ok(vec![positive(key, &At { value: *value, span: values.span.clone() })?; axes]),
         AxisValues::Each(list) if list.len() == axes => list.iter().map(|value| positive(key, value)).collect(),
-        AxisValues::Each(list) => Err(fault(values, ScenarioProblem::AxisCount { key, found: list.len(), need: axes })),
+        AxisValues::Each(list) => Err(fault(values, ControlProblem::AxisCount { key, found: list.len(), need: axes })),
     }
 }

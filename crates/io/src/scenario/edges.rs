@@ -13,6 +13,7 @@ use super::links::{DelayPlan, cell_weight};
 use super::links_file::WeightFile;
 use super::network::NetworkReader;
 use super::network_file::DelayFile;
+use super::network_problem::NetworkProblem;
 use super::problem::ScenarioProblem;
 use super::table::{Column, cell_number, read_table, table_text};
 use crate::SourceText;
@@ -45,12 +46,12 @@ impl NetworkReader<'_> {
             let EdgeFile { from, to, weight, delay } = &place.value;
             let (j, i) = (self.agent(from)?, self.agent(to)?);
             if i == j {
-                return Err(fault(place, ScenarioProblem::SelfLoop { name: to.value.clone() }));
+                return Err(fault(place, NetworkProblem::SelfLoop { name: to.value.clone() }));
             }
             if let Some(start) = seen.insert((j, i), place.span.start) {
                 let (first_line, _) = source.line_column(start);
                 let (from, to) = (from.value.clone(), to.value.clone());
-                return Err(fault(place, ScenarioProblem::EdgeTwice { from, to, first_line }));
+                return Err(fault(place, NetworkProblem::EdgeTwice { from, to, first_line }));
             }
             let (weight, plan) = self.terms(weight, delay)?;
             let span = delay.as_ref().map_or(&place.span, |delay| &delay.span);
@@ -96,7 +97,7 @@ impl NetworkReader<'_> {
         let Rule { topology, members, weight, delay } = rule;
         let span_of_delay = delay.as_ref().map_or(span, |delay| &delay.span);
         let (weight, plan) = self.terms(weight, delay)?;
-        let refused = |error| Fault::new(ScenarioProblem::Topology(error)).at(place);
+        let refused = |error| Fault::new(NetworkProblem::Topology(error)).at(place);
         self.few_edges(topology.edge_count(members.len()).map_err(refused)?, span)?;
         let pairs = topology.edges(members.len()).map_err(refused)?;
         let mut edges = Vec::with_capacity(pairs.len());
@@ -142,7 +143,7 @@ impl NetworkReader<'_> {
         for name in filled("among", among)? {
             let agent = self.agent(name)?;
             if !seen.insert(agent) {
-                return Err(fault(name, ScenarioProblem::AmongTwice { name: name.value.clone() }));
+                return Err(fault(name, NetworkProblem::AmongTwice { name: name.value.clone() }));
             }
             members.push(agent);
         }
@@ -169,7 +170,7 @@ impl NetworkReader<'_> {
         if self.edges_so_far <= MOST_EDGES {
             return Ok(());
         }
-        let problem = ScenarioProblem::TooManyEdges { edges: self.edges_so_far, most: MOST_EDGES };
+        let problem = NetworkProblem::TooManyEdges { edges: self.edges_so_far, most: MOST_EDGES };
         Err(Fault::new(problem).at(span))
     }
 

@@ -22,8 +22,8 @@ pub(super) struct Fault {
 }
 
 impl Fault {
-    pub(super) fn new(problem: ScenarioProblem) -> Self {
-        Fault { problem: Box::new(problem), span: None, source: None }
+    pub(super) fn new(problem: impl Into<ScenarioProblem>) -> Self {
+        Fault { problem: Box::new(problem.into()), span: None, source: None }
     }
 
     /// Adds the place unless a closer one is known.
@@ -50,7 +50,7 @@ impl fmt::Display for Fault {
 impl std::error::Error for Fault {}
 
 /// A problem with a value.
-pub(super) fn fault<T>(value: &At<T>, problem: ScenarioProblem) -> Fault {
+pub(super) fn fault<T>(value: &At<T>, problem: impl Into<ScenarioProblem>) -> Fault {
     Fault::new(problem).at(&value.span)
 }
 

@@ -13,6 +13,7 @@ use super::fault::{Fault, between, fault, not_negative, positive, seed};
 use super::formula::formula;
 use super::links_file::{BurstsFile, LogFile, LossFile, PacketsFile, RandomHoldFile, RandomLossFile, WeightFile};
 use super::network::NetworkReader;
+use super::network_problem::NetworkProblem;
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
 use super::table::{Cell, Column, TableProblem, cell_number, read_table, table_text};
@@ -78,13 +79,13 @@ impl NetworkReader<'_> {
             Delay::Constant { s: finite("formula_s", &value).and_then(|value| not_negative("formula_s", &value))? }
         } else {
             if self.links.formulas.len() >= MOST_FORMULAS {
-                return Err(fault(text, ScenarioProblem::TooManyFormulas { most: MOST_FORMULAS }));
+                return Err(fault(text, NetworkProblem::TooManyFormulas { most: MOST_FORMULAS }));
             }
             let bounded = BoundedFormula::new(formula, self.end_s);
             let Interval { low, high } = bounded.within();
             if !(low >= 0.0 && high.is_finite()) {
                 let (witness, end_s) = (witness(bounded.formula(), self.end_s, |value| value >= 0.0), self.end_s);
-                return Err(fault(text, ScenarioProblem::DelayBounds { low, high, witness, end_s }));
+                return Err(fault(text, NetworkProblem::DelayBounds { low, high, witness, end_s }));
             }
             Delay::Formula(bounded.into())
         };
@@ -108,7 +109,7 @@ impl NetworkReader<'_> {
             Some((known, index)) if known == plan => return Ok(*index),
             Some(_) if packets => {
                 let (from, to) = (self.names[from].clone(), self.names[to].clone());
-                return Err(Fault::new(ScenarioProblem::LinkDiffers { from, to }).at(span));
+                return Err(Fault::new(NetworkProblem::LinkDiffers { from, to }).at(span));
             }
             _ => {}
         }
@@ -119,7 +120,7 @@ impl NetworkReader<'_> {
     }
 
     fn draw(&mut self, plan: &DelayPlan, from: usize, to: usize, span: &Range<usize>) -> Result<Delay, Fault> {
-        let refused = |error| Fault::new(ScenarioProblem::Link(error)).at(span);
+        let refused = |error| Fault::new(NetworkProblem::Link(error)).at(span);
         Ok(match plan {
             DelayPlan::Shared(delay) => delay.clone(),
             DelayPlan::RandomHold { seed, value_s, hold_s } => {
@@ -136,7 +137,7 @@ impl NetworkReader<'_> {
                 let link = self.links.logs.get_mut(file).and_then(|log| log.links.get_mut(&names));
                 let Some((packets, used)) = link else {
                     let (from, to) = names;
-                    return Err(Fault::new(ScenarioProblem::NotInLog { file: file.clone(), from, to }).at(span));
+                    return Err(Fault::new(NetworkProblem::NotInLog { file: file.clone(), from, to }).at(span));
                 };
                 *used = true;
                 let packets = packets.clone();
@@ -172,13 +173,13 @@ impl NetworkReader<'_> {
             positive("weight", &value)?.into()
         } else {
             if self.weights.len() >= MOST_FORMULAS {
-                return Err(fault(&place, ScenarioProblem::TooManyFormulas { most: MOST_FORMULAS }));
+                return Err(fault(&place, NetworkProblem::TooManyFormulas { most: MOST_FORMULAS }));
             }
             let bounded = BoundedFormula::new(formula, self.end_s);
             let Interval { low, high } = bounded.within();
             if !(low > 0.0 && high.is_finite()) {
                 let witness = witness(bounded.formula(), self.end_s, |value| value > 0.0);
-                return Err(fault(&place, ScenarioProblem::WeightBounds { low, high, witness, end_s: self.end_s }));
+                return Err(fault(&place, NetworkProblem::WeightBounds { low, high, witness, end_s: self.end_s }));
             }
             self.weights.push(bounded);
             Weight::Formula(self.weights.len() - 1)
@@ -215,7 +216,7 @@ impl NetworkReader<'_> {
 
 /// The value of a formula without t, which may be none.
 fn finite(key: &'static str, value: &At<f64>) -> Result<At<f64>, Fault> {
-    if value.value.is_finite() { Ok(value.clone()) } else { Err(fault(value, ScenarioProblem::NoValue { key })) }
+    if value.value.is_finite() { Ok(value.clone()) } else { Err(fault(value, NetworkProblem::NoValue { key })) }
 }
 
 /// A time at which a formula really has a value that it must not have, looked for here and there.
@@ -280,7 +281,7 @@ fn log_of(text: &str, line_of: impl Fn(usize) -> usize) -> Result<Log, Fault> {
         // The cell of a column that is not there is the line.
         if delay.span == span {
             let columns = columns.map(|column| column.name.to_owned()).to_vec();
-            return Err(Fault::new(TableProblem::MissingColumn { name: "delay_s".into(), columns }.into()));
+            return Err(Fault::new(TableProblem::MissingColumn { name: "delay_s".into(), columns }));
         }
         let time = |key: &'static str, cell: &Cell<'_>| {
             // Adding zero takes the sign from a zero.
@@ -296,7 +297,7 @@ fn log_of(text: &str, line_of: impl Fn(usize) -> usize) -> Result<Log, Fault> {
         if let Some(pair) = packets.windows(2).find(|pair| pair[0].0.send_s == pair[1].0.send_s) {
             let (from, to) = names;
             let (send_s, first_line) = (pair[0].0.send_s, line_of(pair[0].1.start));
-            return Err(Fault::new(ScenarioProblem::PacketTwice { from, to, send_s, first_line }).at(&pair[1].1));
+            return Err(Fault::new(NetworkProblem::PacketTwice { from, to, send_s, first_line }).at(&pair[1].1));
         }
         links.insert(names, (packets.into_iter().map(|(packet, _)| packet).collect(), false));
     }

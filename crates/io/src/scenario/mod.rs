@@ -35,18 +35,21 @@ mod agents;
 pub mod at;
 mod control;
 pub mod control_file;
+mod control_problem;
 mod de;
 mod edges;
 pub mod edges_file;
 mod fault;
 pub mod file;
 pub mod formula;
+mod formula_problem;
 pub(crate) mod inputs;
 mod law;
 mod links;
 pub mod links_file;
 mod network;
 pub mod network_file;
+mod network_problem;
 mod notice;
 mod open;
 mod problem;
@@ -71,7 +74,9 @@ use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+pub use control_problem::ControlProblem;
 pub use inputs::InputFile;
+pub use network_problem::NetworkProblem;
 pub use notice::Notice;
 pub use open::{OpenError, open_scenario};
 pub use problem::ScenarioProblem;
@@ -326,7 +331,7 @@ fn messages_fit(setup: &Setup, sample_hz: &At<f64>) -> Result<(), Fault> {
     if numbers <= MOST_RECORDED {
         return Ok(());
     }
-    Err(fault(sample_hz, ScenarioProblem::MessagesTooLarge { oldest_s, numbers, most: MOST_RECORDED }))
+    Err(fault(sample_hz, ControlProblem::MessagesTooLarge { oldest_s, numbers, most: MOST_RECORDED }))
 }
 
 /// How many columns an agent has: q, q̇, s, τ and z with its derivatives on every axis, ϑ̂, V and its dissipation, and τ_ext

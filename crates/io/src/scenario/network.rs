@@ -15,6 +15,7 @@ use super::fault::{Fault, fault, filled, not_negative, positive, seed, values};
 use super::inputs::InputFolder;
 use super::links::{self, DelayPlan, Links};
 use super::network_file::{DelayFile, NetworkFile, PhaseFile, SwitchingFile};
+use super::network_problem::NetworkProblem;
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
 use crate::SourceText;
@@ -52,10 +53,10 @@ pub(super) fn network(
         reader.default_delay = reader.plan(delay)?;
     }
     let schedule = match (&file.edges, &file.phases) {
-        (Some(_), Some(phases)) => return Err(fault(phases, ScenarioProblem::EdgesAndPhases)),
-        (None, None) => return Err(Fault::new(ScenarioProblem::NoGraph)),
+        (Some(_), Some(phases)) => return Err(fault(phases, NetworkProblem::EdgesAndPhases)),
+        (None, None) => return Err(Fault::new(NetworkProblem::NoGraph)),
         (Some(edges), None) => match &file.switching {
-            Some(switching) => return Err(fault(switching, ScenarioProblem::NothingToSwitch)),
+            Some(switching) => return Err(fault(switching, NetworkProblem::NothingToSwitch)),
             None => Schedule::Fixed(reader.edges(edges)?),
         },
         (None, Some(phases)) => reader.schedule(phases, file.switching.as_ref(), notices)?,
@@ -122,7 +123,7 @@ impl NetworkReader<'_> {
                 Some(dwell) => positive("dwell_s", dwell)?,
                 // It stays for ever; the number is not used.
                 None if once && k + 1 == list.len() => self.end_s,
-                None => return Err(fault(phase, ScenarioProblem::NoDwell { phase: k + 1 })),
+                None => return Err(fault(phase, NetworkProblem::NoDwell { phase: k + 1 })),
             };
             read.push(Phase { edges: self.edges(&phase.value.edges)?, dwell_s });
         }
@@ -174,7 +175,7 @@ impl NetworkReader<'_> {
                 let mean_s = not_negative("mean_s", &file.mean_s)?;
                 let amplitude_s = not_negative("amplitude_s", &file.amplitude_s)?;
                 if amplitude_s > mean_s {
-                    return Err(fault(&file.amplitude_s, ScenarioProblem::Amplitude { amplitude_s, mean_s }));
+                    return Err(fault(&file.amplitude_s, NetworkProblem::Amplitude { amplitude_s, mean_s }));
                 }
                 let period_s = positive("period_s", &file.period_s)?;
                 self.few("swings of the delay", self.end_s / period_s, &file.period_s.span)?;
@@ -185,17 +186,17 @@ impl NetworkReader<'_> {
                 if let Some(first) = times_s.first()
                     && first.value != 0.0
                 {
-                    return Err(fault(first, ScenarioProblem::TimesBegin { first_s: first.value }));
+                    return Err(fault(first, NetworkProblem::TimesBegin { first_s: first.value }));
                 }
                 for pair in times_s.windows(2) {
                     let (before_s, after_s) = (pair[0].value, pair[1].value);
                     if before_s >= after_s {
-                        return Err(fault(&pair[1], ScenarioProblem::TimesRise { before_s, after_s }));
+                        return Err(fault(&pair[1], NetworkProblem::TimesRise { before_s, after_s }));
                     }
                 }
                 let (times, number) = (times_s.len(), file.values_s.value.len());
                 if times != number {
-                    return Err(fault(&file.values_s, ScenarioProblem::TimesAndValues { times, values: number }));
+                    return Err(fault(&file.values_s, NetworkProblem::TimesAndValues { times, values: number }));
                 }
                 for value in &file.values_s.value {
                     not_negative("values_s", value)?;
@@ -203,7 +204,7 @@ impl NetworkReader<'_> {
                 let period_s = file.period_s.as_ref().map(|period| positive("period_s", period)).transpose()?;
                 if let (Some(place), Some(period_s), Some(last)) = (&file.period_s, period_s, times_s.last()) {
                     if period_s <= last.value {
-                        let problem = ScenarioProblem::PeriodTooShort { period_s, last_s: last.value };
+                        let problem = NetworkProblem::PeriodTooShort { period_s, last_s: last.value };
                         return Err(fault(place, problem));
                     }
                     self.few("jumps of the delay", self.end_s / period_s * times as f64, &place.span)?;
@@ -215,7 +216,7 @@ impl NetworkReader<'_> {
                 let min_s = not_negative("min_s", &file.min_s)?;
                 let max_s = not_negative("max_s", &file.max_s)?;
                 if min_s > max_s {
-                    return Err(fault(&file.min_s, ScenarioProblem::SawTooth { min_s, max_s }));
+                    return Err(fault(&file.min_s, NetworkProblem::SawTooth { min_s, max_s }));
                 }
                 let period_s = positive("period_s", &file.period_s)?;
                 self.few("jumps of the delay", self.end_s / period_s, &file.period_s.span)?;

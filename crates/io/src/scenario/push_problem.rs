@@ -8,14 +8,6 @@ use crate::wording::{about, choose, entry_count, number};
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PushProblem {
-    /// An agent, or a population, that does not exist.
-    #[error("there is no agent `{name}`")]
-    NoSuchAgent {
-        /// The name.
-        name: String,
-        /// The agents there are, and the populations.
-        agents: Vec<String>,
-    },
     /// An agent that is pushed twice by one push.
     #[error("`{name}` is named twice in `on`")]
     OnTwice {
@@ -162,7 +154,6 @@ pub enum PushProblem {
 impl PushProblem {
     pub(super) fn help(&self) -> Option<String> {
         let text = match self {
-            PushProblem::NoSuchAgent { name, agents } => choose(name, "the agents are", agents),
             PushProblem::OnTwice { .. } => "the name of a counted population stands for all of it".into(),
             PushProblem::Unit { any, takes, .. } => format!("`{any}` takes {takes} as each axis has it"),
             PushProblem::NoLinks { instead, .. } => format!("use `by.{instead}`"),

@@ -72,14 +72,14 @@ fn who(on: &At<Vec<At<String>>>, read: &Agents) -> Result<Vec<usize>, Fault> {
                 None => {
                     let populations = read.populations.iter().map(|(name, _)| name.clone());
                     let agents = read.agents.iter().map(|agent| agent.name.clone()).chain(populations).collect();
-                    return Err(fault(name, PushProblem::NoSuchAgent { name: name.value.clone(), agents }.into()));
+                    return Err(fault(name, ScenarioProblem::NoSuchAgent { name: name.value.clone(), agents }));
                 }
             },
         };
         for member in members {
             if !seen.insert(member) {
                 let twice = read.agents[member].name.clone();
-                return Err(fault(name, PushProblem::OnTwice { name: twice }.into()));
+                return Err(fault(name, PushProblem::OnTwice { name: twice }));
             }
             found.push(member);
         }
@@ -147,7 +147,7 @@ impl Reader<'_, '_> {
             AxisUnit::Metre => "m",
         };
         let axis = axis.name.clone();
-        Err(fault(place, PushProblem::Unit { key, agent: self.name(), axis, unit, any, takes }.into()))
+        Err(fault(place, PushProblem::Unit { key, agent: self.name(), axis, unit, any, takes }))
     }
 
     /// One number per axis, by the names of the axes.
@@ -168,7 +168,7 @@ impl Reader<'_, '_> {
         let agent = self.name();
         match (&self.agent.robot.kind, self.body.tip) {
             (RobotKind::PlanarArm, Some(tip)) => {
-                let tip_only = |key| PushProblem::TipOnly { agent: agent.clone(), key }.into();
+                let tip_only = |key| PushProblem::TipOnly { agent: agent.clone(), key };
                 match (link, at_m, axes) {
                     (Some(link), ..) => Err(fault(link, tip_only("link"))),
                     (_, Some(at_m), _) => Err(fault(at_m, tip_only("at_m"))),
@@ -179,14 +179,14 @@ impl Reader<'_, '_> {
             (RobotKind::Tree(_), _) => {
                 let links = &self.body.links;
                 let Some(name) = link else {
-                    return Err(Fault::new(PushProblem::WhichLink { agent, links: links.len() }.into()));
+                    return Err(Fault::new(PushProblem::WhichLink { agent, links: links.len() }));
                 };
                 let Some((_, anchor)) = links.iter().find(|(known, _)| *known == name.value) else {
                     let links = links.iter().map(|(name, _)| name.clone()).collect();
-                    return Err(fault(name, PushProblem::NoSuchLink { link: name.value.clone(), agent, links }.into()));
+                    return Err(fault(name, PushProblem::NoSuchLink { link: name.value.clone(), agent, links }));
                 };
                 if anchor.body.is_none() {
-                    return Err(fault(name, PushProblem::FixedLink { link: name.value.clone(), agent }.into()));
+                    return Err(fault(name, PushProblem::FixedLink { link: name.value.clone(), agent }));
                 }
                 let axes = match axes.map(|axes| axes.value) {
                     None | Some(AxesFile::Base) => Axes::Base,
@@ -195,7 +195,7 @@ impl Reader<'_, '_> {
                 let at = at_m.map_or([0.0; 3], |at| at.value);
                 Ok(Grip::Link { point: LinkPoint { link: *anchor, at }, axes })
             }
-            _ => Err(Fault::new(PushProblem::NoLinks { agent, instead }.into())),
+            _ => Err(Fault::new(PushProblem::NoLinks { agent, instead })),
         }
     }
 
@@ -214,7 +214,7 @@ impl Reader<'_, '_> {
             let course = self.course("torque_n_m", torque, torques)?;
             effects.push(Effect::Wrench { grip, wrench: padded(course, forces, 0) });
         }
-        if effects.is_empty() { Err(Fault::new(PushProblem::NoWrench.into())) } else { Ok(effects) }
+        if effects.is_empty() { Err(Fault::new(PushProblem::NoWrench)) } else { Ok(effects) }
     }
 
     fn hand_on_axes(&mut self, file: &HandOnAxesFile) -> Result<Effect, Fault> {
@@ -228,7 +228,7 @@ impl Reader<'_, '_> {
         ];
         let mut given = keys.into_iter().filter_map(|(key, unit, course)| Some((key, unit, course.as_ref()?)));
         let Some((key, unit, course)) = given.next() else {
-            return Err(Fault::new(PushProblem::NoTarget.into()));
+            return Err(Fault::new(PushProblem::NoTarget));
         };
         if let Some((second, _, place)) = given.next() {
             return Err(fault(place, ScenarioProblem::SameQuantity { first: key, second }));
@@ -258,10 +258,10 @@ impl Reader<'_, '_> {
             let Some(axis) = axes.iter().position(|axis| axis.name == name.value) else {
                 let axes = axes.iter().map(|axis| axis.name.clone()).collect();
                 let problem = PushProblem::NoSuchAxis { axis: name.value.clone(), agent: self.name(), axes };
-                return Err(fault(name, problem.into()));
+                return Err(fault(name, problem));
             };
             if held.contains(&axis) {
-                return Err(fault(name, PushProblem::AxisTwice { axis: name.value.clone() }.into()));
+                return Err(fault(name, PushProblem::AxisTwice { axis: name.value.clone() }));
             }
             held.push(axis);
         }
@@ -278,7 +278,7 @@ impl Reader<'_, '_> {
             Item::List(list) if list.len() == need => list.iter().map(|value| not_negative(key, value)).collect(),
             Item::List(list) => {
                 let problem = PushProblem::Held { key, found: list.len(), need, agent: self.name() };
-                Err(fault(item, problem.into()))
+                Err(fault(item, problem))
             }
         }
     }
@@ -302,12 +302,12 @@ impl Reader<'_, '_> {
                     }
                 };
                 if times_s.len() < 2 {
-                    return Err(fault(file, PushProblem::FewRows { found: times_s.len() }.into()));
+                    return Err(fault(file, PushProblem::FewRows { found: times_s.len() }));
                 }
                 self.tables.numbers += times_s.len() + values.len();
                 if self.tables.numbers > MOST_NUMBERS {
                     let (numbers, most) = (self.tables.numbers as f64, MOST_NUMBERS as f64);
-                    return Err(fault(file, PushProblem::TooLarge { numbers, most }.into()));
+                    return Err(fault(file, PushProblem::TooLarge { numbers, most }));
                 }
                 let between = match between {
                     InterpolateFile::Linear => Between::Linear,
@@ -329,7 +329,7 @@ impl Reader<'_, '_> {
                 let formula = formula(&At { value: text.clone(), span: entry.span.clone() })?;
                 let [from_s, until_s] = self.times_s;
                 if from_s < until_s && !formula.is_bounded(from_s, until_s) {
-                    return Err(fault(entry, PushProblem::FormulaValue { from_s, until_s }.into()));
+                    return Err(fault(entry, PushProblem::FormulaValue { from_s, until_s }));
                 }
                 self.tables.formulas.insert(key, formula.clone());
                 Ok(Function::Formula(formula))
@@ -343,7 +343,7 @@ impl Reader<'_, '_> {
         let rows = &file.values.value;
         if rows.len() != times_s.len() {
             let problem = PushProblem::TimesAndRows { times: times_s.len(), rows: rows.len() };
-            return Err(fault(&file.values, problem.into()));
+            return Err(fault(&file.values, problem));
         }
         let mut values = Vec::with_capacity(rows.len() * width);
         for row in rows {
@@ -405,7 +405,7 @@ fn rising<'a>(key: &'static str, times: impl Iterator<Item = &'a At<f64>>) -> Re
     let mut read: Vec<f64> = Vec::new();
     for time in times {
         if let Some(before_s) = read.last().copied().filter(|before| *before >= time.value) {
-            return Err(fault(time, PushProblem::TimesRise { key, before_s, after_s: time.value }.into()));
+            return Err(fault(time, PushProblem::TimesRise { key, before_s, after_s: time.value }));
         }
         read.push(time.value);
     }

@@ -117,7 +117,7 @@ pub(super) fn table_text(file: &At<String>, folder: &mut InputFolder) -> Result<
         Some(shipped) if reason == ReadError::Missing => Ok(SourceText::new(shipped.name, shipped.text)),
         _ => {
             let known = folder.neighbours(name, "csv");
-            Err(fault(file, TableProblem::File { file: name.into(), reason, known }.into()))
+            Err(fault(file, TableProblem::File { file: name.into(), reason, known }))
         }
     })
 }
@@ -146,29 +146,29 @@ fn read_rows<'a>(text: &'a str, columns: &[(&str, bool)]) -> Result<Vec<At<Vec<C
     let mut lines = lines(text);
     let names = || columns.iter().map(|(name, _)| (*name).to_owned()).collect::<Vec<_>>();
     let Some(header) = lines.next().transpose()? else {
-        return Err(Fault::new(TableProblem::NoHeader { columns: names() }.into()));
+        return Err(Fault::new(TableProblem::NoHeader { columns: names() }));
     };
     let mut place: Vec<Option<usize>> = vec![None; columns.len()];
     for (k, cell) in header.value.iter().enumerate() {
         let Some(column) = columns.iter().position(|(name, _)| *name == cell.value) else {
             let problem = TableProblem::UnknownColumn { name: cell.value.to_string(), columns: names() };
-            return Err(fault(cell, problem.into()));
+            return Err(fault(cell, problem));
         };
         if place[column].replace(k).is_some() {
-            return Err(fault(cell, TableProblem::ColumnTwice { name: cell.value.to_string() }.into()));
+            return Err(fault(cell, TableProblem::ColumnTwice { name: cell.value.to_string() }));
         }
     }
     let missing = columns.iter().zip(&place).find(|((_, required), place)| *required && place.is_none());
     if let Some(((name, _), _)) = missing {
         let problem = TableProblem::MissingColumn { name: (*name).to_owned(), columns: names() };
-        return Err(fault(&header, problem.into()));
+        return Err(fault(&header, problem));
     }
     let mut rows = Vec::new();
     for line in lines {
         let line = line?;
         if line.value.len() != header.value.len() {
             let problem = TableProblem::LineLength { found: line.value.len(), columns: header.value.len() };
-            return Err(fault(&line, problem.into()));
+            return Err(fault(&line, problem));
         }
         let cell = |k: &Option<usize>| {
             let found = k.and_then(|k| line.value.get(k));
@@ -177,7 +177,7 @@ fn read_rows<'a>(text: &'a str, columns: &[(&str, bool)]) -> Result<Vec<At<Vec<C
         let row: Vec<Cell<'_>> = place.iter().map(cell).collect();
         let empty = columns.iter().zip(&row).find(|((_, required), cell)| *required && cell.value.is_empty());
         if let Some(((name, _), cell)) = empty {
-            return Err(fault(cell, TableProblem::EmptyCell { name: (*name).to_owned() }.into()));
+            return Err(fault(cell, TableProblem::EmptyCell { name: (*name).to_owned() }));
         }
         rows.push(At { value: row, span: line.span.clone() });
     }
@@ -232,12 +232,12 @@ fn cells(line: &str, start: usize) -> Result<Line<'_>, Fault> {
         let first = next + blanks(&line[next..]);
         let end = if line[first..].starts_with('"') {
             let (value, length) = quoted_cell(&line[first..])
-                .ok_or_else(|| Fault::new(TableProblem::OpenQuote.into()).at(&at(first..line.len())))?;
+                .ok_or_else(|| Fault::new(TableProblem::OpenQuote).at(&at(first..line.len())))?;
             cells.push(At { value, span: at(first..first + length) });
             let end = first + length + blanks(&line[first + length..]);
             if !line[end..].is_empty() && !line[end..].starts_with(',') {
                 let problem = TableProblem::AfterQuote { found: quoted(&line[end..]) };
-                return Err(Fault::new(problem.into()).at(&at(end..line.len())));
+                return Err(Fault::new(problem).at(&at(end..line.len())));
             }
             end
         } else {

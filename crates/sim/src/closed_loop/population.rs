@@ -12,7 +12,7 @@
 //!
 //! Under digital control q and q̇ flow and everything else stands still between two samples, when it jumps.
 
-use forwardstep_core::reference::{Exchange, Heard, Measured, Reference, ReferenceOut};
+use forwardstep_core::reference::{Heard, Measured, Reference, ReferenceOut};
 use forwardstep_core::robot::Lagrangian;
 use forwardstep_core::{Kernel, LengthError, Packed, dispatch};
 
@@ -218,15 +218,8 @@ fn evaluate<F: Reference>(
     inputs: Inputs<'_>,
     out: ReferenceOut<'_, f64>,
 ) -> Result<(), LengthError> {
-    let heard = heard::<F::Exchange>(layout, inputs.degree, inputs.sums)?;
+    let heard = Heard::new(inputs.degree, inputs.sums, layout.block())?;
     dispatch(Evaluate { reference, layout, x, heard, out })
-}
-
-/// The population's part of what is heard, channel by channel.
-fn heard<'a, X: Exchange>(l: Layout, degree: &'a [f64], sums: &'a [f64]) -> Result<Heard<'a, f64, X>, LengthError> {
-    let need = X::CHANNELS * l.block();
-    let too_short = LengthError { what: "heard", need, got: sums.len() };
-    Ok(Heard { degree, sums: X::split(sums, l.block()).ok_or(too_short)? })
 }
 
 struct Evaluate<'a, F: Reference> {
@@ -267,7 +260,7 @@ where
         let given = x[l.reference..l.theta_hat].to_vec();
         let (measured, state) = x[..l.theta_hat].split_at_mut(l.reference);
         let measured = Measured { q: &measured[..l.dq], dq: &measured[l.dq..] };
-        self.reference.start(l.m, measured, &given, heard(l, degree, sums)?, state)
+        self.reference.start(l.m, measured, &given, Heard::new(degree, sums, l.block())?, state)
     }
 
     fn rates(&mut self, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) {

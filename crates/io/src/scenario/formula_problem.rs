@@ -1,0 +1,151 @@
+//! Why a text is no formula in t, and the words of formulas, which the advice names.
+
+use std::f64::consts::{E, PI};
+
+use forwardstep_sim::formula::{FormulaStep, MOST_STEPS};
+use thiserror::Error;
+
+use crate::wording::{choose, nearest};
+
+/// Functions of one argument.
+pub(super) const FUNCTIONS: [(&str, FormulaStep); 8] = [
+    ("sin", FormulaStep::Sin),
+    ("cos", FormulaStep::Cos),
+    ("exp", FormulaStep::Exp),
+    ("log", FormulaStep::Log),
+    ("sqrt", FormulaStep::Sqrt),
+    ("abs", FormulaStep::Abs),
+    ("tanh", FormulaStep::Tanh),
+    ("atan", FormulaStep::Atan),
+];
+/// Functions of two arguments or more.
+pub(super) const CHOICES: [(&str, FormulaStep); 2] = [("min", FormulaStep::Min), ("max", FormulaStep::Max)];
+/// Names that stand for numbers.
+pub(super) const NAMES: [(&str, FormulaStep); 3] =
+    [("t", FormulaStep::Time), ("pi", FormulaStep::Number(PI)), ("e", FormulaStep::Number(E))];
+/// What would make a formula jump.
+pub(super) const JUMPS: [&str; 17] = [
+    "floor",
+    "ceil",
+    "round",
+    "trunc",
+    "frac",
+    "fract",
+    "mod",
+    "sign",
+    "sgn",
+    "signum",
+    "step",
+    "heaviside",
+    "if",
+    "where",
+    "square",
+    "sawtooth",
+    "tan",
+];
+
+pub(super) const A_VALUE: &str = "a number, `t`, a function or a parenthesis";
+pub(super) const AN_OPERATOR: &str = "an operator (+ - * / ^) or the end";
+
+/// Why a text is no formula in t.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FormulaProblem {
+    /// Nothing at all.
+    #[error("the formula is empty")]
+    Empty,
+    /// Something else should stand here.
+    #[error("found {found} in a formula where {expected} should stand")]
+    Expected {
+        /// What was found.
+        found: String,
+        /// What should be there.
+        expected: &'static str,
+    },
+    /// A name that is none of a number.
+    #[error("there is no `{name}` in a formula")]
+    UnknownName {
+        /// The name.
+        name: String,
+    },
+    /// A name that is none of a function.
+    #[error("there is no function `{name}`")]
+    UnknownFunction {
+        /// The name.
+        name: String,
+    },
+    /// A function or a comparison with a jump.
+    #[error("`{name}` jumps, but formulas are continuous")]
+    Jumps {
+        /// The name.
+        name: String,
+    },
+    /// A function without its argument.
+    #[error("the function `{name}` has no argument")]
+    NoArgument {
+        /// The name.
+        name: &'static str,
+    },
+    /// A function with more or fewer arguments than it takes.
+    #[error("`{name}` takes {takes}, but has {found}")]
+    Arguments {
+        /// The name.
+        name: &'static str,
+        /// How many it takes, in words.
+        takes: &'static str,
+        /// How many there are.
+        found: usize,
+    },
+    /// A number that cannot be computed with.
+    #[error("{found} is too large a number")]
+    NumberTooLarge {
+        /// What was written.
+        found: String,
+    },
+    /// An exponent in which t appears.
+    #[error("the exponent changes with t")]
+    VaryingExponent,
+    /// An exponent that is no number.
+    #[error("the exponent has no finite value")]
+    ExponentValue,
+    /// A parenthesis without its partner.
+    #[error("this parenthesis is not closed")]
+    OpenParenthesis,
+    /// Parentheses, signs or powers too deep within each other.
+    #[error("the formula is nested too deeply")]
+    TooDeep,
+    /// More steps than are accepted.
+    #[error("the formula is too long: it has more than {MOST_STEPS} numbers and operations")]
+    TooLong,
+}
+
+impl FormulaProblem {
+    /// What to do about it.
+    pub fn help(&self) -> Option<String> {
+        let first = |list: &[(&'static str, FormulaStep)]| list.iter().map(|entry| entry.0).collect::<Vec<_>>();
+        let functions = || [first(&FUNCTIONS), first(&CHOICES)].concat();
+        let text = match self {
+            FormulaProblem::Empty => "a formula in t is for example \"0.2 + 0.1*sin(2*pi*t/3)\"".into(),
+            FormulaProblem::Expected { found, .. } if found == "\"**\"" => "powers are written `t^2`".into(),
+            FormulaProblem::Expected { expected: AN_OPERATOR, .. } => {
+                "products are written with a star: `2*t`, `3*(t + 1)`".into()
+            }
+            FormulaProblem::UnknownName { name } => {
+                if nearest(name, functions()).as_deref() == Some(name.as_str()) {
+                    return Some(format!("a function has its argument in parentheses: `{name}(t)`"));
+                }
+                choose(name, "there are", &[first(&NAMES), functions()].concat())
+            }
+            FormulaProblem::UnknownFunction { name } => choose(name, "the functions are", &functions()),
+            FormulaProblem::Jumps { .. } => {
+                "what jumps has keys of its own: `delay.piecewise_constant`, `delay.saw_tooth`, or phases of a network"
+                    .into()
+            }
+            FormulaProblem::NoArgument { name } => format!("write `{name}(t)`"),
+            FormulaProblem::VaryingExponent => "exponents are constant; write `exp(t*log(2))` for 2 to the t".into(),
+            FormulaProblem::NumberTooLarge { .. } => "numbers may be up to 1e30 in size".into(),
+            _ => return None,
+        };
+        Some(text)
+    }
+}
