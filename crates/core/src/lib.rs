@@ -15,13 +15,16 @@
 extern crate alloc;
 
 pub mod agent;
+pub mod controller;
 mod dispatch;
 mod error;
 mod gain;
 pub mod law;
+pub mod plant;
 pub mod reference;
 pub mod robot;
 mod scalar;
+pub mod signal;
 mod trig;
 
 pub use dispatch::{Kernel, dispatch};

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+pub use forwardstep_core::signal::Signal;
+
 /// The tables of a run, column by column.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recording {
@@ -23,49 +25,6 @@ pub struct Column {
     pub axis: usize,
     /// One value per row.
     pub values: Vec<f64>,
-}
-
-/// The signals of an agent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Signal {
-    /// q.
-    Position,
-    /// q̇.
-    Velocity,
-    /// z^(k): k = 0 the reference velocity z, k = 1 the reference acceleration ż, … up to the larger of 1 and ℓ − 1.
-    Reference(u8),
-    /// s = q̇ − z.
-    TrackingError,
-    /// τ, after any limit.
-    Torque,
-    /// ϑ̂; absent when ϑ is known.
-    Estimate,
-    /// V = ½ sᵀ M s + ½ Δϑᵀ Γ⁻¹ Δϑ.
-    Lyapunov,
-    /// ∫ sᵀ(K + D)s − sᵀτ_ext dt; present when the ledger is on.
-    Dissipation,
-    /// τ_ext; only of agents that are pushed.
-    External,
-}
-
-impl Signal {
-    /// The name used in column headers: `q`, `dq`, `z`, `dz`, `d2z`, …, `s`, `tau`, `theta_hat`, `lyapunov`,
-    /// `dissipation`, `tau_ext`.
-    pub fn name(self) -> String {
-        match self {
-            Signal::Position => "q".into(),
-            Signal::Velocity => "dq".into(),
-            Signal::Reference(0) => "z".into(),
-            Signal::Reference(1) => "dz".into(),
-            Signal::Reference(k) => format!("d{k}z"),
-            Signal::TrackingError => "s".into(),
-            Signal::Torque => "tau".into(),
-            Signal::Estimate => "theta_hat".into(),
-            Signal::Lyapunov => "lyapunov".into(),
-            Signal::Dissipation => "dissipation".into(),
-            Signal::External => "tau_ext".into(),
-        }
-    }
 }
 
 /// A finished, broken or interrupted run.

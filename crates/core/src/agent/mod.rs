@@ -264,7 +264,8 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
     }
 }
 
-fn finite(what: &'static str, values: &[f64]) -> Result<(), StepError> {
+/// Checks that all values are numbers.
+pub(crate) fn finite(what: &'static str, values: &[f64]) -> Result<(), StepError> {
     match values.iter().find(|value| !value.is_finite()) {
         Some(value) => Err(StepError::NotFinite { what, value: *value }),
         None => Ok(()),

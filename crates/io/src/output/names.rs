@@ -82,8 +82,8 @@ pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String 
         _ => "rad",
     };
     match signal {
-        Signal::Position => length.into(),
-        Signal::Velocity | Signal::TrackingError | Signal::Reference(0) => format!("{length}/s"),
+        Signal::Position | Signal::Error => length.into(),
+        Signal::Velocity | Signal::TrackingError | Signal::Filter | Signal::Reference(0) => format!("{length}/s"),
         Signal::Reference(k) => format!("{length}/s^{}", u32::from(k) + 1),
         Signal::Torque | Signal::External if length == "m" => "N".into(),
         Signal::Torque | Signal::External => "N m".into(),

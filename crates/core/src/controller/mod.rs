@@ -1,0 +1,167 @@
+//! Complete controllers: reference dynamics and feedback in one vector field, for the systems of Sections IV and V.
+//!
+//! A robot under (6)–(7) has its reference dynamics in [`crate::reference`] and its tracking law in [`crate::law`], and whole
+//! populations are worked on in lanes. Everything else in the paper has a feedback of its own, and often must do without a
+//! velocity: it is a [`Controller`].
+//!
+//! - `position_only`: (a7)–(a9), a point mass without velocity measurement.
+//! - `stepped`: any controller, sampled.
+
+mod position_only;
+mod stepped;
+
+pub use position_only::{Guide, PositionMeasured, PositionOnly};
+pub use stepped::Stepped;
+
+use alloc::vec::Vec;
+
+use crate::LengthError;
+use crate::plant::Plant;
+use crate::reference::{Exchange, Heard};
+use crate::signal::Block;
+
+/// A number that changes with time, and its first four derivatives.
+pub type Jet = [f64; 5];
+
+/// What a controller has to go by at one instant.
+pub struct Given<'a, C: Controller + ?Sized> {
+    /// What it may see of its own plant.
+    pub measured: C::Measured<'a>,
+    /// What it hears of its neighbours.
+    pub heard: Heard<'a, f64, C::Exchange>,
+    /// Where it should be: a [`Jet`] per axis of a desired trajectory, or of an offset from where the others agree. Empty
+    /// where there is none.
+    pub target: &'a [Jet],
+}
+
+impl<C: Controller + ?Sized> Clone for Given<'_, C> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<C: Controller + ?Sized> Copy for Given<'_, C> {}
+
+/// Where a controller puts its results.
+#[derive(Debug)]
+pub struct Asked<'a> {
+    /// u, as [`Plant::inputs`] has it.
+    pub input: &'a mut [f64],
+    /// d/dt of the controller's state.
+    pub d_state: &'a mut [f64],
+    /// What it can tell of itself, as [`Controller::shown`] has it.
+    pub shown: &'a mut [f64],
+}
+
+/// The plant as it is, which a controller does not know: for the books, never for the law.
+pub struct Truth<'a, P> {
+    /// The plant with its true parameters.
+    pub plant: &'a P,
+    /// Its state.
+    pub state: &'a [f64],
+}
+
+/// The Lyapunov-like function of a proof and what it loses by it: value + ∫ dissipation is constant along every run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Balance {
+    /// V.
+    pub value: f64,
+    /// −V̇.
+    pub dissipation: f64,
+}
+
+/// What can go wrong with a controller although all numbers are finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Trouble {
+    /// A quantity by which the law divides comes too close to zero.
+    Vanishes {
+        /// What it is, in words.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must stay away from zero by.
+        floor: f64,
+    },
+}
+
+/// A controller of one agent as a pure vector field: it knows no clock, no network, no allocator, and of its plant only
+/// [`Controller::Measured`].
+///
+/// Behind the check of lengths nothing panics, whatever the numbers.
+pub trait Controller: Send + Sync + 'static {
+    /// What it is made for.
+    type Plant: Plant;
+    /// What agents tell each other; [`crate::reference::Position`] also for those that listen to nobody.
+    type Exchange: Exchange;
+    /// What it may see; what is not in it cannot be read.
+    type Measured<'a>: Copy;
+    /// Working memory of one call.
+    type Scratch: Send;
+
+    /// What it measures, in words, for people: `position`, `attitude`, ….
+    const MEASURES: &'static [&'static str];
+
+    /// Allocates working memory.
+    fn scratch(&self) -> Self::Scratch;
+
+    /// What its state is, block by block.
+    fn states(&self) -> Vec<Block>;
+
+    /// What it tells of itself, block by block: references, estimates, errors.
+    fn shown(&self) -> Vec<Block>;
+
+    /// The part of the plant's output that it sees.
+    ///
+    /// # Errors
+    /// [`LengthError`] when `output` is not a whole output.
+    fn see<'a>(&self, output: &'a [f64]) -> Result<Self::Measured<'a>, LengthError>;
+
+    /// Its state at the start, from what it sees and hears there. `wanted` holds what a user asks z(0), ż(0), … to be,
+    /// each with an entry per axis, as many as are given.
+    ///
+    /// # Errors
+    /// [`LengthError`] when a slice has the wrong length.
+    fn start(
+        &self,
+        scratch: &mut Self::Scratch,
+        given: Given<'_, Self>,
+        wanted: &[Vec<f64>],
+        state: &mut [f64],
+    ) -> Result<(), LengthError>;
+
+    /// The input, the rate of the state, and what is shown.
+    ///
+    /// # Errors
+    /// [`LengthError`] when a slice has the wrong length.
+    fn evaluate(
+        &self,
+        scratch: &mut Self::Scratch,
+        given: Given<'_, Self>,
+        state: &[f64],
+        asked: Asked<'_>,
+    ) -> Result<(), LengthError>;
+
+    /// Brings `state` back to its manifold, as [`Plant::settle`] does.
+    fn settle(&self, state: &mut [f64]) {
+        let _ = state;
+    }
+
+    /// What is about to go wrong in this state.
+    fn trouble(&self, state: &[f64], shown: &[f64]) -> Option<Trouble> {
+        let _ = (state, shown);
+        None
+    }
+
+    /// V and −V̇ by the proof, of a plant and its controller in continuous time. `shown` is what [`Controller::evaluate`]
+    /// left.
+    ///
+    /// # Errors
+    /// [`LengthError`] when a slice has the wrong length.
+    fn balance(
+        &self,
+        scratch: &mut Self::Scratch,
+        truth: Truth<'_, Self::Plant>,
+        given: Given<'_, Self>,
+        state: &[f64],
+        shown: &[f64],
+    ) -> Result<Balance, LengthError>;
+}

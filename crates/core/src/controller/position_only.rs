@@ -1,0 +1,251 @@
+//! A point mass without velocity measurement: (a7)–(a9), and consensus of many.
+//!
+//! ```text
+//! m ẍ = u                                                                   (a7)
+//! u = m̂ ż − k y                                                             (a8)
+//! z̈ = x⃛_d − α₂(ż − ẍ_d) − α₁(z − ẋ_d) − α₀(x − x_d)                          (a9), tracking
+//! z^(ℓ) = (24) with z in place of ẋ                                         Remark 7, consensus
+//! ẏ + λ_f y = λ_f s,   m̂' = −γ* żᵀs,   s = ẋ − z
+//! ```
+//!
+//! Neither y nor m̂ needs ẋ. With ṗ = z + y the filter is y = λ_f (x − p). Integrating m̂' by parts,
+//!
+//! ```text
+//! m̂(t) = m̂(0) + I(t) − γ* (żᵀx − ½ zᵀz)(t),   İ = γ* z̈ᵀx,   I(0) = γ* (żᵀx − ½ zᵀz)(0)
+//! ```
+//!
+//! (the paper prints z x − z z, whose derivative is another). With V = ½ m sᵀs + (k/2λ_f) yᵀy + (m̂ − m)²/2γ*,
+//!
+//! ```text
+//! V̇ = sᵀ(−k y + (m̂ − m) ż) + (k/λ_f) yᵀẏ − (m̂ − m) żᵀs = −k sᵀy + k yᵀ(s − y) = −k yᵀy
+//! ```
+//!
+//! so y is square-integrable, s is bounded, and s = y + ẏ/λ_f.
+//!
+//! **Consensus**, which Remark 7 announces and does not print. Let agents exchange positions and let each take (24) of order
+//! ℓ ≥ 2 with its own z where (24) has ẋ. With ẋ = z + y + ẏ/λ_f let x' = x − y/λ_f, so ẋ' = z + y. In x' the agents follow
+//! (24) for integrators, whose state converges for switching graphs and delays as in Theorem 3, driven by y in its first
+//! equation and by α₀ Σ w (y_i − y_j(t−T))/λ_f in its last: two square-integrable inputs, as s is in Theorem 2. No derivative
+//! of a switching quantity is left, so the cascade has degree one.
+//! From there the argument is that of Theorem 2: states are bounded, ẏ is uniformly continuous, y and s vanish, the
+//! agents agree and come to rest.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::{Asked, Balance, Controller, Given, Truth};
+use crate::LengthError;
+use crate::plant::{Mechanical, total};
+use crate::reference::{Consensus, Measured, Position, Reference, ReferenceOut};
+use crate::robot::PointMass;
+use crate::signal::{Block, Signal};
+
+/// Where z leads.
+#[derive(Clone, Debug)]
+pub enum Guide {
+    /// To a desired trajectory: (a9) with α₀, α₁, α₂.
+    Tracking {
+        /// The coefficients of θ³ + α₂ θ² + α₁ θ + α₀.
+        alpha: [f64; 3],
+    },
+    /// To agreement with the neighbours: (24) for one agent, of order two or more.
+    Consensus(Consensus<Position>),
+}
+
+impl Guide {
+    /// Blocks of reference state: z, ż, ….
+    fn vectors(&self) -> usize {
+        match self {
+            Guide::Tracking { .. } => 2,
+            Guide::Consensus(consensus) => consensus.vectors(),
+        }
+    }
+}
+
+/// The position of a point mass.
+#[derive(Clone, Copy, Debug)]
+pub struct PositionMeasured<'a> {
+    /// x, m entries.
+    pub x: &'a [f64],
+}
+
+/// Adaptive control of a point mass without velocity.
+///
+/// State: z, ż, …, z^(ℓ−1), p, I. Shown: z, ż, y, m̂, and x − x_d when it tracks.
+///
+/// **Source**: (a8), (a9), Remark 7. **Measures**: x. **Transmits**: x.
+/// **Requires**: k, λ_f, γ* positive; a Hurwitz polynomial; x_d with three bounded derivatives, or a network as for
+/// Theorem 3 with (24).
+/// **Guarantees**: x − x_d → 0 and ẋ − ẋ_d → 0; with a network x_i − x_j → 0 and ẋ_i → 0. u is continuous through switches
+/// and delay jumps for ℓ = 2.
+/// **Deviates from the paper**: any number of axes, with żᵀs in the adaptation; the integral by parts as in the head of this
+/// file; consensus is our own derivation.
+#[derive(Clone, Debug)]
+pub struct PositionOnly {
+    /// m.
+    pub axes: usize,
+    /// Where z leads.
+    pub guide: Guide,
+    /// k, N s/m.
+    pub damping: f64,
+    /// λ_f, 1/s.
+    pub filter_per_s: f64,
+    /// γ*; zero when m̂ is not adapted.
+    pub adaptation: f64,
+    /// m̂(0), kg.
+    pub estimate_start: f64,
+}
+
+impl PositionOnly {
+    /// Where p and I stand in the state.
+    fn layout(&self) -> (usize, usize) {
+        let p = self.guide.vectors() * self.axes;
+        (p, p + self.axes)
+    }
+
+    /// γ* (żᵀx − ½ zᵀz).
+    fn by_parts(&self, x: &[f64], z: &[f64], dz: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        for k in 0..self.axes {
+            sum += dz[k] * x[k] - 0.5 * z[k] * z[k];
+        }
+        self.adaptation * sum
+    }
+}
+
+impl Controller for PositionOnly {
+    type Plant = Mechanical<PointMass>;
+    type Exchange = Position;
+    type Measured<'a> = PositionMeasured<'a>;
+    type Scratch = Work;
+
+    const MEASURES: &'static [&'static str] = &["position"];
+
+    fn scratch(&self) -> Work {
+        Work { z: vec![0.0; self.axes], dz: vec![0.0; self.axes] }
+    }
+
+    fn states(&self) -> Vec<Block> {
+        let mut states: Vec<Block> =
+            (0..self.guide.vectors()).map(|r| (Signal::Reference(r as u8), self.axes)).collect();
+        states.extend([(Signal::Filter, self.axes), (Signal::Estimate, 1)]);
+        states
+    }
+
+    fn shown(&self) -> Vec<Block> {
+        let mut shown: Vec<Block> =
+            (0..self.guide.vectors()).map(|r| (Signal::Reference(r as u8), self.axes)).collect();
+        shown.extend([(Signal::Filter, self.axes), (Signal::Estimate, 1)]);
+        if let Guide::Tracking { .. } = self.guide {
+            shown.push((Signal::Error, self.axes));
+        }
+        shown
+    }
+
+    fn see<'a>(&self, output: &'a [f64]) -> Result<PositionMeasured<'a>, LengthError> {
+        LengthError::check("output", 2 * self.axes, output.len())?;
+        Ok(PositionMeasured { x: &output[..self.axes] })
+    }
+
+    fn start(
+        &self,
+        _: &mut Work,
+        given: Given<'_, Self>,
+        wanted: &[Vec<f64>],
+        state: &mut [f64],
+    ) -> Result<(), LengthError> {
+        let (p, i) = self.layout();
+        LengthError::check("state", i + 1, state.len())?;
+        state.fill(0.0);
+        for (block, wanted) in state[..p].chunks_exact_mut(self.axes).zip(wanted) {
+            LengthError::check("the start of the reference", self.axes, wanted.len())?;
+            block.copy_from_slice(wanted);
+        }
+        // y(0) = 0.
+        let (reference, rest) = state.split_at_mut(p);
+        rest[..self.axes].copy_from_slice(given.measured.x);
+        let (z, dz) = reference.split_at(self.axes);
+        rest[self.axes] = self.by_parts(given.measured.x, z, dz);
+        Ok(())
+    }
+
+    fn evaluate(
+        &self,
+        work: &mut Work,
+        given: Given<'_, Self>,
+        state: &[f64],
+        asked: Asked<'_>,
+    ) -> Result<(), LengthError> {
+        let (m, (p, i)) = (self.axes, self.layout());
+        LengthError::check("state", i + 1, state.len())?;
+        LengthError::check("rate", i + 1, asked.d_state.len())?;
+        LengthError::check("input", m, asked.input.len())?;
+        LengthError::check("shown", total(&self.shown()), asked.shown.len())?;
+        let x = given.measured.x;
+        LengthError::check("x", m, x.len())?;
+        let (z, dz) = (&state[..m], &state[m..2 * m]);
+        match &self.guide {
+            Guide::Tracking { alpha } => {
+                LengthError::check("target", m, given.target.len())?;
+                asked.d_state[..m].copy_from_slice(dz);
+                for k in 0..m {
+                    let [x_d, dx_d, ddx_d, dddx_d, _] = given.target[k];
+                    asked.d_state[m + k] =
+                        dddx_d - alpha[2] * (dz[k] - ddx_d) - alpha[1] * (z[k] - dx_d) - alpha[0] * (x[k] - x_d);
+                }
+            }
+            Guide::Consensus(consensus) => {
+                let out = ReferenceOut { z: &mut work.z, dz: &mut work.dz, d_state: &mut asked.d_state[..p] };
+                consensus.evaluate(m, Measured { q: x, dq: z }, &state[..p], given.heard, out)?;
+            }
+        }
+        let m_hat = self.estimate_start + state[i] - self.by_parts(x, z, dz);
+        let mut d_i = 0.0;
+        for k in 0..m {
+            let y = self.filter_per_s * (x[k] - state[p + k]);
+            asked.d_state[p + k] = z[k] + y;
+            asked.input[k] = m_hat * dz[k] - self.damping * y;
+            // z̈, whether it is a state or a rate.
+            d_i += asked.d_state[m + k] * x[k];
+            asked.shown[p + k] = y;
+            if let (Guide::Tracking { .. }, Some(error)) = (&self.guide, asked.shown.get_mut(i + 1 + k)) {
+                *error = x[k] - given.target[k][0];
+            }
+        }
+        asked.d_state[i] = self.adaptation * d_i;
+        asked.shown[..p].copy_from_slice(&state[..p]);
+        asked.shown[i] = m_hat;
+        Ok(())
+    }
+
+    fn balance(
+        &self,
+        _: &mut Work,
+        truth: Truth<'_, Self::Plant>,
+        _: Given<'_, Self>,
+        state: &[f64],
+        shown: &[f64],
+    ) -> Result<Balance, LengthError> {
+        let (m, (p, i)) = (self.axes, self.layout());
+        LengthError::check("state of the plant", 2 * m, truth.state.len())?;
+        LengthError::check("theta", 1, truth.plant.theta.len())?;
+        let mass = truth.plant.theta[0];
+        let (mut ss, mut yy) = (0.0, 0.0);
+        for k in 0..m {
+            let (s, y) = (truth.state[m + k] - state[k], shown[p + k]);
+            ss += s * s;
+            yy += y * y;
+        }
+        let delta = shown[i] - mass;
+        let learnt = if self.adaptation > 0.0 { delta * delta / (2.0 * self.adaptation) } else { 0.0 };
+        let value = 0.5 * mass * ss + 0.5 * self.damping / self.filter_per_s * yy + learnt;
+        Ok(Balance { value, dissipation: self.damping * yy })
+    }
+}
+
+/// Room for what (24) gives besides its rate.
+#[derive(Clone, Debug)]
+pub struct Work {
+    z: Vec<f64>,
+    dz: Vec<f64>,
+}

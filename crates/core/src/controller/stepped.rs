@@ -1,0 +1,169 @@
+//! Any controller, sampled.
+//!
+//! Between two samples nothing is measured and nothing is heard, so both are held; a target moves on by its Taylor
+//! polynomial. Over such a period the state of the controller is stepped by the classical Runge–Kutta method, whose error is
+//! of order five in a period and lost beside the first order of the hold, and brought back to its manifold.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::{Asked, Controller, Given, Jet};
+use crate::LengthError;
+use crate::agent::{Inbox, StepError, finite};
+use crate::plant::{Plant, total};
+use crate::reference::{Exchange, Heard};
+
+/// One agent's controller, stepped at samples.
+///
+/// **Guarantees**: no allocation and no panic in [`Stepped::step`]; the continuous controller in the limit of short periods.
+#[derive(Debug)]
+pub struct Stepped<C: Controller> {
+    controller: C,
+    scratch: C::Scratch,
+    last_s: Option<f64>,
+    state: Vec<f64>,
+    held: Held,
+    work: Work,
+    input: Vec<f64>,
+    shown: Vec<f64>,
+}
+
+/// Inputs of the last sample.
+#[derive(Clone, Debug)]
+struct Held {
+    output: Vec<f64>,
+    degree: [f64; 1],
+    sums: Vec<f64>,
+    target: Vec<Jet>,
+}
+
+/// Working memory of the Runge–Kutta method.
+#[derive(Clone, Debug)]
+struct Work {
+    stage: Vec<f64>,
+    k: Vec<f64>,
+    sum: Vec<f64>,
+    target: Vec<Jet>,
+}
+
+impl<C: Controller> Stepped<C> {
+    /// For a controller of `plant` with `targets` axes of a target; `state` is its state at the first sample.
+    ///
+    /// # Errors
+    /// [`LengthError`] when the state is not the controller's.
+    pub fn new(controller: C, plant: &C::Plant, targets: usize, state: &[f64]) -> Result<Self, LengthError> {
+        let n = total(&controller.states());
+        LengthError::check("state of the controller", n, state.len())?;
+        Ok(Stepped {
+            scratch: controller.scratch(),
+            last_s: None,
+            state: state.to_vec(),
+            held: Held {
+                output: vec![0.0; plant.output_len()],
+                degree: [0.0],
+                sums: vec![0.0; C::Exchange::CHANNELS * plant.axes()],
+                target: vec![[0.0; 5]; targets],
+            },
+            work: Work { stage: vec![0.0; n], k: vec![0.0; n], sum: vec![0.0; n], target: vec![[0.0; 5]; targets] },
+            input: vec![0.0; total(&plant.inputs())],
+            shown: vec![0.0; total(&controller.shown())],
+            controller,
+        })
+    }
+
+    /// Its state at the last sample.
+    pub fn state(&self) -> &[f64] {
+        &self.state
+    }
+
+    /// What it asked for at the last sample.
+    pub fn input(&self) -> &[f64] {
+        &self.input
+    }
+
+    /// What it told of itself at the last sample.
+    pub fn shown(&self) -> &[f64] {
+        &self.shown
+    }
+
+    /// Takes the sample of time `now_s` and gives the input to hold until the next one.
+    ///
+    /// The state is moved from the last sample to this one with the inputs of the last, over the time that really passed;
+    /// then the new inputs give the command.
+    ///
+    /// # Errors
+    /// [`StepError`], before anything has changed.
+    pub fn step(&mut self, now_s: f64, output: &[f64], inbox: Inbox<'_>, target: &[Jet]) -> Result<&[f64], StepError> {
+        LengthError::check("output", self.held.output.len(), output.len())?;
+        LengthError::check("sums heard", self.held.sums.len(), inbox.sums.len())?;
+        LengthError::check("target", self.held.target.len(), target.len())?;
+        finite("time", &[now_s])?;
+        finite("what is measured", output)?;
+        finite("what is heard", &[inbox.degree])?;
+        finite("what is heard", inbox.sums)?;
+        match self.last_s {
+            Some(last_s) if now_s > last_s => self.advance(now_s - last_s)?,
+            Some(last_s) => return Err(StepError::Time { now_s, last_s }),
+            None => {}
+        }
+        self.held.output.copy_from_slice(output);
+        self.held.degree = [inbox.degree];
+        self.held.sums.copy_from_slice(inbox.sums);
+        self.held.target.copy_from_slice(target);
+        self.work.target.copy_from_slice(target);
+        let asked = Asked { input: &mut self.input, d_state: &mut self.work.k, shown: &mut self.shown };
+        evaluate(&self.controller, &mut self.scratch, &self.held, &self.work.target, &self.state, asked)?;
+        self.last_s = Some(now_s);
+        Ok(&self.input)
+    }
+
+    /// Moves the state on by `h`.
+    fn advance(&mut self, h: f64) -> Result<(), LengthError> {
+        let Stepped { controller, scratch, state, held, work, input, shown, .. } = self;
+        let Work { stage, k, sum, target } = work;
+        sum.fill(0.0);
+        stage.copy_from_slice(state);
+        for (when, weight, next) in [(0.0, 1.0, 0.5), (0.5, 2.0, 0.5), (0.5, 2.0, 1.0), (1.0, 1.0, 0.0)] {
+            for (moved, jet) in target.iter_mut().zip(&held.target) {
+                *moved = shifted(jet, when * h);
+            }
+            evaluate(controller, scratch, held, target, stage, Asked { input, d_state: k, shown })?;
+            for i in 0..state.len() {
+                sum[i] += weight * k[i];
+                stage[i] = state[i] + next * h * k[i];
+            }
+        }
+        for (x, sum) in state.iter_mut().zip(sum) {
+            *x += h / 6.0 * *sum;
+        }
+        controller.settle(state);
+        Ok(())
+    }
+}
+
+fn evaluate<C: Controller>(
+    controller: &C,
+    scratch: &mut C::Scratch,
+    held: &Held,
+    target: &[Jet],
+    state: &[f64],
+    asked: Asked<'_>,
+) -> Result<(), LengthError> {
+    let axes = held.sums.len() / C::Exchange::CHANNELS;
+    let heard = Heard::new(&held.degree, &held.sums, axes)?;
+    controller.evaluate(scratch, Given { measured: controller.see(&held.output)?, heard, target }, state, asked)
+}
+
+/// The jet a time `h` later, by its Taylor polynomial.
+fn shifted(jet: &Jet, h: f64) -> Jet {
+    let mut out = *jet;
+    for (k, value) in out.iter_mut().enumerate() {
+        let mut term = 1.0;
+        *value = 0.0;
+        for (j, derivative) in jet[k..].iter().enumerate() {
+            *value += derivative * term;
+            term *= h / (j + 1) as f64;
+        }
+    }
+    out
+}

@@ -1,0 +1,71 @@
+//! Systems to be controlled, as vector fields, when they are more than a robot under (6)–(7).
+
+mod mechanical;
+
+pub use mechanical::Mechanical;
+
+use alloc::vec::Vec;
+
+use crate::LengthError;
+use crate::signal::Block;
+
+/// A system d/dt state = f(state, input).
+///
+/// The first [`Plant::axes`] numbers of its state are the position, which is what an agent transmits; where there is a
+/// velocity, it comes next. The true parameters are part of the plant: a controller has its own.
+///
+/// Behind the check of lengths nothing panics, whatever the numbers.
+pub trait Plant: Send + Sync + 'static {
+    /// Working memory of one call.
+    type Scratch: Send;
+
+    /// Allocates it.
+    fn scratch(&self) -> Self::Scratch;
+
+    /// m, the numbers of a position.
+    fn axes(&self) -> usize;
+
+    /// What the state is, block by block: the position first, then the velocity.
+    fn states(&self) -> Vec<Block>;
+
+    /// What the input is, block by block.
+    fn inputs(&self) -> Vec<Block>;
+
+    /// Numbers that [`Plant::output`] gives.
+    fn output_len(&self) -> usize;
+
+    /// Everything that a sensor could see in `state`; which of it a controller may read is said by
+    /// [`crate::controller::Controller::see`]. The position comes first, then the velocity where there is one.
+    ///
+    /// # Errors
+    /// [`LengthError`] when a slice has the wrong length.
+    fn output(&self, scratch: &mut Self::Scratch, state: &[f64], output: &mut [f64]) -> Result<(), LengthError>;
+
+    /// What becomes of an input that is asked for: limits of actuators. `state` is the present one.
+    fn limit(&self, state: &[f64], input: &mut [f64]) {
+        let _ = (state, input);
+    }
+
+    /// d/dt of `state` under `input`.
+    ///
+    /// # Errors
+    /// [`LengthError`] when a slice has the wrong length.
+    fn rate(
+        &self,
+        scratch: &mut Self::Scratch,
+        state: &[f64],
+        input: &[f64],
+        d_state: &mut [f64],
+    ) -> Result<(), LengthError>;
+
+    /// Brings `state`, which rounding and truncation have led away by little, back to its manifold: unit quaternions have
+    /// norm one.
+    fn settle(&self, state: &mut [f64]) {
+        let _ = state;
+    }
+}
+
+/// Numbers in all blocks.
+pub fn total(blocks: &[Block]) -> usize {
+    blocks.iter().map(|(_, count)| count).sum()
+}

@@ -1,0 +1,56 @@
+//! What can be told of an agent at one instant: the names that states, inputs and tables share.
+
+use alloc::format;
+use alloc::string::String;
+
+/// A quantity of an agent, an entry per axis unless it says otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Signal {
+    /// q, or x for what is no robot arm.
+    Position,
+    /// q̇.
+    Velocity,
+    /// z^(k): k = 0 the reference velocity z, k = 1 the reference acceleration ż, … up to the larger of 1 and ℓ − 1.
+    Reference(u8),
+    /// s = q̇ − z.
+    TrackingError,
+    /// τ, or any other input u, after any limit.
+    Torque,
+    /// ϑ̂, an entry per parameter; absent when ϑ is known.
+    Estimate,
+    /// The Lyapunov-like function of the proof that covers the agent; ½ sᵀ M s + ½ Δϑᵀ Γ⁻¹ Δϑ under (6)–(7). One entry.
+    Lyapunov,
+    /// The integral of what the Lyapunov-like function loses by its proof; present when the ledger is on. One entry.
+    Dissipation,
+    /// τ_ext; only of agents that are pushed.
+    External,
+    /// What is to vanish: x − x_d, Δq_v, q − q₀, …; only of agents with a target or a leader.
+    Error,
+    /// y, the output of a filter that stands in for a velocity that is not measured.
+    Filter,
+}
+
+impl Signal {
+    /// The name used in column headers: `q`, `dq`, `z`, `dz`, `d2z`, …, `s`, `tau`, `theta_hat`, `lyapunov`,
+    /// `dissipation`, `tau_ext`, `error`, `y`.
+    pub fn name(self) -> String {
+        match self {
+            Signal::Position => "q".into(),
+            Signal::Velocity => "dq".into(),
+            Signal::Reference(0) => "z".into(),
+            Signal::Reference(1) => "dz".into(),
+            Signal::Reference(k) => format!("d{k}z"),
+            Signal::TrackingError => "s".into(),
+            Signal::Torque => "tau".into(),
+            Signal::Estimate => "theta_hat".into(),
+            Signal::Lyapunov => "lyapunov".into(),
+            Signal::Dissipation => "dissipation".into(),
+            Signal::External => "tau_ext".into(),
+            Signal::Error => "error".into(),
+            Signal::Filter => "y".into(),
+        }
+    }
+}
+
+/// A block of numbers that are one signal, and how many they are.
+pub type Block = (Signal, usize);
