@@ -17,6 +17,7 @@ pub mod schedule;
 pub mod setup;
 mod simulate;
 pub mod topology;
+pub mod trajectory;
 
 pub use closed_loop::SetupError;
 pub use network::Network;
