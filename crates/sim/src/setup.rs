@@ -5,6 +5,7 @@ use std::sync::Arc;
 use forwardstep_core::Gain;
 use forwardstep_core::robot::tree::Tree;
 
+use crate::leader::{Following, FollowingDesign};
 use crate::network::Network;
 use crate::push::Push;
 use crate::trajectory::Trajectory;
@@ -28,8 +29,24 @@ pub struct Setup {
     pub control: Option<Control>,
 }
 
+impl Setup {
+    /// How a leader is followed, if there is one.
+    pub fn following(&self) -> Option<&Arc<Following>> {
+        match &self.reference {
+            ReferenceKind::Following(following) => Some(following),
+            _ => None,
+        }
+    }
+
+    /// The name of a vertex of the network.
+    pub fn vertex_name(&self, vertex: usize) -> &str {
+        let leader = || self.following().map_or("", |following| &following.leader.name);
+        self.agents.get(vertex).map_or_else(leader, |agent| &agent.name)
+    }
+}
+
 /// Reference dynamics, see [`forwardstep_core::reference`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ReferenceKind {
     /// The family (aa10), (a1), (a5), (24).
     Consensus,
@@ -42,6 +59,8 @@ pub enum ReferenceKind {
         /// Limit of the reference acceleration, rad/s² or m/s²; none for no limit.
         acceleration_limit: Option<f64>,
     },
+    /// (110), (119) or (122): everybody follows a leader, the last vertex of the network. There are no roots.
+    Following(Arc<Following>),
     /// Nothing is agreed upon: every agent follows a target of its own, by a law that has reference dynamics of its own.
     Tracking,
 }
@@ -52,6 +71,10 @@ impl ReferenceKind {
         match self {
             ReferenceKind::Consensus | ReferenceKind::Tracking => agent.roots_per_s.len(),
             ReferenceKind::PureIntegral => 2,
+            ReferenceKind::Following(following) => match following.design {
+                FollowingDesign::Continuous => 1,
+                FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => 2,
+            },
             ReferenceKind::Backstepping { .. } => 0,
         }
     }
