@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
+use forwardstep_core::controller::{Controller, PositionOnly};
 use forwardstep_core::robot::tree::Tree;
 
 use crate::leader::{Following, FollowingDesign};
@@ -87,6 +88,16 @@ pub enum Exchange {
     Position,
     /// q_j and q̇_j: the family (a5), of which (aa10) is order 1 and (a1) order 2.
     PositionVelocity,
+}
+
+impl Exchange {
+    /// What is transmitted, in words: vectors with a number per axis.
+    pub fn words(self) -> &'static [&'static str] {
+        match self {
+            Exchange::Position => &["position"],
+            Exchange::PositionVelocity => &["position", "velocity"],
+        }
+    }
 }
 
 /// One agent.
@@ -218,6 +229,23 @@ impl Law {
     /// Whether it is (6)–(7), which whole populations of Lagrangian robots share.
     pub fn is_lagrangian(&self) -> bool {
         matches!(self, Law::Adaptive { .. } | Law::Known { .. })
+    }
+
+    /// Whether it estimates parameters.
+    pub fn estimates(&self) -> bool {
+        match self {
+            Law::Adaptive { .. } => true,
+            Law::Known { .. } => false,
+            Law::PositionOnly { .. } => true,
+        }
+    }
+
+    /// What it measures, in words. A law cannot read anything else: its inputs have no room for it.
+    pub fn measures(&self) -> &'static [&'static str] {
+        match self {
+            Law::Adaptive { .. } | Law::Known { .. } => &["position", "velocity"],
+            Law::PositionOnly { .. } => PositionOnly::MEASURES,
+        }
     }
 
     /// What it is called in messages.
