@@ -12,7 +12,7 @@ pub(crate) fn theorem(setup: &Setup) -> Option<(String, String)> {
     if !setup.agents.iter().all(same) {
         return None;
     }
-    match (&first.law, setup.reference) {
+    match (&first.law, &setup.reference) {
         (Law::Adaptive { .. } | Law::Known { .. }, _) => None,
         (Law::PositionOnly { .. }, ReferenceKind::Tracking) => Some((
             "Section V-A, (a8) with the reference dynamics (a9)".into(),

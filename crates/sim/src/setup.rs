@@ -39,6 +39,22 @@ impl Setup {
         }
     }
 
+    /// What a message holds, in words.
+    pub fn transmits(&self) -> Vec<&'static str> {
+        let told = match self.following().map(|following| following.design) {
+            Some(FollowingDesign::Differentiable) => Some("acceleration"),
+            Some(FollowingDesign::WithoutAcceleration) => Some("reference acceleration"),
+            Some(FollowingDesign::Continuous) | None => None,
+        };
+        self.exchange.words().iter().copied().chain(told).collect()
+    }
+
+    /// What an agent measures, in words, whose law measures `law`.
+    pub fn measures_for(&self, law: &[&'static str]) -> Vec<&'static str> {
+        let following = self.following().is_some_and(|following| following.design == FollowingDesign::Differentiable);
+        law.iter().copied().chain(following.then_some("acceleration")).collect()
+    }
+
     /// The name of a vertex of the network.
     pub fn vertex_name(&self, vertex: usize) -> &str {
         let leader = || self.following().map_or("", |following| &following.leader.name);

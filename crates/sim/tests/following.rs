@@ -57,11 +57,8 @@ fn setup(design: FollowingDesign, choice: Choice, estimate: f64, end_s: f64) -> 
     let starts = [[0.6, -0.3], [-0.5, 0.4], [0.2, 0.8], [-0.8, -0.6]];
     let wave = |amplitude, rad_per_s, phase_rad| Sinusoid { amplitude, rad_per_s, phase_rad };
     let path = |offset, waves| Path::Sinusoids { offset, waves };
-    let trajectory = Trajectory::new(vec![
-        path(0.3, vec![wave(0.6, 0.8, 0.0)]),
-        path(-0.2, vec![wave(0.4, 1.1, 0.5)]),
-    ])
-    .unwrap();
+    let trajectory =
+        Trajectory::new(vec![path(0.3, vec![wave(0.6, 0.8, 0.0)]), path(-0.2, vec![wave(0.4, 1.1, 0.5)])]).unwrap();
     let edge = |from, to, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
     let following = Following {
         leader: Leader { name: "leader".into(), trajectory },
@@ -136,12 +133,25 @@ fn explore() {
             for digital in [false, true] {
                 let mut it = setup(design, choice, 1.0, 30.0);
                 it.time.record_every_s = 1e-3;
-                if digital { it = sampled(it); }
+                if digital {
+                    it = sampled(it);
+                }
                 let start = std::time::Instant::now();
                 let outcome = simulate(&it, &mut |_| ControlFlow::Continue(())).unwrap();
-                println!("{design:?} {choice:?} digital {digital}: {:?} residual {:?} wall {:?} steps {}", outcome.ending, outcome.statistics.sign_residual, start.elapsed(), outcome.statistics.steps);
+                println!(
+                    "{design:?} {choice:?} digital {digital}: {:?} residual {:?} wall {:?} steps {}",
+                    outcome.ending,
+                    outcome.statistics.sign_residual,
+                    start.elapsed(),
+                    outcome.statistics.steps
+                );
                 println!("   error {:?}", [0.0, 0.1, 0.25, 0.5, 0.75, 1.0].map(|s| size(&outcome, Signal::Error, s)));
-                println!("   TV tau {:.4} dz {:.4} sign {:.3}", variation(&outcome, Signal::Torque, 0.75), variation(&outcome, Signal::Reference(1), 0.75), variation(&outcome, Signal::Selection, 0.75));
+                println!(
+                    "   TV tau {:.4} dz {:.4} sign {:.3}",
+                    variation(&outcome, Signal::Torque, 0.75),
+                    variation(&outcome, Signal::Reference(1), 0.75),
+                    variation(&outcome, Signal::Selection, 0.75)
+                );
             }
         }
     }

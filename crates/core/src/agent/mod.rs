@@ -307,6 +307,14 @@ impl<F: Reference> Kernel for Refer<'_, F> {
         if let Some(h) = passed_s {
             hold.advance(reference, &held.degree, h, state, &out.d_state)?;
         }
+        // With ṡ held q̈ is ż + ṡ, and over the last period ṡ was what the velocity gained less what ż asked for.
+        let accelerates = reference.sliding().is_some_and(|sliding| sliding.derived == Derived::Acceleration);
+        for (k, told) in out.told.iter_mut().enumerate() {
+            *told = match passed_s {
+                Some(h) if accelerates => (measured.dq[k] - held.dq[k]) / h - out.dz[k],
+                _ => 0.0,
+            };
+        }
         held.q.copy_from_slice(measured.q);
         held.dq.copy_from_slice(measured.dq);
         held.degree = [inbox.degree];
@@ -321,13 +329,9 @@ impl<F: Reference> Kernel for Refer<'_, F> {
         let reference_out = ReferenceOut { z: &mut out.z, dz: &mut out.dz, d_state: &mut out.d_state };
         reference.evaluate(m, measured, state, heard, reference_out)?;
         let Some(sliding) = reference.sliding() else { return Ok(()) };
-        // ż does not depend on the sign where it is told. With ṡ held q̈ is ż + ṡ, and ṡ was (s − s₋)/h over the last period.
-        for (k, told) in out.told.iter_mut().enumerate() {
-            let ds = match passed_s {
-                Some(h) if sliding.derived == Derived::Acceleration => (held.dq[k] - out.z[k] - out.s[k]) / h,
-                _ => 0.0,
-            };
-            *told = out.dz[k] + ds;
+        // ż does not depend on the sign where it is told.
+        for (told, dz) in out.told.iter_mut().zip(&out.dz) {
+            *told += dz;
         }
         let Some(h) = passed_s else { return Ok(()) };
         let channel = |c: usize| held.sums.get(c * m..(c + 1) * m).unwrap_or_default();

@@ -88,6 +88,7 @@ pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String 
         Signal::Torque | Signal::External if length == "m" => "N".into(),
         Signal::Torque | Signal::External => "N m".into(),
         Signal::Estimate => "SI".into(),
+        Signal::Selection => "1".into(),
         Signal::Lyapunov | Signal::Dissipation => "J".into(),
     }
 }
