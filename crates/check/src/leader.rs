@@ -1,7 +1,9 @@
 //! Following a leader: Theorems 8 and 9, Remark 12.
 
+use forwardstep_core::Gain;
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::delay::Delay;
+use forwardstep_sim::graph::laplacian;
 use forwardstep_sim::leader::{Following, FollowingDesign};
 use forwardstep_sim::schedule::{Schedule, Window};
 use forwardstep_sim::{Law, Setup};
@@ -20,6 +22,9 @@ pub(crate) fn check(setup: &Setup, following: &Following) -> Report {
         FollowingDesign::Continuous => "Theorem 8, reference dynamics (110)",
         FollowingDesign::Differentiable => "Theorem 9, reference dynamics (119)",
         FollowingDesign::WithoutAcceleration => "Remark 12, reference dynamics (122)",
+        FollowingDesign::Swarm { .. } => {
+            "no theorem of the paper: swarm tracking (Remark 11) as derived for this software"
+        }
     };
     let torque = match following.design {
         FollowingDesign::Continuous => "the torque is as smooth as the value of the sign that is chosen",
@@ -27,6 +32,10 @@ pub(crate) fn check(setup: &Setup, following: &Following) -> Report {
     };
     let mut hypotheses =
         vec![bounded_motion(setup, following), gain(setup, following), tree(setup), fixed(setup), prompt(setup)];
+    if let FollowingDesign::Swarm { coupling } = following.design {
+        hypotheses.push(undirected(setup));
+        hypotheses.push(coupled(setup, following, coupling));
+    }
     hypotheses.extend(links::bounded_weights(setup));
     hypotheses.push(sign(following, setup));
     hypotheses.extend(external_torques(setup));
@@ -62,6 +71,7 @@ fn bounded_motion(setup: &Setup, following: &Following) -> Hypothesis {
 fn gain(setup: &Setup, following: &Following) -> Hypothesis {
     let drive = match following.design {
         FollowingDesign::Continuous => "ddq_0 + α dq_0",
+        FollowingDesign::Swarm { .. } => "dddq_0",
         _ => "dddq_0 + β ddq_0 + α dq_0",
     };
     let requires = format!("γ exceeds the largest entry of |{drive}| at any time");
@@ -123,6 +133,56 @@ fn tree(setup: &Setup) -> Hypothesis {
         }
     };
     Hypothesis { requires, answer, because }
+}
+
+/// The edges among agents, without those from the leader.
+fn undirected(setup: &Setup) -> Hypothesis {
+    let agents = setup.agents.len();
+    let requires = "agents hear each other with the same weight".into();
+    for graph in setup.network.schedule.graphs() {
+        for edge in graph.iter().filter(|edge| edge.from < agents && edge.to < agents) {
+            if !graph.iter().any(|back| back.from == edge.to && back.to == edge.from && back.weight == edge.weight) {
+                let [from, to] = [edge.from, edge.to].map(|vertex| setup.vertex_name(vertex));
+                let because = format!("{to} hears {from}, but not the other way round with the same weight");
+                return Hypothesis { requires, answer: Answer::NotCovered, because };
+            }
+        }
+    }
+    Hypothesis { requires, answer: Answer::Holds, because: "every edge among them leads both ways".into() }
+}
+
+/// k λ against what the derivation asks for: L − λ* is positive definite exactly if λ > λ*.
+fn coupled(setup: &Setup, following: &Following, coupling: f64) -> Hypothesis {
+    let requires = "k λ > β + κ₀⁴/(2 (β² − α) κ₁), λ the smallest eigenvalue of the followers' Laplacian".to_owned();
+    let (alpha, beta) = (following.alpha, following.beta);
+    let root = beta * beta - 4.0 * alpha;
+    let not = |because: &str| Hypothesis {
+        requires: requires.clone(),
+        answer: Answer::NotCovered,
+        because: because.to_owned(),
+    };
+    if root < -1e-12 * beta * beta {
+        return not("p² + β p + α has no real roots");
+    }
+    let kappa = 0.5 * (beta - root.max(0.0).sqrt());
+    let least = beta + kappa.powi(4) / (2.0 * (beta * beta - alpha) * (beta - kappa));
+    let n = setup.agents.len();
+    let Schedule::Fixed(edges) = &setup.network.schedule else { return not("the graph switches") };
+    let Some(all) = laplacian(setup.network.agents, edges) else { return not("a weight varies with time") };
+    let mut shifted = Vec::with_capacity(n * n);
+    for row in 0..n {
+        for column in 0..n {
+            let shift = if row == column { least / coupling } else { 0.0 };
+            shifted.push(all[row * setup.network.agents + column] - shift);
+        }
+    }
+    match Gain::Matrix(shifted).resolve(n, &[]) {
+        Ok(_) => Hypothesis { requires, answer: Answer::Holds, because: format!("k λ exceeds {}", rounded(least)) },
+        Err(_) => not(&format!(
+            "k λ could not be shown to exceed {}: a larger coupling or larger weights would",
+            rounded(least)
+        )),
+    }
 }
 
 fn fixed(setup: &Setup) -> Hypothesis {

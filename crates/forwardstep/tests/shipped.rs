@@ -56,4 +56,8 @@ shipped! {
     six_arms_over_radio: "six-arms-over-radio",
     without_velocity: "without-velocity",
     double_integrators: "double-integrators",
+    theorem_8: "theorem-8",
+    theorem_9: "theorem-9",
+    remark_12: "remark-12",
+    swarm_tracking: "swarm-tracking",
 }

@@ -17,7 +17,7 @@ pub struct Leader {
 }
 
 /// How it is followed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FollowingDesign {
     /// (110), Theorem 8: torques that jump unless the sign is solved for.
     Continuous,
@@ -25,6 +25,12 @@ pub enum FollowingDesign {
     Differentiable,
     /// (122), Remark 12: differentiable torques; reference accelerations are transmitted.
     WithoutAcceleration,
+    /// Differences to neighbours only, over an undirected graph; our own derivation, see
+    /// [`forwardstep_core::reference::SmoothFollowing::swarm`].
+    Swarm {
+        /// k.
+        coupling: f64,
+    },
 }
 
 /// A leader, and the design with its gains, which all agents share.
@@ -32,7 +38,7 @@ pub enum FollowingDesign {
 pub struct Following {
     /// The leader.
     pub leader: Leader,
-    /// (110), (119) or (122).
+    /// (110), (119), (122) or swarm tracking.
     pub design: FollowingDesign,
     /// α: 1/s in (110), 1/s² in (119) and (122).
     pub alpha: f64,
@@ -52,20 +58,26 @@ impl Following {
         let (derived, beta) = match self.design {
             FollowingDesign::Continuous => (Derived::Nothing, 1.0),
             FollowingDesign::Differentiable => (Derived::Acceleration, self.beta),
-            FollowingDesign::WithoutAcceleration => (Derived::ReferenceAcceleration, self.beta),
+            FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
+                (Derived::ReferenceAcceleration, self.beta)
+            }
         };
         Sliding { derived, alpha: self.alpha, beta, gamma: self.gain, choice: self.choice }
     }
 
-    /// ξ̇_0 as a combination of the derivatives of q_0: γ must exceed the largest size of it.
+    /// What drives the leader away from its followers, as a combination of the derivatives of q_0: ξ̇_0, or d³q_0 for a swarm.
+    /// γ must exceed the largest size of it.
     pub fn drive(&self) -> [f64; 5] {
         match self.design {
             FollowingDesign::Continuous => [0.0, self.alpha, 1.0, 0.0, 0.0],
-            _ => [0.0, self.alpha, self.beta, 1.0, 0.0],
+            FollowingDesign::Swarm { .. } => [0.0, 0.0, 0.0, 1.0, 0.0],
+            FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => {
+                [0.0, self.alpha, self.beta, 1.0, 0.0]
+            }
         }
     }
 
-    /// A bound of |ξ̇_0|∞ from 0 to `end_s`, or for ever; infinite where nothing could be shown.
+    /// A bound of its size from 0 to `end_s`, or for ever; infinite where nothing could be shown.
     pub fn drive_bound(&self, end_s: Option<f64>) -> f64 {
         let trajectory = &self.leader.trajectory;
         let drive = self.drive();

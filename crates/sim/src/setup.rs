@@ -43,7 +43,9 @@ impl Setup {
     pub fn transmits(&self) -> Vec<&'static str> {
         let told = match self.following().map(|following| following.design) {
             Some(FollowingDesign::Differentiable) => Some("acceleration"),
-            Some(FollowingDesign::WithoutAcceleration) => Some("reference acceleration"),
+            Some(FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. }) => {
+                Some("reference acceleration")
+            }
             Some(FollowingDesign::Continuous) | None => None,
         };
         self.exchange.words().iter().copied().chain(told).collect()
@@ -76,7 +78,7 @@ pub enum ReferenceKind {
         /// Limit of the reference acceleration, rad/s² or m/s²; none for no limit.
         acceleration_limit: Option<f64>,
     },
-    /// (110), (119) or (122): everybody follows a leader, the last vertex of the network. There are no roots.
+    /// (110), (119), (122) or swarm tracking: everybody follows a leader, the last vertex of the network. There are no roots.
     Following(Arc<Following>),
     /// Nothing is agreed upon: every agent follows a target of its own, by a law that has reference dynamics of its own.
     Tracking,
@@ -90,7 +92,7 @@ impl ReferenceKind {
             ReferenceKind::PureIntegral => 2,
             ReferenceKind::Following(following) => match following.design {
                 FollowingDesign::Continuous => 1,
-                FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => 2,
+                _ => 2,
             },
             ReferenceKind::Backstepping { .. } => 0,
         }

@@ -1,4 +1,5 @@
-//! (110), (119) and (122): following a leader that only some can see, with a set-valued sign.
+//! (110), (119) and (122): following a leader that only some can see, with a set-valued sign. And swarm tracking, which
+//! Remark 11 names and the paper does not print: our own derivation.
 //!
 //! Vertex 0 is the leader; it is heard like everybody else, so nothing here knows which neighbour it is. (110) is
 //!
@@ -30,6 +31,27 @@
 //! vanishes, as the paper takes from Cao and Ren. s vanishes by (6)–(7) and enters through its derivative alone: the degree
 //! reduction of the paper.
 
+//! **Swarm tracking.** An undirected graph, a leader that some hear, and nothing but differences to neighbours: no agent uses
+//! its own velocity or position by itself. Made differentiable by one differentiator,
+//!
+//! ```text
+//! z̈_i = −k Σ_j w_ij (ξ*_i − ξ*_j) − γ ς_i,      ς_i ∈ Sgn[Σ_j w_ij (ξ**_i − ξ**_j)]
+//! ```
+//!
+//! with ξ*, ξ** as above, realised like (122) without the terms of its own. Let s ≡ 0, so ξ* = ξ**, let κ₀ ≤ κ₁ be the roots of
+//! p² + β p + α, q̃ = q − q_0, v = q̃' + κ₀ q̃ and y = v' + κ₁ v = ξ̃*. Then, with L = Lᵀ > 0 and a = β² − α > 0,
+//!
+//! ```text
+//! ẏ = −k L y − γ ς − d³q_0 + β y − a v + κ₀³ q̃        v̇ = y − κ₁ v        q̃' = v − κ₀ q̃
+//! V = ½ yᵀL y + ½ a vᵀL v + ½ a κ₀ κ₁ q̃ᵀL q̃
+//! V̇ = −k |L y|² + β yᵀL y − a κ₁ vᵀL v − a κ₀² κ₁ q̃ᵀL q̃ + κ₀³ yᵀL q̃ + a κ₀ κ₁ q̃ᵀL v − γ |L y|₁ − (L y)ᵀ d³q_0
+//! ```
+//!
+//! Here |L y|² ≥ λ yᵀL y with λ the smallest eigenvalue of L, a κ₀ κ₁ q̃ᵀL v ≤ ½ a κ₀² κ₁ q̃ᵀL q̃ + ½ a κ₁ vᵀL v, and what is left
+//! is negative definite if k λ > β + κ₀⁴/(2 a κ₁) and γ > sup|d³q_0|∞: neither bound grows with how fast the leader moves, only
+//! with how its acceleration changes. The leader is followed at an exponential rate. s enters through its derivative, as in
+//! (122).
+
 use super::sliding::Sliding;
 use super::{Exchange, Heard, Measured, PositionVelocity, Reference, ReferenceOut, check};
 use crate::{LengthError, Scalar};
@@ -58,6 +80,10 @@ pub struct Following {
 pub struct SmoothFollowing {
     agents: usize,
     sliding: Sliding,
+    /// 1 with the terms of its own, 0 for differences to neighbours only.
+    own: f64,
+    /// The factor of those differences.
+    coupling: f64,
 }
 
 impl Following {
@@ -70,7 +96,18 @@ impl Following {
 impl SmoothFollowing {
     /// For `agents` agents; (119) or (122) by what ξ contains.
     pub fn new(agents: usize, sliding: Sliding) -> Self {
-        SmoothFollowing { agents, sliding }
+        SmoothFollowing { agents, sliding, own: 1.0, coupling: 1.0 }
+    }
+
+    /// Swarm tracking with k = `coupling`; ξ contains ż.
+    ///
+    /// **Source**: our own derivation, at the head of this file; Remark 11 names the problem.
+    /// **Measures**: q, q̇. **Transmits**: q, q̇, ż.
+    /// **Requires**: a fixed undirected graph without delay in which the leader reaches everybody; real roots κ₀ ≤ κ₁;
+    /// k λ > β + κ₀⁴/(2 (β² − α) κ₁); γ > sup|d³q_0|∞.
+    /// **Guarantees**: q_i − q_0 → 0 and q̇_i − q̇_0 → 0 under (6)–(7), with differentiable torques.
+    pub fn swarm(agents: usize, sliding: Sliding, coupling: f64) -> Self {
+        SmoothFollowing { agents, sliding, own: 0.0, coupling }
     }
 }
 
@@ -170,15 +207,18 @@ impl Reference for SmoothFollowing {
         let (z, rest) = state.split_at(block);
         let (p, selection) = rest.split_at(block);
         let [alpha, beta, gamma] = [self.sliding.alpha, self.sliding.beta, self.sliding.gamma].map(S::splat);
+        let [by_itself, coupling] = [self.own, self.coupling].map(S::splat);
         for k in 0..block {
             let (q, dq, d) = (measured.q[k], measured.dq[k], heard.degree[k % self.agents]);
             let own = alpha.mul_add(q, beta * dq);
             let told = alpha.mul_add(heard.sums.q[k], beta * heard.sums.dq[k]);
-            let dz = p[k] + d.neg_mul_add(dq, heard.sums.dq[k]) - own;
+            // ż and ṗ without what is left out of them, or scaled, for a swarm.
+            let apart = d.neg_mul_add(dq, heard.sums.dq[k]);
+            let dz = coupling.mul_add(apart, p[k]) - by_itself * own;
             out.z[k] = z[k];
             out.dz[k] = dz;
             out.d_state[k] = dz;
-            out.d_state[block + k] = gamma.neg_mul_add(selection[k], d.neg_mul_add(own, told));
+            out.d_state[block + k] = gamma.neg_mul_add(selection[k], coupling * d.neg_mul_add(own, told));
             out.d_state[2 * block + k] = S::ZERO;
         }
         Ok(())
@@ -204,7 +244,7 @@ impl Reference for SmoothFollowing {
             let (q, dq, d) = (measured.q[k], measured.dq[k], heard.degree[k % self.agents]);
             let own = self.sliding.beta * dq + self.sliding.alpha * q;
             // c**: what makes ż(0) as wanted.
-            state[block + k] = given[block + k] + own + d * dq - heard.sums.dq[k];
+            state[block + k] = given[block + k] + self.own * own + self.coupling * (d * dq - heard.sums.dq[k]);
         }
         state[2 * block..].fill(0.0);
         Ok(())
@@ -263,6 +303,16 @@ mod tests {
         let (xi, xi_j) = (ddq + BETA * dq + ALPHA * q, ddq_j + BETA * dq_j + ALPHA * q_j);
         let literal = -BETA * ddq - ALPHA * dq - W * (xi - xi_j) - GAMMA * selection;
         assert!((ddz - literal).abs() < 1e-13, "{ddz} {literal}");
+    }
+
+    #[test]
+    fn eq_swarm_has_differences_only() {
+        let law = SmoothFollowing::swarm(1, sliding(Derived::ReferenceAcceleration, BETA), 3.0);
+        let ([q, dq, ddq], [q_j, dq_j, ddq_j], selection) = ([0.3, -0.7, 1.9], [0.8, -0.2, 0.5], 0.4);
+        let (_, rate) = evaluate(&law, [q, dq], [0.9, -1.1, selection], [W * q_j, W * dq_j], W);
+        let (ddz, _) = evaluate(&law, [dq, ddq], [0.0, rate[1], 0.0], [W * dq_j, W * ddq_j], W);
+        let (xi, xi_j) = (ddq + BETA * dq + ALPHA * q, ddq_j + BETA * dq_j + ALPHA * q_j);
+        assert!((ddz - (-3.0 * W * (xi - xi_j) - GAMMA * selection)).abs() < 1e-13, "{ddz}");
     }
 
     #[test]

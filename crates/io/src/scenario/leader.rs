@@ -34,7 +34,14 @@ pub(super) fn following(file: &ScenarioFile, axes: usize, end_s: f64) -> Result<
         LeaderDesignFile::Continuous => FollowingDesign::Continuous,
         LeaderDesignFile::Differentiable => FollowingDesign::Differentiable,
         LeaderDesignFile::WithoutAcceleration => FollowingDesign::WithoutAcceleration,
+        LeaderDesignFile::Swarm => match &reference.coupling {
+            Some(coupling) => FollowingDesign::Swarm { coupling: positive("coupling", coupling)? },
+            None => return Err(fault(&reference.design, ScenarioProblem::MissingKey { key: "coupling" })),
+        },
     };
+    if let (Some(coupling), false) = (&reference.coupling, matches!(design, FollowingDesign::Swarm { .. })) {
+        return Err(fault(coupling, ScenarioProblem::CouplingUnused));
+    }
     let (alpha, beta) = coefficients(reference, design)?;
     let choice = match reference.sign.as_ref().map(|sign| &sign.value) {
         None | Some(SignFile::Implicit) => Choice::Implicit,
@@ -62,12 +69,10 @@ fn coefficients(file: &LeaderReferenceFile, design: FollowingDesign) -> Result<(
     }
     match (design, roots.as_slice()) {
         (FollowingDesign::Continuous, [root]) => Ok((*root, 1.0)),
-        (FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration, [first, second]) => {
-            Ok((first * second, first + second))
+        (FollowingDesign::Continuous, _) => {
+            Err(fault(list, ScenarioProblem::LeaderRoots { found: list.value.len(), need: 1 }))
         }
-        (design, _) => {
-            let need = if design == FollowingDesign::Continuous { 1 } else { 2 };
-            Err(fault(list, ScenarioProblem::LeaderRoots { found: list.value.len(), need }))
-        }
+        (_, [first, second]) => Ok((first * second, first + second)),
+        _ => Err(fault(list, ScenarioProblem::LeaderRoots { found: list.value.len(), need: 2 })),
     }
 }

@@ -26,6 +26,9 @@ pub struct LeaderReferenceFile {
     /// The positive numbers κ in 1/s: one for `continuous`, α = κ₀; two for the others, β = κ₀ + κ₁ and α = κ₀ κ₁.
     #[schemars(with = "Vec<Positive>", length(min = 1, max = 2))]
     pub roots_per_s: At<Vec<At<f64>>>,
+    /// The factor k of the differences to neighbours; for `swarm`, which needs it.
+    #[schemars(with = "Option<Positive>")]
+    pub coupling: Option<At<f64>>,
     /// The gain γ of the sign, in rad/s² or m/s² for `continuous`, else in rad/s³ or m/s³. It must exceed what drives the
     /// leader: see what `check` says.
     #[schemars(with = "Positive")]
@@ -47,6 +50,8 @@ pub enum LeaderDesignFile {
     Differentiable,
     /// (122), Remark 12: torques are differentiable; reference accelerations are transmitted instead.
     WithoutAcceleration,
+    /// Swarm tracking over an undirected graph, with differences to neighbours only; not printed in the paper.
+    Swarm,
 }
 
 /// How a value of a set-valued sign is chosen.

@@ -443,6 +443,9 @@ pub enum ScenarioProblem {
         /// The reference dynamics.
         reference: &'static str,
     },
+    /// A coupling where there is none.
+    #[error("`coupling` belongs to the design `swarm`")]
+    CouplingUnused,
     /// As many roots as the design has.
     #[error("`roots_per_s` has {}, but this design needs {need}", entry_count(*.found))]
     LeaderRoots {

@@ -32,6 +32,10 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "six-arms-over-radio",
     "without-velocity",
     "double-integrators",
+    "theorem-8",
+    "theorem-9",
+    "remark-12",
+    "swarm-tracking",
 ];
 
 /// The shipped scenario of this name.

@@ -89,9 +89,13 @@ where
             FollowingDesign::Continuous => {
                 columns(robot, members, setup, |group| Ok(Following::new(group.len(), following.sliding())))
             }
-            FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => {
-                columns(robot, members, setup, |group| Ok(SmoothFollowing::new(group.len(), following.sliding())))
-            }
+            design => columns(robot, members, setup, |group| {
+                let (n, sliding) = (group.len(), following.sliding());
+                Ok(match design {
+                    FollowingDesign::Swarm { coupling } => SmoothFollowing::swarm(n, sliding, coupling),
+                    _ => SmoothFollowing::new(n, sliding),
+                })
+            }),
         },
         ReferenceKind::Backstepping { filter_s, acceleration_limit } => columns(robot, members, setup, |group| {
             let limit = acceleration_limit.unwrap_or(f64::INFINITY);

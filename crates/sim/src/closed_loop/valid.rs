@@ -271,6 +271,9 @@ fn check_following(following: &Following, setup: &Setup) -> Result<(), SetupErro
     if following.design != FollowingDesign::Continuous {
         positive("β", following.beta)?;
     }
+    if let FollowingDesign::Swarm { coupling } = following.design {
+        positive("the coupling k", coupling)?;
+    }
     match following.choice {
         Choice::Layer { width } => positive("the width of the boundary layer", width)?,
         Choice::Implicit | Choice::Explicit if setup.control.is_none() => {
