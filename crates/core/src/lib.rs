@@ -15,6 +15,7 @@
 extern crate alloc;
 
 pub mod agent;
+pub mod attitude;
 pub mod controller;
 mod dispatch;
 mod error;

@@ -28,11 +28,23 @@ pub enum Signal {
     Error,
     /// y, the output of a filter that stands in for a velocity that is not measured.
     Filter,
+    /// The attitude as a quaternion (q_v, q_o), four entries.
+    Attitude,
+    /// ω in the body's axes.
+    AngularVelocity,
+    /// The ω that an outer law wants, where torques have to bring it about.
+    AngularVelocityWanted,
+    /// σ, the thrust. One entry.
+    Thrust,
+    /// The heading that is kept, an angle. One entry.
+    Heading,
+    /// x − d, which is what agents with offsets agree on.
+    Centre,
 }
 
 impl Signal {
     /// The name used in column headers: `q`, `dq`, `z`, `dz`, `d2z`, …, `s`, `tau`, `theta_hat`, `lyapunov`,
-    /// `dissipation`, `tau_ext`, `error`, `y`.
+    /// `dissipation`, `tau_ext`, `error`, `y`, `attitude`, `omega`, `omega_wanted`, `sigma`, `heading`, `centre`.
     pub fn name(self) -> String {
         match self {
             Signal::Position => "q".into(),
@@ -48,6 +60,12 @@ impl Signal {
             Signal::External => "tau_ext".into(),
             Signal::Error => "error".into(),
             Signal::Filter => "y".into(),
+            Signal::Attitude => "attitude".into(),
+            Signal::AngularVelocity => "omega".into(),
+            Signal::AngularVelocityWanted => "omega_wanted".into(),
+            Signal::Thrust => "sigma".into(),
+            Signal::Heading => "heading".into(),
+            Signal::Centre => "centre".into(),
         }
     }
 }
