@@ -1,125 +1,147 @@
-//! Vectors of ℝ³ and attitudes, in the order and with the signs of the paper.
+//! Attitudes as unit quaternions (Euler parameters), vector part first: q = (q_v, q_o).
 //!
-//! An attitude is a quaternion (q_v, q_o), the vector part first. It turns vectors of the body into vectors of the
-//! inertial frame, and ω is the angular velocity in the body's own axes:
+//! q stands for the rotation R that takes coordinates in the body to coordinates in the inertial frame. With × for the cross
+//! product and ω the angular velocity in coordinates of the body, ω^I = R ω that in inertial ones,
 //!
 //! ```text
-//! R(q) = I + 2 (q_o S(q_v) + S(q_v)²) / qᵀq        Ṙ = R S(ω)
-//! q̇_v = ½ (q_o I + S(q_v)) ω                       q̇_o = −½ q_vᵀ ω
+//! R v = v + 2 [q_o q_v × v + q_v × (q_v × v)] / qᵀq
+//! q̇_v = ½ (q_o ω + q_v × ω)         q̇_o = −½ q_vᵀω
+//! q̇_v = ½ (q_o ω^I − q_v × ω^I)      q̇_o = −½ q_vᵀω^I
 //! ```
 //!
-//! The division makes R a rotation for every q ≠ 0, and q̇ is linear in q: a norm that rounding has led away from one changes
-//! no rotation. S(a) b = a × b.
+//! The division by qᵀq makes R orthogonal for every q that is not zero, so a norm that is a little off does no harm.
+//!
+//! **A desired attitude** is a path p(t) in ℝ⁴ that avoids zero; what is meant is p / |p|. Of ṗ p⁻¹, which is
+//! (½ ω^I, d/dt ln |p|), the norm is only in the scalar part. So, with n = pᵀp,
+//!
+//! ```text
+//! ω_d^I  = 2 (p_o ṗ_v − ṗ_o p_v + p_v × ṗ_v) / n
+//! ω̇_d^I = 2 (p_o p̈_v − p̈_o p_v + p_v × p̈_v) / n − ω_d^I (2 pᵀṗ) / n
+//! ```
+//!
+//! The terms with ṗ alone cancel in the second line.
 
-/// A vector of ℝ³.
-pub type Vector = [f64; 3];
-
-/// A 3 × 3 matrix by its rows.
-pub type Matrix = [[f64; 3]; 3];
+use crate::controller::Jet;
 
 /// (q_v, q_o).
 pub type Quaternion = [f64; 4];
 
-/// The attitude in which the axes of the body are those of the inertial frame.
-pub const UPRIGHT: Quaternion = [0.0, 0.0, 0.0, 1.0];
+/// No turn at all.
+pub const IDENTITY: Quaternion = [0.0, 0.0, 0.0, 1.0];
 
-/// aᵀ b.
-pub fn dot(a: &Vector, b: &Vector) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// a × b = S(a) b.
-pub fn cross(a: &Vector, b: &Vector) -> Vector {
+/// a × b, S(a) b in the paper.
+#[inline]
+pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// A v.
-pub fn times(a: &Matrix, v: &Vector) -> Vector {
-    [dot(&a[0], v), dot(&a[1], v), dot(&a[2], v)]
-}
-
-/// Aᵀ v.
-pub fn transpose_times(a: &Matrix, v: &Vector) -> Vector {
-    core::array::from_fn(|k| a[0][k] * v[0] + a[1][k] * v[1] + a[2][k] * v[2])
-}
-
-/// A⁻¹ by cofactors; not finite where A is singular.
-pub fn inverse(a: &Matrix) -> Matrix {
-    // The columns of the adjugate are the cross products of the rows.
-    let columns = [cross(&a[1], &a[2]), cross(&a[2], &a[0]), cross(&a[0], &a[1])];
-    let determinant = dot(&a[0], &columns[0]);
-    core::array::from_fn(|row| core::array::from_fn(|column| columns[column][row] / determinant))
-}
-
-/// R(q), row by row.
-pub fn rotation(q: &Quaternion) -> Matrix {
-    let [x, y, z, w] = *q;
-    let k = 2.0 / (x * x + y * y + z * z + w * w);
-    [
-        [1.0 - k * (y * y + z * z), k * (x * y - w * z), k * (x * z + w * y)],
-        [k * (x * y + w * z), 1.0 - k * (x * x + z * z), k * (y * z - w * x)],
-        [k * (x * z - w * y), k * (y * z + w * x), 1.0 - k * (x * x + y * y)],
-    ]
-}
-
-/// q̇ under ω.
-pub fn rate(q: &Quaternion, omega: &Vector) -> Quaternion {
-    let [x, y, z, w] = *q;
-    let turned = cross(&[x, y, z], omega);
-    let [a, b, c] = core::array::from_fn(|k| 0.5 * (w * omega[k] + turned[k]));
-    [a, b, c, -0.5 * dot(&[x, y, z], omega)]
-}
-
-/// Makes the norm one again; leaves a quaternion alone that has none.
-pub fn normalise(q: &mut Quaternion) {
-    let norm = libm::sqrt(q.iter().map(|x| x * x).sum());
-    if norm > 0.0 && norm.is_finite() {
-        for x in q {
-            *x /= norm;
-        }
+/// aᵀb.
+#[inline]
+pub fn dot<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
+    let mut sum = 0.0;
+    for k in 0..N {
+        sum += a[k] * b[k];
     }
+    sum
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// A v for a 3 × 3 matrix by rows.
+#[inline]
+pub fn times(a: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
+    a.map(|row| dot(row, v))
+}
 
-    const Q: Quaternion = [0.3, -0.5, 0.2, 0.7];
-    const OMEGA: Vector = [0.4, -1.1, 0.6];
+/// q_v and q_o.
+#[inline]
+fn parts([x, y, z, o]: Quaternion) -> ([f64; 3], f64) {
+    ([x, y, z], o)
+}
 
-    fn near(a: &Matrix, b: &Matrix, tolerance: f64) -> bool {
-        a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| (a - b).abs() < tolerance)
-    }
+/// q / |q|; the identity where |q| is zero or not finite.
+#[inline]
+pub fn normalized(q: Quaternion) -> Quaternion {
+    let norm = libm::sqrt(dot(q, q));
+    if norm > 0.0 && norm.is_finite() { q.map(|x| x / norm) } else { IDENTITY }
+}
 
-    #[test]
-    fn prop_any_quaternion_is_a_rotation() {
-        for scale in [1.0, 0.9, 30.0] {
-            let r = rotation(&Q.map(|x| x * scale));
-            let product: Matrix = core::array::from_fn(|i| core::array::from_fn(|j| dot(&r[i], &r[j])));
-            assert!(near(&product, &[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], 1e-15));
-            assert!((dot(&cross(&r[0], &r[1]), &r[2]) - 1.0).abs() < 1e-15, "right-handed");
-        }
-    }
+/// The product a b: the rotation b first, then a.
+#[inline]
+pub fn product(a: Quaternion, b: Quaternion) -> Quaternion {
+    let ((a_v, a_o), (b_v, b_o)) = (parts(a), parts(b));
+    let turn = cross(a_v, b_v);
+    let v = |k: usize| a_o * b_v[k] + b_o * a_v[k] + turn[k];
+    [v(0), v(1), v(2), a_o * b_o - dot(a_v, b_v)]
+}
 
-    #[test]
-    fn eq_44_attitude_turns_as_r_s_of_omega() {
-        let h = 1e-6;
-        let dq = rate(&Q, &OMEGA);
-        let at = |t: f64| rotation(&core::array::from_fn(|k| Q[k] + t * dq[k]));
-        let (ahead, behind, r) = (at(h), at(-h), rotation(&Q));
-        let difference: Matrix = core::array::from_fn(|i| core::array::from_fn(|j| (ahead[i][j] - behind[i][j]) / (2.0 * h)));
-        // R S(ω): row i is (row i of R) times S(ω), that is −S(ω) (row i), ω × row turned round.
-        let want: Matrix = core::array::from_fn(|i| cross(&r[i], &OMEGA));
-        assert!(near(&difference, &want, 1e-9));
-        assert!(Q.iter().zip(dq).map(|(a, b)| a * b).sum::<f64>().abs() < 1e-16, "the norm stays");
-    }
+/// The quaternion of R_bᵀ R_a: where a is, seen from b. For b = q_z it is Δq* of the paper, for b = q_d it is Δq.
+#[inline]
+pub fn difference(a: Quaternion, b: Quaternion) -> Quaternion {
+    product([-b[0], -b[1], -b[2], b[3]], a)
+}
 
-    #[test]
-    fn inverse_undoes() {
-        let a = [[4.0, 1.0, -0.5], [1.0, 3.0, 0.2], [-0.5, 0.2, 2.0]];
-        let (v, b) = ([0.3, -0.7, 1.9], inverse(&a));
-        let back = times(&b, &times(&a, &v));
-        assert!((0..3).all(|k| (back[k] - v[k]).abs() < 1e-15), "{back:?}");
-        assert_eq!(transpose_times(&a, &v), times(&a, &v), "a is symmetric");
+/// R v.
+#[inline]
+pub fn rotate(q: Quaternion, v: [f64; 3]) -> [f64; 3] {
+    let (q_v, q_o) = parts(q);
+    turned(q_v, q_o, dot(q, q), v)
+}
+
+/// Rᵀ v.
+#[inline]
+pub fn rotate_back(q: Quaternion, v: [f64; 3]) -> [f64; 3] {
+    let (q_v, q_o) = parts(q);
+    turned(q_v, -q_o, dot(q, q), v)
+}
+
+#[inline]
+fn turned(q_v: [f64; 3], q_o: f64, n: f64, v: [f64; 3]) -> [f64; 3] {
+    let once = cross(q_v, v);
+    let twice = cross(q_v, once);
+    core::array::from_fn(|k| v[k] + 2.0 * (q_o * once[k] + twice[k]) / n)
+}
+
+/// q̇ for the angular velocity `omega` in coordinates of the body.
+#[inline]
+pub fn rate(q: Quaternion, omega: [f64; 3]) -> Quaternion {
+    product(q, [0.5 * omega[0], 0.5 * omega[1], 0.5 * omega[2], 0.0])
+}
+
+/// q̇ for the angular velocity `omega` in inertial coordinates.
+#[inline]
+pub fn rate_inertial(q: Quaternion, omega: [f64; 3]) -> Quaternion {
+    product([0.5 * omega[0], 0.5 * omega[1], 0.5 * omega[2], 0.0], q)
+}
+
+/// The angle of the rotation, in [0, π].
+pub fn angle(q: Quaternion) -> f64 {
+    let (q_v, q_o) = parts(q);
+    2.0 * libm::atan2(libm::sqrt(dot(q_v, q_v)), q_o.abs())
+}
+
+/// A desired attitude at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Desired {
+    /// q_d, of norm one.
+    pub q: Quaternion,
+    /// ω_d^I, rad/s.
+    pub omega: [f64; 3],
+    /// ω̇_d^I, rad/s².
+    pub d_omega: [f64; 3],
+}
+
+impl Desired {
+    /// From a path p of any norm but zero; its first two derivatives are used.
+    pub fn from_path(p: &[Jet; 4]) -> Self {
+        let at = |k: usize| p.map(|jet| jet[k]);
+        let (p0, p1, p2) = (at(0), at(1), at(2));
+        let n = dot(p0, p0);
+        // 2 vec(a p*) / n
+        let swing = |a: Quaternion| -> [f64; 3] {
+            let ((p_v, p_o), (a_v, a_o)) = (parts(p0), parts(a));
+            let turn = cross(p_v, a_v);
+            core::array::from_fn(|k| 2.0 * (p_o * a_v[k] - a_o * p_v[k] + turn[k]) / n)
+        };
+        let (omega, bent, stretch) = (swing(p1), swing(p2), 2.0 * dot(p0, p1) / n);
+        Desired { q: normalized(p0), omega, d_omega: core::array::from_fn(|k| bent[k] - omega[k] * stretch) }
     }
 }

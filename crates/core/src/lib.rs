@@ -21,6 +21,7 @@ mod dispatch;
 mod error;
 mod gain;
 pub mod law;
+mod linear;
 pub mod plant;
 pub mod reference;
 pub mod robot;

@@ -21,7 +21,8 @@ use alloc::vec::Vec;
 
 use super::vehicle::{self, Vehicle, VehicleState};
 use super::{Plant, total};
-use crate::attitude::{self, Matrix, Vector};
+use crate::attitude::{cross, times};
+use crate::linear::invert;
 use crate::signal::{Block, Signal};
 use crate::{Gain, GainError, LengthError};
 
@@ -30,8 +31,8 @@ use crate::{Gain, GainError, LengthError};
 pub struct Rotorcraft {
     /// Mass and gravity.
     pub vehicle: Vehicle,
-    inertia: Matrix,
-    inverse: Matrix,
+    inertia: [[f64; 3]; 3],
+    inverse: [[f64; 3]; 3],
     /// Its rotors; without them every σ and τ can be had.
     pub rotors: Option<Rotors>,
 }
@@ -52,15 +53,15 @@ const CORNERS: [[f64; 3]; 4] = [[1.0, 1.0, 1.0], [-1.0, -1.0, 1.0], [1.0, -1.0, 
 
 impl Rotors {
     /// The thrusts that make up σ and τ, within the limits or not.
-    pub fn thrusts(&self, sigma: f64, tau: &Vector) -> [f64; 4] {
+    pub fn thrusts(&self, sigma: f64, tau: [f64; 3]) -> [f64; 4] {
         CORNERS.map(|[x, y, c]| 0.25 * (sigma + (x * tau[1] - y * tau[0]) / self.offset + c * tau[2] / self.drag))
     }
 
     /// What is left of σ and τ, continuous in both.
-    pub fn limit(&self, sigma: f64, tau: &Vector) -> (f64, Vector) {
+    pub fn limit(&self, sigma: f64, tau: [f64; 3]) -> (f64, [f64; 3]) {
         let [least, most] = self.thrust;
         // Tilt: opposite rotors share it oppositely, ±u on one diagonal and ±v on the other.
-        let [u, _, v, _] = self.thrusts(0.0, &[tau[0], tau[1], 0.0]).map(f64::abs);
+        let [u, _, v, _] = self.thrusts(0.0, [tau[0], tau[1], 0.0]).map(f64::abs);
         let half = 0.5 * (most - least);
         let scale = if u.max(v) > half { half / u.max(v) } else { 1.0 };
         let (u, v) = (scale * u, scale * v);
@@ -84,18 +85,21 @@ impl Rotorcraft {
     /// [`GainError`] when J is not symmetric positive definite.
     pub fn new(vehicle: Vehicle, inertia: &Gain, rotors: Option<Rotors>) -> Result<Self, GainError> {
         let resolved = inertia.resolve(3, &[])?;
-        let mut inertia = [[0.0; 3]; 3];
-        for (k, row) in inertia.iter_mut().enumerate() {
+        let (mut rows, mut inverse) = ([0.0; 9], [0.0; 9]);
+        for (k, row) in rows.chunks_exact_mut(3).enumerate() {
             // J is symmetric: its rows are its columns.
             let mut unit = [0.0; 3];
             unit[k] = 1.0;
             resolved.apply(&unit, row);
         }
-        Ok(Rotorcraft { vehicle, inertia, inverse: attitude::inverse(&inertia), rotors })
+        let matrix = |rows: &[f64; 9]| core::array::from_fn(|i| core::array::from_fn(|j| rows[3 * i + j]));
+        let inertia = matrix(&rows);
+        invert(3, &mut rows, &mut inverse);
+        Ok(Rotorcraft { vehicle, inertia, inverse: matrix(&inverse), rotors })
     }
 
     /// J, row by row.
-    pub fn inertia(&self) -> &Matrix {
+    pub fn inertia(&self) -> &[[f64; 3]; 3] {
         &self.inertia
     }
 }
@@ -137,7 +141,7 @@ impl Plant for Rotorcraft {
         if let (Some(rotors), [sigma, tau @ ..]) = (&self.rotors, input)
             && let Some(tau) = tau.first_chunk_mut()
         {
-            (*sigma, *tau) = rotors.limit(*sigma, tau);
+            (*sigma, *tau) = rotors.limit(*sigma, *tau);
         }
     }
 
@@ -147,10 +151,10 @@ impl Plant for Rotorcraft {
         LengthError::check("input", total(&self.inputs()), input.len())?;
         let (moving, omega) = VehicleState::read(state)?;
         let (Some(omega), [sigma, tau @ ..]) = (omega.first_chunk::<3>(), input) else { return Ok(()) };
-        self.vehicle.motion(moving, *sigma, omega, d_state);
-        let gyroscopic = attitude::cross(omega, &attitude::times(&self.inertia, omega));
-        let net: Vector = core::array::from_fn(|k| tau[k] - gyroscopic[k]);
-        d_state[VehicleState::LEN..].copy_from_slice(&attitude::times(&self.inverse, &net));
+        self.vehicle.motion(moving, *sigma, *omega, d_state);
+        let gyroscopic = cross(*omega, times(&self.inertia, *omega));
+        let net = core::array::from_fn(|k| tau[k] - gyroscopic[k]);
+        d_state[VehicleState::LEN..].copy_from_slice(&times(&self.inverse, net));
         Ok(())
     }
 
@@ -162,15 +166,16 @@ impl Plant for Rotorcraft {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::attitude::dot;
 
     const ROTORS: Rotors = Rotors { offset: 0.15, drag: 0.02, thrust: [0.2, 6.0] };
 
     /// σ and τ of four thrusts, from where the rotors stand.
-    fn made_of(t: [f64; 4]) -> (f64, Vector) {
+    fn made_of(t: [f64; 4]) -> (f64, [f64; 3]) {
         let mut tau = [0.0; 3];
         for ([x, y, c], t) in CORNERS.iter().zip(t) {
             let force = [0.0, 0.0, -t];
-            let lever = attitude::cross(&[x * ROTORS.offset, y * ROTORS.offset, 0.0], &force);
+            let lever = cross([x * ROTORS.offset, y * ROTORS.offset, 0.0], force);
             for k in 0..3 {
                 tau[k] += lever[k];
             }
@@ -182,7 +187,7 @@ mod tests {
     #[test]
     fn prop_thrusts_make_up_what_was_asked() {
         let (sigma, tau) = (9.0, [0.11, -0.07, 0.013]);
-        let (back, turned) = made_of(ROTORS.thrusts(sigma, &tau));
+        let (back, turned) = made_of(ROTORS.thrusts(sigma, tau));
         assert!((back - sigma).abs() < 1e-14);
         assert!((0..3).all(|k| (turned[k] - tau[k]).abs() < 1e-15));
     }
@@ -194,10 +199,10 @@ mod tests {
             // Spread over both sides of every limit, without a pattern.
             let draw = |k: i32| f64::from((n * (7919 + 104_729 * k) + 31 * k).rem_euclid(2003)) / 1001.5 - 1.0;
             let (sigma, tau) = (12.0 + 16.0 * draw(0), [1.2 * draw(1), 1.2 * draw(2), 0.2 * draw(3)]);
-            let (limited, torque) = ROTORS.limit(sigma, &tau);
+            let (limited, torque) = ROTORS.limit(sigma, tau);
             let within = |t: &f64| *t >= 0.2 - 1e-12 && *t <= 6.0 + 1e-12;
-            assert!(ROTORS.thrusts(limited, &torque).iter().all(within), "{sigma} {tau:?}");
-            let free = ROTORS.thrusts(sigma, &tau).iter().all(within);
+            assert!(ROTORS.thrusts(limited, torque).iter().all(within), "{sigma} {tau:?}");
+            let free = ROTORS.thrusts(sigma, tau).iter().all(within);
             touched[usize::from(free)] += 1;
             if free {
                 assert!((limited - sigma).abs() < 1e-12 && (0..3).all(|k| (torque[k] - tau[k]).abs() < 1e-12));
@@ -217,12 +222,12 @@ mod tests {
         let mut rate = [0.0; 13];
         craft.rate(&mut (), &state, &[0.0; 4], &mut rate).unwrap();
         let (omega, d_omega) = ([1.0, -2.0, 0.5], [rate[10], rate[11], rate[12]]);
-        let h = attitude::times(craft.inertia(), &omega);
-        let dh = attitude::times(craft.inertia(), &d_omega);
+        let h = times(craft.inertia(), omega);
+        let dh = times(craft.inertia(), d_omega);
         // d/dt (R h) = R (ω × h + ḣ)
-        let kept = attitude::cross(&omega, &h);
+        let kept = cross(omega, h);
         assert!((0..3).all(|k| (kept[k] + dh[k]).abs() < 1e-16));
-        assert!(attitude::dot(&omega, &dh).abs() < 1e-16);
+        assert!(dot(omega, dh).abs() < 1e-16);
         assert!(Rotorcraft::new(vehicle, &Gain::Number(-1.0), None).is_err());
     }
 }

@@ -12,7 +12,7 @@ use alloc::vec::Vec;
 
 use super::Plant;
 use crate::LengthError;
-use crate::attitude::{self, Quaternion, Vector};
+use crate::attitude::{Quaternion, normalized, rate, rotate};
 use crate::signal::{Block, Signal};
 
 /// A thrust-propelled vehicle with its true mass. State and output: x, ẋ, (q_v, q_o). Input: σ, ω.
@@ -30,9 +30,9 @@ pub struct Vehicle {
 #[derive(Clone, Copy, Debug)]
 pub struct VehicleState<'a> {
     /// x.
-    pub x: &'a Vector,
+    pub x: &'a [f64; 3],
     /// ẋ.
-    pub dx: &'a Vector,
+    pub dx: &'a [f64; 3],
     /// (q_v, q_o).
     pub attitude: &'a Quaternion,
 }
@@ -56,16 +56,15 @@ impl<'a> VehicleState<'a> {
 
 impl Vehicle {
     /// ẍ under σ.
-    pub fn acceleration(&self, attitude: &Quaternion, sigma: f64) -> Vector {
-        let r = attitude::rotation(attitude);
-        let per_mass = sigma / self.mass;
-        [-per_mass * r[0][2], -per_mass * r[1][2], self.gravity - per_mass * r[2][2]]
+    pub fn acceleration(&self, attitude: Quaternion, sigma: f64) -> [f64; 3] {
+        let [x, y, z] = rotate(attitude, [0.0, 0.0, -sigma / self.mass]);
+        [x, y, z + self.gravity]
     }
 
     /// d/dt of the ten numbers of [`VehicleState`].
-    pub(super) fn motion(&self, state: VehicleState<'_>, sigma: f64, omega: &Vector, d_state: &mut [f64]) {
+    pub(super) fn motion(&self, state: VehicleState<'_>, sigma: f64, omega: [f64; 3], d_state: &mut [f64]) {
         let rates = state.dx.iter().copied();
-        let rates = rates.chain(self.acceleration(state.attitude, sigma)).chain(attitude::rate(state.attitude, omega));
+        let rates = rates.chain(self.acceleration(*state.attitude, sigma)).chain(rate(*state.attitude, omega));
         for (d, rate) in d_state.iter_mut().zip(rates) {
             *d = rate;
         }
@@ -75,7 +74,7 @@ impl Vehicle {
 /// Makes the quaternion in a state of (44) a unit one.
 pub(super) fn settle(state: &mut [f64]) {
     if let Some(attitude) = state.get_mut(6..).and_then(<[f64]>::first_chunk_mut) {
-        attitude::normalise(attitude);
+        *attitude = normalized(*attitude);
     }
 }
 
@@ -115,7 +114,7 @@ impl Plant for Vehicle {
             need: 4,
             got: input.len(),
         })?;
-        self.motion(VehicleState::read(state)?.0, *sigma, omega, d_state);
+        self.motion(VehicleState::read(state)?.0, *sigma, *omega, d_state);
         Ok(())
     }
 
@@ -149,11 +148,12 @@ mod tests {
     fn prop_settling_changes_no_rotation() {
         let vehicle = Vehicle { mass: 1.0, gravity: 9.81 };
         let mut state = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.2, -0.4, 0.1, 0.95];
-        let before = attitude::rotation(&[0.2, -0.4, 0.1, 0.95]);
+        let turned = |q| [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(|v| rotate(q, v));
+        let before = turned([0.2, -0.4, 0.1, 0.95]);
         vehicle.settle(&mut state);
         let (settled, _) = VehicleState::read(&state).unwrap();
         assert!((settled.attitude.iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-15);
-        let after = attitude::rotation(settled.attitude);
+        let after = turned(*settled.attitude);
         assert!(before.iter().flatten().zip(after.iter().flatten()).all(|(a, b)| (a - b).abs() < 1e-15));
         assert!(VehicleState::read(&state[1..]).is_err());
     }
