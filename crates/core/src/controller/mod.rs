@@ -5,13 +5,16 @@
 //! velocity: it is a [`Controller`].
 //!
 //! - `position_only`: (a7)–(a9), a point mass without velocity measurement.
+//! - `thrust`: (45)–(58), vehicles with one thrust, by angular velocities or by torques.
 //! - `stepped`: any controller, sampled.
 
 mod position_only;
 mod stepped;
+mod thrust;
 
 pub use position_only::{Guide, PositionMeasured, PositionOnly};
 pub use stepped::Stepped;
+pub use thrust::{Floor, RateLoop, RotorcraftMeasured, Thrust, ThrustCascade, ThrustDesign, Yaw};
 
 use alloc::vec::Vec;
 
