@@ -26,6 +26,8 @@ pub enum Signal {
     External,
     /// What is to vanish: x − x_d, Δq_v, q − q₀, …; only of agents with a target or a leader.
     Error,
+    /// d, the offset of an agent from where all agree; only of agents that have one.
+    Offset,
     /// y, the output of a filter that stands in for a velocity that is not measured.
     Filter,
     /// The attitude as a quaternion (q_v, q_o), four entries.
@@ -38,13 +40,11 @@ pub enum Signal {
     Thrust,
     /// The heading that is kept, an angle. One entry.
     Heading,
-    /// x − d, which is what agents with offsets agree on.
-    Centre,
 }
 
 impl Signal {
     /// The name used in column headers: `q`, `dq`, `z`, `dz`, `d2z`, …, `s`, `tau`, `theta_hat`, `lyapunov`,
-    /// `dissipation`, `tau_ext`, `error`, `y`, `attitude`, `omega`, `omega_wanted`, `sigma`, `heading`, `centre`.
+    /// `dissipation`, `tau_ext`, `error`, `offset`, `y`, `attitude`, `omega`, `omega_wanted`, `sigma`, `heading`.
     pub fn name(self) -> String {
         match self {
             Signal::Position => "q".into(),
@@ -59,13 +59,13 @@ impl Signal {
             Signal::Dissipation => "dissipation".into(),
             Signal::External => "tau_ext".into(),
             Signal::Error => "error".into(),
+            Signal::Offset => "offset".into(),
             Signal::Filter => "y".into(),
             Signal::Attitude => "attitude".into(),
             Signal::AngularVelocity => "omega".into(),
             Signal::AngularVelocityWanted => "omega_wanted".into(),
             Signal::Thrust => "sigma".into(),
             Signal::Heading => "heading".into(),
-            Signal::Centre => "centre".into(),
         }
     }
 }

@@ -65,6 +65,7 @@ impl Controller for ThrustCascade {
     type Scratch = ();
 
     const MEASURES: &'static [&'static str] = &["position", "velocity", "attitude", "angular velocity"];
+    const KNOWS_OFFSETS: bool = true;
 
     fn scratch(&self) {}
 

@@ -74,8 +74,8 @@ use crate::{LengthError, Scalar};
 
 /// Control of a thrust-propelled vehicle by its thrust and its angular velocity.
 ///
-/// State: z, ż, z̈ (not under (46)), σ, ψ_r, and I under (58). Shown: z, ż, z̈, s (not under (46)), x̃ with an offset, m̂
-/// under (58).
+/// State: z, ż, z̈ (not under (46)), σ, ψ_r, and I under (58). Shown: z, ż, z̈, s (not under (46)), m̂ under
+/// (58).
 ///
 /// **Source**: (45)–(47), (49), (50), (57), (58), Theorems 4 and 5. **Measures**: x, ẋ, attitude. **Transmits**: x, or
 /// x − d in a formation.
@@ -106,8 +106,6 @@ pub struct Thrust {
     pub floor: Floor,
     /// σ(0), N; m g or m̂(0) g when it is not given.
     pub thrust_start: Option<f64>,
-    /// Whether there is an offset: three jets as target.
-    pub offset: bool,
 }
 
 /// What the outer law asks for at one instant.
@@ -119,6 +117,11 @@ struct Flight {
     v: [f64; 3],
     /// u̇, where it exists without derivatives of what is heard; up to a part that vanishes with ṡ under (58).
     du: Option<[f64; 3]>,
+}
+
+/// An offset has three axes.
+fn check_target(target: &[Jet]) -> Result<(), LengthError> {
+    if target.is_empty() { Ok(()) } else { LengthError::check("target", 3, target.len()) }
 }
 
 impl Thrust {
@@ -135,7 +138,6 @@ impl Thrust {
             yaw: Yaw { heading: 0.0, rate: 0.0, gain: 1.0 },
             floor: Floor::Stops(0.1 * mass * gravity),
             thrust_start: None,
-            offset: false,
         })
     }
 
@@ -156,7 +158,6 @@ impl Thrust {
         let mut shown: Vec<Block> =
             (0..self.design.reference_len() / 3).map(|r| (Signal::Reference(r as u8), 3)).collect();
         shown.extend((self.design.reference_len() > 0).then_some((Signal::TrackingError, 3)));
-        shown.extend(self.offset.then_some((Signal::Centre, 3)));
         shown.extend(self.design.adapts().then_some((Signal::Estimate, 1)));
         shown
     }
@@ -177,10 +178,6 @@ impl Thrust {
         (s, w)
     }
 
-    fn check_target(&self, target: &[Jet]) -> Result<(), LengthError> {
-        LengthError::check("target", if self.offset { 3 } else { 0 }, target.len())
-    }
-
     fn begin(
         &self,
         measured: VehicleState<'_>,
@@ -189,7 +186,7 @@ impl Thrust {
         state: &mut [f64],
     ) -> Result<(), LengthError> {
         LengthError::check("state", total(&self.state_blocks()), state.len())?;
-        self.check_target(target)?;
+        check_target(target)?;
         let (reference, rest) = state.split_at_mut(self.design.reference_len());
         reference.fill(0.0);
         // s(0) = 0 when nothing else is wanted.
@@ -221,7 +218,7 @@ impl Thrust {
         LengthError::check("state", total(&self.state_blocks()), state.len())?;
         LengthError::check("rate", state.len(), d_state.len())?;
         LengthError::check("shown", total(&self.shown_blocks()), shown.len())?;
-        self.check_target(target)?;
+        check_target(target)?;
         let d = |k: usize, r: usize| target.get(k).map_or(0.0, |jet| jet[r]);
         let (reference, rest) = state.split_at(self.design.reference_len());
         let (d_reference, d_rest) = d_state.split_at_mut(self.design.reference_len());
@@ -262,10 +259,6 @@ impl Thrust {
             let u = core::array::from_fn(|k| mass * w[k] - stiffness * s[k]);
             (alpha_star, u, Some(core::array::from_fn(|k| mass * dw[k] - pull(k))))
         };
-        if self.offset {
-            let at = if self.design.reference_len() > 0 { 12 } else { 0 };
-            shown[at..at + 3].copy_from_slice(&x);
-        }
 
         let v = rotate_back(*measured.attitude, u).map(|v| -v);
         let mut d_sigma = v[2] - a * sigma;
@@ -306,7 +299,7 @@ impl Thrust {
         slip: [f64; 3],
     ) -> Result<Balance, LengthError> {
         LengthError::check("state", total(&self.state_blocks()), state.len())?;
-        self.check_target(target)?;
+        check_target(target)?;
         let (reference, rest) = state.split_at(self.design.reference_len());
         if reference.is_empty() {
             return Ok(Balance { value: 0.0, dissipation: 0.0 });

@@ -29,17 +29,16 @@ fn offset(t: f64) -> [Jet; 3] {
     [wave(1.1, 0.8), wave(-0.6, 1.3), wave(0.3, 0.5)]
 }
 
-fn vehicle(design: ThrustDesign, offset: bool) -> (Vehicle, Thrust) {
+fn vehicle(design: ThrustDesign) -> (Vehicle, Thrust) {
     // The adaptive law starts from a mass that is wrong.
     let known = if design.adapts() { 0.8 * MASS } else { MASS };
     let mut law = Thrust::new(design, known, G).unwrap();
-    law.offset = offset;
     law.yaw = Yaw { heading: 0.3, rate: 0.2, gain: 1.5 };
     (Vehicle { mass: MASS, gravity: G }, law)
 }
 
-fn rotorcraft(design: ThrustDesign, offset: bool) -> (Rotorcraft, ThrustCascade) {
-    let (vehicle, outer) = vehicle(design, offset);
+fn rotorcraft(design: ThrustDesign) -> (Rotorcraft, ThrustCascade) {
+    let (vehicle, outer) = vehicle(design);
     let inertia = Gain::Matrix(vec![0.02, 0.001, 0.0, 0.001, 0.03, -0.002, 0.0, -0.002, 0.04]);
     let plant = Rotorcraft::new(vehicle, &inertia, None).unwrap();
     let rates = RateLoop { inertia: *plant.inertia(), bandwidth_per_s: 25.0 };
@@ -161,7 +160,7 @@ fn balances<C: Controller<Exchange = Position>>(closed: &Closed<C>) {
 fn thm4_and_thm5_lyapunov_identities_of_a_vehicle() {
     for moves in [false, true] {
         for design in [DIFFERENTIABLE, ADAPTIVE] {
-            let (plant, law) = vehicle(design, moves);
+            let (plant, law) = vehicle(design);
             balances(&Closed { plant, law, moves });
         }
     }
@@ -171,7 +170,7 @@ fn thm4_and_thm5_lyapunov_identities_of_a_vehicle() {
 fn thm4_and_thm5_lyapunov_identities_of_a_rotorcraft_whose_rates_miss() {
     for moves in [false, true] {
         for design in [DIFFERENTIABLE, ADAPTIVE] {
-            let (plant, law) = rotorcraft(design, moves);
+            let (plant, law) = rotorcraft(design);
             balances(&Closed { plant, law, moves });
         }
     }
@@ -180,7 +179,7 @@ fn thm4_and_thm5_lyapunov_identities_of_a_rotorcraft_whose_rates_miss() {
 #[test]
 fn eq_46_closed_loop_is_its_literal_form() {
     for moves in [false, true] {
-        let (plant, law) = vehicle(CONTINUOUS, moves);
+        let (plant, law) = vehicle(CONTINUOUS);
         let closed = Closed { plant, law, moves };
         let (alpha, beta) = (1.0, 0.7);
         for y in states(&closed, 0) {
@@ -204,7 +203,7 @@ fn eq_46_closed_loop_is_its_literal_form() {
 
 #[test]
 fn eq_52_error_dynamics_are_linear_and_decoupled() {
-    let (plant, law) = vehicle(DIFFERENTIABLE, true);
+    let (plant, law) = vehicle(DIFFERENTIABLE);
     let closed = Closed { plant, law, moves: true };
     for y in states(&closed, 9) {
         // s is shown; its first derivative is ẍ − ż − d̈.
@@ -225,7 +224,7 @@ fn eq_52_error_dynamics_are_linear_and_decoupled() {
 #[test]
 fn eq_58_by_parts_is_direct_integration_and_the_printed_integral() {
     for moves in [false, true] {
-        let (plant, law) = vehicle(ADAPTIVE, moves);
+        let (plant, law) = vehicle(ADAPTIVE);
         let closed = Closed { plant, law, moves };
         let mut y = closed.started(&[0.4, -0.2, 1.0, 0.3, 0.1, -0.2, 0.0, 0.0, 0.0, 1.0]);
         let (alpha_star, gamma_star) = (2.0, 0.4);
@@ -269,7 +268,7 @@ fn eq_58_by_parts_is_direct_integration_and_the_printed_integral() {
 #[test]
 fn eq_47_rate_asked_for_is_foreseen() {
     for moves in [false, true] {
-        let (plant, law) = rotorcraft(DIFFERENTIABLE, moves);
+        let (plant, law) = rotorcraft(DIFFERENTIABLE);
         let closed = Closed { plant, law, moves };
         for y in states(&closed, 9) {
             let now = closed.at(0.3, &y);
@@ -288,7 +287,7 @@ fn eq_47_rate_asked_for_is_foreseen() {
 
 #[test]
 fn prop_attitude_stays_a_rotation_and_the_heading_is_kept() {
-    let (plant, mut law) = vehicle(DIFFERENTIABLE, false);
+    let (plant, mut law) = vehicle(DIFFERENTIABLE);
     law.yaw = Yaw { heading: 2.0, rate: 0.0, gain: 1.5 };
     let closed = Closed { plant, law, moves: false };
     let mut y = closed.started(&[1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
@@ -307,7 +306,7 @@ fn prop_attitude_stays_a_rotation_and_the_heading_is_kept() {
 
 #[test]
 fn thrust_near_zero_is_trouble_or_kept_away() {
-    let (plant, mut law) = vehicle(DIFFERENTIABLE, false);
+    let (plant, mut law) = vehicle(DIFFERENTIABLE);
     let floor = 0.1 * MASS * G;
     assert_eq!(law.floor, Floor::Stops(floor));
     // A neighbour far below: the law wants to fall faster than gravity allows.
@@ -335,15 +334,15 @@ fn thrust_near_zero_is_trouble_or_kept_away() {
 
 #[test]
 fn wrong_lengths_are_errors() {
-    let (plant, law) = vehicle(ADAPTIVE, true);
+    let (plant, law) = vehicle(ADAPTIVE);
     assert!(law.see(&[0.0; 9]).is_err());
-    let (_, cascade) = rotorcraft(ADAPTIVE, true);
+    let (_, cascade) = rotorcraft(ADAPTIVE);
     assert!(cascade.see(&[0.0; 12]).is_err() && cascade.see(&[0.0; 14]).is_err());
     let output = [0.0; 10];
     let heard = Heard::new(&[0.0], &[0.0; 3], 3).unwrap();
-    let given = Given { measured: law.see(&output).unwrap(), heard, target: &[] };
+    let given = Given { measured: law.see(&output).unwrap(), heard, target: &offset(0.0)[..2] };
     let mut state = vec![0.0; 12];
-    let need = LengthError { what: "target", need: 3, got: 0 };
+    let need = LengthError { what: "target", need: 3, got: 2 };
     assert_eq!(law.start(&mut (), given, &[], &mut state), Err(need));
     let jets = offset(0.0);
     let given = Given { target: &jets, ..given };

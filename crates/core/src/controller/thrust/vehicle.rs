@@ -7,7 +7,7 @@ use crate::LengthError;
 use crate::controller::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::plant::{Vehicle, VehicleState};
 use crate::reference::Position;
-use crate::signal::Block;
+use crate::signal::{Block, Signal};
 
 impl Thrust {
     /// What the law divides by, when it is too small.
@@ -20,7 +20,7 @@ impl Thrust {
         };
         // Not a number is trouble too.
         let enough = sigma > floor;
-        (!enough).then_some(Trouble::Vanishes { what: "the thrust", value: sigma, floor })
+        (!enough).then_some(Trouble::Vanishes { signal: Signal::Thrust, axis: 0, value: sigma, floor })
     }
 }
 
@@ -31,6 +31,7 @@ impl Controller for Thrust {
     type Scratch = ();
 
     const MEASURES: &'static [&'static str] = &["position", "velocity", "attitude"];
+    const KNOWS_OFFSETS: bool = true;
 
     fn scratch(&self) {}
 
