@@ -18,6 +18,7 @@ pub mod setup;
 mod simulate;
 pub mod topology;
 pub mod trajectory;
+pub mod vehicles;
 
 pub use closed_loop::SetupError;
 pub use network::Network;

@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
+use forwardstep_core::plant::Rotors;
 use forwardstep_core::robot::tree::Tree;
 
 use crate::network::Network;
 use crate::push::Push;
 use crate::trajectory::Trajectory;
+use crate::vehicles::ThrustLaw;
 
 /// A network of agents and how long to watch it.
 #[derive(Clone, Debug)]
@@ -135,6 +137,32 @@ pub enum RobotKind {
         /// m.
         dimension: usize,
     },
+    /// (44): a vehicle in ℝ³ with one thrust, whose angular velocity obeys at once. ϑ is its mass; the rest of its start is
+    /// its attitude (q_v, q_o).
+    Vehicle {
+        /// g along the third axis, which points down, m/s².
+        gravity: f64,
+    },
+    /// The same as a rigid body that torques turn; the rest of its start is its attitude and its angular velocity.
+    Rotorcraft {
+        /// g, m/s².
+        gravity: f64,
+        /// J, kg m².
+        inertia: Gain,
+        /// Its rotors; without them every thrust and every torque can be had.
+        rotors: Option<Rotors>,
+    },
+}
+
+impl RobotKind {
+    /// Numbers in a start beside q and q̇.
+    pub fn rest_len(&self) -> usize {
+        match self {
+            RobotKind::Tree(_) | RobotKind::PlanarArm | RobotKind::PointMass { .. } => 0,
+            RobotKind::Vehicle { .. } => 4,
+            RobotKind::Rotorcraft { .. } => 7,
+        }
+    }
 }
 
 /// One degree of freedom of a robot.
@@ -189,6 +217,8 @@ pub enum Law {
         /// m̂(0), kg.
         estimate_start: f64,
     },
+    /// (46), (50) or (57) for vehicles with one thrust; see [`forwardstep_core::controller::Thrust`].
+    Thrust(ThrustLaw),
 }
 
 impl Law {
@@ -203,6 +233,7 @@ impl Law {
             Law::Adaptive { .. } => "the adaptive law",
             Law::Known { .. } => "the law with known parameters",
             Law::PositionOnly { .. } => "the law without velocity",
+            Law::Thrust(_) => "the thrust law",
         }
     }
 
@@ -211,6 +242,7 @@ impl Law {
         match self {
             Law::Adaptive { .. } | Law::Known { .. } => "Lagrangian robots",
             Law::PositionOnly { .. } => "point masses",
+            Law::Thrust(_) => "vehicles and rotorcraft",
         }
     }
 }
