@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
+use forwardstep_core::controller::{Controller, PositionOnly, Thrust, ThrustCascade};
 use forwardstep_core::plant::Rotors;
 use forwardstep_core::robot::tree::Tree;
 
 use crate::network::Network;
 use crate::push::Push;
 use crate::trajectory::Trajectory;
-use crate::vehicles::ThrustLaw;
+use crate::vehicles::{ThrustKind, ThrustLaw};
 
 /// A network of agents and how long to watch it.
 #[derive(Clone, Debug)]
@@ -68,6 +69,16 @@ pub enum Exchange {
     PositionVelocity,
 }
 
+impl Exchange {
+    /// What is transmitted, in words: vectors with a number per axis.
+    pub fn words(self) -> &'static [&'static str] {
+        match self {
+            Exchange::Position => &["position"],
+            Exchange::PositionVelocity => &["position", "velocity"],
+        }
+    }
+}
+
 /// One agent.
 #[derive(Clone, Debug)]
 pub struct AgentSetup {
@@ -92,6 +103,16 @@ pub struct AgentSetup {
     pub enforce_limits: bool,
     /// What acts on it from outside, all at once where they overlap.
     pub pushes: Vec<Push>,
+}
+
+impl AgentSetup {
+    /// What it measures, in words. A law cannot read anything else: its inputs have no room for it.
+    pub fn measures(&self) -> &'static [&'static str] {
+        match (&self.law, &self.robot.kind) {
+            (Law::Thrust(_), RobotKind::Rotorcraft { .. }) => ThrustCascade::MEASURES,
+            (law, _) => law.measures(),
+        }
+    }
 }
 
 /// A robot with its true parameters.
@@ -225,6 +246,25 @@ impl Law {
     /// Whether it is (6)–(7), which whole populations of Lagrangian robots share.
     pub fn is_lagrangian(&self) -> bool {
         matches!(self, Law::Adaptive { .. } | Law::Known { .. })
+    }
+
+    /// Whether it estimates parameters.
+    pub fn estimates(&self) -> bool {
+        match self {
+            Law::Adaptive { .. } => true,
+            Law::Known { .. } => false,
+            Law::PositionOnly { .. } => true,
+            Law::Thrust(law) => matches!(law.design, ThrustKind::Adaptive { .. }),
+        }
+    }
+
+    /// What it measures, in words, see [`AgentSetup::measures`].
+    fn measures(&self) -> &'static [&'static str] {
+        match self {
+            Law::Adaptive { .. } | Law::Known { .. } => &["position", "velocity"],
+            Law::PositionOnly { .. } => PositionOnly::MEASURES,
+            Law::Thrust(_) => Thrust::MEASURES,
+        }
     }
 
     /// What it is called in messages.
