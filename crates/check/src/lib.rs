@@ -10,6 +10,7 @@ mod links;
 mod manipulation;
 mod sampled;
 mod tracking;
+mod vehicles;
 mod verdict;
 
 pub use agreement::{NoPrediction, Prediction, predict};

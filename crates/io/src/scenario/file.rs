@@ -9,6 +9,7 @@ use super::network_file::NetworkFile;
 use super::push_file::PushFile;
 use super::systems_file::{PositionOnlyFile, TargetFile, TrackingFile};
 use super::values::{GainFile, GainOrBandwidth, Named, NotNegative, Positive, StartValues};
+use super::vehicle_file::{RotorcraftFile, ThrustFile, VehicleFile};
 
 /// A forwardstep scenario: a network of robots, how they are controlled, and how long to watch them.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -94,6 +95,10 @@ pub enum RobotFile {
     PlanarArm(PlanarArmFile),
     /// A point mass that is pushed along every axis.
     PointMass(PointMassFile),
+    /// A vehicle in space with one thrust along its own axis, whose angular velocity obeys at once.
+    Vehicle(VehicleFile),
+    /// The same as a rigid body with inertia that torques turn.
+    Rotorcraft(RotorcraftFile),
 }
 
 /// A robot from a URDF.
@@ -152,8 +157,8 @@ pub struct PointMassFile {
 }
 
 /// How the robots of a population differ from what is written, each number by a random factor of its own: the masses and
-/// lengths of planar arms (centres of mass and inertias follow), the masses of point masses, all inertia of each body of a
-/// URDF.
+/// lengths of planar arms (centres of mass and inertias follow), the masses of point masses and vehicles, all inertia of
+/// each body of a URDF.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpreadFile {
@@ -181,6 +186,10 @@ pub struct StartFile {
     pub velocity_m_s: Option<At<StartValues>>,
     /// Velocities of any robot, in rad/s or m/s as each axis has it.
     pub velocity: Option<At<StartValues>>,
+    /// Attitudes of vehicles and rotorcraft as a quaternion of any length, vector part first. Default: upright, [0, 0, 0, 1].
+    pub attitude: Option<At<[f64; 4]>>,
+    /// Angular velocities of rotorcraft in the axes of the body, in rad/s.
+    pub angular_velocity_rad_s: Option<At<[f64; 3]>>,
     /// The state of the reference dynamics.
     pub reference: Option<At<ReferenceStartFile>>,
 }
@@ -288,6 +297,8 @@ pub enum LawFile {
     Known(KnownFile),
     /// A point mass of unknown mass whose velocity is not measured: (a8) of the paper.
     PositionOnly(PositionOnlyFile),
+    /// A vehicle with one thrust: (46), (50) or (57) of the paper.
+    Thrust(ThrustFile),
 }
 
 /// The adaptive tracking law.

@@ -66,6 +66,8 @@ mod table;
 mod target;
 mod template;
 pub mod values;
+mod vehicle;
+pub mod vehicle_file;
 
 use std::fmt;
 use std::path::{Path, PathBuf};

@@ -13,6 +13,7 @@ use super::file::{FrictionFile, PlanarArmFile, PointMassFile, RobotFile, UrdfFil
 use super::inputs::InputFolder;
 use super::problem::ScenarioProblem;
 use super::values::Named;
+use super::vehicle;
 use crate::files::ReadError;
 use crate::urdf::{self, FrictionPolicy, UrdfOptions, UrdfProblem};
 use crate::{InputError, SourceText};
@@ -61,6 +62,8 @@ pub(super) fn robot(file: &At<RobotFile>, folder: &mut InputFolder) -> Result<Re
             planar_links(arm).and_then(|links| planar_robot(&links)).map_err(|fault| fault.at(&file.span))?
         }
         RobotFile::PointMass(mass) => point_mass(mass)?,
+        RobotFile::Vehicle(file) => vehicle::vehicle(file)?,
+        RobotFile::Rotorcraft(file) => vehicle::rotorcraft(file)?,
     };
     Ok(ReadRobot { robot, notices: Vec::new(), links: Rc::new([]) })
 }
@@ -177,6 +180,6 @@ fn point_mass(file: &PointMassFile) -> Result<RobotSetup, Fault> {
     })
 }
 
-fn axis(name: &str, unit: AxisUnit) -> Axis {
+pub(super) fn axis(name: &str, unit: AxisUnit) -> Axis {
     Axis { name: name.into(), unit, position_limits: None, velocity_limit: None, effort_limit: None }
 }

@@ -8,6 +8,7 @@ use super::file::StartFile;
 use super::problem::ScenarioProblem;
 use super::random::{Stream, draws};
 use super::values::{Item, RandomFile, StartValues};
+use super::vehicle;
 
 /// The `start` of one agent with the position of the agent among those that share it.
 #[derive(Clone, Copy)]
@@ -70,7 +71,8 @@ pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<
             reference.push(agent.vector("derivatives", derivative, table, Stream::Reference(k + 1))?);
         }
     }
-    Ok(Start { q, dq, rest: Vec::new(), reference })
+    let rest = vehicle::rest(agent.robot, [own, common].into_iter().flatten().map(|table| &table.file.value));
+    Ok(Start { q, dq, rest, reference })
 }
 
 impl Starter<'_> {
