@@ -105,7 +105,8 @@ pub enum RobotFile {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct UrdfFile {
-    /// The URDF, beside the scenario file or in `inputs` beside it, or the name of a shipped robot: `ur5e.urdf`, `panda.urdf`.
+    /// The URDF, beside the scenario file or in `inputs` beside it, or the name of a shipped robot: `ur5e.urdf`, `panda.urdf`,
+    /// `gantry.urdf`.
     pub file: At<String>,
     /// Joints held at a value, in rad or m; each removes one axis.
     #[serde(default)]
