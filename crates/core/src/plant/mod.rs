@@ -1,8 +1,12 @@
 //! Systems to be controlled, as vector fields, when they are more than a robot under (6)–(7).
 
 mod mechanical;
+mod spacecraft;
+mod task_arm;
 
 pub use mechanical::Mechanical;
+pub use spacecraft::{Spacecraft, SpacecraftError, Wheel, Wheels};
+pub use task_arm::TaskArm;
 
 use alloc::vec::Vec;
 
