@@ -74,7 +74,7 @@ impl<C: Controller, T: Fn(f64) -> Vec<Jet>> Looped<C, T> {
     /// d/dt of `value` along f, by differences of order four.
     pub(crate) fn slope(&mut self, t: f64, x: &[f64], value: impl Fn(&mut Self, f64, &[f64]) -> f64) -> f64 {
         let dx = self.rate(t, x);
-        let h = 1e-3;
+        let h = 1e-4;
         let mut at = |k: f64| {
             let moved: Vec<f64> = x.iter().zip(&dx).map(|(x, dx)| x + k * h * dx).collect();
             value(self, t + k * h, &moved)
