@@ -26,6 +26,8 @@ pub enum Signal {
     External,
     /// What is to vanish: x − x_d, Δq_v, q − q₀, …; only of agents with a target or a leader.
     Error,
+    /// d, the offset of an agent from where all agree; only of agents that have one.
+    Offset,
     /// y, the output of a filter that stands in for a velocity that is not measured.
     Filter,
     /// ẏ of such a filter where the law uses it.
@@ -48,7 +50,7 @@ pub enum Signal {
 
 impl Signal {
     /// The name used in column headers: `q`, `dq`, `z`, `dz`, `d2z`, …, `s`, `tau`, `theta_hat`, `lyapunov`,
-    /// `dissipation`, `tau_ext`, `error`, `y`, `dy`, `q_z`, `angle`, `wheel_torque`, `wheel_momentum`, `x`,
+    /// `dissipation`, `tau_ext`, `error`, `offset`, `y`, `dy`, `q_z`, `angle`, `wheel_torque`, `wheel_momentum`, `x`,
     /// `kinematic_hat`, `det_jacobian`.
     pub fn name(self) -> String {
         match self {
@@ -64,6 +66,7 @@ impl Signal {
             Signal::Dissipation => "dissipation".into(),
             Signal::External => "tau_ext".into(),
             Signal::Error => "error".into(),
+            Signal::Offset => "offset".into(),
             Signal::Filter => "y".into(),
             Signal::FilterRate => "dy".into(),
             Signal::ReferenceAttitude => "q_z".into(),

@@ -366,7 +366,7 @@ where
         // A change of sign is below the floor too.
         let floor = self.determinant_floor * start;
         let vanishes = if start < 0.0 { value > floor } else { value < floor };
-        vanishes.then_some(Trouble::Vanishes { what: "det Ĵ of the estimated Jacobian", value, floor })
+        vanishes.then_some(Trouble::Vanishes { signal: Signal::Determinant, axis: 0, value, floor })
     }
 
     fn balance(

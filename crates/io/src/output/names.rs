@@ -82,7 +82,7 @@ pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String 
         _ => "rad",
     };
     match signal {
-        Signal::Position | Signal::Error => length.into(),
+        Signal::Position | Signal::Error | Signal::Offset => length.into(),
         Signal::Velocity | Signal::TrackingError | Signal::Filter | Signal::Reference(0) => format!("{length}/s"),
         Signal::Reference(k) => format!("{length}/s^{}", u32::from(k) + 1),
         Signal::Torque | Signal::External if length == "m" => "N".into(),

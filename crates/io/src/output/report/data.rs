@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::super::decimate::Grid;
 use super::super::metrics::{DisagreementSeries, ledger_errors};
 use super::super::names;
-use super::super::record::{Goal, RunRecord};
+use super::super::record::RunRecord;
 use super::super::table::Table;
 use super::super::timeline::{self, Timeline};
 use super::network::{self, Gantt};
@@ -203,10 +203,7 @@ impl Payload {
             },
             signals: index,
             disagreement,
-            goal: record.goal.and_then(|outcome| match outcome.goal {
-                Goal::DisagreementBelow(bound) => Some(bound),
-                Goal::ExpectDiverges => None,
-            }),
+            goal: record.goal.and_then(|outcome| outcome.goal.bound()),
             predicted: record.predicted_agreement.clone(),
             break_points: if break_points.len() <= MOST_LINES { break_points } else { Vec::new() },
             gantt: Gantt::of(record.setup, timeline, &mut notes),

@@ -12,7 +12,7 @@ use forwardstep_sim::recording::Ending;
 use forwardstep_sim::setup::{AgentSetup, Law};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::metrics::{Absence, Disagreement, Metrics};
+use super::metrics::{Absence, Disagreement, Gap, Metrics};
 use super::palette::{self, Ground};
 use super::record::RunRecord;
 use super::table::Table;
@@ -67,7 +67,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
                         section.notices aria-label="Notices" { ul { @for notice in &record.notices { li { (notice) } } } }
                     }
                     (sections::verdicts(record, metrics))
-                    (signals(absence, &record.setup.agents))
+                    (signals(absence, Gap::of(record.setup), &record.setup.agents))
                     (network(record, &timeline))
                     (sections::digital(record))
                     (sections::loads(record.setup, metrics))
@@ -94,7 +94,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
 }
 
 /// The plots; the script fills their cards.
-fn signals(absence: Option<Absence>, agents: &[AgentSetup]) -> Markup {
+fn signals(absence: Option<Absence>, gap: Gap, agents: &[AgentSetup]) -> Markup {
     let adaptive = agents.iter().any(|agent| matches!(agent.law, Law::Adaptive { .. }));
     let card = |id: &str, title: &str, what: &str, empty: &str| {
         html! {
@@ -117,7 +117,7 @@ fn signals(absence: Option<Absence>, agents: &[AgentSetup]) -> Markup {
             }
             noscript { p.note { "The plots need JavaScript; the same plots lie in " code { "plots/" } " as SVG." } }
             div.grid {
-                (card("disagreement", "Disagreement", "max |qᵢ − qⱼ|", absence.map_or("", Absence::words)))
+                (card("disagreement", gap.name(), gap.formula(), absence.map_or("", Absence::words)))
                 (card("position", "Positions", "q", ""))
                 (card("torque", "Torques", "τ, after any limit", ""))
                 @if agents.iter().any(|agent| !agent.pushes.is_empty()) {
