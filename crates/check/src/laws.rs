@@ -2,6 +2,7 @@
 
 use forwardstep_sim::{AgentSetup, Law, ReferenceKind, Setup};
 
+use crate::single;
 use crate::verdict::{Answer, Hypothesis};
 
 /// The theorem or remark that speaks about agents that all have the same law of Section V, and what it promises; nothing for
@@ -18,6 +19,14 @@ pub(crate) fn theorem(setup: &Setup) -> Option<(String, String)> {
             "Section V-A, (a8) with the reference dynamics (a9)".into(),
             "x − x_d → 0 and dx − dx_d → 0 without a measured velocity".into(),
         )),
+        (Law::TaskSpace(_), _) => Some((
+            "Theorem 6, (80) to (82) with the reference dynamics (76)".into(),
+            "x − x_d → 0 and dx − dx_d → 0 with uncertain lengths and parameters, without a measured dx".into(),
+        )),
+        (Law::Attitude(_), _) => Some((
+            "Theorem 7, (99) to (105) with the reference dynamics (97)".into(),
+            "the attitude and its rate reach those of the target, Δq_v → 0 and ω − ω_d → 0, without a measured ω".into(),
+        )),
         (Law::PositionOnly { .. }, _) => Some((
             format!("Remark 7, (a8) with (24) of order {} in z", first.roots_per_s.len()),
             "all agents agree and come to rest without a measured velocity: x_i − x_j → 0 and dx_i → 0".into(),
@@ -29,11 +38,13 @@ pub(crate) fn theorem(setup: &Setup) -> Option<(String, String)> {
 pub(crate) fn of_laws(setup: &Setup) -> Vec<Hypothesis> {
     let mut hypotheses = Vec::new();
     hypotheses.extend(position_only(setup));
+    hypotheses.extend(single::task_space(setup));
+    hypotheses.extend(single::attitude(setup));
     hypotheses
 }
 
 /// The agents with a law for which `is` holds.
-fn with(setup: &Setup, is: fn(&Law) -> bool) -> Vec<&AgentSetup> {
+pub(crate) fn with(setup: &Setup, is: fn(&Law) -> bool) -> Vec<&AgentSetup> {
     setup.agents.iter().filter(|agent| is(&agent.law)).collect()
 }
 

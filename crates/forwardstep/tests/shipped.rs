@@ -56,4 +56,8 @@ shipped! {
     six_arms_over_radio: "six-arms-over-radio",
     without_velocity: "without-velocity",
     double_integrators: "double-integrators",
+    theorem_6: "theorem-6",
+    task_space_ur5e: "task-space-ur5e",
+    theorem_7: "theorem-7",
+    tumbling_target: "tumbling-target",
 }

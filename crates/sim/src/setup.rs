@@ -1,13 +1,18 @@
 //! Everything a run needs, as plain data: built by a scenario reader or by hand, checked when the closed loop is built.
 
+mod single;
+
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
+use forwardstep_core::plant::Wheels;
 use forwardstep_core::robot::tree::Tree;
 
 use crate::network::Network;
 use crate::push::Push;
 use crate::trajectory::Trajectory;
+
+pub use single::{AttitudeLaw, TaskSpaceLaw, TipSetup};
 
 /// A network of agents and how long to watch it.
 #[derive(Clone, Debug)]
@@ -50,7 +55,9 @@ impl ReferenceKind {
     /// How many of z(0), ż(0), … an agent's start may give.
     pub fn free_derivatives(&self, agent: &AgentSetup) -> usize {
         match self {
-            ReferenceKind::Consensus | ReferenceKind::Tracking => agent.roots_per_s.len(),
+            ReferenceKind::Consensus => agent.roots_per_s.len(),
+            // Without roots there is z alone.
+            ReferenceKind::Tracking => agent.roots_per_s.len().max(1),
             ReferenceKind::PureIntegral => 2,
             ReferenceKind::Backstepping { .. } => 0,
         }
@@ -106,6 +113,14 @@ pub struct RobotSetup {
 }
 
 impl RobotSetup {
+    /// Numbers of a velocity, which are those of a position but for a spacecraft.
+    pub fn velocity_len(&self) -> usize {
+        match self.kind {
+            RobotKind::Spacecraft { .. } => 3,
+            _ => self.axes.len(),
+        }
+    }
+
     /// D: the true viscous damping of every axis, N m s/rad or N s/m; zero where there is none.
     pub fn viscous(&self) -> Vec<f64> {
         let mut viscous = vec![0.0; self.axes.len()];
@@ -135,6 +150,14 @@ pub enum RobotKind {
         /// m.
         dimension: usize,
     },
+    /// A spacecraft with reaction wheels. Its axes are the entries of a quaternion; the rest of its start holds the momenta of
+    /// the wheels, N m s.
+    Spacecraft {
+        /// M, kg m².
+        inertia_kg_m2: [[f64; 3]; 3],
+        /// How its torque is shared out, and what the wheels can do.
+        wheels: Wheels,
+    },
 }
 
 /// One degree of freedom of a robot.
@@ -159,6 +182,8 @@ pub enum AxisUnit {
     Radian,
     /// A prismatic joint or a coordinate.
     Metre,
+    /// A pure number, as an entry of a quaternion is.
+    One,
 }
 
 /// The law of one agent: (6)–(7), or one of those that Sections IV and V have for other systems.
@@ -189,6 +214,10 @@ pub enum Law {
         /// m̂(0), kg.
         estimate_start: f64,
     },
+    /// (80)–(82) for the tip of a robot, without its velocity.
+    TaskSpace(Box<TaskSpaceLaw>),
+    /// (97)–(105) for a spacecraft, without its angular velocity.
+    Attitude(Box<AttitudeLaw>),
 }
 
 impl Law {
@@ -203,6 +232,8 @@ impl Law {
             Law::Adaptive { .. } => "the adaptive law",
             Law::Known { .. } => "the law with known parameters",
             Law::PositionOnly { .. } => "the law without velocity",
+            Law::TaskSpace(_) => "the law for a tip",
+            Law::Attitude(_) => "the law for an attitude",
         }
     }
 
@@ -211,6 +242,8 @@ impl Law {
         match self {
             Law::Adaptive { .. } | Law::Known { .. } => "Lagrangian robots",
             Law::PositionOnly { .. } => "point masses",
+            Law::TaskSpace(_) => "planar arms, and for robots from a URDF with a tip",
+            Law::Attitude(_) => "spacecraft",
         }
     }
 }

@@ -143,8 +143,8 @@ struct Layout {
 
 impl<R, T> TaskSpace<R, T>
 where
-    R: Lagrangian<f64, Scratch: Send> + Send + Sync + 'static,
-    T: TipKinematics,
+    R: Lagrangian<f64, Scratch: Send> + Clone + Send + Sync + 'static,
+    T: TipKinematics + Clone,
 {
     fn layout(&self) -> Layout {
         let theta = self.tip.axes();
@@ -235,8 +235,8 @@ where
 
 impl<R, T> Controller for TaskSpace<R, T>
 where
-    R: Lagrangian<f64, Scratch: Send> + Send + Sync + 'static,
-    T: TipKinematics,
+    R: Lagrangian<f64, Scratch: Send> + Clone + Send + Sync + 'static,
+    T: TipKinematics + Clone,
 {
     type Plant = TaskArm<R, T>;
     type Exchange = Position;

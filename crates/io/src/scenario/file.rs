@@ -7,7 +7,9 @@ use super::at::At;
 use super::control_file::ControlFile;
 use super::network_file::NetworkFile;
 use super::push_file::PushFile;
+use super::spacecraft_file::{AttitudeFile, SpacecraftFile, SpacecraftStartFile};
 use super::systems_file::{PositionOnlyFile, TargetFile, TrackingFile};
+use super::task_file::TaskSpaceFile;
 use super::values::{GainFile, GainOrBandwidth, Named, NotNegative, Positive, StartValues};
 
 /// A forwardstep scenario: a network of robots, how they are controlled, and how long to watch them.
@@ -94,6 +96,8 @@ pub enum RobotFile {
     PlanarArm(PlanarArmFile),
     /// A point mass that is pushed along every axis.
     PointMass(PointMassFile),
+    /// A spacecraft that turns itself by reaction wheels.
+    Spacecraft(SpacecraftFile),
 }
 
 /// A robot from a URDF.
@@ -152,8 +156,8 @@ pub struct PointMassFile {
 }
 
 /// How the robots of a population differ from what is written, each number by a random factor of its own: the masses and
-/// lengths of planar arms (centres of mass and inertias follow), the masses of point masses, all inertia of each body of a
-/// URDF.
+/// lengths of planar arms (centres of mass and inertias follow), the masses of point masses, the inertia of spacecraft, all inertia of
+/// each body of a URDF.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpreadFile {
@@ -181,6 +185,8 @@ pub struct StartFile {
     pub velocity_m_s: Option<At<StartValues>>,
     /// Velocities of any robot, in rad/s or m/s as each axis has it.
     pub velocity: Option<At<StartValues>>,
+    /// Where spacecraft start; for them nothing else in this table counts.
+    pub spacecraft: Option<At<SpacecraftStartFile>>,
     /// The state of the reference dynamics.
     pub reference: Option<At<ReferenceStartFile>>,
 }
@@ -288,6 +294,10 @@ pub enum LawFile {
     Known(KnownFile),
     /// A point mass of unknown mass whose velocity is not measured: (a8) of the paper.
     PositionOnly(PositionOnlyFile),
+    /// The tip of a robot follows a target, with uncertain lengths and without its velocity: (80) to (82) of the paper.
+    TaskSpace(TaskSpaceFile),
+    /// A spacecraft follows an attitude, without its angular velocity: (97) to (105) of the paper.
+    Attitude(AttitudeFile),
 }
 
 /// The adaptive tracking law.

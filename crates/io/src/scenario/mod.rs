@@ -59,11 +59,15 @@ mod pushes;
 mod random;
 mod robots;
 mod shipped;
+mod spacecraft;
+pub mod spacecraft_file;
 mod spread;
 mod start;
 pub mod systems_file;
 mod table;
 mod target;
+mod task;
+pub mod task_file;
 mod template;
 pub mod values;
 

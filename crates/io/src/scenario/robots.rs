@@ -12,6 +12,7 @@ use super::fault::{Fault, count, fault, not_negative, positive};
 use super::file::{FrictionFile, PlanarArmFile, PointMassFile, RobotFile, UrdfFile};
 use super::inputs::InputFolder;
 use super::problem::ScenarioProblem;
+use super::spacecraft::spacecraft;
 use super::values::Named;
 use crate::files::ReadError;
 use crate::urdf::{self, FrictionPolicy, UrdfOptions, UrdfProblem};
@@ -61,6 +62,7 @@ pub(super) fn robot(file: &At<RobotFile>, folder: &mut InputFolder) -> Result<Re
             planar_links(arm).and_then(|links| planar_robot(&links)).map_err(|fault| fault.at(&file.span))?
         }
         RobotFile::PointMass(mass) => point_mass(mass)?,
+        RobotFile::Spacecraft(file) => spacecraft(file)?,
     };
     Ok(ReadRobot { robot, notices: Vec::new(), links: Rc::new([]) })
 }

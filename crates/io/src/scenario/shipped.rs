@@ -32,6 +32,10 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "six-arms-over-radio",
     "without-velocity",
     "double-integrators",
+    "theorem-6",
+    "task-space-ur5e",
+    "theorem-7",
+    "tumbling-target",
 ];
 
 /// The shipped scenario of this name.

@@ -8,6 +8,7 @@
 //! - `pushes`: what acts on the robots from outside.
 //! - `members`: from agents to populations.
 //! - `systems`: from agents to plants and controllers that stand by themselves.
+//! - `single`: the same for the robot's tip and the spacecraft of Section V-C.
 //! - `valid`: what makes a [`crate::Setup`] meaningless.
 //! - `assemble`: all populations and what joins them: the right-hand side as a whole, and its events.
 
@@ -18,6 +19,7 @@ mod population;
 mod pushes;
 mod sampler;
 mod sampling;
+mod single;
 mod solo;
 mod systems;
 mod valid;
