@@ -5,7 +5,9 @@ mod single;
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
+use forwardstep_core::controller::{AttitudeTracking, Controller, PositionOnly, TaskSpace};
 use forwardstep_core::plant::Wheels;
+use forwardstep_core::robot::{PlanarArm, PlanarTip};
 use forwardstep_core::robot::tree::Tree;
 
 use crate::network::Network;
@@ -71,6 +73,16 @@ pub enum Exchange {
     Position,
     /// q_j and q̇_j: the family (a5), of which (aa10) is order 1 and (a1) order 2.
     PositionVelocity,
+}
+
+impl Exchange {
+    /// What is transmitted, in words: vectors with a number per axis.
+    pub fn words(self) -> &'static [&'static str] {
+        match self {
+            Exchange::Position => &["position"],
+            Exchange::PositionVelocity => &["position", "velocity"],
+        }
+    }
 }
 
 /// One agent.
@@ -224,6 +236,26 @@ impl Law {
     /// Whether it is (6)–(7), which whole populations of Lagrangian robots share.
     pub fn is_lagrangian(&self) -> bool {
         matches!(self, Law::Adaptive { .. } | Law::Known { .. })
+    }
+
+    /// Whether it estimates parameters.
+    pub fn estimates(&self) -> bool {
+        match self {
+            Law::Adaptive { .. } => true,
+            Law::Known { .. } => false,
+            Law::PositionOnly { .. } | Law::TaskSpace(_) => true,
+            Law::Attitude(_) => false,
+        }
+    }
+
+    /// What it measures, in words. A law cannot read anything else: its inputs have no room for it.
+    pub fn measures(&self) -> &'static [&'static str] {
+        match self {
+            Law::Adaptive { .. } | Law::Known { .. } => &["position", "velocity"],
+            Law::PositionOnly { .. } => PositionOnly::MEASURES,
+            Law::TaskSpace(_) => TaskSpace::<PlanarArm, PlanarTip>::MEASURES,
+            Law::Attitude(_) => AttitudeTracking::MEASURES,
+        }
     }
 
     /// What it is called in messages.

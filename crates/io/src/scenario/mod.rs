@@ -225,7 +225,8 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
         messages_fit(&setup, &file.sample_hz)?;
     }
     notices.extend(Notice::coarse_sampling(&setup));
-    let columns = if setup.agents.iter().all(|agent| agent.law.is_lagrangian()) {
+    let fleet = |agent: &AgentSetup| agent.law.is_lagrangian() && agent.target.is_none();
+    let columns = if reference != ReferenceKind::Tracking && setup.agents.iter().all(fleet) {
         setup.agents.iter().map(columns).sum()
     } else {
         recorded_columns(&setup).map_err(|error| Fault::new(ScenarioProblem::Setup(error)))?.len()

@@ -2,7 +2,7 @@
 
 use base64::Engine;
 use forwardstep_sim::recording::Signal;
-use forwardstep_sim::setup::{AxisUnit, Law};
+use forwardstep_sim::setup::AxisUnit;
 use serde::Serialize;
 
 use super::super::decimate::Grid;
@@ -244,7 +244,7 @@ fn agents<'a>(record: &RunRecord<'_>, table: &Table<'a>, notes: &mut Vec<String>
                 truth: setup.agents[agent].robot.theta.get(k).copied(),
                 series: table.column(agent, Signal::Estimate, k).filter(|_| fits).map(|v| series.add(v, false)),
             };
-            let adaptive = matches!(setup.agents[agent].law, Law::Adaptive { .. });
+            let adaptive = setup.agents[agent].law.estimates();
             let parameters = if adaptive { (0..count(agent)).map(&mut parameter).collect() } else { Vec::new() };
             AgentIndex { name: names::agent_name(setup, agent), axes: axes(setup, agent), parameters }
         })
