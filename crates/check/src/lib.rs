@@ -9,6 +9,7 @@ mod laws;
 mod links;
 mod manipulation;
 mod sampled;
+mod single;
 mod tracking;
 mod vehicles;
 mod verdict;

@@ -61,4 +61,8 @@ shipped! {
     theorem_5: "theorem-5",
     formation: "formation",
     mixed_network: "mixed-network",
+    theorem_6: "theorem-6",
+    task_space_ur5e: "task-space-ur5e",
+    theorem_7: "theorem-7",
+    tumbling_target: "tumbling-target",
 }

@@ -36,6 +36,10 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "theorem-5",
     "formation",
     "mixed-network",
+    "theorem-6",
+    "task-space-ur5e",
+    "theorem-7",
+    "tumbling-target",
 ];
 
 /// The shipped scenario of this name.

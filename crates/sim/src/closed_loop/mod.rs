@@ -9,6 +9,7 @@
 //! - `members`: from agents to populations.
 //! - `systems`: from agents to plants and controllers that stand by themselves.
 //! - `vehicles`: the same for vehicles with one thrust.
+//! - `single`: the same for the robot's tip and the spacecraft of Section V-C.
 //! - `valid`: what makes a [`crate::Setup`] meaningless.
 //! - `assemble`: all populations and what joins them: the right-hand side as a whole, and its events.
 
@@ -19,6 +20,7 @@ mod population;
 mod pushes;
 mod sampler;
 mod sampling;
+mod single;
 mod solo;
 mod systems;
 mod valid;

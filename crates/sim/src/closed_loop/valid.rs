@@ -1,7 +1,9 @@
 //! What makes a setup meaningless.
 
 use forwardstep_core::agent::{FilterError, LimiterError};
+use forwardstep_core::plant::SpacecraftError;
 use forwardstep_core::reference::{BacksteppingError, RootsError};
+use forwardstep_core::robot::tree::TipError;
 use forwardstep_core::{GainError, LengthError};
 use thiserror::Error;
 
@@ -174,6 +176,28 @@ pub enum SetupError {
         /// Its law, in words.
         law: &'static str,
     },
+    /// A tip whose Jacobian cannot be inverted.
+    #[error("agent `{agent}`: {error}")]
+    Tip {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: TipError,
+    },
+    /// A spacecraft that makes no sense.
+    #[error("agent `{agent}`: {error}")]
+    Spacecraft {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: SpacecraftError,
+    },
+    /// Bounds of kinematic parameters beside a full matrix Λ.
+    #[error("agent `{agent}`: bounds of kinematic parameters need Λ to be a number or a diagonal, not a matrix")]
+    ProjectionOfMatrix {
+        /// The agent.
+        agent: String,
+    },
     /// A number of a law that makes no sense.
     #[error("agent `{agent}`: {what} is {value}, but {requirement}")]
     LawNumber {
@@ -318,7 +342,8 @@ fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
         }
     };
     vector("the start position", axes, &agent.start.q)?;
-    vector("the start velocity", axes, &agent.start.dq)?;
+    let velocities = agent.robot.velocity_len();
+    vector("the start velocity", velocities, &agent.start.dq)?;
     vector("the start of the plant", agent.start.rest.len(), &agent.start.rest)?;
     if let (Some(_), true) = (&agent.target, agent.law.is_lagrangian()) {
         return Err(SetupError::NoOffsets { agent: agent.name.clone(), law: agent.law.words() });
@@ -327,7 +352,7 @@ fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
         return Err(SetupError::NotTracking { agent: agent.name.clone(), law: agent.law.words() });
     }
     for z in &agent.start.reference {
-        vector("the start of the reference", axes, z)?;
+        vector("the start of the reference", velocities, z)?;
     }
     if agent.start.reference.len() > vectors {
         let (need, got) = (vectors, agent.start.reference.len());
