@@ -14,7 +14,7 @@ pub(crate) fn theorem(setup: &Setup) -> Option<(String, String)> {
         let promises = "all agents agree and come to rest: x_i − x_j → 0 and dx_i → 0".into();
         return Some((format!("no single theorem: {words} side by side"), promises));
     }
-    match (&first.law, setup.reference) {
+    match (&first.law, &setup.reference) {
         (Law::Adaptive { .. } | Law::Known { .. }, _) => None,
         (Law::Thrust(law), _) => Some(vehicles::theorem(setup, law.design)),
         (Law::PositionOnly { .. }, ReferenceKind::Tracking) => Some((

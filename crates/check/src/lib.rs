@@ -6,6 +6,7 @@
 mod agreement;
 mod hypotheses;
 mod laws;
+mod leader;
 mod links;
 mod manipulation;
 mod sampled;

@@ -12,6 +12,8 @@ pub enum Signal {
     Velocity,
     /// z^(k): k = 0 the reference velocity z, k = 1 the reference acceleration ż, … up to the larger of 1 and ℓ − 1.
     Reference(u8),
+    /// ς, the value of a set-valued sign, within [−1, 1].
+    Selection,
     /// s = q̇ − z.
     TrackingError,
     /// τ, or any other input u, after any limit.
@@ -59,7 +61,7 @@ pub enum Signal {
 }
 
 impl Signal {
-    /// The name used in column headers: `q`, `dq`, `z`, `dz`, `d2z`, …, `s`, `tau`, `theta_hat`, `lyapunov`,
+    /// The name used in column headers: `q`, `dq`, `z`, `dz`, `d2z`, …, `sign`, `s`, `tau`, `theta_hat`, `lyapunov`,
     /// `dissipation`, `tau_ext`, `error`, `offset`, `y`, `attitude`, `omega`, `omega_wanted`, `sigma`, `heading`, `dy`, `q_z`,
     /// `angle`, `wheel_torque`, `wheel_momentum`, `x`, `kinematic_hat`, `det_jacobian`.
     pub fn name(self) -> String {
@@ -69,6 +71,7 @@ impl Signal {
             Signal::Reference(0) => "z".into(),
             Signal::Reference(1) => "dz".into(),
             Signal::Reference(k) => format!("d{k}z"),
+            Signal::Selection => "sign".into(),
             Signal::TrackingError => "s".into(),
             Signal::Torque => "tau".into(),
             Signal::Estimate => "theta_hat".into(),

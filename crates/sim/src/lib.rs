@@ -2,7 +2,7 @@
 //! equation, and an integrator whose steps land on every break-point; or, under digital control, held torques between samples.
 //!
 //! The layers, each of which uses only those before it: [`formula`], [`trajectory`], [`graph`], [`topology`] and [`schedule`], [`delay`] and
-//! [`network`]; [`setup`] and [`push`], the plain data of a run; the integrator with its history and break-points; the closed
+//! [`network`]; [`leader`], [`setup`] and [`push`], the plain data of a run; the integrator with its history and break-points; the closed
 //! loop; [`recording`] and [`simulate`].
 
 mod closed_loop;
@@ -10,6 +10,7 @@ pub mod delay;
 mod engine;
 pub mod formula;
 pub mod graph;
+pub mod leader;
 pub mod network;
 pub mod push;
 pub mod recording;

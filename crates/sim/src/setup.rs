@@ -10,6 +10,7 @@ use forwardstep_core::plant::{Rotors, Wheels};
 use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::robot::{PlanarArm, PlanarTip};
 
+use crate::leader::{Following, FollowingDesign};
 use crate::network::Network;
 use crate::push::Push;
 use crate::trajectory::Trajectory;
@@ -36,8 +37,42 @@ pub struct Setup {
     pub control: Option<Control>,
 }
 
+impl Setup {
+    /// How a leader is followed, if there is one.
+    pub fn following(&self) -> Option<&Arc<Following>> {
+        match &self.reference {
+            ReferenceKind::Following(following) => Some(following),
+            _ => None,
+        }
+    }
+
+    /// What a message holds, in words.
+    pub fn transmits(&self) -> Vec<&'static str> {
+        let told = match self.following().map(|following| following.design) {
+            Some(FollowingDesign::Differentiable) => Some("acceleration"),
+            Some(FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. }) => {
+                Some("reference acceleration")
+            }
+            Some(FollowingDesign::Continuous) | None => None,
+        };
+        self.exchange.words().iter().copied().chain(told).collect()
+    }
+
+    /// What an agent measures, in words, whose law measures `law`.
+    pub fn measures_for(&self, law: &[&'static str]) -> Vec<&'static str> {
+        let following = self.following().is_some_and(|following| following.design == FollowingDesign::Differentiable);
+        law.iter().copied().chain(following.then_some("acceleration")).collect()
+    }
+
+    /// The name of a vertex of the network.
+    pub fn vertex_name(&self, vertex: usize) -> &str {
+        let leader = || self.following().map_or("", |following| &following.leader.name);
+        self.agents.get(vertex).map_or_else(leader, |agent| &agent.name)
+    }
+}
+
 /// Reference dynamics, see [`forwardstep_core::reference`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ReferenceKind {
     /// The family (aa10), (a1), (a5), (24).
     Consensus,
@@ -50,6 +85,8 @@ pub enum ReferenceKind {
         /// Limit of the reference acceleration, rad/s² or m/s²; none for no limit.
         acceleration_limit: Option<f64>,
     },
+    /// (110), (119), (122) or swarm tracking: everybody follows a leader, the last vertex of the network. There are no roots.
+    Following(Arc<Following>),
     /// Nothing is agreed upon: every agent follows a target of its own, by a law that has reference dynamics of its own.
     Tracking,
 }
@@ -62,6 +99,10 @@ impl ReferenceKind {
             // Without roots there is z alone.
             ReferenceKind::Tracking => agent.roots_per_s.len().max(1),
             ReferenceKind::PureIntegral => 2,
+            ReferenceKind::Following(following) => match following.design {
+                FollowingDesign::Continuous => 1,
+                _ => 2,
+            },
             ReferenceKind::Backstepping { .. } => 0,
         }
     }

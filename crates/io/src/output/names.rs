@@ -133,6 +133,7 @@ pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String 
         Signal::Thrust => "N".into(),
         Signal::Heading => "rad".into(),
         Signal::Estimate => "SI".into(),
+        Signal::Selection => "1".into(),
         Signal::Lyapunov | Signal::Dissipation => "J".into(),
     }
 }

@@ -5,6 +5,7 @@ use serde::Deserialize;
 
 use super::at::At;
 use super::control_file::ControlFile;
+use super::leader_file::{LeaderFile, LeaderReferenceFile};
 use super::network_file::NetworkFile;
 use super::push_file::PushFile;
 use super::spacecraft_file::{AttitudeFile, SpacecraftFile, SpacecraftStartFile};
@@ -30,6 +31,8 @@ pub struct ScenarioFile {
     pub agents: At<Vec<At<AgentFile>>>,
     /// The reference dynamics of all agents.
     pub reference: At<ReferenceFile>,
+    /// What everybody follows, where there is a leader: one more vertex of the network, which hears nobody.
+    pub leader: Option<At<LeaderFile>>,
     /// The tracking law of all agents that have none of their own.
     pub law: Option<At<LawFile>>,
     /// Where agents start that say nothing of their own.
@@ -223,6 +226,8 @@ pub enum ReferenceFile {
     PureIntegral(ConsensusFile),
     /// The baseline (aa6) that differentiates what it hears; positions are exchanged.
     Backstepping(BacksteppingFile),
+    /// Everybody follows a leader that only some hear: (110), (119) or (122) of the paper.
+    Leader(LeaderReferenceFile),
     /// No agreement: every agent follows a target of its own.
     Tracking(TrackingFile),
 }
@@ -234,6 +239,7 @@ impl ReferenceFile {
             ReferenceFile::Consensus(_) => "consensus",
             ReferenceFile::PureIntegral(_) => "pure_integral",
             ReferenceFile::Backstepping(_) => "backstepping",
+            ReferenceFile::Leader(_) => "leader",
             ReferenceFile::Tracking(_) => "tracking",
         }
     }

@@ -40,6 +40,10 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "task-space-ur5e",
     "theorem-7",
     "tumbling-target",
+    "theorem-8",
+    "theorem-9",
+    "remark-12",
+    "swarm-tracking",
 ];
 
 /// The shipped scenario of this name.

@@ -6,6 +6,8 @@
 //! - `sampler`: the digital controllers of a population, with their sensors.
 //! - `sampling`: the instants at which they sample and act.
 //! - `pushes`: what acts on the robots from outside.
+//! - `guide`: the leader.
+//! - `sliding`: who sets the set-valued signs in continuous time.
 //! - `members`: from agents to populations.
 //! - `systems`: from agents to plants and controllers that stand by themselves.
 //! - `vehicles`: the same for vehicles with one thrust.
@@ -15,12 +17,14 @@
 
 mod assemble;
 mod fleet;
+mod guide;
 mod members;
 mod population;
 mod pushes;
 mod sampler;
 mod sampling;
 mod single;
+mod sliding;
 mod solo;
 mod systems;
 mod valid;
