@@ -9,7 +9,7 @@ use crate::laws;
 use crate::leader;
 use crate::links;
 use crate::sampled::{digital, limited_actuators};
-use crate::tracking::{self, is_tracking};
+use crate::tracking::{self, bounded_target, is_tracking};
 use crate::verdict::{Answer, Hypothesis, Report};
 
 /// Which theorem speaks about `setup`, and whether its hypotheses hold.
@@ -39,6 +39,7 @@ pub fn check(setup: &Setup) -> Report {
     if setup.exchange == Exchange::PositionVelocity {
         hypotheses.push(common_first_root(setup));
     }
+    hypotheses.extend(setup.agents.iter().filter_map(|agent| bounded_target(setup, agent)));
     hypotheses.extend(laws::of_laws(setup));
     if setup.agents.iter().any(|agent| agent.law.is_lagrangian()) {
         hypotheses.push(gains(setup));

@@ -10,7 +10,9 @@ mod leader;
 mod links;
 mod manipulation;
 mod sampled;
+mod single;
 mod tracking;
+mod vehicles;
 mod verdict;
 
 pub use agreement::{NoPrediction, Prediction, predict};

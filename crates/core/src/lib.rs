@@ -15,11 +15,13 @@
 extern crate alloc;
 
 pub mod agent;
+pub mod attitude;
 pub mod controller;
 mod dispatch;
 mod error;
 mod gain;
 pub mod law;
+mod linear;
 pub mod plant;
 pub mod reference;
 pub mod robot;

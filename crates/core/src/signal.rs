@@ -32,11 +32,38 @@ pub enum Signal {
     Offset,
     /// y, the output of a filter that stands in for a velocity that is not measured.
     Filter,
+    /// The attitude as a quaternion (q_v, q_o), four entries.
+    Attitude,
+    /// ω in the body's axes.
+    AngularVelocity,
+    /// The ω that an outer law wants, where torques have to bring it about.
+    AngularVelocityWanted,
+    /// σ, the thrust. One entry.
+    Thrust,
+    /// The heading that is kept, an angle. One entry.
+    Heading,
+    /// ẏ of such a filter where the law uses it.
+    FilterRate,
+    /// q_z, the attitude that turns with the reference velocity.
+    ReferenceAttitude,
+    /// The angle between an attitude and the desired one, in [0, π]. One entry.
+    Angle,
+    /// u, the torque of the motor of each reaction wheel, after any limit.
+    WheelTorque,
+    /// h_w, the momentum of each reaction wheel about its axis.
+    WheelMomentum,
+    /// x, the position of a tip in task space.
+    TaskPosition,
+    /// θ̂, the estimate of kinematic parameters, an entry each.
+    KinematicEstimate,
+    /// det Ĵ of the estimated Jacobian. One entry.
+    Determinant,
 }
 
 impl Signal {
     /// The name used in column headers: `q`, `dq`, `z`, `dz`, `d2z`, …, `sign`, `s`, `tau`, `theta_hat`, `lyapunov`,
-    /// `dissipation`, `tau_ext`, `error`, `offset`, `y`.
+    /// `dissipation`, `tau_ext`, `error`, `offset`, `y`, `attitude`, `omega`, `omega_wanted`, `sigma`, `heading`, `dy`, `q_z`,
+    /// `angle`, `wheel_torque`, `wheel_momentum`, `x`, `kinematic_hat`, `det_jacobian`.
     pub fn name(self) -> String {
         match self {
             Signal::Position => "q".into(),
@@ -54,6 +81,19 @@ impl Signal {
             Signal::Error => "error".into(),
             Signal::Offset => "offset".into(),
             Signal::Filter => "y".into(),
+            Signal::Attitude => "attitude".into(),
+            Signal::AngularVelocity => "omega".into(),
+            Signal::AngularVelocityWanted => "omega_wanted".into(),
+            Signal::Thrust => "sigma".into(),
+            Signal::Heading => "heading".into(),
+            Signal::FilterRate => "dy".into(),
+            Signal::ReferenceAttitude => "q_z".into(),
+            Signal::Angle => "angle".into(),
+            Signal::WheelTorque => "wheel_torque".into(),
+            Signal::WheelMomentum => "wheel_momentum".into(),
+            Signal::TaskPosition => "x".into(),
+            Signal::KinematicEstimate => "kinematic_hat".into(),
+            Signal::Determinant => "det_jacobian".into(),
         }
     }
 }

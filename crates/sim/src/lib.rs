@@ -19,12 +19,13 @@ pub mod setup;
 mod simulate;
 pub mod topology;
 pub mod trajectory;
+pub mod vehicles;
 
 pub use closed_loop::SetupError;
 pub use network::Network;
 pub use recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal, Statistics};
 pub use setup::{
-    Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Law, Method, ReferenceKind, RobotKind, RobotSetup,
-    Sensors, Setup, Solver, Start, TimeSpan, VelocitySensor,
+    Actuators, AgentSetup, AttitudeLaw, Axis, AxisUnit, Control, Exchange, Law, Method, ReferenceKind, RobotKind,
+    RobotSetup, Sensors, Setup, Solver, Start, TaskSpaceLaw, TimeSpan, TipSetup, VelocitySensor,
 };
 pub use simulate::{recorded_columns, simulate};

@@ -1,15 +1,22 @@
 //! Everything a run needs, as plain data: built by a scenario reader or by hand, checked when the closed loop is built.
 
+mod single;
+
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
-use forwardstep_core::controller::{Controller, PositionOnly};
+use forwardstep_core::controller::{AttitudeTracking, Controller, PositionOnly, TaskSpace, Thrust, ThrustCascade};
+use forwardstep_core::plant::{Rotors, Wheels};
 use forwardstep_core::robot::tree::Tree;
+use forwardstep_core::robot::{PlanarArm, PlanarTip};
 
 use crate::leader::{Following, FollowingDesign};
 use crate::network::Network;
 use crate::push::Push;
 use crate::trajectory::Trajectory;
+use crate::vehicles::{ThrustKind, ThrustLaw};
+
+pub use single::{AttitudeLaw, TaskSpaceLaw, TipSetup};
 
 /// A network of agents and how long to watch it.
 #[derive(Clone, Debug)]
@@ -88,7 +95,9 @@ impl ReferenceKind {
     /// How many of z(0), ż(0), … an agent's start may give.
     pub fn free_derivatives(&self, agent: &AgentSetup) -> usize {
         match self {
-            ReferenceKind::Consensus | ReferenceKind::Tracking => agent.roots_per_s.len(),
+            ReferenceKind::Consensus => agent.roots_per_s.len(),
+            // Without roots there is z alone.
+            ReferenceKind::Tracking => agent.roots_per_s.len().max(1),
             ReferenceKind::PureIntegral => 2,
             ReferenceKind::Following(following) => match following.design {
                 FollowingDesign::Continuous => 1,
@@ -144,6 +153,16 @@ pub struct AgentSetup {
     pub pushes: Vec<Push>,
 }
 
+impl AgentSetup {
+    /// What it measures, in words. A law cannot read anything else: its inputs have no room for it.
+    pub fn measures(&self) -> &'static [&'static str] {
+        match (&self.law, &self.robot.kind) {
+            (Law::Thrust(_), RobotKind::Rotorcraft { .. }) => ThrustCascade::MEASURES,
+            (law, _) => law.measures(),
+        }
+    }
+}
+
 /// A robot with its true parameters.
 #[derive(Clone, Debug)]
 pub struct RobotSetup {
@@ -158,6 +177,14 @@ pub struct RobotSetup {
 }
 
 impl RobotSetup {
+    /// Numbers of a velocity, which are those of a position but for a spacecraft.
+    pub fn velocity_len(&self) -> usize {
+        match self.kind {
+            RobotKind::Spacecraft { .. } => 3,
+            _ => self.axes.len(),
+        }
+    }
+
     /// D: the true viscous damping of every axis, N m s/rad or N s/m; zero where there is none.
     pub fn viscous(&self) -> Vec<f64> {
         let mut viscous = vec![0.0; self.axes.len()];
@@ -187,6 +214,41 @@ pub enum RobotKind {
         /// m.
         dimension: usize,
     },
+    /// (44): a vehicle in ℝ³ with one thrust, whose angular velocity obeys at once. ϑ is its mass; the rest of its start is
+    /// its attitude (q_v, q_o).
+    Vehicle {
+        /// g along the third axis, which points down, m/s².
+        gravity: f64,
+    },
+    /// The same as a rigid body that torques turn; the rest of its start is its attitude and its angular velocity.
+    Rotorcraft {
+        /// g, m/s².
+        gravity: f64,
+        /// J, kg m².
+        inertia: Gain,
+        /// Its rotors; without them every thrust and every torque can be had.
+        rotors: Option<Rotors>,
+    },
+    /// A spacecraft with reaction wheels. Its axes are the entries of a quaternion; the rest of its start holds the momenta of
+    /// the wheels, N m s.
+    Spacecraft {
+        /// M, kg m².
+        inertia_kg_m2: [[f64; 3]; 3],
+        /// How its torque is shared out, and what the wheels can do.
+        wheels: Wheels,
+    },
+}
+
+impl RobotKind {
+    /// Numbers in a start beside q and q̇.
+    pub fn rest_len(&self) -> usize {
+        match self {
+            RobotKind::Tree(_) | RobotKind::PlanarArm | RobotKind::PointMass { .. } => 0,
+            RobotKind::Vehicle { .. } => 4,
+            RobotKind::Rotorcraft { .. } => 7,
+            RobotKind::Spacecraft { wheels, .. } => wheels.count(),
+        }
+    }
 }
 
 /// One degree of freedom of a robot.
@@ -211,6 +273,8 @@ pub enum AxisUnit {
     Radian,
     /// A prismatic joint or a coordinate.
     Metre,
+    /// A pure number, as an entry of a quaternion is.
+    One,
 }
 
 /// The law of one agent: (6)–(7), or one of those that Sections IV and V have for other systems.
@@ -241,6 +305,12 @@ pub enum Law {
         /// m̂(0), kg.
         estimate_start: f64,
     },
+    /// (46), (50) or (57) for vehicles with one thrust; see [`forwardstep_core::controller::Thrust`].
+    Thrust(ThrustLaw),
+    /// (80)–(82) for the tip of a robot, without its velocity.
+    TaskSpace(Box<TaskSpaceLaw>),
+    /// (97)–(105) for a spacecraft, without its angular velocity.
+    Attitude(Box<AttitudeLaw>),
 }
 
 impl Law {
@@ -255,14 +325,20 @@ impl Law {
             Law::Adaptive { .. } => true,
             Law::Known { .. } => false,
             Law::PositionOnly { .. } => true,
+            Law::Thrust(law) => matches!(law.design, ThrustKind::Adaptive { .. }),
+            Law::TaskSpace(_) => true,
+            Law::Attitude(_) => false,
         }
     }
 
-    /// What it measures, in words. A law cannot read anything else: its inputs have no room for it.
-    pub fn measures(&self) -> &'static [&'static str] {
+    /// What it measures, in words, see [`AgentSetup::measures`].
+    fn measures(&self) -> &'static [&'static str] {
         match self {
             Law::Adaptive { .. } | Law::Known { .. } => &["position", "velocity"],
             Law::PositionOnly { .. } => PositionOnly::MEASURES,
+            Law::Thrust(_) => Thrust::MEASURES,
+            Law::TaskSpace(_) => TaskSpace::<PlanarArm, PlanarTip>::MEASURES,
+            Law::Attitude(_) => AttitudeTracking::MEASURES,
         }
     }
 
@@ -272,6 +348,9 @@ impl Law {
             Law::Adaptive { .. } => "the adaptive law",
             Law::Known { .. } => "the law with known parameters",
             Law::PositionOnly { .. } => "the law without velocity",
+            Law::Thrust(_) => "the thrust law",
+            Law::TaskSpace(_) => "the law for a tip",
+            Law::Attitude(_) => "the law for an attitude",
         }
     }
 
@@ -280,6 +359,9 @@ impl Law {
         match self {
             Law::Adaptive { .. } | Law::Known { .. } => "Lagrangian robots",
             Law::PositionOnly { .. } => "point masses",
+            Law::Thrust(_) => "vehicles and rotorcraft",
+            Law::TaskSpace(_) => "planar arms, and for robots from a URDF with a tip",
+            Law::Attitude(_) => "spacecraft",
         }
     }
 }

@@ -1,6 +1,8 @@
 //! Why a scenario is refused.
 
 use forwardstep_core::GainError;
+use forwardstep_core::plant::SpacecraftError;
+use forwardstep_core::robot::tree::TipError;
 use forwardstep_sim::SetupError;
 use forwardstep_sim::trajectory::{SplineError, TrajectoryError};
 use thiserror::Error;
@@ -460,6 +462,27 @@ pub enum ScenarioProblem {
         /// The end of the run, s.
         end_s: f64,
     },
+    /// A spacecraft that makes no sense.
+    #[error(transparent)]
+    Spacecraft(SpacecraftError),
+    /// A direction that is zero.
+    #[error("this is zero and has no direction")]
+    NoDirection,
+    /// Two ways of stating an attitude, or half of one.
+    #[error("an attitude is `axis` with `angle_rad`, or `quaternion`")]
+    HalfAttitude,
+    /// A tip whose Jacobian cannot be inverted.
+    #[error(transparent)]
+    Tip(TipError),
+    /// A robot from a URDF without a tip.
+    #[error("the law `task_space` needs `tip` for a robot from a URDF")]
+    NoTip,
+    /// A tip where there is one already.
+    #[error("the tip of a planar arm is the end of its second link; `tip` is for robots from a URDF")]
+    TipOfPlanarArm,
+    /// Bounds beside a full matrix.
+    #[error("`bounds` need `kinematic_gain` to be a number or a diagonal, not a matrix")]
+    BoundsOfMatrix,
     /// A law that is made for something else.
     #[error("agent `{agent}`: the law `{law}` is made for {made_for}")]
     LawOfAnother {
@@ -504,6 +527,8 @@ impl Problem for ScenarioProblem {
             }
             ScenarioProblem::RobotFile { file, known, .. } if !known.is_empty() => choose(file, "there are", known),
             ScenarioProblem::Lock(problem) => return problem.help(),
+            ScenarioProblem::NoTip => "add tip = { link = \"…\" } with a link of the URDF".into(),
+            ScenarioProblem::Tip(TipError::Size { .. }) => "`locked` of the robot holds joints of a URDF".into(),
             ScenarioProblem::NoEffortLimit { .. } => {
                 "only a URDF states limits, as <limit effort=\"…\"> of a joint".into()
             }

@@ -12,7 +12,9 @@ use super::fault::{Fault, count, fault, not_negative, positive};
 use super::file::{FrictionFile, PlanarArmFile, PointMassFile, RobotFile, UrdfFile};
 use super::inputs::InputFolder;
 use super::problem::ScenarioProblem;
+use super::spacecraft::spacecraft;
 use super::values::Named;
+use super::vehicle;
 use crate::files::ReadError;
 use crate::urdf::{self, FrictionPolicy, UrdfOptions, UrdfProblem};
 use crate::{InputError, SourceText};
@@ -61,6 +63,9 @@ pub(super) fn robot(file: &At<RobotFile>, folder: &mut InputFolder) -> Result<Re
             planar_links(arm).and_then(|links| planar_robot(&links)).map_err(|fault| fault.at(&file.span))?
         }
         RobotFile::PointMass(mass) => point_mass(mass)?,
+        RobotFile::Vehicle(file) => vehicle::vehicle(file)?,
+        RobotFile::Rotorcraft(file) => vehicle::rotorcraft(file)?,
+        RobotFile::Spacecraft(file) => spacecraft(file)?,
     };
     Ok(ReadRobot { robot, notices: Vec::new(), links: Rc::new([]) })
 }
@@ -177,6 +182,6 @@ fn point_mass(file: &PointMassFile) -> Result<RobotSetup, Fault> {
     })
 }
 
-fn axis(name: &str, unit: AxisUnit) -> Axis {
+pub(super) fn axis(name: &str, unit: AxisUnit) -> Axis {
     Axis { name: name.into(), unit, position_limits: None, velocity_limit: None, effort_limit: None }
 }

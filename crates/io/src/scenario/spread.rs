@@ -21,9 +21,17 @@ pub(super) fn spread(entry: &AgentFile, read: &RobotSetup, index: usize, agent: 
     let unsound = || fault(place, ScenarioProblem::SpreadMassMatrix { agent: agent.to_owned() });
     match &entry.robot.value {
         RobotFile::PlanarArm(file) => planar_robot(&spread_links(file, &factors(4)?)?).map_err(|_| unsound()),
-        RobotFile::PointMass(_) => {
+        RobotFile::PointMass(_) | RobotFile::Vehicle(_) | RobotFile::Rotorcraft(_) => {
             let mut robot = read.clone();
             robot.theta.iter_mut().zip(factors(1)?).for_each(|(mass, factor)| *mass *= factor);
+            Ok(robot)
+        }
+        RobotFile::Spacecraft(_) => {
+            let mut robot = read.clone();
+            let [factor] = factors(1)?[..] else { return Ok(robot) };
+            if let RobotKind::Spacecraft { inertia_kg_m2, .. } = &mut robot.kind {
+                *inertia_kg_m2 = inertia_kg_m2.map(|row| row.map(|entry| factor * entry));
+            }
             Ok(robot)
         }
         RobotFile::Urdf(_) => {

@@ -10,6 +10,8 @@
 //! - `sliding`: who sets the set-valued signs in continuous time.
 //! - `members`: from agents to populations.
 //! - `systems`: from agents to plants and controllers that stand by themselves.
+//! - `vehicles`: the same for vehicles with one thrust.
+//! - `single`: the same for the robot's tip and the spacecraft of Section V-C.
 //! - `valid`: what makes a [`crate::Setup`] meaningless.
 //! - `assemble`: all populations and what joins them: the right-hand side as a whole, and its events.
 
@@ -21,10 +23,12 @@ mod population;
 mod pushes;
 mod sampler;
 mod sampling;
+mod single;
 mod sliding;
 mod solo;
 mod systems;
 mod valid;
+mod vehicles;
 
 pub(crate) use assemble::ClosedLoop;
 pub use valid::SetupError;

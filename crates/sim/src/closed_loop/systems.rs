@@ -9,8 +9,10 @@ use forwardstep_core::robot::PointMass;
 
 use super::members::sensor;
 use super::population::Columns;
+use super::single;
 use super::solo::{Digital, Solo, Target};
 use super::valid::SetupError;
+use super::vehicles;
 use crate::recording::Signal;
 use crate::setup::{AgentSetup, Control, Exchange, Law, ReferenceKind, RobotKind, Setup};
 
@@ -31,6 +33,12 @@ pub(super) fn system(setup: &Setup, agent: usize) -> Result<Box<dyn Columns>, Se
             let controller =
                 PositionOnly { axes: *dimension, guide, damping, filter_per_s, adaptation, estimate_start };
             solo(setup, agent, plant, controller)
+        }
+        (&RobotKind::Vehicle { gravity }, Law::Thrust(law)) => vehicles::vehicle(setup, agent, gravity, *law),
+        (RobotKind::Rotorcraft { .. }, Law::Thrust(law)) => vehicles::rotorcraft(setup, agent, *law),
+        (_, Law::TaskSpace(law)) => single::task_space(setup, agent, law),
+        (RobotKind::Spacecraft { inertia_kg_m2, wheels }, Law::Attitude(law)) => {
+            single::attitude(setup, agent, inertia_kg_m2, wheels, law)
         }
         (_, law) => {
             Err(SetupError::LawOfAnother { agent: own.name.clone(), law: law.words(), made_for: law.made_for() })
@@ -60,7 +68,7 @@ fn guide(setup: &Setup, own: &AgentSetup) -> Result<Guide, SetupError> {
 }
 
 /// Checks what the two traits need, and builds the block.
-fn solo<C: Controller>(
+pub(super) fn solo<C: Controller>(
     setup: &Setup,
     agent: usize,
     plant: C::Plant,
@@ -107,7 +115,8 @@ fn solo<C: Controller>(
 
 /// The limits of the torques, if they are to be enforced.
 fn effort_limits(own: &AgentSetup, torques: usize) -> Result<Option<Vec<f64>>, SetupError> {
-    if !own.enforce_limits {
+    // What is no torque of an axis is limited by the plant itself.
+    if !own.enforce_limits || torques == 0 {
         return Ok(None);
     }
     let limit = |axis: &crate::setup::Axis| {
@@ -138,14 +147,14 @@ fn limiter(own: &AgentSetup, control: &Control, torques: usize) -> Result<Limite
     Limiter::new(limit, rate).map_err(|error| SetupError::Limiter { agent: own.name.clone(), error })
 }
 
-fn positive(own: &AgentSetup, what: &'static str, value: f64) -> Result<(), SetupError> {
+pub(super) fn positive(own: &AgentSetup, what: &'static str, value: f64) -> Result<(), SetupError> {
     if value > 0.0 && value.is_finite() {
         return Ok(());
     }
     Err(SetupError::LawNumber { agent: own.name.clone(), what, value, requirement: "must be positive and finite" })
 }
 
-fn not_negative(own: &AgentSetup, what: &'static str, value: f64) -> Result<(), SetupError> {
+pub(super) fn not_negative(own: &AgentSetup, what: &'static str, value: f64) -> Result<(), SetupError> {
     if value >= 0.0 && value.is_finite() {
         return Ok(());
     }

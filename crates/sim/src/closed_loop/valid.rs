@@ -1,14 +1,16 @@
 //! What makes a setup meaningless.
 
 use forwardstep_core::agent::{FilterError, LimiterError};
+use forwardstep_core::plant::SpacecraftError;
 use forwardstep_core::reference::{BacksteppingError, Choice, RootsError};
+use forwardstep_core::robot::tree::TipError;
 use forwardstep_core::{GainError, LengthError};
 use thiserror::Error;
 
 use crate::leader::{Following, FollowingDesign};
 use crate::network::NetworkError;
 use crate::push::PushError;
-use crate::setup::{AgentSetup, Control, Exchange, Law, Method, ReferenceKind, Setup};
+use crate::setup::{AgentSetup, AxisUnit, Control, Exchange, Law, Method, ReferenceKind, RobotKind, Setup};
 
 /// Why a setup cannot be simulated.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -140,6 +142,19 @@ pub enum SetupError {
         /// Its law, in words.
         law: &'static str,
     },
+    /// A position in space among positions that are no lengths.
+    #[error(
+        "agent `{vehicle}` moves in space and exchanges positions in m, but axis `{axis}` of `{agent}` is an angle; they have \
+         nothing to agree on"
+    )]
+    UnitsDiffer {
+        /// The agent in space.
+        vehicle: String,
+        /// The other.
+        agent: String,
+        /// Its axis.
+        axis: String,
+    },
     /// A push on an agent whose law does not know any.
     #[error("agent `{agent}`: pushes act on robots under the adaptive or the known law, not on {law}")]
     NotPushed {
@@ -179,6 +194,28 @@ pub enum SetupError {
         agent: String,
         /// Its law, in words.
         law: &'static str,
+    },
+    /// A tip whose Jacobian cannot be inverted.
+    #[error("agent `{agent}`: {error}")]
+    Tip {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: TipError,
+    },
+    /// A spacecraft that makes no sense.
+    #[error("agent `{agent}`: {error}")]
+    Spacecraft {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: SpacecraftError,
+    },
+    /// Bounds of kinematic parameters beside a full matrix Λ.
+    #[error("agent `{agent}`: bounds of kinematic parameters need Λ to be a number or a diagonal, not a matrix")]
+    ProjectionOfMatrix {
+        /// The agent.
+        agent: String,
     },
     /// A number of a law that makes no sense.
     #[error("agent `{agent}`: {what} is {value}, but {requirement}")]
@@ -258,7 +295,22 @@ pub(super) fn check(setup: &Setup) -> Result<(), SetupError> {
     if let Some(following) = setup.following() {
         check_following(following, setup)?;
     }
-    setup.agents.iter().try_for_each(|agent| check_agent(setup, agent))
+    setup.agents.iter().try_for_each(|agent| check_agent(setup, agent))?;
+    same_space(setup)
+}
+
+/// Whoever agrees with a vehicle has a position in m. (An arm and a cart may agree on a number.)
+fn same_space(setup: &Setup) -> Result<(), SetupError> {
+    let moves =
+        |agent: &&AgentSetup| matches!(agent.robot.kind, RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. });
+    let Some(vehicle) = setup.agents.iter().find(moves) else { return Ok(()) };
+    for agent in &setup.agents {
+        if let Some(axis) = agent.robot.axes.iter().find(|axis| axis.unit != AxisUnit::Metre) {
+            let (vehicle, agent) = (vehicle.name.clone(), agent.name.clone());
+            return Err(SetupError::UnitsDiffer { vehicle, agent, axis: axis.name.clone() });
+        }
+    }
+    Ok(())
 }
 
 /// What following a leader needs.
@@ -358,7 +410,8 @@ fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
         }
     };
     vector("the start position", axes, &agent.start.q)?;
-    vector("the start velocity", axes, &agent.start.dq)?;
+    let velocities = agent.robot.velocity_len();
+    vector("the start velocity", velocities, &agent.start.dq)?;
     vector("the start of the plant", agent.start.rest.len(), &agent.start.rest)?;
     if let (Some(_), true) = (&agent.target, agent.law.is_lagrangian()) {
         return Err(SetupError::NoOffsets { agent: agent.name.clone(), law: agent.law.words() });
@@ -367,7 +420,7 @@ fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
         return Err(SetupError::NotTracking { agent: agent.name.clone(), law: agent.law.words() });
     }
     for z in &agent.start.reference {
-        vector("the start of the reference", axes, z)?;
+        vector("the start of the reference", velocities, z)?;
     }
     if agent.start.reference.len() > vectors {
         let (need, got) = (vectors, agent.start.reference.len());
