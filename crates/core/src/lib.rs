@@ -18,6 +18,7 @@ pub mod agent;
 pub mod controller;
 mod dispatch;
 mod error;
+pub mod expression;
 mod gain;
 pub mod law;
 pub mod plant;
