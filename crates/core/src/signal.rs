@@ -10,9 +10,13 @@ pub enum Signal {
     Position,
     /// q̇.
     Velocity,
+    /// d^k q/dt^k, k ≥ 2, of a plant of higher order.
+    Derivative(u8),
+    /// x_k, k ≥ 2, of a chain whose states are no derivatives of each other.
+    Coordinate(u8),
     /// z^(k): k = 0 the reference velocity z, k = 1 the reference acceleration ż, … up to the larger of 1 and ℓ − 1.
     Reference(u8),
-    /// s = q̇ − z.
+    /// s = q̇ − z, or d^(k−1)x/dt^(k−1) − z for a plant of order k; under backstepping the errors of all its steps.
     TrackingError,
     /// τ, or any other input u, after any limit.
     Torque,
@@ -28,15 +32,19 @@ pub enum Signal {
     Error,
     /// y, the output of a filter that stands in for a velocity that is not measured.
     Filter,
+    /// What the law divides by, which must stay away from zero. One entry.
+    Divisor,
 }
 
 impl Signal {
     /// The name used in column headers: `q`, `dq`, `z`, `dz`, `d2z`, …, `s`, `tau`, `theta_hat`, `lyapunov`,
-    /// `dissipation`, `tau_ext`, `error`, `y`.
+    /// `dissipation`, `tau_ext`, `error`, `y`, `divisor`; `d2q`, … and `x2`, … for chains.
     pub fn name(self) -> String {
         match self {
             Signal::Position => "q".into(),
             Signal::Velocity => "dq".into(),
+            Signal::Derivative(k) => format!("d{k}q"),
+            Signal::Coordinate(k) => format!("x{k}"),
             Signal::Reference(0) => "z".into(),
             Signal::Reference(1) => "dz".into(),
             Signal::Reference(k) => format!("d{k}z"),
@@ -48,6 +56,7 @@ impl Signal {
             Signal::External => "tau_ext".into(),
             Signal::Error => "error".into(),
             Signal::Filter => "y".into(),
+            Signal::Divisor => "divisor".into(),
         }
     }
 }

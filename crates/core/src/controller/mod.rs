@@ -4,13 +4,30 @@
 //! populations are worked on in lanes. Everything else in the paper has a feedback of its own, and often must do without a
 //! velocity: it is a [`Controller`].
 //!
+//! - `linearising`, `linear_adaptive`, `immersion`: (33) by feedback linearisation, with adaptation, and by immersion and
+//!   invariance; `following` is what they share.
+//! - `adaptive_backstepping`: strict-feedback and pure-feedback chains; `steps` is the recursion.
+//! - `guide`: where z leads, for plants of any order.
 //! - `position_only`: (a7)–(a9), a point mass without velocity measurement.
 //! - `stepped`: any controller, sampled.
 
+mod adaptive_backstepping;
+mod following;
+mod guide;
+mod immersion;
+mod linear_adaptive;
+mod linearising;
 mod position_only;
 mod stepped;
+mod steps;
 
-pub use position_only::{Guide, PositionMeasured, PositionOnly};
+pub use adaptive_backstepping::{AdaptiveBackstepping, BacksteppingGains, BacksteppingWork};
+pub use following::{ChainError, ChainMeasured, Following, FollowingWork};
+pub use guide::{Guide, GuideError, GuideWork, Leads};
+pub use immersion::{Immersion, ImmersionWork};
+pub use linear_adaptive::LinearAdaptive;
+pub use linearising::Linearising;
+pub use position_only::{PositionMeasured, PositionOnly};
 pub use stepped::Stepped;
 
 use alloc::vec::Vec;

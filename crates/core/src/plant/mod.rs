@@ -1,7 +1,11 @@
 //! Systems to be controlled, as vector fields, when they are more than a robot under (6)–(7).
 
+mod cascade;
+mod chain;
 mod mechanical;
 
+pub use cascade::{Cascade, CascadeError, CascadeTerms, CascadeWork};
+pub use chain::{Chain, ChainWork, Closures, Formulas, FormulasWork, Terms};
 pub use mechanical::Mechanical;
 
 use alloc::vec::Vec;
