@@ -69,6 +69,9 @@ pub enum NoPrediction {
     /// Held inputs conserve the quantity only in the limit of short periods.
     #[error("the controllers sample")]
     Sampled,
+    /// Agents follow targets of their own, or a law whose tracking error stays in what is conserved.
+    #[error("only agents under the adaptive or the known law that agree with each other have one")]
+    Law,
     /// The baseline conserves nothing.
     #[error("under backstepping tracking errors move it")]
     Backstepping,
@@ -98,6 +101,9 @@ pub enum NoPrediction {
 pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     if matches!(setup.reference, ReferenceKind::Backstepping { .. }) {
         return Err(NoPrediction::Backstepping);
+    }
+    if setup.reference == ReferenceKind::Tracking || setup.agents.iter().any(|agent| !agent.law.is_lagrangian()) {
+        return Err(NoPrediction::Law);
     }
     if setup.control.is_some() {
         return Err(NoPrediction::Sampled);

@@ -5,8 +5,10 @@ use forwardstep_sim::push::Push;
 use forwardstep_sim::schedule::{Schedule, Window};
 use forwardstep_sim::{Exchange, Law, ReferenceKind, Setup};
 
+use crate::laws;
 use crate::links;
 use crate::sampled::{digital, limited_actuators};
+use crate::tracking::{self, is_tracking};
 use crate::verdict::{Answer, Hypothesis, Report};
 
 /// Which theorem speaks about `setup`, and whether its hypotheses hold.
@@ -16,6 +18,9 @@ use crate::verdict::{Answer, Hypothesis, Report};
 /// **Source**: Theorem 1 for (3), Remark 3 for (23), Theorem 2 for (a1), Theorem 3 for (a5) and (24); Section III-A for
 /// (aa10), which is (a5) of order one, and for the baseline (aa6), about which the paper promises nothing.
 pub fn check(setup: &Setup) -> Report {
+    if is_tracking(setup) {
+        return tracking::check(setup);
+    }
     let order = setup.agents.iter().map(|agent| agent.roots_per_s.len()).max().unwrap_or(0);
     let mut hypotheses = vec![spanning_tree(setup), dwell_time(setup), links::bounded_delays(setup)];
     hypotheses.extend(links::bounded_weights(setup));
@@ -23,16 +28,21 @@ pub fn check(setup: &Setup) -> Report {
         ReferenceKind::Consensus => hypotheses.extend([real_roots(setup), common_order(setup)]),
         ReferenceKind::PureIntegral => hypotheses.extend([fixed_graph(setup), real_roots(setup)]),
         ReferenceKind::Backstepping { filter_s, .. } => hypotheses.push(differentiable(filter_s)),
+        ReferenceKind::Tracking => {}
     }
     hypotheses.extend(manipulability(setup));
     hypotheses.extend(external_torques(setup));
     if setup.exchange == Exchange::PositionVelocity {
         hypotheses.push(common_first_root(setup));
     }
-    hypotheses.push(gains(setup));
+    hypotheses.extend(laws::of_laws(setup));
+    if setup.agents.iter().any(|agent| agent.law.is_lagrangian()) {
+        hypotheses.push(gains(setup));
+    }
     hypotheses.push(unlimited_torque(setup));
     hypotheses.extend(digital(setup));
-    Report { theorem: theorem(setup, order), promises: promises(setup, order), hypotheses }
+    let (theorem, promises) = laws::theorem(setup).unwrap_or_else(|| (theorem(setup, order), promises(setup, order)));
+    Report { theorem, promises, hypotheses }
 }
 
 fn theorem(setup: &Setup, order: usize) -> String {
@@ -40,7 +50,7 @@ fn theorem(setup: &Setup, order: usize) -> String {
         (ReferenceKind::PureIntegral, Exchange::PositionVelocity) => return "Theorem 1, reference dynamics (3)".into(),
         (ReferenceKind::PureIntegral, Exchange::Position) => return "Remark 3, reference dynamics (23)".into(),
         (ReferenceKind::Backstepping { .. }, _) => return "no theorem: the backstepping baseline (aa6)".into(),
-        (ReferenceKind::Consensus, _) => {}
+        (ReferenceKind::Consensus | ReferenceKind::Tracking, _) => {}
     }
     match (setup.exchange, order) {
         (Exchange::PositionVelocity, 1) => "Theorem 3 with (a5) of order 1, which is (aa10)".into(),
@@ -292,7 +302,7 @@ fn common_first_root(setup: &Setup) -> Hypothesis {
     Hypothesis { requires, answer, because }
 }
 
-fn gains(setup: &Setup) -> Hypothesis {
+pub(crate) fn gains(setup: &Setup) -> Hypothesis {
     let known = setup.agents.iter().filter(|agent| matches!(agent.law, Law::Known { .. })).count();
     let parameters = match known {
         0 => "parameters are adapted".to_owned(),
@@ -306,7 +316,7 @@ fn gains(setup: &Setup) -> Hypothesis {
     }
 }
 
-fn unlimited_torque(setup: &Setup) -> Hypothesis {
+pub(crate) fn unlimited_torque(setup: &Setup) -> Hypothesis {
     let limited: Vec<usize> = (0..setup.agents.len()).filter(|agent| setup.agents[*agent].enforce_limits).collect();
     let mut reasons: Vec<String> = limited_actuators(setup).into_iter().map(str::to_owned).collect();
     if !limited.is_empty() {

@@ -5,9 +5,11 @@
 
 mod agreement;
 mod hypotheses;
+mod laws;
 mod links;
 mod manipulation;
 mod sampled;
+mod tracking;
 mod verdict;
 
 pub use agreement::{NoPrediction, Prediction, predict};

@@ -53,8 +53,8 @@ fn fastest(agent: &AgentSetup) -> Option<f64> {
         RobotKind::PlanarArm => mass(&PlanarArm, agent),
         RobotKind::PointMass { dimension } => mass(&PointMass { dimension: *dimension }, agent),
     };
+    let (Law::Adaptive { damping, .. } | Law::Known { damping }) = &agent.law else { return None };
     let mass = DMatrix::from_row_slice(m, m, &mass.ok()?);
-    let (Law::Adaptive { damping, .. } | Law::Known { damping }) = &agent.law;
     let scale: Vec<f64> = mass.diagonal().iter().copied().collect();
     let damping: &Gain = damping;
     let k = damping.resolve(m, &scale).ok()?;

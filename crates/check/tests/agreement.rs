@@ -39,9 +39,11 @@ fn arm(index: usize, roots_per_s: &[f64]) -> AgentSetup {
         start: Start {
             q: vec![noise(index), noise(index + 10)],
             dq: vec![0.3 * noise(index + 20), 0.3 * noise(index + 30)],
+            rest: Vec::new(),
             reference: Vec::new(),
         },
         enforce_limits: false,
+        target: None,
         pushes: Vec::new(),
     }
 }

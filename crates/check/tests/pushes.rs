@@ -39,8 +39,14 @@ fn agent(index: usize, roots_per_s: &[f64], kind: RobotKind, theta: Vec<f64>, la
         roots_per_s: roots_per_s.to_vec(),
         manipulability: 0.0,
         law,
-        start: Start { q: vec![start(0.0), start(10.0)], dq: vec![0.3 * start(20.0), 0.0], reference: Vec::new() },
+        start: Start {
+            q: vec![start(0.0), start(10.0)],
+            dq: vec![0.3 * start(20.0), 0.0],
+            rest: Vec::new(),
+            reference: Vec::new(),
+        },
         enforce_limits: false,
+        target: None,
         pushes: Vec::new(),
     }
 }
@@ -246,7 +252,7 @@ fn eq_31_one_agent_moves_by_lambda_over_alpha_beta_k_times_the_impulse() {
     {
         let mut setup = ring(vec![mass(0, &[alpha, beta])], Exchange::Position, 40.0);
         setup.reference = reference;
-        setup.agents[0].start = Start { q: vec![0.4, -0.2], dq: vec![0.0; 2], reference: Vec::new() };
+        setup.agents[0].start = Start { q: vec![0.4, -0.2], dq: vec![0.0; 2], rest: Vec::new(), reference: Vec::new() };
         setup.agents[0].manipulability = lambda;
         setup.agents[0].pushes = vec![pulse(Effect::Torque(constant(&[4.0, 0.0])))];
         let moved = lambda / (alpha * beta * DAMPING) * 4.0 * 1.5;

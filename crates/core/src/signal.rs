@@ -30,6 +30,8 @@ pub enum Signal {
     External,
     /// What is to vanish: x − x_d, Δq_v, q − q₀, …; only of agents with a target or a leader.
     Error,
+    /// d, the offset of an agent from where all agree; only of agents that have one.
+    Offset,
     /// y, the output of a filter that stands in for a velocity that is not measured.
     Filter,
     /// What the law divides by, which must stay away from zero. One entry.
@@ -38,7 +40,7 @@ pub enum Signal {
 
 impl Signal {
     /// The name used in column headers: `q`, `dq`, `z`, `dz`, `d2z`, …, `s`, `tau`, `theta_hat`, `lyapunov`,
-    /// `dissipation`, `tau_ext`, `error`, `y`, `divisor`; `d2q`, … and `x2`, … for chains.
+    /// `dissipation`, `tau_ext`, `error`, `offset`, `y`, `divisor`; `d2q`, … and `x2`, … for chains.
     pub fn name(self) -> String {
         match self {
             Signal::Position => "q".into(),
@@ -55,6 +57,7 @@ impl Signal {
             Signal::Dissipation => "dissipation".into(),
             Signal::External => "tau_ext".into(),
             Signal::Error => "error".into(),
+            Signal::Offset => "offset".into(),
             Signal::Filter => "y".into(),
             Signal::Divisor => "divisor".into(),
         }

@@ -59,9 +59,11 @@ fn ring(model: Model, n: usize, tolerance: f64) -> Setup {
             start: Start {
                 q: (0..m).map(|k| if k == 0 { position } else { (i as f64).cos() }).collect(),
                 dq: vec![0.0; m],
+                rest: Vec::new(),
                 reference: Vec::new(),
             },
             enforce_limits: false,
+            target: None,
             pushes: Vec::new(),
         }
     };

@@ -1,7 +1,7 @@
 //! Networks of forwardstepping agents: switching digraphs, discontinuous delays, the closed loop as a delay-differential
 //! equation, and an integrator whose steps land on every break-point; or, under digital control, held torques between samples.
 //!
-//! The layers, each of which uses only those before it: [`formula`], [`graph`], [`topology`] and [`schedule`], [`delay`] and
+//! The layers, each of which uses only those before it: [`formula`], [`trajectory`], [`graph`], [`topology`] and [`schedule`], [`delay`] and
 //! [`network`]; [`setup`] and [`push`], the plain data of a run; the integrator with its history and break-points; the closed
 //! loop; [`recording`] and [`simulate`].
 
@@ -17,6 +17,7 @@ pub mod schedule;
 pub mod setup;
 mod simulate;
 pub mod topology;
+pub mod trajectory;
 
 pub use closed_loop::SetupError;
 pub use network::Network;

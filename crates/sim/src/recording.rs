@@ -84,6 +84,13 @@ pub enum BreakdownCause {
         /// Steps since the last sample.
         steps: u64,
     },
+    /// It came so close to zero that the law, which divides by it, means nothing any more.
+    Vanished {
+        /// Where it was.
+        value: f64,
+        /// How close it may come.
+        floor: f64,
+    },
     /// It left the limits that the scenario asked to enforce.
     PositionLimit {
         /// Where it was, rad or m.

@@ -3,10 +3,12 @@
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
+use forwardstep_core::controller::{Controller, PositionOnly};
 use forwardstep_core::robot::tree::Tree;
 
 use crate::network::Network;
 use crate::push::Push;
+use crate::trajectory::Trajectory;
 
 /// A network of agents and how long to watch it.
 #[derive(Clone, Debug)]
@@ -41,13 +43,15 @@ pub enum ReferenceKind {
         /// Limit of the reference acceleration, rad/s² or m/s²; none for no limit.
         acceleration_limit: Option<f64>,
     },
+    /// Nothing is agreed upon: every agent follows a target of its own, by a law that has reference dynamics of its own.
+    Tracking,
 }
 
 impl ReferenceKind {
     /// How many of z(0), ż(0), … an agent's start may give.
     pub fn free_derivatives(&self, agent: &AgentSetup) -> usize {
         match self {
-            ReferenceKind::Consensus => agent.roots_per_s.len(),
+            ReferenceKind::Consensus | ReferenceKind::Tracking => agent.roots_per_s.len(),
             ReferenceKind::PureIntegral => 2,
             ReferenceKind::Backstepping { .. } => 0,
         }
@@ -61,6 +65,16 @@ pub enum Exchange {
     Position,
     /// q_j and q̇_j: the family (a5), of which (aa10) is order 1 and (a1) order 2.
     PositionVelocity,
+}
+
+impl Exchange {
+    /// What is transmitted, in words: vectors with a number per axis.
+    pub fn words(self) -> &'static [&'static str] {
+        match self {
+            Exchange::Position => &["position"],
+            Exchange::PositionVelocity => &["position", "velocity"],
+        }
+    }
 }
 
 /// One agent.
@@ -77,6 +91,9 @@ pub struct AgentSetup {
     pub manipulability: f64,
     /// Its tracking law.
     pub law: Law,
+    /// Under [`ReferenceKind::Tracking`] where it should be; otherwise its offset from where all agree, for laws that know
+    /// offsets.
+    pub target: Option<Trajectory>,
     /// Where it starts.
     pub start: Start,
     /// Clip the torque at the effort limits of the robot's axes, and end the run when an axis leaves its position
@@ -155,7 +172,7 @@ pub enum AxisUnit {
     Metre,
 }
 
-/// The tracking law (6)–(7) of one agent.
+/// The law of one agent: (6)–(7), or one of those that Sections IV and V have for other systems.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Law {
     /// τ = −K s + Y ϑ̂ with ϑ̂' = −Γ Yᵀ s.
@@ -172,6 +189,58 @@ pub enum Law {
         /// K.
         damping: Gain,
     },
+    /// (a8) for a point mass, without velocity; see [`forwardstep_core::controller::PositionOnly`].
+    PositionOnly {
+        /// k, N s/m.
+        damping: f64,
+        /// λ_f, 1/s.
+        filter_per_s: f64,
+        /// γ*; zero to keep the estimate as it is.
+        adaptation: f64,
+        /// m̂(0), kg.
+        estimate_start: f64,
+    },
+}
+
+impl Law {
+    /// Whether it is (6)–(7), which whole populations of Lagrangian robots share.
+    pub fn is_lagrangian(&self) -> bool {
+        matches!(self, Law::Adaptive { .. } | Law::Known { .. })
+    }
+
+    /// Whether it estimates parameters.
+    pub fn estimates(&self) -> bool {
+        match self {
+            Law::Adaptive { .. } => true,
+            Law::Known { .. } => false,
+            Law::PositionOnly { .. } => true,
+        }
+    }
+
+    /// What it measures, in words. A law cannot read anything else: its inputs have no room for it.
+    pub fn measures(&self) -> &'static [&'static str] {
+        match self {
+            Law::Adaptive { .. } | Law::Known { .. } => &["position", "velocity"],
+            Law::PositionOnly { .. } => PositionOnly::MEASURES,
+        }
+    }
+
+    /// What it is called in messages.
+    pub fn words(&self) -> &'static str {
+        match self {
+            Law::Adaptive { .. } => "the adaptive law",
+            Law::Known { .. } => "the law with known parameters",
+            Law::PositionOnly { .. } => "the law without velocity",
+        }
+    }
+
+    /// What it is made for, in messages.
+    pub fn made_for(&self) -> &'static str {
+        match self {
+            Law::Adaptive { .. } | Law::Known { .. } => "Lagrangian robots",
+            Law::PositionOnly { .. } => "point masses",
+        }
+    }
 }
 
 /// Initial values of one agent.
@@ -181,7 +250,9 @@ pub struct Start {
     pub q: Vec<f64>,
     /// q̇(0).
     pub dq: Vec<f64>,
-    /// z(0), ż(0), … z^(ℓ−1)(0); missing ones take z(0) = q̇(0) and zero derivatives.
+    /// The rest of a plant's state, if it has more than q and q̇.
+    pub rest: Vec<f64>,
+    /// z(0), ż(0), … z^(ℓ−1)(0); missing ones take z(0) = q̇(0) where q̇ is measured, else zero, and zero derivatives.
     pub reference: Vec<Vec<f64>>,
 }
 

@@ -3,6 +3,8 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
+use forwardstep_core::controller::Trouble;
+
 use crate::closed_loop::{ClosedLoop, SetupError};
 use crate::engine::{Integrator, Step};
 use crate::network::Network;
@@ -51,6 +53,11 @@ pub fn simulate(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow
             Ok(Some(step)) => {
                 if let Some(breakdown) = recorder.record(&mut integrator, &mut closed_loop, step) {
                     break Ending::BrokeDown(breakdown);
+                }
+                if let Some((agent, trouble)) = closed_loop.trouble(integrator.state()) {
+                    let Trouble::Vanishes { signal, axis, value, floor } = trouble;
+                    let cause = BreakdownCause::Vanished { value, floor };
+                    break Ending::BrokeDown(Breakdown { t_s: step.end_s, agent, signal, axis, cause });
                 }
                 if let Some(breakdown) = pace.ran_away(&integrator, &closed_loop, step.end_s) {
                     break Ending::BrokeDown(breakdown);

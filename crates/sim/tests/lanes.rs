@@ -43,8 +43,14 @@ fn arm(index: usize, order: usize) -> AgentSetup {
             adaptation: Gain::Number(10.0),
             estimate_start: vec![0.1 * index as f64; 5],
         },
-        start: Start { q: vec![some(1), some(2)], dq: vec![0.3 * some(3), 0.3 * some(4)], reference: Vec::new() },
+        start: Start {
+            q: vec![some(1), some(2)],
+            dq: vec![0.3 * some(3), 0.3 * some(4)],
+            rest: Vec::new(),
+            reference: Vec::new(),
+        },
         enforce_limits: false,
+        target: None,
         pushes: if index == 1 { vec![wrench] } else { Vec::new() },
     }
 }

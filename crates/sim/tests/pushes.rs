@@ -42,8 +42,9 @@ fn agent(kind: RobotKind, theta: Vec<f64>, axes: usize, law: Law) -> AgentSetup 
         roots_per_s: vec![1.0, 2.0],
         manipulability: 0.0,
         law,
-        start: Start { q: vec![0.0; axes], dq: vec![0.0; axes], reference: Vec::new() },
+        start: Start { q: vec![0.0; axes], dq: vec![0.0; axes], rest: Vec::new(), reference: Vec::new() },
         enforce_limits: false,
+        target: None,
         pushes: Vec::new(),
     }
 }

@@ -66,15 +66,14 @@ impl Limiter {
 
     /// Clips `tau`, `passed_s` after the last torque; the first one may be anything within the limits.
     #[inline(always)]
-    pub(crate) fn apply(&mut self, passed_s: Option<f64>, tau: &mut [f64]) {
-        for axis in 0..self.limit.len() {
-            let mut torque = tau[axis].saturate(self.limit[axis]);
+    pub fn apply(&mut self, passed_s: Option<f64>, tau: &mut [f64]) {
+        for ((tau, last), (limit, rate)) in tau.iter_mut().zip(&mut self.last).zip(self.limit.iter().zip(&self.rate)) {
+            let mut torque = tau.saturate(*limit);
             if let Some(h) = passed_s {
-                let last = self.last[axis];
-                torque = last + (torque - last).saturate(h * self.rate[axis]);
+                torque = *last + (torque - *last).saturate(h * rate);
             }
-            self.last[axis] = torque;
-            tau[axis] = torque;
+            *last = torque;
+            *tau = torque;
         }
     }
 }

@@ -45,9 +45,6 @@ use crate::plant::{Cascade, CascadeTerms, total};
 use crate::reference::Position;
 use crate::signal::{Block, Signal};
 
-/// What the law divides by.
-const DIVISOR: &str = "the factor of the input in the last step of backstepping";
-
 /// Adaptive backstepping for strict-feedback and pure-feedback chains, led by reference dynamics.
 ///
 /// State: z, ż, …, z^(ℓ−1), θ̂. Shown: the reference, e_1 … e_n, the factor of u, θ̂, and x_1 − x_d when it tracks.
@@ -242,7 +239,7 @@ impl Controller for AdaptiveBackstepping {
     }
 
     fn trouble(&self, _: &[f64], shown: &[f64]) -> Option<Trouble> {
-        vanishes(DIVISOR, *shown.get(self.vectors() + self.order)?, self.floor)
+        vanishes(*shown.get(self.vectors() + self.order)?, self.floor)
     }
 
     fn balance(

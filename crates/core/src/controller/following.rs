@@ -21,9 +21,6 @@ pub struct ChainMeasured<'a> {
     pub x: &'a [f64],
 }
 
-/// What laws for (33) divide by.
-const PSI: &str = "the factor psi of the input";
-
 /// Why there is no such law.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ChainError {
@@ -199,11 +196,11 @@ impl Following {
     /// ψ close to zero.
     pub(super) fn trouble(&self, order: usize, shown: &[f64]) -> Option<Trouble> {
         let psi = *shown.get(self.guide.vectors(order) + 1)?;
-        vanishes(PSI, psi, self.floor)
+        vanishes(psi, self.floor)
     }
 }
 
-/// What is closer to zero than it may be.
-pub(super) fn vanishes(what: &'static str, value: f64, floor: f64) -> Option<Trouble> {
-    (value.abs() < floor).then_some(Trouble::Vanishes { what, value, floor })
+/// A divisor that is closer to zero than it may be.
+pub(super) fn vanishes(value: f64, floor: f64) -> Option<Trouble> {
+    (value.abs() < floor).then_some(Trouble::Vanishes { signal: Signal::Divisor, axis: 0, value, floor })
 }

@@ -35,13 +35,13 @@ use alloc::vec::Vec;
 use crate::LengthError;
 use crate::plant::Plant;
 use crate::reference::{Exchange, Heard};
-use crate::signal::Block;
+use crate::signal::{Block, Signal};
 
 /// A number that changes with time, and its first four derivatives.
 pub type Jet = [f64; 5];
 
 /// What a controller has to go by at one instant.
-pub struct Given<'a, C: Controller + ?Sized> {
+pub struct Given<'a, C: Controller> {
     /// What it may see of its own plant.
     pub measured: C::Measured<'a>,
     /// What it hears of its neighbours.
@@ -51,12 +51,12 @@ pub struct Given<'a, C: Controller + ?Sized> {
     pub target: &'a [Jet],
 }
 
-impl<C: Controller + ?Sized> Clone for Given<'_, C> {
+impl<C: Controller> Clone for Given<'_, C> {
     fn clone(&self) -> Self {
         *self
     }
 }
-impl<C: Controller + ?Sized> Copy for Given<'_, C> {}
+impl<C: Controller> Copy for Given<'_, C> {}
 
 /// Where a controller puts its results.
 #[derive(Debug)]
@@ -91,8 +91,10 @@ pub struct Balance {
 pub enum Trouble {
     /// A quantity by which the law divides comes too close to zero.
     Vanishes {
-        /// What it is, in words.
-        what: &'static str,
+        /// What it is.
+        signal: Signal,
+        /// Its axis.
+        axis: usize,
         /// Its value.
         value: f64,
         /// What it must stay away from zero by.
@@ -104,7 +106,7 @@ pub enum Trouble {
 /// [`Controller::Measured`].
 ///
 /// Behind the check of lengths nothing panics, whatever the numbers.
-pub trait Controller: Send + Sync + 'static {
+pub trait Controller: Clone + Send + Sync + 'static {
     /// What it is made for.
     type Plant: Plant;
     /// What agents tell each other; [`crate::reference::Position`] also for those that listen to nobody.
@@ -116,6 +118,9 @@ pub trait Controller: Send + Sync + 'static {
 
     /// What it measures, in words, for people: `position`, `attitude`, ….
     const MEASURES: &'static [&'static str];
+
+    /// Whether a target may also be an offset from where all agree.
+    const KNOWS_OFFSETS: bool = false;
 
     /// Allocates working memory.
     fn scratch(&self) -> Self::Scratch;

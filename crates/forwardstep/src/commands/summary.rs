@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use comfy_table::{ContentArrangement, Table, presets};
 use forwardstep::check::Report;
 use forwardstep::io::output::names::{agent_name, axis_name, unit};
-use forwardstep::io::output::{Disagreement, Metrics, RunRecord};
+use forwardstep::io::output::{Disagreement, Gap, Metrics, RunRecord};
 use forwardstep::sim::{AxisUnit, Setup, Signal};
 
 use super::progress::speed;
@@ -18,7 +18,7 @@ pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, 
     if let Some(goal) = &record.goal {
         rows.push(("goal", format!("{}: {}", if goal.met { "met" } else { "missed" }, goal.goal.words())));
     }
-    rows.push(("final disagreement", disagreement(setup, metrics)));
+    rows.push((final_gap(setup), disagreement(setup, metrics)));
     if let Some(settled_s) = metrics.settled_s {
         rows.push(("settled after", format!("{settled_s:.2} s")));
     }
@@ -77,6 +77,14 @@ fn short(value: f64) -> String {
 
 fn verdict(report: &Report) -> String {
     format!("{}: {}", report.theorem, report.worst().words())
+}
+
+/// What remains at the end, by name.
+fn final_gap(setup: &Setup) -> &'static str {
+    match Gap::of(setup) {
+        Gap::Disagreement => "final disagreement",
+        Gap::Error => "final error",
+    }
 }
 
 fn disagreement(setup: &Setup, metrics: &Metrics) -> String {

@@ -1,7 +1,7 @@
 //! A run in a few numbers.
 
 use forwardstep_sim::recording::{Recording, Signal};
-use forwardstep_sim::setup::Setup;
+use forwardstep_sim::setup::{ReferenceKind, Setup};
 use serde::{Deserialize, Serialize};
 
 use super::number;
@@ -35,7 +35,48 @@ pub struct Metrics {
     pub agreement: Option<Vec<Agreement>>,
 }
 
-/// max |q_i − q_j| over agents and axes, rad or m, or why there is no such number.
+/// What is to vanish in a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Gap {
+    /// Between agents.
+    Disagreement,
+    /// Between agents and their targets.
+    Error,
+}
+
+impl Gap {
+    /// What is to vanish in a run of `setup`.
+    pub fn of(setup: &Setup) -> Gap {
+        if setup.reference == ReferenceKind::Tracking { Gap::Error } else { Gap::Disagreement }
+    }
+
+    /// `Disagreement` or `Error`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Gap::Disagreement => "Disagreement",
+            Gap::Error => "Error",
+        }
+    }
+
+    /// The name in the middle of a sentence.
+    pub fn word(self) -> &'static str {
+        match self {
+            Gap::Disagreement => "disagreement",
+            Gap::Error => "error",
+        }
+    }
+
+    /// How it is measured.
+    pub fn formula(self) -> &'static str {
+        match self {
+            Gap::Disagreement => "max |qᵢ − qⱼ|",
+            Gap::Error => "max |error|",
+        }
+    }
+}
+
+/// max |q_i − q_j| over agents and axes, less their offsets, or max |error| where agents have targets; rad or m. Or why
+/// there is no such number.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Disagreement {
@@ -215,6 +256,9 @@ impl DisagreementSeries {
     }
 
     pub(crate) fn of_table(table: &Table<'_>) -> Result<Self, Absence> {
+        if Gap::of(table.setup) == Gap::Error {
+            return Self::of_errors(table);
+        }
         let agents = &table.setup.agents;
         let [first, others @ ..] = agents.as_slice() else { return Err(Absence::FewerThanTwoAgents) };
         if others.is_empty() {
@@ -235,16 +279,47 @@ impl DisagreementSeries {
             let mut high = vec![f64::NEG_INFINITY; rows];
             for agent in 0..agents.len() {
                 let q = table.column(agent, Signal::Position, axis).ok_or(Absence::NotRecorded { agent })?;
+                let offset = table.column(agent, Signal::Offset, axis);
                 for row in 0..rows {
-                    let q = q.get(row).copied().unwrap_or(f64::NAN);
+                    let away = offset.and_then(|offset| offset.get(row)).copied().unwrap_or(0.0);
+                    let q = q.get(row).map_or(f64::NAN, |q| q - away);
                     low[row] = lesser(low[row], q);
                     high[row] = greater(high[row], q);
                 }
             }
             per_axis.push(low.iter().zip(&high).map(|(low, high)| high - low).collect::<Vec<_>>());
         }
+        Ok(Self::largest(rows, per_axis))
+    }
+
+    /// The largest |error| of all agents.
+    fn of_errors(table: &Table<'_>) -> Result<Self, Absence> {
+        let rows = table.t_s.len();
+        if rows == 0 {
+            return Err(Absence::NoRows);
+        }
+        let mut per_axis: Vec<Vec<f64>> = Vec::new();
+        for agent in 0..table.setup.agents.len() {
+            let mut axis = 0;
+            while let Some(errors) = table.column(agent, Signal::Error, axis) {
+                if per_axis.len() <= axis {
+                    per_axis.push(vec![0.0; rows]);
+                }
+                for (worst, error) in per_axis[axis].iter_mut().zip(errors) {
+                    *worst = greater(*worst, error.abs());
+                }
+                axis += 1;
+            }
+            if axis == 0 {
+                return Err(Absence::NotRecorded { agent });
+            }
+        }
+        Ok(Self::largest(rows, per_axis))
+    }
+
+    fn largest(rows: usize, per_axis: Vec<Vec<f64>>) -> Self {
         let overall = (0..rows).map(|row| per_axis.iter().map(|axis| axis[row]).fold(0.0, greater)).collect();
-        Ok(DisagreementSeries { overall, per_axis })
+        DisagreementSeries { overall, per_axis }
     }
 }
 
@@ -266,7 +341,7 @@ impl Metrics {
             rows: table.t_s.len(),
             last_t_s: table.t_s.last().copied(),
             settled_s: match (&series, goal) {
-                (Ok(series), Some(Goal::DisagreementBelow(bound))) => settled(table.t_s, &series.overall, bound),
+                (Ok(series), Some(goal)) => goal.bound().and_then(|bound| settled(table.t_s, &series.overall, bound)),
                 _ => None,
             },
             disagreement: match &series {

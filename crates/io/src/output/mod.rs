@@ -48,7 +48,7 @@ pub use error::{Action, EncodeError, OutputError};
 pub use folder::RunFolder;
 use folder::Staging;
 pub use metrics::{
-    Absence, Agreement, Disagreement, DisagreementSeries, LEDGER_FLOOR_J, LedgerError, LimitKind, LimitReached,
+    Absence, Agreement, Disagreement, DisagreementSeries, Gap, LEDGER_FLOOR_J, LedgerError, LimitKind, LimitReached,
     Metrics, Peak, Speed,
 };
 pub use packets::Link;

@@ -82,12 +82,13 @@ pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String 
         _ => "rad",
     };
     match signal {
-        Signal::Position | Signal::Error => length.into(),
+        Signal::Position | Signal::Error | Signal::Offset => length.into(),
         Signal::Velocity | Signal::TrackingError | Signal::Filter | Signal::Reference(0) => format!("{length}/s"),
         Signal::Reference(k) => format!("{length}/s^{}", u32::from(k) + 1),
         Signal::Torque | Signal::External if length == "m" => "N".into(),
         Signal::Torque | Signal::External => "N m".into(),
-        Signal::Estimate => "SI".into(),
+        Signal::Derivative(k) => format!("{length}/s^{k}"),
+        Signal::Estimate | Signal::Coordinate(_) | Signal::Divisor => "SI".into(),
         Signal::Lyapunov | Signal::Dissipation => "J".into(),
     }
 }

@@ -50,6 +50,8 @@ impl RunRecord<'_> {
 pub enum Goal {
     /// The run completes and max |q_i − q_j| at its end is below this, rad or m.
     DisagreementBelow(f64),
+    /// The run completes and no agent is further from its target on any axis at its end, rad or m.
+    ErrorBelow(f64),
     /// The run must not agree: see [`Goal::is_met`].
     ExpectDiverges,
 }
@@ -61,7 +63,7 @@ impl Goal {
     /// finite, or exceeds in the last quarter of the run everything seen in the first quarter.
     pub fn is_met(&self, setup: &Setup, outcome: &Outcome, metrics: &Metrics) -> bool {
         match *self {
-            Goal::DisagreementBelow(bound) => {
+            Goal::DisagreementBelow(bound) | Goal::ErrorBelow(bound) => {
                 outcome.ending == Ending::Completed && metrics.disagreement.last().is_some_and(|last| last < bound)
             }
             Goal::ExpectDiverges => match &outcome.ending {
@@ -71,10 +73,19 @@ impl Goal {
         }
     }
 
+    /// The bound on what remains at the end, if it is one.
+    pub fn bound(&self) -> Option<f64> {
+        match *self {
+            Goal::DisagreementBelow(bound) | Goal::ErrorBelow(bound) => Some(bound),
+            Goal::ExpectDiverges => None,
+        }
+    }
+
     /// The goal in words.
     pub fn words(&self) -> String {
         match self {
             Goal::DisagreementBelow(bound) => format!("disagreement below {bound} at the end"),
+            Goal::ErrorBelow(bound) => format!("error below {bound} at the end"),
             Goal::ExpectDiverges => "the run is expected to diverge".into(),
         }
     }
@@ -106,6 +117,10 @@ pub fn ending_sentence(setup: &Setup, ending: &Ending) -> String {
                 BreakdownCause::RanAway { value, steps } => format!(
                     "ran away: it is {value:.2e}, and {steps} steps did not reach the next sample; sample faster, or let K or \
                      the delay of the torque be smaller"
+                ),
+                BreakdownCause::Vanished { value, floor } => format!(
+                    "is {value:.3e}: the law divides by it, and it must stay away from zero by {floor}; start elsewhere, or \
+                     choose slower gains"
                 ),
                 BreakdownCause::PositionLimit { value, limits: [low, high] } => {
                     format!("left its limits [{low}, {high}]: it is {value}")

@@ -161,6 +161,15 @@ pub enum Cause {
         /// Steps since the last sample.
         steps: u64,
     },
+    /// What the law divides by came too close to zero.
+    Vanished {
+        /// Its value.
+        #[serde(deserialize_with = "number::or_nan")]
+        value: f64,
+        /// How close it may come.
+        #[serde(deserialize_with = "number::or_nan")]
+        floor: f64,
+    },
     /// An enforced position limit was left.
     PositionLimit {
         /// The position, rad or m.
@@ -178,6 +187,9 @@ pub struct GoalMet {
     /// Bound on the final disagreement.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub disagreement_below: Option<f64>,
+    /// Bound on the final error.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error_below: Option<f64>,
     /// True when the run was expected to diverge.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub expect_diverges: bool,
@@ -260,7 +272,11 @@ impl Summary {
             goal: record.goal.map(|outcome| GoalMet {
                 disagreement_below: match outcome.goal {
                     Goal::DisagreementBelow(bound) => Some(bound),
-                    Goal::ExpectDiverges => None,
+                    _ => None,
+                },
+                error_below: match outcome.goal {
+                    Goal::ErrorBelow(bound) => Some(bound),
+                    _ => None,
                 },
                 expect_diverges: outcome.goal == Goal::ExpectDiverges,
                 met: outcome.met,
@@ -305,6 +321,7 @@ impl How {
                     BreakdownCause::NotFinite => Cause::NotFinite,
                     BreakdownCause::StepUnderFloor { step_s } => Cause::StepUnderFloor { step_s },
                     BreakdownCause::RanAway { value, steps } => Cause::RanAway { value, steps },
+                    BreakdownCause::Vanished { value, floor } => Cause::Vanished { value, floor },
                     BreakdownCause::PositionLimit { value, limits } => Cause::PositionLimit { value, limits },
                 };
                 let column = names::column_name(setup, breakdown.agent, breakdown.signal, breakdown.axis);
@@ -330,6 +347,7 @@ impl How {
                     Cause::NotFinite => BreakdownCause::NotFinite,
                     Cause::StepUnderFloor { step_s } => BreakdownCause::StepUnderFloor { step_s },
                     Cause::RanAway { value, steps } => BreakdownCause::RanAway { value, steps },
+                    Cause::Vanished { value, floor } => BreakdownCause::Vanished { value, floor },
                     Cause::PositionLimit { value, limits } => {
                         // JSON has no infinity. The table has, and ends with the row that broke the run.
                         let last = broken.values.last().copied().unwrap_or(f64::NAN);

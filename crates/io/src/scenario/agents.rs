@@ -18,6 +18,8 @@ use super::problem::ScenarioProblem;
 use super::robots::{ReadRobot, Stop, robot};
 use super::spread::{spread, tip};
 use super::start::{Shared, Starter, start};
+use super::systems_file::TrackingFile;
+use super::target::target;
 use crate::SourceText;
 
 /// Agents that are accepted.
@@ -57,6 +59,7 @@ pub(super) fn agents(
     source: &SourceText,
     folder: &mut InputFolder,
     notices: &mut Vec<Notice>,
+    end_s: f64,
 ) -> Result<Agents, Stop> {
     let mut populations: Vec<Population<'_>> = Vec::new();
     let mut seen = HashMap::new();
@@ -111,6 +114,7 @@ pub(super) fn agents(
                 roots_per_s,
                 manipulability,
                 enforce_limits,
+                target: entry.target.as_ref().map(|file| target(file, name, robot.axes.len(), end_s)).transpose()?,
                 pushes: Vec::new(),
                 name: name.clone(),
             });
@@ -168,6 +172,25 @@ struct Design {
     free_derivatives: usize,
 }
 
+/// The agent's own roots, else those of all; not all laws that track need any.
+fn tracked(common: &TrackingFile, own: Option<&TrackingFile>) -> Result<Design, Fault> {
+    let list = own.and_then(|own| own.roots_per_s.as_ref()).or(common.roots_per_s.as_ref());
+    let roots_per_s = match list {
+        None => Vec::new(),
+        Some(list) => roots(list)?,
+    };
+    Ok(Design { free_derivatives: roots_per_s.len(), roots_per_s, manipulability: 0.0 })
+}
+
+/// Positive roots, as many as are accepted.
+fn roots(list: &At<Vec<At<f64>>>) -> Result<Vec<f64>, Fault> {
+    let roots = filled("roots_per_s", list)?;
+    if roots.len() > MOST_ROOTS {
+        return Err(fault(list, ScenarioProblem::Order { found: roots.len(), most: MOST_ROOTS }));
+    }
+    roots.iter().map(|root| positive("roots_per_s", root)).collect()
+}
+
 /// The agent's own roots and gain, else those of all.
 fn design(file: &ScenarioFile, entry: &AgentFile, agent: &str) -> Result<Design, Fault> {
     let own = entry.reference.as_ref();
@@ -177,6 +200,10 @@ fn design(file: &ScenarioFile, entry: &AgentFile, agent: &str) -> Result<Design,
         | (ReferenceFile::PureIntegral(common), Some(AgentReferenceFile::PureIntegral(own))) => (common, Some(own)),
         (ReferenceFile::Backstepping(_), None) => {
             return Ok(Design { roots_per_s: Vec::new(), manipulability: 0.0, free_derivatives: 0 });
+        }
+        (ReferenceFile::Tracking(common), None) => return tracked(common, None),
+        (ReferenceFile::Tracking(common), Some(AgentReferenceFile::Tracking(own))) => {
+            return tracked(common, Some(own));
         }
         (common, Some(_)) => {
             let problem = ScenarioProblem::ReferenceDiffers { agent: agent.to_owned(), common: common.key() };
@@ -188,14 +215,10 @@ fn design(file: &ScenarioFile, entry: &AgentFile, agent: &str) -> Result<Design,
     let Some(list) = list else {
         return Err(fault(&file.reference, ScenarioProblem::NoRoots { agent: agent.to_owned() }));
     };
-    let roots = filled("roots_per_s", list)?;
-    if roots.len() > MOST_ROOTS {
-        return Err(fault(list, ScenarioProblem::Order { found: roots.len(), most: MOST_ROOTS }));
+    let roots_per_s = roots(list)?;
+    if matches!(file.reference.value, ReferenceFile::PureIntegral(_)) && roots_per_s.len() != 2 {
+        return Err(fault(list, ScenarioProblem::TwoRoots { found: roots_per_s.len() }));
     }
-    if matches!(file.reference.value, ReferenceFile::PureIntegral(_)) && roots.len() != 2 {
-        return Err(fault(list, ScenarioProblem::TwoRoots { found: roots.len() }));
-    }
-    let roots_per_s = roots.iter().map(|root| positive("roots_per_s", root)).collect::<Result<Vec<_>, _>>()?;
     let gain = own.and_then(|own| own.manipulability_gain.as_ref()).or(common.manipulability_gain.as_ref());
     let manipulability = match gain {
         None => 0.0,

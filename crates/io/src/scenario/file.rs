@@ -7,6 +7,7 @@ use super::at::At;
 use super::control_file::ControlFile;
 use super::network_file::NetworkFile;
 use super::push_file::PushFile;
+use super::systems_file::{PositionOnlyFile, TargetFile, TrackingFile};
 use super::values::{GainFile, GainOrBandwidth, Named, NotNegative, Positive, StartValues};
 
 /// A forwardstep scenario: a network of robots, how they are controlled, and how long to watch them.
@@ -27,11 +28,11 @@ pub struct ScenarioFile {
     /// The reference dynamics of all agents.
     pub reference: At<ReferenceFile>,
     /// The tracking law of all agents that have none of their own.
-    pub law: Option<LawFile>,
+    pub law: Option<At<LawFile>>,
     /// Where agents start that say nothing of their own.
     pub start: Option<At<StartFile>>,
-    /// Who hears whom, when, and how late.
-    pub network: At<NetworkFile>,
+    /// Who hears whom, when, and how late. Not needed where every agent follows a target of its own.
+    pub network: Option<At<NetworkFile>>,
     /// How the controllers sample. Default: they work in continuous time, as in the paper.
     pub control: Option<ControlFile>,
     /// What acts on the agents from outside: forces, torques and hands.
@@ -75,7 +76,9 @@ pub struct AgentFile {
     /// Reference dynamics of its own.
     pub reference: Option<At<AgentReferenceFile>>,
     /// A tracking law of its own.
-    pub law: Option<LawFile>,
+    pub law: Option<At<LawFile>>,
+    /// Where it should be; among agents that agree, its offset from where all of them are.
+    pub target: Option<At<TargetFile>>,
     /// Clip torques at the effort limits of the robot, and end the run when a joint leaves its position limits.
     /// Otherwise limits are only reported. Default: false.
     pub enforce_limits: Option<At<bool>>,
@@ -203,6 +206,8 @@ pub enum ReferenceFile {
     PureIntegral(ConsensusFile),
     /// The baseline (aa6) that differentiates what it hears; positions are exchanged.
     Backstepping(BacksteppingFile),
+    /// No agreement: every agent follows a target of its own.
+    Tracking(TrackingFile),
 }
 
 impl ReferenceFile {
@@ -212,6 +217,7 @@ impl ReferenceFile {
             ReferenceFile::Consensus(_) => "consensus",
             ReferenceFile::PureIntegral(_) => "pure_integral",
             ReferenceFile::Backstepping(_) => "backstepping",
+            ReferenceFile::Tracking(_) => "tracking",
         }
     }
 }
@@ -257,6 +263,8 @@ pub enum AgentReferenceFile {
     Consensus(AgentConsensusFile),
     /// Agreement over a fixed graph.
     PureIntegral(AgentConsensusFile),
+    /// A target of its own.
+    Tracking(TrackingFile),
 }
 
 /// Reference dynamics of one agent.
@@ -278,6 +286,8 @@ pub enum LawFile {
     Adaptive(AdaptiveFile),
     /// The parameters of the robot are known.
     Known(KnownFile),
+    /// A point mass of unknown mass whose velocity is not measured: (a8) of the paper.
+    PositionOnly(PositionOnlyFile),
 }
 
 /// The adaptive tracking law.
@@ -379,6 +389,9 @@ pub struct GoalFile {
     /// Agreement: at the end no two agents are further apart than this on any axis, in rad or m.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub disagreement_below: Option<At<f64>>,
+    /// Tracking: at the end no agent is further from its target than this on any axis, in rad or m.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub error_below: Option<At<f64>>,
     /// Whether the agents are expected to agree (the default) or to end further apart than they began.
     pub expect: Option<At<ExpectFile>>,
 }

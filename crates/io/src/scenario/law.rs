@@ -4,9 +4,10 @@ use forwardstep_core::{Gain, GainError};
 use forwardstep_sim::{Law, RobotKind, RobotSetup};
 
 use super::at::At;
-use super::fault::{Fault, fault, positive, values};
+use super::fault::{Fault, fault, not_negative, positive, values};
 use super::file::{AdaptiveFile, DampingFile, EstimateStartFile, KnownFile, LawFile};
 use super::problem::ScenarioProblem;
+use super::systems_file::PositionOnlyFile;
 use super::values::{GainFile, GainOrBandwidth, Item};
 
 /// The gains of arms from a URDF, whose inertias span decades.
@@ -15,20 +16,48 @@ const ADAPTATION_BANDWIDTH_PER_S: f64 = 5.0;
 /// The gains of planar arms and point masses, as in the paper.
 const DAMPING_GAIN: f64 = 8.0;
 const ADAPTATION_GAIN: f64 = 10.0;
+/// Of the filter that stands in for a velocity.
+const FILTER_PER_S: f64 = 10.0;
 
 /// Builds the law of `agent`; without a file, the adaptive one with default gains.
-pub(super) fn law(file: Option<&LawFile>, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
-    let default = LawFile::Adaptive(AdaptiveFile::default());
-    match file.unwrap_or(&default) {
+pub(super) fn law(file: Option<&At<LawFile>>, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
+    match file {
+        None => build(&LawFile::Adaptive(AdaptiveFile::default()), agent, robot),
+        Some(file) => build(&file.value, agent, robot).map_err(|fault| fault.at(&file.span)),
+    }
+}
+
+fn build(file: &LawFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
+    match file {
         LawFile::Known(KnownFile { damping }) => {
             Ok(Law::Known { damping: self::damping(damping.as_ref(), agent, robot)? })
         }
+        LawFile::PositionOnly(file) => position_only(file, agent, robot),
         LawFile::Adaptive(file) => Ok(Law::Adaptive {
             damping: damping(file.damping.as_ref(), agent, robot)?,
             adaptation: adaptation(file.adaptation_gain.as_ref(), agent, robot)?,
             estimate_start: estimate(file.estimate_start.as_ref(), agent, robot)?,
         }),
     }
+}
+
+/// (a8), with gains that suit a mass of about a kilogram.
+fn position_only(file: &PositionOnlyFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
+    let PositionOnlyFile { damping, filter_per_s, adaptation_gain, estimate_start_kg } = file;
+    if !matches!(robot.kind, RobotKind::PointMass { .. }) {
+        let agent = agent.to_owned();
+        return Err(Fault::new(ScenarioProblem::LawOfAnother {
+            agent,
+            law: "position_only",
+            made_for: "point masses",
+        }));
+    }
+    Ok(Law::PositionOnly {
+        damping: damping.as_ref().map_or(Ok(DAMPING_GAIN), |k| positive("damping", k))?,
+        filter_per_s: filter_per_s.as_ref().map_or(Ok(FILTER_PER_S), |rate| positive("filter_per_s", rate))?,
+        adaptation: adaptation_gain.as_ref().map_or(Ok(ADAPTATION_GAIN), |g| not_negative("adaptation_gain", g))?,
+        estimate_start: estimate_start_kg.as_ref().map_or(0.0, |start| start.value),
+    })
 }
 
 fn damping(file: Option<&DampingFile>, agent: &str, robot: &RobotSetup) -> Result<Gain, Fault> {

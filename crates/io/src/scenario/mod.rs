@@ -61,14 +61,16 @@ mod robots;
 mod shipped;
 mod spread;
 mod start;
+pub mod systems_file;
 mod table;
+mod target;
 mod template;
 pub mod values;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use forwardstep_sim::{AgentSetup, Exchange, Law, Method, ReferenceKind, Setup, Solver, TimeSpan};
+use forwardstep_sim::{AgentSetup, Exchange, Law, Method, ReferenceKind, Setup, Solver, TimeSpan, recorded_columns};
 use miette::Diagnostic;
 use serde::Deserialize;
 use toml::Spanned;
@@ -193,13 +195,17 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
     let end_s = positive("end_s", &file.time.end_s)?;
     let every = file.time.record_every_s.as_ref();
     let record_every_s = every.map_or(Ok(RECORD_EVERY_S), |every| positive("record_every_s", every))?;
-    let mut read = agents::agents(&file, source, &mut folder, &mut notices)?;
+    let mut read = agents::agents(&file, source, &mut folder, &mut notices, end_s)?;
     pushes::pushes(&file.pushes, &mut read, end_s, source, &mut folder, &mut notices)?;
     let agents = read.agents;
     let names: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
-    let network = network::network(&file.network.value, &names, end_s, source, &mut folder, &mut notices)
-        .map_err(|fault| fault.at(&file.network.span))?;
     let (reference, exchange) = reference(&file.reference.value)?;
+    let network = match &file.network {
+        Some(network) => network::network(&network.value, &names, end_s, source, &mut folder, &mut notices)
+            .map_err(|fault| fault.at(&network.span))?,
+        None if reference == ReferenceKind::Tracking => network::silent(names.len()),
+        None => return Err(fault(&file.reference, NetworkProblem::Missing).into()),
+    };
     let axes = agents.first().map_or(0, |agent| agent.robot.axes.len());
     let control = file.control.as_ref().map(|file| control::control(file, axes, end_s)).transpose()?;
     let setup = Setup {
@@ -215,13 +221,19 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
         messages_fit(&setup, &file.sample_hz)?;
     }
     notices.extend(Notice::coarse_sampling(&setup));
-    recording_fits(&setup, every.unwrap_or(&file.time.end_s))?;
+    let columns = if setup.agents.iter().all(|agent| agent.law.is_lagrangian()) {
+        setup.agents.iter().map(columns).sum()
+    } else {
+        recorded_columns(&setup).map_err(|error| Fault::new(ScenarioProblem::Setup(error)))?.len()
+    };
+    recording_fits(&setup, columns, every.unwrap_or(&file.time.end_s))?;
+    let goal = file.goal.as_ref().map(|file| goal(file, reference)).transpose()?;
     Ok(Scenario {
         name: name.to_owned(),
         source: source.clone(),
         title: file.title.unwrap_or_else(|| name.to_owned()),
         setup,
-        goal: file.goal.as_ref().map(goal).transpose()?,
+        goal,
         notices,
         inputs: folder.into_read(),
     })
@@ -263,6 +275,7 @@ fn reference(file: &ReferenceFile) -> Result<(ReferenceKind, Exchange), Fault> {
             let acceleration_limit = limit.map(|limit| positive("acceleration_limit", limit)).transpose()?;
             (ReferenceKind::Backstepping { filter_s, acceleration_limit }, Exchange::Position)
         }
+        ReferenceFile::Tracking(_) => (ReferenceKind::Tracking, Exchange::Position),
     })
 }
 
@@ -298,19 +311,31 @@ fn solver(file: Option<&SolverFile>) -> Result<Solver, Fault> {
     Ok(Solver { method, max_step_s, min_step_s, ledger: file.ledger.unwrap_or(default.ledger) })
 }
 
-fn goal(file: &At<GoalFile>) -> Result<Goal, Fault> {
-    let below = &file.value.disagreement_below;
-    match (file.value.expect.as_ref().map(|expect| expect.value), below) {
+fn goal(file: &At<GoalFile>, reference: ReferenceKind) -> Result<Goal, Fault> {
+    let GoalFile { disagreement_below, error_below, expect } = &file.value;
+    if let (Some(_), Some(second)) = (disagreement_below, error_below) {
+        return Err(fault(second, ScenarioProblem::TwoGoals));
+    }
+    let below = disagreement_below.as_ref().map(|below| ("disagreement_below", below));
+    let below = below.or(error_below.as_ref().map(|below| ("error_below", below)));
+    match (expect.as_ref().map(|expect| expect.value), below) {
         (Some(ExpectFile::Diverges), None) => Ok(Goal::ExpectDiverges),
-        (Some(ExpectFile::Diverges), Some(below)) => Err(fault(below, ScenarioProblem::ThresholdUnused)),
-        (_, Some(below)) => Ok(Goal::DisagreementBelow(positive("disagreement_below", below)?)),
+        (Some(ExpectFile::Diverges), Some((key, below))) => Err(fault(below, ScenarioProblem::ThresholdUnused { key })),
         (_, None) => Err(fault(file, ScenarioProblem::EmptyGoal)),
+        (_, Some((key, below))) => {
+            let bound = positive(key, below)?;
+            match (key, reference) {
+                ("error_below", ReferenceKind::Tracking) => Ok(Goal::ErrorBelow(bound)),
+                ("error_below", _) => Err(fault(below, ScenarioProblem::NothingTracked)),
+                (_, ReferenceKind::Tracking) => Err(fault(below, ScenarioProblem::NothingAgreed)),
+                _ => Ok(Goal::DisagreementBelow(bound)),
+            }
+        }
     }
 }
 
 /// Refuses a recording beyond any memory, before anything is computed. `place` is what is too small, or too large.
-fn recording_fits(setup: &Setup, place: &At<f64>) -> Result<(), Fault> {
-    let columns: usize = setup.agents.iter().map(columns).sum();
+fn recording_fits(setup: &Setup, columns: usize, place: &At<f64>) -> Result<(), Fault> {
     let rows = (setup.time.end_s / setup.time.record_every_s).floor() + 2.0;
     if rows * columns as f64 <= MOST_RECORDED {
         return Ok(());
@@ -340,7 +365,7 @@ fn columns(agent: &AgentSetup) -> usize {
     let per_axis = 4 + agent.roots_per_s.len().max(2) + usize::from(!agent.pushes.is_empty());
     let estimates = match agent.law {
         Law::Adaptive { .. } => agent.robot.theta.len(),
-        Law::Known { .. } => 0,
+        _ => 0,
     };
     per_axis * agent.robot.axes.len() + estimates + 2
 }

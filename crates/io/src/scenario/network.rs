@@ -65,6 +65,11 @@ pub(super) fn network(
     Ok(Network { agents: names.len(), schedule, delays: reader.delays, weights: reader.weights })
 }
 
+/// A network in which nobody hears anybody.
+pub(super) fn silent(agents: usize) -> Network {
+    Network { agents, schedule: Schedule::Fixed(Vec::new()), delays: Vec::new(), weights: Vec::new() }
+}
+
 /// What is known while a network is read.
 pub(super) struct NetworkReader<'a> {
     pub(super) names: &'a [String],

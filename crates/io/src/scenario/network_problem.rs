@@ -46,6 +46,9 @@ pub enum NetworkProblem {
     /// Both a fixed graph and phases.
     #[error("`edges` and `phases` are both given, but a network is either fixed or switches")]
     EdgesAndPhases,
+    /// Agents that are to agree need one.
+    #[error("there is no network, but the agents are to agree")]
+    Missing,
     /// Neither a fixed graph nor phases.
     #[error("the network has neither `edges` nor `phases`")]
     NoGraph,
@@ -184,6 +187,7 @@ impl NetworkProblem {
         let text = match self {
             NetworkProblem::Topology(_) => "an agent hears nobody twice, and never itself".into(),
             NetworkProblem::EdgesAndPhases => "move the edges into a phase, or delete the phases".into(),
+            NetworkProblem::Missing => "say who hears whom: `[network]` with `edges`".into(),
             NetworkProblem::NoGraph => "for agents that never hear each other write `edges = []`".into(),
             NetworkProblem::NoDwell { .. } => {
                 "only the last phase of a network that switches \"once\" needs none, and random switching".into()

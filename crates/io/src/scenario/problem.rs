@@ -1,6 +1,7 @@
 //! Why a scenario is refused.
 
 use forwardstep_core::GainError;
+use forwardstep_sim::SetupError;
 use thiserror::Error;
 
 use super::control_problem::ControlProblem;
@@ -411,8 +412,40 @@ pub enum ScenarioProblem {
     #[error("the goal says nothing about the disagreement")]
     EmptyGoal,
     /// A threshold that is not used.
-    #[error("`disagreement_below` says nothing about agents that diverge")]
-    ThresholdUnused,
+    #[error("`{key}` says nothing about agents that diverge")]
+    ThresholdUnused {
+        /// The threshold.
+        key: &'static str,
+    },
+    /// Two goals.
+    #[error("`disagreement_below` and `error_below` are both given")]
+    TwoGoals,
+    /// An error, but no target.
+    #[error("`error_below` is about targets, but the agents agree with each other")]
+    NothingTracked,
+    /// A disagreement among agents that do not agree.
+    #[error("`disagreement_below` is about agreement, but every agent follows a target of its own")]
+    NothingAgreed,
+
+    /// A target that has no value somewhere on the run.
+    #[error("this has no finite value everywhere from 0 s to {end_s} s, or that could not be shown")]
+    TargetValue {
+        /// The end of the run, s.
+        end_s: f64,
+    },
+    /// A law that is made for something else.
+    #[error("agent `{agent}`: the law `{law}` is made for {made_for}")]
+    LawOfAnother {
+        /// The agent.
+        agent: String,
+        /// The law's key.
+        law: &'static str,
+        /// What it is made for, in words.
+        made_for: &'static str,
+    },
+    /// What the closed loop refuses although every number by itself has a meaning.
+    #[error("{0}")]
+    Setup(SetupError),
 }
 
 impl Problem for ScenarioProblem {
@@ -478,9 +511,12 @@ impl Problem for ScenarioProblem {
             }
             ScenarioProblem::TooManyEvents { .. } => "is a unit of time mistaken? All of them are seconds".into(),
             ScenarioProblem::EmptyGoal => {
-                "set `disagreement_below = 1e-3`, or `expect = \"diverges\"`, or delete the goal".into()
+                "set `disagreement_below = 1e-3` (with targets `error_below`), or `expect = \"diverges\"`, or delete the goal".into()
             }
-            ScenarioProblem::ThresholdUnused => "delete one of the two".into(),
+            ScenarioProblem::ThresholdUnused { .. } | ScenarioProblem::TwoGoals => "delete one of the two".into(),
+            ScenarioProblem::NothingTracked => "write `disagreement_below`".into(),
+            ScenarioProblem::NothingAgreed => "write `error_below`".into(),
+            ScenarioProblem::TargetValue { .. } => "roots, logarithms and quotients need arguments that stay where they have values".into(),
             _ => return None,
         };
         Some(text)

@@ -122,7 +122,8 @@ pub enum CourseFile {
 }
 
 /// A number, or a formula in t.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, JsonSchema)]
+#[schemars(untagged)]
 pub enum FunctionFile {
     /// Always the same.
     Number(f64),

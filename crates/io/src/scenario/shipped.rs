@@ -16,7 +16,7 @@ macro_rules! shipped {
 }
 
 /// All of them; the first is the one to begin with.
-pub const SHIPPED_SCENARIOS: [ShippedScenario; 13] = shipped![
+pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "six-arms",
     "first-order",
     "theorem-1",
@@ -30,11 +30,13 @@ pub const SHIPPED_SCENARIOS: [ShippedScenario; 13] = shipped![
     "backstepping",
     "from-a-log",
     "six-arms-over-radio",
+    "without-velocity",
+    "double-integrators",
 ];
 
 /// The shipped scenario of this name.
 pub fn shipped_scenario(name: &str) -> Option<ShippedScenario> {
-    SHIPPED_SCENARIOS.into_iter().find(|scenario| scenario.name == name)
+    SHIPPED_SCENARIOS.iter().find(|scenario| scenario.name == name).copied()
 }
 
 /// A table embedded in the program, which shipped scenarios name.

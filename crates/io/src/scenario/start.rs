@@ -70,7 +70,7 @@ pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<
             reference.push(agent.vector("derivatives", derivative, table, Stream::Reference(k + 1))?);
         }
     }
-    Ok(Start { q, dq, reference })
+    Ok(Start { q, dq, rest: Vec::new(), reference })
 }
 
 impl Starter<'_> {

@@ -48,6 +48,7 @@ fn arms_from_a_urdf_have_bandwidths_by_default_and_others_numbers() {
     let gains = |k: usize| match &setup.agents[k].law {
         Law::Adaptive { damping, adaptation, .. } => (damping.clone(), adaptation.clone()),
         Law::Known { damping } => (damping.clone(), Gain::Number(0.0)),
+        law => panic!("{}", law.words()),
     };
     assert_eq!(gains(0), (Gain::Bandwidth(20.0), Gain::Bandwidth(5.0)));
     assert_eq!(gains(2), (Gain::Number(8.0), Gain::Number(10.0)));
@@ -82,7 +83,7 @@ fn estimates_start_as_they_are_told() {
             Law::Adaptive { estimate_start, .. } => {
                 estimate_start.iter().zip(&arm.robot.theta).map(|(a, b)| a / b).collect()
             }
-            Law::Known { .. } => Vec::new(),
+            _ => Vec::new(),
         }
     };
     assert_eq!(first("estimate_start = \"true\""), [1.0; 5]);

@@ -40,8 +40,9 @@ pub fn agent(name: &str, dof: usize, parameters: usize) -> AgentSetup {
             adaptation: Gain::Number(10.0),
             estimate_start: vec![0.0; parameters],
         },
-        start: Start { q: vec![0.0; dof], dq: vec![0.0; dof], reference: Vec::new() },
+        start: Start { q: vec![0.0; dof], dq: vec![0.0; dof], rest: Vec::new(), reference: Vec::new() },
         enforce_limits: false,
+        target: None,
         pushes: Vec::new(),
     }
 }

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use forwardstep_core::controller::Trouble;
 use forwardstep_core::reference::{Exchange as CoreExchange, Position, PositionVelocity};
 
 use super::members::{population, populations};
@@ -11,7 +12,7 @@ use super::sampling::Sampling;
 use super::valid::{SetupError, check};
 use crate::engine::{DelaySystem, Happened, Heard, Port};
 use crate::recording::Signal;
-use crate::setup::{AgentSetup, Exchange, Law, Setup};
+use crate::setup::{Exchange, Setup};
 
 /// All populations and where their blocks stand.
 pub(crate) struct ClosedLoop<'a> {
@@ -22,6 +23,8 @@ pub(crate) struct ClosedLoop<'a> {
     /// When control is digital.
     sampling: Option<Sampling<'a>>,
     pushes: Pushes,
+    /// When a target has its next kink, s.
+    kink_s: f64,
     /// A row of the recording of an agent that is pushed.
     row: Vec<f64>,
 }
@@ -66,6 +69,7 @@ impl<'a> ClosedLoop<'a> {
             start: Vec::new(),
             sampling: None,
             pushes: Pushes::default(),
+            kink_s: f64::INFINITY,
             row: Vec::new(),
         };
         let mut placed = 0;
@@ -73,7 +77,7 @@ impl<'a> ClosedLoop<'a> {
             let n = group.len();
             let columns = population::<X>(setup, &group)?;
             let first = closed_loop.start.len();
-            closed_loop.append_start(setup, &group, &*columns);
+            columns.append_start(&setup.agents, &mut closed_loop.start);
             for (i, &agent) in group.iter().enumerate() {
                 closed_loop.ports[agent] =
                     Port { state: first + i, entry: placed * entries + i, degree: placed + i, stride: n };
@@ -96,37 +100,10 @@ impl<'a> ClosedLoop<'a> {
             blocks.iter().find(|block| block.degree.contains(&degree)).map_or(0, |block| block.degree.start)
         };
         closed_loop.pushes = Pushes::new(setup, &closed_loop.ports, |degree| first_of(&closed_loop.blocks, degree));
+        closed_loop.kink_s = closed_loop.next_kink_s(0.0);
         let longest = closed_loop.blocks.iter().map(|block| block.columns.signals().len()).max();
         closed_loop.row = Vec::with_capacity(longest.unwrap_or(0) + axes);
         Ok(closed_loop)
-    }
-
-    /// The initial state of one block, in the order that [`super::population`] documents.
-    ///
-    /// The reference state is filled with the wanted z(0), ż(0), … for [`ClosedLoop::start_references`] to replace.
-    fn append_start(&mut self, setup: &Setup, group: &[usize], columns: &dyn Columns) {
-        let first = self.start.len();
-        let agents = || group.iter().map(|&agent| &setup.agents[agent]);
-        let axes = setup.agents[group[0]].robot.axes.len();
-        for axis in 0..axes {
-            self.start.extend(agents().map(|a| a.start.q[axis]));
-        }
-        for axis in 0..axes {
-            self.start.extend(agents().map(|a| a.start.dq[axis]));
-        }
-        for r in 0..columns.reference_vectors() {
-            for axis in 0..axes {
-                let default = |a: &AgentSetup| if r == 0 { a.start.dq[axis] } else { 0.0 };
-                self.start.extend(agents().map(|a| a.start.reference.get(r).map_or(default(a), |z| z[axis])));
-            }
-        }
-        for k in 0..setup.agents[group[0]].robot.theta.len() {
-            self.start.extend(agents().filter_map(|a| match &a.law {
-                Law::Adaptive { estimate_start, .. } => Some(estimate_start[k]),
-                Law::Known { .. } => None,
-            }));
-        }
-        self.start.resize(first + columns.state_len(), 0.0);
     }
 
     /// From the wanted z(0), ż(0), … to reference states, with what everybody hears at t = 0: the initial messages.
@@ -142,14 +119,23 @@ impl<'a> ClosedLoop<'a> {
                 sums[to.entry + c * to.stride] += weight * self.start[from.state + c * from.stride];
             }
         }
-        for block in &self.blocks {
+        for block in &mut self.blocks {
             let (degree, sums) = (&degree[block.degree.clone()], &sums[block.sums.clone()]);
             block
                 .columns
-                .start(&mut self.start[block.state.clone()], degree, sums)
+                .start(&setup.agents, &mut self.start[block.state.clone()], degree, sums)
                 .map_err(|error| SetupError::Length { agent: setup.agents[0].name.clone(), error })?;
         }
         Ok(())
+    }
+
+    fn next_kink_s(&self, after_s: f64) -> f64 {
+        self.blocks.iter().map(|block| block.columns.next_event_s(after_s)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Who is in trouble in the state `x`, which has just been evaluated.
+    pub(crate) fn trouble(&self, x: &[f64]) -> Option<(usize, Trouble)> {
+        self.blocks.iter().find_map(|block| block.columns.trouble(&x[block.state.clone()]))
     }
 
     /// The initial state.
@@ -206,7 +192,7 @@ impl<'a> ClosedLoop<'a> {
         for block in &mut self.blocks {
             let inputs = block.inputs(heard, pushes.felt());
             let (columns, state) = (&mut block.columns, &x[block.state.clone()]);
-            columns.record(state, inputs, &mut |agent, values| match pushes.felt_by(agent) {
+            columns.record(t_s, state, inputs, &mut |agent, values| match pushes.felt_by(agent) {
                 [] => write(agent, values),
                 felt => {
                     row.clear();
@@ -225,20 +211,30 @@ impl DelaySystem for ClosedLoop<'_> {
         self.pushes.feel(t_s, x);
         for block in &mut self.blocks {
             let inputs = block.inputs(heard, self.pushes.felt());
-            block.columns.rates(&x[block.state.clone()], inputs, &mut dx[block.state.clone()]);
+            block.columns.rates(t_s, &x[block.state.clone()], inputs, &mut dx[block.state.clone()]);
+        }
+    }
+
+    fn settle(&mut self, x: &mut [f64]) {
+        for block in &mut self.blocks {
+            block.columns.settle(&mut x[block.state.clone()]);
         }
     }
 
     fn next_event_s(&self) -> f64 {
         let sample_s = self.sampling.as_ref().map_or(f64::INFINITY, Sampling::next_s);
-        sample_s.min(self.pushes.next_event_s())
+        sample_s.min(self.pushes.next_event_s()).min(self.kink_s)
     }
 
     fn happen(&mut self, until_s: f64, x: &mut [f64]) -> Happened {
-        let pushed = self.pushes.happen(until_s);
+        let mut happened = self.pushes.happen(until_s);
+        if self.kink_s <= until_s {
+            self.kink_s = self.next_kink_s(until_s);
+            happened = Happened::Jumped;
+        }
         match &mut self.sampling {
-            Some(sampling) => pushed.max(sampling.happen(until_s, &mut self.blocks, x)),
-            None => pushed,
+            Some(sampling) => happened.max(sampling.happen(until_s, &mut self.blocks, x)),
+            None => happened,
         }
     }
 }

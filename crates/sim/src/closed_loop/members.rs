@@ -12,6 +12,7 @@ use forwardstep_core::{Gain, InverseQuadratic, Lanes, LengthError, ResolvedGain}
 use super::fleet::Member;
 use super::population::{Columns, Population};
 use super::sampler::{Sampler, Sensor};
+use super::systems::system;
 use super::valid::SetupError;
 use crate::setup::{AgentSetup, Control, Law, ReferenceKind, RobotKind, Setup, VelocitySensor};
 
@@ -28,6 +29,8 @@ pub(super) fn populations(agents: &[AgentSetup]) -> Vec<Vec<usize>> {
             _ => false,
         };
         same_model
+            && a.law.is_lagrangian()
+            && b.law.is_lagrangian()
             && a.roots_per_s.len() == b.roots_per_s.len()
             && matches!(a.law, Law::Adaptive { .. }) == matches!(b.law, Law::Adaptive { .. })
     };
@@ -43,6 +46,9 @@ pub(super) fn populations(agents: &[AgentSetup]) -> Vec<Vec<usize>> {
 
 pub(super) fn population<X: CoreExchange>(setup: &Setup, group: &[usize]) -> Result<Box<dyn Columns>, SetupError> {
     let first = &setup.agents[group[0]];
+    if !first.law.is_lagrangian() {
+        return system(setup, group[0]);
+    }
     match &first.robot.kind {
         RobotKind::Tree(tree) => boxed::<Tree, X>(Tree::clone(tree), setup, group),
         RobotKind::PlanarArm => boxed::<PlanarArm, X>(PlanarArm, setup, group),
@@ -80,6 +86,7 @@ where
             let limit = acceleration_limit.unwrap_or(f64::INFINITY);
             Ok(Backstepping::new(group.iter().map(|_| (filter_s, limit)))?)
         }),
+        ReferenceKind::Tracking => Err(SetupError::NotTracking { agent: first.name.clone(), law: first.law.words() }),
     }
 }
 
@@ -146,13 +153,13 @@ fn digital<R: Lagrangian<f64> + Clone, F: Reference>(
     let limiter = Limiter::new(limit, rate).map_err(|error| SetupError::Limiter { agent: name(), error })?;
     let theta_hat = match &agent.law {
         Law::Adaptive { estimate_start, .. } => estimate_start.clone(),
-        Law::Known { .. } => agent.robot.theta.clone(),
+        _ => agent.robot.theta.clone(),
     };
     Agent::new(robot.clone(), reference, member.law.clone(), theta_hat, limiter)
         .map_err(|error| SetupError::Length { agent: name(), error })
 }
 
-fn sensor(agent: usize, setup: &Setup, control: &Control) -> Result<Sensor, SetupError> {
+pub(super) fn sensor(agent: usize, setup: &Setup, control: &Control) -> Result<Sensor, SetupError> {
     let filter = match control.sensors.velocity {
         VelocitySensor::Measured => None,
         VelocitySensor::Filtered { cut_off_hz } => Some(
@@ -186,6 +193,7 @@ fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Re
             length("start of the estimate", p, estimate_start.len())?;
             (damping, Some(adaptation))
         }
+        law => return Err(SetupError::LawOfAnother { agent: name(), law: law.words(), made_for: law.made_for() }),
     };
     let adaptation = match adaptation {
         Some(gain) => {

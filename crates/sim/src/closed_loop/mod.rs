@@ -2,10 +2,12 @@
 //!
 //! - `fleet`: robots with their tracking laws, several at once.
 //! - `population`: agents of one kind, side by side in columns: reference dynamics, then the fleet.
+//! - `solo`: one agent by itself: any plant under any controller.
 //! - `sampler`: the digital controllers of a population, with their sensors.
 //! - `sampling`: the instants at which they sample and act.
 //! - `pushes`: what acts on the robots from outside.
 //! - `members`: from agents to populations.
+//! - `systems`: from agents to plants and controllers that stand by themselves.
 //! - `valid`: what makes a [`crate::Setup`] meaningless.
 //! - `assemble`: all populations and what joins them: the right-hand side as a whole, and its events.
 
@@ -16,6 +18,8 @@ mod population;
 mod pushes;
 mod sampler;
 mod sampling;
+mod solo;
+mod systems;
 mod valid;
 
 pub(crate) use assemble::ClosedLoop;

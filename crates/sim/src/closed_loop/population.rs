@@ -12,6 +12,7 @@
 //!
 //! Under digital control q and q̇ flow and everything else stands still between two samples, when it jumps.
 
+use forwardstep_core::controller::Trouble;
 use forwardstep_core::reference::{Heard, Measured, Reference, ReferenceOut};
 use forwardstep_core::robot::Lagrangian;
 use forwardstep_core::{Kernel, LengthError, Packed, dispatch};
@@ -19,6 +20,7 @@ use forwardstep_core::{Kernel, LengthError, Packed, dispatch};
 use super::fleet::{Drive, Fleet, Layout, Member};
 use super::sampler::Sampler;
 use crate::recording::Signal;
+use crate::setup::{AgentSetup, Law};
 
 /// What reaches a population from outside at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -35,21 +37,35 @@ pub(crate) struct Inputs<'a> {
 pub(crate) trait Columns {
     /// Numbers of state.
     fn state_len(&self) -> usize;
-    /// Blocks of reference state.
-    fn reference_vectors(&self) -> usize;
-    /// Replaces the wanted z(0), ż(0), … in the block `x` by the reference state that gives them.
-    fn start(&self, x: &mut [f64], degree: &[f64], sums: &[f64]) -> Result<(), LengthError>;
+    /// Appends the initial state to `x`, but for what depends on the first messages.
+    fn append_start(&self, agents: &[AgentSetup], x: &mut Vec<f64>);
+    /// Completes the block `x` of the initial state with what is heard at t = 0: z(0), ż(0), … become what is wanted.
+    fn start(&mut self, agents: &[AgentSetup], x: &mut [f64], degree: &[f64], sums: &[f64]) -> Result<(), LengthError>;
     /// d/dt of the block `x`.
-    fn rates(&mut self, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]);
+    fn rates(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]);
     /// Hands the signals of every member in turn to `write`, in the order of [`Columns::signals`].
-    fn record(&mut self, x: &[f64], inputs: Inputs<'_>, write: &mut dyn FnMut(usize, &[f64]));
+    fn record(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, write: &mut dyn FnMut(usize, &[f64]));
     /// Measures the state `x` and puts everybody's message into `sent`, laid out like the sums. Does nothing, like the
     /// two below, when the controllers work in continuous time.
-    fn sense(&mut self, x: &[f64], sent: &mut [f64]);
+    fn sense(&mut self, t_s: f64, x: &[f64], sent: &mut [f64]);
     /// Steps the controllers at the sample of time `now_s` and puts their new state into `x`.
     fn command(&mut self, now_s: f64, inputs: Inputs<'_>, x: &mut [f64]);
     /// Applies the torques that were commanded last.
     fn apply(&mut self);
+    /// Brings the block `x`, which a step has just reached, back to its manifold.
+    fn settle(&mut self, x: &mut [f64]) {
+        let _ = x;
+    }
+    /// Which member is in trouble in the state `x`, which has just been evaluated.
+    fn trouble(&self, x: &[f64]) -> Option<(usize, Trouble)> {
+        let _ = x;
+        None
+    }
+    /// When its right-hand side jumps of itself for the first time after `after_s`.
+    fn next_event_s(&self, after_s: f64) -> f64 {
+        let _ = after_s;
+        f64::INFINITY
+    }
     /// Signals and axes of one member, in the order in which they are recorded.
     fn signals(&self) -> Vec<(Signal, usize)>;
     /// Which member, signal and axis a state of the block is.
@@ -251,11 +267,32 @@ where
         self.fleet.layout.len
     }
 
-    fn reference_vectors(&self) -> usize {
-        self.reference.vectors()
+    fn append_start(&self, all: &[AgentSetup], x: &mut Vec<f64>) {
+        let (first, l) = (x.len(), self.fleet.layout);
+        let agents = || self.members.iter().map(|member| &all[member.agent]);
+        for axis in 0..l.m {
+            x.extend(agents().map(|a| a.start.q[axis]));
+        }
+        for axis in 0..l.m {
+            x.extend(agents().map(|a| a.start.dq[axis]));
+        }
+        // The wanted z(0), ż(0), …, for `start` to replace.
+        for r in 0..self.reference.vectors() {
+            for axis in 0..l.m {
+                let default = |a: &AgentSetup| if r == 0 { a.start.dq[axis] } else { 0.0 };
+                x.extend(agents().map(|a| a.start.reference.get(r).map_or(default(a), |z| z[axis])));
+            }
+        }
+        for k in 0..l.p {
+            x.extend(agents().filter_map(|a| match &a.law {
+                Law::Adaptive { estimate_start, .. } => Some(estimate_start[k]),
+                _ => None,
+            }));
+        }
+        x.resize(first + l.len, 0.0);
     }
 
-    fn start(&self, x: &mut [f64], degree: &[f64], sums: &[f64]) -> Result<(), LengthError> {
+    fn start(&mut self, _: &[AgentSetup], x: &mut [f64], degree: &[f64], sums: &[f64]) -> Result<(), LengthError> {
         let l = self.fleet.layout;
         let given = x[l.reference..l.theta_hat].to_vec();
         let (measured, state) = x[..l.theta_hat].split_at_mut(l.reference);
@@ -263,7 +300,7 @@ where
         self.reference.start(l.m, measured, &given, Heard::new(degree, sums, l.block())?, state)
     }
 
-    fn rates(&mut self, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) {
+    fn rates(&mut self, _: f64, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) {
         let checked = self.try_rates(x, inputs, dx);
         debug_assert_eq!(checked, Ok(()), "lengths are fixed when the population is built");
         if checked.is_err() {
@@ -271,12 +308,12 @@ where
         }
     }
 
-    fn record(&mut self, x: &[f64], inputs: Inputs<'_>, write: &mut dyn FnMut(usize, &[f64])) {
+    fn record(&mut self, _: f64, x: &[f64], inputs: Inputs<'_>, write: &mut dyn FnMut(usize, &[f64])) {
         let checked = self.try_record(x, inputs, write);
         debug_assert_eq!(checked, Ok(()), "lengths are fixed when the population is built");
     }
 
-    fn sense(&mut self, x: &[f64], sent: &mut [f64]) {
+    fn sense(&mut self, _: f64, x: &[f64], sent: &mut [f64]) {
         let l = self.fleet.layout;
         if let Some(sampler) = &mut self.sampler {
             sampler.sense(&x[..l.dq], &x[l.dq..l.reference], sent);

@@ -54,21 +54,25 @@ impl Sensor {
         Sensor { draw, filter, kind }
     }
 
-    /// Replaces the truth by what is measured.
-    fn measure(&mut self, period_s: f64, q: &mut [f64], dq: &mut [f64]) {
+    /// Replaces the truth by what is measured; there may be no velocity.
+    pub(crate) fn measure(&mut self, period_s: f64, q: &mut [f64], dq: &mut [f64]) {
         let kind = self.kind;
         if kind.position_noise > 0.0 || kind.velocity_noise > 0.0 {
-            for (q, dq) in q.iter_mut().zip(&mut *dq) {
+            for (k, q) in q.iter_mut().enumerate() {
                 let [first, second] = normal(&mut self.draw);
                 *q += kind.position_noise * first;
-                *dq += kind.velocity_noise * second;
+                if let Some(dq) = dq.get_mut(k) {
+                    *dq += kind.velocity_noise * second;
+                }
             }
         }
         q.iter_mut().for_each(|q| *q = quantise(*q, kind.position_quantum));
         match &mut self.filter {
             // The lengths are those of one robot.
             Some(filter) => {
-                if let Ok(velocity) = filter.feed(period_s, q) {
+                if let Ok(velocity) = filter.feed(period_s, q)
+                    && dq.len() == velocity.len()
+                {
                     dq.copy_from_slice(velocity);
                 }
             }
@@ -86,7 +90,7 @@ fn normal(draw: &mut ChaCha8Rng) -> [f64; 2] {
 }
 
 /// The nearest multiple of `quantum`, if there is one.
-fn quantise(value: f64, quantum: f64) -> f64 {
+pub(crate) fn quantise(value: f64, quantum: f64) -> f64 {
     if quantum > 0.0 { quantum * libm::rint(value / quantum) } else { value }
 }
 

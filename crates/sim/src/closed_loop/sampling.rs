@@ -74,7 +74,7 @@ impl<'a> Sampling<'a> {
     fn take_sample(&mut self, now_s: f64, blocks: &mut [Block], x: &mut [f64]) {
         let sent = self.radio.sending(self.sample);
         for block in blocks.iter_mut() {
-            block.columns.sense(&x[block.state.clone()], &mut sent[block.sums.clone()]);
+            block.columns.sense(now_s, &x[block.state.clone()], &mut sent[block.sums.clone()]);
         }
         self.radio.hear(self.sample, &mut self.heard);
         for block in blocks {

@@ -95,6 +95,84 @@ pub enum SetupError {
         /// The axis.
         axis: String,
     },
+    /// A law that is made for something else.
+    #[error("agent `{agent}`: {law} is made for {made_for}")]
+    LawOfAnother {
+        /// The agent.
+        agent: String,
+        /// Its law, in words.
+        law: &'static str,
+        /// What that is made for, in words.
+        made_for: &'static str,
+    },
+    /// A law that has reference dynamics of its own, beside reference dynamics that are another's.
+    #[error("agent `{agent}`: {law} goes with consensus by positions, or with a target")]
+    ReferenceOfLaw {
+        /// The agent.
+        agent: String,
+        /// Its law, in words.
+        law: &'static str,
+    },
+    /// A law that cannot follow a target.
+    #[error("agent `{agent}`: {law} does not follow a target of its own; it goes with consensus")]
+    NotTracking {
+        /// The agent.
+        agent: String,
+        /// Its law, in words.
+        law: &'static str,
+    },
+    /// A reference of too low an order for a law.
+    #[error("agent `{agent}`: its reference dynamics have order {order}, but its law needs {least} roots or more")]
+    OrderTooLow {
+        /// The agent.
+        agent: String,
+        /// How many roots it has.
+        order: usize,
+        /// How many it needs.
+        least: usize,
+    },
+    /// A law that transmits positions among agents that exchange more.
+    #[error("agent `{agent}`: {law} sends its position only, but the agents exchange positions and velocities")]
+    SendsPositionOnly {
+        /// The agent.
+        agent: String,
+        /// Its law, in words.
+        law: &'static str,
+    },
+    /// A push on an agent whose law does not know any.
+    #[error("agent `{agent}`: pushes act on robots under the adaptive or the known law, not on {law}")]
+    NotPushed {
+        /// The agent.
+        agent: String,
+        /// Its law, in words.
+        law: &'static str,
+    },
+    /// Nothing to track.
+    #[error("agent `{agent}` is to track a target, but has none")]
+    NoTarget {
+        /// The agent.
+        agent: String,
+    },
+    /// An offset for a law that knows none.
+    #[error("agent `{agent}`: {law} knows no offsets")]
+    NoOffsets {
+        /// The agent.
+        agent: String,
+        /// Its law, in words.
+        law: &'static str,
+    },
+    /// A number of a law that makes no sense.
+    #[error("agent `{agent}`: {what} is {value}, but {requirement}")]
+    LawNumber {
+        /// The agent.
+        agent: String,
+        /// Which number.
+        what: &'static str,
+        /// The value.
+        value: f64,
+        /// What it must be.
+        requirement: &'static str,
+    },
     /// A torque limit of one agent.
     #[error("agent `{agent}`: {error}")]
     Limiter {
@@ -156,12 +234,7 @@ pub(super) fn check(setup: &Setup) -> Result<(), SetupError> {
     if matches!(setup.reference, ReferenceKind::Backstepping { .. }) && setup.exchange != Exchange::Position {
         return Err(SetupError::BacksteppingExchange);
     }
-    let first = &setup.agents[0];
-    let axes = first.robot.axes.len();
-    for agent in &setup.agents {
-        check_agent(agent, first, axes, setup.reference.free_derivatives(agent))?;
-    }
-    Ok(())
+    setup.agents.iter().try_for_each(|agent| check_agent(setup, agent))
 }
 
 fn check_control(control: &Control, setup: &Setup) -> Result<(), SetupError> {
@@ -196,7 +269,10 @@ fn check_control(control: &Control, setup: &Setup) -> Result<(), SetupError> {
     Ok(())
 }
 
-fn check_agent(agent: &AgentSetup, first: &AgentSetup, axes: usize, vectors: usize) -> Result<(), SetupError> {
+fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
+    let first = &setup.agents[0];
+    let (axes, vectors) = (first.robot.axes.len(), setup.reference.free_derivatives(agent));
+    let tracks = setup.reference == ReferenceKind::Tracking;
     if agent.robot.axes.len() != axes {
         return Err(SetupError::AxesDiffer {
             agent: agent.name.clone(),
@@ -215,6 +291,13 @@ fn check_agent(agent: &AgentSetup, first: &AgentSetup, axes: usize, vectors: usi
     };
     vector("the start position", axes, &agent.start.q)?;
     vector("the start velocity", axes, &agent.start.dq)?;
+    vector("the start of the plant", agent.start.rest.len(), &agent.start.rest)?;
+    if let (Some(_), true) = (&agent.target, agent.law.is_lagrangian()) {
+        return Err(SetupError::NoOffsets { agent: agent.name.clone(), law: agent.law.words() });
+    }
+    if agent.law.is_lagrangian() && tracks {
+        return Err(SetupError::NotTracking { agent: agent.name.clone(), law: agent.law.words() });
+    }
     for z in &agent.start.reference {
         vector("the start of the reference", axes, z)?;
     }

@@ -14,6 +14,11 @@ pub(crate) trait DelaySystem {
     /// dx = f(t, x, heard). Time enters through what acts from outside only.
     fn rates(&mut self, t_s: f64, x: &[f64], heard: &Heard, dx: &mut [f64]);
 
+    /// Brings a state that a step has just reached back to its manifold; changes it by less than the step's error.
+    fn settle(&mut self, x: &mut [f64]) {
+        let _ = x;
+    }
+
     /// When something happens next that the network does not know of, s: a push begins, a controller samples.
     fn next_event_s(&self) -> f64 {
         f64::INFINITY
@@ -249,6 +254,7 @@ impl<'a> Integrator<'a> {
         if self.statistics.steps > 0 {
             std::mem::swap(&mut self.x0, &mut self.x1);
             self.k.swap(0, self.tableau.c.len() - 1);
+            system.settle(&mut self.x0);
         }
         if t > 0.0 && self.timeline.next_s() <= merge_until(t) {
             self.statistics.break_points += 1;

@@ -24,7 +24,7 @@ pub struct Interval {
 
 impl Interval {
     /// Everything: nothing is known.
-    pub(super) const WHOLE: Interval = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
+    pub const WHOLE: Interval = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
     pub(super) fn new(low: f64, high: f64) -> Self {
         // Not-a-number stands for an operation that has no value somewhere inside.
@@ -34,6 +34,21 @@ impl Interval {
     /// Whether both ends are finite.
     pub fn is_finite(self) -> bool {
         self.low.is_finite() && self.high.is_finite()
+    }
+
+    /// Made wider by `room` on both sides.
+    pub(crate) fn with_room(self, room: f64) -> Self {
+        Interval::new(self.low - room, self.high + room)
+    }
+
+    /// What the sine of it keeps within.
+    pub(crate) fn sine(self) -> Self {
+        self.sin_of()
+    }
+
+    /// The largest size of a number in it.
+    pub fn size(self) -> f64 {
+        self.low.abs().max(self.high.abs())
     }
 
     /// Made wider by a few units in the last place.

@@ -5,12 +5,14 @@
 //! a delay is shown never to be negative and a weight to stay positive.
 
 mod interval;
+mod jet;
 mod uniform;
 
 use forwardstep_core::Scalar;
 use thiserror::Error;
 
 pub use interval::Interval;
+pub(crate) use jet::weighted;
 use uniform::Part;
 
 /// Steps that a formula may have.
@@ -242,43 +244,13 @@ impl Formula {
         if !(to_s - from_s).is_finite() {
             return whole;
         }
-        Interval::new(-self.search(from_s, to_s, -1.0), self.search(from_s, to_s, 1.0))
+        search(from_s, to_s, CLOSE, |from, to| self.enclose(Interval::new(from, to)), |t_s| self.eval(t_s))
     }
 
     /// Whether it is shown to have a finite value everywhere from `from_s` to `to_s`; cheaper than [`bounds`](Self::bounds),
     /// since mostly one look tells.
     pub fn is_bounded(&self, from_s: f64, to_s: f64) -> bool {
         self.enclose(Interval::new(from_s, to_s)).is_finite() || self.bounds(from_s, to_s).is_finite()
-    }
-
-    /// An upper bound of `sign` times the formula: the stretch whose bound is highest is cut until that bound is close to
-    /// a value that is taken, or the work is done.
-    fn search(&self, from_s: f64, to_s: f64, sign: f64) -> f64 {
-        let bound = |from: f64, to: f64| {
-            let Interval { low, high } = self.enclose(Interval::new(from, to));
-            if sign > 0.0 { high } else { -low }
-        };
-        let mut taken = (sign * self.eval(from_s)).max(sign * self.eval(to_s));
-        let mut least = taken;
-        let mut stretches = std::collections::BinaryHeap::new();
-        stretches.push(Stretch { bound: bound(from_s, to_s), from_s, to_s });
-        for _ in 0..SEARCH {
-            let Some(Stretch { bound: highest, from_s, to_s }) = stretches.peek().copied() else { break };
-            let middle = from_s + 0.5 * (to_s - from_s);
-            let gap = highest - taken;
-            // A formula that has no value somewhere has no gap either.
-            if gap.is_nan() || gap <= CLOSE * (taken - least) || middle <= from_s || middle >= to_s {
-                break;
-            }
-            stretches.pop();
-            let value = sign * self.eval(middle);
-            taken = taken.max(value);
-            least = least.min(value);
-            for (from_s, to_s) in [(from_s, middle), (middle, to_s)] {
-                stretches.push(Stretch { bound: bound(from_s, to_s), from_s, to_s });
-            }
-        }
-        stretches.peek().map_or(f64::INFINITY, |stretch| stretch.bound)
     }
 
     /// An interval that holds the value at every time in `time_s`, in one pass.
@@ -367,6 +339,46 @@ impl BoundedFormula {
         // Not f64::clamp, which lets not-a-number through.
         self.formula.eval(t_s).max(self.within.low).min(self.within.high)
     }
+}
+
+/// An interval that holds every value from `from_s` to `to_s` of what `value` gives and `enclose` bounds on a stretch, close
+/// to values that are taken by the part `close` of their range.
+pub(crate) fn search(
+    from_s: f64,
+    to_s: f64,
+    close: f64,
+    enclose: impl Fn(f64, f64) -> Interval,
+    value: impl Fn(f64) -> f64,
+) -> Interval {
+    let least = highest(from_s, to_s, close, |from, to| -enclose(from, to).low, |t_s| -value(t_s));
+    let most = highest(from_s, to_s, close, |from, to| enclose(from, to).high, value);
+    Interval::new(-least, most)
+}
+
+/// An upper bound: the stretch whose bound is highest is cut until that bound is close to a value that is taken, or the work
+/// is done.
+fn highest(from_s: f64, to_s: f64, close: f64, bound: impl Fn(f64, f64) -> f64, value: impl Fn(f64) -> f64) -> f64 {
+    let mut taken = value(from_s).max(value(to_s));
+    let mut least = taken;
+    let mut stretches = std::collections::BinaryHeap::new();
+    stretches.push(Stretch { bound: bound(from_s, to_s), from_s, to_s });
+    for _ in 0..SEARCH {
+        let Some(Stretch { bound: highest, from_s, to_s }) = stretches.peek().copied() else { break };
+        let middle = from_s + 0.5 * (to_s - from_s);
+        let gap = highest - taken;
+        // What has no value somewhere has no gap either.
+        if gap.is_nan() || gap <= close * (taken - least) || middle <= from_s || middle >= to_s {
+            break;
+        }
+        stretches.pop();
+        let value = value(middle);
+        taken = taken.max(value);
+        least = least.min(value);
+        for (from_s, to_s) in [(from_s, middle), (middle, to_s)] {
+            stretches.push(Stretch { bound: bound(from_s, to_s), from_s, to_s });
+        }
+    }
+    stretches.peek().map_or(f64::INFINITY, |stretch| stretch.bound)
 }
 
 /// A stretch of time and what the formula does not exceed on it; ordered by that bound.

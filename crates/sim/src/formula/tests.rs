@@ -176,3 +176,25 @@ proptest! {
         prop_assert!(value.is_nan() || (bounds.low..=bounds.high).contains(&value), "{} {:?}", value, bounds);
     }
 }
+
+proptest! {
+    #[test]
+    fn prop_derivatives_are_always_within_their_bounds(
+        formula in any_formula(),
+        from in 0.0..20.0_f64,
+        length in prop::sample::select(vec![0.0, 1e-9, 0.1, 3.0, 50.0]),
+        shares in prop::collection::vec(0.0..=1.0_f64, 12),
+    ) {
+        let to = from + length;
+        let bounds = formula.enclose_jet(Interval { low: from, high: to });
+        for share in shares {
+            let t = (from + share * length).min(to);
+            let jet = formula.jet(t);
+            prop_assert!(jet[0] == formula.eval(t) || jet[0].is_nan() && formula.eval(t).is_nan());
+            for k in 0..5 {
+                let inside = (bounds[k].low..=bounds[k].high).contains(&jet[k]);
+                prop_assert!(inside || jet[k].is_nan() && !bounds[k].is_finite(), "{} {} {:?}", k, jet[k], bounds[k]);
+            }
+        }
+    }
+}

@@ -219,8 +219,14 @@ fn agent((index, case): (usize, &AgentCase)) -> AgentSetup {
         roots_per_s: case.roots.clone(),
         manipulability: case.lambda,
         law,
-        start: Start { q: case.start.q.clone(), dq: case.start.dq.clone(), reference: case.start.reference.clone() },
+        start: Start {
+            q: case.start.q.clone(),
+            dq: case.start.dq.clone(),
+            rest: Vec::new(),
+            reference: case.start.reference.clone(),
+        },
         enforce_limits: false,
+        target: None,
         pushes: Vec::new(),
     }
 }

@@ -7,10 +7,10 @@ use forwardstep_sim::recording::Signal;
 use self::figure::{Figure, Line, Panel};
 use super::decimate::Grid;
 use super::error::EncodeError;
-use super::metrics::DisagreementSeries;
+use super::metrics::{DisagreementSeries, Gap};
 use super::names;
 use super::palette::{self, Ground};
-use super::record::{Goal, RunRecord};
+use super::record::RunRecord;
 use super::report::{sections::shared_axis_words, text};
 use super::table::Table;
 use super::timeline::Timeline;
@@ -152,6 +152,7 @@ impl<'a> Plots<'a> {
     /// max |qᵢ − qⱼ| on a logarithmic axis.
     pub(crate) fn disagreement(&self) -> Result<String, EncodeError> {
         let series = DisagreementSeries::of_table(&self.table);
+        let gap = Gap::of(self.record.setup);
         let mut legend = Vec::new();
         let mut panels = Vec::new();
         let ink = [0x16, 0x19, 0x1f];
@@ -171,16 +172,17 @@ impl<'a> Plots<'a> {
             let positions = self.table.axes(Signal::Position);
             let unit =
                 units(positions.map(|(agent, axis, _)| names::unit(self.record.setup, agent, Signal::Position, axis)));
-            let guide = self.record.goal.and_then(|outcome| match outcome.goal {
-                Goal::DisagreementBelow(bound) => Some((bound, "goal".to_owned())),
-                Goal::ExpectDiverges => None,
-            });
+            let guide = self.record.goal.and_then(|outcome| Some((outcome.goal.bound()?, "goal".to_owned())));
             panels.push(Panel {
-                title: String::new(), y: format!("max |qᵢ − qⱼ| in {unit}"), log: true, lines, guide
+                title: String::new(),
+                y: format!("{} in {unit}", gap.formula()),
+                log: true,
+                lines,
+                guide,
             });
         }
         Figure {
-            title: self.title("Disagreement"),
+            title: self.title(gap.name()),
             legend,
             panels,
             columns: 1,

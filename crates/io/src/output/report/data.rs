@@ -2,13 +2,13 @@
 
 use base64::Engine;
 use forwardstep_sim::recording::Signal;
-use forwardstep_sim::setup::{AxisUnit, Law};
+use forwardstep_sim::setup::AxisUnit;
 use serde::Serialize;
 
 use super::super::decimate::Grid;
 use super::super::metrics::{DisagreementSeries, ledger_errors};
 use super::super::names;
-use super::super::record::{Goal, RunRecord};
+use super::super::record::RunRecord;
 use super::super::table::Table;
 use super::super::timeline::{self, Timeline};
 use super::network::{self, Gantt};
@@ -203,10 +203,7 @@ impl Payload {
             },
             signals: index,
             disagreement,
-            goal: record.goal.and_then(|outcome| match outcome.goal {
-                Goal::DisagreementBelow(bound) => Some(bound),
-                Goal::ExpectDiverges => None,
-            }),
+            goal: record.goal.and_then(|outcome| outcome.goal.bound()),
             predicted: record.predicted_agreement.clone(),
             break_points: if break_points.len() <= MOST_LINES { break_points } else { Vec::new() },
             gantt: Gantt::of(record.setup, timeline, &mut notes),
@@ -247,7 +244,7 @@ fn agents<'a>(record: &RunRecord<'_>, table: &Table<'a>, notes: &mut Vec<String>
                 truth: setup.agents[agent].robot.theta.get(k).copied(),
                 series: table.column(agent, Signal::Estimate, k).filter(|_| fits).map(|v| series.add(v, false)),
             };
-            let adaptive = matches!(setup.agents[agent].law, Law::Adaptive { .. });
+            let adaptive = setup.agents[agent].law.estimates();
             let parameters = if adaptive { (0..count(agent)).map(&mut parameter).collect() } else { Vec::new() };
             AgentIndex { name: names::agent_name(setup, agent), axes: axes(setup, agent), parameters }
         })

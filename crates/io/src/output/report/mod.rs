@@ -4,15 +4,17 @@
 //! uPlot. All text goes through maud, which escapes it, or through the JSON index.
 
 mod data;
+mod interfaces;
 mod network;
 pub(crate) mod sections;
 pub(crate) mod text;
 
 use forwardstep_sim::recording::Ending;
-use forwardstep_sim::setup::{AgentSetup, Law};
+use forwardstep_sim::setup::AgentSetup;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::metrics::{Absence, Disagreement, Metrics};
+use self::interfaces::interfaces;
+use super::metrics::{Absence, Disagreement, Gap, Metrics};
 use super::palette::{self, Ground};
 use super::record::RunRecord;
 use super::table::Table;
@@ -67,8 +69,9 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
                         section.notices aria-label="Notices" { ul { @for notice in &record.notices { li { (notice) } } } }
                     }
                     (sections::verdicts(record, metrics))
-                    (signals(absence, &record.setup.agents))
-                    (network(record, &timeline))
+                    (signals(absence, Gap::of(record.setup), &record.setup.agents))
+                    @if has_network(record) { (network(record, &timeline)) }
+                    (interfaces(record.setup))
                     (sections::digital(record))
                     (sections::loads(record.setup, metrics))
                     (sections::provenance(record))
@@ -94,8 +97,8 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
 }
 
 /// The plots; the script fills their cards.
-fn signals(absence: Option<Absence>, agents: &[AgentSetup]) -> Markup {
-    let adaptive = agents.iter().any(|agent| matches!(agent.law, Law::Adaptive { .. }));
+fn signals(absence: Option<Absence>, gap: Gap, agents: &[AgentSetup]) -> Markup {
+    let adaptive = agents.iter().any(|agent| agent.law.estimates());
     let card = |id: &str, title: &str, what: &str, empty: &str| {
         html! {
             article.card.plot data-plot=(id) data-empty=(empty) {
@@ -117,7 +120,7 @@ fn signals(absence: Option<Absence>, agents: &[AgentSetup]) -> Markup {
             }
             noscript { p.note { "The plots need JavaScript; the same plots lie in " code { "plots/" } " as SVG." } }
             div.grid {
-                (card("disagreement", "Disagreement", "max |qᵢ − qⱼ|", absence.map_or("", Absence::words)))
+                (card("disagreement", gap.name(), gap.formula(), absence.map_or("", Absence::words)))
                 (card("position", "Positions", "q", ""))
                 (card("torque", "Torques", "τ, after any limit", ""))
                 @if agents.iter().any(|agent| !agent.pushes.is_empty()) {
@@ -132,6 +135,12 @@ fn signals(absence: Option<Absence>, agents: &[AgentSetup]) -> Markup {
             p.note.hint { "Drag across a plot to zoom all of them; double-click to see everything again." }
         }
     }
+}
+
+/// Whether anybody ever hears anybody, or could.
+fn has_network(record: &RunRecord<'_>) -> bool {
+    Gap::of(record.setup) == Gap::Disagreement
+        || record.setup.network.schedule.graphs().iter().any(|graph| !graph.is_empty())
 }
 
 fn network(record: &RunRecord<'_>, timeline: &Timeline<'_>) -> Markup {

@@ -5,7 +5,7 @@ use forwardstep_sim::recording::{Ending, Signal};
 use forwardstep_sim::setup::{AxisUnit, Exchange, Method, Setup};
 use maud::{Markup, html};
 
-use super::super::metrics::{Disagreement, LimitKind, Metrics};
+use super::super::metrics::{Disagreement, Gap, LimitKind, Metrics};
 use super::super::names;
 use super::super::record::{RunRecord, ending_sentence};
 use super::text::{self, number};
@@ -37,9 +37,9 @@ pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
             dl.figures {
                 @match metrics.disagreement {
                     Disagreement::Measured { last, .. } => {
-                        (figure("Final disagreement", &number(last), length_unit(setup)))
+                        (figure(&final_gap(setup), &number(last), length_unit(setup)))
                     }
-                    Disagreement::Absent(_) => (figure("Final disagreement", "–", "")),
+                    Disagreement::Absent(_) => (figure(&final_gap(setup), "–", "")),
                 }
                 @if let Some(t_s) = metrics.settled_s { (figure("Settled after", &number(t_s), "s")) }
                 @if let Some(speed) = metrics.speed {
@@ -154,11 +154,11 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
             }))
         }
         @match metrics.disagreement {
-            Disagreement::Measured { initial, last, largest } => (fact("Disagreement", html! {
+            Disagreement::Measured { initial, last, largest } => (fact(Gap::of(setup).name(), html! {
                 (number(initial)) " at the start, " (number(largest)) " at most, "
                 strong { (quantity(last, unit)) } " at the end"
             })),
-            Disagreement::Absent(absence) => (fact("Disagreement", html! { "none: " (absence.words()) })),
+            Disagreement::Absent(absence) => (fact(Gap::of(setup).name(), html! { "none: " (absence.words()) })),
         }
         @if record.goal.is_some() {
             @if let Some(t_s) = metrics.settled_s {
@@ -188,6 +188,11 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
     }
 }
 
+/// What remains at the end, by name.
+fn final_gap(setup: &Setup) -> String {
+    format!("Final {}", Gap::of(setup).word())
+}
+
 fn fact(name: &str, what: Markup) -> Markup {
     html! { tr { th { (name) } td { (what) } } }
 }
@@ -201,7 +206,7 @@ pub(crate) fn digital(record: &RunRecord<'_>) -> Markup {
     let speed = unit_at(setup, Signal::Velocity, 0, 0);
     let (digital, continuous) = (&cost.digital, &cost.continuous);
     let rows = [
-        ("Final disagreement", unit, continuous.final_disagreement, digital.final_disagreement),
+        (&*final_gap(setup), unit, continuous.final_disagreement, digital.final_disagreement),
         ("Settled after", "s", continuous.settled_s, digital.settled_s),
         ("Peak torque", &*torque, continuous.peak_torque, digital.peak_torque),
         ("Torque of an axis, root mean square", &*torque, Some(continuous.rms_torque), Some(digital.rms_torque)),

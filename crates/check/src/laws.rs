@@ -1,0 +1,64 @@
+//! What the laws of Section V ask for, law by law.
+
+use forwardstep_sim::{AgentSetup, Law, ReferenceKind, Setup};
+
+use crate::verdict::{Answer, Hypothesis};
+
+/// The theorem or remark that speaks about agents that all have the same law of Section V, and what it promises; nothing for
+/// (6)–(7), which Section III treats, and for agents that differ.
+pub(crate) fn theorem(setup: &Setup) -> Option<(String, String)> {
+    let first = setup.agents.first()?;
+    let same = |agent: &AgentSetup| std::mem::discriminant(&agent.law) == std::mem::discriminant(&first.law);
+    if !setup.agents.iter().all(same) {
+        return None;
+    }
+    match (&first.law, setup.reference) {
+        (Law::Adaptive { .. } | Law::Known { .. }, _) => None,
+        (Law::PositionOnly { .. }, ReferenceKind::Tracking) => Some((
+            "Section V-A, (a8) with the reference dynamics (a9)".into(),
+            "x − x_d → 0 and dx − dx_d → 0 without a measured velocity".into(),
+        )),
+        (Law::PositionOnly { .. }, _) => Some((
+            format!("Remark 7, (a8) with (24) of order {} in z", first.roots_per_s.len()),
+            "all agents agree and come to rest without a measured velocity: x_i − x_j → 0 and dx_i → 0".into(),
+        )),
+    }
+}
+
+/// What the laws themselves ask for.
+pub(crate) fn of_laws(setup: &Setup) -> Vec<Hypothesis> {
+    let mut hypotheses = Vec::new();
+    hypotheses.extend(position_only(setup));
+    hypotheses
+}
+
+/// The agents with a law for which `is` holds.
+fn with(setup: &Setup, is: fn(&Law) -> bool) -> Vec<&AgentSetup> {
+    setup.agents.iter().filter(|agent| is(&agent.law)).collect()
+}
+
+fn position_only(setup: &Setup) -> Option<Hypothesis> {
+    let agents = with(setup, |law| matches!(law, Law::PositionOnly { .. }));
+    if agents.is_empty() {
+        return None;
+    }
+    let requires = "k, λ_f and γ* are positive".into();
+    let wrong = agents.iter().find(|agent| match agent.law {
+        Law::PositionOnly { adaptation, estimate_start, .. } => {
+            adaptation == 0.0 && agent.robot.theta.first() != Some(&estimate_start)
+        }
+        _ => false,
+    });
+    Some(match wrong {
+        Some(agent) => Hypothesis {
+            requires,
+            answer: Answer::NotCovered,
+            because: format!("{} does not adapt its estimate, which is not the true mass", agent.name),
+        },
+        None => Hypothesis {
+            requires,
+            answer: Answer::Holds,
+            because: "checked when they were read; an estimate that is not adapted is the true mass".into(),
+        },
+    })
+}

@@ -1,0 +1,43 @@
+//! What Section V adds to a scenario, as it is written: targets, and laws without velocity. The doc comments of this file
+//! are descriptions of the published JSON schema.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::at::At;
+use super::push_file::FunctionFile;
+use super::values::Positive;
+
+/// Every agent follows a target of its own.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TrackingFile {
+    /// The positive numbers κ₀, κ₁, … in 1/s of reference dynamics that have roots: three for the law without velocity.
+    #[schemars(with = "Option<Vec<Positive>>", length(min = 1, max = 32))]
+    pub roots_per_s: Option<At<Vec<At<f64>>>>,
+}
+
+/// Where an agent should be over time; among agents that agree, its offset from where all of them are.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum TargetFile {
+    /// A number or a formula in t for every axis, in rad or m.
+    Formulas(At<Vec<At<FunctionFile>>>),
+}
+
+/// The law (a8) for a point mass whose velocity is not measured.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PositionOnlyFile {
+    /// The gain k, in N s/m. Default: 8.
+    #[schemars(with = "Option<Positive>")]
+    pub damping: Option<At<f64>>,
+    /// The rate λ_f of the filter that stands in for the velocity, in 1/s. Default: 10.
+    #[schemars(with = "Option<Positive>")]
+    pub filter_per_s: Option<At<f64>>,
+    /// The gain γ* of the mass estimate. Default: 10. Zero to keep the estimate as it is.
+    #[schemars(range(min = 0))]
+    pub adaptation_gain: Option<At<f64>>,
+    /// The mass estimate at the start, in kg. Default: 0.
+    pub estimate_start_kg: Option<At<f64>>,
+}

@@ -1,0 +1,415 @@
+//! One agent by itself: any [`Plant`] under any [`Controller`], as a block of the closed loop.
+//!
+//! Its state is
+//!
+//! ```text
+//! plant's state   controller's state   ∫ dissipation [1, if the ledger is on]
+//! ```
+//!
+//! and everything that is particular to a system is said by the two traits. An agent with an offset d(t) is described
+//! relative to it: what stands in the block and what is sent is x − d, followed by ẋ − ḋ where there is a velocity, so that
+//! agents with offsets agree like any others. The plant and the controller see x and ẋ.
+//!
+//! Under digital control the plant's state flows and everything else stands still between two samples, when it jumps.
+
+use forwardstep_core::LengthError;
+use forwardstep_core::agent::{Inbox, Limiter, StepError};
+use forwardstep_core::controller::{Asked, Controller, Given, Jet, Stepped, Trouble, Truth};
+use forwardstep_core::plant::{Plant, total};
+use forwardstep_core::reference::{Exchange, Heard};
+use forwardstep_core::signal::Block;
+
+use super::population::{Columns, Inputs};
+use super::sampler::{Sensor, quantise};
+use crate::recording::Signal;
+use crate::setup::AgentSetup;
+use crate::trajectory::Trajectory;
+
+/// A plant and its controller.
+pub(crate) struct Solo<C: Controller> {
+    agent: usize,
+    plant: C::Plant,
+    controller: C,
+    target: Option<Target>,
+    effort_limits: Option<Vec<f64>>,
+    digital: Option<Digital<C>>,
+    layout: Layout,
+    plant_scratch: <C::Plant as Plant>::Scratch,
+    scratch: C::Scratch,
+    now: Now,
+    row: Vec<f64>,
+}
+
+/// What a trajectory means to an agent.
+pub(crate) struct Target {
+    /// The trajectory.
+    pub(crate) trajectory: Trajectory,
+    /// It is an offset from where all agree; otherwise it is to be followed.
+    pub(crate) is_offset: bool,
+}
+
+/// How an agent samples.
+pub(crate) struct Digital<C: Controller> {
+    /// Made at the first sample.
+    stepped: Option<Stepped<C>>,
+    sensor: Sensor,
+    limiter: Limiter,
+    period_s: f64,
+    torque_quantum: f64,
+    last_s: Option<f64>,
+    measured: Vec<f64>,
+    commanded: Vec<f64>,
+    held: Vec<f64>,
+}
+
+impl<C: Controller> Digital<C> {
+    /// With `limiter` for the axes of [`Signal::Torque`] in the input.
+    pub(crate) fn new(sensor: Sensor, limiter: Limiter, period_s: f64, torque_quantum: f64) -> Self {
+        Digital {
+            stepped: None,
+            sensor,
+            limiter,
+            period_s,
+            torque_quantum,
+            last_s: None,
+            measured: Vec::new(),
+            commanded: Vec::new(),
+            held: Vec::new(),
+        }
+    }
+}
+
+/// Sizes of the block.
+#[derive(Clone, Copy)]
+struct Layout {
+    /// m.
+    m: usize,
+    /// A velocity follows the position.
+    has_velocity: bool,
+    plant: usize,
+    controller: usize,
+    ledger: bool,
+    /// Where the torques stand in the input, and how many they are.
+    torque: (usize, usize),
+}
+
+impl Layout {
+    fn controller_end(&self) -> usize {
+        self.plant + self.controller
+    }
+}
+
+/// Everything about the instant at hand.
+struct Now {
+    jets: Vec<Jet>,
+    state: Vec<f64>,
+    output: Vec<f64>,
+    input: Vec<f64>,
+    shown: Vec<f64>,
+    d_controller: Vec<f64>,
+}
+
+impl<C: Controller> Solo<C> {
+    /// The agent number `agent`. What a held input does is not what the ledger balances, so there is none under `digital`
+    /// control.
+    pub(crate) fn new(
+        agent: usize,
+        plant: C::Plant,
+        controller: C,
+        target: Option<Target>,
+        effort_limits: Option<Vec<f64>>,
+        digital: Option<Digital<C>>,
+        ledger: bool,
+    ) -> Self {
+        let (states, inputs) = (plant.states(), plant.inputs());
+        let torque = inputs.iter().position(|(signal, _)| *signal == Signal::Torque);
+        let layout = Layout {
+            m: plant.axes(),
+            has_velocity: states.get(1).is_some_and(|(signal, _)| *signal == Signal::Velocity),
+            plant: total(&states),
+            controller: total(&controller.states()),
+            ledger: ledger && digital.is_none(),
+            torque: torque.map_or((0, 0), |at| (total(&inputs[..at]), inputs[at].1)),
+        };
+        let input = total(&inputs);
+        let digital = digital.map(|digital| Digital {
+            measured: vec![0.0; plant.output_len()],
+            commanded: vec![0.0; input],
+            held: vec![0.0; input],
+            ..digital
+        });
+        let now = Now {
+            jets: vec![[0.0; 5]; target.as_ref().map_or(0, |target| target.trajectory.axes())],
+            state: vec![0.0; layout.plant],
+            output: vec![0.0; plant.output_len()],
+            input: vec![0.0; input],
+            shown: vec![0.0; total(&controller.shown())],
+            d_controller: vec![0.0; layout.controller],
+        };
+        Solo {
+            agent,
+            plant_scratch: plant.scratch(),
+            scratch: controller.scratch(),
+            plant,
+            controller,
+            target,
+            effort_limits,
+            digital,
+            layout,
+            now,
+            row: Vec::new(),
+        }
+    }
+
+    fn is_offset(&self) -> bool {
+        self.target.as_ref().is_some_and(|target| target.is_offset)
+    }
+
+    /// The target, the plant's state and what sensors could see at `t_s`.
+    fn look(&mut self, t_s: f64, x: &[f64]) -> Result<(), LengthError> {
+        let Layout { m, has_velocity, plant, .. } = self.layout;
+        if let Some(target) = &self.target {
+            target.trajectory.jets(t_s, &mut self.now.jets);
+        }
+        self.now.state.copy_from_slice(&x[..plant]);
+        if self.is_offset() {
+            for (k, jet) in self.now.jets.iter().enumerate().take(m) {
+                self.now.state[k] += jet[0];
+                if has_velocity {
+                    self.now.state[m + k] += jet[1];
+                }
+            }
+        }
+        self.plant.output(&mut self.plant_scratch, &self.now.state, &mut self.now.output)
+    }
+
+    /// The input that reaches the plant, what is shown, and the rate of the controller's state.
+    fn control(&mut self, x: &[f64], inputs: Inputs<'_>) -> Result<(), LengthError> {
+        let Layout { m, plant, .. } = self.layout;
+        let Now { jets, state, output, input, shown, d_controller } = &mut self.now;
+        if let Some(digital) = &self.digital {
+            input.copy_from_slice(&digital.held);
+            d_controller.fill(0.0);
+            if let Some(stepped) = &digital.stepped {
+                shown.copy_from_slice(stepped.shown());
+            }
+        } else {
+            let own = &x[plant..self.layout.controller_end()];
+            let heard = Heard::new(inputs.degree, inputs.sums, m)?;
+            let given = Given { measured: self.controller.see(output)?, heard, target: jets };
+            self.controller.evaluate(&mut self.scratch, given, own, Asked { input, d_state: d_controller, shown })?;
+        }
+        let (first, count) = self.layout.torque;
+        for (torque, limit) in input[first..first + count].iter_mut().zip(self.effort_limits.iter().flatten()) {
+            *torque = torque.clamp(-limit, *limit);
+        }
+        self.plant.limit(state, input);
+        Ok(())
+    }
+
+    fn try_rates(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) -> Result<(), LengthError> {
+        self.look(t_s, x)?;
+        self.control(x, inputs)?;
+        let Layout { m, has_velocity, plant, .. } = self.layout;
+        let end = self.layout.controller_end();
+        self.plant.rate(&mut self.plant_scratch, &self.now.state, &self.now.input, &mut dx[..plant])?;
+        if self.is_offset() {
+            for (k, jet) in self.now.jets.iter().enumerate().take(m) {
+                dx[k] -= jet[1];
+                if has_velocity {
+                    dx[m + k] -= jet[2];
+                }
+            }
+        }
+        dx[plant..end].copy_from_slice(&self.now.d_controller);
+        if self.layout.ledger {
+            dx[end] = self.balance(x, inputs)?.1;
+        }
+        Ok(())
+    }
+
+    /// V and what it loses; needs what [`Solo::control`] left.
+    fn balance(&mut self, x: &[f64], inputs: Inputs<'_>) -> Result<(f64, f64), LengthError> {
+        let Layout { m, plant, .. } = self.layout;
+        let own = &x[plant..self.layout.controller_end()];
+        let heard = Heard::new(inputs.degree, inputs.sums, m)?;
+        let given = Given { measured: self.controller.see(&self.now.output)?, heard, target: &self.now.jets };
+        let truth = Truth { plant: &self.plant, state: &self.now.state };
+        let balance = self.controller.balance(&mut self.scratch, truth, given, own, &self.now.shown)?;
+        Ok((balance.value, balance.dissipation))
+    }
+
+    fn try_record(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>) -> Result<(), LengthError> {
+        self.look(t_s, x)?;
+        self.plant.settle(&mut self.now.state);
+        self.control(x, inputs)?;
+        let (value, _) = self.balance(x, inputs)?;
+        self.row.clear();
+        self.row.extend_from_slice(&self.now.state);
+        self.row.extend_from_slice(&self.now.input);
+        self.row.extend_from_slice(&self.now.shown);
+        if self.is_offset() {
+            self.row.extend(self.now.jets.iter().map(|jet| jet[0]));
+        }
+        self.row.push(value);
+        if self.layout.ledger {
+            self.row.push(x[self.layout.controller_end()]);
+        }
+        Ok(())
+    }
+
+    fn try_command(&mut self, now_s: f64, inputs: Inputs<'_>, x: &mut [f64]) -> Result<(), StepError> {
+        let Layout { m, plant, torque: (first, count), .. } = self.layout;
+        let end = self.layout.controller_end();
+        let Some(digital) = &mut self.digital else { return Ok(()) };
+        let stepped = match &mut digital.stepped {
+            Some(stepped) => stepped,
+            none => {
+                let controller = self.controller.clone();
+                none.insert(Stepped::new(controller, &self.plant, self.now.jets.len(), &x[plant..end])?)
+            }
+        };
+        let sums = &inputs.sums[..<C::Exchange as Exchange>::CHANNELS * m];
+        let inbox = Inbox { degree: inputs.degree[0], sums };
+        digital.commanded.copy_from_slice(stepped.step(now_s, &digital.measured, inbox, &self.now.jets)?);
+        digital
+            .limiter
+            .apply(digital.last_s.map(|last_s| now_s - last_s), &mut digital.commanded[first..first + count]);
+        digital.last_s = Some(now_s);
+        x[plant..end].copy_from_slice(stepped.state());
+        Ok(())
+    }
+
+    fn all_signals(&self) -> Vec<Block> {
+        let mut blocks = self.plant.states();
+        blocks.extend(self.plant.inputs());
+        blocks.extend(self.controller.shown());
+        if self.is_offset() {
+            blocks.push((Signal::Offset, self.layout.m));
+        }
+        blocks.push((Signal::Lyapunov, 1));
+        if self.layout.ledger {
+            blocks.push((Signal::Dissipation, 1));
+        }
+        blocks
+    }
+}
+
+impl<C: Controller> Columns for Solo<C> {
+    fn state_len(&self) -> usize {
+        self.layout.controller_end() + usize::from(self.layout.ledger)
+    }
+
+    fn append_start(&self, agents: &[AgentSetup], x: &mut Vec<f64>) {
+        let first = x.len();
+        let start = &agents[self.agent].start;
+        x.extend(start.q.iter().chain(&start.dq).chain(&start.rest));
+        x.resize(first + self.state_len(), 0.0);
+        if let Some(target) = self.target.as_ref().filter(|target| target.is_offset) {
+            let Layout { m, has_velocity, .. } = self.layout;
+            let mut jets = vec![[0.0; 5]; m];
+            target.trajectory.jets(0.0, &mut jets);
+            for (k, jet) in jets.iter().enumerate() {
+                x[first + k] -= jet[0];
+                if has_velocity {
+                    x[first + m + k] -= jet[1];
+                }
+            }
+        }
+    }
+
+    fn start(&mut self, agents: &[AgentSetup], x: &mut [f64], degree: &[f64], sums: &[f64]) -> Result<(), LengthError> {
+        let Layout { m, plant, .. } = self.layout;
+        self.plant.settle(&mut x[..plant]);
+        self.look(0.0, x)?;
+        let heard = Heard::new(degree, sums, m)?;
+        let given = Given { measured: self.controller.see(&self.now.output)?, heard, target: &self.now.jets };
+        let own = &mut x[plant..plant + self.layout.controller];
+        self.controller.start(&mut self.scratch, given, &agents[self.agent].start.reference, own)
+    }
+
+    fn rates(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) {
+        let checked = self.try_rates(t_s, x, inputs, dx);
+        debug_assert_eq!(checked, Ok(()), "lengths are fixed when the agent is built");
+        if checked.is_err() {
+            dx.fill(f64::NAN);
+        }
+    }
+
+    fn record(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, write: &mut dyn FnMut(usize, &[f64])) {
+        let checked = self.try_record(t_s, x, inputs);
+        debug_assert_eq!(checked, Ok(()), "lengths are fixed when the agent is built");
+        write(self.agent, &self.row);
+    }
+
+    fn sense(&mut self, t_s: f64, x: &[f64], sent: &mut [f64]) {
+        let looked = self.look(t_s, x);
+        debug_assert_eq!(looked, Ok(()), "lengths are fixed when the agent is built");
+        let (Layout { m, has_velocity, .. }, is_offset) = (self.layout, self.is_offset());
+        let Some(digital) = &mut self.digital else { return };
+        digital.measured.copy_from_slice(&self.now.output);
+        let (q, rest) = digital.measured.split_at_mut(m);
+        let dq = if has_velocity { &mut rest[..m] } else { &mut [] };
+        digital.sensor.measure(digital.period_s, q, dq);
+        // A message is the position, then the velocity if it is sent.
+        sent.copy_from_slice(&digital.measured[..sent.len()]);
+        if is_offset {
+            for (channel, sent) in sent.chunks_exact_mut(m).enumerate() {
+                for (value, jet) in sent.iter_mut().zip(&self.now.jets) {
+                    *value -= jet[channel];
+                }
+            }
+        }
+    }
+
+    fn command(&mut self, now_s: f64, inputs: Inputs<'_>, x: &mut [f64]) {
+        if self.try_command(now_s, inputs, x).is_err()
+            && let Some(digital) = &mut self.digital
+        {
+            digital.commanded.fill(f64::NAN);
+        }
+    }
+
+    fn apply(&mut self) {
+        let (first, count) = self.layout.torque;
+        if let Some(digital) = &mut self.digital {
+            digital.held.copy_from_slice(&digital.commanded);
+            for torque in &mut digital.held[first..first + count] {
+                *torque = quantise(*torque, digital.torque_quantum);
+            }
+        }
+    }
+
+    fn settle(&mut self, x: &mut [f64]) {
+        let Layout { plant, .. } = self.layout;
+        self.plant.settle(&mut x[..plant]);
+        if self.digital.is_none() {
+            self.controller.settle(&mut x[plant..plant + self.layout.controller]);
+        }
+    }
+
+    fn trouble(&self, x: &[f64]) -> Option<(usize, Trouble)> {
+        let own = &x[self.layout.plant..self.layout.controller_end()];
+        self.controller.trouble(own, &self.now.shown).map(|trouble| (self.agent, trouble))
+    }
+
+    fn next_event_s(&self, after_s: f64) -> f64 {
+        self.target.as_ref().map_or(f64::INFINITY, |target| target.trajectory.next_kink_s(after_s))
+    }
+
+    fn signals(&self) -> Vec<(Signal, usize)> {
+        let axes = |(signal, count)| (0..count).map(move |axis| (signal, axis));
+        self.all_signals().into_iter().flat_map(axes).collect()
+    }
+
+    fn locate(&self, state: usize) -> (usize, Signal, usize) {
+        let mut first = 0;
+        for (signal, count) in self.plant.states().into_iter().chain(self.controller.states()) {
+            if state < first + count {
+                return (self.agent, signal, state - first);
+            }
+            first += count;
+        }
+        (self.agent, Signal::Dissipation, 0)
+    }
+}

@@ -1,0 +1,156 @@
+//! From agents to plants and controllers that stand by themselves: everything that is not a robot under (6)–(7).
+
+use forwardstep_core::LengthError;
+use forwardstep_core::agent::Limiter;
+use forwardstep_core::controller::{Controller, Guide, PositionOnly};
+use forwardstep_core::plant::{Mechanical, Plant, total};
+use forwardstep_core::reference::{Consensus, Position, polynomial};
+use forwardstep_core::robot::PointMass;
+
+use super::members::sensor;
+use super::population::Columns;
+use super::solo::{Digital, Solo, Target};
+use super::valid::SetupError;
+use crate::recording::Signal;
+use crate::setup::{AgentSetup, Control, Exchange, Law, ReferenceKind, RobotKind, Setup};
+
+/// The agent number `agent` with its law.
+pub(super) fn system(setup: &Setup, agent: usize) -> Result<Box<dyn Columns>, SetupError> {
+    let own = &setup.agents[agent];
+    match (&own.robot.kind, &own.law) {
+        (
+            RobotKind::PointMass { dimension },
+            &Law::PositionOnly { damping, filter_per_s, adaptation, estimate_start },
+        ) => {
+            let plant = Mechanical { robot: PointMass { dimension: *dimension }, theta: own.robot.theta.clone() };
+            for (what, value) in [("k", damping), ("λ_f", filter_per_s)] {
+                positive(own, what, value)?;
+            }
+            not_negative(own, "γ*", adaptation)?;
+            let guide = guide(setup, own)?;
+            let controller =
+                PositionOnly { axes: *dimension, guide, damping, filter_per_s, adaptation, estimate_start };
+            solo(setup, agent, plant, controller)
+        }
+        (_, law) => {
+            Err(SetupError::LawOfAnother { agent: own.name.clone(), law: law.words(), made_for: law.made_for() })
+        }
+    }
+}
+
+/// Where z leads: to a target, or to agreement.
+fn guide(setup: &Setup, own: &AgentSetup) -> Result<Guide, SetupError> {
+    let name = || own.name.clone();
+    let roots = |error| SetupError::Roots { agent: name(), error };
+    match setup.reference {
+        ReferenceKind::Tracking => {
+            let length = |error| SetupError::Length { agent: name(), error };
+            LengthError::check("the roots of the reference", 3, own.roots_per_s.len()).map_err(length)?;
+            let mut alpha = polynomial(&own.roots_per_s).map_err(roots)?;
+            // The leading one is not listed.
+            alpha.pop();
+            Ok(Guide::Tracking { alpha })
+        }
+        ReferenceKind::Consensus if own.roots_per_s.len() < 2 => {
+            Err(SetupError::OrderTooLow { agent: name(), order: own.roots_per_s.len(), least: 2 })
+        }
+        ReferenceKind::Consensus => Ok(Guide::Consensus(
+            Consensus::<Position>::new([(&own.roots_per_s[..], own.manipulability)]).map_err(roots)?,
+        )),
+        _ => Err(SetupError::ReferenceOfLaw { agent: name(), law: own.law.words() }),
+    }
+}
+
+/// Checks what the two traits need, and builds the block.
+fn solo<C: Controller>(
+    setup: &Setup,
+    agent: usize,
+    plant: C::Plant,
+    controller: C,
+) -> Result<Box<dyn Columns>, SetupError> {
+    let own = &setup.agents[agent];
+    let name = || own.name.clone();
+    let length = |what, need, got| {
+        LengthError::check(what, need, got).map_err(|error| SetupError::Length { agent: name(), error })
+    };
+    let start = &own.start;
+    length("the start", total(&plant.states()), start.q.len() + start.dq.len() + start.rest.len())?;
+    if setup.exchange != Exchange::Position {
+        return Err(SetupError::SendsPositionOnly { agent: name(), law: own.law.words() });
+    }
+    if !own.pushes.is_empty() {
+        return Err(SetupError::NotPushed { agent: name(), law: own.law.words() });
+    }
+    let is_offset = setup.reference != ReferenceKind::Tracking;
+    let target = match &own.target {
+        None if is_offset => None,
+        None => return Err(SetupError::NoTarget { agent: name() }),
+        Some(_) if is_offset && !C::KNOWS_OFFSETS => {
+            return Err(SetupError::NoOffsets { agent: name(), law: own.law.words() });
+        }
+        Some(trajectory) => {
+            length("the target", plant.axes(), trajectory.axes())?;
+            Some(Target { trajectory: trajectory.clone(), is_offset })
+        }
+    };
+    let torques: usize = plant.inputs().iter().filter(|(signal, _)| *signal == Signal::Torque).map(|(_, n)| n).sum();
+    let effort_limits = effort_limits(own, torques)?;
+    let digital = match &setup.control {
+        None => None,
+        Some(control) => Some(Digital::new(
+            sensor(agent, setup, control)?,
+            limiter(own, control, torques)?,
+            1.0 / control.sample_hz,
+            control.actuators.torque_quantum,
+        )),
+    };
+    Ok(Box::new(Solo::new(agent, plant, controller, target, effort_limits, digital, setup.solver.ledger)))
+}
+
+/// The limits of the torques, if they are to be enforced.
+fn effort_limits(own: &AgentSetup, torques: usize) -> Result<Option<Vec<f64>>, SetupError> {
+    if !own.enforce_limits {
+        return Ok(None);
+    }
+    let limit = |axis: &crate::setup::Axis| {
+        let (agent, axis_name) = (own.name.clone(), axis.name.clone());
+        axis.effort_limit.ok_or(SetupError::NoEffortLimit { agent, axis: axis_name })
+    };
+    let limits: Vec<f64> = own.robot.axes.iter().map(limit).collect::<Result<_, _>>()?;
+    LengthError::check("the effort limits", torques, limits.len())
+        .map_err(|error| SetupError::Length { agent: own.name.clone(), error })?;
+    Ok(Some(limits))
+}
+
+/// Limits of what a sampled controller asks for.
+fn limiter(own: &AgentSetup, control: &Control, torques: usize) -> Result<Limiter, SetupError> {
+    let limits = |given: &Option<Vec<f64>>, what| {
+        let values = given.clone().unwrap_or_else(|| vec![f64::INFINITY; torques]);
+        LengthError::check(what, torques, values.len())
+            .map_err(|error| SetupError::Length { agent: own.name.clone(), error })?;
+        Ok::<_, SetupError>(values)
+    };
+    let mut limit = limits(&control.actuators.torque_limit, "the torque limits")?;
+    let quantum = control.actuators.torque_quantum;
+    // A rounded torque must not exceed its limit either.
+    if quantum > 0.0 {
+        limit.iter_mut().for_each(|limit| *limit = quantum * (*limit / quantum).floor());
+    }
+    let rate = limits(&control.actuators.torque_rate_limit, "the torque rate limits")?;
+    Limiter::new(limit, rate).map_err(|error| SetupError::Limiter { agent: own.name.clone(), error })
+}
+
+fn positive(own: &AgentSetup, what: &'static str, value: f64) -> Result<(), SetupError> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(());
+    }
+    Err(SetupError::LawNumber { agent: own.name.clone(), what, value, requirement: "must be positive and finite" })
+}
+
+fn not_negative(own: &AgentSetup, what: &'static str, value: f64) -> Result<(), SetupError> {
+    if value >= 0.0 && value.is_finite() {
+        return Ok(());
+    }
+    let requirement = "must be finite and not negative";
+    Err(SetupError::LawNumber { agent: own.name.clone(), what, value, requirement })
+}

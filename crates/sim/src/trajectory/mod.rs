@@ -1,0 +1,238 @@
+//! Where something should be at every time: a leader's motion, a desired trajectory, an offset.
+//!
+//! A [`Trajectory`] has one [`Path`] per axis. Its value and four derivatives are closed forms, with the same bits on every
+//! machine, and can be bounded on a horizon or for ever: Theorems 8 and 9 ask for a gain above such a bound.
+//!
+//! - a formula in t: derivatives by Taylor coefficients, bounds by interval arithmetic;
+//! - sums of sinusoids: the bounds for ever are exact sums of amplitudes;
+//! - points of a table, joined by the smoothest curve through them: bounds of polynomials, which are exact for ever.
+
+mod spline;
+
+use forwardstep_core::Scalar;
+use forwardstep_core::controller::Jet;
+use thiserror::Error;
+
+use crate::formula::{Formula, Interval, search, weighted};
+pub use spline::{Spline, SplineError};
+
+/// Bounds this close to values that are taken are close enough, as a part of the range: the fine end of what a gain is
+/// compared with.
+const CLOSE: f64 = 1e-6;
+/// Room for the roundings of a few operations.
+const ROUNDING: f64 = 1e-12;
+
+/// amplitude · sin(rate · t + phase).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sinusoid {
+    /// rad or m.
+    pub amplitude: f64,
+    /// ω, rad/s.
+    pub rad_per_s: f64,
+    /// rad.
+    pub phase_rad: f64,
+}
+
+/// The motion of one axis.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Path {
+    /// A formula in t.
+    Formula(Formula),
+    /// A constant and sinusoids.
+    Sinusoids {
+        /// rad or m.
+        offset: f64,
+        /// What swings about it.
+        waves: Vec<Sinusoid>,
+    },
+    /// The smoothest curve through points.
+    Spline(Spline),
+}
+
+/// A motion in ℝᵐ.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trajectory {
+    paths: Vec<Path>,
+}
+
+/// Why paths make no trajectory.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum TrajectoryError {
+    /// There is no axis.
+    #[error("a trajectory needs at least one axis")]
+    Empty,
+    /// A number that is not finite.
+    #[error("axis {axis} of the trajectory has a number that is not finite: {value}")]
+    NotFinite {
+        /// The axis, from zero.
+        axis: usize,
+        /// The number.
+        value: f64,
+    },
+}
+
+impl Path {
+    /// Value and four derivatives.
+    pub fn jet(&self, t_s: f64) -> Jet {
+        match self {
+            Path::Formula(formula) => formula.jet(t_s),
+            Path::Sinusoids { offset, waves } => {
+                let mut jet = [*offset, 0.0, 0.0, 0.0, 0.0];
+                for wave in waves {
+                    let (sin, cos) = Scalar::sin_cos(wave.angle(t_s));
+                    let mut size = wave.amplitude;
+                    for (value, turn) in jet.iter_mut().zip([sin, cos, -sin, -cos, sin]) {
+                        *value += size * turn;
+                        size *= wave.rad_per_s;
+                    }
+                }
+                jet
+            }
+            Path::Spline(spline) => spline.jet(t_s),
+        }
+    }
+
+    /// An interval that holds Σₖ `weights[k]` · (k-th derivative) at every time from 0 to `end_s`, or for ever; unbounded
+    /// where nothing could be shown.
+    pub fn bounds(&self, weights: &[f64; 5], end_s: Option<f64>) -> Interval {
+        match self {
+            Path::Formula(formula) => formula.bounds_of_derivatives(weights, 0.0, end_s.unwrap_or(f64::INFINITY)),
+            Path::Sinusoids { offset, waves } => sinusoids(*offset, waves, weights, end_s),
+            Path::Spline(spline) => spline.bounds(weights, end_s),
+        }
+    }
+}
+
+impl Sinusoid {
+    fn angle(&self, t_s: f64) -> f64 {
+        self.rad_per_s.mul_add(t_s, self.phase_rad)
+    }
+}
+
+/// A combination of derivatives of a sinusoid is a sinusoid: Σ wₖ (d/dt)ᵏ a sin θ = p a sin θ + q a cos θ.
+fn sinusoids(offset: f64, waves: &[Sinusoid], weights: &[f64; 5], end_s: Option<f64>) -> Interval {
+    let parts = |wave: &Sinusoid| {
+        let w = wave.rad_per_s;
+        let p = weights[0] - w * w * (weights[2] - w * w * weights[4]);
+        let q = w * (weights[1] - w * w * weights[3]);
+        let size = wave.amplitude * libm::hypot(p, q);
+        (size, wave.phase_rad + libm::atan2(q, p))
+    };
+    let middle = weights[0] * offset;
+    let size: f64 = waves.iter().map(|wave| parts(wave).0.abs()).sum();
+    let for_ever = Interval { low: middle - size, high: middle + size }.with_room(ROUNDING * (middle.abs() + size));
+    let Some(end_s) = end_s else { return for_ever };
+    let enclose = |from: f64, to: f64| {
+        let mut sum = Interval { low: middle, high: middle };
+        for wave in waves {
+            let (size, phase) = parts(wave);
+            let angle = |t_s: f64| wave.rad_per_s.mul_add(t_s, phase);
+            let (a, b) = (angle(from), angle(to));
+            let swing = Interval { low: a.min(b), high: a.max(b) }.sine();
+            let (a, b) = (size * swing.low, size * swing.high);
+            sum = Interval { low: sum.low + a.min(b), high: sum.high + a.max(b) };
+        }
+        sum
+    };
+    let path = |t_s: f64| {
+        waves.iter().fold(middle, |sum, wave| {
+            let (size, phase) = parts(wave);
+            sum + size * Scalar::sin_cos(wave.rad_per_s.mul_add(t_s, phase)).0
+        })
+    };
+    let part = search(0.0, end_s, CLOSE, enclose, path).with_room(ROUNDING * (middle.abs() + size));
+    Interval { low: part.low.max(for_ever.low), high: part.high.min(for_ever.high) }
+}
+
+impl Trajectory {
+    /// A trajectory with one path per axis.
+    ///
+    /// ```
+    /// use forwardstep_sim::trajectory::{Path, Sinusoid, Trajectory};
+    /// let wave = Sinusoid { amplitude: 0.5, rad_per_s: 2.0, phase_rad: 0.0 };
+    /// let swing = Trajectory::new(vec![Path::Sinusoids { offset: 1.0, waves: vec![wave] }])?;
+    /// let mut jets = [[0.0; 5]];
+    /// swing.jets(0.0, &mut jets);
+    /// assert_eq!(jets[0], [1.0, 1.0, 0.0, -4.0, 0.0]);
+    /// assert!((swing.hull(0, 1, None).high - 1.0).abs() < 1e-9);
+    /// # Ok::<(), forwardstep_sim::trajectory::TrajectoryError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`TrajectoryError`] when there is no axis or a number is not finite.
+    pub fn new(paths: Vec<Path>) -> Result<Self, TrajectoryError> {
+        if paths.is_empty() {
+            return Err(TrajectoryError::Empty);
+        }
+        for (axis, path) in paths.iter().enumerate() {
+            if let Path::Sinusoids { offset, waves } = path {
+                let all = waves.iter().flat_map(|wave| [wave.amplitude, wave.rad_per_s, wave.phase_rad]);
+                if let Some(value) = all.chain([*offset]).find(|value| !value.is_finite()) {
+                    return Err(TrajectoryError::NotFinite { axis, value });
+                }
+            }
+        }
+        Ok(Trajectory { paths })
+    }
+
+    /// m.
+    pub fn axes(&self) -> usize {
+        self.paths.len()
+    }
+
+    /// The path of every axis.
+    pub fn paths(&self) -> &[Path] {
+        &self.paths
+    }
+
+    /// Value and four derivatives of every axis, as many as `out` has room for. A formula that has no value gives
+    /// not-a-number.
+    pub fn jets(&self, t_s: f64, out: &mut [Jet]) {
+        for (jet, path) in out.iter_mut().zip(&self.paths) {
+            *jet = path.jet(t_s);
+        }
+    }
+
+    /// The first time after `after_s` at which a derivative up to the fourth may jump: where a table begins or ends.
+    /// Infinite when there is none; formulas are taken to have none.
+    pub fn next_kink_s(&self, after_s: f64) -> f64 {
+        let ends = self.paths.iter().filter_map(|path| match path {
+            Path::Spline(spline) => Some(spline.ends_s()),
+            _ => None,
+        });
+        ends.flatten().filter(|end_s| *end_s > after_s).fold(f64::INFINITY, f64::min)
+    }
+
+    /// An interval that holds the k-th derivative, k ≤ 4, of one axis from 0 to `end_s`, or for ever; unbounded where nothing
+    /// could be shown.
+    pub fn hull(&self, axis: usize, derivative: usize, end_s: Option<f64>) -> Interval {
+        let mut weights = [0.0; 5];
+        match weights.get_mut(derivative) {
+            Some(weight) => *weight = 1.0,
+            None => return Interval::WHOLE,
+        }
+        self.bounds(axis, &weights, end_s)
+    }
+
+    /// An interval that holds Σₖ `weights[k]` · (k-th derivative) of one axis from 0 to `end_s`, or for ever; tighter than
+    /// what the parts would give.
+    pub fn bounds(&self, axis: usize, weights: &[f64; 5], end_s: Option<f64>) -> Interval {
+        self.paths.get(axis).map_or(Interval::WHOLE, |path| path.bounds(weights, end_s))
+    }
+
+    /// The largest |Σₖ `weights[k]` · (k-th derivative)| of any axis at `samples` + 1 times from 0 to `end_s`: no bound, but
+    /// what is left where none could be shown.
+    pub fn sampled_peak(&self, weights: &[f64; 5], end_s: f64, samples: u32) -> f64 {
+        let mut peak = 0.0_f64;
+        for k in 0..=samples {
+            let t_s = end_s * f64::from(k) / f64::from(samples.max(1));
+            for path in &self.paths {
+                peak = peak.max(weighted(weights, &path.jet(t_s)).abs());
+            }
+        }
+        peak
+    }
+}
+
+#[cfg(test)]
+mod tests;

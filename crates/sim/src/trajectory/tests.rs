@@ -1,0 +1,217 @@
+use proptest::prelude::*;
+
+use super::*;
+use crate::formula::FormulaStep::{self, *};
+
+fn formula(steps: &[FormulaStep]) -> Path {
+    Path::Formula(Formula::new(steps.to_vec()).unwrap())
+}
+
+fn close(got: f64, want: f64, tolerance: f64) -> bool {
+    got == want || (got - want).abs() <= tolerance * (1.0 + want.abs())
+}
+
+/// Central differences of each derivative give the next.
+fn agrees_with_differences(path: &Path, t_s: f64) {
+    let h = 1e-5;
+    let (before, at, after) = (path.jet(t_s - h), path.jet(t_s), path.jet(t_s + h));
+    for k in 0..4 {
+        let slope = (after[k] - before[k]) / (2.0 * h);
+        assert!(close(at[k + 1], slope, 1e-6), "{path:?} at {t_s}, derivative {}: {} {slope}", k + 1, at[k + 1]);
+    }
+}
+
+#[test]
+fn jets_of_formulas_are_those_of_the_closed_forms() {
+    for t in [0.3_f64, 1.7, 4.0] {
+        let (s, c) = t.sin_cos();
+        let e = (-t).exp();
+        let cases = [
+            (vec![Time, Sin], [s, c, -s, -c, s]),
+            (vec![Time, Negate, Exp], [e, -e, e, -e, e]),
+            (vec![Time, Power(3.0)], [t.powi(3), 3.0 * t * t, 6.0 * t, 6.0, 0.0]),
+            (vec![Time, Log], [t.ln(), 1.0 / t, -t.powi(-2), 2.0 * t.powi(-3), -6.0 * t.powi(-4)]),
+            (
+                vec![Time, Sqrt],
+                [t.sqrt(), 0.5 * t.powf(-0.5), -0.25 * t.powf(-1.5), 0.375 * t.powf(-2.5), -0.9375 * t.powf(-3.5)],
+            ),
+            (
+                vec![Number(1.0), Time, Divide],
+                [1.0 / t, -t.powi(-2), 2.0 * t.powi(-3), -6.0 * t.powi(-4), 24.0 * t.powi(-5)],
+            ),
+            (
+                vec![Time, Sin, Time, Negate, Exp, Multiply],
+                [s * e, (c - s) * e, -2.0 * c * e, 2.0 * (s + c) * e, -4.0 * s * e],
+            ),
+        ];
+        for (steps, want) in cases {
+            let got = formula(&steps).jet(t);
+            assert!(got.iter().zip(want).all(|(g, w)| close(*g, w, 1e-13)), "{steps:?} {got:?} {want:?}");
+        }
+    }
+}
+
+#[test]
+fn jets_of_every_function_agree_with_differences() {
+    let inner = [Time, Number(0.7), Multiply, Sin, Number(2.5), Add];
+    for outer in [Sin, Cos, Exp, Log, Sqrt, Tanh, Atan, Abs, Power(3.0), Power(-2.0), Power(1.7), Power(0.0)] {
+        for t in [0.4, 2.0, 5.5] {
+            agrees_with_differences(&formula(&[&inner[..], &[outer]].concat()), t);
+        }
+    }
+    for both in [Add, Subtract, Multiply, Divide, Min, Max] {
+        agrees_with_differences(&formula(&[&inner[..], &[Time, Cos], &[both]].concat()), 1.3);
+    }
+}
+
+#[test]
+fn sinusoids_are_bounded_exactly_for_ever() {
+    let wave = |amplitude, rad_per_s, phase_rad| Sinusoid { amplitude, rad_per_s, phase_rad };
+    let path = Path::Sinusoids { offset: 0.3, waves: vec![wave(0.5, 2.0, 0.4), wave(-0.2, 3.3, 1.0)] };
+    [0.1, 1.9, 7.7].into_iter().for_each(|t| agrees_with_differences(&path, t));
+    let trajectory = Trajectory::new(vec![path.clone()]).unwrap();
+    for k in 0..5 {
+        let size = 0.5 * 2.0_f64.powi(k) + 0.2 * 3.3_f64.powi(k);
+        let middle = if k == 0 { 0.3 } else { 0.0 };
+        let hull = trajectory.hull(0, k as usize, None);
+        assert!(close(hull.high, middle + size, 1e-11) && close(hull.low, middle - size, 1e-11), "{k} {hull:?}");
+        // Frequencies without a common measure come as close to it as one likes.
+        let seen = trajectory.hull(0, k as usize, Some(200.0));
+        assert!(seen.high <= hull.high && seen.high > middle + 0.99 * size, "{k} {seen:?}");
+    }
+    // α q̇ + q̈ of one wave: a ω √(α² + ω²).
+    let one = Trajectory::new(vec![Path::Sinusoids { offset: 9.0, waves: vec![wave(0.5, 2.0, 0.4)] }]).unwrap();
+    let size = one.bounds(0, &[0.0, 1.5, 1.0, 0.0, 0.0], None).size();
+    assert!(close(size, 0.5 * 2.0 * 6.25_f64.sqrt(), 1e-11), "{size}");
+    // Early on only a part of it is seen.
+    let part = one.hull(0, 1, Some(0.1)).high;
+    assert!(close(part, 0.4_f64.cos(), 1e-5), "{part}");
+}
+
+#[test]
+fn formulas_are_bounded_where_the_intervals_tell() {
+    let swing = Trajectory::new(vec![formula(&[Number(0.5), Number(2.0), Time, Multiply, Sin, Multiply])]).unwrap();
+    for k in 0..5 {
+        let hull = swing.hull(0, k, None);
+        assert!(close(hull.size(), 0.5 * 2.0_f64.powi(k as i32), 1e-12), "{k} {hull:?}");
+    }
+    // A ramp is not bounded, its derivatives are.
+    let ramp = Trajectory::new(vec![formula(&[Time, Number(0.2), Multiply, Time, Tanh, Add])]).unwrap();
+    assert!(!ramp.hull(0, 0, None).is_finite() && ramp.hull(0, 0, Some(10.0)).is_finite());
+    assert!((1..5).all(|k| ramp.hull(0, k, None).is_finite()));
+    // The corner of |t − 1| has a slope, but no acceleration.
+    let corner = Trajectory::new(vec![formula(&[Time, Number(1.0), Subtract, Abs])]).unwrap();
+    assert_eq!(corner.hull(0, 1, None), Interval { low: -1.0, high: 1.0 });
+    assert!(!corner.hull(0, 2, Some(3.0)).is_finite());
+    // √t has no slope at 0, whatever is done with it.
+    let root = Trajectory::new(vec![formula(&[Time, Sqrt, Tanh])]).unwrap();
+    assert!(root.hull(0, 0, None).is_finite() && !root.hull(0, 1, Some(3.0)).is_finite());
+}
+
+fn bumpy() -> Spline {
+    Spline::new(vec![0.5, 1.0, 1.4, 2.5, 4.0, 4.2], vec![0.0, 1.0, 0.7, -0.4, 0.2, 0.5]).unwrap()
+}
+
+#[test]
+fn splines_go_through_their_points_and_have_four_continuous_derivatives() {
+    let spline = bumpy();
+    for (t, value) in spline.times_s().iter().zip(spline.values()) {
+        assert!(close(spline.jet(*t)[0], *value, 1e-12));
+    }
+    for knot in &spline.times_s()[1..5] {
+        let (before, after) = (spline.jet(knot - 1e-9), spline.jet(knot + 1e-9));
+        for k in 0..5 {
+            // The fifth derivative jumps, but is bounded.
+            assert!(
+                (before[k] - after[k]).abs() < 1e-5 * (1.0 + after[k].abs()),
+                "{k} at {knot}: {before:?} {after:?}"
+            );
+        }
+    }
+    // At rest at the ends, and beyond.
+    for (inside, outside) in [(0.5 + 1e-9, 0.4), (4.2 - 1e-9, 9.0)] {
+        assert!(spline.jet(inside)[1].abs() < 1e-4 && spline.jet(inside)[2].abs() < 1e-4);
+        assert_eq!(spline.jet(outside)[1..], [0.0; 4]);
+    }
+    [0.7, 1.2, 2.0, 3.9].into_iter().for_each(|t| agrees_with_differences(&Path::Spline(spline.clone()), t));
+    let trajectory = Trajectory::new(vec![Path::Spline(spline)]).unwrap();
+    assert_eq!([0.0, 0.5, 4.2].map(|t| trajectory.next_kink_s(t)), [0.5, 4.2, f64::INFINITY]);
+}
+
+/// Two points from rest to rest: the well-known 10 σ³ − 15 σ⁴ + 6 σ⁵, whose speed is 15/8 of the mean at its middle.
+#[test]
+fn two_points_give_the_known_polynomial_and_its_exact_bounds() {
+    let trajectory = Trajectory::new(vec![Path::Spline(Spline::new(vec![0.0, 2.0], vec![1.0, 4.0]).unwrap())]).unwrap();
+    let mut jets = [[0.0; 5]];
+    trajectory.jets(0.8, &mut jets);
+    let x: f64 = 0.4;
+    let want = 1.0 + 3.0 * (10.0 * x.powi(3) - 15.0 * x.powi(4) + 6.0 * x.powi(5));
+    assert!(close(jets[0][0], want, 1e-14));
+    let speed = trajectory.hull(0, 1, None);
+    assert!(close(speed.high, 1.5 * 15.0 / 8.0, 1e-6) && speed.low.abs() < 1e-5, "{speed:?}");
+    let jerk = trajectory.hull(0, 3, None);
+    assert!(close(jerk.high, 60.0 * 3.0 / 8.0, 1e-6) && close(jerk.low, -30.0 * 3.0 / 8.0, 1e-6), "{jerk:?}");
+    // Before its middle the speed rises.
+    let half = trajectory.hull(0, 1, Some(0.5)).high;
+    trajectory.jets(0.5, &mut jets);
+    assert!(close(half, jets[0][1], 1e-5), "{half}");
+}
+
+/// Points of a polynomial of degree five that starts and ends at rest give back the polynomial.
+#[test]
+fn the_curve_through_points_of_a_quintic_is_the_quintic() {
+    let q = |x: f64| 10.0 * x.powi(3) - 15.0 * x.powi(4) + 6.0 * x.powi(5);
+    let t = vec![0.0, 0.1, 0.35, 0.5, 0.9, 1.0];
+    let spline = Spline::new(t.clone(), t.iter().map(|t| q(*t)).collect()).unwrap();
+    for k in 0..100 {
+        let t = f64::from(k) / 100.0;
+        assert!((spline.jet(t)[0] - q(t)).abs() < 1e-12, "{t}");
+    }
+}
+
+#[test]
+fn points_that_make_no_curve_are_refused() {
+    assert_eq!(Spline::new(vec![], vec![]), Err(SplineError::Empty));
+    assert_eq!(Spline::new(vec![0.0], vec![]), Err(SplineError::Lengths { times: 1, values: 0 }));
+    assert_eq!(
+        Spline::new(vec![0.0, 1.0, 1.0], vec![0.0; 3]),
+        Err(SplineError::Order { row: 3, t_s: 1.0, before_s: 1.0 })
+    );
+    assert_eq!(
+        Spline::new(vec![0.0, 1.0], vec![0.0, f64::INFINITY]),
+        Err(SplineError::NotFinite { row: 2, value: f64::INFINITY })
+    );
+    assert!(matches!(Spline::new(vec![0.0, 1e-300], vec![0.0, 1.0]), Err(SplineError::TooSteep { row: 1 })));
+    // One point is a constant.
+    assert_eq!(Spline::new(vec![3.0], vec![0.7]).unwrap().jet(1.0), [0.7, 0.0, 0.0, 0.0, 0.0]);
+    assert_eq!(Trajectory::new(vec![]), Err(TrajectoryError::Empty));
+}
+
+proptest! {
+    #[test]
+    fn prop_a_spline_keeps_within_its_bounds(
+        steps in prop::collection::vec(0.05..2.0_f64, 1..8),
+        values in prop::collection::vec(-2.0..2.0_f64, 9),
+        weights in prop::array::uniform5(-1.0..1.0_f64),
+        start in -3.0..3.0_f64,
+        end in 0.1..12.0_f64,
+    ) {
+        let mut t = vec![start];
+        steps.iter().for_each(|step| t.push(t[t.len() - 1] + step));
+        let n = t.len();
+        let spline = Spline::new(t, values[..n].to_vec()).unwrap();
+        let (for_ever, part) = (spline.bounds(&weights, None), spline.bounds(&weights, Some(end)));
+        prop_assert!(part.low >= for_ever.low - 1e-3 * for_ever.size() && part.high <= for_ever.high + 1e-3 * for_ever.size());
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let knots: Vec<f64> = spline.times_s().iter().copied().chain([0.0, end]).collect();
+        let near = |t: &f64| [t - 1e-12 * (1.0 + t.abs()), *t, t + 1e-12];
+        let all = (0..=2000).map(|k| end * f64::from(k) / 2000.0).chain(knots.iter().flat_map(near));
+        for t in all.filter(|t| (0.0..=end).contains(t)) {
+            let value = weighted(&weights, &spline.jet(t));
+            prop_assert!(part.low <= value && value <= part.high, "{} {:?}", value, part);
+            low = low.min(value);
+            high = high.max(value);
+        }
+        prop_assert!(part.high - high <= 0.05 * (part.high - part.low) + 1e-9 + 0.05 * part.size(), "{:?} {} {}", part, low, high);
+    }
+}
