@@ -6,6 +6,7 @@ use forwardstep_core::Gain;
 use forwardstep_core::controller::{Controller, PositionOnly};
 use forwardstep_core::robot::tree::Tree;
 
+use crate::chain::{ChainLaw, ChainModel};
 use crate::network::Network;
 use crate::push::Push;
 use crate::trajectory::Trajectory;
@@ -146,6 +147,8 @@ pub enum RobotKind {
         /// m.
         dimension: usize,
     },
+    /// A chain of Section IV.
+    Chain(ChainModel),
 }
 
 /// One degree of freedom of a robot.
@@ -200,6 +203,8 @@ pub enum Law {
         /// m̂(0), kg.
         estimate_start: f64,
     },
+    /// A law for a chain.
+    Chain(ChainLaw),
 }
 
 impl Law {
@@ -214,6 +219,7 @@ impl Law {
             Law::Adaptive { .. } => true,
             Law::Known { .. } => false,
             Law::PositionOnly { .. } => true,
+            Law::Chain(law) => law.estimates(),
         }
     }
 
@@ -222,6 +228,7 @@ impl Law {
         match self {
             Law::Adaptive { .. } | Law::Known { .. } => &["position", "velocity"],
             Law::PositionOnly { .. } => PositionOnly::MEASURES,
+            Law::Chain(law) => law.measures(),
         }
     }
 
@@ -231,6 +238,7 @@ impl Law {
             Law::Adaptive { .. } => "the adaptive law",
             Law::Known { .. } => "the law with known parameters",
             Law::PositionOnly { .. } => "the law without velocity",
+            Law::Chain(law) => law.words(),
         }
     }
 
@@ -239,6 +247,7 @@ impl Law {
         match self {
             Law::Adaptive { .. } | Law::Known { .. } => "Lagrangian robots",
             Law::PositionOnly { .. } => "point masses",
+            Law::Chain(law) => law.made_for(),
         }
     }
 }

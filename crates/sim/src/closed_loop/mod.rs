@@ -12,6 +12,7 @@
 //! - `assemble`: all populations and what joins them: the right-hand side as a whole, and its events.
 
 mod assemble;
+mod chains;
 mod fleet;
 mod members;
 mod population;

@@ -7,6 +7,7 @@ use forwardstep_core::plant::{Mechanical, Plant, total};
 use forwardstep_core::reference::{Consensus, Position, polynomial};
 use forwardstep_core::robot::PointMass;
 
+use super::chains::chain;
 use super::members::sensor;
 use super::population::Columns;
 use super::solo::{Digital, Solo, Target};
@@ -32,6 +33,7 @@ pub(super) fn system(setup: &Setup, agent: usize) -> Result<Box<dyn Columns>, Se
                 PositionOnly { axes: *dimension, guide, damping, filter_per_s, adaptation, estimate_start };
             solo(setup, agent, plant, controller)
         }
+        (RobotKind::Chain(model), _) => chain(setup, agent, model),
         (_, law) => {
             Err(SetupError::LawOfAnother { agent: own.name.clone(), law: law.words(), made_for: law.made_for() })
         }
@@ -62,7 +64,7 @@ fn guide(setup: &Setup, own: &AgentSetup) -> Result<Guide, SetupError> {
 }
 
 /// Checks what the two traits need, and builds the block.
-fn solo<C: Controller>(
+pub(super) fn solo<C: Controller>(
     setup: &Setup,
     agent: usize,
     plant: C::Plant,

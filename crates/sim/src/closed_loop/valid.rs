@@ -1,6 +1,7 @@
 //! What makes a setup meaningless.
 
 use forwardstep_core::agent::{FilterError, LimiterError};
+use forwardstep_core::controller::ChainError;
 use forwardstep_core::reference::{BacksteppingError, RootsError};
 use forwardstep_core::{GainError, LengthError};
 use thiserror::Error;
@@ -60,6 +61,14 @@ pub enum SetupError {
         agent: String,
         /// What is wrong.
         error: RootsError,
+    },
+    /// A law for a chain.
+    #[error("agent `{agent}`: {error}")]
+    Chain {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: ChainError,
     },
     /// The filter of the backstepping baseline.
     #[error(transparent)]
@@ -290,7 +299,9 @@ fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
         }
     };
     vector("the start position", axes, &agent.start.q)?;
-    vector("the start velocity", axes, &agent.start.dq)?;
+    // Where the second state is no velocity there is none.
+    let velocities = if agent.law.is_lagrangian() || !agent.start.dq.is_empty() { axes } else { 0 };
+    vector("the start velocity", velocities, &agent.start.dq)?;
     vector("the start of the plant", agent.start.rest.len(), &agent.start.rest)?;
     if let (Some(_), true) = (&agent.target, agent.law.is_lagrangian()) {
         return Err(SetupError::NoOffsets { agent: agent.name.clone(), law: agent.law.words() });
