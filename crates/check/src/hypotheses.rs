@@ -8,7 +8,7 @@ use forwardstep_sim::{Exchange, Law, ReferenceKind, Setup};
 use crate::laws;
 use crate::links;
 use crate::sampled::{digital, limited_actuators};
-use crate::tracking::{self, is_tracking};
+use crate::tracking::{self, bounded_target, is_tracking};
 use crate::verdict::{Answer, Hypothesis, Report};
 
 /// Which theorem speaks about `setup`, and whether its hypotheses hold.
@@ -25,6 +25,10 @@ pub fn check(setup: &Setup) -> Report {
     let mut hypotheses = vec![spanning_tree(setup), dwell_time(setup), links::bounded_delays(setup)];
     hypotheses.extend(links::bounded_weights(setup));
     match setup.reference {
+        // Chains of different orders agree: nothing in the argument for (24) compares orders.
+        ReferenceKind::Consensus if setup.agents.iter().all(|agent| matches!(agent.law, Law::Chain(_))) => {
+            hypotheses.push(real_roots(setup));
+        }
         ReferenceKind::Consensus => hypotheses.extend([real_roots(setup), common_order(setup)]),
         ReferenceKind::PureIntegral => hypotheses.extend([fixed_graph(setup), real_roots(setup)]),
         ReferenceKind::Backstepping { filter_s, .. } => hypotheses.push(differentiable(filter_s)),
@@ -35,6 +39,7 @@ pub fn check(setup: &Setup) -> Report {
     if setup.exchange == Exchange::PositionVelocity {
         hypotheses.push(common_first_root(setup));
     }
+    hypotheses.extend(setup.agents.iter().filter_map(|agent| bounded_target(setup, agent)));
     hypotheses.extend(laws::of_laws(setup));
     if setup.agents.iter().any(|agent| agent.law.is_lagrangian()) {
         hypotheses.push(gains(setup));

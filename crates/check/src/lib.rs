@@ -4,12 +4,14 @@
 //! paper*, or is *violated* with a witness.
 
 mod agreement;
+mod chains;
 mod hypotheses;
 mod laws;
 mod links;
 mod manipulation;
 mod sampled;
 mod tracking;
+mod vehicles;
 mod verdict;
 
 pub use agreement::{NoPrediction, Prediction, predict};

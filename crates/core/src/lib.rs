@@ -15,12 +15,14 @@
 extern crate alloc;
 
 pub mod agent;
+pub mod attitude;
 pub mod controller;
 mod dispatch;
 mod error;
 pub mod expression;
 mod gain;
 pub mod law;
+mod linear;
 pub mod plant;
 pub mod reference;
 pub mod robot;

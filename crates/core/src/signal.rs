@@ -36,11 +36,22 @@ pub enum Signal {
     Filter,
     /// What the law divides by, which must stay away from zero. One entry.
     Divisor,
+    /// The attitude as a quaternion (q_v, q_o), four entries.
+    Attitude,
+    /// ω in the body's axes.
+    AngularVelocity,
+    /// The ω that an outer law wants, where torques have to bring it about.
+    AngularVelocityWanted,
+    /// σ, the thrust. One entry.
+    Thrust,
+    /// The heading that is kept, an angle. One entry.
+    Heading,
 }
 
 impl Signal {
     /// The name used in column headers: `q`, `dq`, `z`, `dz`, `d2z`, …, `s`, `tau`, `theta_hat`, `lyapunov`,
-    /// `dissipation`, `tau_ext`, `error`, `offset`, `y`, `divisor`; `d2q`, … and `x2`, … for chains.
+    /// `dissipation`, `tau_ext`, `error`, `offset`, `y`, `attitude`, `omega`, `omega_wanted`, `sigma`, `heading`,
+    /// `divisor`; `d2q`, … and `x2`, … for chains.
     pub fn name(self) -> String {
         match self {
             Signal::Position => "q".into(),
@@ -60,6 +71,11 @@ impl Signal {
             Signal::Offset => "offset".into(),
             Signal::Filter => "y".into(),
             Signal::Divisor => "divisor".into(),
+            Signal::Attitude => "attitude".into(),
+            Signal::AngularVelocity => "omega".into(),
+            Signal::AngularVelocityWanted => "omega_wanted".into(),
+            Signal::Thrust => "sigma".into(),
+            Signal::Heading => "heading".into(),
         }
     }
 }

@@ -24,6 +24,16 @@ impl ChainModel {
         }
     }
 
+    /// Whether the second state is the velocity of the first.
+    pub fn has_velocity(&self) -> bool {
+        matches!(self, ChainModel::Derivatives(terms) if terms.order() > 1)
+    }
+
+    /// States besides the position, and the velocity where there is one.
+    pub fn rest_len(&self) -> usize {
+        self.order().saturating_sub(1 + usize::from(self.has_velocity()))
+    }
+
     /// Entries of θ.
     pub fn parameters(&self) -> usize {
         match self {

@@ -19,6 +19,7 @@ pub mod setup;
 mod simulate;
 pub mod topology;
 pub mod trajectory;
+pub mod vehicles;
 
 pub use chain::{ChainLaw, ChainModel, ChainStep};
 pub use closed_loop::SetupError;

@@ -3,13 +3,15 @@
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
-use forwardstep_core::controller::{Controller, PositionOnly};
+use forwardstep_core::controller::{Controller, PositionOnly, Thrust, ThrustCascade};
+use forwardstep_core::plant::Rotors;
 use forwardstep_core::robot::tree::Tree;
 
 use crate::chain::{ChainLaw, ChainModel};
 use crate::network::Network;
 use crate::push::Push;
 use crate::trajectory::Trajectory;
+use crate::vehicles::{ThrustKind, ThrustLaw};
 
 /// A network of agents and how long to watch it.
 #[derive(Clone, Debug)]
@@ -104,6 +106,16 @@ pub struct AgentSetup {
     pub pushes: Vec<Push>,
 }
 
+impl AgentSetup {
+    /// What it measures, in words. A law cannot read anything else: its inputs have no room for it.
+    pub fn measures(&self) -> &'static [&'static str] {
+        match (&self.law, &self.robot.kind) {
+            (Law::Thrust(_), RobotKind::Rotorcraft { .. }) => ThrustCascade::MEASURES,
+            (law, _) => law.measures(),
+        }
+    }
+}
+
 /// A robot with its true parameters.
 #[derive(Clone, Debug)]
 pub struct RobotSetup {
@@ -149,6 +161,33 @@ pub enum RobotKind {
     },
     /// A chain of Section IV.
     Chain(ChainModel),
+    /// (44): a vehicle in ℝ³ with one thrust, whose angular velocity obeys at once. ϑ is its mass; the rest of its start is
+    /// its attitude (q_v, q_o).
+    Vehicle {
+        /// g along the third axis, which points down, m/s².
+        gravity: f64,
+    },
+    /// The same as a rigid body that torques turn; the rest of its start is its attitude and its angular velocity.
+    Rotorcraft {
+        /// g, m/s².
+        gravity: f64,
+        /// J, kg m².
+        inertia: Gain,
+        /// Its rotors; without them every thrust and every torque can be had.
+        rotors: Option<Rotors>,
+    },
+}
+
+impl RobotKind {
+    /// Numbers in a start beside q and q̇.
+    pub fn rest_len(&self) -> usize {
+        match self {
+            RobotKind::Tree(_) | RobotKind::PlanarArm | RobotKind::PointMass { .. } => 0,
+            RobotKind::Vehicle { .. } => 4,
+            RobotKind::Rotorcraft { .. } => 7,
+            RobotKind::Chain(model) => model.rest_len(),
+        }
+    }
 }
 
 /// One degree of freedom of a robot.
@@ -205,6 +244,8 @@ pub enum Law {
     },
     /// A law for a chain.
     Chain(ChainLaw),
+    /// (46), (50) or (57) for vehicles with one thrust; see [`forwardstep_core::controller::Thrust`].
+    Thrust(ThrustLaw),
 }
 
 impl Law {
@@ -220,15 +261,17 @@ impl Law {
             Law::Known { .. } => false,
             Law::PositionOnly { .. } => true,
             Law::Chain(law) => law.estimates(),
+            Law::Thrust(law) => matches!(law.design, ThrustKind::Adaptive { .. }),
         }
     }
 
-    /// What it measures, in words. A law cannot read anything else: its inputs have no room for it.
-    pub fn measures(&self) -> &'static [&'static str] {
+    /// What it measures, in words, see [`AgentSetup::measures`].
+    fn measures(&self) -> &'static [&'static str] {
         match self {
             Law::Adaptive { .. } | Law::Known { .. } => &["position", "velocity"],
             Law::PositionOnly { .. } => PositionOnly::MEASURES,
             Law::Chain(law) => law.measures(),
+            Law::Thrust(_) => Thrust::MEASURES,
         }
     }
 
@@ -239,6 +282,7 @@ impl Law {
             Law::Known { .. } => "the law with known parameters",
             Law::PositionOnly { .. } => "the law without velocity",
             Law::Chain(law) => law.words(),
+            Law::Thrust(_) => "the thrust law",
         }
     }
 
@@ -248,6 +292,7 @@ impl Law {
             Law::Adaptive { .. } | Law::Known { .. } => "Lagrangian robots",
             Law::PositionOnly { .. } => "point masses",
             Law::Chain(law) => law.made_for(),
+            Law::Thrust(_) => "vehicles and rotorcraft",
         }
     }
 }

@@ -9,6 +9,7 @@
 //! - `adaptive_backstepping`: strict-feedback and pure-feedback chains; `steps` is the recursion.
 //! - `guide`: where z leads, for plants of any order.
 //! - `position_only`: (a7)–(a9), a point mass without velocity measurement.
+//! - `thrust`: (45)–(58), vehicles with one thrust, by angular velocities or by torques.
 //! - `stepped`: any controller, sampled.
 
 mod adaptive_backstepping;
@@ -20,6 +21,7 @@ mod linearising;
 mod position_only;
 mod stepped;
 mod steps;
+mod thrust;
 
 pub use adaptive_backstepping::{AdaptiveBackstepping, BacksteppingGains, BacksteppingWork};
 pub use following::{ChainError, ChainMeasured, Following, FollowingWork};
@@ -29,6 +31,7 @@ pub use linear_adaptive::LinearAdaptive;
 pub use linearising::Linearising;
 pub use position_only::{PositionMeasured, PositionOnly};
 pub use stepped::Stepped;
+pub use thrust::{Floor, RateLoop, RotorcraftMeasured, Thrust, ThrustCascade, ThrustDesign, Yaw};
 
 use alloc::vec::Vec;
 

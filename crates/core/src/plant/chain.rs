@@ -104,6 +104,7 @@ where
 pub struct Formulas {
     order: usize,
     phi: Vec<Expression>,
+    psi: Expression,
     programme: Programme,
 }
 
@@ -123,7 +124,13 @@ impl Formulas {
         for phi in &phi {
             outputs.push(graph.import(phi)?);
         }
-        Ok(Formulas { order, phi, programme: Programme::new(&graph, &outputs)? })
+        let programme = Programme::new(&graph, &outputs)?;
+        Ok(Formulas { order, phi, psi: psi.clone(), programme })
+    }
+
+    /// ψ.
+    pub fn input(&self) -> &Expression {
+        &self.psi
     }
 
     /// φ.

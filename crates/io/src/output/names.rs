@@ -17,7 +17,7 @@ pub fn agent_name(setup: &Setup, agent: usize) -> String {
 pub fn axis_name(setup: &Setup, agent: usize, axis: usize) -> String {
     let robot = setup.agents.get(agent).map(|a| &a.robot);
     match robot {
-        Some(robot) if !matches!(robot.kind, RobotKind::PointMass { .. }) => {
+        Some(robot) if !matches!(robot.kind, RobotKind::PointMass { .. } | RobotKind::Chain(_)) => {
             robot.axes.get(axis).map(|a| a.name.clone())
         }
         _ => None,
@@ -45,7 +45,13 @@ pub fn column_name(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> 
     let agent_name = agent_name(setup, agent);
     let signal_name = signal.name();
     match signal {
-        Signal::Lyapunov | Signal::Dissipation => format!("{agent_name}.{signal_name}"),
+        Signal::Lyapunov | Signal::Dissipation | Signal::Thrust | Signal::Heading | Signal::Divisor => {
+            format!("{agent_name}.{signal_name}")
+        }
+        Signal::Attitude => {
+            let entry = ["x", "y", "z", "o"].get(axis).map_or_else(|| (axis + 1).to_string(), |name| (*name).into());
+            format!("{agent_name}.{signal_name}.{entry}")
+        }
         Signal::Estimate => format!("{agent_name}.{signal_name}.{}", parameter_name(setup, agent, axis)),
         _ => format!("{agent_name}.{signal_name}.{}", axis_name(setup, agent, axis)),
     }
@@ -75,6 +81,11 @@ pub fn axis_unit(setup: &Setup, agent: usize, axis: usize) -> Option<AxisUnit> {
     setup.agents.get(agent)?.robot.axes.get(axis).map(|a| a.unit)
 }
 
+/// Whether the torques of an agent turn it, while its axes are lengths.
+fn turns(setup: &Setup, agent: usize) -> bool {
+    setup.agents.get(agent).is_some_and(|agent| matches!(agent.robot.kind, RobotKind::Rotorcraft { .. }))
+}
+
 /// The unit of a recorded column, for example `rad/s^2`; `SI` for parameters, whose units differ.
 pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String {
     let length = match axis_unit(setup, agent, axis) {
@@ -85,10 +96,15 @@ pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String 
         Signal::Position | Signal::Error | Signal::Offset => length.into(),
         Signal::Velocity | Signal::TrackingError | Signal::Filter | Signal::Reference(0) => format!("{length}/s"),
         Signal::Reference(k) => format!("{length}/s^{}", u32::from(k) + 1),
+        Signal::Torque if turns(setup, agent) => "N m".into(),
         Signal::Torque | Signal::External if length == "m" => "N".into(),
         Signal::Torque | Signal::External => "N m".into(),
         Signal::Derivative(k) => format!("{length}/s^{k}"),
         Signal::Estimate | Signal::Coordinate(_) | Signal::Divisor => "SI".into(),
+        Signal::Attitude => "1".into(),
+        Signal::AngularVelocity | Signal::AngularVelocityWanted => "rad/s".into(),
+        Signal::Thrust => "N".into(),
+        Signal::Heading => "rad".into(),
         Signal::Lyapunov | Signal::Dissipation => "J".into(),
     }
 }

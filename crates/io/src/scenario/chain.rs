@@ -121,12 +121,7 @@ fn equations(file: &At<Vec<At<Vec<At<String>>>>>) -> Result<Vec<Vec<Expression>>
 }
 
 /// The model of an agent that a law for chains is for.
-fn model<'a>(
-    robot: &'a RobotSetup,
-    agent: &str,
-    law: &'static str,
-    is_cascade: bool,
-) -> Result<&'a ChainModel, Fault> {
+fn model<'a>(robot: &'a RobotSetup, agent: &str, law: &'static str, is_cascade: bool) -> Result<&'a ChainModel, Fault> {
     match &robot.kind {
         RobotKind::Chain(model) if matches!(model, ChainModel::Cascade(_)) == is_cascade => Ok(model),
         _ => {
@@ -144,9 +139,7 @@ fn model<'a>(
 fn each(key: &'static str, file: Option<&At<AxisValues>>, agent: &str, need: usize) -> Result<Vec<f64>, Fault> {
     let Some(place) = file else { return Ok(vec![GAIN; need]) };
     match &place.value {
-        AxisValues::All(value) => {
-            Ok(vec![positive(key, &At { value: *value, span: place.span.clone() })?; need])
-        }
+        AxisValues::All(value) => Ok(vec![positive(key, &At { value: *value, span: place.span.clone() })?; need]),
         AxisValues::Each(list) if list.len() == need => list.iter().map(|value| positive(key, value)).collect(),
         AxisValues::Each(list) => {
             let (found, agent) = (list.len(), agent.to_owned());

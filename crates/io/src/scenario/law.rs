@@ -4,11 +4,14 @@ use forwardstep_core::{Gain, GainError};
 use forwardstep_sim::{Law, RobotKind, RobotSetup};
 
 use super::at::At;
+use super::chain;
 use super::fault::{Fault, fault, not_negative, positive, values};
 use super::file::{AdaptiveFile, DampingFile, EstimateStartFile, KnownFile, LawFile};
 use super::problem::ScenarioProblem;
 use super::systems_file::PositionOnlyFile;
 use super::values::{GainFile, GainOrBandwidth, Item};
+use super::vehicle;
+use super::vehicle_file::ThrustFile;
 
 /// The gains of arms from a URDF, whose inertias span decades.
 const DAMPING_BANDWIDTH_PER_S: f64 = 20.0;
@@ -22,6 +25,7 @@ const FILTER_PER_S: f64 = 10.0;
 /// Builds the law of `agent`; without a file, the adaptive one with default gains.
 pub(super) fn law(file: Option<&At<LawFile>>, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
     match file {
+        None if flies(robot) => build(&LawFile::Thrust(ThrustFile::default()), agent, robot),
         None => build(&LawFile::Adaptive(AdaptiveFile::default()), agent, robot),
         Some(file) => build(&file.value, agent, robot).map_err(|fault| fault.at(&file.span)),
     }
@@ -29,10 +33,20 @@ pub(super) fn law(file: Option<&At<LawFile>>, agent: &str, robot: &RobotSetup) -
 
 fn build(file: &LawFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
     match file {
+        LawFile::Known(_) | LawFile::Adaptive(_) if flies(robot) || matches!(robot.kind, RobotKind::Chain(_)) => {
+            let law = if let LawFile::Known(_) = file { "known" } else { "adaptive" };
+            let agent = agent.to_owned();
+            Err(Fault::new(ScenarioProblem::LawOfAnother { agent, law, made_for: "arms and point masses" }))
+        }
         LawFile::Known(KnownFile { damping }) => {
             Ok(Law::Known { damping: self::damping(damping.as_ref(), agent, robot)? })
         }
         LawFile::PositionOnly(file) => position_only(file, agent, robot),
+        LawFile::Thrust(file) => vehicle::thrust(file, agent, robot),
+        LawFile::Linearising(file) => chain::linearising(file, agent, robot),
+        LawFile::LinearAdaptive(file) => chain::linear_adaptive(file, agent, robot),
+        LawFile::Immersion(file) => chain::immersion(file, agent, robot),
+        LawFile::AdaptiveBackstepping(file) => chain::backstepping(file, agent, robot),
         LawFile::Adaptive(file) => Ok(Law::Adaptive {
             damping: damping(file.damping.as_ref(), agent, robot)?,
             adaptation: adaptation(file.adaptation_gain.as_ref(), agent, robot)?,
@@ -82,12 +96,22 @@ fn adaptation(file: Option<&At<GainOrBandwidth>>, agent: &str, robot: &RobotSetu
     }
 }
 
+fn flies(robot: &RobotSetup) -> bool {
+    matches!(robot.kind, RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. })
+}
+
 fn is_tree(robot: &RobotSetup) -> bool {
     matches!(robot.kind, RobotKind::Tree(_))
 }
 
 /// Reads a gain and checks that it is symmetric positive definite and of the right size.
-fn gain<T>(key: &'static str, file: &GainFile, place: &At<T>, agent: &str, size: usize) -> Result<Gain, Fault> {
+pub(super) fn gain<T>(
+    key: &'static str,
+    file: &GainFile,
+    place: &At<T>,
+    agent: &str,
+    size: usize,
+) -> Result<Gain, Fault> {
     let rows = match file {
         GainFile::Number(value) => {
             let number = At { value: *value, span: place.span.clone() };
@@ -130,7 +154,7 @@ fn gain<T>(key: &'static str, file: &GainFile, place: &At<T>, agent: &str, size:
     Err(fault(place, problem))
 }
 
-fn estimate(file: Option<&EstimateStartFile>, agent: &str, robot: &RobotSetup) -> Result<Vec<f64>, Fault> {
+pub(super) fn estimate(file: Option<&EstimateStartFile>, agent: &str, robot: &RobotSetup) -> Result<Vec<f64>, Fault> {
     let theta = &robot.theta;
     match file {
         None | Some(EstimateStartFile::Zero) => Ok(vec![0.0; theta.len()]),

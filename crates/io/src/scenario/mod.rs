@@ -33,6 +33,8 @@
 
 mod agents;
 pub mod at;
+mod chain;
+pub mod chain_file;
 mod control;
 pub mod control_file;
 mod control_problem;
@@ -66,6 +68,8 @@ mod table;
 mod target;
 mod template;
 pub mod values;
+mod vehicle;
+pub mod vehicle_file;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -221,7 +225,8 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
         messages_fit(&setup, &file.sample_hz)?;
     }
     notices.extend(Notice::coarse_sampling(&setup));
-    let columns = if setup.agents.iter().all(|agent| agent.law.is_lagrangian()) {
+    let fleet = |agent: &AgentSetup| agent.law.is_lagrangian() && agent.target.is_none();
+    let columns = if reference != ReferenceKind::Tracking && setup.agents.iter().all(fleet) {
         setup.agents.iter().map(columns).sum()
     } else {
         recorded_columns(&setup).map_err(|error| Fault::new(ScenarioProblem::Setup(error)))?.len()

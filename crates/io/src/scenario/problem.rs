@@ -1,6 +1,7 @@
 //! Why a scenario is refused.
 
 use forwardstep_core::GainError;
+use forwardstep_core::plant::CascadeError;
 use forwardstep_sim::SetupError;
 use thiserror::Error;
 
@@ -432,6 +433,15 @@ pub enum ScenarioProblem {
     TargetValue {
         /// The end of the run, s.
         end_s: f64,
+    },
+    /// A chain without meaning.
+    #[error("{0}")]
+    Chain(CascadeError),
+    /// Antiderivatives that have to be given.
+    #[error("agent `{agent}`: a regressor holds the highest derivative of x, so its antiderivative must be given")]
+    Antiderivatives {
+        /// The agent.
+        agent: String,
     },
     /// A law that is made for something else.
     #[error("agent `{agent}`: the law `{law}` is made for {made_for}")]

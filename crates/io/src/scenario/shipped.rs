@@ -32,6 +32,10 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "six-arms-over-radio",
     "without-velocity",
     "double-integrators",
+    "theorem-4",
+    "theorem-5",
+    "formation",
+    "mixed-network",
 ];
 
 /// The shipped scenario of this name.

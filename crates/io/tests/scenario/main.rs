@@ -12,6 +12,7 @@ mod pushes;
 mod seeds;
 mod shipped;
 mod spread;
+mod tracking;
 
 use forwardstep_io::SourceText;
 use forwardstep_io::scenario::{Scenario, ScenarioError, read_scenario};

@@ -8,6 +8,7 @@
 //! - `pushes`: what acts on the robots from outside.
 //! - `members`: from agents to populations.
 //! - `systems`: from agents to plants and controllers that stand by themselves.
+//! - `vehicles`: the same for vehicles with one thrust.
 //! - `valid`: what makes a [`crate::Setup`] meaningless.
 //! - `assemble`: all populations and what joins them: the right-hand side as a whole, and its events.
 
@@ -22,6 +23,7 @@ mod sampling;
 mod solo;
 mod systems;
 mod valid;
+mod vehicles;
 
 pub(crate) use assemble::ClosedLoop;
 pub use valid::SetupError;

@@ -118,7 +118,7 @@ impl Pushed {
         let actions: Vec<Action> = agent.pushes.iter().map(|push| Action::new(push.clone())).collect();
         let tree = match &agent.robot.kind {
             RobotKind::Tree(tree) => Some((Arc::clone(tree), tree.scratch())),
-            RobotKind::PlanarArm | RobotKind::PointMass { .. } | RobotKind::Chain(_) => None,
+            _ => None,
         };
         (!actions.is_empty()).then_some(Pushed { agent: index, actions, tree })
     }

@@ -12,6 +12,7 @@ use super::members::sensor;
 use super::population::Columns;
 use super::solo::{Digital, Solo, Target};
 use super::valid::SetupError;
+use super::vehicles;
 use crate::recording::Signal;
 use crate::setup::{AgentSetup, Control, Exchange, Law, ReferenceKind, RobotKind, Setup};
 
@@ -34,6 +35,8 @@ pub(super) fn system(setup: &Setup, agent: usize) -> Result<Box<dyn Columns>, Se
             solo(setup, agent, plant, controller)
         }
         (RobotKind::Chain(model), _) => chain(setup, agent, model),
+        (&RobotKind::Vehicle { gravity }, Law::Thrust(law)) => vehicles::vehicle(setup, agent, gravity, *law),
+        (RobotKind::Rotorcraft { .. }, Law::Thrust(law)) => vehicles::rotorcraft(setup, agent, *law),
         (_, law) => {
             Err(SetupError::LawOfAnother { agent: own.name.clone(), law: law.words(), made_for: law.made_for() })
         }
@@ -142,14 +145,14 @@ fn limiter(own: &AgentSetup, control: &Control, torques: usize) -> Result<Limite
     Limiter::new(limit, rate).map_err(|error| SetupError::Limiter { agent: own.name.clone(), error })
 }
 
-fn positive(own: &AgentSetup, what: &'static str, value: f64) -> Result<(), SetupError> {
+pub(super) fn positive(own: &AgentSetup, what: &'static str, value: f64) -> Result<(), SetupError> {
     if value > 0.0 && value.is_finite() {
         return Ok(());
     }
     Err(SetupError::LawNumber { agent: own.name.clone(), what, value, requirement: "must be positive and finite" })
 }
 
-fn not_negative(own: &AgentSetup, what: &'static str, value: f64) -> Result<(), SetupError> {
+pub(super) fn not_negative(own: &AgentSetup, what: &'static str, value: f64) -> Result<(), SetupError> {
     if value >= 0.0 && value.is_finite() {
         return Ok(());
     }

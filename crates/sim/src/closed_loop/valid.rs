@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use crate::network::NetworkError;
 use crate::push::PushError;
-use crate::setup::{AgentSetup, Control, Exchange, Law, Method, ReferenceKind, Setup};
+use crate::setup::{AgentSetup, AxisUnit, Control, Exchange, Law, Method, ReferenceKind, RobotKind, Setup};
 
 /// Why a setup cannot be simulated.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -148,6 +148,19 @@ pub enum SetupError {
         /// Its law, in words.
         law: &'static str,
     },
+    /// A position in space among positions that are no lengths.
+    #[error(
+        "agent `{vehicle}` moves in space and exchanges positions in m, but axis `{axis}` of `{agent}` is an angle; they have \
+         nothing to agree on"
+    )]
+    UnitsDiffer {
+        /// The agent in space.
+        vehicle: String,
+        /// The other.
+        agent: String,
+        /// Its axis.
+        axis: String,
+    },
     /// A push on an agent whose law does not know any.
     #[error("agent `{agent}`: pushes act on robots under the adaptive or the known law, not on {law}")]
     NotPushed {
@@ -243,7 +256,22 @@ pub(super) fn check(setup: &Setup) -> Result<(), SetupError> {
     if matches!(setup.reference, ReferenceKind::Backstepping { .. }) && setup.exchange != Exchange::Position {
         return Err(SetupError::BacksteppingExchange);
     }
-    setup.agents.iter().try_for_each(|agent| check_agent(setup, agent))
+    setup.agents.iter().try_for_each(|agent| check_agent(setup, agent))?;
+    same_space(setup)
+}
+
+/// Whoever agrees with a vehicle has a position in m. (An arm and a cart may agree on a number.)
+fn same_space(setup: &Setup) -> Result<(), SetupError> {
+    let moves =
+        |agent: &&AgentSetup| matches!(agent.robot.kind, RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. });
+    let Some(vehicle) = setup.agents.iter().find(moves) else { return Ok(()) };
+    for agent in &setup.agents {
+        if let Some(axis) = agent.robot.axes.iter().find(|axis| axis.unit != AxisUnit::Metre) {
+            let (vehicle, agent) = (vehicle.name.clone(), agent.name.clone());
+            return Err(SetupError::UnitsDiffer { vehicle, agent, axis: axis.name.clone() });
+        }
+    }
+    Ok(())
 }
 
 fn check_control(control: &Control, setup: &Setup) -> Result<(), SetupError> {

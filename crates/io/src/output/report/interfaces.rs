@@ -43,8 +43,8 @@ pub(crate) fn interfaces(setup: &Setup) -> Markup {
 
 fn groups(setup: &Setup) -> Vec<Group<'_>> {
     let mut groups: Vec<Group<'_>> = Vec::new();
-    for AgentSetup { name, law, robot, .. } in &setup.agents {
-        let (measures, axes) = (law.measures(), robot.axes.len());
+    for agent @ AgentSetup { name, robot, .. } in &setup.agents {
+        let (measures, axes) = (agent.measures(), robot.axes.len());
         match groups.iter_mut().find(|group| group.measures == measures && group.axes == axes) {
             Some(group) => group.agents.push(name),
             None => groups.push(Group { agents: vec![name], measures, axes }),
