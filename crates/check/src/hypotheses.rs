@@ -29,6 +29,10 @@ pub fn check(setup: &Setup) -> Report {
     let mut hypotheses = vec![spanning_tree(setup), dwell_time(setup), links::bounded_delays(setup)];
     hypotheses.extend(links::bounded_weights(setup));
     match &setup.reference {
+        // Chains of different orders agree: nothing in the argument for (24) compares orders.
+        ReferenceKind::Consensus if setup.agents.iter().all(|agent| matches!(agent.law, Law::Chain(_))) => {
+            hypotheses.push(real_roots(setup));
+        }
         ReferenceKind::Consensus => hypotheses.extend([real_roots(setup), common_order(setup)]),
         ReferenceKind::PureIntegral => hypotheses.extend([fixed_graph(setup), real_roots(setup)]),
         ReferenceKind::Backstepping { filter_s, .. } => hypotheses.push(differentiable(*filter_s)),

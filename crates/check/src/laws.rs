@@ -2,6 +2,7 @@
 
 use forwardstep_sim::{AgentSetup, Law, ReferenceKind, Setup};
 
+use crate::chains;
 use crate::single;
 use crate::vehicles;
 use crate::verdict::{Answer, Hypothesis};
@@ -17,6 +18,7 @@ pub(crate) fn theorem(setup: &Setup) -> Option<(String, String)> {
     match (&first.law, &setup.reference) {
         (Law::Adaptive { .. } | Law::Known { .. }, _) => None,
         (Law::Thrust(law), _) => Some(vehicles::theorem(setup, law.design)),
+        (Law::Chain(_), _) => Some(chains::theorem(setup)),
         (Law::PositionOnly { .. }, ReferenceKind::Tracking) => Some((
             "Section V-A, (a8) with the reference dynamics (a9)".into(),
             "x − x_d → 0 and dx − dx_d → 0 without a measured velocity".into(),
@@ -45,6 +47,7 @@ pub(crate) fn of_laws(setup: &Setup) -> Vec<Hypothesis> {
     hypotheses.extend(vehicles::of_vehicles(setup));
     hypotheses.extend(single::task_space(setup));
     hypotheses.extend(single::attitude(setup));
+    hypotheses.extend(chains::of_chains(setup));
     hypotheses
 }
 
@@ -56,6 +59,7 @@ fn mixture(setup: &Setup) -> Option<String> {
         Law::Thrust(law) => vehicles::source(law.design),
         Law::TaskSpace(_) => "Theorem 6",
         Law::Attitude(_) => "Theorem 7",
+        Law::Chain(_) => "Section IV",
     };
     if setup.reference == ReferenceKind::Tracking {
         return None;

@@ -4,6 +4,7 @@
 //! paper*, or is *violated* with a witness.
 
 mod agreement;
+mod chains;
 mod hypotheses;
 mod laws;
 mod leader;

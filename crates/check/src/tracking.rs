@@ -32,11 +32,12 @@ pub(crate) fn check(setup: &Setup) -> Report {
 }
 
 /// How many derivatives of its target a law needs to be bounded.
-fn derivatives(law: &Law) -> usize {
-    match law {
+fn derivatives(agent: &AgentSetup) -> usize {
+    match &agent.law {
         Law::PositionOnly { .. } => 3,
         Law::Thrust(law) if law.design.order() == 2 => 3,
         Law::Thrust(_) => 4,
+        Law::Chain(_) => agent.roots_per_s.len(),
         _ => 2,
     }
 }
@@ -44,7 +45,7 @@ fn derivatives(law: &Law) -> usize {
 /// Whether the target, or the offset, of an agent is bounded with as many derivatives as its law needs.
 pub(crate) fn bounded_target(setup: &Setup, agent: &AgentSetup) -> Option<Hypothesis> {
     let target = agent.target.as_ref()?;
-    let needed = derivatives(&agent.law);
+    let needed = derivatives(agent);
     let ordinal = ["zeroth", "first", "second", "third", "fourth"][needed.min(4)];
     // A formation may travel: of an offset only the derivatives count.
     let (what, lowest) = if is_tracking(setup) { ("target", 0) } else { ("offset", 1) };

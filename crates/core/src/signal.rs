@@ -10,11 +10,15 @@ pub enum Signal {
     Position,
     /// q̇.
     Velocity,
+    /// d^k q/dt^k, k ≥ 2, of a plant of higher order.
+    Derivative(u8),
+    /// x_k, k ≥ 2, of a chain whose states are no derivatives of each other.
+    Coordinate(u8),
     /// z^(k): k = 0 the reference velocity z, k = 1 the reference acceleration ż, … up to the larger of 1 and ℓ − 1.
     Reference(u8),
     /// ς, the value of a set-valued sign, within [−1, 1].
     Selection,
-    /// s = q̇ − z.
+    /// s = q̇ − z, or d^(k−1)x/dt^(k−1) − z for a plant of order k; under backstepping the errors of all its steps.
     TrackingError,
     /// τ, or any other input u, after any limit.
     Torque,
@@ -32,6 +36,8 @@ pub enum Signal {
     Offset,
     /// y, the output of a filter that stands in for a velocity that is not measured.
     Filter,
+    /// What the law divides by, which must stay away from zero. One entry.
+    Divisor,
     /// The attitude as a quaternion (q_v, q_o), four entries.
     Attitude,
     /// ω in the body's axes.
@@ -63,11 +69,14 @@ pub enum Signal {
 impl Signal {
     /// The name used in column headers: `q`, `dq`, `z`, `dz`, `d2z`, …, `sign`, `s`, `tau`, `theta_hat`, `lyapunov`,
     /// `dissipation`, `tau_ext`, `error`, `offset`, `y`, `attitude`, `omega`, `omega_wanted`, `sigma`, `heading`, `dy`, `q_z`,
-    /// `angle`, `wheel_torque`, `wheel_momentum`, `x`, `kinematic_hat`, `det_jacobian`.
+    /// `angle`, `wheel_torque`, `wheel_momentum`, `x`, `kinematic_hat`, `det_jacobian`, `divisor`; `d2q`, … and
+    /// `x2`, … for chains.
     pub fn name(self) -> String {
         match self {
             Signal::Position => "q".into(),
             Signal::Velocity => "dq".into(),
+            Signal::Derivative(k) => format!("d{k}q"),
+            Signal::Coordinate(k) => format!("x{k}"),
             Signal::Reference(0) => "z".into(),
             Signal::Reference(1) => "dz".into(),
             Signal::Reference(k) => format!("d{k}z"),
@@ -81,6 +90,7 @@ impl Signal {
             Signal::Error => "error".into(),
             Signal::Offset => "offset".into(),
             Signal::Filter => "y".into(),
+            Signal::Divisor => "divisor".into(),
             Signal::Attitude => "attitude".into(),
             Signal::AngularVelocity => "omega".into(),
             Signal::AngularVelocityWanted => "omega_wanted".into(),

@@ -5,6 +5,7 @@
 //! [`network`]; [`leader`], [`setup`] and [`push`], the plain data of a run; the integrator with its history and break-points; the closed
 //! loop; [`recording`] and [`simulate`].
 
+pub mod chain;
 mod closed_loop;
 pub mod delay;
 mod engine;
@@ -21,6 +22,7 @@ pub mod topology;
 pub mod trajectory;
 pub mod vehicles;
 
+pub use chain::{ChainLaw, ChainModel, ChainStep};
 pub use closed_loop::SetupError;
 pub use network::Network;
 pub use recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal, Statistics};

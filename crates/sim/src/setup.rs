@@ -10,6 +10,7 @@ use forwardstep_core::plant::{Rotors, Wheels};
 use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::robot::{PlanarArm, PlanarTip};
 
+use crate::chain::{ChainLaw, ChainModel};
 use crate::leader::{Following, FollowingDesign};
 use crate::network::Network;
 use crate::push::Push;
@@ -179,8 +180,10 @@ pub struct RobotSetup {
 impl RobotSetup {
     /// Numbers of a velocity, which are those of a position but for a spacecraft.
     pub fn velocity_len(&self) -> usize {
-        match self.kind {
+        match &self.kind {
             RobotKind::Spacecraft { .. } => 3,
+            // The second state of a chain in feedback form is no velocity.
+            RobotKind::Chain(model) if !model.has_velocity() => 0,
             _ => self.axes.len(),
         }
     }
@@ -214,6 +217,8 @@ pub enum RobotKind {
         /// m.
         dimension: usize,
     },
+    /// A chain of Section IV.
+    Chain(ChainModel),
     /// (44): a vehicle in ℝ³ with one thrust, whose angular velocity obeys at once. ϑ is its mass; the rest of its start is
     /// its attitude (q_v, q_o).
     Vehicle {
@@ -247,6 +252,7 @@ impl RobotKind {
             RobotKind::Vehicle { .. } => 4,
             RobotKind::Rotorcraft { .. } => 7,
             RobotKind::Spacecraft { wheels, .. } => wheels.count(),
+            RobotKind::Chain(model) => model.rest_len(),
         }
     }
 }
@@ -305,6 +311,8 @@ pub enum Law {
         /// m̂(0), kg.
         estimate_start: f64,
     },
+    /// A law for a chain.
+    Chain(ChainLaw),
     /// (46), (50) or (57) for vehicles with one thrust; see [`forwardstep_core::controller::Thrust`].
     Thrust(ThrustLaw),
     /// (80)–(82) for the tip of a robot, without its velocity.
@@ -325,6 +333,7 @@ impl Law {
             Law::Adaptive { .. } => true,
             Law::Known { .. } => false,
             Law::PositionOnly { .. } => true,
+            Law::Chain(law) => law.estimates(),
             Law::Thrust(law) => matches!(law.design, ThrustKind::Adaptive { .. }),
             Law::TaskSpace(_) => true,
             Law::Attitude(_) => false,
@@ -336,6 +345,7 @@ impl Law {
         match self {
             Law::Adaptive { .. } | Law::Known { .. } => &["position", "velocity"],
             Law::PositionOnly { .. } => PositionOnly::MEASURES,
+            Law::Chain(law) => law.measures(),
             Law::Thrust(_) => Thrust::MEASURES,
             Law::TaskSpace(_) => TaskSpace::<PlanarArm, PlanarTip>::MEASURES,
             Law::Attitude(_) => AttitudeTracking::MEASURES,
@@ -348,6 +358,7 @@ impl Law {
             Law::Adaptive { .. } => "the adaptive law",
             Law::Known { .. } => "the law with known parameters",
             Law::PositionOnly { .. } => "the law without velocity",
+            Law::Chain(law) => law.words(),
             Law::Thrust(_) => "the thrust law",
             Law::TaskSpace(_) => "the law for a tip",
             Law::Attitude(_) => "the law for an attitude",
@@ -359,6 +370,7 @@ impl Law {
         match self {
             Law::Adaptive { .. } | Law::Known { .. } => "Lagrangian robots",
             Law::PositionOnly { .. } => "point masses",
+            Law::Chain(law) => law.made_for(),
             Law::Thrust(_) => "vehicles and rotorcraft",
             Law::TaskSpace(_) => "planar arms, and for robots from a URDF with a tip",
             Law::Attitude(_) => "spacecraft",

@@ -4,12 +4,16 @@
 //! - `vehicle`: (44), a thrust-propelled vehicle.
 //! - `rotorcraft`: the same as a rigid body with torques and rotors.
 
+mod cascade;
+mod chain;
 mod mechanical;
 mod rotorcraft;
 mod spacecraft;
 mod task_arm;
 mod vehicle;
 
+pub use cascade::{Cascade, CascadeError, CascadeTerms, CascadeWork};
+pub use chain::{Chain, ChainWork, Closures, Formulas, FormulasWork, Terms};
 pub use mechanical::Mechanical;
 pub use rotorcraft::{Rotorcraft, Rotors};
 pub use spacecraft::{Spacecraft, SpacecraftError, Wheel, Wheels};

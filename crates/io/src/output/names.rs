@@ -17,7 +17,7 @@ pub fn agent_name(setup: &Setup, agent: usize) -> String {
 pub fn axis_name(setup: &Setup, agent: usize, axis: usize) -> String {
     let robot = setup.agents.get(agent).map(|a| &a.robot);
     match robot {
-        Some(robot) if !matches!(robot.kind, RobotKind::PointMass { .. }) => {
+        Some(robot) if !matches!(robot.kind, RobotKind::PointMass { .. } | RobotKind::Chain(_)) => {
             robot.axes.get(axis).map(|a| a.name.clone())
         }
         _ => None,
@@ -52,7 +52,8 @@ pub fn column_name(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> 
             | Signal::Thrust
             | Signal::Heading
             | Signal::Angle
-            | Signal::Determinant,
+            | Signal::Determinant
+            | Signal::Divisor,
             _,
         ) => format!("{agent_name}.{signal_name}"),
         (Signal::Attitude, _) => {
@@ -128,11 +129,12 @@ pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String 
         Signal::Torque if turns(setup, agent) => "N m".into(),
         Signal::Torque | Signal::External if length == "m" => "N".into(),
         Signal::Torque | Signal::External => "N m".into(),
+        Signal::Derivative(k) => format!("{length}/s^{k}"),
+        Signal::Estimate | Signal::Coordinate(_) | Signal::Divisor => "SI".into(),
         Signal::Attitude => "1".into(),
         Signal::AngularVelocity | Signal::AngularVelocityWanted => "rad/s".into(),
         Signal::Thrust => "N".into(),
         Signal::Heading => "rad".into(),
-        Signal::Estimate => "SI".into(),
         Signal::Selection => "1".into(),
         Signal::Lyapunov | Signal::Dissipation => "J".into(),
     }

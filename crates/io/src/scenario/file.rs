@@ -4,6 +4,10 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::at::At;
+use super::chain_file::{
+    AdaptiveBacksteppingFile, ChainFile, ImmersionFile, LinearAdaptiveFile, LinearisingFile, PureFeedbackFile,
+    StrictFeedbackFile,
+};
 use super::control_file::ControlFile;
 use super::leader_file::{LeaderFile, LeaderReferenceFile};
 use super::network_file::NetworkFile;
@@ -106,6 +110,12 @@ pub enum RobotFile {
     Rotorcraft(RotorcraftFile),
     /// A spacecraft that turns itself by reaction wheels.
     Spacecraft(SpacecraftFile),
+    /// A plant of any order with formulas for χ and ψ: Section IV of the paper.
+    Chain(ChainFile),
+    /// A parametric chain in strict-feedback form.
+    StrictFeedback(StrictFeedbackFile),
+    /// A parametric chain in pure-feedback form.
+    PureFeedback(PureFeedbackFile),
 }
 
 /// A robot from a URDF.
@@ -201,6 +211,8 @@ pub struct StartFile {
     pub angular_velocity_rad_s: Option<At<[f64; 3]>>,
     /// Where spacecraft start; for them nothing else in this table counts.
     pub spacecraft: Option<At<SpacecraftStartFile>>,
+    /// What else there is of a chain: its derivatives from the second on, or x2, x3, … of one in feedback form.
+    pub higher_states: Option<At<StartValues>>,
     /// The state of the reference dynamics.
     pub reference: Option<At<ReferenceStartFile>>,
 }
@@ -317,6 +329,14 @@ pub enum LawFile {
     TaskSpace(TaskSpaceFile),
     /// A spacecraft follows an attitude, without its angular velocity: (97) to (105) of the paper.
     Attitude(AttitudeFile),
+    /// A chain of derivatives that is known.
+    Linearising(LinearisingFile),
+    /// A chain of derivatives with unknown parameters.
+    LinearAdaptive(LinearAdaptiveFile),
+    /// The same by immersion and invariance.
+    Immersion(ImmersionFile),
+    /// A chain in strict-feedback or pure-feedback form with unknown parameters.
+    AdaptiveBackstepping(AdaptiveBacksteppingFile),
 }
 
 /// The adaptive tracking law.

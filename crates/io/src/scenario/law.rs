@@ -5,6 +5,7 @@ use forwardstep_sim::{Law, RobotKind, RobotSetup};
 
 use super::agents::Body;
 use super::at::At;
+use super::chain;
 use super::fault::{Fault, fault, not_negative, positive, values};
 use super::file::{AdaptiveFile, DampingFile, EstimateStartFile, KnownFile, LawFile};
 use super::problem::ScenarioProblem;
@@ -35,7 +36,7 @@ pub(super) fn law(file: Option<&At<LawFile>>, agent: &str, robot: &RobotSetup, b
 
 fn build(file: &LawFile, agent: &str, robot: &RobotSetup, body: &Body) -> Result<Law, Fault> {
     match file {
-        LawFile::Known(_) | LawFile::Adaptive(_) if flies(robot) => {
+        LawFile::Known(_) | LawFile::Adaptive(_) if flies(robot) || matches!(robot.kind, RobotKind::Chain(_)) => {
             let law = if let LawFile::Known(_) = file { "known" } else { "adaptive" };
             let agent = agent.to_owned();
             Err(Fault::new(ScenarioProblem::LawOfAnother { agent, law, made_for: "arms and point masses" }))
@@ -47,6 +48,10 @@ fn build(file: &LawFile, agent: &str, robot: &RobotSetup, body: &Body) -> Result
         LawFile::Thrust(file) => vehicle::thrust(file, agent, robot),
         LawFile::TaskSpace(file) => task::task_space(file, agent, robot, body),
         LawFile::Attitude(file) => spacecraft::attitude(file, agent, robot),
+        LawFile::Linearising(file) => chain::linearising(file, agent, robot),
+        LawFile::LinearAdaptive(file) => chain::linear_adaptive(file, agent, robot),
+        LawFile::Immersion(file) => chain::immersion(file, agent, robot),
+        LawFile::AdaptiveBackstepping(file) => chain::backstepping(file, agent, robot),
         LawFile::Adaptive(file) => Ok(Law::Adaptive {
             damping: damping(file.damping.as_ref(), agent, robot)?,
             adaptation: adaptation(file.adaptation_gain.as_ref(), agent, robot)?,

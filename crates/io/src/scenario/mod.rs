@@ -33,6 +33,8 @@
 
 mod agents;
 pub mod at;
+mod chain;
+pub mod chain_file;
 mod control;
 pub mod control_file;
 mod control_problem;

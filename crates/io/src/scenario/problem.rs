@@ -1,7 +1,7 @@
 //! Why a scenario is refused.
 
 use forwardstep_core::GainError;
-use forwardstep_core::plant::SpacecraftError;
+use forwardstep_core::plant::{CascadeError, SpacecraftError};
 use forwardstep_core::robot::tree::TipError;
 use forwardstep_sim::SetupError;
 use forwardstep_sim::trajectory::{SplineError, TrajectoryError};
@@ -483,6 +483,15 @@ pub enum ScenarioProblem {
     /// Bounds beside a full matrix.
     #[error("`bounds` need `kinematic_gain` to be a number or a diagonal, not a matrix")]
     BoundsOfMatrix,
+    /// A chain without meaning.
+    #[error("{0}")]
+    Chain(CascadeError),
+    /// Antiderivatives that have to be given.
+    #[error("agent `{agent}`: a regressor holds the highest derivative of x, so its antiderivative must be given")]
+    Antiderivatives {
+        /// The agent.
+        agent: String,
+    },
     /// A law that is made for something else.
     #[error("agent `{agent}`: the law `{law}` is made for {made_for}")]
     LawOfAnother {

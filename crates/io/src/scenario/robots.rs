@@ -8,6 +8,7 @@ use forwardstep_sim::{Axis, AxisUnit, RobotKind, RobotSetup};
 
 use super::ScenarioError;
 use super::at::At;
+use super::chain;
 use super::fault::{Fault, count, fault, not_negative, positive};
 use super::file::{FrictionFile, PlanarArmFile, PointMassFile, RobotFile, UrdfFile};
 use super::inputs::InputFolder;
@@ -66,6 +67,9 @@ pub(super) fn robot(file: &At<RobotFile>, folder: &mut InputFolder) -> Result<Re
         RobotFile::Vehicle(file) => vehicle::vehicle(file)?,
         RobotFile::Rotorcraft(file) => vehicle::rotorcraft(file)?,
         RobotFile::Spacecraft(file) => spacecraft(file)?,
+        RobotFile::Chain(file) => chain::chain(file)?,
+        RobotFile::StrictFeedback(file) => chain::strict(file)?,
+        RobotFile::PureFeedback(file) => chain::pure(file)?,
     };
     Ok(ReadRobot { robot, notices: Vec::new(), links: Rc::new([]) })
 }

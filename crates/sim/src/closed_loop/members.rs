@@ -56,13 +56,14 @@ pub(super) fn population<X: CoreExchange>(setup: &Setup, group: &[usize]) -> Res
         RobotKind::Tree(tree) => boxed::<Tree, X>(Tree::clone(tree), setup, group),
         RobotKind::PlanarArm => boxed::<PlanarArm, X>(PlanarArm, setup, group),
         RobotKind::PointMass { dimension } => boxed::<PointMass, X>(PointMass { dimension: *dimension }, setup, group),
-        RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. } | RobotKind::Spacecraft { .. } => {
-            Err(SetupError::LawOfAnother {
-                agent: first.name.clone(),
-                law: first.law.words(),
-                made_for: first.law.made_for(),
-            })
-        }
+        RobotKind::Vehicle { .. }
+        | RobotKind::Rotorcraft { .. }
+        | RobotKind::Spacecraft { .. }
+        | RobotKind::Chain(_) => Err(SetupError::LawOfAnother {
+            agent: first.name.clone(),
+            law: first.law.words(),
+            made_for: first.law.made_for(),
+        }),
     }
 }
 

@@ -16,6 +16,7 @@
 //! - `assemble`: all populations and what joins them: the right-hand side as a whole, and its events.
 
 mod assemble;
+mod chains;
 mod fleet;
 mod guide;
 mod members;

@@ -1,6 +1,7 @@
 //! What makes a setup meaningless.
 
 use forwardstep_core::agent::{FilterError, LimiterError};
+use forwardstep_core::controller::ChainError;
 use forwardstep_core::plant::SpacecraftError;
 use forwardstep_core::reference::{BacksteppingError, Choice, RootsError};
 use forwardstep_core::robot::tree::TipError;
@@ -63,6 +64,14 @@ pub enum SetupError {
         agent: String,
         /// What is wrong.
         error: RootsError,
+    },
+    /// A law for a chain.
+    #[error("agent `{agent}`: {error}")]
+    Chain {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: ChainError,
     },
     /// The filter of the backstepping baseline.
     #[error(transparent)]
