@@ -2,6 +2,7 @@
 
 use forwardstep_sim::{AgentSetup, Law, ReferenceKind, Setup};
 
+use crate::single;
 use crate::vehicles;
 use crate::verdict::{Answer, Hypothesis};
 
@@ -13,12 +14,21 @@ pub(crate) fn theorem(setup: &Setup) -> Option<(String, String)> {
         let promises = "all agents agree and come to rest: x_i − x_j → 0 and dx_i → 0".into();
         return Some((format!("no single theorem: {words} side by side"), promises));
     }
-    match (&first.law, setup.reference) {
+    match (&first.law, &setup.reference) {
         (Law::Adaptive { .. } | Law::Known { .. }, _) => None,
         (Law::Thrust(law), _) => Some(vehicles::theorem(setup, law.design)),
         (Law::PositionOnly { .. }, ReferenceKind::Tracking) => Some((
             "Section V-A, (a8) with the reference dynamics (a9)".into(),
             "x − x_d → 0 and dx − dx_d → 0 without a measured velocity".into(),
+        )),
+        (Law::TaskSpace(_), _) => Some((
+            "Theorem 6, (80) to (82) with the reference dynamics (76)".into(),
+            "x − x_d → 0 and dx − dx_d → 0 with uncertain lengths and parameters, without a measured dx".into(),
+        )),
+        (Law::Attitude(_), _) => Some((
+            "Theorem 7, (99) to (105) with the reference dynamics (97)".into(),
+            "the attitude and its rate reach those of the target, Δq_v → 0 and ω − ω_d → 0, without a measured ω"
+                .into(),
         )),
         (Law::PositionOnly { .. }, _) => Some((
             format!("Remark 7, (a8) with (24) of order {} in z", first.roots_per_s.len()),
@@ -33,6 +43,8 @@ pub(crate) fn of_laws(setup: &Setup) -> Vec<Hypothesis> {
     hypotheses.extend(mixed(setup));
     hypotheses.extend(position_only(setup));
     hypotheses.extend(vehicles::of_vehicles(setup));
+    hypotheses.extend(single::task_space(setup));
+    hypotheses.extend(single::attitude(setup));
     hypotheses
 }
 
@@ -42,7 +54,12 @@ fn mixture(setup: &Setup) -> Option<String> {
         Law::Adaptive { .. } | Law::Known { .. } => "Theorem 3 with (24)",
         Law::PositionOnly { .. } => "Remark 7",
         Law::Thrust(law) => vehicles::source(law.design),
+        Law::TaskSpace(_) => "Theorem 6",
+        Law::Attitude(_) => "Theorem 7",
     };
+    if setup.reference == ReferenceKind::Tracking {
+        return None;
+    }
     let mut kinds: Vec<&str> = setup.agents.iter().map(kind).collect();
     kinds.sort_unstable();
     kinds.dedup();
@@ -61,7 +78,7 @@ fn mixed(setup: &Setup) -> Option<Hypothesis> {
 }
 
 /// The agents with a law for which `is` holds.
-fn with(setup: &Setup, is: fn(&Law) -> bool) -> Vec<&AgentSetup> {
+pub(crate) fn with(setup: &Setup, is: fn(&Law) -> bool) -> Vec<&AgentSetup> {
     setup.agents.iter().filter(|agent| is(&agent.law)).collect()
 }
 

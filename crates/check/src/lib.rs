@@ -6,9 +6,11 @@
 mod agreement;
 mod hypotheses;
 mod laws;
+mod leader;
 mod links;
 mod manipulation;
 mod sampled;
+mod single;
 mod tracking;
 mod vehicles;
 mod verdict;

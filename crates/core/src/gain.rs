@@ -188,6 +188,38 @@ impl<S: Packed> ResolvedGain<S> {
     }
 }
 
+impl ResolvedGain {
+    /// Replaces x by gain⁻¹ · x. Entries beyond [`ResolvedGain::size`] are left alone. It factorises the gain anew, so it is for
+    /// building and starting.
+    pub fn solve(&self, x: &mut [f64]) {
+        match self {
+            ResolvedGain::Diagonal(k) => {
+                for (x, k) in x.iter_mut().zip(k) {
+                    *x /= k;
+                }
+            }
+            ResolvedGain::Matrix { size, entries } => {
+                let Ok(l) = cholesky(*size, entries) else { return };
+                if x.len() < *size {
+                    return;
+                }
+                for i in 0..*size {
+                    for k in 0..i {
+                        x[i] -= l[i * size + k] * x[k];
+                    }
+                    x[i] /= l[i * size + i];
+                }
+                for i in (0..*size).rev() {
+                    for k in i + 1..*size {
+                        x[i] -= l[k * size + i] * x[k];
+                    }
+                    x[i] /= l[i * size + i];
+                }
+            }
+        }
+    }
+}
+
 /// xᵀ · gain⁻¹ · x for one fixed gain, for Lyapunov-like functions: the factorisation is made once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InverseQuadratic {

@@ -12,6 +12,8 @@ pub enum Signal {
     Velocity,
     /// z^(k): k = 0 the reference velocity z, k = 1 the reference acceleration ż, … up to the larger of 1 and ℓ − 1.
     Reference(u8),
+    /// ς, the value of a set-valued sign, within [−1, 1].
+    Selection,
     /// s = q̇ − z.
     TrackingError,
     /// τ, or any other input u, after any limit.
@@ -40,11 +42,28 @@ pub enum Signal {
     Thrust,
     /// The heading that is kept, an angle. One entry.
     Heading,
+    /// ẏ of such a filter where the law uses it.
+    FilterRate,
+    /// q_z, the attitude that turns with the reference velocity.
+    ReferenceAttitude,
+    /// The angle between an attitude and the desired one, in [0, π]. One entry.
+    Angle,
+    /// u, the torque of the motor of each reaction wheel, after any limit.
+    WheelTorque,
+    /// h_w, the momentum of each reaction wheel about its axis.
+    WheelMomentum,
+    /// x, the position of a tip in task space.
+    TaskPosition,
+    /// θ̂, the estimate of kinematic parameters, an entry each.
+    KinematicEstimate,
+    /// det Ĵ of the estimated Jacobian. One entry.
+    Determinant,
 }
 
 impl Signal {
-    /// The name used in column headers: `q`, `dq`, `z`, `dz`, `d2z`, …, `s`, `tau`, `theta_hat`, `lyapunov`,
-    /// `dissipation`, `tau_ext`, `error`, `offset`, `y`, `attitude`, `omega`, `omega_wanted`, `sigma`, `heading`.
+    /// The name used in column headers: `q`, `dq`, `z`, `dz`, `d2z`, …, `sign`, `s`, `tau`, `theta_hat`, `lyapunov`,
+    /// `dissipation`, `tau_ext`, `error`, `offset`, `y`, `attitude`, `omega`, `omega_wanted`, `sigma`, `heading`, `dy`, `q_z`,
+    /// `angle`, `wheel_torque`, `wheel_momentum`, `x`, `kinematic_hat`, `det_jacobian`.
     pub fn name(self) -> String {
         match self {
             Signal::Position => "q".into(),
@@ -52,6 +71,7 @@ impl Signal {
             Signal::Reference(0) => "z".into(),
             Signal::Reference(1) => "dz".into(),
             Signal::Reference(k) => format!("d{k}z"),
+            Signal::Selection => "sign".into(),
             Signal::TrackingError => "s".into(),
             Signal::Torque => "tau".into(),
             Signal::Estimate => "theta_hat".into(),
@@ -66,6 +86,14 @@ impl Signal {
             Signal::AngularVelocityWanted => "omega_wanted".into(),
             Signal::Thrust => "sigma".into(),
             Signal::Heading => "heading".into(),
+            Signal::FilterRate => "dy".into(),
+            Signal::ReferenceAttitude => "q_z".into(),
+            Signal::Angle => "angle".into(),
+            Signal::WheelTorque => "wheel_torque".into(),
+            Signal::WheelMomentum => "wheel_momentum".into(),
+            Signal::TaskPosition => "x".into(),
+            Signal::KinematicEstimate => "kinematic_hat".into(),
+            Signal::Determinant => "det_jacobian".into(),
         }
     }
 }

@@ -61,4 +61,12 @@ shipped! {
     theorem_5: "theorem-5",
     formation: "formation",
     mixed_network: "mixed-network",
+    theorem_6: "theorem-6",
+    task_space_ur5e: "task-space-ur5e",
+    theorem_7: "theorem-7",
+    tumbling_target: "tumbling-target",
+    theorem_8: "theorem-8",
+    theorem_9: "theorem-9",
+    remark_12: "remark-12",
+    swarm_tracking: "swarm-tracking",
 }

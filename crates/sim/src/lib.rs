@@ -2,7 +2,7 @@
 //! equation, and an integrator whose steps land on every break-point; or, under digital control, held torques between samples.
 //!
 //! The layers, each of which uses only those before it: [`formula`], [`trajectory`], [`graph`], [`topology`] and [`schedule`], [`delay`] and
-//! [`network`]; [`setup`] and [`push`], the plain data of a run; the integrator with its history and break-points; the closed
+//! [`network`]; [`leader`], [`setup`] and [`push`], the plain data of a run; the integrator with its history and break-points; the closed
 //! loop; [`recording`] and [`simulate`].
 
 mod closed_loop;
@@ -10,6 +10,7 @@ pub mod delay;
 mod engine;
 pub mod formula;
 pub mod graph;
+pub mod leader;
 pub mod network;
 pub mod push;
 pub mod recording;
@@ -24,7 +25,7 @@ pub use closed_loop::SetupError;
 pub use network::Network;
 pub use recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal, Statistics};
 pub use setup::{
-    Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Law, Method, ReferenceKind, RobotKind, RobotSetup,
-    Sensors, Setup, Solver, Start, TimeSpan, VelocitySensor,
+    Actuators, AgentSetup, AttitudeLaw, Axis, AxisUnit, Control, Exchange, Law, Method, ReferenceKind, RobotKind,
+    RobotSetup, Sensors, Setup, Solver, Start, TaskSpaceLaw, TimeSpan, TipSetup, VelocitySensor,
 };
 pub use simulate::{recorded_columns, simulate};

@@ -1,16 +1,22 @@
 //! Everything a run needs, as plain data: built by a scenario reader or by hand, checked when the closed loop is built.
 
+mod single;
+
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
-use forwardstep_core::controller::{Controller, PositionOnly, Thrust, ThrustCascade};
-use forwardstep_core::plant::Rotors;
+use forwardstep_core::controller::{AttitudeTracking, Controller, PositionOnly, TaskSpace, Thrust, ThrustCascade};
+use forwardstep_core::plant::{Rotors, Wheels};
 use forwardstep_core::robot::tree::Tree;
+use forwardstep_core::robot::{PlanarArm, PlanarTip};
 
+use crate::leader::{Following, FollowingDesign};
 use crate::network::Network;
 use crate::push::Push;
 use crate::trajectory::Trajectory;
 use crate::vehicles::{ThrustKind, ThrustLaw};
+
+pub use single::{AttitudeLaw, TaskSpaceLaw, TipSetup};
 
 /// A network of agents and how long to watch it.
 #[derive(Clone, Debug)]
@@ -31,8 +37,42 @@ pub struct Setup {
     pub control: Option<Control>,
 }
 
+impl Setup {
+    /// How a leader is followed, if there is one.
+    pub fn following(&self) -> Option<&Arc<Following>> {
+        match &self.reference {
+            ReferenceKind::Following(following) => Some(following),
+            _ => None,
+        }
+    }
+
+    /// What a message holds, in words.
+    pub fn transmits(&self) -> Vec<&'static str> {
+        let told = match self.following().map(|following| following.design) {
+            Some(FollowingDesign::Differentiable) => Some("acceleration"),
+            Some(FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. }) => {
+                Some("reference acceleration")
+            }
+            Some(FollowingDesign::Continuous) | None => None,
+        };
+        self.exchange.words().iter().copied().chain(told).collect()
+    }
+
+    /// What an agent measures, in words, whose law measures `law`.
+    pub fn measures_for(&self, law: &[&'static str]) -> Vec<&'static str> {
+        let following = self.following().is_some_and(|following| following.design == FollowingDesign::Differentiable);
+        law.iter().copied().chain(following.then_some("acceleration")).collect()
+    }
+
+    /// The name of a vertex of the network.
+    pub fn vertex_name(&self, vertex: usize) -> &str {
+        let leader = || self.following().map_or("", |following| &following.leader.name);
+        self.agents.get(vertex).map_or_else(leader, |agent| &agent.name)
+    }
+}
+
 /// Reference dynamics, see [`forwardstep_core::reference`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ReferenceKind {
     /// The family (aa10), (a1), (a5), (24).
     Consensus,
@@ -45,6 +85,8 @@ pub enum ReferenceKind {
         /// Limit of the reference acceleration, rad/s² or m/s²; none for no limit.
         acceleration_limit: Option<f64>,
     },
+    /// (110), (119), (122) or swarm tracking: everybody follows a leader, the last vertex of the network. There are no roots.
+    Following(Arc<Following>),
     /// Nothing is agreed upon: every agent follows a target of its own, by a law that has reference dynamics of its own.
     Tracking,
 }
@@ -53,8 +95,14 @@ impl ReferenceKind {
     /// How many of z(0), ż(0), … an agent's start may give.
     pub fn free_derivatives(&self, agent: &AgentSetup) -> usize {
         match self {
-            ReferenceKind::Consensus | ReferenceKind::Tracking => agent.roots_per_s.len(),
+            ReferenceKind::Consensus => agent.roots_per_s.len(),
+            // Without roots there is z alone.
+            ReferenceKind::Tracking => agent.roots_per_s.len().max(1),
             ReferenceKind::PureIntegral => 2,
+            ReferenceKind::Following(following) => match following.design {
+                FollowingDesign::Continuous => 1,
+                _ => 2,
+            },
             ReferenceKind::Backstepping { .. } => 0,
         }
     }
@@ -129,6 +177,14 @@ pub struct RobotSetup {
 }
 
 impl RobotSetup {
+    /// Numbers of a velocity, which are those of a position but for a spacecraft.
+    pub fn velocity_len(&self) -> usize {
+        match self.kind {
+            RobotKind::Spacecraft { .. } => 3,
+            _ => self.axes.len(),
+        }
+    }
+
     /// D: the true viscous damping of every axis, N m s/rad or N s/m; zero where there is none.
     pub fn viscous(&self) -> Vec<f64> {
         let mut viscous = vec![0.0; self.axes.len()];
@@ -173,6 +229,14 @@ pub enum RobotKind {
         /// Its rotors; without them every thrust and every torque can be had.
         rotors: Option<Rotors>,
     },
+    /// A spacecraft with reaction wheels. Its axes are the entries of a quaternion; the rest of its start holds the momenta of
+    /// the wheels, N m s.
+    Spacecraft {
+        /// M, kg m².
+        inertia_kg_m2: [[f64; 3]; 3],
+        /// How its torque is shared out, and what the wheels can do.
+        wheels: Wheels,
+    },
 }
 
 impl RobotKind {
@@ -182,6 +246,7 @@ impl RobotKind {
             RobotKind::Tree(_) | RobotKind::PlanarArm | RobotKind::PointMass { .. } => 0,
             RobotKind::Vehicle { .. } => 4,
             RobotKind::Rotorcraft { .. } => 7,
+            RobotKind::Spacecraft { wheels, .. } => wheels.count(),
         }
     }
 }
@@ -208,6 +273,8 @@ pub enum AxisUnit {
     Radian,
     /// A prismatic joint or a coordinate.
     Metre,
+    /// A pure number, as an entry of a quaternion is.
+    One,
 }
 
 /// The law of one agent: (6)–(7), or one of those that Sections IV and V have for other systems.
@@ -240,6 +307,10 @@ pub enum Law {
     },
     /// (46), (50) or (57) for vehicles with one thrust; see [`forwardstep_core::controller::Thrust`].
     Thrust(ThrustLaw),
+    /// (80)–(82) for the tip of a robot, without its velocity.
+    TaskSpace(Box<TaskSpaceLaw>),
+    /// (97)–(105) for a spacecraft, without its angular velocity.
+    Attitude(Box<AttitudeLaw>),
 }
 
 impl Law {
@@ -255,6 +326,8 @@ impl Law {
             Law::Known { .. } => false,
             Law::PositionOnly { .. } => true,
             Law::Thrust(law) => matches!(law.design, ThrustKind::Adaptive { .. }),
+            Law::TaskSpace(_) => true,
+            Law::Attitude(_) => false,
         }
     }
 
@@ -264,6 +337,8 @@ impl Law {
             Law::Adaptive { .. } | Law::Known { .. } => &["position", "velocity"],
             Law::PositionOnly { .. } => PositionOnly::MEASURES,
             Law::Thrust(_) => Thrust::MEASURES,
+            Law::TaskSpace(_) => TaskSpace::<PlanarArm, PlanarTip>::MEASURES,
+            Law::Attitude(_) => AttitudeTracking::MEASURES,
         }
     }
 
@@ -274,6 +349,8 @@ impl Law {
             Law::Known { .. } => "the law with known parameters",
             Law::PositionOnly { .. } => "the law without velocity",
             Law::Thrust(_) => "the thrust law",
+            Law::TaskSpace(_) => "the law for a tip",
+            Law::Attitude(_) => "the law for an attitude",
         }
     }
 
@@ -283,6 +360,8 @@ impl Law {
             Law::Adaptive { .. } | Law::Known { .. } => "Lagrangian robots",
             Law::PositionOnly { .. } => "point masses",
             Law::Thrust(_) => "vehicles and rotorcraft",
+            Law::TaskSpace(_) => "planar arms, and for robots from a URDF with a tip",
+            Law::Attitude(_) => "spacecraft",
         }
     }
 }

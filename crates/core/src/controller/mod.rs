@@ -4,16 +4,22 @@
 //! populations are worked on in lanes. Everything else in the paper has a feedback of its own, and often must do without a
 //! velocity: it is a [`Controller`].
 //!
+//! - `attitude`: (97)–(105), a spacecraft without angular velocity measurement.
 //! - `position_only`: (a7)–(a9), a point mass without velocity measurement.
 //! - `thrust`: (45)–(58), vehicles with one thrust, by angular velocities or by torques.
 //! - `stepped`: any controller, sampled.
+//! - `task_space`: (76)–(82), the tip of a robot with uncertain lengths, without its velocity.
 
+mod attitude;
 mod position_only;
 mod stepped;
+mod task_space;
 mod thrust;
 
+pub use attitude::{AttitudeMeasured, AttitudeTracking};
 pub use position_only::{Guide, PositionMeasured, PositionOnly};
 pub use stepped::Stepped;
+pub use task_space::{ParameterBounds, TaskMeasured, TaskSpace};
 pub use thrust::{Floor, RateLoop, RotorcraftMeasured, Thrust, ThrustCascade, ThrustDesign, Yaw};
 
 use alloc::vec::Vec;

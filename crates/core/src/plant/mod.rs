@@ -6,10 +6,14 @@
 
 mod mechanical;
 mod rotorcraft;
+mod spacecraft;
+mod task_arm;
 mod vehicle;
 
 pub use mechanical::Mechanical;
 pub use rotorcraft::{Rotorcraft, Rotors};
+pub use spacecraft::{Spacecraft, SpacecraftError, Wheel, Wheels};
+pub use task_arm::TaskArm;
 pub use vehicle::{Vehicle, VehicleState};
 
 use alloc::vec::Vec;

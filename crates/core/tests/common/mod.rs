@@ -2,6 +2,7 @@
 #![allow(dead_code, clippy::unwrap_used)] // Every test binary uses its own part; a broken fixture should stop a test.
 
 pub(crate) mod dual;
+pub(crate) mod looped;
 pub(crate) mod random;
 
 use forwardstep_core::robot::tree::{Assembled, JointKind, LinkJoint, LinkSpec, Placement, Tree};

@@ -91,6 +91,7 @@ fn disagreement(setup: &Setup, metrics: &Metrics) -> String {
     let mut units = setup.agents.iter().flat_map(|agent| &agent.robot.axes).map(|axis| match axis.unit {
         AxisUnit::Radian => "rad",
         AxisUnit::Metre => "m",
+        AxisUnit::One => "",
     });
     let unit = units.next().unwrap_or_default();
     let unit = if units.all(|other| other == unit) { unit } else { "rad or m" };

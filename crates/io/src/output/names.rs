@@ -6,7 +6,7 @@
 use std::collections::HashSet;
 
 use forwardstep_sim::recording::{Recording, Signal};
-use forwardstep_sim::setup::{AxisUnit, RobotKind, Setup};
+use forwardstep_sim::setup::{AxisUnit, Law, RobotKind, Setup};
 
 /// The name of an agent; a number when the setup has no such agent.
 pub fn agent_name(setup: &Setup, agent: usize) -> String {
@@ -44,15 +44,31 @@ pub fn parameter_name(setup: &Setup, agent: usize, index: usize) -> String {
 pub fn column_name(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String {
     let agent_name = agent_name(setup, agent);
     let signal_name = signal.name();
-    match signal {
-        Signal::Lyapunov | Signal::Dissipation | Signal::Thrust | Signal::Heading => {
-            format!("{agent_name}.{signal_name}")
-        }
-        Signal::Attitude => {
+    let law = setup.agents.get(agent).map(|agent| &agent.law);
+    match (signal, law) {
+        (
+            Signal::Lyapunov
+            | Signal::Dissipation
+            | Signal::Thrust
+            | Signal::Heading
+            | Signal::Angle
+            | Signal::Determinant,
+            _,
+        ) => format!("{agent_name}.{signal_name}"),
+        (Signal::Attitude, _) => {
             let entry = ["x", "y", "z", "o"].get(axis).map_or_else(|| (axis + 1).to_string(), |name| (*name).into());
             format!("{agent_name}.{signal_name}.{entry}")
         }
-        Signal::Estimate => format!("{agent_name}.{signal_name}.{}", parameter_name(setup, agent, axis)),
+        (Signal::Estimate, _) => format!("{agent_name}.{signal_name}.{}", parameter_name(setup, agent, axis)),
+        (Signal::WheelTorque | Signal::WheelMomentum, _) => format!("{agent_name}.{signal_name}.{}", axis + 1),
+        (Signal::Error | Signal::TaskPosition, Some(Law::TaskSpace(law))) => {
+            let number = (axis + 1).to_string();
+            format!("{agent_name}.{signal_name}.{}", law.coordinate_name(axis).unwrap_or(&number))
+        }
+        (Signal::KinematicEstimate, Some(Law::TaskSpace(law))) => {
+            let number = (axis + 1).to_string();
+            format!("{agent_name}.{signal_name}.{}", law.kinematic_names.get(axis).unwrap_or(&number))
+        }
         _ => format!("{agent_name}.{signal_name}.{}", axis_name(setup, agent, axis)),
     }
 }
@@ -92,7 +108,20 @@ pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String 
         Some(AxisUnit::Metre) => "m",
         _ => "rad",
     };
+    let law = setup.agents.get(agent).map(|agent| &agent.law);
     match signal {
+        Signal::Error if matches!(law, Some(Law::TaskSpace(_))) => "m".into(),
+        Signal::Position | Signal::Error if matches!(law, Some(Law::Attitude(_))) => "1".into(),
+        Signal::ReferenceAttitude => "1".into(),
+        Signal::FilterRate => "J^0.5".into(),
+        Signal::Angle => "rad".into(),
+        Signal::WheelTorque => "N m".into(),
+        Signal::WheelMomentum => "N m s".into(),
+        Signal::TaskPosition | Signal::KinematicEstimate => "m".into(),
+        Signal::Determinant => match setup.agents.get(agent).map_or(0, |agent| agent.robot.axes.len()) {
+            0 | 1 => "m".into(),
+            m => format!("m^{m}"),
+        },
         Signal::Position | Signal::Error | Signal::Offset => length.into(),
         Signal::Velocity | Signal::TrackingError | Signal::Filter | Signal::Reference(0) => format!("{length}/s"),
         Signal::Reference(k) => format!("{length}/s^{}", u32::from(k) + 1),
@@ -104,6 +133,7 @@ pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String 
         Signal::Thrust => "N".into(),
         Signal::Heading => "rad".into(),
         Signal::Estimate => "SI".into(),
+        Signal::Selection => "1".into(),
         Signal::Lyapunov | Signal::Dissipation => "J".into(),
     }
 }

@@ -67,6 +67,7 @@ impl RobotDescription {
             let (unit, effort_unit) = match axis.unit {
                 AxisUnit::Radian => ("rad", "N m"),
                 AxisUnit::Metre => ("m", "N"),
+                AxisUnit::One => ("1", "N m"),
             };
             JointDescription {
                 name: axis.name.clone(),

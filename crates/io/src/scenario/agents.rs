@@ -6,16 +6,18 @@ use std::rc::Rc;
 
 use forwardstep_core::robot::PlanarTip;
 use forwardstep_core::robot::tree::Anchor;
-use forwardstep_sim::AgentSetup;
+use forwardstep_sim::{AgentSetup, RobotKind};
 
 use super::at::At;
 use super::fault::{Fault, count, fault, filled, positive};
 use super::file::{AgentFile, AgentReferenceFile, ReferenceFile, ScenarioFile};
 use super::inputs::InputFolder;
 use super::law::law;
+use super::leader_file::LeaderDesignFile;
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
 use super::robots::{ReadRobot, Stop, robot};
+use super::spacecraft::short_way;
 use super::spread::{spread, tip};
 use super::start::{Shared, Starter, start};
 use super::systems_file::TrackingFile;
@@ -102,36 +104,48 @@ pub(super) fn agents(
             counted.push((entry.name.value.clone(), index..index + names.len()));
         }
         for (k, name) in names.iter().enumerate() {
-            bodies.push(Body { links: Rc::clone(&read.links), tip: tip(entry, k)? });
+            let body = Body { links: Rc::clone(&read.links), tip: tip(entry, k)? };
             let robot = &spread(entry, &read.robot, k, name)?;
             let Design { roots_per_s, manipulability, free_derivatives } = design(file, entry, name)?;
             let own = entry.start.as_ref().map(|file| Shared { file, index: k, of: names.len() });
             let common = file.start.as_ref().map(|file| Shared { file, index: index + k, of });
+            let target = entry.target.as_ref().map(|file| target(file, name, robot.axes.len(), end_s)).transpose()?;
+            let mut start = start(Starter { name, robot, order: free_derivatives }, own, common)?;
+            if let (RobotKind::Spacecraft { .. }, Some(target)) = (&robot.kind, &target) {
+                short_way(&mut start, target);
+            }
             agents.push(AgentSetup {
-                law: law(entry.law.as_ref().or(file.law.as_ref()), name, robot)?,
-                start: start(Starter { name, robot, order: free_derivatives }, own, common)?,
+                law: law(entry.law.as_ref().or(file.law.as_ref()), name, robot, &body)?,
+                start,
                 robot: robot.clone(),
                 roots_per_s,
                 manipulability,
                 enforce_limits,
-                target: entry.target.as_ref().map(|file| target(file, name, robot.axes.len(), end_s)).transpose()?,
+                target,
                 pushes: Vec::new(),
                 name: name.clone(),
             });
+            bodies.push(body);
         }
     }
     Ok(Agents { agents, bodies, populations: counted })
 }
 
-/// The names of a population: its own, or numbered from one when it is counted.
-fn names(file: &AgentFile) -> Result<Vec<String>, Fault> {
-    let name = &file.name;
+/// A name that can stand in tables.
+pub(super) fn checked_name(name: &At<String>) -> Result<&str, Fault> {
     let length = name.value.chars().count();
     if !(1..=LONGEST_NAME).contains(&length)
         || !name.value.chars().all(|c| c.is_alphanumeric() || matches!(c, '-' | '_'))
     {
         return Err(fault(name, ScenarioProblem::AgentName { name: name.value.clone() }));
     }
+    Ok(&name.value)
+}
+
+/// The names of a population: its own, or numbered from one when it is counted.
+fn names(file: &AgentFile) -> Result<Vec<String>, Fault> {
+    let name = &file.name;
+    checked_name(name)?;
     Ok(match &file.count {
         None => vec![name.value.clone()],
         Some(number) => {
@@ -155,6 +169,10 @@ fn same_axes(first: &Population<'_>, other: &Population<'_>) -> Result<(), Fault
 /// Whether limits are enforced, which needs limits.
 fn limits(entry: &AgentFile, names: &[String], read: &ReadRobot) -> Result<bool, Fault> {
     let Some(place @ At { value: true, .. }) = &entry.enforce_limits else { return Ok(false) };
+    // The limits of a spacecraft are those of its wheels.
+    if let RobotKind::Spacecraft { .. } = read.robot.kind {
+        return Ok(true);
+    }
     match read.robot.axes.iter().find(|axis| axis.effort_limit.is_none()) {
         None => Ok(true),
         Some(axis) => {
@@ -179,7 +197,8 @@ fn tracked(common: &TrackingFile, own: Option<&TrackingFile>) -> Result<Design, 
         None => Vec::new(),
         Some(list) => roots(list)?,
     };
-    Ok(Design { free_derivatives: roots_per_s.len(), roots_per_s, manipulability: 0.0 })
+    // Without roots there is z alone.
+    Ok(Design { free_derivatives: roots_per_s.len().max(1), roots_per_s, manipulability: 0.0 })
 }
 
 /// Positive roots, as many as are accepted.
@@ -200,6 +219,10 @@ fn design(file: &ScenarioFile, entry: &AgentFile, agent: &str) -> Result<Design,
         | (ReferenceFile::PureIntegral(common), Some(AgentReferenceFile::PureIntegral(own))) => (common, Some(own)),
         (ReferenceFile::Backstepping(_), None) => {
             return Ok(Design { roots_per_s: Vec::new(), manipulability: 0.0, free_derivatives: 0 });
+        }
+        (ReferenceFile::Leader(common), None) => {
+            let free_derivatives = if common.design.value == LeaderDesignFile::Continuous { 1 } else { 2 };
+            return Ok(Design { roots_per_s: Vec::new(), manipulability: 0.0, free_derivatives });
         }
         (ReferenceFile::Tracking(common), None) => return tracked(common, None),
         (ReferenceFile::Tracking(common), Some(AgentReferenceFile::Tracking(own))) => {

@@ -5,9 +5,12 @@ use serde::Deserialize;
 
 use super::at::At;
 use super::control_file::ControlFile;
+use super::leader_file::{LeaderFile, LeaderReferenceFile};
 use super::network_file::NetworkFile;
 use super::push_file::PushFile;
+use super::spacecraft_file::{AttitudeFile, SpacecraftFile, SpacecraftStartFile};
 use super::systems_file::{PositionOnlyFile, TargetFile, TrackingFile};
+use super::task_file::TaskSpaceFile;
 use super::values::{GainFile, GainOrBandwidth, Named, NotNegative, Positive, StartValues};
 use super::vehicle_file::{RotorcraftFile, ThrustFile, VehicleFile};
 
@@ -28,6 +31,8 @@ pub struct ScenarioFile {
     pub agents: At<Vec<At<AgentFile>>>,
     /// The reference dynamics of all agents.
     pub reference: At<ReferenceFile>,
+    /// What everybody follows, where there is a leader: one more vertex of the network, which hears nobody.
+    pub leader: Option<At<LeaderFile>>,
     /// The tracking law of all agents that have none of their own.
     pub law: Option<At<LawFile>>,
     /// Where agents start that say nothing of their own.
@@ -99,6 +104,8 @@ pub enum RobotFile {
     Vehicle(VehicleFile),
     /// The same as a rigid body with inertia that torques turn.
     Rotorcraft(RotorcraftFile),
+    /// A spacecraft that turns itself by reaction wheels.
+    Spacecraft(SpacecraftFile),
 }
 
 /// A robot from a URDF.
@@ -158,7 +165,8 @@ pub struct PointMassFile {
 }
 
 /// How the robots of a population differ from what is written, each number by a random factor of its own: the masses and
-/// lengths of planar arms (centres of mass and inertias follow), the masses of point masses and vehicles, all inertia of
+/// lengths of planar arms (centres of mass and inertias follow), the masses of point masses and vehicles, the inertia of
+/// spacecraft, all inertia of
 /// each body of a URDF.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -191,6 +199,8 @@ pub struct StartFile {
     pub attitude: Option<At<[f64; 4]>>,
     /// Angular velocities of rotorcraft in the axes of the body, in rad/s.
     pub angular_velocity_rad_s: Option<At<[f64; 3]>>,
+    /// Where spacecraft start; for them nothing else in this table counts.
+    pub spacecraft: Option<At<SpacecraftStartFile>>,
     /// The state of the reference dynamics.
     pub reference: Option<At<ReferenceStartFile>>,
 }
@@ -216,6 +226,8 @@ pub enum ReferenceFile {
     PureIntegral(ConsensusFile),
     /// The baseline (aa6) that differentiates what it hears; positions are exchanged.
     Backstepping(BacksteppingFile),
+    /// Everybody follows a leader that only some hear: (110), (119) or (122) of the paper.
+    Leader(LeaderReferenceFile),
     /// No agreement: every agent follows a target of its own.
     Tracking(TrackingFile),
 }
@@ -227,6 +239,7 @@ impl ReferenceFile {
             ReferenceFile::Consensus(_) => "consensus",
             ReferenceFile::PureIntegral(_) => "pure_integral",
             ReferenceFile::Backstepping(_) => "backstepping",
+            ReferenceFile::Leader(_) => "leader",
             ReferenceFile::Tracking(_) => "tracking",
         }
     }
@@ -300,6 +313,10 @@ pub enum LawFile {
     PositionOnly(PositionOnlyFile),
     /// A vehicle with one thrust: (46), (50) or (57) of the paper.
     Thrust(ThrustFile),
+    /// The tip of a robot follows a target, with uncertain lengths and without its velocity: (80) to (82) of the paper.
+    TaskSpace(TaskSpaceFile),
+    /// A spacecraft follows an attitude, without its angular velocity: (97) to (105) of the paper.
+    Attitude(AttitudeFile),
 }
 
 /// The adaptive tracking law.

@@ -3,11 +3,14 @@
 use forwardstep_core::{Gain, GainError};
 use forwardstep_sim::{Law, RobotKind, RobotSetup};
 
+use super::agents::Body;
 use super::at::At;
 use super::fault::{Fault, fault, not_negative, positive, values};
 use super::file::{AdaptiveFile, DampingFile, EstimateStartFile, KnownFile, LawFile};
 use super::problem::ScenarioProblem;
+use super::spacecraft;
 use super::systems_file::PositionOnlyFile;
+use super::task;
 use super::values::{GainFile, GainOrBandwidth, Item};
 use super::vehicle;
 use super::vehicle_file::ThrustFile;
@@ -22,15 +25,15 @@ const ADAPTATION_GAIN: f64 = 10.0;
 const FILTER_PER_S: f64 = 10.0;
 
 /// Builds the law of `agent`; without a file, the adaptive one with default gains.
-pub(super) fn law(file: Option<&At<LawFile>>, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
+pub(super) fn law(file: Option<&At<LawFile>>, agent: &str, robot: &RobotSetup, body: &Body) -> Result<Law, Fault> {
     match file {
-        None if flies(robot) => build(&LawFile::Thrust(ThrustFile::default()), agent, robot),
-        None => build(&LawFile::Adaptive(AdaptiveFile::default()), agent, robot),
-        Some(file) => build(&file.value, agent, robot).map_err(|fault| fault.at(&file.span)),
+        None if flies(robot) => build(&LawFile::Thrust(ThrustFile::default()), agent, robot, body),
+        None => build(&LawFile::Adaptive(AdaptiveFile::default()), agent, robot, body),
+        Some(file) => build(&file.value, agent, robot, body).map_err(|fault| fault.at(&file.span)),
     }
 }
 
-fn build(file: &LawFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
+fn build(file: &LawFile, agent: &str, robot: &RobotSetup, body: &Body) -> Result<Law, Fault> {
     match file {
         LawFile::Known(_) | LawFile::Adaptive(_) if flies(robot) => {
             let law = if let LawFile::Known(_) = file { "known" } else { "adaptive" };
@@ -42,6 +45,8 @@ fn build(file: &LawFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> 
         }
         LawFile::PositionOnly(file) => position_only(file, agent, robot),
         LawFile::Thrust(file) => vehicle::thrust(file, agent, robot),
+        LawFile::TaskSpace(file) => task::task_space(file, agent, robot, body),
+        LawFile::Attitude(file) => spacecraft::attitude(file, agent, robot),
         LawFile::Adaptive(file) => Ok(Law::Adaptive {
             damping: damping(file.damping.as_ref(), agent, robot)?,
             adaptation: adaptation(file.adaptation_gain.as_ref(), agent, robot)?,
@@ -69,7 +74,7 @@ fn position_only(file: &PositionOnlyFile, agent: &str, robot: &RobotSetup) -> Re
     })
 }
 
-fn damping(file: Option<&DampingFile>, agent: &str, robot: &RobotSetup) -> Result<Gain, Fault> {
+pub(super) fn damping(file: Option<&DampingFile>, agent: &str, robot: &RobotSetup) -> Result<Gain, Fault> {
     match file {
         Some(DampingFile::Gain(place)) => gain("damping.gain", &place.value, place, agent, robot.axes.len()),
         Some(DampingFile::BandwidthPerS(bandwidth)) => {
@@ -80,7 +85,7 @@ fn damping(file: Option<&DampingFile>, agent: &str, robot: &RobotSetup) -> Resul
     }
 }
 
-fn adaptation(file: Option<&At<GainOrBandwidth>>, agent: &str, robot: &RobotSetup) -> Result<Gain, Fault> {
+pub(super) fn adaptation(file: Option<&At<GainOrBandwidth>>, agent: &str, robot: &RobotSetup) -> Result<Gain, Fault> {
     let Some(place) = file else {
         let (tree, other) = (Gain::Bandwidth(ADAPTATION_BANDWIDTH_PER_S), Gain::Number(ADAPTATION_GAIN));
         return Ok(if is_tree(robot) { tree } else { other });
@@ -149,17 +154,29 @@ pub(super) fn gain<T>(
     Err(fault(place, problem))
 }
 
-fn estimate(file: Option<&EstimateStartFile>, agent: &str, robot: &RobotSetup) -> Result<Vec<f64>, Fault> {
-    let theta = &robot.theta;
+pub(super) fn estimate(file: Option<&EstimateStartFile>, agent: &str, robot: &RobotSetup) -> Result<Vec<f64>, Fault> {
     match file {
-        None | Some(EstimateStartFile::Zero) => Ok(vec![0.0; theta.len()]),
-        Some(EstimateStartFile::True) => Ok(theta.clone()),
-        Some(EstimateStartFile::Scaled(factor)) => Ok(theta.iter().map(|entry| factor.value * entry).collect()),
-        Some(EstimateStartFile::Given(list)) if list.value.len() == theta.len() => Ok(values(&list.value)),
-        Some(EstimateStartFile::Given(list)) => {
+        None => Ok(vec![0.0; robot.theta.len()]),
+        Some(file) => known_or_given("estimate_start.given", file, agent, &robot.theta),
+    }
+}
+
+/// An estimate of `theta` at the start.
+pub(super) fn known_or_given(
+    key: &'static str,
+    file: &EstimateStartFile,
+    agent: &str,
+    theta: &[f64],
+) -> Result<Vec<f64>, Fault> {
+    match file {
+        EstimateStartFile::Zero => Ok(vec![0.0; theta.len()]),
+        EstimateStartFile::True => Ok(theta.to_vec()),
+        EstimateStartFile::Scaled(factor) => Ok(theta.iter().map(|entry| factor.value * entry).collect()),
+        EstimateStartFile::Given(list) if list.value.len() == theta.len() => Ok(values(&list.value)),
+        EstimateStartFile::Given(list) => {
             let (found, need) = (list.value.len(), theta.len());
             let agent = agent.to_owned();
-            Err(fault(list, ScenarioProblem::VectorLength { key: "estimate_start.given", found, need, agent }))
+            Err(fault(list, ScenarioProblem::VectorLength { key, found, need, agent }))
         }
     }
 }

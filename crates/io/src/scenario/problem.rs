@@ -1,7 +1,10 @@
 //! Why a scenario is refused.
 
 use forwardstep_core::GainError;
+use forwardstep_core::plant::SpacecraftError;
+use forwardstep_core::robot::tree::TipError;
 use forwardstep_sim::SetupError;
+use forwardstep_sim::trajectory::{SplineError, TrajectoryError};
 use thiserror::Error;
 
 use super::control_problem::ControlProblem;
@@ -421,18 +424,65 @@ pub enum ScenarioProblem {
     #[error("`disagreement_below` and `error_below` are both given")]
     TwoGoals,
     /// An error, but no target.
-    #[error("`error_below` is about targets, but the agents agree with each other")]
+    #[error("`error_below` is about targets and leaders, but the agents agree with each other")]
     NothingTracked,
     /// A disagreement among agents that do not agree.
-    #[error("`disagreement_below` is about agreement, but every agent follows a target of its own")]
+    #[error("`disagreement_below` is about agreement, but every agent follows a target or a leader")]
     NothingAgreed,
 
+    /// Sinusoids that make no trajectory.
+    #[error(transparent)]
+    Trajectory(TrajectoryError),
+    /// Points that make no curve.
+    #[error(transparent)]
+    Points(SplineError),
+    /// Followers without a leader.
+    #[error("the agents are to follow a leader, but there is none")]
+    NoLeader,
+    /// A leader whom nobody follows.
+    #[error("there is a leader, but `reference.{reference}` does not follow one")]
+    LeaderUnused {
+        /// The reference dynamics.
+        reference: &'static str,
+    },
+    /// A coupling where there is none.
+    #[error("`coupling` belongs to the design `swarm`")]
+    CouplingUnused,
+    /// As many roots as the design has.
+    #[error("`roots_per_s` has {}, but this design needs {need}", entry_count(*.found))]
+    LeaderRoots {
+        /// How many there are.
+        found: usize,
+        /// How many are needed.
+        need: usize,
+    },
     /// A target that has no value somewhere on the run.
     #[error("this has no finite value everywhere from 0 s to {end_s} s, or that could not be shown")]
     TargetValue {
         /// The end of the run, s.
         end_s: f64,
     },
+    /// A spacecraft that makes no sense.
+    #[error(transparent)]
+    Spacecraft(SpacecraftError),
+    /// A direction that is zero.
+    #[error("this is zero and has no direction")]
+    NoDirection,
+    /// Two ways of stating an attitude, or half of one.
+    #[error("an attitude is `axis` with `angle_rad`, or `quaternion`")]
+    HalfAttitude,
+    /// A tip whose Jacobian cannot be inverted.
+    #[error(transparent)]
+    Tip(TipError),
+    /// A robot from a URDF without a tip.
+    #[error("the law `task_space` needs `tip` for a robot from a URDF")]
+    NoTip,
+    /// A tip where there is one already.
+    #[error("the tip of a planar arm is the end of its second link; `tip` is for robots from a URDF")]
+    TipOfPlanarArm,
+    /// Bounds beside a full matrix.
+    #[error("`bounds` need `kinematic_gain` to be a number or a diagonal, not a matrix")]
+    BoundsOfMatrix,
     /// A law that is made for something else.
     #[error("agent `{agent}`: the law `{law}` is made for {made_for}")]
     LawOfAnother {
@@ -477,6 +527,8 @@ impl Problem for ScenarioProblem {
             }
             ScenarioProblem::RobotFile { file, known, .. } if !known.is_empty() => choose(file, "there are", known),
             ScenarioProblem::Lock(problem) => return problem.help(),
+            ScenarioProblem::NoTip => "add tip = { link = \"…\" } with a link of the URDF".into(),
+            ScenarioProblem::Tip(TipError::Size { .. }) => "`locked` of the robot holds joints of a URDF".into(),
             ScenarioProblem::NoEffortLimit { .. } => {
                 "only a URDF states limits, as <limit effort=\"…\"> of a joint".into()
             }
@@ -514,6 +566,9 @@ impl Problem for ScenarioProblem {
                 "set `disagreement_below = 1e-3` (with targets `error_below`), or `expect = \"diverges\"`, or delete the goal".into()
             }
             ScenarioProblem::ThresholdUnused { .. } | ScenarioProblem::TwoGoals => "delete one of the two".into(),
+            ScenarioProblem::NoLeader => "add `[leader]` with a `motion`".into(),
+            ScenarioProblem::LeaderUnused { .. } => "write `reference.leader`, or delete the leader".into(),
+            ScenarioProblem::LeaderRoots { .. } => "`continuous` has one root, the other designs have two".into(),
             ScenarioProblem::NothingTracked => "write `disagreement_below`".into(),
             ScenarioProblem::NothingAgreed => "write `error_below`".into(),
             ScenarioProblem::TargetValue { .. } => "roots, logarithms and quotients need arguments that stay where they have values".into(),

@@ -145,6 +145,7 @@ impl Reader<'_, '_> {
         let unit = match axis.unit {
             AxisUnit::Radian => "rad",
             AxisUnit::Metre => "m",
+            AxisUnit::One => "pure numbers",
         };
         let axis = axis.name.clone();
         Err(fault(place, PushProblem::Unit { key, agent: self.name(), axis, unit, any, takes }))

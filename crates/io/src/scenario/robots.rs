@@ -12,6 +12,7 @@ use super::fault::{Fault, count, fault, not_negative, positive};
 use super::file::{FrictionFile, PlanarArmFile, PointMassFile, RobotFile, UrdfFile};
 use super::inputs::InputFolder;
 use super::problem::ScenarioProblem;
+use super::spacecraft::spacecraft;
 use super::values::Named;
 use super::vehicle;
 use crate::files::ReadError;
@@ -64,6 +65,7 @@ pub(super) fn robot(file: &At<RobotFile>, folder: &mut InputFolder) -> Result<Re
         RobotFile::PointMass(mass) => point_mass(mass)?,
         RobotFile::Vehicle(file) => vehicle::vehicle(file)?,
         RobotFile::Rotorcraft(file) => vehicle::rotorcraft(file)?,
+        RobotFile::Spacecraft(file) => spacecraft(file)?,
     };
     Ok(ReadRobot { robot, notices: Vec::new(), links: Rc::new([]) })
 }

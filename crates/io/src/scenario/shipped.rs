@@ -36,6 +36,14 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "theorem-5",
     "formation",
     "mixed-network",
+    "theorem-6",
+    "task-space-ur5e",
+    "theorem-7",
+    "tumbling-target",
+    "theorem-8",
+    "theorem-9",
+    "remark-12",
+    "swarm-tracking",
 ];
 
 /// The shipped scenario of this name.

@@ -26,6 +26,14 @@ pub(super) fn spread(entry: &AgentFile, read: &RobotSetup, index: usize, agent: 
             robot.theta.iter_mut().zip(factors(1)?).for_each(|(mass, factor)| *mass *= factor);
             Ok(robot)
         }
+        RobotFile::Spacecraft(_) => {
+            let mut robot = read.clone();
+            let [factor] = factors(1)?[..] else { return Ok(robot) };
+            if let RobotKind::Spacecraft { inertia_kg_m2, .. } = &mut robot.kind {
+                *inertia_kg_m2 = inertia_kg_m2.map(|row| row.map(|entry| factor * entry));
+            }
+            Ok(robot)
+        }
         RobotFile::Urdf(_) => {
             let mut robot = read.clone();
             let RobotKind::Tree(tree) = &read.kind else { return Ok(robot) };

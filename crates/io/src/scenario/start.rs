@@ -1,12 +1,13 @@
 //! `start` → [`Start`].
 
-use forwardstep_sim::{AxisUnit, RobotSetup, Start};
+use forwardstep_sim::{AxisUnit, RobotKind, RobotSetup, Start};
 
 use super::at::At;
 use super::fault::{Fault, fault, seed, values};
 use super::file::StartFile;
 use super::problem::ScenarioProblem;
 use super::random::{Stream, draws};
+use super::spacecraft;
 use super::values::{Item, RandomFile, StartValues};
 use super::vehicle;
 
@@ -35,6 +36,9 @@ type Key<'a> = (&'static str, Option<AxisUnit>, &'a Option<At<StartValues>>);
 pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<Shared<'_>>) -> Result<Start, Fault> {
     use AxisUnit::{Metre, Radian};
     let tables = || [own, common].into_iter().flatten();
+    if let RobotKind::Spacecraft { wheels, .. } = &agent.robot.kind {
+        return spacecraft::start(tables().find_map(|table| table.file.value.spacecraft.as_ref()), agent.name, wheels);
+    }
     let quantity = |stream, keys: fn(&StartFile) -> [Key<'_>; 3]| {
         for table in tables() {
             if let Some(found) = agent.one_of(table, stream, keys(&table.file.value))? {
@@ -89,6 +93,7 @@ impl Starter<'_> {
             let unit = match axis.unit {
                 AxisUnit::Radian => "rad",
                 AxisUnit::Metre => "m",
+                AxisUnit::One => "pure numbers",
             };
             let (agent, axis) = (self.name.to_owned(), axis.name.clone());
             return Err(fault(value, ScenarioProblem::Unit { key, agent, axis, unit, any }));

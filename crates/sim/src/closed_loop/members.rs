@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use forwardstep_core::agent::{Agent, Limiter, VelocityFilter};
 use forwardstep_core::law::SlotineLi;
-use forwardstep_core::reference::{Backstepping, Consensus, Exchange as CoreExchange, PureIntegral, Reference};
+use forwardstep_core::reference::{
+    Backstepping, Consensus, Exchange as CoreExchange, Following, PureIntegral, Reference, SmoothFollowing,
+};
 use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass};
 use forwardstep_core::{Gain, InverseQuadratic, Lanes, LengthError, ResolvedGain};
@@ -14,6 +16,7 @@ use super::population::{Columns, Population};
 use super::sampler::{Sampler, Sensor};
 use super::systems::system;
 use super::valid::SetupError;
+use crate::leader::FollowingDesign;
 use crate::setup::{AgentSetup, Control, Law, ReferenceKind, RobotKind, Setup, VelocitySensor};
 
 /// Populations of at least so many agents are worked on in lanes.
@@ -53,11 +56,13 @@ pub(super) fn population<X: CoreExchange>(setup: &Setup, group: &[usize]) -> Res
         RobotKind::Tree(tree) => boxed::<Tree, X>(Tree::clone(tree), setup, group),
         RobotKind::PlanarArm => boxed::<PlanarArm, X>(PlanarArm, setup, group),
         RobotKind::PointMass { dimension } => boxed::<PointMass, X>(PointMass { dimension: *dimension }, setup, group),
-        RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. } => Err(SetupError::LawOfAnother {
-            agent: first.name.clone(),
-            law: first.law.words(),
-            made_for: first.law.made_for(),
-        }),
+        RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. } | RobotKind::Spacecraft { .. } => {
+            Err(SetupError::LawOfAnother {
+                agent: first.name.clone(),
+                law: first.law.words(),
+                made_for: first.law.made_for(),
+            })
+        }
     }
 }
 
@@ -80,16 +85,28 @@ where
         }
     }
     let roots = |error| SetupError::Roots { agent: first.name.clone(), error };
-    match setup.reference {
+    match &setup.reference {
         ReferenceKind::Consensus => columns(robot, members, setup, |group| {
             Consensus::<X>::new(group.iter().map(|&agent| design(agent))).map_err(roots)
         }),
         ReferenceKind::PureIntegral => columns(robot, members, setup, |group| {
             PureIntegral::<X>::new(group.iter().map(|&agent| design(agent))).map_err(roots)
         }),
+        ReferenceKind::Following(following) => match following.design {
+            FollowingDesign::Continuous => {
+                columns(robot, members, setup, |group| Ok(Following::new(group.len(), following.sliding())))
+            }
+            design => columns(robot, members, setup, |group| {
+                let (n, sliding) = (group.len(), following.sliding());
+                Ok(match design {
+                    FollowingDesign::Swarm { coupling } => SmoothFollowing::swarm(n, sliding, coupling),
+                    _ => SmoothFollowing::new(n, sliding),
+                })
+            }),
+        },
         ReferenceKind::Backstepping { filter_s, acceleration_limit } => columns(robot, members, setup, |group| {
             let limit = acceleration_limit.unwrap_or(f64::INFINITY);
-            Ok(Backstepping::new(group.iter().map(|_| (filter_s, limit)))?)
+            Ok(Backstepping::new(group.iter().map(|_| (*filter_s, limit)))?)
         }),
         ReferenceKind::Tracking => Err(SetupError::NotTracking { agent: first.name.clone(), law: first.law.words() }),
     }
@@ -183,15 +200,6 @@ fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Re
     };
     length("axes", m, agent.robot.axes.len())?;
     length("theta", p, agent.robot.theta.len())?;
-    let mut mass = vec![0.0; m * m];
-    robot
-        .mass_matrix(&mut robot.scratch(), &agent.start.q, &agent.robot.theta, &mut mass)
-        .map_err(|error| SetupError::Length { agent: name(), error })?;
-    let diagonal: Vec<f64> = mass.iter().step_by(m + 1).copied().collect();
-
-    let resolve = |gain: &Gain, which, size, scale: &[f64]| -> Result<ResolvedGain, SetupError> {
-        gain.resolve(size, scale).map_err(|error| SetupError::Gain { agent: name(), gain: which, error })
-    };
     let (damping, adaptation) = match &agent.law {
         Law::Known { damping } => (damping, None),
         Law::Adaptive { damping, adaptation, estimate_start } => {
@@ -200,23 +208,13 @@ fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Re
         }
         law => return Err(SetupError::LawOfAnother { agent: name(), law: law.words(), made_for: law.made_for() }),
     };
-    let adaptation = match adaptation {
-        Some(gain) => {
-            // Γ = ω² diag(scale): one ω is multiplied in here, the other by `resolve`.
-            let omega = if let Gain::Bandwidth(omega) = gain { *omega } else { 1.0 };
-            let scale = robot.adaptation_scale(&agent.start.q, &agent.robot.theta);
-            let scale: Vec<f64> = scale.iter().map(|scale| omega * scale).collect();
-            Some(resolve(gain, "Γ", p, &scale)?)
-        }
-        None => None,
-    };
-    let estimate_cost = match &adaptation {
+    let law = tracking_law(robot, agent, damping, adaptation)?;
+    let estimate_cost = match &law.adaptation {
         Some(gamma) => {
             Some(InverseQuadratic::new(gamma).map_err(|error| SetupError::Gain { agent: name(), gain: "Γ", error })?)
         }
         None => None,
     };
-    let law = SlotineLi { damping: resolve(damping, "K", m, &diagonal)?, adaptation };
     let effort_limits = if agent.enforce_limits {
         let limit = |axis: &crate::setup::Axis| {
             axis.effort_limit.ok_or_else(|| SetupError::NoEffortLimit { agent: name(), axis: axis.name.clone() })
@@ -233,4 +231,34 @@ fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Re
         estimate_cost,
         effort_limits,
     })
+}
+
+/// K and Γ of one agent, with its robot's natural scales for gains that are bandwidths.
+pub(super) fn tracking_law<R: Lagrangian<f64>>(
+    robot: &R,
+    agent: &AgentSetup,
+    damping: &Gain,
+    adaptation: Option<&Gain>,
+) -> Result<SlotineLi, SetupError> {
+    let (m, p) = (robot.dof(), robot.parameter_count());
+    let name = || agent.name.clone();
+    let mut mass = vec![0.0; m * m];
+    robot
+        .mass_matrix(&mut robot.scratch(), &agent.start.q, &agent.robot.theta, &mut mass)
+        .map_err(|error| SetupError::Length { agent: name(), error })?;
+    let diagonal: Vec<f64> = mass.iter().step_by(m + 1).copied().collect();
+    let resolve = |gain: &Gain, which, size, scale: &[f64]| -> Result<ResolvedGain, SetupError> {
+        gain.resolve(size, scale).map_err(|error| SetupError::Gain { agent: name(), gain: which, error })
+    };
+    let adaptation = match adaptation {
+        Some(gain) => {
+            // Γ = ω² diag(scale): one ω is multiplied in here, the other by `resolve`.
+            let omega = if let Gain::Bandwidth(omega) = gain { *omega } else { 1.0 };
+            let scale = robot.adaptation_scale(&agent.start.q, &agent.robot.theta);
+            let scale: Vec<f64> = scale.iter().map(|scale| omega * scale).collect();
+            Some(resolve(gain, "Γ", p, &scale)?)
+        }
+        None => None,
+    };
+    Ok(SlotineLi { damping: resolve(damping, "K", m, &diagonal)?, adaptation })
 }

@@ -84,8 +84,8 @@ impl<C: Controller> Digital<C> {
 struct Layout {
     /// m.
     m: usize,
-    /// A velocity follows the position.
-    has_velocity: bool,
+    /// A velocity of so many numbers follows the position; zero for none.
+    velocities: usize,
     plant: usize,
     controller: usize,
     ledger: bool,
@@ -125,7 +125,7 @@ impl<C: Controller> Solo<C> {
         let torque = inputs.iter().position(|(signal, _)| *signal == Signal::Torque);
         let layout = Layout {
             m: plant.axes(),
-            has_velocity: states.get(1).is_some_and(|(signal, _)| *signal == Signal::Velocity),
+            velocities: states.get(1).filter(|(signal, _)| *signal == Signal::Velocity).map_or(0, |(_, count)| *count),
             plant: total(&states),
             controller: total(&controller.states()),
             ledger: ledger && digital.is_none(),
@@ -167,7 +167,7 @@ impl<C: Controller> Solo<C> {
 
     /// The target, the plant's state and what sensors could see at `t_s`.
     fn look(&mut self, t_s: f64, x: &[f64]) -> Result<(), LengthError> {
-        let Layout { m, has_velocity, plant, .. } = self.layout;
+        let Layout { m, velocities, plant, .. } = self.layout;
         if let Some(target) = &self.target {
             target.trajectory.jets(t_s, &mut self.now.jets);
         }
@@ -175,7 +175,7 @@ impl<C: Controller> Solo<C> {
         if self.is_offset() {
             for (k, jet) in self.now.jets.iter().enumerate().take(m) {
                 self.now.state[k] += jet[0];
-                if has_velocity {
+                if velocities == m {
                     self.now.state[m + k] += jet[1];
                 }
             }
@@ -210,13 +210,13 @@ impl<C: Controller> Solo<C> {
     fn try_rates(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) -> Result<(), LengthError> {
         self.look(t_s, x)?;
         self.control(x, inputs)?;
-        let Layout { m, has_velocity, plant, .. } = self.layout;
+        let Layout { m, velocities, plant, .. } = self.layout;
         let end = self.layout.controller_end();
         self.plant.rate(&mut self.plant_scratch, &self.now.state, &self.now.input, &mut dx[..plant])?;
         if self.is_offset() {
             for (k, jet) in self.now.jets.iter().enumerate().take(m) {
                 dx[k] -= jet[1];
-                if has_velocity {
+                if velocities == m {
                     dx[m + k] -= jet[2];
                 }
             }
@@ -306,12 +306,12 @@ impl<C: Controller> Columns for Solo<C> {
         x.extend(start.q.iter().chain(&start.dq).chain(&start.rest));
         x.resize(first + self.state_len(), 0.0);
         if let Some(target) = self.target.as_ref().filter(|target| target.is_offset) {
-            let Layout { m, has_velocity, .. } = self.layout;
+            let Layout { m, velocities, .. } = self.layout;
             let mut jets = vec![[0.0; 5]; m];
             target.trajectory.jets(0.0, &mut jets);
             for (k, jet) in jets.iter().enumerate() {
                 x[first + k] -= jet[0];
-                if has_velocity {
+                if velocities == m {
                     x[first + m + k] -= jet[1];
                 }
             }
@@ -345,11 +345,11 @@ impl<C: Controller> Columns for Solo<C> {
     fn sense(&mut self, t_s: f64, x: &[f64], sent: &mut [f64]) {
         let looked = self.look(t_s, x);
         debug_assert_eq!(looked, Ok(()), "lengths are fixed when the agent is built");
-        let (Layout { m, has_velocity, .. }, is_offset) = (self.layout, self.is_offset());
+        let (Layout { m, velocities, .. }, is_offset) = (self.layout, self.is_offset());
         let Some(digital) = &mut self.digital else { return };
         digital.measured.copy_from_slice(&self.now.output);
         let (q, rest) = digital.measured.split_at_mut(m);
-        let dq = if has_velocity { &mut rest[..m] } else { &mut [] };
+        let dq = &mut rest[..velocities];
         digital.sensor.measure(digital.period_s, q, dq);
         // A message is the position, then the velocity if it is sent.
         sent.copy_from_slice(&digital.measured[..sent.len()]);

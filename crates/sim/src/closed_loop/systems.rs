@@ -9,6 +9,7 @@ use forwardstep_core::robot::PointMass;
 
 use super::members::sensor;
 use super::population::Columns;
+use super::single;
 use super::solo::{Digital, Solo, Target};
 use super::valid::SetupError;
 use super::vehicles;
@@ -35,6 +36,10 @@ pub(super) fn system(setup: &Setup, agent: usize) -> Result<Box<dyn Columns>, Se
         }
         (&RobotKind::Vehicle { gravity }, Law::Thrust(law)) => vehicles::vehicle(setup, agent, gravity, *law),
         (RobotKind::Rotorcraft { .. }, Law::Thrust(law)) => vehicles::rotorcraft(setup, agent, *law),
+        (_, Law::TaskSpace(law)) => single::task_space(setup, agent, law),
+        (RobotKind::Spacecraft { inertia_kg_m2, wheels }, Law::Attitude(law)) => {
+            single::attitude(setup, agent, inertia_kg_m2, wheels, law)
+        }
         (_, law) => {
             Err(SetupError::LawOfAnother { agent: own.name.clone(), law: law.words(), made_for: law.made_for() })
         }
@@ -110,7 +115,8 @@ pub(super) fn solo<C: Controller>(
 
 /// The limits of the torques, if they are to be enforced.
 fn effort_limits(own: &AgentSetup, torques: usize) -> Result<Option<Vec<f64>>, SetupError> {
-    if !own.enforce_limits {
+    // What is no torque of an axis is limited by the plant itself.
+    if !own.enforce_limits || torques == 0 {
         return Ok(None);
     }
     let limit = |axis: &crate::setup::Axis| {

@@ -179,6 +179,11 @@ impl Body {
         }
     }
 
+    /// A vector of the inner frame in the joint frame.
+    pub(super) fn outer_vector(&self, v: Vec3<f64>) -> Vec3<f64> {
+        self.coordinates.matrix().times(v)
+    }
+
     /// The body's parameters in its inner frame.
     #[inline(always)]
     pub(super) fn inner<S: Scalar>(&self, pi: &[S; 10]) -> Inertia<S> {

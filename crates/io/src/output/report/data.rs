@@ -265,6 +265,7 @@ fn axes(setup: &forwardstep_sim::Setup, agent: usize) -> Vec<AxisIndex> {
         unit: match limits.unit {
             AxisUnit::Radian => "rad",
             AxisUnit::Metre => "m",
+            AxisUnit::One => "1",
         },
         position_limits: limits.position_limits,
         velocity_limit: limits.velocity_limit,

@@ -18,7 +18,7 @@ struct Group<'a> {
 /// A table of what is measured and what is transmitted, with the traffic of one edge.
 pub(crate) fn interfaces(setup: &Setup) -> Markup {
     let heard = setup.network.schedule.graphs().iter().any(|graph| !graph.is_empty());
-    let transmits = if heard { setup.exchange.words() } else { &[] };
+    let transmits = if heard { setup.transmits() } else { Vec::new() };
     html! {
         section #interfaces {
             h2 { "Measured and transmitted" }
@@ -29,7 +29,7 @@ pub(crate) fn interfaces(setup: &Setup) -> Markup {
                         @for group in groups(setup) {
                             tr {
                                 th { (names(&group.agents)) }
-                                td { (group.measures.join(", ")) }
+                                td { (setup.measures_for(group.measures).join(", ")) }
                                 td { @if transmits.is_empty() { "nothing" } @else { (transmits.join(", ")) } }
                                 td { (traffic(setup, transmits.len() * group.axes)) }
                             }

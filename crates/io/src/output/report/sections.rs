@@ -76,6 +76,7 @@ fn length_unit(setup: &Setup) -> &'static str {
         Some(first) if units.all(|unit| unit == first) => match first {
             AxisUnit::Radian => "rad",
             AxisUnit::Metre => "m",
+            AxisUnit::One => "",
         },
         Some(_) => "rad or m",
         None => "",

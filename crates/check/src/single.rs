@@ -1,0 +1,170 @@
+//! Theorems 6 and 7: a tip with uncertain lengths, and an attitude without angular velocity.
+
+use forwardstep_core::plant::Spacecraft;
+use forwardstep_core::robot::tree::{TreeTip, Uncertain};
+use forwardstep_core::robot::{Posture, TipKinematics};
+use forwardstep_sim::trajectory::Path;
+use forwardstep_sim::{AgentSetup, Law, RobotKind, Setup, TaskSpaceLaw, TipSetup};
+use nalgebra::DMatrix;
+
+use crate::laws::with;
+use crate::verdict::{Answer, Hypothesis};
+
+/// Times at which a target is looked at where nothing can be shown.
+const LOOKS: u32 = 2000;
+/// The smallest norm of a quaternion on its path, as a part of the largest.
+const LEAST_NORM: f64 = 1e-6;
+
+/// Theorem 6, agent by agent.
+pub(crate) fn task_space(setup: &Setup) -> Vec<Hypothesis> {
+    let mut hypotheses = Vec::new();
+    for agent in with(setup, |law| matches!(law, Law::TaskSpace(_))) {
+        let Law::TaskSpace(law) = &agent.law else { continue };
+        if hypotheses.is_empty() {
+            hypotheses.push(Hypothesis {
+                requires: "K*, K, Γ and Λ are symmetric positive definite, κ and α are positive".into(),
+                answer: Answer::Holds,
+                because: "checked when they were read".into(),
+            });
+        }
+        hypotheses.push(regular(agent, law));
+        hypotheses.extend(geometry(agent, law));
+        hypotheses.extend(within_bounds(agent, law));
+    }
+    hypotheses
+}
+
+/// θ of the robot, and det Ĵ at the start.
+fn start(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<(Vec<f64>, f64)> {
+    match (&agent.robot.kind, &law.tip) {
+        (RobotKind::PlanarArm, TipSetup::Planar(tip)) => Some((tip.length_m.to_vec(), determinant(tip, agent, law)?)),
+        (RobotKind::Tree(tree), TipSetup::Point { point, coordinates, uncertain }) => {
+            let tip = TreeTip::new((**tree).clone(), point, coordinates, *uncertain).ok()?;
+            Some((tip.parameters(), determinant(&tip, agent, law)?))
+        }
+        _ => None,
+    }
+}
+
+fn determinant(tip: &impl TipKinematics, agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<f64> {
+    let (m, still) = (tip.axes(), vec![0.0; law.kinematic_start.len()]);
+    let (mut j, mut dj) = (vec![0.0; m * m], vec![0.0; m * m]);
+    let posture = Posture { q: &agent.start.q, dq: &vec![0.0; m], theta: &law.kinematic_start, d_theta: &still };
+    tip.jacobian(posture, &mut j, &mut dj).ok()?;
+    Some(DMatrix::from_row_slice(m, m, &j).determinant())
+}
+
+/// Ĵ must stay away from singularity along the run, which nobody knows before.
+fn regular(agent: &AgentSetup, law: &TaskSpaceLaw) -> Hypothesis {
+    let requires = format!("the estimated Jacobian of {} stays away from singularity", agent.name);
+    let (answer, because) = match start(agent, law) {
+        Some((_, det)) if det != 0.0 && det.is_finite() => (
+            Answer::HoldsOnHorizon,
+            format!(
+                "its determinant starts at {det:.3}; it is watched, and a run is ended when it falls below {} of that",
+                law.determinant_floor
+            ),
+        ),
+        Some((_, det)) => (Answer::Violated, format!("its determinant starts at {det}")),
+        None => (Answer::NotCovered, "the law has no tip of this robot".into()),
+    };
+    Hypothesis { requires, answer, because }
+}
+
+/// The regressor of a tree is stated with all its translations; only a tool is not in it.
+fn geometry(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<Hypothesis> {
+    let TipSetup::Point { uncertain, .. } = &law.tip else { return None };
+    let because = match uncertain {
+        Uncertain::Tool => "only the tool is uncertain, which the dynamics do not contain",
+        Uncertain::Chain => {
+            "the translations of its joints are uncertain in the Jacobian; the regressor has those of its file, which are true"
+        }
+    };
+    Some(Hypothesis {
+        requires: format!("the regressor of {} depends on nothing uncertain", agent.name),
+        answer: Answer::Holds,
+        because: because.into(),
+    })
+}
+
+fn within_bounds(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<Hypothesis> {
+    let bounds = law.bounds.as_ref()?;
+    let (theta, _) = start(agent, law)?;
+    let inside = |k: usize| {
+        let (low, high) = (bounds.lower.get(k)?, bounds.upper.get(k)?);
+        (*low <= theta[k] && theta[k] <= *high).then_some(())
+    };
+    let outside = (0..theta.len()).find(|k| inside(*k).is_none());
+    let (answer, because) = match outside {
+        None => (Answer::Holds, "they do, so projection only speeds the proof up".to_owned()),
+        Some(k) => {
+            let name = law.kinematic_names.get(k).map_or("a length", String::as_str);
+            (Answer::NotCovered, format!("{name} is {}, which is outside", theta[k]))
+        }
+    };
+    let requires = format!("the true lengths of {} lie within the bounds of their estimates", agent.name);
+    Some(Hypothesis { requires, answer, because })
+}
+
+/// Theorem 7, agent by agent.
+pub(crate) fn attitude(setup: &Setup) -> Vec<Hypothesis> {
+    let mut hypotheses = Vec::new();
+    for agent in with(setup, |law| matches!(law, Law::Attitude(_))) {
+        if hypotheses.is_empty() {
+            hypotheses.push(Hypothesis {
+                requires: "K and Λ_f are symmetric positive definite, α₁ and α₂ are positive".into(),
+                answer: Answer::Holds,
+                because: "checked when they were read".into(),
+            });
+        }
+        hypotheses.push(momentum(agent));
+        hypotheses.extend(path(setup, agent));
+    }
+    hypotheses
+}
+
+/// h_I is given to the controller, not measured.
+fn momentum(agent: &AgentSetup) -> Hypothesis {
+    let requires = format!("the inertia of {} and its angular momentum h_I are known and constant", agent.name);
+    let known = match &agent.robot.kind {
+        RobotKind::Spacecraft { inertia_kg_m2, wheels } => {
+            let start = [&agent.start.q[..], &agent.start.dq, &agent.start.rest].concat();
+            let plant = Spacecraft::new(*inertia_kg_m2, wheels.clone(), false).ok();
+            plant.and_then(|plant| plant.momentum_inertial(&start).ok())
+        }
+        _ => None,
+    };
+    match known {
+        Some([x, y, z]) => {
+            let because = format!("h_I = [{x:.4}, {y:.4}, {z:.4}] N m s by the start, and nothing acts from outside");
+            Hypothesis { requires, answer: Answer::Holds, because }
+        }
+        None => Hypothesis { requires, answer: Answer::NotCovered, because: "this is no spacecraft".into() },
+    }
+}
+
+/// The path of the desired attitude, as a quaternion of any norm, must not pass zero.
+fn path(setup: &Setup, agent: &AgentSetup) -> Option<Hypothesis> {
+    let target = agent.target.as_ref()?;
+    let requires = format!("the quaternion that {} is to follow is never zero", agent.name);
+    let is_fixed = target.paths().iter().all(|path| matches!(path, Path::Sinusoids { waves, .. } if waves.is_empty()));
+    let (mut least, mut most, mut when) = (f64::INFINITY, 0.0_f64, 0.0);
+    let mut jets = [[0.0; 5]; 4];
+    for k in 0..=LOOKS {
+        let t_s = setup.time.end_s * f64::from(k) / f64::from(LOOKS);
+        target.jets(t_s, &mut jets);
+        let norm = jets.iter().map(|jet| jet[0] * jet[0]).sum::<f64>().sqrt();
+        most = most.max(norm);
+        if norm < least {
+            (least, when) = (norm, t_s);
+        }
+    }
+    let (answer, because) = if least.is_nan() || least <= LEAST_NORM * most {
+        (Answer::Violated, format!("at {when} s its norm is {least:e}"))
+    } else if is_fixed {
+        (Answer::Holds, "it does not move".to_owned())
+    } else {
+        (Answer::HoldsOnHorizon, format!("of {} looks along the run the smallest norm was {least:.4}", LOOKS + 1))
+    };
+    Some(Hypothesis { requires, answer, because })
+}

@@ -1,0 +1,234 @@
+//! Attitude tracking of a spacecraft with reaction wheels, without angular velocity: (97)–(105).
+//!
+//! ```text
+//! ż = Rᵀω̇_d^I − S(z) ω_d − α₂ (z − ω_d) − α₁ Δq_v,   ω_d = Rᵀω_d^I                      (97)
+//! τ = M ż − S(h) z − D(Δq*)ᵀ K ẏ,   h = Rᵀ h_I                                           (99)
+//! ẏ + Λ_f y = K Δq*                                                                     (100)
+//! D(Δq*) = ½ [ Δq_o* I + S(Δq_v*) ;  −Δq_v*ᵀ ]
+//! q̇_z: the attitude that turns with z, in inertial coordinates R z                        (104), (105)
+//! ```
+//!
+//! Δq is the quaternion of R_dᵀR and Δq* that of R_zᵀR. Both R and R_z turn, seen from the body with ω and z, so
+//! Δq̇* = D(Δq*)(ω − z), which is (106). Nothing here contains ω: ẏ stands in for it.
+//!
+//! (94) minus (99) is M(ω̇ − ż) = S(h)(ω − z) − Dᵀ K ẏ, and (100) gives ÿ = −Λ_f ẏ + K D (ω − z). S(h) is skew and K symmetric, so
+//! with V = ½ (ω − z)ᵀM(ω − z) + ½ ẏᵀẏ
+//!
+//! ```text
+//! V̇ = −(ω − z)ᵀDᵀK ẏ + ẏᵀK D(ω − z) − ẏᵀΛ_f ẏ = −ẏᵀΛ_f ẏ
+//! ```
+//!
+//! From ω̇_d = Rᵀω̇_d^I − S(ω) ω_d and (97) the error Δω = ω − ω_d obeys
+//!
+//! ```text
+//! Δω̇ = −α₂ Δω − α₁ Δq_v + (ω̇ − ż) + α₂ (ω − z) + S(ω − z) ω_d                          (107)
+//! ```
+//!
+//! The paper prints −S(ω − z) ω_d here and −S(h)(ω − z) in the equation of ω̇ − ż; neither changes the law or V̇.
+//!
+//! q and −q are one attitude, but (97) leads to Δq_o = 1: a start with Δq_o < 0 takes the long way round. Choose the sign of
+//! the quaternion at the start so that Δq_o ≥ 0.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::{Asked, Balance, Controller, Given, Jet, Truth};
+use crate::attitude::{
+    Desired, Quaternion, angle, cross, difference, dot, normalized, rate_inertial, rotate, rotate_back, times,
+};
+use crate::plant::{Plant, Spacecraft, Wheels, total};
+use crate::reference::Position;
+use crate::signal::{Block, Signal};
+use crate::{LengthError, ResolvedGain};
+
+/// The attitude of a spacecraft.
+#[derive(Clone, Copy, Debug)]
+pub struct AttitudeMeasured<'a> {
+    /// (q_v, q_o). A norm that is not one does no harm.
+    pub q: &'a [f64; 4],
+}
+
+/// Attitude tracking without angular velocity.
+///
+/// State: z (3), q_z (4), y (4). Shown: z, ż, Δq_v, the angle of R_dᵀR, ẏ, τ. The target is a [`Jet`] for each of the four entries of
+/// a quaternion of any norm but zero, see [`Desired`].
+///
+/// The start is z(0) = 0 unless another is wanted, R_z(0) = R(0), and y(0) = Λ_f⁻¹ K Δq*(0), so that ẏ(0) = 0: then V(0) is
+/// the energy ½ (ω − z)ᵀM(ω − z) alone.
+///
+/// **Source**: (97)–(105). **Measures**: attitude. **Transmits**: nothing.
+/// **Requires**: α₁, α₂ positive; K and Λ_f symmetric positive definite; M and h_I known; R_d with two bounded derivatives; wheels
+/// within their limits.
+/// **Guarantees**: Δq_v → 0 and ω − ω_d → 0 from every start.
+/// **Deviates from the paper**: several wheels, by (94) with τ = −A u; the signs in (107).
+#[derive(Clone, Debug)]
+pub struct AttitudeTracking {
+    /// M, kg m².
+    pub inertia: [[f64; 3]; 3],
+    /// h_I, N m s: the total angular momentum in inertial coordinates.
+    pub momentum_inertial: [f64; 3],
+    /// How the torque is shared out.
+    pub wheels: Wheels,
+    /// α₁ in 1/s², α₂ in 1/s.
+    pub alpha: [f64; 2],
+    /// Λ_f, 4 × 4, 1/s.
+    pub filter: ResolvedGain,
+    /// K, 4 × 4.
+    pub damping: ResolvedGain,
+}
+
+/// Entries of the state.
+const STATE: usize = 11;
+/// Entries of what is shown before ẏ, and in all.
+const BEFORE_DY: usize = 10;
+const SHOWN: usize = 17;
+
+fn three(x: &[f64]) -> [f64; 3] {
+    core::array::from_fn(|k| x[k])
+}
+
+fn four(x: &[f64]) -> [f64; 4] {
+    core::array::from_fn(|k| x[k])
+}
+
+impl AttitudeTracking {
+    /// ẏ of (100), for the attitude q.
+    fn filter_rate(&self, q: Quaternion, q_z: Quaternion, y: &[f64]) -> ([f64; 4], [f64; 4]) {
+        let error = difference(q, q_z);
+        let mut dy = [0.0; 4];
+        self.damping.apply(&error, &mut dy);
+        self.filter.subtract_from(y, &mut dy);
+        (error, dy)
+    }
+}
+
+impl Controller for AttitudeTracking {
+    type Plant = Spacecraft;
+    type Exchange = Position;
+    type Measured<'a> = AttitudeMeasured<'a>;
+    type Scratch = ();
+
+    const MEASURES: &'static [&'static str] = &["attitude"];
+
+    fn scratch(&self) {}
+
+    fn states(&self) -> Vec<Block> {
+        vec![(Signal::Reference(0), 3), (Signal::ReferenceAttitude, 4), (Signal::Filter, 4)]
+    }
+
+    fn shown(&self) -> Vec<Block> {
+        vec![
+            (Signal::Reference(0), 3),
+            (Signal::Reference(1), 3),
+            (Signal::Error, 3),
+            (Signal::Angle, 1),
+            (Signal::FilterRate, 4),
+            (Signal::Torque, 3),
+        ]
+    }
+
+    fn see<'a>(&self, output: &'a [f64]) -> Result<AttitudeMeasured<'a>, LengthError> {
+        LengthError::check("output", 7 + self.wheels.count(), output.len())?;
+        let short = LengthError { what: "attitude", need: 4, got: output.len() };
+        output.first_chunk().map(|q| AttitudeMeasured { q }).ok_or(short)
+    }
+
+    fn start(
+        &self,
+        (): &mut (),
+        given: Given<'_, Self>,
+        wanted: &[Vec<f64>],
+        state: &mut [f64],
+    ) -> Result<(), LengthError> {
+        LengthError::check("state", STATE, state.len())?;
+        LengthError::check("filter gain", 4, self.filter.size())?;
+        LengthError::check("damping gain", 4, self.damping.size())?;
+        state.fill(0.0);
+        if let Some(z) = wanted.first() {
+            LengthError::check("the start of the reference", 3, z.len())?;
+            state[..3].copy_from_slice(z);
+        }
+        let q = normalized(*given.measured.q);
+        state[3..7].copy_from_slice(&q);
+        let mut y = [0.0; 4];
+        self.damping.apply(&difference(q, q), &mut y);
+        self.filter.solve(&mut y);
+        state[7..].copy_from_slice(&y);
+        Ok(())
+    }
+
+    fn evaluate(
+        &self,
+        (): &mut (),
+        given: Given<'_, Self>,
+        state: &[f64],
+        asked: Asked<'_>,
+    ) -> Result<(), LengthError> {
+        LengthError::check("state", STATE, state.len())?;
+        LengthError::check("rate", STATE, asked.d_state.len())?;
+        LengthError::check("input", self.wheels.count(), asked.input.len())?;
+        LengthError::check("shown", SHOWN, asked.shown.len())?;
+        LengthError::check("filter gain", 4, self.filter.size())?;
+        LengthError::check("damping gain", 4, self.damping.size())?;
+        LengthError::check("target", 4, given.target.len())?;
+        let path: [Jet; 4] = core::array::from_fn(|k| given.target[k]);
+        let (q, desired) = (normalized(*given.measured.q), Desired::from_path(&path));
+        let (z, q_z, y) = (three(state), four(&state[3..]), four(&state[7..]));
+
+        let (omega_d, pull) = (rotate_back(q, desired.omega), rotate_back(q, desired.d_omega));
+        let error = difference(q, desired.q);
+        let swing = cross(z, omega_d);
+        let dz = core::array::from_fn(|k| {
+            pull[k] - swing[k] - self.alpha[1] * (z[k] - omega_d[k]) - self.alpha[0] * error[k]
+        });
+
+        let (apart, dy) = self.filter_rate(q, q_z, &y);
+        let mut g = [0.0; 4];
+        self.damping.apply(&dy, &mut g);
+        // D(Δq*)ᵀ g, with S(Δq_v*)ᵀ = −S(Δq_v*)
+        let turn = cross(three(&apart), three(&g));
+        let inertial = times(&self.inertia, dz);
+        let coupling = cross(rotate_back(q, self.momentum_inertial), z);
+        let tau =
+            core::array::from_fn(|k| inertial[k] - coupling[k] - 0.5 * (apart[3] * g[k] - turn[k] - apart[k] * g[3]));
+        self.wheels.allocate(tau, asked.input);
+
+        asked.d_state[..3].copy_from_slice(&dz);
+        asked.d_state[3..7].copy_from_slice(&rate_inertial(q_z, rotate(q, z)));
+        asked.d_state[7..].copy_from_slice(&dy);
+
+        asked.shown[..3].copy_from_slice(&z);
+        asked.shown[3..6].copy_from_slice(&dz);
+        asked.shown[6..9].copy_from_slice(&error[..3]);
+        asked.shown[9] = angle(error);
+        asked.shown[BEFORE_DY..14].copy_from_slice(&dy);
+        asked.shown[14..].copy_from_slice(&tau);
+        Ok(())
+    }
+
+    fn settle(&self, state: &mut [f64]) {
+        if let Some(q_z) = state.get_mut(3..7) {
+            let settled = normalized(four(q_z));
+            q_z.copy_from_slice(&settled);
+        }
+    }
+
+    fn balance(
+        &self,
+        (): &mut (),
+        truth: Truth<'_, Self::Plant>,
+        _: Given<'_, Self>,
+        state: &[f64],
+        shown: &[f64],
+    ) -> Result<Balance, LengthError> {
+        LengthError::check("state of the plant", truth.plant.output_len(), truth.state.len())?;
+        LengthError::check("state", STATE, state.len())?;
+        LengthError::check("shown", total(&self.shown()), shown.len())?;
+        let s: [f64; 3] = core::array::from_fn(|k| truth.state[4 + k] - state[k]);
+        let dy = four(&shown[BEFORE_DY..]);
+        let mut lost = [0.0; 4];
+        self.filter.apply(&dy, &mut lost);
+        let value = 0.5 * (dot(s, times(truth.plant.inertia(), s)) + dot(dy, dy));
+        Ok(Balance { value, dissipation: dot(dy, lost) })
+    }
+}

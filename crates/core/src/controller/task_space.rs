@@ -1,0 +1,430 @@
+//! Task-space adaptive control without task-space velocity: (76)–(82).
+//!
+//! ```text
+//! ż = ż_r − α (z − z_r) − Ĵᵀ K* Δx,   Δx = x − x_d                                       (76)
+//! z_r = Ĵ⁻¹ ẋ_d,   ż_r = Ĵ⁻¹ (ẍ_d − (dĴ/dt) z_r)                                          (77), (78)
+//! s = q̇ − z                                                                             (79)
+//! τ = −K s − κ Ĵᵀ K* Δx + Y(q, q̇, z, ż) ϑ̂                                               (80)
+//! ϑ̂' = −Γ Y(q, q̇, z, ż)ᵀ s,   θ̂' = Λ Z(q, q̇)ᵀ K* Δx                                       (81), (82)
+//! ```
+//!
+//! dĴ/dt contains θ̂' of (82), so that ż_r is the derivative of z_r; nothing contains ẋ. With Ĵ q̇ − J q̇ = Z Δθ,
+//!
+//! ```text
+//! d/dt (z − z_r) = −α (z − z_r) − ĴᵀK*Δx         d/dt Δx = Ĵ (z − z_r) + Ĵ s − Z Δθ
+//! M ṡ + C s = −(K + D) s − κ ĴᵀK*Δx + Y Δϑ
+//! ```
+//!
+//! and V = (κ/2) [|z − z_r|² + ΔxᵀK*Δx + ΔθᵀΛ⁻¹Δθ] + ½ sᵀM s + ½ ΔϑᵀΓ⁻¹Δϑ loses
+//!
+//! ```text
+//! V̇ = −sᵀ(K + D) s − κ α |z − z_r|²
+//! ```
+//!
+//! (the second subsystem of the paper's cascade prints Y(q, q̇, z_r, ż_r) in the adaptation; (81) is what V̇ needs).
+//!
+//! **Projection.** When bounds for θ̂ are given, and Λ is diagonal, let u = ZᵀK*Δx and θ̂_k' = c_k Λ_k u_k. c_k is one but where θ̂_k
+//! is beyond a bound and u_k leads further out; there it falls to zero over a margin. While θ keeps to the bounds,
+//! Δθ_k and u_k have one sign wherever c_k < 1, so V̇ has one more term, κ Σ (c_k − 1) Δθ_k u_k ≤ 0, and the theorem stands.
+//! θ̂ stays within the bounds and the margin.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::{Asked, Balance, Controller, Given, Jet, Trouble, Truth};
+use crate::law::{SlotineLi, SlotineLiOutput};
+use crate::linear::invert;
+use crate::plant::TaskArm;
+use crate::reference::Position;
+use crate::robot::{Lagrangian, Posture, TipKinematics, TwoVelocity};
+use crate::signal::{Block, Signal};
+use crate::{InverseQuadratic, LengthError, ResolvedGain};
+
+/// What is measured of a robot and its tip.
+#[derive(Clone, Copy, Debug)]
+pub struct TaskMeasured<'a> {
+    /// q.
+    pub q: &'a [f64],
+    /// q̇.
+    pub dq: &'a [f64],
+    /// x.
+    pub x: &'a [f64],
+}
+
+/// Bounds within which the kinematic parameters are known to be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParameterBounds {
+    /// An entry per parameter.
+    pub lower: Vec<f64>,
+    /// An entry per parameter.
+    pub upper: Vec<f64>,
+    /// How far beyond a bound an estimate may go, m; positive.
+    pub margin: f64,
+}
+
+impl ParameterBounds {
+    /// c_k: what is left of a rate in the direction of `push`.
+    fn share(&self, k: usize, theta_hat: f64, push: f64) -> f64 {
+        let beyond = if push > 0.0 { theta_hat - self.upper[k] } else { self.lower[k] - theta_hat };
+        if push == 0.0 || beyond <= 0.0 { 1.0 } else { (1.0 - beyond / self.margin).max(0.0) }
+    }
+}
+
+/// Task-space adaptive control of a robot whose tip is seen.
+///
+/// State: z, ϑ̂, θ̂, det Ĵ(0). Shown: z, ż, s, ϑ̂, θ̂, det Ĵ, x, Δx. The target is a [`Jet`] for each coordinate of x_d.
+///
+/// **Source**: (76)–(82). **Measures**: q, q̇, x. **Transmits**: nothing.
+/// **Requires**: K*, K, Γ, Λ symmetric positive definite, κ and α positive; x_d with two bounded derivatives; Ĵ not singular
+/// along the run.
+/// **Guarantees**: Δx → 0 and Δẋ → 0.
+/// **Deviates from the paper**: dĴ/dt is said to contain θ̂'; J may have a known part; projection may be asked for; z(0) = q̇(0)
+/// unless another start is wanted.
+#[derive(Clone, Debug)]
+pub struct TaskSpace<R, T> {
+    /// The robot, whose ϑ is unknown.
+    pub robot: R,
+    /// The tip, whose θ is unknown.
+    pub tip: T,
+    /// K and Γ.
+    pub law: SlotineLi,
+    /// K*, m × m.
+    pub task_gain: ResolvedGain,
+    /// κ.
+    pub kappa: f64,
+    /// α, 1/s.
+    pub alpha: f64,
+    /// Λ; `None` when θ is known and not adapted.
+    pub kinematic_adaptation: Option<ResolvedGain>,
+    /// Bounds for θ̂; they need a diagonal Λ and count for nothing with a full one.
+    pub bounds: Option<ParameterBounds>,
+    /// ϑ̂(0), or ϑ when it is known.
+    pub estimate_start: Vec<f64>,
+    /// θ̂(0), or θ when it is known.
+    pub kinematic_start: Vec<f64>,
+    /// The run is in trouble when det Ĵ falls below this share of det Ĵ(0).
+    pub determinant_floor: f64,
+}
+
+/// Working memory of [`TaskSpace`].
+#[derive(Clone, Debug)]
+pub struct TaskWork<S> {
+    robot: S,
+    j: Vec<f64>,
+    dj: Vec<f64>,
+    ruins: Vec<f64>,
+    inverse: Vec<f64>,
+    z_r: Vec<f64>,
+    dz_r: Vec<f64>,
+    /// Δx, K*Δx, ĴᵀK*Δx.
+    error: Vec<f64>,
+    weighted: Vec<f64>,
+    pulled: Vec<f64>,
+    /// ZᵀK*Δx and θ̂'.
+    push: Vec<f64>,
+    d_theta_hat: Vec<f64>,
+    s: Vec<f64>,
+    damped: Vec<f64>,
+    still: Vec<f64>,
+    yt_s: Vec<f64>,
+    difference: Vec<f64>,
+    inverse_gamma: Option<InverseQuadratic>,
+    inverse_lambda: Option<InverseQuadratic>,
+}
+
+/// Where the blocks of the state begin, after z: ϑ̂, θ̂, det Ĵ(0), and the end.
+#[derive(Clone, Copy)]
+struct Layout {
+    theta: usize,
+    kinematic: usize,
+    determinant: usize,
+    end: usize,
+}
+
+impl<R, T> TaskSpace<R, T>
+where
+    R: Lagrangian<f64, Scratch: Send> + Clone + Send + Sync + 'static,
+    T: TipKinematics + Clone,
+{
+    fn layout(&self) -> Layout {
+        let theta = self.tip.axes();
+        let kinematic = theta + self.robot.parameter_count();
+        let determinant = kinematic + self.tip.parameter_count();
+        Layout { theta, kinematic, determinant, end: determinant + 1 }
+    }
+
+    /// Δx and what follows from it, Ĵ and its rate, z_r and ż_r, into the working memory; returns det Ĵ.
+    fn task(
+        &self,
+        work: &mut TaskWork<R::Scratch>,
+        measured: TaskMeasured<'_>,
+        target: &[Jet],
+        theta_hat: &[f64],
+    ) -> Result<f64, LengthError> {
+        let m = self.tip.axes();
+        let TaskMeasured { q, dq, x } = measured;
+        self.check()?;
+        LengthError::check("x", m, x.len())?;
+        LengthError::check("target", m, target.len())?;
+        LengthError::check("kinematic parameters", work.push.len(), theta_hat.len())?;
+        for k in 0..m {
+            work.error[k] = x[k] - target[k][0];
+        }
+        self.task_gain.apply(&work.error, &mut work.weighted);
+        self.tip.regressor_transposed(q, dq, &work.weighted, &mut work.push)?;
+        work.d_theta_hat.fill(0.0);
+        if let Some(lambda) = &self.kinematic_adaptation {
+            lambda.add_to(&work.push, &mut work.d_theta_hat);
+            for k in 0..theta_hat.len() {
+                work.d_theta_hat[k] *= self.share(k, theta_hat[k], work.push[k]);
+            }
+        }
+        let posture = Posture { q, dq, theta: theta_hat, d_theta: &work.d_theta_hat };
+        self.tip.jacobian(posture, &mut work.j, &mut work.dj)?;
+        work.ruins.copy_from_slice(&work.j);
+        let determinant = invert(m, &mut work.ruins, &mut work.inverse);
+        for i in 0..m {
+            work.z_r[i] = 0.0;
+            work.pulled[i] = 0.0;
+            for k in 0..m {
+                work.z_r[i] += work.inverse[i * m + k] * target[k][1];
+                work.pulled[i] += work.j[k * m + i] * work.weighted[k];
+            }
+        }
+        work.dz_r.fill(0.0);
+        for k in 0..m {
+            let mut rest = target[k][2];
+            for i in 0..m {
+                rest -= work.dj[k * m + i] * work.z_r[i];
+            }
+            for i in 0..m {
+                work.dz_r[i] += work.inverse[i * m + k] * rest;
+            }
+        }
+        Ok(determinant)
+    }
+
+    /// c_k of the head of this file.
+    fn share(&self, k: usize, theta_hat: f64, push: f64) -> f64 {
+        match (&self.bounds, &self.kinematic_adaptation) {
+            (Some(bounds), Some(ResolvedGain::Diagonal(_))) => bounds.share(k, theta_hat, push),
+            _ => 1.0,
+        }
+    }
+
+    fn check(&self) -> Result<(), LengthError> {
+        let (m, p) = (self.tip.axes(), self.tip.parameter_count());
+        LengthError::check("axes of the robot", m, self.robot.dof())?;
+        LengthError::check("task gain", m, self.task_gain.size())?;
+        LengthError::check("damping gain", m, self.law.damping.size())?;
+        LengthError::check("start of the estimate", self.robot.parameter_count(), self.estimate_start.len())?;
+        LengthError::check("start of the kinematic estimate", p, self.kinematic_start.len())?;
+        if let Some(gamma) = &self.law.adaptation {
+            LengthError::check("adaptation gain", self.robot.parameter_count(), gamma.size())?;
+        }
+        if let Some(lambda) = &self.kinematic_adaptation {
+            LengthError::check("kinematic adaptation gain", p, lambda.size())?;
+        }
+        if let Some(bounds) = &self.bounds {
+            LengthError::check("lower bounds", p, bounds.lower.len())?;
+            LengthError::check("upper bounds", p, bounds.upper.len())?;
+        }
+        Ok(())
+    }
+}
+
+impl<R, T> Controller for TaskSpace<R, T>
+where
+    R: Lagrangian<f64, Scratch: Send> + Clone + Send + Sync + 'static,
+    T: TipKinematics + Clone,
+{
+    type Plant = TaskArm<R, T>;
+    type Exchange = Position;
+    type Measured<'a> = TaskMeasured<'a>;
+    type Scratch = TaskWork<R::Scratch>;
+
+    const MEASURES: &'static [&'static str] = &["position", "velocity", "task-space position"];
+
+    fn scratch(&self) -> Self::Scratch {
+        let (m, p) = (self.tip.axes(), self.tip.parameter_count());
+        let inverse = |gain: &Option<ResolvedGain>| gain.as_ref().and_then(|gain| InverseQuadratic::new(gain).ok());
+        TaskWork {
+            robot: self.robot.scratch(),
+            j: vec![0.0; m * m],
+            dj: vec![0.0; m * m],
+            ruins: vec![0.0; m * m],
+            inverse: vec![0.0; m * m],
+            z_r: vec![0.0; m],
+            dz_r: vec![0.0; m],
+            error: vec![0.0; m],
+            weighted: vec![0.0; m],
+            pulled: vec![0.0; m],
+            push: vec![0.0; p],
+            d_theta_hat: vec![0.0; p],
+            s: vec![0.0; m],
+            damped: vec![0.0; m],
+            still: vec![0.0; m],
+            yt_s: vec![0.0; self.robot.parameter_count()],
+            difference: vec![0.0; p.max(self.robot.parameter_count())],
+            inverse_gamma: inverse(&self.law.adaptation),
+            inverse_lambda: inverse(&self.kinematic_adaptation),
+        }
+    }
+
+    fn states(&self) -> Vec<Block> {
+        vec![
+            (Signal::Reference(0), self.tip.axes()),
+            (Signal::Estimate, self.robot.parameter_count()),
+            (Signal::KinematicEstimate, self.tip.parameter_count()),
+            (Signal::Determinant, 1),
+        ]
+    }
+
+    fn shown(&self) -> Vec<Block> {
+        let m = self.tip.axes();
+        vec![
+            (Signal::Reference(0), m),
+            (Signal::Reference(1), m),
+            (Signal::TrackingError, m),
+            (Signal::Estimate, self.robot.parameter_count()),
+            (Signal::KinematicEstimate, self.tip.parameter_count()),
+            (Signal::Determinant, 1),
+            (Signal::TaskPosition, m),
+            (Signal::Error, m),
+        ]
+    }
+
+    fn see<'a>(&self, output: &'a [f64]) -> Result<TaskMeasured<'a>, LengthError> {
+        let m = self.tip.axes();
+        LengthError::check("output", 3 * m, output.len())?;
+        Ok(TaskMeasured { q: &output[..m], dq: &output[m..2 * m], x: &output[2 * m..] })
+    }
+
+    fn start(
+        &self,
+        work: &mut Self::Scratch,
+        given: Given<'_, Self>,
+        wanted: &[Vec<f64>],
+        state: &mut [f64],
+    ) -> Result<(), LengthError> {
+        let l = self.layout();
+        LengthError::check("state", l.end, state.len())?;
+        self.check()?;
+        let z = wanted.first().map_or(given.measured.dq, Vec::as_slice);
+        LengthError::check("the start of the reference", l.theta, z.len())?;
+        state[..l.theta].copy_from_slice(z);
+        state[l.theta..l.kinematic].copy_from_slice(&self.estimate_start);
+        state[l.kinematic..l.determinant].copy_from_slice(&self.kinematic_start);
+        state[l.determinant] = self.task(work, given.measured, given.target, &self.kinematic_start)?;
+        Ok(())
+    }
+
+    fn evaluate(
+        &self,
+        work: &mut Self::Scratch,
+        given: Given<'_, Self>,
+        state: &[f64],
+        asked: Asked<'_>,
+    ) -> Result<(), LengthError> {
+        let (m, l) = (self.tip.axes(), self.layout());
+        LengthError::check("state", l.end, state.len())?;
+        LengthError::check("rate", l.end, asked.d_state.len())?;
+        LengthError::check("shown", l.end + 4 * m, asked.shown.len())?;
+        let (z, theta_hat) = (&state[..m], &state[l.kinematic..l.determinant]);
+        let determinant = self.task(work, given.measured, given.target, theta_hat)?;
+        let (dz, rest) = asked.d_state.split_at_mut(m);
+        for k in 0..m {
+            dz[k] = work.dz_r[k] - self.alpha * (z[k] - work.z_r[k]) - work.pulled[k];
+        }
+        let TaskMeasured { q, dq, x } = given.measured;
+        let out = SlotineLiOutput { s: &mut work.s, tau: asked.input, yt_s: &mut work.yt_s };
+        let motion = TwoVelocity { q, dq, z, dz };
+        self.law.output(&self.robot, &mut work.robot, motion, &state[l.theta..l.kinematic], out)?;
+        for k in 0..m {
+            asked.input[k] -= self.kappa * work.pulled[k];
+        }
+        self.law.adaptation_rate(&work.yt_s, &mut rest[..l.kinematic - m]);
+        rest[l.kinematic - m..l.determinant - m].copy_from_slice(&work.d_theta_hat);
+        rest[l.determinant - m] = 0.0;
+
+        let (reference, rest) = asked.shown.split_at_mut(2 * m);
+        reference[..m].copy_from_slice(z);
+        reference[m..].copy_from_slice(dz);
+        let (s, rest) = rest.split_at_mut(m);
+        s.copy_from_slice(&work.s);
+        let (estimates, rest) = rest.split_at_mut(l.end - m);
+        estimates.copy_from_slice(&state[m..]);
+        estimates[l.determinant - m] = determinant;
+        rest[..m].copy_from_slice(x);
+        rest[m..].copy_from_slice(&work.error);
+        Ok(())
+    }
+
+    fn trouble(&self, state: &[f64], shown: &[f64]) -> Option<Trouble> {
+        let l = self.layout();
+        let (start, value) = (*state.get(l.determinant)?, *shown.get(l.determinant + 2 * self.tip.axes())?);
+        // A change of sign is below the floor too.
+        let floor = self.determinant_floor * start;
+        let vanishes = if start < 0.0 { value > floor } else { value < floor };
+        vanishes.then_some(Trouble::Vanishes { signal: Signal::Determinant, axis: 0, value, floor })
+    }
+
+    fn balance(
+        &self,
+        work: &mut Self::Scratch,
+        truth: Truth<'_, Self::Plant>,
+        given: Given<'_, Self>,
+        state: &[f64],
+        _: &[f64],
+    ) -> Result<Balance, LengthError> {
+        let (m, l, plant) = (self.tip.axes(), self.layout(), truth.plant);
+        LengthError::check("state", l.end, state.len())?;
+        LengthError::check("theta", self.robot.parameter_count(), plant.arm.theta.len())?;
+        LengthError::check("kinematic parameters", self.tip.parameter_count(), plant.tip_theta.len())?;
+        LengthError::check("state of the plant", 2 * m, truth.state.len())?;
+        let theta_hat = &state[l.kinematic..l.determinant];
+        self.task(work, given.measured, given.target, theta_hat)?;
+        let q = &truth.state[..m];
+        for k in 0..m {
+            work.s[k] = truth.state[m + k] - state[k];
+        }
+
+        // Y(q, 0, z, ż) ϑ = M ż + D z + g.
+        let (inertia, damping) = {
+            let TaskWork { robot, still, s, damped, yt_s, .. } = work;
+            let mut paired = |z: &[f64], dz: &[f64]| -> Result<f64, LengthError> {
+                let motion = TwoVelocity { q, dq: still, z, dz };
+                plant.arm.robot.regressor_products(robot, motion, &plant.arm.theta, s, damped, yt_s)?;
+                Ok(s.iter().zip(damped.iter()).map(|(s, torque)| s * torque).sum())
+            };
+            let gravity = paired(still, still)?;
+            (paired(still, s)? - gravity, paired(s, still)? - gravity)
+        };
+        self.law.damping.apply(&work.s, &mut work.damped);
+        let mut dissipation = damping;
+        let (mut task, mut strayed) = (0.0, 0.0);
+        for k in 0..m {
+            dissipation += work.s[k] * work.damped[k];
+            task += work.error[k] * work.weighted[k];
+            strayed += (state[k] - work.z_r[k]) * (state[k] - work.z_r[k]);
+        }
+        let mut value = 0.5 * inertia + 0.5 * self.kappa * (strayed + task);
+        dissipation += self.kappa * self.alpha * strayed;
+
+        let TaskWork { difference, inverse_gamma, inverse_lambda, push, .. } = work;
+        if let Some(inverse) = inverse_gamma {
+            for (k, hat) in state[l.theta..l.kinematic].iter().enumerate() {
+                difference[k] = hat - plant.arm.theta[k];
+            }
+            value += 0.5 * inverse.of(difference);
+        }
+        if let Some(inverse) = inverse_lambda {
+            for (k, hat) in theta_hat.iter().enumerate() {
+                difference[k] = hat - plant.tip_theta[k];
+                dissipation += self.kappa * (1.0 - self.share(k, *hat, push[k])) * difference[k] * push[k];
+            }
+            value += 0.5 * self.kappa * inverse.of(difference);
+        }
+        Ok(Balance { value, dissipation })
+    }
+}

@@ -1,0 +1,89 @@
+//! A Lagrangian robot whose tip is watched: (71)–(73).
+
+use alloc::vec::Vec;
+
+use super::{Mechanical, Plant};
+use crate::LengthError;
+use crate::robot::{Lagrangian, TipKinematics};
+use crate::signal::Block;
+
+/// A robot with ϑ and θ known to nature alone. State: q, q̇. Output: q, q̇ and the position x of the tip. Input: τ.
+///
+/// **Source**: (71), (73).
+#[derive(Clone, Debug)]
+pub struct TaskArm<R, T> {
+    /// The robot with its true ϑ.
+    pub arm: Mechanical<R>,
+    /// Where its tip is.
+    pub tip: T,
+    /// The true θ.
+    pub tip_theta: Vec<f64>,
+}
+
+impl<R, T> Plant for TaskArm<R, T>
+where
+    R: Lagrangian<f64, Scratch: Send> + Send + Sync + 'static,
+    T: TipKinematics,
+{
+    type Scratch = R::Scratch;
+
+    fn scratch(&self) -> Self::Scratch {
+        self.arm.scratch()
+    }
+
+    fn axes(&self) -> usize {
+        self.arm.axes()
+    }
+
+    fn states(&self) -> Vec<Block> {
+        self.arm.states()
+    }
+
+    fn inputs(&self) -> Vec<Block> {
+        self.arm.inputs()
+    }
+
+    fn output_len(&self) -> usize {
+        2 * self.axes() + self.tip.axes()
+    }
+
+    fn output(&self, scratch: &mut Self::Scratch, state: &[f64], output: &mut [f64]) -> Result<(), LengthError> {
+        LengthError::check("output", self.output_len(), output.len())?;
+        let (motion, x) = output.split_at_mut(2 * self.axes());
+        self.arm.output(scratch, state, motion)?;
+        self.tip.position(&motion[..self.arm.axes()], &self.tip_theta, x)
+    }
+
+    fn rate(
+        &self,
+        scratch: &mut Self::Scratch,
+        state: &[f64],
+        input: &[f64],
+        d_state: &mut [f64],
+    ) -> Result<(), LengthError> {
+        self.arm.rate(scratch, state, input, d_state)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec;
+
+    use super::*;
+    use crate::robot::{PlanarArm, PlanarLinks, PlanarTip};
+
+    #[test]
+    fn eq_71_the_output_holds_the_position_of_the_true_tip() {
+        let links = PlanarLinks::uniform([2.0, 1.0], [1.0, 0.8]);
+        let plant = TaskArm {
+            arm: Mechanical { robot: PlanarArm, theta: links.theta().to_vec() },
+            tip: PlanarTip { length_m: links.length_m },
+            tip_theta: vec![1.0, 0.8],
+        };
+        let mut output = vec![0.0; plant.output_len()];
+        plant.output(&mut (), &[0.0, core::f64::consts::FRAC_PI_2, 0.1, 0.2], &mut output).unwrap();
+        assert_eq!(output[..4], [0.0, core::f64::consts::FRAC_PI_2, 0.1, 0.2]);
+        assert!((output[4] - 1.0).abs() < 1e-15 && (output[5] - 0.8).abs() < 1e-15, "{output:?}");
+        assert!(plant.output(&mut (), &[0.0; 3], &mut output).is_err());
+    }
+}

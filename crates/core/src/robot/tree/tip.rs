@@ -1,0 +1,291 @@
+//! The tip of a chain of joints as [`TipKinematics`]: which lengths are uncertain, and J by them.
+//!
+//! Let w_c be the translation from joint c to joint c + 1 in base coordinates, the last one from the last joint to the tip, and
+//! a_c the axis of joint c. Then x = Σ_c w_c, and column c of J is
+//!
+//! ```text
+//! revolute   a_c × W_c,   W_c = Σ of the w behind joint c         prismatic   a_c
+//! ```
+//!
+//! w_c = E θ_c with E the orientation of the body that carries it, so J is linear in every translation, and with Ω the angular
+//! velocity of that body
+//!
+//! ```text
+//! ẇ_c = Ω × w_c + E θ_c'        ȧ_c = Ω × a_c        vᵀ J ξ by θ_c = Eᵀ (v × Ω(ξ))
+//! ```
+//!
+//! where Ω(ξ) is Ω with ξ for q̇. What a prismatic joint adds to a translation is known. The place of the first joint on the
+//! base is in x and not in J.
+
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use thiserror::Error;
+
+use super::model::Tree;
+use super::motion::Seat;
+use super::spatial::{Mat3, Vec3};
+use super::{JointKind, LinkPoint};
+use crate::robot::kinematics::{Posture, TipKinematics};
+use crate::{LengthError, trig};
+
+/// Which translations are θ.
+///
+/// The dynamics of a tree are stated with its geometry, so a law that is to be true to the robot knows all of it but a tool:
+/// choose [`Uncertain::Tool`]. [`Uncertain::Chain`] is for kinematics that are learnt apart from the dynamics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Uncertain {
+    /// From the last joint to the tip: three numbers.
+    Tool,
+    /// From each joint to the next as well: three numbers for each joint.
+    Chain,
+}
+
+/// The tip of a tree that is one chain of joints.
+#[derive(Clone, Debug)]
+pub struct TreeTip {
+    tree: Tree,
+    /// From the last joint to the tip, in the joint frame of the last body.
+    tool: [f64; 3],
+    /// Which of the coordinates of the base frame are controlled.
+    coordinates: Vec<usize>,
+    uncertain: Uncertain,
+}
+
+/// Why a point of a tree is not a tip whose Jacobian can be inverted.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum TipError {
+    /// More or fewer joints than coordinates.
+    #[error(
+        "{joints} joints move and {coordinates} coordinates of the tip are to be controlled; task-space control needs as many \
+         joints as coordinates (a redundant Jacobian has no inverse): lock joints or choose other coordinates"
+    )]
+    Size {
+        /// Moving joints.
+        joints: usize,
+        /// Coordinates chosen.
+        coordinates: usize,
+    },
+    /// A coordinate is chosen twice, or there is no such coordinate.
+    #[error("coordinate {coordinate} is chosen twice or is none of 0, 1, 2 (x, y, z of the base)")]
+    Coordinate {
+        /// The coordinate.
+        coordinate: usize,
+    },
+    /// A joint does not move the point.
+    #[error("joint {joint} does not carry the tip; lock it or choose a tip behind it")]
+    Beside {
+        /// The joint, from zero.
+        joint: usize,
+    },
+}
+
+/// Joints at most: coordinates of a point.
+const MOST: usize = 3;
+
+/// The chain at one instant.
+#[derive(Clone, Copy)]
+struct Chain {
+    /// w_c and its rate; entry 0 leads from the base to the first joint.
+    w: [Vec3<f64>; MOST + 1],
+    dw: [Vec3<f64>; MOST + 1],
+    a: [Vec3<f64>; MOST],
+    da: [Vec3<f64>; MOST],
+}
+
+impl TreeTip {
+    /// For a point of a link; `coordinates` are numbers of axes of the base frame, x = 0, y = 1, z = 2.
+    ///
+    /// # Errors
+    /// [`TipError`] when J is not square or a joint has no part in it.
+    pub fn new(tree: Tree, point: &LinkPoint, coordinates: &[usize], uncertain: Uncertain) -> Result<Self, TipError> {
+        for (index, coordinate) in coordinates.iter().enumerate() {
+            if *coordinate > 2 || coordinates[..index].contains(coordinate) {
+                return Err(TipError::Coordinate { coordinate: *coordinate });
+            }
+        }
+        let joints = tree.bodies.len();
+        if joints != coordinates.len() {
+            return Err(TipError::Size { joints, coordinates: coordinates.len() });
+        }
+        let mut carries = [false; MOST];
+        let mut at = point.link.body.filter(|body| *body < joints);
+        while let Some(body) = at {
+            carries[body] = true;
+            at = tree.bodies[body].parent_slot.checked_sub(1);
+        }
+        if let Some(joint) = carries.iter().take(joints).position(|carries| !carries) {
+            return Err(TipError::Beside { joint });
+        }
+        // Every joint carries the tip, so each is held by the one before it.
+        Ok(TreeTip { tree, tool: point.link.x_body_link.point(point.at), coordinates: coordinates.to_vec(), uncertain })
+    }
+
+    /// θ of the model itself.
+    pub fn parameters(&self) -> Vec<f64> {
+        let mut theta = Vec::with_capacity(self.parameter_count());
+        if self.uncertain == Uncertain::Chain {
+            for c in 1..self.tree.bodies.len() {
+                let [x, y, z] = self.tree.bodies[c].translation;
+                let held = self.tree.bodies[c - 1].outer_vector(Vec3 { x, y, z });
+                theta.extend([held.x, held.y, held.z]);
+            }
+        }
+        theta.extend(self.tool);
+        theta
+    }
+
+    /// Where the numbers of translation c stand in θ, if they are there.
+    fn place(&self, c: usize) -> Option<usize> {
+        match self.uncertain {
+            Uncertain::Tool if c == self.tree.bodies.len() => Some(0),
+            Uncertain::Chain if c > 0 => Some(3 * (c - 1)),
+            _ => None,
+        }
+    }
+
+    /// Translation c in the inner frame of the body that carries it, and its rate.
+    fn translation(&self, c: usize, theta: &[f64], d_theta: &[f64]) -> (Vec3<f64>, Vec3<f64>) {
+        let bodies = &self.tree.bodies;
+        let of = |numbers: &[f64], at: usize| Vec3::new(numbers[at], numbers[at + 1], numbers[at + 2]);
+        match (self.place(c), c.checked_sub(1)) {
+            (Some(at), Some(holder)) => {
+                (bodies[holder].inner_vector(of(theta, at)), bodies[holder].inner_vector(of(d_theta, at)))
+            }
+            _ => (Vec3::splat(bodies[c].translation), Vec3::ZERO),
+        }
+    }
+
+    fn chain(&self, posture: Posture<'_>) -> Chain {
+        let Posture { q, dq, theta, d_theta } = posture;
+        let still = Vec3::ZERO;
+        let mut chain = Chain { w: [still; 4], dw: [still; 4], a: [still; 3], da: [still; 3] };
+        let (mut e, mut omega) = (upright(), still);
+        let joints = self.tree.bodies.len();
+        for c in 0..=joints {
+            let (t, dt) = self.translation(c, theta, d_theta);
+            chain.w[c] = e.times(t);
+            chain.dw[c] = omega.cross_plus(chain.w[c], e.times(dt));
+            let Some(body) = self.tree.bodies.get(c) else { break };
+            let (sin, cos) = trig::sin_cos(q[c]);
+            e = e.product(&Seat::of(body, q[c], sin, cos).e);
+            let a = e.z.scaled(body.sign);
+            match body.kind {
+                JointKind::Revolute => omega = a.scaled_plus(dq[c], omega),
+                JointKind::Prismatic => {
+                    let slide = a.scaled(q[c]);
+                    chain.w[c] = chain.w[c].plus(slide);
+                    chain.dw[c] = omega.cross_plus(slide, a.scaled_plus(dq[c], chain.dw[c]));
+                }
+            }
+            chain.a[c] = a;
+            chain.da[c] = omega.cross(a);
+        }
+        chain
+    }
+}
+
+fn upright() -> Mat3<f64> {
+    Mat3::splat(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+}
+
+impl TipKinematics for TreeTip {
+    fn axes(&self) -> usize {
+        self.coordinates.len()
+    }
+
+    fn parameter_count(&self) -> usize {
+        match self.uncertain {
+            Uncertain::Tool => 3,
+            Uncertain::Chain => 3 * self.tree.bodies.len(),
+        }
+    }
+
+    fn parameter_names(&self) -> Vec<String> {
+        let mut names = Vec::with_capacity(self.parameter_count());
+        for c in 1..=self.tree.bodies.len() {
+            if self.place(c).is_none() {
+                continue;
+            }
+            for axis in ["x", "y", "z"] {
+                names.push(if c == self.tree.bodies.len() {
+                    format!("tool_{axis}_m")
+                } else {
+                    format!("joint_{}_{axis}_m", c + 1)
+                });
+            }
+        }
+        names
+    }
+
+    fn position(&self, q: &[f64], theta: &[f64], x: &mut [f64]) -> Result<(), LengthError> {
+        let still = [0.0; 3 * MOST];
+        let (m, p) = (self.axes(), self.parameter_count());
+        let posture = Posture { q, dq: &still[..m], theta, d_theta: &still[..p] };
+        posture.check(m, p)?;
+        LengthError::check("x", m, x.len())?;
+        let sum = self.chain(posture).w.iter().fold(Vec3::ZERO, |sum, w| sum.plus(*w));
+        for (x, coordinate) in x.iter_mut().zip(&self.coordinates) {
+            *x = component(sum, *coordinate);
+        }
+        Ok(())
+    }
+
+    fn jacobian(&self, posture: Posture<'_>, j: &mut [f64], dj: &mut [f64]) -> Result<(), LengthError> {
+        let m = self.axes();
+        posture.check(m, self.parameter_count())?;
+        LengthError::check("Jacobian", m * m, j.len())?;
+        LengthError::check("rate of the Jacobian", m * m, dj.len())?;
+        let chain = self.chain(posture);
+        let (mut behind, mut d_behind) = (Vec3::ZERO, Vec3::ZERO);
+        for c in (0..m).rev() {
+            behind = behind.plus(chain.w[c + 1]);
+            d_behind = d_behind.plus(chain.dw[c + 1]);
+            let (a, da) = (chain.a[c], chain.da[c]);
+            let (column, d_column) = match self.tree.bodies[c].kind {
+                JointKind::Revolute => (a.cross(behind), da.cross_plus(behind, a.cross(d_behind))),
+                JointKind::Prismatic => (a, da),
+            };
+            for (row, coordinate) in self.coordinates.iter().enumerate() {
+                j[row * m + c] = component(column, *coordinate);
+                dj[row * m + c] = component(d_column, *coordinate);
+            }
+        }
+        Ok(())
+    }
+
+    fn regressor_transposed(&self, q: &[f64], xi: &[f64], v: &[f64], zt_v: &mut [f64]) -> Result<(), LengthError> {
+        let m = self.axes();
+        LengthError::check("q", m, q.len())?;
+        LengthError::check("xi", m, xi.len())?;
+        LengthError::check("v", m, v.len())?;
+        LengthError::check("kinematic gradient", self.parameter_count(), zt_v.len())?;
+        let mut full = [0.0; 3];
+        for (v, coordinate) in v.iter().zip(&self.coordinates) {
+            full[*coordinate] = *v;
+        }
+        let v = Vec3::splat(full);
+        let (mut e, mut omega) = (upright(), Vec3::ZERO);
+        for (c, body) in self.tree.bodies.iter().enumerate() {
+            let (sin, cos) = trig::sin_cos(q[c]);
+            e = e.product(&Seat::of(body, q[c], sin, cos).e);
+            if body.kind == JointKind::Revolute {
+                omega = e.z.scaled_plus(body.sign * xi[c], omega);
+            }
+            if let Some(at) = self.place(c + 1) {
+                let by = body.outer_vector(e.transpose_times(v.cross(omega)));
+                zt_v[at..at + 3].copy_from_slice(&[by.x, by.y, by.z]);
+            }
+        }
+        Ok(())
+    }
+}
+
+fn component(v: Vec3<f64>, coordinate: usize) -> f64 {
+    match coordinate {
+        0 => v.x,
+        1 => v.y,
+        _ => v.z,
+    }
+}

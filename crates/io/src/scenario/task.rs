@@ -1,0 +1,141 @@
+//! `law.task_space` → [`Law::TaskSpace`].
+
+use forwardstep_core::Gain;
+use forwardstep_core::controller::ParameterBounds;
+use forwardstep_core::robot::TipKinematics;
+use forwardstep_core::robot::tree::{LinkPoint, Tree, TreeTip, Uncertain};
+use forwardstep_sim::{Law, RobotKind, RobotSetup, TaskSpaceLaw, TipSetup};
+
+use super::agents::Body;
+use super::at::At;
+use super::fault::{Fault, between, fault, filled, positive, values};
+use super::law::{adaptation, damping, estimate, gain, known_or_given};
+use super::problem::ScenarioProblem;
+use super::push_problem::PushProblem;
+use super::task_file::{BoundsFile, CoordinateFile, TaskSpaceFile, TipFile, UncertainFile};
+use super::values::GainFile;
+
+const DAMPING: f64 = 20.0;
+const ADAPTATION: f64 = 30.0;
+const TASK_GAIN: f64 = 20.0;
+const TORQUE_SHARE: f64 = 5.0;
+const REFERENCE_GAIN_PER_S: f64 = 3.0;
+const KINEMATIC_GAIN: f64 = 0.3;
+const KINEMATIC_START: f64 = 1.2;
+const MARGIN_M: f64 = 0.01;
+const DETERMINANT_FLOOR: f64 = 0.01;
+
+/// Builds the law of `agent`, which can be held at `body`.
+pub(super) fn task_space(file: &TaskSpaceFile, agent: &str, robot: &RobotSetup, body: &Body) -> Result<Law, Fault> {
+    let (tip, theta, kinematic_names) = tip(file, agent, robot, body)?;
+    let p = theta.len();
+    let is_tree = matches!(robot.kind, RobotKind::Tree(_));
+    let damping = match &file.damping {
+        None if !is_tree => Gain::Number(DAMPING),
+        given => damping(given.as_ref(), agent, robot)?,
+    };
+    let adaptation = match &file.adaptation_gain {
+        None if !is_tree => Gain::Number(ADAPTATION),
+        given => adaptation(given.as_ref(), agent, robot)?,
+    };
+    let matrix = |key, value: &Option<At<GainFile>>, usual, size| match value {
+        None => Ok(Gain::Number(usual)),
+        Some(place) => gain(key, &place.value, place, agent, size),
+    };
+    let number = |key, value: &Option<At<f64>>, usual| value.as_ref().map_or(Ok(usual), |value| positive(key, value));
+    let kinematic_adaptation = matrix("kinematic_gain", &file.kinematic_gain, KINEMATIC_GAIN, p)?;
+    let bounds = file.bounds.as_ref().map(|place| bounds(&place.value, agent, p)).transpose()?;
+    if let (Some(place), Gain::Matrix(_)) = (&file.bounds, &kinematic_adaptation) {
+        return Err(fault(place, ScenarioProblem::BoundsOfMatrix));
+    }
+    let kinematic_start = match &file.kinematic_start {
+        None => theta.iter().map(|length| KINEMATIC_START * length).collect(),
+        Some(file) => known_or_given("kinematic_start.given", file, agent, &theta)?,
+    };
+    let floor = file.determinant_floor.as_ref();
+    Ok(Law::TaskSpace(Box::new(TaskSpaceLaw {
+        tip,
+        kinematic_names,
+        damping,
+        adaptation,
+        estimate_start: estimate(file.estimate_start.as_ref(), agent, robot)?,
+        task_gain: matrix("task_gain", &file.task_gain, TASK_GAIN, robot.axes.len())?,
+        kappa: number("torque_share", &file.torque_share, TORQUE_SHARE)?,
+        alpha_per_s: number("reference_gain_per_s", &file.reference_gain_per_s, REFERENCE_GAIN_PER_S)?,
+        kinematic_adaptation: Some(kinematic_adaptation),
+        kinematic_start,
+        bounds,
+        determinant_floor: floor
+            .map_or(Ok(DETERMINANT_FLOOR), |floor| between("determinant_floor", floor, 0.0, 0.999))?,
+    })))
+}
+
+/// The tip with its true θ and the names of its entries.
+fn tip(
+    file: &TaskSpaceFile,
+    agent: &str,
+    robot: &RobotSetup,
+    body: &Body,
+) -> Result<(TipSetup, Vec<f64>, Vec<String>), Fault> {
+    match (&robot.kind, &body.tip, &file.tip) {
+        (RobotKind::PlanarArm, Some(tip), None) => {
+            Ok((TipSetup::Planar(*tip), tip.length_m.to_vec(), tip.parameter_names()))
+        }
+        (RobotKind::PlanarArm, _, Some(place)) => Err(fault(place, ScenarioProblem::TipOfPlanarArm)),
+        (RobotKind::Tree(tree), _, Some(place)) => of_tree(&place.value, agent, tree, body).and_then(|(setup, tip)| {
+            let tip = tip.map_err(|error| fault(place, ScenarioProblem::Tip(error)))?;
+            Ok((setup, tip.parameters(), tip.parameter_names()))
+        }),
+        (RobotKind::Tree(_), _, None) => Err(Fault::new(ScenarioProblem::NoTip)),
+        _ => {
+            let (agent, law, made_for) = (agent.to_owned(), "task_space", "planar arms and robots from a URDF");
+            Err(Fault::new(ScenarioProblem::LawOfAnother { agent, law, made_for }))
+        }
+    }
+}
+
+type OfTree = (TipSetup, Result<TreeTip, forwardstep_core::robot::tree::TipError>);
+
+fn of_tree(file: &TipFile, agent: &str, tree: &Tree, body: &Body) -> Result<OfTree, Fault> {
+    let Some((_, link)) = body.links.iter().find(|(name, _)| *name == file.link.value) else {
+        let links = body.links.iter().map(|(name, _)| name.clone()).collect();
+        let (link, agent) = (file.link.value.clone(), agent.to_owned());
+        return Err(fault(&file.link, PushProblem::NoSuchLink { link, agent, links }));
+    };
+    let point = LinkPoint { link: *link, at: file.at_m.unwrap_or_default() };
+    let coordinates: Vec<usize> = match &file.coordinates {
+        None => vec![0, 1, 2],
+        Some(list) => filled("coordinates", list)?
+            .iter()
+            .map(|entry| match entry.value {
+                CoordinateFile::X => 0,
+                CoordinateFile::Y => 1,
+                CoordinateFile::Z => 2,
+            })
+            .collect(),
+    };
+    let uncertain = match file.uncertain {
+        None | Some(UncertainFile::Tool) => Uncertain::Tool,
+        Some(UncertainFile::Chain) => Uncertain::Chain,
+    };
+    let tip = TreeTip::new(tree.clone(), &point, &coordinates, uncertain);
+    Ok((TipSetup::Point { point, coordinates, uncertain }, tip))
+}
+
+fn bounds(file: &BoundsFile, agent: &str, p: usize) -> Result<ParameterBounds, Fault> {
+    let list = |key, list: &At<Vec<At<f64>>>| {
+        if list.value.len() == p {
+            return Ok(values(&list.value));
+        }
+        let (found, agent) = (list.value.len(), agent.to_owned());
+        Err(fault(list, ScenarioProblem::VectorLength { key, found, need: p, agent }))
+    };
+    let (lower, upper) = (list("lower_m", &file.lower_m)?, list("upper_m", &file.upper_m)?);
+    for ((low, high), place) in lower.iter().zip(&upper).zip(&file.lower_m.value) {
+        if low > high {
+            return Err(fault(place, ScenarioProblem::Interval { key: "bounds", low: *low, high: *high }));
+        }
+    }
+    let margin = file.margin_m.as_ref().map_or(Ok(MARGIN_M), |margin| positive("margin_m", margin))?;
+    Ok(ParameterBounds { lower, upper, margin })
+}
