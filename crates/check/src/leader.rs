@@ -33,6 +33,11 @@ pub(crate) fn check(setup: &Setup, following: &Following) -> Report {
     let mut hypotheses =
         vec![bounded_motion(setup, following), gain(setup, following), tree(setup), fixed(setup), prompt(setup)];
     if let FollowingDesign::Swarm { coupling } = following.design {
+        hypotheses.push(Hypothesis {
+            requires: "the paper prints the design".into(),
+            answer: Answer::NotCovered,
+            because: "Remark 11 names it; what it needs was derived for this software and follows".into(),
+        });
         hypotheses.push(undirected(setup));
         hypotheses.push(coupled(setup, following, coupling));
     }
@@ -107,7 +112,9 @@ fn rounded(value: f64) -> f64 {
         return value;
     }
     let unit = 10_f64.powi(value.abs().log10().floor() as i32 - 3);
-    (value / unit).ceil() * unit
+    // Without the digits that rounding left behind.
+    let up = (value / unit).ceil() * unit;
+    if unit < 1e-3 { (up * 1e9).round() / 1e9 } else { seconds(up) }
 }
 
 /// A spanning tree whose root is the leader: since the leader hears nobody, any tree has it as its root.
