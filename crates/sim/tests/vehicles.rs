@@ -226,6 +226,67 @@ fn prop_sampled_vehicles_come_closer_to_continuous_ones_in_proportion_to_the_per
     }
 }
 
+/// Files of `validation/vehicles`, written by a program that shares nothing with this one.
+#[derive(serde::Deserialize)]
+struct Truth {
+    t_s: Vec<f64>,
+    cases: Vec<TruthCase>,
+}
+
+#[derive(serde::Deserialize)]
+struct TruthCase {
+    design: String,
+    formation: bool,
+    /// By time, then by agent.
+    samples: Vec<Vec<TruthSample>>,
+}
+
+#[derive(serde::Deserialize)]
+struct TruthSample {
+    x: [f64; 3],
+    dx: [f64; 3],
+    sigma: f64,
+    m_hat: f64,
+}
+
+#[test]
+fn val_vehicles_agree_with_an_independent_solver() {
+    let truth: Truth = serde_json::from_str(include_str!("../../../validation/vehicles/vehicles.json")).unwrap();
+    assert_eq!(truth.cases.len(), 6);
+    for case in &truth.cases {
+        let design = match case.design.as_str() {
+            "continuous" => ThrustKind::Continuous,
+            "differentiable" => DIFFERENTIABLE,
+            _ => ADAPTIVE,
+        };
+        let mut setup = three(&RobotKind::Vehicle { gravity: G }, design, case.formation, 6.0);
+        setup.network.delays = vec![Delay::Constant { s: 0.0 }];
+        setup.time.record_every_s = 0.5;
+        setup.solver.method = Method::Adaptive { rtol: 1e-11, atol: 1e-12 };
+        for agent in &mut setup.agents {
+            // z starts at zero in both programs.
+            agent.start.reference = vec![vec![0.0; 3]; design.order()];
+        }
+        let outcome = run(&setup);
+        let mut worst = 0.0_f64;
+        for (t_s, samples) in truth.t_s.iter().zip(&case.samples) {
+            let row = outcome.recording.t_s.iter().position(|t| (t - t_s).abs() < 1e-9).unwrap();
+            for (agent, want) in samples.iter().enumerate() {
+                let got = |signal, axis| column(&outcome, agent, signal, axis)[row];
+                for k in 0..3 {
+                    worst = worst.max((got(Signal::Position, k) - want.x[k]).abs());
+                    worst = worst.max((got(Signal::Velocity, k) - want.dx[k]).abs());
+                }
+                worst = worst.max((got(Signal::Thrust, 0) - want.sigma).abs());
+                if design == ADAPTIVE {
+                    worst = worst.max((got(Signal::Estimate, 0) - want.m_hat).abs());
+                }
+            }
+        }
+        assert!(worst < 1e-6, "{} {}: {worst:e}", case.design, case.formation);
+    }
+}
+
 #[test]
 fn thrust_that_vanishes_stops_the_run_before_it_is_zero_or_is_kept_away() {
     let mut setup = three(&RobotKind::Vehicle { gravity: G }, DIFFERENTIABLE, false, 6.0);
