@@ -25,7 +25,8 @@ pub(crate) fn theorem(setup: &Setup) -> Option<(String, String)> {
         )),
         (Law::Attitude(_), _) => Some((
             "Theorem 7, (99) to (105) with the reference dynamics (97)".into(),
-            "the attitude and its rate reach those of the target, Δq_v → 0 and ω − ω_d → 0, without a measured ω".into(),
+            "the attitude and its rate reach those of the target, Δq_v → 0 and ω − ω_d → 0, without a measured ω"
+                .into(),
         )),
         (Law::PositionOnly { .. }, _) => Some((
             format!("Remark 7, (a8) with (24) of order {} in z", first.roots_per_s.len()),

@@ -7,8 +7,8 @@ use std::sync::Arc;
 use forwardstep_core::Gain;
 use forwardstep_core::controller::{AttitudeTracking, Controller, PositionOnly, TaskSpace};
 use forwardstep_core::plant::Wheels;
-use forwardstep_core::robot::{PlanarArm, PlanarTip};
 use forwardstep_core::robot::tree::Tree;
+use forwardstep_core::robot::{PlanarArm, PlanarTip};
 
 use crate::network::Network;
 use crate::push::Push;

@@ -140,12 +140,10 @@ fn anthropomorphic(uncertain: Uncertain) -> Setup {
 
 fn craft(start: Start, target: Vec<Path>, torque_limit_n_m: f64) -> Setup {
     let wheel = |axis| Wheel { axis, torque_limit_n_m: Some(torque_limit_n_m), momentum_limit_n_m_s: Some(20.0) };
-    let wheels = Wheels::new(&[[1.0, 0.0, 0.8], [-1.0, 0.0, 0.8], [0.0, 1.0, 0.8], [0.0, -1.0, 0.8]].map(wheel)).unwrap();
+    let wheels =
+        Wheels::new(&[[1.0, 0.0, 0.8], [-1.0, 0.0, 0.8], [0.0, 1.0, 0.8], [0.0, -1.0, 0.8]].map(wheel)).unwrap();
     let robot = RobotSetup {
-        kind: RobotKind::Spacecraft {
-            inertia_kg_m2: [[10.0, 0.5, -0.3], [0.5, 8.0, 0.2], [-0.3, 0.2, 6.0]],
-            wheels,
-        },
+        kind: RobotKind::Spacecraft { inertia_kg_m2: [[10.0, 0.5, -0.3], [0.5, 8.0, 0.2], [-0.3, 0.2, 6.0]], wheels },
         theta: Vec::new(),
         theta_names: Vec::new(),
         axes: axes(&["x", "y", "z", "o"], AxisUnit::One),

@@ -23,12 +23,7 @@ const ADAPTATION_GAIN: f64 = 10.0;
 const FILTER_PER_S: f64 = 10.0;
 
 /// Builds the law of `agent`; without a file, the adaptive one with default gains.
-pub(super) fn law(
-    file: Option<&At<LawFile>>,
-    agent: &str,
-    robot: &RobotSetup,
-    body: &Body,
-) -> Result<Law, Fault> {
+pub(super) fn law(file: Option<&At<LawFile>>, agent: &str, robot: &RobotSetup, body: &Body) -> Result<Law, Fault> {
     match file {
         None => build(&LawFile::Adaptive(AdaptiveFile::default()), agent, robot, body),
         Some(file) => build(&file.value, agent, robot, body).map_err(|fault| fault.at(&file.span)),
@@ -97,7 +92,13 @@ fn is_tree(robot: &RobotSetup) -> bool {
 }
 
 /// Reads a gain and checks that it is symmetric positive definite and of the right size.
-pub(super) fn gain<T>(key: &'static str, file: &GainFile, place: &At<T>, agent: &str, size: usize) -> Result<Gain, Fault> {
+pub(super) fn gain<T>(
+    key: &'static str,
+    file: &GainFile,
+    place: &At<T>,
+    agent: &str,
+    size: usize,
+) -> Result<Gain, Fault> {
     let rows = match file {
         GainFile::Number(value) => {
             let number = At { value: *value, span: place.span.clone() };

@@ -23,7 +23,8 @@ pub(super) fn spacecraft(file: &SpacecraftFile) -> Result<RobotSetup, Fault> {
     let wheels = match &file.wheels {
         None => Wheels::orthogonal(),
         Some(list) => {
-            let wheels = filled("wheels", list)?.iter().map(|entry| wheel(&entry.value)).collect::<Result<Vec<_>, _>>()?;
+            let wheels =
+                filled("wheels", list)?.iter().map(|entry| wheel(&entry.value)).collect::<Result<Vec<_>, _>>()?;
             Wheels::new(&wheels).map_err(|error| fault(list, ScenarioProblem::Spacecraft(error)))?
         }
     };

@@ -82,12 +82,10 @@ fn tip(
             Ok((TipSetup::Planar(*tip), tip.length_m.to_vec(), tip.parameter_names()))
         }
         (RobotKind::PlanarArm, _, Some(place)) => Err(fault(place, ScenarioProblem::TipOfPlanarArm)),
-        (RobotKind::Tree(tree), _, Some(place)) => {
-            of_tree(&place.value, agent, tree, body).and_then(|(setup, tip)| {
-                let tip = tip.map_err(|error| fault(place, ScenarioProblem::Tip(error)))?;
-                Ok((setup, tip.parameters(), tip.parameter_names()))
-            })
-        }
+        (RobotKind::Tree(tree), _, Some(place)) => of_tree(&place.value, agent, tree, body).and_then(|(setup, tip)| {
+            let tip = tip.map_err(|error| fault(place, ScenarioProblem::Tip(error)))?;
+            Ok((setup, tip.parameters(), tip.parameter_names()))
+        }),
         (RobotKind::Tree(_), _, None) => Err(Fault::new(ScenarioProblem::NoTip)),
         _ => {
             let (agent, law, made_for) = (agent.to_owned(), "task_space", "planar arms and robots from a URDF");

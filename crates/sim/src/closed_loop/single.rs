@@ -66,8 +66,7 @@ where
         let requirement = "must be from 0 to below 1";
         return Err(SetupError::LawNumber { agent: own.name.clone(), what, value, requirement });
     }
-    let kinematic_adaptation =
-        law.kinematic_adaptation.as_ref().map(|gain| resolve(own, gain, "Λ", p)).transpose()?;
+    let kinematic_adaptation = law.kinematic_adaptation.as_ref().map(|gain| resolve(own, gain, "Λ", p)).transpose()?;
     if let Some(bounds) = &law.bounds {
         length("the lower bounds", p, bounds.lower.len())?;
         length("the upper bounds", p, bounds.upper.len())?;
