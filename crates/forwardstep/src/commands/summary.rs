@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use comfy_table::{ContentArrangement, Table, presets};
 use forwardstep::check::Report;
-use forwardstep::io::output::names::{agent_name, axis_name, unit};
+use forwardstep::io::output::names::{agent_name, axis_name, gap_unit, unit};
 use forwardstep::io::output::{Disagreement, Gap, Metrics, RunRecord};
-use forwardstep::sim::{AxisUnit, Setup, Signal};
+use forwardstep::sim::{Setup, Signal};
 
 use super::progress::speed;
 use super::promise::list;
@@ -88,15 +88,12 @@ fn final_gap(setup: &Setup) -> &'static str {
 }
 
 fn disagreement(setup: &Setup, metrics: &Metrics) -> String {
-    let mut units = setup.agents.iter().flat_map(|agent| &agent.robot.axes).map(|axis| match axis.unit {
-        AxisUnit::Radian => "rad",
-        AxisUnit::Metre => "m",
-        AxisUnit::One => "",
-    });
-    let unit = units.next().unwrap_or_default();
-    let unit = if units.all(|other| other == unit) { unit } else { "rad or m" };
+    let unit = match gap_unit(setup) {
+        unit if unit.is_empty() => unit,
+        unit => format!(" {unit}"),
+    };
     match metrics.disagreement {
-        Disagreement::Measured { initial, last, .. } => format!("{} {unit}, from {}", short(last), short(initial)),
+        Disagreement::Measured { initial, last, .. } => format!("{}{unit}, from {}", short(last), short(initial)),
         Disagreement::Absent(absence) => format!("none: {}", absence.words()),
     }
 }

@@ -109,7 +109,7 @@ const cards = {
       if (!d) return { series: [] };
       const axes = d.per_axis.length > 1 ? d.per_axis : [];
       return {
-        unit: [...new Set(joints.flatMap((j) => j.units))].join(" or "),
+        unit: d.unit,
         log: true,
         lines: index.goal == null ? [] : [{ value: index.goal, label: "goal" }],
         key: true,

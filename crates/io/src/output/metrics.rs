@@ -1,7 +1,7 @@
 //! A run in a few numbers.
 
 use forwardstep_sim::recording::{Recording, Signal};
-use forwardstep_sim::setup::{ReferenceKind, Setup};
+use forwardstep_sim::setup::{ReferenceKind, RobotKind, Setup};
 use serde::{Deserialize, Serialize};
 
 use super::number;
@@ -178,6 +178,10 @@ pub enum LimitKind {
     Velocity,
     /// Highest torque or force.
     Effort,
+    /// Highest torque of the motor of a reaction wheel.
+    WheelTorque,
+    /// Largest momentum that a reaction wheel can hold.
+    WheelMomentum,
 }
 
 /// A limit of an axis that was exceeded at some row; for efforts of agents that enforce their limits, that was reached.
@@ -185,7 +189,7 @@ pub enum LimitKind {
 pub struct LimitReached {
     /// The agent.
     pub agent: usize,
-    /// The axis.
+    /// The axis, or the wheel.
     pub axis: usize,
     /// Which limit.
     pub kind: LimitKind,
@@ -209,6 +213,24 @@ pub struct LimitReached {
     /// The share of rows at which it was exceeded, from 0 to 1.
     #[serde(deserialize_with = "number::or_nan")]
     pub share: f64,
+}
+
+impl LimitReached {
+    /// Before any row has been looked at.
+    fn nowhere(agent: usize, axis: usize, kind: LimitKind, enforced: bool) -> Self {
+        LimitReached {
+            agent,
+            axis,
+            kind,
+            enforced,
+            first_t_s: 0.0,
+            worst_t_s: 0.0,
+            worst: 0.0,
+            limit: 0.0,
+            excess: 0.0,
+            share: 0.0,
+        }
+    }
 }
 
 /// The largest |V + ∫ dissipation − V(0)| relative to V(0), but at least [`LEDGER_FLOOR_J`].
@@ -415,21 +437,22 @@ fn limits_reached(table: &Table<'_>) -> Vec<LimitReached> {
                 let enforced = match kind {
                     LimitKind::Position => setup.enforce_limits,
                     LimitKind::Velocity => false,
-                    LimitKind::Effort => setup.enforce_limits || kept.is_some(),
+                    _ => setup.enforce_limits || kept.is_some(),
                 };
-                let place = LimitReached {
-                    agent,
-                    axis,
-                    kind,
-                    enforced,
-                    first_t_s: 0.0,
-                    worst_t_s: 0.0,
-                    worst: 0.0,
-                    limit: 0.0,
-                    excess: 0.0,
-                    share: 0.0,
-                };
+                let place = LimitReached::nowhere(agent, axis, kind, enforced);
                 found.extend(beyond(table.t_s, values, range, place));
+            }
+        }
+        if let RobotKind::Spacecraft { wheels, .. } = &setup.robot.kind {
+            for (axis, wheel) in wheels.list().iter().enumerate() {
+                for (kind, signal, limit) in [
+                    (LimitKind::WheelTorque, Signal::WheelTorque, wheel.torque_limit_n_m),
+                    (LimitKind::WheelMomentum, Signal::WheelMomentum, wheel.momentum_limit_n_m_s),
+                ] {
+                    let (Some(limit), Some(values)) = (limit, table.column(agent, signal, axis)) else { continue };
+                    let place = LimitReached::nowhere(agent, axis, kind, setup.enforce_limits);
+                    found.extend(beyond(table.t_s, values, [-limit, limit], place));
+                }
             }
         }
     }
@@ -438,7 +461,7 @@ fn limits_reached(table: &Table<'_>) -> Vec<LimitReached> {
 
 /// `place` with its numbers filled in, if any value lies outside of `range`, or on its border for an enforced effort.
 fn beyond(t_s: &[f64], values: &[f64], [low, high]: [f64; 2], place: LimitReached) -> Option<LimitReached> {
-    let clipped = place.enforced && place.kind == LimitKind::Effort;
+    let clipped = place.enforced && matches!(place.kind, LimitKind::Effort | LimitKind::WheelTorque);
     let mut result: Option<LimitReached> = None;
     let mut rows = 0_usize;
     for (&t_s, &value) in t_s.iter().zip(values) {

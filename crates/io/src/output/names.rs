@@ -6,7 +6,7 @@
 use std::collections::HashSet;
 
 use forwardstep_sim::recording::{Recording, Signal};
-use forwardstep_sim::setup::{AxisUnit, Law, RobotKind, Setup};
+use forwardstep_sim::setup::{AxisUnit, Law, ReferenceKind, RobotKind, Setup};
 
 /// The name of an agent; a number when the setup has no such agent.
 pub fn agent_name(setup: &Setup, agent: usize) -> String {
@@ -101,6 +101,26 @@ pub fn axis_unit(setup: &Setup, agent: usize, axis: usize) -> Option<AxisUnit> {
 /// Whether the torques of an agent turn it, while its axes are lengths.
 fn turns(setup: &Setup, agent: usize) -> bool {
     setup.agents.get(agent).is_some_and(|agent| matches!(agent.robot.kind, RobotKind::Rotorcraft { .. }))
+}
+
+/// The unit of what is to vanish in a run: of the distances between agents, or from their targets. Nothing for pure numbers;
+/// `rad or m` where agents differ.
+pub fn gap_unit(setup: &Setup) -> String {
+    let signal = if setup.reference == ReferenceKind::Tracking { Signal::Error } else { Signal::Position };
+    let axes = |agent: usize| 0..setup.agents.get(agent).map_or(0, |agent| agent.robot.axes.len());
+    let all = (0..setup.agents.len()).flat_map(|agent| axes(agent).map(move |axis| (agent, axis)));
+    let mut units = all.map(|(agent, axis)| unit(setup, agent, signal, axis));
+    match units.next() {
+        None => String::new(),
+        Some(first) if units.all(|unit| unit == first) => {
+            if first == "1" {
+                String::new()
+            } else {
+                first
+            }
+        }
+        Some(_) => "rad or m".into(),
+    }
 }
 
 /// The unit of a recorded column, for example `rad/s^2`; `SI` for parameters, whose units differ.

@@ -169,17 +169,12 @@ impl<'a> Plots<'a> {
                     .collect();
                 legend.push(("largest".into(), ink));
             }
-            let positions = self.table.axes(Signal::Position);
-            let unit =
-                units(positions.map(|(agent, axis, _)| names::unit(self.record.setup, agent, Signal::Position, axis)));
+            let unit = match names::gap_unit(self.record.setup) {
+                unit if unit.is_empty() => unit,
+                unit => format!(" in {unit}"),
+            };
             let guide = self.record.goal.and_then(|outcome| Some((outcome.goal.bound()?, "goal".to_owned())));
-            panels.push(Panel {
-                title: String::new(),
-                y: format!("{} in {unit}", gap.formula()),
-                log: true,
-                lines,
-                guide,
-            });
+            panels.push(Panel { title: String::new(), y: format!("{}{unit}", gap.formula()), log: true, lines, guide });
         }
         Figure {
             title: self.title(gap.name()),

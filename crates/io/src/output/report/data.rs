@@ -103,6 +103,7 @@ struct Signals {
 
 #[derive(Serialize)]
 struct DisagreementIndex {
+    unit: String,
     overall: usize,
     per_axis: Vec<usize>,
 }
@@ -179,6 +180,7 @@ impl Payload {
             index.ledger_error.push(error.map(|error| main.add(&error, false)));
         }
         let disagreement = DisagreementSeries::of_table(table).ok().map(|series| DisagreementIndex {
+            unit: names::gap_unit(record.setup),
             overall: main.add(&series.overall, false),
             per_axis: series.per_axis.iter().map(|axis| main.add(axis, false)).collect(),
         });

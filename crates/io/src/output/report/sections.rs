@@ -2,7 +2,7 @@
 
 use forwardstep_check::Answer;
 use forwardstep_sim::recording::{Ending, Signal};
-use forwardstep_sim::setup::{AxisUnit, Exchange, Method, Setup};
+use forwardstep_sim::setup::{Exchange, Method, Setup};
 use maud::{Markup, html};
 
 use super::super::metrics::{Disagreement, Gap, LimitKind, Metrics};
@@ -37,7 +37,7 @@ pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
             dl.figures {
                 @match metrics.disagreement {
                     Disagreement::Measured { last, .. } => {
-                        (figure(&final_gap(setup), &number(last), length_unit(setup)))
+                        (figure(&final_gap(setup), &number(last), &names::gap_unit(setup)))
                     }
                     Disagreement::Absent(_) => (figure(&final_gap(setup), "–", "")),
                 }
@@ -69,24 +69,10 @@ fn unit_at(setup: &Setup, signal: Signal, agent: usize, axis: usize) -> String {
     text::unit(&names::unit(setup, agent, signal, axis))
 }
 
-fn length_unit(setup: &Setup) -> &'static str {
-    let mut units = setup.agents.iter().flat_map(|a| &a.robot.axes).map(|axis| axis.unit);
-    let first = units.next();
-    match first {
-        Some(first) if units.all(|unit| unit == first) => match first {
-            AxisUnit::Radian => "rad",
-            AxisUnit::Metre => "m",
-            AxisUnit::One => "",
-        },
-        Some(_) => "rad or m",
-        None => "",
-    }
-}
-
 /// What was promised beside what happened.
 pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
     let report = record.verdicts;
-    let unit = length_unit(record.setup);
+    let unit = names::gap_unit(record.setup);
     html! {
         section #promises {
             h2 { "Promised and happened" }
@@ -145,7 +131,7 @@ fn answer_style(answer: Answer) -> (&'static str, &'static str) {
 
 fn happened(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
     let setup = record.setup;
-    let unit = length_unit(setup);
+    let unit = names::gap_unit(setup);
     html! {
         (fact("Ending", html! { (ending_sentence(setup, &record.outcome.ending)) }))
         @if let Some(outcome) = record.goal {
@@ -157,7 +143,7 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
         @match metrics.disagreement {
             Disagreement::Measured { initial, last, largest } => (fact(Gap::of(setup).name(), html! {
                 (number(initial)) " at the start, " (number(largest)) " at most, "
-                strong { (quantity(last, unit)) } " at the end"
+                strong { (quantity(last, &unit)) } " at the end"
             })),
             Disagreement::Absent(absence) => (fact(Gap::of(setup).name(), html! { "none: " (absence.words()) })),
         }
@@ -202,12 +188,12 @@ fn fact(name: &str, what: Markup) -> Markup {
 pub(crate) fn digital(record: &RunRecord<'_>) -> Markup {
     let setup = record.setup;
     let Some(cost) = &record.digital else { return html! {} };
-    let unit = length_unit(setup);
+    let unit = names::gap_unit(setup);
     let torque = unit_at(setup, Signal::Torque, 0, 0);
     let speed = unit_at(setup, Signal::Velocity, 0, 0);
     let (digital, continuous) = (&cost.digital, &cost.continuous);
     let rows = [
-        (&*final_gap(setup), unit, continuous.final_disagreement, digital.final_disagreement),
+        (&*final_gap(setup), &*unit, continuous.final_disagreement, digital.final_disagreement),
         ("Settled after", "s", continuous.settled_s, digital.settled_s),
         ("Peak torque", &*torque, continuous.peak_torque, digital.peak_torque),
         ("Torque of an axis, root mean square", &*torque, Some(continuous.rms_torque), Some(digital.rms_torque)),
@@ -283,10 +269,15 @@ pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
                                 LimitKind::Position => ("position", Signal::Position),
                                 LimitKind::Velocity => ("speed", Signal::Velocity),
                                 LimitKind::Effort => ("torque", Signal::Torque),
+                                LimitKind::WheelTorque => ("wheel torque", Signal::WheelTorque),
+                                LimitKind::WheelMomentum => ("wheel momentum", Signal::WheelMomentum),
                             };
                             @let unit = unit_at(setup, signal, limit.agent, limit.axis);
                             tr {
-                                th { span.dot.{ "a" (limit.agent) } {} (names::agent_name(setup, limit.agent)) " · " (names::axis_words(setup, limit.agent, limit.axis)) }
+                                th { span.dot.{ "a" (limit.agent) } {} (names::agent_name(setup, limit.agent)) " · " @match limit.kind {
+                                    LimitKind::WheelTorque | LimitKind::WheelMomentum => { "wheel " (limit.axis + 1) }
+                                    _ => (names::axis_words(setup, limit.agent, limit.axis)),
+                                } }
                                 td { (kind) }
                                 td { (number(limit.limit)) " " (unit) }
                                 td { (number(limit.worst)) " " (unit) }
