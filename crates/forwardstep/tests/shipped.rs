@@ -61,4 +61,9 @@ shipped! {
     theorem_5: "theorem-5",
     formation: "formation",
     mixed_network: "mixed-network",
+    framework: "framework",
+    strict_feedback: "strict-feedback",
+    pure_feedback: "pure-feedback",
+    immersion_and_invariance: "immersion-and-invariance",
+    saturated_coupling: "saturated-coupling",
 }

@@ -36,6 +36,11 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "theorem-5",
     "formation",
     "mixed-network",
+    "framework",
+    "strict-feedback",
+    "pure-feedback",
+    "immersion-and-invariance",
+    "saturated-coupling",
 ];
 
 /// The shipped scenario of this name.
