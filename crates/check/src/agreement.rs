@@ -66,6 +66,9 @@ pub enum NoPrediction {
         /// Index of the agent.
         agent: usize,
     },
+    /// A nonlinear coupling conserves nothing over a delay.
+    #[error("the coupling is nonlinear")]
+    Coupling,
     /// Held inputs conserve the quantity only in the limit of short periods.
     #[error("the controllers sample")]
     Sampled,
@@ -110,6 +113,9 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     }
     if setup.reference == ReferenceKind::Tracking || setup.agents.iter().any(|agent| !agent.law.is_lagrangian()) {
         return Err(NoPrediction::Law);
+    }
+    if !setup.network.coupling.is_linear() {
+        return Err(NoPrediction::Coupling);
     }
     if setup.control.is_some() {
         return Err(NoPrediction::Sampled);

@@ -28,6 +28,7 @@ pub fn check(setup: &Setup) -> Report {
     let order = setup.agents.iter().map(|agent| agent.roots_per_s.len()).max().unwrap_or(0);
     let mut hypotheses = vec![spanning_tree(setup), dwell_time(setup), links::bounded_delays(setup)];
     hypotheses.extend(links::bounded_weights(setup));
+    hypotheses.extend(links::coupling(setup));
     match &setup.reference {
         // Chains of different orders agree: nothing in the argument for (24) compares orders.
         ReferenceKind::Consensus if setup.agents.iter().all(|agent| matches!(agent.law, Law::Chain(_))) => {

@@ -98,6 +98,16 @@ pub(crate) fn varying_weights(setup: &Setup) -> impl Iterator<Item = &BoundedFor
     network.weights.iter().zip(used).filter(|(_, used)| *used).map(|(formula, _)| formula)
 }
 
+/// What a nonlinear coupling must be like for the argument of Theorem 3.
+pub(crate) fn coupling(setup: &Setup) -> Option<Hypothesis> {
+    let size = setup.network.coupling.size()?;
+    Some(Hypothesis {
+        requires: "the coupling is odd and continuous, grows, and keeps within the sector (0, 1]".into(),
+        answer: Answer::Holds,
+        because: format!("its slope at zero is one and it grows more slowly from there; its size is {size}"),
+    })
+}
+
 /// Nothing to say where weights are constant.
 pub(crate) fn bounded_weights(setup: &Setup) -> Option<Hypothesis> {
     let hull = |of: fn(&BoundedFormula) -> Interval| {

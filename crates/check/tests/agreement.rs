@@ -58,7 +58,7 @@ fn edge(from: usize, to: usize, weight: f64, delay: usize) -> Edge {
 
 fn setup(agents: Vec<AgentSetup>, exchange: Exchange, schedule: Schedule, delays: Vec<Delay>, end_s: f64) -> Setup {
     Setup {
-        network: Network { agents: agents.len(), schedule, delays, weights: Vec::new() },
+        network: Network { agents: agents.len(), schedule, delays, weights: Vec::new(), coupling: Default::default() },
         agents,
         reference: ReferenceKind::Consensus,
         exchange,

@@ -66,6 +66,7 @@ fn setup(design: FollowingDesign, path: Path, gain: f64) -> Setup {
             schedule: Schedule::Fixed(vec![edge(2, 0), edge(0, 1)]),
             delays: vec![Delay::Constant { s: 0.0 }],
             weights: Vec::new(),
+            coupling: Default::default(),
         },
         time: TimeSpan { end_s: 20.0, record_every_s: 0.1 },
         solver: Solver::default(),

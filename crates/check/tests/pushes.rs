@@ -75,6 +75,7 @@ fn ring(agents: Vec<AgentSetup>, exchange: Exchange, end_s: f64) -> Setup {
             schedule: Schedule::Fixed(edges),
             delays: [0.3, 0.0, 0.75].map(|s| Delay::Constant { s }).to_vec(),
             weights: Vec::new(),
+            coupling: Default::default(),
         },
         agents,
         reference: ReferenceKind::Consensus,

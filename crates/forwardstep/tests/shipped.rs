@@ -71,4 +71,9 @@ shipped! {
     theorem_9: "theorem-9",
     remark_12: "remark-12",
     swarm_tracking: "swarm-tracking",
+    framework: "framework",
+    strict_feedback: "strict-feedback",
+    pure_feedback: "pure-feedback",
+    immersion_and_invariance: "immersion-and-invariance",
+    saturated_coupling: "saturated-coupling",
 }

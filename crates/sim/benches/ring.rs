@@ -78,6 +78,7 @@ fn ring(model: Model, n: usize, tolerance: f64) -> Setup {
             schedule: Schedule::Fixed((0..n).map(edge).collect()),
             delays: (0..n).map(delay).collect(),
             weights: Vec::new(),
+            coupling: Default::default(),
         },
         time: TimeSpan { end_s: END_S, record_every_s: END_S },
         solver: Solver {

@@ -7,6 +7,7 @@
 
 pub mod chain;
 mod closed_loop;
+pub mod coupling;
 pub mod delay;
 mod engine;
 pub mod formula;

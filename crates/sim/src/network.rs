@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::coupling::{Coupling, CouplingError};
 use crate::delay::Delay;
 use crate::formula::{BoundedFormula, Interval};
 use crate::graph::Weight;
@@ -18,6 +19,8 @@ pub struct Network {
     pub delays: Vec<Delay>,
     /// The weights that change with time, which edges refer to by index.
     pub weights: Vec<BoundedFormula>,
+    /// How strongly a disagreement is felt, on every edge.
+    pub coupling: Coupling,
 }
 
 /// Why a network has no meaning.
@@ -26,6 +29,9 @@ pub enum NetworkError {
     /// There is nobody.
     #[error("a network needs at least one agent")]
     NoAgents,
+    /// A coupling without meaning.
+    #[error(transparent)]
+    Coupling(#[from] CouplingError),
     /// A schedule without any graph.
     #[error("the schedule has no graph")]
     NoGraphs,
@@ -183,6 +189,7 @@ impl Network {
                 return Err(NetworkError::WeightBounds { weight, low, high });
             }
         }
+        self.coupling.check()?;
         self.check_dwell()?;
         self.delays.iter().enumerate().try_for_each(|(delay, kind)| {
             kind.validate().map_err(|(parameter, value, requirement)| NetworkError::Delay {

@@ -41,6 +41,7 @@ pub fn simulate(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow
         schedule: Schedule::Fixed(Vec::new()),
         delays: Vec::new(),
         weights: Vec::new(),
+        coupling: Default::default(),
     };
     let network = if setup.control.is_some() { &silent } else { &setup.network };
     let mut integrator = Integrator::new(network, &setup.solver, end_s, closed_loop.start(), ports, entries);

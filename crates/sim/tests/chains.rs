@@ -99,7 +99,7 @@ fn setup(agents: Vec<AgentSetup>, reference: ReferenceKind, end_s: f64) -> Setup
         agents,
         reference,
         exchange: Exchange::Position,
-        network: Network { agents: n, schedule, delays, weights: Vec::new() },
+        network: Network { agents: n, schedule, delays, weights: Vec::new(), coupling: Default::default() },
         time: TimeSpan { end_s, record_every_s: 0.05 },
         solver: Solver { method: Method::Adaptive { rtol: 1e-8, atol: 1e-10 }, ..Solver::default() },
         control: None,

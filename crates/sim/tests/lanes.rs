@@ -71,6 +71,7 @@ fn bits_of_the_first_two(agents: usize, order: usize, control: &Option<Control>)
                 Delay::Sinusoid { mean_s: 0.2, amplitude_s: 0.1, period_s: 0.9, phase_rad: 0.3 },
             ],
             weights: Vec::new(),
+            coupling: Default::default(),
         },
         time: TimeSpan { end_s: 3.0, record_every_s: 0.1 },
         solver: Solver { method: Method::Fixed { step_s: 0.01 }, ..Solver::default() },

@@ -57,7 +57,13 @@ fn tracking() -> Setup {
         waves: vec![Sinusoid { amplitude, rad_per_s, phase_rad: 0.4 }],
     };
     agent.target = Some(Trajectory::new(vec![wave(1.0, 1.0), wave(0.5, 1.7)]).unwrap());
-    let nobody = Network { agents: 1, schedule: Schedule::Fixed(Vec::new()), delays: Vec::new(), weights: Vec::new() };
+    let nobody = Network {
+        agents: 1,
+        schedule: Schedule::Fixed(Vec::new()),
+        delays: Vec::new(),
+        weights: Vec::new(),
+        coupling: Default::default(),
+    };
     setup(vec![agent], ReferenceKind::Tracking, nobody, 40.0)
 }
 
@@ -72,6 +78,7 @@ fn consensus(order: usize) -> Setup {
         schedule: Schedule::Periodic(vec![phase(vec![edge(0, 1), edge(1, 0)]), phase(vec![edge(1, 2), edge(2, 0)])]),
         delays: vec![Delay::SawTooth { min_s: 0.05, max_s: 0.3, period_s: 0.5, offset_s: 0.0 }],
         weights: Vec::new(),
+        coupling: Default::default(),
     };
     setup(agents, ReferenceKind::Consensus, network, 40.0)
 }

@@ -62,6 +62,7 @@ fn alone(agents: Vec<AgentSetup>, end_s: f64) -> Setup {
             schedule: Schedule::Fixed(Vec::new()),
             delays: Vec::new(),
             weights: Vec::new(),
+            coupling: Default::default(),
         },
         agents,
         reference: ReferenceKind::Consensus,

@@ -48,7 +48,7 @@ fn alone(robot: RobotSetup, law: Law, start: Start, target: Vec<Path>, end_s: f6
         agents: vec![agent],
         reference: ReferenceKind::Tracking,
         exchange: Exchange::Position,
-        network: Network { agents: 1, schedule: Schedule::Fixed(Vec::new()), delays: Vec::new(), weights: Vec::new() },
+        network: Network { agents: 1, schedule: Schedule::Fixed(Vec::new()), delays: Vec::new(), weights: Vec::new(), coupling: Default::default() },
         time: TimeSpan { end_s, record_every_s: 0.05 },
         solver: Solver { method: Method::Adaptive { rtol: RTOL, atol: 1e-11 }, ..Solver::default() },
         control: None,

@@ -87,6 +87,7 @@ fn setup(agents: Vec<AgentSetup>, end_s: f64) -> Setup {
         schedule,
         delays: vec![Delay::SawTooth { min_s: 0.05, max_s: 0.3, period_s: 0.5, offset_s: 0.0 }],
         weights: Vec::new(),
+        coupling: Default::default(),
     };
     Setup {
         agents,

@@ -123,7 +123,7 @@ mod tests {
     use forwardstep_sim::schedule::{Phase, Schedule};
 
     fn network(schedule: Schedule, delay: Delay) -> Network {
-        Network { agents: 2, schedule, delays: vec![delay], weights: Vec::new() }
+        Network { agents: 2, schedule, delays: vec![delay], weights: Vec::new(), coupling: Default::default() }
     }
 
     fn phase(dwell_s: f64) -> Phase {

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use forwardstep_sim::Network;
+use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
@@ -14,7 +15,7 @@ use super::at::At;
 use super::fault::{Fault, fault, filled, not_negative, positive, seed, values};
 use super::inputs::InputFolder;
 use super::links::{self, DelayPlan, Links};
-use super::network_file::{DelayFile, NetworkFile, PhaseFile, SwitchingFile};
+use super::network_file::{CouplingFile, DelayFile, NetworkFile, PhaseFile, SwitchingFile};
 use super::network_problem::NetworkProblem;
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
@@ -64,12 +65,22 @@ pub(super) fn network(
         (None, Some(phases)) => reader.schedule(phases, file.switching.as_ref(), notices)?,
     };
     reader.link_notices(notices);
-    Ok(Network { agents: names.len(), schedule, delays: reader.delays, weights: reader.weights })
+    let coupling = file.coupling.as_ref().map_or(Ok(Coupling::Linear), coupling)?;
+    Ok(Network { agents: names.len(), schedule, delays: reader.delays, weights: reader.weights, coupling })
 }
 
 /// A network in which nobody hears anybody.
 pub(super) fn silent(agents: usize) -> Network {
-    Network { agents, schedule: Schedule::Fixed(Vec::new()), delays: Vec::new(), weights: Vec::new() }
+    let coupling = Coupling::Linear;
+    Network { agents, schedule: Schedule::Fixed(Vec::new()), delays: Vec::new(), weights: Vec::new(), coupling }
+}
+
+fn coupling(file: &CouplingFile) -> Result<Coupling, Fault> {
+    Ok(match file {
+        CouplingFile::Saturated(limit) => Coupling::Saturated { limit: positive("saturated", limit)? },
+        CouplingFile::Tanh(scale) => Coupling::Tanh { scale: positive("tanh", scale)? },
+        CouplingFile::Rational(scale) => Coupling::Rational { scale: positive("rational", scale)? },
+    })
 }
 
 /// What is known while a network is read.

@@ -17,6 +17,9 @@ pub struct NetworkFile {
     pub weight: Option<At<WeightFile>>,
     /// The delay of every edge that has none of its own. Default: none.
     pub delay: Option<At<DelayFile>>,
+    /// How strongly a disagreement is felt: bounded or saturated for a nonlinear protocol. Default: in proportion. Only with
+    /// `exchange = "position"`.
+    pub coupling: Option<CouplingFile>,
     /// The edges of a graph that never changes.
     pub edges: Option<At<EdgesFile>>,
     /// How the phases follow each other. Default: repeat.
@@ -24,6 +27,18 @@ pub struct NetworkFile {
     /// The graphs of a network that switches.
     #[schemars(length(min = 1))]
     pub phases: Option<At<Vec<At<PhaseFile>>>>,
+}
+
+/// What takes the place of a disagreement v between two agents; each is v itself where v is small. In rad or m.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum CouplingFile {
+    /// v, but at most this.
+    Saturated(#[schemars(with = "Positive")] At<f64>),
+    /// a tanh(v/a), for this a.
+    Tanh(#[schemars(with = "Positive")] At<f64>),
+    /// v/(1 + |v|/a), for this a.
+    Rational(#[schemars(with = "Positive")] At<f64>),
 }
 
 /// A graph that stays in force for a while.

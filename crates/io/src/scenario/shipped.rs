@@ -44,6 +44,11 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "theorem-9",
     "remark-12",
     "swarm-tracking",
+    "framework",
+    "strict-feedback",
+    "pure-feedback",
+    "immersion-and-invariance",
+    "saturated-coupling",
 ];
 
 /// The shipped scenario of this name.

@@ -71,6 +71,7 @@ pub fn setup(agents: Vec<AgentSetup>, end_s: f64, record_every_s: f64) -> Setup 
                 Delay::Sinusoid { mean_s: 0.2, amplitude_s: 0.1, period_s: end_s / 5.0, phase_rad: 0.0 },
             ],
             weights: Vec::new(),
+            coupling: Default::default(),
         },
         time: TimeSpan { end_s, record_every_s },
         solver: Solver {

@@ -153,12 +153,15 @@ impl<'a> ClosedLoop<'a> {
         let graph = setup.network.schedule.segments().next().map_or(0, |segment| segment.graph);
         let mut degree = vec![0.0; self.ports.len()];
         let mut sums = vec![0.0; self.ports.len() * self.entries];
+        let coupling = setup.network.coupling;
         for edge in setup.network.schedule.graph(graph) {
             let (from, to) = (self.ports[edge.from], self.ports[edge.to]);
             let weight = setup.network.weight_at(edge.weight, 0.0);
             degree[to.degree] += weight;
             for c in 0..flowing {
-                sums[to.entry + c * to.stride] += weight * self.start[from.state + c * from.stride];
+                let (own, sent) = (self.start[to.state + c * to.stride], self.start[from.state + c * from.stride]);
+                let taken = if coupling.is_linear() { sent } else { coupling.taken(own, sent) };
+                sums[to.entry + c * to.stride] += weight * taken;
             }
         }
         for block in &mut self.blocks {

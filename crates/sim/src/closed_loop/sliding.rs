@@ -296,6 +296,7 @@ mod tests {
             schedule: Schedule::Fixed(edges.clone()),
             delays: vec![Delay::Constant { s: 0.0 }],
             weights: Vec::new(),
+            coupling: Default::default(),
         };
         let sliding =
             Sliding { derived: Derived::Nothing, alpha: 1.0, beta: 1.0, gamma: 3.0, choice: Choice::Implicit };

@@ -65,6 +65,9 @@ pub enum SetupError {
         /// What is wrong.
         error: RootsError,
     },
+    /// A nonlinear coupling of what it does not suit.
+    #[error("a nonlinear coupling goes with consensus by positions only")]
+    Coupling,
     /// A law for a chain.
     #[error("agent `{agent}`: {error}")]
     Chain {
@@ -298,6 +301,10 @@ pub(super) fn check(setup: &Setup) -> Result<(), SetupError> {
         Method::Fixed { step_s } => positive("the step", step_s)?,
     }
     setup.control.as_ref().map_or(Ok(()), |control| check_control(control, setup))?;
+    let goes = setup.reference == ReferenceKind::Consensus && setup.exchange == Exchange::Position;
+    if !setup.network.coupling.is_linear() && !goes {
+        return Err(SetupError::Coupling);
+    }
     if matches!(setup.reference, ReferenceKind::Backstepping { .. }) && setup.exchange != Exchange::Position {
         return Err(SetupError::BacksteppingExchange);
     }

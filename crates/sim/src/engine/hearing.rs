@@ -8,6 +8,7 @@ use super::history::{History, Place};
 use super::kernels::{columns, evaluate, fma};
 use super::tableau::basis;
 use super::timeline::Timeline;
+use crate::coupling::Coupling;
 use crate::graph::{Edge, Weight};
 
 /// Where an agent's message stands in the state and where its sums go.
@@ -103,11 +104,12 @@ pub(crate) struct Hearing {
     varying: Vec<Varying>,
     sources: Vec<Source>,
     initial: Vec<f64>,
+    coupling: Coupling,
 }
 
 impl Hearing {
     /// `entries` numbers are sent by every agent; `x` is the state at t = 0, which everybody is taken to have sent before.
-    pub(crate) fn new(ports: Vec<Port>, entries: usize, x: &[f64]) -> Self {
+    pub(crate) fn new(ports: Vec<Port>, entries: usize, x: &[f64], coupling: Coupling) -> Self {
         let mut sent: Vec<(usize, usize)> =
             ports.iter().flat_map(|p| (0..entries).map(|c| (p.entry + c * p.stride, p.state + c * p.stride))).collect();
         sent.sort_unstable();
@@ -129,6 +131,7 @@ impl Hearing {
             varying: Vec::new(),
             sources: Vec::new(),
             initial,
+            coupling,
         }
     }
 
@@ -215,7 +218,8 @@ impl Hearing {
         if !self.varying.is_empty() {
             self.weigh(timeline, t_s);
         }
-        let mut needs = Needs::default();
+        // A nonlinear coupling compares with what the receiver is now.
+        let mut needs = Needs { present: !self.coupling.is_linear() && !self.links.is_empty(), draft: false };
         for source in &mut self.sources {
             let sent_s = timeline.sent_s(source.clock, t_s);
             // What arrives a rounding later is heard now, and was sent now.
@@ -249,15 +253,44 @@ impl Hearing {
 
     /// Adds up what was looked up; `x` is the state at that instant.
     pub(crate) fn gather(&self, history: &History, x: &[f64], heard: &mut Heard) {
-        self.gather_from(history.data(), x, heard);
+        self.gather_from(history.data(), x, None, heard);
     }
 
-    /// Adds up what was looked up in `data`.
-    pub(crate) fn gather_from(&self, data: &[f64], x: &[f64], heard: &mut Heard) {
+    /// Adds up what was looked up in `data`, where at `own` everybody's present message stands if it is not in `x`.
+    pub(crate) fn gather_from(&self, data: &[f64], x: &[f64], own: Option<usize>, heard: &mut Heard) {
         for varying in &self.varying {
             heard.degree[varying.degree] = varying.sum;
         }
+        if !self.coupling.is_linear() {
+            return self.gather_coupled(data, x, own, &mut heard.sums);
+        }
         dispatch(Gather { hearing: self, data, x, sums: &mut heard.sums });
+    }
+}
+
+impl Hearing {
+    /// The same under a nonlinear coupling: what is heard is taken to be nearer to the receiver.
+    fn gather_coupled(&self, data: &[f64], x: &[f64], own: Option<usize>, sums: &mut [f64]) {
+        let width = self.width();
+        sums.fill(0.0);
+        for link in &self.links {
+            let (from, to) = (self.ports[link.sender], self.ports[link.receiver]);
+            for c in 0..self.entries {
+                let at = from.entry + c * from.stride;
+                let heard = match self.sources[link.source].read {
+                    Read::Piece { offset, basis } => {
+                        let [r1, r2, r3, r4, r5] = columns(&data[offset..offset + 5 * width], width);
+                        evaluate([r1[at], r2[at], r3[at], r4[at], r5[at]], basis)
+                    }
+                    Read::Sample { offset } => data[offset + at],
+                    Read::Now => x[from.state + c * from.stride],
+                    Read::Initial => self.initial[at],
+                };
+                let entry = to.entry + c * to.stride;
+                let own = own.map_or_else(|| x[to.state + c * to.stride], |offset| data[offset + entry]);
+                sums[entry] = fma(link.weight, self.coupling.taken(own, heard), sums[entry]);
+            }
+        }
     }
 }
 
@@ -320,7 +353,7 @@ mod tests {
         // Two populations: two agents side by side with ten states each, then one with five; two numbers are sent.
         let port = |state, entry, degree, stride| Port { state, entry, degree, stride };
         let ports = vec![port(0, 0, 0, 2), port(1, 1, 1, 2), port(20, 4, 2, 1)];
-        let hearing = Hearing::new(ports, 2, &[0.0; 25]);
+        let hearing = Hearing::new(ports, 2, &[0.0; 25], Coupling::Linear);
         assert_eq!(hearing.width(), 6);
         assert_eq!(hearing.blocks(), [(0, 0, 4), (20, 4, 2)]);
     }

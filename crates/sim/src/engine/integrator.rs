@@ -140,7 +140,7 @@ impl<'a> Integrator<'a> {
         let generations = if rtol < SHARE_PER_STEP * SECOND_GENERATION_BELOW || fixed_step_s.is_some() { 2 } else { 1 };
         let timeline = Timeline::new(network, end_s, generations);
         let mut heard = Heard { degree: vec![0.0; ports.len()], sums: vec![0.0; ports.len() * entries] };
-        let mut hearing = Hearing::new(ports, entries, &x);
+        let mut hearing = Hearing::new(ports, entries, &x, network.coupling);
         hearing.rewire(&timeline, network.schedule.graph(timeline.graph()), &mut heard);
         let width = 5 * hearing.width();
         let n = x.len();

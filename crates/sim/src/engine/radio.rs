@@ -37,7 +37,7 @@ impl<'a> Radio<'a> {
         x: &[f64],
     ) -> Self {
         let timeline = Timeline::new(network, end_s, 0);
-        let hearing = Hearing::new(ports, entries, x);
+        let hearing = Hearing::new(ports, entries, x, network.coupling);
         let width = hearing.width();
         // No message is older than the longest delay, nor than the run.
         let ring = (network.max_delay_s().min(end_s) * sample_hz).ceil() as u64 + 2;
@@ -76,7 +76,7 @@ impl<'a> Radio<'a> {
             let sample = ((sent_s * rate + SLACK_PERIODS).floor().max(0.0) as u64).min(k);
             offset_of(sample, ring, width)
         });
-        self.hearing.gather_from(&self.sent, &[], heard);
+        self.hearing.gather_from(&self.sent, &[], Some(self.offset(k)), heard);
     }
 
     fn offset(&self, k: u64) -> usize {

@@ -235,7 +235,7 @@ mod tests {
             Phase { edges: vec![edge(0, 1)], dwell_s: 1.0 },
             Phase { edges: vec![edge(1, 0)], dwell_s: 1.0 },
         ]);
-        Network { agents: 2, schedule, delays: vec![delay], weights: Vec::new() }
+        Network { agents: 2, schedule, delays: vec![delay], weights: Vec::new(), coupling: Default::default() }
     }
 
     #[test]
@@ -257,6 +257,7 @@ mod tests {
             schedule: Schedule::Fixed(vec![edge(0), edge(1)]),
             delays: vec![steps, saw_tooth],
             weights: Vec::new(),
+            coupling: Default::default(),
         };
         let mut longer = Timeline::new(&network, 10.0, 1);
         while longer.next_s() < 6.3 {
