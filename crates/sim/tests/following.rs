@@ -238,3 +238,60 @@ fn what_cannot_be_followed_is_refused() {
     late.network.delays[0] = Delay::Constant { s: 0.1 };
     run(&late);
 }
+
+/// Against `validation/trajectories/following.py`, which integrates the equations as the paper prints them, with accelerations
+/// and second derivatives of z; sat(e/ε) on both sides.
+#[test]
+fn val_following_agrees_with_an_independent_solver() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation/trajectories/following.json");
+    let all: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    for (design, name) in DESIGNS.into_iter().zip(["110", "119", "122"]) {
+        let outcome = run(&masses(design));
+        let rows = all[name].as_array().unwrap();
+        assert_eq!(rows.len(), 8);
+        for (k, row) in rows.iter().enumerate() {
+            for (key, signal) in [("q", Signal::Position), ("dq", Signal::Velocity), ("z", Signal::Reference(0))] {
+                for (agent, column) in columns(&outcome, signal).into_iter().enumerate() {
+                    let (got, want) = (column[k + 1], row[key][agent].as_f64().unwrap());
+                    assert!((got - want).abs() < 1e-6, "({name}) at {} s: {key} {agent} {got} {want}", k + 1);
+                }
+            }
+        }
+    }
+}
+
+/// The problem of that script.
+fn masses(design: FollowingDesign) -> Setup {
+    let mut setup = setup(design, Choice::Layer { width: 0.1 }, 1.0, 8.0);
+    let wave = |amplitude, rad_per_s, phase_rad| Sinusoid { amplitude, rad_per_s, phase_rad };
+    let waves = vec![wave(0.6, 0.8, 0.0), wave(0.2, 1.7, 0.5)];
+    let trajectory = Trajectory::new(vec![Path::Sinusoids { offset: 0.1, waves }]).unwrap();
+    setup.reference = ReferenceKind::Following(Arc::new(Following {
+        leader: Leader { name: "leader".into(), trajectory },
+        design,
+        alpha: 1.3,
+        beta: 2.1,
+        gain: 2.5,
+        choice: Choice::Layer { width: 0.1 },
+        period_s: 1e-3,
+    }));
+    let (q, dq) = ([0.8, -0.5, 0.3], [0.1, 0.0, -0.2]);
+    let (z, dz) = ([0.3, 0.1, 0.0], [0.0, 0.2, -0.1]);
+    setup.agents.truncate(3);
+    for (k, agent) in setup.agents.iter_mut().enumerate() {
+        agent.robot.kind = RobotKind::PointMass { dimension: 1 };
+        agent.robot.theta = vec![[1.0, 2.0, 1.5][k]];
+        agent.robot.theta_names.truncate(1);
+        agent.robot.axes.truncate(1);
+        agent.law = Law::Known { damping: Gain::Number(8.0) };
+        let free = if design == FollowingDesign::Continuous { 1 } else { 2 };
+        let reference = vec![vec![z[k]], vec![dz[k]]][..free].to_vec();
+        agent.start = Start { q: vec![q[k]], dq: vec![dq[k]], rest: Vec::new(), reference };
+    }
+    let edge = |to, from, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
+    setup.network.agents = 4;
+    setup.network.schedule = Schedule::Fixed(vec![edge(0, 3, 1.0), edge(1, 0, 1.5), edge(2, 1, 0.7), edge(0, 2, 0.4)]);
+    setup.solver.method = Method::Adaptive { rtol: 1e-9, atol: 1e-11 };
+    setup.time.record_every_s = 1.0;
+    setup
+}

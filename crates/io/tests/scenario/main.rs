@@ -3,6 +3,7 @@
 
 mod control;
 mod edges;
+mod leader;
 mod links;
 mod malformed;
 mod meaning;

@@ -1,6 +1,8 @@
 //! The parts of the page that are words and tables.
 
 use forwardstep_check::Answer;
+use forwardstep_core::reference::Choice;
+use forwardstep_sim::leader::Following;
 use forwardstep_sim::recording::{Ending, Signal};
 use forwardstep_sim::setup::{Exchange, Method, Setup};
 use maud::{Markup, html};
@@ -322,6 +324,38 @@ pub(crate) fn shared_axis_words(setup: &Setup, axis: usize) -> String {
     }
 }
 
+/// How values of a set-valued sign were chosen, and how restless they were.
+fn sign_words(record: &RunRecord<'_>, following: &Following) -> String {
+    let recording = &record.outcome.recording;
+    let every = match record.setup.control {
+        None => format!("every {} s", number(following.period_s)),
+        Some(_) => "at every sample".to_owned(),
+    };
+    let chosen = match following.choice {
+        Choice::Implicit => format!("a value of the set-valued sign was solved for {every}"),
+        Choice::Explicit => format!("set to 1 or −1 {every}"),
+        Choice::Layer { width } => format!("replaced by sat(e/ε) with ε = {}", number(width)),
+    };
+    let rest = match record.outcome.statistics.sign_residual {
+        Some(rest) => format!("; the largest rest is {}", number(rest)),
+        None => String::new(),
+    };
+    let half = recording.t_s.len() / 2;
+    let span_s = recording.t_s.last().zip(recording.t_s.get(half)).map_or(0.0, |(last, first)| last - first);
+    let signs = recording.columns.iter().filter(|column| column.signal == Signal::Selection);
+    let moved = signs.map(|column| {
+        let rows = column.values.get(half..).unwrap_or_default();
+        rows.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum::<f64>()
+    });
+    let most = moved.fold(0.0, f64::max);
+    let restless = if span_s > 0.0 {
+        format!("; over the second half it moved by at most {} per second, row to row", number(most / span_s))
+    } else {
+        String::new()
+    };
+    format!("{chosen}{rest}{restless}")
+}
+
 /// How it was computed, and from what.
 pub(crate) fn provenance(record: &RunRecord<'_>) -> Markup {
     let setup = record.setup;
@@ -343,6 +377,9 @@ pub(crate) fn provenance(record: &RunRecord<'_>) -> Markup {
                     }))
                     @if let Some(control) = &setup.control {
                         (fact("Control", html! { "sampled at " (number(control.sample_hz)) " Hz, torques held; every sample ends a step" }))
+                    }
+                    @if let Some(following) = setup.following() {
+                        (fact("Sign", html! { (sign_words(record, following)) }))
                     }
                     (fact("Recording", html! {
                         (text::count(record.outcome.recording.t_s.len(), "row")) ", every "

@@ -1,0 +1,96 @@
+//! `[leader]` and `reference.leader`: what is read, and what mistakes get.
+
+use forwardstep_core::reference::Choice;
+use forwardstep_sim::leader::FollowingDesign;
+use forwardstep_sim::trajectory::Path;
+use miette::Diagnostic;
+
+use super::read;
+
+const SOUND: &str = r#"format = 1
+time.end_s = 5
+[leader]
+motion.formulas = ["sin(t)"]
+[[agents]]
+name = "cart"
+count = 2
+robot.point_mass = { dimension = 1, mass_kg = 2 }
+[reference.leader]
+design = "continuous"
+roots_per_s = [1.5]
+gain = 3
+[network]
+edges = [["leader", "cart-1"], ["cart-1", "cart-2"]]
+[goal]
+error_below = 1e-2
+"#;
+
+fn changed(from: &str, to: &str) -> String {
+    assert_eq!(SOUND.matches(from).count(), 1, "{from:?} must occur once");
+    SOUND.replace(from, to)
+}
+
+#[test]
+fn a_leader_is_the_last_vertex_of_the_network() {
+    let scenario = read(SOUND).unwrap();
+    let following = scenario.setup.following().unwrap();
+    assert_eq!((scenario.setup.agents.len(), scenario.setup.network.agents), (2, 3));
+    assert_eq!((following.design, following.choice), (FollowingDesign::Continuous, Choice::Implicit));
+    assert_eq!((following.alpha, following.gain, following.period_s), (1.5, 3.0, 1e-3));
+    assert_eq!(scenario.setup.network.schedule.graph(0)[0].from, 2);
+    assert_eq!(scenario.setup.vertex_name(2), "leader");
+}
+
+#[test]
+fn designs_signs_and_motions_are_read() {
+    let two = changed("\"continuous\"", "\"without_acceleration\"").replace("[1.5]", "[1.0, 3.0]");
+    let setup = read(&two).unwrap().setup;
+    let following = setup.following().unwrap();
+    assert_eq!((following.alpha, following.beta), (3.0, 4.0));
+    assert_eq!(following.design, FollowingDesign::WithoutAcceleration);
+    let swarm = two.replace("without_acceleration", "swarm").replace("gain = 3", "gain = 3\ncoupling = 7");
+    assert_eq!(read(&swarm).unwrap().setup.following().unwrap().design, FollowingDesign::Swarm { coupling: 7.0 });
+    for (sign, choice) in [
+        ("\"implicit\"", Choice::Implicit),
+        ("\"explicit\"", Choice::Explicit),
+        ("{ layer = { width = 0.1 } }", Choice::Layer { width: 0.1 }),
+    ] {
+        let text = changed("gain = 3", &format!("gain = 3\nsign = {sign}"));
+        assert_eq!(read(&text).unwrap().setup.following().unwrap().choice, choice);
+    }
+    let swings = "motion.sinusoids = [{ offset = 1, waves = [{ amplitude = 2, rad_per_s = 3 }] }]";
+    let points = "motion.points = { times_s = [0, 1, 3], positions = [[0], [1], [-1]] }";
+    for motion in [swings, points] {
+        let setup = read(&changed("motion.formulas = [\"sin(t)\"]", motion)).unwrap().setup;
+        let path = &setup.following().unwrap().leader.trajectory.paths()[0];
+        assert_eq!(matches!(path, Path::Spline(_)), motion == points);
+    }
+    // A rule joins the agents, not the leader.
+    let ring = changed("edges = [[\"leader\", \"cart-1\"], [\"cart-1\", \"cart-2\"]]", "edges.ring = {}");
+    assert!(read(&ring).unwrap().setup.network.schedule.graph(0).iter().all(|edge| edge.from < 2 && edge.to < 2));
+}
+
+#[test]
+fn mistakes_about_leaders_are_reported() {
+    for (text, message, help) in [
+        (changed("[leader]\nmotion.formulas = [\"sin(t)\"]\n", ""), "there is none", "add `[leader]`"),
+        (changed("[1.5]", "[1, 2]"), "needs 1", "one root"),
+        (changed("[\"cart-1\", \"cart-2\"]]", "[\"cart-1\", \"leader\"]]"), "hears nobody", "turn it round"),
+        (changed("gain = 3", "gain = 0"), "must be positive", ""),
+        (changed("gain = 3", "gain = 3\ncoupling = 1"), "belongs to the design `swarm`", ""),
+        (changed("\"continuous\"", "\"swarm\"").replace("[1.5]", "[1, 2]"), "`coupling` is missing", ""),
+        (changed("[leader]", "[leader]\nname = \"cart-1\""), "cart-1", ""),
+        (changed("[\"sin(t)\"]", "[\"sin(t)\", \"t\"]"), "2 entries", ""),
+        (changed("error_below", "disagreement_below"), "follows a target or a leader", "error_below"),
+        (
+            changed("motion.formulas = [\"sin(t)\"]", "motion.points = { times_s = [0, 0], positions = [[0], [1]] }"),
+            "not after the row",
+            "",
+        ),
+    ] {
+        let error = read(&text).unwrap_err();
+        assert!(error.to_string().contains(message), "{error}");
+        let said = error.help().map(|help| help.to_string()).unwrap_or_default();
+        assert!(said.contains(help), "{error}: {said}");
+    }
+}
