@@ -72,6 +72,9 @@ pub enum NoPrediction {
     /// Agents follow targets of their own, or a law whose tracking error stays in what is conserved.
     #[error("only agents under the adaptive or the known law that agree with each other have one")]
     Law,
+    /// They follow a leader, who moves.
+    #[error("everybody follows a leader")]
+    Leader,
     /// The baseline conserves nothing.
     #[error("under backstepping tracking errors move it")]
     Backstepping,
@@ -101,6 +104,9 @@ pub enum NoPrediction {
 pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     if matches!(setup.reference, ReferenceKind::Backstepping { .. }) {
         return Err(NoPrediction::Backstepping);
+    }
+    if setup.following().is_some() {
+        return Err(NoPrediction::Leader);
     }
     if setup.reference == ReferenceKind::Tracking || setup.agents.iter().any(|agent| !agent.law.is_lagrangian()) {
         return Err(NoPrediction::Law);

@@ -6,9 +6,10 @@ use forwardstep_sim::schedule::{Schedule, Window};
 use forwardstep_sim::{Exchange, Law, ReferenceKind, Setup};
 
 use crate::laws;
+use crate::leader;
 use crate::links;
 use crate::sampled::{digital, limited_actuators};
-use crate::tracking::{self, is_tracking};
+use crate::tracking::{self, bounded_target, is_tracking};
 use crate::verdict::{Answer, Hypothesis, Report};
 
 /// Which theorem speaks about `setup`, and whether its hypotheses hold.
@@ -21,20 +22,28 @@ pub fn check(setup: &Setup) -> Report {
     if is_tracking(setup) {
         return tracking::check(setup);
     }
+    if let Some(following) = setup.following() {
+        return leader::check(setup, following);
+    }
     let order = setup.agents.iter().map(|agent| agent.roots_per_s.len()).max().unwrap_or(0);
     let mut hypotheses = vec![spanning_tree(setup), dwell_time(setup), links::bounded_delays(setup)];
     hypotheses.extend(links::bounded_weights(setup));
-    match setup.reference {
+    match &setup.reference {
+        // Chains of different orders agree: nothing in the argument for (24) compares orders.
+        ReferenceKind::Consensus if setup.agents.iter().all(|agent| matches!(agent.law, Law::Chain(_))) => {
+            hypotheses.push(real_roots(setup));
+        }
         ReferenceKind::Consensus => hypotheses.extend([real_roots(setup), common_order(setup)]),
         ReferenceKind::PureIntegral => hypotheses.extend([fixed_graph(setup), real_roots(setup)]),
-        ReferenceKind::Backstepping { filter_s, .. } => hypotheses.push(differentiable(filter_s)),
-        ReferenceKind::Tracking => {}
+        ReferenceKind::Backstepping { filter_s, .. } => hypotheses.push(differentiable(*filter_s)),
+        ReferenceKind::Tracking | ReferenceKind::Following(_) => {}
     }
     hypotheses.extend(manipulability(setup));
     hypotheses.extend(external_torques(setup));
     if setup.exchange == Exchange::PositionVelocity {
         hypotheses.push(common_first_root(setup));
     }
+    hypotheses.extend(setup.agents.iter().filter_map(|agent| bounded_target(setup, agent)));
     hypotheses.extend(laws::of_laws(setup));
     if setup.agents.iter().any(|agent| agent.law.is_lagrangian()) {
         hypotheses.push(gains(setup));
@@ -46,11 +55,11 @@ pub fn check(setup: &Setup) -> Report {
 }
 
 fn theorem(setup: &Setup, order: usize) -> String {
-    match (setup.reference, setup.exchange) {
+    match (&setup.reference, setup.exchange) {
         (ReferenceKind::PureIntegral, Exchange::PositionVelocity) => return "Theorem 1, reference dynamics (3)".into(),
         (ReferenceKind::PureIntegral, Exchange::Position) => return "Remark 3, reference dynamics (23)".into(),
         (ReferenceKind::Backstepping { .. }, _) => return "no theorem: the backstepping baseline (aa6)".into(),
-        (ReferenceKind::Consensus | ReferenceKind::Tracking, _) => {}
+        (ReferenceKind::Consensus | ReferenceKind::Tracking | ReferenceKind::Following(_), _) => {}
     }
     match (setup.exchange, order) {
         (Exchange::PositionVelocity, 1) => "Theorem 3 with (a5) of order 1, which is (aa10)".into(),
@@ -190,7 +199,7 @@ fn manipulability(setup: &Setup) -> Option<Hypothesis> {
 }
 
 /// τ_ext feeds V by sᵀτ_ext. What ends leaves V finite, and from then on everything is as without it.
-fn external_torques(setup: &Setup) -> Option<Hypothesis> {
+pub(crate) fn external_torques(setup: &Setup) -> Option<Hypothesis> {
     let acts = |push: &&Push| {
         let [begins_s, ends_s] = push.span_s();
         begins_s < ends_s

@@ -2,19 +2,23 @@
 
 use forwardstep_sim::{AgentSetup, Law, ReferenceKind, Setup};
 
+use crate::chains;
 use crate::single;
+use crate::vehicles;
 use crate::verdict::{Answer, Hypothesis};
 
 /// The theorem or remark that speaks about agents that all have the same law of Section V, and what it promises; nothing for
 /// (6)–(7), which Section III treats, and for agents that differ.
 pub(crate) fn theorem(setup: &Setup) -> Option<(String, String)> {
     let first = setup.agents.first()?;
-    let same = |agent: &AgentSetup| std::mem::discriminant(&agent.law) == std::mem::discriminant(&first.law);
-    if !setup.agents.iter().all(same) {
-        return None;
+    if let Some(words) = mixture(setup) {
+        let promises = "all agents agree and come to rest: x_i − x_j → 0 and dx_i → 0".into();
+        return Some((format!("no single theorem: {words} side by side"), promises));
     }
-    match (&first.law, setup.reference) {
+    match (&first.law, &setup.reference) {
         (Law::Adaptive { .. } | Law::Known { .. }, _) => None,
+        (Law::Thrust(law), _) => Some(vehicles::theorem(setup, law.design)),
+        (Law::Chain(_), _) => Some(chains::theorem(setup)),
         (Law::PositionOnly { .. }, ReferenceKind::Tracking) => Some((
             "Section V-A, (a8) with the reference dynamics (a9)".into(),
             "x − x_d → 0 and dx − dx_d → 0 without a measured velocity".into(),
@@ -38,10 +42,43 @@ pub(crate) fn theorem(setup: &Setup) -> Option<(String, String)> {
 /// What the laws themselves ask for.
 pub(crate) fn of_laws(setup: &Setup) -> Vec<Hypothesis> {
     let mut hypotheses = Vec::new();
+    hypotheses.extend(mixed(setup));
     hypotheses.extend(position_only(setup));
+    hypotheses.extend(vehicles::of_vehicles(setup));
     hypotheses.extend(single::task_space(setup));
     hypotheses.extend(single::attitude(setup));
+    hypotheses.extend(chains::of_chains(setup));
     hypotheses
+}
+
+/// The laws of agents that differ in kind, in words; nothing where they do not, and where all are Lagrangian robots.
+fn mixture(setup: &Setup) -> Option<String> {
+    let kind = |agent: &AgentSetup| match &agent.law {
+        Law::Adaptive { .. } | Law::Known { .. } => "Theorem 3 with (24)",
+        Law::PositionOnly { .. } => "Remark 7",
+        Law::Thrust(law) => vehicles::source(law.design),
+        Law::TaskSpace(_) => "Theorem 6",
+        Law::Attitude(_) => "Theorem 7",
+        Law::Chain(_) => "Section IV",
+    };
+    if setup.reference == ReferenceKind::Tracking {
+        return None;
+    }
+    let mut kinds: Vec<&str> = setup.agents.iter().map(kind).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    (kinds.len() > 1).then(|| kinds.join(", "))
+}
+
+fn mixed(setup: &Setup) -> Option<Hypothesis> {
+    mixture(setup).map(|words| Hypothesis {
+        requires: "all agents are of the kind that one theorem speaks about".into(),
+        answer: Answer::NotCovered,
+        because: format!(
+            "there are agents of {words}; all transmit the same and follow the same reference dynamics, and what the law of \
+             each leaves behind vanishes, so the argument of the theorems should carry over, but the paper does not say so"
+        ),
+    })
 }
 
 /// The agents with a law for which `is` holds.

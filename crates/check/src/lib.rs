@@ -4,13 +4,16 @@
 //! paper*, or is *violated* with a witness.
 
 mod agreement;
+mod chains;
 mod hypotheses;
 mod laws;
+mod leader;
 mod links;
 mod manipulation;
 mod sampled;
 mod single;
 mod tracking;
+mod vehicles;
 mod verdict;
 
 pub use agreement::{NoPrediction, Prediction, predict};

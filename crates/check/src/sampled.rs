@@ -52,7 +52,10 @@ fn fastest(agent: &AgentSetup) -> Option<f64> {
         RobotKind::Tree(tree) => mass(&**tree, agent),
         RobotKind::PlanarArm => mass(&PlanarArm, agent),
         RobotKind::PointMass { dimension } => mass(&PointMass { dimension: *dimension }, agent),
-        RobotKind::Spacecraft { .. } => return None,
+        RobotKind::Vehicle { .. }
+        | RobotKind::Rotorcraft { .. }
+        | RobotKind::Spacecraft { .. }
+        | RobotKind::Chain(_) => return None,
     };
     let (Law::Adaptive { damping, .. } | Law::Known { damping }) = &agent.law else { return None };
     let mass = DMatrix::from_row_slice(m, m, &mass.ok()?);

@@ -1,5 +1,7 @@
 //! One agent and a target of its own: Sections V-A and V-C.
 
+use std::ops::RangeInclusive;
+
 use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{AgentSetup, Law, ReferenceKind, Setup};
 
@@ -30,19 +32,28 @@ pub(crate) fn check(setup: &Setup) -> Report {
 }
 
 /// How many derivatives of its target a law needs to be bounded.
-fn derivatives(law: &Law) -> usize {
-    match law {
+fn derivatives(agent: &AgentSetup) -> usize {
+    match &agent.law {
         Law::PositionOnly { .. } => 3,
+        Law::Thrust(law) if law.design.order() == 2 => 3,
+        Law::Thrust(_) => 4,
+        Law::Chain(_) => agent.roots_per_s.len(),
         _ => 2,
     }
 }
 
-fn bounded_target(setup: &Setup, agent: &AgentSetup) -> Option<Hypothesis> {
+/// Whether the target, or the offset, of an agent is bounded with as many derivatives as its law needs.
+pub(crate) fn bounded_target(setup: &Setup, agent: &AgentSetup) -> Option<Hypothesis> {
     let target = agent.target.as_ref()?;
-    let needed = derivatives(&agent.law);
-    let ordinal = if needed == 3 { "third" } else { "second" };
-    let requires = format!("the target of {} and its derivatives up to the {ordinal} are bounded", agent.name);
-    let bounded = |until_s: Option<f64>| all_bounded(target, needed, until_s);
+    let needed = derivatives(agent);
+    let ordinal = ["zeroth", "first", "second", "third", "fourth"][needed.min(4)];
+    // A formation may travel: of an offset only the derivatives count.
+    let (what, lowest) = if is_tracking(setup) { ("target", 0) } else { ("offset", 1) };
+    let requires = match lowest {
+        0 => format!("the {what} of {} and its derivatives up to the {ordinal} are bounded", agent.name),
+        _ => format!("the derivatives of the {what} of {} up to the {ordinal} are bounded", agent.name),
+    };
+    let bounded = |until_s: Option<f64>| all_bounded(target, lowest..=needed, until_s);
     let (answer, because) = if bounded(None) {
         (Answer::Holds, "interval arithmetic bounds them for all time".to_owned())
     } else if bounded(Some(setup.time.end_s)) {
@@ -53,6 +64,6 @@ fn bounded_target(setup: &Setup, agent: &AgentSetup) -> Option<Hypothesis> {
     Some(Hypothesis { requires, answer, because })
 }
 
-fn all_bounded(target: &Trajectory, derivatives: usize, until_s: Option<f64>) -> bool {
-    (0..target.axes()).all(|axis| (0..=derivatives).all(|k| target.hull(axis, k, until_s).is_finite()))
+fn all_bounded(target: &Trajectory, derivatives: RangeInclusive<usize>, until_s: Option<f64>) -> bool {
+    (0..target.axes()).all(|axis| derivatives.clone().all(|k| target.hull(axis, k, until_s).is_finite()))
 }

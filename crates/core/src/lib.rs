@@ -19,6 +19,7 @@ pub mod attitude;
 pub mod controller;
 mod dispatch;
 mod error;
+pub mod expression;
 mod gain;
 pub mod law;
 mod linear;

@@ -2,14 +2,16 @@
 //! equation, and an integrator whose steps land on every break-point; or, under digital control, held torques between samples.
 //!
 //! The layers, each of which uses only those before it: [`formula`], [`trajectory`], [`graph`], [`topology`] and [`schedule`], [`delay`] and
-//! [`network`]; [`setup`] and [`push`], the plain data of a run; the integrator with its history and break-points; the closed
+//! [`network`]; [`leader`], [`setup`] and [`push`], the plain data of a run; the integrator with its history and break-points; the closed
 //! loop; [`recording`] and [`simulate`].
 
+pub mod chain;
 mod closed_loop;
 pub mod delay;
 mod engine;
 pub mod formula;
 pub mod graph;
+pub mod leader;
 pub mod network;
 pub mod push;
 pub mod recording;
@@ -18,7 +20,9 @@ pub mod setup;
 mod simulate;
 pub mod topology;
 pub mod trajectory;
+pub mod vehicles;
 
+pub use chain::{ChainLaw, ChainModel, ChainStep};
 pub use closed_loop::SetupError;
 pub use network::Network;
 pub use recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal, Statistics};

@@ -111,6 +111,9 @@ pub struct Statistics {
     pub evaluations: u64,
     /// Steps that ended on a break-point.
     pub break_points: u64,
+    /// The largest rest of the inclusions that set-valued signs solve, where they are solved for, in the unit of what the
+    /// sign is taken of.
+    pub sign_residual: Option<f64>,
     /// Time spent.
     pub wall: Duration,
 }

@@ -5,14 +5,17 @@ mod single;
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
-use forwardstep_core::controller::{AttitudeTracking, Controller, PositionOnly, TaskSpace};
-use forwardstep_core::plant::Wheels;
+use forwardstep_core::controller::{AttitudeTracking, Controller, PositionOnly, TaskSpace, Thrust, ThrustCascade};
+use forwardstep_core::plant::{Rotors, Wheels};
 use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::robot::{PlanarArm, PlanarTip};
 
+use crate::chain::{ChainLaw, ChainModel};
+use crate::leader::{Following, FollowingDesign};
 use crate::network::Network;
 use crate::push::Push;
 use crate::trajectory::Trajectory;
+use crate::vehicles::{ThrustKind, ThrustLaw};
 
 pub use single::{AttitudeLaw, TaskSpaceLaw, TipSetup};
 
@@ -35,8 +38,42 @@ pub struct Setup {
     pub control: Option<Control>,
 }
 
+impl Setup {
+    /// How a leader is followed, if there is one.
+    pub fn following(&self) -> Option<&Arc<Following>> {
+        match &self.reference {
+            ReferenceKind::Following(following) => Some(following),
+            _ => None,
+        }
+    }
+
+    /// What a message holds, in words.
+    pub fn transmits(&self) -> Vec<&'static str> {
+        let told = match self.following().map(|following| following.design) {
+            Some(FollowingDesign::Differentiable) => Some("acceleration"),
+            Some(FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. }) => {
+                Some("reference acceleration")
+            }
+            Some(FollowingDesign::Continuous) | None => None,
+        };
+        self.exchange.words().iter().copied().chain(told).collect()
+    }
+
+    /// What an agent measures, in words, whose law measures `law`.
+    pub fn measures_for(&self, law: &[&'static str]) -> Vec<&'static str> {
+        let following = self.following().is_some_and(|following| following.design == FollowingDesign::Differentiable);
+        law.iter().copied().chain(following.then_some("acceleration")).collect()
+    }
+
+    /// The name of a vertex of the network.
+    pub fn vertex_name(&self, vertex: usize) -> &str {
+        let leader = || self.following().map_or("", |following| &following.leader.name);
+        self.agents.get(vertex).map_or_else(leader, |agent| &agent.name)
+    }
+}
+
 /// Reference dynamics, see [`forwardstep_core::reference`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ReferenceKind {
     /// The family (aa10), (a1), (a5), (24).
     Consensus,
@@ -49,6 +86,8 @@ pub enum ReferenceKind {
         /// Limit of the reference acceleration, rad/s² or m/s²; none for no limit.
         acceleration_limit: Option<f64>,
     },
+    /// (110), (119), (122) or swarm tracking: everybody follows a leader, the last vertex of the network. There are no roots.
+    Following(Arc<Following>),
     /// Nothing is agreed upon: every agent follows a target of its own, by a law that has reference dynamics of its own.
     Tracking,
 }
@@ -61,6 +100,10 @@ impl ReferenceKind {
             // Without roots there is z alone.
             ReferenceKind::Tracking => agent.roots_per_s.len().max(1),
             ReferenceKind::PureIntegral => 2,
+            ReferenceKind::Following(following) => match following.design {
+                FollowingDesign::Continuous => 1,
+                _ => 2,
+            },
             ReferenceKind::Backstepping { .. } => 0,
         }
     }
@@ -111,6 +154,16 @@ pub struct AgentSetup {
     pub pushes: Vec<Push>,
 }
 
+impl AgentSetup {
+    /// What it measures, in words. A law cannot read anything else: its inputs have no room for it.
+    pub fn measures(&self) -> &'static [&'static str] {
+        match (&self.law, &self.robot.kind) {
+            (Law::Thrust(_), RobotKind::Rotorcraft { .. }) => ThrustCascade::MEASURES,
+            (law, _) => law.measures(),
+        }
+    }
+}
+
 /// A robot with its true parameters.
 #[derive(Clone, Debug)]
 pub struct RobotSetup {
@@ -127,8 +180,10 @@ pub struct RobotSetup {
 impl RobotSetup {
     /// Numbers of a velocity, which are those of a position but for a spacecraft.
     pub fn velocity_len(&self) -> usize {
-        match self.kind {
+        match &self.kind {
             RobotKind::Spacecraft { .. } => 3,
+            // The second state of a chain in feedback form is no velocity.
+            RobotKind::Chain(model) if !model.has_velocity() => 0,
             _ => self.axes.len(),
         }
     }
@@ -162,6 +217,23 @@ pub enum RobotKind {
         /// m.
         dimension: usize,
     },
+    /// A chain of Section IV.
+    Chain(ChainModel),
+    /// (44): a vehicle in ℝ³ with one thrust, whose angular velocity obeys at once. ϑ is its mass; the rest of its start is
+    /// its attitude (q_v, q_o).
+    Vehicle {
+        /// g along the third axis, which points down, m/s².
+        gravity: f64,
+    },
+    /// The same as a rigid body that torques turn; the rest of its start is its attitude and its angular velocity.
+    Rotorcraft {
+        /// g, m/s².
+        gravity: f64,
+        /// J, kg m².
+        inertia: Gain,
+        /// Its rotors; without them every thrust and every torque can be had.
+        rotors: Option<Rotors>,
+    },
     /// A spacecraft with reaction wheels. Its axes are the entries of a quaternion; the rest of its start holds the momenta of
     /// the wheels, N m s.
     Spacecraft {
@@ -170,6 +242,19 @@ pub enum RobotKind {
         /// How its torque is shared out, and what the wheels can do.
         wheels: Wheels,
     },
+}
+
+impl RobotKind {
+    /// Numbers in a start beside q and q̇.
+    pub fn rest_len(&self) -> usize {
+        match self {
+            RobotKind::Tree(_) | RobotKind::PlanarArm | RobotKind::PointMass { .. } => 0,
+            RobotKind::Vehicle { .. } => 4,
+            RobotKind::Rotorcraft { .. } => 7,
+            RobotKind::Spacecraft { wheels, .. } => wheels.count(),
+            RobotKind::Chain(model) => model.rest_len(),
+        }
+    }
 }
 
 /// One degree of freedom of a robot.
@@ -226,6 +311,10 @@ pub enum Law {
         /// m̂(0), kg.
         estimate_start: f64,
     },
+    /// A law for a chain.
+    Chain(ChainLaw),
+    /// (46), (50) or (57) for vehicles with one thrust; see [`forwardstep_core::controller::Thrust`].
+    Thrust(ThrustLaw),
     /// (80)–(82) for the tip of a robot, without its velocity.
     TaskSpace(Box<TaskSpaceLaw>),
     /// (97)–(105) for a spacecraft, without its angular velocity.
@@ -243,16 +332,21 @@ impl Law {
         match self {
             Law::Adaptive { .. } => true,
             Law::Known { .. } => false,
-            Law::PositionOnly { .. } | Law::TaskSpace(_) => true,
+            Law::PositionOnly { .. } => true,
+            Law::Chain(law) => law.estimates(),
+            Law::Thrust(law) => matches!(law.design, ThrustKind::Adaptive { .. }),
+            Law::TaskSpace(_) => true,
             Law::Attitude(_) => false,
         }
     }
 
-    /// What it measures, in words. A law cannot read anything else: its inputs have no room for it.
-    pub fn measures(&self) -> &'static [&'static str] {
+    /// What it measures, in words, see [`AgentSetup::measures`].
+    fn measures(&self) -> &'static [&'static str] {
         match self {
             Law::Adaptive { .. } | Law::Known { .. } => &["position", "velocity"],
             Law::PositionOnly { .. } => PositionOnly::MEASURES,
+            Law::Chain(law) => law.measures(),
+            Law::Thrust(_) => Thrust::MEASURES,
             Law::TaskSpace(_) => TaskSpace::<PlanarArm, PlanarTip>::MEASURES,
             Law::Attitude(_) => AttitudeTracking::MEASURES,
         }
@@ -264,6 +358,8 @@ impl Law {
             Law::Adaptive { .. } => "the adaptive law",
             Law::Known { .. } => "the law with known parameters",
             Law::PositionOnly { .. } => "the law without velocity",
+            Law::Chain(law) => law.words(),
+            Law::Thrust(_) => "the thrust law",
             Law::TaskSpace(_) => "the law for a tip",
             Law::Attitude(_) => "the law for an attitude",
         }
@@ -274,6 +370,8 @@ impl Law {
         match self {
             Law::Adaptive { .. } | Law::Known { .. } => "Lagrangian robots",
             Law::PositionOnly { .. } => "point masses",
+            Law::Chain(law) => law.made_for(),
+            Law::Thrust(_) => "vehicles and rotorcraft",
             Law::TaskSpace(_) => "planar arms, and for robots from a URDF with a tip",
             Law::Attitude(_) => "spacecraft",
         }

@@ -37,7 +37,7 @@ pub fn simulate(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow
     let end_s = setup.time.end_s;
     // Messages of sampled controllers do not flow: nothing of the network enters the motion between two samples.
     let silent = Network {
-        agents: setup.agents.len(),
+        agents: setup.network.agents,
         schedule: Schedule::Fixed(Vec::new()),
         delays: Vec::new(),
         weights: Vec::new(),
@@ -78,6 +78,7 @@ pub fn simulate(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow
         }
     };
     let mut statistics = integrator.statistics();
+    statistics.sign_residual = closed_loop.sign_residual();
     statistics.wall = started.elapsed();
     Ok(Outcome { recording: recorder.recording, ending, statistics })
 }

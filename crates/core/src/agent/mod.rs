@@ -6,6 +6,7 @@
 //! reference state      ẋ = A x + b with b held: stepped exactly            (`hold`)
 //! estimate             ϑ̂ ← ϑ̂ − h Γ Yᵀs                                      (Euler)
 //! torque               computed once from the sample, then held
+//! sign                 a value that suits the end of the period, with the neighbours held (`reference::sliding`)
 //! ```
 //!
 //! As h → 0 the loop becomes the continuous one, with an error proportional to h. An [`Agent`] knows no clock: it is told the
@@ -24,7 +25,7 @@ use alloc::vec::Vec;
 use thiserror::Error;
 
 use crate::law::{SlotineLi, SlotineLiOutput};
-use crate::reference::{Exchange, Heard, Measured, Reference, ReferenceOut};
+use crate::reference::{Derived, Exchange, Heard, Measured, Reference, ReferenceOut, SlidingInputs};
 use crate::robot::{Lagrangian, TwoVelocity};
 use crate::{Kernel, LengthError, dispatch};
 use hold::Hold;
@@ -32,7 +33,7 @@ use hold::Hold;
 /// What an agent knows of its neighbours at one instant: the sums that a linear design needs.
 ///
 /// A message of an agent with m axes is [`Exchange::CHANNELS`] · m numbers: its positions, then its velocities if they are
-/// sent.
+/// sent, then what the sender's [`Agent::told`] was at the sample before, if its design tells anything.
 #[derive(Clone, Copy, Debug)]
 pub struct Inbox<'a> {
     /// Σ_j w_ij.
@@ -144,6 +145,9 @@ struct Out {
     tau: Vec<f64>,
     yt_s: Vec<f64>,
     d_theta_hat: Vec<f64>,
+    /// For a set-valued sign: q̈ or ż, and what the sign is taken of.
+    told: Vec<f64>,
+    e: Vec<f64>,
 }
 
 impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
@@ -169,6 +173,7 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
         LengthError::check("theta", p, theta_hat.len())?;
         LengthError::check("limits", m, limiter.axes())?;
         let n = reference.vectors() * m;
+        let told = reference.sliding().map_or(0, |sliding| sliding.told() * m);
         let vector = || vec![0.0; m];
         Ok(Agent {
             scratch: robot.scratch(),
@@ -183,7 +188,7 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
                 q: vector(),
                 dq: vector(),
                 degree: [0.0],
-                sums: vec![0.0; <F::Exchange as Exchange>::CHANNELS * m],
+                sums: vec![0.0; <F::Exchange as Exchange>::CHANNELS * m + told],
             },
             out: Out {
                 z: vector(),
@@ -193,6 +198,8 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
                 tau: vector(),
                 yt_s: vec![0.0; p],
                 d_theta_hat: vec![0.0; p],
+                told: vec![0.0; told],
+                e: vector(),
             },
             hold: Hold::new(m, reference.vectors(), <F::Exchange as Exchange>::CHANNELS),
             reference,
@@ -207,6 +214,11 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
     /// ϑ̂ at the last sample.
     pub fn estimate(&self) -> &[f64] {
         &self.theta_hat
+    }
+
+    /// What is transmitted at the next sample besides what is measured then: q̈ for (119), ż for (122), else nothing.
+    pub fn told(&self) -> &[f64] {
+        &self.out.told
     }
 
     /// Sets the state of the reference dynamics.
@@ -295,6 +307,14 @@ impl<F: Reference> Kernel for Refer<'_, F> {
         if let Some(h) = passed_s {
             hold.advance(reference, &held.degree, h, state, &out.d_state)?;
         }
+        // With ṡ held q̈ is ż + ṡ, and over the last period ṡ was what the velocity gained less what ż asked for.
+        let accelerates = reference.sliding().is_some_and(|sliding| sliding.derived == Derived::Acceleration);
+        for (k, told) in out.told.iter_mut().enumerate() {
+            *told = match passed_s {
+                Some(h) if accelerates => (measured.dq[k] - held.dq[k]) / h - out.dz[k],
+                _ => 0.0,
+            };
+        }
         held.q.copy_from_slice(measured.q);
         held.dq.copy_from_slice(measured.dq);
         held.degree = [inbox.degree];
@@ -305,6 +325,22 @@ impl<F: Reference> Kernel for Refer<'_, F> {
             out.d_state.fill(0.0);
             out.d_state[..m].copy_from_slice(&held.dq);
             reference.start(m, measured, &out.d_state, heard, state)?;
+        }
+        let reference_out = ReferenceOut { z: &mut out.z, dz: &mut out.dz, d_state: &mut out.d_state };
+        reference.evaluate(m, measured, state, heard, reference_out)?;
+        let Some(sliding) = reference.sliding() else { return Ok(()) };
+        // ż does not depend on the sign where it is told.
+        for (told, dz) in out.told.iter_mut().zip(&out.dz) {
+            *told += dz;
+        }
+        let Some(h) = passed_s else { return Ok(()) };
+        let channel = |c: usize| held.sums.get(c * m..(c + 1) * m).unwrap_or_default();
+        let own = [&held.q[..], &held.dq, &out.told];
+        let inputs = SlidingInputs { own, degree: &held.degree, sums: [channel(0), channel(1), channel(2)] };
+        sliding.argument(m, inputs, &mut out.e)?;
+        let selection = state.len() - m;
+        for (selection, e) in state[selection..].iter_mut().zip(&out.e) {
+            *selection = sliding.alone(*e, held.degree[0], h);
         }
         let reference_out = ReferenceOut { z: &mut out.z, dz: &mut out.dz, d_state: &mut out.d_state };
         reference.evaluate(m, measured, state, heard, reference_out)

@@ -5,19 +5,39 @@
 //! velocity: it is a [`Controller`].
 //!
 //! - `attitude`: (97)–(105), a spacecraft without angular velocity measurement.
+//! - `linearising`, `linear_adaptive`, `immersion`: (33) by feedback linearisation, with adaptation, and by immersion and
+//!   invariance; `following` is what they share.
+//! - `adaptive_backstepping`: strict-feedback and pure-feedback chains; `steps` is the recursion.
+//! - `guide`: where z leads, for plants of any order.
 //! - `position_only`: (a7)–(a9), a point mass without velocity measurement.
+//! - `thrust`: (45)–(58), vehicles with one thrust, by angular velocities or by torques.
 //! - `stepped`: any controller, sampled.
 //! - `task_space`: (76)–(82), the tip of a robot with uncertain lengths, without its velocity.
 
+mod adaptive_backstepping;
 mod attitude;
+mod following;
+mod guide;
+mod immersion;
+mod linear_adaptive;
+mod linearising;
 mod position_only;
 mod stepped;
+mod steps;
 mod task_space;
+mod thrust;
 
+pub use adaptive_backstepping::{AdaptiveBackstepping, BacksteppingGains, BacksteppingWork};
 pub use attitude::{AttitudeMeasured, AttitudeTracking};
-pub use position_only::{Guide, PositionMeasured, PositionOnly};
+pub use following::{ChainError, ChainMeasured, Following, FollowingWork};
+pub use guide::{Guide, GuideError, GuideWork, Leads};
+pub use immersion::{Immersion, ImmersionWork};
+pub use linear_adaptive::LinearAdaptive;
+pub use linearising::Linearising;
+pub use position_only::{PositionMeasured, PositionOnly};
 pub use stepped::Stepped;
 pub use task_space::{ParameterBounds, TaskMeasured, TaskSpace};
+pub use thrust::{Floor, RateLoop, RotorcraftMeasured, Thrust, ThrustCascade, ThrustDesign, Yaw};
 
 use alloc::vec::Vec;
 

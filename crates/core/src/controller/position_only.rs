@@ -30,37 +30,15 @@
 //! From there the argument is that of Theorem 2: states are bounded, ẏ is uniformly continuous, y and s vanish, the
 //! agents agree and come to rest.
 
-use alloc::vec;
 use alloc::vec::Vec;
 
+use super::guide::{Guide, GuideWork, Leads};
 use super::{Asked, Balance, Controller, Given, Truth};
 use crate::LengthError;
 use crate::plant::{Mechanical, total};
-use crate::reference::{Consensus, Measured, Position, Reference, ReferenceOut};
+use crate::reference::Position;
 use crate::robot::PointMass;
 use crate::signal::{Block, Signal};
-
-/// Where z leads.
-#[derive(Clone, Debug)]
-pub enum Guide {
-    /// To a desired trajectory: (a9) with α₀, α₁, α₂.
-    Tracking {
-        /// The coefficients of θ³ + α₂ θ² + α₁ θ + α₀.
-        alpha: [f64; 3],
-    },
-    /// To agreement with the neighbours: (24) for one agent, of order two or more.
-    Consensus(Consensus<Position>),
-}
-
-impl Guide {
-    /// Blocks of reference state: z, ż, ….
-    fn vectors(&self) -> usize {
-        match self {
-            Guide::Tracking { .. } => 2,
-            Guide::Consensus(consensus) => consensus.vectors(),
-        }
-    }
-}
 
 /// The position of a point mass.
 #[derive(Clone, Copy, Debug)]
@@ -99,7 +77,7 @@ pub struct PositionOnly {
 impl PositionOnly {
     /// Where p and I stand in the state.
     fn layout(&self) -> (usize, usize) {
-        let p = self.guide.vectors() * self.axes;
+        let p = self.guide.vectors(2) * self.axes;
         (p, p + self.axes)
     }
 
@@ -117,26 +95,26 @@ impl Controller for PositionOnly {
     type Plant = Mechanical<PointMass>;
     type Exchange = Position;
     type Measured<'a> = PositionMeasured<'a>;
-    type Scratch = Work;
+    type Scratch = GuideWork;
 
     const MEASURES: &'static [&'static str] = &["position"];
 
-    fn scratch(&self) -> Work {
-        Work { z: vec![0.0; self.axes], dz: vec![0.0; self.axes] }
+    fn scratch(&self) -> GuideWork {
+        self.guide.work(self.axes)
     }
 
     fn states(&self) -> Vec<Block> {
         let mut states: Vec<Block> =
-            (0..self.guide.vectors()).map(|r| (Signal::Reference(r as u8), self.axes)).collect();
+            (0..self.guide.vectors(2)).map(|r| (Signal::Reference(r as u8), self.axes)).collect();
         states.extend([(Signal::Filter, self.axes), (Signal::Estimate, 1)]);
         states
     }
 
     fn shown(&self) -> Vec<Block> {
         let mut shown: Vec<Block> =
-            (0..self.guide.vectors()).map(|r| (Signal::Reference(r as u8), self.axes)).collect();
+            (0..self.guide.vectors(2)).map(|r| (Signal::Reference(r as u8), self.axes)).collect();
         shown.extend([(Signal::Filter, self.axes), (Signal::Estimate, 1)]);
-        if let Guide::Tracking { .. } = self.guide {
+        if self.guide.tracks() {
             shown.push((Signal::Error, self.axes));
         }
         shown
@@ -149,7 +127,7 @@ impl Controller for PositionOnly {
 
     fn start(
         &self,
-        _: &mut Work,
+        _: &mut GuideWork,
         given: Given<'_, Self>,
         wanted: &[Vec<f64>],
         state: &mut [f64],
@@ -171,7 +149,7 @@ impl Controller for PositionOnly {
 
     fn evaluate(
         &self,
-        work: &mut Work,
+        work: &mut GuideWork,
         given: Given<'_, Self>,
         state: &[f64],
         asked: Asked<'_>,
@@ -184,21 +162,9 @@ impl Controller for PositionOnly {
         let x = given.measured.x;
         LengthError::check("x", m, x.len())?;
         let (z, dz) = (&state[..m], &state[m..2 * m]);
-        match &self.guide {
-            Guide::Tracking { alpha } => {
-                LengthError::check("target", m, given.target.len())?;
-                asked.d_state[..m].copy_from_slice(dz);
-                for k in 0..m {
-                    let [x_d, dx_d, ddx_d, dddx_d, _] = given.target[k];
-                    asked.d_state[m + k] =
-                        dddx_d - alpha[2] * (dz[k] - ddx_d) - alpha[1] * (z[k] - dx_d) - alpha[0] * (x[k] - x_d);
-                }
-            }
-            Guide::Consensus(consensus) => {
-                let out = ReferenceOut { z: &mut work.z, dz: &mut work.dz, d_state: &mut asked.d_state[..p] };
-                consensus.evaluate(m, Measured { q: x, dq: z }, &state[..p], given.heard, out)?;
-            }
-        }
+        let target = if self.guide.tracks() { given.target } else { &[] };
+        let leads = Leads { measured: x, state: &state[..p], heard: given.heard, target };
+        self.guide.rate(2, m, leads, work, &mut asked.d_state[..p])?;
         let m_hat = self.estimate_start + state[i] - self.by_parts(x, z, dz);
         let mut d_i = 0.0;
         for k in 0..m {
@@ -208,8 +174,8 @@ impl Controller for PositionOnly {
             // z̈, whether it is a state or a rate.
             d_i += asked.d_state[m + k] * x[k];
             asked.shown[p + k] = y;
-            if let (Guide::Tracking { .. }, Some(error)) = (&self.guide, asked.shown.get_mut(i + 1 + k)) {
-                *error = x[k] - given.target[k][0];
+            if let (Some(jet), Some(error)) = (target.get(k), asked.shown.get_mut(i + 1 + k)) {
+                *error = x[k] - jet[0];
             }
         }
         asked.d_state[i] = self.adaptation * d_i;
@@ -220,7 +186,7 @@ impl Controller for PositionOnly {
 
     fn balance(
         &self,
-        _: &mut Work,
+        _: &mut GuideWork,
         truth: Truth<'_, Self::Plant>,
         _: Given<'_, Self>,
         state: &[f64],
@@ -241,11 +207,4 @@ impl Controller for PositionOnly {
         let value = 0.5 * mass * ss + 0.5 * self.damping / self.filter_per_s * yy + learnt;
         Ok(Balance { value, dissipation: self.damping * yy })
     }
-}
-
-/// Room for what (24) gives besides its rate.
-#[derive(Clone, Debug)]
-pub struct Work {
-    z: Vec<f64>,
-    dz: Vec<f64>,
 }

@@ -1,12 +1,24 @@
 //! Systems to be controlled, as vector fields, when they are more than a robot under (6)–(7).
+//!
+//! - `mechanical`: (1), a robot.
+//! - `vehicle`: (44), a thrust-propelled vehicle.
+//! - `rotorcraft`: the same as a rigid body with torques and rotors.
 
+mod cascade;
+mod chain;
 mod mechanical;
+mod rotorcraft;
 mod spacecraft;
 mod task_arm;
+mod vehicle;
 
+pub use cascade::{Cascade, CascadeError, CascadeTerms, CascadeWork};
+pub use chain::{Chain, ChainWork, Closures, Formulas, FormulasWork, Terms};
 pub use mechanical::Mechanical;
+pub use rotorcraft::{Rotorcraft, Rotors};
 pub use spacecraft::{Spacecraft, SpacecraftError, Wheel, Wheels};
 pub use task_arm::TaskArm;
+pub use vehicle::{Vehicle, VehicleState};
 
 use alloc::vec::Vec;
 

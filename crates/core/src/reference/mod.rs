@@ -3,19 +3,25 @@
 //! - `consensus`: the family (aa10), (a1), (a5), (24), which only integrates what it constructed itself.
 //! - `pure_integral`: (3) and (23), which contain q̈ and are realised by their integral.
 //! - `backstepping`: (aa6), the baseline, which differentiates.
+//! - `following`: (110), (119), (122), which follow a leader.
+//! - `sliding`: the set-valued sign in them.
 //! - `exchange`: what agents tell each other.
 
 mod backstepping;
 mod consensus;
 mod exchange;
+mod following;
 mod polynomial;
 mod pure_integral;
+mod sliding;
 
 pub use backstepping::{Backstepping, BacksteppingError};
 pub use consensus::Consensus;
 pub use exchange::{Exchange, Heard, Position, PositionSums, PositionVelocity, PositionVelocitySums};
+pub use following::{Following, SmoothFollowing};
 pub use polynomial::{RootsError, polynomial};
 pub use pure_integral::PureIntegral;
+pub use sliding::{Choice, Derived, Sliding, SlidingInputs, saturated};
 
 use crate::{LengthError, Scalar};
 
@@ -55,6 +61,12 @@ pub trait Reference: Send + Sync + 'static {
 
     /// How many of them are z, ż, z̈, … in this order.
     fn derivatives(&self) -> usize;
+
+    /// The set-valued sign in it, if it has one. The last block of state is then the value of the sign, which has rate zero and
+    /// is set by who makes time pass.
+    fn sliding(&self) -> Option<&Sliding> {
+        None
+    }
 
     /// z, ż and the rate of the state, which is affine in the state and the same function for each axis: what sampled agents
     /// step exactly depends on it.

@@ -40,14 +40,17 @@ pub struct Metrics {
 pub enum Gap {
     /// Between agents.
     Disagreement,
-    /// Between agents and their targets.
+    /// Between agents and their targets, or their leader.
     Error,
 }
 
 impl Gap {
     /// What is to vanish in a run of `setup`.
     pub fn of(setup: &Setup) -> Gap {
-        if setup.reference == ReferenceKind::Tracking { Gap::Error } else { Gap::Disagreement }
+        match setup.reference {
+            ReferenceKind::Tracking | ReferenceKind::Following(_) => Gap::Error,
+            _ => Gap::Disagreement,
+        }
     }
 
     /// `Disagreement` or `Error`.

@@ -17,7 +17,7 @@ pub fn agent_name(setup: &Setup, agent: usize) -> String {
 pub fn axis_name(setup: &Setup, agent: usize, axis: usize) -> String {
     let robot = setup.agents.get(agent).map(|a| &a.robot);
     match robot {
-        Some(robot) if !matches!(robot.kind, RobotKind::PointMass { .. }) => {
+        Some(robot) if !matches!(robot.kind, RobotKind::PointMass { .. } | RobotKind::Chain(_)) => {
             robot.axes.get(axis).map(|a| a.name.clone())
         }
         _ => None,
@@ -46,8 +46,19 @@ pub fn column_name(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> 
     let signal_name = signal.name();
     let law = setup.agents.get(agent).map(|agent| &agent.law);
     match (signal, law) {
-        (Signal::Lyapunov | Signal::Dissipation | Signal::Angle | Signal::Determinant, _) => {
-            format!("{agent_name}.{signal_name}")
+        (
+            Signal::Lyapunov
+            | Signal::Dissipation
+            | Signal::Thrust
+            | Signal::Heading
+            | Signal::Angle
+            | Signal::Determinant
+            | Signal::Divisor,
+            _,
+        ) => format!("{agent_name}.{signal_name}"),
+        (Signal::Attitude, _) => {
+            let entry = ["x", "y", "z", "o"].get(axis).map_or_else(|| (axis + 1).to_string(), |name| (*name).into());
+            format!("{agent_name}.{signal_name}.{entry}")
         }
         (Signal::Estimate, _) => format!("{agent_name}.{signal_name}.{}", parameter_name(setup, agent, axis)),
         (Signal::WheelTorque | Signal::WheelMomentum, _) => format!("{agent_name}.{signal_name}.{}", axis + 1),
@@ -97,14 +108,15 @@ pub fn gap_unit(setup: &Setup) -> String {
     match units.next() {
         None => String::new(),
         Some(first) if units.all(|unit| unit == first) => {
-            if first == "1" {
-                String::new()
-            } else {
-                first
-            }
+            if first == "1" { String::new() } else { first }
         }
         Some(_) => "rad or m".into(),
     }
+}
+
+/// Whether the torques of an agent turn it, while its axes are lengths.
+fn turns(setup: &Setup, agent: usize) -> bool {
+    setup.agents.get(agent).is_some_and(|agent| matches!(agent.robot.kind, RobotKind::Rotorcraft { .. }))
 }
 
 /// The unit of a recorded column, for example `rad/s^2`; `SI` for parameters, whose units differ.
@@ -130,9 +142,16 @@ pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String 
         Signal::Position | Signal::Error | Signal::Offset => length.into(),
         Signal::Velocity | Signal::TrackingError | Signal::Filter | Signal::Reference(0) => format!("{length}/s"),
         Signal::Reference(k) => format!("{length}/s^{}", u32::from(k) + 1),
+        Signal::Torque if turns(setup, agent) => "N m".into(),
         Signal::Torque | Signal::External if length == "m" => "N".into(),
         Signal::Torque | Signal::External => "N m".into(),
-        Signal::Estimate => "SI".into(),
+        Signal::Derivative(k) => format!("{length}/s^{k}"),
+        Signal::Estimate | Signal::Coordinate(_) | Signal::Divisor => "SI".into(),
+        Signal::Attitude => "1".into(),
+        Signal::AngularVelocity | Signal::AngularVelocityWanted => "rad/s".into(),
+        Signal::Thrust => "N".into(),
+        Signal::Heading => "rad".into(),
+        Signal::Selection => "1".into(),
         Signal::Lyapunov | Signal::Dissipation => "J".into(),
     }
 }

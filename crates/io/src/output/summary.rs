@@ -222,7 +222,7 @@ pub struct Verdict {
 }
 
 /// Work of the integrator.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Solver {
     /// Accepted steps.
     pub steps: u64,
@@ -232,6 +232,9 @@ pub struct Solver {
     pub evaluations: u64,
     /// Steps that ended on a break-point.
     pub break_points: u64,
+    /// The largest rest of the inclusions that set-valued signs solve; absent where none are solved for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sign_residual: Option<f64>,
 }
 
 /// Times that depend on the machine.
@@ -288,6 +291,7 @@ impl Summary {
                 rejected: statistics.rejected,
                 evaluations: statistics.evaluations,
                 break_points: statistics.break_points,
+                sign_residual: statistics.sign_residual.filter(|residual| residual.is_finite()),
             },
             links: Link::all(&setup.network),
             digital: record.digital.clone(),
@@ -299,9 +303,9 @@ impl Summary {
 
     /// What the run cost.
     pub(crate) fn statistics(&self) -> Statistics {
-        let Solver { steps, rejected, evaluations, break_points } = self.solver;
+        let Solver { steps, rejected, evaluations, break_points, sign_residual } = self.solver;
         let wall = Duration::try_from_secs_f64(self.timings.wall_s).unwrap_or_default();
-        Statistics { steps, rejected, evaluations, break_points, wall }
+        Statistics { steps, rejected, evaluations, break_points, sign_residual, wall }
     }
 
     /// Writes it as indented JSON.

@@ -13,6 +13,7 @@ use super::fault::{Fault, count, fault, filled, positive};
 use super::file::{AgentFile, AgentReferenceFile, ReferenceFile, ScenarioFile};
 use super::inputs::InputFolder;
 use super::law::law;
+use super::leader_file::LeaderDesignFile;
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
 use super::robots::{ReadRobot, Stop, robot};
@@ -130,15 +131,21 @@ pub(super) fn agents(
     Ok(Agents { agents, bodies, populations: counted })
 }
 
-/// The names of a population: its own, or numbered from one when it is counted.
-fn names(file: &AgentFile) -> Result<Vec<String>, Fault> {
-    let name = &file.name;
+/// A name that can stand in tables.
+pub(super) fn checked_name(name: &At<String>) -> Result<&str, Fault> {
     let length = name.value.chars().count();
     if !(1..=LONGEST_NAME).contains(&length)
         || !name.value.chars().all(|c| c.is_alphanumeric() || matches!(c, '-' | '_'))
     {
         return Err(fault(name, ScenarioProblem::AgentName { name: name.value.clone() }));
     }
+    Ok(&name.value)
+}
+
+/// The names of a population: its own, or numbered from one when it is counted.
+fn names(file: &AgentFile) -> Result<Vec<String>, Fault> {
+    let name = &file.name;
+    checked_name(name)?;
     Ok(match &file.count {
         None => vec![name.value.clone()],
         Some(number) => {
@@ -212,6 +219,10 @@ fn design(file: &ScenarioFile, entry: &AgentFile, agent: &str) -> Result<Design,
         | (ReferenceFile::PureIntegral(common), Some(AgentReferenceFile::PureIntegral(own))) => (common, Some(own)),
         (ReferenceFile::Backstepping(_), None) => {
             return Ok(Design { roots_per_s: Vec::new(), manipulability: 0.0, free_derivatives: 0 });
+        }
+        (ReferenceFile::Leader(common), None) => {
+            let free_derivatives = if common.design.value == LeaderDesignFile::Continuous { 1 } else { 2 };
+            return Ok(Design { roots_per_s: Vec::new(), manipulability: 0.0, free_derivatives });
         }
         (ReferenceFile::Tracking(common), None) => return tracked(common, None),
         (ReferenceFile::Tracking(common), Some(AgentReferenceFile::Tracking(own))) => {

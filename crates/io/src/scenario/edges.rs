@@ -48,6 +48,9 @@ impl NetworkReader<'_> {
             if i == j {
                 return Err(fault(place, NetworkProblem::SelfLoop { name: to.value.clone() }));
             }
+            if i >= self.agents {
+                return Err(fault(place, NetworkProblem::LeaderHears { name: to.value.clone() }));
+            }
             if let Some(start) = seen.insert((j, i), place.span.start) {
                 let (first_line, _) = source.line_column(start);
                 let (from, to) = (from.value.clone(), to.value.clone());
@@ -137,7 +140,7 @@ impl NetworkReader<'_> {
 
     /// The agents of these names, in this order; without any, all.
     fn members(&self, among: Option<&At<Vec<At<String>>>>) -> Result<Vec<usize>, Fault> {
-        let Some(among) = among else { return Ok((0..self.names.len()).collect()) };
+        let Some(among) = among else { return Ok((0..self.agents).collect()) };
         let mut seen = HashSet::new();
         let mut members = Vec::with_capacity(among.value.len());
         for name in filled("among", among)? {

@@ -4,13 +4,19 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::at::At;
+use super::chain_file::{
+    AdaptiveBacksteppingFile, ChainFile, ImmersionFile, LinearAdaptiveFile, LinearisingFile, PureFeedbackFile,
+    StrictFeedbackFile,
+};
 use super::control_file::ControlFile;
+use super::leader_file::{LeaderFile, LeaderReferenceFile};
 use super::network_file::NetworkFile;
 use super::push_file::PushFile;
 use super::spacecraft_file::{AttitudeFile, SpacecraftFile, SpacecraftStartFile};
 use super::systems_file::{PositionOnlyFile, TargetFile, TrackingFile};
 use super::task_file::TaskSpaceFile;
 use super::values::{GainFile, GainOrBandwidth, Named, NotNegative, Positive, StartValues};
+use super::vehicle_file::{RotorcraftFile, ThrustFile, VehicleFile};
 
 /// A forwardstep scenario: a network of robots, how they are controlled, and how long to watch them.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -29,6 +35,8 @@ pub struct ScenarioFile {
     pub agents: At<Vec<At<AgentFile>>>,
     /// The reference dynamics of all agents.
     pub reference: At<ReferenceFile>,
+    /// What everybody follows, where there is a leader: one more vertex of the network, which hears nobody.
+    pub leader: Option<At<LeaderFile>>,
     /// The tracking law of all agents that have none of their own.
     pub law: Option<At<LawFile>>,
     /// Where agents start that say nothing of their own.
@@ -96,15 +104,26 @@ pub enum RobotFile {
     PlanarArm(PlanarArmFile),
     /// A point mass that is pushed along every axis.
     PointMass(PointMassFile),
+    /// A vehicle in space with one thrust along its own axis, whose angular velocity obeys at once.
+    Vehicle(VehicleFile),
+    /// The same as a rigid body with inertia that torques turn.
+    Rotorcraft(RotorcraftFile),
     /// A spacecraft that turns itself by reaction wheels.
     Spacecraft(SpacecraftFile),
+    /// A plant of any order with formulas for χ and ψ: Section IV of the paper.
+    Chain(ChainFile),
+    /// A parametric chain in strict-feedback form.
+    StrictFeedback(StrictFeedbackFile),
+    /// A parametric chain in pure-feedback form.
+    PureFeedback(PureFeedbackFile),
 }
 
 /// A robot from a URDF.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct UrdfFile {
-    /// The URDF, beside the scenario file or in `inputs` beside it, or the name of a shipped robot: `ur5e.urdf`, `panda.urdf`.
+    /// The URDF, beside the scenario file or in `inputs` beside it, or the name of a shipped robot: `ur5e.urdf`, `panda.urdf`,
+    /// `gantry.urdf`.
     pub file: At<String>,
     /// Joints held at a value, in rad or m; each removes one axis.
     #[serde(default)]
@@ -156,7 +175,8 @@ pub struct PointMassFile {
 }
 
 /// How the robots of a population differ from what is written, each number by a random factor of its own: the masses and
-/// lengths of planar arms (centres of mass and inertias follow), the masses of point masses, the inertia of spacecraft, all inertia of
+/// lengths of planar arms (centres of mass and inertias follow), the masses of point masses and vehicles, the inertia of
+/// spacecraft, all inertia of
 /// each body of a URDF.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -185,8 +205,14 @@ pub struct StartFile {
     pub velocity_m_s: Option<At<StartValues>>,
     /// Velocities of any robot, in rad/s or m/s as each axis has it.
     pub velocity: Option<At<StartValues>>,
+    /// Attitudes of vehicles and rotorcraft as a quaternion of any length, vector part first. Default: upright, [0, 0, 0, 1].
+    pub attitude: Option<At<[f64; 4]>>,
+    /// Angular velocities of rotorcraft in the axes of the body, in rad/s.
+    pub angular_velocity_rad_s: Option<At<[f64; 3]>>,
     /// Where spacecraft start; for them nothing else in this table counts.
     pub spacecraft: Option<At<SpacecraftStartFile>>,
+    /// What else there is of a chain: its derivatives from the second on, or x2, x3, … of one in feedback form.
+    pub higher_states: Option<At<StartValues>>,
     /// The state of the reference dynamics.
     pub reference: Option<At<ReferenceStartFile>>,
 }
@@ -212,6 +238,8 @@ pub enum ReferenceFile {
     PureIntegral(ConsensusFile),
     /// The baseline (aa6) that differentiates what it hears; positions are exchanged.
     Backstepping(BacksteppingFile),
+    /// Everybody follows a leader that only some hear: (110), (119) or (122) of the paper.
+    Leader(LeaderReferenceFile),
     /// No agreement: every agent follows a target of its own.
     Tracking(TrackingFile),
 }
@@ -223,6 +251,7 @@ impl ReferenceFile {
             ReferenceFile::Consensus(_) => "consensus",
             ReferenceFile::PureIntegral(_) => "pure_integral",
             ReferenceFile::Backstepping(_) => "backstepping",
+            ReferenceFile::Leader(_) => "leader",
             ReferenceFile::Tracking(_) => "tracking",
         }
     }
@@ -294,10 +323,20 @@ pub enum LawFile {
     Known(KnownFile),
     /// A point mass of unknown mass whose velocity is not measured: (a8) of the paper.
     PositionOnly(PositionOnlyFile),
+    /// A vehicle with one thrust: (46), (50) or (57) of the paper.
+    Thrust(ThrustFile),
     /// The tip of a robot follows a target, with uncertain lengths and without its velocity: (80) to (82) of the paper.
     TaskSpace(TaskSpaceFile),
     /// A spacecraft follows an attitude, without its angular velocity: (97) to (105) of the paper.
     Attitude(AttitudeFile),
+    /// A chain of derivatives that is known.
+    Linearising(LinearisingFile),
+    /// A chain of derivatives with unknown parameters.
+    LinearAdaptive(LinearAdaptiveFile),
+    /// The same by immersion and invariance.
+    Immersion(ImmersionFile),
+    /// A chain in strict-feedback or pure-feedback form with unknown parameters.
+    AdaptiveBackstepping(AdaptiveBacksteppingFile),
 }
 
 /// The adaptive tracking law.

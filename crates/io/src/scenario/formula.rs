@@ -16,14 +16,15 @@
 
 use std::ops::Range;
 
-use forwardstep_sim::formula::{Formula, FormulaError, FormulaStep, MOST_STEPS};
+use forwardstep_core::expression::Expression;
+use forwardstep_sim::formula::{Formula, FormulaError, FormulaStep, MOST_STEPS, expression};
 use thiserror::Error;
 
 use super::at::At;
 use super::de::quoted;
 use super::fault::{Fault, LARGEST};
 pub use super::formula_problem::FormulaProblem;
-use super::formula_problem::{A_VALUE, AN_OPERATOR, CHOICES, FUNCTIONS, JUMPS, NAMES};
+use super::formula_problem::{A_VALUE, A_VALUE_OF_VARIABLES, AN_OPERATOR, CHOICES, FUNCTIONS, JUMPS, NAMES};
 use super::problem::ScenarioProblem;
 
 /// Parentheses, signs and powers within each other.
@@ -44,7 +45,22 @@ pub struct FormulaFault {
 /// # Errors
 /// The first mistake and its place. Any text gives a result; none panics.
 pub fn parse_formula(text: &str) -> Result<Formula, FormulaFault> {
-    let mut parser = Parser { text, next: 0, steps: Vec::new(), depth: 0 };
+    let steps = parse(text, None)?;
+    Formula::new(steps).map_err(|error| whole(text, error))
+}
+
+/// Reads a formula in variables with these names, which must not hold t.
+///
+/// # Errors
+/// The first mistake and its place. Any text gives a result; none panics.
+pub fn parse_expression(text: &str, names: &[String]) -> Result<Expression, FormulaFault> {
+    let steps = parse(text, Some(names))?;
+    expression(&steps).map_err(|error| whole(text, error))
+}
+
+/// The steps of a text. Names stand for variables, or there is t alone.
+fn parse(text: &str, names: Option<&[String]>) -> Result<Vec<FormulaStep>, FormulaFault> {
+    let mut parser = Parser { text, names, next: 0, steps: Vec::new(), depth: 0 };
     if parser.peek().is_none() {
         return Err(FormulaFault { problem: FormulaProblem::Empty, at: 0..text.len() });
     }
@@ -52,33 +68,46 @@ pub fn parse_formula(text: &str) -> Result<Formula, FormulaFault> {
     if parser.peek().is_some() {
         return Err(parser.unexpected(AN_OPERATOR));
     }
-    Formula::new(parser.steps).map_err(|error| {
-        let problem = match error {
-            FormulaError::TooLong { .. } => FormulaProblem::TooLong,
-            _ => FormulaProblem::TooDeep,
-        };
-        FormulaFault { problem, at: 0..text.len() }
-    })
+    Ok(parser.steps)
+}
+
+/// What is wrong with a formula as a whole.
+fn whole(text: &str, error: FormulaError) -> FormulaFault {
+    let problem = match error {
+        FormulaError::TooLong { .. } => FormulaProblem::TooLong,
+        _ => FormulaProblem::TooDeep,
+    };
+    FormulaFault { problem, at: 0..text.len() }
 }
 
 /// Reads a formula of a scenario or a table; a mistake is placed within its text.
 pub(super) fn formula(text: &At<String>) -> Result<Formula, Fault> {
-    parse_formula(&text.value).map_err(|FormulaFault { problem, at }| {
-        // Quotation marks stand around the text; where it is written with escapes its bytes are not those of the file.
-        let marks = text.span.len().checked_sub(text.value.len());
-        let place = match marks {
-            Some(marks @ (0 | 2 | 6)) => {
-                let start = text.span.start + marks / 2;
-                start + at.start..start + at.end
-            }
-            _ => text.span.clone(),
-        };
-        Fault::new(ScenarioProblem::Formula(problem)).at(&place)
-    })
+    parse_formula(&text.value).map_err(|fault| placed(text, fault))
+}
+
+/// Reads a formula in variables; a mistake is placed within its text.
+pub(super) fn formula_in(text: &At<String>, names: &[String]) -> Result<Expression, Fault> {
+    parse_expression(&text.value, names).map_err(|fault| placed(text, fault))
+}
+
+/// The place of a mistake in the file.
+fn placed(text: &At<String>, FormulaFault { problem, at }: FormulaFault) -> Fault {
+    // Quotation marks stand around the text; where it is written with escapes its bytes are not those of the file.
+    let marks = text.span.len().checked_sub(text.value.len());
+    let place = match marks {
+        Some(marks @ (0 | 2 | 6)) => {
+            let start = text.span.start + marks / 2;
+            start + at.start..start + at.end
+        }
+        _ => text.span.clone(),
+    };
+    Fault::new(ScenarioProblem::Formula(problem)).at(&place)
 }
 
 struct Parser<'a> {
     text: &'a str,
+    /// Names of variables, where there is no t.
+    names: Option<&'a [String]>,
     /// The byte to go on from.
     next: usize,
     steps: Vec<FormulaStep>,
@@ -140,7 +169,8 @@ impl Parser<'_> {
     /// Takes the steps from `first` on, which were written after byte `from`, back as a constant exponent.
     fn exponent(&mut self, first: usize, from: usize) -> Result<FormulaStep, FormulaFault> {
         let at = from + (self.text[from..].len() - self.text[from..].trim_start().len())..self.next;
-        let varies = self.steps[first..].contains(&FormulaStep::Time);
+        let varies = |step: &FormulaStep| matches!(step, FormulaStep::Time | FormulaStep::Variable(_));
+        let varies = self.steps[first..].iter().any(varies);
         if varies {
             return Err(self.fault(FormulaProblem::VaryingExponent, at));
         }
@@ -172,7 +202,7 @@ impl Parser<'_> {
             }
             Some(c) if c.is_ascii_digit() || c == '.' => self.number(at),
             Some(c) if c.is_alphabetic() || c == '_' => self.name(at),
-            _ => Err(self.unexpected(A_VALUE)),
+            _ => Err(self.unexpected(self.a_value())),
         }
     }
 
@@ -208,7 +238,7 @@ impl Parser<'_> {
             Ok(value) if value <= LARGEST => self.push(FormulaStep::Number(value)),
             Ok(_) => Err(self.fault(FormulaProblem::NumberTooLarge { found: written.into() }, at..self.next)),
             Err(_) => {
-                let problem = FormulaProblem::Expected { found: quoted(written), expected: A_VALUE };
+                let problem = FormulaProblem::Expected { found: quoted(written), expected: self.a_value() };
                 Err(self.fault(problem, at..self.next))
             }
         }
@@ -225,14 +255,19 @@ impl Parser<'_> {
         if JUMPS.contains(&name) {
             return Err(self.fault(FormulaProblem::Jumps { name: name.into() }, place));
         }
-        if let Some((_, step)) = find(&NAMES) {
+        let variable = self.names.and_then(|names| names.iter().position(|known| known == name));
+        let constant = find(&NAMES).filter(|(_, step)| self.names.is_none() || *step != FormulaStep::Time);
+        if let Some(step) = variable.map(FormulaStep::Variable).or(constant.map(|(_, step)| step)) {
             return if called { Err(self.unexpected(AN_OPERATOR)) } else { self.push(step) };
         }
         let one = find(&FUNCTIONS);
         let Some((name, step)) = one.or_else(|| find(&CHOICES)) else {
             let name = name.to_owned();
-            let problem =
-                if called { FormulaProblem::UnknownFunction { name } } else { FormulaProblem::UnknownName { name } };
+            let problem = match self.names {
+                _ if called => FormulaProblem::UnknownFunction { name },
+                None => FormulaProblem::UnknownName { name },
+                Some(names) => FormulaProblem::UnknownVariable { name, names: names.to_vec() },
+            };
             return Err(self.fault(problem, place));
         };
         if !called {
@@ -260,6 +295,11 @@ impl Parser<'_> {
             return Err(self.fault(FormulaProblem::Arguments { name, takes, found }, place.start..self.next));
         }
         if one.is_some() { self.push(step) } else { Ok(()) }
+    }
+
+    /// What a value may be.
+    fn a_value(&self) -> &'static str {
+        if self.names.is_some() { A_VALUE_OF_VARIABLES } else { A_VALUE }
     }
 
     fn push(&mut self, step: FormulaStep) -> Result<(), FormulaFault> {
@@ -292,6 +332,9 @@ impl Parser<'_> {
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
+
+    use forwardstep_core::expression::Binary::Multiply;
+    use forwardstep_core::expression::Step;
 
     use super::*;
     use std::f64::consts::E;
@@ -362,6 +405,20 @@ mod tests {
             let fault = parse_formula(text).unwrap_err();
             assert_eq!((fault.at, fault.problem.to_string().as_str()), (at, message), "{text}");
         }
+    }
+
+    #[test]
+    fn formulas_in_variables_know_their_names_only() {
+        let names = ["x".to_owned(), "dx".to_owned()];
+        let steps = |text: &str| parse_expression(text, &names).unwrap().steps().to_vec();
+        assert_eq!(steps("x^2*dx"), [Step::Variable(0), Step::Power(2.0), Step::Variable(1), Step::Binary(Multiply)]);
+        let fault = |text: &str| parse_expression(text, &names).unwrap_err();
+        assert_eq!(fault("x + t").at, 4..5);
+        assert_eq!(fault("x + t").problem.to_string(), "there is no `t` in this formula");
+        assert!(fault("x + d2x").problem.help().unwrap().starts_with("did you mean `dx`?"));
+        assert_eq!(fault("2^x").problem, FormulaProblem::VaryingExponent);
+        let message = "found its end in a formula where a number, a variable, a function or a parenthesis should stand";
+        assert_eq!(fault("x +").problem.to_string(), message);
     }
 
     #[test]

@@ -45,6 +45,7 @@ pub(super) const JUMPS: [&str; 17] = [
 ];
 
 pub(super) const A_VALUE: &str = "a number, `t`, a function or a parenthesis";
+pub(super) const A_VALUE_OF_VARIABLES: &str = "a number, a variable, a function or a parenthesis";
 pub(super) const AN_OPERATOR: &str = "an operator (+ - * / ^) or the end";
 
 /// Why a text is no formula in t.
@@ -67,6 +68,14 @@ pub enum FormulaProblem {
     UnknownName {
         /// The name.
         name: String,
+    },
+    /// A name that is none of a variable.
+    #[error("there is no `{name}` in this formula")]
+    UnknownVariable {
+        /// The name.
+        name: String,
+        /// The variables.
+        names: Vec<String>,
     },
     /// A name that is none of a function.
     #[error("there is no function `{name}`")]
@@ -135,6 +144,10 @@ impl FormulaProblem {
                     return Some(format!("a function has its argument in parentheses: `{name}(t)`"));
                 }
                 choose(name, "there are", &[first(&NAMES), functions()].concat())
+            }
+            FormulaProblem::UnknownVariable { name, names } => {
+                let names: Vec<&str> = names.iter().map(String::as_str).chain(["pi", "e"]).collect();
+                choose(name, "there are", &[names, functions()].concat())
             }
             FormulaProblem::UnknownFunction { name } => choose(name, "the functions are", &functions()),
             FormulaProblem::Jumps { .. } => {

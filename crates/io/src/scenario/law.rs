@@ -5,6 +5,7 @@ use forwardstep_sim::{Law, RobotKind, RobotSetup};
 
 use super::agents::Body;
 use super::at::At;
+use super::chain;
 use super::fault::{Fault, fault, not_negative, positive, values};
 use super::file::{AdaptiveFile, DampingFile, EstimateStartFile, KnownFile, LawFile};
 use super::problem::ScenarioProblem;
@@ -12,6 +13,8 @@ use super::spacecraft;
 use super::systems_file::PositionOnlyFile;
 use super::task;
 use super::values::{GainFile, GainOrBandwidth, Item};
+use super::vehicle;
+use super::vehicle_file::ThrustFile;
 
 /// The gains of arms from a URDF, whose inertias span decades.
 const DAMPING_BANDWIDTH_PER_S: f64 = 20.0;
@@ -25,6 +28,7 @@ const FILTER_PER_S: f64 = 10.0;
 /// Builds the law of `agent`; without a file, the adaptive one with default gains.
 pub(super) fn law(file: Option<&At<LawFile>>, agent: &str, robot: &RobotSetup, body: &Body) -> Result<Law, Fault> {
     match file {
+        None if flies(robot) => build(&LawFile::Thrust(ThrustFile::default()), agent, robot, body),
         None => build(&LawFile::Adaptive(AdaptiveFile::default()), agent, robot, body),
         Some(file) => build(&file.value, agent, robot, body).map_err(|fault| fault.at(&file.span)),
     }
@@ -32,12 +36,22 @@ pub(super) fn law(file: Option<&At<LawFile>>, agent: &str, robot: &RobotSetup, b
 
 fn build(file: &LawFile, agent: &str, robot: &RobotSetup, body: &Body) -> Result<Law, Fault> {
     match file {
+        LawFile::Known(_) | LawFile::Adaptive(_) if flies(robot) || matches!(robot.kind, RobotKind::Chain(_)) => {
+            let law = if let LawFile::Known(_) = file { "known" } else { "adaptive" };
+            let agent = agent.to_owned();
+            Err(Fault::new(ScenarioProblem::LawOfAnother { agent, law, made_for: "arms and point masses" }))
+        }
         LawFile::Known(KnownFile { damping }) => {
             Ok(Law::Known { damping: self::damping(damping.as_ref(), agent, robot)? })
         }
         LawFile::PositionOnly(file) => position_only(file, agent, robot),
+        LawFile::Thrust(file) => vehicle::thrust(file, agent, robot),
         LawFile::TaskSpace(file) => task::task_space(file, agent, robot, body),
         LawFile::Attitude(file) => spacecraft::attitude(file, agent, robot),
+        LawFile::Linearising(file) => chain::linearising(file, agent, robot),
+        LawFile::LinearAdaptive(file) => chain::linear_adaptive(file, agent, robot),
+        LawFile::Immersion(file) => chain::immersion(file, agent, robot),
+        LawFile::AdaptiveBackstepping(file) => chain::backstepping(file, agent, robot),
         LawFile::Adaptive(file) => Ok(Law::Adaptive {
             damping: damping(file.damping.as_ref(), agent, robot)?,
             adaptation: adaptation(file.adaptation_gain.as_ref(), agent, robot)?,
@@ -85,6 +99,10 @@ pub(super) fn adaptation(file: Option<&At<GainOrBandwidth>>, agent: &str, robot:
         GainOrBandwidth::Gain(file) => gain("adaptation_gain", file, place, agent, robot.theta.len()),
         GainOrBandwidth::Bandwidth(file) => Ok(Gain::Bandwidth(positive("bandwidth_per_s", &file.bandwidth_per_s)?)),
     }
+}
+
+fn flies(robot: &RobotSetup) -> bool {
+    matches!(robot.kind, RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. })
 }
 
 fn is_tree(robot: &RobotSetup) -> bool {

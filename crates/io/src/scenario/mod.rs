@@ -33,6 +33,8 @@
 
 mod agents;
 pub mod at;
+mod chain;
+pub mod chain_file;
 mod control;
 pub mod control_file;
 mod control_problem;
@@ -45,6 +47,8 @@ pub mod formula;
 mod formula_problem;
 pub(crate) mod inputs;
 mod law;
+mod leader;
+pub mod leader_file;
 mod links;
 pub mod links_file;
 mod network;
@@ -70,10 +74,14 @@ mod task;
 pub mod task_file;
 mod template;
 pub mod values;
+mod vehicle;
+pub mod vehicle_file;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use forwardstep_sim::leader::Following;
 use forwardstep_sim::{AgentSetup, Exchange, Law, Method, ReferenceKind, Setup, Solver, TimeSpan, recorded_columns};
 use miette::Diagnostic;
 use serde::Deserialize;
@@ -202,15 +210,26 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
     let mut read = agents::agents(&file, source, &mut folder, &mut notices, end_s)?;
     pushes::pushes(&file.pushes, &mut read, end_s, source, &mut folder, &mut notices)?;
     let agents = read.agents;
-    let names: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
-    let (reference, exchange) = reference(&file.reference.value)?;
+    let mut names: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
+    let axes = agents.first().map_or(0, |agent| agent.robot.axes.len());
+    let following = leader::following(&file, axes, end_s)?;
+    if let (Some(following), Some(place)) = (&following, &file.leader) {
+        let name = following.leader.name.clone();
+        if names.contains(&name) {
+            let first_line = file.agents.span.start;
+            let (first_line, _) = source.line_column(first_line);
+            return Err(fault(place, ScenarioProblem::AgentTwice { name, first_line }).into());
+        }
+        names.push(name);
+    }
+    let (reference, exchange) = reference(&file.reference.value, following)?;
+    let vertices = (&names[..], agents.len());
     let network = match &file.network {
-        Some(network) => network::network(&network.value, &names, end_s, source, &mut folder, &mut notices)
+        Some(network) => network::network(&network.value, vertices, end_s, source, &mut folder, &mut notices)
             .map_err(|fault| fault.at(&network.span))?,
         None if reference == ReferenceKind::Tracking => network::silent(names.len()),
         None => return Err(fault(&file.reference, NetworkProblem::Missing).into()),
     };
-    let axes = agents.first().map_or(0, |agent| agent.robot.axes.len());
     let control = file.control.as_ref().map(|file| control::control(file, axes, end_s)).transpose()?;
     let setup = Setup {
         agents,
@@ -226,13 +245,14 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
     }
     notices.extend(Notice::coarse_sampling(&setup));
     let fleet = |agent: &AgentSetup| agent.law.is_lagrangian() && agent.target.is_none();
-    let columns = if reference != ReferenceKind::Tracking && setup.agents.iter().all(fleet) {
+    let agrees = setup.reference != ReferenceKind::Tracking && setup.following().is_none();
+    let columns = if agrees && setup.agents.iter().all(fleet) {
         setup.agents.iter().map(columns).sum()
     } else {
         recorded_columns(&setup).map_err(|error| Fault::new(ScenarioProblem::Setup(error)))?.len()
     };
     recording_fits(&setup, columns, every.unwrap_or(&file.time.end_s))?;
-    let goal = file.goal.as_ref().map(|file| goal(file, reference)).transpose()?;
+    let goal = file.goal.as_ref().map(|file| goal(file, &setup.reference)).transpose()?;
     Ok(Scenario {
         name: name.to_owned(),
         source: source.clone(),
@@ -266,7 +286,10 @@ fn parse(source: &SourceText) -> Result<ScenarioFile, Fault> {
 }
 
 /// What produces the reference velocities, and what is exchanged for it.
-fn reference(file: &ReferenceFile) -> Result<(ReferenceKind, Exchange), Fault> {
+fn reference(file: &ReferenceFile, following: Option<Arc<Following>>) -> Result<(ReferenceKind, Exchange), Fault> {
+    if let Some(following) = following {
+        return Ok((ReferenceKind::Following(following), Exchange::PositionVelocity));
+    }
     let exchange = |file: &ConsensusFile| match file.exchange {
         ExchangeFile::Position => Exchange::Position,
         ExchangeFile::PositionVelocity => Exchange::PositionVelocity,
@@ -280,6 +303,8 @@ fn reference(file: &ReferenceFile) -> Result<(ReferenceKind, Exchange), Fault> {
             let acceleration_limit = limit.map(|limit| positive("acceleration_limit", limit)).transpose()?;
             (ReferenceKind::Backstepping { filter_s, acceleration_limit }, Exchange::Position)
         }
+        // A leader's reference has been read by now.
+        ReferenceFile::Leader(_) => return Err(Fault::new(ScenarioProblem::NoLeader)),
         ReferenceFile::Tracking(_) => (ReferenceKind::Tracking, Exchange::Position),
     })
 }
@@ -316,7 +341,7 @@ fn solver(file: Option<&SolverFile>) -> Result<Solver, Fault> {
     Ok(Solver { method, max_step_s, min_step_s, ledger: file.ledger.unwrap_or(default.ledger) })
 }
 
-fn goal(file: &At<GoalFile>, reference: ReferenceKind) -> Result<Goal, Fault> {
+fn goal(file: &At<GoalFile>, reference: &ReferenceKind) -> Result<Goal, Fault> {
     let GoalFile { disagreement_below, error_below, expect } = &file.value;
     if let (Some(_), Some(second)) = (disagreement_below, error_below) {
         return Err(fault(second, ScenarioProblem::TwoGoals));
@@ -330,9 +355,11 @@ fn goal(file: &At<GoalFile>, reference: ReferenceKind) -> Result<Goal, Fault> {
         (_, Some((key, below))) => {
             let bound = positive(key, below)?;
             match (key, reference) {
-                ("error_below", ReferenceKind::Tracking) => Ok(Goal::ErrorBelow(bound)),
+                ("error_below", ReferenceKind::Tracking | ReferenceKind::Following(_)) => Ok(Goal::ErrorBelow(bound)),
                 ("error_below", _) => Err(fault(below, ScenarioProblem::NothingTracked)),
-                (_, ReferenceKind::Tracking) => Err(fault(below, ScenarioProblem::NothingAgreed)),
+                (_, ReferenceKind::Tracking | ReferenceKind::Following(_)) => {
+                    Err(fault(below, ScenarioProblem::NothingAgreed))
+                }
                 _ => Ok(Goal::DisagreementBelow(bound)),
             }
         }

@@ -23,10 +23,11 @@ use crate::SourceText;
 /// Switches or jumps until the end of the run that are accepted; each ends a step.
 const MOST_EVENTS: f64 = 1e7;
 
-/// Builds the network of the agents `names`; `folder` is where tables are looked for.
+/// Builds the network of the vertices `names`, of which the first `agents` hear others; `folder` is where tables are looked
+/// for.
 pub(super) fn network(
     file: &NetworkFile,
-    names: &[String],
+    (names, agents): (&[String], usize),
     end_s: f64,
     source: &SourceText,
     folder: &mut InputFolder,
@@ -34,6 +35,7 @@ pub(super) fn network(
 ) -> Result<Network, Fault> {
     let mut reader = NetworkReader {
         names,
+        agents,
         index: names.iter().enumerate().map(|(k, name)| (name.as_str(), k)).collect(),
         weight: Weight::Constant(1.0),
         default_delay: DelayPlan::Shared(Delay::Constant { s: 0.0 }),
@@ -73,6 +75,8 @@ pub(super) fn silent(agents: usize) -> Network {
 /// What is known while a network is read.
 pub(super) struct NetworkReader<'a> {
     pub(super) names: &'a [String],
+    /// How many of them are agents; a leader comes after them.
+    pub(super) agents: usize,
     pub(super) index: HashMap<&'a str, usize>,
     /// The weight and the delay of edges that have none of their own.
     pub(super) weight: Weight,

@@ -16,6 +16,12 @@ pub enum NetworkProblem {
         /// The agent.
         name: String,
     },
+    /// An edge that leads to the leader.
+    #[error("`{name}` leads and hears nobody")]
+    LeaderHears {
+        /// The leader.
+        name: String,
+    },
     /// An edge that is there twice.
     #[error("a second edge from `{from}` to `{to}` in one graph; the first is on line {first_line}")]
     EdgeTwice {
@@ -185,6 +191,7 @@ impl NetworkProblem {
     /// What to do about it.
     pub fn help(&self) -> Option<String> {
         let text = match self {
+            NetworkProblem::LeaderHears { .. } => "leave this edge out, or turn it round".into(),
             NetworkProblem::Topology(_) => "an agent hears nobody twice, and never itself".into(),
             NetworkProblem::EdgesAndPhases => "move the edges into a phase, or delete the phases".into(),
             NetworkProblem::Missing => "say who hears whom: `[network]` with `edges`".into(),

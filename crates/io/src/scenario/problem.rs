@@ -1,9 +1,10 @@
 //! Why a scenario is refused.
 
 use forwardstep_core::GainError;
-use forwardstep_core::plant::SpacecraftError;
+use forwardstep_core::plant::{CascadeError, SpacecraftError};
 use forwardstep_core::robot::tree::TipError;
 use forwardstep_sim::SetupError;
+use forwardstep_sim::trajectory::{SplineError, TrajectoryError};
 use thiserror::Error;
 
 use super::control_problem::ControlProblem;
@@ -423,12 +424,38 @@ pub enum ScenarioProblem {
     #[error("`disagreement_below` and `error_below` are both given")]
     TwoGoals,
     /// An error, but no target.
-    #[error("`error_below` is about targets, but the agents agree with each other")]
+    #[error("`error_below` is about targets and leaders, but the agents agree with each other")]
     NothingTracked,
     /// A disagreement among agents that do not agree.
-    #[error("`disagreement_below` is about agreement, but every agent follows a target of its own")]
+    #[error("`disagreement_below` is about agreement, but every agent follows a target or a leader")]
     NothingAgreed,
 
+    /// Sinusoids that make no trajectory.
+    #[error(transparent)]
+    Trajectory(TrajectoryError),
+    /// Points that make no curve.
+    #[error(transparent)]
+    Points(SplineError),
+    /// Followers without a leader.
+    #[error("the agents are to follow a leader, but there is none")]
+    NoLeader,
+    /// A leader whom nobody follows.
+    #[error("there is a leader, but `reference.{reference}` does not follow one")]
+    LeaderUnused {
+        /// The reference dynamics.
+        reference: &'static str,
+    },
+    /// A coupling where there is none.
+    #[error("`coupling` belongs to the design `swarm`")]
+    CouplingUnused,
+    /// As many roots as the design has.
+    #[error("`roots_per_s` has {}, but this design needs {need}", entry_count(*.found))]
+    LeaderRoots {
+        /// How many there are.
+        found: usize,
+        /// How many are needed.
+        need: usize,
+    },
     /// A target that has no value somewhere on the run.
     #[error("this has no finite value everywhere from 0 s to {end_s} s, or that could not be shown")]
     TargetValue {
@@ -456,6 +483,15 @@ pub enum ScenarioProblem {
     /// Bounds beside a full matrix.
     #[error("`bounds` need `kinematic_gain` to be a number or a diagonal, not a matrix")]
     BoundsOfMatrix,
+    /// A chain without meaning.
+    #[error("{0}")]
+    Chain(CascadeError),
+    /// Antiderivatives that have to be given.
+    #[error("agent `{agent}`: a regressor holds the highest derivative of x, so its antiderivative must be given")]
+    Antiderivatives {
+        /// The agent.
+        agent: String,
+    },
     /// A law that is made for something else.
     #[error("agent `{agent}`: the law `{law}` is made for {made_for}")]
     LawOfAnother {
@@ -539,6 +575,9 @@ impl Problem for ScenarioProblem {
                 "set `disagreement_below = 1e-3` (with targets `error_below`), or `expect = \"diverges\"`, or delete the goal".into()
             }
             ScenarioProblem::ThresholdUnused { .. } | ScenarioProblem::TwoGoals => "delete one of the two".into(),
+            ScenarioProblem::NoLeader => "add `[leader]` with a `motion`".into(),
+            ScenarioProblem::LeaderUnused { .. } => "write `reference.leader`, or delete the leader".into(),
+            ScenarioProblem::LeaderRoots { .. } => "`continuous` has one root, the other designs have two".into(),
             ScenarioProblem::NothingTracked => "write `disagreement_below`".into(),
             ScenarioProblem::NothingAgreed => "write `error_below`".into(),
             ScenarioProblem::TargetValue { .. } => "roots, logarithms and quotients need arguments that stay where they have values".into(),

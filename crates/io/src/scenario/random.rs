@@ -10,6 +10,8 @@ pub(super) enum Stream {
     Velocity,
     /// The reference velocity, and its derivatives.
     Reference(usize),
+    /// States of a chain beyond its velocity.
+    Higher,
     /// Parameters of robots.
     Spread,
 }
@@ -20,6 +22,7 @@ impl Stream {
             Stream::Position => 0,
             Stream::Velocity => 1,
             Stream::Reference(derivative) => 2 + derivative as u64,
+            Stream::Higher => u64::MAX - 1,
             Stream::Spread => u64::MAX,
         }
     }

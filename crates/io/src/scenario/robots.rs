@@ -8,12 +8,14 @@ use forwardstep_sim::{Axis, AxisUnit, RobotKind, RobotSetup};
 
 use super::ScenarioError;
 use super::at::At;
+use super::chain;
 use super::fault::{Fault, count, fault, not_negative, positive};
 use super::file::{FrictionFile, PlanarArmFile, PointMassFile, RobotFile, UrdfFile};
 use super::inputs::InputFolder;
 use super::problem::ScenarioProblem;
 use super::spacecraft::spacecraft;
 use super::values::Named;
+use super::vehicle;
 use crate::files::ReadError;
 use crate::urdf::{self, FrictionPolicy, UrdfOptions, UrdfProblem};
 use crate::{InputError, SourceText};
@@ -62,7 +64,12 @@ pub(super) fn robot(file: &At<RobotFile>, folder: &mut InputFolder) -> Result<Re
             planar_links(arm).and_then(|links| planar_robot(&links)).map_err(|fault| fault.at(&file.span))?
         }
         RobotFile::PointMass(mass) => point_mass(mass)?,
+        RobotFile::Vehicle(file) => vehicle::vehicle(file)?,
+        RobotFile::Rotorcraft(file) => vehicle::rotorcraft(file)?,
         RobotFile::Spacecraft(file) => spacecraft(file)?,
+        RobotFile::Chain(file) => chain::chain(file)?,
+        RobotFile::StrictFeedback(file) => chain::strict(file)?,
+        RobotFile::PureFeedback(file) => chain::pure(file)?,
     };
     Ok(ReadRobot { robot, notices: Vec::new(), links: Rc::new([]) })
 }
@@ -179,6 +186,6 @@ fn point_mass(file: &PointMassFile) -> Result<RobotSetup, Fault> {
     })
 }
 
-fn axis(name: &str, unit: AxisUnit) -> Axis {
+pub(super) fn axis(name: &str, unit: AxisUnit) -> Axis {
     Axis { name: name.into(), unit, position_limits: None, velocity_limit: None, effort_limit: None }
 }

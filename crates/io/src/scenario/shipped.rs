@@ -32,10 +32,18 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "six-arms-over-radio",
     "without-velocity",
     "double-integrators",
+    "theorem-4",
+    "theorem-5",
+    "formation",
+    "mixed-network",
     "theorem-6",
     "task-space-ur5e",
     "theorem-7",
     "tumbling-target",
+    "theorem-8",
+    "theorem-9",
+    "remark-12",
+    "swarm-tracking",
 ];
 
 /// The shipped scenario of this name.

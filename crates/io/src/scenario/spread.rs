@@ -21,7 +21,13 @@ pub(super) fn spread(entry: &AgentFile, read: &RobotSetup, index: usize, agent: 
     let unsound = || fault(place, ScenarioProblem::SpreadMassMatrix { agent: agent.to_owned() });
     match &entry.robot.value {
         RobotFile::PlanarArm(file) => planar_robot(&spread_links(file, &factors(4)?)?).map_err(|_| unsound()),
-        RobotFile::PointMass(_) => {
+        RobotFile::Chain(_) | RobotFile::StrictFeedback(_) | RobotFile::PureFeedback(_) => {
+            let mut robot = read.clone();
+            let length = robot.theta.len();
+            robot.theta.iter_mut().zip(factors(length)?).for_each(|(theta, factor)| *theta *= factor);
+            Ok(robot)
+        }
+        RobotFile::PointMass(_) | RobotFile::Vehicle(_) | RobotFile::Rotorcraft(_) => {
             let mut robot = read.clone();
             robot.theta.iter_mut().zip(factors(1)?).for_each(|(mass, factor)| *mass *= factor);
             Ok(robot)

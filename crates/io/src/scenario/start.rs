@@ -1,6 +1,6 @@
 //! `start` → [`Start`].
 
-use forwardstep_sim::{AxisUnit, RobotKind, RobotSetup, Start};
+use forwardstep_sim::{AxisUnit, ChainModel, RobotKind, RobotSetup, Start};
 
 use super::at::At;
 use super::fault::{Fault, fault, seed, values};
@@ -9,6 +9,7 @@ use super::problem::ScenarioProblem;
 use super::random::{Stream, draws};
 use super::spacecraft;
 use super::values::{Item, RandomFile, StartValues};
+use super::vehicle;
 
 /// The `start` of one agent with the position of the agent among those that share it.
 #[derive(Clone, Copy)]
@@ -44,7 +45,7 @@ pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<
                 return Ok(found);
             }
         }
-        Ok(vec![0.0; agent.robot.axes.len()])
+        Ok(vec![0.0; agent.length(stream)])
     };
     let q = quantity(Stream::Position, |file| {
         [
@@ -60,11 +61,17 @@ pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<
             ("velocity", None, &file.velocity),
         ]
     })?;
+    let rest =
+        match (&agent.robot.kind, tables().find_map(|table| Some((table, table.file.value.higher_states.as_ref()?)))) {
+            (RobotKind::Chain(_), None) => vec![0.0; agent.length(Stream::Higher)],
+            (_, Some((table, values))) => agent.vector("higher_states", values, table, Stream::Higher)?,
+            _ => vehicle::rest(agent.robot, tables().map(|table| &table.file.value)),
+        };
     let mut reference = Vec::new();
     if let Some((table, state)) = tables().find_map(|table| Some((table, table.file.value.reference.as_ref()?))) {
         let derivatives = &state.value.derivatives;
         let z = state.value.z.as_ref().map(|z| agent.vector("z", z, table, Stream::Reference(0))).transpose()?;
-        reference.push(z.unwrap_or_else(|| dq.clone()));
+        reference.push(z.unwrap_or_else(|| agent.led(&q, &dq, &rest)));
         for (k, derivative) in derivatives.iter().enumerate() {
             if k + 1 >= agent.order {
                 let (found, name) = (derivatives.len(), agent.name.to_owned());
@@ -74,10 +81,29 @@ pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<
             reference.push(agent.vector("derivatives", derivative, table, Stream::Reference(k + 1))?);
         }
     }
-    Ok(Start { q, dq, rest: Vec::new(), reference })
+    Ok(Start { q, dq, rest, reference })
 }
 
 impl Starter<'_> {
+    /// Numbers in one of its quantities.
+    fn length(&self, stream: Stream) -> usize {
+        match (&self.robot.kind, stream) {
+            (RobotKind::Chain(chain), Stream::Velocity) if !chain.has_velocity() => 0,
+            (RobotKind::Chain(chain), Stream::Higher) => chain.rest_len(),
+            (_, Stream::Higher) => 0,
+            _ => self.robot.axes.len(),
+        }
+    }
+
+    /// What z follows, at the start.
+    fn led(&self, q: &[f64], dq: &[f64], rest: &[f64]) -> Vec<f64> {
+        match &self.robot.kind {
+            RobotKind::Chain(ChainModel::Cascade(_)) => q.to_vec(),
+            RobotKind::Chain(_) => [q, dq, rest].concat().last().map(|top| vec![*top]).unwrap_or_default(),
+            _ => dq.to_vec(),
+        }
+    }
+
     fn one_of(&self, table: Shared<'_>, stream: Stream, keys: [Key<'_>; 3]) -> Result<Option<Vec<f64>>, Fault> {
         let any = keys[2].0;
         let mut given = keys.into_iter().filter_map(|(key, unit, value)| Some((key, unit, value.as_ref()?)));
@@ -106,7 +132,7 @@ impl Starter<'_> {
         table: Shared<'_>,
         stream: Stream,
     ) -> Result<Vec<f64>, Fault> {
-        let need = self.robot.axes.len();
+        let need = self.length(stream);
         let length = |found: usize, place: &std::ops::Range<usize>| {
             if found == need {
                 return Ok(());

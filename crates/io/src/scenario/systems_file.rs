@@ -23,6 +23,44 @@ pub struct TrackingFile {
 pub enum TargetFile {
     /// A number or a formula in t for every axis, in rad or m.
     Formulas(At<Vec<At<FunctionFile>>>),
+    /// A constant and sinusoids for every axis, whose bounds are known for ever.
+    Sinusoids(At<Vec<SwingFile>>),
+    /// The smoothest curve through points, at rest before the first and after the last.
+    Points(PointsFile),
+}
+
+/// A constant and sinusoids.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SwingFile {
+    /// What it swings about, in rad or m. Default: 0.
+    pub offset: Option<At<f64>>,
+    /// What swings.
+    #[serde(default)]
+    pub waves: Vec<WaveFile>,
+}
+
+/// amplitude · sin(rate · t + phase).
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WaveFile {
+    /// In rad or m.
+    pub amplitude: At<f64>,
+    /// The angular rate, in rad/s.
+    pub rad_per_s: At<f64>,
+    /// In rad. Default: 0.
+    pub phase_rad: Option<At<f64>>,
+}
+
+/// Points that a curve goes through.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointsFile {
+    /// When, in s; rising.
+    #[schemars(length(min = 1))]
+    pub times_s: At<Vec<At<f64>>>,
+    /// Where, a list with an entry per axis for every time, in rad or m.
+    pub positions: At<Vec<At<Vec<At<f64>>>>>,
 }
 
 /// The law (a8) for a point mass whose velocity is not measured.

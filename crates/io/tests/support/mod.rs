@@ -143,6 +143,7 @@ pub fn outcome(setup: &Setup) -> Outcome {
             rejected: 812,
             evaluations: 252_271,
             break_points: 180,
+            sign_residual: None,
             wall: Duration::from_millis(1234),
         },
     }

@@ -45,7 +45,10 @@ fn shipped_robots_load_without_notices() {
                 && axis.effort_limit.is_some()
         }));
     }
-    assert_eq!(SHIPPED_ROBOTS.map(|(name, _)| name), ["ur5e", "panda"]);
+    let gantry = read(shipped_robot("gantry").unwrap()).unwrap();
+    assert_eq!((notices(&gantry), axis_names(&gantry)), (Vec::new(), vec!["bridge", "carriage", "ram"]));
+    assert!(gantry.robot.axes.iter().all(|axis| axis.unit == AxisUnit::Metre));
+    assert_eq!(SHIPPED_ROBOTS.map(|(name, _)| name), ["ur5e", "panda", "gantry"]);
     assert_eq!(shipped_robot("ur5e.urdf"), shipped_robot("ur5e"));
     assert_eq!(shipped_robot("ur5"), None);
 }

@@ -1,14 +1,17 @@
 //! All populations with what joins them: the right-hand side as a whole, and its events.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use forwardstep_core::controller::Trouble;
 use forwardstep_core::reference::{Exchange as CoreExchange, Position, PositionVelocity};
 
+use super::guide::Guide;
 use super::members::{population, populations};
 use super::population::{Columns, Inputs};
 use super::pushes::Pushes;
 use super::sampling::Sampling;
+use super::sliding::{Place, Slider};
 use super::valid::{SetupError, check};
 use crate::engine::{DelaySystem, Happened, Heard, Port};
 use crate::recording::Signal;
@@ -22,11 +25,16 @@ pub(crate) struct ClosedLoop<'a> {
     start: Vec<f64>,
     /// When control is digital.
     sampling: Option<Sampling<'a>>,
+    /// When there are set-valued signs and control is continuous.
+    slider: Option<Slider<'a>>,
+    /// Where q₀ stands in the state, when there is a leader.
+    leader: Option<Range<usize>>,
     pushes: Pushes,
     /// When a target has its next kink, s.
     kink_s: f64,
-    /// A row of the recording of an agent that is pushed.
+    /// A row of the recording of an agent that is pushed or follows a leader.
     row: Vec<f64>,
+    axes: usize,
 }
 
 /// One population and its part of everything.
@@ -39,6 +47,11 @@ pub(super) struct Block {
 }
 
 impl Block {
+    /// Its part of columns with an entry per axis.
+    pub(super) fn columns_range(&self, axes: usize) -> Range<usize> {
+        self.degree.start * axes..self.degree.end * axes
+    }
+
     /// The population's part of what is heard and felt.
     pub(super) fn inputs<'a>(&self, heard: &'a Heard, felt: Option<&'a [f64]>) -> Inputs<'a> {
         Inputs {
@@ -61,16 +74,23 @@ impl<'a> ClosedLoop<'a> {
 
     fn with_exchange<X: CoreExchange>(setup: &'a Setup) -> Result<Self, SetupError> {
         let axes = setup.agents[0].robot.axes.len();
-        let entries = X::CHANNELS * axes;
+        let following = setup.following();
+        let sliding = following.map(|following| following.sliding());
+        // What is computed is sent by sampled controllers; in continuous time the slider looks it up.
+        let told = if setup.control.is_some() { sliding.map_or(0, |sliding| sliding.told()) } else { 0 };
+        let entries = (X::CHANNELS + told) * axes;
         let mut closed_loop = ClosedLoop {
             blocks: Vec::new(),
-            ports: vec![Port { state: 0, entry: 0, degree: 0, stride: 0 }; setup.agents.len()],
+            ports: vec![Port { state: 0, entry: 0, degree: 0, stride: 0 }; setup.network.agents],
             entries,
             start: Vec::new(),
             sampling: None,
+            slider: None,
+            leader: None,
             pushes: Pushes::default(),
             kink_s: f64::INFINITY,
             row: Vec::new(),
+            axes,
         };
         let mut placed = 0;
         for group in populations(&setup.agents) {
@@ -91,7 +111,28 @@ impl<'a> ClosedLoop<'a> {
             });
             placed += n;
         }
-        closed_loop.start_references(setup)?;
+        if let Some(following) = following {
+            let guide = Box::new(Guide::new(Arc::clone(following), placed));
+            let first = closed_loop.start.len();
+            guide.append_start(&setup.agents, &mut closed_loop.start);
+            closed_loop.ports[placed] = Port { state: first, entry: placed * entries, degree: placed, stride: 1 };
+            closed_loop.leader = Some(first..first + axes);
+            closed_loop.blocks.push(Block {
+                state: first..closed_loop.start.len(),
+                degree: placed..placed + 1,
+                sums: placed * entries..(placed + 1) * entries,
+                // Nothing acts on it.
+                external: placed * axes..placed * axes,
+                columns: guide,
+            });
+        }
+        let heard = closed_loop.start_references(setup, X::CHANNELS * axes)?;
+        if let (Some(following), Some(sliding), None) = (following, sliding, &setup.control) {
+            let places = closed_loop.places();
+            let states = closed_loop.start.len();
+            closed_loop.slider =
+                Some(Slider::new(&setup.network, sliding, following.period_s, axes, places, heard, states));
+        }
         if let Some(control) = &setup.control {
             let ClosedLoop { ports, start, .. } = &closed_loop;
             closed_loop.sampling = Some(Sampling::new(setup, control, ports.clone(), entries, start));
@@ -102,20 +143,21 @@ impl<'a> ClosedLoop<'a> {
         closed_loop.pushes = Pushes::new(setup, &closed_loop.ports, |degree| first_of(&closed_loop.blocks, degree));
         closed_loop.kink_s = closed_loop.next_kink_s(0.0);
         let longest = closed_loop.blocks.iter().map(|block| block.columns.signals().len()).max();
-        closed_loop.row = Vec::with_capacity(longest.unwrap_or(0) + axes);
+        closed_loop.row = Vec::with_capacity(longest.unwrap_or(0) + 2 * axes);
         Ok(closed_loop)
     }
 
     /// From the wanted z(0), ż(0), … to reference states, with what everybody hears at t = 0: the initial messages.
-    fn start_references(&mut self, setup: &Setup) -> Result<(), SetupError> {
+    /// Of every message as many entries are heard as flow.
+    fn start_references(&mut self, setup: &Setup, flowing: usize) -> Result<Heard, SetupError> {
         let graph = setup.network.schedule.segments().next().map_or(0, |segment| segment.graph);
-        let mut degree = vec![0.0; setup.agents.len()];
-        let mut sums = vec![0.0; setup.agents.len() * self.entries];
+        let mut degree = vec![0.0; self.ports.len()];
+        let mut sums = vec![0.0; self.ports.len() * self.entries];
         for edge in setup.network.schedule.graph(graph) {
             let (from, to) = (self.ports[edge.from], self.ports[edge.to]);
             let weight = setup.network.weight_at(edge.weight, 0.0);
             degree[to.degree] += weight;
-            for c in 0..self.entries {
+            for c in 0..flowing {
                 sums[to.entry + c * to.stride] += weight * self.start[from.state + c * from.stride];
             }
         }
@@ -126,7 +168,22 @@ impl<'a> ClosedLoop<'a> {
                 .start(&setup.agents, &mut self.start[block.state.clone()], degree, sums)
                 .map_err(|error| SetupError::Length { agent: setup.agents[0].name.clone(), error })?;
         }
-        Ok(())
+        Ok(Heard { degree, sums })
+    }
+
+    /// Where the columns of every vertex stand that have an entry per axis.
+    fn places(&self) -> Vec<Place> {
+        let place = |port: &Port| {
+            let block = self.blocks.iter().find(|block| block.degree.contains(&port.degree));
+            let start = block.map_or(0, |block| block.degree.start);
+            Place { first: start * self.axes + port.degree - start, stride: port.stride, degree: port.degree }
+        };
+        self.ports.iter().map(place).collect()
+    }
+
+    /// The largest rest of the inclusion that the signs solve; `None` when there are no signs, or nothing is solved.
+    pub(crate) fn sign_residual(&self) -> Option<f64> {
+        self.slider.as_ref().and_then(Slider::residual)
     }
 
     fn next_kink_s(&self, after_s: f64) -> f64 {
@@ -172,7 +229,7 @@ impl<'a> ClosedLoop<'a> {
     pub(crate) fn signals(&self, agents: usize) -> Vec<Vec<(Signal, usize)>> {
         let mut signals = vec![Vec::new(); agents];
         for block in &self.blocks {
-            for (agent, port) in self.ports.iter().enumerate() {
+            for (agent, port) in self.ports.iter().enumerate().take(agents) {
                 if block.degree.contains(&port.degree) {
                     signals[agent] = block.columns.signals();
                 }
@@ -181,6 +238,9 @@ impl<'a> ClosedLoop<'a> {
         for (agent, signals) in signals.iter_mut().enumerate().filter(|(agent, _)| self.pushes.concern(*agent)) {
             signals.extend((0..self.pushes.felt_by(agent).len()).map(|axis| (Signal::External, axis)));
         }
+        if self.leader.is_some() {
+            signals.iter_mut().for_each(|signals| signals.extend((0..self.axes).map(|axis| (Signal::Error, axis))));
+        }
         signals
     }
 
@@ -188,16 +248,22 @@ impl<'a> ClosedLoop<'a> {
     pub(crate) fn record(&mut self, t_s: f64, x: &[f64], heard: &Heard, mut write: impl FnMut(usize, &[f64])) {
         let heard = self.sampling.as_ref().map_or(heard, Sampling::heard);
         self.pushes.feel(t_s, x);
+        if let Some(slider) = &mut self.slider {
+            slider.look(t_s, heard, self.pushes.felt(), &mut self.blocks, x);
+        }
         let (pushes, row) = (&self.pushes, &mut self.row);
+        let leader = self.leader.clone().map_or(&[][..], |leader| &x[leader]);
         for block in &mut self.blocks {
             let inputs = block.inputs(heard, pushes.felt());
             let (columns, state) = (&mut block.columns, &x[block.state.clone()]);
-            columns.record(t_s, state, inputs, &mut |agent, values| match pushes.felt_by(agent) {
-                [] => write(agent, values),
-                felt => {
+            columns.record(t_s, state, inputs, &mut |agent, values| match (pushes.felt_by(agent), leader) {
+                ([], []) => write(agent, values),
+                (felt, leader) => {
                     row.clear();
                     row.extend_from_slice(values);
                     row.extend_from_slice(felt);
+                    // Positions are an agent's first values.
+                    row.extend(values.iter().zip(leader).map(|(q, q_0)| q - q_0));
                     write(agent, row);
                 }
             });
@@ -213,6 +279,10 @@ impl DelaySystem for ClosedLoop<'_> {
             let inputs = block.inputs(heard, self.pushes.felt());
             block.columns.rates(t_s, &x[block.state.clone()], inputs, &mut dx[block.state.clone()]);
         }
+        if let Some(slider) = &mut self.slider {
+            slider.hear(heard);
+            slider.lean(t_s, self.pushes.felt(), &mut self.blocks, x, dx);
+        }
     }
 
     fn settle(&mut self, x: &mut [f64]) {
@@ -223,7 +293,8 @@ impl DelaySystem for ClosedLoop<'_> {
 
     fn next_event_s(&self) -> f64 {
         let sample_s = self.sampling.as_ref().map_or(f64::INFINITY, Sampling::next_s);
-        sample_s.min(self.pushes.next_event_s()).min(self.kink_s)
+        let set_s = self.slider.as_ref().map_or(f64::INFINITY, Slider::next_s);
+        sample_s.min(self.pushes.next_event_s()).min(self.kink_s).min(set_s)
     }
 
     fn happen(&mut self, until_s: f64, x: &mut [f64]) -> Happened {
@@ -231,6 +302,12 @@ impl DelaySystem for ClosedLoop<'_> {
         if self.kink_s <= until_s {
             self.kink_s = self.next_kink_s(until_s);
             happened = Happened::Jumped;
+        }
+        if let Some(slider) = &mut self.slider {
+            if slider.next_s() <= until_s {
+                self.pushes.feel(until_s, x);
+            }
+            happened = happened.max(slider.happen(until_s, self.pushes.felt(), &mut self.blocks, x));
         }
         match &mut self.sampling {
             Some(sampling) => happened.max(sampling.happen(until_s, &mut self.blocks, x)),

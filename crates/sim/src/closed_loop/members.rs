@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use forwardstep_core::agent::{Agent, Limiter, VelocityFilter};
 use forwardstep_core::law::SlotineLi;
-use forwardstep_core::reference::{Backstepping, Consensus, Exchange as CoreExchange, PureIntegral, Reference};
+use forwardstep_core::reference::{
+    Backstepping, Consensus, Exchange as CoreExchange, Following, PureIntegral, Reference, SmoothFollowing,
+};
 use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass};
 use forwardstep_core::{Gain, InverseQuadratic, Lanes, LengthError, ResolvedGain};
@@ -14,6 +16,7 @@ use super::population::{Columns, Population};
 use super::sampler::{Sampler, Sensor};
 use super::systems::system;
 use super::valid::SetupError;
+use crate::leader::FollowingDesign;
 use crate::setup::{AgentSetup, Control, Law, ReferenceKind, RobotKind, Setup, VelocitySensor};
 
 /// Populations of at least so many agents are worked on in lanes.
@@ -53,7 +56,10 @@ pub(super) fn population<X: CoreExchange>(setup: &Setup, group: &[usize]) -> Res
         RobotKind::Tree(tree) => boxed::<Tree, X>(Tree::clone(tree), setup, group),
         RobotKind::PlanarArm => boxed::<PlanarArm, X>(PlanarArm, setup, group),
         RobotKind::PointMass { dimension } => boxed::<PointMass, X>(PointMass { dimension: *dimension }, setup, group),
-        RobotKind::Spacecraft { .. } => Err(SetupError::LawOfAnother {
+        RobotKind::Vehicle { .. }
+        | RobotKind::Rotorcraft { .. }
+        | RobotKind::Spacecraft { .. }
+        | RobotKind::Chain(_) => Err(SetupError::LawOfAnother {
             agent: first.name.clone(),
             law: first.law.words(),
             made_for: first.law.made_for(),
@@ -80,16 +86,28 @@ where
         }
     }
     let roots = |error| SetupError::Roots { agent: first.name.clone(), error };
-    match setup.reference {
+    match &setup.reference {
         ReferenceKind::Consensus => columns(robot, members, setup, |group| {
             Consensus::<X>::new(group.iter().map(|&agent| design(agent))).map_err(roots)
         }),
         ReferenceKind::PureIntegral => columns(robot, members, setup, |group| {
             PureIntegral::<X>::new(group.iter().map(|&agent| design(agent))).map_err(roots)
         }),
+        ReferenceKind::Following(following) => match following.design {
+            FollowingDesign::Continuous => {
+                columns(robot, members, setup, |group| Ok(Following::new(group.len(), following.sliding())))
+            }
+            design => columns(robot, members, setup, |group| {
+                let (n, sliding) = (group.len(), following.sliding());
+                Ok(match design {
+                    FollowingDesign::Swarm { coupling } => SmoothFollowing::swarm(n, sliding, coupling),
+                    _ => SmoothFollowing::new(n, sliding),
+                })
+            }),
+        },
         ReferenceKind::Backstepping { filter_s, acceleration_limit } => columns(robot, members, setup, |group| {
             let limit = acceleration_limit.unwrap_or(f64::INFINITY);
-            Ok(Backstepping::new(group.iter().map(|_| (filter_s, limit)))?)
+            Ok(Backstepping::new(group.iter().map(|_| (*filter_s, limit)))?)
         }),
         ReferenceKind::Tracking => Err(SetupError::NotTracking { agent: first.name.clone(), law: first.law.words() }),
     }

@@ -12,8 +12,12 @@
 //!
 //! Under digital control q and q̇ flow and everything else stands still between two samples, when it jumps.
 
+use std::ops::Range;
+
 use forwardstep_core::controller::Trouble;
-use forwardstep_core::reference::{Heard, Measured, Reference, ReferenceOut};
+use forwardstep_core::reference::{
+    Choice, Derived, Exchange, Heard, Measured, Reference, ReferenceOut, Sliding, SlidingInputs, saturated,
+};
 use forwardstep_core::robot::Lagrangian;
 use forwardstep_core::{Kernel, LengthError, Packed, dispatch};
 
@@ -66,6 +70,22 @@ pub(crate) trait Columns {
         let _ = after_s;
         f64::INFINITY
     }
+    /// Where the values of its set-valued signs stand in its block, if it has any.
+    fn selection(&self) -> Option<Range<usize>> {
+        None
+    }
+    /// What a sign is taken of besides what is heard, q̈ or ż, in a column per axis; `dx` is what [`Columns::rates`] gave.
+    fn tell(&mut self, t_s: f64, dx: &[f64], told: &mut [f64]) {
+        let _ = (t_s, dx, told);
+    }
+    /// What the signs are taken of, from what everybody tells and its weighted sums.
+    fn argument(&mut self, x: &[f64], inputs: Inputs<'_>, told: [&[f64]; 2], e: &mut [f64]) {
+        let _ = (x, inputs, told, e);
+    }
+    /// Adds to the rates `dx` what these values of the signs do, where they are functions of the instant.
+    fn lean(&mut self, selection: &[f64], dx: &mut [f64]) {
+        let _ = (selection, dx);
+    }
     /// Signals and axes of one member, in the order in which they are recorded.
     fn signals(&self) -> Vec<(Signal, usize)>;
     /// Which member, signal and axis a state of the block is.
@@ -79,7 +99,15 @@ pub(crate) struct Population<R: Lagrangian<f64> + Lagrangian<S>, F: Reference, S
     fleet: Fleet<R, S>,
     output: Output,
     sampler: Option<Sampler<R, F>>,
+    /// When its signs are functions of the instant.
+    layer: Option<Layer>,
     record: RecordWork<<R as Lagrangian<f64>>::Scratch>,
+}
+
+/// Signs that are functions of the instant.
+struct Layer {
+    width: f64,
+    selection: Vec<f64>,
 }
 
 /// What the reference asks for at the instant at hand.
@@ -127,7 +155,13 @@ where
         };
         let output = Output { z: vec![0.0; layout.block()], dz: vec![0.0; layout.block()] };
         let fleet = Fleet::new(robot, &members, layout);
-        let mut population = Population { members, reference, fleet, output, sampler, record };
+        let layer = match reference.sliding() {
+            Some(Sliding { choice: Choice::Layer { width }, .. }) if sampler.is_none() => {
+                Some(Layer { width: *width, selection: vec![0.0; layout.block()] })
+            }
+            _ => None,
+        };
+        let mut population = Population { members, reference, fleet, output, sampler, layer, record };
         population.record.row = vec![0.0; population.signals().len()];
         population
     }
@@ -145,8 +179,9 @@ where
             }
             None => {
                 let Output { z, dz } = &mut self.output;
-                let out = ReferenceOut { z, dz, d_state: &mut dx[l.reference..l.theta_hat] };
-                evaluate(&self.reference, l, x, inputs, out)?;
+                let d_state = &mut dx[l.reference..l.theta_hat];
+                evaluate(&self.reference, l, x, inputs, ReferenceOut { z, dz, d_state: &mut *d_state })?;
+                lean_at_once(&self.reference, &mut self.layer, l, x, inputs, dz, d_state)?;
                 Drive { z, dz, held: None, external: inputs.external }
             }
         };
@@ -166,8 +201,9 @@ where
                 None => {
                     let Output { z, dz } = &mut self.output;
                     if squad == 0 {
-                        let out = ReferenceOut { z, dz, d_state: &mut self.record.d_reference };
-                        evaluate(&self.reference, l, x, inputs, out)?;
+                        let d_state = &mut self.record.d_reference[..];
+                        evaluate(&self.reference, l, x, inputs, ReferenceOut { z, dz, d_state: &mut *d_state })?;
+                        lean_at_once(&self.reference, &mut self.layer, l, x, inputs, dz, d_state)?;
                     }
                     Drive { z, dz, held: None, external: inputs.external }
                 }
@@ -197,6 +233,11 @@ where
         r.q.iter().copied().for_each(&mut put);
         w.dq.iter().chain(&w.z).chain(&w.dz).for_each(|v| put(v.lane(lane)));
         (2 * l.m..self.reference.derivatives() * l.m).for_each(|column| put(x[l.reference + column * l.n + member]));
+        if self.reference.sliding().is_some() {
+            let held = &x[l.theta_hat - l.block()..l.theta_hat];
+            let selection = self.layer.as_ref().map_or(held, |layer| &layer.selection);
+            (0..l.m).for_each(|axis| put(selection[axis * l.n + member]));
+        }
         r.s.iter().copied().for_each(&mut put);
         w.applied.iter().for_each(|v| put(v.lane(lane)));
         if l.adaptive {
@@ -224,6 +265,47 @@ where
         }
         Ok(())
     }
+}
+
+/// What the signs of everybody are taken of.
+fn argument<F: Reference>(
+    reference: &F,
+    l: Layout,
+    x: &[f64],
+    inputs: Inputs<'_>,
+    told: [&[f64]; 2],
+    e: &mut [f64],
+) -> Result<(), LengthError> {
+    let (Some(sliding), block) = (reference.sliding(), l.block()) else { return Ok(()) };
+    let channels = F::Exchange::CHANNELS;
+    LengthError::check("sums heard", channels * block, inputs.sums.len().min(channels * block))?;
+    LengthError::check("sums of positions and velocities", 2, channels.min(2))?;
+    let own = [&x[..block], &x[l.dq..l.reference], told[0]];
+    let sums = [&inputs.sums[..block], &inputs.sums[block..2 * block], told[1]];
+    sliding.argument(l.m, SlidingInputs { own, degree: inputs.degree, sums }, e)
+}
+
+/// A sign that is a function of the instant and taken of what is heard alone leans on ż, before the torque.
+fn lean_at_once<F: Reference>(
+    reference: &F,
+    layer: &mut Option<Layer>,
+    l: Layout,
+    x: &[f64],
+    inputs: Inputs<'_>,
+    dz: &mut [f64],
+    d_state: &mut [f64],
+) -> Result<(), LengthError> {
+    let (Some(layer), Some(sliding)) = (layer, reference.sliding()) else { return Ok(()) };
+    if sliding.derived != Derived::Nothing {
+        return Ok(());
+    }
+    argument(reference, l, x, inputs, [&[], &[]], &mut layer.selection)?;
+    for (k, selection) in layer.selection.iter_mut().enumerate() {
+        *selection = saturated(*selection, layer.width);
+        dz[k] -= sliding.gamma * *selection;
+        d_state[k] = dz[k];
+    }
+    Ok(())
 }
 
 /// z, ż and the rate of the reference state of everybody.
@@ -335,6 +417,36 @@ where
         }
     }
 
+    fn selection(&self) -> Option<Range<usize>> {
+        let l = self.fleet.layout;
+        self.reference.sliding().map(|_| l.theta_hat - l.block()..l.theta_hat)
+    }
+
+    fn tell(&mut self, _: f64, dx: &[f64], told: &mut [f64]) {
+        let l = self.fleet.layout;
+        match self.reference.sliding().map(|sliding| sliding.derived) {
+            Some(Derived::Acceleration) => told.copy_from_slice(&dx[l.dq..l.reference]),
+            Some(Derived::ReferenceAcceleration) => told.copy_from_slice(&self.output.dz),
+            _ => {}
+        }
+    }
+
+    fn argument(&mut self, x: &[f64], inputs: Inputs<'_>, told: [&[f64]; 2], e: &mut [f64]) {
+        let checked = argument(&self.reference, self.fleet.layout, x, inputs, told, e);
+        debug_assert_eq!(checked, Ok(()), "lengths are fixed when the population is built");
+    }
+
+    fn lean(&mut self, selection: &[f64], dx: &mut [f64]) {
+        let l = self.fleet.layout;
+        if let (Some(sliding), Some(layer)) = (self.reference.sliding(), &mut self.layer) {
+            layer.selection.copy_from_slice(selection);
+            let leaning = l.theta_hat - 2 * l.block();
+            for (rate, selection) in dx[leaning..].iter_mut().zip(selection) {
+                *rate -= sliding.gamma * selection;
+            }
+        }
+    }
+
     fn signals(&self) -> Vec<(Signal, usize)> {
         let l = self.fleet.layout;
         let mut signals = Vec::new();
@@ -343,6 +455,9 @@ where
         axes(Signal::Velocity, l.m);
         for r in 0..self.reference.derivatives().max(2) {
             axes(Signal::Reference(r as u8), l.m);
+        }
+        if self.reference.sliding().is_some() {
+            axes(Signal::Selection, l.m);
         }
         axes(Signal::TrackingError, l.m);
         axes(Signal::Torque, l.m);
@@ -364,6 +479,8 @@ where
             (Signal::Dissipation, 0)
         } else if state >= l.theta_hat {
             (Signal::Estimate, column(l.theta_hat))
+        } else if self.selection().is_some_and(|selection| state >= selection.start) {
+            (Signal::Selection, column(l.theta_hat - l.block()))
         } else if state >= l.reference {
             (Signal::Reference((column(l.reference) / l.m) as u8), column(l.reference) % l.m)
         } else if state >= l.dq {

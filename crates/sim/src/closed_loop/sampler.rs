@@ -98,7 +98,7 @@ impl<R: Lagrangian<f64>, F: Reference> Sampler<R, F> {
     /// `agents` and `sensors` in the order of the members.
     pub(crate) fn new(agents: Vec<Agent<R, F>>, sensors: Vec<Sensor>, control: &Control, axes: usize) -> Self {
         let block = || vec![0.0; axes * agents.len()];
-        let channels = <F::Exchange as Exchange>::CHANNELS;
+        let told = agents.first().map_or(0, |agent| agent.told().len());
         let state = agents.first().map_or(0, |agent| agent.reference_state().len());
         Sampler {
             sensors,
@@ -114,7 +114,7 @@ impl<R: Lagrangian<f64>, F: Reference> Sampler<R, F> {
             own: Own {
                 q: vec![0.0; axes],
                 dq: vec![0.0; axes],
-                sums: vec![0.0; channels * axes],
+                sums: vec![0.0; <F::Exchange as Exchange>::CHANNELS * axes + told],
                 state: vec![0.0; state],
             },
             agents,
@@ -136,8 +136,15 @@ impl<R: Lagrangian<f64>, F: Reference> Sampler<R, F> {
             give(n, i, &self.own.q, &mut self.measured[..self.axes * n]);
             give(n, i, &self.own.dq, &mut self.measured[self.axes * n..]);
         }
-        // A message is positions, then velocities if they are sent: as much of what is measured as there is room for.
-        sent.copy_from_slice(&self.measured[..sent.len()]);
+        // A message is positions, then velocities if they are sent, then what was computed at the last sample, if anything.
+        let told = self.own.sums.len() - <F::Exchange as Exchange>::CHANNELS * self.axes;
+        let (measured, computed) = sent.split_at_mut(sent.len().saturating_sub(told * n));
+        measured.copy_from_slice(&self.measured[..measured.len()]);
+        if told > 0 {
+            for (i, agent) in self.agents.iter().enumerate() {
+                give(n, i, agent.told(), computed);
+            }
+        }
     }
 
     /// Steps every controller; `reference` and `theta_hat` are the columns of their states, read at the first sample and

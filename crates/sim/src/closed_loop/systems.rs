@@ -7,11 +7,13 @@ use forwardstep_core::plant::{Mechanical, Plant, total};
 use forwardstep_core::reference::{Consensus, Position, polynomial};
 use forwardstep_core::robot::PointMass;
 
+use super::chains::chain;
 use super::members::sensor;
 use super::population::Columns;
 use super::single;
 use super::solo::{Digital, Solo, Target};
 use super::valid::SetupError;
+use super::vehicles;
 use crate::recording::Signal;
 use crate::setup::{AgentSetup, Control, Exchange, Law, ReferenceKind, RobotKind, Setup};
 
@@ -33,6 +35,9 @@ pub(super) fn system(setup: &Setup, agent: usize) -> Result<Box<dyn Columns>, Se
                 PositionOnly { axes: *dimension, guide, damping, filter_per_s, adaptation, estimate_start };
             solo(setup, agent, plant, controller)
         }
+        (RobotKind::Chain(model), _) => chain(setup, agent, model),
+        (&RobotKind::Vehicle { gravity }, Law::Thrust(law)) => vehicles::vehicle(setup, agent, gravity, *law),
+        (RobotKind::Rotorcraft { .. }, Law::Thrust(law)) => vehicles::rotorcraft(setup, agent, *law),
         (_, Law::TaskSpace(law)) => single::task_space(setup, agent, law),
         (RobotKind::Spacecraft { inertia_kg_m2, wheels }, Law::Attitude(law)) => {
             single::attitude(setup, agent, inertia_kg_m2, wheels, law)
@@ -51,8 +56,10 @@ fn guide(setup: &Setup, own: &AgentSetup) -> Result<Guide, SetupError> {
         ReferenceKind::Tracking => {
             let length = |error| SetupError::Length { agent: name(), error };
             LengthError::check("the roots of the reference", 3, own.roots_per_s.len()).map_err(length)?;
-            let alpha = polynomial(&own.roots_per_s).map_err(roots)?;
-            Ok(Guide::Tracking { alpha: [alpha[0], alpha[1], alpha[2]] })
+            let mut alpha = polynomial(&own.roots_per_s).map_err(roots)?;
+            // The leading one is not listed.
+            alpha.pop();
+            Ok(Guide::Tracking { alpha })
         }
         ReferenceKind::Consensus if own.roots_per_s.len() < 2 => {
             Err(SetupError::OrderTooLow { agent: name(), order: own.roots_per_s.len(), least: 2 })
@@ -151,7 +158,7 @@ pub(super) fn positive(own: &AgentSetup, what: &'static str, value: f64) -> Resu
     Err(SetupError::LawNumber { agent: own.name.clone(), what, value, requirement: "must be positive and finite" })
 }
 
-fn not_negative(own: &AgentSetup, what: &'static str, value: f64) -> Result<(), SetupError> {
+pub(super) fn not_negative(own: &AgentSetup, what: &'static str, value: f64) -> Result<(), SetupError> {
     if value >= 0.0 && value.is_finite() {
         return Ok(());
     }

@@ -1,15 +1,17 @@
 //! What makes a setup meaningless.
 
 use forwardstep_core::agent::{FilterError, LimiterError};
+use forwardstep_core::controller::ChainError;
 use forwardstep_core::plant::SpacecraftError;
-use forwardstep_core::reference::{BacksteppingError, RootsError};
+use forwardstep_core::reference::{BacksteppingError, Choice, RootsError};
 use forwardstep_core::robot::tree::TipError;
 use forwardstep_core::{GainError, LengthError};
 use thiserror::Error;
 
+use crate::leader::{Following, FollowingDesign};
 use crate::network::NetworkError;
 use crate::push::PushError;
-use crate::setup::{AgentSetup, Control, Exchange, Law, Method, ReferenceKind, Setup};
+use crate::setup::{AgentSetup, AxisUnit, Control, Exchange, Law, Method, ReferenceKind, RobotKind, Setup};
 
 /// Why a setup cannot be simulated.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -62,6 +64,14 @@ pub enum SetupError {
         agent: String,
         /// What is wrong.
         error: RootsError,
+    },
+    /// A law for a chain.
+    #[error("agent `{agent}`: {error}")]
+    Chain {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: ChainError,
     },
     /// The filter of the backstepping baseline.
     #[error(transparent)]
@@ -141,6 +151,19 @@ pub enum SetupError {
         /// Its law, in words.
         law: &'static str,
     },
+    /// A position in space among positions that are no lengths.
+    #[error(
+        "agent `{vehicle}` moves in space and exchanges positions in m, but axis `{axis}` of `{agent}` is an angle; they have \
+         nothing to agree on"
+    )]
+    UnitsDiffer {
+        /// The agent in space.
+        vehicle: String,
+        /// The other.
+        agent: String,
+        /// Its axis.
+        axis: String,
+    },
     /// A push on an agent whose law does not know any.
     #[error("agent `{agent}`: pushes act on robots under the adaptive or the known law, not on {law}")]
     NotPushed {
@@ -148,6 +171,24 @@ pub enum SetupError {
         agent: String,
         /// Its law, in words.
         law: &'static str,
+    },
+    /// Somebody talks to the leader.
+    #[error("`{leader}` leads and hears nobody, but an edge leads to it; leave that edge out")]
+    LeaderHears {
+        /// The leader.
+        leader: String,
+    },
+    /// Following a leader takes velocities.
+    #[error("following a leader exchanges positions and velocities")]
+    FollowingExchange,
+    /// q̈ or ż would have to be remembered.
+    #[error(
+        "a link has a delay of up to {delay_s} s, but accelerations are transmitted at once in continuous time; take the \
+         design that exchanges positions and velocities only, no delay, or sampled control"
+    )]
+    DelayedDerived {
+        /// The longest delay of the link, s.
+        delay_s: f64,
     },
     /// Nothing to track.
     #[error("agent `{agent}` is to track a target, but has none")]
@@ -237,8 +278,10 @@ const MOST_KEPT: f64 = 2e8;
 /// Everything that does not need a robot's kernels.
 pub(super) fn check(setup: &Setup) -> Result<(), SetupError> {
     setup.network.validate()?;
-    if setup.network.agents != setup.agents.len() {
-        return Err(SetupError::AgentCount { network: setup.network.agents, agents: setup.agents.len() });
+    let leaders = usize::from(setup.following().is_some());
+    if setup.network.agents != setup.agents.len() + leaders {
+        let agents = setup.agents.len() + leaders;
+        return Err(SetupError::AgentCount { network: setup.network.agents, agents });
     }
     let positive = |what, value: f64| {
         if value > 0.0 && value.is_finite() { Ok(()) } else { Err(SetupError::NotPositive { what, value }) }
@@ -258,7 +301,69 @@ pub(super) fn check(setup: &Setup) -> Result<(), SetupError> {
     if matches!(setup.reference, ReferenceKind::Backstepping { .. }) && setup.exchange != Exchange::Position {
         return Err(SetupError::BacksteppingExchange);
     }
-    setup.agents.iter().try_for_each(|agent| check_agent(setup, agent))
+    if let Some(following) = setup.following() {
+        check_following(following, setup)?;
+    }
+    setup.agents.iter().try_for_each(|agent| check_agent(setup, agent))?;
+    same_space(setup)
+}
+
+/// Whoever agrees with a vehicle has a position in m. (An arm and a cart may agree on a number.)
+fn same_space(setup: &Setup) -> Result<(), SetupError> {
+    let moves =
+        |agent: &&AgentSetup| matches!(agent.robot.kind, RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. });
+    let Some(vehicle) = setup.agents.iter().find(moves) else { return Ok(()) };
+    for agent in &setup.agents {
+        if let Some(axis) = agent.robot.axes.iter().find(|axis| axis.unit != AxisUnit::Metre) {
+            let (vehicle, agent) = (vehicle.name.clone(), agent.name.clone());
+            return Err(SetupError::UnitsDiffer { vehicle, agent, axis: axis.name.clone() });
+        }
+    }
+    Ok(())
+}
+
+/// What following a leader needs.
+fn check_following(following: &Following, setup: &Setup) -> Result<(), SetupError> {
+    let positive = |what, value: f64| {
+        if value > 0.0 && value.is_finite() { Ok(()) } else { Err(SetupError::NotPositive { what, value }) }
+    };
+    positive("α", following.alpha)?;
+    positive("γ", following.gain)?;
+    if following.design != FollowingDesign::Continuous {
+        positive("β", following.beta)?;
+    }
+    if let FollowingDesign::Swarm { coupling } = following.design {
+        positive("the coupling k", coupling)?;
+    }
+    match following.choice {
+        Choice::Layer { width } => positive("the width of the boundary layer", width)?,
+        Choice::Implicit | Choice::Explicit if setup.control.is_none() => {
+            positive("the period of the sign", following.period_s)?;
+            let settings = setup.time.end_s / following.period_s;
+            if settings > MOST_SAMPLES {
+                let what = "the number of times that the sign is set";
+                return Err(SetupError::Control { what, value: settings, requirement: "must not exceed 1e7" });
+            }
+        }
+        _ => {}
+    }
+    if setup.exchange != Exchange::PositionVelocity {
+        return Err(SetupError::FollowingExchange);
+    }
+    let (leader, axes) = (&following.leader, setup.agents.first().map_or(0, |agent| agent.robot.axes.len()));
+    LengthError::check("the leader's trajectory", axes, leader.trajectory.axes())
+        .map_err(|error| SetupError::Length { agent: leader.name.clone(), error })?;
+    let told = following.sliding().told() > 0 && setup.control.is_none();
+    for edge in setup.network.schedule.graphs().into_iter().flatten() {
+        if edge.to == setup.agents.len() {
+            return Err(SetupError::LeaderHears { leader: leader.name.clone() });
+        }
+        let delay_s = setup.network.delays.get(edge.delay).map_or(0.0, |delay| delay.max_s());
+        if told && delay_s > 0.0 {
+            return Err(SetupError::DelayedDerived { delay_s });
+        }
+    }
+    Ok(())
 }
 
 fn check_control(control: &Control, setup: &Setup) -> Result<(), SetupError> {

@@ -118,7 +118,8 @@ impl Hearing {
                 _ => blocks.push((state, entry, 1)),
             }
         }
-        let initial = sent.iter().map(|(_, state)| x[*state]).collect();
+        // What sampled controllers compute is not in the state; their first messages are read as they are sent.
+        let initial = sent.iter().map(|(_, state)| x.get(*state).copied().unwrap_or(0.0)).collect();
         Hearing {
             ports,
             entries,

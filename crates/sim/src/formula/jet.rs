@@ -298,6 +298,7 @@ fn after<T: Term>(step: FormulaStep, a: &[T; ORDERS], b: &[T; ORDERS], time_s: T
     let jet = match step {
         S::Number(value) => constant(T::of(value), T::ZERO),
         S::Time => constant(time_s, T::of(1.0)),
+        S::Variable(_) => constant(T::of(f64::NAN), T::ZERO),
         S::Negate => minus(a),
         S::Add => both(T::add),
         S::Subtract => both(T::sub),

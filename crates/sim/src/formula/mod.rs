@@ -7,6 +7,7 @@
 mod interval;
 mod jet;
 mod uniform;
+mod variables;
 
 use forwardstep_core::Scalar;
 use thiserror::Error;
@@ -14,6 +15,7 @@ use thiserror::Error;
 pub use interval::Interval;
 pub(crate) use jet::weighted;
 use uniform::Part;
+pub use variables::expression;
 
 /// Steps that a formula may have.
 pub const MOST_STEPS: usize = 256;
@@ -33,6 +35,8 @@ pub enum FormulaStep {
     Number(f64),
     /// t, s.
     Time,
+    /// A variable, numbered from zero; only in what becomes an [`expression`].
+    Variable(usize),
     /// −a.
     Negate,
     /// a + b.
@@ -70,9 +74,9 @@ pub enum FormulaStep {
 impl FormulaStep {
     /// How many numbers it takes from the stack.
     pub fn operands(self) -> usize {
-        use FormulaStep::{Add, Divide, Max, Min, Multiply, Number, Subtract, Time};
+        use FormulaStep::{Add, Divide, Max, Min, Multiply, Number, Subtract, Time, Variable};
         match self {
-            Number(_) | Time => 0,
+            Number(_) | Time | Variable(_) => 0,
             Add | Subtract | Multiply | Divide | Min | Max => 2,
             _ => 1,
         }
@@ -89,6 +93,7 @@ impl FormulaStep {
         match self {
             S::Number(value) => Interval::new(value, value),
             S::Time => time_s,
+            S::Variable(_) => Interval::WHOLE,
             S::Negate => a.neg(),
             S::Add => a.add(b),
             S::Subtract => a.sub(b),
@@ -139,6 +144,12 @@ pub enum FormulaError {
     /// A constant that is no number.
     #[error("a constant of the formula is not finite")]
     NotFinite,
+    /// A variable in a formula in t.
+    #[error("a formula in t has no other variables")]
+    Variable,
+    /// t in a formula in other variables.
+    #[error("a formula in the states of a plant must not depend on t")]
+    Time,
 }
 
 impl Formula {
@@ -166,6 +177,7 @@ impl Formula {
                 FormulaStep::Number(value) | FormulaStep::Power(value) if !value.is_finite() => {
                     return Err(FormulaError::NotFinite);
                 }
+                FormulaStep::Variable(_) => return Err(FormulaError::Variable),
                 _ => {}
             }
             waiting = waiting.checked_sub(step.operands()).ok_or(FormulaError::Unbalanced)? + 1;
@@ -198,6 +210,8 @@ impl Formula {
             stack[first] = match *step {
                 S::Number(value) => value,
                 S::Time => t_s,
+                // The constructor lets none in.
+                S::Variable(_) => f64::NAN,
                 S::Negate => -a,
                 S::Add => a + b,
                 S::Subtract => a - b,

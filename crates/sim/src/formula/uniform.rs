@@ -92,6 +92,7 @@ fn composed(step: FormulaStep, a: Part, b: Part) -> bool {
     let bounded = |part: Part| part.within.is_finite();
     match step {
         S::Number(_) | S::Time => true,
+        S::Variable(_) => false,
         // Uniformly continuous wherever they are defined.
         S::Negate | S::Abs | S::Sin | S::Cos | S::Tanh | S::Atan | S::Sqrt => a.uniform,
         S::Add | S::Subtract | S::Min | S::Max => both,
@@ -115,6 +116,7 @@ fn trend(step: FormulaStep, a: Part, b: Part) -> Trend {
     match step {
         S::Number(_) => Trend::Still,
         S::Time => Trend::Rising,
+        S::Variable(_) => Trend::Unknown,
         S::Negate => a.trend.flipped(),
         S::Add | S::Min | S::Max => a.trend.and(b.trend),
         S::Subtract => a.trend.and(b.trend.flipped()),

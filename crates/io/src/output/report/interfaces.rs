@@ -18,7 +18,7 @@ struct Group<'a> {
 /// A table of what is measured and what is transmitted, with the traffic of one edge.
 pub(crate) fn interfaces(setup: &Setup) -> Markup {
     let heard = setup.network.schedule.graphs().iter().any(|graph| !graph.is_empty());
-    let transmits = if heard { setup.exchange.words() } else { &[] };
+    let transmits = if heard { setup.transmits() } else { Vec::new() };
     html! {
         section #interfaces {
             h2 { "Measured and transmitted" }
@@ -29,7 +29,7 @@ pub(crate) fn interfaces(setup: &Setup) -> Markup {
                         @for group in groups(setup) {
                             tr {
                                 th { (names(&group.agents)) }
-                                td { (group.measures.join(", ")) }
+                                td { (setup.measures_for(group.measures).join(", ")) }
                                 td { @if transmits.is_empty() { "nothing" } @else { (transmits.join(", ")) } }
                                 td { (traffic(setup, transmits.len() * group.axes)) }
                             }
@@ -43,8 +43,8 @@ pub(crate) fn interfaces(setup: &Setup) -> Markup {
 
 fn groups(setup: &Setup) -> Vec<Group<'_>> {
     let mut groups: Vec<Group<'_>> = Vec::new();
-    for AgentSetup { name, law, robot, .. } in &setup.agents {
-        let (measures, axes) = (law.measures(), robot.axes.len());
+    for agent @ AgentSetup { name, robot, .. } in &setup.agents {
+        let (measures, axes) = (agent.measures(), robot.axes.len());
         match groups.iter_mut().find(|group| group.measures == measures && group.axes == axes) {
             Some(group) => group.agents.push(name),
             None => groups.push(Group { agents: vec![name], measures, axes }),

@@ -1,0 +1,150 @@
+//! Verdicts about following a leader.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::sync::Arc;
+
+use forwardstep_check::{Answer, Report, check};
+use forwardstep_core::Gain;
+use forwardstep_core::reference::Choice;
+use forwardstep_sim::delay::Delay;
+use forwardstep_sim::formula::{Formula, FormulaStep};
+use forwardstep_sim::graph::Edge;
+use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
+use forwardstep_sim::schedule::{Phase, Schedule};
+use forwardstep_sim::trajectory::{Path, Sinusoid, Spline, Trajectory};
+use forwardstep_sim::{
+    AgentSetup, Axis, AxisUnit, Exchange, Law, Network, ReferenceKind, RobotKind, RobotSetup, Setup, Solver, Start,
+    TimeSpan,
+};
+
+fn mass(index: usize) -> AgentSetup {
+    AgentSetup {
+        name: format!("mass-{index}"),
+        robot: RobotSetup {
+            kind: RobotKind::PointMass { dimension: 1 },
+            theta: vec![2.0],
+            theta_names: vec!["mass".into()],
+            axes: vec![Axis {
+                name: "x".into(),
+                unit: AxisUnit::Metre,
+                position_limits: None,
+                velocity_limit: None,
+                effort_limit: None,
+            }],
+        },
+        roots_per_s: Vec::new(),
+        manipulability: 0.0,
+        law: Law::Known { damping: Gain::Number(10.0) },
+        target: None,
+        start: Start { q: vec![index as f64], dq: vec![0.0], rest: Vec::new(), reference: Vec::new() },
+        enforce_limits: false,
+        pushes: Vec::new(),
+    }
+}
+
+fn edge(from: usize, to: usize) -> Edge {
+    Edge { from, to, weight: 1.0.into(), delay: 0 }
+}
+
+/// Two masses in a row behind the leader, vertex 2, which moves along `path`.
+fn setup(design: FollowingDesign, path: Path, gain: f64) -> Setup {
+    let following = Following {
+        leader: Leader { name: "leader".into(), trajectory: Trajectory::new(vec![path]).unwrap() },
+        design,
+        alpha: 1.0,
+        beta: 2.0,
+        gain,
+        choice: Choice::Implicit,
+        period_s: 1e-3,
+    };
+    Setup {
+        agents: vec![mass(1), mass(2)],
+        reference: ReferenceKind::Following(Arc::new(following)),
+        exchange: Exchange::PositionVelocity,
+        network: Network {
+            agents: 3,
+            schedule: Schedule::Fixed(vec![edge(2, 0), edge(0, 1)]),
+            delays: vec![Delay::Constant { s: 0.0 }],
+            weights: Vec::new(),
+        },
+        time: TimeSpan { end_s: 20.0, record_every_s: 0.1 },
+        solver: Solver::default(),
+        control: None,
+    }
+}
+
+fn wave() -> Path {
+    Path::Sinusoids { offset: 0.0, waves: vec![Sinusoid { amplitude: 0.5, rad_per_s: 2.0, phase_rad: 0.0 }] }
+}
+
+fn answer(report: &Report, requires: &str) -> (Answer, String) {
+    let found = report.hypotheses.iter().find(|hypothesis| hypothesis.requires.contains(requires));
+    let found = found.unwrap_or_else(|| panic!("nothing requires {requires}: {report:?}"));
+    (found.answer, found.because.clone())
+}
+
+#[test]
+fn thm8_the_gain_is_held_against_a_bound_of_the_leader() {
+    // |q̈ + α q̇| of ½ sin 2t is 2 cos-and-sin: √(1 + 4) = 2.236.
+    let gain = |gain| answer(&check(&setup(FollowingDesign::Continuous, wave(), gain)), "γ exceeds").0;
+    assert_eq!([2.3, 2.2].map(gain), [Answer::Holds, Answer::Violated]);
+    // For (119) one more derivative: |d³q + 2 q̈ + q̇| of the same.
+    let report = check(&setup(FollowingDesign::Differentiable, wave(), 4.9));
+    assert_eq!(answer(&report, "γ exceeds").0, Answer::Violated);
+    let report = check(&setup(FollowingDesign::Differentiable, wave(), 5.1));
+    assert_eq!((report.worst(), answer(&report, "γ exceeds").0), (Answer::Holds, Answer::Holds));
+    assert!(report.theorem.contains("Theorem 9"));
+}
+
+#[test]
+fn thm8_curves_and_formulas_are_bounded_as_far_as_that_can_be_shown() {
+    let curve = Path::Spline(Spline::new(vec![0.0, 2.0, 5.0], vec![0.0, 1.0, -1.0]).unwrap());
+    assert_eq!(check(&setup(FollowingDesign::WithoutAcceleration, curve, 20.0)).worst(), Answer::Holds);
+    // ¼ t² accelerates for ever: its velocity is bounded on the run only.
+    let parabola = |factor| {
+        use FormulaStep::{Multiply, Number, Power, Time};
+        Path::Formula(Formula::new(vec![Number(factor), Time, Power(2.0), Multiply]).unwrap())
+    };
+    let report = check(&setup(FollowingDesign::Continuous, parabola(0.25), 11.0));
+    assert_eq!(answer(&report, "γ exceeds").0, Answer::HoldsOnHorizon);
+    assert_eq!(answer(&report, "jerk").0, Answer::HoldsOnHorizon);
+    // √t has no velocity at the start.
+    let root = Path::Formula(Formula::new(vec![FormulaStep::Time, FormulaStep::Sqrt]).unwrap());
+    assert_eq!(answer(&check(&setup(FollowingDesign::Continuous, root, 11.0)), "jerk").0, Answer::NotCovered);
+}
+
+#[test]
+fn thm8_what_the_paper_does_not_speak_about_is_said() {
+    let mut cut = setup(FollowingDesign::Continuous, wave(), 3.0);
+    cut.network.schedule = Schedule::Fixed(vec![edge(0, 1), edge(1, 0)]);
+    let (verdict, because) = answer(&check(&cut), "reaches everybody");
+    assert!(verdict == Answer::Violated && because.contains("mass-1, mass-2"), "{because}");
+
+    let mut late = setup(FollowingDesign::Continuous, wave(), 3.0);
+    late.network.delays[0] = Delay::Constant { s: 0.2 };
+    assert_eq!(answer(&check(&late), "without delay").0, Answer::NotCovered);
+
+    let mut switching = setup(FollowingDesign::Continuous, wave(), 3.0);
+    let phase = |edges| Phase { dwell_s: 1.0, edges };
+    switching.network.schedule = Schedule::Periodic(vec![phase(vec![edge(2, 0)]), phase(vec![edge(0, 1)])]);
+    let report = check(&switching);
+    assert_eq!(answer(&report, "graph is fixed").0, Answer::NotCovered);
+    assert_eq!(answer(&report, "reaches everybody").0, Answer::Holds);
+}
+
+#[test]
+fn prop_a_swarm_needs_links_both_ways_and_enough_coupling() {
+    let swarm = |coupling: f64, edges: &[Edge]| {
+        let mut setup = setup(FollowingDesign::Swarm { coupling }, wave(), 5.0);
+        setup.network.schedule = Schedule::Fixed(edges.to_vec());
+        check(&setup)
+    };
+    let both = [edge(2, 0), edge(0, 1), edge(1, 0)];
+    // λ of [[2, −1], [−1, 1]] is (3 − √5)/2 = 0.382, and β + κ₀⁴/(2 a κ₁) = 2 + 1/6.
+    assert_eq!(answer(&swarm(5.7, &both), "k λ").0, Answer::Holds);
+    assert_eq!(answer(&swarm(5.6, &both), "k λ").0, Answer::NotCovered);
+    assert_eq!(answer(&swarm(5.7, &both), "same weight").0, Answer::Holds);
+    assert_eq!(answer(&swarm(5.7, &both[..2]), "same weight").0, Answer::NotCovered);
+    // The paper prints no such design, so it never says more than that.
+    assert_eq!(swarm(5.7, &both).worst(), Answer::NotCovered);
+}

@@ -1,0 +1,268 @@
+//! Forwardstepping and backstepping together: consensus of parametric chains, as Section IV-A names it and does not print.
+//!
+//! The parameters are unknown and enter every equation of the chain, so derivatives of x_1 are not known, and z cannot follow
+//! one of them. It follows x_1 itself. In the terms of (33)–(43) that is k = 1: the variable that z follows is
+//! d^(k−1)x_1/dt^(k−1) = x_1, and ℓ ≥ n differentiators are added to it.
+//!
+//! ```text
+//! z^(ℓ) = −Σ_{r≥1} α_{r−1} z^(r) − Σ_j w_ij [α₀ x_1 + Σ_{r≥1} α_r z^(r) − α₀ x_{1,j}(t−T_ij)]      the guide of order k = 1
+//! s = x_1 − z
+//! u, θ̂': the steps of `steps`, with y = z, ẏ = ż, …, y^(n) = z^(n)
+//! ```
+//!
+//! z, …, z^(ℓ−1) are states and z^(ℓ) is what the dynamics give, so all that backstepping differentiates is known without
+//! differentiating anything that was heard, neither the weights nor the delays. u is continuous through switches and jumps of
+//! the delays for ℓ > n; for ℓ = n it jumps with z^(n) and stays bounded.
+//!
+//! **Why the interconnection is as in (43).** The first line of (43), x_1^(ℓ) = z^(ℓ) + s^(ℓ), has the interconnection F = s^(ℓ)
+//! and the degree ℓ. In z, …, z^(ℓ−1) it becomes (24) for x_1 = z + s,
+//!
+//! ```text
+//! z^(ℓ) = (24) in z − α₀ Σ_j w_ij (s_i − s_j(t−T_ij))
+//! ```
+//!
+//! which has the degree zero: no derivative of s is left. The second line is V̇ = −Σ c_i e_i² with e_1 = s, whatever z
+//! does, so e and θ̂ are bounded and e is square-integrable. Then (24) has bounded inputs, and differences of z between agents
+//! and all derivatives of z are bounded. Where the regressors and their derivatives are bounded along the run, ė is bounded
+//! and e → 0. So the inputs of (24) vanish, and with them the differences and derivatives of z: x_1 of all agents agree and
+//! come to rest. (Vanishing inputs are all that is used: s_j(t−T_ij) need not be square-integrable where a delay jumps.)
+//!
+//! Regressors are bounded along the run if x_1 is, or if their functions are (sin, tanh). Vanishing inputs alone do not exclude
+//! that all agents drift together without bound, ever more slowly.
+//!
+//! Tracking is the same with Σ α_r of the guide for tracking.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::following::{ChainError, ChainMeasured, positive, vanishes};
+use super::guide::{Guide, GuideWork, Leads};
+use super::steps::Steps;
+use super::{Asked, Balance, Controller, Given, Trouble, Truth};
+use crate::LengthError;
+use crate::expression::Programme;
+use crate::plant::{Cascade, CascadeTerms, total};
+use crate::reference::Position;
+use crate::signal::{Block, Signal};
+
+/// Adaptive backstepping for strict-feedback and pure-feedback chains, led by reference dynamics.
+///
+/// State: z, ż, …, z^(ℓ−1), θ̂. Shown: the reference, e_1 … e_n, the factor of u, θ̂, and x_1 − x_d when it tracks.
+///
+/// **Source**: Section IV-A, (43) with k = 1 about x_1; tuning functions as in the literature on backstepping.
+/// **Measures**: x_1 … x_n. **Transmits**: x_1.
+/// **Requires**: ∂e_n/∂x_n ψ away from zero (ψ for strict feedback); c and Γ positive; positive roots, at least n to track
+/// and n − 1 to agree; x_d with ℓ bounded derivatives, or a network as for Theorem 3 with (24); regressors bounded along the
+/// run.
+/// **Guarantees**: x_1 − x_d → 0; with a network x_1 of all agents agree and come to rest, whatever their orders.
+/// **Deviates from the paper**: it names the combination; the design and the argument are our own derivation.
+#[derive(Clone, Debug)]
+pub struct AdaptiveBackstepping {
+    order: usize,
+    guide: Guide,
+    gains_per_s: Vec<f64>,
+    adaptation: Vec<f64>,
+    estimate_start: Vec<f64>,
+    floor: f64,
+    /// u, its factor, e, θ̂'.
+    programme: Programme,
+}
+
+/// Gains of [`AdaptiveBackstepping`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct BacksteppingGains {
+    /// c_1 … c_n, 1/s.
+    pub gains_per_s: Vec<f64>,
+    /// The diagonal of Γ.
+    pub adaptation: Vec<f64>,
+    /// What the factor of u must stay above.
+    pub floor: f64,
+}
+
+impl AdaptiveBackstepping {
+    /// For a chain; `estimate_start` is θ̂(0).
+    ///
+    /// # Errors
+    /// [`ChainError`] when the reference has too few roots, lengths differ, a gain is not positive, or a term that must be
+    /// differentiated has no derivative.
+    pub fn new(
+        terms: &CascadeTerms,
+        guide: Guide,
+        gains: BacksteppingGains,
+        estimate_start: Vec<f64>,
+    ) -> Result<Self, ChainError> {
+        let BacksteppingGains { gains_per_s, adaptation, floor } = gains;
+        let n = terms.order();
+        guide.check(1, n)?;
+        LengthError::check("gains of the steps", n, gains_per_s.len())?;
+        LengthError::check("adaptation gains", terms.parameters(), adaptation.len())?;
+        LengthError::check("theta_hat", terms.parameters(), estimate_start.len())?;
+        positive(&gains_per_s)?;
+        positive(&adaptation)?;
+        let Steps { graph, input, divisor, errors, d_theta_hat } = Steps::new(terms, &gains_per_s, &adaptation)?;
+        let mut outputs = vec![input, divisor];
+        outputs.extend(errors);
+        outputs.extend(d_theta_hat);
+        let programme = Programme::new(&graph, &outputs)?;
+        Ok(AdaptiveBackstepping { order: n, guide, gains_per_s, adaptation, estimate_start, floor, programme })
+    }
+
+    /// ℓ.
+    pub fn vectors(&self) -> usize {
+        self.guide.vectors(1)
+    }
+
+    /// Where z leads.
+    pub fn guide(&self) -> &Guide {
+        &self.guide
+    }
+
+    /// p.
+    fn parameters(&self) -> usize {
+        self.adaptation.len()
+    }
+
+    fn shown_len(&self) -> usize {
+        self.vectors() + self.order + 1 + self.parameters() + usize::from(self.guide.tracks())
+    }
+}
+
+/// Working memory of [`AdaptiveBackstepping`].
+#[derive(Clone, Debug)]
+pub struct BacksteppingWork {
+    guide: GuideWork,
+    variables: Vec<f64>,
+    registers: Vec<f64>,
+    out: Vec<f64>,
+}
+
+impl Controller for AdaptiveBackstepping {
+    type Plant = Cascade;
+    type Exchange = Position;
+    type Measured<'a> = ChainMeasured<'a>;
+    type Scratch = BacksteppingWork;
+
+    const MEASURES: &'static [&'static str] = &["all states of the chain"];
+
+    fn scratch(&self) -> BacksteppingWork {
+        BacksteppingWork {
+            guide: self.guide.work(1),
+            variables: vec![0.0; self.programme.variables()],
+            registers: self.programme.registers(),
+            out: vec![0.0; self.programme.outputs()],
+        }
+    }
+
+    fn states(&self) -> Vec<Block> {
+        let mut states: Vec<Block> = (0..self.vectors()).map(|r| (Signal::Reference(r as u8), 1)).collect();
+        if self.parameters() > 0 {
+            states.push((Signal::Estimate, self.parameters()));
+        }
+        states
+    }
+
+    fn shown(&self) -> Vec<Block> {
+        let mut shown: Vec<Block> = (0..self.vectors()).map(|r| (Signal::Reference(r as u8), 1)).collect();
+        shown.extend([(Signal::TrackingError, self.order), (Signal::Divisor, 1)]);
+        if self.parameters() > 0 {
+            shown.push((Signal::Estimate, self.parameters()));
+        }
+        if self.guide.tracks() {
+            shown.push((Signal::Error, 1));
+        }
+        shown
+    }
+
+    fn see<'a>(&self, output: &'a [f64]) -> Result<ChainMeasured<'a>, LengthError> {
+        LengthError::check("output", self.order, output.len())?;
+        Ok(ChainMeasured { x: output })
+    }
+
+    fn start(
+        &self,
+        _: &mut BacksteppingWork,
+        given: Given<'_, Self>,
+        wanted: &[Vec<f64>],
+        state: &mut [f64],
+    ) -> Result<(), LengthError> {
+        LengthError::check("state", total(&self.states()), state.len())?;
+        LengthError::check("x", self.order, given.measured.x.len())?;
+        let (reference, theta_hat) = state.split_at_mut(self.vectors());
+        reference.fill(0.0);
+        reference[0] = given.measured.x[0];
+        for (z, wanted) in reference.iter_mut().zip(wanted) {
+            LengthError::check("the start of the reference", 1, wanted.len())?;
+            *z = wanted[0];
+        }
+        theta_hat.copy_from_slice(&self.estimate_start);
+        Ok(())
+    }
+
+    fn evaluate(
+        &self,
+        work: &mut BacksteppingWork,
+        given: Given<'_, Self>,
+        state: &[f64],
+        asked: Asked<'_>,
+    ) -> Result<(), LengthError> {
+        let (n, p, vectors) = (self.order, self.parameters(), self.vectors());
+        let Asked { input, d_state, shown } = asked;
+        LengthError::check("state", vectors + p, state.len())?;
+        LengthError::check("rate", vectors + p, d_state.len())?;
+        LengthError::check("input", 1, input.len())?;
+        LengthError::check("shown", self.shown_len(), shown.len())?;
+        let x = given.measured.x;
+        LengthError::check("x", n, x.len())?;
+        let (z, theta_hat) = state.split_at(vectors);
+        let target = if self.guide.tracks() { given.target } else { &[] };
+        let leads = Leads { measured: &x[..1], state: z, heard: given.heard, target };
+        self.guide.rate(1, 1, leads, &mut work.guide, &mut d_state[..vectors])?;
+
+        let BacksteppingWork { variables, registers, out, .. } = work;
+        variables[..n].copy_from_slice(x);
+        variables[n..n + p].copy_from_slice(theta_hat);
+        // z^(ℓ) is a rate.
+        for (r, y) in variables[n + p..].iter_mut().enumerate() {
+            *y = if r < vectors { z[r] } else { d_state[vectors - 1] };
+        }
+        self.programme.evaluate(variables, registers, out)?;
+        input[0] = out[0];
+        d_state[vectors..].copy_from_slice(&out[2 + n..]);
+        shown[..vectors].copy_from_slice(z);
+        shown[vectors..][..n].copy_from_slice(&out[2..2 + n]);
+        shown[vectors + n] = out[1];
+        shown[vectors + n + 1..][..p].copy_from_slice(theta_hat);
+        if let (Some(jet), Some(error)) = (target.first(), shown.last_mut()) {
+            *error = x[0] - jet[0];
+        }
+        Ok(())
+    }
+
+    fn trouble(&self, _: &[f64], shown: &[f64]) -> Option<Trouble> {
+        vanishes(*shown.get(self.vectors() + self.order)?, self.floor)
+    }
+
+    fn balance(
+        &self,
+        _: &mut BacksteppingWork,
+        truth: Truth<'_, Cascade>,
+        _: Given<'_, Self>,
+        state: &[f64],
+        shown: &[f64],
+    ) -> Result<Balance, LengthError> {
+        let vectors = self.vectors();
+        LengthError::check("state", vectors + self.parameters(), state.len())?;
+        LengthError::check("shown", self.shown_len(), shown.len())?;
+        LengthError::check("theta", self.parameters(), truth.plant.theta().len())?;
+        let (mut value, mut dissipation) = (0.0, 0.0);
+        for (e, c) in shown[vectors..].iter().zip(&self.gains_per_s) {
+            value += 0.5 * e * e;
+            dissipation += c * e * e;
+        }
+        for (j, theta) in truth.plant.theta().iter().enumerate() {
+            let delta = state[vectors + j] - theta;
+            value += 0.5 * delta * delta / self.adaptation[j];
+        }
+        Ok(Balance { value, dissipation })
+    }
+}

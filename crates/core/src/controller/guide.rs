@@ -1,0 +1,204 @@
+//! Where z leads: reference dynamics for a plant of any order, and for tracking as for consensus.
+//!
+//! Let z follow d^(k−1)x/dt^(k−1) of a plant of order k, and let ℓ ≥ 1 differentiators be added, so that x takes part in
+//! dynamics of order N = k + ℓ − 1. Write
+//!
+//! ```text
+//! x_r = d^r x/dt^r where it is measured, r < p        x_r = z^(r−k+1) above                      (Remark 6)
+//!
+//! z^(ℓ) = x_d^(N) − Σ_{r<N} α_r (x_r − x_d^(r))                                 tracking, roots N
+//! z^(ℓ) = −Σ_{r<N−1} α_r x_{r+1} − Σ_j w_ij [Σ_{r<N} α_r x_r − α₀ x_j(t−T_ij)]    consensus, roots N − 1, α_{N−1} = 1
+//! ```
+//!
+//! The first is (a9) for k = ℓ = 2, p = 1. The second is (24): for k = 2 that of robots, and of a point mass without velocity
+//! when p = 1. p is k, or k − 1 where the highest derivative is not measured.
+//!
+//! **Degree reduction** of (43), for p = k. With s = d^(k−1)x/dt^(k−1) − z the upper subsystem is
+//! d^N x/dt^N = z^(ℓ) + s^(ℓ): the interconnection F of (43) is s^(ℓ), and the cascade has degree ℓ. In the state
+//! x, …, x_{k−2}, z, …, z^(ℓ−1) it reads
+//!
+//! ```text
+//! d/dt x_{k−2} = z + s,    d/dt z^(ℓ−1) = as above with z in place of x_{k−1}, and with −c s,
+//! c = α_{k−1} for tracking,    c = α_{k−2} + α_{k−1} Σ_j w_ij for consensus (α₋₁ = 0)
+//! ```
+//!
+//! so no derivative of s is left, the degree is zero, and what is added to the linear dynamics is square-integrable if s is.
+//! For k = 1 there is no x_{k−2}; there x = z + s stands in the sums, own and heard, and enters as −α₀ Σ_j w_ij (s_i − s_j(t−T)).
+//! For consensus let X = Σ_{r<N} α_r x_r. Then d/dt (X − α_{k−1} s) = −Σ_j w_ij (X − α₀ x_j(t−T)) whatever s does, which
+//! predicts the agreed value as for robots.
+//!
+//! **A nonlinear protocol.** Where the network hands over x_i − φ(x_i − x_j(t−T)) in place of x_j(t−T), the equation above has
+//! α₀ Σ_j w_ij φ(x_i − x_j(t−T)) where it had α₀ Σ_j w_ij (x_i − x_j(t−T)), and nothing here changes.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use thiserror::Error;
+
+use super::Jet;
+use crate::LengthError;
+use crate::reference::{Consensus, Heard, Measured, Position, Reference, ReferenceOut};
+
+/// Where z leads.
+#[derive(Clone, Debug)]
+pub enum Guide {
+    /// To a desired trajectory.
+    Tracking {
+        /// α₀ … α_{N−1} of the Hurwitz polynomial θ^N + Σ α_r θ^r.
+        alpha: Vec<f64>,
+    },
+    /// To agreement with the neighbours: (24) for one agent.
+    Consensus(Consensus<Position>),
+}
+
+/// Why a guide does not suit a plant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum GuideError {
+    /// ℓ would be less than it has to be.
+    #[error("the reference dynamics have {got} roots, but at least {least} are needed here")]
+    TooFew {
+        /// How many roots there must be.
+        least: usize,
+        /// How many there are.
+        got: usize,
+    },
+    /// A trajectory has no more than four derivatives.
+    #[error("the reference dynamics have {got} roots, but a trajectory is known with {most} derivatives only")]
+    TooMany {
+        /// How many roots there may be.
+        most: usize,
+        /// How many there are.
+        got: usize,
+    },
+}
+
+/// Derivatives in a [`Jet`].
+const DERIVATIVES: usize = 4;
+
+impl Guide {
+    /// How many roots it was made from: N for tracking, N − 1 for consensus.
+    pub fn roots(&self) -> usize {
+        match self {
+            Guide::Tracking { alpha } => alpha.len(),
+            Guide::Consensus(consensus) => consensus.order(),
+        }
+    }
+
+    /// ℓ for a plant of order `k`: the blocks z, ż, …, z^(ℓ−1).
+    pub fn vectors(&self, k: usize) -> usize {
+        match self {
+            Guide::Tracking { alpha } => (alpha.len() + 1).saturating_sub(k),
+            Guide::Consensus(consensus) => (consensus.order() + 2).saturating_sub(k),
+        }
+    }
+
+    /// Whether it leads to a trajectory.
+    pub fn tracks(&self) -> bool {
+        matches!(self, Guide::Tracking { .. })
+    }
+
+    /// ℓ for a plant of order `k`, if it is at least `least`.
+    ///
+    /// # Errors
+    /// [`GuideError`] when there are too few roots, or more than a trajectory has derivatives.
+    pub fn check(&self, k: usize, least: usize) -> Result<usize, GuideError> {
+        let got = self.roots();
+        if self.tracks() && got > DERIVATIVES {
+            return Err(GuideError::TooMany { most: DERIVATIVES, got });
+        }
+        let least = if self.tracks() { (least + k).saturating_sub(1) } else { (least + k).saturating_sub(2) };
+        if got < least {
+            return Err(GuideError::TooFew { least, got });
+        }
+        Ok(self.vectors(k))
+    }
+
+    /// Room for one call of [`Guide::rate`].
+    pub fn work(&self, axes: usize) -> GuideWork {
+        let blocks = if let Guide::Consensus(consensus) = self { consensus.order() } else { 0 };
+        let axis = || vec![0.0; axes];
+        let all = || vec![0.0; blocks * axes];
+        GuideWork { q: axis(), dq: axis(), z: axis(), dz: axis(), state: all(), rate: all() }
+    }
+
+    /// d/dt of z, ż, …, z^(ℓ−1) for a plant of order `k` with `axes` axes.
+    ///
+    /// `measured` holds x, ẋ, …, as many blocks as are measured, k or k − 1; the target is a [`Jet`] per axis.
+    ///
+    /// # Errors
+    /// [`LengthError`] when a slice has the wrong length.
+    pub fn rate(
+        &self,
+        k: usize,
+        axes: usize,
+        leads: Leads<'_, '_>,
+        work: &mut GuideWork,
+        d_state: &mut [f64],
+    ) -> Result<(), LengthError> {
+        let Leads { measured, state: own, heard, target } = leads;
+        let len = self.vectors(k) * axes;
+        LengthError::check("reference state", len, own.len())?;
+        LengthError::check("reference rate", len, d_state.len())?;
+        let p = measured.len() / axes.max(1);
+        LengthError::check("what is measured", if p < k { (k - 1) * axes } else { k * axes }, measured.len())?;
+        let Some(top) = len.checked_sub(axes) else { return Ok(()) };
+        d_state[..top].copy_from_slice(&own[axes..]);
+        // Entry `axis` of x_r.
+        let entry = |r: usize, axis: usize| {
+            if r < p { measured[r * axes + axis] } else { own[(r + 1 - k) * axes + axis] }
+        };
+        match self {
+            Guide::Tracking { alpha } => {
+                LengthError::check("target", axes, target.len())?;
+                for (axis, jet) in target.iter().enumerate() {
+                    let mut rate = jet.get(alpha.len()).copied().unwrap_or(f64::NAN);
+                    for (r, alpha) in alpha.iter().enumerate().rev() {
+                        rate -= alpha * (entry(r, axis) - jet[r]);
+                    }
+                    d_state[top + axis] = rate;
+                }
+            }
+            Guide::Consensus(consensus) => {
+                // As a robot would call it: x₀ is its position, x₁ its velocity, x₂ its ż, …. Its z is not used.
+                let GuideWork { q, dq, z, dz, state, rate } = work;
+                LengthError::check("room for the reference", consensus.vectors() * axes, state.len())?;
+                LengthError::check("room for an axis", axes, q.len())?;
+                for axis in 0..axes {
+                    (q[axis], dq[axis]) = (entry(0, axis), entry(1, axis));
+                    // ẋ stands in for z, so that λ (ẋ − z) vanishes.
+                    for r in 0..consensus.vectors() {
+                        state[r * axes + axis] = entry(r + 1, axis);
+                    }
+                }
+                let out = ReferenceOut { z, dz, d_state: rate };
+                consensus.evaluate(axes, Measured { q, dq }, state, heard, out)?;
+                d_state[top..].copy_from_slice(&rate[rate.len() - axes..]);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What [`Guide::rate`] goes by.
+#[derive(Clone, Copy, Debug)]
+pub struct Leads<'a, 'h> {
+    /// x, ẋ, …, as far as measured.
+    pub measured: &'a [f64],
+    /// z, ż, ….
+    pub state: &'a [f64],
+    /// What is heard.
+    pub heard: Heard<'h, f64, Position>,
+    /// The trajectory, a jet per axis.
+    pub target: &'a [Jet],
+}
+
+/// Room for one call of (24), which is written for robots.
+#[derive(Clone, Debug)]
+pub struct GuideWork {
+    q: Vec<f64>,
+    dq: Vec<f64>,
+    z: Vec<f64>,
+    dz: Vec<f64>,
+    state: Vec<f64>,
+    rate: Vec<f64>,
+}

@@ -1,0 +1,163 @@
+//! An adaptive law as the second step of Section IV, for (33) with χ linear in unknown parameters.
+//!
+//! ```text
+//! d^k x/dt^k = χ₀(x*) + φ(x*)ᵀθ + ψ(x*) u
+//! s = d^(k−1)x/dt^(k−1) − z
+//! u = (ż − χ₀ − φᵀθ̂ − k s)/ψ,   θ̂' = Γ φ s
+//! ```
+//!
+//! With Δθ = θ̂ − θ the second line of (43) is ṡ = −k s − φᵀΔθ, so V = ½ s² + ½ Δθᵀ Γ⁻¹ Δθ has
+//!
+//! ```text
+//! V̇ = −k s² − s φᵀΔθ + Δθᵀ φ s = −k s²
+//! ```
+//!
+//! whatever z does: s and θ̂ are bounded and s is square-integrable. z comes from the reference dynamics of [`Guide`],
+//! which also says how the first line of (43) is reduced to degree zero. s → 0 follows as soon as φ is bounded along the
+//! run, for then ṡ is. φ is bounded if x* is, or if its functions are.
+
+use alloc::vec::Vec;
+
+use super::following::{ChainError, ChainMeasured, Following, FollowingWork, positive};
+use super::{Asked, Balance, Controller, Given, Trouble, Truth};
+use crate::LengthError;
+use crate::plant::{Chain, Terms, total};
+use crate::reference::Position;
+use crate::signal::{Block, Signal};
+
+#[cfg(doc)]
+use super::Guide;
+
+/// Adaptive control of (33).
+///
+/// State: z, ż, …, z^(ℓ−1), θ̂. Shown: the reference, s, ψ, θ̂, and x − x_d when it tracks.
+///
+/// **Source**: (33)–(43), Remark 6, with the adaptation of (7). **Measures**: x, ẋ, …, d^(k−1)x/dt^(k−1). **Transmits**: x.
+/// **Requires**: ψ away from zero; k and Γ positive; positive roots, k + ℓ − 1 to track and k + ℓ − 2 to agree, ℓ ≥ 1; x_d
+/// with k + ℓ − 1 bounded derivatives, or a network as for Theorem 3 with (24); φ bounded along the run.
+/// **Guarantees**: x − x_d → 0; with a network x_i − x_j → 0 and all derivatives → 0.
+/// **Deviates from the paper**: it announces adaptive designs for (33) and prints none.
+#[derive(Clone, Debug)]
+pub struct LinearAdaptive<T> {
+    terms: T,
+    following: Following,
+    adaptation: Vec<f64>,
+    estimate_start: Vec<f64>,
+}
+
+impl<T: Terms> LinearAdaptive<T> {
+    /// For a plant with these terms; `adaptation` is the diagonal of Γ, `estimate_start` is θ̂(0).
+    ///
+    /// # Errors
+    /// [`ChainError`] when the reference does not suit the plant, lengths differ, or a gain is not positive.
+    pub fn new(
+        terms: T,
+        following: Following,
+        adaptation: Vec<f64>,
+        estimate_start: Vec<f64>,
+    ) -> Result<Self, ChainError> {
+        following.check(&terms)?;
+        LengthError::check("adaptation gains", terms.parameters(), adaptation.len())?;
+        LengthError::check("theta_hat", terms.parameters(), estimate_start.len())?;
+        positive(&adaptation)?;
+        Ok(LinearAdaptive { terms, following, adaptation, estimate_start })
+    }
+
+    /// How z is followed.
+    pub fn following(&self) -> &Following {
+        &self.following
+    }
+
+    /// Where θ̂ stands in the state.
+    fn at(&self) -> usize {
+        self.following.guide.vectors(self.terms.order())
+    }
+}
+
+impl<T: Terms> Controller for LinearAdaptive<T> {
+    type Plant = Chain<T>;
+    type Exchange = Position;
+    type Measured<'a> = ChainMeasured<'a>;
+    type Scratch = FollowingWork<T::Scratch>;
+
+    const MEASURES: &'static [&'static str] = &["position", "its derivatives below the order of the plant"];
+
+    fn scratch(&self) -> Self::Scratch {
+        self.following.work(&self.terms)
+    }
+
+    fn states(&self) -> Vec<Block> {
+        let mut states = self.following.states(self.terms.order());
+        states.push((Signal::Estimate, self.terms.parameters()));
+        states
+    }
+
+    fn shown(&self) -> Vec<Block> {
+        self.following.shown(self.terms.order(), self.terms.parameters())
+    }
+
+    fn see<'a>(&self, output: &'a [f64]) -> Result<ChainMeasured<'a>, LengthError> {
+        LengthError::check("output", self.terms.order(), output.len())?;
+        Ok(ChainMeasured { x: output })
+    }
+
+    fn start(
+        &self,
+        _: &mut Self::Scratch,
+        given: Given<'_, Self>,
+        wanted: &[Vec<f64>],
+        state: &mut [f64],
+    ) -> Result<(), LengthError> {
+        LengthError::check("state", total(&self.states()), state.len())?;
+        self.following.start(self.terms.order(), given.measured.x, wanted, state)?;
+        state[self.at()..].copy_from_slice(&self.estimate_start);
+        Ok(())
+    }
+
+    fn evaluate(
+        &self,
+        work: &mut Self::Scratch,
+        given: Given<'_, Self>,
+        state: &[f64],
+        asked: Asked<'_>,
+    ) -> Result<(), LengthError> {
+        let Asked { input, d_state, shown } = asked;
+        let p = self.terms.parameters();
+        self.following.lengths(&self.terms, p, [state.len(), d_state.len(), input.len(), shown.len()])?;
+        let (x, at) = (given.measured.x, self.at());
+        let found = self.following.evaluate(&self.terms, work, given, x, state, (d_state, shown))?;
+        let theta_hat = &state[at..];
+        let mut chi = found.chi;
+        for j in 0..p {
+            chi += work.phi[j] * theta_hat[j];
+            d_state[at + j] = self.adaptation[j] * work.phi[j] * found.s;
+        }
+        input[0] = (found.dz - chi - self.following.gain_per_s * found.s) / found.psi;
+        shown[at + 2..][..p].copy_from_slice(theta_hat);
+        Ok(())
+    }
+
+    fn trouble(&self, _: &[f64], shown: &[f64]) -> Option<Trouble> {
+        self.following.trouble(self.terms.order(), shown)
+    }
+
+    fn balance(
+        &self,
+        _: &mut Self::Scratch,
+        truth: Truth<'_, Self::Plant>,
+        _: Given<'_, Self>,
+        state: &[f64],
+        shown: &[f64],
+    ) -> Result<Balance, LengthError> {
+        let p = self.terms.parameters();
+        LengthError::check("state", self.at() + p, state.len())?;
+        LengthError::check("theta", p, truth.plant.theta.len())?;
+        let s = self.following.s(&self.terms, p, shown)?;
+        let mut value = 0.5 * s * s;
+        for (j, theta_hat) in state[self.at()..].iter().enumerate() {
+            let delta = theta_hat - truth.plant.theta[j];
+            value += 0.5 * delta * delta / self.adaptation[j];
+        }
+        Ok(Balance { value, dissipation: self.following.gain_per_s * s * s })
+    }
+}

@@ -1,0 +1,97 @@
+//! What can be chosen about the control of a vehicle.
+
+/// Which of the paper's controllers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ThrustDesign {
+    /// (45), (46): ω and σ̇ jump where the network switches.
+    Continuous {
+        /// α and β, 1/s.
+        roots_per_s: [f64; 2],
+    },
+    /// (49), (50), Theorem 4: ω and σ̇ are differentiable.
+    Differentiable {
+        /// α, β and γ, 1/s.
+        roots_per_s: [f64; 3],
+        /// α*, 1/s.
+        alpha_star: f64,
+        /// k, kg/s².
+        stiffness: f64,
+    },
+    /// (49), (57), (58), Theorem 5: the mass need not be known.
+    Adaptive {
+        /// α, β and γ, 1/s.
+        roots_per_s: [f64; 3],
+        /// α*, 1/s.
+        alpha_star: f64,
+        /// γ*, kg s²/m².
+        gamma_star: f64,
+    },
+}
+
+/// What ω₃ is used for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Yaw {
+    /// ψ_r(0), rad, from the x axis towards the y axis.
+    pub heading: f64,
+    /// r, rad/s.
+    pub rate: f64,
+    /// k_ψ, 1/s; zero leaves the heading alone.
+    pub gain: f64,
+}
+
+/// What happens when σ comes down to a floor σ₀ > 0, N.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Floor {
+    /// The controller reports it.
+    Stops(f64),
+    /// σ is kept above it.
+    Kept {
+        /// σ₀.
+        floor: f64,
+        /// T₀, s: the floor is approached no faster than exponentially with this time constant.
+        approach_s: f64,
+    },
+}
+
+impl Floor {
+    /// σ₀, N.
+    pub fn newtons(self) -> f64 {
+        match self {
+            Floor::Stops(floor) | Floor::Kept { floor, .. } => floor,
+        }
+    }
+}
+
+impl ThrustDesign {
+    /// α, β, and γ where there is one, 1/s.
+    pub fn roots_per_s(&self) -> &[f64] {
+        match self {
+            ThrustDesign::Continuous { roots_per_s } => roots_per_s,
+            ThrustDesign::Differentiable { roots_per_s, .. } | ThrustDesign::Adaptive { roots_per_s, .. } => {
+                roots_per_s
+            }
+        }
+    }
+
+    /// Whether the mass is adapted.
+    pub fn adapts(&self) -> bool {
+        matches!(self, ThrustDesign::Adaptive { .. })
+    }
+
+    /// Numbers in z, ż, z̈; none under (46).
+    pub(super) fn reference_len(&self) -> usize {
+        match self {
+            ThrustDesign::Continuous { .. } => 0,
+            _ => 9,
+        }
+    }
+
+    /// α*, k and γ*; zeros under (46).
+    pub(super) fn gains(&self) -> [f64; 3] {
+        match *self {
+            ThrustDesign::Continuous { .. } => [0.0; 3],
+            ThrustDesign::Differentiable { alpha_star, stiffness, .. } => [alpha_star, stiffness, 0.0],
+            ThrustDesign::Adaptive { alpha_star, gamma_star, .. } => [alpha_star, 0.0, gamma_star],
+        }
+    }
+}

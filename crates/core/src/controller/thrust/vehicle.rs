@@ -1,0 +1,89 @@
+//! The outer law on a vehicle whose angular velocity obeys at once, as in the paper.
+
+use alloc::vec::Vec;
+
+use super::{Floor, Thrust};
+use crate::LengthError;
+use crate::controller::{Asked, Balance, Controller, Given, Trouble, Truth};
+use crate::plant::{Vehicle, VehicleState};
+use crate::reference::Position;
+use crate::signal::{Block, Signal};
+
+impl Thrust {
+    /// What the law divides by, when it is too small.
+    pub(super) fn vanishing(&self, state: &[f64]) -> Option<Trouble> {
+        let sigma = self.sigma(state)?;
+        let floor = match self.floor {
+            Floor::Stops(floor) => floor,
+            // Kept above its floor from wherever it started, unless that was no thrust at all.
+            Floor::Kept { .. } => 0.0,
+        };
+        // Not a number is trouble too.
+        let enough = sigma > floor;
+        (!enough).then_some(Trouble::Vanishes { signal: Signal::Thrust, axis: 0, value: sigma, floor })
+    }
+}
+
+impl Controller for Thrust {
+    type Plant = Vehicle;
+    type Exchange = Position;
+    type Measured<'a> = VehicleState<'a>;
+    type Scratch = ();
+
+    const MEASURES: &'static [&'static str] = &["position", "velocity", "attitude"];
+    const KNOWS_OFFSETS: bool = true;
+
+    fn scratch(&self) {}
+
+    fn states(&self) -> Vec<Block> {
+        self.state_blocks()
+    }
+
+    fn shown(&self) -> Vec<Block> {
+        self.shown_blocks()
+    }
+
+    fn see<'a>(&self, output: &'a [f64]) -> Result<VehicleState<'a>, LengthError> {
+        LengthError::check("output", VehicleState::LEN, output.len())?;
+        Ok(VehicleState::read(output)?.0)
+    }
+
+    fn start(
+        &self,
+        (): &mut (),
+        given: Given<'_, Self>,
+        wanted: &[Vec<f64>],
+        state: &mut [f64],
+    ) -> Result<(), LengthError> {
+        self.begin(given.measured, given.target, wanted, state)
+    }
+
+    fn evaluate(
+        &self,
+        (): &mut (),
+        given: Given<'_, Self>,
+        state: &[f64],
+        asked: Asked<'_>,
+    ) -> Result<(), LengthError> {
+        LengthError::check("input", 4, asked.input.len())?;
+        let flight = self.fly(given.measured, given.heard, given.target, state, [asked.d_state, asked.shown])?;
+        asked.input[0] = flight.sigma;
+        asked.input[1..].copy_from_slice(&flight.omega);
+        Ok(())
+    }
+
+    fn trouble(&self, state: &[f64], _: &[f64]) -> Option<Trouble> {
+        self.vanishing(state)
+    }
+
+    fn balance(
+        &self,
+        (): &mut (),
+        truth: Truth<'_, Vehicle>,
+        given: Given<'_, Self>,
+        state: &[f64],
+        _: &[f64],
+    ) -> Result<Balance, LengthError> {
+        self.ledger(truth.plant, VehicleState::read(truth.state)?.0, given.target, state, [0.0; 3])
+    }
+}

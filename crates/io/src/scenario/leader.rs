@@ -1,0 +1,78 @@
+//! `[leader]` and `reference.leader` → [`Following`].
+
+use std::sync::Arc;
+
+use forwardstep_core::reference::Choice;
+use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
+
+use super::at::At;
+use super::fault::{Fault, fault, positive};
+use super::file::{ReferenceFile, ScenarioFile};
+use super::leader_file::{LeaderDesignFile, LeaderReferenceFile, SignFile};
+use super::problem::ScenarioProblem;
+use super::target::target;
+
+const NAME: &str = "leader";
+const SIGN_EVERY_S: f64 = 1e-3;
+
+/// The leader and how it is followed, by agents with so many axes; nothing where nobody leads.
+pub(super) fn following(file: &ScenarioFile, axes: usize, end_s: f64) -> Result<Option<Arc<Following>>, Fault> {
+    let (reference, leader) = match (&file.reference.value, &file.leader) {
+        (ReferenceFile::Leader(reference), Some(leader)) => (reference, &leader.value),
+        (ReferenceFile::Leader(_), None) => return Err(fault(&file.reference, ScenarioProblem::NoLeader)),
+        (other, Some(leader)) => {
+            return Err(fault(leader, ScenarioProblem::LeaderUnused { reference: other.key() }));
+        }
+        (_, None) => return Ok(None),
+    };
+    let name = match &leader.name {
+        None => NAME.to_owned(),
+        Some(name) => super::agents::checked_name(name)?.to_owned(),
+    };
+    let trajectory = target(&leader.motion, &name, axes, end_s)?;
+    let design = match reference.design.value {
+        LeaderDesignFile::Continuous => FollowingDesign::Continuous,
+        LeaderDesignFile::Differentiable => FollowingDesign::Differentiable,
+        LeaderDesignFile::WithoutAcceleration => FollowingDesign::WithoutAcceleration,
+        LeaderDesignFile::Swarm => match &reference.coupling {
+            Some(coupling) => FollowingDesign::Swarm { coupling: positive("coupling", coupling)? },
+            None => return Err(fault(&reference.design, ScenarioProblem::MissingKey { key: "coupling" })),
+        },
+    };
+    if let (Some(coupling), false) = (&reference.coupling, matches!(design, FollowingDesign::Swarm { .. })) {
+        return Err(fault(coupling, ScenarioProblem::CouplingUnused));
+    }
+    let (alpha, beta) = coefficients(reference, design)?;
+    let choice = match reference.sign.as_ref().map(|sign| &sign.value) {
+        None | Some(SignFile::Implicit) => Choice::Implicit,
+        Some(SignFile::Explicit) => Choice::Explicit,
+        Some(SignFile::Layer(layer)) => Choice::Layer { width: positive("width", &layer.width)? },
+    };
+    let every = reference.sign_every_s.as_ref();
+    Ok(Some(Arc::new(Following {
+        leader: Leader { name, trajectory },
+        design,
+        alpha,
+        beta,
+        gain: positive("gain", &reference.gain)?,
+        choice,
+        period_s: every.map_or(Ok(SIGN_EVERY_S), |every| positive("sign_every_s", every))?,
+    })))
+}
+
+/// α and β.
+fn coefficients(file: &LeaderReferenceFile, design: FollowingDesign) -> Result<(f64, f64), Fault> {
+    let list: &At<Vec<At<f64>>> = &file.roots_per_s;
+    let mut roots = Vec::with_capacity(2);
+    for root in list.value.iter().take(3) {
+        roots.push(positive("roots_per_s", root)?);
+    }
+    match (design, roots.as_slice()) {
+        (FollowingDesign::Continuous, [root]) => Ok((*root, 1.0)),
+        (FollowingDesign::Continuous, _) => {
+            Err(fault(list, ScenarioProblem::LeaderRoots { found: list.value.len(), need: 1 }))
+        }
+        (_, [first, second]) => Ok((first * second, first + second)),
+        _ => Err(fault(list, ScenarioProblem::LeaderRoots { found: list.value.len(), need: 2 })),
+    }
+}

@@ -1,0 +1,147 @@
+//! Vehicles with one thrust: `robot.vehicle`, `robot.rotorcraft`, their starts and `law.thrust`.
+
+use forwardstep_core::attitude::{IDENTITY, normalized};
+use forwardstep_core::controller::{Floor, Yaw};
+use forwardstep_core::plant::Rotors;
+use forwardstep_sim::vehicles::{ThrustKind, ThrustLaw};
+use forwardstep_sim::{AxisUnit, Law, RobotKind, RobotSetup};
+
+use super::at::At;
+use super::fault::{Fault, fault, not_negative, positive};
+use super::file::StartFile;
+use super::law::gain;
+use super::problem::ScenarioProblem;
+use super::robots::axis;
+use super::vehicle_file::{
+    AdaptiveThrustFile, DifferentiableFile, FloorFile, RotorcraftFile, RotorsFile, ThrustDesignFile, ThrustFile,
+    VehicleFile, YawFile,
+};
+
+const GRAVITY_M_S2: f64 = 9.81;
+const DAMPING_PER_S: f64 = 3.0;
+const STIFFNESS: f64 = 4.0;
+const ADAPTATION_GAIN: f64 = 0.2;
+const RATE_BANDWIDTH_PER_S: f64 = 30.0;
+const YAW_GAIN_PER_S: f64 = 1.0;
+const APPROACH_S: f64 = 0.1;
+/// The usual floor of the thrust, as a part of the weight.
+const FLOOR: f64 = 0.1;
+
+/// Builds a vehicle whose angular velocity obeys at once.
+pub(super) fn vehicle(file: &VehicleFile) -> Result<RobotSetup, Fault> {
+    let kind = RobotKind::Vehicle { gravity: or("gravity_m_s2", &file.gravity_m_s2, GRAVITY_M_S2)? };
+    Ok(robot(kind, positive("mass_kg", &file.mass_kg)?))
+}
+
+/// Builds a rotorcraft.
+pub(super) fn rotorcraft(file: &RotorcraftFile) -> Result<RobotSetup, Fault> {
+    let place = &file.inertia_kg_m2;
+    let kind = RobotKind::Rotorcraft {
+        gravity: or("gravity_m_s2", &file.gravity_m_s2, GRAVITY_M_S2)?,
+        inertia: gain("inertia_kg_m2", &place.value, place, "rotorcraft", 3)?,
+        rotors: file.rotors.as_ref().map(|rotors| self::rotors(&rotors.value)).transpose()?,
+    };
+    Ok(robot(kind, positive("mass_kg", &file.mass_kg)?))
+}
+
+fn rotors(file: &RotorsFile) -> Result<Rotors, Fault> {
+    let [low, high] = file.thrust_n.value;
+    let least = At { value: low, span: file.thrust_n.span.clone() };
+    not_negative("thrust_n", &least)?;
+    if low >= high {
+        return Err(fault(&file.thrust_n, ScenarioProblem::Interval { key: "thrust_n", low, high }));
+    }
+    Ok(Rotors {
+        offset: positive("offset_m", &file.offset_m)?,
+        drag: positive("drag_m", &file.drag_m)?,
+        thrust: file.thrust_n.value,
+    })
+}
+
+fn robot(kind: RobotKind, mass: f64) -> RobotSetup {
+    RobotSetup {
+        kind,
+        theta: vec![mass],
+        theta_names: vec!["mass".into()],
+        axes: ["x", "y", "z"].map(|name| axis(name, AxisUnit::Metre)).to_vec(),
+    }
+}
+
+/// What a start holds beside position and velocity: the attitude, and the angular velocity of a rotorcraft. The agent's own
+/// table comes first.
+pub(super) fn rest<'a>(robot: &RobotSetup, tables: impl Iterator<Item = &'a StartFile> + Clone) -> Vec<f64> {
+    let mut rest = match robot.kind {
+        RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. } => {
+            let given = tables.clone().find_map(|table| table.attitude.as_ref());
+            given.map_or(IDENTITY, |given| normalized(given.value)).to_vec()
+        }
+        _ => return Vec::new(),
+    };
+    if let RobotKind::Rotorcraft { .. } = robot.kind {
+        let given = { tables }.find_map(|table| table.angular_velocity_rad_s.as_ref());
+        rest.extend(given.map_or([0.0; 3], |given| given.value));
+    }
+    rest
+}
+
+/// Builds the law of `agent`.
+pub(super) fn thrust(file: &ThrustFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
+    let gravity = match robot.kind {
+        RobotKind::Vehicle { gravity } | RobotKind::Rotorcraft { gravity, .. } => gravity,
+        _ => {
+            let (agent, made_for) = (agent.to_owned(), "vehicles and rotorcraft");
+            return Err(Fault::new(ScenarioProblem::LawOfAnother { agent, law: "thrust", made_for }));
+        }
+    };
+    let known = robot.theta.first().copied().unwrap_or_default();
+    let (design, mass) = match &file.design {
+        None => differentiable(&DifferentiableFile::default(), known)?,
+        Some(ThrustDesignFile::Continuous) => (ThrustKind::Continuous, known),
+        Some(ThrustDesignFile::Differentiable(file)) => differentiable(file, known)?,
+        Some(ThrustDesignFile::Adaptive(AdaptiveThrustFile { damping_per_s, adaptation_gain, estimate_start_kg })) => {
+            let estimate_start = positive("estimate_start_kg", estimate_start_kg)?;
+            let gain = adaptation_gain.as_ref();
+            let kind = ThrustKind::Adaptive {
+                alpha_star: or("damping_per_s", damping_per_s, DAMPING_PER_S)?,
+                gamma_star: gain.map_or(Ok(ADAPTATION_GAIN), |gain| not_negative("adaptation_gain", gain))?,
+                estimate_start,
+            };
+            (kind, estimate_start)
+        }
+    };
+    let floor = match &file.floor {
+        None => Floor::Stops(FLOOR * mass * gravity),
+        Some(FloorFile::StopsN(floor)) => Floor::Stops(positive("stops_n", floor)?),
+        Some(FloorFile::Kept(kept)) => Floor::Kept {
+            floor: positive("thrust_n", &kept.thrust_n)?,
+            approach_s: or("approach_s", &kept.approach_s, APPROACH_S)?,
+        },
+    };
+    Ok(Law::Thrust(ThrustLaw {
+        design,
+        yaw: yaw(file.yaw.as_ref().unwrap_or(&YawFile::default()))?,
+        floor,
+        thrust_start: file.thrust_start_n.as_ref().map(|start| positive("thrust_start_n", start)).transpose()?,
+        bandwidth_per_s: or("rate_bandwidth_per_s", &file.rate_bandwidth_per_s, RATE_BANDWIDTH_PER_S)?,
+    }))
+}
+
+fn differentiable(file: &DifferentiableFile, mass: f64) -> Result<(ThrustKind, f64), Fault> {
+    let alpha_star = or("damping_per_s", &file.damping_per_s, DAMPING_PER_S)?;
+    let stiffness = or("stiffness", &file.stiffness, STIFFNESS)?;
+    Ok((ThrustKind::Differentiable { alpha_star, stiffness }, mass))
+}
+
+fn yaw(file: &YawFile) -> Result<Yaw, Fault> {
+    let gain = file.gain_per_s.as_ref();
+    Ok(Yaw {
+        heading: file.heading_rad.unwrap_or(0.0),
+        rate: file.rate_rad_s.unwrap_or(0.0),
+        gain: gain.map_or(Ok(YAW_GAIN_PER_S), |gain| not_negative("gain_per_s", gain))?,
+    })
+}
+
+/// A positive number, or the usual one.
+fn or(key: &'static str, value: &Option<At<f64>>, usual: f64) -> Result<f64, Fault> {
+    value.as_ref().map_or(Ok(usual), |value| positive(key, value))
+}

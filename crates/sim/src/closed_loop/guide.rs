@@ -1,0 +1,89 @@
+//! The leader as a block of the closed loop.
+//!
+//! Its state is q₀, q̇₀, so that delays, history and samples treat what it says like what anybody says. The rates are the
+//! derivatives of its motion in closed form; at every event the state is put back on the motion itself.
+
+use std::sync::Arc;
+
+use forwardstep_core::LengthError;
+use forwardstep_core::controller::Jet;
+
+use super::population::{Columns, Inputs};
+use crate::leader::Following;
+use crate::recording::Signal;
+use crate::setup::AgentSetup;
+
+/// The leader.
+pub(crate) struct Guide {
+    following: Arc<Following>,
+    /// Its vertex.
+    vertex: usize,
+    jets: Vec<Jet>,
+}
+
+impl Guide {
+    pub(crate) fn new(following: Arc<Following>, vertex: usize) -> Self {
+        let jets = vec![[0.0; 5]; following.leader.trajectory.axes()];
+        Guide { following, vertex, jets }
+    }
+
+    /// Puts the k-th derivatives of every axis at `t_s` into `out`, from k = `first` on.
+    fn put(&mut self, t_s: f64, first: usize, out: &mut [f64]) {
+        self.following.leader.trajectory.jets(t_s, &mut self.jets);
+        let m = self.jets.len();
+        for (k, out) in out.iter_mut().enumerate() {
+            *out = self.jets[k % m].get(first + k / m).copied().unwrap_or(0.0);
+        }
+    }
+}
+
+impl Columns for Guide {
+    fn state_len(&self) -> usize {
+        2 * self.jets.len()
+    }
+
+    fn append_start(&self, _: &[AgentSetup], x: &mut Vec<f64>) {
+        let mut jets = self.jets.clone();
+        self.following.leader.trajectory.jets(0.0, &mut jets);
+        x.extend(jets.iter().map(|jet| jet[0]));
+        x.extend(jets.iter().map(|jet| jet[1]));
+    }
+
+    fn start(&mut self, _: &[AgentSetup], _: &mut [f64], _: &[f64], _: &[f64]) -> Result<(), LengthError> {
+        Ok(())
+    }
+
+    fn rates(&mut self, t_s: f64, _: &[f64], _: Inputs<'_>, dx: &mut [f64]) {
+        self.put(t_s, 1, dx);
+    }
+
+    fn record(&mut self, _: f64, _: &[f64], _: Inputs<'_>, _: &mut dyn FnMut(usize, &[f64])) {}
+
+    fn sense(&mut self, t_s: f64, _: &[f64], sent: &mut [f64]) {
+        // A message is q₀, q̇₀, then q̈₀ where something derived is sent.
+        self.put(t_s, 0, sent);
+    }
+
+    fn command(&mut self, now_s: f64, _: Inputs<'_>, x: &mut [f64]) {
+        self.put(now_s, 0, x);
+    }
+
+    fn apply(&mut self) {}
+
+    fn tell(&mut self, t_s: f64, _: &[f64], told: &mut [f64]) {
+        self.put(t_s, 2, told);
+    }
+
+    fn next_event_s(&self, after_s: f64) -> f64 {
+        self.following.leader.trajectory.next_kink_s(after_s)
+    }
+
+    fn signals(&self) -> Vec<(Signal, usize)> {
+        Vec::new()
+    }
+
+    fn locate(&self, state: usize) -> (usize, Signal, usize) {
+        let m = self.jets.len();
+        (self.vertex, if state < m { Signal::Position } else { Signal::Velocity }, state % m)
+    }
+}

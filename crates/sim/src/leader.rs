@@ -1,0 +1,86 @@
+//! A leader and how it is followed, as plain data.
+//!
+//! The leader is the last vertex of the network. It has a motion and no robot, says its position and its velocity like
+//! everybody else, and hears nobody.
+
+use forwardstep_core::reference::{Choice, Derived, Sliding};
+
+use crate::trajectory::Trajectory;
+
+/// What everybody follows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Leader {
+    /// Its name, used in tables and messages.
+    pub name: String,
+    /// Its motion.
+    pub trajectory: Trajectory,
+}
+
+/// How it is followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FollowingDesign {
+    /// (110), Theorem 8: torques that jump unless the sign is solved for.
+    Continuous,
+    /// (119), Theorem 9: differentiable torques; accelerations are transmitted.
+    Differentiable,
+    /// (122), Remark 12: differentiable torques; reference accelerations are transmitted.
+    WithoutAcceleration,
+    /// Differences to neighbours only, over an undirected graph; our own derivation, see
+    /// [`forwardstep_core::reference::SmoothFollowing::swarm`].
+    Swarm {
+        /// k.
+        coupling: f64,
+    },
+}
+
+/// A leader, and the design with its gains, which all agents share.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Following {
+    /// The leader.
+    pub leader: Leader,
+    /// (110), (119), (122) or swarm tracking.
+    pub design: FollowingDesign,
+    /// α: 1/s in (110), 1/s² in (119) and (122).
+    pub alpha: f64,
+    /// β, 1/s; not used by (110).
+    pub beta: f64,
+    /// γ.
+    pub gain: f64,
+    /// How a value of the sign is chosen.
+    pub choice: Choice,
+    /// How often, s, in continuous time; sampled controllers do it at every sample.
+    pub period_s: f64,
+}
+
+impl Following {
+    /// The sign as the reference dynamics have it.
+    pub fn sliding(&self) -> Sliding {
+        let (derived, beta) = match self.design {
+            FollowingDesign::Continuous => (Derived::Nothing, 1.0),
+            FollowingDesign::Differentiable => (Derived::Acceleration, self.beta),
+            FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
+                (Derived::ReferenceAcceleration, self.beta)
+            }
+        };
+        Sliding { derived, alpha: self.alpha, beta, gamma: self.gain, choice: self.choice }
+    }
+
+    /// What drives the leader away from its followers, as a combination of the derivatives of q_0: ξ̇_0, or d³q_0 for a swarm.
+    /// γ must exceed the largest size of it.
+    pub fn drive(&self) -> [f64; 5] {
+        match self.design {
+            FollowingDesign::Continuous => [0.0, self.alpha, 1.0, 0.0, 0.0],
+            FollowingDesign::Swarm { .. } => [0.0, 0.0, 0.0, 1.0, 0.0],
+            FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => {
+                [0.0, self.alpha, self.beta, 1.0, 0.0]
+            }
+        }
+    }
+
+    /// A bound of its size from 0 to `end_s`, or for ever; infinite where nothing could be shown.
+    pub fn drive_bound(&self, end_s: Option<f64>) -> f64 {
+        let trajectory = &self.leader.trajectory;
+        let drive = self.drive();
+        (0..trajectory.axes()).map(|axis| trajectory.bounds(axis, &drive, end_s).size()).fold(0.0, f64::max)
+    }
+}
