@@ -91,6 +91,7 @@ fn setup(design: FollowingDesign, choice: Choice, estimate: f64, end_s: f64) -> 
             ]),
             delays: vec![Delay::Constant { s: 0.0 }],
             weights: Vec::new(),
+            coupling: Default::default(),
         },
         time: TimeSpan { end_s, record_every_s: 0.01 },
         solver: Solver { method: Method::Adaptive { rtol: 1e-7, atol: 1e-9 }, ..Solver::default() },
@@ -118,12 +119,6 @@ fn run(setup: &Setup) -> Outcome {
 fn columns(outcome: &Outcome, signal: Signal) -> Vec<&[f64]> {
     let wanted = outcome.recording.columns.iter().filter(|column| column.signal == signal);
     wanted.map(|column| &column.values[..]).collect()
-}
-
-/// The largest size of a signal at `share` of the rows.
-fn size(outcome: &Outcome, signal: Signal, share: f64) -> f64 {
-    let row = (share * (outcome.recording.t_s.len() - 1) as f64) as usize;
-    columns(outcome, signal).iter().map(|values| values[row].abs()).fold(0.0, f64::max)
 }
 
 /// The largest of Σ |differences| of the signals over the rows from `share` on.
