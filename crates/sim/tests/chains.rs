@@ -7,6 +7,7 @@ use std::sync::Arc;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::{CascadeTerms, Formulas};
 use forwardstep_sim::chain::{ChainLaw, ChainModel, ChainStep, Estimate};
+use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::schedule::{Phase, Schedule};
@@ -214,7 +215,9 @@ fn eq_43_chains_reach_their_targets() {
 
 #[test]
 fn prop_sampled_chains_come_closer_to_continuous_ones_in_proportion_to_the_period() {
-    for setup in [derivatives(), cascades(), pure_feedback(), tracking()] {
+    let mut coupled = derivatives();
+    coupled.network.coupling = Coupling::Tanh { scale: 0.3 };
+    for setup in [derivatives(), coupled, cascades(), pure_feedback(), tracking()] {
         let mut setup = setup;
         setup.time.end_s = 3.0;
         let continuous = run(&setup);
@@ -237,4 +240,23 @@ fn prop_sampled_chains_come_closer_to_continuous_ones_in_proportion_to_the_perio
             assert!((0.7..1.3).contains(&order), "{}: {gaps:?}", setup.agents[0].law.words());
         }
     }
+}
+
+#[test]
+fn prop_a_coupling_that_never_saturates_is_the_linear_one() {
+    let linear = run(&derivatives());
+    let mut setup = derivatives();
+    setup.network.coupling = Coupling::Saturated { limit: 100.0 };
+    let wide = run(&setup);
+    setup.network.coupling = Coupling::Saturated { limit: 0.1 };
+    let narrow = run(&setup);
+    let end = |outcome: &Outcome, agent: usize| *column(outcome, agent, Signal::Position, 0).last().unwrap();
+    for agent in 0..3 {
+        assert!((end(&linear, agent) - end(&wide, agent)).abs() < 1e-6);
+    }
+    // A narrow one brings them together too, but elsewhere and later.
+    let last = narrow.recording.columns[0].values.len() - 1;
+    assert!((end(&linear, 0) - end(&narrow, 0)).abs() > 1e-3);
+    assert!(spread(&narrow, last) < 0.1 * spread(&narrow, 0));
+    assert!(spread(&narrow, last / 4) > 3.0 * spread(&linear, last / 4));
 }

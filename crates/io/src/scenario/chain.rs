@@ -54,7 +54,7 @@ fn list(texts: &[At<String>], names: &[String]) -> Result<Vec<Expression>, Fault
 fn robot(model: ChainModel, parameters: &At<Vec<At<f64>>>) -> Result<RobotSetup, Fault> {
     let need = model.parameters();
     if parameters.value.len() != need {
-        let (found, agent) = (parameters.value.len(), "the chain".to_owned());
+        let (found, agent) = (parameters.value.len(), "regressor".to_owned());
         let problem = ScenarioProblem::VectorLength { key: "parameters", found, need, agent };
         return Err(fault(parameters, problem));
     }
