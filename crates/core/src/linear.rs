@@ -56,7 +56,7 @@ mod tests {
         let a = [0.0, 2.0, 1.0, 1.0, -1.0, 0.5, 3.0, 0.25, -2.0];
         let mut inverse = [0.0; 9];
         // Along the first row.
-        let want = -2.0 * (1.0 * -2.0 - 0.5 * 3.0) + (1.0 * 0.25 - -1.0 * 3.0);
+        let want = -2.0 * (1.0 * -2.0 - 0.5 * 3.0) + (1.0 * 0.25 + 3.0);
         let determinant = invert(3, &mut a.clone(), &mut inverse);
         assert!((determinant - want).abs() < 1e-14, "{determinant} for {want}");
         for row in 0..3 {

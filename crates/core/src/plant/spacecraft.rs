@@ -223,12 +223,15 @@ impl Spacecraft {
         core::array::from_fn(|k| own[k] + wheels[k])
     }
 
-    fn parts<'a>(&self, state: &'a [f64]) -> Result<([f64; 4], [f64; 3], &'a [f64]), LengthError> {
+    fn parts<'a>(&self, state: &'a [f64]) -> Result<Parts<'a>, LengthError> {
         LengthError::check("state", 7 + self.wheels.count(), state.len())?;
         let ([a, b, c, d], [x, y, z]) = ([state[0], state[1], state[2], state[3]], [state[4], state[5], state[6]]);
         Ok(([a, b, c, d], [x, y, z], &state[7..]))
     }
 }
+
+/// The attitude, ω and the momenta of the wheels.
+type Parts<'a> = ([f64; 4], [f64; 3], &'a [f64]);
 
 impl Plant for Spacecraft {
     type Scratch = ();

@@ -326,7 +326,7 @@ pub enum LawFile {
     /// A vehicle with one thrust: (46), (50) or (57) of the paper.
     Thrust(ThrustFile),
     /// The tip of a robot follows a target, with uncertain lengths and without its velocity: (80) to (82) of the paper.
-    TaskSpace(TaskSpaceFile),
+    TaskSpace(Box<TaskSpaceFile>),
     /// A spacecraft follows an attitude, without its angular velocity: (97) to (105) of the paper.
     Attitude(AttitudeFile),
     /// A chain of derivatives that is known.

@@ -83,7 +83,7 @@ const CASES: &[Case] = &[
     ("robot.point_mass = { dimension = 2, mass_kg = 4.0 }", "robot = \"point_mass\"",
         "test.toml:16:9: `point_mass` needs a value", ""),
     ("robot.point_mass = { dimension = 2, mass_kg = 4.0 }", "robot = 3",
-        "test.toml:16:9: found 3 where a choice of urdf, planar_arm, point_mass should stand", ""),
+        "test.toml:16:9: found 3 where a choice of urdf, planar_arm, point_mass, vehicle, rotorcraft, spacecraft, chain, strict_feedback, pure_feedback should stand", ""),
     ("dimension = 2", "dimension = 3",
         "test.toml:16:1: `arm-1` has 2 axes and `cart` has 3, but agents that agree need as many", "agreement is on one vector of axes; `locked` removes joints of a URDF"),
     ("dimension = 2", "dimension = -2",
@@ -323,7 +323,7 @@ const CASES: &[Case] = &[
     ("disagreement_below = 1e-3", "disagreement_below = 1\nexpect = \"diverges\"",
         "test.toml:38:22: `disagreement_below` says nothing about agents that diverge", "delete one of the two"),
     ("disagreement_below = 1e-3", "",
-        "test.toml:37:1: the goal says nothing about the disagreement", "set `disagreement_below = 1e-3`, or `expect = \"diverges\"`, or delete the goal"),
+        "test.toml:37:1: the goal says nothing about the disagreement", "set `disagreement_below = 1e-3` (with targets `error_below`), or `expect = \"diverges\"`, or delete the goal"),
     ("disagreement_below = 1e-3", "disagreement_below = true",
         "test.toml:38:22: found true where a number should stand", ""),
 ];

@@ -56,12 +56,12 @@ const CASES: &[Case] = &[
     ("[law.position_only]\ndamping = 20\nadaptation_gain = 5", "[law.known]\n",
         "test.toml: agent `mass`: the law with known parameters does not follow a target of its own; it goes with consensus", ""),
     ("error_below", "disagreement_below",
-        "test.toml:17:22: `disagreement_below` is about agreement, but every agent follows a target of its own", "error_below"),
+        "test.toml:17:22: `disagreement_below` is about agreement, but every agent follows a target or a leader", "error_below"),
     ("error_below = 1e-3", "error_below = 1e-3\ndisagreement_below = 1e-3",
         "test.toml:17:15: `disagreement_below` and `error_below` are both given", "delete one of the two"),
     ("[reference.tracking]\nroots_per_s = [1.0, 1.5, 2.0]", "[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position\"",
         "test.toml:9:2: there is no network, but the agents are to agree", "who hears whom"),
-    ("[goal]", "[[pushes]]\non = \"mass\"\nby.torque = [1, 2]\n[goal]",
+    ("[goal]", "[[pushes]]\non = [\"mass\"]\nby.torque = [1, 2]\n[goal]",
         "test.toml: agent `mass`: pushes act on robots under the adaptive or the known law, not on the law without velocity", ""),
 ];
 

@@ -429,11 +429,11 @@ fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
     let velocities = agent.robot.velocity_len();
     vector("the start velocity", velocities, &agent.start.dq)?;
     vector("the start of the plant", agent.start.rest.len(), &agent.start.rest)?;
-    if let (Some(_), true) = (&agent.target, agent.law.is_lagrangian()) {
-        return Err(SetupError::NoOffsets { agent: agent.name.clone(), law: agent.law.words() });
-    }
     if agent.law.is_lagrangian() && tracks {
         return Err(SetupError::NotTracking { agent: agent.name.clone(), law: agent.law.words() });
+    }
+    if let (Some(_), true) = (&agent.target, agent.law.is_lagrangian()) {
+        return Err(SetupError::NoOffsets { agent: agent.name.clone(), law: agent.law.words() });
     }
     for z in &agent.start.reference {
         vector("the start of the reference", velocities, z)?;

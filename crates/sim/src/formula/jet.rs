@@ -33,10 +33,10 @@ trait Term: Copy {
     fn power(self, exponent: f64) -> Self;
     fn sqrt(self) -> Self;
     fn sin_cos(self) -> [Self; 2];
-    fn exp(self) -> Self;
-    fn log(self) -> Self;
-    fn tanh(self) -> Self;
-    fn atan(self) -> Self;
+    fn exp_of(self) -> Self;
+    fn log_of(self) -> Self;
+    fn tanh_of(self) -> Self;
+    fn atan_of(self) -> Self;
     /// The jet of |a|, and below which derivative it can be relied upon.
     fn abs(a: [Self; ORDERS]) -> ([Self; ORDERS], usize);
     /// The same for the smaller of a and b.
@@ -80,16 +80,16 @@ impl Term for f64 {
     fn sin_cos(self) -> [Self; 2] {
         sine(self).into()
     }
-    fn exp(self) -> Self {
+    fn exp_of(self) -> Self {
         libm::exp(self)
     }
-    fn log(self) -> Self {
+    fn log_of(self) -> Self {
         libm::log(self)
     }
-    fn tanh(self) -> Self {
+    fn tanh_of(self) -> Self {
         libm::tanh(self)
     }
-    fn atan(self) -> Self {
+    fn atan_of(self) -> Self {
         libm::atan(self)
     }
     fn abs(a: [Self; ORDERS]) -> ([Self; ORDERS], usize) {
@@ -145,16 +145,16 @@ impl Term for Interval {
     fn sin_cos(self) -> [Self; 2] {
         [self.sin_of(), self.cos_of()]
     }
-    fn exp(self) -> Self {
+    fn exp_of(self) -> Self {
         self.exp_of()
     }
-    fn log(self) -> Self {
+    fn log_of(self) -> Self {
         self.log_of()
     }
-    fn tanh(self) -> Self {
+    fn tanh_of(self) -> Self {
         self.tanh_of()
     }
-    fn atan(self) -> Self {
+    fn atan_of(self) -> Self {
         self.atan_of()
     }
     fn abs(a: [Self; ORDERS]) -> ([Self; ORDERS], usize) {
@@ -230,16 +230,16 @@ fn expanded<T: Term>(step: FormulaStep, a: T) -> [T; ORDERS] {
             [f, d, f.scaled(-1.0 / 2.0), d.scaled(-1.0 / 6.0), f.scaled(1.0 / 24.0)]
         }
         FormulaStep::Exp => {
-            let f = a.exp();
+            let f = a.exp_of();
             [f, f, f.scaled(1.0 / 2.0), f.scaled(1.0 / 6.0), f.scaled(1.0 / 24.0)]
         }
         FormulaStep::Log => {
             let power = |k: i32| one.div(a.power(f64::from(k)).scaled(f64::from(k)));
-            [a.log(), power(1), power(2).scaled(-1.0), power(3), power(4).scaled(-1.0)]
+            [a.log_of(), power(1), power(2).scaled(-1.0), power(3), power(4).scaled(-1.0)]
         }
         FormulaStep::Tanh => {
             // u' = 1 − u², and so on.
-            let u = a.tanh();
+            let u = a.tanh_of();
             let square = u.power(2.0);
             let d = one.sub(square);
             let third = square.scaled(6.0).sub(T::of(2.0));
@@ -248,7 +248,7 @@ fn expanded<T: Term>(step: FormulaStep, a: T) -> [T; ORDERS] {
         }
         FormulaStep::Atan => {
             // With φ = arctan a, 1/(1 + a²) = cos²φ and a/√(1 + a²) = sin φ.
-            let angle = a.atan();
+            let angle = a.atan_of();
             let [sin, cos] = angle.sin_cos();
             let (s2, c2) = (sin.power(2.0), cos.power(2.0));
             let second = sin.mul(cos.power(3.0)).scaled(-1.0);
