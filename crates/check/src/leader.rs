@@ -108,13 +108,14 @@ fn gain(setup: &Setup, following: &Following) -> Hypothesis {
 
 /// Rounded up to four digits.
 fn rounded(value: f64) -> f64 {
-    if value == 0.0 || !value.is_finite() {
-        return value;
+    let four = |value: f64| format!("{value:.3e}");
+    let number = |text: &str| text.parse::<f64>().unwrap_or(value);
+    let near = four(value);
+    if number(&near) >= value || !value.is_finite() {
+        return number(&near);
     }
-    let unit = 10_f64.powi(value.abs().log10().floor() as i32 - 3);
-    // Without the digits that rounding left behind.
-    let up = (value / unit).ceil() * unit;
-    if unit < 1e-3 { (up * 1e9).round() / 1e9 } else { seconds(up) }
+    let exponent: i32 = near.rsplit('e').next().and_then(|exponent| exponent.parse().ok()).unwrap_or(0);
+    number(&four(number(&near) + number(&format!("1e{}", exponent - 3))))
 }
 
 /// A spanning tree whose root is the leader: since the leader hears nobody, any tree has it as its root.
@@ -172,7 +173,7 @@ fn coupled(setup: &Setup, following: &Following, coupling: f64) -> Hypothesis {
         return not("p² + β p + α has no real roots");
     }
     let kappa = 0.5 * (beta - root.max(0.0).sqrt());
-    let least = beta + kappa.powi(4) / (2.0 * (beta * beta - alpha) * (beta - kappa));
+    let least = beta + kappa * kappa * kappa * kappa / (2.0 * (beta * beta - alpha) * (beta - kappa));
     let n = setup.agents.len();
     let Schedule::Fixed(edges) = &setup.network.schedule else { return not("the graph switches") };
     let Some(all) = laplacian(setup.network.agents, edges) else { return not("a weight varies with time") };

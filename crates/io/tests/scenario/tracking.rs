@@ -61,7 +61,7 @@ const CASES: &[Case] = &[
         "test.toml:17:15: `disagreement_below` and `error_below` are both given", "delete one of the two"),
     ("[reference.tracking]\nroots_per_s = [1.0, 1.5, 2.0]", "[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position\"",
         "test.toml:9:2: there is no network, but the agents are to agree", "who hears whom"),
-    ("[goal]", "[[pushes]]\non = [\"mass\"]\nby.torque = [1, 2]\n[goal]",
+    ("[goal]", "[[pushes]]\non = [\"mass\"]\nby.force_n = [1, 2]\n[goal]",
         "test.toml: agent `mass`: pushes act on robots under the adaptive or the known law, not on the law without velocity", ""),
 ];
 

@@ -93,7 +93,10 @@ impl Term for f64 {
         libm::atan(self)
     }
     fn abs(a: [Self; ORDERS]) -> ([Self; ORDERS], usize) {
-        (if a[0] < 0.0 { a.map(|c| -c) } else { a }, ORDERS)
+        let mut out = if a[0] < 0.0 { a.map(|c| -c) } else { a };
+        // |−0| is 0.
+        out[0] = a[0].abs();
+        (out, ORDERS)
     }
     fn min(a: [Self; ORDERS], b: [Self; ORDERS]) -> ([Self; ORDERS], usize) {
         // Not-a-number is let through.
