@@ -40,10 +40,9 @@ pub fn parameter_name(setup: &Setup, agent: usize, index: usize) -> String {
         .unwrap_or_else(|| (index + 1).to_string())
 }
 
-/// The name of a recorded column.
-pub fn column_name(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String {
-    let agent_name = agent_name(setup, agent);
-    let signal_name = signal.name();
+/// What an entry of a signal is called; nothing for signals with a single entry.
+pub fn entry_name(setup: &Setup, agent: usize, signal: Signal, entry: usize) -> Option<String> {
+    let number = || (entry + 1).to_string();
     let law = setup.agents.get(agent).map(|agent| &agent.law);
     match (signal, law) {
         (
@@ -55,22 +54,26 @@ pub fn column_name(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> 
             | Signal::Determinant
             | Signal::Divisor,
             _,
-        ) => format!("{agent_name}.{signal_name}"),
-        (Signal::Attitude, _) => {
-            let entry = ["x", "y", "z", "o"].get(axis).map_or_else(|| (axis + 1).to_string(), |name| (*name).into());
-            format!("{agent_name}.{signal_name}.{entry}")
-        }
-        (Signal::Estimate, _) => format!("{agent_name}.{signal_name}.{}", parameter_name(setup, agent, axis)),
-        (Signal::WheelTorque | Signal::WheelMomentum, _) => format!("{agent_name}.{signal_name}.{}", axis + 1),
+        ) => None,
+        (Signal::Attitude, _) => Some(["x", "y", "z", "o"].get(entry).map_or_else(number, |name| (*name).to_owned())),
+        (Signal::Estimate, _) => Some(parameter_name(setup, agent, entry)),
+        (Signal::WheelTorque | Signal::WheelMomentum, _) => Some(number()),
         (Signal::Error | Signal::TaskPosition, Some(Law::TaskSpace(law))) => {
-            let number = (axis + 1).to_string();
-            format!("{agent_name}.{signal_name}.{}", law.coordinate_name(axis).unwrap_or(&number))
+            Some(law.coordinate_name(entry).map_or_else(number, str::to_owned))
         }
         (Signal::KinematicEstimate, Some(Law::TaskSpace(law))) => {
-            let number = (axis + 1).to_string();
-            format!("{agent_name}.{signal_name}.{}", law.kinematic_names.get(axis).unwrap_or(&number))
+            Some(law.kinematic_names.get(entry).cloned().unwrap_or_else(number))
         }
-        _ => format!("{agent_name}.{signal_name}.{}", axis_name(setup, agent, axis)),
+        _ => Some(axis_name(setup, agent, entry)),
+    }
+}
+
+/// The name of a recorded column.
+pub fn column_name(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String {
+    let (agent_name, signal_name) = (agent_name(setup, agent), signal.name());
+    match entry_name(setup, agent, signal, axis) {
+        Some(entry) => format!("{agent_name}.{signal_name}.{entry}"),
+        None => format!("{agent_name}.{signal_name}"),
     }
 }
 

@@ -4,15 +4,16 @@
 //! uPlot. All text goes through maud, which escapes it, or through the JSON index.
 
 mod data;
+mod families;
 mod interfaces;
 mod network;
 pub(crate) mod sections;
 pub(crate) mod text;
 
 use forwardstep_sim::recording::Ending;
-use forwardstep_sim::setup::AgentSetup;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+use self::families::Family;
 use self::interfaces::interfaces;
 use super::metrics::{Absence, Disagreement, Gap, Metrics};
 use super::palette::{self, Ground};
@@ -69,7 +70,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
                         section.notices aria-label="Notices" { ul { @for notice in &record.notices { li { (notice) } } } }
                     }
                     (sections::verdicts(record, metrics))
-                    (signals(absence, Gap::of(record.setup), &record.setup.agents))
+                    (signals(absence, record))
                     @if has_network(record) { (network(record, &timeline)) }
                     (interfaces(record.setup))
                     (sections::digital(record))
@@ -97,7 +98,8 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
 }
 
 /// The plots; the script fills their cards.
-fn signals(absence: Option<Absence>, gap: Gap, agents: &[AgentSetup]) -> Markup {
+fn signals(absence: Option<Absence>, record: &RunRecord<'_>) -> Markup {
+    let (gap, agents) = (Gap::of(record.setup), &record.setup.agents);
     let adaptive = agents.iter().any(|agent| agent.law.estimates());
     let card = |id: &str, title: &str, what: &str, empty: &str| {
         html! {
@@ -129,6 +131,9 @@ fn signals(absence: Option<Absence>, gap: Gap, agents: &[AgentSetup]) -> Markup 
                 (card("velocity", "Speed and reference", "q̇, and z dashed", ""))
                 (card("error", "Tracking error", "s = q̇ − z", ""))
                 (card("reference", "Reference derivatives", "ż and higher", ""))
+                @for family in Family::of(&record.outcome.recording) {
+                    (card(&family.id(), &family.title, &family.letters, ""))
+                }
                 (card("estimate", "Parameter estimates", "ϑ̂, the truth dashed", if adaptive { "" } else { "no agent estimates parameters" }))
                 (card("ledger", "Energy ledger", "V + ∫ dissipation = V(0)", ""))
             }
