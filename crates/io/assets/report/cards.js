@@ -11,7 +11,6 @@ const joints = Array.from({ length: mostAxes }, (_, axis) => {
   const owners = agents.filter((a) => axis < a.axes.length);
   return { axis, name: SAME(owners.map((a) => a.axes[axis].name)) ?? String(axis + 1), units: owners.map((a) => a.axes[axis].units) };
 });
-const axisWords = (name) => (/^\d+$/.test(name) ? `axis ${name}` : name);
 const unitOf = (axis, read) => [...new Set((joints[axis]?.units ?? []).map(read))].join(" or ");
 
 const ofAgents = (columns, axis, style = {}, log = false) =>
@@ -112,7 +111,7 @@ const cards = {
         lines: index.goal == null ? [] : [{ value: index.goal, label: "goal" }],
         key: true,
         series: [
-          ...axes.map((k, axis) => ({ label: axisWords(joints[axis].name), colour: ramp(axis, axes.length), width: 1.1, values: data.values("main", k, true) })),
+          ...axes.map((k, axis) => ({ label: d.names[axis], colour: ramp(axis, axes.length), width: 1.1, values: data.values("main", k, true) })),
           { label: axes.length ? "largest" : "disagreement", colour: colour("--ink"), width: 2.2, values: data.values("main", d.overall, true) },
         ],
       };
@@ -172,7 +171,7 @@ for (const { id, entries } of index.families) {
       const entry = entries[+k];
       if (!entry) return { series: [] };
       const wanted = entry.wanted.length ? ofAgents(entry.wanted, null, { suffix: ", wanted", dash: [4, 3], width: 1.1 }) : [];
-      const lines = entry.limits.length > 6 ? [] : entry.limits.map((value) => ({ value, label: "limit" }));
+      const lines = entry.lines.length > 6 ? [] : entry.lines;
       return { unit: entry.unit === "1" ? "" : entry.unit, lines, series: [...ofAgents(entry.series, null), ...wanted] };
     },
   };

@@ -165,7 +165,7 @@ impl<'a> Plots<'a> {
             lines.push(Line { width: 2, ..self.line(&grid, &series.overall, false, ink) });
             if !axes.is_empty() {
                 legend = (0..axes.len().min(MOST_NAMES))
-                    .map(|axis| (shared_axis_words(self.record.setup, axis), colour(axis)))
+                    .map(|axis| (names::gap_words(self.record.setup, axis), colour(axis)))
                     .collect();
                 legend.push(("largest".into(), ink));
             }

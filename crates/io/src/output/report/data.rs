@@ -118,6 +118,8 @@ struct DisagreementIndex {
     unit: String,
     overall: usize,
     per_axis: Vec<usize>,
+    /// What the axes are called.
+    names: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -194,6 +196,7 @@ impl Payload {
         let disagreement = DisagreementSeries::of_table(table).ok().map(|series| DisagreementIndex {
             unit: names::gap_unit(record.setup),
             overall: main.add(&series.overall, false),
+            names: (0..series.per_axis.len()).map(|axis| names::gap_words(record.setup, axis)).collect(),
             per_axis: series.per_axis.iter().map(|axis| main.add(axis, false)).collect(),
         });
 

@@ -38,8 +38,15 @@ struct EntryIndex {
     /// Index of the series by agent.
     series: Vec<Option<usize>>,
     wanted: Vec<Option<usize>>,
-    /// The distinct limits.
-    limits: Vec<f64>,
+    /// Values to compare with, each once.
+    lines: Vec<GuideIndex>,
+}
+
+/// A value to compare with.
+#[derive(Serialize, PartialEq)]
+struct GuideIndex {
+    value: f64,
+    label: &'static str,
 }
 
 impl Family {
@@ -70,27 +77,30 @@ impl Family {
         let entry = |k: usize| {
             let owners = (0..table.agents()).filter(|agent| table.column(*agent, self.signal, k).is_some());
             let owners: Vec<usize> = owners.collect();
-            let words = |agent: &usize| names::entry_name(table.setup, *agent, self.signal, k);
+            let words = |agent: &usize| names::entry_name(table.setup, *agent, self.signal, k).unwrap_or_default();
             let units = owners.iter().map(|agent| names::unit(table.setup, *agent, self.signal, k));
             let mut series = |signal: Signal| {
                 let column = |agent| Some(add(table.column(agent, signal, k)?, may_jump(signal)));
                 (0..table.agents()).map(column).collect()
             };
             EntryIndex {
-                name: same(owners.iter().map(words)).flatten().unwrap_or_else(|| (k + 1).to_string()),
+                name: names::shared(owners.iter().map(words)).unwrap_or_else(|| (k + 1).to_string()),
                 unit: text::units(units),
                 series: series(self.signal),
                 wanted: self.wanted.map(series).unwrap_or_default(),
-                limits: distinct(owners.iter().flat_map(|agent| self.limits(table.setup, *agent, k))),
+                lines: distinct(owners.iter().flat_map(|agent| self.guides(table.setup, *agent, k))),
             }
         };
         FamilyIndex { id: self.id(), entries: (0..most).map(entry).collect() }
     }
 
-    /// What its values must not leave, or fall below.
-    fn limits(&self, setup: &Setup, agent: usize, entry: usize) -> Vec<f64> {
+    /// What its values must not leave, or fall below, or should become.
+    fn guides(&self, setup: &Setup, agent: usize, entry: usize) -> Vec<GuideIndex> {
         let Some(agent) = setup.agents.get(agent) else { return Vec::new() };
-        let both = |limit: Option<f64>| limit.map_or_else(Vec::new, |limit| vec![limit, -limit]);
+        let guide = |label| move |value| GuideIndex { value, label };
+        let both = |limit: Option<f64>| {
+            limit.into_iter().flat_map(|limit| [limit, -limit]).map(guide("limit")).collect::<Vec<_>>()
+        };
         match (self.signal, &agent.robot.kind, &agent.law) {
             (Signal::WheelTorque, RobotKind::Spacecraft { wheels, .. }, _) => {
                 both(wheels.wheel(entry).and_then(|wheel| wheel.torque_limit_n_m))
@@ -98,7 +108,11 @@ impl Family {
             (Signal::WheelMomentum, RobotKind::Spacecraft { wheels, .. }, _) => {
                 both(wheels.wheel(entry).and_then(|wheel| wheel.momentum_limit_n_m_s))
             }
-            (Signal::Thrust, _, Law::Thrust(law)) => vec![law.floor.newtons()],
+            (Signal::Thrust, _, Law::Thrust(law)) => vec![guide("floor")(law.floor.newtons())],
+            (Signal::KinematicEstimate, kind, Law::TaskSpace(law)) => {
+                let truth = law.tip.parameters(kind).and_then(|theta| theta.get(entry).copied());
+                truth.into_iter().map(guide("truth")).collect()
+            }
             _ => Vec::new(),
         }
     }
@@ -146,16 +160,13 @@ fn may_jump(signal: Signal) -> bool {
     matches!(signal, Signal::Selection | Signal::WheelTorque | Signal::AngularVelocity | Signal::AngularVelocityWanted)
 }
 
-/// The one value that all have.
-fn same<T: PartialEq>(mut all: impl Iterator<Item = T>) -> Option<T> {
-    let first = all.next()?;
-    all.all(|other| other == first).then_some(first)
-}
-
 /// Each once.
-fn distinct(values: impl Iterator<Item = f64>) -> Vec<f64> {
-    let mut all: Vec<f64> = values.collect();
-    all.sort_by(f64::total_cmp);
-    all.dedup();
+fn distinct(guides: impl Iterator<Item = GuideIndex>) -> Vec<GuideIndex> {
+    let mut all = Vec::new();
+    guides.for_each(|guide| {
+        if !all.contains(&guide) {
+            all.push(guide);
+        }
+    });
     all
 }

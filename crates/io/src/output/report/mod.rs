@@ -10,7 +10,7 @@ mod network;
 pub(crate) mod sections;
 pub(crate) mod text;
 
-use forwardstep_sim::recording::Ending;
+use forwardstep_sim::recording::{Ending, Signal};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use self::families::Family;
@@ -101,6 +101,8 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
 fn signals(absence: Option<Absence>, record: &RunRecord<'_>) -> Markup {
     let (gap, agents) = (Gap::of(record.setup), &record.setup.agents);
     let adaptive = agents.iter().any(|agent| agent.law.estimates());
+    let columns = &record.outcome.recording.columns;
+    let recorded = |signal| columns.iter().any(|column| column.signal == signal);
     let card = |id: &str, title: &str, what: &str, empty: &str| {
         html! {
             article.card.plot data-plot=(id) data-empty=(empty) {
@@ -124,12 +126,12 @@ fn signals(absence: Option<Absence>, record: &RunRecord<'_>) -> Markup {
             div.grid {
                 (card("disagreement", gap.name(), gap.formula(), absence.map_or("", Absence::words)))
                 (card("position", "Positions", "q", ""))
-                (card("torque", "Torques", "τ, after any limit", ""))
+                @if recorded(Signal::Torque) { (card("torque", "Torques", "τ, after any limit", "")) }
                 @if agents.iter().any(|agent| !agent.pushes.is_empty()) {
                     (card("external", "External torques", "τ_ext, by pushes", ""))
                 }
                 (card("velocity", "Speed and reference", "q̇, and z dashed", ""))
-                (card("error", "Tracking error", "s = q̇ − z", ""))
+                @if recorded(Signal::TrackingError) { (card("error", "Tracking error", "s = q̇ − z", "")) }
                 (card("reference", "Reference derivatives", "ż and higher", ""))
                 @for family in Family::of(&record.outcome.recording) {
                     (card(&family.id(), &family.title, &family.letters, ""))
