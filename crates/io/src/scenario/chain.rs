@@ -6,7 +6,7 @@ use forwardstep_core::controller::Immersion;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::{CascadeError, CascadeTerms, Formulas};
 use forwardstep_sim::chain::{ChainLaw, ChainModel, ChainStep, Estimate};
-use forwardstep_sim::{Axis, AxisUnit, Law, RobotKind, RobotSetup};
+use forwardstep_sim::{AxisUnit, Law, RobotKind, RobotSetup};
 
 use super::at::At;
 use super::chain_file::{
@@ -16,8 +16,9 @@ use super::chain_file::{
 use super::fault::{Fault, count, fault, filled, positive, values};
 use super::file::EstimateStartFile;
 use super::formula::formula_in;
-use super::law::estimate;
+use super::law::{estimate, of_another};
 use super::problem::ScenarioProblem;
+use super::robots::axis;
 use super::values::AxisValues;
 
 /// Orders that are accepted: of derivatives, and of chains that are differentiated.
@@ -58,18 +59,11 @@ fn robot(model: ChainModel, parameters: &At<Vec<At<f64>>>) -> Result<RobotSetup,
         let problem = ScenarioProblem::VectorLength { key: "parameters", found, need, agent };
         return Err(fault(parameters, problem));
     }
-    let axis = Axis {
-        name: "x".into(),
-        unit: AxisUnit::Metre,
-        position_limits: None,
-        velocity_limit: None,
-        effort_limit: None,
-    };
     Ok(RobotSetup {
         kind: RobotKind::Chain(model),
         theta: values(&parameters.value),
         theta_names: (1..=need).map(|k| format!("theta{k}")).collect(),
-        axes: vec![axis],
+        axes: vec![axis("x", AxisUnit::Metre)],
     })
 }
 
@@ -96,25 +90,40 @@ pub(super) fn strict(file: &StrictFeedbackFile) -> Result<RobotSetup, Fault> {
 pub(super) fn pure(file: &PureFeedbackFile) -> Result<RobotSetup, Fault> {
     let regressors = equations(&file.regressors)?;
     let names = states(regressors.len());
+    if file.known.value.len() != names.len() {
+        let (found, need, agent) = (file.known.value.len(), names.len(), "regressors".to_owned());
+        return Err(fault(&file.known, ScenarioProblem::VectorLength { key: "known", found, need, agent }));
+    }
     let known = list(&file.known.value, &names)?;
     let psi = optional(file.psi.as_ref(), &names, 1.0)?;
     cascade(CascadeTerms::new(known, regressors, psi), &file.regressors, &file.parameters)
 }
 
-fn cascade<T>(
+fn cascade(
     terms: Result<CascadeTerms, CascadeError>,
-    place: &At<T>,
+    regressors: &At<Vec<At<Vec<At<String>>>>>,
     parameters: &At<Vec<At<f64>>>,
 ) -> Result<RobotSetup, Fault> {
-    let terms = terms.map_err(|error| fault(place, ScenarioProblem::Chain(error)))?;
+    let terms = terms.map_err(|error| {
+        let row = match error {
+            CascadeError::Above { equation, .. } => regressors.value.get(equation.saturating_sub(1)),
+            _ => None,
+        };
+        let place = row.map_or(&regressors.span, |row| &row.span).clone();
+        Fault::new(ScenarioProblem::Chain(error)).at(&place)
+    })?;
     robot(ChainModel::Cascade(Arc::new(terms)), parameters)
 }
 
 fn equations(file: &At<Vec<At<Vec<At<String>>>>>) -> Result<Vec<Vec<Expression>>, Fault> {
     let rows = filled("regressors", file)?;
     if rows.len() > MOST_EQUATIONS {
-        let (value, high) = (rows.len() as f64, MOST_EQUATIONS as f64);
-        return Err(fault(file, ScenarioProblem::OutOfRange { key: "the number of equations", value, low: 1.0, high }));
+        return Err(fault(file, ScenarioProblem::Order { key: "regressors", found: rows.len(), most: MOST_EQUATIONS }));
+    }
+    let need = rows.first().map_or(0, |row| row.value.len());
+    if let Some((k, row)) = rows.iter().enumerate().find(|(_, row)| row.value.len() != need) {
+        let (found, agent) = (row.value.len(), format!("equation {}", k + 1));
+        return Err(fault(row, ScenarioProblem::VectorLength { key: "regressors", found, need, agent }));
     }
     let names = states(rows.len());
     rows.iter().map(|row| list(&row.value, &names)).collect()
@@ -130,7 +139,7 @@ fn model<'a>(robot: &'a RobotSetup, agent: &str, law: &'static str, is_cascade: 
             } else {
                 "`chain`, plants of derivatives"
             };
-            Err(Fault::new(ScenarioProblem::LawOfAnother { agent: agent.to_owned(), law, made_for }))
+            Err(of_another(law, made_for, agent, robot))
         }
     }
 }

@@ -8,15 +8,22 @@ use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
 use super::at::At;
 use super::fault::{Fault, fault, positive};
 use super::file::{ReferenceFile, ScenarioFile};
+use super::inputs::InputFolder;
 use super::leader_file::{LeaderDesignFile, LeaderReferenceFile, SignFile};
 use super::problem::ScenarioProblem;
-use super::target::target;
+use super::target::{Owner, target};
 
 const NAME: &str = "leader";
 const SIGN_EVERY_S: f64 = 1e-3;
 
-/// The leader and how it is followed, by agents with so many axes; nothing where nobody leads.
-pub(super) fn following(file: &ScenarioFile, axes: usize, end_s: f64) -> Result<Option<Arc<Following>>, Fault> {
+/// The leader and how it is followed, by agents with these axes; nothing where nobody leads. `folder` is where tables are
+/// looked for.
+pub(super) fn following(
+    file: &ScenarioFile,
+    axes: &[String],
+    end_s: f64,
+    folder: &mut InputFolder,
+) -> Result<Option<Arc<Following>>, Fault> {
     let (reference, leader) = match (&file.reference.value, &file.leader) {
         (ReferenceFile::Leader(reference), Some(leader)) => (reference, &leader.value),
         (ReferenceFile::Leader(_), None) => return Err(fault(&file.reference, ScenarioProblem::NoLeader)),
@@ -29,7 +36,7 @@ pub(super) fn following(file: &ScenarioFile, axes: usize, end_s: f64) -> Result<
         None => NAME.to_owned(),
         Some(name) => super::agents::checked_name(name)?.to_owned(),
     };
-    let trajectory = target(&leader.motion, &name, axes, end_s)?;
+    let trajectory = target(&leader.motion, &Owner { name: &name, axes, end_s }, folder)?;
     let design = match reference.design.value {
         LeaderDesignFile::Continuous => FollowingDesign::Continuous,
         LeaderDesignFile::Differentiable => FollowingDesign::Differentiable,

@@ -75,8 +75,8 @@ pub(super) fn silent(agents: usize) -> Network {
     Network { agents, schedule: Schedule::Fixed(Vec::new()), delays: Vec::new(), weights: Vec::new(), coupling }
 }
 
-fn coupling(file: &CouplingFile) -> Result<Coupling, Fault> {
-    Ok(match file {
+fn coupling(file: &At<CouplingFile>) -> Result<Coupling, Fault> {
+    Ok(match &file.value {
         CouplingFile::Saturated(limit) => Coupling::Saturated { limit: positive("saturated", limit)? },
         CouplingFile::Tanh(scale) => Coupling::Tanh { scale: positive("tanh", scale)? },
         CouplingFile::Rational(scale) => Coupling::Rational { scale: positive("rational", scale)? },

@@ -11,10 +11,11 @@ use super::control_problem::ControlProblem;
 use super::formula::FormulaProblem;
 use super::network_problem::NetworkProblem;
 use super::push_problem::PushProblem;
+use super::refusal;
 use super::table::TableProblem;
 use crate::Problem;
 use crate::files::ReadError;
-use crate::wording::{about, are, choose, count, entry_count, number};
+use crate::wording::{about, are, axes, choose, count, entry_count, number};
 
 /// Why a scenario has no meaning.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -151,6 +152,16 @@ pub enum ScenarioProblem {
         /// The second.
         high: f64,
     },
+    /// Lowest and highest value that are one, or in the wrong order.
+    #[error("`{key}` is [{}, {}], but the first must be less than the second", number(*.low), number(*.high))]
+    Range {
+        /// The key.
+        key: &'static str,
+        /// The first.
+        low: f64,
+        /// The second.
+        high: f64,
+    },
     /// A list that needs an entry has none.
     #[error("`{key}` is empty")]
     Empty {
@@ -191,7 +202,7 @@ pub enum ScenarioProblem {
         most: u64,
     },
     /// Agents that can never agree, because their positions have different lengths.
-    #[error("`{first}` has {first_axes} axes and `{other}` has {other_axes}, but agents that agree need as many")]
+    #[error("`{first}` has {} and `{other}` has {other_axes}, but agents that agree need as many", axes(*.first_axes))]
     AxesDiffer {
         /// The first agent.
         first: String,
@@ -309,8 +320,10 @@ pub enum ScenarioProblem {
         found: usize,
     },
     /// Reference dynamics of an order beyond use.
-    #[error("`roots_per_s` has {}, but at most {most} are accepted", entry_count(*.found))]
+    #[error("`{key}` has {}, but at most {most} are accepted", entry_count(*.found))]
     Order {
+        /// The key.
+        key: &'static str,
         /// How many there are.
         found: usize,
         /// How many are accepted.
@@ -433,6 +446,14 @@ pub enum ScenarioProblem {
     /// Sinusoids that make no trajectory.
     #[error(transparent)]
     Trajectory(TrajectoryError),
+    /// Points and times that do not match.
+    #[error("`positions` has {}, but `times_s` has {}", entry_count(*.points), entry_count(*.times))]
+    PointsAndTimes {
+        /// How many points.
+        points: usize,
+        /// How many times.
+        times: usize,
+    },
     /// Points that make no curve.
     #[error(transparent)]
     Points(SplineError),
@@ -467,13 +488,38 @@ pub enum ScenarioProblem {
     Spacecraft(SpacecraftError),
     /// A direction that is zero.
     #[error("this is zero and has no direction")]
-    NoDirection,
+    NoDirection {
+        /// What would have one.
+        instead: &'static str,
+    },
+    /// A desired attitude that is zero.
+    #[error("this is no attitude at {} s: its four entries are zero there", number(*.t_s))]
+    NoAttitude {
+        /// When, s.
+        t_s: f64,
+    },
+    /// An initial value that an agent does not have.
+    #[error("`{key}` says nothing about `{agent}`")]
+    StartUnused {
+        /// The key.
+        key: &'static str,
+        /// The agent.
+        agent: String,
+    },
     /// Two ways of stating an attitude, or half of one.
     #[error("an attitude is `axis` with `angle_rad`, or `quaternion`")]
     HalfAttitude,
     /// A tip whose Jacobian cannot be inverted.
     #[error(transparent)]
     Tip(TipError),
+    /// A joint that moves beside the tip.
+    #[error("`{joint}` moves, but does not carry `{link}`")]
+    TipBeside {
+        /// The joint.
+        joint: String,
+        /// The link with the tip.
+        link: String,
+    },
     /// A robot from a URDF without a tip.
     #[error("the law `task_space` needs `tip` for a robot from a URDF")]
     NoTip,
@@ -501,6 +547,8 @@ pub enum ScenarioProblem {
         law: &'static str,
         /// What it is made for, in words.
         made_for: &'static str,
+        /// The laws that suit the agent's robot.
+        laws: &'static str,
     },
     /// What the closed loop refuses although every number by itself has a meaning.
     #[error("{0}")]
@@ -522,6 +570,14 @@ impl Problem for ScenarioProblem {
             ScenarioProblem::WrongType { found, expected } if found == "a table" && expected == "a list" => {
                 "a list of tables has its name in double brackets, such as [[agents]]".into()
             }
+            ScenarioProblem::ChoiceNeedsValue { choice } => format!("write it with its value: {{ {choice} = … }}"),
+            ScenarioProblem::HalfAttitude => {
+                "write `axis = [0, 0, 1]` and `angle_rad = 1.5`, or `quaternion = [0, 0, 0, 1]` alone".into()
+            }
+            ScenarioProblem::TipBeside { joint, .. } => format!("add `{joint}` to `locked`, or choose a link behind it"),
+            ScenarioProblem::TipOfPlanarArm => "leave `tip` out".into(),
+            ScenarioProblem::Tip(TipError::Coordinate { .. }) => "choose `x`, `y` and `z`, each at most once".into(),
+            ScenarioProblem::Spacecraft(SpacecraftError::Axis { .. }) => "[1, 0, 0] is the first axis of the body".into(),
             ScenarioProblem::ChoiceTakesNoValue { choice } => format!("write it as a text: \"{choice}\""),
             ScenarioProblem::AgentName { .. } => "use up to 64 letters, digits, `-` and `_`".into(),
             ScenarioProblem::AgentTwice { .. } => {
@@ -581,6 +637,22 @@ impl Problem for ScenarioProblem {
             ScenarioProblem::NothingTracked => "write `disagreement_below`".into(),
             ScenarioProblem::NothingAgreed => "write `error_below`".into(),
             ScenarioProblem::TargetValue { .. } => "roots, logarithms and quotients need arguments that stay where they have values".into(),
+            ScenarioProblem::LawOfAnother { laws, .. } => format!("for this robot there is {laws}"),
+            ScenarioProblem::NoDirection { instead } => (*instead).into(),
+            ScenarioProblem::NoAttitude { .. } => {
+                "a quaternion may have any length but zero, vector part first: [0, 0, 0, 1] is no turn".into()
+            }
+            ScenarioProblem::StartUnused { key, .. } => match *key {
+                "attitude" => "vehicles, rotorcraft and spacecraft have an attitude".into(),
+                "angular_velocity_rad_s" => "rotorcraft and spacecraft have an angular velocity".into(),
+                "spacecraft" => "only spacecraft start by it".into(),
+                "higher_states" => "only chains of order two or more in feedback form, else of order three or more, have any".into(),
+                key if key.starts_with("velocity") => {
+                    "chains of order one or in feedback form have `higher_states`, spacecraft `angular_velocity_rad_s`".into()
+                }
+                _ => "spacecraft start by `attitude`, `angular_velocity_rad_s` and `spacecraft`".into(),
+            },
+            ScenarioProblem::Setup(error) => return refusal::advice(error),
             _ => return None,
         };
         Some(text)

@@ -36,8 +36,9 @@ type Key<'a> = (&'static str, Option<AxisUnit>, &'a Option<At<StartValues>>);
 pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<Shared<'_>>) -> Result<Start, Fault> {
     use AxisUnit::{Metre, Radian};
     let tables = || [own, common].into_iter().flatten();
+    own.map_or(Ok(()), |own| agent.all_counts(&own.file.value))?;
     if let RobotKind::Spacecraft { wheels, .. } = &agent.robot.kind {
-        return spacecraft::start(tables().find_map(|table| table.file.value.spacecraft.as_ref()), agent.name, wheels);
+        return spacecraft::start(tables().map(|table| &table.file.value), agent.name, wheels);
     }
     let quantity = |stream, keys: fn(&StartFile) -> [Key<'_>; 3]| {
         for table in tables() {
@@ -65,7 +66,7 @@ pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<
         match (&agent.robot.kind, tables().find_map(|table| Some((table, table.file.value.higher_states.as_ref()?)))) {
             (RobotKind::Chain(_), None) => vec![0.0; agent.length(Stream::Higher)],
             (_, Some((table, values))) => agent.vector("higher_states", values, table, Stream::Higher)?,
-            _ => vehicle::rest(agent.robot, tables().map(|table| &table.file.value)),
+            _ => vehicle::rest(agent.robot, tables().map(|table| &table.file.value))?,
         };
     let mut reference = Vec::new();
     if let Some((table, state)) = tables().find_map(|table| Some((table, table.file.value.reference.as_ref()?))) {
@@ -85,6 +86,40 @@ pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<
 }
 
 impl Starter<'_> {
+    /// Refuses what an agent's own table says in vain. (The one of all may speak to others.)
+    fn all_counts(&self, own: &StartFile) -> Result<(), Fault> {
+        let kind = &self.robot.kind;
+        let (craft, turns) = match kind {
+            RobotKind::Spacecraft { .. } => (true, true),
+            RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. } => (false, true),
+            _ => (false, false),
+        };
+        let spins = craft || matches!(kind, RobotKind::Rotorcraft { .. });
+        let moves = !craft && self.length(Stream::Velocity) > 0;
+        let chain = self.length(Stream::Higher) > 0;
+        let span = |values: &Option<At<StartValues>>| values.as_ref().map(|values| values.span.clone());
+        let all = [
+            ("position_rad", !craft, span(&own.position_rad)),
+            ("position_m", !craft, span(&own.position_m)),
+            ("position", !craft, span(&own.position)),
+            ("velocity_rad_s", moves, span(&own.velocity_rad_s)),
+            ("velocity_m_s", moves, span(&own.velocity_m_s)),
+            ("velocity", moves, span(&own.velocity)),
+            ("attitude", turns, own.attitude.as_ref().map(|attitude| attitude.span.clone())),
+            ("angular_velocity_rad_s", spins, own.angular_velocity_rad_s.as_ref().map(|rate| rate.span.clone())),
+            ("spacecraft", craft, own.spacecraft.as_ref().map(|craft| craft.span.clone())),
+            ("higher_states", chain, span(&own.higher_states)),
+            ("reference", !craft, own.reference.as_ref().map(|reference| reference.span.clone())),
+        ];
+        for (key, counts, span) in all {
+            if let (false, Some(span)) = (counts, span) {
+                let agent = self.name.to_owned();
+                return Err(Fault::new(ScenarioProblem::StartUnused { key, agent }).at(&span));
+            }
+        }
+        Ok(())
+    }
+
     /// Numbers in one of its quantities.
     fn length(&self, stream: Stream) -> usize {
         match (&self.robot.kind, stream) {

@@ -3,13 +3,13 @@
 use forwardstep_core::Gain;
 use forwardstep_core::controller::ParameterBounds;
 use forwardstep_core::robot::TipKinematics;
-use forwardstep_core::robot::tree::{LinkPoint, Tree, TreeTip, Uncertain};
+use forwardstep_core::robot::tree::{LinkPoint, TipError, Tree, TreeTip, Uncertain};
 use forwardstep_sim::{Law, RobotKind, RobotSetup, TaskSpaceLaw, TipSetup};
 
 use super::agents::Body;
 use super::at::At;
 use super::fault::{Fault, between, fault, filled, positive, values};
-use super::law::{adaptation, damping, estimate, gain, known_or_given};
+use super::law::{adaptation, damping, estimate, gain, known_or_given, of_another};
 use super::problem::ScenarioProblem;
 use super::push_problem::PushProblem;
 use super::task_file::{BoundsFile, CoordinateFile, TaskSpaceFile, TipFile, UncertainFile};
@@ -83,18 +83,28 @@ fn tip(
         }
         (RobotKind::PlanarArm, _, Some(place)) => Err(fault(place, ScenarioProblem::TipOfPlanarArm)),
         (RobotKind::Tree(tree), _, Some(place)) => of_tree(&place.value, agent, tree, body).and_then(|(setup, tip)| {
-            let tip = tip.map_err(|error| fault(place, ScenarioProblem::Tip(error)))?;
+            let tip = tip.map_err(|error| no_tip(place, robot, error))?;
             Ok((setup, tip.parameters(), tip.parameter_names()))
         }),
         (RobotKind::Tree(_), _, None) => Err(Fault::new(ScenarioProblem::NoTip)),
-        _ => {
-            let (agent, law, made_for) = (agent.to_owned(), "task_space", "planar arms and robots from a URDF");
-            Err(Fault::new(ScenarioProblem::LawOfAnother { agent, law, made_for }))
-        }
+        _ => Err(of_another("task_space", "planar arms and robots from a URDF", agent, robot)),
     }
 }
 
-type OfTree = (TipSetup, Result<TreeTip, forwardstep_core::robot::tree::TipError>);
+/// What is wrong with a tip, in the words of its robot.
+fn no_tip(place: &At<TipFile>, robot: &RobotSetup, error: TipError) -> Fault {
+    let TipFile { link, coordinates, .. } = &place.value;
+    match (&error, coordinates) {
+        (TipError::Beside { joint }, _) => {
+            let joint = robot.axes.get(*joint).map_or_else(String::new, |axis| axis.name.clone());
+            fault(link, ScenarioProblem::TipBeside { joint, link: link.value.clone() })
+        }
+        (TipError::Coordinate { .. }, Some(coordinates)) => fault(coordinates, ScenarioProblem::Tip(error)),
+        _ => fault(place, ScenarioProblem::Tip(error)),
+    }
+}
+
+type OfTree = (TipSetup, Result<TreeTip, TipError>);
 
 fn of_tree(file: &TipFile, agent: &str, tree: &Tree, body: &Body) -> Result<OfTree, Fault> {
     let Some((_, link)) = body.links.iter().find(|(name, _)| *name == file.link.value) else {

@@ -32,4 +32,4 @@ mod valid;
 mod vehicles;
 
 pub(crate) use assemble::ClosedLoop;
-pub use valid::SetupError;
+pub use valid::{SetupError, validate};
