@@ -14,7 +14,10 @@ pub trait Kernel {
 }
 
 /// Runs `kernel` compiled for the best instruction set of this processor. The bits do not depend on the choice.
-#[inline(always)]
+///
+/// Never inlined: the copy for processors without vector instructions is the longest of all, and would otherwise stand in
+/// every caller.
+#[inline(never)]
 pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     #[cfg(feature = "std")]
     {

@@ -239,12 +239,7 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
     ///
     /// # Errors
     /// [`StepError`], before anything has changed.
-    pub fn step(
-        &mut self,
-        now_s: f64,
-        measured: Measured<'_, f64>,
-        inbox: Inbox<'_>,
-    ) -> Result<Command<'_>, StepError> {
+    pub fn step(&mut self, now_s: f64, measured: Measured<'_>, inbox: Inbox<'_>) -> Result<Command<'_>, StepError> {
         let m = self.held.q.len();
         LengthError::check("q", m, measured.q.len())?;
         LengthError::check("dq", m, measured.dq.len())?;
@@ -290,7 +285,7 @@ struct Refer<'a, F> {
     hold: &'a mut Hold,
     started: bool,
     passed_s: Option<f64>,
-    measured: Measured<'a, f64>,
+    measured: Measured<'a>,
     inbox: Inbox<'a>,
     state: &'a mut [f64],
     held: &'a mut Held,

@@ -187,7 +187,7 @@ pub struct Leads<'a, 'h> {
     /// z, ż, ….
     pub state: &'a [f64],
     /// What is heard.
-    pub heard: Heard<'h, f64, Position>,
+    pub heard: Heard<'h, Position>,
     /// The trajectory, a jet per axis.
     pub target: &'a [Jet],
 }

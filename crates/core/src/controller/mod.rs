@@ -54,7 +54,7 @@ pub struct Given<'a, C: Controller> {
     /// What it may see of its own plant.
     pub measured: C::Measured<'a>,
     /// What it hears of its neighbours.
-    pub heard: Heard<'a, f64, C::Exchange>,
+    pub heard: Heard<'a, C::Exchange>,
     /// Where it should be: a [`Jet`] per axis of a desired trajectory, or of an offset from where the others agree. Empty
     /// where there is none.
     pub target: &'a [Jet],

@@ -89,22 +89,22 @@ impl Reference for Backstepping {
     }
 
     #[inline(always)]
-    fn evaluate<S: Scalar>(
+    fn evaluate(
         &self,
         axes: usize,
-        measured: Measured<'_, S>,
-        state: &[S],
-        heard: Heard<'_, S, Position>,
-        out: ReferenceOut<'_, S>,
+        measured: Measured<'_>,
+        state: &[f64],
+        heard: Heard<'_, Position>,
+        out: ReferenceOut<'_>,
     ) -> Result<(), LengthError> {
         let n = self.rate.len();
         check([axes, n, 1], measured, state, heard, &out)?;
         for k in 0..axes * n {
             let i = k % n;
             let z = heard.degree[i].neg_mul_add(measured.q[k], heard.sums.q[k]);
-            let rate = S::splat(self.rate[i]) * (z - state[k]);
+            let rate = self.rate[i] * (z - state[k]);
             out.z[k] = z;
-            out.dz[k] = rate.saturate(S::splat(self.limit[i]));
+            out.dz[k] = rate.saturate(self.limit[i]);
             out.d_state[k] = rate;
         }
         Ok(())
@@ -113,9 +113,9 @@ impl Reference for Backstepping {
     fn start(
         &self,
         axes: usize,
-        measured: Measured<'_, f64>,
+        measured: Measured<'_>,
         _: &[f64],
-        heard: Heard<'_, f64, Position>,
+        heard: Heard<'_, Position>,
         state: &mut [f64],
     ) -> Result<(), LengthError> {
         let block = axes * self.rate.len();

@@ -68,13 +68,13 @@ impl<X: Exchange> Reference for Consensus<X> {
     }
 
     #[inline(always)]
-    fn evaluate<S: Scalar>(
+    fn evaluate(
         &self,
         axes: usize,
-        measured: Measured<'_, S>,
-        state: &[S],
-        heard: Heard<'_, S, X>,
-        out: ReferenceOut<'_, S>,
+        measured: Measured<'_>,
+        state: &[f64],
+        heard: Heard<'_, X>,
+        out: ReferenceOut<'_>,
     ) -> Result<(), LengthError> {
         let Coefficients { order, agents: n, .. } = self.coefficients;
         check([axes, n, order], measured, state, heard, &out)?;
@@ -89,8 +89,8 @@ impl<X: Exchange> Reference for Consensus<X> {
             let (dq, z) = (&measured.dq[columns.clone()], &state[columns.clone()]);
             for i in 0..n {
                 let (alpha_0, ratio) = (self.coefficients.alpha[i], self.coefficients.alpha_0_over_kappa_0[i]);
-                let told = X::term(heard.sums, columns.start + i, S::splat(alpha_0), S::splat(ratio));
-                rate[i] = S::splat(self.coefficients.lambda[i]).mul_add(dq[i] - z[i], told);
+                let told = X::term(heard.sums, columns.start + i, alpha_0, ratio);
+                rate[i] = self.coefficients.lambda[i].mul_add(dq[i] - z[i], told);
             }
             for r in 0..=order {
                 let x = match r {
@@ -101,12 +101,12 @@ impl<X: Exchange> Reference for Consensus<X> {
                 let alpha = self.coefficients.alpha(r);
                 if r == 0 {
                     for i in 0..n {
-                        rate[i] = (heard.degree[i] * S::splat(alpha[i])).neg_mul_add(x[i], rate[i]);
+                        rate[i] = (heard.degree[i] * alpha[i]).neg_mul_add(x[i], rate[i]);
                     }
                 } else {
                     let below = self.coefficients.alpha(r - 1);
                     for i in 0..n {
-                        let c = heard.degree[i].mul_add(S::splat(alpha[i]), S::splat(below[i]));
+                        let c = heard.degree[i].mul_add(alpha[i], below[i]);
                         rate[i] = c.neg_mul_add(x[i], rate[i]);
                     }
                 }
@@ -122,9 +122,9 @@ impl<X: Exchange> Reference for Consensus<X> {
     fn start(
         &self,
         axes: usize,
-        _: Measured<'_, f64>,
+        _: Measured<'_>,
         given: &[f64],
-        _: Heard<'_, f64, X>,
+        _: Heard<'_, X>,
         state: &mut [f64],
     ) -> Result<(), LengthError> {
         let need = self.vectors() * axes * self.agents();
@@ -153,7 +153,7 @@ mod tests {
     fn evaluate<R: Reference>(
         law: &R,
         state: &[f64],
-        sums: <R::Exchange as Exchange>::Sums<'_, f64>,
+        sums: <R::Exchange as Exchange>::Sums<'_>,
     ) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
         let (mut z, mut dz, mut rate) = (vec![0.0; 2], vec![0.0; 2], vec![0.0; state.len()]);
         let heard = Heard { degree: &[W], sums };

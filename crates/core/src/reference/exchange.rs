@@ -11,39 +11,39 @@ pub trait Exchange: Copy + Send + Sync + 'static {
     const CHANNELS: usize;
 
     /// Σ_j w_ij · message_j(t − T_ij), one column per axis and channel.
-    type Sums<'a, S: Scalar>: Copy;
+    type Sums<'a>: Copy;
 
     /// Reads the sums out of one buffer that holds the channels one after the other, `channel` entries each.
     ///
     /// `None` when the buffer is too short.
-    fn split<S: Scalar>(buffer: &[S], channel: usize) -> Option<Self::Sums<'_, S>>;
+    fn split(buffer: &[f64], channel: usize) -> Option<Self::Sums<'_>>;
 
     /// Checks that every channel has `channel` entries.
     ///
     /// # Errors
     /// [`LengthError`] for the first that has not.
-    fn check<S: Scalar>(sums: Self::Sums<'_, S>, channel: usize) -> Result<(), LengthError>;
+    fn check(sums: Self::Sums<'_>, channel: usize) -> Result<(), LengthError>;
 
     /// The part of the receiver's law that these sums enter, on entry `k`: α₀ Σ w q_j, and (α₀/κ₀) Σ w q̇_j if it is sent.
-    fn term<S: Scalar>(sums: Self::Sums<'_, S>, k: usize, alpha_0: S, alpha_0_over_kappa_0: S) -> S;
+    fn term(sums: Self::Sums<'_>, k: usize, alpha_0: f64, alpha_0_over_kappa_0: f64) -> f64;
 }
 
 /// Everything a linear design needs to know of its neighbours: Σ_j w_ij and the weighted sums of their messages.
 #[derive(Clone, Copy, Debug)]
-pub struct Heard<'a, S: Scalar, X: Exchange> {
+pub struct Heard<'a, X: Exchange> {
     /// Σ_j w_ij, one entry per agent.
-    pub degree: &'a [S],
+    pub degree: &'a [f64],
     /// Σ_j w_ij · message_j(t − T_ij).
-    pub sums: X::Sums<'a, S>,
+    pub sums: X::Sums<'a>,
 }
 
-impl<'a, S: Scalar, X: Exchange> Heard<'a, S, X> {
+impl<'a, X: Exchange> Heard<'a, X> {
     /// Reads `sums`, channels of `channel` entries one after the other.
     ///
     /// # Errors
     /// [`LengthError`] when they are too few.
     #[inline(always)]
-    pub fn new(degree: &'a [S], sums: &'a [S], channel: usize) -> Result<Self, LengthError> {
+    pub fn new(degree: &'a [f64], sums: &'a [f64], channel: usize) -> Result<Self, LengthError> {
         let too_short = LengthError { what: "sums heard", need: X::CHANNELS * channel, got: sums.len() };
         Ok(Heard { degree, sums: X::split(sums, channel).ok_or(too_short)? })
     }
@@ -66,58 +66,58 @@ pub struct PositionVelocity;
 /// let velocities = heard.dq;
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct PositionSums<'a, S> {
+pub struct PositionSums<'a> {
     /// One column per axis.
-    pub q: &'a [S],
+    pub q: &'a [f64],
 }
 
 /// Σ_j w_ij q_j(t − T_ij) and Σ_j w_ij q̇_j(t − T_ij).
 #[derive(Clone, Copy, Debug)]
-pub struct PositionVelocitySums<'a, S> {
+pub struct PositionVelocitySums<'a> {
     /// One column per axis.
-    pub q: &'a [S],
+    pub q: &'a [f64],
     /// One column per axis.
-    pub dq: &'a [S],
+    pub dq: &'a [f64],
 }
 
 impl Exchange for Position {
     const CHANNELS: usize = 1;
-    type Sums<'a, S: Scalar> = PositionSums<'a, S>;
+    type Sums<'a> = PositionSums<'a>;
 
     #[inline(always)]
-    fn split<S: Scalar>(buffer: &[S], channel: usize) -> Option<PositionSums<'_, S>> {
+    fn split(buffer: &[f64], channel: usize) -> Option<PositionSums<'_>> {
         Some(PositionSums { q: buffer.get(..channel)? })
     }
 
     #[inline(always)]
-    fn check<S: Scalar>(sums: PositionSums<'_, S>, channel: usize) -> Result<(), LengthError> {
+    fn check(sums: PositionSums<'_>, channel: usize) -> Result<(), LengthError> {
         LengthError::check("sum of positions heard", channel, sums.q.len())
     }
 
     #[inline(always)]
-    fn term<S: Scalar>(sums: PositionSums<'_, S>, k: usize, alpha_0: S, _: S) -> S {
+    fn term(sums: PositionSums<'_>, k: usize, alpha_0: f64, _: f64) -> f64 {
         alpha_0 * sums.q[k]
     }
 }
 
 impl Exchange for PositionVelocity {
     const CHANNELS: usize = 2;
-    type Sums<'a, S: Scalar> = PositionVelocitySums<'a, S>;
+    type Sums<'a> = PositionVelocitySums<'a>;
 
     #[inline(always)]
-    fn split<S: Scalar>(buffer: &[S], channel: usize) -> Option<PositionVelocitySums<'_, S>> {
+    fn split(buffer: &[f64], channel: usize) -> Option<PositionVelocitySums<'_>> {
         let (q, dq) = buffer.split_at_checked(channel)?;
         Some(PositionVelocitySums { q, dq: dq.get(..channel)? })
     }
 
     #[inline(always)]
-    fn check<S: Scalar>(sums: PositionVelocitySums<'_, S>, channel: usize) -> Result<(), LengthError> {
+    fn check(sums: PositionVelocitySums<'_>, channel: usize) -> Result<(), LengthError> {
         LengthError::check("sum of positions heard", channel, sums.q.len())?;
         LengthError::check("sum of velocities heard", channel, sums.dq.len())
     }
 
     #[inline(always)]
-    fn term<S: Scalar>(sums: PositionVelocitySums<'_, S>, k: usize, alpha_0: S, alpha_0_over_kappa_0: S) -> S {
-        alpha_0.mul_add(sums.q[k], alpha_0_over_kappa_0 * sums.dq[k])
+    fn term(sums: PositionVelocitySums<'_>, k: usize, alpha_0: f64, alpha_0_over_kappa_0: f64) -> f64 {
+        Scalar::mul_add(alpha_0, sums.q[k], alpha_0_over_kappa_0 * sums.dq[k])
     }
 }

@@ -131,18 +131,18 @@ impl Reference for Following {
     }
 
     #[inline(always)]
-    fn evaluate<S: Scalar>(
+    fn evaluate(
         &self,
         axes: usize,
-        measured: Measured<'_, S>,
-        state: &[S],
-        heard: Heard<'_, S, PositionVelocity>,
-        out: ReferenceOut<'_, S>,
+        measured: Measured<'_>,
+        state: &[f64],
+        heard: Heard<'_, PositionVelocity>,
+        out: ReferenceOut<'_>,
     ) -> Result<(), LengthError> {
         check([axes, self.agents, 2], measured, state, heard, &out)?;
         let block = axes * self.agents;
         let (z, selection) = state.split_at(block);
-        let [alpha, gamma] = [self.sliding.alpha, self.sliding.gamma].map(S::splat);
+        let [alpha, gamma] = [self.sliding.alpha, self.sliding.gamma];
         for k in 0..block {
             let (q, dq, d) = (measured.q[k], measured.dq[k], heard.degree[k % self.agents]);
             // −(α + d) q̇ − d α q + Σ w (q̇_j + α q_j) − γ ς
@@ -152,7 +152,7 @@ impl Reference for Following {
             out.z[k] = z[k];
             out.dz[k] = dz;
             out.d_state[k] = dz;
-            out.d_state[block + k] = S::ZERO;
+            out.d_state[block + k] = 0.0;
         }
         Ok(())
     }
@@ -160,9 +160,9 @@ impl Reference for Following {
     fn start(
         &self,
         axes: usize,
-        _: Measured<'_, f64>,
+        _: Measured<'_>,
         given: &[f64],
-        _: Heard<'_, f64, PositionVelocity>,
+        _: Heard<'_, PositionVelocity>,
         state: &mut [f64],
     ) -> Result<(), LengthError> {
         let block = axes * self.agents;
@@ -194,20 +194,20 @@ impl Reference for SmoothFollowing {
     }
 
     #[inline(always)]
-    fn evaluate<S: Scalar>(
+    fn evaluate(
         &self,
         axes: usize,
-        measured: Measured<'_, S>,
-        state: &[S],
-        heard: Heard<'_, S, PositionVelocity>,
-        out: ReferenceOut<'_, S>,
+        measured: Measured<'_>,
+        state: &[f64],
+        heard: Heard<'_, PositionVelocity>,
+        out: ReferenceOut<'_>,
     ) -> Result<(), LengthError> {
         check([axes, self.agents, 3], measured, state, heard, &out)?;
         let block = axes * self.agents;
         let (z, rest) = state.split_at(block);
         let (p, selection) = rest.split_at(block);
-        let [alpha, beta, gamma] = [self.sliding.alpha, self.sliding.beta, self.sliding.gamma].map(S::splat);
-        let [by_itself, coupling] = [self.own, self.coupling].map(S::splat);
+        let [alpha, beta, gamma] = [self.sliding.alpha, self.sliding.beta, self.sliding.gamma];
+        let [by_itself, coupling] = [self.own, self.coupling];
         for k in 0..block {
             let (q, dq, d) = (measured.q[k], measured.dq[k], heard.degree[k % self.agents]);
             let own = alpha.mul_add(q, beta * dq);
@@ -219,7 +219,7 @@ impl Reference for SmoothFollowing {
             out.dz[k] = dz;
             out.d_state[k] = dz;
             out.d_state[block + k] = gamma.neg_mul_add(selection[k], coupling * d.neg_mul_add(own, told));
-            out.d_state[2 * block + k] = S::ZERO;
+            out.d_state[2 * block + k] = 0.0;
         }
         Ok(())
     }
@@ -227,9 +227,9 @@ impl Reference for SmoothFollowing {
     fn start(
         &self,
         axes: usize,
-        measured: Measured<'_, f64>,
+        measured: Measured<'_>,
         given: &[f64],
-        heard: Heard<'_, f64, PositionVelocity>,
+        heard: Heard<'_, PositionVelocity>,
         state: &mut [f64],
     ) -> Result<(), LengthError> {
         let block = axes * self.agents;

@@ -23,26 +23,28 @@ pub use polynomial::{RootsError, polynomial};
 pub use pure_integral::PureIntegral;
 pub use sliding::{Choice, Derived, Sliding, SlidingInputs, saturated};
 
-use crate::{LengthError, Scalar};
+use alloc::boxed::Box;
+
+use crate::LengthError;
 
 /// What reference dynamics measure of their own robots, `axes · agents` entries each.
 #[derive(Clone, Copy, Debug)]
-pub struct Measured<'a, S> {
+pub struct Measured<'a> {
     /// Joint positions.
-    pub q: &'a [S],
+    pub q: &'a [f64],
     /// Joint velocities.
-    pub dq: &'a [S],
+    pub dq: &'a [f64],
 }
 
 /// Where reference dynamics put their results.
 #[derive(Debug)]
-pub struct ReferenceOut<'a, S> {
+pub struct ReferenceOut<'a> {
     /// z, `axes · agents` entries.
-    pub z: &'a mut [S],
+    pub z: &'a mut [f64],
     /// ż, `axes · agents` entries.
-    pub dz: &'a mut [S],
+    pub dz: &'a mut [f64],
     /// d/dt of the state.
-    pub d_state: &'a mut [S],
+    pub d_state: &'a mut [f64],
 }
 
 /// Reference dynamics of a population of agents.
@@ -73,13 +75,13 @@ pub trait Reference: Send + Sync + 'static {
     ///
     /// # Errors
     /// [`LengthError`] when a slice has the wrong length.
-    fn evaluate<S: Scalar>(
+    fn evaluate(
         &self,
         axes: usize,
-        measured: Measured<'_, S>,
-        state: &[S],
-        heard: Heard<'_, S, Self::Exchange>,
-        out: ReferenceOut<'_, S>,
+        measured: Measured<'_>,
+        state: &[f64],
+        heard: Heard<'_, Self::Exchange>,
+        out: ReferenceOut<'_>,
     ) -> Result<(), LengthError>;
 
     /// The state that gives z and its derivatives the values `given`, as far as the dynamics leave them free: `given`
@@ -90,21 +92,64 @@ pub trait Reference: Send + Sync + 'static {
     fn start(
         &self,
         axes: usize,
-        measured: Measured<'_, f64>,
+        measured: Measured<'_>,
         given: &[f64],
-        heard: Heard<'_, f64, Self::Exchange>,
+        heard: Heard<'_, Self::Exchange>,
         state: &mut [f64],
     ) -> Result<(), LengthError>;
 }
 
+/// Which dynamics, known at run time only.
+impl<X: Exchange> Reference for Box<dyn Reference<Exchange = X>> {
+    type Exchange = X;
+
+    fn agents(&self) -> usize {
+        (**self).agents()
+    }
+
+    fn vectors(&self) -> usize {
+        (**self).vectors()
+    }
+
+    fn derivatives(&self) -> usize {
+        (**self).derivatives()
+    }
+
+    fn sliding(&self) -> Option<&Sliding> {
+        (**self).sliding()
+    }
+
+    fn evaluate(
+        &self,
+        axes: usize,
+        measured: Measured<'_>,
+        state: &[f64],
+        heard: Heard<'_, X>,
+        out: ReferenceOut<'_>,
+    ) -> Result<(), LengthError> {
+        (**self).evaluate(axes, measured, state, heard, out)
+    }
+
+    fn start(
+        &self,
+        axes: usize,
+        measured: Measured<'_>,
+        given: &[f64],
+        heard: Heard<'_, X>,
+        state: &mut [f64],
+    ) -> Result<(), LengthError> {
+        (**self).start(axes, measured, given, heard, state)
+    }
+}
+
 /// Checks the lengths that all reference dynamics share.
 #[inline(always)]
-fn check<S: Scalar, X: Exchange>(
+fn check<X: Exchange>(
     [axes, agents, vectors]: [usize; 3],
-    measured: Measured<'_, S>,
-    state: &[S],
-    heard: Heard<'_, S, X>,
-    out: &ReferenceOut<'_, S>,
+    measured: Measured<'_>,
+    state: &[f64],
+    heard: Heard<'_, X>,
+    out: &ReferenceOut<'_>,
 ) -> Result<(), LengthError> {
     let block = axes * agents;
     LengthError::check("q", block, measured.q.len())?;

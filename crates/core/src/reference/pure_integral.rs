@@ -63,13 +63,13 @@ impl<X: Exchange> Reference for PureIntegral<X> {
     }
 
     #[inline(always)]
-    fn evaluate<S: Scalar>(
+    fn evaluate(
         &self,
         axes: usize,
-        measured: Measured<'_, S>,
-        state: &[S],
-        heard: Heard<'_, S, X>,
-        out: ReferenceOut<'_, S>,
+        measured: Measured<'_>,
+        state: &[f64],
+        heard: Heard<'_, X>,
+        out: ReferenceOut<'_>,
     ) -> Result<(), LengthError> {
         let n = self.coefficients.agents;
         check([axes, n, 2], measured, state, heard, &out)?;
@@ -77,16 +77,16 @@ impl<X: Exchange> Reference for PureIntegral<X> {
         let (z_rate, eta_rate) = out.d_state.split_at_mut(axes * n);
         for k in 0..axes * n {
             let i = k % n;
-            let [alpha_0, alpha_1] = [0, 1].map(|r| S::splat(self.coefficients.alpha(r)[i]));
+            let [alpha_0, alpha_1] = [0, 1].map(|r| self.coefficients.alpha(r)[i]);
             let (ratio, lambda) = (self.coefficients.alpha_0_over_kappa_0[i], self.coefficients.lambda[i]);
             let (q, dq, d) = (measured.q[k], measured.dq[k], heard.degree[i]);
-            let told = X::term(heard.sums, k, alpha_0, S::splat(ratio));
+            let told = X::term(heard.sums, k, alpha_0, ratio);
             // −(α₁ + d) q̇ − (α₀ + d α₁) q + η
             let dz = (alpha_1 + d).neg_mul_add(dq, d.mul_add(alpha_1, alpha_0).neg_mul_add(q, eta[k]));
             out.z[k] = z[k];
             out.dz[k] = dz;
             z_rate[k] = dz;
-            eta_rate[k] = (d * alpha_0).neg_mul_add(q, S::splat(lambda).mul_add(dq - z[k], told));
+            eta_rate[k] = (d * alpha_0).neg_mul_add(q, lambda.mul_add(dq - z[k], told));
         }
         Ok(())
     }
@@ -94,9 +94,9 @@ impl<X: Exchange> Reference for PureIntegral<X> {
     fn start(
         &self,
         axes: usize,
-        measured: Measured<'_, f64>,
+        measured: Measured<'_>,
         given: &[f64],
-        heard: Heard<'_, f64, X>,
+        heard: Heard<'_, X>,
         state: &mut [f64],
     ) -> Result<(), LengthError> {
         let (n, block) = (self.coefficients.agents, axes * self.coefficients.agents);
@@ -127,7 +127,7 @@ mod tests {
     const BETA: f64 = 0.6;
 
     /// ż and the rates of z and η of one agent with one axis.
-    fn evaluate<X: Exchange>(sums: X::Sums<'_, f64>, [q, dq, z, eta]: [f64; 4]) -> [f64; 3] {
+    fn evaluate<X: Exchange>(sums: X::Sums<'_>, [q, dq, z, eta]: [f64; 4]) -> [f64; 3] {
         let law = PureIntegral::<X>::new([(&[ALPHA, BETA][..], LAMBDA)]).unwrap();
         let (mut z_out, mut dz, mut rate) = ([0.0], [0.0], [0.0; 2]);
         let out = ReferenceOut { z: &mut z_out, dz: &mut dz, d_state: &mut rate };

@@ -64,13 +64,13 @@ pub struct Sliding {
 /// What e is made of on columns: own values and sums of what was heard, `axes · agents` entries each. The last of either is
 /// not read when there is nothing derived.
 #[derive(Clone, Copy, Debug)]
-pub struct SlidingInputs<'a, S> {
+pub struct SlidingInputs<'a> {
     /// q, q̇, a of everybody.
-    pub own: [&'a [S]; 3],
+    pub own: [&'a [f64]; 3],
     /// Σ_j w_ij, one entry per agent.
-    pub degree: &'a [S],
+    pub degree: &'a [f64],
     /// Σ_j w_ij q_j, Σ_j w_ij q̇_j, Σ_j w_ij a_j.
-    pub sums: [&'a [S]; 3],
+    pub sums: [&'a [f64]; 3],
 }
 
 impl Sliding {
@@ -83,12 +83,7 @@ impl Sliding {
     ///
     /// # Errors
     /// [`LengthError`] when a slice has the wrong length.
-    pub fn argument<S: Scalar>(
-        &self,
-        axes: usize,
-        inputs: SlidingInputs<'_, S>,
-        e: &mut [S],
-    ) -> Result<(), LengthError> {
+    pub fn argument(&self, axes: usize, inputs: SlidingInputs<'_>, e: &mut [f64]) -> Result<(), LengthError> {
         let SlidingInputs { own, degree, sums } = inputs;
         let n = degree.len();
         LengthError::check("argument of the sign", axes * n, e.len())?;
@@ -96,11 +91,11 @@ impl Sliding {
             LengthError::check("what the sign is taken of", axes * n, column.len())?;
         }
         LengthError::check("what the sign is taken of", axes * n, sums[0].len().min(sums[1].len()))?;
-        let (alpha, beta) = (S::splat(self.alpha), S::splat(self.beta));
+        let (alpha, beta) = (self.alpha, self.beta);
         let derived = self.derived != Derived::Nothing;
         for (k, e) in e.iter_mut().enumerate() {
-            let xi = |[q, dq, a]: [&[S]; 3]| {
-                let xi = alpha.mul_add(q[k], beta * dq[k]);
+            let xi = |[q, dq, a]: [&[f64]; 3]| {
+                let xi = Scalar::mul_add(alpha, q[k], beta * dq[k]);
                 if derived { xi + a[k] } else { xi }
             };
             // d ξ_i − Σ_j w_ij ξ_j.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use forwardstep_sim::recording::Recording;
 use forwardstep_sim::setup::Setup;
-use parquet::basic::{Compression, Encoding, Repetition, Type as PhysicalType, ZstdLevel};
+use parquet::basic::{Compression, Encoding, Repetition, Type as PhysicalType};
 use parquet::column::reader::ColumnReader;
 use parquet::data_type::DoubleType;
 use parquet::errors::Result;
@@ -38,7 +38,7 @@ pub(crate) fn write(out: &mut (impl Write + Send), record: &RunRecord<'_>) -> Re
     let schema = Arc::new(Type::group_type_builder("trajectory").with_fields(fields).build()?);
     let properties = WriterProperties::builder()
         .set_created_by(format!("forwardstep {}", record.version))
-        .set_compression(Compression::ZSTD(ZstdLevel::try_new(3)?))
+        .set_compression(Compression::SNAPPY)
         .set_dictionary_enabled(false)
         .set_encoding(Encoding::BYTE_STREAM_SPLIT)
         .set_key_value_metadata(Some(metadata(record, &header)))

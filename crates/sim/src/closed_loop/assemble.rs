@@ -4,12 +4,13 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use forwardstep_core::controller::Trouble;
-use forwardstep_core::reference::{Exchange as CoreExchange, Position, PositionVelocity};
+use forwardstep_core::reference::{Position, PositionVelocity};
 
 use super::guide::Guide;
 use super::members::{population, populations};
 use super::population::{Columns, Inputs};
 use super::pushes::Pushes;
+use super::references::Transmits;
 use super::sampling::Sampling;
 use super::sliding::{Place, Slider};
 use super::valid::{SetupError, validate};
@@ -72,7 +73,7 @@ impl<'a> ClosedLoop<'a> {
         }
     }
 
-    fn with_exchange<X: CoreExchange>(setup: &'a Setup) -> Result<Self, SetupError> {
+    fn with_exchange<X: Transmits>(setup: &'a Setup) -> Result<Self, SetupError> {
         let axes = setup.agents[0].robot.axes.len();
         let following = setup.following();
         let sliding = following.map(|following| following.sliding());

@@ -4,20 +4,17 @@ use std::sync::Arc;
 
 use forwardstep_core::agent::{Agent, Limiter, VelocityFilter};
 use forwardstep_core::law::SlotineLi;
-use forwardstep_core::reference::{
-    Backstepping, Consensus, Exchange as CoreExchange, Following, PureIntegral, Reference, SmoothFollowing,
-};
 use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass};
 use forwardstep_core::{Gain, InverseQuadratic, Lanes, LengthError, ResolvedGain};
 
 use super::fleet::Member;
 use super::population::{Columns, Population};
+use super::references::{AnyReference, Transmits, reference};
 use super::sampler::{Sampler, Sensor};
 use super::systems::system;
 use super::valid::SetupError;
-use crate::leader::FollowingDesign;
-use crate::setup::{AgentSetup, Control, Law, ReferenceKind, RobotKind, Setup, VelocitySensor};
+use crate::setup::{AgentSetup, Control, Law, RobotKind, Setup, VelocitySensor};
 
 /// Populations of at least so many agents are worked on in lanes.
 const LANES_FROM: usize = 3;
@@ -47,7 +44,7 @@ pub(super) fn populations(agents: &[AgentSetup]) -> Vec<Vec<usize>> {
     groups
 }
 
-pub(super) fn population<X: CoreExchange>(setup: &Setup, group: &[usize]) -> Result<Box<dyn Columns>, SetupError> {
+pub(super) fn population<X: Transmits>(setup: &Setup, group: &[usize]) -> Result<Box<dyn Columns>, SetupError> {
     let first = &setup.agents[group[0]];
     if !first.law.is_lagrangian() {
         return system(setup, group[0]);
@@ -70,92 +67,41 @@ pub(super) fn population<X: CoreExchange>(setup: &Setup, group: &[usize]) -> Res
 fn boxed<R, X>(robot: R, setup: &Setup, group: &[usize]) -> Result<Box<dyn Columns>, SetupError>
 where
     R: Lagrangian<f64> + Lagrangian<Lanes<8>> + Clone + 'static,
-    X: CoreExchange,
+    X: Transmits,
 {
     let mut members = Vec::new();
     for &agent in group {
         members.push(member(&robot, &setup.agents[agent], agent)?);
     }
-    let first = &setup.agents[group[0]];
-    let design = |agent: usize| (&setup.agents[agent].roots_per_s[..], setup.agents[agent].manipulability);
-    // Every agent's own design first, so that the one to blame is named.
-    for &agent in group {
-        if let ReferenceKind::Consensus | ReferenceKind::PureIntegral = setup.reference {
-            let name = || setup.agents[agent].name.clone();
-            Consensus::<X>::new([design(agent)]).map_err(|error| SetupError::Roots { agent: name(), error })?;
-        }
-    }
-    let roots = |error| SetupError::Roots { agent: first.name.clone(), error };
-    match &setup.reference {
-        ReferenceKind::Consensus => columns(robot, members, setup, |group| {
-            Consensus::<X>::new(group.iter().map(|&agent| design(agent))).map_err(roots)
-        }),
-        ReferenceKind::PureIntegral => columns(robot, members, setup, |group| {
-            PureIntegral::<X>::new(group.iter().map(|&agent| design(agent))).map_err(roots)
-        }),
-        ReferenceKind::Following(following) => match following.design {
-            FollowingDesign::Continuous => {
-                columns(robot, members, setup, |group| Ok(Following::new(group.len(), following.sliding())))
-            }
-            design => columns(robot, members, setup, |group| {
-                let (n, sliding) = (group.len(), following.sliding());
-                Ok(match design {
-                    FollowingDesign::Swarm { coupling } => SmoothFollowing::swarm(n, sliding, coupling),
-                    _ => SmoothFollowing::new(n, sliding),
-                })
-            }),
-        },
-        ReferenceKind::Backstepping { filter_s, acceleration_limit } => columns(robot, members, setup, |group| {
-            let limit = acceleration_limit.unwrap_or(f64::INFINITY);
-            Ok(Backstepping::new(group.iter().map(|_| (*filter_s, limit)))?)
-        }),
-        ReferenceKind::Tracking => Err(SetupError::NotTracking { agent: first.name.clone(), law: first.law.words() }),
-    }
-}
-
-/// A population with the reference dynamics that `reference` makes for a group of agents; under digital control every
-/// agent has its own.
-fn columns<R, F>(
-    robot: R,
-    members: Vec<Member>,
-    setup: &Setup,
-    reference: impl Fn(&[usize]) -> Result<F, SetupError>,
-) -> Result<Box<dyn Columns>, SetupError>
-where
-    R: Lagrangian<f64> + Lagrangian<Lanes<8>> + Clone + 'static,
-    F: Reference,
-{
-    let group: Vec<usize> = members.iter().map(|member| member.agent).collect();
+    let reference = reference::<X>(setup, group)?;
     let sampler = match &setup.control {
         None => None,
         Some(control) => {
             let (mut agents, mut sensors) = (Vec::new(), Vec::new());
             for member in &members {
-                agents.push(digital(&robot, member, reference(&[member.agent])?, setup, control)?);
+                agents.push(digital::<R, X>(&robot, member, setup, control)?);
                 sensors.push(sensor(member.agent, setup, control)?);
             }
             Some(Sampler::new(agents, sensors, control, setup.agents[group[0]].robot.axes.len()))
         }
     };
-    let reference = reference(&group)?;
     // What a held torque does is not what the ledger balances.
     let ledger = setup.solver.ledger && sampler.is_none();
     // Eight lanes cost about as much as two or three robots one at a time, so idle lanes pay from three robots on.
     Ok(if members.len() < LANES_FROM {
-        Box::new(Population::<R, F, f64>::new(robot, members, reference, sampler, ledger))
+        Box::new(Population::<R, X, f64>::new(robot, members, reference, sampler, ledger))
     } else {
-        Box::new(Population::<R, F, Lanes<8>>::new(robot, members, reference, sampler, ledger))
+        Box::new(Population::<R, X, Lanes<8>>::new(robot, members, reference, sampler, ledger))
     })
 }
 
 /// The sampled controller of one member.
-fn digital<R: Lagrangian<f64> + Clone, F: Reference>(
+fn digital<R: Lagrangian<f64> + Clone, X: Transmits>(
     robot: &R,
     member: &Member,
-    reference: F,
     setup: &Setup,
     control: &Control,
-) -> Result<Agent<R, F>, SetupError> {
+) -> Result<Agent<R, AnyReference<X>>, SetupError> {
     let agent = &setup.agents[member.agent];
     let name = || agent.name.clone();
     let axes = agent.robot.axes.len();
@@ -178,7 +124,7 @@ fn digital<R: Lagrangian<f64> + Clone, F: Reference>(
         Law::Adaptive { estimate_start, .. } => estimate_start.clone(),
         _ => agent.robot.theta.clone(),
     };
-    Agent::new(robot.clone(), reference, member.law.clone(), theta_hat, limiter)
+    Agent::new(robot.clone(), reference(setup, &[member.agent])?, member.law.clone(), theta_hat, limiter)
         .map_err(|error| SetupError::Length { agent: name(), error })
 }
 

@@ -6,6 +6,7 @@
 //! - `sampler`: the digital controllers of a population, with their sensors.
 //! - `sampling`: the instants at which they sample and act.
 //! - `pushes`: what acts on the robots from outside.
+//! - `references`: from agents to reference dynamics.
 //! - `guide`: the leader.
 //! - `sliding`: who sets the set-valued signs in continuous time.
 //! - `members`: from agents to populations.
@@ -22,6 +23,7 @@ mod guide;
 mod members;
 mod population;
 mod pushes;
+mod references;
 mod sampler;
 mod sampling;
 mod single;

@@ -16,12 +16,13 @@ use std::ops::Range;
 
 use forwardstep_core::controller::Trouble;
 use forwardstep_core::reference::{
-    Choice, Derived, Exchange, Heard, Measured, Reference, ReferenceOut, Sliding, SlidingInputs, saturated,
+    Choice, Derived, Heard, Measured, Reference, ReferenceOut, Sliding, SlidingInputs, saturated,
 };
 use forwardstep_core::robot::Lagrangian;
-use forwardstep_core::{Kernel, LengthError, Packed, dispatch};
+use forwardstep_core::{LengthError, Packed};
 
 use super::fleet::{Drive, Fleet, Layout, Member};
+use super::references::{AnyReference, Transmits};
 use super::sampler::Sampler;
 use crate::recording::Signal;
 use crate::setup::{AgentSetup, Law};
@@ -92,13 +93,13 @@ pub(crate) trait Columns {
     fn locate(&self, state: usize) -> (usize, Signal, usize);
 }
 
-/// A population of robots `R` that follow the reference `F`, worked on in lanes of `S`.
-pub(crate) struct Population<R: Lagrangian<f64> + Lagrangian<S>, F: Reference, S: Packed> {
+/// A population of robots `R` that follow reference dynamics that hear `X`, worked on in lanes of `S`.
+pub(crate) struct Population<R: Lagrangian<f64> + Lagrangian<S>, X: Transmits, S: Packed> {
     members: Vec<Member>,
-    reference: F,
+    reference: AnyReference<X>,
     fleet: Fleet<R, S>,
     output: Output,
-    sampler: Option<Sampler<R, F>>,
+    sampler: Option<Sampler<R, X>>,
     /// When its signs are functions of the instant.
     layer: Option<Layer>,
     record: RecordWork<<R as Lagrangian<f64>>::Scratch>,
@@ -127,18 +128,18 @@ struct RecordWork<T> {
     row: Vec<f64>,
 }
 
-impl<R, F, S> Population<R, F, S>
+impl<R, X, S> Population<R, X, S>
 where
     R: Lagrangian<f64> + Lagrangian<S>,
-    F: Reference,
+    X: Transmits,
     S: Packed,
 {
     /// `members` share the robot and the reference dynamics; all adapt or none. With a `sampler` control is digital.
     pub(crate) fn new(
         robot: R,
         members: Vec<Member>,
-        reference: F,
-        sampler: Option<Sampler<R, F>>,
+        reference: AnyReference<X>,
+        sampler: Option<Sampler<R, X>>,
         ledger_on: bool,
     ) -> Self {
         let (m, p) = (Lagrangian::<f64>::dof(&robot), Lagrangian::<f64>::parameter_count(&robot));
@@ -268,8 +269,8 @@ where
 }
 
 /// What the signs of everybody are taken of.
-fn argument<F: Reference>(
-    reference: &F,
+fn argument<X: Transmits>(
+    reference: &AnyReference<X>,
     l: Layout,
     x: &[f64],
     inputs: Inputs<'_>,
@@ -277,7 +278,7 @@ fn argument<F: Reference>(
     e: &mut [f64],
 ) -> Result<(), LengthError> {
     let (Some(sliding), block) = (reference.sliding(), l.block()) else { return Ok(()) };
-    let channels = F::Exchange::CHANNELS;
+    let channels = X::CHANNELS;
     LengthError::check("sums heard", channels * block, inputs.sums.len().min(channels * block))?;
     LengthError::check("sums of positions and velocities", 2, channels.min(2))?;
     let own = [&x[..block], &x[l.dq..l.reference], told[0]];
@@ -286,8 +287,8 @@ fn argument<F: Reference>(
 }
 
 /// A sign that is a function of the instant and taken of what is heard alone leans on ż, before the torque.
-fn lean_at_once<F: Reference>(
-    reference: &F,
+fn lean_at_once<X: Transmits>(
+    reference: &AnyReference<X>,
     layer: &mut Option<Layer>,
     l: Layout,
     x: &[f64],
@@ -309,40 +310,22 @@ fn lean_at_once<F: Reference>(
 }
 
 /// z, ż and the rate of the reference state of everybody.
-fn evaluate<F: Reference>(
-    reference: &F,
-    layout: Layout,
+fn evaluate<X: Transmits>(
+    reference: &AnyReference<X>,
+    l: Layout,
     x: &[f64],
     inputs: Inputs<'_>,
-    out: ReferenceOut<'_, f64>,
+    out: ReferenceOut<'_>,
 ) -> Result<(), LengthError> {
-    let heard = Heard::new(inputs.degree, inputs.sums, layout.block())?;
-    dispatch(Evaluate { reference, layout, x, heard, out })
+    let measured = Measured { q: &x[..l.dq], dq: &x[l.dq..l.reference] };
+    let heard = Heard::new(inputs.degree, inputs.sums, l.block())?;
+    reference.evaluate(l.m, measured, &x[l.reference..l.theta_hat], heard, out)
 }
 
-struct Evaluate<'a, F: Reference> {
-    reference: &'a F,
-    layout: Layout,
-    x: &'a [f64],
-    heard: Heard<'a, f64, F::Exchange>,
-    out: ReferenceOut<'a, f64>,
-}
-
-impl<F: Reference> Kernel for Evaluate<'_, F> {
-    type Output = Result<(), LengthError>;
-
-    #[inline(always)]
-    fn run(self) -> Self::Output {
-        let (l, x) = (self.layout, self.x);
-        let measured = Measured { q: &x[..l.dq], dq: &x[l.dq..l.reference] };
-        self.reference.evaluate(l.m, measured, &x[l.reference..l.theta_hat], self.heard, self.out)
-    }
-}
-
-impl<R, F, S> Columns for Population<R, F, S>
+impl<R, X, S> Columns for Population<R, X, S>
 where
     R: Lagrangian<f64> + Lagrangian<S>,
-    F: Reference,
+    X: Transmits,
     S: Packed,
 {
     fn state_len(&self) -> usize {

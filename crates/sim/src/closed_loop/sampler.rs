@@ -2,18 +2,19 @@
 
 use forwardstep_core::Scalar;
 use forwardstep_core::agent::{Agent, Inbox, StepError, VelocityFilter};
-use forwardstep_core::reference::{Exchange, Measured, Reference};
+use forwardstep_core::reference::Measured;
 use forwardstep_core::robot::Lagrangian;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::fleet::Drive;
 use super::population::Inputs;
+use super::references::{AnyReference, Transmits};
 use crate::setup::{Control, Sensors};
 
 /// Controllers and sensors of n agents with m axes. Columns are laid out as everywhere: `axis · n + member`.
-pub(crate) struct Sampler<R: Lagrangian<f64>, F: Reference> {
-    agents: Vec<Agent<R, F>>,
+pub(crate) struct Sampler<R: Lagrangian<f64>, X: Transmits> {
+    agents: Vec<Agent<R, AnyReference<X>>>,
     sensors: Vec<Sensor>,
     period_s: f64,
     torque_quantum: f64,
@@ -94,9 +95,14 @@ pub(crate) fn quantise(value: f64, quantum: f64) -> f64 {
     if quantum > 0.0 { quantum * libm::rint(value / quantum) } else { value }
 }
 
-impl<R: Lagrangian<f64>, F: Reference> Sampler<R, F> {
+impl<R: Lagrangian<f64>, X: Transmits> Sampler<R, X> {
     /// `agents` and `sensors` in the order of the members.
-    pub(crate) fn new(agents: Vec<Agent<R, F>>, sensors: Vec<Sensor>, control: &Control, axes: usize) -> Self {
+    pub(crate) fn new(
+        agents: Vec<Agent<R, AnyReference<X>>>,
+        sensors: Vec<Sensor>,
+        control: &Control,
+        axes: usize,
+    ) -> Self {
         let block = || vec![0.0; axes * agents.len()];
         let told = agents.first().map_or(0, |agent| agent.told().len());
         let state = agents.first().map_or(0, |agent| agent.reference_state().len());
@@ -114,7 +120,7 @@ impl<R: Lagrangian<f64>, F: Reference> Sampler<R, F> {
             own: Own {
                 q: vec![0.0; axes],
                 dq: vec![0.0; axes],
-                sums: vec![0.0; <F::Exchange as Exchange>::CHANNELS * axes + told],
+                sums: vec![0.0; X::CHANNELS * axes + told],
                 state: vec![0.0; state],
             },
             agents,
@@ -137,7 +143,7 @@ impl<R: Lagrangian<f64>, F: Reference> Sampler<R, F> {
             give(n, i, &self.own.dq, &mut self.measured[self.axes * n..]);
         }
         // A message is positions, then velocities if they are sent, then what was computed at the last sample, if anything.
-        let told = self.own.sums.len() - <F::Exchange as Exchange>::CHANNELS * self.axes;
+        let told = self.own.sums.len() - X::CHANNELS * self.axes;
         let (measured, computed) = sent.split_at_mut(sent.len().saturating_sub(told * n));
         measured.copy_from_slice(&self.measured[..measured.len()]);
         if told > 0 {

@@ -210,7 +210,7 @@ impl Thrust {
     fn fly(
         &self,
         measured: VehicleState<'_>,
-        heard: Heard<'_, f64, Position>,
+        heard: Heard<'_, Position>,
         target: &[Jet],
         state: &[f64],
         [d_state, shown]: [&mut [f64]; 2],
