@@ -36,7 +36,9 @@ pub enum GainError {
         value: f64,
     },
     /// The matrix differs from its transpose.
-    #[error("entries ({row}, {column}) and ({column}, {row}) differ: {upper} and {lower}; the matrix must be symmetric")]
+    #[error(
+        "entries ({row}, {column}) and ({column}, {row}) differ: {upper} and {lower}; the matrix must be symmetric"
+    )]
     NotSymmetric {
         /// Row, from zero.
         row: usize,

@@ -22,6 +22,7 @@ use super::spread::{spread, tip};
 use super::start::{Shared, Starter, start};
 use super::systems_file::TrackingFile;
 use super::target::{Owner, target};
+use super::value_problem::ValueProblem;
 use crate::SourceText;
 
 /// Agents that are accepted.
@@ -219,7 +220,7 @@ fn tracked(common: &TrackingFile, own: Option<&TrackingFile>) -> Result<Design, 
 fn roots(list: &At<Vec<At<f64>>>) -> Result<Vec<f64>, Fault> {
     let roots = filled("roots_per_s", list)?;
     if roots.len() > MOST_ROOTS {
-        return Err(fault(list, ScenarioProblem::Order { key: "roots_per_s", found: roots.len(), most: MOST_ROOTS }));
+        return Err(fault(list, ValueProblem::Order { key: "roots_per_s", found: roots.len(), most: MOST_ROOTS }));
     }
     roots.iter().map(|root| positive("roots_per_s", root)).collect()
 }

@@ -6,7 +6,7 @@ use forwardstep_core::attitude::{Quaternion, normalized};
 use super::at::At;
 use super::attitude_file::{AttitudeStartFile, TurnFile};
 use super::fault::{Fault, fault};
-use super::problem::ScenarioProblem;
+use super::system_problem::SystemProblem;
 
 /// Either way of writing it.
 pub(super) fn attitude(file: &At<AttitudeStartFile>) -> Result<Quaternion, Fault> {
@@ -19,7 +19,7 @@ pub(super) fn attitude(file: &At<AttitudeStartFile>) -> Result<Quaternion, Fault
 /// A quaternion of any length.
 pub(super) fn quaternion(file: &At<Quaternion>) -> Result<Quaternion, Fault> {
     if file.value.iter().all(|x| *x == 0.0) {
-        return Err(fault(file, ScenarioProblem::NoDirection { instead: "[0, 0, 0, 1] is no turn" }));
+        return Err(fault(file, SystemProblem::NoDirection { instead: "[0, 0, 0, 1] is no turn" }));
     }
     Ok(normalized(file.value))
 }
@@ -28,7 +28,7 @@ pub(super) fn quaternion(file: &At<Quaternion>) -> Result<Quaternion, Fault> {
 pub(super) fn turn(axis: &At<[f64; 3]>, angle_rad: &At<f64>) -> Result<Quaternion, Fault> {
     if axis.value.iter().all(|x| *x == 0.0) {
         let instead = "[0, 0, 1] is the third axis; for no turn let `angle_rad` be 0";
-        return Err(fault(axis, ScenarioProblem::NoDirection { instead }));
+        return Err(fault(axis, SystemProblem::NoDirection { instead }));
     }
     let [x, y, z] = axis.value;
     let [x, y, z, _] = normalized([x, y, z, 0.0]);

@@ -25,7 +25,7 @@ use super::de::quoted;
 use super::fault::{Fault, LARGEST};
 pub use super::formula_problem::FormulaProblem;
 use super::formula_problem::{A_VALUE, A_VALUE_OF_VARIABLES, AN_OPERATOR, CHOICES, FUNCTIONS, JUMPS, NAMES};
-use super::problem::ScenarioProblem;
+use super::value_problem::ValueProblem;
 
 /// Parentheses, signs and powers within each other.
 const MOST_NESTED: usize = 64;
@@ -101,7 +101,7 @@ fn placed(text: &At<String>, FormulaFault { problem, at }: FormulaFault) -> Faul
         }
         _ => text.span.clone(),
     };
-    Fault::new(ScenarioProblem::Formula(problem)).at(&place)
+    Fault::new(ValueProblem::Formula(problem)).at(&place)
 }
 
 struct Parser<'a> {

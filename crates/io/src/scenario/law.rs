@@ -9,11 +9,12 @@ use super::chain;
 use super::chain_file::{AdaptiveBacksteppingFile, LinearAdaptiveFile};
 use super::fault::{Fault, fault, not_negative, positive, values};
 use super::file::{AdaptiveFile, DampingFile, EstimateStartFile, KnownFile, LawFile};
-use super::problem::ScenarioProblem;
 use super::spacecraft;
 use super::spacecraft_file::AttitudeFile;
+use super::system_problem::SystemProblem;
 use super::systems_file::PositionOnlyFile;
 use super::task;
+use super::value_problem::ValueProblem;
 use super::values::{GainFile, GainOrBandwidth, Item};
 use super::vehicle;
 use super::vehicle_file::ThrustFile;
@@ -40,9 +41,7 @@ fn usual(robot: &RobotSetup) -> LawFile {
         RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. } => LawFile::Thrust(ThrustFile::default()),
         RobotKind::Spacecraft { .. } => LawFile::Attitude(AttitudeFile::default()),
         RobotKind::Chain(ChainModel::Derivatives(_)) => LawFile::LinearAdaptive(LinearAdaptiveFile::default()),
-        RobotKind::Chain(ChainModel::Cascade(_)) => {
-            LawFile::AdaptiveBackstepping(AdaptiveBacksteppingFile::default())
-        }
+        RobotKind::Chain(ChainModel::Cascade(_)) => LawFile::AdaptiveBackstepping(AdaptiveBacksteppingFile::default()),
         RobotKind::Tree(_) | RobotKind::PlanarArm | RobotKind::PointMass { .. } => {
             LawFile::Adaptive(AdaptiveFile::default())
         }
@@ -59,7 +58,7 @@ pub(super) fn of_another(law: &'static str, made_for: &'static str, agent: &str,
         RobotKind::Chain(ChainModel::Derivatives(_)) => "`linearising`, `linear_adaptive` and `immersion`",
         RobotKind::Chain(ChainModel::Cascade(_)) => "`adaptive_backstepping`",
     };
-    Fault::new(ScenarioProblem::LawOfAnother { agent: agent.to_owned(), law, made_for, laws })
+    Fault::new(SystemProblem::LawOfAnother { agent: agent.to_owned(), law, made_for, laws })
 }
 
 fn build(file: &LawFile, agent: &str, robot: &RobotSetup, body: &Body) -> Result<Law, Fault> {
@@ -156,14 +155,14 @@ pub(super) fn gain<T>(
             }
             Gain::Diagonal(diagonal)
         }
-        lists if lists < rows.len() => return Err(fault(place, ScenarioProblem::MixedList { key })),
+        lists if lists < rows.len() => return Err(fault(place, ValueProblem::MixedList { key })),
         _ => {
             let mut entries = Vec::new();
             for (k, row) in rows.iter().enumerate() {
                 let Item::List(list) = &row.value else { continue };
                 if list.len() != rows.len() {
                     let (rows, row_number, entries) = (rows.len(), k + 1, list.len());
-                    return Err(fault(row, ScenarioProblem::NotSquare { key, rows, row: row_number, entries }));
+                    return Err(fault(row, ValueProblem::NotSquare { key, rows, row: row_number, entries }));
                 }
                 entries.extend(values(list));
             }
@@ -175,8 +174,8 @@ pub(super) fn gain<T>(
     let agent = agent.to_owned();
     let problem = match error {
         // Rows, as they were written, whether of a diagonal or of a matrix.
-        GainError::Length(_) => ScenarioProblem::VectorLength { key, found: rows.len(), need: size, agent },
-        error => ScenarioProblem::Gain { key, agent, error },
+        GainError::Length(_) => ValueProblem::VectorLength { key, found: rows.len(), need: size, agent },
+        error => ValueProblem::Gain { key, agent, error },
     };
     Err(fault(place, problem))
 }
@@ -203,7 +202,7 @@ pub(super) fn known_or_given(
         EstimateStartFile::Given(list) => {
             let (found, need) = (list.value.len(), theta.len());
             let agent = agent.to_owned();
-            Err(fault(list, ScenarioProblem::VectorLength { key, found, need, agent }))
+            Err(fault(list, ValueProblem::VectorLength { key, found, need, agent }))
         }
     }
 }

@@ -70,12 +70,14 @@ mod spacecraft;
 pub mod spacecraft_file;
 mod spread;
 mod start;
+mod system_problem;
 pub mod systems_file;
 mod table;
 mod target;
 mod task;
 pub mod task_file;
 mod template;
+mod value_problem;
 pub mod values;
 mod vehicle;
 pub mod vehicle_file;
@@ -85,7 +87,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use forwardstep_sim::leader::Following;
-use forwardstep_sim::{AgentSetup, Exchange, Law, Method, ReferenceKind, Setup, Solver, TimeSpan, recorded_columns, validate};
+use forwardstep_sim::{
+    AgentSetup, Exchange, Law, Method, ReferenceKind, Setup, Solver, TimeSpan, recorded_columns, validate,
+};
 use miette::Diagnostic;
 use serde::Deserialize;
 use toml::Spanned;
@@ -99,8 +103,10 @@ pub use open::{OpenError, open_scenario};
 pub use problem::ScenarioProblem;
 pub use push_problem::PushProblem;
 pub use shipped::{SHIPPED_SCENARIOS, SHIPPED_TABLES, ShippedScenario, ShippedTable, shipped_scenario};
+pub use system_problem::SystemProblem;
 pub use table::TableProblem;
 pub use template::{Template, TemplateDelay, TemplateGraph, TemplateRobot};
+pub use value_problem::ValueProblem;
 
 use crate::output::Goal;
 use crate::urdf::UrdfProblem;
@@ -272,7 +278,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
 /// TOML → the file's structs.
 fn parse(source: &SourceText) -> Result<ScenarioFile, Fault> {
     let unreadable = |error: toml::de::Error| {
-        let fault = Fault::new(ScenarioProblem::Unreadable { message: error.message().to_owned() });
+        let fault = Fault::new(ValueProblem::Unreadable { message: error.message().to_owned() });
         match error.span() {
             Some(span) => fault.at(&span),
             None => fault,
@@ -309,7 +315,7 @@ fn reference(file: &ReferenceFile, following: Option<Arc<Following>>) -> Result<
             (ReferenceKind::Backstepping { filter_s, acceleration_limit }, Exchange::Position)
         }
         // A leader's reference has been read by now.
-        ReferenceFile::Leader(_) => return Err(Fault::new(ScenarioProblem::NoLeader)),
+        ReferenceFile::Leader(_) => return Err(Fault::new(SystemProblem::NoLeader)),
         ReferenceFile::Tracking(_) => (ReferenceKind::Tracking, Exchange::Position),
     })
 }

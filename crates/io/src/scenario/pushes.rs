@@ -20,6 +20,7 @@ use super::push_file::{
 };
 use super::push_problem::PushProblem;
 use super::table::{over_time, rising, table_text};
+use super::value_problem::ValueProblem;
 use super::values::Item;
 use crate::SourceText;
 
@@ -237,7 +238,7 @@ impl Reader<'_, '_> {
             return Err(Fault::new(PushProblem::NoTarget));
         };
         if let Some((second, _, place)) = given.next() {
-            return Err(fault(place, ScenarioProblem::SameQuantity { first: key, second }));
+            return Err(fault(place, ValueProblem::SameQuantity { first: key, second }));
         }
         if let Some(unit) = unit {
             self.unit(key, course, &axes, unit, ("target", "rad or m"))?;
@@ -372,7 +373,7 @@ impl Reader<'_, '_> {
         if found == need {
             return Ok(());
         }
-        Err(fault(place, ScenarioProblem::VectorLength { key, found, need, agent: self.name() }))
+        Err(fault(place, ValueProblem::VectorLength { key, found, need, agent: self.name() }))
     }
 }
 

@@ -9,11 +9,12 @@ use forwardstep_sim::{AttitudeLaw, AxisUnit, Law, RobotKind, RobotSetup, Start};
 use super::at::At;
 use super::attitude::{attitude as attitude_of, quaternion, turn};
 use super::fault::{Fault, fault, filled, positive, values};
-use super::law::{gain, of_another};
-use super::problem::ScenarioProblem;
-use super::robots::axis;
 use super::file::StartFile;
+use super::law::{gain, of_another};
+use super::robots::axis;
 use super::spacecraft_file::{AttitudeFile, SpacecraftFile, SpacecraftStartFile, WheelFile};
+use super::system_problem::SystemProblem;
+use super::value_problem::ValueProblem;
 
 const ERROR_GAIN_PER_S2: f64 = 1.0;
 const RATE_GAIN_PER_S: f64 = 2.0;
@@ -32,10 +33,12 @@ pub(super) fn spacecraft(file: &SpacecraftFile) -> Result<RobotSetup, Fault> {
                 filled("wheels", list)?.iter().map(|entry| wheel(&entry.value)).collect::<Result<Vec<_>, _>>()?;
             Wheels::new(&wheels).map_err(|error| {
                 let axis = match error {
-                    SpacecraftError::Axis { wheel, .. } => list.value.get(wheel).map(|wheel| wheel.value.axis.span.clone()),
+                    SpacecraftError::Axis { wheel, .. } => {
+                        list.value.get(wheel).map(|wheel| wheel.value.axis.span.clone())
+                    }
                     _ => None,
                 };
-                Fault::new(ScenarioProblem::Spacecraft(error)).at(&axis.unwrap_or_else(|| list.span.clone()))
+                Fault::new(SystemProblem::Spacecraft(error)).at(&axis.unwrap_or_else(|| list.span.clone()))
             })?
         }
     };
@@ -46,7 +49,7 @@ pub(super) fn spacecraft(file: &SpacecraftFile) -> Result<RobotSetup, Fault> {
         Gain::Number(entry) | Gain::Bandwidth(entry) => diagonal(|_| entry),
     };
     Spacecraft::new(inertia_kg_m2, wheels.clone(), false)
-        .map_err(|error| fault(place, ScenarioProblem::Spacecraft(error)))?;
+        .map_err(|error| fault(place, SystemProblem::Spacecraft(error)))?;
     Ok(RobotSetup {
         kind: RobotKind::Spacecraft { inertia_kg_m2, wheels },
         theta: Vec::new(),
@@ -80,10 +83,10 @@ pub(super) fn start<'a>(
         let attitude = own.map(turned).transpose()?.flatten();
         let spun = own.and_then(|own| own.rate_rad_s.as_ref());
         if let (Some(_), Some(second)) = (attitude, &table.attitude) {
-            return Err(fault(second, ScenarioProblem::SameQuantity { first: "spacecraft", second: "attitude" }));
+            return Err(fault(second, ValueProblem::SameQuantity { first: "spacecraft", second: "attitude" }));
         }
         if let (Some(_), Some(second)) = (spun, &table.angular_velocity_rad_s) {
-            let problem = ScenarioProblem::SameQuantity { first: "rate_rad_s", second: "angular_velocity_rad_s" };
+            let problem = ValueProblem::SameQuantity { first: "rate_rad_s", second: "angular_velocity_rad_s" };
             return Err(fault(second, problem));
         }
         q = q.or(attitude).or(table.attitude.as_ref().map(attitude_of).transpose()?);
@@ -96,7 +99,7 @@ pub(super) fn start<'a>(
         Some(list) => {
             let (found, need, agent) = (list.value.len(), wheels.count(), agent.to_owned());
             let key = "wheel_momentum_n_m_s";
-            return Err(fault(list, ScenarioProblem::VectorLength { key, found, need, agent }));
+            return Err(fault(list, ValueProblem::VectorLength { key, found, need, agent }));
         }
     };
     let (q, rate) = (q.unwrap_or(IDENTITY), rate.unwrap_or_default());
@@ -109,9 +112,9 @@ fn turned(file: &SpacecraftStartFile) -> Result<Option<Quaternion>, Fault> {
         (None, None, None) => None,
         (Some(given), None, None) => Some(quaternion(given)?),
         (None, Some(axis), Some(angle)) => Some(turn(axis, angle)?),
-        (None, Some(axis), None) => return Err(fault(axis, ScenarioProblem::HalfAttitude)),
-        (None, None, Some(angle)) => return Err(fault(angle, ScenarioProblem::HalfAttitude)),
-        (Some(given), ..) => return Err(fault(given, ScenarioProblem::HalfAttitude)),
+        (None, Some(axis), None) => return Err(fault(axis, SystemProblem::HalfAttitude)),
+        (None, None, Some(angle)) => return Err(fault(angle, SystemProblem::HalfAttitude)),
+        (Some(given), ..) => return Err(fault(given, SystemProblem::HalfAttitude)),
     })
 }
 
@@ -127,7 +130,7 @@ pub(super) fn points_somewhere<T>(place: &At<T>, target: &Trajectory, end_s: f64
         let size = size(t_s);
         if size < least { (t_s, size, most.max(size)) } else { (at, least, most.max(size)) }
     });
-    if least > VANISHING * most { Ok(()) } else { Err(fault(place, ScenarioProblem::NoAttitude { t_s })) }
+    if least > VANISHING * most { Ok(()) } else { Err(fault(place, SystemProblem::NoAttitude { t_s })) }
 }
 
 /// Of the two quaternions of the attitude at the start, takes the one that is nearer to the target: the law leads to Δq_o = 1

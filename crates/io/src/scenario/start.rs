@@ -8,6 +8,8 @@ use super::file::StartFile;
 use super::problem::ScenarioProblem;
 use super::random::{Stream, draws};
 use super::spacecraft;
+use super::system_problem::SystemProblem;
+use super::value_problem::ValueProblem;
 use super::values::{Item, RandomFile, StartValues};
 use super::vehicle;
 
@@ -114,7 +116,7 @@ impl Starter<'_> {
         for (key, counts, span) in all {
             if let (false, Some(span)) = (counts, span) {
                 let agent = self.name.to_owned();
-                return Err(Fault::new(ScenarioProblem::StartUnused { key, agent }).at(&span));
+                return Err(Fault::new(SystemProblem::StartUnused { key, agent }).at(&span));
             }
         }
         Ok(())
@@ -144,7 +146,7 @@ impl Starter<'_> {
         let mut given = keys.into_iter().filter_map(|(key, unit, value)| Some((key, unit, value.as_ref()?)));
         let Some((key, unit, value)) = given.next() else { return Ok(None) };
         if let Some((second, _, place)) = given.next() {
-            return Err(fault(place, ScenarioProblem::SameQuantity { first: key, second }));
+            return Err(fault(place, ValueProblem::SameQuantity { first: key, second }));
         }
         if let Some(unit) = unit
             && let Some(axis) = self.robot.axes.iter().find(|axis| axis.unit != unit)
@@ -173,7 +175,7 @@ impl Starter<'_> {
                 return Ok(());
             }
             let agent = self.name.to_owned();
-            Err(Fault::new(ScenarioProblem::VectorLength { key, found, need, agent }).at(place))
+            Err(Fault::new(ValueProblem::VectorLength { key, found, need, agent }).at(place))
         };
         let rows = match &value.value {
             StartValues::Random(random) => return draw(random, stream, table.index, need),
@@ -185,10 +187,10 @@ impl Starter<'_> {
             return Ok(rows.iter().filter_map(|row| row.value.number()).collect());
         }
         if lists.len() != rows.len() {
-            return Err(fault(value, ScenarioProblem::MixedList { key }));
+            return Err(fault(value, ValueProblem::MixedList { key }));
         }
         if rows.len() != table.of {
-            return Err(fault(value, ScenarioProblem::ListPerAgent { key, found: rows.len(), agents: table.of }));
+            return Err(fault(value, ValueProblem::ListPerAgent { key, found: rows.len(), agents: table.of }));
         }
         match rows.get(table.index).map(|row| (&row.value, &row.span)) {
             Some((Item::List(list), span)) => {
@@ -204,7 +206,7 @@ impl Starter<'_> {
 fn draw(random: &RandomFile, stream: Stream, index: usize, length: usize) -> Result<Vec<f64>, Fault> {
     let [low, high] = random.within.value;
     if low > high {
-        return Err(fault(&random.within, ScenarioProblem::Interval { key: "within", low, high }));
+        return Err(fault(&random.within, ValueProblem::Interval { key: "within", low, high }));
     }
     let units = draws(seed(&random.seed)?, stream, index, length);
     Ok(units.map(|unit| low * (1.0 - unit) + high * unit).collect())

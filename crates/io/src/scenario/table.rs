@@ -12,9 +12,9 @@ use super::at::At;
 use super::de::quoted;
 use super::fault::{Fault, LARGEST, fault, values};
 use super::inputs::InputFolder;
-use super::problem::ScenarioProblem;
 use super::push_problem::PushProblem;
 use super::shipped::shipped_table;
+use super::value_problem::ValueProblem;
 use crate::SourceText;
 use crate::files::ReadError;
 use crate::wording::{choose, entry_count};
@@ -229,11 +229,11 @@ pub(super) fn cell_number(cell: &Cell<'_>) -> Result<Option<At<f64>>, Fault> {
     match text.parse::<f64>() {
         Ok(value) if value.abs() <= LARGEST => Ok(Some(At { value, span: cell.span.clone() })),
         Ok(_) if text.contains(['i', 'I', 'n', 'N']) => {
-            Err(fault(cell, ScenarioProblem::NotFinite { found: text.into() }))
+            Err(fault(cell, ValueProblem::NotFinite { found: text.into() }))
         }
-        Ok(_) => Err(fault(cell, ScenarioProblem::NumberTooLarge { found: text.into() })),
+        Ok(_) => Err(fault(cell, ValueProblem::NumberTooLarge { found: text.into() })),
         Err(_) => {
-            let problem = ScenarioProblem::WrongType { found: quoted(text), expected: "a number".into() };
+            let problem = ValueProblem::WrongType { found: quoted(text), expected: "a number".into() };
             Err(fault(cell, problem))
         }
     }

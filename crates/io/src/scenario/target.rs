@@ -8,10 +8,11 @@ use super::at::At;
 use super::fault::{Fault, fault, filled, values};
 use super::formula::formula;
 use super::inputs::InputFolder;
-use super::problem::ScenarioProblem;
 use super::push_file::FunctionFile;
+use super::system_problem::SystemProblem;
 use super::systems_file::{SwingFile, TargetFile, WaveFile};
 use super::table::{over_time, rising, table_text};
+use super::value_problem::ValueProblem;
 
 /// Whose trajectory it is.
 pub(super) struct Owner<'a> {
@@ -23,15 +24,11 @@ pub(super) struct Owner<'a> {
 }
 
 /// Builds the trajectory of `owner`; `folder` is where tables are looked for.
-pub(super) fn target(
-    file: &At<TargetFile>,
-    owner: &Owner<'_>,
-    folder: &mut InputFolder,
-) -> Result<Trajectory, Fault> {
+pub(super) fn target(file: &At<TargetFile>, owner: &Owner<'_>, folder: &mut InputFolder) -> Result<Trajectory, Fault> {
     let (need, end_s) = (owner.axes.len(), owner.end_s);
     let length = |key, found: usize, span: &Range<usize>| {
         let agent = owner.name.to_owned();
-        let wrong = || Fault::new(ScenarioProblem::VectorLength { key, found, need, agent }).at(span);
+        let wrong = || Fault::new(ValueProblem::VectorLength { key, found, need, agent }).at(span);
         if found == need { Ok(()) } else { Err(wrong()) }
     };
     match &file.value {
@@ -39,7 +36,7 @@ pub(super) fn target(
             let entries = filled("formulas", list)?;
             length("formulas", entries.len(), &list.span)?;
             let paths = entries.iter().map(|entry| component(entry, end_s)).collect::<Result<_, _>>()?;
-            Trajectory::new(paths).map_err(|_| fault(list, ScenarioProblem::TargetValue { end_s }))
+            Trajectory::new(paths).map_err(|_| fault(list, SystemProblem::TargetValue { end_s }))
         }
         TargetFile::Sinusoids(list) => {
             length("sinusoids", list.value.len(), &list.span)?;
@@ -54,13 +51,13 @@ pub(super) fn target(
                 waves: swing.waves.iter().map(wave).collect(),
             };
             Trajectory::new(list.value.iter().map(path).collect())
-                .map_err(|error| fault(list, ScenarioProblem::Trajectory(error)))
+                .map_err(|error| fault(list, SystemProblem::Trajectory(error)))
         }
         TargetFile::Points(points) => {
             filled("times_s", &points.times_s)?;
             let (times, rows) = (&points.times_s.value, &points.positions);
             if rows.value.len() != times.len() {
-                let problem = ScenarioProblem::PointsAndTimes { points: rows.value.len(), times: times.len() };
+                let problem = SystemProblem::PointsAndTimes { points: rows.value.len(), times: times.len() };
                 return Err(fault(rows, problem));
             }
             let mut numbers = Vec::with_capacity(need * times.len());
@@ -76,7 +73,7 @@ pub(super) fn target(
             let names: Vec<&str> = owner.axes.iter().map(String::as_str).collect();
             let (times, numbers) = over_time(&source, &names)?;
             if times.is_empty() {
-                return Err(fault(&csv.file, ScenarioProblem::Points(SplineError::Empty)));
+                return Err(fault(&csv.file, SystemProblem::Points(SplineError::Empty)));
             }
             through(&times, &numbers, need).map_err(|fault| fault.within(&source))
         }
@@ -90,7 +87,7 @@ fn through(times: &[At<f64>], numbers: &[f64], axes: usize) -> Result<Trajectory
         let column = numbers.iter().skip(axis).step_by(axes.max(1)).copied().collect();
         paths.push(Path::Spline(Spline::new(values(times), column).map_err(|error| steep(times, error))?));
     }
-    Trajectory::new(paths).map_err(|error| Fault::new(ScenarioProblem::Trajectory(error)))
+    Trajectory::new(paths).map_err(|error| Fault::new(SystemProblem::Trajectory(error)))
 }
 
 /// The place of the point that a curve breaks down at.
@@ -101,7 +98,7 @@ fn steep(times: &[At<f64>], error: SplineError) -> Fault {
         }
         SplineError::Empty | SplineError::Lengths { .. } => None,
     };
-    let fault = Fault::new(ScenarioProblem::Points(error));
+    let fault = Fault::new(SystemProblem::Points(error));
     match place {
         Some(time) => fault.at(&time.span),
         None => fault,
@@ -118,6 +115,6 @@ fn component(entry: &At<FunctionFile>, end_s: f64) -> Result<Path, Fault> {
     if formula.is_bounded(0.0, end_s) {
         Ok(Path::Formula(formula))
     } else {
-        Err(fault(entry, ScenarioProblem::TargetValue { end_s }))
+        Err(fault(entry, SystemProblem::TargetValue { end_s }))
     }
 }

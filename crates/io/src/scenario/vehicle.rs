@@ -11,8 +11,8 @@ use super::attitude::attitude;
 use super::fault::{Fault, fault, not_negative, positive};
 use super::file::StartFile;
 use super::law::{gain, of_another};
-use super::problem::ScenarioProblem;
 use super::robots::axis;
+use super::value_problem::ValueProblem;
 use super::vehicle_file::{
     AdaptiveThrustFile, DifferentiableFile, FloorFile, RotorcraftFile, RotorsFile, ThrustDesignFile, ThrustFile,
     VehicleFile, YawFile,
@@ -50,7 +50,7 @@ fn rotors(file: &RotorsFile) -> Result<Rotors, Fault> {
     let least = At { value: low, span: file.thrust_n.span.clone() };
     not_negative("thrust_n", &least)?;
     if low >= high {
-        return Err(fault(&file.thrust_n, ScenarioProblem::Range { key: "thrust_n", low, high }));
+        return Err(fault(&file.thrust_n, ValueProblem::Range { key: "thrust_n", low, high }));
     }
     Ok(Rotors {
         offset: positive("offset_m", &file.offset_m)?,
