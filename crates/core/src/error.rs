@@ -28,7 +28,7 @@ pub enum GainError {
     #[error(transparent)]
     Length(#[from] LengthError),
     /// An entry that must be positive and finite is not.
-    #[error("entry {index} is {value}, but a gain must be positive and finite")]
+    #[error("entry {index} is {value}, but must be positive and finite")]
     NotPositive {
         /// Position in the list, from zero.
         index: usize,
@@ -36,7 +36,9 @@ pub enum GainError {
         value: f64,
     },
     /// The matrix differs from its transpose.
-    #[error("entries ({row}, {column}) and ({column}, {row}) differ: {upper} and {lower}; a gain must be symmetric")]
+    #[error(
+        "entries ({row}, {column}) and ({column}, {row}) differ: {upper} and {lower}; the matrix must be symmetric"
+    )]
     NotSymmetric {
         /// Row, from zero.
         row: usize,
@@ -48,7 +50,7 @@ pub enum GainError {
         lower: f64,
     },
     /// The matrix has a non-positive leading minor.
-    #[error("the leading minor of order {order} is not positive; a gain must be positive definite")]
+    #[error("the leading minor of order {order} is not positive; the matrix must be positive definite")]
     NotPositiveDefinite {
         /// Order of the first minor that fails, from one.
         order: usize,

@@ -37,6 +37,11 @@ pub(crate) fn are(number: usize, what: &str) -> String {
     format!("{} {}", if number == 1 { "is" } else { "are" }, count(number, what))
 }
 
+/// "1 axis", "2 axes".
+pub(crate) fn axes(number: usize) -> String {
+    if number == 1 { "1 axis".into() } else { format!("{number} axes") }
+}
+
 /// "1 entry", "2 entries".
 pub(crate) fn entry_count(number: usize) -> String {
     if number == 1 { "1 entry".into() } else { format!("{number} entries") }

@@ -13,7 +13,7 @@ use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkPoint, LinkSpec, P
 use forwardstep_core::robot::{PlanarLinks, PlanarTip};
 use forwardstep_sim::recording::{Breakdown, BreakdownCause};
 use forwardstep_sim::schedule::Schedule;
-use forwardstep_sim::trajectory::{Path, Sinusoid, Trajectory};
+use forwardstep_sim::trajectory::{Path, Sinusoid, Spline, Trajectory};
 use forwardstep_sim::{
     AgentSetup, AttitudeLaw, Axis, AxisUnit, Control, Ending, Exchange, Law, Method, Network, Outcome, ReferenceKind,
     RobotKind, RobotSetup, Setup, Signal, Solver, Start, TaskSpaceLaw, TimeSpan, TipSetup, simulate,
@@ -67,6 +67,10 @@ fn wave(offset: f64, amplitude: f64, rad_per_s: f64, phase_rad: f64) -> Path {
 
 fn fixed(offset: f64) -> Path {
     Path::Sinusoids { offset, waves: Vec::new() }
+}
+
+fn through(values: [f64; 3]) -> Path {
+    Path::Spline(Spline::new(vec![1.0, 6.0, 12.0], values.to_vec()).unwrap())
 }
 
 fn planar(bounds: Option<ParameterBounds>, kinematic_gain: f64) -> Setup {
@@ -173,7 +177,10 @@ fn half_a_turn(rate: [f64; 3]) -> Start {
 fn targets() -> Vec<Vec<Path>> {
     let rest = vec![fixed(0.0), fixed(0.0), fixed(0.0), fixed(2.0)];
     let swing = vec![wave(0.1, 0.3, 0.4, 0.0), wave(0.0, 0.2, 0.3, 1.0), wave(0.0, 0.2, 0.5, 2.0), fixed(1.0)];
-    vec![rest, swing]
+    // Half a turn and back to a quarter, rest before and after.
+    let [x, z, o] = [[0.0, 0.6, 0.0], [0.0, 0.2, 0.7], [1.0, 0.8, 0.7]];
+    let table = vec![through(x), fixed(0.0), through(z), through(o)];
+    vec![rest, swing, table]
 }
 
 fn run(setup: &Setup) -> Outcome {

@@ -35,8 +35,8 @@ pub enum ChainError {
     Gain(#[from] GainError),
     /// An antiderivative that is none.
     #[error(
-        "the antiderivative of regressor {parameter}, counted from zero, has the slope {slope} in the highest derivative where \
-         the regressor is {regressor}"
+        "the antiderivative of regressor {} has the slope {slope} in the highest derivative where the regressor is {regressor}",
+        .parameter + 1
     )]
     Antiderivative {
         /// Which one, from zero.

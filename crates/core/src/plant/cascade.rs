@@ -37,7 +37,7 @@ pub enum CascadeError {
     #[error(transparent)]
     Length(#[from] LengthError),
     /// An equation that looks too far up the chain.
-    #[error("equation {equation} of the chain uses x{used}, but may use x1 to x{most} only")]
+    #[error("equation {equation} of the chain uses x{used}, but may use no state beyond x{most}")]
     Above {
         /// From one.
         equation: usize,

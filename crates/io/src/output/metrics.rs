@@ -1,9 +1,11 @@
 //! A run in a few numbers.
 
 use forwardstep_sim::recording::{Recording, Signal};
-use forwardstep_sim::setup::{ReferenceKind, RobotKind, Setup};
+use forwardstep_sim::setup::{RobotKind, Setup};
 use serde::{Deserialize, Serialize};
 
+use super::disagreement::greater;
+pub use super::disagreement::{Absence, Disagreement, DisagreementSeries, Gap};
 use super::number;
 use super::record::Goal;
 use super::table::Table;
@@ -33,114 +35,6 @@ pub struct Metrics {
     pub ledger_error: Option<LedgerError>,
     /// Predicted beside reached value, per axis; absent without a prediction or where the agents' axes differ.
     pub agreement: Option<Vec<Agreement>>,
-}
-
-/// What is to vanish in a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Gap {
-    /// Between agents.
-    Disagreement,
-    /// Between agents and their targets, or their leader.
-    Error,
-}
-
-impl Gap {
-    /// What is to vanish in a run of `setup`.
-    pub fn of(setup: &Setup) -> Gap {
-        match setup.reference {
-            ReferenceKind::Tracking | ReferenceKind::Following(_) => Gap::Error,
-            _ => Gap::Disagreement,
-        }
-    }
-
-    /// `Disagreement` or `Error`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Gap::Disagreement => "Disagreement",
-            Gap::Error => "Error",
-        }
-    }
-
-    /// The name in the middle of a sentence.
-    pub fn word(self) -> &'static str {
-        match self {
-            Gap::Disagreement => "disagreement",
-            Gap::Error => "error",
-        }
-    }
-
-    /// How it is measured.
-    pub fn formula(self) -> &'static str {
-        match self {
-            Gap::Disagreement => "max |qᵢ − qⱼ|",
-            Gap::Error => "max |error|",
-        }
-    }
-}
-
-/// max |q_i − q_j| over agents and axes, less their offsets, or max |error| where agents have targets; rad or m. Or why
-/// there is no such number.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Disagreement {
-    /// At the first and last row, and the largest of all rows.
-    Measured {
-        /// At the first row.
-        #[serde(deserialize_with = "number::or_nan")]
-        initial: f64,
-        /// At the last row.
-        #[serde(deserialize_with = "number::or_nan")]
-        last: f64,
-        /// The largest of all rows.
-        #[serde(deserialize_with = "number::or_nan")]
-        largest: f64,
-    },
-    /// There is none.
-    Absent(Absence),
-}
-
-impl Disagreement {
-    /// The disagreement at the last row.
-    pub fn last(&self) -> Option<f64> {
-        match *self {
-            Disagreement::Measured { last, .. } => Some(last),
-            Disagreement::Absent(_) => None,
-        }
-    }
-}
-
-/// Why there is no disagreement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Absence {
-    /// Nothing was recorded.
-    NoRows,
-    /// One agent alone, or none, agrees with itself.
-    FewerThanTwoAgents,
-    /// These agents have different numbers of axes.
-    DifferentAxes {
-        /// The first agent.
-        first: usize,
-        /// The one that differs from it.
-        other: usize,
-    },
-    /// The positions of this agent were not recorded.
-    NotRecorded {
-        /// The agent.
-        agent: usize,
-    },
-}
-
-impl Absence {
-    /// The reason in words.
-    pub fn words(self) -> &'static str {
-        match self {
-            Absence::NoRows => "nothing was recorded",
-            Absence::FewerThanTwoAgents => "there are no two agents to compare",
-            Absence::DifferentAxes { .. } => "the agents do not have the same axes",
-            Absence::NotRecorded { .. } => "not all positions were recorded",
-        }
-    }
 }
 
 /// A value, where and when.
@@ -262,101 +156,6 @@ pub struct Agreement {
     pub distance: f64,
 }
 
-/// The disagreement row by row.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DisagreementSeries {
-    /// Over all axes.
-    pub overall: Vec<f64>,
-    /// On each axis.
-    pub per_axis: Vec<Vec<f64>>,
-}
-
-impl DisagreementSeries {
-    /// max |q_i − q_j| at every row.
-    ///
-    /// # Errors
-    /// [`Absence`] when the agents cannot be compared.
-    pub fn of(setup: &Setup, recording: &Recording) -> Result<Self, Absence> {
-        Self::of_table(&Table::new(setup, recording))
-    }
-
-    pub(crate) fn of_table(table: &Table<'_>) -> Result<Self, Absence> {
-        if Gap::of(table.setup) == Gap::Error {
-            return Self::of_errors(table);
-        }
-        let agents = &table.setup.agents;
-        let [first, others @ ..] = agents.as_slice() else { return Err(Absence::FewerThanTwoAgents) };
-        if others.is_empty() {
-            return Err(Absence::FewerThanTwoAgents);
-        }
-        // Agreement is on numbers: an arm in rad and a cart in m can agree.
-        let differs = |other: &forwardstep_sim::AgentSetup| other.robot.axes.len() != first.robot.axes.len();
-        if let Some(other) = others.iter().position(differs) {
-            return Err(Absence::DifferentAxes { first: 0, other: other + 1 });
-        }
-        if table.t_s.is_empty() {
-            return Err(Absence::NoRows);
-        }
-        let rows = table.t_s.len();
-        let mut per_axis = Vec::new();
-        for axis in 0..first.robot.axes.len() {
-            let mut low = vec![f64::INFINITY; rows];
-            let mut high = vec![f64::NEG_INFINITY; rows];
-            for agent in 0..agents.len() {
-                let q = table.column(agent, Signal::Position, axis).ok_or(Absence::NotRecorded { agent })?;
-                let offset = table.column(agent, Signal::Offset, axis);
-                for row in 0..rows {
-                    let away = offset.and_then(|offset| offset.get(row)).copied().unwrap_or(0.0);
-                    let q = q.get(row).map_or(f64::NAN, |q| q - away);
-                    low[row] = lesser(low[row], q);
-                    high[row] = greater(high[row], q);
-                }
-            }
-            per_axis.push(low.iter().zip(&high).map(|(low, high)| high - low).collect::<Vec<_>>());
-        }
-        Ok(Self::largest(rows, per_axis))
-    }
-
-    /// The largest |error| of all agents.
-    fn of_errors(table: &Table<'_>) -> Result<Self, Absence> {
-        let rows = table.t_s.len();
-        if rows == 0 {
-            return Err(Absence::NoRows);
-        }
-        let mut per_axis: Vec<Vec<f64>> = Vec::new();
-        for agent in 0..table.setup.agents.len() {
-            let mut axis = 0;
-            while let Some(errors) = table.column(agent, Signal::Error, axis) {
-                if per_axis.len() <= axis {
-                    per_axis.push(vec![0.0; rows]);
-                }
-                for (worst, error) in per_axis[axis].iter_mut().zip(errors) {
-                    *worst = greater(*worst, error.abs());
-                }
-                axis += 1;
-            }
-            if axis == 0 {
-                return Err(Absence::NotRecorded { agent });
-            }
-        }
-        Ok(Self::largest(rows, per_axis))
-    }
-
-    fn largest(rows: usize, per_axis: Vec<Vec<f64>>) -> Self {
-        let overall = (0..rows).map(|row| per_axis.iter().map(|axis| axis[row]).fold(0.0, greater)).collect();
-        DisagreementSeries { overall, per_axis }
-    }
-}
-
-/// The greater of two numbers, NaN as soon as one is.
-fn greater(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a > b { a } else { b }
-}
-
-fn lesser(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a < b { a } else { b }
-}
-
 impl Metrics {
     /// Reduces a recording to its metrics. `predicted` is the agreement per axis, `goal` sets the bound for settling.
     pub fn of(setup: &Setup, recording: &Recording, predicted: Option<&[f64]>, goal: Option<Goal>) -> Metrics {
@@ -384,16 +183,6 @@ impl Metrics {
             agreement: if series.is_ok() { predicted.and_then(|p| agreement(&table, p)) } else { None },
         }
     }
-}
-
-/// Whether the disagreement ends non-finite or exceeds, in the last quarter of the rows, all of the first quarter.
-pub(crate) fn grows(setup: &Setup, recording: &Recording) -> bool {
-    let Ok(series) = DisagreementSeries::of(setup, recording) else { return false };
-    let overall = &series.overall;
-    let quarter = overall.len().div_ceil(4);
-    let largest = |part: &[f64]| part.iter().copied().fold(0.0, greater);
-    let last = largest(&overall[overall.len() - quarter..]);
-    !last.is_finite() || last > largest(&overall[..quarter])
 }
 
 /// The largest |value| of a column with its sign, the first of equals; a value that is not a number wins.

@@ -22,6 +22,7 @@
 mod csv;
 mod decimate;
 mod digital;
+mod disagreement;
 mod error;
 mod folder;
 mod inputs;

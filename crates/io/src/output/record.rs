@@ -68,7 +68,7 @@ impl Goal {
             }
             Goal::ExpectDiverges => match &outcome.ending {
                 Ending::BrokeDown(breakdown) => !matches!(breakdown.cause, BreakdownCause::PositionLimit { .. }),
-                _ => super::metrics::grows(setup, &outcome.recording),
+                _ => super::disagreement::grows(setup, &outcome.recording),
             },
         }
     }

@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use forwardstep_core::robot::PlanarTip;
 use forwardstep_core::robot::tree::Anchor;
-use forwardstep_sim::{AgentSetup, RobotKind};
+use forwardstep_sim::{AgentSetup, Law, RobotKind, RobotSetup};
 
 use super::at::At;
 use super::fault::{Fault, count, fault, filled, positive};
@@ -17,11 +17,12 @@ use super::leader_file::LeaderDesignFile;
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
 use super::robots::{ReadRobot, Stop, robot};
-use super::spacecraft::short_way;
+use super::spacecraft::{points_somewhere, short_way};
 use super::spread::{spread, tip};
 use super::start::{Shared, Starter, start};
 use super::systems_file::TrackingFile;
-use super::target::target;
+use super::target::{Owner, target};
+use super::value_problem::ValueProblem;
 use crate::SourceText;
 
 /// Agents that are accepted.
@@ -109,13 +110,22 @@ pub(super) fn agents(
             let Design { roots_per_s, manipulability, free_derivatives } = design(file, entry, name)?;
             let own = entry.start.as_ref().map(|file| Shared { file, index: k, of: names.len() });
             let common = file.start.as_ref().map(|file| Shared { file, index: index + k, of });
-            let target = entry.target.as_ref().map(|file| target(file, name, robot.axes.len(), end_s)).transpose()?;
+            let law = law(entry.law.as_ref().or(file.law.as_ref()), name, robot, &body)?;
+            let mut axes = axis_names(robot);
+            if let Law::TaskSpace(tip) = &law {
+                // It is the tip that follows.
+                let names = (0..axes.len()).filter_map(|axis| tip.coordinate_name(axis));
+                axes = names.map(String::from).collect();
+            }
+            let owner = Owner { name, axes: &axes, end_s };
+            let target = entry.target.as_ref().map(|file| target(file, &owner, folder)).transpose()?;
             let mut start = start(Starter { name, robot, order: free_derivatives }, own, common)?;
-            if let (RobotKind::Spacecraft { .. }, Some(target)) = (&robot.kind, &target) {
+            if let (RobotKind::Spacecraft { .. }, Some(target), Some(place)) = (&robot.kind, &target, &entry.target) {
+                points_somewhere(place, target, end_s)?;
                 short_way(&mut start, target);
             }
             agents.push(AgentSetup {
-                law: law(entry.law.as_ref().or(file.law.as_ref()), name, robot, &body)?,
+                law,
                 start,
                 robot: robot.clone(),
                 roots_per_s,
@@ -131,6 +141,11 @@ pub(super) fn agents(
     Ok(Agents { agents, bodies, populations: counted })
 }
 
+/// What the axes are called in tables.
+pub(super) fn axis_names(robot: &RobotSetup) -> Vec<String> {
+    robot.axes.iter().map(|axis| axis.name.clone()).collect()
+}
+
 /// A name that can stand in tables.
 pub(super) fn checked_name(name: &At<String>) -> Result<&str, Fault> {
     let length = name.value.chars().count();
@@ -143,7 +158,7 @@ pub(super) fn checked_name(name: &At<String>) -> Result<&str, Fault> {
 }
 
 /// The names of a population: its own, or numbered from one when it is counted.
-fn names(file: &AgentFile) -> Result<Vec<String>, Fault> {
+pub(super) fn names(file: &AgentFile) -> Result<Vec<String>, Fault> {
     let name = &file.name;
     checked_name(name)?;
     Ok(match &file.count {
@@ -205,7 +220,7 @@ fn tracked(common: &TrackingFile, own: Option<&TrackingFile>) -> Result<Design, 
 fn roots(list: &At<Vec<At<f64>>>) -> Result<Vec<f64>, Fault> {
     let roots = filled("roots_per_s", list)?;
     if roots.len() > MOST_ROOTS {
-        return Err(fault(list, ScenarioProblem::Order { found: roots.len(), most: MOST_ROOTS }));
+        return Err(fault(list, ValueProblem::Order { key: "roots_per_s", found: roots.len(), most: MOST_ROOTS }));
     }
     roots.iter().map(|root| positive("roots_per_s", root)).collect()
 }

@@ -6,7 +6,7 @@ use forwardstep_core::controller::Immersion;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::{CascadeError, CascadeTerms, Formulas};
 use forwardstep_sim::chain::{ChainLaw, ChainModel, ChainStep, Estimate};
-use forwardstep_sim::{Axis, AxisUnit, Law, RobotKind, RobotSetup};
+use forwardstep_sim::{AxisUnit, Law, RobotKind, RobotSetup};
 
 use super::at::At;
 use super::chain_file::{
@@ -16,8 +16,10 @@ use super::chain_file::{
 use super::fault::{Fault, count, fault, filled, positive, values};
 use super::file::EstimateStartFile;
 use super::formula::formula_in;
-use super::law::estimate;
-use super::problem::ScenarioProblem;
+use super::law::{estimate, of_another};
+use super::robots::axis;
+use super::system_problem::SystemProblem;
+use super::value_problem::ValueProblem;
 use super::values::AxisValues;
 
 /// Orders that are accepted: of derivatives, and of chains that are differentiated.
@@ -55,21 +57,14 @@ fn robot(model: ChainModel, parameters: &At<Vec<At<f64>>>) -> Result<RobotSetup,
     let need = model.parameters();
     if parameters.value.len() != need {
         let (found, agent) = (parameters.value.len(), "regressor".to_owned());
-        let problem = ScenarioProblem::VectorLength { key: "parameters", found, need, agent };
+        let problem = ValueProblem::VectorLength { key: "parameters", found, need, agent };
         return Err(fault(parameters, problem));
     }
-    let axis = Axis {
-        name: "x".into(),
-        unit: AxisUnit::Metre,
-        position_limits: None,
-        velocity_limit: None,
-        effort_limit: None,
-    };
     Ok(RobotSetup {
         kind: RobotKind::Chain(model),
         theta: values(&parameters.value),
         theta_names: (1..=need).map(|k| format!("theta{k}")).collect(),
-        axes: vec![axis],
+        axes: vec![axis("x", AxisUnit::Metre)],
     })
 }
 
@@ -81,7 +76,7 @@ pub(super) fn chain(file: &ChainFile) -> Result<RobotSetup, Fault> {
     let psi = optional(file.psi.as_ref(), &names, 1.0)?;
     let phi = list(&file.regressor.value, &names)?;
     let terms = Formulas::new(order, &chi, phi, &psi)
-        .map_err(|error| fault(&file.order, ScenarioProblem::Chain(CascadeError::Expression(error))))?;
+        .map_err(|error| fault(&file.order, SystemProblem::Chain(CascadeError::Expression(error))))?;
     robot(ChainModel::Derivatives(Arc::new(terms)), &file.parameters)
 }
 
@@ -96,25 +91,40 @@ pub(super) fn strict(file: &StrictFeedbackFile) -> Result<RobotSetup, Fault> {
 pub(super) fn pure(file: &PureFeedbackFile) -> Result<RobotSetup, Fault> {
     let regressors = equations(&file.regressors)?;
     let names = states(regressors.len());
+    if file.known.value.len() != names.len() {
+        let (found, need, agent) = (file.known.value.len(), names.len(), "regressors".to_owned());
+        return Err(fault(&file.known, ValueProblem::VectorLength { key: "known", found, need, agent }));
+    }
     let known = list(&file.known.value, &names)?;
     let psi = optional(file.psi.as_ref(), &names, 1.0)?;
     cascade(CascadeTerms::new(known, regressors, psi), &file.regressors, &file.parameters)
 }
 
-fn cascade<T>(
+fn cascade(
     terms: Result<CascadeTerms, CascadeError>,
-    place: &At<T>,
+    regressors: &At<Vec<At<Vec<At<String>>>>>,
     parameters: &At<Vec<At<f64>>>,
 ) -> Result<RobotSetup, Fault> {
-    let terms = terms.map_err(|error| fault(place, ScenarioProblem::Chain(error)))?;
+    let terms = terms.map_err(|error| {
+        let row = match error {
+            CascadeError::Above { equation, .. } => regressors.value.get(equation.saturating_sub(1)),
+            _ => None,
+        };
+        let place = row.map_or(&regressors.span, |row| &row.span).clone();
+        Fault::new(SystemProblem::Chain(error)).at(&place)
+    })?;
     robot(ChainModel::Cascade(Arc::new(terms)), parameters)
 }
 
 fn equations(file: &At<Vec<At<Vec<At<String>>>>>) -> Result<Vec<Vec<Expression>>, Fault> {
     let rows = filled("regressors", file)?;
     if rows.len() > MOST_EQUATIONS {
-        let (value, high) = (rows.len() as f64, MOST_EQUATIONS as f64);
-        return Err(fault(file, ScenarioProblem::OutOfRange { key: "the number of equations", value, low: 1.0, high }));
+        return Err(fault(file, ValueProblem::Order { key: "regressors", found: rows.len(), most: MOST_EQUATIONS }));
+    }
+    let need = rows.first().map_or(0, |row| row.value.len());
+    if let Some((k, row)) = rows.iter().enumerate().find(|(_, row)| row.value.len() != need) {
+        let (found, agent) = (row.value.len(), format!("equation {}", k + 1));
+        return Err(fault(row, ValueProblem::VectorLength { key: "regressors", found, need, agent }));
     }
     let names = states(rows.len());
     rows.iter().map(|row| list(&row.value, &names)).collect()
@@ -130,7 +140,7 @@ fn model<'a>(robot: &'a RobotSetup, agent: &str, law: &'static str, is_cascade: 
             } else {
                 "`chain`, plants of derivatives"
             };
-            Err(Fault::new(ScenarioProblem::LawOfAnother { agent: agent.to_owned(), law, made_for }))
+            Err(of_another(law, made_for, agent, robot))
         }
     }
 }
@@ -143,7 +153,7 @@ fn each(key: &'static str, file: Option<&At<AxisValues>>, agent: &str, need: usi
         AxisValues::Each(list) if list.len() == need => list.iter().map(|value| positive(key, value)).collect(),
         AxisValues::Each(list) => {
             let (found, agent) = (list.len(), agent.to_owned());
-            Err(fault(place, ScenarioProblem::VectorLength { key, found, need, agent }))
+            Err(fault(place, ValueProblem::VectorLength { key, found, need, agent }))
         }
     }
 }
@@ -182,20 +192,20 @@ pub(super) fn linear_adaptive(file: &LinearAdaptiveFile, agent: &str, robot: &Ro
 /// `immersion`.
 pub(super) fn immersion(file: &ImmersionFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
     let ChainModel::Derivatives(terms) = model(robot, agent, "immersion", false)? else {
-        return Err(Fault::new(ScenarioProblem::Antiderivatives { agent: agent.to_owned() }));
+        return Err(Fault::new(SystemProblem::Antiderivatives { agent: agent.to_owned() }));
     };
     let (order, phi) = (derivatives_of(terms), terms.regressor());
     let antiderivatives = match &file.antiderivatives {
         Some(texts) if texts.value.len() == phi.len() => list(&texts.value, &derivatives(order))?,
         Some(texts) => {
             let (found, need, agent) = (texts.value.len(), phi.len(), agent.to_owned());
-            return Err(fault(texts, ScenarioProblem::VectorLength { key: "antiderivatives", found, need, agent }));
+            return Err(fault(texts, ValueProblem::VectorLength { key: "antiderivatives", found, need, agent }));
         }
         None => phi
             .iter()
             .map(|phi| Immersion::antiderivative(order, phi))
             .collect::<Option<_>>()
-            .ok_or_else(|| Fault::new(ScenarioProblem::Antiderivatives { agent: agent.to_owned() }))?,
+            .ok_or_else(|| Fault::new(SystemProblem::Antiderivatives { agent: agent.to_owned() }))?,
     };
     let gain_per_s = number("gain_per_s", file.gain_per_s.as_ref(), GAIN)?;
     let estimate = adapted(file.adaptation_gain.as_ref(), file.estimate_start.as_ref(), agent, robot)?;

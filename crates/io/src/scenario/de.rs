@@ -18,7 +18,7 @@ use toml::de::{DeInteger, DeString, DeTable, DeValue};
 use super::at::AT;
 use super::edges_file::LIST_OR_CHOICE;
 use super::fault::{Fault, LARGEST};
-use super::problem::ScenarioProblem;
+use super::value_problem::ValueProblem;
 use crate::diagnostic::breaks_lines;
 
 /// Bytes that a text may have.
@@ -26,7 +26,7 @@ const LONGEST_TEXT: usize = 500;
 
 impl Error for Fault {
     fn custom<T: Display>(message: T) -> Self {
-        Fault::new(ScenarioProblem::Unreadable { message: message.to_string() })
+        Fault::new(ValueProblem::Unreadable { message: message.to_string() })
     }
 
     fn invalid_type(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
@@ -40,24 +40,24 @@ impl Error for Fault {
             Unexpected::Map => "a table".into(),
             other => other.to_string(),
         };
-        Fault::new(ScenarioProblem::WrongType { found, expected: expected.to_string() })
+        Fault::new(ValueProblem::WrongType { found, expected: expected.to_string() })
     }
 
     fn unknown_variant(found: &str, allowed: &'static [&'static str]) -> Self {
-        Fault::new(ScenarioProblem::UnknownChoice { found: found.into(), allowed: allowed.to_vec() })
+        Fault::new(ValueProblem::UnknownChoice { found: found.into(), allowed: allowed.to_vec() })
     }
 
     fn unknown_field(key: &str, allowed: &'static [&'static str]) -> Self {
-        Fault::new(ScenarioProblem::UnknownKey { key: key.into(), allowed: allowed.to_vec() })
+        Fault::new(ValueProblem::UnknownKey { key: key.into(), allowed: allowed.to_vec() })
     }
 
     fn invalid_length(found: usize, expected: &dyn Expected) -> Self {
         let found = format!("a list of {found}");
-        Fault::new(ScenarioProblem::WrongType { found, expected: expected.to_string() })
+        Fault::new(ValueProblem::WrongType { found, expected: expected.to_string() })
     }
 
     fn missing_field(key: &'static str) -> Self {
-        Fault::new(ScenarioProblem::MissingKey { key })
+        Fault::new(ValueProblem::MissingKey { key })
     }
 }
 
@@ -72,7 +72,7 @@ pub(super) fn quoted(text: &str) -> String {
 /// A text that fits into a line: every text of a scenario is a name, a choice or a title.
 fn plain(text: &str) -> Result<&str, Fault> {
     if text.len() > LONGEST_TEXT || text.contains(breaks_lines) {
-        return Err(Fault::new(ScenarioProblem::Text { found: quoted(text), most: LONGEST_TEXT }));
+        return Err(Fault::new(ValueProblem::Text { found: quoted(text), most: LONGEST_TEXT }));
     }
     Ok(text)
 }
@@ -92,7 +92,7 @@ impl<'a, 'i> ValueDe<'a, 'i> {
             DeValue::Array(_) => "a list".into(),
             DeValue::Table(_) => "a table".into(),
         };
-        Fault::new(ScenarioProblem::WrongType { found, expected: expected.into() }).at(&self.0.span())
+        Fault::new(ValueProblem::WrongType { found, expected: expected.into() }).at(&self.0.span())
     }
 
     fn integer(self, integer: &DeInteger<'_>) -> Result<i64, Fault> {
@@ -100,7 +100,7 @@ impl<'a, 'i> ValueDe<'a, 'i> {
     }
 
     fn too_large(self, found: String) -> Fault {
-        Fault::new(ScenarioProblem::NumberTooLarge { found }).at(&self.0.span())
+        Fault::new(ValueProblem::NumberTooLarge { found }).at(&self.0.span())
     }
 
     /// Any number. Nothing in a scenario may be infinite, no number at all, or so large that products overflow.
@@ -110,7 +110,7 @@ impl<'a, 'i> ValueDe<'a, 'i> {
             DeValue::Float(float) => match float.as_str().parse::<f64>() {
                 Ok(value) if value.abs() <= LARGEST => Ok(value),
                 Ok(_) if !float.as_str().contains(['i', 'n']) => Err(self.too_large(float.as_str().into())),
-                _ => Err(Fault::new(ScenarioProblem::NotFinite { found: float.as_str().into() }).at(&self.0.span())),
+                _ => Err(Fault::new(ValueProblem::NotFinite { found: float.as_str().into() }).at(&self.0.span())),
             },
             _ => Err(self.wrong("a number")),
         }
@@ -229,7 +229,7 @@ impl<'de> Deserializer<'de> for ValueDe<'_, '_> {
     fn deserialize_tuple<V: Visitor<'de>>(self, length: usize, visitor: V) -> Result<V::Value, Fault> {
         match self.0.get_ref() {
             DeValue::Array(array) if array.len() != length => {
-                let problem = ScenarioProblem::ListLength { found: array.len(), need: length };
+                let problem = ValueProblem::ListLength { found: array.len(), need: length };
                 Err(Fault::new(problem).at(&self.0.span()))
             }
             _ => self.deserialize_seq(visitor),
@@ -274,14 +274,14 @@ impl<'de> Deserializer<'de> for ValueDe<'_, '_> {
             DeValue::Table(_) => {
                 let mut entries = self.table("a table")?;
                 let Some((key, content)) = entries.next() else {
-                    let problem = ScenarioProblem::NoChoice { allowed: choices.to_vec() };
+                    let problem = ValueProblem::NoChoice { allowed: choices.to_vec() };
                     return Err(Fault::new(problem).at(&span));
                 };
                 if let Some((second, _)) = entries.next() {
                     let stranger = [key, second].into_iter().find(|key| !choices.contains(&key.get_ref().as_ref()));
                     return Err(match stranger {
                         Some(key) => plain(key.get_ref()).map_or_else(|fault| fault, unknown).at(&key.span()),
-                        None => Fault::new(ScenarioProblem::TwoChoices {
+                        None => Fault::new(ValueProblem::TwoChoices {
                             first: key.get_ref().to_string(),
                             second: second.get_ref().to_string(),
                         })
@@ -417,7 +417,7 @@ impl<'de, 'a, 'i> EnumAccess<'de> for Choice<'a, 'i> {
 
 impl<'a, 'i> Choice<'a, 'i> {
     fn content(&self) -> Result<ValueDe<'a, 'i>, Fault> {
-        let missing = || ScenarioProblem::ChoiceNeedsValue { choice: self.key.into() };
+        let missing = || ValueProblem::ChoiceNeedsValue { choice: self.key.into() };
         self.content.map(ValueDe).ok_or_else(|| Fault::new(missing()).at(&self.span))
     }
 }
@@ -429,7 +429,7 @@ impl<'de> VariantAccess<'de> for Choice<'_, '_> {
         match self.content {
             None => Ok(()),
             Some(_) => {
-                let problem = ScenarioProblem::ChoiceTakesNoValue { choice: self.key.into() };
+                let problem = ValueProblem::ChoiceTakesNoValue { choice: self.key.into() };
                 Err(Fault::new(problem).at(&self.span))
             }
         }

@@ -16,6 +16,7 @@ use super::network_file::DelayFile;
 use super::network_problem::NetworkProblem;
 use super::problem::ScenarioProblem;
 use super::table::{Column, cell_number, read_table, table_text};
+use super::value_problem::ValueProblem;
 use crate::SourceText;
 
 /// Edges by rule and from tables that are accepted in all graphs together.
@@ -88,7 +89,7 @@ impl NetworkReader<'_> {
                     Ok(in_degree) if in_degree > 0 => in_degree,
                     _ => {
                         let (key, value) = ("in_degree", file.in_degree.value as f64);
-                        return Err(fault(&file.in_degree, ScenarioProblem::NotPositive { key, value }));
+                        return Err(fault(&file.in_degree, ValueProblem::NotPositive { key, value }));
                     }
                 };
                 let topology = Topology::Random { in_degree, seed: seed(&file.seed)? };

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::at::At;
 use super::problem::ScenarioProblem;
+use super::value_problem::ValueProblem;
 use crate::SourceText;
 
 /// Numbers beyond this are refused, so that no product of a few of them overflows.
@@ -59,13 +60,13 @@ pub(super) fn positive(key: &'static str, number: &At<f64>) -> Result<f64, Fault
     if value > 0.0 {
         between(key, number, SMALLEST, LARGEST)
     } else {
-        Err(fault(number, ScenarioProblem::NotPositive { key, value }))
+        Err(fault(number, ValueProblem::NotPositive { key, value }))
     }
 }
 
 pub(super) fn not_negative(key: &'static str, number: &At<f64>) -> Result<f64, Fault> {
     let value = number.value;
-    if value >= 0.0 { Ok(value) } else { Err(fault(number, ScenarioProblem::Negative { key, value })) }
+    if value >= 0.0 { Ok(value) } else { Err(fault(number, ValueProblem::Negative { key, value })) }
 }
 
 pub(super) fn between(key: &'static str, number: &At<f64>, low: f64, high: f64) -> Result<f64, Fault> {
@@ -73,7 +74,7 @@ pub(super) fn between(key: &'static str, number: &At<f64>, low: f64, high: f64) 
     if (low..=high).contains(&value) {
         Ok(value)
     } else {
-        Err(fault(number, ScenarioProblem::OutOfRange { key, value, low, high }))
+        Err(fault(number, ValueProblem::OutOfRange { key, value, low, high }))
     }
 }
 
@@ -83,19 +84,19 @@ pub(super) fn count(key: &'static str, number: &At<i64>, most: u32) -> Result<us
         Ok(value) if (1..=most).contains(&value) => Ok(value as usize),
         _ => {
             let (value, high) = (number.value as f64, f64::from(most));
-            Err(fault(number, ScenarioProblem::OutOfRange { key, value, low: 1.0, high }))
+            Err(fault(number, ValueProblem::OutOfRange { key, value, low: 1.0, high }))
         }
     }
 }
 
 pub(super) fn seed(number: &At<i64>) -> Result<u64, Fault> {
     u64::try_from(number.value)
-        .map_err(|_| fault(number, ScenarioProblem::Negative { key: "seed", value: number.value as f64 }))
+        .map_err(|_| fault(number, ValueProblem::Negative { key: "seed", value: number.value as f64 }))
 }
 
 /// A list with at least one entry.
 pub(super) fn filled<'a, T>(key: &'static str, list: &'a At<Vec<T>>) -> Result<&'a [T], Fault> {
-    if list.value.is_empty() { Err(fault(list, ScenarioProblem::Empty { key })) } else { Ok(&list.value) }
+    if list.value.is_empty() { Err(fault(list, ValueProblem::Empty { key })) } else { Ok(&list.value) }
 }
 
 pub(super) fn values(list: &[At<f64>]) -> Vec<f64> {

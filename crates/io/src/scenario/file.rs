@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::at::At;
+use super::attitude_file::AttitudeStartFile;
 use super::chain_file::{
     AdaptiveBacksteppingFile, ChainFile, ImmersionFile, LinearAdaptiveFile, LinearisingFile, PureFeedbackFile,
     StrictFeedbackFile,
@@ -205,11 +206,12 @@ pub struct StartFile {
     pub velocity_m_s: Option<At<StartValues>>,
     /// Velocities of any robot, in rad/s or m/s as each axis has it.
     pub velocity: Option<At<StartValues>>,
-    /// Attitudes of vehicles and rotorcraft as a quaternion of any length, vector part first. Default: upright, [0, 0, 0, 1].
-    pub attitude: Option<At<[f64; 4]>>,
-    /// Angular velocities of rotorcraft in the axes of the body, in rad/s.
+    /// Attitudes of vehicles, rotorcraft and spacecraft: a quaternion of any length, vector part first, or an axis with an angle.
+    /// Default: upright, [0, 0, 0, 1].
+    pub attitude: Option<At<AttitudeStartFile>>,
+    /// Angular velocities of rotorcraft and spacecraft in the axes of the body, in rad/s.
     pub angular_velocity_rad_s: Option<At<[f64; 3]>>,
-    /// Where spacecraft start; for them nothing else in this table counts.
+    /// Where spacecraft start.
     pub spacecraft: Option<At<SpacecraftStartFile>>,
     /// What else there is of a chain: its derivatives from the second on, or x2, x3, … of one in feedback form.
     pub higher_states: Option<At<StartValues>>,
@@ -265,7 +267,7 @@ pub struct ConsensusFile {
     #[schemars(with = "Option<Vec<Positive>>", length(min = 1, max = 32))]
     pub roots_per_s: Option<At<Vec<At<f64>>>>,
     /// What the agents tell each other.
-    pub exchange: ExchangeFile,
+    pub exchange: At<ExchangeFile>,
     /// The gain λ of Remark 4, in 1/s to the power of the order: how much the reference gives way to the motion. Default: 0.
     pub manipulability_gain: Option<At<f64>>,
 }

@@ -25,7 +25,7 @@ use super::de::quoted;
 use super::fault::{Fault, LARGEST};
 pub use super::formula_problem::FormulaProblem;
 use super::formula_problem::{A_VALUE, A_VALUE_OF_VARIABLES, AN_OPERATOR, CHOICES, FUNCTIONS, JUMPS, NAMES};
-use super::problem::ScenarioProblem;
+use super::value_problem::ValueProblem;
 
 /// Parentheses, signs and powers within each other.
 const MOST_NESTED: usize = 64;
@@ -101,7 +101,7 @@ fn placed(text: &At<String>, FormulaFault { problem, at }: FormulaFault) -> Faul
         }
         _ => text.span.clone(),
     };
-    Fault::new(ScenarioProblem::Formula(problem)).at(&place)
+    Fault::new(ValueProblem::Formula(problem)).at(&place)
 }
 
 struct Parser<'a> {
@@ -169,10 +169,13 @@ impl Parser<'_> {
     /// Takes the steps from `first` on, which were written after byte `from`, back as a constant exponent.
     fn exponent(&mut self, first: usize, from: usize) -> Result<FormulaStep, FormulaFault> {
         let at = from + (self.text[from..].len() - self.text[from..].trim_start().len())..self.next;
-        let varies = |step: &FormulaStep| matches!(step, FormulaStep::Time | FormulaStep::Variable(_));
-        let varies = self.steps[first..].iter().any(varies);
-        if varies {
-            return Err(self.fault(FormulaProblem::VaryingExponent, at));
+        let varies = self.steps[first..].iter().find_map(|step| match step {
+            FormulaStep::Time => Some("t"),
+            FormulaStep::Variable(k) => self.names.and_then(|names| names.get(*k)).map(String::as_str),
+            _ => None,
+        });
+        if let Some(of) = varies {
+            return Err(self.fault(FormulaProblem::VaryingExponent { of: of.to_owned() }, at));
         }
         let exponent = Formula::new(self.steps.split_off(first)).map(|formula| formula.eval(0.0));
         match exponent {
@@ -426,8 +429,8 @@ mod tests {
         let help = |text: &str| parse_formula(text).unwrap_err().problem.help().unwrap_or_default();
         assert!(help("sine(t)").starts_with("did you mean `sin`? the functions are"), "{}", help("sine(t)"));
         assert!(help("2*T").starts_with("did you mean `t`?"), "{}", help("2*T"));
-        assert_eq!(help("2t"), "products are written with a star: `2*t`, `3*(t + 1)`");
-        assert_eq!(help("t**2"), "powers are written `t^2`");
+        assert_eq!(help("2t"), "products are written with a star: `2*pi`, `3*(pi + 1)`");
+        assert_eq!(help("t**2"), "powers are written `2^3`");
         assert!(help("sign(t)").contains("delay.piecewise_constant"));
     }
 

@@ -1,4 +1,4 @@
-//! Why a text is no formula in t, and the words of formulas, which the advice names.
+//! Why a text is no formula, and the words of formulas, which the advice names.
 
 use std::f64::consts::{E, PI};
 
@@ -48,7 +48,7 @@ pub(super) const A_VALUE: &str = "a number, `t`, a function or a parenthesis";
 pub(super) const A_VALUE_OF_VARIABLES: &str = "a number, a variable, a function or a parenthesis";
 pub(super) const AN_OPERATOR: &str = "an operator (+ - * / ^) or the end";
 
-/// Why a text is no formula in t.
+/// Why a text is no formula.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FormulaProblem {
@@ -111,9 +111,12 @@ pub enum FormulaProblem {
         /// What was written.
         found: String,
     },
-    /// An exponent in which t appears.
-    #[error("the exponent changes with t")]
-    VaryingExponent,
+    /// An exponent in which a variable appears.
+    #[error("the exponent changes with {of}")]
+    VaryingExponent {
+        /// The variable.
+        of: String,
+    },
     /// An exponent that is no number.
     #[error("the exponent has no finite value")]
     ExponentValue,
@@ -134,10 +137,10 @@ impl FormulaProblem {
         let first = |list: &[(&'static str, FormulaStep)]| list.iter().map(|entry| entry.0).collect::<Vec<_>>();
         let functions = || [first(&FUNCTIONS), first(&CHOICES)].concat();
         let text = match self {
-            FormulaProblem::Empty => "a formula in t is for example \"0.2 + 0.1*sin(2*pi*t/3)\"".into(),
-            FormulaProblem::Expected { found, .. } if found == "\"**\"" => "powers are written `t^2`".into(),
+            FormulaProblem::Empty => "a formula in t is for example \"0.2 + 0.1*sin(2*pi*t/3)\", one of a chain \"-x^3 + sin(x)\"".into(),
+            FormulaProblem::Expected { found, .. } if found == "\"**\"" => "powers are written `2^3`".into(),
             FormulaProblem::Expected { expected: AN_OPERATOR, .. } => {
-                "products are written with a star: `2*t`, `3*(t + 1)`".into()
+                "products are written with a star: `2*pi`, `3*(pi + 1)`".into()
             }
             FormulaProblem::UnknownName { name } => {
                 if nearest(name, functions()).as_deref() == Some(name.as_str()) {
@@ -151,11 +154,14 @@ impl FormulaProblem {
             }
             FormulaProblem::UnknownFunction { name } => choose(name, "the functions are", &functions()),
             FormulaProblem::Jumps { .. } => {
-                "what jumps has keys of its own: `delay.piecewise_constant`, `delay.saw_tooth`, or phases of a network"
+                "what jumps has keys of its own: `delay.piecewise_constant`, `delay.saw_tooth`, or phases of a network; \
+                 elsewhere `tanh` of something large comes close"
                     .into()
             }
-            FormulaProblem::NoArgument { name } => format!("write `{name}(t)`"),
-            FormulaProblem::VaryingExponent => "exponents are constant; write `exp(t*log(2))` for 2 to the t".into(),
+            FormulaProblem::NoArgument { name } => format!("write `{name}(…)`"),
+            FormulaProblem::VaryingExponent { of } => {
+                format!("exponents are constant; write `exp({of}*log(2))` for 2 to the {of}")
+            },
             FormulaProblem::NumberTooLarge { .. } => "numbers may be up to 1e30 in size".into(),
             _ => return None,
         };

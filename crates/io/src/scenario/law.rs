@@ -1,17 +1,20 @@
 //! `law` of an agent → [`Law`].
 
 use forwardstep_core::{Gain, GainError};
-use forwardstep_sim::{Law, RobotKind, RobotSetup};
+use forwardstep_sim::{ChainModel, Law, RobotKind, RobotSetup};
 
 use super::agents::Body;
 use super::at::At;
 use super::chain;
+use super::chain_file::{AdaptiveBacksteppingFile, LinearAdaptiveFile};
 use super::fault::{Fault, fault, not_negative, positive, values};
 use super::file::{AdaptiveFile, DampingFile, EstimateStartFile, KnownFile, LawFile};
-use super::problem::ScenarioProblem;
 use super::spacecraft;
+use super::spacecraft_file::AttitudeFile;
+use super::system_problem::SystemProblem;
 use super::systems_file::PositionOnlyFile;
 use super::task;
+use super::value_problem::ValueProblem;
 use super::values::{GainFile, GainOrBandwidth, Item};
 use super::vehicle;
 use super::vehicle_file::ThrustFile;
@@ -25,21 +28,44 @@ const ADAPTATION_GAIN: f64 = 10.0;
 /// Of the filter that stands in for a velocity.
 const FILTER_PER_S: f64 = 10.0;
 
-/// Builds the law of `agent`; without a file, the adaptive one with default gains.
+/// Builds the law of `agent`; without a file, the usual one for its robot with default gains.
 pub(super) fn law(file: Option<&At<LawFile>>, agent: &str, robot: &RobotSetup, body: &Body) -> Result<Law, Fault> {
     match file {
-        None if flies(robot) => build(&LawFile::Thrust(ThrustFile::default()), agent, robot, body),
-        None => build(&LawFile::Adaptive(AdaptiveFile::default()), agent, robot, body),
+        None => build(&usual(robot), agent, robot, body),
         Some(file) => build(&file.value, agent, robot, body).map_err(|fault| fault.at(&file.span)),
     }
 }
 
+fn usual(robot: &RobotSetup) -> LawFile {
+    match &robot.kind {
+        RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. } => LawFile::Thrust(ThrustFile::default()),
+        RobotKind::Spacecraft { .. } => LawFile::Attitude(AttitudeFile::default()),
+        RobotKind::Chain(ChainModel::Derivatives(_)) => LawFile::LinearAdaptive(LinearAdaptiveFile::default()),
+        RobotKind::Chain(ChainModel::Cascade(_)) => LawFile::AdaptiveBackstepping(AdaptiveBacksteppingFile::default()),
+        RobotKind::Tree(_) | RobotKind::PlanarArm | RobotKind::PointMass { .. } => {
+            LawFile::Adaptive(AdaptiveFile::default())
+        }
+    }
+}
+
+/// A law beside a robot that it is not made for.
+pub(super) fn of_another(law: &'static str, made_for: &'static str, agent: &str, robot: &RobotSetup) -> Fault {
+    let laws = match &robot.kind {
+        RobotKind::Tree(_) | RobotKind::PlanarArm => "`adaptive`, `known` and `task_space`",
+        RobotKind::PointMass { .. } => "`adaptive`, `known` and `position_only`",
+        RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. } => "`thrust`",
+        RobotKind::Spacecraft { .. } => "`attitude`",
+        RobotKind::Chain(ChainModel::Derivatives(_)) => "`linearising`, `linear_adaptive` and `immersion`",
+        RobotKind::Chain(ChainModel::Cascade(_)) => "`adaptive_backstepping`",
+    };
+    Fault::new(SystemProblem::LawOfAnother { agent: agent.to_owned(), law, made_for, laws })
+}
+
 fn build(file: &LawFile, agent: &str, robot: &RobotSetup, body: &Body) -> Result<Law, Fault> {
     match file {
-        LawFile::Known(_) | LawFile::Adaptive(_) if flies(robot) || matches!(robot.kind, RobotKind::Chain(_)) => {
+        LawFile::Known(_) | LawFile::Adaptive(_) if !is_lagrangian(robot) => {
             let law = if let LawFile::Known(_) = file { "known" } else { "adaptive" };
-            let agent = agent.to_owned();
-            Err(Fault::new(ScenarioProblem::LawOfAnother { agent, law, made_for: "arms and point masses" }))
+            Err(of_another(law, "arms and point masses", agent, robot))
         }
         LawFile::Known(KnownFile { damping }) => {
             Ok(Law::Known { damping: self::damping(damping.as_ref(), agent, robot)? })
@@ -64,12 +90,7 @@ fn build(file: &LawFile, agent: &str, robot: &RobotSetup, body: &Body) -> Result
 fn position_only(file: &PositionOnlyFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
     let PositionOnlyFile { damping, filter_per_s, adaptation_gain, estimate_start_kg } = file;
     if !matches!(robot.kind, RobotKind::PointMass { .. }) {
-        let agent = agent.to_owned();
-        return Err(Fault::new(ScenarioProblem::LawOfAnother {
-            agent,
-            law: "position_only",
-            made_for: "point masses",
-        }));
+        return Err(of_another("position_only", "point masses", agent, robot));
     }
     Ok(Law::PositionOnly {
         damping: damping.as_ref().map_or(Ok(DAMPING_GAIN), |k| positive("damping", k))?,
@@ -101,8 +122,8 @@ pub(super) fn adaptation(file: Option<&At<GainOrBandwidth>>, agent: &str, robot:
     }
 }
 
-fn flies(robot: &RobotSetup) -> bool {
-    matches!(robot.kind, RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. })
+fn is_lagrangian(robot: &RobotSetup) -> bool {
+    matches!(robot.kind, RobotKind::Tree(_) | RobotKind::PlanarArm | RobotKind::PointMass { .. })
 }
 
 fn is_tree(robot: &RobotSetup) -> bool {
@@ -134,14 +155,14 @@ pub(super) fn gain<T>(
             }
             Gain::Diagonal(diagonal)
         }
-        lists if lists < rows.len() => return Err(fault(place, ScenarioProblem::MixedList { key })),
+        lists if lists < rows.len() => return Err(fault(place, ValueProblem::MixedList { key })),
         _ => {
             let mut entries = Vec::new();
             for (k, row) in rows.iter().enumerate() {
                 let Item::List(list) = &row.value else { continue };
                 if list.len() != rows.len() {
                     let (rows, row_number, entries) = (rows.len(), k + 1, list.len());
-                    return Err(fault(row, ScenarioProblem::NotSquare { key, rows, row: row_number, entries }));
+                    return Err(fault(row, ValueProblem::NotSquare { key, rows, row: row_number, entries }));
                 }
                 entries.extend(values(list));
             }
@@ -153,8 +174,8 @@ pub(super) fn gain<T>(
     let agent = agent.to_owned();
     let problem = match error {
         // Rows, as they were written, whether of a diagonal or of a matrix.
-        GainError::Length(_) => ScenarioProblem::VectorLength { key, found: rows.len(), need: size, agent },
-        error => ScenarioProblem::Gain { key, agent, error },
+        GainError::Length(_) => ValueProblem::VectorLength { key, found: rows.len(), need: size, agent },
+        error => ValueProblem::Gain { key, agent, error },
     };
     Err(fault(place, problem))
 }
@@ -181,7 +202,7 @@ pub(super) fn known_or_given(
         EstimateStartFile::Given(list) => {
             let (found, need) = (list.value.len(), theta.len());
             let agent = agent.to_owned();
-            Err(fault(list, ScenarioProblem::VectorLength { key, found, need, agent }))
+            Err(fault(list, ValueProblem::VectorLength { key, found, need, agent }))
         }
     }
 }

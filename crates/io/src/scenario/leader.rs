@@ -8,20 +8,28 @@ use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
 use super::at::At;
 use super::fault::{Fault, fault, positive};
 use super::file::{ReferenceFile, ScenarioFile};
+use super::inputs::InputFolder;
 use super::leader_file::{LeaderDesignFile, LeaderReferenceFile, SignFile};
-use super::problem::ScenarioProblem;
-use super::target::target;
+use super::system_problem::SystemProblem;
+use super::target::{Owner, target};
+use super::value_problem::ValueProblem;
 
 const NAME: &str = "leader";
 const SIGN_EVERY_S: f64 = 1e-3;
 
-/// The leader and how it is followed, by agents with so many axes; nothing where nobody leads.
-pub(super) fn following(file: &ScenarioFile, axes: usize, end_s: f64) -> Result<Option<Arc<Following>>, Fault> {
+/// The leader and how it is followed, by agents with these axes; nothing where nobody leads. `folder` is where tables are
+/// looked for.
+pub(super) fn following(
+    file: &ScenarioFile,
+    axes: &[String],
+    end_s: f64,
+    folder: &mut InputFolder,
+) -> Result<Option<Arc<Following>>, Fault> {
     let (reference, leader) = match (&file.reference.value, &file.leader) {
         (ReferenceFile::Leader(reference), Some(leader)) => (reference, &leader.value),
-        (ReferenceFile::Leader(_), None) => return Err(fault(&file.reference, ScenarioProblem::NoLeader)),
+        (ReferenceFile::Leader(_), None) => return Err(fault(&file.reference, SystemProblem::NoLeader)),
         (other, Some(leader)) => {
-            return Err(fault(leader, ScenarioProblem::LeaderUnused { reference: other.key() }));
+            return Err(fault(leader, SystemProblem::LeaderUnused { reference: other.key() }));
         }
         (_, None) => return Ok(None),
     };
@@ -29,18 +37,18 @@ pub(super) fn following(file: &ScenarioFile, axes: usize, end_s: f64) -> Result<
         None => NAME.to_owned(),
         Some(name) => super::agents::checked_name(name)?.to_owned(),
     };
-    let trajectory = target(&leader.motion, &name, axes, end_s)?;
+    let trajectory = target(&leader.motion, &Owner { name: &name, axes, end_s }, folder)?;
     let design = match reference.design.value {
         LeaderDesignFile::Continuous => FollowingDesign::Continuous,
         LeaderDesignFile::Differentiable => FollowingDesign::Differentiable,
         LeaderDesignFile::WithoutAcceleration => FollowingDesign::WithoutAcceleration,
         LeaderDesignFile::Swarm => match &reference.coupling {
             Some(coupling) => FollowingDesign::Swarm { coupling: positive("coupling", coupling)? },
-            None => return Err(fault(&reference.design, ScenarioProblem::MissingKey { key: "coupling" })),
+            None => return Err(fault(&reference.design, ValueProblem::MissingKey { key: "coupling" })),
         },
     };
     if let (Some(coupling), false) = (&reference.coupling, matches!(design, FollowingDesign::Swarm { .. })) {
-        return Err(fault(coupling, ScenarioProblem::CouplingUnused));
+        return Err(fault(coupling, SystemProblem::CouplingUnused));
     }
     let (alpha, beta) = coefficients(reference, design)?;
     let choice = match reference.sign.as_ref().map(|sign| &sign.value) {
@@ -70,9 +78,9 @@ fn coefficients(file: &LeaderReferenceFile, design: FollowingDesign) -> Result<(
     match (design, roots.as_slice()) {
         (FollowingDesign::Continuous, [root]) => Ok((*root, 1.0)),
         (FollowingDesign::Continuous, _) => {
-            Err(fault(list, ScenarioProblem::LeaderRoots { found: list.value.len(), need: 1 }))
+            Err(fault(list, SystemProblem::LeaderRoots { found: list.value.len(), need: 1 }))
         }
         (_, [first, second]) => Ok((first * second, first + second)),
-        _ => Err(fault(list, ScenarioProblem::LeaderRoots { found: list.value.len(), need: 2 })),
+        _ => Err(fault(list, SystemProblem::LeaderRoots { found: list.value.len(), need: 2 })),
     }
 }

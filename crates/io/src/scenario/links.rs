@@ -17,6 +17,7 @@ use super::network_problem::NetworkProblem;
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
 use super::table::{Cell, Column, TableProblem, cell_number, read_table, table_text};
+use super::value_problem::ValueProblem;
 
 /// Packets and values of random holds on all edges together; forty bytes each.
 const MOST_PACKETS: f64 = 5e6;
@@ -233,7 +234,7 @@ pub(super) fn random_hold(file: &RandomHoldFile) -> Result<DelayPlan, Fault> {
     let pair = |key: &'static str, pair: &At<[At<f64>; 2]>, least: fn(&'static str, &At<f64>) -> Result<f64, Fault>| {
         let [low, high] = &pair.value;
         let (low, high) = (least(key, low)?, least(key, high)?);
-        if low > high { Err(fault(pair, ScenarioProblem::Interval { key, low, high })) } else { Ok([low, high]) }
+        if low > high { Err(fault(pair, ValueProblem::Interval { key, low, high })) } else { Ok([low, high]) }
     };
     Ok(DelayPlan::RandomHold {
         seed: seed(&file.seed)?,

@@ -33,6 +33,8 @@
 
 mod agents;
 pub mod at;
+mod attitude;
+pub mod attitude_file;
 mod chain;
 pub mod chain_file;
 mod control;
@@ -61,18 +63,21 @@ pub mod push_file;
 mod push_problem;
 mod pushes;
 mod random;
+mod refusal;
 mod robots;
 mod shipped;
 mod spacecraft;
 pub mod spacecraft_file;
 mod spread;
 mod start;
+mod system_problem;
 pub mod systems_file;
 mod table;
 mod target;
 mod task;
 pub mod task_file;
 mod template;
+mod value_problem;
 pub mod values;
 mod vehicle;
 pub mod vehicle_file;
@@ -82,7 +87,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use forwardstep_sim::leader::Following;
-use forwardstep_sim::{AgentSetup, Exchange, Law, Method, ReferenceKind, Setup, Solver, TimeSpan, recorded_columns};
+use forwardstep_sim::{
+    AgentSetup, Exchange, Law, Method, ReferenceKind, Setup, Solver, TimeSpan, recorded_columns, validate,
+};
 use miette::Diagnostic;
 use serde::Deserialize;
 use toml::Spanned;
@@ -96,8 +103,10 @@ pub use open::{OpenError, open_scenario};
 pub use problem::ScenarioProblem;
 pub use push_problem::PushProblem;
 pub use shipped::{SHIPPED_SCENARIOS, SHIPPED_TABLES, ShippedScenario, ShippedTable, shipped_scenario};
+pub use system_problem::SystemProblem;
 pub use table::TableProblem;
 pub use template::{Template, TemplateDelay, TemplateGraph, TemplateRobot};
+pub use value_problem::ValueProblem;
 
 use crate::output::Goal;
 use crate::urdf::UrdfProblem;
@@ -110,6 +119,7 @@ use file::{
     SolverFile,
 };
 use inputs::InputFolder;
+use refusal::refused;
 use robots::Stop;
 
 /// Numbers that a recording may hold; eight bytes each.
@@ -211,8 +221,8 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
     pushes::pushes(&file.pushes, &mut read, end_s, source, &mut folder, &mut notices)?;
     let agents = read.agents;
     let mut names: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
-    let axes = agents.first().map_or(0, |agent| agent.robot.axes.len());
-    let following = leader::following(&file, axes, end_s)?;
+    let axes: Vec<String> = agents.first().map_or_else(Vec::new, |agent| agents::axis_names(&agent.robot));
+    let following = leader::following(&file, &axes, end_s, &mut folder)?;
     if let (Some(following), Some(place)) = (&following, &file.leader) {
         let name = following.leader.name.clone();
         if names.contains(&name) {
@@ -230,7 +240,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
         None if reference == ReferenceKind::Tracking => network::silent(names.len()),
         None => return Err(fault(&file.reference, NetworkProblem::Missing).into()),
     };
-    let control = file.control.as_ref().map(|file| control::control(file, axes, end_s)).transpose()?;
+    let control = file.control.as_ref().map(|file| control::control(file, axes.len(), end_s)).transpose()?;
     let setup = Setup {
         agents,
         reference,
@@ -247,9 +257,10 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
     let fleet = |agent: &AgentSetup| agent.law.is_lagrangian() && agent.target.is_none();
     let agrees = setup.reference != ReferenceKind::Tracking && setup.following().is_none();
     let columns = if agrees && setup.agents.iter().all(fleet) {
+        validate(&setup).map_err(|error| refused(&file, error))?;
         setup.agents.iter().map(columns).sum()
     } else {
-        recorded_columns(&setup).map_err(|error| Fault::new(ScenarioProblem::Setup(error)))?.len()
+        recorded_columns(&setup).map_err(|error| refused(&file, error))?.len()
     };
     recording_fits(&setup, columns, every.unwrap_or(&file.time.end_s))?;
     let goal = file.goal.as_ref().map(|file| goal(file, &setup.reference)).transpose()?;
@@ -267,7 +278,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
 /// TOML → the file's structs.
 fn parse(source: &SourceText) -> Result<ScenarioFile, Fault> {
     let unreadable = |error: toml::de::Error| {
-        let fault = Fault::new(ScenarioProblem::Unreadable { message: error.message().to_owned() });
+        let fault = Fault::new(ValueProblem::Unreadable { message: error.message().to_owned() });
         match error.span() {
             Some(span) => fault.at(&span),
             None => fault,
@@ -290,7 +301,7 @@ fn reference(file: &ReferenceFile, following: Option<Arc<Following>>) -> Result<
     if let Some(following) = following {
         return Ok((ReferenceKind::Following(following), Exchange::PositionVelocity));
     }
-    let exchange = |file: &ConsensusFile| match file.exchange {
+    let exchange = |file: &ConsensusFile| match file.exchange.value {
         ExchangeFile::Position => Exchange::Position,
         ExchangeFile::PositionVelocity => Exchange::PositionVelocity,
     };
@@ -304,7 +315,7 @@ fn reference(file: &ReferenceFile, following: Option<Arc<Following>>) -> Result<
             (ReferenceKind::Backstepping { filter_s, acceleration_limit }, Exchange::Position)
         }
         // A leader's reference has been read by now.
-        ReferenceFile::Leader(_) => return Err(Fault::new(ScenarioProblem::NoLeader)),
+        ReferenceFile::Leader(_) => return Err(Fault::new(SystemProblem::NoLeader)),
         ReferenceFile::Tracking(_) => (ReferenceKind::Tracking, Exchange::Position),
     })
 }

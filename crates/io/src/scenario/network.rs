@@ -19,6 +19,7 @@ use super::network_file::{CouplingFile, DelayFile, NetworkFile, PhaseFile, Switc
 use super::network_problem::NetworkProblem;
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
+use super::value_problem::ValueProblem;
 use crate::SourceText;
 
 /// Switches or jumps until the end of the run that are accepted; each ends a step.
@@ -75,8 +76,8 @@ pub(super) fn silent(agents: usize) -> Network {
     Network { agents, schedule: Schedule::Fixed(Vec::new()), delays: Vec::new(), weights: Vec::new(), coupling }
 }
 
-fn coupling(file: &CouplingFile) -> Result<Coupling, Fault> {
-    Ok(match file {
+fn coupling(file: &At<CouplingFile>) -> Result<Coupling, Fault> {
+    Ok(match &file.value {
         CouplingFile::Saturated(limit) => Coupling::Saturated { limit: positive("saturated", limit)? },
         CouplingFile::Tanh(scale) => Coupling::Tanh { scale: positive("tanh", scale)? },
         CouplingFile::Rational(scale) => Coupling::Rational { scale: positive("rational", scale)? },
@@ -126,7 +127,7 @@ impl NetworkReader<'_> {
             let [low, high] = &random.dwell_s.value;
             let dwell_s = [positive("dwell_s", low)?, positive("dwell_s", high)?];
             if dwell_s[0] > dwell_s[1] {
-                let problem = ScenarioProblem::Interval { key: "dwell_s", low: dwell_s[0], high: dwell_s[1] };
+                let problem = ValueProblem::Interval { key: "dwell_s", low: dwell_s[0], high: dwell_s[1] };
                 return Err(fault(&random.dwell_s, problem));
             }
             self.few("switches", 2.0 * self.end_s / (dwell_s[0] + dwell_s[1]), &random.dwell_s.span)?;

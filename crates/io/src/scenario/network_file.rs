@@ -19,7 +19,7 @@ pub struct NetworkFile {
     pub delay: Option<At<DelayFile>>,
     /// How strongly a disagreement is felt: bounded or saturated for a nonlinear protocol. Default: in proportion. Only with
     /// `exchange = "position"`.
-    pub coupling: Option<CouplingFile>,
+    pub coupling: Option<At<CouplingFile>>,
     /// The edges of a graph that never changes.
     pub edges: Option<At<EdgesFile>>,
     /// How the phases follow each other. Default: repeat.

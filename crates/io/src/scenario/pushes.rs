@@ -5,11 +5,11 @@ use std::collections::{HashMap, HashSet};
 use forwardstep_core::robot::tree::{Axes, LinkPoint};
 use forwardstep_sim::formula::Formula;
 use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push, Table};
-use forwardstep_sim::{AgentSetup, AxisUnit, RobotKind};
+use forwardstep_sim::{AgentSetup, AxisUnit, RobotKind, SetupError};
 
 use super::agents::{Agents, Body};
 use super::at::At;
-use super::fault::{Fault, fault, filled, not_negative, positive};
+use super::fault::{Fault, fault, filled, not_negative, positive, values};
 use super::formula::formula;
 use super::inputs::InputFolder;
 use super::notice::Notice;
@@ -19,7 +19,8 @@ use super::push_file::{
     InterpolateFile, PushFile, WrenchFile,
 };
 use super::push_problem::PushProblem;
-use super::table::{cell_number, read_columns, table_text};
+use super::table::{over_time, rising, table_text};
+use super::value_problem::ValueProblem;
 use super::values::Item;
 use crate::SourceText;
 
@@ -77,6 +78,11 @@ fn who(on: &At<Vec<At<String>>>, read: &Agents) -> Result<Vec<usize>, Fault> {
             },
         };
         for member in members {
+            let agent = &read.agents[member];
+            if !agent.law.is_lagrangian() {
+                let error = SetupError::NotPushed { agent: agent.name.clone(), law: agent.law.words() };
+                return Err(fault(name, ScenarioProblem::Setup(error)));
+            }
             if !seen.insert(member) {
                 let twice = read.agents[member].name.clone();
                 return Err(fault(name, PushProblem::OnTwice { name: twice }));
@@ -232,7 +238,7 @@ impl Reader<'_, '_> {
             return Err(Fault::new(PushProblem::NoTarget));
         };
         if let Some((second, _, place)) = given.next() {
-            return Err(fault(place, ScenarioProblem::SameQuantity { first: key, second }));
+            return Err(fault(place, ValueProblem::SameQuantity { first: key, second }));
         }
         if let Some(unit) = unit {
             self.unit(key, course, &axes, unit, ("target", "rad or m"))?;
@@ -340,7 +346,7 @@ impl Reader<'_, '_> {
 
     /// Rows that are written in the scenario.
     fn rows(&self, key: &'static str, file: &CourseRowsFile, width: usize) -> Result<(Vec<f64>, Vec<f64>), Fault> {
-        let times_s = rising("times_s", file.times_s.value.iter())?;
+        let times_s = rising("times_s", &file.times_s.value)?;
         let rows = &file.values.value;
         if rows.len() != times_s.len() {
             let problem = PushProblem::TimesAndRows { times: times_s.len(), rows: rows.len() };
@@ -367,7 +373,7 @@ impl Reader<'_, '_> {
         if found == need {
             return Ok(());
         }
-        Err(fault(place, ScenarioProblem::VectorLength { key, found, need, agent: self.name() }))
+        Err(fault(place, ValueProblem::VectorLength { key, found, need, agent: self.name() }))
     }
 }
 
@@ -381,36 +387,9 @@ impl Tables<'_> {
             self.texts.insert(file.value.clone(), table_text(file, self.folder)?);
         }
         let Some(source) = self.texts.get(&file.value) else { return Ok((Vec::new(), Vec::new())) };
-        let columns: Vec<&str> = std::iter::once("t_s").chain(names.iter().copied()).collect();
-        let numbers = || {
-            let (mut times, mut values) = (Vec::new(), Vec::new());
-            for row in read_columns(source.text(), &columns)? {
-                for (k, cell) in row.value.iter().enumerate() {
-                    // The columns are required, so that no cell is empty.
-                    let Some(number) = cell_number(cell)? else { continue };
-                    if k == 0 {
-                        times.push(number);
-                    } else {
-                        values.push(number.value);
-                    }
-                }
-            }
-            Ok((rising("t_s", times.iter())?, values))
-        };
-        numbers().map_err(|fault: Fault| fault.within(source))
+        let (times, numbers) = over_time(source, names)?;
+        Ok((values(&times), numbers))
     }
-}
-
-/// Times that rise.
-fn rising<'a>(key: &'static str, times: impl Iterator<Item = &'a At<f64>>) -> Result<Vec<f64>, Fault> {
-    let mut read: Vec<f64> = Vec::new();
-    for time in times {
-        if let Some(before_s) = read.last().copied().filter(|before| *before >= time.value) {
-            return Err(fault(time, PushProblem::TimesRise { key, before_s, after_s: time.value }));
-        }
-        read.push(time.value);
-    }
-    Ok(read)
 }
 
 /// The same with zeros before and after.

@@ -40,6 +40,9 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "task-space-ur5e",
     "theorem-7",
     "tumbling-target",
+    "rest-to-rest",
+    "sinusoidal-attitude",
+    "attitude-from-a-table",
     "theorem-8",
     "theorem-9",
     "remark-12",
@@ -66,8 +69,10 @@ pub struct ShippedTable {
 }
 
 /// All of them. A file of the same name beside a scenario is read in its place.
-pub const SHIPPED_TABLES: [ShippedTable; 1] =
-    [ShippedTable { name: "radio-log.csv", text: include_str!("../../scenarios/radio-log.csv") }];
+pub const SHIPPED_TABLES: [ShippedTable; 2] = [
+    ShippedTable { name: "radio-log.csv", text: include_str!("../../scenarios/radio-log.csv") },
+    ShippedTable { name: "overflight.csv", text: include_str!("../../scenarios/overflight.csv") },
+];
 
 /// The shipped table of this name.
 pub(super) fn shipped_table(name: &str) -> Option<ShippedTable> {

@@ -1,22 +1,28 @@
 //! Spacecraft: `robot.spacecraft`, `start.spacecraft` and `law.attitude`.
 
 use forwardstep_core::Gain;
-use forwardstep_core::Scalar;
-use forwardstep_core::attitude::{IDENTITY, difference, normalized};
-use forwardstep_core::plant::{Spacecraft, Wheel, Wheels};
+use forwardstep_core::attitude::{IDENTITY, Quaternion, difference};
+use forwardstep_core::plant::{Spacecraft, SpacecraftError, Wheel, Wheels};
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{AttitudeLaw, Axis, AxisUnit, Law, RobotKind, RobotSetup, Start};
+use forwardstep_sim::{AttitudeLaw, AxisUnit, Law, RobotKind, RobotSetup, Start};
 
 use super::at::At;
-use super::fault::{Fault, fault, filled, positive};
-use super::law::gain;
-use super::problem::ScenarioProblem;
+use super::attitude::{attitude as attitude_of, quaternion, turn};
+use super::fault::{Fault, fault, filled, positive, values};
+use super::file::StartFile;
+use super::law::{gain, of_another};
+use super::robots::axis;
 use super::spacecraft_file::{AttitudeFile, SpacecraftFile, SpacecraftStartFile, WheelFile};
+use super::system_problem::SystemProblem;
+use super::value_problem::ValueProblem;
 
 const ERROR_GAIN_PER_S2: f64 = 1.0;
 const RATE_GAIN_PER_S: f64 = 2.0;
 const FILTER_GAIN_PER_S: f64 = 1.0;
 const DAMPING: f64 = 3.0;
+/// Times at which the length of a target is looked at, and what part of its greatest counts as zero.
+const SAMPLES: u32 = 1000;
+const VANISHING: f64 = 1e-9;
 
 /// Builds the spacecraft.
 pub(super) fn spacecraft(file: &SpacecraftFile) -> Result<RobotSetup, Fault> {
@@ -25,29 +31,30 @@ pub(super) fn spacecraft(file: &SpacecraftFile) -> Result<RobotSetup, Fault> {
         Some(list) => {
             let wheels =
                 filled("wheels", list)?.iter().map(|entry| wheel(&entry.value)).collect::<Result<Vec<_>, _>>()?;
-            Wheels::new(&wheels).map_err(|error| fault(list, ScenarioProblem::Spacecraft(error)))?
+            Wheels::new(&wheels).map_err(|error| {
+                let axis = match error {
+                    SpacecraftError::Axis { wheel, .. } => {
+                        list.value.get(wheel).map(|wheel| wheel.value.axis.span.clone())
+                    }
+                    _ => None,
+                };
+                Fault::new(SystemProblem::Spacecraft(error)).at(&axis.unwrap_or_else(|| list.span.clone()))
+            })?
         }
     };
     let place = &file.inertia_kg_m2;
-    let inertia_kg_m2 = match gain("inertia_kg_m2", &place.value, place, "the spacecraft", 3)? {
+    let inertia_kg_m2 = match gain("inertia_kg_m2", &place.value, place, "spacecraft", 3)? {
         Gain::Matrix(entries) => std::array::from_fn(|row| std::array::from_fn(|column| entries[3 * row + column])),
         Gain::Diagonal(entries) => diagonal(|k| entries[k]),
         Gain::Number(entry) | Gain::Bandwidth(entry) => diagonal(|_| entry),
     };
     Spacecraft::new(inertia_kg_m2, wheels.clone(), false)
-        .map_err(|error| fault(place, ScenarioProblem::Spacecraft(error)))?;
-    let axis = |name: &str| Axis {
-        name: name.into(),
-        unit: AxisUnit::One,
-        position_limits: None,
-        velocity_limit: None,
-        effort_limit: None,
-    };
+        .map_err(|error| fault(place, SystemProblem::Spacecraft(error)))?;
     Ok(RobotSetup {
         kind: RobotKind::Spacecraft { inertia_kg_m2, wheels },
         theta: Vec::new(),
         theta_names: Vec::new(),
-        axes: ["x", "y", "z", "o"].map(axis).to_vec(),
+        axes: ["x", "y", "z", "o"].map(|name| axis(name, AxisUnit::One)).to_vec(),
     })
 }
 
@@ -64,39 +71,66 @@ fn wheel(file: &WheelFile) -> Result<Wheel, Fault> {
     })
 }
 
-/// Where `agent` with these wheels starts.
-pub(super) fn start(file: Option<&At<SpacecraftStartFile>>, agent: &str, wheels: &Wheels) -> Result<Start, Fault> {
-    let still = SpacecraftStartFile::default();
-    let file = file.map_or(&still, |file| &file.value);
-    let q = match (&file.quaternion, &file.axis, &file.angle_rad) {
-        (None, None, None) => IDENTITY,
-        (Some(quaternion), None, None) if quaternion.value.iter().any(|x| *x != 0.0) => normalized(quaternion.value),
-        (Some(quaternion), None, None) => return Err(fault(quaternion, ScenarioProblem::NoDirection)),
-        (None, Some(axis), Some(angle)) => {
-            let [x, y, z] = axis.value;
-            let [x, y, z, norm] = normalized([x, y, z, 0.0]);
-            // Zero gives the identity.
-            if norm != 0.0 {
-                return Err(fault(axis, ScenarioProblem::NoDirection));
-            }
-            let (sin, cos) = Scalar::sin_cos(0.5 * angle.value);
-            [sin * x, sin * y, sin * z, cos]
+/// Where `agent` with these wheels starts. The agent's own table comes first.
+pub(super) fn start<'a>(
+    tables: impl Iterator<Item = &'a StartFile>,
+    agent: &str,
+    wheels: &Wheels,
+) -> Result<Start, Fault> {
+    let (mut q, mut rate, mut momentum) = (None, None, None);
+    for table in tables {
+        let own = table.spacecraft.as_ref().map(|own| &own.value);
+        let attitude = own.map(turned).transpose()?.flatten();
+        let spun = own.and_then(|own| own.rate_rad_s.as_ref());
+        if let (Some(_), Some(second)) = (attitude, &table.attitude) {
+            return Err(fault(second, ValueProblem::SameQuantity { first: "spacecraft", second: "attitude" }));
         }
-        (None, Some(axis), None) => return Err(fault(axis, ScenarioProblem::HalfAttitude)),
-        (None, None, Some(angle)) => return Err(fault(angle, ScenarioProblem::HalfAttitude)),
-        (Some(quaternion), ..) => return Err(fault(quaternion, ScenarioProblem::HalfAttitude)),
-    };
-    let rest = match &file.wheel_momentum_n_m_s {
+        if let (Some(_), Some(second)) = (spun, &table.angular_velocity_rad_s) {
+            let problem = ValueProblem::SameQuantity { first: "rate_rad_s", second: "angular_velocity_rad_s" };
+            return Err(fault(second, problem));
+        }
+        q = q.or(attitude).or(table.attitude.as_ref().map(attitude_of).transpose()?);
+        rate = rate.or(spun.or(table.angular_velocity_rad_s.as_ref()).map(|rate| rate.value));
+        momentum = momentum.or(own.and_then(|own| own.wheel_momentum_n_m_s.as_ref()));
+    }
+    let rest = match momentum {
         None => vec![0.0; wheels.count()],
-        Some(list) if list.value.len() == wheels.count() => list.value.iter().map(|entry| entry.value).collect(),
+        Some(list) if list.value.len() == wheels.count() => values(&list.value),
         Some(list) => {
             let (found, need, agent) = (list.value.len(), wheels.count(), agent.to_owned());
             let key = "wheel_momentum_n_m_s";
-            return Err(fault(list, ScenarioProblem::VectorLength { key, found, need, agent }));
+            return Err(fault(list, ValueProblem::VectorLength { key, found, need, agent }));
         }
     };
-    let dq = file.rate_rad_s.as_ref().map_or([0.0; 3], |rate| rate.value).to_vec();
-    Ok(Start { q: q.to_vec(), dq, rest, reference: Vec::new() })
+    let (q, rate) = (q.unwrap_or(IDENTITY), rate.unwrap_or_default());
+    Ok(Start { q: q.to_vec(), dq: rate.to_vec(), rest, reference: Vec::new() })
+}
+
+/// The attitude of a table, if it says any.
+fn turned(file: &SpacecraftStartFile) -> Result<Option<Quaternion>, Fault> {
+    Ok(match (&file.quaternion, &file.axis, &file.angle_rad) {
+        (None, None, None) => None,
+        (Some(given), None, None) => Some(quaternion(given)?),
+        (None, Some(axis), Some(angle)) => Some(turn(axis, angle)?),
+        (None, Some(axis), None) => return Err(fault(axis, SystemProblem::HalfAttitude)),
+        (None, None, Some(angle)) => return Err(fault(angle, SystemProblem::HalfAttitude)),
+        (Some(given), ..) => return Err(fault(given, SystemProblem::HalfAttitude)),
+    })
+}
+
+/// Refuses a target that is no attitude at some time.
+pub(super) fn points_somewhere<T>(place: &At<T>, target: &Trajectory, end_s: f64) -> Result<(), Fault> {
+    let mut jets = [[0.0; 5]; 4];
+    let mut size = |t_s: f64| {
+        target.jets(t_s, &mut jets);
+        jets.iter().map(|jet| jet[0].abs()).fold(0.0, f64::max)
+    };
+    let times = (0..=SAMPLES).map(|k| end_s * f64::from(k) / f64::from(SAMPLES));
+    let (t_s, least, most) = times.fold((0.0, f64::INFINITY, 0.0_f64), |(at, least, most), t_s| {
+        let size = size(t_s);
+        if size < least { (t_s, size, most.max(size)) } else { (at, least, most.max(size)) }
+    });
+    if least > VANISHING * most { Ok(()) } else { Err(fault(place, SystemProblem::NoAttitude { t_s })) }
 }
 
 /// Of the two quaternions of the attitude at the start, takes the one that is nearer to the target: the law leads to Δq_o = 1
@@ -114,8 +148,7 @@ pub(super) fn short_way(start: &mut Start, target: &Trajectory) {
 /// Builds (97)–(105).
 pub(super) fn attitude(file: &AttitudeFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
     if !matches!(robot.kind, RobotKind::Spacecraft { .. }) {
-        let (agent, law, made_for) = (agent.to_owned(), "attitude", "spacecraft");
-        return Err(Fault::new(ScenarioProblem::LawOfAnother { agent, law, made_for }));
+        return Err(of_another("attitude", "spacecraft", agent, robot));
     }
     let number = |key, value: &Option<At<f64>>, usual| value.as_ref().map_or(Ok(usual), |value| positive(key, value));
     let matrix = |key, value: &Option<At<_>>, usual| match value {

@@ -8,6 +8,8 @@ use super::file::StartFile;
 use super::problem::ScenarioProblem;
 use super::random::{Stream, draws};
 use super::spacecraft;
+use super::system_problem::SystemProblem;
+use super::value_problem::ValueProblem;
 use super::values::{Item, RandomFile, StartValues};
 use super::vehicle;
 
@@ -36,8 +38,9 @@ type Key<'a> = (&'static str, Option<AxisUnit>, &'a Option<At<StartValues>>);
 pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<Shared<'_>>) -> Result<Start, Fault> {
     use AxisUnit::{Metre, Radian};
     let tables = || [own, common].into_iter().flatten();
+    own.map_or(Ok(()), |own| agent.all_counts(&own.file.value))?;
     if let RobotKind::Spacecraft { wheels, .. } = &agent.robot.kind {
-        return spacecraft::start(tables().find_map(|table| table.file.value.spacecraft.as_ref()), agent.name, wheels);
+        return spacecraft::start(tables().map(|table| &table.file.value), agent.name, wheels);
     }
     let quantity = |stream, keys: fn(&StartFile) -> [Key<'_>; 3]| {
         for table in tables() {
@@ -65,7 +68,7 @@ pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<
         match (&agent.robot.kind, tables().find_map(|table| Some((table, table.file.value.higher_states.as_ref()?)))) {
             (RobotKind::Chain(_), None) => vec![0.0; agent.length(Stream::Higher)],
             (_, Some((table, values))) => agent.vector("higher_states", values, table, Stream::Higher)?,
-            _ => vehicle::rest(agent.robot, tables().map(|table| &table.file.value)),
+            _ => vehicle::rest(agent.robot, tables().map(|table| &table.file.value))?,
         };
     let mut reference = Vec::new();
     if let Some((table, state)) = tables().find_map(|table| Some((table, table.file.value.reference.as_ref()?))) {
@@ -85,6 +88,40 @@ pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<
 }
 
 impl Starter<'_> {
+    /// Refuses what an agent's own table says in vain. (The one of all may speak to others.)
+    fn all_counts(&self, own: &StartFile) -> Result<(), Fault> {
+        let kind = &self.robot.kind;
+        let (craft, turns) = match kind {
+            RobotKind::Spacecraft { .. } => (true, true),
+            RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. } => (false, true),
+            _ => (false, false),
+        };
+        let spins = craft || matches!(kind, RobotKind::Rotorcraft { .. });
+        let moves = !craft && self.length(Stream::Velocity) > 0;
+        let chain = self.length(Stream::Higher) > 0;
+        let span = |values: &Option<At<StartValues>>| values.as_ref().map(|values| values.span.clone());
+        let all = [
+            ("position_rad", !craft, span(&own.position_rad)),
+            ("position_m", !craft, span(&own.position_m)),
+            ("position", !craft, span(&own.position)),
+            ("velocity_rad_s", moves, span(&own.velocity_rad_s)),
+            ("velocity_m_s", moves, span(&own.velocity_m_s)),
+            ("velocity", moves, span(&own.velocity)),
+            ("attitude", turns, own.attitude.as_ref().map(|attitude| attitude.span.clone())),
+            ("angular_velocity_rad_s", spins, own.angular_velocity_rad_s.as_ref().map(|rate| rate.span.clone())),
+            ("spacecraft", craft, own.spacecraft.as_ref().map(|craft| craft.span.clone())),
+            ("higher_states", chain, span(&own.higher_states)),
+            ("reference", !craft, own.reference.as_ref().map(|reference| reference.span.clone())),
+        ];
+        for (key, counts, span) in all {
+            if let (false, Some(span)) = (counts, span) {
+                let agent = self.name.to_owned();
+                return Err(Fault::new(SystemProblem::StartUnused { key, agent }).at(&span));
+            }
+        }
+        Ok(())
+    }
+
     /// Numbers in one of its quantities.
     fn length(&self, stream: Stream) -> usize {
         match (&self.robot.kind, stream) {
@@ -109,7 +146,7 @@ impl Starter<'_> {
         let mut given = keys.into_iter().filter_map(|(key, unit, value)| Some((key, unit, value.as_ref()?)));
         let Some((key, unit, value)) = given.next() else { return Ok(None) };
         if let Some((second, _, place)) = given.next() {
-            return Err(fault(place, ScenarioProblem::SameQuantity { first: key, second }));
+            return Err(fault(place, ValueProblem::SameQuantity { first: key, second }));
         }
         if let Some(unit) = unit
             && let Some(axis) = self.robot.axes.iter().find(|axis| axis.unit != unit)
@@ -138,7 +175,7 @@ impl Starter<'_> {
                 return Ok(());
             }
             let agent = self.name.to_owned();
-            Err(Fault::new(ScenarioProblem::VectorLength { key, found, need, agent }).at(place))
+            Err(Fault::new(ValueProblem::VectorLength { key, found, need, agent }).at(place))
         };
         let rows = match &value.value {
             StartValues::Random(random) => return draw(random, stream, table.index, need),
@@ -150,10 +187,10 @@ impl Starter<'_> {
             return Ok(rows.iter().filter_map(|row| row.value.number()).collect());
         }
         if lists.len() != rows.len() {
-            return Err(fault(value, ScenarioProblem::MixedList { key }));
+            return Err(fault(value, ValueProblem::MixedList { key }));
         }
         if rows.len() != table.of {
-            return Err(fault(value, ScenarioProblem::ListPerAgent { key, found: rows.len(), agents: table.of }));
+            return Err(fault(value, ValueProblem::ListPerAgent { key, found: rows.len(), agents: table.of }));
         }
         match rows.get(table.index).map(|row| (&row.value, &row.span)) {
             Some((Item::List(list), span)) => {
@@ -169,7 +206,7 @@ impl Starter<'_> {
 fn draw(random: &RandomFile, stream: Stream, index: usize, length: usize) -> Result<Vec<f64>, Fault> {
     let [low, high] = random.within.value;
     if low > high {
-        return Err(fault(&random.within, ScenarioProblem::Interval { key: "within", low, high }));
+        return Err(fault(&random.within, ValueProblem::Interval { key: "within", low, high }));
     }
     let units = draws(seed(&random.seed)?, stream, index, length);
     Ok(units.map(|unit| low * (1.0 - unit) + high * unit).collect())

@@ -27,6 +27,8 @@ pub enum TargetFile {
     Sinusoids(At<Vec<SwingFile>>),
     /// The smoothest curve through points, at rest before the first and after the last.
     Points(PointsFile),
+    /// The same through points of a table.
+    Csv(TargetCsvFile),
 }
 
 /// A constant and sinusoids.
@@ -50,6 +52,16 @@ pub struct WaveFile {
     pub rad_per_s: At<f64>,
     /// In rad. Default: 0.
     pub phase_rad: Option<At<f64>>,
+}
+
+/// A table of points.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TargetCsvFile {
+    /// The CSV file, beside the scenario file or in `inputs` beside it. Its first line names its columns: `t_s`, rising, and one
+    /// for each axis by its name; of the tip of a robot `x`, `y`, `z`; of the quaternion of a spacecraft `x`, `y`, `z` and, for
+    /// the scalar part, `o`.
+    pub file: At<String>,
 }
 
 /// Points that a curve goes through.

@@ -10,10 +10,11 @@ use thiserror::Error;
 
 use super::at::At;
 use super::de::quoted;
-use super::fault::{Fault, LARGEST, fault};
+use super::fault::{Fault, LARGEST, fault, values};
 use super::inputs::InputFolder;
-use super::problem::ScenarioProblem;
+use super::push_problem::PushProblem;
 use super::shipped::shipped_table;
+use super::value_problem::ValueProblem;
 use crate::SourceText;
 use crate::files::ReadError;
 use crate::wording::{choose, entry_count};
@@ -137,8 +138,43 @@ fn in_order<const N: usize>(row: At<Vec<Cell<'_>>>) -> At<[Cell<'_>; N]> {
 }
 
 /// The same for columns that are known only now, all of them required.
-pub(super) fn read_columns<'a>(text: &'a str, names: &[&str]) -> Result<Vec<At<Vec<Cell<'a>>>>, Fault> {
+fn read_columns<'a>(text: &'a str, names: &[&str]) -> Result<Vec<At<Vec<Cell<'a>>>>, Fault> {
     read_rows(text, &names.iter().map(|name| (*name, true)).collect::<Vec<_>>())
+}
+
+/// A table over time: its column `t_s`, which rises, and the numbers in the columns `names`, row after row.
+pub(super) fn over_time(source: &SourceText, names: &[&str]) -> Result<(Vec<At<f64>>, Vec<f64>), Fault> {
+    let columns: Vec<&str> = std::iter::once("t_s").chain(names.iter().copied()).collect();
+    let numbers = || {
+        let (mut times, mut numbers) = (Vec::new(), Vec::new());
+        for row in read_columns(source.text(), &columns)? {
+            for (k, cell) in row.value.iter().enumerate() {
+                // The columns are required, so that no cell is empty.
+                let Some(number) = cell_number(cell)? else { continue };
+                if k == 0 {
+                    times.push(number);
+                } else {
+                    numbers.push(number.value);
+                }
+            }
+        }
+        rising("t_s", &times)?;
+        Ok((times, numbers))
+    };
+    numbers().map_err(|fault: Fault| fault.within(source))
+}
+
+/// Times that rise.
+pub(super) fn rising(key: &'static str, times: &[At<f64>]) -> Result<Vec<f64>, Fault> {
+    for pair in times.windows(2) {
+        if let [At { value: before_s, .. }, after] = pair
+            && *before_s >= after.value
+        {
+            let problem = PushProblem::TimesRise { key, before_s: *before_s, after_s: after.value };
+            return Err(fault(after, problem));
+        }
+    }
+    Ok(values(times))
 }
 
 /// Columns by name, with whether they are required.
@@ -193,11 +229,11 @@ pub(super) fn cell_number(cell: &Cell<'_>) -> Result<Option<At<f64>>, Fault> {
     match text.parse::<f64>() {
         Ok(value) if value.abs() <= LARGEST => Ok(Some(At { value, span: cell.span.clone() })),
         Ok(_) if text.contains(['i', 'I', 'n', 'N']) => {
-            Err(fault(cell, ScenarioProblem::NotFinite { found: text.into() }))
+            Err(fault(cell, ValueProblem::NotFinite { found: text.into() }))
         }
-        Ok(_) => Err(fault(cell, ScenarioProblem::NumberTooLarge { found: text.into() })),
+        Ok(_) => Err(fault(cell, ValueProblem::NumberTooLarge { found: text.into() })),
         Err(_) => {
-            let problem = ScenarioProblem::WrongType { found: quoted(text), expected: "a number".into() };
+            let problem = ValueProblem::WrongType { found: quoted(text), expected: "a number".into() };
             Err(fault(cell, problem))
         }
     }

@@ -1,32 +1,45 @@
 //! `target` → [`Trajectory`].
 
-use forwardstep_sim::trajectory::{Path, Sinusoid, Spline, Trajectory};
+use std::ops::Range;
+
+use forwardstep_sim::trajectory::{Path, Sinusoid, Spline, SplineError, Trajectory};
 
 use super::at::At;
 use super::fault::{Fault, fault, filled, values};
 use super::formula::formula;
-use super::problem::ScenarioProblem;
+use super::inputs::InputFolder;
 use super::push_file::FunctionFile;
+use super::system_problem::SystemProblem;
 use super::systems_file::{SwingFile, TargetFile, WaveFile};
+use super::table::{over_time, rising, table_text};
+use super::value_problem::ValueProblem;
 
-/// Builds the trajectory of `agent`, which has so many axes; it must have values until `end_s`.
-pub(super) fn target(file: &At<TargetFile>, agent: &str, axes: usize, end_s: f64) -> Result<Trajectory, Fault> {
+/// Whose trajectory it is.
+pub(super) struct Owner<'a> {
+    pub(super) name: &'a str,
+    /// What the entries are called in a table.
+    pub(super) axes: &'a [String],
+    /// Until when it must have values, s.
+    pub(super) end_s: f64,
+}
+
+/// Builds the trajectory of `owner`; `folder` is where tables are looked for.
+pub(super) fn target(file: &At<TargetFile>, owner: &Owner<'_>, folder: &mut InputFolder) -> Result<Trajectory, Fault> {
+    let (need, end_s) = (owner.axes.len(), owner.end_s);
+    let length = |key, found: usize, span: &Range<usize>| {
+        let agent = owner.name.to_owned();
+        let wrong = || Fault::new(ValueProblem::VectorLength { key, found, need, agent }).at(span);
+        if found == need { Ok(()) } else { Err(wrong()) }
+    };
     match &file.value {
         TargetFile::Formulas(list) => {
             let entries = filled("formulas", list)?;
-            if entries.len() != axes {
-                let (found, agent) = (entries.len(), agent.to_owned());
-                return Err(fault(list, ScenarioProblem::VectorLength { key: "formulas", found, need: axes, agent }));
-            }
+            length("formulas", entries.len(), &list.span)?;
             let paths = entries.iter().map(|entry| component(entry, end_s)).collect::<Result<_, _>>()?;
-            Trajectory::new(paths).map_err(|_| fault(list, ScenarioProblem::TargetValue { end_s }))
+            Trajectory::new(paths).map_err(|_| fault(list, SystemProblem::TargetValue { end_s }))
         }
         TargetFile::Sinusoids(list) => {
-            let entries = &list.value;
-            if entries.len() != axes {
-                let (found, agent) = (entries.len(), agent.to_owned());
-                return Err(fault(list, ScenarioProblem::VectorLength { key: "sinusoids", found, need: axes, agent }));
-            }
+            length("sinusoids", list.value.len(), &list.span)?;
             let zero = |number: &Option<At<f64>>| number.as_ref().map_or(0.0, |number| number.value);
             let wave = |wave: &WaveFile| Sinusoid {
                 amplitude: wave.amplitude.value,
@@ -37,27 +50,58 @@ pub(super) fn target(file: &At<TargetFile>, agent: &str, axes: usize, end_s: f64
                 offset: zero(&swing.offset),
                 waves: swing.waves.iter().map(wave).collect(),
             };
-            Trajectory::new(entries.iter().map(path).collect())
-                .map_err(|error| fault(list, ScenarioProblem::Trajectory(error)))
+            Trajectory::new(list.value.iter().map(path).collect())
+                .map_err(|error| fault(list, SystemProblem::Trajectory(error)))
         }
         TargetFile::Points(points) => {
-            let (times, rows) = (values(filled("times_s", &points.times_s)?), &points.positions);
+            filled("times_s", &points.times_s)?;
+            let (times, rows) = (&points.times_s.value, &points.positions);
             if rows.value.len() != times.len() {
-                let (found, need, agent) = (rows.value.len(), times.len(), agent.to_owned());
-                return Err(fault(rows, ScenarioProblem::VectorLength { key: "positions", found, need, agent }));
+                let problem = SystemProblem::PointsAndTimes { points: rows.value.len(), times: times.len() };
+                return Err(fault(rows, problem));
             }
-            if let Some(row) = rows.value.iter().find(|row| row.value.len() != axes) {
-                let (found, agent) = (row.value.len(), agent.to_owned());
-                return Err(fault(row, ScenarioProblem::VectorLength { key: "positions", found, need: axes, agent }));
+            let mut numbers = Vec::with_capacity(need * times.len());
+            for row in &rows.value {
+                length("positions", row.value.len(), &row.span)?;
+                numbers.extend(values(&row.value));
             }
-            let mut paths = Vec::with_capacity(axes);
-            for axis in 0..axes {
-                let column = rows.value.iter().filter_map(|row| row.value.get(axis)).map(|entry| entry.value).collect();
-                let spline = Spline::new(times.clone(), column);
-                paths.push(Path::Spline(spline.map_err(|error| fault(rows, ScenarioProblem::Points(error)))?));
-            }
-            Trajectory::new(paths).map_err(|error| fault(rows, ScenarioProblem::Trajectory(error)))
+            rising("times_s", times)?;
+            through(times, &numbers, need)
         }
+        TargetFile::Csv(csv) => {
+            let source = table_text(&csv.file, folder)?;
+            let names: Vec<&str> = owner.axes.iter().map(String::as_str).collect();
+            let (times, numbers) = over_time(&source, &names)?;
+            if times.is_empty() {
+                return Err(fault(&csv.file, SystemProblem::Points(SplineError::Empty)));
+            }
+            through(&times, &numbers, need).map_err(|fault| fault.within(&source))
+        }
+    }
+}
+
+/// The smoothest curve through points, the entries of each side by side.
+fn through(times: &[At<f64>], numbers: &[f64], axes: usize) -> Result<Trajectory, Fault> {
+    let mut paths = Vec::with_capacity(axes);
+    for axis in 0..axes {
+        let column = numbers.iter().skip(axis).step_by(axes.max(1)).copied().collect();
+        paths.push(Path::Spline(Spline::new(values(times), column).map_err(|error| steep(times, error))?));
+    }
+    Trajectory::new(paths).map_err(|error| Fault::new(SystemProblem::Trajectory(error)))
+}
+
+/// The place of the point that a curve breaks down at.
+fn steep(times: &[At<f64>], error: SplineError) -> Fault {
+    let place = match error {
+        SplineError::NotFinite { row, .. } | SplineError::Order { row, .. } | SplineError::TooSteep { row } => {
+            times.get(row.saturating_sub(1))
+        }
+        SplineError::Empty | SplineError::Lengths { .. } => None,
+    };
+    let fault = Fault::new(SystemProblem::Points(error));
+    match place {
+        Some(time) => fault.at(&time.span),
+        None => fault,
     }
 }
 
@@ -71,6 +115,6 @@ fn component(entry: &At<FunctionFile>, end_s: f64) -> Result<Path, Fault> {
     if formula.is_bounded(0.0, end_s) {
         Ok(Path::Formula(formula))
     } else {
-        Err(fault(entry, ScenarioProblem::TargetValue { end_s }))
+        Err(fault(entry, SystemProblem::TargetValue { end_s }))
     }
 }

@@ -3,16 +3,17 @@
 use forwardstep_core::Gain;
 use forwardstep_core::controller::ParameterBounds;
 use forwardstep_core::robot::TipKinematics;
-use forwardstep_core::robot::tree::{LinkPoint, Tree, TreeTip, Uncertain};
+use forwardstep_core::robot::tree::{LinkPoint, TipError, Tree, TreeTip, Uncertain};
 use forwardstep_sim::{Law, RobotKind, RobotSetup, TaskSpaceLaw, TipSetup};
 
 use super::agents::Body;
 use super::at::At;
 use super::fault::{Fault, between, fault, filled, positive, values};
-use super::law::{adaptation, damping, estimate, gain, known_or_given};
-use super::problem::ScenarioProblem;
+use super::law::{adaptation, damping, estimate, gain, known_or_given, of_another};
 use super::push_problem::PushProblem;
+use super::system_problem::SystemProblem;
 use super::task_file::{BoundsFile, CoordinateFile, TaskSpaceFile, TipFile, UncertainFile};
+use super::value_problem::ValueProblem;
 use super::values::GainFile;
 
 const DAMPING: f64 = 20.0;
@@ -46,7 +47,7 @@ pub(super) fn task_space(file: &TaskSpaceFile, agent: &str, robot: &RobotSetup, 
     let kinematic_adaptation = matrix("kinematic_gain", &file.kinematic_gain, KINEMATIC_GAIN, p)?;
     let bounds = file.bounds.as_ref().map(|place| bounds(&place.value, agent, p)).transpose()?;
     if let (Some(place), Gain::Matrix(_)) = (&file.bounds, &kinematic_adaptation) {
-        return Err(fault(place, ScenarioProblem::BoundsOfMatrix));
+        return Err(fault(place, SystemProblem::BoundsOfMatrix));
     }
     let kinematic_start = match &file.kinematic_start {
         None => theta.iter().map(|length| KINEMATIC_START * length).collect(),
@@ -81,20 +82,30 @@ fn tip(
         (RobotKind::PlanarArm, Some(tip), None) => {
             Ok((TipSetup::Planar(*tip), tip.length_m.to_vec(), tip.parameter_names()))
         }
-        (RobotKind::PlanarArm, _, Some(place)) => Err(fault(place, ScenarioProblem::TipOfPlanarArm)),
+        (RobotKind::PlanarArm, _, Some(place)) => Err(fault(place, SystemProblem::TipOfPlanarArm)),
         (RobotKind::Tree(tree), _, Some(place)) => of_tree(&place.value, agent, tree, body).and_then(|(setup, tip)| {
-            let tip = tip.map_err(|error| fault(place, ScenarioProblem::Tip(error)))?;
+            let tip = tip.map_err(|error| no_tip(place, robot, error))?;
             Ok((setup, tip.parameters(), tip.parameter_names()))
         }),
-        (RobotKind::Tree(_), _, None) => Err(Fault::new(ScenarioProblem::NoTip)),
-        _ => {
-            let (agent, law, made_for) = (agent.to_owned(), "task_space", "planar arms and robots from a URDF");
-            Err(Fault::new(ScenarioProblem::LawOfAnother { agent, law, made_for }))
-        }
+        (RobotKind::Tree(_), _, None) => Err(Fault::new(SystemProblem::NoTip)),
+        _ => Err(of_another("task_space", "planar arms and robots from a URDF", agent, robot)),
     }
 }
 
-type OfTree = (TipSetup, Result<TreeTip, forwardstep_core::robot::tree::TipError>);
+/// What is wrong with a tip, in the words of its robot.
+fn no_tip(place: &At<TipFile>, robot: &RobotSetup, error: TipError) -> Fault {
+    let TipFile { link, coordinates, .. } = &place.value;
+    match (&error, coordinates) {
+        (TipError::Beside { joint }, _) => {
+            let joint = robot.axes.get(*joint).map_or_else(String::new, |axis| axis.name.clone());
+            fault(link, SystemProblem::TipBeside { joint, link: link.value.clone() })
+        }
+        (TipError::Coordinate { .. }, Some(coordinates)) => fault(coordinates, SystemProblem::Tip(error)),
+        _ => fault(place, SystemProblem::Tip(error)),
+    }
+}
+
+type OfTree = (TipSetup, Result<TreeTip, TipError>);
 
 fn of_tree(file: &TipFile, agent: &str, tree: &Tree, body: &Body) -> Result<OfTree, Fault> {
     let Some((_, link)) = body.links.iter().find(|(name, _)| *name == file.link.value) else {
@@ -128,12 +139,12 @@ fn bounds(file: &BoundsFile, agent: &str, p: usize) -> Result<ParameterBounds, F
             return Ok(values(&list.value));
         }
         let (found, agent) = (list.value.len(), agent.to_owned());
-        Err(fault(list, ScenarioProblem::VectorLength { key, found, need: p, agent }))
+        Err(fault(list, ValueProblem::VectorLength { key, found, need: p, agent }))
     };
     let (lower, upper) = (list("lower_m", &file.lower_m)?, list("upper_m", &file.upper_m)?);
     for ((low, high), place) in lower.iter().zip(&upper).zip(&file.lower_m.value) {
         if low > high {
-            return Err(fault(place, ScenarioProblem::Interval { key: "bounds", low: *low, high: *high }));
+            return Err(fault(place, ValueProblem::Interval { key: "bounds", low: *low, high: *high }));
         }
     }
     let margin = file.margin_m.as_ref().map_or(Ok(MARGIN_M), |margin| positive("margin_m", margin))?;

@@ -151,7 +151,7 @@ impl<'de> Visitor<'de> for AxisVisitor {
     type Value = AxisValues;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a number, or a list with one for each axis")
+        f.write_str("a number, or a list of numbers")
     }
 
     fn visit_f64<E>(self, value: f64) -> Result<AxisValues, E> {

@@ -1,17 +1,18 @@
 //! Vehicles with one thrust: `robot.vehicle`, `robot.rotorcraft`, their starts and `law.thrust`.
 
-use forwardstep_core::attitude::{IDENTITY, normalized};
+use forwardstep_core::attitude::IDENTITY;
 use forwardstep_core::controller::{Floor, Yaw};
 use forwardstep_core::plant::Rotors;
 use forwardstep_sim::vehicles::{ThrustKind, ThrustLaw};
 use forwardstep_sim::{AxisUnit, Law, RobotKind, RobotSetup};
 
 use super::at::At;
+use super::attitude::attitude;
 use super::fault::{Fault, fault, not_negative, positive};
 use super::file::StartFile;
-use super::law::gain;
-use super::problem::ScenarioProblem;
+use super::law::{gain, of_another};
 use super::robots::axis;
+use super::value_problem::ValueProblem;
 use super::vehicle_file::{
     AdaptiveThrustFile, DifferentiableFile, FloorFile, RotorcraftFile, RotorsFile, ThrustDesignFile, ThrustFile,
     VehicleFile, YawFile,
@@ -49,7 +50,7 @@ fn rotors(file: &RotorsFile) -> Result<Rotors, Fault> {
     let least = At { value: low, span: file.thrust_n.span.clone() };
     not_negative("thrust_n", &least)?;
     if low >= high {
-        return Err(fault(&file.thrust_n, ScenarioProblem::Interval { key: "thrust_n", low, high }));
+        return Err(fault(&file.thrust_n, ValueProblem::Range { key: "thrust_n", low, high }));
     }
     Ok(Rotors {
         offset: positive("offset_m", &file.offset_m)?,
@@ -69,29 +70,29 @@ fn robot(kind: RobotKind, mass: f64) -> RobotSetup {
 
 /// What a start holds beside position and velocity: the attitude, and the angular velocity of a rotorcraft. The agent's own
 /// table comes first.
-pub(super) fn rest<'a>(robot: &RobotSetup, tables: impl Iterator<Item = &'a StartFile> + Clone) -> Vec<f64> {
+pub(super) fn rest<'a>(
+    robot: &RobotSetup,
+    tables: impl Iterator<Item = &'a StartFile> + Clone,
+) -> Result<Vec<f64>, Fault> {
     let mut rest = match robot.kind {
         RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. } => {
             let given = tables.clone().find_map(|table| table.attitude.as_ref());
-            given.map_or(IDENTITY, |given| normalized(given.value)).to_vec()
+            given.map_or(Ok(IDENTITY), attitude)?.to_vec()
         }
-        _ => return Vec::new(),
+        _ => return Ok(Vec::new()),
     };
     if let RobotKind::Rotorcraft { .. } = robot.kind {
         let given = { tables }.find_map(|table| table.angular_velocity_rad_s.as_ref());
         rest.extend(given.map_or([0.0; 3], |given| given.value));
     }
-    rest
+    Ok(rest)
 }
 
 /// Builds the law of `agent`.
 pub(super) fn thrust(file: &ThrustFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
     let gravity = match robot.kind {
         RobotKind::Vehicle { gravity } | RobotKind::Rotorcraft { gravity, .. } => gravity,
-        _ => {
-            let (agent, made_for) = (agent.to_owned(), "vehicles and rotorcraft");
-            return Err(Fault::new(ScenarioProblem::LawOfAnother { agent, law: "thrust", made_for }));
-        }
+        _ => return Err(of_another("thrust", "vehicles and rotorcraft", agent, robot)),
     };
     let known = robot.theta.first().copied().unwrap_or_default();
     let (design, mass) = match &file.design {

@@ -68,7 +68,7 @@ const CASES: &[Case] = &[
     ("sample_hz = 500\ntorque_rate_limit_per_s = []",
         "test.toml:39:27: `torque_rate_limit_per_s` has 0 where the agents have 2 axes", "a single number"),
     ("sample_hz = 500\ntorque_rate_limit_per_s = \"none\"",
-        "test.toml:39:27: found \"none\" where a number, or a list with one for each axis should stand", ""),
+        "test.toml:39:27: found \"none\" where a number, or a list of numbers should stand", ""),
 ];
 
 #[test]

@@ -13,7 +13,7 @@ use super::pushes::Pushes;
 use super::references::Transmits;
 use super::sampling::Sampling;
 use super::sliding::{Place, Slider};
-use super::valid::{SetupError, check};
+use super::valid::{SetupError, validate};
 use crate::engine::{DelaySystem, Happened, Heard, Port};
 use crate::recording::Signal;
 use crate::setup::{Exchange, Setup};
@@ -66,7 +66,7 @@ impl Block {
 impl<'a> ClosedLoop<'a> {
     /// Checks a setup and builds its closed loop.
     pub(crate) fn new(setup: &'a Setup) -> Result<Self, SetupError> {
-        check(setup)?;
+        validate(setup)?;
         match setup.exchange {
             Exchange::Position => Self::with_exchange::<Position>(setup),
             Exchange::PositionVelocity => Self::with_exchange::<PositionVelocity>(setup),

@@ -34,4 +34,4 @@ mod valid;
 mod vehicles;
 
 pub(crate) use assemble::ClosedLoop;
-pub use valid::SetupError;
+pub use valid::{SetupError, validate};

@@ -55,7 +55,7 @@ fn guide(setup: &Setup, own: &AgentSetup) -> Result<Guide, SetupError> {
     match setup.reference {
         ReferenceKind::Tracking => {
             let length = |error| SetupError::Length { agent: name(), error };
-            LengthError::check("the roots of the reference", 3, own.roots_per_s.len()).map_err(length)?;
+            LengthError::check("`roots_per_s`", 3, own.roots_per_s.len()).map_err(length)?;
             let mut alpha = polynomial(&own.roots_per_s).map_err(roots)?;
             // The leading one is not listed.
             alpha.pop();
@@ -143,13 +143,13 @@ fn limiter(own: &AgentSetup, control: &Control, torques: usize) -> Result<Limite
             .map_err(|error| SetupError::Length { agent: own.name.clone(), error })?;
         Ok::<_, SetupError>(values)
     };
-    let mut limit = limits(&control.actuators.torque_limit, "the torque limits")?;
+    let mut limit = limits(&control.actuators.torque_limit, "`torque_limit`")?;
     let quantum = control.actuators.torque_quantum;
     // A rounded torque must not exceed its limit either.
     if quantum > 0.0 {
         limit.iter_mut().for_each(|limit| *limit = quantum * (*limit / quantum).floor());
     }
-    let rate = limits(&control.actuators.torque_rate_limit, "the torque rate limits")?;
+    let rate = limits(&control.actuators.torque_rate_limit, "`torque_rate_limit_per_s`")?;
     Limiter::new(limit, rate).map_err(|error| SetupError::Limiter { agent: own.name.clone(), error })
 }
 

@@ -121,7 +121,7 @@ pub enum SetupError {
         made_for: &'static str,
     },
     /// A law that has reference dynamics of its own, beside reference dynamics that are another's.
-    #[error("agent `{agent}`: {law} goes with consensus by positions, or with a target")]
+    #[error("agent `{agent}`: {law} does not go with these reference dynamics")]
     ReferenceOfLaw {
         /// The agent.
         agent: String,
@@ -279,7 +279,10 @@ const MOST_SAMPLES: f64 = 1e7;
 const MOST_KEPT: f64 = 2e8;
 
 /// Everything that does not need a robot's kernels.
-pub(super) fn check(setup: &Setup) -> Result<(), SetupError> {
+///
+/// # Errors
+/// [`SetupError`] when the setup has no meaning.
+pub fn validate(setup: &Setup) -> Result<(), SetupError> {
     setup.network.validate()?;
     let leaders = usize::from(setup.following().is_some());
     if setup.network.agents != setup.agents.len() + leaders {

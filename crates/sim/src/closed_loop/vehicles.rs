@@ -68,11 +68,11 @@ fn outer(setup: &Setup, own: &AgentSetup, vehicle: &Vehicle, law: ThrustLaw) -> 
         });
     }
     if own.manipulability != 0.0 {
-        let requirement = "must be zero: the thrust law has no manipulability gain";
-        return Err(SetupError::LawNumber { agent: name(), what: "λ", value: own.manipulability, requirement });
+        let (what, requirement) = ("the manipulability gain", "must be zero: the thrust law has none");
+        return Err(SetupError::LawNumber { agent: name(), what, value: own.manipulability, requirement });
     }
     let roots = &own.roots_per_s;
-    LengthError::check("the roots of the reference", law.design.order(), roots.len())
+    LengthError::check("`roots_per_s`", law.design.order(), roots.len())
         .map_err(|error| SetupError::Length { agent: name(), error })?;
     let (design, mass) = match law.design {
         ThrustKind::Continuous => (ThrustDesign::Continuous { roots_per_s: [roots[0], roots[1]] }, vehicle.mass),

@@ -68,7 +68,7 @@ pub enum TipError {
         coordinates: usize,
     },
     /// A coordinate is chosen twice, or there is no such coordinate.
-    #[error("coordinate {coordinate} is chosen twice or is none of 0, 1, 2 (x, y, z of the base)")]
+    #[error("coordinate {coordinate} (of x = 0, y = 1, z = 2 of the base) is chosen twice, or there is none")]
     Coordinate {
         /// The coordinate.
         coordinate: usize,

@@ -1,0 +1,163 @@
+//! What the closed loop refuses although every number by itself has a meaning: where in the scenario it stands, and what to do.
+
+use std::ops::Range;
+
+use forwardstep_core::controller::ChainError;
+use forwardstep_sim::SetupError;
+
+use super::agents::names;
+use super::at::At;
+use super::fault::Fault;
+use super::file::{AgentFile, AgentReferenceFile, ConsensusFile, LawFile, ReferenceFile, ScenarioFile};
+use super::problem::ScenarioProblem;
+
+type Span = Range<usize>;
+
+/// The error at its place in the file.
+pub(super) fn refused(file: &ScenarioFile, error: SetupError) -> Fault {
+    let place = place(file, &error);
+    let fault = Fault::new(ScenarioProblem::Setup(error));
+    match place {
+        Some(span) => fault.at(&span),
+        None => fault,
+    }
+}
+
+/// What the error is about, as closely as it is written.
+fn place(file: &ScenarioFile, error: &SetupError) -> Option<Span> {
+    let reference = || Some(file.reference.span.clone());
+    let exchange = || common(file).map(|file| file.exchange.span.clone()).or_else(reference);
+    match error {
+        SetupError::Coupling => file.network.as_ref()?.value.coupling.as_ref().map(|coupling| coupling.span.clone()),
+        SetupError::BacksteppingExchange | SetupError::FollowingExchange => reference(),
+        SetupError::DelayedDerived { .. } => match &file.reference.value {
+            ReferenceFile::Leader(file) => Some(file.design.span.clone()),
+            _ => reference(),
+        },
+        SetupError::SendsPositionOnly { .. } => exchange(),
+        SetupError::NotTracking { .. } | SetupError::ReferenceOfLaw { .. } => reference(),
+        SetupError::Roots { agent, .. } | SetupError::OrderTooLow { agent, .. } => roots(file, agent),
+        SetupError::NoTarget { agent } => Some(entry(file, agent)?.name.span.clone()),
+        SetupError::NoOffsets { agent, .. } => entry(file, agent)?.target.as_ref().map(|target| target.span.clone()),
+        SetupError::UnitsDiffer { agent, .. }
+        | SetupError::AxesDiffer { agent, .. }
+        | SetupError::Spacecraft { agent, .. }
+        | SetupError::NoEffortLimit { agent, .. } => Some(entry(file, agent)?.robot.span.clone()),
+        SetupError::Length { agent, error } => match error.what {
+            "`roots_per_s`" => roots(file, agent),
+            "`torque_limit`" => file.control.as_ref()?.torque_limit.as_ref().map(|limit| limit.span.clone()),
+            "`torque_rate_limit_per_s`" => {
+                file.control.as_ref()?.torque_rate_limit_per_s.as_ref().map(|limit| limit.span.clone())
+            }
+            _ => law(file, agent),
+        },
+        SetupError::Chain { agent, error } => match error {
+            ChainError::Guide(_) => roots(file, agent),
+            ChainError::Antiderivative { parameter, .. } => antiderivative(file, agent, *parameter),
+            ChainError::Expression(_) => Some(entry(file, agent)?.robot.span.clone()),
+            _ => law(file, agent),
+        },
+        SetupError::LawNumber { agent, what, .. } if what.contains("manipulability") => manipulability(file, agent),
+        SetupError::LawNumber { agent, .. }
+        | SetupError::LawOfAnother { agent, .. }
+        | SetupError::Gain { agent, .. }
+        | SetupError::Tip { agent, .. }
+        | SetupError::ProjectionOfMatrix { agent }
+        | SetupError::NotFinite { agent, .. } => law(file, agent),
+        SetupError::Limiter { .. } | SetupError::VelocityFilter(_) | SetupError::Control { .. } => {
+            file.control.as_ref().map(|control| control.sample_hz.span.clone())
+        }
+        _ => None,
+    }
+}
+
+/// The entry that stands for this agent.
+fn entry<'a>(file: &'a ScenarioFile, agent: &str) -> Option<&'a AgentFile> {
+    let is_it = |entry: &&At<AgentFile>| names(&entry.value).is_ok_and(|names| names.iter().any(|name| name == agent));
+    file.agents.value.iter().find(is_it).map(|entry| &entry.value)
+}
+
+/// The law as it is written, else the robot that has the usual one.
+fn law(file: &ScenarioFile, agent: &str) -> Option<Span> {
+    let entry = entry(file, agent)?;
+    let law = entry.law.as_ref().or(file.law.as_ref());
+    Some(law.map_or_else(|| entry.robot.span.clone(), |law| law.span.clone()))
+}
+
+fn antiderivative(file: &ScenarioFile, agent: &str, parameter: usize) -> Option<Span> {
+    match entry(file, agent)?.law.as_ref().or(file.law.as_ref()).map(|law| &law.value) {
+        Some(LawFile::Immersion(immersion)) => {
+            Some(immersion.antiderivatives.as_ref()?.value.get(parameter)?.span.clone())
+        }
+        _ => law(file, agent),
+    }
+}
+
+/// The reference dynamics of all, where they lead to agreement.
+fn common(file: &ScenarioFile) -> Option<&ConsensusFile> {
+    match &file.reference.value {
+        ReferenceFile::Consensus(common) | ReferenceFile::PureIntegral(common) => Some(common),
+        _ => None,
+    }
+}
+
+/// The roots of an agent, else the reference that has none.
+fn roots(file: &ScenarioFile, agent: &str) -> Option<Span> {
+    let own = entry(file, agent)?.reference.as_ref().and_then(|own| match &own.value {
+        AgentReferenceFile::Consensus(own) | AgentReferenceFile::PureIntegral(own) => own.roots_per_s.as_ref(),
+        AgentReferenceFile::Tracking(own) => own.roots_per_s.as_ref(),
+    });
+    let roots = own.or_else(|| match &file.reference.value {
+        ReferenceFile::Tracking(common) => common.roots_per_s.as_ref(),
+        _ => common(file).and_then(|common| common.roots_per_s.as_ref()),
+    });
+    Some(roots.map_or_else(|| file.reference.span.clone(), |roots| roots.span.clone()))
+}
+
+fn manipulability(file: &ScenarioFile, agent: &str) -> Option<Span> {
+    let own = entry(file, agent)?.reference.as_ref().and_then(|own| match &own.value {
+        AgentReferenceFile::Consensus(own) | AgentReferenceFile::PureIntegral(own) => own.manipulability_gain.as_ref(),
+        AgentReferenceFile::Tracking(_) => None,
+    });
+    let gain = own.or_else(|| common(file).and_then(|common| common.manipulability_gain.as_ref()));
+    gain.map(|gain| gain.span.clone())
+}
+
+/// What the user can do about it.
+pub(super) fn advice(error: &SetupError) -> Option<String> {
+    Some(match error {
+        SetupError::Coupling => {
+            "write `exchange = \"position\"` in `reference.consensus`, or leave `coupling` out".to_owned()
+        }
+        SetupError::SendsPositionOnly { .. } => "write `exchange = \"position\"`".to_owned(),
+        SetupError::ReferenceOfLaw { .. } => "write `reference.consensus` with `exchange = \"position\"`".to_owned(),
+        SetupError::NotTracking { .. } => {
+            "write `reference.consensus`; laws that track are `position_only`, `task_space`, `attitude` and those of chains".to_owned()
+        }
+        SetupError::OrderTooLow { least, .. } => format!("give it {least} roots or more"),
+        SetupError::Length { error, .. } if error.what == "`roots_per_s`" => {
+            format!("this law takes {} roots; an agent may have `reference` with roots of its own", error.need)
+        }
+        SetupError::Length { error, .. } if error.what.starts_with("`torque") => {
+            "leave it out: this robot has another number of torques than of axes".to_owned()
+        }
+        SetupError::Chain { error: ChainError::Guide(_), .. } => {
+            "an agent may have `reference` with roots of its own".to_owned()
+        }
+        SetupError::Chain { error: ChainError::Antiderivative { .. }, .. } => {
+            "leave `antiderivatives` out for regressors without the highest derivative".to_owned()
+        }
+        SetupError::UnitsDiffer { .. } => {
+            "point masses, vehicles and robots with three prismatic joints have a position in space".to_owned()
+        }
+        SetupError::NotPushed { agent, .. } => format!("leave `{agent}` out of `on`"),
+        SetupError::NoTarget { .. } => "give it a `target`".to_owned(),
+        SetupError::NoOffsets { .. } => {
+            "leave its `target` out; only vehicles and rotorcraft agree up to offsets".to_owned()
+        }
+        SetupError::LawNumber { what, .. } if what.contains("manipulability") => {
+            "leave `manipulability_gain` out".to_owned()
+        }
+        _ => return None,
+    })
+}

@@ -1,0 +1,163 @@
+//! What is wrong with targets and leaders, and with the systems of Sections IV and V.
+
+use forwardstep_core::plant::{CascadeError, SpacecraftError};
+use forwardstep_core::robot::tree::TipError;
+use forwardstep_sim::trajectory::{SplineError, TrajectoryError};
+use thiserror::Error;
+
+use crate::wording::{entry_count, number};
+
+/// Why one of these has no meaning.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SystemProblem {
+    /// Sinusoids that make no trajectory.
+    #[error(transparent)]
+    Trajectory(TrajectoryError),
+    /// Points and times that do not match.
+    #[error("`positions` has {}, but `times_s` has {}", entry_count(*.points), entry_count(*.times))]
+    PointsAndTimes {
+        /// How many points.
+        points: usize,
+        /// How many times.
+        times: usize,
+    },
+    /// Points that make no curve.
+    #[error(transparent)]
+    Points(SplineError),
+    /// Followers without a leader.
+    #[error("the agents are to follow a leader, but there is none")]
+    NoLeader,
+    /// A leader whom nobody follows.
+    #[error("there is a leader, but `reference.{reference}` does not follow one")]
+    LeaderUnused {
+        /// The reference dynamics.
+        reference: &'static str,
+    },
+    /// A coupling where there is none.
+    #[error("`coupling` belongs to the design `swarm`")]
+    CouplingUnused,
+    /// As many roots as the design has.
+    #[error("`roots_per_s` has {}, but this design needs {need}", entry_count(*.found))]
+    LeaderRoots {
+        /// How many there are.
+        found: usize,
+        /// How many are needed.
+        need: usize,
+    },
+    /// A target that has no value somewhere on the run.
+    #[error("this has no finite value everywhere from 0 s to {end_s} s, or that could not be shown")]
+    TargetValue {
+        /// The end of the run, s.
+        end_s: f64,
+    },
+    /// A spacecraft that makes no sense.
+    #[error(transparent)]
+    Spacecraft(SpacecraftError),
+    /// A direction that is zero.
+    #[error("this is zero and has no direction")]
+    NoDirection {
+        /// What would have one.
+        instead: &'static str,
+    },
+    /// A desired attitude that is zero.
+    #[error("this is no attitude at {} s: its four entries are zero there", number(*.t_s))]
+    NoAttitude {
+        /// When, s.
+        t_s: f64,
+    },
+    /// An initial value that an agent does not have.
+    #[error("`{key}` says nothing about `{agent}`")]
+    StartUnused {
+        /// The key.
+        key: &'static str,
+        /// The agent.
+        agent: String,
+    },
+    /// Two ways of stating an attitude, or half of one.
+    #[error("an attitude is `axis` with `angle_rad`, or `quaternion`")]
+    HalfAttitude,
+    /// A tip whose Jacobian cannot be inverted.
+    #[error(transparent)]
+    Tip(TipError),
+    /// A joint that moves beside the tip.
+    #[error("`{joint}` moves, but does not carry `{link}`")]
+    TipBeside {
+        /// The joint.
+        joint: String,
+        /// The link with the tip.
+        link: String,
+    },
+    /// A robot from a URDF without a tip.
+    #[error("the law `task_space` needs `tip` for a robot from a URDF")]
+    NoTip,
+    /// A tip where there is one already.
+    #[error("the tip of a planar arm is the end of its second link; `tip` is for robots from a URDF")]
+    TipOfPlanarArm,
+    /// Bounds beside a full matrix.
+    #[error("`bounds` need `kinematic_gain` to be a number or a diagonal, not a matrix")]
+    BoundsOfMatrix,
+    /// A chain without meaning.
+    #[error("{0}")]
+    Chain(CascadeError),
+    /// Antiderivatives that have to be given.
+    #[error("agent `{agent}`: a regressor holds the highest derivative of x, so its antiderivative must be given")]
+    Antiderivatives {
+        /// The agent.
+        agent: String,
+    },
+    /// A law that is made for something else.
+    #[error("agent `{agent}`: the law `{law}` is made for {made_for}")]
+    LawOfAnother {
+        /// The agent.
+        agent: String,
+        /// The law's key.
+        law: &'static str,
+        /// What it is made for, in words.
+        made_for: &'static str,
+        /// The laws that suit the agent's robot.
+        laws: &'static str,
+    },
+}
+
+impl SystemProblem {
+    pub(super) fn help(&self) -> Option<String> {
+        let text = match self {
+            SystemProblem::HalfAttitude => {
+                "write `axis = [0, 0, 1]` and `angle_rad = 1.5`, or `quaternion = [0, 0, 0, 1]` alone".into()
+            }
+            SystemProblem::TipBeside { joint, .. } => format!("add `{joint}` to `locked`, or choose a link behind it"),
+            SystemProblem::TipOfPlanarArm => "leave `tip` out".into(),
+            SystemProblem::Tip(TipError::Coordinate { .. }) => "choose `x`, `y` and `z`, each at most once".into(),
+            SystemProblem::Spacecraft(SpacecraftError::Axis { .. }) => "[1, 0, 0] is the first axis of the body".into(),
+            SystemProblem::NoTip => "add tip = { link = \"…\" } with a link of the URDF".into(),
+            SystemProblem::Tip(TipError::Size { .. }) => "`locked` of the robot holds joints of a URDF".into(),
+            SystemProblem::NoLeader => "add `[leader]` with a `motion`".into(),
+            SystemProblem::LeaderUnused { .. } => "write `reference.leader`, or delete the leader".into(),
+            SystemProblem::LeaderRoots { .. } => "`continuous` has one root, the other designs have two".into(),
+            SystemProblem::TargetValue { .. } => {
+                "roots, logarithms and quotients need arguments that stay where they have values".into()
+            }
+            SystemProblem::LawOfAnother { laws, .. } => format!("for this robot there is {laws}"),
+            SystemProblem::NoDirection { instead } => (*instead).into(),
+            SystemProblem::NoAttitude { .. } => {
+                "a quaternion may have any length but zero, vector part first: [0, 0, 0, 1] is no turn".into()
+            }
+            SystemProblem::StartUnused { key, .. } => match *key {
+                "attitude" => "vehicles, rotorcraft and spacecraft have an attitude".into(),
+                "angular_velocity_rad_s" => "rotorcraft and spacecraft have an angular velocity".into(),
+                "spacecraft" => "only spacecraft start by it".into(),
+                "higher_states" => {
+                    "only chains of order two or more in feedback form, else of order three or more, have any".into()
+                }
+                key if key.starts_with("velocity") => {
+                    "chains of order one or in feedback form have `higher_states`, spacecraft `angular_velocity_rad_s`"
+                        .into()
+                }
+                _ => "spacecraft start by `attitude`, `angular_velocity_rad_s` and `spacecraft`".into(),
+            },
+            _ => return None,
+        };
+        Some(text)
+    }
+}

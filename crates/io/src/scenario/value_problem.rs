@@ -1,0 +1,250 @@
+//! What is wrong with a single value, wherever it stands.
+
+use forwardstep_core::GainError;
+use thiserror::Error;
+
+use super::formula_problem::FormulaProblem;
+use crate::wording::{are, choose, count, entry_count, number};
+
+/// Why a value has no meaning.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ValueProblem {
+    /// The text is not TOML.
+    #[error("not valid TOML: {message}")]
+    Unreadable {
+        /// What the TOML parser says.
+        message: String,
+    },
+    /// A value of another kind was expected.
+    #[error("found {found} where {expected} should stand")]
+    WrongType {
+        /// What was found.
+        found: String,
+        /// What should be there.
+        expected: String,
+    },
+    /// A list of fixed length has another.
+    #[error("found a list of {found} where {need} are needed")]
+    ListLength {
+        /// Entries that were found.
+        found: usize,
+        /// Entries that are needed.
+        need: usize,
+    },
+    /// A text that is too long, or holds more than letters.
+    #[error("the text {found} does not fit into a line")]
+    Text {
+        /// How it begins.
+        found: String,
+        /// How many bytes it may have.
+        most: usize,
+    },
+    /// A key that means nothing here.
+    #[error("unknown key `{key}`")]
+    UnknownKey {
+        /// The key.
+        key: String,
+        /// The keys that mean something.
+        allowed: Vec<&'static str>,
+    },
+    /// A key that must be there is not.
+    #[error("the key `{key}` is missing")]
+    MissingKey {
+        /// The key.
+        key: &'static str,
+    },
+    /// A choice that does not exist.
+    #[error("unknown choice `{found}`")]
+    UnknownChoice {
+        /// What was written.
+        found: String,
+        /// What can be chosen.
+        allowed: Vec<&'static str>,
+    },
+    /// Nothing was chosen.
+    #[error("nothing is chosen here")]
+    NoChoice {
+        /// What can be chosen.
+        allowed: Vec<&'static str>,
+    },
+    /// Two things were chosen where one is needed.
+    #[error("both `{first}` and `{second}` are given, but only one can be")]
+    TwoChoices {
+        /// The first.
+        first: String,
+        /// The second.
+        second: String,
+    },
+    /// A choice was made without what belongs to it.
+    #[error("`{choice}` needs a value")]
+    ChoiceNeedsValue {
+        /// The choice.
+        choice: String,
+    },
+    /// A value was given to a choice that has none.
+    #[error("`{choice}` takes no value")]
+    ChoiceTakesNoValue {
+        /// The choice.
+        choice: String,
+    },
+    /// A number that is infinite, or none.
+    #[error("{found} is not a finite number")]
+    NotFinite {
+        /// What was written.
+        found: String,
+    },
+    /// A number so large that it cannot be computed with.
+    #[error("{found} is too large a number")]
+    NumberTooLarge {
+        /// What was written.
+        found: String,
+    },
+    /// A number that must be positive is not.
+    #[error("`{key}` is {}, but must be positive", number(*.value))]
+    NotPositive {
+        /// The key.
+        key: &'static str,
+        /// The number.
+        value: f64,
+    },
+    /// A number that must not be negative is.
+    #[error("`{key}` is {}, but must not be negative", number(*.value))]
+    Negative {
+        /// The key.
+        key: &'static str,
+        /// The number.
+        value: f64,
+    },
+    /// A number is outside its range.
+    #[error("`{key}` is {}, but must be from {} to {}", number(*.value), number(*.low), number(*.high))]
+    OutOfRange {
+        /// The key.
+        key: &'static str,
+        /// The number.
+        value: f64,
+        /// The smallest that is allowed.
+        low: f64,
+        /// The largest that is allowed.
+        high: f64,
+    },
+    /// Lowest and highest value in the wrong order.
+    #[error("`{key}` is [{}, {}], but the first must not exceed the second", number(*.low), number(*.high))]
+    Interval {
+        /// The key.
+        key: &'static str,
+        /// The first.
+        low: f64,
+        /// The second.
+        high: f64,
+    },
+    /// Lowest and highest value that are one, or in the wrong order.
+    #[error("`{key}` is [{}, {}], but the first must be less than the second", number(*.low), number(*.high))]
+    Range {
+        /// The key.
+        key: &'static str,
+        /// The first.
+        low: f64,
+        /// The second.
+        high: f64,
+    },
+    /// A list that needs an entry has none.
+    #[error("`{key}` is empty")]
+    Empty {
+        /// The key.
+        key: &'static str,
+    },
+    /// A text that is no formula in t.
+    #[error(transparent)]
+    Formula(FormulaProblem),
+    /// A vector of the wrong length.
+    #[error("`{key}` has {}, but `{agent}` needs {need}", entry_count(*.found))]
+    VectorLength {
+        /// The key.
+        key: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many are needed.
+        need: usize,
+        /// By whom.
+        agent: String,
+    },
+    /// One list per agent, but not as many as agents.
+    #[error("`{key}` has {}, but there {}", count(*found, "list"), are(*agents, "agent"))]
+    ListPerAgent {
+        /// The key.
+        key: &'static str,
+        /// How many lists there are.
+        found: usize,
+        /// How many agents there are.
+        agents: usize,
+    },
+    /// Numbers and lists side by side.
+    #[error("`{key}` mixes numbers and lists")]
+    MixedList {
+        /// The key.
+        key: &'static str,
+    },
+    /// One quantity under two keys.
+    #[error("both `{first}` and `{second}` are given, but they say the same")]
+    SameQuantity {
+        /// One key.
+        first: &'static str,
+        /// The other.
+        second: &'static str,
+    },
+    /// Reference dynamics of an order beyond use.
+    #[error("`{key}` has {}, but at most {most} are accepted", entry_count(*.found))]
+    Order {
+        /// The key.
+        key: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many are accepted.
+        most: usize,
+    },
+    /// A gain that cannot be used.
+    #[error("`{key}` of `{agent}`: {error}")]
+    Gain {
+        /// The key.
+        key: &'static str,
+        /// The agent.
+        agent: String,
+        /// What is wrong with it.
+        error: GainError,
+    },
+    /// A matrix whose rows have different lengths.
+    #[error("`{key}` has {rows} rows, but row {row} has {}", entry_count(*.entries))]
+    NotSquare {
+        /// The key.
+        key: &'static str,
+        /// The number of rows.
+        rows: usize,
+        /// The row that differs, from one.
+        row: usize,
+        /// How many entries it has.
+        entries: usize,
+    },
+}
+
+impl ValueProblem {
+    pub(super) fn help(&self) -> Option<String> {
+        let text = match self {
+            ValueProblem::UnknownKey { key, allowed } => choose(key, "allowed here:", allowed),
+            ValueProblem::UnknownChoice { found, allowed } => choose(found, "choose one of", allowed),
+            ValueProblem::NoChoice { allowed } => choose("", "choose one of", allowed),
+            ValueProblem::NumberTooLarge { .. } => "numbers may be up to 1e30 in size, whole numbers up to 9e18".into(),
+            ValueProblem::Text { most, .. } => {
+                format!("names, choices and titles are one line of at most {most} bytes without control characters")
+            }
+            ValueProblem::WrongType { found, expected } if found == "a table" && expected == "a list" => {
+                "a list of tables has its name in double brackets, such as [[agents]]".into()
+            }
+            ValueProblem::ChoiceNeedsValue { choice } => format!("write it with its value: {{ {choice} = … }}"),
+            ValueProblem::ChoiceTakesNoValue { choice } => format!("write it as a text: \"{choice}\""),
+            ValueProblem::Formula(problem) => return problem.help(),
+            _ => return None,
+        };
+        Some(text)
+    }
+}
