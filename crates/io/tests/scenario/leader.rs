@@ -84,7 +84,7 @@ fn mistakes_about_leaders_are_reported() {
         (changed("error_below", "disagreement_below"), "follows a target or a leader", "error_below"),
         (
             changed("motion.formulas = [\"sin(t)\"]", "motion.points = { times_s = [0, 0], positions = [[0], [1]] }"),
-            "not after the row",
+            "`times_s` goes from 0 to 0, but must rise",
             "",
         ),
     ] {

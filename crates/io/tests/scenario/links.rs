@@ -10,9 +10,8 @@ use forwardstep_io::scenario::{Notice, Scenario, ScenarioError, open_scenario, r
 use forwardstep_sim::delay::{Delay, Loss, Packet, PacketLink, Trace};
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::{Outcome, simulate};
-use miette::Diagnostic;
 
-use super::{changed, read};
+use super::{as_stated, changed, read};
 
 /// Every way to say how late a message is once, but for logs, which need a folder.
 pub(super) const LINKS: &str = r#"format = 1
@@ -149,19 +148,7 @@ fn every_mistake_in_a_link_is_reported_at_its_place() {
     const SAW_TOOTH: &str = "delay.saw_tooth = { min_s = 0.1, max_s = 0.4, period_s = 0.6 }";
     let links = CASES.iter().map(|case| (changed(SAW_TOOTH, &format!("delay.{}", case.0)), case));
     let weights = WEIGHTS.iter().map(|case| (changed("weight = 1.0", &format!("weight = {}", case.0)), case));
-    let mut wrong = Vec::new();
-    for (text, (to, line, help)) in links.chain(weights) {
-        let Err(error) = read(&text) else {
-            wrong.push(format!("{to}\n    was accepted"));
-            continue;
-        };
-        let found = error.to_string();
-        let found_help = error.help().map(|help| help.to_string()).unwrap_or_default();
-        if found != *line || !found_help.contains(help) || found_help.is_empty() != help.is_empty() {
-            wrong.push(format!("{to}\n    {found}\n    {found_help}"));
-        }
-    }
-    assert!(wrong.is_empty(), "{} are wrong:\n{}", wrong.len(), wrong.join("\n"));
+    as_stated(links.chain(weights).map(|(text, (to, line, help))| ((*to).to_owned(), read(&text), *line, *help)));
 }
 
 #[test]
@@ -242,21 +229,7 @@ const LOGS: &[Case] = &[
 
 #[test]
 fn every_mistake_in_a_log_is_reported_at_its_place() {
-    let mut wrong = Vec::new();
-    for (log, line, help) in LOGS {
-        let Err(error) = logged(log) else {
-            wrong.push(format!("{log}\n    was accepted"));
-            continue;
-        };
-        // Without the folder.
-        let found = error.to_string();
-        let found = found.rsplit_once("/radio.csv").map_or(found.clone(), |(_, rest)| format!("radio.csv{rest}"));
-        let found_help = error.help().map(|help| help.to_string()).unwrap_or_default();
-        if found != *line || !found_help.contains(help) || found_help.is_empty() != help.is_empty() {
-            wrong.push(format!("{log}\n    {found}\n    {found_help}"));
-        }
-    }
-    assert!(wrong.is_empty(), "{} are wrong:\n{}", wrong.len(), wrong.join("\n"));
+    as_stated(LOGS.iter().map(|(log, line, help)| ((*log).to_owned(), logged(log), *line, *help)));
 }
 
 fn run(scenario: &Scenario, folder: &Path) -> Outcome {

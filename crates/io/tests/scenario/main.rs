@@ -1,22 +1,30 @@
 //! Scenario files: what is read, and what every mistake gets.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod blind;
+mod chains;
 mod control;
 mod edges;
 mod leader;
 mod links;
 mod malformed;
 mod meaning;
+mod mixed;
 mod mutated;
 mod pushes;
 #[path = "../support/seeds.rs"]
 mod seeds;
 mod shipped;
+mod spacecraft;
 mod spread;
+mod targets;
+mod tips;
 mod tracking;
+mod vehicles;
 
 use forwardstep_io::SourceText;
 use forwardstep_io::scenario::{Scenario, ScenarioError, read_scenario};
+use miette::Diagnostic;
 
 /// A small scenario without mistakes, which the tests change.
 const SOUND: &str = r#"format = 1
@@ -68,4 +76,39 @@ fn changed(from: &str, to: &str) -> String {
 fn read(text: &str) -> Result<Scenario, ScenarioError> {
     seeds::keep("scenario", text);
     read_scenario("test", &SourceText::new("test.toml", text), None)
+}
+
+/// What to replace in a sound scenario, by what, the first line of the error, and a part of the help.
+type Case = (&'static str, &'static str, &'static str, &'static str);
+
+/// Every case is refused, with the message and the help that it states.
+fn refused(sound: &str, cases: &[Case]) {
+    let read = |(from, to, line, help): &Case| {
+        assert_eq!(sound.matches(from).count(), 1, "{from:?} must occur once");
+        ((*to).to_owned(), read(&sound.replace(from, to)), *line, *help)
+    };
+    as_stated(cases.iter().map(read));
+}
+
+/// The same of what was read in other ways: what it was, the first line of the error, without the folder of a table, and a
+/// part of the help, which is empty where there is none.
+fn as_stated<'a>(cases: impl Iterator<Item = (String, Result<Scenario, ScenarioError>, &'a str, &'a str)>) {
+    let (mut wrong, mut all) = (Vec::new(), 0);
+    for (what, result, line, help) in cases {
+        all += 1;
+        let Err(error) = result else {
+            wrong.push(format!("{what}\n    was accepted"));
+            continue;
+        };
+        let mut found = error.to_string();
+        if found.starts_with('/') {
+            let file = found.find(':').and_then(|end| found[..end].rfind('/'));
+            found = found[file.map_or(0, |file| file + 1)..].to_owned();
+        }
+        let found_help = error.help().map(|help| help.to_string()).unwrap_or_default();
+        if found != line || !found_help.contains(help) || found_help.is_empty() != help.is_empty() {
+            wrong.push(format!("{what}\n    {found:?}\n    {found_help:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{} of {all}:\n{}", wrong.len(), wrong.join("\n"));
 }

@@ -6,13 +6,23 @@ use forwardstep_io::scenario::{SHIPPED_SCENARIOS, ScenarioError};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 use proptest::prelude::*;
 
+use super::blind::BLIND;
+use super::chains::{CASCADES, DERIVATIVES};
 use super::edges::RULES;
 use super::links::LINKS;
+use super::mixed::MIXED;
 use super::pushes::PUSHES;
+use super::spacecraft::SPACECRAFT;
+use super::tips::{PLANAR, TIP};
+use super::vehicles::VEHICLES;
 use super::{SOUND, read};
 
+/// Every sound scenario that tests change.
+pub(super) const SYSTEMS: [&str; 12] =
+    [SOUND, RULES, LINKS, PUSHES, BLIND, CASCADES, DERIVATIVES, MIXED, SPACECRAFT, PLANAR, TIP, VEHICLES];
+
 fn texts() -> Vec<&'static str> {
-    SHIPPED_SCENARIOS.iter().map(|scenario| scenario.text).chain([SOUND, RULES, LINKS, PUSHES]).collect()
+    SHIPPED_SCENARIOS.iter().map(|scenario| scenario.text).chain(SYSTEMS).collect()
 }
 
 /// Reads; then shows the error, or begins to simulate: what the reader lets pass, the rooms below accept.

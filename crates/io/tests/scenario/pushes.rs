@@ -7,9 +7,8 @@ use forwardstep_io::SourceText;
 use forwardstep_io::scenario::{Scenario, ScenarioError, read_scenario};
 use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push};
 use forwardstep_sim::simulate;
-use miette::Diagnostic;
 
-use super::read;
+use super::{as_stated, read};
 
 /// Every way to push once, but for CSV files, which need a folder.
 pub(super) const PUSHES: &str = r#"format = 1
@@ -190,7 +189,7 @@ const CASES: &[Case] = &[
     ("by.torque_n_m = [5, \"2*sin(3*t)\"]", "by.torque_n_m = {}",
         "test.toml:24:17: nothing is chosen here", "choose one of `csv`, `rows`"),
     ("by.torque_n_m = [5, \"2*sin(3*t)\"]", "by = \"torque_n_m\"",
-        "test.toml:24:6: `torque_n_m` needs a value", ""),
+        "test.toml:24:6: `torque_n_m` needs a value", "write it with its value"),
     ("\"2*sin(3*t)\"", "\"2*sine(3*t)\"",
         "test.toml:24:24: there is no function `sine`", "did you mean `sin`?"),
     ("\"2*sin(3*t)\"", "\"2*sin(3*t\"",
@@ -276,30 +275,10 @@ fn changed(from: &str, to: &str) -> String {
     PUSHES.replace(from, to)
 }
 
-/// The cases that differ, as they were found.
-fn differences<'a>(
-    cases: impl Iterator<Item = (String, Result<Scenario, ScenarioError>, &'a str, &'a str)>,
-) -> Vec<String> {
-    let mut wrong = Vec::new();
-    for (what, result, line, help) in cases {
-        let Err(error) = result else {
-            wrong.push(format!("{what}\n    was accepted"));
-            continue;
-        };
-        let found = error.to_string();
-        let found_help = error.help().map(|help| help.to_string()).unwrap_or_default();
-        if found != line || !found_help.contains(help) || found_help.is_empty() != help.is_empty() {
-            wrong.push(format!("{what}\n    {found:?}\n    {found_help:?}"));
-        }
-    }
-    wrong
-}
-
 #[test]
 fn every_mistake_in_a_push_is_reported_at_its_place() {
     let cases = CASES.iter().map(|(from, to, line, help)| ((*to).to_owned(), read(&changed(from, to)), *line, *help));
-    let wrong = differences(cases);
-    assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), CASES.len(), wrong.join("\n"));
+    as_stated(cases);
 }
 
 fn beside(folder: &Path, interpolate: &str) -> Result<Scenario, ScenarioError> {
@@ -341,15 +320,10 @@ const TABLES: &[(&str, &str, &str)] = &[
 
 #[test]
 fn every_mistake_in_a_table_over_time_is_reported_at_its_place() {
-    let mut wrong = Vec::new();
-    for (table, line, help) in TABLES {
+    as_stated(TABLES.iter().map(|(table, line, help)| {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("push.csv"), table).unwrap();
         super::seeds::keep("csv", table);
-        let prefix = format!("{}/", folder.path().display());
-        let line = if line.starts_with("push") { format!("{prefix}{line}") } else { (*line).to_owned() };
-        let case = [((*table).to_owned(), beside(folder.path(), ""), line.as_str(), *help)];
-        wrong.extend(differences(case.into_iter()));
-    }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+        ((*table).to_owned(), beside(folder.path(), ""), *line, *help)
+    }));
 }

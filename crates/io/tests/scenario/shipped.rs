@@ -4,10 +4,7 @@ use std::collections::BTreeSet;
 
 use forwardstep_io::scenario::{SHIPPED_SCENARIOS, SHIPPED_TABLES, open_scenario, schema};
 
-use super::SOUND;
-use super::edges::RULES;
-use super::links::LINKS;
-use super::pushes::PUSHES;
+use super::mutated::SYSTEMS;
 
 #[test]
 fn every_shipped_scenario_is_sound() {
@@ -55,7 +52,7 @@ fn the_schema_knows_every_key_and_describes_it() {
     collect(&schema, &mut known, &mut undescribed);
     assert!(undescribed.is_empty(), "without a description: {undescribed:?}");
     let mut used = BTreeSet::new();
-    for text in SHIPPED_SCENARIOS.iter().map(|scenario| scenario.text).chain([SOUND, RULES, LINKS, PUSHES]) {
+    for text in SHIPPED_SCENARIOS.iter().map(|scenario| scenario.text).chain(SYSTEMS) {
         keys(&text.parse().unwrap(), &mut used);
     }
     let unknown: Vec<_> = used.difference(&known).collect();

@@ -1,0 +1,87 @@
+//! A mass without velocity: every mistake in a scenario, where it is reported and what is said.
+
+use super::{Case, refused};
+
+/// Two masses whose velocities nobody measures.
+pub(super) const BLIND: &str = r#"format = 1
+time = { end_s = 10 }
+
+[[agents]]
+name = "mass"
+count = 2
+robot.point_mass = { dimension = 2, mass_kg = 2.0 }
+start = { position_m = [[1, 0], [0, 1]], velocity_m_s = [0.1, 0] }
+
+[reference.consensus]
+roots_per_s = [1.0, 1.5]
+exchange = "position"
+
+[law.position_only]
+damping = 20
+filter_per_s = 15
+adaptation_gain = 5
+estimate_start_kg = 1
+
+[network]
+edges.ring = {}
+
+[goal]
+disagreement_below = 1e-3
+"#;
+
+#[rustfmt::skip]
+const BLIND_CASES: &[Case] = &[
+    ("[law.position_only]", "[law.position_olny]",
+        "test.toml:14:6: unknown choice `position_olny`", "did you mean `position_only`? choose one of `adaptive`, `known`, `position_only`, `thrust`, `task_space`, `attitude`, `linearising`, `linear_adaptive`, `immersion`, `adaptive_backstepping`"),
+    ("damping = 20", "damping = -20",
+        "test.toml:15:11: `damping` is -20, but must be positive", ""),
+    ("damping = 20", "damping = [20, 20]",
+        "test.toml:15:11: found a list where a number should stand", ""),
+    ("damping = 20", "damping = inf",
+        "test.toml:15:11: inf is not a finite number", ""),
+    ("filter_per_s = 15", "filter_per_s = 0",
+        "test.toml:16:16: `filter_per_s` is 0, but must be positive", ""),
+    ("filter_per_s = 15", "filter_s = 15",
+        "test.toml:16:1: unknown key `filter_s`", "did you mean `filter_per_s`? allowed here: `damping`, `filter_per_s`, `adaptation_gain`, `estimate_start_kg`"),
+    ("filter_per_s = 15", "filter_per_s = \"fast\"",
+        "test.toml:16:16: found \"fast\" where a number should stand", ""),
+    ("adaptation_gain = 5", "adaptation_gain = -5",
+        "test.toml:17:19: `adaptation_gain` is -5, but must not be negative", ""),
+    ("adaptation_gain = 5", "adaptation_gain = { bandwidth_per_s = 5 }",
+        "test.toml:17:19: found a table where a number should stand", ""),
+    ("adaptation_gain = 5", "adaption_gain = 5",
+        "test.toml:17:1: unknown key `adaption_gain`", "did you mean `adaptation_gain`? allowed here: `damping`, `filter_per_s`, `adaptation_gain`, `estimate_start_kg`"),
+    ("estimate_start_kg = 1", "estimate_start_kg = nan",
+        "test.toml:18:21: nan is not a finite number", ""),
+    ("estimate_start_kg = 1", "estimate_start = \"zero\"",
+        "test.toml:18:1: unknown key `estimate_start`", "did you mean `estimate_start_kg`? allowed here: `damping`, `filter_per_s`, `adaptation_gain`, `estimate_start_kg`"),
+    ("[1.0, 1.5]", "[1.0]",
+        "test.toml:11:15: agent `mass-1`: its reference dynamics have order 1, but its law needs 2 roots or more", "give it 2 roots or more"),
+    ("[1.0, 1.5]", "[1.0, inf]",
+        "test.toml:11:21: inf is not a finite number", ""),
+    ("exchange = \"position\"", "exchange = \"position_velocity\"",
+        "test.toml:12:12: agent `mass-1`: the law without velocity sends its position only, but the agents exchange positions and velocities", "write `exchange = \"position\"`"),
+    ("exchange = \"position\"", "exchange = \"velocity\"",
+        "test.toml:12:12: unknown choice `velocity`", "choose one of `position_velocity`, `position`"),
+    ("[reference.consensus]\nroots_per_s = [1.0, 1.5]", "[reference.pure_integral]\nroots_per_s = [1.0, 1.5]",
+        "test.toml:10:2: agent `mass-1`: the law without velocity does not go with these reference dynamics", "write `reference.consensus` with `exchange = \"position\"`"),
+    ("[network]", "[[pushes]]\non = [\"mass-2\"]\nby.force_n = [1, 0]\n[network]",
+        "test.toml:21:7: agent `mass-2`: pushes act on robots under the adaptive or the known law, not on the law without velocity", "leave `mass-2` out of `on`"),
+    ("count = 2", "count = 2\ntarget.formulas = [0, 1]",
+        "test.toml:7:1: agent `mass-1`: the law without velocity knows no offsets", "leave its `target` out; only vehicles and rotorcraft agree up to offsets"),
+    ("count = 2", "count = 2\nenforce_limits = true",
+        "test.toml:7:18: `enforce_limits` is true, but axis `x` of `mass-1` has no effort limit", "only a URDF states limits, as <limit effort=\"…\"> of a joint"),
+    ("velocity_m_s = [0.1, 0] ", "attitude = [0, 0, 0, 1] ",
+        "test.toml:8:53: `attitude` says nothing about `mass-1`", "vehicles, rotorcraft and spacecraft have an attitude"),
+    ("velocity_m_s = [0.1, 0] ", "velocity_m_s = [0.1] ",
+        "test.toml:8:57: `velocity_m_s` has 1 entry, but `mass-1` needs 2", ""),
+    ("[network]", "[control]\nsample_hz = 100\ntorque_limit = [1, 1, 1]\n[network]",
+        "test.toml:22:16: `torque_limit` has 3 where the agents have 2 axes", "a single number stands for all axes"),
+    ("[network]", "[control]\nsample_hz = 0\n[network]",
+        "test.toml:21:13: `sample_hz` is 0, but must be positive", ""),
+];
+
+#[test]
+fn mistakes_about_masses_without_velocity_are_reported_at_their_place() {
+    refused(BLIND, BLIND_CASES);
+}

@@ -1,0 +1,195 @@
+//! The tip of a robot: every mistake in a scenario, where it is reported and what is said.
+
+use super::{Case, refused};
+
+/// The tip of a UR5e with three joints free.
+pub(super) const TIP: &str = r#"format = 1
+time = { end_s = 10 }
+
+[[agents]]
+name = "arm"
+start.position_rad = [0.4, -1.2, 1.6]
+target.formulas = ["-0.6 + 0.1*cos(t)", -0.4, 0.45]
+
+[agents.robot.urdf]
+file = "ur5e.urdf"
+locked = { wrist_1_joint = -3.14, wrist_2_joint = -1.57, wrist_3_joint = 0 }
+
+[reference.tracking]
+
+[law.task_space]
+damping.bandwidth_per_s = 40
+adaptation_gain.bandwidth_per_s = 10
+estimate_start.scaled = 0.8
+task_gain = 200
+torque_share = 2
+reference_gain_per_s = 6
+kinematic_gain = 1
+kinematic_start.scaled = 1.2
+determinant_floor = 0.02
+tip = { link = "tool0", at_m = [0, 0, 0.15], coordinates = ["x", "y", "z"], uncertain = "tool" }
+bounds = { lower_m = [0.1, 0.1, 0.1], upper_m = [1, 1, 1], margin_m = 0.02 }
+
+[goal]
+error_below = 1e-3
+"#;
+
+#[rustfmt::skip]
+const TIP_CASES: &[Case] = &[
+    ("[law.task_space]", "[law.taskspace]",
+        "test.toml:15:6: unknown choice `taskspace`", "did you mean `task_space`? choose one of `adaptive`, `known`, `position_only`, `thrust`, `task_space`, `attitude`, `linearising`, `linear_adaptive`, `immersion`, `adaptive_backstepping`"),
+    ("damping.bandwidth_per_s = 40", "damping.bandwidth_per_s = 0",
+        "test.toml:16:27: `damping.bandwidth_per_s` is 0, but must be positive", ""),
+    ("damping.bandwidth_per_s = 40", "damping.bandwidth = 40",
+        "test.toml:16:9: unknown choice `bandwidth`", "did you mean `bandwidth_per_s`? choose one of `gain`, `bandwidth_per_s`"),
+    ("damping.bandwidth_per_s = 40", "damping = 40",
+        "test.toml:16:11: found 40 where a choice of gain, bandwidth_per_s should stand", ""),
+    ("damping.bandwidth_per_s = 40", "damping.gain = [1, 2]",
+        "test.toml:16:16: `damping.gain` has 2 entries, but `arm` needs 3", ""),
+    ("adaptation_gain.bandwidth_per_s = 10", "adaptation_gain.bandwidth_per_s = -10",
+        "test.toml:17:35: `bandwidth_per_s` is -10, but must be positive", ""),
+    ("adaptation_gain.bandwidth_per_s = 10", "adaptation_gain = [1, 2]",
+        "test.toml:17:19: `adaptation_gain` has 2 entries, but `arm` needs 30", ""),
+    ("adaptation_gain.bandwidth_per_s = 10", "adaptation_gain = \"fast\"",
+        "test.toml:17:19: found \"fast\" where a number, a list (the diagonal), a list of rows or { bandwidth_per_s = … } should stand", ""),
+    ("estimate_start.scaled = 0.8", "estimate_start.given = [1, 2]",
+        "test.toml:18:24: `estimate_start.given` has 2 entries, but `arm` needs 30", ""),
+    ("estimate_start.scaled = 0.8", "estimate_start = \"none\"",
+        "test.toml:18:18: unknown choice `none`", "choose one of `zero`, `true`, `scaled`, `given`"),
+    ("estimate_start.scaled = 0.8", "estimate_start.scaled = \"0.8\"",
+        "test.toml:18:25: found \"0.8\" where a number should stand", ""),
+    ("task_gain = 200", "task_gain = 0",
+        "test.toml:19:13: `task_gain` is 0, but must be positive", ""),
+    ("task_gain = 200", "task_gain = [1, 2]",
+        "test.toml:19:13: `task_gain` has 2 entries, but `arm` needs 3", ""),
+    ("task_gain = 200", "task_gain = [[1, 2, 0], [2, 1, 0], [0, 0, 1]]",
+        "test.toml:19:13: `task_gain` of `arm`: the leading minor of order 2 is not positive; the matrix must be positive definite", ""),
+    ("task_gain = 200", "task_gains = 200",
+        "test.toml:19:1: unknown key `task_gains`", "did you mean `task_gain`? allowed here: `tip`, `damping`, `adaptation_gain`, `estimate_start`, `task_gain`, `torque_share`, `reference_gain_per_s`, `kinematic_gain`, `kinematic_start`, `bounds`, `determinant_floor`"),
+    ("torque_share = 2", "torque_share = 0",
+        "test.toml:20:16: `torque_share` is 0, but must be positive", ""),
+    ("torque_share = 2", "torque_share = [2, 2, 2]",
+        "test.toml:20:16: found a list where a number should stand", ""),
+    ("reference_gain_per_s = 6", "reference_gain_per_s = -6",
+        "test.toml:21:24: `reference_gain_per_s` is -6, but must be positive", ""),
+    ("reference_gain_per_s = 6", "reference_gain = 6",
+        "test.toml:21:1: unknown key `reference_gain`", "did you mean `reference_gain_per_s`? allowed here: `tip`, `damping`, `adaptation_gain`, `estimate_start`, `task_gain`, `torque_share`, `reference_gain_per_s`, `kinematic_gain`, `kinematic_start`, `bounds`, `determinant_floor`"),
+    ("kinematic_gain = 1", "kinematic_gain = -1",
+        "test.toml:22:18: `kinematic_gain` is -1, but must be positive", ""),
+    ("kinematic_gain = 1", "kinematic_gain = [1, 2]",
+        "test.toml:22:18: `kinematic_gain` has 2 entries, but `arm` needs 3", ""),
+    ("kinematic_gain = 1", "kinematic_gain = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]",
+        "test.toml:26:10: `bounds` need `kinematic_gain` to be a number or a diagonal, not a matrix", ""),
+    ("kinematic_start.scaled = 1.2", "kinematic_start.given = [1, 2]",
+        "test.toml:23:25: `kinematic_start.given` has 2 entries, but `arm` needs 3", ""),
+    ("kinematic_start.scaled = 1.2", "kinematic_start = \"guess\"",
+        "test.toml:23:19: unknown choice `guess`", "choose one of `zero`, `true`, `scaled`, `given`"),
+    ("determinant_floor = 0.02", "determinant_floor = 1",
+        "test.toml:24:21: `determinant_floor` is 1, but must be from 0 to 0.999", ""),
+    ("determinant_floor = 0.02", "determinant_floor = -0.1",
+        "test.toml:24:21: `determinant_floor` is -0.1, but must be from 0 to 0.999", ""),
+    ("tip = { link = \"tool0\", at_m = [0, 0, 0.15], coordinates = [\"x\", \"y\", \"z\"], uncertain = \"tool\" }\n", "",
+        "test.toml:15:2: the law `task_space` needs `tip` for a robot from a URDF", "add tip = { link = \"…\" } with a link of the URDF"),
+    ("link = \"tool0\"", "link = \"tool1\"",
+        "test.toml:25:16: `arm` has no link `tool1`", "did you mean `tool0`? its links are `base_link`, `shoulder_link`, `upper_arm_link`, `forearm_link`, `wrist_1_link`, `wrist_2_link`, `wrist_3_link`, `tool0`"),
+    ("link = \"tool0\"", "links = \"tool0\"",
+        "test.toml:25:9: unknown key `links`", "did you mean `link`? allowed here: `link`, `at_m`, `coordinates`, `uncertain`"),
+    ("link = \"tool0\", ", "",
+        "test.toml:25:7: the key `link` is missing", ""),
+    ("at_m = [0, 0, 0.15]", "at_m = [0, 0.15]",
+        "test.toml:25:32: found a list of 2 where 3 are needed", ""),
+    ("at_m = [0, 0, 0.15]", "at_m = 0.15",
+        "test.toml:25:32: found 0.15 where a list should stand", ""),
+    ("coordinates = [\"x\", \"y\", \"z\"]", "coordinates = [\"x\", \"y\"]",
+        "test.toml:25:7: 3 joints move and 2 coordinates of the tip are to be controlled; task-space control needs as many joints as coordinates (a redundant Jacobian has no inverse): lock joints or choose other coordinates", "`locked` of the robot holds joints of a URDF"),
+    ("coordinates = [\"x\", \"y\", \"z\"]", "coordinates = [\"x\", \"y\", \"y\"]",
+        "test.toml:25:60: coordinate 1 (of x = 0, y = 1, z = 2 of the base) is chosen twice, or there is none", "choose `x`, `y` and `z`, each at most once"),
+    ("coordinates = [\"x\", \"y\", \"z\"]", "coordinates = [\"x\", \"y\", \"w\"]",
+        "test.toml:25:71: unknown choice `w`", "did you mean `x`? choose one of `x`, `y`, `z`"),
+    ("coordinates = [\"x\", \"y\", \"z\"]", "coordinates = []",
+        "test.toml:25:60: `coordinates` is empty", ""),
+    ("coordinates = [\"x\", \"y\", \"z\"]", "coordinates = [\"x\", \"y\", \"z\", \"x\"]",
+        "test.toml:25:60: coordinate 0 (of x = 0, y = 1, z = 2 of the base) is chosen twice, or there is none", "choose `x`, `y` and `z`, each at most once"),
+    ("uncertain = \"tool\"", "uncertain = \"all\"",
+        "test.toml:25:89: unknown choice `all`", "choose one of `tool`, `chain`"),
+    ("link = \"tool0\"", "link = \"upper_arm_link\"",
+        "test.toml:25:16: `elbow_joint` moves, but does not carry `upper_arm_link`", "add `elbow_joint` to `locked`, or choose a link behind it"),
+    ("lower_m = [0.1, 0.1, 0.1]", "lower_m = [0.1, 0.1]",
+        "test.toml:26:22: `lower_m` has 2 entries, but `arm` needs 3", ""),
+    ("upper_m = [1, 1, 1]", "upper_m = [1, 1, 0]",
+        "test.toml:26:33: `bounds` is [0.1, 0], but the first must not exceed the second", ""),
+    ("upper_m = [1, 1, 1], ", "",
+        "test.toml:26:10: the key `upper_m` is missing", ""),
+    ("upper_m = [1, 1, 1]", "uper_m = [1, 1, 1]",
+        "test.toml:26:39: unknown key `uper_m`", "did you mean `upper_m`? allowed here: `lower_m`, `upper_m`, `margin_m`"),
+    ("margin_m = 0.02", "margin_m = 0",
+        "test.toml:26:71: `margin_m` is 0, but must be positive", ""),
+    ("wrist_1_joint = -3.14, ", "",
+        "test.toml:25:7: 4 joints move and 3 coordinates of the tip are to be controlled; task-space control needs as many joints as coordinates (a redundant Jacobian has no inverse): lock joints or choose other coordinates", "`locked` of the robot holds joints of a URDF"),
+    ("[\"-0.6 + 0.1*cos(t)\", -0.4, 0.45]", "[\"-0.6 + 0.1*cos(t)\", -0.4]",
+        "test.toml:7:19: `formulas` has 2 entries, but `arm` needs 3", ""),
+    ("[\"-0.6 + 0.1*cos(t)\", -0.4, 0.45]", "[\"-0.6 + 0.1*cos(t\", -0.4, 0]",
+        "test.toml:7:35: this parenthesis is not closed", ""),
+    ("target.formulas = [\"-0.6 + 0.1*cos(t)\", -0.4, 0.45]\n", "",
+        "test.toml:5:8: agent `arm` is to track a target, but has none", "give it a `target`"),
+    ("[reference.tracking]", "[reference.consensus]\nroots_per_s = [1]\nexchange = \"position\"\n[network]\nedges = []",
+        "test.toml:7:1: agent `arm`: the law for a tip knows no offsets", "leave its `target` out; only vehicles and rotorcraft agree up to offsets"),
+    ("[goal]", "[[pushes]]\non = [\"arm\"]\nby.torque_n_m = [1, 0, 0]\n[goal]",
+        "test.toml:29:7: agent `arm`: pushes act on robots under the adaptive or the known law, not on the law for a tip", "leave `arm` out of `on`"),
+    ("[goal]", "[control]\nsample_hz = 1000\nnoise = { seed = 1, velocity = -1 }\n[goal]",
+        "test.toml:30:32: `noise.velocity` is -1, but must not be negative", ""),
+];
+
+/// The tip of a planar arm.
+pub(super) const PLANAR: &str = r#"format = 1
+time = { end_s = 10 }
+
+[[agents]]
+name = "arm"
+robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }
+start.position_rad = [0.5, 1.0]
+target.formulas = ["1 + 0.1*cos(t)", 0.5]
+
+[reference.tracking]
+
+[law.task_space]
+kinematic_gain = [0.3, 0.2]
+bounds = { lower_m = [0.9, 0.7], upper_m = [1.1, 0.9] }
+
+[goal]
+error_below = 1e-3
+"#;
+
+#[rustfmt::skip]
+const PLANAR_CASES: &[Case] = &[
+    ("kinematic_gain = [0.3, 0.2]", "tip = { link = \"tool0\" }",
+        "test.toml:13:7: the tip of a planar arm is the end of its second link; `tip` is for robots from a URDF", "leave `tip` out"),
+    ("kinematic_gain = [0.3, 0.2]", "kinematic_gain = [0.3]",
+        "test.toml:13:18: `kinematic_gain` has 1 entry, but `arm` needs 2", ""),
+    ("kinematic_gain = [0.3, 0.2]", "kinematic_gain = [[0.3, 0], [0, 0.2]]",
+        "test.toml:14:10: `bounds` need `kinematic_gain` to be a number or a diagonal, not a matrix", ""),
+    ("kinematic_gain = [0.3, 0.2]", "kinematic_start.given = [1.0]",
+        "test.toml:13:25: `kinematic_start.given` has 1 entry, but `arm` needs 2", ""),
+    ("lower_m = [0.9, 0.7]", "lower_m = [1.2, 0.7]",
+        "test.toml:14:23: `bounds` is [1.2, 1.1], but the first must not exceed the second", ""),
+    ("lower_m = [0.9, 0.7]", "lower_m = 0.9",
+        "test.toml:14:22: found 0.9 where a list should stand", ""),
+    ("lower_m = [0.9, 0.7], ", "",
+        "test.toml:14:10: the key `lower_m` is missing", ""),
+    ("robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }\nstart.position_rad", "robot.point_mass = { dimension = 2, mass_kg = 1 }\nstart.position_m",
+        "test.toml:12:2: agent `arm`: the law `task_space` is made for planar arms and robots from a URDF", "for this robot there is `adaptive`, `known` and `position_only`"),
+    ("robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }\nstart.position_rad", "robot.urdf = { file = \"ur5e.urdf\" }\nstart.position_rad",
+        "test.toml:12:2: the law `task_space` needs `tip` for a robot from a URDF", "add tip = { link = \"…\" } with a link of the URDF"),
+    ("[law.task_space]\nkinematic_gain = [0.3, 0.2]\nbounds = { lower_m = [0.9, 0.7], upper_m = [1.1, 0.9] }", "[law.adaptive]",
+        "test.toml:10:2: agent `arm`: the adaptive law does not follow a target of its own; it goes with consensus", "write `reference.consensus`; laws that track are `position_only`, `task_space`, `attitude` and those of chains"),
+];
+
+#[test]
+fn mistakes_about_the_tip_of_a_urdf_are_reported_at_their_place() {
+    refused(TIP, TIP_CASES);
+}
+
+#[test]
+fn mistakes_about_the_tip_of_a_planar_arm_are_reported_at_their_place() {
+    refused(PLANAR, PLANAR_CASES);
+}
