@@ -165,9 +165,9 @@ fn path(setup: &Setup, agent: &AgentSetup) -> Option<Hypothesis> {
     }
     let fastest = |axis| {
         let speed = target.hull(axis, 1, Some(end_s));
-        speed.high.max(-speed.low).powi(2)
+        speed.high.max(-speed.low)
     };
-    let speed = (0..target.axes()).map(fastest).sum::<f64>().sqrt();
+    let speed = (0..target.axes()).map(fastest).map(|speed| speed * speed).sum::<f64>().sqrt();
     let shown = least - speed * 0.5 * end_s / f64::from(LOOKS);
     let (answer, because) = if shown > 0.0 {
         (Answer::HoldsOnHorizon, format!("its norm stays above {} until the end of the run", rounded(shown)))
