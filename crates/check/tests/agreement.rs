@@ -2,82 +2,18 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-use std::ops::ControlFlow;
+mod common;
 
+use common::{arm, column, edge, masses, noise, run, setup};
 use forwardstep_check::{Answer, NoPrediction, check, predict};
 use forwardstep_core::Gain;
 use forwardstep_core::reference::polynomial;
-use forwardstep_core::robot::PlanarLinks;
-use forwardstep_sim::delay::{Delay, Loss, Packet, PacketLink, RandomHold, Trace};
-use forwardstep_sim::formula::FormulaStep::{Add, Divide, Multiply, Number, Sin, Tanh, Time};
+use forwardstep_sim::delay::{Delay, Loss, PacketLink, RandomHold};
+use forwardstep_sim::formula::FormulaStep::{Add, Multiply, Number, Sin, Time};
 use forwardstep_sim::formula::{BoundedFormula, Formula};
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, Ending, Exchange, Law, Method, Network, Outcome, ReferenceKind, RobotKind, RobotSetup,
-    Setup, Signal, Solver, Start, TimeSpan, simulate,
-};
-
-/// Numbers that look arbitrary but are always the same.
-fn noise(seed: usize) -> f64 {
-    (12.9898 * seed as f64 + 0.7).sin()
-}
-
-fn arm(index: usize, roots_per_s: &[f64]) -> AgentSetup {
-    let links = PlanarLinks::uniform([1.0 + 0.2 * index as f64, 1.0], [1.0, 0.8]);
-    AgentSetup {
-        name: format!("arm-{}", index + 1),
-        robot: RobotSetup {
-            kind: RobotKind::PlanarArm,
-            theta: links.theta().to_vec(),
-            theta_names: vec![String::new(); 5],
-            axes: vec![axis("shoulder"), axis("elbow")],
-        },
-        roots_per_s: roots_per_s.to_vec(),
-        manipulability: 0.0,
-        law: Law::Adaptive { damping: Gain::Number(8.0), adaptation: Gain::Number(10.0), estimate_start: vec![0.0; 5] },
-        start: Start {
-            q: vec![noise(index), noise(index + 10)],
-            dq: vec![0.3 * noise(index + 20), 0.3 * noise(index + 30)],
-            rest: Vec::new(),
-            reference: Vec::new(),
-        },
-        enforce_limits: false,
-        target: None,
-        pushes: Vec::new(),
-    }
-}
-
-fn axis(name: &str) -> Axis {
-    Axis { name: name.into(), unit: AxisUnit::Radian, position_limits: None, velocity_limit: None, effort_limit: None }
-}
-
-fn edge(from: usize, to: usize, weight: f64, delay: usize) -> Edge {
-    Edge { from, to, weight: weight.into(), delay }
-}
-
-fn setup(agents: Vec<AgentSetup>, exchange: Exchange, schedule: Schedule, delays: Vec<Delay>, end_s: f64) -> Setup {
-    Setup {
-        network: Network { agents: agents.len(), schedule, delays, weights: Vec::new(), coupling: Default::default() },
-        agents,
-        reference: ReferenceKind::Consensus,
-        exchange,
-        time: TimeSpan { end_s, record_every_s: 0.01 },
-        solver: Solver { method: Method::Adaptive { rtol: 1e-9, atol: 1e-10 }, ..Solver::default() },
-        control: None,
-    }
-}
-
-fn run(setup: &Setup) -> Outcome {
-    let outcome = simulate(setup, &mut |_| ControlFlow::Continue(())).unwrap();
-    assert_eq!(outcome.ending, Ending::Completed);
-    outcome
-}
-
-fn column(outcome: &Outcome, agent: usize, signal: Signal, axis: usize) -> &[f64] {
-    let found = outcome.recording.columns.iter().find(|c| (c.agent, c.signal, c.axis) == (agent, signal, axis));
-    &found.unwrap().values
-}
+use forwardstep_sim::{Exchange, Law, Outcome, ReferenceKind, Setup, Signal, TimeSpan};
 
 /// A strongly connected triangle with different weights and delays, and a fourth that only listens.
 fn uneven() -> (Vec<Edge>, Vec<Delay>) {
@@ -251,23 +187,6 @@ fn spreads(setup: &Setup, outcome: &Outcome, axis: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Five point masses in motion with ϑ known and z(0) = q̇(0), so that s ≡ 0.
-fn masses(exchange: Exchange, order: usize, schedule: Schedule, delays: Vec<Delay>) -> Setup {
-    let agents = (0..5)
-        .map(|i| {
-            let mut agent = arm(i, &(0..order).map(|r| 1.0 + 0.7 * r as f64).collect::<Vec<_>>());
-            agent.robot.kind = RobotKind::PointMass { dimension: 2 };
-            agent.robot.theta = vec![1.0 + i as f64];
-            agent.robot.theta_names = vec!["mass".into()];
-            agent.law = Law::Known { damping: Gain::Number(5.0) };
-            agent
-        })
-        .collect();
-    let mut setup = setup(agents, exchange, schedule, delays, 12.0);
-    setup.time.record_every_s = 0.004;
-    setup
-}
-
 #[test]
 fn prop_spread_never_grows_whatever_switches_or_jumps() {
     let phase = |edges: &[(usize, usize, usize)], dwell_s| Phase {
@@ -355,108 +274,6 @@ fn prop_spread_never_grows_over_random_packets_and_weights() {
         }
         assert_eq!(predict(&setup), Err(NoPrediction::Switching));
     }
-}
-
-/// The answer to the hypothesis on delays, and on weights if there is one, of two agents that hear each other.
-fn links(delay: Delay, weight: Option<Formula>) -> (Answer, String, Option<(Answer, String)>) {
-    let end_s = 20.0;
-    let mut setup =
-        masses(Exchange::Position, 2, Schedule::Fixed(vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)]), vec![delay]);
-    setup.agents.truncate(2);
-    setup.network.agents = 2;
-    setup.time.end_s = end_s;
-    if let Some(formula) = weight {
-        setup.network.weights = vec![BoundedFormula::new(formula, end_s)];
-        setup.network.schedule = Schedule::Fixed(vec![
-            Edge { weight: Weight::Formula(0), ..edge(0, 1, 1.0, 0) },
-            Edge { weight: Weight::Formula(0), ..edge(1, 0, 1.0, 0) },
-        ]);
-        assert!(matches!(predict(&setup), Err(NoPrediction::VaryingWeight | NoPrediction::VaryingDelay)));
-    }
-    let report = check(&setup);
-    let find = |words: &str| {
-        report.hypotheses.iter().find(|h| h.requires.starts_with(words)).map(|h| (h.answer, h.because.clone()))
-    };
-    let (answer, because) = find("delays").unwrap();
-    (answer, because, find("weights"))
-}
-
-#[test]
-fn only_a_bounded_loss_gives_a_bounded_delay() {
-    let link = |loss, most_in_a_row| {
-        let link =
-            PacketLink { every_s: 0.02, first_s: 0.0, latency_s: 0.03, jitter_s: 0.02, loss, most_in_a_row, seed: 1 };
-        links(Delay::Packets(link.trace((0, 1), 20.0).unwrap().into()), None)
-    };
-    let (answer, because, _) = link(Loss::Never, None);
-    assert_eq!(
-        (answer, because.as_str()),
-        (Answer::Holds, "no delay exceeds 0.07 s; between the arrivals of packets it grows like t")
-    );
-    let (answer, because, _) = link(Loss::Bursts { enter: 0.1, leave: 0.2 }, Some(4));
-    assert_eq!(
-        (answer, because.as_str()),
-        (Answer::Holds, "no delay exceeds 0.15 s; between the arrivals of packets it grows like t")
-    );
-    for loss in [
-        Loss::Random { probability: 0.1 },
-        Loss::Bursts { enter: 0.01, leave: 0.2 },
-        Loss::Random { probability: 1e-9 },
-    ] {
-        let (answer, because, _) = link(loss, None);
-        assert_eq!(answer, Answer::HoldsOnHorizon);
-        assert!(because.contains("any number of packets may be lost one after another"), "{because}");
-    }
-    let packets = vec![Packet { send_s: 0.0, delay_s: Some(0.5) }, Packet { send_s: 1.0, delay_s: None }];
-    let (answer, because, _) = links(Delay::Packets(Trace::new(packets, 20.0).unwrap().into()), None);
-    assert_eq!(answer, Answer::HoldsOnHorizon);
-    assert!(
-        because.starts_with("no delay exceeds 20 s until the end of the run at 20 s") && because.contains("replayed"),
-        "{because}"
-    );
-    let hold = RandomHold::draw(1, (0, 1), [0.05, 0.4], [0.1, 0.8], 20.0).unwrap();
-    let (answer, because, _) = links(Delay::RandomHold(hold.into()), None);
-    assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 0.4 s"));
-}
-
-#[test]
-fn formulas_hold_for_ever_only_where_that_is_shown() {
-    let swing = |mean| Formula::new(vec![Number(mean), Number(0.5), Time, Sin, Multiply, Add]).unwrap();
-    let growing = Formula::new(vec![Number(0.1), Number(0.01), Time, Multiply, Add]).unwrap();
-    let delay = |formula: Formula| Delay::Formula(BoundedFormula::new(formula, 20.0).into());
-    let (answer, because, _) = links(delay(swing(0.5)), None);
-    assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 1 s"));
-    let (answer, because, _) = links(delay(growing.clone()), None);
-    assert_eq!(answer, Answer::HoldsOnHorizon);
-    assert!(because.starts_with("no delay exceeds 0.3 s until the end of the run"), "{because}");
-    let constant = || Delay::Constant { s: 0.1 };
-    let (_, _, weight) = links(constant(), Some(swing(1.0)));
-    assert_eq!(weight.unwrap(), (Answer::Holds, "weights that follow a formula stay from 0.5 to 1.5".to_owned()));
-    let (_, _, weight) = links(constant(), Some(growing));
-    assert_eq!(weight.unwrap().0, Answer::HoldsOnHorizon);
-    assert_eq!(links(constant(), None).2, None);
-
-    // What is said for ever is the bound for ever, not what the run happens to see of it: 0.2 + 0.1 tanh(t / 1000).
-    let rising =
-        Formula::new(vec![Number(0.2), Number(0.1), Time, Number(1000.0), Divide, Tanh, Multiply, Add]).unwrap();
-    let (answer, because, weight) = links(delay(rising.clone()), Some(rising));
-    assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 0.3 s"));
-    assert_eq!(weight.unwrap(), (Answer::Holds, "weights that follow a formula stay from 0.2 to 0.3".to_owned()));
-
-    // 0.2 + 0.1 sin t² swings faster and faster; the run sees a part of it on which it is uniformly continuous.
-    let swings =
-        |argument: &[_]| Formula::new([&[Number(0.2), Number(0.1)], argument, &[Sin, Multiply, Add]].concat()).unwrap();
-    let faster = swings(&[Time, Time, Multiply]);
-    let (answer, because, weight) = links(delay(faster.clone()), Some(faster));
-    assert_eq!(answer, Answer::HoldsOnHorizon);
-    assert!(because.contains("could not be shown to be uniformly continuous for ever"), "{because}");
-    let (answer, because) = weight.unwrap();
-    assert_eq!(answer, Answer::HoldsOnHorizon);
-    assert!(because.contains("could not be shown to be uniformly continuous for ever"), "{because}");
-    let steady = swings(&[Number(core::f64::consts::TAU), Time, Multiply, Number(3.0), Divide]);
-    let (answer, because, weight) = links(delay(steady.clone()), Some(steady));
-    assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 0.3 s"));
-    assert_eq!(weight.unwrap().0, Answer::Holds);
 }
 
 #[test]

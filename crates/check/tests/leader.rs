@@ -1,8 +1,11 @@
 //! Verdicts about following a leader.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod common;
+
 use std::sync::Arc;
 
+use common::{axis, edge};
 use forwardstep_check::{Answer, Report, check};
 use forwardstep_core::Gain;
 use forwardstep_core::reference::Choice;
@@ -24,13 +27,7 @@ fn mass(index: usize) -> AgentSetup {
             kind: RobotKind::PointMass { dimension: 1 },
             theta: vec![2.0],
             theta_names: vec!["mass".into()],
-            axes: vec![Axis {
-                name: "x".into(),
-                unit: AxisUnit::Metre,
-                position_limits: None,
-                velocity_limit: None,
-                effort_limit: None,
-            }],
+            axes: vec![Axis { unit: AxisUnit::Metre, ..axis("x") }],
         },
         roots_per_s: Vec::new(),
         manipulability: 0.0,
@@ -40,10 +37,6 @@ fn mass(index: usize) -> AgentSetup {
         enforce_limits: false,
         pushes: Vec::new(),
     }
-}
-
-fn edge(from: usize, to: usize) -> Edge {
-    Edge { from, to, weight: 1.0.into(), delay: 0 }
 }
 
 /// Two masses in a row behind the leader, vertex 2, which moves along `path`.
@@ -63,7 +56,7 @@ fn setup(design: FollowingDesign, path: Path, gain: f64) -> Setup {
         exchange: Exchange::PositionVelocity,
         network: Network {
             agents: 3,
-            schedule: Schedule::Fixed(vec![edge(2, 0), edge(0, 1)]),
+            schedule: Schedule::Fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0)]),
             delays: vec![Delay::Constant { s: 0.0 }],
             weights: Vec::new(),
             coupling: Default::default(),
@@ -117,7 +110,7 @@ fn thm8_curves_and_formulas_are_bounded_as_far_as_that_can_be_shown() {
 #[test]
 fn thm8_what_the_paper_does_not_speak_about_is_said() {
     let mut cut = setup(FollowingDesign::Continuous, wave(), 3.0);
-    cut.network.schedule = Schedule::Fixed(vec![edge(0, 1), edge(1, 0)]);
+    cut.network.schedule = Schedule::Fixed(vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)]);
     let (verdict, because) = answer(&check(&cut), "reaches everybody");
     assert!(verdict == Answer::Violated && because.contains("mass-1, mass-2"), "{because}");
 
@@ -127,7 +120,8 @@ fn thm8_what_the_paper_does_not_speak_about_is_said() {
 
     let mut switching = setup(FollowingDesign::Continuous, wave(), 3.0);
     let phase = |edges| Phase { dwell_s: 1.0, edges };
-    switching.network.schedule = Schedule::Periodic(vec![phase(vec![edge(2, 0)]), phase(vec![edge(0, 1)])]);
+    switching.network.schedule =
+        Schedule::Periodic(vec![phase(vec![edge(2, 0, 1.0, 0)]), phase(vec![edge(0, 1, 1.0, 0)])]);
     let report = check(&switching);
     assert_eq!(answer(&report, "graph is fixed").0, Answer::NotCovered);
     assert_eq!(answer(&report, "reaches everybody").0, Answer::Holds);
@@ -140,7 +134,7 @@ fn prop_a_swarm_needs_links_both_ways_and_enough_coupling() {
         setup.network.schedule = Schedule::Fixed(edges.to_vec());
         check(&setup)
     };
-    let both = [edge(2, 0), edge(0, 1), edge(1, 0)];
+    let both = [edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)];
     // λ of [[2, −1], [−1, 1]] is (3 − √5)/2 = 0.382, and β + κ₀⁴/(2 a κ₁) = 2 + 1/6.
     assert_eq!(answer(&swarm(5.7, &both), "k λ").0, Answer::Holds);
     assert_eq!(answer(&swarm(5.6, &both), "k λ").0, Answer::NotCovered);

@@ -2,8 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-use std::ops::ControlFlow;
+mod common;
 
+use common::{axis, column, edge, run, setup};
 use forwardstep_check::{Answer, NoPrediction, check, predict};
 use forwardstep_core::Gain;
 use forwardstep_core::reference::polynomial;
@@ -13,20 +14,12 @@ use forwardstep_sim::graph::Edge;
 use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push, Table};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, Ending, Exchange, Law, Method, Network, Outcome, ReferenceKind, RobotKind, RobotSetup,
-    Setup, Signal, Solver, Start, TimeSpan, simulate,
+    AgentSetup, Exchange, Law, Method, Outcome, ReferenceKind, RobotKind, RobotSetup, Setup, Signal, Start,
 };
 
 const DAMPING: f64 = 5.0;
 
 fn agent(index: usize, roots_per_s: &[f64], kind: RobotKind, theta: Vec<f64>, law: Law) -> AgentSetup {
-    let axis = |name: &str| Axis {
-        name: name.into(),
-        unit: AxisUnit::Radian,
-        position_limits: None,
-        velocity_limit: None,
-        effort_limit: None,
-    };
     let start = |k: f64| (12.9898 * (index as f64 + k) + 0.7).sin();
     AgentSetup {
         name: format!("agent-{}", index + 1),
@@ -63,38 +56,16 @@ fn mass(index: usize, roots_per_s: &[f64]) -> AgentSetup {
 
 /// A ring with different weights and constant delays, one of which is none.
 fn ring(agents: Vec<AgentSetup>, exchange: Exchange, end_s: f64) -> Setup {
-    let edge = |from, to, weight: f64, delay| Edge { from, to, weight: weight.into(), delay };
     let edges: Vec<Edge> = match agents.len() {
         1 => Vec::new(),
         2 => vec![edge(0, 1, 1.5, 0), edge(1, 0, 0.7, 1)],
         _ => vec![edge(0, 1, 1.5, 0), edge(1, 2, 0.7, 1), edge(2, 0, 1.1, 2), edge(1, 0, 0.4, 0)],
     };
-    Setup {
-        network: Network {
-            agents: agents.len(),
-            schedule: Schedule::Fixed(edges),
-            delays: [0.3, 0.0, 0.75].map(|s| Delay::Constant { s }).to_vec(),
-            weights: Vec::new(),
-            coupling: Default::default(),
-        },
-        agents,
-        reference: ReferenceKind::Consensus,
-        exchange,
-        time: TimeSpan { end_s, record_every_s: 5.0 },
-        solver: Solver { method: Method::Adaptive { rtol: 1e-10, atol: 1e-11 }, ..Solver::default() },
-        control: None,
-    }
-}
-
-fn run(setup: &Setup) -> Outcome {
-    let outcome = simulate(setup, &mut |_| ControlFlow::Continue(())).unwrap();
-    assert_eq!(outcome.ending, Ending::Completed);
-    outcome
-}
-
-fn column(outcome: &Outcome, agent: usize, signal: Signal, axis: usize) -> &[f64] {
-    let found = outcome.recording.columns.iter().find(|c| (c.agent, c.signal, c.axis) == (agent, signal, axis));
-    &found.unwrap().values
+    let delays = [0.3, 0.0, 0.75].map(|s| Delay::Constant { s }).to_vec();
+    let mut setup = setup(agents, exchange, Schedule::Fixed(edges), delays, end_s);
+    setup.time.record_every_s = 5.0;
+    setup.solver.method = Method::Adaptive { rtol: 1e-10, atol: 1e-11 };
+    setup
 }
 
 fn ends_at(setup: &Setup, outcome: &Outcome, axis: usize, want: f64) {

@@ -1,0 +1,116 @@
+//! Verdicts about links: packets, random holds, formulas.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+mod common;
+
+use common::{edge, masses};
+use forwardstep_check::{Answer, NoPrediction, check, predict};
+use forwardstep_sim::Exchange;
+use forwardstep_sim::delay::{Delay, Loss, Packet, PacketLink, RandomHold, Trace};
+use forwardstep_sim::formula::FormulaStep::{Add, Divide, Multiply, Number, Sin, Tanh, Time};
+use forwardstep_sim::formula::{BoundedFormula, Formula};
+use forwardstep_sim::graph::{Edge, Weight};
+use forwardstep_sim::schedule::Schedule;
+
+/// The answer to the hypothesis on delays, and on weights if there is one, of two agents that hear each other.
+fn links(delay: Delay, weight: Option<Formula>) -> (Answer, String, Option<(Answer, String)>) {
+    let end_s = 20.0;
+    let mut setup =
+        masses(Exchange::Position, 2, Schedule::Fixed(vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)]), vec![delay]);
+    setup.agents.truncate(2);
+    setup.network.agents = 2;
+    setup.time.end_s = end_s;
+    if let Some(formula) = weight {
+        setup.network.weights = vec![BoundedFormula::new(formula, end_s)];
+        setup.network.schedule = Schedule::Fixed(vec![
+            Edge { weight: Weight::Formula(0), ..edge(0, 1, 1.0, 0) },
+            Edge { weight: Weight::Formula(0), ..edge(1, 0, 1.0, 0) },
+        ]);
+        assert!(matches!(predict(&setup), Err(NoPrediction::VaryingWeight | NoPrediction::VaryingDelay)));
+    }
+    let report = check(&setup);
+    let find = |words: &str| {
+        report.hypotheses.iter().find(|h| h.requires.starts_with(words)).map(|h| (h.answer, h.because.clone()))
+    };
+    let (answer, because) = find("delays").unwrap();
+    (answer, because, find("weights"))
+}
+
+#[test]
+fn only_a_bounded_loss_gives_a_bounded_delay() {
+    let link = |loss, most_in_a_row| {
+        let link =
+            PacketLink { every_s: 0.02, first_s: 0.0, latency_s: 0.03, jitter_s: 0.02, loss, most_in_a_row, seed: 1 };
+        links(Delay::Packets(link.trace((0, 1), 20.0).unwrap().into()), None)
+    };
+    let (answer, because, _) = link(Loss::Never, None);
+    assert_eq!(
+        (answer, because.as_str()),
+        (Answer::Holds, "no delay exceeds 0.07 s; between the arrivals of packets it grows like t")
+    );
+    let (answer, because, _) = link(Loss::Bursts { enter: 0.1, leave: 0.2 }, Some(4));
+    assert_eq!(
+        (answer, because.as_str()),
+        (Answer::Holds, "no delay exceeds 0.15 s; between the arrivals of packets it grows like t")
+    );
+    for loss in [
+        Loss::Random { probability: 0.1 },
+        Loss::Bursts { enter: 0.01, leave: 0.2 },
+        Loss::Random { probability: 1e-9 },
+    ] {
+        let (answer, because, _) = link(loss, None);
+        assert_eq!(answer, Answer::HoldsOnHorizon);
+        assert!(because.contains("any number of packets may be lost one after another"), "{because}");
+    }
+    let packets = vec![Packet { send_s: 0.0, delay_s: Some(0.5) }, Packet { send_s: 1.0, delay_s: None }];
+    let (answer, because, _) = links(Delay::Packets(Trace::new(packets, 20.0).unwrap().into()), None);
+    assert_eq!(answer, Answer::HoldsOnHorizon);
+    assert!(
+        because.starts_with("no delay exceeds 20 s until the end of the run at 20 s") && because.contains("replayed"),
+        "{because}"
+    );
+    let hold = RandomHold::draw(1, (0, 1), [0.05, 0.4], [0.1, 0.8], 20.0).unwrap();
+    let (answer, because, _) = links(Delay::RandomHold(hold.into()), None);
+    assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 0.4 s"));
+}
+
+#[test]
+fn formulas_hold_for_ever_only_where_that_is_shown() {
+    let swing = |mean| Formula::new(vec![Number(mean), Number(0.5), Time, Sin, Multiply, Add]).unwrap();
+    let growing = Formula::new(vec![Number(0.1), Number(0.01), Time, Multiply, Add]).unwrap();
+    let delay = |formula: Formula| Delay::Formula(BoundedFormula::new(formula, 20.0).into());
+    let (answer, because, _) = links(delay(swing(0.5)), None);
+    assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 1 s"));
+    let (answer, because, _) = links(delay(growing.clone()), None);
+    assert_eq!(answer, Answer::HoldsOnHorizon);
+    assert!(because.starts_with("no delay exceeds 0.3 s until the end of the run"), "{because}");
+    let constant = || Delay::Constant { s: 0.1 };
+    let (_, _, weight) = links(constant(), Some(swing(1.0)));
+    assert_eq!(weight.unwrap(), (Answer::Holds, "weights that follow a formula stay from 0.5 to 1.5".to_owned()));
+    let (_, _, weight) = links(constant(), Some(growing));
+    assert_eq!(weight.unwrap().0, Answer::HoldsOnHorizon);
+    assert_eq!(links(constant(), None).2, None);
+
+    // What is said for ever is the bound for ever, not what the run happens to see of it: 0.2 + 0.1 tanh(t / 1000).
+    let rising =
+        Formula::new(vec![Number(0.2), Number(0.1), Time, Number(1000.0), Divide, Tanh, Multiply, Add]).unwrap();
+    let (answer, because, weight) = links(delay(rising.clone()), Some(rising));
+    assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 0.3 s"));
+    assert_eq!(weight.unwrap(), (Answer::Holds, "weights that follow a formula stay from 0.2 to 0.3".to_owned()));
+
+    // 0.2 + 0.1 sin t² swings faster and faster; the run sees a part of it on which it is uniformly continuous.
+    let swings =
+        |argument: &[_]| Formula::new([&[Number(0.2), Number(0.1)], argument, &[Sin, Multiply, Add]].concat()).unwrap();
+    let faster = swings(&[Time, Time, Multiply]);
+    let (answer, because, weight) = links(delay(faster.clone()), Some(faster));
+    assert_eq!(answer, Answer::HoldsOnHorizon);
+    assert!(because.contains("could not be shown to be uniformly continuous for ever"), "{because}");
+    let (answer, because) = weight.unwrap();
+    assert_eq!(answer, Answer::HoldsOnHorizon);
+    assert!(because.contains("could not be shown to be uniformly continuous for ever"), "{because}");
+    let steady = swings(&[Number(core::f64::consts::TAU), Time, Multiply, Number(3.0), Divide]);
+    let (answer, because, weight) = links(delay(steady.clone()), Some(steady));
+    assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 0.3 s"));
+    assert_eq!(weight.unwrap().0, Answer::Holds);
+}
