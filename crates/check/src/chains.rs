@@ -50,8 +50,8 @@ fn divisor(setup: &Setup) -> Hypothesis {
     let (answer, because) = match chains(setup).find(|(.., model)| !fixed(model)) {
         None => (Answer::Holds, "it is constant".to_owned()),
         Some((agent, law, _)) => (
-            Answer::HoldsOnHorizon,
-            format!("watched: the run ends where that of {} comes closer to zero than {}", agent.name, law.floor),
+            Answer::Watched,
+            format!("the run ends where that of {} comes closer to zero than {}", agent.name, law.floor),
         ),
     };
     Hypothesis { requires: "the factor of the input stays away from zero".into(), answer, because }
@@ -71,7 +71,7 @@ fn regressors(setup: &Setup) -> Option<Hypothesis> {
     let (agent, ..) = chains(setup).find(|(_, law, model)| needs(law, model))?;
     Some(Hypothesis {
         requires: "regressors and their derivatives are bounded along the run".into(),
-        answer: Answer::HoldsOnHorizon,
+        answer: Answer::Watched,
         because: format!(
             "a run that is completed keeps the states of {} bounded, and with them its regressors",
             agent.name

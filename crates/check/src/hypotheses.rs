@@ -9,7 +9,7 @@ use crate::laws;
 use crate::leader;
 use crate::links;
 use crate::sampled::{digital, limited_actuators};
-use crate::tracking::{self, bounded_target, is_tracking};
+use crate::tracking::{self, bounded_targets, is_tracking};
 use crate::verdict::{Answer, Hypothesis, Report};
 
 /// Which theorem speaks about `setup`, and whether its hypotheses hold.
@@ -44,7 +44,7 @@ pub fn check(setup: &Setup) -> Report {
     if setup.exchange == Exchange::PositionVelocity {
         hypotheses.push(common_first_root(setup));
     }
-    hypotheses.extend(setup.agents.iter().filter_map(|agent| bounded_target(setup, agent)));
+    hypotheses.extend(bounded_targets(setup));
     hypotheses.extend(laws::of_laws(setup));
     if setup.agents.iter().any(|agent| agent.law.is_lagrangian()) {
         hypotheses.push(gains(setup));
@@ -91,7 +91,7 @@ fn same_roots(setup: &Setup) -> bool {
 }
 
 /// Names of agents for a sentence; long lists are cut.
-fn names(setup: &Setup, agents: &[usize]) -> String {
+pub(crate) fn names(setup: &Setup, agents: &[usize]) -> String {
     const SHOWN: usize = 6;
     let shown: Vec<&str> = agents.iter().take(SHOWN).map(|agent| setup.agents[*agent].name.as_str()).collect();
     let rest = agents.len().saturating_sub(SHOWN);

@@ -11,7 +11,7 @@ use forwardstep_sim::{Law, Setup};
 use crate::hypotheses::{external_torques, gains, seconds, unlimited_torque};
 use crate::links;
 use crate::sampled::digital;
-use crate::verdict::{Answer, Hypothesis, Report};
+use crate::verdict::{Answer, Hypothesis, Report, rounded_up};
 
 /// Times at which a leader is looked at whose bounds could not be shown.
 const LOOKS: u32 = 20_000;
@@ -84,38 +84,26 @@ fn gain(setup: &Setup, following: &Following) -> Hypothesis {
     let (for_ever, on_run) = (following.drive_bound(None), following.drive_bound(Some(end_s)));
     let seen = following.leader.trajectory.sampled_peak(&following.drive(), end_s, LOOKS);
     let (answer, because) = if seen >= gamma {
-        (Answer::Violated, format!("γ is {gamma}, but it reaches {} on the run", rounded(seen)))
+        (Answer::Violated, format!("γ is {gamma}, but it reaches {} on the run", rounded_up(seen)))
     } else if for_ever < gamma {
-        (Answer::Holds, format!("γ is {gamma}, and it never exceeds {}", rounded(for_ever)))
+        (Answer::Holds, format!("γ is {gamma}, and it never exceeds {}", rounded_up(for_ever)))
     } else if on_run < gamma {
         let beyond = if for_ever.is_finite() {
-            format!("for all time only {} could be shown", rounded(for_ever))
+            format!("for all time only {} could be shown", rounded_up(for_ever))
         } else {
             "for all time no bound could be shown".to_owned()
         };
         let because =
-            format!("γ is {gamma}, and it does not exceed {} until {} s; {beyond}", rounded(on_run), seconds(end_s));
+            format!("γ is {gamma}, and it does not exceed {} until {} s; {beyond}", rounded_up(on_run), seconds(end_s));
         (Answer::HoldsOnHorizon, because)
     } else {
         let because = format!(
             "γ is {gamma}, and by sampling, which is no proof, it reaches {} on the run; no bound below γ could be shown",
-            rounded(seen)
+            rounded_up(seen)
         );
         (Answer::NotCovered, because)
     };
     Hypothesis { requires, answer, because }
-}
-
-/// Rounded up to four digits.
-fn rounded(value: f64) -> f64 {
-    let four = |value: f64| format!("{value:.3e}");
-    let number = |text: &str| text.parse::<f64>().unwrap_or(value);
-    let near = four(value);
-    if number(&near) >= value || !value.is_finite() {
-        return number(&near);
-    }
-    let exponent: i32 = near.rsplit('e').next().and_then(|exponent| exponent.parse().ok()).unwrap_or(0);
-    number(&four(number(&near) + number(&format!("1e{}", exponent - 3))))
 }
 
 /// A spanning tree whose root is the leader: since the leader hears nobody, any tree has it as its root.
@@ -185,10 +173,10 @@ fn coupled(setup: &Setup, following: &Following, coupling: f64) -> Hypothesis {
         }
     }
     match Gain::Matrix(shifted).resolve(n, &[]) {
-        Ok(_) => Hypothesis { requires, answer: Answer::Holds, because: format!("k λ exceeds {}", rounded(least)) },
+        Ok(_) => Hypothesis { requires, answer: Answer::Holds, because: format!("k λ exceeds {}", rounded_up(least)) },
         Err(_) => not(&format!(
             "k λ could not be shown to exceed {}: a larger coupling or larger weights would",
-            rounded(least)
+            rounded_up(least)
         )),
     }
 }

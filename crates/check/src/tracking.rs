@@ -1,11 +1,12 @@
 //! One agent and a target of its own: Sections V-A and V-C.
 
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{AgentSetup, Law, ReferenceKind, Setup};
 
-use crate::hypotheses::{gains, unlimited_torque};
+use crate::hypotheses::{gains, names, unlimited_torque};
 use crate::laws;
 use crate::sampled::digital;
 use crate::verdict::{Answer, Hypothesis, Report};
@@ -20,8 +21,7 @@ pub(crate) fn check(setup: &Setup) -> Report {
     let (theorem, promises) = laws::theorem(setup).unwrap_or_else(|| {
         ("a theorem of Section V for every agent".into(), "every agent reaches its own target".into())
     });
-    let mut hypotheses: Vec<Hypothesis> =
-        setup.agents.iter().filter_map(|agent| bounded_target(setup, agent)).collect();
+    let mut hypotheses = bounded_targets(setup);
     hypotheses.extend(laws::of_laws(setup));
     if setup.agents.iter().any(|agent| agent.law.is_lagrangian()) {
         hypotheses.push(gains(setup));
@@ -42,26 +42,43 @@ fn derivatives(agent: &AgentSetup) -> usize {
     }
 }
 
-/// Whether the target, or the offset, of an agent is bounded with as many derivatives as its law needs.
-pub(crate) fn bounded_target(setup: &Setup, agent: &AgentSetup) -> Option<Hypothesis> {
-    let target = agent.target.as_ref()?;
-    let needed = derivatives(agent);
-    let ordinal = ["zeroth", "first", "second", "third", "fourth"][needed.min(4)];
+/// Whether the targets, or the offsets, are bounded with as many derivatives as the laws need. Agents with the same answer
+/// share a hypothesis.
+pub(crate) fn bounded_targets(setup: &Setup) -> Vec<Hypothesis> {
+    let mut groups: BTreeMap<(usize, Answer), Vec<usize>> = BTreeMap::new();
+    for (index, agent) in setup.agents.iter().enumerate() {
+        if let Some(target) = &agent.target {
+            let needed = derivatives(agent).min(4);
+            groups.entry((needed, bounded(setup, target, needed))).or_default().push(index);
+        }
+    }
     // A formation may travel: of an offset only the derivatives count.
-    let (what, lowest) = if is_tracking(setup) { ("target", 0) } else { ("offset", 1) };
-    let requires = match lowest {
-        0 => format!("the {what} of {} and its derivatives up to the {ordinal} are bounded", agent.name),
-        _ => format!("the derivatives of the {what} of {} up to the {ordinal} are bounded", agent.name),
+    let subject = |agents: &[usize]| match (is_tracking(setup), names(setup, agents)) {
+        (true, names) => format!("the target of {names} and its derivatives"),
+        (false, names) => format!("the derivatives of the offset of {names}"),
     };
-    let bounded = |until_s: Option<f64>| all_bounded(target, lowest..=needed, until_s);
-    let (answer, because) = if bounded(None) {
-        (Answer::Holds, "interval arithmetic bounds them for all time".to_owned())
-    } else if bounded(Some(setup.time.end_s)) {
-        (Answer::HoldsOnHorizon, "interval arithmetic bounds them on the run, not for all time".to_owned())
+    let hypothesis = |((needed, answer), agents): ((usize, Answer), Vec<usize>)| {
+        let ordinal = ["zeroth", "first", "second", "third", "fourth"][needed];
+        let because = match answer {
+            Answer::Holds => "interval arithmetic bounds them for all time",
+            Answer::HoldsOnHorizon => "interval arithmetic bounds them on the run, not for all time",
+            _ => "they could not be shown to be bounded, not even on the run",
+        };
+        let requires = format!("{} up to the {ordinal} are bounded", subject(&agents));
+        Hypothesis { requires, answer, because: because.into() }
+    };
+    groups.into_iter().map(hypothesis).collect()
+}
+
+fn bounded(setup: &Setup, target: &Trajectory, needed: usize) -> Answer {
+    let lowest = if is_tracking(setup) { 0 } else { 1 };
+    if all_bounded(target, lowest..=needed, None) {
+        Answer::Holds
+    } else if all_bounded(target, lowest..=needed, Some(setup.time.end_s)) {
+        Answer::HoldsOnHorizon
     } else {
-        (Answer::NotCovered, "they could not be shown to be bounded, not even on the run".to_owned())
-    };
-    Some(Hypothesis { requires, answer, because })
+        Answer::NotCovered
+    }
 }
 
 fn all_bounded(target: &Trajectory, derivatives: RangeInclusive<usize>, until_s: Option<f64>) -> bool {

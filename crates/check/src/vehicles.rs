@@ -4,7 +4,7 @@ use forwardstep_core::controller::Floor;
 use forwardstep_sim::vehicles::{ThrustKind, ThrustLaw};
 use forwardstep_sim::{AgentSetup, Law, RobotKind, Setup};
 
-use crate::verdict::{Answer, Hypothesis};
+use crate::verdict::{Answer, Hypothesis, rounded};
 
 /// Where a design comes from.
 pub(crate) fn source(design: ThrustKind) -> &'static str {
@@ -85,14 +85,15 @@ fn thrust(setup: &Setup) -> Hypothesis {
             requires,
             answer: Answer::NotCovered,
             because: format!(
-                "that of {} is kept above {floor} N by a saturation; where it acts the vehicle does not do what the law asks for",
-                agent.name
+                "that of {} is kept above {} N by a saturation; where it acts the vehicle does not do what the law asks for",
+                agent.name,
+                rounded(floor)
             ),
         },
         None => Hypothesis {
             requires,
-            answer: Answer::HoldsOnHorizon,
-            because: format!("watched: the run stops where one falls to its floor, the lowest of which is {lowest} N"),
+            answer: Answer::Watched,
+            because: format!("the run ends where one falls to its floor, the lowest of which is {} N", rounded(lowest)),
         },
     }
 }

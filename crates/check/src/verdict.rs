@@ -22,13 +22,15 @@ pub struct Hypothesis {
     pub because: String,
 }
 
-/// The four answers, from best to worst.
+/// The answers, from best to worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Answer {
     /// For all time.
     Holds,
     /// Only shown on the horizon of the run.
     HoldsOnHorizon,
+    /// Only a run can show it: one in which it fails stops there.
+    Watched,
     /// The paper does not speak about this case.
     NotCovered,
     /// It fails, and `because` names a witness.
@@ -36,11 +38,13 @@ pub enum Answer {
 }
 
 impl Answer {
-    /// The words used in tables: `holds`, `holds on [0, end]`, `not covered by the paper`, `violated`.
+    /// The words used in tables: `holds`, `holds on [0, end]`, `watched during the run`,
+    /// `not covered by the paper`, `violated`.
     pub fn words(self) -> &'static str {
         match self {
             Answer::Holds => "holds",
             Answer::HoldsOnHorizon => "holds on [0, end]",
+            Answer::Watched => "watched during the run",
             Answer::NotCovered => "not covered by the paper",
             Answer::Violated => "violated",
         }
@@ -52,4 +56,21 @@ impl Report {
     pub fn worst(&self) -> Answer {
         self.hypotheses.iter().map(|h| h.answer).max().unwrap_or(Answer::Holds)
     }
+}
+
+/// A number with at most four digits, for reading.
+pub(crate) fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
+/// Rounded up to four digits.
+pub(crate) fn rounded_up(value: f64) -> f64 {
+    let four = |value: f64| format!("{value:.3e}");
+    let number = |text: &str| text.parse::<f64>().unwrap_or(value);
+    let near = four(value);
+    if number(&near) >= value || !value.is_finite() {
+        return number(&near);
+    }
+    let exponent: i32 = near.rsplit('e').next().and_then(|exponent| exponent.parse().ok()).unwrap_or(0);
+    number(&four(number(&near) + number(&format!("1e{}", exponent - 3))))
 }

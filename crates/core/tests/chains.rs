@@ -4,7 +4,7 @@
 use forwardstep_core::LengthError;
 use forwardstep_core::controller::{
     AdaptiveBackstepping, Asked, BacksteppingGains, ChainError, Controller, Following, Given, Guide, GuideError,
-    Immersion, Jet, LinearAdaptive, Linearising, Trouble, Truth,
+    Immersion, Jet, Linearising, Trouble, Truth,
 };
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::{Cascade, CascadeError, CascadeTerms, Chain, Closures, Formulas, Plant, total};
@@ -156,7 +156,7 @@ fn eq_lyapunov_of_linearisation_and_of_adaptation_loses_k_s_squared() {
     let plant = Chain { terms: third_order(), theta: THETA.to_vec() };
     let known = Linearising::new(third_order(), THETA.to_vec(), following(consensus(&[1.0, 2.0]))).unwrap();
     let adaptive =
-        LinearAdaptive::new(third_order(), following(consensus(&[1.0, 2.0])), GAMMA.to_vec(), vec![0.0; 3]).unwrap();
+        Linearising::adaptive(third_order(), following(consensus(&[1.0, 2.0])), GAMMA.to_vec(), vec![0.0; 3]).unwrap();
     for seed in 1..100 {
         let (x, state) = (numbers(seed, 3), numbers(seed + 1000, 4));
         let run = close(&known, &plant, &x, &state[..1], &[]);
@@ -277,7 +277,7 @@ fn a_factor_that_vanishes_is_told() {
 
 #[test]
 fn what_does_not_fit_is_an_error_with_its_numbers() {
-    let built = |guide, p| LinearAdaptive::new(third_order(), following(guide), vec![1.0; p], vec![0.0; 3]);
+    let built = |guide, p| Linearising::adaptive(third_order(), following(guide), vec![1.0; p], vec![0.0; 3]);
     let few = GuideError::TooFew { least: 2, got: 1 };
     assert_eq!(built(consensus(&[1.0]), 3).unwrap_err(), ChainError::Guide(few));
     let few = GuideError::TooFew { least: 3, got: 2 };

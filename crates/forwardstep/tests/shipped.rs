@@ -4,9 +4,10 @@
 use std::ops::ControlFlow;
 
 use forwardstep::check::{Answer, check};
+use forwardstep::core::Gain;
 use forwardstep::io::output::Metrics;
 use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
-use forwardstep::sim::{Ending, simulate};
+use forwardstep::sim::{Ending, Law, TaskSpaceLaw, simulate};
 
 fn shows_what_it_says(name: &str) {
     let scenario = open_scenario(name).unwrap_or_else(|error| panic!("{error}"));
@@ -18,7 +19,7 @@ fn shows_what_it_says(name: &str) {
         "backstepping" | "six-arms-over-radio" | "formation" | "mixed-network" | "swarm-tracking" => {
             &[Answer::NotCovered]
         }
-        _ => &[Answer::Holds, Answer::HoldsOnHorizon],
+        _ => &[Answer::Holds, Answer::HoldsOnHorizon, Answer::Watched],
     };
     assert!(expected.contains(&worst), "{name}: {}", worst.words());
     let outcome = simulate(setup, &mut |_| ControlFlow::Continue(())).unwrap();
@@ -26,6 +27,34 @@ fn shows_what_it_says(name: &str) {
     let metrics = Metrics::of(setup, &outcome.recording, None, scenario.goal);
     let goal = scenario.goal.unwrap();
     assert!(goal.is_met(setup, &outcome, &metrics), "{}: {:?}", goal.words(), metrics.disagreement);
+}
+
+/// Its gains were found by trial. With any of them a fifth smaller or larger the goal is met as well.
+#[test]
+fn prop_the_goal_of_theorem_6_does_not_hang_on_one_gain() {
+    let scenario = open_scenario("theorem-6").unwrap();
+    let scaled = |gain: &Gain, factor: f64| match gain {
+        Gain::Number(number) => Gain::Number(factor * number),
+        other => panic!("{other:?}"),
+    };
+    let changes: [fn(&mut TaskSpaceLaw, &dyn Fn(&Gain) -> Gain, f64); 6] = [
+        |law, scaled, _| law.damping = scaled(&law.damping),
+        |law, scaled, _| law.adaptation = scaled(&law.adaptation),
+        |law, scaled, _| law.task_gain = scaled(&law.task_gain),
+        |law, scaled, _| law.kinematic_adaptation = law.kinematic_adaptation.as_ref().map(scaled),
+        |law, _, factor| law.kappa *= factor,
+        |law, _, factor| law.alpha_per_s *= factor,
+    ];
+    for (index, change) in changes.iter().enumerate() {
+        for factor in [0.8, 1.2] {
+            let mut setup = scenario.setup.clone();
+            let Law::TaskSpace(law) = &mut setup.agents[0].law else { panic!("{:?}", setup.agents[0].law) };
+            change(law, &|gain| scaled(gain, factor), factor);
+            let outcome = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap();
+            let metrics = Metrics::of(&setup, &outcome.recording, None, scenario.goal);
+            assert!(scenario.goal.unwrap().is_met(&setup, &outcome, &metrics), "gain {index}, {factor}");
+        }
+    }
 }
 
 macro_rules! shipped {

@@ -69,7 +69,7 @@ pub enum ChainStep {
         /// k, 1/s.
         gain_per_s: f64,
     },
-    /// Adaptation of (33); see [`forwardstep_core::controller::LinearAdaptive`].
+    /// Adaptation of (33); see [`forwardstep_core::controller::Linearising`].
     Adaptive {
         /// k, 1/s.
         gain_per_s: f64,

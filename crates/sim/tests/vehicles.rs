@@ -1,132 +1,20 @@
 //! Vehicles with one thrust, (44)–(58), and rotorcraft: the identities of the proofs along real runs, agreement, formations.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod common;
+
 use std::ops::ControlFlow;
 
+use common::vehicles::{ADAPTIVE, DIFFERENTIABLE, G, rotorcraft, three};
+use common::{RTOL, assert_first_order, column, last, ledger_error, run, truth};
 use forwardstep_core::Gain;
-use forwardstep_core::controller::{Floor, Yaw};
+use forwardstep_core::controller::Floor;
 use forwardstep_core::plant::Rotors;
 use forwardstep_sim::delay::Delay;
-use forwardstep_sim::graph::{Edge, Weight};
-use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::trajectory::{Path, Sinusoid, Trajectory};
 use forwardstep_sim::vehicles::{ThrustKind, ThrustLaw};
 use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, BreakdownCause, Control, Ending, Exchange, Law, Method, Network, Outcome,
-    ReferenceKind, RobotKind, RobotSetup, Setup, SetupError, Signal, Solver, Start, TimeSpan, simulate,
+    BreakdownCause, Ending, Exchange, Law, Outcome, ReferenceKind, RobotKind, Setup, SetupError, Signal, simulate,
 };
-
-const G: f64 = 9.81;
-const RTOL: f64 = 1e-8;
-const DIFFERENTIABLE: ThrustKind = ThrustKind::Differentiable { alpha_star: 3.0, stiffness: 4.0 };
-const ADAPTIVE: ThrustKind = ThrustKind::Adaptive { alpha_star: 3.0, gamma_star: 0.2, estimate_start: 0.8 };
-
-fn rotorcraft() -> RobotKind {
-    RobotKind::Rotorcraft {
-        gravity: G,
-        inertia: Gain::Matrix(vec![0.02, 0.001, 0.0, 0.001, 0.02, 0.0, 0.0, 0.0, 0.04]),
-        rotors: None,
-    }
-}
-
-fn agent(index: usize, kind: RobotKind, design: ThrustKind) -> AgentSetup {
-    let axis = |name: &str| Axis {
-        name: name.into(),
-        unit: AxisUnit::Metre,
-        position_limits: None,
-        velocity_limit: None,
-        effort_limit: None,
-    };
-    let kg = 1.0 + 0.3 * index as f64;
-    let q = [[1.0, 0.0, -1.0], [0.0, 1.5, -2.0], [-1.0, 0.5, -1.5]][index];
-    let mut rest = vec![0.0, 0.0, 0.0, 1.0];
-    rest.resize(kind.rest_len(), 0.0);
-    AgentSetup {
-        name: format!("craft-{index}"),
-        robot: RobotSetup {
-            kind,
-            theta: vec![kg],
-            theta_names: vec!["mass".into()],
-            axes: vec![axis("x"), axis("y"), axis("z")],
-        },
-        roots_per_s: vec![1.0, 1.5, 2.0][..design.order()].to_vec(),
-        manipulability: 0.0,
-        law: Law::Thrust(ThrustLaw {
-            design,
-            yaw: Yaw { heading: 0.5, rate: 0.0, gain: 1.0 },
-            floor: Floor::Stops(1.0),
-            thrust_start: None,
-            bandwidth_per_s: 30.0,
-        }),
-        target: None,
-        start: Start { q: q.to_vec(), dq: vec![0.2, -0.1, 0.1], rest, reference: vec![vec![0.0; 3]] },
-        enforce_limits: false,
-        pushes: Vec::new(),
-    }
-}
-
-/// A circle of radius one about where all agree, and a drift.
-fn turning(index: usize) -> Trajectory {
-    let phase_rad = 2.1 * index as f64;
-    let wave = |phase_rad| Sinusoid { amplitude: 1.0, rad_per_s: 0.4, phase_rad };
-    let path = |offset, waves| Path::Sinusoids { offset, waves };
-    Trajectory::new(vec![
-        path(0.0, vec![wave(phase_rad)]),
-        path(0.0, vec![wave(phase_rad + core::f64::consts::FRAC_PI_2)]),
-        path(-0.2 * index as f64, Vec::new()),
-    ])
-    .unwrap()
-}
-
-fn setup(agents: Vec<AgentSetup>, end_s: f64) -> Setup {
-    let edge = |from, to| Edge { from, to, weight: Weight::Constant(1.0), delay: 0 };
-    let phase = |edges| Phase { dwell_s: 0.8, edges };
-    let schedule = Schedule::Periodic(vec![phase(vec![edge(0, 1), edge(1, 0)]), phase(vec![edge(1, 2), edge(2, 0)])]);
-    let network = Network {
-        agents: agents.len(),
-        schedule,
-        delays: vec![Delay::SawTooth { min_s: 0.05, max_s: 0.3, period_s: 0.5, offset_s: 0.0 }],
-        weights: Vec::new(),
-        coupling: Default::default(),
-    };
-    Setup {
-        agents,
-        reference: ReferenceKind::Consensus,
-        exchange: Exchange::Position,
-        network,
-        time: TimeSpan { end_s, record_every_s: 0.05 },
-        solver: Solver { method: Method::Adaptive { rtol: RTOL, atol: 1e-10 }, ..Solver::default() },
-        control: None,
-    }
-}
-
-fn three(kind: &RobotKind, design: ThrustKind, in_formation: bool, end_s: f64) -> Setup {
-    let agents =
-        (0..3).map(|k| AgentSetup { target: in_formation.then(|| turning(k)), ..agent(k, kind.clone(), design) });
-    setup(agents.collect(), end_s)
-}
-
-fn run(setup: &Setup) -> Outcome {
-    let outcome = simulate(setup, &mut |_| ControlFlow::Continue(())).unwrap();
-    assert_eq!(outcome.ending, Ending::Completed);
-    outcome
-}
-
-fn column(outcome: &Outcome, agent: usize, signal: Signal, axis: usize) -> &[f64] {
-    let is_it = |c: &&forwardstep_sim::Column| c.agent == agent && c.signal == signal && c.axis == axis;
-    &outcome.recording.columns.iter().find(is_it).unwrap().values
-}
-
-fn last(outcome: &Outcome, agent: usize, signal: Signal, axis: usize) -> f64 {
-    *column(outcome, agent, signal, axis).last().unwrap()
-}
-
-/// max |V + ∫ dissipation − V(0)| / V(0).
-fn ledger_error(outcome: &Outcome, agent: usize) -> f64 {
-    let v = column(outcome, agent, Signal::Lyapunov, 0);
-    let lost = column(outcome, agent, Signal::Dissipation, 0);
-    v.iter().zip(lost).map(|(now, lost)| (now + lost - v[0]).abs() / v[0]).fold(0.0, f64::max)
-}
 
 /// max over agents and axes of the spread of x − d, at the end.
 fn spread(setup: &Setup, outcome: &Outcome) -> f64 {
@@ -149,7 +37,7 @@ fn thm4_and_thm5_lyapunov_functions_lose_what_their_proofs_say_along_real_runs()
                 let setup = three(&kind, design, in_formation, 15.0);
                 let outcome = run(&setup);
                 for agent in 0..3 {
-                    let error = ledger_error(&outcome, agent);
+                    let error = ledger_error(&outcome, agent, 0.0);
                     assert!(error <= 10.0 * RTOL, "{kind:?} {design:?} {in_formation} {agent}: {error:e}");
                 }
             }
@@ -201,90 +89,26 @@ fn prop_sampled_vehicles_come_closer_to_continuous_ones_in_proportion_to_the_per
         (rotorcraft(), DIFFERENTIABLE),
         (rotorcraft(), ADAPTIVE),
     ] {
-        let mut setup = three(&kind, design, true, 2.0);
-        let continuous = run(&setup);
-        let gaps: Vec<f64> = [500.0, 1000.0, 2000.0]
-            .into_iter()
-            .map(|sample_hz| {
-                setup.control = Some(Control {
-                    sample_hz,
-                    computation_delay_s: 0.0,
-                    sensors: Default::default(),
-                    actuators: Default::default(),
-                });
-                let sampled = run(&setup);
-                let each = (0..9).map(|k| {
-                    let end = |outcome: &Outcome| last(outcome, k / 3, Signal::Position, k % 3);
-                    (end(&sampled) - end(&continuous)).abs()
-                });
-                each.fold(0.0, f64::max)
-            })
-            .collect();
-        for pair in gaps.windows(2) {
-            let order = (pair[0] / pair[1]).log2();
-            assert!((0.7..1.3).contains(&order), "{kind:?} {design:?}: {gaps:?}");
-        }
+        assert_first_order(&three(&kind, design, true, 2.0), 500.0);
     }
 }
 
-/// Files of `validation/vehicles`, written by a program that shares nothing with this one.
-#[derive(serde::Deserialize)]
-struct Truth {
-    t_s: Vec<f64>,
-    cases: Vec<TruthCase>,
-}
-
-#[derive(serde::Deserialize)]
-struct TruthCase {
-    design: String,
-    formation: bool,
-    /// By time, then by agent.
-    samples: Vec<Vec<TruthSample>>,
-}
-
-#[derive(serde::Deserialize)]
-struct TruthSample {
-    x: [f64; 3],
-    dx: [f64; 3],
-    sigma: f64,
-    m_hat: f64,
-}
-
+/// Against `validation/vehicles`, with rotation matrices and accelerations.
 #[test]
 fn val_vehicles_agree_with_an_independent_solver() {
-    let truth: Truth = serde_json::from_str(include_str!("../../../validation/vehicles/vehicles.json")).unwrap();
-    assert_eq!(truth.cases.len(), 6);
-    for case in &truth.cases {
-        let design = match case.design.as_str() {
-            "continuous" => ThrustKind::Continuous,
-            "differentiable" => DIFFERENTIABLE,
-            _ => ADAPTIVE,
-        };
-        let mut setup = three(&RobotKind::Vehicle { gravity: G }, design, case.formation, 6.0);
-        setup.network.delays = vec![Delay::Constant { s: 0.0 }];
-        setup.time.record_every_s = 0.5;
-        setup.solver.method = Method::Adaptive { rtol: 1e-11, atol: 1e-12 };
-        for agent in &mut setup.agents {
-            // z starts at zero in both programs.
-            agent.start.reference = vec![vec![0.0; 3]; design.order()];
-        }
-        let outcome = run(&setup);
-        let mut worst = 0.0_f64;
-        for (t_s, samples) in truth.t_s.iter().zip(&case.samples) {
-            let row = outcome.recording.t_s.iter().position(|t| (t - t_s).abs() < 1e-9).unwrap();
-            for (agent, want) in samples.iter().enumerate() {
-                let got = |signal, axis| column(&outcome, agent, signal, axis)[row];
-                for k in 0..3 {
-                    worst = worst.max((got(Signal::Position, k) - want.x[k]).abs());
-                    worst = worst.max((got(Signal::Velocity, k) - want.dx[k]).abs());
-                }
-                worst = worst.max((got(Signal::Thrust, 0) - want.sigma).abs());
-                if design == ADAPTIVE {
-                    worst = worst.max((got(Signal::Estimate, 0) - want.m_hat).abs());
-                }
+    let mut truths = truth::read(include_str!("../../../validation/vehicles/vehicles.json")).into_iter();
+    for design in [ThrustKind::Continuous, DIFFERENTIABLE, ADAPTIVE] {
+        for in_formation in [false, true] {
+            let mut setup = three(&RobotKind::Vehicle { gravity: G }, design, in_formation, 6.0);
+            setup.network.delays = vec![Delay::Constant { s: 0.0 }];
+            for agent in &mut setup.agents {
+                // z starts at zero in both programs.
+                agent.start.reference = vec![vec![0.0; 3]; design.order()];
             }
+            let truth = truths.next().unwrap();
+            let worst = truth.largest_difference(setup);
+            assert!(worst < 1e-6, "{}: {worst:e}", truth.name);
         }
-        assert!(worst < 1e-6, "{} {}: {worst:e}", case.design, case.formation);
     }
 }
 
@@ -342,7 +166,11 @@ fn what_makes_no_sense_is_refused() {
     };
     assert!(matches!(refused(&|s| s.exchange = Exchange::PositionVelocity), SetupError::SendsPositionOnly { .. }));
     assert!(matches!(refused(&|s| s.agents[1].roots_per_s.truncate(2)), SetupError::Length { .. }));
-    assert!(matches!(refused(&|s| s.agents[1].robot.kind = RobotKind::PlanarArm), SetupError::LawOfAnother { .. }));
+    let arm = |s: &mut Setup| {
+        s.agents[1].robot.kind = RobotKind::PlanarArm;
+        s.agents[1].start.rest.clear();
+    };
+    assert!(matches!(refused(&arm), SetupError::LawOfAnother { .. }));
     assert!(matches!(refused(&|s| s.agents[1].manipulability = 0.5), SetupError::LawNumber { .. }));
     assert!(matches!(refused(&|s| s.agents[1].start.rest = vec![0.0; 3]), SetupError::Length { .. }));
     assert!(matches!(refused(&|s| s.agents[1].robot.theta[0] = -1.0), SetupError::LawNumber { .. }));

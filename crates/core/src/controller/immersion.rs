@@ -25,7 +25,7 @@
 //! ```
 //!
 //! so s and η are square-integrable. s is the output of a stable filter that is driven by η, hence s → 0 without any bound
-//! on φ, which adaptation by the gradient (`linear_adaptive`) needs. The norm of ζ never grows, whatever z does.
+//! on φ, which adaptation by the gradient (`linearising`) needs. The norm of ζ never grows, whatever z does.
 
 use alloc::vec;
 use alloc::vec::Vec;

@@ -1,42 +1,54 @@
-//! Feedback linearisation as the second step of Section IV, for (33) with χ and ψ known.
+//! Feedback linearisation as the second step of Section IV, for (33) with χ linear in parameters, known or not.
 //!
 //! ```text
-//! d^k x/dt^k = χ(x*) + ψ(x*) u                                            (33)
-//! s = d^(k−1)x/dt^(k−1) − z,   ṡ = χ − ż + ψ u                             second line of (43)
-//! u = (ż − χ − k s)/ψ
+//! d^k x/dt^k = χ₀(x*) + φ(x*)ᵀθ + ψ(x*) u                                 (33)
+//! s = d^(k−1)x/dt^(k−1) − z
+//! u = (ż − χ₀ − φᵀθ̂ − k s)/ψ
+//! θ̂ = θ    or    θ̂' = Γ φ s
 //! ```
 //!
 //! z comes from the reference dynamics of [`Guide`], which also says how the first line of (43) is reduced to degree zero.
-//! Then ṡ = −k s, so V = ½ s² loses V̇ = −k s², and s is square-integrable and vanishes, exponentially. Neither step
+//! With Δθ = θ̂ − θ the second line of (43) is ṡ = −k s − φᵀΔθ, so V = ½ s² + ½ Δθᵀ Γ⁻¹ Δθ has
+//!
+//! ```text
+//! V̇ = −k s² − s φᵀΔθ + Δθᵀ φ s = −k s²
+//! ```
+//!
+//! whatever z does: s and θ̂ are bounded and s is square-integrable. With θ known s → 0 exponentially. With θ adapted s → 0
+//! follows as soon as φ is bounded along the run, for then ṡ is; φ is bounded if x* is, or if its functions are. Neither step
 //! differentiates anything: ż is a state of the reference for ℓ ≥ 2, and for ℓ = 1 what its dynamics give.
 
 use alloc::vec::Vec;
 
-use super::following::{ChainError, ChainMeasured, Following, FollowingWork};
+use super::following::{ChainError, ChainMeasured, Following, FollowingWork, positive};
 use super::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::LengthError;
 use crate::plant::{Chain, Terms, total};
 use crate::reference::Position;
-use crate::signal::Block;
+use crate::signal::{Block, Signal};
 
 #[cfg(doc)]
 use super::Guide;
 
-/// Control of (33) by feedback linearisation.
+/// Control of (33) by feedback linearisation, with θ known or adapted.
 ///
-/// State: z, ż, …, z^(ℓ−1). Shown: the same, s, ψ, and x − x_d when it tracks.
+/// State: z, ż, …, z^(ℓ−1), then θ̂ if it is adapted. Shown: the reference, s, ψ, θ̂ if it is adapted, and x − x_d when it
+/// tracks.
 ///
-/// **Source**: (33)–(43), Remark 6. **Measures**: x, ẋ, …, d^(k−1)x/dt^(k−1). **Transmits**: x.
-/// **Requires**: ψ away from zero; k positive; positive roots, k + ℓ − 1 to track and k + ℓ − 2 to agree, ℓ ≥ 1; x_d with
-/// k + ℓ − 1 bounded derivatives, or a network as for Theorem 3 with (24).
+/// **Source**: (33)–(43), Remark 6; adaptation as in (7). **Measures**: x, ẋ, …, d^(k−1)x/dt^(k−1). **Transmits**: x.
+/// **Requires**: ψ away from zero; k and Γ positive; positive roots, k + ℓ − 1 to track and k + ℓ − 2 to agree, ℓ ≥ 1; x_d
+/// with k + ℓ − 1 bounded derivatives, or a network as for Theorem 3 with (24); if θ is adapted, φ bounded along the run.
 /// **Guarantees**: x − x_d → 0 with its derivatives; with a network x_i − x_j → 0 and all derivatives → 0. u is ℓ − 2 times
 /// continuously differentiable through switches and delay jumps.
-/// **Deviates from the paper**: nothing.
+/// **Deviates from the paper**: it announces adaptive designs for (33) and prints none.
 #[derive(Clone, Debug)]
 pub struct Linearising<T> {
     terms: T,
-    theta: Vec<f64>,
     following: Following,
+    /// θ, or θ̂(0).
+    theta: Vec<f64>,
+    /// The diagonal of Γ, if θ is adapted.
+    adaptation: Option<Vec<f64>>,
 }
 
 impl<T: Terms> Linearising<T> {
@@ -47,12 +59,37 @@ impl<T: Terms> Linearising<T> {
     pub fn new(terms: T, theta: Vec<f64>, following: Following) -> Result<Self, ChainError> {
         following.check(&terms)?;
         LengthError::check("theta", terms.parameters(), theta.len())?;
-        Ok(Linearising { terms, theta, following })
+        Ok(Linearising { terms, following, theta, adaptation: None })
+    }
+
+    /// For a plant with these terms and unknown θ; `adaptation` is the diagonal of Γ, `estimate_start` is θ̂(0).
+    ///
+    /// # Errors
+    /// [`ChainError`] when the reference does not suit the plant, lengths differ, or a gain is not positive.
+    pub fn adaptive(
+        terms: T,
+        following: Following,
+        adaptation: Vec<f64>,
+        estimate_start: Vec<f64>,
+    ) -> Result<Self, ChainError> {
+        LengthError::check("adaptation gains", terms.parameters(), adaptation.len())?;
+        positive(&adaptation)?;
+        Ok(Linearising { adaptation: Some(adaptation), ..Linearising::new(terms, estimate_start, following)? })
     }
 
     /// How z is followed.
     pub fn following(&self) -> &Following {
         &self.following
+    }
+
+    /// Where θ̂ stands in the state.
+    fn at(&self) -> usize {
+        self.following.guide.vectors(self.terms.order())
+    }
+
+    /// How many entries θ̂ has; none when θ is known.
+    fn estimates(&self) -> usize {
+        self.adaptation.as_ref().map_or(0, Vec::len)
     }
 }
 
@@ -69,11 +106,13 @@ impl<T: Terms> Controller for Linearising<T> {
     }
 
     fn states(&self) -> Vec<Block> {
-        self.following.states(self.terms.order())
+        let mut states = self.following.states(self.terms.order());
+        states.extend(self.adaptation.as_ref().map(|gamma| (Signal::Estimate, gamma.len())));
+        states
     }
 
     fn shown(&self) -> Vec<Block> {
-        self.following.shown(self.terms.order(), 0)
+        self.following.shown(self.terms.order(), self.estimates())
     }
 
     fn see<'a>(&self, output: &'a [f64]) -> Result<ChainMeasured<'a>, LengthError> {
@@ -89,7 +128,9 @@ impl<T: Terms> Controller for Linearising<T> {
         state: &mut [f64],
     ) -> Result<(), LengthError> {
         LengthError::check("state", total(&self.states()), state.len())?;
-        self.following.start(self.terms.order(), given.measured.x, wanted, state)
+        self.following.start(self.terms.order(), given.measured.x, wanted, state)?;
+        state[self.at()..].copy_from_slice(&self.theta[..self.estimates()]);
+        Ok(())
     }
 
     fn evaluate(
@@ -100,14 +141,20 @@ impl<T: Terms> Controller for Linearising<T> {
         asked: Asked<'_>,
     ) -> Result<(), LengthError> {
         let Asked { input, d_state, shown } = asked;
-        self.following.lengths(&self.terms, 0, [state.len(), d_state.len(), input.len(), shown.len()])?;
-        let x = given.measured.x;
+        let p = self.estimates();
+        self.following.lengths(&self.terms, p, [state.len(), d_state.len(), input.len(), shown.len()])?;
+        let (x, at) = (given.measured.x, self.at());
         let found = self.following.evaluate(&self.terms, work, given, x, state, (d_state, shown))?;
+        let theta_hat = if self.adaptation.is_some() { &state[at..] } else { &self.theta };
         let mut chi = found.chi;
-        for (phi, theta) in work.phi.iter().zip(&self.theta) {
-            chi += phi * theta;
+        for (phi, theta_hat) in work.phi.iter().zip(theta_hat) {
+            chi += phi * theta_hat;
         }
         input[0] = (found.dz - chi - self.following.gain_per_s * found.s) / found.psi;
+        for (j, gamma) in self.adaptation.iter().flatten().enumerate() {
+            d_state[at + j] = gamma * work.phi[j] * found.s;
+            shown[at + 2 + j] = theta_hat[j];
+        }
         Ok(())
     }
 
@@ -118,12 +165,20 @@ impl<T: Terms> Controller for Linearising<T> {
     fn balance(
         &self,
         _: &mut Self::Scratch,
-        _: Truth<'_, Self::Plant>,
+        truth: Truth<'_, Self::Plant>,
         _: Given<'_, Self>,
-        _: &[f64],
+        state: &[f64],
         shown: &[f64],
     ) -> Result<Balance, LengthError> {
-        let s = self.following.s(&self.terms, 0, shown)?;
-        Ok(Balance { value: 0.5 * s * s, dissipation: self.following.gain_per_s * s * s })
+        let p = self.estimates();
+        LengthError::check("state", self.at() + p, state.len())?;
+        LengthError::check("theta", self.terms.parameters(), truth.plant.theta.len())?;
+        let s = self.following.s(&self.terms, p, shown)?;
+        let mut value = 0.5 * s * s;
+        for (j, gamma) in self.adaptation.iter().flatten().enumerate() {
+            let delta = state[self.at() + j] - truth.plant.theta[j];
+            value += 0.5 * delta * delta / gamma;
+        }
+        Ok(Balance { value, dissipation: self.following.gain_per_s * s * s })
     }
 }

@@ -5,7 +5,7 @@
 //! velocity: it is a [`Controller`].
 //!
 //! - `attitude`: (97)–(105), a spacecraft without angular velocity measurement.
-//! - `linearising`, `linear_adaptive`, `immersion`: (33) by feedback linearisation, with adaptation, and by immersion and
+//! - `linearising`, `immersion`: (33) by feedback linearisation, with χ known or adapted, and by immersion and
 //!   invariance; `following` is what they share.
 //! - `adaptive_backstepping`: strict-feedback and pure-feedback chains; `steps` is the recursion.
 //! - `guide`: where z leads, for plants of any order.
@@ -19,7 +19,6 @@ mod attitude;
 mod following;
 mod guide;
 mod immersion;
-mod linear_adaptive;
 mod linearising;
 mod position_only;
 mod stepped;
@@ -32,7 +31,6 @@ pub use attitude::{AttitudeMeasured, AttitudeTracking};
 pub use following::{ChainError, ChainMeasured, Following, FollowingWork};
 pub use guide::{Guide, GuideError, GuideWork, Leads};
 pub use immersion::{Immersion, ImmersionWork};
-pub use linear_adaptive::LinearAdaptive;
 pub use linearising::Linearising;
 pub use position_only::{PositionMeasured, PositionOnly};
 pub use stepped::Stepped;

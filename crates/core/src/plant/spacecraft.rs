@@ -138,6 +138,11 @@ impl Wheels {
         Wheels { wheels: axes.map(wheel).to_vec(), allocation: axes.to_vec() }
     }
 
+    /// One of them.
+    pub fn wheel(&self, index: usize) -> Option<&Wheel> {
+        self.wheels.get(index)
+    }
+
     /// Number of wheels n.
     pub fn count(&self) -> usize {
         self.wheels.len()

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use comfy_table::{ContentArrangement, Table, presets};
 use forwardstep::check::Report;
-use forwardstep::io::output::names::{agent_name, axis_name, gap_unit, unit};
+use forwardstep::io::output::names::{agent_name, gap_unit, torque_words, unit};
 use forwardstep::io::output::{Disagreement, Gap, Metrics, RunRecord};
 use forwardstep::sim::{Setup, Signal};
 
@@ -30,11 +30,8 @@ pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, 
     }
     if let Some(peak) = metrics.peak_torques.iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs())) {
         let unit = unit(setup, peak.agent, Signal::Torque, peak.axis);
-        let (agent, axis) = (agent_name(setup, peak.agent), axis_name(setup, peak.agent, peak.axis));
-        rows.push((
-            "peak torque",
-            format!("{} {unit}, {agent} axis {axis} at {:.2} s", short(peak.value.abs()), peak.t_s),
-        ));
+        let (agent, axis) = (agent_name(setup, peak.agent), torque_words(setup, peak.agent, peak.axis));
+        rows.push(("peak torque", format!("{} {unit}, {agent}, {axis} at {:.2} s", short(peak.value.abs()), peak.t_s)));
     }
     if !metrics.limits_reached.is_empty() {
         rows.push(("limits exceeded", format!("{}, see the report", metrics.limits_reached.len())));

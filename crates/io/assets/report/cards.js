@@ -9,12 +9,9 @@ const SAME = (items) => (new Set(items).size === 1 ? items[0] : null);
 // Joints by number; a name when all agents that have the joint call it the same.
 const joints = Array.from({ length: mostAxes }, (_, axis) => {
   const owners = agents.filter((a) => axis < a.axes.length);
-  return { axis, name: SAME(owners.map((a) => a.axes[axis].name)) ?? String(axis + 1), units: [...new Set(owners.map((a) => a.axes[axis].unit))] };
+  return { axis, name: SAME(owners.map((a) => a.axes[axis].name)) ?? String(axis + 1), units: owners.map((a) => a.axes[axis].units) };
 });
-const axisWords = (name) => (/^\d+$/.test(name) ? `axis ${name}` : name);
-const unitOf = (axis, write) => (joints[axis]?.units ?? []).map(write).join(" or ");
-const rate = (order) => (unit) => (order === 0 ? unit : order === 1 ? `${unit}/s` : `${unit}/s${raise(order)}`);
-const force = (unit) => (unit === "m" ? "N" : "N m");
+const unitOf = (axis, read) => [...new Set((joints[axis]?.units ?? []).map(read))].join(" or ");
 
 const ofAgents = (columns, axis, style = {}, log = false) =>
   agents.flatMap((agent, i) => {
@@ -32,14 +29,14 @@ const both = (v) => (v == null ? [] : [v, -v]);
 
 const jointPick = { id: "joint", options: joints.map((j) => [String(j.axis), j.name]) };
 
-const perJoint = (columns, write, lines = () => []) => ({
+const perJoint = (columns, unit, lines = () => []) => ({
   picks: [jointPick],
-  build: ([joint]) => ({ unit: unitOf(+joint, write), series: ofAgents(columns, +joint), lines: lines(+joint) }),
+  build: ([joint]) => ({ unit: unitOf(+joint, unit), series: ofAgents(columns, +joint), lines: lines(+joint) }),
 });
 
 const dots = ["z", "ż", "z̈", "z⃛"];
 const referenceName = (k) => dots[k] ?? `z${raise(`${k}`)}`;
-const velocity = perJoint(signals.dq, rate(1), (axis) => limitLines(axis, (a) => both(a.velocity_limit), "limit"));
+const velocity = perJoint(signals.dq, (u) => u.dq, (axis) => limitLines(axis, (a) => both(a.velocity_limit), "limit"));
 
 const groupOf = (name) => (name.includes(".") ? name.slice(0, name.lastIndexOf(".")) : null);
 const withEstimates = [...agents.keys()].filter((i) => agents[i].parameters.some((p) => p.series != null));
@@ -114,13 +111,13 @@ const cards = {
         lines: index.goal == null ? [] : [{ value: index.goal, label: "goal" }],
         key: true,
         series: [
-          ...axes.map((k, axis) => ({ label: axisWords(joints[axis].name), colour: ramp(axis, axes.length), width: 1.1, values: data.values("main", k, true) })),
+          ...axes.map((k, axis) => ({ label: d.names[axis], colour: ramp(axis, axes.length), width: 1.1, values: data.values("main", k, true) })),
           { label: axes.length ? "largest" : "disagreement", colour: colour("--ink"), width: 2.2, values: data.values("main", d.overall, true) },
         ],
       };
     },
   },
-  position: perJoint(signals.q, rate(0), (axis) => [
+  position: perJoint(signals.q, (u) => u.q, (axis) => [
     ...limitLines(axis, (a) => a.position_limits ?? [], "limit"),
     ...(index.predicted?.[axis] == null ? [] : [{ value: index.predicted[axis], label: "predicted agreement" }]),
   ]),
@@ -132,12 +129,12 @@ const cards = {
       return { ...built, series: [...built.series, ...z] };
     },
   },
-  error: perJoint(signals.s, rate(1)),
-  torque: perJoint(signals.tau, force, (axis) => limitLines(axis, (a) => both(a.effort_limit), "limit")),
-  external: perJoint(signals.tau_ext, force),
+  error: perJoint(signals.s, (u) => u.s),
+  torque: perJoint(signals.tau, (u) => u.tau, (axis) => limitLines(axis, (a) => both(a.effort_limit), "limit")),
+  external: perJoint(signals.tau_ext, (u) => u.tau),
   reference: {
     picks: [{ id: "order", options: signals.reference.slice(1).map((_, k) => [String(k + 1), referenceName(k + 1)]) }, jointPick],
-    build: ([order, joint]) => ({ unit: order == null ? "" : unitOf(+joint, rate(+order + 1)), series: order == null ? [] : ofAgents(signals.reference[+order], +joint) }),
+    build: ([order, joint]) => ({ unit: order == null ? "" : unitOf(+joint, (u) => u.reference[+order]), series: order == null ? [] : ofAgents(signals.reference[+order], +joint) }),
   },
   estimate: {
     picks: [
@@ -165,6 +162,20 @@ const cards = {
     }),
   },
 };
+
+// Signals that only some systems have: an entry is picked, all agents are drawn.
+for (const { id, entries } of index.families) {
+  cards[id] = {
+    picks: [{ id: "entry", options: entries.map((e, k) => [String(k), e.name]) }],
+    build: ([k]) => {
+      const entry = entries[+k];
+      if (!entry) return { series: [] };
+      const wanted = entry.wanted.length ? ofAgents(entry.wanted, null, { suffix: ", wanted", dash: [4, 3], width: 1.1 }) : [];
+      const lines = entry.lines.length > 6 ? [] : entry.lines;
+      return { unit: entry.unit === "1" ? "" : entry.unit, lines, series: [...ofAgents(entry.series, null), ...wanted] };
+    },
+  };
+}
 
 // The Gantt strip is drawn by hand on an empty plot, so that it zooms with the others.
 const ganttCard = () => {

@@ -27,8 +27,34 @@ pub fn axis_name(setup: &Setup, agent: usize, axis: usize) -> String {
 
 /// The name of an axis in running text: `elbow_joint`, or `axis 2` where it has a number only.
 pub fn axis_words(setup: &Setup, agent: usize, axis: usize) -> String {
-    let name = axis_name(setup, agent, axis);
-    if name.bytes().all(|b| b.is_ascii_digit()) { format!("axis {name}") } else { name }
+    in_words(&axis_name(setup, agent, axis))
+}
+
+/// The name of the axis of a torque in running text; that of a rotorcraft turns its body.
+pub fn torque_words(setup: &Setup, agent: usize, axis: usize) -> String {
+    if turns(setup, agent) {
+        return format!("body axis {}", axis_name(setup, agent, axis));
+    }
+    axis_words(setup, agent, axis)
+}
+
+/// What an entry of what is to vanish is called in all agents that have it, or its number.
+pub fn gap_words(setup: &Setup, entry: usize) -> String {
+    let signal = gap_signal(setup);
+    let owners = (0..setup.agents.len()).filter(|agent| entry < setup.agents[*agent].robot.axes.len());
+    let words = |agent| entry_name(setup, agent, signal, entry).unwrap_or_default();
+    shared(owners.map(words)).map_or_else(|| format!("axis {}", entry + 1), |name| in_words(&name))
+}
+
+/// The one name that all have, if there is one.
+pub(crate) fn shared(mut names: impl Iterator<Item = String>) -> Option<String> {
+    let first = names.next()?;
+    names.all(|name| name == first).then_some(first)
+}
+
+/// `elbow_joint`, or `axis 2` for a number.
+fn in_words(name: &str) -> String {
+    if name.bytes().all(|b| b.is_ascii_digit()) { format!("axis {name}") } else { name.to_owned() }
 }
 
 /// The name of a parameter of an agent.
@@ -40,10 +66,9 @@ pub fn parameter_name(setup: &Setup, agent: usize, index: usize) -> String {
         .unwrap_or_else(|| (index + 1).to_string())
 }
 
-/// The name of a recorded column.
-pub fn column_name(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String {
-    let agent_name = agent_name(setup, agent);
-    let signal_name = signal.name();
+/// What an entry of a signal is called; nothing for signals with a single entry.
+pub fn entry_name(setup: &Setup, agent: usize, signal: Signal, entry: usize) -> Option<String> {
+    let number = || (entry + 1).to_string();
     let law = setup.agents.get(agent).map(|agent| &agent.law);
     match (signal, law) {
         (
@@ -55,22 +80,26 @@ pub fn column_name(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> 
             | Signal::Determinant
             | Signal::Divisor,
             _,
-        ) => format!("{agent_name}.{signal_name}"),
-        (Signal::Attitude, _) => {
-            let entry = ["x", "y", "z", "o"].get(axis).map_or_else(|| (axis + 1).to_string(), |name| (*name).into());
-            format!("{agent_name}.{signal_name}.{entry}")
-        }
-        (Signal::Estimate, _) => format!("{agent_name}.{signal_name}.{}", parameter_name(setup, agent, axis)),
-        (Signal::WheelTorque | Signal::WheelMomentum, _) => format!("{agent_name}.{signal_name}.{}", axis + 1),
+        ) => None,
+        (Signal::Attitude, _) => Some(["x", "y", "z", "o"].get(entry).map_or_else(number, |name| (*name).to_owned())),
+        (Signal::Estimate, _) => Some(parameter_name(setup, agent, entry)),
+        (Signal::WheelTorque | Signal::WheelMomentum, _) => Some(number()),
         (Signal::Error | Signal::TaskPosition, Some(Law::TaskSpace(law))) => {
-            let number = (axis + 1).to_string();
-            format!("{agent_name}.{signal_name}.{}", law.coordinate_name(axis).unwrap_or(&number))
+            Some(law.coordinate_name(entry).map_or_else(number, str::to_owned))
         }
         (Signal::KinematicEstimate, Some(Law::TaskSpace(law))) => {
-            let number = (axis + 1).to_string();
-            format!("{agent_name}.{signal_name}.{}", law.kinematic_names.get(axis).unwrap_or(&number))
+            Some(law.kinematic_names.get(entry).cloned().unwrap_or_else(number))
         }
-        _ => format!("{agent_name}.{signal_name}.{}", axis_name(setup, agent, axis)),
+        _ => Some(axis_name(setup, agent, entry)),
+    }
+}
+
+/// The name of a recorded column.
+pub fn column_name(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String {
+    let (agent_name, signal_name) = (agent_name(setup, agent), signal.name());
+    match entry_name(setup, agent, signal, axis) {
+        Some(entry) => format!("{agent_name}.{signal_name}.{entry}"),
+        None => format!("{agent_name}.{signal_name}"),
     }
 }
 
@@ -103,10 +132,15 @@ fn turns(setup: &Setup, agent: usize) -> bool {
     setup.agents.get(agent).is_some_and(|agent| matches!(agent.robot.kind, RobotKind::Rotorcraft { .. }))
 }
 
+/// What is to vanish: distances from targets, or between agents.
+fn gap_signal(setup: &Setup) -> Signal {
+    if setup.reference == ReferenceKind::Tracking { Signal::Error } else { Signal::Position }
+}
+
 /// The unit of what is to vanish in a run: of the distances between agents, or from their targets. Nothing for pure numbers;
 /// `rad or m` where agents differ.
 pub fn gap_unit(setup: &Setup) -> String {
-    let signal = if setup.reference == ReferenceKind::Tracking { Signal::Error } else { Signal::Position };
+    let signal = gap_signal(setup);
     let axes = |agent: usize| 0..setup.agents.get(agent).map_or(0, |agent| agent.robot.axes.len());
     let all = (0..setup.agents.len()).flat_map(|agent| axes(agent).map(move |axis| (agent, axis)));
     let mut units = all.map(|(agent, axis)| unit(setup, agent, signal, axis));

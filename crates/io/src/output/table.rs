@@ -38,6 +38,11 @@ impl<'a> Table<'a> {
         (0..self.agents()).map(|agent| self.dof(agent)).max().unwrap_or(0)
     }
 
+    /// How many entries of a signal of an agent were recorded.
+    pub(crate) fn entries(&self, agent: usize, signal: Signal) -> usize {
+        (0..).take_while(|entry| self.column(agent, signal, *entry).is_some()).count()
+    }
+
     /// The values of a column, or nothing when it was not recorded.
     pub(crate) fn column(&self, agent: usize, signal: Signal, axis: usize) -> Option<&'a [f64]> {
         self.columns.get(&(agent, signal, axis)).copied()

@@ -419,7 +419,7 @@ mod tests {
         assert_eq!(fault("x + t").at, 4..5);
         assert_eq!(fault("x + t").problem.to_string(), "there is no `t` in this formula");
         assert!(fault("x + d2x").problem.help().unwrap().starts_with("did you mean `dx`?"));
-        assert_eq!(fault("2^x").problem, FormulaProblem::VaryingExponent);
+        assert_eq!(fault("2^x").problem, FormulaProblem::VaryingExponent { of: "x".into() });
         let message = "found its end in a formula where a number, a variable, a function or a parenthesis should stand";
         assert_eq!(fault("x +").problem.to_string(), message);
     }

@@ -1,7 +1,7 @@
 //! From chains and their laws to blocks of the closed loop.
 
 use forwardstep_core::controller::{
-    AdaptiveBackstepping, BacksteppingGains, ChainError, Following, Guide, Immersion, LinearAdaptive, Linearising,
+    AdaptiveBackstepping, BacksteppingGains, ChainError, Following, Guide, Immersion, Linearising,
 };
 use forwardstep_core::plant::{Cascade, CascadeError, Chain, Formulas};
 use forwardstep_core::reference::{Consensus, Position, polynomial};
@@ -34,7 +34,7 @@ pub(super) fn chain(setup: &Setup, agent: usize, model: &ChainModel) -> Result<B
         (ChainModel::Derivatives(terms), ChainStep::Adaptive { gain_per_s, estimate }) => {
             let following = Following { guide, gain_per_s: *gain_per_s, floor };
             let (gamma, start) = (estimate.adaptation.clone(), estimate.start.clone());
-            let law = LinearAdaptive::new(Formulas::clone(terms), following, gamma, start).map_err(wrong)?;
+            let law = Linearising::adaptive(Formulas::clone(terms), following, gamma, start).map_err(wrong)?;
             solo(setup, agent, derivatives(own, terms), law)
         }
         (ChainModel::Derivatives(terms), ChainStep::Immersion { gain_per_s, estimate, antiderivatives }) => {

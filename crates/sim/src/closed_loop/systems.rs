@@ -114,7 +114,9 @@ pub(super) fn solo<C: Controller>(
             control.actuators.torque_quantum,
         )),
     };
-    Ok(Box::new(Solo::new(agent, plant, controller, target, effort_limits, digital, setup.solver.ledger)))
+    // What a limit takes away is not what the ledger balances.
+    let ledger = setup.solver.ledger && !own.enforce_limits;
+    Ok(Box::new(Solo::new(agent, plant, controller, target, effort_limits, digital, ledger)))
 }
 
 /// The limits of the torques, if they are to be enforced.

@@ -429,19 +429,19 @@ fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
         }
     };
     vector("the start position", axes, &agent.start.q)?;
-    // A chain may give its whole state at once; its length as a whole is looked at where it is built.
-    let whole = matches!(agent.law, Law::Chain(_)) && agent.start.dq.is_empty();
-    let velocities = if whole { 0 } else { agent.robot.velocity_len() };
+    let velocities = agent.robot.velocity_len();
     vector("the start velocity", velocities, &agent.start.dq)?;
-    vector("the start of the plant", agent.start.rest.len(), &agent.start.rest)?;
+    vector("the start of the plant", agent.robot.kind.rest_len(), &agent.start.rest)?;
     if agent.law.is_lagrangian() && tracks {
         return Err(SetupError::NotTracking { agent: agent.name.clone(), law: agent.law.words() });
     }
     if let (Some(_), true) = (&agent.target, agent.law.is_lagrangian()) {
         return Err(SetupError::NoOffsets { agent: agent.name.clone(), law: agent.law.words() });
     }
+    // The second state of a chain may be no velocity, but it has a z.
+    let leads = if velocities == 0 { axes } else { velocities };
     for z in &agent.start.reference {
-        vector("the start of the reference", velocities, z)?;
+        vector("the start of the reference", leads, z)?;
     }
     if agent.start.reference.len() > vectors {
         let (need, got) = (vectors, agent.start.reference.len());

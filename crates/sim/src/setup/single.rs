@@ -3,7 +3,9 @@
 use forwardstep_core::Gain;
 use forwardstep_core::controller::ParameterBounds;
 use forwardstep_core::robot::PlanarTip;
-use forwardstep_core::robot::tree::{LinkPoint, Uncertain};
+use forwardstep_core::robot::tree::{LinkPoint, Tree, TreeTip, Uncertain};
+
+use super::RobotKind;
 
 /// (80)–(82) for the tip of a robot; see [`forwardstep_core::controller::TaskSpace`].
 #[derive(Clone, Debug, PartialEq)]
@@ -59,6 +61,20 @@ pub enum TipSetup {
         /// Which translations are θ.
         uncertain: Uncertain,
     },
+}
+
+impl TipSetup {
+    /// The true θ of the tip of `robot`; nothing for a robot that has no such tip.
+    pub fn parameters(&self, robot: &RobotKind) -> Option<Vec<f64>> {
+        match (robot, self) {
+            (RobotKind::PlanarArm, TipSetup::Planar(tip)) => Some(tip.length_m.to_vec()),
+            (RobotKind::Tree(tree), TipSetup::Point { point, coordinates, uncertain }) => {
+                let tip = TreeTip::new(Tree::clone(tree), point, coordinates, *uncertain).ok()?;
+                Some(tip.parameters())
+            }
+            _ => None,
+        }
+    }
 }
 
 /// (97)–(105) for a spacecraft; see [`forwardstep_core::controller::AttitudeTracking`]. M and h_I are those of the spacecraft and

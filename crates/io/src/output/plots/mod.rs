@@ -67,7 +67,7 @@ impl<'a> Plots<'a> {
                 .filter_map(|agent| Some((agent, table.column(agent, signal, axis)?)))
                 .filter(|(agent, _)| axis < table.dof(*agent))
                 .collect();
-            let units = units(owners.iter().map(|(agent, _)| names::unit(setup, *agent, signal, axis)));
+            let units = text::units(owners.iter().map(|(agent, _)| names::unit(setup, *agent, signal, axis)));
             let line = |&(agent, values): &(usize, &[f64])| {
                 self.line(&grid, values, signal == Signal::Torque, self.colour(agent))
             };
@@ -165,7 +165,7 @@ impl<'a> Plots<'a> {
             lines.push(Line { width: 2, ..self.line(&grid, &series.overall, false, ink) });
             if !axes.is_empty() {
                 legend = (0..axes.len().min(MOST_NAMES))
-                    .map(|axis| (shared_axis_words(self.record.setup, axis), colour(axis)))
+                    .map(|axis| (names::gap_words(self.record.setup, axis), colour(axis)))
                     .collect();
                 legend.push(("largest".into(), ink));
             }
@@ -238,17 +238,6 @@ fn largest_moves<'c>(panels: impl Iterator<Item = &'c [&'c [f64]]>) -> Vec<usize
     order
 }
 
-/// The distinct units, for reading: `rad or m`.
-fn units(all: impl Iterator<Item = String>) -> String {
-    let mut distinct: Vec<String> = Vec::new();
-    for unit in all.map(|unit| text::unit(&unit)) {
-        if !distinct.contains(&unit) {
-            distinct.push(unit);
-        }
-    }
-    distinct.join(" or ")
-}
-
 /// Columns for this many panels: wide rather than tall.
 fn columns(panels: usize) -> usize {
     match panels {
@@ -262,13 +251,6 @@ fn columns(panels: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn units_are_named_once() {
-        let all = ["rad", "m", "rad", "m"].map(String::from).into_iter();
-        assert_eq!(units(all), "rad or m");
-        assert_eq!(units(["rad/s^2".to_owned()].into_iter()), "rad/s²");
-    }
 
     #[test]
     fn of_many_parameters_those_that_move_most_in_any_panel_are_drawn_in_order() {

@@ -2,7 +2,6 @@
 
 use base64::Engine;
 use forwardstep_sim::recording::Signal;
-use forwardstep_sim::setup::AxisUnit;
 use serde::Serialize;
 
 use super::super::decimate::Grid;
@@ -11,7 +10,9 @@ use super::super::names;
 use super::super::record::RunRecord;
 use super::super::table::Table;
 use super::super::timeline::{self, Timeline};
+use super::families::{Family, FamilyIndex};
 use super::network::{self, Gantt};
+use super::text;
 
 /// Points of a signal on the page, as far as space allows.
 const MOST_POINTS: usize = 2000;
@@ -42,6 +43,7 @@ struct Index {
     agents: Vec<AgentIndex>,
     grids: Grids,
     signals: Signals,
+    families: Vec<FamilyIndex>,
     disagreement: Option<DisagreementIndex>,
     goal: Option<f64>,
     predicted: Option<Vec<f64>>,
@@ -60,11 +62,21 @@ struct AgentIndex {
 #[derive(Serialize)]
 struct AxisIndex {
     name: String,
-    /// `rad` or `m`.
-    unit: &'static str,
+    units: Units,
     position_limits: Option<[f64; 2]>,
     velocity_limit: Option<f64>,
     effort_limit: Option<f64>,
+}
+
+/// Of the signals with an entry per axis.
+#[derive(Serialize)]
+struct Units {
+    q: String,
+    dq: String,
+    s: String,
+    tau: String,
+    /// z, ż, …
+    reference: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -106,6 +118,8 @@ struct DisagreementIndex {
     unit: String,
     overall: usize,
     per_axis: Vec<usize>,
+    /// What the axes are called.
+    names: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -182,10 +196,16 @@ impl Payload {
         let disagreement = DisagreementSeries::of_table(table).ok().map(|series| DisagreementIndex {
             unit: names::gap_unit(record.setup),
             overall: main.add(&series.overall, false),
+            names: (0..series.per_axis.len()).map(|axis| names::gap_words(record.setup, axis)).collect(),
             per_axis: series.per_axis.iter().map(|axis| main.add(axis, false)).collect(),
         });
 
-        let (agents, estimates) = agents(record, table, &mut notes);
+        let families = Family::of(&record.outcome.recording);
+        let families =
+            families.iter().map(|family| family.index(table, &mut |values, may_jump| main.add(values, may_jump)));
+        let families = families.collect();
+
+        let (agents, estimates) = agents(record, table, references, &mut notes);
         let (delay_t_s, delay_values) =
             timeline::sample_delays(&record.setup.network.delays, &timeline.delay_jumps, until_s);
         let shown_delays = network::shown_delays(record.setup, timeline);
@@ -204,6 +224,7 @@ impl Payload {
                 estimate_series: estimates.count,
             },
             signals: index,
+            families,
             disagreement,
             goal: record.goal.and_then(|outcome| outcome.goal.bound()),
             predicted: record.predicted_agreement.clone(),
@@ -226,7 +247,12 @@ impl Payload {
 }
 
 /// Names, limits and parameters of all agents, and the series of those estimates that there is room for.
-fn agents<'a>(record: &RunRecord<'_>, table: &Table<'a>, notes: &mut Vec<String>) -> (Vec<AgentIndex>, Series<'a>) {
+fn agents<'a>(
+    record: &RunRecord<'_>,
+    table: &Table<'a>,
+    references: usize,
+    notes: &mut Vec<String>,
+) -> (Vec<AgentIndex>, Series<'a>) {
     let setup = record.setup;
     let count =
         |agent: usize| setup.agents.get(agent).map_or(0, |a| a.robot.theta_names.len().max(a.robot.theta.len()));
@@ -248,7 +274,7 @@ fn agents<'a>(record: &RunRecord<'_>, table: &Table<'a>, notes: &mut Vec<String>
             };
             let adaptive = setup.agents[agent].law.estimates();
             let parameters = if adaptive { (0..count(agent)).map(&mut parameter).collect() } else { Vec::new() };
-            AgentIndex { name: names::agent_name(setup, agent), axes: axes(setup, agent), parameters }
+            AgentIndex { name: names::agent_name(setup, agent), axes: axes(setup, agent, references), parameters }
         })
         .collect();
     if agents_left_out > 0 {
@@ -260,18 +286,23 @@ fn agents<'a>(record: &RunRecord<'_>, table: &Table<'a>, notes: &mut Vec<String>
     (agents, series)
 }
 
-fn axes(setup: &forwardstep_sim::Setup, agent: usize) -> Vec<AxisIndex> {
+fn axes(setup: &forwardstep_sim::Setup, agent: usize, references: usize) -> Vec<AxisIndex> {
     let axes = setup.agents[agent].robot.axes.iter().enumerate();
-    axes.map(|(axis, limits)| AxisIndex {
-        name: names::axis_name(setup, agent, axis),
-        unit: match limits.unit {
-            AxisUnit::Radian => "rad",
-            AxisUnit::Metre => "m",
-            AxisUnit::One => "1",
-        },
-        position_limits: limits.position_limits,
-        velocity_limit: limits.velocity_limit,
-        effort_limit: limits.effort_limit,
+    axes.map(|(axis, limits)| {
+        let unit = |signal| text::unit(&names::unit(setup, agent, signal, axis));
+        AxisIndex {
+            name: names::axis_name(setup, agent, axis),
+            units: Units {
+                q: unit(Signal::Position),
+                dq: unit(Signal::Velocity),
+                s: unit(Signal::TrackingError),
+                tau: unit(Signal::Torque),
+                reference: (0..references).map(|k| unit(Signal::Reference(k as u8))).collect(),
+            },
+            position_limits: limits.position_limits,
+            velocity_limit: limits.velocity_limit,
+            effort_limit: limits.effort_limit,
+        }
     })
     .collect()
 }

@@ -4,15 +4,16 @@
 //! uPlot. All text goes through maud, which escapes it, or through the JSON index.
 
 mod data;
+mod families;
 mod interfaces;
 mod network;
 pub(crate) mod sections;
 pub(crate) mod text;
 
-use forwardstep_sim::recording::Ending;
-use forwardstep_sim::setup::AgentSetup;
+use forwardstep_sim::recording::{Ending, Signal};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+use self::families::Family;
 use self::interfaces::interfaces;
 use super::metrics::{Absence, Disagreement, Gap, Metrics};
 use super::palette::{self, Ground};
@@ -69,7 +70,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
                         section.notices aria-label="Notices" { ul { @for notice in &record.notices { li { (notice) } } } }
                     }
                     (sections::verdicts(record, metrics))
-                    (signals(absence, Gap::of(record.setup), &record.setup.agents))
+                    (signals(absence, record))
                     @if has_network(record) { (network(record, &timeline)) }
                     (interfaces(record.setup))
                     (sections::digital(record))
@@ -97,8 +98,11 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
 }
 
 /// The plots; the script fills their cards.
-fn signals(absence: Option<Absence>, gap: Gap, agents: &[AgentSetup]) -> Markup {
+fn signals(absence: Option<Absence>, record: &RunRecord<'_>) -> Markup {
+    let (gap, agents) = (Gap::of(record.setup), &record.setup.agents);
     let adaptive = agents.iter().any(|agent| agent.law.estimates());
+    let columns = &record.outcome.recording.columns;
+    let recorded = |signal| columns.iter().any(|column| column.signal == signal);
     let card = |id: &str, title: &str, what: &str, empty: &str| {
         html! {
             article.card.plot data-plot=(id) data-empty=(empty) {
@@ -122,13 +126,16 @@ fn signals(absence: Option<Absence>, gap: Gap, agents: &[AgentSetup]) -> Markup 
             div.grid {
                 (card("disagreement", gap.name(), gap.formula(), absence.map_or("", Absence::words)))
                 (card("position", "Positions", "q", ""))
-                (card("torque", "Torques", "τ, after any limit", ""))
+                @if recorded(Signal::Torque) { (card("torque", "Torques", "τ, after any limit", "")) }
                 @if agents.iter().any(|agent| !agent.pushes.is_empty()) {
                     (card("external", "External torques", "τ_ext, by pushes", ""))
                 }
                 (card("velocity", "Speed and reference", "q̇, and z dashed", ""))
-                (card("error", "Tracking error", "s = q̇ − z", ""))
+                @if recorded(Signal::TrackingError) { (card("error", "Tracking error", "s = q̇ − z", "")) }
                 (card("reference", "Reference derivatives", "ż and higher", ""))
+                @for family in Family::of(&record.outcome.recording) {
+                    (card(&family.id(), &family.title, &family.letters, ""))
+                }
                 (card("estimate", "Parameter estimates", "ϑ̂, the truth dashed", if adaptive { "" } else { "no agent estimates parameters" }))
                 (card("ledger", "Energy ledger", "V + ∫ dissipation = V(0)", ""))
             }

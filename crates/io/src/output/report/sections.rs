@@ -90,7 +90,12 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                                 span.sign aria-hidden="true" { (sign) }
                                 div {
                                     p { strong { (hypothesis.requires) } " " em { (hypothesis.answer.words()) } }
-                                    p.because { (hypothesis.because) }
+                                    p.because {
+                                        (hypothesis.because)
+                                        @if hypothesis.answer == Answer::Watched && record.outcome.ending == Ending::Completed {
+                                            "; this run reached its horizon"
+                                        }
+                                    }
                                 }
                             }
                         }
@@ -126,6 +131,7 @@ fn answer_style(answer: Answer) -> (&'static str, &'static str) {
     match answer {
         Answer::Holds => ("good", "✓"),
         Answer::HoldsOnHorizon => ("fair", "✓"),
+        Answer::Watched => ("fair", "◦"),
         Answer::NotCovered => ("warn", "?"),
         Answer::Violated => ("bad", "✗"),
     }
@@ -238,7 +244,7 @@ pub(crate) fn digital(record: &RunRecord<'_>) -> Markup {
 
 /// Peak torques, agents by axes, and the limits that were reached.
 pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
-    let most_axes = setup.agents.iter().map(|a| a.robot.axes.len()).max().unwrap_or(0);
+    let most_axes = metrics.peak_torques.iter().map(|peak| peak.axis + 1).max().unwrap_or(0);
     let peak = |agent, axis| metrics.peak_torques.iter().find(|p| p.agent == agent && p.axis == axis);
     html! {
         section #loads {
@@ -247,7 +253,7 @@ pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
                 div.card.scroll {
                     h3 { "Peak torque" span.by { "largest |τ|, the time, and its share of the limit where one is known" } }
                     table.numbers.peaks {
-                        thead { tr { th {} @for axis in 0..most_axes { th { (shared_axis_words(setup, axis)) } } } }
+                        thead { tr { th {} @for axis in 0..most_axes { th { (shared_words(setup, axis, names::torque_words)) } } } }
                         tbody {
                             @for agent in 0..setup.agents.len().min(MOST_TORQUE_ROWS) {
                                 tr {
@@ -316,12 +322,12 @@ fn torque(setup: &Setup, agent: usize, axis: usize, value: f64, t_s: f64) -> Mar
 
 /// The name of an axis if all agents that have it agree, its number otherwise, for headings.
 pub(crate) fn shared_axis_words(setup: &Setup, axis: usize) -> String {
+    shared_words(setup, axis, names::axis_words)
+}
+
+fn shared_words(setup: &Setup, axis: usize, words: impl Fn(&Setup, usize, usize) -> String) -> String {
     let owners = (0..setup.agents.len()).filter(|agent| axis < setup.agents[*agent].robot.axes.len());
-    let mut all = owners.map(|agent| names::axis_words(setup, agent, axis));
-    match all.next() {
-        Some(first) if all.all(|name| name == first) => first,
-        _ => format!("axis {}", axis + 1),
-    }
+    names::shared(owners.map(|agent| words(setup, agent, axis))).unwrap_or_else(|| format!("axis {}", axis + 1))
 }
 
 /// How values of a set-valued sign were chosen, and how restless they were.

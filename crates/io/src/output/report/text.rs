@@ -44,9 +44,21 @@ pub(crate) fn superscript(power: i32) -> String {
 /// A unit as in [`super::super::names::unit`], set for reading: `rad/s²`, `N m`.
 pub(crate) fn unit(plain: &str) -> String {
     match plain.split_once('^') {
+        Some((base, "0.5")) => format!("√{base}"),
         Some((base, power)) => format!("{base}{}", superscript(power.parse().unwrap_or(0))),
         None => plain.to_owned(),
     }
+}
+
+/// The distinct units, for reading: `rad or m`.
+pub(crate) fn units(all: impl Iterator<Item = String>) -> String {
+    let mut distinct: Vec<String> = Vec::new();
+    for unit in all.map(|plain| unit(&plain)) {
+        if !distinct.contains(&unit) {
+            distinct.push(unit);
+        }
+    }
+    distinct.join(" or ")
 }
 
 /// `1 agent`, `2 agents`.
@@ -76,6 +88,14 @@ mod tests {
             assert_eq!(number(x), text);
         }
         assert_eq!(unit("rad/s^2"), "rad/s²");
+        assert_eq!(unit("J^0.5"), "√J");
         assert_eq!(superscript(-12), "⁻¹²");
+    }
+
+    #[test]
+    fn units_are_named_once() {
+        let all = ["rad", "m", "rad", "m"].map(String::from).into_iter();
+        assert_eq!(units(all), "rad or m");
+        assert_eq!(units(["rad/s^2".to_owned()].into_iter()), "rad/s²");
     }
 }

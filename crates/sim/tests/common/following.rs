@@ -1,0 +1,129 @@
+//! Arms and masses that follow a leader.
+
+use std::sync::Arc;
+
+use forwardstep_core::Gain;
+use forwardstep_core::reference::Choice;
+use forwardstep_core::robot::PlanarLinks;
+use forwardstep_sim::delay::Delay;
+use forwardstep_sim::graph::Edge;
+use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
+use forwardstep_sim::schedule::Schedule;
+use forwardstep_sim::trajectory::{Path, Sinusoid, Trajectory};
+use forwardstep_sim::{
+    AgentSetup, AxisUnit, Exchange, Law, Method, Network, ReferenceKind, RobotKind, RobotSetup, Setup, Solver, Start,
+    TimeSpan,
+};
+
+use super::axes;
+
+pub const SWARM: FollowingDesign = FollowingDesign::Swarm { coupling: 12.0 };
+pub const DESIGNS: [FollowingDesign; 4] =
+    [FollowingDesign::Continuous, FollowingDesign::Differentiable, FollowingDesign::WithoutAcceleration, SWARM];
+
+pub fn arm(index: usize, q: [f64; 2], estimate: f64) -> AgentSetup {
+    let links = PlanarLinks::uniform([2.0 + 0.2 * index as f64, 1.5], [1.0, 0.8]);
+    let theta = links.theta().to_vec();
+    AgentSetup {
+        name: format!("arm-{index}"),
+        robot: RobotSetup {
+            kind: RobotKind::PlanarArm,
+            theta_names: (0..theta.len()).map(|k| format!("theta{k}")).collect(),
+            axes: axes(&["shoulder", "elbow"], AxisUnit::Radian),
+            theta: theta.clone(),
+        },
+        roots_per_s: Vec::new(),
+        manipulability: 0.0,
+        law: Law::Adaptive {
+            damping: Gain::Number(20.0),
+            adaptation: Gain::Number(10.0),
+            estimate_start: theta.iter().map(|theta| estimate * theta).collect(),
+        },
+        target: None,
+        start: Start { q: q.to_vec(), dq: vec![0.0; 2], rest: Vec::new(), reference: Vec::new() },
+        enforce_limits: false,
+        pushes: Vec::new(),
+    }
+}
+
+/// Four arms; the leader, vertex 4, is heard by the first alone.
+pub fn arms(design: FollowingDesign, choice: Choice, estimate: f64, end_s: f64) -> Setup {
+    let starts = [[0.6, -0.3], [-0.5, 0.4], [0.2, 0.8], [-0.8, -0.6]];
+    let wave = |amplitude, rad_per_s, phase_rad| Sinusoid { amplitude, rad_per_s, phase_rad };
+    let path = |offset, waves| Path::Sinusoids { offset, waves };
+    let trajectory =
+        Trajectory::new(vec![path(0.3, vec![wave(0.6, 0.8, 0.0)]), path(-0.2, vec![wave(0.4, 1.1, 0.5)])]).unwrap();
+    let edge = |from, to, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
+    let following = Following {
+        leader: Leader { name: "leader".into(), trajectory },
+        design,
+        alpha: 1.0,
+        beta: 2.0,
+        gain: 2.0,
+        choice,
+        period_s: 1e-3,
+    };
+    Setup {
+        agents: starts.iter().enumerate().map(|(k, q)| arm(k + 1, *q, estimate)).collect(),
+        reference: ReferenceKind::Following(Arc::new(following)),
+        exchange: Exchange::PositionVelocity,
+        network: Network {
+            agents: 5,
+            schedule: Schedule::Fixed(vec![
+                edge(4, 0, 1.0),
+                edge(0, 1, 1.0),
+                edge(1, 2, 1.0),
+                edge(2, 3, 1.0),
+                edge(3, 0, 1.0),
+                // A swarm needs links that lead both ways; the others do not mind them.
+                edge(1, 0, 1.0),
+                edge(2, 1, 1.0),
+                edge(3, 2, 1.0),
+                edge(0, 3, 1.0),
+                edge(4, 2, 1.0),
+            ]),
+            delays: vec![Delay::Constant { s: 0.0 }],
+            weights: Vec::new(),
+            coupling: Default::default(),
+        },
+        time: TimeSpan { end_s, record_every_s: 0.01 },
+        solver: Solver { method: Method::Adaptive { rtol: 1e-7, atol: 1e-9 }, ..Solver::default() },
+        control: None,
+    }
+}
+
+/// The problem of `validation/trajectories/following.py`.
+pub fn masses(design: FollowingDesign) -> Setup {
+    let mut setup = arms(design, Choice::Layer { width: 0.1 }, 1.0, 8.0);
+    let wave = |amplitude, rad_per_s, phase_rad| Sinusoid { amplitude, rad_per_s, phase_rad };
+    let waves = vec![wave(0.6, 0.8, 0.0), wave(0.2, 1.7, 0.5)];
+    let trajectory = Trajectory::new(vec![Path::Sinusoids { offset: 0.1, waves }]).unwrap();
+    setup.reference = ReferenceKind::Following(Arc::new(Following {
+        leader: Leader { name: "leader".into(), trajectory },
+        design,
+        alpha: 1.3,
+        beta: 2.1,
+        gain: 2.5,
+        choice: Choice::Layer { width: 0.1 },
+        period_s: 1e-3,
+    }));
+    let (q, dq) = ([0.8, -0.5, 0.3], [0.1, 0.0, -0.2]);
+    let (z, dz) = ([0.3, 0.1, 0.0], [0.0, 0.2, -0.1]);
+    setup.agents.truncate(3);
+    for (k, agent) in setup.agents.iter_mut().enumerate() {
+        agent.robot.kind = RobotKind::PointMass { dimension: 1 };
+        agent.robot.theta = vec![[1.0, 2.0, 1.5][k]];
+        agent.robot.theta_names.truncate(1);
+        agent.robot.axes.truncate(1);
+        agent.law = Law::Known { damping: Gain::Number(8.0) };
+        let free = if design == FollowingDesign::Continuous { 1 } else { 2 };
+        let reference = vec![vec![z[k]], vec![dz[k]]][..free].to_vec();
+        agent.start = Start { q: vec![q[k]], dq: vec![dq[k]], rest: Vec::new(), reference };
+    }
+    let edge = |to, from, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
+    setup.network.agents = 4;
+    setup.network.schedule = Schedule::Fixed(vec![edge(0, 3, 1.0), edge(1, 0, 1.5), edge(2, 1, 0.7), edge(0, 2, 0.4)]);
+    setup.solver.method = Method::Adaptive { rtol: 1e-9, atol: 1e-11 };
+    setup.time.record_every_s = 1.0;
+    setup
+}

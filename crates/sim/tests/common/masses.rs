@@ -1,0 +1,38 @@
+//! Point masses without velocity.
+
+use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::{AgentSetup, AxisUnit, Law, ReferenceKind, RobotKind, RobotSetup, Setup, Start};
+
+use super::{axes, setup, silent, switching, wave};
+
+pub fn mass(index: usize, kg: f64, q: [f64; 2], roots: &[f64]) -> AgentSetup {
+    AgentSetup {
+        name: format!("mass-{index}"),
+        robot: RobotSetup {
+            kind: RobotKind::PointMass { dimension: 2 },
+            theta: vec![kg],
+            theta_names: vec!["mass".into()],
+            axes: axes(&["x", "y"], AxisUnit::Metre),
+        },
+        roots_per_s: roots.to_vec(),
+        manipulability: 0.0,
+        law: Law::PositionOnly { damping: 20.0, filter_per_s: 20.0, adaptation: 5.0, estimate_start: 0.3 },
+        target: None,
+        start: Start { q: q.to_vec(), dq: vec![0.2, -0.1], rest: Vec::new(), reference: Vec::new() },
+        enforce_limits: false,
+        pushes: Vec::new(),
+    }
+}
+
+pub fn tracking() -> Setup {
+    let mut agent = mass(1, 2.0, [0.4, -0.3], &[1.0, 1.5, 2.0]);
+    agent.target = Some(Trajectory::new(vec![wave(0.1, 1.0, 1.0, 0.4), wave(0.1, 0.5, 1.7, 0.4)]).unwrap());
+    setup(vec![agent], ReferenceKind::Tracking, silent(1), 40.0)
+}
+
+pub fn consensus(order: usize) -> Setup {
+    let roots = &[1.0, 2.0, 1.5][..order];
+    let starts = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.5]];
+    let agents = (0..3).map(|k| mass(k + 1, 1.0 + 0.7 * k as f64, starts[k], roots)).collect();
+    setup(agents, ReferenceKind::Consensus, switching(), 40.0)
+}

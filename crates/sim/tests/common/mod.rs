@@ -1,0 +1,131 @@
+//! Systems of Sections IV and V as setups, and what tests ask of their runs.
+
+#![allow(unreachable_pub, dead_code, reason = "shared by several tests, none of which uses all of it")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+
+pub mod chains;
+pub mod following;
+pub mod masses;
+pub mod single;
+pub mod truth;
+pub mod vehicles;
+
+use std::ops::ControlFlow;
+
+use forwardstep_sim::delay::Delay;
+use forwardstep_sim::graph::{Edge, Weight};
+use forwardstep_sim::schedule::{Phase, Schedule};
+use forwardstep_sim::trajectory::{Path, Sinusoid};
+use forwardstep_sim::{
+    AgentSetup, Axis, AxisUnit, Column, Control, Ending, Exchange, Method, Network, Outcome, ReferenceKind, Setup,
+    Signal, Solver, TimeSpan, simulate,
+};
+
+pub const RTOL: f64 = 1e-8;
+
+pub fn axes(names: &[&str], unit: AxisUnit) -> Vec<Axis> {
+    let axis = |name: &&str| Axis {
+        name: (*name).into(),
+        unit,
+        position_limits: None,
+        velocity_limit: None,
+        effort_limit: None,
+    };
+    names.iter().map(axis).collect()
+}
+
+pub fn wave(offset: f64, amplitude: f64, rad_per_s: f64, phase_rad: f64) -> Path {
+    Path::Sinusoids { offset, waves: vec![Sinusoid { amplitude, rad_per_s, phase_rad }] }
+}
+
+pub fn fixed(offset: f64) -> Path {
+    Path::Sinusoids { offset, waves: Vec::new() }
+}
+
+/// Nobody talks.
+pub fn silent(agents: usize) -> Network {
+    Network {
+        agents,
+        schedule: Schedule::Fixed(Vec::new()),
+        delays: Vec::new(),
+        weights: Vec::new(),
+        coupling: Default::default(),
+    }
+}
+
+/// Two graphs in turn, over which three agents agree, with a delay that grows and jumps back.
+pub fn switching() -> Network {
+    let edge = |from, to| Edge { from, to, weight: Weight::Constant(1.0), delay: 0 };
+    let phase = |edges| Phase { dwell_s: 0.8, edges };
+    Network {
+        schedule: Schedule::Periodic(vec![phase(vec![edge(0, 1), edge(1, 0)]), phase(vec![edge(1, 2), edge(2, 0)])]),
+        delays: vec![Delay::SawTooth { min_s: 0.05, max_s: 0.3, period_s: 0.5, offset_s: 0.0 }],
+        ..silent(3)
+    }
+}
+
+pub fn setup(agents: Vec<AgentSetup>, reference: ReferenceKind, network: Network, end_s: f64) -> Setup {
+    Setup {
+        agents,
+        reference,
+        exchange: Exchange::Position,
+        network,
+        time: TimeSpan { end_s, record_every_s: 0.05 },
+        solver: Solver { method: Method::Adaptive { rtol: RTOL, atol: 1e-10 }, ..Solver::default() },
+        control: None,
+    }
+}
+
+pub fn sampled(mut setup: Setup, sample_hz: f64) -> Setup {
+    setup.control = Some(Control {
+        sample_hz,
+        computation_delay_s: 0.0,
+        sensors: Default::default(),
+        actuators: Default::default(),
+    });
+    setup
+}
+
+pub fn run(setup: &Setup) -> Outcome {
+    let outcome = simulate(setup, &mut |_| ControlFlow::Continue(())).unwrap();
+    assert_eq!(outcome.ending, Ending::Completed);
+    outcome
+}
+
+pub fn column(outcome: &Outcome, agent: usize, signal: Signal, axis: usize) -> &[f64] {
+    let is_it = |c: &&Column| c.agent == agent && c.signal == signal && c.axis == axis;
+    let found = outcome.recording.columns.iter().find(is_it);
+    &found.unwrap_or_else(|| panic!("agent {agent} has no {signal:?} {axis}")).values
+}
+
+pub fn columns(outcome: &Outcome, signal: Signal) -> Vec<&[f64]> {
+    let wanted = outcome.recording.columns.iter().filter(|column| column.signal == signal);
+    wanted.map(|column| &column.values[..]).collect()
+}
+
+pub fn last(outcome: &Outcome, agent: usize, signal: Signal, axis: usize) -> f64 {
+    *column(outcome, agent, signal, axis).last().unwrap()
+}
+
+/// max |V + ∫ dissipation − V(0)| as a part of V(0), or of `least` where V(0) is below it.
+pub fn ledger_error(outcome: &Outcome, agent: usize, least: f64) -> f64 {
+    let v = column(outcome, agent, Signal::Lyapunov, 0);
+    let lost = column(outcome, agent, Signal::Dissipation, 0);
+    v.iter().zip(lost).map(|(now, lost)| (now + lost - v[0]).abs() / v[0].max(least)).fold(0.0, f64::max)
+}
+
+/// The largest difference of positions at the end.
+pub fn apart(a: &Outcome, b: &Outcome) -> f64 {
+    let ends = |outcome| columns(outcome, Signal::Position).into_iter().map(|x: &[f64]| *x.last().unwrap());
+    ends(a).zip(ends(b)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// Sampled runs, at this rate and twice and four times as often, come closer to the continuous one in proportion to the period.
+pub fn assert_first_order(setup: &Setup, sample_hz: f64) {
+    let continuous = run(setup);
+    let gaps = [1.0, 2.0, 4.0].map(|often| apart(&run(&sampled(setup.clone(), often * sample_hz)), &continuous));
+    for pair in gaps.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!((0.7..1.3).contains(&order), "{}: {gaps:?}", setup.agents[0].law.words());
+    }
+}

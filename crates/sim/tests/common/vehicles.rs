@@ -1,0 +1,67 @@
+//! Vehicles with one thrust, and rotorcraft.
+
+use forwardstep_core::Gain;
+use forwardstep_core::controller::{Floor, Yaw};
+use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::vehicles::{ThrustKind, ThrustLaw};
+use forwardstep_sim::{AgentSetup, AxisUnit, Law, ReferenceKind, RobotKind, RobotSetup, Setup, Start};
+
+use super::{axes, fixed, setup, switching, wave};
+
+pub const G: f64 = 9.81;
+pub const DIFFERENTIABLE: ThrustKind = ThrustKind::Differentiable { alpha_star: 3.0, stiffness: 4.0 };
+pub const ADAPTIVE: ThrustKind = ThrustKind::Adaptive { alpha_star: 3.0, gamma_star: 0.2, estimate_start: 0.8 };
+
+pub fn rotorcraft() -> RobotKind {
+    RobotKind::Rotorcraft {
+        gravity: G,
+        inertia: Gain::Matrix(vec![0.02, 0.001, 0.0, 0.001, 0.02, 0.0, 0.0, 0.0, 0.04]),
+        rotors: None,
+    }
+}
+
+pub fn agent(index: usize, kind: RobotKind, design: ThrustKind) -> AgentSetup {
+    let kg = 1.0 + 0.3 * index as f64;
+    let q = [[1.0, 0.0, -1.0], [0.0, 1.5, -2.0], [-1.0, 0.5, -1.5]][index];
+    let mut rest = vec![0.0, 0.0, 0.0, 1.0];
+    rest.resize(kind.rest_len(), 0.0);
+    AgentSetup {
+        name: format!("craft-{index}"),
+        robot: RobotSetup {
+            kind,
+            theta: vec![kg],
+            theta_names: vec!["mass".into()],
+            axes: axes(&["x", "y", "z"], AxisUnit::Metre),
+        },
+        roots_per_s: vec![1.0, 1.5, 2.0][..design.order()].to_vec(),
+        manipulability: 0.0,
+        law: Law::Thrust(ThrustLaw {
+            design,
+            yaw: Yaw { heading: 0.5, rate: 0.0, gain: 1.0 },
+            floor: Floor::Stops(1.0),
+            thrust_start: None,
+            bandwidth_per_s: 30.0,
+        }),
+        target: None,
+        start: Start { q: q.to_vec(), dq: vec![0.2, -0.1, 0.1], rest, reference: vec![vec![0.0; 3]] },
+        enforce_limits: false,
+        pushes: Vec::new(),
+    }
+}
+
+/// A circle of radius one about where all agree, and a drift.
+pub fn turning(index: usize) -> Trajectory {
+    let phase_rad = 2.1 * index as f64;
+    let paths = vec![
+        wave(0.0, 1.0, 0.4, phase_rad),
+        wave(0.0, 1.0, 0.4, phase_rad + core::f64::consts::FRAC_PI_2),
+        fixed(-0.2 * index as f64),
+    ];
+    Trajectory::new(paths).unwrap()
+}
+
+pub fn three(kind: &RobotKind, design: ThrustKind, in_formation: bool, end_s: f64) -> Setup {
+    let agents =
+        (0..3).map(|k| AgentSetup { target: in_formation.then(|| turning(k)), ..agent(k, kind.clone(), design) });
+    setup(agents.collect(), ReferenceKind::Consensus, switching(), end_s)
+}
