@@ -13,7 +13,7 @@ use super::chain_file::{
     AdaptiveBacksteppingFile, ChainFile, ImmersionFile, LinearAdaptiveFile, LinearisingFile, PureFeedbackFile,
     StrictFeedbackFile,
 };
-use super::fault::{Fault, count, fault, filled, positive, values};
+use super::fault::{Fault, count, fault, filled, length, positive, positive_or, values};
 use super::file::EstimateStartFile;
 use super::formula::formula_in;
 use super::law::{estimate, of_another};
@@ -55,11 +55,7 @@ fn list(texts: &[At<String>], names: &[String]) -> Result<Vec<Expression>, Fault
 
 fn robot(model: ChainModel, parameters: &At<Vec<At<f64>>>) -> Result<RobotSetup, Fault> {
     let need = model.parameters();
-    if parameters.value.len() != need {
-        let (found, agent) = (parameters.value.len(), "regressor".to_owned());
-        let problem = ValueProblem::VectorLength { key: "parameters", found, need, agent };
-        return Err(fault(parameters, problem));
-    }
+    length("parameters", &parameters.span, parameters.value.len(), need, "regressor")?;
     Ok(RobotSetup {
         kind: RobotKind::Chain(model),
         theta: values(&parameters.value),
@@ -91,10 +87,7 @@ pub(super) fn strict(file: &StrictFeedbackFile) -> Result<RobotSetup, Fault> {
 pub(super) fn pure(file: &PureFeedbackFile) -> Result<RobotSetup, Fault> {
     let regressors = equations(&file.regressors)?;
     let names = states(regressors.len());
-    if file.known.value.len() != names.len() {
-        let (found, need, agent) = (file.known.value.len(), names.len(), "regressors".to_owned());
-        return Err(fault(&file.known, ValueProblem::VectorLength { key: "known", found, need, agent }));
-    }
+    length("known", &file.known.span, file.known.value.len(), names.len(), "regressors")?;
     let known = list(&file.known.value, &names)?;
     let psi = optional(file.psi.as_ref(), &names, 1.0)?;
     cascade(CascadeTerms::new(known, regressors, psi), &file.regressors, &file.parameters)
@@ -122,9 +115,8 @@ fn equations(file: &At<Vec<At<Vec<At<String>>>>>) -> Result<Vec<Vec<Expression>>
         return Err(fault(file, ValueProblem::Order { key: "regressors", found: rows.len(), most: MOST_EQUATIONS }));
     }
     let need = rows.first().map_or(0, |row| row.value.len());
-    if let Some((k, row)) = rows.iter().enumerate().find(|(_, row)| row.value.len() != need) {
-        let (found, agent) = (row.value.len(), format!("equation {}", k + 1));
-        return Err(fault(row, ValueProblem::VectorLength { key: "regressors", found, need, agent }));
+    for (k, row) in rows.iter().enumerate() {
+        length("regressors", &row.span, row.value.len(), need, &format!("equation {}", k + 1))?;
     }
     let names = states(rows.len());
     rows.iter().map(|row| list(&row.value, &names)).collect()
@@ -150,16 +142,11 @@ fn each(key: &'static str, file: Option<&At<AxisValues>>, agent: &str, need: usi
     let Some(place) = file else { return Ok(vec![GAIN; need]) };
     match &place.value {
         AxisValues::All(value) => Ok(vec![positive(key, &At { value: *value, span: place.span.clone() })?; need]),
-        AxisValues::Each(list) if list.len() == need => list.iter().map(|value| positive(key, value)).collect(),
         AxisValues::Each(list) => {
-            let (found, agent) = (list.len(), agent.to_owned());
-            Err(fault(place, ValueProblem::VectorLength { key, found, need, agent }))
+            length(key, &place.span, list.len(), need, agent)?;
+            list.iter().map(|value| positive(key, value)).collect()
         }
     }
-}
-
-fn number(key: &'static str, file: Option<&At<f64>>, otherwise: f64) -> Result<f64, Fault> {
-    file.map_or(Ok(otherwise), |value| positive(key, value))
 }
 
 fn adapted(
@@ -175,17 +162,17 @@ fn adapted(
 /// `linearising`.
 pub(super) fn linearising(file: &LinearisingFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
     model(robot, agent, "linearising", false)?;
-    let gain_per_s = number("gain_per_s", file.gain_per_s.as_ref(), GAIN)?;
-    let floor = number("floor", file.floor.as_ref(), FLOOR)?;
+    let gain_per_s = positive_or("gain_per_s", &file.gain_per_s, GAIN)?;
+    let floor = positive_or("floor", &file.floor, FLOOR)?;
     Ok(Law::Chain(ChainLaw { step: ChainStep::Linearising { gain_per_s }, floor }))
 }
 
 /// `linear_adaptive`.
 pub(super) fn linear_adaptive(file: &LinearAdaptiveFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
     model(robot, agent, "linear_adaptive", false)?;
-    let gain_per_s = number("gain_per_s", file.gain_per_s.as_ref(), GAIN)?;
+    let gain_per_s = positive_or("gain_per_s", &file.gain_per_s, GAIN)?;
     let estimate = adapted(file.adaptation_gain.as_ref(), file.estimate_start.as_ref(), agent, robot)?;
-    let floor = number("floor", file.floor.as_ref(), FLOOR)?;
+    let floor = positive_or("floor", &file.floor, FLOOR)?;
     Ok(Law::Chain(ChainLaw { step: ChainStep::Adaptive { gain_per_s, estimate }, floor }))
 }
 
@@ -196,10 +183,9 @@ pub(super) fn immersion(file: &ImmersionFile, agent: &str, robot: &RobotSetup) -
     };
     let (order, phi) = (derivatives_of(terms), terms.regressor());
     let antiderivatives = match &file.antiderivatives {
-        Some(texts) if texts.value.len() == phi.len() => list(&texts.value, &derivatives(order))?,
         Some(texts) => {
-            let (found, need, agent) = (texts.value.len(), phi.len(), agent.to_owned());
-            return Err(fault(texts, ValueProblem::VectorLength { key: "antiderivatives", found, need, agent }));
+            length("antiderivatives", &texts.span, texts.value.len(), phi.len(), agent)?;
+            list(&texts.value, &derivatives(order))?
         }
         None => phi
             .iter()
@@ -207,9 +193,9 @@ pub(super) fn immersion(file: &ImmersionFile, agent: &str, robot: &RobotSetup) -
             .collect::<Option<_>>()
             .ok_or_else(|| Fault::new(SystemProblem::Antiderivatives { agent: agent.to_owned() }))?,
     };
-    let gain_per_s = number("gain_per_s", file.gain_per_s.as_ref(), GAIN)?;
+    let gain_per_s = positive_or("gain_per_s", &file.gain_per_s, GAIN)?;
     let estimate = adapted(file.adaptation_gain.as_ref(), file.estimate_start.as_ref(), agent, robot)?;
-    let floor = number("floor", file.floor.as_ref(), FLOOR)?;
+    let floor = positive_or("floor", &file.floor, FLOOR)?;
     Ok(Law::Chain(ChainLaw { step: ChainStep::Immersion { gain_per_s, estimate, antiderivatives }, floor }))
 }
 
@@ -222,6 +208,6 @@ pub(super) fn backstepping(file: &AdaptiveBacksteppingFile, agent: &str, robot: 
     let order = model(robot, agent, "adaptive_backstepping", true)?.order();
     let gains_per_s = each("gains_per_s", file.gains_per_s.as_ref(), agent, order)?;
     let estimate = adapted(file.adaptation_gain.as_ref(), file.estimate_start.as_ref(), agent, robot)?;
-    let floor = number("floor", file.floor.as_ref(), FLOOR)?;
+    let floor = positive_or("floor", &file.floor, FLOOR)?;
     Ok(Law::Chain(ChainLaw { step: ChainStep::Backstepping { gains_per_s, estimate }, floor }))
 }

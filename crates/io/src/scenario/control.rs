@@ -5,7 +5,7 @@ use forwardstep_sim::{Actuators, Control, Sensors, VelocitySensor};
 use super::at::At;
 use super::control_file::{ControlFile, NoiseFile, QuantisationFile, VelocityFile};
 use super::control_problem::ControlProblem;
-use super::fault::{Fault, fault, not_negative, positive, seed};
+use super::fault::{Fault, fault, not_negative, not_negative_or, positive, seed};
 use super::problem::ScenarioProblem;
 use super::values::AxisValues;
 
@@ -45,8 +45,8 @@ fn sensors(file: &ControlFile) -> Result<Sensors, Fault> {
     let mut sensors = Sensors::default();
     if let Some(NoiseFile { seed: draw, position, velocity }) = &file.noise {
         sensors.seed = seed(draw)?;
-        sensors.position_noise = position.as_ref().map_or(Ok(0.0), |sigma| not_negative("noise.position", sigma))?;
-        sensors.velocity_noise = velocity.as_ref().map_or(Ok(0.0), |sigma| not_negative("noise.velocity", sigma))?;
+        sensors.position_noise = not_negative_or("noise.position", position, 0.0)?;
+        sensors.velocity_noise = not_negative_or("noise.velocity", velocity, 0.0)?;
     }
     sensors.position_quantum = quantum(file, "quantisation.position", |q| &q.position)?;
     sensors.velocity_quantum = quantum(file, "quantisation.velocity", |q| &q.velocity)?;

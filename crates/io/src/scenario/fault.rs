@@ -64,6 +64,16 @@ pub(super) fn positive(key: &'static str, number: &At<f64>) -> Result<f64, Fault
     }
 }
 
+/// A positive number, or the usual one.
+pub(super) fn positive_or(key: &'static str, number: &Option<At<f64>>, usual: f64) -> Result<f64, Fault> {
+    number.as_ref().map_or(Ok(usual), |number| positive(key, number))
+}
+
+/// A number that is not negative, or the usual one.
+pub(super) fn not_negative_or(key: &'static str, number: &Option<At<f64>>, usual: f64) -> Result<f64, Fault> {
+    number.as_ref().map_or(Ok(usual), |number| not_negative(key, number))
+}
+
 pub(super) fn not_negative(key: &'static str, number: &At<f64>) -> Result<f64, Fault> {
     let value = number.value;
     if value >= 0.0 { Ok(value) } else { Err(fault(number, ValueProblem::Negative { key, value })) }
@@ -97,6 +107,20 @@ pub(super) fn seed(number: &At<i64>) -> Result<u64, Fault> {
 /// A list with at least one entry.
 pub(super) fn filled<'a, T>(key: &'static str, list: &'a At<Vec<T>>) -> Result<&'a [T], Fault> {
     if list.value.is_empty() { Err(fault(list, ValueProblem::Empty { key })) } else { Ok(&list.value) }
+}
+
+/// A list at `place` has as many entries as `whose` need.
+pub(super) fn length(
+    key: &'static str,
+    place: &Range<usize>,
+    found: usize,
+    need: usize,
+    whose: &str,
+) -> Result<(), Fault> {
+    if found == need {
+        return Ok(());
+    }
+    Err(Fault::new(ValueProblem::VectorLength { key, found, need, agent: whose.to_owned() }).at(place))
 }
 
 pub(super) fn values(list: &[At<f64>]) -> Vec<f64> {

@@ -7,7 +7,7 @@ use super::agents::Body;
 use super::at::At;
 use super::chain;
 use super::chain_file::{AdaptiveBacksteppingFile, LinearAdaptiveFile};
-use super::fault::{Fault, fault, not_negative, positive, values};
+use super::fault::{Fault, fault, length, not_negative_or, positive, positive_or, values};
 use super::file::{AdaptiveFile, DampingFile, EstimateStartFile, KnownFile, LawFile};
 use super::spacecraft;
 use super::spacecraft_file::AttitudeFile;
@@ -93,9 +93,9 @@ fn position_only(file: &PositionOnlyFile, agent: &str, robot: &RobotSetup) -> Re
         return Err(of_another("position_only", "point masses", agent, robot));
     }
     Ok(Law::PositionOnly {
-        damping: damping.as_ref().map_or(Ok(DAMPING_GAIN), |k| positive("damping", k))?,
-        filter_per_s: filter_per_s.as_ref().map_or(Ok(FILTER_PER_S), |rate| positive("filter_per_s", rate))?,
-        adaptation: adaptation_gain.as_ref().map_or(Ok(ADAPTATION_GAIN), |g| not_negative("adaptation_gain", g))?,
+        damping: positive_or("damping", damping, DAMPING_GAIN)?,
+        filter_per_s: positive_or("filter_per_s", filter_per_s, FILTER_PER_S)?,
+        adaptation: not_negative_or("adaptation_gain", adaptation_gain, ADAPTATION_GAIN)?,
         estimate_start: estimate_start_kg.as_ref().map_or(0.0, |start| start.value),
     })
 }
@@ -128,6 +128,17 @@ fn is_lagrangian(robot: &RobotSetup) -> bool {
 
 fn is_tree(robot: &RobotSetup) -> bool {
     matches!(robot.kind, RobotKind::Tree(_))
+}
+
+/// A gain without a bandwidth, or the usual number.
+pub(super) fn gain_or(
+    key: &'static str,
+    file: &Option<At<GainFile>>,
+    usual: f64,
+    agent: &str,
+    size: usize,
+) -> Result<Gain, Fault> {
+    file.as_ref().map_or(Ok(Gain::Number(usual)), |place| gain(key, &place.value, place, agent, size))
 }
 
 /// Reads a gain and checks that it is symmetric positive definite and of the right size.
@@ -198,11 +209,9 @@ pub(super) fn known_or_given(
         EstimateStartFile::Zero => Ok(vec![0.0; theta.len()]),
         EstimateStartFile::True => Ok(theta.to_vec()),
         EstimateStartFile::Scaled(factor) => Ok(theta.iter().map(|entry| factor.value * entry).collect()),
-        EstimateStartFile::Given(list) if list.value.len() == theta.len() => Ok(values(&list.value)),
         EstimateStartFile::Given(list) => {
-            let (found, need) = (list.value.len(), theta.len());
-            let agent = agent.to_owned();
-            Err(fault(list, ValueProblem::VectorLength { key, found, need, agent }))
+            length(key, &list.span, list.value.len(), theta.len(), agent)?;
+            Ok(values(&list.value))
         }
     }
 }

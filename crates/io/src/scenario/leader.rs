@@ -6,7 +6,7 @@ use forwardstep_core::reference::Choice;
 use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
 
 use super::at::At;
-use super::fault::{Fault, fault, positive};
+use super::fault::{Fault, fault, positive, positive_or};
 use super::file::{ReferenceFile, ScenarioFile};
 use super::inputs::InputFolder;
 use super::leader_file::{LeaderDesignFile, LeaderReferenceFile, SignFile};
@@ -56,7 +56,6 @@ pub(super) fn following(
         Some(SignFile::Explicit) => Choice::Explicit,
         Some(SignFile::Layer(layer)) => Choice::Layer { width: positive("width", &layer.width)? },
     };
-    let every = reference.sign_every_s.as_ref();
     Ok(Some(Arc::new(Following {
         leader: Leader { name, trajectory },
         design,
@@ -64,7 +63,7 @@ pub(super) fn following(
         beta,
         gain: positive("gain", &reference.gain)?,
         choice,
-        period_s: every.map_or(Ok(SIGN_EVERY_S), |every| positive("sign_every_s", every))?,
+        period_s: positive_or("sign_every_s", &reference.sign_every_s, SIGN_EVERY_S)?,
     })))
 }
 

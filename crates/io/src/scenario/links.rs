@@ -9,7 +9,7 @@ use forwardstep_sim::formula::{BoundedFormula, Formula, Interval};
 use forwardstep_sim::graph::Weight;
 
 use super::at::At;
-use super::fault::{Fault, between, fault, not_negative, positive, seed};
+use super::fault::{Fault, between, fault, not_negative, not_negative_or, positive, seed};
 use super::formula::formula;
 use super::links_file::{BurstsFile, LogFile, LossFile, PacketsFile, RandomHoldFile, RandomLossFile, WeightFile};
 use super::network::NetworkReader;
@@ -262,7 +262,7 @@ pub(super) fn packets(file: &PacketsFile) -> Result<DelayPlan, Fault> {
         every_s,
         first_s,
         latency_s: not_negative("latency_s", &file.latency_s)?,
-        jitter_s: file.jitter_s.as_ref().map_or(Ok(0.0), |jitter| not_negative("jitter_s", jitter))?,
+        jitter_s: not_negative_or("jitter_s", &file.jitter_s, 0.0)?,
         loss,
         most_in_a_row: most.transpose()?.map(|most| most as u32),
         seed: seed(&file.seed)?,

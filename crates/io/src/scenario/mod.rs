@@ -113,7 +113,7 @@ use crate::urdf::UrdfProblem;
 use crate::{InputError, SourceText};
 use at::At;
 use de::ValueDe;
-use fault::{Fault, between, fault, positive};
+use fault::{Fault, between, fault, positive, positive_or};
 use file::{
     AdaptiveMethodFile, ConsensusFile, ExchangeFile, ExpectFile, GoalFile, MethodFile, ReferenceFile, ScenarioFile,
     SolverFile,
@@ -216,7 +216,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
     let mut notices = Vec::new();
     let end_s = positive("end_s", &file.time.end_s)?;
     let every = file.time.record_every_s.as_ref();
-    let record_every_s = every.map_or(Ok(RECORD_EVERY_S), |every| positive("record_every_s", every))?;
+    let record_every_s = positive_or("record_every_s", &file.time.record_every_s, RECORD_EVERY_S)?;
     let mut read = agents::agents(&file, source, &mut folder, &mut notices, end_s)?;
     pushes::pushes(&file.pushes, &mut read, end_s, source, &mut folder, &mut notices)?;
     let agents = read.agents;
@@ -334,11 +334,11 @@ fn solver(file: Option<&SolverFile>) -> Result<Solver, Fault> {
             Method::Adaptive {
                 // Below a few units in the last place no error estimate means anything.
                 rtol: rtol.as_ref().map_or(Ok(usual_rtol), |rtol| between("rtol", rtol, 1e-14, 0.1))?,
-                atol: atol.as_ref().map_or(Ok(usual_atol), |atol| positive("atol", atol))?,
+                atol: positive_or("atol", atol, usual_atol)?,
             }
         }
     };
-    let min_step_s = file.min_step_s.as_ref().map_or(Ok(default.min_step_s), |step| positive("min_step_s", step))?;
+    let min_step_s = positive_or("min_step_s", &file.min_step_s, default.min_step_s)?;
     let max_step_s = file.max_step_s.as_ref().map(|step| positive("max_step_s", step)).transpose()?;
     let fixed = match &file.method {
         Some(MethodFile::Fixed(fixed)) => Some(("step_s", &fixed.step_s)),

@@ -9,7 +9,7 @@ use forwardstep_sim::{AgentSetup, AxisUnit, RobotKind, SetupError};
 
 use super::agents::{Agents, Body};
 use super::at::At;
-use super::fault::{Fault, fault, filled, not_negative, positive, values};
+use super::fault::{Fault, fault, filled, length, not_negative, not_negative_or, positive_or, values};
 use super::formula::formula;
 use super::inputs::InputFolder;
 use super::notice::Notice;
@@ -38,8 +38,8 @@ pub(super) fn pushes(
 ) -> Result<(), Fault> {
     let mut tables = Tables { folder, texts: HashMap::new(), numbers: 0, formulas: HashMap::new() };
     for At { value: file, span } in list {
-        let from_s = file.from_s.as_ref().map_or(Ok(0.0), |from| not_negative("from_s", from))?;
-        let lasts_s = file.for_s.as_ref().map_or(Ok(f64::INFINITY), |lasts| positive("for_s", lasts))?;
+        let from_s = not_negative_or("from_s", &file.from_s, 0.0)?;
+        let lasts_s = positive_or("for_s", &file.for_s, f64::INFINITY)?;
         let until_s = from_s + lasts_s;
         let mut idle = true;
         for index in who(&file.on, read)? {
@@ -251,7 +251,7 @@ impl Reader<'_, '_> {
     fn hand_on_point(&mut self, file: &HandOnPointFile) -> Result<Effect, Fault> {
         let grip = self.grip(file.link.as_ref(), file.at_m.as_ref(), None, "hand_on_axes")?;
         let stiffness = not_negative("stiffness_n_per_m", &file.stiffness_n_per_m)?;
-        let damping = file.damping_n_s_m.as_ref().map_or(Ok(0.0), |damping| not_negative("damping_n_s_m", damping))?;
+        let damping = not_negative_or("damping_n_s_m", &file.damping_n_s_m, 0.0)?;
         let target = self.course("target_m", &file.target_m, &COORDINATES[..grip.point_components()])?;
         Ok(Effect::HandOnPoint { grip, stiffness, damping, target })
     }
@@ -294,7 +294,7 @@ impl Reader<'_, '_> {
     fn course(&mut self, key: &'static str, file: &At<CourseFile>, names: &[&str]) -> Result<Course, Fault> {
         match &file.value {
             CourseFile::Each(list) => {
-                self.length(key, file, list.len(), names.len())?;
+                length(key, &file.span, list.len(), names.len(), &self.agent.name)?;
                 Ok(Course::Each(list.iter().map(|entry| self.function(entry)).collect::<Result<_, _>>()?))
             }
             CourseFile::Table(table) => {
@@ -357,23 +357,16 @@ impl Reader<'_, '_> {
             match &row.value {
                 // A row of one number may stand without brackets.
                 Item::Number(value) => {
-                    self.length(key, row, 1, width)?;
+                    length(key, &row.span, 1, width, &self.agent.name)?;
                     values.push(*value);
                 }
                 Item::List(list) => {
-                    self.length(key, row, list.len(), width)?;
+                    length(key, &row.span, list.len(), width, &self.agent.name)?;
                     values.extend(list.iter().map(|number| number.value));
                 }
             }
         }
         Ok((times_s, values))
-    }
-
-    fn length<T>(&self, key: &'static str, place: &At<T>, found: usize, need: usize) -> Result<(), Fault> {
-        if found == need {
-            return Ok(());
-        }
-        Err(fault(place, ValueProblem::VectorLength { key, found, need, agent: self.name() }))
     }
 }
 

@@ -8,9 +8,9 @@ use forwardstep_sim::{AttitudeLaw, AxisUnit, Law, RobotKind, RobotSetup, Start};
 
 use super::at::At;
 use super::attitude::{attitude as attitude_of, quaternion, turn};
-use super::fault::{Fault, fault, filled, positive, values};
+use super::fault::{Fault, fault, filled, length, positive, positive_or, values};
 use super::file::StartFile;
-use super::law::{gain, of_another};
+use super::law::{gain, gain_or, of_another};
 use super::robots::axis;
 use super::spacecraft_file::{AttitudeFile, SpacecraftFile, SpacecraftStartFile, WheelFile};
 use super::system_problem::SystemProblem;
@@ -95,11 +95,9 @@ pub(super) fn start<'a>(
     }
     let rest = match momentum {
         None => vec![0.0; wheels.count()],
-        Some(list) if list.value.len() == wheels.count() => values(&list.value),
         Some(list) => {
-            let (found, need, agent) = (list.value.len(), wheels.count(), agent.to_owned());
-            let key = "wheel_momentum_n_m_s";
-            return Err(fault(list, ValueProblem::VectorLength { key, found, need, agent }));
+            length("wheel_momentum_n_m_s", &list.span, list.value.len(), wheels.count(), agent)?;
+            values(&list.value)
         }
     };
     let (q, rate) = (q.unwrap_or(IDENTITY), rate.unwrap_or_default());
@@ -150,17 +148,12 @@ pub(super) fn attitude(file: &AttitudeFile, agent: &str, robot: &RobotSetup) -> 
     if !matches!(robot.kind, RobotKind::Spacecraft { .. }) {
         return Err(of_another("attitude", "spacecraft", agent, robot));
     }
-    let number = |key, value: &Option<At<f64>>, usual| value.as_ref().map_or(Ok(usual), |value| positive(key, value));
-    let matrix = |key, value: &Option<At<_>>, usual| match value {
-        None => Ok(Gain::Number(usual)),
-        Some(place) => gain(key, &place.value, place, agent, 4),
-    };
     Ok(Law::Attitude(Box::new(AttitudeLaw {
         alpha: [
-            number("error_gain_per_s2", &file.error_gain_per_s2, ERROR_GAIN_PER_S2)?,
-            number("rate_gain_per_s", &file.rate_gain_per_s, RATE_GAIN_PER_S)?,
+            positive_or("error_gain_per_s2", &file.error_gain_per_s2, ERROR_GAIN_PER_S2)?,
+            positive_or("rate_gain_per_s", &file.rate_gain_per_s, RATE_GAIN_PER_S)?,
         ],
-        filter: matrix("filter_gain_per_s", &file.filter_gain_per_s, FILTER_GAIN_PER_S)?,
-        damping: matrix("damping", &file.damping, DAMPING)?,
+        filter: gain_or("filter_gain_per_s", &file.filter_gain_per_s, FILTER_GAIN_PER_S, agent, 4)?,
+        damping: gain_or("damping", &file.damping, DAMPING, agent, 4)?,
     })))
 }

@@ -1,9 +1,11 @@
 //! `start` → [`Start`].
 
+use std::ops::Range;
+
 use forwardstep_sim::{AxisUnit, ChainModel, RobotKind, RobotSetup, Start};
 
 use super::at::At;
-use super::fault::{Fault, fault, seed, values};
+use super::fault::{Fault, fault, length, seed, values};
 use super::file::StartFile;
 use super::problem::ScenarioProblem;
 use super::random::{Stream, draws};
@@ -170,13 +172,7 @@ impl Starter<'_> {
         stream: Stream,
     ) -> Result<Vec<f64>, Fault> {
         let need = self.length(stream);
-        let length = |found: usize, place: &std::ops::Range<usize>| {
-            if found == need {
-                return Ok(());
-            }
-            let agent = self.name.to_owned();
-            Err(Fault::new(ValueProblem::VectorLength { key, found, need, agent }).at(place))
-        };
+        let length = |found: usize, place: &Range<usize>| length(key, place, found, need, self.name);
         let rows = match &value.value {
             StartValues::Random(random) => return draw(random, stream, table.index, need),
             StartValues::Rows(rows) => rows,

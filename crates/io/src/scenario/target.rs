@@ -5,14 +5,13 @@ use std::ops::Range;
 use forwardstep_sim::trajectory::{Path, Sinusoid, Spline, SplineError, Trajectory};
 
 use super::at::At;
-use super::fault::{Fault, fault, filled, values};
+use super::fault::{Fault, fault, filled, length, values};
 use super::formula::formula;
 use super::inputs::InputFolder;
 use super::push_file::FunctionFile;
 use super::system_problem::SystemProblem;
 use super::systems_file::{SwingFile, TargetFile, WaveFile};
 use super::table::{over_time, rising, table_text};
-use super::value_problem::ValueProblem;
 
 /// Whose trajectory it is.
 pub(super) struct Owner<'a> {
@@ -26,11 +25,7 @@ pub(super) struct Owner<'a> {
 /// Builds the trajectory of `owner`; `folder` is where tables are looked for.
 pub(super) fn target(file: &At<TargetFile>, owner: &Owner<'_>, folder: &mut InputFolder) -> Result<Trajectory, Fault> {
     let (need, end_s) = (owner.axes.len(), owner.end_s);
-    let length = |key, found: usize, span: &Range<usize>| {
-        let agent = owner.name.to_owned();
-        let wrong = || Fault::new(ValueProblem::VectorLength { key, found, need, agent }).at(span);
-        if found == need { Ok(()) } else { Err(wrong()) }
-    };
+    let length = |key, found: usize, span: &Range<usize>| length(key, span, found, need, owner.name);
     match &file.value {
         TargetFile::Formulas(list) => {
             let entries = filled("formulas", list)?;

@@ -8,13 +8,12 @@ use forwardstep_sim::{Law, RobotKind, RobotSetup, TaskSpaceLaw, TipSetup};
 
 use super::agents::Body;
 use super::at::At;
-use super::fault::{Fault, between, fault, filled, positive, values};
-use super::law::{adaptation, damping, estimate, gain, known_or_given, of_another};
+use super::fault::{Fault, between, fault, filled, length, positive_or, values};
+use super::law::{adaptation, damping, estimate, gain_or, known_or_given, of_another};
 use super::push_problem::PushProblem;
 use super::system_problem::SystemProblem;
 use super::task_file::{BoundsFile, CoordinateFile, TaskSpaceFile, TipFile, UncertainFile};
 use super::value_problem::ValueProblem;
-use super::values::GainFile;
 
 const DAMPING: f64 = 20.0;
 const ADAPTATION: f64 = 30.0;
@@ -39,12 +38,7 @@ pub(super) fn task_space(file: &TaskSpaceFile, agent: &str, robot: &RobotSetup, 
         None if !is_tree => Gain::Number(ADAPTATION),
         given => adaptation(given.as_ref(), agent, robot)?,
     };
-    let matrix = |key, value: &Option<At<GainFile>>, usual, size| match value {
-        None => Ok(Gain::Number(usual)),
-        Some(place) => gain(key, &place.value, place, agent, size),
-    };
-    let number = |key, value: &Option<At<f64>>, usual| value.as_ref().map_or(Ok(usual), |value| positive(key, value));
-    let kinematic_adaptation = matrix("kinematic_gain", &file.kinematic_gain, KINEMATIC_GAIN, p)?;
+    let kinematic_adaptation = gain_or("kinematic_gain", &file.kinematic_gain, KINEMATIC_GAIN, agent, p)?;
     let bounds = file.bounds.as_ref().map(|place| bounds(&place.value, agent, p)).transpose()?;
     if let (Some(place), Gain::Matrix(_)) = (&file.bounds, &kinematic_adaptation) {
         return Err(fault(place, SystemProblem::BoundsOfMatrix));
@@ -60,9 +54,9 @@ pub(super) fn task_space(file: &TaskSpaceFile, agent: &str, robot: &RobotSetup, 
         damping,
         adaptation,
         estimate_start: estimate(file.estimate_start.as_ref(), agent, robot)?,
-        task_gain: matrix("task_gain", &file.task_gain, TASK_GAIN, robot.axes.len())?,
-        kappa: number("torque_share", &file.torque_share, TORQUE_SHARE)?,
-        alpha_per_s: number("reference_gain_per_s", &file.reference_gain_per_s, REFERENCE_GAIN_PER_S)?,
+        task_gain: gain_or("task_gain", &file.task_gain, TASK_GAIN, agent, robot.axes.len())?,
+        kappa: positive_or("torque_share", &file.torque_share, TORQUE_SHARE)?,
+        alpha_per_s: positive_or("reference_gain_per_s", &file.reference_gain_per_s, REFERENCE_GAIN_PER_S)?,
         kinematic_adaptation: Some(kinematic_adaptation),
         kinematic_start,
         bounds,
@@ -135,11 +129,8 @@ fn of_tree(file: &TipFile, agent: &str, tree: &Tree, body: &Body) -> Result<OfTr
 
 fn bounds(file: &BoundsFile, agent: &str, p: usize) -> Result<ParameterBounds, Fault> {
     let list = |key, list: &At<Vec<At<f64>>>| {
-        if list.value.len() == p {
-            return Ok(values(&list.value));
-        }
-        let (found, agent) = (list.value.len(), agent.to_owned());
-        Err(fault(list, ValueProblem::VectorLength { key, found, need: p, agent }))
+        length(key, &list.span, list.value.len(), p, agent)?;
+        Ok::<_, Fault>(values(&list.value))
     };
     let (lower, upper) = (list("lower_m", &file.lower_m)?, list("upper_m", &file.upper_m)?);
     for ((low, high), place) in lower.iter().zip(&upper).zip(&file.lower_m.value) {
@@ -147,6 +138,5 @@ fn bounds(file: &BoundsFile, agent: &str, p: usize) -> Result<ParameterBounds, F
             return Err(fault(place, ValueProblem::Interval { key: "bounds", low: *low, high: *high }));
         }
     }
-    let margin = file.margin_m.as_ref().map_or(Ok(MARGIN_M), |margin| positive("margin_m", margin))?;
-    Ok(ParameterBounds { lower, upper, margin })
+    Ok(ParameterBounds { lower, upper, margin: positive_or("margin_m", &file.margin_m, MARGIN_M)? })
 }

@@ -8,7 +8,7 @@ use forwardstep_sim::{AxisUnit, Law, RobotKind, RobotSetup};
 
 use super::at::At;
 use super::attitude::attitude;
-use super::fault::{Fault, fault, not_negative, positive};
+use super::fault::{Fault, fault, not_negative, not_negative_or, positive, positive_or};
 use super::file::StartFile;
 use super::law::{gain, of_another};
 use super::robots::axis;
@@ -30,7 +30,7 @@ const FLOOR: f64 = 0.1;
 
 /// Builds a vehicle whose angular velocity obeys at once.
 pub(super) fn vehicle(file: &VehicleFile) -> Result<RobotSetup, Fault> {
-    let kind = RobotKind::Vehicle { gravity: or("gravity_m_s2", &file.gravity_m_s2, GRAVITY_M_S2)? };
+    let kind = RobotKind::Vehicle { gravity: positive_or("gravity_m_s2", &file.gravity_m_s2, GRAVITY_M_S2)? };
     Ok(robot(kind, positive("mass_kg", &file.mass_kg)?))
 }
 
@@ -38,7 +38,7 @@ pub(super) fn vehicle(file: &VehicleFile) -> Result<RobotSetup, Fault> {
 pub(super) fn rotorcraft(file: &RotorcraftFile) -> Result<RobotSetup, Fault> {
     let place = &file.inertia_kg_m2;
     let kind = RobotKind::Rotorcraft {
-        gravity: or("gravity_m_s2", &file.gravity_m_s2, GRAVITY_M_S2)?,
+        gravity: positive_or("gravity_m_s2", &file.gravity_m_s2, GRAVITY_M_S2)?,
         inertia: gain("inertia_kg_m2", &place.value, place, "rotorcraft", 3)?,
         rotors: file.rotors.as_ref().map(|rotors| self::rotors(&rotors.value)).transpose()?,
     };
@@ -101,10 +101,9 @@ pub(super) fn thrust(file: &ThrustFile, agent: &str, robot: &RobotSetup) -> Resu
         Some(ThrustDesignFile::Differentiable(file)) => differentiable(file, known)?,
         Some(ThrustDesignFile::Adaptive(AdaptiveThrustFile { damping_per_s, adaptation_gain, estimate_start_kg })) => {
             let estimate_start = positive("estimate_start_kg", estimate_start_kg)?;
-            let gain = adaptation_gain.as_ref();
             let kind = ThrustKind::Adaptive {
-                alpha_star: or("damping_per_s", damping_per_s, DAMPING_PER_S)?,
-                gamma_star: gain.map_or(Ok(ADAPTATION_GAIN), |gain| not_negative("adaptation_gain", gain))?,
+                alpha_star: positive_or("damping_per_s", damping_per_s, DAMPING_PER_S)?,
+                gamma_star: not_negative_or("adaptation_gain", adaptation_gain, ADAPTATION_GAIN)?,
                 estimate_start,
             };
             (kind, estimate_start)
@@ -115,7 +114,7 @@ pub(super) fn thrust(file: &ThrustFile, agent: &str, robot: &RobotSetup) -> Resu
         Some(FloorFile::StopsN(floor)) => Floor::Stops(positive("stops_n", floor)?),
         Some(FloorFile::Kept(kept)) => Floor::Kept {
             floor: positive("thrust_n", &kept.thrust_n)?,
-            approach_s: or("approach_s", &kept.approach_s, APPROACH_S)?,
+            approach_s: positive_or("approach_s", &kept.approach_s, APPROACH_S)?,
         },
     };
     Ok(Law::Thrust(ThrustLaw {
@@ -123,26 +122,20 @@ pub(super) fn thrust(file: &ThrustFile, agent: &str, robot: &RobotSetup) -> Resu
         yaw: yaw(file.yaw.as_ref().unwrap_or(&YawFile::default()))?,
         floor,
         thrust_start: file.thrust_start_n.as_ref().map(|start| positive("thrust_start_n", start)).transpose()?,
-        bandwidth_per_s: or("rate_bandwidth_per_s", &file.rate_bandwidth_per_s, RATE_BANDWIDTH_PER_S)?,
+        bandwidth_per_s: positive_or("rate_bandwidth_per_s", &file.rate_bandwidth_per_s, RATE_BANDWIDTH_PER_S)?,
     }))
 }
 
 fn differentiable(file: &DifferentiableFile, mass: f64) -> Result<(ThrustKind, f64), Fault> {
-    let alpha_star = or("damping_per_s", &file.damping_per_s, DAMPING_PER_S)?;
-    let stiffness = or("stiffness", &file.stiffness, STIFFNESS)?;
+    let alpha_star = positive_or("damping_per_s", &file.damping_per_s, DAMPING_PER_S)?;
+    let stiffness = positive_or("stiffness", &file.stiffness, STIFFNESS)?;
     Ok((ThrustKind::Differentiable { alpha_star, stiffness }, mass))
 }
 
 fn yaw(file: &YawFile) -> Result<Yaw, Fault> {
-    let gain = file.gain_per_s.as_ref();
     Ok(Yaw {
         heading: file.heading_rad.unwrap_or(0.0),
         rate: file.rate_rad_s.unwrap_or(0.0),
-        gain: gain.map_or(Ok(YAW_GAIN_PER_S), |gain| not_negative("gain_per_s", gain))?,
+        gain: not_negative_or("gain_per_s", &file.gain_per_s, YAW_GAIN_PER_S)?,
     })
-}
-
-/// A positive number, or the usual one.
-fn or(key: &'static str, value: &Option<At<f64>>, usual: f64) -> Result<f64, Fault> {
-    value.as_ref().map_or(Ok(usual), |value| positive(key, value))
 }
