@@ -1,13 +1,14 @@
 //! The program as a user meets it: what it prints, what it writes, and how it exits.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod support;
+
 use std::fs;
 use std::path::Path;
 use std::process::{Command as Process, Stdio};
 
-use assert_cmd::Command;
-use assert_cmd::assert::Assert;
 use forwardstep::io::scenario::SHIPPED_SCENARIOS;
+use support::{folder, forwardstep, names, stderr, stdout};
 use tempfile::TempDir;
 
 /// Two arms that agree within a few seconds; a `[goal]` or `[solver]` may follow.
@@ -28,29 +29,6 @@ exchange = "position_velocity"
 delay.constant_s = 0.1
 edges = [["arm-1", "arm-2"], ["arm-2", "arm-1"]]
 "#;
-
-fn folder() -> TempDir {
-    tempfile::tempdir().unwrap()
-}
-
-fn forwardstep(folder: &TempDir, arguments: &[&str]) -> Assert {
-    Command::cargo_bin("forwardstep").unwrap().current_dir(folder).args(arguments).assert()
-}
-
-fn stdout(assert: &Assert) -> String {
-    String::from_utf8(assert.get_output().stdout.clone()).unwrap()
-}
-
-fn stderr(assert: &Assert) -> String {
-    String::from_utf8(assert.get_output().stderr.clone()).unwrap()
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<_> =
-        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
-}
 
 fn summary(folder: &Path) -> serde_json::Value {
     serde_json::from_str(&fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap()

@@ -1,33 +1,17 @@
 //! `new`: every combination of its options is a scenario that runs.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod support;
+
 use std::fs;
 use std::ops::ControlFlow;
 
-use assert_cmd::Command;
-use assert_cmd::assert::Assert;
 use forwardstep::io::SourceText;
 use forwardstep::io::scenario::{Template, TemplateDelay, TemplateGraph, TemplateRobot, read_scenario};
 use forwardstep::sim::{Ending, Exchange, simulate};
-use tempfile::TempDir;
+use support::{folder, forwardstep, stderr, stdout};
 
 const TREE: &str = include_str!("../../../validation/urdf/tree.urdf");
-
-fn folder() -> TempDir {
-    tempfile::tempdir().unwrap()
-}
-
-fn forwardstep(folder: &TempDir, arguments: &[&str]) -> Assert {
-    Command::cargo_bin("forwardstep").unwrap().current_dir(folder).args(arguments).assert()
-}
-
-fn stdout(assert: &Assert) -> String {
-    String::from_utf8(assert.get_output().stdout.clone()).unwrap()
-}
-
-fn stderr(assert: &Assert) -> String {
-    String::from_utf8(assert.get_output().stderr.clone()).unwrap()
-}
 
 #[test]
 fn every_combination_is_a_scenario_that_runs() {

@@ -1,12 +1,13 @@
 //! `forwardstep report`: the report of a run, built anew from its folder.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod support;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use assert_cmd::Command;
-use assert_cmd::assert::Assert;
+use support::{folder, forwardstep, stderr};
 use tempfile::TempDir;
 
 /// Two arms that estimate; a `[goal]` or `[solver]` may follow.
@@ -65,18 +66,6 @@ const PENDULUM: &str = r#"<robot name="pendulum">
   </joint>
 </robot>
 "#;
-
-fn folder() -> TempDir {
-    tempfile::tempdir().unwrap()
-}
-
-fn forwardstep(folder: &TempDir, arguments: &[&str]) -> Assert {
-    Command::cargo_bin("forwardstep").unwrap().current_dir(folder).args(arguments).assert()
-}
-
-fn stderr(assert: &Assert) -> String {
-    String::from_utf8(assert.get_output().stderr.clone()).unwrap()
-}
 
 /// Every file below a folder.
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {

@@ -1,12 +1,12 @@
 //! `robot` as a user meets it.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use std::fs;
-use std::path::Path;
+mod support;
 
-use assert_cmd::Command;
-use assert_cmd::assert::Assert;
+use std::fs;
+
 use serde_json::{Map, Value, json};
+use support::{forwardstep, names, stderr, stdout};
 use tempfile::TempDir;
 
 const TREE: &str = include_str!("../../../validation/urdf/tree.urdf");
@@ -19,27 +19,8 @@ fn folder() -> TempDir {
     folder
 }
 
-fn forwardstep(folder: &TempDir, arguments: &[&str]) -> Assert {
-    Command::cargo_bin("forwardstep").unwrap().current_dir(folder).args(arguments).assert()
-}
-
-fn stdout(assert: &Assert) -> String {
-    String::from_utf8(assert.get_output().stdout.clone()).unwrap()
-}
-
-fn stderr(assert: &Assert) -> String {
-    String::from_utf8(assert.get_output().stderr.clone()).unwrap()
-}
-
 fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<_> =
-        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
 }
 
 /// Within 1e-11 of the largest entry.

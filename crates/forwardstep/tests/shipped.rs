@@ -37,24 +37,33 @@ fn prop_the_goal_of_theorem_6_does_not_hang_on_one_gain() {
         Gain::Number(number) => Gain::Number(factor * number),
         other => panic!("{other:?}"),
     };
-    let changes: [fn(&mut TaskSpaceLaw, &dyn Fn(&Gain) -> Gain, f64); 6] = [
-        |law, scaled, _| law.damping = scaled(&law.damping),
-        |law, scaled, _| law.adaptation = scaled(&law.adaptation),
-        |law, scaled, _| law.task_gain = scaled(&law.task_gain),
-        |law, scaled, _| law.kinematic_adaptation = law.kinematic_adaptation.as_ref().map(scaled),
-        |law, _, factor| law.kappa *= factor,
-        |law, _, factor| law.alpha_per_s *= factor,
+    let changes: [fn(&mut TaskSpaceLaw) -> Knob<'_>; 6] = [
+        |law| Knob::Gain(&mut law.damping),
+        |law| Knob::Gain(&mut law.adaptation),
+        |law| Knob::Gain(&mut law.task_gain),
+        |law| Knob::Gain(law.kinematic_adaptation.as_mut().unwrap()),
+        |law| Knob::Number(&mut law.kappa),
+        |law| Knob::Number(&mut law.alpha_per_s),
     ];
     for (index, change) in changes.iter().enumerate() {
         for factor in [0.8, 1.2] {
             let mut setup = scenario.setup.clone();
             let Law::TaskSpace(law) = &mut setup.agents[0].law else { panic!("{:?}", setup.agents[0].law) };
-            change(law, &|gain| scaled(gain, factor), factor);
+            match change(law) {
+                Knob::Gain(gain) => *gain = scaled(gain, factor),
+                Knob::Number(number) => *number *= factor,
+            }
             let outcome = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap();
             let metrics = Metrics::of(&setup, &outcome.recording, None, scenario.goal);
             assert!(scenario.goal.unwrap().is_met(&setup, &outcome, &metrics), "gain {index}, {factor}");
         }
     }
+}
+
+/// What can be turned a little.
+enum Knob<'a> {
+    Gain(&'a mut Gain),
+    Number(&'a mut f64),
 }
 
 macro_rules! shipped {
