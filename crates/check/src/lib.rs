@@ -18,5 +18,5 @@ mod verdict;
 
 pub use agreement::{NoPrediction, Prediction, predict};
 pub use hypotheses::check;
-pub use sampled::{SampledDamping, sampled_damping};
+pub use sampled::{SampledAdaptation, SampledDamping, sampled_adaptation, sampled_damping};
 pub use verdict::{Answer, Hypothesis, Report};

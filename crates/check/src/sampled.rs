@@ -1,6 +1,6 @@
 //! What digital control adds to the question whether a theorem applies.
 
-use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass};
+use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass, TwoVelocity};
 use forwardstep_core::{Gain, LengthError};
 use forwardstep_sim::{AgentSetup, Law, RobotKind, Setup, VelocitySensor};
 use nalgebra::{DMatrix, DVector};
@@ -45,45 +45,110 @@ pub fn sampled_damping(setup: &Setup) -> Option<SampledDamping> {
     Some(SampledDamping { value: period_s * lambda, overshoots_above, unstable_above, agent, period_s })
 }
 
+/// How far one held sample of damping and adaptation goes: h · λ_max(M⁻¹(K + ½ h Y Γ Yᵀ)), largest over the agents that adapt.
+///
+/// The estimate is stepped with the Y of one sample and the s of the next; the head of `agent/mod.rs` of the core derives that
+/// a mode is stable while this is below two. Y is that of the start, with z = q̇, and with ż as large as the gain of the sign where
+/// a leader is followed and zero elsewhere. Y grows with the velocities and with ż, so this is a guide, not a bound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampledAdaptation {
+    /// h · λ_max(M⁻¹(K + ½ h Y Γ Yᵀ)).
+    pub value: f64,
+    /// Index of the agent.
+    pub agent: usize,
+}
+
+/// [`SampledAdaptation`] of a setup under digital control; `None` when nobody under (6)–(7) adapts.
+pub fn sampled_adaptation(setup: &Setup) -> Option<SampledAdaptation> {
+    let period_s = 1.0 / setup.control.as_ref()?.sample_hz;
+    let dz = setup.following().map_or(0.0, |following| following.gain);
+    let value = |(agent, own): (usize, &AgentSetup)| {
+        let Law::Adaptive { adaptation, .. } = &own.law else { return None };
+        let model = model(own, dz)?;
+        let p = model.scale.len();
+        // Γ = ω² diag(scale): one ω is multiplied in here, the other by `resolve`.
+        let omega = if let Gain::Bandwidth(omega) = adaptation { *omega } else { 1.0 };
+        let scale: Vec<f64> = model.scale.iter().map(|scale| omega * scale).collect();
+        let gamma = dense(adaptation, p, &scale)?;
+        let learns = &model.regressor * gamma * model.regressor.transpose();
+        let value = period_s * largest(&model.mass, &(damping(own, &model)? + 0.5 * period_s * learns))?;
+        Some(SampledAdaptation { value, agent })
+    };
+    setup.agents.iter().enumerate().filter_map(value).max_by(|a, b| a.value.total_cmp(&b.value))
+}
+
 /// λ_max(M⁻¹K) at the start, 1/s.
 fn fastest(agent: &AgentSetup) -> Option<f64> {
-    let m = agent.start.q.len();
-    let mass = match &agent.robot.kind {
-        RobotKind::Tree(tree) => mass(&**tree, agent),
-        RobotKind::PlanarArm => mass(&PlanarArm, agent),
-        RobotKind::PointMass { dimension } => mass(&PointMass { dimension: *dimension }, agent),
+    let model = model(agent, 0.0)?;
+    largest(&model.mass, &damping(agent, &model)?)
+}
+
+/// What an agent under (6)–(7) is at its start.
+struct Model {
+    mass: DMatrix<f64>,
+    /// Y.
+    regressor: DMatrix<f64>,
+    /// What a Γ that is a bandwidth goes by.
+    scale: Vec<f64>,
+}
+
+/// `None` where the law is another; every entry of ż is `dz`.
+fn model(agent: &AgentSetup, dz: f64) -> Option<Model> {
+    if !agent.law.is_lagrangian() {
+        return None;
+    }
+    match &agent.robot.kind {
+        RobotKind::Tree(tree) => of_robot(&**tree, agent, dz).ok(),
+        RobotKind::PlanarArm => of_robot(&PlanarArm, agent, dz).ok(),
+        RobotKind::PointMass { dimension } => of_robot(&PointMass { dimension: *dimension }, agent, dz).ok(),
         RobotKind::Vehicle { .. }
         | RobotKind::Rotorcraft { .. }
         | RobotKind::Spacecraft { .. }
-        | RobotKind::Chain(_) => return None,
-    };
+        | RobotKind::Chain(_) => None,
+    }
+}
+
+fn of_robot<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, dz: f64) -> Result<Model, LengthError> {
+    let (m, p) = (robot.dof(), robot.parameter_count());
+    let (q, dq, theta) = (&agent.start.q[..], &agent.start.dq[..], &agent.robot.theta[..]);
+    let (mut mass, mut regressor) = (vec![0.0; m * m], vec![0.0; m * p]);
+    robot.mass_matrix(&mut robot.scratch(), q, theta, &mut mass)?;
+    robot.regressor(&mut robot.scratch(), TwoVelocity { q, dq, z: dq, dz: &vec![dz; m] }, &mut regressor)?;
+    Ok(Model {
+        mass: DMatrix::from_row_slice(m, m, &mass),
+        regressor: DMatrix::from_row_slice(m, p, &regressor),
+        scale: robot.adaptation_scale(q, theta),
+    })
+}
+
+/// K.
+fn damping(agent: &AgentSetup, model: &Model) -> Option<DMatrix<f64>> {
     let (Law::Adaptive { damping, .. } | Law::Known { damping }) = &agent.law else { return None };
-    let mass = DMatrix::from_row_slice(m, m, &mass.ok()?);
-    let scale: Vec<f64> = mass.diagonal().iter().copied().collect();
-    let damping: &Gain = damping;
-    let k = damping.resolve(m, &scale).ok()?;
-    let mut dense = DMatrix::zeros(m, m);
-    let mut unit = DVector::zeros(m);
-    let mut column = vec![0.0; m];
-    for j in 0..m {
+    let scale: Vec<f64> = model.mass.diagonal().iter().copied().collect();
+    dense(damping, scale.len(), &scale)
+}
+
+/// A gain with all its entries.
+fn dense(gain: &Gain, size: usize, scale: &[f64]) -> Option<DMatrix<f64>> {
+    let gain = gain.resolve(size, scale).ok()?;
+    let mut dense = DMatrix::zeros(size, size);
+    let (mut unit, mut column) = (vec![0.0; size], DVector::zeros(size));
+    for j in 0..size {
         unit.fill(0.0);
         unit[j] = 1.0;
-        k.apply(unit.as_slice(), &mut column);
-        dense.set_column(j, &DVector::from_column_slice(&column));
+        gain.apply(&unit, column.as_mut_slice());
+        dense.set_column(j, &column);
     }
-    // The eigenvalues of M⁻¹K are those of L⁻¹ K L⁻ᵀ, which is symmetric, with M = L Lᵀ.
-    let l = mass.cholesky()?.l();
-    let half = l.solve_lower_triangular(&dense)?;
+    Some(dense)
+}
+
+/// The largest eigenvalue of M⁻¹ `gain`: those of L⁻¹ `gain` L⁻ᵀ, which is symmetric, with M = L Lᵀ.
+fn largest(mass: &DMatrix<f64>, gain: &DMatrix<f64>) -> Option<f64> {
+    let l = mass.clone().cholesky()?.l();
+    let half = l.solve_lower_triangular(gain)?;
     let whole = l.solve_lower_triangular(&half.transpose())?;
     let largest = whole.symmetric_eigenvalues().max();
     largest.is_finite().then_some(largest)
-}
-
-fn mass<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup) -> Result<Vec<f64>, LengthError> {
-    let m = robot.dof();
-    let mut mass = vec![0.0; m * m];
-    robot.mass_matrix(&mut robot.scratch(), &agent.start.q, &agent.robot.theta, &mut mass)?;
-    Ok(mass)
 }
 
 /// Under digital control: the theorems speak of continuous time and of exact measurements.
@@ -105,6 +170,15 @@ pub(crate) fn digital(setup: &Setup) -> Vec<Hypothesis> {
         };
         format!("; h · λ_max(M⁻¹K) is {value} at the start ({name}): {meaning}")
     });
+    // What the damping alone does is said already.
+    let steady = sampled_damping(setup).is_none_or(|damping| damping.value < damping.unstable_above);
+    let learning = sampled_adaptation(setup).filter(|found| steady && found.value > 2.0).map_or_else(String::new, |found| {
+        let (name, value) = (&setup.agents[found.agent].name, (found.value * 1000.0).round() / 1000.0);
+        format!(
+            "; h · λ_max(M⁻¹(K + ½ h Y Γ Yᵀ)) is {value} at the start ({name}): above 2 damping and adaptation together are unstable: \
+             sample faster or let Γ be smaller"
+        )
+    });
     let late = if control.computation_delay_s > 0.0 {
         format!(", torques come {} s late", control.computation_delay_s)
     } else {
@@ -114,7 +188,7 @@ pub(crate) fn digital(setup: &Setup) -> Vec<Hypothesis> {
         requires: "the controllers work in continuous time".into(),
         answer: Answer::NotCovered,
         because: format!(
-            "they sample at {} Hz{late}; what is heard is up to a period older; as h → 0 the loop tends to the one the theorem speaks of{damping}",
+            "they sample at {} Hz{late}; what is heard is up to a period older; as h → 0 the loop tends to the one the theorem speaks of{damping}{learning}",
             control.sample_hz
         ),
     }];

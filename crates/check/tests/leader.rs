@@ -6,7 +6,7 @@ mod common;
 use std::sync::Arc;
 
 use common::{axis, edge};
-use forwardstep_check::{Answer, Report, check};
+use forwardstep_check::{Answer, Report, check, sampled_adaptation};
 use forwardstep_core::Gain;
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::delay::Delay;
@@ -16,8 +16,8 @@ use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::{Path, Sinusoid, Spline, Trajectory};
 use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, Exchange, Law, Network, ReferenceKind, RobotKind, RobotSetup, Setup, Solver, Start,
-    TimeSpan,
+    AgentSetup, Axis, AxisUnit, Control, Exchange, Law, Network, ReferenceKind, RobotKind, RobotSetup, Setup, Solver,
+    Start, TimeSpan,
 };
 
 fn mass(index: usize) -> AgentSetup {
@@ -142,4 +142,36 @@ fn prop_a_swarm_needs_links_both_ways_and_enough_coupling() {
     assert_eq!(answer(&swarm(5.7, &both[..2]), "same weight").0, Answer::NotCovered);
     // The paper prints no such design, so it never says more than that.
     assert_eq!(swarm(5.7, &both).worst(), Answer::NotCovered);
+}
+
+/// One sample of a mass under adaptation with a held Y, as in the head of `agent/mod.rs`: unstable above two and not below.
+#[test]
+fn eq_held_adaptation_is_stable_as_long_as_its_number_is_below_two() {
+    for adaptation in [100.0, 140.0, 160.0, 300.0] {
+        let (sample_hz, gain) = (10.0, 2.0);
+        let mut setup = setup(FollowingDesign::Continuous, Path::Sinusoids { offset: 0.0, waves: Vec::new() }, gain);
+        setup.control = Some(Control {
+            sample_hz,
+            computation_delay_s: 0.0,
+            sensors: Default::default(),
+            actuators: Default::default(),
+        });
+        setup.agents[1].law = Law::Adaptive {
+            damping: Gain::Number(10.0),
+            adaptation: Gain::Number(adaptation),
+            estimate_start: vec![0.0],
+        };
+        let found = sampled_adaptation(&setup).unwrap();
+        assert_eq!(found.agent, 1);
+        let (h, k, p, m) = (1.0 / sample_hz, 10.0, adaptation * gain * gain, 2.0);
+        assert!((found.value - h / m * (k + 0.5 * h * p)).abs() < 1e-12, "{}", found.value);
+        let (mut s, mut w) = (1.0_f64, 0.0);
+        for _ in 0..2000 {
+            s += h / m * (w - k * s);
+            w -= h * p * s;
+        }
+        assert_eq!(s.abs() < 1.0, found.value < 2.0, "{adaptation}: {} {s}", found.value);
+        let said = check(&setup).hypotheses.iter().any(|hypothesis| hypothesis.because.contains("let Γ be smaller"));
+        assert_eq!(said, found.value > 2.0);
+    }
 }

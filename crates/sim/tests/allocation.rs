@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod cases;
+mod common;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::ops::ControlFlow;
@@ -101,18 +102,28 @@ fn alloc_steps_do_not_allocate() {
             "sampled" => setup.control = Some(sampled()),
             _ => {}
         }
-        let (mut before, mut steps) = (None, 0_u64);
-        simulate(&setup, &mut |progress| {
-            // The first quarter fills the ring of history and the queue of events.
-            if progress.t_s > 0.25 * progress.end_s {
-                before.get_or_insert_with(|| ALLOCATIONS.load(Ordering::Relaxed));
-                steps += 1;
-            }
-            ControlFlow::Continue(())
-        })
-        .unwrap();
-        let grown = ALLOCATIONS.load(Ordering::Relaxed) - before.unwrap();
-        assert!(steps > 100, "{}: {steps} steps", case.name);
-        assert!(grown <= 6, "{}: {grown} allocations in {steps} steps", case.name);
+        assert_steps_do_not_allocate(&case.name, &setup);
     }
+    // In the same test: what other threads allocate would count.
+    for (name, setup) in common::every_kind() {
+        assert_steps_do_not_allocate(name, &setup);
+        assert_steps_do_not_allocate(name, &common::sampled(setup, 500.0));
+    }
+}
+
+fn assert_steps_do_not_allocate(name: &str, setup: &Setup) {
+    let how = if setup.control.is_some() { "sampled" } else { "continuous" };
+    let (mut before, mut steps) = (None, 0_u64);
+    simulate(setup, &mut |progress| {
+        // The first quarter fills the ring of history and the queue of events.
+        if progress.t_s > 0.25 * progress.end_s {
+            before.get_or_insert_with(|| ALLOCATIONS.load(Ordering::Relaxed));
+            steps += 1;
+        }
+        ControlFlow::Continue(())
+    })
+    .unwrap();
+    let grown = ALLOCATIONS.load(Ordering::Relaxed) - before.unwrap();
+    assert!(steps > 100, "{name}, {how}: {steps} steps");
+    assert!(grown <= 6, "{name}, {how}: {grown} allocations in {steps} steps");
 }

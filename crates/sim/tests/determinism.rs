@@ -4,17 +4,24 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod cases;
+mod common;
 
 use std::ops::ControlFlow;
 
-use cases::{Case, cases, setup};
+use cases::{cases, setup};
 use forwardstep_sim::{Actuators, Control, Sensors, Setup, VelocitySensor, simulate};
 
-/// FNV-1a over the bits of every number recorded.
-fn digest(case: &Case) -> u64 {
-    digest_of(&setup(case))
+/// All Lagrangian cases, then a run of every other kind of system, continuous and sampled.
+fn setups() -> Vec<(String, Setup)> {
+    let mut all: Vec<_> = cases().iter().map(|case| (case.name.clone(), setup(case))).collect();
+    for (name, setup) in common::every_kind() {
+        all.push((format!("{name}-sampled"), common::sampled(setup.clone(), 500.0)));
+        all.push((name.into(), setup));
+    }
+    all
 }
 
+/// FNV-1a over the bits of every number recorded.
 fn digest_of(setup: &Setup) -> u64 {
     let outcome = simulate(setup, &mut |_| ControlFlow::Continue(())).unwrap();
     let numbers = outcome.recording.t_s.iter().chain(outcome.recording.columns.iter().flat_map(|c| &c.values));
@@ -25,11 +32,12 @@ fn digest_of(setup: &Setup) -> u64 {
 
 #[test]
 fn digest_same_bits_on_repeat_and_beside_other_threads() {
-    let cases = cases();
-    let alone: Vec<u64> = cases.iter().map(digest).collect();
+    let setups = setups();
+    let digest = |(_, setup): &(String, Setup)| digest_of(setup);
+    let alone: Vec<u64> = setups.iter().map(digest).collect();
     for threads in [2, 7] {
         let together: Vec<u64> = std::thread::scope(|scope| {
-            let chunks = cases.chunks(cases.len().div_ceil(threads));
+            let chunks = setups.chunks(setups.len().div_ceil(threads));
             let running: Vec<_> =
                 chunks.map(|chunk| scope.spawn(|| chunk.iter().map(digest).collect::<Vec<_>>())).collect();
             running.into_iter().flat_map(|thread| thread.join().unwrap()).collect()
@@ -58,6 +66,6 @@ fn digest_sampled_runs_have_the_same_bits_as_on_the_machine_that_wrote_them() {
 #[test]
 fn digest_same_bits_as_on_the_machine_that_wrote_them() {
     // When the numbers change on purpose, the message is the new content of digests.txt.
-    let digests: String = cases().iter().map(|case| format!("{:016x} {}\n", digest(case), case.name)).collect();
+    let digests: String = setups().iter().map(|(name, setup)| format!("{:016x} {name}\n", digest_of(setup))).collect();
     assert_eq!(digests, include_str!("digests.txt"), "the bits are now\n{digests}");
 }

@@ -98,6 +98,23 @@ fn thm8_thm9_remark12_at_1_khz_the_implicit_sign_leaves_one_part_in_a_hundred_of
     }
 }
 
+/// With Y of a sample and s of the same sample, chatter leads the estimate away from the truth until the run breaks down, at about
+/// five seconds here; see the head of `agent/mod.rs`.
+#[test]
+fn regress_chatter_does_not_lead_the_estimate_astray_at_1_khz() {
+    for choice in [Choice::Implicit, Choice::Explicit] {
+        let mut problem = sampled(arms(FollowingDesign::Continuous, choice, 0.0, 20.0), 1000.0);
+        for agent in &mut problem.agents {
+            if let Law::Adaptive { damping, adaptation, .. } = &mut agent.law {
+                (*damping, *adaptation) = (Gain::Number(60.0), Gain::Number(50.0));
+            }
+        }
+        let outcome = run(&problem);
+        let error = peak(&outcome, Signal::Error, 0.9);
+        assert!(error < 0.05, "{choice:?}: {error}");
+    }
+}
+
 /// The same in continuous time with the sign set every millisecond.
 #[test]
 fn thm8_thm9_remark12_in_continuous_time_the_implicit_sign_does_not_chatter() {

@@ -4,10 +4,35 @@
 //!
 //! ```text
 //! reference state      ẋ = A x + b with b held: stepped exactly            (`hold`)
-//! estimate             ϑ̂ ← ϑ̂ − h Γ Yᵀs                                      (Euler)
+//! estimate             ϑ̂ ← ϑ̂ − h Γ Yᵀs, Y of the sample before, s of this one
 //! torque               computed once from the sample, then held
 //! sign                 a value that suits the end of the period, with the neighbours held (`reference::sliding`)
 //! ```
+//!
+//! **Why the estimate waits for s.** With M, Y and ż of a sample held, and w = Y Δϑ, a period does
+//!
+//! ```text
+//! M (s⁺ − s) = h (w − K s),     w⁺ − w = −h P s⁺,     P = Y Γ Yᵀ
+//! ```
+//!
+//! and a mode with the multiplier μ has M (μ − 1)² + h K (μ − 1) + h² P μ = 0. With k and p for hK and h²P along it, in units of M,
+//! μ² − (2 − k − p) μ + 1 − k = 0, which is stable for k > 0 and 2k + p < 4. So it is enough that
+//!
+//! ```text
+//! h λ_max(M⁻¹(K + ½ h Y Γ Yᵀ)) < 2
+//! ```
+//!
+//! With s in place of s⁺ (Euler) the last coefficient is 1 − k + p, and p < k is needed besides. Worse, that goes wrong where Y
+//! alternates from sample to sample, as it does when a sign chatters. Let Y = Ȳ ± Ỹ. Then s = s̄ ± s̃ with K s̄ = Ȳ Δϑ and
+//! (2 M − h K) s̃ = −h Ỹ Δϑ, and on average
+//!
+//! ```text
+//! Euler      Δϑ' = −Γ [Ȳᵀ K⁻¹ Ȳ − h Ỹᵀ (2 M − h K)⁻¹ Ỹ] Δϑ
+//! here       Δϑ' = −Γ [Ȳᵀ K⁻¹ Ȳ + h Ỹᵀ (2 M − h K)⁻¹ Ỹ] Δϑ
+//! ```
+//!
+//! since the s that Ỹ causes comes a sample later, when Ỹ has changed its sign. Euler lets what chatter excites grow
+//! exponentially, at a rate proportional to h Γ: four arms under (110) with Γ = 50 ran away after five seconds at 1 kHz, whatever K.
 //!
 //! As h → 0 the loop becomes the continuous one, with an error proportional to h. An [`Agent`] knows no clock: it is told the
 //! time of its sample. The simulator steps this very struct, so what runs there is what runs on a robot.
@@ -83,7 +108,8 @@ pub enum StepError {
 ///
 /// **Source**: (5), (6), (7) with any [`Reference`] for one agent.
 /// **Measures**: q, q̇ (see [`VelocityFilter`] when there are only encoders). **Transmits**: what the reference says.
-/// **Requires**: dynamics that are affine in their own state, the same for each axis, as all of the paper's are; a period h with h · λ_max(M⁻¹K) well below 2, beyond which the held damping itself is unstable.
+/// **Requires**: dynamics that are affine in their own state, the same for each axis, as all of the paper's are; a period h with
+/// h · λ_max(M⁻¹(K + ½ h Y Γ Yᵀ)) well below 2, beyond which the held damping itself is unstable, see the head of the file.
 /// **Guarantees**: no allocation and no panic in [`Agent::step`]; the continuous law in the limit of short periods.
 /// Nothing that the paper states for a fixed period. Numbers beyond 1e308 on the way give a torque that is not finite.
 ///
@@ -123,7 +149,18 @@ pub struct Agent<R: Lagrangian<f64>, F> {
     /// What was measured and heard at the last sample.
     held: Held,
     out: Out,
+    /// What the torque of the last sample was computed from.
+    applied: Applied,
     hold: Hold,
+}
+
+/// The arguments of Y at the last sample.
+#[derive(Clone, Debug)]
+struct Applied {
+    q: Vec<f64>,
+    dq: Vec<f64>,
+    z: Vec<f64>,
+    dz: Vec<f64>,
 }
 
 /// Inputs of the last sample.
@@ -201,6 +238,7 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
                 told: vec![0.0; told],
                 e: vector(),
             },
+            applied: Applied { q: vector(), dq: vector(), z: vector(), dz: vector() },
             hold: Hold::new(m, reference.vectors(), <F::Exchange as Exchange>::CHANNELS),
             reference,
         })
@@ -254,16 +292,22 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
             Some(last_s) => return Err(StepError::Time { now_s, last_s }),
             None => None,
         };
-        let Agent { robot, scratch, reference, law, limiter, state, theta_hat, held, out, hold, .. } = self;
+        let Agent { robot, scratch, reference, law, limiter, state, theta_hat, held, out, applied, hold, .. } = self;
         let started = self.started;
         dispatch(Refer { reference, hold, started, passed_s, measured, inbox, state, held, out })?;
         self.started = true;
-        if let Some(h) = passed_s {
-            for (estimate, rate) in theta_hat.iter_mut().zip(&out.d_theta_hat) {
-                *estimate += h * rate;
-            }
+        if let (Some(h), Some(_)) = (passed_s, &law.adaptation) {
+            dispatch(Learn { robot, scratch, law, h, applied, theta_hat, held, out })?;
         }
         dispatch(Track { robot, scratch, law, theta_hat, held, out })?;
+        for (kept, now) in [
+            (&mut applied.q, &held.q),
+            (&mut applied.dq, &held.dq),
+            (&mut applied.z, &out.z),
+            (&mut applied.dz, &out.dz),
+        ] {
+            kept.copy_from_slice(now);
+        }
         limiter.apply(passed_s, &mut out.tau);
         self.last_s = Some(now_s);
         let Out { z, dz, s, tau, .. } = &self.out;
@@ -342,7 +386,38 @@ impl<F: Reference> Kernel for Refer<'_, F> {
     }
 }
 
-/// (5)–(7) at this sample.
+/// (7) over the last period: the Y that was applied, with the s that came of it.
+struct Learn<'a, R: Lagrangian<f64>> {
+    robot: &'a R,
+    scratch: &'a mut R::Scratch,
+    law: &'a SlotineLi,
+    h: f64,
+    applied: &'a Applied,
+    theta_hat: &'a mut [f64],
+    held: &'a Held,
+    out: &'a mut Out,
+}
+
+impl<R: Lagrangian<f64>> Kernel for Learn<'_, R> {
+    type Output = Result<(), LengthError>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Learn { robot, scratch, law, h, applied: Applied { q, dq, z, dz }, theta_hat, held, out } = self;
+        for (s, (dq, z)) in out.s.iter_mut().zip(held.dq.iter().zip(&out.z)) {
+            *s = dq - z;
+        }
+        let motion = TwoVelocity { q, dq, z, dz };
+        robot.regressor_products(scratch, motion, theta_hat, &out.s, &mut out.tau, &mut out.yt_s)?;
+        law.adaptation_rate(&out.yt_s, &mut out.d_theta_hat);
+        for (estimate, rate) in theta_hat.iter_mut().zip(&out.d_theta_hat) {
+            *estimate += h * rate;
+        }
+        Ok(())
+    }
+}
+
+/// (5), (6) at this sample.
 struct Track<'a, R: Lagrangian<f64>> {
     robot: &'a R,
     scratch: &'a mut R::Scratch,
@@ -360,8 +435,6 @@ impl<R: Lagrangian<f64>> Kernel for Track<'_, R> {
         let Track { robot, scratch, law, theta_hat, held, out } = self;
         let motion = TwoVelocity { q: &held.q, dq: &held.dq, z: &out.z, dz: &out.dz };
         let law_out = SlotineLiOutput { s: &mut out.s, tau: &mut out.tau, yt_s: &mut out.yt_s };
-        law.output(robot, scratch, motion, theta_hat, law_out)?;
-        law.adaptation_rate(&out.yt_s, &mut out.d_theta_hat);
-        Ok(())
+        law.output(robot, scratch, motion, theta_hat, law_out)
     }
 }

@@ -120,6 +120,43 @@ pub fn apart(a: &Outcome, b: &Outcome) -> f64 {
     ends(a).zip(ends(b)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
+/// A short run of every kind of system.
+pub fn every_kind() -> Vec<(&'static str, Setup)> {
+    use forwardstep_core::reference::Choice;
+    use forwardstep_core::robot::tree::Uncertain;
+    use forwardstep_sim::RobotKind;
+    use forwardstep_sim::leader::FollowingDesign;
+    use forwardstep_sim::vehicles::ThrustKind;
+    let vehicle = RobotKind::Vehicle { gravity: vehicles::G };
+    let spin = single::half_a_turn([0.1, -0.05, 0.08]);
+    let arms = |design, choice| following::arms(design, choice, 0.8, 4.0);
+    let mut all = vec![
+        ("chains-of-derivatives", chains::derivatives()),
+        ("chains-of-all-orders", chains::adaptive()),
+        ("chains-strict-feedback", chains::cascades()),
+        ("chains-pure-feedback", chains::pure_feedback()),
+        ("chains-tracking", chains::tracking()),
+        ("masses-tracking", masses::tracking()),
+        ("masses-consensus", masses::consensus(3)),
+        ("vehicles-continuous", vehicles::three(&vehicle, ThrustKind::Continuous, false, 4.0)),
+        ("vehicles-differentiable", vehicles::three(&vehicle, vehicles::DIFFERENTIABLE, true, 4.0)),
+        ("vehicles-adaptive", vehicles::three(&vehicle, vehicles::ADAPTIVE, false, 4.0)),
+        ("rotorcraft", vehicles::three(&vehicles::rotorcraft(), vehicles::ADAPTIVE, true, 4.0)),
+        ("tip-of-a-planar-arm", single::planar(None, 0.3)),
+        ("tip-of-a-tree", single::anthropomorphic(Uncertain::Chain)),
+        ("spacecraft", single::craft(spin, single::targets().swap_remove(2), 5.0)),
+        ("following-110", arms(FollowingDesign::Continuous, Choice::Implicit)),
+        ("following-119", arms(FollowingDesign::Differentiable, Choice::Implicit)),
+        ("following-122", arms(FollowingDesign::WithoutAcceleration, Choice::Implicit)),
+        ("following-as-a-swarm", arms(following::SWARM, Choice::Explicit)),
+        ("following-in-a-layer", arms(FollowingDesign::Differentiable, Choice::Layer { width: 0.05 })),
+    ];
+    for (_, setup) in &mut all {
+        setup.time = TimeSpan { end_s: 4.0, record_every_s: 0.01 };
+    }
+    all
+}
+
 /// Sampled runs, at this rate and twice and four times as often, come closer to the continuous one in proportion to the period.
 pub fn assert_first_order(setup: &Setup, sample_hz: f64) {
     let continuous = run(setup);
