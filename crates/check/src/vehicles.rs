@@ -56,7 +56,13 @@ pub(crate) fn of_vehicles(setup: &Setup) -> Vec<Hypothesis> {
 }
 
 fn gains(setup: &Setup) -> Hypothesis {
-    let requires = "α*, k and γ* are positive, and a mass that is not adapted is known".into();
+    let alone = flown(setup).all(|(_, law)| matches!(law.design, ThrustKind::Continuous));
+    let requires = if alone {
+        "the masses are known"
+    } else {
+        "α*, k and γ* are positive, and a mass that is not adapted is known"
+    };
+    let requires = requires.into();
     let wrong = flown(setup).find(|(agent, law)| match law.design {
         ThrustKind::Adaptive { gamma_star, estimate_start, .. } => {
             gamma_star == 0.0 && agent.robot.theta.first() != Some(&estimate_start)
@@ -69,7 +75,11 @@ fn gains(setup: &Setup) -> Hypothesis {
             answer: Answer::NotCovered,
             because: format!("{} does not adapt its estimate, which is not the true mass", agent.name),
         },
-        None => Hypothesis { requires, answer: Answer::Holds, because: "checked when they were read".into() },
+        None => Hypothesis {
+            requires,
+            answer: Answer::Holds,
+            because: if alone { "the law has that of the vehicle" } else { "checked when they were read" }.into(),
+        },
     }
 }
 

@@ -97,6 +97,7 @@ shipped! {
     six_arms_over_radio: "six-arms-over-radio",
     without_velocity: "without-velocity",
     double_integrators: "double-integrators",
+    thrust_continuous: "thrust-continuous",
     theorem_4: "theorem-4",
     theorem_5: "theorem-5",
     formation: "formation",

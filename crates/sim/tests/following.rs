@@ -4,16 +4,17 @@
 mod common;
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use common::following::{DESIGNS, arms, masses};
-use common::{columns, ledger_error, run, sampled, truth};
+use common::{column, columns, ledger_error, run, sampled, truth};
 use forwardstep_core::Gain;
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::leader::FollowingDesign;
 use forwardstep_sim::schedule::Schedule;
-use forwardstep_sim::{Law, Method, Outcome, Setup, Signal, simulate};
+use forwardstep_sim::{Law, Method, Outcome, ReferenceKind, Setup, Signal, simulate};
 
 fn at_1_khz(mut setup: Setup) -> Setup {
     setup.time.record_every_s = 1e-3;
@@ -51,6 +52,51 @@ fn thm8_thm9_remark12_everybody_follows_and_no_sign_chatters() {
         assert!(outcome.statistics.sign_residual.unwrap() < 1e-12);
         assert!(peak(&outcome, Signal::Selection, 0.0) <= 1.0);
     }
+}
+
+/// With s ≡ 0 (114) to (118) are ξ̃' = −L ξ̃ − γ ς − ξ̇₀. Where everybody hears the leader, the farthest comes closer at γ − sup|ξ̇₀|
+/// at least, until nobody is away. ξ has one derivative of the leader more for each differentiator.
+#[test]
+fn eq_114_to_118_without_s_the_farthest_comes_closer_by_the_margin_of_the_gain() {
+    let mut problem = masses(FollowingDesign::Continuous);
+    problem.solver.method = Method::Adaptive { rtol: 1e-7, atol: 1e-9 };
+    problem.time.record_every_s = 0.01;
+    let edge = |to, from, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
+    let all = (0..3).map(|to| edge(to, 3, 0.6)).chain([edge(1, 0, 1.5), edge(2, 1, 0.7), edge(0, 2, 0.4)]);
+    problem.network.schedule = Schedule::Fixed(all.collect());
+    let ReferenceKind::Following(following) = &mut problem.reference else { panic!() };
+    Arc::make_mut(following).choice = Choice::Implicit;
+    let following = Arc::clone(following);
+    // Known masses and z(0) = q̇(0): s vanishes for ever.
+    for agent in &mut problem.agents {
+        agent.start.reference = vec![agent.start.dq.clone()];
+    }
+    let outcome = run(&problem);
+    let alpha = following.alpha;
+    let driven = following.leader.trajectory.bounds(0, &[0.0, alpha, 1.0, 0.0, 0.0], None);
+    let margin = following.gain - driven.high.max(-driven.low);
+    assert!(margin > 0.5, "{margin}");
+    let farthest = |row: usize| {
+        let mut leader = [[0.0; 5]];
+        following.leader.trajectory.jets(outcome.recording.t_s[row], &mut leader);
+        let away = |agent| {
+            let velocity = column(&outcome, agent, Signal::Velocity, 0)[row] - leader[0][1];
+            (velocity + alpha * column(&outcome, agent, Signal::Error, 0)[row]).abs()
+        };
+        (0..3).map(away).fold(0.0, f64::max)
+    };
+    // A value of the sign is held for a millisecond.
+    let slack = 2.0 * following.gain * following.period_s;
+    let mut arrived_s = None;
+    for row in 1..outcome.recording.t_s.len() {
+        let (before, after) = (farthest(row - 1), farthest(row));
+        let step_s = outcome.recording.t_s[row] - outcome.recording.t_s[row - 1];
+        assert!(after <= (before - margin * step_s).max(0.0) + slack, "row {row}: {before} {after}");
+        if after <= slack && arrived_s.is_none() {
+            arrived_s = Some(outcome.recording.t_s[row]);
+        }
+    }
+    assert!(farthest(0) > 0.5 && arrived_s.unwrap() <= farthest(0) / margin, "{arrived_s:?}");
 }
 
 /// V + ∫ sᵀ(K + D)s = V(0): what produces z does not matter to it.

@@ -32,6 +32,7 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "six-arms-over-radio",
     "without-velocity",
     "double-integrators",
+    "thrust-continuous",
     "theorem-4",
     "theorem-5",
     "formation",
