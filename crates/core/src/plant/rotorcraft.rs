@@ -19,8 +19,8 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::vehicle::{self, Vehicle, VehicleState};
 use super::Plant;
+use super::vehicle::{self, Vehicle, VehicleState};
 use crate::attitude::{cross, times};
 use crate::linear::invert;
 use crate::signal::{Block, Signal};
