@@ -36,7 +36,7 @@ use super::{Asked, Balance, Controller, Given, Jet, Truth};
 use crate::attitude::{
     Desired, Quaternion, angle, cross, difference, dot, normalized, rate_inertial, rotate, rotate_back, times,
 };
-use crate::plant::{Plant, Spacecraft, Wheels, total};
+use crate::plant::{Plant, Spacecraft, Wheels};
 use crate::reference::Position;
 use crate::signal::{Block, Signal};
 use crate::{LengthError, ResolvedGain};
@@ -223,7 +223,7 @@ impl Controller for AttitudeTracking {
     ) -> Result<Balance, LengthError> {
         LengthError::check("state of the plant", truth.plant.output_len(), truth.state.len())?;
         LengthError::check("state", STATE, state.len())?;
-        LengthError::check("shown", total(&self.shown()), shown.len())?;
+        LengthError::check("shown", SHOWN, shown.len())?;
         let s: [f64; 3] = core::array::from_fn(|k| truth.state[4 + k] - state[k]);
         let dy = four(&shown[BEFORE_DY..]);
         let mut lost = [0.0; 4];

@@ -35,7 +35,7 @@ use alloc::vec::Vec;
 use super::guide::{Guide, GuideWork, Leads};
 use super::{Asked, Balance, Controller, Given, Truth};
 use crate::LengthError;
-use crate::plant::{Mechanical, total};
+use crate::plant::Mechanical;
 use crate::reference::Position;
 use crate::robot::PointMass;
 use crate::signal::{Block, Signal};
@@ -158,7 +158,9 @@ impl Controller for PositionOnly {
         LengthError::check("state", i + 1, state.len())?;
         LengthError::check("rate", i + 1, asked.d_state.len())?;
         LengthError::check("input", m, asked.input.len())?;
-        LengthError::check("shown", total(&self.shown()), asked.shown.len())?;
+        // As many as the state, and x − x_d.
+        let errors = if self.guide.tracks() { m } else { 0 };
+        LengthError::check("shown", i + 1 + errors, asked.shown.len())?;
         let x = given.measured.x;
         LengthError::check("x", m, x.len())?;
         let (z, dz) = (&state[..m], &state[m..2 * m]);

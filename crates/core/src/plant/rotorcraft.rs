@@ -19,8 +19,8 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use super::Plant;
 use super::vehicle::{self, Vehicle, VehicleState};
-use super::{Plant, total};
 use crate::attitude::{cross, times};
 use crate::linear::invert;
 use crate::signal::{Block, Signal};
@@ -148,7 +148,7 @@ impl Plant for Rotorcraft {
     fn rate(&self, (): &mut (), state: &[f64], input: &[f64], d_state: &mut [f64]) -> Result<(), LengthError> {
         LengthError::check("state", LEN, state.len())?;
         LengthError::check("rate", LEN, d_state.len())?;
-        LengthError::check("input", total(&self.inputs()), input.len())?;
+        LengthError::check("input", 4, input.len())?;
         let (moving, omega) = VehicleState::read(state)?;
         let (Some(omega), [sigma, tau @ ..]) = (omega.first_chunk::<3>(), input) else { return Ok(()) };
         self.vehicle.motion(moving, *sigma, *omega, d_state);

@@ -124,9 +124,9 @@ pub fn craft(start: Start, target: Vec<Path>, torque_limit_n_m: f64) -> Setup {
 
 pub fn half_a_turn(rate: [f64; 3]) -> Start {
     let half = 179.9_f64.to_radians() / 2.0;
-    let axis = [1.0, 2.0, -1.0].map(|x| x / 6.0_f64.sqrt() * half.sin());
+    let axis = [1.0, 2.0, -1.0].map(|x| x / 6.0_f64.sqrt() * libm::sin(half));
     Start {
-        q: vec![axis[0], axis[1], axis[2], half.cos()],
+        q: vec![axis[0], axis[1], axis[2], libm::cos(half)],
         dq: rate.to_vec(),
         rest: vec![0.3, -0.2, 0.1, 0.4],
         reference: Vec::new(),
@@ -142,7 +142,7 @@ fn through(values: [f64; 3]) -> Path {
 pub fn targets() -> Vec<Vec<Path>> {
     let rest = vec![fixed(0.0), fixed(0.0), fixed(0.0), fixed(2.0)];
     let swing = vec![wave(0.1, 0.3, 0.4, 0.0), wave(0.0, 0.2, 0.3, 1.0), wave(0.0, 0.2, 0.5, 2.0), fixed(1.0)];
-    let (lean, tall) = (0.25_f64.sin(), 0.25_f64.cos());
+    let (lean, tall) = (libm::sin(0.25), libm::cos(0.25));
     let tumbling = vec![
         wave(0.0, lean, 0.075, FRAC_PI_2),
         wave(0.0, -lean, 0.075, 0.0),

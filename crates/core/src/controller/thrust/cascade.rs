@@ -20,7 +20,7 @@ use super::Thrust;
 use crate::LengthError;
 use crate::attitude::{cross, rotate, times};
 use crate::controller::{Asked, Balance, Controller, Given, Trouble, Truth};
-use crate::plant::{Rotorcraft, VehicleState, total};
+use crate::plant::{Rotorcraft, VehicleState};
 use crate::reference::Position;
 use crate::signal::{Block, Signal};
 
@@ -103,7 +103,7 @@ impl Controller for ThrustCascade {
         asked: Asked<'_>,
     ) -> Result<(), LengthError> {
         LengthError::check("input", 4, asked.input.len())?;
-        let outer = total(&self.outer.shown_blocks());
+        let outer = self.outer.shown_len();
         LengthError::check("shown", outer + 3, asked.shown.len())?;
         let (shown, wanted) = asked.shown.split_at_mut(outer);
         let RotorcraftMeasured { vehicle, omega } = given.measured;
@@ -134,7 +134,7 @@ impl Controller for ThrustCascade {
     ) -> Result<Balance, LengthError> {
         let (moving, omega) = VehicleState::read(truth.state)?;
         LengthError::check("angular velocity", 3, omega.len())?;
-        LengthError::check("shown", total(&self.shown()), shown.len())?;
+        LengthError::check("shown", self.outer.shown_len() + 3, shown.len())?;
         let wanted = &shown[shown.len() - 3..];
         let sigma = self.outer.sigma(state).unwrap_or_default();
         let miss = [-sigma * (omega[1] - wanted[1]), sigma * (omega[0] - wanted[0]), 0.0];

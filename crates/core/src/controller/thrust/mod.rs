@@ -67,7 +67,7 @@ use alloc::vec::Vec;
 
 use super::{Balance, Jet};
 use crate::attitude::{cross, dot, rotate, rotate_back};
-use crate::plant::{Vehicle, VehicleState, total};
+use crate::plant::{Vehicle, VehicleState};
 use crate::reference::{Consensus, Heard, Measured, Position, Reference, ReferenceOut, RootsError};
 use crate::signal::{Block, Signal};
 use crate::{LengthError, Scalar};
@@ -162,6 +162,18 @@ impl Thrust {
         shown
     }
 
+    /// Numbers in [`Thrust::state_blocks`].
+    fn state_len(&self) -> usize {
+        self.design.reference_len() + 2 + usize::from(self.design.adapts())
+    }
+
+    /// Numbers in [`Thrust::shown_blocks`].
+    fn shown_len(&self) -> usize {
+        let reference = self.design.reference_len();
+        let error = if reference > 0 { 3 } else { 0 };
+        reference + error + usize::from(self.design.adapts())
+    }
+
     /// σ of a state.
     fn sigma(&self, state: &[f64]) -> Option<f64> {
         state.get(self.design.reference_len()).copied()
@@ -185,7 +197,7 @@ impl Thrust {
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
-        LengthError::check("state", total(&self.state_blocks()), state.len())?;
+        LengthError::check("state", self.state_len(), state.len())?;
         check_target(target)?;
         let (reference, rest) = state.split_at_mut(self.design.reference_len());
         reference.fill(0.0);
@@ -215,9 +227,9 @@ impl Thrust {
         state: &[f64],
         [d_state, shown]: [&mut [f64]; 2],
     ) -> Result<Flight, LengthError> {
-        LengthError::check("state", total(&self.state_blocks()), state.len())?;
+        LengthError::check("state", self.state_len(), state.len())?;
         LengthError::check("rate", state.len(), d_state.len())?;
-        LengthError::check("shown", total(&self.shown_blocks()), shown.len())?;
+        LengthError::check("shown", self.shown_len(), shown.len())?;
         check_target(target)?;
         let d = |k: usize, r: usize| target.get(k).map_or(0.0, |jet| jet[r]);
         let (reference, rest) = state.split_at(self.design.reference_len());
@@ -298,7 +310,7 @@ impl Thrust {
         state: &[f64],
         slip: [f64; 3],
     ) -> Result<Balance, LengthError> {
-        LengthError::check("state", total(&self.state_blocks()), state.len())?;
+        LengthError::check("state", self.state_len(), state.len())?;
         check_target(target)?;
         let (reference, rest) = state.split_at(self.design.reference_len());
         if reference.is_empty() {

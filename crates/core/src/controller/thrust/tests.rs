@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use super::*;
 use crate::Gain;
 use crate::controller::{Asked, Controller, Given, Trouble, Truth};
-use crate::plant::{Plant, Rotorcraft};
+use crate::plant::{Plant, Rotorcraft, total};
 
 const MASS: f64 = 1.3;
 const G: f64 = 9.81;
