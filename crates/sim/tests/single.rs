@@ -99,6 +99,7 @@ fn val_tips_and_spacecraft_agree_with_an_independent_solver() {
     law.task_gain = Gain::Matrix(vec![20.0, 2.0, 2.0, 25.0]);
     law.kinematic_adaptation = Some(Gain::Diagonal(vec![0.3, 0.4]));
     let mut setups = vec![arm];
+    // The fourth target goes through points of a table, whose curve is no formula.
     for target in targets().into_iter().take(3) {
         let mut craft = craft(half_a_turn([0.1, -0.05, 0.08]), target, 5.0);
         let Law::Attitude(law) = &mut craft.agents[0].law else { panic!() };

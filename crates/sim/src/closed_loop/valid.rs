@@ -431,7 +431,8 @@ fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
     vector("the start position", axes, &agent.start.q)?;
     let velocities = agent.robot.velocity_len();
     vector("the start velocity", velocities, &agent.start.dq)?;
-    vector("the start of the plant", agent.robot.kind.rest_len(), &agent.start.rest)?;
+    // How much more a state has is known where the plant is built.
+    vector("the start of the plant", agent.start.rest.len(), &agent.start.rest)?;
     if agent.law.is_lagrangian() && tracks {
         return Err(SetupError::NotTracking { agent: agent.name.clone(), law: agent.law.words() });
     }
