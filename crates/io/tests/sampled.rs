@@ -49,9 +49,10 @@ fn way(outcome: &Outcome) -> f64 {
 }
 
 /// Scenario, and the lower of two sample rates, in Hz.
-const RATES: [(&str, f64); 16] = [
+const RATES: [(&str, f64); 20] = [
     ("without-velocity", 500.0),
     ("double-integrators", 500.0),
+    ("thrust-continuous", 500.0),
     ("theorem-4", 500.0),
     ("theorem-5", 500.0),
     ("formation", 500.0),
@@ -59,6 +60,9 @@ const RATES: [(&str, f64); 16] = [
     ("theorem-6", 500.0),
     ("task-space-ur5e", 500.0),
     ("theorem-7", 500.0),
+    ("rest-to-rest", 500.0),
+    ("sinusoidal-attitude", 500.0),
+    ("attitude-from-a-table", 500.0),
     ("tumbling-target", 500.0),
     ("remark-12", 500.0),
     ("framework", 500.0),
