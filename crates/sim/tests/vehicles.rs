@@ -165,13 +165,13 @@ fn what_makes_no_sense_is_refused() {
         change(law);
     };
     assert!(matches!(refused(&|s| s.exchange = Exchange::PositionVelocity), SetupError::SendsPositionOnly { .. }));
-    assert!(matches!(refused(&|s| s.agents[1].roots_per_s.truncate(2)), SetupError::Length { .. }));
+    assert!(matches!(refused(&|s| s.agents[1].roots_per_s.truncate(2)), SetupError::RootCount { .. }));
     let arm = |s: &mut Setup| {
         s.agents[1].robot.kind = RobotKind::PlanarArm;
         s.agents[1].start.rest.clear();
     };
     assert!(matches!(refused(&arm), SetupError::LawOfAnother { .. }));
-    assert!(matches!(refused(&|s| s.agents[1].manipulability = 0.5), SetupError::LawNumber { .. }));
+    assert!(matches!(refused(&|s| s.agents[1].manipulability = 0.5), SetupError::NoManipulability { .. }));
     assert!(matches!(refused(&|s| s.agents[1].start.rest = vec![0.0; 3]), SetupError::Length { .. }));
     assert!(matches!(refused(&|s| s.agents[1].robot.theta[0] = -1.0), SetupError::LawNumber { .. }));
     assert!(matches!(refused(&|s| law(s, &|law| law.floor = Floor::Stops(0.0))), SetupError::LawNumber { .. }));

@@ -55,7 +55,7 @@ pub enum Guide {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum GuideError {
     /// ℓ would be less than it has to be.
-    #[error("the reference dynamics have {got} roots, but at least {least} are needed here")]
+    #[error("roots of the reference dynamics: {got}, but at least {least} are needed here")]
     TooFew {
         /// How many roots there must be.
         least: usize,
@@ -63,7 +63,7 @@ pub enum GuideError {
         got: usize,
     },
     /// A trajectory has no more than four derivatives.
-    #[error("the reference dynamics have {got} roots, but a trajectory is known with {most} derivatives only")]
+    #[error("roots of the reference dynamics: {got}, but a trajectory is known with {most} derivatives only")]
     TooMany {
         /// How many roots there may be.
         most: usize,

@@ -43,22 +43,21 @@ fn place(file: &ScenarioFile, error: &SetupError) -> Option<Span> {
         | SetupError::AxesDiffer { agent, .. }
         | SetupError::Spacecraft { agent, .. }
         | SetupError::NoEffortLimit { agent, .. } => Some(entry(file, agent)?.robot.span.clone()),
-        SetupError::Length { agent, error } => match error.what {
-            "`roots_per_s`" => roots(file, agent),
-            "`torque_limit`" => file.control.as_ref()?.torque_limit.as_ref().map(|limit| limit.span.clone()),
-            "`torque_rate_limit_per_s`" => {
-                file.control.as_ref()?.torque_rate_limit_per_s.as_ref().map(|limit| limit.span.clone())
-            }
-            _ => law(file, agent),
-        },
+        SetupError::RootCount { agent, .. } => roots(file, agent),
+        SetupError::TorqueLimitCount { of_rates, .. } => {
+            let control = file.control.as_ref()?;
+            let limit = if *of_rates { &control.torque_rate_limit_per_s } else { &control.torque_limit };
+            limit.as_ref().map(|limit| limit.span.clone())
+        }
         SetupError::Chain { agent, error } => match error {
             ChainError::Guide(_) => roots(file, agent),
             ChainError::Antiderivative { parameter, .. } => antiderivative(file, agent, *parameter),
             ChainError::Expression(_) => Some(entry(file, agent)?.robot.span.clone()),
             _ => law(file, agent),
         },
-        SetupError::LawNumber { agent, what, .. } if what.contains("manipulability") => manipulability(file, agent),
-        SetupError::LawNumber { agent, .. }
+        SetupError::NoManipulability { agent, .. } => manipulability(file, agent),
+        SetupError::Length { agent, .. }
+        | SetupError::LawNumber { agent, .. }
         | SetupError::LawOfAnother { agent, .. }
         | SetupError::Gain { agent, .. }
         | SetupError::Tip { agent, .. }
@@ -135,10 +134,10 @@ pub(super) fn advice(error: &SetupError) -> Option<String> {
             "write `reference.consensus`; laws that track are `position_only`, `task_space`, `attitude` and those of chains".to_owned()
         }
         SetupError::OrderTooLow { least, .. } => format!("give it {least} roots or more"),
-        SetupError::Length { error, .. } if error.what == "`roots_per_s`" => {
+        SetupError::RootCount { error, .. } => {
             format!("this law takes {} roots; an agent may have `reference` with roots of its own", error.need)
         }
-        SetupError::Length { error, .. } if error.what.starts_with("`torque") => {
+        SetupError::TorqueLimitCount { .. } => {
             "leave it out: this robot has another number of torques than of axes".to_owned()
         }
         SetupError::Chain { error: ChainError::Guide(_), .. } => {
@@ -155,7 +154,7 @@ pub(super) fn advice(error: &SetupError) -> Option<String> {
         SetupError::NoOffsets { .. } => {
             "leave its `target` out; only vehicles and rotorcraft agree up to offsets".to_owned()
         }
-        SetupError::LawNumber { what, .. } if what.contains("manipulability") => {
+        SetupError::NoManipulability { .. } => {
             "leave `manipulability_gain` out".to_owned()
         }
         _ => return None,

@@ -193,7 +193,7 @@ const SPACECRAFT_CASES: &[Case] = &[
     ("[goal]", "[control]\nsample_hz = 10\ntorque_limit = [1, 1, 1]\n[goal]",
         "test.toml:32:16: `torque_limit` has 3 where the agents have 4 axes", "a single number stands for all axes"),
     ("[goal]", "[control]\nsample_hz = 10\ntorque_rate_limit_per_s = [1, 1, 1, 1]\n[goal]",
-        "test.toml:32:27: agent `craft`: `torque_rate_limit_per_s` has 4 entries where 0 are needed", "leave it out: this robot has another number of torques than of axes"),
+        "test.toml:32:27: agent `craft`: the limit of torque rates has 4 entries where 0 are needed", "leave it out: this robot has another number of torques than of axes"),
     ("[goal]", "[network]\nedges = [[\"craft\", \"craft\"]]\n[goal]",
         "test.toml:31:10: `craft` cannot hear itself", ""),
     ("error_below", "disagreement_below",

@@ -38,7 +38,7 @@ const CASES: &[Case] = &[
     ("target.formulas", "target.formula",
         "test.toml:7:8: unknown choice `formula`", "did you mean `formulas`?"),
     ("[1.0, 1.5, 2.0]", "[1.0, 1.5]",
-        "test.toml:10:15: agent `mass`: `roots_per_s` has 2 entries where 3 are needed", "this law takes 3 roots"),
+        "test.toml:10:15: agent `mass`: the list of roots has 2 entries where 3 are needed", "this law takes 3 roots"),
     ("[1.0, 1.5, 2.0]", "[1.0, -1.5, 2.0]",
         "test.toml:10:21: `roots_per_s` is -1.5, but must be positive", ""),
     ("damping = 20", "damping = 0",

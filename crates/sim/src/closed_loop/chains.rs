@@ -7,7 +7,7 @@ use forwardstep_core::plant::{Cascade, CascadeError, Chain, Formulas};
 use forwardstep_core::reference::{Consensus, Position, polynomial};
 
 use super::population::Columns;
-use super::systems::solo;
+use super::systems::{no_manipulability, solo};
 use super::valid::SetupError;
 use crate::chain::{ChainLaw, ChainModel, ChainStep};
 use crate::setup::{AgentSetup, Law, ReferenceKind, Setup};
@@ -66,11 +66,7 @@ fn derivatives(own: &AgentSetup, terms: &Formulas) -> Chain<Formulas> {
 /// Where z leads: to a target, or to agreement.
 fn guide(setup: &Setup, own: &AgentSetup) -> Result<Guide, SetupError> {
     let roots = |error| SetupError::Roots { agent: own.name.clone(), error };
-    if own.manipulability != 0.0 {
-        let (agent, value) = (own.name.clone(), own.manipulability);
-        let requirement = "must be zero for a chain";
-        return Err(SetupError::LawNumber { agent, what: "the manipulability gain", value, requirement });
-    }
+    no_manipulability(own)?;
     match setup.reference {
         ReferenceKind::Tracking => {
             let mut alpha = polynomial(&own.roots_per_s).map_err(roots)?;

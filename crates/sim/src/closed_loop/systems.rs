@@ -54,8 +54,7 @@ fn guide(setup: &Setup, own: &AgentSetup) -> Result<Guide, SetupError> {
     let roots = |error| SetupError::Roots { agent: name(), error };
     match setup.reference {
         ReferenceKind::Tracking => {
-            let length = |error| SetupError::Length { agent: name(), error };
-            LengthError::check("`roots_per_s`", 3, own.roots_per_s.len()).map_err(length)?;
+            root_count(own, 3)?;
             let mut alpha = polynomial(&own.roots_per_s).map_err(roots)?;
             // The leading one is not listed.
             alpha.pop();
@@ -137,20 +136,39 @@ fn effort_limits(own: &AgentSetup, torques: usize) -> Result<Option<Vec<f64>>, S
 
 /// Limits of what a sampled controller asks for.
 fn limiter(own: &AgentSetup, control: &Control, torques: usize) -> Result<Limiter, SetupError> {
-    let limits = |given: &Option<Vec<f64>>, what| {
+    let limits = |given: &Option<Vec<f64>>, of_rates| {
+        let what = if of_rates { "the limit of torque rates" } else { "the limit of torques" };
         let values = given.clone().unwrap_or_else(|| vec![f64::INFINITY; torques]);
-        LengthError::check(what, torques, values.len())
-            .map_err(|error| SetupError::Length { agent: own.name.clone(), error })?;
+        LengthError::check(what, torques, values.len()).map_err(|error| SetupError::TorqueLimitCount {
+            agent: own.name.clone(),
+            of_rates,
+            error,
+        })?;
         Ok::<_, SetupError>(values)
     };
-    let mut limit = limits(&control.actuators.torque_limit, "`torque_limit`")?;
+    let mut limit = limits(&control.actuators.torque_limit, false)?;
     let quantum = control.actuators.torque_quantum;
     // A rounded torque must not exceed its limit either.
     if quantum > 0.0 {
         limit.iter_mut().for_each(|limit| *limit = quantum * (*limit / quantum).floor());
     }
-    let rate = limits(&control.actuators.torque_rate_limit, "`torque_rate_limit_per_s`")?;
+    let rate = limits(&control.actuators.torque_rate_limit, true)?;
     Limiter::new(limit, rate).map_err(|error| SetupError::Limiter { agent: own.name.clone(), error })
+}
+
+/// Checks how many roots an agent has.
+pub(super) fn root_count(own: &AgentSetup, need: usize) -> Result<(), SetupError> {
+    LengthError::check("the list of roots", need, own.roots_per_s.len())
+        .map_err(|error| SetupError::RootCount { agent: own.name.clone(), error })
+}
+
+/// Checks that an agent has no manipulability gain.
+pub(super) fn no_manipulability(own: &AgentSetup) -> Result<(), SetupError> {
+    if own.manipulability == 0.0 {
+        return Ok(());
+    }
+    let (agent, law, value) = (own.name.clone(), own.law.words(), own.manipulability);
+    Err(SetupError::NoManipulability { agent, law, value })
 }
 
 pub(super) fn positive(own: &AgentSetup, what: &'static str, value: f64) -> Result<(), SetupError> {

@@ -47,6 +47,34 @@ pub enum SetupError {
         /// What is wrong.
         error: LengthError,
     },
+    /// Another number of roots than the law takes.
+    #[error("agent `{agent}`: {error}")]
+    RootCount {
+        /// The agent.
+        agent: String,
+        /// How many there are, and how many there must be.
+        error: LengthError,
+    },
+    /// Limits for axes where the robot has another number of torques.
+    #[error("agent `{agent}`: {error}")]
+    TorqueLimitCount {
+        /// The agent.
+        agent: String,
+        /// Limits of rates, not of torques.
+        of_rates: bool,
+        /// How many there are, and how many there must be.
+        error: LengthError,
+    },
+    /// A manipulability gain beside a law that has none.
+    #[error("agent `{agent}`: {law} has no manipulability gain, but {value} is given")]
+    NoManipulability {
+        /// The agent.
+        agent: String,
+        /// Its law, in words.
+        law: &'static str,
+        /// The gain.
+        value: f64,
+    },
     /// A number of one agent is not finite.
     #[error("agent `{agent}`: {what} has the entry {value}, which is not a finite number")]
     NotFinite {

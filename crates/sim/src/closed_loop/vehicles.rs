@@ -5,7 +5,7 @@ use forwardstep_core::controller::{Floor, RateLoop, Thrust, ThrustCascade, Thrus
 use forwardstep_core::plant::{Rotorcraft, Vehicle};
 
 use super::population::Columns;
-use super::systems::{not_negative, positive, solo};
+use super::systems::{no_manipulability, not_negative, positive, root_count, solo};
 use super::valid::SetupError;
 use crate::setup::{AgentSetup, ReferenceKind, RobotKind, Setup};
 use crate::vehicles::{ThrustKind, ThrustLaw};
@@ -67,13 +67,9 @@ fn outer(setup: &Setup, own: &AgentSetup, vehicle: &Vehicle, law: ThrustLaw) -> 
             _ => SetupError::ReferenceOfLaw { agent: name(), law: own.law.words() },
         });
     }
-    if own.manipulability != 0.0 {
-        let (what, requirement) = ("the manipulability gain", "must be zero: the thrust law has none");
-        return Err(SetupError::LawNumber { agent: name(), what, value: own.manipulability, requirement });
-    }
+    no_manipulability(own)?;
     let roots = &own.roots_per_s;
-    LengthError::check("`roots_per_s`", law.design.order(), roots.len())
-        .map_err(|error| SetupError::Length { agent: name(), error })?;
+    root_count(own, law.design.order())?;
     let (design, mass) = match law.design {
         ThrustKind::Continuous => (ThrustDesign::Continuous { roots_per_s: [roots[0], roots[1]] }, vehicle.mass),
         ThrustKind::Differentiable { alpha_star, stiffness } => {
