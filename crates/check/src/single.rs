@@ -12,6 +12,9 @@ use crate::verdict::{Answer, Hypothesis, rounded};
 /// Parts of the run at whose ends a target is looked at.
 const LOOKS: u32 = 2000;
 
+/// The smallest norm of a quaternion on its path, as a part of the largest, that is not taken for zero.
+const LEAST_NORM: f64 = 1e-6;
+
 /// Theorem 6, agent by agent.
 pub(crate) fn task_space(setup: &Setup) -> Vec<Hypothesis> {
     let mut hypotheses = Vec::new();
@@ -146,19 +149,23 @@ fn momentum(agent: &AgentSetup) -> Hypothesis {
 fn path(setup: &Setup, agent: &AgentSetup) -> Option<Hypothesis> {
     let target = agent.target.as_ref()?;
     let requires = format!("the quaternion that {} is to follow is never zero", agent.name);
-    let hull = |axis| target.hull(axis, 0, None);
-    let away = (0..target.axes()).map(|axis| hull(axis).low.max(-hull(axis).high)).fold(0.0, f64::max);
+    let away = |axis| {
+        let hull = target.hull(axis, 0, None);
+        hull.low.max(-hull.high)
+    };
+    let away = (0..target.axes()).map(away).fold(0.0, f64::max);
     if away > 0.0 {
         let because = format!("one of its entries is never below {} in magnitude", rounded(away));
         return Some(Hypothesis { requires, answer: Answer::Holds, because });
     }
     let end_s = setup.time.end_s;
-    let (mut least, mut when) = (f64::INFINITY, 0.0);
+    let (mut least, mut most, mut when) = (f64::INFINITY, 0.0_f64, 0.0);
     let mut jets = [[0.0; 5]; 4];
     for k in 0..=LOOKS {
         let t_s = end_s * f64::from(k) / f64::from(LOOKS);
         target.jets(t_s, &mut jets);
         let norm = jets.iter().map(|jet| jet[0] * jet[0]).sum::<f64>().sqrt();
+        most = most.max(norm);
         if norm < least {
             (least, when) = (norm, t_s);
         }
@@ -171,7 +178,7 @@ fn path(setup: &Setup, agent: &AgentSetup) -> Option<Hypothesis> {
     let shown = least - speed * 0.5 * end_s / f64::from(LOOKS);
     let (answer, because) = if shown > 0.0 {
         (Answer::HoldsOnHorizon, format!("its norm stays above {} until the end of the run", rounded(shown)))
-    } else if least > 0.0 {
+    } else if least > LEAST_NORM * most {
         let because =
             format!("at {} s its norm is {}, and no bound above zero could be shown", rounded(when), rounded(least));
         (Answer::NotCovered, because)

@@ -7,6 +7,7 @@ use forwardstep::check::{Answer, check};
 use forwardstep::core::Gain;
 use forwardstep::io::output::Metrics;
 use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
+use forwardstep::sim::trajectory::{Path, Sinusoid, Trajectory};
 use forwardstep::sim::{Ending, Law, TaskSpaceLaw, simulate};
 
 fn shows_what_it_says(name: &str) {
@@ -58,6 +59,25 @@ fn prop_the_goal_of_theorem_6_does_not_hang_on_one_gain() {
             assert!(scenario.goal.unwrap().is_met(&setup, &outcome, &metrics), "gain {index}, {factor}");
         }
     }
+}
+
+/// A desired quaternion that stays away from zero for ever, one that does so on the run, and one that comes to zero.
+#[test]
+fn thm7_the_quaternion_to_follow_is_bounded_away_from_zero_or_found_there() {
+    let answer = |paths: [(f64, f64, f64); 4]| {
+        let mut setup = open_scenario("theorem-7").unwrap().setup;
+        let path = |(offset, amplitude, phase_rad)| Path::Sinusoids {
+            offset,
+            waves: vec![Sinusoid { amplitude, rad_per_s: 1.0, phase_rad }],
+        };
+        setup.agents[0].target = Some(Trajectory::new(paths.map(path).to_vec()).unwrap());
+        let report = check(&setup);
+        report.hypotheses.iter().find(|hypothesis| hypothesis.requires.contains("never zero")).unwrap().answer
+    };
+    let nothing = (0.0, 0.0, 0.0);
+    assert_eq!(answer([(0.0, 0.5, 0.0), nothing, nothing, (-1.0, 0.2, 0.0)]), Answer::Holds);
+    assert_eq!(answer([(0.0, 1.0, 0.0), (0.0, 1.0, 1.57), nothing, nothing]), Answer::HoldsOnHorizon);
+    assert_eq!(answer([(0.0, 1.0, 0.0), (0.0, 0.5, 0.0), nothing, nothing]), Answer::Violated);
 }
 
 /// What can be turned a little.
