@@ -6,6 +6,7 @@
 mod cases;
 mod common;
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 use cases::{cases, setup};
@@ -21,22 +22,48 @@ fn setups() -> Vec<(String, Setup)> {
     all
 }
 
-/// FNV-1a over the bits of every number recorded.
-fn digest_of(setup: &Setup) -> u64 {
-    let outcome = simulate(setup, &mut |_| ControlFlow::Continue(())).unwrap();
-    let numbers = outcome.recording.t_s.iter().chain(outcome.recording.columns.iter().flat_map(|c| &c.values));
-    numbers
-        .flat_map(|number| number.to_bits().to_le_bytes())
-        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
+/// FNV-1a over the bits of `numbers`, continuing from `hash`.
+fn fnv(hash: u64, numbers: &[f64]) -> u64 {
+    let bytes = numbers.iter().flat_map(|number| number.to_bits().to_le_bytes());
+    bytes.fold(hash, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
+}
+
+/// A line per signal, with a digest per entry over the times of the rows and the values of all agents that have it. A digest
+/// hangs on nothing else: columns may move and others may join them.
+fn digests_of(setup: &Setup) -> String {
+    let recording = simulate(setup, &mut |_| ControlFlow::Continue(())).unwrap().recording;
+    let times = fnv(0xcbf2_9ce4_8422_2325, &recording.t_s);
+    let mut entries: BTreeMap<String, BTreeMap<usize, BTreeMap<usize, &[f64]>>> = BTreeMap::new();
+    for column in &recording.columns {
+        let agents = entries.entry(column.signal.name()).or_default().entry(column.axis).or_default();
+        assert_eq!(agents.insert(column.agent, &column.values), None, "one column per agent, signal and entry");
+    }
+    let mut text = String::new();
+    for (name, entries) in entries {
+        text += &format!("  {name}");
+        for agents in entries.values() {
+            let digest = agents.iter().fold(times, |hash, (agent, values)| fnv(fnv(hash, &[*agent as f64]), values));
+            text += &format!(" {digest:016x}");
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// When the numbers change on purpose, the end of the message is the new content of the file.
+fn same(committed: &str, now: &str) {
+    let changed = committed.lines().zip(now.lines()).position(|(was, is)| was != is);
+    let line = changed.unwrap_or(committed.lines().count()) + 1;
+    assert!(committed == now, "the digests differ from line {line} on; they are now\n{now}");
 }
 
 #[test]
 fn digest_same_bits_on_repeat_and_beside_other_threads() {
     let setups = setups();
-    let digest = |(_, setup): &(String, Setup)| digest_of(setup);
-    let alone: Vec<u64> = setups.iter().map(digest).collect();
+    let digest = |(_, setup): &(String, Setup)| digests_of(setup);
+    let alone: Vec<String> = setups.iter().map(digest).collect();
     for threads in [2, 7] {
-        let together: Vec<u64> = std::thread::scope(|scope| {
+        let together: Vec<String> = std::thread::scope(|scope| {
             let chunks = setups.chunks(setups.len().div_ceil(threads));
             let running: Vec<_> =
                 chunks.map(|chunk| scope.spawn(|| chunk.iter().map(digest).collect::<Vec<_>>())).collect();
@@ -60,12 +87,11 @@ fn digest_sampled_runs_have_the_same_bits_as_on_the_machine_that_wrote_them() {
         },
         actuators: Actuators { torque_rate_limit: Some(vec![500.0; 2]), ..Actuators::default() },
     });
-    assert_eq!(format!("{:016x}", digest_of(&setup)), "a7c54af484a3aa91");
+    same(include_str!("digests/sampled.txt"), &digests_of(&setup));
 }
 
 #[test]
 fn digest_same_bits_as_on_the_machine_that_wrote_them() {
-    // When the numbers change on purpose, the message is the new content of digests.txt.
-    let digests: String = setups().iter().map(|(name, setup)| format!("{:016x} {name}\n", digest_of(setup))).collect();
-    assert_eq!(digests, include_str!("digests.txt"), "the bits are now\n{digests}");
+    let digests: String = setups().iter().map(|(name, setup)| format!("{name}\n{}", digests_of(setup))).collect();
+    same(include_str!("digests/all.txt"), &digests);
 }
