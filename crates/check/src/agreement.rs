@@ -31,6 +31,7 @@ use forwardstep_sim::{AgentSetup, Exchange, ReferenceKind, Setup};
 use nalgebra::DMatrix;
 use thiserror::Error;
 
+use crate::laws::is_lagrangian;
 use crate::manipulation::error_integral;
 
 /// The value that all agents will agree on.
@@ -111,7 +112,7 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     if setup.following().is_some() {
         return Err(NoPrediction::Leader);
     }
-    if setup.reference == ReferenceKind::Tracking || setup.agents.iter().any(|agent| !agent.law.is_lagrangian()) {
+    if setup.reference == ReferenceKind::Tracking || setup.agents.iter().any(|agent| !is_lagrangian(agent)) {
         return Err(NoPrediction::Law);
     }
     if !setup.network.coupling.is_linear() {

@@ -1,17 +1,13 @@
 //! Chains of Section IV: what (43) with its second steps asks for.
 
 use forwardstep_core::expression::Expression;
-use forwardstep_sim::chain::{ChainLaw, ChainModel, ChainStep};
-use forwardstep_sim::{AgentSetup, Law, ReferenceKind, RobotKind, Setup};
+use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, ChainStep, Law, ReferenceKind, Setup};
 
 use crate::verdict::{Answer, Hypothesis};
 
 /// Agents with a law for chains.
 fn chains(setup: &Setup) -> impl Iterator<Item = (&AgentSetup, &ChainLaw, &ChainModel)> {
-    setup.agents.iter().filter_map(|agent| match (&agent.law, &agent.robot.kind) {
-        (Law::Chain(law), RobotKind::Chain(model)) => Some((agent, law, model)),
-        _ => None,
-    })
+    setup.agents.iter().filter_map(|agent| Some((agent, agent.law.downcast()?, agent.robot.kind.downcast()?)))
 }
 
 /// What speaks about agents that are all chains, and what it promises.

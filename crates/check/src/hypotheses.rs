@@ -3,7 +3,7 @@
 use forwardstep_sim::graph::{Edge, strong_components};
 use forwardstep_sim::push::Push;
 use forwardstep_sim::schedule::{Schedule, Window};
-use forwardstep_sim::{Exchange, Law, ReferenceKind, Setup};
+use forwardstep_sim::{ChainLaw, Exchange, Known, ReferenceKind, Setup};
 
 use crate::laws;
 use crate::leader;
@@ -31,7 +31,7 @@ pub fn check(setup: &Setup) -> Report {
     hypotheses.extend(links::coupling(setup));
     match &setup.reference {
         // Chains of different orders agree: nothing in the argument for (24) compares orders.
-        ReferenceKind::Consensus if setup.agents.iter().all(|agent| matches!(agent.law, Law::Chain(_))) => {
+        ReferenceKind::Consensus if setup.agents.iter().all(|agent| agent.law.is::<ChainLaw>()) => {
             hypotheses.push(real_roots(setup));
         }
         ReferenceKind::Consensus => hypotheses.extend([real_roots(setup), common_order(setup)]),
@@ -46,7 +46,7 @@ pub fn check(setup: &Setup) -> Report {
     }
     hypotheses.extend(bounded_targets(setup));
     hypotheses.extend(laws::of_laws(setup));
-    if setup.agents.iter().any(|agent| agent.law.is_lagrangian()) {
+    if setup.agents.iter().any(|agent| laws::is_lagrangian(agent)) {
         hypotheses.push(gains(setup));
     }
     hypotheses.push(unlimited_torque(setup));
@@ -313,7 +313,7 @@ fn common_first_root(setup: &Setup) -> Hypothesis {
 }
 
 pub(crate) fn gains(setup: &Setup) -> Hypothesis {
-    let known = setup.agents.iter().filter(|agent| matches!(agent.law, Law::Known { .. })).count();
+    let known = setup.agents.iter().filter(|agent| agent.law.is::<Known>()).count();
     let parameters = match known {
         0 => "parameters are adapted".to_owned(),
         known if known == setup.agents.len() => "parameters are known".to_owned(),

@@ -1,6 +1,9 @@
 //! What the laws of Section V ask for, law by law.
 
-use forwardstep_sim::{AgentSetup, Law, ReferenceKind, Setup};
+use forwardstep_sim::{
+    Adaptive, AgentSetup, AttitudeLaw, ChainLaw, Known, Law, PositionOnlyLaw, ReferenceKind, Setup, TaskSpaceLaw,
+    ThrustLaw,
+};
 
 use crate::chains;
 use crate::single;
@@ -15,28 +18,37 @@ pub(crate) fn theorem(setup: &Setup) -> Option<(String, String)> {
         let promises = "all agents agree and come to rest: x_i − x_j → 0 and dx_i → 0".into();
         return Some((format!("no single theorem: {words} side by side"), promises));
     }
-    match (&first.law, &setup.reference) {
-        (Law::Adaptive { .. } | Law::Known { .. }, _) => None,
-        (Law::Thrust(law), _) => Some(vehicles::theorem(setup, law.design)),
-        (Law::Chain(_), _) => Some(chains::theorem(setup)),
-        (Law::PositionOnly { .. }, ReferenceKind::Tracking) => Some((
-            "Section V-A, (a8) with the reference dynamics (a9)".into(),
-            "x − x_d → 0 and dx − dx_d → 0 without a measured velocity".into(),
-        )),
-        (Law::TaskSpace(_), _) => Some((
-            "Theorem 6, (80) to (82) with the reference dynamics (76)".into(),
-            "x − x_d → 0 and dx − dx_d → 0 with uncertain lengths and parameters, without a measured dx".into(),
-        )),
-        (Law::Attitude(_), _) => Some((
-            "Theorem 7, (99) to (105) with the reference dynamics (97)".into(),
-            "the attitude and its rate reach those of the target, Δq_v → 0 and ω − ω_d → 0, without a measured ω"
-                .into(),
-        )),
-        (Law::PositionOnly { .. }, _) => Some((
-            format!("Remark 7, (a8) with (24) of order {} in z", first.roots_per_s.len()),
-            "all agents agree and come to rest without a measured velocity: x_i − x_j → 0 and dx_i → 0".into(),
-        )),
+    let law = &first.law;
+    if let Some(law) = law.downcast::<ThrustLaw>() {
+        return Some(vehicles::theorem(setup, law.design));
     }
+    if law.is::<ChainLaw>() {
+        return Some(chains::theorem(setup));
+    }
+    let (theorem, promises) = if law.is::<PositionOnlyLaw>() && setup.reference == ReferenceKind::Tracking {
+        (
+            "Section V-A, (a8) with the reference dynamics (a9)".into(),
+            "x − x_d → 0 and dx − dx_d → 0 without a measured velocity",
+        )
+    } else if law.is::<PositionOnlyLaw>() {
+        (
+            format!("Remark 7, (a8) with (24) of order {} in z", first.roots_per_s.len()),
+            "all agents agree and come to rest without a measured velocity: x_i − x_j → 0 and dx_i → 0",
+        )
+    } else if law.is::<TaskSpaceLaw>() {
+        (
+            "Theorem 6, (80) to (82) with the reference dynamics (76)".into(),
+            "x − x_d → 0 and dx − dx_d → 0 with uncertain lengths and parameters, without a measured dx",
+        )
+    } else if law.is::<AttitudeLaw>() {
+        (
+            "Theorem 7, (99) to (105) with the reference dynamics (97)".into(),
+            "the attitude and its rate reach those of the target, Δq_v → 0 and ω − ω_d → 0, without a measured ω",
+        )
+    } else {
+        return None;
+    };
+    Some((theorem, promises.into()))
 }
 
 /// What the laws themselves ask for.
@@ -53,13 +65,16 @@ pub(crate) fn of_laws(setup: &Setup) -> Vec<Hypothesis> {
 
 /// The laws of agents that differ in kind, in words; nothing where they do not, and where all are Lagrangian robots.
 fn mixture(setup: &Setup) -> Option<String> {
-    let kind = |agent: &AgentSetup| match &agent.law {
-        Law::Adaptive { .. } | Law::Known { .. } => "Theorem 3 with (24)",
-        Law::PositionOnly { .. } => "Remark 7",
-        Law::Thrust(law) => vehicles::source(law.design),
-        Law::TaskSpace(_) => "Theorem 6",
-        Law::Attitude(_) => "Theorem 7",
-        Law::Chain(_) => "Section IV",
+    let kind = |agent: &AgentSetup| {
+        let law = &agent.law;
+        match law.downcast::<ThrustLaw>() {
+            Some(law) => vehicles::source(law.design),
+            None if law.is::<PositionOnlyLaw>() => "Remark 7",
+            None if law.is::<TaskSpaceLaw>() => "Theorem 6",
+            None if law.is::<AttitudeLaw>() => "Theorem 7",
+            None if law.is::<ChainLaw>() => "Section IV",
+            None => "Theorem 3 with (24)",
+        }
     };
     if setup.reference == ReferenceKind::Tracking {
         return None;
@@ -81,25 +96,27 @@ fn mixed(setup: &Setup) -> Option<Hypothesis> {
     })
 }
 
-/// The agents with a law for which `is` holds.
-pub(crate) fn with(setup: &Setup, is: fn(&Law) -> bool) -> Vec<&AgentSetup> {
-    setup.agents.iter().filter(|agent| is(&agent.law)).collect()
+/// The agents with a law of this kind.
+pub(crate) fn with<L: Law>(setup: &Setup) -> Vec<(&AgentSetup, &L)> {
+    setup.agents.iter().filter_map(|agent| Some((agent, agent.law.downcast()?))).collect()
+}
+
+/// Whether (6)–(7) or (6) with known parameters controls the agent.
+pub(crate) fn is_lagrangian(agent: &AgentSetup) -> bool {
+    agent.law.is::<Adaptive>() || agent.law.is::<Known>()
 }
 
 fn position_only(setup: &Setup) -> Option<Hypothesis> {
-    let agents = with(setup, |law| matches!(law, Law::PositionOnly { .. }));
+    let agents = with::<PositionOnlyLaw>(setup);
     if agents.is_empty() {
         return None;
     }
     let requires = "k, λ_f and γ* are positive".into();
-    let wrong = agents.iter().find(|agent| match agent.law {
-        Law::PositionOnly { adaptation, estimate_start, .. } => {
-            adaptation == 0.0 && agent.robot.theta.first() != Some(&estimate_start)
-        }
-        _ => false,
-    });
+    let wrong = agents
+        .iter()
+        .find(|(agent, law)| law.adaptation == 0.0 && agent.robot.theta.first() != Some(&law.estimate_start));
     Some(match wrong {
-        Some(agent) => Hypothesis {
+        Some((agent, _)) => Hypothesis {
             requires,
             answer: Answer::NotCovered,
             because: format!("{} does not adapt its estimate, which is not the true mass", agent.name),

@@ -6,7 +6,7 @@ use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::laplacian;
 use forwardstep_sim::leader::{Following, FollowingDesign};
 use forwardstep_sim::schedule::{Schedule, Window};
-use forwardstep_sim::{Law, Setup};
+use forwardstep_sim::{Adaptive, AgentSetup, Setup};
 
 use crate::hypotheses::{external_torques, gains, seconds, unlimited_torque};
 use crate::links;
@@ -224,9 +224,10 @@ fn sign(following: &Following, setup: &Setup) -> Hypothesis {
 
 /// α and β are common by what a scenario can say; what is slow is said here.
 fn known_start(setup: &Setup, following: &Following) -> Hypothesis {
-    let zero =
-        |law: &Law| matches!(law, Law::Adaptive { estimate_start, .. } if estimate_start.iter().all(|x| *x == 0.0));
-    let slow = following.design == FollowingDesign::Differentiable && setup.agents.iter().any(|agent| zero(&agent.law));
+    let zero = |agent: &AgentSetup| {
+        agent.law.downcast().is_some_and(|law: &Adaptive| law.estimate_start.iter().all(|x| *x == 0.0))
+    };
+    let slow = following.design == FollowingDesign::Differentiable && setup.agents.iter().any(|agent| zero(agent));
     let because = if slow {
         "they belong to the design, not to an agent; note that (119) converges very slowly from an estimate of zero, since \
          its sign sees accelerations, which the estimated inertia scales"

@@ -12,12 +12,13 @@
 //! at all. A hand gives a torque that only the run knows.
 
 use forwardstep_core::Gain;
+use forwardstep_core::robot::PointMass;
 use forwardstep_sim::push::{Between, Course, Effect, Function, Push, Table};
-use forwardstep_sim::{AgentSetup, Law, RobotKind};
+use forwardstep_sim::{AgentSetup, Known};
 
 /// ∫ s dt over all time on one axis, if it is known before the run. `z_0` is z(0).
 pub(crate) fn error_integral(agent: &AgentSetup, axis: usize, z_0: f64) -> Option<f64> {
-    let Law::Known { damping } = &agent.law else { return None };
+    let Known { damping } = agent.law.downcast()?;
     if agent.enforce_limits {
         return None;
     }
@@ -25,7 +26,7 @@ pub(crate) fn error_integral(agent: &AgentSetup, axis: usize, z_0: f64) -> Optio
     if agent.pushes.is_empty() && follows(agent) {
         return Some(0.0);
     }
-    let (RobotKind::PointMass { .. }, [mass]) = (&agent.robot.kind, agent.robot.theta.as_slice()) else { return None };
+    let (true, [mass]) = (agent.robot.kind.is::<PointMass>(), agent.robot.theta.as_slice()) else { return None };
     let k = match damping {
         Gain::Number(k) => *k,
         Gain::Diagonal(diagonal) => *diagonal.get(axis)?,

@@ -1,8 +1,7 @@
 //! What digital control adds to the question whether a theorem applies.
 
-use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass, TwoVelocity};
-use forwardstep_core::{Gain, LengthError};
-use forwardstep_sim::{AgentSetup, Law, RobotKind, Setup, VelocitySensor};
+use forwardstep_core::Gain;
+use forwardstep_sim::{Adaptive, AgentSetup, DynamicsAt, Known, Setup, VelocitySensor};
 use nalgebra::{DMatrix, DVector};
 
 use crate::verdict::{Answer, Hypothesis};
@@ -63,7 +62,7 @@ pub fn sampled_adaptation(setup: &Setup) -> Option<SampledAdaptation> {
     let period_s = 1.0 / setup.control.as_ref()?.sample_hz;
     let dz = setup.following().map_or(0.0, |following| following.gain);
     let value = |(agent, own): (usize, &AgentSetup)| {
-        let Law::Adaptive { adaptation, .. } = &own.law else { return None };
+        let Adaptive { adaptation, .. } = own.law.downcast()?;
         let model = model(own, dz)?;
         let p = model.scale.len();
         // Γ = ω² diag(scale): one ω is multiplied in here, the other by `resolve`.
@@ -94,38 +93,27 @@ struct Model {
 
 /// `None` where the law is another; every entry of ż is `dz`.
 fn model(agent: &AgentSetup, dz: f64) -> Option<Model> {
-    if !agent.law.is_lagrangian() {
-        return None;
-    }
-    match &agent.robot.kind {
-        RobotKind::Tree(tree) => of_robot(&**tree, agent, dz).ok(),
-        RobotKind::PlanarArm => of_robot(&PlanarArm, agent, dz).ok(),
-        RobotKind::PointMass { dimension } => of_robot(&PointMass { dimension: *dimension }, agent, dz).ok(),
-        RobotKind::Vehicle { .. }
-        | RobotKind::Rotorcraft { .. }
-        | RobotKind::Spacecraft { .. }
-        | RobotKind::Chain(_) => None,
-    }
-}
-
-fn of_robot<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, dz: f64) -> Result<Model, LengthError> {
-    let (m, p) = (robot.dof(), robot.parameter_count());
-    let (q, dq, theta) = (&agent.start.q[..], &agent.start.dq[..], &agent.robot.theta[..]);
-    let (mut mass, mut regressor) = (vec![0.0; m * m], vec![0.0; m * p]);
-    robot.mass_matrix(&mut robot.scratch(), q, theta, &mut mass)?;
-    robot.regressor(&mut robot.scratch(), TwoVelocity { q, dq, z: dq, dz: &vec![dz; m] }, &mut regressor)?;
-    Ok(Model {
+    gain(agent)?;
+    let DynamicsAt { mass, regressor, adaptation_scale } =
+        agent.robot.kind.lagrangian()?.dynamics_at_start(agent, dz).ok()?;
+    let (m, p) = (agent.robot.axes.len(), adaptation_scale.len());
+    Some(Model {
         mass: DMatrix::from_row_slice(m, m, &mass),
         regressor: DMatrix::from_row_slice(m, p, &regressor),
-        scale: robot.adaptation_scale(q, theta),
+        scale: adaptation_scale,
     })
+}
+
+/// K as it was stated, of agents under (6)–(7).
+fn gain(agent: &AgentSetup) -> Option<&Gain> {
+    let adaptive = agent.law.downcast().map(|Adaptive { damping, .. }| damping);
+    adaptive.or(agent.law.downcast().map(|Known { damping }| damping))
 }
 
 /// K.
 fn damping(agent: &AgentSetup, model: &Model) -> Option<DMatrix<f64>> {
-    let (Law::Adaptive { damping, .. } | Law::Known { damping }) = &agent.law else { return None };
     let scale: Vec<f64> = model.mass.diagonal().iter().copied().collect();
-    dense(damping, scale.len(), &scale)
+    dense(gain(agent)?, scale.len(), &scale)
 }
 
 /// A gain with all its entries.

@@ -1,9 +1,11 @@
 //! Theorems 6 and 7: a tip with uncertain lengths, and an attitude without angular velocity.
 
+use std::sync::Arc;
+
 use forwardstep_core::plant::Spacecraft;
-use forwardstep_core::robot::tree::{TreeTip, Uncertain};
+use forwardstep_core::robot::tree::{Tree, TreeTip, Uncertain};
 use forwardstep_core::robot::{Posture, TipKinematics};
-use forwardstep_sim::{AgentSetup, Law, RobotKind, Setup, TaskSpaceLaw, TipSetup};
+use forwardstep_sim::{AgentSetup, AttitudeLaw, Setup, SpacecraftModel, TaskSpaceLaw, TipSetup};
 use nalgebra::DMatrix;
 
 use crate::laws::with;
@@ -18,8 +20,7 @@ const LEAST_NORM: f64 = 1e-6;
 /// Theorem 6, agent by agent.
 pub(crate) fn task_space(setup: &Setup) -> Vec<Hypothesis> {
     let mut hypotheses = Vec::new();
-    for agent in with(setup, |law| matches!(law, Law::TaskSpace(_))) {
-        let Law::TaskSpace(law) = &agent.law else { continue };
+    for (agent, law) in with::<TaskSpaceLaw>(setup) {
         if hypotheses.is_empty() {
             hypotheses.push(Hypothesis {
                 requires: "K*, K, Γ and Λ are symmetric positive definite, κ and α are positive".into(),
@@ -36,13 +37,13 @@ pub(crate) fn task_space(setup: &Setup) -> Vec<Hypothesis> {
 
 /// det Ĵ at the start.
 fn start(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<f64> {
-    match (&agent.robot.kind, &law.tip) {
-        (RobotKind::PlanarArm, TipSetup::Planar(tip)) => determinant(tip, agent, law),
-        (RobotKind::Tree(tree), TipSetup::Point { point, coordinates, uncertain }) => {
+    match &law.tip {
+        TipSetup::Planar(tip) => determinant(tip, agent, law),
+        TipSetup::Point { point, coordinates, uncertain } => {
+            let tree = agent.robot.kind.downcast::<Arc<Tree>>()?;
             let tip = TreeTip::new((**tree).clone(), point, coordinates, *uncertain).ok()?;
             determinant(&tip, agent, law)
         }
-        _ => None,
     }
 }
 
@@ -90,7 +91,7 @@ fn geometry(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<Hypothesis> {
 
 fn within_bounds(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<Hypothesis> {
     let bounds = law.bounds.as_ref()?;
-    let theta = law.tip.parameters(&agent.robot.kind)?;
+    let theta = law.tip.parameters(&*agent.robot.kind)?;
     let inside = |k: usize| {
         let (low, high) = (bounds.lower.get(k)?, bounds.upper.get(k)?);
         (*low <= theta[k] && theta[k] <= *high).then_some(())
@@ -110,7 +111,7 @@ fn within_bounds(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<Hypothesis> {
 /// Theorem 7, agent by agent.
 pub(crate) fn attitude(setup: &Setup) -> Vec<Hypothesis> {
     let mut hypotheses = Vec::new();
-    for agent in with(setup, |law| matches!(law, Law::Attitude(_))) {
+    for (agent, _) in with::<AttitudeLaw>(setup) {
         if hypotheses.is_empty() {
             hypotheses.push(Hypothesis {
                 requires: "K and Λ_f are symmetric positive definite, α₁ and α₂ are positive".into(),
@@ -127,14 +128,11 @@ pub(crate) fn attitude(setup: &Setup) -> Vec<Hypothesis> {
 /// h_I is given to the controller, not measured.
 fn momentum(agent: &AgentSetup) -> Hypothesis {
     let requires = format!("the inertia of {} and its angular momentum h_I are known and constant", agent.name);
-    let known = match &agent.robot.kind {
-        RobotKind::Spacecraft { inertia_kg_m2, wheels } => {
-            let start = [&agent.start.q[..], &agent.start.dq, &agent.start.rest].concat();
-            let plant = Spacecraft::new(*inertia_kg_m2, wheels.clone(), false).ok();
-            plant.and_then(|plant| plant.momentum_inertial(&start).ok())
-        }
-        _ => None,
-    };
+    let known = agent.robot.kind.downcast().and_then(|SpacecraftModel { inertia_kg_m2, wheels }| {
+        let start = [&agent.start.q[..], &agent.start.dq, &agent.start.rest].concat();
+        let plant = Spacecraft::new(*inertia_kg_m2, wheels.clone(), false).ok();
+        plant.and_then(|plant| plant.momentum_inertial(&start).ok())
+    });
     match known {
         Some([x, y, z]) => {
             let because = format!("h_I = [{x:.4}, {y:.4}, {z:.4}] N m s by the start, and nothing acts from outside");

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{AgentSetup, Law, ReferenceKind, Setup};
+use forwardstep_sim::{AgentSetup, ChainLaw, PositionOnlyLaw, ReferenceKind, Setup, ThrustLaw};
 
 use crate::hypotheses::{gains, names, unlimited_torque};
 use crate::laws;
@@ -23,7 +23,7 @@ pub(crate) fn check(setup: &Setup) -> Report {
     });
     let mut hypotheses = bounded_targets(setup);
     hypotheses.extend(laws::of_laws(setup));
-    if setup.agents.iter().any(|agent| agent.law.is_lagrangian()) {
+    if setup.agents.iter().any(|agent| laws::is_lagrangian(agent)) {
         hypotheses.push(gains(setup));
     }
     hypotheses.push(unlimited_torque(setup));
@@ -33,12 +33,14 @@ pub(crate) fn check(setup: &Setup) -> Report {
 
 /// How many derivatives of its target a law needs to be bounded.
 fn derivatives(agent: &AgentSetup) -> usize {
-    match &agent.law {
-        Law::PositionOnly { .. } => 3,
-        Law::Thrust(law) if law.design.order() == 2 => 3,
-        Law::Thrust(_) => 4,
-        Law::Chain(_) => agent.roots_per_s.len(),
-        _ => 2,
+    if agent.law.is::<PositionOnlyLaw>() {
+        3
+    } else if let Some(law) = agent.law.downcast::<ThrustLaw>() {
+        law.design.order() + 1
+    } else if agent.law.is::<ChainLaw>() {
+        agent.roots_per_s.len()
+    } else {
+        2
     }
 }
 

@@ -1,8 +1,7 @@
 //! What Section V-B asks for: vehicles with one thrust, and what the paper does not have: rotorcraft.
 
 use forwardstep_core::controller::Floor;
-use forwardstep_sim::vehicles::{ThrustKind, ThrustLaw};
-use forwardstep_sim::{AgentSetup, Law, RobotKind, Setup};
+use forwardstep_sim::{AgentSetup, RotorcraftModel, Setup, ThrustKind, ThrustLaw};
 
 use crate::verdict::{Answer, Hypothesis, rounded};
 
@@ -38,10 +37,7 @@ pub(crate) fn theorem(setup: &Setup, design: ThrustKind) -> (String, String) {
 
 /// Vehicles with their laws.
 fn flown(setup: &Setup) -> impl Iterator<Item = (&AgentSetup, &ThrustLaw)> {
-    setup.agents.iter().filter_map(|agent| match &agent.law {
-        Law::Thrust(law) => Some((agent, law)),
-        _ => None,
-    })
+    setup.agents.iter().filter_map(|agent| Some((agent, agent.law.downcast()?)))
 }
 
 /// What the control of vehicles asks for.
@@ -109,7 +105,7 @@ fn thrust(setup: &Setup) -> Hypothesis {
 }
 
 fn rates(setup: &Setup) -> Option<Hypothesis> {
-    let slowest = flown(setup).filter(|(agent, _)| matches!(agent.robot.kind, RobotKind::Rotorcraft { .. }));
+    let slowest = flown(setup).filter(|(agent, _)| agent.robot.kind.is::<RotorcraftModel>());
     let (agent, law) = slowest.min_by(|a, b| a.1.bandwidth_per_s.total_cmp(&b.1.bandwidth_per_s))?;
     let foreseen = match law.design {
         ThrustKind::Continuous => "its rate cannot be foreseen, so the body lags behind",
@@ -127,9 +123,9 @@ fn rates(setup: &Setup) -> Option<Hypothesis> {
 }
 
 fn rotors(setup: &Setup) -> Option<Hypothesis> {
-    let limited = flown(setup).find_map(|(agent, _)| match &agent.robot.kind {
-        RobotKind::Rotorcraft { rotors: Some(rotors), .. } => Some((agent, rotors.thrust)),
-        _ => None,
+    let limited = flown(setup).find_map(|(agent, _)| {
+        let RotorcraftModel { rotors, .. } = agent.robot.kind.downcast()?;
+        Some((agent, rotors.as_ref()?.thrust))
     });
     limited.map(|(agent, [least, most])| Hypothesis {
         requires: "every thrust and every torque can be had".into(),

@@ -4,6 +4,8 @@
 
 mod common;
 
+use std::sync::Arc;
+
 use common::{arm, column, edge, masses, noise, run, setup};
 use forwardstep_check::{Answer, NoPrediction, check, predict};
 use forwardstep_core::Gain;
@@ -13,7 +15,7 @@ use forwardstep_sim::formula::FormulaStep::{Add, Multiply, Number, Sin, Time};
 use forwardstep_sim::formula::{BoundedFormula, Formula};
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::{Exchange, Law, Outcome, ReferenceKind, Setup, Signal, TimeSpan};
+use forwardstep_sim::{Exchange, Known, Outcome, ReferenceKind, Setup, Signal, TimeSpan};
 
 /// A strongly connected triangle with different weights and delays, and a fourth that only listens.
 fn uneven() -> (Vec<Edge>, Vec<Delay>) {
@@ -96,7 +98,7 @@ fn torque_at_a_switch(reference: ReferenceKind, exchange: Exchange) -> f64 {
         setup((0..2).map(|i| arm(i, roots)).collect(), exchange, schedule, vec![Delay::Constant { s: 0.2 }], 3.1);
     setup.reference = reference;
     for agent in &mut setup.agents {
-        agent.law = Law::Known { damping: Gain::Number(8.0) };
+        agent.law = Arc::new(Known { damping: Gain::Number(8.0) });
     }
     setup.agents[0].start.q = vec![1.0, 0.5];
     setup.agents[1].start.q = vec![-0.6, 0.2];

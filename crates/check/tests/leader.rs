@@ -9,6 +9,7 @@ use common::{axis, edge};
 use forwardstep_check::{Answer, Report, check, sampled_adaptation};
 use forwardstep_core::Gain;
 use forwardstep_core::reference::Choice;
+use forwardstep_core::robot::PointMass;
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::formula::{Formula, FormulaStep};
 use forwardstep_sim::graph::Edge;
@@ -16,7 +17,7 @@ use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::{Path, Sinusoid, Spline, Trajectory};
 use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, Control, Exchange, Law, Network, ReferenceKind, RobotKind, RobotSetup, Setup, Solver,
+    Adaptive, AgentSetup, Axis, AxisUnit, Control, Exchange, Known, Network, ReferenceKind, RobotSetup, Setup, Solver,
     Start, TimeSpan,
 };
 
@@ -24,14 +25,14 @@ fn mass(index: usize) -> AgentSetup {
     AgentSetup {
         name: format!("mass-{index}"),
         robot: RobotSetup {
-            kind: RobotKind::PointMass { dimension: 1 },
+            kind: Arc::new(PointMass { dimension: 1 }),
             theta: vec![2.0],
             theta_names: vec!["mass".into()],
             axes: vec![Axis { unit: AxisUnit::Metre, ..axis("x") }],
         },
         roots_per_s: Vec::new(),
         manipulability: 0.0,
-        law: Law::Known { damping: Gain::Number(10.0) },
+        law: Arc::new(Known { damping: Gain::Number(10.0) }),
         target: None,
         start: Start { q: vec![index as f64], dq: vec![0.0], rest: Vec::new(), reference: Vec::new() },
         enforce_limits: false,
@@ -156,11 +157,11 @@ fn eq_held_adaptation_is_stable_as_long_as_its_number_is_below_two() {
             sensors: Default::default(),
             actuators: Default::default(),
         });
-        setup.agents[1].law = Law::Adaptive {
+        setup.agents[1].law = Arc::new(Adaptive {
             damping: Gain::Number(10.0),
             adaptation: Gain::Number(adaptation),
             estimate_start: vec![0.0],
-        };
+        });
         let found = sampled_adaptation(&setup).unwrap();
         assert_eq!(found.agent, 1);
         let (h, k, p, m) = (1.0 / sample_hz, 10.0, adaptation * gain * gain, 2.0);

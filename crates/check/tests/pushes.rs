@@ -4,22 +4,25 @@
 
 mod common;
 
+use forwardstep_sim::{Law, Robot};
+use std::sync::Arc;
+
 use common::{axis, column, edge, run, setup};
 use forwardstep_check::{Answer, NoPrediction, check, predict};
 use forwardstep_core::Gain;
 use forwardstep_core::reference::polynomial;
-use forwardstep_core::robot::{PlanarLinks, PlanarTip};
+use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip, PointMass};
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push, Table};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
-    AgentSetup, Exchange, Law, Method, Outcome, ReferenceKind, RobotKind, RobotSetup, Setup, Signal, Start,
+    Adaptive, AgentSetup, Exchange, Known, Method, Outcome, ReferenceKind, RobotSetup, Setup, Signal, Start,
 };
 
 const DAMPING: f64 = 5.0;
 
-fn agent(index: usize, roots_per_s: &[f64], kind: RobotKind, theta: Vec<f64>, law: Law) -> AgentSetup {
+fn agent(index: usize, roots_per_s: &[f64], kind: Arc<dyn Robot>, theta: Vec<f64>, law: Arc<dyn Law>) -> AgentSetup {
     let start = |k: f64| (12.9898 * (index as f64 + k) + 0.7).sin();
     AgentSetup {
         name: format!("agent-{}", index + 1),
@@ -44,14 +47,14 @@ fn agent(index: usize, roots_per_s: &[f64], kind: RobotKind, theta: Vec<f64>, la
     }
 }
 
-fn arm(index: usize, roots_per_s: &[f64], law: Law) -> AgentSetup {
+fn arm(index: usize, roots_per_s: &[f64], law: Arc<dyn Law>) -> AgentSetup {
     let links = PlanarLinks::uniform([1.0 + 0.2 * index as f64, 1.0], [1.0, 0.8]);
-    agent(index, roots_per_s, RobotKind::PlanarArm, links.theta().to_vec(), law)
+    agent(index, roots_per_s, Arc::new(PlanarArm), links.theta().to_vec(), law)
 }
 
 fn mass(index: usize, roots_per_s: &[f64]) -> AgentSetup {
-    let known = Law::Known { damping: Gain::Number(DAMPING) };
-    agent(index, roots_per_s, RobotKind::PointMass { dimension: 2 }, vec![1.0 + index as f64], known)
+    let known = Arc::new(Known { damping: Gain::Number(DAMPING) });
+    agent(index, roots_per_s, Arc::new(PointMass { dimension: 2 }), vec![1.0 + index as f64], known)
 }
 
 /// A ring with different weights and constant delays, one of which is none.
@@ -111,7 +114,7 @@ fn rough_handling() -> Vec<Push> {
 #[test]
 fn prop_without_lambda_no_push_moves_the_agreement() {
     let adaptive =
-        Law::Adaptive { damping: Gain::Number(8.0), adaptation: Gain::Number(10.0), estimate_start: vec![0.0; 5] };
+        Arc::new(Adaptive { damping: Gain::Number(8.0), adaptation: Gain::Number(10.0), estimate_start: vec![0.0; 5] });
     for exchange in [Exchange::Position, Exchange::PositionVelocity] {
         for order in 1..=3 {
             let roots = |i: usize| (0..order).map(|r| 1.2 + 0.8 * r as f64 + 0.1 * i as f64).collect::<Vec<_>>();
@@ -152,7 +155,7 @@ fn integral(values: &[f64], step_s: f64) -> f64 {
 #[test]
 fn eq_31_with_lambda_the_agreement_moves_by_the_integral_of_s() {
     // Arms with known parameters: s is not known before the run, but what it moved is known after it.
-    let known = Law::Known { damping: Gain::Number(8.0) };
+    let known = Arc::new(Known { damping: Gain::Number(8.0) });
     for (reference, exchange) in [
         (ReferenceKind::Consensus, Exchange::PositionVelocity),
         (ReferenceKind::Consensus, Exchange::Position),

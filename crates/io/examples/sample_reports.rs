@@ -5,10 +5,12 @@
 mod support;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
+use forwardstep_core::robot::PlanarArm;
 use forwardstep_io::output::{Goal, GoalOutcome, Options, RunFolder, write_run};
 use forwardstep_sim::recording::BreakdownCause;
-use forwardstep_sim::{Breakdown, Ending, Recording, RobotKind, Signal};
+use forwardstep_sim::{Breakdown, Ending, Recording, Signal};
 use support::{agent, outcome, record, setup, verdicts};
 
 fn folder(name: &str) -> RunFolder {
@@ -48,7 +50,7 @@ fn main() {
     write_run(&folder("crowd"), &record(&crowd, &many, &report), Options::default()).unwrap();
 
     let mut mixed = setup(vec![agent("<script>alert(1)</script>", 2, 5), agent("b & \"c\" 'd'", 3, 0)], 10.0, 0.01);
-    mixed.agents[1].robot.kind = RobotKind::PlanarArm;
+    mixed.agents[1].robot.kind = Arc::new(PlanarArm);
     let two = outcome(&mixed);
     let mut it = record(&mixed, &two, &report);
     it.title = "</title></script><script>document.title='gone'</script>";

@@ -6,13 +6,15 @@ mod support;
 use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 
+use forwardstep_core::robot::PlanarArm;
 use forwardstep_io::output::{
     Absence, Action, Disagreement, DisagreementSeries, Goal, GoalOutcome, LimitKind, Metrics, Options, OutputError,
     RunFolder, ending_sentence, names, write_run,
 };
 use forwardstep_sim::recording::{BreakdownCause, Column};
-use forwardstep_sim::{AxisUnit, Breakdown, Ending, Law, Outcome, Recording, RobotKind, Setup, Signal};
+use forwardstep_sim::{AxisUnit, Breakdown, Ending, Known, Outcome, Recording, Setup, Signal};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use support::{agent, outcome, record, setup, verdicts};
@@ -421,8 +423,8 @@ fn every_shape_of_run_is_written() {
     add(setup(arms(2, 32, 3), 1.0, 0.01), &|_| {});
     add(setup([arms(1, 2, 2), arms(1, 5, 0)].concat(), 1.0, 0.1), &|_| {});
     let mut known = setup(arms(2, 1, 2), 1.0, 0.1);
-    known.agents.iter_mut().for_each(|a| a.law = Law::Known { damping: forwardstep_core::Gain::Number(1.0) });
-    known.agents[0].robot.kind = RobotKind::PlanarArm;
+    known.agents.iter_mut().for_each(|a| a.law = Arc::new(Known { damping: forwardstep_core::Gain::Number(1.0) }));
+    known.agents[0].robot.kind = Arc::new(PlanarArm);
     add(known, &|o| o.recording.columns.retain(|c| c.signal != Signal::Estimate));
 
     let report = verdicts();

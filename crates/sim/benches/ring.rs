@@ -4,15 +4,16 @@
 //! against a run with a tolerance of 1e-10. `validation/peers/ring.sh` runs this beside the peer and prints ratios.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use forwardstep_core::Gain;
-use forwardstep_core::robot::PlanarLinks;
+use forwardstep_core::robot::{PlanarArm, PlanarLinks, PointMass};
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, Exchange, Law, Method, Network, Outcome, ReferenceKind, RobotKind, RobotSetup, Setup,
-    Signal, Solver, Start, TimeSpan, simulate,
+    Adaptive, AgentSetup, Axis, AxisUnit, Exchange, Known, Law, Method, Network, Outcome, ReferenceKind, Robot,
+    RobotSetup, Setup, Signal, Solver, Start, TimeSpan, simulate,
 };
 
 const END_S: f64 = 20.0;
@@ -34,15 +35,15 @@ fn ring(model: Model, n: usize, tolerance: f64) -> Setup {
     };
     let agent = |i: usize| {
         let position = (i as f64).sin();
-        let (kind, theta, m) = match model {
-            Model::Linear => (RobotKind::PointMass { dimension: 1 }, vec![1.0], 1),
-            Model::Arms => (RobotKind::PlanarArm, PlanarLinks::uniform([1.0, 1.0], [1.0, 1.0]).theta().to_vec(), 2),
+        let (kind, theta, m): (Arc<dyn Robot>, _, _) = match model {
+            Model::Linear => (Arc::new(PointMass { dimension: 1 }), vec![1.0], 1),
+            Model::Arms => (Arc::new(PlanarArm), PlanarLinks::uniform([1.0, 1.0], [1.0, 1.0]).theta().to_vec(), 2),
         };
         let damping = Gain::Number(8.0);
-        let law = match model {
-            Model::Linear => Law::Known { damping },
+        let law: Arc<dyn Law> = match model {
+            Model::Linear => Arc::new(Known { damping }),
             Model::Arms => {
-                Law::Adaptive { damping, adaptation: Gain::Number(10.0), estimate_start: vec![0.0; theta.len()] }
+                Arc::new(Adaptive { damping, adaptation: Gain::Number(10.0), estimate_start: vec![0.0; theta.len()] })
             }
         };
         AgentSetup {

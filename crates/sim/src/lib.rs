@@ -5,7 +5,7 @@
 //! [`network`]; [`leader`], [`setup`] and [`push`], the plain data of a run; the integrator with its history and break-points; the closed
 //! loop; [`recording`] and [`simulate`].
 
-pub mod chain;
+mod agents;
 mod closed_loop;
 pub mod coupling;
 pub mod delay;
@@ -19,16 +19,21 @@ pub mod recording;
 pub mod schedule;
 pub mod setup;
 mod simulate;
+pub mod system;
 pub mod topology;
 pub mod trajectory;
-pub mod vehicles;
 
-pub use chain::{ChainLaw, ChainModel, ChainStep};
-pub use closed_loop::{SetupError, validate};
+pub use agents::{
+    Adaptive, AttitudeLaw, ChainLaw, ChainModel, ChainStep, DynamicsAt, Estimate, Known, LagrangianRobot,
+    PositionOnlyLaw, RobotModel, RotorcraftModel, SpacecraftModel, TaskSpaceLaw, ThrustKind, ThrustLaw, TipSetup,
+    VehicleModel,
+};
+pub use closed_loop::{Assembly, Block, SetupError, validate};
 pub use network::Network;
 pub use recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal, Statistics};
 pub use setup::{
-    Actuators, AgentSetup, AttitudeLaw, Axis, AxisUnit, Control, Exchange, Law, Method, ReferenceKind, RobotKind,
-    RobotSetup, Sensors, Setup, Solver, Start, TaskSpaceLaw, TimeSpan, TipSetup, VelocitySensor,
+    Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Method, ReferenceKind, RobotSetup, Sensors, Setup,
+    Solver, Start, TimeSpan, VelocitySensor,
 };
 pub use simulate::{recorded_columns, simulate};
+pub use system::{Attachments, Interface, Law, ReferenceFamily, Robot};

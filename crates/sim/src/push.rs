@@ -9,7 +9,8 @@ use forwardstep_core::robot::tree::{Axes, LinkPoint};
 use thiserror::Error;
 
 use crate::formula::Formula;
-use crate::setup::{RobotKind, RobotSetup};
+use crate::setup::RobotSetup;
+use crate::system::Attachments;
 
 /// Something that acts on an agent for a while.
 #[derive(Clone, Debug, PartialEq)]
@@ -248,14 +249,14 @@ impl Push {
 
 impl Grip {
     fn check(&self, robot: &RobotSetup) -> Result<(), PushError> {
-        match (self, &robot.kind) {
-            (Grip::Link { point, .. }, RobotKind::Tree(tree)) => {
+        match (self, robot.kind.attachments()) {
+            (Grip::Link { point, .. }, Attachments::Links(tree)) => {
                 if let Some(body) = point.link.body.filter(|body| *body >= tree.joint_count()) {
                     return Err(PushError::NoSuchBody { body, bodies: tree.joint_count() });
                 }
                 point.at.iter().try_for_each(|value| finite(*value))
             }
-            (Grip::Tip(tip), RobotKind::PlanarArm) => tip.length_m.iter().try_for_each(|value| finite(*value)),
+            (Grip::Tip(tip), Attachments::PlanarTip) => tip.length_m.iter().try_for_each(|value| finite(*value)),
             _ => Err(PushError::Grip),
         }
     }

@@ -1,23 +1,12 @@
 //! Everything a run needs, as plain data: built by a scenario reader or by hand, checked when the closed loop is built.
 
-mod single;
-
 use std::sync::Arc;
 
-use forwardstep_core::Gain;
-use forwardstep_core::controller::{AttitudeTracking, Controller, PositionOnly, TaskSpace, Thrust, ThrustCascade};
-use forwardstep_core::plant::{Rotors, Wheels};
-use forwardstep_core::robot::tree::Tree;
-use forwardstep_core::robot::{PlanarArm, PlanarTip};
-
-use crate::chain::{ChainLaw, ChainModel};
 use crate::leader::{Following, FollowingDesign};
 use crate::network::Network;
 use crate::push::Push;
+use crate::system::{Interface, Law, ReferenceFamily, Robot};
 use crate::trajectory::Trajectory;
-use crate::vehicles::{ThrustKind, ThrustLaw};
-
-pub use single::{AttitudeLaw, TaskSpaceLaw, TipSetup};
 
 /// A network of agents and how long to watch it.
 #[derive(Clone, Debug)]
@@ -93,6 +82,17 @@ pub enum ReferenceKind {
 }
 
 impl ReferenceKind {
+    /// What leads the agents.
+    pub fn family(&self) -> ReferenceFamily {
+        match self {
+            ReferenceKind::Consensus => ReferenceFamily::Consensus,
+            ReferenceKind::PureIntegral => ReferenceFamily::PureIntegral,
+            ReferenceKind::Backstepping { .. } => ReferenceFamily::Backstepping,
+            ReferenceKind::Following(_) => ReferenceFamily::Leader,
+            ReferenceKind::Tracking => ReferenceFamily::Target,
+        }
+    }
+
     /// How many of z(0), ż(0), … an agent's start may give.
     pub fn free_derivatives(&self, agent: &AgentSetup) -> usize {
         match self {
@@ -141,7 +141,7 @@ pub struct AgentSetup {
     /// λ of Remark 4, 1/s^ℓ: how much the reference gives way to the motion; zero for not at all.
     pub manipulability: f64,
     /// Its tracking law.
-    pub law: Law,
+    pub law: Arc<dyn Law>,
     /// Under [`ReferenceKind::Tracking`] where it should be; otherwise its offset from where all agree, for laws that know
     /// offsets.
     pub target: Option<Trajectory>,
@@ -155,12 +155,27 @@ pub struct AgentSetup {
 }
 
 impl AgentSetup {
+    /// What its law can do beside its robot; `None` when it is made for another kind.
+    pub fn interface(&self) -> Option<Interface> {
+        self.law.interface(&self.robot)
+    }
+
+    /// Changes its law, if that is an `L`; whether it is.
+    pub fn change_law<L: Law + Clone>(&mut self, change: impl FnOnce(&mut L)) -> bool {
+        let Some(mut law) = self.law.downcast::<L>().cloned() else { return false };
+        change(&mut law);
+        self.law = Arc::new(law);
+        true
+    }
+
+    /// Whether its law estimates parameters.
+    pub fn estimates(&self) -> bool {
+        self.interface().is_some_and(|interface| interface.estimates)
+    }
+
     /// What it measures, in words. A law cannot read anything else: its inputs have no room for it.
     pub fn measures(&self) -> &'static [&'static str] {
-        match (&self.law, &self.robot.kind) {
-            (Law::Thrust(_), RobotKind::Rotorcraft { .. }) => ThrustCascade::MEASURES,
-            (law, _) => law.measures(),
-        }
+        self.interface().map_or(&[], |interface| interface.measures)
     }
 }
 
@@ -168,7 +183,7 @@ impl AgentSetup {
 #[derive(Clone, Debug)]
 pub struct RobotSetup {
     /// Geometry and kernels.
-    pub kind: RobotKind,
+    pub kind: Arc<dyn Robot>,
     /// The true ϑ.
     pub theta: Vec<f64>,
     /// A name for each entry of ϑ, for tables, for example `forearm_link.mass`.
@@ -180,80 +195,13 @@ pub struct RobotSetup {
 impl RobotSetup {
     /// Numbers of a velocity, which are those of a position but for a spacecraft.
     pub fn velocity_len(&self) -> usize {
-        match &self.kind {
-            RobotKind::Spacecraft { .. } => 3,
-            // The second state of a chain in feedback form is no velocity.
-            RobotKind::Chain(model) if !model.has_velocity() => 0,
-            _ => self.axes.len(),
-        }
+        self.kind.velocity_len(self.axes.len())
     }
 
     /// D: the true viscous damping of every axis, N m s/rad or N s/m; zero where there is none.
     pub fn viscous(&self) -> Vec<f64> {
-        let mut viscous = vec![0.0; self.axes.len()];
-        if let RobotKind::Tree(tree) = &self.kind {
-            // A tree's damping parameters close its ϑ, one per damped joint.
-            let damped = tree.damped_joints();
-            let first = self.theta.len().saturating_sub(damped.len());
-            for (joint, damping) in damped.iter().zip(&self.theta[first..]) {
-                if let Some(axis) = viscous.get_mut(*joint) {
-                    *axis = *damping;
-                }
-            }
-        }
-        viscous
-    }
-}
-
-/// The robots that can be simulated.
-#[derive(Clone, Debug)]
-pub enum RobotKind {
-    /// A fixed-base tree of rigid bodies.
-    Tree(Arc<Tree>),
-    /// The two-link planar arm in closed form.
-    PlanarArm,
-    /// A point mass in ℝᵐ.
-    PointMass {
-        /// m.
-        dimension: usize,
-    },
-    /// A chain of Section IV.
-    Chain(ChainModel),
-    /// (44): a vehicle in ℝ³ with one thrust, whose angular velocity obeys at once. ϑ is its mass; the rest of its start is
-    /// its attitude (q_v, q_o).
-    Vehicle {
-        /// g along the third axis, which points down, m/s².
-        gravity: f64,
-    },
-    /// The same as a rigid body that torques turn; the rest of its start is its attitude and its angular velocity.
-    Rotorcraft {
-        /// g, m/s².
-        gravity: f64,
-        /// J, kg m².
-        inertia: Gain,
-        /// Its rotors; without them every thrust and every torque can be had.
-        rotors: Option<Rotors>,
-    },
-    /// A spacecraft with reaction wheels. Its axes are the entries of a quaternion; the rest of its start holds the momenta of
-    /// the wheels, N m s.
-    Spacecraft {
-        /// M, kg m².
-        inertia_kg_m2: [[f64; 3]; 3],
-        /// How its torque is shared out, and what the wheels can do.
-        wheels: Wheels,
-    },
-}
-
-impl RobotKind {
-    /// Numbers in a start beside q and q̇.
-    pub fn rest_len(&self) -> usize {
-        match self {
-            RobotKind::Tree(_) | RobotKind::PlanarArm | RobotKind::PointMass { .. } => 0,
-            RobotKind::Vehicle { .. } => 4,
-            RobotKind::Rotorcraft { .. } => 7,
-            RobotKind::Spacecraft { wheels, .. } => wheels.count(),
-            RobotKind::Chain(model) => model.rest_len(),
-        }
+        let axes = self.axes.len();
+        self.kind.lagrangian().map_or_else(|| vec![0.0; axes], |robot| robot.viscous(&self.theta, axes))
     }
 }
 
@@ -281,101 +229,6 @@ pub enum AxisUnit {
     Metre,
     /// A pure number, as an entry of a quaternion is.
     One,
-}
-
-/// The law of one agent: (6)–(7), or one of those that Sections IV and V have for other systems.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Law {
-    /// τ = −K s + Y ϑ̂ with ϑ̂' = −Γ Yᵀ s.
-    Adaptive {
-        /// K; a [`Gain::Bandwidth`] is multiplied by diag M(q₀).
-        damping: Gain,
-        /// Γ; a [`Gain::Bandwidth`] ω gives ω² · [`forwardstep_core::robot::Lagrangian::adaptation_scale`].
-        adaptation: Gain,
-        /// ϑ̂(0).
-        estimate_start: Vec<f64>,
-    },
-    /// τ = −K s + Y ϑ with the true parameters.
-    Known {
-        /// K.
-        damping: Gain,
-    },
-    /// (a8) for a point mass, without velocity; see [`forwardstep_core::controller::PositionOnly`].
-    PositionOnly {
-        /// k, N s/m.
-        damping: f64,
-        /// λ_f, 1/s.
-        filter_per_s: f64,
-        /// γ*; zero to keep the estimate as it is.
-        adaptation: f64,
-        /// m̂(0), kg.
-        estimate_start: f64,
-    },
-    /// A law for a chain.
-    Chain(ChainLaw),
-    /// (46), (50) or (57) for vehicles with one thrust; see [`forwardstep_core::controller::Thrust`].
-    Thrust(ThrustLaw),
-    /// (80)–(82) for the tip of a robot, without its velocity.
-    TaskSpace(Box<TaskSpaceLaw>),
-    /// (97)–(105) for a spacecraft, without its angular velocity.
-    Attitude(Box<AttitudeLaw>),
-}
-
-impl Law {
-    /// Whether it is (6)–(7), which whole populations of Lagrangian robots share.
-    pub fn is_lagrangian(&self) -> bool {
-        matches!(self, Law::Adaptive { .. } | Law::Known { .. })
-    }
-
-    /// Whether it estimates parameters.
-    pub fn estimates(&self) -> bool {
-        match self {
-            Law::Adaptive { .. } => true,
-            Law::Known { .. } => false,
-            Law::PositionOnly { .. } => true,
-            Law::Chain(law) => law.estimates(),
-            Law::Thrust(law) => matches!(law.design, ThrustKind::Adaptive { .. }),
-            Law::TaskSpace(_) => true,
-            Law::Attitude(_) => false,
-        }
-    }
-
-    /// What it measures, in words, see [`AgentSetup::measures`].
-    fn measures(&self) -> &'static [&'static str] {
-        match self {
-            Law::Adaptive { .. } | Law::Known { .. } => &["position", "velocity"],
-            Law::PositionOnly { .. } => PositionOnly::MEASURES,
-            Law::Chain(law) => law.measures(),
-            Law::Thrust(_) => Thrust::MEASURES,
-            Law::TaskSpace(_) => TaskSpace::<PlanarArm, PlanarTip>::MEASURES,
-            Law::Attitude(_) => AttitudeTracking::MEASURES,
-        }
-    }
-
-    /// What it is called in messages.
-    pub fn words(&self) -> &'static str {
-        match self {
-            Law::Adaptive { .. } => "the adaptive law",
-            Law::Known { .. } => "the law with known parameters",
-            Law::PositionOnly { .. } => "the law without velocity",
-            Law::Chain(law) => law.words(),
-            Law::Thrust(_) => "the thrust law",
-            Law::TaskSpace(_) => "the law for a tip",
-            Law::Attitude(_) => "the law for an attitude",
-        }
-    }
-
-    /// What it is made for, in messages.
-    pub fn made_for(&self) -> &'static str {
-        match self {
-            Law::Adaptive { .. } | Law::Known { .. } => "Lagrangian robots",
-            Law::PositionOnly { .. } => "point masses",
-            Law::Chain(law) => law.made_for(),
-            Law::Thrust(_) => "vehicles and rotorcraft",
-            Law::TaskSpace(_) => "planar arms, and for robots from a URDF with a tip",
-            Law::Attitude(_) => "spacecraft",
-        }
-    }
 }
 
 /// Initial values of one agent.

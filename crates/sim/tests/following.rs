@@ -14,7 +14,7 @@ use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::leader::FollowingDesign;
 use forwardstep_sim::schedule::Schedule;
-use forwardstep_sim::{Law, Method, Outcome, ReferenceKind, Setup, Signal, simulate};
+use forwardstep_sim::{Adaptive, Method, Outcome, ReferenceKind, Setup, Signal, simulate};
 
 fn at_1_khz(mut setup: Setup) -> Setup {
     setup.time.record_every_s = 1e-3;
@@ -42,9 +42,9 @@ fn thm8_thm9_remark12_everybody_follows_and_no_sign_chatters() {
         let estimate = if design == FollowingDesign::Differentiable { 0.8 } else { 0.0 };
         let mut problem = arms(design, Choice::Implicit, estimate, 50.0);
         for agent in &mut problem.agents {
-            if let Law::Adaptive { damping, adaptation, .. } = &mut agent.law {
-                (*damping, *adaptation) = (Gain::Number(100.0), Gain::Number(50.0));
-            }
+            agent.change_law(|law: &mut Adaptive| {
+                (law.damping, law.adaptation) = (Gain::Number(100.0), Gain::Number(50.0));
+            });
         }
         let outcome = run(&problem);
         let error = peak(&outcome, Signal::Error, 0.95);
@@ -151,9 +151,9 @@ fn regress_chatter_does_not_lead_the_estimate_astray_at_1_khz() {
     for choice in [Choice::Implicit, Choice::Explicit] {
         let mut problem = sampled(arms(FollowingDesign::Continuous, choice, 0.0, 20.0), 1000.0);
         for agent in &mut problem.agents {
-            if let Law::Adaptive { damping, adaptation, .. } = &mut agent.law {
-                (*damping, *adaptation) = (Gain::Number(60.0), Gain::Number(50.0));
-            }
+            agent.change_law(|law: &mut Adaptive| {
+                (law.damping, law.adaptation) = (Gain::Number(60.0), Gain::Number(50.0));
+            });
         }
         let outcome = run(&problem);
         let error = peak(&outcome, Signal::Error, 0.9);

@@ -2,16 +2,17 @@
 #![allow(clippy::unwrap_used)]
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use forwardstep_core::Gain;
-use forwardstep_core::robot::{PlanarLinks, PlanarTip};
+use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip};
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::push::{Course, Effect, Function, Grip, Push};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
-    Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Law, Method, Network, ReferenceKind, RobotKind,
-    RobotSetup, Sensors, Setup, Solver, Start, TimeSpan, simulate,
+    Actuators, Adaptive, AgentSetup, Axis, AxisUnit, Control, Exchange, Method, Network, ReferenceKind, RobotSetup,
+    Sensors, Setup, Solver, Start, TimeSpan, simulate,
 };
 
 fn arm(index: usize, order: usize) -> AgentSetup {
@@ -30,19 +31,19 @@ fn arm(index: usize, order: usize) -> AgentSetup {
     AgentSetup {
         name: format!("arm-{}", index + 1),
         robot: RobotSetup {
-            kind: RobotKind::PlanarArm,
+            kind: Arc::new(PlanarArm),
             theta,
             theta_names: vec![String::new(); 5],
             axes: vec![axis("shoulder"), axis("elbow")],
         },
         roots_per_s: (0..order).map(|r| 1.0 + 0.7 * r as f64 + 0.1 * index as f64).collect(),
         manipulability: 0.0,
-        law: Law::Adaptive {
+        law: Arc::new(Adaptive {
             // One agent with a full matrix beside others with a diagonal.
             damping: if index == 1 { Gain::Matrix(vec![9.0, 1.0, 1.0, 7.0]) } else { Gain::Number(8.0 + index as f64) },
             adaptation: Gain::Number(10.0),
             estimate_start: vec![0.1 * index as f64; 5],
-        },
+        }),
         start: Start {
             q: vec![some(1), some(2)],
             dq: vec![0.3 * some(3), 0.3 * some(4)],

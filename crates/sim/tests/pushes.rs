@@ -9,21 +9,21 @@ use forwardstep_core::Gain;
 use forwardstep_core::robot::tree::{
     Axes, JointKind, LinkJoint, LinkPoint, LinkSpec, Placement, Tree, inertia_about_frame,
 };
-use forwardstep_core::robot::{PlanarLinks, PlanarTip};
+use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip, PointMass};
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::formula::{Formula, FormulaStep};
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push, PushError, Table};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, Ending, Exchange, Law, Method, Network, Outcome, ReferenceKind, RobotKind, RobotSetup,
-    Setup, SetupError, Signal, Solver, Start, TimeSpan, simulate,
+    Adaptive, AgentSetup, Axis, AxisUnit, Ending, Exchange, Known, Law, Method, Network, Outcome, ReferenceKind, Robot,
+    RobotSetup, Setup, SetupError, Signal, Solver, Start, TimeSpan, simulate,
 };
 
 const MASS: f64 = 2.0;
 const DAMPING: f64 = 6.0;
 
-fn agent(kind: RobotKind, theta: Vec<f64>, axes: usize, law: Law) -> AgentSetup {
+fn agent(kind: Arc<dyn Robot>, theta: Vec<f64>, axes: usize, law: Arc<dyn Law>) -> AgentSetup {
     let axis = |k: usize| Axis {
         name: format!("{k}"),
         unit: AxisUnit::Radian,
@@ -51,8 +51,8 @@ fn agent(kind: RobotKind, theta: Vec<f64>, axes: usize, law: Law) -> AgentSetup 
 
 /// A mass on a line whose parameters are known: m ṡ = −K s + τ_ext.
 fn mass(pushes: Vec<Push>) -> AgentSetup {
-    let law = Law::Known { damping: Gain::Number(DAMPING) };
-    AgentSetup { pushes, ..agent(RobotKind::PointMass { dimension: 1 }, vec![MASS], 1, law) }
+    let law = Arc::new(Known { damping: Gain::Number(DAMPING) });
+    AgentSetup { pushes, ..agent(Arc::new(PointMass { dimension: 1 }), vec![MASS], 1, law) }
 }
 
 fn alone(agents: Vec<AgentSetup>, end_s: f64) -> Setup {
@@ -200,8 +200,8 @@ fn steps_land_on_the_edges_of_a_pulse() {
 fn arm() -> AgentSetup {
     let links = PlanarLinks::uniform([1.2, 1.0], [1.0, 0.8]);
     let law =
-        Law::Adaptive { damping: Gain::Number(8.0), adaptation: Gain::Number(10.0), estimate_start: vec![0.0; 5] };
-    let mut arm = agent(RobotKind::PlanarArm, links.theta().to_vec(), 2, law);
+        Arc::new(Adaptive { damping: Gain::Number(8.0), adaptation: Gain::Number(10.0), estimate_start: vec![0.0; 5] });
+    let mut arm = agent(Arc::new(PlanarArm), links.theta().to_vec(), 2, law);
     arm.start.q = vec![0.4, -0.3];
     arm
 }
@@ -221,13 +221,13 @@ fn jointed() -> (AgentSetup, LinkPoint) {
         link(Some(1), [0.0, 0.0, 0.4], LinkJoint::Fixed),
     ];
     let assembled = Tree::assemble(&links, [0.0, 0.0, -9.81]).unwrap();
-    let law = Law::Adaptive {
+    let law = Arc::new(Adaptive {
         damping: Gain::Bandwidth(15.0),
         adaptation: Gain::Bandwidth(5.0),
         estimate_start: vec![0.0; assembled.theta.len()],
-    };
+    });
     let point = LinkPoint { link: assembled.anchors[2], at: [0.0, 0.1, 0.2] };
-    (agent(RobotKind::Tree(Arc::new(assembled.tree)), assembled.theta, 2, law), point)
+    (agent(Arc::new(Arc::new(assembled.tree)), assembled.theta, 2, law), point)
 }
 
 #[test]

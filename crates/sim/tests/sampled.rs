@@ -16,8 +16,8 @@ use forwardstep_core::robot::PlanarArm;
 use forwardstep_sim::delay::{Delay, Loss, PacketLink};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
-    Actuators, AgentSetup, Breakdown, BreakdownCause, Control, Ending, Exchange, Law, Method, Outcome, Sensors, Setup,
-    SetupError, Signal, VelocitySensor, simulate,
+    Actuators, Adaptive, AgentSetup, Breakdown, BreakdownCause, Control, Ending, Exchange, Known, Method, Outcome,
+    Sensors, Setup, SetupError, Signal, VelocitySensor, simulate,
 };
 
 fn run(setup: &Setup) -> Outcome {
@@ -81,7 +81,7 @@ fn regress_the_simulator_steps_the_agent_that_runs_on_a_robot() {
     let outcome = run(&setup);
 
     let agent = &setup.agents[0];
-    let Law::Adaptive { damping, adaptation, estimate_start } = &agent.law else { unreachable!() };
+    let Some(Adaptive { damping, adaptation, estimate_start }) = agent.law.downcast() else { unreachable!() };
     let law =
         SlotineLi { damping: damping.resolve(2, &[]).unwrap(), adaptation: Some(adaptation.resolve(5, &[]).unwrap()) };
     assert_eq!(setup.exchange, Exchange::PositionVelocity);
@@ -199,7 +199,7 @@ fn regress_packets_that_arrive_at_a_sample_are_heard_at_it() {
         digital.actuators.torque_limit = Some(vec![20.0, 20.0]);
         setup.control = Some(digital);
         for agent in &mut setup.agents {
-            agent.law = Law::Known { damping: Gain::Number(0.4) };
+            agent.law = Arc::new(Known { damping: Gain::Number(0.4) });
         }
         let latency_s = 2.0 / sample_hz;
         let link = PacketLink {

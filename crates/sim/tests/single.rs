@@ -5,6 +5,7 @@
 mod common;
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use common::single::{anthropomorphic, craft, half_a_turn, planar, targets};
 use common::{RTOL, assert_first_order, column, last, ledger_error, run, sampled, truth};
@@ -12,7 +13,7 @@ use forwardstep_core::Gain;
 use forwardstep_core::controller::ParameterBounds;
 use forwardstep_core::robot::tree::Uncertain;
 use forwardstep_sim::recording::{Breakdown, BreakdownCause};
-use forwardstep_sim::{Ending, Law, Outcome, Signal, simulate};
+use forwardstep_sim::{AttitudeLaw, Ending, Outcome, Signal, TaskSpaceLaw, simulate};
 
 /// By how much the books are out, and how much of V(0) was lost.
 fn ledger(outcome: &Outcome) -> (f64, f64) {
@@ -95,16 +96,20 @@ fn thm6_a_run_ends_when_an_aggressive_gain_drives_the_jacobian_to_singularity() 
 #[test]
 fn val_tips_and_spacecraft_agree_with_an_independent_solver() {
     let mut arm = planar(None, 0.3);
-    let Law::TaskSpace(law) = &mut arm.agents[0].law else { panic!() };
-    law.task_gain = Gain::Matrix(vec![20.0, 2.0, 2.0, 25.0]);
-    law.kinematic_adaptation = Some(Gain::Diagonal(vec![0.3, 0.4]));
+    arm.agents[0].law = Arc::new(TaskSpaceLaw {
+        task_gain: Gain::Matrix(vec![20.0, 2.0, 2.0, 25.0]),
+        kinematic_adaptation: Some(Gain::Diagonal(vec![0.3, 0.4])),
+        ..arm.agents[0].law.downcast::<TaskSpaceLaw>().unwrap().clone()
+    });
     let mut setups = vec![arm];
     // The fourth target goes through points of a table, whose curve is no formula.
     for target in targets().into_iter().take(3) {
         let mut craft = craft(half_a_turn([0.1, -0.05, 0.08]), target, 5.0);
-        let Law::Attitude(law) = &mut craft.agents[0].law else { panic!() };
-        law.damping = Gain::Diagonal(vec![3.0, 2.5, 2.0, 3.5]);
-        law.filter = Gain::Diagonal(vec![1.0, 1.2, 0.8, 1.1]);
+        craft.agents[0].law = Arc::new(AttitudeLaw {
+            damping: Gain::Diagonal(vec![3.0, 2.5, 2.0, 3.5]),
+            filter: Gain::Diagonal(vec![1.0, 1.2, 0.8, 1.1]),
+            ..craft.agents[0].law.downcast::<AttitudeLaw>().unwrap().clone()
+        });
         setups.push(craft);
     }
     let truths = truth::read(include_str!("../../../validation/single/single.json"));

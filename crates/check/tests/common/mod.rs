@@ -2,14 +2,15 @@
 #![allow(clippy::unwrap_used, dead_code, unreachable_pub, reason = "each test uses its own part")]
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use forwardstep_core::Gain;
-use forwardstep_core::robot::PlanarLinks;
+use forwardstep_core::robot::{PlanarArm, PlanarLinks, PointMass};
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, Ending, Exchange, Law, Method, Network, Outcome, ReferenceKind, RobotKind, RobotSetup,
+    Adaptive, AgentSetup, Axis, AxisUnit, Ending, Exchange, Known, Method, Network, Outcome, ReferenceKind, RobotSetup,
     Setup, Signal, Solver, Start, TimeSpan, simulate,
 };
 
@@ -23,14 +24,18 @@ pub fn arm(index: usize, roots_per_s: &[f64]) -> AgentSetup {
     AgentSetup {
         name: format!("arm-{}", index + 1),
         robot: RobotSetup {
-            kind: RobotKind::PlanarArm,
+            kind: Arc::new(PlanarArm),
             theta: links.theta().to_vec(),
             theta_names: vec![String::new(); 5],
             axes: vec![axis("shoulder"), axis("elbow")],
         },
         roots_per_s: roots_per_s.to_vec(),
         manipulability: 0.0,
-        law: Law::Adaptive { damping: Gain::Number(8.0), adaptation: Gain::Number(10.0), estimate_start: vec![0.0; 5] },
+        law: Arc::new(Adaptive {
+            damping: Gain::Number(8.0),
+            adaptation: Gain::Number(10.0),
+            estimate_start: vec![0.0; 5],
+        }),
         start: Start {
             q: vec![noise(index), noise(index + 10)],
             dq: vec![0.3 * noise(index + 20), 0.3 * noise(index + 30)],
@@ -79,10 +84,10 @@ pub fn masses(exchange: Exchange, order: usize, schedule: Schedule, delays: Vec<
     let agents = (0..5)
         .map(|i| {
             let mut agent = arm(i, &(0..order).map(|r| 1.0 + 0.7 * r as f64).collect::<Vec<_>>());
-            agent.robot.kind = RobotKind::PointMass { dimension: 2 };
+            agent.robot.kind = Arc::new(PointMass { dimension: 2 });
             agent.robot.theta = vec![1.0 + i as f64];
             agent.robot.theta_names = vec!["mass".into()];
-            agent.law = Law::Known { damping: Gain::Number(5.0) };
+            agent.law = Arc::new(Known { damping: Gain::Number(5.0) });
             agent
         })
         .collect();

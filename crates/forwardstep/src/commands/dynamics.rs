@@ -1,10 +1,12 @@
 //! The dynamics of a robot at a state, without friction and damping.
 
+use std::sync::Arc;
+
 use forwardstep::core::LengthError;
+use forwardstep::core::robot::tree::Tree;
 use forwardstep::core::robot::{Lagrangian, TwoVelocity};
 use forwardstep::io::UrdfRobot;
 use forwardstep::io::robot::{Dynamics, JointState};
-use forwardstep::sim::RobotKind;
 use thiserror::Error;
 
 /// Why there are no numbers.
@@ -40,7 +42,7 @@ impl DynamicsError {
 
 /// M, g, τ = M ż + C(q, q̇) z + g and the acceleration under τ.
 pub(crate) fn dynamics(robot: &UrdfRobot, state: &JointState) -> Result<Dynamics, DynamicsError> {
-    let RobotKind::Tree(tree) = &robot.robot.kind else { return Err(DynamicsError::NotATree) };
+    let Some(tree) = robot.robot.kind.downcast::<Arc<Tree>>() else { return Err(DynamicsError::NotATree) };
     let n = tree.joint_count();
     let mut theta = robot.robot.theta.clone();
     // Ten inertial parameters per body, then the damping.

@@ -1,7 +1,7 @@
 //! A run in a few numbers.
 
 use forwardstep_sim::recording::{Recording, Signal};
-use forwardstep_sim::setup::{RobotKind, Setup};
+use forwardstep_sim::{Setup, SpacecraftModel};
 use serde::{Deserialize, Serialize};
 
 use super::disagreement::greater;
@@ -232,7 +232,7 @@ fn limits_reached(table: &Table<'_>) -> Vec<LimitReached> {
                 found.extend(beyond(table.t_s, values, range, place));
             }
         }
-        if let RobotKind::Spacecraft { wheels, .. } = &setup.robot.kind {
+        if let Some(SpacecraftModel { wheels, .. }) = setup.robot.kind.downcast() {
             for (axis, wheel) in wheels.list().iter().enumerate() {
                 for (kind, signal, limit) in [
                     (LimitKind::WheelTorque, Signal::WheelTorque, wheel.torque_limit_n_m),

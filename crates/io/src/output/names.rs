@@ -5,8 +5,9 @@
 
 use std::collections::HashSet;
 
+use forwardstep_core::robot::PointMass;
 use forwardstep_sim::recording::{Recording, Signal};
-use forwardstep_sim::setup::{AxisUnit, Law, ReferenceKind, RobotKind, Setup};
+use forwardstep_sim::{AttitudeLaw, AxisUnit, ChainModel, ReferenceKind, RotorcraftModel, Setup, TaskSpaceLaw};
 
 /// The name of an agent; a number when the setup has no such agent.
 pub fn agent_name(setup: &Setup, agent: usize) -> String {
@@ -17,7 +18,7 @@ pub fn agent_name(setup: &Setup, agent: usize) -> String {
 pub fn axis_name(setup: &Setup, agent: usize, axis: usize) -> String {
     let robot = setup.agents.get(agent).map(|a| &a.robot);
     match robot {
-        Some(robot) if !matches!(robot.kind, RobotKind::PointMass { .. } | RobotKind::Chain(_)) => {
+        Some(robot) if !robot.kind.is::<PointMass>() && !robot.kind.is::<ChainModel>() => {
             robot.axes.get(axis).map(|a| a.name.clone())
         }
         _ => None,
@@ -69,8 +70,8 @@ pub fn parameter_name(setup: &Setup, agent: usize, index: usize) -> String {
 /// What an entry of a signal is called; nothing for signals with a single entry.
 pub fn entry_name(setup: &Setup, agent: usize, signal: Signal, entry: usize) -> Option<String> {
     let number = || (entry + 1).to_string();
-    let law = setup.agents.get(agent).map(|agent| &agent.law);
-    match (signal, law) {
+    let tip = setup.agents.get(agent).and_then(|agent| agent.law.downcast::<TaskSpaceLaw>());
+    match (signal, tip) {
         (
             Signal::Lyapunov
             | Signal::Dissipation
@@ -84,12 +85,10 @@ pub fn entry_name(setup: &Setup, agent: usize, signal: Signal, entry: usize) -> 
         (Signal::Attitude, _) => Some(["x", "y", "z", "o"].get(entry).map_or_else(number, |name| (*name).to_owned())),
         (Signal::Estimate, _) => Some(parameter_name(setup, agent, entry)),
         (Signal::WheelTorque | Signal::WheelMomentum, _) => Some(number()),
-        (Signal::Error | Signal::TaskPosition, Some(Law::TaskSpace(law))) => {
+        (Signal::Error | Signal::TaskPosition, Some(law)) => {
             Some(law.coordinate_name(entry).map_or_else(number, str::to_owned))
         }
-        (Signal::KinematicEstimate, Some(Law::TaskSpace(law))) => {
-            Some(law.kinematic_names.get(entry).cloned().unwrap_or_else(number))
-        }
+        (Signal::KinematicEstimate, Some(law)) => Some(law.kinematic_names.get(entry).cloned().unwrap_or_else(number)),
         _ => Some(axis_name(setup, agent, entry)),
     }
 }
@@ -129,7 +128,7 @@ pub fn axis_unit(setup: &Setup, agent: usize, axis: usize) -> Option<AxisUnit> {
 
 /// Whether the torques of an agent turn it, while its axes are lengths.
 fn turns(setup: &Setup, agent: usize) -> bool {
-    setup.agents.get(agent).is_some_and(|agent| matches!(agent.robot.kind, RobotKind::Rotorcraft { .. }))
+    setup.agents.get(agent).is_some_and(|agent| agent.robot.kind.is::<RotorcraftModel>())
 }
 
 /// What is to vanish: distances from targets, or between agents.
@@ -163,10 +162,10 @@ pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String 
         Some(AxisUnit::Metre) => "m",
         _ => "rad",
     };
-    let law = setup.agents.get(agent).map(|agent| &agent.law);
+    let own = setup.agents.get(agent);
     match signal {
-        Signal::Error if matches!(law, Some(Law::TaskSpace(_))) => "m".into(),
-        Signal::Position | Signal::Error if matches!(law, Some(Law::Attitude(_))) => "1".into(),
+        Signal::Error if own.is_some_and(|own| own.law.is::<TaskSpaceLaw>()) => "m".into(),
+        Signal::Position | Signal::Error if own.is_some_and(|own| own.law.is::<AttitudeLaw>()) => "1".into(),
         Signal::ReferenceAttitude => "1".into(),
         Signal::FilterRate => "J^0.5".into(),
         Signal::Angle => "rad".into(),

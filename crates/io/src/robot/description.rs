@@ -1,6 +1,6 @@
 //! What there is to say about a robot, for people and as JSON.
 
-use forwardstep_sim::{AxisUnit, RobotKind, RobotSetup};
+use forwardstep_sim::AxisUnit;
 use serde::Serialize;
 
 use crate::urdf::{MotionKind, UrdfRobot};
@@ -61,7 +61,7 @@ impl RobotDescription {
     /// Describes `robot`.
     pub fn new(robot: &UrdfRobot) -> Self {
         let theta = &robot.robot.theta;
-        let damping = damping(&robot.robot);
+        let damping = robot.robot.viscous();
         let kinds = robot.kinds.iter().zip(&robot.robot.axes).zip(damping);
         let joints = kinds.map(|((kind, axis), damping)| {
             let (unit, effort_unit) = match axis.unit {
@@ -131,18 +131,6 @@ impl Dynamics {
     pub fn to_json(&self) -> String {
         to_json(self)
     }
-}
-
-/// The damping of every degree of freedom; in ϑ it stands after the inertias, for those that have some.
-fn damping(robot: &RobotSetup) -> Vec<f64> {
-    let count = robot.axes.len();
-    let mut damping = vec![0.0; count];
-    if let RobotKind::Tree(tree) = &robot.kind {
-        for (joint, value) in tree.damped_joints().iter().zip(robot.theta.iter().skip(10 * count)) {
-            damping[*joint] = *value;
-        }
-    }
-    damping
 }
 
 /// Texts, lists and numbers always have a JSON.

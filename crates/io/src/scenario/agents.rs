@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use forwardstep_core::robot::PlanarTip;
 use forwardstep_core::robot::tree::Anchor;
-use forwardstep_sim::{AgentSetup, Law, RobotKind, RobotSetup};
+use forwardstep_sim::{AgentSetup, RobotSetup, SpacecraftModel, TaskSpaceLaw};
 
 use super::at::At;
 use super::fault::{Fault, count, fault, filled, positive};
@@ -112,7 +112,7 @@ pub(super) fn agents(
             let common = file.start.as_ref().map(|file| Shared { file, index: index + k, of });
             let law = law(entry.law.as_ref().or(file.law.as_ref()), name, robot, &body)?;
             let mut axes = axis_names(robot);
-            if let Law::TaskSpace(tip) = &law {
+            if let Some(tip) = law.downcast::<TaskSpaceLaw>() {
                 // It is the tip that follows.
                 let names = (0..axes.len()).filter_map(|axis| tip.coordinate_name(axis));
                 axes = names.map(String::from).collect();
@@ -120,7 +120,7 @@ pub(super) fn agents(
             let owner = Owner { name, axes: &axes, end_s };
             let target = entry.target.as_ref().map(|file| target(file, &owner, folder)).transpose()?;
             let mut start = start(Starter { name, robot, order: free_derivatives }, own, common)?;
-            if let (RobotKind::Spacecraft { .. }, Some(target), Some(place)) = (&robot.kind, &target, &entry.target) {
+            if let (true, Some(target), Some(place)) = (robot.kind.is::<SpacecraftModel>(), &target, &entry.target) {
                 points_somewhere(place, target, end_s)?;
                 short_way(&mut start, target);
             }
@@ -185,7 +185,7 @@ fn same_axes(first: &Population<'_>, other: &Population<'_>) -> Result<(), Fault
 fn limits(entry: &AgentFile, names: &[String], read: &ReadRobot) -> Result<bool, Fault> {
     let Some(place @ At { value: true, .. }) = &entry.enforce_limits else { return Ok(false) };
     // The limits of a spacecraft are those of its wheels.
-    if let RobotKind::Spacecraft { .. } = read.robot.kind {
+    if read.robot.kind.is::<SpacecraftModel>() {
         return Ok(true);
     }
     match read.robot.axes.iter().find(|axis| axis.effort_limit.is_none()) {

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use forwardstep_core::controller::Immersion;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::{CascadeError, CascadeTerms, Formulas};
-use forwardstep_sim::chain::{ChainLaw, ChainModel, ChainStep, Estimate};
-use forwardstep_sim::{AxisUnit, Law, RobotKind, RobotSetup};
+use forwardstep_sim::{AxisUnit, Law, RobotSetup};
+use forwardstep_sim::{ChainLaw, ChainModel, ChainStep, Estimate};
 
 use super::at::At;
 use super::chain_file::{
@@ -57,7 +57,7 @@ fn robot(model: ChainModel, parameters: &At<Vec<At<f64>>>) -> Result<RobotSetup,
     let need = model.parameters();
     length("parameters", &parameters.span, parameters.value.len(), need, "regressor")?;
     Ok(RobotSetup {
-        kind: RobotKind::Chain(model),
+        kind: Arc::new(model),
         theta: values(&parameters.value),
         theta_names: (1..=need).map(|k| format!("theta{k}")).collect(),
         axes: vec![axis("x", AxisUnit::Metre)],
@@ -124,8 +124,8 @@ fn equations(file: &At<Vec<At<Vec<At<String>>>>>) -> Result<Vec<Vec<Expression>>
 
 /// The model of an agent that a law for chains is for.
 fn model<'a>(robot: &'a RobotSetup, agent: &str, law: &'static str, is_cascade: bool) -> Result<&'a ChainModel, Fault> {
-    match &robot.kind {
-        RobotKind::Chain(model) if matches!(model, ChainModel::Cascade(_)) == is_cascade => Ok(model),
+    match robot.kind.downcast() {
+        Some(model) if matches!(model, ChainModel::Cascade(_)) == is_cascade => Ok(model),
         _ => {
             let made_for = if is_cascade {
                 "`strict_feedback` and `pure_feedback`, chains with unknown parameters in every equation"
@@ -160,24 +160,28 @@ fn adapted(
 }
 
 /// `linearising`.
-pub(super) fn linearising(file: &LinearisingFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
+pub(super) fn linearising(file: &LinearisingFile, agent: &str, robot: &RobotSetup) -> Result<Arc<dyn Law>, Fault> {
     model(robot, agent, "linearising", false)?;
     let gain_per_s = positive_or("gain_per_s", &file.gain_per_s, GAIN)?;
     let floor = positive_or("floor", &file.floor, FLOOR)?;
-    Ok(Law::Chain(ChainLaw { step: ChainStep::Linearising { gain_per_s }, floor }))
+    Ok(Arc::new(ChainLaw { step: ChainStep::Linearising { gain_per_s }, floor }))
 }
 
 /// `linear_adaptive`.
-pub(super) fn linear_adaptive(file: &LinearAdaptiveFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
+pub(super) fn linear_adaptive(
+    file: &LinearAdaptiveFile,
+    agent: &str,
+    robot: &RobotSetup,
+) -> Result<Arc<dyn Law>, Fault> {
     model(robot, agent, "linear_adaptive", false)?;
     let gain_per_s = positive_or("gain_per_s", &file.gain_per_s, GAIN)?;
     let estimate = adapted(file.adaptation_gain.as_ref(), file.estimate_start.as_ref(), agent, robot)?;
     let floor = positive_or("floor", &file.floor, FLOOR)?;
-    Ok(Law::Chain(ChainLaw { step: ChainStep::Adaptive { gain_per_s, estimate }, floor }))
+    Ok(Arc::new(ChainLaw { step: ChainStep::Adaptive { gain_per_s, estimate }, floor }))
 }
 
 /// `immersion`.
-pub(super) fn immersion(file: &ImmersionFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
+pub(super) fn immersion(file: &ImmersionFile, agent: &str, robot: &RobotSetup) -> Result<Arc<dyn Law>, Fault> {
     let ChainModel::Derivatives(terms) = model(robot, agent, "immersion", false)? else {
         return Err(Fault::new(SystemProblem::Antiderivatives { agent: agent.to_owned() }));
     };
@@ -196,7 +200,7 @@ pub(super) fn immersion(file: &ImmersionFile, agent: &str, robot: &RobotSetup) -
     let gain_per_s = positive_or("gain_per_s", &file.gain_per_s, GAIN)?;
     let estimate = adapted(file.adaptation_gain.as_ref(), file.estimate_start.as_ref(), agent, robot)?;
     let floor = positive_or("floor", &file.floor, FLOOR)?;
-    Ok(Law::Chain(ChainLaw { step: ChainStep::Immersion { gain_per_s, estimate, antiderivatives }, floor }))
+    Ok(Arc::new(ChainLaw { step: ChainStep::Immersion { gain_per_s, estimate, antiderivatives }, floor }))
 }
 
 fn derivatives_of(terms: &Formulas) -> usize {
@@ -204,10 +208,14 @@ fn derivatives_of(terms: &Formulas) -> usize {
 }
 
 /// `adaptive_backstepping`.
-pub(super) fn backstepping(file: &AdaptiveBacksteppingFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
+pub(super) fn backstepping(
+    file: &AdaptiveBacksteppingFile,
+    agent: &str,
+    robot: &RobotSetup,
+) -> Result<Arc<dyn Law>, Fault> {
     let order = model(robot, agent, "adaptive_backstepping", true)?.order();
     let gains_per_s = each("gains_per_s", file.gains_per_s.as_ref(), agent, order)?;
     let estimate = adapted(file.adaptation_gain.as_ref(), file.estimate_start.as_ref(), agent, robot)?;
     let floor = positive_or("floor", &file.floor, FLOOR)?;
-    Ok(Law::Chain(ChainLaw { step: ChainStep::Backstepping { gains_per_s, estimate }, floor }))
+    Ok(Arc::new(ChainLaw { step: ChainStep::Backstepping { gains_per_s, estimate }, floor }))
 }

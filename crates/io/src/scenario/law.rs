@@ -1,7 +1,11 @@
 //! `law` of an agent → [`Law`].
 
+use std::sync::Arc;
+
+use forwardstep_core::robot::PointMass;
+use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::{Gain, GainError};
-use forwardstep_sim::{ChainModel, Law, RobotKind, RobotSetup};
+use forwardstep_sim::{Adaptive, ChainModel, Known, Law, PositionOnlyLaw, RobotSetup, SpacecraftModel};
 
 use super::agents::Body;
 use super::at::At;
@@ -29,7 +33,12 @@ const ADAPTATION_GAIN: f64 = 10.0;
 const FILTER_PER_S: f64 = 10.0;
 
 /// Builds the law of `agent`; without a file, the usual one for its robot with default gains.
-pub(super) fn law(file: Option<&At<LawFile>>, agent: &str, robot: &RobotSetup, body: &Body) -> Result<Law, Fault> {
+pub(super) fn law(
+    file: Option<&At<LawFile>>,
+    agent: &str,
+    robot: &RobotSetup,
+    body: &Body,
+) -> Result<Arc<dyn Law>, Fault> {
     match file {
         None => build(&usual(robot), agent, robot, body),
         Some(file) => build(&file.value, agent, robot, body).map_err(|fault| fault.at(&file.span)),
@@ -37,38 +46,38 @@ pub(super) fn law(file: Option<&At<LawFile>>, agent: &str, robot: &RobotSetup, b
 }
 
 fn usual(robot: &RobotSetup) -> LawFile {
-    match &robot.kind {
-        RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. } => LawFile::Thrust(ThrustFile::default()),
-        RobotKind::Spacecraft { .. } => LawFile::Attitude(AttitudeFile::default()),
-        RobotKind::Chain(ChainModel::Derivatives(_)) => LawFile::LinearAdaptive(LinearAdaptiveFile::default()),
-        RobotKind::Chain(ChainModel::Cascade(_)) => LawFile::AdaptiveBackstepping(AdaptiveBacksteppingFile::default()),
-        RobotKind::Tree(_) | RobotKind::PlanarArm | RobotKind::PointMass { .. } => {
-            LawFile::Adaptive(AdaptiveFile::default())
-        }
+    let kind = &robot.kind;
+    match kind.downcast() {
+        Some(ChainModel::Derivatives(_)) => LawFile::LinearAdaptive(LinearAdaptiveFile::default()),
+        Some(ChainModel::Cascade(_)) => LawFile::AdaptiveBackstepping(AdaptiveBacksteppingFile::default()),
+        None if kind.is::<SpacecraftModel>() => LawFile::Attitude(AttitudeFile::default()),
+        None if kind.lagrangian().is_none() => LawFile::Thrust(ThrustFile::default()),
+        None => LawFile::Adaptive(AdaptiveFile::default()),
     }
 }
 
 /// A law beside a robot that it is not made for.
 pub(super) fn of_another(law: &'static str, made_for: &'static str, agent: &str, robot: &RobotSetup) -> Fault {
-    let laws = match &robot.kind {
-        RobotKind::Tree(_) | RobotKind::PlanarArm => "`adaptive`, `known` and `task_space`",
-        RobotKind::PointMass { .. } => "`adaptive`, `known` and `position_only`",
-        RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. } => "`thrust`",
-        RobotKind::Spacecraft { .. } => "`attitude`",
-        RobotKind::Chain(ChainModel::Derivatives(_)) => "`linearising`, `linear_adaptive` and `immersion`",
-        RobotKind::Chain(ChainModel::Cascade(_)) => "`adaptive_backstepping`",
+    let kind = &robot.kind;
+    let laws = match kind.downcast() {
+        Some(ChainModel::Derivatives(_)) => "`linearising`, `linear_adaptive` and `immersion`",
+        Some(ChainModel::Cascade(_)) => "`adaptive_backstepping`",
+        None if kind.is::<SpacecraftModel>() => "`attitude`",
+        None if kind.is::<PointMass>() => "`adaptive`, `known` and `position_only`",
+        None if kind.lagrangian().is_none() => "`thrust`",
+        None => "`adaptive`, `known` and `task_space`",
     };
     Fault::new(SystemProblem::LawOfAnother { agent: agent.to_owned(), law, made_for, laws })
 }
 
-fn build(file: &LawFile, agent: &str, robot: &RobotSetup, body: &Body) -> Result<Law, Fault> {
+fn build(file: &LawFile, agent: &str, robot: &RobotSetup, body: &Body) -> Result<Arc<dyn Law>, Fault> {
     match file {
-        LawFile::Known(_) | LawFile::Adaptive(_) if !is_lagrangian(robot) => {
+        LawFile::Known(_) | LawFile::Adaptive(_) if robot.kind.lagrangian().is_none() => {
             let law = if let LawFile::Known(_) = file { "known" } else { "adaptive" };
             Err(of_another(law, "arms and point masses", agent, robot))
         }
         LawFile::Known(KnownFile { damping }) => {
-            Ok(Law::Known { damping: self::damping(damping.as_ref(), agent, robot)? })
+            Ok(Arc::new(Known { damping: self::damping(damping.as_ref(), agent, robot)? }))
         }
         LawFile::PositionOnly(file) => position_only(file, agent, robot),
         LawFile::Thrust(file) => vehicle::thrust(file, agent, robot),
@@ -78,26 +87,26 @@ fn build(file: &LawFile, agent: &str, robot: &RobotSetup, body: &Body) -> Result
         LawFile::LinearAdaptive(file) => chain::linear_adaptive(file, agent, robot),
         LawFile::Immersion(file) => chain::immersion(file, agent, robot),
         LawFile::AdaptiveBackstepping(file) => chain::backstepping(file, agent, robot),
-        LawFile::Adaptive(file) => Ok(Law::Adaptive {
+        LawFile::Adaptive(file) => Ok(Arc::new(Adaptive {
             damping: damping(file.damping.as_ref(), agent, robot)?,
             adaptation: adaptation(file.adaptation_gain.as_ref(), agent, robot)?,
             estimate_start: estimate(file.estimate_start.as_ref(), agent, robot)?,
-        }),
+        })),
     }
 }
 
 /// (a8), with gains that suit a mass of about a kilogram.
-fn position_only(file: &PositionOnlyFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
+fn position_only(file: &PositionOnlyFile, agent: &str, robot: &RobotSetup) -> Result<Arc<dyn Law>, Fault> {
     let PositionOnlyFile { damping, filter_per_s, adaptation_gain, estimate_start_kg } = file;
-    if !matches!(robot.kind, RobotKind::PointMass { .. }) {
+    if !robot.kind.is::<PointMass>() {
         return Err(of_another("position_only", "point masses", agent, robot));
     }
-    Ok(Law::PositionOnly {
+    Ok(Arc::new(PositionOnlyLaw {
         damping: positive_or("damping", damping, DAMPING_GAIN)?,
         filter_per_s: positive_or("filter_per_s", filter_per_s, FILTER_PER_S)?,
         adaptation: not_negative_or("adaptation_gain", adaptation_gain, ADAPTATION_GAIN)?,
         estimate_start: estimate_start_kg.as_ref().map_or(0.0, |start| start.value),
-    })
+    }))
 }
 
 pub(super) fn damping(file: Option<&DampingFile>, agent: &str, robot: &RobotSetup) -> Result<Gain, Fault> {
@@ -122,12 +131,8 @@ pub(super) fn adaptation(file: Option<&At<GainOrBandwidth>>, agent: &str, robot:
     }
 }
 
-fn is_lagrangian(robot: &RobotSetup) -> bool {
-    matches!(robot.kind, RobotKind::Tree(_) | RobotKind::PlanarArm | RobotKind::PointMass { .. })
-}
-
 fn is_tree(robot: &RobotSetup) -> bool {
-    matches!(robot.kind, RobotKind::Tree(_))
+    robot.kind.is::<Arc<Tree>>()
 }
 
 /// A gain without a bandwidth, or the usual number.

@@ -88,7 +88,7 @@ use std::sync::Arc;
 
 use forwardstep_sim::leader::Following;
 use forwardstep_sim::{
-    AgentSetup, Exchange, Law, Method, ReferenceKind, Setup, Solver, TimeSpan, recorded_columns, validate,
+    Adaptive, AgentSetup, Exchange, Known, Method, ReferenceKind, Setup, Solver, TimeSpan, recorded_columns, validate,
 };
 use miette::Diagnostic;
 use serde::Deserialize;
@@ -254,7 +254,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
         messages_fit(&setup, &file.sample_hz)?;
     }
     notices.extend(Notice::coarse_sampling(&setup));
-    let fleet = |agent: &AgentSetup| agent.law.is_lagrangian() && agent.target.is_none();
+    let fleet = |agent: &AgentSetup| agent.law.is::<Adaptive>() || agent.law.is::<Known>();
     let agrees = setup.reference != ReferenceKind::Tracking && setup.following().is_none();
     let columns = if agrees && setup.agents.iter().all(fleet) {
         validate(&setup).map_err(|error| refused(&file, error))?;
@@ -406,10 +406,7 @@ fn messages_fit(setup: &Setup, sample_hz: &At<f64>) -> Result<(), Fault> {
 /// if it is pushed.
 fn columns(agent: &AgentSetup) -> usize {
     let per_axis = 4 + agent.roots_per_s.len().max(2) + usize::from(!agent.pushes.is_empty());
-    let estimates = match agent.law {
-        Law::Adaptive { .. } => agent.robot.theta.len(),
-        _ => 0,
-    };
+    let estimates = if agent.law.is::<Adaptive>() { agent.robot.theta.len() } else { 0 };
     per_axis * agent.robot.axes.len() + estimates + 2
 }
 

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use forwardstep_core::robot::tree::{Axes, LinkPoint};
 use forwardstep_sim::formula::Formula;
 use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push, Table};
-use forwardstep_sim::{AgentSetup, AxisUnit, RobotKind, SetupError};
+use forwardstep_sim::{AgentSetup, Attachments, AxisUnit, SetupError};
 
 use super::agents::{Agents, Body};
 use super::at::At;
@@ -79,7 +79,7 @@ fn who(on: &At<Vec<At<String>>>, read: &Agents) -> Result<Vec<usize>, Fault> {
         };
         for member in members {
             let agent = &read.agents[member];
-            if !agent.law.is_lagrangian() {
+            if !agent.interface().is_some_and(|interface| interface.pushed) {
                 let error = SetupError::NotPushed { agent: agent.name.clone(), law: agent.law.words() };
                 return Err(fault(name, ScenarioProblem::Setup(error)));
             }
@@ -173,8 +173,8 @@ impl Reader<'_, '_> {
         instead: &'static str,
     ) -> Result<Grip, Fault> {
         let agent = self.name();
-        match (&self.agent.robot.kind, self.body.tip) {
-            (RobotKind::PlanarArm, Some(tip)) => {
+        match (self.agent.robot.kind.attachments(), self.body.tip) {
+            (Attachments::PlanarTip, Some(tip)) => {
                 let tip_only = |key| PushProblem::TipOnly { agent: agent.clone(), key };
                 match (link, at_m, axes) {
                     (Some(link), ..) => Err(fault(link, tip_only("link"))),
@@ -183,7 +183,7 @@ impl Reader<'_, '_> {
                     _ => Ok(Grip::Tip(tip)),
                 }
             }
-            (RobotKind::Tree(_), _) => {
+            (Attachments::Links(_), _) => {
                 let links = &self.body.links;
                 let Some(name) = link else {
                     return Err(Fault::new(PushProblem::WhichLink { agent, links: links.len() }));
@@ -202,7 +202,7 @@ impl Reader<'_, '_> {
                 let at = at_m.map_or([0.0; 3], |at| at.value);
                 Ok(Grip::Link { point: LinkPoint { link: *anchor, at }, axes })
             }
-            _ => Err(Fault::new(PushProblem::NoLinks { agent, instead })),
+            (Attachments::Axes | Attachments::PlanarTip, _) => Err(Fault::new(PushProblem::NoLinks { agent, instead })),
         }
     }
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use forwardstep_core::controller::ChainError;
-use forwardstep_sim::SetupError;
+use forwardstep_sim::{ReferenceFamily, SetupError};
 
 use super::agents::names;
 use super::at::At;
@@ -129,7 +129,10 @@ pub(super) fn advice(error: &SetupError) -> Option<String> {
             "write `exchange = \"position\"` in `reference.consensus`, or leave `coupling` out".to_owned()
         }
         SetupError::SendsPositionOnly { .. } => "write `exchange = \"position\"`".to_owned(),
-        SetupError::ReferenceOfLaw { .. } => "write `reference.consensus` with `exchange = \"position\"`".to_owned(),
+        SetupError::ReferenceOfLaw { follows, .. } if follows.contains(&ReferenceFamily::Consensus) => {
+            "write `reference.consensus` with `exchange = \"position\"`".to_owned()
+        }
+        SetupError::ReferenceOfLaw { .. } => "write `reference.tracking`, and leave `network` out".to_owned(),
         SetupError::NotTracking { .. } => {
             "write `reference.consensus`; laws that track are `position_only`, `task_space`, `attitude` and those of chains".to_owned()
         }

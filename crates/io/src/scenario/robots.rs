@@ -1,10 +1,11 @@
 //! `robot` of an agent → [`RobotSetup`].
 
 use std::rc::Rc;
+use std::sync::Arc;
 
-use forwardstep_core::robot::PlanarLinks;
 use forwardstep_core::robot::tree::Anchor;
-use forwardstep_sim::{Axis, AxisUnit, RobotKind, RobotSetup};
+use forwardstep_core::robot::{PlanarArm, PlanarLinks, PointMass};
+use forwardstep_sim::{Axis, AxisUnit, RobotSetup};
 
 use super::ScenarioError;
 use super::at::At;
@@ -157,7 +158,7 @@ pub(super) fn planar_robot(links: &PlanarLinks) -> Result<RobotSetup, Fault> {
         return Err(Fault::new(ScenarioProblem::MassMatrix));
     }
     Ok(RobotSetup {
-        kind: RobotKind::PlanarArm,
+        kind: Arc::new(PlanarArm),
         theta: theta.to_vec(),
         theta_names: [
             "inertia.both_links",
@@ -179,7 +180,7 @@ fn point_mass(file: &PointMassFile) -> Result<RobotSetup, Fault> {
         _ => axis(&format!("x{}", k + 1), AxisUnit::Metre),
     };
     Ok(RobotSetup {
-        kind: RobotKind::PointMass { dimension },
+        kind: Arc::new(PointMass { dimension }),
         theta: vec![positive("mass_kg", &file.mass_kg)?],
         theta_names: vec!["mass".into()],
         axes: (0..dimension).map(name).collect(),

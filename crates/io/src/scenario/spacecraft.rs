@@ -1,10 +1,12 @@
 //! Spacecraft: `robot.spacecraft`, `start.spacecraft` and `law.attitude`.
 
+use std::sync::Arc;
+
 use forwardstep_core::Gain;
 use forwardstep_core::attitude::{IDENTITY, Quaternion, difference};
 use forwardstep_core::plant::{Spacecraft, SpacecraftError, Wheel, Wheels};
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{AttitudeLaw, AxisUnit, Law, RobotKind, RobotSetup, Start};
+use forwardstep_sim::{AttitudeLaw, AxisUnit, Law, RobotSetup, SpacecraftModel, Start};
 
 use super::at::At;
 use super::attitude::{attitude as attitude_of, quaternion, turn};
@@ -51,7 +53,7 @@ pub(super) fn spacecraft(file: &SpacecraftFile) -> Result<RobotSetup, Fault> {
     Spacecraft::new(inertia_kg_m2, wheels.clone(), false)
         .map_err(|error| fault(place, SystemProblem::Spacecraft(error)))?;
     Ok(RobotSetup {
-        kind: RobotKind::Spacecraft { inertia_kg_m2, wheels },
+        kind: Arc::new(SpacecraftModel { inertia_kg_m2, wheels }),
         theta: Vec::new(),
         theta_names: Vec::new(),
         axes: ["x", "y", "z", "o"].map(|name| axis(name, AxisUnit::One)).to_vec(),
@@ -144,16 +146,16 @@ pub(super) fn short_way(start: &mut Start, target: &Trajectory) {
 }
 
 /// Builds (97)–(105).
-pub(super) fn attitude(file: &AttitudeFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
-    if !matches!(robot.kind, RobotKind::Spacecraft { .. }) {
+pub(super) fn attitude(file: &AttitudeFile, agent: &str, robot: &RobotSetup) -> Result<Arc<dyn Law>, Fault> {
+    if !robot.kind.is::<SpacecraftModel>() {
         return Err(of_another("attitude", "spacecraft", agent, robot));
     }
-    Ok(Law::Attitude(Box::new(AttitudeLaw {
+    Ok(Arc::new(AttitudeLaw {
         alpha: [
             positive_or("error_gain_per_s2", &file.error_gain_per_s2, ERROR_GAIN_PER_S2)?,
             positive_or("rate_gain_per_s", &file.rate_gain_per_s, RATE_GAIN_PER_S)?,
         ],
         filter: gain_or("filter_gain_per_s", &file.filter_gain_per_s, FILTER_GAIN_PER_S, agent, 4)?,
         damping: gain_or("damping", &file.damping, DAMPING, agent, 4)?,
-    })))
+    }))
 }

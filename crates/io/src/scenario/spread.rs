@@ -1,7 +1,10 @@
 //! `spread` of a population → agents whose robots differ.
 
+use std::sync::Arc;
+
+use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::robot::{PlanarLinks, PlanarTip};
-use forwardstep_sim::{RobotKind, RobotSetup};
+use forwardstep_sim::{RobotSetup, SpacecraftModel};
 
 use super::fault::{Fault, between, fault, seed};
 use super::file::{AgentFile, PlanarArmFile, RobotFile};
@@ -35,14 +38,15 @@ pub(super) fn spread(entry: &AgentFile, read: &RobotSetup, index: usize, agent: 
         RobotFile::Spacecraft(_) => {
             let mut robot = read.clone();
             let [factor] = factors(1)?[..] else { return Ok(robot) };
-            if let RobotKind::Spacecraft { inertia_kg_m2, .. } = &mut robot.kind {
-                *inertia_kg_m2 = inertia_kg_m2.map(|row| row.map(|entry| factor * entry));
+            if let Some(SpacecraftModel { inertia_kg_m2, wheels }) = read.kind.downcast() {
+                let inertia_kg_m2 = inertia_kg_m2.map(|row| row.map(|entry| factor * entry));
+                robot.kind = Arc::new(SpacecraftModel { inertia_kg_m2, wheels: wheels.clone() });
             }
             Ok(robot)
         }
         RobotFile::Urdf(_) => {
             let mut robot = read.clone();
-            let RobotKind::Tree(tree) = &read.kind else { return Ok(robot) };
+            let Some(tree) = read.kind.downcast::<Arc<Tree>>() else { return Ok(robot) };
             // Ten parameters per body come first; they scale together, and dampings stay.
             let bodies = robot.theta.chunks_exact_mut(10).zip(factors(read.axes.len())?);
             bodies.for_each(|(body, factor)| body.iter_mut().for_each(|entry| *entry *= factor));

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use forwardstep_sim::{AxisUnit, ChainModel, RobotKind, RobotSetup, Start};
+use forwardstep_sim::{AxisUnit, ChainModel, Robot, RobotSetup, RotorcraftModel, SpacecraftModel, Start, VehicleModel};
 
 use super::at::At;
 use super::fault::{Fault, fault, length, seed, values};
@@ -41,7 +41,7 @@ pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<
     use AxisUnit::{Metre, Radian};
     let tables = || [own, common].into_iter().flatten();
     own.map_or(Ok(()), |own| agent.all_counts(&own.file.value))?;
-    if let RobotKind::Spacecraft { wheels, .. } = &agent.robot.kind {
+    if let Some(SpacecraftModel { wheels, .. }) = agent.robot.kind.downcast() {
         return spacecraft::start(tables().map(|table| &table.file.value), agent.name, wheels);
     }
     let quantity = |stream, keys: fn(&StartFile) -> [Key<'_>; 3]| {
@@ -66,12 +66,14 @@ pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<
             ("velocity", None, &file.velocity),
         ]
     })?;
-    let rest =
-        match (&agent.robot.kind, tables().find_map(|table| Some((table, table.file.value.higher_states.as_ref()?)))) {
-            (RobotKind::Chain(_), None) => vec![0.0; agent.length(Stream::Higher)],
-            (_, Some((table, values))) => agent.vector("higher_states", values, table, Stream::Higher)?,
-            _ => vehicle::rest(agent.robot, tables().map(|table| &table.file.value))?,
-        };
+    let rest = match (
+        agent.robot.kind.is::<ChainModel>(),
+        tables().find_map(|table| Some((table, table.file.value.higher_states.as_ref()?))),
+    ) {
+        (true, None) => vec![0.0; agent.length(Stream::Higher)],
+        (_, Some((table, values))) => agent.vector("higher_states", values, table, Stream::Higher)?,
+        _ => vehicle::rest(agent.robot, tables().map(|table| &table.file.value))?,
+    };
     let mut reference = Vec::new();
     if let Some((table, state)) = tables().find_map(|table| Some((table, table.file.value.reference.as_ref()?))) {
         let derivatives = &state.value.derivatives;
@@ -93,12 +95,9 @@ impl Starter<'_> {
     /// Refuses what an agent's own table says in vain. (The one of all may speak to others.)
     fn all_counts(&self, own: &StartFile) -> Result<(), Fault> {
         let kind = &self.robot.kind;
-        let (craft, turns) = match kind {
-            RobotKind::Spacecraft { .. } => (true, true),
-            RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. } => (false, true),
-            _ => (false, false),
-        };
-        let spins = craft || matches!(kind, RobotKind::Rotorcraft { .. });
+        let craft = kind.is::<SpacecraftModel>();
+        let spins = craft || kind.is::<RotorcraftModel>();
+        let turns = spins || kind.is::<VehicleModel>();
         let moves = !craft && self.length(Stream::Velocity) > 0;
         let chain = self.length(Stream::Higher) > 0;
         let span = |values: &Option<At<StartValues>>| values.as_ref().map(|values| values.span.clone());
@@ -126,20 +125,20 @@ impl Starter<'_> {
 
     /// Numbers in one of its quantities.
     fn length(&self, stream: Stream) -> usize {
-        match (&self.robot.kind, stream) {
-            (RobotKind::Chain(chain), Stream::Velocity) if !chain.has_velocity() => 0,
-            (RobotKind::Chain(chain), Stream::Higher) => chain.rest_len(),
-            (_, Stream::Higher) => 0,
+        match (self.robot.kind.downcast::<ChainModel>(), stream) {
+            (Some(chain), Stream::Velocity) if !chain.has_velocity() => 0,
+            (Some(chain), Stream::Higher) => chain.rest_len(),
+            (None, Stream::Higher) => 0,
             _ => self.robot.axes.len(),
         }
     }
 
     /// What z follows, at the start.
     fn led(&self, q: &[f64], dq: &[f64], rest: &[f64]) -> Vec<f64> {
-        match &self.robot.kind {
-            RobotKind::Chain(ChainModel::Cascade(_)) => q.to_vec(),
-            RobotKind::Chain(_) => [q, dq, rest].concat().last().map(|top| vec![*top]).unwrap_or_default(),
-            _ => dq.to_vec(),
+        match self.robot.kind.downcast() {
+            Some(ChainModel::Cascade(_)) => q.to_vec(),
+            Some(ChainModel::Derivatives(_)) => [q, dq, rest].concat().last().map(|top| vec![*top]).unwrap_or_default(),
+            None => dq.to_vec(),
         }
     }
 

@@ -1,10 +1,12 @@
-//! `law.task_space` → [`Law::TaskSpace`].
+//! `law.task_space` → [`TaskSpaceLaw`].
+
+use std::sync::Arc;
 
 use forwardstep_core::Gain;
 use forwardstep_core::controller::ParameterBounds;
 use forwardstep_core::robot::TipKinematics;
 use forwardstep_core::robot::tree::{LinkPoint, TipError, Tree, TreeTip, Uncertain};
-use forwardstep_sim::{Law, RobotKind, RobotSetup, TaskSpaceLaw, TipSetup};
+use forwardstep_sim::{Attachments, Law, RobotSetup, TaskSpaceLaw, TipSetup};
 
 use super::agents::Body;
 use super::at::At;
@@ -26,10 +28,15 @@ const MARGIN_M: f64 = 0.01;
 const DETERMINANT_FLOOR: f64 = 0.01;
 
 /// Builds the law of `agent`, which can be held at `body`.
-pub(super) fn task_space(file: &TaskSpaceFile, agent: &str, robot: &RobotSetup, body: &Body) -> Result<Law, Fault> {
+pub(super) fn task_space(
+    file: &TaskSpaceFile,
+    agent: &str,
+    robot: &RobotSetup,
+    body: &Body,
+) -> Result<Arc<dyn Law>, Fault> {
     let (tip, theta, kinematic_names) = tip(file, agent, robot, body)?;
     let p = theta.len();
-    let is_tree = matches!(robot.kind, RobotKind::Tree(_));
+    let is_tree = robot.kind.is::<Arc<Tree>>();
     let damping = match &file.damping {
         None if !is_tree => Gain::Number(DAMPING),
         given => damping(given.as_ref(), agent, robot)?,
@@ -48,7 +55,7 @@ pub(super) fn task_space(file: &TaskSpaceFile, agent: &str, robot: &RobotSetup, 
         Some(file) => known_or_given("kinematic_start.given", file, agent, &theta)?,
     };
     let floor = file.determinant_floor.as_ref();
-    Ok(Law::TaskSpace(Box::new(TaskSpaceLaw {
+    Ok(Arc::new(TaskSpaceLaw {
         tip,
         kinematic_names,
         damping,
@@ -62,7 +69,7 @@ pub(super) fn task_space(file: &TaskSpaceFile, agent: &str, robot: &RobotSetup, 
         bounds,
         determinant_floor: floor
             .map_or(Ok(DETERMINANT_FLOOR), |floor| between("determinant_floor", floor, 0.0, 0.999))?,
-    })))
+    }))
 }
 
 /// The tip with its true θ and the names of its entries.
@@ -72,16 +79,18 @@ fn tip(
     robot: &RobotSetup,
     body: &Body,
 ) -> Result<(TipSetup, Vec<f64>, Vec<String>), Fault> {
-    match (&robot.kind, &body.tip, &file.tip) {
-        (RobotKind::PlanarArm, Some(tip), None) => {
+    match (robot.kind.attachments(), &body.tip, &file.tip) {
+        (Attachments::PlanarTip, Some(tip), None) => {
             Ok((TipSetup::Planar(*tip), tip.length_m.to_vec(), tip.parameter_names()))
         }
-        (RobotKind::PlanarArm, _, Some(place)) => Err(fault(place, SystemProblem::TipOfPlanarArm)),
-        (RobotKind::Tree(tree), _, Some(place)) => of_tree(&place.value, agent, tree, body).and_then(|(setup, tip)| {
-            let tip = tip.map_err(|error| no_tip(place, robot, error))?;
-            Ok((setup, tip.parameters(), tip.parameter_names()))
-        }),
-        (RobotKind::Tree(_), _, None) => Err(Fault::new(SystemProblem::NoTip)),
+        (Attachments::PlanarTip, _, Some(place)) => Err(fault(place, SystemProblem::TipOfPlanarArm)),
+        (Attachments::Links(tree), _, Some(place)) => {
+            of_tree(&place.value, agent, tree, body).and_then(|(setup, tip)| {
+                let tip = tip.map_err(|error| no_tip(place, robot, error))?;
+                Ok((setup, tip.parameters(), tip.parameter_names()))
+            })
+        }
+        (Attachments::Links(_), _, None) => Err(Fault::new(SystemProblem::NoTip)),
         _ => Err(of_another("task_space", "planar arms and robots from a URDF", agent, robot)),
     }
 }

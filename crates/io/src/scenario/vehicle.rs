@@ -1,10 +1,11 @@
 //! Vehicles with one thrust: `robot.vehicle`, `robot.rotorcraft`, their starts and `law.thrust`.
 
+use std::sync::Arc;
+
 use forwardstep_core::attitude::IDENTITY;
 use forwardstep_core::controller::{Floor, Yaw};
 use forwardstep_core::plant::Rotors;
-use forwardstep_sim::vehicles::{ThrustKind, ThrustLaw};
-use forwardstep_sim::{AxisUnit, Law, RobotKind, RobotSetup};
+use forwardstep_sim::{AxisUnit, Law, Robot, RobotSetup, RotorcraftModel, ThrustKind, ThrustLaw, VehicleModel};
 
 use super::at::At;
 use super::attitude::attitude;
@@ -30,19 +31,19 @@ const FLOOR: f64 = 0.1;
 
 /// Builds a vehicle whose angular velocity obeys at once.
 pub(super) fn vehicle(file: &VehicleFile) -> Result<RobotSetup, Fault> {
-    let kind = RobotKind::Vehicle { gravity: positive_or("gravity_m_s2", &file.gravity_m_s2, GRAVITY_M_S2)? };
-    Ok(robot(kind, positive("mass_kg", &file.mass_kg)?))
+    let model = VehicleModel { gravity: positive_or("gravity_m_s2", &file.gravity_m_s2, GRAVITY_M_S2)? };
+    Ok(robot(model, positive("mass_kg", &file.mass_kg)?))
 }
 
 /// Builds a rotorcraft.
 pub(super) fn rotorcraft(file: &RotorcraftFile) -> Result<RobotSetup, Fault> {
     let place = &file.inertia_kg_m2;
-    let kind = RobotKind::Rotorcraft {
+    let model = RotorcraftModel {
         gravity: positive_or("gravity_m_s2", &file.gravity_m_s2, GRAVITY_M_S2)?,
         inertia: gain("inertia_kg_m2", &place.value, place, "rotorcraft", 3)?,
         rotors: file.rotors.as_ref().map(|rotors| self::rotors(&rotors.value)).transpose()?,
     };
-    Ok(robot(kind, positive("mass_kg", &file.mass_kg)?))
+    Ok(robot(model, positive("mass_kg", &file.mass_kg)?))
 }
 
 fn rotors(file: &RotorsFile) -> Result<Rotors, Fault> {
@@ -59,9 +60,9 @@ fn rotors(file: &RotorsFile) -> Result<Rotors, Fault> {
     })
 }
 
-fn robot(kind: RobotKind, mass: f64) -> RobotSetup {
+fn robot(model: impl Robot, mass: f64) -> RobotSetup {
     RobotSetup {
-        kind,
+        kind: Arc::new(model),
         theta: vec![mass],
         theta_names: vec!["mass".into()],
         axes: ["x", "y", "z"].map(|name| axis(name, AxisUnit::Metre)).to_vec(),
@@ -74,14 +75,13 @@ pub(super) fn rest<'a>(
     robot: &RobotSetup,
     tables: impl Iterator<Item = &'a StartFile> + Clone,
 ) -> Result<Vec<f64>, Fault> {
-    let mut rest = match robot.kind {
-        RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. } => {
-            let given = tables.clone().find_map(|table| table.attitude.as_ref());
-            given.map_or(Ok(IDENTITY), attitude)?.to_vec()
-        }
-        _ => return Ok(Vec::new()),
-    };
-    if let RobotKind::Rotorcraft { .. } = robot.kind {
+    let turns = robot.kind.is::<RotorcraftModel>();
+    if !turns && !robot.kind.is::<VehicleModel>() {
+        return Ok(Vec::new());
+    }
+    let given = tables.clone().find_map(|table| table.attitude.as_ref());
+    let mut rest = given.map_or(Ok(IDENTITY), attitude)?.to_vec();
+    if turns {
         let given = { tables }.find_map(|table| table.angular_velocity_rad_s.as_ref());
         rest.extend(given.map_or([0.0; 3], |given| given.value));
     }
@@ -89,11 +89,11 @@ pub(super) fn rest<'a>(
 }
 
 /// Builds the law of `agent`.
-pub(super) fn thrust(file: &ThrustFile, agent: &str, robot: &RobotSetup) -> Result<Law, Fault> {
-    let gravity = match robot.kind {
-        RobotKind::Vehicle { gravity } | RobotKind::Rotorcraft { gravity, .. } => gravity,
-        _ => return Err(of_another("thrust", "vehicles and rotorcraft", agent, robot)),
-    };
+pub(super) fn thrust(file: &ThrustFile, agent: &str, robot: &RobotSetup) -> Result<Arc<dyn Law>, Fault> {
+    let vehicle = robot.kind.downcast().map(|model: &VehicleModel| model.gravity);
+    let gravity = vehicle
+        .or(robot.kind.downcast().map(|model: &RotorcraftModel| model.gravity))
+        .ok_or_else(|| of_another("thrust", "vehicles and rotorcraft", agent, robot))?;
     let known = robot.theta.first().copied().unwrap_or_default();
     let (design, mass) = match &file.design {
         None => differentiable(&DifferentiableFile::default(), known)?,
@@ -117,7 +117,7 @@ pub(super) fn thrust(file: &ThrustFile, agent: &str, robot: &RobotSetup) -> Resu
             approach_s: positive_or("approach_s", &kept.approach_s, APPROACH_S)?,
         },
     };
-    Ok(Law::Thrust(ThrustLaw {
+    Ok(Arc::new(ThrustLaw {
         design,
         yaw: yaw(file.yaw.as_ref().unwrap_or(&YawFile::default()))?,
         floor,

@@ -6,7 +6,7 @@ use forwardstep_core::LengthError;
 use forwardstep_core::robot::tree::{
     Anchor, Assembled, JointKind, LinkJoint, LinkSpec, MassMatrixError, Placement, Tree, TreeError, inertia_defects,
 };
-use forwardstep_sim::setup::{Axis, AxisUnit, RobotKind, RobotSetup};
+use forwardstep_sim::setup::{Axis, AxisUnit, RobotSetup};
 
 use super::joint::{Joint, Motion, MotionKind};
 use super::link::{Inertial, Link, Origin};
@@ -81,8 +81,7 @@ pub(super) fn build(
     let theta_names =
         theta_names(&assembled, &bodies, &freedoms).map_err(|error| reading.error_overall(error.into()))?;
     let axes = freedoms.iter().map(|freedom| axis(freedom.joint, freedom.motion)).collect();
-    let robot =
-        RobotSetup { kind: RobotKind::Tree(Arc::new(assembled.tree)), theta: assembled.theta, theta_names, axes };
+    let robot = RobotSetup { kind: Arc::new(Arc::new(assembled.tree)), theta: assembled.theta, theta_names, axes };
     let kinds = freedoms.iter().map(|freedom| freedom.motion.kind).collect();
     Ok(Moving { robot, kinds, bodies, held_mass_kg, anchors: assembled.anchors })
 }

@@ -1,10 +1,11 @@
 //! What a sound scenario turns into.
 
 use forwardstep_core::Gain;
+use forwardstep_core::robot::PlanarArm;
 use forwardstep_io::output::Goal;
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::schedule::Schedule;
-use forwardstep_sim::{Exchange, Law, Method, RobotKind, Setup};
+use forwardstep_sim::{Adaptive, Exchange, Known, Method, Setup};
 
 use super::{SOUND, changed, read};
 
@@ -23,14 +24,14 @@ fn the_sound_scenario_is_read_as_written() {
     assert_eq!(setup.exchange, Exchange::PositionVelocity);
     assert_eq!((setup.time.end_s, setup.time.record_every_s), (10.0, 0.1));
     let [arm, _, cart] = setup.agents.as_slice() else { panic!("three agents") };
-    assert!(matches!(arm.robot.kind, RobotKind::PlanarArm));
+    assert!(arm.robot.kind.is::<PlanarArm>());
     assert_eq!((arm.robot.theta.len(), arm.robot.theta_names.len()), (5, 5));
     assert_eq!(arm.roots_per_s, [1.0, 2.0]);
     assert_eq!((arm.start.q.as_slice(), arm.start.dq.as_slice()), ([0.1, 0.2].as_slice(), [0.0, 0.0].as_slice()));
     assert_eq!(setup.agents[1].start.q, [0.3, 0.4]);
     assert_eq!(
-        arm.law,
-        Law::Adaptive { damping: Gain::Number(8.0), adaptation: Gain::Number(10.0), estimate_start: vec![0.0; 5] }
+        arm.law.downcast(),
+        Some(&Adaptive { damping: Gain::Number(8.0), adaptation: Gain::Number(10.0), estimate_start: vec![0.0; 5] })
     );
     assert_eq!((cart.start.q.as_slice(), cart.robot.theta.as_slice()), ([0.0, 0.0].as_slice(), [4.0].as_slice()));
     let Schedule::Periodic(phases) = &setup.network.schedule else { panic!("it repeats") };
@@ -45,10 +46,9 @@ fn arms_from_a_urdf_have_bandwidths_by_default_and_others_numbers() {
     let planar = "robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }\n\
                   start.position_rad = [[0.1, 0.2], [0.3, 0.4]]";
     let setup = setup(&text.replace(planar, "robot.urdf.file = \"ur5e.urdf\""));
-    let gains = |k: usize| match &setup.agents[k].law {
-        Law::Adaptive { damping, adaptation, .. } => (damping.clone(), adaptation.clone()),
-        Law::Known { damping } => (damping.clone(), Gain::Number(0.0)),
-        law => panic!("{}", law.words()),
+    let gains = |k: usize| {
+        let law = setup.agents[k].law.downcast::<Adaptive>().unwrap();
+        (law.damping.clone(), law.adaptation.clone())
     };
     assert_eq!(gains(0), (Gain::Bandwidth(20.0), Gain::Bandwidth(5.0)));
     assert_eq!(gains(2), (Gain::Number(8.0), Gain::Number(10.0)));
@@ -61,7 +61,7 @@ fn an_agents_own_tables_win() {
     let text = changed("name = \"cart\"", own) + "\n[start]\nposition = [7, 8]\nvelocity = [9, 9]\n";
     let setup = setup(&text);
     let [arm, _, cart] = setup.agents.as_slice() else { panic!("three agents") };
-    assert_eq!(cart.law, Law::Known { damping: Gain::Matrix(vec![3.0, 1.0, 1.0, 3.0]) });
+    assert_eq!(cart.law.downcast(), Some(&Known { damping: Gain::Matrix(vec![3.0, 1.0, 1.0, 3.0]) }));
     assert_eq!(cart.roots_per_s, [1.0, 4.0, 9.0]);
     assert_eq!((cart.start.q.as_slice(), cart.start.dq.as_slice()), ([7.0, 8.0].as_slice(), [1.0, 2.0].as_slice()));
     assert_eq!(cart.start.reference, [[3.0, 4.0], [5.0, 6.0]]);
@@ -79,12 +79,8 @@ fn estimates_start_as_they_are_told() {
                 .replace("name = \"cart\"", "name = \"cart\"\nlaw = { adaptive = {} }"),
         );
         let arm = &setup.agents[0];
-        match &arm.law {
-            Law::Adaptive { estimate_start, .. } => {
-                estimate_start.iter().zip(&arm.robot.theta).map(|(a, b)| a / b).collect()
-            }
-            _ => Vec::new(),
-        }
+        let law = arm.law.downcast::<Adaptive>().unwrap();
+        law.estimate_start.iter().zip(&arm.robot.theta).map(|(a, b)| a / b).collect::<Vec<_>>()
     };
     assert_eq!(first("estimate_start = \"true\""), [1.0; 5]);
     assert_eq!(first("estimate_start.scaled = 0.5"), [0.5; 5]);

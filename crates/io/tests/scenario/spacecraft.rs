@@ -159,7 +159,7 @@ const SPACECRAFT_CASES: &[Case] = &[
     ("[reference.tracking]\n", "[reference.tracking]\nroots_per_s = [0]\n",
         "test.toml:23:16: `roots_per_s` is 0, but must be positive", ""),
     ("[reference.tracking]\n", "[reference.consensus]\nroots_per_s = [1]\nexchange = \"position\"\n[network]\nedges = []\n",
-        "test.toml:6:1: agent `craft`: the law for an attitude knows no offsets", "leave its `target` out; only vehicles and rotorcraft agree up to offsets"),
+        "test.toml:22:2: agent `craft`: the law for an attitude does not go with these reference dynamics", "write `reference.tracking`, and leave `network` out"),
     ("[law.attitude]", "[law.atitude]",
         "test.toml:24:6: unknown choice `atitude`", "did you mean `attitude`? choose one of `adaptive`, `known`, `position_only`, `thrust`, `task_space`, `attitude`, `linearising`, `linear_adaptive`, `immersion`, `adaptive_backstepping`"),
     ("error_gain_per_s2 = 0.5", "error_gain_per_s2 = 0",

@@ -1,7 +1,7 @@
 //! Targets and laws without velocity: what is read, and what every mistake gets.
 
 use forwardstep_io::output::Goal;
-use forwardstep_sim::{Law, ReferenceKind};
+use forwardstep_sim::{PositionOnlyLaw, ReferenceKind};
 
 use super::{Case, read, refused};
 
@@ -67,8 +67,8 @@ fn a_target_and_its_law_are_read() {
     let agent = &scenario.setup.agents[0];
     assert_eq!(scenario.setup.reference, ReferenceKind::Tracking);
     assert_eq!(scenario.goal, Some(Goal::ErrorBelow(1e-3)));
-    let law = Law::PositionOnly { damping: 20.0, filter_per_s: 10.0, adaptation: 5.0, estimate_start: 0.0 };
-    assert_eq!(agent.law, law);
+    let law = PositionOnlyLaw { damping: 20.0, filter_per_s: 10.0, adaptation: 5.0, estimate_start: 0.0 };
+    assert_eq!(agent.law.downcast(), Some(&law));
     let mut jets = [[0.0; 5]; 2];
     agent.target.as_ref().unwrap().jets(0.0, &mut jets);
     assert_eq!(jets, [[0.0, 1.0, 0.0, -1.0, 0.0], [0.5, 0.0, 0.0, 0.0, 0.0]]);

@@ -1,17 +1,19 @@
 //! Synthetic runs in closed form, of any shape.
 #![allow(unreachable_pub, reason = "shared by several test programs")]
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use forwardstep_check::{Answer, Hypothesis, Report};
 use forwardstep_core::Gain;
+use forwardstep_core::robot::PointMass;
 use forwardstep_io::output::{Goal, GoalOutcome, RunRecord};
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::recording::{Column, Statistics};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, Ending, Exchange, Law, Method, Network, Outcome, Recording, ReferenceKind, RobotKind,
+    Adaptive, AgentSetup, Axis, AxisUnit, Ending, Exchange, Method, Network, Outcome, Recording, ReferenceKind,
     RobotSetup, Setup, Signal, Solver, Start, TimeSpan,
 };
 
@@ -28,18 +30,18 @@ pub fn agent(name: &str, dof: usize, parameters: usize) -> AgentSetup {
     AgentSetup {
         name: name.into(),
         robot: RobotSetup {
-            kind: RobotKind::PointMass { dimension: dof },
+            kind: Arc::new(PointMass { dimension: dof }),
             theta: (0..parameters).map(|k| 2.0 / (1.0 + (k % 10) as f64)).collect(),
             theta_names: (0..parameters).map(|k| format!("link_{}.{}", k / 10 + 1, quantity[k % 10])).collect(),
             axes: axes.collect(),
         },
         roots_per_s: vec![1.0, 2.0],
         manipulability: 0.0,
-        law: Law::Adaptive {
+        law: Arc::new(Adaptive {
             damping: Gain::Number(8.0),
             adaptation: Gain::Number(10.0),
             estimate_start: vec![0.0; parameters],
-        },
+        }),
         start: Start { q: vec![0.0; dof], dq: vec![0.0; dof], rest: Vec::new(), reference: Vec::new() },
         enforce_limits: false,
         target: None,

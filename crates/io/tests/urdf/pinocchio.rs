@@ -1,9 +1,10 @@
 //! The same files read by Pinocchio: `validation/urdf/generate.py`.
 
+use std::sync::Arc;
+
 use forwardstep_core::robot::{Lagrangian, TwoVelocity};
 use forwardstep_io::urdf::shipped_robot;
 use forwardstep_io::{UrdfOptions, UrdfRobot};
-use forwardstep_sim::setup::RobotKind;
 use serde_json::Value;
 
 use super::read_with;
@@ -44,10 +45,7 @@ fn assert_close(what: &str, ours: &[f64], theirs: &[f64]) {
 }
 
 fn tree(robot: &UrdfRobot) -> &forwardstep_core::robot::tree::Tree {
-    match &robot.robot.kind {
-        RobotKind::Tree(tree) => tree,
-        other => panic!("{other:?}"),
-    }
+    robot.robot.kind.downcast::<Arc<_>>().unwrap()
 }
 
 #[test]

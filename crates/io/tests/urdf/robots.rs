@@ -1,9 +1,12 @@
 //! What comes out of an accepted file.
 
+use std::sync::Arc;
+
 use forwardstep_core::robot::Lagrangian;
+use forwardstep_core::robot::tree::Tree;
 use forwardstep_io::urdf::{SHIPPED_ROBOTS, shipped_robot};
 use forwardstep_io::{UrdfOptions, UrdfRobot};
-use forwardstep_sim::setup::{AxisUnit, RobotKind};
+use forwardstep_sim::AxisUnit;
 
 use super::{ARM, BASE, LIMIT, joint, locked, notices, read, read_with, robot};
 
@@ -24,7 +27,7 @@ fn axis_names(robot: &UrdfRobot) -> Vec<&str> {
 }
 
 fn gravity_torque(robot: &UrdfRobot, q: &[f64]) -> Vec<f64> {
-    let RobotKind::Tree(tree) = &robot.robot.kind else { panic!("not a tree") };
+    let tree = robot.robot.kind.downcast::<Arc<Tree>>().unwrap();
     let mut torque = vec![0.0; q.len()];
     let mut scratch = Lagrangian::<f64>::scratch(tree.as_ref());
     tree.gravity(&mut scratch, q, &robot.robot.theta, &mut torque).unwrap();

@@ -6,8 +6,9 @@ use std::sync::Arc;
 use forwardstep_core::controller::Trouble;
 use forwardstep_core::reference::{Position, PositionVelocity};
 
+use super::assembly::Assembly;
 use super::guide::Guide;
-use super::members::{population, populations};
+use super::members::batches;
 use super::population::{Columns, Inputs};
 use super::pushes::Pushes;
 use super::references::Transmits;
@@ -94,9 +95,9 @@ impl<'a> ClosedLoop<'a> {
             axes,
         };
         let mut placed = 0;
-        for group in populations(&setup.agents) {
+        for group in batches(&setup.agents) {
             let n = group.len();
-            let columns = population::<X>(setup, &group)?;
+            let columns = setup.agents[group[0]].law.block(&Assembly::new(setup, &group))?.0;
             let first = closed_loop.start.len();
             columns.append_start(&setup.agents, &mut closed_loop.start);
             for (i, &agent) in group.iter().enumerate() {

@@ -1,38 +1,29 @@
-//! From agents to populations: robots, reference dynamics, laws and, under digital control, samplers.
-
-use std::sync::Arc;
+//! From agents to batches: robots, reference dynamics, laws and, under digital control, samplers.
 
 use forwardstep_core::agent::{Agent, Limiter, VelocityFilter};
 use forwardstep_core::law::SlotineLi;
-use forwardstep_core::robot::tree::Tree;
-use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass};
+use forwardstep_core::reference::{Position, PositionVelocity};
+use forwardstep_core::robot::Lagrangian;
 use forwardstep_core::{Gain, InverseQuadratic, Lanes, LengthError, ResolvedGain};
 
 use super::fleet::Member;
 use super::population::{Columns, Population};
 use super::references::{AnyReference, Transmits, reference};
 use super::sampler::{Sampler, Sensor};
-use super::systems::system;
 use super::valid::SetupError;
-use crate::setup::{AgentSetup, Control, Law, RobotKind, Setup, VelocitySensor};
+use crate::agents::{Adaptive, Known, RobotModel};
+use crate::setup::{AgentSetup, Control, Exchange, Setup, VelocitySensor};
 
-/// Populations of at least so many agents are worked on in lanes.
+/// Batches of at least so many agents are worked on in lanes.
 const LANES_FROM: usize = 3;
-/// Agents that can stand side by side: one robot model, one order, all adaptive or none. Groups in order of their first
+
+/// Agents that can stand side by side: one robot model, one order, laws that share batches. Groups in order of their first
 /// agent.
-pub(super) fn populations(agents: &[AgentSetup]) -> Vec<Vec<usize>> {
+pub(super) fn batches(agents: &[AgentSetup]) -> Vec<Vec<usize>> {
     let alike = |a: &AgentSetup, b: &AgentSetup| {
-        let same_model = match (&a.robot.kind, &b.robot.kind) {
-            (RobotKind::Tree(a), RobotKind::Tree(b)) => Arc::ptr_eq(a, b),
-            (RobotKind::PlanarArm, RobotKind::PlanarArm) => true,
-            (RobotKind::PointMass { dimension: a }, RobotKind::PointMass { dimension: b }) => a == b,
-            _ => false,
-        };
-        same_model
-            && a.law.is_lagrangian()
-            && b.law.is_lagrangian()
-            && a.roots_per_s.len() == b.roots_per_s.len()
-            && matches!(a.law, Law::Adaptive { .. }) == matches!(b.law, Law::Adaptive { .. })
+        a.roots_per_s.len() == b.roots_per_s.len()
+            && a.law.shares_batch(&*b.law)
+            && a.robot.kind.same_model(&*b.robot.kind)
     };
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (index, agent) in agents.iter().enumerate() {
@@ -44,23 +35,11 @@ pub(super) fn populations(agents: &[AgentSetup]) -> Vec<Vec<usize>> {
     groups
 }
 
-pub(super) fn population<X: Transmits>(setup: &Setup, group: &[usize]) -> Result<Box<dyn Columns>, SetupError> {
-    let first = &setup.agents[group[0]];
-    if !first.law.is_lagrangian() {
-        return system(setup, group[0]);
-    }
-    match &first.robot.kind {
-        RobotKind::Tree(tree) => boxed::<Tree, X>(Tree::clone(tree), setup, group),
-        RobotKind::PlanarArm => boxed::<PlanarArm, X>(PlanarArm, setup, group),
-        RobotKind::PointMass { dimension } => boxed::<PointMass, X>(PointMass { dimension: *dimension }, setup, group),
-        RobotKind::Vehicle { .. }
-        | RobotKind::Rotorcraft { .. }
-        | RobotKind::Spacecraft { .. }
-        | RobotKind::Chain(_) => Err(SetupError::LawOfAnother {
-            agent: first.name.clone(),
-            law: first.law.words(),
-            made_for: first.law.made_for(),
-        }),
+/// Robots of one model under (6)–(7), side by side.
+pub(super) fn batch<M: RobotModel>(model: &M, setup: &Setup, group: &[usize]) -> Result<Box<dyn Columns>, SetupError> {
+    match setup.exchange {
+        Exchange::Position => boxed::<M::Kernel, Position>(model.kernel(), setup, group),
+        Exchange::PositionVelocity => boxed::<M::Kernel, PositionVelocity>(model.kernel(), setup, group),
     }
 }
 
@@ -120,10 +99,7 @@ fn digital<R: Lagrangian<f64> + Clone, X: Transmits>(
         LengthError::check(what, axes, values.len()).map_err(|error| SetupError::Length { agent: name(), error })?;
     }
     let limiter = Limiter::new(limit, rate).map_err(|error| SetupError::Limiter { agent: name(), error })?;
-    let theta_hat = match &agent.law {
-        Law::Adaptive { estimate_start, .. } => estimate_start.clone(),
-        _ => agent.robot.theta.clone(),
-    };
+    let theta_hat = agent.law.downcast::<Adaptive>().map_or(&agent.robot.theta, |law| &law.estimate_start).clone();
     Agent::new(robot.clone(), reference(setup, &[member.agent])?, member.law.clone(), theta_hat, limiter)
         .map_err(|error| SetupError::Length { agent: name(), error })
 }
@@ -147,13 +123,16 @@ fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Re
     };
     length("axes", m, agent.robot.axes.len())?;
     length("theta", p, agent.robot.theta.len())?;
-    let (damping, adaptation) = match &agent.law {
-        Law::Known { damping } => (damping, None),
-        Law::Adaptive { damping, adaptation, estimate_start } => {
+    let (damping, adaptation) = match (agent.law.downcast::<Adaptive>(), agent.law.downcast::<Known>()) {
+        (Some(Adaptive { damping, adaptation, estimate_start }), _) => {
             length("start of the estimate", p, estimate_start.len())?;
             (damping, Some(adaptation))
         }
-        law => return Err(SetupError::LawOfAnother { agent: name(), law: law.words(), made_for: law.made_for() }),
+        (None, Some(Known { damping })) => (damping, None),
+        (None, None) => {
+            let (law, made_for) = (agent.law.words(), agent.law.made_for());
+            return Err(SetupError::LawOfAnother { agent: name(), law, made_for });
+        }
     };
     let law = tracking_law(robot, agent, damping, adaptation)?;
     let estimate_cost = match &law.adaptation {
@@ -181,7 +160,7 @@ fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Re
 }
 
 /// K and Γ of one agent, with its robot's natural scales for gains that are bandwidths.
-pub(super) fn tracking_law<R: Lagrangian<f64>>(
+pub(crate) fn tracking_law<R: Lagrangian<f64>>(
     robot: &R,
     agent: &AgentSetup,
     damping: &Gain,

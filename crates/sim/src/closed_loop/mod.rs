@@ -9,15 +9,13 @@
 //! - `references`: from agents to reference dynamics.
 //! - `guide`: the leader.
 //! - `sliding`: who sets the set-valued signs in continuous time.
-//! - `members`: from agents to populations.
-//! - `systems`: from agents to plants and controllers that stand by themselves.
-//! - `vehicles`: the same for vehicles with one thrust.
-//! - `single`: the same for the robot's tip and the spacecraft of Section V-C.
+//! - `members`: from agents to batches.
+//! - `assembly`: what a law builds its agents with.
 //! - `valid`: what makes a [`crate::Setup`] meaningless.
 //! - `assemble`: all populations and what joins them: the right-hand side as a whole, and its events.
 
 mod assemble;
-mod chains;
+mod assembly;
 mod fleet;
 mod guide;
 mod members;
@@ -26,12 +24,11 @@ mod pushes;
 mod references;
 mod sampler;
 mod sampling;
-mod single;
 mod sliding;
 mod solo;
-mod systems;
 mod valid;
-mod vehicles;
 
 pub(crate) use assemble::ClosedLoop;
+pub use assembly::{Assembly, Block};
+pub(crate) use members::tracking_law;
 pub use valid::{SetupError, validate};

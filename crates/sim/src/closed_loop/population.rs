@@ -24,8 +24,9 @@ use forwardstep_core::{LengthError, Packed};
 use super::fleet::{Drive, Fleet, Layout, Member};
 use super::references::{AnyReference, Transmits};
 use super::sampler::Sampler;
+use crate::agents::Adaptive;
 use crate::recording::Signal;
-use crate::setup::{AgentSetup, Law};
+use crate::setup::AgentSetup;
 
 /// What reaches a population from outside at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -349,10 +350,7 @@ where
             }
         }
         for k in 0..l.p {
-            x.extend(agents().filter_map(|a| match &a.law {
-                Law::Adaptive { estimate_start, .. } => Some(estimate_start[k]),
-                _ => None,
-            }));
+            x.extend(agents().filter_map(|a| a.law.downcast::<Adaptive>().map(|law| law.estimate_start[k])));
         }
         x.resize(first + l.len, 0.0);
     }

@@ -7,7 +7,8 @@ use forwardstep_core::robot::tree::{Axes, PointWrench, Tree, TreeScratch};
 
 use crate::engine::{Happened, Port};
 use crate::push::{Between, Course, Effect, Grip, Push};
-use crate::setup::{AgentSetup, RobotKind, Setup};
+use crate::setup::{AgentSetup, Setup};
+use crate::system::Attachments;
 
 /// Everybody who is pushed.
 #[derive(Debug, Default)]
@@ -116,9 +117,9 @@ impl Pushed {
     /// `None` when nothing ever acts on the agent.
     pub(crate) fn new(index: usize, agent: &AgentSetup) -> Option<Self> {
         let actions: Vec<Action> = agent.pushes.iter().map(|push| Action::new(push.clone())).collect();
-        let tree = match &agent.robot.kind {
-            RobotKind::Tree(tree) => Some((Arc::clone(tree), tree.scratch())),
-            _ => None,
+        let tree = match agent.robot.kind.attachments() {
+            Attachments::Links(tree) => Some((Arc::clone(tree), tree.scratch())),
+            Attachments::Axes | Attachments::PlanarTip => None,
         };
         (!actions.is_empty()).then_some(Pushed { agent: index, actions, tree })
     }

@@ -55,9 +55,7 @@ pub(super) fn reference<X: Transmits>(setup: &Setup, group: &[usize]) -> Result<
     match &setup.reference {
         ReferenceKind::Consensus => Ok(boxed(Consensus::<X>::new(designs()).map_err(roots(group[0]))?)),
         ReferenceKind::PureIntegral => Ok(boxed(PureIntegral::<X>::new(designs()).map_err(roots(group[0]))?)),
-        ReferenceKind::Tracking => Err(SetupError::NotTracking { agent: first.name.clone(), law: first.law.words() }),
-        kind => X::own(kind, group.len())?
-            .ok_or_else(|| SetupError::ReferenceOfLaw { agent: first.name.clone(), law: first.law.words() }),
+        kind => X::own(kind, group.len())?.ok_or_else(|| SetupError::wrong_reference(setup, first)),
     }
 }
 

@@ -8,10 +8,12 @@ use forwardstep_core::robot::tree::TipError;
 use forwardstep_core::{GainError, LengthError};
 use thiserror::Error;
 
+use crate::agents::Adaptive;
 use crate::leader::{Following, FollowingDesign};
 use crate::network::NetworkError;
 use crate::push::PushError;
-use crate::setup::{AgentSetup, AxisUnit, Control, Exchange, Law, Method, ReferenceKind, RobotKind, Setup};
+use crate::setup::{AgentSetup, AxisUnit, Control, Exchange, Method, ReferenceKind, Setup};
+use crate::system::ReferenceFamily;
 
 /// Why a setup cannot be simulated.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -155,6 +157,8 @@ pub enum SetupError {
         agent: String,
         /// Its law, in words.
         law: &'static str,
+        /// Those that it goes with.
+        follows: &'static [ReferenceFamily],
     },
     /// A law that cannot follow a target.
     #[error("agent `{agent}`: {law} does not follow a target of its own; it goes with consensus")]
@@ -300,6 +304,20 @@ pub enum SetupError {
     },
 }
 
+impl SetupError {
+    /// The reference dynamics of `setup` do not lead the law of `agent`.
+    pub(crate) fn wrong_reference(setup: &Setup, agent: &AgentSetup) -> Self {
+        let (name, law) = (agent.name.clone(), agent.law.words());
+        match setup.reference {
+            ReferenceKind::Tracking => SetupError::NotTracking { agent: name, law },
+            _ => {
+                let follows = agent.interface().map_or(&[][..], |interface| interface.follows);
+                SetupError::ReferenceOfLaw { agent: name, law, follows }
+            }
+        }
+    }
+}
+
 /// Samples that a run may have.
 const MOST_SAMPLES: f64 = 1e7;
 
@@ -348,8 +366,7 @@ pub fn validate(setup: &Setup) -> Result<(), SetupError> {
 
 /// Whoever agrees with a vehicle has a position in m. (An arm and a cart may agree on a number.)
 fn same_space(setup: &Setup) -> Result<(), SetupError> {
-    let moves =
-        |agent: &&AgentSetup| matches!(agent.robot.kind, RobotKind::Vehicle { .. } | RobotKind::Rotorcraft { .. });
+    let moves = |agent: &&AgentSetup| agent.robot.kind.moves_in_space();
     let Some(vehicle) = setup.agents.iter().find(moves) else { return Ok(()) };
     for agent in &setup.agents {
         if let Some(axis) = agent.robot.axes.iter().find(|axis| axis.unit != AxisUnit::Metre) {
@@ -439,7 +456,6 @@ fn check_control(control: &Control, setup: &Setup) -> Result<(), SetupError> {
 fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
     let first = &setup.agents[0];
     let (axes, vectors) = (first.robot.axes.len(), setup.reference.free_derivatives(agent));
-    let tracks = setup.reference == ReferenceKind::Tracking;
     if agent.robot.axes.len() != axes {
         return Err(SetupError::AxesDiffer {
             agent: agent.name.clone(),
@@ -461,12 +477,7 @@ fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
     vector("the start velocity", velocities, &agent.start.dq)?;
     // How much more a state has is known where the plant is built.
     vector("the start of the plant", agent.start.rest.len(), &agent.start.rest)?;
-    if agent.law.is_lagrangian() && tracks {
-        return Err(SetupError::NotTracking { agent: agent.name.clone(), law: agent.law.words() });
-    }
-    if let (Some(_), true) = (&agent.target, agent.law.is_lagrangian()) {
-        return Err(SetupError::NoOffsets { agent: agent.name.clone(), law: agent.law.words() });
-    }
+    goes_together(setup, agent)?;
     // The second state of a chain may be no velocity, but it has a z.
     let leads = if velocities == 0 { axes } else { velocities };
     for z in &agent.start.reference {
@@ -478,7 +489,7 @@ fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
         return Err(SetupError::Length { agent: agent.name.clone(), error });
     }
     vector("theta", agent.robot.theta.len(), &agent.robot.theta)?;
-    if let Law::Adaptive { estimate_start, .. } = &agent.law {
+    if let Some(Adaptive { estimate_start, .. }) = agent.law.downcast() {
         vector("the start of the estimate", agent.robot.theta.len(), estimate_start)?;
     }
     for (k, push) in agent.pushes.iter().enumerate() {
@@ -486,4 +497,30 @@ fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
         push.check(&agent.robot).map_err(problem)?;
     }
     Ok(())
+}
+
+/// Whether the law goes with the robot, the reference dynamics, what is exchanged and what acts on the agent.
+fn goes_together(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
+    let (name, law) = (|| agent.name.clone(), agent.law.words());
+    let Some(interface) = agent.interface() else {
+        return Err(SetupError::LawOfAnother { agent: name(), law, made_for: agent.law.made_for() });
+    };
+    let tracks = setup.reference == ReferenceKind::Tracking;
+    if !interface.follows.contains(&setup.reference.family()) {
+        return Err(SetupError::wrong_reference(setup, agent));
+    }
+    if !interface.manipulability && agent.manipulability != 0.0 {
+        return Err(SetupError::NoManipulability { agent: name(), law, value: agent.manipulability });
+    }
+    if !interface.exchanges.contains(&setup.exchange) {
+        return Err(SetupError::SendsPositionOnly { agent: name(), law });
+    }
+    if !interface.pushed && !agent.pushes.is_empty() {
+        return Err(SetupError::NotPushed { agent: name(), law });
+    }
+    match (&agent.target, tracks) {
+        (None, true) => Err(SetupError::NoTarget { agent: name() }),
+        (Some(_), false) if !interface.offsets => Err(SetupError::NoOffsets { agent: name(), law }),
+        _ => Ok(()),
+    }
 }

@@ -4,14 +4,16 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use forwardstep_core::Gain;
+use forwardstep_core::robot::{PlanarArm, PointMass};
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, Exchange, Law, Network, ReferenceKind, RobotKind, RobotSetup, Setup, Solver, Start,
-    TimeSpan,
+    Adaptive, AgentSetup, Axis, AxisUnit, Exchange, Known, Law, Network, ReferenceKind, Robot, RobotSetup, Setup,
+    Solver, Start, TimeSpan,
 };
 use serde::Deserialize;
 
@@ -196,9 +198,9 @@ fn delay(delay: &DelayCase) -> Delay {
 }
 
 fn agent((index, case): (usize, &AgentCase)) -> AgentSetup {
-    let (kind, theta) = match &case.robot {
-        RobotCase::PlanarArm { theta } => (RobotKind::PlanarArm, theta.clone()),
-        RobotCase::PointMass { dimension, theta } => (RobotKind::PointMass { dimension: *dimension }, theta.clone()),
+    let (kind, theta): (Arc<dyn Robot>, _) = match &case.robot {
+        RobotCase::PlanarArm { theta } => (Arc::new(PlanarArm), theta.clone()),
+        RobotCase::PointMass { dimension, theta } => (Arc::new(PointMass { dimension: *dimension }), theta.clone()),
     };
     let axis = |k| Axis {
         name: format!("{k}"),
@@ -208,11 +210,11 @@ fn agent((index, case): (usize, &AgentCase)) -> AgentSetup {
         effort_limit: None,
     };
     let damping = gain(&case.k);
-    let law = match &case.gamma {
+    let law: Arc<dyn Law> = match &case.gamma {
         Some(gamma) if !case.knows_theta => {
-            Law::Adaptive { damping, adaptation: gain(gamma), estimate_start: case.start.theta_hat.clone() }
+            Arc::new(Adaptive { damping, adaptation: gain(gamma), estimate_start: case.start.theta_hat.clone() })
         }
-        _ => Law::Known { damping },
+        _ => Arc::new(Known { damping }),
     };
     AgentSetup {
         name: format!("agent-{index}"),

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::{CascadeTerms, Formulas};
-use forwardstep_sim::chain::{ChainLaw, ChainModel, ChainStep, Estimate};
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{AgentSetup, AxisUnit, Law, ReferenceKind, RobotKind, RobotSetup, Setup, Start};
+use forwardstep_sim::{
+    AgentSetup, AxisUnit, ChainLaw, ChainModel, ChainStep, Estimate, ReferenceKind, RobotSetup, Setup, Start,
+};
 
 use super::{axes, setup, silent, switching, wave};
 
@@ -36,14 +37,14 @@ pub fn agent(
     AgentSetup {
         name: format!("chain-{index}"),
         robot: RobotSetup {
-            kind: RobotKind::Chain(model),
+            kind: Arc::new(model),
             theta: theta.to_vec(),
             theta_names: (1..=theta.len()).map(|k| format!("theta{k}")).collect(),
             axes: axes(&["x"], AxisUnit::Metre),
         },
         roots_per_s: roots.to_vec(),
         manipulability: 0.0,
-        law: Law::Chain(ChainLaw { step, floor: 1e-3 }),
+        law: Arc::new(ChainLaw { step, floor: 1e-3 }),
         target: None,
         start: Start { q, dq, rest, reference: Vec::new() },
         enforce_limits: false,

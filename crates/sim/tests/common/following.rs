@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use forwardstep_core::Gain;
 use forwardstep_core::reference::Choice;
-use forwardstep_core::robot::PlanarLinks;
+use forwardstep_core::robot::{PlanarArm, PlanarLinks, PointMass};
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::trajectory::{Path, Sinusoid, Trajectory};
 use forwardstep_sim::{
-    AgentSetup, AxisUnit, Exchange, Law, Method, Network, ReferenceKind, RobotKind, RobotSetup, Setup, Solver, Start,
+    Adaptive, AgentSetup, AxisUnit, Exchange, Known, Method, Network, ReferenceKind, RobotSetup, Setup, Solver, Start,
     TimeSpan,
 };
 
@@ -27,18 +27,18 @@ pub fn arm(index: usize, q: [f64; 2], estimate: f64) -> AgentSetup {
     AgentSetup {
         name: format!("arm-{index}"),
         robot: RobotSetup {
-            kind: RobotKind::PlanarArm,
+            kind: Arc::new(PlanarArm),
             theta_names: (0..theta.len()).map(|k| format!("theta{k}")).collect(),
             axes: axes(&["shoulder", "elbow"], AxisUnit::Radian),
             theta: theta.clone(),
         },
         roots_per_s: Vec::new(),
         manipulability: 0.0,
-        law: Law::Adaptive {
+        law: Arc::new(Adaptive {
             damping: Gain::Number(20.0),
             adaptation: Gain::Number(10.0),
             estimate_start: theta.iter().map(|theta| estimate * theta).collect(),
-        },
+        }),
         target: None,
         start: Start { q: q.to_vec(), dq: vec![0.0; 2], rest: Vec::new(), reference: Vec::new() },
         enforce_limits: false,
@@ -111,11 +111,11 @@ pub fn masses(design: FollowingDesign) -> Setup {
     let (z, dz) = ([0.3, 0.1, 0.0], [0.0, 0.2, -0.1]);
     setup.agents.truncate(3);
     for (k, agent) in setup.agents.iter_mut().enumerate() {
-        agent.robot.kind = RobotKind::PointMass { dimension: 1 };
+        agent.robot.kind = Arc::new(PointMass { dimension: 1 });
         agent.robot.theta = vec![[1.0, 2.0, 1.5][k]];
         agent.robot.theta_names.truncate(1);
         agent.robot.axes.truncate(1);
-        agent.law = Law::Known { damping: Gain::Number(8.0) };
+        agent.law = Arc::new(Known { damping: Gain::Number(8.0) });
         let free = if design == FollowingDesign::Continuous { 1 } else { 2 };
         let reference = vec![vec![z[k]], vec![dz[k]]][..free].to_vec();
         agent.start = Start { q: vec![q[k]], dq: vec![dq[k]], rest: Vec::new(), reference };

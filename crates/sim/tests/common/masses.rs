@@ -1,7 +1,10 @@
 //! Point masses without velocity.
 
+use std::sync::Arc;
+
+use forwardstep_core::robot::PointMass;
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{AgentSetup, AxisUnit, Law, ReferenceKind, RobotKind, RobotSetup, Setup, Start};
+use forwardstep_sim::{AgentSetup, AxisUnit, PositionOnlyLaw, ReferenceKind, RobotSetup, Setup, Start};
 
 use super::{axes, setup, silent, switching, wave};
 
@@ -9,14 +12,14 @@ pub fn mass(index: usize, kg: f64, q: [f64; 2], roots: &[f64]) -> AgentSetup {
     AgentSetup {
         name: format!("mass-{index}"),
         robot: RobotSetup {
-            kind: RobotKind::PointMass { dimension: 2 },
+            kind: Arc::new(PointMass { dimension: 2 }),
             theta: vec![kg],
             theta_names: vec!["mass".into()],
             axes: axes(&["x", "y"], AxisUnit::Metre),
         },
         roots_per_s: roots.to_vec(),
         manipulability: 0.0,
-        law: Law::PositionOnly { damping: 20.0, filter_per_s: 20.0, adaptation: 5.0, estimate_start: 0.3 },
+        law: Arc::new(PositionOnlyLaw { damping: 20.0, filter_per_s: 20.0, adaptation: 5.0, estimate_start: 0.3 }),
         target: None,
         start: Start { q: q.to_vec(), dq: vec![0.2, -0.1], rest: Vec::new(), reference: Vec::new() },
         enforce_limits: false,

@@ -124,10 +124,9 @@ pub fn apart(a: &Outcome, b: &Outcome) -> f64 {
 pub fn every_kind() -> Vec<(&'static str, Setup)> {
     use forwardstep_core::reference::Choice;
     use forwardstep_core::robot::tree::Uncertain;
-    use forwardstep_sim::RobotKind;
+    use forwardstep_sim::ThrustKind;
     use forwardstep_sim::leader::FollowingDesign;
-    use forwardstep_sim::vehicles::ThrustKind;
-    let vehicle = RobotKind::Vehicle { gravity: vehicles::G };
+    let vehicle = vehicles::vehicle();
     let spin = single::half_a_turn([0.1, -0.05, 0.08]);
     let arms = |design, choice| following::arms(design, choice, 0.8, 4.0);
     let mut all = vec![

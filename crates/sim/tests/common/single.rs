@@ -7,16 +7,16 @@ use forwardstep_core::Gain;
 use forwardstep_core::controller::ParameterBounds;
 use forwardstep_core::plant::{Wheel, Wheels};
 use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkPoint, LinkSpec, Placement, Tree, Uncertain};
-use forwardstep_core::robot::{PlanarLinks, PlanarTip};
+use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip};
 use forwardstep_sim::trajectory::{Path, Spline, Trajectory};
 use forwardstep_sim::{
-    AgentSetup, AttitudeLaw, AxisUnit, Law, Method, ReferenceKind, RobotKind, RobotSetup, Setup, Start, TaskSpaceLaw,
-    TipSetup,
+    AgentSetup, AttitudeLaw, AxisUnit, Law, Method, ReferenceKind, RobotSetup, Setup, SpacecraftModel, Start,
+    TaskSpaceLaw, TipSetup,
 };
 
 use super::{RTOL, axes, fixed, setup, silent, wave};
 
-pub fn alone(robot: RobotSetup, law: Law, start: Start, target: Vec<Path>, end_s: f64) -> Setup {
+pub fn alone(robot: RobotSetup, law: Arc<dyn Law>, start: Start, target: Vec<Path>, end_s: f64) -> Setup {
     let agent = AgentSetup {
         name: "agent".into(),
         robot,
@@ -36,7 +36,7 @@ pub fn alone(robot: RobotSetup, law: Law, start: Start, target: Vec<Path>, end_s
 pub fn planar(bounds: Option<ParameterBounds>, kinematic_gain: f64) -> Setup {
     let links = PlanarLinks::uniform([2.0, 1.0], [1.0, 0.8]);
     let robot = RobotSetup {
-        kind: RobotKind::PlanarArm,
+        kind: Arc::new(PlanarArm),
         theta: links.theta().to_vec(),
         theta_names: (0..5).map(|k| format!("p{k}")).collect(),
         axes: axes(&["shoulder", "elbow"], AxisUnit::Radian),
@@ -57,7 +57,7 @@ pub fn planar(bounds: Option<ParameterBounds>, kinematic_gain: f64) -> Setup {
     };
     let start = Start { q: vec![0.2, 1.4], dq: vec![0.1, -0.2], rest: Vec::new(), reference: Vec::new() };
     let circle = vec![wave(0.8, 0.3, 1.0, FRAC_PI_2), wave(0.6, 0.3, 1.0, 0.0)];
-    alone(robot, Law::TaskSpace(Box::new(law)), start, circle, 20.0)
+    alone(robot, Arc::new(law), start, circle, 20.0)
 }
 
 /// Three joints, z up: a turntable, a shoulder and an elbow; damping in the shoulder.
@@ -100,12 +100,12 @@ pub fn anthropomorphic(uncertain: Uncertain) -> Setup {
     let robot = RobotSetup {
         theta_names: (0..assembled.theta.len()).map(|k| format!("p{k}")).collect(),
         theta: assembled.theta,
-        kind: RobotKind::Tree(Arc::new(assembled.tree)),
+        kind: Arc::new(Arc::new(assembled.tree)),
         axes: axes(&["turntable", "shoulder", "elbow"], AxisUnit::Radian),
     };
     let start = Start { q: vec![0.3, -0.8, 1.5], dq: vec![0.0; 3], rest: Vec::new(), reference: Vec::new() };
     let path = vec![wave(0.6, 0.1, 1.0, 0.0), wave(0.25, 0.1, 0.7, 0.5), wave(0.3, 0.1, 1.3, 1.0)];
-    alone(robot, Law::TaskSpace(Box::new(law)), start, path, 10.0)
+    alone(robot, Arc::new(law), start, path, 10.0)
 }
 
 pub fn craft(start: Start, target: Vec<Path>, torque_limit_n_m: f64) -> Setup {
@@ -113,13 +113,16 @@ pub fn craft(start: Start, target: Vec<Path>, torque_limit_n_m: f64) -> Setup {
     let wheels =
         Wheels::new(&[[1.0, 0.0, 0.8], [-1.0, 0.0, 0.8], [0.0, 1.0, 0.8], [0.0, -1.0, 0.8]].map(wheel)).unwrap();
     let robot = RobotSetup {
-        kind: RobotKind::Spacecraft { inertia_kg_m2: [[10.0, 0.5, -0.3], [0.5, 8.0, 0.2], [-0.3, 0.2, 6.0]], wheels },
+        kind: Arc::new(SpacecraftModel {
+            inertia_kg_m2: [[10.0, 0.5, -0.3], [0.5, 8.0, 0.2], [-0.3, 0.2, 6.0]],
+            wheels,
+        }),
         theta: Vec::new(),
         theta_names: Vec::new(),
         axes: axes(&["x", "y", "z", "o"], AxisUnit::One),
     };
     let law = AttitudeLaw { alpha: [0.5, 1.2], filter: Gain::Number(1.0), damping: Gain::Number(3.0) };
-    alone(robot, Law::Attitude(Box::new(law)), start, target, 60.0)
+    alone(robot, Arc::new(law), start, target, 60.0)
 }
 
 pub fn half_a_turn(rate: [f64; 3]) -> Start {

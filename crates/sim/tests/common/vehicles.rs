@@ -1,10 +1,14 @@
 //! Vehicles with one thrust, and rotorcraft.
 
+use std::sync::Arc;
+
 use forwardstep_core::Gain;
 use forwardstep_core::controller::{Floor, Yaw};
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::vehicles::{ThrustKind, ThrustLaw};
-use forwardstep_sim::{AgentSetup, AxisUnit, Law, ReferenceKind, RobotKind, RobotSetup, Setup, Start};
+use forwardstep_sim::{
+    AgentSetup, AxisUnit, ReferenceKind, Robot, RobotSetup, RotorcraftModel, Setup, Start, ThrustKind, ThrustLaw,
+    VehicleModel,
+};
 
 use super::{axes, fixed, setup, switching, wave};
 
@@ -12,15 +16,19 @@ pub const G: f64 = 9.81;
 pub const DIFFERENTIABLE: ThrustKind = ThrustKind::Differentiable { alpha_star: 3.0, stiffness: 4.0 };
 pub const ADAPTIVE: ThrustKind = ThrustKind::Adaptive { alpha_star: 3.0, gamma_star: 0.2, estimate_start: 0.8 };
 
-pub fn rotorcraft() -> RobotKind {
-    RobotKind::Rotorcraft {
+pub fn vehicle() -> Arc<dyn Robot> {
+    Arc::new(VehicleModel { gravity: G })
+}
+
+pub fn rotorcraft() -> Arc<dyn Robot> {
+    Arc::new(RotorcraftModel {
         gravity: G,
         inertia: Gain::Matrix(vec![0.02, 0.001, 0.0, 0.001, 0.02, 0.0, 0.0, 0.0, 0.04]),
         rotors: None,
-    }
+    })
 }
 
-pub fn agent(index: usize, kind: RobotKind, design: ThrustKind) -> AgentSetup {
+pub fn agent(index: usize, kind: Arc<dyn Robot>, design: ThrustKind) -> AgentSetup {
     let kg = 1.0 + 0.3 * index as f64;
     let q = [[1.0, 0.0, -1.0], [0.0, 1.5, -2.0], [-1.0, 0.5, -1.5]][index];
     let mut rest = vec![0.0, 0.0, 0.0, 1.0];
@@ -35,7 +43,7 @@ pub fn agent(index: usize, kind: RobotKind, design: ThrustKind) -> AgentSetup {
         },
         roots_per_s: vec![1.0, 1.5, 2.0][..design.order()].to_vec(),
         manipulability: 0.0,
-        law: Law::Thrust(ThrustLaw {
+        law: Arc::new(ThrustLaw {
             design,
             yaw: Yaw { heading: 0.5, rate: 0.0, gain: 1.0 },
             floor: Floor::Stops(1.0),
@@ -60,7 +68,7 @@ pub fn turning(index: usize) -> Trajectory {
     Trajectory::new(paths).unwrap()
 }
 
-pub fn three(kind: &RobotKind, design: ThrustKind, in_formation: bool, end_s: f64) -> Setup {
+pub fn three(kind: &Arc<dyn Robot>, design: ThrustKind, in_formation: bool, end_s: f64) -> Setup {
     let agents =
         (0..3).map(|k| AgentSetup { target: in_formation.then(|| turning(k)), ..agent(k, kind.clone(), design) });
     setup(agents.collect(), ReferenceKind::Consensus, switching(), end_s)

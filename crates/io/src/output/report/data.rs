@@ -272,7 +272,7 @@ fn agents<'a>(
                 truth: setup.agents[agent].robot.theta.get(k).copied(),
                 series: table.column(agent, Signal::Estimate, k).filter(|_| fits).map(|v| series.add(v, false)),
             };
-            let adaptive = setup.agents[agent].law.estimates();
+            let adaptive = setup.agents[agent].estimates();
             let parameters = if adaptive { (0..count(agent)).map(&mut parameter).collect() } else { Vec::new() };
             AgentIndex { name: names::agent_name(setup, agent), axes: axes(setup, agent, references), parameters }
         })

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use forwardstep_sim::recording::{Recording, Signal};
-use forwardstep_sim::setup::{Law, RobotKind, Setup};
+use forwardstep_sim::{Setup, SpacecraftModel, TaskSpaceLaw, ThrustLaw};
 use serde::Serialize;
 
 use super::super::names;
@@ -101,16 +101,17 @@ impl Family {
         let both = |limit: Option<f64>| {
             limit.into_iter().flat_map(|limit| [limit, -limit]).map(guide("limit")).collect::<Vec<_>>()
         };
-        match (self.signal, &agent.robot.kind, &agent.law) {
-            (Signal::WheelTorque, RobotKind::Spacecraft { wheels, .. }, _) => {
-                both(wheels.wheel(entry).and_then(|wheel| wheel.torque_limit_n_m))
+        let wheel = || agent.robot.kind.downcast::<SpacecraftModel>()?.wheels.wheel(entry);
+        match self.signal {
+            Signal::WheelTorque => both(wheel().and_then(|wheel| wheel.torque_limit_n_m)),
+            Signal::WheelMomentum => both(wheel().and_then(|wheel| wheel.momentum_limit_n_m_s)),
+            Signal::Thrust => {
+                let law = agent.law.downcast::<ThrustLaw>();
+                law.map(|law| guide("floor")(law.floor.newtons())).into_iter().collect()
             }
-            (Signal::WheelMomentum, RobotKind::Spacecraft { wheels, .. }, _) => {
-                both(wheels.wheel(entry).and_then(|wheel| wheel.momentum_limit_n_m_s))
-            }
-            (Signal::Thrust, _, Law::Thrust(law)) => vec![guide("floor")(law.floor.newtons())],
-            (Signal::KinematicEstimate, kind, Law::TaskSpace(law)) => {
-                let truth = law.tip.parameters(kind).and_then(|theta| theta.get(entry).copied());
+            Signal::KinematicEstimate => {
+                let law = agent.law.downcast::<TaskSpaceLaw>();
+                let truth = law.and_then(|law| law.tip.parameters(&*agent.robot.kind)?.get(entry).copied());
                 truth.into_iter().map(guide("truth")).collect()
             }
             _ => Vec::new(),

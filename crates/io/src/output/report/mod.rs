@@ -100,7 +100,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
 /// The plots; the script fills their cards.
 fn signals(absence: Option<Absence>, record: &RunRecord<'_>) -> Markup {
     let (gap, agents) = (Gap::of(record.setup), &record.setup.agents);
-    let adaptive = agents.iter().any(|agent| agent.law.estimates());
+    let adaptive = agents.iter().any(|agent| agent.estimates());
     let columns = &record.outcome.recording.columns;
     let recorded = |signal| columns.iter().any(|column| column.signal == signal);
     let card = |id: &str, title: &str, what: &str, empty: &str| {

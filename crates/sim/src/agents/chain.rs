@@ -1,0 +1,250 @@
+//! Chains of any order and the laws for them: Section IV.
+
+use std::sync::Arc;
+
+use forwardstep_core::controller::{
+    AdaptiveBackstepping, BacksteppingGains, ChainError, Controller, Following, Guide, Immersion, Linearising,
+};
+use forwardstep_core::expression::Expression;
+use forwardstep_core::plant::{Cascade, CascadeError, CascadeTerms, Chain, Formulas, Terms};
+use forwardstep_core::reference::{Consensus, Position, polynomial};
+
+use super::LagrangianRobot;
+use crate::closed_loop::{Assembly, Block, SetupError};
+use crate::setup::{Exchange, ReferenceKind, RobotSetup};
+use crate::system::{Attachments, Interface, Law, ReferenceFamily, Robot};
+
+/// What a chain is made of; its true θ stands with the robot.
+#[derive(Clone, Debug)]
+pub enum ChainModel {
+    /// (33): the k-th derivative of x is χ + ψ u.
+    Derivatives(Arc<Formulas>),
+    /// A strict-feedback or pure-feedback chain.
+    Cascade(Arc<CascadeTerms>),
+}
+
+impl ChainModel {
+    /// k or n.
+    pub fn order(&self) -> usize {
+        match self {
+            ChainModel::Derivatives(terms) => terms.order(),
+            ChainModel::Cascade(terms) => terms.order(),
+        }
+    }
+
+    /// Whether the second state is the velocity of the first.
+    pub fn has_velocity(&self) -> bool {
+        matches!(self, ChainModel::Derivatives(terms) if terms.order() > 1)
+    }
+
+    /// Entries of θ.
+    pub fn parameters(&self) -> usize {
+        match self {
+            ChainModel::Derivatives(terms) => terms.parameters(),
+            ChainModel::Cascade(terms) => terms.parameters(),
+        }
+    }
+}
+
+impl Robot for ChainModel {
+    fn velocity_len(&self, axes: usize) -> usize {
+        // The second state of a chain in feedback form is no velocity.
+        if self.has_velocity() { axes } else { 0 }
+    }
+
+    fn rest_len(&self) -> usize {
+        self.order().saturating_sub(1 + usize::from(self.has_velocity()))
+    }
+
+    fn moves_in_space(&self) -> bool {
+        false
+    }
+
+    fn same_model(&self, other: &dyn Robot) -> bool {
+        match (self, other.downcast()) {
+            (ChainModel::Derivatives(a), Some(ChainModel::Derivatives(b))) => Arc::ptr_eq(a, b),
+            (ChainModel::Cascade(a), Some(ChainModel::Cascade(b))) => Arc::ptr_eq(a, b),
+            (ChainModel::Derivatives(_) | ChainModel::Cascade(_), _) => false,
+        }
+    }
+
+    fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
+        None
+    }
+
+    fn attachments(&self) -> Attachments<'_> {
+        Attachments::Axes
+    }
+}
+
+/// A law for a chain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChainLaw {
+    /// The second step of Section IV.
+    pub step: ChainStep,
+    /// The run ends where the factor of the input comes closer to zero.
+    pub floor: f64,
+}
+
+/// The second step of Section IV.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ChainStep {
+    /// Feedback linearisation of (33) with the true parameters; see [`forwardstep_core::controller::Linearising`].
+    Linearising {
+        /// k, 1/s.
+        gain_per_s: f64,
+    },
+    /// Adaptation of (33); see [`forwardstep_core::controller::Linearising`].
+    Adaptive {
+        /// k, 1/s.
+        gain_per_s: f64,
+        /// How θ̂ is found.
+        estimate: Estimate,
+    },
+    /// Immersion and invariance for (33); see [`forwardstep_core::controller::Immersion`].
+    Immersion {
+        /// k, 1/s.
+        gain_per_s: f64,
+        /// How θ̂ is found.
+        estimate: Estimate,
+        /// Φ with ∂Φ/∂v = φ, v being the highest derivative.
+        antiderivatives: Vec<Expression>,
+    },
+    /// Adaptive backstepping for strict-feedback and pure-feedback chains; see
+    /// [`forwardstep_core::controller::AdaptiveBackstepping`].
+    Backstepping {
+        /// c_1 … c_n, 1/s.
+        gains_per_s: Vec<f64>,
+        /// How θ̂ is found.
+        estimate: Estimate,
+    },
+}
+
+/// How θ̂ is found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// The diagonal of Γ.
+    pub adaptation: Vec<f64>,
+    /// θ̂(0); θ̂(0) + β(0) under immersion and invariance.
+    pub start: Vec<f64>,
+}
+
+impl ChainLaw {
+    /// Whether it estimates parameters.
+    pub fn estimates(&self) -> bool {
+        !matches!(self.step, ChainStep::Linearising { .. })
+    }
+}
+
+impl Law for ChainLaw {
+    fn words(&self) -> &'static str {
+        match self.step {
+            ChainStep::Linearising { .. } => "feedback linearisation",
+            ChainStep::Adaptive { .. } => "the adaptive law for chains",
+            ChainStep::Immersion { .. } => "immersion and invariance",
+            ChainStep::Backstepping { .. } => "adaptive backstepping",
+        }
+    }
+
+    fn made_for(&self) -> &'static str {
+        match self.step {
+            ChainStep::Backstepping { .. } => "strict-feedback and pure-feedback chains",
+            ChainStep::Linearising { .. } | ChainStep::Adaptive { .. } | ChainStep::Immersion { .. } => {
+                "chains of derivatives"
+            }
+        }
+    }
+
+    fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
+        let (measures, offsets) = match (robot.kind.downcast()?, &self.step) {
+            (ChainModel::Cascade(_), ChainStep::Backstepping { .. }) => {
+                (AdaptiveBackstepping::MEASURES, AdaptiveBackstepping::KNOWS_OFFSETS)
+            }
+            (ChainModel::Derivatives(_), ChainStep::Linearising { .. } | ChainStep::Adaptive { .. }) => {
+                (Linearising::<Formulas>::MEASURES, Linearising::<Formulas>::KNOWS_OFFSETS)
+            }
+            (ChainModel::Derivatives(_), ChainStep::Immersion { .. }) => {
+                (Immersion::MEASURES, Immersion::KNOWS_OFFSETS)
+            }
+            (ChainModel::Derivatives(_) | ChainModel::Cascade(_), _) => return None,
+        };
+        Some(Interface {
+            measures,
+            exchanges: &[Exchange::Position],
+            follows: &[ReferenceFamily::Consensus, ReferenceFamily::Target],
+            manipulability: false,
+            offsets,
+            pushed: false,
+            estimates: self.estimates(),
+        })
+    }
+
+    fn shares_batch(&self, _: &dyn Law) -> bool {
+        false
+    }
+
+    fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
+        let own = assembly.agent();
+        let model: &ChainModel = assembly.robot()?;
+        let wrong = |error: ChainError| SetupError::Chain { agent: own.name.clone(), error };
+        let floor = self.floor;
+        assembly.positive("the floor", floor)?;
+        let guide = guide(assembly)?;
+        match (model, &self.step) {
+            (ChainModel::Derivatives(terms), ChainStep::Linearising { gain_per_s }) => {
+                let following = Following { guide, gain_per_s: *gain_per_s, floor };
+                let law =
+                    Linearising::new(Formulas::clone(terms), own.robot.theta.clone(), following).map_err(wrong)?;
+                assembly.solo(derivatives(assembly, terms), law)
+            }
+            (ChainModel::Derivatives(terms), ChainStep::Adaptive { gain_per_s, estimate }) => {
+                let following = Following { guide, gain_per_s: *gain_per_s, floor };
+                let (gamma, start) = (estimate.adaptation.clone(), estimate.start.clone());
+                let law = Linearising::adaptive(Formulas::clone(terms), following, gamma, start).map_err(wrong)?;
+                assembly.solo(derivatives(assembly, terms), law)
+            }
+            (ChainModel::Derivatives(terms), ChainStep::Immersion { gain_per_s, estimate, antiderivatives }) => {
+                let following = Following { guide, gain_per_s: *gain_per_s, floor };
+                let (gamma, start) = (estimate.adaptation.clone(), estimate.start.clone());
+                let law =
+                    Immersion::new(Formulas::clone(terms), antiderivatives, following, gamma, start).map_err(wrong)?;
+                assembly.solo(derivatives(assembly, terms), law)
+            }
+            (ChainModel::Cascade(terms), ChainStep::Backstepping { gains_per_s, estimate }) => {
+                let gains_per_s = gains_per_s.clone();
+                let gains = BacksteppingGains { gains_per_s, adaptation: estimate.adaptation.clone(), floor };
+                let law = AdaptiveBackstepping::new(terms, guide, gains, estimate.start.clone()).map_err(wrong)?;
+                let plant =
+                    Cascade::new(terms.as_ref().clone(), own.robot.theta.clone()).map_err(|error| match error {
+                        CascadeError::Length(error) => SetupError::Length { agent: own.name.clone(), error },
+                        CascadeError::Expression(error) => wrong(ChainError::Expression(error)),
+                        CascadeError::Empty | CascadeError::Above { .. } => assembly.law_of_another(),
+                    })?;
+                assembly.solo(plant, law)
+            }
+            (ChainModel::Derivatives(_) | ChainModel::Cascade(_), _) => Err(assembly.law_of_another()),
+        }
+    }
+}
+
+fn derivatives(assembly: &Assembly<'_>, terms: &Formulas) -> Chain<Formulas> {
+    Chain { terms: terms.clone(), theta: assembly.agent().robot.theta.clone() }
+}
+
+/// Where z leads: to a target, or to agreement.
+fn guide(assembly: &Assembly<'_>) -> Result<Guide, SetupError> {
+    let own = assembly.agent();
+    let roots = |error| SetupError::Roots { agent: own.name.clone(), error };
+    match assembly.setup().reference {
+        ReferenceKind::Tracking => {
+            let mut alpha = polynomial(&own.roots_per_s).map_err(roots)?;
+            // The leading one is not listed.
+            alpha.pop();
+            Ok(Guide::Tracking { alpha })
+        }
+        ReferenceKind::Consensus => {
+            Ok(Guide::Consensus(Consensus::<Position>::new([(&own.roots_per_s[..], 0.0)]).map_err(roots)?))
+        }
+        _ => Err(assembly.wrong_reference()),
+    }
+}

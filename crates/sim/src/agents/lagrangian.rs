@@ -1,0 +1,287 @@
+//! Robots with Properties 1 to 3 under (6)–(7), a batch at a time.
+
+use std::sync::Arc;
+
+use forwardstep_core::robot::tree::Tree;
+use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass, TwoVelocity};
+use forwardstep_core::{Gain, Lanes, LengthError};
+
+use crate::closed_loop::{Assembly, Block, SetupError};
+use crate::setup::{AgentSetup, Exchange, RobotSetup};
+use crate::system::{Attachments, Interface, Law, ReferenceFamily, Robot};
+
+/// A robot model whose kernels work on one robot or on eight at once.
+pub trait RobotModel: Robot + Clone {
+    /// M, C, g and the products of the regressor.
+    type Kernel: Lagrangian<f64> + Lagrangian<Lanes<8>> + Clone + 'static;
+
+    /// Its kernel.
+    fn kernel(&self) -> Self::Kernel;
+
+    /// D, the viscous damping of each of `axes` axes that is part of `theta`, N m s/rad or N s/m; zeros where there is none.
+    fn viscous(&self, theta: &[f64], axes: usize) -> Vec<f64>;
+}
+
+/// What the engine and the verdicts ask of a robot under (6)–(7). Every [`RobotModel`] is one.
+pub trait LagrangianRobot {
+    /// D, see [`RobotModel::viscous`].
+    fn viscous(&self, theta: &[f64], axes: usize) -> Vec<f64>;
+
+    /// Builds the agents of `assembly` as one batch.
+    ///
+    /// # Errors
+    /// [`SetupError`] when they have no meaning.
+    fn batch(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError>;
+
+    /// M, Y and the natural scale of ϑ at the start of `agent`, where z = q̇ and every entry of ż is `dz`.
+    ///
+    /// # Errors
+    /// [`LengthError`] when a vector of the agent has the wrong length.
+    fn dynamics_at_start(&self, agent: &AgentSetup, dz: f64) -> Result<DynamicsAt, LengthError>;
+}
+
+/// A robot's dynamics at one state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DynamicsAt {
+    /// M(q), row by row.
+    pub mass: Vec<f64>,
+    /// Y(q, q̇, z, ż), row by row.
+    pub regressor: Vec<f64>,
+    /// [`Lagrangian::adaptation_scale`].
+    pub adaptation_scale: Vec<f64>,
+}
+
+impl<M: RobotModel> LagrangianRobot for M {
+    fn viscous(&self, theta: &[f64], axes: usize) -> Vec<f64> {
+        RobotModel::viscous(self, theta, axes)
+    }
+
+    fn batch(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
+        assembly.lagrangian(self)
+    }
+
+    fn dynamics_at_start(&self, agent: &AgentSetup, dz: f64) -> Result<DynamicsAt, LengthError> {
+        fn at<K: Lagrangian<f64>>(kernel: &K, agent: &AgentSetup, dz: f64) -> Result<DynamicsAt, LengthError> {
+            let (m, p) = (kernel.dof(), kernel.parameter_count());
+            let (q, dq, theta) = (&agent.start.q[..], &agent.start.dq[..], &agent.robot.theta[..]);
+            let (mut mass, mut regressor) = (vec![0.0; m * m], vec![0.0; m * p]);
+            kernel.mass_matrix(&mut kernel.scratch(), q, theta, &mut mass)?;
+            let motion = TwoVelocity { q, dq, z: dq, dz: &vec![dz; m] };
+            kernel.regressor(&mut kernel.scratch(), motion, &mut regressor)?;
+            Ok(DynamicsAt { mass, regressor, adaptation_scale: kernel.adaptation_scale(q, theta) })
+        }
+        at(&self.kernel(), agent, dz)
+    }
+}
+
+/// A fixed-base tree of rigid bodies, for example from a URDF.
+impl Robot for Arc<Tree> {
+    fn velocity_len(&self, axes: usize) -> usize {
+        axes
+    }
+
+    fn rest_len(&self) -> usize {
+        0
+    }
+
+    fn moves_in_space(&self) -> bool {
+        false
+    }
+
+    fn same_model(&self, other: &dyn Robot) -> bool {
+        other.downcast().is_some_and(|other| Arc::ptr_eq(self, other))
+    }
+
+    fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
+        Some(self)
+    }
+
+    fn attachments(&self) -> Attachments<'_> {
+        Attachments::Links(self)
+    }
+}
+
+impl RobotModel for Arc<Tree> {
+    type Kernel = Tree;
+
+    fn kernel(&self) -> Tree {
+        Tree::clone(self)
+    }
+
+    fn viscous(&self, theta: &[f64], axes: usize) -> Vec<f64> {
+        // Its damping parameters close ϑ, one per damped joint.
+        let mut viscous = vec![0.0; axes];
+        let damped = self.damped_joints();
+        let first = theta.len().saturating_sub(damped.len());
+        for (joint, damping) in damped.iter().zip(&theta[first..]) {
+            if let Some(axis) = viscous.get_mut(*joint) {
+                *axis = *damping;
+            }
+        }
+        viscous
+    }
+}
+
+/// The two-link planar arm in closed form.
+impl Robot for PlanarArm {
+    fn velocity_len(&self, axes: usize) -> usize {
+        axes
+    }
+
+    fn rest_len(&self) -> usize {
+        0
+    }
+
+    fn moves_in_space(&self) -> bool {
+        false
+    }
+
+    fn same_model(&self, other: &dyn Robot) -> bool {
+        other.is::<PlanarArm>()
+    }
+
+    fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
+        Some(self)
+    }
+
+    fn attachments(&self) -> Attachments<'_> {
+        Attachments::PlanarTip
+    }
+}
+
+impl RobotModel for PlanarArm {
+    type Kernel = PlanarArm;
+
+    fn kernel(&self) -> PlanarArm {
+        *self
+    }
+
+    fn viscous(&self, _: &[f64], axes: usize) -> Vec<f64> {
+        vec![0.0; axes]
+    }
+}
+
+/// A point mass in ℝᵐ.
+impl Robot for PointMass {
+    fn velocity_len(&self, axes: usize) -> usize {
+        axes
+    }
+
+    fn rest_len(&self) -> usize {
+        0
+    }
+
+    fn moves_in_space(&self) -> bool {
+        false
+    }
+
+    fn same_model(&self, other: &dyn Robot) -> bool {
+        other.downcast() == Some(self)
+    }
+
+    fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
+        Some(self)
+    }
+
+    fn attachments(&self) -> Attachments<'_> {
+        Attachments::Axes
+    }
+}
+
+impl RobotModel for PointMass {
+    type Kernel = PointMass;
+
+    fn kernel(&self) -> PointMass {
+        *self
+    }
+
+    fn viscous(&self, _: &[f64], axes: usize) -> Vec<f64> {
+        vec![0.0; axes]
+    }
+}
+
+/// τ = −K s + Y ϑ̂ with ϑ̂' = −Γ Yᵀ s: (6) and (7).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Adaptive {
+    /// K; a [`Gain::Bandwidth`] is multiplied by diag M(q₀).
+    pub damping: Gain,
+    /// Γ; a [`Gain::Bandwidth`] ω gives ω² · [`Lagrangian::adaptation_scale`].
+    pub adaptation: Gain,
+    /// ϑ̂(0).
+    pub estimate_start: Vec<f64>,
+}
+
+/// τ = −K s + Y ϑ with the true parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Known {
+    /// K; a [`Gain::Bandwidth`] is multiplied by diag M(q₀).
+    pub damping: Gain,
+}
+
+/// What both can do.
+fn interface(robot: &RobotSetup, estimates: bool) -> Option<Interface> {
+    robot.kind.lagrangian()?;
+    Some(Interface {
+        measures: &["position", "velocity"],
+        exchanges: &[Exchange::Position, Exchange::PositionVelocity],
+        follows: &[
+            ReferenceFamily::Consensus,
+            ReferenceFamily::PureIntegral,
+            ReferenceFamily::Backstepping,
+            ReferenceFamily::Leader,
+        ],
+        manipulability: true,
+        offsets: false,
+        pushed: true,
+        estimates,
+    })
+}
+
+fn block(assembly: &Assembly<'_>) -> Result<Block, SetupError> {
+    let robot = assembly.agent().robot.kind.lagrangian();
+    robot.ok_or_else(|| assembly.law_of_another())?.batch(assembly)
+}
+
+impl Law for Adaptive {
+    fn words(&self) -> &'static str {
+        "the adaptive law"
+    }
+
+    fn made_for(&self) -> &'static str {
+        "Lagrangian robots"
+    }
+
+    fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
+        interface(robot, true)
+    }
+
+    fn shares_batch(&self, other: &dyn Law) -> bool {
+        other.is::<Adaptive>()
+    }
+
+    fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
+        block(assembly)
+    }
+}
+
+impl Law for Known {
+    fn words(&self) -> &'static str {
+        "the law with known parameters"
+    }
+
+    fn made_for(&self) -> &'static str {
+        "Lagrangian robots"
+    }
+
+    fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
+        interface(robot, false)
+    }
+
+    fn shares_batch(&self, other: &dyn Law) -> bool {
+        other.is::<Known>()
+    }
+
+    fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
+        block(assembly)
+    }
+}

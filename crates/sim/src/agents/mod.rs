@@ -1,0 +1,26 @@
+//! The shipped kinds of robots and laws, one file each. They come in by the same traits as those of a user's own crate.
+//!
+//! - `lagrangian`: robots under (6)–(7), a batch at a time.
+//! - `position_only`: a point mass without velocity, Remark 7.
+//! - `vehicle`, `rotorcraft`: one thrust, Section V-B; `thrust` is the law that they share.
+//! - `task_space`: the end-effector of a robot, Theorem 6.
+//! - `spacecraft`: an attitude, Theorem 7.
+//! - `chain`: Section IV.
+
+mod chain;
+mod lagrangian;
+mod position_only;
+mod rotorcraft;
+mod spacecraft;
+mod task_space;
+mod thrust;
+mod vehicle;
+
+pub use chain::{ChainLaw, ChainModel, ChainStep, Estimate};
+pub use lagrangian::{Adaptive, DynamicsAt, Known, LagrangianRobot, RobotModel};
+pub use position_only::PositionOnlyLaw;
+pub use rotorcraft::RotorcraftModel;
+pub use spacecraft::{AttitudeLaw, SpacecraftModel};
+pub use task_space::{TaskSpaceLaw, TipSetup};
+pub use thrust::{ThrustKind, ThrustLaw};
+pub use vehicle::VehicleModel;

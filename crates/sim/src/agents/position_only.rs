@@ -1,0 +1,84 @@
+//! A point mass whose velocity is not measured: (a7)–(a9) and Remark 7.
+
+use forwardstep_core::controller::{Controller, Guide, PositionOnly};
+use forwardstep_core::plant::Mechanical;
+use forwardstep_core::reference::{Consensus, Position, polynomial};
+use forwardstep_core::robot::PointMass;
+
+use crate::closed_loop::{Assembly, Block, SetupError};
+use crate::setup::{Exchange, ReferenceKind, RobotSetup};
+use crate::system::{Interface, Law, ReferenceFamily};
+
+/// (a8) for a point mass, without velocity; see [`PositionOnly`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PositionOnlyLaw {
+    /// k, N s/m.
+    pub damping: f64,
+    /// λ_f, 1/s.
+    pub filter_per_s: f64,
+    /// γ*; zero to keep the estimate as it is.
+    pub adaptation: f64,
+    /// m̂(0), kg.
+    pub estimate_start: f64,
+}
+
+impl Law for PositionOnlyLaw {
+    fn words(&self) -> &'static str {
+        "the law without velocity"
+    }
+
+    fn made_for(&self) -> &'static str {
+        "point masses"
+    }
+
+    fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
+        robot.kind.is::<PointMass>().then_some(Interface {
+            measures: PositionOnly::MEASURES,
+            exchanges: &[Exchange::Position],
+            follows: &[ReferenceFamily::Consensus, ReferenceFamily::Target],
+            manipulability: false,
+            offsets: PositionOnly::KNOWS_OFFSETS,
+            pushed: false,
+            estimates: true,
+        })
+    }
+
+    fn shares_batch(&self, _: &dyn Law) -> bool {
+        false
+    }
+
+    fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
+        let own = assembly.agent();
+        let &PointMass { dimension } = assembly.robot()?;
+        let &PositionOnlyLaw { damping, filter_per_s, adaptation, estimate_start } = self;
+        for (what, value) in [("k", damping), ("λ_f", filter_per_s)] {
+            assembly.positive(what, value)?;
+        }
+        assembly.not_negative("γ*", adaptation)?;
+        let guide = guide(assembly)?;
+        let plant = Mechanical { robot: PointMass { dimension }, theta: own.robot.theta.clone() };
+        assembly.solo(plant, PositionOnly { axes: dimension, guide, damping, filter_per_s, adaptation, estimate_start })
+    }
+}
+
+/// Where z leads: to a target, or to agreement.
+fn guide(assembly: &Assembly<'_>) -> Result<Guide, SetupError> {
+    let own = assembly.agent();
+    let roots = |error| SetupError::Roots { agent: own.name.clone(), error };
+    match assembly.setup().reference {
+        ReferenceKind::Tracking => {
+            assembly.root_count(3)?;
+            let mut alpha = polynomial(&own.roots_per_s).map_err(roots)?;
+            // The leading one is not listed.
+            alpha.pop();
+            Ok(Guide::Tracking { alpha })
+        }
+        ReferenceKind::Consensus if own.roots_per_s.len() < 2 => {
+            Err(SetupError::OrderTooLow { agent: own.name.clone(), order: own.roots_per_s.len(), least: 2 })
+        }
+        ReferenceKind::Consensus => {
+            Ok(Guide::Consensus(Consensus::<Position>::new([(&own.roots_per_s[..], 0.0)]).map_err(roots)?))
+        }
+        _ => Err(assembly.wrong_reference()),
+    }
+}

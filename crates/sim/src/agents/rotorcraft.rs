@@ -1,0 +1,62 @@
+//! A vehicle with one thrust as a rigid body that torques turn.
+
+use forwardstep_core::Gain;
+use forwardstep_core::plant::{Rotorcraft, Rotors};
+
+use super::LagrangianRobot;
+use super::vehicle::plant as vehicle;
+use crate::closed_loop::{Assembly, SetupError};
+use crate::system::{Attachments, Robot};
+
+/// A rotorcraft. ϑ is its mass; the rest of its start is its attitude and its angular velocity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RotorcraftModel {
+    /// g, m/s².
+    pub gravity: f64,
+    /// J, kg m².
+    pub inertia: Gain,
+    /// Its rotors; without them every thrust and every torque can be had.
+    pub rotors: Option<Rotors>,
+}
+
+impl Robot for RotorcraftModel {
+    fn velocity_len(&self, axes: usize) -> usize {
+        axes
+    }
+
+    fn rest_len(&self) -> usize {
+        7
+    }
+
+    fn moves_in_space(&self) -> bool {
+        true
+    }
+
+    fn same_model(&self, other: &dyn Robot) -> bool {
+        other.downcast() == Some(self)
+    }
+
+    fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
+        None
+    }
+
+    fn attachments(&self) -> Attachments<'_> {
+        Attachments::Axes
+    }
+}
+
+/// The plant, with its true mass.
+pub(super) fn plant(assembly: &Assembly<'_>, model: &RotorcraftModel) -> Result<Rotorcraft, SetupError> {
+    if let Some(rotors) = &model.rotors {
+        assembly.positive("the offset of the rotors", rotors.offset)?;
+        assembly.positive("the drag of the rotors", rotors.drag)?;
+        assembly.not_negative("the least thrust of a rotor", rotors.thrust[0])?;
+        let above = rotors.thrust[1] - rotors.thrust[0];
+        assembly.positive("what the greatest thrust of a rotor has above the least", above)?;
+    }
+    Rotorcraft::new(vehicle(assembly, model.gravity)?, &model.inertia, model.rotors).map_err(|error| SetupError::Gain {
+        agent: assembly.agent().name.clone(),
+        gain: "J",
+        error,
+    })
+}

@@ -1,0 +1,103 @@
+//! (94), a spacecraft with reaction wheels, and its attitude without a measured angular velocity: (97)–(105).
+
+use forwardstep_core::Gain;
+use forwardstep_core::controller::{AttitudeTracking, Controller};
+use forwardstep_core::plant::{Spacecraft, Wheels};
+
+use super::LagrangianRobot;
+use crate::closed_loop::{Assembly, Block, SetupError};
+use crate::setup::{Exchange, RobotSetup};
+use crate::system::{Attachments, Interface, Law, ReferenceFamily, Robot};
+
+/// A spacecraft. Its axes are the entries of a quaternion; the rest of its start holds the momenta of the wheels, N m s.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpacecraftModel {
+    /// M, kg m².
+    pub inertia_kg_m2: [[f64; 3]; 3],
+    /// How its torque is shared out, and what the wheels can do.
+    pub wheels: Wheels,
+}
+
+impl Robot for SpacecraftModel {
+    fn velocity_len(&self, _: usize) -> usize {
+        3
+    }
+
+    fn rest_len(&self) -> usize {
+        self.wheels.count()
+    }
+
+    fn moves_in_space(&self) -> bool {
+        false
+    }
+
+    fn same_model(&self, other: &dyn Robot) -> bool {
+        other.downcast() == Some(self)
+    }
+
+    fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
+        None
+    }
+
+    fn attachments(&self) -> Attachments<'_> {
+        Attachments::Axes
+    }
+}
+
+/// (97)–(105) for a spacecraft; see [`AttitudeTracking`]. M and h_I are those of the spacecraft and its start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AttitudeLaw {
+    /// α₁ in 1/s², α₂ in 1/s.
+    pub alpha: [f64; 2],
+    /// Λ_f, 4 × 4, 1/s.
+    pub filter: Gain,
+    /// K, 4 × 4.
+    pub damping: Gain,
+}
+
+impl Law for AttitudeLaw {
+    fn words(&self) -> &'static str {
+        "the law for an attitude"
+    }
+
+    fn made_for(&self) -> &'static str {
+        "spacecraft"
+    }
+
+    fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
+        robot.kind.is::<SpacecraftModel>().then_some(Interface {
+            measures: AttitudeTracking::MEASURES,
+            exchanges: &[Exchange::Position],
+            follows: &[ReferenceFamily::Target],
+            manipulability: false,
+            offsets: AttitudeTracking::KNOWS_OFFSETS,
+            pushed: false,
+            estimates: false,
+        })
+    }
+
+    fn shares_batch(&self, _: &dyn Law) -> bool {
+        false
+    }
+
+    fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
+        let own = assembly.agent();
+        let SpacecraftModel { inertia_kg_m2, wheels } = assembly.robot()?;
+        let plant = Spacecraft::new(*inertia_kg_m2, wheels.clone(), own.enforce_limits)
+            .map_err(|error| SetupError::Spacecraft { agent: own.name.clone(), error })?;
+        assembly.positive("α₁", self.alpha[0])?;
+        assembly.positive("α₂", self.alpha[1])?;
+        let start: Vec<f64> = [&own.start.q[..], &own.start.dq, &own.start.rest].concat();
+        let momentum_inertial =
+            plant.momentum_inertial(&start).map_err(|error| SetupError::Length { agent: own.name.clone(), error })?;
+        let controller = AttitudeTracking {
+            inertia: *plant.inertia(),
+            momentum_inertial,
+            wheels: wheels.clone(),
+            alpha: self.alpha,
+            filter: assembly.gain(&self.filter, "Λ_f", 4)?,
+            damping: assembly.gain(&self.damping, "K", 4)?,
+        };
+        assembly.solo(plant, controller)
+    }
+}

@@ -1,0 +1,191 @@
+//! The end-effector of a robot with uncertain lengths, without its velocity: (76)–(82), Theorem 6.
+
+use std::sync::Arc;
+
+use forwardstep_core::controller::{Controller, ParameterBounds, TaskSpace};
+use forwardstep_core::plant::{Mechanical, TaskArm};
+use forwardstep_core::robot::tree::{LinkPoint, Tree, TreeTip, Uncertain};
+use forwardstep_core::robot::{Lagrangian, PlanarArm, PlanarTip, TipKinematics};
+use forwardstep_core::{Gain, ResolvedGain};
+
+use crate::closed_loop::{Assembly, Block, SetupError, tracking_law};
+use crate::setup::{Exchange, RobotSetup};
+use crate::system::{Interface, Law, ReferenceFamily, Robot};
+
+/// (80)–(82) for the tip of a robot; see [`forwardstep_core::controller::TaskSpace`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct TaskSpaceLaw {
+    /// What is to follow the target, with its true lengths.
+    pub tip: TipSetup,
+    /// K; a [`Gain::Bandwidth`] as in [`crate::Adaptive`].
+    pub damping: Gain,
+    /// Γ; a [`Gain::Bandwidth`] as in [`crate::Adaptive`].
+    pub adaptation: Gain,
+    /// ϑ̂(0).
+    pub estimate_start: Vec<f64>,
+    /// K*.
+    pub task_gain: Gain,
+    /// κ.
+    pub kappa: f64,
+    /// α, 1/s.
+    pub alpha_per_s: f64,
+    /// Λ; `None` to keep θ̂ as it is.
+    pub kinematic_adaptation: Option<Gain>,
+    /// A name for each entry of θ, for tables.
+    pub kinematic_names: Vec<String>,
+    /// θ̂(0).
+    pub kinematic_start: Vec<f64>,
+    /// Projection of θ̂; none by default.
+    pub bounds: Option<ParameterBounds>,
+    /// The run ends when det Ĵ falls below this share of its first value.
+    pub determinant_floor: f64,
+}
+
+impl TaskSpaceLaw {
+    /// What the coordinates of the tip are called.
+    pub fn coordinate_name(&self, axis: usize) -> Option<&'static str> {
+        let coordinate = match &self.tip {
+            TipSetup::Planar(_) => axis,
+            TipSetup::Point { coordinates, .. } => *coordinates.get(axis)?,
+        };
+        ["x", "y", "z"].get(coordinate).copied()
+    }
+}
+
+/// A tip whose kinematics are uncertain.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TipSetup {
+    /// The end of a planar arm: θ = [l₁, l₂].
+    Planar(PlanarTip),
+    /// A point of a link of a tree.
+    Point {
+        /// The point.
+        point: LinkPoint,
+        /// Which coordinates are controlled: x = 0, y = 1, z = 2 of the base.
+        coordinates: Vec<usize>,
+        /// Which translations are θ.
+        uncertain: Uncertain,
+    },
+}
+
+impl TipSetup {
+    /// The true θ of the tip of `robot`; nothing for a robot that has no such tip.
+    pub fn parameters(&self, robot: &dyn Robot) -> Option<Vec<f64>> {
+        match self {
+            TipSetup::Planar(tip) => robot.is::<PlanarArm>().then(|| tip.length_m.to_vec()),
+            TipSetup::Point { point, coordinates, uncertain } => {
+                let tree = robot.downcast::<Arc<Tree>>()?;
+                let tip = TreeTip::new(Tree::clone(tree), point, coordinates, *uncertain).ok()?;
+                Some(tip.parameters())
+            }
+        }
+    }
+}
+
+impl Law for TaskSpaceLaw {
+    fn words(&self) -> &'static str {
+        "the law for a tip"
+    }
+
+    fn made_for(&self) -> &'static str {
+        "planar arms, and for robots from a URDF with a tip"
+    }
+
+    fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
+        let suits = match self.tip {
+            TipSetup::Planar(_) => robot.kind.is::<PlanarArm>(),
+            TipSetup::Point { .. } => robot.kind.is::<Arc<Tree>>(),
+        };
+        suits.then_some(Interface {
+            measures: TaskSpace::<PlanarArm, PlanarTip>::MEASURES,
+            exchanges: &[Exchange::Position],
+            follows: &[ReferenceFamily::Target],
+            manipulability: false,
+            offsets: TaskSpace::<PlanarArm, PlanarTip>::KNOWS_OFFSETS,
+            pushed: false,
+            estimates: true,
+        })
+    }
+
+    fn shares_batch(&self, _: &dyn Law) -> bool {
+        false
+    }
+
+    fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
+        match &self.tip {
+            TipSetup::Planar(tip) => {
+                self.with_tip(assembly, *assembly.robot::<PlanarArm>()?, *tip, tip.length_m.to_vec())
+            }
+            TipSetup::Point { point, coordinates, uncertain } => {
+                let tree = Tree::clone(assembly.robot::<Arc<Tree>>()?);
+                let tip = TreeTip::new(tree.clone(), point, coordinates, *uncertain)
+                    .map_err(|error| SetupError::Tip { agent: assembly.agent().name.clone(), error })?;
+                let theta = tip.parameters();
+                self.with_tip(assembly, tree, tip, theta)
+            }
+        }
+    }
+}
+
+impl TaskSpaceLaw {
+    fn with_tip<R, T>(
+        &self,
+        assembly: &Assembly<'_>,
+        robot: R,
+        tip: T,
+        tip_theta: Vec<f64>,
+    ) -> Result<Block, SetupError>
+    where
+        R: Lagrangian<f64, Scratch: Send> + Clone + Send + Sync + 'static,
+        T: TipKinematics + Clone,
+    {
+        let own = assembly.agent();
+        let (m, p) = (tip.axes(), tip.parameter_count());
+        assembly.length("the axes of the tip", own.robot.axes.len(), m)?;
+        assembly.length("the start of the estimate", robot.parameter_count(), self.estimate_start.len())?;
+        assembly.length("the start of the kinematic estimate", p, self.kinematic_start.len())?;
+        assembly.length("the names of the kinematic parameters", p, self.kinematic_names.len())?;
+        for (what, values) in [("ϑ̂(0)", &self.estimate_start), ("θ̂(0)", &self.kinematic_start)] {
+            if let Some(value) = values.iter().find(|value| !value.is_finite()) {
+                return Err(SetupError::NotFinite { agent: own.name.clone(), what, value: *value });
+            }
+        }
+        assembly.positive("κ", self.kappa)?;
+        assembly.positive("α", self.alpha_per_s)?;
+        let floor = self.determinant_floor;
+        assembly.number("the floor of det Ĵ", floor, (0.0..1.0).contains(&floor), "must be from 0 to below 1")?;
+        let adapts = self.kinematic_adaptation.as_ref();
+        let kinematic_adaptation = adapts.map(|gain| assembly.gain(gain, "Λ", p)).transpose()?;
+        if let Some(bounds) = &self.bounds {
+            check_bounds(assembly, bounds, p)?;
+            if matches!(kinematic_adaptation, Some(ResolvedGain::Matrix { .. })) {
+                return Err(SetupError::ProjectionOfMatrix { agent: own.name.clone() });
+            }
+        }
+        let controller = TaskSpace {
+            law: tracking_law(&robot, own, &self.damping, Some(&self.adaptation))?,
+            task_gain: assembly.gain(&self.task_gain, "K*", m)?,
+            kappa: self.kappa,
+            alpha: self.alpha_per_s,
+            kinematic_adaptation,
+            bounds: self.bounds.clone(),
+            estimate_start: self.estimate_start.clone(),
+            kinematic_start: self.kinematic_start.clone(),
+            determinant_floor: floor,
+            robot: robot.clone(),
+            tip: tip.clone(),
+        };
+        let plant = TaskArm { arm: Mechanical { robot, theta: own.robot.theta.clone() }, tip, tip_theta };
+        assembly.solo(plant, controller)
+    }
+}
+
+fn check_bounds(assembly: &Assembly<'_>, bounds: &ParameterBounds, p: usize) -> Result<(), SetupError> {
+    assembly.length("the lower bounds", p, bounds.lower.len())?;
+    assembly.length("the upper bounds", p, bounds.upper.len())?;
+    assembly.positive("the margin of the bounds", bounds.margin)?;
+    bounds.lower.iter().zip(&bounds.upper).try_for_each(|(low, high)| {
+        let meets = low <= high && low.is_finite() && high.is_finite();
+        assembly.number("a lower bound", *low, meets, "must be finite and not above its upper bound")
+    })
+}

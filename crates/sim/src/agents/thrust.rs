@@ -1,0 +1,140 @@
+//! (45)–(58): the law of vehicles with one thrust, by angular velocities or, for rotorcraft, by torques.
+
+use forwardstep_core::controller::{Controller, Floor, RateLoop, Thrust, ThrustCascade, ThrustDesign, Yaw};
+use forwardstep_core::plant::Vehicle;
+
+use super::rotorcraft::{self, RotorcraftModel};
+use super::vehicle::{self, VehicleModel};
+use crate::closed_loop::{Assembly, Block, SetupError};
+use crate::setup::{Exchange, RobotSetup};
+use crate::system::{Interface, Law, ReferenceFamily};
+
+/// The control of a vehicle or a rotorcraft; its roots are those of its agent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThrustLaw {
+    /// Which of the paper's controllers.
+    pub design: ThrustKind,
+    /// What ω₃ is used for.
+    pub yaw: Yaw,
+    /// What happens near σ = 0.
+    pub floor: Floor,
+    /// σ(0), N; m g, or m̂(0) g where the mass is adapted, when it is not given.
+    pub thrust_start: Option<f64>,
+    /// b, 1/s: how fast a rotorcraft's torques bring about its angular velocity. Vehicles have no use for it.
+    pub bandwidth_per_s: f64,
+}
+
+/// Which controller of Section V-B.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ThrustKind {
+    /// (46), of order two.
+    Continuous,
+    /// (50), of order three.
+    Differentiable {
+        /// α*, 1/s.
+        alpha_star: f64,
+        /// k, kg/s².
+        stiffness: f64,
+    },
+    /// (57), (58), of order three.
+    Adaptive {
+        /// α*, 1/s.
+        alpha_star: f64,
+        /// γ*, kg s²/m²; zero to keep the estimate as it is.
+        gamma_star: f64,
+        /// m̂(0), kg.
+        estimate_start: f64,
+    },
+}
+
+impl ThrustKind {
+    /// How many roots it needs.
+    pub fn order(self) -> usize {
+        match self {
+            ThrustKind::Continuous => 2,
+            ThrustKind::Differentiable { .. } | ThrustKind::Adaptive { .. } => 3,
+        }
+    }
+}
+
+impl Law for ThrustLaw {
+    fn words(&self) -> &'static str {
+        "the thrust law"
+    }
+
+    fn made_for(&self) -> &'static str {
+        "vehicles and rotorcraft"
+    }
+
+    fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
+        let measures = if robot.kind.is::<VehicleModel>() {
+            Thrust::MEASURES
+        } else if robot.kind.is::<RotorcraftModel>() {
+            ThrustCascade::MEASURES
+        } else {
+            return None;
+        };
+        Some(Interface {
+            measures,
+            exchanges: &[Exchange::Position],
+            follows: &[ReferenceFamily::Consensus],
+            manipulability: false,
+            offsets: Thrust::KNOWS_OFFSETS,
+            pushed: false,
+            estimates: matches!(self.design, ThrustKind::Adaptive { .. }),
+        })
+    }
+
+    fn shares_batch(&self, _: &dyn Law) -> bool {
+        false
+    }
+
+    fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
+        if let Ok(VehicleModel { gravity }) = assembly.robot() {
+            let plant = vehicle::plant(assembly, *gravity)?;
+            let controller = self.outer(assembly, &plant)?;
+            return assembly.solo(plant, controller);
+        }
+        let model: &RotorcraftModel = assembly.robot()?;
+        assembly.positive("the bandwidth of the angular velocity", self.bandwidth_per_s)?;
+        let plant = rotorcraft::plant(assembly, model)?;
+        let outer = self.outer(assembly, &plant.vehicle)?;
+        let rates = RateLoop { inertia: *plant.inertia(), bandwidth_per_s: self.bandwidth_per_s };
+        assembly.solo(plant, ThrustCascade { outer, rates })
+    }
+}
+
+impl ThrustLaw {
+    /// The outer law, which knows the true mass unless it adapts it.
+    fn outer(&self, assembly: &Assembly<'_>, vehicle: &Vehicle) -> Result<Thrust, SetupError> {
+        let own = assembly.agent();
+        let roots = &own.roots_per_s;
+        assembly.root_count(self.design.order())?;
+        let (design, mass) = match self.design {
+            ThrustKind::Continuous => (ThrustDesign::Continuous { roots_per_s: [roots[0], roots[1]] }, vehicle.mass),
+            ThrustKind::Differentiable { alpha_star, stiffness } => {
+                assembly.positive("k", stiffness)?;
+                assembly.positive("α*", alpha_star)?;
+                let roots_per_s = [roots[0], roots[1], roots[2]];
+                (ThrustDesign::Differentiable { roots_per_s, alpha_star, stiffness }, vehicle.mass)
+            }
+            ThrustKind::Adaptive { alpha_star, gamma_star, estimate_start } => {
+                assembly.positive("α*", alpha_star)?;
+                assembly.not_negative("γ*", gamma_star)?;
+                assembly.positive("m̂(0)", estimate_start)?;
+                let roots_per_s = [roots[0], roots[1], roots[2]];
+                (ThrustDesign::Adaptive { roots_per_s, alpha_star, gamma_star }, estimate_start)
+            }
+        };
+        assembly.positive("the floor of the thrust", self.floor.newtons())?;
+        if let Floor::Kept { approach_s, .. } = self.floor {
+            assembly.positive("the time in which the floor of the thrust is approached", approach_s)?;
+        }
+        assembly.not_negative("the gain of the heading", self.yaw.gain)?;
+        let mut outer = Thrust::new(design, mass, vehicle.gravity)
+            .map_err(|error| SetupError::Roots { agent: own.name.clone(), error })?;
+        assembly.positive("the thrust at the start", self.thrust_start.unwrap_or(mass * vehicle.gravity))?;
+        (outer.yaw, outer.floor, outer.thrust_start) = (self.yaw, self.floor, self.thrust_start);
+        Ok(outer)
+    }
+}

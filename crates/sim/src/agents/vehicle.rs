@@ -1,0 +1,54 @@
+//! (44): a vehicle in ℝ³ with one thrust and ideal angular-rate control.
+
+use forwardstep_core::LengthError;
+use forwardstep_core::plant::Vehicle;
+
+use super::LagrangianRobot;
+use crate::closed_loop::{Assembly, SetupError};
+use crate::system::{Attachments, Robot};
+
+/// (44). ϑ is its mass; the rest of its start is its attitude (q_v, q_o).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VehicleModel {
+    /// g along the third axis, which points down, m/s².
+    pub gravity: f64,
+}
+
+impl Robot for VehicleModel {
+    fn velocity_len(&self, axes: usize) -> usize {
+        axes
+    }
+
+    fn rest_len(&self) -> usize {
+        4
+    }
+
+    fn moves_in_space(&self) -> bool {
+        true
+    }
+
+    fn same_model(&self, other: &dyn Robot) -> bool {
+        other.downcast() == Some(self)
+    }
+
+    fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
+        None
+    }
+
+    fn attachments(&self) -> Attachments<'_> {
+        Attachments::Axes
+    }
+}
+
+/// The plant, with its true mass.
+pub(super) fn plant(assembly: &Assembly<'_>, gravity: f64) -> Result<Vehicle, SetupError> {
+    let own = assembly.agent();
+    assembly.length("axes", 3, own.robot.axes.len())?;
+    let [mass] = own.robot.theta[..] else {
+        let error = LengthError { what: "theta", need: 1, got: own.robot.theta.len() };
+        return Err(SetupError::Length { agent: own.name.clone(), error });
+    };
+    assembly.positive("m", mass)?;
+    assembly.positive("g", gravity)?;
+    Ok(Vehicle { mass, gravity })
+}

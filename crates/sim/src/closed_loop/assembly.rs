@@ -1,0 +1,207 @@
+//! What a law builds its agents with.
+
+use forwardstep_core::agent::Limiter;
+use forwardstep_core::controller::Controller;
+use forwardstep_core::plant::{Plant, total};
+use forwardstep_core::{Gain, LengthError, ResolvedGain};
+
+use super::members::{self, sensor};
+use super::population::Columns;
+use super::solo::{Digital, Solo, Target};
+use super::valid::SetupError;
+use crate::agents::RobotModel;
+use crate::recording::Signal;
+use crate::setup::{AgentSetup, Axis, Control, ReferenceKind, Setup};
+use crate::system::Robot;
+
+/// Agents as a part of the closed loop.
+pub struct Block(pub(super) Box<dyn Columns>);
+
+/// The agents that a [`Law`](crate::system::Law) is asked to build, and what it needs to know of the run.
+#[derive(Clone, Copy, Debug)]
+pub struct Assembly<'a> {
+    setup: &'a Setup,
+    /// Never empty; one agent unless laws share batches.
+    agents: &'a [usize],
+}
+
+impl<'a> Assembly<'a> {
+    pub(super) fn new(setup: &'a Setup, agents: &'a [usize]) -> Self {
+        Assembly { setup, agents }
+    }
+
+    /// The whole setup.
+    pub fn setup(&self) -> &'a Setup {
+        self.setup
+    }
+
+    /// The agent to build; the first of several.
+    pub fn agent(&self) -> &'a AgentSetup {
+        &self.setup.agents[self.agents[0]]
+    }
+
+    /// The agents' numbers.
+    pub fn agents(&self) -> &'a [usize] {
+        self.agents
+    }
+
+    /// Its robot as the model that the law is made for.
+    ///
+    /// # Errors
+    /// [`SetupError::LawOfAnother`] when it is another.
+    pub fn robot<R: Robot>(&self) -> Result<&'a R, SetupError> {
+        self.agent().robot.kind.downcast().ok_or_else(|| self.law_of_another())
+    }
+
+    /// The law is made for another kind of robot.
+    pub fn law_of_another(&self) -> SetupError {
+        let own = self.agent();
+        SetupError::LawOfAnother { agent: own.name.clone(), law: own.law.words(), made_for: own.law.made_for() }
+    }
+
+    /// The reference dynamics do not lead the law.
+    pub fn wrong_reference(&self) -> SetupError {
+        SetupError::wrong_reference(self.setup, self.agent())
+    }
+
+    /// Checks how many roots the agent has.
+    ///
+    /// # Errors
+    /// [`SetupError::RootCount`] when it has another number.
+    pub fn root_count(&self, need: usize) -> Result<(), SetupError> {
+        LengthError::check("the list of roots", need, self.agent().roots_per_s.len())
+            .map_err(|error| SetupError::RootCount { agent: self.agent().name.clone(), error })
+    }
+
+    /// Checks a number of the law.
+    ///
+    /// # Errors
+    /// [`SetupError::LawNumber`] unless it is positive and finite.
+    pub fn positive(&self, what: &'static str, value: f64) -> Result<(), SetupError> {
+        self.number(what, value, value > 0.0 && value.is_finite(), "must be positive and finite")
+    }
+
+    /// Checks a number of the law.
+    ///
+    /// # Errors
+    /// [`SetupError::LawNumber`] unless it is finite and not negative.
+    pub fn not_negative(&self, what: &'static str, value: f64) -> Result<(), SetupError> {
+        self.number(what, value, value >= 0.0 && value.is_finite(), "must be finite and not negative")
+    }
+
+    /// Checks a number of the law by a requirement of its own.
+    ///
+    /// # Errors
+    /// [`SetupError::LawNumber`] unless `meets`.
+    pub fn number(
+        &self,
+        what: &'static str,
+        value: f64,
+        meets: bool,
+        requirement: &'static str,
+    ) -> Result<(), SetupError> {
+        let agent = || self.agent().name.clone();
+        if meets { Ok(()) } else { Err(SetupError::LawNumber { agent: agent(), what, value, requirement }) }
+    }
+
+    /// Checks the length of a vector of the agent.
+    ///
+    /// # Errors
+    /// [`SetupError::Length`] when it has another.
+    pub fn length(&self, what: &'static str, need: usize, got: usize) -> Result<(), SetupError> {
+        LengthError::check(what, need, got)
+            .map_err(|error| SetupError::Length { agent: self.agent().name.clone(), error })
+    }
+
+    /// A gain of `size` rows that is no bandwidth.
+    ///
+    /// # Errors
+    /// [`SetupError::Gain`], which calls it `which`, when it has no meaning.
+    pub fn gain(&self, gain: &Gain, which: &'static str, size: usize) -> Result<ResolvedGain, SetupError> {
+        gain.resolve(size, &[]).map_err(|error| SetupError::Gain {
+            agent: self.agent().name.clone(),
+            gain: which,
+            error,
+        })
+    }
+
+    /// Any robot of Section II-B under (6)–(7): all agents of the assembly, side by side.
+    ///
+    /// # Errors
+    /// [`SetupError`] when the agents have no meaning.
+    pub fn lagrangian<M: RobotModel>(&self, model: &M) -> Result<Block, SetupError> {
+        members::batch(model, self.setup, self.agents).map(Block)
+    }
+
+    /// Any plant under any controller, one agent by itself.
+    ///
+    /// # Errors
+    /// [`SetupError`] when the start, the target or the limits do not suit them.
+    pub fn solo<C: Controller>(&self, plant: C::Plant, controller: C) -> Result<Block, SetupError> {
+        let (setup, own) = (self.setup, self.agent());
+        let start = &own.start;
+        self.length("the start", total(&plant.states()), start.q.len() + start.dq.len() + start.rest.len())?;
+        let is_offset = setup.reference != ReferenceKind::Tracking;
+        let target = match &own.target {
+            None => None,
+            Some(trajectory) => {
+                self.length("the target", plant.axes(), trajectory.axes())?;
+                Some(Target { trajectory: trajectory.clone(), is_offset })
+            }
+        };
+        let torques = plant.inputs().iter().filter(|(signal, _)| *signal == Signal::Torque).map(|(_, n)| n).sum();
+        let effort_limits = self.effort_limits(torques)?;
+        let digital = match &setup.control {
+            None => None,
+            Some(control) => Some(Digital::new(
+                sensor(self.agents[0], setup, control)?,
+                self.limiter(control, torques)?,
+                1.0 / control.sample_hz,
+                control.actuators.torque_quantum,
+            )),
+        };
+        // What a limit takes away is not what the ledger balances.
+        let ledger = setup.solver.ledger && !own.enforce_limits;
+        Ok(Block(Box::new(Solo::new(self.agents[0], plant, controller, target, effort_limits, digital, ledger))))
+    }
+
+    /// The limits of the torques, if they are to be enforced.
+    fn effort_limits(&self, torques: usize) -> Result<Option<Vec<f64>>, SetupError> {
+        let own = self.agent();
+        // What is no torque of an axis is limited by the plant itself.
+        if !own.enforce_limits || torques == 0 {
+            return Ok(None);
+        }
+        let limit = |axis: &Axis| {
+            let (agent, axis_name) = (own.name.clone(), axis.name.clone());
+            axis.effort_limit.ok_or(SetupError::NoEffortLimit { agent, axis: axis_name })
+        };
+        let limits: Vec<f64> = own.robot.axes.iter().map(limit).collect::<Result<_, _>>()?;
+        LengthError::check("the effort limits", torques, limits.len())
+            .map_err(|error| SetupError::Length { agent: own.name.clone(), error })?;
+        Ok(Some(limits))
+    }
+
+    /// Limits of what a sampled controller asks for.
+    fn limiter(&self, control: &Control, torques: usize) -> Result<Limiter, SetupError> {
+        let own = self.agent();
+        let limits = |given: &Option<Vec<f64>>, of_rates| {
+            let what = if of_rates { "the limit of torque rates" } else { "the limit of torques" };
+            let values = given.clone().unwrap_or_else(|| vec![f64::INFINITY; torques]);
+            LengthError::check(what, torques, values.len()).map_err(|error| SetupError::TorqueLimitCount {
+                agent: own.name.clone(),
+                of_rates,
+                error,
+            })?;
+            Ok::<_, SetupError>(values)
+        };
+        let mut limit = limits(&control.actuators.torque_limit, false)?;
+        let quantum = control.actuators.torque_quantum;
+        // A rounded torque must not exceed its limit either.
+        if quantum > 0.0 {
+            limit.iter_mut().for_each(|limit| *limit = quantum * (*limit / quantum).floor());
+        }
+        let rate = limits(&control.actuators.torque_rate_limit, true)?;
+        Limiter::new(limit, rate).map_err(|error| SetupError::Limiter { agent: own.name.clone(), error })
+    }
+}

@@ -1,0 +1,127 @@
+//! The door through which every kind of system comes: what is asked of a robot and of a law, whoever wrote them.
+//!
+//! A [`Robot`] is a plant as data, a [`Law`] what controls it. Features (pushes, targets, offsets, sampling, verdicts, tables)
+//! ask [`Law::interface`] and these traits; none of them asks what kind of system it has before it. No method has a default
+//! body: whoever writes a kind answers every question.
+
+use std::any::Any;
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use forwardstep_core::robot::tree::Tree;
+
+use crate::agents::LagrangianRobot;
+use crate::closed_loop::{Assembly, Block, SetupError};
+use crate::setup::{Exchange, RobotSetup};
+
+/// A plant as data: its geometry, which is known, but not its true parameters, which stand beside it in [`RobotSetup`].
+pub trait Robot: Any + Debug + Send + Sync {
+    /// Numbers of a velocity of a robot with so many axes; zero for a plant that has none.
+    fn velocity_len(&self, axes: usize) -> usize;
+
+    /// Numbers in a start beside q and q̇.
+    fn rest_len(&self) -> usize;
+
+    /// Whether its position is a point of space, so that whoever agrees with it has positions in m.
+    fn moves_in_space(&self) -> bool;
+
+    /// Whether `other` is the same model, whatever its parameters, so that kernels can be shared.
+    fn same_model(&self, other: &dyn Robot) -> bool;
+
+    /// Itself as a robot with the three properties of Section II-B, if it is one.
+    fn lagrangian(&self) -> Option<&dyn LagrangianRobot>;
+
+    /// Where forces can act on it.
+    fn attachments(&self) -> Attachments<'_>;
+}
+
+impl dyn Robot {
+    /// Itself as an `R`, if it is one.
+    pub fn downcast<R: Robot>(&self) -> Option<&R> {
+        (self as &dyn Any).downcast_ref()
+    }
+
+    /// Whether it is an `R`.
+    pub fn is<R: Robot>(&self) -> bool {
+        self.downcast::<R>().is_some()
+    }
+}
+
+/// Where forces can act on a robot.
+#[derive(Clone, Copy, Debug)]
+pub enum Attachments<'a> {
+    /// On its axes only.
+    Axes,
+    /// On its axes, and on the end of its second link.
+    PlanarTip,
+    /// On its axes, and on any point of any link.
+    Links(&'a Arc<Tree>),
+}
+
+/// The law of one agent, as data.
+pub trait Law: Any + Debug + Send + Sync {
+    /// What it is called in messages.
+    fn words(&self) -> &'static str;
+
+    /// What it is made for, in messages.
+    fn made_for(&self) -> &'static str;
+
+    /// What it can do beside `robot`; `None` when it is made for another kind.
+    fn interface(&self, robot: &RobotSetup) -> Option<Interface>;
+
+    /// Whether an agent under this law and one under `other` can stand side by side in one batch, if their robots are the
+    /// same model and their references have the same order.
+    fn shares_batch(&self, other: &dyn Law) -> bool;
+
+    /// Checks what only this law can check, and builds the agents of `assembly`, which share a batch.
+    ///
+    /// # Errors
+    /// [`SetupError`] when the law or its robot has no meaning, or one does not go with the other.
+    fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError>;
+}
+
+impl dyn Law {
+    /// Itself as an `L`, if it is one.
+    pub fn downcast<L: Law>(&self) -> Option<&L> {
+        (self as &dyn Any).downcast_ref()
+    }
+
+    /// Whether it is an `L`.
+    pub fn is<L: Law>(&self) -> bool {
+        self.downcast::<L>().is_some()
+    }
+}
+
+/// What a law can do beside a robot. Every feature asks this; what it says no to is refused with the reason.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Interface {
+    /// What it measures, in words: `position`, `velocity`, …. It cannot read anything else.
+    pub measures: &'static [&'static str],
+    /// What it can transmit and hear.
+    pub exchanges: &'static [Exchange],
+    /// Which reference dynamics lead it.
+    pub follows: &'static [ReferenceFamily],
+    /// Whether its reference has a manipulability gain λ.
+    pub manipulability: bool,
+    /// Whether a target may be an offset from where all agree.
+    pub offsets: bool,
+    /// Whether forces and torques from outside may act on its robot.
+    pub pushed: bool,
+    /// Whether it estimates parameters of its robot.
+    pub estimates: bool,
+}
+
+/// Reference dynamics by what leads the agents.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReferenceFamily {
+    /// The consensus family (aa10), (a1), (a5), (24).
+    Consensus,
+    /// (3) and (23).
+    PureIntegral,
+    /// The baseline (aa6).
+    Backstepping,
+    /// (110), (119), (122) and swarm tracking.
+    Leader,
+    /// A target of every agent's own.
+    Target,
+}
