@@ -42,8 +42,8 @@ fn products<R: Lagrangian<f64>>(robot: &R, case: &Case, theta: &[f64]) -> (Vec<f
     (y_theta, yt_s)
 }
 
-/// Everything a robot claims, for parameters ϑ that need not be physical; `damping` is diag D.
-fn consistent<R: Lagrangian<f64> + Lagrangian<Dual>>(robot: &R, case: &Case, theta: &[f64], damping: &[f64]) {
+/// Everything a robot claims, for parameters ϑ that need not be physical.
+fn consistent<R: Lagrangian<f64> + Lagrangian<Dual>>(robot: &R, case: &Case, theta: &[f64]) {
     let n = Lagrangian::<f64>::dof(robot);
     let width = Lagrangian::<f64>::parameter_count(robot);
     let mut scratch = Lagrangian::<f64>::scratch(robot);
@@ -63,7 +63,8 @@ fn consistent<R: Lagrangian<f64> + Lagrangian<Dual>>(robot: &R, case: &Case, the
     robot.coriolis_matrix(&mut scratch, &case.q, &case.dq, theta, &mut c).unwrap();
     robot.gravity(&mut scratch, &case.q, theta, &mut g).unwrap();
     let (inertial, coriolis) = (times(&m, &case.dz), times(&c, &case.z));
-    let sum: Vec<f64> = (0..n).map(|i| inertial[i] + coriolis[i] + g[i] + damping[i] * case.z[i]).collect();
+    let mut sum: Vec<f64> = (0..n).map(|i| inertial[i] + coriolis[i] + g[i]).collect();
+    robot.add_damping(&mut scratch, &case.q, theta, &case.z, &mut sum).unwrap();
     assert!(error(&sum, &y_theta) < TOLERANCE, "M ż + C z + g + D z");
 
     // Symmetry of M; skew-symmetry of Ṁ − 2C, from which Ṁ = C + Cᵀ with the symmetry of M.
@@ -101,15 +102,6 @@ fn invertible<R: Lagrangian<f64>>(robot: &R, case: &Case, theta: &[f64]) {
     assert!(energy > 0.0, "sᵀMs = {energy}");
 }
 
-/// diag D of a tree.
-fn damping_of(tree: &Tree, theta: &[f64]) -> Vec<f64> {
-    let mut damping = vec![0.0; tree.joint_count()];
-    for (joint, d) in tree.damped_joints().iter().zip(&theta[10 * tree.joint_count()..]) {
-        damping[*joint] = *d;
-    }
-    damping
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
@@ -119,12 +111,12 @@ proptest! {
         let assembled = random.tree(joints);
         let tree = &assembled.tree;
         let case = Case::new(&mut random, joints);
-        consistent(tree, &case, &assembled.theta, &damping_of(tree, &assembled.theta));
+        consistent(tree, &case, &assembled.theta);
         invertible(tree, &case, &assembled.theta);
         // An estimate ϑ̂ may be anything.
         let estimate = random.column(assembled.theta.len(), 3.0);
-        consistent(tree, &case, &estimate, &damping_of(tree, &estimate));
-        consistent(tree, &case, &vec![0.0; estimate.len()], &vec![0.0; joints]);
+        consistent(tree, &case, &estimate);
+        consistent(tree, &case, &vec![0.0; estimate.len()]);
         let samples = tree.check_mass_matrix(&assembled.theta, &vec![[f64::NEG_INFINITY, f64::INFINITY]; joints], 20);
         prop_assert_eq!(samples, Ok(()));
     }
@@ -133,7 +125,7 @@ proptest! {
     fn prop_planar_arm_is_lagrangian(seed in any::<u64>()) {
         let mut random = Random::new(seed);
         let case = Case::new(&mut random, 2);
-        consistent(&PlanarArm, &case, &random.column(5, 3.0), &[0.0; 2]);
+        consistent(&PlanarArm, &case, &random.column(5, 3.0));
         let mut positive = || 1.5 + random.number();
         let arm = PlanarLinks::uniform([positive(), positive()], [positive(), positive()]);
         invertible(&PlanarArm, &case, &arm.theta());
@@ -144,7 +136,7 @@ proptest! {
         let mut random = Random::new(seed);
         let case = Case::new(&mut random, dimension);
         let robot = PointMass { dimension };
-        consistent(&robot, &case, &random.column(1, 3.0), &vec![0.0; dimension]);
+        consistent(&robot, &case, &random.column(1, 3.0));
         invertible(&robot, &case, &[1.5 + random.number()]);
     }
 

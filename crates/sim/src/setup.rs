@@ -197,12 +197,6 @@ impl RobotSetup {
     pub fn velocity_len(&self) -> usize {
         self.kind.velocity_len(self.axes.len())
     }
-
-    /// D: the true viscous damping of every axis, N m s/rad or N s/m; zero where there is none.
-    pub fn viscous(&self) -> Vec<f64> {
-        let axes = self.axes.len();
-        self.kind.lagrangian().map_or_else(|| vec![0.0; axes], |robot| robot.viscous(&self.theta, axes))
-    }
 }
 
 /// One degree of freedom of a robot.

@@ -111,6 +111,20 @@ pub trait Lagrangian<S: Scalar> {
         c: &mut [S],
     ) -> Result<(), LengthError>;
 
+    /// Adds D(q) v to `out`, the torque of viscous damping at the velocity `v`: sᵀD s is what the proof loses by it beside sᵀK s.
+    /// D need not be symmetric; D + Dᵀ ⪰ 0.
+    ///
+    /// # Errors
+    /// [`LengthError`] when a slice has the wrong length.
+    fn add_damping(
+        &self,
+        scratch: &mut Self::Scratch,
+        q: &[S],
+        theta: &[S],
+        v: &[S],
+        out: &mut [S],
+    ) -> Result<(), LengthError>;
+
     /// The gravity torque g(q).
     ///
     /// # Errors

@@ -205,6 +205,14 @@ impl<S: Scalar> Lagrangian<S> for PlanarArm {
         Ok(())
     }
 
+    #[inline(always)]
+    fn add_damping(&self, (): &mut (), q: &[S], theta: &[S], v: &[S], out: &mut [S]) -> Result<(), LengthError> {
+        LengthError::check("q", 2, q.len())?;
+        LengthError::check("theta", 5, theta.len())?;
+        LengthError::check("velocity", 2, v.len())?;
+        LengthError::check("damping torque", 2, out.len())
+    }
+
     fn gravity(&self, (): &mut (), q: &[S], theta: &[S], g: &mut [S]) -> Result<(), LengthError> {
         LengthError::check("q", 2, q.len())?;
         LengthError::check("theta", 5, theta.len())?;

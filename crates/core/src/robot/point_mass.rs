@@ -92,6 +92,14 @@ impl<S: Scalar> Lagrangian<S> for PointMass {
         Ok(())
     }
 
+    #[inline(always)]
+    fn add_damping(&self, (): &mut (), q: &[S], theta: &[S], v: &[S], out: &mut [S]) -> Result<(), LengthError> {
+        LengthError::check("q", self.dimension, q.len())?;
+        LengthError::check("theta", 1, theta.len())?;
+        LengthError::check("velocity", self.dimension, v.len())?;
+        LengthError::check("damping torque", self.dimension, out.len())
+    }
+
     fn gravity(&self, (): &mut (), q: &[S], theta: &[S], g: &mut [S]) -> Result<(), LengthError> {
         LengthError::check("q", self.dimension, q.len())?;
         LengthError::check("theta", 1, theta.len())?;

@@ -1,6 +1,9 @@
 //! What there is to say about a robot, for people and as JSON.
 
-use forwardstep_sim::AxisUnit;
+use std::sync::Arc;
+
+use forwardstep_core::robot::tree::Tree;
+use forwardstep_sim::{AxisUnit, RobotSetup};
 use serde::Serialize;
 
 use crate::urdf::{MotionKind, UrdfRobot};
@@ -61,7 +64,7 @@ impl RobotDescription {
     /// Describes `robot`.
     pub fn new(robot: &UrdfRobot) -> Self {
         let theta = &robot.robot.theta;
-        let damping = robot.robot.viscous();
+        let damping = damping(&robot.robot);
         let kinds = robot.kinds.iter().zip(&robot.robot.axes).zip(damping);
         let joints = kinds.map(|((kind, axis), damping)| {
             let (unit, effort_unit) = match axis.unit {
@@ -131,6 +134,18 @@ impl Dynamics {
     pub fn to_json(&self) -> String {
         to_json(self)
     }
+}
+
+/// The damping of every degree of freedom; in ϑ it stands after the inertias, for those that have some.
+fn damping(robot: &RobotSetup) -> Vec<f64> {
+    let count = robot.axes.len();
+    let mut damping = vec![0.0; count];
+    if let Some(tree) = robot.kind.downcast::<Arc<Tree>>() {
+        for (joint, value) in tree.damped_joints().iter().zip(robot.theta.iter().skip(10 * count)) {
+            damping[*joint] = *value;
+        }
+    }
+    damping
 }
 
 /// Texts, lists and numbers always have a JSON.

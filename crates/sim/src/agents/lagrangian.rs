@@ -17,16 +17,10 @@ pub trait RobotModel: Robot + Clone {
 
     /// Its kernel.
     fn kernel(&self) -> Self::Kernel;
-
-    /// D, the viscous damping of each of `axes` axes that is part of `theta`, N m s/rad or N s/m; zeros where there is none.
-    fn viscous(&self, theta: &[f64], axes: usize) -> Vec<f64>;
 }
 
 /// What the engine and the verdicts ask of a robot under (6)–(7). Every [`RobotModel`] is one.
 pub trait LagrangianRobot {
-    /// D, see [`RobotModel::viscous`].
-    fn viscous(&self, theta: &[f64], axes: usize) -> Vec<f64>;
-
     /// Builds the agents of `assembly` as one batch.
     ///
     /// # Errors
@@ -52,10 +46,6 @@ pub struct DynamicsAt {
 }
 
 impl<M: RobotModel> LagrangianRobot for M {
-    fn viscous(&self, theta: &[f64], axes: usize) -> Vec<f64> {
-        RobotModel::viscous(self, theta, axes)
-    }
-
     fn batch(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
         assembly.lagrangian(self)
     }
@@ -107,19 +97,6 @@ impl RobotModel for Arc<Tree> {
     fn kernel(&self) -> Tree {
         Tree::clone(self)
     }
-
-    fn viscous(&self, theta: &[f64], axes: usize) -> Vec<f64> {
-        // Its damping parameters close ϑ, one per damped joint.
-        let mut viscous = vec![0.0; axes];
-        let damped = self.damped_joints();
-        let first = theta.len().saturating_sub(damped.len());
-        for (joint, damping) in damped.iter().zip(&theta[first..]) {
-            if let Some(axis) = viscous.get_mut(*joint) {
-                *axis = *damping;
-            }
-        }
-        viscous
-    }
 }
 
 /// The two-link planar arm in closed form.
@@ -155,10 +132,6 @@ impl RobotModel for PlanarArm {
     fn kernel(&self) -> PlanarArm {
         *self
     }
-
-    fn viscous(&self, _: &[f64], axes: usize) -> Vec<f64> {
-        vec![0.0; axes]
-    }
 }
 
 /// A point mass in ℝᵐ.
@@ -193,10 +166,6 @@ impl RobotModel for PointMass {
 
     fn kernel(&self) -> PointMass {
         *self
-    }
-
-    fn viscous(&self, _: &[f64], axes: usize) -> Vec<f64> {
-        vec![0.0; axes]
     }
 }
 

@@ -12,10 +12,10 @@ use forwardstep_core::{InverseQuadratic, Kernel, LengthError, Packed, ResolvedGa
 pub(crate) struct Member {
     /// Index among all agents.
     pub(crate) agent: usize,
+    /// m.
+    pub(crate) axes: usize,
     /// The true ϑ.
     pub(crate) theta: Vec<f64>,
-    /// D, one entry per axis.
-    pub(crate) viscous: Vec<f64>,
     /// Its law.
     pub(crate) law: SlotineLi,
     /// xᵀ Γ⁻¹ x, when ϑ is adapted.
@@ -149,7 +149,11 @@ impl<R: Lagrangian<S>, S: Packed> Kernel for Act<'_, R, S> {
         if let Some(dx) = self.dx {
             give(*l, squad.first, &work.ddq, &mut dx[l.dq..]);
             if self.drive.held.is_none() {
-                work.write(*l, squad, dx);
+                work.learn(*l, squad, dx);
+                if l.ledger_on {
+                    let dissipation = squad.dissipation(*l, robot, work)?;
+                    dissipation.store(&mut dx[l.ledger + squad.first..l.ledger + l.n]);
+                }
             }
         }
         Ok(())
@@ -162,7 +166,6 @@ struct Squad<S> {
     first: usize,
     law: SlotineLi<S>,
     theta: Vec<S>,
-    viscous: Vec<S>,
     effort_limits: Option<Vec<S>>,
 }
 
@@ -201,12 +204,11 @@ impl<S: Packed> Squad<S> {
         // A member without limits beside one with limits has limits that are never reached.
         let limit = |lane: usize, k: usize| member(lane).effort_limits.as_ref().map_or(f64::INFINITY, |l| l[k]);
         let limited = (0..S::WIDTH).any(|lane| member(lane).effort_limits.is_some());
-        let axes = member(0).viscous.len();
+        let axes = member(0).axes;
         Squad {
             first,
             law: SlotineLi { damping, adaptation },
             theta: pack(|member| &member.theta),
-            viscous: pack(|member| &member.viscous),
             effort_limits: limited.then(|| (0..axes).map(|k| S::from_lanes(|lane| limit(lane, k))).collect()),
         }
     }
@@ -246,15 +248,23 @@ impl<S: Packed> Squad<S> {
 
     /// sᵀ(K + D)s − sᵀτ_ext. What a limit takes away from the torque acts like an external one.
     #[inline(always)]
-    fn dissipation<T>(&self, l: Layout, w: &mut Work<S, T>) -> S {
+    fn dissipation<R: Lagrangian<S>>(
+        &self,
+        l: Layout,
+        robot: &R,
+        w: &mut Work<S, R::Scratch>,
+    ) -> Result<S, LengthError> {
         self.law.damping.apply(&w.s, &mut w.damped);
-        let mut dissipation = S::ZERO;
         for k in 0..l.m {
             let external = w.net[k] - w.tau[k];
-            let damped = self.viscous[k].mul_add(w.s[k], w.damped[k] - external);
-            dissipation = w.s[k].mul_add(damped, dissipation);
+            w.damped[k] = w.damped[k] - external;
         }
-        dissipation
+        robot.add_damping(&mut w.scratch, &w.q, &self.theta, &w.s, &mut w.damped)?;
+        let mut dissipation = S::ZERO;
+        for k in 0..l.m {
+            dissipation = w.s[k].mul_add(w.damped[k], dissipation);
+        }
+        Ok(dissipation)
     }
 }
 
@@ -283,16 +293,12 @@ impl<S: Packed, T> Work<S, T> {
         }
     }
 
-    /// Stores ϑ̂' and the dissipation of `squad`; needs what [`Squad::track`] left.
+    /// Stores ϑ̂' of `squad`; needs what [`Squad::track`] left.
     #[inline(always)]
-    fn write(&mut self, l: Layout, squad: &Squad<S>, dx: &mut [f64]) {
+    fn learn(&mut self, l: Layout, squad: &Squad<S>, dx: &mut [f64]) {
         if l.adaptive {
             squad.law.adaptation_rate(&self.yt_s, &mut self.d_theta_hat);
             give(l, squad.first, &self.d_theta_hat, &mut dx[l.theta_hat..]);
-        }
-        if l.ledger_on {
-            let dissipation = squad.dissipation(l, self);
-            dissipation.store(&mut dx[l.ledger + squad.first..l.ledger + l.n]);
         }
     }
 }

@@ -149,14 +149,7 @@ fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Re
     } else {
         None
     };
-    Ok(Member {
-        agent: index,
-        theta: agent.robot.theta.clone(),
-        viscous: agent.robot.viscous(),
-        law,
-        estimate_cost,
-        effort_limits,
-    })
+    Ok(Member { agent: index, theta: agent.robot.theta.clone(), axes: m, law, estimate_cost, effort_limits })
 }
 
 /// K and Γ of one agent, with its robot's natural scales for gains that are bandwidths.

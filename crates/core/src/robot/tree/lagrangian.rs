@@ -64,6 +64,27 @@ impl<S: Scalar> Lagrangian<S> for Tree {
         dispatch(CoriolisMatrix { tree: self, scratch, q, dq, theta, c })
     }
 
+    #[inline(always)]
+    fn add_damping(
+        &self,
+        _: &mut TreeScratch<S>,
+        q: &[S],
+        theta: &[S],
+        v: &[S],
+        out: &mut [S],
+    ) -> Result<(), LengthError> {
+        let n = self.joint_count();
+        LengthError::check("q", n, q.len())?;
+        LengthError::check("theta", self.theta_len(), theta.len())?;
+        LengthError::check("velocity", n, v.len())?;
+        LengthError::check("damping torque", n, out.len())?;
+        // The dampings close ϑ.
+        for (joint, damping) in self.damped.iter().zip(&theta[10 * n..]) {
+            out[*joint] = damping.mul_add(v[*joint], out[*joint]);
+        }
+        Ok(())
+    }
+
     fn gravity(&self, scratch: &mut TreeScratch<S>, q: &[S], theta: &[S], g: &mut [S]) -> Result<(), LengthError> {
         dispatch(Gravity { tree: self, scratch, q, theta, g })
     }
