@@ -2,7 +2,8 @@
 //!
 //! One piece per accepted step, holding r₁ … r₅ of every transmitted number and nothing else: memory grows with what is
 //! sent, not with the state. A piece needs none of its neighbours, so at a break-point the past has a left and a right
-//! side for free. Pieces older than the largest delay are dropped; the ring grows by doubling and then stays.
+//! side for free. A piece is dropped when a step begins so late that nothing in it can be heard any more, not at its end:
+//! rows recorded within a step hear what its start does. The ring grows by doubling and then stays.
 
 use super::kernels::continue_piece;
 
@@ -91,12 +92,17 @@ impl History {
         continue_piece(last, draft, width, (t_s - start) * inverse, h * inverse);
     }
 
-    /// Keeps the draft as the piece of [`start_s`, `end_s`] and drops what ended before `forget_s`.
-    pub(crate) fn commit(&mut self, start_s: f64, end_s: f64, forget_s: f64) {
+    /// Keeps the draft as the piece of [`start_s`, `end_s`]. There is no room for another draft before
+    /// [`History::make_room`].
+    pub(crate) fn commit(&mut self, start_s: f64, end_s: f64) {
         let slot = self.slot(self.next);
         self.spans[slot] = [start_s, end_s, 1.0 / (end_s - start_s)];
         self.next += 1;
         self.end_s = end_s;
+    }
+
+    /// Makes room for the draft of the step to come, which reads nothing sent before `forget_s`: pieces that ended earlier go.
+    pub(crate) fn make_room(&mut self, forget_s: f64) {
         while self.first + 1 < self.next {
             let [_, end, _] = self.spans[self.slot(self.first)];
             if end >= forget_s {
@@ -104,7 +110,6 @@ impl History {
             }
             self.first += 1;
         }
-        // One place must stay free for the draft.
         if self.next - self.first >= self.capacity as u64 {
             self.grow();
         }
@@ -161,7 +166,7 @@ mod tests {
         let r = [0.3, -1.2, 0.7, 2.0, -0.9];
         let mut history = History::new(5);
         history.draft().1.copy_from_slice(&r);
-        history.commit(1.0, 1.5, 0.0);
+        history.commit(1.0, 1.5);
         history.extrapolate(1, 1.5, 0.7);
         let continued: [f64; 5] = std::array::from_fn(|c| history.draft().1[c]);
         for t in [1.5, 1.7, 2.0, 2.2] {
@@ -176,7 +181,8 @@ mod tests {
         for k in 0..10_000 {
             let t = 0.01 * f64::from(k);
             history.draft().1[0] = f64::from(k);
-            history.commit(t, t + 0.01, t - 0.5);
+            history.commit(t, t + 0.01);
+            history.make_room(t + 0.01 - 0.5);
         }
         assert_eq!(history.capacity, 64);
         let mut cursor = 0;

@@ -188,6 +188,8 @@ impl<'a> Integrator<'a> {
         if t >= self.end_s {
             return Ok(None);
         }
+        // The rows within the last step have been read.
+        self.history.make_room(t - self.forget_s);
         self.begin(system, t);
         self.smooth = !self.stale;
         if self.stale {
@@ -411,7 +413,7 @@ impl<'a> Integrator<'a> {
     fn keep(&mut self, t: f64, h: f64, end_s: f64) {
         let (source, blocks, width) = piece_source(self.tableau, &self.x0, &self.x1, &self.k, h, &self.hearing);
         make_piece(source, blocks, width, self.history.draft().1);
-        self.history.commit(t, end_s, end_s - self.forget_s);
+        self.history.commit(t, end_s);
         self.step = Step { start_s: t, end_s };
         self.statistics.steps += 1;
     }
