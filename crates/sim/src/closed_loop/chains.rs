@@ -7,7 +7,7 @@ use forwardstep_core::plant::{Cascade, CascadeError, Chain, Formulas};
 use forwardstep_core::reference::{Consensus, Position, polynomial};
 
 use super::population::Columns;
-use super::systems::{no_manipulability, solo};
+use super::systems::solo;
 use super::valid::SetupError;
 use crate::chain::{ChainLaw, ChainModel, ChainStep};
 use crate::setup::{AgentSetup, Law, ReferenceKind, Setup};
@@ -66,7 +66,6 @@ fn derivatives(own: &AgentSetup, terms: &Formulas) -> Chain<Formulas> {
 /// Where z leads: to a target, or to agreement.
 fn guide(setup: &Setup, own: &AgentSetup) -> Result<Guide, SetupError> {
     let roots = |error| SetupError::Roots { agent: own.name.clone(), error };
-    no_manipulability(own)?;
     match setup.reference {
         ReferenceKind::Tracking => {
             let mut alpha = polynomial(&own.roots_per_s).map_err(roots)?;

@@ -13,6 +13,7 @@
 //! - `systems`: from agents to plants and controllers that stand by themselves.
 //! - `vehicles`: the same for vehicles with one thrust.
 //! - `single`: the same for the robot's tip and the spacecraft of Section V-C.
+//! - `unused`: what a setup states and nothing reads.
 //! - `valid`: what makes a [`crate::Setup`] meaningless.
 //! - `assemble`: all populations and what joins them: the right-hand side as a whole, and its events.
 
@@ -30,8 +31,9 @@ mod single;
 mod sliding;
 mod solo;
 mod systems;
+mod unused;
 mod valid;
 mod vehicles;
 
 pub(crate) use assemble::ClosedLoop;
-pub use valid::{SetupError, validate};
+pub use valid::{SetupError, VelocityQuantity, validate};

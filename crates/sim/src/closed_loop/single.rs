@@ -10,11 +10,12 @@ use super::members::tracking_law;
 use super::population::Columns;
 use super::systems::{positive, solo};
 use super::valid::SetupError;
-use crate::setup::{AgentSetup, AttitudeLaw, RobotKind, Setup, TaskSpaceLaw, TipSetup};
+use crate::setup::{AgentSetup, AttitudeLaw, ReferenceKind, RobotKind, Setup, TaskSpaceLaw, TipSetup};
 
 /// A robot whose tip follows a target.
 pub(super) fn task_space(setup: &Setup, agent: usize, law: &TaskSpaceLaw) -> Result<Box<dyn Columns>, SetupError> {
     let own = &setup.agents[agent];
+    only_tracks(setup, own)?;
     match (&own.robot.kind, &law.tip) {
         (RobotKind::PlanarArm, TipSetup::Planar(tip)) => {
             with_tip(setup, agent, law, PlanarArm, *tip, tip.length_m.to_vec())
@@ -71,8 +72,12 @@ where
         length("the lower bounds", p, bounds.lower.len())?;
         length("the upper bounds", p, bounds.upper.len())?;
         positive(own, "the margin of the bounds", bounds.margin)?;
-        if matches!(kinematic_adaptation, Some(ResolvedGain::Matrix { .. })) {
-            return Err(SetupError::ProjectionOfMatrix { agent: own.name.clone() });
+        match kinematic_adaptation {
+            None => return Err(SetupError::BoundsOfKnown { agent: own.name.clone() }),
+            Some(ResolvedGain::Matrix { .. }) => {
+                return Err(SetupError::ProjectionOfMatrix { agent: own.name.clone() });
+            }
+            Some(ResolvedGain::Diagonal(_)) => {}
         }
         for k in 0..p {
             let (low, high) = (bounds.lower[k], bounds.upper[k]);
@@ -109,6 +114,7 @@ pub(super) fn attitude(
     law: &AttitudeLaw,
 ) -> Result<Box<dyn Columns>, SetupError> {
     let own = &setup.agents[agent];
+    only_tracks(setup, own)?;
     let plant = Spacecraft::new(*inertia, wheels.clone(), own.enforce_limits)
         .map_err(|error| SetupError::Spacecraft { agent: own.name.clone(), error })?;
     positive(own, "α₁", law.alpha[0])?;
@@ -125,6 +131,15 @@ pub(super) fn attitude(
         damping: resolve(own, &law.damping, "K", 4)?,
     };
     solo(setup, agent, plant, controller)
+}
+
+/// Both laws have reference dynamics of their own, which lead to a target. (A target beside reference dynamics that agree would
+/// be an offset, which `solo` refuses.)
+fn only_tracks(setup: &Setup, own: &AgentSetup) -> Result<(), SetupError> {
+    if setup.reference == ReferenceKind::Tracking || own.target.is_some() {
+        return Ok(());
+    }
+    Err(SetupError::OnlyTracks { agent: own.name.clone(), law: own.law.words() })
 }
 
 fn resolve(own: &AgentSetup, gain: &Gain, which: &'static str, size: usize) -> Result<ResolvedGain, SetupError> {

@@ -12,7 +12,7 @@ use super::members::sensor;
 use super::population::Columns;
 use super::single;
 use super::solo::{Digital, Solo, Target};
-use super::valid::SetupError;
+use super::valid::{SetupError, too_many};
 use super::vehicles;
 use crate::recording::Signal;
 use crate::setup::{AgentSetup, Control, Exchange, Law, ReferenceKind, RobotKind, Setup};
@@ -63,9 +63,9 @@ fn guide(setup: &Setup, own: &AgentSetup) -> Result<Guide, SetupError> {
         ReferenceKind::Consensus if own.roots_per_s.len() < 2 => {
             Err(SetupError::OrderTooLow { agent: name(), order: own.roots_per_s.len(), least: 2 })
         }
-        ReferenceKind::Consensus => Ok(Guide::Consensus(
-            Consensus::<Position>::new([(&own.roots_per_s[..], own.manipulability)]).map_err(roots)?,
-        )),
+        ReferenceKind::Consensus => {
+            Ok(Guide::Consensus(Consensus::<Position>::new([(&own.roots_per_s[..], 0.0)]).map_err(roots)?))
+        }
         _ => Err(SetupError::ReferenceOfLaw { agent: name(), law: own.law.words() }),
     }
 }
@@ -86,6 +86,11 @@ pub(super) fn solo<C: Controller>(
     length("the start", total(&plant.states()), start.q.len() + start.dq.len() + start.rest.len())?;
     if setup.exchange != Exchange::Position {
         return Err(SetupError::SendsPositionOnly { agent: name(), law: own.law.words() });
+    }
+    let blocks = controller.states();
+    let vectors = blocks.iter().filter(|(signal, _)| matches!(signal, Signal::Reference(_))).count();
+    if start.reference.len() > vectors {
+        return Err(too_many(own, vectors, start.reference.len()));
     }
     if !own.pushes.is_empty() {
         return Err(SetupError::NotPushed { agent: name(), law: own.law.words() });
@@ -120,7 +125,7 @@ pub(super) fn solo<C: Controller>(
 
 /// The limits of the torques, if they are to be enforced.
 fn effort_limits(own: &AgentSetup, torques: usize) -> Result<Option<Vec<f64>>, SetupError> {
-    // What is no torque of an axis is limited by the plant itself.
+    // What is no torque of an axis is limited by the plant itself, if by anything.
     if !own.enforce_limits || torques == 0 {
         return Ok(None);
     }
@@ -160,15 +165,6 @@ fn limiter(own: &AgentSetup, control: &Control, torques: usize) -> Result<Limite
 pub(super) fn root_count(own: &AgentSetup, need: usize) -> Result<(), SetupError> {
     LengthError::check("the list of roots", need, own.roots_per_s.len())
         .map_err(|error| SetupError::RootCount { agent: own.name.clone(), error })
-}
-
-/// Checks that an agent has no manipulability gain.
-pub(super) fn no_manipulability(own: &AgentSetup) -> Result<(), SetupError> {
-    if own.manipulability == 0.0 {
-        return Ok(());
-    }
-    let (agent, law, value) = (own.name.clone(), own.law.words(), own.manipulability);
-    Err(SetupError::NoManipulability { agent, law, value })
 }
 
 pub(super) fn positive(own: &AgentSetup, what: &'static str, value: f64) -> Result<(), SetupError> {

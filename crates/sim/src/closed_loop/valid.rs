@@ -8,6 +8,7 @@ use forwardstep_core::robot::tree::TipError;
 use forwardstep_core::{GainError, LengthError};
 use thiserror::Error;
 
+use super::unused;
 use crate::leader::{Following, FollowingDesign};
 use crate::network::NetworkError;
 use crate::push::PushError;
@@ -164,6 +165,28 @@ pub enum SetupError {
         /// Its law, in words.
         law: &'static str,
     },
+    /// A law that cannot agree with others.
+    #[error("agent `{agent}`: {law} follows a target of its own; it does not agree with others")]
+    OnlyTracks {
+        /// The agent.
+        agent: String,
+        /// Its law, in words.
+        law: &'static str,
+    },
+    /// More of z(0), ż(0), … than the state of the reference dynamics has.
+    #[error("agent `{agent}`: {error}")]
+    StartOfReference {
+        /// The agent.
+        agent: String,
+        /// How many there are, and how many there may be.
+        error: LengthError,
+    },
+    /// Edges among agents that do not agree on anything.
+    #[error("agents that follow targets of their own hear nobody, but the network has edges ({edges} in all)")]
+    NobodyHears {
+        /// How many, over all graphs.
+        edges: usize,
+    },
     /// A reference of too low an order for a law.
     #[error("agent `{agent}`: its reference dynamics have order {order}, but its law needs {least} roots or more")]
     OrderTooLow {
@@ -269,6 +292,12 @@ pub enum SetupError {
         /// What it must be.
         requirement: &'static str,
     },
+    /// Bounds of kinematic parameters that are not adapted.
+    #[error("agent `{agent}`: bounds of kinematic parameters have no effect where these are not adapted")]
+    BoundsOfKnown {
+        /// The agent.
+        agent: String,
+    },
     /// A torque limit of one agent.
     #[error("agent `{agent}`: {error}")]
     Limiter {
@@ -276,6 +305,19 @@ pub enum SetupError {
         agent: String,
         /// What is wrong.
         error: LimiterError,
+    },
+    /// What a sensor of velocities would do, where it has no part in anything.
+    #[error(
+        "{} is {value}, but {}", .quantity.words(),
+        if *.filtered { "velocities come from filtered differences of positions" } else { "no law measures velocities" }
+    )]
+    VelocityUnused {
+        /// What it is.
+        quantity: VelocityQuantity,
+        /// The value.
+        value: f64,
+        /// Whether there are velocities, but from positions.
+        filtered: bool,
     },
     /// The filter that gives velocities.
     #[error(transparent)]
@@ -298,6 +340,28 @@ pub enum SetupError {
         /// The value.
         value: f64,
     },
+}
+
+/// What is said of a sensor of velocities.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VelocityQuantity {
+    /// [`crate::Sensors::velocity_noise`].
+    Noise,
+    /// [`crate::Sensors::velocity_quantum`].
+    Step,
+    /// [`crate::VelocitySensor::Filtered`].
+    CutOff,
+}
+
+impl VelocityQuantity {
+    /// What it is called in messages.
+    pub fn words(self) -> &'static str {
+        match self {
+            VelocityQuantity::Noise => "the noise of velocities",
+            VelocityQuantity::Step => "the step of velocities",
+            VelocityQuantity::CutOff => "the cut-off of the filter of velocities",
+        }
+    }
 }
 
 /// Samples that a run may have.
@@ -343,7 +407,14 @@ pub fn validate(setup: &Setup) -> Result<(), SetupError> {
         check_following(following, setup)?;
     }
     setup.agents.iter().try_for_each(|agent| check_agent(setup, agent))?;
+    unused::of_setup(setup)?;
     same_space(setup)
+}
+
+/// More of z(0), ż(0), … than there may be.
+pub(super) fn too_many(agent: &AgentSetup, need: usize, got: usize) -> SetupError {
+    let error = LengthError { what: "the start of the reference", need, got };
+    SetupError::StartOfReference { agent: agent.name.clone(), error }
 }
 
 /// Whoever agrees with a vehicle has a position in m. (An arm and a cart may agree on a number.)
@@ -474,9 +545,9 @@ fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
     }
     if agent.start.reference.len() > vectors {
         let (need, got) = (vectors, agent.start.reference.len());
-        let error = LengthError { what: "the start of the reference", need, got };
-        return Err(SetupError::Length { agent: agent.name.clone(), error });
+        return Err(too_many(agent, need, got));
     }
+    unused::of_agent(setup, agent)?;
     vector("theta", agent.robot.theta.len(), &agent.robot.theta)?;
     if let Law::Adaptive { estimate_start, .. } = &agent.law {
         vector("the start of the estimate", agent.robot.theta.len(), estimate_start)?;

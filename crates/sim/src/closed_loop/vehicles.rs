@@ -5,7 +5,7 @@ use forwardstep_core::controller::{Floor, RateLoop, Thrust, ThrustCascade, Thrus
 use forwardstep_core::plant::{Rotorcraft, Vehicle};
 
 use super::population::Columns;
-use super::systems::{no_manipulability, not_negative, positive, root_count, solo};
+use super::systems::{not_negative, positive, root_count, solo};
 use super::valid::SetupError;
 use crate::setup::{AgentSetup, ReferenceKind, RobotKind, Setup};
 use crate::vehicles::{ThrustKind, ThrustLaw};
@@ -67,7 +67,6 @@ fn outer(setup: &Setup, own: &AgentSetup, vehicle: &Vehicle, law: ThrustLaw) -> 
             _ => SetupError::ReferenceOfLaw { agent: name(), law: own.law.words() },
         });
     }
-    no_manipulability(own)?;
     let roots = &own.roots_per_s;
     root_count(own, law.design.order())?;
     let (design, mass) = match law.design {
