@@ -216,6 +216,35 @@ fn eq_31_the_push_of_a_known_mass_moves_the_agreement_by_its_impulse() {
 }
 
 #[test]
+fn eq_31_a_push_and_a_tracking_error_at_the_start_move_the_agreement_together() {
+    // K ∫ s = ∫ τ_ext + m s(0), with z(0) of its own.
+    for (pushed, reference) in
+        [(false, ReferenceKind::Consensus), (true, ReferenceKind::Consensus), (true, ReferenceKind::PureIntegral)]
+    {
+        let mut setup = ring((0..3).map(|i| mass(i, &[1.0, 1.7])).collect(), Exchange::Position, 150.0);
+        setup.reference = reference;
+        for agent in &mut setup.agents {
+            agent.start.reference = vec![vec![agent.start.dq[0] - 0.8, agent.start.dq[1] + 0.5]];
+        }
+        let before = predict(&setup).unwrap();
+        setup.agents[0].manipulability = 1.5;
+        if pushed {
+            setup.agents[0].pushes = vec![pulse(Effect::Torque(constant(&[4.0, -2.0])))];
+        }
+        let after = predict(&setup).unwrap();
+        let outcome = run(&setup);
+        for axis in 0..2 {
+            // 1.5 s of the push, and 1 kg times s(0).
+            let impulse = [6.0, -3.0][axis] * f64::from(u8::from(pushed)) + [0.8, -0.5][axis];
+            let moved =
+                1.5 / (1.0 * 1.7 * DAMPING) * before.influence[0] * impulse / normaliser(&setup, &before.influence);
+            assert!((after.value[axis] - before.value[axis] - moved).abs() < 1e-12, "{pushed}, axis {axis}");
+            ends_at(&setup, &outcome, axis, after.value[axis]);
+        }
+    }
+}
+
+#[test]
 fn eq_31_one_agent_moves_by_lambda_over_alpha_beta_k_times_the_impulse() {
     // q = (p² + λ) s / (p (p + α)(p + β)) with s = τ_ext / (M p + K): one pole at the origin, and none for λ = 0.
     let (alpha, beta) = (1.3, 2.1);
