@@ -143,6 +143,18 @@ fn eq_43_a_factor_of_the_input_that_varies_is_watched() {
     assert_eq!(answer(&alone(constant), About::Divisor), Answer::Holds);
     let varying = chain(&(x().cos_of() + 2.0), 0, false);
     assert_eq!(answer(&alone(varying), About::Divisor), Answer::Watched);
+    // A constant may be too small from the start: the floor is 1e-3.
+    for (psi, answered) in [
+        (0.0, Answer::Violated),
+        (9e-4, Answer::Violated),
+        (-9e-4, Answer::Violated),
+        (1e-3, Answer::Holds),
+        (-2.0, Answer::Holds),
+    ] {
+        assert_eq!(answer(&alone(chain(&Expression::number(psi), 0, false)), About::Divisor), answered, "{psi}");
+    }
+    let cancelled = Expression::number(0.5) - 0.5;
+    assert_eq!(answer(&alone(chain(&cancelled, 0, false)), About::Divisor), Answer::Violated);
     // Strict feedback with a constant input, with one that varies, and pure feedback, which divides by ∂f/∂x_2.
     let strict = || Expression::variable(1);
     let bent = || Expression::variable(1) + Expression::variable(1).power(3.0);

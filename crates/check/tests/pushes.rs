@@ -227,17 +227,17 @@ fn eq_31_a_push_and_a_tracking_error_at_the_start_move_the_agreement_together() 
             agent.start.reference = vec![vec![agent.start.dq[0] - 0.8, agent.start.dq[1] + 0.5]];
         }
         let before = predict(&setup).unwrap();
-        setup.agents[0].manipulability = 1.5;
+        setup.agents[1].manipulability = 1.5;
         if pushed {
-            setup.agents[0].pushes = vec![pulse(Effect::Torque(constant(&[4.0, -2.0])))];
+            setup.agents[1].pushes = vec![pulse(Effect::Torque(constant(&[4.0, -2.0])))];
         }
         let after = predict(&setup).unwrap();
         let outcome = run(&setup);
         for axis in 0..2 {
-            // 1.5 s of the push, and 1 kg times s(0).
-            let impulse = [6.0, -3.0][axis] * f64::from(u8::from(pushed)) + [0.8, -0.5][axis];
+            // 1.5 s of the push, and 2 kg times s(0).
+            let impulse = [6.0, -3.0][axis] * f64::from(u8::from(pushed)) + [1.6, -1.0][axis];
             let moved =
-                1.5 / (1.0 * 1.7 * DAMPING) * before.influence[0] * impulse / normaliser(&setup, &before.influence);
+                1.5 / (1.0 * 1.7 * DAMPING) * before.influence[1] * impulse / normaliser(&setup, &before.influence);
             assert!((after.value[axis] - before.value[axis] - moved).abs() < 1e-12, "{pushed}, axis {axis}");
             ends_at(&setup, &outcome, axis, after.value[axis]);
         }
