@@ -1,6 +1,6 @@
 //! Chains of Section IV: what (43) with its second steps asks for.
 
-use forwardstep_core::expression::Expression;
+use forwardstep_core::expression::{Expression, Graph, Programme};
 use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, ChainStep, Law, ReferenceKind, Setup};
 
 use crate::verdict::{Answer, Hypothesis};
@@ -37,13 +37,40 @@ pub(crate) fn of_chains(setup: &Setup) -> Vec<Hypothesis> {
     hypotheses
 }
 
+/// The value of an expression without variables.
+fn constant(expression: &Expression) -> Option<f64> {
+    if expression.variables() > 0 {
+        return None;
+    }
+    let mut graph = Graph::new(0);
+    let node = graph.import(expression).ok()?;
+    let programme = Programme::new(&graph, &[node]).ok()?;
+    let mut value = [f64::NAN];
+    programme.evaluate(&[], &mut programme.registers(), &mut value).ok()?;
+    Some(value[0])
+}
+
 fn divisor(setup: &Setup) -> Hypothesis {
-    let constant = |expression: &Expression| expression.variables() == 0;
     let fixed = |model: &ChainModel| match model {
         ChainModel::Derivatives(terms) => constant(terms.input()),
-        ChainModel::Cascade(terms) => terms.is_strict() && constant(terms.input()),
+        ChainModel::Cascade(terms) => constant(terms.input()).filter(|_| terms.is_strict()),
     };
-    let (answer, because) = match chains(setup).find(|(.., model)| !fixed(model)) {
+    // What is constant is known before the run, and may be too small from the start.
+    let small = |law: &ChainLaw, value: f64| value.is_nan() || value.abs() < law.floor;
+    let vanishing = chains(setup).find_map(|(agent, law, model)| {
+        fixed(model).filter(|value| small(law, *value)).map(|value| (agent, law, value))
+    });
+    if let Some((agent, law, value)) = vanishing {
+        return Hypothesis {
+            requires: "the factor of the input stays away from zero".into(),
+            answer: Answer::Violated,
+            because: format!(
+                "that of {} is {value} for ever, which is less than its floor of {}",
+                agent.name, law.floor
+            ),
+        };
+    }
+    let (answer, because) = match chains(setup).find(|(.., model)| fixed(model).is_none()) {
         None => (Answer::Holds, "it is constant".to_owned()),
         Some((agent, law, _)) => (
             Answer::Watched,

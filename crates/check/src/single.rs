@@ -22,11 +22,7 @@ pub(crate) fn task_space(setup: &Setup) -> Vec<Hypothesis> {
     let mut hypotheses = Vec::new();
     for (agent, law) in with::<TaskSpaceLaw>(setup) {
         if hypotheses.is_empty() {
-            hypotheses.push(Hypothesis {
-                requires: "K*, K, Γ and Λ are symmetric positive definite, κ and α are positive".into(),
-                answer: Answer::Holds,
-                because: "checked when they were read".into(),
-            });
+            hypotheses.push(task_gains(setup));
         }
         hypotheses.push(regular(agent, law));
         hypotheses.extend(geometry(agent, law));
@@ -72,21 +68,57 @@ fn regular(agent: &AgentSetup, law: &TaskSpaceLaw) -> Hypothesis {
     Hypothesis { requires, answer, because }
 }
 
-/// The regressor of a tree is stated with all its translations; only a tool is not in it.
+/// Y(q, q̇, z, ż) has to be known but for ϑ. That of a tree is stated with all its translations, as they are in the file, and the
+/// head of `robot/tree/tip.rs` of the core derives which of them it holds. A planar arm's has no length in it: they are in its ϑ.
 fn geometry(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<Hypothesis> {
-    let TipSetup::Point { uncertain, .. } = &law.tip else { return None };
-    let because = match uncertain {
-        Uncertain::Tool => "only the tool is uncertain, which the dynamics do not contain",
-        Uncertain::Chain => {
-            "the translations of its joints are uncertain in the Jacobian alone; the regressor has those of its file, which are \
-             those of the simulated robot"
+    let requires = format!("the regressor of {} depends on nothing uncertain", agent.name);
+    let TipSetup::Point { point, coordinates, uncertain } = &law.tip else { return None };
+    let tree = agent.robot.kind.downcast::<Arc<Tree>>()?;
+    let inside = TreeTip::new((**tree).clone(), point, coordinates, *uncertain).ok()?.in_regressor();
+    let names: Vec<&str> =
+        law.kinematic_names.iter().zip(inside).filter(|(_, inside)| *inside).map(|(name, _)| name.as_str()).collect();
+    let (answer, because) = if names.is_empty() {
+        let because = match uncertain {
+            Uncertain::Tool => "only the tool is uncertain, which the dynamics do not contain",
+            Uncertain::Chain => "none of the lengths that are uncertain enters the dynamics",
+        };
+        (Answer::Holds, because.to_owned())
+    } else if are_known(agent, law) {
+        (Answer::Holds, "all lengths are known: they are the true ones and are not adapted".to_owned())
+    } else {
+        let because = format!(
+            "the regressor is that of the true {}, which the law is said not to know; their estimates enter the Jacobian alone",
+            names.join(", ")
+        );
+        (Answer::NotCovered, because)
+    };
+    Some(Hypothesis { requires, answer, because })
+}
+
+/// Whether nothing about the tip is uncertain.
+fn are_known(agent: &AgentSetup, law: &TaskSpaceLaw) -> bool {
+    law.kinematic_adaptation.is_none()
+        && law.tip.parameters(&*agent.robot.kind).is_some_and(|theta| theta == law.kinematic_start)
+}
+
+/// Lengths that are not adapted have to be the true ones.
+fn task_gains(setup: &Setup) -> Hypothesis {
+    let wrong = with::<TaskSpaceLaw>(setup)
+        .into_iter()
+        .find(|(agent, law)| law.kinematic_adaptation.is_none() && !are_known(agent, law));
+    let (answer, because) = match wrong {
+        None => {
+            (Answer::Holds, "checked when they were read; lengths that are not adapted are the true ones".to_owned())
+        }
+        Some((agent, _)) => {
+            (Answer::NotCovered, format!("{} does not adapt its lengths, which are not the true ones", agent.name))
         }
     };
-    Some(Hypothesis {
-        requires: format!("the regressor of {} depends on nothing uncertain", agent.name),
-        answer: Answer::Holds,
-        because: because.into(),
-    })
+    Hypothesis {
+        requires: "K*, K, Γ and Λ are symmetric positive definite, κ and α are positive".into(),
+        answer,
+        because,
+    }
 }
 
 fn within_bounds(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<Hypothesis> {

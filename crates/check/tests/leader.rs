@@ -5,7 +5,8 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{axis, edge};
+use common::kinds::{formula, power_of_time};
+use common::{About, axis, edge};
 use forwardstep_check::{Answer, Report, check, sampled_adaptation};
 use forwardstep_core::Gain;
 use forwardstep_core::reference::Choice;
@@ -109,6 +110,71 @@ fn thm8_curves_and_formulas_are_bounded_as_far_as_that_can_be_shown() {
 }
 
 #[test]
+fn thm8_velocity_acceleration_and_jerk_all_have_to_be_bounded() {
+    // t^(k − ½) has k − 1 derivatives that are finite at t = 0.
+    let said = |bounded: i32| {
+        let path = power_of_time(0.01, f64::from(bounded) - 0.5);
+        common::answer(&setup(FollowingDesign::Continuous, path, 1e6), About::LeaderMotion)
+    };
+    let none = Answer::NotCovered;
+    assert_eq!([1, 2, 3, 4].map(said), [none, none, none, Answer::HoldsOnHorizon]);
+    // Where it is does not matter, so it may travel for ever.
+    let travels = formula(&[FormulaStep::Time]);
+    assert_eq!(common::answer(&setup(FollowingDesign::Continuous, travels, 2.0), About::LeaderMotion), Answer::Holds);
+}
+
+/// What is said about γ as it is, and a little above.
+fn around(design: FollowingDesign, path: &Path, gamma: f64) -> [Answer; 2] {
+    [gamma, gamma * (1.0 + 1e-9)].map(|gamma| common::answer(&setup(design, path.clone(), gamma), About::LeaderGain))
+}
+
+#[test]
+fn thm8_a_gain_that_equals_its_bound_does_not_exceed_it() {
+    let (no, holds) = (Answer::NotCovered, Answer::Holds);
+    let bound = |path: &Path, end_s| {
+        let setup = setup(FollowingDesign::Continuous, path.clone(), 1.0);
+        setup.following().unwrap().drive_bound(end_s)
+    };
+    // A bound for ever that no sample reaches: of ½ sin 2t.
+    let gamma = bound(&wave(), None);
+    assert_eq!(around(FollowingDesign::Continuous, &wave(), gamma), [no, holds]);
+    // Of a leader at a constant speed every sample reaches it.
+    let steady = formula(&[FormulaStep::Number(0.5), FormulaStep::Time, FormulaStep::Multiply]);
+    assert_eq!(bound(&steady, None), 0.5);
+    assert_eq!(around(FollowingDesign::Continuous, &steady, 0.5), [Answer::Violated, holds]);
+    // One on the run: ¼ t² + sin(t²) swings faster and faster, and no sample hits the largest.
+    use FormulaStep::{Add, Multiply, Number, Power, Sin, Time};
+    let faster = formula(&[Number(0.25), Time, Power(2.0), Multiply, Time, Power(2.0), Sin, Add]);
+    assert_eq!(bound(&faster, None), f64::INFINITY);
+    let gamma = bound(&faster, Some(20.0));
+    assert_eq!(around(FollowingDesign::Continuous, &faster, gamma), [no, Answer::HoldsOnHorizon]);
+}
+
+#[test]
+fn thm8_only_a_sign_that_is_solved_for_is_the_set_valued_one() {
+    let said = |choice| {
+        let mut setup = setup(FollowingDesign::Continuous, wave(), 3.0);
+        let ReferenceKind::Following(following) = &mut setup.reference else { panic!() };
+        Arc::make_mut(following).choice = choice;
+        common::answer(&setup, About::SetValued)
+    };
+    let choices = [Choice::Implicit, Choice::Explicit, Choice::Layer { width: 1e-6 }];
+    assert_eq!(choices.map(said), [Answer::Holds, Answer::NotCovered, Answer::NotCovered]);
+}
+
+#[test]
+fn thm8_any_link_with_a_delay_is_not_covered() {
+    let said = |delays: [f64; 2]| {
+        let mut setup = setup(FollowingDesign::Continuous, wave(), 3.0);
+        setup.network.delays = delays.map(|s| Delay::Constant { s }).to_vec();
+        setup.network.schedule = Schedule::Fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 1)]);
+        common::answer(&setup, About::Prompt)
+    };
+    let (holds, no) = (Answer::Holds, Answer::NotCovered);
+    assert_eq!([said([0.0, 0.0]), said([0.1, 0.0]), said([0.0, 1e-9])], [holds, no, no]);
+}
+
+#[test]
 fn thm8_what_the_paper_does_not_speak_about_is_said() {
     let mut cut = setup(FollowingDesign::Continuous, wave(), 3.0);
     cut.network.schedule = Schedule::Fixed(vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)]);
@@ -143,6 +209,19 @@ fn prop_a_swarm_needs_links_both_ways_and_enough_coupling() {
     assert_eq!(answer(&swarm(5.7, &both[..2]), "same weight").0, Answer::NotCovered);
     // The paper prints no such design, so it never says more than that.
     assert_eq!(swarm(5.7, &both).worst(), Answer::NotCovered);
+}
+
+#[test]
+fn prop_a_swarm_weighs_both_ways_alike_and_the_leader_is_no_part_of_that() {
+    let said = |there: f64, back: f64| {
+        let mut setup = setup(FollowingDesign::Swarm { coupling: 50.0 }, wave(), 5.0);
+        setup.network.schedule = Schedule::Fixed(vec![edge(2, 0, 3.0, 0), edge(0, 1, there, 0), edge(1, 0, back, 0)]);
+        common::answer(&setup, About::Undirected)
+    };
+    assert_eq!(
+        [said(1.0, 1.0), said(1.0, 1.1), said(1.1, 1.0)],
+        [Answer::Holds, Answer::NotCovered, Answer::NotCovered]
+    );
 }
 
 /// One sample of a mass under adaptation with a held Y, as in the head of `agent/mod.rs`: unstable above two and not below.

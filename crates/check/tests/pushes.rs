@@ -4,7 +4,6 @@
 
 mod common;
 
-use forwardstep_sim::{Law, Robot};
 use std::sync::Arc;
 
 use common::{axis, column, edge, run, setup};
@@ -17,7 +16,7 @@ use forwardstep_sim::graph::Edge;
 use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push, Table};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Exchange, Known, Method, Outcome, ReferenceKind, RobotSetup, Setup, Signal, Start,
+    Adaptive, AgentSetup, Exchange, Known, Law, Method, Outcome, ReferenceKind, Robot, RobotSetup, Setup, Signal, Start,
 };
 
 const DAMPING: f64 = 5.0;
@@ -214,6 +213,35 @@ fn eq_31_the_push_of_a_known_mass_moves_the_agreement_by_its_impulse() {
             assert!((after.value[0] - before.value[0] - moved).abs() < 1e-12);
             let outcome = run(&setup);
             (0..2).for_each(|axis| ends_at(&setup, &outcome, axis, after.value[axis]));
+        }
+    }
+}
+
+#[test]
+fn eq_31_a_push_and_a_tracking_error_at_the_start_move_the_agreement_together() {
+    // K ∫ s = ∫ τ_ext + m s(0), with z(0) of its own.
+    for (pushed, reference) in
+        [(false, ReferenceKind::Consensus), (true, ReferenceKind::Consensus), (true, ReferenceKind::PureIntegral)]
+    {
+        let mut setup = ring((0..3).map(|i| mass(i, &[1.0, 1.7])).collect(), Exchange::Position, 150.0);
+        setup.reference = reference;
+        for agent in &mut setup.agents {
+            agent.start.reference = vec![vec![agent.start.dq[0] - 0.8, agent.start.dq[1] + 0.5]];
+        }
+        let before = predict(&setup).unwrap();
+        setup.agents[1].manipulability = 1.5;
+        if pushed {
+            setup.agents[1].pushes = vec![pulse(Effect::Torque(constant(&[4.0, -2.0])))];
+        }
+        let after = predict(&setup).unwrap();
+        let outcome = run(&setup);
+        for axis in 0..2 {
+            // 1.5 s of the push, and 2 kg times s(0).
+            let impulse = [6.0, -3.0][axis] * f64::from(u8::from(pushed)) + [1.6, -1.0][axis];
+            let moved =
+                1.5 / (1.0 * 1.7 * DAMPING) * before.influence[1] * impulse / normaliser(&setup, &before.influence);
+            assert!((after.value[axis] - before.value[axis] - moved).abs() < 1e-12, "{pushed}, axis {axis}");
+            ends_at(&setup, &outcome, axis, after.value[axis]);
         }
     }
 }

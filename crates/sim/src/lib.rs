@@ -28,7 +28,7 @@ pub use agents::{
     PositionOnlyLaw, RobotModel, RotorcraftModel, SpacecraftModel, TaskSpaceLaw, ThrustKind, ThrustLaw, TipSetup,
     VehicleModel,
 };
-pub use closed_loop::{Assembly, Block, SetupError, validate};
+pub use closed_loop::{Assembly, Block, SetupError, VelocityQuantity, validate};
 pub use network::Network;
 pub use recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal, Statistics};
 pub use setup::{
@@ -36,4 +36,4 @@ pub use setup::{
     Solver, Start, TimeSpan, VelocitySensor,
 };
 pub use simulate::{recorded_columns, simulate};
-pub use system::{Attachments, Interface, Law, ReferenceFamily, Robot};
+pub use system::{ActuatorLimits, Attachments, Interface, Law, ReferenceFamily, Robot};

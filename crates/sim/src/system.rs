@@ -33,6 +33,9 @@ pub trait Robot: Any + Debug + Send + Sync {
 
     /// Where forces can act on it.
     fn attachments(&self) -> Attachments<'_>;
+
+    /// Whose limits are those of its actuators.
+    fn actuator_limits(&self) -> ActuatorLimits;
 }
 
 impl dyn Robot {
@@ -56,6 +59,17 @@ pub enum Attachments<'a> {
     PlanarTip,
     /// On its axes, and on any point of any link.
     Links(&'a Arc<Tree>),
+}
+
+/// Whose limits are enforced where limits are to be enforced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ActuatorLimits {
+    /// The effort limits of its axes, every one of which must have one.
+    Axes,
+    /// Its own, which are part of the robot: those of reaction wheels.
+    Own,
+    /// It has none.
+    None,
 }
 
 /// The law of one agent, as data.
@@ -101,8 +115,12 @@ pub struct Interface {
     pub exchanges: &'static [Exchange],
     /// Which reference dynamics lead it.
     pub follows: &'static [ReferenceFamily],
-    /// Whether its reference has a manipulability gain λ.
+    /// Whether it measures a velocity that a sensor gives, or a filter of positions.
+    pub measures_velocity: bool,
+    /// Whether λ of its reference dynamics has an effect beside it.
     pub manipulability: bool,
+    /// Whether it follows a target by reference dynamics that the agent's roots state.
+    pub tracks_by_roots: bool,
     /// Whether a target may be an offset from where all agree.
     pub offsets: bool,
     /// Whether forces and torques from outside may act on its robot.

@@ -1,9 +1,12 @@
 //! Setups, runs and columns that several tests of verdicts share.
 #![allow(clippy::unwrap_used, dead_code, unreachable_pub, reason = "each test uses its own part")]
 
+pub mod kinds;
+
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use forwardstep_check::{Answer, Report, check};
 use forwardstep_core::Gain;
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PointMass};
 use forwardstep_sim::delay::Delay;
@@ -13,6 +16,100 @@ use forwardstep_sim::{
     Adaptive, AgentSetup, Axis, AxisUnit, Ending, Exchange, Known, Method, Network, Outcome, ReferenceKind, RobotSetup,
     Setup, Signal, Solver, Start, TimeSpan, simulate,
 };
+
+/// A hypothesis that a test asks about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum About {
+    SpanningTree,
+    DwellTime,
+    Delays,
+    Weights,
+    CommonFirstRoot,
+    FixedGraph,
+    CommonOrder,
+    RealRoots,
+    FullTorque,
+    PositionOnlyGains,
+    ThrustGains,
+    Thrust,
+    AngularVelocity,
+    Rotors,
+    TaskSpaceGains,
+    Determinant,
+    Regressor,
+    Lengths,
+    Momentum,
+    Path,
+    Divisor,
+    Regressors,
+    Target,
+    Offset,
+    LeaderMotion,
+    LeaderGain,
+    LeaderReaches,
+    LeaderFixed,
+    Prompt,
+    SetValued,
+    Undirected,
+    Coupling,
+    OneKind,
+    Measured,
+}
+
+impl About {
+    /// How it is found in a report: by a part of what it requires, which no other requires. Nothing else in these tests knows.
+    fn requires(self) -> &'static str {
+        match self {
+            About::SpanningTree => "uniformly bounded windows",
+            About::DwellTime => "positive dwell time",
+            About::Delays => "delays are piecewise uniformly continuous",
+            About::Weights => "weights are piecewise uniformly continuous",
+            About::CommonFirstRoot => "κ₀ is common",
+            About::FixedGraph | About::LeaderFixed => "the graph is fixed",
+            About::CommonOrder => "the same order",
+            About::RealRoots => "Hurwitz with real roots",
+            About::FullTorque => "the torque that the law asks for is applied",
+            About::PositionOnlyGains => "k, λ_f and γ* are positive",
+            About::ThrustGains => "a mass that is not adapted is known",
+            About::Thrust => "no thrust comes to zero",
+            About::AngularVelocity => "the angular velocity is the one",
+            About::Rotors => "every thrust and every torque can be had",
+            About::TaskSpaceGains => "K*, K, Γ and Λ are symmetric",
+            About::Determinant => "stays away from singularity",
+            About::Regressor => "depends on nothing uncertain",
+            About::Lengths => "within the bounds of their estimates",
+            About::Momentum => "angular momentum h_I",
+            About::Path => "is never zero",
+            About::Divisor => "the factor of the input",
+            About::Regressors => "regressors and their derivatives are bounded",
+            About::Target => "and its derivatives up to",
+            About::Offset => "the derivatives of the offset",
+            About::LeaderMotion => "jerk of the leader",
+            About::LeaderGain => "γ exceeds",
+            About::LeaderReaches => "the leader reaches everybody",
+            About::Prompt => "messages arrive without delay",
+            About::SetValued => "set-valued sgn",
+            About::Undirected => "hear each other with the same weight",
+            About::Coupling => "k λ > β",
+            About::OneKind => "of the kind that one theorem",
+            About::Measured => "q and q̇ are measured",
+        }
+    }
+}
+
+/// The answers to all hypotheses of a report of this kind.
+pub fn answers(report: &Report, about: About) -> Vec<Answer> {
+    let found = report.hypotheses.iter().filter(|hypothesis| hypothesis.requires.contains(about.requires()));
+    found.map(|hypothesis| hypothesis.answer).collect()
+}
+
+/// The answer to the one hypothesis of this kind about a setup.
+pub fn answer(setup: &Setup, about: About) -> Answer {
+    let report = check(setup);
+    let answers = answers(&report, about);
+    assert_eq!(answers.len(), 1, "{about:?}: {report:?}");
+    answers[0]
+}
 
 /// Numbers that look arbitrary but are always the same.
 pub fn noise(seed: usize) -> f64 {

@@ -22,6 +22,7 @@ use super::spread::{spread, tip};
 use super::start::{Shared, Starter, start};
 use super::systems_file::TrackingFile;
 use super::target::{Owner, target};
+use super::unused::{spare_roots, unused};
 use super::value_problem::ValueProblem;
 use crate::SourceText;
 
@@ -91,6 +92,7 @@ pub(super) fn agents(
 
     let mut agents = Vec::with_capacity(total as usize);
     let (mut bodies, mut counted) = (Vec::with_capacity(total as usize), Vec::new());
+    let counts: Vec<usize> = populations.iter().map(|population| population.names.len()).collect();
     for Population { file: entry, names, read } in populations {
         let span = match names.as_slice() {
             [first, .., last] => format!("{first} … {last}"),
@@ -137,6 +139,10 @@ pub(super) fn agents(
             });
             bodies.push(body);
         }
+    }
+    unused(file, &agents, &counts)?;
+    if let ReferenceFile::Tracking(_) = file.reference.value {
+        spare_roots(file, &mut agents, &counts);
     }
     Ok(Agents { agents, bodies, populations: counted })
 }

@@ -56,6 +56,10 @@ pub(super) fn following(
         Some(SignFile::Explicit) => Choice::Explicit,
         Some(SignFile::Layer(layer)) => Choice::Layer { width: positive("width", &layer.width)? },
     };
+    let layer = matches!(choice, Choice::Layer { .. });
+    if let (Some(every), true) = (&reference.sign_every_s, layer || file.control.is_some()) {
+        return Err(fault(every, SystemProblem::SignPeriodUnused { layer }));
+    }
     Ok(Some(Arc::new(Following {
         leader: Leader { name, trajectory },
         design,

@@ -77,6 +77,7 @@ mod target;
 mod task;
 pub mod task_file;
 mod template;
+mod unused;
 mod value_problem;
 pub mod values;
 mod vehicle;

@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use forwardstep_core::controller::ChainError;
-use forwardstep_sim::{ReferenceFamily, SetupError};
+use forwardstep_sim::{SetupError, VelocityQuantity};
 
 use super::agents::names;
 use super::at::At;
+use super::control_file::ControlFile;
 use super::fault::Fault;
 use super::file::{AgentFile, AgentReferenceFile, ConsensusFile, LawFile, ReferenceFile, ScenarioFile};
 use super::problem::ScenarioProblem;
@@ -29,7 +30,10 @@ fn place(file: &ScenarioFile, error: &SetupError) -> Option<Span> {
     let exchange = || common(file).map(|file| file.exchange.span.clone()).or_else(reference);
     match error {
         SetupError::Coupling => file.network.as_ref()?.value.coupling.as_ref().map(|coupling| coupling.span.clone()),
-        SetupError::BacksteppingExchange | SetupError::FollowingExchange => reference(),
+        SetupError::BacksteppingExchange | SetupError::FollowingExchange | SetupError::OnlyTracks { .. } => reference(),
+        SetupError::StartOfReference { agent, .. } => start_of_reference(file, agent),
+        SetupError::NobodyHears { .. } => file.network.as_ref().map(|network| network.span.clone()),
+        SetupError::VelocityUnused { quantity, .. } => velocity(file.control.as_ref()?, *quantity),
         SetupError::DelayedDerived { .. } => match &file.reference.value {
             ReferenceFile::Leader(file) => Some(file.design.span.clone()),
             _ => reference(),
@@ -62,6 +66,7 @@ fn place(file: &ScenarioFile, error: &SetupError) -> Option<Span> {
         | SetupError::Gain { agent, .. }
         | SetupError::Tip { agent, .. }
         | SetupError::ProjectionOfMatrix { agent }
+        | SetupError::BoundsOfKnown { agent }
         | SetupError::NotFinite { agent, .. } => law(file, agent),
         SetupError::Limiter { .. } | SetupError::VelocityFilter(_) | SetupError::Control { .. } => {
             file.control.as_ref().map(|control| control.sample_hz.span.clone())
@@ -122,6 +127,23 @@ fn manipulability(file: &ScenarioFile, agent: &str) -> Option<Span> {
     gain.map(|gain| gain.span.clone())
 }
 
+/// The start of an agent's z, else that of all.
+fn start_of_reference(file: &ScenarioFile, agent: &str) -> Option<Span> {
+    let own = entry(file, agent)?.start.as_ref().and_then(|start| start.value.reference.as_ref());
+    let common = || file.start.as_ref().and_then(|start| start.value.reference.as_ref());
+    own.or_else(common).map(|reference| reference.span.clone())
+}
+
+/// What is said of a sensor of velocities.
+fn velocity(control: &ControlFile, quantity: VelocityQuantity) -> Option<Span> {
+    let place = match quantity {
+        VelocityQuantity::Noise => control.noise.as_ref()?.velocity.as_ref()?.span.clone(),
+        VelocityQuantity::Step => control.quantisation.as_ref()?.velocity.as_ref()?.span.clone(),
+        VelocityQuantity::CutOff => control.velocity.as_ref()?.span.clone(),
+    };
+    Some(place)
+}
+
 /// What the user can do about it.
 pub(super) fn advice(error: &SetupError) -> Option<String> {
     Some(match error {
@@ -129,12 +151,20 @@ pub(super) fn advice(error: &SetupError) -> Option<String> {
             "write `exchange = \"position\"` in `reference.consensus`, or leave `coupling` out".to_owned()
         }
         SetupError::SendsPositionOnly { .. } => "write `exchange = \"position\"`".to_owned(),
-        SetupError::ReferenceOfLaw { follows, .. } if follows.contains(&ReferenceFamily::Consensus) => {
-            "write `reference.consensus` with `exchange = \"position\"`".to_owned()
-        }
-        SetupError::ReferenceOfLaw { .. } => "write `reference.tracking`, and leave `network` out".to_owned(),
+        SetupError::ReferenceOfLaw { .. } => "write `reference.consensus` with `exchange = \"position\"`".to_owned(),
         SetupError::NotTracking { .. } => {
             "write `reference.consensus`; laws that track are `position_only`, `task_space`, `attitude` and those of chains".to_owned()
+        }
+        SetupError::OnlyTracks { .. } => "write `reference.tracking`, and give it a `target`".to_owned(),
+        SetupError::StartOfReference { error, .. } => match error.need {
+            0 => "leave it out: this law has no reference velocity of its own".to_owned(),
+            1 => "leave `derivatives` out: z is all that this law integrates".to_owned(),
+            need => format!("give `z` and at most {} of its derivatives", need - 1),
+        },
+        SetupError::NobodyHears { .. } => "leave `network` out, or write `reference.consensus`".to_owned(),
+        SetupError::VelocityUnused { .. } => "leave it out".to_owned(),
+        SetupError::RootCount { error, .. } if error.need == 0 => {
+            "leave `roots_per_s` out: this law has reference dynamics of its own".to_owned()
         }
         SetupError::OrderTooLow { least, .. } => format!("give it {least} roots or more"),
         SetupError::RootCount { error, .. } => {

@@ -92,45 +92,20 @@ pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<
 }
 
 impl Starter<'_> {
-    /// Refuses what an agent's own table says in vain. (The one of all may speak to others.)
+    /// Refuses what an agent's own table says in vain. (The one of all may speak to others, see `unused`.)
     fn all_counts(&self, own: &StartFile) -> Result<(), Fault> {
-        let kind = &self.robot.kind;
-        let craft = kind.is::<SpacecraftModel>();
-        let spins = craft || kind.is::<RotorcraftModel>();
-        let turns = spins || kind.is::<VehicleModel>();
-        let moves = !craft && self.length(Stream::Velocity) > 0;
-        let chain = self.length(Stream::Higher) > 0;
-        let span = |values: &Option<At<StartValues>>| values.as_ref().map(|values| values.span.clone());
-        let all = [
-            ("position_rad", !craft, span(&own.position_rad)),
-            ("position_m", !craft, span(&own.position_m)),
-            ("position", !craft, span(&own.position)),
-            ("velocity_rad_s", moves, span(&own.velocity_rad_s)),
-            ("velocity_m_s", moves, span(&own.velocity_m_s)),
-            ("velocity", moves, span(&own.velocity)),
-            ("attitude", turns, own.attitude.as_ref().map(|attitude| attitude.span.clone())),
-            ("angular_velocity_rad_s", spins, own.angular_velocity_rad_s.as_ref().map(|rate| rate.span.clone())),
-            ("spacecraft", craft, own.spacecraft.as_ref().map(|craft| craft.span.clone())),
-            ("higher_states", chain, span(&own.higher_states)),
-            ("reference", !craft, own.reference.as_ref().map(|reference| reference.span.clone())),
-        ];
-        for (key, counts, span) in all {
-            if let (false, Some(span)) = (counts, span) {
+        match unread(self.robot, own).into_iter().next() {
+            None => Ok(()),
+            Some((key, span)) => {
                 let agent = self.name.to_owned();
-                return Err(Fault::new(SystemProblem::StartUnused { key, agent }).at(&span));
+                Err(Fault::new(SystemProblem::StartUnused { key, agent }).at(&span))
             }
         }
-        Ok(())
     }
 
     /// Numbers in one of its quantities.
     fn length(&self, stream: Stream) -> usize {
-        match (self.robot.kind.downcast::<ChainModel>(), stream) {
-            (Some(chain), Stream::Velocity) if !chain.has_velocity() => 0,
-            (Some(chain), Stream::Higher) => chain.rest_len(),
-            (None, Stream::Higher) => 0,
-            _ => self.robot.axes.len(),
-        }
+        length_of(self.robot, stream)
     }
 
     /// What z follows, at the start.
@@ -195,6 +170,40 @@ impl Starter<'_> {
             _ => Ok(vec![0.0; need]),
         }
     }
+}
+
+/// Numbers in one quantity of a robot's start.
+fn length_of(robot: &RobotSetup, stream: Stream) -> usize {
+    match (robot.kind.downcast::<ChainModel>(), stream) {
+        (Some(chain), Stream::Velocity) if !chain.has_velocity() => 0,
+        (Some(chain), Stream::Higher) => chain.rest_len(),
+        (None, Stream::Higher) => 0,
+        _ => robot.axes.len(),
+    }
+}
+
+/// The keys of a table that say nothing about a robot, and where they stand.
+pub(super) fn unread(robot: &RobotSetup, table: &StartFile) -> Vec<(&'static str, Range<usize>)> {
+    let craft = robot.kind.is::<SpacecraftModel>();
+    let spins = craft || robot.kind.is::<RotorcraftModel>();
+    let turns = spins || robot.kind.is::<VehicleModel>();
+    let moves = !craft && length_of(robot, Stream::Velocity) > 0;
+    let chain = length_of(robot, Stream::Higher) > 0;
+    let span = |values: &Option<At<StartValues>>| values.as_ref().map(|values| values.span.clone());
+    let all = [
+        ("position_rad", !craft, span(&table.position_rad)),
+        ("position_m", !craft, span(&table.position_m)),
+        ("position", !craft, span(&table.position)),
+        ("velocity_rad_s", moves, span(&table.velocity_rad_s)),
+        ("velocity_m_s", moves, span(&table.velocity_m_s)),
+        ("velocity", moves, span(&table.velocity)),
+        ("attitude", turns, table.attitude.as_ref().map(|attitude| attitude.span.clone())),
+        ("angular_velocity_rad_s", spins, table.angular_velocity_rad_s.as_ref().map(|rate| rate.span.clone())),
+        ("spacecraft", craft, table.spacecraft.as_ref().map(|craft| craft.span.clone())),
+        ("higher_states", chain, span(&table.higher_states)),
+        ("reference", !craft, table.reference.as_ref().map(|reference| reference.span.clone())),
+    ];
+    all.into_iter().filter(|(_, counts, _)| !counts).filter_map(|(key, _, span)| Some((key, span?))).collect()
 }
 
 /// One number per axis, drawn uniformly.

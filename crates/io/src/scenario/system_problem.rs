@@ -37,6 +37,24 @@ pub enum SystemProblem {
     /// A coupling where there is none.
     #[error("`coupling` belongs to the design `swarm`")]
     CouplingUnused,
+    /// A period of the sign where nothing is set by it.
+    #[error(
+        "`sign_every_s` has no effect: {}",
+        if *.layer { "a boundary layer has its value at every instant" } else { "sampled controllers set the sign at every sample" }
+    )]
+    SignPeriodUnused {
+        /// Whether there is a boundary layer.
+        layer: bool,
+    },
+    /// A quantity of a rotorcraft beside a vehicle.
+    #[error("`rate_bandwidth_per_s` has no effect: the angular velocity of `{agent}` is the one that is asked for")]
+    RateBandwidthUnused {
+        /// The agent.
+        agent: String,
+    },
+    /// A heading that nothing leads to.
+    #[error("`heading_rad` has no effect beside `gain_per_s` = 0")]
+    HeadingUnused,
     /// As many roots as the design has.
     #[error("`roots_per_s` has {}, but this design needs {need}", entry_count(*.found))]
     LeaderRoots {
@@ -133,6 +151,8 @@ impl SystemProblem {
             SystemProblem::NoTip => "add tip = { link = \"…\" } with a link of the URDF".into(),
             SystemProblem::Tip(TipError::Size { .. }) => "`locked` of the robot holds joints of a URDF".into(),
             SystemProblem::NoLeader => "add `[leader]` with a `motion`".into(),
+            SystemProblem::SignPeriodUnused { .. } | SystemProblem::HeadingUnused => "leave it out".into(),
+            SystemProblem::RateBandwidthUnused { .. } => "leave it out, or let the robot be a `rotorcraft`".into(),
             SystemProblem::LeaderUnused { .. } => "write `reference.leader`, or delete the leader".into(),
             SystemProblem::LeaderRoots { .. } => "`continuous` has one root, the other designs have two".into(),
             SystemProblem::TargetValue { .. } => {

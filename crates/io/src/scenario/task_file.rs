@@ -72,7 +72,8 @@ pub enum CoordinateFile {
 pub enum UncertainFile {
     /// From the last joint to the tip.
     Tool,
-    /// From each joint to the next as well, for the Jacobian; the regressor of the dynamics keeps the geometry of the URDF.
+    /// From each joint to the next as well, for the Jacobian; the regressor of the dynamics keeps the geometry of the URDF, so no
+    /// theorem covers those of them that enter it: see what `check` says.
     Chain,
 }
 

@@ -13,6 +13,7 @@ use super::fault::{Fault, fault, not_negative, not_negative_or, positive, positi
 use super::file::StartFile;
 use super::law::{gain, of_another};
 use super::robots::axis;
+use super::system_problem::SystemProblem;
 use super::value_problem::ValueProblem;
 use super::vehicle_file::{
     AdaptiveThrustFile, DifferentiableFile, FloorFile, RotorcraftFile, RotorsFile, ThrustDesignFile, ThrustFile,
@@ -133,9 +134,9 @@ fn differentiable(file: &DifferentiableFile, mass: f64) -> Result<(ThrustKind, f
 }
 
 fn yaw(file: &YawFile) -> Result<Yaw, Fault> {
-    Ok(Yaw {
-        heading: file.heading_rad.unwrap_or(0.0),
-        rate: file.rate_rad_s.unwrap_or(0.0),
-        gain: not_negative_or("gain_per_s", &file.gain_per_s, YAW_GAIN_PER_S)?,
-    })
+    let gain = not_negative_or("gain_per_s", &file.gain_per_s, YAW_GAIN_PER_S)?;
+    if let (Some(place), Some(_)) = (file.gain_per_s.as_ref().filter(|_| gain == 0.0), file.heading_rad) {
+        return Err(fault(place, SystemProblem::HeadingUnused));
+    }
+    Ok(Yaw { heading: file.heading_rad.unwrap_or(0.0), rate: file.rate_rad_s.unwrap_or(0.0), gain })
 }

@@ -20,6 +20,7 @@ mod spread;
 mod targets;
 mod tips;
 mod tracking;
+mod unused;
 mod vehicles;
 
 use forwardstep_io::SourceText;

@@ -159,7 +159,7 @@ const SPACECRAFT_CASES: &[Case] = &[
     ("[reference.tracking]\n", "[reference.tracking]\nroots_per_s = [0]\n",
         "test.toml:23:16: `roots_per_s` is 0, but must be positive", ""),
     ("[reference.tracking]\n", "[reference.consensus]\nroots_per_s = [1]\nexchange = \"position\"\n[network]\nedges = []\n",
-        "test.toml:22:2: agent `craft`: the law for an attitude does not go with these reference dynamics", "write `reference.tracking`, and leave `network` out"),
+        "test.toml:22:2: agent `craft`: the law for an attitude follows a target of its own; it does not agree with others", "write `reference.tracking`, and give it a `target`"),
     ("[law.attitude]", "[law.atitude]",
         "test.toml:24:6: unknown choice `atitude`", "did you mean `attitude`? choose one of `adaptive`, `known`, `position_only`, `thrust`, `task_space`, `attitude`, `linearising`, `linear_adaptive`, `immersion`, `adaptive_backstepping`"),
     ("error_gain_per_s2 = 0.5", "error_gain_per_s2 = 0",

@@ -133,7 +133,7 @@ const TIP_CASES: &[Case] = &[
     ("target.formulas = [\"-0.6 + 0.1*cos(t)\", -0.4, 0.45]\n", "",
         "test.toml:5:8: agent `arm` is to track a target, but has none", "give it a `target`"),
     ("[reference.tracking]", "[reference.consensus]\nroots_per_s = [1]\nexchange = \"position\"\n[network]\nedges = []",
-        "test.toml:13:2: agent `arm`: the law for a tip does not go with these reference dynamics", "write `reference.tracking`, and leave `network` out"),
+        "test.toml:13:2: agent `arm`: the law for a tip follows a target of its own; it does not agree with others", "write `reference.tracking`, and give it a `target`"),
     ("[goal]", "[[pushes]]\non = [\"arm\"]\nby.torque_n_m = [1, 0, 0]\n[goal]",
         "test.toml:29:7: agent `arm`: pushes act on robots under the adaptive or the known law, not on the law for a tip", "leave `arm` out of `on`"),
     ("[goal]", "[control]\nsample_hz = 1000\nnoise = { seed = 1, velocity = -1 }\n[goal]",

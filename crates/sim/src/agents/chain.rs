@@ -12,7 +12,7 @@ use forwardstep_core::reference::{Consensus, Position, polynomial};
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::setup::{Exchange, ReferenceKind, RobotSetup};
-use crate::system::{Attachments, Interface, Law, ReferenceFamily, Robot};
+use crate::system::{ActuatorLimits, Attachments, Interface, Law, ReferenceFamily, Robot};
 
 /// What a chain is made of; its true θ stands with the robot.
 #[derive(Clone, Debug)]
@@ -74,6 +74,10 @@ impl Robot for ChainModel {
 
     fn attachments(&self) -> Attachments<'_> {
         Attachments::Axes
+    }
+
+    fn actuator_limits(&self) -> ActuatorLimits {
+        ActuatorLimits::Axes
     }
 }
 
@@ -172,7 +176,9 @@ impl Law for ChainLaw {
             measures,
             exchanges: &[Exchange::Position],
             follows: &[ReferenceFamily::Consensus, ReferenceFamily::Target],
+            measures_velocity: robot.velocity_len() > 0,
             manipulability: false,
+            tracks_by_roots: true,
             offsets,
             pushed: false,
             estimates: self.estimates(),

@@ -8,7 +8,7 @@ use forwardstep_core::{Gain, Lanes, LengthError};
 
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::setup::{AgentSetup, Exchange, RobotSetup};
-use crate::system::{Attachments, Interface, Law, ReferenceFamily, Robot};
+use crate::system::{ActuatorLimits, Attachments, Interface, Law, ReferenceFamily, Robot};
 
 /// A robot model whose kernels work on one robot or on eight at once.
 pub trait RobotModel: Robot + Clone {
@@ -89,6 +89,10 @@ impl Robot for Arc<Tree> {
     fn attachments(&self) -> Attachments<'_> {
         Attachments::Links(self)
     }
+
+    fn actuator_limits(&self) -> ActuatorLimits {
+        ActuatorLimits::Axes
+    }
 }
 
 impl RobotModel for Arc<Tree> {
@@ -124,6 +128,10 @@ impl Robot for PlanarArm {
     fn attachments(&self) -> Attachments<'_> {
         Attachments::PlanarTip
     }
+
+    fn actuator_limits(&self) -> ActuatorLimits {
+        ActuatorLimits::Axes
+    }
 }
 
 impl RobotModel for PlanarArm {
@@ -158,6 +166,10 @@ impl Robot for PointMass {
 
     fn attachments(&self) -> Attachments<'_> {
         Attachments::Axes
+    }
+
+    fn actuator_limits(&self) -> ActuatorLimits {
+        ActuatorLimits::Axes
     }
 }
 
@@ -199,7 +211,9 @@ fn interface(robot: &RobotSetup, estimates: bool) -> Option<Interface> {
             ReferenceFamily::Backstepping,
             ReferenceFamily::Leader,
         ],
+        measures_velocity: true,
         manipulability: true,
+        tracks_by_roots: false,
         offsets: false,
         pushed: true,
         estimates,

@@ -6,7 +6,7 @@ use forwardstep_core::plant::{Rotorcraft, Rotors};
 use super::LagrangianRobot;
 use super::vehicle::plant as vehicle;
 use crate::closed_loop::{Assembly, SetupError};
-use crate::system::{Attachments, Robot};
+use crate::system::{ActuatorLimits, Attachments, Robot};
 
 /// A rotorcraft. ϑ is its mass; the rest of its start is its attitude and its angular velocity.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +42,10 @@ impl Robot for RotorcraftModel {
 
     fn attachments(&self) -> Attachments<'_> {
         Attachments::Axes
+    }
+
+    fn actuator_limits(&self) -> ActuatorLimits {
+        ActuatorLimits::Axes
     }
 }
 

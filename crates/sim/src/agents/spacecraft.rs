@@ -7,7 +7,7 @@ use forwardstep_core::plant::{Spacecraft, Wheels};
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::setup::{Exchange, RobotSetup};
-use crate::system::{Attachments, Interface, Law, ReferenceFamily, Robot};
+use crate::system::{ActuatorLimits, Attachments, Interface, Law, ReferenceFamily, Robot};
 
 /// A spacecraft. Its axes are the entries of a quaternion; the rest of its start holds the momenta of the wheels, N m s.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +42,10 @@ impl Robot for SpacecraftModel {
     fn attachments(&self) -> Attachments<'_> {
         Attachments::Axes
     }
+
+    fn actuator_limits(&self) -> ActuatorLimits {
+        ActuatorLimits::Own
+    }
 }
 
 /// (97)–(105) for a spacecraft; see [`AttitudeTracking`]. M and h_I are those of the spacecraft and its start.
@@ -69,7 +73,9 @@ impl Law for AttitudeLaw {
             measures: AttitudeTracking::MEASURES,
             exchanges: &[Exchange::Position],
             follows: &[ReferenceFamily::Target],
+            measures_velocity: false,
             manipulability: false,
+            tracks_by_roots: false,
             offsets: AttitudeTracking::KNOWS_OFFSETS,
             pushed: false,
             estimates: false,

@@ -100,7 +100,9 @@ impl Law for TaskSpaceLaw {
             measures: TaskSpace::<PlanarArm, PlanarTip>::MEASURES,
             exchanges: &[Exchange::Position],
             follows: &[ReferenceFamily::Target],
+            measures_velocity: true,
             manipulability: false,
+            tracks_by_roots: false,
             offsets: TaskSpace::<PlanarArm, PlanarTip>::KNOWS_OFFSETS,
             pushed: false,
             estimates: true,
@@ -158,8 +160,12 @@ impl TaskSpaceLaw {
         let kinematic_adaptation = adapts.map(|gain| assembly.gain(gain, "Λ", p)).transpose()?;
         if let Some(bounds) = &self.bounds {
             check_bounds(assembly, bounds, p)?;
-            if matches!(kinematic_adaptation, Some(ResolvedGain::Matrix { .. })) {
-                return Err(SetupError::ProjectionOfMatrix { agent: own.name.clone() });
+            match kinematic_adaptation {
+                None => return Err(SetupError::BoundsOfKnown { agent: own.name.clone() }),
+                Some(ResolvedGain::Matrix { .. }) => {
+                    return Err(SetupError::ProjectionOfMatrix { agent: own.name.clone() });
+                }
+                Some(ResolvedGain::Diagonal(_)) => {}
             }
         }
         let controller = TaskSpace {

@@ -5,7 +5,7 @@ use forwardstep_core::plant::Vehicle;
 
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, SetupError};
-use crate::system::{Attachments, Robot};
+use crate::system::{ActuatorLimits, Attachments, Robot};
 
 /// (44). ϑ is its mass; the rest of its start is its attitude (q_v, q_o).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +37,10 @@ impl Robot for VehicleModel {
 
     fn attachments(&self) -> Attachments<'_> {
         Attachments::Axes
+    }
+
+    fn actuator_limits(&self) -> ActuatorLimits {
+        ActuatorLimits::None
     }
 }
 

@@ -8,7 +8,7 @@ use forwardstep_core::{Gain, LengthError, ResolvedGain};
 use super::members::{self, sensor};
 use super::population::Columns;
 use super::solo::{Digital, Solo, Target};
-use super::valid::SetupError;
+use super::valid::{SetupError, too_many};
 use crate::agents::RobotModel;
 use crate::recording::Signal;
 use crate::setup::{AgentSetup, Axis, Control, ReferenceKind, Setup};
@@ -141,6 +141,11 @@ impl<'a> Assembly<'a> {
         let (setup, own) = (self.setup, self.agent());
         let start = &own.start;
         self.length("the start", total(&plant.states()), start.q.len() + start.dq.len() + start.rest.len())?;
+        let blocks = controller.states();
+        let vectors = blocks.iter().filter(|(signal, _)| matches!(signal, Signal::Reference(_))).count();
+        if start.reference.len() > vectors {
+            return Err(too_many(own, vectors, start.reference.len()));
+        }
         let is_offset = setup.reference != ReferenceKind::Tracking;
         let target = match &own.target {
             None => None,

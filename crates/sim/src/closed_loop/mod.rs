@@ -11,6 +11,7 @@
 //! - `sliding`: who sets the set-valued signs in continuous time.
 //! - `members`: from agents to batches.
 //! - `assembly`: what a law builds its agents with.
+//! - `unused`: what a setup states and nothing reads.
 //! - `valid`: what makes a [`crate::Setup`] meaningless.
 //! - `assemble`: all populations and what joins them: the right-hand side as a whole, and its events.
 
@@ -26,9 +27,10 @@ mod sampler;
 mod sampling;
 mod sliding;
 mod solo;
+mod unused;
 mod valid;
 
 pub(crate) use assemble::ClosedLoop;
 pub use assembly::{Assembly, Block};
 pub(crate) use members::tracking_law;
-pub use valid::{SetupError, validate};
+pub use valid::{SetupError, VelocityQuantity, validate};

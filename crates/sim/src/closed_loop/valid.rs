@@ -8,6 +8,7 @@ use forwardstep_core::robot::tree::TipError;
 use forwardstep_core::{GainError, LengthError};
 use thiserror::Error;
 
+use super::unused;
 use crate::agents::Adaptive;
 use crate::leader::{Following, FollowingDesign};
 use crate::network::NetworkError;
@@ -157,8 +158,6 @@ pub enum SetupError {
         agent: String,
         /// Its law, in words.
         law: &'static str,
-        /// Those that it goes with.
-        follows: &'static [ReferenceFamily],
     },
     /// A law that cannot follow a target.
     #[error("agent `{agent}`: {law} does not follow a target of its own; it goes with consensus")]
@@ -167,6 +166,28 @@ pub enum SetupError {
         agent: String,
         /// Its law, in words.
         law: &'static str,
+    },
+    /// A law that cannot agree with others.
+    #[error("agent `{agent}`: {law} follows a target of its own; it does not agree with others")]
+    OnlyTracks {
+        /// The agent.
+        agent: String,
+        /// Its law, in words.
+        law: &'static str,
+    },
+    /// More of z(0), ż(0), … than the state of the reference dynamics has.
+    #[error("agent `{agent}`: {error}")]
+    StartOfReference {
+        /// The agent.
+        agent: String,
+        /// How many there are, and how many there may be.
+        error: LengthError,
+    },
+    /// Edges among agents that do not agree on anything.
+    #[error("agents that follow targets of their own hear nobody, but the network has edges ({edges} in all)")]
+    NobodyHears {
+        /// How many, over all graphs.
+        edges: usize,
     },
     /// A reference of too low an order for a law.
     #[error("agent `{agent}`: its reference dynamics have order {order}, but its law needs {least} roots or more")]
@@ -273,6 +294,12 @@ pub enum SetupError {
         /// What it must be.
         requirement: &'static str,
     },
+    /// Bounds of kinematic parameters that are not adapted.
+    #[error("agent `{agent}`: bounds of kinematic parameters have no effect where these are not adapted")]
+    BoundsOfKnown {
+        /// The agent.
+        agent: String,
+    },
     /// A torque limit of one agent.
     #[error("agent `{agent}`: {error}")]
     Limiter {
@@ -280,6 +307,19 @@ pub enum SetupError {
         agent: String,
         /// What is wrong.
         error: LimiterError,
+    },
+    /// What a sensor of velocities would do, where it has no part in anything.
+    #[error(
+        "{} is {value}, but {}", .quantity.words(),
+        if *.filtered { "velocities come from filtered differences of positions" } else { "no law measures velocities" }
+    )]
+    VelocityUnused {
+        /// What it is.
+        quantity: VelocityQuantity,
+        /// The value.
+        value: f64,
+        /// Whether there are velocities, but from positions.
+        filtered: bool,
     },
     /// The filter that gives velocities.
     #[error(transparent)]
@@ -308,12 +348,33 @@ impl SetupError {
     /// The reference dynamics of `setup` do not lead the law of `agent`.
     pub(crate) fn wrong_reference(setup: &Setup, agent: &AgentSetup) -> Self {
         let (name, law) = (agent.name.clone(), agent.law.words());
+        let only_tracks = agent.interface().is_some_and(|interface| interface.follows == [ReferenceFamily::Target]);
         match setup.reference {
             ReferenceKind::Tracking => SetupError::NotTracking { agent: name, law },
-            _ => {
-                let follows = agent.interface().map_or(&[][..], |interface| interface.follows);
-                SetupError::ReferenceOfLaw { agent: name, law, follows }
-            }
+            _ if only_tracks => SetupError::OnlyTracks { agent: name, law },
+            _ => SetupError::ReferenceOfLaw { agent: name, law },
+        }
+    }
+}
+
+/// What is said of a sensor of velocities.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VelocityQuantity {
+    /// [`crate::Sensors::velocity_noise`].
+    Noise,
+    /// [`crate::Sensors::velocity_quantum`].
+    Step,
+    /// [`crate::VelocitySensor::Filtered`].
+    CutOff,
+}
+
+impl VelocityQuantity {
+    /// What it is called in messages.
+    pub fn words(self) -> &'static str {
+        match self {
+            VelocityQuantity::Noise => "the noise of velocities",
+            VelocityQuantity::Step => "the step of velocities",
+            VelocityQuantity::CutOff => "the cut-off of the filter of velocities",
         }
     }
 }
@@ -361,7 +422,14 @@ pub fn validate(setup: &Setup) -> Result<(), SetupError> {
         check_following(following, setup)?;
     }
     setup.agents.iter().try_for_each(|agent| check_agent(setup, agent))?;
+    unused::of_setup(setup)?;
     same_space(setup)
+}
+
+/// More of z(0), ż(0), … than there may be.
+pub(super) fn too_many(agent: &AgentSetup, need: usize, got: usize) -> SetupError {
+    let error = LengthError { what: "the start of the reference", need, got };
+    SetupError::StartOfReference { agent: agent.name.clone(), error }
 }
 
 /// Whoever agrees with a vehicle has a position in m. (An arm and a cart may agree on a number.)
@@ -485,8 +553,7 @@ fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
     }
     if agent.start.reference.len() > vectors {
         let (need, got) = (vectors, agent.start.reference.len());
-        let error = LengthError { what: "the start of the reference", need, got };
-        return Err(SetupError::Length { agent: agent.name.clone(), error });
+        return Err(too_many(agent, need, got));
     }
     vector("theta", agent.robot.theta.len(), &agent.robot.theta)?;
     if let Some(Adaptive { estimate_start, .. }) = agent.law.downcast() {
@@ -509,9 +576,6 @@ fn goes_together(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
     if !interface.follows.contains(&setup.reference.family()) {
         return Err(SetupError::wrong_reference(setup, agent));
     }
-    if !interface.manipulability && agent.manipulability != 0.0 {
-        return Err(SetupError::NoManipulability { agent: name(), law, value: agent.manipulability });
-    }
     if !interface.exchanges.contains(&setup.exchange) {
         return Err(SetupError::SendsPositionOnly { agent: name(), law });
     }
@@ -521,6 +585,6 @@ fn goes_together(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
     match (&agent.target, tracks) {
         (None, true) => Err(SetupError::NoTarget { agent: name() }),
         (Some(_), false) if !interface.offsets => Err(SetupError::NoOffsets { agent: name(), law }),
-        _ => Ok(()),
+        _ => unused::of_agent(setup, agent, &interface),
     }
 }

@@ -51,7 +51,13 @@ pub fn agent(index: usize, kind: Arc<dyn Robot>, design: ThrustKind) -> AgentSet
             bandwidth_per_s: 30.0,
         }),
         target: None,
-        start: Start { q: q.to_vec(), dq: vec![0.2, -0.1, 0.1], rest, reference: vec![vec![0.0; 3]] },
+        // (46) has no z.
+        start: Start {
+            q: q.to_vec(),
+            dq: vec![0.2, -0.1, 0.1],
+            rest,
+            reference: vec![vec![0.0; 3]; design.order() - 2],
+        },
         enforce_limits: false,
         pushes: Vec::new(),
     }

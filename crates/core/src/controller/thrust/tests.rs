@@ -304,6 +304,44 @@ fn prop_attitude_stays_a_rotation_and_the_heading_is_kept() {
     assert!((0..3).all(|k| (y[k] - SUMS[k] / DEGREE).abs() < 0.1), "{:?}", &y[..3]);
 }
 
+/// An upright vehicle that turns: its heading is ψ_r from the start on, not behind it by r/k_ψ.
+#[test]
+fn prop_a_heading_that_turns_is_followed_without_a_lag_and_without_a_gain_it_turns_at_the_rate() {
+    for (gain, heading) in [(1.5, 0.0), (0.0, 0.7), (4.0, 0.0)] {
+        let (plant, mut law) = vehicle(DIFFERENTIABLE);
+        law.yaw = Yaw { heading, rate: 0.6, gain };
+        let closed = Closed { plant, law, moves: false };
+        // Where the neighbours are, so that it hovers.
+        let place = SUMS.map(|sum| sum / DEGREE);
+        let mut y = closed.started(&[place[0], place[1], place[2], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+        for n in 1..=1000_i32 {
+            closed.step(f64::from(n - 1) * 2e-3, 2e-3, &mut y);
+            let t = f64::from(n) * 2e-3;
+            let look = rotate(*VehicleState::read(&y).unwrap().0.attitude, [1.0, 0.0, 0.0]);
+            assert!((libm::atan2(look[1], look[0]) - 0.6 * t).abs() < 1e-9, "gain {gain}: {look:?} at {t} s");
+            assert!((y[20] - heading - 0.6 * t).abs() < 1e-12, "{}", y[20]);
+        }
+    }
+}
+
+/// The rate that a body is to turn with about its own axis is foreseen, with all that its heading does.
+#[test]
+fn eq_47_the_rate_of_the_heading_is_foreseen_term_by_term() {
+    for yaw in [Yaw { heading: 0.9, rate: 0.0, gain: 2.0 }, Yaw { heading: -0.4, rate: 3.0, gain: 0.5 }] {
+        for design in [CONTINUOUS, DIFFERENTIABLE, ADAPTIVE] {
+            let (plant, mut law) = rotorcraft(design);
+            law.outer.yaw = yaw;
+            let closed = Closed { plant, law, moves: true };
+            for y in states(&closed, design.reference_len()) {
+                let now = closed.at(0.3, &y);
+                let wanted = |t: f64, y: &[f64]| [*closed.at(t, y).shown.last().unwrap()];
+                let ([slope], [asked]) = (closed.derivative(0.3, &y, wanted), wanted(0.3, &y));
+                near(now.rate[12] - slope, -25.0 * (y[12] - asked), 1e3, "the rate of the miss about the third axis");
+            }
+        }
+    }
+}
+
 #[test]
 fn thrust_near_zero_is_trouble_or_kept_away() {
     let (plant, mut law) = vehicle(DIFFERENTIABLE);

@@ -16,6 +16,29 @@
 //!
 //! where Ω(ξ) is Ω with ξ for q̇. What a prismatic joint adds to a translation is known. The place of the first joint on the
 //! base is in x and not in J.
+//!
+//! # Which of these lengths the regressor holds
+//!
+//! Theorem 6 has unknown lengths and unknown ϑ apart: Y(q, q̇, z, ż) has to be known. Y of a tree holds the place p of each joint
+//! in the frame of the body that carries it, and nothing else that could be θ: no body sits on the tool. In the recursion of
+//! `motion` p stands in two places,
+//!
+//! ```text
+//! a′ = Eᵀ(a + B p)          w′ = Eᵀ(w + σ × p)          B = [α] + ½ (u vᵀ + v uᵀ) − (u·v) 1
+//! ```
+//!
+//! where σ, v, u, α belong to the carrying body. Let a_1 … a_r be the axes of the revolute joints up to that body; the angular
+//! velocities σ, v, u are sums of them times numbers that are free, and α is such a sum and products of v with u.
+//!
+//! - r = 0: σ = v = u = α = 0, and no part of p is in Y.
+//! - All a_k parallel, to a unit vector a that is then fixed in the carrying body (each of the joints turns about it): for p = a,
+//!   σ × a = 0, α × a = 0, and ½ (u vᵀ + v uᵀ) a − (u·v) a = 0. So the part of p along a is not in Y, and any other part d is:
+//!   let all joints rest but the last of them, s = ż; the coefficient of the mass behind, w·a, holds |σ × p|².
+//! - Two axes that are not parallel: no direction is parallel to both, so every part of p is in Y by the same argument.
+//!
+//! Entry k of a translation is the part along axis k of the joint frame of the carrying body. It is not in Y exactly where r = 0 or
+//! that axis is the common direction; see [`TreeTip::in_regressor`]. (Y itself is meant, for every ϑ. For some ϑ and without gravity
+//! a wrong length can be made up for by another ϑ̂, but no theorem says so.)
 
 use alloc::format;
 use alloc::string::String;
@@ -23,7 +46,7 @@ use alloc::vec::Vec;
 
 use thiserror::Error;
 
-use super::model::Tree;
+use super::model::{Body, Tree};
 use super::motion::Seat;
 use super::spatial::{Mat3, Vec3};
 use super::{JointKind, LinkPoint};
@@ -33,7 +56,8 @@ use crate::{LengthError, trig};
 /// Which translations are θ.
 ///
 /// The dynamics of a tree are stated with its geometry, so a law that is to be true to the robot knows all of it but a tool:
-/// choose [`Uncertain::Tool`]. [`Uncertain::Chain`] is for kinematics that are learnt apart from the dynamics.
+/// choose [`Uncertain::Tool`]. [`Uncertain::Chain`] is for kinematics that are learnt apart from the dynamics: the law's Y keeps the
+/// true translations, and those of them that [`TreeTip::in_regressor`] marks it would have to know.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Uncertain {
     /// From the last joint to the tip: three numbers.
@@ -136,6 +160,26 @@ impl TreeTip {
         theta
     }
 
+    /// For each entry of θ whether Y(q, q̇, z, ż) of the tree depends on it, by the derivation at the head of this file.
+    pub fn in_regressor(&self) -> Vec<bool> {
+        let mut inside = Vec::with_capacity(self.parameter_count());
+        let mut axes = Axes::Nothing;
+        for c in 1..=self.tree.bodies.len() {
+            let body = &self.tree.bodies[c - 1];
+            axes = axes.carried_by(body);
+            if self.place(c).is_none() {
+                continue;
+            }
+            for k in 0..3 {
+                let mut unit = [0.0; 3];
+                unit[k] = 1.0;
+                // Nothing sits on the tool.
+                inside.push(c < self.tree.bodies.len() && axes.turn(body.inner_vector(Vec3::splat(unit))));
+            }
+        }
+        inside
+    }
+
     /// Where the numbers of translation c stand in θ, if they are there.
     fn place(&self, c: usize) -> Option<usize> {
         match self.uncertain {
@@ -184,6 +228,53 @@ impl TreeTip {
         }
         chain
     }
+}
+
+/// The axes of revolute joints from the base up to a body, as far as [`TreeTip::in_regressor`] goes by them, in the inner frame
+/// of that body.
+#[derive(Clone, Copy)]
+enum Axes {
+    /// There are none.
+    Nothing,
+    /// All have this direction, of length one.
+    One(Vec3<f64>),
+    /// Two differ.
+    Several,
+}
+
+impl Axes {
+    /// The axes up to the next body, which is `body`.
+    fn carried_by(self, body: &Body) -> Self {
+        let z = Vec3::new(0.0, 0.0, 1.0);
+        // The joint turns the frame about z, which leaves what is parallel to z and changes all else.
+        let (before, turns) = (Mat3::splat(&body.rotation), body.kind == JointKind::Revolute);
+        match (self, turns) {
+            (Axes::Nothing, true) => Axes::One(z),
+            (Axes::Nothing, false) => Axes::Nothing,
+            (Axes::One(axis), true) if apart(before.transpose_times(axis), z) => Axes::Several,
+            (Axes::One(_), true) => Axes::One(z),
+            (Axes::One(axis), false) => Axes::One(before.transpose_times(axis)),
+            (Axes::Several, _) => Axes::Several,
+        }
+    }
+
+    /// Whether a vector of the body's is turned by one of them at least.
+    fn turn(self, vector: Vec3<f64>) -> bool {
+        match self {
+            Axes::Nothing => false,
+            Axes::One(axis) => apart(vector, axis),
+            Axes::Several => true,
+        }
+    }
+}
+
+/// Directions that differ by less than this, rad, do so by the rounding of placements alone.
+const PARALLEL: f64 = 1e-12;
+
+/// Whether two vectors of length one have different directions, opposite ones not counted.
+fn apart(a: Vec3<f64>, b: Vec3<f64>) -> bool {
+    let cross = a.cross(b);
+    cross.dot(cross) > PARALLEL * PARALLEL
 }
 
 fn upright() -> Mat3<f64> {

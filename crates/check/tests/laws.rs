@@ -1,0 +1,245 @@
+//! Verdicts about laws of Sections IV and V: what they need to know, and what has to be bounded.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+
+mod common;
+
+use common::kinds::{
+    alone, blind_mass, cascade, chain, change_tip, formula, planar_tip, power_of_time, rest_at, spacecraft, tracking,
+    tree_tip, vehicle,
+};
+use common::{About, answer, answers};
+use forwardstep_check::{Answer, check};
+use forwardstep_core::controller::{Floor, ParameterBounds};
+use forwardstep_core::expression::Expression;
+use forwardstep_core::robot::tree::JointKind::{Prismatic, Revolute};
+use forwardstep_core::robot::tree::{JointKind, Uncertain};
+use forwardstep_sim::formula::FormulaStep::{Multiply, Number, Sin, Time};
+use forwardstep_sim::trajectory::{Path, Trajectory};
+use forwardstep_sim::{AgentSetup, Setup, SpacecraftModel, ThrustKind};
+
+const X: [f64; 3] = [1.0, 0.0, 0.0];
+const Y: [f64; 3] = [0.0, 1.0, 0.0];
+const Z: [f64; 3] = [0.0, 0.0, 1.0];
+
+/// What is said about the regressor of an arm, and which lengths are named.
+fn regressor(kinds: [JointKind; 3], axes: [[f64; 3]; 3], uncertain: Uncertain) -> (Answer, Vec<usize>) {
+    let setup = tracking(tree_tip(kinds, axes, uncertain), vec![rest_at(0.1), rest_at(0.2), rest_at(0.3)]);
+    let report = check(&setup);
+    let named = |k: &usize| report.hypotheses.iter().any(|h| h.because.contains(&format!("length-{k}")));
+    (answer(&setup, About::Regressor), (0..9).filter(named).collect())
+}
+
+#[test]
+fn thm6_lengths_that_the_regressor_holds_are_not_covered_and_no_others() {
+    let turning = [Revolute; 3];
+    // A tool is in no dynamics.
+    assert_eq!(regressor(turning, [Z, Y, Y], Uncertain::Tool), (Answer::Holds, vec![]));
+    // Along the one axis that has turned so far nothing enters; behind two that differ, all does.
+    let all_of_the_second = vec![0, 1, 3, 4, 5];
+    assert_eq!(regressor(turning, [Z, Y, Y], Uncertain::Chain), (Answer::NotCovered, all_of_the_second));
+    // With parallel axes the part along them never does.
+    assert_eq!(regressor(turning, [Y, Y, Y], Uncertain::Chain), (Answer::NotCovered, vec![0, 2, 3, 5]));
+    assert_eq!(regressor(turning, [Y, Y, X], Uncertain::Chain), (Answer::NotCovered, vec![0, 2, 3, 5]));
+    // What only slides turns nothing.
+    assert_eq!(regressor([Prismatic; 3], [X, Y, Z], Uncertain::Chain), (Answer::Holds, vec![]));
+    assert_eq!(regressor([Prismatic, Prismatic, Revolute], [X, Y, Z], Uncertain::Chain), (Answer::Holds, vec![]));
+    assert_eq!(
+        regressor([Prismatic, Revolute, Revolute], [X, Z, Z], Uncertain::Chain),
+        (Answer::NotCovered, vec![3, 4])
+    );
+    assert_eq!(
+        regressor([Revolute, Prismatic, Revolute], [Z, X, Z], Uncertain::Chain),
+        (Answer::NotCovered, vec![0, 1, 3, 4])
+    );
+}
+
+#[test]
+fn thm6_lengths_that_are_known_may_be_in_the_regressor_and_wrong_ones_have_to_be_adapted() {
+    let said = |adapted: bool, known: bool| {
+        let mut agent = tree_tip([Revolute; 3], [Z, Y, Y], Uncertain::Chain);
+        let kind = agent.robot.kind.clone();
+        change_tip(&mut agent, |law| {
+            if known {
+                law.kinematic_start = law.tip.parameters(&*kind).unwrap();
+            }
+            if !adapted {
+                law.kinematic_adaptation = None;
+            }
+        });
+        let setup = tracking(agent, vec![rest_at(0.1), rest_at(0.2), rest_at(0.3)]);
+        [answer(&setup, About::Regressor), answer(&setup, About::TaskSpaceGains)]
+    };
+    assert_eq!(said(true, false), [Answer::NotCovered, Answer::Holds]);
+    assert_eq!(said(true, true), [Answer::NotCovered, Answer::Holds]);
+    assert_eq!(said(false, true), [Answer::Holds; 2]);
+    assert_eq!(said(false, false), [Answer::NotCovered; 2]);
+}
+
+#[test]
+fn thm6_lengths_outside_their_bounds_are_not_covered() {
+    // The true lengths are 1 m and 0.8 m.
+    let said = |lower: [f64; 2], upper: [f64; 2]| {
+        let mut agent = planar_tip();
+        let bounds = ParameterBounds { lower: lower.to_vec(), upper: upper.to_vec(), margin: 0.1 };
+        change_tip(&mut agent, |law| law.bounds = Some(bounds));
+        answer(&tracking(agent, vec![rest_at(0.8), rest_at(0.6)]), About::Lengths)
+    };
+    assert_eq!(said([0.9, 0.7], [1.1, 0.9]), Answer::Holds);
+    assert_eq!(said([1.0, 0.8], [1.0, 0.8]), Answer::Holds, "a bound belongs to what it bounds");
+    assert_eq!(said([1.05, 0.7], [1.1, 0.9]), Answer::NotCovered);
+    assert_eq!(said([0.9, 0.7], [0.95, 0.9]), Answer::NotCovered);
+    assert_eq!(said([0.9, 0.85], [1.1, 0.9]), Answer::NotCovered);
+    assert_eq!(said([0.9, 0.7], [1.1, 0.75]), Answer::NotCovered);
+    let unbounded = tracking(planar_tip(), vec![rest_at(0.8), rest_at(0.6)]);
+    assert!(answers(&check(&unbounded), About::Lengths).is_empty());
+}
+
+#[test]
+fn thm6_a_jacobian_that_is_singular_at_the_start_is_violated() {
+    let said = |elbow: f64| {
+        let mut agent = planar_tip();
+        agent.start.q[1] = elbow;
+        answer(&tracking(agent, vec![rest_at(0.8), rest_at(0.6)]), About::Determinant)
+    };
+    assert_eq!([1.4, 0.0].map(said), [Answer::Watched, Answer::Violated]);
+}
+
+#[test]
+fn eq_a8_and_57_an_estimate_that_is_not_adapted_has_to_be_the_mass() {
+    let blind = |adaptation, start| {
+        let mut agent = blind_mass(adaptation, start);
+        agent.roots_per_s.truncate(2);
+        answer(&alone(agent), About::PositionOnlyGains)
+    };
+    assert_eq!([blind(5.0, 0.3), blind(0.0, 2.0), blind(0.0, 0.3)], [Answer::Holds, Answer::Holds, Answer::NotCovered]);
+    let flown = |gamma_star, estimate_start| {
+        let design = ThrustKind::Adaptive { alpha_star: 3.0, gamma_star, estimate_start };
+        answer(&alone(vehicle(design, Floor::Stops(1.0))), About::ThrustGains)
+    };
+    assert_eq!([flown(0.2, 0.3), flown(0.0, 2.0), flown(0.0, 0.3)], [Answer::Holds, Answer::Holds, Answer::NotCovered]);
+}
+
+#[test]
+fn thm4_a_thrust_that_is_kept_above_a_floor_is_not_covered() {
+    let design = ThrustKind::Differentiable { alpha_star: 3.0, stiffness: 4.0 };
+    let kept = Floor::Kept { floor: 1.0, approach_s: 0.1 };
+    let said = |floors: &[Floor]| {
+        let mut setup = alone(vehicle(design, floors[0]));
+        setup.agents = floors.iter().map(|floor| vehicle(design, *floor)).collect();
+        setup.network.agents = floors.len();
+        answer(&setup, About::Thrust)
+    };
+    assert_eq!(said(&[Floor::Stops(1.0)]), Answer::Watched);
+    assert_eq!(said(&[kept]), Answer::NotCovered);
+    assert_eq!(said(&[Floor::Stops(1.0), kept]), Answer::NotCovered, "one is enough");
+}
+
+#[test]
+fn eq_43_a_factor_of_the_input_that_varies_is_watched() {
+    let x = || Expression::variable(0);
+    let constant = chain(&Expression::number(2.0), 0, false);
+    assert_eq!(answer(&alone(constant), About::Divisor), Answer::Holds);
+    let varying = chain(&(x().cos_of() + 2.0), 0, false);
+    assert_eq!(answer(&alone(varying), About::Divisor), Answer::Watched);
+    // A constant may be too small from the start: the floor is 1e-3.
+    for (psi, answered) in [
+        (0.0, Answer::Violated),
+        (9e-4, Answer::Violated),
+        (-9e-4, Answer::Violated),
+        (1e-3, Answer::Holds),
+        (-2.0, Answer::Holds),
+    ] {
+        assert_eq!(answer(&alone(chain(&Expression::number(psi), 0, false)), About::Divisor), answered, "{psi}");
+    }
+    let cancelled = Expression::number(0.5) - 0.5;
+    assert_eq!(answer(&alone(chain(&cancelled, 0, false)), About::Divisor), Answer::Violated);
+    // Strict feedback with a constant input, with one that varies, and pure feedback, which divides by ∂f/∂x_2.
+    let strict = || Expression::variable(1);
+    let bent = || Expression::variable(1) + Expression::variable(1).power(3.0);
+    let one = || Expression::number(1.0);
+    assert_eq!(answer(&alone(cascade(strict(), one(), 1)), About::Divisor), Answer::Holds);
+    assert_eq!(answer(&alone(cascade(strict(), x().cos_of() + 2.0, 1)), About::Divisor), Answer::Watched);
+    assert_eq!(answer(&alone(cascade(bent(), one(), 1)), About::Divisor), Answer::Watched);
+}
+
+#[test]
+fn eq_43_regressors_have_to_be_bounded_where_they_are_adapted_by_the_gradient() {
+    let one = Expression::number(1.0);
+    let said = |agent: AgentSetup| answers(&check(&alone(agent)), About::Regressors);
+    assert_eq!(said(chain(&one, 1, true)), [Answer::Watched]);
+    assert_eq!(said(chain(&one, 0, true)), []);
+    assert_eq!(said(chain(&one, 1, false)), []);
+    let strict = |parameters| cascade(Expression::variable(1), Expression::number(1.0), parameters);
+    assert_eq!(said(strict(1)), [Answer::Watched]);
+    assert_eq!(said(strict(0)), []);
+}
+
+/// A path with `bounded` derivatives that are bounded on the run, beginning with the zeroth, and no more.
+fn smooth(bounded: i32) -> Path {
+    // t^(k − ½) has k − 1 derivatives that are finite at t = 0.
+    power_of_time(0.01, f64::from(bounded) - 0.5)
+}
+
+/// How many derivatives of its target an agent needs on the run, beside the target itself.
+fn needed(agent: &AgentSetup, about: About) -> usize {
+    let axes = if agent.robot.kind.is::<SpacecraftModel>() { 4 } else { agent.robot.axes.len() };
+    let said = |bounded: i32| {
+        let mut paths: Vec<Path> = (0..axes).map(|_| rest_at(0.1)).collect();
+        *paths.last_mut().unwrap() = smooth(bounded);
+        let mut setup = tracking(agent.clone(), paths);
+        if about == About::Offset {
+            setup.reference = forwardstep_sim::ReferenceKind::Consensus;
+        }
+        answer(&setup, about)
+    };
+    let answers: Vec<Answer> = (1..=5).map(said).collect();
+    let first = answers.iter().position(|answer| *answer != Answer::NotCovered).unwrap_or(5);
+    assert!(answers[first..].iter().all(|answer| *answer == Answer::HoldsOnHorizon), "{answers:?}");
+    first
+}
+
+#[test]
+fn eq_a9_and_others_need_as_many_derivatives_of_a_target_as_they_take() {
+    assert_eq!(needed(&blind_mass(5.0, 0.3), About::Target), 3, "(a9) takes the jerk of its target");
+    assert_eq!(needed(&planar_tip(), About::Target), 2);
+    assert_eq!(needed(&spacecraft(), About::Target), 2);
+    for roots in 1..=4 {
+        let mut plant = chain(&Expression::number(1.0), 0, false);
+        plant.roots_per_s = vec![1.0; roots];
+        assert_eq!(needed(&plant, About::Target), roots, "as many as there are roots");
+    }
+    let floor = Floor::Stops(1.0);
+    let differentiable = ThrustKind::Differentiable { alpha_star: 3.0, stiffness: 4.0 };
+    assert_eq!(needed(&vehicle(ThrustKind::Continuous, floor), About::Offset), 3);
+    assert_eq!(needed(&vehicle(differentiable, floor), About::Offset), 4);
+}
+
+#[test]
+fn targets_are_bounded_for_ever_on_the_run_or_not_at_all() {
+    let said = |path: Path| answer(&tracking(blind_mass(5.0, 0.3), vec![path]), About::Target);
+    assert_eq!(said(formula(&[Number(0.3), Time, Sin, Multiply])), Answer::Holds);
+    assert_eq!(said(power_of_time(0.1, 2.0)), Answer::HoldsOnHorizon);
+    // A target has to stay where it is, an offset may travel.
+    assert_eq!(said(formula(&[Number(0.3), Time, Multiply])), Answer::HoldsOnHorizon);
+    let mut travelling: Setup = alone(vehicle(ThrustKind::Continuous, Floor::Stops(1.0)));
+    let drift = vec![formula(&[Number(0.3), Time, Multiply]), rest_at(0.0), rest_at(0.0)];
+    travelling.agents[0].target = Some(Trajectory::new(drift).unwrap());
+    assert_eq!(answer(&travelling, About::Offset), Answer::Holds);
+    // Any axis may be the one that is not bounded.
+    let late = vec![rest_at(0.0), rest_at(0.0), power_of_time(0.1, 0.5)];
+    travelling.agents[0].target = Some(Trajectory::new(late).unwrap());
+    assert_eq!(answer(&travelling, About::Offset), Answer::NotCovered);
+}
+
+#[test]
+fn thm7_a_quaternion_that_comes_to_zero_is_violated_and_one_that_does_not_holds() {
+    let said =
+        |last: Path| answer(&tracking(spacecraft(), vec![rest_at(0.0), rest_at(0.0), rest_at(0.0), last]), About::Path);
+    assert_eq!(said(rest_at(1.0)), Answer::Holds);
+    assert_eq!(said(rest_at(-1.0)), Answer::Holds);
+    // It passes zero at π.
+    assert_eq!(said(formula(&[Time, Sin])), Answer::Violated);
+    let shrinking = formula(&[Number(1.0), Number(-0.04), Time, Multiply, forwardstep_sim::formula::FormulaStep::Add]);
+    assert_eq!(said(shrinking), Answer::HoldsOnHorizon, "at 20 s it is 0.2");
+}

@@ -1,0 +1,98 @@
+//! What a setup states and nothing reads: refused, so that nobody takes it to have an effect.
+
+use forwardstep_core::LengthError;
+
+use super::valid::{SetupError, VelocityQuantity};
+use crate::setup::{AgentSetup, Control, ReferenceKind, Setup, VelocitySensor};
+use crate::system::{ActuatorLimits, Interface, ReferenceFamily};
+
+/// Everything about the whole setup.
+pub(super) fn of_setup(setup: &Setup) -> Result<(), SetupError> {
+    // A law that cannot track is refused for that.
+    let tracks = |agent: &AgentSetup| {
+        agent.interface().is_some_and(|interface| interface.follows.contains(&ReferenceFamily::Target))
+    };
+    if setup.reference == ReferenceKind::Tracking && setup.agents.iter().all(tracks) {
+        let edges = setup.network.schedule.graphs().into_iter().map(<[_]>::len).sum();
+        if edges > 0 {
+            return Err(SetupError::NobodyHears { edges });
+        }
+    }
+    setup.control.as_ref().map_or(Ok(()), |control| of_sensors(control, &setup.agents))
+}
+
+/// Noise and steps of velocities where none are measured.
+fn of_sensors(control: &Control, agents: &[AgentSetup]) -> Result<(), SetupError> {
+    let sensors = &control.sensors;
+    // A law beside a robot that it is not made for is refused for that.
+    let measured = agents.iter().any(|agent| agent.interface().is_none_or(|interface| interface.measures_velocity));
+    let (filtered, cut_off_hz) = match sensors.velocity {
+        VelocitySensor::Measured if measured => return Ok(()),
+        VelocitySensor::Measured => (false, 0.0),
+        VelocitySensor::Filtered { .. } if measured => (true, 0.0),
+        VelocitySensor::Filtered { cut_off_hz } => (false, cut_off_hz),
+    };
+    for (quantity, value) in [
+        (VelocityQuantity::CutOff, cut_off_hz),
+        (VelocityQuantity::Noise, sensors.velocity_noise),
+        (VelocityQuantity::Step, sensors.velocity_quantum),
+    ] {
+        if value != 0.0 {
+            return Err(SetupError::VelocityUnused { quantity, value, filtered });
+        }
+    }
+    Ok(())
+}
+
+/// Everything about one agent.
+pub(super) fn of_agent(setup: &Setup, own: &AgentSetup, interface: &Interface) -> Result<(), SetupError> {
+    manipulability(setup, own, interface)?;
+    roots(setup, own, interface)?;
+    limits(own)
+}
+
+/// λ is read by (3), (23), (a5) and (24) beside laws that measure q̇: it multiplies q̇ − z. Where q̇ is not measured there is no
+/// such number to multiply.
+fn manipulability(setup: &Setup, own: &AgentSetup, interface: &Interface) -> Result<(), SetupError> {
+    let without = match setup.reference {
+        _ if !interface.manipulability => own.law.words(),
+        ReferenceKind::Consensus | ReferenceKind::PureIntegral => return Ok(()),
+        ReferenceKind::Backstepping { .. } => "the backstepping baseline",
+        ReferenceKind::Following(_) => "following a leader",
+        ReferenceKind::Tracking => own.law.words(),
+    };
+    if own.manipulability == 0.0 {
+        return Ok(());
+    }
+    Err(SetupError::NoManipulability { agent: own.name.clone(), law: without, value: own.manipulability })
+}
+
+/// Roots belong to reference dynamics that are a polynomial.
+fn roots(setup: &Setup, own: &AgentSetup, interface: &Interface) -> Result<(), SetupError> {
+    let counts = match setup.reference {
+        ReferenceKind::Consensus | ReferenceKind::PureIntegral => true,
+        ReferenceKind::Backstepping { .. } | ReferenceKind::Following(_) => false,
+        ReferenceKind::Tracking => interface.tracks_by_roots,
+    };
+    if counts || own.roots_per_s.is_empty() {
+        return Ok(());
+    }
+    let error = LengthError { what: "the list of roots", need: 0, got: own.roots_per_s.len() };
+    Err(SetupError::RootCount { agent: own.name.clone(), error })
+}
+
+/// Limits that are to be enforced have to be there.
+fn limits(own: &AgentSetup) -> Result<(), SetupError> {
+    let mut axes = own.robot.axes.iter();
+    let missing = match own.robot.kind.actuator_limits() {
+        ActuatorLimits::Own => None,
+        ActuatorLimits::None => axes.next(),
+        ActuatorLimits::Axes => axes.find(|axis| axis.effort_limit.is_none()),
+    };
+    match missing {
+        Some(axis) if own.enforce_limits => {
+            Err(SetupError::NoEffortLimit { agent: own.name.clone(), axis: axis.name.clone() })
+        }
+        _ => Ok(()),
+    }
+}
