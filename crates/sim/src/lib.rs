@@ -26,7 +26,9 @@ pub mod vehicles;
 pub use chain::{ChainLaw, ChainModel, ChainStep};
 pub use closed_loop::{SetupError, validate};
 pub use network::Network;
-pub use recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal, Statistics};
+pub use recording::{
+    Breakdown, BreakdownCause, Column, Ending, GainRates, Outcome, Progress, Recording, Signal, Statistics, Stiffness,
+};
 pub use setup::{
     Actuators, AgentSetup, AttitudeLaw, Axis, AxisUnit, Control, Exchange, Law, Method, ReferenceKind, RobotKind,
     RobotSetup, Sensors, Setup, Solver, Start, TaskSpaceLaw, TimeSpan, TipSetup, VelocitySensor,
