@@ -225,6 +225,28 @@ fn a_breakdown_is_status_three_and_keeps_what_was_computed() {
 }
 
 #[test]
+fn a_gain_that_makes_a_run_hopeless_ends_it_within_its_memory() {
+    let folder = folder();
+    for (gain, memory) in [("1e29", false), ("1e15", true)] {
+        let solver = "[solver]\nmemory_budget_bytes = 1_000_000";
+        let adaptive = format!("[law.adaptive]\ndamping.gain = 20\nadaptation_gain = {gain}");
+        fs::write(folder.path().join("two.toml"), format!("{}{solver}", QUICK.replace("[law.known]", &adaptive)))
+            .unwrap();
+        let error = stderr(&forwardstep(&folder, &["run", "two.toml", "--force"]).code(3));
+        for words in ["the closed loop is stiff", "at arm-", "K/λ_min(M)", "lower `law.adaptive.adaptation_gain`"] {
+            assert!(error.contains(words), "no {words} in {error}");
+        }
+        assert_eq!(error.contains("`memory_budget_bytes` is 1000000"), memory, "{error}");
+        let summary = summary(&folder.path().join("forwardstep-runs/two"));
+        let cause = &summary["ending"]["breakdown"]["cause"];
+        let stiffness = &cause[if memory { "memory_full" } else { "step_under_floor" }]["stiffness"];
+        let [fastest, adaptation] =
+            ["fastest_per_s", "adaptation_per_s"].map(|rate| stiffness[rate].as_f64().unwrap_or(f64::NAN));
+        assert!((0.5..2.0).contains(&(fastest / adaptation)), "{stiffness}");
+    }
+}
+
+#[test]
 fn a_reader_who_leaves_early_is_no_error() {
     for arguments in [&["schema"][..], &["scenarios", "six-arms"], &["scenarios"]] {
         let binary = assert_cmd::cargo::cargo_bin("forwardstep");

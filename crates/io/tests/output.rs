@@ -8,13 +8,16 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
+use forwardstep_core::Gain;
 use forwardstep_core::robot::PlanarArm;
 use forwardstep_io::output::{
     Absence, Action, Disagreement, DisagreementSeries, Goal, GoalOutcome, LimitKind, Metrics, Options, OutputError,
     RunFolder, ending_sentence, names, write_run,
 };
 use forwardstep_sim::recording::{BreakdownCause, Column};
-use forwardstep_sim::{AxisUnit, Breakdown, Ending, Known, Outcome, Recording, Setup, Signal};
+use forwardstep_sim::{
+    AxisUnit, Breakdown, Ending, GainRates, Known, Method, Outcome, Recording, Setup, Signal, Stiffness,
+};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use support::{agent, outcome, record, setup, verdicts};
@@ -368,8 +371,63 @@ fn goals_are_judged() {
     run.ending = Ending::BrokeDown(breakdown.clone());
     assert!(met(Goal::ExpectDiverges, &run));
     breakdown.cause = BreakdownCause::PositionLimit { value: 3.0, limits: [-2.0, 2.0] };
-    run.ending = Ending::BrokeDown(breakdown);
+    run.ending = Ending::BrokeDown(breakdown.clone());
     assert!(!met(Goal::ExpectDiverges, &run));
+    // Short steps alone are no divergence: what was recorded decides.
+    breakdown.cause = BreakdownCause::MemoryFull { step_s: 1e-9, need_bytes: 1e12, stiffness: None };
+    run.ending = Ending::BrokeDown(breakdown);
+    assert!(met(Goal::ExpectDiverges, &run));
+    run.recording.columns[0].values.reverse();
+    run.recording.columns[5].values.reverse();
+    assert!(!met(Goal::ExpectDiverges, &run));
+}
+
+/// Which gain is to blame, and what is said when none is, or the closed loop is not stiff.
+#[test]
+fn a_run_that_outgrows_its_memory_says_what_to_lower() {
+    let (mut setup, _) = two_arms();
+    let sentence = |setup: &Setup, step_s: f64, rate_per_s: f64, gains: Option<GainRates>| {
+        let stiffness = Some(Stiffness { rate_per_s, gains });
+        let cause = BreakdownCause::MemoryFull { step_s, need_bytes: 3.2e12, stiffness };
+        let breakdown = Breakdown { t_s: 0.5, agent: 1, signal: Signal::Velocity, axis: 1, cause };
+        let sentence = ending_sentence(setup, &Ending::BrokeDown(breakdown));
+        let (head, why) = sentence.split_once("; ").unwrap();
+        (head.to_owned(), why.to_owned())
+    };
+    let gains = |damping_per_s, adaptation_per_s| Some(GainRates { damping_per_s, adaptation_per_s });
+    let (head, why) = sentence(&setup, 1e-8, 1e8, gains(200.0, Some(3e7)));
+    assert_eq!(
+        head,
+        "Broke down at t = 0.5 s of 2 s: arm-2.dq.2 has the largest error in steps of 1e-8 s, in which all that is sent within \
+         the longest delay, 0.4 s, takes 3.2e12 bytes where `memory_budget_bytes` is 1073741824"
+    );
+    assert_eq!(
+        why,
+        "the closed loop is stiff, its fastest rate is about 1e8 1/s; at arm-2 K/λ_min(M) is about 200 1/s and \
+         √(Γ‖Y‖²/λ_min(M)) is about 3e7 1/s: lower `law.adaptive.adaptation_gain`, or let it start nearer and slower: Y grows \
+         with the motion."
+    );
+    let (_, why) = sentence(&setup, 1e-8, 1e8, gains(4e8, Some(1e3)));
+    assert!(why.ends_with(": lower `law.adaptive.damping`."), "{why}");
+    let (_, why) = sentence(&setup, 1e-8, 1e8, gains(6e8, Some(1e7)));
+    assert!(why.contains("no gain of its law explains it"), "{why}");
+    let (_, why) = sentence(&setup, 1e-8, 1e8, None);
+    assert_eq!(why, "the closed loop is stiff, its fastest rate is about 1e8 1/s.");
+    let (_, why) = sentence(&setup, 1e-8, 1e6, gains(1e6, None));
+    assert_eq!(
+        why,
+        "the closed loop is not stiff, its fastest rate is about 1000000 1/s: loosen the tolerances, or raise the budget."
+    );
+    setup.agents[1].law = Arc::new(Known { damping: Gain::Number(1.0) });
+    let (_, why) = sentence(&setup, 1e-8, 1e8, gains(1e8, None));
+    assert!(why.ends_with("K/λ_min(M) is about 1e8 1/s: lower `law.known.damping`."), "{why}");
+    setup.solver.max_step_s = Some(1e-8);
+    let (_, why) = sentence(&setup, 1e-8, 1e3, None);
+    assert!(why.ends_with("1000 1/s: raise `max_step_s`, loosen the tolerances, or raise the budget."), "{why}");
+    setup.solver.method = Method::Fixed { step_s: 1e-8 };
+    let (head, why) = sentence(&setup, 1e-8, 1e3, None);
+    assert!(head.contains("arm-2.dq.2 moves fastest in steps of 1e-8 s"), "{head}");
+    assert!(why.ends_with("1000 1/s: raise `step_s`, or raise the budget."), "{why}");
 }
 
 #[test]
@@ -380,7 +438,7 @@ fn a_broken_run_says_who_and_what_and_is_written() {
         agent: 1,
         signal: Signal::Velocity,
         axis: 1,
-        cause: BreakdownCause::StepUnderFloor { step_s: 1e-14 },
+        cause: BreakdownCause::StepUnderFloor { step_s: 1e-14, stiffness: None },
     });
     let sentence = ending_sentence(&setup, &outcome.ending);
     let expected = "Broke down at t = 0.5 s of 2 s: arm-2.dq.2 asks for a step of 1e-14 s, under the floor of 1e-12 s.";

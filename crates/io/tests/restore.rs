@@ -9,7 +9,9 @@ use forwardstep_io::SourceText;
 use forwardstep_io::output::summary::Summary;
 use forwardstep_io::output::{Options, RestoreError, RunFolder, RunRecord, SavedRun, TableError, write_run};
 use forwardstep_io::scenario::read_scenario;
-use forwardstep_sim::{Breakdown, BreakdownCause, Ending, Outcome, Setup, Signal, recorded_columns, simulate};
+use forwardstep_sim::{
+    Breakdown, BreakdownCause, Ending, GainRates, Outcome, Setup, Signal, Stiffness, recorded_columns, simulate,
+};
 use proptest::prelude::*;
 
 const CARTS: &str = r#"format = 1
@@ -70,7 +72,24 @@ fn a_run_comes_back_as_it_was() {
             agent: 1,
             signal: Signal::Estimate,
             axis: 0,
-            cause: BreakdownCause::StepUnderFloor { step_s: 1.1e-13 },
+            cause: BreakdownCause::StepUnderFloor {
+                step_s: 1.1e-13,
+                stiffness: Some(Stiffness { rate_per_s: 7.0, gains: None }),
+            },
+        }),
+        Ending::BrokeDown(Breakdown {
+            t_s: 0.5,
+            agent: 1,
+            signal: Signal::Velocity,
+            axis: 0,
+            cause: BreakdownCause::MemoryFull {
+                step_s: 1.1e-13,
+                need_bytes: 3e15,
+                stiffness: Some(Stiffness {
+                    rate_per_s: 1.3e12,
+                    gains: Some(GainRates { damping_per_s: 3.0, adaptation_per_s: Some(1.2e12) }),
+                }),
+            },
         }),
         Ending::BrokeDown(Breakdown {
             t_s: 0.5,

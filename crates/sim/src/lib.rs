@@ -30,7 +30,9 @@ pub use agents::{
 };
 pub use closed_loop::{Assembly, Block, SetupError, VelocityQuantity, validate};
 pub use network::Network;
-pub use recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal, Statistics};
+pub use recording::{
+    Breakdown, BreakdownCause, Column, Ending, GainRates, Outcome, Progress, Recording, Signal, Statistics, Stiffness,
+};
 pub use setup::{
     Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Method, ReferenceKind, RobotSetup, Sensors, Setup,
     Solver, Start, TimeSpan, VelocitySensor,

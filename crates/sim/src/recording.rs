@@ -76,6 +76,18 @@ pub enum BreakdownCause {
     StepUnderFloor {
         /// The step asked for, s.
         step_s: f64,
+        /// Whether that is because the closed loop is stiff; `None` where it cannot be told.
+        stiffness: Option<Stiffness>,
+    },
+    /// What is sent within the longest delay exceeds [`crate::Solver::memory_budget_bytes`], because steps are so short. The
+    /// signal is the one with the largest estimated error or, with steps of a given length, the one that moves fastest.
+    MemoryFull {
+        /// The mean step since the longest delay ago, s.
+        step_s: f64,
+        /// The budget that steps like these would need.
+        need_bytes: f64,
+        /// Whether that is because the closed loop is stiff; `None` where it cannot be told.
+        stiffness: Option<Stiffness>,
     },
     /// Under digital control it moves so fast that this many steps did not reach the next sample: nothing holds it any more.
     RanAway {
@@ -98,6 +110,33 @@ pub enum BreakdownCause {
         /// The limits.
         limits: [f64; 2],
     },
+}
+
+/// How fast a closed loop is, and the gains of the agent that broke it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stiffness {
+    /// The size of the largest eigenvalue of the Jacobian of the closed loop, with late messages held, 1/s. It is estimated by
+    /// power iterations, to within a factor of about two.
+    pub rate_per_s: f64,
+    /// The rates of its gains, where the agent is a robot under (6)–(7) in continuous time.
+    pub gains: Option<GainRates>,
+}
+
+impl Stiffness {
+    /// Whether this is why steps are as short as `step_s`: a method that is explicit takes steps of about one to three over the
+    /// rate, and shorter ones only while that motion is still seen.
+    pub fn explains(&self, step_s: f64) -> bool {
+        self.rate_per_s * step_s > 0.05
+    }
+}
+
+/// The rates that the gains of (6)–(7) give to one robot, 1/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GainRates {
+    /// λ_max(M⁻¹K), which is K/λ_min(M) where K is a number.
+    pub damping_per_s: f64,
+    /// √λ_max(M⁻¹YΓYᵀ), the frequency at which s and the estimate turn into each other; `None` when nothing is adapted.
+    pub adaptation_per_s: Option<f64>,
 }
 
 /// Work done by the integrator.

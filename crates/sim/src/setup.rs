@@ -324,6 +324,9 @@ pub struct Solver {
     pub max_step_s: Option<f64>,
     /// The run breaks down when the error control asks for a shorter step.
     pub min_step_s: f64,
+    /// Bytes that what was transmitted may take, as far back as the longest delay. The run breaks down when shorter steps
+    /// would need more.
+    pub memory_budget_bytes: u64,
     /// Integrate sᵀ(K + D)s − sᵀτ_ext of every agent as an extra state, so that V + ∫ … = V(0) can be checked.
     pub ledger: bool,
 }
@@ -351,6 +354,7 @@ impl Default for Solver {
             method: Method::Adaptive { rtol: 1e-6, atol: 1e-8 },
             max_step_s: None,
             min_step_s: 1e-12,
+            memory_budget_bytes: 1 << 30,
             ledger: true,
         }
     }

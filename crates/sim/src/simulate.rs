@@ -6,9 +6,9 @@ use std::time::Instant;
 use forwardstep_core::controller::Trouble;
 
 use crate::closed_loop::{ClosedLoop, SetupError};
-use crate::engine::{Integrator, Step};
+use crate::engine::{Failure, FailureCause, Integrator, Step};
 use crate::network::Network;
-use crate::recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal};
+use crate::recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal, Stiffness};
 use crate::schedule::Schedule;
 use crate::setup::Setup;
 
@@ -69,12 +69,7 @@ pub fn simulate(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow
                 }
             }
             Err(failure) => {
-                let (agent, signal, axis) = closed_loop.locate(failure.state);
-                let cause = match failure.step_s {
-                    Some(step_s) => BreakdownCause::StepUnderFloor { step_s },
-                    None => BreakdownCause::NotFinite,
-                };
-                break Ending::BrokeDown(Breakdown { t_s: failure.t_s, agent, signal, axis, cause });
+                break Ending::BrokeDown(broken(&mut closed_loop, &integrator, failure));
             }
         }
     };
@@ -82,6 +77,25 @@ pub fn simulate(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow
     statistics.sign_residual = closed_loop.sign_residual();
     statistics.wall = started.elapsed();
     Ok(Outcome { recording: recorder.recording, ending, statistics })
+}
+
+/// Who broke a run, in which signal, and why.
+fn broken(closed_loop: &mut ClosedLoop<'_>, integrator: &Integrator<'_>, failure: Failure) -> Breakdown {
+    let (agent, signal, axis) = closed_loop.locate(failure.state);
+    let mut stiffness = |rate_per_s: Option<f64>| {
+        let gains = closed_loop.gain_rates(agent, integrator.failed_in());
+        rate_per_s.map(|rate_per_s| Stiffness { rate_per_s, gains })
+    };
+    let cause = match failure.cause {
+        FailureCause::NotFinite => BreakdownCause::NotFinite,
+        FailureCause::StepUnderFloor { step_s, rate_per_s } => {
+            BreakdownCause::StepUnderFloor { step_s, stiffness: stiffness(rate_per_s) }
+        }
+        FailureCause::HistoryFull { step_s, need_bytes, rate_per_s } => {
+            BreakdownCause::MemoryFull { step_s, need_bytes, stiffness: stiffness(rate_per_s) }
+        }
+    };
+    Breakdown { t_s: failure.t_s, agent, signal, axis, cause }
 }
 
 /// The columns that a run of `setup` records, without any rows: what its tables are read back into.

@@ -23,6 +23,7 @@ mod csv;
 mod decimate;
 mod digital;
 mod disagreement;
+mod ending;
 mod error;
 mod folder;
 mod inputs;
@@ -45,6 +46,7 @@ use std::collections::HashSet;
 use std::path::PathBuf;
 
 pub use digital::{DigitalCost, Figures, continuous_twin};
+pub use ending::ending_sentence;
 pub use error::{Action, EncodeError, OutputError};
 pub use folder::RunFolder;
 use folder::Staging;
@@ -53,7 +55,7 @@ pub use metrics::{
     Metrics, Peak, Speed,
 };
 pub use packets::Link;
-pub use record::{Goal, GoalOutcome, RunRecord, ending_sentence};
+pub use record::{Goal, GoalOutcome, RunRecord};
 pub use restore::{Remark, SavedRun};
 pub use restore_error::{RestoreError, SummaryError, TableError};
 

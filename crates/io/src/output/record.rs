@@ -6,7 +6,6 @@ use forwardstep_sim::setup::Setup;
 
 use super::digital::DigitalCost;
 use super::metrics::Metrics;
-use super::names;
 use crate::scenario::InputFile;
 
 /// A finished run with all that was said about it before: what [`super::write_run`] writes.
@@ -59,17 +58,28 @@ pub enum Goal {
 impl Goal {
     /// Whether `outcome` meets the goal.
     ///
-    /// A run diverges when it breaks down without leaving an enforced limit, or when its disagreement is no longer
-    /// finite, or exceeds in the last quarter of the run everything seen in the first quarter.
+    /// A run diverges when it breaks down without leaving an enforced limit or its memory budget, or when its disagreement is no
+    /// longer finite, or exceeds in the last quarter of the run everything seen in the first quarter.
     pub fn is_met(&self, setup: &Setup, outcome: &Outcome, metrics: &Metrics) -> bool {
         match *self {
             Goal::DisagreementBelow(bound) | Goal::ErrorBelow(bound) => {
                 outcome.ending == Ending::Completed && metrics.disagreement.last().is_some_and(|last| last < bound)
             }
-            Goal::ExpectDiverges => match &outcome.ending {
-                Ending::BrokeDown(breakdown) => !matches!(breakdown.cause, BreakdownCause::PositionLimit { .. }),
-                _ => super::disagreement::grows(setup, &outcome.recording),
-            },
+            Goal::ExpectDiverges => {
+                let grows = || super::disagreement::grows(setup, &outcome.recording);
+                match &outcome.ending {
+                    Ending::BrokeDown(breakdown) => match breakdown.cause {
+                        BreakdownCause::PositionLimit { .. } => false,
+                        // Short steps alone are no divergence.
+                        BreakdownCause::MemoryFull { .. } => grows(),
+                        BreakdownCause::NotFinite
+                        | BreakdownCause::StepUnderFloor { .. }
+                        | BreakdownCause::RanAway { .. }
+                        | BreakdownCause::Vanished { .. } => true,
+                    },
+                    Ending::Completed | Ending::Interrupted { .. } => grows(),
+                }
+            }
         }
     }
 
@@ -98,35 +108,4 @@ pub struct GoalOutcome {
     pub goal: Goal,
     /// What happened.
     pub met: bool,
-}
-
-/// How a run ended, as one sentence that names the agent and the signal that broke it.
-pub fn ending_sentence(setup: &Setup, ending: &Ending) -> String {
-    match ending {
-        Ending::Completed => format!("Reached the horizon of {} s.", setup.time.end_s),
-        Ending::Interrupted { t_s } => {
-            format!("Interrupted at t = {t_s} s of {} s; everything until then is kept.", setup.time.end_s)
-        }
-        Ending::BrokeDown(breakdown) => {
-            let column = names::column_name(setup, breakdown.agent, breakdown.signal, breakdown.axis);
-            let cause = match breakdown.cause {
-                BreakdownCause::NotFinite => "is no longer a finite number".to_owned(),
-                BreakdownCause::StepUnderFloor { step_s } => {
-                    format!("asks for a step of {step_s:e} s, under the floor of {:e} s", setup.solver.min_step_s)
-                }
-                BreakdownCause::RanAway { value, steps } => format!(
-                    "ran away: it is {value:.2e}, and {steps} steps did not reach the next sample; sample faster, or let K or \
-                     the delay of the torque be smaller"
-                ),
-                BreakdownCause::Vanished { value, floor } => format!(
-                    "is {value:.3e}: the law divides by it, and it must stay away from zero by {floor}; start elsewhere, or \
-                     choose slower gains"
-                ),
-                BreakdownCause::PositionLimit { value, limits: [low, high] } => {
-                    format!("left its limits [{low}, {high}]: it is {value}")
-                }
-            };
-            format!("Broke down at t = {} s of {} s: {column} {cause}.", breakdown.t_s, setup.time.end_s)
-        }
-    }
 }

@@ -7,15 +7,18 @@ use std::io::Write;
 use std::time::Duration;
 
 use forwardstep_check::{Answer, Report};
-use forwardstep_sim::recording::{Breakdown, BreakdownCause, Column, Ending, Recording, Statistics};
+use forwardstep_sim::recording::{
+    Breakdown, BreakdownCause, Column, Ending, GainRates, Recording, Statistics, Stiffness,
+};
 use forwardstep_sim::setup::Setup;
 use serde::{Deserialize, Serialize};
 
 use super::digital::DigitalCost;
+use super::ending::ending_sentence;
 use super::inputs;
 use super::metrics::Metrics;
 use super::packets::Link;
-use super::record::{Goal, RunRecord, ending_sentence};
+use super::record::{Goal, RunRecord};
 use super::{names, number};
 use crate::scenario::inputs::content_digest;
 
@@ -141,6 +144,35 @@ pub struct BrokenSignal {
     pub cause: Cause,
 }
 
+/// How fast a closed loop was that broke down, 1/s.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rates {
+    /// Its fastest rate.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub fastest_per_s: f64,
+    /// K/λ_min(M) of the agent, where it is a robot under (6)–(7).
+    pub damping_per_s: Option<f64>,
+    /// √(Γ‖Y‖²/λ_min(M)) of the agent, where it adapts besides.
+    pub adaptation_per_s: Option<f64>,
+}
+
+impl Rates {
+    fn of(stiffness: Stiffness) -> Self {
+        let Stiffness { rate_per_s, gains } = stiffness;
+        Rates {
+            fastest_per_s: rate_per_s,
+            damping_per_s: gains.map(|gains| gains.damping_per_s),
+            adaptation_per_s: gains.and_then(|gains| gains.adaptation_per_s),
+        }
+    }
+
+    fn restore(self) -> Stiffness {
+        let Rates { fastest_per_s, damping_per_s, adaptation_per_s } = self;
+        let gains = damping_per_s.map(|damping_per_s| GainRates { damping_per_s, adaptation_per_s });
+        Stiffness { rate_per_s: fastest_per_s, gains }
+    }
+}
+
 /// Why a run broke down.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -152,6 +184,20 @@ pub enum Cause {
         /// The step asked for, s.
         #[serde(deserialize_with = "number::or_nan")]
         step_s: f64,
+        /// How fast the closed loop was.
+        #[serde(default)]
+        stiffness: Option<Rates>,
+    },
+    /// What is sent within the longest delay exceeded the memory budget.
+    MemoryFull {
+        /// The mean step since the longest delay ago, s.
+        #[serde(deserialize_with = "number::or_nan")]
+        step_s: f64,
+        /// The budget that steps like these would need.
+        #[serde(deserialize_with = "number::or_nan")]
+        need_bytes: f64,
+        /// How fast the closed loop was.
+        stiffness: Option<Rates>,
     },
     /// Under digital control a velocity grew so far that steps no longer reached the next sample.
     RanAway {
@@ -323,7 +369,12 @@ impl How {
             Ending::BrokeDown(breakdown) => {
                 let cause = match breakdown.cause {
                     BreakdownCause::NotFinite => Cause::NotFinite,
-                    BreakdownCause::StepUnderFloor { step_s } => Cause::StepUnderFloor { step_s },
+                    BreakdownCause::StepUnderFloor { step_s, stiffness } => {
+                        Cause::StepUnderFloor { step_s, stiffness: stiffness.map(Rates::of) }
+                    }
+                    BreakdownCause::MemoryFull { step_s, need_bytes, stiffness } => {
+                        Cause::MemoryFull { step_s, need_bytes, stiffness: stiffness.map(Rates::of) }
+                    }
                     BreakdownCause::RanAway { value, steps } => Cause::RanAway { value, steps },
                     BreakdownCause::Vanished { value, floor } => Cause::Vanished { value, floor },
                     BreakdownCause::PositionLimit { value, limits } => Cause::PositionLimit { value, limits },
@@ -349,7 +400,12 @@ impl How {
                 let broken = recording.columns.iter().find(is_it)?;
                 let cause = match *cause {
                     Cause::NotFinite => BreakdownCause::NotFinite,
-                    Cause::StepUnderFloor { step_s } => BreakdownCause::StepUnderFloor { step_s },
+                    Cause::StepUnderFloor { step_s, stiffness } => {
+                        BreakdownCause::StepUnderFloor { step_s, stiffness: stiffness.map(Rates::restore) }
+                    }
+                    Cause::MemoryFull { step_s, need_bytes, stiffness } => {
+                        BreakdownCause::MemoryFull { step_s, need_bytes, stiffness: stiffness.map(Rates::restore) }
+                    }
                     Cause::RanAway { value, steps } => BreakdownCause::RanAway { value, steps },
                     Cause::Vanished { value, floor } => BreakdownCause::Vanished { value, floor },
                     Cause::PositionLimit { value, limits } => {

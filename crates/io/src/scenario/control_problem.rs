@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::wording::{about, number};
+use crate::wording::number;
 
 /// Why digital control has no meaning.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -15,19 +15,6 @@ pub enum ControlProblem {
         delay_s: f64,
         /// The period, s.
         period_s: f64,
-    },
-    /// Messages that are on their way for so long that they do not fit into memory.
-    #[error(
-        "messages are up to {} s old when they are heard, so {} numbers have to be kept, but at most {} are accepted",
-        number(*.oldest_s), about(*.numbers), about(*.most)
-    )]
-    MessagesTooLarge {
-        /// The oldest, s.
-        oldest_s: f64,
-        /// Numbers in all messages that are kept.
-        numbers: f64,
-        /// How many are accepted.
-        most: f64,
     },
     /// A property of measured velocities where none are measured.
     #[error("`{key}` has no effect: velocities are not measured, but come from filtered differences")]
@@ -54,7 +41,6 @@ impl ControlProblem {
             ControlProblem::ComputationDelay { .. } => {
                 "a computation must be done before the next begins; sample more slowly, or compute faster".into()
             }
-            ControlProblem::MessagesTooLarge { .. } => "sample more slowly, or let delays be shorter".into(),
             ControlProblem::VelocityNotMeasured { .. } => {
                 "delete it, or let `velocity` be \"measured\"; noise and steps of positions count".into()
             }

@@ -99,6 +99,15 @@ pub(super) fn count(key: &'static str, number: &At<i64>, most: u32) -> Result<us
     }
 }
 
+/// A whole number from one up.
+pub(super) fn positive_count(key: &'static str, number: &At<i64>) -> Result<u64, Fault> {
+    let value = number.value;
+    match u64::try_from(value) {
+        Ok(count) if count > 0 => Ok(count),
+        _ => Err(fault(number, ValueProblem::NotPositive { key, value: value as f64 })),
+    }
+}
+
 pub(super) fn seed(number: &At<i64>) -> Result<u64, Fault> {
     u64::try_from(number.value)
         .map_err(|_| fault(number, ValueProblem::Negative { key: "seed", value: number.value as f64 }))

@@ -397,6 +397,10 @@ pub struct SolverFile {
     /// The run breaks down when a shorter step would be needed, in s. Default: 1e-12.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub min_step_s: Option<At<f64>>,
+    /// Bytes that transmitted messages may take for as long as they can be heard. The run breaks down when steps become so
+    /// short that more would be needed. Default: 1073741824, which is 1 GiB.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub memory_budget_bytes: Option<At<i64>>,
     /// Keep the books of the Lyapunov function along the run. Default: true.
     pub ledger: Option<bool>,
 }

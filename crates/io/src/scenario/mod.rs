@@ -114,7 +114,7 @@ use crate::urdf::UrdfProblem;
 use crate::{InputError, SourceText};
 use at::At;
 use de::ValueDe;
-use fault::{Fault, between, fault, positive, positive_or};
+use fault::{Fault, between, fault, positive, positive_count, positive_or};
 use file::{
     AdaptiveMethodFile, ConsensusFile, ExchangeFile, ExpectFile, GoalFile, MethodFile, ReferenceFile, ScenarioFile,
     SolverFile,
@@ -251,9 +251,6 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
         solver: solver(file.solver.as_ref())?,
         control,
     };
-    if let Some(file) = &file.control {
-        messages_fit(&setup, &file.sample_hz)?;
-    }
     notices.extend(Notice::coarse_sampling(&setup));
     let fleet = |agent: &AgentSetup| agent.law.is::<Adaptive>() || agent.law.is::<Known>();
     let agrees = setup.reference != ReferenceKind::Tracking && setup.following().is_none();
@@ -350,7 +347,12 @@ fn solver(file: Option<&SolverFile>) -> Result<Solver, Fault> {
             return Err(fault(step, ScenarioProblem::StepUnderFloor { key, value: step.value, min_step_s }));
         }
     }
-    Ok(Solver { method, max_step_s, min_step_s, ledger: file.ledger.unwrap_or(default.ledger) })
+    let memory_budget_bytes = match &file.memory_budget_bytes {
+        Some(bytes) => positive_count("memory_budget_bytes", bytes)?,
+        None => default.memory_budget_bytes,
+    };
+    let ledger = file.ledger.unwrap_or(default.ledger);
+    Ok(Solver { method, max_step_s, min_step_s, memory_budget_bytes, ledger })
 }
 
 fn goal(file: &At<GoalFile>, reference: &ReferenceKind) -> Result<Goal, Fault> {
@@ -386,21 +388,6 @@ fn recording_fits(setup: &Setup, columns: usize, place: &At<f64>) -> Result<(), 
     }
     let least_s = setup.time.end_s / (MOST_RECORDED / columns as f64 - 2.0);
     Err(fault(place, ScenarioProblem::RecordingTooLarge { rows, columns, most: MOST_RECORDED, least_s }))
-}
-
-/// Refuses more messages on their way than fit into any memory. `sample_hz` is how often they are sent.
-fn messages_fit(setup: &Setup, sample_hz: &At<f64>) -> Result<(), Fault> {
-    let oldest_s = setup.network.max_delay_s().min(setup.time.end_s);
-    let vectors = match setup.exchange {
-        Exchange::Position => 1,
-        Exchange::PositionVelocity => 2,
-    };
-    let sent: usize = setup.agents.iter().map(|agent| vectors * agent.robot.axes.len()).sum();
-    let numbers = sent as f64 * (oldest_s * sample_hz.value + 3.0);
-    if numbers <= MOST_RECORDED {
-        return Ok(());
-    }
-    Err(fault(sample_hz, ControlProblem::MessagesTooLarge { oldest_s, numbers, most: MOST_RECORDED }))
 }
 
 /// How many columns an agent has: q, q̇, s, τ and z with its derivatives on every axis, ϑ̂, V and its dissipation, and τ_ext

@@ -68,6 +68,11 @@ fn place(file: &ScenarioFile, error: &SetupError) -> Option<Span> {
         | SetupError::ProjectionOfMatrix { agent }
         | SetupError::BoundsOfKnown { agent }
         | SetupError::NotFinite { agent, .. } => law(file, agent),
+        SetupError::Memory { .. } => {
+            let written = file.solver.as_ref().and_then(|solver| solver.memory_budget_bytes.as_ref());
+            let sampled = || file.control.as_ref().map(|control| control.sample_hz.span.clone());
+            written.map(|bytes| bytes.span.clone()).or_else(sampled)
+        }
         SetupError::Limiter { .. } | SetupError::VelocityFilter(_) | SetupError::Control { .. } => {
             file.control.as_ref().map(|control| control.sample_hz.span.clone())
         }
@@ -178,6 +183,9 @@ pub(super) fn advice(error: &SetupError) -> Option<String> {
         }
         SetupError::Chain { error: ChainError::Antiderivative { .. }, .. } => {
             "leave `antiderivatives` out for regressors without the highest derivative".to_owned()
+        }
+        SetupError::Memory { need_bytes, .. } => {
+            format!("write `memory_budget_bytes = {need_bytes}` or more in `[solver]`, sample more slowly, or shorten the longest delay")
         }
         SetupError::UnitsDiffer { .. } => {
             "point masses, vehicles and robots with three prismatic joints have a position in space".to_owned()

@@ -79,11 +79,21 @@ fn every_mistake_in_control_is_reported_at_its_place() {
 #[test]
 fn more_messages_than_fit_into_memory_are_refused() {
     let text = with("sample_hz = 1e6")
-        .replace("delay.saw_tooth = { min_s = 0.1, max_s = 0.4, period_s = 0.6 }", "delay.constant_s = 1e6");
+        .replace("delay.saw_tooth = { min_s = 0.1, max_s = 0.4, period_s = 0.6 }", "delay.constant_s = 1e6")
+        .replace("[goal]", "[solver]\nmemory_budget_bytes = 500_000_000\n[goal]");
     let error = read(&text).unwrap_err();
-    let message = "messages are up to 10 s old when they are heard, so 1.2e8 numbers have to be kept, but at most 1e8 are accepted";
-    assert_eq!(error.to_string(), format!("test.toml:38:13: {message}"));
-    assert_eq!(error.help().unwrap().to_string(), "sample more slowly, or let delays be shorter");
+    let message =
+        "messages that can still be heard take 960000288 bytes or more, but the memory budget is 500000000 bytes";
+    assert_eq!(error.to_string(), format!("test.toml:40:23: {message}"));
+    let help = "write `memory_budget_bytes = 960000288` or more in `[solver]`, sample more slowly, or shorten the longest delay";
+    assert_eq!(error.help().unwrap().to_string(), help);
+    // Where no budget is written the rate is to blame.
+    let text = text
+        .replace("memory_budget_bytes = 500_000_000", "")
+        .replace("count = 2", "count = 4")
+        .replace("start.position_rad = [[0.1, 0.2], [0.3, 0.4]]", "");
+    let error = read(&text).unwrap_err().to_string();
+    assert!(error.starts_with("test.toml:38:13: messages that can still be heard take 1600000480 bytes"), "{error}");
 }
 
 #[test]

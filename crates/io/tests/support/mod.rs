@@ -80,6 +80,7 @@ pub fn setup(agents: Vec<AgentSetup>, end_s: f64, record_every_s: f64) -> Setup 
             method: Method::Adaptive { rtol: 1e-6, atol: 1e-8 },
             max_step_s: None,
             min_step_s: 1e-12,
+            memory_budget_bytes: 1 << 30,
             ledger: true,
         },
         control: None,

@@ -14,9 +14,9 @@ use super::pushes::Pushes;
 use super::references::Transmits;
 use super::sampling::Sampling;
 use super::sliding::{Place, Slider};
-use super::valid::{SetupError, validate};
+use super::valid::{SetupError, message_len, validate};
 use crate::engine::{DelaySystem, Happened, Heard, Port};
-use crate::recording::Signal;
+use crate::recording::{GainRates, Signal};
 use crate::setup::{Exchange, Setup};
 
 /// All populations and where their blocks stand.
@@ -78,9 +78,7 @@ impl<'a> ClosedLoop<'a> {
         let axes = setup.agents[0].robot.axes.len();
         let following = setup.following();
         let sliding = following.map(|following| following.sliding());
-        // What is computed is sent by sampled controllers; in continuous time the slider looks it up.
-        let told = if setup.control.is_some() { sliding.map_or(0, |sliding| sliding.told()) } else { 0 };
-        let entries = (X::CHANNELS + told) * axes;
+        let entries = message_len(setup);
         let mut closed_loop = ClosedLoop {
             blocks: Vec::new(),
             ports: vec![Port { state: 0, entry: 0, degree: 0, stride: 0 }; setup.network.agents],
@@ -214,6 +212,14 @@ impl<'a> ClosedLoop<'a> {
     pub(crate) fn locate(&self, state: usize) -> (usize, Signal, usize) {
         let block = self.blocks.iter().find(|block| block.state.contains(&state));
         block.map_or((0, Signal::Position, 0), |block| block.columns.locate(state - block.state.start))
+    }
+
+    /// The rates of the gains of one agent in the state `x`, which has just been evaluated; `None` for other laws than (6)–(7),
+    /// and for gains that act at samples.
+    pub(crate) fn gain_rates(&mut self, agent: usize, x: &[f64]) -> Option<GainRates> {
+        let degree = self.ports.get(agent)?.degree;
+        let block = self.blocks.iter_mut().find(|block| block.degree.contains(&degree))?;
+        block.columns.gain_rates(agent, &x[block.state.clone()])
     }
 
     /// Samples taken so far; `None` when control is continuous.

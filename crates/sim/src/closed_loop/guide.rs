@@ -10,7 +10,7 @@ use forwardstep_core::controller::Jet;
 
 use super::population::{Columns, Inputs};
 use crate::leader::Following;
-use crate::recording::Signal;
+use crate::recording::{GainRates, Signal};
 use crate::setup::AgentSetup;
 
 /// The leader.
@@ -85,5 +85,9 @@ impl Columns for Guide {
     fn locate(&self, state: usize) -> (usize, Signal, usize) {
         let m = self.jets.len();
         (self.vertex, if state < m { Signal::Position } else { Signal::Velocity }, state % m)
+    }
+
+    fn gain_rates(&mut self, _: usize, _: &[f64]) -> Option<GainRates> {
+        None
     }
 }

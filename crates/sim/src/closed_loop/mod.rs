@@ -1,6 +1,7 @@
 //! Robots, reference dynamics, laws and network joined into one delay-differential equation.
 //!
 //! - `fleet`: robots with their tracking laws, several at once.
+//! - `gain_rates`: how fast the gains of (6)–(7) make a robot.
 //! - `population`: agents of one kind, side by side in columns: reference dynamics, then the fleet.
 //! - `solo`: one agent by itself: any plant under any controller.
 //! - `sampler`: the digital controllers of a population, with their sensors.
@@ -18,6 +19,7 @@
 mod assemble;
 mod assembly;
 mod fleet;
+mod gain_rates;
 mod guide;
 mod members;
 mod population;

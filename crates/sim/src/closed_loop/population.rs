@@ -18,14 +18,15 @@ use forwardstep_core::controller::Trouble;
 use forwardstep_core::reference::{
     Choice, Derived, Heard, Measured, Reference, ReferenceOut, Sliding, SlidingInputs, saturated,
 };
-use forwardstep_core::robot::Lagrangian;
+use forwardstep_core::robot::{Lagrangian, TwoVelocity};
 use forwardstep_core::{LengthError, Packed};
 
 use super::fleet::{Drive, Fleet, Layout, Member};
+use super::gain_rates::gain_rates;
 use super::references::{AnyReference, Transmits};
 use super::sampler::Sampler;
 use crate::agents::Adaptive;
-use crate::recording::Signal;
+use crate::recording::{GainRates, Signal};
 use crate::setup::AgentSetup;
 
 /// What reaches a population from outside at one instant.
@@ -92,6 +93,9 @@ pub(crate) trait Columns {
     fn signals(&self) -> Vec<(Signal, usize)>;
     /// Which member, signal and axis a state of the block is.
     fn locate(&self, state: usize) -> (usize, Signal, usize);
+    /// The rates that its gains give to a member, the one with the number `agent` among all, in the state `x`, which has just
+    /// been evaluated; `None` for other laws than (6)–(7), and for gains that act at samples.
+    fn gain_rates(&mut self, agent: usize, x: &[f64]) -> Option<GainRates>;
 }
 
 /// A population of robots `R` that follow reference dynamics that hear `X`, worked on in lanes of `S`.
@@ -470,5 +474,18 @@ where
             (Signal::Position, state / l.n)
         };
         (agent, signal, axis)
+    }
+
+    fn gain_rates(&mut self, agent: usize, x: &[f64]) -> Option<GainRates> {
+        let l = self.fleet.layout;
+        if self.sampler.is_some() {
+            return None;
+        }
+        let index = self.members.iter().position(|member| member.agent == agent)?;
+        let own = |columns: &[f64]| -> Vec<f64> { (0..l.m).map(|axis| columns[axis * l.n + index]).collect() };
+        let Output { z, dz } = &self.output;
+        let (q, dq, z, dz) = (own(x), own(&x[l.dq..]), own(z), own(dz));
+        let motion = TwoVelocity { q: &q, dq: &dq, z: &z, dz: &dz };
+        gain_rates(&self.fleet.robot, &mut self.record.scratch, &self.members[index], motion).ok()?
     }
 }

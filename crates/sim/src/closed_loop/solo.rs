@@ -21,7 +21,7 @@ use forwardstep_core::signal::Block;
 
 use super::population::{Columns, Inputs};
 use super::sampler::{Sensor, quantise};
-use crate::recording::Signal;
+use crate::recording::{GainRates, Signal};
 use crate::setup::AgentSetup;
 use crate::trajectory::Trajectory;
 
@@ -411,5 +411,9 @@ impl<C: Controller> Columns for Solo<C> {
             first += count;
         }
         (self.agent, Signal::Dissipation, 0)
+    }
+
+    fn gain_rates(&mut self, _: usize, _: &[f64]) -> Option<GainRates> {
+        None
     }
 }

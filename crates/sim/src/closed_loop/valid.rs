@@ -10,6 +10,7 @@ use thiserror::Error;
 
 use super::unused;
 use crate::agents::Adaptive;
+use crate::engine::{Integrator, Radio};
 use crate::leader::{Following, FollowingDesign};
 use crate::network::NetworkError;
 use crate::push::PushError;
@@ -334,6 +335,16 @@ pub enum SetupError {
         /// What it must be.
         requirement: &'static str,
     },
+    /// Messages that can still be heard take more than the budget before the run has begun.
+    #[error(
+        "messages that can still be heard take {need_bytes} bytes or more, but the memory budget is {budget_bytes} bytes"
+    )]
+    Memory {
+        /// The least that they take.
+        need_bytes: u64,
+        /// [`crate::Solver::memory_budget_bytes`].
+        budget_bytes: u64,
+    },
     /// A time, tolerance or step that is not positive.
     #[error("{what} is {value}, but must be positive and finite")]
     NotPositive {
@@ -382,9 +393,6 @@ impl VelocityQuantity {
 /// Samples that a run may have.
 const MOST_SAMPLES: f64 = 1e7;
 
-/// Numbers in all messages that can still be heard; eight bytes each.
-const MOST_KEPT: f64 = 2e8;
-
 /// Everything that does not need a robot's kernels.
 ///
 /// # Errors
@@ -411,6 +419,7 @@ pub fn validate(setup: &Setup) -> Result<(), SetupError> {
         Method::Fixed { step_s } => positive("the step", step_s)?,
     }
     setup.control.as_ref().map_or(Ok(()), |control| check_control(control, setup))?;
+    check_memory(setup)?;
     let goes = setup.reference == ReferenceKind::Consensus && setup.exchange == Exchange::Position;
     if !setup.network.coupling.is_linear() && !goes {
         return Err(SetupError::Coupling);
@@ -489,6 +498,24 @@ fn check_following(following: &Following, setup: &Setup) -> Result<(), SetupErro
     Ok(())
 }
 
+/// The numbers in a message. What is computed is sent by sampled controllers; in continuous time it is looked up.
+pub(super) fn message_len(setup: &Setup) -> usize {
+    let axes = setup.agents.first().map_or(0, |agent| agent.robot.axes.len());
+    let computed = if setup.control.is_some() { setup.following().map_or(0, |f| f.sliding().told()) } else { 0 };
+    (setup.exchange.words().len() + computed) * axes
+}
+
+/// Samples are kept as long as any delay from the start on; pieces of history need room for the first at least.
+fn check_memory(setup: &Setup) -> Result<(), SetupError> {
+    let numbers = setup.network.agents.saturating_mul(message_len(setup));
+    let need_bytes = match &setup.control {
+        Some(control) => Radio::bytes(&setup.network, setup.time.end_s, control.sample_hz, numbers),
+        None => Integrator::least_bytes(numbers),
+    };
+    let budget_bytes = setup.solver.memory_budget_bytes;
+    if need_bytes > budget_bytes { Err(SetupError::Memory { need_bytes, budget_bytes }) } else { Ok(()) }
+}
+
 fn check_control(control: &Control, setup: &Setup) -> Result<(), SetupError> {
     let wrong = |what, value, requirement| Err(SetupError::Control { what, value, requirement });
     let Control { sample_hz, computation_delay_s, sensors, actuators } = control;
@@ -497,12 +524,6 @@ fn check_control(control: &Control, setup: &Setup) -> Result<(), SetupError> {
     }
     if setup.time.end_s * sample_hz > MOST_SAMPLES {
         return wrong("the number of samples", setup.time.end_s * sample_hz, "must not exceed 1e7");
-    }
-    // Messages are kept until nobody can hear them any more: at most positions and velocities.
-    let axes: usize = setup.agents.iter().map(|agent| agent.robot.axes.len()).sum();
-    let kept = 2.0 * axes as f64 * (setup.network.max_delay_s().min(setup.time.end_s) * sample_hz + 3.0);
-    if kept > MOST_KEPT {
-        return wrong("the number of numbers on their way", kept, "must not exceed 2e8: sample more slowly");
     }
     if !(*computation_delay_s >= 0.0 && *computation_delay_s <= 1.0 / sample_hz) {
         return wrong("the computation delay", *computation_delay_s, "must be from 0 to one period");

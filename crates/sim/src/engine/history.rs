@@ -3,12 +3,27 @@
 //! One piece per accepted step, holding r₁ … r₅ of every transmitted number and nothing else: memory grows with what is
 //! sent, not with the state. A piece needs none of its neighbours, so at a break-point the past has a left and a right
 //! side for free. A piece is dropped when a step begins so late that nothing in it can be heard any more, not at its end:
-//! rows recorded within a step hear what its start does. The ring grows by doubling and then stays.
+//! rows recorded within a step hear what its start does. The ring grows by doubling, within a budget, and then stays.
 
 use super::kernels::continue_piece;
 
 /// Reading this far beyond the end of the last piece is reading its end, s.
 const SLACK_S: f64 = 1e-12;
+
+/// Pieces that fit at first.
+const USUAL_CAPACITY: usize = 16;
+
+/// A piece and the draft of the next one, which may continue it.
+const LEAST_CAPACITY: usize = 2;
+
+/// What a ring of so many pieces of `width` numbers takes.
+fn bytes(width: usize, capacity: usize) -> u64 {
+    const NUMBER: u64 = size_of::<f64>() as u64;
+    (capacity as u64).saturating_mul((width as u64).saturating_mul(NUMBER).saturating_add(SPAN))
+}
+
+/// What the times of a piece take.
+const SPAN: u64 = size_of::<[f64; 3]>() as u64;
 
 /// A place to read from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,6 +48,8 @@ pub(crate) struct History {
     width: usize,
     /// Pieces that fit, a power of two.
     capacity: usize,
+    /// Bytes that all pieces may take, those of the old ring included while a larger one is filled.
+    budget_bytes: u64,
     data: Vec<f64>,
     /// Start, end and inverse length of each piece, s.
     spans: Vec<[f64; 3]>,
@@ -45,18 +62,44 @@ pub(crate) struct History {
 }
 
 impl History {
-    /// An empty history of pieces of `width` numbers.
-    pub(crate) fn new(width: usize) -> Self {
-        let capacity = 16;
+    /// An empty history of pieces of `width` numbers, which takes the [least](History::least_bytes) or stays within
+    /// `budget_bytes`.
+    pub(crate) fn new(width: usize, budget_bytes: u64) -> Self {
+        let mut capacity = USUAL_CAPACITY;
+        while capacity > LEAST_CAPACITY && bytes(width, capacity) > budget_bytes {
+            capacity /= 2;
+        }
         History {
             width,
             capacity,
+            budget_bytes,
             data: vec![0.0; width * capacity],
             spans: vec![[0.0; 3]; capacity],
             first: 0,
             next: 0,
             end_s: 0.0,
         }
+    }
+
+    /// What the smallest history of pieces of `width` numbers takes.
+    pub(crate) fn least_bytes(width: usize) -> u64 {
+        bytes(width, LEAST_CAPACITY)
+    }
+
+    /// The budget that would hold all that is sent within `span_s` in pieces as long as those that are kept.
+    pub(crate) fn need_bytes(&self, span_s: f64) -> f64 {
+        let (pieces, mut capacity) = (span_s / self.mean_length_s() + 2.0, self.capacity as f64);
+        while capacity < pieces {
+            capacity *= 2.0;
+        }
+        // The ring before the last doubling is half as large.
+        1.5 * capacity * bytes(self.width, 1) as f64
+    }
+
+    /// The mean length of the pieces that are kept, s.
+    pub(crate) fn mean_length_s(&self) -> f64 {
+        let [start_s, _, _] = self.spans[self.slot(self.first)];
+        (self.end_s - start_s) / (self.next - self.first).max(1) as f64
     }
 
     /// All numbers; see [`Place::Piece`] for where a piece begins.
@@ -102,7 +145,9 @@ impl History {
     }
 
     /// Makes room for the draft of the step to come, which reads nothing sent before `forget_s`: pieces that ended earlier go.
-    pub(crate) fn make_room(&mut self, forget_s: f64) {
+    /// False when there is none within the budget.
+    #[must_use]
+    pub(crate) fn make_room(&mut self, forget_s: f64) -> bool {
         while self.first + 1 < self.next {
             let [_, end, _] = self.spans[self.slot(self.first)];
             if end >= forget_s {
@@ -110,13 +155,15 @@ impl History {
             }
             self.first += 1;
         }
-        if self.next - self.first >= self.capacity as u64 {
-            self.grow();
-        }
+        self.next - self.first < self.capacity as u64 || self.grow()
     }
 
-    fn grow(&mut self) {
+    /// Doubles the ring, if the budget has room for the old one and the new one at once.
+    fn grow(&mut self) -> bool {
         let capacity = 2 * self.capacity;
+        if bytes(self.width, self.capacity).saturating_add(bytes(self.width, capacity)) > self.budget_bytes {
+            return false;
+        }
         let mut data = vec![0.0; self.width * capacity];
         let mut spans = vec![[0.0; 3]; capacity];
         for number in self.first..self.next {
@@ -126,6 +173,7 @@ impl History {
             spans[new] = self.spans[old];
         }
         (self.capacity, self.data, self.spans) = (capacity, data, spans);
+        true
     }
 
     /// Finds `t_s`, starting from where `cursor` left off.
@@ -164,7 +212,7 @@ mod tests {
     fn continuing_a_quartic_gives_the_same_quartic() {
         // r₁ … r₅ of a piece on [1, 1.5], continued on [1.5, 2.2] and compared where both speak.
         let r = [0.3, -1.2, 0.7, 2.0, -0.9];
-        let mut history = History::new(5);
+        let mut history = History::new(5, u64::MAX);
         history.draft().1.copy_from_slice(&r);
         history.commit(1.0, 1.5);
         history.extrapolate(1, 1.5, 0.7);
@@ -177,12 +225,12 @@ mod tests {
 
     #[test]
     fn old_pieces_go_and_the_ring_stays_small() {
-        let mut history = History::new(1);
+        let mut history = History::new(1, u64::MAX);
         for k in 0..10_000 {
             let t = 0.01 * f64::from(k);
             history.draft().1[0] = f64::from(k);
             history.commit(t, t + 0.01);
-            history.make_room(t + 0.01 - 0.5);
+            assert!(history.make_room(t + 0.01 - 0.5));
         }
         assert_eq!(history.capacity, 64);
         let mut cursor = 0;
@@ -191,5 +239,32 @@ mod tests {
         assert!((theta - 0.5).abs() < 1e-6);
         assert_eq!(history.find(-1e-9, &mut cursor), Place::Before);
         assert_eq!(history.find(100.5, &mut cursor), Place::Ahead);
+    }
+
+    /// Fills a history that forgets nothing until it is full: its greatest size in bytes, and how many pieces it took.
+    fn filled(width: usize, budget_bytes: u64) -> (u64, u64) {
+        let mut history = History::new(width, budget_bytes);
+        let held = |history: &History| (8 * history.data.capacity() + 24 * history.spans.capacity()) as u64;
+        let (mut before, mut most) = (0, held(&history));
+        while history.make_room(0.0) {
+            // While the ring grows the old one is there as well.
+            let now = held(&history);
+            most = most.max(if now > before { now + before } else { now });
+            before = now;
+            history.commit(history.next as f64, history.next as f64 + 1.0);
+        }
+        (most, history.next)
+    }
+
+    #[test]
+    fn a_history_never_exceeds_its_budget_and_uses_a_third_of_it() {
+        for width in [0, 1, 60, 1000] {
+            for budget_bytes in (0..40).map(|k| History::least_bytes(width) + 1000 * k * k + k) {
+                let (most, pieces) = filled(width, budget_bytes);
+                assert!(most <= budget_bytes, "{width} {budget_bytes}: {most}");
+                let needed = pieces * (8 * width as u64 + 24);
+                assert!(3 * needed > budget_bytes, "{width} {budget_bytes}: {pieces} pieces");
+            }
+        }
     }
 }

@@ -1,5 +1,7 @@
 //! The stepping itself.
 
+mod failure;
+
 use super::hearing::{Heard, Hearing, Needs, Port};
 use super::history::History;
 use super::kernels::{PieceSource, combine, error_norm, make_piece, piece_gap};
@@ -8,6 +10,7 @@ use super::timeline::{Timeline, merge_until};
 use crate::network::Network;
 use crate::recording::Statistics;
 use crate::setup::{Method, Solver};
+pub(crate) use failure::{Failure, FailureCause};
 
 /// A right-hand side that knows the past only through what is heard.
 pub(crate) trait DelaySystem {
@@ -42,17 +45,6 @@ pub(crate) enum Happened {
     Jumped,
 }
 
-/// Why a step could not be made.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Failure {
-    /// Where it happened, s.
-    pub(crate) t_s: f64,
-    /// Index of the state to blame.
-    pub(crate) state: usize,
-    /// The step that was asked for; `None` when the state is no longer finite.
-    pub(crate) step_s: Option<f64>,
-}
-
 /// An accepted step. Its interior can be read until the next one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Step {
@@ -83,6 +75,9 @@ const DRAFT_ACCURACY: f64 = 0.3;
 /// After a jump there is nothing to draft from. A step is then cut down to the shortest delay, if it is not longer than
 /// this many times that delay: the fixed point would take about four rounds.
 const WORTH_CUTTING: f64 = 4.0;
+
+/// Coefficients of a piece of history for every number that is sent.
+const COEFFICIENTS: usize = 5;
 
 /// Steps through a [`DelaySystem`] on a [`Network`].
 #[derive(Debug)]
@@ -142,13 +137,13 @@ impl<'a> Integrator<'a> {
         let mut heard = Heard { degree: vec![0.0; ports.len()], sums: vec![0.0; ports.len() * entries] };
         let mut hearing = Hearing::new(ports, entries, &x, network.coupling);
         hearing.rewire(&timeline, network.schedule.graph(timeline.graph()), &mut heard);
-        let width = 5 * hearing.width();
+        let width = COEFFICIENTS * hearing.width();
         let n = x.len();
         let stages = tableau.c.len();
         Integrator {
             network,
             timeline,
-            history: History::new(width),
+            history: History::new(width, solver.memory_budget_bytes),
             hearing,
             heard,
             tableau,
@@ -172,6 +167,11 @@ impl<'a> Integrator<'a> {
         }
     }
 
+    /// The least that history takes when all agents together send so many numbers.
+    pub(crate) fn least_bytes(numbers: usize) -> u64 {
+        History::least_bytes(COEFFICIENTS.saturating_mul(numbers))
+    }
+
     /// The state at the end of the last step.
     pub(crate) fn state(&self) -> &[f64] {
         &self.x1
@@ -189,7 +189,9 @@ impl<'a> Integrator<'a> {
             return Ok(None);
         }
         // The rows within the last step have been read.
-        self.history.make_room(t - self.forget_s);
+        if !self.history.make_room(t - self.forget_s) {
+            return Err(self.history_is_full(system, t));
+        }
         self.begin(system, t);
         self.smooth = !self.stale;
         if self.stale {
@@ -218,13 +220,13 @@ impl<'a> Integrator<'a> {
                 (h, false)
             };
             if h < self.min_step_s && !lands || t + h <= t {
-                return Err(Failure { t_s: t, state: self.worst_state(), step_s: Some(h) });
+                return Err(self.step_is_under_floor(system, t, h));
             }
             let draft_wish_s = self.stages(system, t, h);
             let (error, finite) = self.judge(h);
             if !finite {
                 if h <= self.min_step_s * 4.0 || self.fixed_step_s.is_some() {
-                    return Err(Failure { t_s: t, state: self.first_not_finite(), step_s: None });
+                    return Err(Failure { t_s: t, state: self.first_not_finite(), cause: FailureCause::NotFinite });
                 }
                 limit_s = 0.25 * h;
                 self.wish_s = limit_s;
@@ -298,7 +300,7 @@ impl<'a> Integrator<'a> {
         self.statistics.evaluations += 1;
         self.stale = false;
         match self.k[0].iter().position(|rate| !rate.is_finite()) {
-            Some(state) => Err(Failure { t_s: t, state, step_s: None }),
+            Some(state) => Err(Failure { t_s: t, state, cause: FailureCause::NotFinite }),
             None => Ok(()),
         }
     }
@@ -416,19 +418,6 @@ impl<'a> Integrator<'a> {
         self.history.commit(t, end_s);
         self.step = Step { start_s: t, end_s };
         self.statistics.steps += 1;
-    }
-
-    fn first_not_finite(&self) -> usize {
-        self.x1.iter().position(|x| !x.is_finite()).unwrap_or(0)
-    }
-
-    /// The state with the largest estimated error in the last attempt.
-    fn worst_state(&self) -> usize {
-        let ratio = |i: usize| {
-            let error: f64 = self.tableau.error.iter().zip(&self.k).map(|(e, k)| e * k[i]).sum();
-            error.abs() / (self.rtol * self.x0[i].abs() + self.atol)
-        };
-        (0..self.x0.len()).max_by(|a, b| ratio(*a).total_cmp(&ratio(*b))).unwrap_or(0)
     }
 
     /// The state and what is heard at `t_s` within the last step; at its ends from the inside.

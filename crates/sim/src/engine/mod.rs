@@ -7,7 +7,8 @@
 //! - `timeline`: switches, delay jumps, and the arrival of their images, in order.
 //! - `hearing`: the weighted sums of delayed messages at one instant.
 //! - `kernels`: loops over columns.
-//! - `integrator`: the stepping itself.
+//! - `integrator`: the stepping itself, and why it ends (`integrator/failure`).
+//! - `stiffness`: how fast the fastest motion is.
 //! - `radio`: what is sent and heard at the samples of digital controllers.
 
 mod hearing;
@@ -15,9 +16,10 @@ mod history;
 mod integrator;
 mod kernels;
 mod radio;
+mod stiffness;
 mod tableau;
 mod timeline;
 
 pub(crate) use hearing::{Heard, Port};
-pub(crate) use integrator::{DelaySystem, Happened, Integrator, Step};
+pub(crate) use integrator::{DelaySystem, Failure, FailureCause, Happened, Integrator, Step};
 pub(crate) use radio::Radio;

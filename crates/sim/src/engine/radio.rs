@@ -39,8 +39,7 @@ impl<'a> Radio<'a> {
         let timeline = Timeline::new(network, end_s, 0);
         let hearing = Hearing::new(ports, entries, x, network.coupling);
         let width = hearing.width();
-        // No message is older than the longest delay, nor than the run.
-        let ring = (network.max_delay_s().min(end_s) * sample_hz).ceil() as u64 + 2;
+        let ring = ring(network, end_s, sample_hz);
         Radio {
             network,
             timeline,
@@ -51,6 +50,12 @@ impl<'a> Radio<'a> {
             sent: vec![0.0; width * (ring as usize + 1)],
             ring,
         }
+    }
+
+    /// What the messages of all samples that may be heard take, `numbers` at each sample.
+    pub(crate) fn bytes(network: &Network, end_s: f64, sample_hz: f64, numbers: usize) -> u64 {
+        const NUMBER: u64 = size_of::<f64>() as u64;
+        (numbers as u64).saturating_mul(NUMBER).saturating_mul(ring(network, end_s, sample_hz).saturating_add(1))
     }
 
     /// Room for what everybody sends at sample `k`, in the order of [`Port::entry`].
@@ -82,6 +87,11 @@ impl<'a> Radio<'a> {
     fn offset(&self, k: u64) -> usize {
         offset_of(k, self.ring, self.width)
     }
+}
+
+/// How many samples may be heard. No message is older than the longest delay, nor than the run.
+fn ring(network: &Network, end_s: f64, sample_hz: f64) -> u64 {
+    ((network.max_delay_s().min(end_s) * sample_hz).ceil() as u64).saturating_add(2)
 }
 
 /// Where sample `k` stands: the first one apart, since it is heard until something newer arrives.

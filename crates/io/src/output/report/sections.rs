@@ -7,9 +7,10 @@ use forwardstep_sim::recording::{Ending, Signal};
 use forwardstep_sim::setup::{Exchange, Method, Setup};
 use maud::{Markup, html};
 
+use super::super::ending::ending_sentence;
 use super::super::metrics::{Disagreement, Gap, LimitKind, Metrics};
 use super::super::names;
-use super::super::record::{RunRecord, ending_sentence};
+use super::super::record::RunRecord;
 use super::text::{self, number};
 
 /// More rows would only repeat themselves.

@@ -1,0 +1,117 @@
+//! How a run ended, in words.
+
+use forwardstep_sim::recording::{Breakdown, BreakdownCause, Ending, GainRates, Stiffness};
+use forwardstep_sim::setup::{AgentSetup, Law, Method, Setup};
+
+use super::names;
+use crate::wording::{about, number};
+
+/// A gain is to blame for a rate that is at most this many times higher or lower than its own.
+const BLAMED_WITHIN: f64 = 5.0;
+
+/// How a run ended, as one sentence that names the agent and the signal that broke it.
+pub fn ending_sentence(setup: &Setup, ending: &Ending) -> String {
+    match ending {
+        Ending::Completed => format!("Reached the horizon of {} s.", setup.time.end_s),
+        Ending::Interrupted { t_s } => {
+            format!("Interrupted at t = {t_s} s of {} s; everything until then is kept.", setup.time.end_s)
+        }
+        Ending::BrokeDown(breakdown) => {
+            let column = names::column_name(setup, breakdown.agent, breakdown.signal, breakdown.axis);
+            let cause = cause(setup, breakdown);
+            format!("Broke down at t = {} s of {} s: {column} {cause}.", breakdown.t_s, setup.time.end_s)
+        }
+    }
+}
+
+/// What happened to the signal that broke a run.
+fn cause(setup: &Setup, breakdown: &Breakdown) -> String {
+    match &breakdown.cause {
+        BreakdownCause::NotFinite => "is no longer a finite number".to_owned(),
+        BreakdownCause::StepUnderFloor { step_s, stiffness } => {
+            let floor_s = setup.solver.min_step_s;
+            let why = stiffness.as_ref().map_or_else(String::new, |stiffness| {
+                format!(
+                    "; {}",
+                    because(setup, breakdown, *step_s, stiffness, "loosen the tolerances, or look at where it starts")
+                )
+            });
+            format!("asks for a step of {step_s:e} s, under the floor of {floor_s:e} s{why}")
+        }
+        BreakdownCause::MemoryFull { step_s, need_bytes, stiffness } => {
+            let blamed = match setup.solver.method {
+                Method::Adaptive { .. } => "has the largest error",
+                Method::Fixed { .. } => "moves fastest",
+            };
+            let advice = format!("{}, or raise the budget", longer(setup));
+            let why = stiffness
+                .as_ref()
+                .map_or_else(|| advice.clone(), |stiffness| because(setup, breakdown, *step_s, stiffness, &advice));
+            format!(
+                "{blamed} in steps of {} s, in which all that is sent within the longest delay, {} s, takes {} bytes where \
+                 `memory_budget_bytes` is {}; {why}",
+                about(*step_s),
+                number(setup.network.max_delay_s()),
+                about(*need_bytes),
+                setup.solver.memory_budget_bytes,
+            )
+        }
+        BreakdownCause::RanAway { value, steps } => format!(
+            "ran away: it is {value:.2e}, and {steps} steps did not reach the next sample; sample faster, or let K or the \
+             delay of the torque be smaller"
+        ),
+        BreakdownCause::Vanished { value, floor } => format!(
+            "is {value:.3e}: the law divides by it, and it must stay away from zero by {floor}; start elsewhere, or choose \
+             slower gains"
+        ),
+        BreakdownCause::PositionLimit { value, limits: [low, high] } => {
+            format!("left its limits [{low}, {high}]: it is {value}")
+        }
+    }
+}
+
+/// What lets steps be longer that are not short because of the closed loop.
+fn longer(setup: &Setup) -> &'static str {
+    match setup.solver.method {
+        Method::Fixed { .. } => "raise `step_s`",
+        Method::Adaptive { .. } if setup.solver.max_step_s.is_some() => "raise `max_step_s`, loosen the tolerances",
+        Method::Adaptive { .. } => "loosen the tolerances",
+    }
+}
+
+/// Whether the closed loop is stiff, and what to do about it; `advice` is for one that is not.
+fn because(setup: &Setup, breakdown: &Breakdown, step_s: f64, stiffness: &Stiffness, advice: &str) -> String {
+    let fastest = format!("its fastest rate is about {} 1/s", about(stiffness.rate_per_s));
+    if !stiffness.explains(step_s) {
+        return format!("the closed loop is not stiff, {fastest}: {advice}");
+    }
+    match setup.agents.get(breakdown.agent).zip(stiffness.gains) {
+        Some((agent, gains)) => {
+            format!("the closed loop is stiff, {fastest}; {}", blamed(agent, stiffness.rate_per_s, gains))
+        }
+        None => format!("the closed loop is stiff, {fastest}"),
+    }
+}
+
+/// The rates of the gains of an agent under (6)–(7), and which of them to lower.
+fn blamed(agent: &AgentSetup, fastest_per_s: f64, gains: GainRates) -> String {
+    let law = match &agent.law {
+        Law::Known { .. } => "known",
+        _ => "adaptive",
+    };
+    let damping = (gains.damping_per_s, "K/λ_min(M)", format!("lower `law.{law}.damping`"));
+    let adaptation = |rate| {
+        let advice = "lower `law.adaptive.adaptation_gain`, or let it start nearer and slower: Y grows with the motion";
+        (rate, "√(Γ‖Y‖²/λ_min(M))", advice.to_owned())
+    };
+    let rates: Vec<_> = [Some(damping), gains.adaptation_per_s.map(adaptation)].into_iter().flatten().collect();
+    let told: Vec<String> =
+        rates.iter().map(|(rate, symbol, _)| format!("{symbol} is about {} 1/s", about(*rate))).collect();
+    let apart = |rate: f64| (rate / fastest_per_s).max(fastest_per_s / rate);
+    let nearest = rates.iter().min_by(|a, b| apart(a.0).total_cmp(&apart(b.0)));
+    let advice = nearest.filter(|(rate, _, _)| apart(*rate) < BLAMED_WITHIN).map_or(
+        "no gain of its law explains it: look at where it starts, at the reference dynamics and at the weights",
+        |(_, _, advice)| advice,
+    );
+    format!("at {} {}: {advice}", agent.name, told.join(" and "))
+}
