@@ -1,7 +1,7 @@
 //! How a run ended, in words.
 
 use forwardstep_sim::recording::{Breakdown, BreakdownCause, Ending, GainRates, Stiffness};
-use forwardstep_sim::setup::{AgentSetup, Law, Method, Setup};
+use forwardstep_sim::setup::{AgentSetup, Method, Setup};
 
 use super::names;
 use crate::wording::{about, number};
@@ -95,10 +95,7 @@ fn because(setup: &Setup, breakdown: &Breakdown, step_s: f64, stiffness: &Stiffn
 
 /// The rates of the gains of an agent under (6)–(7), and which of them to lower.
 fn blamed(agent: &AgentSetup, fastest_per_s: f64, gains: GainRates) -> String {
-    let law = match &agent.law {
-        Law::Known { .. } => "known",
-        _ => "adaptive",
-    };
+    let law = if agent.estimates() { "adaptive" } else { "known" };
     let damping = (gains.damping_per_s, "K/λ_min(M)", format!("lower `law.{law}.damping`"));
     let adaptation = |rate| {
         let advice = "lower `law.adaptive.adaptation_gain`, or let it start nearer and slower: Y grows with the motion";
