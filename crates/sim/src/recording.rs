@@ -153,8 +153,8 @@ pub struct Statistics {
     /// The largest rest of the inclusions that set-valued signs solve, where they are solved for, in the unit of what the
     /// sign is taken of.
     pub sign_residual: Option<f64>,
-    /// Time spent.
-    pub wall: Duration,
+    /// Time spent, if whoever ran it measured it: nothing in the library reads a clock.
+    pub wall: Option<Duration>,
 }
 
 /// How far a run has come, for progress displays.

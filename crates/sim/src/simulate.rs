@@ -1,7 +1,6 @@
 //! From a setup to an outcome.
 
 use std::ops::ControlFlow;
-use std::time::Instant;
 
 use forwardstep_core::controller::Trouble;
 
@@ -30,7 +29,6 @@ const SHORTEST_USEFUL_STEP_S: f64 = 1e-5;
 /// [`SetupError`] when the setup has no meaning; nothing was computed then. A run that breaks down is not an error: see
 /// [`Ending::BrokeDown`].
 pub fn simulate(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Result<Outcome, SetupError> {
-    let started = Instant::now();
     setup.network.lasts_until(setup.time.end_s)?;
     let mut closed_loop = ClosedLoop::new(setup)?;
     let (ports, entries) = closed_loop.ports();
@@ -75,7 +73,6 @@ pub fn simulate(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow
     };
     let mut statistics = integrator.statistics();
     statistics.sign_residual = closed_loop.sign_residual();
-    statistics.wall = started.elapsed();
     Ok(Outcome { recording: recorder.recording, ending, statistics })
 }
 

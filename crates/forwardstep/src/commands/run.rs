@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::time::Instant;
 
 use forwardstep::io::output::{
     self, DigitalCost, GoalOutcome, Metrics, OutputError, RunFolder, RunRecord, continuous_twin, ending_sentence,
@@ -34,12 +35,14 @@ fn finish(options: &RunOptions, console: &mut Console) -> Result<Status, Status>
     console.line("");
 
     let mut bar = Bar::new();
+    let started = Instant::now();
     let outcome = simulate(&scenario.setup, &mut |progress| {
         bar.update(progress);
         if stop.asked().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     bar.clear();
-    let outcome = outcome.map_err(|error| complain(&Plain::new(error)))?;
+    let mut outcome = outcome.map_err(|error| complain(&Plain::new(error)))?;
+    outcome.statistics.wall = Some(started.elapsed());
 
     let setup = &scenario.setup;
     let metrics = Metrics::of(setup, &outcome.recording, promise.agreement.as_deref().ok(), scenario.goal);

@@ -45,9 +45,10 @@ pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, 
     let statistics = &outcome.statistics;
     let steps = format!("{}, {} of them to break-points", statistics.steps, statistics.break_points);
     rows.push(("steps", format!("{steps}; {} rejected", statistics.rejected)));
-    let wall_s = statistics.wall.as_secs_f64();
-    let factor = metrics.last_t_s.unwrap_or(0.0) / wall_s.max(1e-9);
-    rows.push(("wall time", format!("{wall_s:.2} s, {} × real time", speed(factor))));
+    if let Some(wall_s) = statistics.wall.map(|wall| wall.as_secs_f64()) {
+        let factor = metrics.last_t_s.unwrap_or(0.0) / wall_s.max(1e-9);
+        rows.push(("wall time", format!("{wall_s:.2} s, {} × real time", speed(factor))));
+    }
     rows.push(("files", names(folder, files)));
 
     let mut table = Table::new();

@@ -286,10 +286,10 @@ pub struct Solver {
 /// Times that depend on the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Timings {
-    /// Time spent simulating, s.
+    /// Time spent simulating, s; null if nobody measured it.
     #[serde(deserialize_with = "number::or_nan")]
     pub wall_s: f64,
-    /// Simulated time per time spent.
+    /// Simulated time per time spent; null likewise.
     #[serde(deserialize_with = "number::or_nan")]
     pub simulated_per_wall: f64,
 }
@@ -300,7 +300,7 @@ impl Summary {
         let setup = record.setup;
         let statistics = &record.outcome.statistics;
         let ending = How::of(setup, &record.outcome.ending);
-        let wall_s = statistics.wall.as_secs_f64();
+        let wall_s = statistics.wall.map_or(f64::NAN, |wall| wall.as_secs_f64());
         Summary {
             format: FORMAT,
             version: record.version.to_owned(),
@@ -350,7 +350,7 @@ impl Summary {
     /// What the run cost.
     pub(crate) fn statistics(&self) -> Statistics {
         let Solver { steps, rejected, evaluations, break_points, sign_residual } = self.solver;
-        let wall = Duration::try_from_secs_f64(self.timings.wall_s).unwrap_or_default();
+        let wall = Duration::try_from_secs_f64(self.timings.wall_s).ok();
         Statistics { steps, rejected, evaluations, break_points, sign_residual, wall }
     }
 

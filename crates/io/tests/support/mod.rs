@@ -148,7 +148,7 @@ pub fn outcome(setup: &Setup) -> Outcome {
             evaluations: 252_271,
             break_points: 180,
             sign_residual: None,
-            wall: Duration::from_millis(1234),
+            wall: Some(Duration::from_millis(1234)),
         },
     }
 }
