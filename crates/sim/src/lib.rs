@@ -6,6 +6,7 @@
 //! loop; [`recording`] and [`simulate`].
 
 mod agents;
+mod build;
 mod closed_loop;
 pub mod coupling;
 pub mod delay;
@@ -28,6 +29,7 @@ pub use agents::{
     PositionOnlyLaw, RobotModel, RotorcraftModel, SpacecraftModel, TaskSpaceLaw, ThrustKind, ThrustLaw, TipSetup,
     VehicleModel,
 };
+pub use build::run;
 pub use closed_loop::{Assembly, Block, SetupError, VelocityQuantity, validate};
 pub use network::Network;
 pub use recording::{

@@ -8,7 +8,6 @@ use crate::closed_loop::{ClosedLoop, SetupError};
 use crate::engine::{Failure, FailureCause, Integrator, Step};
 use crate::network::Network;
 use crate::recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal, Stiffness};
-use crate::schedule::Schedule;
 use crate::setup::Setup;
 
 /// Rows are made room for in chunks of this many.
@@ -34,13 +33,7 @@ pub fn simulate(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow
     let (ports, entries) = closed_loop.ports();
     let end_s = setup.time.end_s;
     // Messages of sampled controllers do not flow: nothing of the network enters the motion between two samples.
-    let silent = Network {
-        agents: setup.network.agents,
-        schedule: Schedule::Fixed(Vec::new()),
-        delays: Vec::new(),
-        weights: Vec::new(),
-        coupling: Default::default(),
-    };
+    let silent = Network::silent(setup.network.agents);
     let network = if setup.control.is_some() { &silent } else { &setup.network };
     let mut integrator = Integrator::new(network, &setup.solver, end_s, closed_loop.start(), ports, entries);
     let mut recorder = Recorder::new(setup, &closed_loop);

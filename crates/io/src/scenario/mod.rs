@@ -89,7 +89,8 @@ use std::sync::Arc;
 
 use forwardstep_sim::leader::Following;
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Exchange, Known, Method, ReferenceKind, Setup, Solver, TimeSpan, recorded_columns, validate,
+    Adaptive, AgentSetup, Exchange, Known, Method, Network, ReferenceKind, Setup, Solver, TimeSpan, recorded_columns,
+    validate,
 };
 use miette::Diagnostic;
 use serde::Deserialize;
@@ -238,7 +239,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
     let network = match &file.network {
         Some(network) => network::network(&network.value, vertices, end_s, source, &mut folder, &mut notices)
             .map_err(|fault| fault.at(&network.span))?,
-        None if reference == ReferenceKind::Tracking => network::silent(names.len()),
+        None if reference == ReferenceKind::Tracking => Network::silent(names.len()),
         None => return Err(fault(&file.reference, NetworkProblem::Missing).into()),
     };
     let control = file.control.as_ref().map(|file| control::control(file, axes.len(), end_s)).transpose()?;

@@ -70,12 +70,6 @@ pub(super) fn network(
     Ok(Network { agents: names.len(), schedule, delays: reader.delays, weights: reader.weights, coupling })
 }
 
-/// A network in which nobody hears anybody.
-pub(super) fn silent(agents: usize) -> Network {
-    let coupling = Coupling::Linear;
-    Network { agents, schedule: Schedule::Fixed(Vec::new()), delays: Vec::new(), weights: Vec::new(), coupling }
-}
-
 fn coupling(file: &At<CouplingFile>) -> Result<Coupling, Fault> {
     Ok(match &file.value {
         CouplingFile::Saturated(limit) => Coupling::Saturated { limit: positive("saturated", limit)? },

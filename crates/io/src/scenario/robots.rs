@@ -1,10 +1,9 @@
 //! `robot` of an agent → [`RobotSetup`].
 
 use std::rc::Rc;
-use std::sync::Arc;
 
+use forwardstep_core::robot::PlanarLinks;
 use forwardstep_core::robot::tree::Anchor;
-use forwardstep_core::robot::{PlanarArm, PlanarLinks, PointMass};
 use forwardstep_sim::{Axis, AxisUnit, RobotSetup};
 
 use super::ScenarioError;
@@ -157,36 +156,14 @@ pub(super) fn planar_robot(links: &PlanarLinks) -> Result<RobotSetup, Fault> {
     if !(outer > 0.0 && determinant > 0.0 && theta.iter().all(|entry| entry.is_finite())) {
         return Err(Fault::new(ScenarioProblem::MassMatrix));
     }
-    Ok(RobotSetup {
-        kind: Arc::new(PlanarArm),
-        theta: theta.to_vec(),
-        theta_names: [
-            "inertia.both_links",
-            "inertia.outer_link",
-            "inertia.coupling",
-            "gravity.shoulder",
-            "gravity.elbow",
-        ]
-        .map(String::from)
-        .to_vec(),
-        axes: vec![axis("shoulder", AxisUnit::Radian), axis("elbow", AxisUnit::Radian)],
-    })
+    Ok(RobotSetup::planar_arm(links))
 }
 
 fn point_mass(file: &PointMassFile) -> Result<RobotSetup, Fault> {
     let dimension = count("dimension", &file.dimension, MOST_DIMENSIONS)?;
-    let name = |k: usize| match (dimension <= 3, ["x", "y", "z"].get(k)) {
-        (true, Some(letter)) => axis(letter, AxisUnit::Metre),
-        _ => axis(&format!("x{}", k + 1), AxisUnit::Metre),
-    };
-    Ok(RobotSetup {
-        kind: Arc::new(PointMass { dimension }),
-        theta: vec![positive("mass_kg", &file.mass_kg)?],
-        theta_names: vec!["mass".into()],
-        axes: (0..dimension).map(name).collect(),
-    })
+    Ok(RobotSetup::point_mass(dimension, positive("mass_kg", &file.mass_kg)?))
 }
 
 pub(super) fn axis(name: &str, unit: AxisUnit) -> Axis {
-    Axis { name: name.into(), unit, position_limits: None, velocity_limit: None, effort_limit: None }
+    Axis::new(name, unit)
 }

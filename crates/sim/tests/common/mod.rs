@@ -44,13 +44,7 @@ pub fn fixed(offset: f64) -> Path {
 
 /// Nobody talks.
 pub fn silent(agents: usize) -> Network {
-    Network {
-        agents,
-        schedule: Schedule::Fixed(Vec::new()),
-        delays: Vec::new(),
-        weights: Vec::new(),
-        coupling: Default::default(),
-    }
+    Network::silent(agents)
 }
 
 /// Two graphs in turn, over which three agents agree, with a delay that grows and jumps back.
