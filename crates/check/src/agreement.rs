@@ -162,8 +162,11 @@ fn pushed_for_ever(agent: &AgentSetup) -> bool {
 fn constant_graph(schedule: &Schedule) -> Option<&[Edge]> {
     match schedule {
         Schedule::Fixed(edges) => Some(edges),
-        Schedule::Periodic(phases) | Schedule::Once(phases) if phases.len() == 1 => Some(&phases[0].edges),
-        _ => None,
+        Schedule::Periodic(phases) | Schedule::Once(phases) => match &phases[..] {
+            [phase] => Some(&phase.edges),
+            _ => None,
+        },
+        Schedule::Random { .. } => None,
     }
 }
 
