@@ -161,3 +161,21 @@ fn reference_dynamics_with_accelerations_want_a_graph_that_stays() {
     let phase = || Phase { edges: one(), dwell_s: 1.0 };
     assert_eq!(answer(Schedule::Periodic(vec![phase(), phase()])), Answer::NotCovered);
 }
+
+#[test]
+fn what_was_drawn_is_given_and_what_repeats_is_exact() {
+    let tree = |schedule| {
+        let report = check(&masses(Exchange::Position, 2, schedule, vec![Delay::Constant { s: 0.1 }]));
+        let found = report.hypotheses.into_iter().find(|hypothesis| hypothesis.id == Id::SpanningTree).unwrap();
+        (found.answer(), found.rigour(), found.because().contains("to the end of the run"))
+    };
+    let (first, second) =
+        (|| vec![edge(0, 1, 1.0, 0), edge(1, 2, 1.0, 0)], || vec![edge(2, 3, 1.0, 0), edge(3, 4, 1.0, 0)]);
+    let random = |graphs| Schedule::Random { graphs, dwell_s: [0.1, 0.2], seed: 1 };
+    let periodic =
+        |graphs: Vec<_>| Schedule::Periodic(graphs.into_iter().map(|edges| Phase { edges, dwell_s: 0.2 }).collect());
+    assert_eq!(tree(random(vec![first(), second()])), (Answer::HoldsOnHorizon, Rigour::Given, false));
+    assert_eq!(tree(random(vec![first(), first()])), (Answer::Violated, Rigour::Given, true));
+    assert_eq!(tree(periodic(vec![first(), second()])), (Answer::Holds, Rigour::Exact, false));
+    assert_eq!(tree(periodic(vec![first(), first()])), (Answer::Violated, Rigour::Exact, false));
+}
