@@ -69,8 +69,9 @@ pub fn tried(scratch: &Scratch, mut scenario: Scenario) {
     };
     let verdicts = within(3.0 + 2e-5 * switches as f64, "judging", || check::check(&scenario.setup));
     for hypothesis in &verdicts.hypotheses {
-        assert!(!hypothesis.requires.is_empty());
-        assert!(hypothesis.because.len() < 1 << 20, "{} bytes of reasons", hypothesis.because.len());
+        assert!(!hypothesis.requires().is_empty());
+        let because = hypothesis.because();
+        assert!(!because.is_empty() && because.len() < 1 << 20, "{} bytes of reasons", because.len());
     }
     let prediction = prompt("predicting", || check::predict(&scenario.setup));
     if let Err(reason) = &prediction {

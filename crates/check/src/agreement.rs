@@ -31,7 +31,7 @@ use forwardstep_sim::{AgentSetup, Exchange, ReferenceKind, Setup};
 use nalgebra::DMatrix;
 use thiserror::Error;
 
-use crate::laws::is_lagrangian;
+use crate::kinds::is_lagrangian;
 use crate::manipulation::error_integral;
 
 /// The value that all agents will agree on.
@@ -163,8 +163,11 @@ fn pushed_for_ever(agent: &AgentSetup) -> bool {
 fn constant_graph(schedule: &Schedule) -> Option<&[Edge]> {
     match schedule {
         Schedule::Fixed(edges) => Some(edges),
-        Schedule::Periodic(phases) | Schedule::Once(phases) if phases.len() == 1 => Some(&phases[0].edges),
-        _ => None,
+        Schedule::Periodic(phases) | Schedule::Once(phases) => match &phases[..] {
+            [phase] => Some(&phase.edges),
+            _ => None,
+        },
+        Schedule::Random { .. } => None,
     }
 }
 

@@ -1,22 +1,29 @@
 //! What the theorems promise for a given network, with certificates and witnesses, and what can be predicted before a run.
 //!
-//! Never "proved" outside the theorems: a hypothesis *holds* for all time, holds *on the horizon*, is *not covered by the
-//! paper*, or is *violated* with a witness.
+//! Never "proved" outside the theorems: a hypothesis *holds* for all time, holds *on the horizon*, is *watched* during the
+//! run, is *not covered by the paper*, or is *violated* with a witness.
+//!
+//! The layers, each of which uses only those before it: [`hypothesis`], with its evidence and its words, and [`Theorem`];
+//! what is found about graphs, links and the loop; a file for each kind of system; a file for each theorem.
 
 mod agreement;
-mod chains;
-mod hypotheses;
+mod graphs;
+pub mod hypothesis;
+mod kinds;
 mod laws;
-mod leader;
 mod links;
 mod manipulation;
+mod report;
 mod sampled;
-mod single;
-mod tracking;
-mod vehicles;
-mod verdict;
+mod source;
+mod surroundings;
+mod theorem;
+mod theorems;
 
 pub use agreement::{NoPrediction, Prediction, predict};
-pub use hypotheses::check;
+pub use hypothesis::{Answer, Evidence, Hypothesis, Id, Rigour};
+pub use report::Report;
 pub use sampled::{SampledAdaptation, SampledDamping, sampled_adaptation, sampled_damping};
-pub use verdict::{Answer, Hypothesis, Report};
+pub use source::Source;
+pub use theorem::Theorem;
+pub use theorems::check;

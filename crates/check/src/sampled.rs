@@ -1,10 +1,8 @@
-//! What digital control adds to the question whether a theorem applies.
+//! How far one held sample goes: guides for the rate of a sampled controller.
 
 use forwardstep_core::Gain;
-use forwardstep_sim::{Adaptive, AgentSetup, DynamicsAt, Known, Setup, VelocitySensor};
+use forwardstep_sim::{Adaptive, AgentSetup, DynamicsAt, Known, Setup};
 use nalgebra::{DMatrix, DVector};
-
-use crate::verdict::{Answer, Hypothesis};
 
 /// How far one held sample of the damping goes: h · λ_max(M⁻¹K), largest over the agents, at their starts.
 ///
@@ -137,78 +135,4 @@ fn largest(mass: &DMatrix<f64>, gain: &DMatrix<f64>) -> Option<f64> {
     let whole = l.solve_lower_triangular(&half.transpose())?;
     let largest = whole.symmetric_eigenvalues().max();
     largest.is_finite().then_some(largest)
-}
-
-/// Under digital control: the theorems speak of continuous time and of exact measurements.
-pub(crate) fn digital(setup: &Setup) -> Vec<Hypothesis> {
-    let Some(control) = &setup.control else { return Vec::new() };
-    let damping = sampled_damping(setup).map_or_else(String::new, |damping| {
-        let name = &setup.agents[damping.agent].name;
-        let short = |value: f64| (value * 1000.0).round() / 1000.0;
-        let (value, overshoots) = (short(damping.value), short(damping.overshoots_above));
-        let meaning = if damping.value > damping.overshoots_above {
-            let unstable = short(damping.unstable_above);
-            format!(
-                "above {overshoots} the held damping overshoots, above {unstable} it is unstable: sample faster or let K be smaller"
-            )
-        } else if let VelocitySensor::Filtered { .. } = control.sensors.velocity {
-            format!("up to {overshoots} the held damping would not overshoot, if the filter of the velocities did not lag")
-        } else {
-            format!("up to {overshoots} the held damping does not overshoot")
-        };
-        format!("; h · λ_max(M⁻¹K) is {value} at the start ({name}): {meaning}")
-    });
-    // What the damping alone does is said already.
-    let steady = sampled_damping(setup).is_none_or(|damping| damping.value < damping.unstable_above);
-    let learning = sampled_adaptation(setup).filter(|found| steady && found.value > 2.0).map_or_else(String::new, |found| {
-        let (name, value) = (&setup.agents[found.agent].name, (found.value * 1000.0).round() / 1000.0);
-        format!(
-            "; h · λ_max(M⁻¹(K + ½ h Y Γ Yᵀ)) is {value} at the start ({name}): above 2 damping and adaptation together are unstable: \
-             sample faster or let Γ be smaller"
-        )
-    });
-    let late = if control.computation_delay_s > 0.0 {
-        format!(", torques come {} s late", control.computation_delay_s)
-    } else {
-        String::new()
-    };
-    let mut hypotheses = vec![Hypothesis {
-        requires: "the controllers work in continuous time".into(),
-        answer: Answer::NotCovered,
-        because: format!(
-            "they sample at {} Hz{late}; what is heard is up to a period older; as h → 0 the loop tends to the one the theorem speaks of{damping}{learning}",
-            control.sample_hz
-        ),
-    }];
-    let sensors = &control.sensors;
-    let mut inexact = Vec::new();
-    if sensors.position_noise > 0.0 || sensors.velocity_noise > 0.0 {
-        inexact.push("there is noise");
-    }
-    if sensors.position_quantum > 0.0 || sensors.velocity_quantum > 0.0 {
-        inexact.push("measurements are quantised");
-    }
-    if let VelocitySensor::Filtered { .. } = sensors.velocity {
-        inexact.push("velocities come from filtered differences");
-    }
-    if !inexact.is_empty() {
-        hypotheses.push(Hypothesis {
-            requires: "q and q̇ are measured".into(),
-            answer: Answer::NotCovered,
-            because: inexact.join(", "),
-        });
-    }
-    hypotheses
-}
-
-/// What keeps the torque from being what the law asks for, in words.
-pub(crate) fn limited_actuators(setup: &Setup) -> Vec<&'static str> {
-    let Some(control) = &setup.control else { return Vec::new() };
-    let actuators = &control.actuators;
-    let each = [
-        (actuators.torque_limit.is_some(), "torques are limited"),
-        (actuators.torque_rate_limit.is_some(), "the rate of torques is limited"),
-        (actuators.torque_quantum > 0.0, "torques are quantised"),
-    ];
-    each.into_iter().filter(|(is, _)| *is).map(|(_, words)| words).collect()
 }

@@ -73,7 +73,11 @@ fn thm1_agreed_value_is_known_for_the_pure_integrals_too() {
         setup.time.record_every_s = 10.0;
         let report = check(&setup);
         assert_eq!(report.worst(), Answer::Holds);
-        assert!(report.theorem.starts_with(if exchange == Exchange::Position { "Remark 3" } else { "Theorem 1" }));
+        assert!(report.theorem.to_string().starts_with(if exchange == Exchange::Position {
+            "Remark 3"
+        } else {
+            "Theorem 1"
+        }));
         let prediction = predict(&setup).unwrap();
         let outcome = run(&setup);
         for agent in 0..4 {
@@ -131,7 +135,7 @@ fn eq_3_over_a_switching_graph_is_not_covered() {
     setup.reference = ReferenceKind::PureIntegral;
     let report = check(&setup);
     assert_eq!(report.worst(), Answer::NotCovered);
-    assert!(report.hypotheses.iter().any(|h| h.answer == Answer::NotCovered && h.because.contains("(a1)")));
+    assert!(report.hypotheses.iter().any(|h| h.answer() == Answer::NotCovered && h.because().contains("(a1)")));
 }
 
 #[test]
@@ -305,8 +309,8 @@ fn thm3_a5_with_unequal_first_roots_diverges_and_24_does_not() {
     assert!((growth - 3.8).abs() < 0.1, "grows {growth}× per period");
     let report = check(&bad);
     assert_eq!(report.worst(), Answer::NotCovered);
-    let witness = report.hypotheses.iter().find(|h| h.answer == Answer::NotCovered).unwrap();
-    assert!(witness.because.contains("arm-1 has κ₀ = 4 and arm-2 has κ₀ = 0.2"), "{}", witness.because);
+    let witness = report.hypotheses.iter().find(|h| h.answer() == Answer::NotCovered).unwrap();
+    assert!(witness.because().contains("arm-1 has κ₀ = 4 and arm-2 has κ₀ = 0.2"), "{}", witness.because());
 
     let good = diverging(Exchange::Position);
     let gap = disagreement(&good);
@@ -322,13 +326,13 @@ fn thm2_hypotheses_hold_with_a_certificate_or_fail_with_a_witness() {
     let joint = Schedule::Periodic(vec![phase(0, 1), phase(1, 2), phase(2, 3)]);
     let report = check(&setup(agents(), Exchange::PositionVelocity, joint, delays.clone(), 1.0));
     assert_eq!(report.worst(), Answer::Holds);
-    assert!(report.theorem.starts_with("Theorem 2"));
-    assert!(report.hypotheses[0].because.contains("lasts 4.5 s"), "{}", report.hypotheses[0].because);
+    assert!(report.theorem.to_string().starts_with("Theorem 2"));
+    assert!(report.hypotheses[0].because().contains("lasts 4.5 s"), "{}", report.hypotheses[0].because());
 
     let split = Schedule::Periodic(vec![phase(0, 1), phase(2, 3)]);
     let report = check(&setup(agents(), Exchange::PositionVelocity, split, delays.clone(), 1.0));
     assert_eq!(report.worst(), Answer::Violated);
-    let because = &report.hypotheses[0].because;
+    let because = report.hypotheses[0].because();
     assert!(because.contains("[arm-1] and [arm-3] hear nobody outside themselves"), "{because}");
 
     let graphs = vec![vec![edge(0, 1, 1.0, 0), edge(1, 2, 1.0, 0)], vec![edge(2, 3, 1.0, 0)]];

@@ -31,7 +31,7 @@ fn links(delay: Delay, weight: Option<Formula>) -> (Answer, String, Option<(Answ
     }
     let report = check(&setup);
     let find = |words: &str| {
-        report.hypotheses.iter().find(|h| h.requires.starts_with(words)).map(|h| (h.answer, h.because.clone()))
+        report.hypotheses.iter().find(|h| h.requires().starts_with(words)).map(|h| (h.answer(), h.because()))
     };
     let (answer, because) = find("delays").unwrap();
     (answer, because, find("weights"))

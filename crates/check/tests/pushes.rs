@@ -272,9 +272,9 @@ fn thm_verdicts_on_pushes_that_end_and_that_do_not() {
         let mut setup = ring((0..2).map(|i| mass(i, &[1.0, 2.0])).collect(), Exchange::PositionVelocity, 10.0);
         setup.agents[1].pushes = pushes;
         let mut hypotheses = check(&setup).hypotheses;
-        hypotheses.retain(|h| h.requires.starts_with("external torques"));
+        hypotheses.retain(|h| h.requires().starts_with("external torques"));
         assert!(hypotheses.len() < 2);
-        hypotheses.pop().map(|h| (h.answer, h.because))
+        hypotheses.pop().map(|h| (h.answer(), h.because()))
     };
     let forever = |effect| Push { effect, from_s: 1.0, until_s: f64::INFINITY };
     let hand = |target| Effect::HandOnAxes { axes: vec![0], stiffness: vec![5.0], damping: vec![1.0], target };

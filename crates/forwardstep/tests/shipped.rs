@@ -72,7 +72,7 @@ fn thm7_the_quaternion_to_follow_is_bounded_away_from_zero_or_found_there() {
         };
         setup.agents[0].target = Some(Trajectory::new(paths.map(path).to_vec()).unwrap());
         let report = check(&setup);
-        report.hypotheses.iter().find(|hypothesis| hypothesis.requires.contains("never zero")).unwrap().answer
+        report.hypotheses.iter().find(|hypothesis| hypothesis.requires().contains("never zero")).unwrap().answer()
     };
     let nothing = (0.0, 0.0, 0.0);
     assert_eq!(answer([(0.0, 0.5, 0.0), nothing, nothing, (-1.0, 0.2, 0.0)]), Answer::Holds);

@@ -8,6 +8,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
+use forwardstep_check::hypothesis::{GraphEvidence, Named};
 use forwardstep_core::Gain;
 use forwardstep_core::robot::PlanarArm;
 use forwardstep_io::output::{
@@ -254,7 +255,10 @@ fn names_given_by_users_are_escaped_everywhere() {
     setup.agents[0].robot.theta_names[0] = "</script><img src=x onerror=alert(2)>".into();
     let outcome = outcome(&setup);
     let (folder, mut report) = (tempfile::tempdir().unwrap(), verdicts());
-    report.hypotheses[0].because = "<b onclick=alert(3)>".into();
+    let roots = vec![Named { index: 0, name: "<b onclick=alert(3)>".into() }];
+    let tree = GraphEvidence::Window { length_s: 3.0, worst_start_s: 1.0, roots, for_all_time: true };
+    report.hypotheses[0].evidence = tree.into();
+    assert!(report.hypotheses[0].because().contains("<b onclick"));
     let mut it = record(&setup, &outcome, &report);
     (it.title, it.scenario_text) = ("</title><script>alert(4)</script>", "# </pre><script>alert(5)</script>");
     it.notices = vec!["<script>alert(6)</script>".into()];

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use forwardstep_io::SourceText;
 use forwardstep_io::output::summary::Summary;
-use forwardstep_io::output::{Options, RestoreError, RunFolder, RunRecord, SavedRun, TableError, write_run};
+use forwardstep_io::output::{Options, Remark, RestoreError, RunFolder, RunRecord, SavedRun, TableError, write_run};
 use forwardstep_io::scenario::read_scenario;
 use forwardstep_sim::{
     Breakdown, BreakdownCause, Ending, GainRates, Outcome, Setup, Signal, Stiffness, recorded_columns, simulate,
@@ -126,6 +126,56 @@ fn a_summary_reads_back_as_it_was_written() {
     assert!(text.contains("\"value\": null"), "{text}");
     let summary: Summary = serde_json::from_str(&text).unwrap();
     assert_eq!(serde_json::to_string_pretty(&summary).unwrap() + "\n", text);
+}
+
+#[test]
+fn verdicts_of_older_summaries_are_read_without_names() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), |_, _| {});
+    let path = folder.path().join("summary.json");
+    let text = fs::read_to_string(&path).unwrap();
+    let written: Summary = serde_json::from_str(&text).unwrap();
+    let of = |id: &str| written.verdicts.hypotheses.iter().find(|verdict| verdict.id.as_deref() == Some(id)).unwrap();
+    let delays = of("bounded-delays");
+    let said = [&delays.place, &delays.source, &delays.rigour].map(|entry| entry.as_deref().unwrap());
+    assert_eq!(said, ["Section III-A", "the paper", "exact"]);
+    assert_eq!(of("common-first-root").source.as_deref(), Some("the paper as corrected (E1)"));
+    let theorem = [&written.verdicts.id, &written.verdicts.source].map(|entry| entry.as_deref().unwrap());
+    assert_eq!(theorem, ["theorem-2", "the paper"]);
+
+    let remarks = |change: &dyn Fn(&mut serde_json::Value)| {
+        let mut summary: serde_json::Value = serde_json::from_str(&text).unwrap();
+        change(&mut summary["verdicts"]);
+        fs::write(&path, summary.to_string()).unwrap();
+        let run = SavedRun::open(folder.path()).unwrap();
+        run.remarks(&forwardstep_check::check(run.setup()), "0.1.0")
+    };
+    let hypotheses = |verdicts: &mut serde_json::Value,
+                      change: &dyn Fn(&mut serde_json::Map<String, serde_json::Value>)| {
+        verdicts["hypotheses"].as_array_mut().unwrap().iter_mut().for_each(|v| change(v.as_object_mut().unwrap()));
+    };
+    let strip = |verdicts: &mut serde_json::Value| {
+        hypotheses(verdicts, &|verdict| {
+            ["id", "place", "source", "rigour"].iter().for_each(|key| drop(verdict.remove(*key)))
+        });
+        ["id", "source"].iter().for_each(|key| drop(verdicts.as_object_mut().unwrap().remove(*key)));
+    };
+    assert_eq!(remarks(&strip), []);
+    for key in ["id", "place", "source", "rigour", "requires", "because"] {
+        let change = |verdicts: &mut serde_json::Value| {
+            hypotheses(verdicts, &|verdict| drop(verdict.insert(key.to_owned(), "another".into())));
+        };
+        assert_eq!(remarks(&change), [Remark::VerdictsDiffer], "{key}");
+    }
+    for key in ["id", "source", "theorem"] {
+        assert_eq!(remarks(&|verdicts| verdicts[key] = "another".into()), [Remark::VerdictsDiffer], "{key}");
+    }
+    // A hypothesis fewer, without names.
+    let fewer = |verdicts: &mut serde_json::Value| {
+        strip(verdicts);
+        verdicts["hypotheses"].as_array_mut().unwrap().pop();
+    };
+    assert_eq!(remarks(&fewer), [Remark::VerdictsDiffer]);
 }
 
 #[test]

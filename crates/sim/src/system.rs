@@ -87,6 +87,9 @@ pub trait Law: Any + Debug + Send + Sync {
     /// same model and their references have the same order.
     fn shares_batch(&self, other: &dyn Law) -> bool;
 
+    /// What is known of it about the long run.
+    fn known(&self) -> Known;
+
     /// Checks what only this law can check, and builds the agents of `assembly`, which share a batch.
     ///
     /// # Errors
@@ -127,6 +130,35 @@ pub struct Interface {
     pub pushed: bool,
     /// Whether it estimates parameters of its robot.
     pub estimates: bool,
+}
+
+/// What is known of a law about the long run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Known {
+    /// `forwardstep_check` has a file of its own for it.
+    Checked,
+    /// What its author says of it. It is reported as declared, never as shown.
+    Declared(Declaration),
+}
+
+/// What the author of a law says of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Declaration {
+    /// Where it is proved, or that it is not: a paper, a page, `no proof`.
+    pub source: String,
+    /// What happens in the long run.
+    pub promises: String,
+    /// What the proof asks for, one sentence each, and why it should be so.
+    pub claims: Vec<DeclaredClaim>,
+}
+
+/// One hypothesis that the author of a law answers for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeclaredClaim {
+    /// What is required.
+    pub requires: String,
+    /// Why it is so.
+    pub because: String,
 }
 
 /// Reference dynamics by what leads the agents.

@@ -99,8 +99,8 @@ impl About {
 
 /// The answers to all hypotheses of a report of this kind.
 pub fn answers(report: &Report, about: About) -> Vec<Answer> {
-    let found = report.hypotheses.iter().filter(|hypothesis| hypothesis.requires.contains(about.requires()));
-    found.map(|hypothesis| hypothesis.answer).collect()
+    let found = report.hypotheses.iter().filter(|hypothesis| hypothesis.requires().contains(about.requires()));
+    found.map(|hypothesis| hypothesis.answer()).collect()
 }
 
 /// The answer to the one hypothesis of this kind about a setup.

@@ -26,11 +26,9 @@ pub(crate) fn show(scenario: &Scenario, promise: &Promise, console: &mut Console
     console.line("");
     console.line(format_args!("{BOLD}{}{BOLD:#}: {}", report.theorem, report.promises));
     for hypothesis in &report.hypotheses {
-        let (style, words) = (style(hypothesis.answer), hypothesis.answer.words());
-        console.line(format_args!("  {style}{words}{style:#}: {}", hypothesis.requires));
-        if !hypothesis.because.is_empty() {
-            console.line(format_args!("    {DIM}{}{DIM:#}", hypothesis.because));
-        }
+        let (style, words) = (style(hypothesis.answer()), hypothesis.answer().words());
+        console.line(format_args!("  {style}{words}{style:#}: {}", hypothesis.requires()));
+        console.line(format_args!("    {DIM}{}{DIM:#}", hypothesis.because()));
     }
     match agreement {
         Ok(value) => console.line(format_args!("  predicted agreement: {}", list(value))),

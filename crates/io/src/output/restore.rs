@@ -142,7 +142,7 @@ impl SavedRun {
     /// What is not as it was at the time of the run, given the verdicts of today and the `version` that asks.
     pub fn remarks(&self, verdicts: &Report, version: &str) -> Vec<Remark> {
         let mut remarks = self.remarks.clone();
-        if Verdicts::of(verdicts) != self.summary.verdicts {
+        if !self.summary.verdicts.agree_with(&Verdicts::of(verdicts)) {
             remarks.push(Remark::VerdictsDiffer);
         }
         if version != self.summary.version {

@@ -4,11 +4,12 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use forwardstep_check::{Answer, Hypothesis, Report};
+use forwardstep_check::hypothesis::{GraphEvidence, LinkEvidence, Named, ReferenceEvidence, Subject};
+use forwardstep_check::{Hypothesis, Id, Report, Theorem};
 use forwardstep_core::Gain;
 use forwardstep_core::robot::PointMass;
 use forwardstep_io::output::{Goal, GoalOutcome, RunRecord};
-use forwardstep_sim::delay::Delay;
+use forwardstep_sim::delay::{Basis, Delay};
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::recording::{Column, Statistics};
 use forwardstep_sim::schedule::{Phase, Schedule};
@@ -155,23 +156,26 @@ pub fn outcome(setup: &Setup) -> Outcome {
 
 /// What a check might have said.
 pub fn verdicts() -> Report {
-    let hypothesis = |requires: &str, answer, because: &str| Hypothesis {
-        requires: requires.into(),
-        answer,
-        because: because.into(),
+    let hypothesis = |id, evidence| Hypothesis { id, subject: Subject::Setup, evidence };
+    let roots = vec![Named { index: 0, name: "arm-1".into() }];
+    let tree = GraphEvidence::Window { length_s: 3.0, worst_start_s: 1.0, roots, for_all_time: true };
+    let delays = LinkEvidence::Delays {
+        bound_s: 0.4,
+        unknown: Vec::new(),
+        end_s: 60.0,
+        basis: Basis::Rule,
+        holds_packets: false,
     };
+    let weights = LinkEvidence::Weights { low: 1.0, high: 2.0, until_s: Some(60.0), bounded_for_ever: false };
+    let filter = ReferenceEvidence::FilteredDerivative { filter_s: 0.05 };
     Report {
-        theorem: "Theorem 2".into(),
+        theorem: Theorem::Theorem2,
         promises: "All positions converge to one value and all velocities to zero, whatever the delays do.".into(),
         hypotheses: vec![
-            hypothesis(
-                "The graphs jointly contain a directed spanning tree",
-                Answer::Holds,
-                "In every window of 3 s their union has the root arm-1; the schedule is periodic.",
-            ),
-            hypothesis("Delays are bounded", Answer::Holds, "They never exceed 0.4 s."),
-            hypothesis("Weights are bounded away from zero", Answer::HoldsOnHorizon, "The least weight seen is 1."),
-            hypothesis("Delays are slowly varying", Answer::NotCovered, "The saw-tooth drops by 0.35 s every 5 s."),
+            hypothesis(Id::SpanningTree, tree.into()),
+            hypothesis(Id::BoundedDelays, delays.into()),
+            hypothesis(Id::BoundedWeights, weights.into()),
+            hypothesis(Id::MeasuredDerivative, filter.into()),
         ],
     }
 }

@@ -12,7 +12,7 @@ use forwardstep_core::reference::{Consensus, Position, polynomial};
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::setup::{Exchange, ReferenceKind, RobotSetup};
-use crate::system::{ActuatorLimits, Attachments, Interface, Law, ReferenceFamily, Robot};
+use crate::system::{ActuatorLimits, Attachments, Interface, Known, Law, ReferenceFamily, Robot};
 
 /// What a chain is made of; its true θ stands with the robot.
 #[derive(Clone, Debug)]
@@ -187,6 +187,10 @@ impl Law for ChainLaw {
 
     fn shares_batch(&self, _: &dyn Law) -> bool {
         false
+    }
+
+    fn known(&self) -> Known {
+        Known::Checked
     }
 
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {

@@ -8,7 +8,7 @@ use forwardstep_core::{Gain, Lanes, LengthError};
 
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::setup::{AgentSetup, Exchange, RobotSetup};
-use crate::system::{ActuatorLimits, Attachments, Interface, Law, ReferenceFamily, Robot};
+use crate::system::{ActuatorLimits, Attachments, Interface, Known as Knowledge, Law, ReferenceFamily, Robot};
 
 /// A robot model whose kernels work on one robot or on eight at once.
 pub trait RobotModel: Robot + Clone {
@@ -242,6 +242,10 @@ impl Law for Adaptive {
         other.is::<Adaptive>()
     }
 
+    fn known(&self) -> Knowledge {
+        Knowledge::Checked
+    }
+
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
         block(assembly)
     }
@@ -262,6 +266,10 @@ impl Law for Known {
 
     fn shares_batch(&self, other: &dyn Law) -> bool {
         other.is::<Known>()
+    }
+
+    fn known(&self) -> Knowledge {
+        Knowledge::Checked
     }
 
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {

@@ -7,7 +7,7 @@ use forwardstep_core::robot::PointMass;
 
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::setup::{Exchange, ReferenceKind, RobotSetup};
-use crate::system::{Interface, Law, ReferenceFamily};
+use crate::system::{Interface, Known, Law, ReferenceFamily};
 
 /// (a8) for a point mass, without velocity; see [`PositionOnly`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,6 +47,10 @@ impl Law for PositionOnlyLaw {
 
     fn shares_batch(&self, _: &dyn Law) -> bool {
         false
+    }
+
+    fn known(&self) -> Known {
+        Known::Checked
     }
 
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {

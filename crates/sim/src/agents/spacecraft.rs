@@ -7,7 +7,7 @@ use forwardstep_core::plant::{Spacecraft, Wheels};
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::setup::{Exchange, RobotSetup};
-use crate::system::{ActuatorLimits, Attachments, Interface, Law, ReferenceFamily, Robot};
+use crate::system::{ActuatorLimits, Attachments, Interface, Known, Law, ReferenceFamily, Robot};
 
 /// A spacecraft. Its axes are the entries of a quaternion; the rest of its start holds the momenta of the wheels, N m s.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,6 +84,10 @@ impl Law for AttitudeLaw {
 
     fn shares_batch(&self, _: &dyn Law) -> bool {
         false
+    }
+
+    fn known(&self) -> Known {
+        Known::Checked
     }
 
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {

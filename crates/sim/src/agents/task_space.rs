@@ -10,7 +10,7 @@ use forwardstep_core::{Gain, ResolvedGain};
 
 use crate::closed_loop::{Assembly, Block, SetupError, tracking_law};
 use crate::setup::{Exchange, RobotSetup};
-use crate::system::{Interface, Law, ReferenceFamily, Robot};
+use crate::system::{Interface, Known, Law, ReferenceFamily, Robot};
 
 /// (80)–(82) for the tip of a robot; see [`forwardstep_core::controller::TaskSpace`].
 #[derive(Clone, Debug, PartialEq)]
@@ -111,6 +111,10 @@ impl Law for TaskSpaceLaw {
 
     fn shares_batch(&self, _: &dyn Law) -> bool {
         false
+    }
+
+    fn known(&self) -> Known {
+        Known::Checked
     }
 
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {

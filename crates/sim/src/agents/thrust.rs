@@ -7,7 +7,7 @@ use super::rotorcraft::{self, RotorcraftModel};
 use super::vehicle::{self, VehicleModel};
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::setup::{Exchange, RobotSetup};
-use crate::system::{Interface, Law, ReferenceFamily};
+use crate::system::{Interface, Known, Law, ReferenceFamily};
 
 /// The control of a vehicle or a rotorcraft; its roots are those of its agent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,6 +89,10 @@ impl Law for ThrustLaw {
 
     fn shares_batch(&self, _: &dyn Law) -> bool {
         false
+    }
+
+    fn known(&self) -> Known {
+        Known::Checked
     }
 
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {

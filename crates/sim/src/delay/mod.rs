@@ -6,6 +6,7 @@
 //! Links that carry packets hold the newest message that has arrived until a newer one does ([`packets`]): a saw-tooth of
 //! slope one, drawn for every edge from a stream of its own. So are the values of a [`RandomHold`].
 
+mod known;
 pub mod packets;
 mod random_hold;
 
@@ -14,6 +15,7 @@ use std::sync::Arc;
 use forwardstep_core::Scalar;
 
 use crate::formula::{BoundedFormula, Interval};
+pub use known::{Basis, Known, Unknown};
 pub use packets::{Loss, Packet, PacketLink, Trace};
 pub use random_hold::RandomHold;
 
@@ -148,7 +150,10 @@ impl Delay {
             Delay::Formula(formula) => Some(formula.until_s()),
             Delay::RandomHold(hold) => Some(hold.until_s()),
             Delay::Packets(trace) => Some(trace.until_s()),
-            _ => None,
+            Delay::Constant { .. }
+            | Delay::Sinusoid { .. }
+            | Delay::PiecewiseConstant { .. }
+            | Delay::SawTooth { .. } => None,
         }
     }
 
@@ -286,7 +291,11 @@ impl Delay {
         match self {
             Delay::Packets(_) => false,
             Delay::Formula(formula) => formula.formula().is_constant(),
-            _ => self.min_s() == self.max_s(),
+            Delay::Constant { .. }
+            | Delay::Sinusoid { .. }
+            | Delay::PiecewiseConstant { .. }
+            | Delay::SawTooth { .. }
+            | Delay::RandomHold(_) => self.min_s() == self.max_s(),
         }
     }
 

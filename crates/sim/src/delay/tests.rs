@@ -76,3 +76,36 @@ fn pieces_follow_one_another_without_gaps() {
         }
     }
 }
+
+#[test]
+fn what_is_known_beyond_the_run_says_what_it_rests_on() {
+    let known = |delay: Delay| {
+        let known = delay.known();
+        (known.bound_s, known.unknown, known.basis, known.holds_packets)
+    };
+    let rule = |bound_s| (bound_s, None, Basis::Rule, false);
+    assert_eq!(known(Delay::Constant { s: 0.25 }), rule(0.25));
+    assert_eq!(known(Delay::Sinusoid { mean_s: 0.5, amplitude_s: -0.25, period_s: 1.0, phase_rad: 0.0 }), rule(0.75));
+    assert_eq!(known(Delay::SawTooth { min_s: 0.1, max_s: 0.4, period_s: 1.0, offset_s: 0.0 }), rule(0.4));
+    let steps = Delay::PiecewiseConstant { times_s: vec![0.0, 0.3], values_s: vec![0.1, 0.2], period_s: None };
+    assert_eq!(known(steps), rule(0.2));
+    // By what may be drawn, not by what was drawn.
+    let hold = RandomHold::draw(1, (0, 1), [0.05, 0.4], [0.1, 0.8], 1.0).unwrap();
+    assert_eq!(known(Delay::RandomHold(hold.into())), rule(0.4));
+    let link = |most_in_a_row| PacketLink {
+        every_s: 0.25,
+        first_s: 0.0,
+        latency_s: 0.5,
+        jitter_s: 0.0,
+        loss: Loss::Random { probability: 0.5 },
+        most_in_a_row,
+        seed: 1,
+    };
+    let held = |most_in_a_row| Delay::Packets(link(most_in_a_row).trace((0, 1), 9.0).unwrap().into());
+    assert_eq!(known(held(Some(2))), (1.25, None, Basis::Rule, true));
+    let (bound_s, unknown, basis, packets) = known(held(None));
+    assert_eq!((unknown, basis, packets), (Some(Unknown::PacketsInARow), Basis::Numbers, true));
+    assert_eq!(bound_s, held(None).max_s());
+    let log = Trace::new(vec![Packet { send_s: 0.0, delay_s: Some(0.5) }], 9.0).unwrap();
+    assert_eq!(known(Delay::Packets(log.into())).1, Some(Unknown::LaterPackets));
+}

@@ -86,14 +86,14 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                     @if report.hypotheses.is_empty() { p.note { "No hypotheses were checked." } }
                     ul.hypotheses {
                         @for hypothesis in &report.hypotheses {
-                            @let (class, sign) = answer_style(hypothesis.answer);
+                            @let (class, sign) = answer_style(hypothesis.answer());
                             li class=(class) {
                                 span.sign aria-hidden="true" { (sign) }
                                 div {
-                                    p { strong { (hypothesis.requires) } " " em { (hypothesis.answer.words()) } }
+                                    p { strong { (hypothesis.requires()) } " " em { (hypothesis.answer().words()) } }
                                     p.because {
-                                        (hypothesis.because)
-                                        @if hypothesis.answer == Answer::Watched && record.outcome.ending == Ending::Completed {
+                                        (hypothesis.because())
+                                        @if hypothesis.answer() == Answer::Watched && record.outcome.ending == Ending::Completed {
                                             "; this run reached its horizon"
                                         }
                                     }

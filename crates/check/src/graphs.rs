@@ -1,0 +1,94 @@
+//! What is found of graphs and their schedule.
+
+use forwardstep_sim::graph::Edge;
+use forwardstep_sim::schedule::{Phase, Schedule, Window};
+use forwardstep_sim::{ReferenceKind, Setup};
+
+use crate::hypothesis::{GraphEvidence, Hypothesis, Id, Named};
+use crate::links::varying_weights;
+
+/// The smallest uniform window, or the groups that cut the network.
+pub(crate) fn spanning_tree(setup: &Setup) -> Hypothesis {
+    let network = &setup.network;
+    let evidence = match network.schedule.window(network.agents, setup.time.end_s) {
+        Window::Uniform { length_s, worst_start_s, roots, for_all_time } => {
+            GraphEvidence::Window { length_s, worst_start_s, roots: Named::all(setup, &roots), for_all_time }
+        }
+        Window::Missing { start_s, closed_groups } => GraphEvidence::Cut {
+            start_s,
+            until_s: match &network.schedule {
+                Schedule::Random { .. } => Some(setup.time.end_s),
+                Schedule::Fixed(_) | Schedule::Periodic(_) | Schedule::Once(_) => None,
+            },
+            closed_groups: closed_groups.iter().map(|group| Named::all(setup, group)).collect(),
+        },
+    };
+    Hypothesis::new(Id::SpanningTree, evidence)
+}
+
+/// A spanning tree whose root is the leader: since the leader hears nobody, any tree has it as its root.
+pub(crate) fn leader_reaches_all(setup: &Setup) -> Hypothesis {
+    let network = &setup.network;
+    let evidence = match network.schedule.window(network.agents, setup.time.end_s) {
+        Window::Uniform { length_s, for_all_time, .. } => GraphEvidence::Reached { length_s, for_all_time },
+        Window::Missing { start_s, closed_groups } => {
+            let leader = setup.agents.len();
+            let cut = closed_groups.iter().find(|group| !group.contains(&leader));
+            let closed_group = cut.map_or_else(Vec::new, |group| Named::all(setup, group));
+            GraphEvidence::Unreached { start_s, closed_group }
+        }
+    };
+    Hypothesis::new(Id::LeaderReachesAll, evidence)
+}
+
+/// The shortest time for which a graph stays.
+pub(crate) fn dwell_time(setup: &Setup) -> Hypothesis {
+    let shortest = |phases: &[Phase]| GraphEvidence::ShortestPhase {
+        dwell_s: phases.iter().map(|phase| phase.dwell_s).fold(f64::INFINITY, f64::min),
+    };
+    let evidence = match &setup.network.schedule {
+        Schedule::Fixed(_) => GraphEvidence::NeverSwitches,
+        Schedule::Periodic(phases) => shortest(phases),
+        Schedule::Once(phases) => match phases.split_last() {
+            None | Some((_, [])) => GraphEvidence::NeverSwitches,
+            Some((_, before)) => shortest(before),
+        },
+        Schedule::Random { dwell_s: [low, _], .. } => GraphEvidence::DrawnPhases { least_s: *low },
+    };
+    Hypothesis::new(Id::DwellTime, evidence)
+}
+
+/// Whether one graph stays for ever, as the reference dynamics that contain accelerations need.
+pub(crate) fn fixed_graph(setup: &Setup) -> Hypothesis {
+    let schedule = &setup.network.schedule;
+    let evidence = if let ReferenceKind::Following(_) = setup.reference {
+        match schedule {
+            Schedule::Fixed(_) => GraphEvidence::Stays,
+            Schedule::Periodic(_) | Schedule::Once(_) | Schedule::Random { .. } => GraphEvidence::SwitchesUnderLeader,
+        }
+    } else {
+        match schedule.graphs().len() {
+            1 if varying_weights(setup).next().is_some() => GraphEvidence::VaryingWeight,
+            1 => GraphEvidence::Stays,
+            graphs => GraphEvidence::Switches { graphs, exchange: setup.exchange },
+        }
+    };
+    Hypothesis::new(Id::FixedGraph, evidence)
+}
+
+/// The edges among agents, without those from the leader.
+pub(crate) fn mutual_weights(setup: &Setup) -> Hypothesis {
+    let agents = setup.agents.len();
+    let among = |edge: &&Edge| edge.from < agents && edge.to < agents;
+    let one_way = setup.network.schedule.graphs().into_iter().find_map(|graph| {
+        let returned = |edge: &Edge| {
+            graph.iter().any(|back| back.from == edge.to && back.to == edge.from && back.weight == edge.weight)
+        };
+        graph.iter().filter(among).find(|edge| !returned(edge))
+    });
+    let evidence = one_way.map_or(GraphEvidence::Mutual, |edge| GraphEvidence::OneWay {
+        from: Named::of(setup, edge.from),
+        to: Named::of(setup, edge.to),
+    });
+    Hypothesis::new(Id::MutualWeights, evidence)
+}

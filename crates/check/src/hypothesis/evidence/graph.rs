@@ -1,0 +1,119 @@
+//! Evidence of graphs and their schedule.
+
+use forwardstep_sim::Exchange;
+
+use super::holds;
+use crate::hypothesis::{Answer, Named, Rigour};
+
+/// What was found of the graphs.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GraphEvidence {
+    /// The union over every window this long has a directed spanning tree.
+    Window {
+        /// The smallest such length, s; zero when one graph stays for ever.
+        length_s: f64,
+        /// The switching time from which all of it is needed, s.
+        worst_start_s: f64,
+        /// The roots of the union over that window.
+        roots: Vec<Named>,
+        /// Whether that is so for all time, or shown up to the end of the run only.
+        for_all_time: bool,
+    },
+    /// From some time on no union has a directed spanning tree.
+    Cut {
+        /// From then on, s.
+        start_s: f64,
+        /// Until then, s, where a schedule drawn at random may bring the edge later; `None` for ever.
+        until_s: Option<f64>,
+        /// The groups that hear nobody outside themselves.
+        closed_groups: Vec<Vec<Named>>,
+    },
+    /// The leader reaches everybody within every window this long.
+    Reached {
+        /// In s; zero when one graph stays for ever.
+        length_s: f64,
+        /// As in [`GraphEvidence::Window`].
+        for_all_time: bool,
+    },
+    /// From some time on nothing of the leader reaches these.
+    Unreached {
+        /// From then on, s.
+        start_s: f64,
+        /// They hear nobody outside themselves.
+        closed_group: Vec<Named>,
+    },
+    /// One graph stays for ever, so it never switches.
+    NeverSwitches,
+    /// The shortest of the phases, but for a last one that stays.
+    ShortestPhase {
+        /// In s.
+        dwell_s: f64,
+    },
+    /// Phases are drawn, and last at least this long.
+    DrawnPhases {
+        /// In s.
+        least_s: f64,
+    },
+    /// One graph stays for ever.
+    Stays,
+    /// One graph stays for ever, but a weight changes.
+    VaryingWeight,
+    /// Graphs take turns, under reference dynamics for a fixed one.
+    Switches {
+        /// How many graphs.
+        graphs: usize,
+        /// What is exchanged.
+        exchange: Exchange,
+    },
+    /// A leader is followed over a graph that switches.
+    SwitchesUnderLeader,
+    /// Every edge among agents leads both ways with the same weight.
+    Mutual,
+    /// An edge that does not.
+    OneWay {
+        /// Who is heard.
+        from: Named,
+        /// Who hears.
+        to: Named,
+    },
+}
+
+impl GraphEvidence {
+    pub(super) fn answer(&self) -> Answer {
+        match self {
+            GraphEvidence::Window { for_all_time, .. } | GraphEvidence::Reached { for_all_time, .. } => {
+                holds(*for_all_time)
+            }
+            GraphEvidence::Cut { .. } | GraphEvidence::Unreached { .. } => Answer::Violated,
+            GraphEvidence::NeverSwitches
+            | GraphEvidence::ShortestPhase { .. }
+            | GraphEvidence::DrawnPhases { .. }
+            | GraphEvidence::Stays
+            | GraphEvidence::Mutual => Answer::Holds,
+            GraphEvidence::VaryingWeight
+            | GraphEvidence::Switches { .. }
+            | GraphEvidence::SwitchesUnderLeader
+            | GraphEvidence::OneWay { .. } => Answer::NotCovered,
+        }
+    }
+
+    pub(super) fn rigour(&self) -> Rigour {
+        match self {
+            GraphEvidence::Window { for_all_time, .. } | GraphEvidence::Reached { for_all_time, .. } => {
+                if *for_all_time { Rigour::Exact } else { Rigour::Given }
+            }
+            GraphEvidence::Cut { until_s: Some(_), .. } => Rigour::Given,
+            GraphEvidence::Cut { until_s: None, .. }
+            | GraphEvidence::Unreached { .. }
+            | GraphEvidence::NeverSwitches
+            | GraphEvidence::ShortestPhase { .. }
+            | GraphEvidence::DrawnPhases { .. }
+            | GraphEvidence::Stays
+            | GraphEvidence::VaryingWeight
+            | GraphEvidence::Switches { .. }
+            | GraphEvidence::SwitchesUnderLeader
+            | GraphEvidence::Mutual
+            | GraphEvidence::OneWay { .. } => Rigour::Exact,
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! Evidence of a kind of system and its law.
+
+use forwardstep_core::robot::tree::Uncertain;
+use forwardstep_sim::ThrustKind;
+
+use crate::hypothesis::{Answer, Named, Rigour};
+
+/// What was found of systems and their laws.
+#[derive(Clone, Debug, PartialEq)]
+pub enum KindEvidence {
+    /// Positive numbers, refused otherwise when they were read.
+    PositiveNumbers,
+    /// Positive numbers; a mass that is not adapted is the true one.
+    PositiveNumbersTrueMass,
+    /// Matrices with a Cholesky factor and positive numbers, refused otherwise when they were read.
+    PositiveMatrices,
+    /// What the theorems say of agents of different kinds: where each of them is treated.
+    Mixture(Vec<&'static str>),
+    /// What the author of a law says of it.
+    Declared {
+        /// What is required.
+        requires: String,
+        /// Why it should be so.
+        because: String,
+    },
+    /// The law has the mass of the plant.
+    MassOfPlant,
+    /// An estimate that is neither adapted nor true.
+    MassNotAdapted {
+        /// Whose.
+        agent: Named,
+    },
+    /// A run ends where a thrust falls to its floor.
+    ThrustFloor {
+        /// The lowest of the floors, N.
+        least_n: f64,
+    },
+    /// A saturation keeps a thrust above a floor.
+    ThrustKept {
+        /// Whose.
+        agent: Named,
+        /// The floor, N.
+        floor_n: f64,
+    },
+    /// Torques turn a body into the angular velocity asked for.
+    AngularRate {
+        /// Whose is the slowest.
+        agent: Named,
+        /// Its bandwidth, 1/s.
+        bandwidth_per_s: f64,
+        /// The law, which tells whether the rate is foreseen.
+        design: ThrustKind,
+    },
+    /// Rotors have limits.
+    Rotors {
+        /// Whose.
+        agent: Named,
+        /// Of the thrust of each, N.
+        thrust_n: [f64; 2],
+    },
+    /// The factor of the input is a constant that is not zero.
+    ConstantFactor,
+    /// The factor of the input is a constant below its floor.
+    FactorBelowFloor {
+        /// Whose.
+        agent: Named,
+        /// Its value.
+        value: f64,
+        /// Its floor.
+        floor: f64,
+    },
+    /// A run ends where the factor of the input comes close to zero.
+    FactorFloor {
+        /// Whose.
+        agent: Named,
+        /// How close.
+        floor: f64,
+    },
+    /// A run that is completed keeps states, and with them regressors, bounded.
+    BoundedStates {
+        /// One of those that need it.
+        agent: Named,
+    },
+    /// det Ĵ at the start; a run ends where it falls below a part of that.
+    Determinant {
+        /// Its value.
+        start: f64,
+        /// The part.
+        floor: f64,
+    },
+    /// det Ĵ is zero, or no number, at the start.
+    Singular {
+        /// Its value.
+        start: f64,
+    },
+    /// The law is for another robot.
+    NoTip,
+    /// None of the lengths that are uncertain enters the dynamics.
+    LengthsOutsideRegressor(Uncertain),
+    /// Lengths enter the dynamics, but none is uncertain.
+    LengthsKnown,
+    /// Lengths that the law is said not to know, by name, enter its regressor.
+    LengthsInRegressor(Vec<String>),
+    /// Matrices with a Cholesky factor and positive numbers; lengths that are not adapted are the true ones.
+    PositiveMatricesTrueLengths,
+    /// Lengths that are neither adapted nor true.
+    LengthsNotAdapted {
+        /// Whose.
+        agent: Named,
+    },
+    /// The true lengths lie within the bounds.
+    LengthsInside,
+    /// One does not.
+    LengthOutside {
+        /// Its name, if it has one.
+        name: Option<String>,
+        /// Its value, m.
+        value: f64,
+    },
+    /// h_I by the start, N m s.
+    Momentum([f64; 3]),
+    /// The law is for another plant.
+    NoSpacecraft,
+}
+
+impl KindEvidence {
+    pub(super) fn answer(&self) -> Answer {
+        match self {
+            KindEvidence::PositiveNumbers
+            | KindEvidence::PositiveNumbersTrueMass
+            | KindEvidence::PositiveMatrices
+            | KindEvidence::MassOfPlant
+            | KindEvidence::ConstantFactor
+            | KindEvidence::LengthsOutsideRegressor(_)
+            | KindEvidence::LengthsKnown
+            | KindEvidence::PositiveMatricesTrueLengths
+            | KindEvidence::LengthsInside
+            | KindEvidence::Momentum(_) => Answer::Holds,
+            KindEvidence::ThrustFloor { .. }
+            | KindEvidence::FactorFloor { .. }
+            | KindEvidence::BoundedStates { .. }
+            | KindEvidence::Determinant { .. } => Answer::Watched,
+            KindEvidence::Mixture(_)
+            | KindEvidence::Declared { .. }
+            | KindEvidence::MassNotAdapted { .. }
+            | KindEvidence::ThrustKept { .. }
+            | KindEvidence::AngularRate { .. }
+            | KindEvidence::Rotors { .. }
+            | KindEvidence::NoTip
+            | KindEvidence::LengthOutside { .. }
+            | KindEvidence::LengthsInRegressor(_)
+            | KindEvidence::LengthsNotAdapted { .. }
+            | KindEvidence::NoSpacecraft => Answer::NotCovered,
+            KindEvidence::Singular { .. } | KindEvidence::FactorBelowFloor { .. } => Answer::Violated,
+        }
+    }
+
+    pub(super) fn rigour(&self) -> Rigour {
+        match self {
+            KindEvidence::Declared { .. } => Rigour::Declared,
+            KindEvidence::PositiveNumbers
+            | KindEvidence::PositiveNumbersTrueMass
+            | KindEvidence::Mixture(_)
+            | KindEvidence::MassOfPlant
+            | KindEvidence::MassNotAdapted { .. }
+            | KindEvidence::ThrustKept { .. }
+            | KindEvidence::AngularRate { .. }
+            | KindEvidence::Rotors { .. }
+            | KindEvidence::ConstantFactor
+            | KindEvidence::NoTip
+            | KindEvidence::FactorBelowFloor { .. }
+            | KindEvidence::LengthsOutsideRegressor(_)
+            | KindEvidence::LengthsKnown
+            | KindEvidence::LengthsInRegressor(_)
+            | KindEvidence::LengthsNotAdapted { .. }
+            | KindEvidence::LengthsInside
+            | KindEvidence::LengthOutside { .. }
+            | KindEvidence::NoSpacecraft => Rigour::Exact,
+            KindEvidence::PositiveMatrices
+            | KindEvidence::PositiveMatricesTrueLengths
+            | KindEvidence::Singular { .. }
+            | KindEvidence::Momentum(_) => Rigour::Computed,
+            KindEvidence::ThrustFloor { .. }
+            | KindEvidence::FactorFloor { .. }
+            | KindEvidence::BoundedStates { .. }
+            | KindEvidence::Determinant { .. } => Rigour::Watched,
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! Evidence of delays, weights and couplings.
+
+use forwardstep_sim::delay::{Basis, Unknown};
+
+use super::holds;
+use crate::hypothesis::{Answer, Rigour};
+
+/// What was found of the links.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LinkEvidence {
+    /// How long delays can be.
+    Delays {
+        /// None is longer, s.
+        bound_s: f64,
+        /// Why that, or their uniform continuity, is not known for ever; empty when it is.
+        unknown: Vec<Unknown>,
+        /// The end of the run, s.
+        end_s: f64,
+        /// What the bound rests on, the weakest if there are several.
+        basis: Basis,
+        /// Whether some links hold packets, whose delay grows like t between arrivals.
+        holds_packets: bool,
+    },
+    /// No link has a delay.
+    Prompt,
+    /// Some have, where there must be none.
+    Late {
+        /// The longest, s.
+        bound_s: f64,
+    },
+    /// Where weights stay.
+    Weights {
+        /// None is smaller.
+        low: f64,
+        /// None is larger.
+        high: f64,
+        /// Until when that is shown, s; `None` for ever.
+        until_s: Option<f64>,
+        /// Whether they are bounded for ever, so that only their uniform continuity is not known.
+        bounded_for_ever: bool,
+    },
+    /// A nonlinear coupling out of the list, all of which are odd, continuous and in the sector.
+    Coupling {
+        /// The limit or scale, in the units of the axes.
+        size: f64,
+    },
+}
+
+impl LinkEvidence {
+    pub(super) fn answer(&self) -> Answer {
+        match self {
+            LinkEvidence::Delays { unknown, .. } => holds(unknown.is_empty()),
+            LinkEvidence::Weights { until_s, .. } => holds(until_s.is_none()),
+            LinkEvidence::Prompt | LinkEvidence::Coupling { .. } => Answer::Holds,
+            LinkEvidence::Late { .. } => Answer::NotCovered,
+        }
+    }
+
+    pub(super) fn rigour(&self) -> Rigour {
+        match self {
+            LinkEvidence::Delays { basis, .. } => match basis {
+                Basis::Rule => Rigour::Exact,
+                Basis::Enclosure => Rigour::Enclosed,
+                Basis::Numbers => Rigour::Given,
+            },
+            LinkEvidence::Weights { .. } => Rigour::Enclosed,
+            LinkEvidence::Prompt | LinkEvidence::Late { .. } | LinkEvidence::Coupling { .. } => Rigour::Exact,
+        }
+    }
+}

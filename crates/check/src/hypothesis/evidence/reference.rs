@@ -1,0 +1,59 @@
+//! Evidence of reference dynamics.
+
+use crate::hypothesis::{Answer, Named, Rigour};
+
+/// What was found of the reference dynamics.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ReferenceEvidence {
+    /// The polynomials are given by their roots −κ.
+    Roots {
+        /// The smallest κ, 1/s.
+        smallest_per_s: f64,
+    },
+    /// All are of this order.
+    Order(usize),
+    /// Two are not of the same order.
+    Orders([(Named, usize); 2]),
+    /// κ₀ is common wherever agents hear each other in a cycle.
+    FirstRootCommon,
+    /// κ₀ differs in a cycle, over a fixed graph with constant delays and weights.
+    FirstRootsOverConstants,
+    /// Two agents in a cycle, and their κ₀, 1/s.
+    FirstRoots([(Named, f64); 2]),
+    /// A derivative is estimated by a filter.
+    FilteredDerivative {
+        /// Its time constant, s.
+        filter_s: f64,
+    },
+    /// λ of Remark 4.
+    Manipulability {
+        /// The largest.
+        largest: f64,
+    },
+}
+
+impl ReferenceEvidence {
+    pub(super) fn answer(&self) -> Answer {
+        match self {
+            ReferenceEvidence::Roots { smallest_per_s } => {
+                if *smallest_per_s > 0.0 {
+                    Answer::Holds
+                } else {
+                    Answer::Violated
+                }
+            }
+            ReferenceEvidence::Order(_)
+            | ReferenceEvidence::FirstRootCommon
+            | ReferenceEvidence::FirstRootsOverConstants
+            | ReferenceEvidence::Manipulability { .. } => Answer::Holds,
+            ReferenceEvidence::Orders(_)
+            | ReferenceEvidence::FirstRoots(_)
+            | ReferenceEvidence::FilteredDerivative { .. } => Answer::NotCovered,
+        }
+    }
+
+    /// All of it is compared as it was given.
+    pub(super) fn rigour(&self) -> Rigour {
+        Rigour::Exact
+    }
+}

@@ -1,0 +1,96 @@
+//! Evidence of what surrounds a law: gains, pushes, limits, sampling.
+
+use crate::hypothesis::{Answer, Named, Rigour};
+use crate::sampled::{SampledAdaptation, SampledDamping};
+
+/// What was found of the loop around a law.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LoopEvidence {
+    /// K and Γ have a Cholesky factor.
+    Gains {
+        /// To how many agents the parameters are known; the others adapt.
+        known: usize,
+        /// All agents.
+        agents: usize,
+    },
+    /// What is pushed, and until when.
+    Pushes {
+        /// Everybody whom something acts on.
+        pushed: Vec<Named>,
+        /// Whom a force or a torque acts on for ever.
+        torques_for_ever: Vec<Named>,
+        /// Whom a hand never lets go.
+        hands_for_ever: Vec<Named>,
+        /// When the last push ends, s; infinite where one does not.
+        last_end_s: f64,
+    },
+    /// What keeps a torque from being applied as asked for.
+    Applied {
+        /// Actuators that do.
+        limited: Vec<Limited>,
+        /// Agents with enforced limits.
+        enforced: Vec<Named>,
+    },
+    /// The controllers sample.
+    Sampling {
+        /// At this rate, Hz.
+        sample_hz: f64,
+        /// Torques come so much later, s.
+        computation_delay_s: f64,
+        /// Whether velocities come from a filter that lags.
+        filtered: bool,
+        /// How far one held sample of the damping goes, and for whom.
+        damping: Option<(Named, SampledDamping)>,
+        /// How far one held sample of damping and adaptation goes, and for whom.
+        adaptation: Option<(Named, SampledAdaptation)>,
+    },
+    /// How measurements are inexact.
+    Measurements(Vec<Inexact>),
+}
+
+/// What an actuator does not do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Limited {
+    /// Give any torque.
+    Torque,
+    /// Change it at any rate.
+    TorqueRate,
+    /// Resolve it.
+    TorqueQuantum,
+}
+
+/// What makes a measurement inexact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Inexact {
+    /// Noise.
+    Noise,
+    /// Quantisation.
+    Quantum,
+    /// Velocities from filtered differences.
+    Filter,
+}
+
+impl LoopEvidence {
+    pub(super) fn answer(&self) -> Answer {
+        let unless = |spoiled: bool| if spoiled { Answer::NotCovered } else { Answer::Holds };
+        match self {
+            LoopEvidence::Gains { .. } => Answer::Holds,
+            LoopEvidence::Pushes { torques_for_ever, hands_for_ever, .. } => {
+                unless(!torques_for_ever.is_empty() || !hands_for_ever.is_empty())
+            }
+            LoopEvidence::Applied { limited, enforced } => unless(!limited.is_empty() || !enforced.is_empty()),
+            LoopEvidence::Sampling { .. } => Answer::NotCovered,
+            LoopEvidence::Measurements(inexact) => unless(!inexact.is_empty()),
+        }
+    }
+
+    pub(super) fn rigour(&self) -> Rigour {
+        match self {
+            LoopEvidence::Gains { .. } => Rigour::Computed,
+            LoopEvidence::Pushes { .. }
+            | LoopEvidence::Applied { .. }
+            | LoopEvidence::Sampling { .. }
+            | LoopEvidence::Measurements(_) => Rigour::Exact,
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! A hypothesis of a theorem: which, of what, and the evidence for or against it.
+//!
+//! Nothing here is free text. The answer and how rigorous it is follow from the evidence, by `evidence`, and so do the
+//! sentences, by `words`: an answer cannot contradict its reason.
+
+mod evidence;
+mod id;
+mod words;
+
+use forwardstep_sim::Setup;
+use forwardstep_sim::leader::FollowingDesign;
+
+pub use evidence::{
+    Bounded, Evidence, FollowingEvidence, GraphEvidence, Inexact, KindEvidence, Limited, LinkEvidence, LoopEvidence,
+    MotionEvidence, ReferenceEvidence,
+};
+pub use id::Id;
+
+/// One hypothesis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hypothesis {
+    /// Which.
+    pub id: Id,
+    /// What it is required of.
+    pub subject: Subject,
+    /// What was found.
+    pub evidence: Evidence,
+}
+
+/// What a hypothesis is required of.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Subject {
+    /// The setup as a whole.
+    Setup,
+    /// One agent.
+    Agent(Named),
+    /// The targets of some agents with their derivatives.
+    Targets {
+        /// The agents.
+        agents: Vec<Named>,
+        /// Up to which derivative, four at most.
+        derivatives: usize,
+    },
+    /// The derivatives of the offsets of some agents. A formation may travel: its offsets themselves do not count.
+    Offsets {
+        /// The agents.
+        agents: Vec<Named>,
+        /// Up to which derivative, four at most.
+        derivatives: usize,
+    },
+    /// What drives the leader away from those who follow it by this design.
+    Drive(FollowingDesign),
+}
+
+/// An agent, or the leader, by index and name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Named {
+    /// Index of the vertex in the network.
+    pub index: usize,
+    /// Its name.
+    pub name: String,
+}
+
+impl Named {
+    pub(crate) fn of(setup: &Setup, index: usize) -> Named {
+        Named { index, name: setup.vertex_name(index).to_owned() }
+    }
+
+    pub(crate) fn all(setup: &Setup, indices: &[usize]) -> Vec<Named> {
+        indices.iter().map(|index| Named::of(setup, *index)).collect()
+    }
+}
+
+/// The answers, from best to worst.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Answer {
+    /// For all time.
+    Holds,
+    /// Only shown on the horizon of the run.
+    HoldsOnHorizon,
+    /// Only a run can show it: one in which it fails stops there.
+    Watched,
+    /// The paper does not speak about this case.
+    NotCovered,
+    /// It fails, and the evidence is a witness.
+    Violated,
+}
+
+impl Answer {
+    /// The words used in tables: `holds`, `holds on [0, end]`, `watched during the run`,
+    /// `not covered by the paper`, `violated`.
+    pub fn words(self) -> &'static str {
+        match self {
+            Answer::Holds => "holds",
+            Answer::HoldsOnHorizon => "holds on [0, end]",
+            Answer::Watched => "watched during the run",
+            Answer::NotCovered => "not covered by the paper",
+            Answer::Violated => "violated",
+        }
+    }
+}
+
+/// How the evidence was come by, from firmest to weakest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Rigour {
+    /// By counting and comparing what the setup says, or by construction: nothing was rounded.
+    Exact,
+    /// By interval arithmetic.
+    Enclosed,
+    /// From numbers that were drawn or logged, up to the end of the run.
+    Given,
+    /// In floating point, without a bound on the rounding.
+    Computed,
+    /// By looking at finitely many points.
+    Sampled,
+    /// By the word of the user.
+    Declared,
+    /// By the run itself.
+    Watched,
+}
+
+impl Rigour {
+    /// One word, as in `summary.json`.
+    pub fn word(self) -> &'static str {
+        match self {
+            Rigour::Exact => "exact",
+            Rigour::Enclosed => "enclosed",
+            Rigour::Given => "given",
+            Rigour::Computed => "computed",
+            Rigour::Sampled => "sampled",
+            Rigour::Declared => "declared",
+            Rigour::Watched => "watched",
+        }
+    }
+}
+
+impl Hypothesis {
+    /// A hypothesis about the setup as a whole.
+    pub(crate) fn new(id: Id, evidence: impl Into<Evidence>) -> Hypothesis {
+        Hypothesis::about(id, Subject::Setup, evidence)
+    }
+
+    pub(crate) fn about(id: Id, subject: Subject, evidence: impl Into<Evidence>) -> Hypothesis {
+        Hypothesis { id, subject, evidence: evidence.into() }
+    }
+
+    /// What was found.
+    pub fn answer(&self) -> Answer {
+        self.evidence.answer()
+    }
+
+    /// How it was found.
+    pub fn rigour(&self) -> Rigour {
+        self.evidence.rigour()
+    }
+
+    /// What is required, in words.
+    pub fn requires(&self) -> String {
+        words::requires(self.id, &self.subject)
+    }
+
+    /// The certificate or the witness in words: the smallest window and its root, the unreachable agent, …
+    pub fn because(&self) -> String {
+        words::because(&self.evidence)
+    }
+}

@@ -1,0 +1,71 @@
+//! Graphs and their schedule.
+
+use forwardstep_sim::Exchange;
+
+use super::names;
+use super::numbers::seconds;
+use crate::hypothesis::{GraphEvidence, Named};
+
+/// Closed groups that are named.
+const GROUPS: usize = 3;
+
+pub(super) fn words(evidence: &GraphEvidence) -> String {
+    match evidence {
+        GraphEvidence::Window { length_s, roots, .. } if *length_s == 0.0 => {
+            format!("one graph stays for ever and has a tree rooted at {}", names(roots))
+        }
+        GraphEvidence::Window { length_s, worst_start_s, roots, .. } => format!(
+            "the smallest uniform window lasts {} s (needed from t = {} s, rooted at {})",
+            seconds(*length_s),
+            seconds(*worst_start_s),
+            names(roots)
+        ),
+        GraphEvidence::Cut { start_s, until_s, closed_groups } => cut(*start_s, *until_s, closed_groups),
+        GraphEvidence::Reached { length_s, .. } if *length_s == 0.0 => "along the edges of the graph".into(),
+        GraphEvidence::Reached { length_s, .. } => {
+            format!("within every {} s along the edges of the graphs in force", seconds(*length_s))
+        }
+        GraphEvidence::Unreached { start_s, closed_group } => {
+            format!("from t = {} s on nothing of the leader reaches [{}]", seconds(*start_s), names(closed_group))
+        }
+        GraphEvidence::NeverSwitches => "the graph never switches".into(),
+        GraphEvidence::ShortestPhase { dwell_s } => format!("the shortest phase lasts {dwell_s} s"),
+        GraphEvidence::DrawnPhases { least_s } => format!("no phase is shorter than {least_s} s"),
+        GraphEvidence::Stays => "one graph stays for ever".into(),
+        GraphEvidence::VaryingWeight => {
+            "a weight changes with time: the torque that follows from it is not the one proved".into()
+        }
+        GraphEvidence::Switches { graphs, exchange } => {
+            let instead = match exchange {
+                Exchange::PositionVelocity => "(a1), which is `reference.consensus` of order two",
+                Exchange::Position => "(24), which is `reference.consensus`",
+            };
+            format!(
+                "{graphs} graphs take turns: the reference acceleration, and the torque with it, jumps at every switch; \
+                 {instead}, is made for that"
+            )
+        }
+        GraphEvidence::SwitchesUnderLeader => {
+            "the graph switches; the paper follows a leader over fixed graphs only".into()
+        }
+        GraphEvidence::Mutual => "every edge among them leads both ways".into(),
+        GraphEvidence::OneWay { from, to } => {
+            format!("{} hears {}, but not the other way round with the same weight", to.name, from.name)
+        }
+    }
+}
+
+/// What random switching has not shown by the end of the run it may show later.
+fn cut(start_s: f64, until_s: Option<f64>, closed_groups: &[Vec<Named>]) -> String {
+    let groups: Vec<String> = closed_groups.iter().take(GROUPS).map(|group| format!("[{}]", names(group))).collect();
+    let more = match closed_groups.len().saturating_sub(GROUPS) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let span = match until_s {
+        Some(until_s) => format!("from t = {} s to the end of the run at {} s", seconds(start_s), seconds(until_s)),
+        None => format!("from t = {} s on, whatever the window", seconds(start_s)),
+    };
+    let groups = groups.join(" and ");
+    format!("{span}, no agent reaches all others: {groups}{more} hear nobody outside themselves")
+}

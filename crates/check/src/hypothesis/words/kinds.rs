@@ -1,0 +1,90 @@
+//! Kinds of systems and their laws.
+
+use forwardstep_core::robot::tree::Uncertain;
+use forwardstep_sim::ThrustKind;
+
+use super::numbers::rounded;
+use crate::hypothesis::{KindEvidence, Named};
+
+pub(super) fn words(evidence: &KindEvidence) -> String {
+    match evidence {
+        KindEvidence::PositiveNumbers | KindEvidence::PositiveMatrices => "checked when they were read".into(),
+        KindEvidence::PositiveNumbersTrueMass => {
+            "checked when they were read; an estimate that is not adapted is the true mass".into()
+        }
+        KindEvidence::Mixture(treated) => format!(
+            "there are agents of {}; all transmit the same and follow the same reference dynamics, and what the law of each \
+             leaves behind vanishes, so the argument of the theorems should carry over, but the paper does not say so",
+            treated.join(", ")
+        ),
+        KindEvidence::Declared { requires, because } => format!("{requires}: {because} (declared, not shown)"),
+        KindEvidence::MassOfPlant => "the law has that of the vehicle".into(),
+        KindEvidence::MassNotAdapted { agent } => {
+            format!("{} does not adapt its estimate, which is not the true mass", agent.name)
+        }
+        KindEvidence::ThrustFloor { least_n } => {
+            format!("the run ends where one falls to its floor, the lowest of which is {} N", rounded(*least_n))
+        }
+        KindEvidence::ThrustKept { agent, floor_n } => format!(
+            "that of {} is kept above {} N by a saturation; where it acts the vehicle does not do what the law asks for",
+            agent.name,
+            rounded(*floor_n)
+        ),
+        KindEvidence::AngularRate { agent, bandwidth_per_s, design } => rate(agent, *bandwidth_per_s, *design),
+        KindEvidence::Rotors { agent, thrust_n: [least, most] } => {
+            format!("the rotors of {} give {least} N to {most} N each", agent.name)
+        }
+        KindEvidence::ConstantFactor => "it is constant".into(),
+        KindEvidence::FactorBelowFloor { agent, value, floor } => {
+            format!("that of {} is {value} for ever, which is less than its floor of {floor}", agent.name)
+        }
+        KindEvidence::FactorFloor { agent, floor } => {
+            format!("the run ends where that of {} comes closer to zero than {floor}", agent.name)
+        }
+        KindEvidence::BoundedStates { agent } => {
+            format!("a run that is completed keeps the states of {} bounded, and with them its regressors", agent.name)
+        }
+        KindEvidence::Determinant { start, floor } => {
+            format!("its determinant starts at {start:.3}; a run ends where it falls below {floor} of that")
+        }
+        KindEvidence::Singular { start } => format!("its determinant starts at {start}"),
+        KindEvidence::NoTip => "the law has no tip of this robot".into(),
+        KindEvidence::LengthsOutsideRegressor(Uncertain::Tool) => {
+            "only the tool is uncertain, which the dynamics do not contain".into()
+        }
+        KindEvidence::LengthsOutsideRegressor(Uncertain::Chain) => {
+            "none of the lengths that are uncertain enters the dynamics".into()
+        }
+        KindEvidence::LengthsKnown => "all lengths are known: they are the true ones and are not adapted".into(),
+        KindEvidence::LengthsInRegressor(names) => format!(
+            "the regressor is that of the true {}, which the law is said not to know; their estimates enter the Jacobian alone",
+            names.join(", ")
+        ),
+        KindEvidence::PositiveMatricesTrueLengths => {
+            "checked when they were read; lengths that are not adapted are the true ones".into()
+        }
+        KindEvidence::LengthsNotAdapted { agent } => {
+            format!("{} does not adapt its lengths, which are not the true ones", agent.name)
+        }
+        KindEvidence::LengthsInside => "they do, so projection only speeds the proof up".into(),
+        KindEvidence::LengthOutside { name, value } => {
+            format!("{} is {value}, which is outside", name.as_deref().unwrap_or("a length"))
+        }
+        KindEvidence::Momentum([x, y, z]) => {
+            format!("h_I = [{x:.4}, {y:.4}, {z:.4}] N m s by the start, and nothing acts from outside")
+        }
+        KindEvidence::NoSpacecraft => "this is no spacecraft".into(),
+    }
+}
+
+fn rate(agent: &Named, bandwidth_per_s: f64, design: ThrustKind) -> String {
+    let foreseen = match design {
+        ThrustKind::Continuous => "its rate cannot be foreseen, so the body lags behind",
+        ThrustKind::Differentiable { .. } => "its rate is foreseen, so what the body misses dies out",
+        ThrustKind::Adaptive { .. } => "its rate is foreseen as well as the mass is known",
+    };
+    format!(
+        "{} is a rigid body that torques turn with a bandwidth of {bandwidth_per_s} per second; {foreseen}",
+        agent.name
+    )
+}

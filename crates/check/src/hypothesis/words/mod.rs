@@ -1,0 +1,61 @@
+//! Evidence in sentences. This is the only place where they are made.
+
+mod following;
+mod graph;
+mod kinds;
+mod links;
+mod motion;
+mod numbers;
+mod reference;
+mod surroundings;
+
+use forwardstep_sim::leader::FollowingDesign;
+
+use super::{Evidence, Id, Named, Subject};
+
+/// What is required, of whom.
+pub(super) fn requires(id: Id, subject: &Subject) -> String {
+    id.sentence().replacen('…', &of(subject), 1)
+}
+
+/// The evidence.
+pub(super) fn because(evidence: &Evidence) -> String {
+    match evidence {
+        Evidence::Graph(evidence) => graph::words(evidence),
+        Evidence::Links(evidence) => links::words(evidence),
+        Evidence::Reference(evidence) => reference::words(evidence),
+        Evidence::Following(evidence) => following::words(evidence),
+        Evidence::Loop(evidence) => surroundings::words(evidence),
+        Evidence::Motion(evidence) => motion::words(evidence),
+        Evidence::Kind(evidence) => kinds::words(evidence),
+    }
+}
+
+/// What stands for `…` in what is required.
+fn of(subject: &Subject) -> String {
+    let ordinal = |derivatives: usize| ["zeroth", "first", "second", "third", "fourth"][derivatives.min(4)];
+    match subject {
+        Subject::Setup => String::new(),
+        Subject::Agent(agent) => agent.name.clone(),
+        Subject::Targets { agents, derivatives } => {
+            format!("the target of {} and its derivatives up to the {}", names(agents), ordinal(*derivatives))
+        }
+        Subject::Offsets { agents, derivatives } => {
+            format!("the derivatives of the offset of {} up to the {}", names(agents), ordinal(*derivatives))
+        }
+        Subject::Drive(design) => match design {
+            FollowingDesign::Continuous => "ddq_0 + α dq_0",
+            FollowingDesign::Swarm { .. } => "dddq_0",
+            FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => "dddq_0 + β ddq_0 + α dq_0",
+        }
+        .into(),
+    }
+}
+
+/// Names for a sentence; long lists are cut.
+fn names(agents: &[Named]) -> String {
+    const SHOWN: usize = 6;
+    let shown: Vec<&str> = agents.iter().take(SHOWN).map(|agent| agent.name.as_str()).collect();
+    let rest = agents.len().saturating_sub(SHOWN);
+    if rest > 0 { format!("{} and {rest} more", shown.join(", ")) } else { shown.join(", ") }
+}

@@ -1,0 +1,116 @@
+//! Chains of Section IV: what (43) with its second steps asks for.
+
+use forwardstep_core::expression::{Expression, Graph, Programme};
+use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, ChainStep, Law, ReferenceKind, Setup};
+
+use super::{Claim, KindCheck};
+use crate::hypothesis::{Hypothesis, Id, KindEvidence, Named};
+use crate::theorem::Theorem;
+
+pub(crate) struct Chain;
+
+impl KindCheck for Chain {
+    fn name(&self) -> &'static str {
+        "chain"
+    }
+
+    fn treats(&self, agent: &AgentSetup) -> bool {
+        agent.law.is::<ChainLaw>()
+    }
+
+    fn treated(&self, _: &AgentSetup) -> &'static str {
+        "Section IV"
+    }
+
+    fn claim(&self, setup: &Setup) -> Option<Claim> {
+        let all: Vec<usize> = (0..setup.agents.len()).collect();
+        let mut steps: Vec<&str> = chains(setup, &all).map(|(_, law, _)| law.words()).collect();
+        steps.dedup();
+        Some(match setup.reference {
+            ReferenceKind::Tracking => Claim {
+                theorem: Theorem::ChainsTrack(steps),
+                promises: "x − x_d → 0 with its derivatives below the order of the plant".into(),
+            },
+            ReferenceKind::Consensus
+            | ReferenceKind::PureIntegral
+            | ReferenceKind::Backstepping { .. }
+            | ReferenceKind::Following(_) => Claim {
+                theorem: Theorem::ChainsAgree(steps),
+                promises: "all agents agree and come to rest, whatever their orders: x_i − x_j → 0 and dx_i → 0".into(),
+            },
+        })
+    }
+
+    fn hypotheses(&self, setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
+        let mut hypotheses = vec![input_factor(setup, agents), gains(setup, agents)];
+        hypotheses.extend(regressors(setup, agents));
+        hypotheses
+    }
+
+    fn target_derivatives(&self, agent: &AgentSetup) -> usize {
+        agent.roots_per_s.len()
+    }
+
+    /// Chains of different orders agree: nothing in the argument for (24) compares orders.
+    fn wants_common_order(&self) -> bool {
+        false
+    }
+}
+
+/// Agents with their laws and models.
+fn chains<'a>(setup: &'a Setup, agents: &'a [usize]) -> impl Iterator<Item = (usize, &'a ChainLaw, &'a ChainModel)> {
+    agents.iter().filter_map(|index| {
+        let agent = &setup.agents[*index];
+        Some((*index, agent.law.downcast()?, agent.robot.kind.downcast()?))
+    })
+}
+
+/// The value of an expression without variables.
+fn constant(expression: &Expression) -> Option<f64> {
+    if expression.variables() > 0 {
+        return None;
+    }
+    let mut graph = Graph::new(0);
+    let node = graph.import(expression).ok()?;
+    let programme = Programme::new(&graph, &[node]).ok()?;
+    let mut value = [f64::NAN];
+    programme.evaluate(&[], &mut programme.registers(), &mut value).ok()?;
+    Some(value[0])
+}
+
+fn input_factor(setup: &Setup, agents: &[usize]) -> Hypothesis {
+    let fixed = |model: &ChainModel| match model {
+        ChainModel::Derivatives(terms) => constant(terms.input()),
+        ChainModel::Cascade(terms) => constant(terms.input()).filter(|_| terms.is_strict()),
+    };
+    // What is constant is known before the run, and may be too small from the start.
+    let vanishing = chains(setup, agents).find_map(|(index, law, model)| {
+        let value = fixed(model).filter(|value| value.is_nan() || value.abs() < law.floor)?;
+        Some(KindEvidence::FactorBelowFloor { agent: Named::of(setup, index), value, floor: law.floor })
+    });
+    if let Some(evidence) = vanishing {
+        return Hypothesis::new(Id::InputFactor, evidence);
+    }
+    let evidence = match chains(setup, agents).find(|(.., model)| fixed(model).is_none()) {
+        None => KindEvidence::ConstantFactor,
+        Some((index, law, _)) => KindEvidence::FactorFloor { agent: Named::of(setup, index), floor: law.floor },
+    };
+    Hypothesis::new(Id::InputFactor, evidence)
+}
+
+fn gains(setup: &Setup, agents: &[usize]) -> Hypothesis {
+    let estimates = chains(setup, agents).any(|(_, law, _)| law.estimates());
+    let id = if estimates { Id::ChainAdaptation } else { Id::ChainGains };
+    Hypothesis::new(id, KindEvidence::PositiveNumbers)
+}
+
+/// Adaptation by the gradient needs φ bounded along the run for s → 0.
+fn regressors(setup: &Setup, agents: &[usize]) -> Option<Hypothesis> {
+    let by_gradient = |law: &ChainLaw| match law.step {
+        ChainStep::Adaptive { .. } | ChainStep::Backstepping { .. } => true,
+        ChainStep::Linearising { .. } | ChainStep::Immersion { .. } => false,
+    };
+    let needs = |law: &ChainLaw, model: &ChainModel| by_gradient(law) && model.parameters() > 0;
+    let (index, ..) = chains(setup, agents).find(|(_, law, model)| needs(law, model))?;
+    Some(Hypothesis::new(Id::BoundedRegressors, KindEvidence::BoundedStates { agent: Named::of(setup, index) }))
+}

@@ -1,0 +1,62 @@
+//! Point masses without a measured velocity: (a7)–(a9), Remark 7.
+
+use forwardstep_sim::{AgentSetup, PositionOnlyLaw, ReferenceKind, Setup};
+
+use super::{Claim, KindCheck};
+use crate::hypothesis::{Hypothesis, Id, KindEvidence, Named};
+use crate::theorem::Theorem;
+
+pub(crate) struct PositionOnlyMass;
+
+impl KindCheck for PositionOnlyMass {
+    fn name(&self) -> &'static str {
+        "point-mass-without-velocity"
+    }
+
+    fn treats(&self, agent: &AgentSetup) -> bool {
+        agent.law.is::<PositionOnlyLaw>()
+    }
+
+    fn treated(&self, _: &AgentSetup) -> &'static str {
+        "Remark 7"
+    }
+
+    fn claim(&self, setup: &Setup) -> Option<Claim> {
+        Some(match setup.reference {
+            ReferenceKind::Tracking => Claim {
+                theorem: Theorem::PositionOnlyTracks,
+                promises: "x − x_d → 0 and dx − dx_d → 0 without a measured velocity".into(),
+            },
+            ReferenceKind::Consensus
+            | ReferenceKind::PureIntegral
+            | ReferenceKind::Backstepping { .. }
+            | ReferenceKind::Following(_) => Claim {
+                theorem: Theorem::PositionOnlyAgree { order: setup.agents.first()?.roots_per_s.len() },
+                promises: "all agents agree and come to rest without a measured velocity: x_i − x_j → 0 and dx_i → 0"
+                    .into(),
+            },
+        })
+    }
+
+    fn hypotheses(&self, setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
+        let wrong = agents.iter().find(|agent| keeps_a_wrong_mass(&setup.agents[**agent]));
+        let evidence = wrong.map_or(KindEvidence::PositiveNumbersTrueMass, |agent| KindEvidence::MassNotAdapted {
+            agent: Named::of(setup, *agent),
+        });
+        vec![Hypothesis::new(Id::PositionOnlyGains, evidence)]
+    }
+
+    fn target_derivatives(&self, _: &AgentSetup) -> usize {
+        3
+    }
+
+    fn wants_common_order(&self) -> bool {
+        true
+    }
+}
+
+fn keeps_a_wrong_mass(agent: &AgentSetup) -> bool {
+    agent.law.downcast().is_some_and(|law: &PositionOnlyLaw| {
+        law.adaptation == 0.0 && agent.robot.theta.first() != Some(&law.estimate_start)
+    })
+}

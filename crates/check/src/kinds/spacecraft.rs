@@ -1,0 +1,109 @@
+//! Theorem 7: spacecraft that follow an attitude without a measured angular velocity.
+
+use forwardstep_core::plant;
+use forwardstep_sim::{AgentSetup, AttitudeLaw, Setup, SpacecraftModel};
+
+use super::{Claim, KindCheck};
+use crate::hypothesis::{Hypothesis, Id, KindEvidence, MotionEvidence, Named, Subject};
+use crate::theorem::Theorem;
+
+/// Parts of the run at whose ends a target is looked at.
+const LOOKS: u32 = 2000;
+
+/// The smallest norm of a quaternion on its path, as a part of the largest, that is not taken for zero.
+const LEAST_NORM: f64 = 1e-6;
+
+pub(crate) struct Spacecraft;
+
+impl KindCheck for Spacecraft {
+    fn name(&self) -> &'static str {
+        "spacecraft"
+    }
+
+    fn treats(&self, agent: &AgentSetup) -> bool {
+        agent.law.is::<AttitudeLaw>()
+    }
+
+    fn treated(&self, _: &AgentSetup) -> &'static str {
+        "Theorem 7"
+    }
+
+    fn claim(&self, _: &Setup) -> Option<Claim> {
+        Some(Claim {
+            theorem: Theorem::Theorem7,
+            promises:
+                "the attitude and its rate reach those of the target, Δq_v → 0 and ω − ω_d → 0, without a measured ω"
+                    .into(),
+        })
+    }
+
+    fn hypotheses(&self, setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
+        let mut hypotheses = vec![Hypothesis::new(Id::AttitudeGains, KindEvidence::PositiveMatrices)];
+        for index in agents {
+            let agent = &setup.agents[*index];
+            let subject = || Subject::Agent(Named::of(setup, *index));
+            hypotheses.push(Hypothesis::about(Id::KnownMomentum, subject(), momentum(agent)));
+            let path = path(setup, agent);
+            hypotheses.extend(path.map(|evidence| Hypothesis::about(Id::NonzeroQuaternion, subject(), evidence)));
+        }
+        hypotheses
+    }
+
+    fn target_derivatives(&self, _: &AgentSetup) -> usize {
+        2
+    }
+
+    fn wants_common_order(&self) -> bool {
+        true
+    }
+}
+
+/// h_I is given to the controller, not measured.
+fn momentum(agent: &AgentSetup) -> KindEvidence {
+    let Some(SpacecraftModel { inertia_kg_m2, wheels }) = agent.robot.kind.downcast() else {
+        return KindEvidence::NoSpacecraft;
+    };
+    let start = [&agent.start.q[..], &agent.start.dq, &agent.start.rest].concat();
+    let plant = plant::Spacecraft::new(*inertia_kg_m2, wheels.clone(), false).ok();
+    let momentum = plant.and_then(|plant| plant.momentum_inertial(&start).ok());
+    momentum.map_or(KindEvidence::NoSpacecraft, KindEvidence::Momentum)
+}
+
+/// The path of the desired attitude, as a quaternion of any norm, must not pass zero. It stays away from it for ever where
+/// one of its entries does; else, on the run, where it cannot get there between two looks, however fast it moves.
+fn path(setup: &Setup, agent: &AgentSetup) -> Option<MotionEvidence> {
+    let target = agent.target.as_ref()?;
+    let away = |axis| {
+        let hull = target.hull(axis, 0, None);
+        hull.low.max(-hull.high)
+    };
+    let away = (0..target.axes()).map(away).fold(0.0, f64::max);
+    if away > 0.0 {
+        return Some(MotionEvidence::EntryAway { least: away });
+    }
+    let end_s = setup.time.end_s;
+    let (mut least, mut most, mut when) = (f64::INFINITY, 0.0_f64, 0.0);
+    let mut jets = [[0.0; 5]; 4];
+    for k in 0..=LOOKS {
+        let t_s = end_s * f64::from(k) / f64::from(LOOKS);
+        target.jets(t_s, &mut jets);
+        let norm = jets.iter().map(|jet| jet[0] * jet[0]).sum::<f64>().sqrt();
+        most = most.max(norm);
+        if norm < least {
+            (least, when) = (norm, t_s);
+        }
+    }
+    let fastest = |axis| {
+        let speed = target.hull(axis, 1, Some(end_s));
+        speed.high.max(-speed.low)
+    };
+    let speed = (0..target.axes()).map(fastest).map(|speed| speed * speed).sum::<f64>().sqrt();
+    let shown = least - speed * 0.5 * end_s / f64::from(LOOKS);
+    Some(if shown > 0.0 {
+        MotionEvidence::NormAbove { least: shown }
+    } else if least > LEAST_NORM * most {
+        MotionEvidence::NormSeen { t_s: when, norm: least }
+    } else {
+        MotionEvidence::NormVanishes { t_s: when, norm: least }
+    })
+}

@@ -1,0 +1,123 @@
+//! Vehicles with one thrust whose angular velocity is an input: (44)–(58), Theorems 4 and 5.
+
+use forwardstep_core::controller::Floor;
+use forwardstep_sim::{AgentSetup, Setup, ThrustKind, ThrustLaw, VehicleModel};
+
+use super::{Claim, KindCheck};
+use crate::hypothesis::{Hypothesis, Id, KindEvidence, Named};
+use crate::theorem::Theorem;
+
+pub(crate) struct Vehicle;
+
+impl KindCheck for Vehicle {
+    fn name(&self) -> &'static str {
+        "vehicle"
+    }
+
+    fn treats(&self, agent: &AgentSetup) -> bool {
+        agent.law.is::<ThrustLaw>() && agent.robot.kind.is::<VehicleModel>()
+    }
+
+    fn treated(&self, agent: &AgentSetup) -> &'static str {
+        treated(agent)
+    }
+
+    fn claim(&self, setup: &Setup) -> Option<Claim> {
+        claim(setup)
+    }
+
+    fn hypotheses(&self, setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
+        outer_law(setup, agents)
+    }
+
+    fn target_derivatives(&self, agent: &AgentSetup) -> usize {
+        target_derivatives(agent)
+    }
+
+    fn wants_common_order(&self) -> bool {
+        true
+    }
+}
+
+/// The law of a vehicle or of a rotorcraft.
+pub(super) fn law(agent: &AgentSetup) -> Option<&ThrustLaw> {
+    agent.law.downcast()
+}
+
+/// Where a design comes from.
+pub(super) fn treated(agent: &AgentSetup) -> &'static str {
+    match law(agent).map(|law| law.design) {
+        Some(ThrustKind::Continuous) | None => "Section V-B with (46)",
+        Some(ThrustKind::Differentiable { .. }) => "Theorem 4",
+        Some(ThrustKind::Adaptive { .. }) => "Theorem 5",
+    }
+}
+
+/// The theorem about vehicles that all have the design of the first, and what it promises.
+pub(super) fn claim(setup: &Setup) -> Option<Claim> {
+    const JUMPS: &str = "thrust and attitude stay continuous through switches and delay jumps, angular velocities jump";
+    const SMOOTH: &str =
+        "angular velocities and the rate of the thrust stay differentiable through switches and delay jumps";
+    let (theorem, smooth) = match law(setup.agents.first()?)?.design {
+        ThrustKind::Continuous => (Theorem::ContinuousThrust, JUMPS),
+        ThrustKind::Differentiable { .. } => (Theorem::Theorem4, SMOOTH),
+        ThrustKind::Adaptive { .. } => (Theorem::Theorem5, SMOOTH),
+    };
+    let agreed = if setup.agents.iter().any(|agent| agent.target.is_some()) {
+        "with y = x − offset all vehicles agree on y, and it comes to rest: y_i − y_j → 0 and dy_i → 0"
+    } else {
+        "all vehicles agree and come to rest: x_i − x_j → 0 and dx_i → 0"
+    };
+    Some(Claim { theorem, promises: format!("{agreed}; {smooth}") })
+}
+
+/// What the outer law asks for, with or without a body.
+pub(super) fn outer_law(setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
+    vec![gains(setup, agents), thrust(setup, agents)]
+}
+
+/// Agents with their laws.
+pub(super) fn with_laws<'a>(
+    setup: &'a Setup,
+    agents: &'a [usize],
+) -> impl Iterator<Item = (usize, &'a AgentSetup, &'a ThrustLaw)> {
+    agents.iter().filter_map(|index| {
+        let agent = &setup.agents[*index];
+        Some((*index, agent, law(agent)?))
+    })
+}
+
+fn gains(setup: &Setup, agents: &[usize]) -> Hypothesis {
+    let keeps_a_wrong_mass = |agent: &AgentSetup, law: &ThrustLaw| match law.design {
+        ThrustKind::Adaptive { gamma_star, estimate_start, .. } => {
+            gamma_star == 0.0 && agent.robot.theta.first() != Some(&estimate_start)
+        }
+        ThrustKind::Continuous | ThrustKind::Differentiable { .. } => false,
+    };
+    if with_laws(setup, agents).all(|(_, _, law)| law.design == ThrustKind::Continuous) {
+        return Hypothesis::new(Id::KnownMasses, KindEvidence::MassOfPlant);
+    }
+    let wrong = with_laws(setup, agents).find(|(_, agent, law)| keeps_a_wrong_mass(agent, law));
+    let evidence = wrong.map_or(KindEvidence::PositiveNumbers, |(index, ..)| KindEvidence::MassNotAdapted {
+        agent: Named::of(setup, index),
+    });
+    Hypothesis::new(Id::ThrustGains, evidence)
+}
+
+fn thrust(setup: &Setup, agents: &[usize]) -> Hypothesis {
+    let kept = with_laws(setup, agents).find_map(|(index, _, law)| match law.floor {
+        Floor::Kept { floor, .. } => Some((index, floor)),
+        Floor::Stops(_) => None,
+    });
+    let floors = with_laws(setup, agents).map(|(_, _, law)| law.floor.newtons());
+    let evidence = match kept {
+        Some((index, floor_n)) => KindEvidence::ThrustKept { agent: Named::of(setup, index), floor_n },
+        None => KindEvidence::ThrustFloor { least_n: floors.fold(f64::INFINITY, f64::min) },
+    };
+    Hypothesis::new(Id::NonzeroThrust, evidence)
+}
+
+/// Those that the reference dynamics are differentiated into.
+pub(super) fn target_derivatives(agent: &AgentSetup) -> usize {
+    law(agent).map_or(2, |law| law.design.order()) + 1
+}

@@ -1,0 +1,22 @@
+//! Answers to "does a theorem apply?", hypothesis by hypothesis.
+
+use crate::hypothesis::{Answer, Hypothesis};
+use crate::theorem::Theorem;
+
+/// The theorem that speaks about a setup, with its hypotheses in the order in which they should be read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// The theorem, and whose it is.
+    pub theorem: Theorem,
+    /// What it promises, in one sentence.
+    pub promises: String,
+    /// Its hypotheses and what was found.
+    pub hypotheses: Vec<Hypothesis>,
+}
+
+impl Report {
+    /// The worst answer of all hypotheses; [`Answer::Holds`] when there are none.
+    pub fn worst(&self) -> Answer {
+        self.hypotheses.iter().map(Hypothesis::answer).max().unwrap_or(Answer::Holds)
+    }
+}

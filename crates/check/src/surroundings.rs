@@ -1,0 +1,80 @@
+//! What surrounds a law: pushes, limits, sampling.
+
+use forwardstep_sim::push::Push;
+use forwardstep_sim::{Setup, VelocitySensor};
+
+use crate::hypothesis::{Hypothesis, Id, Inexact, Limited, LoopEvidence, Named};
+use crate::sampled::{sampled_adaptation, sampled_damping};
+
+/// τ_ext feeds V by sᵀτ_ext. What ends leaves V finite, and from then on everything is as without it.
+pub(crate) fn pushes_end(setup: &Setup) -> Option<Hypothesis> {
+    let acts = |push: &&Push| {
+        let [begins_s, ends_s] = push.span_s();
+        begins_s < ends_s
+    };
+    let pushed = |some: fn(&Push) -> bool| -> Vec<Named> {
+        let agents = setup.agents.iter().enumerate();
+        let those = agents.filter(|(_, agent)| agent.pushes.iter().filter(acts).any(some));
+        those.map(|(index, _)| Named::of(setup, index)).collect()
+    };
+    let all = pushed(|_| true);
+    if all.is_empty() {
+        return None;
+    }
+    let pushes = setup.agents.iter().flat_map(|agent| &agent.pushes).filter(acts);
+    let evidence = LoopEvidence::Pushes {
+        pushed: all,
+        torques_for_ever: pushed(|push| endless(push) && !push.is_hand()),
+        hands_for_ever: pushed(|push| endless(push) && push.is_hand()),
+        last_end_s: pushes.map(|push| push.span_s()[1]).fold(0.0, f64::max),
+    };
+    Some(Hypothesis::new(Id::PushesEnd, evidence))
+}
+
+fn endless(push: &Push) -> bool {
+    push.span_s()[1] == f64::INFINITY
+}
+
+/// What keeps the torque from being what the law asks for.
+pub(crate) fn applied_torque(setup: &Setup) -> Hypothesis {
+    let enforced: Vec<usize> = (0..setup.agents.len()).filter(|agent| setup.agents[*agent].enforce_limits).collect();
+    let limited = setup.control.as_ref().map_or_else(Vec::new, |control| {
+        let actuators = &control.actuators;
+        let each = [
+            (actuators.torque_limit.is_some(), Limited::Torque),
+            (actuators.torque_rate_limit.is_some(), Limited::TorqueRate),
+            (actuators.torque_quantum > 0.0, Limited::TorqueQuantum),
+        ];
+        each.into_iter().filter(|(is, _)| *is).map(|(_, limited)| limited).collect()
+    });
+    let evidence = LoopEvidence::Applied { limited, enforced: Named::all(setup, &enforced) };
+    Hypothesis::new(Id::AppliedTorque, evidence)
+}
+
+/// Under digital control: the theorems speak of continuous time and of exact measurements.
+pub(crate) fn digital(setup: &Setup) -> Vec<Hypothesis> {
+    let Some(control) = &setup.control else { return Vec::new() };
+    let sensors = &control.sensors;
+    let filtered = match sensors.velocity {
+        VelocitySensor::Filtered { .. } => true,
+        VelocitySensor::Measured => false,
+    };
+    let sampling = LoopEvidence::Sampling {
+        sample_hz: control.sample_hz,
+        computation_delay_s: control.computation_delay_s,
+        filtered,
+        damping: sampled_damping(setup).map(|found| (Named::of(setup, found.agent), found)),
+        adaptation: sampled_adaptation(setup).map(|found| (Named::of(setup, found.agent), found)),
+    };
+    let mut hypotheses = vec![Hypothesis::new(Id::ContinuousTime, sampling)];
+    let each = [
+        (sensors.position_noise > 0.0 || sensors.velocity_noise > 0.0, Inexact::Noise),
+        (sensors.position_quantum > 0.0 || sensors.velocity_quantum > 0.0, Inexact::Quantum),
+        (filtered, Inexact::Filter),
+    ];
+    let inexact: Vec<Inexact> = each.into_iter().filter(|(is, _)| *is).map(|(_, inexact)| inexact).collect();
+    if !inexact.is_empty() {
+        hypotheses.push(Hypothesis::new(Id::ExactMeasurements, LoopEvidence::Measurements(inexact)));
+    }
+    hypotheses
+}

@@ -1,0 +1,168 @@
+//! The statements that a setup can fall under: theorems and remarks of the paper, and what stands in their place.
+
+use std::fmt;
+
+use crate::source::Source;
+
+/// A statement about the long run. `Display` names it with its equations.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Theorem {
+    /// Theorem 1, for (3).
+    Theorem1,
+    /// Remark 3, for (23).
+    Remark3,
+    /// Theorem 2, for (a1).
+    Theorem2,
+    /// Theorem 3 for (aa10), which is (a5) of order one.
+    FirstOrder,
+    /// Theorem 3 for (a5).
+    Theorem3Velocities {
+        /// ℓ.
+        order: usize,
+    },
+    /// Theorem 3 for (24).
+    Theorem3Positions {
+        /// ℓ.
+        order: usize,
+    },
+    /// The baseline that the paper argues against; no theorem.
+    Backstepping,
+    /// Agents of different kinds, each treated somewhere; no single theorem.
+    Mixture(Vec<&'static str>),
+    /// Agents of different kinds, each with a target of its own.
+    Targets,
+    /// (43) for tracking, with these second steps.
+    ChainsTrack(Vec<&'static str>),
+    /// (43) with (24), with these second steps.
+    ChainsAgree(Vec<&'static str>),
+    /// (a8) with (a9).
+    PositionOnlyTracks,
+    /// Remark 7: (a8) with (24) in z.
+    PositionOnlyAgree {
+        /// ℓ.
+        order: usize,
+    },
+    /// Section V-B, continuous control of vehicles.
+    ContinuousThrust,
+    /// Theorem 4.
+    Theorem4,
+    /// Theorem 5.
+    Theorem5,
+    /// Theorem 6.
+    Theorem6,
+    /// Theorem 7.
+    Theorem7,
+    /// Theorem 8.
+    Theorem8,
+    /// Theorem 9.
+    Theorem9,
+    /// Remark 12.
+    Remark12,
+    /// Swarm tracking, named in Remark 11.
+    Swarm,
+    /// What the author of a law from outside states, with its source.
+    Declared(String),
+}
+
+impl Theorem {
+    /// The stable name, in kebab case.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Theorem::Theorem1 => "theorem-1",
+            Theorem::Remark3 => "remark-3",
+            Theorem::Theorem2 => "theorem-2",
+            Theorem::FirstOrder => "theorem-3-first-order",
+            Theorem::Theorem3Velocities { .. } => "theorem-3-velocities",
+            Theorem::Theorem3Positions { .. } => "theorem-3-positions",
+            Theorem::Backstepping => "backstepping",
+            Theorem::Mixture(_) => "mixture",
+            Theorem::Targets => "targets",
+            Theorem::ChainsTrack(_) => "chains-track",
+            Theorem::ChainsAgree(_) => "chains-agree",
+            Theorem::PositionOnlyTracks => "position-only-tracks",
+            Theorem::PositionOnlyAgree { .. } => "remark-7",
+            Theorem::ContinuousThrust => "continuous-thrust",
+            Theorem::Theorem4 => "theorem-4",
+            Theorem::Theorem5 => "theorem-5",
+            Theorem::Theorem6 => "theorem-6",
+            Theorem::Theorem7 => "theorem-7",
+            Theorem::Theorem8 => "theorem-8",
+            Theorem::Theorem9 => "theorem-9",
+            Theorem::Remark12 => "remark-12",
+            Theorem::Swarm => "swarm",
+            Theorem::Declared(_) => "declared",
+        }
+    }
+
+    /// Whose it is. Slips are those of PAPER.md that touch the statement.
+    pub fn source(&self) -> Source {
+        match self {
+            Theorem::Theorem1
+            | Theorem::Remark3
+            | Theorem::Theorem2
+            | Theorem::Backstepping
+            | Theorem::Targets
+            | Theorem::ContinuousThrust
+            | Theorem::Theorem4
+            | Theorem::Theorem5
+            | Theorem::Theorem8
+            | Theorem::Theorem9
+            | Theorem::Remark12 => Source::Paper,
+            Theorem::FirstOrder => Source::Corrected("E1, E2, E3"),
+            Theorem::Theorem3Velocities { .. } => Source::Corrected("E1, E2"),
+            Theorem::Theorem3Positions { .. } => Source::Corrected("E2"),
+            Theorem::PositionOnlyTracks => Source::Corrected("E9, E10"),
+            Theorem::Theorem6 => Source::Corrected("E11, E12"),
+            Theorem::Theorem7 => Source::Corrected("E13"),
+            // Section IV leaves the second step open, Remark 7 announces its consensus, Remark 11 its swarm.
+            Theorem::Mixture(_)
+            | Theorem::ChainsTrack(_)
+            | Theorem::ChainsAgree(_)
+            | Theorem::PositionOnlyAgree { .. }
+            | Theorem::Swarm => Source::Derived,
+            Theorem::Declared(_) => Source::Declared,
+        }
+    }
+}
+
+impl fmt::Display for Theorem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Theorem::Declared(source) => return write!(f, "as declared by the author of the law: {source}"),
+            Theorem::Theorem1 => "Theorem 1, reference dynamics (3)",
+            Theorem::Remark3 => "Remark 3, reference dynamics (23)",
+            Theorem::Theorem2 => "Theorem 2, reference dynamics (a1)",
+            Theorem::FirstOrder => "Theorem 3 with (a5) of order 1, which is (aa10)",
+            Theorem::Theorem3Velocities { order } => {
+                return write!(f, "Theorem 3, reference dynamics (a5) of order {order}");
+            }
+            Theorem::Theorem3Positions { order } => {
+                return write!(f, "Theorem 3, reference dynamics (24) of order {order}");
+            }
+            Theorem::Backstepping => "no theorem: the backstepping baseline (aa6)",
+            Theorem::Mixture(treated) => {
+                return write!(f, "no single theorem: {} side by side", treated.join(", "));
+            }
+            Theorem::Targets => "a theorem of Section V for every agent",
+            Theorem::ChainsTrack(steps) => {
+                return write!(f, "Section IV, (43) for tracking; second step: {}", steps.join(", "));
+            }
+            Theorem::ChainsAgree(steps) => {
+                return write!(f, "Section IV, (43) with (24) as in Theorem 3; second step: {}", steps.join(", "));
+            }
+            Theorem::PositionOnlyTracks => "Section V-A, (a8) with the reference dynamics (a9)",
+            Theorem::PositionOnlyAgree { order } => {
+                return write!(f, "Remark 7, (a8) with (24) of order {order} in z");
+            }
+            Theorem::ContinuousThrust => "Section V-B, continuous control (45), (46)",
+            Theorem::Theorem4 => "Theorem 4, (50) with the reference dynamics (49)",
+            Theorem::Theorem5 => "Theorem 5, (57) and (58) with the reference dynamics (49)",
+            Theorem::Theorem6 => "Theorem 6, (80) to (82) with the reference dynamics (76)",
+            Theorem::Theorem7 => "Theorem 7, (99) to (105) with the reference dynamics (97)",
+            Theorem::Theorem8 => "Theorem 8, reference dynamics (110)",
+            Theorem::Theorem9 => "Theorem 9, reference dynamics (119)",
+            Theorem::Remark12 => "Remark 12, reference dynamics (122)",
+            Theorem::Swarm => "no theorem of the paper: swarm tracking (Remark 11) as derived for this software",
+        })
+    }
+}

@@ -1,0 +1,88 @@
+//! Following a leader: Theorems 8 and 9, Remark 12.
+
+use forwardstep_sim::Setup;
+use forwardstep_sim::leader::{Following, FollowingDesign};
+
+use super::own_targets::how_far;
+use super::swarm;
+use crate::graphs::{fixed_graph, leader_reaches_all};
+use crate::hypothesis::{FollowingEvidence, Hypothesis, Id, MotionEvidence, Subject};
+use crate::kinds::starts_from_zero;
+use crate::laws;
+use crate::links::{bounded_weights, no_delay};
+use crate::report::Report;
+use crate::surroundings::{applied_torque, digital, pushes_end};
+use crate::theorem::Theorem;
+
+/// Times at which a leader is looked at whose bounds could not be shown.
+const LOOKS: u32 = 20_000;
+
+/// What is promised to agents that follow a leader.
+pub(super) fn check(setup: &Setup, following: &Following) -> Report {
+    let theorem = match following.design {
+        FollowingDesign::Continuous => Theorem::Theorem8,
+        FollowingDesign::Differentiable => Theorem::Theorem9,
+        FollowingDesign::WithoutAcceleration => Theorem::Remark12,
+        FollowingDesign::Swarm { .. } => Theorem::Swarm,
+    };
+    let torque = match following.design {
+        FollowingDesign::Continuous => "the torque is as smooth as the value of the sign that is chosen",
+        FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
+            "the torque is differentiable"
+        }
+    };
+    let mut hypotheses = vec![
+        bounded_motion(setup, following),
+        gain(setup, following),
+        leader_reaches_all(setup),
+        fixed_graph(setup),
+        no_delay(setup),
+    ];
+    match following.design {
+        FollowingDesign::Swarm { coupling } => hypotheses.extend(swarm::hypotheses(setup, following, coupling)),
+        FollowingDesign::Continuous | FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => {}
+    }
+    hypotheses.extend(bounded_weights(setup));
+    hypotheses.push(sign(setup, following));
+    hypotheses.extend(pushes_end(setup));
+    hypotheses.extend(laws::hypotheses(setup));
+    hypotheses.push(shared_design(setup, following));
+    hypotheses.push(applied_torque(setup));
+    hypotheses.extend(digital(setup));
+    let promises = format!("everybody follows {}: q_i − q_0 → 0 and dq_i − dq_0 → 0; {torque}", following.leader.name);
+    Report { theorem, promises, hypotheses }
+}
+
+/// The derivatives of the leader that the theorem wants bounded.
+fn bounded_motion(setup: &Setup, following: &Following) -> Hypothesis {
+    let bounded = how_far(&following.leader.trajectory, 1..=3, setup.time.end_s);
+    Hypothesis::new(Id::BoundedLeader, MotionEvidence::Derivatives(bounded))
+}
+
+/// γ against sup |ξ̇₀|∞.
+fn gain(setup: &Setup, following: &Following) -> Hypothesis {
+    let end_s = setup.time.end_s;
+    let evidence = FollowingEvidence::Gain {
+        gamma: following.gain,
+        seen: following.leader.trajectory.sampled_peak(&following.drive(), end_s, LOOKS),
+        on_run: following.drive_bound(Some(end_s)),
+        for_ever: following.drive_bound(None),
+        end_s,
+    };
+    Hypothesis::about(Id::SignGain, Subject::Drive(following.design), evidence)
+}
+
+fn sign(setup: &Setup, following: &Following) -> Hypothesis {
+    let period_s = match &setup.control {
+        None => Some(following.period_s),
+        Some(_) => None,
+    };
+    Hypothesis::new(Id::SetValuedSign, FollowingEvidence::Sign { choice: following.choice, period_s })
+}
+
+/// α and β are common by what a scenario can say; what is slow is said here.
+fn shared_design(setup: &Setup, following: &Following) -> Hypothesis {
+    let accelerations = following.design == FollowingDesign::Differentiable;
+    let slow = accelerations && setup.agents.iter().any(starts_from_zero);
+    Hypothesis::new(Id::SharedDesign, FollowingEvidence::Shared { slow })
+}

@@ -1,0 +1,81 @@
+//! Which theorem speaks about a setup, and whether its hypotheses hold: a file for each theorem or section.
+
+mod baseline;
+mod following;
+mod own_targets;
+mod swarm;
+mod theorem_1;
+mod theorem_3;
+
+use forwardstep_sim::{Exchange, ReferenceKind, Setup};
+
+use crate::graphs::{dwell_time, spanning_tree};
+use crate::hypothesis::{Hypothesis, Id, ReferenceEvidence};
+use crate::kinds::Claim;
+use crate::laws;
+use crate::links::{bounded_delays, bounded_weights, coupling};
+use crate::report::Report;
+use crate::surroundings::{applied_torque, digital, pushes_end};
+
+/// Which theorem speaks about `setup`, and whether its hypotheses hold.
+///
+/// `setup` should be one that [`forwardstep_sim::simulate`] accepts; what makes a setup meaningless is not looked at again.
+///
+/// **Source**: Theorem 1 for (3), Remark 3 for (23), Theorem 2 for (a1), Theorem 3 for (a5) and (24); Section III-A for
+/// (aa10), which is (a5) of order one, and for the baseline (aa6), about which the paper promises nothing.
+pub fn check(setup: &Setup) -> Report {
+    match &setup.reference {
+        ReferenceKind::Consensus => consensus(setup, theorem_3::hypotheses(setup), theorem_3::claim),
+        ReferenceKind::PureIntegral => consensus(setup, theorem_1::hypotheses(setup), theorem_1::claim),
+        ReferenceKind::Backstepping { filter_s, .. } => {
+            consensus(setup, vec![baseline::derivative(*filter_s)], |_| baseline::claim())
+        }
+        ReferenceKind::Tracking => own_targets::check(setup),
+        ReferenceKind::Following(following) => following::check(setup, following),
+    }
+}
+
+/// Agents that agree with each other: `own` is what their reference dynamics add, `claim` what is said of Lagrangian robots.
+fn consensus(setup: &Setup, own: Vec<Hypothesis>, claim: fn(&Setup) -> Claim) -> Report {
+    let mut hypotheses = vec![spanning_tree(setup), dwell_time(setup), bounded_delays(setup)];
+    hypotheses.extend(bounded_weights(setup));
+    hypotheses.extend(coupling(setup));
+    hypotheses.extend(own);
+    hypotheses.extend(manipulability(setup));
+    hypotheses.extend(pushes_end(setup));
+    match setup.exchange {
+        Exchange::PositionVelocity => hypotheses.push(theorem_3::common_first_root(setup)),
+        Exchange::Position => {}
+    }
+    hypotheses.extend(own_targets::bounded(setup));
+    hypotheses.extend(laws::hypotheses(setup));
+    hypotheses.push(applied_torque(setup));
+    hypotheses.extend(digital(setup));
+    let Claim { theorem, promises } = laws::claim(setup).unwrap_or_else(|| claim(setup));
+    Report { theorem, promises, hypotheses }
+}
+
+/// Remark 4.
+fn manipulability(setup: &Setup) -> Option<Hypothesis> {
+    let largest = setup.agents.iter().map(|agent| agent.manipulability).fold(0.0, f64::max);
+    (largest > 0.0).then(|| Hypothesis::new(Id::Manipulability, ReferenceEvidence::Manipulability { largest }))
+}
+
+/// What Theorems 1 to 3 promise Lagrangian robots under reference dynamics of this order.
+fn agreement(setup: &Setup, order: usize) -> String {
+    let smooth = match order {
+        0 | 1 => "the torque jumps at switches and delay jumps but stays bounded".to_owned(),
+        2 => "the torque stays continuous through switches and delay jumps".to_owned(),
+        3 => "the torque stays once continuously differentiable through switches and delay jumps".to_owned(),
+        order => {
+            format!("the torque stays {} times continuously differentiable through switches and delay jumps", order - 2)
+        }
+    };
+    let agents = if setup.agents.len() == 1 { "the agent comes to rest" } else { "all agents agree and come to rest" };
+    format!("{agents}: q_i − q_j → 0 and dq_i → 0; {smooth}")
+}
+
+/// The highest order of the reference dynamics.
+fn order(setup: &Setup) -> usize {
+    setup.agents.iter().map(|agent| agent.roots_per_s.len()).max().unwrap_or(0)
+}

@@ -1,0 +1,22 @@
+//! Theorem 1 for (3), and Remark 3 for (23): reference dynamics that contain accelerations.
+
+use forwardstep_sim::{Exchange, Setup};
+
+use super::theorem_3::real_roots;
+use super::{agreement, order};
+use crate::graphs::fixed_graph;
+use crate::hypothesis::Hypothesis;
+use crate::kinds::Claim;
+use crate::theorem::Theorem;
+
+pub(super) fn claim(setup: &Setup) -> Claim {
+    let theorem = match setup.exchange {
+        Exchange::PositionVelocity => Theorem::Theorem1,
+        Exchange::Position => Theorem::Remark3,
+    };
+    Claim { theorem, promises: agreement(setup, order(setup)) }
+}
+
+pub(super) fn hypotheses(setup: &Setup) -> Vec<Hypothesis> {
+    vec![fixed_graph(setup), real_roots(setup)]
+}

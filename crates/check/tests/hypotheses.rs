@@ -1,0 +1,181 @@
+//! Names of hypotheses are stable, and answers follow from evidence.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+mod common;
+
+use std::collections::BTreeSet;
+
+use common::{arm, edge, masses, setup};
+use forwardstep_check::hypothesis::{FollowingEvidence, LinkEvidence, ReferenceEvidence, Subject};
+use forwardstep_check::{Answer, Evidence, Id, Rigour, Source, Theorem, check};
+use forwardstep_sim::delay::{Delay, Loss, PacketLink};
+use forwardstep_sim::formula::{BoundedFormula, Formula, FormulaStep};
+use forwardstep_sim::schedule::{Phase, Schedule};
+use forwardstep_sim::{Exchange, ReferenceKind};
+
+/// Names may join this list. None may leave it or change: certificates, waivers and summaries of earlier versions refer to them.
+const NAMES: [&str; 44] = [
+    "spanning-tree",
+    "leader-reaches-all",
+    "dwell-time",
+    "fixed-graph",
+    "mutual-weights",
+    "bounded-delays",
+    "no-delay",
+    "bounded-weights",
+    "coupling-sector",
+    "real-roots",
+    "common-order",
+    "common-first-root",
+    "measured-derivative",
+    "manipulability",
+    "positive-gains",
+    "pushes-end",
+    "applied-torque",
+    "continuous-time",
+    "exact-measurements",
+    "one-kind",
+    "bounded-target",
+    "bounded-leader",
+    "sign-gain",
+    "set-valued-sign",
+    "shared-design",
+    "printed-design",
+    "swarm-coupling",
+    "input-factor",
+    "chain-gains",
+    "chain-adaptation",
+    "bounded-regressors",
+    "position-only-gains",
+    "known-masses",
+    "thrust-gains",
+    "nonzero-thrust",
+    "angular-velocity",
+    "every-wrench",
+    "task-space-gains",
+    "regular-jacobian",
+    "certain-regressor",
+    "lengths-within-bounds",
+    "attitude-gains",
+    "known-momentum",
+    "nonzero-quaternion",
+];
+
+#[test]
+fn names_of_hypotheses_are_stable_and_unique() {
+    let names: Vec<&str> = Id::ALL.iter().map(|id| id.name()).collect();
+    assert_eq!(names, NAMES);
+    assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), NAMES.len(), "a name is given twice");
+    for id in Id::ALL {
+        let kebab = |c: char| c.is_ascii_lowercase() || c == '-';
+        assert!(id.name().chars().all(kebab), "{}", id.name());
+        assert!(!id.place().is_empty(), "{}", id.name());
+        // What is ours has no place in the paper, unless the paper names it without stating it.
+        assert!(id.place() != "own derivation" || id.source() == Source::Derived, "{}", id.name());
+    }
+}
+
+/// Two agents that hear each other over a delay; their verdict on delays.
+fn delays(used: Vec<Delay>) -> (Answer, Rigour, Evidence) {
+    let edges = vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, used.len() - 1)];
+    let mut setup = masses(Exchange::Position, 2, Schedule::Fixed(edges), used);
+    setup.agents.truncate(2);
+    setup.network.agents = 2;
+    setup.time.end_s = 20.0;
+    let mut hypotheses = check(&setup).hypotheses;
+    hypotheses.retain(|hypothesis| hypothesis.id == Id::BoundedDelays);
+    assert_eq!(hypotheses.len(), 1);
+    let found = hypotheses.pop().unwrap();
+    (found.answer(), found.rigour(), found.evidence)
+}
+
+#[test]
+fn rigour_of_a_bound_is_that_of_its_weakest_part() {
+    let constant = || Delay::Constant { s: 0.1 };
+    let formula = Formula::new(vec![FormulaStep::Number(0.3)]).unwrap();
+    let enclosed = || Delay::Formula(BoundedFormula::new(formula.clone(), 20.0).into());
+    let packets = |most_in_a_row| {
+        let loss = Loss::Random { probability: 0.1 };
+        let link =
+            PacketLink { every_s: 0.02, first_s: 0.0, latency_s: 0.03, jitter_s: 0.02, loss, most_in_a_row, seed: 1 };
+        Delay::Packets(link.trace((0, 1), 20.0).unwrap().into())
+    };
+    let found = |used| {
+        let (answer, rigour, _) = delays(used);
+        (answer, rigour)
+    };
+    assert_eq!(found(vec![constant()]), (Answer::Holds, Rigour::Exact));
+    assert_eq!(found(vec![enclosed(), constant()]), (Answer::Holds, Rigour::Enclosed));
+    assert_eq!(found(vec![constant(), packets(Some(2))]), (Answer::Holds, Rigour::Exact));
+    assert_eq!(found(vec![packets(None), enclosed()]), (Answer::HoldsOnHorizon, Rigour::Given));
+    assert_eq!(found(vec![enclosed(), packets(None)]), (Answer::HoldsOnHorizon, Rigour::Given));
+    let (_, _, evidence) = delays(vec![constant(), enclosed()]);
+    let Evidence::Links(LinkEvidence::Delays { bound_s, unknown, .. }) = evidence else { panic!("{evidence:?}") };
+    assert!((bound_s, unknown.len()) == (0.3, 0));
+}
+
+#[test]
+fn evidence_names_the_two_agents_and_their_first_roots() {
+    let phase = |from, to| Phase { edges: vec![edge(from, to, 1.0, 0)], dwell_s: 1.0 };
+    let schedule = Schedule::Periodic(vec![phase(0, 1), phase(1, 0)]);
+    let agents = vec![arm(0, &[1.0, 2.0]), arm(1, &[3.0, 2.0])];
+    let report = check(&setup(agents, Exchange::PositionVelocity, schedule, vec![Delay::Constant { s: 0.1 }], 9.0));
+    let found = report.hypotheses.iter().find(|hypothesis| hypothesis.id == Id::CommonFirstRoot).unwrap();
+    let Evidence::Reference(ReferenceEvidence::FirstRoots([(a, kappa_a), (b, kappa_b)])) = &found.evidence else {
+        panic!("{found:?}")
+    };
+    assert_eq!([(a.index, &*a.name, *kappa_a), (b.index, &*b.name, *kappa_b)], [(0, "arm-1", 1.0), (1, "arm-2", 3.0)]);
+    assert_eq!((found.id.source(), found.id.place()), (Source::Corrected("E1"), "Theorem 3"));
+    assert_eq!(report.theorem, Theorem::Theorem3Velocities { order: 2 });
+    assert_eq!(report.theorem.source().words(), "the paper as corrected (E1, E2)");
+}
+
+#[test]
+fn thm8_the_answer_about_the_gain_follows_from_its_bounds() {
+    let gain = |seen, on_run, for_ever| {
+        let evidence = FollowingEvidence::Gain { gamma: 2.0, seen, on_run, for_ever, end_s: 9.0 };
+        let evidence = Evidence::from(evidence);
+        (evidence.answer(), evidence.rigour())
+    };
+    assert_eq!(gain(1.0, 1.5, 1.9), (Answer::Holds, Rigour::Enclosed));
+    assert_eq!(gain(1.0, 1.5, 2.0), (Answer::HoldsOnHorizon, Rigour::Enclosed));
+    assert_eq!(gain(1.0, 2.0, f64::INFINITY), (Answer::NotCovered, Rigour::Sampled));
+    assert_eq!(gain(2.0, 1.5, 1.9), (Answer::Violated, Rigour::Sampled));
+}
+
+#[test]
+fn reference_dynamics_with_accelerations_want_a_graph_that_stays() {
+    let one = || vec![edge(0, 1, 1.0, 0), edge(1, 2, 1.0, 0)];
+    let delay = || vec![Delay::Constant { s: 0.1 }];
+    let answer = |schedule| {
+        let mut setup = masses(Exchange::Position, 2, schedule, delay());
+        setup.reference = ReferenceKind::PureIntegral;
+        let report = check(&setup);
+        assert_eq!((report.theorem.name(), report.theorem.source()), ("remark-3", Source::Paper));
+        let found = report.hypotheses.iter().find(|hypothesis| hypothesis.id == Id::FixedGraph).unwrap();
+        assert_eq!(found.subject, Subject::Setup);
+        found.answer()
+    };
+    assert_eq!(answer(Schedule::Fixed(one())), Answer::Holds);
+    let phase = || Phase { edges: one(), dwell_s: 1.0 };
+    assert_eq!(answer(Schedule::Periodic(vec![phase(), phase()])), Answer::NotCovered);
+}
+
+#[test]
+fn what_was_drawn_is_given_and_what_repeats_is_exact() {
+    let tree = |schedule| {
+        let report = check(&masses(Exchange::Position, 2, schedule, vec![Delay::Constant { s: 0.1 }]));
+        let found = report.hypotheses.into_iter().find(|hypothesis| hypothesis.id == Id::SpanningTree).unwrap();
+        (found.answer(), found.rigour(), found.because().contains("to the end of the run"))
+    };
+    let (first, second) =
+        (|| vec![edge(0, 1, 1.0, 0), edge(1, 2, 1.0, 0)], || vec![edge(2, 3, 1.0, 0), edge(3, 4, 1.0, 0)]);
+    let random = |graphs| Schedule::Random { graphs, dwell_s: [0.1, 0.2], seed: 1 };
+    let periodic =
+        |graphs: Vec<_>| Schedule::Periodic(graphs.into_iter().map(|edges| Phase { edges, dwell_s: 0.2 }).collect());
+    assert_eq!(tree(random(vec![first(), second()])), (Answer::HoldsOnHorizon, Rigour::Given, false));
+    assert_eq!(tree(random(vec![first(), first()])), (Answer::Violated, Rigour::Given, true));
+    assert_eq!(tree(periodic(vec![first(), second()])), (Answer::Holds, Rigour::Exact, false));
+    assert_eq!(tree(periodic(vec![first(), first()])), (Answer::Violated, Rigour::Exact, false));
+}

@@ -1,0 +1,165 @@
+//! Every hypothesis and every theorem that `check` knows is shown by a shipped scenario, or by one with a change.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::collections::BTreeSet;
+
+use forwardstep::check::hypothesis::{Evidence, KindEvidence, Subject};
+use forwardstep::check::{Answer, Id, Report, Rigour, Theorem, check};
+use forwardstep::core::controller::ParameterBounds;
+use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
+use forwardstep::sim::{Adaptive, ReferenceKind, Setup, TaskSpaceLaw};
+
+fn shipped(name: &str) -> Setup {
+    open_scenario(name).unwrap_or_else(|error| panic!("{error}")).setup
+}
+
+/// An arm whose lengths have bounds.
+fn bounded_lengths(upper: f64) -> Setup {
+    let mut setup = shipped("theorem-6");
+    let bounds = ParameterBounds { lower: vec![0.5; 2], upper: vec![upper; 2], margin: 0.01 };
+    assert!(setup.agents[0].change_law(|law: &mut TaskSpaceLaw| law.bounds = Some(bounds)));
+    setup
+}
+
+/// Chains that would follow targets of their own.
+fn tracking_chains() -> Setup {
+    let mut setup = shipped("framework");
+    setup.reference = ReferenceKind::Tracking;
+    setup
+}
+
+/// An arm and a spacecraft, each with its target.
+fn arm_and_spacecraft() -> Setup {
+    let mut setup = shipped("theorem-6");
+    setup.agents.extend(shipped("theorem-7").agents);
+    setup
+}
+
+fn reports() -> Vec<Report> {
+    let changed = [bounded_lengths(1.5), tracking_chains(), arm_and_spacecraft()];
+    let shipped = SHIPPED_SCENARIOS.iter().map(|scenario| shipped(scenario.name));
+    shipped.chain(changed).map(|setup| check(&setup)).collect()
+}
+
+#[test]
+fn every_hypothesis_and_every_theorem_is_shown_by_some_setup() {
+    let reports = reports();
+    let hypotheses = || reports.iter().flat_map(|report| &report.hypotheses);
+    let shown: BTreeSet<Id> = hypotheses().map(|hypothesis| hypothesis.id).collect();
+    let missing: Vec<&str> = Id::ALL.iter().filter(|id| !shown.contains(id)).map(|id| id.name()).collect();
+    assert!(missing.is_empty(), "nothing shows {missing:?}");
+
+    let theorems: BTreeSet<&str> = reports.iter().map(|report| report.theorem.name()).collect();
+    let names = [
+        "backstepping",
+        "chains-agree",
+        "chains-track",
+        "continuous-thrust",
+        "mixture",
+        "position-only-tracks",
+        "remark-12",
+        "remark-3",
+        "remark-7",
+        "swarm",
+        "targets",
+        "theorem-1",
+        "theorem-2",
+        "theorem-3-first-order",
+        "theorem-3-positions",
+        "theorem-3-velocities",
+        "theorem-4",
+        "theorem-5",
+        "theorem-6",
+        "theorem-7",
+        "theorem-8",
+        "theorem-9",
+    ];
+    assert_eq!(theorems, names.into());
+    for hypothesis in hypotheses() {
+        let (requires, because) = (hypothesis.requires(), hypothesis.because());
+        assert!(!requires.contains('…') && !requires.is_empty() && !because.is_empty(), "{hypothesis:?}");
+        assert_eq!(hypothesis.answer() == Answer::Watched, hypothesis.rigour() == Rigour::Watched, "{hypothesis:?}");
+    }
+}
+
+#[test]
+fn thm6_lengths_outside_their_bounds_are_named_with_the_agent() {
+    let found = |upper| {
+        let report = check(&bounded_lengths(upper));
+        report.hypotheses.into_iter().find(|hypothesis| hypothesis.id == Id::LengthsWithinBounds).unwrap()
+    };
+    let inside = found(1.5);
+    assert_eq!(inside.evidence, Evidence::Kind(KindEvidence::LengthsInside));
+    assert!(matches!(&inside.subject, Subject::Agent(agent) if (agent.index, &*agent.name) == (0, "arm")));
+    let outside = found(0.9);
+    assert_eq!(outside.answer(), Answer::NotCovered);
+    let Evidence::Kind(KindEvidence::LengthOutside { name: Some(name), value }) = &outside.evidence else {
+        panic!("{outside:?}")
+    };
+    assert_eq!(*value, 1.0);
+    assert_eq!(outside.because(), format!("{name} is 1, which is outside"));
+}
+
+#[test]
+fn targets_of_different_kinds_fall_under_no_single_theorem() {
+    let report = check(&arm_and_spacecraft());
+    assert_eq!((report.theorem, report.promises.as_str()), (Theorem::Targets, "every agent reaches its own target"));
+    let has = |id| report.hypotheses.iter().any(|hypothesis| hypothesis.id == id);
+    assert!(has(Id::TaskSpaceGains) && has(Id::AttitudeGains) && !has(Id::OneKind));
+}
+
+#[test]
+fn every_law_wants_as_many_derivatives_of_a_target_as_it_uses() {
+    let wanted = |setup: &Setup| -> Vec<usize> {
+        let report = check(setup);
+        let subjects = report.hypotheses.into_iter().filter(|hypothesis| hypothesis.id == Id::BoundedTarget);
+        let derivatives = subjects.map(|hypothesis| match hypothesis.subject {
+            Subject::Targets { derivatives, .. } | Subject::Offsets { derivatives, .. } => derivatives,
+            other => panic!("{other:?}"),
+        });
+        derivatives.collect()
+    };
+    let of = |name| wanted(&shipped(name));
+    assert_eq!(["without-velocity", "theorem-6", "theorem-7", "formation"].map(of), [[3], [2], [2], [4]]);
+    // Chains want as many as their reference dynamics have roots, (46) one less than (50), arms under (6)–(7) two.
+    let offset = shipped("formation").agents[0].target.clone();
+    let moved = |mut setup: Setup| {
+        setup.agents.iter_mut().for_each(|agent| agent.target.clone_from(&offset));
+        let mut roots: Vec<usize> = setup.agents.iter().map(|agent| agent.roots_per_s.len()).collect();
+        roots.sort_unstable();
+        roots.dedup();
+        (wanted(&setup), roots)
+    };
+    let (chains, roots) = moved(shipped("framework"));
+    assert!(chains == roots && roots.len() > 1, "{chains:?} {roots:?}");
+    assert_eq!(moved(shipped("thrust-continuous")).0, [3]);
+    assert_eq!(moved(shipped("theorem-3-24-order-4")).0, [2]);
+}
+
+#[test]
+fn vehicles_and_rotorcraft_say_the_same_of_their_gains_once() {
+    let mut setup = shipped("theorem-4");
+    let bodies = shipped("formation").agents;
+    setup.agents[0] = bodies[0].clone();
+    let report = check(&setup);
+    let count = |id| report.hypotheses.iter().filter(|hypothesis| hypothesis.id == id).count();
+    assert_eq!([Id::ThrustGains, Id::AngularVelocity, Id::OneKind].map(count), [1, 1, 0]);
+    assert_eq!(report.theorem, Theorem::Theorem4);
+    // The same of chains of another order: they need not have one.
+    let chains = check(&shipped("framework"));
+    assert!(!chains.hypotheses.iter().any(|hypothesis| hypothesis.id == Id::CommonOrder));
+}
+
+#[test]
+fn thm9_from_an_estimate_of_zero_is_said_to_be_slow() {
+    let mut setup = shipped("theorem-9");
+    let mut slow = |start: f64| {
+        for agent in &mut setup.agents {
+            assert!(agent.change_law(|law: &mut Adaptive| law.estimate_start.fill(start)));
+        }
+        let report = check(&setup);
+        let shared = report.hypotheses.iter().find(|hypothesis| hypothesis.id == Id::SharedDesign).unwrap();
+        shared.because().contains("converges very slowly")
+    };
+    assert_eq!([0.0, 1.0].map(&mut slow), [true, false]);
+}
