@@ -53,6 +53,8 @@ pub enum About {
     Coupling,
     OneKind,
     Measured,
+    Manipulability,
+    Derivative,
 }
 
 impl About {
@@ -92,6 +94,8 @@ impl About {
             About::Coupling => "k λ > β",
             About::OneKind => "of the kind that one theorem",
             About::Measured => "q and q̇ are measured",
+            About::Manipulability => "manipulability gain λ",
+            About::Derivative => "has a derivative that can be measured",
         }
     }
 }
