@@ -154,8 +154,8 @@ fn prop_a_swarm_needs_the_coupling_that_its_derivation_asks_for() {
         };
         assert_eq!([said(1.0 + 1e-6), said(1.0 - 1e-6)], [Answer::Holds, Answer::NotCovered], "{low} {high}");
     }
-    // p² + p + 1 has no real roots.
-    let complex = led(both, FollowingDesign::Swarm { coupling: 1e3 }, [1.0, 1.0]);
+    // p² + p + ½ has no real roots.
+    let complex = led(both, FollowingDesign::Swarm { coupling: 1e3 }, [0.5, 1.0]);
     assert_eq!(answer(&complex, About::Coupling), Answer::NotCovered);
 }
 
@@ -200,16 +200,24 @@ fn eq_numbers_of_held_gains_are_those_of_the_worst_agent() {
         let found = sampled_damping(&setup).unwrap();
         assert!((found.value - 0.5).abs() < 1e-12 && found.agent == order[0], "{found:?}");
         assert_eq!(sampled_adaptation(&setup), None, "nobody adapts");
-        // Γ = ω² diag(scale) where it is a bandwidth.
-        let adaptive = |adaptation| Law::Adaptive { damping: Gain::Number(5.0), adaptation, estimate_start: vec![0.0] };
-        let value = |adaptation: Gain| {
-            let mut setup = setup.clone();
-            setup.agents[0].law = adaptive(adaptation);
-            sampled_adaptation(&setup).unwrap().value
-        };
-        let [none, one, two] = [1e-9, 1.0, 2.0].map(|omega| value(Gain::Bandwidth(omega)) - value(Gain::Number(1e-12)));
-        assert!(none.abs() < 1e-12 && (two - 4.0 * one).abs() < 1e-9 * two.abs().max(1e-9), "{none} {one} {two}");
     }
+}
+
+#[test]
+fn eq_a_bandwidth_of_the_adaptation_counts_squared() {
+    // Γ = ω² diag(scale); what is learnt goes with Γ, beside what the damping does.
+    let value = |omega: f64| {
+        let mut setup = pair([constant(0.0), constant(0.0)]);
+        let adaptation = Gain::Bandwidth(omega);
+        setup.agents[0] = common::arm(0, &[1.0, 2.0]);
+        setup.agents[0].law = Law::Adaptive { damping: Gain::Number(1e-9), adaptation, estimate_start: vec![0.0; 5] };
+        setup.control = control(0.0);
+        let found = sampled_adaptation(&setup).unwrap();
+        assert_eq!(found.agent, 0);
+        found.value
+    };
+    let (one, two) = (value(1.0), value(2.0));
+    assert!(one > 1e-3 && (two / one - 4.0).abs() < 1e-4, "{one} {two}");
 }
 
 #[test]
@@ -226,6 +234,11 @@ fn vehicles_are_told_apart_from_rotorcraft() {
     };
     assert_eq!(answer(&craft(None), About::AngularVelocity), Answer::NotCovered);
     assert_eq!(answers(&check(&craft(None)), About::Rotors), []);
+    // Of several floors the lowest is named.
+    let mut two = plain.clone();
+    two.agents.push(vehicle(design, Floor::Stops(0.5)));
+    two.network.agents = 2;
+    assert!(check(&two).hypotheses.iter().any(|h| h.answer == Answer::Watched && h.because.contains("0.5 N")));
     let rotors = Rotors { offset: 0.15, drag: 0.02, thrust: [0.2, 8.0] };
     assert_eq!(answer(&craft(Some(rotors)), About::Rotors), Answer::NotCovered);
 }
@@ -254,6 +267,8 @@ fn a_report_is_as_good_as_its_worst_answer() {
     assert_eq!(check(&setup).worst(), Answer::Violated);
     let order = [Answer::Holds, Answer::HoldsOnHorizon, Answer::Watched, Answer::NotCovered, Answer::Violated];
     assert!(order.is_sorted());
+    let words = order.map(Answer::words);
+    assert_eq!(words, ["holds", "holds on [0, end]", "watched during the run", "not covered by the paper", "violated"]);
 }
 
 #[test]
@@ -266,5 +281,5 @@ fn thm7_what_is_known_of_a_spacecraft_holds_and_a_path_is_looked_at_between_the_
     let rate = TAU / (2.0 * 20.0 / 2000.0);
     let crests = common::kinds::formula(&[Number(rate), Time, Multiply, FormulaStep::Cos]);
     let said = answer(&tracking(spacecraft(), target(crests)), About::Path);
-    assert!(matches!(said, Answer::NotCovered | Answer::Violated), "{said:?}");
+    assert_eq!(said, Answer::NotCovered, "no look sees it at zero, and no bound keeps it away");
 }
