@@ -7,17 +7,19 @@ use common::looped::polynomial as moved;
 use forwardstep_core::Gain;
 use forwardstep_core::agent::{Agent, Inbox, Limiter, StepError};
 use forwardstep_core::controller::{
-    Asked, AttitudeTracking, Controller, Floor, Following as ChainFollowing, Given, Guide, Immersion, Jet, Linearising,
-    ParameterBounds, PositionOnly, Stepped, TaskSpace, Thrust, ThrustDesign, Trouble,
+    AdaptiveBackstepping, Asked, AttitudeTracking, BacksteppingGains, Controller, Floor, Following as ChainFollowing,
+    Given, Guide, Immersion, Jet, Linearising, ParameterBounds, PositionOnly, Stepped, TaskSpace, Thrust, ThrustDesign,
+    Trouble,
 };
 use forwardstep_core::expression::Expression;
 use forwardstep_core::law::SlotineLi;
-use forwardstep_core::plant::{Formulas, Mechanical, Plant, Spacecraft, Wheel, Wheels, total};
+use forwardstep_core::plant::{CascadeTerms, Formulas, Mechanical, Plant, Spacecraft, Wheel, Wheels, total};
 use forwardstep_core::reference::{
     Choice, Consensus, Derived, Heard, Measured, Position, PositionVelocitySums, Reference, ReferenceOut, Sliding,
-    SmoothFollowing, polynomial,
+    SlidingInputs, SmoothFollowing, polynomial,
 };
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip, PointMass};
+use forwardstep_core::signal::Signal;
 
 const SIGN: Sliding =
     Sliding { derived: Derived::Acceleration, alpha: 1.3, beta: 0.6, gamma: 2.5, choice: Choice::Implicit };
@@ -293,4 +295,76 @@ fn eq_45_a_thrust_that_is_kept_above_a_floor_is_trouble_only_where_it_is_none() 
     assert_eq!([2.1, 1.0, 1e-3, 0.0, -1.0].map(|sigma| told(&law, sigma)), [false, false, false, true, true]);
     let Some(Trouble::Vanishes { value, floor, .. }) = law.trouble(&[-1.0, 0.0], &[]) else { panic!() };
     assert_eq!((value, floor), (-1.0, 0.0));
+}
+
+#[test]
+fn eq_119_a_sampled_agent_solves_its_sign_for_the_period_that_passed() {
+    let (h, degree) = (0.02, 1.5);
+    let mut agent = sampled_follower(Derived::ReferenceAcceleration);
+    // What is heard is close to its own state, so that the sign is not at its ends.
+    let at = |k: f64| ([0.3 + 1e-3 * k], [0.05]);
+    let mut seen = 0;
+    for k in 0..6 {
+        let (q, dq) = at(f64::from(k));
+        let sums = [degree * 0.3, degree * 0.05, degree * agent.told()[0]];
+        let inbox = Inbox { degree, sums: &sums };
+        agent.step(h * f64::from(k), Measured { q: &q, dq: &dq }, inbox).unwrap();
+        let told = [agent.told()[0]];
+        let own = [&q[..], &dq, &told];
+        let sums = [&sums[..1], &sums[1..2], &sums[2..]];
+        let mut e = [0.0];
+        let sign = Sliding { derived: Derived::ReferenceAcceleration, ..SIGN };
+        sign.argument(1, SlidingInputs { own, degree: &[degree], sums }, &mut e).unwrap();
+        let selection = *agent.reference_state().last().unwrap();
+        if k > 0 {
+            assert!((selection - sign.alone(e[0], degree, h)).abs() < 1e-12, "{selection} at sample {k}, e = {e:?}");
+            seen += usize::from(selection.abs() < 1.0 && selection != 0.0);
+        }
+    }
+    assert!(seen > 2, "signs between their ends: {seen}");
+}
+
+#[test]
+fn a_factor_of_a_chain_in_feedback_form_is_the_one_that_is_watched() {
+    let x = Expression::variable;
+    let known = vec![x(1) + x(1).power(3.0) * 0.2, Expression::number(0.0)];
+    let terms = CascadeTerms::new(known, vec![vec![x(0)], vec![x(0)]], Expression::number(1.0)).unwrap();
+    let guide = Guide::Consensus(Consensus::<Position>::new([(&[1.0, 2.0][..], 0.0)]).unwrap());
+    let gains = BacksteppingGains { gains_per_s: vec![1.0; 2], adaptation: vec![0.5], floor: 0.1 };
+    let law = AdaptiveBackstepping::new(&terms, guide, gains, vec![0.0]).unwrap();
+    let blocks = law.shown();
+    let at = total(&blocks[..blocks.iter().position(|(signal, _)| *signal == Signal::Divisor).unwrap()]);
+    let state = vec![0.0; total(&law.states())];
+    for k in 0..total(&blocks) {
+        let mut shown = vec![1.0; total(&blocks)];
+        shown[k] = 0.05;
+        assert_eq!(law.trouble(&state, &shown).is_some(), k == at, "entry {k}");
+    }
+}
+
+#[test]
+fn thm7_a_sampled_reference_attitude_stays_one() {
+    let resolve = |gain: Gain| gain.resolve(4, &[]).unwrap();
+    let law = AttitudeTracking {
+        inertia: INERTIA,
+        momentum_inertial: [0.0; 3],
+        wheels: wheels(None, None),
+        alpha: [0.5, 1.2],
+        filter: resolve(Gain::Number(1.0)),
+        damping: resolve(Gain::Number(3.0)),
+    };
+    let plant = Spacecraft::new(INERTIA, wheels(None, None), false).unwrap();
+    let mut start = vec![0.0; total(&law.states())];
+    // It turns fast, and steps are long.
+    start[..3].copy_from_slice(&[2.0, -1.0, 1.5]);
+    start[6] = 1.0;
+    let mut stepped = Stepped::new(law, &plant, 4, &start).unwrap();
+    let output = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let target = [[0.0; 5], [0.0; 5], [0.0; 5], [1.0, 0.0, 0.0, 0.0, 0.0]];
+    for k in 0..5 {
+        let inbox = Inbox { degree: 0.0, sums: &[0.0; 4] };
+        stepped.step(0.4 * f64::from(k), &output, inbox, &target).unwrap();
+        let norm: f64 = stepped.state()[3..7].iter().map(|q| q * q).sum();
+        assert!((norm - 1.0).abs() < 1e-14, "{norm}");
+    }
 }
