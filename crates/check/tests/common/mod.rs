@@ -1,5 +1,5 @@
 //! Setups, runs and columns that several tests of verdicts share.
-#![allow(clippy::unwrap_used, dead_code, unreachable_pub, reason = "each test uses its own part")]
+#![allow(clippy::unwrap_used, clippy::panic, dead_code, unreachable_pub, reason = "each test uses its own part")]
 
 pub mod kinds;
 
