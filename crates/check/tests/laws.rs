@@ -26,7 +26,7 @@ const Z: [f64; 3] = [0.0, 0.0, 1.0];
 fn regressor(kinds: [JointKind; 3], axes: [[f64; 3]; 3], uncertain: Uncertain) -> (Answer, Vec<usize>) {
     let setup = tracking(tree_tip(kinds, axes, uncertain), vec![rest_at(0.1), rest_at(0.2), rest_at(0.3)]);
     let report = check(&setup);
-    let named = |k: &usize| report.hypotheses.iter().any(|h| h.because.contains(&format!("length-{k}")));
+    let named = |k: &usize| report.hypotheses.iter().any(|h| h.because().contains(&format!("length-{k}")));
     (answer(&setup, About::Regressor), (0..9).filter(named).collect())
 }
 

@@ -1,5 +1,5 @@
 //! Setups, runs and columns that several tests of verdicts share.
-#![allow(clippy::unwrap_used, dead_code, unreachable_pub, reason = "each test uses its own part")]
+#![allow(clippy::unwrap_used, clippy::panic, dead_code, unreachable_pub, reason = "each test uses its own part")]
 
 pub mod kinds;
 
@@ -54,6 +54,8 @@ pub enum About {
     Coupling,
     OneKind,
     Measured,
+    Manipulability,
+    Derivative,
 }
 
 impl About {
@@ -93,6 +95,8 @@ impl About {
             About::Coupling => "k λ > β",
             About::OneKind => "of the kind that one theorem",
             About::Measured => "q and q̇ are measured",
+            About::Manipulability => "manipulability gain λ",
+            About::Derivative => "has a derivative that can be measured",
         }
     }
 }

@@ -234,6 +234,47 @@ mod tests {
     }
 
     #[test]
+    fn noise_of_positions_of_velocities_and_of_agents_is_independent() {
+        let kind = Sensors { position_noise: 1.0, velocity_noise: 1.0, seed: 3, ..Sensors::default() };
+        let mut sensors = [0, 1].map(|agent| Sensor::new(kind, agent, None));
+        let mut rows: Vec<[f64; 4]> = Vec::new();
+        for _ in 0..10_000 {
+            let mut row = [0.0; 4];
+            for (sensor, pair) in sensors.iter_mut().zip(row.chunks_exact_mut(2)) {
+                let (q, dq) = pair.split_at_mut(1);
+                sensor.measure(0.01, q, dq);
+            }
+            rows.push(row);
+        }
+        let n = rows.len() as f64;
+        for a in 0..4 {
+            for b in 0..4 {
+                let mean = rows.iter().map(|row| row[a] * row[b]).sum::<f64>() / n;
+                // Five standard errors.
+                let (want, error) = if a == b { (1.0, (2.0 / n).sqrt()) } else { (0.0, 1.0 / n.sqrt()) };
+                assert!((mean - want).abs() < 5.0 * error, "{a} and {b}: {mean}");
+            }
+        }
+    }
+
+    #[test]
+    fn positions_and_velocities_have_steps_and_noise_of_their_own() {
+        let measured = |kind: Sensors| {
+            let (mut q, mut dq) = ([0.26], [0.26]);
+            Sensor::new(kind, 0, None).measure(0.01, &mut q, &mut dq);
+            [q[0], dq[0]]
+        };
+        let exact = Sensors::default();
+        assert_eq!(measured(exact), [0.26, 0.26]);
+        assert_eq!(measured(Sensors { position_quantum: 0.5, ..exact }), [0.5, 0.26]);
+        assert_eq!(measured(Sensors { velocity_quantum: 0.125, ..exact }), [0.26, 0.25]);
+        let [q, dq] = measured(Sensors { position_noise: 0.1, ..exact });
+        assert!(q != 0.26 && dq == 0.26);
+        let [q, dq] = measured(Sensors { velocity_noise: 0.1, ..exact });
+        assert!(q == 0.26 && dq != 0.26);
+    }
+
+    #[test]
     fn quanta_are_rounded_to_the_nearest() {
         assert_eq!([0.26, -0.24, 0.74].map(|x| quantise(x, 0.5)), [0.5, 0.0, 0.5]);
         assert_eq!(quantise(0.123, 0.0), 0.123);

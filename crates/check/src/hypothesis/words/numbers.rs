@@ -26,3 +26,18 @@ pub(super) fn short(value: f64) -> f64 {
 pub(super) fn seconds(t_s: f64) -> f64 {
     (t_s * 1e6).round() / 1e6
 }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prop_bounds_are_rounded_away_from_what_they_bound() {
+        for value in [1.0, 1.0001, 1.2344, 1.2345, 9.9999, 2.0_f64.sqrt(), 4e-7, 12_345.6, 1e300, 3.0e-300] {
+            let up = rounded_up(value);
+            assert!(up >= value && up <= value * 1.0011, "{value}: {up}");
+            assert_eq!(rounded_up(up), up, "four digits are four digits");
+            assert!((rounded(value) - value).abs() <= 0.00051 * value);
+        }
+        assert_eq!([rounded_up(1.4141), rounded_up(0.0), rounded_up(f64::INFINITY)], [1.415, 0.0, f64::INFINITY]);
+    }
+}

@@ -1,0 +1,285 @@
+//! Verdicts at their edges: what holds for ever, what on the run, and what is said only where it applies.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+
+mod common;
+
+use std::sync::Arc;
+
+use common::kinds::{alone, blind_mass, rest_at, spacecraft, tracking, vehicle};
+use common::{About, answer, answers, edge, masses};
+use forwardstep_check::{Answer, NoPrediction, SampledDamping, check, predict, sampled_adaptation, sampled_damping};
+use forwardstep_core::Gain;
+use forwardstep_core::controller::Floor;
+use forwardstep_core::plant::Rotors;
+use forwardstep_core::reference::Choice;
+use forwardstep_sim::delay::Delay;
+use forwardstep_sim::formula::FormulaStep::{self, Add, Multiply, Number, Sin, Time};
+use forwardstep_sim::formula::{BoundedFormula, Formula};
+use forwardstep_sim::graph::Weight;
+use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
+use forwardstep_sim::schedule::{Phase, Schedule};
+use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::{Adaptive, Control, Exchange, Known, ReferenceKind, RotorcraftModel, Setup, ThrustKind};
+
+/// Two masses that hear each other through delays of their own.
+fn pair(delays: [Delay; 2]) -> Setup {
+    let edges = vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 1)];
+    let mut setup = masses(Exchange::Position, 2, Schedule::Fixed(edges), delays.to_vec());
+    setup.agents.truncate(2);
+    setup.network.agents = 2;
+    setup.time.end_s = 20.0;
+    setup
+}
+
+fn constant(s: f64) -> Delay {
+    Delay::Constant { s }
+}
+
+fn with_weights(weights: [Vec<FormulaStep>; 2]) -> Setup {
+    let mut setup = pair([constant(0.1), constant(0.1)]);
+    let Schedule::Fixed(edges) = &mut setup.network.schedule else { panic!() };
+    for (k, edge) in edges.iter_mut().enumerate() {
+        edge.weight = Weight::Formula(k);
+    }
+    let bounded = |steps: Vec<FormulaStep>| BoundedFormula::new(Formula::new(steps).unwrap(), 20.0);
+    setup.network.weights = weights.map(bounded).to_vec();
+    setup
+}
+
+/// c + sin(rate t).
+fn swing(c: f64, rate: f64) -> Vec<FormulaStep> {
+    vec![Number(c), Number(rate), Time, Multiply, Sin, Add]
+}
+
+/// 2 + sin(t²), which swings faster and faster.
+fn faster() -> Vec<FormulaStep> {
+    vec![Number(2.0), Time, Time, Multiply, Sin, Add]
+}
+
+#[test]
+fn a_delay_or_a_weight_that_turns_negative_after_the_run_holds_on_the_run_only() {
+    // On [0, 20] it is at least 0.5, and at t = 150 π it is −0.5.
+    let later = swing(0.5, 0.01);
+    let delay = Delay::Formula(BoundedFormula::new(Formula::new(later.clone()).unwrap(), 20.0).into());
+    assert_eq!(answer(&pair([constant(0.1), delay]), About::Delays), Answer::HoldsOnHorizon);
+    assert_eq!(answer(&with_weights([swing(2.0, 1.0), later]), About::Weights), Answer::HoldsOnHorizon);
+    assert_eq!(answer(&with_weights([swing(2.0, 1.0), swing(1.5, 0.3)]), About::Weights), Answer::Holds);
+}
+
+#[test]
+fn every_weight_has_to_be_uniformly_continuous() {
+    let (slow, fast) = (swing(2.0, 1.0), faster());
+    assert_eq!(answer(&with_weights([slow.clone(), slow.clone()]), About::Weights), Answer::Holds);
+    assert_eq!(answer(&with_weights([slow.clone(), fast.clone()]), About::Weights), Answer::HoldsOnHorizon);
+    assert_eq!(answer(&with_weights([fast, slow]), About::Weights), Answer::HoldsOnHorizon);
+}
+
+#[test]
+fn the_bound_of_delays_is_that_of_the_longest() {
+    for delays in [[constant(0.3), constant(0.1)], [constant(0.1), constant(0.3)]] {
+        let report = check(&pair(delays));
+        assert!(report.hypotheses.iter().any(|h| h.answer() == Answer::Holds && h.because().contains("exceeds 0.3 s")));
+    }
+}
+
+#[test]
+fn remark_4_is_spoken_of_where_there_is_a_gain() {
+    let said = |lambda: f64| {
+        let mut setup = pair([constant(0.1), constant(0.1)]);
+        setup.agents[1].manipulability = lambda;
+        answers(&check(&setup), About::Manipulability)
+    };
+    assert_eq!(said(0.0), []);
+    assert_eq!(said(0.7), [Answer::Holds]);
+}
+
+#[test]
+fn eq_aa6_a_derivative_that_a_filter_estimates_is_not_covered() {
+    let mut setup = pair([constant(0.1), constant(0.1)]);
+    assert_eq!(answers(&check(&setup), About::Derivative), []);
+    setup.reference = ReferenceKind::Backstepping { filter_s: 0.01, acceleration_limit: None };
+    assert_eq!(answer(&setup, About::Derivative), Answer::NotCovered);
+}
+
+/// Two masses behind a leader, vertex 2, under this schedule.
+fn led(schedule: Schedule, design: FollowingDesign, [alpha, beta]: [f64; 2]) -> Setup {
+    let mut setup = pair([constant(0.0), constant(0.0)]);
+    let trajectory = Trajectory::new(vec![rest_at(0.0), rest_at(0.0)]).unwrap();
+    let leader = Leader { name: "leader".into(), trajectory };
+    let following = Following { leader, design, alpha, beta, gain: 1.0, choice: Choice::Implicit, period_s: 1e-3 };
+    setup.reference = ReferenceKind::Following(Arc::new(following));
+    setup.exchange = Exchange::PositionVelocity;
+    setup.agents.iter_mut().for_each(|agent| agent.roots_per_s.clear());
+    setup.network.agents = 3;
+    setup.network.schedule = schedule;
+    setup
+}
+
+fn chain_of_three() -> Schedule {
+    Schedule::Fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0)])
+}
+
+#[test]
+fn thm8_a_leader_that_is_heard_at_random_reaches_everybody_on_the_run_only() {
+    let graphs = vec![vec![edge(2, 0, 1.0, 0)], vec![edge(0, 1, 1.0, 0)]];
+    let random = Schedule::Random { graphs: graphs.clone(), dwell_s: [0.1, 0.2], seed: 1 };
+    let said = |schedule: Schedule| {
+        let setup = led(schedule, FollowingDesign::Continuous, [1.0, 1.0]);
+        [answer(&setup, About::LeaderReaches), answer(&setup, About::LeaderFixed)]
+    };
+    assert_eq!(said(random), [Answer::HoldsOnHorizon, Answer::NotCovered]);
+    let phases: Vec<Phase> = graphs.into_iter().map(|edges| Phase { edges, dwell_s: 1.0 }).collect();
+    assert_eq!(said(Schedule::Periodic(phases)), [Answer::Holds, Answer::NotCovered]);
+    assert_eq!(said(chain_of_three()), [Answer::Holds, Answer::Holds]);
+    assert_eq!(said(Schedule::Fixed(vec![edge(2, 0, 1.0, 0)]))[0], Answer::Violated);
+    let setup = led(chain_of_three(), FollowingDesign::Continuous, [1.0, 1.0]);
+    assert_eq!(predict(&setup), Err(NoPrediction::Leader));
+}
+
+#[test]
+fn prop_a_swarm_needs_the_coupling_that_its_derivation_asks_for() {
+    // With weights of one λ is (3 − √5)/2; at roots κ₀ = 0.5 and κ₁ = 2, β = 2.5, α = 1.
+    let lambda = 0.5 * (3.0 - 5.0_f64.sqrt());
+    let least = |low: f64, high: f64| {
+        let (alpha, beta) = (low * high, low + high);
+        (beta + low.powi(4) / (2.0 * (beta * beta - alpha) * high)) / lambda
+    };
+    let both = Schedule::Fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)]);
+    for (low, high) in [(0.5, 2.0), (1.0, 1.0), (3.0, 40.0)] {
+        let said = |part: f64| {
+            let design = FollowingDesign::Swarm { coupling: part * least(low, high) };
+            answer(&led(both.clone(), design, [low * high, low + high]), About::Coupling)
+        };
+        assert_eq!([said(1.0 + 1e-6), said(1.0 - 1e-6)], [Answer::Holds, Answer::NotCovered], "{low} {high}");
+    }
+    // p² + p + ½ has no real roots.
+    let complex = led(both, FollowingDesign::Swarm { coupling: 1e3 }, [0.5, 1.0]);
+    assert_eq!(answer(&complex, About::Coupling), Answer::NotCovered);
+}
+
+fn control(computation_delay_s: f64) -> Option<Control> {
+    Some(Control { sample_hz: 10.0, computation_delay_s, sensors: Default::default(), actuators: Default::default() })
+}
+
+/// The largest x for which s_{k+1} = (1 − x (1 − δ)) s_k − x δ s_{k−1} decays, and does so without overshooting.
+fn largest(late: f64, fits: impl Fn(&[f64]) -> bool) -> f64 {
+    let (mut low, mut high) = (0.0, 10.0);
+    for _ in 0..40 {
+        let x = 0.5 * (low + high);
+        let mut s = vec![1.0, 1.0 - x * (1.0 - late)];
+        for k in 1..4000 {
+            s.push((1.0 - x * (1.0 - late)) * s[k] - x * late * s[k - 1]);
+        }
+        if fits(&s) { low = x } else { high = x }
+    }
+    low
+}
+
+#[test]
+fn eq_held_damping_overshoots_and_is_unstable_where_it_is_said_to() {
+    for late in [0.0, 0.1, 0.25, 0.4, 0.6, 0.9, 1.0] {
+        let mut setup = pair([constant(0.0), constant(0.0)]);
+        setup.control = control(0.1 * late);
+        let SampledDamping { overshoots_above, unstable_above, .. } = sampled_damping(&setup).unwrap();
+        let unstable = largest(late, |s| s[s.len() - 1].abs() < 1.0);
+        assert!((unstable - unstable_above).abs() < 0.01, "{late}: {unstable} and {unstable_above}");
+        let overshoots = largest(late, |s| s.iter().all(|s| *s > -1e-12));
+        assert!((overshoots - overshoots_above).abs() < 0.01, "{late}: {overshoots} and {overshoots_above}");
+    }
+}
+
+#[test]
+fn eq_numbers_of_held_gains_are_those_of_the_worst_agent() {
+    // Masses of 1 kg and 2 kg under K = 5: λ_max(M⁻¹K) is 5 and 2.5.
+    for order in [[0, 1], [1, 0]] {
+        let mut setup = pair([constant(0.0), constant(0.0)]);
+        setup.agents = order.map(|k| setup.agents[k].clone()).to_vec();
+        setup.control = control(0.0);
+        let found = sampled_damping(&setup).unwrap();
+        assert!((found.value - 0.5).abs() < 1e-12 && found.agent == order[0], "{found:?}");
+        assert_eq!(sampled_adaptation(&setup), None, "nobody adapts");
+    }
+}
+
+#[test]
+fn eq_a_bandwidth_of_the_adaptation_counts_squared() {
+    // Γ = ω² diag(scale); what is learnt goes with Γ, beside what the damping does.
+    let value = |omega: f64| {
+        let mut setup = pair([constant(0.0), constant(0.0)]);
+        let adaptation = Gain::Bandwidth(omega);
+        setup.agents[0] = common::arm(0, &[1.0, 2.0]);
+        setup.agents[0].law =
+            Arc::new(Adaptive { damping: Gain::Number(1e-9), adaptation, estimate_start: vec![0.0; 5] });
+        setup.control = control(0.0);
+        let found = sampled_adaptation(&setup).unwrap();
+        assert_eq!(found.agent, 0);
+        found.value
+    };
+    let (one, two) = (value(1.0), value(2.0));
+    assert!(one > 1e-3 && (two / one - 4.0).abs() < 1e-4, "{one} {two}");
+}
+
+#[test]
+fn vehicles_are_told_apart_from_rotorcraft() {
+    let design = ThrustKind::Differentiable { alpha_star: 3.0, stiffness: 4.0 };
+    let plain = alone(vehicle(design, Floor::Stops(1.0)));
+    assert_eq!(answers(&check(&plain), About::AngularVelocity), []);
+    assert_eq!(answers(&check(&plain), About::Rotors), []);
+    let craft = |rotors| {
+        let mut setup = plain.clone();
+        setup.agents[0].robot.kind = Arc::new(RotorcraftModel { gravity: 9.81, inertia: Gain::Number(0.02), rotors });
+        setup.agents[0].start.rest = vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
+        setup
+    };
+    assert_eq!(answer(&craft(None), About::AngularVelocity), Answer::NotCovered);
+    assert_eq!(answers(&check(&craft(None)), About::Rotors), []);
+    // Of several floors the lowest is named.
+    let mut two = plain.clone();
+    two.agents.push(vehicle(design, Floor::Stops(0.5)));
+    two.network.agents = 2;
+    assert!(check(&two).hypotheses.iter().any(|h| h.answer() == Answer::Watched && h.because().contains("0.5 N")));
+    let rotors = Rotors { offset: 0.15, drag: 0.02, thrust: [0.2, 8.0] };
+    assert_eq!(answer(&craft(Some(rotors)), About::Rotors), Answer::NotCovered);
+}
+
+#[test]
+fn two_kinds_of_agents_are_not_of_one_theorem() {
+    let mut mixed = alone(blind_mass(1.0, 1.0));
+    mixed.agents[0].roots_per_s = vec![1.0, 2.0];
+    assert_eq!(answers(&check(&mixed), About::OneKind), []);
+    mixed.agents.push(mixed.agents[0].clone());
+    mixed.agents[1].law = Arc::new(Known { damping: Gain::Number(5.0) });
+    mixed.network.agents = 2;
+    assert_eq!(answer(&mixed, About::OneKind), Answer::NotCovered);
+    mixed.agents[0].law =
+        Arc::new(Adaptive { damping: Gain::Number(5.0), adaptation: Gain::Number(1.0), estimate_start: vec![0.0] });
+    assert_eq!(answers(&check(&mixed), About::OneKind), [], "known and unknown parameters are one kind");
+}
+
+#[test]
+fn a_report_is_as_good_as_its_worst_answer() {
+    let mut setup = pair([constant(0.1), constant(0.1)]);
+    assert_eq!(check(&setup).worst(), Answer::Holds);
+    setup.agents[0].enforce_limits = true;
+    assert_eq!(check(&setup).worst(), Answer::NotCovered);
+    setup.network.schedule = Schedule::Fixed(Vec::new());
+    assert_eq!(check(&setup).worst(), Answer::Violated);
+    let order = [Answer::Holds, Answer::HoldsOnHorizon, Answer::Watched, Answer::NotCovered, Answer::Violated];
+    assert!(order.is_sorted());
+    let words = order.map(Answer::words);
+    assert_eq!(words, ["holds", "holds on [0, end]", "watched during the run", "not covered by the paper", "violated"]);
+}
+
+#[test]
+fn thm7_what_is_known_of_a_spacecraft_holds_and_a_path_is_looked_at_between_the_looks() {
+    let target = |o| vec![rest_at(0.0), rest_at(0.0), rest_at(0.0), o];
+    let setup = tracking(spacecraft(), target(rest_at(1.0)));
+    assert_eq!(answer(&setup, About::Momentum), Answer::Holds);
+    // |cos(500 π t / 20)| is one at every look, 20 s / 2000 apart, if those are at its crests, and zero between them.
+    use core::f64::consts::TAU;
+    let rate = TAU / (2.0 * 20.0 / 2000.0);
+    let crests = common::kinds::formula(&[Number(rate), Time, Multiply, FormulaStep::Cos]);
+    let said = answer(&tracking(spacecraft(), target(crests)), About::Path);
+    assert_eq!(said, Answer::NotCovered, "no look sees it at zero, and no bound keeps it away");
+}
