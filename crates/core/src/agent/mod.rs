@@ -52,6 +52,7 @@ use thiserror::Error;
 use crate::law::{SlotineLi, SlotineLiOutput};
 use crate::reference::{Derived, Exchange, Heard, Measured, Reference, ReferenceOut, SlidingInputs};
 use crate::robot::{Lagrangian, TwoVelocity};
+use crate::signal::Signal;
 use crate::{Kernel, LengthError, dispatch};
 use hold::Hold;
 
@@ -80,7 +81,7 @@ pub struct Command<'a> {
     pub s: &'a [f64],
 }
 
-/// Why an agent could not step. Its state is what it was.
+/// Why an agent could not step. Its state is what it was, unless a variant says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum StepError {
     /// A slice of the wrong length.
@@ -94,13 +95,25 @@ pub enum StepError {
         /// The time of the sample before, s.
         last_s: f64,
     },
-    /// A measurement or a message that is not a number.
+    /// A measurement or a message that is not a number; or a command, and then the state has moved on.
     #[error("{what} has the entry {value}, which is not a finite number")]
     NotFinite {
         /// Which one.
         what: &'static str,
         /// The entry.
         value: f64,
+    },
+    /// The law divides by a number that has come too close to zero. The state has moved on all the same.
+    #[error("{} on axis {axis} is {value}, too close to zero: the law divides by it and means nothing within {floor}", .signal.name())]
+    Singular {
+        /// What it is.
+        signal: Signal,
+        /// Its axis.
+        axis: usize,
+        /// Its value.
+        value: f64,
+        /// How close it may come.
+        floor: f64,
     },
 }
 
@@ -142,8 +155,12 @@ pub struct Agent<R: Lagrangian<f64>, F> {
     limiter: Limiter,
     /// Time of the last sample, s.
     last_s: Option<f64>,
+    /// The actuators were told something else than the last torque, at this time, s.
+    overridden_s: Option<f64>,
     /// The reference state was set from outside.
     started: bool,
+    /// z(0), ż(0), …, as many as are wanted.
+    wanted: Vec<Vec<f64>>,
     state: Vec<f64>,
     theta_hat: Vec<f64>,
     /// What was measured and heard at the last sample.
@@ -218,7 +235,9 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
             law,
             limiter,
             last_s: None,
+            overridden_s: None,
             started: false,
+            wanted: Vec::new(),
             state: vec![0.0; n],
             theta_hat,
             held: Held {
@@ -270,6 +289,40 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
         Ok(())
     }
 
+    /// Lets the first sample set z(0), ż(0), … to `wanted`, as far as the dynamics leave them free; what is not given is as in
+    /// [`Agent::new`].
+    ///
+    /// # Errors
+    /// [`LengthError`] when there are more than the state has blocks besides a sign, or one has not an entry per axis.
+    pub fn start_with(&mut self, wanted: Vec<Vec<f64>>) -> Result<(), LengthError> {
+        let most = self.reference.vectors().saturating_sub(usize::from(self.reference.sliding().is_some()));
+        LengthError::check("start of the reference", most.min(wanted.len()), wanted.len())?;
+        for block in &wanted {
+            LengthError::check("start of the reference", self.held.q.len(), block.len())?;
+        }
+        self.wanted = wanted;
+        self.started = false;
+        Ok(())
+    }
+
+    /// What followed from the last sample; zeros before the first.
+    pub fn last(&self) -> Command<'_> {
+        let Out { z, dz, s, tau, .. } = &self.out;
+        Command { tau, z, dz, s }
+    }
+
+    /// Says that since `now_s` the actuators hold `tau` in place of the last torque, so that the next one changes no faster
+    /// from there than it may.
+    ///
+    /// # Errors
+    /// [`LengthError`] when it has not an entry per axis.
+    pub fn overridden(&mut self, now_s: f64, tau: &[f64]) -> Result<(), LengthError> {
+        LengthError::check("tau", self.limiter.axes(), tau.len())?;
+        self.limiter.hold(tau);
+        self.overridden_s = later(self.last_s, now_s);
+        Ok(())
+    }
+
     /// Takes the sample of time `now_s` and says what to do until the next one.
     ///
     /// The state is moved from the last sample to this one with the inputs of the last, over the time that really passed;
@@ -293,8 +346,8 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
             None => None,
         };
         let Agent { robot, scratch, reference, law, limiter, state, theta_hat, held, out, applied, hold, .. } = self;
-        let started = self.started;
-        dispatch(Refer { reference, hold, started, passed_s, measured, inbox, state, held, out })?;
+        let wanted = (!self.started).then_some(&self.wanted[..]);
+        dispatch(Refer { reference, hold, wanted, passed_s, measured, inbox, state, held, out })?;
         self.started = true;
         if let (Some(h), Some(_)) = (passed_s, &law.adaptation) {
             dispatch(Learn { robot, scratch, law, h, applied, theta_hat, held, out })?;
@@ -308,11 +361,16 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
         ] {
             kept.copy_from_slice(now);
         }
-        limiter.apply(passed_s, &mut out.tau);
+        limiter
+            .apply(self.overridden_s.take().map_or(passed_s, |from_s| Some((now_s - from_s).max(0.0))), &mut out.tau);
         self.last_s = Some(now_s);
-        let Out { z, dz, s, tau, .. } = &self.out;
-        Ok(Command { tau, z, dz, s })
+        Ok(self.last())
     }
+}
+
+/// `now_s` if it is a time after `last_s`, else `last_s`.
+pub(crate) fn later(last_s: Option<f64>, now_s: f64) -> Option<f64> {
+    if now_s.is_finite() && last_s.is_none_or(|last_s| now_s > last_s) { Some(now_s) } else { last_s }
 }
 
 /// Checks that all values are numbers.
@@ -327,7 +385,8 @@ pub(crate) fn finite(what: &'static str, values: &[f64]) -> Result<(), StepError
 struct Refer<'a, F> {
     reference: &'a F,
     hold: &'a mut Hold,
-    started: bool,
+    /// At the first sample, what z(0), ż(0), … shall be.
+    wanted: Option<&'a [Vec<f64>]>,
     passed_s: Option<f64>,
     measured: Measured<'a>,
     inbox: Inbox<'a>,
@@ -341,7 +400,7 @@ impl<F: Reference> Kernel for Refer<'_, F> {
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        let Refer { reference, hold, started, passed_s, measured, inbox, state, held, out } = self;
+        let Refer { reference, hold, wanted, passed_s, measured, inbox, state, held, out } = self;
         let m = held.q.len();
         if let Some(h) = passed_s {
             hold.advance(reference, &held.degree, h, state, &out.d_state)?;
@@ -360,9 +419,12 @@ impl<F: Reference> Kernel for Refer<'_, F> {
         held.sums.copy_from_slice(inbox.sums);
         let measured = Measured { q: &held.q, dq: &held.dq };
         let heard = Heard::new(&held.degree, &held.sums, m)?;
-        if !started {
+        if let Some(wanted) = wanted {
             out.d_state.fill(0.0);
             out.d_state[..m].copy_from_slice(&held.dq);
+            for (block, wanted) in out.d_state.chunks_exact_mut(m).zip(wanted) {
+                block.copy_from_slice(wanted);
+            }
             reference.start(m, measured, &out.d_state, heard, state)?;
         }
         let reference_out = ReferenceOut { z: &mut out.z, dz: &mut out.dz, d_state: &mut out.d_state };

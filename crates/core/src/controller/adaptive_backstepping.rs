@@ -173,6 +173,10 @@ impl Controller for AdaptiveBackstepping {
         shown
     }
 
+    fn reads(&self, signal: Signal) -> bool {
+        matches!(signal, Signal::Position | Signal::Coordinate(_))
+    }
+
     fn see<'a>(&self, output: &'a [f64]) -> Result<ChainMeasured<'a>, LengthError> {
         LengthError::check("output", self.order, output.len())?;
         Ok(ChainMeasured { x: output })

@@ -178,6 +178,10 @@ impl Controller for Immersion {
         self.following.shown(self.terms.order(), self.terms.parameters())
     }
 
+    fn reads(&self, signal: Signal) -> bool {
+        matches!(signal, Signal::Position | Signal::Velocity | Signal::Derivative(_))
+    }
+
     fn see<'a>(&self, output: &'a [f64]) -> Result<ChainMeasured<'a>, LengthError> {
         LengthError::check("output", self.terms.order(), output.len())?;
         Ok(ChainMeasured { x: output })

@@ -115,6 +115,10 @@ impl<T: Terms> Controller for Linearising<T> {
         self.following.shown(self.terms.order(), self.estimates())
     }
 
+    fn reads(&self, signal: Signal) -> bool {
+        matches!(signal, Signal::Position | Signal::Velocity | Signal::Derivative(_))
+    }
+
     fn see<'a>(&self, output: &'a [f64]) -> Result<ChainMeasured<'a>, LengthError> {
         LengthError::check("output", self.terms.order(), output.len())?;
         Ok(ChainMeasured { x: output })
