@@ -24,7 +24,7 @@ pub mod trajectory;
 pub mod vehicles;
 
 pub use chain::{ChainLaw, ChainModel, ChainStep};
-pub use closed_loop::{SetupError, validate};
+pub use closed_loop::{SetupError, recipe, recipes, validate};
 pub use network::Network;
 pub use recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal, Statistics};
 pub use setup::{

@@ -3,9 +3,10 @@
 //! - `fleet`: robots with their tracking laws, several at once.
 //! - `population`: agents of one kind, side by side in columns: reference dynamics, then the fleet.
 //! - `solo`: one agent by itself: any plant under any controller.
-//! - `sampler`: the digital controllers of a population, with their sensors.
+//! - `sampler`: sampled controllers with their sensors and actuators.
 //! - `sampling`: the instants at which they sample and act.
 //! - `pushes`: what acts on the robots from outside.
+//! - `recipes`: from agents to the recipes of their sampled controllers.
 //! - `references`: from agents to reference dynamics.
 //! - `guide`: the leader.
 //! - `sliding`: who sets the set-valued signs in continuous time.
@@ -23,6 +24,7 @@ mod guide;
 mod members;
 mod population;
 mod pushes;
+mod recipes;
 mod references;
 mod sampler;
 mod sampling;
@@ -34,4 +36,5 @@ mod valid;
 mod vehicles;
 
 pub(crate) use assemble::ClosedLoop;
+pub use recipes::{recipe, recipes};
 pub use valid::{SetupError, validate};

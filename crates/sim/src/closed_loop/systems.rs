@@ -1,21 +1,19 @@
 //! From agents to plants and controllers that stand by themselves: everything that is not a robot under (6)–(7).
 
 use forwardstep_core::LengthError;
-use forwardstep_core::agent::Limiter;
 use forwardstep_core::controller::{Controller, Guide, PositionOnly};
 use forwardstep_core::plant::{Mechanical, Plant, total};
 use forwardstep_core::reference::{Consensus, Position, polynomial};
 use forwardstep_core::robot::PointMass;
 
 use super::chains::chain;
-use super::members::sensor;
 use super::population::Columns;
 use super::single;
-use super::solo::{Digital, Solo, Target};
+use super::solo::{Solo, Target};
 use super::valid::SetupError;
 use super::vehicles;
 use crate::recording::Signal;
-use crate::setup::{AgentSetup, Control, Exchange, Law, ReferenceKind, RobotKind, Setup};
+use crate::setup::{AgentSetup, Exchange, Law, ReferenceKind, RobotKind, Setup};
 
 /// The agent number `agent` with its law.
 pub(super) fn system(setup: &Setup, agent: usize) -> Result<Box<dyn Columns>, SetupError> {
@@ -104,22 +102,14 @@ pub(super) fn solo<C: Controller>(
     };
     let torques: usize = plant.inputs().iter().filter(|(signal, _)| *signal == Signal::Torque).map(|(_, n)| n).sum();
     let effort_limits = effort_limits(own, torques)?;
-    let digital = match &setup.control {
-        None => None,
-        Some(control) => Some(Digital::new(
-            sensor(agent, setup, control)?,
-            limiter(own, control, torques)?,
-            1.0 / control.sample_hz,
-            control.actuators.torque_quantum,
-        )),
-    };
     // What a limit takes away is not what the ledger balances.
     let ledger = setup.solver.ledger && !own.enforce_limits;
-    Ok(Box::new(Solo::new(agent, plant, controller, target, effort_limits, digital, ledger)))
+    let sampled = setup.control.is_some();
+    Ok(Box::new(Solo::new(agent, plant, controller, target, effort_limits, sampled, ledger)))
 }
 
 /// The limits of the torques, if they are to be enforced.
-fn effort_limits(own: &AgentSetup, torques: usize) -> Result<Option<Vec<f64>>, SetupError> {
+pub(super) fn effort_limits(own: &AgentSetup, torques: usize) -> Result<Option<Vec<f64>>, SetupError> {
     // What is no torque of an axis is limited by the plant itself.
     if !own.enforce_limits || torques == 0 {
         return Ok(None);
@@ -132,28 +122,6 @@ fn effort_limits(own: &AgentSetup, torques: usize) -> Result<Option<Vec<f64>>, S
     LengthError::check("the effort limits", torques, limits.len())
         .map_err(|error| SetupError::Length { agent: own.name.clone(), error })?;
     Ok(Some(limits))
-}
-
-/// Limits of what a sampled controller asks for.
-fn limiter(own: &AgentSetup, control: &Control, torques: usize) -> Result<Limiter, SetupError> {
-    let limits = |given: &Option<Vec<f64>>, of_rates| {
-        let what = if of_rates { "the limit of torque rates" } else { "the limit of torques" };
-        let values = given.clone().unwrap_or_else(|| vec![f64::INFINITY; torques]);
-        LengthError::check(what, torques, values.len()).map_err(|error| SetupError::TorqueLimitCount {
-            agent: own.name.clone(),
-            of_rates,
-            error,
-        })?;
-        Ok::<_, SetupError>(values)
-    };
-    let mut limit = limits(&control.actuators.torque_limit, false)?;
-    let quantum = control.actuators.torque_quantum;
-    // A rounded torque must not exceed its limit either.
-    if quantum > 0.0 {
-        limit.iter_mut().for_each(|limit| *limit = quantum * (*limit / quantum).floor());
-    }
-    let rate = limits(&control.actuators.torque_rate_limit, true)?;
-    Limiter::new(limit, rate).map_err(|error| SetupError::Limiter { agent: own.name.clone(), error })
 }
 
 /// Checks how many roots an agent has.
