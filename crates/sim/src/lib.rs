@@ -26,9 +26,11 @@ pub mod vehicles;
 pub use chain::{ChainLaw, ChainModel, ChainStep};
 pub use closed_loop::{SetupError, recipe, recipes, validate};
 pub use network::Network;
-pub use recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal, Statistics};
+pub use recording::{
+    Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, SampleTaken, Signal, Statistics,
+};
 pub use setup::{
     Actuators, AgentSetup, AttitudeLaw, Axis, AxisUnit, Control, Exchange, Law, Method, ReferenceKind, RobotKind,
     RobotSetup, Sensors, Setup, Solver, Start, TaskSpaceLaw, TimeSpan, TipSetup, VelocitySensor,
 };
-pub use simulate::{recorded_columns, simulate};
+pub use simulate::{recorded_columns, simulate, simulate_samples};

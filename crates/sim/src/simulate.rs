@@ -8,7 +8,7 @@ use forwardstep_core::controller::Trouble;
 use crate::closed_loop::{ClosedLoop, SetupError};
 use crate::engine::{Integrator, Step};
 use crate::network::Network;
-use crate::recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal};
+use crate::recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, SampleTaken, Signal};
 use crate::schedule::Schedule;
 use crate::setup::Setup;
 
@@ -30,9 +30,23 @@ const SHORTEST_USEFUL_STEP_S: f64 = 1e-5;
 /// [`SetupError`] when the setup has no meaning; nothing was computed then. A run that breaks down is not an error: see
 /// [`Ending::BrokeDown`].
 pub fn simulate(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Result<Outcome, SetupError> {
+    simulate_samples(setup, observer, &mut |_| {})
+}
+
+/// The same, and hands every sample of every controller to `samples` once all agents have taken theirs, in no particular
+/// order of agents. Nothing is handed over when control is continuous.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_samples(
+    setup: &Setup,
+    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    samples: &mut dyn FnMut(SampleTaken<'_>),
+) -> Result<Outcome, SetupError> {
     let started = Instant::now();
     setup.network.lasts_until(setup.time.end_s)?;
     let mut closed_loop = ClosedLoop::new(setup)?;
+    closed_loop.watch(samples);
     let (ports, entries) = closed_loop.ports();
     let end_s = setup.time.end_s;
     // Messages of sampled controllers do not flow: nothing of the network enters the motion between two samples.

@@ -34,7 +34,7 @@ use super::following::{ChainError, ChainMeasured, Following, FollowingWork, posi
 use super::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::LengthError;
 use crate::expression::{Expression, Graph, Programme};
-use crate::plant::{Chain, Formulas, FormulasWork, Terms, total};
+use crate::plant::{Chain, Formulas, FormulasWork, Terms};
 use crate::reference::Position;
 use crate::signal::{Block, Signal};
 
@@ -194,7 +194,7 @@ impl Controller for Immersion {
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
-        LengthError::check("state", total(&self.states()), state.len())?;
+        LengthError::check("state", self.at() + self.terms.parameters(), state.len())?;
         let x = given.measured.x;
         self.following.start(self.terms.order(), x, wanted, state)?;
         self.programme.evaluate(x, &mut work.registers, &mut work.out)?;

@@ -41,6 +41,7 @@ use crate::{Kernel, LengthError, Scalar, dispatch};
 #[derive(Clone, Debug)]
 pub struct Mailbox {
     message_len: usize,
+    keep: Keep,
     senders: Vec<Sender>,
     /// Message by message.
     messages: Vec<f64>,
@@ -71,12 +72,34 @@ pub enum BeforeFirst {
     },
 }
 
+/// Which message of a sender stands.
+///
+/// ```
+/// # use forwardstep_core::sampled::{Arrival, BeforeFirst, Keep, Mailbox};
+/// let mut mailbox = Mailbox::new(1, vec![BeforeFirst::Silent])?;
+/// mailbox.set_weights(&[1.0])?;
+/// mailbox.keep(Keep::Last);
+/// mailbox.post(0.5, 0, 0.4, &[4.0])?;
+/// assert_eq!(mailbox.post(0.5, 0, 0.3, &[3.0])?, Arrival::Late);
+/// assert_eq!(mailbox.inbox(0.5).sums, [3.0]);
+/// # Ok::<(), forwardstep_core::sampled::MailboxError>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Keep {
+    /// The one with the latest stamp, whenever it came: what anybody wants of a real network.
+    #[default]
+    Newest,
+    /// The one that came last, however old it is: a delay T(t) that may grow faster than time, which the theory allows. A
+    /// message with the stamp of the one that stands is still repeated.
+    Last,
+}
+
 /// What became of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrival {
     /// It is the newest of its sender and stands from now on.
     Heard,
-    /// A newer one had come before it.
+    /// A newer one stood; it stands from now on only under [`Keep::Last`].
     Late,
     /// It was there already: another with this stamp.
     Repeated,
@@ -145,6 +168,7 @@ impl Mailbox {
         let silent = Sender { weight: 0.0, timeout_s: f64::INFINITY, stamp_s: None, counts: Counts::default() };
         let mut mailbox = Mailbox {
             message_len,
+            keep: Keep::Newest,
             messages: vec![0.0; message_len * senders.len()],
             sums: vec![0.0; message_len],
             senders: vec![silent; senders.len()],
@@ -159,6 +183,11 @@ impl Mailbox {
             mailbox.store(sender, stamp_s, &message);
         }
         Ok(mailbox)
+    }
+
+    /// Says which message of a sender stands; the newest unless told otherwise.
+    pub fn keep(&mut self, keep: Keep) {
+        self.keep = keep;
     }
 
     /// Sets the weights, 1/s, an entry per sender; zero for those that are not neighbours in this phase.
@@ -218,7 +247,7 @@ impl Mailbox {
             _ => (Arrival::Heard, &mut counts.heard),
         };
         *count = count.saturating_add(1);
-        if arrival == Arrival::Heard {
+        if arrival == Arrival::Heard || (arrival, self.keep) == (Arrival::Late, Keep::Last) {
             self.store(sender, stamp_s, message);
         }
         Ok(arrival)
@@ -248,7 +277,7 @@ impl Mailbox {
         taken: impl Fn(f64, f64) -> f64,
     ) -> Result<Inbox<'_>, MailboxError> {
         LengthError::check("own message", self.message_len, own.len())?;
-        let Mailbox { message_len, senders, messages, sums } = self;
+        let Mailbox { message_len, senders, messages, sums, .. } = self;
         sums.fill(0.0);
         let mut degree = 0.0;
         for (index, sender) in senders.iter().enumerate() {
@@ -296,7 +325,7 @@ impl Kernel for Gather<'_> {
 
     #[inline(always)]
     fn run(self) -> f64 {
-        let Mailbox { message_len, senders, messages, sums } = self.mailbox;
+        let Mailbox { message_len, senders, messages, sums, .. } = self.mailbox;
         sums.fill(0.0);
         let mut degree = 0.0;
         for (index, sender) in senders.iter().enumerate() {

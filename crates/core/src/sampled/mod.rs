@@ -25,7 +25,7 @@ mod recipe;
 mod safe;
 mod sensing;
 
-pub use mailbox::{Arrival, BeforeFirst, Counts, Mailbox, MailboxError};
+pub use mailbox::{Arrival, BeforeFirst, Counts, Keep, Mailbox, MailboxError};
 pub use recipe::{Assemble, EncoderFilter, Limits, Motion, Recipe, RecipeError, SafeCommand, StartState, Target};
 
 use crate::agent::{Inbox, StepError};

@@ -17,7 +17,7 @@ use super::sampling::Sampling;
 use super::sliding::{Place, Slider};
 use super::valid::{SetupError, validate};
 use crate::engine::{DelaySystem, Happened, Heard, Port};
-use crate::recording::Signal;
+use crate::recording::{SampleTaken, Signal};
 use crate::setup::{Exchange, Setup};
 
 /// All populations and where their blocks stand.
@@ -204,6 +204,13 @@ impl<'a> ClosedLoop<'a> {
     /// Who is in trouble in the state `x`, which has just been evaluated.
     pub(crate) fn trouble(&self, x: &[f64]) -> Option<(usize, Trouble)> {
         self.blocks.iter().find_map(|block| block.columns.trouble(&x[block.state.clone()]))
+    }
+
+    /// Hands every sample that is taken to `watch`.
+    pub(crate) fn watch(&mut self, watch: &'a mut dyn FnMut(SampleTaken<'_>)) {
+        if let Some(sampling) = &mut self.sampling {
+            sampling.watch(watch);
+        }
     }
 
     /// The recipes of the sampled controllers of all agents, in order.

@@ -10,6 +10,7 @@ use forwardstep_core::controller::Jet;
 use forwardstep_core::sampled::{Recipe, Sampled};
 
 use super::population::{Columns, Inputs};
+use super::sampler::Digital;
 use super::valid::SetupError;
 use crate::leader::Following;
 use crate::recording::Signal;
@@ -75,6 +76,8 @@ impl Columns for Guide {
     fn command(&mut self, now_s: f64, _: Inputs<'_>, x: &mut [f64]) {
         self.put(now_s, 0, x);
     }
+
+    fn taken(&self, _: &mut dyn FnMut(&Digital)) {}
 
     fn apply(&mut self) {}
 

@@ -62,6 +62,8 @@ pub(crate) trait Columns {
     fn sample(&mut self, control: &Control, controllers: Vec<Box<dyn Sampled>>);
     /// Steps the controllers at the sample of time `now_s` and puts their new state into `x`.
     fn command(&mut self, now_s: f64, inputs: Inputs<'_>, x: &mut [f64]);
+    /// Hands every agent under digital control to `each`.
+    fn taken(&self, each: &mut dyn FnMut(&Digital));
     /// Applies the torques that were commanded last.
     fn apply(&mut self);
     /// Brings the block `x`, which a step has just reached, back to its manifold.
@@ -420,6 +422,10 @@ where
         if let Some(sampler) = &mut self.sampler {
             sampler.command(now_s, inputs, &mut x[l.reference..l.ledger]);
         }
+    }
+
+    fn taken(&self, each: &mut dyn FnMut(&Digital)) {
+        self.sampler.iter().flat_map(Sampler::agents).for_each(each);
     }
 
     fn apply(&mut self) {

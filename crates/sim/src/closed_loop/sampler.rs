@@ -12,10 +12,12 @@ use rand_chacha::ChaCha8Rng;
 
 use super::fleet::Drive;
 use super::population::Inputs;
+use crate::recording::SampleTaken;
 use crate::setup::{Control, Sensors};
 
 /// One agent: its sensors, its controller, and what its actuators hold.
 pub(crate) struct Digital {
+    agent: usize,
     sensor: Sensor,
     controller: Box<dyn Sampled>,
     torque_quantum: f64,
@@ -26,6 +28,10 @@ pub(crate) struct Digital {
     /// The plant's output as the sensors see it.
     output: Vec<f64>,
     measured: Vec<f64>,
+    /// What was sent and heard at the last sample.
+    message: Vec<f64>,
+    degree: f64,
+    sums: Vec<f64>,
     /// Where the torques stand among the inputs.
     torque: Range<usize>,
     commanded: Vec<f64>,
@@ -47,7 +53,12 @@ impl Digital {
         let inputs = controller.inputs();
         let at = inputs.iter().position(|(signal, _)| *signal == Signal::Torque);
         let torque = total(&inputs[..at.unwrap_or(0)]);
+        let message = || vec![0.0; controller.message_len()];
         Digital {
+            agent,
+            message: message(),
+            degree: 0.0,
+            sums: message(),
             sensor: Sensor::new(control.sensors, agent),
             torque_quantum: control.actuators.torque_quantum,
             axes: [count(0, Signal::Position), count(1, Signal::Velocity)],
@@ -66,6 +77,19 @@ impl Digital {
         &*self.controller
     }
 
+    /// The last sample.
+    pub(crate) fn taken(&self, sample: u64, now_s: f64) -> SampleTaken<'_> {
+        SampleTaken {
+            agent: self.agent,
+            sample,
+            now_s,
+            measured: &self.measured,
+            message: &self.message,
+            inbox: Inbox { degree: self.degree, sums: &self.sums },
+            command: &self.commanded,
+        }
+    }
+
     /// What the actuators hold.
     pub(crate) fn held(&self) -> &[f64] {
         &self.held
@@ -81,15 +105,19 @@ impl Digital {
             self.measured[from..from + n].copy_from_slice(&self.output[first..first + n]);
         }
         // Only numbers that are not finite cannot be sent; whoever hears this cannot step either.
-        if self.controller.message(now_s, &self.measured, sent).is_err() {
-            sent.fill(f64::NAN);
+        if self.controller.message(now_s, &self.measured, &mut self.message).is_err() {
+            self.message.fill(f64::NAN);
         }
+        sent.copy_from_slice(&self.message);
     }
 
     /// Steps the controller. Where that fails, since something is no longer finite, the command is not finite either: the run
     /// then breaks down there.
     pub(crate) fn command(&mut self, now_s: f64, degree: f64, sums: &[f64]) {
-        let inbox = Inbox { degree, sums: &sums[..self.controller.message_len().min(sums.len())] };
+        self.degree = degree;
+        let own = self.sums.len().min(sums.len());
+        self.sums[..own].copy_from_slice(&sums[..own]);
+        let inbox = Inbox { degree, sums: &self.sums };
         match self.controller.step(now_s, &self.measured, inbox) {
             Ok(()) => self.commanded.copy_from_slice(self.controller.command()),
             // The run ends by what the law says of itself.
@@ -207,6 +235,11 @@ impl Sampler {
             give(n, i, controller.diagnostics(Signal::Reference(1)).unwrap_or_default(), &mut self.dz);
             give(n, i, controller.state(), state);
         }
+    }
+
+    /// The agents with their last samples.
+    pub(crate) fn agents(&self) -> &[Digital] {
+        &self.agents
     }
 
     /// Hands the commands to the actuators.

@@ -328,6 +328,10 @@ impl<C: Controller> Columns for Solo<C> {
         }
     }
 
+    fn taken(&self, each: &mut dyn FnMut(&Digital)) {
+        self.digital.iter().for_each(each);
+    }
+
     fn apply(&mut self) {
         if let Some(digital) = &mut self.digital {
             digital.apply();
