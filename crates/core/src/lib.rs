@@ -26,6 +26,7 @@ mod linear;
 pub mod plant;
 pub mod reference;
 pub mod robot;
+pub mod sampled;
 mod scalar;
 pub mod signal;
 mod trig;

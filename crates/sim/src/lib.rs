@@ -30,14 +30,15 @@ pub use agents::{
     VehicleModel,
 };
 pub use build::run;
-pub use closed_loop::{Assembly, Block, SetupError, VelocityQuantity, validate};
+pub use closed_loop::{Assembly, Block, SetupError, VelocityQuantity, recipe, recipes, validate};
 pub use network::Network;
 pub use recording::{
-    Breakdown, BreakdownCause, Column, Ending, GainRates, Outcome, Progress, Recording, Signal, Statistics, Stiffness,
+    Breakdown, BreakdownCause, Column, Ending, GainRates, Outcome, Progress, Recording, SampleTaken, Signal,
+    Statistics, Stiffness,
 };
 pub use setup::{
     Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Method, ReferenceKind, RobotSetup, Sensors, Setup,
     Solver, Start, TimeSpan, VelocitySensor,
 };
-pub use simulate::{recorded_columns, simulate};
+pub use simulate::{recorded_columns, simulate, simulate_samples};
 pub use system::{ActuatorLimits, Attachments, Interface, Law, ReferenceFamily, Robot};

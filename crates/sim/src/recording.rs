@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use forwardstep_core::agent::Inbox;
 pub use forwardstep_core::signal::Signal;
 
 /// The tables of a run, column by column.
@@ -25,6 +26,25 @@ pub struct Column {
     pub axis: usize,
     /// One value per row.
     pub values: Vec<f64>,
+}
+
+/// What the controller of one agent took and gave at one sample: all that it takes to step it again elsewhere.
+#[derive(Clone, Copy, Debug)]
+pub struct SampleTaken<'a> {
+    /// Index of the agent.
+    pub agent: usize,
+    /// Number of the sample, from zero.
+    pub sample: u64,
+    /// Its time, s.
+    pub now_s: f64,
+    /// What was measured, noise and rounding included, as [`forwardstep_core::sampled::Sampled::measures`] has it.
+    pub measured: &'a [f64],
+    /// What was sent.
+    pub message: &'a [f64],
+    /// What was heard.
+    pub inbox: Inbox<'a>,
+    /// What was commanded, before the actuators round it; not-a-number where the step failed.
+    pub command: &'a [f64],
 }
 
 /// A finished, broken or interrupted run.

@@ -7,7 +7,9 @@ use forwardstep_core::controller::Trouble;
 use crate::closed_loop::{ClosedLoop, SetupError};
 use crate::engine::{Failure, FailureCause, Integrator, Step};
 use crate::network::Network;
-use crate::recording::{Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, Signal, Stiffness};
+use crate::recording::{
+    Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, SampleTaken, Signal, Stiffness,
+};
 use crate::setup::Setup;
 
 /// Rows are made room for in chunks of this many.
@@ -28,8 +30,22 @@ const SHORTEST_USEFUL_STEP_S: f64 = 1e-5;
 /// [`SetupError`] when the setup has no meaning; nothing was computed then. A run that breaks down is not an error: see
 /// [`Ending::BrokeDown`].
 pub fn simulate(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Result<Outcome, SetupError> {
+    simulate_samples(setup, observer, &mut |_| {})
+}
+
+/// The same, and hands every sample of every controller to `samples` once all agents have taken theirs, in no particular
+/// order of agents. Nothing is handed over when control is continuous.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_samples(
+    setup: &Setup,
+    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    samples: &mut dyn FnMut(SampleTaken<'_>),
+) -> Result<Outcome, SetupError> {
     setup.network.lasts_until(setup.time.end_s)?;
     let mut closed_loop = ClosedLoop::new(setup)?;
+    closed_loop.watch(samples);
     let (ports, entries) = closed_loop.ports();
     let end_s = setup.time.end_s;
     // Messages of sampled controllers do not flow: nothing of the network enters the motion between two samples.

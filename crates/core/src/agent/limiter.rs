@@ -76,6 +76,13 @@ impl Limiter {
             *tau = torque;
         }
     }
+
+    /// Takes `torque` for the last one.
+    pub fn hold(&mut self, torque: &[f64]) {
+        for (last, torque) in self.last.iter_mut().zip(torque) {
+            *last = *torque;
+        }
+    }
 }
 
 #[cfg(test)]

@@ -37,23 +37,26 @@
 //! As h → 0 the loop becomes the continuous one, with an error proportional to h. An [`Agent`] knows no clock: it is told the
 //! time of its sample. The simulator steps this very struct, so what runs there is what runs on a robot.
 
+mod error;
 mod hold;
+mod kernels;
 mod limiter;
 mod velocity;
 
+pub use error::StepError;
+pub(crate) use error::{finite, later};
 pub use limiter::{Limiter, LimiterError};
 pub use velocity::{FilterError, VelocityFilter};
 
 use alloc::vec;
 use alloc::vec::Vec;
 
-use thiserror::Error;
-
-use crate::law::{SlotineLi, SlotineLiOutput};
-use crate::reference::{Derived, Exchange, Heard, Measured, Reference, ReferenceOut, SlidingInputs};
-use crate::robot::{Lagrangian, TwoVelocity};
-use crate::{Kernel, LengthError, dispatch};
+use crate::law::SlotineLi;
+use crate::reference::{Exchange, Measured, Reference};
+use crate::robot::Lagrangian;
+use crate::{LengthError, dispatch};
 use hold::Hold;
+use kernels::{Learn, Refer, Track};
 
 /// What an agent knows of its neighbours at one instant: the sums that a linear design needs.
 ///
@@ -78,30 +81,6 @@ pub struct Command<'a> {
     pub dz: &'a [f64],
     /// s = q̇ − z.
     pub s: &'a [f64],
-}
-
-/// Why an agent could not step. Its state is what it was.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum StepError {
-    /// A slice of the wrong length.
-    #[error(transparent)]
-    Length(#[from] LengthError),
-    /// Time did not move on.
-    #[error("the sample at {now_s} s does not come after the one at {last_s} s")]
-    Time {
-        /// The time handed over, s.
-        now_s: f64,
-        /// The time of the sample before, s.
-        last_s: f64,
-    },
-    /// A measurement or a message that is not a number.
-    #[error("{what} has the entry {value}, which is not a finite number")]
-    NotFinite {
-        /// Which one.
-        what: &'static str,
-        /// The entry.
-        value: f64,
-    },
 }
 
 /// One robot's controller: reference dynamics and tracking law, stepped at samples.
@@ -142,8 +121,12 @@ pub struct Agent<R: Lagrangian<f64>, F> {
     limiter: Limiter,
     /// Time of the last sample, s.
     last_s: Option<f64>,
+    /// The actuators were told something else than the last torque, at this time, s.
+    overridden_s: Option<f64>,
     /// The reference state was set from outside.
     started: bool,
+    /// z(0), ż(0), …, as many as are wanted.
+    wanted: Vec<Vec<f64>>,
     state: Vec<f64>,
     theta_hat: Vec<f64>,
     /// What was measured and heard at the last sample.
@@ -218,7 +201,9 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
             law,
             limiter,
             last_s: None,
+            overridden_s: None,
             started: false,
+            wanted: Vec::new(),
             state: vec![0.0; n],
             theta_hat,
             held: Held {
@@ -270,6 +255,40 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
         Ok(())
     }
 
+    /// Lets the first sample set z(0), ż(0), … to `wanted`, as far as the dynamics leave them free; what is not given is as in
+    /// [`Agent::new`].
+    ///
+    /// # Errors
+    /// [`LengthError`] when there are more than the state has blocks besides a sign, or one has not an entry per axis.
+    pub fn start_with(&mut self, wanted: Vec<Vec<f64>>) -> Result<(), LengthError> {
+        let most = self.reference.vectors().saturating_sub(usize::from(self.reference.sliding().is_some()));
+        LengthError::check("start of the reference", most.min(wanted.len()), wanted.len())?;
+        for block in &wanted {
+            LengthError::check("start of the reference", self.held.q.len(), block.len())?;
+        }
+        self.wanted = wanted;
+        self.started = false;
+        Ok(())
+    }
+
+    /// What followed from the last sample; zeros before the first.
+    pub fn last(&self) -> Command<'_> {
+        let Out { z, dz, s, tau, .. } = &self.out;
+        Command { tau, z, dz, s }
+    }
+
+    /// Says that since `now_s` the actuators hold `tau` in place of the last torque, so that the next one changes no faster
+    /// from there than it may.
+    ///
+    /// # Errors
+    /// [`LengthError`] when it has not an entry per axis.
+    pub fn overridden(&mut self, now_s: f64, tau: &[f64]) -> Result<(), LengthError> {
+        LengthError::check("tau", self.limiter.axes(), tau.len())?;
+        self.limiter.hold(tau);
+        self.overridden_s = later(self.last_s, now_s);
+        Ok(())
+    }
+
     /// Takes the sample of time `now_s` and says what to do until the next one.
     ///
     /// The state is moved from the last sample to this one with the inputs of the last, over the time that really passed;
@@ -293,8 +312,8 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
             None => None,
         };
         let Agent { robot, scratch, reference, law, limiter, state, theta_hat, held, out, applied, hold, .. } = self;
-        let started = self.started;
-        dispatch(Refer { reference, hold, started, passed_s, measured, inbox, state, held, out })?;
+        let wanted = (!self.started).then_some(&self.wanted[..]);
+        dispatch(Refer { reference, hold, wanted, passed_s, measured, inbox, state, held, out })?;
         self.started = true;
         if let (Some(h), Some(_)) = (passed_s, &law.adaptation) {
             dispatch(Learn { robot, scratch, law, h, applied, theta_hat, held, out })?;
@@ -308,133 +327,9 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
         ] {
             kept.copy_from_slice(now);
         }
-        limiter.apply(passed_s, &mut out.tau);
+        limiter
+            .apply(self.overridden_s.take().map_or(passed_s, |from_s| Some((now_s - from_s).max(0.0))), &mut out.tau);
         self.last_s = Some(now_s);
-        let Out { z, dz, s, tau, .. } = &self.out;
-        Ok(Command { tau, z, dz, s })
-    }
-}
-
-/// Checks that all values are numbers.
-pub(crate) fn finite(what: &'static str, values: &[f64]) -> Result<(), StepError> {
-    match values.iter().find(|value| !value.is_finite()) {
-        Some(value) => Err(StepError::NotFinite { what, value: *value }),
-        None => Ok(()),
-    }
-}
-
-/// The reference dynamics: from the last sample to this one, then z and ż.
-struct Refer<'a, F> {
-    reference: &'a F,
-    hold: &'a mut Hold,
-    started: bool,
-    passed_s: Option<f64>,
-    measured: Measured<'a>,
-    inbox: Inbox<'a>,
-    state: &'a mut [f64],
-    held: &'a mut Held,
-    out: &'a mut Out,
-}
-
-impl<F: Reference> Kernel for Refer<'_, F> {
-    type Output = Result<(), LengthError>;
-
-    #[inline(always)]
-    fn run(self) -> Self::Output {
-        let Refer { reference, hold, started, passed_s, measured, inbox, state, held, out } = self;
-        let m = held.q.len();
-        if let Some(h) = passed_s {
-            hold.advance(reference, &held.degree, h, state, &out.d_state)?;
-        }
-        // With ṡ held q̈ is ż + ṡ, and over the last period ṡ was what the velocity gained less what ż asked for.
-        let accelerates = reference.sliding().is_some_and(|sliding| sliding.derived == Derived::Acceleration);
-        for (k, told) in out.told.iter_mut().enumerate() {
-            *told = match passed_s {
-                Some(h) if accelerates => (measured.dq[k] - held.dq[k]) / h - out.dz[k],
-                _ => 0.0,
-            };
-        }
-        held.q.copy_from_slice(measured.q);
-        held.dq.copy_from_slice(measured.dq);
-        held.degree = [inbox.degree];
-        held.sums.copy_from_slice(inbox.sums);
-        let measured = Measured { q: &held.q, dq: &held.dq };
-        let heard = Heard::new(&held.degree, &held.sums, m)?;
-        if !started {
-            out.d_state.fill(0.0);
-            out.d_state[..m].copy_from_slice(&held.dq);
-            reference.start(m, measured, &out.d_state, heard, state)?;
-        }
-        let reference_out = ReferenceOut { z: &mut out.z, dz: &mut out.dz, d_state: &mut out.d_state };
-        reference.evaluate(m, measured, state, heard, reference_out)?;
-        let Some(sliding) = reference.sliding() else { return Ok(()) };
-        // ż does not depend on the sign where it is told.
-        for (told, dz) in out.told.iter_mut().zip(&out.dz) {
-            *told += dz;
-        }
-        let Some(h) = passed_s else { return Ok(()) };
-        let channel = |c: usize| held.sums.get(c * m..(c + 1) * m).unwrap_or_default();
-        let own = [&held.q[..], &held.dq, &out.told];
-        let inputs = SlidingInputs { own, degree: &held.degree, sums: [channel(0), channel(1), channel(2)] };
-        sliding.argument(m, inputs, &mut out.e)?;
-        let selection = state.len() - m;
-        for (selection, e) in state[selection..].iter_mut().zip(&out.e) {
-            *selection = sliding.alone(*e, held.degree[0], h);
-        }
-        let reference_out = ReferenceOut { z: &mut out.z, dz: &mut out.dz, d_state: &mut out.d_state };
-        reference.evaluate(m, measured, state, heard, reference_out)
-    }
-}
-
-/// (7) over the last period: the Y that was applied, with the s that came of it.
-struct Learn<'a, R: Lagrangian<f64>> {
-    robot: &'a R,
-    scratch: &'a mut R::Scratch,
-    law: &'a SlotineLi,
-    h: f64,
-    applied: &'a Applied,
-    theta_hat: &'a mut [f64],
-    held: &'a Held,
-    out: &'a mut Out,
-}
-
-impl<R: Lagrangian<f64>> Kernel for Learn<'_, R> {
-    type Output = Result<(), LengthError>;
-
-    #[inline(always)]
-    fn run(self) -> Self::Output {
-        let Learn { robot, scratch, law, h, applied: Applied { q, dq, z, dz }, theta_hat, held, out } = self;
-        for (s, (dq, z)) in out.s.iter_mut().zip(held.dq.iter().zip(&out.z)) {
-            *s = dq - z;
-        }
-        let motion = TwoVelocity { q, dq, z, dz };
-        robot.regressor_products(scratch, motion, theta_hat, &out.s, &mut out.tau, &mut out.yt_s)?;
-        law.adaptation_rate(&out.yt_s, &mut out.d_theta_hat);
-        for (estimate, rate) in theta_hat.iter_mut().zip(&out.d_theta_hat) {
-            *estimate += h * rate;
-        }
-        Ok(())
-    }
-}
-
-/// (5), (6) at this sample.
-struct Track<'a, R: Lagrangian<f64>> {
-    robot: &'a R,
-    scratch: &'a mut R::Scratch,
-    law: &'a SlotineLi,
-    theta_hat: &'a [f64],
-    held: &'a Held,
-    out: &'a mut Out,
-}
-
-impl<R: Lagrangian<f64>> Kernel for Track<'_, R> {
-    type Output = Result<(), LengthError>;
-
-    #[inline(always)]
-    fn run(self) -> Self::Output {
-        let Track { robot, scratch, law, theta_hat, held, out } = self;
-        let motion = TwoVelocity { q: &held.q, dq: &held.dq, z: &out.z, dz: &out.dz };
-        let law_out = SlotineLiOutput { s: &mut out.s, tau: &mut out.tau, yt_s: &mut out.yt_s };
-        law.output(robot, scratch, motion, theta_hat, law_out)
+        Ok(self.last())
     }
 }

@@ -50,19 +50,43 @@ impl VelocityFilter {
         Ok(VelocityFilter { cut_off_rad_s, last_q: vec![0.0; axes], velocity: vec![0.0; axes], fed: false })
     }
 
-    /// Takes the positions `q`, `passed_s` after the last ones, and returns the velocities.
+    /// Number of axes.
+    pub fn axes(&self) -> usize {
+        self.last_q.len()
+    }
+
+    /// Puts into `velocity` what [`VelocityFilter::feed`] would return, and takes nothing.
     ///
     /// # Errors
-    /// [`LengthError`] when `q` has the wrong length; nothing has changed then.
-    pub fn feed(&mut self, passed_s: f64, q: &[f64]) -> Result<&[f64], LengthError> {
+    /// [`LengthError`] when a slice has the wrong length.
+    pub fn peek(&self, passed_s: f64, q: &[f64], velocity: &mut [f64]) -> Result<(), LengthError> {
+        LengthError::check("velocity", self.last_q.len(), velocity.len())?;
+        velocity.copy_from_slice(&self.velocity);
+        self.advance(passed_s, q, velocity)
+    }
+
+    /// Moves `velocity` on from the last sample to one `passed_s` later.
+    fn advance(&self, passed_s: f64, q: &[f64], velocity: &mut [f64]) -> Result<(), LengthError> {
         LengthError::check("q", self.last_q.len(), q.len())?;
         if self.fed && passed_s > 0.0 {
             let a = libm::exp(-self.cut_off_rad_s * passed_s);
             for axis in 0..q.len() {
                 let slope = (q[axis] - self.last_q[axis]) / passed_s;
-                self.velocity[axis] = Scalar::mul_add(a, self.velocity[axis] - slope, slope);
+                velocity[axis] = Scalar::mul_add(a, velocity[axis] - slope, slope);
             }
         }
+        Ok(())
+    }
+
+    /// Takes the positions `q`, `passed_s` after the last ones, and returns the velocities.
+    ///
+    /// # Errors
+    /// [`LengthError`] when `q` has the wrong length; nothing has changed then.
+    pub fn feed(&mut self, passed_s: f64, q: &[f64]) -> Result<&[f64], LengthError> {
+        let mut velocity = core::mem::take(&mut self.velocity);
+        let fed = self.advance(passed_s, q, &mut velocity);
+        self.velocity = velocity;
+        fed?;
         self.fed = true;
         self.last_q.copy_from_slice(q);
         Ok(&self.velocity)

@@ -41,7 +41,7 @@ use super::steps::Steps;
 use super::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::LengthError;
 use crate::expression::Programme;
-use crate::plant::{Cascade, CascadeTerms, total};
+use crate::plant::{Cascade, CascadeTerms};
 use crate::reference::Position;
 use crate::signal::{Block, Signal};
 
@@ -173,6 +173,10 @@ impl Controller for AdaptiveBackstepping {
         shown
     }
 
+    fn reads(&self, signal: Signal) -> bool {
+        matches!(signal, Signal::Position | Signal::Coordinate(_))
+    }
+
     fn see<'a>(&self, output: &'a [f64]) -> Result<ChainMeasured<'a>, LengthError> {
         LengthError::check("output", self.order, output.len())?;
         Ok(ChainMeasured { x: output })
@@ -185,7 +189,7 @@ impl Controller for AdaptiveBackstepping {
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
-        LengthError::check("state", total(&self.states()), state.len())?;
+        LengthError::check("state", self.vectors() + self.parameters(), state.len())?;
         LengthError::check("x", self.order, given.measured.x.len())?;
         let (reference, theta_hat) = state.split_at_mut(self.vectors());
         reference.fill(0.0);

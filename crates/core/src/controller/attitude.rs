@@ -127,6 +127,10 @@ impl Controller for AttitudeTracking {
         ]
     }
 
+    fn reads(&self, signal: Signal) -> bool {
+        signal == Signal::Position
+    }
+
     fn see<'a>(&self, output: &'a [f64]) -> Result<AttitudeMeasured<'a>, LengthError> {
         LengthError::check("output", 7 + self.wheels.count(), output.len())?;
         let short = LengthError { what: "attitude", need: 4, got: output.len() };

@@ -34,7 +34,7 @@ use super::following::{ChainError, ChainMeasured, Following, FollowingWork, posi
 use super::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::LengthError;
 use crate::expression::{Expression, Graph, Programme};
-use crate::plant::{Chain, Formulas, FormulasWork, Terms, total};
+use crate::plant::{Chain, Formulas, FormulasWork, Terms};
 use crate::reference::Position;
 use crate::signal::{Block, Signal};
 
@@ -178,6 +178,10 @@ impl Controller for Immersion {
         self.following.shown(self.terms.order(), self.terms.parameters())
     }
 
+    fn reads(&self, signal: Signal) -> bool {
+        matches!(signal, Signal::Position | Signal::Velocity | Signal::Derivative(_))
+    }
+
     fn see<'a>(&self, output: &'a [f64]) -> Result<ChainMeasured<'a>, LengthError> {
         LengthError::check("output", self.terms.order(), output.len())?;
         Ok(ChainMeasured { x: output })
@@ -190,7 +194,7 @@ impl Controller for Immersion {
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
-        LengthError::check("state", total(&self.states()), state.len())?;
+        LengthError::check("state", self.at() + self.terms.parameters(), state.len())?;
         let x = given.measured.x;
         self.following.start(self.terms.order(), x, wanted, state)?;
         self.programme.evaluate(x, &mut work.registers, &mut work.out)?;

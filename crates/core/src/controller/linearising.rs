@@ -23,7 +23,7 @@ use alloc::vec::Vec;
 use super::following::{ChainError, ChainMeasured, Following, FollowingWork, positive};
 use super::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::LengthError;
-use crate::plant::{Chain, Terms, total};
+use crate::plant::{Chain, Terms};
 use crate::reference::Position;
 use crate::signal::{Block, Signal};
 
@@ -115,6 +115,10 @@ impl<T: Terms> Controller for Linearising<T> {
         self.following.shown(self.terms.order(), self.estimates())
     }
 
+    fn reads(&self, signal: Signal) -> bool {
+        matches!(signal, Signal::Position | Signal::Velocity | Signal::Derivative(_))
+    }
+
     fn see<'a>(&self, output: &'a [f64]) -> Result<ChainMeasured<'a>, LengthError> {
         LengthError::check("output", self.terms.order(), output.len())?;
         Ok(ChainMeasured { x: output })
@@ -127,7 +131,7 @@ impl<T: Terms> Controller for Linearising<T> {
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
-        LengthError::check("state", total(&self.states()), state.len())?;
+        LengthError::check("state", self.at() + self.estimates(), state.len())?;
         self.following.start(self.terms.order(), given.measured.x, wanted, state)?;
         state[self.at()..].copy_from_slice(&self.theta[..self.estimates()]);
         Ok(())

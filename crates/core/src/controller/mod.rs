@@ -33,6 +33,7 @@ pub use guide::{Guide, GuideError, GuideWork, Leads};
 pub use immersion::{Immersion, ImmersionWork};
 pub use linearising::Linearising;
 pub use position_only::{PositionMeasured, PositionOnly};
+pub(crate) use stepped::Lengths;
 pub use stepped::Stepped;
 pub use task_space::{ParameterBounds, TaskMeasured, TaskSpace};
 pub use thrust::{Floor, RateLoop, RotorcraftMeasured, Thrust, ThrustCascade, ThrustDesign, Yaw};
@@ -121,7 +122,7 @@ pub trait Controller: Clone + Send + Sync + 'static {
     /// What it may see; what is not in it cannot be read.
     type Measured<'a>: Copy;
     /// Working memory of one call.
-    type Scratch: Send;
+    type Scratch: Send + Sync;
 
     /// What it measures, in words, for people: `position`, `attitude`, ….
     const MEASURES: &'static [&'static str];
@@ -137,6 +138,9 @@ pub trait Controller: Clone + Send + Sync + 'static {
 
     /// What it tells of itself, block by block: references, estimates, errors.
     fn shown(&self) -> Vec<Block>;
+
+    /// Whether `signal` of the plant's output is something that it sees. What is not need not be measured.
+    fn reads(&self, signal: Signal) -> bool;
 
     /// The part of the plant's output that it sees.
     ///

@@ -120,6 +120,10 @@ impl Controller for PositionOnly {
         shown
     }
 
+    fn reads(&self, signal: Signal) -> bool {
+        signal == Signal::Position
+    }
+
     fn see<'a>(&self, output: &'a [f64]) -> Result<PositionMeasured<'a>, LengthError> {
         LengthError::check("output", 2 * self.axes, output.len())?;
         Ok(PositionMeasured { x: &output[..self.axes] })

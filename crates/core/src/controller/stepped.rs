@@ -7,7 +7,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{Asked, Controller, Given, Jet};
+use super::{Asked, Controller, Given, Jet, Trouble};
 use crate::LengthError;
 use crate::agent::{Inbox, StepError, finite};
 use crate::plant::{Plant, total};
@@ -21,6 +21,10 @@ pub struct Stepped<C: Controller> {
     controller: C,
     scratch: C::Scratch,
     last_s: Option<f64>,
+    /// The state has been set.
+    started: bool,
+    /// What z(0), ż(0), … shall be where the first sample sets it.
+    wanted: Vec<Vec<f64>>,
     state: Vec<f64>,
     held: Held,
     work: Work,
@@ -35,6 +39,21 @@ struct Held {
     degree: [f64; 1],
     sums: Vec<f64>,
     target: Vec<Jet>,
+}
+
+impl Held {
+    fn given<'a, C: Controller>(&'a self, controller: &C, target: &'a [Jet]) -> Result<Given<'a, C>, LengthError> {
+        let heard = Heard::new(&self.degree, &self.sums, self.sums.len() / C::Exchange::CHANNELS)?;
+        Ok(Given { measured: controller.see(&self.output)?, heard, target })
+    }
+}
+
+/// Numbers of a plant.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lengths {
+    pub(crate) axes: usize,
+    pub(crate) output: usize,
+    pub(crate) input: usize,
 }
 
 /// Working memory of the Runge–Kutta method.
@@ -52,23 +71,60 @@ impl<C: Controller> Stepped<C> {
     /// # Errors
     /// [`LengthError`] when the state is not the controller's.
     pub fn new(controller: C, plant: &C::Plant, targets: usize, state: &[f64]) -> Result<Self, LengthError> {
+        let lengths = Lengths { axes: plant.axes(), output: plant.output_len(), input: total(&plant.inputs()) };
+        LengthError::check("state of the controller", total(&controller.states()), state.len())?;
+        let mut stepped = Stepped::started_by(controller, lengths, targets, Vec::new());
+        stepped.start_at(state)?;
+        Ok(stepped)
+    }
+
+    /// The same, but the first sample sets the state, with z(0), ż(0), … as far as `wanted`.
+    pub(crate) fn started_by(controller: C, lengths: Lengths, targets: usize, wanted: Vec<Vec<f64>>) -> Self {
         let n = total(&controller.states());
-        LengthError::check("state of the controller", n, state.len())?;
-        Ok(Stepped {
+        Stepped {
             scratch: controller.scratch(),
             last_s: None,
-            state: state.to_vec(),
+            started: false,
+            wanted,
+            state: vec![0.0; n],
             held: Held {
-                output: vec![0.0; plant.output_len()],
+                output: vec![0.0; lengths.output],
                 degree: [0.0],
-                sums: vec![0.0; C::Exchange::CHANNELS * plant.axes()],
+                sums: vec![0.0; C::Exchange::CHANNELS * lengths.axes],
                 target: vec![[0.0; 5]; targets],
             },
             work: Work { stage: vec![0.0; n], k: vec![0.0; n], sum: vec![0.0; n], target: vec![[0.0; 5]; targets] },
-            input: vec![0.0; total(&plant.inputs())],
+            input: vec![0.0; lengths.input],
             shown: vec![0.0; total(&controller.shown())],
             controller,
-        })
+        }
+    }
+
+    /// Sets the state.
+    pub(crate) fn start_at(&mut self, state: &[f64]) -> Result<(), LengthError> {
+        LengthError::check("state of the controller", self.state.len(), state.len())?;
+        self.state.copy_from_slice(state);
+        self.started = true;
+        Ok(())
+    }
+
+    /// Checks all lengths by starting and evaluating once with zeros.
+    pub(crate) fn check(&mut self) -> Result<(), LengthError> {
+        let Stepped { controller, scratch, started, wanted, state, held, work, input, shown, .. } = self;
+        let mut first = state.clone();
+        if !*started {
+            controller.start(scratch, held.given(controller, &work.target)?, wanted, &mut first)?;
+        }
+        let asked = Asked { input, d_state: &mut work.k, shown };
+        controller.evaluate(scratch, held.given(controller, &work.target)?, &first, asked)?;
+        input.fill(0.0);
+        shown.fill(0.0);
+        Ok(())
+    }
+
+    /// What is about to go wrong in the state of the last sample.
+    pub(crate) fn trouble(&self) -> Option<Trouble> {
+        self.controller.trouble(&self.state, &self.shown)
     }
 
     /// Its state at the last sample.
@@ -111,8 +167,13 @@ impl<C: Controller> Stepped<C> {
         self.held.sums.copy_from_slice(inbox.sums);
         self.held.target.copy_from_slice(target);
         self.work.target.copy_from_slice(target);
-        let asked = Asked { input: &mut self.input, d_state: &mut self.work.k, shown: &mut self.shown };
-        evaluate(&self.controller, &mut self.scratch, &self.held, &self.work.target, &self.state, asked)?;
+        let Stepped { controller, scratch, started, wanted, state, held, work, input, shown, .. } = self;
+        if !*started {
+            controller.start(scratch, held.given(controller, &work.target)?, wanted, state)?;
+        }
+        let asked = Asked { input, d_state: &mut work.k, shown };
+        controller.evaluate(scratch, held.given(controller, &work.target)?, state, asked)?;
+        self.started = true;
         self.last_s = Some(now_s);
         Ok(&self.input)
     }
@@ -127,7 +188,8 @@ impl<C: Controller> Stepped<C> {
             for (moved, jet) in target.iter_mut().zip(&held.target) {
                 *moved = shifted(jet, when * h);
             }
-            evaluate(controller, scratch, held, target, stage, Asked { input, d_state: k, shown })?;
+            let given = held.given(controller, target)?;
+            controller.evaluate(scratch, given, stage, Asked { input, d_state: k, shown })?;
             for i in 0..state.len() {
                 sum[i] += weight * k[i];
                 stage[i] = state[i] + next * h * k[i];
@@ -139,19 +201,6 @@ impl<C: Controller> Stepped<C> {
         controller.settle(state);
         Ok(())
     }
-}
-
-fn evaluate<C: Controller>(
-    controller: &C,
-    scratch: &mut C::Scratch,
-    held: &Held,
-    target: &[Jet],
-    state: &[f64],
-    asked: Asked<'_>,
-) -> Result<(), LengthError> {
-    let axes = held.sums.len() / C::Exchange::CHANNELS;
-    let heard = Heard::new(&held.degree, &held.sums, axes)?;
-    controller.evaluate(scratch, Given { measured: controller.see(&held.output)?, heard, target }, state, asked)
 }
 
 /// The jet a time `h` later, by its Taylor polynomial.

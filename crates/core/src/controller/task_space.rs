@@ -143,7 +143,7 @@ struct Layout {
 
 impl<R, T> TaskSpace<R, T>
 where
-    R: Lagrangian<f64, Scratch: Send> + Clone + Send + Sync + 'static,
+    R: Lagrangian<f64> + Clone + Send + Sync + 'static,
     T: TipKinematics + Clone,
 {
     fn layout(&self) -> Layout {
@@ -235,7 +235,7 @@ where
 
 impl<R, T> Controller for TaskSpace<R, T>
 where
-    R: Lagrangian<f64, Scratch: Send> + Clone + Send + Sync + 'static,
+    R: Lagrangian<f64> + Clone + Send + Sync + 'static,
     T: TipKinematics + Clone,
 {
     type Plant = TaskArm<R, T>;
@@ -292,6 +292,10 @@ where
             (Signal::TaskPosition, m),
             (Signal::Error, m),
         ]
+    }
+
+    fn reads(&self, signal: Signal) -> bool {
+        matches!(signal, Signal::Position | Signal::Velocity | Signal::TaskPosition)
     }
 
     fn see<'a>(&self, output: &'a [f64]) -> Result<TaskMeasured<'a>, LengthError> {

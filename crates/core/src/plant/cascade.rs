@@ -203,6 +203,10 @@ impl Plant for Cascade {
         vec![(Signal::Torque, 1)]
     }
 
+    fn outputs(&self) -> Vec<Block> {
+        self.states()
+    }
+
     fn output_len(&self) -> usize {
         self.terms.order()
     }

@@ -17,7 +17,7 @@ use crate::signal::{Block, Signal};
 /// Behind the check of lengths nothing panics, whatever the numbers.
 pub trait Terms: Clone + Send + Sync + 'static {
     /// Working memory of one call.
-    type Scratch: Send;
+    type Scratch: Send + Sync;
 
     /// Allocates it.
     fn scratch(&self) -> Self::Scratch;
@@ -207,6 +207,10 @@ impl<T: Terms> Plant for Chain<T> {
 
     fn inputs(&self) -> Vec<Block> {
         vec![(Signal::Torque, 1)]
+    }
+
+    fn outputs(&self) -> Vec<Block> {
+        self.states()
     }
 
     fn output_len(&self) -> usize {

@@ -17,7 +17,7 @@ pub struct Mechanical<R> {
     pub theta: Vec<f64>,
 }
 
-impl<R: Lagrangian<f64, Scratch: Send> + Send + Sync + 'static> Plant for Mechanical<R> {
+impl<R: Lagrangian<f64> + Send + Sync + 'static> Plant for Mechanical<R> {
     type Scratch = R::Scratch;
 
     fn scratch(&self) -> Self::Scratch {
@@ -34,6 +34,10 @@ impl<R: Lagrangian<f64, Scratch: Send> + Send + Sync + 'static> Plant for Mechan
 
     fn inputs(&self) -> Vec<Block> {
         vec![(Signal::Torque, self.axes())]
+    }
+
+    fn outputs(&self) -> Vec<Block> {
+        self.states()
     }
 
     fn output_len(&self) -> usize {

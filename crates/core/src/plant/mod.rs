@@ -47,7 +47,10 @@ pub trait Plant: Send + Sync + 'static {
     /// What the input is, block by block.
     fn inputs(&self) -> Vec<Block>;
 
-    /// Numbers that [`Plant::output`] gives.
+    /// What [`Plant::output`] gives, block by block: the position first, then the velocity where there is one.
+    fn outputs(&self) -> Vec<Block>;
+
+    /// Numbers in [`Plant::outputs`], without listing them.
     fn output_len(&self) -> usize;
 
     /// Everything that a sensor could see in `state`; which of it a controller may read is said by

@@ -126,6 +126,10 @@ impl Plant for Rotorcraft {
         vec![(Signal::Thrust, 1), (Signal::Torque, 3)]
     }
 
+    fn outputs(&self) -> Vec<Block> {
+        self.states()
+    }
+
     fn output_len(&self) -> usize {
         LEN
     }

@@ -256,6 +256,10 @@ impl Plant for Spacecraft {
         vec![(Signal::WheelTorque, self.wheels.count())]
     }
 
+    fn outputs(&self) -> Vec<Block> {
+        self.states()
+    }
+
     fn output_len(&self) -> usize {
         7 + self.wheels.count()
     }

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::{Mechanical, Plant};
 use crate::LengthError;
 use crate::robot::{Lagrangian, TipKinematics};
-use crate::signal::Block;
+use crate::signal::{Block, Signal};
 
 /// A robot with ϑ and θ known to nature alone. State: q, q̇. Output: q, q̇ and the position x of the tip. Input: τ.
 ///
@@ -22,7 +22,7 @@ pub struct TaskArm<R, T> {
 
 impl<R, T> Plant for TaskArm<R, T>
 where
-    R: Lagrangian<f64, Scratch: Send> + Send + Sync + 'static,
+    R: Lagrangian<f64> + Send + Sync + 'static,
     T: TipKinematics,
 {
     type Scratch = R::Scratch;
@@ -41,6 +41,12 @@ where
 
     fn inputs(&self) -> Vec<Block> {
         self.arm.inputs()
+    }
+
+    fn outputs(&self) -> Vec<Block> {
+        let mut outputs = self.arm.states();
+        outputs.push((Signal::TaskPosition, self.tip.axes()));
+        outputs
     }
 
     fn output_len(&self) -> usize {

@@ -95,6 +95,10 @@ impl Plant for Vehicle {
         vec![(Signal::Thrust, 1), (Signal::AngularVelocity, 3)]
     }
 
+    fn outputs(&self) -> Vec<Block> {
+        self.states()
+    }
+
     fn output_len(&self) -> usize {
         VehicleState::LEN
     }

@@ -24,6 +24,7 @@ pub use pure_integral::PureIntegral;
 pub use sliding::{Choice, Derived, Sliding, SlidingInputs, saturated};
 
 use alloc::boxed::Box;
+use alloc::sync::Arc;
 
 use crate::LengthError;
 
@@ -99,48 +100,55 @@ pub trait Reference: Send + Sync + 'static {
     ) -> Result<(), LengthError>;
 }
 
-/// Which dynamics, known at run time only.
-impl<X: Exchange> Reference for Box<dyn Reference<Exchange = X>> {
-    type Exchange = X;
+/// Which dynamics, known at run time only, behind a pointer of its own or a shared one.
+macro_rules! behind {
+    ($pointer:ident) => {
+        impl<X: Exchange> Reference for $pointer<dyn Reference<Exchange = X>> {
+            type Exchange = X;
 
-    fn agents(&self) -> usize {
-        (**self).agents()
-    }
+            fn agents(&self) -> usize {
+                (**self).agents()
+            }
 
-    fn vectors(&self) -> usize {
-        (**self).vectors()
-    }
+            fn vectors(&self) -> usize {
+                (**self).vectors()
+            }
 
-    fn derivatives(&self) -> usize {
-        (**self).derivatives()
-    }
+            fn derivatives(&self) -> usize {
+                (**self).derivatives()
+            }
 
-    fn sliding(&self) -> Option<&Sliding> {
-        (**self).sliding()
-    }
+            fn sliding(&self) -> Option<&Sliding> {
+                (**self).sliding()
+            }
 
-    fn evaluate(
-        &self,
-        axes: usize,
-        measured: Measured<'_>,
-        state: &[f64],
-        heard: Heard<'_, X>,
-        out: ReferenceOut<'_>,
-    ) -> Result<(), LengthError> {
-        (**self).evaluate(axes, measured, state, heard, out)
-    }
+            fn evaluate(
+                &self,
+                axes: usize,
+                measured: Measured<'_>,
+                state: &[f64],
+                heard: Heard<'_, X>,
+                out: ReferenceOut<'_>,
+            ) -> Result<(), LengthError> {
+                (**self).evaluate(axes, measured, state, heard, out)
+            }
 
-    fn start(
-        &self,
-        axes: usize,
-        measured: Measured<'_>,
-        given: &[f64],
-        heard: Heard<'_, X>,
-        state: &mut [f64],
-    ) -> Result<(), LengthError> {
-        (**self).start(axes, measured, given, heard, state)
-    }
+            fn start(
+                &self,
+                axes: usize,
+                measured: Measured<'_>,
+                given: &[f64],
+                heard: Heard<'_, X>,
+                state: &mut [f64],
+            ) -> Result<(), LengthError> {
+                (**self).start(axes, measured, given, heard, state)
+            }
+        }
+    };
 }
+
+behind!(Box);
+behind!(Arc);
 
 /// Checks the lengths that all reference dynamics share.
 #[inline(always)]

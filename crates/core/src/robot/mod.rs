@@ -52,7 +52,7 @@ impl<S> TwoVelocity<'_, S> {
 /// leave outputs unspecified, never panic, when they return an error.
 pub trait Lagrangian<S: Scalar> {
     /// Working memory of one call, allocated once by [`Lagrangian::scratch`].
-    type Scratch;
+    type Scratch: Send + Sync;
 
     /// Number of joints (or axes) m.
     fn dof(&self) -> usize;

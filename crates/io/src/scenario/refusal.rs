@@ -41,7 +41,9 @@ fn place(file: &ScenarioFile, error: &SetupError) -> Option<Span> {
         SetupError::SendsPositionOnly { .. } => exchange(),
         SetupError::NotTracking { .. } | SetupError::ReferenceOfLaw { .. } => reference(),
         SetupError::Roots { agent, .. } | SetupError::OrderTooLow { agent, .. } => roots(file, agent),
-        SetupError::NoTarget { agent } => Some(entry(file, agent)?.name.span.clone()),
+        SetupError::NoTarget { agent } | SetupError::Recipe { agent, .. } => {
+            Some(entry(file, agent)?.name.span.clone())
+        }
         SetupError::NoOffsets { agent, .. } => entry(file, agent)?.target.as_ref().map(|target| target.span.clone()),
         SetupError::UnitsDiffer { agent, .. }
         | SetupError::AxesDiffer { agent, .. }

@@ -13,7 +13,7 @@ use crate::system::{ActuatorLimits, Attachments, Interface, Known as Knowledge, 
 /// A robot model whose kernels work on one robot or on eight at once.
 pub trait RobotModel: Robot + Clone {
     /// M, C, g and the products of the regressor.
-    type Kernel: Lagrangian<f64> + Lagrangian<Lanes<8>> + Clone + 'static;
+    type Kernel: Lagrangian<f64, Scratch: Send> + Lagrangian<Lanes<8>> + Clone + Send + Sync + 'static;
 
     /// Its kernel.
     fn kernel(&self) -> Self::Kernel;

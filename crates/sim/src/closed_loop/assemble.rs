@@ -5,18 +5,20 @@ use std::sync::Arc;
 
 use forwardstep_core::controller::Trouble;
 use forwardstep_core::reference::{Position, PositionVelocity};
+use forwardstep_core::sampled::Recipe;
 
 use super::assembly::Assembly;
 use super::guide::Guide;
 use super::members::batches;
 use super::population::{Columns, Inputs};
 use super::pushes::Pushes;
+use super::recipes::built;
 use super::references::Transmits;
 use super::sampling::Sampling;
 use super::sliding::{Place, Slider};
 use super::valid::{SetupError, message_len, validate};
 use crate::engine::{DelaySystem, Happened, Heard, Port};
-use crate::recording::{GainRates, Signal};
+use crate::recording::{GainRates, SampleTaken, Signal};
 use crate::setup::{Exchange, Setup};
 
 /// All populations and where their blocks stand.
@@ -134,6 +136,11 @@ impl<'a> ClosedLoop<'a> {
                 Some(Slider::new(&setup.network, sliding, following.period_s, axes, places, heard, states));
         }
         if let Some(control) = &setup.control {
+            for block in &mut closed_loop.blocks {
+                let recipes = block.columns.recipes(setup, &closed_loop.start[block.state.clone()])?;
+                let build = |(agent, recipe): (usize, Recipe)| built(&recipe, &setup.agents[agent].name);
+                block.columns.sample(control, recipes.into_iter().map(build).collect::<Result<_, _>>()?);
+            }
             let ClosedLoop { ports, start, .. } = &closed_loop;
             closed_loop.sampling = Some(Sampling::new(setup, control, ports.clone(), entries, start));
         }
@@ -196,6 +203,23 @@ impl<'a> ClosedLoop<'a> {
     /// Who is in trouble in the state `x`, which has just been evaluated.
     pub(crate) fn trouble(&self, x: &[f64]) -> Option<(usize, Trouble)> {
         self.blocks.iter().find_map(|block| block.columns.trouble(&x[block.state.clone()]))
+    }
+
+    /// Hands every sample that is taken to `watch`.
+    pub(crate) fn watch(&mut self, watch: &'a mut dyn FnMut(SampleTaken<'_>)) {
+        if let Some(sampling) = &mut self.sampling {
+            sampling.watch(watch);
+        }
+    }
+
+    /// The recipes of the sampled controllers of all agents, in order.
+    pub(crate) fn recipes(&self, setup: &Setup) -> Result<Vec<Recipe>, SetupError> {
+        let mut all = Vec::new();
+        for block in &self.blocks {
+            all.extend(block.columns.recipes(setup, &self.start[block.state.clone()])?);
+        }
+        all.sort_by_key(|(agent, _)| *agent);
+        Ok(all.into_iter().map(|(_, recipe)| recipe).collect())
     }
 
     /// The initial state.

@@ -1,17 +1,16 @@
 //! What a law builds its agents with.
 
-use forwardstep_core::agent::Limiter;
 use forwardstep_core::controller::Controller;
 use forwardstep_core::plant::{Plant, total};
 use forwardstep_core::{Gain, LengthError, ResolvedGain};
 
-use super::members::{self, sensor};
+use super::members;
 use super::population::Columns;
-use super::solo::{Digital, Solo, Target};
+use super::solo::{Solo, Target};
 use super::valid::{SetupError, too_many};
 use crate::agents::RobotModel;
 use crate::recording::Signal;
-use crate::setup::{AgentSetup, Axis, Control, ReferenceKind, Setup};
+use crate::setup::{AgentSetup, Axis, ReferenceKind, Setup};
 use crate::system::Robot;
 
 /// Agents as a part of the closed loop.
@@ -155,58 +154,33 @@ impl<'a> Assembly<'a> {
             }
         };
         let torques = plant.inputs().iter().filter(|(signal, _)| *signal == Signal::Torque).map(|(_, n)| n).sum();
-        let effort_limits = self.effort_limits(torques)?;
-        let digital = match &setup.control {
-            None => None,
-            Some(control) => Some(Digital::new(
-                sensor(self.agents[0], setup, control)?,
-                self.limiter(control, torques)?,
-                1.0 / control.sample_hz,
-                control.actuators.torque_quantum,
-            )),
-        };
+        let effort_limits = effort_limits(own, torques)?;
         // What a limit takes away is not what the ledger balances.
         let ledger = setup.solver.ledger && !own.enforce_limits;
-        Ok(Block(Box::new(Solo::new(self.agents[0], plant, controller, target, effort_limits, digital, ledger))))
+        Ok(Block(Box::new(Solo::new(
+            self.agents[0],
+            plant,
+            controller,
+            target,
+            effort_limits,
+            setup.control.is_some(),
+            ledger,
+        ))))
     }
+}
 
-    /// The limits of the torques, if they are to be enforced.
-    fn effort_limits(&self, torques: usize) -> Result<Option<Vec<f64>>, SetupError> {
-        let own = self.agent();
-        // What is no torque of an axis is limited by the plant itself.
-        if !own.enforce_limits || torques == 0 {
-            return Ok(None);
-        }
-        let limit = |axis: &Axis| {
-            let (agent, axis_name) = (own.name.clone(), axis.name.clone());
-            axis.effort_limit.ok_or(SetupError::NoEffortLimit { agent, axis: axis_name })
-        };
-        let limits: Vec<f64> = own.robot.axes.iter().map(limit).collect::<Result<_, _>>()?;
-        LengthError::check("the effort limits", torques, limits.len())
-            .map_err(|error| SetupError::Length { agent: own.name.clone(), error })?;
-        Ok(Some(limits))
+/// The limits of the torques, if they are to be enforced.
+pub(super) fn effort_limits(own: &AgentSetup, torques: usize) -> Result<Option<Vec<f64>>, SetupError> {
+    // What is no torque of an axis is limited by the plant itself, if by anything.
+    if !own.enforce_limits || torques == 0 {
+        return Ok(None);
     }
-
-    /// Limits of what a sampled controller asks for.
-    fn limiter(&self, control: &Control, torques: usize) -> Result<Limiter, SetupError> {
-        let own = self.agent();
-        let limits = |given: &Option<Vec<f64>>, of_rates| {
-            let what = if of_rates { "the limit of torque rates" } else { "the limit of torques" };
-            let values = given.clone().unwrap_or_else(|| vec![f64::INFINITY; torques]);
-            LengthError::check(what, torques, values.len()).map_err(|error| SetupError::TorqueLimitCount {
-                agent: own.name.clone(),
-                of_rates,
-                error,
-            })?;
-            Ok::<_, SetupError>(values)
-        };
-        let mut limit = limits(&control.actuators.torque_limit, false)?;
-        let quantum = control.actuators.torque_quantum;
-        // A rounded torque must not exceed its limit either.
-        if quantum > 0.0 {
-            limit.iter_mut().for_each(|limit| *limit = quantum * (*limit / quantum).floor());
-        }
-        let rate = limits(&control.actuators.torque_rate_limit, true)?;
-        Limiter::new(limit, rate).map_err(|error| SetupError::Limiter { agent: own.name.clone(), error })
-    }
+    let limit = |axis: &Axis| {
+        let (agent, axis_name) = (own.name.clone(), axis.name.clone());
+        axis.effort_limit.ok_or(SetupError::NoEffortLimit { agent, axis: axis_name })
+    };
+    let limits: Vec<f64> = own.robot.axes.iter().map(limit).collect::<Result<_, _>>()?;
+    LengthError::check("the effort limits", torques, limits.len())
+        .map_err(|error| SetupError::Length { agent: own.name.clone(), error })?;
+    Ok(Some(limits))
 }

@@ -7,11 +7,14 @@ use std::sync::Arc;
 
 use forwardstep_core::LengthError;
 use forwardstep_core::controller::Jet;
+use forwardstep_core::sampled::{Recipe, Sampled};
 
 use super::population::{Columns, Inputs};
+use super::sampler::Digital;
+use super::valid::SetupError;
 use crate::leader::Following;
 use crate::recording::{GainRates, Signal};
-use crate::setup::AgentSetup;
+use crate::setup::{AgentSetup, Control, Setup};
 
 /// The leader.
 pub(crate) struct Guide {
@@ -64,9 +67,17 @@ impl Columns for Guide {
         self.put(t_s, 0, sent);
     }
 
+    fn recipes(&self, _: &Setup, _: &[f64]) -> Result<Vec<(usize, Recipe)>, SetupError> {
+        Ok(Vec::new())
+    }
+
+    fn sample(&mut self, _: &Control, _: Vec<Box<dyn Sampled>>) {}
+
     fn command(&mut self, now_s: f64, _: Inputs<'_>, x: &mut [f64]) {
         self.put(now_s, 0, x);
     }
+
+    fn taken(&self, _: &mut dyn FnMut(&Digital)) {}
 
     fn apply(&mut self) {}
 

@@ -1,6 +1,5 @@
 //! From agents to batches: robots, reference dynamics, laws and, under digital control, samplers.
 
-use forwardstep_core::agent::{Agent, Limiter, VelocityFilter};
 use forwardstep_core::law::SlotineLi;
 use forwardstep_core::reference::{Position, PositionVelocity};
 use forwardstep_core::robot::Lagrangian;
@@ -8,11 +7,10 @@ use forwardstep_core::{Gain, InverseQuadratic, Lanes, LengthError, ResolvedGain}
 
 use super::fleet::Member;
 use super::population::{Columns, Population};
-use super::references::{AnyReference, Transmits, reference};
-use super::sampler::{Sampler, Sensor};
+use super::references::{Transmits, reference};
 use super::valid::SetupError;
 use crate::agents::{Adaptive, Known, RobotModel};
-use crate::setup::{AgentSetup, Control, Exchange, Setup, VelocitySensor};
+use crate::setup::{AgentSetup, Exchange, Setup};
 
 /// Batches of at least so many agents are worked on in lanes.
 const LANES_FROM: usize = 3;
@@ -45,7 +43,7 @@ pub(super) fn batch<M: RobotModel>(model: &M, setup: &Setup, group: &[usize]) ->
 
 fn boxed<R, X>(robot: R, setup: &Setup, group: &[usize]) -> Result<Box<dyn Columns>, SetupError>
 where
-    R: Lagrangian<f64> + Lagrangian<Lanes<8>> + Clone + 'static,
+    R: Lagrangian<f64> + Lagrangian<Lanes<8>> + Clone + Send + Sync + 'static,
     X: Transmits,
 {
     let mut members = Vec::new();
@@ -53,66 +51,15 @@ where
         members.push(member(&robot, &setup.agents[agent], agent)?);
     }
     let reference = reference::<X>(setup, group)?;
-    let sampler = match &setup.control {
-        None => None,
-        Some(control) => {
-            let (mut agents, mut sensors) = (Vec::new(), Vec::new());
-            for member in &members {
-                agents.push(digital::<R, X>(&robot, member, setup, control)?);
-                sensors.push(sensor(member.agent, setup, control)?);
-            }
-            Some(Sampler::new(agents, sensors, control, setup.agents[group[0]].robot.axes.len()))
-        }
-    };
+    let sampled = setup.control.is_some();
     // What a held torque does is not what the ledger balances.
-    let ledger = setup.solver.ledger && sampler.is_none();
+    let ledger = setup.solver.ledger && !sampled;
     // Eight lanes cost about as much as two or three robots one at a time, so idle lanes pay from three robots on.
     Ok(if members.len() < LANES_FROM {
-        Box::new(Population::<R, X, f64>::new(robot, members, reference, sampler, ledger))
+        Box::new(Population::<R, X, f64>::new(robot, members, reference, sampled, ledger))
     } else {
-        Box::new(Population::<R, X, Lanes<8>>::new(robot, members, reference, sampler, ledger))
+        Box::new(Population::<R, X, Lanes<8>>::new(robot, members, reference, sampled, ledger))
     })
-}
-
-/// The sampled controller of one member.
-fn digital<R: Lagrangian<f64> + Clone, X: Transmits>(
-    robot: &R,
-    member: &Member,
-    setup: &Setup,
-    control: &Control,
-) -> Result<Agent<R, AnyReference<X>>, SetupError> {
-    let agent = &setup.agents[member.agent];
-    let name = || agent.name.clone();
-    let axes = agent.robot.axes.len();
-    let unlimited = || vec![f64::INFINITY; axes];
-    let mut limit = control.actuators.torque_limit.clone().unwrap_or_else(unlimited);
-    for (limit, effort) in limit.iter_mut().zip(member.effort_limits.iter().flatten()) {
-        *limit = limit.min(*effort);
-    }
-    // A rounded torque must not exceed its limit either.
-    let quantum = control.actuators.torque_quantum;
-    if quantum > 0.0 {
-        limit.iter_mut().for_each(|limit| *limit = quantum * (*limit / quantum).floor());
-    }
-    let rate = control.actuators.torque_rate_limit.clone().unwrap_or_else(unlimited);
-    for (what, values) in [("the torque limits", &limit), ("the torque rate limits", &rate)] {
-        LengthError::check(what, axes, values.len()).map_err(|error| SetupError::Length { agent: name(), error })?;
-    }
-    let limiter = Limiter::new(limit, rate).map_err(|error| SetupError::Limiter { agent: name(), error })?;
-    let theta_hat = agent.law.downcast::<Adaptive>().map_or(&agent.robot.theta, |law| &law.estimate_start).clone();
-    Agent::new(robot.clone(), reference(setup, &[member.agent])?, member.law.clone(), theta_hat, limiter)
-        .map_err(|error| SetupError::Length { agent: name(), error })
-}
-
-pub(super) fn sensor(agent: usize, setup: &Setup, control: &Control) -> Result<Sensor, SetupError> {
-    let filter = match control.sensors.velocity {
-        VelocitySensor::Measured => None,
-        VelocitySensor::Filtered { cut_off_hz } => Some(
-            VelocityFilter::new(core::f64::consts::TAU * cut_off_hz, setup.agents[agent].robot.axes.len())
-                .map_err(SetupError::VelocityFilter)?,
-        ),
-    };
-    Ok(Sensor::new(control.sensors, agent, filter))
 }
 
 fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Result<Member, SetupError> {

@@ -4,9 +4,10 @@
 //! - `gain_rates`: how fast the gains of (6)–(7) make a robot.
 //! - `population`: agents of one kind, side by side in columns: reference dynamics, then the fleet.
 //! - `solo`: one agent by itself: any plant under any controller.
-//! - `sampler`: the digital controllers of a population, with their sensors.
+//! - `sampler`: sampled controllers with their sensors and actuators.
 //! - `sampling`: the instants at which they sample and act.
 //! - `pushes`: what acts on the robots from outside.
+//! - `recipes`: from agents to the recipes of their sampled controllers.
 //! - `references`: from agents to reference dynamics.
 //! - `guide`: the leader.
 //! - `sliding`: who sets the set-valued signs in continuous time.
@@ -24,6 +25,7 @@ mod guide;
 mod members;
 mod population;
 mod pushes;
+mod recipes;
 mod references;
 mod sampler;
 mod sampling;
@@ -35,4 +37,5 @@ mod valid;
 pub(crate) use assemble::ClosedLoop;
 pub use assembly::{Assembly, Block};
 pub(crate) use members::tracking_law;
+pub use recipes::{recipe, recipes};
 pub use valid::{SetupError, VelocityQuantity, validate};

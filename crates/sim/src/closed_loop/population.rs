@@ -19,15 +19,18 @@ use forwardstep_core::reference::{
     Choice, Derived, Heard, Measured, Reference, ReferenceOut, Sliding, SlidingInputs, saturated,
 };
 use forwardstep_core::robot::{Lagrangian, TwoVelocity};
+use forwardstep_core::sampled::{Recipe, Sampled, StartState};
 use forwardstep_core::{LengthError, Packed};
 
 use super::fleet::{Drive, Fleet, Layout, Member};
 use super::gain_rates::gain_rates;
-use super::references::{AnyReference, Transmits};
-use super::sampler::Sampler;
+use super::recipes::used;
+use super::references::{AnyReference, Transmits, reference};
+use super::sampler::{Digital, Sampler, take};
+use super::valid::SetupError;
 use crate::agents::Adaptive;
 use crate::recording::{GainRates, Signal};
-use crate::setup::AgentSetup;
+use crate::setup::{AgentSetup, Control, Setup};
 
 /// What reaches a population from outside at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -55,8 +58,14 @@ pub(crate) trait Columns {
     /// Measures the state `x` and puts everybody's message into `sent`, laid out like the sums. Does nothing, like the
     /// two below, when the controllers work in continuous time.
     fn sense(&mut self, t_s: f64, x: &[f64], sent: &mut [f64]);
+    /// The recipes of the sampled controllers of its agents, by their numbers; `x` is its block of the initial state.
+    fn recipes(&self, setup: &Setup, x: &[f64]) -> Result<Vec<(usize, Recipe)>, SetupError>;
+    /// Takes the controllers built from these recipes: from now on control is digital.
+    fn sample(&mut self, control: &Control, controllers: Vec<Box<dyn Sampled>>);
     /// Steps the controllers at the sample of time `now_s` and puts their new state into `x`.
     fn command(&mut self, now_s: f64, inputs: Inputs<'_>, x: &mut [f64]);
+    /// Hands every agent under digital control to `each`.
+    fn taken(&self, each: &mut dyn FnMut(&Digital));
     /// Applies the torques that were commanded last.
     fn apply(&mut self);
     /// Brings the block `x`, which a step has just reached, back to its manifold.
@@ -104,7 +113,8 @@ pub(crate) struct Population<R: Lagrangian<f64> + Lagrangian<S>, X: Transmits, S
     reference: AnyReference<X>,
     fleet: Fleet<R, S>,
     output: Output,
-    sampler: Option<Sampler<R, X>>,
+    /// When control is digital.
+    sampler: Option<Sampler>,
     /// When its signs are functions of the instant.
     layer: Option<Layer>,
     record: RecordWork<<R as Lagrangian<f64>>::Scratch>,
@@ -135,16 +145,16 @@ struct RecordWork<T> {
 
 impl<R, X, S> Population<R, X, S>
 where
-    R: Lagrangian<f64> + Lagrangian<S>,
+    R: Lagrangian<f64> + Lagrangian<S> + Clone + Send + Sync + 'static,
     X: Transmits,
     S: Packed,
 {
-    /// `members` share the robot and the reference dynamics; all adapt or none. With a `sampler` control is digital.
+    /// `members` share the robot and the reference dynamics; all adapt or none. With `sampled` control will be digital.
     pub(crate) fn new(
         robot: R,
         members: Vec<Member>,
         reference: AnyReference<X>,
-        sampler: Option<Sampler<R, X>>,
+        sampled: bool,
         ledger_on: bool,
     ) -> Self {
         let (m, p) = (Lagrangian::<f64>::dof(&robot), Lagrangian::<f64>::parameter_count(&robot));
@@ -162,12 +172,12 @@ where
         let output = Output { z: vec![0.0; layout.block()], dz: vec![0.0; layout.block()] };
         let fleet = Fleet::new(robot, &members, layout);
         let layer = match reference.sliding() {
-            Some(Sliding { choice: Choice::Layer { width }, .. }) if sampler.is_none() => {
+            Some(Sliding { choice: Choice::Layer { width }, .. }) if !sampled => {
                 Some(Layer { width: *width, selection: vec![0.0; layout.block()] })
             }
             _ => None,
         };
-        let mut population = Population { members, reference, fleet, output, sampler, layer, record };
+        let mut population = Population { members, reference, fleet, output, sampler: None, layer, record };
         population.record.row = vec![0.0; population.signals().len()];
         population
     }
@@ -329,7 +339,7 @@ fn evaluate<X: Transmits>(
 
 impl<R, X, S> Columns for Population<R, X, S>
 where
-    R: Lagrangian<f64> + Lagrangian<S>,
+    R: Lagrangian<f64> + Lagrangian<S> + Clone + Send + Sync + 'static,
     X: Transmits,
     S: Packed,
 {
@@ -380,20 +390,44 @@ where
         debug_assert_eq!(checked, Ok(()), "lengths are fixed when the population is built");
     }
 
-    fn sense(&mut self, _: f64, x: &[f64], sent: &mut [f64]) {
+    fn sense(&mut self, t_s: f64, x: &[f64], sent: &mut [f64]) {
         let l = self.fleet.layout;
         if let Some(sampler) = &mut self.sampler {
-            sampler.sense(&x[..l.dq], &x[l.dq..l.reference], sent);
+            sampler.sense(t_s, &x[..l.reference], sent);
         }
+    }
+
+    fn recipes(&self, setup: &Setup, x: &[f64]) -> Result<Vec<(usize, Recipe)>, SetupError> {
+        let l = self.fleet.layout;
+        let recipe = |(i, member): (usize, &Member)| {
+            let mut state = vec![0.0; (l.ledger - l.reference) / l.n];
+            take(l.n, i, &x[l.reference..l.ledger], &mut state);
+            let reference = reference::<X>(setup, &[member.agent])?;
+            let theta_hat = if l.adaptive { state[state.len() - l.p..].to_vec() } else { member.theta.clone() };
+            let mut recipe = Recipe::lagrangian(self.fleet.robot.clone(), reference, member.law.clone(), theta_hat);
+            recipe.start = StartState::State(state);
+            Ok((member.agent, used(recipe, setup, member.agent, l.m)?))
+        };
+        self.members.iter().enumerate().map(recipe).collect()
+    }
+
+    fn sample(&mut self, control: &Control, controllers: Vec<Box<dyn Sampled>>) {
+        let m = self.fleet.layout.m;
+        let outputs = [(Signal::Position, m), (Signal::Velocity, m)];
+        let agents = self.members.iter().zip(controllers);
+        let agents = agents.map(|(member, controller)| Digital::new(control, member.agent, &outputs, controller));
+        self.sampler = Some(Sampler::new(agents.collect(), m));
     }
 
     fn command(&mut self, now_s: f64, inputs: Inputs<'_>, x: &mut [f64]) {
         let l = self.fleet.layout;
-        let (reference, rest) = x[l.reference..].split_at_mut(l.theta_hat - l.reference);
-        let theta_hat = if l.adaptive { &mut rest[..l.ledger - l.theta_hat] } else { &mut [] };
         if let Some(sampler) = &mut self.sampler {
-            sampler.command(now_s, inputs, reference, theta_hat);
+            sampler.command(now_s, inputs, &mut x[l.reference..l.ledger]);
         }
+    }
+
+    fn taken(&self, each: &mut dyn FnMut(&Digital)) {
+        self.sampler.iter().flat_map(Sampler::agents).for_each(each);
     }
 
     fn apply(&mut self) {

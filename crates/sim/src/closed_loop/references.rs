@@ -1,6 +1,8 @@
 //! From agents to reference dynamics. What the agents exchange is a type; which dynamics they have is known at run time
 //! only, and costs one indirect call for a whole population.
 
+use std::sync::Arc;
+
 use forwardstep_core::reference::{
     Backstepping, Consensus, Exchange, Following, Heard, Measured, Position, PositionVelocity, PureIntegral, Reference,
     ReferenceOut, Sliding, SmoothFollowing,
@@ -12,7 +14,7 @@ use crate::leader::FollowingDesign;
 use crate::setup::{ReferenceKind, Setup};
 
 /// Reference dynamics of agents that exchange `X`.
-pub(crate) type AnyReference<X> = Box<dyn Reference<Exchange = X>>;
+pub(crate) type AnyReference<X> = Arc<dyn Reference<Exchange = X>>;
 
 /// What can be exchanged, with the dynamics that exist for this exchange alone.
 pub(crate) trait Transmits: Exchange {
@@ -24,7 +26,7 @@ impl Transmits for Position {
     fn own(kind: &ReferenceKind, agents: usize) -> Result<Option<AnyReference<Self>>, SetupError> {
         let ReferenceKind::Backstepping { filter_s, acceleration_limit } = kind else { return Ok(None) };
         let limit = acceleration_limit.unwrap_or(f64::INFINITY);
-        Ok(Some(boxed(Backstepping::new((0..agents).map(|_| (*filter_s, limit)))?)))
+        Ok(Some(shared(Backstepping::new((0..agents).map(|_| (*filter_s, limit)))?)))
     }
 }
 
@@ -33,9 +35,9 @@ impl Transmits for PositionVelocity {
         let ReferenceKind::Following(following) = kind else { return Ok(None) };
         let sliding = following.sliding();
         Ok(Some(match following.design {
-            FollowingDesign::Continuous => boxed(Following::new(agents, sliding)),
-            FollowingDesign::Swarm { coupling } => boxed(SmoothFollowing::swarm(agents, sliding, coupling)),
-            _ => boxed(SmoothFollowing::new(agents, sliding)),
+            FollowingDesign::Continuous => shared(Following::new(agents, sliding)),
+            FollowingDesign::Swarm { coupling } => shared(SmoothFollowing::swarm(agents, sliding, coupling)),
+            _ => shared(SmoothFollowing::new(agents, sliding)),
         }))
     }
 }
@@ -53,14 +55,14 @@ pub(super) fn reference<X: Transmits>(setup: &Setup, group: &[usize]) -> Result<
         }
     }
     match &setup.reference {
-        ReferenceKind::Consensus => Ok(boxed(Consensus::<X>::new(designs()).map_err(roots(group[0]))?)),
-        ReferenceKind::PureIntegral => Ok(boxed(PureIntegral::<X>::new(designs()).map_err(roots(group[0]))?)),
+        ReferenceKind::Consensus => Ok(shared(Consensus::<X>::new(designs()).map_err(roots(group[0]))?)),
+        ReferenceKind::PureIntegral => Ok(shared(PureIntegral::<X>::new(designs()).map_err(roots(group[0]))?)),
         kind => X::own(kind, group.len())?.ok_or_else(|| SetupError::wrong_reference(setup, first)),
     }
 }
 
-fn boxed<F: Reference>(reference: F) -> AnyReference<F::Exchange> {
-    Box::new(Dispatched(reference))
+fn shared<F: Reference>(reference: F) -> AnyReference<F::Exchange> {
+    Arc::new(Dispatched(reference))
 }
 
 /// Reference dynamics whose right-hand side is compiled for every instruction set, as nothing can be inlined into it from

@@ -1,62 +1,171 @@
-//! The sampled controllers of a population, with their sensors and what they hold.
+//! Sampled controllers as the simulator wires them: sensors before them, actuators behind them.
+
+use std::ops::Range;
 
 use forwardstep_core::Scalar;
-use forwardstep_core::agent::{Agent, Inbox, StepError, VelocityFilter};
-use forwardstep_core::reference::Measured;
-use forwardstep_core::robot::Lagrangian;
+use forwardstep_core::agent::{Inbox, StepError};
+use forwardstep_core::plant::total;
+use forwardstep_core::sampled::Sampled;
+use forwardstep_core::signal::{Block, Signal};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::fleet::Drive;
 use super::population::Inputs;
-use super::references::{AnyReference, Transmits};
+use crate::recording::SampleTaken;
 use crate::setup::{Control, Sensors};
 
-/// Controllers and sensors of n agents with m axes. Columns are laid out as everywhere: `axis · n + member`.
-pub(crate) struct Sampler<R: Lagrangian<f64>, X: Transmits> {
-    agents: Vec<Agent<R, AnyReference<X>>>,
-    sensors: Vec<Sensor>,
-    period_s: f64,
+/// One agent: its sensors, its controller, and what its actuators hold.
+pub(crate) struct Digital {
+    agent: usize,
+    sensor: Sensor,
+    controller: Box<dyn Sampled>,
     torque_quantum: f64,
-    axes: usize,
-    started: bool,
-    /// Measured at the last sample: q, then q̇.
+    /// Numbers of a position, and of the velocity that follows.
+    axes: [usize; 2],
+    /// Which part of the plant's output the controller takes: first entries there and here, and how many.
+    parts: Vec<[usize; 3]>,
+    /// The plant's output as the sensors see it.
+    output: Vec<f64>,
     measured: Vec<f64>,
+    /// What was sent and heard at the last sample.
+    message: Vec<f64>,
+    degree: f64,
+    sums: Vec<f64>,
+    /// Where the torques stand among the inputs.
+    torque: Range<usize>,
+    commanded: Vec<f64>,
+    held: Vec<f64>,
+}
+
+impl Digital {
+    /// Puts `controller` between the sensors of agent number `agent`, whose plant has these `outputs`, and its actuators.
+    pub(crate) fn new(control: &Control, agent: usize, outputs: &[Block], controller: Box<dyn Sampled>) -> Self {
+        let count = |at: usize, wanted| outputs.get(at).filter(|(signal, _)| *signal == wanted).map_or(0, |(_, n)| *n);
+        let (mut parts, mut first) = (Vec::new(), 0);
+        let measured = controller.measures();
+        for &(signal, n) in outputs {
+            if let Some(at) = measured.iter().position(|(wanted, _)| *wanted == signal) {
+                parts.push([first, total(&measured[..at]), n]);
+            }
+            first += n;
+        }
+        let inputs = controller.inputs();
+        let at = inputs.iter().position(|(signal, _)| *signal == Signal::Torque);
+        let torque = total(&inputs[..at.unwrap_or(0)]);
+        let message = || vec![0.0; controller.message_len()];
+        Digital {
+            agent,
+            message: message(),
+            degree: 0.0,
+            sums: message(),
+            sensor: Sensor::new(control.sensors, agent),
+            torque_quantum: control.actuators.torque_quantum,
+            axes: [count(0, Signal::Position), count(1, Signal::Velocity)],
+            parts,
+            output: vec![0.0; first],
+            measured: vec![0.0; total(measured)],
+            torque: torque..torque + at.map_or(0, |at| inputs[at].1),
+            commanded: vec![0.0; total(inputs)],
+            held: vec![0.0; total(inputs)],
+            controller,
+        }
+    }
+
+    /// The controller.
+    pub(crate) fn controller(&self) -> &dyn Sampled {
+        &*self.controller
+    }
+
+    /// The last sample.
+    pub(crate) fn taken(&self, sample: u64, now_s: f64) -> SampleTaken<'_> {
+        SampleTaken {
+            agent: self.agent,
+            sample,
+            now_s,
+            measured: &self.measured,
+            message: &self.message,
+            inbox: Inbox { degree: self.degree, sums: &self.sums },
+            command: &self.commanded,
+        }
+    }
+
+    /// What the actuators hold.
+    pub(crate) fn held(&self) -> &[f64] {
+        &self.held
+    }
+
+    /// Measures the plant's `output` and puts the message into `sent`.
+    pub(crate) fn sense(&mut self, now_s: f64, output: &[f64], sent: &mut [f64]) {
+        self.output.copy_from_slice(output);
+        let [axes, velocities] = self.axes;
+        let (q, rest) = self.output.split_at_mut(axes);
+        self.sensor.measure(q, &mut rest[..velocities]);
+        for &[first, from, n] in &self.parts {
+            self.measured[from..from + n].copy_from_slice(&self.output[first..first + n]);
+        }
+        // Only numbers that are not finite cannot be sent; whoever hears this cannot step either.
+        if self.controller.message(now_s, &self.measured, &mut self.message).is_err() {
+            self.message.fill(f64::NAN);
+        }
+        sent.copy_from_slice(&self.message);
+    }
+
+    /// Steps the controller. Where that fails, since something is no longer finite, the command is not finite either: the run
+    /// then breaks down there.
+    pub(crate) fn command(&mut self, now_s: f64, degree: f64, sums: &[f64]) {
+        self.degree = degree;
+        let own = self.sums.len().min(sums.len());
+        self.sums[..own].copy_from_slice(&sums[..own]);
+        let inbox = Inbox { degree, sums: &self.sums };
+        match self.controller.step(now_s, &self.measured, inbox) {
+            Ok(()) => self.commanded.copy_from_slice(self.controller.command()),
+            // The run ends by what the law says of itself.
+            Err(StepError::Singular { .. }) => {}
+            Err(StepError::Length(_) | StepError::Time { .. } | StepError::NotFinite { .. }) => {
+                self.commanded.fill(f64::NAN);
+            }
+        }
+    }
+
+    /// Hands the command to the actuators.
+    pub(crate) fn apply(&mut self) {
+        self.held.copy_from_slice(&self.commanded);
+        for torque in &mut self.held[self.torque.clone()] {
+            *torque = quantise(*torque, self.torque_quantum);
+        }
+    }
+}
+
+/// The agents of a population. Columns are laid out as everywhere: `axis · n + member`.
+pub(crate) struct Sampler {
+    agents: Vec<Digital>,
     /// Asked for at the last sample.
     z: Vec<f64>,
     dz: Vec<f64>,
-    commanded: Vec<f64>,
     /// Applied now.
     torque: Vec<f64>,
-    /// One agent's vectors.
-    own: Own,
-}
-
-/// One agent's part of the columns.
-struct Own {
-    q: Vec<f64>,
-    dq: Vec<f64>,
-    sums: Vec<f64>,
-    state: Vec<f64>,
+    /// One agent's q, q̇, and one agent's message or sums.
+    output: Vec<f64>,
+    message: Vec<f64>,
 }
 
 /// What one agent measures with.
-pub(crate) struct Sensor {
+struct Sensor {
     draw: ChaCha8Rng,
-    filter: Option<VelocityFilter>,
     kind: Sensors,
 }
 
 impl Sensor {
     /// The sensor of agent number `agent`; every agent has noise of its own.
-    pub(crate) fn new(kind: Sensors, agent: usize, filter: Option<VelocityFilter>) -> Self {
+    fn new(kind: Sensors, agent: usize) -> Self {
         let mut draw = ChaCha8Rng::seed_from_u64(kind.seed);
         draw.set_stream(agent as u64);
-        Sensor { draw, filter, kind }
+        Sensor { draw, kind }
     }
 
     /// Replaces the truth by what is measured; there may be no velocity.
-    pub(crate) fn measure(&mut self, period_s: f64, q: &mut [f64], dq: &mut [f64]) {
+    fn measure(&mut self, q: &mut [f64], dq: &mut [f64]) {
         let kind = self.kind;
         if kind.position_noise > 0.0 || kind.velocity_noise > 0.0 {
             for (k, q) in q.iter_mut().enumerate() {
@@ -68,17 +177,7 @@ impl Sensor {
             }
         }
         q.iter_mut().for_each(|q| *q = quantise(*q, kind.position_quantum));
-        match &mut self.filter {
-            // The lengths are those of one robot.
-            Some(filter) => {
-                if let Ok(velocity) = filter.feed(period_s, q)
-                    && dq.len() == velocity.len()
-                {
-                    dq.copy_from_slice(velocity);
-                }
-            }
-            None => dq.iter_mut().for_each(|dq| *dq = quantise(*dq, kind.velocity_quantum)),
-        }
+        dq.iter_mut().for_each(|dq| *dq = quantise(*dq, kind.velocity_quantum));
     }
 }
 
@@ -91,38 +190,21 @@ fn normal(draw: &mut ChaCha8Rng) -> [f64; 2] {
 }
 
 /// The nearest multiple of `quantum`, if there is one.
-pub(crate) fn quantise(value: f64, quantum: f64) -> f64 {
+fn quantise(value: f64, quantum: f64) -> f64 {
     if quantum > 0.0 { quantum * libm::rint(value / quantum) } else { value }
 }
 
-impl<R: Lagrangian<f64>, X: Transmits> Sampler<R, X> {
-    /// `agents` and `sensors` in the order of the members.
-    pub(crate) fn new(
-        agents: Vec<Agent<R, AnyReference<X>>>,
-        sensors: Vec<Sensor>,
-        control: &Control,
-        axes: usize,
-    ) -> Self {
+impl Sampler {
+    /// `agents` in the order of the members, with `axes` axes each.
+    pub(crate) fn new(agents: Vec<Digital>, axes: usize) -> Self {
         let block = || vec![0.0; axes * agents.len()];
-        let told = agents.first().map_or(0, |agent| agent.told().len());
-        let state = agents.first().map_or(0, |agent| agent.reference_state().len());
+        let message = agents.first().map_or(0, |agent| agent.controller.message_len());
         Sampler {
-            sensors,
-            period_s: 1.0 / control.sample_hz,
-            torque_quantum: control.actuators.torque_quantum,
-            axes,
-            started: false,
-            measured: vec![0.0; 2 * axes * agents.len()],
             z: block(),
             dz: block(),
-            commanded: block(),
             torque: block(),
-            own: Own {
-                q: vec![0.0; axes],
-                dq: vec![0.0; axes],
-                sums: vec![0.0; X::CHANNELS * axes + told],
-                state: vec![0.0; state],
-            },
+            output: vec![0.0; 2 * axes],
+            message: vec![0.0; message],
             agents,
         }
     }
@@ -132,77 +214,46 @@ impl<R: Lagrangian<f64>, X: Transmits> Sampler<R, X> {
         Drive { z: &self.z, dz: &self.dz, held: Some(&self.torque), external }
     }
 
-    /// Measures q and q̇ and sends what the reference transmits.
-    pub(crate) fn sense(&mut self, q: &[f64], dq: &[f64], sent: &mut [f64]) {
+    /// Measures q and q̇, which stand in `motion`, and sends what the reference transmits.
+    pub(crate) fn sense(&mut self, now_s: f64, motion: &[f64], sent: &mut [f64]) {
         let n = self.agents.len();
-        for (i, sensor) in self.sensors.iter_mut().enumerate() {
-            take(n, i, q, &mut self.own.q);
-            take(n, i, dq, &mut self.own.dq);
-            sensor.measure(self.period_s, &mut self.own.q, &mut self.own.dq);
-            give(n, i, &self.own.q, &mut self.measured[..self.axes * n]);
-            give(n, i, &self.own.dq, &mut self.measured[self.axes * n..]);
-        }
-        // A message is positions, then velocities if they are sent, then what was computed at the last sample, if anything.
-        let told = self.own.sums.len() - X::CHANNELS * self.axes;
-        let (measured, computed) = sent.split_at_mut(sent.len().saturating_sub(told * n));
-        measured.copy_from_slice(&self.measured[..measured.len()]);
-        if told > 0 {
-            for (i, agent) in self.agents.iter().enumerate() {
-                give(n, i, agent.told(), computed);
-            }
-        }
-    }
-
-    /// Steps every controller; `reference` and `theta_hat` are the columns of their states, read at the first sample and
-    /// written at all others. What cannot be stepped any more, since something is no longer finite, asks for a torque that
-    /// is not either: the run then breaks down there.
-    pub(crate) fn command(&mut self, now_s: f64, inputs: Inputs<'_>, reference: &mut [f64], theta_hat: &mut [f64]) {
-        if self.try_command(now_s, inputs, reference, theta_hat).is_err() {
-            self.commanded.fill(f64::NAN);
-        }
-    }
-
-    fn try_command(
-        &mut self,
-        now_s: f64,
-        inputs: Inputs<'_>,
-        reference: &mut [f64],
-        theta_hat: &mut [f64],
-    ) -> Result<(), StepError> {
-        let n = self.agents.len();
-        let Own { q, dq, sums, state } = &mut self.own;
         for (i, agent) in self.agents.iter_mut().enumerate() {
-            if !self.started {
-                take(n, i, reference, state);
-                agent.set_reference(state)?;
-            }
-            take(n, i, &self.measured, q);
-            take(n, i, &self.measured[self.axes * n..], dq);
-            take(n, i, inputs.sums, sums);
-            let inbox = Inbox { degree: inputs.degree[i], sums };
-            let command = agent.step(now_s, Measured { q, dq }, inbox)?;
-            give(n, i, command.z, &mut self.z);
-            give(n, i, command.dz, &mut self.dz);
-            give(n, i, command.tau, &mut self.commanded);
-            give(n, i, agent.reference_state(), reference);
-            if !theta_hat.is_empty() {
-                give(n, i, agent.estimate(), theta_hat);
-            }
+            take(n, i, motion, &mut self.output);
+            agent.sense(now_s, &self.output, &mut self.message);
+            give(n, i, &self.message, sent);
         }
-        self.started = true;
-        Ok(())
+    }
+
+    /// Steps every controller and writes what it carries on into `state`, the columns of references and estimates.
+    pub(crate) fn command(&mut self, now_s: f64, inputs: Inputs<'_>, state: &mut [f64]) {
+        let n = self.agents.len();
+        for (i, agent) in self.agents.iter_mut().enumerate() {
+            take(n, i, inputs.sums, &mut self.message);
+            agent.command(now_s, inputs.degree[i], &self.message);
+            let controller = agent.controller();
+            give(n, i, controller.diagnostics(Signal::Reference(0)).unwrap_or_default(), &mut self.z);
+            give(n, i, controller.diagnostics(Signal::Reference(1)).unwrap_or_default(), &mut self.dz);
+            give(n, i, controller.state(), state);
+        }
+    }
+
+    /// The agents with their last samples.
+    pub(crate) fn agents(&self) -> &[Digital] {
+        &self.agents
     }
 
     /// Hands the commands to the actuators.
     pub(crate) fn apply(&mut self) {
-        for (torque, commanded) in self.torque.iter_mut().zip(&self.commanded) {
-            *torque = quantise(*commanded, self.torque_quantum);
+        let n = self.agents.len();
+        for (i, agent) in self.agents.iter_mut().enumerate() {
+            agent.apply();
+            give(n, i, agent.held(), &mut self.torque);
         }
     }
 }
 
 /// Member `i` of `n` out of columns.
-fn take(n: usize, i: usize, columns: &[f64], out: &mut [f64]) {
+pub(super) fn take(n: usize, i: usize, columns: &[f64], out: &mut [f64]) {
     for (k, out) in out.iter_mut().enumerate() {
         *out = columns[k * n + i];
     }
@@ -236,13 +287,13 @@ mod tests {
     #[test]
     fn noise_of_positions_of_velocities_and_of_agents_is_independent() {
         let kind = Sensors { position_noise: 1.0, velocity_noise: 1.0, seed: 3, ..Sensors::default() };
-        let mut sensors = [0, 1].map(|agent| Sensor::new(kind, agent, None));
+        let mut sensors = [0, 1].map(|agent| Sensor::new(kind, agent));
         let mut rows: Vec<[f64; 4]> = Vec::new();
         for _ in 0..10_000 {
             let mut row = [0.0; 4];
             for (sensor, pair) in sensors.iter_mut().zip(row.chunks_exact_mut(2)) {
                 let (q, dq) = pair.split_at_mut(1);
-                sensor.measure(0.01, q, dq);
+                sensor.measure(q, dq);
             }
             rows.push(row);
         }
@@ -261,7 +312,7 @@ mod tests {
     fn positions_and_velocities_have_steps_and_noise_of_their_own() {
         let measured = |kind: Sensors| {
             let (mut q, mut dq) = ([0.26], [0.26]);
-            Sensor::new(kind, 0, None).measure(0.01, &mut q, &mut dq);
+            Sensor::new(kind, 0).measure(&mut q, &mut dq);
             [q[0], dq[0]]
         };
         let exact = Sensors::default();

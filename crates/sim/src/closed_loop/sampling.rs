@@ -2,6 +2,7 @@
 
 use super::assemble::Block;
 use crate::engine::{Happened, Heard, Port, Radio};
+use crate::recording::SampleTaken;
 use crate::setup::{Control, Setup};
 
 /// The clock that all agents share: sample k is taken at k / `sample_hz`.
@@ -14,6 +15,8 @@ pub(crate) struct Sampling<'a> {
     sample: u64,
     /// When the last commands reach the actuators, s; infinite when they have.
     apply_s: f64,
+    /// Who wants to know what every sample held.
+    watch: Option<&'a mut dyn FnMut(SampleTaken<'_>)>,
 }
 
 impl<'a> Sampling<'a> {
@@ -26,7 +29,13 @@ impl<'a> Sampling<'a> {
             radio: Radio::new(&setup.network, setup.time.end_s, control.sample_hz, ports, entries, x),
             sample: 0,
             apply_s: f64::INFINITY,
+            watch: None,
         }
+    }
+
+    /// Hands every sample to `watch`.
+    pub(super) fn watch(&mut self, watch: &'a mut dyn FnMut(SampleTaken<'_>)) {
+        self.watch = Some(watch);
     }
 
     /// What was heard at the last sample.
@@ -77,9 +86,14 @@ impl<'a> Sampling<'a> {
             block.columns.sense(now_s, &x[block.state.clone()], &mut sent[block.sums.clone()]);
         }
         self.radio.hear(self.sample, &mut self.heard);
-        for block in blocks {
+        for block in blocks.iter_mut() {
             let inputs = block.inputs(&self.heard, None);
             block.columns.command(now_s, inputs, &mut x[block.state.clone()]);
+        }
+        if let Some(watch) = &mut self.watch {
+            for block in blocks {
+                block.columns.taken(&mut |digital| watch(digital.taken(self.sample, now_s)));
+            }
         }
     }
 }

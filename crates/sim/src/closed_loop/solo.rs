@@ -12,17 +12,21 @@
 //!
 //! Under digital control the plant's state flows and everything else stands still between two samples, when it jumps.
 
+use std::sync::Arc;
+
 use forwardstep_core::LengthError;
-use forwardstep_core::agent::{Inbox, Limiter, StepError};
-use forwardstep_core::controller::{Asked, Controller, Given, Jet, Stepped, Trouble, Truth};
+use forwardstep_core::controller::{Asked, Controller, Given, Jet, Trouble, Truth};
 use forwardstep_core::plant::{Plant, total};
-use forwardstep_core::reference::{Exchange, Heard};
+use forwardstep_core::reference::Heard;
+use forwardstep_core::sampled::{self, Recipe, Sampled, StartState};
 use forwardstep_core::signal::Block;
 
 use super::population::{Columns, Inputs};
-use super::sampler::{Sensor, quantise};
+use super::recipes::used;
+use super::sampler::Digital;
+use super::valid::SetupError;
 use crate::recording::{GainRates, Signal};
-use crate::setup::AgentSetup;
+use crate::setup::{AgentSetup, Control, Setup};
 use crate::trajectory::Trajectory;
 
 /// A plant and its controller.
@@ -32,11 +36,13 @@ pub(crate) struct Solo<C: Controller> {
     controller: C,
     target: Option<Target>,
     effort_limits: Option<Vec<f64>>,
-    digital: Option<Digital<C>>,
+    digital: Option<Digital>,
     layout: Layout,
     plant_scratch: <C::Plant as Plant>::Scratch,
     scratch: C::Scratch,
     now: Now,
+    /// What the controller shows, when control is digital.
+    shown: Vec<Block>,
     row: Vec<f64>,
 }
 
@@ -46,37 +52,6 @@ pub(crate) struct Target {
     pub(crate) trajectory: Trajectory,
     /// It is an offset from where all agree; otherwise it is to be followed.
     pub(crate) is_offset: bool,
-}
-
-/// How an agent samples.
-pub(crate) struct Digital<C: Controller> {
-    /// Made at the first sample.
-    stepped: Option<Stepped<C>>,
-    sensor: Sensor,
-    limiter: Limiter,
-    period_s: f64,
-    torque_quantum: f64,
-    last_s: Option<f64>,
-    measured: Vec<f64>,
-    commanded: Vec<f64>,
-    held: Vec<f64>,
-}
-
-impl<C: Controller> Digital<C> {
-    /// With `limiter` for the axes of [`Signal::Torque`] in the input.
-    pub(crate) fn new(sensor: Sensor, limiter: Limiter, period_s: f64, torque_quantum: f64) -> Self {
-        Digital {
-            stepped: None,
-            sensor,
-            limiter,
-            period_s,
-            torque_quantum,
-            last_s: None,
-            measured: Vec::new(),
-            commanded: Vec::new(),
-            held: Vec::new(),
-        }
-    }
 }
 
 /// Sizes of the block.
@@ -110,15 +85,15 @@ struct Now {
 }
 
 impl<C: Controller> Solo<C> {
-    /// The agent number `agent`. What a held input does is not what the ledger balances, so there is none under `digital`
-    /// control.
+    /// The agent number `agent`. What a held input does is not what the ledger balances, so there is none where it will be
+    /// `sampled`.
     pub(crate) fn new(
         agent: usize,
         plant: C::Plant,
         controller: C,
         target: Option<Target>,
         effort_limits: Option<Vec<f64>>,
-        digital: Option<Digital<C>>,
+        sampled: bool,
         ledger: bool,
     ) -> Self {
         let (states, inputs) = (plant.states(), plant.inputs());
@@ -128,16 +103,10 @@ impl<C: Controller> Solo<C> {
             velocities: states.get(1).filter(|(signal, _)| *signal == Signal::Velocity).map_or(0, |(_, count)| *count),
             plant: total(&states),
             controller: total(&controller.states()),
-            ledger: ledger && digital.is_none(),
+            ledger: ledger && !sampled,
             torque: torque.map_or((0, 0), |at| (total(&inputs[..at]), inputs[at].1)),
         };
         let input = total(&inputs);
-        let digital = digital.map(|digital| Digital {
-            measured: vec![0.0; plant.output_len()],
-            commanded: vec![0.0; input],
-            held: vec![0.0; input],
-            ..digital
-        });
         let now = Now {
             jets: vec![[0.0; 5]; target.as_ref().map_or(0, |target| target.trajectory.axes())],
             state: vec![0.0; layout.plant],
@@ -154,9 +123,10 @@ impl<C: Controller> Solo<C> {
             controller,
             target,
             effort_limits,
-            digital,
+            digital: None,
             layout,
             now,
+            shown: Vec::new(),
             row: Vec::new(),
         }
     }
@@ -188,11 +158,8 @@ impl<C: Controller> Solo<C> {
         let Layout { m, plant, .. } = self.layout;
         let Now { jets, state, output, input, shown, d_controller } = &mut self.now;
         if let Some(digital) = &self.digital {
-            input.copy_from_slice(&digital.held);
+            input.copy_from_slice(digital.held());
             d_controller.fill(0.0);
-            if let Some(stepped) = &digital.stepped {
-                shown.copy_from_slice(stepped.shown());
-            }
         } else {
             let own = &x[plant..self.layout.controller_end()];
             let heard = Heard::new(inputs.degree, inputs.sums, m)?;
@@ -255,28 +222,6 @@ impl<C: Controller> Solo<C> {
         if self.layout.ledger {
             self.row.push(x[self.layout.controller_end()]);
         }
-        Ok(())
-    }
-
-    fn try_command(&mut self, now_s: f64, inputs: Inputs<'_>, x: &mut [f64]) -> Result<(), StepError> {
-        let Layout { m, plant, torque: (first, count), .. } = self.layout;
-        let end = self.layout.controller_end();
-        let Some(digital) = &mut self.digital else { return Ok(()) };
-        let stepped = match &mut digital.stepped {
-            Some(stepped) => stepped,
-            none => {
-                let controller = self.controller.clone();
-                none.insert(Stepped::new(controller, &self.plant, self.now.jets.len(), &x[plant..end])?)
-            }
-        };
-        let sums = &inputs.sums[..<C::Exchange as Exchange>::CHANNELS * m];
-        let inbox = Inbox { degree: inputs.degree[0], sums };
-        digital.commanded.copy_from_slice(stepped.step(now_s, &digital.measured, inbox, &self.now.jets)?);
-        digital
-            .limiter
-            .apply(digital.last_s.map(|last_s| now_s - last_s), &mut digital.commanded[first..first + count]);
-        digital.last_s = Some(now_s);
-        x[plant..end].copy_from_slice(stepped.state());
         Ok(())
     }
 
@@ -345,38 +290,51 @@ impl<C: Controller> Columns for Solo<C> {
     fn sense(&mut self, t_s: f64, x: &[f64], sent: &mut [f64]) {
         let looked = self.look(t_s, x);
         debug_assert_eq!(looked, Ok(()), "lengths are fixed when the agent is built");
-        let (Layout { m, velocities, .. }, is_offset) = (self.layout, self.is_offset());
-        let Some(digital) = &mut self.digital else { return };
-        digital.measured.copy_from_slice(&self.now.output);
-        let (q, rest) = digital.measured.split_at_mut(m);
-        let dq = &mut rest[..velocities];
-        digital.sensor.measure(digital.period_s, q, dq);
-        // A message is the position, then the velocity if it is sent.
-        sent.copy_from_slice(&digital.measured[..sent.len()]);
-        if is_offset {
-            for (channel, sent) in sent.chunks_exact_mut(m).enumerate() {
-                for (value, jet) in sent.iter_mut().zip(&self.now.jets) {
-                    *value -= jet[channel];
-                }
-            }
+        if let Some(digital) = &mut self.digital {
+            digital.sense(t_s, &self.now.output, sent);
         }
+    }
+
+    fn recipes(&self, setup: &Setup, x: &[f64]) -> Result<Vec<(usize, Recipe)>, SetupError> {
+        let Layout { plant, torque: (_, torques), .. } = self.layout;
+        let mut recipe = Recipe::feedback(&self.plant, self.controller.clone());
+        recipe.start = StartState::State(x[plant..self.layout.controller_end()].to_vec());
+        recipe.target = self.target.as_ref().map(|Target { trajectory, is_offset }| {
+            let motion = Arc::new(trajectory.clone());
+            if *is_offset { sampled::Target::Offset(motion) } else { sampled::Target::Follow(motion) }
+        });
+        Ok(vec![(self.agent, used(recipe, setup, self.agent, torques)?)])
+    }
+
+    fn sample(&mut self, control: &Control, controllers: Vec<Box<dyn Sampled>>) {
+        let controller = controllers.into_iter().next();
+        self.digital =
+            controller.map(|controller| Digital::new(control, self.agent, &self.plant.outputs(), controller));
+        self.shown = self.controller.shown();
     }
 
     fn command(&mut self, now_s: f64, inputs: Inputs<'_>, x: &mut [f64]) {
-        if self.try_command(now_s, inputs, x).is_err()
-            && let Some(digital) = &mut self.digital
-        {
-            digital.commanded.fill(f64::NAN);
+        let (plant, end) = (self.layout.plant, self.layout.controller_end());
+        let Some(digital) = &mut self.digital else { return };
+        digital.command(now_s, inputs.degree[0], inputs.sums);
+        let controller = digital.controller();
+        x[plant..end].copy_from_slice(controller.state());
+        let mut first = 0;
+        for (signal, count) in &self.shown {
+            if let Some(values) = controller.diagnostics(*signal) {
+                self.now.shown[first..first + count].copy_from_slice(values);
+            }
+            first += count;
         }
     }
 
+    fn taken(&self, each: &mut dyn FnMut(&Digital)) {
+        self.digital.iter().for_each(each);
+    }
+
     fn apply(&mut self) {
-        let (first, count) = self.layout.torque;
         if let Some(digital) = &mut self.digital {
-            digital.held.copy_from_slice(&digital.commanded);
-            for torque in &mut digital.held[first..first + count] {
-                *torque = quantise(*torque, digital.torque_quantum);
-            }
+            digital.apply();
         }
     }
 

@@ -5,6 +5,7 @@ use forwardstep_core::controller::ChainError;
 use forwardstep_core::plant::SpacecraftError;
 use forwardstep_core::reference::{BacksteppingError, Choice, RootsError};
 use forwardstep_core::robot::tree::TipError;
+use forwardstep_core::sampled::RecipeError;
 use forwardstep_core::{GainError, LengthError};
 use thiserror::Error;
 
@@ -29,6 +30,14 @@ pub enum SetupError {
         /// Vertices of the network.
         network: usize,
         /// Agents described.
+        agents: usize,
+    },
+    /// An agent that there is not.
+    #[error("there is no agent {agent}: there are {agents}, counted from zero")]
+    NoAgent {
+        /// The number asked for.
+        agent: usize,
+        /// How many there are.
         agents: usize,
     },
     /// Consensus needs all agents in the same space.
@@ -321,6 +330,14 @@ pub enum SetupError {
         value: f64,
         /// Whether there are velocities, but from positions.
         filtered: bool,
+    },
+    /// Anything else that keeps an agent's controller from being built.
+    #[error("agent `{agent}`: {error}")]
+    Recipe {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: RecipeError,
     },
     /// The filter that gives velocities.
     #[error(transparent)]

@@ -159,10 +159,12 @@ impl Hearing {
             // A weight that changes is looked up anew at every instant.
             let weight = edge.weight.constant().unwrap_or(0.0);
             self.links.push(Link { sender: edge.from, receiver: edge.to, weight, source });
-            heard.degree[self.ports[edge.to].degree] += weight;
         }
         // Receivers in order, senders in order within: sums do not depend on how a file lists its edges.
         self.links.sort_by_key(|link| (link.receiver, link.sender));
+        for link in &self.links {
+            heard.degree[self.ports[link.receiver].degree] += link.weight;
+        }
         self.rewire_varying(edges.iter().filter(|edge| timeline.clock_of(edge.delay).is_some()));
     }
 

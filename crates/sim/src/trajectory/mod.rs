@@ -11,6 +11,7 @@ mod spline;
 
 use forwardstep_core::Scalar;
 use forwardstep_core::controller::Jet;
+use forwardstep_core::sampled::Motion;
 use thiserror::Error;
 
 use crate::formula::{Formula, Interval, search, weighted};
@@ -100,6 +101,16 @@ impl Path {
             Path::Sinusoids { offset, waves } => sinusoids(*offset, waves, weights, end_s),
             Path::Spline(spline) => spline.bounds(weights, end_s),
         }
+    }
+}
+
+impl Motion for Trajectory {
+    fn axes(&self) -> usize {
+        self.paths.len()
+    }
+
+    fn jet(&self, axis: usize, at_s: f64) -> Jet {
+        self.paths.get(axis).map_or([f64::NAN; 5], |path| path.jet(at_s))
     }
 }
 

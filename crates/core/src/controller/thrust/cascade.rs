@@ -79,6 +79,10 @@ impl Controller for ThrustCascade {
         shown
     }
 
+    fn reads(&self, signal: Signal) -> bool {
+        matches!(signal, Signal::Position | Signal::Velocity | Signal::Attitude | Signal::AngularVelocity)
+    }
+
     fn see<'a>(&self, output: &'a [f64]) -> Result<RotorcraftMeasured<'a>, LengthError> {
         let (vehicle, omega) = VehicleState::read(output)?;
         let short = LengthError { what: "angular velocity", need: 3, got: omega.len() };

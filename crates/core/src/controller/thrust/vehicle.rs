@@ -43,6 +43,10 @@ impl Controller for Thrust {
         self.shown_blocks()
     }
 
+    fn reads(&self, signal: Signal) -> bool {
+        matches!(signal, Signal::Position | Signal::Velocity | Signal::Attitude)
+    }
+
     fn see<'a>(&self, output: &'a [f64]) -> Result<VehicleState<'a>, LengthError> {
         LengthError::check("output", VehicleState::LEN, output.len())?;
         Ok(VehicleState::read(output)?.0)
