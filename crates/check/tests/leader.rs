@@ -8,9 +8,9 @@ use std::sync::Arc;
 use common::{axis, edge};
 use forwardstep_check::{Answer, Report, check, sampled_adaptation};
 use forwardstep_core::Gain;
+use forwardstep_core::expression::Expression;
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::delay::Delay;
-use forwardstep_sim::formula::{Formula, FormulaStep};
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
 use forwardstep_sim::schedule::{Phase, Schedule};
@@ -95,15 +95,12 @@ fn thm8_curves_and_formulas_are_bounded_as_far_as_that_can_be_shown() {
     let curve = Path::Spline(Spline::new(vec![0.0, 2.0, 5.0], vec![0.0, 1.0, -1.0]).unwrap());
     assert_eq!(check(&setup(FollowingDesign::WithoutAcceleration, curve, 20.0)).worst(), Answer::Holds);
     // ¼ t² accelerates for ever: its velocity is bounded on the run only.
-    let parabola = |factor| {
-        use FormulaStep::{Multiply, Number, Power, Time};
-        Path::Formula(Formula::new(vec![Number(factor), Time, Power(2.0), Multiply]).unwrap())
-    };
+    let parabola = |factor: f64| Path::Formula(Expression::variable(0).power(2.0) * factor);
     let report = check(&setup(FollowingDesign::Continuous, parabola(0.25), 11.0));
     assert_eq!(answer(&report, "γ exceeds").0, Answer::HoldsOnHorizon);
     assert_eq!(answer(&report, "jerk").0, Answer::HoldsOnHorizon);
     // √t has no velocity at the start.
-    let root = Path::Formula(Formula::new(vec![FormulaStep::Time, FormulaStep::Sqrt]).unwrap());
+    let root = Path::Formula(Expression::variable(0).sqrt_of());
     assert_eq!(answer(&check(&setup(FollowingDesign::Continuous, root, 11.0)), "jerk").0, Answer::NotCovered);
 }
 

@@ -75,6 +75,9 @@ fn links_are_what_they_say() {
     // A formula without t is a number.
     let number = super::links::network(&changed("weight = 1.0", "weight = \"2*pi\""));
     assert_eq!(number.schedule.graphs()[0][0].weight, Weight::Constant(2.0 * std::f64::consts::PI));
+    // It touches zero as it is written, whatever 0.3 is in binary.
+    let touching = super::links::network(&changed("0.2 + 0.1*sin(2*pi*t/3)", "0.3 + 0.2*sin(t) + 0.1*sin(t)"));
+    assert_eq!(touching.delays[touching.schedule.graphs()[0][2].delay].min_s(), 0.0);
 }
 
 /// What to put in the place of the saw-tooth, the first line of the error, and a part of the help.
@@ -137,6 +140,7 @@ const WEIGHTS: &[Case] = &[
     ("\"sin(t)\"", "test.toml:28:10: the weight is 0 at t = 0 s, but must be positive", "`max(0.1, …)`"),
     ("\"heavy\"", "test.toml:28:11: there is no `heavy` in a formula", "there are `t`"),
     ("\"0\"", "test.toml:28:10: `weight` is 0, but must be positive", ""),
+    ("\"0.1 + 0.2 - 0.3\"", "test.toml:28:10: `weight` is 0, but must be positive", ""),
     ("\"log(0)\"", "test.toml:28:10: the formula for `weight` has no finite value", ""),
     ("\"\\u0031 + q\"", "test.toml:28:10: there is no `q` in a formula", "there are `t`"),
     ("[1]", "test.toml:28:10: found a list where a number or a formula in t in quotes should stand", ""),

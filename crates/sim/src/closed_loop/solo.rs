@@ -23,7 +23,7 @@ use super::population::{Columns, Inputs};
 use super::sampler::{Sensor, quantise};
 use crate::recording::Signal;
 use crate::setup::AgentSetup;
-use crate::trajectory::Trajectory;
+use crate::trajectory::Pieces;
 
 /// A plant and its controller.
 pub(crate) struct Solo<C: Controller> {
@@ -43,7 +43,7 @@ pub(crate) struct Solo<C: Controller> {
 /// What a trajectory means to an agent.
 pub(crate) struct Target {
     /// The trajectory.
-    pub(crate) trajectory: Trajectory,
+    pub(crate) trajectory: Pieces,
     /// It is an offset from where all agree; otherwise it is to be followed.
     pub(crate) is_offset: bool,
 }
@@ -395,6 +395,22 @@ impl<C: Controller> Columns for Solo<C> {
 
     fn next_event_s(&self, after_s: f64) -> f64 {
         self.target.as_ref().map_or(f64::INFINITY, |target| target.trajectory.next_kink_s(after_s))
+    }
+
+    fn pass_kink(&mut self, until_s: f64, x: &mut [f64]) {
+        let Layout { m, velocities, .. } = self.layout;
+        let (Some(target), jets) = (&mut self.target, &mut self.now.jets) else { return };
+        // The velocity of what moves with an offset is the agent's less the offset's, which jumps.
+        let jump_s = target.trajectory.next_jump_s(until_s).filter(|_| target.is_offset && velocities == m);
+        let mut add = |pieces: &Pieces, sign: f64| {
+            if let Some(jump_s) = jump_s {
+                pieces.jets(jump_s, jets);
+                x[m..].iter_mut().zip(jets.iter()).for_each(|(velocity, jet)| *velocity += sign * jet[1]);
+            }
+        };
+        add(&target.trajectory, 1.0);
+        target.trajectory.pass(until_s);
+        add(&target.trajectory, -1.0);
     }
 
     fn signals(&self) -> Vec<(Signal, usize)> {

@@ -16,6 +16,7 @@ use super::valid::SetupError;
 use super::vehicles;
 use crate::recording::Signal;
 use crate::setup::{AgentSetup, Control, Exchange, Law, ReferenceKind, RobotKind, Setup};
+use crate::trajectory::Pieces;
 
 /// The agent number `agent` with its law.
 pub(super) fn system(setup: &Setup, agent: usize) -> Result<Box<dyn Columns>, SetupError> {
@@ -99,7 +100,8 @@ pub(super) fn solo<C: Controller>(
         }
         Some(trajectory) => {
             length("the target", plant.axes(), trajectory.axes())?;
-            Some(Target { trajectory: trajectory.clone(), is_offset })
+            let wrong = |error| SetupError::Trajectory { agent: name(), error };
+            Some(Target { trajectory: Pieces::new(trajectory.clone(), setup.time.end_s).map_err(wrong)?, is_offset })
         }
     };
     let torques: usize = plant.inputs().iter().filter(|(signal, _)| *signal == Signal::Torque).map(|(_, n)| n).sum();

@@ -12,6 +12,7 @@ use crate::leader::{Following, FollowingDesign};
 use crate::network::NetworkError;
 use crate::push::PushError;
 use crate::setup::{AgentSetup, AxisUnit, Control, Exchange, Law, Method, ReferenceKind, RobotKind, Setup};
+use crate::trajectory::TrajectoryError;
 
 /// Why a setup cannot be simulated.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -19,6 +20,14 @@ pub enum SetupError {
     /// The network has no meaning.
     #[error("network: {0}")]
     Network(#[from] NetworkError),
+    /// A target, an offset or a leader that cannot be landed on where it has kinks.
+    #[error("`{agent}`: {error}")]
+    Trajectory {
+        /// Whose it is.
+        agent: String,
+        /// What is wrong.
+        error: TrajectoryError,
+    },
     /// The network was made for another number of agents.
     #[error("the network has {network} agents, but {agents} are described")]
     AgentCount {
