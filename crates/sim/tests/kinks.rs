@@ -142,6 +142,20 @@ fn fixed_steps_keep_their_order_across_the_kinks_of_everything() {
     has_order_four("push", pushed, 0.04);
 }
 
+/// What is heard late jumps late, and the error control sees to it.
+#[test]
+fn a_leader_with_kinks_is_followed_through_a_delay_to_the_tolerance() {
+    let mut late = led_along(FollowingDesign::Continuous, bounce(1.3), 6.0);
+    late.network.delays = vec![Delay::Constant { s: 0.37 }];
+    let with = |rtol: f64| {
+        let mut setup = late.clone();
+        setup.solver.method = Method::Adaptive { rtol, atol: 0.01 * rtol };
+        run(&setup)
+    };
+    let gap = apart(&with(1e-6), &with(1e-10));
+    assert!(gap < 1e-5, "{gap:e}");
+}
+
 /// The state of an agent with an offset is its motion less the offset's; what it is itself does not jump.
 #[test]
 fn an_agent_with_a_bouncing_offset_keeps_its_velocity_at_the_kinks() {

@@ -4,6 +4,7 @@ use std::f64::consts::E;
 
 use forwardstep_core::expression::{Binary, Step};
 use forwardstep_io::scenario::formula::{FormulaProblem, parse_expression, parse_formula};
+use forwardstep_sim::formula::BoundedFormula;
 use proptest::prelude::*;
 
 fn value(text: &str, t: f64) -> f64 {
@@ -33,6 +34,17 @@ fn operators_bind_as_on_paper() {
     ] {
         assert_eq!(value(text, 2.0), wanted, "{text}");
     }
+}
+
+#[test]
+fn decimals_are_the_numbers_that_are_written() {
+    // No f64 is 3/10, and yet this touches zero.
+    let swing = parse_formula("0.3 + 0.2*sin(t) + 0.1*sin(t)").unwrap();
+    assert_eq!(BoundedFormula::new(swing, 20.0).within().low, 0.0);
+    let root = parse_formula("t^(0.1 + 0.2)").unwrap();
+    assert_eq!(root, parse_formula("t^0.3").unwrap());
+    assert_ne!(root.steps(), [Step::Variable(0), Step::Power(0.3.into())]);
+    assert_eq!(value("8^(1/3)", 0.0), 2.0);
 }
 
 #[test]

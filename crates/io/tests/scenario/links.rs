@@ -75,9 +75,6 @@ fn links_are_what_they_say() {
     // A formula without t is a number.
     let number = super::links::network(&changed("weight = 1.0", "weight = \"2*pi\""));
     assert_eq!(number.schedule.graphs()[0][0].weight, Weight::Constant(2.0 * std::f64::consts::PI));
-    // It touches zero as it is written, whatever 0.3 is in binary.
-    let touching = super::links::network(&changed("0.2 + 0.1*sin(2*pi*t/3)", "0.3 + 0.2*sin(t) + 0.1*sin(t)"));
-    assert_eq!(touching.delays[touching.schedule.graphs()[0][2].delay].min_s(), 0.0);
 }
 
 /// What to put in the place of the saw-tooth, the first line of the error, and a part of the help.
