@@ -76,7 +76,7 @@ impl<A: Branching> Jets<A> {
         self.times(a, ratio)
     }
 
-    fn to_the(&mut self, a: A::Value, n: f64) -> A::Value {
+    fn raised(&mut self, a: A::Value, n: f64) -> A::Value {
         self.0.power(a, &n.into())
     }
 
@@ -156,7 +156,7 @@ impl<A: Branching> Jets<A> {
     fn log(&mut self, a: A::Value) -> Jet<A> {
         let mut g = [self.0.unary(Unary::Log, a); ORDERS];
         for (k, g) in g.iter_mut().enumerate().skip(1) {
-            let (one, power) = (self.of(1.0), self.to_the(a, k as f64));
+            let (one, power) = (self.of(1.0), self.raised(a, k as f64));
             let below = self.scaled(power, k as f64);
             let term = self.0.binary(Binary::Divide, one, below);
             *g = if k % 2 == 0 { self.0.unary(Unary::Negate, term) } else { term };
@@ -167,7 +167,7 @@ impl<A: Branching> Jets<A> {
     /// gⱼ of tanh: u' = 1 − u², and so on.
     fn tanh(&mut self, a: A::Value) -> Jet<A> {
         let u = self.0.unary(Unary::Tanh, a);
-        let (one, two, sixteen, square) = (self.of(1.0), self.of(2.0), self.of(16.0), self.to_the(u, 2.0));
+        let (one, two, sixteen, square) = (self.of(1.0), self.of(2.0), self.of(16.0), self.raised(u, 2.0));
         let d = self.minus(one, square);
         let second = self.times(u, d);
         let third = self.scaled(square, 6.0);
@@ -184,8 +184,8 @@ impl<A: Branching> Jets<A> {
     fn atan(&mut self, a: A::Value) -> Jet<A> {
         let angle = self.0.unary(Unary::Atan, a);
         let (sin, cos) = (self.0.unary(Unary::Sin, angle), self.0.unary(Unary::Cos, angle));
-        let [c2, c3, c4, c5] = [2.0, 3.0, 4.0, 5.0].map(|n| self.to_the(cos, n));
-        let s2 = self.to_the(sin, 2.0);
+        let [c2, c3, c4, c5] = [2.0, 3.0, 4.0, 5.0].map(|n| self.raised(cos, n));
+        let s2 = self.raised(sin, 2.0);
         let second = self.times(sin, c3);
         let third = self.scaled(s2, 3.0);
         let third = self.minus(third, c2);
