@@ -4,9 +4,10 @@
 //! jitter makes them, but packets arrive a finite number of times in a bounded time, and how short a piece is plays no part
 //! where the theorems use the delay, under integrals. What can fail is the bound.
 
+use forwardstep_core::expression::Interval;
 use forwardstep_sim::Setup;
 use forwardstep_sim::delay::{Basis, Delay, Unknown};
-use forwardstep_sim::formula::{BoundedFormula, Interval};
+use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 
 use crate::hypothesis::{Hypothesis, Id, LinkEvidence};

@@ -9,10 +9,10 @@ use std::sync::Arc;
 use common::{arm, column, edge, masses, noise, run, setup};
 use forwardstep_check::{Answer, NoPrediction, check, predict};
 use forwardstep_core::Gain;
+use forwardstep_core::expression::Expression;
 use forwardstep_core::reference::polynomial;
 use forwardstep_sim::delay::{Delay, Loss, PacketLink, RandomHold};
-use forwardstep_sim::formula::FormulaStep::{Add, Multiply, Number, Sin, Time};
-use forwardstep_sim::formula::{BoundedFormula, Formula};
+use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{Exchange, Known, Outcome, ReferenceKind, Setup, Signal, TimeSpan};
@@ -244,7 +244,7 @@ fn prop_spread_never_grows_over_random_packets_and_weights() {
         most_in_a_row: None,
         seed,
     };
-    let swing = Formula::new(vec![Number(1.3), Number(1.2), Number(2.0), Time, Multiply, Sin, Multiply, Add]).unwrap();
+    let swing = (Expression::variable(0) * 2.0).sin_of() * 1.2 + 1.3;
     for seed in 0..4 {
         let links = [
             link(seed, Loss::Never, 0.0),

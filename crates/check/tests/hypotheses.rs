@@ -9,8 +9,9 @@ use std::collections::BTreeSet;
 use common::{arm, edge, masses, setup};
 use forwardstep_check::hypothesis::{FollowingEvidence, LinkEvidence, ReferenceEvidence, Subject};
 use forwardstep_check::{Answer, Evidence, Id, Rigour, Source, Theorem, check};
+use forwardstep_core::expression::Expression;
 use forwardstep_sim::delay::{Delay, Loss, PacketLink};
-use forwardstep_sim::formula::{BoundedFormula, Formula, FormulaStep};
+use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{Exchange, ReferenceKind};
 
@@ -93,7 +94,7 @@ fn delays(used: Vec<Delay>) -> (Answer, Rigour, Evidence) {
 #[test]
 fn rigour_of_a_bound_is_that_of_its_weakest_part() {
     let constant = || Delay::Constant { s: 0.1 };
-    let formula = Formula::new(vec![FormulaStep::Number(0.3)]).unwrap();
+    let formula = Expression::number(0.3);
     let enclosed = || Delay::Formula(BoundedFormula::new(formula.clone(), 20.0).into());
     let packets = |most_in_a_row| {
         let loss = Loss::Random { probability: 0.1 };

@@ -14,7 +14,6 @@ use forwardstep_core::controller::{Floor, ParameterBounds};
 use forwardstep_core::expression::Expression;
 use forwardstep_core::robot::tree::JointKind::{Prismatic, Revolute};
 use forwardstep_core::robot::tree::{JointKind, Uncertain};
-use forwardstep_sim::formula::FormulaStep::{Multiply, Number, Sin, Time};
 use forwardstep_sim::trajectory::{Path, Trajectory};
 use forwardstep_sim::{AgentSetup, Setup, SpacecraftModel, ThrustKind};
 
@@ -218,12 +217,12 @@ fn eq_a9_and_others_need_as_many_derivatives_of_a_target_as_they_take() {
 #[test]
 fn targets_are_bounded_for_ever_on_the_run_or_not_at_all() {
     let said = |path: Path| answer(&tracking(blind_mass(5.0, 0.3), vec![path]), About::Target);
-    assert_eq!(said(formula(&[Number(0.3), Time, Sin, Multiply])), Answer::Holds);
+    assert_eq!(said(formula(Expression::variable(0).sin_of() * 0.3)), Answer::Holds);
     assert_eq!(said(power_of_time(0.1, 2.0)), Answer::HoldsOnHorizon);
     // A target has to stay where it is, an offset may travel.
-    assert_eq!(said(formula(&[Number(0.3), Time, Multiply])), Answer::HoldsOnHorizon);
+    assert_eq!(said(formula(Expression::variable(0) * 0.3)), Answer::HoldsOnHorizon);
     let mut travelling: Setup = alone(vehicle(ThrustKind::Continuous, Floor::Stops(1.0)));
-    let drift = vec![formula(&[Number(0.3), Time, Multiply]), rest_at(0.0), rest_at(0.0)];
+    let drift = vec![formula(Expression::variable(0) * 0.3), rest_at(0.0), rest_at(0.0)];
     travelling.agents[0].target = Some(Trajectory::new(drift).unwrap());
     assert_eq!(answer(&travelling, About::Offset), Answer::Holds);
     // Any axis may be the one that is not bounded.
@@ -239,7 +238,7 @@ fn thm7_a_quaternion_that_comes_to_zero_is_violated_and_one_that_does_not_holds(
     assert_eq!(said(rest_at(1.0)), Answer::Holds);
     assert_eq!(said(rest_at(-1.0)), Answer::Holds);
     // It passes zero at π.
-    assert_eq!(said(formula(&[Time, Sin])), Answer::Violated);
-    let shrinking = formula(&[Number(1.0), Number(-0.04), Time, Multiply, forwardstep_sim::formula::FormulaStep::Add]);
+    assert_eq!(said(formula(Expression::variable(0).sin_of())), Answer::Violated);
+    let shrinking = formula(Expression::variable(0) * -0.04 + 1.0);
     assert_eq!(said(shrinking), Answer::HoldsOnHorizon, "at 20 s it is 0.2");
 }

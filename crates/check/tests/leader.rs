@@ -9,10 +9,10 @@ use common::kinds::{formula, power_of_time};
 use common::{About, axis, edge};
 use forwardstep_check::{Answer, Report, check, sampled_adaptation};
 use forwardstep_core::Gain;
+use forwardstep_core::expression::Expression;
 use forwardstep_core::reference::Choice;
 use forwardstep_core::robot::PointMass;
 use forwardstep_sim::delay::Delay;
-use forwardstep_sim::formula::{Formula, FormulaStep};
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
 use forwardstep_sim::schedule::{Phase, Schedule};
@@ -97,15 +97,12 @@ fn thm8_curves_and_formulas_are_bounded_as_far_as_that_can_be_shown() {
     let curve = Path::Spline(Spline::new(vec![0.0, 2.0, 5.0], vec![0.0, 1.0, -1.0]).unwrap());
     assert_eq!(check(&setup(FollowingDesign::WithoutAcceleration, curve, 20.0)).worst(), Answer::Holds);
     // ¼ t² accelerates for ever: its velocity is bounded on the run only.
-    let parabola = |factor| {
-        use FormulaStep::{Multiply, Number, Power, Time};
-        Path::Formula(Formula::new(vec![Number(factor), Time, Power(2.0), Multiply]).unwrap())
-    };
+    let parabola = |factor: f64| Path::Formula(Expression::variable(0).power(2.0) * factor);
     let report = check(&setup(FollowingDesign::Continuous, parabola(0.25), 11.0));
     assert_eq!(answer(&report, "γ exceeds").0, Answer::HoldsOnHorizon);
     assert_eq!(answer(&report, "jerk").0, Answer::HoldsOnHorizon);
     // √t has no velocity at the start.
-    let root = Path::Formula(Formula::new(vec![FormulaStep::Time, FormulaStep::Sqrt]).unwrap());
+    let root = Path::Formula(Expression::variable(0).sqrt_of());
     assert_eq!(answer(&check(&setup(FollowingDesign::Continuous, root, 11.0)), "jerk").0, Answer::NotCovered);
 }
 
@@ -119,7 +116,7 @@ fn thm8_velocity_acceleration_and_jerk_all_have_to_be_bounded() {
     let none = Answer::NotCovered;
     assert_eq!([1, 2, 3, 4].map(said), [none, none, none, Answer::HoldsOnHorizon]);
     // Where it is does not matter, so it may travel for ever.
-    let travels = formula(&[FormulaStep::Time]);
+    let travels = formula(Expression::variable(0));
     assert_eq!(common::answer(&setup(FollowingDesign::Continuous, travels, 2.0), About::LeaderMotion), Answer::Holds);
 }
 
@@ -139,12 +136,11 @@ fn thm8_a_gain_that_equals_its_bound_does_not_exceed_it() {
     let gamma = bound(&wave(), None);
     assert_eq!(around(FollowingDesign::Continuous, &wave(), gamma), [no, holds]);
     // Of a leader at a constant speed every sample reaches it.
-    let steady = formula(&[FormulaStep::Number(0.5), FormulaStep::Time, FormulaStep::Multiply]);
+    let steady = formula(Expression::variable(0) * 0.5);
     assert_eq!(bound(&steady, None), 0.5);
     assert_eq!(around(FollowingDesign::Continuous, &steady, 0.5), [Answer::Violated, holds]);
     // One on the run: ¼ t² + sin(t²) swings faster and faster, and no sample hits the largest.
-    use FormulaStep::{Add, Multiply, Number, Power, Sin, Time};
-    let faster = formula(&[Number(0.25), Time, Power(2.0), Multiply, Time, Power(2.0), Sin, Add]);
+    let faster = formula(Expression::variable(0).power(2.0) * 0.25 + Expression::variable(0).power(2.0).sin_of());
     assert_eq!(bound(&faster, None), f64::INFINITY);
     let gamma = bound(&faster, Some(20.0));
     assert_eq!(around(FollowingDesign::Continuous, &faster, gamma), [no, Answer::HoldsOnHorizon]);

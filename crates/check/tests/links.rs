@@ -6,15 +6,15 @@ mod common;
 
 use common::{edge, masses};
 use forwardstep_check::{Answer, NoPrediction, check, predict};
+use forwardstep_core::expression::Expression;
 use forwardstep_sim::Exchange;
 use forwardstep_sim::delay::{Delay, Loss, Packet, PacketLink, RandomHold, Trace};
-use forwardstep_sim::formula::FormulaStep::{Add, Divide, Multiply, Number, Sin, Tanh, Time};
-use forwardstep_sim::formula::{BoundedFormula, Formula};
+use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::schedule::Schedule;
 
 /// The answer to the hypothesis on delays, and on weights if there is one, of two agents that hear each other.
-fn links(delay: Delay, weight: Option<Formula>) -> (Answer, String, Option<(Answer, String)>) {
+fn links(delay: Delay, weight: Option<Expression>) -> (Answer, String, Option<(Answer, String)>) {
     let end_s = 20.0;
     let mut setup =
         masses(Exchange::Position, 2, Schedule::Fixed(vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)]), vec![delay]);
@@ -77,9 +77,10 @@ fn only_a_bounded_loss_gives_a_bounded_delay() {
 
 #[test]
 fn formulas_hold_for_ever_only_where_that_is_shown() {
-    let swing = |mean| Formula::new(vec![Number(mean), Number(0.5), Time, Sin, Multiply, Add]).unwrap();
-    let growing = Formula::new(vec![Number(0.1), Number(0.01), Time, Multiply, Add]).unwrap();
-    let delay = |formula: Formula| Delay::Formula(BoundedFormula::new(formula, 20.0).into());
+    let t = || Expression::variable(0);
+    let swing = |mean: f64| t().sin_of() * 0.5 + mean;
+    let growing = t() * 0.01 + 0.1;
+    let delay = |formula: Expression| Delay::Formula(BoundedFormula::new(formula, 20.0).into());
     let (answer, because, _) = links(delay(swing(0.5)), None);
     assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 1 s"));
     let (answer, because, _) = links(delay(growing.clone()), None);
@@ -93,23 +94,21 @@ fn formulas_hold_for_ever_only_where_that_is_shown() {
     assert_eq!(links(constant(), None).2, None);
 
     // What is said for ever is the bound for ever, not what the run happens to see of it: 0.2 + 0.1 tanh(t / 1000).
-    let rising =
-        Formula::new(vec![Number(0.2), Number(0.1), Time, Number(1000.0), Divide, Tanh, Multiply, Add]).unwrap();
+    let rising = (t() / 1000.0).tanh_of() * 0.1 + 0.2;
     let (answer, because, weight) = links(delay(rising.clone()), Some(rising));
     assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 0.3 s"));
     assert_eq!(weight.unwrap(), (Answer::Holds, "weights that follow a formula stay from 0.2 to 0.3".to_owned()));
 
     // 0.2 + 0.1 sin t² swings faster and faster; the run sees a part of it on which it is uniformly continuous.
-    let swings =
-        |argument: &[_]| Formula::new([&[Number(0.2), Number(0.1)], argument, &[Sin, Multiply, Add]].concat()).unwrap();
-    let faster = swings(&[Time, Time, Multiply]);
+    let swings = |argument: Expression| argument.sin_of() * 0.1 + 0.2;
+    let faster = swings(t() * t());
     let (answer, because, weight) = links(delay(faster.clone()), Some(faster));
     assert_eq!(answer, Answer::HoldsOnHorizon);
     assert!(because.contains("could not be shown to be uniformly continuous for ever"), "{because}");
     let (answer, because) = weight.unwrap();
     assert_eq!(answer, Answer::HoldsOnHorizon);
     assert!(because.contains("could not be shown to be uniformly continuous for ever"), "{because}");
-    let steady = swings(&[Number(core::f64::consts::TAU), Time, Multiply, Number(3.0), Divide]);
+    let steady = swings(t() * core::f64::consts::TAU / 3.0);
     let (answer, because, weight) = links(delay(steady.clone()), Some(steady));
     assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 0.3 s"));
     assert_eq!(weight.unwrap().0, Answer::Holds);

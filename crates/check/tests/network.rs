@@ -9,8 +9,7 @@ use common::{About, answer, answers, arm, edge, setup};
 use forwardstep_check::{Answer, check};
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::delay::Delay;
-use forwardstep_sim::formula::FormulaStep::{Add, Multiply, Number, Sin, Time};
-use forwardstep_sim::formula::{BoundedFormula, Formula};
+use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{Actuators, Control, Exchange, ReferenceKind, Sensors, Setup, VelocitySensor};
@@ -26,7 +25,7 @@ fn both_ways() -> Vec<Edge> {
 }
 
 fn with_varying_weight(mut setup: Setup) -> Setup {
-    let swing = Formula::new(vec![Number(1.0), Number(0.5), Time, Sin, Multiply, Add]).unwrap();
+    let swing = Expression::variable(0).sin_of() * 0.5 + 1.0;
     setup.network.weights = vec![BoundedFormula::new(swing, setup.time.end_s)];
     if let Schedule::Fixed(edges) = &mut setup.network.schedule {
         edges[0].weight = Weight::Formula(0);

@@ -10,10 +10,10 @@ use common::kinds::{alone, blind_mass};
 use common::{column, edge, masses, run, setup};
 use forwardstep_check::{NoPrediction, predict};
 use forwardstep_core::Gain;
+use forwardstep_core::expression::Expression;
 use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::delay::Delay;
-use forwardstep_sim::formula::FormulaStep::{Add, Multiply, Number, Sin, Time};
-use forwardstep_sim::formula::{BoundedFormula, Formula};
+use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::schedule::{Phase, Schedule};
@@ -112,7 +112,7 @@ fn every_reason_for_which_there_is_none_is_the_one_that_is_said() {
     }
     // A delay that no edge has changes nothing.
     assert_eq!(said(&|setup| setup.network.delays.push(saw.clone())), None);
-    let swing = Formula::new(vec![Number(1.0), Number(0.5), Time, Sin, Multiply, Add]).unwrap();
+    let swing = Expression::variable(0).sin_of() * 0.5 + 1.0;
     let varying = |setup: &mut Setup| {
         setup.network.weights = vec![BoundedFormula::new(swing.clone(), 60.0)];
         let Schedule::Fixed(edges) = &mut setup.network.schedule else { panic!() };

@@ -11,11 +11,11 @@ use common::{About, answer, answers, edge, masses};
 use forwardstep_check::{Answer, NoPrediction, SampledDamping, check, predict, sampled_adaptation, sampled_damping};
 use forwardstep_core::Gain;
 use forwardstep_core::controller::Floor;
+use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::Rotors;
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::delay::Delay;
-use forwardstep_sim::formula::FormulaStep::{self, Add, Multiply, Number, Sin, Time};
-use forwardstep_sim::formula::{BoundedFormula, Formula};
+use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
 use forwardstep_sim::schedule::{Phase, Schedule};
@@ -36,32 +36,32 @@ fn constant(s: f64) -> Delay {
     Delay::Constant { s }
 }
 
-fn with_weights(weights: [Vec<FormulaStep>; 2]) -> Setup {
+fn with_weights(weights: [Expression; 2]) -> Setup {
     let mut setup = pair([constant(0.1), constant(0.1)]);
     let Schedule::Fixed(edges) = &mut setup.network.schedule else { panic!() };
     for (k, edge) in edges.iter_mut().enumerate() {
         edge.weight = Weight::Formula(k);
     }
-    let bounded = |steps: Vec<FormulaStep>| BoundedFormula::new(Formula::new(steps).unwrap(), 20.0);
+    let bounded = |formula: Expression| BoundedFormula::new(formula, 20.0);
     setup.network.weights = weights.map(bounded).to_vec();
     setup
 }
 
 /// c + sin(rate t).
-fn swing(c: f64, rate: f64) -> Vec<FormulaStep> {
-    vec![Number(c), Number(rate), Time, Multiply, Sin, Add]
+fn swing(c: f64, rate: f64) -> Expression {
+    (Expression::variable(0) * rate).sin_of() + c
 }
 
 /// 2 + sin(t²), which swings faster and faster.
-fn faster() -> Vec<FormulaStep> {
-    vec![Number(2.0), Time, Time, Multiply, Sin, Add]
+fn faster() -> Expression {
+    (Expression::variable(0) * Expression::variable(0)).sin_of() + 2.0
 }
 
 #[test]
 fn a_delay_or_a_weight_that_turns_negative_after_the_run_holds_on_the_run_only() {
     // On [0, 20] it is at least 0.5, and at t = 150 π it is −0.5.
     let later = swing(0.5, 0.01);
-    let delay = Delay::Formula(BoundedFormula::new(Formula::new(later.clone()).unwrap(), 20.0).into());
+    let delay = Delay::Formula(BoundedFormula::new(later.clone(), 20.0).into());
     assert_eq!(answer(&pair([constant(0.1), delay]), About::Delays), Answer::HoldsOnHorizon);
     assert_eq!(answer(&with_weights([swing(2.0, 1.0), later]), About::Weights), Answer::HoldsOnHorizon);
     assert_eq!(answer(&with_weights([swing(2.0, 1.0), swing(1.5, 0.3)]), About::Weights), Answer::Holds);
@@ -279,7 +279,7 @@ fn thm7_what_is_known_of_a_spacecraft_holds_and_a_path_is_looked_at_between_the_
     // |cos(500 π t / 20)| is one at every look, 20 s / 2000 apart, if those are at its crests, and zero between them.
     use core::f64::consts::TAU;
     let rate = TAU / (2.0 * 20.0 / 2000.0);
-    let crests = common::kinds::formula(&[Number(rate), Time, Multiply, FormulaStep::Cos]);
+    let crests = common::kinds::formula((Expression::variable(0) * rate).cos_of());
     let said = answer(&tracking(spacecraft(), target(crests)), About::Path);
     assert_eq!(said, Answer::NotCovered, "no look sees it at zero, and no bound keeps it away");
 }

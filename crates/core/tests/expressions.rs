@@ -1,7 +1,7 @@
 //! Derivatives of expressions, function by function, against closed forms.
 #![allow(clippy::unwrap_used)]
 
-use forwardstep_core::expression::{Binary, Expression, ExpressionError, Graph, Programme, Step, Unary};
+use forwardstep_core::expression::{Binary, Expression, ExpressionError, Graph, Step, Tape, Unary};
 
 fn unary(function: Unary, of: &[Step]) -> Expression {
     Expression::new([of, &[Step::Unary(function)]].concat()).unwrap()
@@ -13,9 +13,9 @@ fn derivatives(expression: &Expression, by: usize, at: [f64; 2]) -> [f64; 3] {
     let value = graph.import(expression).unwrap();
     let first = graph.derivative(value, by).unwrap();
     let second = graph.derivative(first, by).unwrap();
-    let programme = Programme::new(&graph, &[value, first, second]).unwrap();
+    let tape = Tape::new(&graph, &[value, first, second]).unwrap();
     let mut out = [0.0; 3];
-    programme.evaluate(&at, &mut programme.registers(), &mut out).unwrap();
+    tape.evaluate(&at, &mut tape.workspace(), &mut out).unwrap();
     out
 }
 
@@ -55,7 +55,8 @@ fn derivatives_of_every_function_are_their_closed_forms() {
             // Nothing of it by another variable.
             close(derivatives(&unary(function, &[Step::Variable(0)]), 1, [x, 5.0]), [own[0], 0.0, 0.0], "by y");
             // f(3 x + y): by the chain rule 3 f′ and 9 f″.
-            let inner = [Step::Number(3.0), Step::Variable(0), Step::Binary(Binary::Multiply), Step::Variable(1)];
+            let inner =
+                [Step::Number(3.0.into()), Step::Variable(0), Step::Binary(Binary::Multiply), Step::Variable(1)];
             let inner = [&inner[..], &[Step::Binary(Binary::Add)]].concat();
             let [f, d, dd] = closed_form(function, 3.0 * x + 0.4);
             close(derivatives(&unary(function, &inner), 0, [x, 0.4]), [f, 3.0 * d, 9.0 * dd], &format!("{function:?}"));
@@ -95,6 +96,6 @@ fn functions_with_a_kink_have_a_derivative_only_where_nothing_varies() {
     let x = Step::Variable(0);
     let not = |function| [Some(ExpressionError::NotSmooth { function }), None];
     assert_eq!(kinked(&[x, Step::Unary(Unary::Abs)]), not("abs"));
-    assert_eq!(kinked(&[x, Step::Number(1.0), Step::Binary(Binary::Min)]), not("min"));
-    assert_eq!(kinked(&[Step::Number(1.0), x, Step::Binary(Binary::Max)]), not("max"));
+    assert_eq!(kinked(&[x, Step::Number(1.0.into()), Step::Binary(Binary::Min)]), not("min"));
+    assert_eq!(kinked(&[Step::Number(1.0.into()), x, Step::Binary(Binary::Max)]), not("max"));
 }

@@ -1,10 +1,11 @@
 //! Who hears whom, when, and how late.
 
+use forwardstep_core::expression::Interval;
 use thiserror::Error;
 
 use crate::coupling::{Coupling, CouplingError};
 use crate::delay::Delay;
-use crate::formula::{BoundedFormula, Interval};
+use crate::formula::BoundedFormula;
 use crate::graph::Weight;
 use crate::schedule::Schedule;
 

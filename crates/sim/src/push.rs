@@ -4,11 +4,12 @@
 //! where a table has a row, steps of the integrator end; between such instants a push is evaluated by the piece in force, so
 //! that no step ever sees both sides of a jump.
 
+use forwardstep_core::expression::Expression;
 use forwardstep_core::robot::PlanarTip;
 use forwardstep_core::robot::tree::{Axes, LinkPoint};
 use thiserror::Error;
 
-use crate::formula::Formula;
+use crate::formula::kinks_s;
 use crate::setup::RobotSetup;
 use crate::system::Attachments;
 
@@ -105,8 +106,8 @@ pub enum Course {
 pub enum Function {
     /// Always the same.
     Constant(f64),
-    /// A formula in t.
-    Formula(Formula),
+    /// A formula in t, the only variable.
+    Formula(Expression),
 }
 
 /// Numbers at given times.
@@ -156,6 +157,19 @@ impl Course {
             Course::Each(functions) => functions.len(),
             Course::Table(table) => table.components(),
         }
+    }
+
+    /// Where its formulas have kinks within a span, s, rising. Those that cannot be told apart are left to the error control:
+    /// the value is continuous.
+    pub(crate) fn kinks_s(&self, [from_s, until_s]: [f64; 2]) -> Vec<f64> {
+        let Course::Each(functions) = self else { return Vec::new() };
+        let found = functions.iter().filter(|_| from_s < until_s).flat_map(|function| match function {
+            Function::Constant(_) => Vec::new(),
+            Function::Formula(formula) => kinks_s(formula, from_s, until_s).unwrap_or_default(),
+        });
+        let mut all: Vec<f64> = found.collect();
+        all.sort_by(f64::total_cmp);
+        all
     }
 
     /// Component `k` at `t_s` by the formula of the piece in force.

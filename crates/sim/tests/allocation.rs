@@ -10,9 +10,9 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use cases::{cases, setup};
+use forwardstep_core::expression::Expression;
 use forwardstep_sim::delay::Delay;
-use forwardstep_sim::formula::FormulaStep::{Add, Multiply, Number, Sin, Time};
-use forwardstep_sim::formula::{BoundedFormula, Formula};
+use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::push::{Between, Course, Effect, Push, Table};
 use forwardstep_sim::schedule::Schedule;
@@ -46,10 +46,8 @@ static ALLOCATOR: Counting = Counting;
 /// Lets the weight of every edge, and every delay that varies, follow a formula.
 fn weights_swing(setup: &mut Setup) {
     let end_s = setup.time.end_s;
-    let swing = |mean, amplitude| {
-        let steps = vec![Number(mean), Number(amplitude), Time, Sin, Multiply, Add];
-        BoundedFormula::new(Formula::new(steps).unwrap(), end_s)
-    };
+    let swing =
+        |mean: f64, amplitude: f64| BoundedFormula::new(Expression::variable(0).sin_of() * amplitude + mean, end_s);
     setup.network.weights = vec![swing(1.0, 0.5)];
     let phases = match &mut setup.network.schedule {
         Schedule::Fixed(edges) => vec![edges],

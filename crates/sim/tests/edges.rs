@@ -9,10 +9,10 @@ use std::sync::Arc;
 use common::single::{craft, half_a_turn, planar, targets};
 use common::{column, columns, masses, run, sampled, silent};
 use forwardstep_core::Gain;
+use forwardstep_core::expression::Expression;
 use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::delay::Delay;
-use forwardstep_sim::formula::FormulaStep::{Add, Multiply, Number, Sin, Time};
-use forwardstep_sim::formula::{BoundedFormula, Formula};
+use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::network::NetworkError;
 use forwardstep_sim::schedule::{Phase, Schedule};
@@ -60,7 +60,7 @@ fn indices_end_where_lists_do() {
 #[test]
 fn a_weight_that_touches_zero_is_refused_and_one_above_is_not() {
     let said = |mean: f64| {
-        let swing = Formula::new(vec![Number(mean), Number(0.5), Time, Sin, Multiply, Add]).unwrap();
+        let swing = Expression::variable(0).sin_of() * 0.5 + mean;
         let weights = vec![BoundedFormula::new(swing, 20.0)];
         let varying = Edge { weight: Weight::Formula(0), ..edge(0, 1) };
         Network { schedule: Schedule::Fixed(vec![varying]), weights, ..pair() }.validate()
@@ -82,7 +82,7 @@ fn only_the_last_phase_of_a_schedule_that_ends_may_last_any_time() {
 
 #[test]
 fn a_formula_has_to_be_known_to_the_end_of_the_run_and_no_further() {
-    let slow = Formula::new(vec![Number(0.2), Number(0.1), Time, Sin, Multiply, Add]).unwrap();
+    let slow = Expression::variable(0).sin_of() * 0.1 + 0.2;
     let delays = vec![Delay::Formula(BoundedFormula::new(slow, 20.0).into())];
     let network = Network { delays, ..pair() };
     assert_eq!([19.0, 20.0].map(|end_s| network.lasts_until(end_s)), [Ok(()), Ok(())]);

@@ -1,15 +1,19 @@
 //! Derivatives of formulas in t, function by function.
 #![allow(clippy::unwrap_used)]
 
-use forwardstep_sim::formula::FormulaStep::{self, *};
-use forwardstep_sim::formula::{Formula, Interval};
+use forwardstep_core::expression::Binary::{Add, Divide, Multiply};
+use forwardstep_core::expression::Step::{Binary, Number, Power, Unary as Of, Variable};
+use forwardstep_core::expression::Unary::{Abs, Atan, Cos, Exp, Log, Negate, Sin, Sqrt, Tanh};
+use forwardstep_core::expression::{Expression, Interval, Step};
 
-fn formula(steps: &[FormulaStep]) -> Formula {
-    Formula::new(steps.to_vec()).unwrap()
+const T: Step = Variable(0);
+
+fn formula(steps: &[Step]) -> Expression {
+    Expression::new(steps.to_vec()).unwrap()
 }
 
 /// f and its first four derivatives.
-fn closed_form(step: FormulaStep, a: f64) -> [f64; 5] {
+fn closed_form(step: &Step, a: f64) -> [f64; 5] {
     let power = |c: f64| {
         let mut factor = 1.0;
         core::array::from_fn(|k| {
@@ -19,30 +23,33 @@ fn closed_form(step: FormulaStep, a: f64) -> [f64; 5] {
         })
     };
     match step {
-        Sin => [a.sin(), a.cos(), -a.sin(), -a.cos(), a.sin()],
-        Cos => [a.cos(), -a.sin(), -a.cos(), a.sin(), a.cos()],
-        Exp => [a.exp(); 5],
-        Log => [a.ln(), 1.0 / a, -1.0 / a.powi(2), 2.0 / a.powi(3), -6.0 / a.powi(4)],
-        Sqrt => power(0.5),
-        Power(c) => power(c),
-        Tanh => {
+        Of(Sin) => [a.sin(), a.cos(), -a.sin(), -a.cos(), a.sin()],
+        Of(Cos) => [a.cos(), -a.sin(), -a.cos(), a.sin(), a.cos()],
+        Of(Exp) => [a.exp(); 5],
+        Of(Log) => [a.ln(), 1.0 / a, -1.0 / a.powi(2), 2.0 / a.powi(3), -6.0 / a.powi(4)],
+        Of(Sqrt) => power(0.5),
+        Power(c) => power(c.value()),
+        Of(Tanh) => {
             let u = a.tanh();
             let d = 1.0 - u * u;
             [u, d, -2.0 * u * d, d * (6.0 * u * u - 2.0), d * (16.0 * u - 24.0 * u.powi(3))]
         }
-        Atan => {
+        Of(Atan) => {
             let r = 1.0 + a * a;
             let third = (6.0 * a * a - 2.0) / r.powi(3);
             [a.atan(), 1.0 / r, -2.0 * a / r.powi(2), third, 24.0 * a * (1.0 - a * a) / r.powi(4)]
         }
-        Abs => [a.abs(), a.signum(), 0.0, 0.0, 0.0],
-        Negate => [-a, -1.0, 0.0, 0.0, 0.0],
+        Of(Abs) => [a.abs(), a.signum(), 0.0, 0.0, 0.0],
+        Of(Negate) => [-a, -1.0, 0.0, 0.0, 0.0],
         _ => [f64::NAN; 5],
     }
 }
 
-const FUNCTIONS: [FormulaStep; 13] =
-    [Sin, Cos, Exp, Log, Sqrt, Tanh, Atan, Abs, Negate, Power(2.0), Power(3.0), Power(-1.5), Power(1.7)];
+fn functions() -> Vec<Step> {
+    let named = [Sin, Cos, Exp, Log, Sqrt, Tanh, Atan, Abs, Negate].map(Of);
+    let powers = [2.0, 3.0, -1.5, 1.7].map(|c| Power(c.into()));
+    named.into_iter().chain(powers).collect()
+}
 
 fn close(got: f64, want: f64) -> bool {
     (got - want).abs() <= 1e-12 * (1.0 + want.abs())
@@ -50,12 +57,14 @@ fn close(got: f64, want: f64) -> bool {
 
 #[test]
 fn derivatives_of_every_function_are_their_closed_forms() {
-    for step in FUNCTIONS {
+    for step in functions() {
         for t in [0.2, 0.7, 1.9] {
-            let own = formula(&[Time, step]).jet(t);
+            let own = formula(&[T, step.clone()]).jet(t);
             // f(3 t + 0.5): by the chain rule 3ᵏ f⁽ᵏ⁾.
-            let stretched = formula(&[Number(3.0), Time, Multiply, Number(0.5), Add, step]).jet(t);
-            let (plain, inner) = (closed_form(step, t), closed_form(step, 3.0 * t + 0.5));
+            let stretched =
+                formula(&[Number(3.0.into()), T, Binary(Multiply), Number(0.5.into()), Binary(Add), step.clone()])
+                    .jet(t);
+            let (plain, inner) = (closed_form(&step, t), closed_form(&step, 3.0 * t + 0.5));
             for k in 0..5 {
                 assert!(close(own[k], plain[k]), "{step:?}, derivative {k} at {t}: {} is not {}", own[k], plain[k]);
                 let want = 3.0_f64.powi(k as i32) * inner[k];
@@ -68,12 +77,13 @@ fn derivatives_of_every_function_are_their_closed_forms() {
 #[test]
 fn prop_every_derivative_is_the_difference_of_the_one_before() {
     // A curved argument, so that all coefficients of the composition take part.
-    let inner = [Time, Power(2.0), Number(0.4), Multiply, Time, Add, Number(0.7), Add];
+    let inner =
+        [T, Power(2.0.into()), Number(0.4.into()), Binary(Multiply), T, Binary(Add), Number(0.7.into()), Binary(Add)];
     let h = 1e-4;
-    for step in FUNCTIONS {
-        let composed = formula(&[&inner[..], &[step]].concat());
-        let product = formula(&[&inner[..], &[step], &inner[..], &[Multiply]].concat());
-        let quotient = formula(&[&inner[..], &[step], &inner[..], &[Divide]].concat());
+    for step in functions() {
+        let composed = formula(&[&inner[..], &[step.clone()]].concat());
+        let product = formula(&[&inner[..], &[step.clone()], &inner[..], &[Binary(Multiply)]].concat());
+        let quotient = formula(&[&inner[..], &[step.clone()], &inner[..], &[Binary(Divide)]].concat());
         for f in [composed, product, quotient] {
             for t in [0.1, 0.6, 1.2] {
                 let (here, near, far) = (f.jet(t), f.jet(t + h), f.jet(t - h));
@@ -89,13 +99,17 @@ fn prop_every_derivative_is_the_difference_of_the_one_before() {
 
 #[test]
 fn bounds_of_derivatives_are_reached_where_t_appears_once() {
-    for step in [Log, Sqrt] {
-        let f = formula(&[Time, Number(1.0), Add, step]);
+    for function in [Log, Sqrt] {
+        let f = formula(&[T, Number(1.0.into()), Binary(Add), Of(function)]);
         let bounds = f.enclose_jet(Interval { low: 0.0, high: 2.0 });
         for k in 0..5 {
             // All of them are monotone.
             let [a, b] = [0.0, 2.0].map(|t| f.jet(t)[k]);
-            assert!(close(bounds[k].low, a.min(b)) && close(bounds[k].high, a.max(b)), "{step:?} {k}: {:?}", bounds[k]);
+            assert!(
+                close(bounds[k].low, a.min(b)) && close(bounds[k].high, a.max(b)),
+                "{function:?} {k}: {:?}",
+                bounds[k]
+            );
         }
     }
 }

@@ -8,9 +8,9 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 use cases::{cases, setup};
+use forwardstep_core::expression::Expression;
 use forwardstep_sim::delay::{Delay, Loss, PacketLink};
-use forwardstep_sim::formula::FormulaStep::{Add, Multiply, Number, Sin, Time};
-use forwardstep_sim::formula::{BoundedFormula, Formula};
+use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{Ending, Method, Outcome, Setup, simulate};
@@ -37,20 +37,9 @@ fn case(name: &str) -> Setup {
     setup
 }
 
-fn swing(mean: f64, amplitude: f64, omega: f64, phase: f64) -> Formula {
-    Formula::new(vec![
-        Number(mean),
-        Number(amplitude),
-        Number(omega),
-        Time,
-        Multiply,
-        Number(phase),
-        Add,
-        Sin,
-        Multiply,
-        Add,
-    ])
-    .unwrap()
+fn swing(mean: f64, amplitude: f64, omega: f64, phase: f64) -> Expression {
+    let angle = Expression::number(omega) * Expression::variable(0) + phase;
+    Expression::number(mean) + Expression::number(amplitude) * angle.sin_of()
 }
 
 #[test]
@@ -109,7 +98,7 @@ fn a_weight_by_formula_is_the_number_that_it_says() {
     let Schedule::Periodic(phases) = &mut formula.network.schedule else { panic!("another schedule") };
     for edge in phases.iter_mut().flat_map(|phase| &mut phase.edges).step_by(2) {
         let weight = edge.weight.constant().unwrap();
-        let still = Formula::new(vec![Number(weight), Number(0.0), Time, Multiply, Add]).unwrap();
+        let still = Expression::variable(0) * 0.0 + weight;
         formula.network.weights.push(BoundedFormula::new(still, formula.time.end_s));
         edge.weight = Weight::Formula(formula.network.weights.len() - 1);
     }

@@ -6,12 +6,12 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
+use forwardstep_core::expression::Expression;
 use forwardstep_core::robot::tree::{
     Axes, JointKind, LinkJoint, LinkPoint, LinkSpec, Placement, Tree, inertia_about_frame,
 };
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip, PointMass};
 use forwardstep_sim::delay::Delay;
-use forwardstep_sim::formula::{Formula, FormulaStep};
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push, PushError, Table};
 use forwardstep_sim::schedule::Schedule;
@@ -145,8 +145,7 @@ fn tables_are_straight_or_held_between_their_rows_and_nothing_outside() {
 
 #[test]
 fn formulas_are_functions_of_the_time_of_the_run() {
-    use FormulaStep::{Multiply, Number, Sin, Time};
-    let formula = Formula::new(vec![Number(3.0), Number(2.0), Time, Multiply, Sin, Multiply]).unwrap();
+    let formula = (Expression::variable(0) * 2.0).sin_of() * 3.0;
     let push = torque(Course::Each(vec![Function::Formula(formula)]), 0.0, f64::INFINITY);
     let outcome = run(&alone(vec![mass(vec![push])], 4.0));
     let (reactance, lag) = (2.0 * MASS, MASS / DAMPING);

@@ -207,7 +207,9 @@ fn digest_every_kind_has_the_bits_of_the_simulator_when_it_is_driven_from_outsid
         let mut setup = common::sampled(setup, 500.0);
         setup.time = TimeSpan { end_s: 1.0, record_every_s: 0.002 };
         let control = setup.control.as_mut().unwrap();
-        control.sensors = Sensors { position_noise: 1e-6, velocity_noise: 1e-5, seed: 3, ..Sensors::default() };
+        let measured = |agent: &AgentSetup| agent.interface().unwrap().measures_velocity;
+        let velocity_noise = if setup.agents.iter().any(measured) { 1e-5 } else { 0.0 };
+        control.sensors = Sensors { position_noise: 1e-6, velocity_noise, seed: 3, ..Sensors::default() };
         assert_same_bits(name, &setup);
     }
 }

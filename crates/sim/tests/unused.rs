@@ -144,7 +144,7 @@ fn laws_that_only_track_do_not_go_with_consensus() {
         [single::planar(None, 0.3), single::craft(single::half_a_turn([0.0; 3]), single::targets().remove(0), 5.0)]
     {
         setup.reference = ReferenceKind::Consensus;
-        assert!(matches!(outcome(&setup), Err(SetupError::NoOffsets { .. })));
+        assert!(matches!(outcome(&setup), Err(SetupError::OnlyTracks { .. })));
         setup.agents[0].target = None;
         assert!(matches!(outcome(&setup), Err(SetupError::OnlyTracks { .. })));
     }

@@ -1,6 +1,6 @@
 //! Chains of Section IV: what (43) with its second steps asks for.
 
-use forwardstep_core::expression::{Expression, Graph, Programme};
+use forwardstep_core::expression::Expression;
 use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, ChainStep, Law, ReferenceKind, Setup};
 
 use super::{Claim, KindCheck};
@@ -67,15 +67,7 @@ fn chains<'a>(setup: &'a Setup, agents: &'a [usize]) -> impl Iterator<Item = (us
 
 /// The value of an expression without variables.
 fn constant(expression: &Expression) -> Option<f64> {
-    if expression.variables() > 0 {
-        return None;
-    }
-    let mut graph = Graph::new(0);
-    let node = graph.import(expression).ok()?;
-    let programme = Programme::new(&graph, &[node]).ok()?;
-    let mut value = [f64::NAN];
-    programme.evaluate(&[], &mut programme.registers(), &mut value).ok()?;
-    Some(value[0])
+    (expression.variables() == 0).then(|| expression.value(&[]))
 }
 
 fn input_factor(setup: &Setup, agents: &[usize]) -> Hypothesis {

@@ -8,7 +8,6 @@ use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::{CascadeTerms, Formulas, Wheel, Wheels};
 use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkPoint, LinkSpec, Placement, Tree, Uncertain};
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip, PointMass};
-use forwardstep_sim::formula::{Formula, FormulaStep};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::trajectory::{Path, Trajectory};
 use forwardstep_sim::{
@@ -19,8 +18,8 @@ use forwardstep_sim::{
 
 use super::{axis, setup};
 
-pub fn formula(steps: &[FormulaStep]) -> Path {
-    Path::Formula(Formula::new(steps.to_vec()).unwrap())
+pub fn formula(formula: Expression) -> Path {
+    Path::Formula(formula)
 }
 
 pub fn rest_at(offset: f64) -> Path {
@@ -29,8 +28,7 @@ pub fn rest_at(offset: f64) -> Path {
 
 /// c tᵖ.
 pub fn power_of_time(c: f64, exponent: f64) -> Path {
-    use FormulaStep::{Multiply, Number, Power, Time};
-    formula(&[Number(c), Time, Power(exponent), Multiply])
+    formula(Expression::variable(0).power(exponent) * c)
 }
 
 fn agent(

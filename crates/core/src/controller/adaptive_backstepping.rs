@@ -40,7 +40,7 @@ use super::guide::{Guide, GuideWork, Leads};
 use super::steps::Steps;
 use super::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::LengthError;
-use crate::expression::Programme;
+use crate::expression::Tape;
 use crate::plant::{Cascade, CascadeTerms};
 use crate::reference::Position;
 use crate::signal::{Block, Signal};
@@ -65,7 +65,7 @@ pub struct AdaptiveBackstepping {
     estimate_start: Vec<f64>,
     floor: f64,
     /// u, its factor, e, θ̂'.
-    programme: Programme,
+    tape: Tape,
 }
 
 /// Gains of [`AdaptiveBackstepping`].
@@ -103,8 +103,8 @@ impl AdaptiveBackstepping {
         let mut outputs = vec![input, divisor];
         outputs.extend(errors);
         outputs.extend(d_theta_hat);
-        let programme = Programme::new(&graph, &outputs)?;
-        Ok(AdaptiveBackstepping { order: n, guide, gains_per_s, adaptation, estimate_start, floor, programme })
+        let tape = Tape::new(&graph, &outputs)?;
+        Ok(AdaptiveBackstepping { order: n, guide, gains_per_s, adaptation, estimate_start, floor, tape })
     }
 
     /// ℓ.
@@ -132,7 +132,7 @@ impl AdaptiveBackstepping {
 pub struct BacksteppingWork {
     guide: GuideWork,
     variables: Vec<f64>,
-    registers: Vec<f64>,
+    workspace: Vec<f64>,
     out: Vec<f64>,
 }
 
@@ -147,9 +147,9 @@ impl Controller for AdaptiveBackstepping {
     fn scratch(&self) -> BacksteppingWork {
         BacksteppingWork {
             guide: self.guide.work(1),
-            variables: vec![0.0; self.programme.variables()],
-            registers: self.programme.registers(),
-            out: vec![0.0; self.programme.outputs()],
+            variables: vec![0.0; self.tape.variables()],
+            workspace: self.tape.workspace(),
+            out: vec![0.0; self.tape.outputs()],
         }
     }
 
@@ -222,14 +222,14 @@ impl Controller for AdaptiveBackstepping {
         let leads = Leads { measured: &x[..1], state: z, heard: given.heard, target };
         self.guide.rate(1, 1, leads, &mut work.guide, &mut d_state[..vectors])?;
 
-        let BacksteppingWork { variables, registers, out, .. } = work;
+        let BacksteppingWork { variables, workspace, out, .. } = work;
         variables[..n].copy_from_slice(x);
         variables[n..n + p].copy_from_slice(theta_hat);
         // z^(ℓ) is a rate.
         for (r, y) in variables[n + p..].iter_mut().enumerate() {
             *y = if r < vectors { z[r] } else { d_state[vectors - 1] };
         }
-        self.programme.evaluate(variables, registers, out)?;
+        self.tape.evaluate(variables, workspace, out)?;
         input[0] = out[0];
         d_state[vectors..].copy_from_slice(&out[2 + n..]);
         shown[..vectors].copy_from_slice(z);

@@ -33,7 +33,7 @@ use alloc::vec::Vec;
 use super::following::{ChainError, ChainMeasured, Following, FollowingWork, positive};
 use super::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::LengthError;
-use crate::expression::{Expression, Graph, Programme};
+use crate::expression::{Expression, Graph, Tape};
 use crate::plant::{Chain, Formulas, FormulasWork, Terms};
 use crate::reference::Position;
 use crate::signal::{Block, Signal};
@@ -62,7 +62,7 @@ pub struct Immersion {
     adaptation: Vec<f64>,
     estimate_start: Vec<f64>,
     /// Φ_j, then Σ_r ∂Φ_j/∂x_r x_{r+1} of every parameter.
-    programme: Programme,
+    tape: Tape,
 }
 
 impl Immersion {
@@ -99,10 +99,10 @@ impl Immersion {
             turned.push(sum);
             slopes.push(graph.derivative(value, top)?);
         }
-        compare(&terms, &Programme::new(&graph, &slopes)?)?;
+        compare(&terms, &Tape::new(&graph, &slopes)?)?;
         values.extend(turned);
-        let programme = Programme::new(&graph, &values)?;
-        Ok(Immersion { terms, following, adaptation, estimate_start, programme })
+        let tape = Tape::new(&graph, &values)?;
+        Ok(Immersion { terms, following, adaptation, estimate_start, tape })
     }
 
     /// Φ = φ v for a φ without v, the highest derivative of a plant of order `order`.
@@ -123,9 +123,9 @@ impl Immersion {
 }
 
 /// Compares ∂Φ/∂v with φ at points spread over [−2, 2]^k.
-fn compare(terms: &Formulas, slopes: &Programme) -> Result<(), ChainError> {
+fn compare(terms: &Formulas, slopes: &Tape) -> Result<(), ChainError> {
     let (k, p) = (terms.order(), terms.parameters());
-    let (mut work, mut registers) = (terms.scratch(), slopes.registers());
+    let (mut work, mut workspace) = (terms.scratch(), slopes.workspace());
     let (mut x, mut phi, mut slope) = (vec![0.0; k], vec![0.0; p], vec![0.0; p]);
     for point in 0..TRIED {
         for (r, x) in x.iter_mut().enumerate() {
@@ -134,7 +134,7 @@ fn compare(terms: &Formulas, slopes: &Programme) -> Result<(), ChainError> {
             *x = 4.0 * (share - libm::floor(share)) - 2.0;
         }
         terms.terms(&mut work, &x, &mut phi)?;
-        slopes.evaluate(&x, &mut registers, &mut slope)?;
+        slopes.evaluate(&x, &mut workspace, &mut slope)?;
         for (parameter, (phi, slope)) in phi.iter().zip(&slope).enumerate() {
             if (phi - slope).abs() > CLOSE * phi.abs().max(1.0) {
                 return Err(ChainError::Antiderivative { parameter, slope: *slope, regressor: *phi });
@@ -148,7 +148,7 @@ fn compare(terms: &Formulas, slopes: &Programme) -> Result<(), ChainError> {
 #[derive(Clone, Debug)]
 pub struct ImmersionWork {
     following: FollowingWork<FormulasWork>,
-    registers: Vec<f64>,
+    workspace: Vec<f64>,
     out: Vec<f64>,
 }
 
@@ -163,8 +163,8 @@ impl Controller for Immersion {
     fn scratch(&self) -> ImmersionWork {
         ImmersionWork {
             following: self.following.work(&self.terms),
-            registers: self.programme.registers(),
-            out: vec![0.0; self.programme.outputs()],
+            workspace: self.tape.workspace(),
+            out: vec![0.0; self.tape.outputs()],
         }
     }
 
@@ -197,7 +197,7 @@ impl Controller for Immersion {
         LengthError::check("state", self.at() + self.terms.parameters(), state.len())?;
         let x = given.measured.x;
         self.following.start(self.terms.order(), x, wanted, state)?;
-        self.programme.evaluate(x, &mut work.registers, &mut work.out)?;
+        self.tape.evaluate(x, &mut work.workspace, &mut work.out)?;
         for (j, theta_hat) in state[self.at()..].iter_mut().enumerate() {
             *theta_hat = self.estimate_start[j] - self.adaptation[j] * work.out[j];
         }
@@ -214,9 +214,9 @@ impl Controller for Immersion {
         let Asked { input, d_state, shown } = asked;
         let (p, at, x) = (self.terms.parameters(), self.at(), given.measured.x);
         self.following.lengths(&self.terms, p, [state.len(), d_state.len(), input.len(), shown.len()])?;
-        let ImmersionWork { following, registers, out } = work;
+        let ImmersionWork { following, workspace, out } = work;
         let found = self.following.evaluate(&self.terms, following, given, x, state, (d_state, shown))?;
-        self.programme.evaluate(x, registers, out)?;
+        self.tape.evaluate(x, workspace, out)?;
         // What v does on the manifold ζ = 0.
         let dv = found.dz - self.following.gain_per_s * found.s;
         let mut chi = found.chi;

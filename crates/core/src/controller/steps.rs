@@ -122,7 +122,7 @@ impl Steps {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::expression::{Expression, Programme};
+    use crate::expression::{Expression, Tape};
 
     const GAMMA: [f64; 2] = [0.7, 1.9];
     const THETA: [f64; 2] = [0.8, -1.3];
@@ -181,11 +181,11 @@ mod tests {
             let product = graph.times(delta, d_theta_hat[j]);
             terms.push(graph.scaled(1.0 / GAMMA[j], product));
         }
-        let programme = Programme::new(&graph, &terms).unwrap();
-        let (mut registers, mut out) = (programme.registers(), vec![0.0; terms.len()]);
+        let tape = Tape::new(&graph, &terms).unwrap();
+        let (mut workspace, mut out) = (tape.workspace(), vec![0.0; terms.len()]);
         let mut worst = 0.0_f64;
         for seed in 1..200 {
-            programme.evaluate(&numbers(seed, 2 * n + p + 1), &mut registers, &mut out).unwrap();
+            tape.evaluate(&numbers(seed, 2 * n + p + 1), &mut workspace, &mut out).unwrap();
             let size: f64 = out.iter().map(|term| term.abs()).sum();
             worst = worst.max(out.iter().sum::<f64>().abs() / size);
         }
@@ -224,10 +224,10 @@ mod tests {
         let terms = CascadeTerms::strict(vec![vec![x(1).power(2.0)], vec![Expression::number(0.0)]]).unwrap();
         let (c_1, c_2, gamma) = (1.0, 1.3, 0.7);
         let Steps { graph, input, errors, d_theta_hat, divisor } = Steps::new(&terms, &[c_1, c_2], &[gamma]).unwrap();
-        let programme = Programme::new(&graph, &[input, errors[1], d_theta_hat[0], divisor]).unwrap();
-        let (mut registers, mut out) = (programme.registers(), [0.0; 4]);
+        let tape = Tape::new(&graph, &[input, errors[1], d_theta_hat[0], divisor]).unwrap();
+        let (mut workspace, mut out) = (tape.workspace(), [0.0; 4]);
         let at = numbers(5, 6);
-        programme.evaluate(&at, &mut registers, &mut out).unwrap();
+        tape.evaluate(&at, &mut workspace, &mut out).unwrap();
         let [x_1, x_2, theta_hat, y, dy, ddy] = at[..] else { panic!("six numbers") };
         let (e_1, phi) = (x_1 - y, x_1 * x_1);
         let e_2 = x_2 + theta_hat * phi + c_1 * e_1 - dy;

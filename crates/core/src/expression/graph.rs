@@ -1,4 +1,4 @@
-//! Expressions as one graph in which nothing stands twice, and its derivatives.
+//! The algebra of graphs: expressions as one graph in which nothing stands twice, and its derivatives.
 //!
 //! Nodes are numbered in the order in which they were made, operands before results. Derivatives are made by the rules of
 //! the calculus, node by node in that order, and kept.
@@ -7,26 +7,16 @@ use alloc::collections::BTreeMap;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::programme::{apply, combine, power};
-use super::{Binary, Expression, ExpressionError, MOST_NODES, Step, Unary};
+use super::float::{apply, combine, power};
+use super::{Algebra, Binary, Expression, ExpressionError, MOST_NODES, Number, Unary};
 
 /// A value in a [`Graph`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Node(pub(super) usize);
 
-/// How a node is computed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Op {
-    Number(f64),
-    Variable(usize),
-    Unary(Unary, Node),
-    Binary(Binary, Node, Node),
-    Power(Node, f64),
-}
-
-/// What makes two operations the same.
+/// How a node is computed. Constants stand as their bits, so that operations can be told apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Key {
+pub(super) enum Op {
     Number(u64),
     Variable(usize),
     Unary(Unary, Node),
@@ -34,12 +24,34 @@ enum Key {
     Power(Node, u64),
 }
 
+impl Op {
+    /// What it is computed from.
+    fn operands(self) -> impl Iterator<Item = Node> {
+        let operands = match self {
+            Op::Number(_) | Op::Variable(_) => [None, None],
+            Op::Unary(_, a) | Op::Power(a, _) => [Some(a), None],
+            Op::Binary(_, a, b) => [Some(a), Some(b)],
+        };
+        operands.into_iter().flatten()
+    }
+
+    /// The same with operands that have other numbers.
+    pub(super) fn moved(self, place: &[Node]) -> Self {
+        match self {
+            Op::Number(_) | Op::Variable(_) => self,
+            Op::Unary(function, a) => Op::Unary(function, place[a.0]),
+            Op::Power(a, exponent) => Op::Power(place[a.0], exponent),
+            Op::Binary(function, a, b) => Op::Binary(function, place[a.0], place[b.0]),
+        }
+    }
+}
+
 /// A graph of operations on numbered variables.
 #[derive(Clone, Debug)]
 pub struct Graph {
     variables: usize,
     ops: Vec<Op>,
-    known: BTreeMap<Key, Node>,
+    known: BTreeMap<Op, Node>,
     /// Derivatives by variable, as far as they were asked for.
     slopes: BTreeMap<(usize, Node), Node>,
     full: bool,
@@ -69,14 +81,7 @@ impl Graph {
     }
 
     fn add_op(&mut self, op: Op) -> Node {
-        let key = match op {
-            Op::Number(value) => Key::Number(value.to_bits()),
-            Op::Variable(index) => Key::Variable(index),
-            Op::Unary(function, a) => Key::Unary(function, a),
-            Op::Binary(function, a, b) => Key::Binary(function, a, b),
-            Op::Power(a, exponent) => Key::Power(a, exponent.to_bits()),
-        };
-        if let Some(node) = self.known.get(&key) {
+        if let Some(node) = self.known.get(&op) {
             return *node;
         }
         if self.ops.len() >= MOST_NODES {
@@ -85,19 +90,19 @@ impl Graph {
         }
         let node = Node(self.ops.len());
         self.ops.push(op);
-        self.known.insert(key, node);
+        self.known.insert(op, node);
         node
     }
 
     /// The value of a node that is a constant.
-    fn constant(&self, node: Node) -> Option<f64> {
-        if let Op::Number(value) = self.ops[node.0] { Some(value) } else { None }
+    pub(super) fn constant(&self, node: Node) -> Option<f64> {
+        if let Op::Number(bits) = self.ops[node.0] { Some(f64::from_bits(bits)) } else { None }
     }
 
     /// A constant.
     pub fn number(&mut self, value: f64) -> Node {
         // One zero, whatever its sign.
-        self.add_op(Op::Number(value + 0.0))
+        self.add_op(Op::Number((value + 0.0).to_bits()))
     }
 
     /// Zero.
@@ -116,44 +121,13 @@ impl Graph {
         Ok(self.add_op(Op::Variable(index)))
     }
 
-    /// A function of one value.
-    pub fn unary(&mut self, function: Unary, a: Node) -> Node {
-        match (self.constant(a), function, self.ops[a.0]) {
-            (Some(value), ..) => self.number(apply(function, value)),
-            (_, Unary::Negate, Op::Unary(Unary::Negate, inner)) => inner,
-            _ => self.add_op(Op::Unary(function, a)),
-        }
-    }
-
     /// a to a constant power.
     pub fn power(&mut self, a: Node, exponent: f64) -> Node {
         match self.constant(a) {
             Some(value) => self.number(power(value, exponent)),
             None if exponent == 0.0 => self.number(1.0),
             None if exponent == 1.0 => a,
-            None => self.add_op(Op::Power(a, exponent)),
-        }
-    }
-
-    /// A function of two values.
-    pub fn binary(&mut self, function: Binary, a: Node, b: Node) -> Node {
-        let zero = Node(0);
-        if let (Some(a), Some(b)) = (self.constant(a), self.constant(b)) {
-            return self.number(combine(function, a, b));
-        }
-        let is = |graph: &Self, node: Node, value: f64| graph.constant(node) == Some(value);
-        match function {
-            Binary::Add if a == zero => b,
-            Binary::Add | Binary::Subtract if b == zero => a,
-            Binary::Subtract if a == zero => self.unary(Unary::Negate, b),
-            Binary::Subtract if a == b => zero,
-            Binary::Multiply if a == zero || b == zero => zero,
-            Binary::Multiply if is(self, a, 1.0) => b,
-            Binary::Multiply | Binary::Divide if is(self, b, 1.0) => a,
-            Binary::Divide if a == zero => zero,
-            // The order of operands does not matter to the bits of a sum or a product.
-            Binary::Add | Binary::Multiply if b < a => self.add_op(Op::Binary(function, b, a)),
-            _ => self.add_op(Op::Binary(function, a, b)),
+            None => self.add_op(Op::Power(a, exponent.to_bits())),
         }
     }
 
@@ -198,28 +172,12 @@ impl Graph {
     /// # Errors
     /// [`ExpressionError`] when it has a variable too many.
     pub fn import(&mut self, expression: &Expression) -> Result<Node, ExpressionError> {
-        let mut stack = Vec::new();
-        for step in expression.steps() {
-            let mut pop = || stack.pop().ok_or(ExpressionError::Unbalanced);
-            let node = match *step {
-                Step::Number(value) => self.number(value),
-                Step::Variable(index) => self.variable(index)?,
-                Step::Unary(function) => {
-                    let a = pop()?;
-                    self.unary(function, a)
-                }
-                Step::Power(exponent) => {
-                    let a = pop()?;
-                    self.power(a, exponent)
-                }
-                Step::Binary(function) => {
-                    let (b, a) = (pop()?, pop()?);
-                    self.binary(function, a, b)
-                }
-            };
-            stack.push(node);
+        match expression.variables() {
+            used if used > self.variables => {
+                Err(ExpressionError::Variable { variable: used - 1, count: self.variables })
+            }
+            _ => Ok(expression.fold(self)),
         }
-        stack.pop().ok_or(ExpressionError::Unbalanced)
     }
 
     /// ∂ of a value by variable `by`.
@@ -231,7 +189,7 @@ impl Graph {
         if by >= self.variables {
             return Err(ExpressionError::Variable { variable: by, count: self.variables });
         }
-        for node in self.below(of) {
+        for node in self.below(&[of]) {
             if !self.slopes.contains_key(&(by, node)) {
                 let slope = self.rule(node, by)?;
                 self.slopes.insert((by, node), slope);
@@ -245,20 +203,17 @@ impl Graph {
         self.slopes.get(&(by, of)).copied().unwrap_or(Node(0))
     }
 
-    /// A value and all that it is made of, operands first.
-    fn below(&self, of: Node) -> Vec<Node> {
-        let mut needed = vec![false; of.0 + 1];
-        needed[of.0] = true;
-        for index in (0..=of.0).rev() {
+    /// Values and all that they are made of, operands first.
+    pub(super) fn below(&self, of: &[Node]) -> Vec<Node> {
+        let last = of.iter().map(|node| node.0 + 1).max();
+        let mut needed = vec![false; last.unwrap_or(0)];
+        of.iter().for_each(|node| needed[node.0] = true);
+        for index in (0..needed.len()).rev() {
             if needed[index] {
-                match self.ops[index] {
-                    Op::Number(_) | Op::Variable(_) => {}
-                    Op::Unary(_, a) | Op::Power(a, _) => needed[a.0] = true,
-                    Op::Binary(_, a, b) => (needed[a.0], needed[b.0]) = (true, true),
-                }
+                self.ops[index].operands().for_each(|operand| needed[operand.0] = true);
             }
         }
-        (0..=of.0).filter(|index| needed[*index]).map(Node).collect()
+        (0..needed.len()).filter(|index| needed[*index]).map(Node).collect()
     }
 
     /// The derivative of one operation, those of its operands being known.
@@ -298,7 +253,8 @@ impl Graph {
                 };
                 Ok(self.times(outer, da))
             }
-            Op::Power(a, exponent) => {
+            Op::Power(a, bits) => {
+                let exponent = f64::from_bits(bits);
                 let da = self.slope(a, by);
                 let below = self.power(a, exponent - 1.0);
                 let outer = self.scaled(exponent, below);
@@ -321,5 +277,46 @@ impl Graph {
                 }
             }
         }
+    }
+}
+
+impl Algebra for Graph {
+    type Value = Node;
+
+    fn number(&mut self, number: &Number) -> Node {
+        Graph::number(self, number.value())
+    }
+    fn variable(&mut self, index: usize) -> Node {
+        self.add_op(Op::Variable(index))
+    }
+    fn unary(&mut self, function: Unary, a: Node) -> Node {
+        match (self.constant(a), function, self.ops[a.0]) {
+            (Some(value), ..) => self.number(apply(function, value)),
+            (_, Unary::Negate, Op::Unary(Unary::Negate, inner)) => inner,
+            _ => self.add_op(Op::Unary(function, a)),
+        }
+    }
+    fn binary(&mut self, function: Binary, a: Node, b: Node) -> Node {
+        let zero = Node(0);
+        if let (Some(a), Some(b)) = (self.constant(a), self.constant(b)) {
+            return self.number(combine(function, a, b));
+        }
+        let is = |graph: &Self, node: Node, value: f64| graph.constant(node) == Some(value);
+        match function {
+            Binary::Add if a == zero => b,
+            Binary::Add | Binary::Subtract if b == zero => a,
+            Binary::Subtract if a == zero => self.unary(Unary::Negate, b),
+            Binary::Subtract if a == b => zero,
+            Binary::Multiply if a == zero || b == zero => zero,
+            Binary::Multiply if is(self, a, 1.0) => b,
+            Binary::Multiply | Binary::Divide if is(self, b, 1.0) => a,
+            Binary::Divide if a == zero => zero,
+            // The order of operands does not matter to the bits of a sum or a product.
+            Binary::Add | Binary::Multiply if b < a => self.add_op(Op::Binary(function, b, a)),
+            _ => self.add_op(Op::Binary(function, a, b)),
+        }
+    }
+    fn power(&mut self, a: Node, exponent: &Number) -> Node {
+        Graph::power(self, a, exponent.value())
     }
 }

@@ -1,15 +1,31 @@
-//! Functions of several variables that can be evaluated and differentiated exactly: the χ, ψ and φ of a chain.
+//! Functions of several variables as they are written: formulas in t, and the χ, ψ and φ of a chain.
 //!
-//! - `mod`: an [`Expression`] as it is written, by hand in Rust or read from a file.
-//! - `graph`: expressions as one graph without repetitions, and its derivatives.
-//! - `programme`: a graph as straight-line code, evaluated without allocating.
+//! An [`Expression`] has one meaning and one [`fold`](Expression::fold); what it is folded into is an [`Algebra`]:
+//!
+//! - `float`: a value in `f64`;
+//! - `interval`: what it keeps within, rounded outwards;
+//! - `exact`: the same with rational ends, so that 0.1 + 0.2 − 0.3 is zero;
+//! - `jet`: four derivatives over either of the first two;
+//! - `graph`: a graph without repetitions, differentiated as often as needed, and compiled to a `tape`;
+//! - `uniform`: which way it goes, and whether it is uniformly continuous.
+//!
+//! `bounds` cuts intervals until bounds are tight, `kinks` finds where |a|, min and max change branches, and `number` keeps
+//! constants as they were written.
 //!
 //! Backstepping differentiates the regressors of a chain up to one time less than its order. Differences would not be
 //! exact, and numbers that carry all their derivatives grow with every variable. A graph is differentiated once, when the
 //! law is built, and what is left at run time is a list of additions and products.
 
+mod bounds;
+mod exact;
+mod float;
 mod graph;
-mod programme;
+mod interval;
+mod jet;
+mod kinks;
+mod number;
+mod tape;
+mod uniform;
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -17,27 +33,35 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use thiserror::Error;
 
+pub use bounds::{search, weighted};
+pub use float::Floats;
 pub use graph::{Graph, Node};
-pub use programme::Programme;
+pub use interval::{Interval, Intervals};
+pub use jet::{Branch, Branching, Jets};
+pub use kinks::{KinkError, MOST_KINKS, Switch, bisect};
+pub use number::{MOST_DIGITS, Number};
+pub use tape::Tape;
 
 /// Steps that an expression may have.
-pub const MOST_STEPS: usize = 1024;
+pub const MOST_STEPS: usize = 256;
+/// Values that may wait at once for their operator without memory being allocated.
+pub const MOST_WAITING: usize = 32;
 /// Nodes that a graph may have.
 pub const MOST_NODES: usize = 200_000;
 
-/// One step of an expression, for a stack of numbers.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// One step of an expression, for a stack of values.
+#[derive(Clone, Debug, PartialEq)]
 pub enum Step {
     /// A constant.
-    Number(f64),
+    Number(Number),
     /// A variable, numbered from zero.
     Variable(usize),
     /// A function of what is on top of the stack.
     Unary(Unary),
     /// A function of the two that are on top.
     Binary(Binary),
-    /// The top, to a constant power.
-    Power(f64),
+    /// The top, to a constant power; it must not be negative unless the power is a whole number.
+    Power(Number),
 }
 
 /// Functions of one number.
@@ -55,7 +79,7 @@ pub enum Unary {
     Log,
     /// √a.
     Sqrt,
-    /// |a|; not differentiated.
+    /// |a|.
     Abs,
     /// tanh a.
     Tanh,
@@ -74,9 +98,9 @@ pub enum Binary {
     Multiply,
     /// a / b.
     Divide,
-    /// The smaller; not differentiated.
+    /// The smaller.
     Min,
-    /// The larger; not differentiated.
+    /// The larger.
     Max,
 }
 
@@ -94,6 +118,12 @@ pub enum ExpressionError {
     TooLong {
         /// How many there are.
         steps: usize,
+    },
+    /// Too many values wait for their operator.
+    #[error("the expression is nested too deeply: {waiting} values wait at once, but at most {MOST_WAITING} may")]
+    TooDeep {
+        /// How many wait.
+        waiting: usize,
     },
     /// A variable that does not exist.
     #[error("variable {variable} is used, but there are {count} only, numbered from zero")]
@@ -114,21 +144,49 @@ pub enum ExpressionError {
     TooLarge,
 }
 
+/// What an expression can be folded into: a method for every kind of step.
+pub trait Algebra {
+    /// What stands for a sub-expression.
+    type Value: Clone;
+
+    /// A constant.
+    fn number(&mut self, number: &Number) -> Self::Value;
+    /// A variable.
+    fn variable(&mut self, index: usize) -> Self::Value;
+    /// A function of one value.
+    fn unary(&mut self, function: Unary, a: Self::Value) -> Self::Value;
+    /// A function of two values.
+    fn binary(&mut self, function: Binary, a: Self::Value, b: Self::Value) -> Self::Value;
+    /// A constant power.
+    fn power(&mut self, a: Self::Value, exponent: &Number) -> Self::Value;
+}
+
 /// A function of numbered variables.
 ///
 /// ```
-/// use forwardstep_core::expression::{Expression, Graph, Programme};
+/// use forwardstep_core::expression::{Expression, Graph, Tape};
 ///
 /// let x = Expression::variable(0);
 /// let f = x.clone() * x.sin_of() + 2.0;
 /// let mut graph = Graph::new(1);
 /// let value = graph.import(&f)?;
 /// let slope = graph.derivative(value, 0)?;
-/// let programme = Programme::new(&graph, &[value, slope])?;
-/// let (mut registers, mut out) = (programme.registers(), [0.0; 2]);
-/// programme.evaluate(&[0.0], &mut registers, &mut out)?;
+/// let tape = Tape::new(&graph, &[value, slope])?;
+/// let (mut workspace, mut out) = (tape.workspace(), [0.0; 2]);
+/// tape.evaluate(&[0.0], &mut workspace, &mut out)?;
 /// assert_eq!(out, [2.0, 0.0]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// One in a single variable, such as a formula in t, is also evaluated by itself, with derivatives, and enclosed:
+///
+/// ```
+/// # use forwardstep_core::expression::Expression;
+/// let formula = Expression::variable(0).sin_of() * 0.1 + 0.2;
+/// assert_eq!(formula.eval(0.0), 0.2);
+/// assert_eq!(formula.jet(0.0)[1], 0.1);
+/// let bounds = formula.bounds(0.0, f64::INFINITY);
+/// assert!(bounds.low >= 0.1 - 1e-12 && bounds.high <= 0.3 + 1e-12);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
@@ -139,7 +197,7 @@ impl Expression {
     /// From steps, operands before operators.
     ///
     /// # Errors
-    /// [`ExpressionError`] when they do not make one value, are too many, or hold a constant that is not finite.
+    /// [`ExpressionError`] when they do not make one value, are too many or too deep, or hold a constant that is not finite.
     pub fn new(steps: Vec<Step>) -> Result<Self, ExpressionError> {
         if steps.len() > MOST_STEPS {
             return Err(ExpressionError::TooLong { steps: steps.len() });
@@ -147,7 +205,7 @@ impl Expression {
         let mut waiting = 0_usize;
         for step in &steps {
             let operands = match step {
-                Step::Number(value) | Step::Power(value) if !value.is_finite() => {
+                Step::Number(number) | Step::Power(number) if !number.value().is_finite() => {
                     return Err(ExpressionError::NotFinite);
                 }
                 Step::Number(_) | Step::Variable(_) => 0,
@@ -155,8 +213,42 @@ impl Expression {
                 Step::Binary(_) => 2,
             };
             waiting = waiting.checked_sub(operands).ok_or(ExpressionError::Unbalanced)? + 1;
+            if waiting > MOST_WAITING {
+                return Err(ExpressionError::TooDeep { waiting });
+            }
         }
         if waiting == 1 { Ok(Expression { steps }) } else { Err(ExpressionError::Unbalanced) }
+    }
+
+    /// The expression as `algebra` has it. Allocates only where more than [`MOST_WAITING`] values wait, or the algebra does.
+    pub fn fold<A: Algebra>(&self, algebra: &mut A) -> A::Value {
+        let mut stack = Stack { few: [const { None }; MOST_WAITING], count: 0, more: Vec::new() };
+        for step in &self.steps {
+            let value = match step {
+                Step::Number(number) => algebra.number(number),
+                Step::Variable(index) => algebra.variable(*index),
+                Step::Unary(function) => match stack.pop() {
+                    Some(a) => algebra.unary(*function, a),
+                    None => continue,
+                },
+                Step::Power(exponent) => match stack.pop() {
+                    Some(a) => algebra.power(a, exponent),
+                    None => continue,
+                },
+                Step::Binary(function) => match (stack.pop(), stack.pop()) {
+                    (Some(b), Some(a)) => algebra.binary(*function, a, b),
+                    _ => continue,
+                },
+            };
+            stack.push(value);
+        }
+        // Every constructor leaves one value, and no step without its operands.
+        stack.pop().unwrap_or_else(|| algebra.number(&f64::NAN.into()))
+    }
+
+    /// Its value for these variables; not-a-number or infinite where there is none.
+    pub fn value(&self, variables: &[f64]) -> f64 {
+        self.fold(&mut Floats::new(variables))
     }
 
     /// Its steps.
@@ -170,8 +262,8 @@ impl Expression {
     }
 
     /// A constant.
-    pub fn number(value: f64) -> Self {
-        Expression { steps: vec![Step::Number(value)] }
+    pub fn number(number: impl Into<Number>) -> Self {
+        Expression { steps: vec![Step::Number(number.into())] }
     }
 
     /// Whether variable `index` is in it.
@@ -192,32 +284,30 @@ impl Expression {
 
     /// To a constant power.
     #[must_use]
-    pub fn power(self, exponent: f64) -> Self {
-        self.then(Step::Power(exponent))
+    pub fn power(self, exponent: impl Into<Number>) -> Self {
+        self.then(Step::Power(exponent.into()))
+    }
+}
+
+/// The values that wait for their operator, the first of them without allocating.
+struct Stack<V> {
+    few: [Option<V>; MOST_WAITING],
+    count: usize,
+    more: Vec<V>,
+}
+
+impl<V> Stack<V> {
+    fn push(&mut self, value: V) {
+        match self.few.get_mut(self.count) {
+            Some(place) => *place = Some(value),
+            None => self.more.push(value),
+        }
+        self.count += 1;
     }
 
-    /// Its sine.
-    #[must_use]
-    pub fn sin_of(self) -> Self {
-        self.then(Step::Unary(Unary::Sin))
-    }
-
-    /// Its cosine.
-    #[must_use]
-    pub fn cos_of(self) -> Self {
-        self.then(Step::Unary(Unary::Cos))
-    }
-
-    /// Its hyperbolic tangent.
-    #[must_use]
-    pub fn tanh_of(self) -> Self {
-        self.then(Step::Unary(Unary::Tanh))
-    }
-
-    /// e to it.
-    #[must_use]
-    pub fn exp_of(self) -> Self {
-        self.then(Step::Unary(Unary::Exp))
+    fn pop(&mut self) -> Option<V> {
+        self.count = self.count.checked_sub(1)?;
+        self.more.pop().or_else(|| self.few.get_mut(self.count)?.take())
     }
 }
 
@@ -234,15 +324,55 @@ impl Neg for Expression {
     }
 }
 
+macro_rules! functions {
+    ($($method:ident = $step:ident, $words:literal);+) => {
+        impl Expression {$(
+            #[doc = $words]
+            #[must_use]
+            pub fn $method(self) -> Self {
+                self.then(Step::Unary(Unary::$step))
+            }
+        )+}
+    };
+}
+functions!(
+    sin_of = Sin, "Its sine.";
+    cos_of = Cos, "Its cosine.";
+    exp_of = Exp, "e to it.";
+    log_of = Log, "Its natural logarithm.";
+    sqrt_of = Sqrt, "Its square root.";
+    abs_of = Abs, "Its size.";
+    tanh_of = Tanh, "Its hyperbolic tangent.";
+    atan_of = Atan, "Its arc tangent."
+);
+
 macro_rules! binary {
     ($($operator:ident :: $method:ident = $step:ident),+) => {$(
         impl<E: Into<Expression>> $operator<E> for Expression {
             type Output = Self;
-            fn $method(mut self, other: E) -> Self {
-                self.steps.extend(other.into().steps);
-                self.then(Step::Binary(Binary::$step))
+            fn $method(self, other: E) -> Self {
+                self.with(other, Binary::$step)
             }
         }
     )+};
 }
 binary!(Add::add = Add, Sub::sub = Subtract, Mul::mul = Multiply, Div::div = Divide);
+
+impl Expression {
+    fn with(mut self, other: impl Into<Expression>, function: Binary) -> Self {
+        self.steps.extend(other.into().steps);
+        self.then(Step::Binary(function))
+    }
+
+    /// The smaller of the two.
+    #[must_use]
+    pub fn smaller(self, other: impl Into<Expression>) -> Self {
+        self.with(other, Binary::Min)
+    }
+
+    /// The larger of the two.
+    #[must_use]
+    pub fn larger(self, other: impl Into<Expression>) -> Self {
+        self.with(other, Binary::Max)
+    }
+}

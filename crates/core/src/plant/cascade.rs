@@ -15,7 +15,7 @@ use thiserror::Error;
 
 use super::Plant;
 use crate::LengthError;
-use crate::expression::{Expression, ExpressionError, Graph, Programme};
+use crate::expression::{Expression, ExpressionError, Graph, Tape};
 use crate::signal::{Block, Signal};
 
 /// f, φ and ψ. Variable i, from zero, is x_{i+1}.
@@ -137,7 +137,7 @@ impl CascadeTerms {
 pub struct Cascade {
     terms: CascadeTerms,
     theta: Vec<f64>,
-    programme: Programme,
+    tape: Tape,
 }
 
 impl Cascade {
@@ -161,8 +161,8 @@ impl Cascade {
             outputs.push(rate);
         }
         outputs.push(graph.import(terms.input())?);
-        let programme = Programme::new(&graph, &outputs)?;
-        Ok(Cascade { terms, theta, programme })
+        let tape = Tape::new(&graph, &outputs)?;
+        Ok(Cascade { terms, theta, tape })
     }
 
     /// f, φ and ψ.
@@ -179,7 +179,7 @@ impl Cascade {
 /// Working memory of a cascade.
 #[derive(Clone, Debug)]
 pub struct CascadeWork {
-    registers: Vec<f64>,
+    workspace: Vec<f64>,
     out: Vec<f64>,
 }
 
@@ -187,7 +187,7 @@ impl Plant for Cascade {
     type Scratch = CascadeWork;
 
     fn scratch(&self) -> CascadeWork {
-        CascadeWork { registers: self.programme.registers(), out: vec![0.0; self.programme.outputs()] }
+        CascadeWork { workspace: self.tape.workspace(), out: vec![0.0; self.tape.outputs()] }
     }
 
     fn axes(&self) -> usize {
@@ -228,7 +228,7 @@ impl Plant for Cascade {
         let n = self.terms.order();
         LengthError::check("rate", n, d_state.len())?;
         LengthError::check("input", 1, input.len())?;
-        self.programme.evaluate(state, &mut work.registers, &mut work.out)?;
+        self.tape.evaluate(state, &mut work.workspace, &mut work.out)?;
         d_state.copy_from_slice(&work.out[..n]);
         d_state[n - 1] += work.out[n] * input[0];
         Ok(())

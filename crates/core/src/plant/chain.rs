@@ -9,7 +9,7 @@ use core::fmt;
 
 use super::Plant;
 use crate::LengthError;
-use crate::expression::{Expression, ExpressionError, Graph, Programme};
+use crate::expression::{Expression, ExpressionError, Graph, Tape};
 use crate::signal::{Block, Signal};
 
 /// χ₀, φ and ψ of (33).
@@ -105,7 +105,7 @@ pub struct Formulas {
     order: usize,
     phi: Vec<Expression>,
     psi: Expression,
-    programme: Programme,
+    tape: Tape,
 }
 
 impl Formulas {
@@ -124,8 +124,8 @@ impl Formulas {
         for phi in &phi {
             outputs.push(graph.import(phi)?);
         }
-        let programme = Programme::new(&graph, &outputs)?;
-        Ok(Formulas { order, phi, psi: psi.clone(), programme })
+        let tape = Tape::new(&graph, &outputs)?;
+        Ok(Formulas { order, phi, psi: psi.clone(), tape })
     }
 
     /// ψ.
@@ -142,7 +142,7 @@ impl Formulas {
 /// Working memory of [`Formulas`].
 #[derive(Clone, Debug)]
 pub struct FormulasWork {
-    registers: Vec<f64>,
+    workspace: Vec<f64>,
     out: Vec<f64>,
 }
 
@@ -150,7 +150,7 @@ impl Terms for Formulas {
     type Scratch = FormulasWork;
 
     fn scratch(&self) -> FormulasWork {
-        FormulasWork { registers: self.programme.registers(), out: vec![0.0; self.programme.outputs()] }
+        FormulasWork { workspace: self.tape.workspace(), out: vec![0.0; self.tape.outputs()] }
     }
 
     fn order(&self) -> usize {
@@ -163,7 +163,7 @@ impl Terms for Formulas {
 
     fn terms(&self, work: &mut FormulasWork, x: &[f64], phi: &mut [f64]) -> Result<(f64, f64), LengthError> {
         LengthError::check("regressor", self.phi.len(), phi.len())?;
-        self.programme.evaluate(x, &mut work.registers, &mut work.out)?;
+        self.tape.evaluate(x, &mut work.workspace, &mut work.out)?;
         phi.copy_from_slice(&work.out[2..]);
         Ok((work.out[0], work.out[1]))
     }

@@ -1,28 +1,25 @@
 //! Why a text is no formula, and the words of formulas, which the advice names.
 
-use std::f64::consts::{E, PI};
-
-use forwardstep_sim::formula::{FormulaStep, MOST_STEPS};
+use forwardstep_core::expression::{Binary, MOST_DIGITS, MOST_STEPS, Number, Unary};
 use thiserror::Error;
 
 use crate::wording::{choose, nearest};
 
 /// Functions of one argument.
-pub(super) const FUNCTIONS: [(&str, FormulaStep); 8] = [
-    ("sin", FormulaStep::Sin),
-    ("cos", FormulaStep::Cos),
-    ("exp", FormulaStep::Exp),
-    ("log", FormulaStep::Log),
-    ("sqrt", FormulaStep::Sqrt),
-    ("abs", FormulaStep::Abs),
-    ("tanh", FormulaStep::Tanh),
-    ("atan", FormulaStep::Atan),
+pub(super) const FUNCTIONS: [(&str, Unary); 8] = [
+    ("sin", Unary::Sin),
+    ("cos", Unary::Cos),
+    ("exp", Unary::Exp),
+    ("log", Unary::Log),
+    ("sqrt", Unary::Sqrt),
+    ("abs", Unary::Abs),
+    ("tanh", Unary::Tanh),
+    ("atan", Unary::Atan),
 ];
 /// Functions of two arguments or more.
-pub(super) const CHOICES: [(&str, FormulaStep); 2] = [("min", FormulaStep::Min), ("max", FormulaStep::Max)];
+pub(super) const CHOICES: [(&str, Binary); 2] = [("min", Binary::Min), ("max", Binary::Max)];
 /// Names that stand for numbers.
-pub(super) const NAMES: [(&str, FormulaStep); 3] =
-    [("t", FormulaStep::Time), ("pi", FormulaStep::Number(PI)), ("e", FormulaStep::Number(E))];
+pub(super) const CONSTANTS: [(&str, Number); 2] = [("pi", Number::PI), ("e", Number::E)];
 /// What would make a formula jump.
 pub(super) const JUMPS: [&str; 17] = [
     "floor",
@@ -111,6 +108,12 @@ pub enum FormulaProblem {
         /// What was written.
         found: String,
     },
+    /// A number that is not kept as it is written.
+    #[error("{found} has too many digits or too small an exponent")]
+    NumberTooLong {
+        /// What was written.
+        found: String,
+    },
     /// An exponent in which a variable appears.
     #[error("the exponent changes with {of}")]
     VaryingExponent {
@@ -134,8 +137,8 @@ pub enum FormulaProblem {
 impl FormulaProblem {
     /// What to do about it.
     pub fn help(&self) -> Option<String> {
-        let first = |list: &[(&'static str, FormulaStep)]| list.iter().map(|entry| entry.0).collect::<Vec<_>>();
-        let functions = || [first(&FUNCTIONS), first(&CHOICES)].concat();
+        let functions: Vec<&str> =
+            FUNCTIONS.iter().map(|entry| entry.0).chain(CHOICES.iter().map(|entry| entry.0)).collect();
         let text = match self {
             FormulaProblem::Empty => "a formula in t is for example \"0.2 + 0.1*sin(2*pi*t/3)\", one of a chain \"-x^3 + sin(x)\"".into(),
             FormulaProblem::Expected { found, .. } if found == "\"**\"" => "powers are written `2^3`".into(),
@@ -143,16 +146,16 @@ impl FormulaProblem {
                 "products are written with a star: `2*pi`, `3*(pi + 1)`".into()
             }
             FormulaProblem::UnknownName { name } => {
-                if nearest(name, functions()).as_deref() == Some(name.as_str()) {
+                if nearest(name, functions.clone()).as_deref() == Some(name.as_str()) {
                     return Some(format!("a function has its argument in parentheses: `{name}(t)`"));
                 }
-                choose(name, "there are", &[first(&NAMES), functions()].concat())
+                choose(name, "there are", &[vec!["t", "pi", "e"], functions].concat())
             }
             FormulaProblem::UnknownVariable { name, names } => {
                 let names: Vec<&str> = names.iter().map(String::as_str).chain(["pi", "e"]).collect();
-                choose(name, "there are", &[names, functions()].concat())
+                choose(name, "there are", &[names, functions].concat())
             }
-            FormulaProblem::UnknownFunction { name } => choose(name, "the functions are", &functions()),
+            FormulaProblem::UnknownFunction { name } => choose(name, "the functions are", &functions),
             FormulaProblem::Jumps { .. } => {
                 "what jumps has keys of its own: `delay.piecewise_constant`, `delay.saw_tooth`, or phases of a network; \
                  elsewhere `tanh` of something large comes close"
@@ -162,6 +165,9 @@ impl FormulaProblem {
             FormulaProblem::VaryingExponent { of } => {
                 format!("exponents are constant; write `exp({of}*log(2))` for 2 to the {of}")
             },
+            FormulaProblem::NumberTooLong { .. } => {
+                format!("numbers may have {MOST_DIGITS} digits and be as small as 1e-300; they are kept exactly as they are written")
+            }
             FormulaProblem::NumberTooLarge { .. } => "numbers may be up to 1e30 in size".into(),
             _ => return None,
         };

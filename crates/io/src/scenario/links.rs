@@ -4,8 +4,9 @@ use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 use std::sync::Arc;
 
+use forwardstep_core::expression::{Expression, Interval};
 use forwardstep_sim::delay::{Delay, Loss, Packet, PacketLink, RandomHold, Trace};
-use forwardstep_sim::formula::{BoundedFormula, Formula, Interval};
+use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 
 use super::at::At;
@@ -76,7 +77,7 @@ impl NetworkReader<'_> {
         }
         let formula = formula(text)?;
         let delay = if formula.is_constant() {
-            let value = At { value: formula.eval(0.0), span: text.span.clone() };
+            let value = At { value: constant(&formula), span: text.span.clone() };
             Delay::Constant { s: finite("formula_s", &value).and_then(|value| not_negative("formula_s", &value))? }
         } else {
             if self.links.formulas.len() >= MOST_FORMULAS {
@@ -170,7 +171,7 @@ impl NetworkReader<'_> {
         let place = At { value: text.clone(), span: span.clone() };
         let formula = formula(&place)?;
         let weight = if formula.is_constant() {
-            let value = finite("weight", &At { value: formula.eval(0.0), span })?;
+            let value = finite("weight", &At { value: constant(&formula), span })?;
             positive("weight", &value)?.into()
         } else {
             if self.weights.len() >= MOST_FORMULAS {
@@ -215,13 +216,18 @@ impl NetworkReader<'_> {
     }
 }
 
+/// The number that a formula without t is, which may be none: 0.1 + 0.2 − 0.3 is zero.
+fn constant(formula: &Expression) -> f64 {
+    formula.constant().map_or(f64::NAN, |number| number.value())
+}
+
 /// The value of a formula without t, which may be none.
 fn finite(key: &'static str, value: &At<f64>) -> Result<At<f64>, Fault> {
     if value.value.is_finite() { Ok(value.clone()) } else { Err(fault(value, NetworkProblem::NoValue { key })) }
 }
 
 /// A time at which a formula really has a value that it must not have, looked for here and there.
-fn witness(formula: &Formula, end_s: f64, good: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
+fn witness(formula: &Expression, end_s: f64, good: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
     const LOOKS: u32 = 1000;
     let mut looks = (0..=LOOKS).map(|k| f64::from(k) / f64::from(LOOKS) * end_s);
     looks.find_map(|t_s| {

@@ -2,8 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
+use forwardstep_core::expression::Expression;
 use forwardstep_core::robot::tree::{Axes, LinkPoint};
-use forwardstep_sim::formula::Formula;
 use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push, Table};
 use forwardstep_sim::{AgentSetup, Attachments, AxisUnit, SetupError};
 
@@ -100,7 +100,7 @@ struct Tables<'a> {
     numbers: usize,
     /// By their text and the bits of the times between which they have a value: every axis of every agent of a population
     /// asks for the same ones.
-    formulas: HashMap<(String, [u64; 2]), Formula>,
+    formulas: HashMap<(String, [u64; 2]), Expression>,
 }
 
 /// A push on its way to one agent.

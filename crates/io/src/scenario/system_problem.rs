@@ -1,5 +1,6 @@
 //! What is wrong with targets and leaders, and with the systems of Sections IV and V.
 
+use forwardstep_core::expression::KinkError;
 use forwardstep_core::plant::{CascadeError, SpacecraftError};
 use forwardstep_core::robot::tree::TipError;
 use forwardstep_sim::trajectory::{SplineError, TrajectoryError};
@@ -69,6 +70,9 @@ pub enum SystemProblem {
         /// The end of the run, s.
         end_s: f64,
     },
+    /// A formula with kinks that cannot be landed on.
+    #[error("a motion must be smooth between kinks that are known, but {0}")]
+    Kinks(KinkError),
     /// A spacecraft that makes no sense.
     #[error(transparent)]
     Spacecraft(SpacecraftError),
@@ -157,6 +161,14 @@ impl SystemProblem {
             SystemProblem::LeaderRoots { .. } => "`continuous` has one root, the other designs have two".into(),
             SystemProblem::TargetValue { .. } => {
                 "roots, logarithms and quotients need arguments that stay where they have values".into()
+            }
+            SystemProblem::Kinks(KinkError::TooMany) => {
+                "shorten the run, or use something smooth such as `sin` or `tanh`".into()
+            }
+            SystemProblem::Kinks(KinkError::Unclear { .. }) => {
+                "keep what `abs`, `min` and `max` compare apart except where it crosses, or write something smooth: \
+                 `sqrt(x^2 + 0.01)` is close to `abs(x)`"
+                    .into()
             }
             SystemProblem::LawOfAnother { laws, .. } => format!("for this robot there is {laws}"),
             SystemProblem::NoDirection { instead } => (*instead).into(),

@@ -107,9 +107,9 @@ fn component(entry: &At<FunctionFile>, end_s: f64) -> Result<Path, Fault> {
         FunctionFile::Formula(text) => text.clone(),
     };
     let formula = formula(&At { value: text, span: entry.span.clone() })?;
-    if formula.is_bounded(0.0, end_s) {
-        Ok(Path::Formula(formula))
-    } else {
-        Err(fault(entry, SystemProblem::TargetValue { end_s }))
+    if !formula.is_bounded(0.0, end_s) {
+        return Err(fault(entry, SystemProblem::TargetValue { end_s }));
     }
+    formula.switches(0.0, end_s).map_err(|error| fault(entry, SystemProblem::Kinks(error)))?;
+    Ok(Path::Formula(formula))
 }

@@ -76,6 +76,7 @@ fn mistakes_about_leaders_are_reported() {
         (changed("[leader]\nmotion.formulas = [\"sin(t)\"]\n", ""), "there is none", "add `[leader]`"),
         (changed("[1.5]", "[1, 2]"), "needs 1", "one root"),
         (changed("[\"cart-1\", \"cart-2\"]]", "[\"cart-1\", \"leader\"]]"), "hears nobody", "turn it round"),
+        (changed("[\"sin(t)\"]", "[\"abs(sin(1e5*t))\"]"), "more than 10000 kinks", "shorten the run"),
         (changed("gain = 3", "gain = 0"), "must be positive", ""),
         (changed("gain = 3", "gain = 3\ncoupling = 1"), "belongs to the design `swarm`", ""),
         (changed("\"continuous\"", "\"swarm\"").replace("[1.5]", "[1, 2]"), "`coupling` is missing", ""),

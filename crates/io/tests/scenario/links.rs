@@ -137,6 +137,7 @@ const WEIGHTS: &[Case] = &[
     ("\"sin(t)\"", "test.toml:28:10: the weight is 0 at t = 0 s, but must be positive", "`max(0.1, …)`"),
     ("\"heavy\"", "test.toml:28:11: there is no `heavy` in a formula", "there are `t`"),
     ("\"0\"", "test.toml:28:10: `weight` is 0, but must be positive", ""),
+    ("\"0.1 + 0.2 - 0.3\"", "test.toml:28:10: `weight` is 0, but must be positive", ""),
     ("\"log(0)\"", "test.toml:28:10: the formula for `weight` has no finite value", ""),
     ("\"\\u0031 + q\"", "test.toml:28:10: there is no `q` in a formula", "there are `t`"),
     ("[1]", "test.toml:28:10: found a list where a number or a formula in t in quotes should stand", ""),

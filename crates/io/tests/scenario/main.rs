@@ -5,6 +5,7 @@ mod blind;
 mod chains;
 mod control;
 mod edges;
+mod formulas;
 mod leader;
 mod links;
 mod malformed;

@@ -33,6 +33,11 @@ const CASES: &[Case] = &[
         "test.toml:7:31: there is no function `sine`", "did you mean `sin`?"),
     ("[\"sin(t)\", 0.5]", "[\"sin(t)\", \"1/(t - 5)\"]",
         "test.toml:7:30: this has no finite value everywhere from 0 s to 10 s, or that could not be shown", "where they have values"),
+    ("[\"sin(t)\", 0.5]", "[\"sin(t)\", \"abs(sin(1e5*t))\"]",
+        "test.toml:7:30: a motion must be smooth between kinks that are known, but it has more than 10000 kinks", "shorten the run"),
+    ("[\"sin(t)\", 0.5]", "[\"max(sin(t)^2 + cos(t)^2, 1)\", 0.5]",
+        "test.toml:7:20: a motion must be smooth between kinks that are known, but its kinks near 0 cannot be told apart: \
+         what `abs`, `min` or `max` compares stays too close together there", "write something smooth"),
     ("target.formulas = [\"sin(t)\", 0.5]\n", "",
         "test.toml:5:8: agent `mass` is to track a target, but has none", "give it a `target`"),
     ("target.formulas", "target.formula",

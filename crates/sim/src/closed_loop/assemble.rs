@@ -1,7 +1,6 @@
 //! All populations with what joins them: the right-hand side as a whole, and its events.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use forwardstep_core::controller::Trouble;
 use forwardstep_core::reference::{Position, PositionVelocity};
@@ -114,7 +113,7 @@ impl<'a> ClosedLoop<'a> {
             placed += n;
         }
         if let Some(following) = following {
-            let guide = Box::new(Guide::new(Arc::clone(following), placed));
+            let guide = Box::new(Guide::new(following, placed, setup.time.end_s)?);
             let first = closed_loop.start.len();
             guide.append_start(&setup.agents, &mut closed_loop.start);
             closed_loop.ports[placed] = Port { state: first, entry: placed * entries, degree: placed, stride: 1 };
@@ -335,6 +334,9 @@ impl DelaySystem for ClosedLoop<'_> {
     fn happen(&mut self, until_s: f64, x: &mut [f64]) -> Happened {
         let mut happened = self.pushes.happen(until_s);
         if self.kink_s <= until_s {
+            for block in &mut self.blocks {
+                block.columns.pass_kink(until_s, &mut x[block.state.clone()]);
+            }
             self.kink_s = self.next_kink_s(until_s);
             happened = Happened::Jumped;
         }

@@ -12,6 +12,7 @@ use crate::agents::RobotModel;
 use crate::recording::Signal;
 use crate::setup::{AgentSetup, Axis, ReferenceKind, Setup};
 use crate::system::Robot;
+use crate::trajectory::Pieces;
 
 /// Agents as a part of the closed loop.
 pub struct Block(pub(super) Box<dyn Columns>);
@@ -150,7 +151,9 @@ impl<'a> Assembly<'a> {
             None => None,
             Some(trajectory) => {
                 self.length("the target", plant.axes(), trajectory.axes())?;
-                Some(Target { trajectory: trajectory.clone(), is_offset })
+                let wrong = |error| SetupError::Trajectory { agent: own.name.clone(), error };
+                let trajectory = Pieces::new(trajectory.clone(), setup.time.end_s).map_err(wrong)?;
+                Some(Target { trajectory, is_offset })
             }
         };
         let torques = plant.inputs().iter().filter(|(signal, _)| *signal == Signal::Torque).map(|(_, n)| n).sum();

@@ -3,8 +3,6 @@
 //! Its state is q₀, q̇₀, so that delays, history and samples treat what it says like what anybody says. The rates are the
 //! derivatives of its motion in closed form; at every event the state is put back on the motion itself.
 
-use std::sync::Arc;
-
 use forwardstep_core::LengthError;
 use forwardstep_core::controller::Jet;
 use forwardstep_core::sampled::{Recipe, Sampled};
@@ -15,24 +13,27 @@ use super::valid::SetupError;
 use crate::leader::Following;
 use crate::recording::{GainRates, Signal};
 use crate::setup::{AgentSetup, Control, Setup};
+use crate::trajectory::Pieces;
 
 /// The leader.
 pub(crate) struct Guide {
-    following: Arc<Following>,
+    pieces: Pieces,
     /// Its vertex.
     vertex: usize,
     jets: Vec<Jet>,
 }
 
 impl Guide {
-    pub(crate) fn new(following: Arc<Following>, vertex: usize) -> Self {
-        let jets = vec![[0.0; 5]; following.leader.trajectory.axes()];
-        Guide { following, vertex, jets }
+    pub(crate) fn new(following: &Following, vertex: usize, end_s: f64) -> Result<Self, SetupError> {
+        let wrong = |error| SetupError::Trajectory { agent: following.leader.name.clone(), error };
+        let pieces = Pieces::new(following.leader.trajectory.clone(), end_s).map_err(wrong)?;
+        let jets = vec![[0.0; 5]; pieces.axes()];
+        Ok(Guide { pieces, vertex, jets })
     }
 
     /// Puts the k-th derivatives of every axis at `t_s` into `out`, from k = `first` on.
     fn put(&mut self, t_s: f64, first: usize, out: &mut [f64]) {
-        self.following.leader.trajectory.jets(t_s, &mut self.jets);
+        self.pieces.jets(t_s, &mut self.jets);
         let m = self.jets.len();
         for (k, out) in out.iter_mut().enumerate() {
             *out = self.jets[k % m].get(first + k / m).copied().unwrap_or(0.0);
@@ -47,7 +48,7 @@ impl Columns for Guide {
 
     fn append_start(&self, _: &[AgentSetup], x: &mut Vec<f64>) {
         let mut jets = self.jets.clone();
-        self.following.leader.trajectory.jets(0.0, &mut jets);
+        self.pieces.jets(0.0, &mut jets);
         x.extend(jets.iter().map(|jet| jet[0]));
         x.extend(jets.iter().map(|jet| jet[1]));
     }
@@ -86,7 +87,15 @@ impl Columns for Guide {
     }
 
     fn next_event_s(&self, after_s: f64) -> f64 {
-        self.following.leader.trajectory.next_kink_s(after_s)
+        self.pieces.next_kink_s(after_s)
+    }
+
+    fn pass_kink(&mut self, until_s: f64, x: &mut [f64]) {
+        let jump_s = self.pieces.next_jump_s(until_s);
+        self.pieces.pass(until_s);
+        if let Some(jump_s) = jump_s {
+            self.put(jump_s, 0, x);
+        }
     }
 
     fn signals(&self) -> Vec<(Signal, usize)> {

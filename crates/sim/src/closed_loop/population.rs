@@ -82,6 +82,10 @@ pub(crate) trait Columns {
         let _ = after_s;
         f64::INFINITY
     }
+    /// Goes past what jumps until `until_s`; may change the block `x`.
+    fn pass_kink(&mut self, until_s: f64, x: &mut [f64]) {
+        let _ = (until_s, x);
+    }
     /// Where the values of its set-valued signs stand in its block, if it has any.
     fn selection(&self) -> Option<Range<usize>> {
         None

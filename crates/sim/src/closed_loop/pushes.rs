@@ -39,7 +39,7 @@ impl Pushes {
         let axes = setup.agents.first().map_or(0, |agent| agent.robot.axes.len());
         let mut pushes = Pushes::default();
         for (index, (agent, port)) in setup.agents.iter().zip(ports).enumerate() {
-            let Some(pushed) = Pushed::new(index, agent) else { continue };
+            let Some(pushed) = Pushed::new(index, agent, setup.time.end_s) else { continue };
             let first = first_of(port.degree);
             let vector = || vec![0.0; axes];
             pushes.people.push(Placed {
@@ -115,8 +115,8 @@ pub(crate) struct Pushed {
 
 impl Pushed {
     /// `None` when nothing ever acts on the agent.
-    pub(crate) fn new(index: usize, agent: &AgentSetup) -> Option<Self> {
-        let actions: Vec<Action> = agent.pushes.iter().map(|push| Action::new(push.clone())).collect();
+    pub(crate) fn new(index: usize, agent: &AgentSetup, end_s: f64) -> Option<Self> {
+        let actions: Vec<Action> = agent.pushes.iter().map(|push| Action::new(push.clone(), end_s)).collect();
         let tree = match agent.robot.kind.attachments() {
             Attachments::Links(tree) => Some((Arc::clone(tree), tree.scratch())),
             Attachments::Axes | Attachments::PlanarTip => None,
@@ -192,6 +192,8 @@ fn act(
 struct Action {
     push: Push,
     span_s: [f64; 2],
+    /// Where its formulas have kinks still to come, s, the next one last.
+    kinks_s: Vec<f64>,
     phase: Phase,
 }
 
@@ -206,10 +208,12 @@ enum Phase {
 }
 
 impl Action {
-    fn new(push: Push) -> Self {
+    fn new(push: Push, end_s: f64) -> Self {
         let span_s = push.span_s();
+        let mut kinks_s = push.course().kinks_s([span_s[0], span_s[1].min(end_s)]);
+        kinks_s.reverse();
         let phase = if span_s[0] < span_s[1] { Phase::Waiting } else { Phase::Over };
-        Action { push, span_s, phase }
+        Action { push, span_s, kinks_s, phase }
     }
 
     fn piece(&self) -> Option<usize> {
@@ -223,7 +227,9 @@ impl Action {
         match (self.phase, self.push.course()) {
             (Phase::Waiting, _) => self.span_s[0],
             (Phase::Acting { piece }, Course::Table(table)) => table.times_s[piece + 1].min(self.span_s[1]),
-            (Phase::Acting { .. }, Course::Each(_)) => self.span_s[1],
+            (Phase::Acting { .. }, Course::Each(_)) => {
+                self.kinks_s.last().map_or(self.span_s[1], |kink_s| kink_s.min(self.span_s[1]))
+            }
             (Phase::Over, _) => f64::INFINITY,
         }
     }
@@ -242,6 +248,10 @@ impl Action {
                     // A polygon has a kink where rows meet: the rate is continuous there, and steps may stay long.
                     let what = if table.between == Between::Linear { Happened::Sampled } else { Happened::Jumped };
                     (Phase::Acting { piece: piece + 1 }, what)
+                }
+                (Phase::Acting { piece }, Course::Each(_)) if !ends => {
+                    self.kinks_s.pop();
+                    (Phase::Acting { piece }, Happened::Sampled)
                 }
                 _ => (Phase::Over, Happened::Jumped),
             };

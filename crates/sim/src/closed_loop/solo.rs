@@ -27,7 +27,7 @@ use super::sampler::Digital;
 use super::valid::SetupError;
 use crate::recording::{GainRates, Signal};
 use crate::setup::{AgentSetup, Control, Setup};
-use crate::trajectory::Trajectory;
+use crate::trajectory::Pieces;
 
 /// A plant and its controller.
 pub(crate) struct Solo<C: Controller> {
@@ -49,7 +49,7 @@ pub(crate) struct Solo<C: Controller> {
 /// What a trajectory means to an agent.
 pub(crate) struct Target {
     /// The trajectory.
-    pub(crate) trajectory: Trajectory,
+    pub(crate) trajectory: Pieces,
     /// It is an offset from where all agree; otherwise it is to be followed.
     pub(crate) is_offset: bool,
 }
@@ -300,7 +300,7 @@ impl<C: Controller> Columns for Solo<C> {
         let mut recipe = Recipe::feedback(&self.plant, self.controller.clone());
         recipe.start = StartState::State(x[plant..self.layout.controller_end()].to_vec());
         recipe.target = self.target.as_ref().map(|Target { trajectory, is_offset }| {
-            let motion = Arc::new(trajectory.clone());
+            let motion = Arc::new(trajectory.trajectory().clone());
             if *is_offset { sampled::Target::Offset(motion) } else { sampled::Target::Follow(motion) }
         });
         Ok(vec![(self.agent, used(recipe, setup, self.agent, torques)?)])
@@ -353,6 +353,22 @@ impl<C: Controller> Columns for Solo<C> {
 
     fn next_event_s(&self, after_s: f64) -> f64 {
         self.target.as_ref().map_or(f64::INFINITY, |target| target.trajectory.next_kink_s(after_s))
+    }
+
+    fn pass_kink(&mut self, until_s: f64, x: &mut [f64]) {
+        let Layout { m, velocities, .. } = self.layout;
+        let (Some(target), jets) = (&mut self.target, &mut self.now.jets) else { return };
+        // The velocity of what moves with an offset is the agent's less the offset's, which jumps.
+        let jump_s = target.trajectory.next_jump_s(until_s).filter(|_| target.is_offset && velocities == m);
+        let mut add = |pieces: &Pieces, sign: f64| {
+            if let Some(jump_s) = jump_s {
+                pieces.jets(jump_s, jets);
+                x[m..].iter_mut().zip(jets.iter()).for_each(|(velocity, jet)| *velocity += sign * jet[1]);
+            }
+        };
+        add(&target.trajectory, 1.0);
+        target.trajectory.pass(until_s);
+        add(&target.trajectory, -1.0);
     }
 
     fn signals(&self) -> Vec<(Signal, usize)> {

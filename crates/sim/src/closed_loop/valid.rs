@@ -17,6 +17,7 @@ use crate::network::NetworkError;
 use crate::push::PushError;
 use crate::setup::{AgentSetup, AxisUnit, Control, Exchange, Method, ReferenceKind, Setup};
 use crate::system::ReferenceFamily;
+use crate::trajectory::TrajectoryError;
 
 /// Why a setup cannot be simulated.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -24,6 +25,14 @@ pub enum SetupError {
     /// The network has no meaning.
     #[error("network: {0}")]
     Network(#[from] NetworkError),
+    /// A target, an offset or a leader that cannot be landed on where it has kinks.
+    #[error("`{agent}`: {error}")]
+    Trajectory {
+        /// Whose it is.
+        agent: String,
+        /// What is wrong.
+        error: TrajectoryError,
+    },
     /// The network was made for another number of agents.
     #[error("the network has {network} agents, but {agents} are described")]
     AgentCount {

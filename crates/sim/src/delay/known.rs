@@ -4,8 +4,10 @@
 //! A link that holds packets has T = t − s between arrivals: slope one on every piece, one modulus of continuity for all
 //! of them.
 
+use forwardstep_core::expression::Interval;
+
 use super::Delay;
-use crate::formula::{BoundedFormula, Interval};
+use crate::formula::BoundedFormula;
 
 /// A bound of a delay, how far it reaches and what it rests on.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,8 +13,9 @@ mod random_hold;
 use std::sync::Arc;
 
 use forwardstep_core::Scalar;
+use forwardstep_core::expression::{Interval, bisect};
 
-use crate::formula::{BoundedFormula, Interval};
+use crate::formula::BoundedFormula;
 pub use known::{Basis, Known, Unknown};
 pub use packets::{Loss, Packet, PacketLink, Trace};
 pub use random_hold::RandomHold;
@@ -169,7 +170,12 @@ impl Delay {
 
     fn piece(&self, index: u64) -> DelayPiece {
         let (start_s, end_s) = match self {
-            Delay::Constant { .. } | Delay::Sinusoid { .. } | Delay::Formula(_) => (0.0, f64::INFINITY),
+            Delay::Constant { .. } | Delay::Sinusoid { .. } => (0.0, f64::INFINITY),
+            Delay::Formula(formula) => {
+                let kink_s = |k: u64| formula.kinks_s().get(k as usize).copied();
+                let start_s = index.checked_sub(1).map_or(Some(0.0), kink_s);
+                (start_s.unwrap_or(f64::INFINITY), kink_s(index).unwrap_or(f64::INFINITY))
+            }
             Delay::RandomHold(hold) => hold.span(index),
             Delay::Packets(trace) => trace.span(index),
             Delay::PiecewiseConstant { times_s, period_s, .. } => {
@@ -240,7 +246,8 @@ impl Delay {
     /// The piece in force at `t_s` ≥ 0, from the right.
     pub fn piece_at(&self, t_s: f64) -> DelayPiece {
         let guess = match self {
-            Delay::Constant { .. } | Delay::Sinusoid { .. } | Delay::Formula(_) => 0,
+            Delay::Constant { .. } | Delay::Sinusoid { .. } => 0,
+            Delay::Formula(formula) => formula.kinks_s().partition_point(|kink_s| *kink_s <= t_s) as u64,
             Delay::RandomHold(hold) => return self.piece(hold.index_at(t_s)),
             Delay::Packets(trace) => return self.piece(trace.index_at(t_s)),
             Delay::PiecewiseConstant { times_s, period_s, .. } => {
@@ -414,22 +421,6 @@ impl Delay {
 /// Where a saw-tooth's piece begins; piece 0 holds t = 0.
 fn tooth_start(period_s: f64, offset_s: f64, index: u64) -> f64 {
     ((offset_s / period_s).floor() + index as f64) * period_s - offset_s
-}
-
-/// The end of a bracket in which `f` changes sign, to the last bit; `rising` says from negative to positive.
-fn bisect(f: impl Fn(f64) -> f64, mut left: f64, mut right: f64, rising: bool) -> f64 {
-    loop {
-        let middle = left + 0.5 * (right - left);
-        if middle <= left || middle >= right {
-            return right;
-        }
-        let value = f(middle);
-        if value == 0.0 || (value > 0.0) == rising {
-            right = middle;
-        } else {
-            left = middle;
-        }
-    }
 }
 
 #[cfg(test)]

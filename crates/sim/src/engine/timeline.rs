@@ -38,6 +38,8 @@ pub(crate) struct Timeline<'a> {
     generations: u8,
     end_s: f64,
     arrivals: Vec<f64>,
+    /// Where weights have kinks still to come, s, the next one last.
+    kinks_s: Vec<f64>,
 }
 
 /// The arrival of a break-point through a delay. Ordered by time, then generation.
@@ -95,7 +97,9 @@ impl<'a> Timeline<'a> {
             generations,
             end_s,
             arrivals: Vec::new(),
+            kinks_s: network.weights.iter().flat_map(|weight| weight.kinks_s().iter().copied()).collect(),
         };
+        timeline.kinks_s.sort_by(|a, b| b.total_cmp(a));
         if generations > 0 {
             timeline.send_images(0.0, 0);
         }
@@ -139,7 +143,8 @@ impl<'a> Timeline<'a> {
     /// The next break-point, s; the horizon when nothing comes before it. What rounding puts just before the horizon
     /// happens at the horizon, which is seen from the left.
     pub(crate) fn next_s(&self) -> f64 {
-        let mut next = self.end_s.min(self.segment.end_s);
+        let kink_s = self.kinks_s.last().copied().unwrap_or(f64::INFINITY);
+        let mut next = self.end_s.min(self.segment.end_s).min(kink_s);
         for (_, piece) in &self.clocks {
             next = next.min(piece.end_s);
         }
@@ -171,6 +176,8 @@ impl<'a> Timeline<'a> {
                 passed.jumped = true;
             }
         }
+        // A weight is continuous: that a step ends here is enough.
+        while self.kinks_s.pop_if(|kink_s| *kink_s <= merge).is_some() {}
         let mut generation = if passed.jumped { 0 } else { u8::MAX };
         while let Some(Reverse(image)) = self.images.peek().copied() {
             if image.t_s > merge {

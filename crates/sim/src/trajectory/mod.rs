@@ -7,14 +7,16 @@
 //! - sums of sinusoids: the bounds for ever are exact sums of amplitudes;
 //! - points of a table, joined by the smoothest curve through them: bounds of polynomials, which are exact for ever.
 
+mod pieces;
 mod spline;
 
 use forwardstep_core::Scalar;
 use forwardstep_core::controller::Jet;
+use forwardstep_core::expression::{Expression, Interval, KinkError, search, weighted};
 use forwardstep_core::sampled::Motion;
 use thiserror::Error;
 
-use crate::formula::{Formula, Interval, search, weighted};
+pub(crate) use pieces::Pieces;
 pub use spline::{Spline, SplineError};
 
 /// Bounds this close to values that are taken are close enough, as a part of the range: the fine end of what a gain is
@@ -37,8 +39,8 @@ pub struct Sinusoid {
 /// The motion of one axis.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Path {
-    /// A formula in t.
-    Formula(Formula),
+    /// A formula in t, the only variable.
+    Formula(Expression),
     /// A constant and sinusoids.
     Sinusoids {
         /// rad or m.
@@ -69,6 +71,14 @@ pub enum TrajectoryError {
         axis: usize,
         /// The number.
         value: f64,
+    },
+    /// A formula whose kinks cannot be found.
+    #[error("axis {axis} of the trajectory is a formula with kinks: {error}")]
+    Kinks {
+        /// The axis, from zero.
+        axis: usize,
+        /// Why not.
+        error: KinkError,
     },
 }
 
@@ -197,21 +207,11 @@ impl Trajectory {
     }
 
     /// Value and four derivatives of every axis, as many as `out` has room for. A formula that has no value gives
-    /// not-a-number.
+    /// not-a-number; at a kink the derivatives are those of one side.
     pub fn jets(&self, t_s: f64, out: &mut [Jet]) {
         for (jet, path) in out.iter_mut().zip(&self.paths) {
             *jet = path.jet(t_s);
         }
-    }
-
-    /// The first time after `after_s` at which a derivative up to the fourth may jump: where a table begins or ends.
-    /// Infinite when there is none; formulas are taken to have none.
-    pub fn next_kink_s(&self, after_s: f64) -> f64 {
-        let ends = self.paths.iter().filter_map(|path| match path {
-            Path::Spline(spline) => Some(spline.ends_s()),
-            _ => None,
-        });
-        ends.flatten().filter(|end_s| *end_s > after_s).fold(f64::INFINITY, f64::min)
     }
 
     /// An interval that holds the k-th derivative, k ≤ 4, of one axis from 0 to `end_s`, or for ever; unbounded where nothing

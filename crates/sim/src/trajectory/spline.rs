@@ -13,7 +13,7 @@ use forwardstep_core::controller::Jet;
 use thiserror::Error;
 
 use super::ROUNDING;
-use crate::formula::Interval;
+use forwardstep_core::expression::Interval;
 
 /// Coefficients of a polynomial of degree five, lowest first.
 type Quintic = [f64; 6];

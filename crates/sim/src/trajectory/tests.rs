@@ -1,10 +1,13 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::formula::FormulaStep::{self, *};
 
-fn formula(steps: &[FormulaStep]) -> Path {
-    Path::Formula(Formula::new(steps.to_vec()).unwrap())
+fn t() -> Expression {
+    Expression::variable(0)
+}
+
+fn formula(formula: Expression) -> Trajectory {
+    Trajectory::new(vec![Path::Formula(formula)]).unwrap()
 }
 
 fn close(got: f64, want: f64, tolerance: f64) -> bool {
@@ -18,49 +21,6 @@ fn agrees_with_differences(path: &Path, t_s: f64) {
     for k in 0..4 {
         let slope = (after[k] - before[k]) / (2.0 * h);
         assert!(close(at[k + 1], slope, 1e-6), "{path:?} at {t_s}, derivative {}: {} {slope}", k + 1, at[k + 1]);
-    }
-}
-
-#[test]
-fn jets_of_formulas_are_those_of_the_closed_forms() {
-    for t in [0.3_f64, 1.7, 4.0] {
-        let (s, c) = t.sin_cos();
-        let e = (-t).exp();
-        let cases = [
-            (vec![Time, Sin], [s, c, -s, -c, s]),
-            (vec![Time, Negate, Exp], [e, -e, e, -e, e]),
-            (vec![Time, Power(3.0)], [t.powi(3), 3.0 * t * t, 6.0 * t, 6.0, 0.0]),
-            (vec![Time, Log], [t.ln(), 1.0 / t, -t.powi(-2), 2.0 * t.powi(-3), -6.0 * t.powi(-4)]),
-            (
-                vec![Time, Sqrt],
-                [t.sqrt(), 0.5 * t.powf(-0.5), -0.25 * t.powf(-1.5), 0.375 * t.powf(-2.5), -0.9375 * t.powf(-3.5)],
-            ),
-            (
-                vec![Number(1.0), Time, Divide],
-                [1.0 / t, -t.powi(-2), 2.0 * t.powi(-3), -6.0 * t.powi(-4), 24.0 * t.powi(-5)],
-            ),
-            (
-                vec![Time, Sin, Time, Negate, Exp, Multiply],
-                [s * e, (c - s) * e, -2.0 * c * e, 2.0 * (s + c) * e, -4.0 * s * e],
-            ),
-        ];
-        for (steps, want) in cases {
-            let got = formula(&steps).jet(t);
-            assert!(got.iter().zip(want).all(|(g, w)| close(*g, w, 1e-13)), "{steps:?} {got:?} {want:?}");
-        }
-    }
-}
-
-#[test]
-fn jets_of_every_function_agree_with_differences() {
-    let inner = [Time, Number(0.7), Multiply, Sin, Number(2.5), Add];
-    for outer in [Sin, Cos, Exp, Log, Sqrt, Tanh, Atan, Abs, Power(3.0), Power(-2.0), Power(1.7), Power(0.0)] {
-        for t in [0.4, 2.0, 5.5] {
-            agrees_with_differences(&formula(&[&inner[..], &[outer]].concat()), t);
-        }
-    }
-    for both in [Add, Subtract, Multiply, Divide, Min, Max] {
-        agrees_with_differences(&formula(&[&inner[..], &[Time, Cos], &[both]].concat()), 1.3);
     }
 }
 
@@ -90,22 +50,48 @@ fn sinusoids_are_bounded_exactly_for_ever() {
 
 #[test]
 fn formulas_are_bounded_where_the_intervals_tell() {
-    let swing = Trajectory::new(vec![formula(&[Number(0.5), Number(2.0), Time, Multiply, Sin, Multiply])]).unwrap();
+    let swing = formula((t() * 2.0).sin_of() * 0.5);
     for k in 0..5 {
         let hull = swing.hull(0, k, None);
         assert!(close(hull.size(), 0.5 * 2.0_f64.powi(k as i32), 1e-12), "{k} {hull:?}");
     }
     // A ramp is not bounded, its derivatives are.
-    let ramp = Trajectory::new(vec![formula(&[Time, Number(0.2), Multiply, Time, Tanh, Add])]).unwrap();
+    let ramp = formula(t() * 0.2 + t().tanh_of());
     assert!(!ramp.hull(0, 0, None).is_finite() && ramp.hull(0, 0, Some(10.0)).is_finite());
     assert!((1..5).all(|k| ramp.hull(0, k, None).is_finite()));
     // The corner of |t − 1| has a slope, but no acceleration.
-    let corner = Trajectory::new(vec![formula(&[Time, Number(1.0), Subtract, Abs])]).unwrap();
+    let corner = formula((t() - 1.0).abs_of());
     assert_eq!(corner.hull(0, 1, None), Interval { low: -1.0, high: 1.0 });
     assert!(!corner.hull(0, 2, Some(3.0)).is_finite());
     // √t has no slope at 0, whatever is done with it.
-    let root = Trajectory::new(vec![formula(&[Time, Sqrt, Tanh])]).unwrap();
+    let root = formula(t().sqrt_of().tanh_of());
     assert!(root.hull(0, 0, None).is_finite() && !root.hull(0, 1, Some(3.0)).is_finite());
+}
+
+#[test]
+fn a_formula_has_the_derivatives_of_the_piece_in_force() {
+    let bounce = Path::Formula((t() - 1.0).abs_of().smaller(t() * 0.5));
+    let trajectory = Trajectory::new(vec![Path::Spline(bumpy()), bounce.clone(), bounce]).unwrap();
+    let mut pieces = Pieces::new(trajectory, 3.0).unwrap();
+    let slope = |pieces: &Pieces, t: f64| {
+        let mut jets = [[0.0; 5]; 3];
+        pieces.jets(t, &mut jets);
+        assert_eq!(jets[1], jets[2]);
+        jets[1][1]
+    };
+    // t/2 until 2/3, then 1 − t, t − 1 from 1, and t/2 from 2 on; the table begins at 0.5.
+    assert_eq!((pieces.next_kink_s(0.0), pieces.next_jump_s(0.6)), (0.5, None));
+    let kinks = [2.0 / 3.0, 1.0, 2.0];
+    for (kink, slopes) in kinks.into_iter().zip([[0.5, -1.0], [-1.0, 1.0], [1.0, 0.5]]) {
+        let at = pieces.next_kink_s(kink - 0.1);
+        assert!(close(at, kink, 1e-15) && pieces.next_jump_s(at) == Some(at), "{at} {kink}");
+        assert_eq!(slope(&pieces, at), slopes[0]);
+        pieces.pass(at);
+        assert_eq!((slope(&pieces, at), pieces.next_jump_s(at)), (slopes[1], None));
+    }
+    let rough = Trajectory::new(vec![Path::Spline(bumpy()), Path::Formula((t() * 1e5).sin_of().abs_of())]).unwrap();
+    let error = Pieces::new(rough, 3.0).map(|_| ()).unwrap_err();
+    assert_eq!(error, TrajectoryError::Kinks { axis: 1, error: KinkError::TooMany });
 }
 
 fn bumpy() -> Spline {
@@ -135,7 +121,8 @@ fn splines_go_through_their_points_and_have_four_continuous_derivatives() {
     }
     [0.7, 1.2, 2.0, 3.9].into_iter().for_each(|t| agrees_with_differences(&Path::Spline(spline.clone()), t));
     let trajectory = Trajectory::new(vec![Path::Spline(spline)]).unwrap();
-    assert_eq!([0.0, 0.5, 4.2].map(|t| trajectory.next_kink_s(t)), [0.5, 4.2, f64::INFINITY]);
+    let pieces = Pieces::new(trajectory, 9.0).unwrap();
+    assert_eq!([0.0, 0.5, 4.2].map(|t| pieces.next_kink_s(t)), [0.5, 4.2, f64::INFINITY]);
 }
 
 /// Two points from rest to rest: the well-known 10 σ³ − 15 σ⁴ + 6 σ⁵, whose speed is 15/8 of the mean at its middle.

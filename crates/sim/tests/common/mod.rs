@@ -11,14 +11,16 @@ pub mod truth;
 pub mod vehicles;
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
+use forwardstep_core::Gain;
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::{Path, Sinusoid};
 use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, Column, Control, Ending, Exchange, Method, Network, Outcome, ReferenceKind, Setup,
-    Signal, Solver, TimeSpan, simulate,
+    AgentSetup, Axis, AxisUnit, Column, Control, Ending, Exchange, Known, Method, Network, Outcome, ReferenceKind,
+    Setup, Signal, Solver, TimeSpan, simulate,
 };
 
 pub const RTOL: f64 = 1e-8;
@@ -68,6 +70,19 @@ pub fn setup(agents: Vec<AgentSetup>, reference: ReferenceKind, network: Network
         solver: Solver { method: Method::Adaptive { rtol: RTOL, atol: 1e-10 }, ..Solver::default() },
         control: None,
     }
+}
+
+/// Three masses under (6) that agree over a ring with a delay, all of them on edges that stay.
+pub fn consensus_of_masses(end_s: f64) -> Setup {
+    let mut all = masses::consensus(2);
+    for agent in &mut all.agents {
+        agent.law = Arc::new(Known { damping: Gain::Number(6.0) });
+    }
+    let edge = |from, to| Edge { from, to, weight: Weight::Constant(1.0), delay: 0 };
+    all.network.schedule = Schedule::Fixed(vec![edge(0, 1), edge(1, 2), edge(2, 0)]);
+    all.network.delays = vec![Delay::Constant { s: 0.5 }];
+    all.time.end_s = end_s;
+    all
 }
 
 pub fn sampled(mut setup: Setup, sample_hz: f64) -> Setup {

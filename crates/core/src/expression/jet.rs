@@ -1,0 +1,279 @@
+//! An expression in one variable with its first four derivatives, over any algebra that can tell branches apart: at a point in
+//! `f64`, or enclosed on an interval.
+//!
+//! A value is a list of Taylor coefficients c₀ … c₄ about the point at hand, so that the k-th derivative is k! cₖ. Sums and
+//! products follow at once, and a quotient from c b = a. A function f of a = a₀ + δ is composed,
+//!
+//! ```text
+//! f(a) = g₀ + g₁ δ + g₂ δ² + g₃ δ³ + g₄ δ⁴,     gⱼ = f⁽ʲ⁾(a₀)/j!,     δ = a₁ τ + a₂ τ² + …
+//! ```
+//!
+//! where each gⱼ is written such that its enclosure is finite wherever f⁽ʲ⁾ is bounded.
+//!
+//! |a|, min and max have the derivatives of the branch that is active. On an interval where the branch may change the first
+//! derivative jumps between those of the branches, and of higher ones nothing is claimed.
+
+use super::{Algebra, Binary, Number, Unary};
+
+/// Coefficients that are kept.
+pub(super) const ORDERS: usize = 5;
+/// k!.
+pub(super) const FACTORIALS: [f64; ORDERS] = [1.0, 1.0, 2.0, 6.0, 24.0];
+
+/// Which operand |a| = max(a, −a), min and max give.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Branch {
+    /// The first.
+    First,
+    /// The second.
+    Second,
+    /// One here and the other there.
+    Either,
+}
+
+/// An algebra over which jets can be formed.
+pub trait Branching: Algebra<Value: Copy> {
+    /// Which branch is active: the first where `larger` is not below `smaller`.
+    fn branch(&mut self, larger: Self::Value, smaller: Self::Value) -> Branch;
+    /// A value that stands for both.
+    fn either(&mut self, a: Self::Value, b: Self::Value) -> Self::Value;
+    /// A value of which nothing is known.
+    fn unknown(&self) -> Self::Value;
+    /// Whether it is exactly zero.
+    fn is_zero(&self, a: Self::Value) -> bool;
+}
+
+/// The algebra of jets over another one.
+#[derive(Debug)]
+pub struct Jets<A>(pub A);
+
+type Jet<A> = [<A as Algebra>::Value; ORDERS];
+
+impl<A: Branching> Jets<A> {
+    fn of(&mut self, value: f64) -> A::Value {
+        self.0.number(&value.into())
+    }
+
+    fn times(&mut self, a: A::Value, b: A::Value) -> A::Value {
+        self.0.binary(Binary::Multiply, a, b)
+    }
+
+    fn minus(&mut self, a: A::Value, b: A::Value) -> A::Value {
+        self.0.binary(Binary::Subtract, a, b)
+    }
+
+    fn scaled(&mut self, a: A::Value, by: f64) -> A::Value {
+        let by = self.of(by);
+        self.times(a, by)
+    }
+
+    /// `above`/`below` times a value.
+    fn part(&mut self, a: A::Value, above: f64, below: f64) -> A::Value {
+        // Only halves are exact.
+        let ratio = above / below;
+        let ratio = if below <= 2.0 { ratio.into() } else { Number::near(ratio) };
+        let ratio = self.0.number(&ratio);
+        self.times(a, ratio)
+    }
+
+    fn raised(&mut self, a: A::Value, n: f64) -> A::Value {
+        self.0.power(a, &n.into())
+    }
+
+    fn each(&mut self, function: Unary, mut a: Jet<A>) -> Jet<A> {
+        a.iter_mut().for_each(|c| *c = self.0.unary(function, *c));
+        a
+    }
+
+    fn multiplied(&mut self, a: &Jet<A>, b: &Jet<A>) -> Jet<A> {
+        let mut c = [self.of(0.0); ORDERS];
+        for (k, c) in c.iter_mut().enumerate() {
+            // One product less than a sum from zero, so that c₀ is a₀ b₀ to the bit.
+            *c = self.times(a[0], b[k]);
+            for i in 1..=k {
+                let term = self.times(a[i], b[k - i]);
+                *c = self.0.binary(Binary::Add, *c, term);
+            }
+        }
+        c
+    }
+
+    fn divided(&mut self, a: &Jet<A>, b: &Jet<A>) -> Jet<A> {
+        let mut c = [self.of(0.0); ORDERS];
+        for k in 0..ORDERS {
+            let mut left = a[k];
+            for i in 1..=k {
+                let term = self.times(b[i], c[k - i]);
+                left = self.minus(left, term);
+            }
+            c[k] = self.0.binary(Binary::Divide, left, b[0]);
+        }
+        c
+    }
+
+    /// g(a) by Horner's rule in δ.
+    fn composed(&mut self, g: Jet<A>, mut delta: Jet<A>) -> Jet<A> {
+        let zero = self.of(0.0);
+        delta[0] = zero;
+        let mut c = [zero; ORDERS];
+        // A constant stays one even where f has no slope, as √0.
+        if delta.iter().all(|d| self.0.is_zero(*d)) {
+            c[0] = g[0];
+            return c;
+        }
+        c[0] = g[ORDERS - 1];
+        for j in (0..ORDERS - 1).rev() {
+            c = self.multiplied(&delta, &c);
+            c[0] = g[j];
+        }
+        c
+    }
+
+    /// gⱼ of aᶜ: c (c−1) … / j! · a^(c−j).
+    fn binomial(&mut self, a: A::Value, exponent: &Number) -> Jet<A> {
+        let mut g = [self.of(0.0); ORDERS];
+        let mut factor = self.of(1.0);
+        for (j, g) in g.iter_mut().enumerate() {
+            let left = exponent.minus(j as f64);
+            let power = self.0.power(a, &left);
+            *g = self.times(power, factor);
+            if left.value() == 0.0 {
+                break;
+            }
+            let (left, next) = (self.0.number(&left), self.of((j + 1) as f64));
+            let ratio = self.0.binary(Binary::Divide, left, next);
+            factor = self.times(factor, ratio);
+        }
+        g
+    }
+
+    /// gⱼ of sine or cosine with the derivative `d`.
+    fn wave(&mut self, f: A::Value, d: A::Value) -> Jet<A> {
+        [f, d, self.scaled(f, -0.5), self.part(d, -1.0, 6.0), self.part(f, 1.0, 24.0)]
+    }
+
+    /// gⱼ of the logarithm.
+    fn log(&mut self, a: A::Value) -> Jet<A> {
+        let mut g = [self.0.unary(Unary::Log, a); ORDERS];
+        for (k, g) in g.iter_mut().enumerate().skip(1) {
+            let (one, power) = (self.of(1.0), self.raised(a, k as f64));
+            let below = self.scaled(power, k as f64);
+            let term = self.0.binary(Binary::Divide, one, below);
+            *g = if k % 2 == 0 { self.0.unary(Unary::Negate, term) } else { term };
+        }
+        g
+    }
+
+    /// gⱼ of tanh: u' = 1 − u², and so on.
+    fn tanh(&mut self, a: A::Value) -> Jet<A> {
+        let u = self.0.unary(Unary::Tanh, a);
+        let (one, two, sixteen, square) = (self.of(1.0), self.of(2.0), self.of(16.0), self.raised(u, 2.0));
+        let d = self.minus(one, square);
+        let second = self.times(u, d);
+        let third = self.scaled(square, 6.0);
+        let third = self.minus(third, two);
+        let third = self.times(d, third);
+        let fourth = self.scaled(square, 24.0);
+        let fourth = self.minus(sixteen, fourth);
+        let fourth = self.times(u, fourth);
+        let fourth = self.times(d, fourth);
+        [u, d, self.scaled(second, -1.0), self.part(third, 1.0, 6.0), self.part(fourth, 1.0, 24.0)]
+    }
+
+    /// gⱼ of arctan: with φ = arctan a, 1/(1 + a²) = cos²φ and a/√(1 + a²) = sin φ.
+    fn atan(&mut self, a: A::Value) -> Jet<A> {
+        let angle = self.0.unary(Unary::Atan, a);
+        let (sin, cos) = (self.0.unary(Unary::Sin, angle), self.0.unary(Unary::Cos, angle));
+        let [c2, c3, c4, c5] = [2.0, 3.0, 4.0, 5.0].map(|n| self.raised(cos, n));
+        let s2 = self.raised(sin, 2.0);
+        let second = self.times(sin, c3);
+        let third = self.scaled(s2, 3.0);
+        let third = self.minus(third, c2);
+        let third = self.times(c4, third);
+        let (fourth, rest) = (self.times(sin, c5), self.minus(c2, s2));
+        [angle, c2, self.scaled(second, -1.0), self.part(third, 1.0, 3.0), self.times(fourth, rest)]
+    }
+
+    /// The value of |a|, min or max, with the derivatives of the branch that is active.
+    fn chosen(&mut self, value: A::Value, branch: Branch, a: Jet<A>, b: Jet<A>) -> Jet<A> {
+        let mut jet = match branch {
+            Branch::First => a,
+            Branch::Second => b,
+            Branch::Either => {
+                let mut jet = [self.0.unknown(); ORDERS];
+                jet[1] = self.0.either(a[1], b[1]);
+                jet
+            }
+        };
+        jet[0] = value;
+        jet
+    }
+}
+
+impl<A: Branching> Algebra for Jets<A> {
+    type Value = Jet<A>;
+
+    fn number(&mut self, number: &Number) -> Jet<A> {
+        let mut jet = [self.of(0.0); ORDERS];
+        jet[0] = self.0.number(number);
+        jet
+    }
+
+    fn variable(&mut self, index: usize) -> Jet<A> {
+        let mut jet = [self.of(0.0); ORDERS];
+        (jet[0], jet[1]) = (self.0.variable(index), self.of(1.0));
+        jet
+    }
+
+    fn unary(&mut self, function: Unary, a: Jet<A>) -> Jet<A> {
+        let value = a[0];
+        let g = match function {
+            Unary::Negate => return self.each(Unary::Negate, a),
+            Unary::Abs => {
+                let (zero, value, minus) = (self.of(0.0), self.0.unary(Unary::Abs, value), self.each(Unary::Negate, a));
+                let branch = self.0.branch(a[0], zero);
+                return self.chosen(value, branch, a, minus);
+            }
+            Unary::Sin | Unary::Cos => {
+                let (sin, cos) = (self.0.unary(Unary::Sin, value), self.0.unary(Unary::Cos, value));
+                let minus = self.scaled(sin, -1.0);
+                if function == Unary::Sin { self.wave(sin, cos) } else { self.wave(cos, minus) }
+            }
+            Unary::Exp => {
+                let f = self.0.unary(Unary::Exp, value);
+                [f, f, self.scaled(f, 0.5), self.part(f, 1.0, 6.0), self.part(f, 1.0, 24.0)]
+            }
+            Unary::Log => self.log(value),
+            Unary::Sqrt => {
+                let mut g = self.binomial(value, &0.5.into());
+                g[0] = self.0.unary(Unary::Sqrt, value);
+                g
+            }
+            Unary::Tanh => self.tanh(value),
+            Unary::Atan => self.atan(value),
+        };
+        self.composed(g, a)
+    }
+
+    fn binary(&mut self, function: Binary, a: Jet<A>, b: Jet<A>) -> Jet<A> {
+        match function {
+            Binary::Add | Binary::Subtract => {
+                let mut c = a;
+                c.iter_mut().zip(b).for_each(|(c, b)| *c = self.0.binary(function, *c, b));
+                c
+            }
+            Binary::Multiply => self.multiplied(&a, &b),
+            Binary::Divide => self.divided(&a, &b),
+            Binary::Min | Binary::Max => {
+                let (larger, smaller) = if function == Binary::Max { (a[0], b[0]) } else { (b[0], a[0]) };
+                let (value, branch) = (self.0.binary(function, a[0], b[0]), self.0.branch(larger, smaller));
+                self.chosen(value, branch, a, b)
+            }
+        }
+    }
+
+    fn power(&mut self, a: Jet<A>, exponent: &Number) -> Jet<A> {
+        let g = self.binomial(a[0], exponent);
+        self.composed(g, a)
+    }
+}

@@ -1,0 +1,71 @@
+//! Formulas in t, [`Expression`]s whose only variable is t, with what they keep within: delays and weights that change
+//! continuously.
+//!
+//! Bounds are how a delay is shown never to be negative and a weight to stay positive.
+
+use forwardstep_core::expression::{Expression, Interval, KinkError};
+
+/// A formula with what it keeps within.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BoundedFormula {
+    formula: Expression,
+    until_s: f64,
+    within: Interval,
+    for_ever: Interval,
+    kinks_s: Vec<f64>,
+}
+
+impl BoundedFormula {
+    /// Encloses `formula` on [0, `until_s`], and for ever.
+    pub fn new(formula: Expression, until_s: f64) -> Self {
+        let within = formula.bounds(0.0, until_s);
+        let for_ever = if formula.is_constant() { within } else { formula.bounds(0.0, f64::INFINITY) };
+        // Where they cannot be told apart they are left to the error control: the value is continuous.
+        let kinks_s = kinks_s(&formula, 0.0, until_s).unwrap_or_default();
+        BoundedFormula { formula, until_s, within, for_ever, kinks_s }
+    }
+
+    /// The formula.
+    pub fn formula(&self) -> &Expression {
+        &self.formula
+    }
+
+    /// Its bounds hold until here, s.
+    pub fn until_s(&self) -> f64 {
+        self.until_s
+    }
+
+    /// What it keeps within until [`until_s`](Self::until_s).
+    pub fn within(&self) -> Interval {
+        self.within
+    }
+
+    /// What it keeps within for ever, as far as that could be shown; see [`Expression::bounds`].
+    pub fn for_ever(&self) -> Interval {
+        self.for_ever
+    }
+
+    /// Where it has kinks until [`until_s`](Self::until_s), s, rising; none where they could not be told apart.
+    pub fn kinks_s(&self) -> &[f64] {
+        &self.kinks_s
+    }
+
+    /// Its value at `t_s`. Beyond [`until_s`](Self::until_s) it is kept within the bounds.
+    #[inline]
+    pub fn value(&self, t_s: f64) -> f64 {
+        // Not f64::clamp, which lets not-a-number through.
+        self.formula.eval(t_s).max(self.within.low).min(self.within.high)
+    }
+}
+
+/// Where a formula has kinks between two times, s, rising.
+///
+/// # Errors
+/// [`KinkError`] when they cannot be told apart.
+pub fn kinks_s(formula: &Expression, from_s: f64, until_s: f64) -> Result<Vec<f64>, KinkError> {
+    let switches = formula.switches(from_s, until_s)?;
+    let mut kinks_s: Vec<f64> = switches.iter().flat_map(|switch| switch.at()).copied().collect();
+    kinks_s.sort_by(f64::total_cmp);
+    kinks_s.dedup();
+    Ok(kinks_s)
+}
