@@ -422,6 +422,18 @@ fn a_run_that_outgrows_its_memory_says_what_to_lower() {
         why,
         "the closed loop is not stiff, its fastest rate is about 1000000 1/s: loosen the tolerances, or raise the budget."
     );
+    // Under the floor a transient may hide behind steps that are shorter still.
+    let under_floor = |setup: &Setup, rate_per_s: f64| {
+        let stiffness = Some(Stiffness { rate_per_s, gains: gains(rate_per_s, None) });
+        let cause = BreakdownCause::StepUnderFloor { step_s: 1e-16, stiffness };
+        ending_sentence(
+            setup,
+            &Ending::BrokeDown(Breakdown { t_s: 0.5, agent: 1, signal: Signal::Velocity, axis: 1, cause }),
+        )
+    };
+    assert!(under_floor(&setup, 4e12).contains("under the floor of 1e-12 s; the closed loop is stiff"));
+    let not_stiff = "the closed loop is not stiff, its fastest rate is about 200 1/s: loosen the tolerances, or look at where it starts.";
+    assert!(under_floor(&setup, 200.0).ends_with(not_stiff));
     setup.agents[1].law = Arc::new(Known { damping: Gain::Number(1.0) });
     let (_, why) = sentence(&setup, 1e-8, 1e8, gains(1e8, None));
     assert!(why.ends_with("K/λ_min(M) is about 1e8 1/s: lower `law.known.damping`."), "{why}");

@@ -148,6 +148,11 @@ impl Stiffness {
     pub fn explains(&self, step_s: f64) -> bool {
         self.rate_per_s * step_s > 0.05
     }
+
+    /// Whether steps as long as `step_s` would be unstable: that of the method of order five ends at 3.3 over the rate.
+    pub fn forbids(&self, step_s: f64) -> bool {
+        self.rate_per_s * step_s > 3.3
+    }
 }
 
 /// The rates that the gains of (6)–(7) give to one robot, 1/s.

@@ -170,15 +170,16 @@ fn steps_of_a_given_length_fill_the_budget_without_being_stiff() {
 }
 
 #[test]
-fn a_floor_for_steps_says_whether_the_closed_loop_is_stiff() {
+fn a_run_under_the_floor_says_how_fast_the_closed_loop_is() {
     let _turn = turn();
     let mut setup = ring(2e7, 0.5, 5.0, 1 << 30);
     setup.solver.min_step_s = 1e-5;
     let outcome = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap();
     let Ending::BrokeDown(breakdown) = outcome.ending else { panic!() };
     let BreakdownCause::StepUnderFloor { step_s, stiffness: Some(stiffness) } = breakdown.cause else { panic!() };
-    assert_eq!(breakdown.agent, 1);
-    assert!((0.5e7..2e7).contains(&stiffness.rate_per_s) && stiffness.explains(step_s), "{breakdown:?}");
+    assert!(breakdown.agent == 1 && step_s < 1e-5, "{breakdown:?}");
+    assert!((0.5e7..2e7).contains(&stiffness.rate_per_s) && stiffness.forbids(1e-5), "{breakdown:?}");
+    assert!(!stiffness.forbids(1e-8));
 }
 
 #[test]

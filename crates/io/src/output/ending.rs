@@ -31,10 +31,10 @@ fn cause(setup: &Setup, breakdown: &Breakdown) -> String {
         BreakdownCause::StepUnderFloor { step_s, stiffness } => {
             let floor_s = setup.solver.min_step_s;
             let why = stiffness.as_ref().map_or_else(String::new, |stiffness| {
-                format!(
-                    "; {}",
-                    because(setup, breakdown, *step_s, stiffness, "loosen the tolerances, or look at where it starts")
-                )
+                // While a transient is seen steps are shorter than the rate asks for.
+                let is_stiff = stiffness.explains(*step_s) || stiffness.forbids(floor_s);
+                let advice = "loosen the tolerances, or look at where it starts";
+                format!("; {}", because(setup, breakdown, is_stiff, stiffness, advice))
             });
             format!("asks for a step of {step_s:e} s, under the floor of {floor_s:e} s{why}")
         }
@@ -44,9 +44,10 @@ fn cause(setup: &Setup, breakdown: &Breakdown) -> String {
                 Method::Fixed { .. } => "moves fastest",
             };
             let advice = format!("{}, or raise the budget", longer(setup));
-            let why = stiffness
-                .as_ref()
-                .map_or_else(|| advice.clone(), |stiffness| because(setup, breakdown, *step_s, stiffness, &advice));
+            let why = stiffness.as_ref().map_or_else(
+                || advice.clone(),
+                |stiffness| because(setup, breakdown, stiffness.explains(*step_s), stiffness, &advice),
+            );
             format!(
                 "{blamed} in steps of {} s, in which all that is sent within the longest delay, {} s, takes {} bytes where \
                  `memory_budget_bytes` is {}; {why}",
@@ -79,10 +80,10 @@ fn longer(setup: &Setup) -> &'static str {
     }
 }
 
-/// Whether the closed loop is stiff, and what to do about it; `advice` is for one that is not.
-fn because(setup: &Setup, breakdown: &Breakdown, step_s: f64, stiffness: &Stiffness, advice: &str) -> String {
+/// How fast the closed loop is and, where that is why steps are short, because of what; otherwise `advice`.
+fn because(setup: &Setup, breakdown: &Breakdown, is_stiff: bool, stiffness: &Stiffness, advice: &str) -> String {
     let fastest = format!("its fastest rate is about {} 1/s", about(stiffness.rate_per_s));
-    if !stiffness.explains(step_s) {
+    if !is_stiff {
         return format!("the closed loop is not stiff, {fastest}: {advice}");
     }
     match setup.agents.get(breakdown.agent).zip(stiffness.gains) {
