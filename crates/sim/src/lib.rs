@@ -36,4 +36,4 @@ pub use setup::{
     Solver, Start, TimeSpan, VelocitySensor,
 };
 pub use simulate::{recorded_columns, simulate};
-pub use system::{Attachments, Interface, Law, ReferenceFamily, Robot};
+pub use system::{Attachments, Coordinates, Interface, Law, Line, LineValue, Naming, ReferenceFamily, Robot};

@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use forwardstep_core::robot::PlanarTip;
 use forwardstep_core::robot::tree::Anchor;
-use forwardstep_sim::{AgentSetup, RobotSetup, SpacecraftModel, TaskSpaceLaw};
+use forwardstep_sim::{AgentSetup, RobotSetup, SpacecraftModel};
 
 use super::at::At;
 use super::fault::{Fault, count, fault, filled, positive};
@@ -111,12 +111,8 @@ pub(super) fn agents(
             let own = entry.start.as_ref().map(|file| Shared { file, index: k, of: names.len() });
             let common = file.start.as_ref().map(|file| Shared { file, index: index + k, of });
             let law = law(entry.law.as_ref().or(file.law.as_ref()), name, robot, &body)?;
-            let mut axes = axis_names(robot);
-            if let Some(tip) = law.downcast::<TaskSpaceLaw>() {
-                // It is the tip that follows.
-                let names = (0..axes.len()).filter_map(|axis| tip.coordinate_name(axis));
-                axes = names.map(String::from).collect();
-            }
+            // Where something else than its axes follows the target, the law names it.
+            let axes = law.coordinates().map_or_else(|| axis_names(robot), |named| named.names);
             let owner = Owner { name, axes: &axes, end_s };
             let target = entry.target.as_ref().map(|file| target(file, &owner, folder)).transpose()?;
             let mut start = start(Starter { name, robot, order: free_derivatives }, own, common)?;

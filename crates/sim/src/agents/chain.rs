@@ -12,7 +12,7 @@ use forwardstep_core::reference::{Consensus, Position, polynomial};
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::setup::{Exchange, ReferenceKind, RobotSetup};
-use crate::system::{Attachments, Interface, Law, ReferenceFamily, Robot};
+use crate::system::{Attachments, Coordinates, Interface, Law, Line, Naming, ReferenceFamily, Robot};
 
 /// What a chain is made of; its true θ stands with the robot.
 #[derive(Clone, Debug)]
@@ -74,6 +74,14 @@ impl Robot for ChainModel {
 
     fn attachments(&self) -> Attachments<'_> {
         Attachments::Axes
+    }
+
+    fn naming(&self) -> Naming {
+        Naming { numbered_axes: true, torques_on_body: false }
+    }
+
+    fn lines(&self) -> Vec<Line> {
+        Vec::new()
     }
 }
 
@@ -177,6 +185,14 @@ impl Law for ChainLaw {
             pushed: false,
             estimates: self.estimates(),
         })
+    }
+
+    fn coordinates(&self) -> Option<Coordinates> {
+        None
+    }
+
+    fn lines(&self, _: &RobotSetup) -> Vec<Line> {
+        Vec::new()
     }
 
     fn shares_batch(&self, _: &dyn Law) -> bool {

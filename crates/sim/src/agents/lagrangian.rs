@@ -8,7 +8,7 @@ use forwardstep_core::{Gain, Lanes, LengthError};
 
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::setup::{AgentSetup, Exchange, RobotSetup};
-use crate::system::{Attachments, Interface, Law, ReferenceFamily, Robot};
+use crate::system::{Attachments, Coordinates, Interface, Law, Line, Naming, ReferenceFamily, Robot};
 
 /// A robot model whose kernels work on one robot or on eight at once.
 pub trait RobotModel: Robot + Clone {
@@ -99,6 +99,14 @@ impl Robot for Arc<Tree> {
     fn attachments(&self) -> Attachments<'_> {
         Attachments::Links(self)
     }
+
+    fn naming(&self) -> Naming {
+        Naming { numbered_axes: false, torques_on_body: false }
+    }
+
+    fn lines(&self) -> Vec<Line> {
+        Vec::new()
+    }
 }
 
 impl RobotModel for Arc<Tree> {
@@ -147,6 +155,14 @@ impl Robot for PlanarArm {
     fn attachments(&self) -> Attachments<'_> {
         Attachments::PlanarTip
     }
+
+    fn naming(&self) -> Naming {
+        Naming { numbered_axes: false, torques_on_body: false }
+    }
+
+    fn lines(&self) -> Vec<Line> {
+        Vec::new()
+    }
 }
 
 impl RobotModel for PlanarArm {
@@ -185,6 +201,14 @@ impl Robot for PointMass {
 
     fn attachments(&self) -> Attachments<'_> {
         Attachments::Axes
+    }
+
+    fn naming(&self) -> Naming {
+        Naming { numbered_axes: true, torques_on_body: false }
+    }
+
+    fn lines(&self) -> Vec<Line> {
+        Vec::new()
     }
 }
 
@@ -255,6 +279,14 @@ impl Law for Adaptive {
         interface(robot, true)
     }
 
+    fn coordinates(&self) -> Option<Coordinates> {
+        None
+    }
+
+    fn lines(&self, _: &RobotSetup) -> Vec<Line> {
+        Vec::new()
+    }
+
     fn shares_batch(&self, other: &dyn Law) -> bool {
         other.is::<Adaptive>()
     }
@@ -275,6 +307,14 @@ impl Law for Known {
 
     fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
         interface(robot, false)
+    }
+
+    fn coordinates(&self) -> Option<Coordinates> {
+        None
+    }
+
+    fn lines(&self, _: &RobotSetup) -> Vec<Line> {
+        Vec::new()
     }
 
     fn shares_batch(&self, other: &dyn Law) -> bool {

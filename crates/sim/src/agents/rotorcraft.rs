@@ -6,7 +6,7 @@ use forwardstep_core::plant::{Rotorcraft, Rotors};
 use super::LagrangianRobot;
 use super::vehicle::plant as vehicle;
 use crate::closed_loop::{Assembly, SetupError};
-use crate::system::{Attachments, Robot};
+use crate::system::{Attachments, Line, Naming, Robot};
 
 /// A rotorcraft. ϑ is its mass; the rest of its start is its attitude and its angular velocity.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +42,14 @@ impl Robot for RotorcraftModel {
 
     fn attachments(&self) -> Attachments<'_> {
         Attachments::Axes
+    }
+
+    fn naming(&self) -> Naming {
+        Naming { numbered_axes: false, torques_on_body: true }
+    }
+
+    fn lines(&self) -> Vec<Line> {
+        Vec::new()
     }
 }
 

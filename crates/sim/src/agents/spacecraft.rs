@@ -6,8 +6,9 @@ use forwardstep_core::plant::{Spacecraft, Wheels};
 
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
+use crate::recording::Signal;
 use crate::setup::{Exchange, RobotSetup};
-use crate::system::{Attachments, Interface, Law, ReferenceFamily, Robot};
+use crate::system::{Attachments, Coordinates, Interface, Law, Line, LineValue, Naming, ReferenceFamily, Robot};
 
 /// A spacecraft. Its axes are the entries of a quaternion; the rest of its start holds the momenta of the wheels, N m s.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +43,20 @@ impl Robot for SpacecraftModel {
     fn attachments(&self) -> Attachments<'_> {
         Attachments::Axes
     }
+
+    fn naming(&self) -> Naming {
+        Naming { numbered_axes: false, torques_on_body: false }
+    }
+
+    fn lines(&self) -> Vec<Line> {
+        let limits = self.wheels.list().iter().enumerate().flat_map(|(entry, wheel)| {
+            let (torque, momentum) = (wheel.torque_limit_n_m, wheel.momentum_limit_n_m_s);
+            let line = move |signal, value| Line { signal, entry, value };
+            let torque = torque.map(|limit| line(Signal::WheelTorque, LineValue::Clip(limit)));
+            torque.into_iter().chain(momentum.map(|limit| line(Signal::WheelMomentum, LineValue::Limit(limit))))
+        });
+        limits.collect()
+    }
 }
 
 /// (97)–(105) for a spacecraft; see [`AttitudeTracking`]. M and h_I are those of the spacecraft and its start.
@@ -74,6 +89,14 @@ impl Law for AttitudeLaw {
             pushed: false,
             estimates: false,
         })
+    }
+
+    fn coordinates(&self) -> Option<Coordinates> {
+        None
+    }
+
+    fn lines(&self, _: &RobotSetup) -> Vec<Line> {
+        Vec::new()
     }
 
     fn shares_batch(&self, _: &dyn Law) -> bool {
