@@ -1,4 +1,4 @@
-//! What can be told of an agent at one instant: the names that states, inputs and tables share.
+//! What can be told of an agent at one instant: the signals that states, inputs, tables and reports share, as one table.
 
 use alloc::format;
 use alloc::string::String;
@@ -64,48 +64,186 @@ pub enum Signal {
     KinematicEstimate,
     /// det Ĵ of the estimated Jacobian. One entry.
     Determinant,
+    /// A signal that a kind of one's own brings.
+    Own(&'static OwnSignal),
+}
+
+/// A signal that a kind of one's own brings: it is recorded, named, drawn and read back like the others.
+///
+/// ```
+/// use forwardstep_core::signal::{Entries, OwnSignal, Signal, Unit};
+///
+/// static LEVEL: OwnSignal = OwnSignal {
+///     symbol: "level",
+///     title: "Level of the tank",
+///     letters: "h",
+///     unit: Unit::Fixed("m"),
+///     entries: Entries::One,
+///     may_jump: false,
+/// };
+/// assert_eq!(Signal::Own(&LEVEL).name(), "level");
+/// ```
+#[derive(Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct OwnSignal {
+    /// In column headers: letters, digits and `_`, and none of the symbols that the other signals have.
+    pub symbol: &'static str,
+    /// The title of its card in reports.
+    pub title: &'static str,
+    /// Its letters there.
+    pub letters: &'static str,
+    /// Its unit.
+    pub unit: Unit,
+    /// What its entries are.
+    pub entries: Entries,
+    /// Whether it may jump, as what follows messages at once does.
+    pub may_jump: bool,
+}
+
+/// The unit of a signal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Unit {
+    /// This one.
+    Fixed(&'static str),
+    /// That of the axis by s to this power: rad, m/s, ….
+    Axis(u8),
+    /// That of what follows a target.
+    Target,
+    /// That of a force or torque on the axis: N or N m.
+    Effort,
+    /// The same, unless the robot has its torques about the axes of its body.
+    Torque,
+    /// m to the power of the number of axes.
+    Volume,
+}
+
+/// What the entries of a signal are called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Entries {
+    /// There is one, without a name.
+    One,
+    /// An entry for every axis, called like it.
+    Axes,
+    /// An entry for every coordinate that follows a target; those are the axes unless the law has others.
+    Coordinates,
+    /// An entry for every parameter of the robot.
+    Parameters,
+    /// An entry for every uncertain parameter of the coordinates that follow a target.
+    CoordinateParameters,
+    /// They have numbers, from one; each is a `wheel`, for example.
+    Numbered(&'static str),
+    /// They have these names.
+    Named(&'static [&'static str]),
+}
+
+/// Where a report draws a signal.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Drawn {
+    /// Among those that every system has.
+    WithAll,
+    /// On a card of its own.
+    Card {
+        /// The title of the card.
+        title: &'static str,
+        /// The letters.
+        letters: String,
+        /// Drawn dashed beside it.
+        beside: Option<Signal>,
+    },
+    /// Dashed on the card of another.
+    Beside,
+}
+
+/// A row of the table of signals.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// In column headers.
+    pub symbol: String,
+    /// Its unit.
+    pub unit: Unit,
+    /// What its entries are.
+    pub entries: Entries,
+    /// Whether it may jump: it follows what is heard, or a limit, at once.
+    pub may_jump: bool,
+    /// Where it is drawn.
+    pub drawn: Drawn,
+}
+
+impl Row {
+    fn new(symbol: impl Into<String>, unit: Unit, entries: Entries, drawn: Drawn) -> Self {
+        Row { symbol: symbol.into(), unit, entries, may_jump: false, drawn }
+    }
+
+    fn jumps(self) -> Self {
+        Row { may_jump: true, ..self }
+    }
+}
+
+fn card(title: &'static str, letters: impl Into<String>) -> Drawn {
+    Drawn::Card { title, letters: letters.into(), beside: None }
+}
+
+fn card_with(title: &'static str, letters: &str, beside: Signal) -> Drawn {
+    Drawn::Card { title, letters: letters.into(), beside: Some(beside) }
 }
 
 impl Signal {
-    /// The name used in column headers: `q`, `dq`, `z`, `dz`, `d2z`, …, `sign`, `s`, `tau`, `theta_hat`, `lyapunov`,
-    /// `dissipation`, `tau_ext`, `error`, `offset`, `y`, `attitude`, `omega`, `omega_wanted`, `sigma`, `heading`, `dy`, `q_z`,
-    /// `angle`, `wheel_torque`, `wheel_momentum`, `x`, `kinematic_hat`, `det_jacobian`, `divisor`; `d2q`, … and
-    /// `x2`, … for chains.
-    pub fn name(self) -> String {
+    /// Its row in the table of signals, which is this.
+    #[rustfmt::skip]
+    pub fn row(self) -> Row {
+        use Drawn::{Beside, WithAll};
+        use Entries::{Axes, CoordinateParameters, Coordinates, Named, Numbered, One, Parameters};
+        use Unit::{Axis, Effort, Fixed, Target, Torque, Volume};
         match self {
-            Signal::Position => "q".into(),
-            Signal::Velocity => "dq".into(),
-            Signal::Derivative(k) => format!("d{k}q"),
-            Signal::Coordinate(k) => format!("x{k}"),
-            Signal::Reference(0) => "z".into(),
-            Signal::Reference(1) => "dz".into(),
-            Signal::Reference(k) => format!("d{k}z"),
-            Signal::Selection => "sign".into(),
-            Signal::TrackingError => "s".into(),
-            Signal::Torque => "tau".into(),
-            Signal::Estimate => "theta_hat".into(),
-            Signal::Lyapunov => "lyapunov".into(),
-            Signal::Dissipation => "dissipation".into(),
-            Signal::External => "tau_ext".into(),
-            Signal::Error => "error".into(),
-            Signal::Offset => "offset".into(),
-            Signal::Filter => "y".into(),
-            Signal::Divisor => "divisor".into(),
-            Signal::Attitude => "attitude".into(),
-            Signal::AngularVelocity => "omega".into(),
-            Signal::AngularVelocityWanted => "omega_wanted".into(),
-            Signal::Thrust => "sigma".into(),
-            Signal::Heading => "heading".into(),
-            Signal::FilterRate => "dy".into(),
-            Signal::ReferenceAttitude => "q_z".into(),
-            Signal::Angle => "angle".into(),
-            Signal::WheelTorque => "wheel_torque".into(),
-            Signal::WheelMomentum => "wheel_momentum".into(),
-            Signal::TaskPosition => "x".into(),
-            Signal::KinematicEstimate => "kinematic_hat".into(),
-            Signal::Determinant => "det_jacobian".into(),
+            Signal::Position => Row::new("q", Axis(0), Axes, WithAll),
+            Signal::Velocity => Row::new("dq", Axis(1), Axes, WithAll),
+            Signal::Derivative(k) => Row::new(format!("d{k}q"), Axis(k), Axes, card("Higher derivatives", format!("q⁽{}⁾", superscript(k)))),
+            Signal::Coordinate(k) => Row::new(format!("x{k}"), Fixed("SI"), Axes, card("States of the chain", format!("x{k}"))),
+            Signal::Reference(0) => Row::new("z", Axis(1), Axes, WithAll),
+            Signal::Reference(1) => Row::new("dz", Axis(2), Axes, WithAll).jumps(),
+            Signal::Reference(k) => Row::new(format!("d{k}z"), Axis(k.saturating_add(1)), Axes, WithAll).jumps(),
+            Signal::Selection => Row::new("sign", Fixed("1"), Axes, card("Set-valued sign", "ς, within [−1, 1]")).jumps(),
+            Signal::TrackingError => Row::new("s", Axis(1), Axes, WithAll),
+            Signal::Torque => Row::new("tau", Torque, Axes, WithAll).jumps(),
+            Signal::Estimate => Row::new("theta_hat", Fixed("SI"), Parameters, WithAll),
+            Signal::Lyapunov => Row::new("lyapunov", Fixed("J"), One, WithAll),
+            Signal::Dissipation => Row::new("dissipation", Fixed("J"), One, WithAll),
+            Signal::External => Row::new("tau_ext", Effort, Axes, WithAll).jumps(),
+            Signal::Error => Row::new("error", Target, Coordinates, card("Distance from the target", "what is to vanish")),
+            Signal::Offset => Row::new("offset", Axis(0), Axes, card("Offset in the formation", "d")),
+            Signal::Filter => Row::new("y", Axis(1), Axes, card("Filter in place of the velocity", "y")),
+            Signal::FilterRate => Row::new("dy", Fixed("J^0.5"), Axes, card("Rate of the filter", "ẏ")),
+            Signal::Divisor => Row::new("divisor", Fixed("SI"), One, card("What the law divides by", "must stay away from zero")),
+            Signal::Attitude => Row::new("attitude", Fixed("1"), Named(&["x", "y", "z", "o"]), card_with("Attitude", "quaternion (q_v, q_o)", Signal::ReferenceAttitude)),
+            Signal::ReferenceAttitude => Row::new("q_z", Fixed("1"), Axes, Beside),
+            Signal::AngularVelocity => Row::new("omega", Fixed("rad/s"), Axes, card_with("Angular velocity", "ω in the body’s axes", Signal::AngularVelocityWanted)).jumps(),
+            Signal::AngularVelocityWanted => Row::new("omega_wanted", Fixed("rad/s"), Axes, Beside).jumps(),
+            Signal::Thrust => Row::new("sigma", Fixed("N"), One, card("Thrust", "σ")),
+            Signal::Heading => Row::new("heading", Fixed("rad"), One, card("Heading", "about the vertical")),
+            Signal::Angle => Row::new("angle", Fixed("rad"), One, card("Angle to the target’s attitude", "from 0 to π")),
+            Signal::WheelTorque => Row::new("wheel_torque", Fixed("N m"), Numbered("wheel"), card("Torques of the wheels", "u, after any limit")).jumps(),
+            Signal::WheelMomentum => Row::new("wheel_momentum", Fixed("N m s"), Numbered("wheel"), card("Momenta of the wheels", "h_w")),
+            Signal::TaskPosition => Row::new("x", Fixed("m"), Coordinates, card("Position of the tip", "x")),
+            Signal::KinematicEstimate => Row::new("kinematic_hat", Fixed("m"), CoordinateParameters, card("Estimated lengths", "θ̂")),
+            Signal::Determinant => Row::new("det_jacobian", Volume, One, card("Regularity of the estimated Jacobian", "det Ĵ")),
+            Signal::Own(own) => Row { may_jump: own.may_jump, ..Row::new(own.symbol, own.unit, own.entries, card(own.title, own.letters)) },
         }
     }
+
+    /// The name used in column headers: `q`, `dq`, `z`, `dz`, `d2z`, …, `tau`, ….
+    pub fn name(self) -> String {
+        self.row().symbol
+    }
+}
+
+/// A number in raised digits.
+fn superscript(number: u8) -> String {
+    let raised = |digit: char| match digit {
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        digit => digit.to_digit(10).and_then(|digit| char::from_u32(u32::from('⁰') + digit)).unwrap_or(digit),
+    };
+    format!("{number}").chars().map(raised).collect()
 }
 
 /// A block of numbers that are one signal, and how many they are.

@@ -95,7 +95,7 @@ fn functions_with_a_kink_have_a_derivative_only_where_nothing_varies() {
     };
     let x = Step::Variable(0);
     let not = |function| [Some(ExpressionError::NotSmooth { function }), None];
-    assert_eq!(kinked(&[x, Step::Unary(Unary::Abs)]), not("abs"));
-    assert_eq!(kinked(&[x, Step::Number(1.0.into()), Step::Binary(Binary::Min)]), not("min"));
-    assert_eq!(kinked(&[Step::Number(1.0.into()), x, Step::Binary(Binary::Max)]), not("max"));
+    assert_eq!(kinked(&[x.clone(), Step::Unary(Unary::Abs)]), not("abs"));
+    assert_eq!(kinked(&[x.clone(), Step::Number(1.0.into()), Step::Binary(Binary::Min)]), not("min"));
+    assert_eq!(kinked(&[Step::Number(1.0.into()), x.clone(), Step::Binary(Binary::Max)]), not("max"));
 }

@@ -1,6 +1,7 @@
 //! Forwardstepping control of networked robots: design, check, simulate.
 //!
-//! This crate gathers the others under one name, and holds the program `forwardstep`.
+//! This crate gathers the others under one name, and holds the program `forwardstep`: [`program`] is it, for programs that know
+//! further kinds of robots and laws.
 //!
 //! | module | what is in it |
 //! |---|---|
@@ -23,7 +24,17 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+// The commands speak of this crate as everybody else does.
+extern crate self as forwardstep;
+
+mod arguments;
+mod commands;
+mod console;
+mod program;
+mod status;
+
 pub use forwardstep_check as check;
 pub use forwardstep_core as core;
 pub use forwardstep_io as io;
 pub use forwardstep_sim as sim;
+pub use program::{program, program_with};

@@ -7,7 +7,8 @@ use std::fs;
 use std::ops::ControlFlow;
 
 use forwardstep::io::SourceText;
-use forwardstep::io::scenario::{Template, TemplateDelay, TemplateGraph, TemplateRobot, read_scenario};
+use forwardstep::io::scenario::kinds::Kinds;
+use forwardstep::io::scenario::{RobotTemplate, Template, TemplateDelay, TemplateGraph, read_scenario};
 use forwardstep::sim::{Ending, Exchange, simulate};
 use support::{folder, forwardstep, stderr, stdout};
 
@@ -15,8 +16,9 @@ const TREE: &str = include_str!("../../../validation/urdf/tree.urdf");
 
 #[test]
 fn every_combination_is_a_scenario_that_runs() {
-    let urdf = |file: &str| TemplateRobot::Urdf { file: file.into(), has_friction: false };
-    let robots = [TemplateRobot::PlanarArm, TemplateRobot::PointMass, urdf("ur5e.urdf"), urdf("panda.urdf")];
+    let (kinds, urdf) = (Kinds::shipped(), |file| RobotTemplate::urdf(file, false));
+    let known = |key| kinds.template(key).unwrap();
+    let robots = [known("planar_arm"), known("point_mass"), urdf("ur5e.urdf"), urdf("panda.urdf")];
     let exchanges = [Exchange::Position, Exchange::PositionVelocity];
     let graphs = [TemplateGraph::Ring, TemplateGraph::Path, TemplateGraph::Complete];
     let delays = [TemplateDelay::Constant, TemplateDelay::SawTooth, TemplateDelay::None];
@@ -26,7 +28,7 @@ fn every_combination_is_a_scenario_that_runs() {
             for (delay, agents, order) in
                 delays.iter().flat_map(|delay| [(*delay, 2, 1), (*delay, 3, 8), (*delay, 5, 3)])
             {
-                let title = format!("{robot:?}, \"{exchange:?}\", {graph:?}, {delay:?} \\ {agents}, {order}");
+                let title = format!("{}, \"{exchange:?}\", {graph:?}, {delay:?} \\ {agents}, {order}", robot.line);
                 let template = Template { title, agents, robot: robot.clone(), order, exchange, graph, delay };
                 let text = template.text();
                 let mut scenario = read_scenario("new", &SourceText::new("new", text.as_str()), None)

@@ -41,4 +41,6 @@ pub use setup::{
     Solver, Start, TimeSpan, VelocitySensor,
 };
 pub use simulate::{recorded_columns, simulate, simulate_samples};
-pub use system::{ActuatorLimits, Attachments, Interface, Law, ReferenceFamily, Robot};
+pub use system::{
+    ActuatorLimits, Attachments, Coordinates, Interface, Law, Line, LineValue, Naming, ReferenceFamily, Robot,
+};

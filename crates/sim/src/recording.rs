@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use forwardstep_core::agent::Inbox;
-pub use forwardstep_core::signal::Signal;
+pub use forwardstep_core::signal::{OwnSignal, Signal};
 
 /// The tables of a run, column by column.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -12,7 +12,8 @@ use forwardstep_core::robot::tree::Tree;
 
 use crate::agents::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
-use crate::setup::{Exchange, RobotSetup};
+use crate::recording::Signal;
+use crate::setup::{AxisUnit, Exchange, RobotSetup};
 
 /// A plant as data: its geometry, which is known, but not its true parameters, which stand beside it in [`RobotSetup`].
 pub trait Robot: Any + Debug + Send + Sync {
@@ -36,6 +37,12 @@ pub trait Robot: Any + Debug + Send + Sync {
 
     /// Whose limits are those of its actuators.
     fn actuator_limits(&self) -> ActuatorLimits;
+
+    /// What its axes and torques are called.
+    fn naming(&self) -> Naming;
+
+    /// Limits of its own, which are not those of its axes, and other values to compare its signals with.
+    fn lines(&self) -> Vec<Line>;
 }
 
 impl dyn Robot {
@@ -48,6 +55,39 @@ impl dyn Robot {
     pub fn is<R: Robot>(&self) -> bool {
         self.downcast::<R>().is_some()
     }
+}
+
+/// What axes and torques of a robot are called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Naming {
+    /// Whether its axes have numbers in place of their names.
+    pub numbered_axes: bool,
+    /// Whether its torques act about the axes of its body, in N m, whatever its axes are.
+    pub torques_on_body: bool,
+}
+
+/// A value to compare a signal with: reports draw it, and limits are watched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// The signal.
+    pub signal: Signal,
+    /// Its entry.
+    pub entry: usize,
+    /// The value.
+    pub value: LineValue,
+}
+
+/// What a value says of a signal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LineValue {
+    /// Its magnitude must not exceed this.
+    Limit(f64),
+    /// The same of an input, which is clipped at this where limits are enforced.
+    Clip(f64),
+    /// It must not fall below this.
+    Floor(f64),
+    /// It estimates this.
+    Truth(f64),
 }
 
 /// Where forces can act on a robot.
@@ -82,6 +122,12 @@ pub trait Law: Any + Debug + Send + Sync {
 
     /// What it can do beside `robot`; `None` when it is made for another kind.
     fn interface(&self, robot: &RobotSetup) -> Option<Interface>;
+
+    /// What follows the target of `robot`, where that is something else than its axes.
+    fn coordinates(&self) -> Option<Coordinates>;
+
+    /// Values to compare its signals with, beside `robot`.
+    fn lines(&self, robot: &RobotSetup) -> Vec<Line>;
 
     /// Whether an agent under this law and one under `other` can stand side by side in one batch, if their robots are the
     /// same model and their references have the same order.
@@ -159,6 +205,17 @@ pub struct DeclaredClaim {
     pub requires: String,
     /// Why it is so.
     pub because: String,
+}
+
+/// Coordinates that follow a target in the place of the axes of a robot.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Coordinates {
+    /// What each is called.
+    pub names: Vec<String>,
+    /// Their unit.
+    pub unit: AxisUnit,
+    /// What each of their uncertain parameters is called.
+    pub parameters: Vec<String>,
 }
 
 /// Reference dynamics by what leads the agents.

@@ -17,7 +17,7 @@ use forwardstep_sim::leader::FollowingDesign;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::trajectory::{Path, Trajectory, TrajectoryError};
-use forwardstep_sim::{Method, Outcome, ReferenceKind, Setup, SetupError, Signal, ThrustKind, VehicleModel, simulate};
+use forwardstep_sim::{Method, Outcome, ReferenceKind, Setup, SetupError, Signal, ThrustKind, simulate};
 
 fn t() -> Expression {
     Expression::variable(0)

@@ -5,7 +5,8 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use forwardstep::io::robot::open_robot;
-use forwardstep::io::scenario::{Template, TemplateDelay, TemplateGraph, TemplateRobot, read_scenario};
+use forwardstep::io::scenario::kinds::Kinds;
+use forwardstep::io::scenario::{RobotTemplate, Template, TemplateDelay, TemplateGraph};
 use forwardstep::io::urdf::{FrictionPolicy, NoticeKind, shipped_robot};
 use forwardstep::io::{SourceText, UrdfOptions};
 use forwardstep::sim::Exchange;
@@ -44,19 +45,19 @@ fn refused(error: NewError) -> Status {
 }
 
 /// Writes a commented scenario to start from.
-pub(crate) fn new(options: &NewOptions, console: &mut Console) -> Status {
-    write(options, console).err().unwrap_or(Status::Fine)
+pub(crate) fn new(options: &NewOptions, kinds: &Kinds, console: &mut Console) -> Status {
+    write(options, kinds, console).err().unwrap_or(Status::Fine)
 }
 
-fn write(options: &NewOptions, console: &mut Console) -> Result<(), Status> {
+fn write(options: &NewOptions, kinds: &Kinds, console: &mut Console) -> Result<(), Status> {
     if let Some(file) = options.file.as_ref().filter(|file| file.exists()) {
         return Err(refused(NewError::Exists(file.clone())));
     }
-    let text = template(options)?.text();
+    let text = template(options, kinds)?.text();
     // Nobody should start from what is refused, for instance because the robot changed in between.
     let folder = options.file.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
-    read_scenario("new", &SourceText::new("new scenario", text.as_str()), Some(folder))
-        .map_err(|error| complain(&error))?;
+    let source = SourceText::new("new scenario", text.as_str());
+    kinds.read_scenario("new", &source, Some(folder)).map_err(|error| complain(&error))?;
     match &options.file {
         None => console.text(text),
         Some(file) => {
@@ -67,17 +68,18 @@ fn write(options: &NewOptions, console: &mut Console) -> Result<(), Status> {
     Ok(())
 }
 
-fn template(options: &NewOptions) -> Result<Template, Status> {
+fn template(options: &NewOptions, kinds: &Kinds) -> Result<Template, Status> {
     let asker = Asker::new();
-    let usual = Template::default();
     let NewOptions { file, name, agents, robot: given, order: given_order, exchange, graph, delay } = options;
     let stem = || file.as_ref()?.file_stem()?.to_str().map(str::to_owned);
-    let question = "robot: planar_arm, point_mass, ur5e, panda or the path of a URDF";
-    let given = asker.ask(given.clone(), question, "planar_arm".to_owned(), |answer| Ok::<_, &str>(answer.to_owned()));
+    let offered: Vec<&str> = kinds.robot_keys().into_iter().filter(|key| kinds.template(key).is_some()).collect();
+    let question = format!("robot: {}, ur5e, panda or the path of a URDF", offered.join(", "));
+    let first = offered.first().copied().unwrap_or_default().to_owned();
+    let given = asker.ask(given.clone(), &question, first, |answer| Ok::<_, &str>(answer.to_owned()));
+    let usual = Template::new(robot(&given, file.as_deref(), kinds)?);
     Ok(Template {
         title: name.clone().or_else(stem).unwrap_or(usual.title),
-        // First, since it can be refused.
-        robot: robot(&given, file.as_deref())?,
+        robot: usual.robot,
         agents: asker.ask(*agents, "number of agents", usual.agents, count_of_agents),
         order: asker.ask(*given_order, "order of the reference dynamics", usual.order, order),
         exchange: match asker.choose(*exchange, "exchange", ExchangeChoice::PositionVelocity) {
@@ -97,12 +99,10 @@ fn template(options: &NewOptions) -> Result<Template, Status> {
     })
 }
 
-/// The robot of this name, else that in the file at this path, as the scenario at `scenario` has to name it.
-fn robot(name_or_path: &str, scenario: Option<&Path>) -> Result<TemplateRobot, Status> {
-    match name_or_path {
-        "planar_arm" | "planar-arm" => return Ok(TemplateRobot::PlanarArm),
-        "point_mass" | "point-mass" => return Ok(TemplateRobot::PointMass),
-        _ => {}
+/// The robot of this key, else that in the file at this path, as the scenario at `scenario` has to name it.
+fn robot(name_or_path: &str, scenario: Option<&Path>, kinds: &Kinds) -> Result<RobotTemplate, Status> {
+    if let Some(known) = kinds.template(&name_or_path.replace('-', "_")) {
+        return Ok(known);
     }
     let options = UrdfOptions { friction: FrictionPolicy::Ignore, ..UrdfOptions::default() };
     let robot = open_robot(name_or_path, &options).map_err(|error| complain(&error))?;
@@ -121,7 +121,7 @@ fn robot(name_or_path: &str, scenario: Option<&Path>) -> Result<TemplateRobot, S
         }
         true => name_or_path.to_owned(),
     };
-    Ok(TemplateRobot::Urdf { file, has_friction })
+    Ok(RobotTemplate::urdf(&file, has_friction))
 }
 
 /// Writes a file that must not exist yet.

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use forwardstep::io::output::SavedRun;
+use forwardstep::io::scenario::kinds::Kinds;
 
 use super::promise::promise;
 use super::run::refused;
@@ -10,12 +11,12 @@ use crate::console::{Console, complain, remark};
 use crate::status::Status;
 
 /// Builds the report and the plots of a run anew from its tables.
-pub(crate) fn report(folder: &Path, console: &mut Console) -> Status {
-    finish(folder, console).unwrap_or_else(|status| status)
+pub(crate) fn report(folder: &Path, kinds: &Kinds, console: &mut Console) -> Status {
+    finish(folder, kinds, console).unwrap_or_else(|status| status)
 }
 
-fn finish(folder: &Path, console: &mut Console) -> Result<Status, Status> {
-    let run = SavedRun::open(folder).map_err(|error| complain(&error))?;
+fn finish(folder: &Path, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
+    let run = SavedRun::open_with(folder, kinds).map_err(|error| complain(&error))?;
     let promise = promise(run.setup());
     let remarks = run.remarks(&promise.report, env!("CARGO_PKG_VERSION"));
     for sentence in &remarks {

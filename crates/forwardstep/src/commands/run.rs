@@ -7,7 +7,8 @@ use std::time::Instant;
 use forwardstep::io::output::{
     self, DigitalCost, GoalOutcome, Metrics, OutputError, RunFolder, RunRecord, continuous_twin, ending_sentence,
 };
-use forwardstep::io::scenario::{Scenario, open_scenario};
+use forwardstep::io::scenario::Scenario;
+use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::sim::{Ending, Outcome, simulate};
 
 use super::progress::Bar;
@@ -19,12 +20,12 @@ use crate::console::{Console, Plain, complain, remark};
 use crate::status::Status;
 
 /// Simulates a scenario, writes its folder and prints a summary.
-pub(crate) fn run(options: &RunOptions, console: &mut Console) -> Status {
-    finish(options, console).unwrap_or_else(|status| status)
+pub(crate) fn run(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Status {
+    finish(options, kinds, console).unwrap_or_else(|status| status)
 }
 
-fn finish(options: &RunOptions, console: &mut Console) -> Result<Status, Status> {
-    let scenario = open_scenario(&options.scenario).map_err(|error| complain(&error))?;
+fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
+    let scenario = kinds.open_scenario(&options.scenario).map_err(|error| complain(&error))?;
     let promise = promise(&scenario.setup);
     let path = options.out.clone().unwrap_or_else(|| Path::new("forwardstep-runs").join(&scenario.name));
     // Only now: until there is something to keep, Ctrl-C just ends the program.

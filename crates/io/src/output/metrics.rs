@@ -1,8 +1,8 @@
 //! A run in a few numbers.
 
 use forwardstep_sim::recording::{Recording, Signal};
-use forwardstep_sim::{Setup, SpacecraftModel};
-use serde::{Deserialize, Serialize};
+use forwardstep_sim::{LineValue, Setup};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::disagreement::greater;
 pub use super::disagreement::{Absence, Disagreement, DisagreementSeries, Gap};
@@ -62,9 +62,8 @@ pub struct Speed {
     pub last: f64,
 }
 
-/// The limit that was reached.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+/// The limit that was reached. In JSON it is `position`, `velocity`, `effort` or the symbol of a signal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitKind {
     /// Lowest or highest position.
     Position,
@@ -72,10 +71,33 @@ pub enum LimitKind {
     Velocity,
     /// Highest torque or force.
     Effort,
-    /// Highest torque of the motor of a reaction wheel.
-    WheelTorque,
-    /// Largest momentum that a reaction wheel can hold.
-    WheelMomentum,
+    /// A limit of the plant's own, of this signal.
+    Signal(Signal),
+    /// The same, read back from a file, which has the symbol only.
+    Unknown,
+}
+
+impl Serialize for LimitKind {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            LimitKind::Position => serializer.serialize_str("position"),
+            LimitKind::Velocity => serializer.serialize_str("velocity"),
+            LimitKind::Effort => serializer.serialize_str("effort"),
+            LimitKind::Signal(signal) => serializer.serialize_str(&signal.name()),
+            LimitKind::Unknown => serializer.serialize_str("unknown"),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for LimitKind {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Ok(match String::deserialize(deserializer)?.as_str() {
+            "position" => LimitKind::Position,
+            "velocity" => LimitKind::Velocity,
+            "effort" => LimitKind::Effort,
+            _ => LimitKind::Unknown,
+        })
+    }
 }
 
 /// A limit of an axis that was exceeded at some row; for efforts of agents that enforce their limits, that was reached.
@@ -83,7 +105,7 @@ pub enum LimitKind {
 pub struct LimitReached {
     /// The agent.
     pub agent: usize,
-    /// The axis, or the wheel.
+    /// The axis, or the entry of the signal.
     pub axis: usize,
     /// Which limit.
     pub kind: LimitKind,
@@ -225,32 +247,37 @@ fn limits_reached(table: &Table<'_>) -> Vec<LimitReached> {
                 let (Some(range), Some(values)) = (range, table.column(agent, signal, axis)) else { continue };
                 let enforced = match kind {
                     LimitKind::Position => setup.enforce_limits,
-                    LimitKind::Velocity => false,
-                    _ => setup.enforce_limits || kept.is_some(),
+                    LimitKind::Effort => setup.enforce_limits || kept.is_some(),
+                    LimitKind::Velocity | LimitKind::Signal(_) | LimitKind::Unknown => false,
                 };
                 let place = LimitReached::nowhere(agent, axis, kind, enforced);
-                found.extend(beyond(table.t_s, values, range, place));
+                found.extend(beyond(table.t_s, values, range, place, kind == LimitKind::Effort));
             }
         }
-        if let Some(SpacecraftModel { wheels, .. }) = setup.robot.kind.downcast() {
-            for (axis, wheel) in wheels.list().iter().enumerate() {
-                for (kind, signal, limit) in [
-                    (LimitKind::WheelTorque, Signal::WheelTorque, wheel.torque_limit_n_m),
-                    (LimitKind::WheelMomentum, Signal::WheelMomentum, wheel.momentum_limit_n_m_s),
-                ] {
-                    let (Some(limit), Some(values)) = (limit, table.column(agent, signal, axis)) else { continue };
-                    let place = LimitReached::nowhere(agent, axis, kind, setup.enforce_limits);
-                    found.extend(beyond(table.t_s, values, [-limit, limit], place));
-                }
-            }
+        for line in setup.robot.kind.lines() {
+            let (limit, clips) = match line.value {
+                LineValue::Limit(limit) => (limit, false),
+                LineValue::Clip(limit) => (limit, true),
+                LineValue::Floor(_) | LineValue::Truth(_) => continue,
+            };
+            let Some(values) = table.column(agent, line.signal, line.entry) else { continue };
+            let place = LimitReached::nowhere(agent, line.entry, LimitKind::Signal(line.signal), setup.enforce_limits);
+            found.extend(beyond(table.t_s, values, [-limit, limit], place, clips));
         }
     }
     found
 }
 
-/// `place` with its numbers filled in, if any value lies outside of `range`, or on its border for an enforced effort.
-fn beyond(t_s: &[f64], values: &[f64], [low, high]: [f64; 2], place: LimitReached) -> Option<LimitReached> {
-    let clipped = place.enforced && matches!(place.kind, LimitKind::Effort | LimitKind::WheelTorque);
+/// `place` with its numbers filled in, if any value lies outside of `range`, or on its border where it `clips` what is
+/// enforced.
+fn beyond(
+    t_s: &[f64],
+    values: &[f64],
+    [low, high]: [f64; 2],
+    place: LimitReached,
+    clips: bool,
+) -> Option<LimitReached> {
+    let clipped = place.enforced && clips;
     let mut result: Option<LimitReached> = None;
     let mut rows = 0_usize;
     for (&t_s, &value) in t_s.iter().zip(values) {

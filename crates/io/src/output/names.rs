@@ -5,9 +5,9 @@
 
 use std::collections::HashSet;
 
-use forwardstep_core::robot::PointMass;
+use forwardstep_core::signal::{Entries, Unit};
 use forwardstep_sim::recording::{Recording, Signal};
-use forwardstep_sim::{AttitudeLaw, AxisUnit, ChainModel, ReferenceKind, RotorcraftModel, Setup, TaskSpaceLaw};
+use forwardstep_sim::{AxisUnit, ReferenceKind, Setup};
 
 /// The name of an agent; a number when the setup has no such agent.
 pub fn agent_name(setup: &Setup, agent: usize) -> String {
@@ -18,9 +18,7 @@ pub fn agent_name(setup: &Setup, agent: usize) -> String {
 pub fn axis_name(setup: &Setup, agent: usize, axis: usize) -> String {
     let robot = setup.agents.get(agent).map(|a| &a.robot);
     match robot {
-        Some(robot) if !robot.kind.is::<PointMass>() && !robot.kind.is::<ChainModel>() => {
-            robot.axes.get(axis).map(|a| a.name.clone())
-        }
+        Some(robot) if !robot.kind.naming().numbered_axes => robot.axes.get(axis).map(|a| a.name.clone()),
         _ => None,
     }
     .unwrap_or_else(|| (axis + 1).to_string())
@@ -70,26 +68,28 @@ pub fn parameter_name(setup: &Setup, agent: usize, index: usize) -> String {
 /// What an entry of a signal is called; nothing for signals with a single entry.
 pub fn entry_name(setup: &Setup, agent: usize, signal: Signal, entry: usize) -> Option<String> {
     let number = || (entry + 1).to_string();
-    let tip = setup.agents.get(agent).and_then(|agent| agent.law.downcast::<TaskSpaceLaw>());
-    match (signal, tip) {
-        (
-            Signal::Lyapunov
-            | Signal::Dissipation
-            | Signal::Thrust
-            | Signal::Heading
-            | Signal::Angle
-            | Signal::Determinant
-            | Signal::Divisor,
-            _,
-        ) => None,
-        (Signal::Attitude, _) => Some(["x", "y", "z", "o"].get(entry).map_or_else(number, |name| (*name).to_owned())),
-        (Signal::Estimate, _) => Some(parameter_name(setup, agent, entry)),
-        (Signal::WheelTorque | Signal::WheelMomentum, _) => Some(number()),
-        (Signal::Error | Signal::TaskPosition, Some(law)) => {
-            Some(law.coordinate_name(entry).map_or_else(number, str::to_owned))
+    let coordinates = || setup.agents.get(agent)?.law.coordinates();
+    Some(match signal.row().entries {
+        Entries::One => return None,
+        Entries::Axes => axis_name(setup, agent, entry),
+        Entries::Parameters => parameter_name(setup, agent, entry),
+        Entries::Numbered(_) => number(),
+        Entries::Named(names) => names.get(entry).map_or_else(number, |name| (*name).to_owned()),
+        Entries::Coordinates => match coordinates() {
+            Some(of) => of.names.get(entry).cloned().unwrap_or_else(number),
+            None => axis_name(setup, agent, entry),
+        },
+        Entries::CoordinateParameters => {
+            coordinates().and_then(|of| of.parameters.get(entry).cloned()).unwrap_or_else(number)
         }
-        (Signal::KinematicEstimate, Some(law)) => Some(law.kinematic_names.get(entry).cloned().unwrap_or_else(number)),
-        _ => Some(axis_name(setup, agent, entry)),
+    })
+}
+
+/// An entry of a signal in running text: `elbow_joint`, `axis 2` or `wheel 3`; nothing for signals with a single entry.
+pub fn entry_words(setup: &Setup, agent: usize, signal: Signal, entry: usize) -> String {
+    match signal.row().entries {
+        Entries::Numbered(what) => format!("{what} {}", entry + 1),
+        _ => entry_name(setup, agent, signal, entry).as_deref().map(in_words).unwrap_or_default(),
     }
 }
 
@@ -126,9 +126,9 @@ pub fn axis_unit(setup: &Setup, agent: usize, axis: usize) -> Option<AxisUnit> {
     setup.agents.get(agent)?.robot.axes.get(axis).map(|a| a.unit)
 }
 
-/// Whether the torques of an agent turn it, while its axes are lengths.
+/// Whether the torques of an agent act about the axes of its body.
 fn turns(setup: &Setup, agent: usize) -> bool {
-    setup.agents.get(agent).is_some_and(|agent| agent.robot.kind.is::<RotorcraftModel>())
+    setup.agents.get(agent).is_some_and(|agent| agent.robot.kind.naming().torques_on_body)
 }
 
 /// What is to vanish: distances from targets, or between agents.
@@ -158,37 +158,29 @@ pub fn gap_unit(setup: &Setup) -> String {
 
 /// The unit of a recorded column, for example `rad/s^2`; `SI` for parameters, whose units differ.
 pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String {
-    let length = match axis_unit(setup, agent, axis) {
+    let own = axis_unit(setup, agent, axis);
+    let letters = |unit: Option<AxisUnit>| match unit {
         Some(AxisUnit::Metre) => "m",
-        _ => "rad",
+        Some(AxisUnit::One) => "1",
+        Some(AxisUnit::Radian) | None => "rad",
     };
-    let own = setup.agents.get(agent);
-    match signal {
-        Signal::Error if own.is_some_and(|own| own.law.is::<TaskSpaceLaw>()) => "m".into(),
-        Signal::Position | Signal::Error if own.is_some_and(|own| own.law.is::<AttitudeLaw>()) => "1".into(),
-        Signal::ReferenceAttitude => "1".into(),
-        Signal::FilterRate => "J^0.5".into(),
-        Signal::Angle => "rad".into(),
-        Signal::WheelTorque => "N m".into(),
-        Signal::WheelMomentum => "N m s".into(),
-        Signal::TaskPosition | Signal::KinematicEstimate => "m".into(),
-        Signal::Determinant => match setup.agents.get(agent).map_or(0, |agent| agent.robot.axes.len()) {
+    // Rates of an attitude are those of angles.
+    let length = if own == Some(AxisUnit::Metre) { "m" } else { "rad" };
+    match signal.row().unit {
+        Unit::Fixed(unit) => unit.into(),
+        Unit::Axis(0) => letters(own).into(),
+        Unit::Axis(1) => format!("{length}/s"),
+        Unit::Axis(k) => format!("{length}/s^{k}"),
+        Unit::Target => {
+            let coordinates = setup.agents.get(agent).and_then(|agent| agent.law.coordinates());
+            letters(coordinates.map_or(own, |of| Some(of.unit))).into()
+        }
+        Unit::Torque if turns(setup, agent) => "N m".into(),
+        Unit::Torque | Unit::Effort if length == "m" => "N".into(),
+        Unit::Torque | Unit::Effort => "N m".into(),
+        Unit::Volume => match setup.agents.get(agent).map_or(0, |agent| agent.robot.axes.len()) {
             0 | 1 => "m".into(),
             m => format!("m^{m}"),
         },
-        Signal::Position | Signal::Error | Signal::Offset => length.into(),
-        Signal::Velocity | Signal::TrackingError | Signal::Filter | Signal::Reference(0) => format!("{length}/s"),
-        Signal::Reference(k) => format!("{length}/s^{}", u32::from(k) + 1),
-        Signal::Torque if turns(setup, agent) => "N m".into(),
-        Signal::Torque | Signal::External if length == "m" => "N".into(),
-        Signal::Torque | Signal::External => "N m".into(),
-        Signal::Derivative(k) => format!("{length}/s^{k}"),
-        Signal::Estimate | Signal::Coordinate(_) | Signal::Divisor => "SI".into(),
-        Signal::Attitude => "1".into(),
-        Signal::AngularVelocity | Signal::AngularVelocityWanted => "rad/s".into(),
-        Signal::Thrust => "N".into(),
-        Signal::Heading => "rad".into(),
-        Signal::Selection => "1".into(),
-        Signal::Lyapunov | Signal::Dissipation => "J".into(),
     }
 }

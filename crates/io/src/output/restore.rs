@@ -25,8 +25,9 @@ use super::table::NamedColumns;
 use super::{CSV, PARQUET, csv, inputs, names, parquet};
 use crate::SourceText;
 use crate::files::{ReadError, read_text};
+use crate::scenario::Scenario;
 use crate::scenario::inputs::content_digest;
-use crate::scenario::{Scenario, read_moved_scenario};
+use crate::scenario::kinds::Kinds;
 
 const SCENARIO: &str = "scenario.toml";
 const SUMMARY: &str = "summary.json";
@@ -106,6 +107,14 @@ impl SavedRun {
     /// # Errors
     /// [`RestoreError`] with the file and what is wrong with it.
     pub fn open(path: &Path) -> Result<SavedRun, RestoreError> {
+        SavedRun::open_with(path, &Kinds::shipped())
+    }
+
+    /// [`SavedRun::open`] of a run whose scenario names robots and laws of `kinds`.
+    ///
+    /// # Errors
+    /// As of [`SavedRun::open`].
+    pub fn open_with(path: &Path, kinds: &Kinds) -> Result<SavedRun, RestoreError> {
         match path.metadata().map_err(ReadError::from) {
             Ok(found) if found.is_dir() => {}
             Ok(_) => {
@@ -122,7 +131,7 @@ impl SavedRun {
         let summary =
             parse_summary(&summary).map_err(|reason| RestoreError::Summary { path: path.join(SUMMARY), reason })?;
         let folder = RunFolder::open(path)?;
-        let scenario = scenario(path, text, &summary)?;
+        let scenario = scenario(path, text, &summary, kinds)?;
         let mut remarks = changes(&scenario, &summary);
         let recording = recording(path, &scenario.setup, &summary, &mut remarks)?;
         let ending = summary.ending.restore(&scenario.setup, &recording).ok_or_else(|| {
@@ -218,11 +227,11 @@ fn parse_summary(text: &str) -> Result<Summary, SummaryError> {
 }
 
 /// The scenario, with the files that it names read from their copies.
-fn scenario(folder: &Path, text: String, summary: &Summary) -> Result<Scenario, RestoreError> {
+fn scenario(folder: &Path, text: String, summary: &Summary, kinds: &Kinds) -> Result<Scenario, RestoreError> {
     let source = SourceText::new(folder.join(SCENARIO).display().to_string(), text);
     let copies: Vec<(String, PathBuf)> =
         summary.inputs.iter().map(|input| (input.name.clone(), folder.join(&input.file))).collect();
-    read_moved_scenario(&summary.scenario.name, &source, folder, copies.clone()).map_err(|error| {
+    kinds.read_moved_scenario(&summary.scenario.name, &source, folder, copies.clone()).map_err(|error| {
         // A copy that is gone is not the scenario's mistake.
         let lost = copies.into_iter().find_map(|(_, path)| read_text(&path).err().map(|reason| (path, reason)));
         lost.map_or_else(|| error.into(), |(path, reason)| RestoreError::File { path, reason })

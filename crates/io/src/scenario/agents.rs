@@ -1,28 +1,26 @@
 //! `[[agents]]` → [`AgentSetup`]s.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 use std::rc::Rc;
 
-use forwardstep_core::robot::PlanarTip;
-use forwardstep_core::robot::tree::Anchor;
-use forwardstep_sim::{AgentSetup, RobotSetup, SpacecraftModel, TaskSpaceLaw};
+use forwardstep_sim::{AgentSetup, RobotSetup};
 
 use super::at::At;
+use super::document::{Document, KeyedLaw};
 use super::fault::{Fault, count, fault, filled, positive};
 use super::file::{AgentFile, AgentReferenceFile, ReferenceFile, ScenarioFile};
 use super::inputs::InputFolder;
-use super::law::law;
+use super::kinds::{Kinds, LawReader, RobotKind};
 use super::leader_file::LeaderDesignFile;
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
-use super::robots::{ReadRobot, Stop, robot};
-use super::spacecraft::{points_somewhere, short_way};
-use super::spread::{spread, tip};
-use super::start::{Shared, Starter, start};
+use super::robots::{Body, RobotRead, Stop};
+use super::spread::Spread;
+use super::start::{Shared, StartReader, reject_unread};
 use super::systems_file::TrackingFile;
 use super::target::{Owner, target};
-use super::unused::{spare_roots, unused};
+use super::unused::spare_roots;
 use super::value_problem::ValueProblem;
 use crate::SourceText;
 
@@ -37,7 +35,9 @@ const MOST_ROOTS: usize = 32;
 struct Population<'a> {
     file: &'a AgentFile,
     names: Vec<String>,
-    read: ReadRobot,
+    kind: Box<dyn RobotKind>,
+    read: RobotRead,
+    law: Rc<KeyedLaw>,
 }
 
 /// All agents, and what else is known about them while a scenario is read.
@@ -45,30 +45,28 @@ pub(super) struct Agents {
     pub(super) agents: Vec<AgentSetup>,
     /// Where each agent can be held.
     pub(super) bodies: Vec<Body>,
+    /// The table of each agent's law.
+    pub(super) laws: Vec<Rc<KeyedLaw>>,
     /// Counted populations by name, with their members.
     pub(super) populations: Vec<(String, Range<usize>)>,
 }
 
-/// Where a robot can be held.
-pub(super) struct Body {
-    /// The links of a URDF.
-    pub(super) links: Rc<[(String, Anchor)]>,
-    /// The tip of a planar arm.
-    pub(super) tip: Option<PlanarTip>,
+/// What agents are read with.
+pub(super) struct Source<'a> {
+    pub(super) file: &'a ScenarioFile,
+    pub(super) document: &'a Document<'a>,
+    pub(super) kinds: &'a Kinds,
+    pub(super) text: &'a SourceText,
+    pub(super) end_s: f64,
 }
 
 /// Builds all agents, in the order of the file.
-pub(super) fn agents(
-    file: &ScenarioFile,
-    source: &SourceText,
-    folder: &mut InputFolder,
-    notices: &mut Vec<Notice>,
-    end_s: f64,
-) -> Result<Agents, Stop> {
+pub(super) fn agents(source: &Source<'_>, folder: &mut InputFolder, notices: &mut Vec<Notice>) -> Result<Agents, Stop> {
+    let Source { file, document, kinds, text, .. } = *source;
     let mut populations: Vec<Population<'_>> = Vec::new();
     let mut seen = HashMap::new();
     let mut total = 0;
-    for entry in filled("agents", &file.agents)? {
+    for (number, entry) in filled("agents", &file.agents)?.iter().enumerate() {
         let names = names(&entry.value)?;
         total += names.len() as u64;
         if total > u64::from(MOST_AGENTS) {
@@ -77,74 +75,125 @@ pub(super) fn agents(
         }
         for name in &names {
             if let Some(start) = seen.insert(name.clone(), entry.value.name.span.start) {
-                let (first_line, _) = source.line_column(start);
+                let (first_line, _) = text.line_column(start);
                 let problem = ScenarioProblem::AgentTwice { name: name.clone(), first_line };
                 return Err(fault(&entry.value.name, problem).into());
             }
         }
-        let read = robot(&entry.value.robot, folder)?;
-        let population = Population { file: &entry.value, names, read };
+        let kind = document.robot(number, kinds)?;
+        let read = kind.read(folder).map_err(|stop| stop.at(&entry.value.robot.span))?;
+        let law = match document.law(number, kinds)? {
+            Some(law) => law,
+            None => kinds.usual_law(kind.usual_law()).map_err(|fault| fault.at(&entry.value.robot.span))?,
+        };
+        let population = Population { file: &entry.value, names, kind, read, law: Rc::new(law) };
         if let Some(first) = populations.first() {
             same_axes(first, &population)?;
         }
         populations.push(population);
     }
 
-    let mut agents = Vec::with_capacity(total as usize);
-    let (mut bodies, mut counted) = (Vec::with_capacity(total as usize), Vec::new());
     let counts: Vec<usize> = populations.iter().map(|population| population.names.len()).collect();
-    for Population { file: entry, names, read } in populations {
+    let of = total as usize;
+    let mut read =
+        Agents { agents: Vec::with_capacity(of), bodies: Vec::new(), laws: Vec::new(), populations: Vec::new() };
+    let mut asked = BTreeSet::new();
+    for population in &populations {
+        let Population { file: entry, names, .. } = population;
         let span = match names.as_slice() {
             [first, .., last] => format!("{first} … {last}"),
             _ => names.concat(),
         };
         notices.extend(
-            read.notices.iter().cloned().map(|notice| Notice::Robot { agents: span.clone(), notice: Box::new(notice) }),
+            (population.read.notices.iter().cloned())
+                .map(|notice| Notice::Robot { agents: span.clone(), notice: Box::new(notice) }),
         );
-        let enforce_limits = limits(entry, &names, &read)?;
-        let (index, of) = (agents.len(), total as usize);
+        let first = read.agents.len();
         if entry.count.is_some() {
-            counted.push((entry.name.value.clone(), index..index + names.len()));
+            read.populations.push((entry.name.value.clone(), first..first + names.len()));
         }
-        for (k, name) in names.iter().enumerate() {
-            let body = Body { links: Rc::clone(&read.links), tip: tip(entry, k)? };
-            let robot = &spread(entry, &read.robot, k, name)?;
-            let Design { roots_per_s, manipulability, free_derivatives } = design(file, entry, name)?;
-            let own = entry.start.as_ref().map(|file| Shared { file, index: k, of: names.len() });
-            let common = file.start.as_ref().map(|file| Shared { file, index: index + k, of });
-            let law = law(entry.law.as_ref().or(file.law.as_ref()), name, robot, &body)?;
-            let mut axes = axis_names(robot);
-            if let Some(tip) = law.downcast::<TaskSpaceLaw>() {
-                // It is the tip that follows.
-                let names = (0..axes.len()).filter_map(|axis| tip.coordinate_name(axis));
-                axes = names.map(String::from).collect();
-            }
-            let owner = Owner { name, axes: &axes, end_s };
-            let target = entry.target.as_ref().map(|file| target(file, &owner, folder)).transpose()?;
-            let mut start = start(Starter { name, robot, order: free_derivatives }, own, common)?;
-            if let (true, Some(target), Some(place)) = (robot.kind.is::<SpacecraftModel>(), &target, &entry.target) {
-                points_somewhere(place, target, end_s)?;
-                short_way(&mut start, target);
-            }
-            agents.push(AgentSetup {
-                law,
-                start,
-                robot: robot.clone(),
-                roots_per_s,
-                manipulability,
-                enforce_limits,
-                target,
-                pushes: Vec::new(),
-                name: name.clone(),
-            });
-            bodies.push(body);
+        let enforce_limits = limits(population)?;
+        // Who has no law of its own shares that of all.
+        let shares = |other: &&Population<'_>| match entry.law {
+            Some(_) => std::ptr::eq(*other, population),
+            None => other.file.law.is_none(),
+        };
+        let sharing: Vec<&RobotSetup> =
+            populations.iter().filter(shares).map(|population| &population.read.robot).collect();
+        for index in 0..names.len() {
+            let member = Member { population, index, first, of, sharing: &sharing };
+            let (agent, body) = member.read(source, folder, enforce_limits, &mut asked)?;
+            read.agents.push(agent);
+            read.bodies.push(body);
+            read.laws.push(Rc::clone(&population.law));
         }
     }
-    unused(file, &agents, &counts)?;
+    if let (Some(start), Some(first)) = (&file.start, read.agents.first()) {
+        reject_unread(&start.value, &asked, &first.name)?;
+    }
     if let ReferenceFile::Tracking(_) = file.reference.value {
-        spare_roots(file, &mut agents, &counts);
+        spare_roots(file, &mut read.agents, &counts);
     }
-    Ok(Agents { agents, bodies, populations: counted })
+    Ok(read)
+}
+
+/// One agent of a population.
+struct Member<'a> {
+    population: &'a Population<'a>,
+    /// Its place in the population.
+    index: usize,
+    /// The number of agents before the population, and of all.
+    first: usize,
+    of: usize,
+    /// The robots under the same table of a law.
+    sharing: &'a [&'a RobotSetup],
+}
+
+impl Member<'_> {
+    fn read(
+        &self,
+        &Source { file, kinds, end_s, .. }: &Source<'_>,
+        folder: &mut InputFolder,
+        enforce_limits: bool,
+        asked: &mut BTreeSet<&'static str>,
+    ) -> Result<(AgentSetup, Body), Fault> {
+        let Member { population: Population { file: entry, names, kind, read, law }, index, first, of, sharing } =
+            *self;
+        let name = &names[index];
+        let (robot, body) = match Spread::of(entry, name, index)? {
+            None => (read.robot.clone(), read.body.clone()),
+            Some(spread) => kind.spread(read, &spread).map_err(|fault| fault.at(&entry.robot.span))?,
+        };
+        let Design { roots_per_s, manipulability, free_derivatives } = design(file, entry, name)?;
+        let place = entry.law.as_ref().or(file.law.as_ref()).map_or(&entry.robot.span, |law| &law.span);
+        let law = kinds.build(law, &LawReader { agent: name, robot: &robot, body: &body, sharing });
+        let law = law.map_err(|fault| fault.at(place))?;
+        // Where something else than its axes follows the target, the law names it.
+        let axes = law.coordinates().map_or_else(|| axis_names(&robot), |named| named.names);
+        let owner = Owner { name, axes: &axes, end_s };
+        let target = entry.target.as_ref().map(|file| target(file, &owner, folder)).transpose()?;
+        let own = entry.start.as_ref().map(|file| Shared { file, index, of: names.len() });
+        let common = file.start.as_ref().map(|file| Shared { file, index: first + index, of });
+        let mut given = StartReader::new(name, &robot, free_derivatives, own, common);
+        let mut start = kind.start(&robot, &mut given)?;
+        given.reject_unused()?;
+        asked.extend(given.asked());
+        if let (Some(target), Some(place)) = (&target, &entry.target) {
+            kind.target(place, target, end_s, &mut start)?;
+        }
+        let agent = AgentSetup {
+            law,
+            start,
+            robot,
+            roots_per_s,
+            manipulability,
+            enforce_limits,
+            target,
+            pushes: Vec::new(),
+            name: name.clone(),
+        };
+        Ok((agent, body))
+    }
 }
 
 /// What the axes are called in tables.
@@ -188,13 +237,11 @@ fn same_axes(first: &Population<'_>, other: &Population<'_>) -> Result<(), Fault
 }
 
 /// Whether limits are enforced, which needs limits.
-fn limits(entry: &AgentFile, names: &[String], read: &ReadRobot) -> Result<bool, Fault> {
-    let Some(place @ At { value: true, .. }) = &entry.enforce_limits else { return Ok(false) };
-    // The limits of a spacecraft are those of its wheels.
-    if read.robot.kind.is::<SpacecraftModel>() {
-        return Ok(true);
-    }
-    match read.robot.axes.iter().find(|axis| axis.effort_limit.is_none()) {
+fn limits(population: &Population<'_>) -> Result<bool, Fault> {
+    let Population { file, names, kind, read, .. } = population;
+    let Some(place @ At { value: true, .. }) = &file.enforce_limits else { return Ok(false) };
+    let unlimited = || read.robot.axes.iter().find(|axis| axis.effort_limit.is_none());
+    match unlimited().filter(|_| kind.limits_of_axes()) {
         None => Ok(true),
         Some(axis) => {
             let (agent, axis) = (names.first().cloned().unwrap_or_default(), axis.name.clone());

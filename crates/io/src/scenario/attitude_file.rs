@@ -29,6 +29,22 @@ pub struct TurnFile {
     pub angle_rad: At<f64>,
 }
 
+/// Where a spacecraft starts. Default: at rest, aligned with the inertial frame, wheels still.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WheelStartFile {
+    /// Turned about this axis, of any length.
+    pub axis: Option<At<[f64; 3]>>,
+    /// By this angle, in rad.
+    pub angle_rad: Option<At<f64>>,
+    /// Or the attitude as a quaternion of any length, vector part first.
+    pub quaternion: Option<At<[f64; 4]>>,
+    /// Angular velocity in coordinates of the body, in rad/s.
+    pub rate_rad_s: Option<At<[f64; 3]>>,
+    /// Momentum of each wheel about its axis, in N m s.
+    pub wheel_momentum_n_m_s: Option<At<Vec<At<f64>>>>,
+}
+
 impl<'de> Deserialize<'de> for AttitudeStartFile {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct AttitudeVisitor;

@@ -6,10 +6,9 @@
 use std::fmt::Display;
 use std::ops::Range;
 
-use serde::de::value::{StrDeserializer, UsizeDeserializer};
+use serde::de::value::UsizeDeserializer;
 use serde::de::{
-    DeserializeSeed, Deserializer, EnumAccess, Error, Expected, IntoDeserializer, MapAccess, SeqAccess, Unexpected,
-    VariantAccess, Visitor,
+    DeserializeSeed, Deserializer, Error, Expected, IntoDeserializer, MapAccess, SeqAccess, Unexpected, Visitor,
 };
 use serde::forward_to_deserialize_any;
 use toml::Spanned;
@@ -18,6 +17,8 @@ use toml::de::{DeInteger, DeString, DeTable, DeValue};
 use super::at::AT;
 use super::edges_file::LIST_OR_CHOICE;
 use super::fault::{Fault, LARGEST};
+use super::file::{LAW, ROBOT};
+use super::kinds::Kinds;
 use super::value_problem::ValueProblem;
 use crate::diagnostic::breaks_lines;
 
@@ -70,7 +71,7 @@ pub(super) fn quoted(text: &str) -> String {
 }
 
 /// A text that fits into a line: every text of a scenario is a name, a choice or a title.
-fn plain(text: &str) -> Result<&str, Fault> {
+pub(super) fn plain(text: &str) -> Result<&str, Fault> {
     if text.len() > LONGEST_TEXT || text.contains(breaks_lines) {
         return Err(Fault::new(ValueProblem::Text { found: quoted(text), most: LONGEST_TEXT }));
     }
@@ -79,11 +80,15 @@ fn plain(text: &str) -> Result<&str, Fault> {
 
 /// A place in the tree.
 #[derive(Clone, Copy)]
-pub(super) struct ValueDe<'a, 'i>(pub(super) &'a Spanned<DeValue<'i>>);
+pub(super) struct ValueDe<'a, 'i> {
+    pub(super) value: &'a Spanned<DeValue<'i>>,
+    /// Whose tables are checked on the way.
+    pub(super) kinds: &'a Kinds,
+}
 
 impl<'a, 'i> ValueDe<'a, 'i> {
-    fn wrong(self, expected: &str) -> Fault {
-        let found = match self.0.get_ref() {
+    pub(super) fn wrong(self, expected: &str) -> Fault {
+        let found = match self.value.get_ref() {
             DeValue::String(text) => quoted(text),
             DeValue::Integer(value) => value.to_string(),
             DeValue::Float(value) => value.as_str().into(),
@@ -92,7 +97,7 @@ impl<'a, 'i> ValueDe<'a, 'i> {
             DeValue::Array(_) => "a list".into(),
             DeValue::Table(_) => "a table".into(),
         };
-        Fault::new(ValueProblem::WrongType { found, expected: expected.into() }).at(&self.0.span())
+        Fault::new(ValueProblem::WrongType { found, expected: expected.into() }).at(&self.value.span())
     }
 
     fn integer(self, integer: &DeInteger<'_>) -> Result<i64, Fault> {
@@ -100,32 +105,45 @@ impl<'a, 'i> ValueDe<'a, 'i> {
     }
 
     fn too_large(self, found: String) -> Fault {
-        Fault::new(ValueProblem::NumberTooLarge { found }).at(&self.0.span())
+        Fault::new(ValueProblem::NumberTooLarge { found }).at(&self.value.span())
     }
 
     /// Any number. Nothing in a scenario may be infinite, no number at all, or so large that products overflow.
     fn number(self) -> Result<f64, Fault> {
-        match self.0.get_ref() {
+        match self.value.get_ref() {
             DeValue::Integer(integer) => Ok(self.integer(integer)? as f64),
             DeValue::Float(float) => match float.as_str().parse::<f64>() {
                 Ok(value) if value.abs() <= LARGEST => Ok(value),
                 Ok(_) if !float.as_str().contains(['i', 'n']) => Err(self.too_large(float.as_str().into())),
-                _ => Err(Fault::new(ValueProblem::NotFinite { found: float.as_str().into() }).at(&self.0.span())),
+                _ => Err(Fault::new(ValueProblem::NotFinite { found: float.as_str().into() }).at(&self.value.span())),
             },
             _ => Err(self.wrong("a number")),
         }
     }
 
-    fn table(self, expected: &str) -> Result<Entries<'a, 'i>, Fault> {
-        match self.0.get_ref() {
-            DeValue::Table(table) => Ok(Entries::new(table)),
+    pub(super) fn table(self, expected: &str) -> Result<Entries<'a, 'i>, Fault> {
+        match self.value.get_ref() {
+            DeValue::Table(table) => Ok(Entries::new(table, self.kinds)),
             _ => Err(self.wrong(expected)),
         }
     }
 
+    pub(super) fn span(self) -> Range<usize> {
+        self.value.span()
+    }
+
+    /// Hands over the key of a kind whose table was found sound.
+    fn kind<'de, T: ?Sized, V: Visitor<'de>>(
+        self,
+        read: Result<(&'static str, Box<T>), Fault>,
+        visitor: V,
+    ) -> Result<V::Value, Fault> {
+        read.and_then(|(key, _)| visitor.visit_str(key)).map_err(|fault: Fault| fault.at(&self.value.span()))
+    }
+
     fn list<'de, V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        match self.0.get_ref() {
-            DeValue::Array(array) => visitor.visit_seq(Elements(array.iter())),
+        match self.value.get_ref() {
+            DeValue::Array(array) => visitor.visit_seq(Elements(array.iter(), self.kinds)),
             _ => Err(self.wrong("a list")),
         }
     }
@@ -142,11 +160,11 @@ macro_rules! forward {
 macro_rules! whole {
     ($($method:ident),*) => {
         $(fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-            match self.0.get_ref() {
+            match self.value.get_ref() {
                 DeValue::Integer(integer) => visitor.visit_i64(self.integer(integer)?),
                 _ => Err(self.wrong("a whole number")),
             }
-            .map_err(|error: Fault| error.at(&self.0.span()))
+            .map_err(|error: Fault| error.at(&self.value.span()))
         })*
     };
 }
@@ -154,11 +172,11 @@ macro_rules! whole {
 macro_rules! text {
     ($($method:ident),*) => {
         $(fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-            match self.0.get_ref() {
+            match self.value.get_ref() {
                 DeValue::String(text) => plain(text).and_then(|text| visitor.visit_str(text)),
                 _ => Err(self.wrong("a text in quotes")),
             }
-            .map_err(|error: Fault| error.at(&self.0.span()))
+            .map_err(|error: Fault| error.at(&self.value.span()))
         })*
     };
 }
@@ -167,15 +185,15 @@ impl<'de> Deserializer<'de> for ValueDe<'_, '_> {
     type Error = Fault;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        match self.0.get_ref() {
+        match self.value.get_ref() {
             DeValue::String(text) => plain(text).and_then(|text| visitor.visit_str(text)),
             DeValue::Integer(_) | DeValue::Float(_) => self.number().and_then(|value| visitor.visit_f64(value)),
             DeValue::Boolean(value) => visitor.visit_bool(*value),
             DeValue::Datetime(_) => Err(self.wrong("a number, a text, a list or a table")),
-            DeValue::Array(array) => visitor.visit_seq(Elements(array.iter())),
-            DeValue::Table(table) => visitor.visit_map(Entries::new(table)),
+            DeValue::Array(array) => visitor.visit_seq(Elements(array.iter(), self.kinds)),
+            DeValue::Table(table) => visitor.visit_map(Entries::new(table, self.kinds)),
         }
-        .map_err(|error| error.at(&self.0.span()))
+        .map_err(|error| error.at(&self.value.span()))
     }
 
     forward! {
@@ -190,7 +208,7 @@ impl<'de> Deserializer<'de> for ValueDe<'_, '_> {
     text! { deserialize_str, deserialize_string }
 
     fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        match self.0.get_ref() {
+        match self.value.get_ref() {
             DeValue::Boolean(value) => visitor.visit_bool(*value),
             _ => Err(self.wrong("true or false")),
         }
@@ -214,8 +232,12 @@ impl<'de> Deserializer<'de> for ValueDe<'_, '_> {
 
     fn deserialize_newtype_struct<V: Visitor<'de>>(self, name: &'static str, visitor: V) -> Result<V::Value, Fault> {
         if name == AT {
-            visitor.visit_seq(Placed { de: self, span: self.0.span(), part: 0 })
-        } else if name == LIST_OR_CHOICE && !matches!(self.0.get_ref(), DeValue::Table(_)) {
+            visitor.visit_seq(Placed { de: self, span: self.value.span(), part: 0 })
+        } else if name == ROBOT {
+            self.kind(self.kinds.robot(self), visitor)
+        } else if name == LAW {
+            self.kind(self.kinds.law(self), visitor)
+        } else if name == LIST_OR_CHOICE && !matches!(self.value.get_ref(), DeValue::Table(_)) {
             self.deserialize_any(visitor)
         } else {
             visitor.visit_newtype_struct(self)
@@ -223,14 +245,14 @@ impl<'de> Deserializer<'de> for ValueDe<'_, '_> {
     }
 
     fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        self.list(visitor).map_err(|error| error.at(&self.0.span()))
+        self.list(visitor).map_err(|error| error.at(&self.value.span()))
     }
 
     fn deserialize_tuple<V: Visitor<'de>>(self, length: usize, visitor: V) -> Result<V::Value, Fault> {
-        match self.0.get_ref() {
+        match self.value.get_ref() {
             DeValue::Array(array) if array.len() != length => {
                 let problem = ValueProblem::ListLength { found: array.len(), need: length };
-                Err(Fault::new(problem).at(&self.0.span()))
+                Err(Fault::new(problem).at(&self.value.span()))
             }
             _ => self.deserialize_seq(visitor),
         }
@@ -246,7 +268,7 @@ impl<'de> Deserializer<'de> for ValueDe<'_, '_> {
     }
 
     fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        visitor.visit_map(self.table("a table")?).map_err(|error| error.at(&self.0.span()))
+        visitor.visit_map(self.table("a table")?).map_err(|error| error.at(&self.value.span()))
     }
 
     fn deserialize_struct<V: Visitor<'de>>(
@@ -256,7 +278,7 @@ impl<'de> Deserializer<'de> for ValueDe<'_, '_> {
         visitor: V,
     ) -> Result<V::Value, Fault> {
         let entries = self.table(&format!("a table of {}", fields.join(", ")))?;
-        visitor.visit_map(entries).map_err(|error| error.at(&self.0.span()))
+        visitor.visit_map(entries).map_err(|error| error.at(&self.value.span()))
     }
 
     fn deserialize_enum<V: Visitor<'de>>(
@@ -265,38 +287,8 @@ impl<'de> Deserializer<'de> for ValueDe<'_, '_> {
         choices: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Fault> {
-        let span = self.0.span();
-        let unknown = |key: &str| Fault::unknown_variant(key, choices);
-        let choice = match self.0.get_ref() {
-            DeValue::String(text) => {
-                Choice { key: plain(text).map_err(|fault| fault.at(&span))?, span: span.clone(), content: None }
-            }
-            DeValue::Table(_) => {
-                let mut entries = self.table("a table")?;
-                let Some((key, content)) = entries.next() else {
-                    let problem = ValueProblem::NoChoice { allowed: choices.to_vec() };
-                    return Err(Fault::new(problem).at(&span));
-                };
-                if let Some((second, _)) = entries.next() {
-                    let stranger = [key, second].into_iter().find(|key| !choices.contains(&key.get_ref().as_ref()));
-                    return Err(match stranger {
-                        Some(key) => plain(key.get_ref()).map_or_else(|fault| fault, unknown).at(&key.span()),
-                        None => Fault::new(ValueProblem::TwoChoices {
-                            first: key.get_ref().to_string(),
-                            second: second.get_ref().to_string(),
-                        })
-                        .at(&second.span()),
-                    });
-                }
-                let name = plain(key.get_ref()).map_err(|fault| fault.at(&key.span()))?;
-                Choice { key: name, span: key.span(), content: Some(content) }
-            }
-            _ => return Err(self.wrong(&format!("a choice of {}", choices.join(", ")))),
-        };
-        if !choices.contains(&choice.key) {
-            return Err(unknown(choice.key).at(&choice.span));
-        }
-        visitor.visit_enum(choice).map_err(|error| error.at(&span))
+        let choice = self.choice(choices)?;
+        visitor.visit_enum(choice).map_err(|error| error.at(&self.value.span()))
     }
 
     fn deserialize_ignored_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
@@ -326,32 +318,33 @@ impl<'de, D: Deserializer<'de, Error = Fault> + Copy> SeqAccess<'de> for Placed<
     }
 }
 
-struct Elements<'a, 'i>(std::slice::Iter<'a, Spanned<DeValue<'i>>>);
+struct Elements<'a, 'i>(std::slice::Iter<'a, Spanned<DeValue<'i>>>, &'a Kinds);
 
 impl<'de> SeqAccess<'de> for Elements<'_, '_> {
     type Error = Fault;
 
     fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Fault> {
-        self.0.next().map(|value| seed.deserialize(ValueDe(value))).transpose()
+        self.0.next().map(|value| seed.deserialize(ValueDe { value, kinds: self.1 })).transpose()
     }
 }
 
-type Entry<'a, 'i> = (&'a Spanned<DeString<'i>>, &'a Spanned<DeValue<'i>>);
+pub(super) type Entry<'a, 'i> = (&'a Spanned<DeString<'i>>, &'a Spanned<DeValue<'i>>);
 
 /// The entries of a table in the order of the file, so that the first mistake is the one reported.
-struct Entries<'a, 'i> {
+pub(super) struct Entries<'a, 'i> {
     entries: std::vec::IntoIter<Entry<'a, 'i>>,
     value: Option<&'a Spanned<DeValue<'i>>>,
+    kinds: &'a Kinds,
 }
 
 impl<'a, 'i> Entries<'a, 'i> {
-    fn new(table: &'a DeTable<'i>) -> Self {
+    fn new(table: &'a DeTable<'i>, kinds: &'a Kinds) -> Self {
         let mut entries: Vec<_> = table.iter().collect();
         entries.sort_by_key(|(key, _)| key.span().start);
-        Entries { entries: entries.into_iter(), value: None }
+        Entries { entries: entries.into_iter(), value: None, kinds }
     }
 
-    fn next(&mut self) -> Option<Entry<'a, 'i>> {
+    pub(super) fn next(&mut self) -> Option<Entry<'a, 'i>> {
         self.entries.next()
     }
 }
@@ -367,7 +360,7 @@ impl<'de> MapAccess<'de> for Entries<'_, '_> {
 
     fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Fault> {
         match self.value.take() {
-            Some(value) => seed.deserialize(ValueDe(value)),
+            Some(value) => seed.deserialize(ValueDe { value, kinds: self.kinds }),
             None => Err(Fault::custom("a key without a value")),
         }
     }
@@ -395,55 +388,5 @@ impl<'de> Deserializer<'de> for KeyDe<'_, '_> {
     forward_to_deserialize_any! {
         bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf option unit unit_struct seq
         tuple tuple_struct map struct enum identifier ignored_any
-    }
-}
-
-/// A choice among several, with what belongs to it.
-struct Choice<'a, 'i> {
-    key: &'a str,
-    span: Range<usize>,
-    content: Option<&'a Spanned<DeValue<'i>>>,
-}
-
-impl<'de, 'a, 'i> EnumAccess<'de> for Choice<'a, 'i> {
-    type Error = Fault;
-    type Variant = Self;
-
-    fn variant_seed<V: DeserializeSeed<'de>>(self, seed: V) -> Result<(V::Value, Self), Fault> {
-        let key: StrDeserializer<'_, Fault> = self.key.into_deserializer();
-        Ok((seed.deserialize(key)?, self))
-    }
-}
-
-impl<'a, 'i> Choice<'a, 'i> {
-    fn content(&self) -> Result<ValueDe<'a, 'i>, Fault> {
-        let missing = || ValueProblem::ChoiceNeedsValue { choice: self.key.into() };
-        self.content.map(ValueDe).ok_or_else(|| Fault::new(missing()).at(&self.span))
-    }
-}
-
-impl<'de> VariantAccess<'de> for Choice<'_, '_> {
-    type Error = Fault;
-
-    fn unit_variant(self) -> Result<(), Fault> {
-        match self.content {
-            None => Ok(()),
-            Some(_) => {
-                let problem = ValueProblem::ChoiceTakesNoValue { choice: self.key.into() };
-                Err(Fault::new(problem).at(&self.span))
-            }
-        }
-    }
-
-    fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, Fault> {
-        seed.deserialize(self.content()?)
-    }
-
-    fn tuple_variant<V: Visitor<'de>>(self, length: usize, visitor: V) -> Result<V::Value, Fault> {
-        self.content()?.deserialize_tuple(length, visitor)
-    }
-
-    fn struct_variant<V: Visitor<'de>>(self, fields: &'static [&'static str], visitor: V) -> Result<V::Value, Fault> {
-        self.content()?.deserialize_struct("", fields, visitor)
     }
 }

@@ -15,7 +15,7 @@ const SMALLEST: f64 = 1e-30;
 
 /// A problem, and where once that is known.
 #[derive(Debug)]
-pub(super) struct Fault {
+pub struct Fault {
     pub(super) problem: Box<ScenarioProblem>,
     pub(super) span: Option<Range<usize>>,
     /// The file that the span is of, if it is not the scenario.
@@ -23,12 +23,19 @@ pub(super) struct Fault {
 }
 
 impl Fault {
-    pub(super) fn new(problem: impl Into<ScenarioProblem>) -> Self {
+    /// A problem without a place.
+    pub fn new(problem: impl Into<ScenarioProblem>) -> Self {
         Fault { problem: Box::new(problem.into()), span: None, source: None }
     }
 
+    /// A mistake that a kind of one's own finds at `place`, and what to do about it.
+    pub fn own<T>(place: &At<T>, error: &dyn std::error::Error, help: Option<&str>) -> Self {
+        let problem = ScenarioProblem::Own { message: error.to_string(), help: help.map(str::to_owned) };
+        Fault::new(problem).at(&place.span)
+    }
+
     /// Adds the place unless a closer one is known.
-    pub(super) fn at(mut self, span: &Range<usize>) -> Self {
+    pub fn at(mut self, span: &Range<usize>) -> Self {
         if self.source.is_none() {
             self.span.get_or_insert_with(|| span.clone());
         }
@@ -51,11 +58,15 @@ impl fmt::Display for Fault {
 impl std::error::Error for Fault {}
 
 /// A problem with a value.
-pub(super) fn fault<T>(value: &At<T>, problem: impl Into<ScenarioProblem>) -> Fault {
+pub fn fault<T>(value: &At<T>, problem: impl Into<ScenarioProblem>) -> Fault {
     Fault::new(problem).at(&value.span)
 }
 
-pub(super) fn positive(key: &'static str, number: &At<f64>) -> Result<f64, Fault> {
+/// A positive number. Messages call it `key`.
+///
+/// # Errors
+/// The mistake, at its place.
+pub fn positive(key: &'static str, number: &At<f64>) -> Result<f64, Fault> {
     let value = number.value;
     if value > 0.0 {
         between(key, number, SMALLEST, LARGEST)
@@ -65,21 +76,35 @@ pub(super) fn positive(key: &'static str, number: &At<f64>) -> Result<f64, Fault
 }
 
 /// A positive number, or the usual one.
-pub(super) fn positive_or(key: &'static str, number: &Option<At<f64>>, usual: f64) -> Result<f64, Fault> {
+///
+/// # Errors
+/// The mistake, at its place.
+pub fn positive_or(key: &'static str, number: &Option<At<f64>>, usual: f64) -> Result<f64, Fault> {
     number.as_ref().map_or(Ok(usual), |number| positive(key, number))
 }
 
 /// A number that is not negative, or the usual one.
-pub(super) fn not_negative_or(key: &'static str, number: &Option<At<f64>>, usual: f64) -> Result<f64, Fault> {
+///
+/// # Errors
+/// The mistake, at its place.
+pub fn not_negative_or(key: &'static str, number: &Option<At<f64>>, usual: f64) -> Result<f64, Fault> {
     number.as_ref().map_or(Ok(usual), |number| not_negative(key, number))
 }
 
-pub(super) fn not_negative(key: &'static str, number: &At<f64>) -> Result<f64, Fault> {
+/// A number that is not negative.
+///
+/// # Errors
+/// The mistake, at its place.
+pub fn not_negative(key: &'static str, number: &At<f64>) -> Result<f64, Fault> {
     let value = number.value;
     if value >= 0.0 { Ok(value) } else { Err(fault(number, ValueProblem::Negative { key, value })) }
 }
 
-pub(super) fn between(key: &'static str, number: &At<f64>, low: f64, high: f64) -> Result<f64, Fault> {
+/// A number from `low` up to `high`.
+///
+/// # Errors
+/// The mistake, at its place.
+pub fn between(key: &'static str, number: &At<f64>, low: f64, high: f64) -> Result<f64, Fault> {
     let value = number.value;
     if (low..=high).contains(&value) {
         Ok(value)
@@ -89,7 +114,10 @@ pub(super) fn between(key: &'static str, number: &At<f64>, low: f64, high: f64) 
 }
 
 /// A whole number from one up to `most`.
-pub(super) fn count(key: &'static str, number: &At<i64>, most: u32) -> Result<usize, Fault> {
+///
+/// # Errors
+/// The mistake, at its place.
+pub fn count(key: &'static str, number: &At<i64>, most: u32) -> Result<usize, Fault> {
     match u32::try_from(number.value) {
         Ok(value) if (1..=most).contains(&value) => Ok(value as usize),
         _ => {
@@ -114,24 +142,25 @@ pub(super) fn seed(number: &At<i64>) -> Result<u64, Fault> {
 }
 
 /// A list with at least one entry.
-pub(super) fn filled<'a, T>(key: &'static str, list: &'a At<Vec<T>>) -> Result<&'a [T], Fault> {
+///
+/// # Errors
+/// The mistake, at its place.
+pub fn filled<'a, T>(key: &'static str, list: &'a At<Vec<T>>) -> Result<&'a [T], Fault> {
     if list.value.is_empty() { Err(fault(list, ValueProblem::Empty { key })) } else { Ok(&list.value) }
 }
 
 /// A list at `place` has as many entries as `whose` need.
-pub(super) fn length(
-    key: &'static str,
-    place: &Range<usize>,
-    found: usize,
-    need: usize,
-    whose: &str,
-) -> Result<(), Fault> {
+///
+/// # Errors
+/// The mistake, at its place.
+pub fn length(key: &'static str, place: &Range<usize>, found: usize, need: usize, whose: &str) -> Result<(), Fault> {
     if found == need {
         return Ok(());
     }
     Err(Fault::new(ValueProblem::VectorLength { key, found, need, agent: whose.to_owned() }).at(place))
 }
 
-pub(super) fn values(list: &[At<f64>]) -> Vec<f64> {
+/// The numbers of a list.
+pub fn values(list: &[At<f64>]) -> Vec<f64> {
     list.iter().map(|number| number.value).collect()
 }

@@ -1,23 +1,24 @@
 //! The scenario file as it is written. The doc comments of this file are the descriptions of the published JSON schema.
 
-use schemars::JsonSchema;
+use std::borrow::Cow;
+use std::fmt;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
+use serde::de::{Deserializer, Visitor};
 
 use super::at::At;
-use super::attitude_file::AttitudeStartFile;
-use super::chain_file::{
-    AdaptiveBacksteppingFile, ChainFile, ImmersionFile, LinearAdaptiveFile, LinearisingFile, PureFeedbackFile,
-    StrictFeedbackFile,
-};
+use super::attitude_file::{AttitudeStartFile, WheelStartFile};
 use super::control_file::ControlFile;
 use super::leader_file::{LeaderFile, LeaderReferenceFile};
 use super::network_file::NetworkFile;
 use super::push_file::PushFile;
-use super::spacecraft_file::{AttitudeFile, SpacecraftFile, SpacecraftStartFile};
-use super::systems_file::{PositionOnlyFile, TargetFile, TrackingFile};
-use super::task_file::TaskSpaceFile;
-use super::values::{GainFile, GainOrBandwidth, Named, NotNegative, Positive, StartValues};
-use super::vehicle_file::{RotorcraftFile, ThrustFile, VehicleFile};
+use super::systems_file::{TargetFile, TrackingFile};
+use super::values::{Positive, StartValues};
+
+/// The names under which [`RobotFile`] and [`LawFile`] ask their deserialiser for the key of a kind.
+pub(super) const ROBOT: &str = "$forwardstep::Robot";
+pub(super) const LAW: &str = "$forwardstep::Law";
 
 /// A forwardstep scenario: a network of robots, how they are controlled, and how long to watch them.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -95,84 +96,57 @@ pub struct AgentFile {
     pub enforce_limits: Option<At<bool>>,
 }
 
-/// The robots that can be simulated.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum RobotFile {
-    /// An arm, or any tree of rigid bodies on a fixed base, from a URDF.
-    Urdf(UrdfFile),
-    /// The two-link planar arm in closed form: the first angle from the horizontal, the second relative to the first link.
-    PlanarArm(PlanarArmFile),
-    /// A point mass that is pushed along every axis.
-    PointMass(PointMassFile),
-    /// A vehicle in space with one thrust along its own axis, whose angular velocity obeys at once.
-    Vehicle(VehicleFile),
-    /// The same as a rigid body with inertia that torques turn.
-    Rotorcraft(RotorcraftFile),
-    /// A spacecraft that turns itself by reaction wheels.
-    Spacecraft(SpacecraftFile),
-    /// A plant of any order with formulas for χ and ψ: Section IV of the paper.
-    Chain(ChainFile),
-    /// A parametric chain in strict-feedback form.
-    StrictFeedback(StrictFeedbackFile),
-    /// A parametric chain in pure-feedback form.
-    PureFeedback(PureFeedbackFile),
+/// The robot of an agent: the key of a kind, whose table stays in the tree of the file.
+#[derive(Clone, Debug)]
+pub struct RobotFile {
+    /// The key.
+    pub key: String,
 }
 
-/// A robot from a URDF.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct UrdfFile {
-    /// The URDF, beside the scenario file or in `inputs` beside it, or the name of a shipped robot: `ur5e.urdf`, `panda.urdf`,
-    /// `gantry.urdf`.
-    pub file: At<String>,
-    /// Joints held at a value, in rad or m; each removes one axis.
-    #[serde(default)]
-    pub locked: Named,
-    /// What to do with Coulomb friction in the URDF, which the law does not cover.
-    pub friction: Option<FrictionFile>,
-    /// Gravity in the base frame, in m/s². Default: [0, 0, -9.81].
-    pub gravity_m_s2: Option<[f64; 3]>,
+/// The law of an agent: the key of a kind, whose table stays in the tree of the file.
+#[derive(Clone, Debug)]
+pub struct LawFile {
+    /// The key.
+    pub key: String,
 }
 
-/// What to do with Coulomb friction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum FrictionFile {
-    /// Simulate without it.
-    Ignore,
+/// Implements what a choice of a kind needs: its key goes through serde, its table stays where it is, and the schema is
+/// filled in by the list of kinds.
+macro_rules! kind {
+    ($file:ident, $name:ident, $schema:literal) => {
+        impl<'de> Deserialize<'de> for $file {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                deserializer.deserialize_newtype_struct($name, KeyVisitor).map(|key| $file { key })
+            }
+        }
+
+        impl JsonSchema for $file {
+            fn schema_name() -> Cow<'static, str> {
+                $schema.into()
+            }
+
+            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+                json_schema!({ "type": "object" })
+            }
+        }
+    };
 }
 
-/// Masses and lengths of a two-link planar arm.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PlanarArmFile {
-    /// Mass of each link, in kg.
-    #[schemars(with = "[Positive; 2]")]
-    pub mass_kg: [At<f64>; 2],
-    /// Length of each link, in m.
-    #[schemars(with = "[Positive; 2]")]
-    pub length_m: [At<f64>; 2],
-    /// From each joint to the centre of mass of its link, in m. Default: the middle of the link.
-    pub com_m: Option<[At<f64>; 2]>,
-    /// Inertia of each link about its centre of mass, in kg m². Default: that of a uniform rod, m l²/12.
-    #[schemars(with = "Option<[NotNegative; 2]>")]
-    pub inertia_kg_m2: Option<[At<f64>; 2]>,
-    /// Gravity, pointing down, in m/s². Default: 9.81.
-    #[schemars(range(min = 0))]
-    pub gravity_m_s2: Option<At<f64>>,
-}
+kind!(RobotFile, ROBOT, "RobotFile");
+kind!(LawFile, LAW, "LawFile");
 
-/// A point mass.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PointMassFile {
-    /// The number of axes.
-    #[schemars(range(min = 1))]
-    pub dimension: At<i64>,
-    /// Its mass, in kg.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub mass_kg: At<f64>,
+struct KeyVisitor;
+
+impl Visitor<'_> for KeyVisitor {
+    type Value = String;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a table with one key")
+    }
+
+    fn visit_str<E: serde::de::Error>(self, key: &str) -> Result<String, E> {
+        Ok(key.to_owned())
+    }
 }
 
 /// How the robots of a population differ from what is written, each number by a random factor of its own: the masses and
@@ -212,7 +186,7 @@ pub struct StartFile {
     /// Angular velocities of rotorcraft and spacecraft in the axes of the body, in rad/s.
     pub angular_velocity_rad_s: Option<At<[f64; 3]>>,
     /// Where spacecraft start.
-    pub spacecraft: Option<At<SpacecraftStartFile>>,
+    pub spacecraft: Option<At<WheelStartFile>>,
     /// What else there is of a chain: its derivatives from the second on, or x2, x3, … of one in feedback form.
     pub higher_states: Option<At<StartValues>>,
     /// The state of the reference dynamics.
@@ -313,76 +287,6 @@ pub struct AgentConsensusFile {
     pub roots_per_s: Option<At<Vec<At<f64>>>>,
     /// The gain λ of Remark 4 of this agent.
     pub manipulability_gain: Option<At<f64>>,
-}
-
-/// How the velocity is made to follow the reference velocity.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum LawFile {
-    /// The parameters of the robot are unknown and estimated: (6) and (7) of the paper.
-    Adaptive(AdaptiveFile),
-    /// The parameters of the robot are known.
-    Known(KnownFile),
-    /// A point mass of unknown mass whose velocity is not measured: (a8) of the paper.
-    PositionOnly(PositionOnlyFile),
-    /// A vehicle with one thrust: (46), (50) or (57) of the paper.
-    Thrust(ThrustFile),
-    /// The tip of a robot follows a target, with uncertain lengths and without its velocity: (80) to (82) of the paper.
-    TaskSpace(Box<TaskSpaceFile>),
-    /// A spacecraft follows an attitude, without its angular velocity: (97) to (105) of the paper.
-    Attitude(AttitudeFile),
-    /// A chain of derivatives that is known.
-    Linearising(LinearisingFile),
-    /// A chain of derivatives with unknown parameters.
-    LinearAdaptive(LinearAdaptiveFile),
-    /// The same by immersion and invariance.
-    Immersion(ImmersionFile),
-    /// A chain in strict-feedback or pure-feedback form with unknown parameters.
-    AdaptiveBackstepping(AdaptiveBacksteppingFile),
-}
-
-/// The adaptive tracking law.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct AdaptiveFile {
-    /// The gain K. Default: a bandwidth of 20 1/s for a URDF, 8 otherwise.
-    pub damping: Option<DampingFile>,
-    /// The gain Γ. Default: a bandwidth of 5 1/s for a URDF, 10 otherwise.
-    pub adaptation_gain: Option<At<GainOrBandwidth>>,
-    /// The estimate at the start. Default: zero.
-    pub estimate_start: Option<EstimateStartFile>,
-}
-
-/// The tracking law with known parameters.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct KnownFile {
-    /// The gain K. Default: a bandwidth of 20 1/s for a URDF, 8 otherwise.
-    pub damping: Option<DampingFile>,
-}
-
-/// The gain K of the tracking law.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum DampingFile {
-    /// A number, the diagonal, or the rows of a symmetric positive definite matrix; in N m s/rad or N s/m.
-    Gain(At<GainFile>),
-    /// In 1/s; multiplied by the diagonal of the mass matrix at the start.
-    BandwidthPerS(#[schemars(with = "Positive")] At<f64>),
-}
-
-/// The parameter estimate at the start.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum EstimateStartFile {
-    /// Nothing is known: all zero.
-    Zero,
-    /// The true parameters.
-    True,
-    /// The true parameters times this number.
-    Scaled(At<f64>),
-    /// These numbers.
-    Given(At<Vec<At<f64>>>),
 }
 
 /// How to integrate.

@@ -21,7 +21,8 @@ pub struct InputFile {
 
 /// Where the files of a scenario are, and which were read so far. A file is read once, however often it is named, so that
 /// all who name it see the same text.
-pub(super) struct InputFolder {
+#[derive(Debug)]
+pub struct InputFolder {
     folder: Option<PathBuf>,
     /// Names of the scenario whose files stand elsewhere.
     moved: Vec<(String, PathBuf)>,
@@ -36,7 +37,10 @@ impl InputFolder {
     }
 
     /// The text of the file called `name`.
-    pub(super) fn text(&mut self, name: &str) -> Result<SourceText, ReadError> {
+    ///
+    /// # Errors
+    /// [`ReadError`] when it is nowhere, or is no text.
+    pub fn text(&mut self, name: &str) -> Result<SourceText, ReadError> {
         if let Some(known) = self.read.iter().find(|file| file.name == name) {
             return Ok(known.source.clone());
         }

@@ -35,20 +35,21 @@ mod agents;
 pub mod at;
 mod attitude;
 pub mod attitude_file;
-mod chain;
-pub mod chain_file;
+mod choice;
 mod control;
 pub mod control_file;
 mod control_problem;
 mod de;
+mod document;
 mod edges;
 pub mod edges_file;
 mod fault;
 pub mod file;
 pub mod formula;
 mod formula_problem;
+mod gains;
 pub(crate) mod inputs;
-mod law;
+pub mod kinds;
 mod leader;
 pub mod leader_file;
 mod links;
@@ -66,22 +67,16 @@ mod random;
 mod refusal;
 mod robots;
 mod shipped;
-mod spacecraft;
-pub mod spacecraft_file;
 mod spread;
 mod start;
 mod system_problem;
 pub mod systems_file;
 mod table;
 mod target;
-mod task;
-pub mod task_file;
 mod template;
 mod unused;
 mod value_problem;
 pub mod values;
-mod vehicle;
-pub mod vehicle_file;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -89,13 +84,9 @@ use std::sync::Arc;
 
 use forwardstep_sim::leader::Following;
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Exchange, Known, Method, Network, ReferenceKind, Setup, Solver, TimeSpan, recorded_columns,
-    validate,
+    AgentSetup, Exchange, Method, Network, ReferenceKind, Setup, Solver, TimeSpan, recorded_columns, validate,
 };
 use miette::Diagnostic;
-use serde::Deserialize;
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
 
 pub use control_problem::ControlProblem;
 pub use inputs::InputFile;
@@ -107,21 +98,21 @@ pub use push_problem::PushProblem;
 pub use shipped::{SHIPPED_SCENARIOS, SHIPPED_TABLES, ShippedScenario, ShippedTable, shipped_scenario};
 pub use system_problem::SystemProblem;
 pub use table::TableProblem;
-pub use template::{Template, TemplateDelay, TemplateGraph, TemplateRobot};
+pub use template::{RobotTemplate, Template, TemplateDelay, TemplateGraph};
 pub use value_problem::ValueProblem;
 
 use crate::output::Goal;
 use crate::urdf::UrdfProblem;
 use crate::{InputError, SourceText};
 use at::At;
-use de::ValueDe;
+use document::Document;
 use fault::{Fault, between, fault, positive, positive_count, positive_or};
 use file::{
-    AdaptiveMethodFile, ConsensusFile, ExchangeFile, ExpectFile, GoalFile, MethodFile, ReferenceFile, ScenarioFile,
-    SolverFile,
+    AdaptiveMethodFile, ConsensusFile, ExchangeFile, ExpectFile, GoalFile, MethodFile, ReferenceFile, SolverFile,
 };
 use inputs::InputFolder;
-use refusal::refused;
+use kinds::Kinds;
+use refusal::{Laws, refused};
 use robots::Stop;
 
 /// Numbers that a recording may hold; eight bytes each.
@@ -193,25 +184,38 @@ impl Diagnostic for ScenarioError {
 /// # Errors
 /// The first mistake, at its place in the scenario or in a file that it names. Any text gives a result; none panics.
 pub fn read_scenario(name: &str, source: &SourceText, folder: Option<&Path>) -> Result<Scenario, ScenarioError> {
-    read_with(name, source, InputFolder::new(folder, Vec::new()))
+    Kinds::shipped().read_scenario(name, source, folder)
 }
 
-/// The same with some of its files elsewhere: `moved` has their names and paths.
-pub(crate) fn read_moved_scenario(
-    name: &str,
-    source: &SourceText,
-    folder: &Path,
-    moved: Vec<(String, PathBuf)>,
-) -> Result<Scenario, ScenarioError> {
-    read_with(name, source, InputFolder::new(Some(folder), moved))
+impl Kinds {
+    /// [`read_scenario`] with these kinds.
+    ///
+    /// # Errors
+    /// As of [`read_scenario`].
+    pub fn read_scenario(
+        &self,
+        name: &str,
+        source: &SourceText,
+        folder: Option<&Path>,
+    ) -> Result<Scenario, ScenarioError> {
+        read(name, source, InputFolder::new(folder, Vec::new()), self).map_err(|stop| stop.in_file(source))
+    }
+
+    /// The same with some of its files elsewhere: `moved` has their names and paths.
+    pub(crate) fn read_moved_scenario(
+        &self,
+        name: &str,
+        source: &SourceText,
+        folder: &Path,
+        moved: Vec<(String, PathBuf)>,
+    ) -> Result<Scenario, ScenarioError> {
+        read(name, source, InputFolder::new(Some(folder), moved), self).map_err(|stop| stop.in_file(source))
+    }
 }
 
-fn read_with(name: &str, source: &SourceText, folder: InputFolder) -> Result<Scenario, ScenarioError> {
-    read(name, source, folder).map_err(|stop| stop.in_file(source))
-}
-
-fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scenario, Stop> {
-    let file = parse(source)?;
+fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds) -> Result<Scenario, Stop> {
+    let document = Document::parse(source)?;
+    let file = document.file(kinds)?;
     if file.format.value != 1 {
         return Err(fault(&file.format, ScenarioProblem::Format { found: file.format.value }).into());
     }
@@ -219,7 +223,8 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
     let end_s = positive("end_s", &file.time.end_s)?;
     let every = file.time.record_every_s.as_ref();
     let record_every_s = positive_or("record_every_s", &file.time.record_every_s, RECORD_EVERY_S)?;
-    let mut read = agents::agents(&file, source, &mut folder, &mut notices, end_s)?;
+    let from = agents::Source { file: &file, document: &document, kinds, text: source, end_s };
+    let mut read = agents::agents(&from, &mut folder, &mut notices)?;
     pushes::pushes(&file.pushes, &mut read, end_s, source, &mut folder, &mut notices)?;
     let agents = read.agents;
     let mut names: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
@@ -253,13 +258,14 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
         control,
     };
     notices.extend(Notice::coarse_sampling(&setup));
-    let fleet = |agent: &AgentSetup| agent.law.is::<Adaptive>() || agent.law.is::<Known>();
+    let batched = |agent: &AgentSetup| agent.law.shares_batch(&*agent.law);
     let agrees = setup.reference != ReferenceKind::Tracking && setup.following().is_none();
-    let columns = if agrees && setup.agents.iter().all(fleet) {
-        validate(&setup).map_err(|error| refused(&file, error))?;
+    let laws = Laws { agents: &setup.agents, tables: &read.laws };
+    let columns = if agrees && setup.agents.iter().all(batched) {
+        validate(&setup).map_err(|error| refused(&file, &laws, error))?;
         setup.agents.iter().map(columns).sum()
     } else {
-        recorded_columns(&setup).map_err(|error| refused(&file, error))?.len()
+        recorded_columns(&setup).map_err(|error| refused(&file, &laws, error))?.len()
     };
     recording_fits(&setup, columns, every.unwrap_or(&file.time.end_s))?;
     let goal = file.goal.as_ref().map(|file| goal(file, &setup.reference)).transpose()?;
@@ -271,27 +277,6 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder) -> Result<Scen
         goal,
         notices,
         inputs: folder.into_read(),
-    })
-}
-
-/// TOML → the file's structs.
-fn parse(source: &SourceText) -> Result<ScenarioFile, Fault> {
-    let unreadable = |error: toml::de::Error| {
-        let fault = Fault::new(ValueProblem::Unreadable { message: error.message().to_owned() });
-        match error.span() {
-            Some(span) => fault.at(&span),
-            None => fault,
-        }
-    };
-    let table = DeTable::parse(source.text()).map_err(unreadable)?;
-    let span = table.span();
-    let root = Spanned::new(span.clone(), DeValue::Table(table.into_inner()));
-    ScenarioFile::deserialize(ValueDe(&root)).map_err(|mut fault| {
-        // What is missing from the file as a whole has no place in it.
-        if fault.span == Some(span) {
-            fault.span = None;
-        }
-        fault
     })
 }
 
@@ -395,11 +380,11 @@ fn recording_fits(setup: &Setup, columns: usize, place: &At<f64>) -> Result<(), 
 /// if it is pushed.
 fn columns(agent: &AgentSetup) -> usize {
     let per_axis = 4 + agent.roots_per_s.len().max(2) + usize::from(!agent.pushes.is_empty());
-    let estimates = if agent.law.is::<Adaptive>() { agent.robot.theta.len() } else { 0 };
+    let estimates = if agent.estimates() { agent.robot.theta.len() } else { 0 };
     per_axis * agent.robot.axes.len() + estimates + 2
 }
 
-/// The JSON schema of the format, for editors.
+/// The JSON schema of the format with the shipped kinds, for editors.
 pub fn schema() -> schemars::Schema {
-    schemars::schema_for!(ScenarioFile)
+    Kinds::shipped().schema()
 }

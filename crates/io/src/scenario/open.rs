@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use miette::Diagnostic;
 use thiserror::Error;
 
+use super::kinds::Kinds;
 use super::shipped::{SHIPPED_SCENARIOS, shipped_scenario};
-use super::{Scenario, ScenarioError, read_scenario};
+use super::{Scenario, ScenarioError};
 use crate::SourceText;
 use crate::files::{ReadError, neighbours, read_text};
 use crate::wording::choose;
@@ -76,9 +77,23 @@ impl Diagnostic for OpenError {
 /// # Errors
 /// [`OpenError`] when there is no such scenario, or it cannot be read or has a mistake.
 pub fn open_scenario(name_or_path: &str) -> Result<Scenario, OpenError> {
+    Kinds::shipped().open_scenario(name_or_path)
+}
+
+impl Kinds {
+    /// [`open_scenario`] with these kinds.
+    ///
+    /// # Errors
+    /// As of [`open_scenario`].
+    pub fn open_scenario(&self, name_or_path: &str) -> Result<Scenario, OpenError> {
+        open(name_or_path, self)
+    }
+}
+
+fn open(name_or_path: &str, kinds: &Kinds) -> Result<Scenario, OpenError> {
     if let Some(shipped) = shipped_scenario(name_or_path) {
         let source = SourceText::new(shipped.name, shipped.text);
-        return Ok(read_scenario(shipped.name, &source, None)?);
+        return Ok(kinds.read_scenario(shipped.name, &source, None)?);
     }
     let path = Path::new(name_or_path);
     let text = read_text(path).map_err(|reason| {
@@ -90,5 +105,5 @@ pub fn open_scenario(name_or_path: &str) -> Result<Scenario, OpenError> {
         }
     })?;
     let name = path.file_stem().map_or_else(|| "scenario".into(), |stem| stem.to_string_lossy());
-    Ok(read_scenario(&name, &SourceText::new(name_or_path, text), path.parent())?)
+    Ok(kinds.read_scenario(&name, &SourceText::new(name_or_path, text), path.parent())?)
 }

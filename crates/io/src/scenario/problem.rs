@@ -214,6 +214,14 @@ pub enum ScenarioProblem {
     /// A disagreement among agents that do not agree.
     #[error("`disagreement_below` is about agreement, but every agent follows a target or a leader")]
     NothingAgreed,
+    /// What a kind that was added to the list finds wrong.
+    #[error("{message}")]
+    Own {
+        /// What is wrong.
+        message: String,
+        /// What to do about it.
+        help: Option<String>,
+    },
     /// What the closed loop refuses although every number by itself has a meaning.
     #[error("{0}")]
     Setup(SetupError),
@@ -275,6 +283,7 @@ impl Problem for ScenarioProblem {
             ScenarioProblem::ThresholdUnused { .. } | ScenarioProblem::TwoGoals => "delete one of the two".into(),
             ScenarioProblem::NothingTracked => "write `disagreement_below`".into(),
             ScenarioProblem::NothingAgreed => "write `error_below`".into(),
+            ScenarioProblem::Own { help, .. } => return help.clone(),
             ScenarioProblem::Setup(error) => return refusal::advice(error),
             _ => return None,
         };

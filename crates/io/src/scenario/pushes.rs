@@ -7,7 +7,7 @@ use forwardstep_core::robot::tree::{Axes, LinkPoint};
 use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push, Table};
 use forwardstep_sim::{AgentSetup, Attachments, AxisUnit, SetupError};
 
-use super::agents::{Agents, Body};
+use super::agents::Agents;
 use super::at::At;
 use super::fault::{Fault, fault, filled, length, not_negative, not_negative_or, positive_or, values};
 use super::formula::formula;
@@ -19,6 +19,7 @@ use super::push_file::{
     InterpolateFile, PushFile, WrenchFile,
 };
 use super::push_problem::PushProblem;
+use super::robots::Body;
 use super::table::{over_time, rising, table_text};
 use super::value_problem::ValueProblem;
 use super::values::Item;

@@ -1,22 +1,38 @@
 //! What the closed loop refuses although every number by itself has a meaning: where in the scenario it stands, and what to do.
 
 use std::ops::Range;
+use std::rc::Rc;
 
 use forwardstep_core::controller::ChainError;
-use forwardstep_sim::{SetupError, VelocityQuantity};
+use forwardstep_sim::{AgentSetup, SetupError, VelocityQuantity};
 
 use super::agents::names;
 use super::at::At;
 use super::control_file::ControlFile;
+use super::document::KeyedLaw;
 use super::fault::Fault;
-use super::file::{AgentFile, AgentReferenceFile, ConsensusFile, LawFile, ReferenceFile, ScenarioFile};
+use super::file::{AgentFile, AgentReferenceFile, ConsensusFile, ReferenceFile, ScenarioFile};
+use super::kinds::LawKind;
 use super::problem::ScenarioProblem;
 
 type Span = Range<usize>;
 
+/// The tables of the agents' laws.
+pub(super) struct Laws<'a> {
+    pub(super) agents: &'a [AgentSetup],
+    pub(super) tables: &'a [Rc<KeyedLaw>],
+}
+
+impl Laws<'_> {
+    fn of(&self, agent: &str) -> Option<&dyn LawKind> {
+        let index = self.agents.iter().position(|known| known.name == agent)?;
+        self.tables.get(index).map(|law| &*law.1)
+    }
+}
+
 /// The error at its place in the file.
-pub(super) fn refused(file: &ScenarioFile, error: SetupError) -> Fault {
-    let place = place(file, &error);
+pub(super) fn refused(file: &ScenarioFile, laws: &Laws<'_>, error: SetupError) -> Fault {
+    let place = place(file, laws, &error);
     let fault = Fault::new(ScenarioProblem::Setup(error));
     match place {
         Some(span) => fault.at(&span),
@@ -25,7 +41,8 @@ pub(super) fn refused(file: &ScenarioFile, error: SetupError) -> Fault {
 }
 
 /// What the error is about, as closely as it is written.
-fn place(file: &ScenarioFile, error: &SetupError) -> Option<Span> {
+fn place(file: &ScenarioFile, laws: &Laws<'_>, error: &SetupError) -> Option<Span> {
+    let law = |agent: &str| laws.of(agent).and_then(|law| law.place(error)).or_else(|| law(file, agent));
     let reference = || Some(file.reference.span.clone());
     let exchange = || common(file).map(|file| file.exchange.span.clone()).or_else(reference);
     match error {
@@ -57,9 +74,8 @@ fn place(file: &ScenarioFile, error: &SetupError) -> Option<Span> {
         }
         SetupError::Chain { agent, error } => match error {
             ChainError::Guide(_) => roots(file, agent),
-            ChainError::Antiderivative { parameter, .. } => antiderivative(file, agent, *parameter),
             ChainError::Expression(_) => Some(entry(file, agent)?.robot.span.clone()),
-            _ => law(file, agent),
+            _ => law(agent),
         },
         SetupError::NoManipulability { agent, .. } => manipulability(file, agent),
         SetupError::Length { agent, .. }
@@ -69,7 +85,7 @@ fn place(file: &ScenarioFile, error: &SetupError) -> Option<Span> {
         | SetupError::Tip { agent, .. }
         | SetupError::ProjectionOfMatrix { agent }
         | SetupError::BoundsOfKnown { agent }
-        | SetupError::NotFinite { agent, .. } => law(file, agent),
+        | SetupError::NotFinite { agent, .. } => law(agent),
         SetupError::Memory { .. } => {
             let written = file.solver.as_ref().and_then(|solver| solver.memory_budget_bytes.as_ref());
             let sampled = || file.control.as_ref().map(|control| control.sample_hz.span.clone());
@@ -93,15 +109,6 @@ fn law(file: &ScenarioFile, agent: &str) -> Option<Span> {
     let entry = entry(file, agent)?;
     let law = entry.law.as_ref().or(file.law.as_ref());
     Some(law.map_or_else(|| entry.robot.span.clone(), |law| law.span.clone()))
-}
-
-fn antiderivative(file: &ScenarioFile, agent: &str, parameter: usize) -> Option<Span> {
-    match entry(file, agent)?.law.as_ref().or(file.law.as_ref()).map(|law| &law.value) {
-        Some(LawFile::Immersion(immersion)) => {
-            Some(immersion.antiderivatives.as_ref()?.value.get(parameter)?.span.clone())
-        }
-        _ => law(file, agent),
-    }
 }
 
 /// The reference dynamics of all, where they lead to agreement.

@@ -1,22 +1,23 @@
 //! `start` → [`Start`].
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
-use forwardstep_sim::{AxisUnit, ChainModel, Robot, RobotSetup, RotorcraftModel, SpacecraftModel, Start, VehicleModel};
+use forwardstep_core::attitude::{IDENTITY, Quaternion};
+use forwardstep_sim::{AxisUnit, RobotSetup, Start};
 
 use super::at::At;
+use super::attitude::attitude;
 use super::fault::{Fault, fault, length, seed, values};
 use super::file::StartFile;
 use super::problem::ScenarioProblem;
 use super::random::{Stream, draws};
-use super::spacecraft;
 use super::system_problem::SystemProblem;
 use super::value_problem::ValueProblem;
 use super::values::{Item, RandomFile, StartValues};
-use super::vehicle;
 
 /// The `start` of one agent with the position of the agent among those that share it.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Shared<'a> {
     pub(super) file: &'a At<StartFile>,
     /// The agent's index among those that share this table.
@@ -25,96 +26,165 @@ pub(super) struct Shared<'a> {
     pub(super) of: usize,
 }
 
-/// The agent that starts.
-#[derive(Clone, Copy)]
-pub(super) struct Starter<'a> {
-    pub(super) name: &'a str,
-    pub(super) robot: &'a RobotSetup,
-    pub(super) order: usize,
-}
-
 /// A key of the start table and the unit that all axes must have for it.
 type Key<'a> = (&'static str, Option<AxisUnit>, &'a Option<At<StartValues>>);
 
-/// Takes each quantity from the agent's own table, else from the scenario's, else zero.
-pub(super) fn start(agent: Starter<'_>, own: Option<Shared<'_>>, common: Option<Shared<'_>>) -> Result<Start, Fault> {
-    use AxisUnit::{Metre, Radian};
-    let tables = || [own, common].into_iter().flatten();
-    own.map_or(Ok(()), |own| agent.all_counts(&own.file.value))?;
-    if let Some(SpacecraftModel { wheels, .. }) = agent.robot.kind.downcast() {
-        return spacecraft::start(tables().map(|table| &table.file.value), agent.name, wheels);
+/// Where an agent starts, quantity by quantity: from its own table, else from that of all agents, else zero. What is not asked
+/// for is refused in the agent's own table; that of all may speak to others.
+#[derive(Debug)]
+pub struct StartReader<'a> {
+    name: &'a str,
+    robot: &'a RobotSetup,
+    /// How many of z(0), ż(0), … may be given.
+    order: usize,
+    own: Option<Shared<'a>>,
+    common: Option<Shared<'a>>,
+    asked: Vec<&'static str>,
+}
+
+impl<'a> StartReader<'a> {
+    pub(super) fn new(
+        name: &'a str,
+        robot: &'a RobotSetup,
+        order: usize,
+        own: Option<Shared<'a>>,
+        common: Option<Shared<'a>>,
+    ) -> Self {
+        StartReader { name, robot, order, own, common, asked: Vec::new() }
     }
-    let quantity = |stream, keys: fn(&StartFile) -> [Key<'_>; 3]| {
-        for table in tables() {
-            if let Some(found) = agent.one_of(table, stream, keys(&table.file.value))? {
+
+    /// The name of the agent.
+    pub fn agent(&self) -> &'a str {
+        self.name
+    }
+
+    /// q(0), a number for every axis: `position_rad`, `position_m` or `position`.
+    ///
+    /// # Errors
+    /// The first mistake, at its place.
+    pub fn position(&mut self) -> Result<Vec<f64>, Fault> {
+        use AxisUnit::{Metre, Radian};
+        self.quantity(Stream::Position, |file| {
+            [
+                ("position_rad", Some(Radian), &file.position_rad),
+                ("position_m", Some(Metre), &file.position_m),
+                ("position", None, &file.position),
+            ]
+        })
+    }
+
+    /// q̇(0), a number for every axis: `velocity_rad_s`, `velocity_m_s` or `velocity`.
+    ///
+    /// # Errors
+    /// The first mistake, at its place.
+    pub fn velocity(&mut self) -> Result<Vec<f64>, Fault> {
+        use AxisUnit::{Metre, Radian};
+        self.quantity(Stream::Velocity, |file| {
+            [
+                ("velocity_rad_s", Some(Radian), &file.velocity_rad_s),
+                ("velocity_m_s", Some(Metre), &file.velocity_m_s),
+                ("velocity", None, &file.velocity),
+            ]
+        })
+    }
+
+    /// `need` numbers of `higher_states`; none are not asked for.
+    ///
+    /// # Errors
+    /// The first mistake, at its place.
+    pub fn higher_states(&mut self, need: usize) -> Result<Vec<f64>, Fault> {
+        if need == 0 {
+            return Ok(Vec::new());
+        }
+        self.asked.push("higher_states");
+        let given = self.both().find_map(|table| Some((table, table.file.value.higher_states.as_ref()?)));
+        given.map_or_else(
+            || Ok(vec![0.0; need]),
+            |(table, values)| self.vector("higher_states", values, table, Stream::Higher, need),
+        )
+    }
+
+    /// The `attitude`, upright by default.
+    ///
+    /// # Errors
+    /// The mistake, at its place.
+    pub fn attitude(&mut self) -> Result<Quaternion, Fault> {
+        let given = self.tables(&["attitude"]).find_map(|table| table.attitude.as_ref());
+        given.map_or(Ok(IDENTITY), attitude)
+    }
+
+    /// `angular_velocity_rad_s`, in the axes of the body.
+    pub fn angular_velocity(&mut self) -> [f64; 3] {
+        let given = self.tables(&["angular_velocity_rad_s"]).find_map(|table| table.angular_velocity_rad_s.as_ref());
+        given.map_or([0.0; 3], |given| given.value)
+    }
+
+    /// z(0), ż(0), … of `reference`, as far as they are given; z(0) is `led` where only derivatives are.
+    ///
+    /// # Errors
+    /// The first mistake, at its place.
+    pub fn reference(&mut self, led: &[f64]) -> Result<Vec<Vec<f64>>, Fault> {
+        self.asked.push("reference");
+        let given = self.both().find_map(|table| Some((table, table.file.value.reference.as_ref()?)));
+        let Some((table, state)) = given else { return Ok(Vec::new()) };
+        let (derivatives, need) = (&state.value.derivatives, self.robot.axes.len());
+        let z = state.value.z.as_ref().map(|z| self.vector("z", z, table, Stream::Reference(0), need)).transpose()?;
+        let mut reference = vec![z.unwrap_or_else(|| led.to_vec())];
+        for (k, derivative) in derivatives.iter().enumerate() {
+            if k + 1 >= self.order {
+                let (found, name) = (derivatives.len(), self.name.to_owned());
+                let problem = ScenarioProblem::Derivatives { found, agent: name, order: self.order };
+                return Err(fault(derivative, problem));
+            }
+            reference.push(self.vector("derivatives", derivative, table, Stream::Reference(k + 1), need)?);
+        }
+        Ok(reference)
+    }
+
+    /// Where a robot starts that has a position and a velocity, and nothing else.
+    ///
+    /// # Errors
+    /// The first mistake, at its place.
+    pub fn position_and_velocity(&mut self) -> Result<Start, Fault> {
+        let (q, dq) = (self.position()?, self.velocity()?);
+        Ok(Start { reference: self.reference(&dq)?, q, dq, rest: Vec::new() })
+    }
+
+    /// The tables as they are written, the agent's own first, to take `keys` from.
+    pub(super) fn tables(&mut self, keys: &[&'static str]) -> impl Iterator<Item = &'a StartFile> + use<'a> {
+        self.asked.extend(keys);
+        self.both().map(|table| &table.file.value)
+    }
+
+    /// Refuses what the agent's own table says although it was not asked for.
+    pub(super) fn reject_unused(&self) -> Result<(), Fault> {
+        let keys = self.own.map(|own| keys(&own.file.value)).unwrap_or_default();
+        match keys.into_iter().find(|(key, _)| !self.asked.contains(key)) {
+            None => Ok(()),
+            Some((key, span)) => {
+                Err(Fault::new(SystemProblem::StartUnused { key, agent: self.name.to_owned() }).at(&span))
+            }
+        }
+    }
+
+    /// What was asked for.
+    pub(super) fn asked(&self) -> impl Iterator<Item = &'static str> + '_ {
+        self.asked.iter().copied()
+    }
+
+    fn both(&self) -> impl Iterator<Item = Shared<'a>> + use<'a> {
+        [self.own, self.common].into_iter().flatten()
+    }
+
+    /// Under one of three keys.
+    fn quantity(&mut self, stream: Stream, keys: fn(&StartFile) -> [Key<'_>; 3]) -> Result<Vec<f64>, Fault> {
+        self.asked.extend(keys(&StartFile::default()).map(|(key, ..)| key));
+        for table in self.both() {
+            if let Some(found) = self.one_of(table, stream, keys(&table.file.value))? {
                 return Ok(found);
             }
         }
-        Ok(vec![0.0; agent.length(stream)])
-    };
-    let q = quantity(Stream::Position, |file| {
-        [
-            ("position_rad", Some(Radian), &file.position_rad),
-            ("position_m", Some(Metre), &file.position_m),
-            ("position", None, &file.position),
-        ]
-    })?;
-    let dq = quantity(Stream::Velocity, |file| {
-        [
-            ("velocity_rad_s", Some(Radian), &file.velocity_rad_s),
-            ("velocity_m_s", Some(Metre), &file.velocity_m_s),
-            ("velocity", None, &file.velocity),
-        ]
-    })?;
-    let rest = match (
-        agent.robot.kind.is::<ChainModel>(),
-        tables().find_map(|table| Some((table, table.file.value.higher_states.as_ref()?))),
-    ) {
-        (true, None) => vec![0.0; agent.length(Stream::Higher)],
-        (_, Some((table, values))) => agent.vector("higher_states", values, table, Stream::Higher)?,
-        _ => vehicle::rest(agent.robot, tables().map(|table| &table.file.value))?,
-    };
-    let mut reference = Vec::new();
-    if let Some((table, state)) = tables().find_map(|table| Some((table, table.file.value.reference.as_ref()?))) {
-        let derivatives = &state.value.derivatives;
-        let z = state.value.z.as_ref().map(|z| agent.vector("z", z, table, Stream::Reference(0))).transpose()?;
-        reference.push(z.unwrap_or_else(|| agent.led(&q, &dq, &rest)));
-        for (k, derivative) in derivatives.iter().enumerate() {
-            if k + 1 >= agent.order {
-                let (found, name) = (derivatives.len(), agent.name.to_owned());
-                let problem = ScenarioProblem::Derivatives { found, agent: name, order: agent.order };
-                return Err(fault(derivative, problem));
-            }
-            reference.push(agent.vector("derivatives", derivative, table, Stream::Reference(k + 1))?);
-        }
-    }
-    Ok(Start { q, dq, rest, reference })
-}
-
-impl Starter<'_> {
-    /// Refuses what an agent's own table says in vain. (The one of all may speak to others, see `unused`.)
-    fn all_counts(&self, own: &StartFile) -> Result<(), Fault> {
-        match unread(self.robot, own).into_iter().next() {
-            None => Ok(()),
-            Some((key, span)) => {
-                let agent = self.name.to_owned();
-                Err(Fault::new(SystemProblem::StartUnused { key, agent }).at(&span))
-            }
-        }
-    }
-
-    /// Numbers in one of its quantities.
-    fn length(&self, stream: Stream) -> usize {
-        length_of(self.robot, stream)
-    }
-
-    /// What z follows, at the start.
-    fn led(&self, q: &[f64], dq: &[f64], rest: &[f64]) -> Vec<f64> {
-        match self.robot.kind.downcast() {
-            Some(ChainModel::Cascade(_)) => q.to_vec(),
-            Some(ChainModel::Derivatives(_)) => [q, dq, rest].concat().last().map(|top| vec![*top]).unwrap_or_default(),
-            None => dq.to_vec(),
-        }
+        Ok(vec![0.0; self.robot.axes.len()])
     }
 
     fn one_of(&self, table: Shared<'_>, stream: Stream, keys: [Key<'_>; 3]) -> Result<Option<Vec<f64>>, Fault> {
@@ -135,7 +205,7 @@ impl Starter<'_> {
             let (agent, axis) = (self.name.to_owned(), axis.name.clone());
             return Err(fault(value, ScenarioProblem::Unit { key, agent, axis, unit, any }));
         }
-        self.vector(key, value, table, stream).map(Some)
+        self.vector(key, value, table, stream, self.robot.axes.len()).map(Some)
     }
 
     fn vector(
@@ -144,8 +214,8 @@ impl Starter<'_> {
         value: &At<StartValues>,
         table: Shared<'_>,
         stream: Stream,
+        need: usize,
     ) -> Result<Vec<f64>, Fault> {
-        let need = self.length(stream);
         let length = |found: usize, place: &Range<usize>| length(key, place, found, need, self.name);
         let rows = match &value.value {
             StartValues::Random(random) => return draw(random, stream, table.index, need),
@@ -172,38 +242,31 @@ impl Starter<'_> {
     }
 }
 
-/// Numbers in one quantity of a robot's start.
-fn length_of(robot: &RobotSetup, stream: Stream) -> usize {
-    match (robot.kind.downcast::<ChainModel>(), stream) {
-        (Some(chain), Stream::Velocity) if !chain.has_velocity() => 0,
-        (Some(chain), Stream::Higher) => chain.rest_len(),
-        (None, Stream::Higher) => 0,
-        _ => robot.axes.len(),
+/// Refuses a key of the table of all agents that none of them has `asked` for; `first` is one of them.
+pub(super) fn reject_unread(common: &StartFile, asked: &BTreeSet<&'static str>, first: &str) -> Result<(), Fault> {
+    match keys(common).into_iter().find(|(key, _)| !asked.contains(key)) {
+        None => Ok(()),
+        Some((key, span)) => Err(Fault::new(SystemProblem::StartUnused { key, agent: first.to_owned() }).at(&span)),
     }
 }
 
-/// The keys of a table that say nothing about a robot, and where they stand.
-pub(super) fn unread(robot: &RobotSetup, table: &StartFile) -> Vec<(&'static str, Range<usize>)> {
-    let craft = robot.kind.is::<SpacecraftModel>();
-    let spins = craft || robot.kind.is::<RotorcraftModel>();
-    let turns = spins || robot.kind.is::<VehicleModel>();
-    let moves = !craft && length_of(robot, Stream::Velocity) > 0;
-    let chain = length_of(robot, Stream::Higher) > 0;
+/// The keys that a table has, and where they stand.
+fn keys(file: &StartFile) -> Vec<(&'static str, Range<usize>)> {
     let span = |values: &Option<At<StartValues>>| values.as_ref().map(|values| values.span.clone());
     let all = [
-        ("position_rad", !craft, span(&table.position_rad)),
-        ("position_m", !craft, span(&table.position_m)),
-        ("position", !craft, span(&table.position)),
-        ("velocity_rad_s", moves, span(&table.velocity_rad_s)),
-        ("velocity_m_s", moves, span(&table.velocity_m_s)),
-        ("velocity", moves, span(&table.velocity)),
-        ("attitude", turns, table.attitude.as_ref().map(|attitude| attitude.span.clone())),
-        ("angular_velocity_rad_s", spins, table.angular_velocity_rad_s.as_ref().map(|rate| rate.span.clone())),
-        ("spacecraft", craft, table.spacecraft.as_ref().map(|craft| craft.span.clone())),
-        ("higher_states", chain, span(&table.higher_states)),
-        ("reference", !craft, table.reference.as_ref().map(|reference| reference.span.clone())),
+        ("position_rad", span(&file.position_rad)),
+        ("position_m", span(&file.position_m)),
+        ("position", span(&file.position)),
+        ("velocity_rad_s", span(&file.velocity_rad_s)),
+        ("velocity_m_s", span(&file.velocity_m_s)),
+        ("velocity", span(&file.velocity)),
+        ("attitude", file.attitude.as_ref().map(|attitude| attitude.span.clone())),
+        ("angular_velocity_rad_s", file.angular_velocity_rad_s.as_ref().map(|rate| rate.span.clone())),
+        ("spacecraft", file.spacecraft.as_ref().map(|craft| craft.span.clone())),
+        ("higher_states", span(&file.higher_states)),
+        ("reference", file.reference.as_ref().map(|reference| reference.span.clone())),
     ];
-    all.into_iter().filter(|(_, counts, _)| !counts).filter_map(|(key, _, span)| Some((key, span?))).collect()
+    all.into_iter().filter_map(|(key, span)| Some((key, span?))).collect()
 }
 
 /// One number per axis, drawn uniformly.

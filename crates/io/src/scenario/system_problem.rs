@@ -6,7 +6,7 @@ use forwardstep_core::robot::tree::TipError;
 use forwardstep_sim::trajectory::{SplineError, TrajectoryError};
 use thiserror::Error;
 
-use crate::wording::{entry_count, number};
+use crate::wording::{entry_count, enumerate, number};
 
 /// Why one of these has no meaning.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -137,8 +137,8 @@ pub enum SystemProblem {
         law: &'static str,
         /// What it is made for, in words.
         made_for: &'static str,
-        /// The laws that suit the agent's robot.
-        laws: &'static str,
+        /// The keys of the laws that suit the agent's robot.
+        laws: Vec<&'static str>,
     },
 }
 
@@ -170,7 +170,10 @@ impl SystemProblem {
                  `sqrt(x^2 + 0.01)` is close to `abs(x)`"
                     .into()
             }
-            SystemProblem::LawOfAnother { laws, .. } => format!("for this robot there is {laws}"),
+            SystemProblem::LawOfAnother { laws, .. } if laws.is_empty() => return None,
+            SystemProblem::LawOfAnother { laws, .. } => {
+                format!("for this robot there is {}", enumerate(laws.iter().map(|law| format!("`{law}`"))))
+            }
             SystemProblem::NoDirection { instead } => (*instead).into(),
             SystemProblem::NoAttitude { .. } => {
                 "a quaternion may have any length but zero, vector part first: [0, 0, 0, 1] is no turn".into()

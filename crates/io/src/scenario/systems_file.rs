@@ -1,4 +1,4 @@
-//! What Section V adds to a scenario, as it is written: targets, and laws without velocity. The doc comments of this file
+//! What Section V adds to a scenario, as it is written: targets. The doc comments of this file
 //! are descriptions of the published JSON schema.
 
 use schemars::JsonSchema;
@@ -73,21 +73,4 @@ pub struct PointsFile {
     pub times_s: At<Vec<At<f64>>>,
     /// Where, a list with an entry per axis for every time, in rad or m.
     pub positions: At<Vec<At<Vec<At<f64>>>>>,
-}
-
-/// The law (a8) for a point mass whose velocity is not measured.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PositionOnlyFile {
-    /// The gain k, in N s/m. Default: 8.
-    #[schemars(with = "Option<Positive>")]
-    pub damping: Option<At<f64>>,
-    /// The rate λ_f of the filter that stands in for the velocity, in 1/s. Default: 10.
-    #[schemars(with = "Option<Positive>")]
-    pub filter_per_s: Option<At<f64>>,
-    /// The gain γ* of the mass estimate. Default: 10. Zero to keep the estimate as it is.
-    #[schemars(range(min = 0))]
-    pub adaptation_gain: Option<At<f64>>,
-    /// The mass estimate at the start, in kg. Default: 0.
-    pub estimate_start_kg: Option<At<f64>>,
 }

@@ -4,16 +4,19 @@ use std::fmt::Write;
 
 use forwardstep_sim::Exchange;
 
-/// What a scenario to start from should hold. Every combination is a valid scenario, as long as the robot file is there.
+/// What a scenario to start from should hold. Every combination is a valid scenario, as long as the robot file is there and the
+/// law of the robot knows the reference.
 ///
 /// ```
 /// use forwardstep_io::SourceText;
+/// use forwardstep_io::scenario::kinds::Kinds;
 /// use forwardstep_io::scenario::{Template, read_scenario};
 ///
-/// let text = Template { agents: 3, ..Template::default() }.text();
+/// let arm = Kinds::shipped().template("planar_arm").ok_or("no such robot")?;
+/// let text = Template { agents: 3, ..Template::new(arm) }.text();
 /// let scenario = read_scenario("mine", &SourceText::new("mine.toml", text), None)?;
 /// assert_eq!(scenario.setup.agents.len(), 3);
-/// # Ok::<(), forwardstep_io::scenario::ScenarioError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Template {
@@ -22,7 +25,7 @@ pub struct Template {
     /// How many agents there are, at least two.
     pub agents: u32,
     /// The robot of each.
-    pub robot: TemplateRobot,
+    pub robot: RobotTemplate,
     /// The order of the reference dynamics, at least one.
     pub order: u32,
     /// What agents tell each other.
@@ -33,20 +36,41 @@ pub struct Template {
     pub delay: TemplateDelay,
 }
 
-/// The robots of a [`Template`].
+/// What a scenario to start from says of a robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum TemplateRobot {
-    /// The two-link planar arm.
-    PlanarArm,
-    /// A point mass in the plane.
-    PointMass,
-    /// From a URDF.
-    Urdf {
-        /// Beside the scenario, or shipped.
-        file: String,
-        /// Whether it has Coulomb friction, which is then left out.
-        has_friction: bool,
-    },
+pub struct RobotTemplate {
+    /// What its agents are called.
+    pub name: &'static str,
+    /// The line that says it: `robot.key = { … }`.
+    pub line: String,
+    /// The comment beside it.
+    pub says: &'static str,
+    /// The lines of its law, with comments.
+    pub law: String,
+}
+
+impl RobotTemplate {
+    /// The lines of the adaptive law with these lines for K and Γ.
+    pub fn adaptive(damping: &str, gain: &str) -> String {
+        let damping = commented(damping, "K of torque = -K s + Y theta_hat");
+        let gain = commented(gain, "how fast estimates change");
+        let start = commented("estimate_start = \"zero\"", "nothing is known; or \"true\", { scaled = 0.5 }");
+        format!(
+            "# How the robot is made to follow; with [law.known] and damping alone its parameters are known.\n\
+             [law.adaptive]\n{damping}{gain}{start}"
+        )
+    }
+
+    /// A robot from a URDF beside the scenario, or a shipped one; whether it has Coulomb friction, which is then left out.
+    pub fn urdf(file: &str, has_friction: bool) -> Self {
+        let friction = if has_friction { ", friction = \"ignore\"" } else { "" };
+        RobotTemplate {
+            name: "arm",
+            line: format!("robot.urdf = {{ file = {}{friction} }}", quoted(file)),
+            says: "beside this file, or shipped: ur5e.urdf, panda.urdf",
+            law: RobotTemplate::adaptive("damping.bandwidth_per_s = 20", "adaptation_gain = { bandwidth_per_s = 5 }"),
+        }
+    }
 }
 
 /// The graphs of a [`Template`].
@@ -71,26 +95,31 @@ pub enum TemplateDelay {
     None,
 }
 
-impl Default for Template {
-    fn default() -> Self {
+impl Template {
+    /// Four agents with this robot, and what is usual beside it.
+    pub fn new(robot: RobotTemplate) -> Self {
         Template {
             title: "A scenario to start from".into(),
             agents: 4,
-            robot: TemplateRobot::PlanarArm,
+            robot,
             order: 2,
             exchange: Exchange::PositionVelocity,
             graph: TemplateGraph::Ring,
             delay: TemplateDelay::Constant,
         }
     }
-}
 
-impl Template {
     /// The text of the scenario.
     pub fn text(&self) -> String {
         let mut text = String::from(HEAD);
-        let parts =
-            [self.title_and_time(), self.agents(), self.reference(), self.law(), self.network(), GOAL.to_owned()];
+        let parts = [
+            self.title_and_time(),
+            self.agents(),
+            self.reference(),
+            self.robot.law.clone(),
+            self.network(),
+            GOAL.to_owned(),
+        ];
         for part in parts {
             text.push('\n');
             text.push_str(&part);
@@ -105,30 +134,10 @@ impl Template {
         format!("format = 1\ntitle = {title}\n\n[time]\n{end}{every}")
     }
 
-    fn name(&self) -> &'static str {
-        match self.robot {
-            TemplateRobot::PointMass => "mass",
-            TemplateRobot::PlanarArm | TemplateRobot::Urdf { .. } => "arm",
-        }
-    }
-
     fn agents(&self) -> String {
-        let (name, count) = (self.name(), self.agents);
-        let (robot, says) = match &self.robot {
-            TemplateRobot::PlanarArm => {
-                ("robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }".to_owned(), "uniform links")
-            }
-            TemplateRobot::PointMass => {
-                ("robot.point_mass = { dimension = 2, mass_kg = 4.0 }".to_owned(), "in a plane")
-            }
-            TemplateRobot::Urdf { file, has_friction } => {
-                let friction = if *has_friction { ", friction = \"ignore\"" } else { "" };
-                let line = format!("robot.urdf = {{ file = {}{friction} }}", quoted(file));
-                (line, "beside this file, or shipped: ur5e.urdf, panda.urdf")
-            }
-        };
+        let (RobotTemplate { name, line, says, .. }, count) = (&self.robot, self.agents);
         let count = commented(&format!("count = {count}"), &format!("{name}-1 … {name}-{count}"));
-        let robot = commented(&robot, says);
+        let robot = commented(line, says);
         format!(
             "# Robots of one kind; write [[agents]] again for others, which need as many axes.\n\
              [[agents]]\nname = \"{name}\"\n{count}{robot}\
@@ -150,20 +159,6 @@ impl Template {
         )
     }
 
-    fn law(&self) -> String {
-        let (damping, gain) = match self.robot {
-            TemplateRobot::Urdf { .. } => ("damping.bandwidth_per_s = 20", "adaptation_gain = { bandwidth_per_s = 5 }"),
-            TemplateRobot::PlanarArm | TemplateRobot::PointMass => ("damping.gain = 8", "adaptation_gain = 10"),
-        };
-        let damping = commented(damping, "K of torque = -K s + Y theta_hat");
-        let gain = commented(gain, "how fast estimates change");
-        let start = commented("estimate_start = \"zero\"", "nothing is known; or \"true\", { scaled = 0.5 }");
-        format!(
-            "# How the robot is made to follow; with [law.known] and damping alone its parameters are known.\n\
-             [law.adaptive]\n{damping}{gain}{start}"
-        )
-    }
-
     fn network(&self) -> String {
         let weight = commented("weight = 1.0", "of every edge that has none of its own");
         let delay = match self.delay {
@@ -176,7 +171,7 @@ impl Template {
         };
         let mut edges = commented("edges = [", "[who is heard, who hears]");
         for (from, to) in self.edges() {
-            let name = self.name();
+            let name = self.robot.name;
             // Writing to a string does not fail.
             let _ = writeln!(edges, "    [\"{name}-{from}\", \"{name}-{to}\"],");
         }

@@ -12,7 +12,9 @@ use forwardstep_core::reference::{Consensus, Position, polynomial};
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::setup::{Exchange, ReferenceKind, RobotSetup};
-use crate::system::{ActuatorLimits, Attachments, Interface, Known, Law, ReferenceFamily, Robot};
+use crate::system::{
+    ActuatorLimits, Attachments, Coordinates, Interface, Known, Law, Line, Naming, ReferenceFamily, Robot,
+};
 
 /// What a chain is made of; its true θ stands with the robot.
 #[derive(Clone, Debug)]
@@ -78,6 +80,14 @@ impl Robot for ChainModel {
 
     fn actuator_limits(&self) -> ActuatorLimits {
         ActuatorLimits::Axes
+    }
+
+    fn naming(&self) -> Naming {
+        Naming { numbered_axes: true, torques_on_body: false }
+    }
+
+    fn lines(&self) -> Vec<Line> {
+        Vec::new()
     }
 }
 
@@ -183,6 +193,14 @@ impl Law for ChainLaw {
             pushed: false,
             estimates: self.estimates(),
         })
+    }
+
+    fn coordinates(&self) -> Option<Coordinates> {
+        None
+    }
+
+    fn lines(&self, _: &RobotSetup) -> Vec<Line> {
+        Vec::new()
     }
 
     fn shares_batch(&self, _: &dyn Law) -> bool {

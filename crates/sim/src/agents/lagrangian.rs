@@ -8,7 +8,9 @@ use forwardstep_core::{Gain, Lanes, LengthError};
 
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::setup::{AgentSetup, Exchange, RobotSetup};
-use crate::system::{ActuatorLimits, Attachments, Interface, Known as Knowledge, Law, ReferenceFamily, Robot};
+use crate::system::{
+    ActuatorLimits, Attachments, Coordinates, Interface, Known as Knowledge, Law, Line, Naming, ReferenceFamily, Robot,
+};
 
 /// A robot model whose kernels work on one robot or on eight at once.
 pub trait RobotModel: Robot + Clone {
@@ -93,6 +95,14 @@ impl Robot for Arc<Tree> {
     fn actuator_limits(&self) -> ActuatorLimits {
         ActuatorLimits::Axes
     }
+
+    fn naming(&self) -> Naming {
+        Naming { numbered_axes: false, torques_on_body: false }
+    }
+
+    fn lines(&self) -> Vec<Line> {
+        Vec::new()
+    }
 }
 
 impl RobotModel for Arc<Tree> {
@@ -132,6 +142,14 @@ impl Robot for PlanarArm {
     fn actuator_limits(&self) -> ActuatorLimits {
         ActuatorLimits::Axes
     }
+
+    fn naming(&self) -> Naming {
+        Naming { numbered_axes: false, torques_on_body: false }
+    }
+
+    fn lines(&self) -> Vec<Line> {
+        Vec::new()
+    }
 }
 
 impl RobotModel for PlanarArm {
@@ -170,6 +188,14 @@ impl Robot for PointMass {
 
     fn actuator_limits(&self) -> ActuatorLimits {
         ActuatorLimits::Axes
+    }
+
+    fn naming(&self) -> Naming {
+        Naming { numbered_axes: true, torques_on_body: false }
+    }
+
+    fn lines(&self) -> Vec<Line> {
+        Vec::new()
     }
 }
 
@@ -238,6 +264,14 @@ impl Law for Adaptive {
         interface(robot, true)
     }
 
+    fn coordinates(&self) -> Option<Coordinates> {
+        None
+    }
+
+    fn lines(&self, _: &RobotSetup) -> Vec<Line> {
+        Vec::new()
+    }
+
     fn shares_batch(&self, other: &dyn Law) -> bool {
         other.is::<Adaptive>()
     }
@@ -262,6 +296,14 @@ impl Law for Known {
 
     fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
         interface(robot, false)
+    }
+
+    fn coordinates(&self) -> Option<Coordinates> {
+        None
+    }
+
+    fn lines(&self, _: &RobotSetup) -> Vec<Line> {
+        Vec::new()
     }
 
     fn shares_batch(&self, other: &dyn Law) -> bool {

@@ -7,7 +7,7 @@ use forwardstep_core::robot::PointMass;
 
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::setup::{Exchange, ReferenceKind, RobotSetup};
-use crate::system::{Interface, Known, Law, ReferenceFamily};
+use crate::system::{Coordinates, Interface, Known, Law, Line, ReferenceFamily};
 
 /// (a8) for a point mass, without velocity; see [`PositionOnly`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +43,14 @@ impl Law for PositionOnlyLaw {
             pushed: false,
             estimates: true,
         })
+    }
+
+    fn coordinates(&self) -> Option<Coordinates> {
+        None
+    }
+
+    fn lines(&self, _: &RobotSetup) -> Vec<Line> {
+        Vec::new()
     }
 
     fn shares_batch(&self, _: &dyn Law) -> bool {

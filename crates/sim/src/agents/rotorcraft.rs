@@ -6,7 +6,7 @@ use forwardstep_core::plant::{Rotorcraft, Rotors};
 use super::LagrangianRobot;
 use super::vehicle::plant as vehicle;
 use crate::closed_loop::{Assembly, SetupError};
-use crate::system::{ActuatorLimits, Attachments, Robot};
+use crate::system::{ActuatorLimits, Attachments, Line, Naming, Robot};
 
 /// A rotorcraft. ϑ is its mass; the rest of its start is its attitude and its angular velocity.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +46,14 @@ impl Robot for RotorcraftModel {
 
     fn actuator_limits(&self) -> ActuatorLimits {
         ActuatorLimits::Axes
+    }
+
+    fn naming(&self) -> Naming {
+        Naming { numbered_axes: false, torques_on_body: true }
+    }
+
+    fn lines(&self) -> Vec<Line> {
+        Vec::new()
     }
 }
 

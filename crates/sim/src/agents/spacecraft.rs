@@ -6,8 +6,11 @@ use forwardstep_core::plant::{Spacecraft, Wheels};
 
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
+use crate::recording::Signal;
 use crate::setup::{Exchange, RobotSetup};
-use crate::system::{ActuatorLimits, Attachments, Interface, Known, Law, ReferenceFamily, Robot};
+use crate::system::{
+    ActuatorLimits, Attachments, Coordinates, Interface, Known, Law, Line, LineValue, Naming, ReferenceFamily, Robot,
+};
 
 /// A spacecraft. Its axes are the entries of a quaternion; the rest of its start holds the momenta of the wheels, N m s.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +49,20 @@ impl Robot for SpacecraftModel {
     fn actuator_limits(&self) -> ActuatorLimits {
         ActuatorLimits::Own
     }
+
+    fn naming(&self) -> Naming {
+        Naming { numbered_axes: false, torques_on_body: false }
+    }
+
+    fn lines(&self) -> Vec<Line> {
+        let limits = self.wheels.list().iter().enumerate().flat_map(|(entry, wheel)| {
+            let (torque, momentum) = (wheel.torque_limit_n_m, wheel.momentum_limit_n_m_s);
+            let line = move |signal, value| Line { signal, entry, value };
+            let torque = torque.map(|limit| line(Signal::WheelTorque, LineValue::Clip(limit)));
+            torque.into_iter().chain(momentum.map(|limit| line(Signal::WheelMomentum, LineValue::Limit(limit))))
+        });
+        limits.collect()
+    }
 }
 
 /// (97)–(105) for a spacecraft; see [`AttitudeTracking`]. M and h_I are those of the spacecraft and its start.
@@ -80,6 +97,14 @@ impl Law for AttitudeLaw {
             pushed: false,
             estimates: false,
         })
+    }
+
+    fn coordinates(&self) -> Option<Coordinates> {
+        None
+    }
+
+    fn lines(&self, _: &RobotSetup) -> Vec<Line> {
+        Vec::new()
     }
 
     fn shares_batch(&self, _: &dyn Law) -> bool {

@@ -9,8 +9,9 @@ use forwardstep_core::robot::{Lagrangian, PlanarArm, PlanarTip, TipKinematics};
 use forwardstep_core::{Gain, ResolvedGain};
 
 use crate::closed_loop::{Assembly, Block, SetupError, tracking_law};
-use crate::setup::{Exchange, RobotSetup};
-use crate::system::{Interface, Known, Law, ReferenceFamily, Robot};
+use crate::recording::Signal;
+use crate::setup::{AxisUnit, Exchange, RobotSetup};
+use crate::system::{Coordinates, Interface, Known, Law, Line, LineValue, ReferenceFamily, Robot};
 
 /// (80)–(82) for the tip of a robot; see [`forwardstep_core::controller::TaskSpace`].
 #[derive(Clone, Debug, PartialEq)]
@@ -39,17 +40,6 @@ pub struct TaskSpaceLaw {
     pub bounds: Option<ParameterBounds>,
     /// The run ends when det Ĵ falls below this share of its first value.
     pub determinant_floor: f64,
-}
-
-impl TaskSpaceLaw {
-    /// What the coordinates of the tip are called.
-    pub fn coordinate_name(&self, axis: usize) -> Option<&'static str> {
-        let coordinate = match &self.tip {
-            TipSetup::Planar(_) => axis,
-            TipSetup::Point { coordinates, .. } => *coordinates.get(axis)?,
-        };
-        ["x", "y", "z"].get(coordinate).copied()
-    }
 }
 
 /// A tip whose kinematics are uncertain.
@@ -107,6 +97,22 @@ impl Law for TaskSpaceLaw {
             pushed: false,
             estimates: true,
         })
+    }
+
+    fn coordinates(&self) -> Option<Coordinates> {
+        let list: &[usize] = match &self.tip {
+            TipSetup::Planar(_) => &[0, 1],
+            TipSetup::Point { coordinates, .. } => coordinates,
+        };
+        let names = list.iter().filter_map(|coordinate| ["x", "y", "z"].get(*coordinate));
+        let names = names.map(|name| (*name).to_owned()).collect();
+        Some(Coordinates { names, unit: AxisUnit::Metre, parameters: self.kinematic_names.clone() })
+    }
+
+    fn lines(&self, robot: &RobotSetup) -> Vec<Line> {
+        let truth = self.tip.parameters(&*robot.kind).unwrap_or_default();
+        let line = |(entry, truth)| Line { signal: Signal::KinematicEstimate, entry, value: LineValue::Truth(truth) };
+        truth.into_iter().enumerate().map(line).collect()
     }
 
     fn shares_batch(&self, _: &dyn Law) -> bool {

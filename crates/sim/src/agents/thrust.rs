@@ -6,8 +6,9 @@ use forwardstep_core::plant::Vehicle;
 use super::rotorcraft::{self, RotorcraftModel};
 use super::vehicle::{self, VehicleModel};
 use crate::closed_loop::{Assembly, Block, SetupError};
+use crate::recording::Signal;
 use crate::setup::{Exchange, RobotSetup};
-use crate::system::{Interface, Known, Law, ReferenceFamily};
+use crate::system::{Coordinates, Interface, Known, Law, Line, LineValue, ReferenceFamily};
 
 /// The control of a vehicle or a rotorcraft; its roots are those of its agent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,6 +86,14 @@ impl Law for ThrustLaw {
             pushed: false,
             estimates: matches!(self.design, ThrustKind::Adaptive { .. }),
         })
+    }
+
+    fn coordinates(&self) -> Option<Coordinates> {
+        None
+    }
+
+    fn lines(&self, _: &RobotSetup) -> Vec<Line> {
+        vec![Line { signal: Signal::Thrust, entry: 0, value: LineValue::Floor(self.floor.newtons()) }]
     }
 
     fn shares_batch(&self, _: &dyn Law) -> bool {

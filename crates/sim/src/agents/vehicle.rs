@@ -5,7 +5,7 @@ use forwardstep_core::plant::Vehicle;
 
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, SetupError};
-use crate::system::{ActuatorLimits, Attachments, Robot};
+use crate::system::{ActuatorLimits, Attachments, Line, Naming, Robot};
 
 /// (44). ϑ is its mass; the rest of its start is its attitude (q_v, q_o).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +41,14 @@ impl Robot for VehicleModel {
 
     fn actuator_limits(&self) -> ActuatorLimits {
         ActuatorLimits::None
+    }
+
+    fn naming(&self) -> Naming {
+        Naming { numbered_axes: false, torques_on_body: false }
+    }
+
+    fn lines(&self) -> Vec<Line> {
+        Vec::new()
     }
 }
 

@@ -275,18 +275,14 @@ pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
                         thead { tr { th { "Joint" } th { "limit" } th { "value" } th { "worst" } th { "exceeded by" } th { "first at" } th { "of the rows" } th { "enforced" } } }
                         tbody { @for limit in metrics.limits_reached.iter().take(MOST_LIMIT_ROWS) {
                             @let (kind, signal) = match limit.kind {
-                                LimitKind::Position => ("position", Signal::Position),
-                                LimitKind::Velocity => ("speed", Signal::Velocity),
-                                LimitKind::Effort => ("torque", Signal::Torque),
-                                LimitKind::WheelTorque => ("wheel torque", Signal::WheelTorque),
-                                LimitKind::WheelMomentum => ("wheel momentum", Signal::WheelMomentum),
+                                LimitKind::Position | LimitKind::Unknown => ("position".to_owned(), Signal::Position),
+                                LimitKind::Velocity => ("speed".to_owned(), Signal::Velocity),
+                                LimitKind::Effort => ("torque".to_owned(), Signal::Torque),
+                                LimitKind::Signal(signal) => (signal.name().replace('_', " "), signal),
                             };
                             @let unit = unit_at(setup, signal, limit.agent, limit.axis);
                             tr {
-                                th { span.dot.{ "a" (limit.agent) } {} (names::agent_name(setup, limit.agent)) " · " @match limit.kind {
-                                    LimitKind::WheelTorque | LimitKind::WheelMomentum => { "wheel " (limit.axis + 1) }
-                                    _ => (names::axis_words(setup, limit.agent, limit.axis)),
-                                } }
+                                th { span.dot.{ "a" (limit.agent) } {} (names::agent_name(setup, limit.agent)) " · " (names::entry_words(setup, limit.agent, signal, limit.axis)) }
                                 td { (kind) }
                                 td { (number(limit.limit)) " " (unit) }
                                 td { (number(limit.worst)) " " (unit) }

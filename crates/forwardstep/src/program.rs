@@ -1,0 +1,58 @@
+//! The program: arguments in, a command, an exit status.
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::Parser;
+use forwardstep_io::scenario::kinds::Kinds;
+
+use crate::arguments::{Arguments, Command};
+use crate::commands;
+use crate::console::{self, Console};
+use crate::status::Status;
+
+/// The program `forwardstep` with these kinds of robots and laws: its scenario files, messages, schema and reports know them.
+/// It takes its arguments from the command line.
+///
+/// ```no_run
+/// use std::process::ExitCode;
+///
+/// use forwardstep::io::scenario::kinds::Kinds;
+///
+/// fn main() -> ExitCode {
+///     let kinds = Kinds::shipped();
+///     // kinds.add_robot::<TankFile>()?; kinds.add_law::<LevelFile>()?;
+///     forwardstep::program(&kinds)
+/// }
+/// ```
+pub fn program(kinds: &Kinds) -> ExitCode {
+    program_with(kinds, std::env::args_os())
+}
+
+/// [`program`] with these arguments, the first of which is its name.
+pub fn program_with(kinds: &Kinds, arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
+    let command = match Arguments::try_parse_from(arguments) {
+        Ok(Arguments { command }) => command.unwrap_or_default(),
+        Err(error) => {
+            // A closed output leaves only the exit status to tell.
+            let _ = error.print();
+            return u8::try_from(error.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from);
+        }
+    };
+    let mut console = Console::new();
+    let status = match command {
+        Command::Run(options) => commands::run(&options, kinds, &mut console),
+        Command::Report { folder } => commands::report(&folder, kinds, &mut console),
+        Command::Check { scenario } => commands::check(&scenario, kinds, &mut console),
+        Command::Scenarios { name } => commands::scenarios(name.as_deref(), &mut console),
+        Command::Schema => commands::schema(kinds, &mut console),
+        Command::New(options) => commands::new(&options, kinds, &mut console),
+        Command::Robot(options) => commands::robot(&options, &mut console),
+        Command::Completions { shell } => commands::completions(shell, &mut console),
+    };
+    // Text that could not be written is a failure of its own, but must not hide another.
+    match console.finish() {
+        Err(error) if status == Status::Fine => console::complain(&console::Plain::new(error)).into(),
+        _ => status.into(),
+    }
+}

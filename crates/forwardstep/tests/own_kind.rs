@@ -1,0 +1,157 @@
+//! A kind of robot and a law of one's own: scenario files, schema, messages, runs and reports know them.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../examples/tank.rs"]
+#[allow(dead_code, unreachable_pub, clippy::print_stderr, reason = "an example that is a program of its own")]
+mod tank;
+
+use std::fs;
+use std::path::Path;
+use std::process::ExitCode;
+
+use forwardstep::io::SourceText;
+use forwardstep::io::scenario::{Scenario, ScenarioError};
+use forwardstep::{program_with, sim};
+use miette::Diagnostic;
+use sim::Signal;
+
+const TANKS: &str = r#"format = 1
+time = { end_s = 10 }
+
+[[agents]]
+name = "tank"
+count = 2
+robot.tank = { area_m2 = 2, inflow_limit_m3_s = 0.5 }
+spread = { seed = 1, relative = 0.1 }
+start.position_m = [[0.2], [1.5]]
+target.formulas = ["1 + 0.1*sin(t)"]
+
+[law.level]
+gain_per_s = 1.5
+
+[reference.tracking]
+
+[goal]
+error_below = 1e-4
+"#;
+
+fn read(text: &str) -> Result<Scenario, ScenarioError> {
+    tank::kinds().unwrap().read_scenario("tanks", &SourceText::new("tanks.toml", text), None)
+}
+
+fn forwardstep(arguments: &[&str]) -> ExitCode {
+    let kinds = tank::kinds().unwrap();
+    program_with(&kinds, ["forwardstep"].iter().chain(arguments).copied())
+}
+
+/// Every file of a folder that a report is made of, by name.
+fn pictures(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut files = vec![folder.join("report.html")];
+    files.extend(fs::read_dir(folder.join("plots")).unwrap().map(|entry| entry.unwrap().path()));
+    files.sort();
+    files.into_iter().map(|file| (file.display().to_string(), fs::read(&file).unwrap())).collect()
+}
+
+#[test]
+fn it_runs_is_recorded_and_reported_and_the_report_is_rebuilt() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, out) = (folder.path().join("tanks.toml"), folder.path().join("run"));
+    fs::write(&file, TANKS).unwrap();
+    let (file, out_text) = (file.to_str().unwrap(), out.to_str().unwrap());
+    assert_eq!(forwardstep(&["run", file, "--out", out_text, "--csv"]), ExitCode::SUCCESS, "the goal is met");
+    let csv = fs::read_to_string(out.join("trajectory.csv")).unwrap();
+    let header = csv.lines().next().unwrap();
+    for column in ["tank-1.q.level", "tank-2.error.level", "tank-1.inflow", "tank-1.lyapunov", "tank-1.dissipation"] {
+        assert!(header.split(',').any(|known| known == column), "no {column} in {header}");
+    }
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("family-inflow") && page.contains("<h3>Inflow"), "its signal has a card");
+    let summary: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+    let limit = &summary["metrics"]["limits_reached"][0];
+    assert_eq!((limit["kind"].as_str(), limit["limit"].as_f64()), (Some("inflow"), Some(0.5)), "{limit}");
+    let ledger = summary["metrics"]["ledger_error"]["relative"].as_f64().unwrap();
+    assert!(ledger < 1e-5, "V + ∫ dissipation is constant to {ledger}");
+
+    let drawn = pictures(&out);
+    fs::remove_file(out.join("report.html")).unwrap();
+    fs::remove_dir_all(out.join("plots")).unwrap();
+    assert_eq!(forwardstep(&["report", out_text]), ExitCode::SUCCESS);
+    assert_eq!(pictures(&out), drawn, "the same from the tables");
+}
+
+#[test]
+fn its_mistakes_are_reported_at_their_place_with_near_matches() {
+    let cases = [
+        ("robot.tank =", "robot.tonk =", "7:7: unknown choice `tonk`", "did you mean `tank`?"),
+        ("area_m2 = 2,", "aera_m2 = 2,", "7:16: unknown key `aera_m2`", "did you mean `area_m2`?"),
+        ("area_m2 = 2,", "area_m2 = -2,", "7:26: `area_m2` is -2, but must be positive", ""),
+        ("area_m2 = 2,", "", "7:14: the key `area_m2` is missing", ""),
+        ("[law.level]", "[law.lever]", "12:6: unknown choice `lever`", "did you mean `level`?"),
+        ("gain_per_s = 1.5", "gain_pers = 1.5", "13:1: unknown key `gain_pers`", "did you mean `gain_per_s`?"),
+        (
+            "[law.level]\ngain_per_s = 1.5",
+            "[law.adaptive]",
+            "12:2: agent `tank-1`: the law `adaptive` is made for arms and point masses",
+            "for this robot there is `level`",
+        ),
+        (
+            "start.position_m = [[0.2], [1.5]]",
+            "start.velocity_m_s = [1]",
+            "9:22: `velocity_m_s` says nothing about `tank-1`",
+            "have `higher_states`",
+        ),
+    ];
+    for (from, to, message, help) in cases {
+        assert_eq!(TANKS.matches(from).count(), 1, "{from}");
+        let error = read(&TANKS.replace(from, to)).unwrap_err();
+        assert_eq!(error.to_string(), format!("tanks.toml:{message}"));
+        let found = error.help().map(|help| help.to_string()).unwrap_or_default();
+        assert!(found.contains(help), "{found}");
+    }
+    let arm = "robot.point_mass = { dimension = 1, mass_kg = 2 }";
+    let error = read(&TANKS.replace("robot.tank = { area_m2 = 2, inflow_limit_m3_s = 0.5 }", arm)).unwrap_err();
+    assert_eq!(error.to_string(), "tanks.toml:12:2: agent `tank-1`: the law `level` is made for tanks");
+}
+
+#[test]
+fn without_a_law_it_has_its_usual_one() {
+    let scenario = read(&TANKS.replace("[law.level]\ngain_per_s = 1.5", "")).unwrap();
+    assert_eq!(format!("{:?}", scenario.setup.agents[0].law), "Level { gain: 1.0 }");
+}
+
+#[test]
+fn populations_of_it_differ() {
+    let areas: Vec<f64> = read(TANKS).unwrap().setup.agents.iter().map(|agent| agent.robot.theta[0]).collect();
+    assert!(areas[0] != areas[1] && areas.iter().all(|area| (1.8..=2.2).contains(area)), "{areas:?}");
+}
+
+#[test]
+fn the_schema_holds_it() {
+    let schema = tank::kinds().unwrap().schema().to_value();
+    let holds = |choice: &str, key: &str, table: &str| {
+        let all = schema["$defs"][choice]["oneOf"].as_array().unwrap();
+        let own = all.iter().find(|one| one["required"][0] == key).unwrap();
+        assert_eq!(own["properties"][key]["$ref"], format!("#/$defs/{table}"));
+        assert_eq!(schema["$defs"][table]["additionalProperties"], false);
+    };
+    holds("RobotFile", "tank", "TankFile");
+    holds("LawFile", "level", "LevelFile");
+    holds("RobotFile", "point_mass", "PointMassFile");
+}
+
+#[test]
+fn the_program_without_it_does_not_know_it() {
+    let source = SourceText::new("tanks.toml", TANKS);
+    let error = forwardstep::io::scenario::read_scenario("tanks", &source, None).unwrap_err();
+    assert_eq!(error.to_string(), "tanks.toml:7:7: unknown choice `tank`");
+}
+
+#[test]
+fn sampled_it_runs_as_well() {
+    let text = format!("{TANKS}\n[control]\nsample_hz = 100\n");
+    let outcome = sim::simulate(&read(&text).unwrap().setup, &mut |_| std::ops::ControlFlow::Continue(())).unwrap();
+    let errors = outcome.recording.columns.iter().filter(|column| column.signal == Signal::Error);
+    let last: Vec<f64> = errors.map(|column| *column.values.last().unwrap()).collect();
+    assert!(last.len() == 2 && last.iter().all(|error| error.abs() < 5e-3), "{last:?}");
+}

@@ -1,0 +1,79 @@
+//! The tree of a scenario file: read once as a whole, and again where a kind has a table of its own.
+
+use serde::Deserialize;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::de::ValueDe;
+use super::fault::Fault;
+use super::file::ScenarioFile;
+use super::kinds::{Kinds, LawKind, RobotKind};
+use super::value_problem::ValueProblem;
+use crate::SourceText;
+
+/// A scenario file as TOML.
+pub(super) struct Document<'i> {
+    root: Spanned<DeValue<'i>>,
+}
+
+/// A law with its key.
+pub(super) type KeyedLaw = (&'static str, Box<dyn LawKind>);
+
+impl<'i> Document<'i> {
+    pub(super) fn parse(source: &'i SourceText) -> Result<Self, Fault> {
+        let unreadable = |error: toml::de::Error| {
+            let fault = Fault::new(ValueProblem::Unreadable { message: error.message().to_owned() });
+            match error.span() {
+                Some(span) => fault.at(&span),
+                None => fault,
+            }
+        };
+        let table = DeTable::parse(source.text()).map_err(unreadable)?;
+        Ok(Document { root: Spanned::new(table.span(), DeValue::Table(table.into_inner())) })
+    }
+
+    /// The file, with the tables of `kinds` checked but left in the tree.
+    pub(super) fn file(&self, kinds: &Kinds) -> Result<ScenarioFile, Fault> {
+        ScenarioFile::deserialize(ValueDe { value: &self.root, kinds }).map_err(|mut fault| {
+            // What is missing from the file as a whole has no place in it.
+            if fault.span == Some(self.root.span()) {
+                fault.span = None;
+            }
+            fault
+        })
+    }
+
+    /// The robot of an entry of `[[agents]]`.
+    pub(super) fn robot(&self, entry: usize, kinds: &Kinds) -> Result<Box<dyn RobotKind>, Fault> {
+        match self.entry(entry).and_then(|entry| entry.get_ref().get("robot")) {
+            Some(value) => kinds.robot(ValueDe { value, kinds }).map(|(_, robot)| robot),
+            None => Err(Fault::new(ValueProblem::MissingKey { key: "robot" })),
+        }
+    }
+
+    /// The law of an entry of `[[agents]]`, else that of all agents, if there is one.
+    pub(super) fn law(&self, entry: usize, kinds: &Kinds) -> Result<Option<KeyedLaw>, Fault> {
+        let own = self.entry(entry).and_then(|entry| entry.get_ref().get("law"));
+        let law = own.or_else(|| self.root.get_ref().get("law"));
+        law.map(|value| kinds.law(ValueDe { value, kinds })).transpose()
+    }
+
+    fn entry(&self, entry: usize) -> Option<&Spanned<DeValue<'i>>> {
+        self.root.get_ref().get("agents")?.get_ref().get(entry)
+    }
+}
+
+/// What `read` makes of an empty table under `key`.
+pub(super) fn with_empty<R>(
+    key: &str,
+    kinds: &Kinds,
+    read: impl FnOnce(ValueDe<'_, '_>) -> Result<R, Fault>,
+) -> Result<R, Fault> {
+    let mut table = DeTable::new();
+    table.insert(Spanned::new(0..0, key.into()), Spanned::new(0..0, DeValue::Table(DeTable::new())));
+    read(ValueDe { value: &Spanned::new(0..0, DeValue::Table(table)), kinds }).map_err(|mut fault| {
+        // It does not stand in the file.
+        fault.span = None;
+        fault
+    })
+}

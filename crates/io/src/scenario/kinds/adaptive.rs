@@ -1,0 +1,88 @@
+//! `law.adaptive` and `law.known`: (6) and (7), for robots of Section II-B.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use forwardstep_sim::{Adaptive, Known, Law, RobotSetup, SetupError};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{
+    At, DampingFile, EstimateStartFile, Fault, GainOrBandwidth, LawKind, LawReader, adaptation, damping, estimate,
+};
+
+/// The adaptive tracking law.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AdaptiveFile {
+    /// The gain K. Default: a bandwidth of 20 1/s for a URDF, 8 otherwise.
+    pub damping: Option<DampingFile>,
+    /// The gain Γ. Default: a bandwidth of 5 1/s for a URDF, 10 otherwise.
+    pub adaptation_gain: Option<At<GainOrBandwidth>>,
+    /// The estimate at the start. Default: zero.
+    pub estimate_start: Option<EstimateStartFile>,
+}
+
+impl LawKind for AdaptiveFile {
+    fn key() -> &'static str {
+        "adaptive"
+    }
+
+    fn description() -> &'static str {
+        "The parameters of the robot are unknown and estimated: (6) and (7) of the paper."
+    }
+
+    fn made_for() -> &'static str {
+        "arms and point masses"
+    }
+
+    fn suits(robot: &RobotSetup) -> bool {
+        robot.kind.lagrangian().is_some()
+    }
+
+    fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
+        Ok(Arc::new(Adaptive {
+            damping: damping(self.damping.as_ref(), agent)?,
+            adaptation: adaptation(self.adaptation_gain.as_ref(), agent)?,
+            estimate_start: estimate(self.estimate_start.as_ref(), agent)?,
+        }))
+    }
+
+    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
+        None
+    }
+}
+
+/// The tracking law with known parameters.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct KnownFile {
+    /// The gain K. Default: a bandwidth of 20 1/s for a URDF, 8 otherwise.
+    pub damping: Option<DampingFile>,
+}
+
+impl LawKind for KnownFile {
+    fn key() -> &'static str {
+        "known"
+    }
+
+    fn description() -> &'static str {
+        "The parameters of the robot are known."
+    }
+
+    fn made_for() -> &'static str {
+        "arms and point masses"
+    }
+
+    fn suits(robot: &RobotSetup) -> bool {
+        robot.kind.lagrangian().is_some()
+    }
+
+    fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
+        Ok(Arc::new(Known { damping: damping(self.damping.as_ref(), agent)? }))
+    }
+
+    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
+        None
+    }
+}

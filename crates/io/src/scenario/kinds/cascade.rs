@@ -1,0 +1,232 @@
+//! `robot.strict_feedback` and `robot.pure_feedback`, chains in feedback form, and `law.adaptive_backstepping`.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use forwardstep_core::expression::Expression;
+use forwardstep_core::plant::{CascadeError, CascadeTerms};
+use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::{ChainLaw, ChainModel, ChainStep, Law, RobotSetup, SetupError, Start};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::chain::{FLOOR, adapted, chain_robot, each, list, optional, spread_parameters};
+use super::{
+    At, AxisValues, Body, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, RobotKind, RobotRead,
+    RobotTemplate, Spread, StartReader, Stop, fault, filled, length, positive_or,
+};
+use crate::scenario::system_problem::SystemProblem;
+use crate::scenario::systems_file::TargetFile;
+use crate::scenario::value_problem::ValueProblem;
+use crate::scenario::values::Positive;
+
+/// The highest order that is accepted, since these chains are differentiated.
+const MOST_EQUATIONS: usize = 6;
+
+/// A chain in strict-feedback form: the rate of x1 is x2 and parameters times functions of x1, the rate of x2 is x3 and
+/// parameters times functions of x1 and x2, and so on; the last rate has the input in place of the next state.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StrictFeedbackFile {
+    /// For each equation what the parameters are multiplied by: a formula in x1, x2, … for each parameter.
+    #[schemars(length(min = 1, max = 6))]
+    pub regressors: At<Vec<At<Vec<At<String>>>>>,
+    /// The true parameters.
+    #[serde(default)]
+    pub parameters: At<Vec<At<f64>>>,
+}
+
+impl RobotKind for StrictFeedbackFile {
+    fn key() -> &'static str {
+        "strict_feedback"
+    }
+
+    fn description() -> &'static str {
+        "A parametric chain in strict-feedback form."
+    }
+
+    fn template() -> Option<RobotTemplate> {
+        None
+    }
+
+    fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
+        let regressors = equations(&self.regressors)?;
+        let robot = cascade(CascadeTerms::strict(regressors), &self.regressors, &self.parameters)?;
+        Ok(RobotRead::new(robot))
+    }
+
+    fn spread(&self, read: &RobotRead, spread: &Spread<'_>) -> Result<(RobotSetup, Body), Fault> {
+        Ok(spread_parameters(read, spread))
+    }
+
+    fn start(&self, robot: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
+        start(robot, given)
+    }
+
+    fn target(&self, _: &At<TargetFile>, _: &Trajectory, _: f64, _: &mut Start) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn limits_of_axes(&self) -> bool {
+        true
+    }
+
+    fn usual_law(&self) -> &'static str {
+        "adaptive_backstepping"
+    }
+}
+
+/// A chain in pure-feedback form: the next state may enter the rate of each in any way.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PureFeedbackFile {
+    /// For each equation what is known: a formula in the states up to the next one.
+    #[schemars(length(min = 1, max = 6))]
+    pub known: At<Vec<At<String>>>,
+    /// For each equation what the parameters are multiplied by.
+    #[schemars(length(min = 1, max = 6))]
+    pub regressors: At<Vec<At<Vec<At<String>>>>>,
+    /// What the input is multiplied by in the last equation. Default: 1.
+    pub psi: Option<At<String>>,
+    /// The true parameters.
+    #[serde(default)]
+    pub parameters: At<Vec<At<f64>>>,
+}
+
+impl RobotKind for PureFeedbackFile {
+    fn key() -> &'static str {
+        "pure_feedback"
+    }
+
+    fn description() -> &'static str {
+        "A parametric chain in pure-feedback form."
+    }
+
+    fn template() -> Option<RobotTemplate> {
+        None
+    }
+
+    fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
+        let regressors = equations(&self.regressors)?;
+        let names = states(regressors.len());
+        length("known", &self.known.span, self.known.value.len(), names.len(), "regressors")?;
+        let known = list(&self.known.value, &names)?;
+        let psi = optional(self.psi.as_ref(), &names, 1.0)?;
+        let terms = CascadeTerms::new(known, regressors, psi);
+        Ok(RobotRead::new(cascade(terms, &self.regressors, &self.parameters)?))
+    }
+
+    fn spread(&self, read: &RobotRead, spread: &Spread<'_>) -> Result<(RobotSetup, Body), Fault> {
+        Ok(spread_parameters(read, spread))
+    }
+
+    fn start(&self, robot: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
+        start(robot, given)
+    }
+
+    fn target(&self, _: &At<TargetFile>, _: &Trajectory, _: f64, _: &mut Start) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn limits_of_axes(&self) -> bool {
+        true
+    }
+
+    fn usual_law(&self) -> &'static str {
+        "adaptive_backstepping"
+    }
+}
+
+/// Where a chain starts: z leads its first state.
+fn start(robot: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
+    let q = given.position()?;
+    let rest = given.higher_states(robot.kind.rest_len())?;
+    Ok(Start { reference: given.reference(&q)?, q, dq: Vec::new(), rest })
+}
+
+/// x1, x2, ….
+fn states(order: usize) -> Vec<String> {
+    (1..=order).map(|i| format!("x{i}")).collect()
+}
+
+fn cascade(
+    terms: Result<CascadeTerms, CascadeError>,
+    regressors: &At<Vec<At<Vec<At<String>>>>>,
+    parameters: &At<Vec<At<f64>>>,
+) -> Result<RobotSetup, Fault> {
+    let terms = terms.map_err(|error| {
+        let row = match error {
+            CascadeError::Above { equation, .. } => regressors.value.get(equation.saturating_sub(1)),
+            _ => None,
+        };
+        let place = row.map_or(&regressors.span, |row| &row.span).clone();
+        Fault::new(SystemProblem::Chain(error)).at(&place)
+    })?;
+    chain_robot(ChainModel::Cascade(Arc::new(terms)), parameters)
+}
+
+fn equations(file: &At<Vec<At<Vec<At<String>>>>>) -> Result<Vec<Vec<Expression>>, Fault> {
+    let rows = filled("regressors", file)?;
+    if rows.len() > MOST_EQUATIONS {
+        return Err(fault(file, ValueProblem::Order { key: "regressors", found: rows.len(), most: MOST_EQUATIONS }));
+    }
+    let need = rows.first().map_or(0, |row| row.value.len());
+    for (k, row) in rows.iter().enumerate() {
+        length("regressors", &row.span, row.value.len(), need, &format!("equation {}", k + 1))?;
+    }
+    let names = states(rows.len());
+    rows.iter().map(|row| list(&row.value, &names)).collect()
+}
+
+/// Adaptive backstepping for a chain in strict-feedback or pure-feedback form.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AdaptiveBacksteppingFile {
+    /// The gains of the steps in 1/s, one for all or one for each. Default: 1.
+    pub gains_per_s: Option<At<AxisValues>>,
+    /// The gain Γ, one for all parameters or one for each. Default: 1.
+    pub adaptation_gain: Option<At<AxisValues>>,
+    /// The estimate at the start. Default: zero.
+    pub estimate_start: Option<EstimateStartFile>,
+    /// The run ends where the factor of the input in the last step comes closer to zero. Default: 1e-3.
+    #[schemars(with = "Option<Positive>")]
+    pub floor: Option<At<f64>>,
+}
+
+/// The order of a chain in feedback form.
+fn order(robot: &RobotSetup) -> Option<usize> {
+    match robot.kind.downcast() {
+        Some(model @ ChainModel::Cascade(_)) => Some(model.order()),
+        Some(ChainModel::Derivatives(_)) | None => None,
+    }
+}
+
+impl LawKind for AdaptiveBacksteppingFile {
+    fn key() -> &'static str {
+        "adaptive_backstepping"
+    }
+
+    fn description() -> &'static str {
+        "A chain in strict-feedback or pure-feedback form with unknown parameters."
+    }
+
+    fn made_for() -> &'static str {
+        "`strict_feedback` and `pure_feedback`, chains with unknown parameters in every equation"
+    }
+
+    fn suits(robot: &RobotSetup) -> bool {
+        order(robot).is_some()
+    }
+
+    fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
+        let order = order(agent.robot).unwrap_or_default();
+        let gains_per_s = each("gains_per_s", self.gains_per_s.as_ref(), agent.agent, order)?;
+        let estimate = adapted(self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), agent)?;
+        let floor = positive_or("floor", &self.floor, FLOOR)?;
+        Ok(Arc::new(ChainLaw { step: ChainStep::Backstepping { gains_per_s, estimate }, floor }))
+    }
+
+    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
+        None
+    }
+}

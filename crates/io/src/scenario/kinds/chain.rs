@@ -1,0 +1,319 @@
+//! `robot.chain`, a plant of derivatives, and the laws for it: `linearising`, `linear_adaptive`, `immersion`.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use forwardstep_core::controller::{ChainError, Immersion};
+use forwardstep_core::expression::Expression;
+use forwardstep_core::plant::{CascadeError, Formulas, Terms};
+use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::{AxisUnit, ChainLaw, ChainModel, ChainStep, Estimate, Law, RobotSetup, SetupError, Start};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{
+    At, AxisValues, Body, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, RobotKind, RobotRead,
+    RobotTemplate, Spread, StartReader, Stop, axis, count, estimate, fault, length, positive, positive_or, values,
+};
+use crate::scenario::formula::formula_in;
+use crate::scenario::system_problem::SystemProblem;
+use crate::scenario::systems_file::TargetFile;
+use crate::scenario::values::Positive;
+
+/// The highest order that is accepted.
+const MOST_DERIVATIVES: u32 = 8;
+/// Where the factor of the input counts as zero.
+pub(super) const FLOOR: f64 = 1e-3;
+/// k, c and Γ.
+const GAIN: f64 = 1.0;
+
+/// A plant whose derivative of some order is χ + ψ u; formulas are in x, dx, d2x, d3x, ….
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ChainFile {
+    /// The order k.
+    #[schemars(range(min = 1, max = 8))]
+    pub order: At<i64>,
+    /// What is known of χ. Default: 0.
+    pub chi: Option<At<String>>,
+    /// ψ, which must stay away from zero. Default: 1.
+    pub psi: Option<At<String>>,
+    /// What the parameters are multiplied by in χ, a formula for each.
+    #[serde(default)]
+    pub regressor: At<Vec<At<String>>>,
+    /// The true parameters.
+    #[serde(default)]
+    pub parameters: At<Vec<At<f64>>>,
+}
+
+impl RobotKind for ChainFile {
+    fn key() -> &'static str {
+        "chain"
+    }
+
+    fn description() -> &'static str {
+        "A plant of any order with formulas for χ and ψ: Section IV of the paper."
+    }
+
+    fn template() -> Option<RobotTemplate> {
+        None
+    }
+
+    fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
+        let order = count("order", &self.order, MOST_DERIVATIVES)?;
+        let names = derivatives(order);
+        let chi = optional(self.chi.as_ref(), &names, 0.0)?;
+        let psi = optional(self.psi.as_ref(), &names, 1.0)?;
+        let phi = list(&self.regressor.value, &names)?;
+        let terms = Formulas::new(order, &chi, phi, &psi)
+            .map_err(|error| fault(&self.order, SystemProblem::Chain(CascadeError::Expression(error))))?;
+        Ok(RobotRead::new(chain_robot(ChainModel::Derivatives(Arc::new(terms)), &self.parameters)?))
+    }
+
+    fn spread(&self, read: &RobotRead, spread: &Spread<'_>) -> Result<(RobotSetup, Body), Fault> {
+        Ok(spread_parameters(read, spread))
+    }
+
+    fn start(&self, robot: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
+        let q = given.position()?;
+        let dq = if robot.velocity_len() > 0 { given.velocity()? } else { Vec::new() };
+        let rest = given.higher_states(robot.kind.rest_len())?;
+        let led = [&q[..], &dq, &rest].concat().last().map(|top| vec![*top]).unwrap_or_default();
+        Ok(Start { reference: given.reference(&led)?, q, dq, rest })
+    }
+
+    fn target(&self, _: &At<TargetFile>, _: &Trajectory, _: f64, _: &mut Start) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn limits_of_axes(&self) -> bool {
+        true
+    }
+
+    fn usual_law(&self) -> &'static str {
+        "linear_adaptive"
+    }
+}
+
+/// x, dx, d2x, ….
+fn derivatives(order: usize) -> Vec<String> {
+    let name = |r: usize| match r {
+        0 => "x".to_owned(),
+        1 => "dx".to_owned(),
+        r => format!("d{r}x"),
+    };
+    (0..order).map(name).collect()
+}
+
+pub(super) fn optional(text: Option<&At<String>>, names: &[String], otherwise: f64) -> Result<Expression, Fault> {
+    text.map_or(Ok(Expression::number(otherwise)), |text| formula_in(text, names))
+}
+
+pub(super) fn list(texts: &[At<String>], names: &[String]) -> Result<Vec<Expression>, Fault> {
+    texts.iter().map(|text| formula_in(text, names)).collect()
+}
+
+pub(super) fn chain_robot(model: ChainModel, parameters: &At<Vec<At<f64>>>) -> Result<RobotSetup, Fault> {
+    let need = model.parameters();
+    length("parameters", &parameters.span, parameters.value.len(), need, "regressor")?;
+    Ok(RobotSetup {
+        kind: Arc::new(model),
+        theta: values(&parameters.value),
+        theta_names: (1..=need).map(|k| format!("theta{k}")).collect(),
+        axes: vec![axis("x", AxisUnit::Metre)],
+    })
+}
+
+/// A chain whose parameters differ from agent to agent.
+pub(super) fn spread_parameters(read: &RobotRead, spread: &Spread<'_>) -> (RobotSetup, Body) {
+    let mut robot = read.robot.clone();
+    let factors = spread.factors(robot.theta.len());
+    robot.theta.iter_mut().zip(factors).for_each(|(theta, factor)| *theta *= factor);
+    (robot, read.body.clone())
+}
+
+/// The terms of a plant of derivatives.
+fn terms(robot: &RobotSetup) -> Option<&Formulas> {
+    match robot.kind.downcast() {
+        Some(ChainModel::Derivatives(terms)) => Some(terms),
+        Some(ChainModel::Cascade(_)) | None => None,
+    }
+}
+
+const MADE_FOR: &str = "`chain`, plants of derivatives";
+
+/// One number for all, or one for each of `need`.
+pub(super) fn each(
+    key: &'static str,
+    file: Option<&At<AxisValues>>,
+    agent: &str,
+    need: usize,
+) -> Result<Vec<f64>, Fault> {
+    let Some(place) = file else { return Ok(vec![GAIN; need]) };
+    match &place.value {
+        AxisValues::All(value) => Ok(vec![positive(key, &At { value: *value, span: place.span.clone() })?; need]),
+        AxisValues::Each(list) => {
+            length(key, &place.span, list.len(), need, agent)?;
+            list.iter().map(|value| positive(key, value)).collect()
+        }
+    }
+}
+
+pub(super) fn adapted(
+    gain: Option<&At<AxisValues>>,
+    start: Option<&EstimateStartFile>,
+    agent: &LawReader<'_>,
+) -> Result<Estimate, Fault> {
+    let adaptation = each("adaptation_gain", gain, agent.agent, agent.robot.theta.len())?;
+    Ok(Estimate { adaptation, start: estimate(start, agent)? })
+}
+
+/// Feedback linearisation of a chain of derivatives, with the true parameters.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LinearisingFile {
+    /// How fast the tracking error vanishes, in 1/s. Default: 1.
+    #[schemars(with = "Option<Positive>")]
+    pub gain_per_s: Option<At<f64>>,
+    /// The run ends where ψ comes closer to zero. Default: 1e-3.
+    #[schemars(with = "Option<Positive>")]
+    pub floor: Option<At<f64>>,
+}
+
+impl LawKind for LinearisingFile {
+    fn key() -> &'static str {
+        "linearising"
+    }
+
+    fn description() -> &'static str {
+        "A chain of derivatives that is known."
+    }
+
+    fn made_for() -> &'static str {
+        MADE_FOR
+    }
+
+    fn suits(robot: &RobotSetup) -> bool {
+        terms(robot).is_some()
+    }
+
+    fn law(&self, _: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
+        let gain_per_s = positive_or("gain_per_s", &self.gain_per_s, GAIN)?;
+        let floor = positive_or("floor", &self.floor, FLOOR)?;
+        Ok(Arc::new(ChainLaw { step: ChainStep::Linearising { gain_per_s }, floor }))
+    }
+
+    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
+        None
+    }
+}
+
+/// The adaptive law for a chain of derivatives.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LinearAdaptiveFile {
+    /// How fast the tracking error vanishes, in 1/s. Default: 1.
+    #[schemars(with = "Option<Positive>")]
+    pub gain_per_s: Option<At<f64>>,
+    /// The gain Γ, one for all parameters or one for each. Default: 1.
+    pub adaptation_gain: Option<At<AxisValues>>,
+    /// The estimate at the start. Default: zero.
+    pub estimate_start: Option<EstimateStartFile>,
+    /// The run ends where ψ comes closer to zero. Default: 1e-3.
+    #[schemars(with = "Option<Positive>")]
+    pub floor: Option<At<f64>>,
+}
+
+impl LawKind for LinearAdaptiveFile {
+    fn key() -> &'static str {
+        "linear_adaptive"
+    }
+
+    fn description() -> &'static str {
+        "A chain of derivatives with unknown parameters."
+    }
+
+    fn made_for() -> &'static str {
+        MADE_FOR
+    }
+
+    fn suits(robot: &RobotSetup) -> bool {
+        terms(robot).is_some()
+    }
+
+    fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
+        let gain_per_s = positive_or("gain_per_s", &self.gain_per_s, GAIN)?;
+        let estimate = adapted(self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), agent)?;
+        let floor = positive_or("floor", &self.floor, FLOOR)?;
+        Ok(Arc::new(ChainLaw { step: ChainStep::Adaptive { gain_per_s, estimate }, floor }))
+    }
+
+    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
+        None
+    }
+}
+
+/// Immersion and invariance for a chain of derivatives.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ImmersionFile {
+    /// How fast the tracking error vanishes, in 1/s. Default: 1.
+    #[schemars(with = "Option<Positive>")]
+    pub gain_per_s: Option<At<f64>>,
+    /// The gain Γ, one for all parameters or one for each. Default: 1.
+    pub adaptation_gain: Option<At<AxisValues>>,
+    /// The estimate at the start. Default: zero.
+    pub estimate_start: Option<EstimateStartFile>,
+    /// For each parameter a formula whose derivative by the highest derivative of x is the regressor. Default: the regressor
+    /// times that derivative, for regressors without it.
+    pub antiderivatives: Option<At<Vec<At<String>>>>,
+    /// The run ends where ψ comes closer to zero. Default: 1e-3.
+    #[schemars(with = "Option<Positive>")]
+    pub floor: Option<At<f64>>,
+}
+
+impl LawKind for ImmersionFile {
+    fn key() -> &'static str {
+        "immersion"
+    }
+
+    fn description() -> &'static str {
+        "The same by immersion and invariance."
+    }
+
+    fn made_for() -> &'static str {
+        MADE_FOR
+    }
+
+    fn suits(robot: &RobotSetup) -> bool {
+        terms(robot).is_some()
+    }
+
+    fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
+        let none = || Fault::new(SystemProblem::Antiderivatives { agent: agent.agent.to_owned() });
+        let terms = terms(agent.robot).ok_or_else(none)?;
+        let (order, phi) = (terms.order(), terms.regressor());
+        let antiderivatives = match &self.antiderivatives {
+            Some(texts) => {
+                length("antiderivatives", &texts.span, texts.value.len(), phi.len(), agent.agent)?;
+                list(&texts.value, &derivatives(order))?
+            }
+            None => {
+                phi.iter().map(|phi| Immersion::antiderivative(order, phi)).collect::<Option<_>>().ok_or_else(none)?
+            }
+        };
+        let gain_per_s = positive_or("gain_per_s", &self.gain_per_s, GAIN)?;
+        let estimate = adapted(self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), agent)?;
+        let floor = positive_or("floor", &self.floor, FLOOR)?;
+        Ok(Arc::new(ChainLaw { step: ChainStep::Immersion { gain_per_s, estimate, antiderivatives }, floor }))
+    }
+
+    fn place(&self, error: &SetupError) -> Option<Range<usize>> {
+        match error {
+            SetupError::Chain { error: ChainError::Antiderivative { parameter, .. }, .. } => {
+                Some(self.antiderivatives.as_ref()?.value.get(*parameter)?.span.clone())
+            }
+            _ => None,
+        }
+    }
+}

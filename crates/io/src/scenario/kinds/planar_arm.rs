@@ -1,0 +1,131 @@
+//! `robot.planar_arm`: the two-link planar arm in closed form.
+
+use std::rc::Rc;
+use std::sync::Arc;
+
+use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip};
+use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::{AxisUnit, RobotSetup, Start};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{
+    At, Body, Fault, InputFolder, RobotKind, RobotRead, RobotTemplate, Spread, StartReader, Stop, axis, not_negative,
+    positive,
+};
+use crate::scenario::problem::ScenarioProblem;
+use crate::scenario::systems_file::TargetFile;
+use crate::scenario::values::{NotNegative, Positive};
+
+/// Masses and lengths of a two-link planar arm.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlanarArmFile {
+    /// Mass of each link, in kg.
+    #[schemars(with = "[Positive; 2]")]
+    pub mass_kg: [At<f64>; 2],
+    /// Length of each link, in m.
+    #[schemars(with = "[Positive; 2]")]
+    pub length_m: [At<f64>; 2],
+    /// From each joint to the centre of mass of its link, in m. Default: the middle of the link.
+    pub com_m: Option<[At<f64>; 2]>,
+    /// Inertia of each link about its centre of mass, in kg m². Default: that of a uniform rod, m l²/12.
+    #[schemars(with = "Option<[NotNegative; 2]>")]
+    pub inertia_kg_m2: Option<[At<f64>; 2]>,
+    /// Gravity, pointing down, in m/s². Default: 9.81.
+    #[schemars(range(min = 0))]
+    pub gravity_m_s2: Option<At<f64>>,
+}
+
+impl RobotKind for PlanarArmFile {
+    fn key() -> &'static str {
+        "planar_arm"
+    }
+
+    fn description() -> &'static str {
+        "The two-link planar arm in closed form: the first angle from the horizontal, the second relative to the first link."
+    }
+
+    fn template() -> Option<RobotTemplate> {
+        Some(RobotTemplate {
+            name: "arm",
+            line: "robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }".into(),
+            says: "uniform links",
+            law: RobotTemplate::adaptive("damping.gain = 8", "adaptation_gain = 10"),
+        })
+    }
+
+    fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
+        let (robot, body) = arm(&links(self)?)?;
+        Ok(RobotRead { robot, body, notices: Vec::new() })
+    }
+
+    fn spread(&self, _: &RobotRead, spread: &Spread<'_>) -> Result<(RobotSetup, Body), Fault> {
+        let (factors, mut links) = (spread.factors(4), links(self)?);
+        for (k, (mass, length)) in factors[..2].iter().zip(&factors[2..]).enumerate() {
+            links.mass_kg[k] *= mass;
+            links.length_m[k] *= length;
+            links.com_m[k] *= length;
+            links.inertia_kg_m2[k] *= mass * length * length;
+        }
+        arm(&links).map_err(|_| spread.unsound())
+    }
+
+    fn start(&self, _: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
+        given.position_and_velocity()
+    }
+
+    fn target(&self, _: &At<TargetFile>, _: &Trajectory, _: f64, _: &mut Start) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn limits_of_axes(&self) -> bool {
+        true
+    }
+
+    fn usual_law(&self) -> &'static str {
+        "adaptive"
+    }
+}
+
+/// The links of a planar arm as its table says.
+fn links(file: &PlanarArmFile) -> Result<PlanarLinks, Fault> {
+    let pair = |key, [first, second]: &[At<f64>; 2]| Ok([positive(key, first)?, positive(key, second)?]);
+    let mut links = PlanarLinks::uniform(pair("mass_kg", &file.mass_kg)?, pair("length_m", &file.length_m)?);
+    if let Some([first, second]) = &file.com_m {
+        links.com_m = [first.value, second.value];
+    }
+    if let Some([first, second]) = &file.inertia_kg_m2 {
+        links.inertia_kg_m2 = [not_negative("inertia_kg_m2", first)?, not_negative("inertia_kg_m2", second)?];
+    }
+    if let Some(gravity) = &file.gravity_m_s2 {
+        links.gravity_m_s2 = not_negative("gravity_m_s2", gravity)?;
+    }
+    Ok(links)
+}
+
+/// The arm with these links, and its end.
+fn arm(links: &PlanarLinks) -> Result<(RobotSetup, Body), Fault> {
+    let theta = links.theta();
+    // det M = ϑ₂(ϑ₁ − ϑ₂) − ϑ₃² cos² q₂, smallest where the arm is straight.
+    let [whole, outer, coupling, ..] = theta;
+    let determinant = outer * (whole - outer) - coupling * coupling;
+    if !(outer > 0.0 && determinant > 0.0 && theta.iter().all(|entry| entry.is_finite())) {
+        return Err(Fault::new(ScenarioProblem::MassMatrix));
+    }
+    let robot = RobotSetup {
+        kind: Arc::new(PlanarArm),
+        theta: theta.to_vec(),
+        theta_names: [
+            "inertia.both_links",
+            "inertia.outer_link",
+            "inertia.coupling",
+            "gravity.shoulder",
+            "gravity.elbow",
+        ]
+        .map(String::from)
+        .to_vec(),
+        axes: vec![axis("shoulder", AxisUnit::Radian), axis("elbow", AxisUnit::Radian)],
+    };
+    Ok((robot, Body { links: Rc::new([]), tip: Some(PlanarTip { length_m: links.length_m }) }))
+}

@@ -1,0 +1,144 @@
+//! `robot.point_mass`: a mass that is pushed along every axis, and `law.position_only`: (a8), where its velocity is not measured.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use forwardstep_core::robot::PointMass;
+use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::{AxisUnit, Law, PositionOnlyLaw, RobotSetup, SetupError, Start};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{
+    At, Body, Fault, InputFolder, LawKind, LawReader, RobotKind, RobotRead, RobotTemplate, Spread, StartReader, Stop,
+    axis, count, not_negative_or, positive, positive_or,
+};
+use crate::scenario::systems_file::TargetFile;
+use crate::scenario::values::Positive;
+
+/// Axes a point mass may have.
+const MOST_DIMENSIONS: u32 = 100;
+/// Gains that suit a mass of about a kilogram.
+const DAMPING_GAIN: f64 = 8.0;
+const ADAPTATION_GAIN: f64 = 10.0;
+/// Of the filter that stands in for a velocity.
+const FILTER_PER_S: f64 = 10.0;
+
+/// A point mass.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointMassFile {
+    /// The number of axes.
+    #[schemars(range(min = 1))]
+    pub dimension: At<i64>,
+    /// Its mass, in kg.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub mass_kg: At<f64>,
+}
+
+impl RobotKind for PointMassFile {
+    fn key() -> &'static str {
+        "point_mass"
+    }
+
+    fn description() -> &'static str {
+        "A point mass that is pushed along every axis."
+    }
+
+    fn template() -> Option<RobotTemplate> {
+        Some(RobotTemplate {
+            name: "mass",
+            line: "robot.point_mass = { dimension = 2, mass_kg = 4.0 }".into(),
+            says: "in a plane",
+            law: RobotTemplate::adaptive("damping.gain = 8", "adaptation_gain = 10"),
+        })
+    }
+
+    fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
+        Ok(RobotRead::new(point_mass(self)?))
+    }
+
+    fn spread(&self, read: &RobotRead, spread: &Spread<'_>) -> Result<(RobotSetup, Body), Fault> {
+        let mut robot = read.robot.clone();
+        robot.theta.iter_mut().zip(spread.factors(1)).for_each(|(mass, factor)| *mass *= factor);
+        Ok((robot, read.body.clone()))
+    }
+
+    fn start(&self, _: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
+        given.position_and_velocity()
+    }
+
+    fn target(&self, _: &At<TargetFile>, _: &Trajectory, _: f64, _: &mut Start) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn limits_of_axes(&self) -> bool {
+        true
+    }
+
+    fn usual_law(&self) -> &'static str {
+        "adaptive"
+    }
+}
+
+fn point_mass(file: &PointMassFile) -> Result<RobotSetup, Fault> {
+    let dimension = count("dimension", &file.dimension, MOST_DIMENSIONS)?;
+    let name = |k: usize| match (dimension <= 3, ["x", "y", "z"].get(k)) {
+        (true, Some(letter)) => axis(letter, AxisUnit::Metre),
+        _ => axis(&format!("x{}", k + 1), AxisUnit::Metre),
+    };
+    Ok(RobotSetup {
+        kind: Arc::new(PointMass { dimension }),
+        theta: vec![positive("mass_kg", &file.mass_kg)?],
+        theta_names: vec!["mass".into()],
+        axes: (0..dimension).map(name).collect(),
+    })
+}
+
+/// The law (a8) for a point mass whose velocity is not measured.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PositionOnlyFile {
+    /// The gain k, in N s/m. Default: 8.
+    #[schemars(with = "Option<Positive>")]
+    pub damping: Option<At<f64>>,
+    /// The rate λ_f of the filter that stands in for the velocity, in 1/s. Default: 10.
+    #[schemars(with = "Option<Positive>")]
+    pub filter_per_s: Option<At<f64>>,
+    /// The gain γ* of the mass estimate. Default: 10. Zero to keep the estimate as it is.
+    #[schemars(range(min = 0))]
+    pub adaptation_gain: Option<At<f64>>,
+    /// The mass estimate at the start, in kg. Default: 0.
+    pub estimate_start_kg: Option<At<f64>>,
+}
+
+impl LawKind for PositionOnlyFile {
+    fn key() -> &'static str {
+        "position_only"
+    }
+
+    fn description() -> &'static str {
+        "A point mass of unknown mass whose velocity is not measured: (a8) of the paper."
+    }
+
+    fn made_for() -> &'static str {
+        "point masses"
+    }
+
+    fn suits(robot: &RobotSetup) -> bool {
+        robot.kind.is::<PointMass>()
+    }
+
+    fn law(&self, _: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
+        Ok(Arc::new(PositionOnlyLaw {
+            damping: positive_or("damping", &self.damping, DAMPING_GAIN)?,
+            filter_per_s: positive_or("filter_per_s", &self.filter_per_s, FILTER_PER_S)?,
+            adaptation: not_negative_or("adaptation_gain", &self.adaptation_gain, ADAPTATION_GAIN)?,
+            estimate_start: self.estimate_start_kg.as_ref().map_or(0.0, |start| start.value),
+        }))
+    }
+
+    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
+        None
+    }
+}

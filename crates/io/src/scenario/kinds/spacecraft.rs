@@ -1,0 +1,264 @@
+//! Spacecraft: `robot.spacecraft` and `law.attitude`.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use forwardstep_core::Gain;
+use forwardstep_core::attitude::{IDENTITY, Quaternion, difference};
+use forwardstep_core::plant::{Spacecraft, SpacecraftError, Wheel, Wheels};
+use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::{AttitudeLaw, AxisUnit, Law, RobotSetup, SetupError, SpacecraftModel, Start};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{
+    At, Body, Fault, GainFile, InputFolder, LawKind, LawReader, RobotKind, RobotRead, RobotTemplate, Spread,
+    StartReader, Stop, axis, fault, filled, gain, gain_or, length, positive, positive_or, values,
+};
+use crate::scenario::attitude::{attitude as attitude_of, quaternion, turn};
+use crate::scenario::attitude_file::WheelStartFile;
+use crate::scenario::system_problem::SystemProblem;
+use crate::scenario::systems_file::TargetFile;
+use crate::scenario::value_problem::ValueProblem;
+use crate::scenario::values::Positive;
+
+const ERROR_GAIN_PER_S2: f64 = 1.0;
+const RATE_GAIN_PER_S: f64 = 2.0;
+const FILTER_GAIN_PER_S: f64 = 1.0;
+const DAMPING: f64 = 3.0;
+/// Times at which the length of a target is looked at, and what part of its greatest counts as zero.
+const SAMPLES: u32 = 1000;
+const VANISHING: f64 = 1e-9;
+
+/// A spacecraft that turns itself by reaction wheels.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpacecraftFile {
+    /// The inertia of the body with the wheels, less the inertia of each wheel about its own axis, in kg m²: the diagonal, or the
+    /// rows of a symmetric matrix.
+    pub inertia_kg_m2: At<GainFile>,
+    /// At least three, whose axes are not in one plane. Default: three along the axes of the body, without limits.
+    #[schemars(with = "Option<Vec<WheelFile>>", length(min = 3))]
+    pub wheels: Option<At<Vec<At<WheelFile>>>>,
+}
+
+/// A reaction wheel. Limits are reported, and kept where the agent says `enforce_limits = true`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WheelFile {
+    /// Its axis in the body, of any length.
+    pub axis: At<[f64; 3]>,
+    /// The largest torque of its motor, in N m. Default: none.
+    #[schemars(with = "Option<Positive>")]
+    pub torque_limit_n_m: Option<At<f64>>,
+    /// The largest momentum it can hold, in N m s. Default: none.
+    #[schemars(with = "Option<Positive>")]
+    pub momentum_limit_n_m_s: Option<At<f64>>,
+}
+
+impl RobotKind for SpacecraftFile {
+    fn key() -> &'static str {
+        "spacecraft"
+    }
+
+    fn description() -> &'static str {
+        "A spacecraft that turns itself by reaction wheels."
+    }
+
+    fn template() -> Option<RobotTemplate> {
+        None
+    }
+
+    fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
+        Ok(RobotRead::new(spacecraft(self)?))
+    }
+
+    fn spread(&self, read: &RobotRead, spread: &Spread<'_>) -> Result<(RobotSetup, Body), Fault> {
+        let mut robot = read.robot.clone();
+        if let (Some(model), Some(factor)) = (robot.kind.downcast::<SpacecraftModel>(), spread.factors(1).first()) {
+            let inertia_kg_m2 = model.inertia_kg_m2.map(|row| row.map(|entry| factor * entry));
+            robot.kind = Arc::new(SpacecraftModel { inertia_kg_m2, wheels: model.wheels.clone() });
+        }
+        Ok((robot, read.body.clone()))
+    }
+
+    fn start(&self, robot: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
+        let wheels = robot.kind.downcast().map_or(0, |model: &SpacecraftModel| model.wheels.count());
+        let (mut q, mut rate, mut momentum) = (None, None, None);
+        for table in given.tables(&["attitude", "angular_velocity_rad_s", "spacecraft"]) {
+            let own = table.spacecraft.as_ref().map(|own| &own.value);
+            let attitude = own.map(turned).transpose()?.flatten();
+            let spun = own.and_then(|own| own.rate_rad_s.as_ref());
+            if let (Some(_), Some(second)) = (attitude, &table.attitude) {
+                return Err(fault(second, ValueProblem::SameQuantity { first: "spacecraft", second: "attitude" }));
+            }
+            if let (Some(_), Some(second)) = (spun, &table.angular_velocity_rad_s) {
+                let problem = ValueProblem::SameQuantity { first: "rate_rad_s", second: "angular_velocity_rad_s" };
+                return Err(fault(second, problem));
+            }
+            q = q.or(attitude).or(table.attitude.as_ref().map(attitude_of).transpose()?);
+            rate = rate.or(spun.or(table.angular_velocity_rad_s.as_ref()).map(|rate| rate.value));
+            momentum = momentum.or(own.and_then(|own| own.wheel_momentum_n_m_s.as_ref()));
+        }
+        let rest = match momentum {
+            None => vec![0.0; wheels],
+            Some(list) => {
+                length("wheel_momentum_n_m_s", &list.span, list.value.len(), wheels, given.agent())?;
+                values(&list.value)
+            }
+        };
+        let (q, rate) = (q.unwrap_or(IDENTITY), rate.unwrap_or_default());
+        Ok(Start { q: q.to_vec(), dq: rate.to_vec(), rest, reference: Vec::new() })
+    }
+
+    fn target(&self, place: &At<TargetFile>, target: &Trajectory, end_s: f64, start: &mut Start) -> Result<(), Fault> {
+        never_zero(place, target, end_s)?;
+        shortest_rotation(start, target);
+        Ok(())
+    }
+
+    fn limits_of_axes(&self) -> bool {
+        // They are those of its wheels.
+        false
+    }
+
+    fn usual_law(&self) -> &'static str {
+        "attitude"
+    }
+}
+
+/// Builds the spacecraft.
+fn spacecraft(file: &SpacecraftFile) -> Result<RobotSetup, Fault> {
+    let wheels = match &file.wheels {
+        None => Wheels::orthogonal(),
+        Some(list) => {
+            let wheels =
+                filled("wheels", list)?.iter().map(|entry| wheel(&entry.value)).collect::<Result<Vec<_>, _>>()?;
+            Wheels::new(&wheels).map_err(|error| {
+                let axis = match error {
+                    SpacecraftError::Axis { wheel, .. } => {
+                        list.value.get(wheel).map(|wheel| wheel.value.axis.span.clone())
+                    }
+                    _ => None,
+                };
+                Fault::new(SystemProblem::Spacecraft(error)).at(&axis.unwrap_or_else(|| list.span.clone()))
+            })?
+        }
+    };
+    let place = &file.inertia_kg_m2;
+    let inertia_kg_m2 = match gain("inertia_kg_m2", &place.value, place, "spacecraft", 3)? {
+        Gain::Matrix(entries) => std::array::from_fn(|row| std::array::from_fn(|column| entries[3 * row + column])),
+        Gain::Diagonal(entries) => diagonal(|k| entries[k]),
+        Gain::Number(entry) | Gain::Bandwidth(entry) => diagonal(|_| entry),
+    };
+    Spacecraft::new(inertia_kg_m2, wheels.clone(), false)
+        .map_err(|error| fault(place, SystemProblem::Spacecraft(error)))?;
+    Ok(RobotSetup {
+        kind: Arc::new(SpacecraftModel { inertia_kg_m2, wheels }),
+        theta: Vec::new(),
+        theta_names: Vec::new(),
+        axes: ["x", "y", "z", "o"].map(|name| axis(name, AxisUnit::One)).to_vec(),
+    })
+}
+
+fn diagonal(entry: impl Fn(usize) -> f64) -> [[f64; 3]; 3] {
+    std::array::from_fn(|row| std::array::from_fn(|column| if row == column { entry(row) } else { 0.0 }))
+}
+
+fn wheel(file: &WheelFile) -> Result<Wheel, Fault> {
+    let limit = |key, value: &Option<At<f64>>| value.as_ref().map(|value| positive(key, value)).transpose();
+    Ok(Wheel {
+        axis: file.axis.value,
+        torque_limit_n_m: limit("torque_limit_n_m", &file.torque_limit_n_m)?,
+        momentum_limit_n_m_s: limit("momentum_limit_n_m_s", &file.momentum_limit_n_m_s)?,
+    })
+}
+
+/// The attitude of a table, if it says any.
+fn turned(file: &WheelStartFile) -> Result<Option<Quaternion>, Fault> {
+    Ok(match (&file.quaternion, &file.axis, &file.angle_rad) {
+        (None, None, None) => None,
+        (Some(given), None, None) => Some(quaternion(given)?),
+        (None, Some(axis), Some(angle)) => Some(turn(axis, angle)?),
+        (None, Some(axis), None) => return Err(fault(axis, SystemProblem::HalfAttitude)),
+        (None, None, Some(angle)) => return Err(fault(angle, SystemProblem::HalfAttitude)),
+        (Some(given), ..) => return Err(fault(given, SystemProblem::HalfAttitude)),
+    })
+}
+
+/// Refuses a target that is no attitude at some time.
+fn never_zero<T>(place: &At<T>, target: &Trajectory, end_s: f64) -> Result<(), Fault> {
+    let mut jets = [[0.0; 5]; 4];
+    let mut size = |t_s: f64| {
+        target.jets(t_s, &mut jets);
+        jets.iter().map(|jet| jet[0].abs()).fold(0.0, f64::max)
+    };
+    let times = (0..=SAMPLES).map(|k| end_s * f64::from(k) / f64::from(SAMPLES));
+    let (t_s, least, most) = times.fold((0.0, f64::INFINITY, 0.0_f64), |(at, least, most), t_s| {
+        let size = size(t_s);
+        if size < least { (t_s, size, most.max(size)) } else { (at, least, most.max(size)) }
+    });
+    if least > VANISHING * most { Ok(()) } else { Err(fault(place, SystemProblem::NoAttitude { t_s })) }
+}
+
+/// Of the two quaternions of the attitude at the start, takes the one that is nearer to the target: the law leads to Δq_o = 1
+/// and would otherwise take the long way round.
+fn shortest_rotation(start: &mut Start, target: &Trajectory) {
+    let mut jets = [[0.0; 5]; 4];
+    target.jets(0.0, &mut jets);
+    if let Some(q) = start.q.first_chunk_mut::<4>()
+        && difference(*q, jets.map(|jet| jet[0]))[3] < 0.0
+    {
+        *q = q.map(|x| -x);
+    }
+}
+
+/// Attitude tracking without angular velocity: (97) to (105) of the paper.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AttitudeFile {
+    /// The gain α₁ on the attitude error, in 1/s². Default: 1.
+    #[schemars(with = "Option<Positive>")]
+    pub error_gain_per_s2: Option<At<f64>>,
+    /// The gain α₂ on the rate error, in 1/s. Default: 2.
+    #[schemars(with = "Option<Positive>")]
+    pub rate_gain_per_s: Option<At<f64>>,
+    /// The gain Λ_f of the filter, in 1/s: a number, four, or a 4 × 4 matrix. Default: 1.
+    pub filter_gain_per_s: Option<At<GainFile>>,
+    /// The gain K of what stands in for the angular velocity: a number, four, or a 4 × 4 matrix. Default: 3.
+    pub damping: Option<At<GainFile>>,
+}
+
+impl LawKind for AttitudeFile {
+    fn key() -> &'static str {
+        "attitude"
+    }
+
+    fn description() -> &'static str {
+        "A spacecraft follows an attitude, without its angular velocity: (97) to (105) of the paper."
+    }
+
+    fn made_for() -> &'static str {
+        "spacecraft"
+    }
+
+    fn suits(robot: &RobotSetup) -> bool {
+        robot.kind.is::<SpacecraftModel>()
+    }
+
+    fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
+        let agent = agent.agent;
+        Ok(Arc::new(AttitudeLaw {
+            alpha: [
+                positive_or("error_gain_per_s2", &self.error_gain_per_s2, ERROR_GAIN_PER_S2)?,
+                positive_or("rate_gain_per_s", &self.rate_gain_per_s, RATE_GAIN_PER_S)?,
+            ],
+            filter: gain_or("filter_gain_per_s", &self.filter_gain_per_s, FILTER_GAIN_PER_S, agent, 4)?,
+            damping: gain_or("damping", &self.damping, DAMPING, agent, 4)?,
+        }))
+    }
+
+    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
+        None
+    }
+}

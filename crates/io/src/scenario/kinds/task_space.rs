@@ -1,0 +1,254 @@
+//! `law.task_space`: the end-effector of a robot follows a target with uncertain lengths, Theorem 6.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use forwardstep_core::Gain;
+use forwardstep_core::controller::ParameterBounds;
+use forwardstep_core::robot::TipKinematics;
+use forwardstep_core::robot::tree::{LinkPoint, TipError, Tree, TreeTip, Uncertain};
+use forwardstep_sim::{Attachments, Law, RobotSetup, SetupError, TaskSpaceLaw, TipSetup};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{
+    At, Body, DampingFile, EstimateStartFile, Fault, GainFile, GainOrBandwidth, LawKind, LawReader, adaptation,
+    between, damping, estimate, fault, filled, gain_or, length, positive_or, values,
+};
+use crate::scenario::gains::{has_scales, known_or_given};
+use crate::scenario::push_problem::PushProblem;
+use crate::scenario::system_problem::SystemProblem;
+use crate::scenario::value_problem::ValueProblem;
+use crate::scenario::values::Positive;
+
+const DAMPING: f64 = 20.0;
+const ADAPTATION: f64 = 30.0;
+const TASK_GAIN: f64 = 20.0;
+const TORQUE_SHARE: f64 = 5.0;
+const REFERENCE_GAIN_PER_S: f64 = 3.0;
+const KINEMATIC_GAIN: f64 = 0.3;
+const KINEMATIC_START: f64 = 1.2;
+const MARGIN_M: f64 = 0.01;
+const DETERMINANT_FLOOR: f64 = 0.01;
+
+/// The tip follows the target with uncertain lengths and parameters, without its velocity: (80) to (82) of the paper.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TaskSpaceFile {
+    /// The tip of a robot from a URDF. A planar arm has one of its own.
+    pub tip: Option<At<TipFile>>,
+    /// The gain K. Default: a bandwidth of 20 1/s for a URDF, 20 otherwise.
+    pub damping: Option<DampingFile>,
+    /// The gain Γ. Default: a bandwidth of 5 1/s for a URDF, 30 otherwise.
+    pub adaptation_gain: Option<At<GainOrBandwidth>>,
+    /// The estimate of the parameters at the start. Default: zero.
+    pub estimate_start: Option<EstimateStartFile>,
+    /// The gain K* on the error of the tip in the reference dynamics: a number, a diagonal or a matrix. Default: 20.
+    pub task_gain: Option<At<GainFile>>,
+    /// The gain κ with which that error enters the torque. Default: 5.
+    #[schemars(with = "Option<Positive>")]
+    pub torque_share: Option<At<f64>>,
+    /// The rate α at which the reference velocity forgets, in 1/s. Default: 3.
+    #[schemars(with = "Option<Positive>")]
+    pub reference_gain_per_s: Option<At<f64>>,
+    /// The gain Λ of the lengths: a number, a diagonal or a matrix. Large ones can drive the estimated Jacobian through a
+    /// singularity. Default: 0.3.
+    pub kinematic_gain: Option<At<GainFile>>,
+    /// The estimate of the lengths at the start. Zero would be singular. Default: the true ones times 1.2.
+    pub kinematic_start: Option<EstimateStartFile>,
+    /// Keeps the estimates of the lengths within bounds. Default: there are none.
+    pub bounds: Option<At<BoundsFile>>,
+    /// The run ends when det Ĵ falls below this share of its first value. Default: 0.01.
+    #[schemars(range(min = 0, max = 1))]
+    pub determinant_floor: Option<At<f64>>,
+}
+
+/// A point of a link, and what is known of it.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TipFile {
+    /// The link, by its name in the URDF.
+    pub link: At<String>,
+    /// The point in the frame of the link, in m. Default: its origin.
+    pub at_m: Option<[f64; 3]>,
+    /// Which coordinates of the base frame are controlled: as many as joints move. Default: all three.
+    #[schemars(length(min = 1, max = 3))]
+    pub coordinates: Option<At<Vec<At<CoordinateFile>>>>,
+    /// Which lengths are uncertain. Default: the tool.
+    pub uncertain: Option<UncertainFile>,
+}
+
+/// A coordinate of the base frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CoordinateFile {
+    /// The first.
+    X,
+    /// The second.
+    Y,
+    /// The third.
+    Z,
+}
+
+/// Which lengths are uncertain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum UncertainFile {
+    /// From the last joint to the tip.
+    Tool,
+    /// From each joint to the next as well, for the Jacobian; the regressor of the dynamics keeps the geometry of the URDF, so no
+    /// theorem covers those of them that enter it: see what `check` says.
+    Chain,
+}
+
+/// Bounds of the lengths, an entry for each.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoundsFile {
+    /// In m.
+    pub lower_m: At<Vec<At<f64>>>,
+    /// In m.
+    pub upper_m: At<Vec<At<f64>>>,
+    /// How far beyond an estimate may go before it stands, in m. Default: 0.01.
+    #[schemars(with = "Option<Positive>")]
+    pub margin_m: Option<At<f64>>,
+}
+
+impl LawKind for TaskSpaceFile {
+    fn key() -> &'static str {
+        "task_space"
+    }
+
+    fn description() -> &'static str {
+        "The tip of a robot follows a target, with uncertain lengths and without its velocity: (80) to (82) of the paper."
+    }
+
+    fn made_for() -> &'static str {
+        "planar arms and robots from a URDF"
+    }
+
+    fn suits(robot: &RobotSetup) -> bool {
+        matches!(robot.kind.attachments(), Attachments::PlanarTip | Attachments::Links(_))
+    }
+
+    fn law(&self, reader: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
+        let LawReader { agent, robot, body, .. } = *reader;
+        let (tip, theta, kinematic_names) = tip(self, agent, robot, body)?;
+        let p = theta.len();
+        let scaled = has_scales(robot);
+        let damping = match &self.damping {
+            None if !scaled => Gain::Number(DAMPING),
+            given => damping(given.as_ref(), reader)?,
+        };
+        let adaptation = match &self.adaptation_gain {
+            None if !scaled => Gain::Number(ADAPTATION),
+            given => adaptation(given.as_ref(), reader)?,
+        };
+        let kinematic_adaptation = gain_or("kinematic_gain", &self.kinematic_gain, KINEMATIC_GAIN, agent, p)?;
+        let bounds = self.bounds.as_ref().map(|place| bounds(&place.value, agent, p)).transpose()?;
+        if let (Some(place), Gain::Matrix(_)) = (&self.bounds, &kinematic_adaptation) {
+            return Err(fault(place, SystemProblem::BoundsOfMatrix));
+        }
+        let kinematic_start = match &self.kinematic_start {
+            None => theta.iter().map(|length| KINEMATIC_START * length).collect(),
+            Some(file) => known_or_given("kinematic_start.given", file, agent, &theta)?,
+        };
+        let floor = self.determinant_floor.as_ref();
+        Ok(Arc::new(TaskSpaceLaw {
+            tip,
+            kinematic_names,
+            damping,
+            adaptation,
+            estimate_start: estimate(self.estimate_start.as_ref(), reader)?,
+            task_gain: gain_or("task_gain", &self.task_gain, TASK_GAIN, agent, robot.axes.len())?,
+            kappa: positive_or("torque_share", &self.torque_share, TORQUE_SHARE)?,
+            alpha_per_s: positive_or("reference_gain_per_s", &self.reference_gain_per_s, REFERENCE_GAIN_PER_S)?,
+            kinematic_adaptation: Some(kinematic_adaptation),
+            kinematic_start,
+            bounds,
+            determinant_floor: floor
+                .map_or(Ok(DETERMINANT_FLOOR), |floor| between("determinant_floor", floor, 0.0, 0.999))?,
+        }))
+    }
+
+    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
+        None
+    }
+}
+
+/// The tip with its true θ and the names of its entries.
+fn tip(
+    file: &TaskSpaceFile,
+    agent: &str,
+    robot: &RobotSetup,
+    body: &Body,
+) -> Result<(TipSetup, Vec<f64>, Vec<String>), Fault> {
+    match (robot.kind.attachments(), &body.tip, &file.tip) {
+        (Attachments::PlanarTip, Some(tip), None) => {
+            Ok((TipSetup::Planar(*tip), tip.length_m.to_vec(), tip.parameter_names()))
+        }
+        (Attachments::PlanarTip, _, Some(place)) => Err(fault(place, SystemProblem::TipOfPlanarArm)),
+        (Attachments::Links(tree), _, Some(place)) => {
+            of_tree(&place.value, agent, tree, body).and_then(|(setup, tip)| {
+                let tip = tip.map_err(|error| no_tip(place, robot, error))?;
+                Ok((setup, tip.parameters(), tip.parameter_names()))
+            })
+        }
+        _ => Err(Fault::new(SystemProblem::NoTip)),
+    }
+}
+
+/// What is wrong with a tip, in the words of its robot.
+fn no_tip(place: &At<TipFile>, robot: &RobotSetup, error: TipError) -> Fault {
+    let TipFile { link, coordinates, .. } = &place.value;
+    match (&error, coordinates) {
+        (TipError::Beside { joint }, _) => {
+            let joint = robot.axes.get(*joint).map_or_else(String::new, |axis| axis.name.clone());
+            fault(link, SystemProblem::TipBeside { joint, link: link.value.clone() })
+        }
+        (TipError::Coordinate { .. }, Some(coordinates)) => fault(coordinates, SystemProblem::Tip(error)),
+        _ => fault(place, SystemProblem::Tip(error)),
+    }
+}
+
+type OfTree = (TipSetup, Result<TreeTip, TipError>);
+
+fn of_tree(file: &TipFile, agent: &str, tree: &Tree, body: &Body) -> Result<OfTree, Fault> {
+    let Some((_, link)) = body.links.iter().find(|(name, _)| *name == file.link.value) else {
+        let links = body.links.iter().map(|(name, _)| name.clone()).collect();
+        let (link, agent) = (file.link.value.clone(), agent.to_owned());
+        return Err(fault(&file.link, PushProblem::NoSuchLink { link, agent, links }));
+    };
+    let point = LinkPoint { link: *link, at: file.at_m.unwrap_or_default() };
+    let coordinates: Vec<usize> = match &file.coordinates {
+        None => vec![0, 1, 2],
+        Some(list) => filled("coordinates", list)?
+            .iter()
+            .map(|entry| match entry.value {
+                CoordinateFile::X => 0,
+                CoordinateFile::Y => 1,
+                CoordinateFile::Z => 2,
+            })
+            .collect(),
+    };
+    let uncertain = match file.uncertain {
+        None | Some(UncertainFile::Tool) => Uncertain::Tool,
+        Some(UncertainFile::Chain) => Uncertain::Chain,
+    };
+    let tip = TreeTip::new(tree.clone(), &point, &coordinates, uncertain);
+    Ok((TipSetup::Point { point, coordinates, uncertain }, tip))
+}
+
+fn bounds(file: &BoundsFile, agent: &str, p: usize) -> Result<ParameterBounds, Fault> {
+    let list = |key, list: &At<Vec<At<f64>>>| {
+        length(key, &list.span, list.value.len(), p, agent)?;
+        Ok::<_, Fault>(values(&list.value))
+    };
+    let (lower, upper) = (list("lower_m", &file.lower_m)?, list("upper_m", &file.upper_m)?);
+    for ((low, high), place) in lower.iter().zip(&upper).zip(&file.lower_m.value) {
+        if low > high {
+            return Err(fault(place, ValueProblem::Interval { key: "bounds", low: *low, high: *high }));
+        }
+    }
+    Ok(ParameterBounds { lower, upper, margin: positive_or("margin_m", &file.margin_m, MARGIN_M)? })
+}

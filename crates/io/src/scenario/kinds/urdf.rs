@@ -1,0 +1,148 @@
+//! `robot.urdf`: an arm, or any tree of rigid bodies on a fixed base.
+
+use std::sync::Arc;
+
+use forwardstep_core::robot::tree::Tree;
+use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::{RobotSetup, Start};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{At, Body, Fault, InputFolder, RobotKind, RobotRead, RobotTemplate, Spread, StartReader, Stop, fault};
+use crate::SourceText;
+use crate::files::ReadError;
+use crate::scenario::problem::ScenarioProblem;
+use crate::scenario::systems_file::TargetFile;
+use crate::scenario::values::Named;
+use crate::urdf::{self, FrictionPolicy, UrdfOptions, UrdfProblem};
+
+/// Positions at which the mass matrix of a tree is looked at.
+const SAMPLES: usize = 16;
+
+/// A robot from a URDF.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct UrdfFile {
+    /// The URDF, beside the scenario file or in `inputs` beside it, or the name of a shipped robot: `ur5e.urdf`, `panda.urdf`,
+    /// `gantry.urdf`.
+    pub file: At<String>,
+    /// Joints held at a value, in rad or m; each removes one axis.
+    #[serde(default)]
+    pub locked: Named,
+    /// What to do with Coulomb friction in the URDF, which the law does not cover.
+    pub friction: Option<FrictionFile>,
+    /// Gravity in the base frame, in m/s². Default: [0, 0, -9.81].
+    pub gravity_m_s2: Option<[f64; 3]>,
+}
+
+/// What to do with Coulomb friction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FrictionFile {
+    /// Simulate without it.
+    Ignore,
+}
+
+impl RobotKind for UrdfFile {
+    fn key() -> &'static str {
+        "urdf"
+    }
+
+    fn description() -> &'static str {
+        "An arm, or any tree of rigid bodies on a fixed base, from a URDF."
+    }
+
+    fn template() -> Option<RobotTemplate> {
+        None
+    }
+
+    fn read(&self, folder: &mut InputFolder) -> Result<RobotRead, Stop> {
+        from_urdf(self, folder)
+    }
+
+    fn spread(&self, read: &RobotRead, spread: &Spread<'_>) -> Result<(RobotSetup, Body), Fault> {
+        let mut robot = read.robot.clone();
+        // Ten parameters per body come first; they scale together, and dampings stay.
+        let bodies = robot.theta.chunks_exact_mut(10).zip(spread.factors(robot.axes.len()));
+        bodies.for_each(|(body, factor)| body.iter_mut().for_each(|entry| *entry *= factor));
+        let anywhere = [f64::NEG_INFINITY, f64::INFINITY];
+        let range: Vec<[f64; 2]> = robot.axes.iter().map(|axis| axis.position_limits.unwrap_or(anywhere)).collect();
+        let tree = robot.kind.downcast::<Arc<Tree>>();
+        tree.map_or(Ok(()), |tree| tree.check_mass_matrix(&robot.theta, &range, SAMPLES))
+            .map_err(|_| spread.unsound())?;
+        Ok((robot, read.body.clone()))
+    }
+
+    fn start(&self, _: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
+        given.position_and_velocity()
+    }
+
+    fn target(&self, _: &At<TargetFile>, _: &Trajectory, _: f64, _: &mut Start) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn limits_of_axes(&self) -> bool {
+        true
+    }
+
+    fn usual_law(&self) -> &'static str {
+        "adaptive"
+    }
+}
+
+fn from_urdf(file: &UrdfFile, folder: &mut InputFolder) -> Result<RobotRead, Stop> {
+    let source = robot_text(&file.file, folder)?;
+    let usual = UrdfOptions::default();
+    let options = UrdfOptions {
+        locked: file.locked.0.iter().map(|(joint, value)| (joint.value.clone(), value.value)).collect(),
+        friction: match file.friction {
+            Some(FrictionFile::Ignore) => FrictionPolicy::Ignore,
+            None => usual.friction,
+        },
+        gravity: file.gravity_m_s2.unwrap_or(usual.gravity),
+    };
+    match urdf::read_urdf(&source, &options) {
+        Ok(read) => {
+            let links = read.links.into_iter().zip(read.anchors).collect();
+            Ok(RobotRead { robot: read.robot, notices: read.notices, body: Body { links, tip: None } })
+        }
+        Err(error) => match lock_of(&error.problem, &file.locked) {
+            // What is wrong stands in the scenario, not in the URDF.
+            Some((joint, _)) => {
+                let fault = Fault::new(ScenarioProblem::Lock(Box::new(error.problem.clone())));
+                Err(Stop::Here(fault.at(&joint.span)))
+            }
+            None => Err(Stop::Robot(Box::new(error))),
+        },
+    }
+}
+
+/// The lock that a problem is about: that of the joint it names, or the last one when nothing is left to move.
+fn lock_of<'a>(problem: &UrdfProblem, locked: &'a Named) -> Option<&'a (At<String>, At<f64>)> {
+    match problem {
+        UrdfProblem::LockUnknown { joint, .. } | UrdfProblem::LockFixed { joint } => {
+            locked.0.iter().find(|(name, _)| name.value == *joint)
+        }
+        UrdfProblem::NothingMoves { .. } => locked.0.last(),
+        _ => None,
+    }
+}
+
+/// The text of a robot file: beside the scenario if there is one, else the shipped robot of that name.
+fn robot_text(file: &At<String>, folder: &mut InputFolder) -> Result<SourceText, Fault> {
+    let name = file.value.as_str();
+    let reason = match folder.text(name) {
+        Ok(source) => return Ok(source),
+        Err(reason) => reason,
+    };
+    // A shipped robot must not stand in for a file that is known to have been read.
+    if reason == ReadError::Missing
+        && folder.moved(name).is_none()
+        && let Some(text) = urdf::shipped_robot(name)
+    {
+        return Ok(SourceText::new(name, text));
+    }
+    let mut known: Vec<String> = urdf::SHIPPED_ROBOTS.iter().map(|(name, _)| format!("{name}.urdf")).collect();
+    known.extend(folder.neighbours(name, "urdf"));
+    Err(fault(file, ScenarioProblem::RobotFile { file: name.into(), reason, known }))
+}
