@@ -137,9 +137,9 @@ impl Interval {
     }
 
     /// To a whole power.
-    fn powi(self, n: i32) -> Self {
+    fn whole_power(self, n: i32) -> Self {
         if n < 0 {
-            return Interval::point(1.0).div(self.powi(-n));
+            return Interval::point(1.0).div(self.whole_power(-n));
         }
         let size = if n % 2 == 0 { self.abs() } else { self };
         let end = |x: f64, to: fn((f64, f64)) -> f64, other: fn((f64, f64)) -> f64| {
@@ -151,7 +151,7 @@ impl Interval {
     }
 
     /// To a power that is not a small whole number: monotone in base and exponent.
-    fn powf(self, exponent: Interval) -> Self {
+    fn real_power(self, exponent: Interval) -> Self {
         if self.low < 0.0 || self.low == 0.0 && exponent.low < 0.0 {
             return Interval::UNDEFINED;
         }
@@ -285,7 +285,7 @@ impl Algebra for Intervals<'_> {
     fn power(&mut self, a: Interval, exponent: &Number) -> Interval {
         let within = exponent.within();
         let power = if within.low == within.high { whole(within.low) } else { None };
-        power.map_or_else(|| a.powf(within), |n| a.powi(n)).after(&[a])
+        power.map_or_else(|| a.real_power(within), |n| a.whole_power(n)).after(&[a])
     }
 }
 

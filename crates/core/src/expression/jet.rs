@@ -153,7 +153,7 @@ impl<A: Branching> Jets<A> {
     }
 
     /// gⱼ of the logarithm.
-    fn log(&mut self, a: A::Value) -> Jet<A> {
+    fn logarithm(&mut self, a: A::Value) -> Jet<A> {
         let mut g = [self.0.unary(Unary::Log, a); ORDERS];
         for (k, g) in g.iter_mut().enumerate().skip(1) {
             let (one, power) = (self.of(1.0), self.raised(a, k as f64));
@@ -164,8 +164,8 @@ impl<A: Branching> Jets<A> {
         g
     }
 
-    /// gⱼ of tanh: u' = 1 − u², and so on.
-    fn tanh(&mut self, a: A::Value) -> Jet<A> {
+    /// gⱼ of the hyperbolic tangent: u' = 1 − u², and so on.
+    fn tangent(&mut self, a: A::Value) -> Jet<A> {
         let u = self.0.unary(Unary::Tanh, a);
         let (one, two, sixteen, square) = (self.of(1.0), self.of(2.0), self.of(16.0), self.raised(u, 2.0));
         let d = self.minus(one, square);
@@ -181,7 +181,7 @@ impl<A: Branching> Jets<A> {
     }
 
     /// gⱼ of arctan: with φ = arctan a, 1/(1 + a²) = cos²φ and a/√(1 + a²) = sin φ.
-    fn atan(&mut self, a: A::Value) -> Jet<A> {
+    fn arc_tangent(&mut self, a: A::Value) -> Jet<A> {
         let angle = self.0.unary(Unary::Atan, a);
         let (sin, cos) = (self.0.unary(Unary::Sin, angle), self.0.unary(Unary::Cos, angle));
         let [c2, c3, c4, c5] = [2.0, 3.0, 4.0, 5.0].map(|n| self.raised(cos, n));
@@ -243,14 +243,14 @@ impl<A: Branching> Algebra for Jets<A> {
                 let f = self.0.unary(Unary::Exp, value);
                 [f, f, self.scaled(f, 0.5), self.part(f, 1.0, 6.0), self.part(f, 1.0, 24.0)]
             }
-            Unary::Log => self.log(value),
+            Unary::Log => self.logarithm(value),
             Unary::Sqrt => {
                 let mut g = self.binomial(value, &0.5.into());
                 g[0] = self.0.unary(Unary::Sqrt, value);
                 g
             }
-            Unary::Tanh => self.tanh(value),
-            Unary::Atan => self.atan(value),
+            Unary::Tanh => self.tangent(value),
+            Unary::Atan => self.arc_tangent(value),
         };
         self.composed(g, a)
     }
