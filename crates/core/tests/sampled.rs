@@ -8,7 +8,7 @@ use forwardstep_core::agent::{FilterError, Inbox, LimiterError, StepError, Veloc
 use forwardstep_core::controller::{Guide, Jet, PositionOnly};
 use forwardstep_core::law::SlotineLi;
 use forwardstep_core::plant::{Mechanical, Plant, Rotorcraft, Spacecraft, TaskArm, Vehicle, Wheels, total};
-use forwardstep_core::reference::{Consensus, Position, PositionVelocity};
+use forwardstep_core::reference::{Choice, Consensus, Derived, Position, PositionVelocity, Sliding, SmoothFollowing};
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip, PointMass};
 use forwardstep_core::sampled::{
     EncoderFilter, Limits, Motion, Recipe, RecipeError, SafeCommand, Sampled, StartState, Target,
@@ -217,6 +217,27 @@ fn vehicle() -> Recipe {
     let design = ThrustDesign::Continuous { roots_per_s: [1.0, 1.5] };
     let plant = Vehicle { mass: 1.2, gravity: 9.81 };
     Recipe::feedback(&plant, Thrust::new(design, plant.mass, plant.gravity).unwrap())
+}
+
+#[test]
+fn eq_122_sends_the_reference_acceleration_of_the_sample_before() {
+    let choice = Choice::Implicit;
+    let sliding = Sliding { derived: Derived::ReferenceAcceleration, alpha: 1.0, beta: 2.0, gamma: 0.5, choice };
+    let law = SlotineLi { damping: Gain::Number(8.0).resolve(1, &[]).unwrap(), adaptation: None };
+    let reference = SmoothFollowing::new(1, sliding);
+    let mut controller = Recipe::lagrangian(PointMass { dimension: 1 }, reference, law, vec![2.0]).build().unwrap();
+    assert_eq!(controller.message_len(), 3);
+    let mut sent = [9.0; 3];
+    controller.message(0.0, &[0.3, -0.1], &mut sent).unwrap();
+    assert_eq!(sent, [0.3, -0.1, 0.0]);
+    for k in 0..3 {
+        let now_s = 0.01 * f64::from(k);
+        controller.step(now_s, &[0.3, -0.1], Inbox { degree: 0.5, sums: &[0.6, 0.2, 0.1] }).unwrap();
+        let dz = controller.diagnostics(Signal::Reference(1)).unwrap()[0];
+        controller.message(now_s + 0.01, &[0.4, -0.2], &mut sent).unwrap();
+        assert!(k == 0 || dz != 0.0);
+        assert_eq!(sent, [0.4, -0.2, dz]);
+    }
 }
 
 #[test]

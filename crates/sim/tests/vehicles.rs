@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use common::vehicles::{ADAPTIVE, DIFFERENTIABLE, G, rotorcraft, three, vehicle};
-use common::{RTOL, assert_first_order, column, last, ledger_error, run, truth};
+use common::{RTOL, assert_first_order, column, last, ledger_error, run, sampled, truth};
 use forwardstep_core::Gain;
 use forwardstep_core::controller::Floor;
 use forwardstep_core::plant::Rotors;
@@ -119,11 +119,15 @@ fn thrust_that_vanishes_stops_the_run_before_it_is_zero_or_is_kept_away() {
     let mut setup = three(&vehicle(), DIFFERENTIABLE, false, 6.0);
     // One far above the others: it wants to fall faster than it can.
     setup.agents[0].start.q[2] = -150.0;
-    let outcome = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap();
-    let Ending::BrokeDown(breakdown) = outcome.ending else { panic!("{:?}", outcome.ending) };
-    assert_eq!((breakdown.agent, breakdown.signal), (0, Signal::Thrust));
-    let BreakdownCause::Vanished { value, floor } = breakdown.cause else { panic!("{:?}", breakdown.cause) };
-    assert!(floor == 1.0 && value > 0.0 && value <= floor, "{value}");
+    for setup in [setup.clone(), sampled(setup.clone(), 500.0)] {
+        let outcome = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap();
+        let Ending::BrokeDown(breakdown) = outcome.ending else { panic!("{:?}", outcome.ending) };
+        assert_eq!((breakdown.agent, breakdown.signal), (0, Signal::Thrust));
+        let BreakdownCause::Vanished { value, floor } = breakdown.cause else { panic!("{:?}", breakdown.cause) };
+        assert!(floor == 1.0 && value > 0.0 && value <= floor, "{value}");
+        let mut recorded = outcome.recording.columns.iter().flat_map(|column| &column.values);
+        assert!(recorded.all(|value| value.is_finite()));
+    }
     for agent in &mut setup.agents {
         assert!(agent.change_law(|law: &mut ThrustLaw| law.floor = Floor::Kept { floor: 1.0, approach_s: 0.1 }));
     }
