@@ -338,7 +338,7 @@ impl Controller for LevelControl {
         signal == Signal::Position
     }
 
-    fn see<'a>(&self, output: &'a [f64]) -> Result<f64, LengthError> {
+    fn see(&self, output: &[f64]) -> Result<f64, LengthError> {
         LengthError::check("output", 1, output.len())?;
         Ok(output[0])
     }

@@ -84,5 +84,5 @@ impl Default for Body {
 
 /// An axis without limits.
 pub fn axis(name: &str, unit: AxisUnit) -> Axis {
-    Axis { name: name.into(), unit, position_limits: None, velocity_limit: None, effort_limit: None }
+    Axis::new(name, unit)
 }

@@ -269,7 +269,7 @@ impl Kinds {
             Some(entry) if !(entry.suits)(agent.robot) => {
                 let (agent, robot) = (agent.agent.to_owned(), agent.robot);
                 let laws = self.laws.iter().filter(|entry| (entry.suits)(robot)).map(|entry| entry.table.key).collect();
-                Err(Fault::new(SystemProblem::LawOfAnother { agent, law: *key, made_for: entry.made_for, laws }))
+                Err(Fault::new(SystemProblem::LawOfAnother { agent, law: key, made_for: entry.made_for, laws }))
             }
             _ => law.law(agent),
         }

@@ -1,16 +1,15 @@
 //! `robot.planar_arm`: the two-link planar arm in closed form.
 
 use std::rc::Rc;
-use std::sync::Arc;
 
-use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip};
+use forwardstep_core::robot::{PlanarLinks, PlanarTip};
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{AxisUnit, RobotSetup, Start};
+use forwardstep_sim::{RobotSetup, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
-    At, Body, Fault, InputFolder, RobotKind, RobotRead, RobotTemplate, Spread, StartReader, Stop, axis, not_negative,
+    At, Body, Fault, InputFolder, RobotKind, RobotRead, RobotTemplate, Spread, StartReader, Stop, not_negative,
     positive,
 };
 use crate::scenario::problem::ScenarioProblem;
@@ -113,19 +112,6 @@ fn arm(links: &PlanarLinks) -> Result<(RobotSetup, Body), Fault> {
     if !(outer > 0.0 && determinant > 0.0 && theta.iter().all(|entry| entry.is_finite())) {
         return Err(Fault::new(ScenarioProblem::MassMatrix));
     }
-    let robot = RobotSetup {
-        kind: Arc::new(PlanarArm),
-        theta: theta.to_vec(),
-        theta_names: [
-            "inertia.both_links",
-            "inertia.outer_link",
-            "inertia.coupling",
-            "gravity.shoulder",
-            "gravity.elbow",
-        ]
-        .map(String::from)
-        .to_vec(),
-        axes: vec![axis("shoulder", AxisUnit::Radian), axis("elbow", AxisUnit::Radian)],
-    };
+    let robot = RobotSetup::planar_arm(links);
     Ok((robot, Body { links: Rc::new([]), tip: Some(PlanarTip { length_m: links.length_m }) }))
 }

@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use forwardstep_core::robot::PointMass;
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{AxisUnit, Law, PositionOnlyLaw, RobotSetup, SetupError, Start};
+use forwardstep_sim::{Law, PositionOnlyLaw, RobotSetup, SetupError, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
     At, Body, Fault, InputFolder, LawKind, LawReader, RobotKind, RobotRead, RobotTemplate, Spread, StartReader, Stop,
-    axis, count, not_negative_or, positive, positive_or,
+    count, not_negative_or, positive, positive_or,
 };
 use crate::scenario::systems_file::TargetFile;
 use crate::scenario::values::Positive;
@@ -83,16 +83,7 @@ impl RobotKind for PointMassFile {
 
 fn point_mass(file: &PointMassFile) -> Result<RobotSetup, Fault> {
     let dimension = count("dimension", &file.dimension, MOST_DIMENSIONS)?;
-    let name = |k: usize| match (dimension <= 3, ["x", "y", "z"].get(k)) {
-        (true, Some(letter)) => axis(letter, AxisUnit::Metre),
-        _ => axis(&format!("x{}", k + 1), AxisUnit::Metre),
-    };
-    Ok(RobotSetup {
-        kind: Arc::new(PointMass { dimension }),
-        theta: vec![positive("mass_kg", &file.mass_kg)?],
-        theta_names: vec!["mass".into()],
-        axes: (0..dimension).map(name).collect(),
-    })
+    Ok(RobotSetup::point_mass(dimension, positive("mass_kg", &file.mass_kg)?))
 }
 
 /// The law (a8) for a point mass whose velocity is not measured.
