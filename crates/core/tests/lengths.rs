@@ -3,7 +3,7 @@
 
 use forwardstep_core::law::{SlotineLi, SlotineLiOutput};
 use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkSpec, Placement, Tree};
-use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass, TwoVelocity};
+use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass, Ship, TwoVelocity};
 use forwardstep_core::{Gain, LengthError, ResolvedGain};
 
 const LONGEST: usize = 40;
@@ -90,5 +90,6 @@ fn two_joints() -> Tree {
 fn prop_robots_and_law_check_every_length() {
     every_method_checks("planar arm", &PlanarArm);
     every_method_checks("point mass", &PointMass { dimension: 2 });
+    every_method_checks("ship", &Ship);
     every_method_checks("tree", &two_joints());
 }

@@ -9,7 +9,7 @@ use common::dual::{Dual, constants, duals};
 use common::random::Random;
 use common::{dot, error, times, transpose_times};
 use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkSpec, Placement, Tree, inertia_about_frame};
-use forwardstep_core::robot::{Lagrangian, PlanarArm, PlanarLinks, PlanarTip, PointMass, TwoVelocity};
+use forwardstep_core::robot::{Lagrangian, PlanarArm, PlanarLinks, PlanarTip, PointMass, Ship, TwoVelocity};
 use proptest::prelude::*;
 
 const TOLERANCE: f64 = 1.0e-11;
@@ -141,6 +141,41 @@ proptest! {
     }
 
     /// Two uniform rods that turn about −y, seen as a tree: x forward, z up, q₁ from the horizontal.
+    #[test]
+    fn prop_ship_is_lagrangian(seed in any::<u64>()) {
+        let mut random = Random::new(seed);
+        let case = Case::new(&mut random, 3);
+        consistent(&Ship, &case, &random.column(9, 3.0));
+        let coupling = 0.9 * random.column(1, 1.0)[0];
+        let mut theta = vec![2.0, 3.0, coupling, 1.5];
+        theta.extend(random.column(5, 1.0));
+        invertible(&Ship, &case, &theta);
+    }
+
+    /// Against the same ship written down in the axes of its body: M ν̇ + C(ν) ν + D ν = Rᵀ τ with C after its textbook form.
+    #[test]
+    fn prop_ship_moves_as_in_the_axes_of_its_body(seed in any::<u64>()) {
+        let mut random = Random::new(seed);
+        let Case { q, dq, s: tau, .. } = Case::new(&mut random, 3);
+        let theta = [2.0, 3.0, 0.7, 1.5, 0.3, 0.9, 0.2, -0.4, 0.8];
+        let mut ddq = [0.0; 3];
+        Ship.forward_dynamics(&mut (), &q, &dq, &theta, &tau, &mut ddq).unwrap();
+        let (sin, cos) = q[2].sin_cos();
+        let to_body = |a: &[f64]| [cos * a[0] + sin * a[1], cos * a[1] - sin * a[0], a[2]];
+        let (nu, force, a) = (to_body(&dq), to_body(&tau), to_body(&ddq));
+        let [u, v, r] = nu;
+        // ν̇ = Rᵀ q̈ − ψ̇ J ν.
+        let d_nu = [a[0] + r * v, a[1] - r * u, a[2]];
+        let [m11, m22, m23, m33, d11, d22, d23, d32, d33] = theta;
+        let lateral = m22 * v + m23 * r;
+        let left = [
+            m11 * d_nu[0] - lateral * r + d11 * u,
+            m22 * d_nu[1] + m23 * d_nu[2] + m11 * u * r + d22 * v + d23 * r,
+            m23 * d_nu[1] + m33 * d_nu[2] + lateral * u - m11 * u * v + d32 * v + d33 * r,
+        ];
+        prop_assert!(error(&left, &force) < 1e-9, "{:?} {:?}", left, force);
+    }
+
     #[test]
     fn prop_planar_arm_is_a_tree(seed in any::<u64>()) {
         let mut random = Random::new(seed);

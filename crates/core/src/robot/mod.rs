@@ -6,11 +6,13 @@
 mod kinematics;
 mod planar;
 mod point_mass;
+mod ship;
 pub mod tree;
 
 pub use kinematics::{Posture, TipKinematics};
 pub use planar::{PlanarArm, PlanarLinks, PlanarTip};
 pub use point_mass::PointMass;
+pub use ship::Ship;
 
 use alloc::vec::Vec;
 
