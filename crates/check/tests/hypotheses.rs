@@ -54,6 +54,7 @@ const NAMES: [&str; 44] = [
     "nonzero-thrust",
     "angular-velocity",
     "every-wrench",
+    "declared",
     "task-space-gains",
     "regular-jacobian",
     "certain-regressor",

@@ -9,6 +9,7 @@ use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
+use forwardstep::check::{Answer, Id, Rigour, check};
 use forwardstep::io::SourceText;
 use forwardstep::io::scenario::{Scenario, ScenarioError};
 use forwardstep::{program_with, sim};
@@ -154,4 +155,16 @@ fn sampled_it_runs_as_well() {
     let errors = outcome.recording.columns.iter().filter(|column| column.signal == Signal::Error);
     let last: Vec<f64> = errors.map(|column| *column.values.last().unwrap()).collect();
     assert!(last.len() == 2 && last.iter().all(|error| error.abs() < 5e-3), "{last:?}");
+}
+
+#[test]
+fn what_its_author_says_of_it_is_reported_as_declared_and_never_as_shown() {
+    let report = check(&read(TANKS).unwrap().setup);
+    assert_eq!(report.theorem.name(), "declared");
+    let declared: Vec<_> = report.hypotheses.iter().filter(|hypothesis| hypothesis.id == Id::Declared).collect();
+    assert_eq!(declared.len(), 2, "one of each tank");
+    for hypothesis in declared {
+        assert_eq!((hypothesis.answer(), hypothesis.rigour()), (Answer::NotCovered, Rigour::Declared));
+        assert!(hypothesis.because().ends_with("(declared, not shown)"), "{}", hypothesis.because());
+    }
 }

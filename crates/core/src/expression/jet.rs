@@ -123,10 +123,24 @@ impl<A: Branching> Jets<A> {
         }
         c[0] = g[ORDERS - 1];
         for j in (0..ORDERS - 1).rev() {
-            c = self.multiplied(&delta, &c);
+            c = self.shifted(&delta, &c);
             c[0] = g[j];
         }
         c
+    }
+
+    /// δ c for a δ without a constant term, which no product is taken with: gⱼ enters no order below j, so that a derivative
+    /// that does not exist leaves those below it alone. The constant term is left to be set.
+    fn shifted(&mut self, delta: &Jet<A>, c: &Jet<A>) -> Jet<A> {
+        let mut product = [delta[0]; ORDERS];
+        for k in 1..ORDERS {
+            product[k] = self.times(delta[1], c[k - 1]);
+            for i in 2..=k {
+                let term = self.times(delta[i], c[k - i]);
+                product[k] = self.0.binary(Binary::Add, product[k], term);
+            }
+        }
+        product
     }
 
     /// gⱼ of aᶜ: c (c−1) … / j! · a^(c−j).

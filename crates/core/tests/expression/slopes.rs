@@ -82,6 +82,18 @@ fn derivatives_of_every_function_agree_with_differences() {
 }
 
 #[test]
+fn a_derivative_that_does_not_exist_leaves_those_below_it_alone() {
+    // t^3.5 has three derivatives at zero.
+    let f = Expression::variable(0).power(3.5) * 2.0;
+    let jet = f.jet(0.0);
+    assert!(jet[..4].iter().all(|c| *c == 0.0) && !jet[4].is_finite(), "{jet:?}");
+    for k in 0..5 {
+        let weights: [f64; 5] = std::array::from_fn(|order| f64::from(u8::from(order == k)));
+        assert_eq!(f.bounds_of_derivatives(&weights, 0.0, 2.0).is_finite(), k < 4, "{k}");
+    }
+}
+
+#[test]
 fn a_constant_stays_one_where_a_function_has_no_slope() {
     assert_eq!(Expression::number(0.0).sqrt_of().jet(1.0), [0.0; 5]);
     assert_eq!(Expression::number(0.0).sqrt_of().enclose_jet(Interval::point(1.0)), [Interval::point(0.0); 5]);
