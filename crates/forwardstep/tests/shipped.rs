@@ -138,4 +138,5 @@ shipped! {
     pure_feedback: "pure-feedback",
     immersion_and_invariance: "immersion-and-invariance",
     saturated_coupling: "saturated-coupling",
+    five_ships: "five-ships",
 }

@@ -53,6 +53,7 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "pure-feedback",
     "immersion-and-invariance",
     "saturated-coupling",
+    "five-ships",
 ];
 
 /// The shipped scenario of this name.

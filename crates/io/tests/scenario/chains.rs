@@ -234,7 +234,7 @@ const CASCADES_CASES: &[Case] = &[
     ("parameters = [0.5, -0.8]", "params = [0.5, -0.8]",
         "test.toml:6:79: unknown key `params`", "did you mean `parameters`? allowed here: `regressors`, `parameters`"),
     ("robot.strict_feedback", "robot.strict_feedbak",
-        "test.toml:6:7: unknown choice `strict_feedbak`", "did you mean `strict_feedback`? choose one of `urdf`, `planar_arm`, `point_mass`, `vehicle`, `rotorcraft`, `spacecraft`, `chain`, `strict_feedback`, `pure_feedback`"),
+        "test.toml:6:7: unknown choice `strict_feedbak`", "did you mean `strict_feedback`? choose one of `urdf`, `planar_arm`, `point_mass`, `ship`, `vehicle`, `rotorcraft`, `spacecraft`, `chain`, `strict_feedback`, `pure_feedback`"),
     ("higher_states = [0.2]", "higher_states = [0.2, 0]",
         "test.toml:7:45: `higher_states` has 2 entries, but `strict` needs 1", ""),
     ("higher_states = [0.2]", "velocity_m_s = [0.2]",

@@ -4,6 +4,7 @@
 //! - `position_only`: a point mass without velocity, Remark 7.
 //! - `vehicle`, `rotorcraft`: one thrust, Section V-B; `thrust` is the law that they share.
 //! - `task_space`: the end-effector of a robot, Theorem 6.
+//! - `ship`: a surface ship under (6)–(7).
 //! - `spacecraft`: an attitude, Theorem 7.
 //! - `chain`: Section IV.
 
@@ -11,6 +12,7 @@ mod chain;
 mod lagrangian;
 mod position_only;
 mod rotorcraft;
+mod ship;
 mod spacecraft;
 mod task_space;
 mod thrust;

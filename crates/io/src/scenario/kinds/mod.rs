@@ -14,6 +14,7 @@ pub mod cascade;
 pub mod chain;
 pub mod planar_arm;
 pub mod point_mass;
+pub mod ship;
 pub mod spacecraft;
 pub mod task_space;
 pub mod thrust;
@@ -173,6 +174,7 @@ impl Kinds {
                 RobotEntry::of::<urdf::UrdfFile>(),
                 RobotEntry::of::<planar_arm::PlanarArmFile>(),
                 RobotEntry::of::<point_mass::PointMassFile>(),
+                RobotEntry::of::<ship::ShipFile>(),
                 RobotEntry::of::<thrust::VehicleFile>(),
                 RobotEntry::of::<thrust::RotorcraftFile>(),
                 RobotEntry::of::<spacecraft::SpacecraftFile>(),
