@@ -19,8 +19,8 @@ use forwardstep::core::plant::Plant;
 use forwardstep::core::reference::Position;
 use forwardstep::core::signal::{Block as Signals, Entries, OwnSignal, Signal, Unit};
 use forwardstep::io::scenario::kinds::{
-    At, Body, Fault, InputFolder, KindError, Kinds, LawKind, LawReader, RobotKind, RobotRead, RobotTemplate, Spread,
-    StartReader, Stop, TargetFile, axis, positive, positive_or,
+    At, Body, Fault, InputFolder, KindError, Kinds, LawKind, LawReader, Mistake, RobotKind, RobotRead, RobotTemplate,
+    Spread, StartReader, Stop, TargetFile, axis, fault, positive, positive_or,
 };
 use forwardstep::sim::trajectory::Trajectory;
 use forwardstep::sim::{
@@ -29,6 +29,7 @@ use forwardstep::sim::{
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
+use thiserror::Error;
 
 /// The shipped kinds, the tank and its law.
 pub fn kinds() -> Result<Kinds, KindError> {
@@ -58,6 +59,20 @@ static INFLOW: OwnSignal = OwnSignal {
     may_jump: true,
 };
 
+/// The largest area that is believed.
+const LARGEST_M2: f64 = 1e6;
+
+/// A mistake that only this kind knows.
+#[derive(Debug, Error)]
+#[error("no tank is as large as this")]
+struct TooLarge;
+
+impl Mistake for TooLarge {
+    fn help(&self) -> Option<String> {
+        Some("`area_m2` is in m²".into())
+    }
+}
+
 /// A tank that is open at the top.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -82,6 +97,9 @@ impl RobotKind for TankFile {
     }
 
     fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
+        if self.area_m2.value > LARGEST_M2 {
+            return Err(fault(&self.area_m2, TooLarge).into());
+        }
         let limit = self.inflow_limit_m3_s.as_ref().map(|limit| positive("inflow_limit_m3_s", limit)).transpose()?;
         Ok(RobotRead::new(RobotSetup {
             kind: Arc::new(Tank { limit }),
@@ -312,7 +330,7 @@ impl Controller for LevelControl {
         vec![(Signal::Error, 1)]
     }
 
-    fn see<'a>(&self, output: &'a [f64]) -> Result<f64, LengthError> {
+    fn see(&self, output: &[f64]) -> Result<f64, LengthError> {
         LengthError::check("output", 1, output.len())?;
         Ok(output[0])
     }

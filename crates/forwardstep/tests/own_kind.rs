@@ -86,6 +86,7 @@ fn its_mistakes_are_reported_at_their_place_with_near_matches() {
         ("robot.tank =", "robot.tonk =", "7:7: unknown choice `tonk`", "did you mean `tank`?"),
         ("area_m2 = 2,", "aera_m2 = 2,", "7:16: unknown key `aera_m2`", "did you mean `area_m2`?"),
         ("area_m2 = 2,", "area_m2 = -2,", "7:26: `area_m2` is -2, but must be positive", ""),
+        ("area_m2 = 2,", "area_m2 = 2e9,", "7:26: no tank is as large as this", "`area_m2` is in m²"),
         ("area_m2 = 2,", "", "7:14: the key `area_m2` is missing", ""),
         ("[law.level]", "[law.lever]", "12:6: unknown choice `lever`", "did you mean `level`?"),
         ("gain_per_s = 1.5", "gain_pers = 1.5", "13:1: unknown key `gain_pers`", "did you mean `gain_per_s`?"),
