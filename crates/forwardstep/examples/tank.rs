@@ -20,7 +20,7 @@ use forwardstep::core::reference::Position;
 use forwardstep::core::signal::{Block as Signals, Entries, OwnSignal, Signal, Unit};
 use forwardstep::io::scenario::kinds::{
     At, Body, Fault, InputFolder, KindError, Kinds, LawKind, LawReader, Mistake, RobotKind, RobotRead, RobotTemplate,
-    Spread, StartReader, Stop, TargetFile, axis, fault, positive, positive_or,
+    Spread, StartReader, Stop, TargetFile, axis, fault, positive,
 };
 use forwardstep::sim::trajectory::Trajectory;
 use forwardstep::sim::{
@@ -50,7 +50,7 @@ fn main() -> ExitCode {
 }
 
 /// What flows in.
-static INFLOW: OwnSignal = OwnSignal {
+pub static INFLOW: OwnSignal = OwnSignal {
     symbol: "inflow",
     title: "Inflow",
     letters: "u",
@@ -136,8 +136,8 @@ impl RobotKind for TankFile {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LevelFile {
-    /// How fast the error vanishes, in 1/s. Default: 1.
-    pub gain_per_s: Option<At<f64>>,
+    /// How fast the error vanishes, in 1/s.
+    pub gain_per_s: At<f64>,
 }
 
 impl LawKind for LevelFile {
@@ -158,7 +158,7 @@ impl LawKind for LevelFile {
     }
 
     fn law(&self, _: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
-        Ok(Arc::new(Level { gain: positive_or("gain_per_s", &self.gain_per_s, 1.0)? }))
+        Ok(Arc::new(Level { gain: positive("gain_per_s", &self.gain_per_s)? }))
     }
 
     fn place(&self, _: &SetupError) -> Option<Range<usize>> {

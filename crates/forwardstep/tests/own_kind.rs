@@ -10,6 +10,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use forwardstep::io::SourceText;
+use forwardstep::io::output::{LimitKind, Metrics};
 use forwardstep::io::scenario::{Scenario, ScenarioError};
 use forwardstep::{program_with, sim};
 use miette::Diagnostic;
@@ -116,9 +117,22 @@ fn its_mistakes_are_reported_at_their_place_with_near_matches() {
 }
 
 #[test]
-fn without_a_law_it_has_its_usual_one() {
-    let scenario = read(&TANKS.replace("[law.level]\ngain_per_s = 1.5", "")).unwrap();
-    assert_eq!(format!("{:?}", scenario.setup.agents[0].law), "Level { gain: 1.0 }");
+fn its_usual_law_is_read_from_an_empty_table() {
+    let error = read(&TANKS.replace("[law.level]\ngain_per_s = 1.5", "")).unwrap_err();
+    assert_eq!(error.to_string(), "tanks.toml:7:1: the key `gain_per_s` is missing");
+}
+
+#[test]
+fn its_limits_are_kept_where_they_are_enforced() {
+    let text = TANKS.replace("count = 2", "count = 2\nenforce_limits = true");
+    let setup = read(&text).unwrap().setup;
+    let recording = sim::simulate(&setup, &mut |_| std::ops::ControlFlow::Continue(())).unwrap().recording;
+    let limits = Metrics::of(&setup, &recording, None, None).limits_reached;
+    assert_eq!(limits.len(), 2, "both start too far away");
+    for limit in limits {
+        assert_eq!((limit.enforced, limit.excess, limit.limit.abs()), (true, 0.0, 0.5));
+        assert_eq!(limit.kind, LimitKind::Signal(Signal::Own(&tank::INFLOW)));
+    }
 }
 
 #[test]
