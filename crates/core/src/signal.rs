@@ -79,9 +79,10 @@ pub enum Signal {
 ///     letters: "h",
 ///     unit: Unit::Fixed("m"),
 ///     entries: Entries::One,
-///     may_jump: false,
+///     may_jump: true,
 /// };
-/// assert_eq!(Signal::Own(&LEVEL).name(), "level");
+/// let row = Signal::Own(&LEVEL).row();
+/// assert_eq!((row.symbol.as_str(), row.unit, row.entries, row.may_jump), ("level", LEVEL.unit, LEVEL.entries, true));
 /// ```
 #[derive(Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct OwnSignal {
@@ -248,3 +249,28 @@ fn superscript(number: u8) -> String {
 
 /// A block of numbers that are one signal, and how many they are.
 pub type Block = (Signal, usize);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_follows_messages_or_limits_at_once_may_jump() {
+        let jumps = |signal: Signal| signal.row().may_jump;
+        let at_once = [Signal::Torque, Signal::External, Signal::Reference(1), Signal::Reference(2), Signal::Selection];
+        let wheels = [Signal::WheelTorque, Signal::AngularVelocity, Signal::AngularVelocityWanted];
+        assert!(at_once.into_iter().chain(wheels).all(jumps));
+        let states = [Signal::Position, Signal::Velocity, Signal::Reference(0), Signal::WheelMomentum, Signal::Thrust];
+        assert!(!states.into_iter().any(jumps));
+    }
+
+    #[test]
+    fn numbered_signals_say_their_number() {
+        let name = |signal: Signal| signal.name();
+        assert_eq!([0, 1, 2, 3].map(Signal::Reference).map(name), ["z", "dz", "d2z", "d3z"]);
+        assert_eq!([Signal::Derivative(2), Signal::Coordinate(3)].map(name), ["d2q", "x3"]);
+        let Drawn::Card { letters, .. } = Signal::Derivative(12).row().drawn else { panic!("no card") };
+        assert_eq!(letters, "q⁽¹²⁾");
+        assert_eq!(superscript(145), "¹⁴⁵");
+    }
+}

@@ -19,8 +19,8 @@ use forwardstep::core::plant::Plant;
 use forwardstep::core::reference::Position;
 use forwardstep::core::signal::{Block as Signals, Entries, OwnSignal, Signal, Unit};
 use forwardstep::io::scenario::kinds::{
-    At, Body, Fault, InputFolder, KindError, Kinds, LawKind, LawReader, RobotKind, RobotRead, RobotTemplate, Spread,
-    StartReader, Stop, TargetFile, axis, positive, positive_or,
+    At, Body, Fault, InputFolder, KindError, Kinds, LawKind, LawReader, Mistake, RobotKind, RobotRead, RobotTemplate,
+    Spread, StartReader, Stop, TargetFile, axis, fault, positive,
 };
 use forwardstep::sim::system::{Declaration, DeclaredClaim, Known};
 use forwardstep::sim::trajectory::Trajectory;
@@ -30,6 +30,7 @@ use forwardstep::sim::{
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
+use thiserror::Error;
 
 /// The shipped kinds, the tank and its law.
 pub fn kinds() -> Result<Kinds, KindError> {
@@ -50,7 +51,7 @@ fn main() -> ExitCode {
 }
 
 /// What flows in.
-static INFLOW: OwnSignal = OwnSignal {
+pub static INFLOW: OwnSignal = OwnSignal {
     symbol: "inflow",
     title: "Inflow",
     letters: "u",
@@ -58,6 +59,20 @@ static INFLOW: OwnSignal = OwnSignal {
     entries: Entries::One,
     may_jump: true,
 };
+
+/// The largest area that is believed.
+const LARGEST_M2: f64 = 1e6;
+
+/// A mistake that only this kind knows.
+#[derive(Debug, Error)]
+#[error("no tank is as large as this")]
+struct TooLarge;
+
+impl Mistake for TooLarge {
+    fn help(&self) -> Option<String> {
+        Some("`area_m2` is in m²".into())
+    }
+}
 
 /// A tank that is open at the top.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -83,6 +98,9 @@ impl RobotKind for TankFile {
     }
 
     fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
+        if self.area_m2.value > LARGEST_M2 {
+            return Err(fault(&self.area_m2, TooLarge).into());
+        }
         let limit = self.inflow_limit_m3_s.as_ref().map(|limit| positive("inflow_limit_m3_s", limit)).transpose()?;
         Ok(RobotRead::new(RobotSetup {
             kind: Arc::new(Tank { limit }),
@@ -119,8 +137,8 @@ impl RobotKind for TankFile {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LevelFile {
-    /// How fast the error vanishes, in 1/s. Default: 1.
-    pub gain_per_s: Option<At<f64>>,
+    /// How fast the error vanishes, in 1/s.
+    pub gain_per_s: At<f64>,
 }
 
 impl LawKind for LevelFile {
@@ -141,7 +159,7 @@ impl LawKind for LevelFile {
     }
 
     fn law(&self, _: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
-        Ok(Arc::new(Level { gain: positive_or("gain_per_s", &self.gain_per_s, 1.0)? }))
+        Ok(Arc::new(Level { gain: positive("gain_per_s", &self.gain_per_s)? }))
     }
 
     fn place(&self, _: &SetupError) -> Option<Range<usize>> {

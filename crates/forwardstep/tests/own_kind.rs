@@ -11,6 +11,7 @@ use std::process::ExitCode;
 
 use forwardstep::check::{Answer, Id, Rigour, check};
 use forwardstep::io::SourceText;
+use forwardstep::io::output::{LimitKind, Metrics};
 use forwardstep::io::scenario::{Scenario, ScenarioError};
 use forwardstep::{program_with, sim};
 use miette::Diagnostic;
@@ -87,6 +88,7 @@ fn its_mistakes_are_reported_at_their_place_with_near_matches() {
         ("robot.tank =", "robot.tonk =", "7:7: unknown choice `tonk`", "did you mean `tank`?"),
         ("area_m2 = 2,", "aera_m2 = 2,", "7:16: unknown key `aera_m2`", "did you mean `area_m2`?"),
         ("area_m2 = 2,", "area_m2 = -2,", "7:26: `area_m2` is -2, but must be positive", ""),
+        ("area_m2 = 2,", "area_m2 = 2e9,", "7:26: no tank is as large as this", "`area_m2` is in m²"),
         ("area_m2 = 2,", "", "7:14: the key `area_m2` is missing", ""),
         ("[law.level]", "[law.lever]", "12:6: unknown choice `lever`", "did you mean `level`?"),
         ("gain_per_s = 1.5", "gain_pers = 1.5", "13:1: unknown key `gain_pers`", "did you mean `gain_per_s`?"),
@@ -116,9 +118,22 @@ fn its_mistakes_are_reported_at_their_place_with_near_matches() {
 }
 
 #[test]
-fn without_a_law_it_has_its_usual_one() {
-    let scenario = read(&TANKS.replace("[law.level]\ngain_per_s = 1.5", "")).unwrap();
-    assert_eq!(format!("{:?}", scenario.setup.agents[0].law), "Level { gain: 1.0 }");
+fn its_usual_law_is_read_from_an_empty_table() {
+    let error = read(&TANKS.replace("[law.level]\ngain_per_s = 1.5", "")).unwrap_err();
+    assert_eq!(error.to_string(), "tanks.toml:7:1: the key `gain_per_s` is missing");
+}
+
+#[test]
+fn its_limits_are_kept_where_they_are_enforced() {
+    let text = TANKS.replace("count = 2", "count = 2\nenforce_limits = true");
+    let setup = read(&text).unwrap().setup;
+    let recording = sim::simulate(&setup, &mut |_| std::ops::ControlFlow::Continue(())).unwrap().recording;
+    let limits = Metrics::of(&setup, &recording, None, None).limits_reached;
+    assert_eq!(limits.len(), 2, "both start too far away");
+    for limit in limits {
+        assert_eq!((limit.enforced, limit.excess, limit.limit.abs()), (true, 0.0, 0.5));
+        assert_eq!(limit.kind, LimitKind::Signal(Signal::Own(&tank::INFLOW)));
+    }
 }
 
 #[test]

@@ -28,12 +28,6 @@ impl Fault {
         Fault { problem: Box::new(problem.into()), span: None, source: None }
     }
 
-    /// A mistake that a kind of one's own finds at `place`, and what to do about it.
-    pub fn own<T>(place: &At<T>, error: &dyn std::error::Error, help: Option<&str>) -> Self {
-        let problem = ScenarioProblem::Own { message: error.to_string(), help: help.map(str::to_owned) };
-        Fault::new(problem).at(&place.span)
-    }
-
     /// Adds the place unless a closer one is known.
     pub fn at(mut self, span: &Range<usize>) -> Self {
         if self.source.is_none() {

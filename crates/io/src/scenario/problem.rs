@@ -4,6 +4,7 @@ use forwardstep_sim::SetupError;
 use thiserror::Error;
 
 use super::control_problem::ControlProblem;
+use super::kinds::KindProblem;
 use super::network_problem::NetworkProblem;
 use super::push_problem::PushProblem;
 use super::refusal;
@@ -85,9 +86,6 @@ pub enum ScenarioProblem {
         /// The axis.
         axis: String,
     },
-    /// A planar arm whose mass matrix is not positive definite.
-    #[error("the mass matrix of this arm is not positive definite: its second link resists no torque")]
-    MassMatrix,
     /// A spread where there is nothing to differ from.
     #[error("`spread` is given, but there is no `count`")]
     SpreadOfOne,
@@ -214,14 +212,9 @@ pub enum ScenarioProblem {
     /// A disagreement among agents that do not agree.
     #[error("`disagreement_below` is about agreement, but every agent follows a target or a leader")]
     NothingAgreed,
-    /// What a kind that was added to the list finds wrong.
-    #[error("{message}")]
-    Own {
-        /// What is wrong.
-        message: String,
-        /// What to do about it.
-        help: Option<String>,
-    },
+    /// What a kind finds wrong with its table.
+    #[error(transparent)]
+    Kind(KindProblem),
     /// What the closed loop refuses although every number by itself has a meaning.
     #[error("{0}")]
     Setup(SetupError),
@@ -248,7 +241,6 @@ impl Problem for ScenarioProblem {
             ScenarioProblem::NoEffortLimit { .. } => {
                 "only a URDF states limits, as <limit effort=\"…\"> of a joint".into()
             }
-            ScenarioProblem::MassMatrix => "give the second link inertia, or a centre of mass off its joint".into(),
             ScenarioProblem::SpreadOfOne => "a population of `count = 1` may have a spread, too".into(),
             ScenarioProblem::SpreadMassMatrix { .. } => {
                 "some body has an inertia that no body can have; correct it, or let `relative` be smaller".into()
@@ -283,7 +275,7 @@ impl Problem for ScenarioProblem {
             ScenarioProblem::ThresholdUnused { .. } | ScenarioProblem::TwoGoals => "delete one of the two".into(),
             ScenarioProblem::NothingTracked => "write `disagreement_below`".into(),
             ScenarioProblem::NothingAgreed => "write `error_below`".into(),
-            ScenarioProblem::Own { help, .. } => return help.clone(),
+            ScenarioProblem::Kind(problem) => return problem.help(),
             ScenarioProblem::Setup(error) => return refusal::advice(error),
             _ => return None,
         };

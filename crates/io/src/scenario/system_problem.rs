@@ -1,12 +1,10 @@
 //! What is wrong with targets and leaders, and with the systems of Sections IV and V.
 
 use forwardstep_core::expression::KinkError;
-use forwardstep_core::plant::{CascadeError, SpacecraftError};
-use forwardstep_core::robot::tree::TipError;
 use forwardstep_sim::trajectory::{SplineError, TrajectoryError};
 use thiserror::Error;
 
-use crate::wording::{entry_count, enumerate, number};
+use crate::wording::{entry_count, enumerate};
 
 /// Why one of these has no meaning.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -73,58 +71,17 @@ pub enum SystemProblem {
     /// A formula with kinks that cannot be landed on.
     #[error("a motion must be smooth between kinks that are known, but {0}")]
     Kinks(KinkError),
-    /// A spacecraft that makes no sense.
-    #[error(transparent)]
-    Spacecraft(SpacecraftError),
     /// A direction that is zero.
     #[error("this is zero and has no direction")]
     NoDirection {
         /// What would have one.
         instead: &'static str,
     },
-    /// A desired attitude that is zero.
-    #[error("this is no attitude at {} s: its four entries are zero there", number(*.t_s))]
-    NoAttitude {
-        /// When, s.
-        t_s: f64,
-    },
     /// An initial value that an agent does not have.
     #[error("`{key}` says nothing about `{agent}`")]
     StartUnused {
         /// The key.
         key: &'static str,
-        /// The agent.
-        agent: String,
-    },
-    /// Two ways of stating an attitude, or half of one.
-    #[error("an attitude is `axis` with `angle_rad`, or `quaternion`")]
-    HalfAttitude,
-    /// A tip whose Jacobian cannot be inverted.
-    #[error(transparent)]
-    Tip(TipError),
-    /// A joint that moves beside the tip.
-    #[error("`{joint}` moves, but does not carry `{link}`")]
-    TipBeside {
-        /// The joint.
-        joint: String,
-        /// The link with the tip.
-        link: String,
-    },
-    /// A robot from a URDF without a tip.
-    #[error("the law `task_space` needs `tip` for a robot from a URDF")]
-    NoTip,
-    /// A tip where there is one already.
-    #[error("the tip of a planar arm is the end of its second link; `tip` is for robots from a URDF")]
-    TipOfPlanarArm,
-    /// Bounds beside a full matrix.
-    #[error("`bounds` need `kinematic_gain` to be a number or a diagonal, not a matrix")]
-    BoundsOfMatrix,
-    /// A chain without meaning.
-    #[error("{0}")]
-    Chain(CascadeError),
-    /// Antiderivatives that have to be given.
-    #[error("agent `{agent}`: a regressor holds the highest derivative of x, so its antiderivative must be given")]
-    Antiderivatives {
         /// The agent.
         agent: String,
     },
@@ -145,15 +102,6 @@ pub enum SystemProblem {
 impl SystemProblem {
     pub(super) fn help(&self) -> Option<String> {
         let text = match self {
-            SystemProblem::HalfAttitude => {
-                "write `axis = [0, 0, 1]` and `angle_rad = 1.5`, or `quaternion = [0, 0, 0, 1]` alone".into()
-            }
-            SystemProblem::TipBeside { joint, .. } => format!("add `{joint}` to `locked`, or choose a link behind it"),
-            SystemProblem::TipOfPlanarArm => "leave `tip` out".into(),
-            SystemProblem::Tip(TipError::Coordinate { .. }) => "choose `x`, `y` and `z`, each at most once".into(),
-            SystemProblem::Spacecraft(SpacecraftError::Axis { .. }) => "[1, 0, 0] is the first axis of the body".into(),
-            SystemProblem::NoTip => "add tip = { link = \"…\" } with a link of the URDF".into(),
-            SystemProblem::Tip(TipError::Size { .. }) => "`locked` of the robot holds joints of a URDF".into(),
             SystemProblem::NoLeader => "add `[leader]` with a `motion`".into(),
             SystemProblem::SignPeriodUnused { .. } | SystemProblem::HeadingUnused => "leave it out".into(),
             SystemProblem::RateBandwidthUnused { .. } => "leave it out, or let the robot be a `rotorcraft`".into(),
@@ -175,9 +123,6 @@ impl SystemProblem {
                 format!("for this robot there is {}", enumerate(laws.iter().map(|law| format!("`{law}`"))))
             }
             SystemProblem::NoDirection { instead } => (*instead).into(),
-            SystemProblem::NoAttitude { .. } => {
-                "a quaternion may have any length but zero, vector part first: [0, 0, 0, 1] is no turn".into()
-            }
             SystemProblem::StartUnused { key, .. } => match *key {
                 "attitude" => "vehicles, rotorcraft and spacecraft have an attitude".into(),
                 "angular_velocity_rad_s" => "rotorcraft and spacecraft have an angular velocity".into(),

@@ -1,6 +1,6 @@
 //! Spacecraft: every mistake in a scenario, where it is reported and what is said.
 
-use super::{Case, refused};
+use super::{Case, read, refused};
 
 /// A spacecraft with three wheels.
 pub(super) const SPACECRAFT: &str = r#"format = 1
@@ -205,4 +205,19 @@ const SPACECRAFT_CASES: &[Case] = &[
 #[test]
 fn mistakes_about_spacecraft_are_reported_at_their_place() {
     refused(SPACECRAFT, SPACECRAFT_CASES);
+}
+
+#[test]
+fn of_two_quaternions_the_start_takes_the_one_nearer_to_the_target() {
+    let start = "axis = [1, 2, -1]\nangle_rad = 3.1\n";
+    for (quaternion, expected) in [("[0, 0, 0, -2]", 1.0), ("[0, 0, 0, 2]", 1.0)] {
+        let text = SPACECRAFT.replace(start, &format!("quaternion = {quaternion}\n"));
+        assert_eq!(read(&text).unwrap().setup.agents[0].start.q, [0.0, 0.0, 0.0, expected]);
+    }
+}
+
+#[test]
+fn its_limits_are_those_of_its_wheels() {
+    let text = SPACECRAFT.replace("name = \"craft\"", "name = \"craft\"\nenforce_limits = true");
+    assert!(read(&text).unwrap().setup.agents[0].enforce_limits);
 }

@@ -170,18 +170,18 @@ impl Payload {
             _ => None,
         });
         let references = references.max().unwrap_or(0);
-        let mut take = |signal: Signal, may_jump: bool| -> Vec<Vec<Option<usize>>> {
-            let axes = |agent| 0..table.dof(agent);
+        let mut take = |signal: Signal| -> Vec<Vec<Option<usize>>> {
+            let (axes, may_jump) = (|agent| 0..table.dof(agent), signal.row().may_jump);
             let mut one = |agent, axis| table.column(agent, signal, axis).map(|values| main.add(values, may_jump));
             (0..table.agents()).map(|agent| axes(agent).map(|axis| one(agent, axis)).collect()).collect()
         };
         let mut index = Signals {
-            q: take(Signal::Position, false),
-            dq: take(Signal::Velocity, false),
-            s: take(Signal::TrackingError, false),
-            tau: take(Signal::Torque, true),
-            tau_ext: take(Signal::External, true),
-            reference: (0..references).map(|k| take(Signal::Reference(k as u8), k > 0)).collect(),
+            q: take(Signal::Position),
+            dq: take(Signal::Velocity),
+            s: take(Signal::TrackingError),
+            tau: take(Signal::Torque),
+            tau_ext: take(Signal::External),
+            reference: (0..references).map(|k| take(Signal::Reference(k as u8))).collect(),
             ..Signals::default()
         };
         for agent in 0..table.agents() {

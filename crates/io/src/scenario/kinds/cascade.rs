@@ -10,12 +10,11 @@ use forwardstep_sim::{ChainLaw, ChainModel, ChainStep, Law, RobotSetup, SetupErr
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::chain::{FLOOR, adapted, chain_robot, each, list, optional, spread_parameters};
+use super::chain::{ChainProblem, FLOOR, adapted, chain_robot, each, list, optional, spread_parameters};
 use super::{
     At, AxisValues, Body, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, RobotKind, RobotRead,
     RobotTemplate, Spread, StartReader, Stop, fault, filled, length, positive_or,
 };
-use crate::scenario::system_problem::SystemProblem;
 use crate::scenario::systems_file::TargetFile;
 use crate::scenario::value_problem::ValueProblem;
 use crate::scenario::values::Positive;
@@ -160,7 +159,7 @@ fn cascade(
             _ => None,
         };
         let place = row.map_or(&regressors.span, |row| &row.span).clone();
-        Fault::new(SystemProblem::Chain(error)).at(&place)
+        Fault::new(ChainProblem::Unsound(error)).at(&place)
     })?;
     chain_robot(ChainModel::Cascade(Arc::new(terms)), parameters)
 }

@@ -10,13 +10,13 @@ use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{AxisUnit, ChainLaw, ChainModel, ChainStep, Estimate, Law, RobotSetup, SetupError, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
+use thiserror::Error;
 
 use super::{
-    At, AxisValues, Body, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, RobotKind, RobotRead,
+    At, AxisValues, Body, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, Mistake, RobotKind, RobotRead,
     RobotTemplate, Spread, StartReader, Stop, axis, count, estimate, fault, length, positive, positive_or, values,
 };
 use crate::scenario::formula::formula_in;
-use crate::scenario::system_problem::SystemProblem;
 use crate::scenario::systems_file::TargetFile;
 use crate::scenario::values::Positive;
 
@@ -26,6 +26,26 @@ const MOST_DERIVATIVES: u32 = 8;
 pub(super) const FLOOR: f64 = 1e-3;
 /// k, c and Γ.
 const GAIN: f64 = 1.0;
+
+/// What is wrong with a chain.
+#[derive(Debug, Error)]
+pub(super) enum ChainProblem {
+    /// A chain without meaning.
+    #[error("{0}")]
+    Unsound(CascadeError),
+    /// Antiderivatives that have to be given.
+    #[error("agent `{agent}`: a regressor holds the highest derivative of x, so its antiderivative must be given")]
+    Antiderivatives {
+        /// The agent.
+        agent: String,
+    },
+}
+
+impl Mistake for ChainProblem {
+    fn help(&self) -> Option<String> {
+        None
+    }
+}
 
 /// A plant whose derivative of some order is χ + ψ u; formulas are in x, dx, d2x, d3x, ….
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -66,7 +86,7 @@ impl RobotKind for ChainFile {
         let psi = optional(self.psi.as_ref(), &names, 1.0)?;
         let phi = list(&self.regressor.value, &names)?;
         let terms = Formulas::new(order, &chi, phi, &psi)
-            .map_err(|error| fault(&self.order, SystemProblem::Chain(CascadeError::Expression(error))))?;
+            .map_err(|error| fault(&self.order, ChainProblem::Unsound(CascadeError::Expression(error))))?;
         Ok(RobotRead::new(chain_robot(ChainModel::Derivatives(Arc::new(terms)), &self.parameters)?))
     }
 
@@ -290,7 +310,7 @@ impl LawKind for ImmersionFile {
     }
 
     fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
-        let none = || Fault::new(SystemProblem::Antiderivatives { agent: agent.agent.to_owned() });
+        let none = || Fault::new(ChainProblem::Antiderivatives { agent: agent.agent.to_owned() });
         let terms = terms(agent.robot).ok_or_else(none)?;
         let (order, phi) = (terms.order(), terms.regressor());
         let antiderivatives = match &self.antiderivatives {

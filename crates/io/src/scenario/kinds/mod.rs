@@ -1,7 +1,8 @@
 //! The kinds of robots and laws that scenario files know, in one list, which a program of one's own can add to.
 //!
 //! A kind is the struct of its table in a file. It derives `Deserialize` and `JsonSchema`, whose doc comments become the schema,
-//! holds what can be wrong as [`At`], which knows its place, and implements [`RobotKind`] or [`LawKind`]. [`Kinds`] has them by
+//! holds what can be wrong as [`At`], which knows its place, and implements [`RobotKind`] or [`LawKind`]; what it finds wrong is a
+//! [`Mistake`] of its own. [`Kinds`] has them by
 //! their keys; near matches, messages and the schema come from there.
 //!
 //! - `urdf`, `planar_arm`, `point_mass`: robots under (6)–(7); `adaptive`: these laws; a mass without velocity is with it.
@@ -14,6 +15,7 @@ pub mod cascade;
 pub mod chain;
 pub mod planar_arm;
 pub mod point_mass;
+mod problem;
 pub mod ship;
 pub mod spacecraft;
 pub mod task_space;
@@ -35,6 +37,7 @@ use super::document::{KeyedLaw, with_empty};
 use super::file::ScenarioFile;
 use super::system_problem::SystemProblem;
 
+pub use self::problem::{KindProblem, Mistake};
 pub use super::at::At;
 pub use super::fault::{
     Fault, between, count, fault, filled, length, not_negative, not_negative_or, positive, positive_or, values,

@@ -7,14 +7,25 @@ use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{RobotSetup, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
+use thiserror::Error;
 
 use super::{
-    At, Body, Fault, InputFolder, RobotKind, RobotRead, RobotTemplate, Spread, StartReader, Stop, not_negative,
-    positive,
+    At, Body, Fault, InputFolder, Mistake, RobotKind, RobotRead, RobotTemplate, Spread, StartReader, Stop,
+    not_negative, positive,
 };
-use crate::scenario::problem::ScenarioProblem;
 use crate::scenario::systems_file::TargetFile;
 use crate::scenario::values::{NotNegative, Positive};
+
+/// An arm whose mass matrix is not positive definite.
+#[derive(Debug, Error)]
+#[error("the mass matrix of this arm is not positive definite: its second link resists no torque")]
+struct LimpArm;
+
+impl Mistake for LimpArm {
+    fn help(&self) -> Option<String> {
+        Some("give the second link inertia, or a centre of mass off its joint".into())
+    }
+}
 
 /// Masses and lengths of a two-link planar arm.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -110,7 +121,7 @@ fn arm(links: &PlanarLinks) -> Result<(RobotSetup, Body), Fault> {
     let [whole, outer, coupling, ..] = theta;
     let determinant = outer * (whole - outer) - coupling * coupling;
     if !(outer > 0.0 && determinant > 0.0 && theta.iter().all(|entry| entry.is_finite())) {
-        return Err(Fault::new(ScenarioProblem::MassMatrix));
+        return Err(Fault::new(LimpArm));
     }
     let robot = RobotSetup::planar_arm(links);
     Ok((robot, Body { links: Rc::new([]), tip: Some(PlanarTip { length_m: links.length_m }) }))

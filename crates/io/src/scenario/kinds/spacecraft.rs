@@ -10,17 +10,18 @@ use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{AttitudeLaw, AxisUnit, Law, RobotSetup, SetupError, SpacecraftModel, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
+use thiserror::Error;
 
 use super::{
-    At, Body, Fault, GainFile, InputFolder, LawKind, LawReader, RobotKind, RobotRead, RobotTemplate, Spread,
+    At, Body, Fault, GainFile, InputFolder, LawKind, LawReader, Mistake, RobotKind, RobotRead, RobotTemplate, Spread,
     StartReader, Stop, axis, fault, filled, gain, gain_or, length, positive, positive_or, values,
 };
 use crate::scenario::attitude::{attitude as attitude_of, quaternion, turn};
 use crate::scenario::attitude_file::WheelStartFile;
-use crate::scenario::system_problem::SystemProblem;
 use crate::scenario::systems_file::TargetFile;
 use crate::scenario::value_problem::ValueProblem;
 use crate::scenario::values::Positive;
+use crate::wording::number;
 
 const ERROR_GAIN_PER_S2: f64 = 1.0;
 const RATE_GAIN_PER_S: f64 = 2.0;
@@ -29,6 +30,39 @@ const DAMPING: f64 = 3.0;
 /// Times at which the length of a target is looked at, and what part of its greatest counts as zero.
 const SAMPLES: u32 = 1000;
 const VANISHING: f64 = 1e-9;
+
+/// What is wrong with a spacecraft.
+#[derive(Debug, Error)]
+enum SpacecraftProblem {
+    /// A spacecraft that makes no sense.
+    #[error(transparent)]
+    Unsound(SpacecraftError),
+    /// A desired attitude that is zero.
+    #[error("this is no attitude at {} s: its four entries are zero there", number(*.t_s))]
+    NoAttitude {
+        /// When, s.
+        t_s: f64,
+    },
+    /// Two ways of stating an attitude, or half of one.
+    #[error("an attitude is `axis` with `angle_rad`, or `quaternion`")]
+    HalfAttitude,
+}
+
+impl Mistake for SpacecraftProblem {
+    fn help(&self) -> Option<String> {
+        let text = match self {
+            SpacecraftProblem::Unsound(SpacecraftError::Axis { .. }) => "[1, 0, 0] is the first axis of the body",
+            SpacecraftProblem::NoAttitude { .. } => {
+                "a quaternion may have any length but zero, vector part first: [0, 0, 0, 1] is no turn"
+            }
+            SpacecraftProblem::HalfAttitude => {
+                "write `axis = [0, 0, 1]` and `angle_rad = 1.5`, or `quaternion = [0, 0, 0, 1]` alone"
+            }
+            SpacecraftProblem::Unsound(_) => return None,
+        };
+        Some(text.into())
+    }
+}
 
 /// A spacecraft that turns itself by reaction wheels.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -141,7 +175,7 @@ fn spacecraft(file: &SpacecraftFile) -> Result<RobotSetup, Fault> {
                     }
                     _ => None,
                 };
-                Fault::new(SystemProblem::Spacecraft(error)).at(&axis.unwrap_or_else(|| list.span.clone()))
+                Fault::new(SpacecraftProblem::Unsound(error)).at(&axis.unwrap_or_else(|| list.span.clone()))
             })?
         }
     };
@@ -152,7 +186,7 @@ fn spacecraft(file: &SpacecraftFile) -> Result<RobotSetup, Fault> {
         Gain::Number(entry) | Gain::Bandwidth(entry) => diagonal(|_| entry),
     };
     Spacecraft::new(inertia_kg_m2, wheels.clone(), false)
-        .map_err(|error| fault(place, SystemProblem::Spacecraft(error)))?;
+        .map_err(|error| fault(place, SpacecraftProblem::Unsound(error)))?;
     Ok(RobotSetup {
         kind: Arc::new(SpacecraftModel { inertia_kg_m2, wheels }),
         theta: Vec::new(),
@@ -180,9 +214,9 @@ fn turned(file: &WheelStartFile) -> Result<Option<Quaternion>, Fault> {
         (None, None, None) => None,
         (Some(given), None, None) => Some(quaternion(given)?),
         (None, Some(axis), Some(angle)) => Some(turn(axis, angle)?),
-        (None, Some(axis), None) => return Err(fault(axis, SystemProblem::HalfAttitude)),
-        (None, None, Some(angle)) => return Err(fault(angle, SystemProblem::HalfAttitude)),
-        (Some(given), ..) => return Err(fault(given, SystemProblem::HalfAttitude)),
+        (None, Some(axis), None) => return Err(fault(axis, SpacecraftProblem::HalfAttitude)),
+        (None, None, Some(angle)) => return Err(fault(angle, SpacecraftProblem::HalfAttitude)),
+        (Some(given), ..) => return Err(fault(given, SpacecraftProblem::HalfAttitude)),
     })
 }
 
@@ -198,7 +232,7 @@ fn never_zero<T>(place: &At<T>, target: &Trajectory, end_s: f64) -> Result<(), F
         let size = size(t_s);
         if size < least { (t_s, size, most.max(size)) } else { (at, least, most.max(size)) }
     });
-    if least > VANISHING * most { Ok(()) } else { Err(fault(place, SystemProblem::NoAttitude { t_s })) }
+    if least > VANISHING * most { Ok(()) } else { Err(fault(place, SpacecraftProblem::NoAttitude { t_s })) }
 }
 
 /// Of the two quaternions of the attitude at the start, takes the one that is nearer to the target: the law leads to Δq_o = 1

@@ -10,14 +10,14 @@ use forwardstep_core::robot::tree::{LinkPoint, TipError, Tree, TreeTip, Uncertai
 use forwardstep_sim::{Attachments, Law, RobotSetup, SetupError, TaskSpaceLaw, TipSetup};
 use schemars::JsonSchema;
 use serde::Deserialize;
+use thiserror::Error;
 
 use super::{
-    At, Body, DampingFile, EstimateStartFile, Fault, GainFile, GainOrBandwidth, LawKind, LawReader, adaptation,
-    between, damping, estimate, fault, filled, gain_or, length, positive_or, values,
+    At, Body, DampingFile, EstimateStartFile, Fault, GainFile, GainOrBandwidth, LawKind, LawReader, Mistake,
+    adaptation, between, damping, estimate, fault, filled, gain_or, length, positive_or, values,
 };
 use crate::scenario::gains::{has_scales, known_or_given};
 use crate::scenario::push_problem::PushProblem;
-use crate::scenario::system_problem::SystemProblem;
 use crate::scenario::value_problem::ValueProblem;
 use crate::scenario::values::Positive;
 
@@ -30,6 +30,44 @@ const KINEMATIC_GAIN: f64 = 0.3;
 const KINEMATIC_START: f64 = 1.2;
 const MARGIN_M: f64 = 0.01;
 const DETERMINANT_FLOOR: f64 = 0.01;
+
+/// What is wrong with a tip.
+#[derive(Debug, Error)]
+enum TipProblem {
+    /// A tip whose Jacobian cannot be inverted.
+    #[error(transparent)]
+    Unsound(TipError),
+    /// A joint that moves beside the tip.
+    #[error("`{joint}` moves, but does not carry `{link}`")]
+    Beside {
+        /// The joint.
+        joint: String,
+        /// The link with the tip.
+        link: String,
+    },
+    /// A robot from a URDF without a tip.
+    #[error("the law `task_space` needs `tip` for a robot from a URDF")]
+    Missing,
+    /// A tip where there is one already.
+    #[error("the tip of a planar arm is the end of its second link; `tip` is for robots from a URDF")]
+    OfPlanarArm,
+    /// Bounds beside a full matrix.
+    #[error("`bounds` need `kinematic_gain` to be a number or a diagonal, not a matrix")]
+    BoundsOfMatrix,
+}
+
+impl Mistake for TipProblem {
+    fn help(&self) -> Option<String> {
+        Some(match self {
+            TipProblem::Beside { joint, .. } => format!("add `{joint}` to `locked`, or choose a link behind it"),
+            TipProblem::OfPlanarArm => "leave `tip` out".into(),
+            TipProblem::Unsound(TipError::Coordinate { .. }) => "choose `x`, `y` and `z`, each at most once".into(),
+            TipProblem::Unsound(TipError::Size { .. }) => "`locked` of the robot holds joints of a URDF".into(),
+            TipProblem::Missing => "add tip = { link = \"…\" } with a link of the URDF".into(),
+            TipProblem::Unsound(_) | TipProblem::BoundsOfMatrix => return None,
+        })
+    }
+}
 
 /// The tip follows the target with uncertain lengths and parameters, without its velocity: (80) to (82) of the paper.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
@@ -147,7 +185,7 @@ impl LawKind for TaskSpaceFile {
         let kinematic_adaptation = gain_or("kinematic_gain", &self.kinematic_gain, KINEMATIC_GAIN, agent, p)?;
         let bounds = self.bounds.as_ref().map(|place| bounds(&place.value, agent, p)).transpose()?;
         if let (Some(place), Gain::Matrix(_)) = (&self.bounds, &kinematic_adaptation) {
-            return Err(fault(place, SystemProblem::BoundsOfMatrix));
+            return Err(fault(place, TipProblem::BoundsOfMatrix));
         }
         let kinematic_start = match &self.kinematic_start {
             None => theta.iter().map(|length| KINEMATIC_START * length).collect(),
@@ -187,14 +225,14 @@ fn tip(
         (Attachments::PlanarTip, Some(tip), None) => {
             Ok((TipSetup::Planar(*tip), tip.length_m.to_vec(), tip.parameter_names()))
         }
-        (Attachments::PlanarTip, _, Some(place)) => Err(fault(place, SystemProblem::TipOfPlanarArm)),
+        (Attachments::PlanarTip, _, Some(place)) => Err(fault(place, TipProblem::OfPlanarArm)),
         (Attachments::Links(tree), _, Some(place)) => {
             of_tree(&place.value, agent, tree, body).and_then(|(setup, tip)| {
                 let tip = tip.map_err(|error| no_tip(place, robot, error))?;
                 Ok((setup, tip.parameters(), tip.parameter_names()))
             })
         }
-        _ => Err(Fault::new(SystemProblem::NoTip)),
+        _ => Err(Fault::new(TipProblem::Missing)),
     }
 }
 
@@ -204,10 +242,10 @@ fn no_tip(place: &At<TipFile>, robot: &RobotSetup, error: TipError) -> Fault {
     match (&error, coordinates) {
         (TipError::Beside { joint }, _) => {
             let joint = robot.axes.get(*joint).map_or_else(String::new, |axis| axis.name.clone());
-            fault(link, SystemProblem::TipBeside { joint, link: link.value.clone() })
+            fault(link, TipProblem::Beside { joint, link: link.value.clone() })
         }
-        (TipError::Coordinate { .. }, Some(coordinates)) => fault(coordinates, SystemProblem::Tip(error)),
-        _ => fault(place, SystemProblem::Tip(error)),
+        (TipError::Coordinate { .. }, Some(coordinates)) => fault(coordinates, TipProblem::Unsound(error)),
+        _ => fault(place, TipProblem::Unsound(error)),
     }
 }
 
