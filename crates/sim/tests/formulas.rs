@@ -81,9 +81,9 @@ fn prop_every_derivative_is_the_difference_of_the_one_before() {
         [T, Power(2.0.into()), Number(0.4.into()), Binary(Multiply), T, Binary(Add), Number(0.7.into()), Binary(Add)];
     let h = 1e-4;
     for step in functions() {
-        let composed = formula(&[&inner[..], &[step.clone()]].concat());
-        let product = formula(&[&inner[..], &[step.clone()], &inner[..], &[Binary(Multiply)]].concat());
-        let quotient = formula(&[&inner[..], &[step.clone()], &inner[..], &[Binary(Divide)]].concat());
+        let composed = formula(&[&inner[..], std::slice::from_ref(&step)].concat());
+        let product = formula(&[&inner[..], std::slice::from_ref(&step), &inner[..], &[Binary(Multiply)]].concat());
+        let quotient = formula(&[&inner[..], std::slice::from_ref(&step), &inner[..], &[Binary(Divide)]].concat());
         for f in [composed, product, quotient] {
             for t in [0.1, 0.6, 1.2] {
                 let (here, near, far) = (f.jet(t), f.jet(t + h), f.jet(t - h));

@@ -1,7 +1,6 @@
 //! Surface ships under (6)–(7): the balance of the proof, agreement, and the same motion in the axes of the body.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use common::{column, last, ledger_error, run, switching};
