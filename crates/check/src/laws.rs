@@ -10,7 +10,7 @@ use crate::kinds::{
 use crate::theorem::Theorem;
 
 /// All kinds, in the order in which their hypotheses are listed.
-const KINDS: [&dyn KindCheck; 7] = [
+const KINDS: [&dyn KindCheck; 8] = [
     &PositionOnlyMass, // (a8)
     &Vehicle,          // Section V-B
     &Rotorcraft,       // the same with a body
@@ -18,6 +18,7 @@ const KINDS: [&dyn KindCheck; 7] = [
     &Spacecraft,       // Theorem 7
     &Chain,            // Section IV
     &LagrangianRobot,  // (6) and (7)
+    &DeclaredKind,     // laws from outside
 ];
 
 /// The kind of an agent; that of a law from outside is what it says of itself.

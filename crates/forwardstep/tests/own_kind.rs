@@ -8,6 +8,7 @@ mod tank;
 use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use forwardstep::check::{Answer, Id, Rigour, check};
 use forwardstep::io::SourceText;
@@ -15,7 +16,8 @@ use forwardstep::io::output::{LimitKind, Metrics};
 use forwardstep::io::scenario::{Scenario, ScenarioError};
 use forwardstep::{program_with, sim};
 use miette::Diagnostic;
-use sim::Signal;
+use sim::system::{Declaration, Known};
+use sim::{Assembly, Block, Coordinates, Interface, Law, Line, RobotSetup, SetupError, Signal};
 
 const TANKS: &str = r#"format = 1
 time = { end_s = 10 }
@@ -181,5 +183,61 @@ fn what_its_author_says_of_it_is_reported_as_declared_and_never_as_shown() {
     for hypothesis in declared {
         assert_eq!((hypothesis.answer(), hypothesis.rigour()), (Answer::NotCovered, Rigour::Declared));
         assert!(hypothesis.because().ends_with("(declared, not shown)"), "{}", hypothesis.because());
+    }
+}
+
+#[test]
+fn a_law_from_outside_that_claims_nothing_or_to_be_checked_never_holds() {
+    for known in [
+        Known::Checked,
+        Known::Declared(Declaration { source: "no proof".into(), promises: "much".into(), claims: Vec::new() }),
+    ] {
+        let mut setup = read(TANKS).unwrap().setup;
+        for agent in &mut setup.agents {
+            agent.law = Arc::new(Says { law: agent.law.clone(), known: known.clone() });
+        }
+        let report = check(&setup);
+        assert_eq!(report.worst(), Answer::NotCovered, "{known:?}");
+    }
+}
+
+/// A law that says something else of itself.
+#[derive(Debug)]
+struct Says {
+    law: Arc<dyn Law>,
+    known: Known,
+}
+
+impl Law for Says {
+    fn words(&self) -> &'static str {
+        self.law.words()
+    }
+
+    fn made_for(&self) -> &'static str {
+        self.law.made_for()
+    }
+
+    fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
+        self.law.interface(robot)
+    }
+
+    fn coordinates(&self) -> Option<Coordinates> {
+        self.law.coordinates()
+    }
+
+    fn lines(&self, robot: &RobotSetup) -> Vec<Line> {
+        self.law.lines(robot)
+    }
+
+    fn shares_batch(&self, _: &dyn Law) -> bool {
+        false
+    }
+
+    fn known(&self) -> Known {
+        self.known.clone()
+    }
+
+    fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
+        self.law.block(assembly)
     }
 }

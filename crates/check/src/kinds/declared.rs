@@ -1,6 +1,6 @@
 //! Laws from outside: what their authors say of them, reported as declared and never as shown.
 
-use forwardstep_sim::system::{Declaration, Known};
+use forwardstep_sim::system::{Declaration, DeclaredClaim, Known};
 use forwardstep_sim::{AgentSetup, Setup};
 
 use super::{Claim, KindCheck};
@@ -14,8 +14,9 @@ impl KindCheck for DeclaredKind {
         "declared"
     }
 
-    fn treats(&self, agent: &AgentSetup) -> bool {
-        declaration(agent).is_some()
+    /// All that no other kind treats: it comes last.
+    fn treats(&self, _: &AgentSetup) -> bool {
+        true
     }
 
     fn treated(&self, _: &AgentSetup) -> &'static str {
@@ -23,15 +24,14 @@ impl KindCheck for DeclaredKind {
     }
 
     fn claim(&self, setup: &Setup) -> Option<Claim> {
-        let Declaration { source, promises, .. } = declaration(setup.agents.first()?)?;
+        let Declaration { source, promises, .. } = declaration(setup.agents.first()?);
         Some(Claim { theorem: Theorem::Declared(source), promises })
     }
 
     fn hypotheses(&self, setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
         let mut hypotheses = Vec::new();
         for index in agents {
-            let claims = declaration(&setup.agents[*index]).map(|declaration| declaration.claims).unwrap_or_default();
-            for claim in claims {
+            for claim in declaration(&setup.agents[*index]).claims {
                 let subject = Subject::Agent(Named::of(setup, *index));
                 let evidence = KindEvidence::Declared { requires: claim.requires, because: claim.because };
                 hypotheses.push(Hypothesis::about(Id::Declared, subject, evidence));
@@ -50,9 +50,20 @@ impl KindCheck for DeclaredKind {
     }
 }
 
-fn declaration(agent: &AgentSetup) -> Option<Declaration> {
-    match agent.law.known() {
-        Known::Checked => None,
-        Known::Declared(declaration) => Some(declaration),
+/// What the author says. A law that says nothing, or that it is checked where it is not, must not be taken for one that has
+/// shown all: then there is one claim, of which nothing is known.
+fn declaration(agent: &AgentSetup) -> Declaration {
+    let mut declaration = match agent.law.known() {
+        Known::Declared(declaration) => declaration,
+        Known::Checked => Declaration {
+            source: "nothing, for it says that it is checked, and no kind here is this one".into(),
+            promises: "nothing that is known here".into(),
+            claims: Vec::new(),
+        },
+    };
+    if declaration.claims.is_empty() {
+        let requires = "what its convergence needs".into();
+        declaration.claims.push(DeclaredClaim { requires, because: "nothing is said of it".into() });
     }
+    declaration
 }
