@@ -20,7 +20,7 @@ impl Source {
             Source::Paper => "the paper".into(),
             Source::Corrected(slips) => format!("the paper as corrected ({slips})"),
             Source::Derived => "derived for this software, not in the paper".into(),
-            Source::Declared => "declared by the author of the law".into(),
+            Source::Declared => "declared by its author".into(),
         }
     }
 }

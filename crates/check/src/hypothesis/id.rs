@@ -126,8 +126,8 @@ table! {
         "the angular velocity is the one that the law asks for";
     EveryWrench, "every-wrench", "own derivation", Source::Derived,
         "every thrust and every torque can be had";
-    Declared, "declared", "declared by the author of the law", Source::Declared,
-        "what the author of the law of … says of it is so";
+    Declared, "declared", "declared by its author", Source::Declared,
+        "what the author of the robot or of the law of … says is so";
     TaskSpaceGains, "task-space-gains", "Theorem 6", Source::Paper,
         "K*, K, Γ and Λ are symmetric positive definite, κ and α are positive";
     RegularJacobian, "regular-jacobian", "Theorem 6", Source::Paper,

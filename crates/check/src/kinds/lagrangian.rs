@@ -1,9 +1,13 @@
 //! Lagrangian robots under (6)–(7), or with known parameters. Which theorem it is depends on the reference dynamics.
 
+use std::sync::Arc;
+
+use forwardstep_core::robot::tree::Tree;
+use forwardstep_core::robot::{PlanarArm, PointMass, Ship};
 use forwardstep_sim::{Adaptive, AgentSetup, Known, Setup};
 
 use super::{Claim, KindCheck};
-use crate::hypothesis::{Hypothesis, Id, LoopEvidence};
+use crate::hypothesis::{Hypothesis, Id, KindEvidence, LoopEvidence, Named, Subject};
 
 pub(crate) struct LagrangianRobot;
 
@@ -26,7 +30,9 @@ impl KindCheck for LagrangianRobot {
 
     fn hypotheses(&self, setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
         let known = agents.iter().filter(|agent| setup.agents[**agent].law.is::<Known>()).count();
-        vec![Hypothesis::new(Id::PositiveGains, LoopEvidence::Gains { known, agents: agents.len() })]
+        let gains = Hypothesis::new(Id::PositiveGains, LoopEvidence::Gains { known, agents: agents.len() });
+        let from_outside = agents.iter().filter(|agent| !is_shipped(&setup.agents[**agent]));
+        from_outside.map(|agent| three_properties(setup, *agent)).chain([gains]).collect()
     }
 
     fn target_derivatives(&self, _: &AgentSetup) -> usize {
@@ -41,6 +47,20 @@ impl KindCheck for LagrangianRobot {
 /// Whether (6)–(7), or (6) with known parameters, controls the agent.
 pub(crate) fn is_lagrangian(agent: &AgentSetup) -> bool {
     agent.law.is::<Adaptive>() || agent.law.is::<Known>()
+}
+
+/// Whether the robot of an agent is one of which tests here show the three properties of Section II-B.
+fn is_shipped(agent: &AgentSetup) -> bool {
+    let robot = &agent.robot.kind;
+    robot.is::<Arc<Tree>>() || robot.is::<PlanarArm>() || robot.is::<PointMass>() || robot.is::<Ship>()
+}
+
+/// That the inertia matrix is positive definite, Ṁ − 2C skew-symmetric and Y θ the dynamics: of a robot from outside, only its
+/// author says so.
+fn three_properties(setup: &Setup, agent: usize) -> Hypothesis {
+    let requires = "its robot has the three properties of Section II-B".into();
+    let evidence = KindEvidence::Declared { requires, because: "it is given as a robot that has them".into() };
+    Hypothesis::about(Id::Declared, Subject::Agent(Named::of(setup, agent)), evidence)
 }
 
 /// Whether an agent adapts and its estimate starts from zero in every entry.

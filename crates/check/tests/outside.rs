@@ -1,0 +1,87 @@
+//! Robots of which only their authors say that they have the three properties of Section II-B.
+#![allow(clippy::unwrap_used)]
+
+use std::sync::Arc;
+
+use forwardstep_check::{Answer, Id, check};
+use forwardstep_core::robot::PointMass;
+use forwardstep_sim::delay::Delay;
+use forwardstep_sim::system::{ActuatorLimits, Attachments, Line, Naming, Robot};
+use forwardstep_sim::{AgentSetup, Known, LagrangianRobot, Network, RobotModel, RobotSetup, Setup, Signal, run};
+
+/// A mass that somebody else models, with what is shipped inside.
+#[derive(Clone, Debug)]
+struct Sledge;
+
+impl Robot for Sledge {
+    fn velocity_len(&self, axes: usize) -> usize {
+        axes
+    }
+
+    fn rest_len(&self) -> usize {
+        0
+    }
+
+    fn moves_in_space(&self) -> bool {
+        false
+    }
+
+    fn same_model(&self, other: &dyn Robot) -> bool {
+        other.is::<Sledge>()
+    }
+
+    fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
+        Some(self)
+    }
+
+    fn attachments(&self) -> Attachments<'_> {
+        Attachments::Axes
+    }
+
+    fn actuator_limits(&self) -> ActuatorLimits {
+        ActuatorLimits::Axes
+    }
+
+    fn naming(&self) -> Naming {
+        Naming { numbered_axes: false, torques_on_body: false }
+    }
+
+    fn lines(&self) -> Vec<Line> {
+        Vec::new()
+    }
+}
+
+impl RobotModel for Sledge {
+    type Kernel = PointMass;
+
+    fn kernel(&self) -> PointMass {
+        PointMass { dimension: 1 }
+    }
+}
+
+/// Two masses that agree, the left one somebody else's if asked.
+fn masses(outside: bool) -> Setup {
+    let mass = |name: &str, at: f64| {
+        AgentSetup::new(name, RobotSetup::point_mass(1, 2.0), Known::gain(8.0)).roots(&[1.0, 2.0]).at(&[at])
+    };
+    let network = Network::fixed(2, [(0, 1), (1, 0)], Delay::Constant { s: 0.3 });
+    let mut setup = Setup::consensus([mass("left", 0.0), mass("right", 1.0)], network, 5.0);
+    if outside {
+        setup.agents[0].robot.kind = Arc::new(Sledge);
+    }
+    setup
+}
+
+#[test]
+fn a_robot_from_outside_moves_like_the_shipped_one_but_its_properties_are_declared() {
+    let [shipped, outside] = [false, true].map(masses);
+    let at = |setup: &Setup| run(setup).unwrap().recording.values(0, Signal::Position, 0).unwrap().to_vec();
+    assert!(at(&shipped).iter().zip(at(&outside)).all(|(one, other)| (one - other).abs() < 1e-9));
+
+    assert_eq!(check(&shipped).worst(), Answer::Holds);
+    let report = check(&outside);
+    assert_eq!(report.worst(), Answer::NotCovered);
+    let declared: Vec<_> = report.hypotheses.iter().filter(|hypothesis| hypothesis.id == Id::Declared).collect();
+    assert_eq!(declared.len(), 1, "of the left one alone");
+    assert!(declared[0].requires().contains("left"), "{}", declared[0].requires());
+}
