@@ -15,8 +15,9 @@ pub struct Report {
 }
 
 impl Report {
-    /// The worst answer of all hypotheses; [`Answer::Holds`] when there are none.
+    /// The worst answer of all hypotheses; [`Answer::NotCovered`] when there are none, since every theorem has some: an empty
+    /// list has been forgotten.
     pub fn worst(&self) -> Answer {
-        self.hypotheses.iter().map(Hypothesis::answer).max().unwrap_or(Answer::Holds)
+        self.hypotheses.iter().map(Hypothesis::answer).max().unwrap_or(Answer::NotCovered)
     }
 }

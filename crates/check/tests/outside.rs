@@ -85,3 +85,10 @@ fn a_robot_from_outside_moves_like_the_shipped_one_but_its_properties_are_declar
     assert_eq!(declared.len(), 1, "of the left one alone");
     assert!(declared[0].requires().contains("left"), "{}", declared[0].requires());
 }
+
+#[test]
+fn a_report_without_hypotheses_does_not_hold() {
+    let mut report = check(&masses(false));
+    report.hypotheses.clear();
+    assert_eq!(report.worst(), Answer::NotCovered);
+}

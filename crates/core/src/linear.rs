@@ -1,6 +1,6 @@
 //! Inverses of small matrices.
 
-/// Writes the inverse of the n × n matrix `a` (row by row, left in ruins) and returns its determinant. A singular matrix has
+/// Writes the inverse of the n × n matrix `a` (row by row, overwritten) and returns its determinant. A singular matrix has
 /// determinant zero and an inverse that is not finite. Nothing happens, and the determinant is not a number, when a slice is
 /// too short.
 pub(crate) fn invert(n: usize, a: &mut [f64], inverse: &mut [f64]) -> f64 {

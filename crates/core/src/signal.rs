@@ -26,7 +26,7 @@ pub enum Signal {
     Estimate,
     /// The Lyapunov-like function of the proof that covers the agent; ½ sᵀ M s + ½ Δϑᵀ Γ⁻¹ Δϑ under (6)–(7). One entry.
     Lyapunov,
-    /// The integral of what the Lyapunov-like function loses by its proof; present when the ledger is on. One entry.
+    /// The integral of what the Lyapunov-like function loses by its proof; present when the balance is on. One entry.
     Dissipation,
     /// τ_ext; only of agents that are pushed.
     External,

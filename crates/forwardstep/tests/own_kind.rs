@@ -74,8 +74,8 @@ fn it_runs_is_recorded_and_reported_and_the_report_is_rebuilt() {
         serde_json::from_str(&fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
     let limit = &summary["metrics"]["limits_reached"][0];
     assert_eq!((limit["kind"].as_str(), limit["limit"].as_f64()), (Some("inflow"), Some(0.5)), "{limit}");
-    let ledger = summary["metrics"]["ledger_error"]["relative"].as_f64().unwrap();
-    assert!(ledger < 1e-5, "V + ∫ dissipation is constant to {ledger}");
+    let balance = summary["metrics"]["ledger_error"]["relative"].as_f64().unwrap();
+    assert!(balance < 1e-5, "V + ∫ dissipation is constant to {balance}");
 
     let drawn = pictures(&out);
     fs::remove_file(out.join("report.html")).unwrap();

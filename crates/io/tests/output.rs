@@ -12,22 +12,13 @@ use forwardstep_check::hypothesis::{GraphEvidence, Named};
 use forwardstep_core::Gain;
 use forwardstep_core::robot::PlanarArm;
 use forwardstep_io::output::{
-    Absence, Action, Disagreement, DisagreementSeries, Goal, GoalOutcome, LimitKind, Metrics, Options, OutputError,
-    RunFolder, ending_sentence, names, write_run,
+    Action, Goal, GoalOutcome, Options, OutputError, RunFolder, ending_sentence, names, write_run,
 };
-use forwardstep_sim::recording::{BreakdownCause, Column};
-use forwardstep_sim::{
-    AxisUnit, Breakdown, Ending, GainRates, Known, Method, Outcome, Recording, Setup, Signal, Stiffness,
-};
+use forwardstep_sim::recording::BreakdownCause;
+use forwardstep_sim::{Breakdown, Ending, GainRates, Known, Method, Outcome, Recording, Setup, Signal, Stiffness};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
-use support::{agent, outcome, record, setup, verdicts};
-
-fn two_arms() -> (Setup, Outcome) {
-    let setup = setup(vec![agent("arm-1", 2, 3), agent("arm-2", 2, 3)], 2.0, 0.01);
-    let outcome = outcome(&setup);
-    (setup, outcome)
-}
+use support::{agent, outcome, record, setup, two_arms, verdicts};
 
 fn write(path: &Path, setup: &Setup, outcome: &Outcome) {
     let report = verdicts();
@@ -273,117 +264,6 @@ fn names_given_by_users_are_escaped_everywhere() {
         assert!(!svg.contains("<script"), "{name}");
         roxmltree::Document::parse(&svg).unwrap();
     }
-}
-
-/// Two agents with one axis, by hand: q₁ = 0, 1, 1, 1 and q₂ = 2, 2, 1.5, 1.25 at t = 0, 1, 2, 3.
-fn by_hand() -> (Setup, Recording) {
-    let setup = setup(vec![agent("a", 1, 0), agent("b", 1, 0)], 3.0, 1.0);
-    let column = |agent, signal, values: [f64; 4]| Column { agent, signal, axis: 0, values: values.to_vec() };
-    let columns = vec![
-        column(0, Signal::Position, [0.0, 1.0, 1.0, 1.0]),
-        column(0, Signal::Velocity, [0.0, -4.0, 3.5, 0.25]),
-        column(0, Signal::Torque, [10.0, -200.0, 160.0, 0.0]),
-        column(0, Signal::Lyapunov, [4.0, 3.0, 2.0, 1.0]),
-        column(0, Signal::Dissipation, [0.0, 1.0, 2.0, 3.0]),
-        column(1, Signal::Position, [2.0, 2.0, 1.5, 1.25]),
-        column(1, Signal::Velocity, [0.0, 1.0, 2.0, -0.5]),
-        column(1, Signal::Torque, [0.0, 0.0, 7.0, -7.0]),
-        column(1, Signal::Lyapunov, [2.0, 1.5, 1.0, 0.5]),
-        column(1, Signal::Dissipation, [0.0, 0.5, 1.1, 1.5]),
-    ];
-    (setup, Recording { t_s: vec![0.0, 1.0, 2.0, 3.0], columns })
-}
-
-#[test]
-fn metrics_are_what_one_computes_by_hand() {
-    let (setup, recording) = by_hand();
-    let m = Metrics::of(&setup, &recording, Some(&[1.0]), Some(Goal::DisagreementBelow(0.75)));
-    assert_eq!(DisagreementSeries::of(&setup, &recording).unwrap().overall, [2.0, 1.0, 0.5, 0.25]);
-    assert_eq!(m.disagreement, Disagreement::Measured { initial: 2.0, last: 0.25, largest: 2.0 });
-    assert_eq!(m.settled_s, Some(2.0));
-    let speed = m.speed.unwrap();
-    assert_eq!((speed.largest.agent, speed.largest.t_s, speed.largest.value, speed.last), (0, 1.0, 4.0, 0.5));
-    assert_eq!((m.peak_torques[0].t_s, m.peak_torques[0].value), (1.0, -200.0));
-    assert_eq!((m.peak_torques[1].t_s, m.peak_torques[1].value), (2.0, 7.0), "the first of equals");
-    let ledger = m.ledger_error.unwrap();
-    assert!((ledger.relative - 0.05).abs() < 1e-15, "{}", ledger.relative);
-    assert_eq!((ledger.agent, ledger.t_s), (1, 2.0));
-    let agreement = m.agreement.unwrap()[0];
-    assert_eq!((agreement.predicted, agreement.reached, agreement.distance), (1.0, 1.125, 0.25));
-
-    let found: Vec<_> = m.limits_reached.iter().map(|l| (l.agent, l.kind, l.first_t_s, l.worst, l.excess)).collect();
-    let expected = [(0, LimitKind::Velocity, 1.0, -4.0, 1.0), (0, LimitKind::Effort, 1.0, -200.0, 50.0)];
-    assert_eq!(found, expected);
-    assert!(m.limits_reached.iter().all(|l| !l.enforced && l.share == 0.5));
-}
-
-#[test]
-fn a_torque_clipped_at_an_enforced_limit_counts_as_reached() {
-    let (mut setup, mut recording) = by_hand();
-    setup.agents[0].enforce_limits = true;
-    recording.columns[2].values = vec![10.0, -150.0, 150.0, 0.0];
-    let m = Metrics::of(&setup, &recording, None, None);
-    let effort = m.limits_reached.iter().find(|l| l.kind == LimitKind::Effort).unwrap();
-    assert_eq!((effort.enforced, effort.first_t_s, effort.excess, effort.share), (true, 1.0, 0.0, 0.5));
-}
-
-#[test]
-fn agents_that_cannot_be_compared_have_no_disagreement() {
-    let (mut setup, recording) = by_hand();
-    let disagreement = |setup: &Setup, recording| Metrics::of(setup, recording, Some(&[1.0]), None).disagreement;
-    setup.agents[1].robot.axes[0].unit = AxisUnit::Metre;
-    assert!(disagreement(&setup, &recording).last().is_some(), "numbers agree, whatever their units");
-    let axis = setup.agents[1].robot.axes[0].clone();
-    setup.agents[1].robot.axes.push(axis);
-    let different = Disagreement::Absent(Absence::DifferentAxes { first: 0, other: 1 });
-    assert_eq!(disagreement(&setup, &recording), different);
-    setup.agents.truncate(1);
-    assert_eq!(disagreement(&setup, &recording), Disagreement::Absent(Absence::FewerThanTwoAgents));
-    let (setup, _) = by_hand();
-    assert_eq!(disagreement(&setup, &Recording::default()), Disagreement::Absent(Absence::NoRows));
-}
-
-#[test]
-fn numbers_that_are_not_finite_show_in_the_metrics() {
-    let (setup, mut recording) = by_hand();
-    recording.columns[0].values[3] = f64::NAN;
-    recording.columns[1].values[3] = f64::NAN;
-    let m = Metrics::of(&setup, &recording, None, Some(Goal::DisagreementBelow(10.0)));
-    assert!(m.disagreement.last().unwrap().is_nan());
-    assert_eq!(m.settled_s, None);
-    assert!(m.speed.unwrap().largest.value.is_nan());
-}
-
-#[test]
-fn goals_are_judged() {
-    let (setup, outcome) = two_arms();
-    let mut run = Outcome { recording: by_hand().1, ..outcome };
-    let setup = Setup { agents: by_hand().0.agents, ..setup };
-    let met =
-        |goal: Goal, run: &Outcome| goal.is_met(&setup, run, &Metrics::of(&setup, &run.recording, None, Some(goal)));
-    assert!(met(Goal::DisagreementBelow(0.3), &run));
-    assert!(!met(Goal::DisagreementBelow(0.25), &run));
-    assert!(!met(Goal::ExpectDiverges, &run));
-    run.ending = Ending::Interrupted { t_s: 3.0 };
-    assert!(!met(Goal::DisagreementBelow(0.3), &run), "an interrupted run has not met a goal for its end");
-    run.recording.columns[0].values.reverse();
-    run.recording.columns[5].values.reverse();
-    run.recording.columns[0].values[3] = -1.0;
-    assert!(met(Goal::ExpectDiverges, &run));
-    let mut breakdown =
-        Breakdown { t_s: 1.0, agent: 1, signal: Signal::Estimate, axis: 0, cause: BreakdownCause::NotFinite };
-    run.ending = Ending::BrokeDown(breakdown.clone());
-    assert!(met(Goal::ExpectDiverges, &run));
-    breakdown.cause = BreakdownCause::PositionLimit { value: 3.0, limits: [-2.0, 2.0] };
-    run.ending = Ending::BrokeDown(breakdown.clone());
-    assert!(!met(Goal::ExpectDiverges, &run));
-    // Short steps alone are no divergence: what was recorded decides.
-    breakdown.cause = BreakdownCause::MemoryFull { step_s: 1e-9, need_bytes: 1e12, stiffness: None };
-    run.ending = Ending::BrokeDown(breakdown);
-    assert!(met(Goal::ExpectDiverges, &run));
-    run.recording.columns[0].values.reverse();
-    run.recording.columns[5].values.reverse();
-    assert!(!met(Goal::ExpectDiverges, &run));
 }
 
 /// Which gain is to blame, and what is said when none is, or the closed loop is not stiff.

@@ -84,7 +84,7 @@ fn ring(model: Model, n: usize, tolerance: f64) -> Setup {
         time: TimeSpan { end_s: END_S, record_every_s: END_S },
         solver: Solver {
             method: Method::Adaptive { rtol: tolerance, atol: tolerance },
-            ledger: false,
+            balance: false,
             ..Solver::default()
         },
         control: None,

@@ -1,4 +1,4 @@
-//! Nonlinear protocols: how strongly a disagreement is felt.
+//! Nonlinear protocols: how strongly a disagreement acts.
 //!
 //! Where a linear design has Σ_j w_ij (x_i − x_j(t−T_ij)), a nonlinear one has Σ_j w_ij φ(x_i − x_j(t−T_ij)) with an odd,
 //! continuous φ that grows and keeps within the sector 0 < φ(v)/v ≤ 1. So the receiver takes

@@ -20,7 +20,7 @@ pub struct Network {
     pub delays: Vec<Delay>,
     /// The weights that change with time, which edges refer to by index.
     pub weights: Vec<BoundedFormula>,
-    /// How strongly a disagreement is felt, on every edge.
+    /// How strongly a disagreement acts, on every edge.
     pub coupling: Coupling,
 }
 

@@ -328,7 +328,7 @@ pub struct Solver {
     /// would need more.
     pub memory_budget_bytes: u64,
     /// Integrate sᵀ(K + D)s − sᵀτ_ext of every agent as an extra state, so that V + ∫ … = V(0) can be checked.
-    pub ledger: bool,
+    pub balance: bool,
 }
 
 /// The time-stepping method.
@@ -355,7 +355,7 @@ impl Default for Solver {
             max_step_s: None,
             min_step_s: 1e-12,
             memory_budget_bytes: 1 << 30,
-            ledger: true,
+            balance: true,
         }
     }
 }

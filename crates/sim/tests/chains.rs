@@ -6,7 +6,7 @@ mod common;
 use std::ops::ControlFlow;
 
 use common::chains::{adaptive, cascades, derivatives, linearising, pure_feedback, tracking};
-use common::{assert_first_order, column, last, ledger_error, run, truth};
+use common::{assert_first_order, balance_residual, column, last, run, truth};
 use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::{Outcome, Signal, simulate};
 
@@ -20,7 +20,7 @@ fn eq_lyapunov_identities_of_chains_hold_along_real_runs() {
     for setup in [derivatives(), cascades(), pure_feedback(), tracking()] {
         let outcome = run(&setup);
         for agent in 0..setup.agents.len() {
-            let error = ledger_error(&outcome, agent, 1.0);
+            let error = balance_residual(&outcome, agent, 1.0);
             assert!(error <= 10.0 * 1e-8, "{}: {error}", setup.agents[agent].name);
         }
     }

@@ -244,7 +244,7 @@ fn what_limits_or_samples_take_away_from_a_proof_is_not_balanced() {
     setup.agents[0].enforce_limits = true;
     assert!(!balanced(&setup));
     setup.agents[0].enforce_limits = false;
-    setup.solver.ledger = false;
+    setup.solver.balance = false;
     assert!(!balanced(&setup));
 }
 

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use common::following::{DESIGNS, arms, masses};
-use common::{column, columns, ledger_error, run, sampled, truth};
+use common::{balance_residual, column, columns, run, sampled, truth};
 use forwardstep_core::Gain;
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::delay::Delay;
@@ -106,7 +106,7 @@ fn thm8_thm9_remark12_the_books_balance_whatever_the_sign() {
         for choice in [Choice::Implicit, Choice::Explicit, Choice::Layer { width: 0.05 }] {
             let outcome = run(&arms(design, choice, 0.0, 8.0));
             for agent in 0..4 {
-                let error = ledger_error(&outcome, agent, 0.0);
+                let error = balance_residual(&outcome, agent, 0.0);
                 assert!(error <= 10.0 * 1e-7, "{design:?} {choice:?}: {error}");
             }
         }

@@ -95,7 +95,7 @@ fn digest_lanes_carry_the_bits_of_single_agents() {
     for (order, control) in [(1, None), (3, None), (2, Some(sampled))] {
         let alone = bits_of_the_first_two(2, order, &control);
         assert!(alone.len() > 2 * 31);
-        // Lanes that are partly idle, full, and full with a second squad.
+        // Lanes that are partly idle, full, and full with a second pack.
         for agents in [3, 8, 11] {
             let together = bits_of_the_first_two(agents, order, &control);
             assert!(together == alone, "{agents} agents, order {order}, {control:?}");

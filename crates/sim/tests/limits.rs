@@ -6,7 +6,7 @@ mod common;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use common::{axes, column, ledger_error, run, setup, silent};
+use common::{axes, balance_residual, column, run, setup, silent};
 use forwardstep_core::Gain;
 use forwardstep_core::robot::{PlanarArm, PlanarLinks};
 use forwardstep_sim::push::{Course, Effect, Function, Push};
@@ -70,7 +70,7 @@ fn thm_the_balance_counts_what_limits_take_away() {
             let setup = alone((0..count).map(|k| arm(k, limits[k], adaptive)).collect());
             let outcome = run(&setup);
             for (agent, limits) in limits.iter().take(count).enumerate() {
-                let error = ledger_error(&outcome, agent, 0.0);
+                let error = balance_residual(&outcome, agent, 0.0);
                 assert!(error < 1e-6, "{adaptive}, {count}, agent {agent}: {error:e}");
                 let Some(limits) = limits else { continue };
                 let parts = [0, 1].map(|axis| saturated(column(&outcome, agent, Signal::Torque, axis), limits[axis]));
@@ -87,7 +87,7 @@ fn thm_the_balance_counts_limits_and_pushes_at_once() {
     setup.agents[0].pushes = vec![Push { effect: Effect::Torque(Course::Each(push)), from_s: 0.5, until_s: 2.0 }];
     let outcome = run(&setup);
     assert!(saturated(column(&outcome, 0, Signal::Torque, 0), 9.0) > 0.1);
-    assert!(ledger_error(&outcome, 0, 0.0) < 1e-6, "{:e}", ledger_error(&outcome, 0, 0.0));
+    assert!(balance_residual(&outcome, 0, 0.0) < 1e-6, "{:e}", balance_residual(&outcome, 0, 0.0));
 }
 
 /// An axis at its end stops the run; the other end, and an axis just inside, do not.

@@ -4,7 +4,7 @@
 mod common;
 
 use common::masses::{consensus, tracking};
-use common::{assert_first_order, column, last, ledger_error, run, truth};
+use common::{assert_first_order, balance_residual, column, last, run, truth};
 use forwardstep_sim::Signal;
 
 #[test]
@@ -12,7 +12,7 @@ fn eq_a8_loses_exactly_k_y_squared_along_real_runs() {
     for setup in [tracking(), consensus(2), consensus(3)] {
         let outcome = run(&setup);
         for agent in 0..setup.agents.len() {
-            let error = ledger_error(&outcome, agent, 0.0);
+            let error = balance_residual(&outcome, agent, 0.0);
             assert!(error <= 10.0 * 1e-8, "agent {agent}: {error}");
         }
     }

@@ -1,4 +1,4 @@
-//! What acts from outside does what it says, when it says so, and the books of the Lyapunov function balance all the same.
+//! What acts from outside does what it says, when it says so, and the Lyapunov balance holds all the same.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -118,8 +118,8 @@ fn a_pulse_does_what_linear_systems_say() {
     close(&outcome, 1.25, exact(&[(0.25, 5.0, 0.0)]));
     close(&outcome, 3.0, exact(&[(0.5, 5.0, 0.0), (1.5, 0.0, 0.0)]));
     // Rows hold values from the right where it jumps.
-    let felt = column(&outcome, 0, Signal::External, 0);
-    assert_eq!(felt[7..14], [0.0, 5.0, 5.0, 5.0, 5.0, 0.0, 0.0]);
+    let external = column(&outcome, 0, Signal::External, 0);
+    assert_eq!(external[7..14], [0.0, 5.0, 5.0, 5.0, 5.0, 0.0, 0.0]);
 }
 
 #[test]
@@ -173,12 +173,12 @@ fn a_hand_is_a_spring_and_a_damper() {
     };
     let outcome = run(&alone(vec![mass(vec![hand])], 3.0));
     let (q, dq) = (column(&outcome, 0, Signal::Position, 0), column(&outcome, 0, Signal::Velocity, 0));
-    let felt = column(&outcome, 0, Signal::External, 0);
+    let external = column(&outcome, 0, Signal::External, 0);
     for (row, t_s) in outcome.recording.t_s.iter().enumerate() {
         let want = if *t_s < 2.0 { 30.0 * (0.5 * t_s - q[row]) - 2.0 * dq[row] } else { 0.0 };
-        assert!((felt[row] - want).abs() < 1e-12, "at {t_s} s: {} is not {want}", felt[row]);
+        assert!((external[row] - want).abs() < 1e-12, "at {t_s} s: {} is not {want}", external[row]);
     }
-    assert!(felt.iter().any(|f| *f > 1.0));
+    assert!(external.iter().any(|f| *f > 1.0));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{column, last, ledger_error, run, switching};
+use common::{balance_residual, column, last, run, switching};
 use forwardstep_core::Gain;
 use forwardstep_sim::{Adaptive, AgentSetup, Known, RobotSetup, Setup, Signal};
 
@@ -22,7 +22,7 @@ fn ship(name: &str, q: [f64; 3], adapts: bool) -> AgentSetup {
     agent.roots(&[0.8, 1.2]).at(&q).moving(&[0.3, -0.2, 0.4])
 }
 
-fn fleet(adapts: bool) -> Setup {
+fn ships(adapts: bool) -> Setup {
     let starts = [[2.0, 0.0, 0.5], [-1.0, 1.5, -2.0], [0.0, -2.0, 2.5]];
     let agents: Vec<_> = (0..3).map(|k| ship(&format!("ship-{k}"), starts[k], adapts)).collect();
     Setup::consensus(agents, switching(), 60.0)
@@ -31,11 +31,11 @@ fn fleet(adapts: bool) -> Setup {
 #[test]
 fn thm2_ships_agree_and_their_balance_holds_along_the_run() {
     for adapts in [false, true] {
-        let setup = fleet(adapts);
+        let setup = ships(adapts);
         let outcome = run(&setup);
         for agent in 0..3 {
             // V̇ = −sᵀ(K + ½ (D_q + D_qᵀ)) s.
-            let error = ledger_error(&outcome, agent, 1e-3);
+            let error = balance_residual(&outcome, agent, 1e-3);
             assert!(error < 1e-5, "adapts: {adapts}, ship {agent}: {error:e}");
             for axis in 0..3 {
                 let gap = last(&outcome, agent, Signal::Position, axis) - last(&outcome, 0, Signal::Position, axis);
@@ -63,7 +63,7 @@ fn body_rate(x: [f64; 6], tau: [f64; 3]) -> [f64; 6] {
 #[test]
 fn val_a_ship_moves_as_in_a_simulation_in_the_axes_of_its_body() {
     const ROW_S: f64 = 1e-3;
-    let mut setup = fleet(true);
+    let mut setup = ships(true);
     setup.time.end_s = 5.0;
     setup.time.record_every_s = ROW_S;
     setup.solver.method = forwardstep_sim::Method::Adaptive { rtol: 1e-10, atol: 1e-12 };

@@ -8,17 +8,17 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use common::single::{anthropomorphic, craft, half_a_turn, planar, targets};
-use common::{RTOL, assert_first_order, column, last, ledger_error, run, sampled, truth};
+use common::{RTOL, assert_first_order, balance_residual, column, last, run, sampled, truth};
 use forwardstep_core::Gain;
 use forwardstep_core::controller::ParameterBounds;
 use forwardstep_core::robot::tree::Uncertain;
 use forwardstep_sim::recording::{Breakdown, BreakdownCause};
 use forwardstep_sim::{AttitudeLaw, Ending, Outcome, Signal, TaskSpaceLaw, simulate};
 
-/// By how much the books are out, and how much of V(0) was lost.
-fn ledger(outcome: &Outcome) -> (f64, f64) {
+/// The residual of the balance, and how much of V(0) was lost.
+fn balance(outcome: &Outcome) -> (f64, f64) {
     let start = column(outcome, 0, Signal::Lyapunov, 0)[0];
-    (ledger_error(outcome, 0, 0.0), last(outcome, 0, Signal::Dissipation, 0) / start)
+    (balance_residual(outcome, 0, 0.0), last(outcome, 0, Signal::Dissipation, 0) / start)
 }
 
 #[test]
@@ -31,7 +31,7 @@ fn thm6_identity_holds_along_real_runs() {
         anthropomorphic(Uncertain::Chain),
     ];
     for (index, setup) in runs.iter().enumerate() {
-        let (error, lost) = ledger(&run(setup));
+        let (error, lost) = balance(&run(setup));
         assert!(error <= 10.0 * RTOL, "run {index}: {error}");
         assert!(lost > 0.01, "run {index} lost {lost}");
     }
@@ -41,7 +41,7 @@ fn thm6_identity_holds_along_real_runs() {
 fn thm7_identity_holds_along_real_runs() {
     for (index, target) in targets().into_iter().enumerate() {
         let outcome = run(&craft(half_a_turn([0.1, -0.05, 0.08]), target, 5.0));
-        let (error, lost) = ledger(&outcome);
+        let (error, lost) = balance(&outcome);
         assert!(error <= 10.0 * RTOL, "target {index}: {error}");
         assert!(lost > 0.9, "target {index} lost {lost}");
         let angle = column(&outcome, 0, Signal::Angle, 0);

@@ -108,7 +108,7 @@ fn val_trajectories_fixed_step_converges_with_order_four() {
 }
 
 #[test]
-fn thm_lyapunov_ledger_balances_along_real_runs() {
+fn thm_lyapunov_balance_holds_along_real_runs() {
     // V̇ = −sᵀ(K + D)s, integrated along the run as an extra state: the paper's own identity. The baseline has none: its
     // z jumps, and what it takes for ż is filtered.
     for case in cases().into_iter().filter(|case| !matches!(case.reference, ReferenceCase::Backstepping { .. })) {

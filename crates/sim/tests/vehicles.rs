@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use common::vehicles::{ADAPTIVE, DIFFERENTIABLE, G, rotorcraft, three, vehicle};
-use common::{RTOL, assert_first_order, column, last, ledger_error, run, sampled, truth};
+use common::{RTOL, assert_first_order, balance_residual, column, last, run, sampled, truth};
 use forwardstep_core::Gain;
 use forwardstep_core::controller::Floor;
 use forwardstep_core::plant::Rotors;
@@ -39,7 +39,7 @@ fn thm4_and_thm5_lyapunov_functions_lose_what_their_proofs_say_along_real_runs()
                 let setup = three(&kind, design, in_formation, 15.0);
                 let outcome = run(&setup);
                 for agent in 0..3 {
-                    let error = ledger_error(&outcome, agent, 0.0);
+                    let error = balance_residual(&outcome, agent, 0.0);
                     assert!(error <= 10.0 * RTOL, "{kind:?} {design:?} {in_formation} {agent}: {error:e}");
                 }
             }

@@ -89,7 +89,7 @@ impl Hold {
     #[inline(always)]
     fn linearise<F: Reference>(&mut self, reference: &F, degree: &[f64]) -> Result<(), LengthError> {
         let nothing = Measured { q: &self.zeros[..self.axes], dq: &self.zeros[..self.axes] };
-        let silence = Heard::new(degree, &self.zeros, self.axes)?;
+        let zero_input = Heard::new(degree, &self.zeros, self.axes)?;
         for column in 0..self.order {
             self.unit.fill(0.0);
             if let Some(one) = self.unit.get_mut(column * self.axes) {
@@ -97,7 +97,7 @@ impl Hold {
             }
             let [z, dz] = &mut self.unused;
             let out = ReferenceOut { z, dz, d_state: &mut self.rate };
-            reference.evaluate(self.axes, nothing, &self.unit, silence, out)?;
+            reference.evaluate(self.axes, nothing, &self.unit, zero_input, out)?;
             for row in 0..self.order {
                 self.a[row * self.order + column] = self.rate.get(row * self.axes).copied().unwrap_or(0.0);
             }

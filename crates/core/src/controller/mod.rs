@@ -77,7 +77,7 @@ pub struct Asked<'a> {
     pub shown: &'a mut [f64],
 }
 
-/// The plant as it is, which a controller does not know: for the books, never for the law.
+/// The plant as it is, which a controller does not know: for the Lyapunov balance, never for the law.
 pub struct Truth<'a, P> {
     /// The plant with its true parameters.
     pub plant: &'a P,

@@ -112,7 +112,7 @@ pub struct TaskWork<S> {
     robot: S,
     j: Vec<f64>,
     dj: Vec<f64>,
-    ruins: Vec<f64>,
+    factored: Vec<f64>,
     inverse: Vec<f64>,
     z_r: Vec<f64>,
     dz_r: Vec<f64>,
@@ -181,8 +181,8 @@ where
         }
         let posture = Posture { q, dq, theta: theta_hat, d_theta: &work.d_theta_hat };
         self.tip.jacobian(posture, &mut work.j, &mut work.dj)?;
-        work.ruins.copy_from_slice(&work.j);
-        let determinant = invert(m, &mut work.ruins, &mut work.inverse);
+        work.factored.copy_from_slice(&work.j);
+        let determinant = invert(m, &mut work.factored, &mut work.inverse);
         for i in 0..m {
             work.z_r[i] = 0.0;
             work.pulled[i] = 0.0;
@@ -252,7 +252,7 @@ where
             robot: self.robot.scratch(),
             j: vec![0.0; m * m],
             dj: vec![0.0; m * m],
-            ruins: vec![0.0; m * m],
+            factored: vec![0.0; m * m],
             inverse: vec![0.0; m * m],
             z_r: vec![0.0; m],
             dz_r: vec![0.0; m],

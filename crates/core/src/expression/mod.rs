@@ -104,7 +104,7 @@ pub enum Binary {
     Max,
 }
 
-/// Why there is no such function, derivative or programme.
+/// Why there is no such function, derivative or tape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum ExpressionError {
     /// An operand is missing, or values are left over.

@@ -92,10 +92,10 @@ const spansDecades = (series) => {
   return high > 30 * low;
 };
 
-const ledgers = {
+const balances = {
   v: { columns: signals.lyapunov, log: true, unit: "J" },
-  sum: { columns: signals.ledger_sum, log: false, unit: "J, flat when the proof’s identity holds" },
-  error: { columns: signals.ledger_error, log: true, unit: "of V(0)" },
+  sum: { columns: signals.balance_sum, log: false, unit: "J, flat when the proof’s identity holds" },
+  error: { columns: signals.balance_residual, log: true, unit: "of V(0)" },
 };
 
 const cards = {
@@ -143,12 +143,12 @@ const cards = {
     ],
     build: ([who, what]) => ({ grid: "estimates", unit: "SI units", series: who == null || what == null ? [] : estimateSeries(who, what), key: who !== "all" }),
   },
-  ledger: {
-    picks: [{ id: "ledger", options: [["v", "V"], ["sum", "V + ∫ dissipation"], ["error", "error"]] }],
+  balance: {
+    picks: [{ id: "balance", options: [["v", "V"], ["sum", "V + ∫ dissipation"], ["error", "error"]] }],
     build: ([which]) => {
-      const { columns, unit } = ledgers[which];
+      const { columns, unit } = balances[which];
       // V often falls by little, since it need not vanish: a logarithmic axis is for what spans decades.
-      const log = ledgers[which].log && spansDecades(ofAgents(columns, null, {}, true));
+      const log = balances[which].log && spansDecades(ofAgents(columns, null, {}, true));
       return { unit, log, series: ofAgents(columns, null, {}, log) };
     },
   },

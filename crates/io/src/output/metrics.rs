@@ -10,9 +10,9 @@ use super::number;
 use super::record::Goal;
 use super::table::Table;
 
-/// V(0) is not taken to be smaller than this, in J, when the error of the ledger is put in relation to it: an agent that
+/// V(0) is not taken to be smaller than this, in J, when the residual of the balance is put in relation to it: an agent that
 /// starts without any error has V(0) = 0.
-pub const LEDGER_FLOOR_J: f64 = 1e-6;
+pub const BALANCE_FLOOR_J: f64 = 1e-6;
 
 /// What a run comes to. Agents and axes are indices from zero; numbers that are not finite are `null` in JSON.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,8 +31,9 @@ pub struct Metrics {
     pub peak_torques: Vec<Peak>,
     /// Limits that were exceeded, or reached where they are enforced.
     pub limits_reached: Vec<LimitReached>,
-    /// How well V + ∫ dissipation = V(0) holds; absent without the ledger.
-    pub ledger_error: Option<LedgerError>,
+    /// How well V + ∫ dissipation = V(0) holds; absent where the balance is not computed.
+    #[serde(rename = "ledger_error")]
+    pub balance_residual: Option<BalanceResidual>,
     /// Predicted beside reached value, per axis; absent without a prediction or where the agents' axes differ.
     pub agreement: Option<Vec<Agreement>>,
 }
@@ -149,9 +150,9 @@ impl LimitReached {
     }
 }
 
-/// The largest |V + ∫ dissipation − V(0)| relative to V(0), but at least [`LEDGER_FLOOR_J`].
+/// The largest |V + ∫ dissipation − V(0)| relative to V(0), but at least [`BALANCE_FLOOR_J`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LedgerError {
+pub struct BalanceResidual {
     /// Relative error.
     #[serde(deserialize_with = "number::or_nan")]
     pub relative: f64,
@@ -201,7 +202,7 @@ impl Metrics {
             speed: speed(&table),
             peak_torques: table.axes(Signal::Torque).filter_map(|(i, axis, tau)| peak(&table, i, axis, tau)).collect(),
             limits_reached: limits_reached(&table),
-            ledger_error: ledger_error(&table),
+            balance_residual: balance_residual(&table),
             agreement: if series.is_ok() { predicted.and_then(|p| agreement(&table, p)) } else { None },
         }
     }
@@ -300,14 +301,14 @@ fn beyond(
     result.map(|seen| LimitReached { share: rows as f64 / t_s.len() as f64, ..seen })
 }
 
-fn ledger_error(table: &Table<'_>) -> Option<LedgerError> {
-    let mut worst: Option<LedgerError> = None;
+fn balance_residual(table: &Table<'_>) -> Option<BalanceResidual> {
+    let mut worst: Option<BalanceResidual> = None;
     for agent in 0..table.agents() {
-        let Some(errors) = ledger_errors(table, agent) else { continue };
+        let Some(errors) = balance_residuals(table, agent) else { continue };
         for (&t_s, error) in table.t_s.iter().zip(errors) {
             let relative = error.abs();
             if worst.is_none_or(|w| relative > w.relative || relative.is_nan() && !w.relative.is_nan()) {
-                worst = Some(LedgerError { relative, agent, t_s });
+                worst = Some(BalanceResidual { relative, agent, t_s });
             }
         }
     }
@@ -315,13 +316,13 @@ fn ledger_error(table: &Table<'_>) -> Option<LedgerError> {
 }
 
 /// (V + ∫ dissipation − V(0)) / V(0) row by row; as a part of the largest V where pushes put energy in.
-pub(crate) fn ledger_errors(table: &Table<'_>, agent: usize) -> Option<Vec<f64>> {
+pub(crate) fn balance_residuals(table: &Table<'_>, agent: usize) -> Option<Vec<f64>> {
     let v = table.column(agent, Signal::Lyapunov, 0)?;
     let dissipated = table.column(agent, Signal::Dissipation, 0)?;
     let start = *v.first()?;
     let pushed = table.setup.agents.get(agent).is_some_and(|agent| !agent.pushes.is_empty());
     let whole = if pushed { v.iter().copied().fold(start, f64::max) } else { start };
-    let scale = whole.max(LEDGER_FLOOR_J);
+    let scale = whole.max(BALANCE_FLOOR_J);
     Some(v.iter().zip(dissipated).map(|(v, d)| (v + d - start) / scale).collect())
 }
 

@@ -51,8 +51,8 @@ pub use error::{Action, EncodeError, OutputError};
 pub use folder::RunFolder;
 use folder::Staging;
 pub use metrics::{
-    Absence, Agreement, Disagreement, DisagreementSeries, Gap, LEDGER_FLOOR_J, LedgerError, LimitKind, LimitReached,
-    Metrics, Peak, Speed,
+    Absence, Agreement, BALANCE_FLOOR_J, BalanceResidual, Disagreement, DisagreementSeries, Gap, LimitKind,
+    LimitReached, Metrics, Peak, Speed,
 };
 pub use packets::Link;
 pub use record::{Goal, GoalOutcome, RunRecord};

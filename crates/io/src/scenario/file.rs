@@ -305,8 +305,9 @@ pub struct SolverFile {
     /// short that more would be needed. Default: 1073741824, which is 1 GiB.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub memory_budget_bytes: Option<At<i64>>,
-    /// Keep the books of the Lyapunov function along the run. Default: true.
-    pub ledger: Option<bool>,
+    /// Compute the Lyapunov balance V + ∫ dissipation = V(0) along the run. Default: true.
+    #[serde(rename = "ledger")]
+    pub balance: Option<bool>,
 }
 
 /// The time-stepping method.

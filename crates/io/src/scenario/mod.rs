@@ -337,8 +337,8 @@ fn solver(file: Option<&SolverFile>) -> Result<Solver, Fault> {
         Some(bytes) => positive_count("memory_budget_bytes", bytes)?,
         None => default.memory_budget_bytes,
     };
-    let ledger = file.ledger.unwrap_or(default.ledger);
-    Ok(Solver { method, max_step_s, min_step_s, memory_budget_bytes, ledger })
+    let balance = file.balance.unwrap_or(default.balance);
+    Ok(Solver { method, max_step_s, min_step_s, memory_budget_bytes, balance })
 }
 
 fn goal(file: &At<GoalFile>, reference: &ReferenceKind) -> Result<Goal, Fault> {

@@ -17,7 +17,7 @@ pub struct NetworkFile {
     pub weight: Option<At<WeightFile>>,
     /// The delay of every edge that has none of its own. Default: none.
     pub delay: Option<At<DelayFile>>,
-    /// How strongly a disagreement is felt: bounded or saturated for a nonlinear protocol. Default: in proportion. Only with
+    /// How strongly a disagreement acts: bounded or saturated for a nonlinear protocol. Default: in proportion. Only with
     /// `exchange = "position"`.
     pub coupling: Option<At<CouplingFile>>,
     /// The edges of a graph that never changes.

@@ -165,7 +165,7 @@ fn solver_and_goal() {
     assert_eq!(solver("method.fixed.step_s = 0.01").method, Method::Fixed { step_s: 0.01 });
     assert_eq!(solver("method.adaptive.rtol = 1e-9").method, Method::Adaptive { rtol: 1e-9, atol: 1e-8 });
     let rest = solver("max_step_s = 0.5\nledger = false\nmin_step_s = 1e-9\nmemory_budget_bytes = 2_000_000");
-    assert_eq!((rest.max_step_s, rest.ledger, rest.min_step_s), (Some(0.5), false, 1e-9));
+    assert_eq!((rest.max_step_s, rest.balance, rest.min_step_s), (Some(0.5), false, 1e-9));
     assert_eq!((rest.memory_budget_bytes, solver("").memory_budget_bytes), (2_000_000, 1 << 30));
     let goal = |text: &str| read(&changed("disagreement_below = 1e-3", text)).unwrap().goal;
     assert_eq!(goal("expect = \"diverges\""), Some(Goal::ExpectDiverges));

@@ -1,5 +1,5 @@
 //! Synthetic runs in closed form, of any shape.
-#![allow(unreachable_pub, reason = "shared by several test programs")]
+#![allow(dead_code, unreachable_pub, reason = "shared by several test programs")]
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -82,7 +82,7 @@ pub fn setup(agents: Vec<AgentSetup>, end_s: f64, record_every_s: f64) -> Setup 
             max_step_s: None,
             min_step_s: 1e-12,
             memory_budget_bytes: 1 << 30,
-            ledger: true,
+            balance: true,
         },
         control: None,
     }
@@ -198,4 +198,11 @@ pub fn record<'a>(setup: &'a Setup, outcome: &'a Outcome, verdicts: &'a Report) 
         digital: None,
         notices: Vec::new(),
     }
+}
+
+/// Two planar arms that have run for two seconds.
+pub fn two_arms() -> (Setup, Outcome) {
+    let setup = setup(vec![agent("arm-1", 2, 3), agent("arm-2", 2, 3)], 2.0, 0.01);
+    let outcome = outcome(&setup);
+    (setup, outcome)
 }

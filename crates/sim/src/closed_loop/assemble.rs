@@ -7,15 +7,16 @@ use forwardstep_core::reference::{Position, PositionVelocity};
 use forwardstep_core::sampled::Recipe;
 
 use super::assembly::Assembly;
+use super::columns::{Columns, Inputs};
+use super::error::SetupError;
 use super::guide::Guide;
 use super::members::batches;
-use super::population::{Columns, Inputs};
 use super::pushes::Pushes;
 use super::recipes::built;
 use super::references::Transmits;
 use super::sampling::Sampling;
 use super::sliding::{Place, Slider};
-use super::valid::{SetupError, message_len, validate};
+use super::valid::{message_len, validate};
 use crate::engine::{DelaySystem, Happened, Heard, Port};
 use crate::recording::{GainRates, SampleTaken, Signal};
 use crate::setup::{Exchange, Setup};
@@ -55,12 +56,12 @@ impl Block {
         self.degree.start * axes..self.degree.end * axes
     }
 
-    /// The population's part of what is heard and felt.
-    pub(super) fn inputs<'a>(&self, heard: &'a Heard, felt: Option<&'a [f64]>) -> Inputs<'a> {
+    /// The population's part of what is heard, and of the external torques.
+    pub(super) fn inputs<'a>(&self, heard: &'a Heard, external: Option<&'a [f64]>) -> Inputs<'a> {
         Inputs {
             degree: &heard.degree[self.degree.clone()],
             sums: &heard.sums[self.sums.clone()],
-            external: felt.map(|felt| &felt[self.external.clone()]),
+            external: external.map(|external| &external[self.external.clone()]),
         }
     }
 }
@@ -270,7 +271,7 @@ impl<'a> ClosedLoop<'a> {
             }
         }
         for (agent, signals) in signals.iter_mut().enumerate().filter(|(agent, _)| self.pushes.concern(*agent)) {
-            signals.extend((0..self.pushes.felt_by(agent).len()).map(|axis| (Signal::External, axis)));
+            signals.extend((0..self.pushes.external_on(agent).len()).map(|axis| (Signal::External, axis)));
         }
         if self.leader.is_some() {
             signals.iter_mut().for_each(|signals| signals.extend((0..self.axes).map(|axis| (Signal::Error, axis))));
@@ -281,21 +282,21 @@ impl<'a> ClosedLoop<'a> {
     /// Hands every agent's signals at one instant to `write`.
     pub(crate) fn record(&mut self, t_s: f64, x: &[f64], heard: &Heard, mut write: impl FnMut(usize, &[f64])) {
         let heard = self.sampling.as_ref().map_or(heard, Sampling::heard);
-        self.pushes.feel(t_s, x);
+        self.pushes.evaluate(t_s, x);
         if let Some(slider) = &mut self.slider {
-            slider.look(t_s, heard, self.pushes.felt(), &mut self.blocks, x);
+            slider.look(t_s, heard, self.pushes.external(), &mut self.blocks, x);
         }
         let (pushes, row) = (&self.pushes, &mut self.row);
         let leader = self.leader.clone().map_or(&[][..], |leader| &x[leader]);
         for block in &mut self.blocks {
-            let inputs = block.inputs(heard, pushes.felt());
+            let inputs = block.inputs(heard, pushes.external());
             let (columns, state) = (&mut block.columns, &x[block.state.clone()]);
-            columns.record(t_s, state, inputs, &mut |agent, values| match (pushes.felt_by(agent), leader) {
+            columns.record(t_s, state, inputs, &mut |agent, values| match (pushes.external_on(agent), leader) {
                 ([], []) => write(agent, values),
-                (felt, leader) => {
+                (external, leader) => {
                     row.clear();
                     row.extend_from_slice(values);
-                    row.extend_from_slice(felt);
+                    row.extend_from_slice(external);
                     // Positions are an agent's first values.
                     row.extend(values.iter().zip(leader).map(|(q, q_0)| q - q_0));
                     write(agent, row);
@@ -308,14 +309,14 @@ impl<'a> ClosedLoop<'a> {
 impl DelaySystem for ClosedLoop<'_> {
     fn rates(&mut self, t_s: f64, x: &[f64], heard: &Heard, dx: &mut [f64]) {
         let heard = self.sampling.as_ref().map_or(heard, Sampling::heard);
-        self.pushes.feel(t_s, x);
+        self.pushes.evaluate(t_s, x);
         for block in &mut self.blocks {
-            let inputs = block.inputs(heard, self.pushes.felt());
+            let inputs = block.inputs(heard, self.pushes.external());
             block.columns.rates(t_s, &x[block.state.clone()], inputs, &mut dx[block.state.clone()]);
         }
         if let Some(slider) = &mut self.slider {
             slider.hear(heard);
-            slider.lean(t_s, self.pushes.felt(), &mut self.blocks, x, dx);
+            slider.add_sign_terms(t_s, self.pushes.external(), &mut self.blocks, x, dx);
         }
     }
 
@@ -342,9 +343,9 @@ impl DelaySystem for ClosedLoop<'_> {
         }
         if let Some(slider) = &mut self.slider {
             if slider.next_s() <= until_s {
-                self.pushes.feel(until_s, x);
+                self.pushes.evaluate(until_s, x);
             }
-            happened = happened.max(slider.happen(until_s, self.pushes.felt(), &mut self.blocks, x));
+            happened = happened.max(slider.happen(until_s, self.pushes.external(), &mut self.blocks, x));
         }
         match &mut self.sampling {
             Some(sampling) => happened.max(sampling.happen(until_s, &mut self.blocks, x)),

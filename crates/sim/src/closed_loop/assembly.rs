@@ -4,10 +4,11 @@ use forwardstep_core::controller::Controller;
 use forwardstep_core::plant::{Plant, total};
 use forwardstep_core::{Gain, LengthError, ResolvedGain};
 
+use super::columns::Columns;
+use super::error::SetupError;
 use super::members;
-use super::population::Columns;
 use super::solo::{Solo, Target};
-use super::valid::{SetupError, too_many};
+use super::valid::too_many;
 use crate::agents::RobotModel;
 use crate::recording::Signal;
 use crate::setup::{AgentSetup, Axis, ReferenceKind, Setup};
@@ -158,8 +159,8 @@ impl<'a> Assembly<'a> {
         };
         let torques = plant.inputs().iter().filter(|(signal, _)| *signal == Signal::Torque).map(|(_, n)| n).sum();
         let effort_limits = effort_limits(own, torques)?;
-        // What a limit takes away is not what the ledger balances.
-        let ledger = setup.solver.ledger && !own.enforce_limits;
+        // What a limit takes away is not what the balance balances.
+        let balance = setup.solver.balance && !own.enforce_limits;
         Ok(Block(Box::new(Solo::new(
             self.agents[0],
             plant,
@@ -167,7 +168,7 @@ impl<'a> Assembly<'a> {
             target,
             effort_limits,
             setup.control.is_some(),
-            ledger,
+            balance,
         ))))
     }
 }

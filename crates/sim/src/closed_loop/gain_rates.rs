@@ -11,7 +11,7 @@
 use forwardstep_core::robot::{Lagrangian, TwoVelocity};
 use forwardstep_core::{LengthError, ResolvedGain};
 
-use super::fleet::Member;
+use super::robot_batch::Member;
 use crate::recording::GainRates;
 
 /// Power iterations. M⁻¹A with M and A symmetric and not negative has real eigenvalues; half as many would do for two digits.

@@ -3,13 +3,16 @@
 //! Its state is q₀, q̇₀, so that delays, history and samples treat what it says like what anybody says. The rates are the
 //! derivatives of its motion in closed form; at every event the state is put back on the motion itself.
 
+use std::ops::Range;
+
 use forwardstep_core::LengthError;
 use forwardstep_core::controller::Jet;
+use forwardstep_core::controller::Trouble;
 use forwardstep_core::sampled::{Recipe, Sampled};
 
-use super::population::{Columns, Inputs};
+use super::columns::{Columns, Inputs};
+use super::error::SetupError;
 use super::sampler::Digital;
-use super::valid::SetupError;
 use crate::leader::Following;
 use crate::recording::{GainRates, Signal};
 use crate::setup::{AgentSetup, Control, Setup};
@@ -97,6 +100,21 @@ impl Columns for Guide {
             self.put(jump_s, 0, x);
         }
     }
+
+    fn settle(&mut self, _: &mut [f64]) {}
+
+    fn trouble(&self, _: &[f64]) -> Option<(usize, Trouble)> {
+        None
+    }
+
+    // Signs stand in the dynamics of those that follow.
+    fn selection(&self) -> Option<Range<usize>> {
+        None
+    }
+
+    fn argument(&mut self, _: &[f64], _: Inputs<'_>, _: [&[f64]; 2], _: &mut [f64]) {}
+
+    fn add_sign_terms(&mut self, _: &[f64], _: &mut [f64]) {}
 
     fn signals(&self) -> Vec<(Signal, usize)> {
         Vec::new()

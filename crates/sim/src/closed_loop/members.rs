@@ -5,10 +5,11 @@ use forwardstep_core::reference::{Position, PositionVelocity};
 use forwardstep_core::robot::Lagrangian;
 use forwardstep_core::{Gain, InverseQuadratic, Lanes, LengthError, ResolvedGain};
 
-use super::fleet::Member;
-use super::population::{Columns, Population};
+use super::columns::Columns;
+use super::error::SetupError;
+use super::population::Population;
 use super::references::{Transmits, reference};
-use super::valid::SetupError;
+use super::robot_batch::Member;
 use crate::agents::{Adaptive, Known, RobotModel};
 use crate::setup::{AgentSetup, Exchange, Setup};
 
@@ -52,13 +53,13 @@ where
     }
     let reference = reference::<X>(setup, group)?;
     let sampled = setup.control.is_some();
-    // What a held torque does is not what the ledger balances.
-    let ledger = setup.solver.ledger && !sampled;
+    // What a held torque does is not what the balance balances.
+    let balance = setup.solver.balance && !sampled;
     // Eight lanes cost about as much as two or three robots one at a time, so idle lanes pay from three robots on.
     Ok(if members.len() < LANES_FROM {
-        Box::new(Population::<R, X, f64>::new(robot, members, reference, sampled, ledger))
+        Box::new(Population::<R, X, f64>::new(robot, members, reference, sampled, balance))
     } else {
-        Box::new(Population::<R, X, Lanes<8>>::new(robot, members, reference, sampled, ledger))
+        Box::new(Population::<R, X, Lanes<8>>::new(robot, members, reference, sampled, balance))
     })
 }
 

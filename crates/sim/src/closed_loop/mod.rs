@@ -1,8 +1,9 @@
 //! Robots, reference dynamics, laws and network joined into one delay-differential equation.
 //!
-//! - `fleet`: robots with their tracking laws, several at once.
+//! - `robot_batch`: robots with their tracking laws, several at once.
 //! - `gain_rates`: how fast the gains of (6)–(7) make a robot.
-//! - `population`: agents of one kind, side by side in columns: reference dynamics, then the fleet.
+//! - `columns`: what the closed loop asks of its parts.
+//! - `population`: agents of one kind, side by side in columns: reference dynamics, then the robots.
 //! - `solo`: one agent by itself: any plant under any controller.
 //! - `sampler`: sampled controllers with their sensors and actuators.
 //! - `sampling`: the instants at which they sample and act.
@@ -14,12 +15,14 @@
 //! - `members`: from agents to batches.
 //! - `assembly`: what a law builds its agents with.
 //! - `unused`: what a setup states and nothing reads.
-//! - `valid`: what makes a [`crate::Setup`] meaningless.
+//! - `error`: what makes a [`crate::Setup`] meaningless.
+//! - `valid`: finds it.
 //! - `assemble`: all populations and what joins them: the right-hand side as a whole, and its events.
 
 mod assemble;
 mod assembly;
-mod fleet;
+mod columns;
+mod error;
 mod gain_rates;
 mod guide;
 mod members;
@@ -27,6 +30,7 @@ mod population;
 mod pushes;
 mod recipes;
 mod references;
+mod robot_batch;
 mod sampler;
 mod sampling;
 mod sliding;
@@ -36,6 +40,7 @@ mod valid;
 
 pub(crate) use assemble::ClosedLoop;
 pub use assembly::{Assembly, Block};
+pub use error::{SetupError, VelocityQuantity};
 pub(crate) use members::tracking_law;
 pub use recipes::{recipe, recipes};
-pub use valid::{SetupError, VelocityQuantity, validate};
+pub use valid::validate;

@@ -3,7 +3,7 @@
 //! The state of a population of n agents with m axes, order ℓ and p parameters is a block of columns of n numbers,
 //!
 //! ```text
-//! q [m]   q̇ [m]   reference state [v·m]   ϑ̂ [p, if adapted]   ∫ sᵀ(K+D)s − sᵀτ_ext [1, if the ledger is on]
+//! q [m]   q̇ [m]   reference state [v·m]   ϑ̂ [p, if adapted]   ∫ sᵀ(K+D)s − sᵀτ_ext [1, if the balance is on]
 //! ```
 //!
 //! (v = ℓ and z, ż, …, z^(ℓ−1) for the consensus family), and its right-hand side is computed in stages: heard → reference
@@ -22,100 +22,22 @@ use forwardstep_core::robot::{Lagrangian, TwoVelocity};
 use forwardstep_core::sampled::{Recipe, Sampled, StartState};
 use forwardstep_core::{LengthError, Packed};
 
-use super::fleet::{Drive, Fleet, Layout, Member};
+use super::columns::{Columns, Inputs};
+use super::error::SetupError;
 use super::gain_rates::gain_rates;
 use super::recipes::used;
 use super::references::{AnyReference, Transmits, reference};
+use super::robot_batch::{Drive, Layout, Member, RobotBatch};
 use super::sampler::{Digital, Sampler, take};
-use super::valid::SetupError;
 use crate::agents::Adaptive;
 use crate::recording::{GainRates, Signal};
 use crate::setup::{AgentSetup, Control, Setup};
-
-/// What reaches a population from outside at one instant.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Inputs<'a> {
-    /// Σ_j w_ij, one entry per agent.
-    pub(crate) degree: &'a [f64],
-    /// The sums of messages.
-    pub(crate) sums: &'a [f64],
-    /// External torques or forces, one column per axis, when anybody is pushed.
-    pub(crate) external: Option<&'a [f64]>,
-}
-
-/// What the closed loop asks of a population, whatever its robots and its exchange.
-pub(crate) trait Columns {
-    /// Numbers of state.
-    fn state_len(&self) -> usize;
-    /// Appends the initial state to `x`, but for what depends on the first messages.
-    fn append_start(&self, agents: &[AgentSetup], x: &mut Vec<f64>);
-    /// Completes the block `x` of the initial state with what is heard at t = 0: z(0), ż(0), … become what is wanted.
-    fn start(&mut self, agents: &[AgentSetup], x: &mut [f64], degree: &[f64], sums: &[f64]) -> Result<(), LengthError>;
-    /// d/dt of the block `x`.
-    fn rates(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]);
-    /// Hands the signals of every member in turn to `write`, in the order of [`Columns::signals`].
-    fn record(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, write: &mut dyn FnMut(usize, &[f64]));
-    /// Measures the state `x` and puts everybody's message into `sent`, laid out like the sums. Does nothing, like the
-    /// two below, when the controllers work in continuous time.
-    fn sense(&mut self, t_s: f64, x: &[f64], sent: &mut [f64]);
-    /// The recipes of the sampled controllers of its agents, by their numbers; `x` is its block of the initial state.
-    fn recipes(&self, setup: &Setup, x: &[f64]) -> Result<Vec<(usize, Recipe)>, SetupError>;
-    /// Takes the controllers built from these recipes: from now on control is digital.
-    fn sample(&mut self, control: &Control, controllers: Vec<Box<dyn Sampled>>);
-    /// Steps the controllers at the sample of time `now_s` and puts their new state into `x`.
-    fn command(&mut self, now_s: f64, inputs: Inputs<'_>, x: &mut [f64]);
-    /// Hands every agent under digital control to `each`.
-    fn taken(&self, each: &mut dyn FnMut(&Digital));
-    /// Applies the torques that were commanded last.
-    fn apply(&mut self);
-    /// Brings the block `x`, which a step has just reached, back to its manifold.
-    fn settle(&mut self, x: &mut [f64]) {
-        let _ = x;
-    }
-    /// Which member is in trouble in the state `x`, which has just been evaluated.
-    fn trouble(&self, x: &[f64]) -> Option<(usize, Trouble)> {
-        let _ = x;
-        None
-    }
-    /// When its right-hand side jumps of itself for the first time after `after_s`.
-    fn next_event_s(&self, after_s: f64) -> f64 {
-        let _ = after_s;
-        f64::INFINITY
-    }
-    /// Goes past what jumps until `until_s`; may change the block `x`.
-    fn pass_kink(&mut self, until_s: f64, x: &mut [f64]) {
-        let _ = (until_s, x);
-    }
-    /// Where the values of its set-valued signs stand in its block, if it has any.
-    fn selection(&self) -> Option<Range<usize>> {
-        None
-    }
-    /// What a sign is taken of besides what is heard, q̈ or ż, in a column per axis; `dx` is what [`Columns::rates`] gave.
-    fn tell(&mut self, t_s: f64, dx: &[f64], told: &mut [f64]) {
-        let _ = (t_s, dx, told);
-    }
-    /// What the signs are taken of, from what everybody tells and its weighted sums.
-    fn argument(&mut self, x: &[f64], inputs: Inputs<'_>, told: [&[f64]; 2], e: &mut [f64]) {
-        let _ = (x, inputs, told, e);
-    }
-    /// Adds to the rates `dx` what these values of the signs do, where they are functions of the instant.
-    fn lean(&mut self, selection: &[f64], dx: &mut [f64]) {
-        let _ = (selection, dx);
-    }
-    /// Signals and axes of one member, in the order in which they are recorded.
-    fn signals(&self) -> Vec<(Signal, usize)>;
-    /// Which member, signal and axis a state of the block is.
-    fn locate(&self, state: usize) -> (usize, Signal, usize);
-    /// The rates that its gains give to a member, the one with the number `agent` among all, in the state `x`, which has just
-    /// been evaluated; `None` for other laws than (6)–(7), and for gains that act at samples.
-    fn gain_rates(&mut self, agent: usize, x: &[f64]) -> Option<GainRates>;
-}
 
 /// A population of robots `R` that follow reference dynamics that hear `X`, worked on in lanes of `S`.
 pub(crate) struct Population<R: Lagrangian<f64> + Lagrangian<S>, X: Transmits, S: Packed> {
     members: Vec<Member>,
     reference: AnyReference<X>,
-    fleet: Fleet<R, S>,
+    robots: RobotBatch<R, S>,
     output: Output,
     /// When control is digital.
     sampler: Option<Sampler>,
@@ -159,11 +81,11 @@ where
         members: Vec<Member>,
         reference: AnyReference<X>,
         sampled: bool,
-        ledger_on: bool,
+        balances: bool,
     ) -> Self {
         let (m, p) = (Lagrangian::<f64>::dof(&robot), Lagrangian::<f64>::parameter_count(&robot));
         let adaptive = members.iter().all(|member| member.law.adaptation.is_some());
-        let layout = Layout::new([members.len(), m, p, reference.vectors()], adaptive, ledger_on);
+        let layout = Layout::new([members.len(), m, p, reference.vectors()], adaptive, balances);
         let record = RecordWork {
             scratch: Lagrangian::<f64>::scratch(&robot),
             d_reference: vec![0.0; layout.theta_hat - layout.reference],
@@ -174,21 +96,21 @@ where
             row: Vec::new(),
         };
         let output = Output { z: vec![0.0; layout.block()], dz: vec![0.0; layout.block()] };
-        let fleet = Fleet::new(robot, &members, layout);
+        let robots = RobotBatch::new(robot, &members, layout);
         let layer = match reference.sliding() {
             Some(Sliding { choice: Choice::Layer { width }, .. }) if !sampled => {
                 Some(Layer { width: *width, selection: vec![0.0; layout.block()] })
             }
             _ => None,
         };
-        let mut population = Population { members, reference, fleet, output, sampler: None, layer, record };
+        let mut population = Population { members, reference, robots, output, sampler: None, layer, record };
         population.record.row = vec![0.0; population.signals().len()];
         population
     }
 
-    /// The reference of everybody, then everything else squad by squad.
+    /// The reference of everybody, then everything else pack by pack.
     fn try_rates(&mut self, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) -> Result<(), LengthError> {
-        let l = self.fleet.layout;
+        let l = self.robots.layout;
         LengthError::check("state", l.len, x.len())?;
         LengthError::check("rate", l.len, dx.len())?;
         dx[..l.block()].copy_from_slice(&x[l.dq..l.reference]);
@@ -201,11 +123,11 @@ where
                 let Output { z, dz } = &mut self.output;
                 let d_state = &mut dx[l.reference..l.theta_hat];
                 evaluate(&self.reference, l, x, inputs, ReferenceOut { z, dz, d_state: &mut *d_state })?;
-                lean_at_once(&self.reference, &mut self.layer, l, x, inputs, dz, d_state)?;
+                add_sign_terms_now(&self.reference, &mut self.layer, l, x, inputs, dz, d_state)?;
                 Drive { z, dz, held: None, external: inputs.external }
             }
         };
-        (0..self.fleet.squads()).try_for_each(|squad| self.fleet.act(squad, x, drive, Some(&mut *dx)))
+        (0..self.robots.packs()).try_for_each(|pack| self.robots.act(pack, x, drive, Some(&mut *dx)))
     }
 
     fn try_record(
@@ -214,22 +136,22 @@ where
         inputs: Inputs<'_>,
         write: &mut dyn FnMut(usize, &[f64]),
     ) -> Result<(), LengthError> {
-        let l = self.fleet.layout;
-        for squad in 0..self.fleet.squads() {
+        let l = self.robots.layout;
+        for pack in 0..self.robots.packs() {
             let drive = match &self.sampler {
                 Some(sampler) => sampler.drive(inputs.external),
                 None => {
                     let Output { z, dz } = &mut self.output;
-                    if squad == 0 {
+                    if pack == 0 {
                         let d_state = &mut self.record.d_reference[..];
                         evaluate(&self.reference, l, x, inputs, ReferenceOut { z, dz, d_state: &mut *d_state })?;
-                        lean_at_once(&self.reference, &mut self.layer, l, x, inputs, dz, d_state)?;
+                        add_sign_terms_now(&self.reference, &mut self.layer, l, x, inputs, dz, d_state)?;
                     }
                     Drive { z, dz, held: None, external: inputs.external }
                 }
             };
-            self.fleet.act(squad, x, drive, None)?;
-            let first = self.fleet.first(squad);
+            self.robots.act(pack, x, drive, None)?;
+            let first = self.robots.first(pack);
             for lane in 0..S::WIDTH.min(l.n - first) {
                 self.fill_row(first + lane, lane, x)?;
                 write(self.members[first + lane].agent, &self.record.row);
@@ -238,11 +160,11 @@ where
         Ok(())
     }
 
-    /// Fills the row of the member in one lane of the squad whose signals are in the working memory.
+    /// Fills the row of the member in one lane of the pack whose signals are in the working memory.
     fn fill_row(&mut self, member: usize, lane: usize, x: &[f64]) -> Result<(), LengthError> {
-        let (l, w, r) = (self.fleet.layout, &self.fleet.work, &mut self.record);
-        for (own, squad) in r.q.iter_mut().zip(&w.q).chain(r.s.iter_mut().zip(&w.s)) {
-            *own = squad.lane(lane);
+        let (l, w, r) = (self.robots.layout, &self.robots.work, &mut self.record);
+        for (own, pack) in r.q.iter_mut().zip(&w.q).chain(r.s.iter_mut().zip(&w.s)) {
+            *own = pack.lane(lane);
         }
         let mut slots = r.row.iter_mut();
         let mut put = |value: f64| {
@@ -265,7 +187,7 @@ where
         }
 
         let agent = &mut self.members[member];
-        let robot = &self.fleet.robot;
+        let robot = &self.robots.robot;
         Lagrangian::<f64>::mass_matrix(robot, &mut r.scratch, &r.q, &agent.theta, &mut r.mass)?;
         let mut lyapunov = 0.0;
         for (row, s_row) in r.mass.chunks_exact(l.m).zip(&r.s) {
@@ -280,8 +202,8 @@ where
             lyapunov += 0.5 * cost.of(&r.delta);
         }
         put(lyapunov);
-        if l.ledger_on {
-            put(x[l.ledger + member]);
+        if l.balances {
+            put(x[l.balance + member]);
         }
         Ok(())
     }
@@ -306,7 +228,7 @@ fn argument<X: Transmits>(
 }
 
 /// A sign that is a function of the instant and taken of what is heard alone leans on ż, before the torque.
-fn lean_at_once<X: Transmits>(
+fn add_sign_terms_now<X: Transmits>(
     reference: &AnyReference<X>,
     layer: &mut Option<Layer>,
     l: Layout,
@@ -348,11 +270,11 @@ where
     S: Packed,
 {
     fn state_len(&self) -> usize {
-        self.fleet.layout.len
+        self.robots.layout.len
     }
 
     fn append_start(&self, all: &[AgentSetup], x: &mut Vec<f64>) {
-        let (first, l) = (x.len(), self.fleet.layout);
+        let (first, l) = (x.len(), self.robots.layout);
         let agents = || self.members.iter().map(|member| &all[member.agent]);
         for axis in 0..l.m {
             x.extend(agents().map(|a| a.start.q[axis]));
@@ -374,7 +296,7 @@ where
     }
 
     fn start(&mut self, _: &[AgentSetup], x: &mut [f64], degree: &[f64], sums: &[f64]) -> Result<(), LengthError> {
-        let l = self.fleet.layout;
+        let l = self.robots.layout;
         let given = x[l.reference..l.theta_hat].to_vec();
         let (measured, state) = x[..l.theta_hat].split_at_mut(l.reference);
         let measured = Measured { q: &measured[..l.dq], dq: &measured[l.dq..] };
@@ -395,20 +317,20 @@ where
     }
 
     fn sense(&mut self, t_s: f64, x: &[f64], sent: &mut [f64]) {
-        let l = self.fleet.layout;
+        let l = self.robots.layout;
         if let Some(sampler) = &mut self.sampler {
             sampler.sense(t_s, &x[..l.reference], sent);
         }
     }
 
     fn recipes(&self, setup: &Setup, x: &[f64]) -> Result<Vec<(usize, Recipe)>, SetupError> {
-        let l = self.fleet.layout;
+        let l = self.robots.layout;
         let recipe = |(i, member): (usize, &Member)| {
-            let mut state = vec![0.0; (l.ledger - l.reference) / l.n];
-            take(l.n, i, &x[l.reference..l.ledger], &mut state);
+            let mut state = vec![0.0; (l.balance - l.reference) / l.n];
+            take(l.n, i, &x[l.reference..l.balance], &mut state);
             let reference = reference::<X>(setup, &[member.agent])?;
             let theta_hat = if l.adaptive { state[state.len() - l.p..].to_vec() } else { member.theta.clone() };
-            let mut recipe = Recipe::lagrangian(self.fleet.robot.clone(), reference, member.law.clone(), theta_hat);
+            let mut recipe = Recipe::lagrangian(self.robots.robot.clone(), reference, member.law.clone(), theta_hat);
             recipe.start = StartState::State(state);
             Ok((member.agent, used(recipe, setup, member.agent, l.m)?))
         };
@@ -416,7 +338,7 @@ where
     }
 
     fn sample(&mut self, control: &Control, controllers: Vec<Box<dyn Sampled>>) {
-        let m = self.fleet.layout.m;
+        let m = self.robots.layout.m;
         let outputs = [(Signal::Position, m), (Signal::Velocity, m)];
         let agents = self.members.iter().zip(controllers);
         let agents = agents.map(|(member, controller)| Digital::new(control, member.agent, &outputs, controller));
@@ -424,9 +346,9 @@ where
     }
 
     fn command(&mut self, now_s: f64, inputs: Inputs<'_>, x: &mut [f64]) {
-        let l = self.fleet.layout;
+        let l = self.robots.layout;
         if let Some(sampler) = &mut self.sampler {
-            sampler.command(now_s, inputs, &mut x[l.reference..l.ledger]);
+            sampler.command(now_s, inputs, &mut x[l.reference..l.balance]);
         }
     }
 
@@ -441,12 +363,12 @@ where
     }
 
     fn selection(&self) -> Option<Range<usize>> {
-        let l = self.fleet.layout;
+        let l = self.robots.layout;
         self.reference.sliding().map(|_| l.theta_hat - l.block()..l.theta_hat)
     }
 
     fn tell(&mut self, _: f64, dx: &[f64], told: &mut [f64]) {
-        let l = self.fleet.layout;
+        let l = self.robots.layout;
         match self.reference.sliding().map(|sliding| sliding.derived) {
             Some(Derived::Acceleration) => told.copy_from_slice(&dx[l.dq..l.reference]),
             Some(Derived::ReferenceAcceleration) => told.copy_from_slice(&self.output.dz),
@@ -455,12 +377,12 @@ where
     }
 
     fn argument(&mut self, x: &[f64], inputs: Inputs<'_>, told: [&[f64]; 2], e: &mut [f64]) {
-        let checked = argument(&self.reference, self.fleet.layout, x, inputs, told, e);
+        let checked = argument(&self.reference, self.robots.layout, x, inputs, told, e);
         debug_assert_eq!(checked, Ok(()), "lengths are fixed when the population is built");
     }
 
-    fn lean(&mut self, selection: &[f64], dx: &mut [f64]) {
-        let l = self.fleet.layout;
+    fn add_sign_terms(&mut self, selection: &[f64], dx: &mut [f64]) {
+        let l = self.robots.layout;
         if let (Some(sliding), Some(layer)) = (self.reference.sliding(), &mut self.layer) {
             layer.selection.copy_from_slice(selection);
             let leaning = l.theta_hat - 2 * l.block();
@@ -470,8 +392,22 @@ where
         }
     }
 
+    // The states are those of robots, free of constraints.
+    fn settle(&mut self, _: &mut [f64]) {}
+
+    // (6)–(7) are defined everywhere.
+    fn trouble(&self, _: &[f64]) -> Option<(usize, Trouble)> {
+        None
+    }
+
+    fn next_event_s(&self, _: f64) -> f64 {
+        f64::INFINITY
+    }
+
+    fn pass_kink(&mut self, _: f64, _: &mut [f64]) {}
+
     fn signals(&self) -> Vec<(Signal, usize)> {
-        let l = self.fleet.layout;
+        let l = self.robots.layout;
         let mut signals = Vec::new();
         let mut axes = |signal, count| signals.extend((0..count).map(|axis| (signal, axis)));
         axes(Signal::Position, l.m);
@@ -488,17 +424,17 @@ where
             axes(Signal::Estimate, l.p);
         }
         axes(Signal::Lyapunov, 1);
-        if l.ledger_on {
+        if l.balances {
             axes(Signal::Dissipation, 1);
         }
         signals
     }
 
     fn locate(&self, state: usize) -> (usize, Signal, usize) {
-        let l = self.fleet.layout;
+        let l = self.robots.layout;
         let agent = self.members[state % l.n].agent;
         let column = |first: usize| (state - first) / l.n;
-        let (signal, axis) = if state >= l.ledger {
+        let (signal, axis) = if state >= l.balance {
             (Signal::Dissipation, 0)
         } else if state >= l.theta_hat {
             (Signal::Estimate, column(l.theta_hat))
@@ -515,7 +451,7 @@ where
     }
 
     fn gain_rates(&mut self, agent: usize, x: &[f64]) -> Option<GainRates> {
-        let l = self.fleet.layout;
+        let l = self.robots.layout;
         if self.sampler.is_some() {
             return None;
         }
@@ -524,6 +460,6 @@ where
         let Output { z, dz } = &self.output;
         let (q, dq, z, dz) = (own(x), own(&x[l.dq..]), own(z), own(dz));
         let motion = TwoVelocity { q: &q, dq: &dq, z: &z, dz: &dz };
-        gain_rates(&self.fleet.robot, &mut self.record.scratch, &self.members[index], motion).ok()?
+        gain_rates(&self.robots.robot, &mut self.record.scratch, &self.members[index], motion).ok()?
     }
 }

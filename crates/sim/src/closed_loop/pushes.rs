@@ -1,4 +1,4 @@
-//! Pushes as the closed loop feels them: which piece of each is in force, and the external torque that it gives.
+//! Pushes in the closed loop: which piece of each is in force, and the external torque that it gives.
 
 use std::sync::Arc;
 
@@ -64,7 +64,7 @@ impl Pushes {
     }
 
     /// Computes τ_ext of everybody at `t_s` in the state `x`.
-    pub(crate) fn feel(&mut self, t_s: f64, x: &[f64]) {
+    pub(crate) fn evaluate(&mut self, t_s: f64, x: &[f64]) {
         for placed in &mut self.people {
             let Placed { pushed, state, external, stride, q, dq, torque } = placed;
             let axes = q.len();
@@ -80,13 +80,13 @@ impl Pushes {
         }
     }
 
-    /// What [`Pushes::feel`] computed; `None` when nobody is ever pushed.
-    pub(crate) fn felt(&self) -> Option<&[f64]> {
+    /// What [`Pushes::evaluate`] computed; `None` when nobody is ever pushed.
+    pub(crate) fn external(&self) -> Option<&[f64]> {
         if self.people.is_empty() { None } else { Some(&self.external) }
     }
 
-    /// τ_ext of an agent as [`Pushes::feel`] left it.
-    pub(crate) fn felt_by(&self, agent: usize) -> &[f64] {
+    /// τ_ext of an agent as [`Pushes::evaluate`] left it.
+    pub(crate) fn external_on(&self, agent: usize) -> &[f64] {
         let placed = self.people.iter().find(|placed| placed.pushed.agent == agent);
         placed.map_or(&[], |placed| &placed.torque)
     }

@@ -5,7 +5,7 @@ use forwardstep_core::sampled::{EncoderFilter, Limits, Recipe, RecipeError, Samp
 
 use super::assemble::ClosedLoop;
 use super::assembly::effort_limits;
-use super::valid::SetupError;
+use super::error::SetupError;
 use crate::setup::{AgentSetup, Control, Setup, VelocitySensor};
 
 /// The sampled controller of one agent as plain data: what the simulator steps under [`Setup::control`], for a program of

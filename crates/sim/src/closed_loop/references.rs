@@ -9,7 +9,7 @@ use forwardstep_core::reference::{
 };
 use forwardstep_core::{Kernel, LengthError, dispatch};
 
-use super::valid::SetupError;
+use super::error::SetupError;
 use crate::leader::FollowingDesign;
 use crate::setup::{ReferenceKind, Setup};
 

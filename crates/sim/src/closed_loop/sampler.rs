@@ -10,8 +10,8 @@ use forwardstep_core::signal::{Block, Signal};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::fleet::Drive;
-use super::population::Inputs;
+use super::columns::Inputs;
+use super::robot_batch::Drive;
 use crate::recording::SampleTaken;
 use crate::setup::{Control, Sensors};
 

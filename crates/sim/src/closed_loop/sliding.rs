@@ -148,7 +148,7 @@ impl<'a> Slider<'a> {
     pub(super) fn happen(
         &mut self,
         until_s: f64,
-        felt: Option<&[f64]>,
+        external: Option<&[f64]>,
         blocks: &mut [Block],
         x: &mut [f64],
     ) -> Happened {
@@ -166,12 +166,12 @@ impl<'a> Slider<'a> {
         self.set += 1;
         if self.sliding.told() > 0 {
             for block in blocks.iter_mut() {
-                let (inputs, rates) = (block.inputs(&self.heard, felt), &mut self.rates[block.state.clone()]);
+                let (inputs, rates) = (block.inputs(&self.heard, external), &mut self.rates[block.state.clone()]);
                 block.columns.rates(now_s, &x[block.state.clone()], inputs, rates);
             }
         }
         self.weigh(now_s);
-        self.take_arguments(now_s, felt, blocks, x, None);
+        self.take_arguments(now_s, external, blocks, x, None);
         match self.sliding.choice {
             Choice::Implicit => self.solve(),
             _ => {
@@ -189,32 +189,39 @@ impl<'a> Slider<'a> {
     }
 
     /// The sign as a function of the instant: −γ ς is added to the rates `dx` of the state `x`.
-    pub(super) fn lean(&mut self, t_s: f64, felt: Option<&[f64]>, blocks: &mut [Block], x: &[f64], dx: &mut [f64]) {
+    pub(super) fn add_sign_terms(
+        &mut self,
+        t_s: f64,
+        external: Option<&[f64]>,
+        blocks: &mut [Block],
+        x: &[f64],
+        dx: &mut [f64],
+    ) {
         // A sign taken of what is heard alone was dealt with before the torque.
         let Some(width) = self.is_layer().filter(|_| self.sliding.told() > 0) else { return };
         self.weigh(t_s);
-        self.take_arguments(t_s, felt, blocks, x, Some(dx));
+        self.take_arguments(t_s, external, blocks, x, Some(dx));
         for (selection, e) in self.selection.iter_mut().zip(&self.e) {
             *selection = saturated(*e, width);
         }
         for block in blocks {
             let range = block.columns_range(self.axes);
-            block.columns.lean(&self.selection[range], &mut dx[block.state.clone()]);
+            block.columns.add_sign_terms(&self.selection[range], &mut dx[block.state.clone()]);
         }
     }
 
     /// Has the signs ready to be recorded where they are functions of the instant and of what was computed.
-    pub(super) fn look(&mut self, t_s: f64, heard: &Heard, felt: Option<&[f64]>, blocks: &mut [Block], x: &[f64]) {
+    pub(super) fn look(&mut self, t_s: f64, heard: &Heard, external: Option<&[f64]>, blocks: &mut [Block], x: &[f64]) {
         if self.is_layer().is_none() || self.sliding.told() == 0 {
             return;
         }
         self.hear(heard);
         let mut rates = std::mem::take(&mut self.rates);
         for block in blocks.iter_mut() {
-            let (inputs, rates) = (block.inputs(&self.heard, felt), &mut rates[block.state.clone()]);
+            let (inputs, rates) = (block.inputs(&self.heard, external), &mut rates[block.state.clone()]);
             block.columns.rates(t_s, &x[block.state.clone()], inputs, rates);
         }
-        self.lean(t_s, felt, blocks, x, &mut rates);
+        self.add_sign_terms(t_s, external, blocks, x, &mut rates);
         self.rates = rates;
     }
 
@@ -226,7 +233,14 @@ impl<'a> Slider<'a> {
     }
 
     /// e of everybody, from the rates `dx` or those at hand.
-    fn take_arguments(&mut self, t_s: f64, felt: Option<&[f64]>, blocks: &mut [Block], x: &[f64], dx: Option<&[f64]>) {
+    fn take_arguments(
+        &mut self,
+        t_s: f64,
+        external: Option<&[f64]>,
+        blocks: &mut [Block],
+        x: &[f64],
+        dx: Option<&[f64]>,
+    ) {
         if self.sliding.told() > 0 {
             let rates = dx.unwrap_or(&self.rates);
             for block in blocks.iter_mut() {
@@ -243,7 +257,7 @@ impl<'a> Slider<'a> {
         for block in blocks {
             let range = block.columns_range(self.axes);
             let (own, sums) = (&self.own[range.clone()], &self.sums[range.clone()]);
-            let inputs = block.inputs(&self.heard, felt);
+            let inputs = block.inputs(&self.heard, external);
             block.columns.argument(&x[block.state.clone()], inputs, [own, sums], &mut self.e[range]);
         }
     }

@@ -3,7 +3,7 @@
 //! Its state is
 //!
 //! ```text
-//! plant's state   controller's state   ∫ dissipation [1, if the ledger is on]
+//! plant's state   controller's state   ∫ dissipation [1, if the balance is on]
 //! ```
 //!
 //! and everything that is particular to a system is said by the two traits. An agent with an offset d(t) is described
@@ -12,6 +12,7 @@
 //!
 //! Under digital control the plant's state flows and everything else stands still between two samples, when it jumps.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use forwardstep_core::LengthError;
@@ -21,10 +22,10 @@ use forwardstep_core::reference::Heard;
 use forwardstep_core::sampled::{self, Recipe, Sampled, StartState};
 use forwardstep_core::signal::Block;
 
-use super::population::{Columns, Inputs};
+use super::columns::{Columns, Inputs};
+use super::error::SetupError;
 use super::recipes::used;
 use super::sampler::Digital;
-use super::valid::SetupError;
 use crate::recording::{GainRates, Signal};
 use crate::setup::{AgentSetup, Control, Setup};
 use crate::trajectory::Pieces;
@@ -63,7 +64,7 @@ struct Layout {
     velocities: usize,
     plant: usize,
     controller: usize,
-    ledger: bool,
+    balance: bool,
     /// Where the torques stand in the input, and how many they are.
     torque: (usize, usize),
 }
@@ -85,7 +86,7 @@ struct Now {
 }
 
 impl<C: Controller> Solo<C> {
-    /// The agent number `agent`. What a held input does is not what the ledger balances, so there is none where it will be
+    /// The agent number `agent`. What a held input does is not what the balance balances, so there is none where it will be
     /// `sampled`.
     pub(crate) fn new(
         agent: usize,
@@ -94,7 +95,7 @@ impl<C: Controller> Solo<C> {
         target: Option<Target>,
         effort_limits: Option<Vec<f64>>,
         sampled: bool,
-        ledger: bool,
+        balance: bool,
     ) -> Self {
         let (states, inputs) = (plant.states(), plant.inputs());
         let torque = inputs.iter().position(|(signal, _)| *signal == Signal::Torque);
@@ -103,7 +104,7 @@ impl<C: Controller> Solo<C> {
             velocities: states.get(1).filter(|(signal, _)| *signal == Signal::Velocity).map_or(0, |(_, count)| *count),
             plant: total(&states),
             controller: total(&controller.states()),
-            ledger: ledger && !sampled,
+            balance: balance && !sampled,
             torque: torque.map_or((0, 0), |at| (total(&inputs[..at]), inputs[at].1)),
         };
         let input = total(&inputs);
@@ -189,7 +190,7 @@ impl<C: Controller> Solo<C> {
             }
         }
         dx[plant..end].copy_from_slice(&self.now.d_controller);
-        if self.layout.ledger {
+        if self.layout.balance {
             dx[end] = self.balance(x, inputs)?.1;
         }
         Ok(())
@@ -219,7 +220,7 @@ impl<C: Controller> Solo<C> {
             self.row.extend(self.now.jets.iter().map(|jet| jet[0]));
         }
         self.row.push(value);
-        if self.layout.ledger {
+        if self.layout.balance {
             self.row.push(x[self.layout.controller_end()]);
         }
         Ok(())
@@ -233,7 +234,7 @@ impl<C: Controller> Solo<C> {
             blocks.push((Signal::Offset, self.layout.m));
         }
         blocks.push((Signal::Lyapunov, 1));
-        if self.layout.ledger {
+        if self.layout.balance {
             blocks.push((Signal::Dissipation, 1));
         }
         blocks
@@ -242,7 +243,7 @@ impl<C: Controller> Solo<C> {
 
 impl<C: Controller> Columns for Solo<C> {
     fn state_len(&self) -> usize {
-        self.layout.controller_end() + usize::from(self.layout.ledger)
+        self.layout.controller_end() + usize::from(self.layout.balance)
     }
 
     fn append_start(&self, agents: &[AgentSetup], x: &mut Vec<f64>) {
@@ -370,6 +371,17 @@ impl<C: Controller> Columns for Solo<C> {
         target.trajectory.pass(until_s);
         add(&target.trajectory, -1.0);
     }
+
+    // Set-valued signs stand in the reference dynamics of (6)–(7) alone.
+    fn selection(&self) -> Option<Range<usize>> {
+        None
+    }
+
+    fn tell(&mut self, _: f64, _: &[f64], _: &mut [f64]) {}
+
+    fn argument(&mut self, _: &[f64], _: Inputs<'_>, _: [&[f64]; 2], _: &mut [f64]) {}
+
+    fn add_sign_terms(&mut self, _: &[f64], _: &mut [f64]) {}
 
     fn signals(&self) -> Vec<(Signal, usize)> {
         let axes = |(signal, count)| (0..count).map(move |axis| (signal, axis));

@@ -2,7 +2,7 @@
 
 use forwardstep_core::LengthError;
 
-use super::valid::{SetupError, VelocityQuantity};
+use super::error::{SetupError, VelocityQuantity};
 use crate::setup::{AgentSetup, Control, ReferenceKind, Setup, VelocitySensor};
 use crate::system::{ActuatorLimits, Interface, ReferenceFamily};
 

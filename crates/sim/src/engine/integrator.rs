@@ -111,7 +111,7 @@ pub(crate) struct Integrator<'a> {
     /// The last piece of history goes on smoothly into this step.
     smooth: bool,
     /// The step that the error control would like next, s.
-    wish_s: f64,
+    proposed_step_s: f64,
     statistics: Statistics,
 }
 
@@ -162,7 +162,7 @@ impl<'a> Integrator<'a> {
             piece: vec![0.0; width],
             stale: true,
             smooth: false,
-            wish_s: 0.0,
+            proposed_step_s: 0.0,
             statistics: Statistics::default(),
         }
     }
@@ -197,20 +197,20 @@ impl<'a> Integrator<'a> {
         if self.stale {
             self.derivative_at_start(system, t)?;
         }
-        if self.wish_s == 0.0 {
-            self.wish_s = self.fixed_step_s.unwrap_or_else(|| self.first_step());
+        if self.proposed_step_s == 0.0 {
+            self.proposed_step_s = self.fixed_step_s.unwrap_or_else(|| self.first_step());
         }
         let mut limit_s = self.max_step_s;
         if !self.smooth {
             let shortest_s = self.hearing.shortest_delay(&self.timeline, t);
-            if self.wish_s > shortest_s && self.wish_s < WORTH_CUTTING * shortest_s {
+            if self.proposed_step_s > shortest_s && self.proposed_step_s < WORTH_CUTTING * shortest_s {
                 limit_s = limit_s.min(shortest_s);
             }
         }
         loop {
             let next = self.timeline.next_s().min(self.timeline.or_horizon(system.next_event_s()));
             let left = next - t;
-            let h = self.wish_s.min(limit_s);
+            let h = self.proposed_step_s.min(limit_s);
             // Never leave a sliver before a break-point: land on it, or go half-way.
             let (h, lands) = if h >= left * (1.0 - 1e-9) {
                 (left, true)
@@ -222,21 +222,21 @@ impl<'a> Integrator<'a> {
             if h < self.min_step_s && !lands || t + h <= t {
                 return Err(self.step_is_under_floor(system, t, h));
             }
-            let draft_wish_s = self.stages(system, t, h);
+            let predicted_step_s = self.stages(system, t, h);
             let (error, finite) = self.judge(h);
             if !finite {
                 if h <= self.min_step_s * 4.0 || self.fixed_step_s.is_some() {
                     return Err(Failure { t_s: t, state: self.first_not_finite(), cause: FailureCause::NotFinite });
                 }
                 limit_s = 0.25 * h;
-                self.wish_s = limit_s;
+                self.proposed_step_s = limit_s;
                 self.statistics.rejected += 1;
                 continue;
             }
-            if draft_wish_s.is_none() || error > 1.0 {
-                limit_s = h * if draft_wish_s.is_some() { step_factor(error) } else { 0.5 };
+            if predicted_step_s.is_none() || error > 1.0 {
+                limit_s = h * if predicted_step_s.is_some() { step_factor(error) } else { 0.5 };
                 if self.fixed_step_s.is_none() {
-                    self.wish_s = limit_s;
+                    self.proposed_step_s = limit_s;
                 }
                 self.statistics.rejected += 1;
                 continue;
@@ -244,8 +244,9 @@ impl<'a> Integrator<'a> {
             if self.fixed_step_s.is_none() {
                 let growth = step_factor(error);
                 // A step cut short by a break-point says little about the step that would have been possible.
-                self.wish_s = if h < self.wish_s { self.wish_s.max(h * growth) } else { h * growth };
-                self.wish_s = self.wish_s.min(draft_wish_s.unwrap_or(f64::INFINITY));
+                self.proposed_step_s =
+                    if h < self.proposed_step_s { self.proposed_step_s.max(h * growth) } else { h * growth };
+                self.proposed_step_s = self.proposed_step_s.min(predicted_step_s.unwrap_or(f64::INFINITY));
             }
             let end_s = if lands { next } else { t + h };
             self.keep(t, h, end_s);
@@ -288,7 +289,7 @@ impl<'a> Integrator<'a> {
     fn restart(&mut self) {
         self.stale = true;
         if self.fixed_step_s.is_none() {
-            self.wish_s *= RESTART;
+            self.proposed_step_s *= RESTART;
         }
     }
 

@@ -117,7 +117,7 @@ pub fn last(outcome: &Outcome, agent: usize, signal: Signal, axis: usize) -> f64
 }
 
 /// max |V + ∫ dissipation − V(0)| as a part of V(0), or of `least` where V(0) is below it.
-pub fn ledger_error(outcome: &Outcome, agent: usize, least: f64) -> f64 {
+pub fn balance_residual(outcome: &Outcome, agent: usize, least: f64) -> f64 {
     let v = column(outcome, agent, Signal::Lyapunov, 0);
     let lost = column(outcome, agent, Signal::Dissipation, 0);
     v.iter().zip(lost).map(|(now, lost)| (now + lost - v[0]).abs() / v[0].max(least)).fold(0.0, f64::max)

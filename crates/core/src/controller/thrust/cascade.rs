@@ -142,6 +142,12 @@ impl Controller for ThrustCascade {
         let wanted = &shown[shown.len() - 3..];
         let sigma = self.outer.sigma(state).unwrap_or_default();
         let miss = [-sigma * (omega[1] - wanted[1]), sigma * (omega[0] - wanted[0]), 0.0];
-        self.outer.ledger(&truth.plant.vehicle, moving, given.target, state, rotate(*moving.attitude, miss))
+        self.outer.translation_balance(
+            &truth.plant.vehicle,
+            moving,
+            given.target,
+            state,
+            rotate(*moving.attitude, miss),
+        )
     }
 }

@@ -302,7 +302,7 @@ impl Thrust {
     }
 
     /// V and −V̇ of the head of this file, where m x⃛ misses by `slip` what u says.
-    fn ledger(
+    fn translation_balance(
         &self,
         vehicle: &Vehicle,
         moving: VehicleState<'_>,

@@ -88,6 +88,6 @@ impl Controller for Thrust {
         state: &[f64],
         _: &[f64],
     ) -> Result<Balance, LengthError> {
-        self.ledger(truth.plant, VehicleState::read(truth.state)?.0, given.target, state, [0.0; 3])
+        self.translation_balance(truth.plant, VehicleState::read(truth.state)?.0, given.target, state, [0.0; 3])
     }
 }

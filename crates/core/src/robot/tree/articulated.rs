@@ -76,7 +76,7 @@ impl<S: Scalar> Articulated<S> {
             JointKind::Revolute => inertia.released_and_turned(&u, inverse, &e),
             JointKind::Prismatic => inertia.minus_outer(&u, inverse).turned(&e),
         };
-        Handed { inertia: free.shifted(p), wrench: slot.seat.felt_by_parent(&reaction) }
+        Handed { inertia: free.shifted(p), wrench: slot.seat.on_parent(&reaction) }
     }
 }
 

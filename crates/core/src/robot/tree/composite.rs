@@ -1,7 +1,7 @@
 //! The mass matrix by composite rigid bodies.
 //!
 //! Column j of M is the torque of a unit acceleration of joint j alone: everything beyond j moves as one rigid body of
-//! inertia I_c, which takes the wrench I_c S_j, and that wrench is felt by j and by every joint between j and the base.
+//! inertia I_c, which takes the wrench I_c S_j, and that wrench acts on j and by every joint between j and the base.
 
 use super::JointKind;
 use super::model::{Tree, TreeScratch};
@@ -49,18 +49,18 @@ impl Tree {
                 }
             };
             m[i * n + i] = wrench.along(body.kind);
-            let mut felt_by = i;
+            let mut ancestor = i;
             loop {
-                let slot = self.bodies[felt_by].parent_slot;
+                let slot = self.bodies[ancestor].parent_slot;
                 if slot == 0 {
                     break;
                 }
-                wrench = slots[felt_by + 1].seat.felt_by_parent(&wrench);
-                felt_by = slot - 1;
-                let other = &self.bodies[felt_by];
+                wrench = slots[ancestor + 1].seat.on_parent(&wrench);
+                ancestor = slot - 1;
+                let other = &self.bodies[ancestor];
                 let entry = wrench.along(other.kind) * S::splat(body.sign * other.sign);
-                m[i * n + felt_by] = entry;
-                m[felt_by * n + i] = entry;
+                m[i * n + ancestor] = entry;
+                m[ancestor * n + i] = entry;
             }
             if body.parent_slot > 0 {
                 let seat = &slots[i + 1].seat;

@@ -70,7 +70,7 @@ impl<S: Scalar> Seat<S> {
 
     /// A wrench about the child's origin in the child's axes, as one about the parent's origin in the parent's axes.
     #[inline(always)]
-    pub(super) fn felt_by_parent(&self, wrench: &Wrench<S>) -> Wrench<S> {
+    pub(super) fn on_parent(&self, wrench: &Wrench<S>) -> Wrench<S> {
         let f = self.e.times(wrench.f);
         Wrench { f, n: self.p.cross_plus(f, self.e.times(wrench.n)) }
     }

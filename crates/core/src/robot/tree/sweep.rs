@@ -136,12 +136,12 @@ impl Tree {
             torque[i] = wrench.along(body.kind) * S::splat(body.sign);
             carried = Wrench::ZERO;
             if body.parent_slot > 0 {
-                let felt = seat.felt_by_parent(&wrench);
+                let handed_on = seat.on_parent(&wrench);
                 if body.parent_slot == i {
-                    carried = felt;
+                    carried = handed_on;
                 } else {
                     let parent = &mut slots[body.parent_slot].wrench;
-                    *parent = parent.plus(&felt);
+                    *parent = parent.plus(&handed_on);
                 }
             }
         }

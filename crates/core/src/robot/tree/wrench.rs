@@ -2,7 +2,7 @@
 //!
 //! Let r be the point and f, n force and moment in the inner frame of the body that carries it. Walking to the base, the
 //! moment about each origin is n + r × f, its part along the joint is that joint's torque, and origin and axes change as
-//! every wrench's do (`Seat::felt_by_parent`). The velocity of the point is gathered on the same walk: seen from the frame that a joint
+//! every wrench's do (`Seat::on_parent`). The velocity of the point is gathered on the same walk: seen from the frame that a joint
 //! moves in, a point at r that moves with v within the body moves with v + z q̇ × r (revolute) or v + z q̇ (prismatic). Both
 //! take one pass over the joints that carry the link, and the power is the same on both sides: (Jᵀw)ᵀ q̇ = wᵀ (J q̇).
 
@@ -129,14 +129,14 @@ impl<S: Scalar> Kernel for AddWrench<'_, S> {
                 moment = e.transpose_times(moment);
             }
         }
-        let mut felt = Wrench { f, n: r.cross_plus(f, moment) };
+        let mut wrench = Wrench { f, n: r.cross_plus(f, moment) };
         loop {
             let joint = &tree.bodies[body];
-            tau[body] = felt.along(joint.kind).mul_add(S::splat(joint.sign), tau[body]);
+            tau[body] = wrench.along(joint.kind).mul_add(S::splat(joint.sign), tau[body]);
             if joint.parent_slot == 0 {
                 return Ok(());
             }
-            felt = slots[body + 1].seat.felt_by_parent(&felt);
+            wrench = slots[body + 1].seat.on_parent(&wrench);
             body = joint.parent_slot - 1;
         }
     }

@@ -5,7 +5,7 @@ use forwardstep_sim::recording::Signal;
 use serde::Serialize;
 
 use super::super::decimate::Grid;
-use super::super::metrics::{DisagreementSeries, ledger_errors};
+use super::super::metrics::{DisagreementSeries, balance_residuals};
 use super::super::names;
 use super::super::record::RunRecord;
 use super::super::table::Table;
@@ -109,8 +109,8 @@ struct Signals {
     /// z, ż, …
     reference: Vec<Vec<Vec<Option<usize>>>>,
     lyapunov: Vec<Option<usize>>,
-    ledger_sum: Vec<Option<usize>>,
-    ledger_error: Vec<Option<usize>>,
+    balance_sum: Vec<Option<usize>>,
+    balance_residual: Vec<Option<usize>>,
 }
 
 #[derive(Serialize)]
@@ -188,10 +188,10 @@ impl Payload {
             let v = table.column(agent, Signal::Lyapunov, 0);
             let dissipated = table.column(agent, Signal::Dissipation, 0);
             let sum = v.zip(dissipated).map(|(v, d)| v.iter().zip(d).map(|(v, d)| v + d).collect::<Vec<_>>());
-            let error = ledger_errors(table, agent).map(|e| e.iter().map(|e| e.abs()).collect::<Vec<_>>());
+            let error = balance_residuals(table, agent).map(|e| e.iter().map(|e| e.abs()).collect::<Vec<_>>());
             index.lyapunov.push(v.map(|v| main.add(v, false)));
-            index.ledger_sum.push(sum.map(|sum| main.add(&sum, false)));
-            index.ledger_error.push(error.map(|error| main.add(&error, false)));
+            index.balance_sum.push(sum.map(|sum| main.add(&sum, false)));
+            index.balance_residual.push(error.map(|error| main.add(&error, false)));
         }
         let disagreement = DisagreementSeries::of_table(table).ok().map(|series| DisagreementIndex {
             unit: names::gap_unit(record.setup),

@@ -137,7 +137,7 @@ fn signals(absence: Option<Absence>, record: &RunRecord<'_>) -> Markup {
                     (card(&family.id(), &family.title, &family.letters, ""))
                 }
                 (card("estimate", "Parameter estimates", "ϑ̂, the truth dashed", if adaptive { "" } else { "no agent estimates parameters" }))
-                (card("ledger", "Energy ledger", "V + ∫ dissipation = V(0)", ""))
+                (card("balance", "Lyapunov balance", "V + ∫ dissipation = V(0)", ""))
             }
             p.note.hint { "Drag across a plot to zoom all of them; double-click to see everything again." }
         }

@@ -52,7 +52,7 @@ pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                 @if let Some(peak) = peaks.reduce(|a, b| if b.value.abs() > a.value.abs() { b } else { a }) {
                     (figure("Peak torque", &number(peak.value.abs()), &unit_at(setup, Signal::Torque, peak.agent, peak.axis)))
                 }
-                @if let Some(ledger) = metrics.ledger_error { (figure("Ledger error", &number(ledger.relative), "")) }
+                @if let Some(balance) = metrics.balance_residual { (figure("Balance residual", &number(balance.relative), "")) }
                 (figure("Agents", &setup.agents.len().to_string(), ""))
             }
         }
@@ -173,12 +173,12 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
             @if metrics.limits_reached.is_empty() { "none exceeded, of those that are known" }
             @else { a href="#limits" { (text::count(metrics.limits_reached.len(), "limit")) " reached or exceeded" } }
         }))
-        @if let Some(ledger) = metrics.ledger_error {
-            (fact("Ledger", html! {
-                @if ledger.relative.is_finite() {
-                    "V + ∫ dissipation = V(0) holds to " (number(ledger.relative)) @if setup.agents[ledger.agent].pushes.is_empty() { " of V(0)" } @else { " of the largest V" } " (worst: "
+        @if let Some(balance) = metrics.balance_residual {
+            (fact("Balance", html! {
+                @if balance.relative.is_finite() {
+                    "V + ∫ dissipation = V(0) holds to " (number(balance.relative)) @if setup.agents[balance.agent].pushes.is_empty() { " of V(0)" } @else { " of the largest V" } " (worst: "
                 } @else { "V is no longer finite (" }
-                (names::agent_name(setup, ledger.agent)) ", t = " (number(ledger.t_s)) " s)"
+                (names::agent_name(setup, balance.agent)) ", t = " (number(balance.t_s)) " s)"
             }))
         }
     }

@@ -1,6 +1,6 @@
-//! The robots of a population with their tracking laws, worked on in squads.
+//! The robots of a population with their tracking laws, worked on in packs.
 //!
-//! A squad is as many neighbouring members as the scalar `S` has lanes; the bits do not depend on how many that is. Which
+//! A pack is as many neighbouring members as the scalar `S` has lanes; the bits do not depend on how many that is. Which
 //! reference the robots follow is not known here.
 
 use forwardstep_core::law::{SlotineLi, SlotineLiOutput};
@@ -35,20 +35,20 @@ pub(crate) struct Layout {
     pub(crate) dq: usize,
     pub(crate) reference: usize,
     pub(crate) theta_hat: usize,
-    pub(crate) ledger: usize,
+    pub(crate) balance: usize,
     pub(crate) len: usize,
     pub(crate) adaptive: bool,
-    pub(crate) ledger_on: bool,
+    pub(crate) balances: bool,
 }
 
 impl Layout {
     /// For `vectors` blocks of reference state.
-    pub(crate) fn new([n, m, p, vectors]: [usize; 4], adaptive: bool, ledger_on: bool) -> Self {
+    pub(crate) fn new([n, m, p, vectors]: [usize; 4], adaptive: bool, balances: bool) -> Self {
         let (dq, reference) = (m * n, 2 * m * n);
         let theta_hat = reference + vectors * m * n;
-        let ledger = theta_hat + if adaptive { p * n } else { 0 };
-        let len = ledger + if ledger_on { n } else { 0 };
-        Layout { n, m, p, dq, reference, theta_hat, ledger, len, adaptive, ledger_on }
+        let balance = theta_hat + if adaptive { p * n } else { 0 };
+        let len = balance + if balances { n } else { 0 };
+        Layout { n, m, p, dq, reference, theta_hat, balance, len, adaptive, balances }
     }
 
     /// Numbers of one vector of every member.
@@ -58,17 +58,17 @@ impl Layout {
 }
 
 /// Robots `R` with their laws, worked on in lanes of `S`.
-pub(crate) struct Fleet<R: Lagrangian<S>, S: Packed> {
+pub(crate) struct RobotBatch<R: Lagrangian<S>, S: Packed> {
     pub(crate) robot: R,
     pub(crate) layout: Layout,
-    squads: Vec<Squad<S>>,
+    packs: Vec<Pack<S>>,
     pub(crate) work: Work<S, R::Scratch>,
 }
 
-impl<R: Lagrangian<S>, S: Packed> Fleet<R, S> {
+impl<R: Lagrangian<S>, S: Packed> RobotBatch<R, S> {
     /// `members` share the robot and the order; all adapt or none.
     pub(crate) fn new(robot: R, members: &[Member], layout: Layout) -> Self {
-        let squads = (0..members.len()).step_by(S::WIDTH).map(|first| Squad::new(first, members)).collect();
+        let packs = (0..members.len()).step_by(S::WIDTH).map(|first| Pack::new(first, members)).collect();
         let (vector, parameters) = (|| vec![S::ZERO; layout.m], || vec![S::ZERO; layout.p]);
         let work = Work {
             scratch: robot.scratch(),
@@ -87,33 +87,33 @@ impl<R: Lagrangian<S>, S: Packed> Fleet<R, S> {
             yt_s: parameters(),
             d_theta_hat: parameters(),
         };
-        Fleet { robot, layout, squads, work }
+        RobotBatch { robot, layout, packs, work }
     }
 
-    /// Number of squads.
-    pub(crate) fn squads(&self) -> usize {
-        self.squads.len()
+    /// Number of packs.
+    pub(crate) fn packs(&self) -> usize {
+        self.packs.len()
     }
 
-    /// Index of the first member of a squad.
-    pub(crate) fn first(&self, squad: usize) -> usize {
-        self.squads[squad].first
+    /// Index of the first member of a pack.
+    pub(crate) fn first(&self, pack: usize) -> usize {
+        self.packs[pack].first
     }
 
-    /// s, τ, q̈ (and Yᵀs, unless the torque is held) of one squad into the working memory and, if there is a `dx`, the rates
-    /// of q̇, ϑ̂ and the ledger into it.
+    /// s, τ, q̈ (and Yᵀs, unless the torque is held) of one pack into the working memory and, if there is a `dx`, the rates
+    /// of q̇, ϑ̂ and the balance into it.
     pub(crate) fn act(
         &mut self,
-        squad: usize,
+        pack: usize,
         x: &[f64],
         drive: Drive<'_>,
         dx: Option<&mut [f64]>,
     ) -> Result<(), LengthError> {
-        dispatch(Act { fleet: self, squad, x, drive, dx })
+        dispatch(Act { robots: self, pack, x, drive, dx })
     }
 }
 
-/// What moves a fleet at one instant, as blocks of columns.
+/// What moves a robots at one instant, as blocks of columns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Drive<'a> {
     /// z and ż, which are states for some references and not for others.
@@ -126,8 +126,8 @@ pub(crate) struct Drive<'a> {
 }
 
 struct Act<'a, R: Lagrangian<S>, S: Packed> {
-    fleet: &'a mut Fleet<R, S>,
-    squad: usize,
+    robots: &'a mut RobotBatch<R, S>,
+    pack: usize,
     x: &'a [f64],
     drive: Drive<'a>,
     dx: Option<&'a mut [f64]>,
@@ -138,21 +138,21 @@ impl<R: Lagrangian<S>, S: Packed> Kernel for Act<'_, R, S> {
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        let Fleet { robot, layout: l, squads, work } = self.fleet;
-        let squad = &squads[self.squad];
-        work.read(*l, squad.first, self.x, self.drive);
+        let RobotBatch { robot, layout: l, packs, work } = self.robots;
+        let pack = &packs[self.pack];
+        work.read(*l, pack.first, self.x, self.drive);
         match self.drive.held {
-            None => squad.track(*l, robot, work)?,
-            Some(torque) => work.hold(*l, squad.first, torque),
+            None => pack.track(*l, robot, work)?,
+            Some(torque) => work.hold(*l, pack.first, torque),
         }
-        squad.accelerate(robot, work, self.drive.external.is_some())?;
+        pack.accelerate(robot, work, self.drive.external.is_some())?;
         if let Some(dx) = self.dx {
-            give(*l, squad.first, &work.ddq, &mut dx[l.dq..]);
+            give(*l, pack.first, &work.ddq, &mut dx[l.dq..]);
             if self.drive.held.is_none() {
-                work.learn(*l, squad, dx);
-                if l.ledger_on {
-                    let dissipation = squad.dissipation(*l, robot, work)?;
-                    dissipation.store(&mut dx[l.ledger + squad.first..l.ledger + l.n]);
+                work.learn(*l, pack, dx);
+                if l.balances {
+                    let dissipation = pack.dissipation(*l, robot, work)?;
+                    dissipation.store(&mut dx[l.balance + pack.first..l.balance + l.n]);
                 }
             }
         }
@@ -161,7 +161,7 @@ impl<R: Lagrangian<S>, S: Packed> Kernel for Act<'_, R, S> {
 }
 
 /// The constants of as many neighbouring members as `S` has lanes. Lanes beyond the last member repeat it.
-struct Squad<S> {
+struct Pack<S> {
     /// Index of the first member.
     first: usize,
     law: SlotineLi<S>,
@@ -169,7 +169,7 @@ struct Squad<S> {
     effort_limits: Option<Vec<S>>,
 }
 
-/// Working memory of one squad.
+/// Working memory of one pack.
 pub(crate) struct Work<S, T> {
     pub(crate) scratch: T,
     pub(crate) q: Vec<S>,
@@ -189,7 +189,7 @@ pub(crate) struct Work<S, T> {
     pub(crate) d_theta_hat: Vec<S>,
 }
 
-impl<S: Packed> Squad<S> {
+impl<S: Packed> Pack<S> {
     fn new(first: usize, members: &[Member]) -> Self {
         let member = |lane: usize| &members[(first + lane).min(members.len() - 1)];
         let pack = |entries: fn(&Member) -> &[f64]| -> Vec<S> {
@@ -205,7 +205,7 @@ impl<S: Packed> Squad<S> {
         let limit = |lane: usize, k: usize| member(lane).effort_limits.as_ref().map_or(f64::INFINITY, |l| l[k]);
         let limited = (0..S::WIDTH).any(|lane| member(lane).effort_limits.is_some());
         let axes = member(0).axes;
-        Squad {
+        Pack {
             first,
             law: SlotineLi { damping, adaptation },
             theta: pack(|member| &member.theta),
@@ -213,7 +213,7 @@ impl<S: Packed> Squad<S> {
         }
     }
 
-    /// s, τ and Yᵀs of the squad whose q, q̇, z, ż and ϑ̂ are in the working memory.
+    /// s, τ and Yᵀs of the pack whose q, q̇, z, ż and ϑ̂ are in the working memory.
     #[inline(always)]
     fn track<R: Lagrangian<S>>(&self, l: Layout, robot: &R, w: &mut Work<S, R::Scratch>) -> Result<(), LengthError> {
         let estimate = if l.adaptive { &w.theta_hat } else { &self.theta };
@@ -293,12 +293,12 @@ impl<S: Packed, T> Work<S, T> {
         }
     }
 
-    /// Stores ϑ̂' of `squad`; needs what [`Squad::track`] left.
+    /// Stores ϑ̂' of `pack`; needs what [`Pack::track`] left.
     #[inline(always)]
-    fn learn(&mut self, l: Layout, squad: &Squad<S>, dx: &mut [f64]) {
+    fn learn(&mut self, l: Layout, pack: &Pack<S>, dx: &mut [f64]) {
         if l.adaptive {
-            squad.law.adaptation_rate(&self.yt_s, &mut self.d_theta_hat);
-            give(l, squad.first, &self.d_theta_hat, &mut dx[l.theta_hat..]);
+            pack.law.adaptation_rate(&self.yt_s, &mut self.d_theta_hat);
+            give(l, pack.first, &self.d_theta_hat, &mut dx[l.theta_hat..]);
         }
     }
 }

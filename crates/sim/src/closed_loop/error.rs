@@ -1,0 +1,413 @@
+//! What makes a setup meaningless.
+
+use forwardstep_core::agent::{FilterError, LimiterError};
+use forwardstep_core::controller::ChainError;
+use forwardstep_core::plant::SpacecraftError;
+use forwardstep_core::reference::{BacksteppingError, RootsError};
+use forwardstep_core::robot::tree::TipError;
+use forwardstep_core::sampled::RecipeError;
+use forwardstep_core::{GainError, LengthError};
+use thiserror::Error;
+
+use crate::network::NetworkError;
+use crate::push::PushError;
+use crate::setup::{AgentSetup, ReferenceKind, Setup};
+use crate::system::ReferenceFamily;
+use crate::trajectory::TrajectoryError;
+
+/// Why a setup cannot be simulated.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SetupError {
+    /// The network has no meaning.
+    #[error("network: {0}")]
+    Network(#[from] NetworkError),
+    /// A target, an offset or a leader that cannot be landed on where it has kinks.
+    #[error("`{agent}`: {error}")]
+    Trajectory {
+        /// Whose it is.
+        agent: String,
+        /// What is wrong.
+        error: TrajectoryError,
+    },
+    /// The network was made for another number of agents.
+    #[error("the network has {network} agents, but {agents} are described")]
+    AgentCount {
+        /// Vertices of the network.
+        network: usize,
+        /// Agents described.
+        agents: usize,
+    },
+    /// An agent that there is not.
+    #[error("there is no agent {agent}: there are {agents}, counted from zero")]
+    NoAgent {
+        /// The number asked for.
+        agent: usize,
+        /// How many there are.
+        agents: usize,
+    },
+    /// Consensus needs all agents in the same space.
+    #[error("agent `{agent}` has {axes} axes, but `{first}` has {first_axes}; agents can only agree in the same space")]
+    AxesDiffer {
+        /// The agent that differs.
+        agent: String,
+        /// Its number of axes.
+        axes: usize,
+        /// The first agent.
+        first: String,
+        /// The first agent's number of axes.
+        first_axes: usize,
+    },
+    /// A vector of one agent has the wrong length.
+    #[error("agent `{agent}`: {error}")]
+    Length {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: LengthError,
+    },
+    /// Another number of roots than the law takes.
+    #[error("agent `{agent}`: {error}")]
+    RootCount {
+        /// The agent.
+        agent: String,
+        /// How many there are, and how many there must be.
+        error: LengthError,
+    },
+    /// Limits for axes where the robot has another number of torques.
+    #[error("agent `{agent}`: {error}")]
+    TorqueLimitCount {
+        /// The agent.
+        agent: String,
+        /// Limits of rates, not of torques.
+        of_rates: bool,
+        /// How many there are, and how many there must be.
+        error: LengthError,
+    },
+    /// A manipulability gain beside a law that has none.
+    #[error("agent `{agent}`: {law} has no manipulability gain, but {value} is given")]
+    NoManipulability {
+        /// The agent.
+        agent: String,
+        /// Its law, in words.
+        law: &'static str,
+        /// The gain.
+        value: f64,
+    },
+    /// A number of one agent is not finite.
+    #[error("agent `{agent}`: {what} has the entry {value}, which is not a finite number")]
+    NotFinite {
+        /// The agent.
+        agent: String,
+        /// Which vector.
+        what: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// The roots of one agent.
+    #[error("agent `{agent}`: {error}")]
+    Roots {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: RootsError,
+    },
+    /// A nonlinear coupling of what it does not suit.
+    #[error("a nonlinear coupling goes with consensus by positions only")]
+    Coupling,
+    /// A law for a chain.
+    #[error("agent `{agent}`: {error}")]
+    Chain {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: ChainError,
+    },
+    /// The filter of the backstepping baseline.
+    #[error(transparent)]
+    Backstepping(#[from] BacksteppingError),
+    /// The reference dynamics do not go with what is exchanged.
+    #[error("the backstepping baseline exchanges positions only")]
+    BacksteppingExchange,
+    /// A gain of one agent.
+    #[error("agent `{agent}`: {gain}: {error}")]
+    Gain {
+        /// The agent.
+        agent: String,
+        /// `K` or `Γ`.
+        gain: &'static str,
+        /// What is wrong.
+        error: GainError,
+    },
+    /// A push on one agent.
+    #[error("agent `{agent}`, push {push}: {error}")]
+    Push {
+        /// The agent.
+        agent: String,
+        /// Which of its pushes, from one.
+        push: usize,
+        /// What is wrong.
+        error: PushError,
+    },
+    /// Limits are to be enforced, but an axis has none.
+    #[error("agent `{agent}`: limits are to be enforced, but axis `{axis}` has no effort limit")]
+    NoEffortLimit {
+        /// The agent.
+        agent: String,
+        /// The axis.
+        axis: String,
+    },
+    /// A law that is made for something else.
+    #[error("agent `{agent}`: {law} is made for {made_for}")]
+    LawOfAnother {
+        /// The agent.
+        agent: String,
+        /// Its law, in words.
+        law: &'static str,
+        /// What that is made for, in words.
+        made_for: &'static str,
+    },
+    /// A law that has reference dynamics of its own, beside reference dynamics that are another's.
+    #[error("agent `{agent}`: {law} does not go with these reference dynamics")]
+    ReferenceOfLaw {
+        /// The agent.
+        agent: String,
+        /// Its law, in words.
+        law: &'static str,
+    },
+    /// A law that cannot follow a target.
+    #[error("agent `{agent}`: {law} does not follow a target of its own; it goes with consensus")]
+    NotTracking {
+        /// The agent.
+        agent: String,
+        /// Its law, in words.
+        law: &'static str,
+    },
+    /// A law that cannot agree with others.
+    #[error("agent `{agent}`: {law} follows a target of its own; it does not agree with others")]
+    OnlyTracks {
+        /// The agent.
+        agent: String,
+        /// Its law, in words.
+        law: &'static str,
+    },
+    /// More of z(0), ż(0), … than the state of the reference dynamics has.
+    #[error("agent `{agent}`: {error}")]
+    StartOfReference {
+        /// The agent.
+        agent: String,
+        /// How many there are, and how many there may be.
+        error: LengthError,
+    },
+    /// Edges among agents that do not agree on anything.
+    #[error("agents that follow targets of their own hear nobody, but the network has edges ({edges} in all)")]
+    NobodyHears {
+        /// How many, over all graphs.
+        edges: usize,
+    },
+    /// A reference of too low an order for a law.
+    #[error("agent `{agent}`: its reference dynamics have order {order}, but its law needs {least} roots or more")]
+    OrderTooLow {
+        /// The agent.
+        agent: String,
+        /// How many roots it has.
+        order: usize,
+        /// How many it needs.
+        least: usize,
+    },
+    /// A law that transmits positions among agents that exchange more.
+    #[error("agent `{agent}`: {law} sends its position only, but the agents exchange positions and velocities")]
+    SendsPositionOnly {
+        /// The agent.
+        agent: String,
+        /// Its law, in words.
+        law: &'static str,
+    },
+    /// A position in space among positions that are no lengths.
+    #[error(
+        "agent `{vehicle}` moves in space and exchanges positions in m, but axis `{axis}` of `{agent}` is an angle; they have \
+         nothing to agree on"
+    )]
+    UnitsDiffer {
+        /// The agent in space.
+        vehicle: String,
+        /// The other.
+        agent: String,
+        /// Its axis.
+        axis: String,
+    },
+    /// A push on an agent whose law does not know any.
+    #[error("agent `{agent}`: pushes act on robots under the adaptive or the known law, not on {law}")]
+    NotPushed {
+        /// The agent.
+        agent: String,
+        /// Its law, in words.
+        law: &'static str,
+    },
+    /// Somebody talks to the leader.
+    #[error("`{leader}` leads and hears nobody, but an edge leads to it; leave that edge out")]
+    LeaderHears {
+        /// The leader.
+        leader: String,
+    },
+    /// Following a leader takes velocities.
+    #[error("following a leader exchanges positions and velocities")]
+    FollowingExchange,
+    /// q̈ or ż would have to be remembered.
+    #[error(
+        "a link has a delay of up to {delay_s} s, but accelerations are transmitted at once in continuous time; take the \
+         design that exchanges positions and velocities only, no delay, or sampled control"
+    )]
+    DelayedDerived {
+        /// The longest delay of the link, s.
+        delay_s: f64,
+    },
+    /// Nothing to track.
+    #[error("agent `{agent}` is to track a target, but has none")]
+    NoTarget {
+        /// The agent.
+        agent: String,
+    },
+    /// An offset for a law that knows none.
+    #[error("agent `{agent}`: {law} knows no offsets")]
+    NoOffsets {
+        /// The agent.
+        agent: String,
+        /// Its law, in words.
+        law: &'static str,
+    },
+    /// A tip whose Jacobian cannot be inverted.
+    #[error("agent `{agent}`: {error}")]
+    Tip {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: TipError,
+    },
+    /// A spacecraft that makes no sense.
+    #[error("agent `{agent}`: {error}")]
+    Spacecraft {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: SpacecraftError,
+    },
+    /// Bounds of kinematic parameters beside a full matrix Λ.
+    #[error("agent `{agent}`: bounds of kinematic parameters need Λ to be a number or a diagonal, not a matrix")]
+    ProjectionOfMatrix {
+        /// The agent.
+        agent: String,
+    },
+    /// A number of a law that makes no sense.
+    #[error("agent `{agent}`: {what} is {value}, but {requirement}")]
+    LawNumber {
+        /// The agent.
+        agent: String,
+        /// Which number.
+        what: &'static str,
+        /// The value.
+        value: f64,
+        /// What it must be.
+        requirement: &'static str,
+    },
+    /// Bounds of kinematic parameters that are not adapted.
+    #[error("agent `{agent}`: bounds of kinematic parameters have no effect where these are not adapted")]
+    BoundsOfKnown {
+        /// The agent.
+        agent: String,
+    },
+    /// A torque limit of one agent.
+    #[error("agent `{agent}`: {error}")]
+    Limiter {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: LimiterError,
+    },
+    /// What a sensor of velocities would do, where it has no part in anything.
+    #[error(
+        "{} is {value}, but {}", .quantity.words(),
+        if *.filtered { "velocities come from filtered differences of positions" } else { "no law measures velocities" }
+    )]
+    VelocityUnused {
+        /// What it is.
+        quantity: VelocityQuantity,
+        /// The value.
+        value: f64,
+        /// Whether there are velocities, but from positions.
+        filtered: bool,
+    },
+    /// Anything else that keeps an agent's controller from being built.
+    #[error("agent `{agent}`: {error}")]
+    Recipe {
+        /// The agent.
+        agent: String,
+        /// What is wrong.
+        error: RecipeError,
+    },
+    /// The filter that gives velocities.
+    #[error(transparent)]
+    VelocityFilter(FilterError),
+    /// A number of the digital control that makes no sense.
+    #[error("{what} is {value}, but {requirement}")]
+    Control {
+        /// What it is.
+        what: &'static str,
+        /// The value.
+        value: f64,
+        /// What it must be.
+        requirement: &'static str,
+    },
+    /// Messages that can still be heard take more than the budget before the run has begun.
+    #[error(
+        "messages that can still be heard take {need_bytes} bytes or more, but the memory budget is {budget_bytes} bytes"
+    )]
+    Memory {
+        /// The least that they take.
+        need_bytes: u64,
+        /// [`crate::Solver::memory_budget_bytes`].
+        budget_bytes: u64,
+    },
+    /// A time, tolerance or step that is not positive.
+    #[error("{what} is {value}, but must be positive and finite")]
+    NotPositive {
+        /// What it is.
+        what: &'static str,
+        /// The value.
+        value: f64,
+    },
+}
+
+impl SetupError {
+    /// The reference dynamics of `setup` do not lead the law of `agent`.
+    pub(crate) fn wrong_reference(setup: &Setup, agent: &AgentSetup) -> Self {
+        let (name, law) = (agent.name.clone(), agent.law.words());
+        let only_tracks = agent.interface().is_some_and(|interface| interface.follows == [ReferenceFamily::Target]);
+        match setup.reference {
+            ReferenceKind::Tracking => SetupError::NotTracking { agent: name, law },
+            _ if only_tracks => SetupError::OnlyTracks { agent: name, law },
+            _ => SetupError::ReferenceOfLaw { agent: name, law },
+        }
+    }
+}
+
+/// What is said of a sensor of velocities.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VelocityQuantity {
+    /// [`crate::Sensors::velocity_noise`].
+    Noise,
+    /// [`crate::Sensors::velocity_quantum`].
+    Step,
+    /// [`crate::VelocitySensor::Filtered`].
+    CutOff,
+}
+
+impl VelocityQuantity {
+    /// What it is called in messages.
+    pub fn words(self) -> &'static str {
+        match self {
+            VelocityQuantity::Noise => "the noise of velocities",
+            VelocityQuantity::Step => "the step of velocities",
+            VelocityQuantity::CutOff => "the cut-off of the filter of velocities",
+        }
+    }
+}
