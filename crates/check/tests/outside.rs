@@ -3,10 +3,10 @@
 
 use std::sync::Arc;
 
-use forwardstep_check::{Answer, Id, check};
+use forwardstep_check::{Answer, Id, Rigour, check};
 use forwardstep_core::robot::PointMass;
 use forwardstep_sim::delay::Delay;
-use forwardstep_sim::system::{ActuatorLimits, Attachments, Line, Naming, Robot};
+use forwardstep_sim::system::{Robot, RobotInterface};
 use forwardstep_sim::{AgentSetup, Known, LagrangianRobot, Network, RobotModel, RobotSetup, Setup, Signal, run};
 
 /// A mass that somebody else models, with what is shipped inside.
@@ -14,40 +14,12 @@ use forwardstep_sim::{AgentSetup, Known, LagrangianRobot, Network, RobotModel, R
 struct Sledge;
 
 impl Robot for Sledge {
-    fn velocity_len(&self, axes: usize) -> usize {
-        axes
-    }
-
-    fn rest_len(&self) -> usize {
-        0
-    }
-
-    fn moves_in_space(&self) -> bool {
-        false
-    }
-
-    fn same_model(&self, other: &dyn Robot) -> bool {
-        other.is::<Sledge>()
+    fn interface(&self, axes: usize) -> RobotInterface {
+        RobotInterface::mechanical(axes)
     }
 
     fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
         Some(self)
-    }
-
-    fn attachments(&self) -> Attachments<'_> {
-        Attachments::Axes
-    }
-
-    fn actuator_limits(&self) -> ActuatorLimits {
-        ActuatorLimits::Axes
-    }
-
-    fn naming(&self) -> Naming {
-        Naming { numbered_axes: false, torques_on_body: false }
-    }
-
-    fn lines(&self) -> Vec<Line> {
-        Vec::new()
     }
 }
 
@@ -56,6 +28,10 @@ impl RobotModel for Sledge {
 
     fn kernel(&self) -> PointMass {
         PointMass { dimension: 1 }
+    }
+
+    fn shares_kernel(&self, _: &Self) -> bool {
+        true
     }
 }
 
@@ -91,4 +67,23 @@ fn a_report_without_hypotheses_does_not_hold() {
     let mut report = check(&masses(false));
     report.hypotheses.clear();
     assert_eq!(report.worst(), Answer::NotCovered);
+}
+
+#[test]
+fn a_robot_that_lacks_a_property_is_violated_with_the_state() {
+    let mut setup = masses(true);
+    // Its kernel has one axis and one parameter, which is a mass.
+    setup.agents[0].robot.theta = vec![-2.0];
+    let report = check(&setup);
+    let declared = report.hypotheses.iter().find(|hypothesis| hypothesis.id == Id::Declared).unwrap();
+    assert_eq!((declared.answer(), declared.rigour()), (Answer::Violated, Rigour::Sampled));
+    let because = declared.because();
+    assert!(because.contains("M ≻ 0") && because.contains("-2 in place of 0"), "{because}");
+    assert_eq!(report.worst(), Answer::Violated);
+
+    // With as many parameters as it does not have, nothing can be tried, which shows nothing.
+    setup.agents[0].robot.theta = vec![2.0, 2.0];
+    let declared = check(&setup).hypotheses.into_iter().find(|hypothesis| hypothesis.id == Id::Declared).unwrap();
+    assert_eq!(declared.answer(), Answer::NotCovered);
+    assert!(declared.because().contains("could not be tried"), "{}", declared.because());
 }

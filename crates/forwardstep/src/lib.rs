@@ -30,6 +30,7 @@ extern crate self as forwardstep;
 mod arguments;
 mod commands;
 mod console;
+pub mod own;
 mod program;
 mod status;
 

@@ -11,13 +11,15 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use forwardstep::check::{Answer, Id, Rigour, check};
+use forwardstep::core::controller::{Asked, Balance, Feedback, FeedbackInput, Truth};
+use forwardstep::core::plant::VectorField;
 use forwardstep::io::SourceText;
 use forwardstep::io::output::{LimitKind, Metrics};
 use forwardstep::io::scenario::{Scenario, ScenarioError};
 use forwardstep::{program_with, sim};
 use miette::Diagnostic;
-use sim::system::{Declaration, Known};
-use sim::{Assembly, Block, Coordinates, Interface, Law, Line, RobotSetup, SetupError, Signal};
+use sim::system::{Declaration, DeclaredClaim, Known};
+use sim::{Assembly, Block, Interface, Law, LawWords, RobotSetup, SetupError, Signal};
 
 const TANKS: &str = r#"format = 1
 time = { end_s = 10 }
@@ -179,10 +181,57 @@ fn what_its_author_says_of_it_is_reported_as_declared_and_never_as_shown() {
     let report = check(&read(TANKS).unwrap().setup);
     assert_eq!(report.theorem.name(), "declared");
     let declared: Vec<_> = report.hypotheses.iter().filter(|hypothesis| hypothesis.id == Id::Declared).collect();
-    assert_eq!(declared.len(), 2, "one of each tank");
-    for hypothesis in declared {
+    assert_eq!(declared.len(), 4, "a claim and a balance of each tank");
+    for (index, hypothesis) in declared.into_iter().enumerate() {
         assert_eq!((hypothesis.answer(), hypothesis.rigour()), (Answer::NotCovered, Rigour::Declared));
-        assert!(hypothesis.because().ends_with("(declared, not shown)"), "{}", hypothesis.because());
+        let end = if index % 2 == 0 { "(declared, not shown)" } else { "it was so at 32 random states" };
+        assert!(hypothesis.because().ends_with(end), "{}", hypothesis.because());
+    }
+}
+
+#[test]
+fn a_balance_that_is_not_what_happens_is_violated_with_the_state() {
+    let mut setup = read(TANKS).unwrap().setup;
+    setup.agents[1].law = Arc::new(Boasts);
+    let report = check(&setup);
+    assert_eq!(report.worst(), Answer::Violated);
+    let violated: Vec<_> = report.hypotheses.iter().filter(|one| one.answer() == Answer::Violated).collect();
+    assert_eq!(violated.len(), 1);
+    assert!(violated[0].requires().contains("tank-2"), "{}", violated[0].requires());
+    assert!(violated[0].because().contains("V̇ is what the law says at "), "{}", violated[0].because());
+}
+
+/// Moves as slowly as u = −(x − x_d)/10 does, and says that it is ten times as fast.
+#[derive(Debug)]
+struct Boasts;
+
+impl Law for Boasts {
+    fn words(&self) -> LawWords {
+        LawWords { name: "the law that boasts", made_for: "tanks" }
+    }
+
+    fn interface(&self, _: &RobotSetup) -> Option<Interface> {
+        Some(Interface::tracking(&["level"]))
+    }
+
+    fn known(&self) -> Known {
+        let claim = DeclaredClaim { requires: "nothing".into(), because: "so it is".into() };
+        Known::Declared(Declaration { source: "none".into(), promises: "speed".into(), claims: vec![claim] })
+    }
+
+    fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
+        let states = [(Signal::Position, 1)];
+        let plant = VectorField::new(1, states, [(Signal::Torque, 1)], |_, u, dx| dx[0] = u[0]);
+        let law = |given: FeedbackInput<'_>, asked: Asked<'_>| {
+            let [x_d, dx_d, ..] = given.target(0);
+            asked.input[0] = dx_d - 0.1 * (given.output[0] - x_d);
+        };
+        let balance = |_: Truth<'_, _>, given: FeedbackInput<'_>, _: &[f64]| {
+            let error = given.output[0] - given.target(0)[0];
+            Balance { value: 0.5 * error * error, dissipation: error * error }
+        };
+        let controller = Feedback::new(&plant, [], law, balance);
+        assembly.solo(plant, controller)
     }
 }
 
@@ -209,28 +258,12 @@ struct Says {
 }
 
 impl Law for Says {
-    fn words(&self) -> &'static str {
+    fn words(&self) -> LawWords {
         self.law.words()
-    }
-
-    fn made_for(&self) -> &'static str {
-        self.law.made_for()
     }
 
     fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
         self.law.interface(robot)
-    }
-
-    fn coordinates(&self) -> Option<Coordinates> {
-        self.law.coordinates()
-    }
-
-    fn lines(&self, robot: &RobotSetup) -> Vec<Line> {
-        self.law.lines(robot)
-    }
-
-    fn shares_batch(&self, _: &dyn Law) -> bool {
-        false
     }
 
     fn known(&self) -> Known {

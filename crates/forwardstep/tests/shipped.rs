@@ -2,13 +2,15 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use forwardstep::check::{Answer, check};
 use forwardstep::core::Gain;
 use forwardstep::io::output::Metrics;
 use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
+use forwardstep::sim::probe::{STATES, probe_balance};
 use forwardstep::sim::trajectory::{Path, Sinusoid, Trajectory};
-use forwardstep::sim::{Ending, TaskSpaceLaw, simulate};
+use forwardstep::sim::{Ending, ReferenceKind, RotorcraftModel, TaskSpaceLaw, simulate};
 
 fn shows_what_it_says(name: &str) {
     let scenario = open_scenario(name).unwrap_or_else(|error| panic!("{error}"));
@@ -28,6 +30,32 @@ fn shows_what_it_says(name: &str) {
     let metrics = Metrics::of(setup, &outcome.recording, None, scenario.goal);
     let goal = scenario.goal.unwrap();
     assert!(goal.is_met(setup, &outcome, &metrics), "{}: {:?}", goal.words(), metrics.disagreement);
+}
+
+/// At random states, times and messages, by differences of V and without a run.
+#[test]
+fn thm_lyapunov_function_of_every_kind_changes_as_its_law_says() {
+    let mut failed = Vec::new();
+    for name in SHIPPED_SCENARIOS.iter().map(|scenario| scenario.name) {
+        let mut setup = open_scenario(name).unwrap().setup;
+        for agent in &mut setup.agents {
+            // What rotors do not give is not what the balance balances.
+            if let Some(model) = agent.robot.kind.downcast::<RotorcraftModel>() {
+                agent.robot.kind = Arc::new(RotorcraftModel { rotors: None, ..model.clone() });
+            }
+        }
+        // There z is a sum of messages, which do not stand still while the agent moves.
+        if matches!(setup.reference, ReferenceKind::Backstepping { .. }) {
+            continue;
+        }
+        for agent in 0..setup.agents.len() {
+            let probe = probe_balance(&setup, agent).unwrap();
+            if probe.found.is_some() || probe.states <= STATES / 2 {
+                failed.push((name, agent, probe));
+            }
+        }
+    }
+    assert!(failed.is_empty(), "{failed:?}");
 }
 
 /// Its gains were found by trial. With any of them a fifth smaller or larger the goal is met as well.

@@ -115,7 +115,7 @@ impl AgentSetup {
     /// An agent at rest at zero, without roots.
     pub fn new(name: impl Into<String>, robot: RobotSetup, law: impl Law) -> Self {
         let axes = robot.axes.len();
-        let (dq, rest) = (vec![0.0; robot.velocity_len()], vec![0.0; robot.kind.rest_len()]);
+        let (dq, rest) = (vec![0.0; robot.velocity_len()], vec![0.0; robot.interface().rest_len]);
         AgentSetup {
             name: name.into(),
             robot,
@@ -171,7 +171,7 @@ impl Network {
         Network::switching(agents, Schedule::Periodic(graphs.into_iter().map(phase).collect()), vec![delay])
     }
 
-    fn switching(agents: usize, schedule: Schedule, delays: Vec<Delay>) -> Self {
+    pub(crate) fn switching(agents: usize, schedule: Schedule, delays: Vec<Delay>) -> Self {
         Network { agents, schedule, delays, weights: Vec::new(), coupling: Coupling::Linear }
     }
 }

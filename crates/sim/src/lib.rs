@@ -15,6 +15,7 @@ pub mod formula;
 pub mod graph;
 pub mod leader;
 pub mod network;
+pub mod probe;
 pub mod push;
 pub mod recording;
 pub mod schedule;
@@ -42,5 +43,6 @@ pub use setup::{
 };
 pub use simulate::{recorded_columns, simulate, simulate_samples};
 pub use system::{
-    ActuatorLimits, Attachments, Coordinates, Interface, Law, Line, LineValue, Naming, ReferenceFamily, Robot,
+    ActuatorLimits, Attachments, Coordinates, Interface, Law, LawWords, Line, LineValue, PositionKind, ReferenceFamily,
+    Robot, RobotInterface,
 };

@@ -263,7 +263,7 @@ impl Push {
 
 impl Grip {
     fn check(&self, robot: &RobotSetup) -> Result<(), PushError> {
-        match (self, robot.kind.attachments()) {
+        match (self, robot.interface().attachments) {
             (Grip::Link { point, .. }, Attachments::Links(tree)) => {
                 if let Some(body) = point.link.body.filter(|body| *body >= tree.joint_count()) {
                     return Err(PushError::NoSuchBody { body, bodies: tree.joint_count() });

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::leader::{Following, FollowingDesign};
 use crate::network::Network;
 use crate::push::Push;
-use crate::system::{Interface, Law, ReferenceFamily, Robot};
+use crate::system::{Interface, Law, ReferenceFamily, Robot, RobotInterface};
 use crate::trajectory::Trajectory;
 
 /// A network of agents and how long to watch it.
@@ -193,9 +193,14 @@ pub struct RobotSetup {
 }
 
 impl RobotSetup {
+    /// What its data mean.
+    pub fn interface(&self) -> RobotInterface {
+        self.kind.interface(self.axes.len())
+    }
+
     /// Numbers of a velocity, which are those of a position but for a spacecraft.
     pub fn velocity_len(&self) -> usize {
-        self.kind.velocity_len(self.axes.len())
+        self.interface().velocity_len
     }
 }
 

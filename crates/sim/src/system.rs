@@ -1,13 +1,15 @@
 //! The door through which every kind of system comes: what is asked of a robot and of a law, whoever wrote them.
 //!
-//! A [`Robot`] is a plant as data, a [`Law`] what controls it. Features (pushes, targets, offsets, sampling, verdicts, tables)
-//! ask [`Law::interface`] and these traits; none of them asks what kind of system it has before it. No method has a default
-//! body: whoever writes a kind answers every question.
+//! A [`Robot`] is a plant as data, a [`Law`] what controls it. Each says as data what it is and can do, [`RobotInterface`] and
+//! [`Interface`]. Features (pushes, targets, offsets, sampling, verdicts, tables) ask these; none of them asks what kind of system
+//! it has before it. No method has a default body, and what an interface does not state, its system cannot do: a feature that
+//! asks for it is refused.
 
 use std::any::Any;
 use std::fmt::Debug;
 use std::sync::Arc;
 
+use forwardstep_core::controller::Controller;
 use forwardstep_core::robot::tree::Tree;
 
 use crate::agents::LagrangianRobot;
@@ -17,32 +19,59 @@ use crate::setup::{AxisUnit, Exchange, RobotSetup};
 
 /// A plant as data: its geometry, which is known, but not its true parameters, which stand beside it in [`RobotSetup`].
 pub trait Robot: Any + Debug + Send + Sync {
-    /// Numbers of a velocity of a robot with so many axes; zero for a plant that has none.
-    fn velocity_len(&self, axes: usize) -> usize;
-
-    /// Numbers in a start beside q and q̇.
-    fn rest_len(&self) -> usize;
-
-    /// Whether its position is a point of space, so that whoever agrees with it has positions in m.
-    fn moves_in_space(&self) -> bool;
-
-    /// Whether `other` is the same model, whatever its parameters, so that kernels can be shared.
-    fn same_model(&self, other: &dyn Robot) -> bool;
+    /// What its data mean, with so many axes.
+    fn interface(&self, axes: usize) -> RobotInterface;
 
     /// Itself as a robot with the three properties of Section II-B, if it is one.
     fn lagrangian(&self) -> Option<&dyn LagrangianRobot>;
+}
 
+/// What a robot is made of. Every feature asks this.
+#[derive(Clone, Debug)]
+pub struct RobotInterface {
+    /// Numbers of a velocity; zero for a plant that has none.
+    pub velocity_len: usize,
+    /// Numbers in a start beside q and q̇.
+    pub rest_len: usize,
+    /// What its position is.
+    pub position: PositionKind,
     /// Where forces can act on it.
-    fn attachments(&self) -> Attachments<'_>;
-
+    pub attachments: Attachments,
     /// Whose limits are those of its actuators.
-    fn actuator_limits(&self) -> ActuatorLimits;
-
-    /// What its axes and torques are called.
-    fn naming(&self) -> Naming;
-
+    pub actuator_limits: ActuatorLimits,
+    /// Whether its axes have numbers in place of their names.
+    pub numbered_axes: bool,
+    /// Whether its torques act about the axes of its body, in N m, whatever its axes are.
+    pub torques_on_body: bool,
     /// Limits of its own, which are not those of its axes, and other values to compare its signals with.
-    fn lines(&self) -> Vec<Line>;
+    pub lines: Vec<Line>,
+}
+
+impl RobotInterface {
+    /// A mechanical system with a velocity for every axis and an actuator on every axis, whose limits are those of the axes.
+    pub fn mechanical(axes: usize) -> Self {
+        RobotInterface {
+            velocity_len: axes,
+            rest_len: 0,
+            position: PositionKind::Coordinates,
+            attachments: Attachments::Axes,
+            actuator_limits: ActuatorLimits::Axes,
+            numbered_axes: false,
+            torques_on_body: false,
+            lines: Vec::new(),
+        }
+    }
+}
+
+/// What the position of a robot is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PositionKind {
+    /// Coordinates of a configuration.
+    Coordinates,
+    /// A point of space, so that whoever agrees with it has positions in m.
+    Point,
+    /// A unit quaternion, vector part first. A target may have any length but zero, and q and −q are the same position.
+    UnitQuaternion,
 }
 
 impl dyn Robot {
@@ -55,15 +84,6 @@ impl dyn Robot {
     pub fn is<R: Robot>(&self) -> bool {
         self.downcast::<R>().is_some()
     }
-}
-
-/// What axes and torques of a robot are called.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Naming {
-    /// Whether its axes have numbers in place of their names.
-    pub numbered_axes: bool,
-    /// Whether its torques act about the axes of its body, in N m, whatever its axes are.
-    pub torques_on_body: bool,
 }
 
 /// A value to compare a signal with: reports draw it, and limits are watched.
@@ -91,14 +111,14 @@ pub enum LineValue {
 }
 
 /// Where forces can act on a robot.
-#[derive(Clone, Copy, Debug)]
-pub enum Attachments<'a> {
+#[derive(Clone, Debug)]
+pub enum Attachments {
     /// On its axes only.
     Axes,
     /// On its axes, and on the end of its second link.
     PlanarTip,
     /// On its axes, and on any point of any link.
-    Links(&'a Arc<Tree>),
+    Links(Arc<Tree>),
 }
 
 /// Whose limits are enforced where limits are to be enforced.
@@ -114,24 +134,11 @@ pub enum ActuatorLimits {
 
 /// The law of one agent, as data.
 pub trait Law: Any + Debug + Send + Sync {
-    /// What it is called in messages.
-    fn words(&self) -> &'static str;
-
-    /// What it is made for, in messages.
-    fn made_for(&self) -> &'static str;
+    /// What messages call it.
+    fn words(&self) -> LawWords;
 
     /// What it can do beside `robot`; `None` when it is made for another kind.
     fn interface(&self, robot: &RobotSetup) -> Option<Interface>;
-
-    /// What follows the target of `robot`, where that is something else than its axes.
-    fn coordinates(&self) -> Option<Coordinates>;
-
-    /// Values to compare its signals with, beside `robot`.
-    fn lines(&self, robot: &RobotSetup) -> Vec<Line>;
-
-    /// Whether an agent under this law and one under `other` can stand side by side in one batch, if their robots are the
-    /// same model and their references have the same order.
-    fn shares_batch(&self, other: &dyn Law) -> bool;
 
     /// What is known of it about the long run.
     fn known(&self) -> Known;
@@ -143,7 +150,21 @@ pub trait Law: Any + Debug + Send + Sync {
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError>;
 }
 
+/// What messages call a law: *the law for a level is made for tanks*.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LawWords {
+    /// Its name, with an article.
+    pub name: &'static str,
+    /// The robots that it is made for.
+    pub made_for: &'static str,
+}
+
 impl dyn Law {
+    /// Whether both are laws of one type, whatever their gains.
+    pub fn same_type(&self, other: &dyn Law) -> bool {
+        self.type_id() == other.type_id()
+    }
+
     /// Itself as an `L`, if it is one.
     pub fn downcast<L: Law>(&self) -> Option<&L> {
         (self as &dyn Any).downcast_ref()
@@ -156,7 +177,7 @@ impl dyn Law {
 }
 
 /// What a law can do beside a robot. Every feature asks this; what it says no to is refused with the reason.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Interface {
     /// What it measures, in words: `position`, `velocity`, …. It cannot read anything else.
     pub measures: &'static [&'static str],
@@ -176,6 +197,38 @@ pub struct Interface {
     pub pushed: bool,
     /// Whether it estimates parameters of its robot.
     pub estimates: bool,
+    /// Whether agents under laws of this type whose robots have the same kernel and whose references have the same order are
+    /// built side by side, as one batch.
+    pub in_batches: bool,
+    /// What follows a target, where that is something else than the axes of the robot.
+    pub coordinates: Option<Coordinates>,
+    /// Values to compare its signals with.
+    pub lines: Vec<Line>,
+}
+
+impl Interface {
+    /// A law that follows a target of its own, exchanges positions, if anything, and has no further feature.
+    pub fn tracking(measures: &'static [&'static str]) -> Self {
+        Interface {
+            measures,
+            exchanges: &[Exchange::Position],
+            follows: &[ReferenceFamily::Target],
+            measures_velocity: false,
+            manipulability: false,
+            tracks_by_roots: false,
+            offsets: false,
+            pushed: false,
+            estimates: false,
+            in_batches: false,
+            coordinates: None,
+            lines: Vec::new(),
+        }
+    }
+
+    /// The same for a controller, with offsets if it knows them.
+    pub fn of<C: Controller>() -> Self {
+        Interface { offsets: C::KNOWS_OFFSETS, ..Interface::tracking(C::MEASURES) }
+    }
 }
 
 /// What is known of a law about the long run.

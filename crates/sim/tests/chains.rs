@@ -32,7 +32,7 @@ fn thm3_chains_of_different_orders_agree_over_switching_delayed_links() {
         let outcome = run(&setup);
         let last = outcome.recording.columns[0].values.len() - 1;
         let (first, end) = (spread(&outcome, 0), spread(&outcome, last));
-        assert!(end < 1e-3 * first, "{}: {first} to {end}", setup.agents[0].law.words());
+        assert!(end < 1e-3 * first, "{}: {first} to {end}", setup.agents[0].law.words().name);
     }
 }
 

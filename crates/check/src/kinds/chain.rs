@@ -24,7 +24,7 @@ impl KindCheck for Chain {
 
     fn claim(&self, setup: &Setup) -> Option<Claim> {
         let all: Vec<usize> = (0..setup.agents.len()).collect();
-        let mut steps: Vec<&str> = chains(setup, &all).map(|(_, law, _)| law.words()).collect();
+        let mut steps: Vec<&str> = chains(setup, &all).map(|(_, law, _)| law.words().name).collect();
         steps.dedup();
         Some(match setup.reference {
             ReferenceKind::Tracking => Claim {

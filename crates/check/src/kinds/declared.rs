@@ -1,5 +1,6 @@
 //! Laws from outside: what their authors say of them, reported as declared and never as shown.
 
+use forwardstep_sim::probe::probe_balance;
 use forwardstep_sim::system::{Declaration, DeclaredClaim, Known};
 use forwardstep_sim::{AgentSetup, Setup};
 
@@ -31,11 +32,15 @@ impl KindCheck for DeclaredKind {
     fn hypotheses(&self, setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
         let mut hypotheses = Vec::new();
         for index in agents {
+            let subject = || Subject::Agent(Named::of(setup, *index));
             for claim in declaration(&setup.agents[*index]).claims {
-                let subject = Subject::Agent(Named::of(setup, *index));
                 let evidence = KindEvidence::Declared { requires: claim.requires, because: claim.because };
-                hypotheses.push(Hypothesis::about(Id::Declared, subject, evidence));
+                hypotheses.push(Hypothesis::about(Id::Declared, subject(), evidence));
             }
+            // A setup that cannot be built is refused before anybody asks what is known of it.
+            let probe = probe_balance(setup, *index).unwrap_or_default();
+            let requires = "V changes as the law says that it does".into();
+            hypotheses.push(Hypothesis::about(Id::Declared, subject(), KindEvidence::Probed { requires, probe }));
         }
         hypotheses
     }

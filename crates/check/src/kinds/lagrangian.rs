@@ -56,10 +56,12 @@ fn is_shipped(agent: &AgentSetup) -> bool {
 }
 
 /// That the inertia matrix is positive definite, Ṁ − 2C skew-symmetric and Y θ the dynamics: of a robot from outside, only its
-/// author says so.
+/// author says so, and random states can only refute it.
 fn three_properties(setup: &Setup, agent: usize) -> Hypothesis {
+    let robot = &setup.agents[agent].robot;
+    let probe = robot.kind.lagrangian().and_then(|model| model.probe(robot).ok()).unwrap_or_default();
     let requires = "its robot has the three properties of Section II-B".into();
-    let evidence = KindEvidence::Declared { requires, because: "it is given as a robot that has them".into() };
+    let evidence = KindEvidence::Probed { requires, probe };
     Hypothesis::about(Id::Declared, Subject::Agent(Named::of(setup, agent)), evidence)
 }
 

@@ -143,6 +143,7 @@ impl Controller for AdaptiveBackstepping {
     type Scratch = BacksteppingWork;
 
     const MEASURES: &'static [&'static str] = &["all states of the chain"];
+    const KNOWS_OFFSETS: bool = false;
 
     fn scratch(&self) -> BacksteppingWork {
         BacksteppingWork {
@@ -245,6 +246,8 @@ impl Controller for AdaptiveBackstepping {
     fn trouble(&self, _: &[f64], shown: &[f64]) -> Option<Trouble> {
         vanishes(*shown.get(self.vectors() + self.order)?, self.floor)
     }
+
+    fn settle(&self, _: &mut [f64]) {}
 
     fn balance(
         &self,

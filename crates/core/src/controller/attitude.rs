@@ -32,7 +32,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{Asked, Balance, Controller, Given, Jet, Truth};
+use super::{Asked, Balance, Controller, Given, Jet, Trouble, Truth};
 use crate::attitude::{
     Desired, Quaternion, angle, cross, difference, dot, normalized, rate_inertial, rotate, rotate_back, times,
 };
@@ -109,6 +109,7 @@ impl Controller for AttitudeTracking {
     type Scratch = ();
 
     const MEASURES: &'static [&'static str] = &["attitude"];
+    const KNOWS_OFFSETS: bool = false;
 
     fn scratch(&self) {}
 
@@ -215,6 +216,10 @@ impl Controller for AttitudeTracking {
             let settled = normalized(four(q_z));
             q_z.copy_from_slice(&settled);
         }
+    }
+
+    fn trouble(&self, _: &[f64], _: &[f64]) -> Option<Trouble> {
+        None
     }
 
     fn balance(

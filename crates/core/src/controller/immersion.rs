@@ -159,6 +159,7 @@ impl Controller for Immersion {
     type Scratch = ImmersionWork;
 
     const MEASURES: &'static [&'static str] = &["position", "its derivatives below the order of the plant"];
+    const KNOWS_OFFSETS: bool = false;
 
     fn scratch(&self) -> ImmersionWork {
         ImmersionWork {
@@ -234,6 +235,8 @@ impl Controller for Immersion {
     fn trouble(&self, _: &[f64], shown: &[f64]) -> Option<Trouble> {
         self.following.trouble(self.terms.order(), shown)
     }
+
+    fn settle(&self, _: &mut [f64]) {}
 
     fn balance(
         &self,

@@ -100,6 +100,7 @@ impl<T: Terms> Controller for Linearising<T> {
     type Scratch = FollowingWork<T::Scratch>;
 
     const MEASURES: &'static [&'static str] = &["position", "its derivatives below the order of the plant"];
+    const KNOWS_OFFSETS: bool = false;
 
     fn scratch(&self) -> Self::Scratch {
         self.following.work(&self.terms)
@@ -165,6 +166,8 @@ impl<T: Terms> Controller for Linearising<T> {
     fn trouble(&self, _: &[f64], shown: &[f64]) -> Option<Trouble> {
         self.following.trouble(self.terms.order(), shown)
     }
+
+    fn settle(&self, _: &mut [f64]) {}
 
     fn balance(
         &self,

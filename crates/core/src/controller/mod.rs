@@ -8,6 +8,7 @@
 //! - `linearising`, `immersion`: (33) by feedback linearisation, with χ known or adapted, and by immersion and
 //!   invariance; `following` is what they share.
 //! - `adaptive_backstepping`: strict-feedback and pure-feedback chains; `steps` is the recursion.
+//! - `feedback`: any, from closures.
 //! - `guide`: where z leads, for plants of any order.
 //! - `position_only`: (a7)–(a9), a point mass without velocity measurement.
 //! - `thrust`: (45)–(58), vehicles with one thrust, by angular velocities or by torques.
@@ -16,6 +17,7 @@
 
 mod adaptive_backstepping;
 mod attitude;
+mod feedback;
 mod following;
 mod guide;
 mod immersion;
@@ -28,6 +30,7 @@ mod thrust;
 
 pub use adaptive_backstepping::{AdaptiveBackstepping, BacksteppingGains, BacksteppingWork};
 pub use attitude::{AttitudeMeasured, AttitudeTracking};
+pub use feedback::{Feedback, FeedbackInput};
 pub use following::{ChainError, ChainMeasured, Following, FollowingWork};
 pub use guide::{Guide, GuideError, GuideWork, Leads};
 pub use immersion::{Immersion, ImmersionWork};
@@ -128,7 +131,7 @@ pub trait Controller: Clone + Send + Sync + 'static {
     const MEASURES: &'static [&'static str];
 
     /// Whether a target may also be an offset from where all agree.
-    const KNOWS_OFFSETS: bool = false;
+    const KNOWS_OFFSETS: bool;
 
     /// Allocates working memory.
     fn scratch(&self) -> Self::Scratch;
@@ -174,15 +177,10 @@ pub trait Controller: Clone + Send + Sync + 'static {
     ) -> Result<(), LengthError>;
 
     /// Brings `state` back to its manifold, as [`Plant::settle`] does.
-    fn settle(&self, state: &mut [f64]) {
-        let _ = state;
-    }
+    fn settle(&self, state: &mut [f64]);
 
     /// What is about to go wrong in this state.
-    fn trouble(&self, state: &[f64], shown: &[f64]) -> Option<Trouble> {
-        let _ = (state, shown);
-        None
-    }
+    fn trouble(&self, state: &[f64], shown: &[f64]) -> Option<Trouble>;
 
     /// V and −V̇ by the proof, of a plant and its controller in continuous time. `shown` is what [`Controller::evaluate`]
     /// left.

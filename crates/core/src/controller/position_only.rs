@@ -33,7 +33,7 @@
 use alloc::vec::Vec;
 
 use super::guide::{Guide, GuideWork, Leads};
-use super::{Asked, Balance, Controller, Given, Truth};
+use super::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::LengthError;
 use crate::plant::Mechanical;
 use crate::reference::Position;
@@ -98,6 +98,7 @@ impl Controller for PositionOnly {
     type Scratch = GuideWork;
 
     const MEASURES: &'static [&'static str] = &["position"];
+    const KNOWS_OFFSETS: bool = false;
 
     fn scratch(&self) -> GuideWork {
         self.guide.work(self.axes)
@@ -188,6 +189,12 @@ impl Controller for PositionOnly {
         asked.shown[..p].copy_from_slice(&state[..p]);
         asked.shown[i] = m_hat;
         Ok(())
+    }
+
+    fn settle(&self, _: &mut [f64]) {}
+
+    fn trouble(&self, _: &[f64], _: &[f64]) -> Option<Trouble> {
+        None
     }
 
     fn balance(

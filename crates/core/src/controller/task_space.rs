@@ -244,6 +244,7 @@ where
     type Scratch = TaskWork<R::Scratch>;
 
     const MEASURES: &'static [&'static str] = &["position", "velocity", "task-space position"];
+    const KNOWS_OFFSETS: bool = false;
 
     fn scratch(&self) -> Self::Scratch {
         let (m, p) = (self.tip.axes(), self.tip.parameter_count());
@@ -372,6 +373,8 @@ where
         let vanishes = if start < 0.0 { value > floor } else { value < floor };
         vanishes.then_some(Trouble::Vanishes { signal: Signal::Determinant, axis: 0, value, floor })
     }
+
+    fn settle(&self, _: &mut [f64]) {}
 
     fn balance(
         &self,

@@ -218,6 +218,10 @@ impl Plant for Cascade {
         Ok(())
     }
 
+    fn limit(&self, _: &[f64], _: &mut [f64]) {}
+
+    fn settle(&self, _: &mut [f64]) {}
+
     fn rate(
         &self,
         work: &mut CascadeWork,

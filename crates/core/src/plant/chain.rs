@@ -224,6 +224,10 @@ impl<T: Terms> Plant for Chain<T> {
         Ok(())
     }
 
+    fn limit(&self, _: &[f64], _: &mut [f64]) {}
+
+    fn settle(&self, _: &mut [f64]) {}
+
     fn rate(
         &self,
         work: &mut Self::Scratch,

@@ -51,6 +51,10 @@ impl<R: Lagrangian<f64> + Send + Sync + 'static> Plant for Mechanical<R> {
         Ok(())
     }
 
+    fn limit(&self, _: &[f64], _: &mut [f64]) {}
+
+    fn settle(&self, _: &mut [f64]) {}
+
     fn rate(
         &self,
         scratch: &mut Self::Scratch,

@@ -10,6 +10,7 @@ mod mechanical;
 mod rotorcraft;
 mod spacecraft;
 mod task_arm;
+mod vector_field;
 mod vehicle;
 
 pub use cascade::{Cascade, CascadeError, CascadeTerms, CascadeWork};
@@ -18,6 +19,7 @@ pub use mechanical::Mechanical;
 pub use rotorcraft::{Rotorcraft, Rotors};
 pub use spacecraft::{Spacecraft, SpacecraftError, Wheel, Wheels};
 pub use task_arm::TaskArm;
+pub use vector_field::VectorField;
 pub use vehicle::{Vehicle, VehicleState};
 
 use alloc::vec::Vec;
@@ -60,10 +62,8 @@ pub trait Plant: Send + Sync + 'static {
     /// [`LengthError`] when a slice has the wrong length.
     fn output(&self, scratch: &mut Self::Scratch, state: &[f64], output: &mut [f64]) -> Result<(), LengthError>;
 
-    /// What becomes of an input that is asked for: limits of actuators. `state` is the present one.
-    fn limit(&self, state: &[f64], input: &mut [f64]) {
-        let _ = (state, input);
-    }
+    /// Limits `input` to what the actuators can give in `state`.
+    fn limit(&self, state: &[f64], input: &mut [f64]);
 
     /// d/dt of `state` under `input`.
     ///
@@ -79,9 +79,7 @@ pub trait Plant: Send + Sync + 'static {
 
     /// Brings `state`, which rounding and truncation have led away by little, back to its manifold: unit quaternions have
     /// norm one.
-    fn settle(&self, state: &mut [f64]) {
-        let _ = state;
-    }
+    fn settle(&self, state: &mut [f64]);
 }
 
 /// Numbers in all blocks.

@@ -60,6 +60,10 @@ where
         self.tip.position(&motion[..self.arm.axes()], &self.tip_theta, x)
     }
 
+    fn limit(&self, _: &[f64], _: &mut [f64]) {}
+
+    fn settle(&self, _: &mut [f64]) {}
+
     fn rate(
         &self,
         scratch: &mut Self::Scratch,

@@ -110,6 +110,8 @@ impl Plant for Vehicle {
         Ok(())
     }
 
+    fn limit(&self, _: &[f64], _: &mut [f64]) {}
+
     fn rate(&self, (): &mut (), state: &[f64], input: &[f64], d_state: &mut [f64]) -> Result<(), LengthError> {
         LengthError::check("state", VehicleState::LEN, state.len())?;
         LengthError::check("rate", VehicleState::LEN, d_state.len())?;

@@ -255,7 +255,7 @@ fn limits_reached(table: &Table<'_>) -> Vec<LimitReached> {
                 found.extend(beyond(table.t_s, values, range, place, kind == LimitKind::Effort));
             }
         }
-        for line in setup.robot.kind.lines() {
+        for line in setup.robot.interface().lines {
             let (limit, clips) = match line.value {
                 LineValue::Limit(limit) => (limit, false),
                 LineValue::Clip(limit) => (limit, true),

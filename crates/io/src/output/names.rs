@@ -18,7 +18,7 @@ pub fn agent_name(setup: &Setup, agent: usize) -> String {
 pub fn axis_name(setup: &Setup, agent: usize, axis: usize) -> String {
     let robot = setup.agents.get(agent).map(|a| &a.robot);
     match robot {
-        Some(robot) if !robot.kind.naming().numbered_axes => robot.axes.get(axis).map(|a| a.name.clone()),
+        Some(robot) if !robot.interface().numbered_axes => robot.axes.get(axis).map(|a| a.name.clone()),
         _ => None,
     }
     .unwrap_or_else(|| (axis + 1).to_string())
@@ -68,7 +68,7 @@ pub fn parameter_name(setup: &Setup, agent: usize, index: usize) -> String {
 /// What an entry of a signal is called; nothing for signals with a single entry.
 pub fn entry_name(setup: &Setup, agent: usize, signal: Signal, entry: usize) -> Option<String> {
     let number = || (entry + 1).to_string();
-    let coordinates = || setup.agents.get(agent)?.law.coordinates();
+    let coordinates = || setup.agents.get(agent)?.interface()?.coordinates;
     Some(match signal.row().entries {
         Entries::One => return None,
         Entries::Axes => axis_name(setup, agent, entry),
@@ -128,7 +128,7 @@ pub fn axis_unit(setup: &Setup, agent: usize, axis: usize) -> Option<AxisUnit> {
 
 /// Whether the torques of an agent act about the axes of its body.
 fn turns(setup: &Setup, agent: usize) -> bool {
-    setup.agents.get(agent).is_some_and(|agent| agent.robot.kind.naming().torques_on_body)
+    setup.agents.get(agent).is_some_and(|agent| agent.robot.interface().torques_on_body)
 }
 
 /// What is to vanish: distances from targets, or between agents.
@@ -172,7 +172,7 @@ pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String 
         Unit::Axis(1) => format!("{length}/s"),
         Unit::Axis(k) => format!("{length}/s^{k}"),
         Unit::Target => {
-            let coordinates = setup.agents.get(agent).and_then(|agent| agent.law.coordinates());
+            let coordinates = setup.agents.get(agent).and_then(|agent| agent.interface()?.coordinates);
             letters(coordinates.map_or(own, |of| Some(of.unit))).into()
         }
         Unit::Torque if turns(setup, agent) => "N m".into(),

@@ -4,9 +4,10 @@ use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 use std::rc::Rc;
 
-use forwardstep_sim::{AgentSetup, RobotSetup};
+use forwardstep_sim::{ActuatorLimits, AgentSetup, PositionKind, RobotSetup};
 
 use super::at::At;
+use super::attitude::{never_zero, shortest_rotation};
 use super::document::{Document, KeyedLaw};
 use super::fault::{Fault, count, fault, filled, positive};
 use super::file::{AgentFile, AgentReferenceFile, ReferenceFile, ScenarioFile};
@@ -80,11 +81,11 @@ pub(super) fn agents(source: &Source<'_>, folder: &mut InputFolder, notices: &mu
                 return Err(fault(&entry.value.name, problem).into());
             }
         }
-        let kind = document.robot(number, kinds)?;
+        let (usual_law, kind) = document.robot(number, kinds)?;
         let read = kind.read(folder).map_err(|stop| stop.at(&entry.value.robot.span))?;
         let law = match document.law(number, kinds)? {
             Some(law) => law,
-            None => kinds.usual_law(kind.usual_law()).map_err(|fault| fault.at(&entry.value.robot.span))?,
+            None => kinds.usual_law(usual_law).map_err(|fault| fault.at(&entry.value.robot.span))?,
         };
         let population = Population { file: &entry.value, names, kind, read, law: Rc::new(law) };
         if let Some(first) = populations.first() {
@@ -160,16 +161,20 @@ impl Member<'_> {
         let Member { population: Population { file: entry, names, kind, read, law }, index, first, of, sharing } =
             *self;
         let name = &names[index];
-        let (robot, body) = match Spread::of(entry, name, index)? {
-            None => (read.robot.clone(), read.body.clone()),
-            Some(spread) => kind.spread(read, &spread).map_err(|fault| fault.at(&entry.robot.span))?,
-        };
+        let mut read = read.clone();
+        if let Some(spread) = Spread::of(entry, name, index)? {
+            kind.spread(&mut read, &spread).map_err(|fault| fault.at(&entry.robot.span))?;
+        }
+        let RobotRead { robot, body, .. } = read;
         let Design { roots_per_s, manipulability, free_derivatives } = design(file, entry, name)?;
         let place = entry.law.as_ref().or(file.law.as_ref()).map_or(&entry.robot.span, |law| &law.span);
         let law = kinds.build(law, &LawReader { agent: name, robot: &robot, body: &body, sharing });
         let law = law.map_err(|fault| fault.at(place))?;
         // Where something else than its axes follows the target, the law names it.
-        let axes = law.coordinates().map_or_else(|| axis_names(&robot), |named| named.names);
+        let axes = law
+            .interface(&robot)
+            .and_then(|law| law.coordinates)
+            .map_or_else(|| axis_names(&robot), |named| named.names);
         let owner = Owner { name, axes: &axes, end_s };
         let target = entry.target.as_ref().map(|file| target(file, &owner, folder)).transpose()?;
         let own = entry.start.as_ref().map(|file| Shared { file, index, of: names.len() });
@@ -178,8 +183,11 @@ impl Member<'_> {
         let mut start = kind.start(&robot, &mut given)?;
         given.reject_unused()?;
         asked.extend(given.asked());
-        if let (Some(target), Some(place)) = (&target, &entry.target) {
-            kind.target(place, target, end_s, &mut start)?;
+        if let (Some(target), Some(place)) = (&target, &entry.target)
+            && robot.interface().position == PositionKind::UnitQuaternion
+        {
+            never_zero(place, target, end_s)?;
+            shortest_rotation(&mut start, target);
         }
         let agent = AgentSetup {
             law,
@@ -238,10 +246,10 @@ fn same_axes(first: &Population<'_>, other: &Population<'_>) -> Result<(), Fault
 
 /// Whether limits are enforced, which needs limits.
 fn limits(population: &Population<'_>) -> Result<bool, Fault> {
-    let Population { file, names, kind, read, .. } = population;
+    let Population { file, names, read, .. } = population;
     let Some(place @ At { value: true, .. }) = &file.enforce_limits else { return Ok(false) };
     let unlimited = || read.robot.axes.iter().find(|axis| axis.effort_limit.is_none());
-    match unlimited().filter(|_| kind.limits_of_axes()) {
+    match unlimited().filter(|_| read.robot.interface().actuator_limits != ActuatorLimits::Own) {
         None => Ok(true),
         Some(axis) => {
             let (agent, axis) = (names.first().cloned().unwrap_or_default(), axis.name.clone());

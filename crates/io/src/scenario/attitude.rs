@@ -1,12 +1,18 @@
 //! An attitude → a unit quaternion.
 
 use forwardstep_core::Scalar;
-use forwardstep_core::attitude::{Quaternion, normalized};
+use forwardstep_core::attitude::{Quaternion, difference, normalized};
+use forwardstep_sim::Start;
+use forwardstep_sim::trajectory::Trajectory;
 
 use super::at::At;
 use super::attitude_file::{AttitudeStartFile, TurnFile};
 use super::fault::{Fault, fault};
 use super::system_problem::SystemProblem;
+
+/// Times at which the length of a target is looked at, and what part of its greatest counts as zero.
+const SAMPLES: u32 = 1000;
+const VANISHING: f64 = 1e-9;
 
 /// Either way of writing it.
 pub(super) fn attitude(file: &At<AttitudeStartFile>) -> Result<Quaternion, Fault> {
@@ -34,4 +40,31 @@ pub(super) fn turn(axis: &At<[f64; 3]>, angle_rad: &At<f64>) -> Result<Quaternio
     let [x, y, z, _] = normalized([x, y, z, 0.0]);
     let (sin, cos) = Scalar::sin_cos(0.5 * angle_rad.value);
     Ok([sin * x, sin * y, sin * z, cos])
+}
+
+/// Refuses a target that is no attitude at some time.
+pub(super) fn never_zero<T>(place: &At<T>, target: &Trajectory, end_s: f64) -> Result<(), Fault> {
+    let mut jets = [[0.0; 5]; 4];
+    let mut size = |t_s: f64| {
+        target.jets(t_s, &mut jets);
+        jets.iter().map(|jet| jet[0].abs()).fold(0.0, f64::max)
+    };
+    let times = (0..=SAMPLES).map(|k| end_s * f64::from(k) / f64::from(SAMPLES));
+    let (t_s, least, most) = times.fold((0.0, f64::INFINITY, 0.0_f64), |(at, least, most), t_s| {
+        let size = size(t_s);
+        if size < least { (t_s, size, most.max(size)) } else { (at, least, most.max(size)) }
+    });
+    if least > VANISHING * most { Ok(()) } else { Err(fault(place, SystemProblem::NoAttitude { t_s })) }
+}
+
+/// Of the two quaternions of the attitude at the start, takes the one that is nearer to the target: the law leads to Δq_o = 1
+/// and would otherwise take the long way round.
+pub(super) fn shortest_rotation(start: &mut Start, target: &Trajectory) {
+    let mut jets = [[0.0; 5]; 4];
+    target.jets(0.0, &mut jets);
+    if let Some(q) = start.q.first_chunk_mut::<4>()
+        && difference(*q, jets.map(|jet| jet[0]))[3] < 0.0
+    {
+        *q = q.map(|x| -x);
+    }
 }

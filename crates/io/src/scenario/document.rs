@@ -44,9 +44,9 @@ impl<'i> Document<'i> {
     }
 
     /// The robot of an entry of `[[agents]]`.
-    pub(super) fn robot(&self, entry: usize, kinds: &Kinds) -> Result<Box<dyn RobotKind>, Fault> {
+    pub(super) fn robot(&self, entry: usize, kinds: &Kinds) -> Result<(&'static str, Box<dyn RobotKind>), Fault> {
         match self.entry(entry).and_then(|entry| entry.get_ref().get("robot")) {
-            Some(value) => kinds.robot(ValueDe { value, kinds }).map(|(_, robot)| robot),
+            Some(value) => kinds.robot(ValueDe { value, kinds }),
             None => Err(Fault::new(ValueProblem::MissingKey { key: "robot" })),
         }
     }

@@ -76,7 +76,7 @@ pub fn adaptation(file: Option<&At<GainOrBandwidth>>, agent: &LawReader<'_>) -> 
 
 /// Whether the inertias of a robot span decades, so that its usual gains are bandwidths.
 pub(super) fn has_scales(robot: &RobotSetup) -> bool {
-    matches!(robot.kind.attachments(), Attachments::Links(_))
+    matches!(robot.interface().attachments, Attachments::Links(_))
 }
 
 /// A gain without a bandwidth, or the usual number.

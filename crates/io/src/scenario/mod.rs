@@ -258,7 +258,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
         control,
     };
     notices.extend(Notice::coarse_sampling(&setup));
-    let batched = |agent: &AgentSetup| agent.law.shares_batch(&*agent.law);
+    let batched = |agent: &AgentSetup| agent.interface().is_some_and(|interface| interface.in_batches);
     let agrees = setup.reference != ReferenceKind::Tracking && setup.following().is_none();
     let laws = Laws { agents: &setup.agents, tables: &read.laws };
     let columns = if agrees && setup.agents.iter().all(batched) {

@@ -81,7 +81,7 @@ fn who(on: &At<Vec<At<String>>>, read: &Agents) -> Result<Vec<usize>, Fault> {
         for member in members {
             let agent = &read.agents[member];
             if !agent.interface().is_some_and(|interface| interface.pushed) {
-                let error = SetupError::NotPushed { agent: agent.name.clone(), law: agent.law.words() };
+                let error = SetupError::NotPushed { agent: agent.name.clone(), law: agent.law.words().name };
                 return Err(fault(name, ScenarioProblem::Setup(error)));
             }
             if !seen.insert(member) {
@@ -174,7 +174,7 @@ impl Reader<'_, '_> {
         instead: &'static str,
     ) -> Result<Grip, Fault> {
         let agent = self.name();
-        match (self.agent.robot.kind.attachments(), self.body.tip) {
+        match (self.agent.robot.interface().attachments, self.body.tip) {
             (Attachments::PlanarTip, Some(tip)) => {
                 let tip_only = |key| PushProblem::TipOnly { agent: agent.clone(), key };
                 match (link, at_m, axes) {

@@ -36,6 +36,12 @@ impl<'a> Spread<'a> {
         units.map(|unit| 1.0 + self.relative * (2.0 * unit - 1.0)).collect()
     }
 
+    /// Multiplies every parameter by a factor of its own.
+    pub fn scale_each(&self, theta: &mut [f64]) {
+        let factors = self.factors(theta.len());
+        theta.iter_mut().zip(factors).for_each(|(entry, factor)| *entry *= factor);
+    }
+
     /// There is no robot with these factors: its mass matrix would not be positive definite.
     pub fn unsound(&self) -> Fault {
         fault(self.place, ScenarioProblem::SpreadMassMatrix { agent: self.agent.to_owned() })

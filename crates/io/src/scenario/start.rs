@@ -141,6 +141,14 @@ impl<'a> StartReader<'a> {
         Ok(reference)
     }
 
+    /// Where a robot starts that has a position and nothing else.
+    ///
+    /// # Errors
+    /// The first mistake, at its place.
+    pub fn position_alone(&mut self) -> Result<Start, Fault> {
+        Ok(Start { q: self.position()?, dq: Vec::new(), rest: Vec::new(), reference: Vec::new() })
+    }
+
     /// Where a robot starts that has a position and a velocity, and nothing else.
     ///
     /// # Errors

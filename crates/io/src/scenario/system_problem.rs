@@ -4,7 +4,7 @@ use forwardstep_core::expression::KinkError;
 use forwardstep_sim::trajectory::{SplineError, TrajectoryError};
 use thiserror::Error;
 
-use crate::wording::{entry_count, enumerate};
+use crate::wording::{entry_count, enumerate, number};
 
 /// Why one of these has no meaning.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -71,6 +71,12 @@ pub enum SystemProblem {
     /// A formula with kinks that cannot be landed on.
     #[error("a motion must be smooth between kinks that are known, but {0}")]
     Kinks(KinkError),
+    /// A desired attitude that is zero.
+    #[error("this is no attitude at {} s: its four entries are zero there", number(*.t_s))]
+    NoAttitude {
+        /// When, s.
+        t_s: f64,
+    },
     /// A direction that is zero.
     #[error("this is zero and has no direction")]
     NoDirection {
@@ -121,6 +127,9 @@ impl SystemProblem {
             SystemProblem::LawOfAnother { laws, .. } if laws.is_empty() => return None,
             SystemProblem::LawOfAnother { laws, .. } => {
                 format!("for this robot there is {}", enumerate(laws.iter().map(|law| format!("`{law}`"))))
+            }
+            SystemProblem::NoAttitude { .. } => {
+                "a quaternion may have any length but zero, vector part first: [0, 0, 0, 1] is no turn".into()
             }
             SystemProblem::NoDirection { instead } => (*instead).into(),
             SystemProblem::StartUnused { key, .. } => match *key {

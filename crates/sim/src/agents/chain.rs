@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use forwardstep_core::controller::{
-    AdaptiveBackstepping, BacksteppingGains, ChainError, Controller, Following, Guide, Immersion, Linearising,
+    AdaptiveBackstepping, BacksteppingGains, ChainError, Following, Guide, Immersion, Linearising,
 };
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::{Cascade, CascadeError, CascadeTerms, Chain, Formulas, Terms};
@@ -11,10 +11,8 @@ use forwardstep_core::reference::{Consensus, Position, polynomial};
 
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
-use crate::setup::{Exchange, ReferenceKind, RobotSetup};
-use crate::system::{
-    ActuatorLimits, Attachments, Coordinates, Interface, Known, Law, Line, Naming, ReferenceFamily, Robot,
-};
+use crate::setup::{ReferenceKind, RobotSetup};
+use crate::system::{Interface, Known, Law, LawWords, ReferenceFamily, Robot, RobotInterface};
 
 /// What a chain is made of; its true θ stands with the robot.
 #[derive(Clone, Debug)]
@@ -49,45 +47,18 @@ impl ChainModel {
 }
 
 impl Robot for ChainModel {
-    fn velocity_len(&self, axes: usize) -> usize {
+    fn interface(&self, axes: usize) -> RobotInterface {
         // The second state of a chain in feedback form is no velocity.
-        if self.has_velocity() { axes } else { 0 }
-    }
-
-    fn rest_len(&self) -> usize {
-        self.order().saturating_sub(1 + usize::from(self.has_velocity()))
-    }
-
-    fn moves_in_space(&self) -> bool {
-        false
-    }
-
-    fn same_model(&self, other: &dyn Robot) -> bool {
-        match (self, other.downcast()) {
-            (ChainModel::Derivatives(a), Some(ChainModel::Derivatives(b))) => Arc::ptr_eq(a, b),
-            (ChainModel::Cascade(a), Some(ChainModel::Cascade(b))) => Arc::ptr_eq(a, b),
-            (ChainModel::Derivatives(_) | ChainModel::Cascade(_), _) => false,
+        RobotInterface {
+            velocity_len: if self.has_velocity() { axes } else { 0 },
+            rest_len: self.order().saturating_sub(1 + usize::from(self.has_velocity())),
+            numbered_axes: true,
+            ..RobotInterface::mechanical(axes)
         }
     }
 
     fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
         None
-    }
-
-    fn attachments(&self) -> Attachments<'_> {
-        Attachments::Axes
-    }
-
-    fn actuator_limits(&self) -> ActuatorLimits {
-        ActuatorLimits::Axes
-    }
-
-    fn naming(&self) -> Naming {
-        Naming { numbered_axes: true, torques_on_body: false }
-    }
-
-    fn lines(&self) -> Vec<Line> {
-        Vec::new()
     }
 }
 
@@ -151,60 +122,38 @@ impl ChainLaw {
 }
 
 impl Law for ChainLaw {
-    fn words(&self) -> &'static str {
-        match self.step {
+    fn words(&self) -> LawWords {
+        let name = match self.step {
             ChainStep::Linearising { .. } => "feedback linearisation",
             ChainStep::Adaptive { .. } => "the adaptive law for chains",
             ChainStep::Immersion { .. } => "immersion and invariance",
             ChainStep::Backstepping { .. } => "adaptive backstepping",
-        }
-    }
-
-    fn made_for(&self) -> &'static str {
-        match self.step {
+        };
+        let made_for = match self.step {
             ChainStep::Backstepping { .. } => "strict-feedback and pure-feedback chains",
             ChainStep::Linearising { .. } | ChainStep::Adaptive { .. } | ChainStep::Immersion { .. } => {
                 "chains of derivatives"
             }
-        }
+        };
+        LawWords { name, made_for }
     }
 
     fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
-        let (measures, offsets) = match (robot.kind.downcast()?, &self.step) {
-            (ChainModel::Cascade(_), ChainStep::Backstepping { .. }) => {
-                (AdaptiveBackstepping::MEASURES, AdaptiveBackstepping::KNOWS_OFFSETS)
-            }
+        let interface = match (robot.kind.downcast()?, &self.step) {
+            (ChainModel::Cascade(_), ChainStep::Backstepping { .. }) => Interface::of::<AdaptiveBackstepping>(),
             (ChainModel::Derivatives(_), ChainStep::Linearising { .. } | ChainStep::Adaptive { .. }) => {
-                (Linearising::<Formulas>::MEASURES, Linearising::<Formulas>::KNOWS_OFFSETS)
+                Interface::of::<Linearising<Formulas>>()
             }
-            (ChainModel::Derivatives(_), ChainStep::Immersion { .. }) => {
-                (Immersion::MEASURES, Immersion::KNOWS_OFFSETS)
-            }
+            (ChainModel::Derivatives(_), ChainStep::Immersion { .. }) => Interface::of::<Immersion>(),
             (ChainModel::Derivatives(_) | ChainModel::Cascade(_), _) => return None,
         };
         Some(Interface {
-            measures,
-            exchanges: &[Exchange::Position],
             follows: &[ReferenceFamily::Consensus, ReferenceFamily::Target],
             measures_velocity: robot.velocity_len() > 0,
-            manipulability: false,
             tracks_by_roots: true,
-            offsets,
-            pushed: false,
             estimates: self.estimates(),
+            ..interface
         })
-    }
-
-    fn coordinates(&self) -> Option<Coordinates> {
-        None
-    }
-
-    fn lines(&self, _: &RobotSetup) -> Vec<Line> {
-        Vec::new()
-    }
-
-    fn shares_batch(&self, _: &dyn Law) -> bool {
-        false
     }
 
     fn known(&self) -> Known {

@@ -7,9 +7,10 @@ use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass, TwoVelocity};
 use forwardstep_core::{Gain, Lanes, LengthError};
 
 use crate::closed_loop::{Assembly, Block, SetupError};
+use crate::probe::{Probe, properties};
 use crate::setup::{AgentSetup, Exchange, RobotSetup};
 use crate::system::{
-    ActuatorLimits, Attachments, Coordinates, Interface, Known as Knowledge, Law, Line, Naming, ReferenceFamily, Robot,
+    Attachments, Interface, Known as Knowledge, Law, LawWords, ReferenceFamily, Robot, RobotInterface,
 };
 
 /// A robot model whose kernels work on one robot or on eight at once.
@@ -19,10 +20,16 @@ pub trait RobotModel: Robot + Clone {
 
     /// Its kernel.
     fn kernel(&self) -> Self::Kernel;
+
+    /// Whether the kernel of `other` is the same, whatever the parameters, so that both can share it.
+    fn shares_kernel(&self, other: &Self) -> bool;
 }
 
 /// What the engine and the verdicts ask of a robot under (6)–(7). Every [`RobotModel`] is one.
 pub trait LagrangianRobot {
+    /// Whether `other` is the same model, whatever its parameters, so that kernels can be shared.
+    fn same_model(&self, other: &dyn Robot) -> bool;
+
     /// Builds the agents of `assembly` as one batch.
     ///
     /// # Errors
@@ -34,6 +41,12 @@ pub trait LagrangianRobot {
     /// # Errors
     /// [`LengthError`] when a vector of the agent has the wrong length.
     fn dynamics_at_start(&self, agent: &AgentSetup, dz: f64) -> Result<DynamicsAt, LengthError>;
+
+    /// Tries at random states, with the parameters of `robot`, whether it has the properties of Section II-B.
+    ///
+    /// # Errors
+    /// [`LengthError`] when `robot` has the wrong number of axes or parameters.
+    fn probe(&self, robot: &RobotSetup) -> Result<Probe, LengthError>;
 }
 
 /// A robot's dynamics at one state.
@@ -48,6 +61,10 @@ pub struct DynamicsAt {
 }
 
 impl<M: RobotModel> LagrangianRobot for M {
+    fn same_model(&self, other: &dyn Robot) -> bool {
+        other.downcast().is_some_and(|other| self.shares_kernel(other))
+    }
+
     fn batch(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
         assembly.lagrangian(self)
     }
@@ -64,44 +81,20 @@ impl<M: RobotModel> LagrangianRobot for M {
         }
         at(&self.kernel(), agent, dz)
     }
+
+    fn probe(&self, robot: &RobotSetup) -> Result<Probe, LengthError> {
+        properties(&self.kernel(), robot)
+    }
 }
 
 /// A fixed-base tree of rigid bodies, for example from a URDF.
 impl Robot for Arc<Tree> {
-    fn velocity_len(&self, axes: usize) -> usize {
-        axes
-    }
-
-    fn rest_len(&self) -> usize {
-        0
-    }
-
-    fn moves_in_space(&self) -> bool {
-        false
-    }
-
-    fn same_model(&self, other: &dyn Robot) -> bool {
-        other.downcast().is_some_and(|other| Arc::ptr_eq(self, other))
+    fn interface(&self, axes: usize) -> RobotInterface {
+        RobotInterface { attachments: Attachments::Links(Arc::clone(self)), ..RobotInterface::mechanical(axes) }
     }
 
     fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
         Some(self)
-    }
-
-    fn attachments(&self) -> Attachments<'_> {
-        Attachments::Links(self)
-    }
-
-    fn actuator_limits(&self) -> ActuatorLimits {
-        ActuatorLimits::Axes
-    }
-
-    fn naming(&self) -> Naming {
-        Naming { numbered_axes: false, torques_on_body: false }
-    }
-
-    fn lines(&self) -> Vec<Line> {
-        Vec::new()
     }
 }
 
@@ -111,44 +104,20 @@ impl RobotModel for Arc<Tree> {
     fn kernel(&self) -> Tree {
         Tree::clone(self)
     }
+
+    fn shares_kernel(&self, other: &Self) -> bool {
+        Arc::ptr_eq(self, other)
+    }
 }
 
 /// The two-link planar arm in closed form.
 impl Robot for PlanarArm {
-    fn velocity_len(&self, axes: usize) -> usize {
-        axes
-    }
-
-    fn rest_len(&self) -> usize {
-        0
-    }
-
-    fn moves_in_space(&self) -> bool {
-        false
-    }
-
-    fn same_model(&self, other: &dyn Robot) -> bool {
-        other.is::<PlanarArm>()
+    fn interface(&self, axes: usize) -> RobotInterface {
+        RobotInterface { attachments: Attachments::PlanarTip, ..RobotInterface::mechanical(axes) }
     }
 
     fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
         Some(self)
-    }
-
-    fn attachments(&self) -> Attachments<'_> {
-        Attachments::PlanarTip
-    }
-
-    fn actuator_limits(&self) -> ActuatorLimits {
-        ActuatorLimits::Axes
-    }
-
-    fn naming(&self) -> Naming {
-        Naming { numbered_axes: false, torques_on_body: false }
-    }
-
-    fn lines(&self) -> Vec<Line> {
-        Vec::new()
     }
 }
 
@@ -158,44 +127,20 @@ impl RobotModel for PlanarArm {
     fn kernel(&self) -> PlanarArm {
         *self
     }
+
+    fn shares_kernel(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 /// A point mass in ℝᵐ.
 impl Robot for PointMass {
-    fn velocity_len(&self, axes: usize) -> usize {
-        axes
-    }
-
-    fn rest_len(&self) -> usize {
-        0
-    }
-
-    fn moves_in_space(&self) -> bool {
-        false
-    }
-
-    fn same_model(&self, other: &dyn Robot) -> bool {
-        other.downcast() == Some(self)
+    fn interface(&self, axes: usize) -> RobotInterface {
+        RobotInterface { numbered_axes: true, ..RobotInterface::mechanical(axes) }
     }
 
     fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
         Some(self)
-    }
-
-    fn attachments(&self) -> Attachments<'_> {
-        Attachments::Axes
-    }
-
-    fn actuator_limits(&self) -> ActuatorLimits {
-        ActuatorLimits::Axes
-    }
-
-    fn naming(&self) -> Naming {
-        Naming { numbered_axes: true, torques_on_body: false }
-    }
-
-    fn lines(&self) -> Vec<Line> {
-        Vec::new()
     }
 }
 
@@ -204,6 +149,10 @@ impl RobotModel for PointMass {
 
     fn kernel(&self) -> PointMass {
         *self
+    }
+
+    fn shares_kernel(&self, other: &Self) -> bool {
+        self == other
     }
 }
 
@@ -243,6 +192,9 @@ fn interface(robot: &RobotSetup, estimates: bool) -> Option<Interface> {
         offsets: false,
         pushed: true,
         estimates,
+        in_batches: true,
+        coordinates: None,
+        lines: Vec::new(),
     })
 }
 
@@ -252,28 +204,12 @@ fn block(assembly: &Assembly<'_>) -> Result<Block, SetupError> {
 }
 
 impl Law for Adaptive {
-    fn words(&self) -> &'static str {
-        "the adaptive law"
-    }
-
-    fn made_for(&self) -> &'static str {
-        "Lagrangian robots"
+    fn words(&self) -> LawWords {
+        LawWords { name: "the adaptive law", made_for: "Lagrangian robots" }
     }
 
     fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
         interface(robot, true)
-    }
-
-    fn coordinates(&self) -> Option<Coordinates> {
-        None
-    }
-
-    fn lines(&self, _: &RobotSetup) -> Vec<Line> {
-        Vec::new()
-    }
-
-    fn shares_batch(&self, other: &dyn Law) -> bool {
-        other.is::<Adaptive>()
     }
 
     fn known(&self) -> Knowledge {
@@ -286,28 +222,12 @@ impl Law for Adaptive {
 }
 
 impl Law for Known {
-    fn words(&self) -> &'static str {
-        "the law with known parameters"
-    }
-
-    fn made_for(&self) -> &'static str {
-        "Lagrangian robots"
+    fn words(&self) -> LawWords {
+        LawWords { name: "the law with known parameters", made_for: "Lagrangian robots" }
     }
 
     fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
         interface(robot, false)
-    }
-
-    fn coordinates(&self) -> Option<Coordinates> {
-        None
-    }
-
-    fn lines(&self, _: &RobotSetup) -> Vec<Line> {
-        Vec::new()
-    }
-
-    fn shares_batch(&self, other: &dyn Law) -> bool {
-        other.is::<Known>()
     }
 
     fn known(&self) -> Knowledge {

@@ -1,13 +1,13 @@
 //! A point mass whose velocity is not measured: (a7)–(a9) and Remark 7.
 
-use forwardstep_core::controller::{Controller, Guide, PositionOnly};
+use forwardstep_core::controller::{Guide, PositionOnly};
 use forwardstep_core::plant::Mechanical;
 use forwardstep_core::reference::{Consensus, Position, polynomial};
 use forwardstep_core::robot::PointMass;
 
 use crate::closed_loop::{Assembly, Block, SetupError};
-use crate::setup::{Exchange, ReferenceKind, RobotSetup};
-use crate::system::{Coordinates, Interface, Known, Law, Line, ReferenceFamily};
+use crate::setup::{ReferenceKind, RobotSetup};
+use crate::system::{Interface, Known, Law, LawWords, ReferenceFamily};
 
 /// (a8) for a point mass, without velocity; see [`PositionOnly`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,38 +23,17 @@ pub struct PositionOnlyLaw {
 }
 
 impl Law for PositionOnlyLaw {
-    fn words(&self) -> &'static str {
-        "the law without velocity"
-    }
-
-    fn made_for(&self) -> &'static str {
-        "point masses"
+    fn words(&self) -> LawWords {
+        LawWords { name: "the law without velocity", made_for: "point masses" }
     }
 
     fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
-        robot.kind.is::<PointMass>().then_some(Interface {
-            measures: PositionOnly::MEASURES,
-            exchanges: &[Exchange::Position],
+        robot.kind.is::<PointMass>().then(|| Interface {
             follows: &[ReferenceFamily::Consensus, ReferenceFamily::Target],
-            measures_velocity: false,
-            manipulability: false,
             tracks_by_roots: true,
-            offsets: PositionOnly::KNOWS_OFFSETS,
-            pushed: false,
             estimates: true,
+            ..Interface::of::<PositionOnly>()
         })
-    }
-
-    fn coordinates(&self) -> Option<Coordinates> {
-        None
-    }
-
-    fn lines(&self, _: &RobotSetup) -> Vec<Line> {
-        Vec::new()
-    }
-
-    fn shares_batch(&self, _: &dyn Law) -> bool {
-        false
     }
 
     fn known(&self) -> Known {

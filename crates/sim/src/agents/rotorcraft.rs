@@ -6,7 +6,7 @@ use forwardstep_core::plant::{Rotorcraft, Rotors};
 use super::LagrangianRobot;
 use super::vehicle::plant as vehicle;
 use crate::closed_loop::{Assembly, SetupError};
-use crate::system::{ActuatorLimits, Attachments, Line, Naming, Robot};
+use crate::system::{PositionKind, Robot, RobotInterface};
 
 /// A rotorcraft. ϑ is its mass; the rest of its start is its attitude and its angular velocity.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,40 +20,17 @@ pub struct RotorcraftModel {
 }
 
 impl Robot for RotorcraftModel {
-    fn velocity_len(&self, axes: usize) -> usize {
-        axes
-    }
-
-    fn rest_len(&self) -> usize {
-        7
-    }
-
-    fn moves_in_space(&self) -> bool {
-        true
-    }
-
-    fn same_model(&self, other: &dyn Robot) -> bool {
-        other.downcast() == Some(self)
+    fn interface(&self, axes: usize) -> RobotInterface {
+        RobotInterface {
+            rest_len: 7,
+            position: PositionKind::Point,
+            torques_on_body: true,
+            ..RobotInterface::mechanical(axes)
+        }
     }
 
     fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
         None
-    }
-
-    fn attachments(&self) -> Attachments<'_> {
-        Attachments::Axes
-    }
-
-    fn actuator_limits(&self) -> ActuatorLimits {
-        ActuatorLimits::Axes
-    }
-
-    fn naming(&self) -> Naming {
-        Naming { numbered_axes: false, torques_on_body: true }
-    }
-
-    fn lines(&self) -> Vec<Line> {
-        Vec::new()
     }
 }
 

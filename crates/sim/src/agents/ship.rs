@@ -4,7 +4,7 @@ use forwardstep_core::robot::Ship;
 
 use super::lagrangian::{LagrangianRobot, RobotModel};
 use crate::setup::{Axis, AxisUnit, RobotSetup};
-use crate::system::{ActuatorLimits, Attachments, Line, Naming, Robot};
+use crate::system::{Robot, RobotInterface};
 
 impl RobotSetup {
     /// A ship with the true ϑ of [`Ship`]: m₁₁, m₂₂, m₂₃, m₃₃, d₁₁, d₂₂, d₂₃, d₃₂, d₃₃. M must be positive definite and
@@ -17,40 +17,12 @@ impl RobotSetup {
 }
 
 impl Robot for Ship {
-    fn velocity_len(&self, axes: usize) -> usize {
-        axes
-    }
-
-    fn rest_len(&self) -> usize {
-        0
-    }
-
-    fn moves_in_space(&self) -> bool {
-        false
-    }
-
-    fn same_model(&self, other: &dyn Robot) -> bool {
-        other.is::<Ship>()
+    fn interface(&self, axes: usize) -> RobotInterface {
+        RobotInterface::mechanical(axes)
     }
 
     fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
         Some(self)
-    }
-
-    fn attachments(&self) -> Attachments<'_> {
-        Attachments::Axes
-    }
-
-    fn actuator_limits(&self) -> ActuatorLimits {
-        ActuatorLimits::Axes
-    }
-
-    fn naming(&self) -> Naming {
-        Naming { numbered_axes: false, torques_on_body: false }
-    }
-
-    fn lines(&self) -> Vec<Line> {
-        Vec::new()
     }
 }
 
@@ -59,5 +31,9 @@ impl RobotModel for Ship {
 
     fn kernel(&self) -> Ship {
         *self
+    }
+
+    fn shares_kernel(&self, _: &Self) -> bool {
+        true
     }
 }

@@ -1,15 +1,15 @@
 //! (94), a spacecraft with reaction wheels, and its attitude without a measured angular velocity: (97)–(105).
 
 use forwardstep_core::Gain;
-use forwardstep_core::controller::{AttitudeTracking, Controller};
+use forwardstep_core::controller::AttitudeTracking;
 use forwardstep_core::plant::{Spacecraft, Wheels};
 
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::recording::Signal;
-use crate::setup::{Exchange, RobotSetup};
+use crate::setup::RobotSetup;
 use crate::system::{
-    ActuatorLimits, Attachments, Coordinates, Interface, Known, Law, Line, LineValue, Naming, ReferenceFamily, Robot,
+    ActuatorLimits, Interface, Known, Law, LawWords, Line, LineValue, PositionKind, Robot, RobotInterface,
 };
 
 /// A spacecraft. Its axes are the entries of a quaternion; the rest of its start holds the momenta of the wheels, N m s.
@@ -22,46 +22,25 @@ pub struct SpacecraftModel {
 }
 
 impl Robot for SpacecraftModel {
-    fn velocity_len(&self, _: usize) -> usize {
-        3
-    }
-
-    fn rest_len(&self) -> usize {
-        self.wheels.count()
-    }
-
-    fn moves_in_space(&self) -> bool {
-        false
-    }
-
-    fn same_model(&self, other: &dyn Robot) -> bool {
-        other.downcast() == Some(self)
-    }
-
-    fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
-        None
-    }
-
-    fn attachments(&self) -> Attachments<'_> {
-        Attachments::Axes
-    }
-
-    fn actuator_limits(&self) -> ActuatorLimits {
-        ActuatorLimits::Own
-    }
-
-    fn naming(&self) -> Naming {
-        Naming { numbered_axes: false, torques_on_body: false }
-    }
-
-    fn lines(&self) -> Vec<Line> {
+    fn interface(&self, axes: usize) -> RobotInterface {
         let limits = self.wheels.list().iter().enumerate().flat_map(|(entry, wheel)| {
             let (torque, momentum) = (wheel.torque_limit_n_m, wheel.momentum_limit_n_m_s);
             let line = move |signal, value| Line { signal, entry, value };
             let torque = torque.map(|limit| line(Signal::WheelTorque, LineValue::Clip(limit)));
             torque.into_iter().chain(momentum.map(|limit| line(Signal::WheelMomentum, LineValue::Limit(limit))))
         });
-        limits.collect()
+        RobotInterface {
+            velocity_len: 3,
+            rest_len: self.wheels.count(),
+            position: PositionKind::UnitQuaternion,
+            actuator_limits: ActuatorLimits::Own,
+            lines: limits.collect(),
+            ..RobotInterface::mechanical(axes)
+        }
+    }
+
+    fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
+        None
     }
 }
 
@@ -77,38 +56,12 @@ pub struct AttitudeLaw {
 }
 
 impl Law for AttitudeLaw {
-    fn words(&self) -> &'static str {
-        "the law for an attitude"
-    }
-
-    fn made_for(&self) -> &'static str {
-        "spacecraft"
+    fn words(&self) -> LawWords {
+        LawWords { name: "the law for an attitude", made_for: "spacecraft" }
     }
 
     fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
-        robot.kind.is::<SpacecraftModel>().then_some(Interface {
-            measures: AttitudeTracking::MEASURES,
-            exchanges: &[Exchange::Position],
-            follows: &[ReferenceFamily::Target],
-            measures_velocity: false,
-            manipulability: false,
-            tracks_by_roots: false,
-            offsets: AttitudeTracking::KNOWS_OFFSETS,
-            pushed: false,
-            estimates: false,
-        })
-    }
-
-    fn coordinates(&self) -> Option<Coordinates> {
-        None
-    }
-
-    fn lines(&self, _: &RobotSetup) -> Vec<Line> {
-        Vec::new()
-    }
-
-    fn shares_batch(&self, _: &dyn Law) -> bool {
-        false
+        robot.kind.is::<SpacecraftModel>().then(Interface::of::<AttitudeTracking>)
     }
 
     fn known(&self) -> Known {

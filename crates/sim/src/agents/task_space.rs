@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use forwardstep_core::controller::{Controller, ParameterBounds, TaskSpace};
+use forwardstep_core::controller::{ParameterBounds, TaskSpace};
 use forwardstep_core::plant::{Mechanical, TaskArm};
 use forwardstep_core::robot::tree::{LinkPoint, Tree, TreeTip, Uncertain};
 use forwardstep_core::robot::{Lagrangian, PlanarArm, PlanarTip, TipKinematics};
@@ -10,8 +10,8 @@ use forwardstep_core::{Gain, ResolvedGain};
 
 use crate::closed_loop::{Assembly, Block, SetupError, tracking_law};
 use crate::recording::Signal;
-use crate::setup::{AxisUnit, Exchange, RobotSetup};
-use crate::system::{Coordinates, Interface, Known, Law, Line, LineValue, ReferenceFamily, Robot};
+use crate::setup::{AxisUnit, RobotSetup};
+use crate::system::{Coordinates, Interface, Known, Law, LawWords, Line, LineValue, Robot};
 
 /// (80)–(82) for the tip of a robot; see [`forwardstep_core::controller::TaskSpace`].
 #[derive(Clone, Debug, PartialEq)]
@@ -73,12 +73,8 @@ impl TipSetup {
 }
 
 impl Law for TaskSpaceLaw {
-    fn words(&self) -> &'static str {
-        "the law for a tip"
-    }
-
-    fn made_for(&self) -> &'static str {
-        "planar arms, and for robots from a URDF with a tip"
+    fn words(&self) -> LawWords {
+        LawWords { name: "the law for a tip", made_for: "planar arms, and for robots from a URDF with a tip" }
     }
 
     fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
@@ -86,37 +82,15 @@ impl Law for TaskSpaceLaw {
             TipSetup::Planar(_) => robot.kind.is::<PlanarArm>(),
             TipSetup::Point { .. } => robot.kind.is::<Arc<Tree>>(),
         };
-        suits.then_some(Interface {
-            measures: TaskSpace::<PlanarArm, PlanarTip>::MEASURES,
-            exchanges: &[Exchange::Position],
-            follows: &[ReferenceFamily::Target],
-            measures_velocity: true,
-            manipulability: false,
-            tracks_by_roots: false,
-            offsets: TaskSpace::<PlanarArm, PlanarTip>::KNOWS_OFFSETS,
-            pushed: false,
-            estimates: true,
-        })
-    }
-
-    fn coordinates(&self) -> Option<Coordinates> {
-        let list: &[usize] = match &self.tip {
-            TipSetup::Planar(_) => &[0, 1],
-            TipSetup::Point { coordinates, .. } => coordinates,
-        };
-        let names = list.iter().filter_map(|coordinate| ["x", "y", "z"].get(*coordinate));
-        let names = names.map(|name| (*name).to_owned()).collect();
-        Some(Coordinates { names, unit: AxisUnit::Metre, parameters: self.kinematic_names.clone() })
-    }
-
-    fn lines(&self, robot: &RobotSetup) -> Vec<Line> {
         let truth = self.tip.parameters(&*robot.kind).unwrap_or_default();
         let line = |(entry, truth)| Line { signal: Signal::KinematicEstimate, entry, value: LineValue::Truth(truth) };
-        truth.into_iter().enumerate().map(line).collect()
-    }
-
-    fn shares_batch(&self, _: &dyn Law) -> bool {
-        false
+        suits.then(|| Interface {
+            measures_velocity: true,
+            estimates: true,
+            coordinates: Some(self.coordinates()),
+            lines: truth.into_iter().enumerate().map(line).collect(),
+            ..Interface::of::<TaskSpace<PlanarArm, PlanarTip>>()
+        })
     }
 
     fn known(&self) -> Known {
@@ -140,6 +114,16 @@ impl Law for TaskSpaceLaw {
 }
 
 impl TaskSpaceLaw {
+    fn coordinates(&self) -> Coordinates {
+        let list: &[usize] = match &self.tip {
+            TipSetup::Planar(_) => &[0, 1],
+            TipSetup::Point { coordinates, .. } => coordinates,
+        };
+        let names = list.iter().filter_map(|coordinate| ["x", "y", "z"].get(*coordinate));
+        let names = names.map(|name| (*name).to_owned()).collect();
+        Coordinates { names, unit: AxisUnit::Metre, parameters: self.kinematic_names.clone() }
+    }
+
     fn with_tip<R, T>(
         &self,
         assembly: &Assembly<'_>,

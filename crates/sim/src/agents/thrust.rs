@@ -1,14 +1,14 @@
 //! (45)–(58): the law of vehicles with one thrust, by angular velocities or, for rotorcraft, by torques.
 
-use forwardstep_core::controller::{Controller, Floor, RateLoop, Thrust, ThrustCascade, ThrustDesign, Yaw};
+use forwardstep_core::controller::{Floor, RateLoop, Thrust, ThrustCascade, ThrustDesign, Yaw};
 use forwardstep_core::plant::Vehicle;
 
 use super::rotorcraft::{self, RotorcraftModel};
 use super::vehicle::{self, VehicleModel};
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::recording::Signal;
-use crate::setup::{Exchange, RobotSetup};
-use crate::system::{Coordinates, Interface, Known, Law, Line, LineValue, ReferenceFamily};
+use crate::setup::RobotSetup;
+use crate::system::{Interface, Known, Law, LawWords, Line, LineValue, ReferenceFamily};
 
 /// The control of a vehicle or a rotorcraft; its roots are those of its agent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,45 +59,25 @@ impl ThrustKind {
 }
 
 impl Law for ThrustLaw {
-    fn words(&self) -> &'static str {
-        "the thrust law"
-    }
-
-    fn made_for(&self) -> &'static str {
-        "vehicles and rotorcraft"
+    fn words(&self) -> LawWords {
+        LawWords { name: "the thrust law", made_for: "vehicles and rotorcraft" }
     }
 
     fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
-        let measures = if robot.kind.is::<VehicleModel>() {
-            Thrust::MEASURES
+        let interface = if robot.kind.is::<VehicleModel>() {
+            Interface::of::<Thrust>()
         } else if robot.kind.is::<RotorcraftModel>() {
-            ThrustCascade::MEASURES
+            Interface::of::<ThrustCascade>()
         } else {
             return None;
         };
         Some(Interface {
-            measures,
-            exchanges: &[Exchange::Position],
             follows: &[ReferenceFamily::Consensus],
             measures_velocity: true,
-            manipulability: false,
-            tracks_by_roots: false,
-            offsets: Thrust::KNOWS_OFFSETS,
-            pushed: false,
             estimates: matches!(self.design, ThrustKind::Adaptive { .. }),
+            lines: vec![Line { signal: Signal::Thrust, entry: 0, value: LineValue::Floor(self.floor.newtons()) }],
+            ..interface
         })
-    }
-
-    fn coordinates(&self) -> Option<Coordinates> {
-        None
-    }
-
-    fn lines(&self, _: &RobotSetup) -> Vec<Line> {
-        vec![Line { signal: Signal::Thrust, entry: 0, value: LineValue::Floor(self.floor.newtons()) }]
-    }
-
-    fn shares_batch(&self, _: &dyn Law) -> bool {
-        false
     }
 
     fn known(&self) -> Known {

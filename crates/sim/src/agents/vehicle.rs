@@ -5,7 +5,7 @@ use forwardstep_core::plant::Vehicle;
 
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, SetupError};
-use crate::system::{ActuatorLimits, Attachments, Line, Naming, Robot};
+use crate::system::{ActuatorLimits, PositionKind, Robot, RobotInterface};
 
 /// (44). ϑ is its mass; the rest of its start is its attitude (q_v, q_o).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,40 +15,17 @@ pub struct VehicleModel {
 }
 
 impl Robot for VehicleModel {
-    fn velocity_len(&self, axes: usize) -> usize {
-        axes
-    }
-
-    fn rest_len(&self) -> usize {
-        4
-    }
-
-    fn moves_in_space(&self) -> bool {
-        true
-    }
-
-    fn same_model(&self, other: &dyn Robot) -> bool {
-        other.downcast() == Some(self)
+    fn interface(&self, axes: usize) -> RobotInterface {
+        RobotInterface {
+            rest_len: 4,
+            position: PositionKind::Point,
+            actuator_limits: ActuatorLimits::None,
+            ..RobotInterface::mechanical(axes)
+        }
     }
 
     fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
         None
-    }
-
-    fn attachments(&self) -> Attachments<'_> {
-        Attachments::Axes
-    }
-
-    fn actuator_limits(&self) -> ActuatorLimits {
-        ActuatorLimits::None
-    }
-
-    fn naming(&self) -> Naming {
-        Naming { numbered_axes: false, torques_on_body: false }
-    }
-
-    fn lines(&self) -> Vec<Line> {
-        Vec::new()
     }
 }
 

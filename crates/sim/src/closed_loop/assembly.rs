@@ -12,7 +12,7 @@ use super::valid::too_many;
 use crate::agents::RobotModel;
 use crate::recording::Signal;
 use crate::setup::{AgentSetup, Axis, ReferenceKind, Setup};
-use crate::system::Robot;
+use crate::system::{LawWords, Robot};
 use crate::trajectory::Pieces;
 
 /// Agents as a part of the closed loop.
@@ -57,7 +57,8 @@ impl<'a> Assembly<'a> {
     /// The law is made for another kind of robot.
     pub fn law_of_another(&self) -> SetupError {
         let own = self.agent();
-        SetupError::LawOfAnother { agent: own.name.clone(), law: own.law.words(), made_for: own.law.made_for() }
+        let LawWords { name, made_for } = own.law.words();
+        SetupError::LawOfAnother { agent: own.name.clone(), law: name, made_for }
     }
 
     /// The reference dynamics do not lead the law.

@@ -380,7 +380,7 @@ pub enum SetupError {
 impl SetupError {
     /// The reference dynamics of `setup` do not lead the law of `agent`.
     pub(crate) fn wrong_reference(setup: &Setup, agent: &AgentSetup) -> Self {
-        let (name, law) = (agent.name.clone(), agent.law.words());
+        let (name, law) = (agent.name.clone(), agent.law.words().name);
         let only_tracks = agent.interface().is_some_and(|interface| interface.follows == [ReferenceFamily::Target]);
         match setup.reference {
             ReferenceKind::Tracking => SetupError::NotTracking { agent: name, law },

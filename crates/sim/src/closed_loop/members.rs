@@ -12,6 +12,7 @@ use super::references::{Transmits, reference};
 use super::robot_batch::Member;
 use crate::agents::{Adaptive, Known, RobotModel};
 use crate::setup::{AgentSetup, Exchange, Setup};
+use crate::system::LawWords;
 
 /// Batches of at least so many agents are worked on in lanes.
 const LANES_FROM: usize = 3;
@@ -19,14 +20,16 @@ const LANES_FROM: usize = 3;
 /// Agents that can stand side by side: one robot model, one order, laws that share batches. Groups in order of their first
 /// agent.
 pub(super) fn batches(agents: &[AgentSetup]) -> Vec<Vec<usize>> {
+    let in_batches = |agent: &AgentSetup| agent.interface().is_some_and(|interface| interface.in_batches);
     let alike = |a: &AgentSetup, b: &AgentSetup| {
         a.roots_per_s.len() == b.roots_per_s.len()
-            && a.law.shares_batch(&*b.law)
-            && a.robot.kind.same_model(&*b.robot.kind)
+            && a.law.same_type(&*b.law)
+            && a.robot.kind.lagrangian().is_some_and(|robot| robot.same_model(&*b.robot.kind))
     };
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (index, agent) in agents.iter().enumerate() {
-        match groups.iter_mut().find(|group| alike(&agents[group[0]], agent)) {
+        let joins = in_batches(agent);
+        match groups.iter_mut().find(|group| joins && alike(&agents[group[0]], agent)) {
             Some(group) => group.push(index),
             None => groups.push(vec![index]),
         }
@@ -78,7 +81,7 @@ fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Re
         }
         (None, Some(Known { damping })) => (damping, None),
         (None, None) => {
-            let (law, made_for) = (agent.law.words(), agent.law.made_for());
+            let LawWords { name: law, made_for } = agent.law.words();
             return Err(SetupError::LawOfAnother { agent: name(), law, made_for });
         }
     };

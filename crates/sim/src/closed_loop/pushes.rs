@@ -117,8 +117,8 @@ impl Pushed {
     /// `None` when nothing ever acts on the agent.
     pub(crate) fn new(index: usize, agent: &AgentSetup, end_s: f64) -> Option<Self> {
         let actions: Vec<Action> = agent.pushes.iter().map(|push| Action::new(push.clone(), end_s)).collect();
-        let tree = match agent.robot.kind.attachments() {
-            Attachments::Links(tree) => Some((Arc::clone(tree), tree.scratch())),
+        let tree = match agent.robot.interface().attachments {
+            Attachments::Links(tree) => Some((Arc::clone(&tree), tree.scratch())),
             Attachments::Axes | Attachments::PlanarTip => None,
         };
         (!actions.is_empty()).then_some(Pushed { agent: index, actions, tree })

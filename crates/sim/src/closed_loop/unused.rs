@@ -55,11 +55,11 @@ pub(super) fn of_agent(setup: &Setup, own: &AgentSetup, interface: &Interface) -
 /// such number to multiply.
 fn manipulability(setup: &Setup, own: &AgentSetup, interface: &Interface) -> Result<(), SetupError> {
     let without = match setup.reference {
-        _ if !interface.manipulability => own.law.words(),
+        _ if !interface.manipulability => own.law.words().name,
         ReferenceKind::Consensus | ReferenceKind::PureIntegral => return Ok(()),
         ReferenceKind::Backstepping { .. } => "the backstepping baseline",
         ReferenceKind::Following(_) => "following a leader",
-        ReferenceKind::Tracking => own.law.words(),
+        ReferenceKind::Tracking => own.law.words().name,
     };
     if own.manipulability == 0.0 {
         return Ok(());
@@ -84,7 +84,7 @@ fn roots(setup: &Setup, own: &AgentSetup, interface: &Interface) -> Result<(), S
 /// Limits that are to be enforced have to be there.
 fn limits(own: &AgentSetup) -> Result<(), SetupError> {
     let mut axes = own.robot.axes.iter();
-    let missing = match own.robot.kind.actuator_limits() {
+    let missing = match own.robot.interface().actuator_limits {
         ActuatorLimits::Own => None,
         ActuatorLimits::None => axes.next(),
         ActuatorLimits::Axes => axes.find(|axis| axis.effort_limit.is_none()),

@@ -9,6 +9,7 @@ use crate::agents::Adaptive;
 use crate::engine::{Integrator, Radio};
 use crate::leader::{Following, FollowingDesign};
 use crate::setup::{AgentSetup, AxisUnit, Control, Exchange, Method, ReferenceKind, Setup};
+use crate::system::{LawWords, PositionKind};
 
 /// Samples that a run may have.
 const MOST_SAMPLES: f64 = 1e7;
@@ -63,7 +64,7 @@ pub(super) fn too_many(agent: &AgentSetup, need: usize, got: usize) -> SetupErro
 
 /// Whoever agrees with a vehicle has a position in m. (An arm and a cart may agree on a number.)
 fn same_space(setup: &Setup) -> Result<(), SetupError> {
-    let moves = |agent: &&AgentSetup| agent.robot.kind.moves_in_space();
+    let moves = |agent: &&AgentSetup| agent.robot.interface().position == PositionKind::Point;
     let Some(vehicle) = setup.agents.iter().find(moves) else { return Ok(()) };
     for agent in &setup.agents {
         if let Some(axis) = agent.robot.axes.iter().find(|axis| axis.unit != AxisUnit::Metre) {
@@ -209,9 +210,10 @@ fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
 
 /// Whether the law goes with the robot, the reference dynamics, what is exchanged and what acts on the agent.
 fn goes_together(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
-    let (name, law) = (|| agent.name.clone(), agent.law.words());
+    let name = || agent.name.clone();
+    let LawWords { name: law, made_for } = agent.law.words();
     let Some(interface) = agent.interface() else {
-        return Err(SetupError::LawOfAnother { agent: name(), law, made_for: agent.law.made_for() });
+        return Err(SetupError::LawOfAnother { agent: name(), law, made_for });
     };
     let tracks = setup.reference == ReferenceKind::Tracking;
     if !interface.follows.contains(&setup.reference.family()) {

@@ -171,6 +171,6 @@ pub fn assert_first_order(setup: &Setup, sample_hz: f64) {
     let gaps = [1.0, 2.0, 4.0].map(|often| apart(&run(&sampled(setup.clone(), often * sample_hz)), &continuous));
     for pair in gaps.windows(2) {
         let order = (pair[0] / pair[1]).log2();
-        assert!((0.7..1.3).contains(&order), "{}: {gaps:?}", setup.agents[0].law.words());
+        assert!((0.7..1.3).contains(&order), "{}: {gaps:?}", setup.agents[0].law.words().name);
     }
 }

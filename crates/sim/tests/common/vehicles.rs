@@ -32,7 +32,7 @@ pub fn agent(index: usize, kind: Arc<dyn Robot>, design: ThrustKind) -> AgentSet
     let kg = 1.0 + 0.3 * index as f64;
     let q = [[1.0, 0.0, -1.0], [0.0, 1.5, -2.0], [-1.0, 0.5, -1.5]][index];
     let mut rest = vec![0.0, 0.0, 0.0, 1.0];
-    rest.resize(kind.rest_len(), 0.0);
+    rest.resize(kind.interface(3).rest_len, 0.0);
     AgentSetup {
         name: format!("craft-{index}"),
         robot: RobotSetup {

@@ -2,6 +2,7 @@
 
 use forwardstep_core::robot::tree::Uncertain;
 use forwardstep_sim::ThrustKind;
+use forwardstep_sim::probe::Probe;
 
 use crate::hypothesis::{Answer, Named, Rigour};
 
@@ -22,6 +23,13 @@ pub enum KindEvidence {
         requires: String,
         /// Why it should be so.
         because: String,
+    },
+    /// What is said of a robot or of a law, and was tried at random states.
+    Probed {
+        /// What is required.
+        requires: String,
+        /// Where it was tried, and where it failed.
+        probe: Probe,
     },
     /// The law has the mass of the plant.
     MassOfPlant,
@@ -142,6 +150,7 @@ impl KindEvidence {
             | KindEvidence::Determinant { .. } => Answer::Watched,
             KindEvidence::Mixture(_)
             | KindEvidence::Declared { .. }
+            | KindEvidence::Probed { probe: Probe { found: None, .. }, .. }
             | KindEvidence::MassNotAdapted { .. }
             | KindEvidence::ThrustKept { .. }
             | KindEvidence::AngularRate { .. }
@@ -151,13 +160,18 @@ impl KindEvidence {
             | KindEvidence::LengthsInRegressor(_)
             | KindEvidence::LengthsNotAdapted { .. }
             | KindEvidence::NoSpacecraft => Answer::NotCovered,
-            KindEvidence::Singular { .. } | KindEvidence::FactorBelowFloor { .. } => Answer::Violated,
+            KindEvidence::Singular { .. }
+            | KindEvidence::FactorBelowFloor { .. }
+            | KindEvidence::Probed { probe: Probe { found: Some(_), .. }, .. } => Answer::Violated,
         }
     }
 
     pub(super) fn rigour(&self) -> Rigour {
         match self {
-            KindEvidence::Declared { .. } => Rigour::Declared,
+            KindEvidence::Declared { .. } | KindEvidence::Probed { probe: Probe { found: None, .. }, .. } => {
+                Rigour::Declared
+            }
+            KindEvidence::Probed { probe: Probe { found: Some(_), .. }, .. } => Rigour::Sampled,
             KindEvidence::PositiveNumbers
             | KindEvidence::PositiveNumbersTrueMass
             | KindEvidence::Mixture(_)

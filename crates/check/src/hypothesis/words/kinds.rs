@@ -2,9 +2,13 @@
 
 use forwardstep_core::robot::tree::Uncertain;
 use forwardstep_sim::ThrustKind;
+use forwardstep_sim::probe::{Counterexample, Probe};
 
 use super::numbers::rounded;
 use crate::hypothesis::{KindEvidence, Named};
+
+/// States that are written out.
+const MOST_STATES: usize = 12;
 
 pub(super) fn words(evidence: &KindEvidence) -> String {
     match evidence {
@@ -18,6 +22,7 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
             treated.join(", ")
         ),
         KindEvidence::Declared { requires, because } => format!("{requires}: {because} (declared, not shown)"),
+        KindEvidence::Probed { requires, probe } => probed(requires, probe),
         KindEvidence::MassOfPlant => "the law has that of the vehicle".into(),
         KindEvidence::MassNotAdapted { agent } => {
             format!("{} does not adapt its estimate, which is not the true mass", agent.name)
@@ -75,6 +80,21 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
         }
         KindEvidence::NoSpacecraft => "this is no spacecraft".into(),
     }
+}
+
+/// What became of what is declared, at random states.
+fn probed(requires: &str, Probe { states, found }: &Probe) -> String {
+    let Some(Counterexample { identity, t_s, state, value, expected }) = found else {
+        return match states {
+            0 => format!("{requires}: declared, not shown, and it could not be tried"),
+            states => format!("{requires}: declared, not shown; it was so at {states} random states"),
+        };
+    };
+    let numbers: Vec<String> = state.iter().take(MOST_STATES).map(|x| rounded(*x).to_string()).collect();
+    let more = if state.len() > MOST_STATES { ", …" } else { "" };
+    let at = format!("at {} s, in the state ({}{more})", rounded(*t_s), numbers.join(", "));
+    let (identity, value, expected) = (identity.words(), rounded(*value), rounded(*expected));
+    format!("{requires}: but it is not so that {identity} {at}: {value} in place of {expected}")
 }
 
 fn rate(agent: &Named, bandwidth_per_s: f64, design: ThrustKind) -> String {

@@ -128,6 +128,8 @@ impl Controller for ThrustCascade {
         self.outer.vanishing(state)
     }
 
+    fn settle(&self, _: &mut [f64]) {}
+
     fn balance(
         &self,
         (): &mut (),

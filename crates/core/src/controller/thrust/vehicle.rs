@@ -80,6 +80,8 @@ impl Controller for Thrust {
         self.vanishing(state)
     }
 
+    fn settle(&self, _: &mut [f64]) {}
+
     fn balance(
         &self,
         (): &mut (),

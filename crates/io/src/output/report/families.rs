@@ -95,7 +95,8 @@ impl Family {
     /// What its values must not leave, or fall below, or should become.
     fn guides(&self, setup: &Setup, agent: usize, entry: usize) -> Vec<GuideIndex> {
         let Some(agent) = setup.agents.get(agent) else { return Vec::new() };
-        let lines = agent.robot.kind.lines().into_iter().chain(agent.law.lines(&agent.robot));
+        let lines =
+            agent.robot.interface().lines.into_iter().chain(agent.interface().into_iter().flat_map(|law| law.lines));
         let own = lines.filter(|line| line.signal == self.signal && line.entry == entry);
         let guide = |value, label| GuideIndex { value, label };
         own.flat_map(|line| match line.value {

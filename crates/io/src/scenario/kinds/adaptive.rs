@@ -8,7 +8,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
-    At, DampingFile, EstimateStartFile, Fault, GainOrBandwidth, LawKind, LawReader, adaptation, damping, estimate,
+    At, DampingFile, EstimateStartFile, Fault, GainOrBandwidth, LawKind, LawReader, LawTable, adaptation, damping,
+    estimate,
 };
 
 /// The adaptive tracking law.
@@ -24,16 +25,12 @@ pub struct AdaptiveFile {
 }
 
 impl LawKind for AdaptiveFile {
-    fn key() -> &'static str {
-        "adaptive"
-    }
-
-    fn description() -> &'static str {
-        "The parameters of the robot are unknown and estimated: (6) and (7) of the paper."
-    }
-
-    fn made_for() -> &'static str {
-        "arms and point masses"
+    fn table() -> LawTable {
+        LawTable {
+            key: "adaptive",
+            description: "The parameters of the robot are unknown and estimated: (6) and (7) of the paper.",
+            made_for: "arms and point masses",
+        }
     }
 
     fn suits(robot: &RobotSetup) -> bool {
@@ -62,16 +59,12 @@ pub struct KnownFile {
 }
 
 impl LawKind for KnownFile {
-    fn key() -> &'static str {
-        "known"
-    }
-
-    fn description() -> &'static str {
-        "The parameters of the robot are known."
-    }
-
-    fn made_for() -> &'static str {
-        "arms and point masses"
+    fn table() -> LawTable {
+        LawTable {
+            key: "known",
+            description: "The parameters of the robot are known.",
+            made_for: "arms and point masses",
+        }
     }
 
     fn suits(robot: &RobotSetup) -> bool {

@@ -5,17 +5,15 @@ use std::sync::Arc;
 
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::{CascadeError, CascadeTerms};
-use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{ChainLaw, ChainModel, ChainStep, Law, RobotSetup, SetupError, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::chain::{ChainProblem, FLOOR, adapted, chain_robot, each, list, optional, spread_parameters};
+use super::chain::{ChainProblem, FLOOR, adapted, chain_robot, each, list, optional};
 use super::{
-    At, AxisValues, Body, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, RobotKind, RobotRead,
-    RobotTemplate, Spread, StartReader, Stop, fault, filled, length, positive_or,
+    At, AxisValues, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, LawTable, RobotKind, RobotRead,
+    RobotTable, Spread, StartReader, Stop, fault, filled, length, positive_or,
 };
-use crate::scenario::systems_file::TargetFile;
 use crate::scenario::value_problem::ValueProblem;
 use crate::scenario::values::Positive;
 
@@ -36,16 +34,13 @@ pub struct StrictFeedbackFile {
 }
 
 impl RobotKind for StrictFeedbackFile {
-    fn key() -> &'static str {
-        "strict_feedback"
-    }
-
-    fn description() -> &'static str {
-        "A parametric chain in strict-feedback form."
-    }
-
-    fn template() -> Option<RobotTemplate> {
-        None
+    fn table() -> RobotTable {
+        RobotTable {
+            key: "strict_feedback",
+            description: "A parametric chain in strict-feedback form.",
+            usual_law: "adaptive_backstepping",
+            template: None,
+        }
     }
 
     fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
@@ -54,24 +49,13 @@ impl RobotKind for StrictFeedbackFile {
         Ok(RobotRead::new(robot))
     }
 
-    fn spread(&self, read: &RobotRead, spread: &Spread<'_>) -> Result<(RobotSetup, Body), Fault> {
-        Ok(spread_parameters(read, spread))
+    fn spread(&self, read: &mut RobotRead, spread: &Spread<'_>) -> Result<(), Fault> {
+        spread.scale_each(&mut read.robot.theta);
+        Ok(())
     }
 
     fn start(&self, robot: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
         start(robot, given)
-    }
-
-    fn target(&self, _: &At<TargetFile>, _: &Trajectory, _: f64, _: &mut Start) -> Result<(), Fault> {
-        Ok(())
-    }
-
-    fn limits_of_axes(&self) -> bool {
-        true
-    }
-
-    fn usual_law(&self) -> &'static str {
-        "adaptive_backstepping"
     }
 }
 
@@ -93,16 +77,13 @@ pub struct PureFeedbackFile {
 }
 
 impl RobotKind for PureFeedbackFile {
-    fn key() -> &'static str {
-        "pure_feedback"
-    }
-
-    fn description() -> &'static str {
-        "A parametric chain in pure-feedback form."
-    }
-
-    fn template() -> Option<RobotTemplate> {
-        None
+    fn table() -> RobotTable {
+        RobotTable {
+            key: "pure_feedback",
+            description: "A parametric chain in pure-feedback form.",
+            usual_law: "adaptive_backstepping",
+            template: None,
+        }
     }
 
     fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
@@ -115,31 +96,20 @@ impl RobotKind for PureFeedbackFile {
         Ok(RobotRead::new(cascade(terms, &self.regressors, &self.parameters)?))
     }
 
-    fn spread(&self, read: &RobotRead, spread: &Spread<'_>) -> Result<(RobotSetup, Body), Fault> {
-        Ok(spread_parameters(read, spread))
+    fn spread(&self, read: &mut RobotRead, spread: &Spread<'_>) -> Result<(), Fault> {
+        spread.scale_each(&mut read.robot.theta);
+        Ok(())
     }
 
     fn start(&self, robot: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
         start(robot, given)
-    }
-
-    fn target(&self, _: &At<TargetFile>, _: &Trajectory, _: f64, _: &mut Start) -> Result<(), Fault> {
-        Ok(())
-    }
-
-    fn limits_of_axes(&self) -> bool {
-        true
-    }
-
-    fn usual_law(&self) -> &'static str {
-        "adaptive_backstepping"
     }
 }
 
 /// Where a chain starts: z leads its first state.
 fn start(robot: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
     let q = given.position()?;
-    let rest = given.higher_states(robot.kind.rest_len())?;
+    let rest = given.higher_states(robot.interface().rest_len)?;
     Ok(Start { reference: given.reference(&q)?, q, dq: Vec::new(), rest })
 }
 
@@ -201,16 +171,12 @@ fn order(robot: &RobotSetup) -> Option<usize> {
 }
 
 impl LawKind for AdaptiveBacksteppingFile {
-    fn key() -> &'static str {
-        "adaptive_backstepping"
-    }
-
-    fn description() -> &'static str {
-        "A chain in strict-feedback or pure-feedback form with unknown parameters."
-    }
-
-    fn made_for() -> &'static str {
-        "`strict_feedback` and `pure_feedback`, chains with unknown parameters in every equation"
+    fn table() -> LawTable {
+        LawTable {
+            key: "adaptive_backstepping",
+            description: "A chain in strict-feedback or pure-feedback form with unknown parameters.",
+            made_for: "`strict_feedback` and `pure_feedback`, chains with unknown parameters in every equation",
+        }
     }
 
     fn suits(robot: &RobotSetup) -> bool {

@@ -6,18 +6,16 @@ use std::sync::Arc;
 use forwardstep_core::controller::{ChainError, Immersion};
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::{CascadeError, Formulas, Terms};
-use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{AxisUnit, ChainLaw, ChainModel, ChainStep, Estimate, Law, RobotSetup, SetupError, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use thiserror::Error;
 
 use super::{
-    At, AxisValues, Body, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, Mistake, RobotKind, RobotRead,
-    RobotTemplate, Spread, StartReader, Stop, axis, count, estimate, fault, length, positive, positive_or, values,
+    At, AxisValues, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, LawTable, Mistake, RobotKind, RobotRead,
+    RobotTable, Spread, StartReader, Stop, axis, count, estimate, fault, length, positive, positive_or, values,
 };
 use crate::scenario::formula::formula_in;
-use crate::scenario::systems_file::TargetFile;
 use crate::scenario::values::Positive;
 
 /// The highest order that is accepted.
@@ -67,16 +65,13 @@ pub struct ChainFile {
 }
 
 impl RobotKind for ChainFile {
-    fn key() -> &'static str {
-        "chain"
-    }
-
-    fn description() -> &'static str {
-        "A plant of any order with formulas for χ and ψ: Section IV of the paper."
-    }
-
-    fn template() -> Option<RobotTemplate> {
-        None
+    fn table() -> RobotTable {
+        RobotTable {
+            key: "chain",
+            description: "A plant of any order with formulas for χ and ψ: Section IV of the paper.",
+            usual_law: "linear_adaptive",
+            template: None,
+        }
     }
 
     fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
@@ -90,28 +85,17 @@ impl RobotKind for ChainFile {
         Ok(RobotRead::new(chain_robot(ChainModel::Derivatives(Arc::new(terms)), &self.parameters)?))
     }
 
-    fn spread(&self, read: &RobotRead, spread: &Spread<'_>) -> Result<(RobotSetup, Body), Fault> {
-        Ok(spread_parameters(read, spread))
+    fn spread(&self, read: &mut RobotRead, spread: &Spread<'_>) -> Result<(), Fault> {
+        spread.scale_each(&mut read.robot.theta);
+        Ok(())
     }
 
     fn start(&self, robot: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
         let q = given.position()?;
         let dq = if robot.velocity_len() > 0 { given.velocity()? } else { Vec::new() };
-        let rest = given.higher_states(robot.kind.rest_len())?;
+        let rest = given.higher_states(robot.interface().rest_len)?;
         let led = [&q[..], &dq, &rest].concat().last().map(|top| vec![*top]).unwrap_or_default();
         Ok(Start { reference: given.reference(&led)?, q, dq, rest })
-    }
-
-    fn target(&self, _: &At<TargetFile>, _: &Trajectory, _: f64, _: &mut Start) -> Result<(), Fault> {
-        Ok(())
-    }
-
-    fn limits_of_axes(&self) -> bool {
-        true
-    }
-
-    fn usual_law(&self) -> &'static str {
-        "linear_adaptive"
     }
 }
 
@@ -142,14 +126,6 @@ pub(super) fn chain_robot(model: ChainModel, parameters: &At<Vec<At<f64>>>) -> R
         theta_names: (1..=need).map(|k| format!("theta{k}")).collect(),
         axes: vec![axis("x", AxisUnit::Metre)],
     })
-}
-
-/// A chain whose parameters differ from agent to agent.
-pub(super) fn spread_parameters(read: &RobotRead, spread: &Spread<'_>) -> (RobotSetup, Body) {
-    let mut robot = read.robot.clone();
-    let factors = spread.factors(robot.theta.len());
-    robot.theta.iter_mut().zip(factors).for_each(|(theta, factor)| *theta *= factor);
-    (robot, read.body.clone())
 }
 
 /// The terms of a plant of derivatives.
@@ -201,16 +177,8 @@ pub struct LinearisingFile {
 }
 
 impl LawKind for LinearisingFile {
-    fn key() -> &'static str {
-        "linearising"
-    }
-
-    fn description() -> &'static str {
-        "A chain of derivatives that is known."
-    }
-
-    fn made_for() -> &'static str {
-        MADE_FOR
+    fn table() -> LawTable {
+        LawTable { key: "linearising", description: "A chain of derivatives that is known.", made_for: MADE_FOR }
     }
 
     fn suits(robot: &RobotSetup) -> bool {
@@ -245,16 +213,12 @@ pub struct LinearAdaptiveFile {
 }
 
 impl LawKind for LinearAdaptiveFile {
-    fn key() -> &'static str {
-        "linear_adaptive"
-    }
-
-    fn description() -> &'static str {
-        "A chain of derivatives with unknown parameters."
-    }
-
-    fn made_for() -> &'static str {
-        MADE_FOR
+    fn table() -> LawTable {
+        LawTable {
+            key: "linear_adaptive",
+            description: "A chain of derivatives with unknown parameters.",
+            made_for: MADE_FOR,
+        }
     }
 
     fn suits(robot: &RobotSetup) -> bool {
@@ -293,16 +257,8 @@ pub struct ImmersionFile {
 }
 
 impl LawKind for ImmersionFile {
-    fn key() -> &'static str {
-        "immersion"
-    }
-
-    fn description() -> &'static str {
-        "The same by immersion and invariance."
-    }
-
-    fn made_for() -> &'static str {
-        MADE_FOR
+    fn table() -> LawTable {
+        LawTable { key: "immersion", description: "The same by immersion and invariance.", made_for: MADE_FOR }
     }
 
     fn suits(robot: &RobotSetup) -> bool {

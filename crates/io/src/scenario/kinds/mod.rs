@@ -26,7 +26,6 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{Law, RobotSetup, SetupError, Start};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::DeserializeOwned;
@@ -53,18 +52,8 @@ pub use super::values::{AxisValues, GainFile, GainOrBandwidth};
 
 /// A kind of robot in scenario files: its table, as it was read.
 pub trait RobotKind: fmt::Debug {
-    /// Its key in `robot`.
-    fn key() -> &'static str
-    where
-        Self: Sized;
-
-    /// What it is, in a sentence, for the schema.
-    fn description() -> &'static str
-    where
-        Self: Sized;
-
-    /// What `forwardstep new` writes for it; `None` where it offers none.
-    fn template() -> Option<RobotTemplate>
+    /// What the list says of it.
+    fn table() -> RobotTable
     where
         Self: Sized;
 
@@ -74,46 +63,36 @@ pub trait RobotKind: fmt::Debug {
     /// The first mistake, at its place.
     fn read(&self, folder: &mut InputFolder) -> Result<RobotRead, Stop>;
 
-    /// The robot of one agent of a population whose robots differ; `read` is the one that the table says.
+    /// Makes of `read`, which is the robot that the table says, that of one agent of a population whose robots differ.
     ///
     /// # Errors
     /// [`Spread::unsound`] when there is no such robot.
-    fn spread(&self, read: &RobotRead, spread: &Spread<'_>) -> Result<(RobotSetup, Body), Fault>;
+    fn spread(&self, read: &mut RobotRead, spread: &Spread<'_>) -> Result<(), Fault>;
 
     /// Where an agent with `robot` starts. What is not asked of `given` is refused where the agent says it.
     ///
     /// # Errors
     /// The first mistake, at its place.
     fn start(&self, robot: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault>;
+}
 
-    /// Checks the target of an agent that starts at `start`, until `end_s`, and may say the start in another way that suits
-    /// the target.
-    ///
-    /// # Errors
-    /// The mistake at `place`.
-    fn target(&self, place: &At<TargetFile>, target: &Trajectory, end_s: f64, start: &mut Start) -> Result<(), Fault>;
-
-    /// Whether the limits that are enforced are those of its axes; otherwise the plant has limits of its own.
-    fn limits_of_axes(&self) -> bool;
-
+/// What the list of kinds says of a robot.
+#[derive(Clone, Debug)]
+pub struct RobotTable {
+    /// Its key in `robot`.
+    pub key: &'static str,
+    /// What it is, in a sentence, for the schema.
+    pub description: &'static str,
     /// The key of the law of agents that have none. It is read from an empty table.
-    fn usual_law(&self) -> &'static str;
+    pub usual_law: &'static str,
+    /// What `forwardstep new` writes for it; `None` where it offers none.
+    pub template: Option<RobotTemplate>,
 }
 
 /// A kind of law in scenario files: its table, as it was read.
 pub trait LawKind: fmt::Debug {
-    /// Its key in `law`.
-    fn key() -> &'static str
-    where
-        Self: Sized;
-
-    /// What it is, in a sentence, for the schema.
-    fn description() -> &'static str
-    where
-        Self: Sized;
-
-    /// What it is made for, in messages.
-    fn made_for() -> &'static str
+    /// What the list says of it.
+    fn table() -> LawTable
     where
         Self: Sized;
 
@@ -130,6 +109,17 @@ pub trait LawKind: fmt::Debug {
 
     /// Where in the file stands what the closed loop refuses with `error`, if the table itself does not.
     fn place(&self, error: &SetupError) -> Option<Range<usize>>;
+}
+
+/// What the list of kinds says of a law.
+#[derive(Clone, Copy, Debug)]
+pub struct LawTable {
+    /// Its key in `law`.
+    pub key: &'static str,
+    /// What it is, in a sentence, for the schema.
+    pub description: &'static str,
+    /// What it is made for, in messages.
+    pub made_for: &'static str,
 }
 
 /// The agent that a law is read for.
@@ -205,10 +195,11 @@ impl Kinds {
     /// # Errors
     /// [`KindError`] when its key is taken.
     pub fn add_robot<F: RobotKind + DeserializeOwned + JsonSchema + 'static>(&mut self) -> Result<(), KindError> {
-        if self.robot_keys().contains(&F::key()) {
-            return Err(KindError { what: "robot", key: F::key() });
+        let entry = RobotEntry::of::<F>();
+        if self.robot_keys().contains(&entry.table.key) {
+            return Err(KindError { what: "robot", key: entry.table.key });
         }
-        self.robots.push(RobotEntry::of::<F>());
+        self.robots.push(entry);
         Ok(())
     }
 
@@ -217,10 +208,11 @@ impl Kinds {
     /// # Errors
     /// [`KindError`] when its key is taken.
     pub fn add_law<F: LawKind + DeserializeOwned + JsonSchema + 'static>(&mut self) -> Result<(), KindError> {
-        if self.law_keys().contains(&F::key()) {
-            return Err(KindError { what: "law", key: F::key() });
+        let entry = LawEntry::of::<F>();
+        if self.law_keys().contains(&entry.table.key) {
+            return Err(KindError { what: "law", key: entry.table.key });
         }
-        self.laws.push(LawEntry::of::<F>());
+        self.laws.push(entry);
         Ok(())
     }
 
@@ -236,7 +228,7 @@ impl Kinds {
 
     /// What `forwardstep new` writes for the robot of this key, if it offers one.
     pub fn template(&self, key: &str) -> Option<RobotTemplate> {
-        self.robots.iter().find(|entry| entry.table.key == key).and_then(|entry| (entry.template)())
+        self.robots.iter().find(|entry| entry.table.key == key).and_then(|entry| entry.template.clone())
     }
 
     /// The JSON schema of scenario files, for editors.
@@ -253,9 +245,11 @@ impl Kinds {
         schema
     }
 
-    /// The robot at `place` in the tree of a file.
+    /// The robot at `place` in the tree of a file, with the key of its usual law.
     pub(super) fn robot(&self, place: ValueDe<'_, '_>) -> Result<(&'static str, Box<dyn RobotKind>), Fault> {
-        chosen(self.robots.iter().map(|entry| &entry.table), place)
+        let (key, robot) = chosen(self.robots.iter().map(|entry| &entry.table), place)?;
+        let entry = self.robots.iter().find(|entry| entry.table.key == key);
+        Ok((entry.map_or(key, |entry| entry.usual_law), robot))
     }
 
     /// The law at `place` in the tree of a file.
@@ -302,10 +296,11 @@ impl<T: ?Sized> fmt::Debug for Table<T> {
     }
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct RobotEntry {
     table: Table<dyn RobotKind>,
-    template: fn() -> Option<RobotTemplate>,
+    usual_law: &'static str,
+    template: Option<RobotTemplate>,
 }
 
 impl RobotEntry {
@@ -313,9 +308,9 @@ impl RobotEntry {
         fn read<F: RobotKind + DeserializeOwned + 'static>(de: ValueDe<'_, '_>) -> Result<Box<dyn RobotKind>, Fault> {
             Ok(Box::new(F::deserialize(de)?))
         }
-        let schema = SchemaGenerator::subschema_for::<F>;
-        let table = Table { key: F::key(), description: F::description(), read: read::<F>, schema };
-        RobotEntry { table, template: F::template }
+        let RobotTable { key, description, usual_law, template } = F::table();
+        let table = Table { key, description, read: read::<F>, schema: SchemaGenerator::subschema_for::<F> };
+        RobotEntry { table, usual_law, template }
     }
 }
 
@@ -331,9 +326,9 @@ impl LawEntry {
         fn read<F: LawKind + DeserializeOwned + 'static>(de: ValueDe<'_, '_>) -> Result<Box<dyn LawKind>, Fault> {
             Ok(Box::new(F::deserialize(de)?))
         }
-        let schema = SchemaGenerator::subschema_for::<F>;
-        let table = Table { key: F::key(), description: F::description(), read: read::<F>, schema };
-        LawEntry { table, made_for: F::made_for(), suits: F::suits }
+        let LawTable { key, description, made_for } = F::table();
+        let table = Table { key, description, read: read::<F>, schema: SchemaGenerator::subschema_for::<F> };
+        LawEntry { table, made_for, suits: F::suits }
     }
 }
 

@@ -3,17 +3,15 @@
 use std::rc::Rc;
 
 use forwardstep_core::robot::{PlanarLinks, PlanarTip};
-use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{RobotSetup, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use thiserror::Error;
 
 use super::{
-    At, Body, Fault, InputFolder, Mistake, RobotKind, RobotRead, RobotTemplate, Spread, StartReader, Stop,
+    At, Body, Fault, InputFolder, Mistake, RobotKind, RobotRead, RobotTable, RobotTemplate, Spread, StartReader, Stop,
     not_negative, positive,
 };
-use crate::scenario::systems_file::TargetFile;
 use crate::scenario::values::{NotNegative, Positive};
 
 /// An arm whose mass matrix is not positive definite.
@@ -48,21 +46,18 @@ pub struct PlanarArmFile {
 }
 
 impl RobotKind for PlanarArmFile {
-    fn key() -> &'static str {
-        "planar_arm"
-    }
-
-    fn description() -> &'static str {
-        "The two-link planar arm in closed form: the first angle from the horizontal, the second relative to the first link."
-    }
-
-    fn template() -> Option<RobotTemplate> {
-        Some(RobotTemplate {
-            name: "arm",
-            line: "robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }".into(),
-            says: "uniform links",
-            law: RobotTemplate::adaptive("damping.gain = 8", "adaptation_gain = 10"),
-        })
+    fn table() -> RobotTable {
+        RobotTable {
+            key: "planar_arm",
+            description: "The two-link planar arm in closed form: the first angle from the horizontal, the second relative to the first link.",
+            usual_law: "adaptive",
+            template: Some(RobotTemplate {
+                name: "arm",
+                line: "robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }".into(),
+                says: "uniform links",
+                law: RobotTemplate::adaptive("damping.gain = 8", "adaptation_gain = 10"),
+            }),
+        }
     }
 
     fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
@@ -70,7 +65,7 @@ impl RobotKind for PlanarArmFile {
         Ok(RobotRead { robot, body, notices: Vec::new() })
     }
 
-    fn spread(&self, _: &RobotRead, spread: &Spread<'_>) -> Result<(RobotSetup, Body), Fault> {
+    fn spread(&self, read: &mut RobotRead, spread: &Spread<'_>) -> Result<(), Fault> {
         let (factors, mut links) = (spread.factors(4), links(self)?);
         for (k, (mass, length)) in factors[..2].iter().zip(&factors[2..]).enumerate() {
             links.mass_kg[k] *= mass;
@@ -78,23 +73,12 @@ impl RobotKind for PlanarArmFile {
             links.com_m[k] *= length;
             links.inertia_kg_m2[k] *= mass * length * length;
         }
-        arm(&links).map_err(|_| spread.unsound())
+        (read.robot, read.body) = arm(&links).map_err(|_| spread.unsound())?;
+        Ok(())
     }
 
     fn start(&self, _: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
         given.position_and_velocity()
-    }
-
-    fn target(&self, _: &At<TargetFile>, _: &Trajectory, _: f64, _: &mut Start) -> Result<(), Fault> {
-        Ok(())
-    }
-
-    fn limits_of_axes(&self) -> bool {
-        true
-    }
-
-    fn usual_law(&self) -> &'static str {
-        "adaptive"
     }
 }
 

@@ -4,16 +4,14 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use forwardstep_core::robot::PointMass;
-use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{Law, PositionOnlyLaw, RobotSetup, SetupError, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
-    At, Body, Fault, InputFolder, LawKind, LawReader, RobotKind, RobotRead, RobotTemplate, Spread, StartReader, Stop,
-    count, not_negative_or, positive, positive_or,
+    At, Fault, InputFolder, LawKind, LawReader, LawTable, RobotKind, RobotRead, RobotTable, RobotTemplate, Spread,
+    StartReader, Stop, count, not_negative_or, positive, positive_or,
 };
-use crate::scenario::systems_file::TargetFile;
 use crate::scenario::values::Positive;
 
 /// Axes a point mass may have.
@@ -37,47 +35,31 @@ pub struct PointMassFile {
 }
 
 impl RobotKind for PointMassFile {
-    fn key() -> &'static str {
-        "point_mass"
-    }
-
-    fn description() -> &'static str {
-        "A point mass that is pushed along every axis."
-    }
-
-    fn template() -> Option<RobotTemplate> {
-        Some(RobotTemplate {
-            name: "mass",
-            line: "robot.point_mass = { dimension = 2, mass_kg = 4.0 }".into(),
-            says: "in a plane",
-            law: RobotTemplate::adaptive("damping.gain = 8", "adaptation_gain = 10"),
-        })
+    fn table() -> RobotTable {
+        RobotTable {
+            key: "point_mass",
+            description: "A point mass that is pushed along every axis.",
+            usual_law: "adaptive",
+            template: Some(RobotTemplate {
+                name: "mass",
+                line: "robot.point_mass = { dimension = 2, mass_kg = 4.0 }".into(),
+                says: "in a plane",
+                law: RobotTemplate::adaptive("damping.gain = 8", "adaptation_gain = 10"),
+            }),
+        }
     }
 
     fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
         Ok(RobotRead::new(point_mass(self)?))
     }
 
-    fn spread(&self, read: &RobotRead, spread: &Spread<'_>) -> Result<(RobotSetup, Body), Fault> {
-        let mut robot = read.robot.clone();
-        robot.theta.iter_mut().zip(spread.factors(1)).for_each(|(mass, factor)| *mass *= factor);
-        Ok((robot, read.body.clone()))
+    fn spread(&self, read: &mut RobotRead, spread: &Spread<'_>) -> Result<(), Fault> {
+        spread.scale_each(&mut read.robot.theta);
+        Ok(())
     }
 
     fn start(&self, _: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
         given.position_and_velocity()
-    }
-
-    fn target(&self, _: &At<TargetFile>, _: &Trajectory, _: f64, _: &mut Start) -> Result<(), Fault> {
-        Ok(())
-    }
-
-    fn limits_of_axes(&self) -> bool {
-        true
-    }
-
-    fn usual_law(&self) -> &'static str {
-        "adaptive"
     }
 }
 
@@ -104,16 +86,12 @@ pub struct PositionOnlyFile {
 }
 
 impl LawKind for PositionOnlyFile {
-    fn key() -> &'static str {
-        "position_only"
-    }
-
-    fn description() -> &'static str {
-        "A point mass of unknown mass whose velocity is not measured: (a8) of the paper."
-    }
-
-    fn made_for() -> &'static str {
-        "point masses"
+    fn table() -> LawTable {
+        LawTable {
+            key: "position_only",
+            description: "A point mass of unknown mass whose velocity is not measured: (a8) of the paper.",
+            made_for: "point masses",
+        }
     }
 
     fn suits(robot: &RobotSetup) -> bool {

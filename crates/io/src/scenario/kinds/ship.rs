@@ -1,15 +1,12 @@
 //! `robot.ship`: a fully actuated surface ship in the earth frame.
 
-use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{RobotSetup, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
-    At, Body, Fault, InputFolder, RobotKind, RobotRead, RobotTemplate, Spread, StartReader, Stop, fault, not_negative,
-    positive,
+    At, Fault, InputFolder, RobotKind, RobotRead, RobotTable, Spread, StartReader, Stop, fault, not_negative, positive,
 };
-use crate::scenario::systems_file::TargetFile;
 use crate::scenario::value_problem::ValueProblem;
 
 /// A surface ship with three degrees of freedom, pushed and turned at will; its position is (x, y, ψ) in the earth frame, ψ is not
@@ -61,47 +58,31 @@ pub struct ShipDampingFile {
 }
 
 impl RobotKind for ShipFile {
-    fn key() -> &'static str {
-        "ship"
-    }
-
-    fn description() -> &'static str {
-        "A fully actuated surface ship: its position is (x, y, ψ) in the earth frame."
-    }
-
-    fn template() -> Option<RobotTemplate> {
-        None
+    fn table() -> RobotTable {
+        RobotTable {
+            key: "ship",
+            description: "A fully actuated surface ship: its position is (x, y, ψ) in the earth frame.",
+            usual_law: "adaptive",
+            template: None,
+        }
     }
 
     fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
         Ok(RobotRead::new(RobotSetup::ship(theta(self)?)))
     }
 
-    fn spread(&self, read: &RobotRead, spread: &Spread<'_>) -> Result<(RobotSetup, Body), Fault> {
+    fn spread(&self, read: &mut RobotRead, spread: &Spread<'_>) -> Result<(), Fault> {
         // The inertia scales as a whole and so does the damping: both keep their signs.
-        let mut robot = read.robot.clone();
         let factors = spread.factors(2);
-        let (inertia, damping) = robot.theta.split_at_mut(4);
+        let (inertia, damping) = read.robot.theta.split_at_mut(4);
         for (entries, factor) in [inertia, damping].into_iter().zip(factors) {
             entries.iter_mut().for_each(|entry| *entry *= factor);
         }
-        Ok((robot, read.body.clone()))
+        Ok(())
     }
 
     fn start(&self, _: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
         given.position_and_velocity()
-    }
-
-    fn target(&self, _: &At<TargetFile>, _: &Trajectory, _: f64, _: &mut Start) -> Result<(), Fault> {
-        Ok(())
-    }
-
-    fn limits_of_axes(&self) -> bool {
-        true
-    }
-
-    fn usual_law(&self) -> &'static str {
-        "adaptive"
     }
 }
 

@@ -4,32 +4,26 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
-use forwardstep_core::attitude::{IDENTITY, Quaternion, difference};
+use forwardstep_core::attitude::{IDENTITY, Quaternion};
 use forwardstep_core::plant::{Spacecraft, SpacecraftError, Wheel, Wheels};
-use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{AttitudeLaw, AxisUnit, Law, RobotSetup, SetupError, SpacecraftModel, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use thiserror::Error;
 
 use super::{
-    At, Body, Fault, GainFile, InputFolder, LawKind, LawReader, Mistake, RobotKind, RobotRead, RobotTemplate, Spread,
+    At, Fault, GainFile, InputFolder, LawKind, LawReader, LawTable, Mistake, RobotKind, RobotRead, RobotTable, Spread,
     StartReader, Stop, axis, fault, filled, gain, gain_or, length, positive, positive_or, values,
 };
 use crate::scenario::attitude::{attitude as attitude_of, quaternion, turn};
 use crate::scenario::attitude_file::WheelStartFile;
-use crate::scenario::systems_file::TargetFile;
 use crate::scenario::value_problem::ValueProblem;
 use crate::scenario::values::Positive;
-use crate::wording::number;
 
 const ERROR_GAIN_PER_S2: f64 = 1.0;
 const RATE_GAIN_PER_S: f64 = 2.0;
 const FILTER_GAIN_PER_S: f64 = 1.0;
 const DAMPING: f64 = 3.0;
-/// Times at which the length of a target is looked at, and what part of its greatest counts as zero.
-const SAMPLES: u32 = 1000;
-const VANISHING: f64 = 1e-9;
 
 /// What is wrong with a spacecraft.
 #[derive(Debug, Error)]
@@ -37,12 +31,6 @@ enum SpacecraftProblem {
     /// A spacecraft that makes no sense.
     #[error(transparent)]
     Unsound(SpacecraftError),
-    /// A desired attitude that is zero.
-    #[error("this is no attitude at {} s: its four entries are zero there", number(*.t_s))]
-    NoAttitude {
-        /// When, s.
-        t_s: f64,
-    },
     /// Two ways of stating an attitude, or half of one.
     #[error("an attitude is `axis` with `angle_rad`, or `quaternion`")]
     HalfAttitude,
@@ -52,9 +40,6 @@ impl Mistake for SpacecraftProblem {
     fn help(&self) -> Option<String> {
         let text = match self {
             SpacecraftProblem::Unsound(SpacecraftError::Axis { .. }) => "[1, 0, 0] is the first axis of the body",
-            SpacecraftProblem::NoAttitude { .. } => {
-                "a quaternion may have any length but zero, vector part first: [0, 0, 0, 1] is no turn"
-            }
             SpacecraftProblem::HalfAttitude => {
                 "write `axis = [0, 0, 1]` and `angle_rad = 1.5`, or `quaternion = [0, 0, 0, 1]` alone"
             }
@@ -91,29 +76,26 @@ pub struct WheelFile {
 }
 
 impl RobotKind for SpacecraftFile {
-    fn key() -> &'static str {
-        "spacecraft"
-    }
-
-    fn description() -> &'static str {
-        "A spacecraft that turns itself by reaction wheels."
-    }
-
-    fn template() -> Option<RobotTemplate> {
-        None
+    fn table() -> RobotTable {
+        RobotTable {
+            key: "spacecraft",
+            description: "A spacecraft that turns itself by reaction wheels.",
+            usual_law: "attitude",
+            template: None,
+        }
     }
 
     fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
         Ok(RobotRead::new(spacecraft(self)?))
     }
 
-    fn spread(&self, read: &RobotRead, spread: &Spread<'_>) -> Result<(RobotSetup, Body), Fault> {
-        let mut robot = read.robot.clone();
-        if let (Some(model), Some(factor)) = (robot.kind.downcast::<SpacecraftModel>(), spread.factors(1).first()) {
+    fn spread(&self, read: &mut RobotRead, spread: &Spread<'_>) -> Result<(), Fault> {
+        if let (Some(model), Some(factor)) = (read.robot.kind.downcast::<SpacecraftModel>(), spread.factors(1).first())
+        {
             let inertia_kg_m2 = model.inertia_kg_m2.map(|row| row.map(|entry| factor * entry));
-            robot.kind = Arc::new(SpacecraftModel { inertia_kg_m2, wheels: model.wheels.clone() });
+            read.robot.kind = Arc::new(SpacecraftModel { inertia_kg_m2, wheels: model.wheels.clone() });
         }
-        Ok((robot, read.body.clone()))
+        Ok(())
     }
 
     fn start(&self, robot: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
@@ -143,21 +125,6 @@ impl RobotKind for SpacecraftFile {
         };
         let (q, rate) = (q.unwrap_or(IDENTITY), rate.unwrap_or_default());
         Ok(Start { q: q.to_vec(), dq: rate.to_vec(), rest, reference: Vec::new() })
-    }
-
-    fn target(&self, place: &At<TargetFile>, target: &Trajectory, end_s: f64, start: &mut Start) -> Result<(), Fault> {
-        never_zero(place, target, end_s)?;
-        shortest_rotation(start, target);
-        Ok(())
-    }
-
-    fn limits_of_axes(&self) -> bool {
-        // They are those of its wheels.
-        false
-    }
-
-    fn usual_law(&self) -> &'static str {
-        "attitude"
     }
 }
 
@@ -220,33 +187,6 @@ fn turned(file: &WheelStartFile) -> Result<Option<Quaternion>, Fault> {
     })
 }
 
-/// Refuses a target that is no attitude at some time.
-fn never_zero<T>(place: &At<T>, target: &Trajectory, end_s: f64) -> Result<(), Fault> {
-    let mut jets = [[0.0; 5]; 4];
-    let mut size = |t_s: f64| {
-        target.jets(t_s, &mut jets);
-        jets.iter().map(|jet| jet[0].abs()).fold(0.0, f64::max)
-    };
-    let times = (0..=SAMPLES).map(|k| end_s * f64::from(k) / f64::from(SAMPLES));
-    let (t_s, least, most) = times.fold((0.0, f64::INFINITY, 0.0_f64), |(at, least, most), t_s| {
-        let size = size(t_s);
-        if size < least { (t_s, size, most.max(size)) } else { (at, least, most.max(size)) }
-    });
-    if least > VANISHING * most { Ok(()) } else { Err(fault(place, SpacecraftProblem::NoAttitude { t_s })) }
-}
-
-/// Of the two quaternions of the attitude at the start, takes the one that is nearer to the target: the law leads to Δq_o = 1
-/// and would otherwise take the long way round.
-fn shortest_rotation(start: &mut Start, target: &Trajectory) {
-    let mut jets = [[0.0; 5]; 4];
-    target.jets(0.0, &mut jets);
-    if let Some(q) = start.q.first_chunk_mut::<4>()
-        && difference(*q, jets.map(|jet| jet[0]))[3] < 0.0
-    {
-        *q = q.map(|x| -x);
-    }
-}
-
 /// Attitude tracking without angular velocity: (97) to (105) of the paper.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -264,16 +204,12 @@ pub struct AttitudeFile {
 }
 
 impl LawKind for AttitudeFile {
-    fn key() -> &'static str {
-        "attitude"
-    }
-
-    fn description() -> &'static str {
-        "A spacecraft follows an attitude, without its angular velocity: (97) to (105) of the paper."
-    }
-
-    fn made_for() -> &'static str {
-        "spacecraft"
+    fn table() -> LawTable {
+        LawTable {
+            key: "attitude",
+            description: "A spacecraft follows an attitude, without its angular velocity: (97) to (105) of the paper.",
+            made_for: "spacecraft",
+        }
     }
 
     fn suits(robot: &RobotSetup) -> bool {

@@ -13,7 +13,7 @@ use serde::Deserialize;
 use thiserror::Error;
 
 use super::{
-    At, Body, DampingFile, EstimateStartFile, Fault, GainFile, GainOrBandwidth, LawKind, LawReader, Mistake,
+    At, Body, DampingFile, EstimateStartFile, Fault, GainFile, GainOrBandwidth, LawKind, LawReader, LawTable, Mistake,
     adaptation, between, damping, estimate, fault, filled, gain_or, length, positive_or, values,
 };
 use crate::scenario::gains::{has_scales, known_or_given};
@@ -153,20 +153,16 @@ pub struct BoundsFile {
 }
 
 impl LawKind for TaskSpaceFile {
-    fn key() -> &'static str {
-        "task_space"
-    }
-
-    fn description() -> &'static str {
-        "The tip of a robot follows a target, with uncertain lengths and without its velocity: (80) to (82) of the paper."
-    }
-
-    fn made_for() -> &'static str {
-        "planar arms and robots from a URDF"
+    fn table() -> LawTable {
+        LawTable {
+            key: "task_space",
+            description: "The tip of a robot follows a target, with uncertain lengths and without its velocity: (80) to (82) of the paper.",
+            made_for: "planar arms and robots from a URDF",
+        }
     }
 
     fn suits(robot: &RobotSetup) -> bool {
-        matches!(robot.kind.attachments(), Attachments::PlanarTip | Attachments::Links(_))
+        matches!(robot.interface().attachments, Attachments::PlanarTip | Attachments::Links(_))
     }
 
     fn law(&self, reader: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
@@ -221,13 +217,13 @@ fn tip(
     robot: &RobotSetup,
     body: &Body,
 ) -> Result<(TipSetup, Vec<f64>, Vec<String>), Fault> {
-    match (robot.kind.attachments(), &body.tip, &file.tip) {
+    match (robot.interface().attachments, &body.tip, &file.tip) {
         (Attachments::PlanarTip, Some(tip), None) => {
             Ok((TipSetup::Planar(*tip), tip.length_m.to_vec(), tip.parameter_names()))
         }
         (Attachments::PlanarTip, _, Some(place)) => Err(fault(place, TipProblem::OfPlanarArm)),
         (Attachments::Links(tree), _, Some(place)) => {
-            of_tree(&place.value, agent, tree, body).and_then(|(setup, tip)| {
+            of_tree(&place.value, agent, &tree, body).and_then(|(setup, tip)| {
                 let tip = tip.map_err(|error| no_tip(place, robot, error))?;
                 Ok((setup, tip.parameters(), tip.parameter_names()))
             })

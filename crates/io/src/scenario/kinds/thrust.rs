@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use forwardstep_core::controller::{Floor, Yaw};
 use forwardstep_core::plant::Rotors;
-use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{
     AxisUnit, Law, Robot, RobotSetup, RotorcraftModel, SetupError, Start, ThrustKind, ThrustLaw, VehicleModel,
 };
@@ -13,11 +12,10 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
-    At, Body, Fault, GainFile, InputFolder, LawKind, LawReader, RobotKind, RobotRead, RobotTemplate, Spread,
+    At, Fault, GainFile, InputFolder, LawKind, LawReader, LawTable, RobotKind, RobotRead, RobotTable, Spread,
     StartReader, Stop, axis, fault, gain, not_negative, not_negative_or, positive, positive_or,
 };
 use crate::scenario::system_problem::SystemProblem;
-use crate::scenario::systems_file::TargetFile;
 use crate::scenario::value_problem::ValueProblem;
 use crate::scenario::values::{NotNegative, Positive};
 
@@ -44,16 +42,13 @@ pub struct VehicleFile {
 }
 
 impl RobotKind for VehicleFile {
-    fn key() -> &'static str {
-        "vehicle"
-    }
-
-    fn description() -> &'static str {
-        "A vehicle in space with one thrust along its own axis, whose angular velocity obeys at once."
-    }
-
-    fn template() -> Option<RobotTemplate> {
-        None
+    fn table() -> RobotTable {
+        RobotTable {
+            key: "vehicle",
+            description: "A vehicle in space with one thrust along its own axis, whose angular velocity obeys at once.",
+            usual_law: "thrust",
+            template: None,
+        }
     }
 
     fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
@@ -61,28 +56,15 @@ impl RobotKind for VehicleFile {
         Ok(RobotRead::new(robot(model, positive("mass_kg", &self.mass_kg)?)))
     }
 
-    fn spread(&self, read: &RobotRead, spread: &Spread<'_>) -> Result<(RobotSetup, Body), Fault> {
-        let mut robot = read.robot.clone();
-        robot.theta.iter_mut().zip(spread.factors(1)).for_each(|(mass, factor)| *mass *= factor);
-        Ok((robot, read.body.clone()))
+    fn spread(&self, read: &mut RobotRead, spread: &Spread<'_>) -> Result<(), Fault> {
+        spread.scale_each(&mut read.robot.theta);
+        Ok(())
     }
 
     fn start(&self, _: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
         let (q, dq) = (given.position()?, given.velocity()?);
         let rest = given.attitude()?.to_vec();
         Ok(Start { reference: given.reference(&dq)?, q, dq, rest })
-    }
-
-    fn target(&self, _: &At<TargetFile>, _: &Trajectory, _: f64, _: &mut Start) -> Result<(), Fault> {
-        Ok(())
-    }
-
-    fn limits_of_axes(&self) -> bool {
-        true
-    }
-
-    fn usual_law(&self) -> &'static str {
-        "thrust"
     }
 }
 
@@ -119,16 +101,13 @@ pub struct RotorsFile {
 }
 
 impl RobotKind for RotorcraftFile {
-    fn key() -> &'static str {
-        "rotorcraft"
-    }
-
-    fn description() -> &'static str {
-        "The same as a rigid body with inertia that torques turn."
-    }
-
-    fn template() -> Option<RobotTemplate> {
-        None
+    fn table() -> RobotTable {
+        RobotTable {
+            key: "rotorcraft",
+            description: "The same as a rigid body with inertia that torques turn.",
+            usual_law: "thrust",
+            template: None,
+        }
     }
 
     fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
@@ -141,10 +120,9 @@ impl RobotKind for RotorcraftFile {
         Ok(RobotRead::new(robot(model, positive("mass_kg", &self.mass_kg)?)))
     }
 
-    fn spread(&self, read: &RobotRead, spread: &Spread<'_>) -> Result<(RobotSetup, Body), Fault> {
-        let mut robot = read.robot.clone();
-        robot.theta.iter_mut().zip(spread.factors(1)).for_each(|(mass, factor)| *mass *= factor);
-        Ok((robot, read.body.clone()))
+    fn spread(&self, read: &mut RobotRead, spread: &Spread<'_>) -> Result<(), Fault> {
+        spread.scale_each(&mut read.robot.theta);
+        Ok(())
     }
 
     fn start(&self, _: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
@@ -152,18 +130,6 @@ impl RobotKind for RotorcraftFile {
         let mut rest = given.attitude()?.to_vec();
         rest.extend(given.angular_velocity());
         Ok(Start { reference: given.reference(&dq)?, q, dq, rest })
-    }
-
-    fn target(&self, _: &At<TargetFile>, _: &Trajectory, _: f64, _: &mut Start) -> Result<(), Fault> {
-        Ok(())
-    }
-
-    fn limits_of_axes(&self) -> bool {
-        true
-    }
-
-    fn usual_law(&self) -> &'static str {
-        "thrust"
     }
 }
 
@@ -285,16 +251,12 @@ pub struct KeptFloorFile {
 }
 
 impl LawKind for ThrustFile {
-    fn key() -> &'static str {
-        "thrust"
-    }
-
-    fn description() -> &'static str {
-        "A vehicle with one thrust: (46), (50) or (57) of the paper."
-    }
-
-    fn made_for() -> &'static str {
-        "vehicles and rotorcraft"
+    fn table() -> LawTable {
+        LawTable {
+            key: "thrust",
+            description: "A vehicle with one thrust: (46), (50) or (57) of the paper.",
+            made_for: "vehicles and rotorcraft",
+        }
     }
 
     fn suits(robot: &RobotSetup) -> bool {

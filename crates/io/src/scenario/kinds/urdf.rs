@@ -3,16 +3,14 @@
 use std::sync::Arc;
 
 use forwardstep_core::robot::tree::Tree;
-use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{RobotSetup, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{At, Body, Fault, InputFolder, RobotKind, RobotRead, RobotTemplate, Spread, StartReader, Stop, fault};
+use super::{At, Body, Fault, InputFolder, RobotKind, RobotRead, RobotTable, Spread, StartReader, Stop, fault};
 use crate::SourceText;
 use crate::files::ReadError;
 use crate::scenario::problem::ScenarioProblem;
-use crate::scenario::systems_file::TargetFile;
 use crate::scenario::values::Named;
 use crate::urdf::{self, FrictionPolicy, UrdfOptions, UrdfProblem};
 
@@ -44,49 +42,32 @@ pub enum FrictionFile {
 }
 
 impl RobotKind for UrdfFile {
-    fn key() -> &'static str {
-        "urdf"
-    }
-
-    fn description() -> &'static str {
-        "An arm, or any tree of rigid bodies on a fixed base, from a URDF."
-    }
-
-    fn template() -> Option<RobotTemplate> {
-        None
+    fn table() -> RobotTable {
+        RobotTable {
+            key: "urdf",
+            description: "An arm, or any tree of rigid bodies on a fixed base, from a URDF.",
+            usual_law: "adaptive",
+            template: None,
+        }
     }
 
     fn read(&self, folder: &mut InputFolder) -> Result<RobotRead, Stop> {
         from_urdf(self, folder)
     }
 
-    fn spread(&self, read: &RobotRead, spread: &Spread<'_>) -> Result<(RobotSetup, Body), Fault> {
-        let mut robot = read.robot.clone();
+    fn spread(&self, read: &mut RobotRead, spread: &Spread<'_>) -> Result<(), Fault> {
+        let robot = &mut read.robot;
         // Ten parameters per body come first; they scale together, and dampings stay.
         let bodies = robot.theta.chunks_exact_mut(10).zip(spread.factors(robot.axes.len()));
         bodies.for_each(|(body, factor)| body.iter_mut().for_each(|entry| *entry *= factor));
         let anywhere = [f64::NEG_INFINITY, f64::INFINITY];
         let range: Vec<[f64; 2]> = robot.axes.iter().map(|axis| axis.position_limits.unwrap_or(anywhere)).collect();
         let tree = robot.kind.downcast::<Arc<Tree>>();
-        tree.map_or(Ok(()), |tree| tree.check_mass_matrix(&robot.theta, &range, SAMPLES))
-            .map_err(|_| spread.unsound())?;
-        Ok((robot, read.body.clone()))
+        tree.map_or(Ok(()), |tree| tree.check_mass_matrix(&robot.theta, &range, SAMPLES)).map_err(|_| spread.unsound())
     }
 
     fn start(&self, _: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
         given.position_and_velocity()
-    }
-
-    fn target(&self, _: &At<TargetFile>, _: &Trajectory, _: f64, _: &mut Start) -> Result<(), Fault> {
-        Ok(())
-    }
-
-    fn limits_of_axes(&self) -> bool {
-        true
-    }
-
-    fn usual_law(&self) -> &'static str {
-        "adaptive"
     }
 }
 

@@ -1,0 +1,23 @@
+//! Everything that a robot, a law and a program of one's own are made of, to be imported at once.
+//!
+//! `examples/tank.rs` brings a robot and a law with nothing else. The tables of scenario files derive `serde::Deserialize` and
+//! `schemars::JsonSchema`, on which a crate that brings kinds depends itself.
+
+pub use std::ops::Range;
+pub use std::sync::Arc;
+
+pub use forwardstep_core::LengthError;
+pub use forwardstep_core::controller::{Asked, Balance, Controller, Feedback, FeedbackInput, Given, Trouble, Truth};
+pub use forwardstep_core::plant::{Plant, VectorField};
+pub use forwardstep_core::reference::Position;
+pub use forwardstep_core::signal::{Entries, OwnSignal, Signal, Unit};
+pub use forwardstep_io::scenario::kinds::{
+    At, Fault, InputFolder, KindError, Kinds, LawKind, LawReader, LawTable, Mistake, RobotKind, RobotRead, RobotTable,
+    Spread, StartReader, Stop, fault, not_negative, positive,
+};
+pub use forwardstep_sim::system::{Declaration, DeclaredClaim, Known};
+pub use forwardstep_sim::{
+    ActuatorLimits, Assembly, Attachments, Axis, AxisUnit, Block, Coordinates, Exchange, Interface, LagrangianRobot,
+    Law, LawWords, Line, LineValue, PositionKind, ReferenceFamily, Robot, RobotInterface, RobotSetup, SetupError,
+    Start,
+};
