@@ -138,6 +138,35 @@ fn no_library_reads_the_clock_on_the_wall() {
     for below in ["core/src", "sim/src", "check/src", "io/src"] {
         never_says(below, &["Instant", "SystemTime"]);
     }
+    // What other programs call, and what their commands are made of.
+    for file in ["lib", "program", "arguments", "console", "status"] {
+        never_says(&format!("forwardstep/src/{file}.rs"), &["Instant", "SystemTime"]);
+    }
+}
+
+/// Dependencies that every user of a crate builds, whatever the features.
+fn always_built(floor: &str) -> BTreeSet<String> {
+    let is_optional = |value: &Value| value.get("optional") == Some(&Value::Boolean(true));
+    let manifest = manifest(floor);
+    let table = manifest["dependencies"].as_table().unwrap();
+    table.iter().filter(|(_, value)| !is_optional(value)).map(|(name, _)| name.clone()).collect()
+}
+
+#[test]
+fn a_library_needs_nothing_of_the_program() {
+    let library = ["forwardstep-check", "forwardstep-core", "forwardstep-sim"].map(String::from);
+    assert_eq!(always_built("forwardstep"), library.into());
+    let report = ["base64", "blake3", "csv", "maud", "parquet", "plotters"].map(String::from).into();
+    let readers = always_built("io");
+    assert!(readers.is_disjoint(&report) && readers.contains("toml"), "{readers:?}");
+    // A workspace member turns features on by itself only where it says so.
+    let workspace: Table = fs::read_to_string(crates().join("../Cargo.toml")).unwrap().parse().unwrap();
+    let shared = &workspace["workspace"]["dependencies"];
+    for name in ["forwardstep-io", "miette"] {
+        assert_eq!(shared[name]["default-features"], Value::Boolean(false), "{name}");
+    }
+    let default: Vec<_> = manifest("forwardstep")["features"]["default"].as_array().unwrap().clone();
+    assert_eq!(default, [Value::from("program")]);
 }
 
 #[test]

@@ -1,4 +1,5 @@
 //! The program as a user meets it: what it prints, what it writes, and how it exits.
+#![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod support;

@@ -1,4 +1,5 @@
 //! Scripts for shells.
+#![cfg(feature = "program")]
 #![allow(clippy::unwrap_used)]
 
 use assert_cmd::Command;

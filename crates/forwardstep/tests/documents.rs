@@ -277,6 +277,74 @@ fn every_source_file_is_on_the_map() {
     assert!(unmapped.is_empty(), "not in the code map of ARCHITECTURE.md:\n{}", unmapped.join("\n"));
 }
 
+/// A public item of a source file: its name, and its documentation line by line.
+fn items(source: &str) -> Vec<(String, Vec<String>)> {
+    let (mut found, mut documentation) = (Vec::new(), Vec::new());
+    for line in source.lines() {
+        if let Some(line) = line.strip_prefix("///") {
+            documentation.push(line.trim().to_owned());
+        } else if !line.starts_with("#[") {
+            let item =
+                ["pub struct ", "pub enum ", "pub trait ", "pub fn "].iter().find_map(|kind| line.strip_prefix(kind));
+            let documentation = std::mem::take(&mut documentation);
+            let name = item.and_then(|item| item.split(|c: char| !c.is_alphanumeric() && c != '_').next());
+            found.extend(name.map(|name| (name.to_owned(), documentation)));
+        }
+    }
+    found
+}
+
+/// Whether a block of it is run and asserts something.
+fn is_tested(documentation: &[String]) -> bool {
+    let (mut runs, mut open) = (false, false);
+    for line in documentation {
+        match (line.strip_prefix("```"), open) {
+            (Some(language), false) => (runs, open) = (language.is_empty(), true),
+            (Some(_), true) => open = false,
+            (None, _) if open && runs && line.starts_with("assert") => return true,
+            _ => {}
+        }
+    }
+    false
+}
+
+/// A law is what names its source, or is a controller or reference dynamics; so is what a processor runs.
+#[test]
+fn every_public_law_has_a_doctest() {
+    let core = root().join("crates/core/src");
+    let mut laws: BTreeSet<String> = ["Agent", "Stepped", "Sampled", "Recipe", "Mailbox"].map(str::to_owned).into();
+    let (mut tested, mut public) = (BTreeSet::new(), BTreeSet::new());
+    for path in
+        ["agent", "controller", "law", "reference", "sampled"].iter().flat_map(|folder| files(&core.join(folder), "rs"))
+    {
+        let source = fs::read_to_string(path).unwrap();
+        for kind in [" Controller for ", " Reference for "] {
+            let implemented =
+                source.lines().filter(|line| line.starts_with("impl")).filter_map(|line| line.split_once(kind));
+            laws.extend(implemented.map(|(_, name)| name.split(['<', ' ']).next().unwrap().to_owned()));
+        }
+        for (name, documentation) in items(&source) {
+            if documentation.iter().any(|line| line.starts_with("**Source**")) {
+                laws.insert(name.clone());
+            }
+            if is_tested(&documentation) {
+                tested.insert(name.clone());
+            }
+            public.insert(name);
+        }
+    }
+    assert!(laws.len() > 15 && laws.is_subset(&public), "{:?}", laws.difference(&public));
+    let missing: Vec<_> = laws.difference(&tested).collect();
+    assert!(missing.is_empty(), "no test in the documentation of {missing:?}");
+}
+
+#[test]
+fn the_first_program_in_the_readme_is_the_example() {
+    let example = fs::read_to_string(root().join("crates/forwardstep/examples/first.rs")).unwrap();
+    let readme = Document::named("README.md");
+    assert!(readme.blocks.iter().any(|(language, block)| language == "rust" && *block == example));
+}
+
 #[test]
 fn every_invariant_names_its_guard() {
     let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();

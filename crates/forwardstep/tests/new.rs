@@ -1,4 +1,5 @@
 //! `new`: every combination of its options is a scenario that runs.
+#![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod support;

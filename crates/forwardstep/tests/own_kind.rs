@@ -1,4 +1,5 @@
 //! A kind of robot and a law of one's own: scenario files, schema, messages, runs and reports know them.
+#![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 #[path = "../examples/tank.rs"]

@@ -1,4 +1,5 @@
 //! `forwardstep report`: the report of a run, built anew from its folder.
+#![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod support;

@@ -1,4 +1,5 @@
 //! `robot` as a user meets it.
+#![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod support;

@@ -8,7 +8,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use forwardstep_core::robot::PlanarArm;
-use forwardstep_io::output::{Goal, GoalOutcome, Options, RunFolder, write_run};
+use forwardstep_io::output::{GoalOutcome, Options, RunFolder, write_run};
+use forwardstep_io::scenario::Goal;
 use forwardstep_sim::recording::BreakdownCause;
 use forwardstep_sim::{Breakdown, Ending, Recording, Signal};
 use support::{agent, outcome, record, setup, verdicts};

@@ -57,6 +57,11 @@ impl ReadError {
 pub(crate) fn read_text(path: &Path) -> Result<String, ReadError> {
     let mut bytes = Vec::new();
     std::fs::File::open(path)?.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
+    text_of(bytes)
+}
+
+/// The text that these bytes are, if they are of reasonable size.
+pub(crate) fn text_of(bytes: Vec<u8>) -> Result<String, ReadError> {
     if bytes.len() as u64 > MOST_BYTES {
         return Err(ReadError::TooLarge);
     }
@@ -72,6 +77,11 @@ pub(crate) fn read_text(path: &Path) -> Result<String, ReadError> {
     })
 }
 
+/// Whether a file of this name ends in `.extension`.
+pub(crate) fn has_extension(name: &str, extension: &str) -> bool {
+    Path::new(name).extension().is_some_and(|found| found == extension)
+}
+
 /// Other files beside `path` that end in `.extension`.
 pub(crate) fn neighbours(path: &Path, extension: &str) -> Vec<String> {
     let folder = match path.parent() {
@@ -81,7 +91,7 @@ pub(crate) fn neighbours(path: &Path, extension: &str) -> Vec<String> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
     let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
     let mut names: Vec<_> = names
-        .filter(|name| Path::new(name).extension().is_some_and(|found| found == extension))
+        .filter(|name| has_extension(name, extension))
         .filter(|name| path.file_name().is_none_or(|own| own != name.as_str()))
         .collect();
     names.sort();

@@ -4,6 +4,7 @@
 
 pub mod diagnostic;
 mod files;
+#[cfg(feature = "report")]
 pub mod output;
 pub mod robot;
 pub mod scenario;

@@ -1,9 +1,11 @@
 //! The metrics of a run, beside what one computes by hand, and the goals judged by them.
+#![cfg(feature = "report")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 mod support;
 
-use forwardstep_io::output::{Absence, Disagreement, DisagreementSeries, Goal, LimitKind, Metrics};
+use forwardstep_io::output::{Absence, Disagreement, DisagreementSeries, LimitKind, Metrics};
+use forwardstep_io::scenario::Goal;
 use forwardstep_sim::recording::{BreakdownCause, Column};
 use forwardstep_sim::{AxisUnit, Breakdown, Ending, Outcome, Recording, Setup, Signal};
 use support::{agent, setup, two_arms};

@@ -1,4 +1,5 @@
 //! What a run leaves on disk, read back.
+#![cfg(feature = "report")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 mod support;
@@ -11,9 +12,8 @@ use std::sync::Arc;
 use forwardstep_check::hypothesis::{GraphEvidence, Named};
 use forwardstep_core::Gain;
 use forwardstep_core::robot::PlanarArm;
-use forwardstep_io::output::{
-    Action, Goal, GoalOutcome, Options, OutputError, RunFolder, ending_sentence, names, write_run,
-};
+use forwardstep_io::output::{Action, GoalOutcome, Options, OutputError, RunFolder, ending_sentence, names, write_run};
+use forwardstep_io::scenario::Goal;
 use forwardstep_sim::recording::BreakdownCause;
 use forwardstep_sim::{Breakdown, Ending, GainRates, Known, Method, Outcome, Recording, Setup, Signal, Stiffness};
 use parquet::file::reader::{FileReader, SerializedFileReader};

@@ -31,7 +31,10 @@ use crate::graph::{Edge, Weight};
 use crate::network::Network;
 use crate::recording::{Outcome, Recording, Signal};
 use crate::schedule::{Phase, Schedule};
-use crate::setup::{AgentSetup, Axis, AxisUnit, Exchange, ReferenceKind, RobotSetup, Setup, Solver, Start, TimeSpan};
+use crate::setup::{
+    Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, ReferenceKind, RobotSetup, Sensors, Setup, Solver, Start,
+    TimeSpan,
+};
 use crate::simulate::simulate;
 use crate::system::{Law, Robot};
 use crate::trajectory::Trajectory;
@@ -210,6 +213,13 @@ impl Setup {
     ) -> Self {
         let time = TimeSpan { end_s, record_every_s: RECORD_EVERY_S };
         Setup { agents, reference, exchange, network, time, solver: Solver::default(), control: None }
+    }
+
+    /// The same under digital control: `sample_hz` samples per second, without noise, computation delay and limits.
+    pub fn sampled(mut self, sample_hz: f64) -> Self {
+        let (sensors, actuators) = (Sensors::default(), Actuators::default());
+        self.control = Some(Control { sample_hz, computation_delay_s: 0.0, sensors, actuators });
+        self
     }
 }
 

@@ -56,6 +56,45 @@ use crate::signal::{Block, Signal};
 /// run.
 /// **Guarantees**: x_1 − x_d → 0; with a network x_1 of all agents agree and come to rest, whatever their orders.
 /// **Deviates from the paper**: it names the combination; the design and the argument are our own derivation.
+///
+/// V loses Σ c_i e_i², though θ̂ is wrong:
+///
+/// ```
+/// use forwardstep_core::controller::{
+///     AdaptiveBackstepping, Asked, BacksteppingGains, Balance, Controller, Given, Guide, Truth,
+/// };
+/// use forwardstep_core::expression::Expression;
+/// use forwardstep_core::plant::{Cascade, CascadeTerms, Plant};
+/// use forwardstep_core::reference::{Consensus, Heard};
+///
+/// // ẋ₁ = x₂ + θ x₁²,   ẋ₂ = u
+/// let square = Expression::variable(0) * Expression::variable(0);
+/// let terms = CascadeTerms::strict(vec![vec![square], vec![Expression::number(0.0)]])?;
+/// let guide = Guide::Consensus(Consensus::new([(&[1.0, 2.0][..], 0.0)])?);
+/// let gains = BacksteppingGains { gains_per_s: vec![2.0, 3.0], adaptation: vec![1.5], floor: 0.1 };
+/// let law = AdaptiveBackstepping::new(&terms, guide, gains, vec![0.2])?;
+/// let plant = Cascade::new(terms, vec![0.7])?;
+/// let size = law.states().iter().map(|(_, n)| n).sum::<usize>();
+/// let shown_size = law.shown().iter().map(|(_, n)| n).sum::<usize>();
+///
+/// // V and its loss, and where plant and law are after a short time.
+/// let after = |x: [f64; 2], state: &[f64], h: f64| -> Result<(Balance, [f64; 2], Vec<f64>), Box<dyn std::error::Error>> {
+///     let given = Given { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8], 1)?, target: &[] };
+///     let (mut input, mut d_state, mut shown, mut dx) = ([0.0], vec![0.0; size], vec![0.0; shown_size], [0.0; 2]);
+///     let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+///     law.evaluate(&mut law.scratch(), given, state, asked)?;
+///     plant.rate(&mut plant.scratch(), &x, &input, &mut dx)?;
+///     let truth = Truth { plant: &plant, state: &x };
+///     let balance = law.balance(&mut law.scratch(), truth, given, state, &shown)?;
+///     let moved = state.iter().zip(&d_state).map(|(x, dx)| x + h * dx).collect();
+///     Ok((balance, [x[0] + h * dx[0], x[1] + h * dx[1]], moved))
+/// };
+/// let start: Vec<f64> = (0..size).map(|k| 0.1 * k as f64 - 0.2).collect();
+/// let (now, x, state) = after([0.3, -0.4], &start, 1e-7)?;
+/// let (then, ..) = after(x, &state, 0.0)?;
+/// assert!(((then.value - now.value) / 1e-7 + now.dissipation).abs() < 1e-4 * now.dissipation);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct AdaptiveBackstepping {
     order: usize,

@@ -61,6 +61,40 @@ pub struct AttitudeMeasured<'a> {
 /// within their limits.
 /// **Guarantees**: Δq_v → 0 and ω − ω_d → 0 from every start.
 /// **Deviates from the paper**: several wheels, by (94) with τ = −A u; the signs in (107).
+///
+/// At the start V is the energy of ω − z, and z is driven by the error of the attitude alone when all is to rest:
+///
+/// ```
+/// use forwardstep_core::Gain;
+/// use forwardstep_core::controller::{Asked, AttitudeTracking, Controller, Given, Truth};
+/// use forwardstep_core::plant::{Spacecraft, Wheels};
+/// use forwardstep_core::reference::Heard;
+///
+/// let inertia = [[2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 4.0]];
+/// let craft = Spacecraft::new(inertia, Wheels::orthogonal(), false)?;
+/// // A quaternion, an angular velocity and the momenta of the wheels.
+/// let state = [0.6, 0.0, 0.0, 0.8, 0.1, -0.2, 0.3, 0.0, 0.0, 0.0];
+/// let law = AttitudeTracking {
+///     inertia,
+///     momentum_inertial: craft.momentum_inertial(&state)?,
+///     wheels: Wheels::orthogonal(),
+///     alpha: [1.5, 2.0],
+///     filter: Gain::Number(4.0).resolve(4, &[])?,
+///     damping: Gain::Number(8.0).resolve(4, &[])?,
+/// };
+/// let at = |entry: f64| [entry, 0.0, 0.0, 0.0, 0.0];
+/// let target = [at(0.0), at(0.0), at(0.0), at(1.0)];
+/// let given = Given { measured: law.see(&state)?, heard: Heard::new(&[0.0], &[0.0; 4], 4)?, target: &target };
+/// let (mut own, mut d_own, mut input, mut shown) = ([0.0; 11], [0.0; 11], [0.0; 3], [0.0; 17]);
+/// law.start(&mut (), given, &[], &mut own)?;
+/// law.evaluate(&mut (), given, &own, Asked { input: &mut input, d_state: &mut d_own, shown: &mut shown })?;
+/// // (97): ż = −α₁ Δq_v
+/// assert!((d_own[0] + 1.5 * 0.6).abs() < 1e-12 && d_own[1].abs() < 1e-12);
+/// let balance = law.balance(&mut (), Truth { plant: &craft, state: &state }, given, &own, &shown)?;
+/// assert!((balance.value - 0.5 * (2.0 * 0.01 + 3.0 * 0.04 + 4.0 * 0.09)).abs() < 1e-12);
+/// assert!(balance.dissipation.abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct AttitudeTracking {
     /// M, kg m².

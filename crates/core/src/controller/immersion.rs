@@ -55,6 +55,40 @@ const CLOSE: f64 = 1e-9;
 /// k + ℓ − 2 to agree, ℓ ≥ 1; x_d with k + ℓ − 1 bounded derivatives, or a network as for Theorem 3 with (24).
 /// **Guarantees**: x − x_d → 0; with a network x_i − x_j → 0 and all derivatives → 0.
 /// **Deviates from the paper**: it names the approach and prints no law; this one is our own derivation.
+///
+/// Off the manifold the loop is ṡ = −k s − φᵀζ:
+///
+/// ```
+/// use forwardstep_core::controller::{Asked, Controller, Following, Given, Guide, Immersion};
+/// use forwardstep_core::expression::Expression;
+/// use forwardstep_core::plant::{Chain, Formulas, Plant};
+/// use forwardstep_core::reference::{Consensus, Heard};
+///
+/// // ẍ = θ x² + u
+/// let phi = Expression::variable(0) * Expression::variable(0);
+/// let (zero, one) = (Expression::number(0.0), Expression::number(1.0));
+/// let terms = Formulas::new(2, &zero, vec![phi.clone()], &one)?;
+/// let antiderivative = Immersion::antiderivative(2, &phi).ok_or("x² has no ẋ in it")?;
+/// let guide = Guide::Consensus(Consensus::new([(&[1.0, 2.0][..], 0.0)])?);
+/// let following = Following { guide, gain_per_s: 5.0, floor: 0.1 };
+/// let (theta, zeta) = (0.7, 0.25);
+/// let law = Immersion::new(terms.clone(), &[antiderivative], following, vec![3.0], vec![theta + zeta])?;
+///
+/// let x = [0.3, -0.4];
+/// let given = Given { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8], 1)?, target: &[] };
+/// let (mut state, mut d_state) = ([0.0; 3], [0.0; 3]);
+/// law.start(&mut law.scratch(), given, &[vec![0.5], vec![0.1]], &mut state)?;
+/// let (mut input, mut shown) = ([0.0], [0.0; 5]);
+/// let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+/// law.evaluate(&mut law.scratch(), given, &state, asked)?;
+///
+/// let plant = Chain { terms, theta: vec![theta] };
+/// let mut dx = [0.0; 2];
+/// plant.rate(&mut plant.scratch(), &x, &input, &mut dx)?;
+/// let s = x[1] - state[0];
+/// assert!((dx[1] - d_state[0] - (-5.0 * s - x[0] * x[0] * zeta)).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Immersion {
     terms: Formulas,

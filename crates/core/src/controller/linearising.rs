@@ -41,6 +41,38 @@ use super::Guide;
 /// **Guarantees**: x − x_d → 0 with its derivatives; with a network x_i − x_j → 0 and all derivatives → 0. u is ℓ − 2 times
 /// continuously differentiable through switches and delay jumps.
 /// **Deviates from the paper**: it announces adaptive designs for (33) and prints none.
+///
+/// With θ known the loop is ṡ = −k s, whatever the plant is:
+///
+/// ```
+/// use forwardstep_core::controller::{Asked, Controller, Following, Given, Guide, Linearising};
+/// use forwardstep_core::plant::{Chain, Closures, Plant};
+/// use forwardstep_core::reference::{Consensus, Heard};
+///
+/// // ẍ = −x³ + θ ẋ + (2 + x²) u
+/// let terms = Closures {
+///     order: 2,
+///     parameters: 1,
+///     chi: |x: &[f64]| -x[0] * x[0] * x[0],
+///     phi: |x: &[f64], phi: &mut [f64]| phi[0] = x[1],
+///     psi: |x: &[f64]| 2.0 + x[0] * x[0],
+/// };
+/// let guide = Guide::Consensus(Consensus::new([(&[1.0, 2.0][..], 0.0)])?);
+/// let law = Linearising::new(terms, vec![0.7], Following { guide, gain_per_s: 5.0, floor: 0.1 })?;
+/// let x = [0.3, -0.4];
+/// let given = Given { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8], 1)?, target: &[] };
+/// let state = [0.5, 0.1];
+/// let (mut input, mut d_state, mut shown) = ([0.0], [0.0; 2], [0.0; 4]);
+/// let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+/// law.evaluate(&mut law.scratch(), given, &state, asked)?;
+///
+/// let plant = Chain { terms, theta: vec![0.7] };
+/// let mut dx = [0.0; 2];
+/// plant.rate(&mut plant.scratch(), &x, &input, &mut dx)?;
+/// let s = x[1] - state[0];
+/// assert!((dx[1] - d_state[0] + 5.0 * s).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Linearising<T> {
     terms: T,

@@ -58,6 +58,33 @@ pub struct PositionMeasured<'a> {
 /// and delay jumps for ℓ = 2.
 /// **Deviates from the paper**: any number of axes, with żᵀs in the adaptation; the integral by parts as in the head of this
 /// file; consensus is our own derivation.
+///
+/// ```
+/// use forwardstep_core::controller::{Asked, Controller, Given, Guide, PositionOnly};
+/// use forwardstep_core::reference::{Heard, polynomial};
+///
+/// let mut alpha = polynomial(&[1.0, 2.0, 3.0])?;
+/// alpha.pop();
+/// let guide = Guide::Tracking { alpha: alpha.clone() };
+/// let law = PositionOnly { axes: 1, guide, damping: 8.0, filter_per_s: 20.0, adaptation: 3.0, estimate_start: 1.5 };
+/// let target = [[0.2, 0.1, -0.3, 0.4, 0.0]];
+/// let given = Given { measured: law.see(&[0.5, 9.9])?, heard: Heard::new(&[0.0], &[0.0], 1)?, target: &target };
+/// let mut scratch = law.scratch();
+/// let (mut state, mut d_state) = (vec![0.0; 4], vec![0.0; 4]);
+/// law.start(&mut scratch, given, &[vec![0.7], vec![-0.6]], &mut state)?;
+/// state[2] += 0.05;
+/// let (mut input, mut shown) = (vec![0.0], vec![0.0; 5]);
+/// let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+/// law.evaluate(&mut scratch, given, &state, asked)?;
+///
+/// let [z, dz, y, m_hat, error] = shown[..] else { panic!() };
+/// // (a8) and (a9); the velocity, 9.9, was not read.
+/// assert!((input[0] - (m_hat * dz - 8.0 * y)).abs() < 1e-12);
+/// let [x_d, dx_d, ddx_d, dddx_d, _] = target[0];
+/// assert!((d_state[1] - (dddx_d - alpha[2] * (dz - ddx_d) - alpha[1] * (z - dx_d) - alpha[0] * error)).abs() < 1e-12);
+/// assert!((error - (0.5 - x_d)).abs() < 1e-12 && y != 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct PositionOnly {
     /// m.

@@ -16,6 +16,28 @@ use crate::reference::{Exchange, Heard};
 /// One agent's controller, stepped at samples.
 ///
 /// **Guarantees**: no allocation and no panic in [`Stepped::step`]; the continuous controller in the limit of short periods.
+///
+/// Samples in, inputs to hold out; with short periods the state is that of the continuous law:
+///
+/// ```
+/// use forwardstep_core::agent::Inbox;
+/// use forwardstep_core::controller::{Guide, PositionOnly, Stepped};
+/// use forwardstep_core::plant::Mechanical;
+/// use forwardstep_core::reference::Consensus;
+/// use forwardstep_core::robot::PointMass;
+///
+/// let guide = Guide::Consensus(Consensus::new([(&[1.0, 2.0][..], 0.0)])?);
+/// let law = PositionOnly { axes: 1, guide, damping: 8.0, filter_per_s: 20.0, adaptation: 0.0, estimate_start: 2.0 };
+/// let plant = Mechanical { robot: PointMass { dimension: 1 }, theta: vec![2.0] };
+/// // z, ż, p, I of a mass that is held at 1 m and hears nobody: z̈ = −(κ₀ + κ₁) ż − κ₀ κ₁ z, and p follows.
+/// let mut stepped = Stepped::new(law, &plant, 0, &[1.0, -1.0, 1.0, 0.0])?;
+/// for k in 0..=1000 {
+///     stepped.step(1e-3 * f64::from(k), &[1.0, 0.0], Inbox { degree: 0.0, sums: &[0.0] }, &[])?;
+/// }
+/// // The root that this start leaves in is κ₀ = 1.
+/// assert!((stepped.state()[0] - (-1.0_f64).exp()).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct Stepped<C: Controller> {
     controller: C,

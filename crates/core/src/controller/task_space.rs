@@ -80,6 +80,63 @@ impl ParameterBounds {
 /// **Guarantees**: Δx → 0 and Δẋ → 0.
 /// **Deviates from the paper**: dĴ/dt is said to contain θ̂'; J may have a known part; projection may be asked for; z(0) = q̇(0)
 /// unless another start is wanted.
+///
+/// V of the proof loses sᵀK s + κ α |z − z_r|², though neither ϑ nor the lengths are known:
+///
+/// ```
+/// use forwardstep_core::Gain;
+/// use forwardstep_core::controller::{Asked, Balance, Controller, Given, TaskSpace, Truth};
+/// use forwardstep_core::law::SlotineLi;
+/// use forwardstep_core::plant::{Mechanical, Plant, TaskArm};
+/// use forwardstep_core::reference::Heard;
+/// use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip};
+///
+/// let number = |k: f64, size: usize| Gain::Number(k).resolve(size, &[]);
+/// let tip = PlanarTip { length_m: [1.0, 0.8] };
+/// let law = TaskSpace {
+///     robot: PlanarArm,
+///     tip,
+///     law: SlotineLi { damping: number(8.0, 2)?, adaptation: Some(number(3.0, 5)?) },
+///     task_gain: number(20.0, 2)?,
+///     kappa: 1.5,
+///     alpha: 2.0,
+///     kinematic_adaptation: Some(number(0.5, 2)?),
+///     bounds: None,
+///     estimate_start: vec![1.0; 5],
+///     kinematic_start: vec![0.9, 0.9],
+///     determinant_floor: 0.1,
+/// };
+/// let theta = PlanarLinks::uniform([2.0, 1.5], [1.0, 0.8]).theta().to_vec();
+/// let plant = TaskArm { arm: Mechanical { robot: PlanarArm, theta }, tip, tip_theta: vec![1.0, 0.8] };
+/// let target = [[0.9, 0.0, 0.0, 0.0, 0.0], [0.8, 0.0, 0.0, 0.0, 0.0]];
+/// let total = |blocks: Vec<(_, usize)>| blocks.iter().map(|(_, n)| n).sum::<usize>();
+/// let (size, shown_size) = (total(law.states()), total(law.shown()));
+///
+/// // V and its loss, and where plant and law are after a short time.
+/// let after = |motion: &[f64], state: &[f64], h: f64| -> Result<(Balance, Vec<f64>, Vec<f64>), Box<dyn std::error::Error>> {
+///     let mut output = [0.0; 6];
+///     plant.output(&mut plant.scratch(), motion, &mut output)?;
+///     let given = Given { measured: law.see(&output)?, heard: Heard::new(&[0.0], &[0.0; 2], 2)?, target: &target };
+///     let mut state = state.to_vec();
+///     if state.is_empty() {
+///         state.resize(size, 0.0);
+///         law.start(&mut law.scratch(), given, &[vec![0.1, -0.2]], &mut state)?;
+///     }
+///     let mut scratch = law.scratch();
+///     let (mut input, mut d_state, mut shown, mut rate) = ([0.0; 2], vec![0.0; size], vec![0.0; shown_size], [0.0; 4]);
+///     let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+///     law.evaluate(&mut scratch, given, &state, asked)?;
+///     plant.rate(&mut plant.scratch(), motion, &input, &mut rate)?;
+///     let truth = Truth { plant: &plant, state: motion };
+///     let balance = law.balance(&mut scratch, truth, given, &state, &shown)?;
+///     let moved = |x: &[f64], dx: &[f64]| x.iter().zip(dx).map(|(x, dx)| x + h * dx).collect();
+///     Ok((balance, moved(motion, &rate), moved(&state, &d_state)))
+/// };
+/// let (now, motion, state) = after(&[0.2, 1.1, 0.4, -0.3], &[], 1e-7)?;
+/// let (then, ..) = after(&motion, &state, 0.0)?;
+/// assert!(((then.value - now.value) / 1e-7 + now.dissipation).abs() < 1e-4 * now.dissipation);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct TaskSpace<R, T> {
     /// The robot, whose ϑ is unknown.

@@ -16,6 +16,36 @@ use crate::{LengthError, ResolvedGain, Scalar};
 /// **Source**: (5), (6), (7). **Measures**: q, q̇. **Transmits**: nothing.
 /// **Requires**: K and Γ symmetric positive definite, guaranteed by [`ResolvedGain`].
 /// **Guarantees**: s square-integrable and bounded, ϑ̂ bounded, for any bounded ż and any ϑ̂(0).
+///
+/// Whatever ϑ̂ is, what it does to s and what (7) does to it cancel, and −sᵀK s is left:
+///
+/// ```
+/// use forwardstep_core::Gain;
+/// use forwardstep_core::law::{SlotineLi, SlotineLiOutput};
+/// use forwardstep_core::robot::{Lagrangian, PlanarArm, PlanarLinks, TwoVelocity};
+///
+/// let (k, gamma) = (8.0, 3.0);
+/// let law = SlotineLi {
+///     damping: Gain::Number(k).resolve(2, &[])?,
+///     adaptation: Some(Gain::Number(gamma).resolve(5, &[])?),
+/// };
+/// let theta = PlanarLinks::uniform([2.0, 1.5], [1.0, 0.8]).theta();
+/// let theta_hat = [0.1, -0.4, 2.0, 1.0, 0.3];
+/// let motion = TwoVelocity { q: &[0.3, -0.7], dq: &[0.5, 0.2], z: &[-0.1, 0.4], dz: &[1.0, -2.0] };
+/// let (mut s, mut tau, mut yt_s) = ([0.0; 2], [0.0; 2], [0.0; 5]);
+/// let out = SlotineLiOutput { s: &mut s, tau: &mut tau, yt_s: &mut yt_s };
+/// law.output(&PlanarArm, &mut (), motion, &theta_hat, out)?;
+/// let mut d_theta_hat = [0.0; 5];
+/// law.adaptation_rate(&yt_s, &mut d_theta_hat);
+///
+/// let mut y_theta = [0.0; 2];
+/// PlanarArm.regressor_products(&mut (), motion, &theta, &s, &mut y_theta, &mut [0.0; 5])?;
+/// let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+/// let error: [f64; 5] = std::array::from_fn(|j| theta_hat[j] - theta[j]);
+/// let by_torque = dot(&s, &tau) - dot(&s, &y_theta);
+/// assert!((by_torque + dot(&error, &d_theta_hat) / gamma + k * dot(&s, &s)).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlotineLi<S = f64> {
     /// K, m × m.

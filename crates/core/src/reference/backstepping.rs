@@ -43,6 +43,20 @@ pub enum BacksteppingError {
 /// **Measures**: q (and q̇, for the tracking law). **Transmits**: q.
 /// **Guarantees**: nothing that the paper states: its derivative does not exist at switches and delay jumps.
 /// **Deviates from the paper**: q̈_r comes from a filter with the time constant ε, and is limited.
+///
+/// ```
+/// use forwardstep_core::reference::{Backstepping, Heard, Measured, Reference, ReferenceOut};
+///
+/// // ε = 0.1 s and no limit; one neighbour at 1 of weight 0.8.
+/// let design = Backstepping::new([(0.1, f64::INFINITY)])?;
+/// let (mut z, mut dz, mut rate) = ([0.0], [0.0], [0.0]);
+/// let out = ReferenceOut { z: &mut z, dz: &mut dz, d_state: &mut rate };
+/// design.evaluate(1, Measured { q: &[0.3], dq: &[0.0] }, &[0.2], Heard::new(&[0.8], &[0.8], 1)?, out)?;
+/// // (aa6) and its filtered derivative.
+/// assert!((z[0] + 0.8 * (0.3 - 1.0)).abs() < 1e-12);
+/// assert!((dz[0] - (z[0] - 0.2) / 0.1).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Backstepping {
     /// 1/ε of every agent.

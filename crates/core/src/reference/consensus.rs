@@ -31,6 +31,25 @@ use crate::{LengthError, Scalar};
 /// **Guarantees**: with a tracking law that keeps s square-integrable, Theorems 2 and 3. z is ℓ−1 times continuously
 /// differentiable through switches and delay jumps; z^(ℓ) jumps there and stays bounded.
 /// **Deviates from the paper**: for ℓ = 1, α₁ = 1 multiplies q̇, not z, which makes (a5) reduce to (aa10).
+///
+/// (a1) for α = 1 and β = 2, with one neighbour:
+///
+/// ```
+/// use forwardstep_core::reference::{Consensus, Heard, Measured, PositionVelocity, Reference, ReferenceOut};
+///
+/// let design = Consensus::<PositionVelocity>::new([(&[1.0, 2.0][..], 0.0)])?;
+/// let (q, dq, z, dz) = (0.3, -0.2, 0.5, 0.1);
+/// let (w, q_j, dq_j) = (0.8, 1.0, 0.4);
+/// let (mut rate, mut dz_out) = ([0.0; 2], [0.0]);
+/// let out = ReferenceOut { z: &mut [0.0], dz: &mut dz_out, d_state: &mut rate };
+/// let (degree, sums) = ([w], [w * q_j, w * dq_j]);
+/// let heard = Heard::new(&degree, &sums, 1)?;
+/// design.evaluate(1, Measured { q: &[q], dq: &[dq] }, &[z, dz], heard, out)?;
+/// let ddz = -3.0 * dz - 2.0 * dq - w * (dz + 3.0 * dq + 2.0 * q - 2.0 * dq_j - 2.0 * q_j);
+/// assert!((rate[1] - ddz).abs() < 1e-12);
+/// assert_eq!(dz_out, [dz]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Consensus<X> {
     exchange: core::marker::PhantomData<X>,

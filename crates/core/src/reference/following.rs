@@ -62,6 +62,23 @@ use crate::{LengthError, Scalar};
 /// **Requires**: a fixed graph without delay in which the leader reaches everybody; a common α; γ > sup|q̈_0 + α q̇_0|∞.
 /// **Guarantees**: q_i − q_0 → 0 and q̇_i − q̇_0 → 0 under (6)–(7).
 /// **Deviates from the paper**: the sign is set-valued, see [`Sliding`].
+///
+/// ```
+/// use forwardstep_core::reference::{Choice, Derived, Following, Heard, Measured, Reference, ReferenceOut, Sliding};
+///
+/// let (alpha, gamma) = (1.5, 4.0);
+/// let sign = Sliding { derived: Derived::Nothing, alpha, beta: 1.0, gamma, choice: Choice::Implicit };
+/// let (q, dq, z, selection) = (0.3, -0.2, 0.5, 0.25);
+/// let (w, q_j, dq_j) = (0.8, 1.0, 0.4);
+/// let (mut dz, mut rate) = ([0.0], [0.0; 2]);
+/// let out = ReferenceOut { z: &mut [0.0], dz: &mut dz, d_state: &mut rate };
+/// let (degree, sums) = ([w], [w * q_j, w * dq_j]);
+/// let heard = Heard::new(&degree, &sums, 1)?;
+/// Following::new(1, sign).evaluate(1, Measured { q: &[q], dq: &[dq] }, &[z, selection], heard, out)?;
+/// let xi = |q: f64, dq: f64| dq + alpha * q;
+/// assert!((dz[0] - (-alpha * dq - w * (xi(q, dq) - xi(q_j, dq_j)) - gamma * selection)).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Following {
     agents: usize,
@@ -76,6 +93,27 @@ pub struct Following {
 /// γ > sup|d³q_0 + β q̈_0 + α q̇_0|∞.
 /// **Guarantees**: q_i − q_0 → 0 and q̇_i − q̇_0 → 0 under (6)–(7), with differentiable torques.
 /// **Deviates from the paper**: (119) is integrated as in the head of this file; the sign is set-valued, see [`Sliding`].
+///
+/// ż has no sign in it, p has:
+///
+/// ```
+/// use forwardstep_core::reference::{Choice, Derived, Heard, Measured, Reference, ReferenceOut, Sliding, SmoothFollowing};
+///
+/// let (alpha, beta, gamma) = (2.0, 3.0, 4.0);
+/// let sign = Sliding { derived: Derived::ReferenceAcceleration, alpha, beta, gamma, choice: Choice::Implicit };
+/// let (q, dq, z, p, selection) = (0.3, -0.2, 0.5, 0.1, 0.25);
+/// let (w, q_j, dq_j) = (0.8, 1.0, 0.4);
+/// let mut rate = [0.0; 3];
+/// let out = ReferenceOut { z: &mut [0.0], dz: &mut [0.0], d_state: &mut rate };
+/// let (degree, sums) = ([w], [w * q_j, w * dq_j]);
+/// let heard = Heard::new(&degree, &sums, 1)?;
+/// SmoothFollowing::new(1, sign).evaluate(1, Measured { q: &[q], dq: &[dq] }, &[z, p, selection], heard, out)?;
+/// assert!((rate[0] - (-beta * dq - alpha * q - w * (dq - dq_j) + p)).abs() < 1e-12);
+/// let xi = |q: f64, dq: f64| beta * dq + alpha * q;
+/// assert!((rate[1] - (-w * (xi(q, dq) - xi(q_j, dq_j)) - gamma * selection)).abs() < 1e-12);
+/// assert_eq!(rate[2], 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct SmoothFollowing {
     agents: usize,

@@ -39,6 +39,15 @@ pub enum RootsError {
 ///
 /// # Errors
 /// [`RootsError`] when there are no roots or one is not positive and finite.
+///
+/// ```
+/// use forwardstep_core::reference::polynomial;
+///
+/// // (p + 1)(p + 2)(p + 4)
+/// assert_eq!(polynomial(&[1.0, 2.0, 4.0])?, [8.0, 14.0, 7.0, 1.0]);
+/// assert!(polynomial(&[1.0, -2.0]).is_err());
+/// # Ok::<(), forwardstep_core::reference::RootsError>(())
+/// ```
 pub fn polynomial(roots_per_s: &[f64]) -> Result<Vec<f64>, RootsError> {
     if roots_per_s.is_empty() {
         return Err(RootsError::Empty);

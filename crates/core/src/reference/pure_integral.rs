@@ -27,6 +27,25 @@ use crate::{LengthError, Scalar};
 /// **Requires**: a fixed graph with a directed spanning tree; bounded, piecewise continuous delays.
 /// **Guarantees**: Theorem 1 for (3), Remark 3 for (23): ż is differentiable, so the torque is, even where a delay jumps.
 /// **Deviates from the paper**: realised by the integral above; over a switching graph it runs, but nothing is promised.
+///
+/// The acceleration of (3) is integrated, not measured: with all that is heard at rest, a step of q̇ steps ż by −(α₁ + d) of it.
+///
+/// ```
+/// use forwardstep_core::reference::{Heard, Measured, PositionVelocity, PureIntegral, Reference, ReferenceOut};
+///
+/// let design = PureIntegral::<PositionVelocity>::new([(&[1.0, 2.0][..], 0.0)])?;
+/// let dz = |dq: f64| -> Result<f64, Box<dyn std::error::Error>> {
+///     let (mut rate, mut dz) = ([0.0; 2], [0.0]);
+///     let out = ReferenceOut { z: &mut [0.0], dz: &mut dz, d_state: &mut rate };
+///     let heard = Heard::new(&[0.8], &[0.8 * 1.0, 0.0], 1)?;
+///     design.evaluate(1, Measured { q: &[0.3], dq: &[dq] }, &[0.5, 0.1], heard, out)?;
+///     // η̇ = Σ w α₀ (q_j − q)
+///     assert!((rate[1] - 0.8 * 2.0 * (1.0 - 0.3)).abs() < 1e-12);
+///     Ok(dz[0])
+/// };
+/// assert!((dz(0.5)? - dz(-0.5)? + (3.0 + 0.8)).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct PureIntegral<X> {
     exchange: core::marker::PhantomData<X>,

@@ -47,6 +47,20 @@ pub enum Choice {
 }
 
 /// A set-valued sign in reference dynamics. Its last two blocks of state are what −γ ς is integrated into, and ς.
+///
+/// What one agent chooses solves ς ∈ Sgn(e − hγ d ς):
+///
+/// ```
+/// use forwardstep_core::reference::{Choice, Derived, Sliding};
+///
+/// let sign = Sliding { derived: Derived::Nothing, alpha: 1.0, beta: 1.0, gamma: 5.0, choice: Choice::Implicit };
+/// let (period_s, degree) = (0.1, 0.8);
+/// for e in [-2.0, -0.3, 0.0, 0.1, 7.0] {
+///     let selection = sign.alone(e, degree, period_s);
+///     let left = e - period_s * sign.gamma * degree * selection;
+///     assert!(left.abs() < 1e-12 || selection == left.signum());
+/// }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sliding {
     /// What ξ contains besides velocity and position.

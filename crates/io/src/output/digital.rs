@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::metrics::{Metrics, Peak};
 use super::number;
-use super::record::Goal;
 use super::table::Table;
+use crate::scenario::Goal;
 
 /// A run under digital control against its continuous twin: the same robots, network and pushes, but exact measurements, no
 /// limits, and the law in continuous time. Both are looked at until the earlier of their ends.

@@ -7,6 +7,7 @@ use std::fs::File;
 use std::path::Path;
 
 use serde::Deserialize;
+use toml::Table;
 
 use super::summary::Input;
 use crate::files::read_text;
@@ -74,6 +75,15 @@ pub(crate) fn file_digest(path: &Path) -> std::io::Result<String> {
     Ok(hasher.finalize().to_hex().to_string())
 }
 
+/// The BLAKE3 digest, in hexadecimal, of what a scenario says apart from its title: comments and layout do not enter.
+/// Nothing when the text is no TOML.
+pub(crate) fn content_digest(text: &str) -> Option<String> {
+    let mut table: Table = text.parse().ok()?;
+    table.remove("title");
+    // Tables are sorted by their keys, and every number has one way to be written.
+    Some(blake3::hash(table.to_string().as_bytes()).to_hex().to_string())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -110,5 +120,13 @@ mod tests {
         {
             assert!(!is_copy(file), "{file}");
         }
+    }
+    #[test]
+    fn title_comments_and_layout_do_not_enter_the_content() {
+        let digest = |text: &str| content_digest(text).unwrap_or_else(|| panic!("{text}"));
+        let one = digest("title = \"one\"\nformat = 1 # a comment\n[time]\nend_s = 20");
+        assert_eq!(one, digest("# another\ntime = { end_s = 20 }\nformat = 1\ntitle = \"two\""));
+        assert_ne!(one, digest("format = 1\n[time]\nend_s = 21"));
+        assert_eq!(content_digest("format ="), None);
     }
 }

@@ -7,8 +7,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::disagreement::greater;
 pub use super::disagreement::{Absence, Disagreement, DisagreementSeries, Gap};
 use super::number;
-use super::record::Goal;
 use super::table::Table;
+use crate::scenario::Goal;
 
 /// V(0) is not taken to be smaller than this, in J, when the residual of the balance is put in relation to it: an agent that
 /// starts without any error has V(0) = 0.

@@ -55,7 +55,7 @@ pub use metrics::{
     LimitReached, Metrics, Peak, Speed,
 };
 pub use packets::Link;
-pub use record::{Goal, GoalOutcome, RunRecord};
+pub use record::{GoalOutcome, RunRecord};
 pub use restore::{Remark, SavedRun};
 pub use restore_error::{RestoreError, SummaryError, TableError};
 

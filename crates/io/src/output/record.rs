@@ -6,7 +6,7 @@ use forwardstep_sim::setup::Setup;
 
 use super::digital::DigitalCost;
 use super::metrics::Metrics;
-use crate::scenario::InputFile;
+use crate::scenario::{Goal, InputFile};
 
 /// A finished run with all that was said about it before: what [`super::write_run`] writes.
 #[derive(Clone, Debug)]
@@ -44,17 +44,6 @@ impl RunRecord<'_> {
     }
 }
 
-/// What a scenario asks of its run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Goal {
-    /// The run completes and max |q_i − q_j| at its end is below this, rad or m.
-    DisagreementBelow(f64),
-    /// The run completes and no agent is further from its target on any axis at its end, rad or m.
-    ErrorBelow(f64),
-    /// The run must not agree: see [`Goal::is_met`].
-    ExpectDiverges,
-}
-
 impl Goal {
     /// Whether `outcome` meets the goal.
     ///
@@ -80,23 +69,6 @@ impl Goal {
                     Ending::Completed | Ending::Interrupted { .. } => grows(),
                 }
             }
-        }
-    }
-
-    /// The bound on what remains at the end, if it is one.
-    pub fn bound(&self) -> Option<f64> {
-        match *self {
-            Goal::DisagreementBelow(bound) | Goal::ErrorBelow(bound) => Some(bound),
-            Goal::ExpectDiverges => None,
-        }
-    }
-
-    /// The goal in words.
-    pub fn words(&self) -> String {
-        match self {
-            Goal::DisagreementBelow(bound) => format!("disagreement below {bound} at the end"),
-            Goal::ErrorBelow(bound) => format!("error below {bound} at the end"),
-            Goal::ExpectDiverges => "the run is expected to diverge".into(),
         }
     }
 }

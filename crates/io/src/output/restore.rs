@@ -25,9 +25,8 @@ use super::table::NamedColumns;
 use super::{CSV, PARQUET, csv, inputs, names, parquet};
 use crate::SourceText;
 use crate::files::{ReadError, read_text};
-use crate::scenario::Scenario;
-use crate::scenario::inputs::content_digest;
 use crate::scenario::kinds::Kinds;
+use crate::scenario::{Inputs, Scenario};
 
 const SCENARIO: &str = "scenario.toml";
 const SUMMARY: &str = "summary.json";
@@ -231,7 +230,8 @@ fn scenario(folder: &Path, text: String, summary: &Summary, kinds: &Kinds) -> Re
     let source = SourceText::new(folder.join(SCENARIO).display().to_string(), text);
     let copies: Vec<(String, PathBuf)> =
         summary.inputs.iter().map(|input| (input.name.clone(), folder.join(&input.file))).collect();
-    kinds.read_moved_scenario(&summary.scenario.name, &source, folder, copies.clone()).map_err(|error| {
+    let inputs = copies.iter().fold(Inputs::from(Some(folder)), |inputs, (name, path)| inputs.file_at(name, path));
+    kinds.read_scenario(&summary.scenario.name, &source, inputs).map_err(|error| {
         // A copy that is gone is not the scenario's mistake.
         let lost = copies.into_iter().find_map(|(_, path)| read_text(&path).err().map(|reason| (path, reason)));
         lost.map_or_else(|| error.into(), |(path, reason)| RestoreError::File { path, reason })
@@ -243,7 +243,7 @@ fn changes(scenario: &Scenario, summary: &Summary) -> Vec<Remark> {
     let then = &summary.scenario;
     let text = scenario.source.text();
     let same = blake3::hash(text.as_bytes()).to_hex().as_str() == then.digest_blake3
-        || then.content_digest_blake3.is_some() && content_digest(text) == then.content_digest_blake3;
+        || then.content_digest_blake3.is_some() && inputs::content_digest(text) == then.content_digest_blake3;
     let mut remarks = if same { Vec::new() } else { vec![Remark::ScenarioChanged] };
     for input in &scenario.inputs {
         let digest = blake3::hash(input.source.text().as_bytes()).to_hex();

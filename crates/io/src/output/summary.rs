@@ -16,11 +16,12 @@ use serde::{Deserialize, Serialize};
 use super::digital::DigitalCost;
 use super::ending::ending_sentence;
 use super::inputs;
+use super::inputs::content_digest;
 use super::metrics::Metrics;
 use super::packets::Link;
-use super::record::{Goal, RunRecord};
+use super::record::RunRecord;
 use super::{names, number};
-use crate::scenario::inputs::content_digest;
+use crate::scenario::Goal;
 
 /// The format of this document; it grows when fields change their meaning or vanish, not when some are added.
 pub const FORMAT: u32 = 1;

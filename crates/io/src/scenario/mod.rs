@@ -48,6 +48,7 @@ pub mod file;
 pub mod formula;
 mod formula_problem;
 mod gains;
+mod goal;
 pub(crate) mod inputs;
 pub mod kinds;
 mod leader;
@@ -79,7 +80,6 @@ mod value_problem;
 pub mod values;
 
 use std::fmt;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use forwardstep_sim::leader::Following;
@@ -89,7 +89,8 @@ use forwardstep_sim::{
 use miette::Diagnostic;
 
 pub use control_problem::ControlProblem;
-pub use inputs::InputFile;
+pub use goal::Goal;
+pub use inputs::{InputFile, Inputs};
 pub use network_problem::NetworkProblem;
 pub use notice::Notice;
 pub use open::{OpenError, open_scenario};
@@ -101,15 +102,12 @@ pub use table::TableProblem;
 pub use template::{RobotTemplate, Template, TemplateDelay, TemplateGraph};
 pub use value_problem::ValueProblem;
 
-use crate::output::Goal;
 use crate::urdf::UrdfProblem;
 use crate::{InputError, SourceText};
 use at::At;
 use document::Document;
 use fault::{Fault, between, fault, positive, positive_count, positive_or};
-use file::{
-    AdaptiveMethodFile, ConsensusFile, ExchangeFile, ExpectFile, GoalFile, MethodFile, ReferenceFile, SolverFile,
-};
+use file::{AdaptiveMethodFile, ConsensusFile, ExchangeFile, MethodFile, ReferenceFile, SolverFile};
 use inputs::InputFolder;
 use kinds::Kinds;
 use refusal::{Laws, refused};
@@ -178,13 +176,13 @@ impl Diagnostic for ScenarioError {
     }
 }
 
-/// Reads a scenario. Files that it names are looked for in `folder`, then in `folder/inputs`; robots then among the shipped
-/// ones.
+/// Reads a scenario. Files that it names are looked for in `inputs`: a folder or none, as an `Option`, or [`Inputs`] with files from
+/// memory; robots and tables then among the shipped ones.
 ///
 /// # Errors
 /// The first mistake, at its place in the scenario or in a file that it names. Any text gives a result; none panics.
-pub fn read_scenario(name: &str, source: &SourceText, folder: Option<&Path>) -> Result<Scenario, ScenarioError> {
-    Kinds::shipped().read_scenario(name, source, folder)
+pub fn read_scenario(name: &str, source: &SourceText, inputs: impl Into<Inputs>) -> Result<Scenario, ScenarioError> {
+    Kinds::shipped().read_scenario(name, source, inputs)
 }
 
 impl Kinds {
@@ -196,20 +194,9 @@ impl Kinds {
         &self,
         name: &str,
         source: &SourceText,
-        folder: Option<&Path>,
+        inputs: impl Into<Inputs>,
     ) -> Result<Scenario, ScenarioError> {
-        read(name, source, InputFolder::new(folder, Vec::new()), self).map_err(|stop| stop.in_file(source))
-    }
-
-    /// The same with some of its files elsewhere: `moved` has their names and paths.
-    pub(crate) fn read_moved_scenario(
-        &self,
-        name: &str,
-        source: &SourceText,
-        folder: &Path,
-        moved: Vec<(String, PathBuf)>,
-    ) -> Result<Scenario, ScenarioError> {
-        read(name, source, InputFolder::new(Some(folder), moved), self).map_err(|stop| stop.in_file(source))
+        read(name, source, InputFolder::new(inputs.into()), self).map_err(|stop| stop.in_file(source))
     }
 }
 
@@ -268,7 +255,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
         recorded_columns(&setup).map_err(|error| refused(&file, &laws, error))?.len()
     };
     recording_fits(&setup, columns, every.unwrap_or(&file.time.end_s))?;
-    let goal = file.goal.as_ref().map(|file| goal(file, &setup.reference)).transpose()?;
+    let goal = file.goal.as_ref().map(|file| goal::goal(file, &setup.reference)).transpose()?;
     Ok(Scenario {
         name: name.to_owned(),
         source: source.clone(),
@@ -339,31 +326,6 @@ fn solver(file: Option<&SolverFile>) -> Result<Solver, Fault> {
     };
     let balance = file.balance.unwrap_or(default.balance);
     Ok(Solver { method, max_step_s, min_step_s, memory_budget_bytes, balance })
-}
-
-fn goal(file: &At<GoalFile>, reference: &ReferenceKind) -> Result<Goal, Fault> {
-    let GoalFile { disagreement_below, error_below, expect } = &file.value;
-    if let (Some(_), Some(second)) = (disagreement_below, error_below) {
-        return Err(fault(second, ScenarioProblem::TwoGoals));
-    }
-    let below = disagreement_below.as_ref().map(|below| ("disagreement_below", below));
-    let below = below.or(error_below.as_ref().map(|below| ("error_below", below)));
-    match (expect.as_ref().map(|expect| expect.value), below) {
-        (Some(ExpectFile::Diverges), None) => Ok(Goal::ExpectDiverges),
-        (Some(ExpectFile::Diverges), Some((key, below))) => Err(fault(below, ScenarioProblem::ThresholdUnused { key })),
-        (_, None) => Err(fault(file, ScenarioProblem::EmptyGoal)),
-        (_, Some((key, below))) => {
-            let bound = positive(key, below)?;
-            match (key, reference) {
-                ("error_below", ReferenceKind::Tracking | ReferenceKind::Following(_)) => Ok(Goal::ErrorBelow(bound)),
-                ("error_below", _) => Err(fault(below, ScenarioProblem::NothingTracked)),
-                (_, ReferenceKind::Tracking | ReferenceKind::Following(_)) => {
-                    Err(fault(below, ScenarioProblem::NothingAgreed))
-                }
-                _ => Ok(Goal::DisagreementBelow(bound)),
-            }
-        }
-    }
 }
 
 /// Refuses a recording beyond any memory, before anything is computed. `place` is what is too small, or too large.

@@ -7,9 +7,11 @@ mod control;
 mod edges;
 mod formulas;
 mod leader;
+#[cfg(feature = "report")]
 mod links;
 mod malformed;
 mod meaning;
+mod memory;
 mod mixed;
 mod mutated;
 mod pushes;

@@ -2,7 +2,7 @@
 
 use forwardstep_core::Gain;
 use forwardstep_core::robot::PlanarArm;
-use forwardstep_io::output::Goal;
+use forwardstep_io::scenario::Goal;
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{Adaptive, Exchange, Known, Method, Setup};

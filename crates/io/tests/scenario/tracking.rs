@@ -1,6 +1,6 @@
 //! Targets and laws without velocity: what is read, and what every mistake gets.
 
-use forwardstep_io::output::Goal;
+use forwardstep_io::scenario::Goal;
 use forwardstep_sim::{PositionOnlyLaw, ReferenceKind};
 
 use super::{Case, read, refused};

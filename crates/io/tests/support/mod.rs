@@ -8,7 +8,8 @@ use forwardstep_check::hypothesis::{GraphEvidence, LinkEvidence, Named, Referenc
 use forwardstep_check::{Hypothesis, Id, Report, Theorem};
 use forwardstep_core::Gain;
 use forwardstep_core::robot::PointMass;
-use forwardstep_io::output::{Goal, GoalOutcome, RunRecord};
+use forwardstep_io::output::{GoalOutcome, RunRecord};
+use forwardstep_io::scenario::Goal;
 use forwardstep_sim::delay::{Basis, Delay};
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::recording::{Column, Statistics};

@@ -19,8 +19,8 @@ use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::{Path, Sinusoid};
 use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, Column, Control, Ending, Exchange, Known, Method, Network, Outcome, ReferenceKind,
-    Setup, Signal, Solver, TimeSpan, simulate,
+    AgentSetup, Axis, AxisUnit, Column, Ending, Exchange, Known, Method, Network, Outcome, ReferenceKind, Setup,
+    Signal, Solver, TimeSpan, simulate,
 };
 
 pub const RTOL: f64 = 1e-8;
@@ -85,14 +85,8 @@ pub fn consensus_of_masses(end_s: f64) -> Setup {
     all
 }
 
-pub fn sampled(mut setup: Setup, sample_hz: f64) -> Setup {
-    setup.control = Some(Control {
-        sample_hz,
-        computation_delay_s: 0.0,
-        sensors: Default::default(),
-        actuators: Default::default(),
-    });
-    setup
+pub fn sampled(setup: Setup, sample_hz: f64) -> Setup {
+    setup.sampled(sample_hz)
 }
 
 pub fn run(setup: &Setup) -> Outcome {

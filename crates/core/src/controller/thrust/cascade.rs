@@ -50,6 +50,32 @@ pub struct RotorcraftMeasured<'a> {
 /// **Requires**: as [`Thrust`]; J known; a bandwidth well above the roots.
 /// **Guarantees**: nothing that the paper states. With unlimited rotors and (50) the cascade converges as in the head of this
 /// file.
+///
+/// A rotorcraft that hovers and turns about its vertical axis, which nobody wants, is slowed down at the rate b:
+///
+/// ```
+/// use forwardstep_core::Gain;
+/// use forwardstep_core::controller::{Asked, Controller, Given, RateLoop, Thrust, ThrustCascade, ThrustDesign};
+/// use forwardstep_core::plant::{Plant, Rotorcraft, Vehicle};
+/// use forwardstep_core::reference::Heard;
+///
+/// let design = ThrustDesign::Differentiable { roots_per_s: [1.0, 2.0, 3.0], alpha_star: 4.0, stiffness: 20.0 };
+/// let vehicle = Vehicle { mass: 1.5, gravity: 9.81 };
+/// let plant = Rotorcraft::new(vehicle, &Gain::Diagonal(vec![0.02, 0.03, 0.04]), None)?;
+/// let mut outer = Thrust::new(design, vehicle.mass, vehicle.gravity)?;
+/// outer.yaw.gain = 0.0;
+/// let law = ThrustCascade { outer, rates: RateLoop { inertia: *plant.inertia(), bandwidth_per_s: 30.0 } };
+/// let turning = [0.5, 1.0, -2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.7];
+/// let given = Given { measured: law.see(&turning)?, heard: Heard::new(&[1.0], &turning[..3], 3)?, target: &[] };
+/// let size = |blocks: Vec<(_, usize)>| blocks.iter().map(|(_, n)| n).sum::<usize>();
+/// let (mut state, mut d_state) = (vec![0.0; size(law.states())], vec![0.0; size(law.states())]);
+/// law.start(&mut (), given, &[], &mut state)?;
+/// let (mut input, mut shown, mut rate) = ([0.0; 4], vec![0.0; size(law.shown())], [0.0; 13]);
+/// law.evaluate(&mut (), given, &state, Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown })?;
+/// plant.rate(&mut plant.scratch(), &turning, &input, &mut rate)?;
+/// assert!((rate[12] + 30.0 * 0.7).abs() < 1e-12 && rate[10].abs() + rate[11].abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct ThrustCascade {
     /// What asks for thrust and angular velocity.

@@ -92,6 +92,34 @@ use crate::{LengthError, Scalar};
 ///     *measured.ddx
 /// }
 /// ```
+///
+/// Where all agree at rest σ carries the weight and nothing moves; a neighbour elsewhere moves z⃛ first, by (49):
+///
+/// ```
+/// use forwardstep_core::controller::{Asked, Controller, Given, Thrust, ThrustDesign};
+/// use forwardstep_core::plant::{Plant, Vehicle};
+/// use forwardstep_core::reference::Heard;
+///
+/// let design = ThrustDesign::Differentiable { roots_per_s: [1.0, 2.0, 3.0], alpha_star: 4.0, stiffness: 20.0 };
+/// let vehicle = Vehicle { mass: 1.5, gravity: 9.81 };
+/// let law = Thrust::new(design, vehicle.mass, vehicle.gravity)?;
+/// let at_rest = [0.5, 1.0, -2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+/// for shift in [0.0, 0.1] {
+///     let w = 0.8;
+///     let (degree, sums) = ([w], [w * (0.5 + shift), w * 1.0, w * -2.0]);
+///     let given = Given { measured: law.see(&at_rest)?, heard: Heard::new(&degree, &sums, 3)?, target: &[] };
+///     let size = |blocks: Vec<(_, usize)>| blocks.iter().map(|(_, n)| n).sum::<usize>();
+///     let (mut state, mut d_state) = (vec![0.0; size(law.states())], vec![0.0; size(law.states())]);
+///     law.start(&mut (), given, &[], &mut state)?;
+///     let (mut input, mut shown, mut rate) = ([0.0; 4], vec![0.0; size(law.shown())], [0.0; 10]);
+///     law.evaluate(&mut (), given, &state, Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown })?;
+///     vehicle.rate(&mut (), &at_rest, &input, &mut rate)?;
+///     assert!((input[0] - 1.5 * 9.81).abs() < 1e-12 && rate.iter().all(|rate| rate.abs() < 1e-12));
+///     // α₀ = 1 · 2 · 3
+///     assert!((d_state[6] - 6.0 * w * shift).abs() < 1e-12);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Thrust {
     consensus: Consensus<Position>,

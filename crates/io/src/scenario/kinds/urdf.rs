@@ -118,7 +118,7 @@ fn robot_text(file: &At<String>, folder: &mut InputFolder) -> Result<SourceText,
     };
     // A shipped robot must not stand in for a file that is known to have been read.
     if reason == ReadError::Missing
-        && folder.moved(name).is_none()
+        && !folder.is_named(name)
         && let Some(text) = urdf::shipped_robot(name)
     {
         return Ok(SourceText::new(name, text));
