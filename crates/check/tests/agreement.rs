@@ -11,7 +11,7 @@ use forwardstep_check::{Answer, NoPrediction, check, predict};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::reference::polynomial;
-use forwardstep_sim::delay::{Delay, Loss, PacketLink, RandomHold};
+use forwardstep_sim::delay::{Delay, Loss, PacketLink, PiecewiseConstant, RandomHold, SawTooth, Sinusoid};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::schedule::{Phase, Schedule};
@@ -21,7 +21,7 @@ use forwardstep_sim::{Exchange, Known, Outcome, ReferenceKind, Setup, Signal, Ti
 fn uneven() -> (Vec<Edge>, Vec<Delay>) {
     let edges =
         vec![edge(0, 1, 1.5, 0), edge(1, 2, 0.7, 1), edge(2, 0, 1.1, 2), edge(1, 0, 0.4, 0), edge(2, 3, 0.9, 1)];
-    let delays = vec![Delay::Constant { s: 0.3 }, Delay::Constant { s: 0.0 }, Delay::Constant { s: 0.75 }];
+    let delays = vec![Delay::constant(0.3), Delay::constant(0.0), Delay::constant(0.75)];
     (edges, delays)
 }
 
@@ -98,8 +98,7 @@ fn torque_at_a_switch(reference: ReferenceKind, exchange: Exchange) -> f64 {
         Phase { edges: vec![edge(0, 1, 1.0, 0)], dwell_s: 3.0 },
         Phase { edges: both, dwell_s: 1.0 },
     ]);
-    let mut setup =
-        setup((0..2).map(|i| arm(i, roots)).collect(), exchange, schedule, vec![Delay::Constant { s: 0.2 }], 3.1);
+    let mut setup = setup((0..2).map(|i| arm(i, roots)).collect(), exchange, schedule, vec![Delay::constant(0.2)], 3.1);
     setup.reference = reference;
     for agent in &mut setup.agents {
         agent.law = Arc::new(Known { damping: Gain::Number(8.0) });
@@ -131,7 +130,7 @@ fn eq_3_over_a_switching_graph_is_not_covered() {
     let phase = |from, to| Phase { edges: vec![edge(from, to, 1.0, 0)], dwell_s: 1.0 };
     let schedule = Schedule::Periodic(vec![phase(0, 1), phase(1, 0)]);
     let agents = (0..2).map(|i| arm(i, &[1.0, 2.0])).collect();
-    let mut setup = setup(agents, Exchange::PositionVelocity, schedule, vec![Delay::Constant { s: 0.1 }], 1.0);
+    let mut setup = setup(agents, Exchange::PositionVelocity, schedule, vec![Delay::constant(0.1)], 1.0);
     setup.reference = ReferenceKind::PureIntegral;
     let report = check(&setup);
     assert_eq!(report.worst(), Answer::NotCovered);
@@ -141,9 +140,9 @@ fn eq_3_over_a_switching_graph_is_not_covered() {
 #[test]
 fn prediction_says_why_there_is_none() {
     let agents = || (0..2).map(|i| arm(i, &[1.0, 2.0])).collect::<Vec<_>>();
-    let constant = vec![Delay::Constant { s: 0.1 }];
+    let constant = vec![Delay::constant(0.1)];
     let one_way = Schedule::Fixed(vec![edge(0, 1, 1.0, 0)]);
-    let saw = vec![Delay::SawTooth { min_s: 0.0, max_s: 0.1, period_s: 1.0, offset_s: 0.0 }];
+    let saw = vec![Delay::new(SawTooth { min_s: 0.0, max_s: 0.1, period_s: 1.0, offset_s: 0.0 })];
     let case = |schedule, delays| predict(&setup(agents(), Exchange::Position, schedule, delays, 1.0));
     assert_eq!(case(one_way.clone(), saw), Err(NoPrediction::VaryingDelay));
     assert_eq!(case(Schedule::Fixed(vec![]), constant.clone()), Err(NoPrediction::NoSpanningTree));
@@ -200,9 +199,13 @@ fn prop_spread_never_grows_whatever_switches_or_jumps() {
         dwell_s,
     };
     let delays = vec![
-        Delay::SawTooth { min_s: 0.0, max_s: 0.5, period_s: 0.37, offset_s: 0.1 },
-        Delay::PiecewiseConstant { times_s: vec![0.0, 0.4, 0.9], values_s: vec![0.6, 0.0, 0.2], period_s: Some(1.3) },
-        Delay::Sinusoid { mean_s: 0.3, amplitude_s: 0.3, period_s: 0.8, phase_rad: 1.0 },
+        Delay::new(SawTooth { min_s: 0.0, max_s: 0.5, period_s: 0.37, offset_s: 0.1 }),
+        Delay::new(PiecewiseConstant {
+            times_s: vec![0.0, 0.4, 0.9],
+            values_s: vec![0.6, 0.0, 0.2],
+            period_s: Some(1.3),
+        }),
+        Delay::new(Sinusoid { mean_s: 0.3, amplitude_s: 0.3, period_s: 0.8, phase_rad: 1.0 }),
     ];
     let schedule = Schedule::Periodic(vec![
         phase(&[(0, 1, 0), (2, 3, 1)], 0.31),
@@ -252,12 +255,9 @@ fn prop_spread_never_grows_over_random_packets_and_weights() {
             link(seed, Loss::Bursts { enter: 0.1, leave: 0.3 }, 0.5),
         ];
         let pairs = [(0, 1), (1, 2), (2, 3), (3, 4), (4, 0), (0, 3)];
-        let mut delays: Vec<Delay> = pairs
-            .iter()
-            .enumerate()
-            .map(|(k, pair)| Delay::Packets(links[k % 3].trace(*pair, end_s).unwrap().into()))
-            .collect();
-        delays.push(Delay::RandomHold(RandomHold::draw(seed, (4, 2), [0.0, 0.5], [0.05, 0.4], end_s).unwrap().into()));
+        let mut delays: Vec<Delay> =
+            pairs.iter().enumerate().map(|(k, pair)| Delay::new(links[k % 3].trace(*pair, end_s).unwrap())).collect();
+        delays.push(Delay::new(RandomHold::draw(seed, (4, 2), [0.0, 0.5], [0.05, 0.4], end_s).unwrap()));
         let mut edges: Vec<Edge> = pairs.iter().enumerate().map(|(k, pair)| edge(pair.0, pair.1, 1.3, k)).collect();
         edges.push(edge(4, 2, 0.7, 6));
         edges[1].weight = Weight::Formula(0);
@@ -289,7 +289,7 @@ fn thm3_a5_with_unequal_first_roots_diverges_and_24_does_not() {
         let both = vec![edge(0, 1, 4.0, 0), edge(1, 0, 4.0, 0)];
         let schedule =
             Schedule::Periodic(vec![Phase { edges: vec![], dwell_s: 4.0 }, Phase { edges: both, dwell_s: 0.5 }]);
-        let mut setup = masses(exchange, 1, schedule, vec![Delay::Constant { s: 0.0 }]);
+        let mut setup = masses(exchange, 1, schedule, vec![Delay::constant(0.0)]);
         setup.agents.truncate(2);
         setup.network.agents = 2;
         setup.agents[0].roots_per_s = vec![4.0];
@@ -322,7 +322,7 @@ fn thm3_a5_with_unequal_first_roots_diverges_and_24_does_not() {
 fn thm2_hypotheses_hold_with_a_certificate_or_fail_with_a_witness() {
     let agents = || (0..4).map(|i| arm(i, &[1.0, 2.0])).collect::<Vec<_>>();
     let phase = |from, to| Phase { edges: vec![edge(from, to, 1.0, 0)], dwell_s: 1.5 };
-    let delays = vec![Delay::Constant { s: 0.1 }];
+    let delays = vec![Delay::constant(0.1)];
     let joint = Schedule::Periodic(vec![phase(0, 1), phase(1, 2), phase(2, 3)]);
     let report = check(&setup(agents(), Exchange::PositionVelocity, joint, delays.clone(), 1.0));
     assert_eq!(report.worst(), Answer::Holds);

@@ -59,7 +59,7 @@ fn setup(design: FollowingDesign, path: Path, gain: f64) -> Setup {
         network: Network {
             agents: 3,
             schedule: Schedule::Fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0)]),
-            delays: vec![Delay::Constant { s: 0.0 }],
+            delays: vec![Delay::constant(0.0)],
             weights: Vec::new(),
             coupling: Default::default(),
         },
@@ -162,7 +162,7 @@ fn thm8_only_a_sign_that_is_solved_for_is_the_set_valued_one() {
 fn thm8_any_link_with_a_delay_is_not_covered() {
     let said = |delays: [f64; 2]| {
         let mut setup = setup(FollowingDesign::Continuous, wave(), 3.0);
-        setup.network.delays = delays.map(|s| Delay::Constant { s }).to_vec();
+        setup.network.delays = delays.map(|s| Delay::constant(s)).to_vec();
         setup.network.schedule = Schedule::Fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 1)]);
         common::answer(&setup, About::Prompt)
     };
@@ -178,7 +178,7 @@ fn thm8_what_the_paper_does_not_speak_about_is_said() {
     assert!(verdict == Answer::Violated && because.contains("mass-1, mass-2"), "{because}");
 
     let mut late = setup(FollowingDesign::Continuous, wave(), 3.0);
-    late.network.delays[0] = Delay::Constant { s: 0.2 };
+    late.network.delays[0] = Delay::constant(0.2);
     assert_eq!(answer(&check(&late), "without delay").0, Answer::NotCovered);
 
     let mut switching = setup(FollowingDesign::Continuous, wave(), 3.0);

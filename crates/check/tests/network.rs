@@ -8,7 +8,7 @@ use common::kinds::{alone, blind_mass, chain};
 use common::{About, answer, answers, arm, edge, setup};
 use forwardstep_check::{Answer, check};
 use forwardstep_core::expression::Expression;
-use forwardstep_sim::delay::Delay;
+use forwardstep_sim::delay::{Delay, SawTooth};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::schedule::{Phase, Schedule};
@@ -17,7 +17,7 @@ use forwardstep_sim::{Actuators, Control, Exchange, ReferenceKind, Sensors, Setu
 /// Two arms with κ₀ of their own over these edges.
 fn pair(first_roots: [f64; 2], edges: Vec<Edge>) -> Setup {
     let agents = (0..2).map(|k| arm(k, &[first_roots[k], 2.0])).collect();
-    setup(agents, Exchange::PositionVelocity, Schedule::Fixed(edges), vec![Delay::Constant { s: 0.1 }], 10.0)
+    setup(agents, Exchange::PositionVelocity, Schedule::Fixed(edges), vec![Delay::constant(0.1)], 10.0)
 }
 
 fn both_ways() -> Vec<Edge> {
@@ -34,7 +34,7 @@ fn with_varying_weight(mut setup: Setup) -> Setup {
 }
 
 fn with_varying_delay(mut setup: Setup) -> Setup {
-    setup.network.delays = vec![Delay::SawTooth { min_s: 0.0, max_s: 0.1, period_s: 1.0, offset_s: 0.0 }];
+    setup.network.delays = vec![Delay::new(SawTooth { min_s: 0.0, max_s: 0.1, period_s: 1.0, offset_s: 0.0 })];
     setup
 }
 
@@ -71,7 +71,7 @@ fn thm3_a_component_is_looked_at_to_its_end() {
     // Three in a ring, of which the last differs; two more beside them, each by itself.
     let agents = [1.0, 1.0, 1.5, 7.0, 8.0].iter().enumerate().map(|(k, root)| arm(k, &[*root, 2.0])).collect();
     let edges = [(0, 1), (1, 2), (2, 0), (2, 3), (3, 4)].map(|(from, to)| edge(from, to, 1.0, 0)).to_vec();
-    let delays = vec![Delay::Constant { s: 0.1 }];
+    let delays = vec![Delay::constant(0.1)];
     let mut ring = setup(agents, Exchange::PositionVelocity, Schedule::Fixed(edges), delays, 10.0);
     assert_eq!(answer(&with_varying_delay(ring.clone()), About::CommonFirstRoot), Answer::NotCovered);
     ring.agents[2].roots_per_s[0] = 1.0;

@@ -12,7 +12,7 @@ use forwardstep_check::{NoPrediction, predict};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::coupling::Coupling;
-use forwardstep_sim::delay::Delay;
+use forwardstep_sim::delay::{Delay, SawTooth};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
@@ -22,7 +22,7 @@ use forwardstep_sim::{Adaptive, Control, Exchange, Known, ReferenceKind, Setup, 
 /// Two masses that hear each other, and a third that only listens.
 fn three(exchange: Exchange) -> Setup {
     let edges = vec![edge(0, 1, 1.0, 0), edge(1, 0, 2.0, 1), edge(1, 2, 1.5, 0)];
-    let delays = vec![Delay::Constant { s: 0.2 }, Delay::Constant { s: 0.0 }];
+    let delays = vec![Delay::constant(0.2), Delay::constant(0.0)];
     let mut setup = masses(exchange, 2, Schedule::Fixed(edges), delays);
     setup.agents.truncate(3);
     setup.network.agents = 3;
@@ -106,7 +106,7 @@ fn every_reason_for_which_there_is_none_is_the_one_that_is_said() {
         actuators: Default::default(),
     };
     assert_eq!(said(&|setup| setup.control = Some(control.clone())), Some(NoPrediction::Sampled));
-    let saw = Delay::SawTooth { min_s: 0.0, max_s: 0.1, period_s: 1.0, offset_s: 0.0 };
+    let saw = Delay::new(SawTooth { min_s: 0.0, max_s: 0.1, period_s: 1.0, offset_s: 0.0 });
     for delay in [0, 1] {
         assert_eq!(said(&|setup| setup.network.delays[delay] = saw.clone()), Some(NoPrediction::VaryingDelay));
     }

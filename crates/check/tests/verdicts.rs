@@ -33,7 +33,7 @@ fn pair(delays: [Delay; 2]) -> Setup {
 }
 
 fn constant(s: f64) -> Delay {
-    Delay::Constant { s }
+    Delay::constant(s)
 }
 
 fn with_weights(weights: [Expression; 2]) -> Setup {
@@ -61,7 +61,7 @@ fn faster() -> Expression {
 fn a_delay_or_a_weight_that_turns_negative_after_the_run_holds_on_the_run_only() {
     // On [0, 20] it is at least 0.5, and at t = 150 π it is −0.5.
     let later = swing(0.5, 0.01);
-    let delay = Delay::Formula(BoundedFormula::new(later.clone(), 20.0).into());
+    let delay = Delay::new(BoundedFormula::new(later.clone(), 20.0));
     assert_eq!(answer(&pair([constant(0.1), delay]), About::Delays), Answer::HoldsOnHorizon);
     assert_eq!(answer(&with_weights([swing(2.0, 1.0), later]), About::Weights), Answer::HoldsOnHorizon);
     assert_eq!(answer(&with_weights([swing(2.0, 1.0), swing(1.5, 0.3)]), About::Weights), Answer::Holds);

@@ -8,7 +8,7 @@
 //! let cart = |name: &str, x: f64| {
 //!     AgentSetup::new(name, RobotSetup::point_mass(1, 2.0), Known::gain(8.0)).roots(&[1.0, 2.0]).at(&[x])
 //! };
-//! let network = Network::fixed(2, [(0, 1), (1, 0)], Delay::Constant { s: 0.1 });
+//! let network = Network::fixed(2, [(0, 1), (1, 0)], Delay::constant(0.1));
 //! let setup = Setup::consensus([cart("left", 0.0), cart("right", 1.0)], network, 20.0);
 //! let outcome = run(&setup)?;
 //! let last = |agent| outcome.recording.last(agent, Signal::Position, 0);

@@ -4,7 +4,7 @@ use forwardstep_core::expression::Interval;
 use thiserror::Error;
 
 use crate::coupling::{Coupling, CouplingError};
-use crate::delay::Delay;
+use crate::delay::{Delay, DelayError, DelayFault};
 use crate::formula::BoundedFormula;
 use crate::graph::Weight;
 use crate::schedule::Schedule;
@@ -131,16 +131,24 @@ pub enum NetworkError {
         dwell_s: f64,
     },
     /// A delay with a parameter that makes no sense.
-    #[error("delay {delay}: {parameter} is {value}, but {requirement}")]
+    #[error("delay {delay}, {words}: {error}")]
     Delay {
         /// Index of the delay.
         delay: usize,
-        /// The parameter.
-        parameter: &'static str,
-        /// Its value.
-        value: f64,
-        /// What it must be.
-        requirement: &'static str,
+        /// What it is called.
+        words: &'static str,
+        /// What is wrong.
+        error: DelayError,
+    },
+    /// A delay from outside that is not what its author says.
+    #[error("delay {delay}, {words}, is not what it is declared to be: {fault}")]
+    RefutedDelay {
+        /// Index of the delay.
+        delay: usize,
+        /// What it is called.
+        words: &'static str,
+        /// What was found.
+        fault: DelayFault,
     },
 }
 
@@ -193,12 +201,8 @@ impl Network {
         self.coupling.check()?;
         self.check_dwell()?;
         self.delays.iter().enumerate().try_for_each(|(delay, kind)| {
-            kind.validate().map_err(|(parameter, value, requirement)| NetworkError::Delay {
-                delay,
-                parameter,
-                value,
-                requirement,
-            })
+            let named = |error: DelayError| NetworkError::Delay { delay, words: kind.words(), error };
+            kind.validate().map_err(named)
         })
     }
 
@@ -219,19 +223,23 @@ impl Network {
         }
     }
 
-    /// Checks that packets, random holds and formulas are known until `end_s`.
+    /// Checks that packets, random holds and formulas are known until `end_s`, and that delays from outside are until then
+    /// what their authors say, as far as that can be seen.
     ///
     /// # Errors
-    /// [`NetworkError::EndsEarly`] for the first that is not.
+    /// [`NetworkError::EndsEarly`] or [`NetworkError::RefutedDelay`] for the first that is not.
     pub fn lasts_until(&self, end_s: f64) -> Result<(), NetworkError> {
-        let delays = self.delays.iter().map(Delay::known_until_s);
+        let delays = self.delays.iter().map(|delay| delay.known().until_s);
         let weights = self.weights.iter().map(|formula| Some(formula.until_s()));
         for (index, until_s) in delays.enumerate().chain(weights.enumerate()) {
             if let Some(until_s) = until_s.filter(|until_s| *until_s < end_s) {
                 return Err(NetworkError::EndsEarly { index, until_s, end_s });
             }
         }
-        Ok(())
+        self.used_delays().try_for_each(|delay| {
+            let refuted = |fault| NetworkError::RefutedDelay { delay, words: self.delays[delay].words(), fault };
+            self.delays[delay].probe(end_s).map_err(refuted)
+        })
     }
 
     /// The value of a weight at `t_s`.

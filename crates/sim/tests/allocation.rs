@@ -59,8 +59,10 @@ fn weights_swing(setup: &mut Setup) {
     for edge in phases.into_iter().flatten() {
         edge.weight = Weight::Formula(0);
     }
-    for delay in setup.network.delays.iter_mut().filter(|delay| matches!(delay, Delay::Sinusoid { .. })) {
-        *delay = Delay::Formula(swing(0.3, 0.1).into());
+    for delay in
+        setup.network.delays.iter_mut().filter(|delay| delay.downcast::<forwardstep_sim::delay::Sinusoid>().is_some())
+    {
+        *delay = Delay::new(swing(0.3, 0.1));
     }
 }
 

@@ -199,12 +199,12 @@ fn what_cannot_be_followed_is_refused() {
     assert!(refuse(&hears).contains("hears nobody"));
 
     let mut late = arms(FollowingDesign::WithoutAcceleration, Choice::Implicit, 1.0, 1.0);
-    late.network.delays[0] = Delay::Constant { s: 0.1 };
+    late.network.delays[0] = Delay::constant(0.1);
     assert!(refuse(&late).contains("no delay, or sampled control"));
     // Samples remember what was told, and (110) tells nothing that is not state.
     run(&at_1_khz(late));
     let mut late = arms(FollowingDesign::Continuous, Choice::Implicit, 1.0, 1.0);
-    late.network.delays[0] = Delay::Constant { s: 0.1 };
+    late.network.delays[0] = Delay::constant(0.1);
     run(&late);
 }
 

@@ -129,7 +129,7 @@ fn fixed_steps_keep_their_order_across_the_kinks_of_everything() {
     has_order_four("weight", weighted, 0.04);
 
     let mut delayed = consensus_of_masses(2.3);
-    delayed.network.delays[0] = Delay::Formula(BoundedFormula::new(bounce(2.0) * 0.3 + 0.4, 4.0).into());
+    delayed.network.delays[0] = Delay::new(BoundedFormula::new(bounce(2.0) * 0.3 + 0.4, 4.0));
     has_order_four("delay", delayed, 0.04);
 
     let mut pushed = consensus_of_masses(2.3);
@@ -145,7 +145,7 @@ fn fixed_steps_keep_their_order_across_the_kinks_of_everything() {
 #[test]
 fn a_leader_with_kinks_is_followed_through_a_delay_to_the_tolerance() {
     let mut late = led_along(FollowingDesign::Continuous, bounce(1.3), 6.0);
-    late.network.delays = vec![Delay::Constant { s: 0.37 }];
+    late.network.delays = vec![Delay::constant(0.37)];
     let with = |rtol: f64| {
         let mut setup = late.clone();
         setup.solver.method = Method::Adaptive { rtol, atol: 0.01 * rtol };

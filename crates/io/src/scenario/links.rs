@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
-use std::sync::Arc;
 
 use forwardstep_core::expression::{Expression, Interval};
 use forwardstep_sim::delay::{Delay, Loss, Packet, PacketLink, RandomHold, Trace};
@@ -78,7 +77,7 @@ impl NetworkReader<'_> {
         let formula = formula(text)?;
         let delay = if formula.is_constant() {
             let value = At { value: constant(&formula), span: text.span.clone() };
-            Delay::Constant { s: finite("formula_s", &value).and_then(|value| not_negative("formula_s", &value))? }
+            Delay::constant(finite("formula_s", &value).and_then(|value| not_negative("formula_s", &value))?)
         } else {
             if self.links.formulas.len() >= MOST_FORMULAS {
                 return Err(fault(text, NetworkProblem::TooManyFormulas { most: MOST_FORMULAS }));
@@ -89,7 +88,7 @@ impl NetworkReader<'_> {
                 let (witness, end_s) = (witness(bounded.formula(), self.end_s, |value| value >= 0.0), self.end_s);
                 return Err(fault(text, NetworkProblem::DelayBounds { low, high, witness, end_s }));
             }
-            Delay::Formula(bounded.into())
+            Delay::new(bounded)
         };
         self.links.formulas.insert(text.value.clone(), delay.clone());
         Ok(delay)
@@ -128,11 +127,11 @@ impl NetworkReader<'_> {
             DelayPlan::RandomHold { seed, value_s, hold_s } => {
                 self.few_packets("jumps of the delay", 2.0 * self.end_s / (hold_s[0] + hold_s[1]), span)?;
                 let hold = RandomHold::draw(*seed, (from, to), *value_s, *hold_s, self.end_s).map_err(refused)?;
-                Delay::RandomHold(Arc::new(hold))
+                Delay::new(hold)
             }
             DelayPlan::Packets(link) => {
                 self.few_packets("packets", link.packets(self.end_s), span)?;
-                Delay::Packets(Arc::new(link.trace((from, to), self.end_s).map_err(refused)?))
+                Delay::new(link.trace((from, to), self.end_s).map_err(refused)?)
             }
             DelayPlan::Log(file) => {
                 let names = (self.names[from].clone(), self.names[to].clone());
@@ -144,7 +143,7 @@ impl NetworkReader<'_> {
                 *used = true;
                 let packets = packets.clone();
                 self.few_packets("packets", packets.len() as f64, span)?;
-                Delay::Packets(Arc::new(Trace::new(packets, self.end_s).map_err(refused)?))
+                Delay::new(Trace::new(packets, self.end_s).map_err(refused)?)
             }
         })
     }
@@ -202,7 +201,7 @@ impl NetworkReader<'_> {
         let mut silent: Vec<(usize, usize)> = Vec::new();
         for (&(from, to, packets), (_, index)) in &self.links.drawn {
             if packets
-                && let Some(Delay::Packets(trace)) = self.delays.get(*index)
+                && let Some(trace) = self.delays.get(*index).and_then(Delay::packets)
                 && trace.arrivals() == 0
             {
                 silent.push((from, to));

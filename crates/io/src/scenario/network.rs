@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use forwardstep_sim::Network;
 use forwardstep_sim::coupling::Coupling;
-use forwardstep_sim::delay::Delay;
+use forwardstep_sim::delay::{Constant, Delay, PiecewiseConstant, SawTooth, Sinusoid};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::schedule::{Phase, Schedule};
@@ -40,7 +40,7 @@ pub(super) fn network(
         agents,
         index: names.iter().enumerate().map(|(k, name)| (name.as_str(), k)).collect(),
         weight: Weight::Constant(1.0),
-        default_delay: DelayPlan::Shared(Delay::Constant { s: 0.0 }),
+        default_delay: DelayPlan::Shared(Delay::constant(0.0)),
         delays: Vec::new(),
         constants: HashMap::new(),
         weights: Vec::new(),
@@ -161,10 +161,10 @@ impl NetworkReader<'_> {
     /// Equal delays share an entry, so that a message to several receivers is looked up once.
     pub(super) fn delay_index(&mut self, delay: Delay) -> usize {
         let next = self.delays.len();
-        let index = match &delay {
+        let index = match delay.downcast() {
             // A table may give every edge another.
-            Delay::Constant { s } => *self.constants.entry((s + 0.0).to_bits()).or_insert(next),
-            _ => self.delays.iter().position(|known| *known == delay).unwrap_or(next),
+            Some(Constant { s }) => *self.constants.entry((s + 0.0).to_bits()).or_insert(next),
+            None => self.delays.iter().position(|known| *known == delay).unwrap_or(next),
         };
         if index == next {
             self.delays.push(delay);
@@ -185,7 +185,7 @@ impl NetworkReader<'_> {
             DelayFile::Packets(file) => return links::packets(file),
             DelayFile::Log(file) => return self.log(file),
             DelayFile::FormulaS(text) => self.formula_delay(text)?,
-            DelayFile::ConstantS(s) => Delay::Constant { s: not_negative("constant_s", s)? },
+            DelayFile::ConstantS(s) => Delay::constant(not_negative("constant_s", s)?),
             DelayFile::Sinusoid(file) => {
                 let mean_s = not_negative("mean_s", &file.mean_s)?;
                 let amplitude_s = not_negative("amplitude_s", &file.amplitude_s)?;
@@ -194,7 +194,7 @@ impl NetworkReader<'_> {
                 }
                 let period_s = positive("period_s", &file.period_s)?;
                 self.few("swings of the delay", self.end_s / period_s, &file.period_s.span)?;
-                Delay::Sinusoid { mean_s, amplitude_s, period_s, phase_rad: file.phase_rad.rem_euclid(TAU) }
+                Delay::new(Sinusoid { mean_s, amplitude_s, period_s, phase_rad: file.phase_rad.rem_euclid(TAU) })
             }
             DelayFile::PiecewiseConstant(file) => {
                 let times_s = filled("times_s", &file.times_s)?;
@@ -225,7 +225,7 @@ impl NetworkReader<'_> {
                     self.few("jumps of the delay", self.end_s / period_s * times as f64, &place.span)?;
                 }
                 let (times_s, values_s) = (values(times_s), values(&file.values_s.value));
-                Delay::PiecewiseConstant { times_s, values_s, period_s }
+                Delay::new(PiecewiseConstant { times_s, values_s, period_s })
             }
             DelayFile::SawTooth(file) => {
                 let min_s = not_negative("min_s", &file.min_s)?;
@@ -237,7 +237,7 @@ impl NetworkReader<'_> {
                 self.few("jumps of the delay", self.end_s / period_s, &file.period_s.span)?;
                 // The same tooth, and no precision lost to a large offset.
                 let offset_s = file.offset_s.rem_euclid(period_s);
-                Delay::SawTooth { min_s, max_s, period_s, offset_s }
+                Delay::new(SawTooth { min_s, max_s, period_s, offset_s })
             }
         };
         Ok(DelayPlan::Shared(shared))

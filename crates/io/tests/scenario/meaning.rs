@@ -3,7 +3,7 @@
 use forwardstep_core::Gain;
 use forwardstep_core::robot::PlanarArm;
 use forwardstep_io::output::Goal;
-use forwardstep_sim::delay::Delay;
+use forwardstep_sim::delay::{Delay, PiecewiseConstant, SawTooth, Sinusoid};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{Adaptive, Exchange, Known, Method, Setup};
 
@@ -37,7 +37,7 @@ fn the_sound_scenario_is_read_as_written() {
     let Schedule::Periodic(phases) = &setup.network.schedule else { panic!("it repeats") };
     let edges: Vec<_> = phases.iter().flat_map(|phase| &phase.edges).map(|edge| (edge.from, edge.to)).collect();
     assert_eq!(edges, [(0, 1), (1, 2), (2, 0)]);
-    assert_eq!(setup.network.delays, [Delay::SawTooth { min_s: 0.1, max_s: 0.4, period_s: 0.6, offset_s: 0.0 }]);
+    assert_eq!(setup.network.delays, [Delay::new(SawTooth { min_s: 0.1, max_s: 0.4, period_s: 0.6, offset_s: 0.0 })]);
 }
 
 #[test]
@@ -117,7 +117,7 @@ fn networks_of_every_kind() {
     let Schedule::Fixed(edges) = network.schedule else { panic!("it is fixed") };
     assert_eq!((edges[0].from, edges[0].to, edges[0].weight, edges[0].delay), (2, 0, 1.0.into(), 0));
     assert_eq!((edges[1].from, edges[1].to, edges[1].weight), (0, 2, 2.0.into()));
-    assert_eq!(network.delays[edges[1].delay], Delay::Constant { s: 0.0 });
+    assert_eq!(network.delays[edges[1].delay], Delay::constant(0.0));
 
     let once = read(&changed("weight = 1.0", "switching = \"once\"")).unwrap();
     assert!(matches!(once.setup.network.schedule, Schedule::Once(phases) if phases.len() == 2));
@@ -144,18 +144,18 @@ fn delays_of_every_kind() {
         let saw_tooth = "delay.saw_tooth = { min_s = 0.1, max_s = 0.4, period_s = 0.6 }";
         setup(&changed(saw_tooth, text)).network.delays.remove(0)
     };
-    assert_eq!(delay(""), Delay::Constant { s: 0.0 });
+    assert_eq!(delay(""), Delay::constant(0.0));
     assert_eq!(
         delay("delay.sinusoid = { mean_s = 0.2, amplitude_s = 0.2, period_s = 2, phase_rad = 1 }"),
-        Delay::Sinusoid { mean_s: 0.2, amplitude_s: 0.2, period_s: 2.0, phase_rad: 1.0 }
+        Delay::new(Sinusoid { mean_s: 0.2, amplitude_s: 0.2, period_s: 2.0, phase_rad: 1.0 })
     );
     assert_eq!(
         delay("delay.piecewise_constant = { times_s = [0, 1], values_s = [0.1, 0], period_s = 2 }"),
-        Delay::PiecewiseConstant { times_s: vec![0.0, 1.0], values_s: vec![0.1, 0.0], period_s: Some(2.0) }
+        Delay::new(PiecewiseConstant { times_s: vec![0.0, 1.0], values_s: vec![0.1, 0.0], period_s: Some(2.0) })
     );
     assert_eq!(
         delay("delay.saw_tooth = { min_s = 0, max_s = 0.4, period_s = 0.6, offset_s = 0.1 }"),
-        Delay::SawTooth { min_s: 0.0, max_s: 0.4, period_s: 0.6, offset_s: 0.1 }
+        Delay::new(SawTooth { min_s: 0.0, max_s: 0.4, period_s: 0.6, offset_s: 0.1 })
     );
 }
 

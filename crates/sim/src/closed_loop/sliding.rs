@@ -308,7 +308,7 @@ mod tests {
         let network = Network {
             agents: 4,
             schedule: Schedule::Fixed(edges.clone()),
-            delays: vec![Delay::Constant { s: 0.0 }],
+            delays: vec![Delay::constant(0.0)],
             weights: Vec::new(),
             coupling: Default::default(),
         };

@@ -82,7 +82,7 @@ pub fn arms(design: FollowingDesign, choice: Choice, estimate: f64, end_s: f64) 
                 edge(0, 3, 1.0),
                 edge(4, 2, 1.0),
             ]),
-            delays: vec![Delay::Constant { s: 0.0 }],
+            delays: vec![Delay::constant(0.0)],
             weights: Vec::new(),
             coupling: Default::default(),
         },
