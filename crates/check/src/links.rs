@@ -66,7 +66,7 @@ pub(crate) fn no_delay(setup: &Setup) -> Hypothesis {
 pub(crate) fn varying_weights(setup: &Setup) -> impl Iterator<Item = &BoundedFormula> {
     let network = &setup.network;
     let mut used = vec![false; network.weights.len()];
-    for edge in network.schedule.graphs().into_iter().flatten() {
+    for edge in network.schedule.graphs.iter().flatten() {
         match edge.weight {
             Weight::Constant(_) => {}
             Weight::Formula(index) => used.get_mut(index).into_iter().for_each(|used| *used = true),

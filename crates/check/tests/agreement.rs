@@ -40,7 +40,7 @@ fn prop_agreed_value_is_known_before_the_run() {
                 })
                 .collect();
             let (edges, delays) = uneven();
-            let mut setup = setup(agents, exchange, Schedule::Fixed(edges), delays, 160.0);
+            let mut setup = setup(agents, exchange, Schedule::fixed(edges), delays, 160.0);
             setup.time.record_every_s = 10.0;
             let prediction = predict(&setup).unwrap();
             assert!((prediction.influence.iter().sum::<f64>() - 1.0).abs() < 1e-12);
@@ -68,7 +68,7 @@ fn thm1_agreed_value_is_known_for_the_pure_integrals_too() {
             })
             .collect();
         let (edges, delays) = uneven();
-        let mut setup = setup(agents, exchange, Schedule::Fixed(edges), delays, 160.0);
+        let mut setup = setup(agents, exchange, Schedule::fixed(edges), delays, 160.0);
         setup.reference = ReferenceKind::PureIntegral;
         setup.time.record_every_s = 10.0;
         let report = check(&setup);
@@ -94,7 +94,7 @@ fn thm1_agreed_value_is_known_for_the_pure_integrals_too() {
 fn torque_at_a_switch(reference: ReferenceKind, exchange: Exchange) -> f64 {
     let roots: &[f64] = if reference == ReferenceKind::Consensus { &[1.0, 2.0] } else { &[] };
     let both = vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)];
-    let schedule = Schedule::Once(vec![
+    let schedule = Schedule::once(vec![
         Phase { edges: vec![edge(0, 1, 1.0, 0)], dwell_s: 3.0 },
         Phase { edges: both, dwell_s: 1.0 },
     ]);
@@ -128,7 +128,7 @@ fn eq_aa6_torque_at_a_switch_grows_as_the_filter_narrows_and_that_of_a1_does_not
 #[test]
 fn eq_3_over_a_switching_graph_is_not_covered() {
     let phase = |from, to| Phase { edges: vec![edge(from, to, 1.0, 0)], dwell_s: 1.0 };
-    let schedule = Schedule::Periodic(vec![phase(0, 1), phase(1, 0)]);
+    let schedule = Schedule::periodic(vec![phase(0, 1), phase(1, 0)]);
     let agents = (0..2).map(|i| arm(i, &[1.0, 2.0])).collect();
     let mut setup = setup(agents, Exchange::PositionVelocity, schedule, vec![Delay::constant(0.1)], 1.0);
     setup.reference = ReferenceKind::PureIntegral;
@@ -141,14 +141,14 @@ fn eq_3_over_a_switching_graph_is_not_covered() {
 fn prediction_says_why_there_is_none() {
     let agents = || (0..2).map(|i| arm(i, &[1.0, 2.0])).collect::<Vec<_>>();
     let constant = vec![Delay::constant(0.1)];
-    let one_way = Schedule::Fixed(vec![edge(0, 1, 1.0, 0)]);
+    let one_way = Schedule::fixed(vec![edge(0, 1, 1.0, 0)]);
     let saw = vec![Delay::new(SawTooth { min_s: 0.0, max_s: 0.1, period_s: 1.0, offset_s: 0.0 })];
     let case = |schedule, delays| predict(&setup(agents(), Exchange::Position, schedule, delays, 1.0));
     assert_eq!(case(one_way.clone(), saw), Err(NoPrediction::VaryingDelay));
-    assert_eq!(case(Schedule::Fixed(vec![]), constant.clone()), Err(NoPrediction::NoSpanningTree));
+    assert_eq!(case(Schedule::fixed(vec![]), constant.clone()), Err(NoPrediction::NoSpanningTree));
     let phase = |from, to| Phase { edges: vec![edge(from, to, 1.0, 0)], dwell_s: 1.0 };
     assert_eq!(
-        case(Schedule::Periodic(vec![phase(0, 1), phase(1, 0)]), constant.clone()),
+        case(Schedule::periodic(vec![phase(0, 1), phase(1, 0)]), constant.clone()),
         Err(NoPrediction::Switching)
     );
     assert_eq!(case(one_way, constant).unwrap().influence, vec![1.0, 0.0]);
@@ -207,7 +207,7 @@ fn prop_spread_never_grows_whatever_switches_or_jumps() {
         }),
         Delay::new(Sinusoid { mean_s: 0.3, amplitude_s: 0.3, period_s: 0.8, phase_rad: 1.0 }),
     ];
-    let schedule = Schedule::Periodic(vec![
+    let schedule = Schedule::periodic(vec![
         phase(&[(0, 1, 0), (2, 3, 1)], 0.31),
         phase(&[(1, 2, 2), (3, 4, 0), (4, 0, 1)], 0.23),
         phase(&[], 0.1),
@@ -263,7 +263,7 @@ fn prop_spread_never_grows_over_random_packets_and_weights() {
         edges[1].weight = Weight::Formula(0);
         edges[4].weight = Weight::Formula(0);
         let some = |which: &[usize]| which.iter().map(|k| edges[*k]).collect::<Vec<_>>();
-        let schedule = Schedule::Periodic(vec![
+        let schedule = Schedule::periodic(vec![
             Phase { edges: some(&[0, 2, 4]), dwell_s: 0.7 },
             Phase { edges: some(&[1, 3, 5, 6]), dwell_s: 0.9 },
         ]);
@@ -288,7 +288,7 @@ fn thm3_a5_with_unequal_first_roots_diverges_and_24_does_not() {
     let diverging = |exchange| {
         let both = vec![edge(0, 1, 4.0, 0), edge(1, 0, 4.0, 0)];
         let schedule =
-            Schedule::Periodic(vec![Phase { edges: vec![], dwell_s: 4.0 }, Phase { edges: both, dwell_s: 0.5 }]);
+            Schedule::periodic(vec![Phase { edges: vec![], dwell_s: 4.0 }, Phase { edges: both, dwell_s: 0.5 }]);
         let mut setup = masses(exchange, 1, schedule, vec![Delay::constant(0.0)]);
         setup.agents.truncate(2);
         setup.network.agents = 2;
@@ -323,20 +323,20 @@ fn thm2_hypotheses_hold_with_a_certificate_or_fail_with_a_witness() {
     let agents = || (0..4).map(|i| arm(i, &[1.0, 2.0])).collect::<Vec<_>>();
     let phase = |from, to| Phase { edges: vec![edge(from, to, 1.0, 0)], dwell_s: 1.5 };
     let delays = vec![Delay::constant(0.1)];
-    let joint = Schedule::Periodic(vec![phase(0, 1), phase(1, 2), phase(2, 3)]);
+    let joint = Schedule::periodic(vec![phase(0, 1), phase(1, 2), phase(2, 3)]);
     let report = check(&setup(agents(), Exchange::PositionVelocity, joint, delays.clone(), 1.0));
     assert_eq!(report.worst(), Answer::Holds);
     assert!(report.theorem.to_string().starts_with("Theorem 2"));
     assert!(report.hypotheses[0].because().contains("lasts 4.5 s"), "{}", report.hypotheses[0].because());
 
-    let split = Schedule::Periodic(vec![phase(0, 1), phase(2, 3)]);
+    let split = Schedule::periodic(vec![phase(0, 1), phase(2, 3)]);
     let report = check(&setup(agents(), Exchange::PositionVelocity, split, delays.clone(), 1.0));
     assert_eq!(report.worst(), Answer::Violated);
     let because = report.hypotheses[0].because();
     assert!(because.contains("[arm-1] and [arm-3] hear nobody outside themselves"), "{because}");
 
     let graphs = vec![vec![edge(0, 1, 1.0, 0), edge(1, 2, 1.0, 0)], vec![edge(2, 3, 1.0, 0)]];
-    let random = Schedule::Random { graphs, dwell_s: [0.1, 0.2], seed: 1 };
+    let random = Schedule::random(graphs, [0.1, 0.2], 1);
     let report = check(&setup(agents(), Exchange::Position, random, delays, 30.0));
     assert_eq!(report.worst(), Answer::HoldsOnHorizon);
 }

@@ -17,13 +17,13 @@ use forwardstep_sim::schedule::Schedule;
 fn links(delay: Delay, weight: Option<Expression>) -> (Answer, String, Option<(Answer, String)>) {
     let end_s = 20.0;
     let mut setup =
-        masses(Exchange::Position, 2, Schedule::Fixed(vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)]), vec![delay]);
+        masses(Exchange::Position, 2, Schedule::fixed(vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)]), vec![delay]);
     setup.agents.truncate(2);
     setup.network.agents = 2;
     setup.time.end_s = end_s;
     if let Some(formula) = weight {
         setup.network.weights = vec![BoundedFormula::new(formula, end_s)];
-        setup.network.schedule = Schedule::Fixed(vec![
+        setup.network.schedule = Schedule::fixed(vec![
             Edge { weight: Weight::Formula(0), ..edge(0, 1, 1.0, 0) },
             Edge { weight: Weight::Formula(0), ..edge(1, 0, 1.0, 0) },
         ]);

@@ -17,7 +17,7 @@ use forwardstep_sim::{Actuators, Control, Exchange, ReferenceKind, Sensors, Setu
 /// Two arms with κ₀ of their own over these edges.
 fn pair(first_roots: [f64; 2], edges: Vec<Edge>) -> Setup {
     let agents = (0..2).map(|k| arm(k, &[first_roots[k], 2.0])).collect();
-    setup(agents, Exchange::PositionVelocity, Schedule::Fixed(edges), vec![Delay::constant(0.1)], 10.0)
+    setup(agents, Exchange::PositionVelocity, Schedule::fixed(edges), vec![Delay::constant(0.1)], 10.0)
 }
 
 fn both_ways() -> Vec<Edge> {
@@ -27,7 +27,8 @@ fn both_ways() -> Vec<Edge> {
 fn with_varying_weight(mut setup: Setup) -> Setup {
     let swing = Expression::variable(0).sin_of() * 0.5 + 1.0;
     setup.network.weights = vec![BoundedFormula::new(swing, setup.time.end_s)];
-    if let Schedule::Fixed(edges) = &mut setup.network.schedule {
+    {
+        let edges = &mut setup.network.schedule.graphs[0];
         edges[0].weight = Weight::Formula(0);
     }
     setup
@@ -40,8 +41,9 @@ fn with_varying_delay(mut setup: Setup) -> Setup {
 
 fn switching(mut setup: Setup) -> Setup {
     let phase = |edge: Edge| Phase { edges: vec![edge], dwell_s: 1.0 };
-    if let Schedule::Fixed(edges) = &setup.network.schedule {
-        setup.network.schedule = Schedule::Periodic(edges.iter().copied().map(phase).collect());
+    {
+        let edges = setup.network.schedule.graphs[0].clone();
+        setup.network.schedule = Schedule::periodic(edges.iter().copied().map(phase).collect());
     }
     setup
 }
@@ -72,7 +74,7 @@ fn thm3_a_component_is_looked_at_to_its_end() {
     let agents = [1.0, 1.0, 1.5, 7.0, 8.0].iter().enumerate().map(|(k, root)| arm(k, &[*root, 2.0])).collect();
     let edges = [(0, 1), (1, 2), (2, 0), (2, 3), (3, 4)].map(|(from, to)| edge(from, to, 1.0, 0)).to_vec();
     let delays = vec![Delay::constant(0.1)];
-    let mut ring = setup(agents, Exchange::PositionVelocity, Schedule::Fixed(edges), delays, 10.0);
+    let mut ring = setup(agents, Exchange::PositionVelocity, Schedule::fixed(edges), delays, 10.0);
     assert_eq!(answer(&with_varying_delay(ring.clone()), About::CommonFirstRoot), Answer::NotCovered);
     ring.agents[2].roots_per_s[0] = 1.0;
     assert_eq!(answer(&with_varying_delay(ring), About::CommonFirstRoot), Answer::Holds);
@@ -94,7 +96,7 @@ fn eq_3_and_23_need_a_graph_and_weights_that_stay() {
         assert_eq!(
             integral(|setup| {
                 let mut setup = with_varying_weight(setup);
-                setup.network.schedule = Schedule::Fixed(both_ways());
+                setup.network.schedule = Schedule::fixed(both_ways());
                 setup
             }),
             Answer::Holds

@@ -76,7 +76,7 @@ fn ring(model: Model, n: usize, tolerance: f64) -> Setup {
         exchange: Exchange::PositionVelocity,
         network: Network {
             agents: n,
-            schedule: Schedule::Fixed((0..n).map(edge).collect()),
+            schedule: Schedule::fixed((0..n).map(edge).collect()),
             delays: (0..n).map(delay).collect(),
             weights: Vec::new(),
             coupling: Default::default(),

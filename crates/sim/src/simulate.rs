@@ -43,8 +43,8 @@ pub fn simulate_samples(
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     samples: &mut dyn FnMut(SampleTaken<'_>),
 ) -> Result<Outcome, SetupError> {
-    setup.network.lasts_until(setup.time.end_s)?;
     let mut closed_loop = ClosedLoop::new(setup)?;
+    setup.network.lasts_until(setup.time.end_s)?;
     closed_loop.watch(samples);
     let (ports, entries) = closed_loop.ports();
     let end_s = setup.time.end_s;

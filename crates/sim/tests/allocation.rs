@@ -15,7 +15,6 @@ use forwardstep_sim::delay::Delay;
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::push::{Between, Course, Effect, Push, Table};
-use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{Actuators, Control, Sensors, Setup, VelocitySensor, simulate};
 
 struct Counting;
@@ -49,14 +48,7 @@ fn weights_swing(setup: &mut Setup) {
     let swing =
         |mean: f64, amplitude: f64| BoundedFormula::new(Expression::variable(0).sin_of() * amplitude + mean, end_s);
     setup.network.weights = vec![swing(1.0, 0.5)];
-    let phases = match &mut setup.network.schedule {
-        Schedule::Fixed(edges) => vec![edges],
-        Schedule::Periodic(phases) | Schedule::Once(phases) => {
-            phases.iter_mut().map(|phase| &mut phase.edges).collect()
-        }
-        Schedule::Random { graphs, .. } => graphs.iter_mut().collect(),
-    };
-    for edge in phases.into_iter().flatten() {
+    for edge in setup.network.schedule.graphs.iter_mut().flatten() {
         edge.weight = Weight::Formula(0);
     }
     for delay in

@@ -26,7 +26,7 @@ fn edge(from: usize, to: usize) -> Edge {
 
 /// Two agents that hear each other over one delay.
 fn pair() -> Network {
-    Network { schedule: Schedule::Fixed(vec![edge(0, 1), edge(1, 0)]), delays: vec![Delay::constant(0.1)], ..silent(2) }
+    Network { schedule: Schedule::fixed(vec![edge(0, 1), edge(1, 0)]), delays: vec![Delay::constant(0.1)], ..silent(2) }
 }
 
 #[test]
@@ -36,7 +36,7 @@ fn indices_end_where_lists_do() {
         change(&mut network);
         network.validate()
     };
-    let replaced = |edge: Edge| move |network: &mut Network| network.schedule = Schedule::Fixed(vec![edge]);
+    let replaced = |edge: Edge| move |network: &mut Network| network.schedule = Schedule::fixed(vec![edge]);
     assert_eq!(said(&|_| {}), Ok(()));
     for (from, to) in [(0, 2), (2, 0)] {
         let error = NetworkError::NoSuchAgent { graph: 0, from, to, agents: 2 };
@@ -59,7 +59,7 @@ fn a_weight_that_touches_zero_is_refused_and_one_above_is_not() {
         let swing = Expression::variable(0).sin_of() * 0.5 + mean;
         let weights = vec![BoundedFormula::new(swing, 20.0)];
         let varying = Edge { weight: Weight::Formula(0), ..edge(0, 1) };
-        Network { schedule: Schedule::Fixed(vec![varying]), weights, ..pair() }.validate()
+        Network { schedule: Schedule::fixed(vec![varying]), weights, ..pair() }.validate()
     };
     assert!(matches!(said(0.5), Err(NetworkError::WeightBounds { weight: 0, low, .. }) if low <= 0.0));
     assert_eq!(said(0.51), Ok(()));
@@ -69,10 +69,10 @@ fn a_weight_that_touches_zero_is_refused_and_one_above_is_not() {
 fn only_the_last_phase_of_a_schedule_that_ends_may_last_any_time() {
     let phases = |dwells: [f64; 2]| dwells.map(|dwell_s| Phase { edges: vec![edge(0, 1)], dwell_s }).to_vec();
     let said = |schedule| Network { schedule, ..pair() }.validate().is_ok();
-    assert!(said(Schedule::Once(phases([1.0, 0.0]))) && said(Schedule::Once(phases([1.0, f64::NAN]))));
-    assert!(!said(Schedule::Once(phases([0.0, 1.0]))));
-    assert!(!said(Schedule::Periodic(phases([1.0, 0.0]))) && !said(Schedule::Periodic(phases([0.0, 1.0]))));
-    let random = |dwell_s| said(Schedule::Random { graphs: vec![vec![edge(0, 1)]], dwell_s, seed: 1 });
+    assert!(said(Schedule::once(phases([1.0, 0.0]))) && said(Schedule::once(phases([1.0, f64::NAN]))));
+    assert!(!said(Schedule::once(phases([0.0, 1.0]))));
+    assert!(!said(Schedule::periodic(phases([1.0, 0.0]))) && !said(Schedule::periodic(phases([0.0, 1.0]))));
+    let random = |dwell_s| said(Schedule::random(vec![vec![edge(0, 1)]], dwell_s, 1));
     assert!(random([1.0, 1.0]) && !random([1.0, 0.9]) && !random([0.0, 1.0]));
 }
 
@@ -148,7 +148,7 @@ fn slow_masses(delay_s: f64) -> Setup {
         agent.law = Arc::new(Known { damping: Gain::Number(3.0) });
     }
     setup.network = Network {
-        schedule: Schedule::Fixed(vec![edge(0, 1), edge(1, 2), edge(2, 0)]),
+        schedule: Schedule::fixed(vec![edge(0, 1), edge(1, 2), edge(2, 0)]),
         delays: vec![Delay::constant(delay_s)],
         ..silent(3)
     };

@@ -28,7 +28,7 @@ fn with_a_late_link(setup: &Setup, delay_s: f64) -> Option<Setup> {
     edges[0].delay = setup.network.delays.len();
     setup.network.delays.push(Delay::constant(delay_s));
     phases.push(Phase { edges, dwell_s: 1.0 });
-    setup.network.schedule = Schedule::Once(phases);
+    setup.network.schedule = Schedule::once(phases);
     (!matches!(validate(&setup), Err(SetupError::DelayedDerived { .. }))).then_some(setup)
 }
 

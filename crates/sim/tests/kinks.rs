@@ -15,7 +15,6 @@ use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::FollowingDesign;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
-use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::trajectory::{Path, Trajectory, TrajectoryError};
 use forwardstep_sim::{Method, Outcome, ReferenceKind, Setup, SetupError, Signal, ThrustKind, simulate};
 
@@ -124,7 +123,7 @@ fn fixed_steps_keep_their_order_across_the_kinks_of_everything() {
 
     let mut weighted = consensus_of_masses(2.3);
     weighted.network.weights = vec![BoundedFormula::new(bounce(2.0) + 0.5, 4.0)];
-    let Schedule::Fixed(edges) = &mut weighted.network.schedule else { panic!() };
+    let edges = &mut weighted.network.schedule.graphs[0];
     edges.iter_mut().for_each(|edge| edge.weight = Weight::Formula(0));
     has_order_four("weight", weighted, 0.04);
 

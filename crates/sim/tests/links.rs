@@ -63,11 +63,11 @@ fn a_formula_is_the_sinusoid_that_it_says() {
 #[test]
 fn packets_without_jitter_are_the_saw_tooth_that_they_say() {
     let mut tooth = case("10-mixed-delays");
-    let mut edges: Vec<_> = tooth.network.schedule.graphs()[0].to_vec();
+    let mut edges: Vec<_> = tooth.network.schedule.graphs[0].to_vec();
     for edge in &mut edges {
         edge.delay = 0;
     }
-    tooth.network.schedule = Schedule::Fixed(edges.clone());
+    tooth.network.schedule = Schedule::fixed(edges.clone());
     tooth.network.delays = vec![Delay::new(SawTooth { min_s: 0.25, max_s: 0.75, period_s: 0.5, offset_s: 0.25 })];
     let link = PacketLink {
         every_s: 0.5,
@@ -84,7 +84,7 @@ fn packets_without_jitter_are_the_saw_tooth_that_they_say() {
     for (delay, edge) in edges.iter_mut().enumerate() {
         edge.delay = delay;
     }
-    packets.network.schedule = Schedule::Fixed(edges);
+    packets.network.schedule = Schedule::fixed(edges);
     let gap = difference(&run(&tooth), &run(&packets));
     println!("saw-tooth and packets differ by {gap:.1e}");
     assert!(gap < 1e-9, "{gap:e}");
@@ -95,8 +95,7 @@ fn a_weight_by_formula_is_the_number_that_it_says() {
     // A formula with t in it whose value never changes, on every other edge.
     let constant = case("15-order2-both-switching");
     let mut formula = constant.clone();
-    let Schedule::Periodic(phases) = &mut formula.network.schedule else { panic!("another schedule") };
-    for edge in phases.iter_mut().flat_map(|phase| &mut phase.edges).step_by(2) {
+    for edge in formula.network.schedule.graphs.iter_mut().flatten().step_by(2) {
         let weight = edge.weight.constant().unwrap();
         let still = Expression::variable(0) * 0.0 + weight;
         formula.network.weights.push(BoundedFormula::new(still, formula.time.end_s));

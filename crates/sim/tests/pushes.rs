@@ -59,7 +59,7 @@ fn alone(agents: Vec<AgentSetup>, end_s: f64) -> Setup {
     Setup {
         network: Network {
             agents: agents.len(),
-            schedule: Schedule::Fixed(Vec::new()),
+            schedule: Schedule::fixed(Vec::new()),
             delays: Vec::new(),
             weights: Vec::new(),
             coupling: Default::default(),
@@ -263,7 +263,7 @@ fn thm_lyapunov_books_balance_while_pushed() {
         agents[0].pushes = vec![push];
         let edge = |from, to| Edge { from, to, weight: 1.0.into(), delay: 0 };
         let mut setup = alone(agents, 4.0);
-        setup.network.schedule = Schedule::Fixed(vec![edge(0, 1), edge(1, 0)]);
+        setup.network.schedule = Schedule::fixed(vec![edge(0, 1), edge(1, 0)]);
         setup.network.delays = vec![Delay::new(SawTooth { min_s: 0.1, max_s: 0.3, period_s: 0.4, offset_s: 0.0 })];
         setup.exchange = Exchange::PositionVelocity;
         setup.solver.method = Method::Adaptive { rtol, atol: 1e-10 };

@@ -77,7 +77,7 @@ fn regress_the_simulator_steps_the_agent_that_runs_on_a_robot() {
     setup.control = Some(control(256.0));
     // Exact in binary, so that rows and samples are the same instants.
     setup.time.record_every_s = 1.0 / 256.0;
-    setup.network.schedule = Schedule::Fixed(Vec::new());
+    setup.network.schedule = Schedule::fixed(Vec::new());
     let outcome = run(&setup);
 
     let agent = &setup.agents[0];
@@ -157,7 +157,7 @@ fn noise_is_the_same_for_the_same_seed_and_its_own_for_every_agent() {
         control.sensors = Sensors { position_noise: 1e-3, velocity_noise: 1e-2, seed, ..Sensors::default() };
         Some(control)
     };
-    setup.network.schedule = Schedule::Fixed(Vec::new());
+    setup.network.schedule = Schedule::fixed(Vec::new());
     setup.agents[1] = AgentSetup { name: setup.agents[1].name.clone(), ..setup.agents[0].clone() };
     let mut torques = |seed| {
         setup.control = with(seed);

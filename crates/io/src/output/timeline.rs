@@ -14,7 +14,7 @@ const MOST_ARRIVALS: usize = 400;
 
 /// The schedule unrolled over [0, `until_s`].
 pub(crate) struct Timeline<'a> {
-    pub(crate) graphs: Vec<&'a [Edge]>,
+    pub(crate) graphs: &'a [Vec<Edge>],
     /// Which graph is in force when; cut at `until_s`.
     pub(crate) spans: Vec<Segment>,
     /// Jumps of the delays that edges use, rising; without arrivals of packets where these are very many.
@@ -43,7 +43,7 @@ impl<'a> Timeline<'a> {
         let cut = spans.len() > MOST_SPANS || delay_jumps.len() > MOST_SPANS;
         spans.truncate(MOST_SPANS);
         delay_jumps.truncate(MOST_SPANS);
-        Timeline { graphs: network.schedule.graphs(), spans, delay_jumps, push_edges: Vec::new(), cut }
+        Timeline { graphs: &network.schedule.graphs, spans, delay_jumps, push_edges: Vec::new(), cut }
     }
 
     /// The same with the edges of all pushes.
@@ -147,23 +147,23 @@ mod tests {
     #[test]
     fn schedules_are_unrolled_up_to_the_end() {
         let constant = Delay::constant(0.1);
-        let periodic = network(Schedule::Periodic(vec![phase(1.0), phase(2.0)]), constant.clone());
+        let periodic = network(Schedule::periodic(vec![phase(1.0), phase(2.0)]), constant.clone());
         let timeline = Timeline::of(&periodic, 5.0);
         assert_eq!(starts(&timeline), [(0.0, 0), (1.0, 1), (3.0, 0), (4.0, 1)]);
         assert_eq!(timeline.spans[3].end_s, 5.0);
         assert_eq!(timeline.break_points(), [1.0, 3.0, 4.0]);
 
-        let once = network(Schedule::Once(vec![phase(1.0), phase(2.0)]), constant.clone());
+        let once = network(Schedule::once(vec![phase(1.0), phase(2.0)]), constant.clone());
         assert_eq!(starts(&Timeline::of(&once, 5.0)), [(0.0, 0), (1.0, 1)]);
 
-        let random = Schedule::Random { graphs: vec![vec![], vec![]], dwell_s: [0.1, 0.2], seed: 1 };
+        let random = Schedule::random(vec![vec![], vec![]], [0.1, 0.2], 1);
         let random = network(random, constant);
         assert!((25..=50).contains(&Timeline::of(&random, 5.0).spans.len()));
     }
 
     #[test]
     fn schedules_that_hardly_move_on_are_cut() {
-        let network = network(Schedule::Periodic(vec![phase(1e-9)]), Delay::constant(0.0));
+        let network = network(Schedule::periodic(vec![phase(1e-9)]), Delay::constant(0.0));
         let timeline = Timeline::of(&network, 1e6);
         assert!(timeline.cut && timeline.spans.len() == MOST_SPANS);
     }
@@ -180,7 +180,7 @@ mod tests {
             seed: 1,
         };
         let delay = Delay::new(link.trace((0, 1), 100.0).unwrap());
-        let network = network(Schedule::Fixed(phase(1.0).edges), delay.clone());
+        let network = network(Schedule::fixed(phase(1.0).edges), delay.clone());
         let timeline = Timeline::of(&network, 100.0);
         assert!(timeline.delay_jumps.is_empty() && !timeline.cut);
         let (t_s, values) = sample_delays(&[delay], &timeline.delay_jumps, 100.0);

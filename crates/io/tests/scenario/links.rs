@@ -44,7 +44,7 @@ fn network(text: &str) -> forwardstep_sim::Network {
 #[test]
 fn links_are_what_they_say() {
     let network = network(LINKS);
-    let [first, second] = network.schedule.graphs()[..] else { panic!() };
+    let [first, second] = &network.schedule.graphs[..] else { panic!() };
     // One link, whatever the graph; every other edge has its own.
     assert_eq!(first[0].delay, second[0].delay);
     let radio = PacketLink {
@@ -74,7 +74,7 @@ fn links_are_what_they_say() {
     assert_eq!(network.weight_at(first[2].weight, 0.0), 2.0);
     // A formula without t is a number.
     let number = super::links::network(&changed("weight = 1.0", "weight = \"2*pi\""));
-    assert_eq!(number.schedule.graphs()[0][0].weight, Weight::Constant(2.0 * std::f64::consts::PI));
+    assert_eq!(number.schedule.graphs[0][0].weight, Weight::Constant(2.0 * std::f64::consts::PI));
 }
 
 /// What to put in the place of the saw-tooth, the first line of the error, and a part of the help.
@@ -197,7 +197,7 @@ const LOG: &str =
 fn a_log_is_read_in_any_order() {
     let scenario = logged(LOG).unwrap_or_else(|error| panic!("{error}"));
     let network = &scenario.setup.network;
-    let edge = network.schedule.graphs()[0][0];
+    let edge = network.schedule.graphs[0][0];
     let packet = |send_s, delay_s| Packet { send_s, delay_s: Some(delay_s) };
     let trace = Trace::new(vec![packet(0.25, 0.01), packet(0.5, 0.1)], 3.0).unwrap();
     assert_eq!(network.delays[edge.delay], Delay::new(trace));

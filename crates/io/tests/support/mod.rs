@@ -68,7 +68,7 @@ pub fn setup(agents: Vec<AgentSetup>, end_s: f64, record_every_s: f64) -> Setup 
         exchange: Exchange::PositionVelocity,
         network: Network {
             agents: count,
-            schedule: Schedule::Periodic(phases.collect()),
+            schedule: Schedule::periodic(phases.collect()),
             delays: vec![
                 Delay::new(SawTooth { min_s: 0.05, max_s: 0.4, period_s: end_s / 12.0, offset_s: 0.0 }),
                 Delay::new(Sinusoid { mean_s: 0.2, amplitude_s: 0.1, period_s: end_s / 5.0, phase_rad: 0.0 }),

@@ -1,6 +1,7 @@
 //! The same delay for ever.
 
-use super::{Arrivals, Delay, DelayError, DelayFunction, DelayPiece, Known};
+use super::{Arrivals, Delay, DelayFunction, DelayPiece, Known};
+use crate::parameter::ParameterError;
 
 /// T = s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,8 +22,8 @@ impl DelayFunction for Constant {
         "a constant delay"
     }
 
-    fn validate(&self) -> Result<(), DelayError> {
-        DelayError::unless_non_negative("the delay", self.s)
+    fn validate(&self) -> Result<(), ParameterError> {
+        ParameterError::unless_non_negative("the delay", self.s)
     }
 
     fn piece(&self, _: u64) -> DelayPiece {

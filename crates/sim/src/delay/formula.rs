@@ -2,18 +2,19 @@
 
 use forwardstep_core::expression::Interval;
 
-use super::{Arrivals, Basis, DelayError, DelayFunction, DelayPiece, Known, Unknown};
+use super::{Arrivals, Basis, DelayFunction, DelayPiece, Known, Unknown};
 use crate::formula::BoundedFormula;
+use crate::parameter::ParameterError;
 
 impl DelayFunction for BoundedFormula {
     fn words(&self) -> &'static str {
         "a formula"
     }
 
-    fn validate(&self) -> Result<(), DelayError> {
+    fn validate(&self) -> Result<(), ParameterError> {
         let Interval { low, high } = self.within();
-        DelayError::unless_non_negative("the lower bound of the formula", low)?;
-        DelayError::unless_non_negative("the upper bound of the formula", high)
+        ParameterError::unless_non_negative("the lower bound of the formula", low)?;
+        ParameterError::unless_non_negative("the upper bound of the formula", high)
     }
 
     fn piece(&self, index: u64) -> DelayPiece {

@@ -67,6 +67,7 @@ impl Known {
     pub(super) fn confirmed(&self, value_s: f64) -> f64 {
         let [low, high] = self.within_s;
         let slack = ROUNDING * high;
-        if value_s >= low - slack && value_s <= high + slack { value_s.clamp(low, high) } else { f64::NAN }
+        // Not f64::clamp, which wants bounds that bound something.
+        if value_s >= low - slack && value_s <= high + slack { value_s.max(low).min(high) } else { f64::NAN }
     }
 }

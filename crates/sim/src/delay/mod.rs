@@ -10,7 +10,8 @@
 //! ([`Delay::probe`]), and a value outside the declared bounds is no delay: the run breaks down there.
 //!
 //! ```
-//! use forwardstep_sim::delay::{Arrivals, Delay, DelayError, DelayFunction, DelayPiece, Known};
+//! use forwardstep_sim::ParameterError;
+//! use forwardstep_sim::delay::{Arrivals, Delay, DelayFunction, DelayPiece, Known};
 //!
 //! /// T = 0.2 + 0.1 sin t².
 //! #[derive(Debug, PartialEq)]
@@ -20,7 +21,7 @@
 //!     fn words(&self) -> &'static str {
 //!         "a chirp"
 //!     }
-//!     fn validate(&self) -> Result<(), DelayError> {
+//!     fn validate(&self) -> Result<(), ParameterError> {
 //!         Ok(())
 //!     }
 //!     fn piece(&self, _: u64) -> DelayPiece {
@@ -60,9 +61,9 @@ use std::any::{Any, TypeId};
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use thiserror::Error;
-
 use crate::formula::BoundedFormula;
+use crate::parameter::ParameterError;
+use crate::same::Same;
 pub use arrivals::Arrivals;
 pub use constant::Constant;
 pub use known::{Basis, Known, Unknown};
@@ -88,15 +89,15 @@ fn is_shipped(function: TypeId) -> bool {
 }
 
 /// A delay as a function of time, the same whenever it is asked; all of its values are non-negative and finite.
-pub trait DelayFunction: Any + Debug + Send + Sync {
+pub trait DelayFunction: Same + Debug + Send + Sync {
     /// What it is called in messages, as in `a saw-tooth`.
     fn words(&self) -> &'static str;
 
     /// Checks the parameters.
     ///
     /// # Errors
-    /// [`DelayError`] for the first that makes no sense.
-    fn validate(&self) -> Result<(), DelayError>;
+    /// [`ParameterError`] for the first that makes no sense.
+    fn validate(&self) -> Result<(), ParameterError>;
 
     /// A stretch of time on which it is smooth; number zero holds t = 0, and each begins where the one before it ends. The
     /// last has no end, and stands for all numbers after its own.
@@ -112,49 +113,6 @@ pub trait DelayFunction: Any + Debug + Send + Sync {
     /// ways to look: [`Arrivals::monotone`] where T grows more slowly than t, or always faster, [`Arrivals::between`],
     /// [`Arrivals::within_slope`], [`Arrivals::enclosed`].
     fn arrivals(&self, search: &mut Arrivals<'_>);
-}
-
-/// A parameter of a delay that makes no sense.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error("{parameter} is {value}, but {requirement}")]
-pub struct DelayError {
-    /// The parameter, in words.
-    pub parameter: &'static str,
-    /// Its value.
-    pub value: f64,
-    /// What it must be.
-    pub requirement: &'static str,
-}
-
-impl DelayError {
-    /// The parameter must be finite and not negative.
-    ///
-    /// # Errors
-    /// When it is not.
-    pub fn unless_non_negative(parameter: &'static str, value: f64) -> Result<(), DelayError> {
-        DelayError::unless(value >= 0.0 && value.is_finite(), parameter, value, "must be finite and not negative")
-    }
-
-    /// The parameter must be positive and finite.
-    ///
-    /// # Errors
-    /// When it is not.
-    pub fn unless_positive(parameter: &'static str, value: f64) -> Result<(), DelayError> {
-        DelayError::unless(value > 0.0 && value.is_finite(), parameter, value, "must be positive and finite")
-    }
-
-    /// The parameter must be what makes `good` true.
-    ///
-    /// # Errors
-    /// When it is not.
-    pub fn unless(
-        good: bool,
-        parameter: &'static str,
-        value: f64,
-        requirement: &'static str,
-    ) -> Result<(), DelayError> {
-        if good { Ok(()) } else { Err(DelayError { parameter, value, requirement }) }
-    }
 }
 
 /// A stretch of time on which a delay is smooth.
@@ -185,21 +143,17 @@ impl DelayPiece {
 pub struct Delay {
     function: Arc<dyn DelayFunction>,
     known: Known,
-    same: fn(&dyn DelayFunction, &dyn DelayFunction) -> bool,
 }
 
 impl Delay {
     /// The delay that is this function.
-    pub fn new<D: DelayFunction + PartialEq>(function: D) -> Delay {
-        fn same<D: DelayFunction + PartialEq>(a: &dyn DelayFunction, b: &dyn DelayFunction) -> bool {
-            let both = (a as &dyn Any).downcast_ref::<D>().zip((b as &dyn Any).downcast_ref::<D>());
-            both.is_some_and(|(a, b)| a == b)
-        }
+    pub fn new<D: DelayFunction>(function: D) -> Delay {
         let mut known = function.known();
         if !is_shipped(TypeId::of::<D>()) {
-            known = Known { holds_packets: known.holds_packets, ..Known::declared(known.within_s) };
+            let Known { within_s, until_s, holds_packets, .. } = known;
+            known = Known { until_s, holds_packets, ..Known::declared(within_s) };
         }
-        Delay { function: Arc::new(function), known, same: same::<D> }
+        Delay { function: Arc::new(function), known }
     }
 
     /// The function as a `D`, if it is one.
@@ -218,11 +172,11 @@ impl Delay {
     }
 
     /// Checks the parameters.
-    pub(crate) fn validate(&self) -> Result<(), DelayError> {
+    pub(crate) fn validate(&self) -> Result<(), ParameterError> {
         self.function.validate()?;
         let [low, high] = self.known.within_s;
-        DelayError::unless_non_negative("the least value", low)?;
-        DelayError::unless(
+        ParameterError::unless_non_negative("the least value", low)?;
+        ParameterError::unless(
             high >= low && high.is_finite(),
             "the largest value",
             high,
@@ -325,11 +279,11 @@ impl Delay {
 impl PartialEq for Delay {
     /// Whether both are the same function.
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.function, &other.function) || (self.same)(&*self.function, &*other.function)
+        Arc::ptr_eq(&self.function, &other.function) || self.function.same(&*other.function)
     }
 }
 
-impl<D: DelayFunction + PartialEq> From<D> for Delay {
+impl<D: DelayFunction> From<D> for Delay {
     fn from(function: D) -> Self {
         Delay::new(function)
     }

@@ -30,7 +30,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use thiserror::Error;
 
-use super::{Arrivals, Basis, DelayError, DelayFunction, DelayPiece, Known, Unknown};
+use super::{Arrivals, Basis, DelayFunction, DelayPiece, Known, Unknown};
+use crate::parameter::ParameterError;
 
 /// A link as a random process. Every pair of agents has its own stream of random numbers, which depends on the seed and on
 /// the two agents alone: neither other links nor the graph in force change it. Whether the k-th packet is lost depends on
@@ -357,7 +358,7 @@ impl DelayFunction for Trace {
     }
 
     /// It is made by a function that checks.
-    fn validate(&self) -> Result<(), DelayError> {
+    fn validate(&self) -> Result<(), ParameterError> {
         Ok(())
     }
 

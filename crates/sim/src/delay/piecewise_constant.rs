@@ -1,6 +1,7 @@
 //! A delay that jumps from value to value.
 
-use super::{Arrivals, DelayError, DelayFunction, DelayPiece, Known};
+use super::{Arrivals, DelayFunction, DelayPiece, Known};
+use crate::parameter::ParameterError;
 
 /// T = `values_s[k]` from `times_s[k]` until the next time.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,21 +30,21 @@ impl DelayFunction for PiecewiseConstant {
         "a piecewise constant delay"
     }
 
-    fn validate(&self) -> Result<(), DelayError> {
+    fn validate(&self) -> Result<(), ParameterError> {
         let PiecewiseConstant { times_s, values_s, period_s } = self;
         let matched = times_s.len() == values_s.len() && !times_s.is_empty();
         let values = values_s.len() as f64;
-        DelayError::unless(matched, "the number of values", values, "must be that of the times, and not zero")?;
-        values_s.iter().try_for_each(|value| DelayError::unless_non_negative("a value", *value))?;
-        DelayError::unless(times_s[0] == 0.0, "the first time", times_s[0], "must be zero")?;
+        ParameterError::unless(matched, "the number of values", values, "must be that of the times, and not zero")?;
+        values_s.iter().try_for_each(|value| ParameterError::unless_non_negative("a value", *value))?;
+        ParameterError::unless(times_s[0] == 0.0, "the first time", times_s[0], "must be zero")?;
         for pair in times_s.windows(2) {
             let later = pair[1] > pair[0] && pair[1].is_finite();
-            DelayError::unless(later, "a time", pair[1], "must be finite and later than the one before")?;
+            ParameterError::unless(later, "a time", pair[1], "must be finite and later than the one before")?;
         }
         match (period_s, times_s.last()) {
             (Some(period), Some(last)) => {
                 let longer = period > last && period.is_finite();
-                DelayError::unless(longer, "the period", *period, "must be finite and longer than the last time")
+                ParameterError::unless(longer, "the period", *period, "must be finite and longer than the last time")
             }
             _ => Ok(()),
         }

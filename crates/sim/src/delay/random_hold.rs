@@ -3,7 +3,8 @@
 use rand::Rng;
 
 use super::packets::{Kind, PacketError, stream};
-use super::{Arrivals, DelayError, DelayFunction, DelayPiece, Known};
+use super::{Arrivals, DelayFunction, DelayPiece, Known};
+use crate::parameter::ParameterError;
 
 /// Values that one delay may take one after another.
 const MOST_VALUES: usize = 100_000_000;
@@ -103,7 +104,7 @@ impl DelayFunction for RandomHold {
     }
 
     /// It is made by a function that checks.
-    fn validate(&self) -> Result<(), DelayError> {
+    fn validate(&self) -> Result<(), ParameterError> {
         Ok(())
     }
 

@@ -2,7 +2,8 @@
 
 use forwardstep_core::Scalar;
 
-use super::{Arrivals, DelayError, DelayFunction, DelayPiece, Known};
+use super::{Arrivals, DelayFunction, DelayPiece, Known};
+use crate::parameter::ParameterError;
 
 /// T = min + (max − min) · frac((t + offset) / period): rises, then drops. A slope of one is a packet held until the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,12 +30,12 @@ impl DelayFunction for SawTooth {
         "a saw-tooth"
     }
 
-    fn validate(&self) -> Result<(), DelayError> {
-        DelayError::unless_positive("the period", self.period_s)?;
-        DelayError::unless_non_negative("the minimum", self.min_s)?;
-        DelayError::unless_non_negative("the maximum", self.max_s)?;
-        DelayError::unless_non_negative("the size of the offset", self.offset_s.abs())?;
-        DelayError::unless(self.max_s >= self.min_s, "the maximum", self.max_s, "must not be below the minimum")
+    fn validate(&self) -> Result<(), ParameterError> {
+        ParameterError::unless_positive("the period", self.period_s)?;
+        ParameterError::unless_non_negative("the minimum", self.min_s)?;
+        ParameterError::unless_non_negative("the maximum", self.max_s)?;
+        ParameterError::unless_non_negative("the size of the offset", self.offset_s.abs())?;
+        ParameterError::unless(self.max_s >= self.min_s, "the maximum", self.max_s, "must not be below the minimum")
     }
 
     fn piece(&self, index: u64) -> DelayPiece {

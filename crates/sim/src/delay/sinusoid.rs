@@ -4,7 +4,8 @@ use core::f64::consts::TAU;
 
 use forwardstep_core::Scalar;
 
-use super::{Arrivals, DelayError, DelayFunction, DelayPiece, Known};
+use super::{Arrivals, DelayFunction, DelayPiece, Known};
+use crate::parameter::ParameterError;
 
 /// T = mean + amplitude · sin(2π t / period + phase).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,12 +25,12 @@ impl DelayFunction for Sinusoid {
         "a sinusoid"
     }
 
-    fn validate(&self) -> Result<(), DelayError> {
-        DelayError::unless_positive("the period", self.period_s)?;
-        DelayError::unless_non_negative("the mean", self.mean_s)?;
-        DelayError::unless_non_negative("the size of the phase", self.phase_rad.abs())?;
+    fn validate(&self) -> Result<(), ParameterError> {
+        ParameterError::unless_positive("the period", self.period_s)?;
+        ParameterError::unless_non_negative("the mean", self.mean_s)?;
+        ParameterError::unless_non_negative("the size of the phase", self.phase_rad.abs())?;
         let requirement = "must not exceed the mean, or the delay would become negative";
-        DelayError::unless(self.amplitude_s.abs() <= self.mean_s, "the amplitude", self.amplitude_s, requirement)
+        ParameterError::unless(self.amplitude_s.abs() <= self.mean_s, "the amplitude", self.amplitude_s, requirement)
     }
 
     fn piece(&self, _: u64) -> DelayPiece {

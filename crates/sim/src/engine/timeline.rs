@@ -244,7 +244,7 @@ mod tests {
 
     fn network(delay: Delay) -> Network {
         let edge = |from, to| Edge { from, to, weight: 1.0.into(), delay: 0 };
-        let schedule = Schedule::Periodic(vec![
+        let schedule = Schedule::periodic(vec![
             Phase { edges: vec![edge(0, 1)], dwell_s: 1.0 },
             Phase { edges: vec![edge(1, 0)], dwell_s: 1.0 },
         ]);
@@ -268,7 +268,7 @@ mod tests {
         let saw_tooth = Delay::new(SawTooth { min_s: 0.1, max_s: 0.3, period_s: 0.8, offset_s: 0.0 });
         let network = Network {
             agents: 2,
-            schedule: Schedule::Fixed(vec![edge(0), edge(1)]),
+            schedule: Schedule::fixed(vec![edge(0), edge(1)]),
             delays: vec![steps, saw_tooth],
             weights: Vec::new(),
             coupling: Default::default(),

@@ -135,9 +135,9 @@ pub fn cases() -> Vec<Case> {
 pub fn setup(case: &Case) -> Setup {
     let mut delays = Vec::new();
     let schedule = match &case.schedule {
-        ScheduleCase::Fixed { edges } => Schedule::Fixed(wire(edges, &mut delays)),
-        ScheduleCase::Repeat { phases } => Schedule::Periodic(turns(phases, &mut delays)),
-        ScheduleCase::Once { phases } => Schedule::Once(turns(phases, &mut delays)),
+        ScheduleCase::Fixed { edges } => Schedule::fixed(wire(edges, &mut delays)),
+        ScheduleCase::Repeat { phases } => Schedule::periodic(turns(phases, &mut delays)),
+        ScheduleCase::Once { phases } => Schedule::once(turns(phases, &mut delays)),
     };
     Setup {
         agents: case.agents.iter().enumerate().map(agent).collect(),

@@ -54,7 +54,7 @@ pub fn switching() -> Network {
     let edge = |from, to| Edge { from, to, weight: Weight::Constant(1.0), delay: 0 };
     let phase = |edges| Phase { dwell_s: 0.8, edges };
     Network {
-        schedule: Schedule::Periodic(vec![phase(vec![edge(0, 1), edge(1, 0)]), phase(vec![edge(1, 2), edge(2, 0)])]),
+        schedule: Schedule::periodic(vec![phase(vec![edge(0, 1), edge(1, 0)]), phase(vec![edge(1, 2), edge(2, 0)])]),
         delays: vec![Delay::new(SawTooth { min_s: 0.05, max_s: 0.3, period_s: 0.5, offset_s: 0.0 })],
         ..silent(3)
     }
@@ -79,7 +79,7 @@ pub fn consensus_of_masses(end_s: f64) -> Setup {
         agent.law = Arc::new(Known { damping: Gain::Number(6.0) });
     }
     let edge = |from, to| Edge { from, to, weight: Weight::Constant(1.0), delay: 0 };
-    all.network.schedule = Schedule::Fixed(vec![edge(0, 1), edge(1, 2), edge(2, 0)]);
+    all.network.schedule = Schedule::fixed(vec![edge(0, 1), edge(1, 2), edge(2, 0)]);
     all.network.delays = vec![Delay::constant(0.5)];
     all.time.end_s = end_s;
     all
