@@ -7,7 +7,7 @@ use forwardstep::check;
 use forwardstep::io::SourceText;
 use forwardstep::io::output::{self, GoalOutcome, Metrics, RunFolder, RunRecord, ending_sentence};
 use forwardstep::io::scenario::{OpenError, Scenario, open_scenario, read_scenario};
-use forwardstep::sim::schedule::Schedule;
+use forwardstep::sim::schedule::Extent;
 use forwardstep::sim::{Outcome, simulate};
 
 use crate::{Scratch, complaint, one_line, prompt, within};
@@ -54,18 +54,19 @@ fn small(scenario: &Scenario) -> bool {
         axes * (8 + agent.roots_per_s.len()) + axes * axes + parameters * parameters
     };
     let agents: usize = setup.agents.iter().map(per_agent).sum();
-    let edges: usize = setup.network.schedule.graphs().iter().map(|graph| graph.len()).sum();
+    let edges: usize = setup.network.schedule.graphs.iter().map(|graph| graph.len()).sum();
     agents + edges <= MOST_NUMBERS
 }
 
 /// Judges a scenario, takes some steps, and now and then writes the run. What the reader lets pass, the others accept.
 pub fn tried(scratch: &Scratch, mut scenario: Scenario) {
     // Every switch of a random schedule is looked at.
-    let switches = match &scenario.setup.network.schedule {
-        schedule @ Schedule::Random { .. } => {
+    let schedule = &scenario.setup.network.schedule;
+    let switches = match schedule.known().extent {
+        Extent::Horizon => {
             schedule.segments().take_while(|segment| segment.start_s < scenario.setup.time.end_s).count()
         }
-        _ => 0,
+        Extent::Whole | Extent::Period(_) => 0,
     };
     let verdicts = within(3.0 + 2e-5 * switches as f64, "judging", || check::check(&scenario.setup));
     for hypothesis in &verdicts.hypotheses {

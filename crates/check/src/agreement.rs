@@ -26,7 +26,6 @@
 
 use forwardstep_core::reference::polynomial;
 use forwardstep_sim::graph::{Edge, SpanningTree, laplacian, spanning_tree};
-use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{AgentSetup, Exchange, ReferenceKind, Setup};
 use nalgebra::DMatrix;
 use thiserror::Error;
@@ -121,7 +120,7 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     if setup.control.is_some() {
         return Err(NoPrediction::Sampled);
     }
-    let edges = constant_graph(&setup.network.schedule).ok_or(NoPrediction::Switching)?;
+    let edges = setup.network.schedule.constant_graph().ok_or(NoPrediction::Switching)?;
     if !edges.iter().all(|edge| setup.network.delays[edge.delay].is_constant()) {
         return Err(NoPrediction::VaryingDelay);
     }
@@ -157,18 +156,6 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
 /// Whether something acts on the agent without end.
 fn pushed_for_ever(agent: &AgentSetup) -> bool {
     agent.pushes.iter().any(|push| push.span_s()[1] == f64::INFINITY)
-}
-
-/// The one graph of a schedule that never switches.
-fn constant_graph(schedule: &Schedule) -> Option<&[Edge]> {
-    match schedule {
-        Schedule::Fixed(edges) => Some(edges),
-        Schedule::Periodic(phases) | Schedule::Once(phases) => match &phases[..] {
-            [phase] => Some(&phase.edges),
-            _ => None,
-        },
-        Schedule::Random { .. } => None,
-    }
 }
 
 /// u ≥ 0 with uᵀL = 0 and Σu = 1. Only the agents that reach all others count.

@@ -1,14 +1,24 @@
 //! What is found of graphs and their schedule.
 
 use forwardstep_sim::graph::Edge;
-use forwardstep_sim::schedule::{Phase, Schedule, Window};
+use forwardstep_sim::schedule::{Dwell, Extent, Window};
 use forwardstep_sim::{ReferenceKind, Setup};
 
 use crate::hypothesis::{GraphEvidence, Hypothesis, Id, Named};
 use crate::links::varying_weights;
 
+/// What refutes the author of a switching signal from outside.
+fn refuted(setup: &Setup) -> Option<GraphEvidence> {
+    let schedule = &setup.network.schedule;
+    let fault = schedule.probe(setup.time.end_s).err()?;
+    Some(GraphEvidence::RefutedSwitching { words: schedule.words(), fault })
+}
+
 /// The smallest uniform window, or the groups that cut the network.
 pub(crate) fn spanning_tree(setup: &Setup) -> Hypothesis {
+    if let Some(evidence) = refuted(setup) {
+        return Hypothesis::new(Id::SpanningTree, evidence);
+    }
     let network = &setup.network;
     let evidence = match network.schedule.window(network.agents, setup.time.end_s) {
         Window::Uniform { length_s, worst_start_s, roots, for_all_time } => {
@@ -16,9 +26,9 @@ pub(crate) fn spanning_tree(setup: &Setup) -> Hypothesis {
         }
         Window::Missing { start_s, closed_groups } => GraphEvidence::Cut {
             start_s,
-            until_s: match &network.schedule {
-                Schedule::Random { .. } => Some(setup.time.end_s),
-                Schedule::Fixed(_) | Schedule::Periodic(_) | Schedule::Once(_) => None,
+            until_s: match network.schedule.known().extent {
+                Extent::Horizon => Some(setup.time.end_s),
+                Extent::Whole | Extent::Period(_) => None,
             },
             closed_groups: closed_groups.iter().map(|group| Named::all(setup, group)).collect(),
         },
@@ -28,6 +38,9 @@ pub(crate) fn spanning_tree(setup: &Setup) -> Hypothesis {
 
 /// A spanning tree whose root is the leader: since the leader hears nobody, any tree has it as its root.
 pub(crate) fn leader_reaches_all(setup: &Setup) -> Hypothesis {
+    if let Some(evidence) = refuted(setup) {
+        return Hypothesis::new(Id::LeaderReachesAll, evidence);
+    }
     let network = &setup.network;
     let evidence = match network.schedule.window(network.agents, setup.time.end_s) {
         Window::Uniform { length_s, for_all_time, .. } => GraphEvidence::Reached { length_s, for_all_time },
@@ -43,17 +56,11 @@ pub(crate) fn leader_reaches_all(setup: &Setup) -> Hypothesis {
 
 /// The shortest time for which a graph stays.
 pub(crate) fn dwell_time(setup: &Setup) -> Hypothesis {
-    let shortest = |phases: &[Phase]| GraphEvidence::ShortestPhase {
-        dwell_s: phases.iter().map(|phase| phase.dwell_s).fold(f64::INFINITY, f64::min),
-    };
-    let evidence = match &setup.network.schedule {
-        Schedule::Fixed(_) => GraphEvidence::NeverSwitches,
-        Schedule::Periodic(phases) => shortest(phases),
-        Schedule::Once(phases) => match phases.split_last() {
-            None | Some((_, [])) => GraphEvidence::NeverSwitches,
-            Some((_, before)) => shortest(before),
-        },
-        Schedule::Random { dwell_s: [low, _], .. } => GraphEvidence::DrawnPhases { least_s: *low },
+    let evidence = match setup.network.schedule.known().dwell {
+        Dwell::NeverSwitches => GraphEvidence::NeverSwitches,
+        Dwell::Shortest(dwell_s) => GraphEvidence::ShortestPhase { dwell_s },
+        Dwell::Drawn(least_s) => GraphEvidence::DrawnPhases { least_s },
+        Dwell::Declared(least_s) => refuted(setup).unwrap_or(GraphEvidence::DeclaredPhases { least_s }),
     };
     Hypothesis::new(Id::DwellTime, evidence)
 }
@@ -62,12 +69,12 @@ pub(crate) fn dwell_time(setup: &Setup) -> Hypothesis {
 pub(crate) fn fixed_graph(setup: &Setup) -> Hypothesis {
     let schedule = &setup.network.schedule;
     let evidence = if let ReferenceKind::Following(_) = setup.reference {
-        match schedule {
-            Schedule::Fixed(_) => GraphEvidence::Stays,
-            Schedule::Periodic(_) | Schedule::Once(_) | Schedule::Random { .. } => GraphEvidence::SwitchesUnderLeader,
+        match schedule.known().dwell {
+            Dwell::NeverSwitches => GraphEvidence::Stays,
+            Dwell::Shortest(_) | Dwell::Drawn(_) | Dwell::Declared(_) => GraphEvidence::SwitchesUnderLeader,
         }
     } else {
-        match schedule.graphs().len() {
+        match schedule.graphs.len() {
             1 if varying_weights(setup).next().is_some() => GraphEvidence::VaryingWeight,
             1 => GraphEvidence::Stays,
             graphs => GraphEvidence::Switches { graphs, exchange: setup.exchange },
@@ -80,7 +87,7 @@ pub(crate) fn fixed_graph(setup: &Setup) -> Hypothesis {
 pub(crate) fn mutual_weights(setup: &Setup) -> Hypothesis {
     let agents = setup.agents.len();
     let among = |edge: &&Edge| edge.from < agents && edge.to < agents;
-    let one_way = setup.network.schedule.graphs().into_iter().find_map(|graph| {
+    let one_way = setup.network.schedule.graphs.iter().find_map(|graph| {
         let returned = |edge: &Edge| {
             graph.iter().any(|back| back.from == edge.to && back.to == edge.from && back.weight == edge.weight)
         };

@@ -18,22 +18,32 @@ fn delays(setup: &Setup) -> impl Iterator<Item = &Delay> {
 }
 
 pub(crate) fn bounded_delays(setup: &Setup) -> Hypothesis {
+    Hypothesis::new(Id::BoundedDelays, known_delays(setup))
+}
+
+/// What is known of all delays together, or what refutes the author of one.
+fn known_delays(setup: &Setup) -> LinkEvidence {
+    let end_s = setup.time.end_s;
+    let refuted = |delay: &Delay| delay.probe(end_s).err().map(|fault| (delay.words(), fault));
+    if let Some((words, fault)) = delays(setup).find_map(refuted) {
+        return LinkEvidence::RefutedDelay { words, fault };
+    }
     let mut bound_s: f64 = 0.0;
     let mut unknown: Vec<Unknown> = Vec::new();
     let (mut basis, mut holds_packets) = (Basis::Rule, false);
-    for known in delays(setup).map(Delay::known) {
+    for known in delays(setup).map(|delay| delay.known()) {
         bound_s = bound_s.max(known.bound_s);
         holds_packets |= known.holds_packets;
         basis = weaker(basis, known.basis);
         unknown.extend(known.unknown.filter(|reason| !unknown.contains(reason)));
     }
-    let end_s = setup.time.end_s;
-    Hypothesis::new(Id::BoundedDelays, LinkEvidence::Delays { bound_s, unknown, end_s, basis, holds_packets })
+    LinkEvidence::Delays { bound_s, unknown, end_s, basis, holds_packets }
 }
 
 /// What two bounds together rest on.
 fn weaker(a: Basis, b: Basis) -> Basis {
     match (a, b) {
+        (Basis::Declared, _) | (_, Basis::Declared) => Basis::Declared,
         (Basis::Numbers, _) | (_, Basis::Numbers) => Basis::Numbers,
         (Basis::Enclosure, _) | (_, Basis::Enclosure) => Basis::Enclosure,
         (Basis::Rule, Basis::Rule) => Basis::Rule,
@@ -42,7 +52,13 @@ fn weaker(a: Basis, b: Basis) -> Basis {
 
 pub(crate) fn no_delay(setup: &Setup) -> Hypothesis {
     let bound_s = delays(setup).map(Delay::max_s).fold(0.0, f64::max);
-    let evidence = if bound_s > 0.0 { LinkEvidence::Late { bound_s } } else { LinkEvidence::Prompt };
+    let evidence = if bound_s > 0.0 {
+        LinkEvidence::Late { bound_s }
+    } else if delays(setup).all(Delay::is_constant) {
+        LinkEvidence::Prompt
+    } else {
+        known_delays(setup)
+    };
     Hypothesis::new(Id::NoDelay, evidence)
 }
 
@@ -50,7 +66,7 @@ pub(crate) fn no_delay(setup: &Setup) -> Hypothesis {
 pub(crate) fn varying_weights(setup: &Setup) -> impl Iterator<Item = &BoundedFormula> {
     let network = &setup.network;
     let mut used = vec![false; network.weights.len()];
-    for edge in network.schedule.graphs().into_iter().flatten() {
+    for edge in network.schedule.graphs.iter().flatten() {
         match edge.weight {
             Weight::Constant(_) => {}
             Weight::Formula(index) => used.get_mut(index).into_iter().for_each(|used| *used = true),

@@ -11,7 +11,7 @@ use forwardstep_check::{Answer, NoPrediction, check, predict};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::reference::polynomial;
-use forwardstep_sim::delay::{Delay, Loss, PacketLink, RandomHold};
+use forwardstep_sim::delay::{Delay, Loss, PacketLink, PiecewiseConstant, RandomHold, SawTooth, Sinusoid};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::schedule::{Phase, Schedule};
@@ -21,7 +21,7 @@ use forwardstep_sim::{Exchange, Known, Outcome, ReferenceKind, Setup, Signal, Ti
 fn uneven() -> (Vec<Edge>, Vec<Delay>) {
     let edges =
         vec![edge(0, 1, 1.5, 0), edge(1, 2, 0.7, 1), edge(2, 0, 1.1, 2), edge(1, 0, 0.4, 0), edge(2, 3, 0.9, 1)];
-    let delays = vec![Delay::Constant { s: 0.3 }, Delay::Constant { s: 0.0 }, Delay::Constant { s: 0.75 }];
+    let delays = vec![Delay::constant(0.3), Delay::constant(0.0), Delay::constant(0.75)];
     (edges, delays)
 }
 
@@ -40,7 +40,7 @@ fn prop_agreed_value_is_known_before_the_run() {
                 })
                 .collect();
             let (edges, delays) = uneven();
-            let mut setup = setup(agents, exchange, Schedule::Fixed(edges), delays, 160.0);
+            let mut setup = setup(agents, exchange, Schedule::fixed(edges), delays, 160.0);
             setup.time.record_every_s = 10.0;
             let prediction = predict(&setup).unwrap();
             assert!((prediction.influence.iter().sum::<f64>() - 1.0).abs() < 1e-12);
@@ -68,7 +68,7 @@ fn thm1_agreed_value_is_known_for_the_pure_integrals_too() {
             })
             .collect();
         let (edges, delays) = uneven();
-        let mut setup = setup(agents, exchange, Schedule::Fixed(edges), delays, 160.0);
+        let mut setup = setup(agents, exchange, Schedule::fixed(edges), delays, 160.0);
         setup.reference = ReferenceKind::PureIntegral;
         setup.time.record_every_s = 10.0;
         let report = check(&setup);
@@ -94,12 +94,11 @@ fn thm1_agreed_value_is_known_for_the_pure_integrals_too() {
 fn torque_at_a_switch(reference: ReferenceKind, exchange: Exchange) -> f64 {
     let roots: &[f64] = if reference == ReferenceKind::Consensus { &[1.0, 2.0] } else { &[] };
     let both = vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)];
-    let schedule = Schedule::Once(vec![
+    let schedule = Schedule::once(vec![
         Phase { edges: vec![edge(0, 1, 1.0, 0)], dwell_s: 3.0 },
         Phase { edges: both, dwell_s: 1.0 },
     ]);
-    let mut setup =
-        setup((0..2).map(|i| arm(i, roots)).collect(), exchange, schedule, vec![Delay::Constant { s: 0.2 }], 3.1);
+    let mut setup = setup((0..2).map(|i| arm(i, roots)).collect(), exchange, schedule, vec![Delay::constant(0.2)], 3.1);
     setup.reference = reference;
     for agent in &mut setup.agents {
         agent.law = Arc::new(Known { damping: Gain::Number(8.0) });
@@ -129,9 +128,9 @@ fn eq_aa6_torque_at_a_switch_grows_as_the_filter_narrows_and_that_of_a1_does_not
 #[test]
 fn eq_3_over_a_switching_graph_is_not_covered() {
     let phase = |from, to| Phase { edges: vec![edge(from, to, 1.0, 0)], dwell_s: 1.0 };
-    let schedule = Schedule::Periodic(vec![phase(0, 1), phase(1, 0)]);
+    let schedule = Schedule::periodic(vec![phase(0, 1), phase(1, 0)]);
     let agents = (0..2).map(|i| arm(i, &[1.0, 2.0])).collect();
-    let mut setup = setup(agents, Exchange::PositionVelocity, schedule, vec![Delay::Constant { s: 0.1 }], 1.0);
+    let mut setup = setup(agents, Exchange::PositionVelocity, schedule, vec![Delay::constant(0.1)], 1.0);
     setup.reference = ReferenceKind::PureIntegral;
     let report = check(&setup);
     assert_eq!(report.worst(), Answer::NotCovered);
@@ -141,15 +140,15 @@ fn eq_3_over_a_switching_graph_is_not_covered() {
 #[test]
 fn prediction_says_why_there_is_none() {
     let agents = || (0..2).map(|i| arm(i, &[1.0, 2.0])).collect::<Vec<_>>();
-    let constant = vec![Delay::Constant { s: 0.1 }];
-    let one_way = Schedule::Fixed(vec![edge(0, 1, 1.0, 0)]);
-    let saw = vec![Delay::SawTooth { min_s: 0.0, max_s: 0.1, period_s: 1.0, offset_s: 0.0 }];
+    let constant = vec![Delay::constant(0.1)];
+    let one_way = Schedule::fixed(vec![edge(0, 1, 1.0, 0)]);
+    let saw = vec![Delay::new(SawTooth { min_s: 0.0, max_s: 0.1, period_s: 1.0, offset_s: 0.0 })];
     let case = |schedule, delays| predict(&setup(agents(), Exchange::Position, schedule, delays, 1.0));
     assert_eq!(case(one_way.clone(), saw), Err(NoPrediction::VaryingDelay));
-    assert_eq!(case(Schedule::Fixed(vec![]), constant.clone()), Err(NoPrediction::NoSpanningTree));
+    assert_eq!(case(Schedule::fixed(vec![]), constant.clone()), Err(NoPrediction::NoSpanningTree));
     let phase = |from, to| Phase { edges: vec![edge(from, to, 1.0, 0)], dwell_s: 1.0 };
     assert_eq!(
-        case(Schedule::Periodic(vec![phase(0, 1), phase(1, 0)]), constant.clone()),
+        case(Schedule::periodic(vec![phase(0, 1), phase(1, 0)]), constant.clone()),
         Err(NoPrediction::Switching)
     );
     assert_eq!(case(one_way, constant).unwrap().influence, vec![1.0, 0.0]);
@@ -200,11 +199,15 @@ fn prop_spread_never_grows_whatever_switches_or_jumps() {
         dwell_s,
     };
     let delays = vec![
-        Delay::SawTooth { min_s: 0.0, max_s: 0.5, period_s: 0.37, offset_s: 0.1 },
-        Delay::PiecewiseConstant { times_s: vec![0.0, 0.4, 0.9], values_s: vec![0.6, 0.0, 0.2], period_s: Some(1.3) },
-        Delay::Sinusoid { mean_s: 0.3, amplitude_s: 0.3, period_s: 0.8, phase_rad: 1.0 },
+        Delay::new(SawTooth { min_s: 0.0, max_s: 0.5, period_s: 0.37, offset_s: 0.1 }),
+        Delay::new(PiecewiseConstant {
+            times_s: vec![0.0, 0.4, 0.9],
+            values_s: vec![0.6, 0.0, 0.2],
+            period_s: Some(1.3),
+        }),
+        Delay::new(Sinusoid { mean_s: 0.3, amplitude_s: 0.3, period_s: 0.8, phase_rad: 1.0 }),
     ];
-    let schedule = Schedule::Periodic(vec![
+    let schedule = Schedule::periodic(vec![
         phase(&[(0, 1, 0), (2, 3, 1)], 0.31),
         phase(&[(1, 2, 2), (3, 4, 0), (4, 0, 1)], 0.23),
         phase(&[], 0.1),
@@ -252,18 +255,15 @@ fn prop_spread_never_grows_over_random_packets_and_weights() {
             link(seed, Loss::Bursts { enter: 0.1, leave: 0.3 }, 0.5),
         ];
         let pairs = [(0, 1), (1, 2), (2, 3), (3, 4), (4, 0), (0, 3)];
-        let mut delays: Vec<Delay> = pairs
-            .iter()
-            .enumerate()
-            .map(|(k, pair)| Delay::Packets(links[k % 3].trace(*pair, end_s).unwrap().into()))
-            .collect();
-        delays.push(Delay::RandomHold(RandomHold::draw(seed, (4, 2), [0.0, 0.5], [0.05, 0.4], end_s).unwrap().into()));
+        let mut delays: Vec<Delay> =
+            pairs.iter().enumerate().map(|(k, pair)| Delay::new(links[k % 3].trace(*pair, end_s).unwrap())).collect();
+        delays.push(Delay::new(RandomHold::draw(seed, (4, 2), [0.0, 0.5], [0.05, 0.4], end_s).unwrap()));
         let mut edges: Vec<Edge> = pairs.iter().enumerate().map(|(k, pair)| edge(pair.0, pair.1, 1.3, k)).collect();
         edges.push(edge(4, 2, 0.7, 6));
         edges[1].weight = Weight::Formula(0);
         edges[4].weight = Weight::Formula(0);
         let some = |which: &[usize]| which.iter().map(|k| edges[*k]).collect::<Vec<_>>();
-        let schedule = Schedule::Periodic(vec![
+        let schedule = Schedule::periodic(vec![
             Phase { edges: some(&[0, 2, 4]), dwell_s: 0.7 },
             Phase { edges: some(&[1, 3, 5, 6]), dwell_s: 0.9 },
         ]);
@@ -288,8 +288,8 @@ fn thm3_a5_with_unequal_first_roots_diverges_and_24_does_not() {
     let diverging = |exchange| {
         let both = vec![edge(0, 1, 4.0, 0), edge(1, 0, 4.0, 0)];
         let schedule =
-            Schedule::Periodic(vec![Phase { edges: vec![], dwell_s: 4.0 }, Phase { edges: both, dwell_s: 0.5 }]);
-        let mut setup = masses(exchange, 1, schedule, vec![Delay::Constant { s: 0.0 }]);
+            Schedule::periodic(vec![Phase { edges: vec![], dwell_s: 4.0 }, Phase { edges: both, dwell_s: 0.5 }]);
+        let mut setup = masses(exchange, 1, schedule, vec![Delay::constant(0.0)]);
         setup.agents.truncate(2);
         setup.network.agents = 2;
         setup.agents[0].roots_per_s = vec![4.0];
@@ -322,21 +322,21 @@ fn thm3_a5_with_unequal_first_roots_diverges_and_24_does_not() {
 fn thm2_hypotheses_hold_with_a_certificate_or_fail_with_a_witness() {
     let agents = || (0..4).map(|i| arm(i, &[1.0, 2.0])).collect::<Vec<_>>();
     let phase = |from, to| Phase { edges: vec![edge(from, to, 1.0, 0)], dwell_s: 1.5 };
-    let delays = vec![Delay::Constant { s: 0.1 }];
-    let joint = Schedule::Periodic(vec![phase(0, 1), phase(1, 2), phase(2, 3)]);
+    let delays = vec![Delay::constant(0.1)];
+    let joint = Schedule::periodic(vec![phase(0, 1), phase(1, 2), phase(2, 3)]);
     let report = check(&setup(agents(), Exchange::PositionVelocity, joint, delays.clone(), 1.0));
     assert_eq!(report.worst(), Answer::Holds);
     assert!(report.theorem.to_string().starts_with("Theorem 2"));
     assert!(report.hypotheses[0].because().contains("lasts 4.5 s"), "{}", report.hypotheses[0].because());
 
-    let split = Schedule::Periodic(vec![phase(0, 1), phase(2, 3)]);
+    let split = Schedule::periodic(vec![phase(0, 1), phase(2, 3)]);
     let report = check(&setup(agents(), Exchange::PositionVelocity, split, delays.clone(), 1.0));
     assert_eq!(report.worst(), Answer::Violated);
     let because = report.hypotheses[0].because();
     assert!(because.contains("[arm-1] and [arm-3] hear nobody outside themselves"), "{because}");
 
     let graphs = vec![vec![edge(0, 1, 1.0, 0), edge(1, 2, 1.0, 0)], vec![edge(2, 3, 1.0, 0)]];
-    let random = Schedule::Random { graphs, dwell_s: [0.1, 0.2], seed: 1 };
+    let random = Schedule::random(graphs, [0.1, 0.2], 1);
     let report = check(&setup(agents(), Exchange::Position, random, delays, 30.0));
     assert_eq!(report.worst(), Answer::HoldsOnHorizon);
 }

@@ -81,7 +81,7 @@ fn names_of_hypotheses_are_stable_and_unique() {
 /// Two agents that hear each other over a delay; their verdict on delays.
 fn delays(used: Vec<Delay>) -> (Answer, Rigour, Evidence) {
     let edges = vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, used.len() - 1)];
-    let mut setup = masses(Exchange::Position, 2, Schedule::Fixed(edges), used);
+    let mut setup = masses(Exchange::Position, 2, Schedule::fixed(edges), used);
     setup.agents.truncate(2);
     setup.network.agents = 2;
     setup.time.end_s = 20.0;
@@ -94,14 +94,14 @@ fn delays(used: Vec<Delay>) -> (Answer, Rigour, Evidence) {
 
 #[test]
 fn rigour_of_a_bound_is_that_of_its_weakest_part() {
-    let constant = || Delay::Constant { s: 0.1 };
+    let constant = || Delay::constant(0.1);
     let formula = Expression::number(0.3);
-    let enclosed = || Delay::Formula(BoundedFormula::new(formula.clone(), 20.0).into());
+    let enclosed = || Delay::new(BoundedFormula::new(formula.clone(), 20.0));
     let packets = |most_in_a_row| {
         let loss = Loss::Random { probability: 0.1 };
         let link =
             PacketLink { every_s: 0.02, first_s: 0.0, latency_s: 0.03, jitter_s: 0.02, loss, most_in_a_row, seed: 1 };
-        Delay::Packets(link.trace((0, 1), 20.0).unwrap().into())
+        Delay::new(link.trace((0, 1), 20.0).unwrap())
     };
     let found = |used| {
         let (answer, rigour, _) = delays(used);
@@ -120,9 +120,9 @@ fn rigour_of_a_bound_is_that_of_its_weakest_part() {
 #[test]
 fn evidence_names_the_two_agents_and_their_first_roots() {
     let phase = |from, to| Phase { edges: vec![edge(from, to, 1.0, 0)], dwell_s: 1.0 };
-    let schedule = Schedule::Periodic(vec![phase(0, 1), phase(1, 0)]);
+    let schedule = Schedule::periodic(vec![phase(0, 1), phase(1, 0)]);
     let agents = vec![arm(0, &[1.0, 2.0]), arm(1, &[3.0, 2.0])];
-    let report = check(&setup(agents, Exchange::PositionVelocity, schedule, vec![Delay::Constant { s: 0.1 }], 9.0));
+    let report = check(&setup(agents, Exchange::PositionVelocity, schedule, vec![Delay::constant(0.1)], 9.0));
     let found = report.hypotheses.iter().find(|hypothesis| hypothesis.id == Id::CommonFirstRoot).unwrap();
     let Evidence::Reference(ReferenceEvidence::FirstRoots([(a, kappa_a), (b, kappa_b)])) = &found.evidence else {
         panic!("{found:?}")
@@ -149,7 +149,7 @@ fn thm8_the_answer_about_the_gain_follows_from_its_bounds() {
 #[test]
 fn reference_dynamics_with_accelerations_want_a_graph_that_stays() {
     let one = || vec![edge(0, 1, 1.0, 0), edge(1, 2, 1.0, 0)];
-    let delay = || vec![Delay::Constant { s: 0.1 }];
+    let delay = || vec![Delay::constant(0.1)];
     let answer = |schedule| {
         let mut setup = masses(Exchange::Position, 2, schedule, delay());
         setup.reference = ReferenceKind::PureIntegral;
@@ -159,23 +159,23 @@ fn reference_dynamics_with_accelerations_want_a_graph_that_stays() {
         assert_eq!(found.subject, Subject::Setup);
         found.answer()
     };
-    assert_eq!(answer(Schedule::Fixed(one())), Answer::Holds);
+    assert_eq!(answer(Schedule::fixed(one())), Answer::Holds);
     let phase = || Phase { edges: one(), dwell_s: 1.0 };
-    assert_eq!(answer(Schedule::Periodic(vec![phase(), phase()])), Answer::NotCovered);
+    assert_eq!(answer(Schedule::periodic(vec![phase(), phase()])), Answer::NotCovered);
 }
 
 #[test]
 fn what_was_drawn_is_given_and_what_repeats_is_exact() {
     let tree = |schedule| {
-        let report = check(&masses(Exchange::Position, 2, schedule, vec![Delay::Constant { s: 0.1 }]));
+        let report = check(&masses(Exchange::Position, 2, schedule, vec![Delay::constant(0.1)]));
         let found = report.hypotheses.into_iter().find(|hypothesis| hypothesis.id == Id::SpanningTree).unwrap();
         (found.answer(), found.rigour(), found.because().contains("to the end of the run"))
     };
     let (first, second) =
         (|| vec![edge(0, 1, 1.0, 0), edge(1, 2, 1.0, 0)], || vec![edge(2, 3, 1.0, 0), edge(3, 4, 1.0, 0)]);
-    let random = |graphs| Schedule::Random { graphs, dwell_s: [0.1, 0.2], seed: 1 };
+    let random = |graphs| Schedule::random(graphs, [0.1, 0.2], 1);
     let periodic =
-        |graphs: Vec<_>| Schedule::Periodic(graphs.into_iter().map(|edges| Phase { edges, dwell_s: 0.2 }).collect());
+        |graphs: Vec<_>| Schedule::periodic(graphs.into_iter().map(|edges| Phase { edges, dwell_s: 0.2 }).collect());
     assert_eq!(tree(random(vec![first(), second()])), (Answer::HoldsOnHorizon, Rigour::Given, false));
     assert_eq!(tree(random(vec![first(), first()])), (Answer::Violated, Rigour::Given, true));
     assert_eq!(tree(periodic(vec![first(), second()])), (Answer::Holds, Rigour::Exact, false));

@@ -58,8 +58,8 @@ fn setup(design: FollowingDesign, path: Path, gain: f64) -> Setup {
         exchange: Exchange::PositionVelocity,
         network: Network {
             agents: 3,
-            schedule: Schedule::Fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0)]),
-            delays: vec![Delay::Constant { s: 0.0 }],
+            schedule: Schedule::fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0)]),
+            delays: vec![Delay::constant(0.0)],
             weights: Vec::new(),
             coupling: Default::default(),
         },
@@ -162,8 +162,8 @@ fn thm8_only_a_sign_that_is_solved_for_is_the_set_valued_one() {
 fn thm8_any_link_with_a_delay_is_not_covered() {
     let said = |delays: [f64; 2]| {
         let mut setup = setup(FollowingDesign::Continuous, wave(), 3.0);
-        setup.network.delays = delays.map(|s| Delay::Constant { s }).to_vec();
-        setup.network.schedule = Schedule::Fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 1)]);
+        setup.network.delays = delays.map(|s| Delay::constant(s)).to_vec();
+        setup.network.schedule = Schedule::fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 1)]);
         common::answer(&setup, About::Prompt)
     };
     let (holds, no) = (Answer::Holds, Answer::NotCovered);
@@ -173,18 +173,18 @@ fn thm8_any_link_with_a_delay_is_not_covered() {
 #[test]
 fn thm8_what_the_paper_does_not_speak_about_is_said() {
     let mut cut = setup(FollowingDesign::Continuous, wave(), 3.0);
-    cut.network.schedule = Schedule::Fixed(vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)]);
+    cut.network.schedule = Schedule::fixed(vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)]);
     let (verdict, because) = answer(&check(&cut), "reaches everybody");
     assert!(verdict == Answer::Violated && because.contains("mass-1, mass-2"), "{because}");
 
     let mut late = setup(FollowingDesign::Continuous, wave(), 3.0);
-    late.network.delays[0] = Delay::Constant { s: 0.2 };
+    late.network.delays[0] = Delay::constant(0.2);
     assert_eq!(answer(&check(&late), "without delay").0, Answer::NotCovered);
 
     let mut switching = setup(FollowingDesign::Continuous, wave(), 3.0);
     let phase = |edges| Phase { dwell_s: 1.0, edges };
     switching.network.schedule =
-        Schedule::Periodic(vec![phase(vec![edge(2, 0, 1.0, 0)]), phase(vec![edge(0, 1, 1.0, 0)])]);
+        Schedule::periodic(vec![phase(vec![edge(2, 0, 1.0, 0)]), phase(vec![edge(0, 1, 1.0, 0)])]);
     let report = check(&switching);
     assert_eq!(answer(&report, "graph is fixed").0, Answer::NotCovered);
     assert_eq!(answer(&report, "reaches everybody").0, Answer::Holds);
@@ -194,7 +194,7 @@ fn thm8_what_the_paper_does_not_speak_about_is_said() {
 fn prop_a_swarm_needs_links_both_ways_and_enough_coupling() {
     let swarm = |coupling: f64, edges: &[Edge]| {
         let mut setup = setup(FollowingDesign::Swarm { coupling }, wave(), 5.0);
-        setup.network.schedule = Schedule::Fixed(edges.to_vec());
+        setup.network.schedule = Schedule::fixed(edges.to_vec());
         check(&setup)
     };
     let both = [edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)];
@@ -211,7 +211,7 @@ fn prop_a_swarm_needs_links_both_ways_and_enough_coupling() {
 fn prop_a_swarm_weighs_both_ways_alike_and_the_leader_is_no_part_of_that() {
     let said = |there: f64, back: f64| {
         let mut setup = setup(FollowingDesign::Swarm { coupling: 50.0 }, wave(), 5.0);
-        setup.network.schedule = Schedule::Fixed(vec![edge(2, 0, 3.0, 0), edge(0, 1, there, 0), edge(1, 0, back, 0)]);
+        setup.network.schedule = Schedule::fixed(vec![edge(2, 0, 3.0, 0), edge(0, 1, there, 0), edge(1, 0, back, 0)]);
         common::answer(&setup, About::Undirected)
     };
     assert_eq!(

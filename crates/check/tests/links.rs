@@ -17,13 +17,13 @@ use forwardstep_sim::schedule::Schedule;
 fn links(delay: Delay, weight: Option<Expression>) -> (Answer, String, Option<(Answer, String)>) {
     let end_s = 20.0;
     let mut setup =
-        masses(Exchange::Position, 2, Schedule::Fixed(vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)]), vec![delay]);
+        masses(Exchange::Position, 2, Schedule::fixed(vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)]), vec![delay]);
     setup.agents.truncate(2);
     setup.network.agents = 2;
     setup.time.end_s = end_s;
     if let Some(formula) = weight {
         setup.network.weights = vec![BoundedFormula::new(formula, end_s)];
-        setup.network.schedule = Schedule::Fixed(vec![
+        setup.network.schedule = Schedule::fixed(vec![
             Edge { weight: Weight::Formula(0), ..edge(0, 1, 1.0, 0) },
             Edge { weight: Weight::Formula(0), ..edge(1, 0, 1.0, 0) },
         ]);
@@ -42,7 +42,7 @@ fn only_a_bounded_loss_gives_a_bounded_delay() {
     let link = |loss, most_in_a_row| {
         let link =
             PacketLink { every_s: 0.02, first_s: 0.0, latency_s: 0.03, jitter_s: 0.02, loss, most_in_a_row, seed: 1 };
-        links(Delay::Packets(link.trace((0, 1), 20.0).unwrap().into()), None)
+        links(Delay::new(link.trace((0, 1), 20.0).unwrap()), None)
     };
     let (answer, because, _) = link(Loss::Never, None);
     assert_eq!(
@@ -64,14 +64,14 @@ fn only_a_bounded_loss_gives_a_bounded_delay() {
         assert!(because.contains("any number of packets may be lost one after another"), "{because}");
     }
     let packets = vec![Packet { send_s: 0.0, delay_s: Some(0.5) }, Packet { send_s: 1.0, delay_s: None }];
-    let (answer, because, _) = links(Delay::Packets(Trace::new(packets, 20.0).unwrap().into()), None);
+    let (answer, because, _) = links(Delay::new(Trace::new(packets, 20.0).unwrap()), None);
     assert_eq!(answer, Answer::HoldsOnHorizon);
     assert!(
         because.starts_with("no delay exceeds 20 s until the end of the run at 20 s") && because.contains("replayed"),
         "{because}"
     );
     let hold = RandomHold::draw(1, (0, 1), [0.05, 0.4], [0.1, 0.8], 20.0).unwrap();
-    let (answer, because, _) = links(Delay::RandomHold(hold.into()), None);
+    let (answer, because, _) = links(Delay::new(hold), None);
     assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 0.4 s"));
 }
 
@@ -80,13 +80,13 @@ fn formulas_hold_for_ever_only_where_that_is_shown() {
     let t = || Expression::variable(0);
     let swing = |mean: f64| t().sin_of() * 0.5 + mean;
     let growing = t() * 0.01 + 0.1;
-    let delay = |formula: Expression| Delay::Formula(BoundedFormula::new(formula, 20.0).into());
+    let delay = |formula: Expression| Delay::new(BoundedFormula::new(formula, 20.0));
     let (answer, because, _) = links(delay(swing(0.5)), None);
     assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 1 s"));
     let (answer, because, _) = links(delay(growing.clone()), None);
     assert_eq!(answer, Answer::HoldsOnHorizon);
     assert!(because.starts_with("no delay exceeds 0.3 s until the end of the run"), "{because}");
-    let constant = || Delay::Constant { s: 0.1 };
+    let constant = || Delay::constant(0.1);
     let (_, _, weight) = links(constant(), Some(swing(1.0)));
     assert_eq!(weight.unwrap(), (Answer::Holds, "weights that follow a formula stay from 0.5 to 1.5".to_owned()));
     let (_, _, weight) = links(constant(), Some(growing));

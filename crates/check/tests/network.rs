@@ -8,7 +8,7 @@ use common::kinds::{alone, blind_mass, chain};
 use common::{About, answer, answers, arm, edge, setup};
 use forwardstep_check::{Answer, check};
 use forwardstep_core::expression::Expression;
-use forwardstep_sim::delay::Delay;
+use forwardstep_sim::delay::{Delay, SawTooth};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::schedule::{Phase, Schedule};
@@ -17,7 +17,7 @@ use forwardstep_sim::{Actuators, Control, Exchange, ReferenceKind, Sensors, Setu
 /// Two arms with κ₀ of their own over these edges.
 fn pair(first_roots: [f64; 2], edges: Vec<Edge>) -> Setup {
     let agents = (0..2).map(|k| arm(k, &[first_roots[k], 2.0])).collect();
-    setup(agents, Exchange::PositionVelocity, Schedule::Fixed(edges), vec![Delay::Constant { s: 0.1 }], 10.0)
+    setup(agents, Exchange::PositionVelocity, Schedule::fixed(edges), vec![Delay::constant(0.1)], 10.0)
 }
 
 fn both_ways() -> Vec<Edge> {
@@ -27,21 +27,23 @@ fn both_ways() -> Vec<Edge> {
 fn with_varying_weight(mut setup: Setup) -> Setup {
     let swing = Expression::variable(0).sin_of() * 0.5 + 1.0;
     setup.network.weights = vec![BoundedFormula::new(swing, setup.time.end_s)];
-    if let Schedule::Fixed(edges) = &mut setup.network.schedule {
+    {
+        let edges = &mut setup.network.schedule.graphs[0];
         edges[0].weight = Weight::Formula(0);
     }
     setup
 }
 
 fn with_varying_delay(mut setup: Setup) -> Setup {
-    setup.network.delays = vec![Delay::SawTooth { min_s: 0.0, max_s: 0.1, period_s: 1.0, offset_s: 0.0 }];
+    setup.network.delays = vec![Delay::new(SawTooth { min_s: 0.0, max_s: 0.1, period_s: 1.0, offset_s: 0.0 })];
     setup
 }
 
 fn switching(mut setup: Setup) -> Setup {
     let phase = |edge: Edge| Phase { edges: vec![edge], dwell_s: 1.0 };
-    if let Schedule::Fixed(edges) = &setup.network.schedule {
-        setup.network.schedule = Schedule::Periodic(edges.iter().copied().map(phase).collect());
+    {
+        let edges = setup.network.schedule.graphs[0].clone();
+        setup.network.schedule = Schedule::periodic(edges.iter().copied().map(phase).collect());
     }
     setup
 }
@@ -71,8 +73,8 @@ fn thm3_a_component_is_looked_at_to_its_end() {
     // Three in a ring, of which the last differs; two more beside them, each by itself.
     let agents = [1.0, 1.0, 1.5, 7.0, 8.0].iter().enumerate().map(|(k, root)| arm(k, &[*root, 2.0])).collect();
     let edges = [(0, 1), (1, 2), (2, 0), (2, 3), (3, 4)].map(|(from, to)| edge(from, to, 1.0, 0)).to_vec();
-    let delays = vec![Delay::Constant { s: 0.1 }];
-    let mut ring = setup(agents, Exchange::PositionVelocity, Schedule::Fixed(edges), delays, 10.0);
+    let delays = vec![Delay::constant(0.1)];
+    let mut ring = setup(agents, Exchange::PositionVelocity, Schedule::fixed(edges), delays, 10.0);
     assert_eq!(answer(&with_varying_delay(ring.clone()), About::CommonFirstRoot), Answer::NotCovered);
     ring.agents[2].roots_per_s[0] = 1.0;
     assert_eq!(answer(&with_varying_delay(ring), About::CommonFirstRoot), Answer::Holds);
@@ -94,7 +96,7 @@ fn eq_3_and_23_need_a_graph_and_weights_that_stay() {
         assert_eq!(
             integral(|setup| {
                 let mut setup = with_varying_weight(setup);
-                setup.network.schedule = Schedule::Fixed(both_ways());
+                setup.network.schedule = Schedule::fixed(both_ways());
                 setup
             }),
             Answer::Holds

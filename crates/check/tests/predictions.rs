@@ -12,7 +12,7 @@ use forwardstep_check::{NoPrediction, predict};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::coupling::Coupling;
-use forwardstep_sim::delay::Delay;
+use forwardstep_sim::delay::{Delay, SawTooth};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
@@ -22,8 +22,8 @@ use forwardstep_sim::{Adaptive, Control, Exchange, Known, ReferenceKind, Setup, 
 /// Two masses that hear each other, and a third that only listens.
 fn three(exchange: Exchange) -> Setup {
     let edges = vec![edge(0, 1, 1.0, 0), edge(1, 0, 2.0, 1), edge(1, 2, 1.5, 0)];
-    let delays = vec![Delay::Constant { s: 0.2 }, Delay::Constant { s: 0.0 }];
-    let mut setup = masses(exchange, 2, Schedule::Fixed(edges), delays);
+    let delays = vec![Delay::constant(0.2), Delay::constant(0.0)];
+    let mut setup = masses(exchange, 2, Schedule::fixed(edges), delays);
     setup.agents.truncate(3);
     setup.network.agents = 3;
     setup.time.end_s = 60.0;
@@ -106,7 +106,7 @@ fn every_reason_for_which_there_is_none_is_the_one_that_is_said() {
         actuators: Default::default(),
     };
     assert_eq!(said(&|setup| setup.control = Some(control.clone())), Some(NoPrediction::Sampled));
-    let saw = Delay::SawTooth { min_s: 0.0, max_s: 0.1, period_s: 1.0, offset_s: 0.0 };
+    let saw = Delay::new(SawTooth { min_s: 0.0, max_s: 0.1, period_s: 1.0, offset_s: 0.0 });
     for delay in [0, 1] {
         assert_eq!(said(&|setup| setup.network.delays[delay] = saw.clone()), Some(NoPrediction::VaryingDelay));
     }
@@ -115,11 +115,11 @@ fn every_reason_for_which_there_is_none_is_the_one_that_is_said() {
     let swing = Expression::variable(0).sin_of() * 0.5 + 1.0;
     let varying = |setup: &mut Setup| {
         setup.network.weights = vec![BoundedFormula::new(swing.clone(), 60.0)];
-        let Schedule::Fixed(edges) = &mut setup.network.schedule else { panic!() };
+        let edges = &mut setup.network.schedule.graphs[0];
         edges[1].weight = Weight::Formula(0);
     };
     assert_eq!(said(&varying), Some(NoPrediction::VaryingWeight));
-    let one_way = Schedule::Fixed(vec![edge(0, 1, 1.0, 0)]);
+    let one_way = Schedule::fixed(vec![edge(0, 1, 1.0, 0)]);
     assert_eq!(said(&|setup| setup.network.schedule = one_way.clone()), Some(NoPrediction::NoSpanningTree));
     assert_eq!(said(&|setup| setup.agents[1].roots_per_s = vec![1.0, 0.0]), Some(NoPrediction::Roots { agent: 1 }));
 }
@@ -127,15 +127,15 @@ fn every_reason_for_which_there_is_none_is_the_one_that_is_said() {
 #[test]
 fn a_schedule_of_one_phase_is_one_graph() {
     let base = three(Exchange::PositionVelocity);
-    let Schedule::Fixed(edges) = &base.network.schedule else { panic!() };
+    let edges = &base.network.schedule.graphs[0];
     let phase = Phase { edges: edges.clone(), dwell_s: 1.0 };
     let value = |schedule| {
         predict(&Setup { network: forwardstep_sim::Network { schedule, ..base.network.clone() }, ..base.clone() })
     };
     let fixed = predict(&base).unwrap();
-    assert_eq!(value(Schedule::Periodic(vec![phase.clone()])).unwrap(), fixed);
-    assert_eq!(value(Schedule::Once(vec![phase.clone()])).unwrap(), fixed);
-    for two in [Schedule::Periodic(vec![phase.clone(); 2]), Schedule::Once(vec![phase; 2])] {
+    assert_eq!(value(Schedule::periodic(vec![phase.clone()])).unwrap(), fixed);
+    assert_eq!(value(Schedule::once(vec![phase.clone()])).unwrap(), fixed);
+    for two in [Schedule::periodic(vec![phase.clone(); 2]), Schedule::once(vec![phase; 2])] {
         assert_eq!(value(two).err(), Some(NoPrediction::Switching));
     }
 }
@@ -173,7 +173,7 @@ fn eq_31_the_agreement_moves_by_the_gain_of_each_axis() {
 fn a_single_agent_stays_where_its_own_dynamics_lead() {
     let mut one = three(Exchange::Position);
     one.agents.truncate(1);
-    let mut one = setup(one.agents, Exchange::Position, Schedule::Fixed(Vec::new()), Vec::new(), 40.0);
+    let mut one = setup(one.agents, Exchange::Position, Schedule::fixed(Vec::new()), Vec::new(), 40.0);
     one.time.record_every_s = 1.0;
     let value = predict(&one).unwrap();
     assert_eq!(value.influence, [1.0]);

@@ -25,7 +25,7 @@ use forwardstep_sim::{Adaptive, Control, Exchange, Known, ReferenceKind, Rotorcr
 /// Two masses that hear each other through delays of their own.
 fn pair(delays: [Delay; 2]) -> Setup {
     let edges = vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 1)];
-    let mut setup = masses(Exchange::Position, 2, Schedule::Fixed(edges), delays.to_vec());
+    let mut setup = masses(Exchange::Position, 2, Schedule::fixed(edges), delays.to_vec());
     setup.agents.truncate(2);
     setup.network.agents = 2;
     setup.time.end_s = 20.0;
@@ -33,12 +33,12 @@ fn pair(delays: [Delay; 2]) -> Setup {
 }
 
 fn constant(s: f64) -> Delay {
-    Delay::Constant { s }
+    Delay::constant(s)
 }
 
 fn with_weights(weights: [Expression; 2]) -> Setup {
     let mut setup = pair([constant(0.1), constant(0.1)]);
-    let Schedule::Fixed(edges) = &mut setup.network.schedule else { panic!() };
+    let edges = &mut setup.network.schedule.graphs[0];
     for (k, edge) in edges.iter_mut().enumerate() {
         edge.weight = Weight::Formula(k);
     }
@@ -61,7 +61,7 @@ fn faster() -> Expression {
 fn a_delay_or_a_weight_that_turns_negative_after_the_run_holds_on_the_run_only() {
     // On [0, 20] it is at least 0.5, and at t = 150 π it is −0.5.
     let later = swing(0.5, 0.01);
-    let delay = Delay::Formula(BoundedFormula::new(later.clone(), 20.0).into());
+    let delay = Delay::new(BoundedFormula::new(later.clone(), 20.0));
     assert_eq!(answer(&pair([constant(0.1), delay]), About::Delays), Answer::HoldsOnHorizon);
     assert_eq!(answer(&with_weights([swing(2.0, 1.0), later]), About::Weights), Answer::HoldsOnHorizon);
     assert_eq!(answer(&with_weights([swing(2.0, 1.0), swing(1.5, 0.3)]), About::Weights), Answer::Holds);
@@ -117,22 +117,22 @@ fn led(schedule: Schedule, design: FollowingDesign, [alpha, beta]: [f64; 2]) -> 
 }
 
 fn chain_of_three() -> Schedule {
-    Schedule::Fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0)])
+    Schedule::fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0)])
 }
 
 #[test]
 fn thm8_a_leader_that_is_heard_at_random_reaches_everybody_on_the_run_only() {
     let graphs = vec![vec![edge(2, 0, 1.0, 0)], vec![edge(0, 1, 1.0, 0)]];
-    let random = Schedule::Random { graphs: graphs.clone(), dwell_s: [0.1, 0.2], seed: 1 };
+    let random = Schedule::random(graphs.clone(), [0.1, 0.2], 1);
     let said = |schedule: Schedule| {
         let setup = led(schedule, FollowingDesign::Continuous, [1.0, 1.0]);
         [answer(&setup, About::LeaderReaches), answer(&setup, About::LeaderFixed)]
     };
     assert_eq!(said(random), [Answer::HoldsOnHorizon, Answer::NotCovered]);
     let phases: Vec<Phase> = graphs.into_iter().map(|edges| Phase { edges, dwell_s: 1.0 }).collect();
-    assert_eq!(said(Schedule::Periodic(phases)), [Answer::Holds, Answer::NotCovered]);
+    assert_eq!(said(Schedule::periodic(phases)), [Answer::Holds, Answer::NotCovered]);
     assert_eq!(said(chain_of_three()), [Answer::Holds, Answer::Holds]);
-    assert_eq!(said(Schedule::Fixed(vec![edge(2, 0, 1.0, 0)]))[0], Answer::Violated);
+    assert_eq!(said(Schedule::fixed(vec![edge(2, 0, 1.0, 0)]))[0], Answer::Violated);
     let setup = led(chain_of_three(), FollowingDesign::Continuous, [1.0, 1.0]);
     assert_eq!(predict(&setup), Err(NoPrediction::Leader));
 }
@@ -145,7 +145,7 @@ fn prop_a_swarm_needs_the_coupling_that_its_derivation_asks_for() {
         let (alpha, beta) = (low * high, low + high);
         (beta + low.powi(4) / (2.0 * (beta * beta - alpha) * high)) / lambda
     };
-    let both = Schedule::Fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)]);
+    let both = Schedule::fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)]);
     for (low, high) in [(0.5, 2.0), (1.0, 1.0), (3.0, 40.0)] {
         let said = |part: f64| {
             let design = FollowingDesign::Swarm { coupling: part * least(low, high) };
@@ -263,7 +263,7 @@ fn a_report_is_as_good_as_its_worst_answer() {
     assert_eq!(check(&setup).worst(), Answer::Holds);
     setup.agents[0].enforce_limits = true;
     assert_eq!(check(&setup).worst(), Answer::NotCovered);
-    setup.network.schedule = Schedule::Fixed(Vec::new());
+    setup.network.schedule = Schedule::fixed(Vec::new());
     assert_eq!(check(&setup).worst(), Answer::Violated);
     let order = [Answer::Holds, Answer::HoldsOnHorizon, Answer::Watched, Answer::NotCovered, Answer::Violated];
     assert!(order.is_sorted());

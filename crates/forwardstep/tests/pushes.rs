@@ -12,7 +12,7 @@ use forwardstep::sim::{Ending, Outcome, Setup, Signal, simulate};
 fn setup(name: &str, lambda: bool) -> Setup {
     let mut setup = open_scenario(name).unwrap_or_else(|error| panic!("{error}")).setup;
     for agent in &mut setup.agents {
-        assert!(agent.manipulability > 0.0 && !setup.network.schedule.graphs().is_empty());
+        assert!(agent.manipulability > 0.0 && !setup.network.schedule.graphs.is_empty());
         if !lambda {
             agent.manipulability = 0.0;
         }

@@ -69,14 +69,14 @@ fn ring(model: Model, n: usize, tolerance: f64) -> Setup {
         }
     };
     let edge = |i: usize| Edge { from: (i + n - 1) % n, to: i, weight: 1.0.into(), delay: i };
-    let delay = |i: usize| Delay::Constant { s: 0.1 + 0.3 * (i % 7) as f64 / 7.0 };
+    let delay = |i: usize| Delay::constant(0.1 + 0.3 * (i % 7) as f64 / 7.0);
     Setup {
         agents: (0..n).map(agent).collect(),
         reference: ReferenceKind::Consensus,
         exchange: Exchange::PositionVelocity,
         network: Network {
             agents: n,
-            schedule: Schedule::Fixed((0..n).map(edge).collect()),
+            schedule: Schedule::fixed((0..n).map(edge).collect()),
             delays: (0..n).map(delay).collect(),
             weights: Vec::new(),
             coupling: Default::default(),

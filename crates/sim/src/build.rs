@@ -8,7 +8,7 @@
 //! let cart = |name: &str, x: f64| {
 //!     AgentSetup::new(name, RobotSetup::point_mass(1, 2.0), Known::gain(8.0)).roots(&[1.0, 2.0]).at(&[x])
 //! };
-//! let network = Network::fixed(2, [(0, 1), (1, 0)], Delay::Constant { s: 0.1 });
+//! let network = Network::fixed(2, [(0, 1), (1, 0)], Delay::constant(0.1));
 //! let setup = Setup::consensus([cart("left", 0.0), cart("right", 1.0)], network, 20.0);
 //! let outcome = run(&setup)?;
 //! let last = |agent| outcome.recording.last(agent, Signal::Position, 0);
@@ -160,18 +160,18 @@ impl AgentSetup {
 impl Network {
     /// Nobody hears anybody.
     pub fn silent(agents: usize) -> Self {
-        Network::switching(agents, Schedule::Fixed(Vec::new()), Vec::new())
+        Network::switching(agents, Schedule::fixed(Vec::new()), Vec::new())
     }
 
     /// One graph for ever: `edges` lead from who speaks to who hears, all with weight one and the same `delay`.
     pub fn fixed(agents: usize, edges: impl IntoIterator<Item = (usize, usize)>, delay: Delay) -> Self {
-        Network::switching(agents, Schedule::Fixed(unweighted(edges)), vec![delay])
+        Network::switching(agents, Schedule::fixed(unweighted(edges)), vec![delay])
     }
 
     /// Graphs that take turns, each for its dwell time, s.
     pub fn periodic(agents: usize, graphs: impl IntoIterator<Item = (f64, Vec<(usize, usize)>)>, delay: Delay) -> Self {
         let phase = |(dwell_s, edges)| Phase { edges: unweighted(edges), dwell_s };
-        Network::switching(agents, Schedule::Periodic(graphs.into_iter().map(phase).collect()), vec![delay])
+        Network::switching(agents, Schedule::periodic(graphs.into_iter().map(phase).collect()), vec![delay])
     }
 
     pub(crate) fn switching(agents: usize, schedule: Schedule, delays: Vec<Delay>) -> Self {

@@ -15,9 +15,11 @@ pub mod formula;
 pub mod graph;
 pub mod leader;
 pub mod network;
+mod parameter;
 pub mod probe;
 pub mod push;
 pub mod recording;
+mod same;
 pub mod schedule;
 pub mod setup;
 mod simulate;
@@ -33,10 +35,12 @@ pub use agents::{
 pub use build::run;
 pub use closed_loop::{Assembly, Block, SetupError, VelocityQuantity, recipe, recipes, validate};
 pub use network::Network;
+pub use parameter::ParameterError;
 pub use recording::{
     Breakdown, BreakdownCause, Column, Ending, GainRates, Outcome, Progress, Recording, SampleTaken, Signal,
     Statistics, Stiffness,
 };
+pub use same::Same;
 pub use setup::{
     Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Method, ReferenceKind, RobotSetup, Sensors, Setup,
     Solver, Start, TimeSpan, VelocitySensor,

@@ -4,10 +4,11 @@ use forwardstep_core::expression::Interval;
 use thiserror::Error;
 
 use crate::coupling::{Coupling, CouplingError};
-use crate::delay::Delay;
+use crate::delay::{Delay, DelayFault};
 use crate::formula::BoundedFormula;
 use crate::graph::Weight;
-use crate::schedule::Schedule;
+use crate::parameter::ParameterError;
+use crate::schedule::{Schedule, ScheduleFault};
 
 /// A switching digraph with delays.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,25 +123,41 @@ pub enum NetworkError {
         /// Number of delays.
         delays: usize,
     },
-    /// A dwell time that is not positive.
-    #[error("graph {graph} dwells for {dwell_s} s; dwell times must be positive and finite")]
-    Dwell {
-        /// Index of the graph.
-        graph: usize,
-        /// The dwell time.
-        dwell_s: f64,
+    /// A switching signal with a parameter that makes no sense.
+    #[error("{words}: {error}")]
+    Switching {
+        /// What the signal is called.
+        words: &'static str,
+        /// What is wrong.
+        error: ParameterError,
+    },
+    /// A switching signal from outside that is not what its author says.
+    #[error("{words} is not what it is declared to be: {fault}")]
+    RefutedSwitching {
+        /// What the signal is called.
+        words: &'static str,
+        /// What was found.
+        fault: ScheduleFault,
     },
     /// A delay with a parameter that makes no sense.
-    #[error("delay {delay}: {parameter} is {value}, but {requirement}")]
+    #[error("delay {delay}, {words}: {error}")]
     Delay {
         /// Index of the delay.
         delay: usize,
-        /// The parameter.
-        parameter: &'static str,
-        /// Its value.
-        value: f64,
-        /// What it must be.
-        requirement: &'static str,
+        /// What it is called.
+        words: &'static str,
+        /// What is wrong.
+        error: ParameterError,
+    },
+    /// A delay from outside that is not what its author says.
+    #[error("delay {delay}, {words}, is not what it is declared to be: {fault}")]
+    RefutedDelay {
+        /// Index of the delay.
+        delay: usize,
+        /// What it is called.
+        words: &'static str,
+        /// What was found.
+        fault: DelayFault,
     },
 }
 
@@ -153,11 +170,10 @@ impl Network {
         if self.agents == 0 {
             return Err(NetworkError::NoAgents);
         }
-        let graphs = self.schedule.graphs();
-        if graphs.is_empty() {
+        if self.schedule.graphs.is_empty() {
             return Err(NetworkError::NoGraphs);
         }
-        for (graph, edges) in graphs.into_iter().enumerate() {
+        for (graph, edges) in self.schedule.graphs.iter().enumerate() {
             let mut seen = std::collections::HashSet::new();
             for edge in edges {
                 let (from, to) = (edge.from, edge.to);
@@ -191,47 +207,33 @@ impl Network {
             }
         }
         self.coupling.check()?;
-        self.check_dwell()?;
+        let switching = |error| NetworkError::Switching { words: self.schedule.words(), error };
+        self.schedule.validate().map_err(switching)?;
         self.delays.iter().enumerate().try_for_each(|(delay, kind)| {
-            kind.validate().map_err(|(parameter, value, requirement)| NetworkError::Delay {
-                delay,
-                parameter,
-                value,
-                requirement,
-            })
+            let named = |error: ParameterError| NetworkError::Delay { delay, words: kind.words(), error };
+            kind.validate().map_err(named)
         })
     }
 
-    fn check_dwell(&self) -> Result<(), NetworkError> {
-        let dwells: Vec<f64> = match &self.schedule {
-            Schedule::Fixed(_) => Vec::new(),
-            Schedule::Periodic(phases) => phases.iter().map(|phase| phase.dwell_s).collect(),
-            Schedule::Once(phases) => phases.iter().take(phases.len() - 1).map(|phase| phase.dwell_s).collect(),
-            // The longest must not be below the shortest; reported as what it is.
-            Schedule::Random { dwell_s: [low, high], .. } if high >= low => vec![*low, *high],
-            Schedule::Random { dwell_s: [_, high], .. } => {
-                return Err(NetworkError::Dwell { graph: 0, dwell_s: *high });
-            }
-        };
-        match dwells.iter().position(|dwell| !(*dwell > 0.0 && dwell.is_finite())) {
-            Some(graph) => Err(NetworkError::Dwell { graph, dwell_s: dwells[graph] }),
-            None => Ok(()),
-        }
-    }
-
-    /// Checks that packets, random holds and formulas are known until `end_s`.
+    /// Checks that packets, random holds and formulas are known until `end_s`, and that what is from outside is until then
+    /// what its author says, as far as that can be seen.
     ///
     /// # Errors
-    /// [`NetworkError::EndsEarly`] for the first that is not.
+    /// [`NetworkError::EndsEarly`], [`NetworkError::RefutedSwitching`] or [`NetworkError::RefutedDelay`] for the first that is not.
     pub fn lasts_until(&self, end_s: f64) -> Result<(), NetworkError> {
-        let delays = self.delays.iter().map(Delay::known_until_s);
+        let delays = self.delays.iter().map(|delay| delay.known().until_s);
         let weights = self.weights.iter().map(|formula| Some(formula.until_s()));
         for (index, until_s) in delays.enumerate().chain(weights.enumerate()) {
             if let Some(until_s) = until_s.filter(|until_s| *until_s < end_s) {
                 return Err(NetworkError::EndsEarly { index, until_s, end_s });
             }
         }
-        Ok(())
+        let switching = |fault| NetworkError::RefutedSwitching { words: self.schedule.words(), fault };
+        self.schedule.probe(end_s).map_err(switching)?;
+        self.used_delays().try_for_each(|delay| {
+            let refuted = |fault| NetworkError::RefutedDelay { delay, words: self.delays[delay].words(), fault };
+            self.delays[delay].probe(end_s).map_err(refuted)
+        })
     }
 
     /// The value of a weight at `t_s`.
@@ -251,7 +253,7 @@ impl Network {
     /// Indices of the delays that some edge of some graph refers to, rising.
     pub fn used_delays(&self) -> impl Iterator<Item = usize> + '_ {
         let mut used = vec![false; self.delays.len()];
-        for edge in self.schedule.graphs().into_iter().flatten() {
+        for edge in self.schedule.graphs.iter().flatten() {
             if let Some(used) = used.get_mut(edge.delay) {
                 *used = true;
             }

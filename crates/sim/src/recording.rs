@@ -109,6 +109,13 @@ pub enum BreakdownCause {
         /// Whether that is because the closed loop is stiff; `None` where it cannot be told.
         stiffness: Option<Stiffness>,
     },
+    /// A delay from outside is not what its author says, so that nothing is known of what is heard.
+    Delay {
+        /// Index of the delay.
+        delay: usize,
+        /// When it is outside the bounds that are declared, s.
+        at_s: f64,
+    },
     /// Under digital control it moves so fast that this many steps did not reach the next sample: nothing holds it any more.
     RanAway {
         /// Its velocity, rad/s or m/s.

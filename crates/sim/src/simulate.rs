@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use forwardstep_core::controller::Trouble;
 
 use crate::closed_loop::{ClosedLoop, SetupError};
-use crate::engine::{Failure, FailureCause, Integrator, Step};
+use crate::engine::{Failure, FailureCause, Integrator, Refuted, Step};
 use crate::network::Network;
 use crate::recording::{
     Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, SampleTaken, Signal, Stiffness,
@@ -43,8 +43,8 @@ pub fn simulate_samples(
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     samples: &mut dyn FnMut(SampleTaken<'_>),
 ) -> Result<Outcome, SetupError> {
-    setup.network.lasts_until(setup.time.end_s)?;
     let mut closed_loop = ClosedLoop::new(setup)?;
+    setup.network.lasts_until(setup.time.end_s)?;
     closed_loop.watch(samples);
     let (ports, entries) = closed_loop.ports();
     let end_s = setup.time.end_s;
@@ -93,7 +93,10 @@ fn broken(closed_loop: &mut ClosedLoop<'_>, integrator: &Integrator<'_>, failure
         rate_per_s.map(|rate_per_s| Stiffness { rate_per_s, gains })
     };
     let cause = match failure.cause {
-        FailureCause::NotFinite => BreakdownCause::NotFinite,
+        FailureCause::NotFinite => match integrator.refuted().or(closed_loop.refuted()) {
+            Some(Refuted { delay, t_s }) => BreakdownCause::Delay { delay, at_s: t_s },
+            None => BreakdownCause::NotFinite,
+        },
         FailureCause::StepUnderFloor { step_s, rate_per_s } => {
             BreakdownCause::StepUnderFloor { step_s, stiffness: stiffness(rate_per_s) }
         }

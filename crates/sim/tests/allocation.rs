@@ -15,7 +15,6 @@ use forwardstep_sim::delay::Delay;
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::push::{Between, Course, Effect, Push, Table};
-use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{Actuators, Control, Sensors, Setup, VelocitySensor, simulate};
 
 struct Counting;
@@ -49,18 +48,13 @@ fn weights_swing(setup: &mut Setup) {
     let swing =
         |mean: f64, amplitude: f64| BoundedFormula::new(Expression::variable(0).sin_of() * amplitude + mean, end_s);
     setup.network.weights = vec![swing(1.0, 0.5)];
-    let phases = match &mut setup.network.schedule {
-        Schedule::Fixed(edges) => vec![edges],
-        Schedule::Periodic(phases) | Schedule::Once(phases) => {
-            phases.iter_mut().map(|phase| &mut phase.edges).collect()
-        }
-        Schedule::Random { graphs, .. } => graphs.iter_mut().collect(),
-    };
-    for edge in phases.into_iter().flatten() {
+    for edge in setup.network.schedule.graphs.iter_mut().flatten() {
         edge.weight = Weight::Formula(0);
     }
-    for delay in setup.network.delays.iter_mut().filter(|delay| matches!(delay, Delay::Sinusoid { .. })) {
-        *delay = Delay::Formula(swing(0.3, 0.1).into());
+    for delay in
+        setup.network.delays.iter_mut().filter(|delay| delay.downcast::<forwardstep_sim::delay::Sinusoid>().is_some())
+    {
+        *delay = Delay::new(swing(0.3, 0.1));
     }
 }
 

@@ -11,7 +11,7 @@ use common::{column, columns, masses, run, sampled, silent};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::coupling::Coupling;
-use forwardstep_sim::delay::Delay;
+use forwardstep_sim::delay::{Delay, PiecewiseConstant, Sinusoid};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::network::NetworkError;
@@ -26,11 +26,7 @@ fn edge(from: usize, to: usize) -> Edge {
 
 /// Two agents that hear each other over one delay.
 fn pair() -> Network {
-    Network {
-        schedule: Schedule::Fixed(vec![edge(0, 1), edge(1, 0)]),
-        delays: vec![Delay::Constant { s: 0.1 }],
-        ..silent(2)
-    }
+    Network { schedule: Schedule::fixed(vec![edge(0, 1), edge(1, 0)]), delays: vec![Delay::constant(0.1)], ..silent(2) }
 }
 
 #[test]
@@ -40,7 +36,7 @@ fn indices_end_where_lists_do() {
         change(&mut network);
         network.validate()
     };
-    let replaced = |edge: Edge| move |network: &mut Network| network.schedule = Schedule::Fixed(vec![edge]);
+    let replaced = |edge: Edge| move |network: &mut Network| network.schedule = Schedule::fixed(vec![edge]);
     assert_eq!(said(&|_| {}), Ok(()));
     for (from, to) in [(0, 2), (2, 0)] {
         let error = NetworkError::NoSuchAgent { graph: 0, from, to, agents: 2 };
@@ -63,7 +59,7 @@ fn a_weight_that_touches_zero_is_refused_and_one_above_is_not() {
         let swing = Expression::variable(0).sin_of() * 0.5 + mean;
         let weights = vec![BoundedFormula::new(swing, 20.0)];
         let varying = Edge { weight: Weight::Formula(0), ..edge(0, 1) };
-        Network { schedule: Schedule::Fixed(vec![varying]), weights, ..pair() }.validate()
+        Network { schedule: Schedule::fixed(vec![varying]), weights, ..pair() }.validate()
     };
     assert!(matches!(said(0.5), Err(NetworkError::WeightBounds { weight: 0, low, .. }) if low <= 0.0));
     assert_eq!(said(0.51), Ok(()));
@@ -73,17 +69,17 @@ fn a_weight_that_touches_zero_is_refused_and_one_above_is_not() {
 fn only_the_last_phase_of_a_schedule_that_ends_may_last_any_time() {
     let phases = |dwells: [f64; 2]| dwells.map(|dwell_s| Phase { edges: vec![edge(0, 1)], dwell_s }).to_vec();
     let said = |schedule| Network { schedule, ..pair() }.validate().is_ok();
-    assert!(said(Schedule::Once(phases([1.0, 0.0]))) && said(Schedule::Once(phases([1.0, f64::NAN]))));
-    assert!(!said(Schedule::Once(phases([0.0, 1.0]))));
-    assert!(!said(Schedule::Periodic(phases([1.0, 0.0]))) && !said(Schedule::Periodic(phases([0.0, 1.0]))));
-    let random = |dwell_s| said(Schedule::Random { graphs: vec![vec![edge(0, 1)]], dwell_s, seed: 1 });
+    assert!(said(Schedule::once(phases([1.0, 0.0]))) && said(Schedule::once(phases([1.0, f64::NAN]))));
+    assert!(!said(Schedule::once(phases([0.0, 1.0]))));
+    assert!(!said(Schedule::periodic(phases([1.0, 0.0]))) && !said(Schedule::periodic(phases([0.0, 1.0]))));
+    let random = |dwell_s| said(Schedule::random(vec![vec![edge(0, 1)]], dwell_s, 1));
     assert!(random([1.0, 1.0]) && !random([1.0, 0.9]) && !random([0.0, 1.0]));
 }
 
 #[test]
 fn a_formula_has_to_be_known_to_the_end_of_the_run_and_no_further() {
     let slow = Expression::variable(0).sin_of() * 0.1 + 0.2;
-    let delays = vec![Delay::Formula(BoundedFormula::new(slow, 20.0).into())];
+    let delays = vec![Delay::new(BoundedFormula::new(slow, 20.0))];
     let network = Network { delays, ..pair() };
     assert_eq!([19.0, 20.0].map(|end_s| network.lasts_until(end_s)), [Ok(()), Ok(())]);
     let error = NetworkError::EndsEarly { index: 0, until_s: 20.0, end_s: 20.1 };
@@ -98,10 +94,10 @@ fn arrivals(delay: &Delay, sent_s: f64) -> Vec<f64> {
 
 #[test]
 fn what_is_sent_arrives_later_or_not_at_all() {
-    assert!(arrivals(&Delay::Constant { s: 0.0 }, 1.0).is_empty());
-    assert_eq!(arrivals(&Delay::Constant { s: 0.5 }, 1.0), [1.5]);
+    assert!(arrivals(&Delay::constant(0.0), 1.0).is_empty());
+    assert_eq!(arrivals(&Delay::constant(0.5), 1.0), [1.5]);
     // Three arrivals while the delay grows faster than time: t − T(t) = 1 is solved by each, and by no other time.
-    let swing = Delay::Sinusoid { mean_s: 2.0, amplitude_s: 2.0, period_s: 1.5, phase_rad: 0.3 };
+    let swing = Delay::new(Sinusoid { mean_s: 2.0, amplitude_s: 2.0, period_s: 1.5, phase_rad: 0.3 });
     let found = arrivals(&swing, 1.0);
     let early = |t: f64| t - swing.value(t) - 1.0;
     assert!(found.iter().all(|t| early(*t).abs() < 1e-9), "{found:?}");
@@ -116,19 +112,22 @@ fn what_is_sent_arrives_later_or_not_at_all() {
 #[test]
 fn bounds_of_a_sinusoid_do_not_ask_for_the_sign_of_its_amplitude() {
     for amplitude_s in [0.3, -0.3] {
-        let swing = Delay::Sinusoid { mean_s: 0.3, amplitude_s, period_s: 1.0, phase_rad: 0.2 };
+        let swing = Delay::new(Sinusoid { mean_s: 0.3, amplitude_s, period_s: 1.0, phase_rad: 0.2 });
         assert_eq!([swing.min_s(), swing.max_s()], [0.0, 0.6]);
         let network = Network { delays: vec![swing], ..pair() };
         assert_eq!(network.validate(), Ok(()), "it may touch zero");
-        let below = Delay::Sinusoid { mean_s: 0.29, amplitude_s, period_s: 1.0, phase_rad: 0.2 };
+        let below = Delay::new(Sinusoid { mean_s: 0.29, amplitude_s, period_s: 1.0, phase_rad: 0.2 });
         assert!(Network { delays: vec![below], ..network }.validate().is_err());
     }
 }
 
 #[test]
 fn pieces_of_a_periodic_delay_follow_one_another_for_ever() {
-    let steps =
-        Delay::PiecewiseConstant { times_s: vec![0.0, 0.4, 0.9], values_s: vec![0.6, 0.0, 0.2], period_s: Some(1.3) };
+    let steps = Delay::new(PiecewiseConstant {
+        times_s: vec![0.0, 0.4, 0.9],
+        values_s: vec![0.6, 0.0, 0.2],
+        period_s: Some(1.3),
+    });
     let mut piece = steps.first_piece();
     for k in 0..30_u32 {
         let (round, entry) = (f64::from(k / 3), (k % 3) as usize);
@@ -149,8 +148,8 @@ fn slow_masses(delay_s: f64) -> Setup {
         agent.law = Arc::new(Known { damping: Gain::Number(3.0) });
     }
     setup.network = Network {
-        schedule: Schedule::Fixed(vec![edge(0, 1), edge(1, 2), edge(2, 0)]),
-        delays: vec![Delay::Constant { s: delay_s }],
+        schedule: Schedule::fixed(vec![edge(0, 1), edge(1, 2), edge(2, 0)]),
+        delays: vec![Delay::constant(delay_s)],
         ..silent(3)
     };
     setup.time.end_s = 6.0;

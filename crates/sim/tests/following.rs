@@ -63,7 +63,7 @@ fn eq_114_to_118_without_s_the_farthest_comes_closer_by_the_margin_of_the_gain()
     problem.time.record_every_s = 0.01;
     let edge = |to, from, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
     let all = (0..3).map(|to| edge(to, 3, 0.6)).chain([edge(1, 0, 1.5), edge(2, 1, 0.7), edge(0, 2, 0.4)]);
-    problem.network.schedule = Schedule::Fixed(all.collect());
+    problem.network.schedule = Schedule::fixed(all.collect());
     let ReferenceKind::Following(following) = &mut problem.reference else { panic!() };
     Arc::make_mut(following).choice = Choice::Implicit;
     let following = Arc::clone(following);
@@ -123,7 +123,7 @@ fn thm8_thm9_remark12_at_1_khz_the_implicit_sign_leaves_one_part_in_a_hundred_of
             // sample of lag counts more often; how far the error is below the explicit one depends on that.
             let edge = |from, to, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
             let ring = vec![edge(4, 0, 1.0), edge(0, 1, 1.0), edge(1, 2, 1.0), edge(2, 3, 1.0), edge(3, 0, 0.5)];
-            problem.network.schedule = Schedule::Fixed(ring);
+            problem.network.schedule = Schedule::fixed(ring);
             run(&problem)
         });
         // The torque for (110), and z̈, which is ż(t + h) − ż(t) over h, for the others; both in the last third.
@@ -194,17 +194,17 @@ fn thm8_a_layer_is_continuous_and_leaves_an_error_of_its_width() {
 fn what_cannot_be_followed_is_refused() {
     let refuse = |setup: &Setup| simulate(setup, &mut |_| ControlFlow::Continue(())).unwrap_err().to_string();
     let mut hears = arms(FollowingDesign::Continuous, Choice::Implicit, 1.0, 1.0);
-    let Schedule::Fixed(edges) = &mut hears.network.schedule else { panic!("it is fixed") };
+    let edges = &mut hears.network.schedule.graphs[0];
     edges.push(Edge { from: 0, to: 4, weight: 1.0.into(), delay: 0 });
     assert!(refuse(&hears).contains("hears nobody"));
 
     let mut late = arms(FollowingDesign::WithoutAcceleration, Choice::Implicit, 1.0, 1.0);
-    late.network.delays[0] = Delay::Constant { s: 0.1 };
+    late.network.delays[0] = Delay::constant(0.1);
     assert!(refuse(&late).contains("no delay, or sampled control"));
     // Samples remember what was told, and (110) tells nothing that is not state.
     run(&at_1_khz(late));
     let mut late = arms(FollowingDesign::Continuous, Choice::Implicit, 1.0, 1.0);
-    late.network.delays[0] = Delay::Constant { s: 0.1 };
+    late.network.delays[0] = Delay::constant(0.1);
     run(&late);
 }
 

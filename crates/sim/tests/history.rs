@@ -5,12 +5,10 @@
 mod cases;
 mod common;
 
-use std::sync::Arc;
-
 use cases::{cases, setup};
 use common::{every_kind, following, run, sampled};
 use forwardstep_core::reference::Choice;
-use forwardstep_sim::delay::{Delay, Loss, PacketLink, RandomHold};
+use forwardstep_sim::delay::{Delay, Loss, PacketLink, RandomHold, SawTooth};
 use forwardstep_sim::leader::FollowingDesign;
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{Network, Setup, SetupError, Signal, validate};
@@ -28,9 +26,9 @@ fn with_a_late_link(setup: &Setup, delay_s: f64) -> Option<Setup> {
     let mut phases: Vec<Phase> = segments.map(phase).collect();
     let mut edges = phases.iter().find(|phase| !phase.edges.is_empty())?.edges.clone();
     edges[0].delay = setup.network.delays.len();
-    setup.network.delays.push(Delay::Constant { s: delay_s });
+    setup.network.delays.push(Delay::constant(delay_s));
     phases.push(Phase { edges, dwell_s: 1.0 });
-    setup.network.schedule = Schedule::Once(phases);
+    setup.network.schedule = Schedule::once(phases);
     (!matches!(validate(&setup), Err(SetupError::DelayedDerived { .. }))).then_some(setup)
 }
 
@@ -68,7 +66,7 @@ fn regress_rows_within_a_step_hear_the_longest_delay() {
     let at_once = ["following-119", "following-122", "following-as-a-swarm", "following-in-a-layer"];
     assert_eq!(nothing_late, [&silent[..], &at_once].concat());
     let mut followers = following::arms(FollowingDesign::Continuous, Choice::Implicit, 0.8, 4.0);
-    followers.network.delays = vec![Delay::Constant { s: 0.3 }];
+    followers.network.delays = vec![Delay::constant(0.3)];
     assert_eq!(forgotten(&followers), Some(vec![]));
 }
 
@@ -84,10 +82,10 @@ fn regress_rows_within_a_step_hear_the_longest_delay_of_every_kind() {
         seed: 5,
     };
     let delays = [
-        Delay::Constant { s: 0.4 },
-        Delay::SawTooth { min_s: 0.1, max_s: 0.5, period_s: 0.7, offset_s: 0.2 },
-        Delay::Packets(Arc::new(link.trace((0, 1), 12.0).unwrap())),
-        Delay::RandomHold(Arc::new(RandomHold::draw(3, (0, 1), [0.1, 0.5], [0.2, 0.4], 12.0).unwrap())),
+        Delay::constant(0.4),
+        Delay::new(SawTooth { min_s: 0.1, max_s: 0.5, period_s: 0.7, offset_s: 0.2 }),
+        Delay::new(link.trace((0, 1), 12.0).unwrap()),
+        Delay::new(RandomHold::draw(3, (0, 1), [0.1, 0.5], [0.2, 0.4], 12.0).unwrap()),
     ];
     // Order one with both exchanges, then the baseline that differentiates: what they record hears the network at every row.
     for name in ["01-order1-both-constant", "02-order1-position-sinusoid", "36-backstepping-varying"] {

@@ -15,7 +15,6 @@ use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::FollowingDesign;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
-use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::trajectory::{Path, Trajectory, TrajectoryError};
 use forwardstep_sim::{Method, Outcome, ReferenceKind, Setup, SetupError, Signal, ThrustKind, simulate};
 
@@ -124,12 +123,12 @@ fn fixed_steps_keep_their_order_across_the_kinks_of_everything() {
 
     let mut weighted = consensus_of_masses(2.3);
     weighted.network.weights = vec![BoundedFormula::new(bounce(2.0) + 0.5, 4.0)];
-    let Schedule::Fixed(edges) = &mut weighted.network.schedule else { panic!() };
+    let edges = &mut weighted.network.schedule.graphs[0];
     edges.iter_mut().for_each(|edge| edge.weight = Weight::Formula(0));
     has_order_four("weight", weighted, 0.04);
 
     let mut delayed = consensus_of_masses(2.3);
-    delayed.network.delays[0] = Delay::Formula(BoundedFormula::new(bounce(2.0) * 0.3 + 0.4, 4.0).into());
+    delayed.network.delays[0] = Delay::new(BoundedFormula::new(bounce(2.0) * 0.3 + 0.4, 4.0));
     has_order_four("delay", delayed, 0.04);
 
     let mut pushed = consensus_of_masses(2.3);
@@ -145,7 +144,7 @@ fn fixed_steps_keep_their_order_across_the_kinks_of_everything() {
 #[test]
 fn a_leader_with_kinks_is_followed_through_a_delay_to_the_tolerance() {
     let mut late = led_along(FollowingDesign::Continuous, bounce(1.3), 6.0);
-    late.network.delays = vec![Delay::Constant { s: 0.37 }];
+    late.network.delays = vec![Delay::constant(0.37)];
     let with = |rtol: f64| {
         let mut setup = late.clone();
         setup.solver.method = Method::Adaptive { rtol, atol: 0.01 * rtol };

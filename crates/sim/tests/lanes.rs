@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use forwardstep_core::Gain;
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip};
-use forwardstep_sim::delay::Delay;
+use forwardstep_sim::delay::{Delay, SawTooth, Sinusoid};
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::push::{Course, Effect, Function, Grip, Push};
 use forwardstep_sim::schedule::{Phase, Schedule};
@@ -66,10 +66,10 @@ fn bits_of_the_first_two(agents: usize, order: usize, control: &Option<Control>)
         exchange: Exchange::PositionVelocity,
         network: Network {
             agents,
-            schedule: Schedule::Periodic(vec![phase(vec![edge(0, 1, 0)], 0.4), phase(vec![edge(1, 0, 1)], 0.3)]),
+            schedule: Schedule::periodic(vec![phase(vec![edge(0, 1, 0)], 0.4), phase(vec![edge(1, 0, 1)], 0.3)]),
             delays: vec![
-                Delay::SawTooth { min_s: 0.0, max_s: 0.3, period_s: 0.25, offset_s: 0.1 },
-                Delay::Sinusoid { mean_s: 0.2, amplitude_s: 0.1, period_s: 0.9, phase_rad: 0.3 },
+                Delay::new(SawTooth { min_s: 0.0, max_s: 0.3, period_s: 0.25, offset_s: 0.1 }),
+                Delay::new(Sinusoid { mean_s: 0.2, amplitude_s: 0.1, period_s: 0.9, phase_rad: 0.3 }),
             ],
             weights: Vec::new(),
             coupling: Default::default(),

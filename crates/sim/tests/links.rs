@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 
 use cases::{cases, setup};
 use forwardstep_core::expression::Expression;
-use forwardstep_sim::delay::{Delay, Loss, PacketLink};
+use forwardstep_sim::delay::{Delay, Loss, PacketLink, SawTooth, Sinusoid};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::schedule::Schedule;
@@ -48,9 +48,9 @@ fn a_formula_is_the_sinusoid_that_it_says() {
     let mut formula = sinusoid.clone();
     let mut replaced = 0;
     for delay in &mut formula.network.delays {
-        if let Delay::Sinusoid { mean_s, amplitude_s, period_s, phase_rad } = *delay {
+        if let Some(&Sinusoid { mean_s, amplitude_s, period_s, phase_rad }) = delay.downcast() {
             let swing = swing(mean_s, amplitude_s, TAU / period_s, phase_rad);
-            *delay = Delay::Formula(BoundedFormula::new(swing, formula.time.end_s).into());
+            *delay = Delay::new(BoundedFormula::new(swing, formula.time.end_s));
             replaced += 1;
         }
     }
@@ -63,12 +63,12 @@ fn a_formula_is_the_sinusoid_that_it_says() {
 #[test]
 fn packets_without_jitter_are_the_saw_tooth_that_they_say() {
     let mut tooth = case("10-mixed-delays");
-    let mut edges: Vec<_> = tooth.network.schedule.graphs()[0].to_vec();
+    let mut edges: Vec<_> = tooth.network.schedule.graphs[0].to_vec();
     for edge in &mut edges {
         edge.delay = 0;
     }
-    tooth.network.schedule = Schedule::Fixed(edges.clone());
-    tooth.network.delays = vec![Delay::SawTooth { min_s: 0.25, max_s: 0.75, period_s: 0.5, offset_s: 0.25 }];
+    tooth.network.schedule = Schedule::fixed(edges.clone());
+    tooth.network.delays = vec![Delay::new(SawTooth { min_s: 0.25, max_s: 0.75, period_s: 0.5, offset_s: 0.25 })];
     let link = PacketLink {
         every_s: 0.5,
         first_s: 0.0,
@@ -79,12 +79,12 @@ fn packets_without_jitter_are_the_saw_tooth_that_they_say() {
         seed: 1,
     };
     let mut packets = tooth.clone();
-    let trace = |(from, to)| Delay::Packets(link.trace((from, to), tooth.time.end_s).unwrap().into());
+    let trace = |(from, to)| Delay::new(link.trace((from, to), tooth.time.end_s).unwrap());
     packets.network.delays = edges.iter().map(|edge| trace((edge.from, edge.to))).collect();
     for (delay, edge) in edges.iter_mut().enumerate() {
         edge.delay = delay;
     }
-    packets.network.schedule = Schedule::Fixed(edges);
+    packets.network.schedule = Schedule::fixed(edges);
     let gap = difference(&run(&tooth), &run(&packets));
     println!("saw-tooth and packets differ by {gap:.1e}");
     assert!(gap < 1e-9, "{gap:e}");
@@ -95,8 +95,7 @@ fn a_weight_by_formula_is_the_number_that_it_says() {
     // A formula with t in it whose value never changes, on every other edge.
     let constant = case("15-order2-both-switching");
     let mut formula = constant.clone();
-    let Schedule::Periodic(phases) = &mut formula.network.schedule else { panic!("another schedule") };
-    for edge in phases.iter_mut().flat_map(|phase| &mut phase.edges).step_by(2) {
+    for edge in formula.network.schedule.graphs.iter_mut().flatten().step_by(2) {
         let weight = edge.weight.constant().unwrap();
         let still = Expression::variable(0) * 0.0 + weight;
         formula.network.weights.push(BoundedFormula::new(still, formula.time.end_s));
@@ -111,7 +110,7 @@ fn a_weight_by_formula_is_the_number_that_it_says() {
 #[test]
 fn what_ends_before_the_run_is_refused() {
     let mut setup = case("10-mixed-delays");
-    setup.network.delays[0] = Delay::Formula(BoundedFormula::new(swing(0.2, 0.1, 1.0, 0.0), 0.5).into());
+    setup.network.delays[0] = Delay::new(BoundedFormula::new(swing(0.2, 0.1, 1.0, 0.0), 0.5));
     let refused = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap_err().to_string();
     assert!(refused.contains("known until 0.5 s"), "{refused}");
 }

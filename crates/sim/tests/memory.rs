@@ -86,8 +86,8 @@ fn ring(damping: f64, delay_s: f64, end_s: f64, memory_budget_bytes: u64) -> Set
     let agents = vec![mass(1, 5.0), mass(2, damping), mass(3, 5.0)];
     let edge = |from, to| Edge { from, to, weight: Weight::Constant(1.0), delay: 0 };
     let network = Network {
-        schedule: Schedule::Fixed(vec![edge(0, 1), edge(1, 2), edge(2, 0)]),
-        delays: vec![Delay::Constant { s: delay_s }],
+        schedule: Schedule::fixed(vec![edge(0, 1), edge(1, 2), edge(2, 0)]),
+        delays: vec![Delay::constant(delay_s)],
         ..silent(3)
     };
     let mut setup = common::setup(agents, ReferenceKind::Consensus, network, end_s);

@@ -11,7 +11,7 @@ use forwardstep_core::robot::tree::{
     Axes, JointKind, LinkJoint, LinkPoint, LinkSpec, Placement, Tree, inertia_about_frame,
 };
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip, PointMass};
-use forwardstep_sim::delay::Delay;
+use forwardstep_sim::delay::{Delay, SawTooth};
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push, PushError, Table};
 use forwardstep_sim::schedule::Schedule;
@@ -59,7 +59,7 @@ fn alone(agents: Vec<AgentSetup>, end_s: f64) -> Setup {
     Setup {
         network: Network {
             agents: agents.len(),
-            schedule: Schedule::Fixed(Vec::new()),
+            schedule: Schedule::fixed(Vec::new()),
             delays: Vec::new(),
             weights: Vec::new(),
             coupling: Default::default(),
@@ -263,8 +263,8 @@ fn thm_lyapunov_books_balance_while_pushed() {
         agents[0].pushes = vec![push];
         let edge = |from, to| Edge { from, to, weight: 1.0.into(), delay: 0 };
         let mut setup = alone(agents, 4.0);
-        setup.network.schedule = Schedule::Fixed(vec![edge(0, 1), edge(1, 0)]);
-        setup.network.delays = vec![Delay::SawTooth { min_s: 0.1, max_s: 0.3, period_s: 0.4, offset_s: 0.0 }];
+        setup.network.schedule = Schedule::fixed(vec![edge(0, 1), edge(1, 0)]);
+        setup.network.delays = vec![Delay::new(SawTooth { min_s: 0.1, max_s: 0.3, period_s: 0.4, offset_s: 0.0 })];
         setup.exchange = Exchange::PositionVelocity;
         setup.solver.method = Method::Adaptive { rtol, atol: 1e-10 };
         let outcome = run(&setup);

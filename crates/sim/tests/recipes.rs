@@ -262,7 +262,7 @@ fn digest_packets_by_a_nonlinear_protocol_have_the_bits_of_the_simulator() {
         seed: 5,
     };
     setup.network = common::switching();
-    setup.network.delays = vec![Delay::Packets(Arc::new(link.trace((0, 1), 2.0).unwrap()))];
+    setup.network.delays = vec![Delay::new(link.trace((0, 1), 2.0).unwrap())];
     setup.network.coupling = Coupling::Saturated { limit: 0.05 };
     let counts = assert_same_bits("packets", &setup);
     assert!(counts.heard > 100 && counts.repeated > 100 && counts.late == 0, "{counts:?}");

@@ -77,7 +77,7 @@ fn regress_the_simulator_steps_the_agent_that_runs_on_a_robot() {
     setup.control = Some(control(256.0));
     // Exact in binary, so that rows and samples are the same instants.
     setup.time.record_every_s = 1.0 / 256.0;
-    setup.network.schedule = Schedule::Fixed(Vec::new());
+    setup.network.schedule = Schedule::fixed(Vec::new());
     let outcome = run(&setup);
 
     let agent = &setup.agents[0];
@@ -157,7 +157,7 @@ fn noise_is_the_same_for_the_same_seed_and_its_own_for_every_agent() {
         control.sensors = Sensors { position_noise: 1e-3, velocity_noise: 1e-2, seed, ..Sensors::default() };
         Some(control)
     };
-    setup.network.schedule = Schedule::Fixed(Vec::new());
+    setup.network.schedule = Schedule::fixed(Vec::new());
     setup.agents[1] = AgentSetup { name: setup.agents[1].name.clone(), ..setup.agents[0].clone() };
     let mut torques = |seed| {
         setup.control = with(seed);
@@ -211,9 +211,9 @@ fn regress_packets_that_arrive_at_a_sample_are_heard_at_it() {
             most_in_a_row: None,
             seed: 1,
         };
-        setup.network.delays = vec![Delay::Constant { s: latency_s }];
+        setup.network.delays = vec![Delay::constant(latency_s)];
         let constant = run(&setup);
-        setup.network.delays = vec![Delay::Packets(Arc::new(link.trace((0, 1), 2.0).unwrap()))];
+        setup.network.delays = vec![Delay::new(link.trace((0, 1), 2.0).unwrap())];
         assert_eq!(constant.recording, run(&setup).recording, "{sample_hz} Hz");
     }
 }
@@ -224,7 +224,7 @@ fn a_run_that_no_memory_holds_is_refused_before_it_begins() {
     for (sample_hz, end_s, delay_s) in [(1e300, 2.0, 0.0), (f64::NAN, 2.0, 0.0), (1e7, 2.0, 0.0), (9e3, 1e3, 1e9)] {
         setup.control = Some(control(sample_hz));
         setup.time.end_s = end_s;
-        setup.network.delays = vec![Delay::Constant { s: delay_s }];
+        setup.network.delays = vec![Delay::constant(delay_s)];
         // Many agents make messages large, and rows are few.
         let agents = if delay_s > 0.0 { 12 } else { 3 };
         setup.agents =

@@ -66,7 +66,7 @@ fn windows_of_phases_are_those_found_the_long_way_round() {
         let phases = draw.phases(agents);
         for repeats in [true, false] {
             let found = runs(&phases, agents, repeats);
-            let schedule = if repeats { Schedule::Periodic(phases.clone()) } else { Schedule::Once(phases.clone()) };
+            let schedule = if repeats { Schedule::periodic(phases.clone()) } else { Schedule::once(phases.clone()) };
             match schedule.window(agents, 100.0) {
                 Window::Uniform { length_s, worst_start_s, for_all_time, .. } => {
                     assert!(for_all_time, "a schedule of phases is known for ever");
@@ -91,7 +91,7 @@ fn windows_of_phases_are_those_found_the_long_way_round() {
 #[test]
 fn a_period_can_be_worst_from_its_last_phase() {
     let phase = |dwell_s, pairs: &[(usize, usize)]| Phase { edges: edges(pairs), dwell_s };
-    let schedule = Schedule::Periodic(vec![phase(3.0, &[(0, 1)]), phase(1.0, &[(0, 1), (1, 2)]), phase(2.0, &[])]);
+    let schedule = Schedule::periodic(vec![phase(3.0, &[(0, 1)]), phase(1.0, &[(0, 1), (1, 2)]), phase(2.0, &[])]);
     let Window::Uniform { length_s, worst_start_s, .. } = schedule.window(3, 100.0) else { panic!() };
     assert_eq!((length_s, worst_start_s), (6.0, 4.0), "from the last phase, over the turn of the period");
 }
@@ -100,7 +100,7 @@ fn a_period_can_be_worst_from_its_last_phase() {
 fn random_dwells_are_uniform_between_their_bounds_and_graphs_equally_likely() {
     let graphs = vec![edges(&[(0, 1)]), edges(&[(1, 0)]), edges(&[])];
     let (low, high) = (0.5, 2.5);
-    let schedule = Schedule::Random { graphs, dwell_s: [low, high], seed: 11 };
+    let schedule = Schedule::random(graphs, [low, high], 11);
     let drawn: Vec<Segment> = schedule.segments().take(9000).collect();
     let shares: Vec<f64> = drawn.iter().map(|s| (s.end_s - s.start_s - low) / (high - low)).collect();
     let n = shares.len() as f64;
@@ -119,6 +119,6 @@ fn random_dwells_are_uniform_between_their_bounds_and_graphs_equally_likely() {
     }
     // One follows the other without a gap.
     assert!(drawn.windows(2).all(|pair| pair[0].end_s == pair[1].start_s) && drawn[0].start_s == 0.0);
-    let fixed = Schedule::Random { graphs: vec![edges(&[])], dwell_s: [1.5, 1.5], seed: 1 };
+    let fixed = Schedule::random(vec![edges(&[])], [1.5, 1.5], 1);
     assert!(fixed.segments().take(20).enumerate().all(|(k, s)| s.end_s == 1.5 * (k + 1) as f64));
 }

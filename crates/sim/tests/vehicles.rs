@@ -102,7 +102,7 @@ fn val_vehicles_agree_with_an_independent_solver() {
     for design in [ThrustKind::Continuous, DIFFERENTIABLE, ADAPTIVE] {
         for in_formation in [false, true] {
             let mut setup = three(&vehicle(), design, in_formation, 6.0);
-            setup.network.delays = vec![Delay::Constant { s: 0.0 }];
+            setup.network.delays = vec![Delay::constant(0.0)];
             for agent in &mut setup.agents {
                 // z starts at zero in both programs; (46) has none.
                 agent.start.reference = vec![vec![0.0; 3]; if design.order() == 3 { 3 } else { 0 }];

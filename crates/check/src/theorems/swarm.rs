@@ -5,7 +5,6 @@ use forwardstep_core::Gain;
 use forwardstep_sim::Setup;
 use forwardstep_sim::graph::laplacian;
 use forwardstep_sim::leader::Following;
-use forwardstep_sim::schedule::Schedule;
 
 use crate::graphs::mutual_weights;
 use crate::hypothesis::{FollowingEvidence, Hypothesis, Id};
@@ -28,7 +27,7 @@ fn coupled(setup: &Setup, following: &Following, coupling: f64) -> FollowingEvid
     let kappa = 0.5 * (beta - root.max(0.0).sqrt());
     let least = beta + kappa * kappa * kappa * kappa / (2.0 * (beta * beta - alpha) * (beta - kappa));
     let n = setup.agents.len();
-    let Schedule::Fixed(edges) = &setup.network.schedule else { return FollowingEvidence::GraphSwitches };
+    let Some(edges) = setup.network.schedule.constant_graph() else { return FollowingEvidence::GraphSwitches };
     let Some(all) = laplacian(setup.network.agents, edges) else { return FollowingEvidence::WeightVaries };
     let mut shifted = Vec::with_capacity(n * n);
     for row in 0..n {

@@ -1,6 +1,6 @@
 //! Theorem 3 for (a5) and (24), of which (aa10) and Theorem 2's (a1) are members.
 
-use forwardstep_sim::graph::{Edge, strong_components};
+use forwardstep_sim::graph::strong_components;
 use forwardstep_sim::{Exchange, Setup};
 
 use super::{agreement, order};
@@ -54,11 +54,11 @@ fn common_order(setup: &Setup) -> Hypothesis {
 /// What agent i hears is α₀[(κ₀ⱼ/κ₀ᵢ) ψ_j + (1 − κ₀ⱼ/κ₀ᵢ) q_j]: a weighting that is only convex when κ₀ⱼ ≤ κ₀ᵢ along j → i.
 /// Around a cycle that means equality. With a fixed graph and constant delays p + κ₀ᵢ factors out and nothing is needed.
 pub(super) fn common_first_root(setup: &Setup) -> Hypothesis {
-    let graphs = setup.network.schedule.graphs();
+    let graphs = &setup.network.schedule.graphs;
     let constant_delays = setup.network.used_delays().all(|index| setup.network.delays[index].is_constant());
     let first_root = |agent: usize| setup.agents[agent].roots_per_s.first().copied().unwrap_or(f64::NAN);
     let named = |agent: usize| (Named::of(setup, agent), first_root(agent));
-    let edges: Vec<(usize, usize)> = graphs.iter().copied().flatten().map(|edge: &Edge| (edge.from, edge.to)).collect();
+    let edges: Vec<(usize, usize)> = graphs.iter().flatten().map(|edge| (edge.from, edge.to)).collect();
     let witness = strong_components(setup.network.agents, &edges).into_iter().find_map(|component| {
         let first = component[0];
         component.into_iter().find(|agent| first_root(*agent) != first_root(first)).map(|other| (first, other))

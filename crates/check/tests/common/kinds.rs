@@ -64,14 +64,14 @@ fn start(q: &[f64], dq: &[f64], rest: &[f64]) -> Start {
 /// It follows a target of its own.
 pub fn tracking(mut agent: AgentSetup, target: Vec<Path>) -> Setup {
     agent.target = Some(Trajectory::new(target).unwrap());
-    let mut setup = setup(vec![agent], Exchange::Position, Schedule::Fixed(Vec::new()), Vec::new(), 20.0);
+    let mut setup = setup(vec![agent], Exchange::Position, Schedule::fixed(Vec::new()), Vec::new(), 20.0);
     setup.reference = ReferenceKind::Tracking;
     setup
 }
 
 /// It agrees with nobody.
 pub fn alone(agent: AgentSetup) -> Setup {
-    setup(vec![agent], Exchange::Position, Schedule::Fixed(Vec::new()), Vec::new(), 20.0)
+    setup(vec![agent], Exchange::Position, Schedule::fixed(Vec::new()), Vec::new(), 20.0)
 }
 
 /// A mass of 2 kg without velocity, whose estimate starts at `estimate_start`.

@@ -57,6 +57,10 @@ fn cause(setup: &Setup, breakdown: &Breakdown) -> String {
                 setup.solver.memory_budget_bytes,
             )
         }
+        BreakdownCause::Delay { delay, at_s } => {
+            let words = setup.network.delays.get(*delay).map_or("a delay", |delay| delay.words());
+            format!("hears through {words} that, at t = {} s, leaves the bounds that its author declared", about(*at_s))
+        }
         BreakdownCause::RanAway { value, steps } => format!(
             "ran away: it is {value:.2e}, and {steps} steps did not reach the next sample; sample faster, or let K or the \
              delay of the torque be smaller"

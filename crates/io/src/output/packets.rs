@@ -13,8 +13,8 @@ use super::names::agent_name;
 /// The links that carry packets, as (sender, receiver, packets), in that order.
 pub(crate) fn links(network: &Network) -> Vec<(usize, usize, &Trace)> {
     let mut links: Vec<(usize, usize, &Trace)> = Vec::new();
-    for edge in network.schedule.graphs().into_iter().flatten() {
-        if let Some(Delay::Packets(trace)) = network.delays.get(edge.delay) {
+    for edge in network.schedule.graphs.iter().flatten() {
+        if let Some(trace) = network.delays.get(edge.delay).and_then(Delay::packets) {
             links.push((edge.from, edge.to, trace));
         }
     }

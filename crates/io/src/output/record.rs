@@ -58,7 +58,7 @@ impl Goal {
                 let grows = || super::disagreement::grows(setup, &outcome.recording);
                 match &outcome.ending {
                     Ending::BrokeDown(breakdown) => match breakdown.cause {
-                        BreakdownCause::PositionLimit { .. } => false,
+                        BreakdownCause::PositionLimit { .. } | BreakdownCause::Delay { .. } => false,
                         // Short steps alone are no divergence.
                         BreakdownCause::MemoryFull { .. } => grows(),
                         BreakdownCause::NotFinite

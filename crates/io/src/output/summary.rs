@@ -200,6 +200,13 @@ pub enum Cause {
         /// How fast the closed loop was.
         stiffness: Option<Rates>,
     },
+    /// A delay from outside was not what its author says.
+    Delay {
+        /// Index of the delay.
+        delay: usize,
+        /// When, s.
+        at_s: f64,
+    },
     /// Under digital control a velocity grew so far that steps no longer reached the next sample.
     RanAway {
         /// The velocity, rad/s or m/s.
@@ -394,6 +401,7 @@ impl How {
                     BreakdownCause::MemoryFull { step_s, need_bytes, stiffness } => {
                         Cause::MemoryFull { step_s, need_bytes, stiffness: stiffness.map(Rates::of) }
                     }
+                    BreakdownCause::Delay { delay, at_s } => Cause::Delay { delay, at_s },
                     BreakdownCause::RanAway { value, steps } => Cause::RanAway { value, steps },
                     BreakdownCause::Vanished { value, floor } => Cause::Vanished { value, floor },
                     BreakdownCause::PositionLimit { value, limits } => Cause::PositionLimit { value, limits },
@@ -425,6 +433,7 @@ impl How {
                     Cause::MemoryFull { step_s, need_bytes, stiffness } => {
                         BreakdownCause::MemoryFull { step_s, need_bytes, stiffness: stiffness.map(Rates::restore) }
                     }
+                    Cause::Delay { delay, at_s } => BreakdownCause::Delay { delay, at_s },
                     Cause::RanAway { value, steps } => BreakdownCause::RanAway { value, steps },
                     Cause::Vanished { value, floor } => BreakdownCause::Vanished { value, floor },
                     Cause::PositionLimit { value, limits } => {

@@ -1,6 +1,6 @@
 //! The network over time, for pictures: which graph is in force when, and how delays move.
 
-use forwardstep_sim::delay::Delay;
+use forwardstep_sim::delay::{Delay, DelayPiece};
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::network::Network;
 use forwardstep_sim::schedule::Segment;
@@ -14,7 +14,7 @@ const MOST_ARRIVALS: usize = 400;
 
 /// The schedule unrolled over [0, `until_s`].
 pub(crate) struct Timeline<'a> {
-    pub(crate) graphs: Vec<&'a [Edge]>,
+    pub(crate) graphs: &'a [Vec<Edge>],
     /// Which graph is in force when; cut at `until_s`.
     pub(crate) spans: Vec<Segment>,
     /// Jumps of the delays that edges use, rising; without arrivals of packets where these are very many.
@@ -35,16 +35,15 @@ impl<'a> Timeline<'a> {
             .map(|span| Segment { end_s: span.end_s.min(until_s), ..span })
             .collect();
         let used = || network.used_delays().map(|index| &network.delays[index]);
-        let arrivals: usize =
-            used().map(|delay| if let Delay::Packets(trace) = delay { trace.arrivals() } else { 0 }).sum();
-        let shown = used().filter(|delay| arrivals <= MOST_ARRIVALS || !matches!(delay, Delay::Packets(_)));
+        let arrived: usize = used().map(|delay| arrivals(delay, until_s)).sum();
+        let shown = used().filter(|delay| arrived <= MOST_ARRIVALS || delay.first_piece().held_s.is_none());
         let mut delay_jumps: Vec<f64> = shown.flat_map(|delay| jumps(delay, until_s)).collect();
         delay_jumps.sort_by(f64::total_cmp);
         delay_jumps.dedup();
         let cut = spans.len() > MOST_SPANS || delay_jumps.len() > MOST_SPANS;
         spans.truncate(MOST_SPANS);
         delay_jumps.truncate(MOST_SPANS);
-        Timeline { graphs: network.schedule.graphs(), spans, delay_jumps, push_edges: Vec::new(), cut }
+        Timeline { graphs: &network.schedule.graphs, spans, delay_jumps, push_edges: Vec::new(), cut }
     }
 
     /// The same with the edges of all pushes.
@@ -73,8 +72,18 @@ impl<'a> Timeline<'a> {
 
 /// Times in (0, `until_s`) at which a delay jumps, a little more than [`MOST_SPANS`] of them at most.
 fn jumps(delay: &Delay, until_s: f64) -> impl Iterator<Item = f64> + '_ {
-    let pieces = std::iter::successors(Some(delay.first_piece()), |piece| Some(delay.next_piece(*piece)));
-    pieces.map(|piece| piece.end_s).take_while(move |end_s| *end_s < until_s).take(MOST_SPANS + 1)
+    pieces(delay).map(|piece| piece.end_s).take_while(move |end_s| *end_s < until_s).take(MOST_SPANS + 1)
+}
+
+/// How many messages are held one after another until `until_s`, as far as they are counted.
+fn arrivals(delay: &Delay, until_s: f64) -> usize {
+    let pieces = pieces(delay).take_while(|piece| piece.held_s.is_some() && piece.start_s <= until_s);
+    pieces.filter(|piece| piece.held_s.is_some_and(f64::is_finite)).take(MOST_ARRIVALS + 1).count()
+}
+
+fn pieces(delay: &Delay) -> impl Iterator<Item = DelayPiece> + '_ {
+    let next = |piece: &DelayPiece| piece.end_s.is_finite().then(|| delay.next_piece(*piece));
+    std::iter::successors(Some(delay.first_piece()), next)
 }
 
 /// Delays sampled on common times; at a jump there are two samples at the same time.
@@ -89,7 +98,7 @@ pub(crate) fn sample_delays(delays: &[Delay], jumps: &[f64], until_s: f64) -> (V
     places.retain(|(t, side)| *side != 0.0 || jumps.binary_search_by(|jump| jump.total_cmp(t)).is_err());
     let spacing_s = until_s / SAMPLES as f64;
     let sampled = |delay: &Delay| -> Vec<f32> {
-        let dense = matches!(delay, Delay::Packets(trace) if trace.arrivals() > MOST_ARRIVALS);
+        let dense = arrivals(delay, until_s) > MOST_ARRIVALS;
         let value = |(place, (t, side)): (usize, &(f64, f64))| {
             if dense { extreme(delay, *t, spacing_s, place % 2 == 0) } else { delay.value((t + side).max(0.0)) }
         };
@@ -120,6 +129,7 @@ fn extreme(delay: &Delay, t_s: f64, spacing_s: f64, largest: bool) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use forwardstep_sim::delay::{PiecewiseConstant, SawTooth};
     use forwardstep_sim::schedule::{Phase, Schedule};
 
     fn network(schedule: Schedule, delay: Delay) -> Network {
@@ -136,24 +146,24 @@ mod tests {
 
     #[test]
     fn schedules_are_unrolled_up_to_the_end() {
-        let constant = Delay::Constant { s: 0.1 };
-        let periodic = network(Schedule::Periodic(vec![phase(1.0), phase(2.0)]), constant.clone());
+        let constant = Delay::constant(0.1);
+        let periodic = network(Schedule::periodic(vec![phase(1.0), phase(2.0)]), constant.clone());
         let timeline = Timeline::of(&periodic, 5.0);
         assert_eq!(starts(&timeline), [(0.0, 0), (1.0, 1), (3.0, 0), (4.0, 1)]);
         assert_eq!(timeline.spans[3].end_s, 5.0);
         assert_eq!(timeline.break_points(), [1.0, 3.0, 4.0]);
 
-        let once = network(Schedule::Once(vec![phase(1.0), phase(2.0)]), constant.clone());
+        let once = network(Schedule::once(vec![phase(1.0), phase(2.0)]), constant.clone());
         assert_eq!(starts(&Timeline::of(&once, 5.0)), [(0.0, 0), (1.0, 1)]);
 
-        let random = Schedule::Random { graphs: vec![vec![], vec![]], dwell_s: [0.1, 0.2], seed: 1 };
+        let random = Schedule::random(vec![vec![], vec![]], [0.1, 0.2], 1);
         let random = network(random, constant);
         assert!((25..=50).contains(&Timeline::of(&random, 5.0).spans.len()));
     }
 
     #[test]
     fn schedules_that_hardly_move_on_are_cut() {
-        let network = network(Schedule::Periodic(vec![phase(1e-9)]), Delay::Constant { s: 0.0 });
+        let network = network(Schedule::periodic(vec![phase(1e-9)]), Delay::constant(0.0));
         let timeline = Timeline::of(&network, 1e6);
         assert!(timeline.cut && timeline.spans.len() == MOST_SPANS);
     }
@@ -169,8 +179,8 @@ mod tests {
             most_in_a_row: None,
             seed: 1,
         };
-        let delay = Delay::Packets(link.trace((0, 1), 100.0).unwrap().into());
-        let network = network(Schedule::Fixed(phase(1.0).edges), delay.clone());
+        let delay = Delay::new(link.trace((0, 1), 100.0).unwrap());
+        let network = network(Schedule::fixed(phase(1.0).edges), delay.clone());
         let timeline = Timeline::of(&network, 100.0);
         assert!(timeline.delay_jumps.is_empty() && !timeline.cut);
         let (t_s, values) = sample_delays(&[delay], &timeline.delay_jumps, 100.0);
@@ -183,9 +193,10 @@ mod tests {
 
     #[test]
     fn delays_jump_where_they_should() {
-        let saw = Delay::SawTooth { min_s: 0.1, max_s: 0.5, period_s: 2.0, offset_s: 0.5 };
+        let saw = Delay::new(SawTooth { min_s: 0.1, max_s: 0.5, period_s: 2.0, offset_s: 0.5 });
         assert_eq!(jumps(&saw, 6.0).collect::<Vec<_>>(), [1.5, 3.5, 5.5]);
-        let steps = Delay::PiecewiseConstant { times_s: vec![0.0, 1.0], values_s: vec![0.2, 0.4], period_s: Some(3.0) };
+        let steps =
+            Delay::new(PiecewiseConstant { times_s: vec![0.0, 1.0], values_s: vec![0.2, 0.4], period_s: Some(3.0) });
         assert_eq!(jumps(&steps, 5.0).collect::<Vec<_>>(), [1.0, 3.0, 4.0]);
         let (t_s, values) = sample_delays(&[saw], &[1.5, 3.5, 5.5], 6.0);
         let at = t_s.iter().position(|t| *t == 1.5).unwrap();

@@ -15,10 +15,12 @@ use toml::Spanned;
 use toml::de::{DeInteger, DeString, DeTable, DeValue};
 
 use super::at::AT;
+use super::document::Node;
 use super::edges_file::LIST_OR_CHOICE;
 use super::fault::{Fault, LARGEST};
 use super::file::{LAW, ROBOT};
 use super::kinds::Kinds;
+use super::network_file::{DELAY, SWITCHING};
 use super::value_problem::ValueProblem;
 use crate::diagnostic::breaks_lines;
 
@@ -237,6 +239,11 @@ impl<'de> Deserializer<'de> for ValueDe<'_, '_> {
             self.kind(self.kinds.robot(self), visitor)
         } else if name == LAW {
             self.kind(self.kinds.law(self), visitor)
+        } else if name == SWITCHING {
+            self.kind(self.kinds.schedule(self), visitor)
+        } else if name == DELAY {
+            self.kinds.delay(self).map_err(|fault| fault.at(&self.value.span()))?;
+            visitor.visit_u64(Node::of(self.value).0)
         } else if name == LIST_OR_CHOICE && !matches!(self.value.get_ref(), DeValue::Table(_)) {
             self.deserialize_any(visitor)
         } else {

@@ -1,5 +1,7 @@
 //! The tree of a scenario file: read once as a whole, and again where a kind has a table of its own.
 
+use std::collections::HashMap;
+
 use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -7,6 +9,7 @@ use toml::de::{DeTable, DeValue};
 use super::de::ValueDe;
 use super::fault::Fault;
 use super::file::ScenarioFile;
+use super::kinds::schedules::ScheduleKind;
 use super::kinds::{Kinds, LawKind, RobotKind};
 use super::value_problem::ValueProblem;
 use crate::SourceText;
@@ -15,6 +18,19 @@ use crate::SourceText;
 pub(super) struct Document<'i> {
     root: Spanned<DeValue<'i>>,
 }
+
+/// Which node of the tree of a file it is: its place in memory, where it stays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Node(pub(super) u64);
+
+impl Node {
+    pub(super) fn of(value: &Spanned<DeValue<'_>>) -> Node {
+        Node(std::ptr::from_ref(value).addr() as u64)
+    }
+}
+
+/// Tables in the tree of a file.
+pub(super) type Tables<'a, 'i> = HashMap<Node, &'a Spanned<DeValue<'i>>>;
 
 /// A law with its key.
 pub(super) type KeyedLaw = (&'static str, Box<dyn LawKind>);
@@ -56,6 +72,31 @@ impl<'i> Document<'i> {
         let own = self.entry(entry).and_then(|entry| entry.get_ref().get("law"));
         let law = own.or_else(|| self.root.get_ref().get("law"));
         law.map(|value| kinds.law(ValueDe { value, kinds })).transpose()
+    }
+
+    /// How the phases of the network follow each other, if it says so.
+    pub(super) fn switching(&self, kinds: &Kinds) -> Result<Option<Box<dyn ScheduleKind>>, Fault> {
+        let value = self.root.get_ref().get("network").and_then(|network| network.get_ref().get("switching"));
+        value.map(|value| kinds.schedule(ValueDe { value, kinds }).map(|(_, switching)| switching)).transpose()
+    }
+
+    /// All tables of the network.
+    pub(super) fn network_tables(&self) -> Tables<'_, 'i> {
+        fn collect<'a, 'i>(value: &'a Spanned<DeValue<'i>>, tables: &mut Tables<'a, 'i>) {
+            match value.get_ref() {
+                DeValue::Table(table) => {
+                    tables.insert(Node::of(value), value);
+                    table.values().for_each(|value| collect(value, tables));
+                }
+                DeValue::Array(list) => list.iter().for_each(|value| collect(value, tables)),
+                _ => {}
+            }
+        }
+        let mut tables = Tables::new();
+        if let Some(network) = self.root.get_ref().get("network") {
+            collect(network, &mut tables);
+        }
+        tables
     }
 
     fn entry(&self, entry: usize) -> Option<&Spanned<DeValue<'i>>> {

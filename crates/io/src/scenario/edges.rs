@@ -9,7 +9,8 @@ use forwardstep_sim::topology::{Along, Spokes, Topology};
 use super::at::At;
 use super::edges_file::{AlongDirection, AlongFile, CsvFile, EdgeFile, EdgesFile, RuleFile, StarDirection, StarFile};
 use super::fault::{Fault, fault, filled, not_negative, seed};
-use super::links::{DelayPlan, cell_weight};
+use super::kinds::delays::DelayPlan;
+use super::links::cell_weight;
 use super::links_file::WeightFile;
 use super::network::NetworkReader;
 use super::network_file::DelayFile;
@@ -194,8 +195,7 @@ fn edges_of(text: &str) -> Result<Vec<At<EdgeFile>>, Fault> {
     let mut edges = Vec::with_capacity(rows.len());
     for At { value: [from, to, weight, delay_s], span } in rows {
         let delay = cell_number(&delay_s)?.map(|delay_s| {
-            not_negative("delay_s", &delay_s)?;
-            Ok(At { span: delay_s.span.clone(), value: DelayFile::ConstantS(delay_s) })
+            Ok(At { value: DelayFile::Constant(not_negative("delay_s", &delay_s)?), span: delay_s.span })
         });
         let edge = EdgeFile {
             from: At { value: from.value.into_owned(), span: from.span },

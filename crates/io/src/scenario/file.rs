@@ -132,10 +132,12 @@ macro_rules! kind {
     };
 }
 
+pub(super) use kind;
+
 kind!(RobotFile, ROBOT, "RobotFile");
 kind!(LawFile, LAW, "LawFile");
 
-struct KeyVisitor;
+pub(super) struct KeyVisitor;
 
 impl Visitor<'_> for KeyVisitor {
     type Value = String;

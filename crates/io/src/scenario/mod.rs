@@ -229,8 +229,10 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
     let (reference, exchange) = reference(&file.reference.value, following)?;
     let vertices = (&names[..], agents.len());
     let network = match &file.network {
-        Some(network) => network::network(&network.value, vertices, end_s, source, &mut folder, &mut notices)
-            .map_err(|fault| fault.at(&network.span))?,
+        Some(network) => {
+            network::network(&network.value, (&document, kinds), vertices, end_s, source, &mut folder, &mut notices)
+                .map_err(|fault| fault.at(&network.span))?
+        }
         None if reference == ReferenceKind::Tracking => Network::silent(names.len()),
         None => return Err(fault(&file.reference, NetworkProblem::Missing).into()),
     };

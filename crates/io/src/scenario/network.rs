@@ -1,21 +1,27 @@
 //! `[network]` → [`Network`].
 
 use std::collections::HashMap;
-use std::f64::consts::TAU;
+use std::fmt;
 use std::ops::Range;
 
 use forwardstep_sim::Network;
 use forwardstep_sim::coupling::Coupling;
-use forwardstep_sim::delay::Delay;
+use forwardstep_sim::delay::{Constant, Delay};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
-use forwardstep_sim::schedule::{Phase, Schedule};
+use forwardstep_sim::schedule::Schedule;
 
 use super::at::At;
-use super::fault::{Fault, fault, filled, not_negative, positive, seed, values};
+use super::de::ValueDe;
+use super::document::{Document, Tables};
+use super::fault::{Fault, fault, filled, positive};
 use super::inputs::InputFolder;
-use super::links::{self, DelayPlan, Links};
-use super::network_file::{CouplingFile, DelayFile, NetworkFile, PhaseFile, SwitchingFile};
+use super::kinds::Kinds;
+use super::kinds::delays::DelayPlan;
+use super::kinds::schedules::ScheduleKind;
+use super::kinds::schedules::repeat::RepeatFile;
+use super::links::Links;
+use super::network_file::{CouplingFile, DelayFile, NetworkFile, PhaseFile};
 use super::network_problem::NetworkProblem;
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
@@ -29,6 +35,7 @@ const MOST_EVENTS: f64 = 1e7;
 /// for.
 pub(super) fn network(
     file: &NetworkFile,
+    (document, kinds): (&Document<'_>, &Kinds),
     (names, agents): (&[String], usize),
     end_s: f64,
     source: &SourceText,
@@ -40,11 +47,13 @@ pub(super) fn network(
         agents,
         index: names.iter().enumerate().map(|(k, name)| (name.as_str(), k)).collect(),
         weight: Weight::Constant(1.0),
-        default_delay: DelayPlan::Shared(Delay::Constant { s: 0.0 }),
+        default_delay: DelayPlan::Shared(Delay::constant(0.0)),
         delays: Vec::new(),
         constants: HashMap::new(),
         weights: Vec::new(),
         links: Links::default(),
+        tables: document.network_tables(),
+        kinds,
         edges_so_far: 0,
         end_s,
         source,
@@ -61,9 +70,12 @@ pub(super) fn network(
         (None, None) => return Err(Fault::new(NetworkProblem::NoGraph)),
         (Some(edges), None) => match &file.switching {
             Some(switching) => return Err(fault(switching, NetworkProblem::NothingToSwitch)),
-            None => Schedule::Fixed(reader.edges(edges)?),
+            None => Schedule::fixed(reader.edges(edges)?),
         },
-        (None, Some(phases)) => reader.schedule(phases, file.switching.as_ref(), notices)?,
+        (None, Some(phases)) => {
+            let switching = document.switching(kinds)?;
+            reader.schedule(phases, switching.as_deref().unwrap_or(&RepeatFile), notices)?
+        }
     };
     reader.link_notices(notices);
     let coupling = file.coupling.as_ref().map_or(Ok(Coupling::Linear), coupling)?;
@@ -79,7 +91,7 @@ fn coupling(file: &At<CouplingFile>) -> Result<Coupling, Fault> {
 }
 
 /// What is known while a network is read.
-pub(super) struct NetworkReader<'a> {
+pub struct NetworkReader<'a> {
     pub(super) names: &'a [String],
     /// How many of them are agents; a leader comes after them.
     pub(super) agents: usize,
@@ -94,6 +106,9 @@ pub(super) struct NetworkReader<'a> {
     pub(super) weights: Vec<BoundedFormula>,
     /// What single edges have of their own so far.
     pub(super) links: Links,
+    /// The tables of kinds, as they are written.
+    tables: Tables<'a, 'a>,
+    kinds: &'a Kinds,
     /// Edges by rule and from tables so far.
     pub(super) edges_so_far: u64,
     pub(super) end_s: f64,
@@ -101,57 +116,39 @@ pub(super) struct NetworkReader<'a> {
     pub(super) folder: &'a mut InputFolder,
 }
 
+impl fmt::Debug for NetworkReader<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("NetworkReader").field("names", &self.names).field("end_s", &self.end_s).finish_non_exhaustive()
+    }
+}
+
 impl NetworkReader<'_> {
     fn schedule(
         &mut self,
         phases: &At<Vec<At<PhaseFile>>>,
-        switching: Option<&At<SwitchingFile>>,
+        switching: &dyn ScheduleKind,
         notices: &mut Vec<Notice>,
     ) -> Result<Schedule, Fault> {
         let list = filled("phases", phases)?;
-        let switching = switching.map_or(&SwitchingFile::Repeat, |switching| &switching.value);
-        let mut unused = |phase: &At<PhaseFile>| {
-            if let Some(dwell) = &phase.value.dwell_s {
-                let (line, _) = self.source.line_column(dwell.span.start);
-                notices.push(Notice::UnusedDwell { line });
-            }
-        };
-        if let SwitchingFile::Random(random) = switching {
-            list.iter().for_each(&mut unused);
-            let [low, high] = &random.dwell_s.value;
-            let dwell_s = [positive("dwell_s", low)?, positive("dwell_s", high)?];
-            if dwell_s[0] > dwell_s[1] {
-                let problem = ValueProblem::Interval { key: "dwell_s", low: dwell_s[0], high: dwell_s[1] };
-                return Err(fault(&random.dwell_s, problem));
-            }
-            self.few("switches", 2.0 * self.end_s / (dwell_s[0] + dwell_s[1]), &random.dwell_s.span)?;
-            let graphs = list.iter().map(|phase| self.edges(&phase.value.edges)).collect::<Result<_, _>>()?;
-            return Ok(Schedule::Random { graphs, dwell_s, seed: seed(&random.seed)? });
-        }
-        let once = matches!(switching, SwitchingFile::Once);
-        if let (true, Some(last)) = (once, list.last()) {
-            unused(last);
-        }
-        let mut read = Vec::with_capacity(list.len());
-        for (k, phase) in list.iter().enumerate() {
-            let dwell_s = match &phase.value.dwell_s {
-                Some(dwell) => positive("dwell_s", dwell)?,
-                // It stays for ever; the number is not used.
-                None if once && k + 1 == list.len() => self.end_s,
-                None => return Err(fault(phase, NetworkProblem::NoDwell { phase: k + 1 })),
-            };
-            read.push(Phase { edges: self.edges(&phase.value.edges)?, dwell_s });
-        }
-        if once {
-            return Ok(Schedule::Once(read));
-        }
-        let round_s: f64 = read.iter().map(|phase| phase.dwell_s).sum();
-        self.few("switches", self.end_s / round_s * read.len() as f64, &phases.span)?;
-        Ok(Schedule::Periodic(read))
+        let graphs = list.iter().map(|phase| self.edges(&phase.value.edges)).collect::<Result<_, _>>()?;
+        switching.schedule(graphs, &mut PhaseReader { network: self, phases, notices })
     }
 
-    /// Refuses events that no run could land on.
-    fn few(&self, what: &'static str, events: f64, span: &Range<usize>) -> Result<(), Fault> {
+    /// The end of the run, s.
+    pub fn end_s(&self) -> f64 {
+        self.end_s
+    }
+
+    /// The files that the scenario names.
+    pub fn folder(&mut self) -> &mut InputFolder {
+        self.folder
+    }
+
+    /// Refuses events that no run could land on; `span` is what is to blame.
+    ///
+    /// # Errors
+    /// [`ScenarioProblem::TooManyEvents`].
+    pub fn few(&self, what: &'static str, events: f64, span: &Range<usize>) -> Result<(), Fault> {
         if events <= MOST_EVENTS {
             return Ok(());
         }
@@ -161,10 +158,10 @@ impl NetworkReader<'_> {
     /// Equal delays share an entry, so that a message to several receivers is looked up once.
     pub(super) fn delay_index(&mut self, delay: Delay) -> usize {
         let next = self.delays.len();
-        let index = match &delay {
+        let index = match delay.downcast() {
             // A table may give every edge another.
-            Delay::Constant { s } => *self.constants.entry((s + 0.0).to_bits()).or_insert(next),
-            _ => self.delays.iter().position(|known| *known == delay).unwrap_or(next),
+            Some(Constant { s }) => *self.constants.entry((s + 0.0).to_bits()).or_insert(next),
+            None => self.delays.iter().position(|known| *known == delay).unwrap_or(next),
         };
         if index == next {
             self.delays.push(delay);
@@ -172,74 +169,61 @@ impl NetworkReader<'_> {
         index
     }
 
-    /// A delay that no other edge has.
-    pub(super) fn new_delay(&mut self, delay: Delay) -> usize {
-        self.delays.push(delay);
-        self.delays.len() - 1
-    }
-
     /// What a delay says, with everything checked that does not depend on the edge.
     pub(super) fn plan(&mut self, delay: &At<DelayFile>) -> Result<DelayPlan, Fault> {
-        let shared = match &delay.value {
-            DelayFile::RandomHold(file) => return links::random_hold(file),
-            DelayFile::Packets(file) => return links::packets(file),
-            DelayFile::Log(file) => return self.log(file),
-            DelayFile::FormulaS(text) => self.formula_delay(text)?,
-            DelayFile::ConstantS(s) => Delay::Constant { s: not_negative("constant_s", s)? },
-            DelayFile::Sinusoid(file) => {
-                let mean_s = not_negative("mean_s", &file.mean_s)?;
-                let amplitude_s = not_negative("amplitude_s", &file.amplitude_s)?;
-                if amplitude_s > mean_s {
-                    return Err(fault(&file.amplitude_s, NetworkProblem::Amplitude { amplitude_s, mean_s }));
-                }
-                let period_s = positive("period_s", &file.period_s)?;
-                self.few("swings of the delay", self.end_s / period_s, &file.period_s.span)?;
-                Delay::Sinusoid { mean_s, amplitude_s, period_s, phase_rad: file.phase_rad.rem_euclid(TAU) }
-            }
-            DelayFile::PiecewiseConstant(file) => {
-                let times_s = filled("times_s", &file.times_s)?;
-                if let Some(first) = times_s.first()
-                    && first.value != 0.0
-                {
-                    return Err(fault(first, NetworkProblem::TimesBegin { first_s: first.value }));
-                }
-                for pair in times_s.windows(2) {
-                    let (before_s, after_s) = (pair[0].value, pair[1].value);
-                    if before_s >= after_s {
-                        return Err(fault(&pair[1], NetworkProblem::TimesRise { before_s, after_s }));
-                    }
-                }
-                let (times, number) = (times_s.len(), file.values_s.value.len());
-                if times != number {
-                    return Err(fault(&file.values_s, NetworkProblem::TimesAndValues { times, values: number }));
-                }
-                for value in &file.values_s.value {
-                    not_negative("values_s", value)?;
-                }
-                let period_s = file.period_s.as_ref().map(|period| positive("period_s", period)).transpose()?;
-                if let (Some(place), Some(period_s), Some(last)) = (&file.period_s, period_s, times_s.last()) {
-                    if period_s <= last.value {
-                        let problem = NetworkProblem::PeriodTooShort { period_s, last_s: last.value };
-                        return Err(fault(place, problem));
-                    }
-                    self.few("jumps of the delay", self.end_s / period_s * times as f64, &place.span)?;
-                }
-                let (times_s, values_s) = (values(times_s), values(&file.values_s.value));
-                Delay::PiecewiseConstant { times_s, values_s, period_s }
-            }
-            DelayFile::SawTooth(file) => {
-                let min_s = not_negative("min_s", &file.min_s)?;
-                let max_s = not_negative("max_s", &file.max_s)?;
-                if min_s > max_s {
-                    return Err(fault(&file.min_s, NetworkProblem::SawTooth { min_s, max_s }));
-                }
-                let period_s = positive("period_s", &file.period_s)?;
-                self.few("jumps of the delay", self.end_s / period_s, &file.period_s.span)?;
-                // The same tooth, and no precision lost to a large offset.
-                let offset_s = file.offset_s.rem_euclid(period_s);
-                Delay::SawTooth { min_s, max_s, period_s, offset_s }
-            }
+        let table = match delay.value {
+            DelayFile::Constant(s) => return Ok(DelayPlan::Shared(Delay::constant(s))),
+            DelayFile::Kind(node) => self.tables.get(&node),
         };
-        Ok(DelayPlan::Shared(shared))
+        let Some(value) = table else { return Err(fault(delay, ValueProblem::MissingKey { key: "delay" })) };
+        let (_, kind) = self.kinds.delay(ValueDe { value, kinds: self.kinds })?;
+        kind.plan(self).map_err(|fault| fault.at(&delay.span))
+    }
+}
+
+/// The phases of a network that switches, for the kind of switching that takes them.
+#[derive(Debug)]
+pub struct PhaseReader<'a, 'n> {
+    network: &'a mut NetworkReader<'n>,
+    phases: &'a At<Vec<At<PhaseFile>>>,
+    notices: &'a mut Vec<Notice>,
+}
+
+impl<'n> PhaseReader<'_, 'n> {
+    /// The network that they are part of.
+    pub fn network(&mut self) -> &mut NetworkReader<'n> {
+        self.network
+    }
+
+    /// How many there are; never none.
+    pub fn count(&self) -> usize {
+        self.phases.value.len()
+    }
+
+    /// Where they stand.
+    pub fn span(&self) -> &Range<usize> {
+        &self.phases.span
+    }
+
+    /// How long a phase, counted from zero, lasts.
+    ///
+    /// # Errors
+    /// The mistake at its place, or that the phase does not say so.
+    pub fn dwell_s(&self, phase: usize) -> Result<f64, Fault> {
+        let missing = || Fault::new(NetworkProblem::NoDwell { phase: phase + 1 }).at(&self.phases.span);
+        let place = self.phases.value.get(phase).ok_or_else(missing)?;
+        match &place.value.dwell_s {
+            Some(dwell) => positive("dwell_s", dwell),
+            None => Err(fault(place, NetworkProblem::NoDwell { phase: phase + 1 })),
+        }
+    }
+
+    /// Tells the author of the file that how long this phase lasts is not used, if it says so.
+    pub fn unused_dwell(&mut self, phase: usize) {
+        let dwell = self.phases.value.get(phase).and_then(|phase| phase.value.dwell_s.as_ref());
+        if let Some(dwell) = dwell {
+            let (line, _) = self.network.source.line_column(dwell.span.start);
+            self.notices.push(Notice::UnusedDwell { line });
+        }
     }
 }

@@ -1,12 +1,22 @@
 //! The `[network]` of a scenario file as it is written.
 
-use schemars::JsonSchema;
+use std::borrow::Cow;
+use std::fmt;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
+use serde::de::{Deserializer, Visitor};
 
 use super::at::At;
+use super::document::Node;
 use super::edges_file::EdgesFile;
-use super::links_file::{LogFile, PacketsFile, RandomHoldFile, WeightFile};
-use super::values::{NotNegative, Positive};
+use super::file::{KeyVisitor, kind};
+use super::links_file::WeightFile;
+use super::values::Positive;
+
+/// The names under which [`SwitchingFile`] and [`DelayFile`] ask their deserialiser for a kind.
+pub(super) const SWITCHING: &str = "$forwardstep::Switching";
+pub(super) const DELAY: &str = "$forwardstep::Delay";
 
 /// Who hears whom, when, and how late: one graph (`edges`) or several in turn (`phases`).
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -52,100 +62,48 @@ pub struct PhaseFile {
     pub edges: At<EdgesFile>,
 }
 
-/// How the phases of a network follow each other.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum SwitchingFile {
-    /// In turn, again and again.
-    Repeat,
-    /// In turn; the last one stays for ever.
-    Once,
-    /// Drawn at random.
-    Random(RandomSwitchingFile),
+/// How the phases of a network follow each other: the key of a kind, whose table stays in the tree of the file.
+#[derive(Clone, Debug)]
+pub struct SwitchingFile {
+    /// The key.
+    pub key: String,
 }
 
-/// At every switch one of the phases is drawn, each equally likely.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RandomSwitchingFile {
-    /// The same seed gives the same switches, always.
-    #[schemars(range(min = 0))]
-    pub seed: At<i64>,
-    /// Shortest and longest dwell, in s.
-    #[schemars(with = "[Positive; 2]")]
-    pub dwell_s: At<[At<f64>; 2]>,
-}
+kind!(SwitchingFile, SWITCHING, "SwitchingFile");
 
 /// How old a message is when it is heard.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[derive(Clone, Copy, Debug)]
 pub enum DelayFile {
-    /// Always the same, in s.
-    ConstantS(#[schemars(with = "NotNegative")] At<f64>),
-    /// mean + amplitude · sin(2π t / period + phase).
-    Sinusoid(SinusoidFile),
-    /// Jumps from value to value.
-    PiecewiseConstant(PiecewiseConstantFile),
-    /// Rises from min to max over every period, then drops.
-    SawTooth(SawToothFile),
-    /// A formula in t, in s, such as "0.2 + 0.1*sin(2*pi*t/3)"; it must be shown not to become negative. It may contain
-    /// t, pi, e, + - * / ^, sin, cos, exp, log, sqrt, abs, tanh, atan, min and max.
-    FormulaS(At<String>),
-    /// Random values, each held for a random time.
-    RandomHold(RandomHoldFile),
-    /// Packets that are late, lost and overtaken; the newest that has arrived is heard.
-    Packets(PacketsFile),
-    /// Packets replayed from a CSV file.
-    Log(LogFile),
+    /// The table of a kind stays in the tree of the file, as this node.
+    Kind(Node),
+    /// Always the same, in s: from a table of edges.
+    Constant(f64),
 }
 
-/// A delay that swings.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SinusoidFile {
-    /// In s.
-    #[schemars(range(min = 0))]
-    pub mean_s: At<f64>,
-    /// In s; at most the mean.
-    #[schemars(range(min = 0))]
-    pub amplitude_s: At<f64>,
-    /// In s.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub period_s: At<f64>,
-    /// In rad. Default: 0.
-    #[serde(default)]
-    pub phase_rad: f64,
+impl<'de> Deserialize<'de> for DelayFile {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NodeVisitor;
+        impl Visitor<'_> for NodeVisitor {
+            type Value = DelayFile;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a table with one key")
+            }
+
+            fn visit_u64<E>(self, node: u64) -> Result<DelayFile, E> {
+                Ok(DelayFile::Kind(Node(node)))
+            }
+        }
+        deserializer.deserialize_newtype_struct(DELAY, NodeVisitor)
+    }
 }
 
-/// A delay that jumps.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PiecewiseConstantFile {
-    /// When each value begins, in s; rising from 0.
-    #[schemars(with = "Vec<NotNegative>", length(min = 1))]
-    pub times_s: At<Vec<At<f64>>>,
-    /// The values, in s; as many as times.
-    #[schemars(with = "Vec<NotNegative>", length(min = 1))]
-    pub values_s: At<Vec<At<f64>>>,
-    /// Begin again after this long, in s. Default: the last value stays.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub period_s: Option<At<f64>>,
-}
+impl JsonSchema for DelayFile {
+    fn schema_name() -> Cow<'static, str> {
+        "DelayFile".into()
+    }
 
-/// A delay that rises and drops.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SawToothFile {
-    /// In s.
-    #[schemars(range(min = 0))]
-    pub min_s: At<f64>,
-    /// In s.
-    #[schemars(range(min = 0))]
-    pub max_s: At<f64>,
-    /// In s.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub period_s: At<f64>,
-    /// How far the first tooth has come at t = 0, in s. Default: 0.
-    #[serde(default)]
-    pub offset_s: f64,
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "object" })
+    }
 }

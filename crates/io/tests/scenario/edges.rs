@@ -5,7 +5,7 @@ use std::path::Path;
 use forwardstep_io::SourceText;
 use forwardstep_io::scenario::{Scenario, ScenarioError, read_scenario};
 use forwardstep_sim::Network;
-use forwardstep_sim::delay::Delay;
+use forwardstep_sim::delay::{Delay, SawTooth};
 use forwardstep_sim::graph::{SpanningTree, neighbours, spanning_tree};
 use miette::Diagnostic;
 use tempfile::TempDir;
@@ -169,8 +169,8 @@ fn equal_delays_of_a_table_are_one() {
     let (_folder, scenario) =
         tabled("from,to,delay_s\narm-1,arm-2,0.2\narm-2,arm-1,0.20\ncart,arm-1,0\narm-1,cart,-0\n");
     let delays = scenario.unwrap_or_else(|error| panic!("{error}")).setup.network.delays;
-    assert_eq!(delays[..2], [Delay::Constant { s: 0.2 }, Delay::Constant { s: 0.0 }]);
-    assert!(matches!(delays[2..], [Delay::SawTooth { .. }]), "that of the other phase: {delays:?}");
+    assert_eq!(delays[..2], [Delay::constant(0.2), Delay::constant(0.0)]);
+    assert!(delays.len() == 3 && delays[2].downcast::<SawTooth>().is_some(), "that of the other phase: {delays:?}");
 }
 
 /// A table, the first line of the error after the folder, and a part of the help.

@@ -3,8 +3,8 @@
 use forwardstep_core::Gain;
 use forwardstep_core::robot::PlanarArm;
 use forwardstep_io::scenario::Goal;
-use forwardstep_sim::delay::Delay;
-use forwardstep_sim::schedule::Schedule;
+use forwardstep_sim::delay::{Delay, PiecewiseConstant, SawTooth, Sinusoid};
+use forwardstep_sim::schedule::{Once, Periodic, RandomSwitching};
 use forwardstep_sim::{Adaptive, Exchange, Known, Method, Setup};
 
 use super::{SOUND, changed, read};
@@ -34,10 +34,11 @@ fn the_sound_scenario_is_read_as_written() {
         Some(&Adaptive { damping: Gain::Number(8.0), adaptation: Gain::Number(10.0), estimate_start: vec![0.0; 5] })
     );
     assert_eq!((cart.start.q.as_slice(), cart.robot.theta.as_slice()), ([0.0, 0.0].as_slice(), [4.0].as_slice()));
-    let Schedule::Periodic(phases) = &setup.network.schedule else { panic!("it repeats") };
-    let edges: Vec<_> = phases.iter().flat_map(|phase| &phase.edges).map(|edge| (edge.from, edge.to)).collect();
+    let schedule = &setup.network.schedule;
+    assert!(schedule.downcast::<Periodic>().is_some(), "it repeats");
+    let edges: Vec<_> = schedule.graphs.iter().flatten().map(|edge| (edge.from, edge.to)).collect();
     assert_eq!(edges, [(0, 1), (1, 2), (2, 0)]);
-    assert_eq!(setup.network.delays, [Delay::SawTooth { min_s: 0.1, max_s: 0.4, period_s: 0.6, offset_s: 0.0 }]);
+    assert_eq!(setup.network.delays, [Delay::new(SawTooth { min_s: 0.1, max_s: 0.4, period_s: 0.6, offset_s: 0.0 })]);
 }
 
 #[test]
@@ -114,13 +115,14 @@ fn networks_of_every_kind() {
         "edges = [[\"cart\", \"arm-1\"], { from = \"arm-1\", to = \"cart\", weight = 2, delay.constant_s = 0 }]\n",
     );
     let network = setup(&fixed).network;
-    let Schedule::Fixed(edges) = network.schedule else { panic!("it is fixed") };
+    let edges = &network.schedule.graphs[0];
     assert_eq!((edges[0].from, edges[0].to, edges[0].weight, edges[0].delay), (2, 0, 1.0.into(), 0));
     assert_eq!((edges[1].from, edges[1].to, edges[1].weight), (0, 2, 2.0.into()));
-    assert_eq!(network.delays[edges[1].delay], Delay::Constant { s: 0.0 });
+    assert_eq!(network.delays[edges[1].delay], Delay::constant(0.0));
 
     let once = read(&changed("weight = 1.0", "switching = \"once\"")).unwrap();
-    assert!(matches!(once.setup.network.schedule, Schedule::Once(phases) if phases.len() == 2));
+    let schedule = &once.setup.network.schedule;
+    assert!(schedule.downcast::<Once>().is_some() && schedule.graphs.len() == 2);
     let notices: Vec<String> = once.notices.iter().map(ToString::to_string).collect();
     assert_eq!(notices, ["`dwell_s` on line 34 is not used"]);
     assert!(
@@ -131,10 +133,9 @@ fn networks_of_every_kind() {
     );
 
     let random = read(&changed("weight = 1.0", "switching.random = { seed = 3, dwell_s = [1, 2] }")).unwrap();
-    assert!(matches!(
-        random.setup.network.schedule,
-        Schedule::Random { graphs, dwell_s: [1.0, 2.0], seed: 3 } if graphs.len() == 2
-    ));
+    let drawn = &random.setup.network.schedule;
+    assert_eq!(drawn.downcast(), Some(&RandomSwitching { dwell_s: [1.0, 2.0], seed: 3 }));
+    assert_eq!(drawn.graphs.len(), 2);
     assert_eq!(random.notices.len(), 2);
 }
 
@@ -144,18 +145,18 @@ fn delays_of_every_kind() {
         let saw_tooth = "delay.saw_tooth = { min_s = 0.1, max_s = 0.4, period_s = 0.6 }";
         setup(&changed(saw_tooth, text)).network.delays.remove(0)
     };
-    assert_eq!(delay(""), Delay::Constant { s: 0.0 });
+    assert_eq!(delay(""), Delay::constant(0.0));
     assert_eq!(
         delay("delay.sinusoid = { mean_s = 0.2, amplitude_s = 0.2, period_s = 2, phase_rad = 1 }"),
-        Delay::Sinusoid { mean_s: 0.2, amplitude_s: 0.2, period_s: 2.0, phase_rad: 1.0 }
+        Delay::new(Sinusoid { mean_s: 0.2, amplitude_s: 0.2, period_s: 2.0, phase_rad: 1.0 })
     );
     assert_eq!(
         delay("delay.piecewise_constant = { times_s = [0, 1], values_s = [0.1, 0], period_s = 2 }"),
-        Delay::PiecewiseConstant { times_s: vec![0.0, 1.0], values_s: vec![0.1, 0.0], period_s: Some(2.0) }
+        Delay::new(PiecewiseConstant { times_s: vec![0.0, 1.0], values_s: vec![0.1, 0.0], period_s: Some(2.0) })
     );
     assert_eq!(
         delay("delay.saw_tooth = { min_s = 0, max_s = 0.4, period_s = 0.6, offset_s = 0.1 }"),
-        Delay::SawTooth { min_s: 0.0, max_s: 0.4, period_s: 0.6, offset_s: 0.1 }
+        Delay::new(SawTooth { min_s: 0.0, max_s: 0.4, period_s: 0.6, offset_s: 0.1 })
     );
 }
 

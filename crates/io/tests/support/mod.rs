@@ -10,7 +10,7 @@ use forwardstep_core::Gain;
 use forwardstep_core::robot::PointMass;
 use forwardstep_io::output::{GoalOutcome, RunRecord};
 use forwardstep_io::scenario::Goal;
-use forwardstep_sim::delay::{Basis, Delay};
+use forwardstep_sim::delay::{Basis, Delay, SawTooth, Sinusoid};
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::recording::{Column, Statistics};
 use forwardstep_sim::schedule::{Phase, Schedule};
@@ -69,10 +69,10 @@ pub fn setup(agents: Vec<AgentSetup>, end_s: f64, record_every_s: f64) -> Setup 
         exchange: Exchange::PositionVelocity,
         network: Network {
             agents: count,
-            schedule: Schedule::Periodic(phases.collect()),
+            schedule: Schedule::periodic(phases.collect()),
             delays: vec![
-                Delay::SawTooth { min_s: 0.05, max_s: 0.4, period_s: end_s / 12.0, offset_s: 0.0 },
-                Delay::Sinusoid { mean_s: 0.2, amplitude_s: 0.1, period_s: end_s / 5.0, phase_rad: 0.0 },
+                Delay::new(SawTooth { min_s: 0.05, max_s: 0.4, period_s: end_s / 12.0, offset_s: 0.0 }),
+                Delay::new(Sinusoid { mean_s: 0.2, amplitude_s: 0.1, period_s: end_s / 5.0, phase_rad: 0.0 }),
             ],
             weights: Vec::new(),
             coupling: Default::default(),

@@ -17,7 +17,7 @@ use super::references::Transmits;
 use super::sampling::Sampling;
 use super::sliding::{Place, Slider};
 use super::valid::{message_len, validate};
-use crate::engine::{DelaySystem, Happened, Heard, Port};
+use crate::engine::{DelaySystem, Happened, Heard, Port, Refuted};
 use crate::recording::{GainRates, SampleTaken, Signal};
 use crate::setup::{Exchange, Setup};
 
@@ -203,6 +203,11 @@ impl<'a> ClosedLoop<'a> {
     /// Who is in trouble in the state `x`, which has just been evaluated.
     pub(crate) fn trouble(&self, x: &[f64]) -> Option<(usize, Trouble)> {
         self.blocks.iter().find_map(|block| block.columns.trouble(&x[block.state.clone()]))
+    }
+
+    /// The last delay that was found, at a sample, not to be what its author says.
+    pub(crate) fn refuted(&self) -> Option<Refuted> {
+        self.sampling.as_ref()?.refuted()
     }
 
     /// Hands every sample that is taken to `watch`.

@@ -33,7 +33,7 @@ pub fn probe_balance(setup: &Setup, index: usize) -> Result<Probe, SetupError> {
         agents: vec![own],
         reference: setup.reference.clone(),
         exchange: setup.exchange,
-        network: Network::switching(1, Schedule::Fixed(Vec::new()), Vec::new()),
+        network: Network::switching(1, Schedule::fixed(Vec::new()), Vec::new()),
         time: setup.time,
         solver: Solver { balance: true, ..setup.solver },
         control: None,

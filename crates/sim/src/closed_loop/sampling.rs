@@ -1,7 +1,7 @@
 //! The instants at which digital controllers sample, and at which their torques change.
 
 use super::assemble::Block;
-use crate::engine::{Happened, Heard, Port, Radio};
+use crate::engine::{Happened, Heard, Port, Radio, Refuted};
 use crate::recording::SampleTaken;
 use crate::setup::{Control, Setup};
 
@@ -77,6 +77,11 @@ impl<'a> Sampling<'a> {
             happened = Happened::Sampled;
         }
         happened
+    }
+
+    /// The last delay that was found not to be what its author says.
+    pub(super) fn refuted(&self) -> Option<Refuted> {
+        self.radio.refuted()
     }
 
     /// Everybody measures and sends, then hears and computes.

@@ -307,8 +307,8 @@ mod tests {
         let edges = vec![edge(3, 0, 1.0), edge(0, 1, 2.0), edge(1, 2, 0.5), edge(2, 0, 0.7)];
         let network = Network {
             agents: 4,
-            schedule: Schedule::Fixed(edges.clone()),
-            delays: vec![Delay::Constant { s: 0.0 }],
+            schedule: Schedule::fixed(edges.clone()),
+            delays: vec![Delay::constant(0.0)],
             weights: Vec::new(),
             coupling: Default::default(),
         };

@@ -13,7 +13,7 @@ pub(super) fn of_setup(setup: &Setup) -> Result<(), SetupError> {
         agent.interface().is_some_and(|interface| interface.follows.contains(&ReferenceFamily::Target))
     };
     if setup.reference == ReferenceKind::Tracking && setup.agents.iter().all(tracks) {
-        let edges = setup.network.schedule.graphs().into_iter().map(<[_]>::len).sum();
+        let edges = setup.network.schedule.graphs.iter().map(Vec::len).sum();
         if edges > 0 {
             return Err(SetupError::NobodyHears { edges });
         }

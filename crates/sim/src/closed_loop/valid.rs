@@ -107,7 +107,7 @@ fn check_following(following: &Following, setup: &Setup) -> Result<(), SetupErro
     LengthError::check("the leader's trajectory", axes, leader.trajectory.axes())
         .map_err(|error| SetupError::Length { agent: leader.name.clone(), error })?;
     let told = following.sliding().told() > 0 && setup.control.is_none();
-    for edge in setup.network.schedule.graphs().into_iter().flatten() {
+    for edge in setup.network.schedule.graphs.iter().flatten() {
         if edge.to == setup.agents.len() {
             return Err(SetupError::LeaderHears { leader: leader.name.clone() });
         }

@@ -1,18 +1,18 @@
-//! What is known of a delay beyond the run that is computed: evidence for a theorem that wants delays bounded for ever.
+//! What is known of a delay: on the run that is computed, and beyond it, as evidence for a theorem that wants delays bounded
+//! for ever.
 //!
-//! Every kind answers for itself, and the match has no arm for the rest: a new kind does not compile without an answer.
+//! Every kind answers for itself. What a kind from outside answers is declared by its author, whatever it says.
 //! A link that holds packets has T = t − s between arrivals: slope one on every piece, one modulus of continuity for all
 //! of them.
 
-use forwardstep_core::expression::Interval;
-
-use super::Delay;
-use crate::formula::BoundedFormula;
-
-/// A bound of a delay, how far it reaches and what it rests on.
+/// Bounds of a delay, how far they reach and what they rest on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Known {
-    /// T does not exceed this, s.
+    /// The least and the largest value until [`until_s`](Self::until_s), s.
+    pub within_s: [f64; 2],
+    /// Until when T is known, s; `None` for ever.
+    pub until_s: Option<f64>,
+    /// T does not exceed this for ever, or up to the end of the run if there is something `unknown`, s.
     pub bound_s: f64,
     /// Why the bound, or the uniform continuity of T, is known up to the end of the run only; `None` when it is for ever.
     pub unknown: Option<Unknown>,
@@ -44,47 +44,30 @@ pub enum Basis {
     Enclosure,
     /// The numbers that were drawn or logged for this run.
     Numbers,
+    /// What its author says.
+    Declared,
 }
 
-impl Delay {
-    /// What is known of T beyond the run.
-    pub fn known(&self) -> Known {
-        let rule = Known { bound_s: self.max_s(), unknown: None, basis: Basis::Rule, holds_packets: false };
-        match self {
-            Delay::Constant { .. }
-            | Delay::Sinusoid { .. }
-            | Delay::PiecewiseConstant { .. }
-            | Delay::SawTooth { .. } => rule,
-            // Its values are drawn between two bounds, for ever.
-            Delay::RandomHold(_) => rule,
-            Delay::Formula(formula) => of_formula(formula),
-            Delay::Packets(trace) => {
-                let numbers = |unknown| Known { unknown: Some(unknown), basis: Basis::Numbers, ..rule };
-                let known = match trace.link() {
-                    Some(link) if link.bound_s().is_finite() => Known { bound_s: link.bound_s(), ..rule },
-                    Some(_) => numbers(Unknown::PacketsInARow),
-                    None => numbers(Unknown::LaterPackets),
-                };
-                Known { holds_packets: true, ..known }
-            }
-        }
+/// How far a value may be outside its declared bounds by rounding, as a part of the largest.
+const ROUNDING: f64 = 1e-9;
+
+impl Known {
+    /// What the author of a delay answers for: all of its values, for ever, are between these, in s.
+    pub fn declared(within_s: [f64; 2]) -> Known {
+        Known { basis: Basis::Declared, ..Known::by_rule(within_s) }
     }
-}
 
-/// On a bounded time a continuous formula is uniformly continuous; for ever it may swing faster and faster.
-fn of_formula(formula: &BoundedFormula) -> Known {
-    let Interval { low, high } = formula.for_ever();
-    let on_run = |unknown| Known {
-        bound_s: formula.within().high,
-        unknown: Some(unknown),
-        basis: Basis::Enclosure,
-        holds_packets: false,
-    };
-    if !(low >= 0.0 && high.is_finite()) {
-        on_run(Unknown::FormulaBound)
-    } else if !formula.formula().is_uniformly_continuous() {
-        on_run(Unknown::FormulaContinuity)
-    } else {
-        Known { bound_s: high, unknown: None, basis: Basis::Enclosure, holds_packets: false }
+    /// What follows from the parameters of a rule.
+    pub(super) fn by_rule(within_s: [f64; 2]) -> Known {
+        let bound_s = within_s[1];
+        Known { within_s, until_s: None, bound_s, unknown: None, basis: Basis::Rule, holds_packets: false }
+    }
+
+    /// The value if it is within the bounds, taken to the bound where only rounding leads outside, else not a number.
+    pub(super) fn confirmed(&self, value_s: f64) -> f64 {
+        let [low, high] = self.within_s;
+        let slack = ROUNDING * high;
+        // Not f64::clamp, which wants bounds that bound something.
+        if value_s >= low - slack && value_s <= high + slack { value_s.max(low).min(high) } else { f64::NAN }
     }
 }

@@ -20,7 +20,7 @@
 //! let statistics = trace.statistics();
 //! assert_eq!(statistics.sent, 501);
 //! assert!(statistics.lost > 40 && statistics.late > 40);
-//! let delay = Delay::Packets(trace.into());
+//! let delay = Delay::new(trace);
 //! assert!(delay.value(5.0) >= 0.03);
 //! # Ok::<(), forwardstep_sim::delay::packets::PacketError>(())
 //! ```
@@ -29,6 +29,9 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use thiserror::Error;
+
+use super::{Arrivals, Basis, DelayFunction, DelayPiece, Known, Unknown};
+use crate::parameter::ParameterError;
 
 /// A link as a random process. Every pair of agents has its own stream of random numbers, which depends on the seed and on
 /// the two agents alone: neither other links nor the graph in force change it. Whether the k-th packet is lost depends on
@@ -344,34 +347,45 @@ impl Trace {
         LinkStatistics { sent: self.packets.len(), lost, late: arrived - self.arrivals(), largest_age_s: self.max_s }
     }
 
-    pub(super) fn max_s(&self) -> f64 {
-        self.max_s
-    }
-
-    pub(super) fn min_s(&self) -> f64 {
-        self.min_s
-    }
-
-    /// Start and end of a piece.
-    pub(super) fn span(&self, index: u64) -> (f64, f64) {
-        let index = self.clamped(index);
-        (self.held[index].from_s, self.held.get(index + 1).map_or(f64::INFINITY, |next| next.from_s))
-    }
-
-    /// When what is heard on a piece was sent, s.
-    #[inline]
-    pub(super) fn sent_s(&self, index: u64) -> f64 {
-        self.held[self.clamped(index)].sent_s
-    }
-
-    /// The piece at `t_s`, from the right.
-    pub(super) fn index_at(&self, t_s: f64) -> u64 {
-        self.held.partition_point(|held| held.from_s <= t_s).saturating_sub(1) as u64
-    }
-
     fn clamped(&self, index: u64) -> usize {
         (index as usize).min(self.held.len() - 1)
     }
+}
+
+impl DelayFunction for Trace {
+    fn words(&self) -> &'static str {
+        "packets"
+    }
+
+    /// It is made by a function that checks.
+    fn validate(&self) -> Result<(), ParameterError> {
+        Ok(())
+    }
+
+    fn piece(&self, index: u64) -> DelayPiece {
+        let k = self.clamped(index);
+        let (held, end_s) = (self.held[k], self.held.get(k + 1).map_or(f64::INFINITY, |next| next.from_s));
+        DelayPiece { held_s: Some(held.sent_s), ..DelayPiece::new(index, held.from_s, end_s) }
+    }
+
+    /// The age of the message that is held.
+    fn value(&self, piece: &DelayPiece, t_s: f64) -> f64 {
+        t_s - self.held[self.clamped(piece.index)].sent_s.max(0.0)
+    }
+
+    fn known(&self) -> Known {
+        let run =
+            Known { until_s: Some(self.until_s), holds_packets: true, ..Known::by_rule([self.min_s, self.max_s]) };
+        let numbers = |unknown| Known { unknown: Some(unknown), basis: Basis::Numbers, ..run };
+        match &self.link {
+            Some(link) if link.bound_s().is_finite() => Known { bound_s: link.bound_s(), ..run },
+            Some(_) => numbers(Unknown::PacketsInARow),
+            None => numbers(Unknown::LaterPackets),
+        }
+    }
+
+    /// What is held arrived when its piece began.
+    fn arrivals(&self, _: &mut Arrivals<'_>) {}
 }
 
 #[cfg(test)]

@@ -3,6 +3,8 @@
 use rand::Rng;
 
 use super::packets::{Kind, PacketError, stream};
+use super::{Arrivals, DelayFunction, DelayPiece, Known};
+use crate::parameter::ParameterError;
 
 /// Values that one delay may take one after another.
 const MOST_VALUES: usize = 100_000_000;
@@ -11,7 +13,7 @@ const MOST_VALUES: usize = 100_000_000;
 #[derive(Clone, Debug, PartialEq)]
 pub struct RandomHold {
     /// Least and largest value, s.
-    pub(super) value_s: [f64; 2],
+    value_s: [f64; 2],
     hold_s: [f64; 2],
     until_s: f64,
     times_s: Vec<f64>,
@@ -91,24 +93,36 @@ impl RandomHold {
         &self.times_s
     }
 
-    pub(super) fn until_s(&self) -> f64 {
-        self.until_s
-    }
-
-    pub(super) fn span(&self, index: u64) -> (f64, f64) {
-        let index = self.clamped(index);
-        (self.times_s[index], self.times_s.get(index + 1).copied().unwrap_or(f64::INFINITY))
-    }
-
-    pub(super) fn value(&self, index: u64) -> f64 {
-        self.values_s[self.clamped(index)]
-    }
-
-    pub(super) fn index_at(&self, t_s: f64) -> u64 {
-        self.times_s.partition_point(|start| *start <= t_s).saturating_sub(1) as u64
-    }
-
     fn clamped(&self, index: u64) -> usize {
         (index as usize).min(self.times_s.len() - 1)
+    }
+}
+
+impl DelayFunction for RandomHold {
+    fn words(&self) -> &'static str {
+        "a random hold"
+    }
+
+    /// It is made by a function that checks.
+    fn validate(&self) -> Result<(), ParameterError> {
+        Ok(())
+    }
+
+    fn piece(&self, index: u64) -> DelayPiece {
+        let k = self.clamped(index);
+        DelayPiece::new(index, self.times_s[k], self.times_s.get(k + 1).copied().unwrap_or(f64::INFINITY))
+    }
+
+    fn value(&self, piece: &DelayPiece, _: f64) -> f64 {
+        self.values_s[self.clamped(piece.index)]
+    }
+
+    /// Its values are drawn between two bounds, for ever.
+    fn known(&self) -> Known {
+        Known { until_s: Some(self.until_s), ..Known::by_rule(self.value_s) }
+    }
+
+    fn arrivals(&self, search: &mut Arrivals<'_>) {
+        search.monotone();
     }
 }

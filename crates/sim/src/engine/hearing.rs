@@ -68,6 +68,17 @@ enum Read {
     Sample {
         offset: usize,
     },
+    /// A delay that is not what its author says.
+    Nowhere,
+}
+
+/// A value of a delay outside of what its author says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Refuted {
+    /// Index of the delay.
+    pub(crate) delay: usize,
+    /// When, s.
+    pub(crate) t_s: f64,
 }
 
 /// Which messages an instant needs that are not history yet.
@@ -105,6 +116,7 @@ pub(crate) struct Hearing {
     sources: Vec<Source>,
     initial: Vec<f64>,
     coupling: Coupling,
+    refuted: Option<Refuted>,
 }
 
 impl Hearing {
@@ -132,7 +144,13 @@ impl Hearing {
             sources: Vec::new(),
             initial,
             coupling,
+            refuted: None,
         }
+    }
+
+    /// The last value of a delay that was outside of what its author says. What is heard there is not a number.
+    pub(crate) fn refuted(&self) -> Option<Refuted> {
+        self.refuted
     }
 
     /// Numbers that are sent by all agents together: the height of a column of a piece of history.
@@ -225,7 +243,10 @@ impl Hearing {
         for source in &mut self.sources {
             let sent_s = timeline.sent_s(source.clock, t_s);
             // What arrives a rounding later is heard now, and was sent now.
-            source.read = if sent_s >= t_s {
+            source.read = if sent_s.is_nan() {
+                self.refuted = Some(Refuted { delay: timeline.delay_of(source.clock), t_s });
+                Read::Nowhere
+            } else if sent_s >= t_s {
                 needs.present = true;
                 Read::Now
             } else {
@@ -249,7 +270,13 @@ impl Hearing {
             self.weigh(timeline, t_s);
         }
         for source in &mut self.sources {
-            source.read = Read::Sample { offset: place(timeline.sent_s(source.clock, t_s)) };
+            let sent_s = timeline.sent_s(source.clock, t_s);
+            source.read = if sent_s.is_nan() {
+                self.refuted = Some(Refuted { delay: timeline.delay_of(source.clock), t_s });
+                Read::Nowhere
+            } else {
+                Read::Sample { offset: place(sent_s) }
+            };
         }
     }
 
@@ -287,6 +314,7 @@ impl Hearing {
                     Read::Sample { offset } => data[offset + at],
                     Read::Now => x[from.state + c * from.stride],
                     Read::Initial => self.initial[at],
+                    Read::Nowhere => f64::NAN,
                 };
                 let entry = to.entry + c * to.stride;
                 let own = own.map_or_else(|| x[to.state + c * to.stride], |offset| data[offset + entry]);
@@ -339,6 +367,11 @@ impl Kernel for Gather<'_> {
                     for c in 0..hearing.entries {
                         let sum = &mut sums[to.entry + c * to.stride];
                         *sum = fma(w, hearing.initial[from.entry + c * from.stride], *sum);
+                    }
+                }
+                Read::Nowhere => {
+                    for c in 0..hearing.entries {
+                        sums[to.entry + c * to.stride] = f64::NAN;
                     }
                 }
             }

@@ -20,6 +20,6 @@ mod stiffness;
 mod tableau;
 mod timeline;
 
-pub(crate) use hearing::{Heard, Port};
+pub(crate) use hearing::{Heard, Port, Refuted};
 pub(crate) use integrator::{DelaySystem, Failure, FailureCause, Happened, Integrator, Step};
 pub(crate) use radio::Radio;

@@ -3,7 +3,7 @@
 //! At a sample everybody measures and sends before anybody hears. What is heard through a delay is the newest message that
 //! was sent by then; before the first one everybody is taken to have sent it.
 
-use super::hearing::{Heard, Hearing, Port};
+use super::hearing::{Heard, Hearing, Port, Refuted};
 use super::timeline::{Timeline, merge_until};
 use crate::network::Network;
 
@@ -82,6 +82,11 @@ impl<'a> Radio<'a> {
             offset_of(sample, ring, width)
         });
         self.hearing.gather_from(&self.sent, &[], Some(self.offset(k)), heard);
+    }
+
+    /// The last delay that was found not to be what its author says.
+    pub(crate) fn refuted(&self) -> Option<Refuted> {
+        self.hearing.refuted()
     }
 
     fn offset(&self, k: u64) -> usize {

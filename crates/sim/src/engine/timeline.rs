@@ -7,7 +7,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use crate::delay::{Delay, DelayPiece};
+use crate::delay::DelayPiece;
 use crate::graph::Weight;
 use crate::network::Network;
 use crate::schedule::{Segment, Segments};
@@ -80,7 +80,7 @@ impl<'a> Timeline<'a> {
         let mut clock_of = vec![None; network.delays.len()];
         for index in network.used_delays() {
             let delay = &network.delays[index];
-            let clock = clocks.iter().position(|(known, _)| network.delays[*known].shares(delay));
+            let clock = clocks.iter().position(|(known, _)| network.delays[*known] == *delay);
             clock_of[index] = Some(clock.unwrap_or_else(|| {
                 clocks.push((index, delay.first_piece()));
                 clocks.len() - 1
@@ -130,9 +130,14 @@ impl<'a> Timeline<'a> {
         self.network.delays[index].sent_on(piece, t_s)
     }
 
+    /// The index of the delay of a clock.
+    pub(crate) fn delay_of(&self, clock: usize) -> usize {
+        self.clocks[clock].0
+    }
+
     /// Whether what is heard through a delay is older than the step that begins: held packets always are.
     pub(crate) fn is_held(&self, clock: usize) -> bool {
-        matches!(self.network.delays[self.clocks[clock].0], Delay::Packets(_))
+        self.clocks[clock].1.held_s.is_some()
     }
 
     /// The value of a weight at `t_s`.
@@ -220,6 +225,7 @@ pub(crate) fn merge_until(t_s: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::delay::{Delay, PiecewiseConstant, SawTooth};
     use crate::graph::Edge;
     use crate::schedule::{Phase, Schedule};
 
@@ -238,7 +244,7 @@ mod tests {
 
     fn network(delay: Delay) -> Network {
         let edge = |from, to| Edge { from, to, weight: 1.0.into(), delay: 0 };
-        let schedule = Schedule::Periodic(vec![
+        let schedule = Schedule::periodic(vec![
             Phase { edges: vec![edge(0, 1)], dwell_s: 1.0 },
             Phase { edges: vec![edge(1, 0)], dwell_s: 1.0 },
         ]);
@@ -247,7 +253,7 @@ mod tests {
 
     #[test]
     fn switches_and_their_images_are_landed_on() {
-        let network = network(Delay::Constant { s: 0.3 });
+        let network = network(Delay::constant(0.3));
         assert_eq!(break_points(&network, 2.5, 1), vec![0.3, 1.0, 1.3, 2.0, 2.3]);
         assert_eq!(break_points(&network, 2.5, 2), vec![0.3, 0.6, 1.0, 1.3, 1.6, 2.0, 2.3]);
     }
@@ -257,11 +263,12 @@ mod tests {
         // What the first delay's jump at 3 · 1.7 + 0.8 sends is heard 0.5 s later, a rounding before 6.4, where the saw-tooth
         // jumps. Landing on it made the two one event, and the row at the horizon showed what is heard after the jump.
         let edge = |delay| Edge { from: 0, to: 1, weight: 1.0.into(), delay };
-        let steps = Delay::PiecewiseConstant { times_s: vec![0.0, 0.8], values_s: vec![0.2, 0.5], period_s: Some(1.7) };
-        let saw_tooth = Delay::SawTooth { min_s: 0.1, max_s: 0.3, period_s: 0.8, offset_s: 0.0 };
+        let steps =
+            Delay::new(PiecewiseConstant { times_s: vec![0.0, 0.8], values_s: vec![0.2, 0.5], period_s: Some(1.7) });
+        let saw_tooth = Delay::new(SawTooth { min_s: 0.1, max_s: 0.3, period_s: 0.8, offset_s: 0.0 });
         let network = Network {
             agents: 2,
-            schedule: Schedule::Fixed(vec![edge(0), edge(1)]),
+            schedule: Schedule::fixed(vec![edge(0), edge(1)]),
             delays: vec![steps, saw_tooth],
             weights: Vec::new(),
             coupling: Default::default(),
@@ -284,7 +291,7 @@ mod tests {
     fn coinciding_events_are_one() {
         // 0.1 + 0.2 is not 0.3 in binary; the image of 0 and the jump at 0.3 are one event all the same.
         let delay =
-            Delay::PiecewiseConstant { times_s: vec![0.0, 0.1 + 0.2], values_s: vec![0.3, 0.3], period_s: None };
+            Delay::new(PiecewiseConstant { times_s: vec![0.0, 0.1 + 0.2], values_s: vec![0.3, 0.3], period_s: None });
         assert_eq!(break_points(&network(delay), 0.9, 1), vec![0.3, 0.6]);
     }
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use forwardstep_core::Gain;
 use forwardstep_core::robot::{PlanarArm, PointMass};
-use forwardstep_sim::delay::Delay;
+use forwardstep_sim::delay::{Delay, PiecewiseConstant, SawTooth, Sinusoid};
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
@@ -135,9 +135,9 @@ pub fn cases() -> Vec<Case> {
 pub fn setup(case: &Case) -> Setup {
     let mut delays = Vec::new();
     let schedule = match &case.schedule {
-        ScheduleCase::Fixed { edges } => Schedule::Fixed(wire(edges, &mut delays)),
-        ScheduleCase::Repeat { phases } => Schedule::Periodic(turns(phases, &mut delays)),
-        ScheduleCase::Once { phases } => Schedule::Once(turns(phases, &mut delays)),
+        ScheduleCase::Fixed { edges } => Schedule::fixed(wire(edges, &mut delays)),
+        ScheduleCase::Repeat { phases } => Schedule::periodic(turns(phases, &mut delays)),
+        ScheduleCase::Once { phases } => Schedule::once(turns(phases, &mut delays)),
     };
     Setup {
         agents: case.agents.iter().enumerate().map(agent).collect(),
@@ -184,15 +184,15 @@ fn wire(edges: &[EdgeCase], delays: &mut Vec<Delay>) -> Vec<Edge> {
 
 fn delay(delay: &DelayCase) -> Delay {
     match delay.clone() {
-        DelayCase::Constant { s } => Delay::Constant { s },
+        DelayCase::Constant { s } => Delay::constant(s),
         DelayCase::Sinusoid { mean_s, amplitude_s, period_s, phase_rad } => {
-            Delay::Sinusoid { mean_s, amplitude_s, period_s, phase_rad }
+            Delay::new(Sinusoid { mean_s, amplitude_s, period_s, phase_rad })
         }
         DelayCase::PiecewiseConstant { times_s, values_s, period_s } => {
-            Delay::PiecewiseConstant { times_s, values_s, period_s }
+            Delay::new(PiecewiseConstant { times_s, values_s, period_s })
         }
         DelayCase::SawTooth { min_s, max_s, period_s, offset_s } => {
-            Delay::SawTooth { min_s, max_s, period_s, offset_s }
+            Delay::new(SawTooth { min_s, max_s, period_s, offset_s })
         }
     }
 }

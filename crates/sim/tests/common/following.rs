@@ -69,7 +69,7 @@ pub fn arms(design: FollowingDesign, choice: Choice, estimate: f64, end_s: f64) 
         exchange: Exchange::PositionVelocity,
         network: Network {
             agents: 5,
-            schedule: Schedule::Fixed(vec![
+            schedule: Schedule::fixed(vec![
                 edge(4, 0, 1.0),
                 edge(0, 1, 1.0),
                 edge(1, 2, 1.0),
@@ -82,7 +82,7 @@ pub fn arms(design: FollowingDesign, choice: Choice, estimate: f64, end_s: f64) 
                 edge(0, 3, 1.0),
                 edge(4, 2, 1.0),
             ]),
-            delays: vec![Delay::Constant { s: 0.0 }],
+            delays: vec![Delay::constant(0.0)],
             weights: Vec::new(),
             coupling: Default::default(),
         },
@@ -122,7 +122,7 @@ pub fn masses(design: FollowingDesign) -> Setup {
     }
     let edge = |to, from, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
     setup.network.agents = 4;
-    setup.network.schedule = Schedule::Fixed(vec![edge(0, 3, 1.0), edge(1, 0, 1.5), edge(2, 1, 0.7), edge(0, 2, 0.4)]);
+    setup.network.schedule = Schedule::fixed(vec![edge(0, 3, 1.0), edge(1, 0, 1.5), edge(2, 1, 0.7), edge(0, 2, 0.4)]);
     setup.solver.method = Method::Adaptive { rtol: 1e-9, atol: 1e-11 };
     setup.time.record_every_s = 1.0;
     setup

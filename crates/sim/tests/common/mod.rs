@@ -14,7 +14,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
-use forwardstep_sim::delay::Delay;
+use forwardstep_sim::delay::{Delay, SawTooth};
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::{Path, Sinusoid};
@@ -54,8 +54,8 @@ pub fn switching() -> Network {
     let edge = |from, to| Edge { from, to, weight: Weight::Constant(1.0), delay: 0 };
     let phase = |edges| Phase { dwell_s: 0.8, edges };
     Network {
-        schedule: Schedule::Periodic(vec![phase(vec![edge(0, 1), edge(1, 0)]), phase(vec![edge(1, 2), edge(2, 0)])]),
-        delays: vec![Delay::SawTooth { min_s: 0.05, max_s: 0.3, period_s: 0.5, offset_s: 0.0 }],
+        schedule: Schedule::periodic(vec![phase(vec![edge(0, 1), edge(1, 0)]), phase(vec![edge(1, 2), edge(2, 0)])]),
+        delays: vec![Delay::new(SawTooth { min_s: 0.05, max_s: 0.3, period_s: 0.5, offset_s: 0.0 })],
         ..silent(3)
     }
 }
@@ -79,8 +79,8 @@ pub fn consensus_of_masses(end_s: f64) -> Setup {
         agent.law = Arc::new(Known { damping: Gain::Number(6.0) });
     }
     let edge = |from, to| Edge { from, to, weight: Weight::Constant(1.0), delay: 0 };
-    all.network.schedule = Schedule::Fixed(vec![edge(0, 1), edge(1, 2), edge(2, 0)]);
-    all.network.delays = vec![Delay::Constant { s: 0.5 }];
+    all.network.schedule = Schedule::fixed(vec![edge(0, 1), edge(1, 2), edge(2, 0)]);
+    all.network.delays = vec![Delay::constant(0.5)];
     all.time.end_s = end_s;
     all
 }

@@ -1,6 +1,7 @@
 //! Evidence of graphs and their schedule.
 
 use forwardstep_sim::Exchange;
+use forwardstep_sim::schedule::ScheduleFault;
 
 use super::holds;
 use crate::hypothesis::{Answer, Named, Rigour};
@@ -54,6 +55,18 @@ pub enum GraphEvidence {
         /// In s.
         least_s: f64,
     },
+    /// The author of a switching signal says that phases last at least this long.
+    DeclaredPhases {
+        /// In s.
+        least_s: f64,
+    },
+    /// A switching signal from outside is not what its author says.
+    RefutedSwitching {
+        /// What it is called.
+        words: &'static str,
+        /// What was found.
+        fault: ScheduleFault,
+    },
     /// One graph stays for ever.
     Stays,
     /// One graph stays for ever, but a weight changes.
@@ -84,13 +97,16 @@ impl GraphEvidence {
             GraphEvidence::Window { for_all_time, .. } | GraphEvidence::Reached { for_all_time, .. } => {
                 holds(*for_all_time)
             }
-            GraphEvidence::Cut { .. } | GraphEvidence::Unreached { .. } => Answer::Violated,
+            GraphEvidence::Cut { .. } | GraphEvidence::Unreached { .. } | GraphEvidence::RefutedSwitching { .. } => {
+                Answer::Violated
+            }
             GraphEvidence::NeverSwitches
             | GraphEvidence::ShortestPhase { .. }
             | GraphEvidence::DrawnPhases { .. }
             | GraphEvidence::Stays
             | GraphEvidence::Mutual => Answer::Holds,
             GraphEvidence::VaryingWeight
+            | GraphEvidence::DeclaredPhases { .. }
             | GraphEvidence::Switches { .. }
             | GraphEvidence::SwitchesUnderLeader
             | GraphEvidence::OneWay { .. } => Answer::NotCovered,
@@ -102,7 +118,8 @@ impl GraphEvidence {
             GraphEvidence::Window { for_all_time, .. } | GraphEvidence::Reached { for_all_time, .. } => {
                 if *for_all_time { Rigour::Exact } else { Rigour::Given }
             }
-            GraphEvidence::Cut { until_s: Some(_), .. } => Rigour::Given,
+            GraphEvidence::Cut { until_s: Some(_), .. } | GraphEvidence::RefutedSwitching { .. } => Rigour::Given,
+            GraphEvidence::DeclaredPhases { .. } => Rigour::Declared,
             GraphEvidence::Cut { until_s: None, .. }
             | GraphEvidence::Unreached { .. }
             | GraphEvidence::NeverSwitches

@@ -1,6 +1,6 @@
 //! Evidence of delays, weights and couplings.
 
-use forwardstep_sim::delay::{Basis, Unknown};
+use forwardstep_sim::delay::{Basis, DelayFault, Unknown};
 
 use super::holds;
 use crate::hypothesis::{Answer, Rigour};
@@ -20,6 +20,13 @@ pub enum LinkEvidence {
         basis: Basis,
         /// Whether some links hold packets, whose delay grows like t between arrivals.
         holds_packets: bool,
+    },
+    /// A delay from outside is not what its author says.
+    RefutedDelay {
+        /// What it is called.
+        words: &'static str,
+        /// What was found.
+        fault: DelayFault,
     },
     /// No link has a delay.
     Prompt,
@@ -49,6 +56,8 @@ pub enum LinkEvidence {
 impl LinkEvidence {
     pub(super) fn answer(&self) -> Answer {
         match self {
+            LinkEvidence::Delays { basis: Basis::Declared, .. } => Answer::NotCovered,
+            LinkEvidence::RefutedDelay { .. } => Answer::Violated,
             LinkEvidence::Delays { unknown, .. } => holds(unknown.is_empty()),
             LinkEvidence::Weights { until_s, .. } => holds(until_s.is_none()),
             LinkEvidence::Prompt | LinkEvidence::Coupling { .. } => Answer::Holds,
@@ -62,7 +71,9 @@ impl LinkEvidence {
                 Basis::Rule => Rigour::Exact,
                 Basis::Enclosure => Rigour::Enclosed,
                 Basis::Numbers => Rigour::Given,
+                Basis::Declared => Rigour::Declared,
             },
+            LinkEvidence::RefutedDelay { .. } => Rigour::Sampled,
             LinkEvidence::Weights { .. } => Rigour::Enclosed,
             LinkEvidence::Prompt | LinkEvidence::Late { .. } | LinkEvidence::Coupling { .. } => Rigour::Exact,
         }

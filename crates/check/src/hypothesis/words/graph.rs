@@ -31,6 +31,12 @@ pub(super) fn words(evidence: &GraphEvidence) -> String {
         GraphEvidence::NeverSwitches => "the graph never switches".into(),
         GraphEvidence::ShortestPhase { dwell_s } => format!("the shortest phase lasts {dwell_s} s"),
         GraphEvidence::DrawnPhases { least_s } => format!("no phase is shorter than {least_s} s"),
+        GraphEvidence::DeclaredPhases { least_s } => {
+            format!("no phase is shorter than {least_s} s (declared, not shown)")
+        }
+        GraphEvidence::RefutedSwitching { words, fault } => {
+            format!("{words} is not what its author declares: {fault}")
+        }
         GraphEvidence::Stays => "one graph stays for ever".into(),
         GraphEvidence::VaryingWeight => {
             "a weight changes with time: the torque that follows from it is not the one proved".into()

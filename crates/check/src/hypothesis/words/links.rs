@@ -1,6 +1,6 @@
 //! Delays, weights and couplings.
 
-use forwardstep_sim::delay::Unknown;
+use forwardstep_sim::delay::{Basis, Unknown};
 
 use super::numbers::seconds;
 use crate::hypothesis::LinkEvidence;
@@ -10,11 +10,15 @@ const SWINGS: &str = "a formula could not be shown to be uniformly continuous fo
 
 pub(super) fn words(evidence: &LinkEvidence) -> String {
     match evidence {
-        LinkEvidence::Delays { bound_s, unknown, end_s, holds_packets, .. } => {
+        LinkEvidence::RefutedDelay { words, fault } => {
+            format!("{words} is not what its author declares: {fault}")
+        }
+        LinkEvidence::Delays { bound_s, unknown, end_s, holds_packets, basis } => {
             let bound = seconds(*bound_s);
             let pieces = if *holds_packets { "; between the arrivals of packets it grows like t" } else { "" };
             if unknown.is_empty() {
-                return format!("no delay exceeds {bound} s{pieces}");
+                let basis = if *basis == Basis::Declared { " (declared, not shown)" } else { "" };
+                return format!("no delay exceeds {bound} s{pieces}{basis}");
             }
             let reasons: Vec<&str> = unknown.iter().copied().map(reason).collect();
             format!(

@@ -147,7 +147,7 @@ fn signals(absence: Option<Absence>, record: &RunRecord<'_>) -> Markup {
 /// Whether anybody ever hears anybody, or could.
 fn has_network(record: &RunRecord<'_>) -> bool {
     Gap::of(record.setup) == Gap::Disagreement
-        || record.setup.network.schedule.graphs().iter().any(|graph| !graph.is_empty())
+        || record.setup.network.schedule.graphs.iter().any(|graph| !graph.is_empty())
 }
 
 fn network(record: &RunRecord<'_>, timeline: &Timeline<'_>) -> Markup {

@@ -1,23 +1,28 @@
-//! The kinds of robots and laws that scenario files know, in one list, which a program of one's own can add to.
+//! The kinds of robots, laws, delays and switching that scenario files know, in one list, which a program of one's own can add
+//! to.
 //!
 //! A kind is the struct of its table in a file. It derives `Deserialize` and `JsonSchema`, whose doc comments become the schema,
-//! holds what can be wrong as [`At`], which knows its place, and implements [`RobotKind`] or [`LawKind`]; what it finds wrong is a
-//! [`Mistake`] of its own. [`Kinds`] has them by
-//! their keys; near matches, messages and the schema come from there.
+//! holds what can be wrong as [`At`], which knows its place, and implements [`RobotKind`], [`LawKind`], [`DelayKind`] or
+//! [`ScheduleKind`]; what it finds wrong is a [`Mistake`] of its own. [`Kinds`] has them by their keys; near matches, messages and
+//! the schema come from there.
 //!
 //! - `urdf`, `planar_arm`, `point_mass`: robots under (6)–(7); `adaptive`: these laws; a mass without velocity is with it.
 //! - `task_space`: the end-effector of a robot.
 //! - `thrust`: vehicles with one thrust; `spacecraft`: an attitude.
 //! - `chain`, `cascade`: Section IV.
+//! - `delays`, `schedules`: how late a message is, and which graph is in force.
 
 pub mod adaptive;
 pub mod cascade;
 pub mod chain;
+pub mod delays;
 pub mod planar_arm;
 pub mod point_mass;
 mod problem;
+pub mod schedules;
 pub mod ship;
 pub mod spacecraft;
+mod table;
 pub mod task_space;
 pub mod thrust;
 pub mod urdf;
@@ -27,7 +32,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use forwardstep_sim::{Law, RobotSetup, SetupError, Start};
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::DeserializeOwned;
 use thiserror::Error;
 
@@ -36,13 +41,17 @@ use super::document::{KeyedLaw, with_empty};
 use super::file::ScenarioFile;
 use super::system_problem::SystemProblem;
 
+pub use self::delays::{DelayKind, DelayPlan, Link, LinkDelays};
 pub use self::problem::{KindProblem, Mistake};
+pub use self::schedules::ScheduleKind;
+use self::table::{LawEntry, RobotEntry, Table, choice, chosen, delay, schedule, word};
 pub use super::at::At;
 pub use super::fault::{
     Fault, between, count, fault, filled, length, not_negative, not_negative_or, positive, positive_or, values,
 };
 pub use super::gains::{DampingFile, EstimateStartFile, adaptation, damping, estimate, gain, gain_or};
 pub use super::inputs::InputFolder;
+pub use super::network::{NetworkReader, PhaseReader};
 pub use super::robots::{Body, RobotRead, Stop, axis};
 pub use super::spread::Spread;
 pub use super::start::StartReader;
@@ -139,13 +148,13 @@ pub struct LawReader<'a> {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("there is a {what} `{key}` already; choose another key")]
 pub struct KindError {
-    /// What has it, `robot` or `law`.
+    /// What has it: `robot`, `law`, `delay` or `switching`.
     pub what: &'static str,
     /// The key.
     pub key: &'static str,
 }
 
-/// The kinds of robots and laws that scenario files may name.
+/// The kinds of robots, laws, delays and switching that scenario files may name.
 ///
 /// ```
 /// use forwardstep_io::scenario::kinds::Kinds;
@@ -157,6 +166,8 @@ pub struct KindError {
 pub struct Kinds {
     robots: Vec<RobotEntry>,
     laws: Vec<LawEntry>,
+    delays: Vec<Table<dyn DelayKind>>,
+    schedules: Vec<Table<dyn ScheduleKind>>,
 }
 
 impl Kinds {
@@ -187,6 +198,21 @@ impl Kinds {
                 LawEntry::of::<chain::ImmersionFile>(),
                 LawEntry::of::<cascade::AdaptiveBacksteppingFile>(),
             ],
+            delays: vec![
+                delay::<delays::constant::ConstantFile>(),
+                delay::<delays::sinusoid::SinusoidFile>(),
+                delay::<delays::piecewise_constant::PiecewiseConstantFile>(),
+                delay::<delays::saw_tooth::SawToothFile>(),
+                delay::<delays::formula::FormulaFile>(),
+                delay::<delays::random_hold::RandomHoldFile>(),
+                delay::<delays::packets::PacketsFile>(),
+                delay::<delays::log::LogFile>(),
+            ],
+            schedules: vec![
+                word::<schedules::repeat::RepeatFile>(),
+                word::<schedules::once::OnceFile>(),
+                schedule::<schedules::random::RandomSwitchingFile>(),
+            ],
         }
     }
 
@@ -196,9 +222,7 @@ impl Kinds {
     /// [`KindError`] when its key is taken.
     pub fn add_robot<F: RobotKind + DeserializeOwned + JsonSchema + 'static>(&mut self) -> Result<(), KindError> {
         let entry = RobotEntry::of::<F>();
-        if self.robot_keys().contains(&entry.table.key) {
-            return Err(KindError { what: "robot", key: entry.table.key });
-        }
+        free("robot", &self.robot_keys(), entry.table.key)?;
         self.robots.push(entry);
         Ok(())
     }
@@ -209,10 +233,28 @@ impl Kinds {
     /// [`KindError`] when its key is taken.
     pub fn add_law<F: LawKind + DeserializeOwned + JsonSchema + 'static>(&mut self) -> Result<(), KindError> {
         let entry = LawEntry::of::<F>();
-        if self.law_keys().contains(&entry.table.key) {
-            return Err(KindError { what: "law", key: entry.table.key });
-        }
+        free("law", &self.law_keys(), entry.table.key)?;
         self.laws.push(entry);
+        Ok(())
+    }
+
+    /// Adds a kind of delay.
+    ///
+    /// # Errors
+    /// [`KindError`] when its key is taken.
+    pub fn add_delay<F: DelayKind + DeserializeOwned + JsonSchema + 'static>(&mut self) -> Result<(), KindError> {
+        free("delay", &self.delay_keys(), F::key())?;
+        self.delays.push(delay::<F>());
+        Ok(())
+    }
+
+    /// Adds a kind of switching.
+    ///
+    /// # Errors
+    /// [`KindError`] when its key is taken.
+    pub fn add_schedule<F: ScheduleKind + DeserializeOwned + JsonSchema + 'static>(&mut self) -> Result<(), KindError> {
+        free("switching", &self.schedule_keys(), F::key())?;
+        self.schedules.push(schedule::<F>());
         Ok(())
     }
 
@@ -226,6 +268,16 @@ impl Kinds {
         self.laws.iter().map(|entry| entry.table.key).collect()
     }
 
+    /// The keys of all delays.
+    pub fn delay_keys(&self) -> Vec<&'static str> {
+        self.delays.iter().map(|table| table.key).collect()
+    }
+
+    /// The keys of all kinds of switching.
+    pub fn schedule_keys(&self) -> Vec<&'static str> {
+        self.schedules.iter().map(|table| table.key).collect()
+    }
+
     /// What `forwardstep new` writes for the robot of this key, if it offers one.
     pub fn template(&self, key: &str) -> Option<RobotTemplate> {
         self.robots.iter().find(|entry| entry.table.key == key).and_then(|entry| entry.template.clone())
@@ -237,10 +289,15 @@ impl Kinds {
         let robots = choice("The robots that can be simulated.", self.robots.iter().map(|e| &e.table), &mut generator);
         let says = "How the velocity is made to follow the reference velocity.";
         let laws = choice(says, self.laws.iter().map(|entry| &entry.table), &mut generator);
+        let delays = choice("How old a message is when it is heard.", self.delays.iter(), &mut generator);
+        let says = "How the phases of a network follow each other.";
+        let schedules = choice(says, self.schedules.iter(), &mut generator);
         let mut schema = generator.into_root_schema_for::<ScenarioFile>();
         if let Some(parts) = schema.get_mut("$defs").and_then(|parts| parts.as_object_mut()) {
             parts.insert("RobotFile".into(), robots.to_value());
             parts.insert("LawFile".into(), laws.to_value());
+            parts.insert("DelayFile".into(), delays.to_value());
+            parts.insert("SwitchingFile".into(), schedules.to_value());
         }
         schema
     }
@@ -255,6 +312,16 @@ impl Kinds {
     /// The law at `place` in the tree of a file.
     pub(super) fn law(&self, place: ValueDe<'_, '_>) -> Result<KeyedLaw, Fault> {
         chosen(self.laws.iter().map(|entry| &entry.table), place)
+    }
+
+    /// The delay at `place` in the tree of a file.
+    pub(super) fn delay(&self, place: ValueDe<'_, '_>) -> Result<(&'static str, Box<dyn DelayKind>), Fault> {
+        chosen(self.delays.iter(), place)
+    }
+
+    /// The switching at `place` in the tree of a file.
+    pub(super) fn schedule(&self, place: ValueDe<'_, '_>) -> Result<(&'static str, Box<dyn ScheduleKind>), Fault> {
+        chosen(self.schedules.iter(), place)
     }
 
     /// The law of this key, from an empty table.
@@ -275,96 +342,9 @@ impl Kinds {
     }
 }
 
-/// What robots and laws have in common: a key, and a table that is read.
-struct Table<T: ?Sized> {
-    key: &'static str,
-    description: &'static str,
-    read: fn(ValueDe<'_, '_>) -> Result<Box<T>, Fault>,
-    schema: fn(&mut SchemaGenerator) -> Schema,
-}
-
-impl<T: ?Sized> Clone for Table<T> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-impl<T: ?Sized> Copy for Table<T> {}
-
-impl<T: ?Sized> fmt::Debug for Table<T> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.key)
-    }
-}
-
-#[derive(Clone, Debug)]
-struct RobotEntry {
-    table: Table<dyn RobotKind>,
-    usual_law: &'static str,
-    template: Option<RobotTemplate>,
-}
-
-impl RobotEntry {
-    fn of<F: RobotKind + DeserializeOwned + JsonSchema + 'static>() -> Self {
-        fn read<F: RobotKind + DeserializeOwned + 'static>(de: ValueDe<'_, '_>) -> Result<Box<dyn RobotKind>, Fault> {
-            Ok(Box::new(F::deserialize(de)?))
-        }
-        let RobotTable { key, description, usual_law, template } = F::table();
-        let table = Table { key, description, read: read::<F>, schema: SchemaGenerator::subschema_for::<F> };
-        RobotEntry { table, usual_law, template }
-    }
-}
-
-#[derive(Clone, Copy, Debug)]
-struct LawEntry {
-    table: Table<dyn LawKind>,
-    made_for: &'static str,
-    suits: fn(&RobotSetup) -> bool,
-}
-
-impl LawEntry {
-    fn of<F: LawKind + DeserializeOwned + JsonSchema + 'static>() -> Self {
-        fn read<F: LawKind + DeserializeOwned + 'static>(de: ValueDe<'_, '_>) -> Result<Box<dyn LawKind>, Fault> {
-            Ok(Box::new(F::deserialize(de)?))
-        }
-        let LawTable { key, description, made_for } = F::table();
-        let table = Table { key, description, read: read::<F>, schema: SchemaGenerator::subschema_for::<F> };
-        LawEntry { table, made_for, suits: F::suits }
-    }
-}
-
-/// What stands at `place`: the key of one of `tables`, with that table.
-fn chosen<'t, T: ?Sized + 't>(
-    tables: impl Iterator<Item = &'t Table<T>> + Clone,
-    place: ValueDe<'_, '_>,
-) -> Result<(&'static str, Box<T>), Fault> {
-    let keys: Vec<&'static str> = tables.clone().map(|table| table.key).collect();
-    let choice = place.choice(&keys)?;
-    let body = choice.content()?;
-    let mut tables = tables;
-    match tables.find(|table| table.key == choice.key) {
-        Some(table) => Ok((table.key, (table.read)(body).map_err(|fault| fault.at(&place.span()))?)),
-        None => Err(choice.unknown(&keys)),
-    }
-}
-
-/// A table with one of these keys.
-fn choice<'t, T: ?Sized + 't>(
-    description: &str,
-    tables: impl Iterator<Item = &'t Table<T>>,
-    generator: &mut SchemaGenerator,
-) -> Schema {
-    let one = |table: &Table<T>| {
-        let Table { key, description, schema, .. } = table;
-        json_schema!({
-            "description": description,
-            "type": "object",
-            "properties": { *key: schema(generator) },
-            "required": [key],
-            "additionalProperties": false,
-        })
-    };
-    let all: Vec<Schema> = tables.map(one).collect();
-    json_schema!({ "description": description, "oneOf": all })
+/// A key that none of `keys` is.
+fn free(what: &'static str, keys: &[&'static str], key: &'static str) -> Result<(), KindError> {
+    if keys.contains(&key) { Err(KindError { what, key }) } else { Ok(()) }
 }
 
 #[cfg(test)]
@@ -374,7 +354,7 @@ mod tests {
     #[test]
     fn no_key_is_taken_twice() {
         let kinds = Kinds::shipped();
-        for mut keys in [kinds.robot_keys(), kinds.law_keys()] {
+        for mut keys in [kinds.robot_keys(), kinds.law_keys(), kinds.delay_keys(), kinds.schedule_keys()] {
             let all = keys.len();
             keys.sort_unstable();
             keys.dedup();
@@ -385,5 +365,9 @@ mod tests {
         assert_eq!(taken.to_string(), "there is a robot `point_mass` already; choose another key");
         let taken = kinds.add_law::<adaptive::KnownFile>().unwrap_err();
         assert_eq!(taken.to_string(), "there is a law `known` already; choose another key");
+        let taken = kinds.add_delay::<delays::saw_tooth::SawToothFile>().unwrap_err();
+        assert_eq!(taken.to_string(), "there is a delay `saw_tooth` already; choose another key");
+        let taken = kinds.add_schedule::<schedules::random::RandomSwitchingFile>().unwrap_err();
+        assert_eq!(taken.to_string(), "there is a switching `random` already; choose another key");
     }
 }

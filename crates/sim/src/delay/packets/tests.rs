@@ -1,6 +1,6 @@
 use proptest::prelude::*;
 
-use super::super::{Delay, RandomHold};
+use super::super::{Delay, RandomHold, SawTooth};
 use super::*;
 
 fn link() -> PacketLink {
@@ -83,8 +83,8 @@ fn a_link_has_its_own_stream() {
 #[test]
 fn packets_without_jitter_are_a_saw_tooth() {
     let steady = PacketLink { loss: Loss::Never, jitter_s: 0.0, latency_s: 0.25, every_s: 0.5, ..link() };
-    let delay = Delay::Packets(steady.trace((0, 1), 4.0).unwrap().into());
-    let tooth = Delay::SawTooth { min_s: 0.25, max_s: 0.75, period_s: 0.5, offset_s: 0.25 };
+    let delay = Delay::new(steady.trace((0, 1), 4.0).unwrap());
+    let tooth = Delay::new(SawTooth { min_s: 0.25, max_s: 0.75, period_s: 0.5, offset_s: 0.25 });
     assert_eq!(delay.value(0.125), 0.125);
     for k in 2..32 {
         let t = 0.125 * f64::from(k);
@@ -100,11 +100,11 @@ fn packets_without_jitter_are_a_saw_tooth() {
 fn the_last_message_of_one_instant_counts() {
     let packet = |send_s, delay_s| Packet { send_s, delay_s: Some(delay_s) };
     let trace = Trace::new(vec![packet(0.0, 0.0), packet(1.0, 1.0), packet(1.5, 0.5), packet(1.75, 3.0)], 4.0).unwrap();
-    let delay = Delay::Packets(trace.into());
+    let delay = Delay::new(trace);
     let sent = |t: f64| delay.sent_on(delay.piece_at(t), t);
     assert_eq!([0.0, 1.9, 2.0, 4.0].map(sent), [0.0, 0.0, 1.5, 1.5]);
     assert_eq!((delay.min_s(), delay.first_piece().end_s), (0.0, 2.0));
-    let Delay::Packets(trace) = &delay else { unreachable!() };
+    let trace = delay.packets().unwrap();
     let LinkStatistics { sent, lost, late, largest_age_s } = trace.statistics();
     assert_eq!((sent, lost, late), (4, 0, 1));
     assert!((largest_age_s - 2.5).abs() < 1e-12);
@@ -176,7 +176,7 @@ fn packets_holds_and_noise_share_no_random_numbers() {
 #[test]
 fn random_holds_keep_within_their_bounds() {
     let hold = RandomHold::draw(3, (0, 1), [0.05, 0.4], [0.1, 0.8], 500.0).unwrap();
-    let delay = Delay::RandomHold(hold.into());
+    let delay = Delay::new(hold);
     let (mut piece, mut values) = (delay.first_piece(), Vec::new());
     while piece.end_s < 500.0 {
         assert!((0.1 - 1e-9..=0.8 + 1e-9).contains(&(piece.end_s - piece.start_s)));
@@ -211,7 +211,7 @@ proptest! {
     fn prop_the_newest_that_has_arrived_is_heard(packets in any_packets(), times in prop::collection::vec(0.0..12.0_f64, 20)) {
         let until_s = 10.0;
         let trace = Trace::new(packets.clone(), until_s).unwrap();
-        let delay = Delay::Packets(trace.into());
+        let delay = Delay::new(trace);
         let arrivals = packets.iter().filter_map(|p| Some(p.send_s + p.delay_s?));
         for t in times.into_iter().chain(arrivals).filter(|t| *t <= until_s) {
             let piece = delay.piece_at(t);

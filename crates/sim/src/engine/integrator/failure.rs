@@ -1,5 +1,6 @@
 //! Why a step could not be made, and what is to blame.
 
+use super::super::hearing::Refuted;
 use super::super::stiffness::{Work, dominant_rate};
 use super::{DelaySystem, Integrator};
 
@@ -27,6 +28,11 @@ pub(crate) enum FailureCause {
 }
 
 impl Integrator<'_> {
+    /// The last delay that was found not to be what its author says.
+    pub(crate) fn refuted(&self) -> Option<Refuted> {
+        self.hearing.refuted()
+    }
+
     /// The state in which a step could not be made.
     pub(crate) fn failed_in(&self) -> &[f64] {
         &self.x0

@@ -1,0 +1,29 @@
+//! `delay.constant_s`: the same delay for ever.
+
+use forwardstep_sim::delay::Delay;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::super::super::at::At;
+use super::super::super::fault::{Fault, not_negative};
+use super::super::super::network::NetworkReader;
+use super::super::super::values::NotNegative;
+use super::{DelayKind, DelayPlan};
+
+/// In s.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+pub struct ConstantFile(#[schemars(with = "NotNegative")] At<f64>);
+
+impl DelayKind for ConstantFile {
+    fn key() -> &'static str {
+        "constant_s"
+    }
+
+    fn description() -> &'static str {
+        "Always the same, in s."
+    }
+
+    fn plan(&self, _: &mut NetworkReader<'_>) -> Result<DelayPlan, Fault> {
+        Ok(DelayPlan::Shared(Delay::constant(not_negative("constant_s", &self.0)?)))
+    }
+}

@@ -1,0 +1,98 @@
+//! The kinds of delay that scenario files know: for each the struct of its table.
+
+pub mod constant;
+pub mod formula;
+pub mod log;
+pub mod packets;
+pub mod piecewise_constant;
+pub mod random_hold;
+pub mod saw_tooth;
+pub mod sinusoid;
+
+use std::fmt;
+use std::sync::Arc;
+
+use forwardstep_sim::Same;
+use forwardstep_sim::delay::Delay;
+
+use super::super::fault::Fault;
+use super::super::network::NetworkReader;
+use super::super::problem::ScenarioProblem;
+
+/// Packets and values of random holds on all edges together; forty bytes each.
+const MOST_EVENTS: f64 = 5e6;
+
+/// A kind of delay in scenario files: its table, as it was read.
+pub trait DelayKind: fmt::Debug {
+    /// Its key in `delay`.
+    fn key() -> &'static str
+    where
+        Self: Sized;
+
+    /// What it is, in a sentence, for the schema.
+    fn description() -> &'static str
+    where
+        Self: Sized;
+
+    /// What the links have that name it.
+    ///
+    /// # Errors
+    /// The first mistake, at its place.
+    fn plan(&self, network: &mut NetworkReader<'_>) -> Result<DelayPlan, Fault>;
+}
+
+/// The delay of some links.
+#[derive(Clone, Debug)]
+pub enum DelayPlan {
+    /// One delay for all of them.
+    Shared(Delay),
+    /// Every link has its own.
+    EachLink(Arc<dyn LinkDelays>),
+}
+
+impl DelayPlan {
+    /// Every link has its own.
+    pub fn each_link(delays: impl LinkDelays) -> DelayPlan {
+        DelayPlan::EachLink(Arc::new(delays))
+    }
+}
+
+/// Delays of which every link has its own.
+pub trait LinkDelays: Same + fmt::Debug {
+    /// Whether it is the link's own whatever the graph, as packets on the air are: other graphs cannot give it another.
+    fn stays_with_link(&self) -> bool;
+
+    /// The delay of one link.
+    ///
+    /// # Errors
+    /// The first mistake.
+    fn draw(&self, link: &mut Link<'_>) -> Result<Delay, Fault>;
+}
+
+/// A link that a delay is drawn for.
+#[derive(Debug)]
+pub struct Link<'a> {
+    /// The sender and the receiver, by number.
+    pub agents: (usize, usize),
+    /// Their names.
+    pub names: [&'a str; 2],
+    /// The end of the run, s.
+    pub end_s: f64,
+    /// Events of all links so far.
+    pub(crate) events: &'a mut f64,
+}
+
+impl Link<'_> {
+    /// Refuses jumps, packets or whatever `what` is when those of all links together exceed any memory.
+    ///
+    /// # Errors
+    /// [`ScenarioProblem::TooManyEvents`].
+    pub fn few(&mut self, what: &'static str, events: f64) -> Result<(), Fault> {
+        *self.events += events;
+        if *self.events <= MOST_EVENTS {
+            return Ok(());
+        }
+        let problem = ScenarioProblem::TooManyEvents { what, events: self.events.round(), most: MOST_EVENTS };
+        Err(Fault::new(problem))
+    }
+}

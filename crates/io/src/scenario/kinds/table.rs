@@ -1,0 +1,141 @@
+//! What all kinds have in common: a key, and a table that is read.
+
+use std::fmt;
+
+use forwardstep_sim::RobotSetup;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{DeserializeOwned, VariantAccess};
+
+use super::super::choice::Choice;
+use super::super::de::ValueDe;
+use super::super::fault::Fault;
+use super::super::template::RobotTemplate;
+use super::{DelayKind, LawKind, LawTable, RobotKind, RobotTable, ScheduleKind};
+
+/// A key with what stands under it.
+pub(super) struct Table<T: ?Sized> {
+    pub(super) key: &'static str,
+    description: &'static str,
+    read: fn(Choice<'_, '_>) -> Result<Box<T>, Fault>,
+    /// Of its table; `None` for a word that stands alone.
+    schema: Option<fn(&mut SchemaGenerator) -> Schema>,
+}
+
+impl<T: ?Sized> Clone for Table<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T: ?Sized> Copy for Table<T> {}
+
+impl<T: ?Sized> fmt::Debug for Table<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.key)
+    }
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct RobotEntry {
+    pub(super) table: Table<dyn RobotKind>,
+    pub(super) usual_law: &'static str,
+    pub(super) template: Option<RobotTemplate>,
+}
+
+impl RobotEntry {
+    pub(super) fn of<F: RobotKind + DeserializeOwned + JsonSchema + 'static>() -> Self {
+        let RobotTable { key, description, usual_law, template } = F::table();
+        let table: Table<dyn RobotKind> = Table {
+            key,
+            description,
+            read: |table| Ok(Box::new(F::deserialize(table.content()?)?)),
+            schema: Some(SchemaGenerator::subschema_for::<F>),
+        };
+        RobotEntry { table, usual_law, template }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LawEntry {
+    pub(super) table: Table<dyn LawKind>,
+    pub(super) made_for: &'static str,
+    pub(super) suits: fn(&RobotSetup) -> bool,
+}
+
+impl LawEntry {
+    pub(super) fn of<F: LawKind + DeserializeOwned + JsonSchema + 'static>() -> Self {
+        let LawTable { key, description, made_for } = F::table();
+        let table: Table<dyn LawKind> = Table {
+            key,
+            description,
+            read: |table| Ok(Box::new(F::deserialize(table.content()?)?)),
+            schema: Some(SchemaGenerator::subschema_for::<F>),
+        };
+        LawEntry { table, made_for, suits: F::suits }
+    }
+}
+
+/// A kind of delay.
+pub(super) fn delay<F: DelayKind + DeserializeOwned + JsonSchema + 'static>() -> Table<dyn DelayKind> {
+    Table {
+        key: F::key(),
+        description: F::description(),
+        read: |table| Ok(Box::new(F::deserialize(table.content()?)?)),
+        schema: Some(SchemaGenerator::subschema_for::<F>),
+    }
+}
+
+/// A kind of switching.
+pub(super) fn schedule<F: ScheduleKind + DeserializeOwned + JsonSchema + 'static>() -> Table<dyn ScheduleKind> {
+    Table {
+        key: F::key(),
+        description: F::description(),
+        read: |table| Ok(Box::new(F::deserialize(table.content()?)?)),
+        schema: Some(SchemaGenerator::subschema_for::<F>),
+    }
+}
+
+/// A kind of switching that is a word without a table.
+pub(super) fn word<F: ScheduleKind + Default + 'static>() -> Table<dyn ScheduleKind> {
+    Table {
+        key: F::key(),
+        description: F::description(),
+        read: |word| word.unit_variant().map(|()| -> Box<dyn ScheduleKind> { Box::new(F::default()) }),
+        schema: None,
+    }
+}
+
+/// What stands at `place`: the key of one of `tables`, with that table.
+pub(super) fn chosen<'t, T: ?Sized + 't>(
+    mut tables: impl Iterator<Item = &'t Table<T>> + Clone,
+    place: ValueDe<'_, '_>,
+) -> Result<(&'static str, Box<T>), Fault> {
+    let keys: Vec<&'static str> = tables.clone().map(|table| table.key).collect();
+    let choice = place.choice(&keys)?;
+    match tables.find(|table| table.key == choice.key) {
+        Some(table) => Ok((table.key, (table.read)(choice).map_err(|fault| fault.at(&place.span()))?)),
+        None => Err(choice.unknown(&keys)),
+    }
+}
+
+/// One of these keys, each with its table.
+pub(super) fn choice<'t, T: ?Sized + 't>(
+    description: &str,
+    tables: impl Iterator<Item = &'t Table<T>>,
+    generator: &mut SchemaGenerator,
+) -> Schema {
+    let one = |table: &Table<T>| {
+        let Table { key, description, schema, .. } = table;
+        let Some(schema) = schema else {
+            return json_schema!({ "description": description, "type": "string", "const": key });
+        };
+        json_schema!({
+            "description": description,
+            "type": "object",
+            "properties": { *key: schema(generator) },
+            "required": [key],
+            "additionalProperties": false,
+        })
+    };
+    let all: Vec<Schema> = tables.map(one).collect();
+    json_schema!({ "description": description, "oneOf": all })
+}

@@ -1,0 +1,249 @@
+//! Which graph is in force when: graphs, and a switching signal that takes one after the other.
+//!
+//! A signal from outside comes through the same trait as those of forwardstep. It is judged up to the end of the run, and
+//! what its author says of it is probed ([`Schedule::probe`]).
+//!
+//! ```
+//! use forwardstep_sim::schedule::{KnownSwitching, Schedule, Segment, Segments, SwitchingSignal};
+//! use forwardstep_sim::ParameterError;
+//!
+//! /// Takes the graphs in turn, for 1 s, 2 s, 3 s, ….
+//! #[derive(Debug, PartialEq)]
+//! struct Slower;
+//!
+//! impl SwitchingSignal for Slower {
+//!     fn words(&self) -> &'static str {
+//!         "slower and slower"
+//!     }
+//!     fn validate(&self, _: usize) -> Result<(), ParameterError> {
+//!         Ok(())
+//!     }
+//!     fn segments(&self, graphs: usize) -> Segments<'_> {
+//!         let start_s = |k: usize| 0.5 * (k * (k + 1)) as f64;
+//!         let segment = move |k| Segment { start_s: start_s(k), end_s: start_s(k + 1), graph: k % graphs };
+//!         Segments::new((0..).map(segment))
+//!     }
+//!     fn known(&self) -> KnownSwitching {
+//!         KnownSwitching::declared(1.0)
+//!     }
+//! }
+//!
+//! let schedule = Schedule::new(vec![vec![], vec![]], Slower);
+//! assert_eq!(schedule.probe(100.0), Ok(()));
+//! assert_eq!(schedule.segments().nth(2).map(|segment| (segment.start_s, segment.graph)), Some((3.0, 0)));
+//! ```
+
+mod once;
+mod periodic;
+mod probe;
+mod random;
+mod window;
+
+use std::any::{Any, TypeId};
+use std::fmt;
+use std::sync::Arc;
+
+use crate::graph::Edge;
+use crate::parameter::ParameterError;
+use crate::same::Same;
+
+pub use once::Once;
+pub use periodic::Periodic;
+pub use probe::ScheduleFault;
+pub use random::RandomSwitching;
+pub use window::Window;
+
+/// The signals that come with forwardstep. What any other says of itself is declared by its author.
+fn is_shipped(signal: TypeId) -> bool {
+    [TypeId::of::<Once>(), TypeId::of::<Periodic>(), TypeId::of::<RandomSwitching>()].contains(&signal)
+}
+
+/// Which of some graphs is in force when, the same whenever it is asked.
+pub trait SwitchingSignal: Same + fmt::Debug + Send + Sync {
+    /// What it is called in messages, as in `random switching`.
+    fn words(&self) -> &'static str;
+
+    /// Checks the parameters beside so many graphs.
+    ///
+    /// # Errors
+    /// [`ParameterError`] for the first that makes no sense.
+    fn validate(&self, graphs: usize) -> Result<(), ParameterError>;
+
+    /// The stretches of time in order, from t = 0, with `graphs` graphs; endless unless the last graph stays for ever.
+    fn segments(&self, graphs: usize) -> Segments<'_>;
+
+    /// What is known of it.
+    fn known(&self) -> KnownSwitching;
+}
+
+/// A graph that stays in force for a while.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Phase {
+    /// Its edges; at most one from any agent to any other.
+    pub edges: Vec<Edge>,
+    /// How long it lasts, s. Ignored for the last phase of [`Schedule::once`].
+    pub dwell_s: f64,
+}
+
+/// One stretch of time with one graph.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// From here on, s.
+    pub start_s: f64,
+    /// Until here, s; infinite when the graph stays for ever.
+    pub end_s: f64,
+    /// Index of the graph, see [`Schedule::graphs`].
+    pub graph: usize,
+}
+
+/// What is known of a switching signal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KnownSwitching {
+    /// How many of its segments tell all of them.
+    pub extent: Extent,
+    /// How short a segment can be, but for one that has no end.
+    pub dwell: Dwell,
+}
+
+impl KnownSwitching {
+    /// What the author of a signal answers for: no graph is in force for less than `least_dwell_s`.
+    pub fn declared(least_dwell_s: f64) -> Self {
+        KnownSwitching { extent: Extent::Horizon, dwell: Dwell::Declared(least_dwell_s) }
+    }
+}
+
+/// How many segments of a switching signal tell all of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// They end with one that stays for ever.
+    Whole,
+    /// So many, again and again.
+    Period(usize),
+    /// Those of a run tell nothing about later ones.
+    Horizon,
+}
+
+/// How short a segment can be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Dwell {
+    /// It never switches.
+    NeverSwitches,
+    /// The shortest lasts so long, s.
+    Shortest(f64),
+    /// Segments are drawn, and last at least so long, s.
+    Drawn(f64),
+    /// Its author says that they last at least so long, s.
+    Declared(f64),
+}
+
+/// Graphs and a switching signal.
+#[derive(Clone, Debug)]
+pub struct Schedule {
+    /// The graphs.
+    pub graphs: Vec<Vec<Edge>>,
+    signal: Arc<dyn SwitchingSignal>,
+    known: KnownSwitching,
+}
+
+impl Schedule {
+    /// `graphs` as `signal` takes them.
+    pub fn new<S: SwitchingSignal>(graphs: Vec<Vec<Edge>>, signal: S) -> Schedule {
+        let mut known = signal.known();
+        if !is_shipped(TypeId::of::<S>()) {
+            let least_s = match known.dwell {
+                Dwell::Shortest(least_s) | Dwell::Drawn(least_s) | Dwell::Declared(least_s) => least_s,
+                Dwell::NeverSwitches => f64::INFINITY,
+            };
+            known = KnownSwitching::declared(least_s);
+        }
+        Schedule { graphs, signal: Arc::new(signal), known }
+    }
+
+    /// The signal as an `S`, if it is one.
+    pub fn downcast<S: SwitchingSignal>(&self) -> Option<&S> {
+        (&*self.signal as &dyn Any).downcast_ref()
+    }
+
+    /// What the signal is called in messages.
+    pub fn words(&self) -> &'static str {
+        self.signal.words()
+    }
+
+    /// Checks the parameters of the signal.
+    pub(crate) fn validate(&self) -> Result<(), ParameterError> {
+        self.signal.validate(self.graphs.len())
+    }
+
+    /// What is known of the signal.
+    pub fn known(&self) -> KnownSwitching {
+        self.known
+    }
+
+    /// The edges of one graph; empty for an index that does not exist.
+    pub fn graph(&self, index: usize) -> &[Edge] {
+        self.graphs.get(index).map_or(&[], |graph| graph)
+    }
+
+    /// The one graph that is in force for ever, if there is only one.
+    pub fn constant_graph(&self) -> Option<&[Edge]> {
+        match &self.graphs[..] {
+            [graph] => Some(graph),
+            _ => None,
+        }
+    }
+
+    /// The stretches of time in order, from t = 0; endless unless the last graph stays for ever.
+    pub fn segments(&self) -> Segments<'_> {
+        self.signal.segments(self.graphs.len())
+    }
+}
+
+impl PartialEq for Schedule {
+    /// Whether both have the same graphs and the same signal.
+    fn eq(&self, other: &Self) -> bool {
+        self.graphs == other.graphs && self.signal.same(&*other.signal)
+    }
+}
+
+/// The graphs and the dwell times of phases.
+fn split(phases: Vec<Phase>) -> (Vec<Vec<Edge>>, Vec<f64>) {
+    phases.into_iter().map(|phase| (phase.edges, phase.dwell_s)).unzip()
+}
+
+/// Each of `dwell_s` must be positive and finite.
+fn check_dwell(dwell_s: &[f64]) -> Result<(), ParameterError> {
+    dwell_s.iter().try_for_each(|dwell_s| ParameterError::unless_positive("a dwell time", *dwell_s))
+}
+
+/// There must be `need` dwell times.
+fn check_count(dwell_s: &[f64], need: usize) -> Result<(), ParameterError> {
+    let requirement = "must be that of the graphs that end";
+    ParameterError::unless(dwell_s.len() == need, "the number of dwell times", dwell_s.len() as f64, requirement)
+}
+
+/// Iterator over the stretches of a schedule.
+pub struct Segments<'a>(Box<dyn Iterator<Item = Segment> + 'a>);
+
+impl<'a> Segments<'a> {
+    /// The stretches in this order.
+    pub fn new(segments: impl Iterator<Item = Segment> + 'a) -> Self {
+        Segments(Box::new(segments))
+    }
+}
+
+impl fmt::Debug for Segments<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Segments")
+    }
+}
+
+impl Iterator for Segments<'_> {
+    type Item = Segment;
+
+    fn next(&mut self) -> Option<Segment> {
+        self.0.next()
+    }
+}
+
+#[cfg(test)]
+mod tests;

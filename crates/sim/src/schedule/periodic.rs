@@ -1,0 +1,51 @@
+//! Graphs that take turns again and again.
+
+use super::{
+    Dwell, Extent, KnownSwitching, Phase, Schedule, Segment, Segments, SwitchingSignal, check_count, check_dwell, split,
+};
+use crate::parameter::ParameterError;
+
+/// The graphs in turn, again and again.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Periodic {
+    /// How long each lasts, s.
+    pub dwell_s: Vec<f64>,
+}
+
+impl Schedule {
+    /// The phases in turn, again and again.
+    pub fn periodic(phases: Vec<Phase>) -> Schedule {
+        let (graphs, dwell_s) = split(phases);
+        Schedule::new(graphs, Periodic { dwell_s })
+    }
+}
+
+impl SwitchingSignal for Periodic {
+    fn words(&self) -> &'static str {
+        "periodic switching"
+    }
+
+    fn validate(&self, graphs: usize) -> Result<(), ParameterError> {
+        check_count(&self.dwell_s, graphs)?;
+        check_dwell(&self.dwell_s)
+    }
+
+    fn segments(&self, _: usize) -> Segments<'_> {
+        let period_s: f64 = self.dwell_s.iter().sum();
+        let mut start_s = 0.0;
+        let rounds = (0_u64..).flat_map(|round| (0..self.dwell_s.len()).map(move |graph| (round, graph)));
+        Segments::new(rounds.map(move |(round, graph)| {
+            // Summed within the period and multiplied across periods, so that rounding does not pile up.
+            let within: f64 = self.dwell_s[..=graph].iter().sum();
+            let end_s = round as f64 * period_s + within;
+            let segment = Segment { start_s, end_s, graph };
+            start_s = end_s;
+            segment
+        }))
+    }
+
+    fn known(&self) -> KnownSwitching {
+        let shortest_s = self.dwell_s.iter().copied().fold(f64::INFINITY, f64::min);
+        KnownSwitching { extent: Extent::Period(self.dwell_s.len()), dwell: Dwell::Shortest(shortest_s) }
+    }
+}

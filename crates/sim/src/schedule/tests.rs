@@ -1,0 +1,76 @@
+use super::*;
+use crate::graph::{SpanningTree, spanning_tree};
+
+fn phase(dwell_s: f64, pairs: &[(usize, usize)]) -> Phase {
+    Phase { dwell_s, edges: pairs.iter().map(|&(from, to)| Edge { from, to, weight: 1.0.into(), delay: 0 }).collect() }
+}
+
+#[test]
+fn periodic_window_is_made_of_whole_phases() {
+    let schedule = Schedule::periodic(vec![phase(1.0, &[(0, 1)]), phase(2.0, &[(1, 2)]), phase(0.5, &[])]);
+    let Window::Uniform { length_s, roots, worst_start_s, for_all_time } = schedule.window(3, 10.0) else { panic!() };
+    // From the second phase: 2 + 0.5 + 1.
+    assert_eq!((length_s, worst_start_s, for_all_time), (3.5, 1.0, true));
+    assert_eq!(roots, vec![0]);
+}
+
+#[test]
+fn once_needs_a_tree_in_its_last_graph() {
+    let schedule = Schedule::once(vec![phase(1.0, &[(0, 1), (1, 2)]), phase(1.0, &[(0, 1)])]);
+    assert_eq!(schedule.window(3, 10.0), Window::Missing { start_s: 1.0, closed_groups: vec![vec![0], vec![2]] });
+    let turned = Schedule::once(vec![phase(1.0, &[(0, 1)]), phase(1.0, &[(0, 1), (1, 2)])]);
+    assert!(matches!(turned.window(3, 10.0), Window::Uniform { length_s: 1.0, for_all_time: true, .. }));
+}
+
+/// The length of the longest run that was needed, found the long way round.
+fn longest_run_s(schedule: &Schedule, agents: usize, end_s: f64) -> f64 {
+    let segments: Vec<Segment> = schedule.segments().take_while(|s| s.start_s < end_s).collect();
+    let run_s = |first: usize| {
+        (first..segments.len()).find_map(|last| {
+            let union: Vec<Edge> =
+                segments[first..=last].iter().flat_map(|s| schedule.graph(s.graph)).copied().collect();
+            let rooted = matches!(spanning_tree(agents, &union), SpanningTree::Rooted { .. });
+            rooted.then(|| segments[last].end_s - segments[first].start_s)
+        })
+    };
+    (0..segments.len()).map_while(run_s).fold(0.0, f64::max)
+}
+
+#[test]
+fn windows_are_those_found_the_long_way_round() {
+    let graphs: Vec<Vec<Edge>> =
+        [&[(0, 1)][..], &[(1, 2), (2, 1)], &[(2, 3)], &[], &[(3, 0)]].map(|pairs| phase(0.0, pairs).edges).into();
+    for seed in 0..20 {
+        let schedule = Schedule::random(graphs.clone(), [0.5, 1.5], seed);
+        let Window::Uniform { length_s, .. } = schedule.window(4, 100.0) else { panic!("{seed}") };
+        assert_eq!(length_s, longest_run_s(&schedule, 4, 100.0), "{seed}");
+    }
+}
+
+#[test]
+fn regress_a_million_switches_are_judged_at_once() {
+    let graphs: Vec<Vec<Edge>> = vec![phase(0.0, &[(0, 1)]).edges, phase(0.0, &[]).edges];
+    let schedule = Schedule::random(graphs, [1.0, 1.0], 3);
+    let began = std::time::Instant::now();
+    assert_eq!(schedule.window(3, 1e6), Window::Missing { start_s: 0.0, closed_groups: vec![vec![0], vec![2]] });
+    assert!(matches!(schedule.window(2, 1e6), Window::Uniform { for_all_time: false, .. }));
+    let took_s = began.elapsed().as_secs_f64();
+    assert!(took_s < 10.0, "{took_s} s");
+}
+
+#[test]
+fn periodic_times_do_not_drift() {
+    let schedule = Schedule::periodic(vec![phase(0.1, &[]), phase(0.2, &[])]);
+    let late = schedule.segments().nth(200_000).unwrap();
+    assert!((late.start_s - 30_000.0).abs() < 1e-9);
+}
+
+#[test]
+fn random_draws_are_reproducible_and_only_judged_on_the_horizon() {
+    let graphs: Vec<Vec<Edge>> = vec![phase(0.0, &[(0, 1)]).edges, phase(0.0, &[(1, 2)]).edges];
+    let schedule = Schedule::random(graphs, [0.5, 1.5], 3);
+    let first: Vec<Segment> = schedule.segments().take(50).collect();
+    assert_eq!(first, schedule.segments().take(50).collect::<Vec<_>>());
+    assert!(first.iter().all(|s| (0.5..=1.5).contains(&(s.end_s - s.start_s))));
+    assert!(matches!(schedule.window(3, 50.0), Window::Uniform { for_all_time: false, .. }));
+}
