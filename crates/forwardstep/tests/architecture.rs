@@ -175,12 +175,9 @@ fn the_engine_knows_no_robots() {
         "sim/src/engine",
         &["crate::closed_loop", "forwardstep_core::robot", "forwardstep_core::law", "forwardstep_core::reference"],
     );
-    for file in ["graph", "schedule", "delay/mod", "delay/packets", "delay/random_hold", "network"] {
+    for file in ["graph.rs", "schedule", "delay", "network.rs"] {
         let above = ["engine", "closed_loop", "setup", "recording", "simulate"];
-        never_says(
-            &format!("sim/src/{file}.rs"),
-            &above.map(|room| format!("crate::{room}")).each_ref().map(|s| &s[..]),
-        );
+        never_says(&format!("sim/src/{file}"), &above.map(|room| format!("crate::{room}")).each_ref().map(|s| &s[..]));
     }
 }
 

@@ -28,9 +28,9 @@ name = "mass"
 count = 3
 robot.point_mass = { dimension = 1, mass_kg = 2 }
 start.position_m = [[0], [1], [-0.5]]
-reference.roots_per_s = [2, 1]
 
 [reference.consensus]
+roots_per_s = [2, 1]
 exchange = "position_velocity"
 
 [law.adaptive]
@@ -101,14 +101,14 @@ fn the_file_says_what_they_are() {
 #[test]
 fn their_mistakes_are_reported_at_their_place_with_near_matches() {
     let cases = [
-        ("delay.collatz", "delay.colatz", "20:7: unknown choice `colatz`", "did you mean `collatz`?"),
-        ("step_s = 0.1", "stepp_s = 0.1", "20:19: unknown key `stepp_s`", "did you mean `step_s`?"),
-        ("step_s = 0.1", "step_s = -0.1", "20:28: `step_s` is -0.1, but must be positive", ""),
-        ("hold_s = 0.35", "hold_s = 1e-9", "20:42: ", "jumps of the delay"),
-        ("switching.thue_morse", "switching.thue_mors", "21:11: unknown choice `thue_mors`", "`thue_morse`"),
-        ("dwell_s = 0.5", "dwell = 0.5", "21:26: unknown key `dwell`", "did you mean `dwell_s`?"),
-        ("dwell_s = 0.5", "dwell_s = 0", "21:36: `dwell_s` is 0, but must be positive", ""),
-        ("switching.thue_morse = { dwell_s = 0.5 }", "switching = \"thue_morse\"", "21:13: ", ""),
+        ("delay.collatz", "delay.colatz", "19:7: unknown choice `colatz`", "did you mean `collatz`?"),
+        ("step_s = 0.1", "stepp_s = 0.1", "19:19: unknown key `stepp_s`", "did you mean `step_s`?"),
+        ("step_s = 0.1", "step_s = -0.1", "19:28: `step_s` is -0.1, but must be positive", ""),
+        ("hold_s = 0.35", "hold_s = 1e-9", "19:42: ", "jumps of the delay"),
+        ("switching.thue_morse", "switching.thue_mors", "20:11: unknown choice `thue_mors`", "`thue_morse`"),
+        ("dwell_s = 0.5", "dwell = 0.5", "20:26: unknown key `dwell`", "did you mean `dwell_s`?"),
+        ("dwell_s = 0.5", "dwell_s = 0", "20:36: `dwell_s` is 0, but must be positive", ""),
+        ("switching.thue_morse = { dwell_s = 0.5 }", "switching = \"thue_morse\"", "20:13: ", ""),
     ];
     for (from, to, message, help) in cases {
         assert_eq!(MASSES.matches(from).count(), 1, "{from}");
@@ -153,7 +153,7 @@ fn the_schema_holds_them_and_the_program_without_them_does_not_know_them() {
     assert!(words.iter().any(|word| word["const"] == "repeat"));
     let source = SourceText::new("masses.toml", MASSES);
     let error = forwardstep::io::scenario::read_scenario("masses", &source, None).unwrap_err();
-    assert_eq!(error.to_string(), "masses.toml:20:7: unknown choice `collatz`");
+    assert_eq!(error.to_string(), "masses.toml:19:7: unknown choice `collatz`");
 }
 
 /// What is found of the hypothesis of this name.
