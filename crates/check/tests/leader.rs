@@ -162,7 +162,7 @@ fn thm8_only_a_sign_that_is_solved_for_is_the_set_valued_one() {
 fn thm8_any_link_with_a_delay_is_not_covered() {
     let said = |delays: [f64; 2]| {
         let mut setup = setup(FollowingDesign::Continuous, wave(), 3.0);
-        setup.network.delays = delays.map(|s| Delay::constant(s)).to_vec();
+        setup.network.delays = delays.map(Delay::constant).to_vec();
         setup.network.schedule = Schedule::fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 1)]);
         common::answer(&setup, About::Prompt)
     };

@@ -63,7 +63,7 @@ fn ring(agents: Vec<AgentSetup>, exchange: Exchange, end_s: f64) -> Setup {
         2 => vec![edge(0, 1, 1.5, 0), edge(1, 0, 0.7, 1)],
         _ => vec![edge(0, 1, 1.5, 0), edge(1, 2, 0.7, 1), edge(2, 0, 1.1, 2), edge(1, 0, 0.4, 0)],
     };
-    let delays = [0.3, 0.0, 0.75].map(|s| Delay::constant(s)).to_vec();
+    let delays = [0.3, 0.0, 0.75].map(Delay::constant).to_vec();
     let mut setup = setup(agents, exchange, Schedule::fixed(edges), delays, end_s);
     setup.time.record_every_s = 5.0;
     setup.solver.method = Method::Adaptive { rtol: 1e-10, atol: 1e-11 };

@@ -23,11 +23,14 @@ use super::table::{Cell, cell_number};
 /// Formulas for weights, and for delays, that are told apart; each is searched for its bounds.
 const MOST_FORMULAS: usize = 1000;
 
+/// Where the delay of one link comes from, and its index.
+type Drawn = (Arc<dyn LinkDelays>, usize);
+
 /// What has been drawn or read for single edges so far.
 #[derive(Default)]
 pub(super) struct Links {
     /// The delay of each edge (from, to), and whether it stays with the link.
-    drawn: HashMap<(usize, usize, bool), (Arc<dyn LinkDelays>, usize)>,
+    drawn: HashMap<(usize, usize, bool), Drawn>,
     pub(super) logs: BTreeMap<String, Arc<Log>>,
     weights: HashMap<String, Weight>,
     /// The delays that are written as formulas, by their texts.
