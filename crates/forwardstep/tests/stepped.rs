@@ -6,7 +6,6 @@
 mod stepped;
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
 use forwardstep::sim::delay::{Delay, Packet, Trace};
 use forwardstep::sim::{AgentSetup, Ending, Known, Network, RobotSetup, Setup, Signal, simulate_samples};
@@ -21,7 +20,7 @@ fn setup() -> Setup {
     };
     let packet = |tick| Packet { send_s: f64::from(tick) * PERIOD_S, delay_s: latency_s(tick) };
     let trace = Trace::new((0..(END_S / PERIOD_S) as u32).map(packet).collect(), END_S).unwrap();
-    let network = Network::fixed(2, [(0, 1), (1, 0)], Delay::Packets(Arc::new(trace)));
+    let network = Network::fixed(2, [(0, 1), (1, 0)], Delay::new(trace));
     let mut setup = Setup::consensus([cart("left", START_M[0]), cart("right", START_M[1])], network, END_S);
     setup.time.record_every_s = PERIOD_S;
     setup.sampled(1.0 / PERIOD_S)
