@@ -1,5 +1,8 @@
 //! The tree of a scenario file: read once as a whole, and again where a kind has a table of its own.
 
+use std::ops::Range;
+
+use forwardstep_sim::quantity::{Path, Segment};
 use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -58,9 +61,42 @@ impl<'i> Document<'i> {
         law.map(|value| kinds.law(ValueDe { value, kinds })).transpose()
     }
 
+    /// The place of what stands at `path`, or of the nearest that is around it. `entries` has the entry of `[[agents]]` that
+    /// stands for each agent; what an entry does not say itself is looked for where it is said for all.
+    pub(super) fn place(&self, path: &Path, entries: &[usize]) -> Option<Range<usize>> {
+        let (own, common) = match path.segments() {
+            [Segment::Key("agents"), Segment::Index(agent), inner @ ..] => {
+                let entry = self.entry(*entries.get(*agent)?)?;
+                let own = deepest(entry, inner);
+                // Without a law the robot has the usual one.
+                let robot = || (0, entry.get_ref().get("robot").unwrap_or(entry).span());
+                (Some(if own.0 == 0 { robot() } else { own }), inner)
+            }
+            whole => (None, whole),
+        };
+        let common = Some(deepest(&self.root, common)).filter(|(depth, _)| *depth > 0);
+        let (_, span) =
+            own.into_iter().chain(common).reduce(|own, common| if common.0 > own.0 { common } else { own })?;
+        Some(span)
+    }
+
     fn entry(&self, entry: usize) -> Option<&Spanned<DeValue<'i>>> {
         self.root.get_ref().get("agents")?.get_ref().get(entry)
     }
+}
+
+/// How far `path` leads from `value` inwards, and the place of what is there.
+fn deepest(mut value: &Spanned<DeValue<'_>>, path: &[Segment]) -> (usize, Range<usize>) {
+    let mut depth = 0;
+    for segment in path {
+        let inner = match segment {
+            Segment::Key(key) => value.get_ref().get(*key),
+            Segment::Index(index) => value.get_ref().get(*index),
+        };
+        let Some(inner) = inner else { break };
+        (value, depth) = (inner, depth + 1);
+    }
+    (depth, value.span())
 }
 
 /// What `read` makes of an empty table under `key`.

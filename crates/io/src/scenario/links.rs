@@ -8,6 +8,7 @@ use forwardstep_core::expression::{Expression, Interval};
 use forwardstep_sim::delay::{Delay, Loss, Packet, PacketLink, RandomHold, Trace};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
+use forwardstep_sim::quantity::few;
 
 use super::at::At;
 use super::fault::{Fault, between, fault, not_negative, not_negative_or, positive, seed};
@@ -16,7 +17,6 @@ use super::links_file::{BurstsFile, LogFile, LossFile, PacketsFile, RandomHoldFi
 use super::network::NetworkReader;
 use super::network_problem::NetworkProblem;
 use super::notice::Notice;
-use super::problem::ScenarioProblem;
 use super::table::{Cell, Column, TableProblem, cell_number, read_table, table_text};
 use super::value_problem::ValueProblem;
 
@@ -151,11 +151,8 @@ impl NetworkReader<'_> {
 
     fn few_packets(&mut self, what: &'static str, packets: f64, span: &Range<usize>) -> Result<(), Fault> {
         self.links.packets += packets;
-        if self.links.packets <= MOST_PACKETS {
-            return Ok(());
-        }
-        let events = self.links.packets.round();
-        Err(Fault::new(ScenarioProblem::TooManyEvents { what, events, most: MOST_PACKETS }).at(span))
+        few("", what, packets, (what, self.links.packets, MOST_PACKETS))
+            .map_err(|error| Fault::new(ValueProblem::Quantity(error)).at(span))
     }
 
     /// A weight as it is written.

@@ -3,7 +3,6 @@
 use forwardstep_sim::SetupError;
 use thiserror::Error;
 
-use super::control_problem::ControlProblem;
 use super::kinds::KindProblem;
 use super::network_problem::NetworkProblem;
 use super::push_problem::PushProblem;
@@ -150,35 +149,12 @@ pub enum ScenarioProblem {
     /// A table that has no meaning, or cannot be read.
     #[error(transparent)]
     Table(#[from] TableProblem),
-    /// More switches or jumps than any run could land on.
-    #[error("about {} {what} until the end of the run, but at most {} are accepted", about(*.events), number(*.most))]
-    TooManyEvents {
-        /// Switches of the graph, or jumps of the delay.
-        what: &'static str,
-        /// How many.
-        events: f64,
-        /// How many are accepted.
-        most: f64,
-    },
     /// A network that has no meaning.
     #[error(transparent)]
     Network(#[from] NetworkProblem),
-    /// Digital control that has no meaning.
-    #[error(transparent)]
-    Control(#[from] ControlProblem),
     /// A push that has no meaning.
     #[error(transparent)]
     Push(#[from] PushProblem),
-    /// No step is long enough and short enough.
-    #[error("`{key}` is {}, but must not be less than `min_step_s`, which is {}", number(*.value), number(*.min_step_s))]
-    StepUnderFloor {
-        /// The key.
-        key: &'static str,
-        /// The step.
-        value: f64,
-        /// The floor.
-        min_step_s: f64,
-    },
     /// A recording that would not fit into memory.
     #[error(
         "the recording would hold {} numbers, {} rows of {columns} columns, but at most {} fit",
@@ -260,15 +236,10 @@ impl Problem for ScenarioProblem {
             ScenarioProblem::NoSuchAgent { name, agents } => choose(name, "the agents are", agents),
             ScenarioProblem::Table(problem) => return problem.help(),
             ScenarioProblem::Network(problem) => return problem.help(),
-            ScenarioProblem::Control(problem) => return problem.help(),
             ScenarioProblem::Push(problem) => return problem.help(),
             ScenarioProblem::RecordingTooLarge { least_s, .. } => {
                 format!("for this `end_s` let `record_every_s` be at least {}", about(1.05 * least_s))
             }
-            ScenarioProblem::TooManyEvents { what: "samples", .. } => {
-                "sample more slowly, or let the run end sooner".into()
-            }
-            ScenarioProblem::TooManyEvents { .. } => "is a unit of time mistaken? All of them are seconds".into(),
             ScenarioProblem::EmptyGoal => {
                 "set `disagreement_below = 1e-3` (with targets `error_below`), or `expect = \"diverges\"`, or delete the goal".into()
             }

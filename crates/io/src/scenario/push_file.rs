@@ -157,8 +157,8 @@ pub struct CourseCsvFile {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CourseRowsFile {
-    /// The times of the rows, in s; rising.
-    #[schemars(with = "Vec<NotNegative>", length(min = 2))]
+    /// The times of the rows, in s; rising. They may begin before the run.
+    #[schemars(with = "Vec<f64>", length(min = 2))]
     pub times_s: At<Vec<At<f64>>>,
     /// The rows, a list of numbers each; as many as times.
     #[schemars(with = "Vec<Vec<f64>>", length(min = 2))]

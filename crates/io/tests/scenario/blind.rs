@@ -76,7 +76,7 @@ const BLIND_CASES: &[Case] = &[
     ("velocity_m_s = [0.1, 0] ", "velocity_m_s = [0.1] ",
         "test.toml:8:57: `velocity_m_s` has 1 entry, but `mass-1` needs 2", ""),
     ("[network]", "[control]\nsample_hz = 100\ntorque_limit = [1, 1, 1]\n[network]",
-        "test.toml:22:16: `torque_limit` has 3 where the agents have 2 axes", "a single number stands for all axes"),
+        "test.toml:22:16: agent `mass-1`: the limit of torques has 3 entries where 2 are needed", "a single number stands for all axes"),
     ("[network]", "[control]\nsample_hz = 0\n[network]",
         "test.toml:21:13: `sample_hz` is 0, but must be positive", ""),
 ];

@@ -178,7 +178,7 @@ const DERIVATIVES_CASES: &[Case] = &[
     ("[network]", "[[pushes]]\non = [\"chain-1\"]\nby.force_n = [1]\n[network]",
         "test.toml:22:7: agent `chain-1`: pushes act on robots under the adaptive or the known law, not on immersion and invariance", "leave `chain-1` out of `on`"),
     ("[network]", "[control]\nsample_hz = 100\ntorque_limit = [1, 1]\n[network]",
-        "test.toml:23:16: `torque_limit` has 2 where the agents have 1 axis", "a single number stands for all axes"),
+        "test.toml:23:16: agent `chain-1`: the limit of torques has 2 entries where 1 are needed", "a single number stands for all axes"),
 ];
 
 /// A chain in strict-feedback form and one in pure-feedback form.

@@ -13,6 +13,7 @@ mod meaning;
 mod mixed;
 mod mutated;
 mod pushes;
+mod ranges;
 #[path = "../support/seeds.rs"]
 mod seeds;
 mod shipped;

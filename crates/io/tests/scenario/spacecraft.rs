@@ -191,7 +191,7 @@ const SPACECRAFT_CASES: &[Case] = &[
     ("[goal]", "[[pushes]]\non = [\"craft\"]\nby.effort = [1, 0, 0, 0]\n[goal]",
         "test.toml:31:7: agent `craft`: pushes act on robots under the adaptive or the known law, not on the law for an attitude", "leave `craft` out of `on`"),
     ("[goal]", "[control]\nsample_hz = 10\ntorque_limit = [1, 1, 1]\n[goal]",
-        "test.toml:32:16: `torque_limit` has 3 where the agents have 4 axes", "a single number stands for all axes"),
+        "test.toml:32:16: agent `craft`: the limit of torques has 3 entries where 4 are needed", "a single number stands for all axes"),
     ("[goal]", "[control]\nsample_hz = 10\ntorque_rate_limit_per_s = [1, 1, 1, 1]\n[goal]",
         "test.toml:32:27: agent `craft`: the limit of torque rates has 4 entries where 0 are needed", "leave it out: this robot has another number of torques than of axes"),
     ("[goal]", "[network]\nedges = [[\"craft\", \"craft\"]]\n[goal]",

@@ -27,9 +27,6 @@ const ERROR_GAIN_PER_S2: f64 = 1.0;
 const RATE_GAIN_PER_S: f64 = 2.0;
 const FILTER_GAIN_PER_S: f64 = 1.0;
 const DAMPING: f64 = 3.0;
-/// Times at which the length of a target is looked at, and what part of its greatest counts as zero.
-const SAMPLES: u32 = 1000;
-const VANISHING: f64 = 1e-9;
 
 /// What is wrong with a spacecraft.
 #[derive(Debug, Error)]
@@ -146,7 +143,10 @@ impl RobotKind for SpacecraftFile {
     }
 
     fn target(&self, place: &At<TargetFile>, target: &Trajectory, end_s: f64, start: &mut Start) -> Result<(), Fault> {
-        never_zero(place, target, end_s)?;
+        let nearest = target.least_norm(end_s);
+        if nearest.vanishes() {
+            return Err(fault(place, SpacecraftProblem::NoAttitude { t_s: nearest.t_s }));
+        }
         shortest_rotation(start, target);
         Ok(())
     }
@@ -218,21 +218,6 @@ fn turned(file: &WheelStartFile) -> Result<Option<Quaternion>, Fault> {
         (None, None, Some(angle)) => return Err(fault(angle, SpacecraftProblem::HalfAttitude)),
         (Some(given), ..) => return Err(fault(given, SpacecraftProblem::HalfAttitude)),
     })
-}
-
-/// Refuses a target that is no attitude at some time.
-fn never_zero<T>(place: &At<T>, target: &Trajectory, end_s: f64) -> Result<(), Fault> {
-    let mut jets = [[0.0; 5]; 4];
-    let mut size = |t_s: f64| {
-        target.jets(t_s, &mut jets);
-        jets.iter().map(|jet| jet[0].abs()).fold(0.0, f64::max)
-    };
-    let times = (0..=SAMPLES).map(|k| end_s * f64::from(k) / f64::from(SAMPLES));
-    let (t_s, least, most) = times.fold((0.0, f64::INFINITY, 0.0_f64), |(at, least, most), t_s| {
-        let size = size(t_s);
-        if size < least { (t_s, size, most.max(size)) } else { (at, least, most.max(size)) }
-    });
-    if least > VANISHING * most { Ok(()) } else { Err(fault(place, SpacecraftProblem::NoAttitude { t_s })) }
 }
 
 /// Of the two quaternions of the attitude at the start, takes the one that is nearer to the target: the law leads to Δq_o = 1

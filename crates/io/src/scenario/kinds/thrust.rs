@@ -115,7 +115,7 @@ pub struct RotorsFile {
     pub drag_m: At<f64>,
     /// The least and the greatest thrust of one rotor, in N.
     #[schemars(with = "[NotNegative; 2]")]
-    pub thrust_n: At<[f64; 2]>,
+    pub thrust_n: At<[At<f64>; 2]>,
 }
 
 impl RobotKind for RotorcraftFile {
@@ -168,16 +168,15 @@ impl RobotKind for RotorcraftFile {
 }
 
 fn rotors(file: &RotorsFile) -> Result<Rotors, Fault> {
-    let [low, high] = file.thrust_n.value;
-    let least = At { value: low, span: file.thrust_n.span.clone() };
-    not_negative("thrust_n", &least)?;
+    let [low, high] = &file.thrust_n.value;
+    let (low, high) = (not_negative("thrust_n", low)?, not_negative("thrust_n", high)?);
     if low >= high {
         return Err(fault(&file.thrust_n, ValueProblem::Range { key: "thrust_n", low, high }));
     }
     Ok(Rotors {
         offset: positive("offset_m", &file.offset_m)?,
         drag: positive("drag_m", &file.drag_m)?,
-        thrust: file.thrust_n.value,
+        thrust: [low, high],
     })
 }
 
