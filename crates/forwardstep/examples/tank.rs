@@ -9,7 +9,6 @@
 //! target.formulas = ["1 + 0.1*sin(t)"]
 //! ```
 
-use std::ops::Range;
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -160,10 +159,6 @@ impl LawKind for LevelFile {
 
     fn law(&self, _: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
         Ok(Arc::new(Level { gain: positive("gain_per_s", &self.gain_per_s)? }))
-    }
-
-    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
-        None
     }
 }
 

@@ -97,10 +97,10 @@ impl Following {
         }
         positive(at, "gain", self.gain)?;
         match self.choice {
-            Choice::Layer { width } => positive("reference.leader.sign.layer", "width", width),
+            Choice::Layer { width } => positive("reference.leader.sign.boundary_layer", "width", width),
             Choice::Implicit | Choice::Explicit if !sampled => {
-                positive(at, "sign_every_s", self.period_s)?;
-                few(at, "sign_every_s", self.period_s, ("settings of the sign", end_s / self.period_s, MOST_EVENTS))
+                positive(at, "sign_period_s", self.period_s)?;
+                few(at, "sign_period_s", self.period_s, ("settings of the sign", end_s / self.period_s, MOST_EVENTS))
             }
             Choice::Implicit | Choice::Explicit => Ok(()),
         }

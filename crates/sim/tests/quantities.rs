@@ -13,6 +13,9 @@ use forwardstep_sim::{
     SetupError, VelocitySensor, validate,
 };
 
+/// A change, and the path of what is wrong then.
+type Case<'a> = (&'a dyn Fn(&mut Setup), &'a str);
+
 fn setup() -> Setup {
     let cart = |name: &str| AgentSetup::new(name, RobotSetup::point_mass(1, 2.0), Known::gain(4.0)).roots(&[1.0]);
     let mut setup = Setup::consensus([cart("one").at(&[1.0]), cart("two").at(&[0.0])], Network::silent(2), 1.0);
@@ -68,7 +71,7 @@ fn every_quantity_is_refused_out_of_its_range_under_its_path() {
     for value in [-1.0, f64::NAN, f64::INFINITY, 1e31] {
         let fixed = |step_s| Method::Fixed { step_s };
         let backstepping = |filter_s, limit| ReferenceKind::Backstepping { filter_s, acceleration_limit: limit };
-        let cases: &[(&dyn Fn(&mut Setup), &str)] = &[
+        let cases: &[Case<'_>] = &[
             (&|s| s.time.end_s = value, "time.end_s"),
             (&|s| s.time.record_every_s = value, "time.record_every_s"),
             (&|s| s.solver.method = Method::Adaptive { rtol: value, atol: 1e-8 }, "solver.method.adaptive.rtol"),
@@ -98,8 +101,8 @@ fn every_quantity_is_refused_out_of_its_range_under_its_path() {
             (&following(&|f| f.beta = value), "reference.leader.beta"),
             (&following(&|f| f.gain = value), "reference.leader.gain"),
             (&following(&|f| f.design = FollowingDesign::Swarm { coupling: value }), "reference.leader.coupling"),
-            (&following(&|f| f.period_s = value), "reference.leader.sign_every_s"),
-            (&following(&|f| f.choice = Choice::Layer { width: value }), "reference.leader.sign.layer.width"),
+            (&following(&|f| f.period_s = value), "reference.leader.sign_period_s"),
+            (&following(&|f| f.choice = Choice::Layer { width: value }), "reference.leader.sign.boundary_layer.width"),
         ];
         for (change, path) in cases {
             assert_eq!(wrong(change), *path, "{value}");
@@ -109,12 +112,12 @@ fn every_quantity_is_refused_out_of_its_range_under_its_path() {
 
 #[test]
 fn quantities_are_held_against_each_other() {
-    let cases: [(&dyn Fn(&mut Setup), &str); 6] = [
+    let cases: [Case<'_>; 6] = [
         (&|s| s.solver.max_step_s = Some(0.9e-12), "solver.max_step_s"),
         (&|s| s.solver.method = Method::Fixed { step_s: 0.9e-12 }, "solver.method.fixed.step_s"),
         (&controlled(|c| c.sample_hz = 1.1e7), "control.sample_hz"),
         (&controlled(|c| c.computation_delay_s = 0.0101), "control.computation_delay_s"),
-        (&following(&|f| f.period_s = 0.9e-7), "reference.leader.sign_every_s"),
+        (&following(&|f| f.period_s = 0.9e-7), "reference.leader.sign_period_s"),
         (&controlled(|c| c.actuators.torque_rate_limit = Some(vec![1.0; 2])), "control.torque_rate_limit_per_s"),
     ];
     for (change, path) in cases {
@@ -130,7 +133,7 @@ fn quantities_are_held_against_each_other() {
 
 #[test]
 fn errors_about_agents_lead_to_them() {
-    let cases: [(&dyn Fn(&mut Setup), &str); 5] = [
+    let cases: [Case<'_>; 5] = [
         (&|s| s.agents[1].start.reference = vec![vec![0.0]; 2], "agents[1].start.reference"),
         (&|s| s.reference = ReferenceKind::Tracking, "reference"),
         (&|s| s.agents[1].target = Some(at_zero()), "agents[1].target"),

@@ -7,10 +7,13 @@ use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::FORMAT;
+use super::at::At;
 use super::de::ValueDe;
-use super::fault::Fault;
+use super::fault::{Fault, fault};
 use super::file::ScenarioFile;
 use super::kinds::{Kinds, LawKind, RobotKind};
+use super::problem::ScenarioProblem;
 use super::value_problem::ValueProblem;
 use crate::SourceText;
 
@@ -33,6 +36,20 @@ impl<'i> Document<'i> {
         };
         let table = DeTable::parse(source.text()).map_err(unreadable)?;
         Ok(Document { root: Spanned::new(table.span(), DeValue::Table(table.into_inner())) })
+    }
+
+    /// The version of its format; what else the file says may depend on it.
+    pub(super) fn format(&self) -> Result<At<i64>, Fault> {
+        match self.root.get_ref().get("format") {
+            Some(value) => At::deserialize(ValueDe { value, kinds: &Kinds::default() }),
+            None => Err(Fault::new(ValueProblem::MissingKey { key: "format" })),
+        }
+    }
+
+    /// Refuses a format that is not read now.
+    pub(super) fn readable(format: &At<i64>, source: &SourceText) -> Result<(), Fault> {
+        let problem = || ScenarioProblem::Format { found: format.value, file: source.name().to_owned() };
+        if format.value == FORMAT { Ok(()) } else { Err(fault(format, problem())) }
     }
 
     /// The file, with the tables of `kinds` checked but left in the tree.

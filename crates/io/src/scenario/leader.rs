@@ -54,10 +54,10 @@ pub(super) fn following(
     let choice = match reference.sign.as_ref().map(|sign| &sign.value) {
         None | Some(SignFile::Implicit) => Choice::Implicit,
         Some(SignFile::Explicit) => Choice::Explicit,
-        Some(SignFile::Layer(layer)) => Choice::Layer { width: layer.width.value },
+        Some(SignFile::BoundaryLayer(layer)) => Choice::Layer { width: layer.width.value },
     };
     let layer = matches!(choice, Choice::Layer { .. });
-    if let (Some(every), true) = (&reference.sign_every_s, layer || file.control.is_some()) {
+    if let (Some(every), true) = (&reference.sign_period_s, layer || file.control.is_some()) {
         return Err(fault(every, SystemProblem::SignPeriodUnused { layer }));
     }
     Ok(Some(Arc::new(Following {
@@ -67,7 +67,7 @@ pub(super) fn following(
         beta,
         gain: reference.gain.value,
         choice,
-        period_s: reference.sign_every_s.as_ref().map_or(SIGN_EVERY_S, |every| every.value),
+        period_s: reference.sign_period_s.as_ref().map_or(SIGN_EVERY_S, |every| every.value),
     })))
 }
 

@@ -247,20 +247,20 @@ pub(super) fn random_hold(file: &RandomHoldFile) -> Result<DelayPlan, Fault> {
 }
 
 pub(super) fn packets(file: &PacketsFile) -> Result<DelayPlan, Fault> {
-    let every_s = positive("every_s", &file.every_s)?;
+    let every_s = positive("period_s", &file.period_s)?;
     let first_s = file.first_s.as_ref().map_or(Ok(0.0), |first| between("first_s", first, 0.0, every_s))?;
-    let (loss, most_in_a_row) = match file.loss.as_ref().map(|loss| &loss.value) {
+    let (loss, most_consecutive) = match file.loss.as_ref().map(|loss| &loss.value) {
         None => (Loss::Never, &None),
-        Some(LossFile::Random(RandomLossFile { probability, most_in_a_row })) => {
-            (Loss::Random { probability: between("probability", probability, 0.0, 1.0)? }, most_in_a_row)
+        Some(LossFile::Random(RandomLossFile { probability, most_consecutive })) => {
+            (Loss::Random { probability: between("probability", probability, 0.0, 1.0)? }, most_consecutive)
         }
-        Some(LossFile::Bursts(BurstsFile { enter, leave, most_in_a_row })) => {
+        Some(LossFile::Bursts(BurstsFile { enter, leave, most_consecutive })) => {
             let enter = between("enter", enter, 0.0, 1.0)?;
             positive("leave", leave)?;
-            (Loss::Bursts { enter, leave: between("leave", leave, 0.0, 1.0)? }, most_in_a_row)
+            (Loss::Bursts { enter, leave: between("leave", leave, 0.0, 1.0)? }, most_consecutive)
         }
     };
-    let most = most_in_a_row.as_ref().map(|most| super::fault::count("most_in_a_row", most, MOST_IN_A_ROW));
+    let most = most_consecutive.as_ref().map(|most| super::fault::count("most_consecutive", most, MOST_IN_A_ROW));
     let link = PacketLink {
         every_s,
         first_s,

@@ -31,14 +31,14 @@ pub struct RandomHoldFile {
 pub struct PacketsFile {
     /// From one packet to the next, in s.
     #[schemars(extend("exclusiveMinimum" = 0))]
-    pub every_s: At<f64>,
-    /// When the first is sent, in s; at most `every_s`. Default: 0.
+    pub period_s: At<f64>,
+    /// When the first is sent, in s; at most `period_s`. Default: 0.
     #[schemars(range(min = 0))]
     pub first_s: Option<At<f64>>,
     /// The least time that a packet takes, in s.
     #[schemars(range(min = 0))]
     pub latency_s: At<f64>,
-    /// Each packet takes up to this much longer, uniformly drawn, in s; beyond `every_s` packets overtake each other.
+    /// Each packet takes up to this much longer, uniformly drawn, in s; beyond `period_s` packets overtake each other.
     /// Default: 0.
     #[schemars(range(min = 0))]
     pub jitter_s: Option<At<f64>>,
@@ -68,7 +68,7 @@ pub struct RandomLossFile {
     pub probability: At<f64>,
     /// No more than this are lost one after another. Default: any number may be.
     #[schemars(range(min = 1))]
-    pub most_in_a_row: Option<At<i64>>,
+    pub most_consecutive: Option<At<i64>>,
 }
 
 /// Packets are lost in bursts.
@@ -83,7 +83,7 @@ pub struct BurstsFile {
     pub leave: At<f64>,
     /// No more than this are lost one after another. Default: any number may be.
     #[schemars(range(min = 1))]
-    pub most_in_a_row: Option<At<i64>>,
+    pub most_consecutive: Option<At<i64>>,
 }
 
 /// Packets that were recorded.

@@ -8,7 +8,7 @@
 //! use forwardstep_io::scenario::read_scenario;
 //!
 //! let text = r#"
-//!     format = 1
+//!     format = 2
 //!     time = { end_s = 20 }
 //!     [[agents]]
 //!     name = "cart"
@@ -74,6 +74,7 @@ mod table;
 mod target;
 mod template;
 mod unused;
+mod upgrade;
 mod value_problem;
 pub mod values;
 
@@ -98,6 +99,8 @@ pub use shipped::{SHIPPED_SCENARIOS, SHIPPED_TABLES, ShippedScenario, ShippedTab
 pub use system_problem::SystemProblem;
 pub use table::TableProblem;
 pub use template::{RobotTemplate, Template, TemplateDelay, TemplateGraph};
+pub(crate) use upgrade::column as upgraded_column;
+pub use upgrade::{Moved, Upgraded, upgrade};
 pub use value_problem::ValueProblem;
 
 use crate::output::Goal;
@@ -113,6 +116,8 @@ use inputs::InputFolder;
 use kinds::Kinds;
 use robots::Stop;
 
+/// The format of scenario files.
+pub const FORMAT: i64 = 2;
 /// Numbers that a recording may hold; eight bytes each.
 const MOST_RECORDED: f64 = 1e8;
 const RECORD_EVERY_S: f64 = 0.02;
@@ -213,10 +218,8 @@ impl Kinds {
 
 fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds) -> Result<Scenario, Stop> {
     let document = Document::parse(source)?;
+    Document::readable(&document.format()?, source)?;
     let file = document.file(kinds)?;
-    if file.format.value != 1 {
-        return Err(fault(&file.format, ScenarioProblem::Format { found: file.format.value }).into());
-    }
     let mut notices = Vec::new();
     let record_every_s = file.time.record_every_s.as_ref().map_or(RECORD_EVERY_S, |every| every.value);
     let end_s = file.time.end_s.value;
@@ -224,7 +227,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
     document.checked(time.check())?;
     let from = agents::Source { file: &file, document: &document, kinds, text: source, end_s };
     let mut read = agents::agents(&from, &mut folder, &mut notices)?;
-    pushes::pushes(&file.pushes, &mut read, end_s, source, &mut folder, &mut notices)?;
+    pushes::pushes(&file.external_wrenches, &mut read, end_s, source, &mut folder, &mut notices)?;
     let agents = read.agents;
     let mut names: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
     let axes: Vec<String> = agents.first().map_or_else(Vec::new, |agent| agents::axis_names(&agent.robot));
@@ -313,7 +316,7 @@ fn solver(file: Option<&SolverFile>) -> Result<Solver, Fault> {
             Some(bytes) => positive_count("memory_budget_bytes", bytes)?,
             None => default.memory_budget_bytes,
         },
-        balance: file.balance.unwrap_or(default.balance),
+        balance: file.lyapunov_balance.unwrap_or(default.balance),
     })
 }
 

@@ -3,6 +3,7 @@
 use forwardstep_sim::SetupError;
 use thiserror::Error;
 
+use super::FORMAT;
 use super::kinds::KindProblem;
 use super::network_problem::NetworkProblem;
 use super::push_problem::PushProblem;
@@ -25,10 +26,12 @@ pub enum ScenarioProblem {
     #[error(transparent)]
     System(#[from] SystemProblem),
     /// A version of the format that this program does not read.
-    #[error("`format` is {found}, but this version reads format 1")]
+    #[error("`format` is {found}, but this version reads format {FORMAT}")]
     Format {
         /// The version.
         found: i64,
+        /// The file.
+        file: String,
     },
     /// A name that would not work in tables.
     #[error("{name:?} cannot be the name of an agent")]
@@ -86,7 +89,7 @@ pub enum ScenarioProblem {
         axis: String,
     },
     /// A spread where there is nothing to differ from.
-    #[error("`spread` is given, but there is no `count`")]
+    #[error("`parameter_variation` is given, but there is no `count`")]
     SpreadOfOne,
     /// A robot that its spread has made impossible.
     #[error("with this spread the mass matrix of `{agent}` is not positive definite")]
@@ -201,6 +204,10 @@ impl Problem for ScenarioProblem {
         let text = match self {
             ScenarioProblem::Value(problem) => return problem.help(),
             ScenarioProblem::System(problem) => return problem.help(),
+            ScenarioProblem::Format { found: 1, file } => {
+                format!("`forwardstep upgrade {file}` converts it and prints what it renames")
+            }
+            ScenarioProblem::Format { found, .. } if *found > FORMAT => "use a later version of forwardstep".into(),
             ScenarioProblem::AgentName { .. } => "use up to 64 letters, digits, `-` and `_`".into(),
             ScenarioProblem::AgentTwice { .. } => {
                 "agents of a counted population are named after it: `arm` with `count = 2` gives `arm-1` and `arm-2`"

@@ -17,7 +17,7 @@ use super::tips::TIP;
 use super::vehicles::VEHICLES;
 
 /// Two arms in every respect that other texts leave out.
-const ARMS: &str = r#"format = 1
+const ARMS: &str = r#"format = 2
 time.end_s = 1
 [[agents]]
 name = "arm"
@@ -28,7 +28,7 @@ roots_per_s = [1.0, 2.0]
 exchange = "position"
 [network]
 coupling.tanh = 0.3
-edges = [["arm-1", "arm-2"], { from = "arm-2", to = "arm-1", delay.packets = { every_s = 0.1, latency_s = 0, seed = 1, loss.random = { probability = 0.1, most_in_a_row = 3 } } }]
+edges = [["arm-1", "arm-2"], { from = "arm-2", to = "arm-1", delay.packets = { period_s = 0.1, latency_s = 0, seed = 1, loss.random = { probability = 0.1, most_consecutive = 3 } } }]
 [control]
 sample_hz = 100
 torque_limit = 50
@@ -40,13 +40,13 @@ method.adaptive = { rtol = 1e-5, atol = 1e-7 }
 max_step_s = 0.1
 min_step_s = 1e-10
 memory_budget_bytes = 100_000_000
-[[pushes]]
+[[external_wrenches]]
 on = ["arm-1"]
-by.hand_on_axes = { stiffness = 40, damping = 3, target_rad = [0, 1] }
+by.virtual_spring_on_axes = { stiffness = 40, damping = 3, target_rad = [0, 1] }
 "#;
 
 /// Two masses that follow a leader.
-const FOLLOWERS: &str = r#"format = 1
+const FOLLOWERS: &str = r#"format = 2
 time.end_s = 1
 [leader]
 motion.formulas = ["sin(t)"]
@@ -58,7 +58,7 @@ robot.point_mass = { dimension = 1, mass_kg = 2 }
 design = "continuous"
 roots_per_s = [1.5]
 gain = 3
-sign.layer.width = 0.1
+sign.boundary_layer.width = 0.1
 [network]
 edges = [["leader", "cart-1"], ["cart-1", "cart-2"]]
 "#;

@@ -3,7 +3,7 @@
 use super::{Case, refused};
 
 /// Two vehicles and a rotorcraft that keep a formation.
-pub(super) const VEHICLES: &str = r#"format = 1
+pub(super) const VEHICLES: &str = r#"format = 2
 time = { end_s = 10 }
 
 [[agents]]
@@ -225,9 +225,9 @@ const VEHICLES_CASES: &[Case] = &[
         "test.toml:30:24: `rate_bandwidth_per_s` is -30, but must be positive", ""),
     ("rate_bandwidth_per_s = 30", "rate_bandwidth = 30",
         "test.toml:30:1: unknown key `rate_bandwidth`", "did you mean `rate_bandwidth_per_s`? allowed here: `design`, `yaw`, `floor`, `thrust_start_n`, `rate_bandwidth_per_s`"),
-    ("[network]", "[[pushes]]\non = [\"rotor\"]\nby.force_n = [1, 0, 0]\n[network]",
+    ("[network]", "[[external_wrenches]]\non = [\"rotor\"]\nby.force_n = [1, 0, 0]\n[network]",
         "test.toml:33:7: agent `rotor`: pushes act on robots under the adaptive or the known law, not on the thrust law", "leave `rotor` out of `on`"),
-    ("[network]", "[[pushes]]\non = [\"vehicle\"]\nby.force_n = [1, 0, 0]\n[network]",
+    ("[network]", "[[external_wrenches]]\non = [\"vehicle\"]\nby.force_n = [1, 0, 0]\n[network]",
         "test.toml:33:7: agent `vehicle-1`: pushes act on robots under the adaptive or the known law, not on the thrust law", "leave `vehicle-1` out of `on`"),
     ("[network]", "[leader]\nmotion.formulas = [0, 0, 0]\n[network]",
         "test.toml:32:1: there is a leader, but `reference.consensus` does not follow one", "write `reference.leader`, or delete the leader"),
@@ -241,8 +241,8 @@ const VEHICLES_CASES: &[Case] = &[
         "test.toml:34:18: `seed` is -1, but must not be negative", ""),
     ("count = 2", "count = 2\nenforce_limits = true",
         "test.toml:7:18: `enforce_limits` is true, but axis `x` of `vehicle-1` has no effort limit", "only a URDF states limits, as <limit effort=\"…\"> of a joint"),
-    ("count = 2", "spread = { seed = 1, relative = 0.1 }",
-        "test.toml:6:10: `spread` is given, but there is no `count`", "a population of `count = 1` may have a spread, too"),
+    ("count = 2", "parameter_variation = { seed = 1, relative = 0.1 }",
+        "test.toml:6:23: `parameter_variation` is given, but there is no `count`", "a population of `count = 1` may have a spread, too"),
     ("count = 2", "count = 2\nlaw.adaptive = {}",
         "test.toml:7:1: agent `vehicle-1`: the law `adaptive` is made for arms and point masses", "for this robot there is `thrust`"),
     ("count = 2", "count = 2\nlaw.attitude = {}",

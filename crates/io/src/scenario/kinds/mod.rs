@@ -23,11 +23,10 @@ pub mod thrust;
 pub mod urdf;
 
 use std::fmt;
-use std::ops::Range;
 use std::sync::Arc;
 
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{Law, RobotSetup, SetupError, Start};
+use forwardstep_sim::{Law, RobotSetup, Start};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::DeserializeOwned;
 use thiserror::Error;
@@ -127,9 +126,6 @@ pub trait LawKind: fmt::Debug {
     /// # Errors
     /// The first mistake, at its place.
     fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault>;
-
-    /// Where in the file stands what the closed loop refuses with `error`, if the table itself does not.
-    fn place(&self, error: &SetupError) -> Option<Range<usize>>;
 }
 
 /// The agent that a law is read for.
@@ -163,7 +159,7 @@ pub struct KindError {
 /// let kinds = Kinds::shipped();
 /// assert!(kinds.robot_keys().contains(&"point_mass") && kinds.law_keys().contains(&"adaptive"));
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Kinds {
     robots: Vec<RobotEntry>,
     laws: Vec<LawEntry>,

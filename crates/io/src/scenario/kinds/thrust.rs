@@ -1,14 +1,11 @@
 //! Vehicles with one thrust: `robot.vehicle`, `robot.rotorcraft` and `law.thrust`.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use forwardstep_core::controller::{Floor, Yaw};
 use forwardstep_core::plant::Rotors;
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{
-    AxisUnit, Law, Robot, RobotSetup, RotorcraftModel, SetupError, Start, ThrustKind, ThrustLaw, VehicleModel,
-};
+use forwardstep_sim::{AxisUnit, Law, Robot, RobotSetup, RotorcraftModel, Start, ThrustKind, ThrustLaw, VehicleModel};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -343,10 +340,6 @@ impl LawKind for ThrustFile {
             thrust_start: self.thrust_start_n.as_ref().map(|start| positive("thrust_start_n", start)).transpose()?,
             bandwidth_per_s: positive_or("rate_bandwidth_per_s", &self.rate_bandwidth_per_s, RATE_BANDWIDTH_PER_S)?,
         }))
-    }
-
-    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
-        None
     }
 }
 
