@@ -118,10 +118,6 @@ impl LawKind for LevelFile {
     fn law(&self, _: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
         Ok(Arc::new(Level { gain: positive("gain_per_s", &self.gain_per_s)? }))
     }
-
-    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
-        None
-    }
 }
 
 /// The tank as data.

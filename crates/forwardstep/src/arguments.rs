@@ -51,6 +51,8 @@ pub(crate) enum Command {
     },
     /// Print the JSON schema of scenario files
     Schema,
+    /// Convert scenario files of an earlier format to the present one, in place, and print what is renamed
+    Upgrade(UpgradeOptions),
     /// Write a commented scenario to start from
     New(NewOptions),
     /// Describe a robot, or compute its dynamics at a state
@@ -83,6 +85,19 @@ pub(crate) struct RunOptions {
     /// Write the trajectory as CSV too
     #[arg(long)]
     pub(crate) csv: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct UpgradeOptions {
+    /// The files; those of the present format stay as they are
+    #[arg(value_name = "FILE", required = true)]
+    pub(crate) files: Vec<PathBuf>,
+    /// Write to this file instead; for a single FILE
+    #[arg(long, value_name = "NEW", conflicts_with = "stdout")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print the new text to standard output, and what is renamed to standard error
+    #[arg(long)]
+    pub(crate) stdout: bool,
 }
 
 #[derive(Debug, Args)]

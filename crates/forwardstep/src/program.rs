@@ -46,6 +46,7 @@ pub fn program_with(kinds: &Kinds, arguments: impl IntoIterator<Item = impl Into
         Command::Check { scenario } => commands::check(&scenario, kinds, &mut console),
         Command::Scenarios { name } => commands::scenarios(name.as_deref(), &mut console),
         Command::Schema => commands::schema(kinds, &mut console),
+        Command::Upgrade(options) => commands::upgrade(&options, &mut console),
         Command::New(options) => commands::new(&options, kinds, &mut console),
         Command::Robot(options) => commands::robot(&options, &mut console),
         Command::Completions { shell } => commands::completions(shell, &mut console),

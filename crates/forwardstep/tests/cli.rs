@@ -14,7 +14,7 @@ use tempfile::TempDir;
 
 /// Two arms that agree within a few seconds; a `[goal]` or `[solver]` may follow.
 const QUICK: &str = r#"
-format = 1
+format = 2
 title = "Two arms"
 time = { end_s = 30, record_every_s = 0.1 }
 [[agents]]

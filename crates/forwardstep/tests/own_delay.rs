@@ -20,7 +20,7 @@ use forwardstep::sim::{Ending, ParameterError, Setup, simulate};
 use forwardstep::{program_with, sim};
 use miette::Diagnostic;
 
-const MASSES: &str = r#"format = 1
+const MASSES: &str = r#"format = 2
 time = { end_s = 12 }
 
 [[agents]]

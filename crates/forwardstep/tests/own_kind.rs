@@ -22,14 +22,14 @@ use miette::Diagnostic;
 use sim::system::{Declaration, DeclaredClaim, Known};
 use sim::{Assembly, Block, Interface, Law, LawWords, RobotSetup, SetupError, Signal};
 
-const TANKS: &str = r#"format = 1
+const TANKS: &str = r#"format = 2
 time = { end_s = 10 }
 
 [[agents]]
 name = "tank"
 count = 2
 robot.tank = { area_m2 = 2, inflow_limit_m3_s = 0.5 }
-spread = { seed = 1, relative = 0.1 }
+parameter_variation = { seed = 1, relative = 0.1 }
 start.position_m = [[0.2], [1.5]]
 target.formulas = ["1 + 0.1*sin(t)"]
 
@@ -77,7 +77,7 @@ fn it_runs_is_recorded_and_reported_and_the_report_is_rebuilt() {
         serde_json::from_str(&fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
     let limit = &summary["metrics"]["limits_reached"][0];
     assert_eq!((limit["kind"].as_str(), limit["limit"].as_f64()), (Some("inflow"), Some(0.5)), "{limit}");
-    let balance = summary["metrics"]["ledger_error"]["relative"].as_f64().unwrap();
+    let balance = summary["metrics"]["balance_residual"]["relative"].as_f64().unwrap();
     assert!(balance < 1e-5, "V + ∫ dissipation is constant to {balance}");
 
     let drawn = pictures(&out);

@@ -13,7 +13,7 @@ use tempfile::TempDir;
 
 /// Two arms that estimate; a `[goal]` or `[solver]` may follow.
 const ARMS: &str = r#"
-format = 1
+format = 2
 title = "Two arms"
 time = { end_s = 3, record_every_s = 0.1 }
 [[agents]]
@@ -31,7 +31,7 @@ edges = [["arm-1", "arm-2"], ["arm-2", "arm-1"]]
 
 /// Three pendulums from files beside the scenario, below it, and elsewhere.
 const FILES: &str = r#"
-format = 1
+format = 2
 title = "Three pendulums"
 time = { end_s = 2, record_every_s = 0.1 }
 [[agents]]
@@ -305,9 +305,9 @@ fn what_is_wrong_is_said_and_nothing_is_harmed() {
         ("summary.json", Some(vec![0xff]), "", "it is no UTF-8 text"),
         (
             "summary.json",
-            Some(b"{\"format\": 2}".to_vec()),
+            Some(b"{\"format\": 3}".to_vec()),
             "",
-            "its format is 2, and this version of forwardstep reads",
+            "its format is 3, and this version of forwardstep reads",
         ),
         ("summary.json", Some(replaced("summary.json", "\"kind\"", "\"king\"")), "", "missing field `kind` at line"),
         (

@@ -1,31 +1,6 @@
 //! Numbers and near matches in messages.
 
-use std::fmt;
-
-/// A number as a person would write it: plain, or with a power of ten when it is very large or small.
-pub(crate) fn number(value: f64) -> Number {
-    Number(value)
-}
-
-/// See [`number`].
-#[derive(Clone, Copy)]
-pub(crate) struct Number(f64);
-
-impl fmt::Display for Number {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let size = self.0.abs();
-        if size == 0.0 || (1e-4..1e7).contains(&size) || !size.is_finite() {
-            write!(f, "{}", self.0)
-        } else {
-            write!(f, "{:e}", self.0)
-        }
-    }
-}
-
-/// A number to two digits: enough to judge by.
-pub(crate) fn about(value: f64) -> Number {
-    Number(format!("{value:.1e}").parse().unwrap_or(value))
-}
+pub(crate) use forwardstep_sim::quantity::{about, number};
 
 /// "1 list", "2 lists".
 pub(crate) fn count(number: usize, what: &str) -> String {

@@ -52,7 +52,7 @@ fn every_kind_names_its_columns_and_their_units() {
                 ("front.q.z", "m"),
                 ("front.attitude.o", "1"),
                 ("front.omega.x", "rad/s"),
-                ("front.omega_wanted.y", "rad/s"),
+                ("front.omega_commanded.y", "rad/s"),
                 ("front.sigma", "N"),
                 ("front.tau.x", "N m"),
                 ("front.d2z.y", "m/s^3"),

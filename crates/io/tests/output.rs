@@ -118,7 +118,7 @@ fn a_run_is_written_the_same_twice_but_for_timings() {
     first["timings"].take();
     second["timings"].take();
     assert_eq!(first, second);
-    assert_eq!(first["format"], 1);
+    assert_eq!(first["format"], 2);
     assert_eq!(first["ending"]["kind"], "completed");
     assert_eq!(first["verdicts"]["worst"], "not covered by the paper");
     assert_eq!(first["goal"], serde_json::json!({ "disagreement_below": 0.05, "met": true }));

@@ -15,7 +15,7 @@ use forwardstep_sim::{
 };
 use proptest::prelude::*;
 
-const CARTS: &str = r#"format = 1
+const CARTS: &str = r#"format = 2
 title = "Two carts"
 time = { end_s = 0.5, record_every_s = 0.1 }
 [[agents]]

@@ -17,8 +17,6 @@
 //!
 //! Only positions may be heard: of a velocity that is heard φ would need the derivative.
 
-use thiserror::Error;
-
 /// φ, in the units of the axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Coupling {
@@ -42,17 +40,6 @@ pub enum Coupling {
     },
 }
 
-/// A coupling without meaning.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum CouplingError {
-    /// A limit or a scale that is not positive.
-    #[error("the size of the coupling is {value}, but must be positive and finite")]
-    Size {
-        /// The value.
-        value: f64,
-    },
-}
-
 impl Coupling {
     /// Whether φ(v) = v.
     pub fn is_linear(self) -> bool {
@@ -66,15 +53,6 @@ impl Coupling {
             Coupling::Saturated { limit: size }
             | Coupling::Tanh { scale: size }
             | Coupling::Rational { scale: size } => Some(size),
-        }
-    }
-
-    /// # Errors
-    /// [`CouplingError`] when its limit or scale is not positive and finite.
-    pub fn check(self) -> Result<(), CouplingError> {
-        match self.size() {
-            Some(value) if !(value > 0.0 && value.is_finite()) => Err(CouplingError::Size { value }),
-            _ => Ok(()),
         }
     }
 

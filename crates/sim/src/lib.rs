@@ -1,7 +1,7 @@
 //! Networks of forwardstepping agents: switching digraphs, discontinuous delays, the closed loop as a delay-differential
 //! equation, and an integrator whose steps land on every break-point; or, under digital control, held torques between samples.
 //!
-//! The layers, each of which uses only those before it: [`formula`], [`trajectory`], [`graph`], [`topology`] and [`schedule`], [`delay`] and
+//! The layers, each of which uses only those before it: [`quantity`], [`formula`], [`trajectory`], [`graph`], [`topology`] and [`schedule`], [`delay`] and
 //! [`network`]; [`leader`], [`setup`] and [`push`], the plain data of a run; the integrator with its history and break-points; the closed
 //! loop; [`recording`] and [`simulate`].
 
@@ -18,6 +18,8 @@ pub mod network;
 mod parameter;
 pub mod probe;
 pub mod push;
+pub mod quantity;
+mod ranges;
 pub mod recording;
 mod same;
 pub mod schedule;
@@ -42,8 +44,8 @@ pub use recording::{
 };
 pub use same::Same;
 pub use setup::{
-    Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Method, ReferenceKind, RobotSetup, Sensors, Setup,
-    Solver, Start, TimeSpan, VelocitySensor,
+    ATOL, Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Method, RTOL, ReferenceKind, RobotSetup, Sensors,
+    Setup, Solver, Start, TimeSpan, VelocitySensor,
 };
 pub use simulate::{recorded_columns, simulate, simulate_samples};
 pub use system::{

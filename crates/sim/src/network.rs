@@ -3,11 +3,12 @@
 use forwardstep_core::expression::Interval;
 use thiserror::Error;
 
-use crate::coupling::{Coupling, CouplingError};
+use crate::coupling::Coupling;
 use crate::delay::{Delay, DelayFault};
 use crate::formula::BoundedFormula;
 use crate::graph::Weight;
 use crate::parameter::ParameterError;
+use crate::quantity::QuantityError;
 use crate::schedule::{Schedule, ScheduleFault};
 
 /// A switching digraph with delays.
@@ -31,9 +32,9 @@ pub enum NetworkError {
     /// There is nobody.
     #[error("a network needs at least one agent")]
     NoAgents,
-    /// A coupling without meaning.
+    /// A quantity out of its range.
     #[error(transparent)]
-    Coupling(#[from] CouplingError),
+    Quantity(#[from] QuantityError),
     /// A schedule without any graph.
     #[error("the schedule has no graph")]
     NoGraphs,

@@ -320,6 +320,11 @@ pub struct Actuators {
     pub torque_quantum: f64,
 }
 
+/// The usual relative tolerance of an adaptive method.
+pub const RTOL: f64 = 1e-6;
+/// The usual absolute tolerance of an adaptive method.
+pub const ATOL: f64 = 1e-8;
+
 /// How to integrate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solver {
@@ -356,7 +361,7 @@ pub enum Method {
 impl Default for Solver {
     fn default() -> Self {
         Solver {
-            method: Method::Adaptive { rtol: 1e-6, atol: 1e-8 },
+            method: Method::Adaptive { rtol: RTOL, atol: ATOL },
             max_step_s: None,
             min_step_s: 1e-12,
             memory_budget_bytes: 1 << 30,

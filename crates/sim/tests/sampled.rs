@@ -233,7 +233,7 @@ fn a_run_that_no_memory_holds_is_refused_before_it_begins() {
         let refused = simulate(&setup, &mut |_| ControlFlow::Break(()));
         let expected = match refused {
             Err(SetupError::Memory { need_bytes, budget_bytes }) => delay_s > 0.0 && need_bytes > budget_bytes,
-            Err(SetupError::Control { .. }) => delay_s == 0.0,
+            Err(SetupError::Quantity(error)) => delay_s == 0.0 && error.path.to_string() == "control.sample_hz",
             _ => false,
         };
         assert!(expected, "{sample_hz} Hz, {end_s} s, {delay_s} s");

@@ -7,12 +7,6 @@ use super::{Claim, KindCheck};
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, MotionEvidence, Named, Subject};
 use crate::theorem::Theorem;
 
-/// Parts of the run at whose ends a target is looked at.
-const LOOKS: u32 = 2000;
-
-/// The smallest norm of a quaternion on its path, as a part of the largest, that is not taken for zero.
-const LEAST_NORM: f64 = 1e-6;
-
 pub(crate) struct Spacecraft;
 
 impl KindCheck for Spacecraft {
@@ -82,28 +76,19 @@ fn path(setup: &Setup, agent: &AgentSetup) -> Option<MotionEvidence> {
         return Some(MotionEvidence::EntryAway { least: away });
     }
     let end_s = setup.time.end_s;
-    let (mut least, mut most, mut when) = (f64::INFINITY, 0.0_f64, 0.0);
-    let mut jets = [[0.0; 5]; 4];
-    for k in 0..=LOOKS {
-        let t_s = end_s * f64::from(k) / f64::from(LOOKS);
-        target.jets(t_s, &mut jets);
-        let norm = jets.iter().map(|jet| jet[0] * jet[0]).sum::<f64>().sqrt();
-        most = most.max(norm);
-        if norm < least {
-            (least, when) = (norm, t_s);
-        }
-    }
+    let seen = target.least_norm(end_s);
     let fastest = |axis| {
         let speed = target.hull(axis, 1, Some(end_s));
         speed.high.max(-speed.low)
     };
     let speed = (0..target.axes()).map(fastest).map(|speed| speed * speed).sum::<f64>().sqrt();
-    let shown = least - speed * 0.5 * end_s / f64::from(LOOKS);
+    let shown = seen.norm - speed * 0.5 * seen.every_s;
+    let (t_s, norm) = (seen.t_s, seen.norm);
     Some(if shown > 0.0 {
         MotionEvidence::NormAbove { least: shown }
-    } else if least > LEAST_NORM * most {
-        MotionEvidence::NormSeen { t_s: when, norm: least }
+    } else if seen.vanishes() {
+        MotionEvidence::NormVanishes { t_s, norm }
     } else {
-        MotionEvidence::NormVanishes { t_s: when, norm: least }
+        MotionEvidence::NormSeen { t_s, norm }
     })
 }

@@ -14,6 +14,7 @@ mod scenarios;
 mod schema;
 mod stop;
 mod summary;
+mod upgrade;
 
 pub(crate) use check::check;
 pub(crate) use completions::completions;
@@ -23,3 +24,4 @@ pub(crate) use robot::robot;
 pub(crate) use run::run;
 pub(crate) use scenarios::scenarios;
 pub(crate) use schema::schema;
+pub(crate) use upgrade::upgrade;

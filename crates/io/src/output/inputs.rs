@@ -126,7 +126,7 @@ mod tests {
         let digest = |text: &str| content_digest(text).unwrap_or_else(|| panic!("{text}"));
         let one = digest("title = \"one\"\nformat = 1 # a comment\n[time]\nend_s = 20");
         assert_eq!(one, digest("# another\ntime = { end_s = 20 }\nformat = 1\ntitle = \"two\""));
-        assert_ne!(one, digest("format = 1\n[time]\nend_s = 21"));
+        assert_ne!(one, digest("format = 2\n[time]\nend_s = 21"));
         assert_eq!(content_digest("format ="), None);
     }
 }

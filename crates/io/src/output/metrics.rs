@@ -32,7 +32,7 @@ pub struct Metrics {
     /// Limits that were exceeded, or reached where they are enforced.
     pub limits_reached: Vec<LimitReached>,
     /// How well V + ∫ dissipation = V(0) holds; absent where the balance is not computed.
-    #[serde(rename = "ledger_error")]
+    #[serde(alias = "ledger_error")]
     pub balance_residual: Option<BalanceResidual>,
     /// Predicted beside reached value, per axis; absent without a prediction or where the agents' axes differ.
     pub agreement: Option<Vec<Agreement>>,

@@ -26,7 +26,7 @@ use super::{CSV, PARQUET, csv, inputs, names, parquet};
 use crate::SourceText;
 use crate::files::{ReadError, read_text};
 use crate::scenario::kinds::Kinds;
-use crate::scenario::{Inputs, Scenario};
+use crate::scenario::{Inputs, Scenario, upgrade, upgraded_column};
 
 const SCENARIO: &str = "scenario.toml";
 const SUMMARY: &str = "summary.json";
@@ -36,6 +36,8 @@ const SUMMARY: &str = "summary.json";
 pub struct SavedRun {
     folder: RunFolder,
     scenario: Scenario,
+    /// The scenario as it stands in the folder.
+    text: String,
     summary: Summary,
     outcome: Outcome,
     remarks: Vec<Remark>,
@@ -63,6 +65,8 @@ pub enum Remark {
     },
     /// The verdicts are others than those given before the run.
     VerdictsDiffer,
+    /// The run was written in an earlier format.
+    Upgraded,
     /// Another version simulated.
     OtherVersion {
         /// The version that simulated.
@@ -92,6 +96,9 @@ impl fmt::Display for Remark {
             Remark::VerdictsDiffer => {
                 f.write_str("the verdicts were worked out anew and are not those given before the run, which summary.json has")
             }
+            Remark::Upgraded => f.write_str(
+                "the run was written in an earlier format; it is shown under the names that `forwardstep upgrade` gives",
+            ),
             Remark::OtherVersion { simulated, now } => {
                 write!(f, "simulated by forwardstep {simulated}; this page was made by forwardstep {now}")
             }
@@ -130,8 +137,9 @@ impl SavedRun {
         let summary =
             parse_summary(&summary).map_err(|reason| RestoreError::Summary { path: path.join(SUMMARY), reason })?;
         let folder = RunFolder::open(path)?;
-        let scenario = scenario(path, text, &summary, kinds)?;
-        let mut remarks = changes(&scenario, &summary);
+        let (scenario, upgraded) = scenario(path, &text, &summary, kinds)?;
+        let mut remarks = changes(&scenario, &text, &summary);
+        remarks.extend(upgraded.then_some(Remark::Upgraded));
         let recording = recording(path, &scenario.setup, &summary, &mut remarks)?;
         let ending = summary.ending.restore(&scenario.setup, &recording).ok_or_else(|| {
             let broken = summary.ending.breakdown.as_ref();
@@ -139,7 +147,7 @@ impl SavedRun {
             RestoreError::Summary { path: path.join(SUMMARY), reason: SummaryError::Breakdown { column } }
         })?;
         let outcome = Outcome { recording, ending, statistics: summary.statistics() };
-        Ok(SavedRun { folder, scenario, summary, outcome, remarks })
+        Ok(SavedRun { folder, scenario, text, summary, outcome, remarks })
     }
 
     /// What was simulated, as the scenario says now.
@@ -174,7 +182,7 @@ impl SavedRun {
         RunRecord {
             title: &scenario.title,
             scenario_name: &scenario.name,
-            scenario_text: scenario.source.text(),
+            scenario_text: &self.text,
             inputs: &scenario.inputs,
             version: &summary.version,
             setup,
@@ -218,30 +226,36 @@ fn parse_summary(text: &str) -> Result<Summary, SummaryError> {
     if format > FORMAT {
         return Err(SummaryError::Newer { found: format });
     }
-    let summary: Summary = serde_json::from_str(text)?;
+    let mut summary: Summary = serde_json::from_str(text)?;
+    if let Some(broken) = summary.ending.breakdown.as_mut().filter(|_| format == 1) {
+        broken.column = upgraded_column(&broken.column);
+    }
     match summary.inputs.iter().find(|input| !inputs::is_copy(&input.file)) {
         Some(input) => Err(SummaryError::Copy { file: input.file.clone() }),
         None => Ok(summary),
     }
 }
 
-/// The scenario, with the files that it names read from their copies.
-fn scenario(folder: &Path, text: String, summary: &Summary, kinds: &Kinds) -> Result<Scenario, RestoreError> {
+/// The scenario, with the files that it names read from their copies; and whether it was upgraded.
+fn scenario(folder: &Path, text: &str, summary: &Summary, kinds: &Kinds) -> Result<(Scenario, bool), RestoreError> {
     let source = SourceText::new(folder.join(SCENARIO).display().to_string(), text);
+    let upgraded = upgrade(&source)?;
+    let source = SourceText::new(source.name(), upgraded.text);
     let copies: Vec<(String, PathBuf)> =
         summary.inputs.iter().map(|input| (input.name.clone(), folder.join(&input.file))).collect();
     let inputs = copies.iter().fold(Inputs::from(Some(folder)), |inputs, (name, path)| inputs.file_at(name, path));
-    kinds.read_scenario(&summary.scenario.name, &source, inputs).map_err(|error| {
+    let read = kinds.read_scenario(&summary.scenario.name, &source, inputs);
+    let scenario = read.map_err(|error| {
         // A copy that is gone is not the scenario's mistake.
         let lost = copies.into_iter().find_map(|(_, path)| read_text(&path).err().map(|reason| (path, reason)));
         lost.map_or_else(|| error.into(), |(path, reason)| RestoreError::File { path, reason })
-    })
+    })?;
+    Ok((scenario, !upgraded.moved.is_empty()))
 }
 
 /// What scenario and inputs say now and did not say then.
-fn changes(scenario: &Scenario, summary: &Summary) -> Vec<Remark> {
+fn changes(scenario: &Scenario, text: &str, summary: &Summary) -> Vec<Remark> {
     let then = &summary.scenario;
-    let text = scenario.source.text();
     let same = blake3::hash(text.as_bytes()).to_hex().as_str() == then.digest_blake3
         || then.content_digest_blake3.is_some() && inputs::content_digest(text) == then.content_digest_blake3;
     let mut remarks = if same { Vec::new() } else { vec![Remark::ScenarioChanged] };
@@ -283,6 +297,12 @@ fn recording(
         csv::read(file)
     };
     let expected = Recording { t_s: Vec::new(), columns };
+    let table = table.map(|mut table| {
+        if summary.format == 1 {
+            table.iter_mut().for_each(|(name, _)| *name = upgraded_column(name));
+        }
+        table
+    });
     let recording = table.and_then(|table| assign(setup, expected, table, remarks)).map_err(unusable)?;
     let (found, written) = (recording.t_s.len(), summary.metrics.rows);
     if found != written {

@@ -24,7 +24,7 @@ use super::{names, number};
 use crate::scenario::Goal;
 
 /// The format of this document; it grows when fields change their meaning or vanish, not when some are added.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 
 /// The whole document. Numbers that are not finite are `null`, and are NaN when read back.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -262,8 +262,9 @@ pub struct Verdicts {
     pub source: Option<String>,
     /// The theorem.
     pub theorem: String,
-    /// What it promises.
-    pub promises: String,
+    /// What it guarantees.
+    #[serde(alias = "promises")]
+    pub guarantees: String,
     /// The worst answer.
     pub worst: String,
     /// Its hypotheses.
@@ -456,7 +457,7 @@ impl Verdicts {
             id: Some(report.theorem.name().to_owned()),
             source: Some(report.theorem.source().words()),
             theorem: report.theorem.to_string(),
-            promises: report.promises.clone(),
+            guarantees: report.promises.clone(),
             worst: worst.words().to_owned(),
             hypotheses: (report.hypotheses.iter())
                 .map(|h| Verdict {

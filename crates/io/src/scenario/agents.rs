@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
-use std::rc::Rc;
 
 use forwardstep_sim::{ActuatorLimits, AgentSetup, PositionKind, RobotSetup};
 
@@ -38,7 +37,7 @@ struct Population<'a> {
     names: Vec<String>,
     kind: Box<dyn RobotKind>,
     read: RobotRead,
-    law: Rc<KeyedLaw>,
+    law: KeyedLaw,
 }
 
 /// All agents, and what else is known about them while a scenario is read.
@@ -46,8 +45,8 @@ pub(super) struct Agents {
     pub(super) agents: Vec<AgentSetup>,
     /// Where each agent can be held.
     pub(super) bodies: Vec<Body>,
-    /// The table of each agent's law.
-    pub(super) laws: Vec<Rc<KeyedLaw>>,
+    /// The entry of `[[agents]]` that stands for each agent.
+    pub(super) entries: Vec<usize>,
     /// Counted populations by name, with their members.
     pub(super) populations: Vec<(String, Range<usize>)>,
 }
@@ -87,7 +86,7 @@ pub(super) fn agents(source: &Source<'_>, folder: &mut InputFolder, notices: &mu
             Some(law) => law,
             None => kinds.usual_law(usual_law).map_err(|fault| fault.at(&entry.value.robot.span))?,
         };
-        let population = Population { file: &entry.value, names, kind, read, law: Rc::new(law) };
+        let population = Population { file: &entry.value, names, kind, read, law };
         if let Some(first) = populations.first() {
             same_axes(first, &population)?;
         }
@@ -97,9 +96,9 @@ pub(super) fn agents(source: &Source<'_>, folder: &mut InputFolder, notices: &mu
     let counts: Vec<usize> = populations.iter().map(|population| population.names.len()).collect();
     let of = total as usize;
     let mut read =
-        Agents { agents: Vec::with_capacity(of), bodies: Vec::new(), laws: Vec::new(), populations: Vec::new() };
+        Agents { agents: Vec::with_capacity(of), bodies: Vec::new(), entries: Vec::new(), populations: Vec::new() };
     let mut asked = BTreeSet::new();
-    for population in &populations {
+    for (number, population) in populations.iter().enumerate() {
         let Population { file: entry, names, .. } = population;
         let span = match names.as_slice() {
             [first, .., last] => format!("{first} … {last}"),
@@ -126,7 +125,7 @@ pub(super) fn agents(source: &Source<'_>, folder: &mut InputFolder, notices: &mu
             let (agent, body) = member.read(source, folder, enforce_limits, &mut asked)?;
             read.agents.push(agent);
             read.bodies.push(body);
-            read.laws.push(Rc::clone(&population.law));
+            read.entries.push(number);
         }
     }
     if let (Some(start), Some(first)) = (&file.start, read.agents.first()) {

@@ -10,10 +10,6 @@ use super::attitude_file::{AttitudeStartFile, TurnFile};
 use super::fault::{Fault, fault};
 use super::system_problem::SystemProblem;
 
-/// Times at which the length of a target is looked at, and what part of its greatest counts as zero.
-const SAMPLES: u32 = 1000;
-const VANISHING: f64 = 1e-9;
-
 /// Either way of writing it.
 pub(super) fn attitude(file: &At<AttitudeStartFile>) -> Result<Quaternion, Fault> {
     match &file.value {
@@ -44,17 +40,8 @@ pub(super) fn turn(axis: &At<[f64; 3]>, angle_rad: &At<f64>) -> Result<Quaternio
 
 /// Refuses a target that is no attitude at some time.
 pub(super) fn never_zero<T>(place: &At<T>, target: &Trajectory, end_s: f64) -> Result<(), Fault> {
-    let mut jets = [[0.0; 5]; 4];
-    let mut size = |t_s: f64| {
-        target.jets(t_s, &mut jets);
-        jets.iter().map(|jet| jet[0].abs()).fold(0.0, f64::max)
-    };
-    let times = (0..=SAMPLES).map(|k| end_s * f64::from(k) / f64::from(SAMPLES));
-    let (t_s, least, most) = times.fold((0.0, f64::INFINITY, 0.0_f64), |(at, least, most), t_s| {
-        let size = size(t_s);
-        if size < least { (t_s, size, most.max(size)) } else { (at, least, most.max(size)) }
-    });
-    if least > VANISHING * most { Ok(()) } else { Err(fault(place, SystemProblem::NoAttitude { t_s })) }
+    let nearest = target.least_norm(end_s);
+    if nearest.vanishes() { Err(fault(place, SystemProblem::NoAttitude { t_s: nearest.t_s })) } else { Ok(()) }
 }
 
 /// Of the two quaternions of the attitude at the start, takes the one that is nearer to the target: the law leads to Δq_o = 1

@@ -67,13 +67,13 @@ pub struct NoiseFile {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct QuantisationFile {
-    /// Of measured positions, in rad or m. Default: none.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    /// Of measured positions, in rad or m. Default: 0, for none.
+    #[schemars(range(min = 0))]
     pub position: Option<At<f64>>,
-    /// Of measured velocities, in rad/s or m/s. Default: none.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    /// Of measured velocities, in rad/s or m/s. Default: 0, for none.
+    #[schemars(range(min = 0))]
     pub velocity: Option<At<f64>>,
-    /// Of torques, in N m or N. Default: none.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    /// Of torques, in N m or N. Default: 0, for none.
+    #[schemars(range(min = 0))]
     pub torque: Option<At<f64>>,
 }

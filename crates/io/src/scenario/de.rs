@@ -6,6 +6,7 @@
 use std::fmt::Display;
 use std::ops::Range;
 
+use forwardstep_sim::quantity::LARGEST;
 use serde::de::value::UsizeDeserializer;
 use serde::de::{
     DeserializeSeed, Deserializer, Error, Expected, IntoDeserializer, MapAccess, SeqAccess, Unexpected, Visitor,
@@ -17,7 +18,7 @@ use toml::de::{DeInteger, DeString, DeTable, DeValue};
 use super::at::AT;
 use super::document::Node;
 use super::edges_file::LIST_OR_CHOICE;
-use super::fault::{Fault, LARGEST};
+use super::fault::Fault;
 use super::file::{LAW, ROBOT};
 use super::kinds::Kinds;
 use super::network_file::{DELAY, SWITCHING};

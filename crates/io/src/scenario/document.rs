@@ -1,16 +1,21 @@
 //! The tree of a scenario file: read once as a whole, and again where a kind has a table of its own.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
+use forwardstep_sim::quantity::{Path, Segment};
 use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::FORMAT;
+use super::at::At;
 use super::de::ValueDe;
-use super::fault::Fault;
+use super::fault::{Fault, fault};
 use super::file::ScenarioFile;
 use super::kinds::schedules::ScheduleKind;
 use super::kinds::{Kinds, LawKind, RobotKind};
+use super::problem::ScenarioProblem;
 use super::value_problem::ValueProblem;
 use crate::SourceText;
 
@@ -46,6 +51,20 @@ impl<'i> Document<'i> {
         };
         let table = DeTable::parse(source.text()).map_err(unreadable)?;
         Ok(Document { root: Spanned::new(table.span(), DeValue::Table(table.into_inner())) })
+    }
+
+    /// The version of its format; what else the file says may depend on it.
+    pub(super) fn format(&self) -> Result<At<i64>, Fault> {
+        match self.root.get_ref().get("format") {
+            Some(value) => At::deserialize(ValueDe { value, kinds: &Kinds::default() }),
+            None => Err(Fault::new(ValueProblem::MissingKey { key: "format" })),
+        }
+    }
+
+    /// Refuses a format that is not read now.
+    pub(super) fn readable(format: &At<i64>, source: &SourceText) -> Result<(), Fault> {
+        let problem = || ScenarioProblem::Format { found: format.value, file: source.name().to_owned() };
+        if format.value == FORMAT { Ok(()) } else { Err(fault(format, problem())) }
     }
 
     /// The file, with the tables of `kinds` checked but left in the tree.
@@ -99,9 +118,42 @@ impl<'i> Document<'i> {
         tables
     }
 
+    /// The place of what stands at `path`, or of the nearest that is around it. `entries` has the entry of `[[agents]]` that
+    /// stands for each agent; what an entry does not say itself is looked for where it is said for all.
+    pub(super) fn place(&self, path: &Path, entries: &[usize]) -> Option<Range<usize>> {
+        let (own, common) = match path.segments() {
+            [Segment::Key("agents"), Segment::Index(agent), inner @ ..] => {
+                let entry = self.entry(*entries.get(*agent)?)?;
+                let own = deepest(entry, inner);
+                // Without a law the robot has the usual one.
+                let robot = || (0, entry.get_ref().get("robot").unwrap_or(entry).span());
+                (Some(if own.0 == 0 { robot() } else { own }), inner)
+            }
+            whole => (None, whole),
+        };
+        let common = Some(deepest(&self.root, common)).filter(|(depth, _)| *depth > 0);
+        let (_, span) =
+            own.into_iter().chain(common).reduce(|own, common| if common.0 > own.0 { common } else { own })?;
+        Some(span)
+    }
+
     fn entry(&self, entry: usize) -> Option<&Spanned<DeValue<'i>>> {
         self.root.get_ref().get("agents")?.get_ref().get(entry)
     }
+}
+
+/// How far `path` leads from `value` inwards, and the place of what is there.
+fn deepest(mut value: &Spanned<DeValue<'_>>, path: &[Segment]) -> (usize, Range<usize>) {
+    let mut depth = 0;
+    for segment in path {
+        let inner = match segment {
+            Segment::Key(key) => value.get_ref().get(*key),
+            Segment::Index(index) => value.get_ref().get(*index),
+        };
+        let Some(inner) = inner else { break };
+        (value, depth) = (inner, depth + 1);
+    }
+    (depth, value.span())
 }
 
 /// What `read` makes of an empty table under `key`.

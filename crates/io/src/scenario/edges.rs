@@ -8,7 +8,7 @@ use forwardstep_sim::topology::{Along, Spokes, Topology};
 
 use super::at::At;
 use super::edges_file::{AlongDirection, AlongFile, CsvFile, EdgeFile, EdgesFile, RuleFile, StarDirection, StarFile};
-use super::fault::{Fault, fault, filled, not_negative, seed};
+use super::fault::{Fault, fault, filled, not_negative, positive_count, seed};
 use super::kinds::delays::DelayPlan;
 use super::links::cell_weight;
 use super::links_file::WeightFile;
@@ -17,7 +17,6 @@ use super::network_file::DelayFile;
 use super::network_problem::NetworkProblem;
 use super::problem::ScenarioProblem;
 use super::table::{Column, cell_number, read_table, table_text};
-use super::value_problem::ValueProblem;
 use crate::SourceText;
 
 /// Edges by rule and from tables that are accepted in all graphs together.
@@ -85,14 +84,8 @@ impl NetworkReader<'_> {
                 (Rule { topology: Topology::Complete, members, weight, delay }, span)
             }
             RuleFile::Random(file) => {
-                let in_degree = match usize::try_from(file.in_degree.value) {
-                    // Whether there are so many others is asked of the rule.
-                    Ok(in_degree) if in_degree > 0 => in_degree,
-                    _ => {
-                        let (key, value) = ("in_degree", file.in_degree.value as f64);
-                        return Err(fault(&file.in_degree, ValueProblem::NotPositive { key, value }));
-                    }
-                };
+                // Whether there are so many others is asked of the rule.
+                let in_degree = positive_count("in_degree", &file.in_degree)? as usize;
                 let topology = Topology::Random { in_degree, seed: seed(&file.seed)? };
                 let (members, weight, delay) = (self.members(file.among.as_ref())?, &file.weight, &file.delay);
                 (Rule { topology, members, weight, delay }, &file.in_degree.span)

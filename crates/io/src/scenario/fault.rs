@@ -3,15 +3,12 @@
 use std::fmt;
 use std::ops::Range;
 
+use forwardstep_sim::quantity::{self, QuantityError};
+
 use super::at::At;
 use super::problem::ScenarioProblem;
 use super::value_problem::ValueProblem;
 use crate::SourceText;
-
-/// Numbers beyond this are refused, so that no product of a few of them overflows.
-pub(super) const LARGEST: f64 = 1e30;
-/// Positive numbers below this are refused, so that no product of a few of them vanishes.
-const SMALLEST: f64 = 1e-30;
 
 /// A problem, and where once that is known.
 #[derive(Debug)]
@@ -56,17 +53,17 @@ pub fn fault<T>(value: &At<T>, problem: impl Into<ScenarioProblem>) -> Fault {
     Fault::new(problem).at(&value.span)
 }
 
+/// What was checked; the mistake is at `place`.
+pub(super) fn checked<T>(place: &At<T>, checked: Result<(), QuantityError>) -> Result<(), Fault> {
+    checked.map_err(|error| fault(place, ValueProblem::Quantity(error)))
+}
+
 /// A positive number. Messages call it `key`.
 ///
 /// # Errors
 /// The mistake, at its place.
 pub fn positive(key: &'static str, number: &At<f64>) -> Result<f64, Fault> {
-    let value = number.value;
-    if value > 0.0 {
-        between(key, number, SMALLEST, LARGEST)
-    } else {
-        Err(fault(number, ValueProblem::NotPositive { key, value }))
-    }
+    checked(number, quantity::positive("", key, number.value)).map(|()| number.value)
 }
 
 /// A positive number, or the usual one.
@@ -90,8 +87,7 @@ pub fn not_negative_or(key: &'static str, number: &Option<At<f64>>, usual: f64) 
 /// # Errors
 /// The mistake, at its place.
 pub fn not_negative(key: &'static str, number: &At<f64>) -> Result<f64, Fault> {
-    let value = number.value;
-    if value >= 0.0 { Ok(value) } else { Err(fault(number, ValueProblem::Negative { key, value })) }
+    checked(number, quantity::not_negative("", key, number.value)).map(|()| number.value)
 }
 
 /// A number from `low` up to `high`.
@@ -99,12 +95,7 @@ pub fn not_negative(key: &'static str, number: &At<f64>) -> Result<f64, Fault> {
 /// # Errors
 /// The mistake, at its place.
 pub fn between(key: &'static str, number: &At<f64>, low: f64, high: f64) -> Result<f64, Fault> {
-    let value = number.value;
-    if (low..=high).contains(&value) {
-        Ok(value)
-    } else {
-        Err(fault(number, ValueProblem::OutOfRange { key, value, low, high }))
-    }
+    checked(number, quantity::within("", key, number.value, low, high)).map(|()| number.value)
 }
 
 /// A whole number from one up to `most`.
@@ -112,27 +103,18 @@ pub fn between(key: &'static str, number: &At<f64>, low: f64, high: f64) -> Resu
 /// # Errors
 /// The mistake, at its place.
 pub fn count(key: &'static str, number: &At<i64>, most: u32) -> Result<usize, Fault> {
-    match u32::try_from(number.value) {
-        Ok(value) if (1..=most).contains(&value) => Ok(value as usize),
-        _ => {
-            let (value, high) = (number.value as f64, f64::from(most));
-            Err(fault(number, ValueProblem::OutOfRange { key, value, low: 1.0, high }))
-        }
-    }
+    checked(number, quantity::within("", key, number.value as f64, 1.0, most.into()))?;
+    // Within these bounds nothing is lost.
+    Ok(number.value as usize)
 }
 
 /// A whole number from one up.
 pub(super) fn positive_count(key: &'static str, number: &At<i64>) -> Result<u64, Fault> {
-    let value = number.value;
-    match u64::try_from(value) {
-        Ok(count) if count > 0 => Ok(count),
-        _ => Err(fault(number, ValueProblem::NotPositive { key, value: value as f64 })),
-    }
+    checked(number, quantity::positive("", key, number.value as f64)).map(|()| number.value as u64)
 }
 
 pub(super) fn seed(number: &At<i64>) -> Result<u64, Fault> {
-    u64::try_from(number.value)
-        .map_err(|_| fault(number, ValueProblem::Negative { key: "seed", value: number.value as f64 }))
+    checked(number, quantity::not_negative("", "seed", number.value as f64)).map(|()| number.value as u64)
 }
 
 /// A list with at least one entry.

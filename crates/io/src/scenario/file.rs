@@ -26,7 +26,7 @@ pub(super) const LAW: &str = "$forwardstep::Law";
 #[schemars(title = "forwardstep scenario")]
 pub struct ScenarioFile {
     /// The version of this format.
-    #[schemars(extend("const" = 1))]
+    #[schemars(extend("const" = 2))]
     pub format: At<i64>,
     /// What the scenario shows, in one line.
     pub title: Option<String>,
@@ -47,9 +47,9 @@ pub struct ScenarioFile {
     pub network: Option<At<NetworkFile>>,
     /// How the controllers sample. Default: they work in continuous time, as in the paper.
     pub control: Option<ControlFile>,
-    /// What acts on the agents from outside: forces, torques and hands.
+    /// What acts on the agents from outside: forces, torques and virtual springs.
     #[serde(default)]
-    pub pushes: Vec<At<PushFile>>,
+    pub external_wrenches: Vec<At<PushFile>>,
     /// How to integrate.
     pub solver: Option<SolverFile>,
     /// What the run is expected to show.
@@ -82,7 +82,7 @@ pub struct AgentFile {
     /// Its robot.
     pub robot: At<RobotFile>,
     /// Lets the robots of a counted population differ. Default: they are all the same.
-    pub spread: Option<At<SpreadFile>>,
+    pub parameter_variation: Option<At<SpreadFile>>,
     /// Where it starts. Default: at rest at zero.
     pub start: Option<At<StartFile>>,
     /// Reference dynamics of its own.
@@ -308,8 +308,7 @@ pub struct SolverFile {
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub memory_budget_bytes: Option<At<i64>>,
     /// Compute the Lyapunov balance V + ∫ dissipation = V(0) along the run. Default: true.
-    #[serde(rename = "ledger")]
-    pub balance: Option<bool>,
+    pub lyapunov_balance: Option<bool>,
 }
 
 /// The time-stepping method.

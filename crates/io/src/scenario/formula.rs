@@ -17,11 +17,12 @@
 use std::ops::Range;
 
 use forwardstep_core::expression::{Binary, Expression, ExpressionError, MOST_STEPS, Number, Step, Unary};
+use forwardstep_sim::quantity::LARGEST;
 use thiserror::Error;
 
 use super::at::At;
 use super::de::quoted;
-use super::fault::{Fault, LARGEST};
+use super::fault::Fault;
 pub use super::formula_problem::FormulaProblem;
 use super::formula_problem::{A_VALUE, A_VALUE_OF_VARIABLES, AN_OPERATOR, CHOICES, CONSTANTS, FUNCTIONS, JUMPS};
 use super::value_problem::ValueProblem;

@@ -28,7 +28,7 @@ pub struct InputFile {
 /// use forwardstep_io::scenario::{Inputs, read_scenario};
 ///
 /// let text = r#"
-///     format = 1
+///     format = 2
 ///     time = { end_s = 20 }
 ///     [[agents]]
 ///     name = "cart"

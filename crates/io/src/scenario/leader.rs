@@ -6,7 +6,7 @@ use forwardstep_core::reference::Choice;
 use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
 
 use super::at::At;
-use super::fault::{Fault, fault, positive, positive_or};
+use super::fault::{Fault, fault, positive};
 use super::file::{ReferenceFile, ScenarioFile};
 use super::inputs::InputFolder;
 use super::leader_file::{LeaderDesignFile, LeaderReferenceFile, SignFile};
@@ -43,7 +43,7 @@ pub(super) fn following(
         LeaderDesignFile::Differentiable => FollowingDesign::Differentiable,
         LeaderDesignFile::WithoutAcceleration => FollowingDesign::WithoutAcceleration,
         LeaderDesignFile::Swarm => match &reference.coupling {
-            Some(coupling) => FollowingDesign::Swarm { coupling: positive("coupling", coupling)? },
+            Some(coupling) => FollowingDesign::Swarm { coupling: coupling.value },
             None => return Err(fault(&reference.design, ValueProblem::MissingKey { key: "coupling" })),
         },
     };
@@ -54,10 +54,10 @@ pub(super) fn following(
     let choice = match reference.sign.as_ref().map(|sign| &sign.value) {
         None | Some(SignFile::Implicit) => Choice::Implicit,
         Some(SignFile::Explicit) => Choice::Explicit,
-        Some(SignFile::Layer(layer)) => Choice::Layer { width: positive("width", &layer.width)? },
+        Some(SignFile::BoundaryLayer(layer)) => Choice::Layer { width: layer.width.value },
     };
     let layer = matches!(choice, Choice::Layer { .. });
-    if let (Some(every), true) = (&reference.sign_every_s, layer || file.control.is_some()) {
+    if let (Some(every), true) = (&reference.sign_period_s, layer || file.control.is_some()) {
         return Err(fault(every, SystemProblem::SignPeriodUnused { layer }));
     }
     Ok(Some(Arc::new(Following {
@@ -65,9 +65,9 @@ pub(super) fn following(
         design,
         alpha,
         beta,
-        gain: positive("gain", &reference.gain)?,
+        gain: reference.gain.value,
         choice,
-        period_s: positive_or("sign_every_s", &reference.sign_every_s, SIGN_EVERY_S)?,
+        period_s: reference.sign_period_s.as_ref().map_or(SIGN_EVERY_S, |every| every.value),
     })))
 }
 

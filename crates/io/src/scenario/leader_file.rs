@@ -37,7 +37,7 @@ pub struct LeaderReferenceFile {
     pub sign: Option<At<SignFile>>,
     /// How often the sign is set when control is continuous, in s. Default: 0.001. Sampled controllers set it at every sample.
     #[schemars(with = "Option<Positive>")]
-    pub sign_every_s: Option<At<f64>>,
+    pub sign_period_s: Option<At<f64>>,
 }
 
 /// The designs that follow a leader.
@@ -63,7 +63,7 @@ pub enum SignFile {
     /// By the start of the period; for comparison: it chatters.
     Explicit,
     /// A straight line between −width and width at every instant; for comparison: an error of that size stays.
-    Layer(LayerFile),
+    BoundaryLayer(LayerFile),
 }
 
 /// A boundary layer.

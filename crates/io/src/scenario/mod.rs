@@ -8,7 +8,7 @@
 //! use forwardstep_io::scenario::read_scenario;
 //!
 //! let text = r#"
-//!     format = 1
+//!     format = 2
 //!     time = { end_s = 20 }
 //!     [[agents]]
 //!     name = "cart"
@@ -38,7 +38,6 @@ pub mod attitude_file;
 mod choice;
 mod control;
 pub mod control_file;
-mod control_problem;
 mod de;
 mod document;
 mod edges;
@@ -76,6 +75,7 @@ mod table;
 mod target;
 mod template;
 mod unused;
+mod upgrade;
 mod value_problem;
 pub mod values;
 
@@ -84,11 +84,11 @@ use std::sync::Arc;
 
 use forwardstep_sim::leader::Following;
 use forwardstep_sim::{
-    AgentSetup, Exchange, Method, Network, ReferenceKind, Setup, Solver, TimeSpan, recorded_columns, validate,
+    ATOL, AgentSetup, Exchange, Method, Network, RTOL, ReferenceKind, Setup, Solver, TimeSpan, recorded_columns,
+    validate,
 };
 use miette::Diagnostic;
 
-pub use control_problem::ControlProblem;
 pub use goal::Goal;
 pub use inputs::{InputFile, Inputs};
 pub use network_problem::NetworkProblem;
@@ -100,19 +100,22 @@ pub use shipped::{SHIPPED_SCENARIOS, SHIPPED_TABLES, ShippedScenario, ShippedTab
 pub use system_problem::SystemProblem;
 pub use table::TableProblem;
 pub use template::{RobotTemplate, Template, TemplateDelay, TemplateGraph};
+pub(crate) use upgrade::column as upgraded_column;
+pub use upgrade::{Moved, Upgraded, upgrade};
 pub use value_problem::ValueProblem;
 
 use crate::urdf::UrdfProblem;
 use crate::{InputError, SourceText};
 use at::At;
 use document::Document;
-use fault::{Fault, between, fault, positive, positive_count, positive_or};
+use fault::{Fault, fault, positive_count};
 use file::{AdaptiveMethodFile, ConsensusFile, ExchangeFile, MethodFile, ReferenceFile, SolverFile};
 use inputs::InputFolder;
 use kinds::Kinds;
-use refusal::{Laws, refused};
 use robots::Stop;
 
+/// The format of scenario files.
+pub const FORMAT: i64 = 2;
 /// Numbers that a recording may hold; eight bytes each.
 const MOST_RECORDED: f64 = 1e8;
 const RECORD_EVERY_S: f64 = 0.02;
@@ -202,17 +205,16 @@ impl Kinds {
 
 fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds) -> Result<Scenario, Stop> {
     let document = Document::parse(source)?;
+    Document::readable(&document.format()?, source)?;
     let file = document.file(kinds)?;
-    if file.format.value != 1 {
-        return Err(fault(&file.format, ScenarioProblem::Format { found: file.format.value }).into());
-    }
     let mut notices = Vec::new();
-    let end_s = positive("end_s", &file.time.end_s)?;
-    let every = file.time.record_every_s.as_ref();
-    let record_every_s = positive_or("record_every_s", &file.time.record_every_s, RECORD_EVERY_S)?;
+    let record_every_s = file.time.record_every_s.as_ref().map_or(RECORD_EVERY_S, |every| every.value);
+    let end_s = file.time.end_s.value;
+    let time = TimeSpan { end_s, record_every_s };
+    document.checked(time.check())?;
     let from = agents::Source { file: &file, document: &document, kinds, text: source, end_s };
     let mut read = agents::agents(&from, &mut folder, &mut notices)?;
-    pushes::pushes(&file.pushes, &mut read, end_s, source, &mut folder, &mut notices)?;
+    pushes::pushes(&file.external_wrenches, &mut read, end_s, source, &mut folder, &mut notices)?;
     let agents = read.agents;
     let mut names: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
     let axes: Vec<String> = agents.first().map_or_else(Vec::new, |agent| agents::axis_names(&agent.robot));
@@ -236,27 +238,19 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
         None if reference == ReferenceKind::Tracking => Network::silent(names.len()),
         None => return Err(fault(&file.reference, NetworkProblem::Missing).into()),
     };
-    let control = file.control.as_ref().map(|file| control::control(file, axes.len(), end_s)).transpose()?;
-    let setup = Setup {
-        agents,
-        reference,
-        exchange,
-        network,
-        time: TimeSpan { end_s, record_every_s },
-        solver: solver(file.solver.as_ref())?,
-        control,
-    };
+    let control = file.control.as_ref().map(|file| control::control(file, axes.len())).transpose()?;
+    let setup = Setup { agents, reference, exchange, network, time, solver: solver(file.solver.as_ref())?, control };
     notices.extend(Notice::coarse_sampling(&setup));
     let batched = |agent: &AgentSetup| agent.interface().is_some_and(|interface| interface.in_batches);
     let agrees = setup.reference != ReferenceKind::Tracking && setup.following().is_none();
-    let laws = Laws { agents: &setup.agents, tables: &read.laws };
+    let refused = |error| document.refused(&setup, &read.entries, error);
     let columns = if agrees && setup.agents.iter().all(batched) {
-        validate(&setup).map_err(|error| refused(&file, &laws, error))?;
+        validate(&setup).map_err(refused)?;
         setup.agents.iter().map(columns).sum()
     } else {
-        recorded_columns(&setup).map_err(|error| refused(&file, &laws, error))?.len()
+        recorded_columns(&setup).map_err(refused)?.len()
     };
-    recording_fits(&setup, columns, every.unwrap_or(&file.time.end_s))?;
+    recording_fits(&setup, columns, file.time.record_every_s.as_ref().unwrap_or(&file.time.end_s))?;
     let goal = file.goal.as_ref().map(|file| goal::goal(file, &setup.reference)).transpose()?;
     Ok(Scenario {
         name: name.to_owned(),
@@ -282,10 +276,9 @@ fn reference(file: &ReferenceFile, following: Option<Arc<Following>>) -> Result<
         ReferenceFile::Consensus(file) => (ReferenceKind::Consensus, exchange(file)),
         ReferenceFile::PureIntegral(file) => (ReferenceKind::PureIntegral, exchange(file)),
         ReferenceFile::Backstepping(file) => {
-            let filter_s = positive("filter_s", &file.filter_s)?;
-            let limit = file.acceleration_limit.as_ref();
-            let acceleration_limit = limit.map(|limit| positive("acceleration_limit", limit)).transpose()?;
-            (ReferenceKind::Backstepping { filter_s, acceleration_limit }, Exchange::Position)
+            let acceleration_limit = file.acceleration_limit.as_ref().map(|limit| limit.value);
+            let kind = ReferenceKind::Backstepping { filter_s: file.filter_s.value, acceleration_limit };
+            (kind, Exchange::Position)
         }
         // A leader's reference has been read by now.
         ReferenceFile::Leader(_) => return Err(Fault::new(SystemProblem::NoLeader)),
@@ -296,38 +289,24 @@ fn reference(file: &ReferenceFile, following: Option<Arc<Following>>) -> Result<
 fn solver(file: Option<&SolverFile>) -> Result<Solver, Fault> {
     let default = Solver::default();
     let Some(file) = file else { return Ok(default) };
+    let or = |number: &Option<At<f64>>, usual: f64| number.as_ref().map_or(usual, |number| number.value);
     let method = match &file.method {
         None => default.method,
-        Some(MethodFile::Fixed(fixed)) => Method::Fixed { step_s: positive("step_s", &fixed.step_s)? },
+        Some(MethodFile::Fixed(fixed)) => Method::Fixed { step_s: fixed.step_s.value },
         Some(MethodFile::Adaptive(AdaptiveMethodFile { rtol, atol })) => {
-            let (usual_rtol, usual_atol) = match default.method {
-                Method::Adaptive { rtol, atol } => (rtol, atol),
-                Method::Fixed { .. } => (1e-6, 1e-8),
-            };
-            Method::Adaptive {
-                // Below a few units in the last place no error estimate means anything.
-                rtol: rtol.as_ref().map_or(Ok(usual_rtol), |rtol| between("rtol", rtol, 1e-14, 0.1))?,
-                atol: positive_or("atol", atol, usual_atol)?,
-            }
+            Method::Adaptive { rtol: or(rtol, RTOL), atol: or(atol, ATOL) }
         }
     };
-    let min_step_s = positive_or("min_step_s", &file.min_step_s, default.min_step_s)?;
-    let max_step_s = file.max_step_s.as_ref().map(|step| positive("max_step_s", step)).transpose()?;
-    let fixed = match &file.method {
-        Some(MethodFile::Fixed(fixed)) => Some(("step_s", &fixed.step_s)),
-        _ => None,
-    };
-    for (key, step) in fixed.into_iter().chain(file.max_step_s.as_ref().map(|step| ("max_step_s", step))) {
-        if step.value < min_step_s {
-            return Err(fault(step, ScenarioProblem::StepUnderFloor { key, value: step.value, min_step_s }));
-        }
-    }
-    let memory_budget_bytes = match &file.memory_budget_bytes {
-        Some(bytes) => positive_count("memory_budget_bytes", bytes)?,
-        None => default.memory_budget_bytes,
-    };
-    let balance = file.balance.unwrap_or(default.balance);
-    Ok(Solver { method, max_step_s, min_step_s, memory_budget_bytes, balance })
+    Ok(Solver {
+        method,
+        max_step_s: file.max_step_s.as_ref().map(|step| step.value),
+        min_step_s: or(&file.min_step_s, default.min_step_s),
+        memory_budget_bytes: match &file.memory_budget_bytes {
+            Some(bytes) => positive_count("memory_budget_bytes", bytes)?,
+            None => default.memory_budget_bytes,
+        },
+        balance: file.lyapunov_balance.unwrap_or(default.balance),
+    })
 }
 
 /// Refuses a recording beyond any memory, before anything is computed. `place` is what is too small, or too large.

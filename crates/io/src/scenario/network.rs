@@ -9,6 +9,7 @@ use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::delay::{Constant, Delay};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
+use forwardstep_sim::quantity::{MOST_EVENTS, few};
 use forwardstep_sim::schedule::Schedule;
 
 use super::at::At;
@@ -24,12 +25,8 @@ use super::links::Links;
 use super::network_file::{CouplingFile, DelayFile, NetworkFile, PhaseFile};
 use super::network_problem::NetworkProblem;
 use super::notice::Notice;
-use super::problem::ScenarioProblem;
 use super::value_problem::ValueProblem;
 use crate::SourceText;
-
-/// Switches or jumps until the end of the run that are accepted; each ends a step.
-const MOST_EVENTS: f64 = 1e7;
 
 /// Builds the network of the vertices `names`, of which the first `agents` hear others; `folder` is where tables are looked
 /// for.
@@ -78,16 +75,16 @@ pub(super) fn network(
         }
     };
     reader.link_notices(notices);
-    let coupling = file.coupling.as_ref().map_or(Ok(Coupling::Linear), coupling)?;
+    let coupling = file.coupling.as_ref().map_or(Coupling::Linear, coupling);
     Ok(Network { agents: names.len(), schedule, delays: reader.delays, weights: reader.weights, coupling })
 }
 
-fn coupling(file: &At<CouplingFile>) -> Result<Coupling, Fault> {
-    Ok(match &file.value {
-        CouplingFile::Saturated(limit) => Coupling::Saturated { limit: positive("saturated", limit)? },
-        CouplingFile::Tanh(scale) => Coupling::Tanh { scale: positive("tanh", scale)? },
-        CouplingFile::Rational(scale) => Coupling::Rational { scale: positive("rational", scale)? },
-    })
+fn coupling(file: &At<CouplingFile>) -> Coupling {
+    match &file.value {
+        CouplingFile::Saturated(limit) => Coupling::Saturated { limit: limit.value },
+        CouplingFile::Tanh(scale) => Coupling::Tanh { scale: scale.value },
+        CouplingFile::Rational(scale) => Coupling::Rational { scale: scale.value },
+    }
 }
 
 /// What is known while a network is read.
@@ -147,12 +144,10 @@ impl NetworkReader<'_> {
     /// Refuses events that no run could land on; `span` is what is to blame.
     ///
     /// # Errors
-    /// [`ScenarioProblem::TooManyEvents`].
+    /// [`ValueProblem::Quantity`].
     pub fn few(&self, what: &'static str, events: f64, span: &Range<usize>) -> Result<(), Fault> {
-        if events <= MOST_EVENTS {
-            return Ok(());
-        }
-        Err(Fault::new(ScenarioProblem::TooManyEvents { what, events: events.round(), most: MOST_EVENTS }).at(span))
+        few("", what, events, (what, events, MOST_EVENTS))
+            .map_err(|error| Fault::new(ValueProblem::Quantity(error)).at(span))
     }
 
     /// Equal delays share an entry, so that a message to several receivers is looked up once.

@@ -3,7 +3,7 @@
 use forwardstep_sim::SetupError;
 use thiserror::Error;
 
-use super::control_problem::ControlProblem;
+use super::FORMAT;
 use super::kinds::KindProblem;
 use super::network_problem::NetworkProblem;
 use super::push_problem::PushProblem;
@@ -26,10 +26,12 @@ pub enum ScenarioProblem {
     #[error(transparent)]
     System(#[from] SystemProblem),
     /// A version of the format that this program does not read.
-    #[error("`format` is {found}, but this version reads format 1")]
+    #[error("`format` is {found}, but this version reads format {FORMAT}")]
     Format {
         /// The version.
         found: i64,
+        /// The file.
+        file: String,
     },
     /// A name that would not work in tables.
     #[error("{name:?} cannot be the name of an agent")]
@@ -87,7 +89,7 @@ pub enum ScenarioProblem {
         axis: String,
     },
     /// A spread where there is nothing to differ from.
-    #[error("`spread` is given, but there is no `count`")]
+    #[error("`parameter_variation` is given, but there is no `count`")]
     SpreadOfOne,
     /// A robot that its spread has made impossible.
     #[error("with this spread the mass matrix of `{agent}` is not positive definite")]
@@ -150,35 +152,12 @@ pub enum ScenarioProblem {
     /// A table that has no meaning, or cannot be read.
     #[error(transparent)]
     Table(#[from] TableProblem),
-    /// More switches or jumps than any run could land on.
-    #[error("about {} {what} until the end of the run, but at most {} are accepted", about(*.events), number(*.most))]
-    TooManyEvents {
-        /// Switches of the graph, or jumps of the delay.
-        what: &'static str,
-        /// How many.
-        events: f64,
-        /// How many are accepted.
-        most: f64,
-    },
     /// A network that has no meaning.
     #[error(transparent)]
     Network(#[from] NetworkProblem),
-    /// Digital control that has no meaning.
-    #[error(transparent)]
-    Control(#[from] ControlProblem),
     /// A push that has no meaning.
     #[error(transparent)]
     Push(#[from] PushProblem),
-    /// No step is long enough and short enough.
-    #[error("`{key}` is {}, but must not be less than `min_step_s`, which is {}", number(*.value), number(*.min_step_s))]
-    StepUnderFloor {
-        /// The key.
-        key: &'static str,
-        /// The step.
-        value: f64,
-        /// The floor.
-        min_step_s: f64,
-    },
     /// A recording that would not fit into memory.
     #[error(
         "the recording would hold {} numbers, {} rows of {columns} columns, but at most {} fit",
@@ -225,6 +204,10 @@ impl Problem for ScenarioProblem {
         let text = match self {
             ScenarioProblem::Value(problem) => return problem.help(),
             ScenarioProblem::System(problem) => return problem.help(),
+            ScenarioProblem::Format { found: 1, file } => {
+                format!("`forwardstep upgrade {file}` converts it and prints what it renames")
+            }
+            ScenarioProblem::Format { found, .. } if *found > FORMAT => "use a later version of forwardstep".into(),
             ScenarioProblem::AgentName { .. } => "use up to 64 letters, digits, `-` and `_`".into(),
             ScenarioProblem::AgentTwice { .. } => {
                 "agents of a counted population are named after it: `arm` with `count = 2` gives `arm-1` and `arm-2`"
@@ -260,15 +243,10 @@ impl Problem for ScenarioProblem {
             ScenarioProblem::NoSuchAgent { name, agents } => choose(name, "the agents are", agents),
             ScenarioProblem::Table(problem) => return problem.help(),
             ScenarioProblem::Network(problem) => return problem.help(),
-            ScenarioProblem::Control(problem) => return problem.help(),
             ScenarioProblem::Push(problem) => return problem.help(),
             ScenarioProblem::RecordingTooLarge { least_s, .. } => {
                 format!("for this `end_s` let `record_every_s` be at least {}", about(1.05 * least_s))
             }
-            ScenarioProblem::TooManyEvents { what: "samples", .. } => {
-                "sample more slowly, or let the run end sooner".into()
-            }
-            ScenarioProblem::TooManyEvents { .. } => "is a unit of time mistaken? All of them are seconds".into(),
             ScenarioProblem::EmptyGoal => {
                 "set `disagreement_below = 1e-3` (with targets `error_below`), or `expect = \"diverges\"`, or delete the goal".into()
             }

@@ -1,4 +1,4 @@
-//! `[[pushes]]` as they are written.
+//! `[[external_wrenches]]` as they are written.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -42,10 +42,10 @@ pub enum ByFile {
     Effort(At<CourseFile>),
     /// A force and a torque on a link of a URDF, or on the outer link of a planar arm, at its tip.
     Wrench(WrenchFile),
-    /// A hand that holds axes by springs and dampers and leads them along a path.
-    HandOnAxes(HandOnAxesFile),
-    /// A hand that holds a point of a link, or the tip of a planar arm, by a spring and a damper and leads it along a path.
-    HandOnPoint(HandOnPointFile),
+    /// Virtual springs and dampers on axes, as of a hand that leads them along a path.
+    VirtualSpringOnAxes(VirtualSpringOnAxesFile),
+    /// A virtual spring and damper on a point of a link, or on the tip of a planar arm, as of a hand that leads it along a path.
+    VirtualSpringOnPoint(VirtualSpringOnPointFile),
 }
 
 /// A force and a torque that act on a link.
@@ -74,10 +74,10 @@ pub enum AxesFile {
     Link,
 }
 
-/// A hand on some axes: torque = stiffness · (target − position) − damping · velocity on each.
+/// Virtual springs on some axes: torque = stiffness · (target − position) − damping · velocity on each.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct HandOnAxesFile {
+pub struct VirtualSpringOnAxesFile {
     /// The axes it holds, by name. Default: all.
     pub axes: Option<At<Vec<At<String>>>>,
     /// One number, or one for each axis it holds; in N m/rad or N/m as each axis has it.
@@ -94,10 +94,10 @@ pub struct HandOnAxesFile {
     pub target: Option<At<CourseFile>>,
 }
 
-/// A hand on a point: force = stiffness · (target − position) − damping · velocity.
+/// A virtual spring on a point: force = stiffness · (target − position) − damping · velocity.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct HandOnPointFile {
+pub struct VirtualSpringOnPointFile {
     /// The link of the URDF that it holds. Planar arms are held at their tip.
     pub link: Option<At<String>>,
     /// The point it holds, in the frame of the link, in m. Default: its origin.
@@ -157,8 +157,8 @@ pub struct CourseCsvFile {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CourseRowsFile {
-    /// The times of the rows, in s; rising.
-    #[schemars(with = "Vec<NotNegative>", length(min = 2))]
+    /// The times of the rows, in s; rising. They may begin before the run.
+    #[schemars(with = "Vec<f64>", length(min = 2))]
     pub times_s: At<Vec<At<f64>>>,
     /// The rows, a list of numbers each; as many as times.
     #[schemars(with = "Vec<Vec<f64>>", length(min = 2))]

@@ -1,4 +1,4 @@
-//! `[[pushes]]` → the pushes of the agents.
+//! `[[external_wrenches]]` → the pushes of the agents.
 
 use std::collections::{HashMap, HashSet};
 
@@ -15,8 +15,8 @@ use super::inputs::InputFolder;
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
 use super::push_file::{
-    AxesFile, ByFile, CourseFile, CourseRowsFile, CourseTableFile, FunctionFile, HandOnAxesFile, HandOnPointFile,
-    InterpolateFile, PushFile, WrenchFile,
+    AxesFile, ByFile, CourseFile, CourseRowsFile, CourseTableFile, FunctionFile, InterpolateFile, PushFile,
+    VirtualSpringOnAxesFile, VirtualSpringOnPointFile, WrenchFile,
 };
 use super::push_problem::PushProblem;
 use super::robots::Body;
@@ -129,8 +129,8 @@ impl Reader<'_, '_> {
             }
             ByFile::Effort(course) => vec![Effect::Torque(self.on_axes("effort", course, &all)?)],
             ByFile::Wrench(file) => self.wrench(file)?,
-            ByFile::HandOnAxes(file) => vec![self.hand_on_axes(file)?],
-            ByFile::HandOnPoint(file) => vec![self.hand_on_point(file)?],
+            ByFile::VirtualSpringOnAxes(file) => vec![self.virtual_spring_on_axes(file)?],
+            ByFile::VirtualSpringOnPoint(file) => vec![self.virtual_spring_on_point(file)?],
         })
     }
 
@@ -225,7 +225,7 @@ impl Reader<'_, '_> {
         if effects.is_empty() { Err(Fault::new(PushProblem::NoWrench)) } else { Ok(effects) }
     }
 
-    fn hand_on_axes(&mut self, file: &HandOnAxesFile) -> Result<Effect, Fault> {
+    fn virtual_spring_on_axes(&mut self, file: &VirtualSpringOnAxesFile) -> Result<Effect, Fault> {
         let axes = self.held(file.axes.as_ref())?;
         let stiffness = self.each("stiffness", &file.stiffness, axes.len())?;
         let damping = file.damping.as_ref().map(|damping| self.each("damping", damping, axes.len())).transpose()?;
@@ -249,8 +249,8 @@ impl Reader<'_, '_> {
         Ok(Effect::HandOnAxes { axes, stiffness, damping, target })
     }
 
-    fn hand_on_point(&mut self, file: &HandOnPointFile) -> Result<Effect, Fault> {
-        let grip = self.grip(file.link.as_ref(), file.at_m.as_ref(), None, "hand_on_axes")?;
+    fn virtual_spring_on_point(&mut self, file: &VirtualSpringOnPointFile) -> Result<Effect, Fault> {
+        let grip = self.grip(file.link.as_ref(), file.at_m.as_ref(), None, "virtual_spring_on_axes")?;
         let stiffness = not_negative("stiffness_n_per_m", &file.stiffness_n_per_m)?;
         let damping = not_negative_or("damping_n_s_m", &file.damping_n_s_m, 0.0)?;
         let target = self.course("target_m", &file.target_m, &COORDINATES[..grip.point_components()])?;

@@ -1,4 +1,4 @@
-//! `spread` of a population → what its robots differ by.
+//! `parameter_variation` of a population → what its robots differ by.
 
 use super::at::At;
 use super::fault::{Fault, between, fault, seed};
@@ -22,7 +22,7 @@ pub struct Spread<'a> {
 impl<'a> Spread<'a> {
     /// That of `agent`, number `index` of the population of `entry`; none where its robots do not differ.
     pub(super) fn of(entry: &'a AgentFile, agent: &'a str, index: usize) -> Result<Option<Self>, Fault> {
-        let Some(place) = &entry.spread else { return Ok(None) };
+        let Some(place) = &entry.parameter_variation else { return Ok(None) };
         if entry.count.is_none() {
             return Err(fault(place, ScenarioProblem::SpreadOfOne));
         }

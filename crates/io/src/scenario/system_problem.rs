@@ -38,7 +38,7 @@ pub enum SystemProblem {
     CouplingUnused,
     /// A period of the sign where nothing is set by it.
     #[error(
-        "`sign_every_s` has no effect: {}",
+        "`sign_period_s` has no effect: {}",
         if *.layer { "a boundary layer has its value at every instant" } else { "sampled controllers set the sign at every sample" }
     )]
     SignPeriodUnused {

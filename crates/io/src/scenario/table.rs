@@ -6,11 +6,12 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
+use forwardstep_sim::quantity::LARGEST;
 use thiserror::Error;
 
 use super::at::At;
 use super::de::quoted;
-use super::fault::{Fault, LARGEST, fault, values};
+use super::fault::{Fault, fault, values};
 use super::inputs::InputFolder;
 use super::push_problem::PushProblem;
 use super::shipped::shipped_table;

@@ -131,7 +131,7 @@ impl Template {
         let title = quoted(&self.title);
         let end = commented("end_s = 60", "how long to simulate, in s");
         let every = commented("record_every_s = 0.05", "rows of the tables are this far apart");
-        format!("format = 1\ntitle = {title}\n\n[time]\n{end}{every}")
+        format!("format = 2\ntitle = {title}\n\n[time]\n{end}{every}")
     }
 
     fn agents(&self) -> String {

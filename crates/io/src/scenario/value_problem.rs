@@ -1,9 +1,11 @@
 //! What is wrong with a single value, wherever it stands.
 
 use forwardstep_core::GainError;
+use forwardstep_sim::quantity::QuantityError;
 use thiserror::Error;
 
 use super::formula_problem::FormulaProblem;
+use super::refusal::advice_on_quantity;
 use crate::wording::{are, choose, count, entry_count, number};
 
 /// Why a value has no meaning.
@@ -100,34 +102,9 @@ pub enum ValueProblem {
         /// What was written.
         found: String,
     },
-    /// A number that must be positive is not.
-    #[error("`{key}` is {}, but must be positive", number(*.value))]
-    NotPositive {
-        /// The key.
-        key: &'static str,
-        /// The number.
-        value: f64,
-    },
-    /// A number that must not be negative is.
-    #[error("`{key}` is {}, but must not be negative", number(*.value))]
-    Negative {
-        /// The key.
-        key: &'static str,
-        /// The number.
-        value: f64,
-    },
-    /// A number is outside its range.
-    #[error("`{key}` is {}, but must be from {} to {}", number(*.value), number(*.low), number(*.high))]
-    OutOfRange {
-        /// The key.
-        key: &'static str,
-        /// The number.
-        value: f64,
-        /// The smallest that is allowed.
-        low: f64,
-        /// The largest that is allowed.
-        high: f64,
-    },
+    /// A number out of its range.
+    #[error(transparent)]
+    Quantity(QuantityError),
     /// Lowest and highest value in the wrong order.
     #[error("`{key}` is [{}, {}], but the first must not exceed the second", number(*.low), number(*.high))]
     Interval {
@@ -243,6 +220,7 @@ impl ValueProblem {
             ValueProblem::ChoiceNeedsValue { choice } => format!("write it with its value: {{ {choice} = … }}"),
             ValueProblem::ChoiceTakesNoValue { choice } => format!("write it as a text: \"{choice}\""),
             ValueProblem::Formula(problem) => return problem.help(),
+            ValueProblem::Quantity(error) => return advice_on_quantity(error),
             _ => return None,
         };
         Some(text)

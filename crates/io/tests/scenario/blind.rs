@@ -3,7 +3,7 @@
 use super::{Case, refused};
 
 /// Two masses whose velocities nobody measures.
-pub(super) const BLIND: &str = r#"format = 1
+pub(super) const BLIND: &str = r#"format = 2
 time = { end_s = 10 }
 
 [[agents]]
@@ -65,7 +65,7 @@ const BLIND_CASES: &[Case] = &[
         "test.toml:12:12: unknown choice `velocity`", "choose one of `position_velocity`, `position`"),
     ("[reference.consensus]\nroots_per_s = [1.0, 1.5]", "[reference.pure_integral]\nroots_per_s = [1.0, 1.5]",
         "test.toml:10:2: agent `mass-1`: the law without velocity does not go with these reference dynamics", "write `reference.consensus` with `exchange = \"position\"`"),
-    ("[network]", "[[pushes]]\non = [\"mass-2\"]\nby.force_n = [1, 0]\n[network]",
+    ("[network]", "[[external_wrenches]]\non = [\"mass-2\"]\nby.force_n = [1, 0]\n[network]",
         "test.toml:21:7: agent `mass-2`: pushes act on robots under the adaptive or the known law, not on the law without velocity", "leave `mass-2` out of `on`"),
     ("count = 2", "count = 2\ntarget.formulas = [0, 1]",
         "test.toml:7:1: agent `mass-1`: the law without velocity knows no offsets", "leave its `target` out; only vehicles and rotorcraft agree up to offsets"),
@@ -76,7 +76,7 @@ const BLIND_CASES: &[Case] = &[
     ("velocity_m_s = [0.1, 0] ", "velocity_m_s = [0.1] ",
         "test.toml:8:57: `velocity_m_s` has 1 entry, but `mass-1` needs 2", ""),
     ("[network]", "[control]\nsample_hz = 100\ntorque_limit = [1, 1, 1]\n[network]",
-        "test.toml:22:16: `torque_limit` has 3 where the agents have 2 axes", "a single number stands for all axes"),
+        "test.toml:22:16: agent `mass-1`: the limit of torques has 3 entries where 2 are needed", "a single number stands for all axes"),
     ("[network]", "[control]\nsample_hz = 0\n[network]",
         "test.toml:21:13: `sample_hz` is 0, but must be positive", ""),
 ];

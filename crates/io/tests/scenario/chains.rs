@@ -3,7 +3,7 @@
 use super::{Case, refused};
 
 /// Two plants of order three.
-pub(super) const DERIVATIVES: &str = r#"format = 1
+pub(super) const DERIVATIVES: &str = r#"format = 2
 time = { end_s = 10 }
 
 [[agents]]
@@ -175,14 +175,14 @@ const DERIVATIVES_CASES: &[Case] = &[
         "test.toml:7:1: agent `chain-1`: immersion and invariance knows no offsets", "leave its `target` out; only vehicles and rotorcraft agree up to offsets"),
     ("count = 2", "count = 2\nenforce_limits = true",
         "test.toml:7:18: `enforce_limits` is true, but axis `x` of `chain-1` has no effort limit", "only a URDF states limits, as <limit effort=\"…\"> of a joint"),
-    ("[network]", "[[pushes]]\non = [\"chain-1\"]\nby.force_n = [1]\n[network]",
+    ("[network]", "[[external_wrenches]]\non = [\"chain-1\"]\nby.force_n = [1]\n[network]",
         "test.toml:22:7: agent `chain-1`: pushes act on robots under the adaptive or the known law, not on immersion and invariance", "leave `chain-1` out of `on`"),
     ("[network]", "[control]\nsample_hz = 100\ntorque_limit = [1, 1]\n[network]",
-        "test.toml:23:16: `torque_limit` has 2 where the agents have 1 axis", "a single number stands for all axes"),
+        "test.toml:23:16: agent `chain-1`: the limit of torques has 2 entries where 1 are needed", "a single number stands for all axes"),
 ];
 
 /// A chain in strict-feedback form and one in pure-feedback form.
-pub(super) const CASCADES: &str = r#"format = 1
+pub(super) const CASCADES: &str = r#"format = 2
 time = { end_s = 10 }
 
 [[agents]]

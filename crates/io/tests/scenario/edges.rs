@@ -13,12 +13,12 @@ use tempfile::TempDir;
 use super::{as_stated, changed, read};
 
 /// Every rule once, but for tables, which need a folder.
-pub(super) const RULES: &str = r#"format = 1
+pub(super) const RULES: &str = r#"format = 2
 time = { end_s = 2 }
 [[agents]]
 name = "cart"
 count = 5
-spread = { seed = 2, relative = 0.3 }
+parameter_variation = { seed = 2, relative = 0.3 }
 robot.point_mass = { dimension = 1, mass_kg = 2 }
 start.position = { random = { seed = 1, within = [-1, 1] } }
 [reference.consensus]

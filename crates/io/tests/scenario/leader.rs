@@ -7,7 +7,7 @@ use miette::Diagnostic;
 
 use super::read;
 
-const SOUND: &str = r#"format = 1
+const SOUND: &str = r#"format = 2
 time.end_s = 5
 [leader]
 motion.formulas = ["sin(t)"]
@@ -53,7 +53,7 @@ fn designs_signs_and_motions_are_read() {
     for (sign, choice) in [
         ("\"implicit\"", Choice::Implicit),
         ("\"explicit\"", Choice::Explicit),
-        ("{ layer = { width = 0.1 } }", Choice::Layer { width: 0.1 }),
+        ("{ boundary_layer = { width = 0.1 } }", Choice::Layer { width: 0.1 }),
     ] {
         let text = changed("gain = 3", &format!("gain = 3\nsign = {sign}"));
         assert_eq!(read(&text).unwrap().setup.following().unwrap().choice, choice);

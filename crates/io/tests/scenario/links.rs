@@ -14,7 +14,7 @@ use forwardstep_sim::{Outcome, simulate};
 use super::{as_stated, changed, read};
 
 /// Every way to say how late a message is once, but for logs, which need a folder.
-pub(super) const LINKS: &str = r#"format = 1
+pub(super) const LINKS: &str = r#"format = 2
 time = { end_s = 3, record_every_s = 0.01 }
 [[agents]]
 name = "cart"
@@ -26,13 +26,13 @@ roots_per_s = [1, 2]
 exchange = "position_velocity"
 [network]
 weight = "1 + 0.5*sin(t)"
-delay.packets = { every_s = 0.05, first_s = 0.01, latency_s = 0.03, jitter_s = 0.2, seed = 5, loss.random = { probability = 0.2 } }
+delay.packets = { period_s = 0.05, first_s = 0.01, latency_s = 0.03, jitter_s = 0.2, seed = 5, loss.random = { probability = 0.2 } }
 [[network.phases]]
 dwell_s = 0.5
 edges = [["cart-1", "cart-2"], ["cart-3", "cart-4"], { from = "cart-2", to = "cart-1", weight = "exp(-t) + 1", delay.formula_s = "0.2 + 0.1*sin(2*pi*t/3)" }]
 [[network.phases]]
 dwell_s = 0.7
-edges = [["cart-1", "cart-2"], ["cart-2", "cart-3"], { from = "cart-4", to = "cart-1", delay.random_hold = { seed = 3, value_s = [0.05, 0.4], hold_s = [0.1, 0.8] } }, { from = "cart-4", to = "cart-2", delay.packets = { every_s = 0.1, latency_s = 0, seed = 1, loss.bursts = { enter = 0.1, leave = 0.5, most_in_a_row = 3 } } }]
+edges = [["cart-1", "cart-2"], ["cart-2", "cart-3"], { from = "cart-4", to = "cart-1", delay.random_hold = { seed = 3, value_s = [0.05, 0.4], hold_s = [0.1, 0.8] } }, { from = "cart-4", to = "cart-2", delay.packets = { period_s = 0.1, latency_s = 0, seed = 1, loss.bursts = { enter = 0.1, leave = 0.5, most_consecutive = 3 } } }]
 [goal]
 disagreement_below = 10
 "#;
@@ -106,23 +106,23 @@ const CASES: &[Case] = &[
     ("random_hold = { seed = 1, value_s = [0.1, 0.2], hold_s = [1, 2, 3] }", "test.toml:29:64: found a list of 3 where 2 are needed", ""),
     ("random_hold = { seed = 1, value_s = [0.1, 0.2], hold_s = [1e-9, 1e-9] }", "test.toml:32:10: about 1e10 jumps of the delay until the end of the run, but at most 5000000 are accepted", "is a unit of time mistaken?"),
     // Packets.
-    ("packets = { latency_s = 0.1, seed = 1 }", "test.toml:29:17: the key `every_s` is missing", ""),
-    ("packets = { every_s = 0.1, seed = 1 }", "test.toml:29:17: the key `latency_s` is missing", ""),
-    ("packets = { every_s = 0.1, latency_s = 0.1 }", "test.toml:29:17: the key `seed` is missing", ""),
-    ("packets = { every_s = 0, latency_s = 0.1, seed = 1 }", "test.toml:29:29: `every_s` is 0, but must be positive", ""),
-    ("packets = { every_s = 1e-7, latency_s = 0.1, seed = 1 }", "test.toml:32:10: about 1e8 packets until the end of the run, but at most 5000000 are accepted", "is a unit of time mistaken?"),
-    ("packets = { every_s = 0.1, first_s = 0.2, latency_s = 0.1, seed = 1 }", "test.toml:29:44: `first_s` is 0.2, but must be from 0 to 0.1", ""),
-    ("packets = { every_s = 0.1, latency_s = -0.1, seed = 1 }", "test.toml:29:46: `latency_s` is -0.1, but must not be negative", ""),
-    ("packets = { every_s = 0.1, latency_s = 0, jitter_s = -1, seed = 1 }", "test.toml:29:60: `jitter_s` is -1, but must not be negative", ""),
-    ("packets = { every_s = 0.1, latency_s = 0, seed = -1 }", "test.toml:29:56: `seed` is -1, but must not be negative", ""),
-    ("packets = { every_s = 0.1, latency_s = 0, seed = 1, lost = 0.1 }", "test.toml:29:59: unknown key `lost`", "did you mean `loss`?"),
-    ("packets = { every_s = 0.1, latency_s = 0, seed = 1, loss = 0.1 }", "test.toml:29:66: found 0.1 where a choice of random, bursts should stand", ""),
-    ("packets = { every_s = 0.1, latency_s = 0, seed = 1, loss.burst = {} }", "test.toml:29:64: unknown choice `burst`", "did you mean `bursts`?"),
-    ("packets = { every_s = 0.1, latency_s = 0, seed = 1, loss.random = { probability = 1.1 } }", "test.toml:29:89: `probability` is 1.1, but must be from 0 to 1", ""),
-    ("packets = { every_s = 0.1, latency_s = 0, seed = 1, loss.random = { probability = 0.1, most_in_a_row = 0 } }", "test.toml:29:110: `most_in_a_row` is 0, but must be from 1 to 1000000", ""),
-    ("packets = { every_s = 0.1, latency_s = 0, seed = 1, loss.bursts = { enter = -0.1, leave = 0.1 } }", "test.toml:29:83: `enter` is -0.1, but must be from 0 to 1", ""),
-    ("packets = { every_s = 0.1, latency_s = 0, seed = 1, loss.bursts = { enter = 0.1, leave = 0 } }", "test.toml:29:96: `leave` is 0, but must be positive", ""),
-    ("packets = { every_s = 0.1, latency_s = 0, seed = 1, loss.bursts = { enter = 0.1 } }", "test.toml:29:73: the key `leave` is missing", ""),
+    ("packets = { latency_s = 0.1, seed = 1 }", "test.toml:29:17: the key `period_s` is missing", ""),
+    ("packets = { period_s = 0.1, seed = 1 }", "test.toml:29:17: the key `latency_s` is missing", ""),
+    ("packets = { period_s = 0.1, latency_s = 0.1 }", "test.toml:29:17: the key `seed` is missing", ""),
+    ("packets = { period_s = 0, latency_s = 0.1, seed = 1 }", "test.toml:29:30: `period_s` is 0, but must be positive", ""),
+    ("packets = { period_s = 1e-7, latency_s = 0.1, seed = 1 }", "test.toml:32:10: about 1e8 packets until the end of the run, but at most 5000000 are accepted", "is a unit of time mistaken?"),
+    ("packets = { period_s = 0.1, first_s = 0.2, latency_s = 0.1, seed = 1 }", "test.toml:29:45: `first_s` is 0.2, but must be from 0 to 0.1", ""),
+    ("packets = { period_s = 0.1, latency_s = -0.1, seed = 1 }", "test.toml:29:47: `latency_s` is -0.1, but must not be negative", ""),
+    ("packets = { period_s = 0.1, latency_s = 0, jitter_s = -1, seed = 1 }", "test.toml:29:61: `jitter_s` is -1, but must not be negative", ""),
+    ("packets = { period_s = 0.1, latency_s = 0, seed = -1 }", "test.toml:29:57: `seed` is -1, but must not be negative", ""),
+    ("packets = { period_s = 0.1, latency_s = 0, seed = 1, lost = 0.1 }", "test.toml:29:60: unknown key `lost`", "did you mean `loss`?"),
+    ("packets = { period_s = 0.1, latency_s = 0, seed = 1, loss = 0.1 }", "test.toml:29:67: found 0.1 where a choice of random, bursts should stand", ""),
+    ("packets = { period_s = 0.1, latency_s = 0, seed = 1, loss.burst = {} }", "test.toml:29:65: unknown choice `burst`", "did you mean `bursts`?"),
+    ("packets = { period_s = 0.1, latency_s = 0, seed = 1, loss.random = { probability = 1.1 } }", "test.toml:29:90: `probability` is 1.1, but must be from 0 to 1", ""),
+    ("packets = { period_s = 0.1, latency_s = 0, seed = 1, loss.random = { probability = 0.1, most_consecutive = 0 } }", "test.toml:29:114: `most_consecutive` is 0, but must be from 1 to 1000000", ""),
+    ("packets = { period_s = 0.1, latency_s = 0, seed = 1, loss.bursts = { enter = -0.1, leave = 0.1 } }", "test.toml:29:84: `enter` is -0.1, but must be from 0 to 1", ""),
+    ("packets = { period_s = 0.1, latency_s = 0, seed = 1, loss.bursts = { enter = 0.1, leave = 0 } }", "test.toml:29:97: `leave` is 0, but must be positive", ""),
+    ("packets = { period_s = 0.1, latency_s = 0, seed = 1, loss.bursts = { enter = 0.1 } }", "test.toml:29:74: the key `leave` is missing", ""),
     // Logs, without a folder to look in.
     ("log = \"packets.csv\"", "test.toml:29:13: found \"packets.csv\" where a table of file should stand", ""),
     ("log = {}", "test.toml:29:13: the key `file` is missing", ""),
@@ -157,7 +157,7 @@ fn one_edge_is_one_link() {
     let other = "edges = [[\"cart-1\", \"cart-2\"], [\"cart-2\", \"cart-3\"]";
     let differs = LINKS.replace(
         other,
-        "edges = [{ from = \"cart-1\", to = \"cart-2\", delay.packets = { every_s = 1, latency_s = 0, seed = 1 } }",
+        "edges = [{ from = \"cart-1\", to = \"cart-2\", delay.packets = { period_s = 1, latency_s = 0, seed = 1 } }",
     );
     assert_ne!(differs, LINKS);
     let error = read(&differs).unwrap_err();
@@ -184,8 +184,8 @@ fn beside(text: &str, folder: &Path) -> Result<Scenario, ScenarioError> {
 /// [`LINKS`] with a log in the place of its packets.
 fn replayed(file: &str) -> String {
     let log = format!("log.file = \"{file}\"");
-    let network = "packets = { every_s = 0.05, first_s = 0.01, latency_s = 0.03, jitter_s = 0.2, seed = 5, loss.random = { probability = 0.2 } }";
-    let edge = "packets = { every_s = 0.1, latency_s = 0, seed = 1, loss.bursts = { enter = 0.1, leave = 0.5, most_in_a_row = 3 } }";
+    let network = "packets = { period_s = 0.05, first_s = 0.01, latency_s = 0.03, jitter_s = 0.2, seed = 5, loss.random = { probability = 0.2 } }";
+    let edge = "packets = { period_s = 0.1, latency_s = 0, seed = 1, loss.bursts = { enter = 0.1, leave = 0.5, most_consecutive = 3 } }";
     assert!(LINKS.contains(network) && LINKS.contains(edge));
     LINKS.replace(network, &log).replace(edge, &log)
 }

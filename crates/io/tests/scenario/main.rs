@@ -15,6 +15,7 @@ mod memory;
 mod mixed;
 mod mutated;
 mod pushes;
+mod ranges;
 #[path = "../support/seeds.rs"]
 mod seeds;
 mod shipped;
@@ -31,7 +32,7 @@ use forwardstep_io::scenario::{Scenario, ScenarioError, read_scenario};
 use miette::Diagnostic;
 
 /// A small scenario without mistakes, which the tests change.
-const SOUND: &str = r#"format = 1
+const SOUND: &str = r#"format = 2
 title = "test"
 
 [time]

@@ -9,15 +9,19 @@ const CASES: &[Case] = &[
     // The text.
     ("[time]", "[time",
         "test.toml:4:6: not valid TOML: unclosed table, expected `]`", ""),
-    ("format = 1", "format = ",
+    ("format = 2", "format = ",
         "test.toml:1:10: not valid TOML: string values must be quoted, expected literal string", ""),
     ("title = \"test\"", "title = \"test\"\ntitle = \"again\"",
         "test.toml:3:1: not valid TOML: duplicate key", ""),
-    ("format = 1", "format = 2",
-        "test.toml:1:10: `format` is 2, but this version reads format 1", ""),
-    ("format = 1\n", "",
+    ("format = 2", "format = 1",
+        "test.toml:1:10: `format` is 1, but this version reads format 2", "`forwardstep upgrade test.toml` converts it"),
+    ("format = 2", "format = 3",
+        "test.toml:1:10: `format` is 3, but this version reads format 2", "use a later version of forwardstep"),
+    ("format = 2", "format = -1",
+        "test.toml:1:10: `format` is -1, but this version reads format 2", ""),
+    ("format = 2\n", "",
         "test.toml: the key `format` is missing", ""),
-    ("format = 1", "format = \"1\"",
+    ("format = 2", "format = \"1\"",
         "test.toml:1:10: found \"1\" where a whole number should stand", ""),
     ("title = \"test\"", "title = 7",
         "test.toml:2:9: found 7 where a text in quotes should stand", ""),
@@ -129,18 +133,18 @@ const CASES: &[Case] = &[
     ("start.position_rad", "start.reference = { derivatives = [[1, 2], [3, 4]] }\nstart.position_rad",
         "test.toml:12:44: `derivatives` has 2 entries, but the reference of `arm-1` is of order 2", "an order of l has the derivatives 1 to l − 1"),
     // Spread.
-    ("count = 2", "count = 2\nspread = 0.2",
-        "test.toml:11:10: found 0.2 where a table of seed, relative should stand", ""),
-    ("count = 2", "count = 2\nspread = { seed = 1, relativ = 0.2 }",
-        "test.toml:11:22: unknown key `relativ`", "did you mean `relative`?"),
-    ("count = 2", "count = 2\nspread = { seed = 1 }",
-        "test.toml:11:10: the key `relative` is missing", ""),
-    ("count = 2", "count = 2\nspread = { seed = -1, relative = 0.2 }",
-        "test.toml:11:19: `seed` is -1, but must not be negative", ""),
-    ("count = 2", "count = 2\nspread = { seed = 1, relative = 20 }",
-        "test.toml:11:33: `relative` is 20, but must be from 0 to 0.9", ""),
-    ("name = \"cart\"", "name = \"cart\"\nspread = { seed = 1, relative = 0.2 }",
-        "test.toml:16:10: `spread` is given, but there is no `count`", "a population of `count = 1` may have a spread, too"),
+    ("count = 2", "count = 2\nparameter_variation = 0.2",
+        "test.toml:11:23: found 0.2 where a table of seed, relative should stand", ""),
+    ("count = 2", "count = 2\nparameter_variation = { seed = 1, relativ = 0.2 }",
+        "test.toml:11:35: unknown key `relativ`", "did you mean `relative`?"),
+    ("count = 2", "count = 2\nparameter_variation = { seed = 1 }",
+        "test.toml:11:23: the key `relative` is missing", ""),
+    ("count = 2", "count = 2\nparameter_variation = { seed = -1, relative = 0.2 }",
+        "test.toml:11:32: `seed` is -1, but must not be negative", ""),
+    ("count = 2", "count = 2\nparameter_variation = { seed = 1, relative = 20 }",
+        "test.toml:11:46: `relative` is 20, but must be from 0 to 0.9", ""),
+    ("name = \"cart\"", "name = \"cart\"\nparameter_variation = { seed = 1, relative = 0.2 }",
+        "test.toml:16:23: `parameter_variation` is given, but there is no `count`", "a population of `count = 1` may have a spread, too"),
     // Reference.
     ("[1.0, 2.0]", "[1.0, -2.0]",
         "test.toml:19:21: `roots_per_s` is -2, but must be positive", ""),
@@ -336,7 +340,7 @@ const CASES: &[Case] = &[
 
 #[test]
 fn a_table_in_single_brackets_is_told_from_a_list_of_them() {
-    let text = "format = 1\n[time]\nend_s = 1\n[agents]\nname = \"arm\"\n";
+    let text = "format = 2\n[time]\nend_s = 1\n[agents]\nname = \"arm\"\n";
     let error = read(text).unwrap_err();
     assert_eq!(error.to_string(), "test.toml:4:1: found a table where a list should stand");
     assert!(error.help().unwrap().to_string().contains("[[agents]]"));

@@ -165,7 +165,7 @@ fn solver_and_goal() {
     let solver = |text: &str| setup(&changed("[goal]", &format!("[solver]\n{text}\n[goal]"))).solver;
     assert_eq!(solver("method.fixed.step_s = 0.01").method, Method::Fixed { step_s: 0.01 });
     assert_eq!(solver("method.adaptive.rtol = 1e-9").method, Method::Adaptive { rtol: 1e-9, atol: 1e-8 });
-    let rest = solver("max_step_s = 0.5\nledger = false\nmin_step_s = 1e-9\nmemory_budget_bytes = 2_000_000");
+    let rest = solver("max_step_s = 0.5\nlyapunov_balance = false\nmin_step_s = 1e-9\nmemory_budget_bytes = 2_000_000");
     assert_eq!((rest.max_step_s, rest.balance, rest.min_step_s), (Some(0.5), false, 1e-9));
     assert_eq!((rest.memory_budget_bytes, solver("").memory_budget_bytes), (2_000_000, 1 << 30));
     let goal = |text: &str| read(&changed("disagreement_below = 1e-3", text)).unwrap().goal;
@@ -218,7 +218,7 @@ fn near_matches_for_names_and_paths() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("fleet.toml"), SOUND).unwrap();
     let latin = folder.path().join("latin.toml");
-    std::fs::write(&latin, b"format = 1\ntitle = \"\xc3\xa9caf\xe9\"\n").unwrap();
+    std::fs::write(&latin, b"format = 2\ntitle = \"\xc3\xa9caf\xe9\"\n").unwrap();
     let (error, help) = open(latin.to_str().unwrap());
     assert!(error.ends_with("it is no UTF-8 text: byte 0xe9 in line 2, column 14"), "{error}");
     assert_eq!(help, "save it as UTF-8");

@@ -7,7 +7,7 @@ use forwardstep_io::SourceText;
 use forwardstep_io::scenario::{Inputs, Scenario, ScenarioError, read_scenario};
 use miette::Diagnostic;
 
-const TEXT: &str = r#"format = 1
+const TEXT: &str = r#"format = 2
 time = { end_s = 2 }
 [[agents]]
 name = "arm"

@@ -3,7 +3,7 @@
 use super::{Case, refused};
 
 /// A mass, one without velocity, and a vehicle.
-pub(super) const MIXED: &str = r#"format = 1
+pub(super) const MIXED: &str = r#"format = 2
 time = { end_s = 10 }
 
 [[agents]]
@@ -65,7 +65,7 @@ const MIXED_CASES: &[Case] = &[
         "test.toml:12:35: agent `blind`: its reference dynamics have order 1, but its law needs 2 roots or more", "give it 2 roots or more"),
     ("[network]", "[network]\ncoupling.tanh = 0",
         "test.toml:23:17: `tanh` is 0, but must be positive", ""),
-    ("[network]", "[[pushes]]\non = [\"mass\", \"blind\"]\nby.force_n = [1, 0, 0]\n[network]",
+    ("[network]", "[[external_wrenches]]\non = [\"mass\", \"blind\"]\nby.force_n = [1, 0, 0]\n[network]",
         "test.toml:23:15: agent `blind`: pushes act on robots under the adaptive or the known law, not on the law without velocity", "leave `blind` out of `on`"),
     ("edges.ring = {}", "edges = [[\"mass\", \"blind\"], [\"blind\", \"vehicles\"]]",
         "test.toml:23:39: there is no agent `vehicles`", "did you mean `vehicle`? the agents are `mass`, `blind`, `vehicle`"),

@@ -21,7 +21,7 @@ use super::{SOUND, read};
 pub(super) const SYSTEMS: [&str; 12] =
     [SOUND, RULES, LINKS, PUSHES, BLIND, CASCADES, DERIVATIVES, MIXED, SPACECRAFT, PLANAR, TIP, VEHICLES];
 
-fn texts() -> Vec<&'static str> {
+pub(super) fn texts() -> Vec<&'static str> {
     SHIPPED_SCENARIOS.iter().map(|scenario| scenario.text).chain(SYSTEMS).collect()
 }
 

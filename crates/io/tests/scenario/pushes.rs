@@ -11,7 +11,7 @@ use forwardstep_sim::simulate;
 use super::{as_stated, read};
 
 /// Every way to push once, but for CSV files, which need a folder.
-pub(super) const PUSHES: &str = r#"format = 1
+pub(super) const PUSHES: &str = r#"format = 2
 time = { end_s = 10 }
 [[agents]]
 name = "arm"
@@ -30,38 +30,38 @@ manipulability_gain = 2.0
 [law.known]
 [network]
 edges.ring = {}
-[[pushes]]
+[[external_wrenches]]
 on = ["arm", "ur"]
 from_s = 1
 for_s = 0.5
 by.torque_n_m = [5, "2*sin(3*t)"]
-[[pushes]]
+[[external_wrenches]]
 on = ["cart"]
 by.force_n.rows = { times_s = [2, 3, 4], values = [[0, 0], [1, 2], [0, 0]], interpolate = "hold" }
-[[pushes]]
+[[external_wrenches]]
 on = ["cart", "arm-1"]
 from_s = 3
 by.effort = [0.5, 0]
-[[pushes]]
+[[external_wrenches]]
 on = ["ur"]
 from_s = 2
 for_s = 1
 by.wrench = { link = "tool0", at_m = [0, 0, 0.1], axes = "link", force_n = [0, 0, 9], torque_n_m = [1, 0, 0] }
-[[pushes]]
+[[external_wrenches]]
 on = ["arm-2"]
 from_s = 2
 for_s = 1
 by.wrench = { force_n = [3, 4], torque_n_m = [0.5] }
-[[pushes]]
+[[external_wrenches]]
 on = ["arm-1"]
 from_s = 5
 for_s = 2
-by.hand_on_axes = { axes = ["elbow"], stiffness = 40, damping = [3], target_rad.rows = { times_s = [5, 7], values = [0, 1] } }
-[[pushes]]
+by.virtual_spring_on_axes = { axes = ["elbow"], stiffness = 40, damping = [3], target_rad.rows = { times_s = [5, 7], values = [0, 1] } }
+[[external_wrenches]]
 on = ["ur"]
 from_s = 6
 for_s = 1
-by.hand_on_point = { link = "tool0", stiffness_n_per_m = 200, damping_n_s_m = 20, target_m = [0.4, "0.1*t", 0.5] }
+by.virtual_spring_on_point = { link = "tool0", stiffness_n_per_m = 200, damping_n_s_m = 20, target_m = [0.4, "0.1*t", 0.5] }
 "#;
 
 fn pushes(text: &str) -> Vec<Vec<Push>> {
@@ -127,7 +127,7 @@ fn pushed_scenarios_run() {
 
 #[test]
 fn arms_that_differ_are_held_at_their_own_tips() {
-    let text = PUSHES.replace("count = 2\n", "count = 2\nspread = { seed = 1, relative = 0.2 }\n");
+    let text = PUSHES.replace("count = 2\n", "count = 2\nparameter_variation = { seed = 1, relative = 0.2 }\n");
     let agents = pushes(&text.replace("on = [\"arm-2\"]", "on = [\"arm\"]"));
     let tip = |pushes: &[Push]| {
         pushes.iter().find_map(|push| match push.effect {
@@ -154,7 +154,7 @@ type Case = (&'static str, &'static str, &'static str, &'static str);
 
 #[rustfmt::skip]
 const CASES: &[Case] = &[
-    ("[[pushes]]\non = [\"cart\"]", "[pushes]\non = [\"cart\"]",
+    ("[[external_wrenches]]\non = [\"cart\"]", "[external_wrenches]\non = [\"cart\"]",
         "test.toml:25:2: not valid TOML: duplicate key", ""),
     ("on = [\"arm\", \"ur\"]", "on = []",
         "test.toml:21:6: `on` is empty", ""),
@@ -239,33 +239,33 @@ const CASES: &[Case] = &[
     ("on = [\"arm-2\"]", "on = [\"cart\"]",
         "test.toml:41:1: `cart` is a point mass and has no links", "use `by.force_n`"),
     ("axes = [\"elbow\"]", "axes = [\"elbo\"]",
-        "test.toml:46:29: `arm-1` has no axis `elbo`", "did you mean `elbow`? its axes are `shoulder`, `elbow`"),
+        "test.toml:46:39: `arm-1` has no axis `elbo`", "did you mean `elbow`? its axes are `shoulder`, `elbow`"),
     ("axes = [\"elbow\"]", "axes = [\"elbow\", \"elbow\"]",
-        "test.toml:46:38: the axis `elbow` is named twice", ""),
+        "test.toml:46:48: the axis `elbow` is named twice", ""),
     ("axes = [\"elbow\"]", "axes = []",
-        "test.toml:46:28: `axes` is empty", ""),
+        "test.toml:46:38: `axes` is empty", ""),
     ("stiffness = 40", "stiffness = -40",
-        "test.toml:46:51: `stiffness` is -40, but must not be negative", ""),
+        "test.toml:46:61: `stiffness` is -40, but must not be negative", ""),
     ("stiffness = 40", "stiffness = [40, 40]",
-        "test.toml:46:51: `stiffness` has 2 entries, but the hand holds 1 of the axes of `arm-1`", ""),
+        "test.toml:46:61: `stiffness` has 2 entries, but the hand holds 1 of the axes of `arm-1`", ""),
     ("stiffness = 40, ", "",
-        "test.toml:46:19: the key `stiffness` is missing", ""),
+        "test.toml:46:29: the key `stiffness` is missing", ""),
     ("damping = [3]", "damping = [-3]",
-        "test.toml:46:66: `damping` is -3, but must not be negative", ""),
+        "test.toml:46:76: `damping` is -3, but must not be negative", ""),
     ("target_rad.rows", "target_m.rows",
-        "test.toml:46:70: `target_m` does not fit `arm-1`, whose axis `elbow` is measured in rad", "`target` takes rad or m as each axis has it"),
+        "test.toml:46:80: `target_m` does not fit `arm-1`, whose axis `elbow` is measured in rad", "`target` takes rad or m as each axis has it"),
     ("target_rad.rows", "target = [1], target_rad.rows",
-        "test.toml:46:79: both `target_rad` and `target` are given, but they say the same", ""),
+        "test.toml:46:89: both `target_rad` and `target` are given, but they say the same", ""),
     (", target_rad.rows = { times_s = [5, 7], values = [0, 1] }", "",
         "test.toml:46:1: the hand has no target", "`target_rad`, `target_m`, or `target` for any axes"),
     ("stiffness_n_per_m = 200", "stiffness_n_m = 200",
-        "test.toml:51:38: unknown key `stiffness_n_m`", "did you mean `stiffness_n_per_m`?"),
+        "test.toml:51:48: unknown key `stiffness_n_m`", "did you mean `stiffness_n_per_m`?"),
     ("stiffness_n_per_m = 200", "stiffness_n_per_m = -200",
-        "test.toml:51:58: `stiffness_n_per_m` is -200, but must not be negative", ""),
+        "test.toml:51:68: `stiffness_n_per_m` is -200, but must not be negative", ""),
     ("target_m = [0.4, \"0.1*t\", 0.5]", "target_m = [0.4, \"0.1*t\"]",
-        "test.toml:51:94: `target_m` has 2 entries, but `ur` needs 3", ""),
+        "test.toml:51:104: `target_m` has 2 entries, but `ur` needs 3", ""),
     ("target_m = [0.4, \"0.1*t\", 0.5]", "target_m = [0.4, \"log(t-8)\", 0.5]",
-        "test.toml:51:100: this formula cannot be shown to have a value at all times from 6 s to 7 s", "keep roots, logarithms and quotients"),
+        "test.toml:51:110: this formula cannot be shown to have a value at all times from 6 s to 7 s", "keep roots, logarithms and quotients"),
     ("by.force_n.rows = {", "by.force_n.csv = { file = \"push.csv\", interpolate = \"hold\" } #",
         "test.toml:27:27: cannot read the table `push.csv`: there is no such file", ""),
 ];

@@ -83,7 +83,7 @@ fn collect(schema: &serde_json::Value, known: &mut BTreeSet<String>, undescribed
 fn the_schema_refuses_unknown_keys() {
     let schema = serde_json::to_value(schema()).unwrap();
     assert_eq!(schema["additionalProperties"], false);
-    assert_eq!(schema["properties"]["format"]["const"], 1);
+    assert_eq!(schema["properties"]["format"]["const"], 2);
     assert_eq!(schema["required"], serde_json::json!(["format", "time", "agents", "reference"]));
 }
 

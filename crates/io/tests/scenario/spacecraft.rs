@@ -3,7 +3,7 @@
 use super::{Case, read, refused};
 
 /// A spacecraft with three wheels.
-pub(super) const SPACECRAFT: &str = r#"format = 1
+pub(super) const SPACECRAFT: &str = r#"format = 2
 time = { end_s = 10 }
 
 [[agents]]
@@ -186,20 +186,20 @@ const SPACECRAFT_CASES: &[Case] = &[
         "test.toml:24:2: agent `craft`: the law `thrust` is made for vehicles and rotorcraft", "for this robot there is `attitude`"),
     ("[law.attitude]\nerror_gain_per_s2 = 0.5\nrate_gain_per_s = 1.2\nfilter_gain_per_s = [1, 1, 1, 2]\ndamping = 3", "[law.adaptive]",
         "test.toml:24:2: agent `craft`: the law `adaptive` is made for arms and point masses", "for this robot there is `attitude`"),
-    ("[goal]", "[[pushes]]\non = [\"craft\"]\nby.torque_n_m = [1, 0, 0]\n[goal]",
+    ("[goal]", "[[external_wrenches]]\non = [\"craft\"]\nby.torque_n_m = [1, 0, 0]\n[goal]",
         "test.toml:31:7: agent `craft`: pushes act on robots under the adaptive or the known law, not on the law for an attitude", "leave `craft` out of `on`"),
-    ("[goal]", "[[pushes]]\non = [\"craft\"]\nby.effort = [1, 0, 0, 0]\n[goal]",
+    ("[goal]", "[[external_wrenches]]\non = [\"craft\"]\nby.effort = [1, 0, 0, 0]\n[goal]",
         "test.toml:31:7: agent `craft`: pushes act on robots under the adaptive or the known law, not on the law for an attitude", "leave `craft` out of `on`"),
     ("[goal]", "[control]\nsample_hz = 10\ntorque_limit = [1, 1, 1]\n[goal]",
-        "test.toml:32:16: `torque_limit` has 3 where the agents have 4 axes", "a single number stands for all axes"),
+        "test.toml:32:16: agent `craft`: the limit of torques has 3 entries where 4 are needed", "a single number stands for all axes"),
     ("[goal]", "[control]\nsample_hz = 10\ntorque_rate_limit_per_s = [1, 1, 1, 1]\n[goal]",
         "test.toml:32:27: agent `craft`: the limit of torque rates has 4 entries where 0 are needed", "leave it out: this robot has another number of torques than of axes"),
     ("[goal]", "[network]\nedges = [[\"craft\", \"craft\"]]\n[goal]",
         "test.toml:31:10: `craft` cannot hear itself", ""),
     ("error_below", "disagreement_below",
         "test.toml:31:22: `disagreement_below` is about agreement, but every agent follows a target or a leader", "write `error_below`"),
-    ("name = \"craft\"", "name = \"craft\"\nspread = { seed = 1, relative = 0.1 }",
-        "test.toml:6:10: `spread` is given, but there is no `count`", "a population of `count = 1` may have a spread, too"),
+    ("name = \"craft\"", "name = \"craft\"\nparameter_variation = { seed = 1, relative = 0.1 }",
+        "test.toml:6:23: `parameter_variation` is given, but there is no `count`", "a population of `count = 1` may have a spread, too"),
 ];
 
 #[test]

@@ -15,13 +15,13 @@ const SEEDS: u64 = 20;
 /// A population with this robot and this spread.
 fn population(count: usize, robot: &str, spread: &str) -> String {
     format!(
-        "format = 1\ntime = {{ end_s = 1 }}\n[[agents]]\nname = \"a\"\ncount = {count}\n{robot}\n{spread}\n\
+        "format = 2\ntime = {{ end_s = 1 }}\n[[agents]]\nname = \"a\"\ncount = {count}\n{robot}\n{spread}\n\
          [reference.consensus]\nroots_per_s = [1]\nexchange = \"position\"\n[network]\nedges.path = {{}}\n"
     )
 }
 
 fn agents(count: usize, robot: &str, seed: u64) -> Vec<AgentSetup> {
-    let text = population(count, robot, &format!("spread = {{ seed = {seed}, relative = 0.2 }}"));
+    let text = population(count, robot, &format!("parameter_variation = {{ seed = {seed}, relative = 0.2 }}"));
     read(&text).unwrap_or_else(|error| panic!("{error}")).setup.agents
 }
 
@@ -51,7 +51,8 @@ fn spreads_repeat_and_stay_when_agents_are_added() {
 fn no_spread_is_what_is_written() {
     for robot in ROBOTS {
         let plain = read(&population(2, robot, "")).unwrap().setup.agents;
-        let none = read(&population(2, robot, "spread = { seed = 1, relative = 0 }")).unwrap().setup.agents;
+        let none =
+            read(&population(2, robot, "parameter_variation = { seed = 1, relative = 0 }")).unwrap().setup.agents;
         assert_eq!(thetas(&plain), thetas(&none), "{robot}");
     }
 }
@@ -158,13 +159,13 @@ fn a_robot_that_its_spread_makes_impossible_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("unsound.urdf"), UNSOUND).unwrap();
     let message = |relative: f64| {
-        let spread = format!("spread = {{ seed = 1, relative = {relative} }}");
+        let spread = format!("parameter_variation = {{ seed = 1, relative = {relative} }}");
         let text = population(50, "robot.urdf.file = \"unsound.urdf\"", &spread);
         read_scenario("test", &SourceText::new("test.toml", text), Some(folder.path()))
             .map_err(|error| error.to_string())
     };
     assert!(message(0.01).is_ok());
     let error = message(0.8).unwrap_err();
-    let (before, after) = ("test.toml:7:10: with this spread the mass matrix of `a-", "` is not positive definite");
+    let (before, after) = ("test.toml:7:23: with this spread the mass matrix of `a-", "` is not positive definite");
     assert!(error.starts_with(before) && error.ends_with(after), "{error}");
 }

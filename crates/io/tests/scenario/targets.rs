@@ -68,7 +68,7 @@ fn columns_are_named_by_axes_and_those_of_tips_by_coordinates() {
     assert_eq!(first(&tabled(&text, "t_s,x,y,z\n0,-0.6,-0.4,0.45\n").unwrap()), [0.45, -0.6, -0.4]);
     // A leader moves along the axes of those who follow.
     let leader = r#"
-        format = 1
+        format = 2
         time.end_s = 5
         leader.motion.csv.file = "slew.csv"
         reference.leader = { design = "continuous", roots_per_s = [1.5], gain = 3 }

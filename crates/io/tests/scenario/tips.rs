@@ -3,7 +3,7 @@
 use super::{Case, refused};
 
 /// The tip of a UR5e with three joints free.
-pub(super) const TIP: &str = r#"format = 1
+pub(super) const TIP: &str = r#"format = 2
 time = { end_s = 10 }
 
 [[agents]]
@@ -27,7 +27,7 @@ reference_gain_per_s = 6
 kinematic_gain = 1
 kinematic_start.scaled = 1.2
 determinant_floor = 0.02
-tip = { link = "tool0", at_m = [0, 0, 0.15], coordinates = ["x", "y", "z"], uncertain = "tool" }
+end_effector = { link = "tool0", at_m = [0, 0, 0.15], coordinates = ["x", "y", "z"], uncertain = "tool" }
 bounds = { lower_m = [0.1, 0.1, 0.1], upper_m = [1, 1, 1], margin_m = 0.02 }
 
 [goal]
@@ -65,7 +65,7 @@ const TIP_CASES: &[Case] = &[
     ("task_gain = 200", "task_gain = [[1, 2, 0], [2, 1, 0], [0, 0, 1]]",
         "test.toml:19:13: `task_gain` of `arm`: the leading minor of order 2 is not positive; the matrix must be positive definite", ""),
     ("task_gain = 200", "task_gains = 200",
-        "test.toml:19:1: unknown key `task_gains`", "did you mean `task_gain`? allowed here: `tip`, `damping`, `adaptation_gain`, `estimate_start`, `task_gain`, `torque_share`, `reference_gain_per_s`, `kinematic_gain`, `kinematic_start`, `bounds`, `determinant_floor`"),
+        "test.toml:19:1: unknown key `task_gains`", "did you mean `task_gain`? allowed here: `end_effector`, `damping`, `adaptation_gain`, `estimate_start`, `task_gain`, `torque_share`, `reference_gain_per_s`, `kinematic_gain`, `kinematic_start`, `bounds`, `determinant_floor`"),
     ("torque_share = 2", "torque_share = 0",
         "test.toml:20:16: `torque_share` is 0, but must be positive", ""),
     ("torque_share = 2", "torque_share = [2, 2, 2]",
@@ -73,7 +73,7 @@ const TIP_CASES: &[Case] = &[
     ("reference_gain_per_s = 6", "reference_gain_per_s = -6",
         "test.toml:21:24: `reference_gain_per_s` is -6, but must be positive", ""),
     ("reference_gain_per_s = 6", "reference_gain = 6",
-        "test.toml:21:1: unknown key `reference_gain`", "did you mean `reference_gain_per_s`? allowed here: `tip`, `damping`, `adaptation_gain`, `estimate_start`, `task_gain`, `torque_share`, `reference_gain_per_s`, `kinematic_gain`, `kinematic_start`, `bounds`, `determinant_floor`"),
+        "test.toml:21:1: unknown key `reference_gain`", "did you mean `reference_gain_per_s`? allowed here: `end_effector`, `damping`, `adaptation_gain`, `estimate_start`, `task_gain`, `torque_share`, `reference_gain_per_s`, `kinematic_gain`, `kinematic_start`, `bounds`, `determinant_floor`"),
     ("kinematic_gain = 1", "kinematic_gain = -1",
         "test.toml:22:18: `kinematic_gain` is -1, but must be positive", ""),
     ("kinematic_gain = 1", "kinematic_gain = [1, 2]",
@@ -88,32 +88,32 @@ const TIP_CASES: &[Case] = &[
         "test.toml:24:21: `determinant_floor` is 1, but must be from 0 to 0.999", ""),
     ("determinant_floor = 0.02", "determinant_floor = -0.1",
         "test.toml:24:21: `determinant_floor` is -0.1, but must be from 0 to 0.999", ""),
-    ("tip = { link = \"tool0\", at_m = [0, 0, 0.15], coordinates = [\"x\", \"y\", \"z\"], uncertain = \"tool\" }\n", "",
-        "test.toml:15:2: the law `task_space` needs `tip` for a robot from a URDF", "add tip = { link = \"…\" } with a link of the URDF"),
+    ("end_effector = { link = \"tool0\", at_m = [0, 0, 0.15], coordinates = [\"x\", \"y\", \"z\"], uncertain = \"tool\" }\n", "",
+        "test.toml:15:2: the law `task_space` needs `end_effector` for a robot from a URDF", "add end_effector = { link = \"…\" } with a link of the URDF"),
     ("link = \"tool0\"", "link = \"tool1\"",
-        "test.toml:25:16: `arm` has no link `tool1`", "did you mean `tool0`? its links are `base_link`, `shoulder_link`, `upper_arm_link`, `forearm_link`, `wrist_1_link`, `wrist_2_link`, `wrist_3_link`, `tool0`"),
+        "test.toml:25:25: `arm` has no link `tool1`", "did you mean `tool0`? its links are `base_link`, `shoulder_link`, `upper_arm_link`, `forearm_link`, `wrist_1_link`, `wrist_2_link`, `wrist_3_link`, `tool0`"),
     ("link = \"tool0\"", "links = \"tool0\"",
-        "test.toml:25:9: unknown key `links`", "did you mean `link`? allowed here: `link`, `at_m`, `coordinates`, `uncertain`"),
+        "test.toml:25:18: unknown key `links`", "did you mean `link`? allowed here: `link`, `at_m`, `coordinates`, `uncertain`"),
     ("link = \"tool0\", ", "",
-        "test.toml:25:7: the key `link` is missing", ""),
+        "test.toml:25:16: the key `link` is missing", ""),
     ("at_m = [0, 0, 0.15]", "at_m = [0, 0.15]",
-        "test.toml:25:32: found a list of 2 where 3 are needed", ""),
+        "test.toml:25:41: found a list of 2 where 3 are needed", ""),
     ("at_m = [0, 0, 0.15]", "at_m = 0.15",
-        "test.toml:25:32: found 0.15 where a list should stand", ""),
+        "test.toml:25:41: found 0.15 where a list should stand", ""),
     ("coordinates = [\"x\", \"y\", \"z\"]", "coordinates = [\"x\", \"y\"]",
-        "test.toml:25:7: 3 joints move and 2 coordinates of the tip are to be controlled; task-space control needs as many joints as coordinates (a redundant Jacobian has no inverse): lock joints or choose other coordinates", "`locked` of the robot holds joints of a URDF"),
+        "test.toml:25:16: 3 joints move and 2 coordinates of the tip are to be controlled; task-space control needs as many joints as coordinates (a redundant Jacobian has no inverse): lock joints or choose other coordinates", "`locked` of the robot holds joints of a URDF"),
     ("coordinates = [\"x\", \"y\", \"z\"]", "coordinates = [\"x\", \"y\", \"y\"]",
-        "test.toml:25:60: coordinate 1 (of x = 0, y = 1, z = 2 of the base) is chosen twice, or there is none", "choose `x`, `y` and `z`, each at most once"),
+        "test.toml:25:69: coordinate 1 (of x = 0, y = 1, z = 2 of the base) is chosen twice, or there is none", "choose `x`, `y` and `z`, each at most once"),
     ("coordinates = [\"x\", \"y\", \"z\"]", "coordinates = [\"x\", \"y\", \"w\"]",
-        "test.toml:25:71: unknown choice `w`", "did you mean `x`? choose one of `x`, `y`, `z`"),
+        "test.toml:25:80: unknown choice `w`", "did you mean `x`? choose one of `x`, `y`, `z`"),
     ("coordinates = [\"x\", \"y\", \"z\"]", "coordinates = []",
-        "test.toml:25:60: `coordinates` is empty", ""),
+        "test.toml:25:69: `coordinates` is empty", ""),
     ("coordinates = [\"x\", \"y\", \"z\"]", "coordinates = [\"x\", \"y\", \"z\", \"x\"]",
-        "test.toml:25:60: coordinate 0 (of x = 0, y = 1, z = 2 of the base) is chosen twice, or there is none", "choose `x`, `y` and `z`, each at most once"),
+        "test.toml:25:69: coordinate 0 (of x = 0, y = 1, z = 2 of the base) is chosen twice, or there is none", "choose `x`, `y` and `z`, each at most once"),
     ("uncertain = \"tool\"", "uncertain = \"all\"",
-        "test.toml:25:89: unknown choice `all`", "choose one of `tool`, `chain`"),
+        "test.toml:25:98: unknown choice `all`", "choose one of `tool`, `chain`"),
     ("link = \"tool0\"", "link = \"upper_arm_link\"",
-        "test.toml:25:16: `elbow_joint` moves, but does not carry `upper_arm_link`", "add `elbow_joint` to `locked`, or choose a link behind it"),
+        "test.toml:25:25: `elbow_joint` moves, but does not carry `upper_arm_link`", "add `elbow_joint` to `locked`, or choose a link behind it"),
     ("lower_m = [0.1, 0.1, 0.1]", "lower_m = [0.1, 0.1]",
         "test.toml:26:22: `lower_m` has 2 entries, but `arm` needs 3", ""),
     ("upper_m = [1, 1, 1]", "upper_m = [1, 1, 0]",
@@ -125,7 +125,7 @@ const TIP_CASES: &[Case] = &[
     ("margin_m = 0.02", "margin_m = 0",
         "test.toml:26:71: `margin_m` is 0, but must be positive", ""),
     ("wrist_1_joint = -3.14, ", "",
-        "test.toml:25:7: 4 joints move and 3 coordinates of the tip are to be controlled; task-space control needs as many joints as coordinates (a redundant Jacobian has no inverse): lock joints or choose other coordinates", "`locked` of the robot holds joints of a URDF"),
+        "test.toml:25:16: 4 joints move and 3 coordinates of the tip are to be controlled; task-space control needs as many joints as coordinates (a redundant Jacobian has no inverse): lock joints or choose other coordinates", "`locked` of the robot holds joints of a URDF"),
     ("[\"-0.6 + 0.1*cos(t)\", -0.4, 0.45]", "[\"-0.6 + 0.1*cos(t)\", -0.4]",
         "test.toml:7:19: `formulas` has 2 entries, but `arm` needs 3", ""),
     ("[\"-0.6 + 0.1*cos(t)\", -0.4, 0.45]", "[\"-0.6 + 0.1*cos(t\", -0.4, 0]",
@@ -134,14 +134,14 @@ const TIP_CASES: &[Case] = &[
         "test.toml:5:8: agent `arm` is to track a target, but has none", "give it a `target`"),
     ("[reference.tracking]", "[reference.consensus]\nroots_per_s = [1]\nexchange = \"position\"\n[network]\nedges = []",
         "test.toml:13:2: agent `arm`: the law for a tip follows a target of its own; it does not agree with others", "write `reference.tracking`, and give it a `target`"),
-    ("[goal]", "[[pushes]]\non = [\"arm\"]\nby.torque_n_m = [1, 0, 0]\n[goal]",
+    ("[goal]", "[[external_wrenches]]\non = [\"arm\"]\nby.torque_n_m = [1, 0, 0]\n[goal]",
         "test.toml:29:7: agent `arm`: pushes act on robots under the adaptive or the known law, not on the law for a tip", "leave `arm` out of `on`"),
     ("[goal]", "[control]\nsample_hz = 1000\nnoise = { seed = 1, velocity = -1 }\n[goal]",
         "test.toml:30:32: `noise.velocity` is -1, but must not be negative", ""),
 ];
 
 /// The tip of a planar arm.
-pub(super) const PLANAR: &str = r#"format = 1
+pub(super) const PLANAR: &str = r#"format = 2
 time = { end_s = 10 }
 
 [[agents]]
@@ -162,8 +162,8 @@ error_below = 1e-3
 
 #[rustfmt::skip]
 const PLANAR_CASES: &[Case] = &[
-    ("kinematic_gain = [0.3, 0.2]", "tip = { link = \"tool0\" }",
-        "test.toml:13:7: the tip of a planar arm is the end of its second link; `tip` is for robots from a URDF", "leave `tip` out"),
+    ("kinematic_gain = [0.3, 0.2]", "end_effector = { link = \"tool0\" }",
+        "test.toml:13:16: the tip of a planar arm is the end of its second link; `end_effector` is for robots from a URDF", "leave `end_effector` out"),
     ("kinematic_gain = [0.3, 0.2]", "kinematic_gain = [0.3]",
         "test.toml:13:18: `kinematic_gain` has 1 entry, but `arm` needs 2", ""),
     ("kinematic_gain = [0.3, 0.2]", "kinematic_gain = [[0.3, 0], [0, 0.2]]",
@@ -179,7 +179,7 @@ const PLANAR_CASES: &[Case] = &[
     ("robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }\nstart.position_rad", "robot.point_mass = { dimension = 2, mass_kg = 1 }\nstart.position_m",
         "test.toml:12:2: agent `arm`: the law `task_space` is made for planar arms and robots from a URDF", "for this robot there is `adaptive`, `known` and `position_only`"),
     ("robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }\nstart.position_rad", "robot.urdf = { file = \"ur5e.urdf\" }\nstart.position_rad",
-        "test.toml:12:2: the law `task_space` needs `tip` for a robot from a URDF", "add tip = { link = \"…\" } with a link of the URDF"),
+        "test.toml:12:2: the law `task_space` needs `end_effector` for a robot from a URDF", "add end_effector = { link = \"…\" } with a link of the URDF"),
     ("[law.task_space]\nkinematic_gain = [0.3, 0.2]\nbounds = { lower_m = [0.9, 0.7], upper_m = [1.1, 0.9] }", "[law.adaptive]",
         "test.toml:10:2: agent `arm`: the adaptive law does not follow a target of its own; it goes with consensus", "write `reference.consensus`; laws that track are `position_only`, `task_space`, `attitude` and those of chains"),
 ];

@@ -6,7 +6,7 @@ use forwardstep_sim::{PositionOnlyLaw, ReferenceKind};
 use super::{Case, read, refused};
 
 /// A mass that follows a target.
-const SOUND: &str = r#"format = 1
+const SOUND: &str = r#"format = 2
 time = { end_s = 10 }
 
 [[agents]]
@@ -62,7 +62,7 @@ const CASES: &[Case] = &[
         "test.toml:17:15: `disagreement_below` and `error_below` are both given", "delete one of the two"),
     ("[reference.tracking]\nroots_per_s = [1.0, 1.5, 2.0]", "[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position\"",
         "test.toml:9:2: there is no network, but the agents are to agree", "who hears whom"),
-    ("[goal]", "[[pushes]]\non = [\"mass\"]\nby.force_n = [1, 2]\n[goal]",
+    ("[goal]", "[[external_wrenches]]\non = [\"mass\"]\nby.force_n = [1, 2]\n[goal]",
         "test.toml:17:7: agent `mass`: pushes act on robots under the adaptive or the known law, not on the law without velocity", "leave `mass` out of `on`"),
 ];
 

@@ -93,9 +93,9 @@ fn what_stands_for_all_is_read_by_somebody() {
 fn what_a_sampled_leader_does_not_read_is_refused() {
     let text = |sign: &str, control: &str| {
         format!(
-            "format = 1\ntime.end_s = 5\nleader.motion.formulas = [\"sin(t)\"]\n[[agents]]\nname = \"cart\"\n\
+            "format = 2\ntime.end_s = 5\nleader.motion.formulas = [\"sin(t)\"]\n[[agents]]\nname = \"cart\"\n\
              robot.point_mass = {{ dimension = 1, mass_kg = 2 }}\n[reference.leader]\ndesign = \"continuous\"\n\
-             roots_per_s = [1.5]\ngain = 3\nsign_every_s = 0.01\n{sign}\n[network]\nedges = [[\"leader\", \"cart\"]]\n{control}"
+             roots_per_s = [1.5]\ngain = 3\nsign_period_s = 0.01\n{sign}\n[network]\nedges = [[\"leader\", \"cart\"]]\n{control}"
         )
     };
     let said = |sign, control| read(&text(sign, control)).err().map(|error| error.to_string());
@@ -103,10 +103,10 @@ fn what_a_sampled_leader_does_not_read_is_refused() {
     let control = "[control]\nsample_hz = 100";
     assert_eq!(
         said("", control).as_deref(),
-        Some("test.toml:11:16: `sign_every_s` has no effect: sampled controllers set the sign at every sample")
+        Some("test.toml:11:17: `sign_period_s` has no effect: sampled controllers set the sign at every sample")
     );
     assert_eq!(
-        said("sign.layer.width = 0.1", "").as_deref(),
-        Some("test.toml:11:16: `sign_every_s` has no effect: a boundary layer has its value at every instant")
+        said("sign.boundary_layer.width = 0.1", "").as_deref(),
+        Some("test.toml:11:17: `sign_period_s` has no effect: a boundary layer has its value at every instant")
     );
 }

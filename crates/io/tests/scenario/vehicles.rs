@@ -3,7 +3,7 @@
 use super::{Case, refused};
 
 /// Two vehicles and a rotorcraft that keep a formation.
-pub(super) const VEHICLES: &str = r#"format = 1
+pub(super) const VEHICLES: &str = r#"format = 2
 time = { end_s = 10 }
 
 [[agents]]
@@ -136,7 +136,7 @@ const VEHICLES_CASES: &[Case] = &[
     ("thrust_n = [0.2, 8]", "thrust_n = [8, 0.2]",
         "test.toml:19:55: `thrust_n` is [8, 0.2], but the first must be less than the second", ""),
     ("thrust_n = [0.2, 8]", "thrust_n = [-0.2, 8]",
-        "test.toml:19:55: `thrust_n` is -0.2, but must not be negative", ""),
+        "test.toml:19:56: `thrust_n` is -0.2, but must not be negative", ""),
     ("thrust_n = [0.2, 8]", "thrust_n = [8, 8]",
         "test.toml:19:55: `thrust_n` is [8, 8], but the first must be less than the second", ""),
     ("thrust_n = [0.2, 8]", "thrust_n = 8",
@@ -225,9 +225,9 @@ const VEHICLES_CASES: &[Case] = &[
         "test.toml:30:24: `rate_bandwidth_per_s` is -30, but must be positive", ""),
     ("rate_bandwidth_per_s = 30", "rate_bandwidth = 30",
         "test.toml:30:1: unknown key `rate_bandwidth`", "did you mean `rate_bandwidth_per_s`? allowed here: `design`, `yaw`, `floor`, `thrust_start_n`, `rate_bandwidth_per_s`"),
-    ("[network]", "[[pushes]]\non = [\"rotor\"]\nby.force_n = [1, 0, 0]\n[network]",
+    ("[network]", "[[external_wrenches]]\non = [\"rotor\"]\nby.force_n = [1, 0, 0]\n[network]",
         "test.toml:33:7: agent `rotor`: pushes act on robots under the adaptive or the known law, not on the thrust law", "leave `rotor` out of `on`"),
-    ("[network]", "[[pushes]]\non = [\"vehicle\"]\nby.force_n = [1, 0, 0]\n[network]",
+    ("[network]", "[[external_wrenches]]\non = [\"vehicle\"]\nby.force_n = [1, 0, 0]\n[network]",
         "test.toml:33:7: agent `vehicle-1`: pushes act on robots under the adaptive or the known law, not on the thrust law", "leave `vehicle-1` out of `on`"),
     ("[network]", "[leader]\nmotion.formulas = [0, 0, 0]\n[network]",
         "test.toml:32:1: there is a leader, but `reference.consensus` does not follow one", "write `reference.leader`, or delete the leader"),
@@ -236,13 +236,13 @@ const VEHICLES_CASES: &[Case] = &[
     ("[network]", "[control]\nsample_hz = 100\ntorque_limit = 1\n[network]",
         "test.toml:34:16: agent `vehicle-1`: the limit of torques has 3 entries where 0 are needed", "leave it out: this robot has another number of torques than of axes"),
     ("[network]", "[control]\nsample_hz = 100\ntorque_limit = [1, 1]\n[network]",
-        "test.toml:34:16: `torque_limit` has 2 where the agents have 3 axes", "a single number stands for all axes"),
+        "test.toml:34:16: agent `vehicle-1`: the limit of torques has 2 entries where 3 are needed", "a single number stands for all axes"),
     ("[network]", "[control]\nsample_hz = 100\nnoise = { seed = -1 }\n[network]",
         "test.toml:34:18: `seed` is -1, but must not be negative", ""),
     ("count = 2", "count = 2\nenforce_limits = true",
         "test.toml:7:18: `enforce_limits` is true, but axis `x` of `vehicle-1` has no effort limit", "only a URDF states limits, as <limit effort=\"…\"> of a joint"),
-    ("count = 2", "spread = { seed = 1, relative = 0.1 }",
-        "test.toml:6:10: `spread` is given, but there is no `count`", "a population of `count = 1` may have a spread, too"),
+    ("count = 2", "parameter_variation = { seed = 1, relative = 0.1 }",
+        "test.toml:6:23: `parameter_variation` is given, but there is no `count`", "a population of `count = 1` may have a spread, too"),
     ("count = 2", "count = 2\nlaw.adaptive = {}",
         "test.toml:7:1: agent `vehicle-1`: the law `adaptive` is made for arms and point masses", "for this robot there is `thrust`"),
     ("count = 2", "count = 2\nlaw.attitude = {}",

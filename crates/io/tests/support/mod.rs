@@ -186,7 +186,7 @@ pub fn record<'a>(setup: &'a Setup, outcome: &'a Outcome, verdicts: &'a Report) 
     RunRecord {
         title: "Six arms agree over a switching network with jumping delays",
         scenario_name: "theorem-2.toml",
-        scenario_text: "format = 1\ntitle = \"Six arms agree over a switching network with jumping delays\"\n",
+        scenario_text: "format = 2\ntitle = \"Six arms agree over a switching network with jumping delays\"\n",
         inputs: &[],
         version: "0.1.0",
         setup,

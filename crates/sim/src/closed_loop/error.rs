@@ -11,7 +11,8 @@ use thiserror::Error;
 
 use crate::network::NetworkError;
 use crate::push::PushError;
-use crate::setup::{AgentSetup, ReferenceKind, Setup};
+use crate::quantity::{Path, QuantityError};
+use crate::setup::{AgentSetup, ReferenceKind, Setup, Solver};
 use crate::system::ReferenceFamily;
 use crate::trajectory::TrajectoryError;
 
@@ -347,16 +348,6 @@ pub enum SetupError {
     /// The filter that gives velocities.
     #[error(transparent)]
     VelocityFilter(FilterError),
-    /// A number of the digital control that makes no sense.
-    #[error("{what} is {value}, but {requirement}")]
-    Control {
-        /// What it is.
-        what: &'static str,
-        /// The value.
-        value: f64,
-        /// What it must be.
-        requirement: &'static str,
-    },
     /// Messages that can still be heard take more than the budget before the run has begun.
     #[error(
         "messages that can still be heard take {need_bytes} bytes or more, but the memory budget is {budget_bytes} bytes"
@@ -367,17 +358,88 @@ pub enum SetupError {
         /// [`crate::Solver::memory_budget_bytes`].
         budget_bytes: u64,
     },
-    /// A time, tolerance or step that is not positive.
-    #[error("{what} is {value}, but must be positive and finite")]
-    NotPositive {
-        /// What it is.
-        what: &'static str,
-        /// The value.
-        value: f64,
-    },
+    /// A quantity out of its range.
+    #[error("{}: {_0}", _0.path)]
+    Quantity(#[from] QuantityError),
 }
 
 impl SetupError {
+    /// Where in `setup` stands what it is about.
+    pub fn path(&self, setup: &Setup) -> Path {
+        let of = |agent: &str| match setup.agents.iter().position(|known| known.name == agent) {
+            Some(index) => Path::from("agents").index(index),
+            None => Path::from("leader"),
+        };
+        let reference = match setup.reference.family() {
+            ReferenceFamily::Consensus => "reference.consensus",
+            ReferenceFamily::PureIntegral => "reference.pure_integral",
+            ReferenceFamily::Backstepping => "reference.backstepping",
+            ReferenceFamily::Leader => "reference.leader",
+            ReferenceFamily::Target => "reference.tracking",
+        };
+        let roots = |agent| of(agent).key(reference).key("roots_per_s");
+        match self {
+            SetupError::Quantity(error) | SetupError::Network(NetworkError::Quantity(error)) => error.path.clone(),
+            SetupError::Network(_)
+            | SetupError::AgentCount { .. }
+            | SetupError::NobodyHears { .. }
+            | SetupError::LeaderHears { .. } => "network".into(),
+            SetupError::Coupling => "network.coupling".into(),
+            SetupError::NoAgent { .. } => "agents".into(),
+            SetupError::BacksteppingExchange
+            | SetupError::FollowingExchange
+            | SetupError::OnlyTracks { .. }
+            | SetupError::NotTracking { .. }
+            | SetupError::ReferenceOfLaw { .. } => "reference".into(),
+            SetupError::Backstepping(BacksteppingError::Filter { .. }) => Path::from(reference).key("filter_s"),
+            SetupError::Backstepping(BacksteppingError::Limit { .. }) => {
+                Path::from(reference).key("acceleration_limit")
+            }
+            SetupError::DelayedDerived { .. } => Path::from(reference).key("design"),
+            SetupError::SendsPositionOnly { .. } => Path::from(reference).key("exchange"),
+            SetupError::Roots { agent, .. }
+            | SetupError::OrderTooLow { agent, .. }
+            | SetupError::RootCount { agent, .. }
+            | SetupError::Chain { agent, error: ChainError::Guide(_) } => roots(agent),
+            SetupError::NoManipulability { agent, .. } => of(agent).key(reference).key("manipulability_gain"),
+            SetupError::StartOfReference { agent, .. } => of(agent).key("start.reference"),
+            SetupError::NoTarget { agent } | SetupError::Recipe { agent, .. } => of(agent).key("name"),
+            SetupError::Trajectory { agent, .. } | SetupError::NoOffsets { agent, .. } => of(agent).key("target"),
+            SetupError::UnitsDiffer { agent, .. }
+            | SetupError::AxesDiffer { agent, .. }
+            | SetupError::Spacecraft { agent, .. }
+            | SetupError::NoEffortLimit { agent, .. }
+            | SetupError::Chain { agent, error: ChainError::Expression(_) } => of(agent).key("robot"),
+            SetupError::Chain { agent, error: ChainError::Antiderivative { parameter, .. } } => {
+                of(agent).key("law.immersion.antiderivatives").index(*parameter)
+            }
+            SetupError::Chain { agent, .. }
+            | SetupError::Length { agent, .. }
+            | SetupError::NotFinite { agent, .. }
+            | SetupError::LawNumber { agent, .. }
+            | SetupError::LawOfAnother { agent, .. }
+            | SetupError::Gain { agent, .. }
+            | SetupError::Tip { agent, .. }
+            | SetupError::ProjectionOfMatrix { agent }
+            | SetupError::BoundsOfKnown { agent }
+            | SetupError::NotPushed { agent, .. } => of(agent).key("law"),
+            SetupError::Push { agent, .. } => of(agent),
+            SetupError::Limiter { .. } | SetupError::TorqueLimitCount { of_rates: false, .. } => {
+                "control.torque_limit".into()
+            }
+            SetupError::TorqueLimitCount { of_rates: true, .. } => "control.torque_rate_limit_per_s".into(),
+            SetupError::VelocityFilter(_) => "control.velocity".into(),
+            SetupError::VelocityUnused { quantity, .. } => Path::from("control").key(quantity.key()),
+            // What was not asked for is not what is wrong.
+            SetupError::Memory { budget_bytes, .. }
+                if setup.control.is_some() && *budget_bytes == Solver::default().memory_budget_bytes =>
+            {
+                "control.sample_hz".into()
+            }
+            SetupError::Memory { .. } => "solver.memory_budget_bytes".into(),
+        }
+    }
+
     /// The reference dynamics of `setup` do not lead the law of `agent`.
     pub(crate) fn wrong_reference(setup: &Setup, agent: &AgentSetup) -> Self {
         let (name, law) = (agent.name.clone(), agent.law.words().name);
@@ -402,6 +464,14 @@ pub enum VelocityQuantity {
 }
 
 impl VelocityQuantity {
+    fn key(self) -> &'static str {
+        match self {
+            VelocityQuantity::Noise => "noise.velocity",
+            VelocityQuantity::Step => "quantisation.velocity",
+            VelocityQuantity::CutOff => "velocity",
+        }
+    }
+
     /// What it is called in messages.
     pub fn words(self) -> &'static str {
         match self {

@@ -1,18 +1,14 @@
 //! Finds what makes a setup meaningless.
 
 use forwardstep_core::LengthError;
-use forwardstep_core::reference::Choice;
 
 use super::error::SetupError;
 use super::unused;
 use crate::agents::Adaptive;
 use crate::engine::{Integrator, Radio};
-use crate::leader::{Following, FollowingDesign};
-use crate::setup::{AgentSetup, AxisUnit, Control, Exchange, Method, ReferenceKind, Setup};
+use crate::leader::Following;
+use crate::setup::{Actuators, AgentSetup, AxisUnit, Control, Exchange, ReferenceKind, Setup};
 use crate::system::{LawWords, PositionKind};
-
-/// Samples that a run may have.
-const MOST_SAMPLES: f64 = 1e7;
 
 /// Everything that does not need a robot's kernels.
 ///
@@ -25,21 +21,10 @@ pub fn validate(setup: &Setup) -> Result<(), SetupError> {
         let agents = setup.agents.len() + leaders;
         return Err(SetupError::AgentCount { network: setup.network.agents, agents });
     }
-    let positive = |what, value: f64| {
-        if value > 0.0 && value.is_finite() { Ok(()) } else { Err(SetupError::NotPositive { what, value }) }
-    };
-    positive("the horizon", setup.time.end_s)?;
-    positive("the recording interval", setup.time.record_every_s)?;
-    positive("the smallest step", setup.solver.min_step_s)?;
-    setup.solver.max_step_s.map_or(Ok(()), |step| positive("the largest step", step))?;
-    match setup.solver.method {
-        Method::Adaptive { rtol, atol } => {
-            positive("the relative tolerance", rtol)?;
-            positive("the absolute tolerance", atol)?;
-        }
-        Method::Fixed { step_s } => positive("the step", step_s)?,
-    }
+    setup.time.check()?;
+    setup.solver.check()?;
     setup.control.as_ref().map_or(Ok(()), |control| check_control(control, setup))?;
+    setup.reference.check(setup.time.end_s, setup.control.is_some())?;
     check_memory(setup)?;
     let goes = setup.reference == ReferenceKind::Consensus && setup.exchange == Exchange::Position;
     if !setup.network.coupling.is_linear() && !goes {
@@ -77,29 +62,6 @@ fn same_space(setup: &Setup) -> Result<(), SetupError> {
 
 /// What following a leader needs.
 fn check_following(following: &Following, setup: &Setup) -> Result<(), SetupError> {
-    let positive = |what, value: f64| {
-        if value > 0.0 && value.is_finite() { Ok(()) } else { Err(SetupError::NotPositive { what, value }) }
-    };
-    positive("α", following.alpha)?;
-    positive("γ", following.gain)?;
-    if following.design != FollowingDesign::Continuous {
-        positive("β", following.beta)?;
-    }
-    if let FollowingDesign::Swarm { coupling } = following.design {
-        positive("the coupling k", coupling)?;
-    }
-    match following.choice {
-        Choice::Layer { width } => positive("the width of the boundary layer", width)?,
-        Choice::Implicit | Choice::Explicit if setup.control.is_none() => {
-            positive("the period of the sign", following.period_s)?;
-            let settings = setup.time.end_s / following.period_s;
-            if settings > MOST_SAMPLES {
-                let what = "the number of times that the sign is set";
-                return Err(SetupError::Control { what, value: settings, requirement: "must not exceed 1e7" });
-            }
-        }
-        _ => {}
-    }
     if setup.exchange != Exchange::PositionVelocity {
         return Err(SetupError::FollowingExchange);
     }
@@ -138,27 +100,15 @@ fn check_memory(setup: &Setup) -> Result<(), SetupError> {
 }
 
 fn check_control(control: &Control, setup: &Setup) -> Result<(), SetupError> {
-    let wrong = |what, value, requirement| Err(SetupError::Control { what, value, requirement });
-    let Control { sample_hz, computation_delay_s, sensors, actuators } = control;
-    if !(*sample_hz > 0.0 && sample_hz.is_finite()) {
-        return wrong("the sample rate", *sample_hz, "must be positive and finite");
-    }
-    if setup.time.end_s * sample_hz > MOST_SAMPLES {
-        return wrong("the number of samples", setup.time.end_s * sample_hz, "must not exceed 1e7");
-    }
-    if !(*computation_delay_s >= 0.0 && *computation_delay_s <= 1.0 / sample_hz) {
-        return wrong("the computation delay", *computation_delay_s, "must be from 0 to one period");
-    }
-    for (what, value) in [
-        ("the noise of positions", sensors.position_noise),
-        ("the noise of velocities", sensors.velocity_noise),
-        ("the step of positions", sensors.position_quantum),
-        ("the step of velocities", sensors.velocity_quantum),
-        ("the step of torques", actuators.torque_quantum),
-    ] {
-        if !(value >= 0.0 && value.is_finite()) {
-            return wrong(what, value, "must be finite and not negative");
-        }
+    control.check(setup.time.end_s)?;
+    let Some(first) = setup.agents.first() else { return Ok(()) };
+    let Actuators { torque_limit, torque_rate_limit, .. } = &control.actuators;
+    for (of_rates, what, limits) in
+        [(false, "the limit of torques", torque_limit), (true, "the limit of torque rates", torque_rate_limit)]
+    {
+        let axes = first.robot.axes.len();
+        LengthError::check(what, axes, limits.as_ref().map_or(axes, Vec::len))
+            .map_err(|error| SetupError::TorqueLimitCount { agent: first.name.clone(), of_rates, error })?;
     }
     Ok(())
 }

@@ -58,6 +58,27 @@ pub struct Trajectory {
     paths: Vec<Path>,
 }
 
+/// Where a motion was seen nearest to zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeastNorm {
+    /// When, s.
+    pub t_s: f64,
+    /// Its norm there.
+    pub norm: f64,
+    /// The largest norm that was seen.
+    pub largest: f64,
+    /// How far apart the looks are, s.
+    pub every_s: f64,
+}
+
+impl LeastNorm {
+    /// Whether this is zero, as far as a direction can be told: less than a millionth of the largest, where a direction that turns
+    /// with the motion turns a million times as fast.
+    pub fn vanishes(&self) -> bool {
+        self.norm <= 1e-6 * self.largest
+    }
+}
+
 /// Why paths make no trajectory.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum TrajectoryError {
@@ -194,6 +215,24 @@ impl Trajectory {
             }
         }
         Ok(Trajectory { paths })
+    }
+
+    /// Looks at the norm of all axes together, 2001 times from 0 to `end_s`.
+    pub fn least_norm(&self, end_s: f64) -> LeastNorm {
+        const PARTS: u32 = 2000;
+        let every_s = end_s / f64::from(PARTS);
+        let mut seen = LeastNorm { t_s: 0.0, norm: f64::INFINITY, largest: 0.0, every_s };
+        let mut jets = vec![[0.0; 5]; self.axes()];
+        for k in 0..=PARTS {
+            let t_s = end_s * f64::from(k) / f64::from(PARTS);
+            self.jets(t_s, &mut jets);
+            let norm = jets.iter().map(|jet| jet[0] * jet[0]).sum::<f64>().sqrt();
+            seen.largest = seen.largest.max(norm);
+            if norm < seen.norm {
+                (seen.norm, seen.t_s) = (norm, t_s);
+            }
+        }
+        seen
     }
 
     /// m.

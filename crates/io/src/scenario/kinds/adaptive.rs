@@ -1,9 +1,8 @@
 //! `law.adaptive` and `law.known`: (6) and (7), for robots of Section II-B.
 
-use std::ops::Range;
 use std::sync::Arc;
 
-use forwardstep_sim::{Adaptive, Known, Law, RobotSetup, SetupError};
+use forwardstep_sim::{Adaptive, Known, Law, RobotSetup};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -44,10 +43,6 @@ impl LawKind for AdaptiveFile {
             estimate_start: estimate(self.estimate_start.as_ref(), agent)?,
         }))
     }
-
-    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
-        None
-    }
 }
 
 /// The tracking law with known parameters.
@@ -73,9 +68,5 @@ impl LawKind for KnownFile {
 
     fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
         Ok(Arc::new(Known { damping: damping(self.damping.as_ref(), agent)? }))
-    }
-
-    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
-        None
     }
 }

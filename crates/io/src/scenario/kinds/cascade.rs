@@ -1,11 +1,10 @@
 //! `robot.strict_feedback` and `robot.pure_feedback`, chains in feedback form, and `law.adaptive_backstepping`.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::{CascadeError, CascadeTerms};
-use forwardstep_sim::{ChainLaw, ChainModel, ChainStep, Law, RobotSetup, SetupError, Start};
+use forwardstep_sim::{ChainLaw, ChainModel, ChainStep, Law, RobotSetup, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -189,9 +188,5 @@ impl LawKind for AdaptiveBacksteppingFile {
         let estimate = adapted(self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), agent)?;
         let floor = positive_or("floor", &self.floor, FLOOR)?;
         Ok(Arc::new(ChainLaw { step: ChainStep::Backstepping { gains_per_s, estimate }, floor }))
-    }
-
-    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
-        None
     }
 }

@@ -1,12 +1,11 @@
 //! `robot.chain`, a plant of derivatives, and the laws for it: `linearising`, `linear_adaptive`, `immersion`.
 
-use std::ops::Range;
 use std::sync::Arc;
 
-use forwardstep_core::controller::{ChainError, Immersion};
+use forwardstep_core::controller::Immersion;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::{CascadeError, Formulas, Terms};
-use forwardstep_sim::{AxisUnit, ChainLaw, ChainModel, ChainStep, Estimate, Law, RobotSetup, SetupError, Start};
+use forwardstep_sim::{AxisUnit, ChainLaw, ChainModel, ChainStep, Estimate, Law, RobotSetup, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use thiserror::Error;
@@ -190,10 +189,6 @@ impl LawKind for LinearisingFile {
         let floor = positive_or("floor", &self.floor, FLOOR)?;
         Ok(Arc::new(ChainLaw { step: ChainStep::Linearising { gain_per_s }, floor }))
     }
-
-    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
-        None
-    }
 }
 
 /// The adaptive law for a chain of derivatives.
@@ -230,10 +225,6 @@ impl LawKind for LinearAdaptiveFile {
         let estimate = adapted(self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), agent)?;
         let floor = positive_or("floor", &self.floor, FLOOR)?;
         Ok(Arc::new(ChainLaw { step: ChainStep::Adaptive { gain_per_s, estimate }, floor }))
-    }
-
-    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
-        None
     }
 }
 
@@ -282,14 +273,5 @@ impl LawKind for ImmersionFile {
         let estimate = adapted(self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), agent)?;
         let floor = positive_or("floor", &self.floor, FLOOR)?;
         Ok(Arc::new(ChainLaw { step: ChainStep::Immersion { gain_per_s, estimate, antiderivatives }, floor }))
-    }
-
-    fn place(&self, error: &SetupError) -> Option<Range<usize>> {
-        match error {
-            SetupError::Chain { error: ChainError::Antiderivative { parameter, .. }, .. } => {
-                Some(self.antiderivatives.as_ref()?.value.get(*parameter)?.span.clone())
-            }
-            _ => None,
-        }
     }
 }

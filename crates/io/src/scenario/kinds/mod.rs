@@ -28,10 +28,9 @@ pub mod thrust;
 pub mod urdf;
 
 use std::fmt;
-use std::ops::Range;
 use std::sync::Arc;
 
-use forwardstep_sim::{Law, RobotSetup, SetupError, Start};
+use forwardstep_sim::{Law, RobotSetup, Start};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::DeserializeOwned;
 use thiserror::Error;
@@ -115,9 +114,6 @@ pub trait LawKind: fmt::Debug {
     /// # Errors
     /// The first mistake, at its place.
     fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault>;
-
-    /// Where in the file stands what the closed loop refuses with `error`, if the table itself does not.
-    fn place(&self, error: &SetupError) -> Option<Range<usize>>;
 }
 
 /// What the list of kinds says of a law.
@@ -162,7 +158,7 @@ pub struct KindError {
 /// let kinds = Kinds::shipped();
 /// assert!(kinds.robot_keys().contains(&"point_mass") && kinds.law_keys().contains(&"adaptive"));
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Kinds {
     robots: Vec<RobotEntry>,
     laws: Vec<LawEntry>,

@@ -1,10 +1,9 @@
 //! `robot.point_mass`: a mass that is pushed along every axis, and `law.position_only`: (a8), where its velocity is not measured.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use forwardstep_core::robot::PointMass;
-use forwardstep_sim::{Law, PositionOnlyLaw, RobotSetup, SetupError, Start};
+use forwardstep_sim::{Law, PositionOnlyLaw, RobotSetup, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -105,9 +104,5 @@ impl LawKind for PositionOnlyFile {
             adaptation: not_negative_or("adaptation_gain", &self.adaptation_gain, ADAPTATION_GAIN)?,
             estimate_start: self.estimate_start_kg.as_ref().map_or(0.0, |start| start.value),
         }))
-    }
-
-    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
-        None
     }
 }

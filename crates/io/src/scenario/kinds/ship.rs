@@ -1,5 +1,6 @@
 //! `robot.ship`: a fully actuated surface ship in the earth frame.
 
+use forwardstep_sim::quantity::{QuantityError, Requirement};
 use forwardstep_sim::{RobotSetup, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -86,6 +87,11 @@ impl RobotKind for ShipFile {
     }
 }
 
+fn out_of_range(key: &'static str, value: f64, most: f64) -> ValueProblem {
+    let requirement = Requirement::Within { low: -most, high: most };
+    ValueProblem::Quantity(QuantityError { path: key.into(), value, requirement })
+}
+
 /// ϑ, with M ≻ 0 and D + Dᵀ ⪰ 0.
 fn theta(file: &ShipFile) -> Result<[f64; 9], Fault> {
     let given = |value: &Option<At<f64>>| value.as_ref().map_or(0.0, |value| value.value);
@@ -94,7 +100,7 @@ fn theta(file: &ShipFile) -> Result<[f64; 9], Fault> {
     let (m23, m33) = (given(sway_yaw_kg_m), positive("yaw_kg_m2", yaw_kg_m2)?);
     if m22 * m33 <= m23 * m23 {
         let most = (m22 * m33).sqrt();
-        let problem = ValueProblem::OutOfRange { key: "sway_yaw_kg_m", value: m23, low: -most, high: most };
+        let problem = out_of_range("sway_yaw_kg_m", m23, most);
         return Err(fault(sway_yaw_kg_m.as_ref().unwrap_or(sway_kg), problem));
     }
     let Some(At { value: damping, .. }) = &file.damping else {
@@ -107,7 +113,7 @@ fn theta(file: &ShipFile) -> Result<[f64; 9], Fault> {
     if (d23 + d32) * (d23 + d32) > 4.0 * d22 * d33 {
         let most = 2.0 * (d22 * d33).sqrt();
         let key = "sway_yaw_n_s + yaw_sway_n_s";
-        let problem = ValueProblem::OutOfRange { key, value: d23 + d32, low: -most, high: most };
+        let problem = out_of_range(key, d23 + d32, most);
         return Err(fault(sway_yaw_n_s.as_ref().or(yaw_sway_n_s.as_ref()).unwrap_or(sway_n_s_m), problem));
     }
     Ok([m11, m22, m23, m33, d11, d22, d23, d32, d33])

@@ -1,12 +1,11 @@
 //! Spacecraft: `robot.spacecraft` and `law.attitude`.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
 use forwardstep_core::attitude::{IDENTITY, Quaternion};
 use forwardstep_core::plant::{Spacecraft, SpacecraftError, Wheel, Wheels};
-use forwardstep_sim::{AttitudeLaw, AxisUnit, Law, RobotSetup, SetupError, SpacecraftModel, Start};
+use forwardstep_sim::{AttitudeLaw, AxisUnit, Law, RobotSetup, SpacecraftModel, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use thiserror::Error;
@@ -226,9 +225,5 @@ impl LawKind for AttitudeFile {
             filter: gain_or("filter_gain_per_s", &self.filter_gain_per_s, FILTER_GAIN_PER_S, agent, 4)?,
             damping: gain_or("damping", &self.damping, DAMPING, agent, 4)?,
         }))
-    }
-
-    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
-        None
     }
 }

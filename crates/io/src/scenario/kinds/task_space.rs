@@ -1,13 +1,12 @@
 //! `law.task_space`: the end-effector of a robot follows a target with uncertain lengths, Theorem 6.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
 use forwardstep_core::controller::ParameterBounds;
 use forwardstep_core::robot::TipKinematics;
 use forwardstep_core::robot::tree::{LinkPoint, TipError, Tree, TreeTip, Uncertain};
-use forwardstep_sim::{Attachments, Law, RobotSetup, SetupError, TaskSpaceLaw, TipSetup};
+use forwardstep_sim::{Attachments, Law, RobotSetup, TaskSpaceLaw, TipSetup};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use thiserror::Error;
@@ -46,10 +45,10 @@ enum TipProblem {
         link: String,
     },
     /// A robot from a URDF without a tip.
-    #[error("the law `task_space` needs `tip` for a robot from a URDF")]
+    #[error("the law `task_space` needs `end_effector` for a robot from a URDF")]
     Missing,
     /// A tip where there is one already.
-    #[error("the tip of a planar arm is the end of its second link; `tip` is for robots from a URDF")]
+    #[error("the tip of a planar arm is the end of its second link; `end_effector` is for robots from a URDF")]
     OfPlanarArm,
     /// Bounds beside a full matrix.
     #[error("`bounds` need `kinematic_gain` to be a number or a diagonal, not a matrix")]
@@ -60,10 +59,10 @@ impl Mistake for TipProblem {
     fn help(&self) -> Option<String> {
         Some(match self {
             TipProblem::Beside { joint, .. } => format!("add `{joint}` to `locked`, or choose a link behind it"),
-            TipProblem::OfPlanarArm => "leave `tip` out".into(),
+            TipProblem::OfPlanarArm => "leave `end_effector` out".into(),
             TipProblem::Unsound(TipError::Coordinate { .. }) => "choose `x`, `y` and `z`, each at most once".into(),
             TipProblem::Unsound(TipError::Size { .. }) => "`locked` of the robot holds joints of a URDF".into(),
-            TipProblem::Missing => "add tip = { link = \"…\" } with a link of the URDF".into(),
+            TipProblem::Missing => "add end_effector = { link = \"…\" } with a link of the URDF".into(),
             TipProblem::Unsound(_) | TipProblem::BoundsOfMatrix => return None,
         })
     }
@@ -73,8 +72,8 @@ impl Mistake for TipProblem {
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TaskSpaceFile {
-    /// The tip of a robot from a URDF. A planar arm has one of its own.
-    pub tip: Option<At<TipFile>>,
+    /// The end-effector of a robot from a URDF. A planar arm has one of its own.
+    pub end_effector: Option<At<TipFile>>,
     /// The gain K. Default: a bandwidth of 20 1/s for a URDF, 20 otherwise.
     pub damping: Option<DampingFile>,
     /// The gain Γ. Default: a bandwidth of 5 1/s for a URDF, 30 otherwise.
@@ -204,10 +203,6 @@ impl LawKind for TaskSpaceFile {
                 .map_or(Ok(DETERMINANT_FLOOR), |floor| between("determinant_floor", floor, 0.0, 0.999))?,
         }))
     }
-
-    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
-        None
-    }
 }
 
 /// The tip with its true θ and the names of its entries.
@@ -217,7 +212,7 @@ fn tip(
     robot: &RobotSetup,
     body: &Body,
 ) -> Result<(TipSetup, Vec<f64>, Vec<String>), Fault> {
-    match (robot.interface().attachments, &body.tip, &file.tip) {
+    match (robot.interface().attachments, &body.tip, &file.end_effector) {
         (Attachments::PlanarTip, Some(tip), None) => {
             Ok((TipSetup::Planar(*tip), tip.length_m.to_vec(), tip.parameter_names()))
         }

@@ -1,13 +1,10 @@
 //! Vehicles with one thrust: `robot.vehicle`, `robot.rotorcraft` and `law.thrust`.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use forwardstep_core::controller::{Floor, Yaw};
 use forwardstep_core::plant::Rotors;
-use forwardstep_sim::{
-    AxisUnit, Law, Robot, RobotSetup, RotorcraftModel, SetupError, Start, ThrustKind, ThrustLaw, VehicleModel,
-};
+use forwardstep_sim::{AxisUnit, Law, Robot, RobotSetup, RotorcraftModel, Start, ThrustKind, ThrustLaw, VehicleModel};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -97,7 +94,7 @@ pub struct RotorsFile {
     pub drag_m: At<f64>,
     /// The least and the greatest thrust of one rotor, in N.
     #[schemars(with = "[NotNegative; 2]")]
-    pub thrust_n: At<[f64; 2]>,
+    pub thrust_n: At<[At<f64>; 2]>,
 }
 
 impl RobotKind for RotorcraftFile {
@@ -134,16 +131,15 @@ impl RobotKind for RotorcraftFile {
 }
 
 fn rotors(file: &RotorsFile) -> Result<Rotors, Fault> {
-    let [low, high] = file.thrust_n.value;
-    let least = At { value: low, span: file.thrust_n.span.clone() };
-    not_negative("thrust_n", &least)?;
+    let [low, high] = &file.thrust_n.value;
+    let (low, high) = (not_negative("thrust_n", low)?, not_negative("thrust_n", high)?);
     if low >= high {
         return Err(fault(&file.thrust_n, ValueProblem::Range { key: "thrust_n", low, high }));
     }
     Ok(Rotors {
         offset: positive("offset_m", &file.offset_m)?,
         drag: positive("drag_m", &file.drag_m)?,
-        thrust: file.thrust_n.value,
+        thrust: [low, high],
     })
 }
 
@@ -306,10 +302,6 @@ impl LawKind for ThrustFile {
             thrust_start: self.thrust_start_n.as_ref().map(|start| positive("thrust_start_n", start)).transpose()?,
             bandwidth_per_s: positive_or("rate_bandwidth_per_s", &self.rate_bandwidth_per_s, RATE_BANDWIDTH_PER_S)?,
         }))
-    }
-
-    fn place(&self, _: &SetupError) -> Option<Range<usize>> {
-        None
     }
 }
 

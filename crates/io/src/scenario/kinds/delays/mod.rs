@@ -14,10 +14,11 @@ use std::sync::Arc;
 
 use forwardstep_sim::Same;
 use forwardstep_sim::delay::Delay;
+use forwardstep_sim::quantity::few;
 
 use super::super::fault::Fault;
 use super::super::network::NetworkReader;
-use super::super::problem::ScenarioProblem;
+use super::super::value_problem::ValueProblem;
 
 /// Packets and values of random holds on all edges together; forty bytes each.
 const MOST_EVENTS: f64 = 5e6;
@@ -86,13 +87,10 @@ impl Link<'_> {
     /// Refuses jumps, packets or whatever `what` is when those of all links together exceed any memory.
     ///
     /// # Errors
-    /// [`ScenarioProblem::TooManyEvents`].
+    /// [`ValueProblem::Quantity`].
     pub fn few(&mut self, what: &'static str, events: f64) -> Result<(), Fault> {
         *self.events += events;
-        if *self.events <= MOST_EVENTS {
-            return Ok(());
-        }
-        let problem = ScenarioProblem::TooManyEvents { what, events: self.events.round(), most: MOST_EVENTS };
-        Err(Fault::new(problem))
+        few("", what, events, (what, *self.events, MOST_EVENTS))
+            .map_err(|error| Fault::new(ValueProblem::Quantity(error)))
     }
 }

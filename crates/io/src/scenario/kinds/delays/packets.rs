@@ -19,14 +19,14 @@ const MOST_IN_A_ROW: u32 = 1_000_000;
 pub struct PacketsFile {
     /// From one packet to the next, in s.
     #[schemars(extend("exclusiveMinimum" = 0))]
-    pub every_s: At<f64>,
-    /// When the first is sent, in s; at most `every_s`. Default: 0.
+    pub period_s: At<f64>,
+    /// When the first is sent, in s; at most `period_s`. Default: 0.
     #[schemars(range(min = 0))]
     pub first_s: Option<At<f64>>,
     /// The least time that a packet takes, in s.
     #[schemars(range(min = 0))]
     pub latency_s: At<f64>,
-    /// Each packet takes up to this much longer, uniformly drawn, in s; beyond `every_s` packets overtake each other.
+    /// Each packet takes up to this much longer, uniformly drawn, in s; beyond `period_s` packets overtake each other.
     /// Default: 0.
     #[schemars(range(min = 0))]
     pub jitter_s: Option<At<f64>>,
@@ -56,7 +56,7 @@ pub struct RandomLossFile {
     pub probability: At<f64>,
     /// No more than this are lost one after another. Default: any number may be.
     #[schemars(range(min = 1))]
-    pub most_in_a_row: Option<At<i64>>,
+    pub most_consecutive: Option<At<i64>>,
 }
 
 /// Packets are lost in bursts.
@@ -71,7 +71,7 @@ pub struct BurstsFile {
     pub leave: At<f64>,
     /// No more than this are lost one after another. Default: any number may be.
     #[schemars(range(min = 1))]
-    pub most_in_a_row: Option<At<i64>>,
+    pub most_consecutive: Option<At<i64>>,
 }
 
 impl DelayKind for PacketsFile {
@@ -84,20 +84,20 @@ impl DelayKind for PacketsFile {
     }
 
     fn plan(&self, _: &mut NetworkReader<'_>) -> Result<DelayPlan, Fault> {
-        let every_s = positive("every_s", &self.every_s)?;
+        let every_s = positive("period_s", &self.period_s)?;
         let first_s = self.first_s.as_ref().map_or(Ok(0.0), |first| between("first_s", first, 0.0, every_s))?;
-        let (loss, most_in_a_row) = match self.loss.as_ref().map(|loss| &loss.value) {
+        let (loss, most_consecutive) = match self.loss.as_ref().map(|loss| &loss.value) {
             None => (Loss::Never, &None),
-            Some(LossFile::Random(RandomLossFile { probability, most_in_a_row })) => {
-                (Loss::Random { probability: between("probability", probability, 0.0, 1.0)? }, most_in_a_row)
+            Some(LossFile::Random(RandomLossFile { probability, most_consecutive })) => {
+                (Loss::Random { probability: between("probability", probability, 0.0, 1.0)? }, most_consecutive)
             }
-            Some(LossFile::Bursts(BurstsFile { enter, leave, most_in_a_row })) => {
+            Some(LossFile::Bursts(BurstsFile { enter, leave, most_consecutive })) => {
                 let enter = between("enter", enter, 0.0, 1.0)?;
                 positive("leave", leave)?;
-                (Loss::Bursts { enter, leave: between("leave", leave, 0.0, 1.0)? }, most_in_a_row)
+                (Loss::Bursts { enter, leave: between("leave", leave, 0.0, 1.0)? }, most_consecutive)
             }
         };
-        let most = most_in_a_row.as_ref().map(|most| count("most_in_a_row", most, MOST_IN_A_ROW));
+        let most = most_consecutive.as_ref().map(|most| count("most_consecutive", most, MOST_IN_A_ROW));
         let link = PacketLink {
             every_s,
             first_s,

@@ -1,0 +1,230 @@
+//! Where a quantity of a setup stands, and the checks of ranges, each of which stands here once.
+//!
+//! ```
+//! use forwardstep_sim::quantity::{Path, positive};
+//!
+//! let error = positive("solver.method.fixed", "step_s", -1.0).unwrap_err();
+//! assert_eq!(error.to_string(), "`step_s` is -1, but must be positive");
+//! assert_eq!(error.path.to_string(), "solver.method.fixed.step_s");
+//! assert_eq!(Path::from("agents").index(3).key("law").to_string(), "agents[3].law");
+//! ```
+
+use std::fmt;
+
+use thiserror::Error;
+
+/// Numbers beyond this are refused, so that no product of a few of them overflows.
+pub const LARGEST: f64 = 1e30;
+/// Positive numbers below this are refused, so that no product of a few of them vanishes.
+pub const SMALLEST: f64 = 1e-30;
+/// Switches, jumps or samples until the end of a run that are accepted; each ends a step.
+pub const MOST_EVENTS: f64 = 1e7;
+
+/// A step on the way to a quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Segment {
+    /// The key of a table.
+    Key(&'static str),
+    /// The place in a list, from zero.
+    Index(usize),
+}
+
+/// Where something stands, from the whole setup inwards, by the keys of scenario files.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Path {
+    segments: Vec<Segment>,
+    name: &'static str,
+}
+
+impl From<&'static str> for Path {
+    fn from(keys: &'static str) -> Self {
+        Path::default().key(keys)
+    }
+}
+
+impl Path {
+    /// What stands there under a key; under several, with dots between them, one inside the other.
+    pub fn key(mut self, keys: &'static str) -> Self {
+        if !keys.is_empty() {
+            self.segments.extend(keys.split('.').map(Segment::Key));
+            self.name = keys;
+        }
+        self
+    }
+
+    /// An entry of the list that stands there, from zero.
+    pub fn index(mut self, index: usize) -> Self {
+        self.segments.push(Segment::Index(index));
+        self
+    }
+
+    /// From the whole setup inwards.
+    pub fn segments(&self) -> &[Segment] {
+        &self.segments
+    }
+
+    /// The keys that were added last, by which messages call the quantity.
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+}
+
+impl fmt::Display for Path {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (k, segment) in self.segments.iter().enumerate() {
+            match segment {
+                Segment::Key(key) => write!(f, "{}{key}", if k > 0 { "." } else { "" })?,
+                Segment::Index(index) => write!(f, "[{index}]")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What a quantity must be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Requirement {
+    /// Positive.
+    Positive,
+    /// Zero or more.
+    NotNegative,
+    /// From `low` to `high`.
+    Within {
+        /// The smallest that is allowed.
+        low: f64,
+        /// The largest that is allowed.
+        high: f64,
+    },
+    /// Not less than another.
+    AtLeast {
+        /// The other.
+        key: &'static str,
+        /// Its value.
+        bound: f64,
+    },
+    /// So large, or so small, that a run has only so many of these.
+    Few {
+        /// What they are.
+        what: &'static str,
+        /// How many there are.
+        count: f64,
+        /// How many are accepted.
+        most: f64,
+    },
+}
+
+/// A quantity out of its range.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub struct QuantityError {
+    /// Where it stands.
+    pub path: Path,
+    /// Its value.
+    pub value: f64,
+    /// What it must be.
+    pub requirement: Requirement,
+}
+
+impl fmt::Display for QuantityError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Requirement::Few { what, count, most } = self.requirement {
+            let (count, most) = (about(count), number(most));
+            return write!(f, "about {count} {what} until the end of the run, but at most {most} are accepted");
+        }
+        write!(f, "`{}` is {}, but must ", self.path.name(), number(self.value))?;
+        match self.requirement {
+            Requirement::NotNegative => f.write_str("not be negative"),
+            Requirement::Within { low, high } => write!(f, "be from {} to {}", number(low), number(high)),
+            Requirement::AtLeast { key, bound } => write!(f, "not be less than `{key}`, which is {}", number(bound)),
+            Requirement::Positive | Requirement::Few { .. } => f.write_str("be positive"),
+        }
+    }
+}
+
+/// A number as a person would write it: plain, or with a power of ten when it is very large or small.
+pub fn number(value: f64) -> Number {
+    Number(value)
+}
+
+/// A number to two digits: enough to judge by.
+pub fn about(value: f64) -> Number {
+    Number(format!("{value:.1e}").parse().unwrap_or(value))
+}
+
+/// See [`number`].
+#[derive(Clone, Copy, Debug)]
+pub struct Number(f64);
+
+impl fmt::Display for Number {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let size = self.0.abs();
+        if size == 0.0 || (1e-4..1e7).contains(&size) || !size.is_finite() {
+            write!(f, "{}", self.0)
+        } else {
+            write!(f, "{:e}", self.0)
+        }
+    }
+}
+
+fn check(
+    meets: bool,
+    within: impl Into<Path>,
+    key: &'static str,
+    value: f64,
+    requirement: Requirement,
+) -> Result<(), QuantityError> {
+    if meets { Ok(()) } else { Err(QuantityError { path: within.into().key(key), value, requirement }) }
+}
+
+/// Checks that `key` at `at` is positive, and of a size that products bear.
+///
+/// # Errors
+/// [`QuantityError`] if it is not.
+pub fn positive(at: impl Into<Path>, key: &'static str, value: f64) -> Result<(), QuantityError> {
+    let at = at.into();
+    check(value > 0.0, at.clone(), key, value, Requirement::Positive)?;
+    within(at, key, value, SMALLEST, LARGEST)
+}
+
+/// Checks that `key` at `at` is zero or more, and of a size that products bear.
+///
+/// # Errors
+/// [`QuantityError`] if it is not.
+pub fn not_negative(at: impl Into<Path>, key: &'static str, value: f64) -> Result<(), QuantityError> {
+    let at = at.into();
+    check(value >= 0.0, at.clone(), key, value, Requirement::NotNegative)?;
+    within(at, key, value, 0.0, LARGEST)
+}
+
+/// Checks that `key` at `at` is from `low` to `high`.
+///
+/// # Errors
+/// [`QuantityError`] if it is not.
+pub fn within(at: impl Into<Path>, key: &'static str, value: f64, low: f64, high: f64) -> Result<(), QuantityError> {
+    check((low..=high).contains(&value), at, key, value, Requirement::Within { low, high })
+}
+
+/// Checks that `key` at `at` is not less than `bound`, which is what `other` is.
+///
+/// # Errors
+/// [`QuantityError`] if it is.
+pub fn at_least(
+    at: impl Into<Path>,
+    key: &'static str,
+    value: f64,
+    (other, bound): (&'static str, f64),
+) -> Result<(), QuantityError> {
+    check(value >= bound, at, key, value, Requirement::AtLeast { key: other, bound })
+}
+
+/// Checks that a run has at most `most` of `what`, because `key` at `at` is `value`; it has `count`.
+///
+/// # Errors
+/// [`QuantityError`] if there are more.
+pub fn few(
+    at: impl Into<Path>,
+    key: &'static str,
+    value: f64,
+    (what, count, most): (&'static str, f64, f64),
+) -> Result<(), QuantityError> {
+    check(count <= most, at, key, value, Requirement::Few { what, count: count.round(), most })
+}

@@ -1,0 +1,122 @@
+//! Ranges of what a run is asked to do: how long, in which steps, how it samples, whom it follows.
+
+use forwardstep_core::reference::Choice;
+
+use crate::coupling::Coupling;
+use crate::leader::{Following, FollowingDesign};
+use crate::quantity::{MOST_EVENTS, Path, QuantityError, at_least, few, not_negative, positive, within};
+use crate::setup::{Control, Method, ReferenceKind, Solver, TimeSpan, VelocitySensor};
+
+impl TimeSpan {
+    /// # Errors
+    /// [`QuantityError`] for the first number that is out of its range.
+    pub fn check(&self) -> Result<(), QuantityError> {
+        positive("time", "end_s", self.end_s)?;
+        positive("time", "record_every_s", self.record_every_s)
+    }
+}
+
+impl Solver {
+    /// # Errors
+    /// [`QuantityError`] for the first number that is out of its range.
+    pub fn check(&self) -> Result<(), QuantityError> {
+        let step = |at: &'static str, key, step_s| {
+            positive(at, key, step_s)?;
+            at_least(at, key, step_s, ("min_step_s", self.min_step_s))
+        };
+        positive("solver", "min_step_s", self.min_step_s)?;
+        match self.method {
+            Method::Adaptive { rtol, atol } => {
+                // Below a few units in the last place no error estimate means anything.
+                within("solver.method.adaptive", "rtol", rtol, 1e-14, 0.1)?;
+                positive("solver.method.adaptive", "atol", atol)?;
+            }
+            Method::Fixed { step_s } => step("solver.method.fixed", "step_s", step_s)?,
+        }
+        self.max_step_s.map_or(Ok(()), |step_s| step("solver", "max_step_s", step_s))
+    }
+}
+
+impl Control {
+    /// Checks the numbers for a run of `end_s`.
+    ///
+    /// # Errors
+    /// [`QuantityError`] for the first that is out of its range.
+    pub fn check(&self, end_s: f64) -> Result<(), QuantityError> {
+        let Control { sample_hz, computation_delay_s, sensors, actuators } = self;
+        positive("control", "sample_hz", *sample_hz)?;
+        few("control", "sample_hz", *sample_hz, ("samples", end_s * sample_hz, MOST_EVENTS))?;
+        // A computation must be done before the next begins.
+        within("control", "computation_delay_s", *computation_delay_s, 0.0, 1.0 / sample_hz)?;
+        if let VelocitySensor::Filtered { cut_off_hz } = sensors.velocity {
+            positive("control.velocity.filtered_difference", "cut_off_hz", cut_off_hz)?;
+        }
+        for (key, limits) in
+            [("torque_limit", &actuators.torque_limit), ("torque_rate_limit_per_s", &actuators.torque_rate_limit)]
+        {
+            for (axis, limit) in limits.iter().flatten().enumerate() {
+                positive(Path::from("control").key(key).index(axis), "", *limit)?;
+            }
+        }
+        not_negative("control", "noise.position", sensors.position_noise)?;
+        not_negative("control", "noise.velocity", sensors.velocity_noise)?;
+        not_negative("control", "quantisation.position", sensors.position_quantum)?;
+        not_negative("control", "quantisation.velocity", sensors.velocity_quantum)?;
+        not_negative("control", "quantisation.torque", actuators.torque_quantum)
+    }
+}
+
+impl ReferenceKind {
+    /// Checks the numbers that all agents share, for a run of `end_s` whose signs are set in continuous time unless `sampled`.
+    ///
+    /// # Errors
+    /// [`QuantityError`] for the first that is out of its range.
+    pub fn check(&self, end_s: f64, sampled: bool) -> Result<(), QuantityError> {
+        match self {
+            ReferenceKind::Backstepping { filter_s, acceleration_limit } => {
+                positive("reference.backstepping", "filter_s", *filter_s)?;
+                let limit = |limit| positive("reference.backstepping", "acceleration_limit", limit);
+                acceleration_limit.map_or(Ok(()), limit)
+            }
+            ReferenceKind::Following(following) => following.check(end_s, sampled),
+            ReferenceKind::Consensus | ReferenceKind::PureIntegral | ReferenceKind::Tracking => Ok(()),
+        }
+    }
+}
+
+impl Following {
+    fn check(&self, end_s: f64, sampled: bool) -> Result<(), QuantityError> {
+        let at = "reference.leader";
+        // α and β come from the roots.
+        positive(at, "alpha", self.alpha)?;
+        if self.design != FollowingDesign::Continuous {
+            positive(at, "beta", self.beta)?;
+        }
+        if let FollowingDesign::Swarm { coupling } = self.design {
+            positive(at, "coupling", coupling)?;
+        }
+        positive(at, "gain", self.gain)?;
+        match self.choice {
+            Choice::Layer { width } => positive("reference.leader.sign.boundary_layer", "width", width),
+            Choice::Implicit | Choice::Explicit if !sampled => {
+                positive(at, "sign_period_s", self.period_s)?;
+                few(at, "sign_period_s", self.period_s, ("settings of the sign", end_s / self.period_s, MOST_EVENTS))
+            }
+            Choice::Implicit | Choice::Explicit => Ok(()),
+        }
+    }
+}
+
+impl Coupling {
+    /// # Errors
+    /// [`QuantityError`] when its limit or scale is not positive.
+    pub fn check(self) -> Result<(), QuantityError> {
+        let (key, size) = match self {
+            Coupling::Linear => return Ok(()),
+            Coupling::Saturated { limit } => ("saturated", limit),
+            Coupling::Tanh { scale } => ("tanh", scale),
+            Coupling::Rational { scale } => ("rational", scale),
+        };
+        positive("network.coupling", key, size)
+    }
+}
