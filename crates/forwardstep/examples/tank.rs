@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use forwardstep::core::LengthError;
 use forwardstep::core::controller::{Asked, Balance, Controller, Given, Truth};
-use forwardstep::core::plant::Plant;
+use forwardstep::core::plant::{Plant, check_external};
 use forwardstep::core::reference::Position;
 use forwardstep::core::signal::{Block as Signals, Entries, OwnSignal, Signal, Unit};
 use forwardstep::io::scenario::kinds::{
@@ -195,7 +195,7 @@ impl Robot for Tank {
     }
 
     fn attachments(&self) -> Attachments<'_> {
-        Attachments::Axes
+        Attachments::Equations(1)
     }
 
     fn actuator_limits(&self) -> ActuatorLimits {
@@ -236,7 +236,7 @@ impl Law for Level {
             manipulability: false,
             tracks_by_roots: false,
             offsets: false,
-            pushed: false,
+            pushed: true,
             estimates: false,
         })
     }
@@ -274,7 +274,7 @@ impl Law for Level {
     }
 }
 
-/// A ẋ = u, where x is the level.
+/// A ẋ = u + A w, where x is the level and A w flows in from outside.
 #[derive(Clone, Debug)]
 struct TankPlant {
     area: f64,
@@ -319,10 +319,11 @@ impl Plant for TankPlant {
         }
     }
 
-    fn rate(&self, (): &mut (), _: &[f64], input: &[f64], d_state: &mut [f64]) -> Result<(), LengthError> {
+    fn rate(&self, (): &mut (), _: &[f64], input: &[f64], w: &[f64], d_state: &mut [f64]) -> Result<(), LengthError> {
         LengthError::check("input", 1, input.len())?;
         LengthError::check("rate", 1, d_state.len())?;
-        d_state[0] = input[0] / self.area;
+        check_external(1, w)?;
+        d_state[0] = input[0] / self.area + w.first().unwrap_or(&0.0);
         Ok(())
     }
 }
@@ -385,7 +386,8 @@ impl Controller for LevelControl {
         shown: &[f64],
     ) -> Result<Balance, LengthError> {
         LengthError::check("shown", 1, shown.len())?;
+        let power: f64 = truth.external.iter().map(|w| truth.plant.area * shown[0] * w).sum();
         let square = truth.plant.area * shown[0] * shown[0];
-        Ok(Balance { value: 0.5 * square, dissipation: self.gain * square })
+        Ok(Balance { value: 0.5 * square, dissipation: self.gain * square - power })
     }
 }

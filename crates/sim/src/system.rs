@@ -9,6 +9,7 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 use forwardstep_core::robot::tree::Tree;
+use forwardstep_core::signal::Block as Signals;
 
 use crate::agents::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
@@ -32,7 +33,7 @@ pub trait Robot: Any + Debug + Send + Sync {
     /// Itself as a robot with the three properties of Section II-B, if it is one.
     fn lagrangian(&self) -> Option<&dyn LagrangianRobot>;
 
-    /// Where forces can act on it.
+    /// What can act on it from outside, and where.
     fn attachments(&self) -> Attachments<'_>;
 
     /// Whose limits are those of its actuators.
@@ -90,7 +91,7 @@ pub enum LineValue {
     Truth(f64),
 }
 
-/// Where forces can act on a robot.
+/// What can act on a robot from outside, and where.
 #[derive(Clone, Copy, Debug)]
 pub enum Attachments<'a> {
     /// On its axes only.
@@ -99,6 +100,25 @@ pub enum Attachments<'a> {
     PlanarTip,
     /// On its axes, and on any point of any link.
     Links(&'a Arc<Tree>),
+    /// On its axes, and torques about the axes of its body.
+    AxesAndBody,
+    /// Torques about the axes of its body only.
+    Body,
+    /// No force, but a disturbance of each of so many equations.
+    Equations(usize),
+}
+
+impl Attachments<'_> {
+    /// What acts on a robot with so many axes, block by block, as [`Plant::rate`](forwardstep_core::plant::Plant::rate) takes it.
+    pub fn blocks(self, axes: usize) -> Vec<Signals> {
+        let (forces, torques) = ((Signal::External, axes), (Signal::ExternalTorque, 3));
+        match self {
+            Attachments::Axes | Attachments::PlanarTip | Attachments::Links(_) => vec![forces],
+            Attachments::AxesAndBody => vec![forces, torques],
+            Attachments::Body => vec![torques],
+            Attachments::Equations(equations) => vec![(Signal::Disturbance, equations)],
+        }
+    }
 }
 
 /// Whose limits are enforced where limits are to be enforced.
@@ -172,7 +192,7 @@ pub struct Interface {
     pub tracks_by_roots: bool,
     /// Whether a target may be an offset from where all agree.
     pub offsets: bool,
-    /// Whether forces and torques from outside may act on its robot.
+    /// Whether pushes may act on its robot: its balance has their power.
     pub pushed: bool,
     /// Whether it estimates parameters of its robot.
     pub estimates: bool,

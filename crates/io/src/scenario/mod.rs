@@ -60,6 +60,7 @@ mod network_problem;
 mod notice;
 mod open;
 mod problem;
+mod push_course;
 pub mod push_file;
 mod push_problem;
 mod pushes;
@@ -258,6 +259,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
         control,
     };
     notices.extend(Notice::coarse_sampling(&setup));
+    notices.extend(Notice::targets_beyond_limits(&setup));
     let batched = |agent: &AgentSetup| agent.law.shares_batch(&*agent.law);
     let agrees = setup.reference != ReferenceKind::Tracking && setup.following().is_none();
     let laws = Laws { agents: &setup.agents, tables: &read.laws };

@@ -75,7 +75,11 @@ impl Robot for ChainModel {
     }
 
     fn attachments(&self) -> Attachments<'_> {
-        Attachments::Axes
+        // Of a chain of derivatives only the last equation is one that something can be added to.
+        Attachments::Equations(match self {
+            ChainModel::Derivatives(_) => 1,
+            ChainModel::Cascade(terms) => terms.order(),
+        })
     }
 
     fn actuator_limits(&self) -> ActuatorLimits {
@@ -190,7 +194,7 @@ impl Law for ChainLaw {
             manipulability: false,
             tracks_by_roots: true,
             offsets,
-            pushed: false,
+            pushed: true,
             estimates: self.estimates(),
         })
     }

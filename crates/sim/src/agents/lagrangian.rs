@@ -7,7 +7,7 @@ use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass, TwoVelocity};
 use forwardstep_core::{Gain, Lanes, LengthError};
 
 use crate::closed_loop::{Assembly, Block, SetupError};
-use crate::setup::{AgentSetup, Exchange, RobotSetup};
+use crate::setup::{AgentSetup, Exchange, ReferenceKind, RobotSetup};
 use crate::system::{
     ActuatorLimits, Attachments, Coordinates, Interface, Known as Knowledge, Law, Line, Naming, ReferenceFamily, Robot,
 };
@@ -23,7 +23,7 @@ pub trait RobotModel: Robot + Clone {
 
 /// What the engine and the verdicts ask of a robot under (6)–(7). Every [`RobotModel`] is one.
 pub trait LagrangianRobot {
-    /// Builds the agents of `assembly` as one batch.
+    /// Builds the agents of `assembly` as one batch; one that follows a target stands alone.
     ///
     /// # Errors
     /// [`SetupError`] when they have no meaning.
@@ -49,7 +49,10 @@ pub struct DynamicsAt {
 
 impl<M: RobotModel> LagrangianRobot for M {
     fn batch(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
-        assembly.lagrangian(self)
+        match assembly.setup().reference {
+            ReferenceKind::Tracking => assembly.tracking(self),
+            _ => assembly.lagrangian(self),
+        }
     }
 
     fn dynamics_at_start(&self, agent: &AgentSetup, dz: f64) -> Result<DynamicsAt, LengthError> {
@@ -236,10 +239,11 @@ fn interface(robot: &RobotSetup, estimates: bool) -> Option<Interface> {
             ReferenceFamily::PureIntegral,
             ReferenceFamily::Backstepping,
             ReferenceFamily::Leader,
+            ReferenceFamily::Target,
         ],
         measures_velocity: true,
         manipulability: true,
-        tracks_by_roots: false,
+        tracks_by_roots: true,
         offsets: false,
         pushed: true,
         estimates,

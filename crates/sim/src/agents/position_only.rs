@@ -40,7 +40,7 @@ impl Law for PositionOnlyLaw {
             manipulability: false,
             tracks_by_roots: true,
             offsets: PositionOnly::KNOWS_OFFSETS,
-            pushed: false,
+            pushed: true,
             estimates: true,
         })
     }

@@ -41,7 +41,7 @@ impl Robot for RotorcraftModel {
     }
 
     fn attachments(&self) -> Attachments<'_> {
-        Attachments::Axes
+        Attachments::AxesAndBody
     }
 
     fn actuator_limits(&self) -> ActuatorLimits {

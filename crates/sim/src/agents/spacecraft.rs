@@ -43,7 +43,7 @@ impl Robot for SpacecraftModel {
     }
 
     fn attachments(&self) -> Attachments<'_> {
-        Attachments::Axes
+        Attachments::Body
     }
 
     fn actuator_limits(&self) -> ActuatorLimits {
@@ -94,7 +94,7 @@ impl Law for AttitudeLaw {
             manipulability: false,
             tracks_by_roots: false,
             offsets: AttitudeTracking::KNOWS_OFFSETS,
-            pushed: false,
+            pushed: true,
             estimates: false,
         })
     }

@@ -94,7 +94,7 @@ impl Law for TaskSpaceLaw {
             manipulability: false,
             tracks_by_roots: false,
             offsets: TaskSpace::<PlanarArm, PlanarTip>::KNOWS_OFFSETS,
-            pushed: false,
+            pushed: true,
             estimates: true,
         })
     }

@@ -83,7 +83,7 @@ impl Law for ThrustLaw {
             manipulability: false,
             tracks_by_roots: false,
             offsets: Thrust::KNOWS_OFFSETS,
-            pushed: false,
+            pushed: true,
             estimates: matches!(self.design, ThrustKind::Adaptive { .. }),
         })
     }
