@@ -5,6 +5,7 @@ use forwardstep_sim::{AgentSetup, Setup, VelocitySensor};
 
 use crate::hypothesis::{Hypothesis, Id, Inexact, Limited, LoopEvidence, Named};
 use crate::kinds::is_lagrangian;
+use crate::links::messages_in_time;
 use crate::sampled::{sampled_adaptation, sampled_damping};
 
 /// τ_ext feeds V by sᵀτ_ext, and what else acts by a factor that V bounds. What ends leaves V finite, and from then on everything
@@ -81,5 +82,6 @@ pub(crate) fn digital(setup: &Setup) -> Vec<Hypothesis> {
     if !inexact.is_empty() {
         hypotheses.push(Hypothesis::new(Id::ExactMeasurements, LoopEvidence::Measurements(inexact)));
     }
+    hypotheses.extend(messages_in_time(setup));
     hypotheses
 }

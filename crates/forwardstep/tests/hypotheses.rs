@@ -37,6 +37,13 @@ fn disturbed_chain() -> Setup {
     setup
 }
 
+/// Sampled controllers that drop messages which are too old.
+fn timed_out() -> Setup {
+    let mut setup = shipped("six-arms-over-radio");
+    setup.control.as_mut().unwrap().failures.message_timeout_s = Some(0.1);
+    setup
+}
+
 /// An arm and a spacecraft, each with its target.
 fn arm_and_spacecraft() -> Setup {
     let mut setup = shipped("theorem-6");
@@ -45,7 +52,7 @@ fn arm_and_spacecraft() -> Setup {
 }
 
 fn reports() -> Vec<Report> {
-    let changed = [bounded_lengths(1.5), tracking_chains(), disturbed_chain(), arm_and_spacecraft()];
+    let changed = [bounded_lengths(1.5), tracking_chains(), disturbed_chain(), timed_out(), arm_and_spacecraft()];
     let shipped = SHIPPED_SCENARIOS.iter().map(|scenario| shipped(scenario.name));
     shipped.chain(changed).map(|setup| check(&setup)).collect()
 }

@@ -37,8 +37,8 @@ pub use recording::{
     Statistics, Stiffness,
 };
 pub use setup::{
-    Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Method, ReferenceKind, RobotSetup, Sensors, Setup,
-    Solver, Start, TimeSpan, VelocitySensor,
+    Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Failures, Method, ReferenceKind, RobotSetup, Sensors,
+    Setup, Solver, Start, TimeSpan, VelocitySensor,
 };
 pub use simulate::{recorded_columns, simulate, simulate_samples};
 pub use system::{

@@ -99,7 +99,7 @@ fn eq_6_balance_counts_pushes_on_robots_that_track() {
         setup.agents[0].pushes = vec![Push { effect: Effect::Torque(Course::Each(all)), from_s: 1.0, until_s: 2.0 }];
         let outcome = run(&setup);
         assert!(balance_residual(&outcome, 0, 1e-3) <= 20.0 * RTOL, "{}", setup.agents[0].name);
-        assert!(column(&outcome, 0, Signal::External, 0).iter().any(|torque| *torque == 3.0));
+        assert!(column(&outcome, 0, Signal::External, 0).contains(&3.0));
     }
 }
 

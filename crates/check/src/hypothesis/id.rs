@@ -58,6 +58,8 @@ table! {
         "delays are piecewise uniformly continuous and uniformly bounded";
     NoDelay, "no-delay", "Theorems 8 and 9", Source::Paper,
         "messages arrive without delay";
+    MessagesInTime, "messages-in-time", "own derivation", Source::Derived,
+        "no message becomes older than the time-out, so that graphs are those that are stated";
     BoundedWeights, "bounded-weights", "own derivation", Source::Derived,
         "weights are piecewise uniformly continuous, bounded, and bounded away from zero while their edge is there";
     CouplingSector, "coupling-sector", "own derivation", Source::Derived,

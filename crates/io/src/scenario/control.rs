@@ -1,11 +1,12 @@
 //! `[control]` → [`Control`].
 
-use forwardstep_sim::{Actuators, Control, Sensors, VelocitySensor};
+use forwardstep_core::sampled::SafeCommand;
+use forwardstep_sim::{Actuators, Control, Failures, Sensors, VelocitySensor};
 
 use super::at::At;
-use super::control_file::{ControlFile, NoiseFile, QuantisationFile, VelocityFile};
+use super::control_file::{ControlFile, NoiseFile, QuantisationFile, SafeCommandFile, VelocityFile};
 use super::control_problem::ControlProblem;
-use super::fault::{Fault, fault, not_negative, not_negative_or, positive, seed};
+use super::fault::{Fault, fault, filled, not_negative, not_negative_or, positive, seed, values};
 use super::problem::ScenarioProblem;
 use super::values::AxisValues;
 
@@ -38,7 +39,20 @@ pub(super) fn control(file: &ControlFile, axes: usize, end_s: f64) -> Result<Con
             torque_rate_limit: limits("torque_rate_limit_per_s", &file.torque_rate_limit_per_s)?,
             torque_quantum: quantum(file, "quantisation.torque", |q| &q.torque)?,
         },
+        failures: failures(file)?,
     })
+}
+
+fn failures(file: &ControlFile) -> Result<Failures, Fault> {
+    let safe_command = match file.safe_command.as_ref().map(|safe| &safe.value) {
+        None => None,
+        Some(SafeCommandFile::Hold) => Some(SafeCommand::HoldLast),
+        Some(SafeCommandFile::Zero) => Some(SafeCommand::Zero),
+        Some(SafeCommandFile::Values(list)) => Some(SafeCommand::Values(values(filled("values", list)?))),
+    };
+    let timeout = file.message_timeout_s.as_ref();
+    let message_timeout_s = timeout.map(|timeout| not_negative("message_timeout_s", timeout)).transpose()?;
+    Ok(Failures { safe_command, message_timeout_s })
 }
 
 fn sensors(file: &ControlFile) -> Result<Sensors, Fault> {

@@ -85,12 +85,12 @@ impl Notice {
                 let at_s = end_s * f64::from(look) / f64::from(LOOKS);
                 target.jets(at_s, &mut jets);
                 for ((first, jet), axis) in first.iter_mut().zip(&jets).zip(&agent.robot.axes) {
-                    let outside = axis.position_limits.filter(|[low, high]| jet[0] < *low || jet[0] > *high);
-                    *first = first.or(outside.map(|limits| (at_s, jet[0], limits)));
+                    let outside = axis.position_limits.is_some_and(|[low, high]| jet[0] < low || jet[0] > high);
+                    *first = first.or(outside.then_some([at_s, jet[0]]));
                 }
             }
-            let notice = |(axis, first): (&Axis, Option<(f64, f64, [f64; 2])>)| {
-                let (at_s, value, limits) = first?;
+            let notice = |(axis, first): (&Axis, Option<[f64; 2]>)| {
+                let ([at_s, value], limits) = (first?, axis.position_limits?);
                 Some(Notice::TargetBeyondLimits {
                     agent: agent.name.clone(),
                     axis: axis.name.clone(),

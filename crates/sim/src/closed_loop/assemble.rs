@@ -226,6 +226,15 @@ impl<'a> ClosedLoop<'a> {
         Ok(all.into_iter().map(|(_, recipe)| recipe).collect())
     }
 
+    /// Steps of sampled controllers that failed, where a safe command stands then.
+    pub(crate) fn failed_steps(&self) -> u64 {
+        let mut failed = 0;
+        for block in &self.blocks {
+            block.columns.taken(&mut |digital| failed += digital.failures().1);
+        }
+        failed
+    }
+
     /// The initial state.
     pub(crate) fn start(&self) -> Vec<f64> {
         self.start.clone()

@@ -358,6 +358,10 @@ impl<C: Controller> Columns for Solo<C> {
     }
 
     fn trouble(&self, x: &[f64]) -> Option<(usize, Trouble)> {
+        // A safe command stands where the law fails.
+        if self.digital.as_ref().is_some_and(|digital| digital.failures().0) {
+            return None;
+        }
         let own = &x[self.layout.plant..self.layout.controller_end()];
         self.controller.trouble(own, &self.now.shown).map(|trouble| (self.agent, trouble))
     }

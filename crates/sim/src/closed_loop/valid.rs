@@ -138,12 +138,17 @@ fn check_memory(setup: &Setup) -> Result<(), SetupError> {
 
 fn check_control(control: &Control, setup: &Setup) -> Result<(), SetupError> {
     let wrong = |what, value, requirement| Err(SetupError::Control { what, value, requirement });
-    let Control { sample_hz, computation_delay_s, sensors, actuators } = control;
+    let Control { sample_hz, computation_delay_s, sensors, actuators, failures } = control;
     if !(*sample_hz > 0.0 && sample_hz.is_finite()) {
         return wrong("the sample rate", *sample_hz, "must be positive and finite");
     }
     if setup.time.end_s * sample_hz > MOST_SAMPLES {
         return wrong("the number of samples", setup.time.end_s * sample_hz, "must not exceed 1e7");
+    }
+    if let Some(timeout_s) = failures.message_timeout_s
+        && !(timeout_s >= 0.0 && timeout_s.is_finite())
+    {
+        return wrong("the time-out of messages", timeout_s, "must be finite and not negative");
     }
     if !(*computation_delay_s >= 0.0 && *computation_delay_s <= 1.0 / sample_hz) {
         return wrong("the computation delay", *computation_delay_s, "must be from 0 to one period");

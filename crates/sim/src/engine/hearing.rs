@@ -68,6 +68,8 @@ enum Read {
     Sample {
         offset: usize,
     },
+    /// It is too old: its sender does not count.
+    Silent,
 }
 
 /// Which messages an instant needs that are not history yet.
@@ -243,13 +245,29 @@ impl Hearing {
         needs
     }
 
-    /// Looks up where every message comes from at the sample at `t_s`; `place` says where what was sent by then stands.
-    pub(crate) fn look_at_samples(&mut self, timeline: &Timeline<'_>, t_s: f64, place: impl Fn(f64) -> usize) {
+    /// Looks up where every message comes from at the sample at `t_s`; `place` says where what was sent by then stands, unless it is
+    /// too old. Whether anything is.
+    pub(crate) fn look_at_samples(
+        &mut self,
+        timeline: &Timeline<'_>,
+        t_s: f64,
+        place: impl Fn(f64) -> Option<usize>,
+    ) -> bool {
         if !self.varying.is_empty() {
             self.weigh(timeline, t_s);
         }
         for source in &mut self.sources {
-            source.read = Read::Sample { offset: place(timeline.sent_s(source.clock, t_s)) };
+            let offset = place(timeline.sent_s(source.clock, t_s));
+            source.read = offset.map_or(Read::Silent, |offset| Read::Sample { offset });
+        }
+        self.sources.iter().any(|source| source.read == Read::Silent)
+    }
+
+    /// Adds up the weights of all that count at the sample looked at.
+    pub(crate) fn count(&self, heard: &mut Heard) {
+        heard.degree.fill(0.0);
+        for link in self.links.iter().filter(|link| self.sources[link.source].read != Read::Silent) {
+            heard.degree[self.ports[link.receiver].degree] += link.weight;
         }
     }
 
@@ -287,6 +305,7 @@ impl Hearing {
                     Read::Sample { offset } => data[offset + at],
                     Read::Now => x[from.state + c * from.stride],
                     Read::Initial => self.initial[at],
+                    Read::Silent => continue,
                 };
                 let entry = to.entry + c * to.stride;
                 let own = own.map_or_else(|| x[to.state + c * to.stride], |offset| data[offset + entry]);
@@ -341,6 +360,7 @@ impl Kernel for Gather<'_> {
                         *sum = fma(w, hearing.initial[from.entry + c * from.stride], *sum);
                     }
                 }
+                Read::Silent => {}
             }
         }
     }

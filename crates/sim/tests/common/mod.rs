@@ -87,6 +87,7 @@ pub fn consensus_of_masses(end_s: f64) -> Setup {
 
 pub fn sampled(mut setup: Setup, sample_hz: f64) -> Setup {
     setup.control = Some(Control {
+        failures: Default::default(),
         sample_hz,
         computation_delay_s: 0.0,
         sensors: Default::default(),

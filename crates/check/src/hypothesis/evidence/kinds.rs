@@ -121,6 +121,8 @@ pub enum KindEvidence {
     Momentum([f64; 3]),
     /// A torque from outside changes h_I, and the law goes on with that of the start.
     MomentumPushed,
+    /// What would end the run does not: a safe command stands there.
+    SafeCommand,
     /// The law is for another plant.
     NoSpacecraft,
     /// Disturbances enter the last equation of strict-feedback chains.
@@ -162,6 +164,7 @@ impl KindEvidence {
             | KindEvidence::LengthsNotAdapted { .. }
             | KindEvidence::MomentumPushed
             | KindEvidence::Unmatched { .. }
+            | KindEvidence::SafeCommand
             | KindEvidence::NoSpacecraft => Answer::NotCovered,
             KindEvidence::Singular { .. } | KindEvidence::FactorBelowFloor { .. } => Answer::Violated,
         }
@@ -190,6 +193,7 @@ impl KindEvidence {
             | KindEvidence::MomentumPushed
             | KindEvidence::Matched
             | KindEvidence::Unmatched { .. }
+            | KindEvidence::SafeCommand
             | KindEvidence::NoSpacecraft => Rigour::Exact,
             KindEvidence::PositiveMatrices
             | KindEvidence::PositiveMatricesTrueLengths

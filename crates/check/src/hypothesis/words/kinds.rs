@@ -81,6 +81,9 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
             "what disturbs {} enters where the slopes of the steps may grow with the state, so that V may not stay finite",
             agent.name
         ),
+        KindEvidence::SafeCommand => {
+            "where it does not, a safe command stands in the place of the law, and the run goes on".into()
+        }
         KindEvidence::NoSpacecraft => "this is no spacecraft".into(),
     }
 }
