@@ -2,7 +2,7 @@
 
 use forwardstep_sim::{AgentSetup, ReferenceKind, Setup};
 
-use crate::hypothesis::{Hypothesis, Id, KindEvidence};
+use crate::hypothesis::{Evidence, Hypothesis, Id, KindEvidence};
 use crate::kinds::{
     Chain, Claim, DeclaredKind, KindCheck, LagrangianRobot, PositionOnlyMass, Rotorcraft, Spacecraft, TaskSpaceRobot,
     Vehicle,
@@ -56,7 +56,10 @@ pub(crate) fn hypotheses(setup: &Setup) -> Vec<Hypothesis> {
         if agents.is_empty() {
             continue;
         }
-        for hypothesis in kind.hypotheses(setup, &agents) {
+        for mut hypothesis in kind.hypotheses(setup, &agents) {
+            if goes_on(setup) && ends_a_run(&hypothesis) {
+                hypothesis.evidence = KindEvidence::SafeCommand.into();
+            }
             // Vehicles and rotorcraft share an outer law, and may say the same of it.
             if !hypotheses.contains(&hypothesis) {
                 hypotheses.push(hypothesis);
@@ -64,6 +67,17 @@ pub(crate) fn hypotheses(setup: &Setup) -> Vec<Hypothesis> {
         }
     }
     hypotheses
+}
+
+/// Whether a run goes on where a step of a controller fails.
+fn goes_on(setup: &Setup) -> bool {
+    setup.control.as_ref().is_some_and(|control| control.failures.safe_command.is_some())
+}
+
+/// Whether the evidence is that a run would end where the hypothesis fails.
+fn ends_a_run(hypothesis: &Hypothesis) -> bool {
+    use KindEvidence::{Determinant, FactorFloor, ThrustFloor};
+    matches!(&hypothesis.evidence, Evidence::Kind(ThrustFloor { .. } | FactorFloor { .. } | Determinant { .. }))
 }
 
 /// Agents that agree with each other should fall under one theorem.

@@ -50,6 +50,19 @@ fn weaker(a: Basis, b: Basis) -> Basis {
     }
 }
 
+/// An edge whose messages time out is not there for a while, which the graphs of the schedule do not say.
+pub(crate) fn messages_in_time(setup: &Setup) -> Option<Hypothesis> {
+    let control = setup.control.as_ref()?;
+    let timeout_s = control.failures.message_timeout_s?;
+    let known: Vec<_> = delays(setup).map(Delay::known).collect();
+    let bounded = known.iter().all(|known| known.unknown.is_none());
+    // Heard at samples, a message is up to a period older than its delay.
+    let bound_s = known.iter().map(|known| known.bound_s).fold(0.0, f64::max) + 1.0 / control.sample_hz;
+    let basis = known.iter().map(|known| known.basis).fold(Basis::Rule, weaker);
+    let evidence = LinkEvidence::Ages { bound_s: bounded.then_some(bound_s), timeout_s, basis };
+    Some(Hypothesis::new(Id::MessagesInTime, evidence))
+}
+
 pub(crate) fn no_delay(setup: &Setup) -> Hypothesis {
     let bound_s = delays(setup).map(Delay::max_s).fold(0.0, f64::max);
     let evidence = if bound_s > 0.0 {

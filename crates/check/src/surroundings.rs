@@ -1,34 +1,40 @@
 //! What surrounds a law: pushes, limits, sampling.
 
 use forwardstep_sim::push::Push;
-use forwardstep_sim::{Setup, VelocitySensor};
+use forwardstep_sim::{AgentSetup, Setup, VelocitySensor};
 
 use crate::hypothesis::{Hypothesis, Id, Inexact, Limited, LoopEvidence, Named};
+use crate::kinds::is_lagrangian;
+use crate::links::messages_in_time;
 use crate::sampled::{sampled_adaptation, sampled_damping};
 
-/// τ_ext feeds V by sᵀτ_ext. What ends leaves V finite, and from then on everything is as without it.
+/// τ_ext feeds V by sᵀτ_ext, and what else acts by a factor that V bounds. What ends leaves V finite, and from then on everything
+/// is as without it.
 pub(crate) fn pushes_end(setup: &Setup) -> Option<Hypothesis> {
-    let acts = |push: &&Push| {
-        let [begins_s, ends_s] = push.span_s();
-        begins_s < ends_s
-    };
-    let pushed = |some: fn(&Push) -> bool| -> Vec<Named> {
+    let pushed = |some: fn(&AgentSetup, &Push) -> bool| -> Vec<Named> {
         let agents = setup.agents.iter().enumerate();
-        let those = agents.filter(|(_, agent)| agent.pushes.iter().filter(acts).any(some));
+        let those = agents.filter(|(_, agent)| agent.pushes.iter().any(|push| acts(push) && some(agent, push)));
         those.map(|(index, _)| Named::of(setup, index)).collect()
     };
-    let all = pushed(|_| true);
+    let all = pushed(|_, _| true);
     if all.is_empty() {
         return None;
     }
-    let pushes = setup.agents.iter().flat_map(|agent| &agent.pushes).filter(acts);
+    let pushes = setup.agents.iter().flat_map(|agent| &agent.pushes).filter(|push| acts(push));
     let evidence = LoopEvidence::Pushes {
         pushed: all,
-        torques_for_ever: pushed(|push| endless(push) && !push.is_hand()),
-        hands_for_ever: pushed(|push| endless(push) && push.is_hand()),
+        torques_for_ever: pushed(|agent, push| endless(push) && !push.is_hand() && is_lagrangian(agent)),
+        others_for_ever: pushed(|agent, push| endless(push) && !push.is_hand() && !is_lagrangian(agent)),
+        hands_for_ever: pushed(|_, push| endless(push) && push.is_hand()),
         last_end_s: pushes.map(|push| push.span_s()[1]).fold(0.0, f64::max),
     };
     Some(Hypothesis::new(Id::PushesEnd, evidence))
+}
+
+/// Whether it acts at some time.
+pub(crate) fn acts(push: &Push) -> bool {
+    let [begins_s, ends_s] = push.span_s();
+    begins_s < ends_s
 }
 
 fn endless(push: &Push) -> bool {
@@ -76,5 +82,6 @@ pub(crate) fn digital(setup: &Setup) -> Vec<Hypothesis> {
     if !inexact.is_empty() {
         hypotheses.push(Hypothesis::new(Id::ExactMeasurements, LoopEvidence::Measurements(inexact)));
     }
+    hypotheses.extend(messages_in_time(setup));
     hypotheses
 }

@@ -35,6 +35,8 @@ pub enum Theorem {
     ChainsTrack(Vec<&'static str>),
     /// (43) with (24), with these second steps.
     ChainsAgree(Vec<&'static str>),
+    /// (6)–(7) behind reference dynamics for tracking.
+    RobotsTrack,
     /// (a8) with (a9).
     PositionOnlyTracks,
     /// Remark 7: (a8) with (24) in z.
@@ -79,6 +81,7 @@ impl Theorem {
             Theorem::Targets => "targets",
             Theorem::ChainsTrack(_) => "chains-track",
             Theorem::ChainsAgree(_) => "chains-agree",
+            Theorem::RobotsTrack => "robots-track",
             Theorem::PositionOnlyTracks => "position-only-tracks",
             Theorem::PositionOnlyAgree { .. } => "remark-7",
             Theorem::ContinuousThrust => "continuous-thrust",
@@ -116,6 +119,7 @@ impl Theorem {
             Theorem::Theorem7 => Source::Corrected("E13"),
             // Section IV leaves the second step open, Remark 7 announces its consensus, Remark 11 its swarm.
             Theorem::Mixture(_)
+            | Theorem::RobotsTrack
             | Theorem::ChainsTrack(_)
             | Theorem::ChainsAgree(_)
             | Theorem::PositionOnlyAgree { .. }
@@ -149,6 +153,9 @@ impl fmt::Display for Theorem {
             }
             Theorem::ChainsAgree(steps) => {
                 return write!(f, "Section IV, (43) with (24) as in Theorem 3; second step: {}", steps.join(", "));
+            }
+            Theorem::RobotsTrack => {
+                "no theorem of the paper: (6) and (7) after Slotine and Li, with reference dynamics for tracking as in (43)"
             }
             Theorem::PositionOnlyTracks => "Section V-A, (a8) with the reference dynamics (a9)",
             Theorem::PositionOnlyAgree { order } => {

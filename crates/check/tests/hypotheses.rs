@@ -16,7 +16,7 @@ use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{Exchange, ReferenceKind};
 
 /// Names may join this list. None may leave it or change: certificates, waivers and summaries of earlier versions refer to them.
-const NAMES: [&str; 45] = [
+const NAMES: [&str; 47] = [
     "spanning-tree",
     "leader-reaches-all",
     "dwell-time",
@@ -24,6 +24,7 @@ const NAMES: [&str; 45] = [
     "mutual-weights",
     "bounded-delays",
     "no-delay",
+    "messages-in-time",
     "bounded-weights",
     "coupling-sector",
     "real-roots",
@@ -48,6 +49,7 @@ const NAMES: [&str; 45] = [
     "chain-gains",
     "chain-adaptation",
     "bounded-regressors",
+    "matched-disturbance",
     "position-only-gains",
     "known-masses",
     "thrust-gains",

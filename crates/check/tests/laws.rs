@@ -8,8 +8,9 @@ use common::kinds::{
     alone, blind_mass, cascade, chain, change_tip, formula, planar_tip, power_of_time, rest_at, spacecraft, tracking,
     tree_tip, vehicle,
 };
-use common::{About, answer, answers};
-use forwardstep_check::{Answer, check};
+use common::{About, answer, answers, arm};
+use forwardstep_check::hypothesis::Subject;
+use forwardstep_check::{Answer, Id, Source, Theorem, check};
 use forwardstep_core::controller::{Floor, ParameterBounds};
 use forwardstep_core::expression::Expression;
 use forwardstep_core::robot::tree::JointKind::{Prismatic, Revolute};
@@ -241,4 +242,28 @@ fn thm7_a_quaternion_that_comes_to_zero_is_violated_and_one_that_does_not_holds(
     assert_eq!(said(formula(Expression::variable(0).sin_of())), Answer::Violated);
     let shrinking = formula(Expression::variable(0) * -0.04 + 1.0);
     assert_eq!(said(shrinking), Answer::HoldsOnHorizon, "at 20 s it is 0.2");
+}
+
+/// (6)–(7) behind reference dynamics for tracking: no theorem of the paper, and that is said.
+#[test]
+fn robots_that_track_fall_under_no_theorem_of_the_paper_and_all_that_their_argument_asks_for_is_shown() {
+    for (roots, derivatives) in [(1, 2), (2, 2), (3, 3), (4, 4)] {
+        let agent = arm(0, &vec![2.0; roots]);
+        let swing = || formula((Expression::variable(0) * 0.7).sin_of());
+        let setup = tracking(agent, vec![swing(), swing()]);
+        let report = check(&setup);
+        assert_eq!((&report.theorem, report.worst()), (&Theorem::RobotsTrack, Answer::Holds));
+        assert_eq!(report.theorem.source(), Source::Derived);
+        assert!(report.theorem.to_string().starts_with("no theorem of the paper"));
+        let has = |id: Id| report.hypotheses.iter().any(|hypothesis| hypothesis.id == id);
+        assert!([Id::BoundedTarget, Id::PositiveGains, Id::RealRoots, Id::AppliedTorque].into_iter().all(has));
+        let asked = report.hypotheses.iter().find_map(|hypothesis| match &hypothesis.subject {
+            Subject::Targets { derivatives, .. } => Some(*derivatives),
+            _ => None,
+        });
+        assert_eq!(asked, Some(derivatives));
+    }
+    // A parabola is not bounded for ever.
+    let setup = tracking(arm(0, &[2.0]), vec![power_of_time(0.01, 2.0), rest_at(0.0)]);
+    assert_eq!(check(&setup).worst(), Answer::HoldsOnHorizon);
 }

@@ -227,6 +227,7 @@ fn eq_held_adaptation_is_stable_as_long_as_its_number_is_below_two() {
         let (sample_hz, gain) = (10.0, 2.0);
         let mut setup = setup(FollowingDesign::Continuous, Path::Sinusoids { offset: 0.0, waves: Vec::new() }, gain);
         setup.control = Some(Control {
+            failures: Default::default(),
             sample_hz,
             computation_delay_s: 0.0,
             sensors: Default::default(),

@@ -141,7 +141,8 @@ fn thm3_a_root_that_is_not_positive_is_violated() {
 fn sampled(change: impl Fn(&mut Control)) -> Setup {
     let mut setup = pair([1.0, 1.0], both_ways());
     let (sensors, actuators) = (Sensors::default(), Actuators::default());
-    let mut control = Control { sample_hz: 1000.0, computation_delay_s: 0.0, sensors, actuators };
+    let mut control =
+        Control { sample_hz: 1000.0, computation_delay_s: 0.0, sensors, actuators, failures: Default::default() };
     change(&mut control);
     setup.control = Some(control);
     setup

@@ -100,6 +100,7 @@ fn every_reason_for_which_there_is_none_is_the_one_that_is_said() {
     let tanh = Coupling::Tanh { scale: 1.0 };
     assert_eq!(said(&|setup| setup.network.coupling = tanh), Some(NoPrediction::Coupling));
     let control = Control {
+        failures: Default::default(),
         sample_hz: 100.0,
         computation_delay_s: 0.0,
         sensors: Default::default(),

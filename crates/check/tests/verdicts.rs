@@ -8,12 +8,15 @@ use std::sync::Arc;
 
 use common::kinds::{alone, blind_mass, rest_at, spacecraft, tracking, vehicle};
 use common::{About, answer, answers, edge, masses};
-use forwardstep_check::{Answer, NoPrediction, SampledDamping, check, predict, sampled_adaptation, sampled_damping};
+use forwardstep_check::{
+    Answer, Id, NoPrediction, SampledDamping, check, predict, sampled_adaptation, sampled_damping,
+};
 use forwardstep_core::Gain;
 use forwardstep_core::controller::Floor;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::Rotors;
 use forwardstep_core::reference::Choice;
+use forwardstep_core::sampled::SafeCommand;
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
@@ -159,7 +162,13 @@ fn prop_a_swarm_needs_the_coupling_that_its_derivation_asks_for() {
 }
 
 fn control(computation_delay_s: f64) -> Option<Control> {
-    Some(Control { sample_hz: 10.0, computation_delay_s, sensors: Default::default(), actuators: Default::default() })
+    Some(Control {
+        sample_hz: 10.0,
+        computation_delay_s,
+        sensors: Default::default(),
+        actuators: Default::default(),
+        failures: Default::default(),
+    })
 }
 
 /// The largest x for which s_{k+1} = (1 − x (1 − δ)) s_k − x δ s_{k−1} decays, and does so without overshooting.
@@ -282,4 +291,33 @@ fn thm7_what_is_known_of_a_spacecraft_holds_and_a_path_is_looked_at_between_the_
     let crests = common::kinds::formula((Expression::variable(0) * rate).cos_of());
     let said = answer(&tracking(spacecraft(), target(crests)), About::Path);
     assert_eq!(said, Answer::NotCovered, "no look sees it at zero, and no bound keeps it away");
+}
+
+#[test]
+fn messages_that_time_out_take_edges_away_that_the_graphs_have() {
+    let said = |timeout_s: Option<f64>, delay: Delay| {
+        let mut setup = pair([delay, Delay::constant(0.0)]);
+        setup.control = control(0.0);
+        setup.control.as_mut().unwrap().failures.message_timeout_s = timeout_s;
+        check(&setup).hypotheses.iter().find(|h| h.id == Id::MessagesInTime).map(|h| h.answer())
+    };
+    let constant = || Delay::constant(0.3);
+    assert_eq!(said(None, constant()), None);
+    // The delay and a period of 0.1 s.
+    assert_eq!(said(Some(0.41), constant()), Some(Answer::Holds));
+    assert_eq!(said(Some(0.39), constant()), Some(Answer::NotCovered));
+}
+
+#[test]
+fn a_run_that_goes_on_under_a_safe_command_shows_nothing_about_what_the_law_divides_by() {
+    let said = |safe_command| {
+        let mut setup =
+            alone(vehicle(ThrustKind::Differentiable { alpha_star: 3.0, stiffness: 4.0 }, Floor::Stops(1.0)));
+        setup.control = control(0.0);
+        setup.control.as_mut().unwrap().failures.safe_command = safe_command;
+        let report = check(&setup);
+        report.hypotheses.iter().find(|h| h.id == Id::NonzeroThrust).map(|h| h.answer()).unwrap()
+    };
+    assert_eq!(said(None), Answer::Watched);
+    assert_eq!(said(Some(SafeCommand::Zero)), Answer::NotCovered);
 }

@@ -28,8 +28,12 @@ pub enum Signal {
     Lyapunov,
     /// The integral of what the Lyapunov-like function loses by its proof; present when the balance is on. One entry.
     Dissipation,
-    /// τ_ext; only of agents that are pushed.
+    /// τ_ext, a torque or force on every axis; only of agents that are pushed.
     External,
+    /// A torque from outside about the axes of a body; only of agents that are pushed.
+    ExternalTorque,
+    /// What is added to the equations of a chain from outside; only of agents that are pushed.
+    Disturbance,
     /// What is to vanish: x − x_d, Δq_v, q − q₀, …; only of agents with a target or a leader.
     Error,
     /// d, the offset of an agent from where all agree; only of agents that have one.
@@ -209,6 +213,8 @@ impl Signal {
             Signal::Lyapunov => Row::new("lyapunov", Fixed("J"), One, WithAll),
             Signal::Dissipation => Row::new("dissipation", Fixed("J"), One, WithAll),
             Signal::External => Row::new("tau_ext", Effort, Axes, WithAll).jumps(),
+            Signal::ExternalTorque => Row::new("tau_ext_body", Fixed("N m"), Named(&["x", "y", "z"]), card("External torques on the body", "about its axes, by pushes")).jumps(),
+            Signal::Disturbance => Row::new("w", Fixed("SI"), Numbered("equation"), card("Disturbances", "w, added to the equations")).jumps(),
             Signal::Error => Row::new("error", Target, Coordinates, card("Distance from the target", "what is to vanish")),
             Signal::Offset => Row::new("offset", Axis(0), Axes, card("Offset in the formation", "d")),
             Signal::Filter => Row::new("y", Axis(1), Axes, card("Filter in place of the velocity", "y")),
@@ -258,7 +264,13 @@ mod tests {
     fn what_follows_messages_or_limits_at_once_may_jump() {
         let jumps = |signal: Signal| signal.row().may_jump;
         let at_once = [Signal::Torque, Signal::External, Signal::Reference(1), Signal::Reference(2), Signal::Selection];
-        let wheels = [Signal::WheelTorque, Signal::AngularVelocity, Signal::AngularVelocityWanted];
+        let wheels = [
+            Signal::ExternalTorque,
+            Signal::Disturbance,
+            Signal::WheelTorque,
+            Signal::AngularVelocity,
+            Signal::AngularVelocityWanted,
+        ];
         assert!(at_once.into_iter().chain(wheels).all(jumps));
         let states = [Signal::Position, Signal::Velocity, Signal::Reference(0), Signal::WheelMomentum, Signal::Thrust];
         assert!(!states.into_iter().any(jumps));

@@ -61,7 +61,7 @@ where
     let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
     law.evaluate(&mut scratch, given, state, asked).unwrap();
     let mut d_x = vec![0.0; x.len()];
-    plant.rate(&mut plant.scratch(), x, &input, &mut d_x).unwrap();
+    plant.rate(&mut plant.scratch(), x, &input, &[], &mut d_x).unwrap();
     assert!(d_state.iter().chain(&shown).all(|value| value.is_finite()));
     Result { input: input[0], d_state, shown, d_x }
 }
@@ -72,7 +72,8 @@ where
 {
     let heard = Heard::new(&DEGREE, &SUMS, 1).unwrap();
     let given = Given { measured: law.see(x).unwrap(), heard, target: &[] };
-    let balance = law.balance(&mut law.scratch(), Truth { plant, state: x }, given, state, shown).unwrap();
+    let balance =
+        law.balance(&mut law.scratch(), Truth { plant, state: x, external: &[] }, given, state, shown).unwrap();
     [balance.value, balance.dissipation]
 }
 

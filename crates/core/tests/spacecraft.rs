@@ -109,7 +109,7 @@ fn eq_94_total_angular_momentum_is_conserved_in_the_inertial_frame() {
     let torque = |t: f64| [0.3 * t.sin(), -0.2 * (2.0 * t).cos(), 0.1, 0.25 * (0.7 * t).sin()];
     let rate = |t: f64, x: &[f64; 11]| {
         let mut dx = [0.0; 11];
-        plant.rate(&mut (), x, &torque(t), &mut dx).unwrap();
+        plant.rate(&mut (), x, &torque(t), &[], &mut dx).unwrap();
         dx
     };
     let along = |x: &[f64; 11], k: &[f64; 11], h: f64| core::array::from_fn(|i| x[i] + h * k[i]);

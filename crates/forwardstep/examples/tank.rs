@@ -131,6 +131,7 @@ impl Robot for Tank {
         let line = |limit| Line { signal: Signal::Own(&INFLOW), entry: 0, value: LineValue::Clip(limit) };
         RobotInterface {
             velocity_len: 0,
+            attachments: Attachments::Equations(1),
             actuator_limits: ActuatorLimits::Own,
             lines: self.limit.map(line).into_iter().collect(),
             ..RobotInterface::mechanical(axes)
@@ -154,7 +155,7 @@ impl Law for Level {
     }
 
     fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
-        robot.kind.is::<Tank>().then(|| Interface::tracking(&["level"]))
+        robot.kind.is::<Tank>().then(|| Interface { pushed: true, ..Interface::tracking(&["level"]) })
     }
 
     fn known(&self) -> Known {
@@ -173,7 +174,7 @@ impl Law for Level {
         assembly.positive("the gain", k)?;
         assembly.length("the parameters", 1, own.robot.theta.len())?;
         let (area, limit) = (own.robot.theta[0], tank.limit.filter(|_| own.enforce_limits));
-        // A ẋ = u, where x is the level.
+        // A ẋ = u + A w, where x is the level and A w flows in from outside.
         let plant = VectorField::new(1, [(Signal::Position, 1)], [(Signal::Own(&INFLOW), 1)], move |_, u, dx| {
             dx[0] = u[0] / area;
         });
@@ -184,9 +185,9 @@ impl Law for Level {
             asked.shown[0] = given.output[0] - x_d;
             asked.input[0] = area * (dx_d - k * asked.shown[0]);
         };
-        let balance = move |_: Truth<'_, _>, _: FeedbackInput<'_>, shown: &[f64]| {
-            let square = area * shown[0] * shown[0];
-            Balance { value: 0.5 * square, dissipation: k * square }
+        let balance = move |truth: Truth<'_, _>, _: FeedbackInput<'_>, shown: &[f64]| {
+            let (square, power) = (area * shown[0] * shown[0], truth.external.iter().map(|w| area * shown[0] * w));
+            Balance { value: 0.5 * square, dissipation: k * square - power.sum::<f64>() }
         };
         let controller = Feedback::new(&plant, [(Signal::Error, 1)], law, balance);
         assembly.solo(plant, controller)

@@ -8,6 +8,7 @@ use forwardstep::check::hypothesis::{Evidence, KindEvidence, Subject};
 use forwardstep::check::{Answer, Id, Report, Rigour, Theorem, check};
 use forwardstep::core::controller::ParameterBounds;
 use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
+use forwardstep::sim::push::{Course, Effect, Function, Push};
 use forwardstep::sim::{Adaptive, ReferenceKind, Setup, TaskSpaceLaw};
 
 fn shipped(name: &str) -> Setup {
@@ -29,6 +30,21 @@ fn tracking_chains() -> Setup {
     setup
 }
 
+/// A chain in feedback form that is disturbed where its input enters.
+fn disturbed_chain() -> Setup {
+    let mut setup = shipped("strict-feedback");
+    let last = [0.0, 0.5].map(Function::Constant).to_vec();
+    setup.agents[0].pushes = vec![Push { effect: Effect::Torque(Course::Each(last)), from_s: 1.0, until_s: 2.0 }];
+    setup
+}
+
+/// Sampled controllers that drop messages which are too old.
+fn timed_out() -> Setup {
+    let mut setup = shipped("six-arms-over-radio");
+    setup.control.as_mut().unwrap().failures.message_timeout_s = Some(0.1);
+    setup
+}
+
 /// An arm and a spacecraft, each with its target.
 fn arm_and_spacecraft() -> Setup {
     let mut setup = shipped("theorem-6");
@@ -37,7 +53,7 @@ fn arm_and_spacecraft() -> Setup {
 }
 
 fn reports() -> Vec<Report> {
-    let changed = [bounded_lengths(1.5), tracking_chains(), arm_and_spacecraft()];
+    let changed = [bounded_lengths(1.5), tracking_chains(), disturbed_chain(), timed_out(), arm_and_spacecraft()];
     let shipped = SHIPPED_SCENARIOS.iter().map(|scenario| shipped(scenario.name));
     shipped.chain(changed).map(|setup| check(&setup)).collect()
 }
@@ -63,6 +79,7 @@ fn every_hypothesis_and_every_theorem_is_shown_by_some_setup() {
         "remark-12",
         "remark-3",
         "remark-7",
+        "robots-track",
         "swarm",
         "targets",
         "theorem-1",
@@ -124,7 +141,8 @@ fn every_law_wants_as_many_derivatives_of_a_target_as_it_uses() {
     };
     let of = |name| wanted(&shipped(name));
     assert_eq!(["without-velocity", "theorem-6", "theorem-7", "formation"].map(of), [[3], [2], [2], [4]]);
-    // Chains want as many as their reference dynamics have roots, (46) one less than (50), arms under (6)–(7) two.
+    assert_eq!(of("through-waypoints"), [2]);
+    // Chains want as many as their reference dynamics have roots, as arms under (6)–(7) do; (46) one less than (50).
     let offset = shipped("formation").agents[0].target.clone();
     let moved = |mut setup: Setup| {
         setup.agents.iter_mut().for_each(|agent| agent.target.clone_from(&offset));
@@ -136,7 +154,7 @@ fn every_law_wants_as_many_derivatives_of_a_target_as_it_uses() {
     let (chains, roots) = moved(shipped("framework"));
     assert!(chains == roots && roots.len() > 1, "{chains:?} {roots:?}");
     assert_eq!(moved(shipped("thrust-continuous")).0, [3]);
-    assert_eq!(moved(shipped("theorem-3-24-order-4")).0, [2]);
+    assert_eq!(moved(shipped("theorem-3-24-order-4")).0, [4]);
 }
 
 #[test]

@@ -20,7 +20,7 @@ fn shows_what_it_says(name: &str) {
     // The paper promises nothing about the baseline that it argues against, sampled controllers, bodies with inertia,
     // networks of different kinds, and designs that it does not print.
     let expected: &[Answer] = match name {
-        "backstepping" | "six-arms-over-radio" | "formation" | "mixed-network" | "swarm-tracking" => {
+        "backstepping" | "six-arms-over-radio" | "formation" | "gusts" | "mixed-network" | "swarm-tracking" => {
             &[Answer::NotCovered]
         }
         _ => &[Answer::Holds, Answer::HoldsOnHorizon, Answer::Watched],
@@ -150,7 +150,9 @@ shipped! {
     theorem_4: "theorem-4",
     theorem_5: "theorem-5",
     formation: "formation",
+    gusts: "gusts",
     mixed_network: "mixed-network",
+    through_waypoints: "through-waypoints",
     theorem_6: "theorem-6",
     task_space_ur5e: "task-space-ur5e",
     theorem_7: "theorem-7",

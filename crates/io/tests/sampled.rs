@@ -24,6 +24,7 @@ fn shortened(name: &str) -> Setup {
 fn run(setup: &Setup, sample_hz: Option<f64>) -> Outcome {
     let mut setup = setup.clone();
     setup.control = sample_hz.map(|sample_hz| Control {
+        failures: Default::default(),
         sample_hz,
         computation_delay_s: 0.0,
         sensors: Default::default(),

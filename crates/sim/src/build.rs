@@ -32,8 +32,8 @@ use crate::network::Network;
 use crate::recording::{Outcome, Recording, Signal};
 use crate::schedule::{Phase, Schedule};
 use crate::setup::{
-    Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, ReferenceKind, RobotSetup, Sensors, Setup, Solver, Start,
-    TimeSpan,
+    Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Failures, ReferenceKind, RobotSetup, Sensors, Setup,
+    Solver, Start, TimeSpan,
 };
 use crate::simulate::simulate;
 use crate::system::{Law, Robot};
@@ -218,7 +218,8 @@ impl Setup {
     /// The same under digital control: `sample_hz` samples per second, without noise, computation delay and limits.
     pub fn sampled(mut self, sample_hz: f64) -> Self {
         let (sensors, actuators) = (Sensors::default(), Actuators::default());
-        self.control = Some(Control { sample_hz, computation_delay_s: 0.0, sensors, actuators });
+        self.control =
+            Some(Control { sample_hz, computation_delay_s: 0.0, sensors, actuators, failures: Failures::default() });
         self
     }
 }

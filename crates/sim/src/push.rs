@@ -1,10 +1,11 @@
-//! What acts on robots from outside: forces, torques and hands, as plain data.
+//! What acts on robots from outside: forces, torques, hands and disturbances, as plain data.
 //!
-//! A push adds τ_ext to the torque of one agent between two instants and nothing outside them. Where it begins and ends, and
+//! A push adds to what [`Attachments::blocks`] lists of one agent between two instants and nothing outside them. Where it begins and ends, and
 //! where a table has a row, steps of the integrator end; between such instants a push is evaluated by the piece in force, so
 //! that no step ever sees both sides of a jump.
 
 use forwardstep_core::expression::Expression;
+use forwardstep_core::plant::total;
 use forwardstep_core::robot::PlanarTip;
 use forwardstep_core::robot::tree::{Axes, LinkPoint};
 use thiserror::Error;
@@ -27,7 +28,7 @@ pub struct Push {
 /// What a push does.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
-    /// τ_ext itself, one component per axis, N m or N.
+    /// τ_ext itself, N m or N, or disturbances: a component for every entry of [`Attachments::blocks`].
     Torque(Course),
     /// A force and a moment at a point: τ_ext = Jᵀw. The components are those of [`Grip::wrench_components`].
     Wrench {
@@ -224,12 +225,18 @@ impl Push {
             if need == got { Ok(()) } else { Err(PushError::Length { what, need, got }) }
         };
         match &self.effect {
-            Effect::Torque(course) => length("the torque", axes, course.components())?,
+            Effect::Torque(course) => {
+                length("the torque", total(&robot.interface().attachments.blocks(axes)), course.components())?;
+            }
             Effect::Wrench { grip, wrench } => {
                 grip.check(robot)?;
                 length("the wrench", grip.wrench_components(), wrench.components())?;
             }
             Effect::HandOnAxes { axes: held, stiffness, damping, target } => {
+                let springs = !matches!(robot.interface().attachments, Attachments::Equations(_));
+                if !springs || robot.velocity_len() != axes {
+                    return Err(PushError::NoSpring);
+                }
                 if let Some(axis) = held.iter().find(|axis| **axis >= axes) {
                     return Err(PushError::NoSuchAxis { axis: *axis, axes });
                 }
@@ -313,6 +320,9 @@ pub enum PushError {
         /// How many there are.
         axes: usize,
     },
+    /// A hand on axes that no force moves.
+    #[error("a hand holds axes that forces move, and this robot has none")]
+    NoSpring,
     /// A moving body that the robot has not.
     #[error("it acts on moving body {body}, counted from 0, of a robot with {bodies}")]
     NoSuchBody {

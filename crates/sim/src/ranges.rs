@@ -43,11 +43,14 @@ impl Control {
     /// # Errors
     /// [`QuantityError`] for the first that is out of its range.
     pub fn check(&self, end_s: f64) -> Result<(), QuantityError> {
-        let Control { sample_hz, computation_delay_s, sensors, actuators } = self;
+        let Control { sample_hz, computation_delay_s, sensors, actuators, failures } = self;
         positive("control", "sample_hz", *sample_hz)?;
         few("control", "sample_hz", *sample_hz, ("samples", end_s * sample_hz, MOST_EVENTS))?;
         // A computation must be done before the next begins.
         within("control", "computation_delay_s", *computation_delay_s, 0.0, 1.0 / sample_hz)?;
+        if let Some(timeout_s) = failures.message_timeout_s {
+            not_negative("control", "message_timeout_s", timeout_s)?;
+        }
         if let VelocitySensor::Filtered { cut_off_hz } = sensors.velocity {
             positive("control.velocity.filtered_difference", "cut_off_hz", cut_off_hz)?;
         }

@@ -185,6 +185,8 @@ pub struct Statistics {
     /// The largest rest of the inclusions that set-valued signs solve, where they are solved for, in the unit of what the
     /// sign is taken of.
     pub sign_residual: Option<f64>,
+    /// Steps of sampled controllers that failed, so that a safe command stood.
+    pub failed_steps: u64,
     /// Time spent, if whoever ran it measured it: nothing in the library reads a clock.
     pub wall: Option<Duration>,
 }

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use forwardstep_core::sampled::SafeCommand;
+
 use crate::leader::{Following, FollowingDesign};
 use crate::network::Network;
 use crate::push::Push;
@@ -263,6 +265,8 @@ pub struct Control {
     pub sensors: Sensors,
     /// What the actuators can do, besides the limits of the robots if those are enforced.
     pub actuators: Actuators,
+    /// What happens when a controller cannot go on as usual.
+    pub failures: Failures,
 }
 
 /// What agents measure: the truth, then noise, then quantisation.
@@ -324,6 +328,15 @@ pub struct Actuators {
 pub const RTOL: f64 = 1e-6;
 /// The usual absolute tolerance of an adaptive method.
 pub const ATOL: f64 = 1e-8;
+
+/// What happens when a sampled controller cannot go on as usual.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Failures {
+    /// What is commanded when a step fails, and the run goes on; `None` to end the run there.
+    pub safe_command: Option<SafeCommand>,
+    /// A message that is older than this does not count until a newer one arrives, s; `None` for messages of any age.
+    pub message_timeout_s: Option<f64>,
+}
 
 /// How to integrate.
 #[derive(Clone, Copy, Debug, PartialEq)]

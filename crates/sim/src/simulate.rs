@@ -82,6 +82,7 @@ pub fn simulate_samples(
     };
     let mut statistics = integrator.statistics();
     statistics.sign_residual = closed_loop.sign_residual();
+    statistics.failed_steps = closed_loop.failed_steps();
     Ok(Outcome { recording: recorder.recording, ending, statistics })
 }
 

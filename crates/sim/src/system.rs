@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 use forwardstep_core::controller::Controller;
 use forwardstep_core::robot::tree::Tree;
+use forwardstep_core::signal::Block as Signals;
 
 use crate::agents::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
@@ -35,7 +36,7 @@ pub struct RobotInterface {
     pub rest_len: usize,
     /// What its position is.
     pub position: PositionKind,
-    /// Where forces can act on it.
+    /// What can act on it from outside, and where.
     pub attachments: Attachments,
     /// Whose limits are those of its actuators.
     pub actuator_limits: ActuatorLimits,
@@ -110,7 +111,7 @@ pub enum LineValue {
     Truth(f64),
 }
 
-/// Where forces can act on a robot.
+/// What can act on a robot from outside, and where.
 #[derive(Clone, Debug)]
 pub enum Attachments {
     /// On its axes only.
@@ -119,6 +120,25 @@ pub enum Attachments {
     PlanarTip,
     /// On its axes, and on any point of any link.
     Links(Arc<Tree>),
+    /// On its axes, and torques about the axes of its body.
+    AxesAndBody,
+    /// Torques about the axes of its body only.
+    Body,
+    /// No force, but a disturbance of each of so many equations.
+    Equations(usize),
+}
+
+impl Attachments {
+    /// What acts on a robot with so many axes, block by block, as [`Plant::rate`](forwardstep_core::plant::Plant::rate) takes it.
+    pub fn blocks(&self, axes: usize) -> Vec<Signals> {
+        let (forces, torques) = ((Signal::External, axes), (Signal::ExternalTorque, 3));
+        match self {
+            Attachments::Axes | Attachments::PlanarTip | Attachments::Links(_) => vec![forces],
+            Attachments::AxesAndBody => vec![forces, torques],
+            Attachments::Body => vec![torques],
+            Attachments::Equations(equations) => vec![(Signal::Disturbance, *equations)],
+        }
+    }
 }
 
 /// Whose limits are enforced where limits are to be enforced.
@@ -193,7 +213,7 @@ pub struct Interface {
     pub tracks_by_roots: bool,
     /// Whether a target may be an offset from where all agree.
     pub offsets: bool,
-    /// Whether forces and torques from outside may act on its robot.
+    /// Whether pushes may act on its robot: its balance has their power.
     pub pushed: bool,
     /// Whether it estimates parameters of its robot.
     pub estimates: bool,

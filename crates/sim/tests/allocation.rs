@@ -78,7 +78,7 @@ fn sampled() -> Control {
         ..Sensors::default()
     };
     let actuators = Actuators { torque_quantum: 1e-3, ..Actuators::default() };
-    Control { sample_hz: 500.0, computation_delay_s: 0.001, sensors, actuators }
+    Control { sample_hz: 500.0, computation_delay_s: 0.001, sensors, actuators, failures: Default::default() }
 }
 
 #[test]

@@ -77,6 +77,7 @@ fn digest_same_bits_on_repeat_and_beside_other_threads() {
 fn digest_sampled_runs_have_the_same_bits_as_on_the_machine_that_wrote_them() {
     let mut setup = cases::setup(&cases()[14]);
     setup.control = Some(Control {
+        failures: Default::default(),
         sample_hz: 400.0,
         computation_delay_s: 0.001,
         sensors: Sensors {

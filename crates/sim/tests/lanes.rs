@@ -87,6 +87,7 @@ fn bits_of_the_first_two(agents: usize, order: usize, control: &Option<Control>)
 fn digest_lanes_carry_the_bits_of_single_agents() {
     let noisy = Sensors { position_noise: 1e-4, velocity_noise: 1e-3, seed: 5, ..Sensors::default() };
     let sampled = Control {
+        failures: Default::default(),
         sample_hz: 250.0,
         computation_delay_s: 0.001,
         sensors: noisy,

@@ -9,8 +9,8 @@ use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
 use forwardstep_sim::quantity::positive;
 use forwardstep_sim::trajectory::{Path, Trajectory};
 use forwardstep_sim::{
-    Actuators, AgentSetup, Control, Exchange, Known, Method, Network, ReferenceKind, RobotSetup, Sensors, Setup,
-    SetupError, VelocitySensor, validate,
+    Actuators, AgentSetup, Control, Exchange, Failures, Known, Method, Network, ReferenceKind, RobotSetup, Sensors,
+    Setup, SetupError, VelocitySensor, validate,
 };
 
 /// A change, and the path of what is wrong then.
@@ -25,6 +25,7 @@ fn setup() -> Setup {
         computation_delay_s: 0.0,
         sensors: Sensors::default(),
         actuators: Actuators::default(),
+        failures: Failures::default(),
     });
     setup
 }
@@ -81,6 +82,7 @@ fn every_quantity_is_refused_out_of_its_range_under_its_path() {
             (&|s| s.solver.min_step_s = value, "solver.min_step_s"),
             (&controlled(|c| c.sample_hz = value), "control.sample_hz"),
             (&controlled(|c| c.computation_delay_s = value), "control.computation_delay_s"),
+            (&controlled(|c| c.failures.message_timeout_s = Some(value)), "control.message_timeout_s"),
             (&controlled(|c| c.sensors.position_noise = value), "control.noise.position"),
             (&controlled(|c| c.sensors.velocity_noise = value), "control.noise.velocity"),
             (&controlled(|c| c.sensors.position_quantum = value), "control.quantisation.position"),

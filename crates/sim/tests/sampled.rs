@@ -27,7 +27,13 @@ fn run(setup: &Setup) -> Outcome {
 }
 
 fn control(sample_hz: f64) -> Control {
-    Control { sample_hz, computation_delay_s: 0.0, sensors: Sensors::default(), actuators: Actuators::default() }
+    Control {
+        sample_hz,
+        computation_delay_s: 0.0,
+        sensors: Sensors::default(),
+        actuators: Actuators::default(),
+        failures: Default::default(),
+    }
 }
 
 /// A case by its name, over a short horizon, at tight tolerance.

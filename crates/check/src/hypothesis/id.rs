@@ -58,6 +58,8 @@ table! {
         "delays are piecewise uniformly continuous and uniformly bounded";
     NoDelay, "no-delay", "Theorems 8 and 9", Source::Paper,
         "messages arrive without delay";
+    MessagesInTime, "messages-in-time", "own derivation", Source::Derived,
+        "no message becomes older than the time-out, so that graphs are those that are stated";
     BoundedWeights, "bounded-weights", "own derivation", Source::Derived,
         "weights are piecewise uniformly continuous, bounded, and bounded away from zero while their edge is there";
     CouplingSector, "coupling-sector", "own derivation", Source::Derived,
@@ -79,7 +81,7 @@ table! {
     PositiveGains, "positive-gains", "(6), (7)", Source::Paper,
         "K and Γ are symmetric positive definite";
     PushesEnd, "pushes-end", "own derivation", Source::Derived,
-        "external torques end, so that s is square-integrable all the same";
+        "external torques, forces and disturbances end, so that s is square-integrable all the same";
     AppliedTorque, "applied-torque", "(6)", Source::Paper,
         "the torque that the law asks for is applied";
     ContinuousTime, "continuous-time", "Section II", Source::Paper,
@@ -114,6 +116,8 @@ table! {
         "the gains of the laws and Γ are positive";
     BoundedRegressors, "bounded-regressors", "own derivation", Source::Derived,
         "regressors and their derivatives are bounded along the run";
+    MatchedDisturbance, "matched-disturbance", "own derivation", Source::Derived,
+        "what disturbs a chain in feedback form enters where the input does, and the chain is strict-feedback";
     PositionOnlyGains, "position-only-gains", "(a8), Remark 7", Source::Corrected("E9, E10"),
         "k, λ_f and γ* are positive";
     KnownMasses, "known-masses", "(45)", Source::Paper,

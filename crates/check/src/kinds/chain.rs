@@ -1,10 +1,15 @@
 //! Chains of Section IV: what (43) with its second steps asks for.
 
+use std::sync::Arc;
+
 use forwardstep_core::expression::Expression;
+use forwardstep_core::plant::CascadeTerms;
+use forwardstep_sim::push::{Course, Function, Push};
 use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, ChainStep, Law, ReferenceKind, Setup};
 
 use super::{Claim, KindCheck};
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, Named};
+use crate::surroundings::acts;
 use crate::theorem::Theorem;
 
 pub(crate) struct Chain;
@@ -44,6 +49,7 @@ impl KindCheck for Chain {
     fn hypotheses(&self, setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
         let mut hypotheses = vec![input_factor(setup, agents), gains(setup, agents)];
         hypotheses.extend(regressors(setup, agents));
+        hypotheses.extend(disturbances(setup, agents));
         hypotheses
     }
 
@@ -94,6 +100,31 @@ fn gains(setup: &Setup, agents: &[usize]) -> Hypothesis {
     let estimates = chains(setup, agents).any(|(_, law, _)| law.estimates());
     let id = if estimates { Id::ChainAdaptation } else { Id::ChainGains };
     Hypothesis::new(id, KindEvidence::PositiveNumbers)
+}
+
+/// Only of the last equation of a strict-feedback chain is it known what a disturbance does to V.
+fn disturbances(setup: &Setup, agents: &[usize]) -> Option<Hypothesis> {
+    let pushed = |index: usize| setup.agents[index].pushes.iter().filter(|push| acts(push));
+    let mut disturbed = chains(setup, agents)
+        .filter_map(|(index, _, model)| match model {
+            ChainModel::Cascade(terms) => pushed(index).next().map(|_| (index, terms)),
+            ChainModel::Derivatives(_) => None,
+        })
+        .peekable();
+    disturbed.peek()?;
+    let last_only = |push: &Push, order: usize| match push.course() {
+        Course::Each(all) => all.iter().take(order - 1).all(|one| *one == Function::Constant(0.0)),
+        Course::Table(table) => {
+            let earlier = |row: &[f64]| row.iter().take(order - 1).all(|value| *value == 0.0);
+            table.values.chunks(order).all(earlier)
+        }
+    };
+    let unmatched = |(index, terms): &(usize, &Arc<CascadeTerms>)| {
+        !terms.is_strict() || !pushed(*index).all(|push| last_only(push, terms.order()))
+    };
+    let found = disturbed.find(unmatched).map(|(index, _)| Named::of(setup, index));
+    let evidence = found.map_or(KindEvidence::Matched, |agent| KindEvidence::Unmatched { agent });
+    Some(Hypothesis::new(Id::MatchedDisturbance, evidence))
 }
 
 /// Adaptation by the gradient needs φ bounded along the run for s → 0.

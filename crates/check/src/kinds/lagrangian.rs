@@ -1,13 +1,16 @@
-//! Lagrangian robots under (6)–(7), or with known parameters. Which theorem it is depends on the reference dynamics.
+//! Lagrangian robots under (6)–(7), or with known parameters. Where they agree, which theorem it is depends on the reference
+//! dynamics.
 
 use std::sync::Arc;
 
 use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::robot::{PlanarArm, PointMass, Ship};
-use forwardstep_sim::{Adaptive, AgentSetup, Known, Setup};
+use forwardstep_sim::{Adaptive, AgentSetup, Known, ReferenceKind, Setup};
 
 use super::{Claim, KindCheck};
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, LoopEvidence, Named, Subject};
+use crate::theorem::Theorem;
+use crate::theorems::real_roots;
 
 pub(crate) struct LagrangianRobot;
 
@@ -24,19 +27,24 @@ impl KindCheck for LagrangianRobot {
         "Theorem 3 with (24)"
     }
 
-    fn claim(&self, _: &Setup) -> Option<Claim> {
-        None
+    fn claim(&self, setup: &Setup) -> Option<Claim> {
+        (setup.reference == ReferenceKind::Tracking).then(|| Claim {
+            theorem: Theorem::RobotsTrack,
+            promises: "every robot reaches its target: q − q_d → 0 and dq − dq_d → 0".into(),
+        })
     }
 
     fn hypotheses(&self, setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
         let known = agents.iter().filter(|agent| setup.agents[**agent].law.is::<Known>()).count();
         let gains = Hypothesis::new(Id::PositiveGains, LoopEvidence::Gains { known, agents: agents.len() });
         let from_outside = agents.iter().filter(|agent| !is_shipped(&setup.agents[**agent]));
-        from_outside.map(|agent| three_properties(setup, *agent)).chain([gains]).collect()
+        let roots = (setup.reference == ReferenceKind::Tracking).then(|| real_roots(setup, agents));
+        from_outside.map(|agent| three_properties(setup, *agent)).chain([gains]).chain(roots).collect()
     }
 
-    fn target_derivatives(&self, _: &AgentSetup) -> usize {
-        2
+    /// ż holds the second one even where one root asks for the first only.
+    fn target_derivatives(&self, agent: &AgentSetup) -> usize {
+        agent.roots_per_s.len().max(2)
     }
 
     fn wants_common_order(&self) -> bool {

@@ -5,6 +5,7 @@ use forwardstep_sim::{AgentSetup, AttitudeLaw, Setup, SpacecraftModel};
 
 use super::{Claim, KindCheck};
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, MotionEvidence, Named, Subject};
+use crate::surroundings::acts;
 use crate::theorem::Theorem;
 
 pub(crate) struct Spacecraft;
@@ -54,6 +55,9 @@ impl KindCheck for Spacecraft {
 
 /// h_I is given to the controller, not measured.
 fn momentum(agent: &AgentSetup) -> KindEvidence {
+    if agent.pushes.iter().any(acts) {
+        return KindEvidence::MomentumPushed;
+    }
     let Some(SpacecraftModel { inertia_kg_m2, wheels }) = agent.robot.kind.downcast() else {
         return KindEvidence::NoSpacecraft;
     };

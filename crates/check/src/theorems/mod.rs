@@ -7,6 +7,8 @@ mod swarm;
 mod theorem_1;
 mod theorem_3;
 
+pub(crate) use theorem_3::real_roots;
+
 use forwardstep_sim::{Exchange, ReferenceKind, Setup};
 
 use crate::graphs::{dwell_time, spanning_tree};

@@ -10,7 +10,7 @@ use crate::hypothesis::{Bounded, Hypothesis, Id, MotionEvidence, Named, Subject}
 use crate::kinds::Claim;
 use crate::laws::{self, kind_of};
 use crate::report::Report;
-use crate::surroundings::{applied_torque, digital};
+use crate::surroundings::{applied_torque, digital, pushes_end};
 use crate::theorem::Theorem;
 
 /// Trajectories have as many derivatives.
@@ -21,6 +21,7 @@ pub(super) fn check(setup: &Setup) -> Report {
     let Claim { theorem, promises } = laws::claim(setup)
         .unwrap_or_else(|| Claim { theorem: Theorem::Targets, promises: "every agent reaches its own target".into() });
     let mut hypotheses = bounded(setup);
+    hypotheses.extend(pushes_end(setup));
     hypotheses.extend(laws::hypotheses(setup));
     hypotheses.push(applied_torque(setup));
     hypotheses.extend(digital(setup));

@@ -18,5 +18,6 @@ pub(super) fn claim(setup: &Setup) -> Claim {
 }
 
 pub(super) fn hypotheses(setup: &Setup) -> Vec<Hypothesis> {
-    vec![fixed_graph(setup), real_roots(setup)]
+    let all: Vec<usize> = (0..setup.agents.len()).collect();
+    vec![fixed_graph(setup), real_roots(setup, &all)]
 }

@@ -22,7 +22,8 @@ pub(super) fn claim(setup: &Setup) -> Claim {
 }
 
 pub(super) fn hypotheses(setup: &Setup) -> Vec<Hypothesis> {
-    let mut hypotheses = vec![real_roots(setup)];
+    let all: Vec<usize> = (0..setup.agents.len()).collect();
+    let mut hypotheses = vec![real_roots(setup, &all)];
     if setup.agents.iter().any(|agent| kind_of(agent).wants_common_order()) {
         hypotheses.push(common_order(setup));
     }
@@ -33,8 +34,9 @@ fn same_roots(setup: &Setup) -> bool {
     setup.agents.windows(2).all(|pair| pair[0].roots_per_s == pair[1].roots_per_s)
 }
 
-pub(super) fn real_roots(setup: &Setup) -> Hypothesis {
-    let roots = setup.agents.iter().flat_map(|agent| &agent.roots_per_s).copied();
+/// That the polynomials of these agents are stable.
+pub(crate) fn real_roots(setup: &Setup, agents: &[usize]) -> Hypothesis {
+    let roots = agents.iter().flat_map(|agent| &setup.agents[*agent].roots_per_s).copied();
     Hypothesis::new(Id::RealRoots, ReferenceEvidence::Roots { smallest_per_s: roots.fold(f64::INFINITY, f64::min) })
 }
 

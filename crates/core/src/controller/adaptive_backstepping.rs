@@ -31,6 +31,9 @@
 //! that all agents drift together without bound, ever more slowly.
 //!
 //! Tracking is the same with Σ α_r of the guide for tracking.
+//!
+//! **Disturbances.** w_i in the equation of x_i adds Σ_j e_j ∂e_j/∂x_i w_i to V̇. For the last equation of a strict-feedback chain
+//! that is e_n w_n, and V stays finite under a bounded w_n. Slopes of earlier steps may grow with the state.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -105,6 +108,8 @@ pub struct AdaptiveBackstepping {
     floor: f64,
     /// u, its factor, e, θ̂'.
     tape: Tape,
+    /// Σ_j e_j ∂e_j/∂x_i, an entry per equation: what V gains from a disturbance of it.
+    gains: Tape,
 }
 
 /// Gains of [`AdaptiveBackstepping`].
@@ -138,12 +143,18 @@ impl AdaptiveBackstepping {
         LengthError::check("theta_hat", terms.parameters(), estimate_start.len())?;
         positive(&gains_per_s)?;
         positive(&adaptation)?;
-        let Steps { graph, input, divisor, errors, d_theta_hat } = Steps::new(terms, &gains_per_s, &adaptation)?;
+        let Steps { mut graph, input, divisor, errors, d_theta_hat } = Steps::new(terms, &gains_per_s, &adaptation)?;
         let mut outputs = vec![input, divisor];
-        outputs.extend(errors);
+        outputs.extend(&errors);
         outputs.extend(d_theta_hat);
         let tape = Tape::new(&graph, &outputs)?;
-        Ok(AdaptiveBackstepping { order: n, guide, gains_per_s, adaptation, estimate_start, floor, tape })
+        let mut gains = Vec::with_capacity(n);
+        for i in 0..n {
+            let slopes = errors.iter().map(|e| graph.derivative(*e, i)).collect::<Result<Vec<_>, _>>()?;
+            gains.push(graph.dot(&slopes, &errors));
+        }
+        let gains = Tape::new(&graph, &gains)?;
+        Ok(AdaptiveBackstepping { order: n, guide, gains_per_s, adaptation, estimate_start, floor, tape, gains })
     }
 
     /// ℓ.
@@ -173,6 +184,8 @@ pub struct BacksteppingWork {
     variables: Vec<f64>,
     workspace: Vec<f64>,
     out: Vec<f64>,
+    /// Of [`AdaptiveBackstepping::gains`].
+    gains: [Vec<f64>; 2],
 }
 
 impl Controller for AdaptiveBackstepping {
@@ -190,6 +203,7 @@ impl Controller for AdaptiveBackstepping {
             variables: vec![0.0; self.tape.variables()],
             workspace: self.tape.workspace(),
             out: vec![0.0; self.tape.outputs()],
+            gains: [self.gains.workspace(), vec![0.0; self.order]],
         }
     }
 
@@ -290,7 +304,7 @@ impl Controller for AdaptiveBackstepping {
 
     fn balance(
         &self,
-        _: &mut BacksteppingWork,
+        work: &mut BacksteppingWork,
         truth: Truth<'_, Cascade>,
         _: Given<'_, Self>,
         state: &[f64],
@@ -308,6 +322,16 @@ impl Controller for AdaptiveBackstepping {
         for (j, theta) in truth.plant.theta().iter().enumerate() {
             let delta = state[vectors + j] - theta;
             value += 0.5 * delta * delta / self.adaptation[j];
+        }
+        if !truth.external.is_empty() {
+            let BacksteppingWork { variables, gains: [workspace, gains], .. } = work;
+            LengthError::check("state of the plant", self.order, truth.state.len())?;
+            let (z, theta_hat) = state.split_at(vectors);
+            let known = truth.state.iter().chain(theta_hat).chain(z);
+            // The last derivative of z is in no error.
+            variables.iter_mut().zip(known).for_each(|(variable, value)| *variable = *value);
+            self.gains.evaluate(variables, workspace, gains)?;
+            dissipation -= gains.iter().zip(truth.external).map(|(gain, w)| gain * w).sum::<f64>();
         }
         Ok(Balance { value, dissipation })
     }

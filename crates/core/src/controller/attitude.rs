@@ -18,6 +18,9 @@
 //! V̇ = −(ω − z)ᵀDᵀK ẏ + ẏᵀK D(ω − z) − ẏᵀΛ_f ẏ = −ẏᵀΛ_f ẏ
 //! ```
 //!
+//! A torque n from outside adds sᵀn with s = ω − z, and moves the true h away from Rᵀ h_I, which the law goes on taking for it:
+//! V̇ = −ẏᵀΛ_f ẏ + sᵀn + sᵀ S(h − Rᵀ h_I) z. The last term stays when the torque has ended.
+//!
 //! From ω̇_d = Rᵀω̇_d^I − S(ω) ω_d and (97) the error Δω = ω − ω_d obeys
 //!
 //! ```text
@@ -272,6 +275,13 @@ impl Controller for AttitudeTracking {
         let mut lost = [0.0; 4];
         self.filter.apply(&dy, &mut lost);
         let value = 0.5 * (dot(s, times(truth.plant.inertia(), s)) + dot(dy, dy));
-        Ok(Balance { value, dissipation: dot(dy, lost) })
+        let mut dissipation = dot(dy, lost);
+        if let &[a, b, c] = truth.external {
+            let (q, z) = (normalized(four(truth.state)), three(state));
+            let (true_h, taken) = (truth.plant.momentum(truth.state)?, rotate_back(q, self.momentum_inertial));
+            let apart = core::array::from_fn(|k| true_h[k] - taken[k]);
+            dissipation -= dot(s, [a, b, c]) + dot(s, cross(apart, z));
+        }
+        Ok(Balance { value, dissipation })
     }
 }

@@ -26,6 +26,9 @@
 //!
 //! so s and η are square-integrable. s is the output of a stable filter that is driven by η, hence s → 0 without any bound
 //! on φ, which adaptation by the gradient (`linearising`) needs. The norm of ζ never grows, whatever z does.
+//!
+//! A disturbance w of the plant enters ṡ as it is and ζ' as Γ φ w, which adds (s + η/k) w to V̇. That is at most
+//! (k/2)(s + η/k)² + w²/(2k), so that V̇ ≤ w²/(2k): a bounded w leaves V finite at all times.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -291,6 +294,7 @@ impl Controller for Immersion {
             eta += phi[j] * zeta;
             value += 0.5 * zeta * zeta / (k * self.adaptation[j]);
         }
-        Ok(Balance { value, dissipation: k * s * s + s * eta + eta * eta / k })
+        let power: f64 = truth.external.iter().map(|w| (s + eta / k) * w).sum();
+        Ok(Balance { value, dissipation: k * s * s + s * eta + eta * eta / k - power })
     }
 }

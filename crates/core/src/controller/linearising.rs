@@ -14,7 +14,7 @@
 //! V̇ = −k s² − s φᵀΔθ + Δθᵀ φ s = −k s²
 //! ```
 //!
-//! whatever z does: s and θ̂ are bounded and s is square-integrable. With θ known s → 0 exponentially. With θ adapted s → 0
+//! whatever z does, and a disturbance w adds s w: without one s and θ̂ are bounded and s is square-integrable. With θ known s → 0 exponentially. With θ adapted s → 0
 //! follows as soon as φ is bounded along the run, for then ṡ is; φ is bounded if x* is, or if its functions are. Neither step
 //! differentiates anything: ż is a state of the reference for ℓ ≥ 2, and for ℓ = 1 what its dynamics give.
 
@@ -218,6 +218,7 @@ impl<T: Terms> Controller for Linearising<T> {
             let delta = state[self.at() + j] - truth.plant.theta[j];
             value += 0.5 * delta * delta / gamma;
         }
-        Ok(Balance { value, dissipation: self.following.gain_per_s * s * s })
+        let power: f64 = truth.external.iter().map(|w| s * w).sum();
+        Ok(Balance { value, dissipation: self.following.gain_per_s * s * s - power })
     }
 }

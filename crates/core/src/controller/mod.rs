@@ -5,6 +5,7 @@
 //! velocity: it is a [`Controller`].
 //!
 //! - `attitude`: (97)–(105), a spacecraft without angular velocity measurement.
+//! - `joint_tracking`: (6)–(7) behind reference dynamics for tracking, a robot that follows a trajectory.
 //! - `linearising`, `immersion`: (33) by feedback linearisation, with χ known or adapted, and by immersion and
 //!   invariance; `following` is what they share.
 //! - `adaptive_backstepping`: strict-feedback and pure-feedback chains; `steps` is the recursion.
@@ -21,6 +22,7 @@ mod feedback;
 mod following;
 mod guide;
 mod immersion;
+mod joint_tracking;
 mod linearising;
 mod position_only;
 mod stepped;
@@ -34,6 +36,7 @@ pub use feedback::{Feedback, FeedbackInput};
 pub use following::{ChainError, ChainMeasured, Following, FollowingWork};
 pub use guide::{Guide, GuideError, GuideWork, Leads};
 pub use immersion::{Immersion, ImmersionWork};
+pub use joint_tracking::{JointTracking, JointTrackingWork, MotionMeasured};
 pub use linearising::Linearising;
 pub use position_only::{PositionMeasured, PositionOnly};
 pub(crate) use stepped::Lengths;
@@ -86,9 +89,12 @@ pub struct Truth<'a, P> {
     pub plant: &'a P,
     /// Its state.
     pub state: &'a [f64],
+    /// What acts on it from outside, as [`Plant::rate`] takes it; empty when nothing ever does.
+    pub external: &'a [f64],
 }
 
-/// The Lyapunov-like function of a proof and what it loses by it: value + ∫ dissipation is constant along every run.
+/// The Lyapunov-like function of a proof and what it loses by it: value + ∫ dissipation is constant along every run, with the
+/// power of what acts from outside taken from the dissipation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Balance {
     /// V.

@@ -20,7 +20,7 @@
 //! V̇ = sᵀ(−k y + (m̂ − m) ż) + (k/λ_f) yᵀẏ − (m̂ − m) żᵀs = −k sᵀy + k yᵀ(s − y) = −k yᵀy
 //! ```
 //!
-//! so y is square-integrable, s is bounded, and s = y + ẏ/λ_f.
+//! while nothing acts from outside; a force f adds sᵀf. So y is square-integrable, s is bounded, and s = y + ẏ/λ_f.
 //!
 //! **Consensus**, which Remark 7 announces and does not print. Let agents exchange positions and let each take (24) of order
 //! ℓ ≥ 2 with its own z where (24) has ẋ. With ẋ = z + y + ẏ/λ_f let x' = x − y/λ_f, so ẋ' = z + y. In x' the agents follow
@@ -236,15 +236,16 @@ impl Controller for PositionOnly {
         LengthError::check("state of the plant", 2 * m, truth.state.len())?;
         LengthError::check("theta", 1, truth.plant.theta.len())?;
         let mass = truth.plant.theta[0];
-        let (mut ss, mut yy) = (0.0, 0.0);
+        let (mut ss, mut yy, mut power) = (0.0, 0.0, 0.0);
         for k in 0..m {
             let (s, y) = (truth.state[m + k] - state[k], shown[p + k]);
             ss += s * s;
             yy += y * y;
+            power += truth.external.get(k).map_or(0.0, |force| s * force);
         }
         let delta = shown[i] - mass;
         let learnt = if self.adaptation > 0.0 { delta * delta / (2.0 * self.adaptation) } else { 0.0 };
         let value = 0.5 * mass * ss + 0.5 * self.damping / self.filter_per_s * yy + learnt;
-        Ok(Balance { value, dissipation: self.damping * yy })
+        Ok(Balance { value, dissipation: self.damping * yy - power })
     }
 }

@@ -21,6 +21,7 @@
 //! V̇ = −sᵀ(K + D) s − κ α |z − z_r|²
 //! ```
 //!
+//! and gains sᵀτ_ext from what acts from outside
 //! (the second subsystem of the paper's cascade prints Y(q, q̇, z_r, ż_r) in the adaptation; (81) is what V̇ needs).
 //!
 //! **Projection.** When bounds for θ̂ are given, and Λ is diagonal, let u = ZᵀK*Δx and θ̂_k' = c_k Λ_k u_k. c_k is one but where θ̂_k
@@ -469,6 +470,7 @@ where
         let (mut task, mut strayed) = (0.0, 0.0);
         for k in 0..m {
             dissipation += work.s[k] * work.damped[k];
+            dissipation -= truth.external.get(k).map_or(0.0, |external| work.s[k] * external);
             task += work.error[k] * work.weighted[k];
             strayed += (state[k] - work.z_r[k]) * (state[k] - work.z_r[k]);
         }

@@ -1,19 +1,19 @@
 //! Parametric strict-feedback and pure-feedback chains.
 //!
 //! ```text
-//! ẋ_i = f_i(x_1 … x_{i+1}) + φ_i(x_1 … x_{i+1})ᵀθ,  i < n
-//! ẋ_n = f_n(x) + φ_n(x)ᵀθ + ψ(x) u
+//! ẋ_i = f_i(x_1 … x_{i+1}) + φ_i(x_1 … x_{i+1})ᵀθ + w_i,  i < n
+//! ẋ_n = f_n(x) + φ_n(x)ᵀθ + ψ(x) u + w_n
 //! ```
 //!
 //! A pure-feedback chain asks for ∂(f_i + φ_iᵀθ)/∂x_{i+1} ≠ 0. A strict-feedback chain is one with f_i = x_{i+1} and φ_i
-//! without x_{i+1}. What agents agree on, and transmit, is x_1.
+//! without x_{i+1}. w is a disturbance, none in the designs. What agents agree on, and transmit, is x_1.
 
 use alloc::vec;
 use alloc::vec::Vec;
 
 use thiserror::Error;
 
-use super::Plant;
+use super::{Plant, check_external};
 use crate::LengthError;
 use crate::expression::{Expression, ExpressionError, Graph, Tape};
 use crate::signal::{Block, Signal};
@@ -132,7 +132,7 @@ impl CascadeTerms {
     }
 }
 
-/// A chain with its true parameters, as a plant. State and output: x_1 … x_n. Input: u.
+/// A chain with its true parameters, as a plant. State and output: x_1 … x_n. Input: u. From outside: w.
 #[derive(Clone, Debug)]
 pub struct Cascade {
     terms: CascadeTerms,
@@ -227,14 +227,19 @@ impl Plant for Cascade {
         work: &mut CascadeWork,
         state: &[f64],
         input: &[f64],
+        external: &[f64],
         d_state: &mut [f64],
     ) -> Result<(), LengthError> {
         let n = self.terms.order();
         LengthError::check("rate", n, d_state.len())?;
         LengthError::check("input", 1, input.len())?;
+        check_external(n, external)?;
         self.tape.evaluate(state, &mut work.workspace, &mut work.out)?;
         d_state.copy_from_slice(&work.out[..n]);
         d_state[n - 1] += work.out[n] * input[0];
+        for (rate, disturbance) in d_state.iter_mut().zip(external) {
+            *rate += disturbance;
+        }
         Ok(())
     }
 }

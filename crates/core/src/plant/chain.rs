@@ -1,13 +1,13 @@
-//! The plant (33): d^k x/dt^k = χ(x*) + ψ(x*) u with x* = [x, ẋ, …, d^(k−1)x/dt^(k−1)].
+//! The plant (33): d^k x/dt^k = χ(x*) + ψ(x*) u + w with x* = [x, ẋ, …, d^(k−1)x/dt^(k−1)].
 //!
-//! χ = χ₀ + φᵀθ has a part that is known and a part that is linear in parameters which only nature knows. There may be
+//! w is a disturbance, which the paper has not. χ = χ₀ + φᵀθ has a part that is known and a part that is linear in parameters which only nature knows. There may be
 //! none. What χ₀, φ and ψ are is said by [`Terms`]: closures in Rust, or [`Formulas`] that come from a file.
 
 use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt;
 
-use super::Plant;
+use super::{Plant, check_external};
 use crate::LengthError;
 use crate::expression::{Expression, ExpressionError, Graph, Tape};
 use crate::signal::{Block, Signal};
@@ -169,7 +169,7 @@ impl Terms for Formulas {
     }
 }
 
-/// (33) with its true parameters, as a plant. State and output: x*. Input: u.
+/// (33) with its true parameters, as a plant. State and output: x*. Input: u. From outside: w.
 #[derive(Clone, Debug)]
 pub struct Chain<T> {
     /// χ₀, φ and ψ.
@@ -233,18 +233,23 @@ impl<T: Terms> Plant for Chain<T> {
         work: &mut Self::Scratch,
         state: &[f64],
         input: &[f64],
+        external: &[f64],
         d_state: &mut [f64],
     ) -> Result<(), LengthError> {
         let k = self.terms.order();
         LengthError::check("state", k, state.len())?;
         LengthError::check("rate", k, d_state.len())?;
         LengthError::check("input", 1, input.len())?;
+        check_external(1, external)?;
         LengthError::check("theta", self.theta.len(), work.phi.len())?;
         let (mut top, psi) = self.terms.terms(&mut work.terms, state, &mut work.phi)?;
         for (phi, theta) in work.phi.iter().zip(&self.theta) {
             top += phi * theta;
         }
         top += psi * input[0];
+        for disturbance in external {
+            top += disturbance;
+        }
         if let Some((last, below)) = d_state.split_last_mut() {
             below.copy_from_slice(&state[1..]);
             *last = top;

@@ -3,12 +3,12 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::Plant;
+use super::{Plant, check_external};
 use crate::LengthError;
 use crate::robot::Lagrangian;
 use crate::signal::{Block, Signal};
 
-/// M(q) q̈ + C(q, q̇) q̇ + g(q) + D q̇ = τ with ϑ known to nature alone. State and output: q, q̇. Input: τ.
+/// M(q) q̈ + C(q, q̇) q̇ + g(q) + D q̇ = τ + τ_ext with ϑ known to nature alone. State and output: q, q̇. Input: τ. From outside: τ_ext.
 #[derive(Clone, Debug)]
 pub struct Mechanical<R> {
     /// Geometry and kernels.
@@ -60,13 +60,22 @@ impl<R: Lagrangian<f64> + Send + Sync + 'static> Plant for Mechanical<R> {
         scratch: &mut Self::Scratch,
         state: &[f64],
         input: &[f64],
+        external: &[f64],
         d_state: &mut [f64],
     ) -> Result<(), LengthError> {
         LengthError::check("state", self.output_len(), state.len())?;
         LengthError::check("rate", self.output_len(), d_state.len())?;
+        LengthError::check("input", self.axes(), input.len())?;
+        check_external(self.axes(), external)?;
         let (q, dq) = state.split_at(self.axes());
         let (d_q, ddq) = d_state.split_at_mut(self.axes());
+        // Room for the sum of all torques, until it is needed for q̇.
+        d_q.copy_from_slice(input);
+        for (torque, external) in d_q.iter_mut().zip(external) {
+            *torque += external;
+        }
+        self.robot.forward_dynamics(scratch, q, dq, &self.theta, d_q, ddq)?;
         d_q.copy_from_slice(dq);
-        self.robot.forward_dynamics(scratch, q, dq, &self.theta, input, ddq)
+        Ok(())
     }
 }

@@ -65,7 +65,9 @@ pub trait Plant: Send + Sync + 'static {
     /// Limits `input` to what the actuators can give in `state`.
     fn limit(&self, state: &[f64], input: &mut [f64]);
 
-    /// d/dt of `state` under `input`.
+    /// d/dt of `state` under `input` and what acts from outside. Forces and torques come in `external`, in the order of the
+    /// axes and then of the body, or what is added to each equation; empty when nothing acts. A plant that nothing acts on
+    /// takes an empty one only.
     ///
     /// # Errors
     /// [`LengthError`] when a slice has the wrong length.
@@ -74,12 +76,21 @@ pub trait Plant: Send + Sync + 'static {
         scratch: &mut Self::Scratch,
         state: &[f64],
         input: &[f64],
+        external: &[f64],
         d_state: &mut [f64],
     ) -> Result<(), LengthError>;
 
     /// Brings `state`, which rounding and truncation have led away by little, back to its manifold: unit quaternions have
     /// norm one.
     fn settle(&self, state: &mut [f64]);
+}
+
+/// Checks that `external` has an entry for each of `need`, or none.
+///
+/// # Errors
+/// [`LengthError`] when it has another number.
+pub fn check_external(need: usize, external: &[f64]) -> Result<(), LengthError> {
+    if external.is_empty() { Ok(()) } else { LengthError::check("what acts from outside", need, external.len()) }
 }
 
 /// Numbers in all blocks.

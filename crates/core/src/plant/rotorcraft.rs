@@ -1,8 +1,10 @@
 //! What flies: (44) as a rigid body with inertia, torques for input, and four rotors with limits.
 //!
 //! ```text
-//! m ẍ = −σ R e₃ + m g e₃,   Ṙ = R S(ω),   J ω̇ + ω × J ω = τ
+//! m ẍ = −σ R e₃ + m g e₃ + f,   Ṙ = R S(ω),   J ω̇ + ω × J ω = τ + n
 //! ```
+//!
+//! f in the inertial frame and n about the axes of the body act from outside.
 //!
 //! **Rotors.** Four of them stand at the corners of a square, at (±a, ±a) in the body's x and y axes; rotor k pushes with
 //! t_k ≥ 0 along −e₃ and leaves a drag of c t_k about e₃, one sign on each diagonal:
@@ -19,14 +21,15 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::Plant;
 use super::vehicle::{self, Vehicle, VehicleState};
+use super::{Plant, check_external};
 use crate::attitude::{cross, times};
 use crate::linear::invert;
 use crate::signal::{Block, Signal};
 use crate::{Gain, GainError, LengthError};
 
-/// A rotorcraft with its true mass and inertia. State and output: x, ẋ, (q_v, q_o), ω. Input: σ, τ.
+/// A rotorcraft with its true mass and inertia. State and output: x, ẋ, (q_v, q_o), ω. Input: σ, τ. From
+/// outside: f, n.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotorcraft {
     /// Mass and gravity.
@@ -149,15 +152,27 @@ impl Plant for Rotorcraft {
         }
     }
 
-    fn rate(&self, (): &mut (), state: &[f64], input: &[f64], d_state: &mut [f64]) -> Result<(), LengthError> {
+    fn rate(
+        &self,
+        (): &mut (),
+        state: &[f64],
+        input: &[f64],
+        external: &[f64],
+        d_state: &mut [f64],
+    ) -> Result<(), LengthError> {
         LengthError::check("state", LEN, state.len())?;
         LengthError::check("rate", LEN, d_state.len())?;
         LengthError::check("input", 4, input.len())?;
+        check_external(6, external)?;
+        let (force, torque) = external.split_at(external.len() / 2);
         let (moving, omega) = VehicleState::read(state)?;
         let (Some(omega), [sigma, tau @ ..]) = (omega.first_chunk::<3>(), input) else { return Ok(()) };
-        self.vehicle.motion(moving, *sigma, *omega, d_state);
+        self.vehicle.motion(moving, (*sigma, *omega), force, d_state);
         let gyroscopic = cross(*omega, times(&self.inertia, *omega));
-        let net = core::array::from_fn(|k| tau[k] - gyroscopic[k]);
+        let mut net = core::array::from_fn(|k| tau[k] - gyroscopic[k]);
+        for (net, torque) in net.iter_mut().zip(torque) {
+            *net += torque;
+        }
         d_state[VehicleState::LEN..].copy_from_slice(&times(&self.inverse, net));
         Ok(())
     }
@@ -224,7 +239,7 @@ mod tests {
         let craft = Rotorcraft::new(vehicle, &j, None).unwrap();
         let state = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.1, 0.3, -0.2, 0.9, 1.0, -2.0, 0.5];
         let mut rate = [0.0; 13];
-        craft.rate(&mut (), &state, &[0.0; 4], &mut rate).unwrap();
+        craft.rate(&mut (), &state, &[0.0; 4], &[], &mut rate).unwrap();
         let (omega, d_omega) = ([1.0, -2.0, 0.5], [rate[10], rate[11], rate[12]]);
         let h = times(craft.inertia(), omega);
         let dh = times(craft.inertia(), d_omega);

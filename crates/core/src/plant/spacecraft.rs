@@ -8,11 +8,11 @@
 //! h = M ω + A h_w
 //! ```
 //!
-//! Motor k turns its wheel with the torque u_k, so ḣ_w = u. Nothing acts from outside, so R h = h_I is constant:
-//! ḣ = −ω × h = S(h) ω. Hence
+//! Motor k turns its wheel with the torque u_k, so ḣ_w = u. While nothing acts from outside R h = h_I is constant:
+//! ḣ = −ω × h = S(h) ω. A torque n about the axes of the body adds to ḣ. Hence
 //!
 //! ```text
-//! M ω̇ = ḣ − A ḣ_w = S(h) ω + τ,      τ = −A u                                   (94)
+//! M ω̇ = ḣ − A ḣ_w = S(h) ω + τ + n,  τ = −A u                                   (94), n = 0
 //! q̇_v = ½ (q_o I + S(q_v)) ω,         q̇_o = −½ q_vᵀω
 //! ```
 //!
@@ -24,7 +24,7 @@ use alloc::vec::Vec;
 
 use thiserror::Error;
 
-use super::Plant;
+use super::{Plant, check_external};
 use crate::attitude::{cross, dot, normalized, rate, rotate, times};
 use crate::linear::invert;
 use crate::signal::{Block, Signal};
@@ -177,9 +177,10 @@ fn rows(entries: &[f64; 9]) -> [[f64; 3]; 3] {
     core::array::from_fn(|row| core::array::from_fn(|column| entries[3 * row + column]))
 }
 
-/// A spacecraft with reaction wheels and nothing that acts from outside.
+/// A spacecraft with reaction wheels.
 ///
 /// State and output: q = (q_v, q_o), ω in rad/s in coordinates of the body, h_w in N m s. Input: u in N m.
+/// From outside: n in N m.
 ///
 /// **Source**: (94) and the two equations after it.
 #[derive(Clone, Debug, PartialEq)]
@@ -214,18 +215,22 @@ impl Spacecraft {
         &self.wheels
     }
 
-    /// h_I = R (M ω + A h_w), which no motion changes.
+    /// h_I = R (M ω + A h_w), which no motion changes, only a torque from outside.
     ///
     /// # Errors
     /// [`LengthError`] when `state` is not a whole state.
     pub fn momentum_inertial(&self, state: &[f64]) -> Result<[f64; 3], LengthError> {
-        let (q, omega, h_w) = self.parts(state)?;
-        Ok(rotate(q, self.momentum(omega, h_w)))
+        Ok(rotate(self.parts(state)?.0, self.momentum(state)?))
     }
 
-    fn momentum(&self, omega: [f64; 3], h_w: &[f64]) -> [f64; 3] {
+    /// h = M ω + A h_w.
+    ///
+    /// # Errors
+    /// [`LengthError`] when `state` is not a whole state.
+    pub fn momentum(&self, state: &[f64]) -> Result<[f64; 3], LengthError> {
+        let (_, omega, h_w) = self.parts(state)?;
         let (own, wheels) = (times(&self.inertia, omega), self.wheels.sum(h_w));
-        core::array::from_fn(|k| own[k] + wheels[k])
+        Ok(core::array::from_fn(|k| own[k] + wheels[k]))
     }
 
     fn parts<'a>(&self, state: &'a [f64]) -> Result<Parts<'a>, LengthError> {
@@ -287,13 +292,24 @@ impl Plant for Spacecraft {
         }
     }
 
-    fn rate(&self, (): &mut (), state: &[f64], input: &[f64], d_state: &mut [f64]) -> Result<(), LengthError> {
-        let (q, omega, h_w) = self.parts(state)?;
+    fn rate(
+        &self,
+        (): &mut (),
+        state: &[f64],
+        input: &[f64],
+        external: &[f64],
+        d_state: &mut [f64],
+    ) -> Result<(), LengthError> {
+        let (q, omega, _) = self.parts(state)?;
         LengthError::check("input", self.wheels.count(), input.len())?;
         LengthError::check("rate", state.len(), d_state.len())?;
+        check_external(3, external)?;
         d_state[..4].copy_from_slice(&rate(q, omega));
-        let (coupling, pull) = (cross(self.momentum(omega, h_w), omega), self.wheels.sum(input));
-        let net = core::array::from_fn(|k| coupling[k] - pull[k]);
+        let (coupling, pull) = (cross(self.momentum(state)?, omega), self.wheels.sum(input));
+        let mut net = core::array::from_fn(|k| coupling[k] - pull[k]);
+        for (net, torque) in net.iter_mut().zip(external) {
+            *net += torque;
+        }
         d_state[4..7].copy_from_slice(&times(&self.inverse, net));
         d_state[7..].copy_from_slice(input);
         Ok(())

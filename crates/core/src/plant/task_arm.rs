@@ -8,6 +8,7 @@ use crate::robot::{Lagrangian, TipKinematics};
 use crate::signal::{Block, Signal};
 
 /// A robot with ϑ and θ known to nature alone. State: q, q̇. Output: q, q̇ and the position x of the tip. Input: τ.
+/// From outside: τ_ext, which a force f on the tip makes by Jᵀf.
 ///
 /// **Source**: (71), (73).
 #[derive(Clone, Debug)]
@@ -69,9 +70,10 @@ where
         scratch: &mut Self::Scratch,
         state: &[f64],
         input: &[f64],
+        external: &[f64],
         d_state: &mut [f64],
     ) -> Result<(), LengthError> {
-        self.arm.rate(scratch, state, input, d_state)
+        self.arm.rate(scratch, state, input, external, d_state)
     }
 }
 

@@ -3,11 +3,12 @@
 use alloc::vec::Vec;
 use core::fmt;
 
-use super::{Plant, total};
+use super::{Plant, check_external, total};
 use crate::LengthError;
 use crate::signal::Block;
 
-/// ẋ = f(x, u), all of whose state can be measured. `rate` takes x, u and ẋ, in this order, each as long as its blocks say.
+/// ẋ = f(x, u) + w, all of whose state can be measured. `rate` takes x, u and ẋ, in this order, each as long as its blocks say;
+/// the disturbance w, where there is one, is added to what it gives, entry by entry.
 ///
 /// ```
 /// use forwardstep_core::plant::{Plant, VectorField};
@@ -16,7 +17,7 @@ use crate::signal::Block;
 /// // A ẋ = u: the level of a tank of 2 m².
 /// let tank = VectorField::new(1, [(Signal::Position, 1)], [(Signal::Torque, 1)], |_, u, dx| dx[0] = u[0] / 2.0);
 /// let mut rate = [0.0];
-/// tank.rate(&mut (), &[1.0], &[0.5], &mut rate)?;
+/// tank.rate(&mut (), &[1.0], &[0.5], &[], &mut rate)?;
 /// assert_eq!(rate, [0.25]);
 /// # Ok::<(), forwardstep_core::LengthError>(())
 /// ```
@@ -94,11 +95,20 @@ impl<F: Fn(&[f64], &[f64], &mut [f64]) + Send + Sync + 'static> Plant for Vector
         }
     }
 
-    fn rate(&self, (): &mut (), state: &[f64], input: &[f64], d_state: &mut [f64]) -> Result<(), LengthError> {
+    fn rate(
+        &self,
+        (): &mut (),
+        state: &[f64],
+        input: &[f64],
+        external: &[f64],
+        d_state: &mut [f64],
+    ) -> Result<(), LengthError> {
         LengthError::check("state", total(&self.states), state.len())?;
         LengthError::check("input", total(&self.inputs), input.len())?;
         LengthError::check("rate", total(&self.states), d_state.len())?;
+        check_external(total(&self.states), external)?;
         (self.rate)(state, input, d_state);
+        d_state.iter_mut().zip(external).for_each(|(d_state, w)| *d_state += w);
         Ok(())
     }
 
@@ -123,9 +133,12 @@ mod tests {
     #[test]
     fn wrong_lengths_are_errors() {
         let plant = VectorField::new(1, [(Signal::Position, 2)], [(Signal::Torque, 1)], |_, u, dx| dx[0] = u[0]);
-        assert!(plant.rate(&mut (), &[0.0; 2], &[1.0], &mut [0.0; 2]).is_ok());
-        for [state, input, rate] in [[1, 1, 2], [2, 2, 2], [2, 1, 3]] {
-            assert!(plant.rate(&mut (), &vec![0.0; state], &vec![0.0; input], &mut vec![0.0; rate]).is_err());
+        let mut rate = [0.0, 5.0];
+        plant.rate(&mut (), &[0.0; 2], &[1.0], &[0.25, -1.0], &mut rate).unwrap();
+        assert_eq!(rate, [1.25, 4.0]);
+        for [state, input, w, rate] in [[1, 1, 0, 2], [2, 2, 0, 2], [2, 1, 0, 3], [2, 1, 1, 2]] {
+            let (state, input, w) = (vec![0.0; state], vec![0.0; input], vec![0.0; w]);
+            assert!(plant.rate(&mut (), &state, &input, &w, &mut vec![0.0; rate]).is_err());
         }
         assert!(plant.output(&mut (), &[1.0, 2.0], &mut [0.0; 1]).is_err());
         assert!(plant.output(&mut (), &[1.0], &mut [0.0; 2]).is_err());

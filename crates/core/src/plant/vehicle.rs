@@ -1,21 +1,22 @@
 //! (44): a vehicle that a single thrust propels and whose angular velocity is commanded.
 //!
 //! ```text
-//! m ẍ = −σ R e₃ + m g e₃,   Ṙ = R S(ω)
+//! m ẍ = −σ R e₃ + m g e₃ + f,   Ṙ = R S(ω)
 //! ```
 //!
 //! e₃ points down, in the inertial frame and, through the belly, in the body: an upright vehicle that hovers has R = I and
-//! σ = m g.
+//! σ = m g. f is what pushes it, in the inertial frame; the paper has none. No torque can turn it but as ω says.
 
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::Plant;
+use super::{Plant, check_external};
 use crate::LengthError;
 use crate::attitude::{Quaternion, normalized, rate, rotate};
 use crate::signal::{Block, Signal};
 
 /// A thrust-propelled vehicle with its true mass. State and output: x, ẋ, (q_v, q_o). Input: σ, ω.
+/// From outside: f.
 ///
 /// **Source**: (44).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,18 +56,27 @@ impl<'a> VehicleState<'a> {
 }
 
 impl Vehicle {
-    /// ẍ under σ.
+    /// ẍ under σ and nothing from outside.
     pub fn acceleration(&self, attitude: Quaternion, sigma: f64) -> [f64; 3] {
         let [x, y, z] = rotate(attitude, [0.0, 0.0, -sigma / self.mass]);
         [x, y, z + self.gravity]
     }
 
-    /// d/dt of the ten numbers of [`VehicleState`].
-    pub(super) fn motion(&self, state: VehicleState<'_>, sigma: f64, omega: [f64; 3], d_state: &mut [f64]) {
+    /// d/dt of the ten numbers of [`VehicleState`], pushed by `force`, which may be empty.
+    pub(super) fn motion(
+        &self,
+        state: VehicleState<'_>,
+        (sigma, omega): (f64, [f64; 3]),
+        force: &[f64],
+        d_state: &mut [f64],
+    ) {
         let rates = state.dx.iter().copied();
         let rates = rates.chain(self.acceleration(*state.attitude, sigma)).chain(rate(*state.attitude, omega));
         for (d, rate) in d_state.iter_mut().zip(rates) {
             *d = rate;
+        }
+        for (d, force) in d_state.iter_mut().skip(3).zip(force) {
+            *d += force / self.mass;
         }
     }
 }
@@ -112,15 +122,23 @@ impl Plant for Vehicle {
 
     fn limit(&self, _: &[f64], _: &mut [f64]) {}
 
-    fn rate(&self, (): &mut (), state: &[f64], input: &[f64], d_state: &mut [f64]) -> Result<(), LengthError> {
+    fn rate(
+        &self,
+        (): &mut (),
+        state: &[f64],
+        input: &[f64],
+        external: &[f64],
+        d_state: &mut [f64],
+    ) -> Result<(), LengthError> {
         LengthError::check("state", VehicleState::LEN, state.len())?;
         LengthError::check("rate", VehicleState::LEN, d_state.len())?;
+        check_external(3, external)?;
         let [sigma, omega @ ..] = input.first_chunk::<4>().filter(|_| input.len() == 4).ok_or(LengthError {
             what: "input",
             need: 4,
             got: input.len(),
         })?;
-        self.motion(VehicleState::read(state)?.0, *sigma, *omega, d_state);
+        self.motion(VehicleState::read(state)?.0, (*sigma, *omega), external, d_state);
         Ok(())
     }
 
@@ -138,15 +156,15 @@ mod tests {
         let vehicle = Vehicle { mass: 1.7, gravity: 9.81 };
         let mut state = [1.0, 2.0, -3.0, 0.1, 0.2, 0.3, 0.0, 0.0, 0.0, 1.0];
         let mut rate = [9.0; 10];
-        vehicle.rate(&mut (), &state, &[1.7 * 9.81, 0.0, 0.0, 0.0], &mut rate).unwrap();
+        vehicle.rate(&mut (), &state, &[1.7 * 9.81, 0.0, 0.0, 0.0], &[], &mut rate).unwrap();
         assert!(rate[3..].iter().all(|x| x.abs() < 1e-15), "{rate:?}");
         assert_eq!(rate[..3], state[3..6]);
-        vehicle.rate(&mut (), &state, &[0.0; 4], &mut rate).unwrap();
+        vehicle.rate(&mut (), &state, &[0.0; 4], &[], &mut rate).unwrap();
         assert_eq!(rate[3..6], [0.0, 0.0, 9.81]);
         // Belly forward, a quarter turn about y: thrust pushes back along −x.
         let half = libm::sqrt(0.5);
         state[6..].copy_from_slice(&[0.0, half, 0.0, half]);
-        vehicle.rate(&mut (), &state, &[1.7, 0.0, 0.0, 0.0], &mut rate).unwrap();
+        vehicle.rate(&mut (), &state, &[1.7, 0.0, 0.0, 0.0], &[], &mut rate).unwrap();
         assert!((rate[3] + 1.0).abs() < 1e-15 && (rate[5] - 9.81).abs() < 1e-15, "{rate:?}");
     }
 

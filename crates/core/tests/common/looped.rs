@@ -10,6 +10,8 @@ pub(crate) struct Looped<C: Controller, T> {
     pub(crate) controller: C,
     /// The target at a time.
     pub(crate) target: T,
+    /// What acts from outside, always.
+    pub(crate) external: Vec<f64>,
     scratch: (<C::Plant as Plant>::Scratch, C::Scratch),
     pub(crate) output: Vec<f64>,
     pub(crate) input: Vec<f64>,
@@ -23,6 +25,7 @@ impl<C: Controller, T: Fn(f64) -> Vec<Jet>> Looped<C, T> {
             output: vec![0.0; plant.output_len()],
             input: vec![0.0; total(&plant.inputs())],
             shown: vec![0.0; total(&controller.shown())],
+            external: Vec::new(),
             plant,
             controller,
             target,
@@ -57,7 +60,7 @@ impl<C: Controller, T: Fn(f64) -> Vec<Jet>> Looped<C, T> {
         let asked = Asked { input: &mut self.input, d_state, shown: &mut self.shown };
         self.controller.evaluate(&mut self.scratch.1, given, state, asked).unwrap();
         self.plant.limit(own, &mut self.input);
-        self.plant.rate(&mut self.scratch.0, own, &self.input, d_own).unwrap();
+        self.plant.rate(&mut self.scratch.0, own, &self.input, &self.external, d_own).unwrap();
         dx
     }
 
@@ -67,7 +70,7 @@ impl<C: Controller, T: Fn(f64) -> Vec<Jet>> Looped<C, T> {
         let (target, sums) = ((self.target)(t), vec![0.0; self.plant.axes()]);
         let heard = Heard::new(&[0.0], &sums, sums.len()).unwrap();
         let given = Given { measured: self.controller.see(&self.output).unwrap(), heard, target: &target };
-        let truth = Truth { plant: &self.plant, state: own };
+        let truth = Truth { plant: &self.plant, state: own, external: &self.external };
         self.controller.balance(&mut self.scratch.1, truth, given, state, &self.shown).unwrap()
     }
 

@@ -305,6 +305,9 @@ pub struct Solver {
     pub evaluations: u64,
     /// Steps that ended on a break-point.
     pub break_points: u64,
+    /// Steps of sampled controllers that failed, so that a safe command stood; absent where none did.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failed_steps: Option<u64>,
     /// The largest rest of the inclusions that set-valued signs solve; absent where none are solved for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sign_residual: Option<f64>,
@@ -364,6 +367,7 @@ impl Summary {
                 rejected: statistics.rejected,
                 evaluations: statistics.evaluations,
                 break_points: statistics.break_points,
+                failed_steps: (statistics.failed_steps > 0).then_some(statistics.failed_steps),
                 sign_residual: statistics.sign_residual.filter(|residual| residual.is_finite()),
             },
             links: Link::all(&setup.network),
@@ -376,9 +380,10 @@ impl Summary {
 
     /// What the run cost.
     pub(crate) fn statistics(&self) -> Statistics {
-        let Solver { steps, rejected, evaluations, break_points, sign_residual } = self.solver;
+        let Solver { steps, rejected, evaluations, break_points, failed_steps, sign_residual } = self.solver;
         let wall = Duration::try_from_secs_f64(self.timings.wall_s).ok();
-        Statistics { steps, rejected, evaluations, break_points, sign_residual, wall }
+        let failed_steps = failed_steps.unwrap_or(0);
+        Statistics { steps, rejected, evaluations, break_points, sign_residual, failed_steps, wall }
     }
 
     /// Writes it as indented JSON.

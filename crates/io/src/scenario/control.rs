@@ -1,10 +1,11 @@
 //! `[control]` → [`Control`].
 
-use forwardstep_sim::{Actuators, Control, Sensors, VelocitySensor};
+use forwardstep_core::sampled::SafeCommand;
+use forwardstep_sim::{Actuators, Control, Failures, Sensors, VelocitySensor};
 
 use super::at::At;
-use super::control_file::{ControlFile, VelocityFile};
-use super::fault::{self, Fault, seed};
+use super::control_file::{ControlFile, SafeCommandFile, VelocityFile};
+use super::fault::{self, Fault, filled, seed, values};
 use super::values::AxisValues;
 
 /// Reads how the controllers of agents with `axes` axes sample.
@@ -33,7 +34,18 @@ pub(super) fn control(file: &ControlFile, axes: usize) -> Result<Control, Fault>
             torque_rate_limit: limits(&file.torque_rate_limit_per_s),
             torque_quantum: or_zero(steps.and_then(|steps| steps.torque.as_ref())),
         },
+        failures: failures(file)?,
     })
+}
+
+fn failures(file: &ControlFile) -> Result<Failures, Fault> {
+    let safe_command = match file.safe_command.as_ref().map(|safe| &safe.value) {
+        None => None,
+        Some(SafeCommandFile::Hold) => Some(SafeCommand::HoldLast),
+        Some(SafeCommandFile::Zero) => Some(SafeCommand::Zero),
+        Some(SafeCommandFile::Values(list)) => Some(SafeCommand::Values(values(filled("values", list)?))),
+    };
+    Ok(Failures { safe_command, message_timeout_s: file.message_timeout_s.as_ref().map(|timeout| timeout.value) })
 }
 
 /// One number for all axes, or one for each.

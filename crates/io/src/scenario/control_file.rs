@@ -27,6 +27,24 @@ pub struct ControlFile {
     pub torque_limit: Option<At<AxisValues>>,
     /// The fastest change of the torque of every axis, or of all, in N m/s or N/s.
     pub torque_rate_limit_per_s: Option<At<AxisValues>>,
+    /// What is commanded when a step of a controller fails, since its law divides by something that vanishes; the run then goes
+    /// on. Default: the run ends there.
+    pub safe_command: Option<At<SafeCommandFile>>,
+    /// How old a message may become, in s: the sender of an older one does not count until a newer one arrives. Default: any age.
+    #[schemars(range(min = 0))]
+    pub message_timeout_s: Option<At<f64>>,
+}
+
+/// What is commanded when a step fails.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum SafeCommandFile {
+    /// The last command.
+    Hold,
+    /// Zero.
+    Zero,
+    /// These, one for each input of a controller, within the limits.
+    Values(At<Vec<At<f64>>>),
 }
 
 /// Where velocities come from.

@@ -60,6 +60,7 @@ mod network_problem;
 mod notice;
 mod open;
 mod problem;
+mod push_course;
 pub mod push_file;
 mod push_problem;
 mod pushes;
@@ -241,6 +242,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
     let control = file.control.as_ref().map(|file| control::control(file, axes.len())).transpose()?;
     let setup = Setup { agents, reference, exchange, network, time, solver: solver(file.solver.as_ref())?, control };
     notices.extend(Notice::coarse_sampling(&setup));
+    notices.extend(Notice::targets_beyond_limits(&setup));
     let batched = |agent: &AgentSetup| agent.interface().is_some_and(|interface| interface.in_batches);
     let agrees = setup.reference != ReferenceKind::Tracking && setup.following().is_none();
     let refused = |error| document.refused(&setup, &read.entries, error);

@@ -3,10 +3,10 @@
 use std::fmt;
 
 use forwardstep_check::{SampledDamping, sampled_damping};
-use forwardstep_sim::Setup;
+use forwardstep_sim::{AgentSetup, Axis, ReferenceKind, Setup};
 
 use crate::urdf;
-use crate::wording::{about, enumerate};
+use crate::wording::{about, enumerate, number};
 
 /// Something in an accepted scenario that the user should know about.
 #[derive(Clone, Debug)]
@@ -49,6 +49,19 @@ pub enum Notice {
         /// Names of sender and receiver.
         links: Vec<(String, String)>,
     },
+    /// A target that leads an axis beyond its position limits.
+    TargetBeyondLimits {
+        /// The agent.
+        agent: String,
+        /// The axis.
+        axis: String,
+        /// When it does so first among the times looked at, s.
+        at_s: f64,
+        /// Where it is then, in the unit of the axis.
+        value: f64,
+        /// What the axis keeps within.
+        limits: [f64; 2],
+    },
     /// A push that has no effect on the run.
     IdlePush {
         /// Its line in the scenario.
@@ -56,7 +69,42 @@ pub enum Notice {
     },
 }
 
+/// Times of a run at which a target is held against position limits.
+const LOOKS: u32 = 1000;
+
 impl Notice {
+    /// Targets that lead axes beyond their position limits, one notice per axis.
+    pub(super) fn targets_beyond_limits(setup: &Setup) -> Vec<Notice> {
+        let end_s = setup.time.end_s;
+        let beyond = |agent: &AgentSetup| -> Vec<Notice> {
+            let follows = setup.reference == ReferenceKind::Tracking
+                && agent.interface().is_some_and(|law| law.coordinates.is_none());
+            let Some(target) = agent.target.as_ref().filter(|_| follows) else { return Vec::new() };
+            let mut jets = vec![[0.0; 5]; target.axes()];
+            let mut first = vec![None; target.axes()];
+            for look in 0..=LOOKS {
+                let at_s = end_s * f64::from(look) / f64::from(LOOKS);
+                target.jets(at_s, &mut jets);
+                for ((first, jet), axis) in first.iter_mut().zip(&jets).zip(&agent.robot.axes) {
+                    let outside = axis.position_limits.is_some_and(|[low, high]| jet[0] < low || jet[0] > high);
+                    *first = first.or(outside.then_some([at_s, jet[0]]));
+                }
+            }
+            let notice = |(axis, first): (&Axis, Option<[f64; 2]>)| {
+                let ([at_s, value], limits) = (first?, axis.position_limits?);
+                Some(Notice::TargetBeyondLimits {
+                    agent: agent.name.clone(),
+                    axis: axis.name.clone(),
+                    at_s,
+                    value,
+                    limits,
+                })
+            };
+            agent.robot.axes.iter().zip(first).filter_map(notice).collect()
+        };
+        setup.agents.iter().flat_map(beyond).collect()
+    }
+
     /// Digital control whose period is too long for its gain K.
     pub(super) fn coarse_sampling(setup: &Setup) -> Option<Notice> {
         let SampledDamping { value, overshoots_above, unstable_above, agent, period_s } = sampled_damping(setup)?;
@@ -92,6 +140,14 @@ impl fmt::Display for Notice {
                     named(links)
                 )
             }
+            Notice::TargetBeyondLimits { agent, axis, at_s, value, limits: [low, high] } => write!(
+                f,
+                "the target of `{agent}` leads `{axis}` beyond its position limits: it is at {} at t = {} s, but {} to {} are allowed",
+                number(*value),
+                number(*at_s),
+                number(*low),
+                number(*high)
+            ),
             Notice::IdlePush { line } => write!(f, "the push on line {line} does not act during the run"),
         }
     }

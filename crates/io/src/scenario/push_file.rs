@@ -40,6 +40,12 @@ pub enum ByFile {
     ForceN(At<CourseFile>),
     /// A torque or force on every axis of any robot, in N m or N as each axis has it.
     Effort(At<CourseFile>),
+    /// A torque about the axes of the body of a rotorcraft or a spacecraft, in N m: about x, y, z.
+    #[serde(rename = "body_torque_n_m")]
+    BodyTorqueNM(At<CourseFile>),
+    /// What is added to the equations of a chain: one number for a chain of derivatives, whose last equation it enters; one for
+    /// each equation of a chain in feedback form. In a table of CSV they are `w1`, `w2`, ….
+    Disturbance(At<CourseFile>),
     /// A force and a torque on a link of a URDF, or on the outer link of a planar arm, at its tip.
     Wrench(WrenchFile),
     /// Virtual springs and dampers on axes, as of a hand that leads them along a path.

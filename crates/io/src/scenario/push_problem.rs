@@ -30,8 +30,18 @@ pub enum PushProblem {
         /// The units it takes.
         takes: &'static str,
     },
+    /// What does not act on such a robot.
+    #[error("`{key}` does not act on `{agent}`")]
+    DoesNotAct {
+        /// The key.
+        key: &'static str,
+        /// The agent.
+        agent: String,
+        /// What does.
+        does: &'static str,
+    },
     /// A push on a robot that has nothing to be held by.
-    #[error("`{agent}` is a point mass and has no links")]
+    #[error("`{agent}` has no links")]
     NoLinks {
         /// The agent.
         agent: String,
@@ -156,6 +166,7 @@ impl PushProblem {
         let text = match self {
             PushProblem::OnTwice { .. } => "the name of a counted population stands for all of it".into(),
             PushProblem::Unit { any, takes, .. } => format!("`{any}` takes {takes} as each axis has it"),
+            PushProblem::DoesNotAct { does, .. } => format!("what acts on it is {does}"),
             PushProblem::NoLinks { instead, .. } => format!("use `by.{instead}`"),
             PushProblem::WhichLink { .. } => "name one, such as `link = \"tool0\"`; fixed links count, too".into(),
             PushProblem::TipOnly { key, .. } => format!("delete `{key}`"),

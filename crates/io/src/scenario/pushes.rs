@@ -1,32 +1,28 @@
 //! `[[external_wrenches]]` → the pushes of the agents.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
-use forwardstep_core::expression::Expression;
+use forwardstep_core::plant::total;
 use forwardstep_core::robot::tree::{Axes, LinkPoint};
-use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push, Table};
+use forwardstep_core::signal::Signal;
+use forwardstep_sim::push::{Course, Effect, Grip, Push};
 use forwardstep_sim::{AgentSetup, Attachments, AxisUnit, SetupError};
 
 use super::agents::Agents;
 use super::at::At;
-use super::fault::{Fault, fault, filled, length, not_negative, not_negative_or, positive_or, values};
-use super::formula::formula;
+use super::fault::{Fault, fault, filled, not_negative, not_negative_or, positive_or};
 use super::inputs::InputFolder;
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
+use super::push_course::{Tables, padded};
 use super::push_file::{
-    AxesFile, ByFile, CourseFile, CourseRowsFile, CourseTableFile, FunctionFile, InterpolateFile, PushFile,
-    VirtualSpringOnAxesFile, VirtualSpringOnPointFile, WrenchFile,
+    AxesFile, ByFile, CourseFile, PushFile, VirtualSpringOnAxesFile, VirtualSpringOnPointFile, WrenchFile,
 };
 use super::push_problem::PushProblem;
 use super::robots::Body;
-use super::table::{over_time, rising, table_text};
 use super::value_problem::ValueProblem;
 use super::values::Item;
 use crate::SourceText;
-
-/// Numbers in the tables of all pushes of all agents.
-const MOST_NUMBERS: usize = 10_000_000;
 
 /// Adds all pushes to their agents, in the order of the file; `folder` is where tables are looked for.
 pub(super) fn pushes(
@@ -37,7 +33,7 @@ pub(super) fn pushes(
     folder: &mut InputFolder,
     notices: &mut Vec<Notice>,
 ) -> Result<(), Fault> {
-    let mut tables = Tables { folder, texts: HashMap::new(), numbers: 0, formulas: HashMap::new() };
+    let mut tables = Tables::new(folder);
     for At { value: file, span } in list {
         let from_s = not_negative_or("from_s", &file.from_s, 0.0)?;
         let lasts_s = positive_or("for_s", &file.for_s, f64::INFINITY)?;
@@ -94,23 +90,13 @@ fn who(on: &At<Vec<At<String>>>, read: &Agents) -> Result<Vec<usize>, Fault> {
     Ok(found)
 }
 
-/// Tables, each read from its file once, and formulas, each looked at once.
-struct Tables<'a> {
-    folder: &'a mut InputFolder,
-    texts: HashMap<String, SourceText>,
-    numbers: usize,
-    /// By their text and the bits of the times between which they have a value: every axis of every agent of a population
-    /// asks for the same ones.
-    formulas: HashMap<(String, [u64; 2]), Expression>,
-}
-
 /// A push on its way to one agent.
-struct Reader<'a, 'b> {
-    agent: &'a AgentSetup,
+pub(super) struct Reader<'a, 'b> {
+    pub(super) agent: &'a AgentSetup,
     body: &'a Body,
-    tables: &'a mut Tables<'b>,
+    pub(super) tables: &'a mut Tables<'b>,
     /// From when until when formulas need a value.
-    times_s: [f64; 2],
+    pub(super) times_s: [f64; 2],
 }
 
 const COORDINATES: [&str; 3] = ["x", "y", "z"];
@@ -120,18 +106,52 @@ impl Reader<'_, '_> {
         let all: Vec<usize> = (0..self.agent.robot.axes.len()).collect();
         Ok(match &by.value {
             ByFile::TorqueNM(course) => {
+                let effect = self.acts("torque_n_m", course, Signal::External)?;
                 self.unit("torque_n_m", course, &all, AxisUnit::Radian, EFFORT)?;
-                vec![Effect::Torque(self.on_axes("torque_n_m", course, &all)?)]
+                vec![effect]
             }
             ByFile::ForceN(course) => {
+                let effect = self.acts("force_n", course, Signal::External)?;
                 self.unit("force_n", course, &all, AxisUnit::Metre, EFFORT)?;
-                vec![Effect::Torque(self.on_axes("force_n", course, &all)?)]
+                vec![effect]
             }
-            ByFile::Effort(course) => vec![Effect::Torque(self.on_axes("effort", course, &all)?)],
+            ByFile::Effort(course) => vec![self.acts("effort", course, Signal::External)?],
+            ByFile::BodyTorqueNM(course) => vec![self.acts("body_torque_n_m", course, Signal::ExternalTorque)?],
+            ByFile::Disturbance(course) => vec![self.acts("disturbance", course, Signal::Disturbance)?],
             ByFile::Wrench(file) => self.wrench(file)?,
             ByFile::VirtualSpringOnAxes(file) => vec![self.virtual_spring_on_axes(file)?],
             ByFile::VirtualSpringOnPoint(file) => vec![self.virtual_spring_on_point(file)?],
         })
+    }
+
+    /// What acts on the robot as `signal`, with zeros for the rest.
+    fn acts(&mut self, key: &'static str, file: &At<CourseFile>, signal: Signal) -> Result<Effect, Fault> {
+        let axes = &self.agent.robot.axes;
+        let blocks = self.agent.robot.interface().attachments.blocks(axes.len());
+        let Some(at) = blocks.iter().position(|(own, _)| *own == signal) else {
+            return Err(fault(file, PushProblem::DoesNotAct { key, agent: self.name(), does: self.acting() }));
+        };
+        let names: Vec<String> = match signal {
+            Signal::External => axes.iter().map(|axis| axis.name.clone()).collect(),
+            Signal::ExternalTorque => COORDINATES.map(str::to_owned).to_vec(),
+            _ => (1..=blocks[at].1).map(|equation| format!("w{equation}")).collect(),
+        };
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let course = self.course(key, file, &names)?;
+        Ok(Effect::Torque(padded(course, total(&blocks[..at]), total(&blocks[at + 1..]))))
+    }
+
+    /// The keys of what acts on the robot.
+    fn acting(&self) -> &'static str {
+        match self.agent.robot.interface().attachments {
+            Attachments::Body => "`body_torque_n_m`",
+            Attachments::AxesAndBody => "`force_n`, `body_torque_n_m` and `virtual_spring_on_axes`",
+            Attachments::Equations(_) => "`disturbance`",
+            Attachments::Axes => "`effort`, `force_n` or `torque_n_m`, and `virtual_spring_on_axes`",
+            Attachments::PlanarTip | Attachments::Links(_) => {
+                "`effort`, `force_n` or `torque_n_m`, `wrench`, `virtual_spring_on_axes` and `virtual_spring_on_point`"
+            }
+        }
     }
 
     fn name(&self) -> String {
@@ -171,7 +191,7 @@ impl Reader<'_, '_> {
         link: Option<&At<String>>,
         at_m: Option<&At<[f64; 3]>>,
         axes: Option<&At<AxesFile>>,
-        instead: &'static str,
+        (held, instead): (&'static str, &'static str),
     ) -> Result<Grip, Fault> {
         let agent = self.name();
         match (self.agent.robot.interface().attachments, self.body.tip) {
@@ -203,13 +223,17 @@ impl Reader<'_, '_> {
                 let at = at_m.map_or([0.0; 3], |at| at.value);
                 Ok(Grip::Link { point: LinkPoint { link: *anchor, at }, axes })
             }
-            (Attachments::Axes | Attachments::PlanarTip, _) => Err(Fault::new(PushProblem::NoLinks { agent, instead })),
+            (Attachments::Body | Attachments::Equations(_), _) => {
+                let does = self.acting();
+                Err(Fault::new(PushProblem::DoesNotAct { key: held, agent, does }))
+            }
+            _ => Err(Fault::new(PushProblem::NoLinks { agent, instead })),
         }
     }
 
     /// Force and torque, each with zeros for the other.
     fn wrench(&mut self, file: &WrenchFile) -> Result<Vec<Effect>, Fault> {
-        let grip = self.grip(file.link.as_ref(), file.at_m.as_ref(), file.axes.as_ref(), "force_n")?;
+        let grip = self.grip(file.link.as_ref(), file.at_m.as_ref(), file.axes.as_ref(), ("wrench", "force_n"))?;
         let whole = grip.wrench_components();
         let forces = grip.point_components();
         let torques = if whole == 3 { &COORDINATES[2..] } else { &COORDINATES[..] };
@@ -226,6 +250,14 @@ impl Reader<'_, '_> {
     }
 
     fn virtual_spring_on_axes(&mut self, file: &VirtualSpringOnAxesFile) -> Result<Effect, Fault> {
+        if let Attachments::Body | Attachments::Equations(_) = self.agent.robot.interface().attachments {
+            let does = self.acting();
+            return Err(Fault::new(PushProblem::DoesNotAct {
+                key: "virtual_spring_on_axes",
+                agent: self.name(),
+                does,
+            }));
+        }
         let axes = self.held(file.axes.as_ref())?;
         let stiffness = self.each("stiffness", &file.stiffness, axes.len())?;
         let damping = file.damping.as_ref().map(|damping| self.each("damping", damping, axes.len())).transpose()?;
@@ -250,7 +282,12 @@ impl Reader<'_, '_> {
     }
 
     fn virtual_spring_on_point(&mut self, file: &VirtualSpringOnPointFile) -> Result<Effect, Fault> {
-        let grip = self.grip(file.link.as_ref(), file.at_m.as_ref(), None, "virtual_spring_on_axes")?;
+        let grip = self.grip(
+            file.link.as_ref(),
+            file.at_m.as_ref(),
+            None,
+            ("virtual_spring_on_point", "virtual_spring_on_axes"),
+        )?;
         let stiffness = not_negative("stiffness_n_per_m", &file.stiffness_n_per_m)?;
         let damping = not_negative_or("damping_n_s_m", &file.damping_n_s_m, 0.0)?;
         let target = self.course("target_m", &file.target_m, &COORDINATES[..grip.point_components()])?;
@@ -290,115 +327,7 @@ impl Reader<'_, '_> {
             }
         }
     }
-
-    /// Numbers over time, one per name.
-    fn course(&mut self, key: &'static str, file: &At<CourseFile>, names: &[&str]) -> Result<Course, Fault> {
-        match &file.value {
-            CourseFile::Each(list) => {
-                length(key, &file.span, list.len(), names.len(), &self.agent.name)?;
-                Ok(Course::Each(list.iter().map(|entry| self.function(entry)).collect::<Result<_, _>>()?))
-            }
-            CourseFile::Table(table) => {
-                let (times_s, values, between) = match &**table {
-                    CourseTableFile::Csv(csv) => {
-                        let (times_s, values) = self.tables.csv(&csv.file, names)?;
-                        (times_s, values, csv.interpolate)
-                    }
-                    CourseTableFile::Rows(rows) => {
-                        let (times_s, values) = self.rows(key, rows, names.len())?;
-                        (times_s, values, rows.interpolate)
-                    }
-                };
-                if times_s.len() < 2 {
-                    return Err(fault(file, PushProblem::FewRows { found: times_s.len() }));
-                }
-                self.tables.numbers += times_s.len() + values.len();
-                if self.tables.numbers > MOST_NUMBERS {
-                    let (numbers, most) = (self.tables.numbers as f64, MOST_NUMBERS as f64);
-                    return Err(fault(file, PushProblem::TooLarge { numbers, most }));
-                }
-                let between = match between {
-                    InterpolateFile::Linear => Between::Linear,
-                    InterpolateFile::Hold => Between::Hold,
-                };
-                Ok(Course::Table(Table { times_s, values, between }))
-            }
-        }
-    }
-
-    fn function(&mut self, entry: &At<FunctionFile>) -> Result<Function, Fault> {
-        match &entry.value {
-            FunctionFile::Number(value) => Ok(Function::Constant(*value)),
-            FunctionFile::Formula(text) => {
-                let key = (text.clone(), self.times_s.map(f64::to_bits));
-                if let Some(known) = self.tables.formulas.get(&key) {
-                    return Ok(Function::Formula(known.clone()));
-                }
-                let formula = formula(&At { value: text.clone(), span: entry.span.clone() })?;
-                let [from_s, until_s] = self.times_s;
-                if from_s < until_s && !formula.is_bounded(from_s, until_s) {
-                    return Err(fault(entry, PushProblem::FormulaValue { from_s, until_s }));
-                }
-                self.tables.formulas.insert(key, formula.clone());
-                Ok(Function::Formula(formula))
-            }
-        }
-    }
-
-    /// Rows that are written in the scenario.
-    fn rows(&self, key: &'static str, file: &CourseRowsFile, width: usize) -> Result<(Vec<f64>, Vec<f64>), Fault> {
-        let times_s = rising("times_s", &file.times_s.value)?;
-        let rows = &file.values.value;
-        if rows.len() != times_s.len() {
-            let problem = PushProblem::TimesAndRows { times: times_s.len(), rows: rows.len() };
-            return Err(fault(&file.values, problem));
-        }
-        let mut values = Vec::with_capacity(rows.len() * width);
-        for row in rows {
-            match &row.value {
-                // A row of one number may stand without brackets.
-                Item::Number(value) => {
-                    length(key, &row.span, 1, width, &self.agent.name)?;
-                    values.push(*value);
-                }
-                Item::List(list) => {
-                    length(key, &row.span, list.len(), width, &self.agent.name)?;
-                    values.extend(list.iter().map(|number| number.value));
-                }
-            }
-        }
-        Ok((times_s, values))
-    }
 }
 
 /// The key that takes torques and forces alike, and what it takes.
 const EFFORT: (&str, &str) = ("effort", "N m or N");
-
-impl Tables<'_> {
-    /// The times and the rows of a CSV file.
-    fn csv(&mut self, file: &At<String>, names: &[&str]) -> Result<(Vec<f64>, Vec<f64>), Fault> {
-        if !self.texts.contains_key(&file.value) {
-            self.texts.insert(file.value.clone(), table_text(file, self.folder)?);
-        }
-        let Some(source) = self.texts.get(&file.value) else { return Ok((Vec::new(), Vec::new())) };
-        let (times, numbers) = over_time(source, names)?;
-        Ok((values(&times), numbers))
-    }
-}
-
-/// The same with zeros before and after.
-fn padded(course: Course, before: usize, after: usize) -> Course {
-    match course {
-        Course::Each(functions) => {
-            let zeros = |count| std::iter::repeat_n(Function::Constant(0.0), count);
-            Course::Each(zeros(before).chain(functions).chain(zeros(after)).collect())
-        }
-        Course::Table(table) => {
-            let width = table.components().max(1);
-            let zeros = |count| std::iter::repeat_n(0.0, count);
-            let rows = table.values.chunks_exact(width);
-            let values = rows.flat_map(|row| zeros(before).chain(row.iter().copied()).chain(zeros(after))).collect();
-            Course::Table(Table { values, ..table })
-        }
-    }
-}

@@ -176,7 +176,7 @@ const DERIVATIVES_CASES: &[Case] = &[
     ("count = 2", "count = 2\nenforce_limits = true",
         "test.toml:7:18: `enforce_limits` is true, but axis `x` of `chain-1` has no effort limit", "only a URDF states limits, as <limit effort=\"…\"> of a joint"),
     ("[network]", "[[external_wrenches]]\non = [\"chain-1\"]\nby.force_n = [1]\n[network]",
-        "test.toml:22:7: agent `chain-1`: pushes act on robots under the adaptive or the known law, not on immersion and invariance", "leave `chain-1` out of `on`"),
+        "test.toml:23:14: `force_n` does not act on `chain-1`", "what acts on it is `disturbance`"),
     ("[network]", "[control]\nsample_hz = 100\ntorque_limit = [1, 1]\n[network]",
         "test.toml:23:16: agent `chain-1`: the limit of torques has 2 entries where 1 are needed", "a single number stands for all axes"),
 ];

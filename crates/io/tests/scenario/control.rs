@@ -1,6 +1,7 @@
 //! `[control]`: what is read, and what every mistake gets.
 
-use forwardstep_sim::{Actuators, Control, Sensors, VelocitySensor};
+use forwardstep_core::sampled::SafeCommand;
+use forwardstep_sim::{Actuators, Control, Failures, Sensors, VelocitySensor};
 use miette::Diagnostic;
 
 use super::{as_stated, changed, read};
@@ -17,6 +18,12 @@ type Case = (&'static str, &'static str, &'static str);
 const CASES: &[Case] = &[
     ("",
         "test.toml:37:1: the key `sample_hz` is missing", ""),
+    ("sample_hz = 500\nsafe_command = \"zeros\"",
+        "test.toml:39:16: unknown choice `zeros`", "did you mean `zero`?"),
+    ("sample_hz = 500\nsafe_command.values = []",
+        "test.toml:39:23: `values` is empty", ""),
+    ("sample_hz = 500\nmessage_timeout_s = -1",
+        "test.toml:39:21: `message_timeout_s` is -1, but must not be negative", ""),
     ("sample_hz = 0",
         "test.toml:38:13: `sample_hz` is 0, but must be positive", ""),
     ("sample_hz = -500",
@@ -102,6 +109,7 @@ fn control_is_read_as_it_is_written() {
                  noise = { seed = 9, position = 1e-4 }\nquantisation = { position = 1e-5, torque = 0.5 }\n\
                  torque_limit = 20\ntorque_rate_limit_per_s = [100, 200]";
     let control = Control {
+        failures: Default::default(),
         sample_hz: 500.0,
         computation_delay_s: 0.002,
         sensors: Sensors {
@@ -123,6 +131,18 @@ fn control_is_read_as_it_is_written() {
     assert_eq!(default.sensors, Sensors::default());
     assert_eq!(default.actuators, Actuators::default());
     assert_eq!(read(super::SOUND).unwrap().setup.control, None);
+}
+
+#[test]
+fn what_happens_when_a_controller_cannot_go_on_is_read() {
+    let failures =
+        |lines: &str| read(&with(&format!("sample_hz = 500\n{lines}"))).unwrap().setup.control.unwrap().failures;
+    assert_eq!(failures(""), Failures::default());
+    let safe = |lines: &str| failures(lines).safe_command.unwrap();
+    assert_eq!(safe("safe_command = \"hold\""), SafeCommand::HoldLast);
+    assert_eq!(safe("safe_command = \"zero\""), SafeCommand::Zero);
+    assert_eq!(safe("safe_command.values = [1, -2.5]"), SafeCommand::Values(vec![1.0, -2.5]));
+    assert_eq!(failures("message_timeout_s = 0.25").message_timeout_s, Some(0.25));
 }
 
 #[test]

@@ -116,6 +116,96 @@ fn pushes_reach_the_agents_they_name() {
     assert_eq!((*stiffness, *damping, numbers(target)), (200.0, 20.0, vec![0.4, 0.1, 0.5]));
 }
 
+/// A rotorcraft, a vehicle and a mass without velocity; chains; a spacecraft. Each with what acts on it.
+const KINDS: [&str; 3] = [
+    r#"format = 2
+time = { end_s = 1 }
+[[agents]]
+name = "rotor"
+robot.rotorcraft = { mass_kg = 1.2, inertia_kg_m2 = [0.02, 0.02, 0.04] }
+law.thrust.design.differentiable = { damping_per_s = 3 }
+[[agents]]
+name = "vehicle"
+robot.vehicle = { mass_kg = 1.5 }
+law.thrust.design.differentiable = { damping_per_s = 3 }
+[[agents]]
+name = "blind"
+robot.point_mass = { dimension = 3, mass_kg = 2 }
+law.position_only = { damping = 20 }
+[reference.consensus]
+roots_per_s = [1.0, 1.5, 2.0]
+exchange = "position"
+[network]
+edges.ring = {}
+[[external_wrenches]]
+on = ["rotor"]
+by.body_torque_n_m = [0.1, 0.2, 0.3]
+[[external_wrenches]]
+on = ["rotor", "vehicle", "blind"]
+by.force_n = [1, 2, "3*t"]
+[[external_wrenches]]
+on = ["rotor", "blind"]
+by.virtual_spring_on_axes = { axes = ["z"], stiffness = 4, target_m = [0.5] }
+"#,
+    r#"format = 2
+time = { end_s = 1 }
+[[agents]]
+name = "chain"
+robot.chain = { order = 3 }
+law.linearising = { gain_per_s = 2 }
+[[agents]]
+name = "cascade"
+robot.strict_feedback = { regressors = [["x1^2"], ["0"]], parameters = [0.5] }
+law.adaptive_backstepping = { gains_per_s = 1, adaptation_gain = 1 }
+[reference.consensus]
+roots_per_s = [1.0, 1.5]
+exchange = "position"
+[network]
+edges.ring = {}
+[[external_wrenches]]
+on = ["chain"]
+by.disturbance = [0.5]
+[[external_wrenches]]
+on = ["cascade"]
+by.disturbance.rows = { times_s = [0, 1], values = [[0, 1], [0, 2]] }
+"#,
+    r#"format = 2
+time = { end_s = 1 }
+[[agents]]
+name = "craft"
+robot.spacecraft = { inertia_kg_m2 = [10, 8, 6] }
+law.attitude = { error_gain_per_s2 = 0.5, rate_gain_per_s = 1.2, filter_gain_per_s = 1, damping = 3 }
+target.formulas = [0, 0, 0, 1]
+[reference.tracking]
+[[external_wrenches]]
+on = ["craft"]
+by.body_torque_n_m = [0.1, 0.2, "0.3*t"]
+"#,
+];
+
+#[test]
+fn what_acts_on_a_kind_stands_where_its_equations_take_it() {
+    let torques = |pushes: &[Push]| -> Vec<Vec<f64>> {
+        let course = |push: &Push| match &push.effect {
+            Effect::Torque(course) => Some(numbers(course)),
+            _ => None,
+        };
+        pushes.iter().filter_map(course).collect()
+    };
+    let [crafts, chains, spacecraft] = KINDS.map(pushes);
+    // Forces on the axes, then torques on the body.
+    assert_eq!(torques(&crafts[0]), [vec![0.0, 0.0, 0.0, 0.1, 0.2, 0.3], vec![1.0, 2.0, 3.0, 0.0, 0.0, 0.0]]);
+    assert_eq!([&crafts[1], &crafts[2]].map(|own| torques(own)), [[vec![1.0, 2.0, 3.0]], [vec![1.0, 2.0, 3.0]]]);
+    let hand = |push: &Push| matches!(&push.effect, Effect::HandOnAxes { axes, .. } if *axes == [2]);
+    assert!(hand(&crafts[0][2]) && hand(&crafts[2][1]));
+    assert_eq!(torques(&chains[0]), [[0.5]]);
+    assert_eq!(torques(&chains[1]), [[0.0, 1.0, 0.0, 2.0]]);
+    assert_eq!(torques(&spacecraft[0]), [[0.1, 0.2, 0.3]]);
+    for text in KINDS {
+        assert!(simulate(&read(text).unwrap().setup, &mut |_| std::ops::ControlFlow::Continue(())).is_ok());
+    }
+}
+
 #[test]
 fn pushed_scenarios_run() {
     let scenario = read(PUSHES).unwrap();
@@ -237,7 +327,7 @@ const CASES: &[Case] = &[
     ("torque_n_m = [0.5]", "torque_n_m = [0, 0, 0.5]",
         "test.toml:41:46: `torque_n_m` has 3 entries, but `arm-2` needs 1", ""),
     ("on = [\"arm-2\"]", "on = [\"cart\"]",
-        "test.toml:41:1: `cart` is a point mass and has no links", "use `by.force_n`"),
+        "test.toml:41:1: `cart` has no links", "use `by.force_n`"),
     ("axes = [\"elbow\"]", "axes = [\"elbo\"]",
         "test.toml:46:39: `arm-1` has no axis `elbo`", "did you mean `elbow`? its axes are `shoulder`, `elbow`"),
     ("axes = [\"elbow\"]", "axes = [\"elbow\", \"elbow\"]",

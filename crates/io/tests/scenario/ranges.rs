@@ -31,6 +31,7 @@ coupling.tanh = 0.3
 edges = [["arm-1", "arm-2"], { from = "arm-2", to = "arm-1", delay.packets = { period_s = 0.1, latency_s = 0, seed = 1, loss.random = { probability = 0.1, most_consecutive = 3 } } }]
 [control]
 sample_hz = 100
+message_timeout_s = 5
 torque_limit = 50
 torque_rate_limit_per_s = [500, 500]
 noise = { seed = 1, velocity = 1e-3 }

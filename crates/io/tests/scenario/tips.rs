@@ -134,8 +134,8 @@ const TIP_CASES: &[Case] = &[
         "test.toml:5:8: agent `arm` is to track a target, but has none", "give it a `target`"),
     ("[reference.tracking]", "[reference.consensus]\nroots_per_s = [1]\nexchange = \"position\"\n[network]\nedges = []",
         "test.toml:13:2: agent `arm`: the law for a tip follows a target of its own; it does not agree with others", "write `reference.tracking`, and give it a `target`"),
-    ("[goal]", "[[external_wrenches]]\non = [\"arm\"]\nby.torque_n_m = [1, 0, 0]\n[goal]",
-        "test.toml:29:7: agent `arm`: pushes act on robots under the adaptive or the known law, not on the law for a tip", "leave `arm` out of `on`"),
+    ("[goal]", "[[external_wrenches]]\non = [\"arm\"]\nby.disturbance = [1, 0, 0]\n[goal]",
+        "test.toml:30:18: `disturbance` does not act on `arm`", "what acts on it is `effort`, `force_n` or `torque_n_m`, `wrench`"),
     ("[goal]", "[control]\nsample_hz = 1000\nnoise = { seed = 1, velocity = -1 }\n[goal]",
         "test.toml:30:32: `noise.velocity` is -1, but must not be negative", ""),
 ];
@@ -181,7 +181,7 @@ const PLANAR_CASES: &[Case] = &[
     ("robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }\nstart.position_rad", "robot.urdf = { file = \"ur5e.urdf\" }\nstart.position_rad",
         "test.toml:12:2: the law `task_space` needs `end_effector` for a robot from a URDF", "add end_effector = { link = \"…\" } with a link of the URDF"),
     ("[law.task_space]\nkinematic_gain = [0.3, 0.2]\nbounds = { lower_m = [0.9, 0.7], upper_m = [1.1, 0.9] }", "[law.adaptive]",
-        "test.toml:10:2: agent `arm`: the adaptive law does not follow a target of its own; it goes with consensus", "write `reference.consensus`; laws that track are `position_only`, `task_space`, `attitude` and those of chains"),
+        "test.toml:10:2: agent `arm`: roots of the reference dynamics: 0, but at least 1 are needed here", "an agent may have `reference` with roots of its own"),
 ];
 
 #[test]

@@ -54,17 +54,41 @@ const CASES: &[Case] = &[
         "test.toml:14:19: `adaptation_gain` is -5, but must not be negative", ""),
     ("robot.point_mass = { dimension = 2, mass_kg = 2.0 }", "robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }",
         "test.toml:12:2: agent `mass`: the law `position_only` is made for point masses", "`adaptive`, `known` and `task_space`"),
-    ("[law.position_only]\ndamping = 20\nadaptation_gain = 5", "[law.known]\n",
-        "test.toml:9:2: agent `mass`: the law with known parameters does not follow a target of its own; it goes with consensus", "laws that track are"),
+    ("robot.point_mass = { dimension = 2, mass_kg = 2.0 }\ntarget.formulas = [\"sin(t)\", 0.5]", "robot.vehicle = { mass_kg = 2.0 }\nlaw.thrust.design.differentiable = {}\ntarget.formulas = [\"sin(t)\", 0.5, 0]",
+        "test.toml:10:2: agent `mass`: the thrust law does not follow a target of its own; it goes with consensus", "laws that track are `adaptive`, `known`"),
+    ("[1.0, 1.5, 2.0]\n\n[law.position_only]\ndamping = 20\nadaptation_gain = 5", "[1.0, 1.5, 2.0, 1, 1]\n\n[law.known]\n",
+        "test.toml:10:15: agent `mass`: roots of the reference dynamics: 5, but a trajectory is known with 4 derivatives only", "an agent may have `reference` with roots of its own"),
+    ("roots_per_s = [1.0, 1.5, 2.0]\n\n[law.position_only]\ndamping = 20\nadaptation_gain = 5", "[law.known]\n",
+        "test.toml:9:2: agent `mass`: roots of the reference dynamics: 0, but at least 1 are needed here", "an agent may have `reference` with roots of its own"),
     ("error_below", "disagreement_below",
         "test.toml:17:22: `disagreement_below` is about agreement, but every agent follows a target or a leader", "error_below"),
     ("error_below = 1e-3", "error_below = 1e-3\ndisagreement_below = 1e-3",
         "test.toml:17:15: `disagreement_below` and `error_below` are both given", "delete one of the two"),
     ("[reference.tracking]\nroots_per_s = [1.0, 1.5, 2.0]", "[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position\"",
         "test.toml:9:2: there is no network, but the agents are to agree", "who hears whom"),
-    ("[goal]", "[[external_wrenches]]\non = [\"mass\"]\nby.force_n = [1, 2]\n[goal]",
-        "test.toml:17:7: agent `mass`: pushes act on robots under the adaptive or the known law, not on the law without velocity", "leave `mass` out of `on`"),
+    ("[goal]", "[[external_wrenches]]\non = [\"mass\"]\nby.virtual_spring_on_point = { stiffness_n_per_m = 1, target_m = [1, 2] }\n[goal]",
+        "test.toml:18:1: `mass` has no links", "use `by.virtual_spring_on_axes`"),
 ];
+
+/// A UR5e under (6)–(7) whose elbow is led beyond ±π.
+#[test]
+fn a_robot_tracks_and_targets_beyond_its_limits_are_noted() {
+    let text = SOUND
+        .replace("robot.point_mass = { dimension = 2, mass_kg = 2.0 }", "robot.urdf = { file = \"ur5e.urdf\", locked = { shoulder_pan_joint = 0, wrist_1_joint = 0, wrist_2_joint = 0, wrist_3_joint = 0 } }")
+        .replace("[law.position_only]\ndamping = 20\nadaptation_gain = 5", "[law.adaptive]")
+        .replace("[1.0, 1.5, 2.0]", "[4]");
+    let notices = |text: &str| -> Vec<String> {
+        let scenario = read(text).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(scenario.setup.agents[0].roots_per_s, [4.0]);
+        scenario.notices.iter().map(ToString::to_string).filter(|notice| notice.contains("target")).collect()
+    };
+    assert!(notices(&text).is_empty());
+    assert_eq!(
+        notices(&text.replace("\"sin(t)\", 0.5", "\"sin(t)\", \"t/2\"")),
+        ["the target of `mass` leads `elbow_joint` beyond its position limits: it is at 3.145 at t = 6.29 s, but \
+          -3.141592653589793 to 3.141592653589793 are allowed"]
+    );
+}
 
 #[test]
 fn a_target_and_its_law_are_read() {

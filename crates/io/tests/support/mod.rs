@@ -150,6 +150,7 @@ pub fn outcome(setup: &Setup) -> Outcome {
             evaluations: 252_271,
             break_points: 180,
             sign_residual: None,
+            failed_steps: 0,
             wall: Some(Duration::from_millis(1234)),
         },
     }

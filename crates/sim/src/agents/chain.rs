@@ -12,7 +12,7 @@ use forwardstep_core::reference::{Consensus, Position, polynomial};
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::setup::{ReferenceKind, RobotSetup};
-use crate::system::{Interface, Known, Law, LawWords, ReferenceFamily, Robot, RobotInterface};
+use crate::system::{Attachments, Interface, Known, Law, LawWords, ReferenceFamily, Robot, RobotInterface};
 
 /// What a chain is made of; its true θ stands with the robot.
 #[derive(Clone, Debug)]
@@ -52,6 +52,11 @@ impl Robot for ChainModel {
         RobotInterface {
             velocity_len: if self.has_velocity() { axes } else { 0 },
             rest_len: self.order().saturating_sub(1 + usize::from(self.has_velocity())),
+            // Of a chain of derivatives only the last equation is one that something can be added to.
+            attachments: Attachments::Equations(match self {
+                ChainModel::Derivatives(_) => 1,
+                ChainModel::Cascade(terms) => terms.order(),
+            }),
             numbered_axes: true,
             ..RobotInterface::mechanical(axes)
         }
@@ -151,6 +156,7 @@ impl Law for ChainLaw {
             follows: &[ReferenceFamily::Consensus, ReferenceFamily::Target],
             measures_velocity: robot.velocity_len() > 0,
             tracks_by_roots: true,
+            pushed: true,
             estimates: self.estimates(),
             ..interface
         })

@@ -8,7 +8,7 @@ use forwardstep_core::{Gain, Lanes, LengthError};
 
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::probe::{Probe, properties};
-use crate::setup::{AgentSetup, Exchange, RobotSetup};
+use crate::setup::{AgentSetup, Exchange, ReferenceKind, RobotSetup};
 use crate::system::{
     Attachments, Interface, Known as Knowledge, Law, LawWords, ReferenceFamily, Robot, RobotInterface,
 };
@@ -30,7 +30,7 @@ pub trait LagrangianRobot {
     /// Whether `other` is the same model, whatever its parameters, so that kernels can be shared.
     fn same_model(&self, other: &dyn Robot) -> bool;
 
-    /// Builds the agents of `assembly` as one batch.
+    /// Builds the agents of `assembly` as one batch; one that follows a target stands alone.
     ///
     /// # Errors
     /// [`SetupError`] when they have no meaning.
@@ -66,7 +66,10 @@ impl<M: RobotModel> LagrangianRobot for M {
     }
 
     fn batch(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
-        assembly.lagrangian(self)
+        match assembly.setup().reference {
+            ReferenceKind::Tracking => assembly.tracking(self),
+            _ => assembly.lagrangian(self),
+        }
     }
 
     fn dynamics_at_start(&self, agent: &AgentSetup, dz: f64) -> Result<DynamicsAt, LengthError> {
@@ -185,10 +188,11 @@ fn interface(robot: &RobotSetup, estimates: bool) -> Option<Interface> {
             ReferenceFamily::PureIntegral,
             ReferenceFamily::Backstepping,
             ReferenceFamily::Leader,
+            ReferenceFamily::Target,
         ],
         measures_velocity: true,
         manipulability: true,
-        tracks_by_roots: false,
+        tracks_by_roots: true,
         offsets: false,
         pushed: true,
         estimates,

@@ -31,6 +31,7 @@ impl Law for PositionOnlyLaw {
         robot.kind.is::<PointMass>().then(|| Interface {
             follows: &[ReferenceFamily::Consensus, ReferenceFamily::Target],
             tracks_by_roots: true,
+            pushed: true,
             estimates: true,
             ..Interface::of::<PositionOnly>()
         })

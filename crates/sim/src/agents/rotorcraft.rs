@@ -6,7 +6,7 @@ use forwardstep_core::plant::{Rotorcraft, Rotors};
 use super::LagrangianRobot;
 use super::vehicle::plant as vehicle;
 use crate::closed_loop::{Assembly, SetupError};
-use crate::system::{PositionKind, Robot, RobotInterface};
+use crate::system::{Attachments, PositionKind, Robot, RobotInterface};
 
 /// A rotorcraft. ϑ is its mass; the rest of its start is its attitude and its angular velocity.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +24,7 @@ impl Robot for RotorcraftModel {
         RobotInterface {
             rest_len: 7,
             position: PositionKind::Point,
+            attachments: Attachments::AxesAndBody,
             torques_on_body: true,
             ..RobotInterface::mechanical(axes)
         }

@@ -9,7 +9,7 @@ use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::recording::Signal;
 use crate::setup::RobotSetup;
 use crate::system::{
-    ActuatorLimits, Interface, Known, Law, LawWords, Line, LineValue, PositionKind, Robot, RobotInterface,
+    ActuatorLimits, Attachments, Interface, Known, Law, LawWords, Line, LineValue, PositionKind, Robot, RobotInterface,
 };
 
 /// A spacecraft. Its axes are the entries of a quaternion; the rest of its start holds the momenta of the wheels, N m s.
@@ -33,6 +33,7 @@ impl Robot for SpacecraftModel {
             velocity_len: 3,
             rest_len: self.wheels.count(),
             position: PositionKind::UnitQuaternion,
+            attachments: Attachments::Body,
             actuator_limits: ActuatorLimits::Own,
             lines: limits.collect(),
             ..RobotInterface::mechanical(axes)
@@ -61,7 +62,8 @@ impl Law for AttitudeLaw {
     }
 
     fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
-        robot.kind.is::<SpacecraftModel>().then(Interface::of::<AttitudeTracking>)
+        let interface = || Interface { pushed: true, ..Interface::of::<AttitudeTracking>() };
+        robot.kind.is::<SpacecraftModel>().then(interface)
     }
 
     fn known(&self) -> Known {

@@ -86,6 +86,7 @@ impl Law for TaskSpaceLaw {
         let line = |(entry, truth)| Line { signal: Signal::KinematicEstimate, entry, value: LineValue::Truth(truth) };
         suits.then(|| Interface {
             measures_velocity: true,
+            pushed: true,
             estimates: true,
             coordinates: Some(self.coordinates()),
             lines: truth.into_iter().enumerate().map(line).collect(),

@@ -74,6 +74,7 @@ impl Law for ThrustLaw {
         Some(Interface {
             follows: &[ReferenceFamily::Consensus],
             measures_velocity: true,
+            pushed: true,
             estimates: matches!(self.design, ThrustKind::Adaptive { .. }),
             lines: vec![Line { signal: Signal::Thrust, entry: 0, value: LineValue::Floor(self.floor.newtons()) }],
             ..interface

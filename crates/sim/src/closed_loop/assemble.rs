@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use forwardstep_core::controller::Trouble;
+use forwardstep_core::plant::total;
 use forwardstep_core::reference::{Position, PositionVelocity};
 use forwardstep_core::sampled::Recipe;
 
@@ -47,7 +48,8 @@ pub(super) struct Block {
     pub(super) state: Range<usize>,
     pub(super) degree: Range<usize>,
     pub(super) sums: Range<usize>,
-    external: Range<usize>,
+    /// Its part of what acts from outside.
+    pub(super) external: Range<usize>,
 }
 
 impl Block {
@@ -61,7 +63,7 @@ impl Block {
         Inputs {
             degree: &heard.degree[self.degree.clone()],
             sums: &heard.sums[self.sums.clone()],
-            external: external.map(|external| &external[self.external.clone()]),
+            external: external.map(|external| &external[self.external.clone()]).filter(|own| !own.is_empty()),
         }
     }
 }
@@ -94,10 +96,15 @@ impl<'a> ClosedLoop<'a> {
             row: Vec::new(),
             axes,
         };
-        let mut placed = 0;
-        for group in batches(&setup.agents) {
+        let (mut placed, mut external) = (0, 0);
+        for group in batches(setup) {
             let n = group.len();
             let columns = setup.agents[group[0]].law.block(&Assembly::new(setup, &group))?.0;
+            let robot = &setup.agents[group[0]].robot;
+            let pushed = group.iter().any(|agent| !setup.agents[*agent].pushes.is_empty());
+            let each = if pushed { total(&robot.interface().attachments.blocks(robot.axes.len())) } else { 0 };
+            let outside = external..external + n * each;
+            external = outside.end;
             let first = closed_loop.start.len();
             columns.append_start(&setup.agents, &mut closed_loop.start);
             for (i, &agent) in group.iter().enumerate() {
@@ -108,7 +115,7 @@ impl<'a> ClosedLoop<'a> {
                 state: first..closed_loop.start.len(),
                 degree: placed..placed + n,
                 sums: placed * entries..(placed + n) * entries,
-                external: placed * axes..(placed + n) * axes,
+                external: outside,
                 columns,
             });
             placed += n;
@@ -124,7 +131,7 @@ impl<'a> ClosedLoop<'a> {
                 degree: placed..placed + 1,
                 sums: placed * entries..(placed + 1) * entries,
                 // Nothing acts on it.
-                external: placed * axes..placed * axes,
+                external: external..external,
                 columns: guide,
             });
         }
@@ -144,13 +151,10 @@ impl<'a> ClosedLoop<'a> {
             let ClosedLoop { ports, start, .. } = &closed_loop;
             closed_loop.sampling = Some(Sampling::new(setup, control, ports.clone(), entries, start));
         }
-        let first_of = |blocks: &[Block], degree: usize| {
-            blocks.iter().find(|block| block.degree.contains(&degree)).map_or(0, |block| block.degree.start)
-        };
-        closed_loop.pushes = Pushes::new(setup, &closed_loop.ports, |degree| first_of(&closed_loop.blocks, degree));
+        closed_loop.pushes = Pushes::new(setup, &closed_loop.ports, &closed_loop.blocks);
         closed_loop.kink_s = closed_loop.next_kink_s(0.0);
         let longest = closed_loop.blocks.iter().map(|block| block.columns.signals().len()).max();
-        closed_loop.row = Vec::with_capacity(longest.unwrap_or(0) + 2 * axes);
+        closed_loop.row = Vec::with_capacity(longest.unwrap_or(0) + external + axes);
         Ok(closed_loop)
     }
 
@@ -227,6 +231,15 @@ impl<'a> ClosedLoop<'a> {
         Ok(all.into_iter().map(|(_, recipe)| recipe).collect())
     }
 
+    /// Steps of sampled controllers that failed, where a safe command stands then.
+    pub(crate) fn failed_steps(&self) -> u64 {
+        let mut failed = 0;
+        for block in &self.blocks {
+            block.columns.taken(&mut |digital| failed += digital.failures().1);
+        }
+        failed
+    }
+
     /// The initial state.
     pub(crate) fn start(&self) -> Vec<f64> {
         self.start.clone()
@@ -275,8 +288,9 @@ impl<'a> ClosedLoop<'a> {
                 }
             }
         }
-        for (agent, signals) in signals.iter_mut().enumerate().filter(|(agent, _)| self.pushes.concern(*agent)) {
-            signals.extend((0..self.pushes.external_on(agent).len()).map(|axis| (Signal::External, axis)));
+        for (agent, signals) in signals.iter_mut().enumerate() {
+            let external = self.pushes.signals(agent).iter();
+            signals.extend(external.flat_map(|(signal, n)| (0..*n).map(|entry| (*signal, entry))));
         }
         if self.leader.is_some() {
             signals.iter_mut().for_each(|signals| signals.extend((0..self.axes).map(|axis| (Signal::Error, axis))));
@@ -287,7 +301,7 @@ impl<'a> ClosedLoop<'a> {
     /// Hands every agent's signals at one instant to `write`.
     pub(crate) fn record(&mut self, t_s: f64, x: &[f64], heard: &Heard, mut write: impl FnMut(usize, &[f64])) {
         let heard = self.sampling.as_ref().map_or(heard, Sampling::heard);
-        self.pushes.evaluate(t_s, x);
+        self.pushes.evaluate(t_s, x, &mut self.blocks);
         if let Some(slider) = &mut self.slider {
             slider.look(t_s, heard, self.pushes.external(), &mut self.blocks, x);
         }
@@ -314,7 +328,7 @@ impl<'a> ClosedLoop<'a> {
 impl DelaySystem for ClosedLoop<'_> {
     fn rates(&mut self, t_s: f64, x: &[f64], heard: &Heard, dx: &mut [f64]) {
         let heard = self.sampling.as_ref().map_or(heard, Sampling::heard);
-        self.pushes.evaluate(t_s, x);
+        self.pushes.evaluate(t_s, x, &mut self.blocks);
         for block in &mut self.blocks {
             let inputs = block.inputs(heard, self.pushes.external());
             block.columns.rates(t_s, &x[block.state.clone()], inputs, &mut dx[block.state.clone()]);
@@ -348,7 +362,7 @@ impl DelaySystem for ClosedLoop<'_> {
         }
         if let Some(slider) = &mut self.slider {
             if slider.next_s() <= until_s {
-                self.pushes.evaluate(until_s, x);
+                self.pushes.evaluate(until_s, x, &mut self.blocks);
             }
             happened = happened.max(slider.happen(until_s, self.pushes.external(), &mut self.blocks, x));
         }

@@ -1,15 +1,18 @@
 //! What a law builds its agents with.
 
-use forwardstep_core::controller::Controller;
-use forwardstep_core::plant::{Plant, total};
+use forwardstep_core::controller::{ChainError, Controller, Guide, JointTracking};
+use forwardstep_core::plant::{Mechanical, Plant, total};
+use forwardstep_core::reference::polynomial;
+use forwardstep_core::signal::Block as Signals;
 use forwardstep_core::{Gain, LengthError, ResolvedGain};
 
 use super::columns::Columns;
 use super::error::SetupError;
 use super::members;
+use super::robot_batch::Member;
 use super::solo::{Solo, Target};
 use super::valid::too_many;
-use crate::agents::RobotModel;
+use crate::agents::{Adaptive, RobotModel};
 use crate::recording::Signal;
 use crate::setup::{AgentSetup, Axis, ReferenceKind, Setup};
 use crate::system::{LawWords, Robot};
@@ -135,6 +138,27 @@ impl<'a> Assembly<'a> {
         members::batch(model, self.setup, self.agents).map(Block)
     }
 
+    /// A robot of Section II-B that follows a target of its own, one agent by itself.
+    ///
+    /// # Errors
+    /// [`SetupError`] when the agent has no meaning.
+    pub fn tracking<M: RobotModel>(&self, model: &M) -> Result<Block, SetupError> {
+        let (own, robot) = (self.agent(), model.kernel());
+        let Member { law, theta, .. } = members::member(&robot, own, self.agents[0])?;
+        // One root at least, and no more than a trajectory has derivatives.
+        let roots = Guide::Tracking { alpha: own.roots_per_s.clone() };
+        let wrong = |error| SetupError::Chain { agent: own.name.clone(), error: ChainError::Guide(error) };
+        roots.check(1, 1).map_err(wrong)?;
+        let mut alpha =
+            polynomial(&own.roots_per_s).map_err(|error| SetupError::Roots { agent: own.name.clone(), error })?;
+        // The leading one is not listed.
+        alpha.pop();
+        let adaptive = own.law.downcast().map(|law: &Adaptive| law.estimate_start.clone());
+        let estimate_start = adaptive.unwrap_or_else(|| theta.clone());
+        let plant = Mechanical { robot: robot.clone(), theta };
+        self.solo(plant, JointTracking { robot, alpha, law, estimate_start })
+    }
+
     /// Any plant under any controller, one agent by itself.
     ///
     /// # Errors
@@ -143,6 +167,7 @@ impl<'a> Assembly<'a> {
         let (setup, own) = (self.setup, self.agent());
         let start = &own.start;
         self.length("the start", total(&plant.states()), start.q.len() + start.dq.len() + start.rest.len())?;
+        self.takes_pushes(&plant)?;
         let blocks = controller.states();
         let vectors = blocks.iter().filter(|(signal, _)| matches!(signal, Signal::Reference(_))).count();
         if start.reference.len() > vectors {
@@ -171,6 +196,20 @@ impl<'a> Assembly<'a> {
             setup.control.is_some(),
             balance,
         ))))
+    }
+
+    /// Checks that a plant that is pushed takes what its robot says can act on it.
+    fn takes_pushes<P: Plant>(&self, plant: &P) -> Result<(), SetupError> {
+        let AgentSetup { name, robot, pushes, .. } = self.agent();
+        if pushes.is_empty() {
+            return Ok(());
+        }
+        let zeros = |blocks: &[Signals]| vec![0.0; total(blocks)];
+        let (state, external) =
+            (zeros(&plant.states()), zeros(&robot.interface().attachments.blocks(robot.axes.len())));
+        plant
+            .rate(&mut plant.scratch(), &state, &zeros(&plant.inputs()), &external, &mut state.clone())
+            .map_err(|error| SetupError::Length { agent: name.clone(), error })
     }
 }
 

@@ -20,7 +20,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) degree: &'a [f64],
     /// The sums of messages.
     pub(crate) sums: &'a [f64],
-    /// External torques or forces, one column per axis, when anybody is pushed.
+    /// What acts from outside, a column per entry of [`crate::Attachments::blocks`], when anybody is pushed.
     pub(crate) external: Option<&'a [f64]>,
 }
 
@@ -36,6 +36,8 @@ pub(crate) trait Columns {
     fn rates(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]);
     /// Hands the signals of every member in turn to `write`, in the order of [`Columns::signals`].
     fn record(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, write: &mut dyn FnMut(usize, &[f64]));
+    /// q and q̇ of a member, the one with the number `agent` among all, as far as there is room; what acts on it may depend on them.
+    fn motion(&mut self, agent: usize, t_s: f64, x: &[f64], q: &mut [f64], dq: &mut [f64]);
     /// Measures the state `x` and puts everybody's message into `sent`, laid out like the sums. Does nothing, like the
     /// two below, when the controllers work in continuous time.
     fn sense(&mut self, t_s: f64, x: &[f64], sent: &mut [f64]);

@@ -237,7 +237,7 @@ pub enum SetupError {
         axis: String,
     },
     /// A push on an agent whose law does not know any.
-    #[error("agent `{agent}`: pushes act on robots under the adaptive or the known law, not on {law}")]
+    #[error("agent `{agent}`: nothing may push a robot under {law}, which does not say what that does to it")]
     NotPushed {
         /// The agent.
         agent: String,

@@ -66,6 +66,9 @@ impl Columns for Guide {
 
     fn record(&mut self, _: f64, _: &[f64], _: Inputs<'_>, _: &mut dyn FnMut(usize, &[f64])) {}
 
+    // Nothing acts on it.
+    fn motion(&mut self, _: usize, _: f64, _: &[f64], _: &mut [f64], _: &mut [f64]) {}
+
     fn sense(&mut self, t_s: f64, _: &[f64], sent: &mut [f64]) {
         // A message is q₀, q̇₀, then q̈₀ where something derived is sent.
         self.put(t_s, 0, sent);

@@ -1,6 +1,7 @@
 //! From agents to batches: robots, reference dynamics, laws and, under digital control, samplers.
 
 use forwardstep_core::law::SlotineLi;
+use forwardstep_core::plant::total;
 use forwardstep_core::reference::{Position, PositionVelocity};
 use forwardstep_core::robot::Lagrangian;
 use forwardstep_core::{Gain, InverseQuadratic, Lanes, LengthError, ResolvedGain};
@@ -11,16 +12,19 @@ use super::population::Population;
 use super::references::{Transmits, reference};
 use super::robot_batch::Member;
 use crate::agents::{Adaptive, Known, RobotModel};
-use crate::setup::{AgentSetup, Exchange, Setup};
+use crate::setup::{AgentSetup, Exchange, ReferenceKind, Setup};
 use crate::system::LawWords;
 
 /// Batches of at least so many agents are worked on in lanes.
 const LANES_FROM: usize = 3;
 
 /// Agents that can stand side by side: one robot model, one order, laws that share batches. Groups in order of their first
-/// agent.
-pub(super) fn batches(agents: &[AgentSetup]) -> Vec<Vec<usize>> {
-    let in_batches = |agent: &AgentSetup| agent.interface().is_some_and(|interface| interface.in_batches);
+/// agent. Who follows a target of its own stands alone.
+pub(super) fn batches(setup: &Setup) -> Vec<Vec<usize>> {
+    let agents = &setup.agents;
+    let in_batches = |agent: &AgentSetup| {
+        setup.reference != ReferenceKind::Tracking && agent.interface().is_some_and(|interface| interface.in_batches)
+    };
     let alike = |a: &AgentSetup, b: &AgentSetup| {
         a.roots_per_s.len() == b.roots_per_s.len()
             && a.law.same_type(&*b.law)
@@ -66,7 +70,8 @@ where
     })
 }
 
-fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Result<Member, SetupError> {
+/// One agent with its gains, checked.
+pub(super) fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Result<Member, SetupError> {
     let (m, p) = (robot.dof(), robot.parameter_count());
     let name = || agent.name.clone();
     let length = |what, need, got| {
@@ -74,6 +79,7 @@ fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Re
     };
     length("axes", m, agent.robot.axes.len())?;
     length("theta", p, agent.robot.theta.len())?;
+    length("what acts on it from outside", m, total(&agent.robot.interface().attachments.blocks(m)))?;
     let (damping, adaptation) = match (agent.law.downcast::<Adaptive>(), agent.law.downcast::<Known>()) {
         (Some(Adaptive { damping, adaptation, estimate_start }), _) => {
             length("start of the estimate", p, estimate_start.len())?;

@@ -316,6 +316,14 @@ where
         debug_assert_eq!(checked, Ok(()), "lengths are fixed when the population is built");
     }
 
+    fn motion(&mut self, agent: usize, _: f64, x: &[f64], q: &mut [f64], dq: &mut [f64]) {
+        let l = self.robots.layout;
+        if let Some(member) = self.members.iter().position(|member| member.agent == agent) {
+            take(l.n, member, x, q);
+            take(l.n, member, &x[l.dq..], dq);
+        }
+    }
+
     fn sense(&mut self, t_s: f64, x: &[f64], sent: &mut [f64]) {
         let l = self.robots.layout;
         if let Some(sampler) = &mut self.sampler {

@@ -3,8 +3,11 @@
 use std::sync::Arc;
 
 use forwardstep_core::LengthError;
+use forwardstep_core::plant::total;
 use forwardstep_core::robot::tree::{Axes, PointWrench, Tree, TreeScratch};
+use forwardstep_core::signal::Block as Signals;
 
+use super::assemble::Block;
 use crate::engine::{Happened, Port};
 use crate::push::{Between, Course, Effect, Grip, Push};
 use crate::setup::{AgentSetup, Setup};
@@ -14,7 +17,7 @@ use crate::system::Attachments;
 #[derive(Debug, Default)]
 pub(crate) struct Pushes {
     people: Vec<Placed>,
-    /// τ_ext of all agents, a block of columns for every population; empty when nobody is pushed.
+    /// What acts on all agents, a block of columns for every population; empty when nobody is pushed.
     external: Vec<f64>,
 }
 
@@ -22,11 +25,11 @@ pub(crate) struct Pushes {
 #[derive(Debug)]
 struct Placed {
     pushed: Pushed,
-    /// First entry of q in the state.
-    state: usize,
+    /// Its block of the closed loop.
+    block: usize,
     /// First entry in `external`.
     external: usize,
-    /// Distance between two axes in either.
+    /// Distance between two entries of its own there.
     stride: usize,
     q: Vec<f64>,
     dq: Vec<f64>,
@@ -34,44 +37,43 @@ struct Placed {
 }
 
 impl Pushes {
-    /// `ports` says where the agents' numbers stand; a population begins with the agent `first_of` of its members.
-    pub(crate) fn new(setup: &Setup, ports: &[Port], first_of: impl Fn(usize) -> usize) -> Self {
-        let axes = setup.agents.first().map_or(0, |agent| agent.robot.axes.len());
+    /// `ports` says where the agents' numbers stand in the `blocks`.
+    pub(super) fn new(setup: &Setup, ports: &[Port], blocks: &[Block]) -> Self {
         let mut pushes = Pushes::default();
         for (index, (agent, port)) in setup.agents.iter().zip(ports).enumerate() {
             let Some(pushed) = Pushed::new(index, agent, setup.time.end_s) else { continue };
-            let first = first_of(port.degree);
-            let vector = || vec![0.0; axes];
+            let place = blocks.iter().enumerate().find(|(_, block)| block.degree.contains(&port.degree));
+            let Some((at, block)) = place else { continue };
             pushes.people.push(Placed {
-                pushed,
-                state: port.state,
-                external: first * axes + (port.degree - first),
+                block: at,
+                external: block.external.start + (port.degree - block.degree.start),
                 stride: port.stride,
-                q: vector(),
-                dq: vector(),
-                torque: vector(),
+                q: vec![0.0; agent.robot.axes.len()],
+                dq: vec![0.0; agent.robot.velocity_len()],
+                torque: vec![0.0; total(&pushed.signals)],
+                pushed,
             });
-            pushes.external = vec![0.0; axes * setup.agents.len()];
+        }
+        if !pushes.people.is_empty() {
+            pushes.external = vec![0.0; blocks.last().map_or(0, |block| block.external.end)];
         }
         // What begins at t = 0 is there from the start.
         let _ = pushes.happen(0.0);
         pushes
     }
 
-    /// Whether an agent is pushed at some time.
-    pub(crate) fn concern(&self, agent: usize) -> bool {
-        self.people.iter().any(|placed| placed.pushed.agent == agent)
+    /// What acts on an agent that is pushed at some time, block by block.
+    pub(crate) fn signals(&self, agent: usize) -> &[Signals] {
+        let placed = self.people.iter().find(|placed| placed.pushed.agent == agent);
+        placed.map_or(&[], |placed| &placed.pushed.signals)
     }
 
-    /// Computes τ_ext of everybody at `t_s` in the state `x`.
-    pub(crate) fn evaluate(&mut self, t_s: f64, x: &[f64]) {
+    /// Computes what acts on everybody at `t_s` in the state `x` of the `blocks`.
+    pub(super) fn evaluate(&mut self, t_s: f64, x: &[f64], blocks: &mut [Block]) {
         for placed in &mut self.people {
-            let Placed { pushed, state, external, stride, q, dq, torque } = placed;
-            let axes = q.len();
-            for k in 0..axes {
-                q[k] = x[*state + k * *stride];
-                dq[k] = x[*state + (axes + k) * *stride];
-            }
+            let Placed { pushed, block, external, stride, q, dq, torque } = placed;
+            let Block { columns, state, .. } = &mut blocks[*block];
+            columns.motion(pushed.agent, t_s, &x[state.clone()], q, dq);
             let checked = pushed.torque(t_s, q, dq, torque);
             debug_assert_eq!(checked, Ok(()), "lengths are fixed when the closed loop is built");
             for (k, torque) in torque.iter().enumerate() {
@@ -85,7 +87,7 @@ impl Pushes {
         if self.people.is_empty() { None } else { Some(&self.external) }
     }
 
-    /// τ_ext of an agent as [`Pushes::evaluate`] left it.
+    /// What acts on an agent as [`Pushes::evaluate`] left it.
     pub(crate) fn external_on(&self, agent: usize) -> &[f64] {
         let placed = self.people.iter().find(|placed| placed.pushed.agent == agent);
         placed.map_or(&[], |placed| &placed.torque)
@@ -108,6 +110,8 @@ impl Pushes {
 #[derive(Debug)]
 pub(crate) struct Pushed {
     agent: usize,
+    /// What its numbers are.
+    signals: Vec<Signals>,
     actions: Vec<Action>,
     /// What carries forces to the joints, if the robot is a tree.
     tree: Option<(Arc<Tree>, TreeScratch<f64>)>,
@@ -117,14 +121,16 @@ impl Pushed {
     /// `None` when nothing ever acts on the agent.
     pub(crate) fn new(index: usize, agent: &AgentSetup, end_s: f64) -> Option<Self> {
         let actions: Vec<Action> = agent.pushes.iter().map(|push| Action::new(push.clone(), end_s)).collect();
-        let tree = match agent.robot.interface().attachments {
+        let attachments = agent.robot.interface().attachments;
+        let signals = attachments.blocks(agent.robot.axes.len());
+        let tree = match attachments {
             Attachments::Links(tree) => Some((Arc::clone(&tree), tree.scratch())),
-            Attachments::Axes | Attachments::PlanarTip => None,
+            _ => None,
         };
-        (!actions.is_empty()).then_some(Pushed { agent: index, actions, tree })
+        (!actions.is_empty()).then_some(Pushed { agent: index, signals, actions, tree })
     }
 
-    /// τ_ext = the sum of what all pushes do to the agent at `t_s`.
+    /// The sum of what all pushes do to the agent at `t_s`.
     ///
     /// # Errors
     /// [`LengthError`] when a slice has the wrong length.

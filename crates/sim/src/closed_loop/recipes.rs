@@ -6,7 +6,7 @@ use forwardstep_core::sampled::{EncoderFilter, Limits, Recipe, RecipeError, Samp
 use super::assemble::ClosedLoop;
 use super::assembly::effort_limits;
 use super::error::SetupError;
-use crate::setup::{AgentSetup, Control, Setup, VelocitySensor};
+use crate::setup::{AgentSetup, Control, Failures, Setup, VelocitySensor};
 
 /// The sampled controller of one agent as plain data: what the simulator steps under [`Setup::control`], for a program of
 /// one's own. Without [`Setup::control`] velocities are measured, and limits are those of the robot if they are enforced.
@@ -45,6 +45,9 @@ pub fn recipes(setup: &Setup) -> Result<Vec<Recipe>, SetupError> {
 
 /// `recipe` as it is used by an agent with so many torques.
 pub(super) fn used(mut recipe: Recipe, setup: &Setup, agent: usize, torques: usize) -> Result<Recipe, SetupError> {
+    if let Some(Control { failures: Failures { safe_command: Some(safe), .. }, .. }) = &setup.control {
+        recipe.safe = safe.clone();
+    }
     recipe.limits = limits(&setup.agents[agent], setup.control.as_ref(), torques)?;
     recipe.filter = match &setup.control {
         Some(Control { sensors, sample_hz, .. }) => match sensors.velocity {

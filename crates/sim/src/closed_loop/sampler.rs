@@ -36,6 +36,10 @@ pub(crate) struct Digital {
     torque: Range<usize>,
     commanded: Vec<f64>,
     held: Vec<f64>,
+    /// Whether a stated safe command stands where a step fails; else the run ends there.
+    safe: bool,
+    /// Steps that failed.
+    failed: u64,
 }
 
 impl Digital {
@@ -68,6 +72,8 @@ impl Digital {
             torque: torque..torque + at.map_or(0, |at| inputs[at].1),
             commanded: vec![0.0; total(inputs)],
             held: vec![0.0; total(inputs)],
+            safe: control.failures.safe_command.is_some(),
+            failed: 0,
             controller,
         }
     }
@@ -88,6 +94,11 @@ impl Digital {
             inbox: Inbox { degree: self.degree, sums: &self.sums },
             command: &self.commanded,
         }
+    }
+
+    /// Whether the run goes on where a step fails, and how many have.
+    pub(crate) fn failures(&self) -> (bool, u64) {
+        (self.safe, self.failed)
     }
 
     /// What the actuators hold.
@@ -111,8 +122,8 @@ impl Digital {
         sent.copy_from_slice(&self.message);
     }
 
-    /// Steps the controller. Where that fails, since something is no longer finite, the command is not finite either: the run
-    /// then breaks down there.
+    /// Steps the controller. Where that fails the safe command stands, if one is stated. Otherwise, where something is no longer
+    /// finite, the command is not finite either: the run then breaks down there.
     pub(crate) fn command(&mut self, now_s: f64, degree: f64, sums: &[f64]) {
         self.degree = degree;
         let own = self.sums.len().min(sums.len());
@@ -120,6 +131,10 @@ impl Digital {
         let inbox = Inbox { degree, sums: &self.sums };
         match self.controller.step(now_s, &self.measured, inbox) {
             Ok(()) => self.commanded.copy_from_slice(self.controller.command()),
+            Err(_) if self.safe => {
+                self.failed += 1;
+                self.commanded.copy_from_slice(self.controller.command());
+            }
             // The run ends by what the law says of itself.
             Err(StepError::Singular { .. }) => {}
             Err(StepError::Length(_) | StepError::Time { .. } | StepError::NotFinite { .. }) => {

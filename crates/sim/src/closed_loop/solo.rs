@@ -180,7 +180,8 @@ impl<C: Controller> Solo<C> {
         self.control(x, inputs)?;
         let Layout { m, velocities, plant, .. } = self.layout;
         let end = self.layout.controller_end();
-        self.plant.rate(&mut self.plant_scratch, &self.now.state, &self.now.input, &mut dx[..plant])?;
+        let external = inputs.external.unwrap_or_default();
+        self.plant.rate(&mut self.plant_scratch, &self.now.state, &self.now.input, external, &mut dx[..plant])?;
         if self.is_offset() {
             for (k, jet) in self.now.jets.iter().enumerate().take(m) {
                 dx[k] -= jet[1];
@@ -202,7 +203,7 @@ impl<C: Controller> Solo<C> {
         let own = &x[plant..self.layout.controller_end()];
         let heard = Heard::new(inputs.degree, inputs.sums, m)?;
         let given = Given { measured: self.controller.see(&self.now.output)?, heard, target: &self.now.jets };
-        let truth = Truth { plant: &self.plant, state: &self.now.state };
+        let truth = Truth { plant: &self.plant, state: &self.now.state, external: inputs.external.unwrap_or_default() };
         let balance = self.controller.balance(&mut self.scratch, truth, given, own, &self.now.shown)?;
         Ok((balance.value, balance.dissipation))
     }
@@ -288,6 +289,15 @@ impl<C: Controller> Columns for Solo<C> {
         write(self.agent, &self.row);
     }
 
+    fn motion(&mut self, _: usize, t_s: f64, x: &[f64], q: &mut [f64], dq: &mut [f64]) {
+        let looked = self.look(t_s, x);
+        debug_assert_eq!(looked, Ok(()), "lengths are fixed when the agent is built");
+        // A velocity is the second block of the state, if it is one.
+        for (own, value) in q.iter_mut().chain(dq).zip(&self.now.state) {
+            *own = *value;
+        }
+    }
+
     fn sense(&mut self, t_s: f64, x: &[f64], sent: &mut [f64]) {
         let looked = self.look(t_s, x);
         debug_assert_eq!(looked, Ok(()), "lengths are fixed when the agent is built");
@@ -348,6 +358,10 @@ impl<C: Controller> Columns for Solo<C> {
     }
 
     fn trouble(&self, x: &[f64]) -> Option<(usize, Trouble)> {
+        // A safe command stands where the law fails.
+        if self.digital.as_ref().is_some_and(|digital| digital.failures().0) {
+            return None;
+        }
         let own = &x[self.layout.plant..self.layout.controller_end()];
         self.controller.trouble(own, &self.now.shown).map(|trouble| (self.agent, trouble))
     }

@@ -59,7 +59,7 @@ fn manipulability(setup: &Setup, own: &AgentSetup, interface: &Interface) -> Res
         ReferenceKind::Consensus | ReferenceKind::PureIntegral => return Ok(()),
         ReferenceKind::Backstepping { .. } => "the backstepping baseline",
         ReferenceKind::Following(_) => "following a leader",
-        ReferenceKind::Tracking => own.law.words().name,
+        ReferenceKind::Tracking => "following a target",
     };
     if own.manipulability == 0.0 {
         return Ok(());

@@ -68,6 +68,8 @@ enum Read {
     Sample {
         offset: usize,
     },
+    /// It is too old: its sender does not count.
+    Silent,
     /// A delay that is not what its author says.
     Nowhere,
 }
@@ -264,8 +266,14 @@ impl Hearing {
         needs
     }
 
-    /// Looks up where every message comes from at the sample at `t_s`; `place` says where what was sent by then stands.
-    pub(crate) fn look_at_samples(&mut self, timeline: &Timeline<'_>, t_s: f64, place: impl Fn(f64) -> usize) {
+    /// Looks up where every message comes from at the sample at `t_s`; `place` says where what was sent by then stands, unless it is
+    /// too old. Whether anything is.
+    pub(crate) fn look_at_samples(
+        &mut self,
+        timeline: &Timeline<'_>,
+        t_s: f64,
+        place: impl Fn(f64) -> Option<usize>,
+    ) -> bool {
         if !self.varying.is_empty() {
             self.weigh(timeline, t_s);
         }
@@ -275,8 +283,17 @@ impl Hearing {
                 self.refuted = Some(Refuted { delay: timeline.delay_of(source.clock), t_s });
                 Read::Nowhere
             } else {
-                Read::Sample { offset: place(sent_s) }
+                place(sent_s).map_or(Read::Silent, |offset| Read::Sample { offset })
             };
+        }
+        self.sources.iter().any(|source| source.read == Read::Silent)
+    }
+
+    /// Adds up the weights of all that count at the sample looked at.
+    pub(crate) fn count(&self, heard: &mut Heard) {
+        heard.degree.fill(0.0);
+        for link in self.links.iter().filter(|link| self.sources[link.source].read != Read::Silent) {
+            heard.degree[self.ports[link.receiver].degree] += link.weight;
         }
     }
 
@@ -315,6 +332,7 @@ impl Hearing {
                     Read::Now => x[from.state + c * from.stride],
                     Read::Initial => self.initial[at],
                     Read::Nowhere => f64::NAN,
+                    Read::Silent => continue,
                 };
                 let entry = to.entry + c * to.stride;
                 let own = own.map_or_else(|| x[to.state + c * to.stride], |offset| data[offset + entry]);
@@ -374,6 +392,7 @@ impl Kernel for Gather<'_> {
                         sums[to.entry + c * to.stride] = f64::NAN;
                     }
                 }
+                Read::Silent => {}
             }
         }
     }

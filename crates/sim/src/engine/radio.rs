@@ -19,6 +19,10 @@ pub(crate) struct Radio<'a> {
     /// The graph has to be taken anew.
     rewire: bool,
     sample_hz: f64,
+    /// A message that is older does not count, s; infinite for any age.
+    timeout_s: f64,
+    /// Something was too old at the last sample.
+    silent: bool,
     /// Numbers that are sent at one sample.
     width: usize,
     /// The first sample, then a ring of the last ones.
@@ -27,11 +31,12 @@ pub(crate) struct Radio<'a> {
 }
 
 impl<'a> Radio<'a> {
-    /// For a run over [0, `end_s`] with samples at k / `sample_hz`; `x` is the state at t = 0.
+    /// For a run over [0, `end_s`] with samples at k / `sample_hz`, of which a message may be `timeout_s` old; `x` is the state at
+    /// t = 0.
     pub(crate) fn new(
         network: &'a Network,
         end_s: f64,
-        sample_hz: f64,
+        [sample_hz, timeout_s]: [f64; 2],
         ports: Vec<Port>,
         entries: usize,
         x: &[f64],
@@ -46,6 +51,8 @@ impl<'a> Radio<'a> {
             hearing,
             rewire: true,
             sample_hz,
+            timeout_s,
+            silent: false,
             width,
             sent: vec![0.0; width * (ring as usize + 1)],
             ring,
@@ -77,11 +84,17 @@ impl<'a> Radio<'a> {
             self.rewire = false;
         }
         let (rate, width, ring) = (self.sample_hz, self.width, self.ring);
-        self.hearing.look_at_samples(&self.timeline, t_s, |sent_s| {
+        // Whole periods of age, give or take rounding.
+        let oldest = self.timeout_s * rate + SLACK_PERIODS;
+        let silent = self.hearing.look_at_samples(&self.timeline, t_s, |sent_s| {
             let sample = ((sent_s * rate + SLACK_PERIODS).floor().max(0.0) as u64).min(k);
-            offset_of(sample, ring, width)
+            ((k - sample) as f64 <= oldest).then(|| offset_of(sample, ring, width))
         });
         self.hearing.gather_from(&self.sent, &[], Some(self.offset(k)), heard);
+        if silent || self.silent {
+            self.hearing.count(heard);
+        }
+        self.silent = silent;
     }
 
     /// The last delay that was found not to be what its author says.

@@ -127,8 +127,19 @@ pub enum KindEvidence {
     },
     /// h_I by the start, N m s.
     Momentum([f64; 3]),
+    /// A torque from outside changes h_I, and the law goes on with that of the start.
+    MomentumPushed,
+    /// What would end the run does not: a safe command stands there.
+    SafeCommand,
     /// The law is for another plant.
     NoSpacecraft,
+    /// Disturbances enter the last equation of strict-feedback chains.
+    Matched,
+    /// A disturbance enters elsewhere, where the slopes of the steps may grow with the state.
+    Unmatched {
+        /// Whose.
+        agent: Named,
+    },
 }
 
 impl KindEvidence {
@@ -143,6 +154,7 @@ impl KindEvidence {
             | KindEvidence::LengthsKnown
             | KindEvidence::PositiveMatricesTrueLengths
             | KindEvidence::LengthsInside
+            | KindEvidence::Matched
             | KindEvidence::Momentum(_) => Answer::Holds,
             KindEvidence::ThrustFloor { .. }
             | KindEvidence::FactorFloor { .. }
@@ -159,6 +171,9 @@ impl KindEvidence {
             | KindEvidence::LengthOutside { .. }
             | KindEvidence::LengthsInRegressor(_)
             | KindEvidence::LengthsNotAdapted { .. }
+            | KindEvidence::MomentumPushed
+            | KindEvidence::Unmatched { .. }
+            | KindEvidence::SafeCommand
             | KindEvidence::NoSpacecraft => Answer::NotCovered,
             KindEvidence::Singular { .. }
             | KindEvidence::FactorBelowFloor { .. }
@@ -189,6 +204,10 @@ impl KindEvidence {
             | KindEvidence::LengthsNotAdapted { .. }
             | KindEvidence::LengthsInside
             | KindEvidence::LengthOutside { .. }
+            | KindEvidence::MomentumPushed
+            | KindEvidence::Matched
+            | KindEvidence::Unmatched { .. }
+            | KindEvidence::SafeCommand
             | KindEvidence::NoSpacecraft => Rigour::Exact,
             KindEvidence::PositiveMatrices
             | KindEvidence::PositiveMatricesTrueLengths

@@ -28,6 +28,15 @@ pub enum LinkEvidence {
         /// What was found.
         fault: DelayFault,
     },
+    /// How old messages become, and how old they may be.
+    Ages {
+        /// None is known to become older, s; `None` where that is not known.
+        bound_s: Option<f64>,
+        /// The time-out, s.
+        timeout_s: f64,
+        /// What the bound rests on, the weakest if there are several.
+        basis: Basis,
+    },
     /// No link has a delay.
     Prompt,
     /// Some have, where there must be none.
@@ -60,6 +69,8 @@ impl LinkEvidence {
             LinkEvidence::RefutedDelay { .. } => Answer::Violated,
             LinkEvidence::Delays { unknown, .. } => holds(unknown.is_empty()),
             LinkEvidence::Weights { until_s, .. } => holds(until_s.is_none()),
+            LinkEvidence::Ages { bound_s: Some(bound_s), timeout_s, .. } if bound_s <= timeout_s => Answer::Holds,
+            LinkEvidence::Ages { .. } => Answer::NotCovered,
             LinkEvidence::Prompt | LinkEvidence::Coupling { .. } => Answer::Holds,
             LinkEvidence::Late { .. } => Answer::NotCovered,
         }
@@ -67,7 +78,7 @@ impl LinkEvidence {
 
     pub(super) fn rigour(&self) -> Rigour {
         match self {
-            LinkEvidence::Delays { basis, .. } => match basis {
+            LinkEvidence::Delays { basis, .. } | LinkEvidence::Ages { basis, .. } => match basis {
                 Basis::Rule => Rigour::Exact,
                 Basis::Enclosure => Rigour::Enclosed,
                 Basis::Numbers => Rigour::Given,

@@ -17,8 +17,10 @@ pub enum LoopEvidence {
     Pushes {
         /// Everybody whom something acts on.
         pushed: Vec<Named>,
-        /// Whom a force or a torque acts on for ever.
+        /// Which robots under (6)–(7) a force or a torque acts on for ever.
         torques_for_ever: Vec<Named>,
+        /// Whom else something acts on for ever.
+        others_for_ever: Vec<Named>,
         /// Whom a hand never lets go.
         hands_for_ever: Vec<Named>,
         /// When the last push ends, s; infinite where one does not.
@@ -75,8 +77,8 @@ impl LoopEvidence {
         let unless = |spoiled: bool| if spoiled { Answer::NotCovered } else { Answer::Holds };
         match self {
             LoopEvidence::Gains { .. } => Answer::Holds,
-            LoopEvidence::Pushes { torques_for_ever, hands_for_ever, .. } => {
-                unless(!torques_for_ever.is_empty() || !hands_for_ever.is_empty())
+            LoopEvidence::Pushes { torques_for_ever, others_for_ever, hands_for_ever, .. } => {
+                unless([torques_for_ever, others_for_ever, hands_for_ever].iter().any(|agents| !agents.is_empty()))
             }
             LoopEvidence::Applied { limited, enforced } => unless(!limited.is_empty() || !enforced.is_empty()),
             LoopEvidence::Sampling { .. } => Answer::NotCovered,

@@ -78,6 +78,17 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
         KindEvidence::Momentum([x, y, z]) => {
             format!("h_I = [{x:.4}, {y:.4}, {z:.4}] N m s by the start, and nothing acts from outside")
         }
+        KindEvidence::MomentumPushed => {
+            "a torque from outside changes it, and the law goes on with what it was at the start".into()
+        }
+        KindEvidence::Matched => "they do: the power of what acts is e_n w_n, which leaves V finite".into(),
+        KindEvidence::Unmatched { agent } => format!(
+            "what disturbs {} enters where the slopes of the steps may grow with the state, so that V may not stay finite",
+            agent.name
+        ),
+        KindEvidence::SafeCommand => {
+            "where it does not, a safe command stands in the place of the law, and the run goes on".into()
+        }
         KindEvidence::NoSpacecraft => "this is no spacecraft".into(),
     }
 }

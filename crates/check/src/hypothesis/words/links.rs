@@ -27,6 +27,12 @@ pub(super) fn words(evidence: &LinkEvidence) -> String {
                 reasons.join("; ")
             )
         }
+        LinkEvidence::Ages { bound_s, timeout_s, .. } => {
+            let age = bound_s.map_or("how old one becomes is not known".into(), |bound_s| {
+                format!("one becomes {} s old at most", seconds(bound_s))
+            });
+            format!("{age}, and the sender of one that is older than {} s does not count", seconds(*timeout_s))
+        }
         LinkEvidence::Prompt => "no link has a delay".into(),
         LinkEvidence::Late { bound_s } => {
             format!("a delay reaches {} s; the paper follows a leader without delays only", seconds(*bound_s))

@@ -15,8 +15,8 @@ pub(super) fn words(evidence: &LoopEvidence) -> String {
             };
             format!("checked when the gains were read; {parameters}")
         }
-        LoopEvidence::Pushes { pushed, torques_for_ever, hands_for_ever, last_end_s } => {
-            pushes(pushed, torques_for_ever, hands_for_ever, *last_end_s)
+        LoopEvidence::Pushes { pushed, torques_for_ever, others_for_ever, hands_for_ever, last_end_s } => {
+            pushes(pushed, [torques_for_ever, others_for_ever, hands_for_ever], *last_end_s)
         }
         LoopEvidence::Applied { limited, enforced } => {
             let mut reasons: Vec<String> = limited.iter().map(|limited| limit(*limited).to_owned()).collect();
@@ -47,7 +47,7 @@ pub(super) fn words(evidence: &LoopEvidence) -> String {
     }
 }
 
-fn pushes(pushed: &[Named], torques: &[Named], hands: &[Named], last_end_s: f64) -> String {
+fn pushes(pushed: &[Named], [torques, others, hands]: [&[Named]; 3], last_end_s: f64) -> String {
     let mut because = Vec::new();
     if !torques.is_empty() {
         because.push(format!(
@@ -55,6 +55,9 @@ fn pushes(pushed: &[Named], torques: &[Named], hands: &[Named], last_end_s: f64)
              K s = tau_ext",
             is_or_are(torques)
         ));
+    }
+    if !others.is_empty() {
+        because.push(format!("{} pushed for ever: the tracking error does not vanish", is_or_are(others)));
     }
     if !hands.is_empty() {
         because.push(format!(

@@ -12,7 +12,8 @@
 //!
 //! The vehicle then misses by m x⃛ − … = −R (σ ε₂, −σ ε₁, 0) what u says. Under (50) the miss decays like exp(−b t), an
 //! integrable input of (52). The paper has no body with inertia: Theorems 4 and 5 do not cover it, nor limits of rotors.
-//! V balances all the same, the miss being known: −V̇ = α* m |ṡ|² − ṡᵀ(miss).
+//! V balances all the same, the miss being known: −V̇ = α* m |ṡ|² − ṡᵀ(miss), and a force from outside as in the head of
+//! `thrust`. A torque from outside makes the rates miss.
 
 use alloc::vec::Vec;
 
@@ -170,12 +171,7 @@ impl Controller for ThrustCascade {
         let wanted = &shown[shown.len() - 3..];
         let sigma = self.outer.sigma(state).unwrap_or_default();
         let miss = [-sigma * (omega[1] - wanted[1]), sigma * (omega[0] - wanted[0]), 0.0];
-        self.outer.translation_balance(
-            &truth.plant.vehicle,
-            moving,
-            given.target,
-            state,
-            rotate(*moving.attitude, miss),
-        )
+        let slip = rotate(*moving.attitude, miss);
+        self.outer.translation_balance(&truth.plant.vehicle, moving, given.target, state, [&slip, truth.external])
     }
 }

@@ -32,6 +32,13 @@
 //!
 //! (47) and (57) give m s̈ = −α* m ṡ + (m̂ − m) w; with V = ½ m |ṡ|² + (m̂ − m)²/2γ* again V̇ = −α* m |ṡ|².
 //!
+//! **Pushes.** A force f from outside adds f/m to ẍ, and the laws know nothing of it. Let ρ be ṡ without that part, so that
+//! ṡ = ρ + f/m and m ρ̇ is what m s̈ is above. V with ρ in the place of ṡ needs no derivative of f:
+//!
+//! ```text
+//! V̇ = −α* m |ρ|² + (k/m) sᵀf  under (50),   V̇ = −α* m |ρ|² − (m̂ − m) wᵀf/m  under (57)
+//! ```
+//!
 //! **m̂ without acceleration.** ṡ contains ẍ. By parts,
 //!
 //! ```text
@@ -329,14 +336,15 @@ impl Thrust {
         [-(dv[1] + p * d_sigma) / sigma, (dv[0] - q * d_sigma) / sigma, turn]
     }
 
-    /// V and −V̇ of the head of this file, where m x⃛ misses by `slip` what u says.
+    /// V and −V̇ of the head of this file, where m x⃛ misses by `slip` what u says, and the first three numbers of `external` are
+    /// the force from outside, if there is one.
     fn translation_balance(
         &self,
         vehicle: &Vehicle,
         moving: VehicleState<'_>,
         target: &[Jet],
         state: &[f64],
-        slip: [f64; 3],
+        [slip, external]: [&[f64]; 2],
     ) -> Result<Balance, LengthError> {
         LengthError::check("state", self.state_len(), state.len())?;
         check_target(target)?;
@@ -347,14 +355,19 @@ impl Thrust {
         let [alpha_star, stiffness, gamma_star] = self.design.gains();
         let (s, w) = self.error_and_push(moving.dx, reference, target);
         let ddx = vehicle.acceleration(*moving.attitude, rest[0]);
-        let ds = core::array::from_fn(|k| ddx[k] - reference[3 + k] - target.get(k).map_or(0.0, |jet| jet[2]));
+        let ds: [f64; 3] =
+            core::array::from_fn(|k| ddx[k] - reference[3 + k] - target.get(k).map_or(0.0, |jet| jet[2]));
         let mut value = 0.5 * vehicle.mass * dot(ds, ds) + 0.5 * stiffness * dot(s, s);
+        let force = |along: [f64; 3]| along.iter().zip(external).map(|(a, f)| a * f).sum::<f64>() / vehicle.mass;
+        let mut power = stiffness * force(s);
         if let Some(integral) = rest.get(2)
             && gamma_star > 0.0
         {
             let delta = self.mass + integral - gamma_star * dot(w, s) - vehicle.mass;
             value += delta * delta / (2.0 * gamma_star);
+            power -= delta * force(w);
         }
-        Ok(Balance { value, dissipation: alpha_star * vehicle.mass * dot(ds, ds) - dot(ds, slip) })
+        let slipped: f64 = ds.iter().zip(slip).map(|(ds, slip)| ds * slip).sum();
+        Ok(Balance { value, dissipation: alpha_star * vehicle.mass * dot(ds, ds) - slipped - power })
     }
 }

@@ -79,8 +79,8 @@ impl<C: Controller<Exchange = Position>> Closed<C> {
         let mut scratch = self.law.scratch();
         let asked = Asked { input: &mut input, d_state: d_own, shown: &mut shown };
         self.law.evaluate(&mut scratch, given, own, asked).unwrap();
-        self.plant.rate(&mut self.plant.scratch(), state, &input, d_state).unwrap();
-        let truth = Truth { plant: &self.plant, state };
+        self.plant.rate(&mut self.plant.scratch(), state, &input, &[], d_state).unwrap();
+        let truth = Truth { plant: &self.plant, state, external: &[] };
         let balance = self.law.balance(&mut scratch, truth, given, own, &shown).unwrap();
         Instant { rate, shown, balance }
     }
@@ -388,5 +388,5 @@ fn wrong_lengths_are_errors() {
     assert!(law.start(&mut (), given, &[vec![0.5; 3]], &mut state).is_ok());
     let asked = Asked { input: &mut [0.0; 3], d_state: &mut [0.0; 12], shown: &mut [0.0; 16] };
     assert!(law.evaluate(&mut (), given, &state, asked).is_err());
-    assert!(plant.rate(&mut (), &output, &[0.0; 3], &mut [0.0; 10]).is_err());
+    assert!(plant.rate(&mut (), &output, &[0.0; 3], &[], &mut [0.0; 10]).is_err());
 }

@@ -90,6 +90,7 @@ impl Controller for Thrust {
         state: &[f64],
         _: &[f64],
     ) -> Result<Balance, LengthError> {
-        self.translation_balance(truth.plant, VehicleState::read(truth.state)?.0, given.target, state, [0.0; 3])
+        let moving = VehicleState::read(truth.state)?.0;
+        self.translation_balance(truth.plant, moving, given.target, state, [&[], truth.external])
     }
 }

@@ -127,8 +127,8 @@ fn signals(absence: Option<Absence>, record: &RunRecord<'_>) -> Markup {
                 (card("disagreement", gap.name(), gap.formula(), absence.map_or("", Absence::words)))
                 (card("position", "Positions", "q", ""))
                 @if recorded(Signal::Torque) { (card("torque", "Torques", "τ, after any limit", "")) }
-                @if agents.iter().any(|agent| !agent.pushes.is_empty()) {
-                    (card("external", "External torques", "τ_ext, by pushes", ""))
+                @if recorded(Signal::External) {
+                    (card("external", "External torques and forces", "τ_ext, by pushes", ""))
                 }
                 (card("velocity", "Speed and reference", "q̇, and z dashed", ""))
                 @if recorded(Signal::TrackingError) { (card("error", "Tracking error", "s = q̇ − z", "")) }
