@@ -1,4 +1,4 @@
-//! Everything that a robot, a law and a program of one's own are made of, to be imported at once.
+//! Everything that a robot, a law, a delay and a program of one's own are made of, to be imported at once.
 //!
 //! `examples/tank.rs` brings a robot and a law with nothing else. The tables of scenario files derive `serde::Deserialize` and
 //! `schemars::JsonSchema`, on which a crate that brings kinds depends itself.
@@ -12,9 +12,11 @@ pub use forwardstep_core::plant::{Plant, VectorField};
 pub use forwardstep_core::reference::Position;
 pub use forwardstep_core::signal::{Entries, OwnSignal, Signal, Unit};
 pub use forwardstep_io::scenario::kinds::{
-    At, Fault, InputFolder, KindError, Kinds, LawKind, LawReader, LawTable, Mistake, RobotKind, RobotRead, RobotTable,
-    Spread, StartReader, Stop, fault, not_negative, positive,
+    At, DelayKind, DelayPlan, Fault, InputFolder, KindError, Kinds, LawKind, LawReader, LawTable, Mistake,
+    NetworkReader, RobotKind, RobotRead, RobotTable, Spread, StartReader, Stop, fault, not_negative, positive,
 };
+pub use forwardstep_sim::ParameterError;
+pub use forwardstep_sim::delay::{Arrivals, Delay, DelayFunction, DelayPiece, Known as KnownDelay};
 pub use forwardstep_sim::system::{Declaration, DeclaredClaim, Known};
 pub use forwardstep_sim::{
     ActuatorLimits, Assembly, Attachments, Axis, AxisUnit, Block, Coordinates, Exchange, Interface, LagrangianRobot,

@@ -125,7 +125,9 @@ fn runs_of_format_1_are_reported() {
         let run = folder.path().join(name);
         copy_folder(&old(&format!("runs/{name}")), &run);
         let said = stderr(&forwardstep(&folder, &["report", name]).success());
-        assert_eq!(said.matches("note: ").count(), 1, "{said}");
+        // What verdicts say may change from version to version, and then that is said as well.
+        let notes = said.lines().filter(|line| line.starts_with("note: ") && !line.contains("worked out anew"));
+        assert_eq!(notes.count(), 1, "{said}");
         assert!(said.contains("written in an earlier format"), "{said}");
         let page = fs::read_to_string(run.join("report.html")).unwrap();
         assert!(!page.contains("omega_wanted") && !page.contains("family-sign\""), "{name}");

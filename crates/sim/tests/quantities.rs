@@ -135,9 +135,15 @@ fn quantities_are_held_against_each_other() {
 
 #[test]
 fn errors_about_agents_lead_to_them() {
-    let cases: [Case<'_>; 5] = [
+    let rootless = |s: &mut Setup| {
+        s.agents.iter_mut().for_each(|agent| agent.roots_per_s.clear());
+        s.exchange = Exchange::PositionVelocity;
+        s.reference = ReferenceKind::Backstepping { filter_s: 0.1, acceleration_limit: None };
+    };
+    let cases: [Case<'_>; 6] = [
         (&|s| s.agents[1].start.reference = vec![vec![0.0]; 2], "agents[1].start.reference"),
-        (&|s| s.reference = ReferenceKind::Tracking, "reference"),
+        (&|s| s.reference = ReferenceKind::Tracking, "agents[0].name"),
+        (&rootless, "reference"),
         (&|s| s.agents[1].target = Some(at_zero()), "agents[1].target"),
         (&|s| s.network.agents = 3, "network"),
         (&controlled(|c| c.actuators.torque_limit = Some(Vec::new())), "control.torque_limit"),

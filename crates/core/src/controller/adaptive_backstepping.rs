@@ -86,8 +86,8 @@ use crate::signal::{Block, Signal};
 ///     let (mut input, mut d_state, mut shown, mut dx) = ([0.0], vec![0.0; size], vec![0.0; shown_size], [0.0; 2]);
 ///     let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
 ///     law.evaluate(&mut law.scratch(), given, state, asked)?;
-///     plant.rate(&mut plant.scratch(), &x, &input, &mut dx)?;
-///     let truth = Truth { plant: &plant, state: &x };
+///     plant.rate(&mut plant.scratch(), &x, &input, &[], &mut dx)?;
+///     let truth = Truth { plant: &plant, state: &x, external: &[] };
 ///     let balance = law.balance(&mut law.scratch(), truth, given, state, &shown)?;
 ///     let moved = state.iter().zip(&d_state).map(|(x, dx)| x + h * dx).collect();
 ///     Ok((balance, [x[0] + h * dx[0], x[1] + h * dx[1]], moved))

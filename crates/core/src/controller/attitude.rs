@@ -93,7 +93,7 @@ pub struct AttitudeMeasured<'a> {
 /// law.evaluate(&mut (), given, &own, Asked { input: &mut input, d_state: &mut d_own, shown: &mut shown })?;
 /// // (97): ż = −α₁ Δq_v
 /// assert!((d_own[0] + 1.5 * 0.6).abs() < 1e-12 && d_own[1].abs() < 1e-12);
-/// let balance = law.balance(&mut (), Truth { plant: &craft, state: &state }, given, &own, &shown)?;
+/// let balance = law.balance(&mut (), Truth { plant: &craft, state: &state, external: &[] }, given, &own, &shown)?;
 /// assert!((balance.value - 0.5 * (2.0 * 0.01 + 3.0 * 0.04 + 4.0 * 0.09)).abs() < 1e-12);
 /// assert!(balance.dissipation.abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -16,23 +16,33 @@ use crate::signal::{Block, Signal};
 /// **Requires** of its closures that they allocate nothing and do not panic when every slice is as long as its blocks say.
 ///
 /// ```
-/// use forwardstep_core::controller::{Balance, Feedback};
-/// use forwardstep_core::plant::VectorField;
+/// use forwardstep_core::controller::{Asked, Balance, Controller, Feedback, FeedbackInput, Given, Truth};
+/// use forwardstep_core::plant::{Plant, VectorField};
+/// use forwardstep_core::reference::Heard;
 /// use forwardstep_core::signal::Signal;
 ///
-/// // x → x_d by u = A (ẋ_d − k (x − x_d)): V = ½ A (x − x_d)² loses k A (x − x_d)².
+/// // A ẋ = u. x → x_d by u = A (ẋ_d − k (x − x_d)), and V = ½ A (x − x_d)² loses k A (x − x_d)².
 /// let (area, k) = (2.0, 0.5);
 /// let tank = VectorField::new(1, [(Signal::Position, 1)], [(Signal::Torque, 1)], move |_, u, dx| dx[0] = u[0] / area);
-/// let law = Feedback::new(
-///     &tank,
-///     [(Signal::Error, 1)],
-///     move |given, asked| {
-///         let [x_d, dx_d, ..] = given.target(0);
-///         asked.shown[0] = given.output[0] - x_d;
-///         asked.input[0] = area * (dx_d - k * asked.shown[0]);
-///     },
-///     move |_, _, shown| Balance { value: 0.5 * area * shown[0] * shown[0], dissipation: k * area * shown[0] * shown[0] },
-/// );
+/// let law = move |given: FeedbackInput<'_>, asked: Asked<'_>| {
+///     let [x_d, dx_d, ..] = given.target(0);
+///     asked.shown[0] = given.output[0] - x_d;
+///     asked.input[0] = area * (dx_d - k * asked.shown[0]);
+/// };
+/// let balance = move |_: Truth<'_, _>, _: FeedbackInput<'_>, shown: &[f64]| {
+///     let square = area * shown[0] * shown[0];
+///     Balance { value: 0.5 * square, dissipation: k * square }
+/// };
+/// let law = Feedback::new(&tank, [(Signal::Error, 1)], law, balance);
+///
+/// let (x, mut u, mut dx, mut error) = ([3.0], [0.0], [0.0], [0.0]);
+/// let given = Given { measured: law.see(&x)?, heard: Heard::new(&[], &[0.0], 1)?, target: &[[1.0, 0.0, 0.0, 0.0, 0.0]] };
+/// law.evaluate(&mut (), given, &[], Asked { input: &mut u, d_state: &mut [], shown: &mut error })?;
+/// tank.rate(&mut (), &x, &u, &[], &mut dx)?;
+/// let truth = Truth { plant: &tank, state: &x, external: &[] };
+/// // V̇ = A (x − x_d) ẋ here.
+/// assert_eq!(law.balance(&mut (), truth, given, &[], &error)?.dissipation, -area * error[0] * dx[0]);
+/// # Ok::<(), forwardstep_core::LengthError>(())
 /// ```
 pub struct Feedback<P, L, B> {
     axes: usize,

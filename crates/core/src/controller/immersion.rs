@@ -87,7 +87,7 @@ const CLOSE: f64 = 1e-9;
 ///
 /// let plant = Chain { terms, theta: vec![theta] };
 /// let mut dx = [0.0; 2];
-/// plant.rate(&mut plant.scratch(), &x, &input, &mut dx)?;
+/// plant.rate(&mut plant.scratch(), &x, &input, &[], &mut dx)?;
 /// let s = x[1] - state[0];
 /// assert!((dx[1] - d_state[0] - (-5.0 * s - x[0] * x[0] * zeta)).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

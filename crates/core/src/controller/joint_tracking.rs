@@ -54,6 +54,33 @@ pub struct MotionMeasured<'a> {
 /// **Guarantees**: q − q_d → 0 and q̇ − q̇_d → 0.
 /// **Deviates from the paper**: it has no trajectory for a robot in joint space; the argument at the head of this file is that of
 /// its differential cascades.
+///
+/// ```
+/// use forwardstep_core::ResolvedGain;
+/// use forwardstep_core::controller::{Asked, Controller, Given, JointTracking, Truth};
+/// use forwardstep_core::law::SlotineLi;
+/// use forwardstep_core::plant::{Mechanical, Plant};
+/// use forwardstep_core::reference::Heard;
+/// use forwardstep_core::robot::PointMass;
+///
+/// // A mass of 4 kg comes to rest at zero, its mass known.
+/// let robot = PointMass { dimension: 1 };
+/// let law = SlotineLi { damping: ResolvedGain::Diagonal(vec![8.0]), adaptation: None };
+/// let law = JointTracking { robot, alpha: vec![2.0], law, estimate_start: vec![4.0] };
+/// let plant = Mechanical { robot, theta: vec![4.0] };
+///
+/// let (state, mut tau, mut rate, mut shown) = ([1.0, 0.5], [0.0], [0.0; 2], [0.0; 4]);
+/// let given = Given { measured: law.see(&state)?, heard: Heard::new(&[], &[0.0], 1)?, target: &[[0.0; 5]] };
+/// let mut work = law.scratch();
+/// law.evaluate(&mut work, given, &[], Asked { input: &mut tau, d_state: &mut [], shown: &mut shown })?;
+/// plant.rate(&mut plant.scratch(), &state, &tau, &[], &mut rate)?;
+/// // z = −2 q and ż = −2 q̇, so V = ½ m s² changes by m s (q̈ − ż) = −K s².
+/// let (s, dz) = (0.5 + 2.0, -2.0 * 0.5);
+/// let truth = Truth { plant: &plant, state: &state, external: &[] };
+/// let balance = law.balance(&mut work, truth, given, &[], &shown)?;
+/// assert_eq!((4.0 * s * (rate[1] - dz), balance.dissipation), (-8.0 * s * s, 8.0 * s * s));
+/// # Ok::<(), forwardstep_core::LengthError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct JointTracking<R> {
     /// The robot, whose ϑ is unknown.

@@ -68,7 +68,7 @@ use super::Guide;
 ///
 /// let plant = Chain { terms, theta: vec![0.7] };
 /// let mut dx = [0.0; 2];
-/// plant.rate(&mut plant.scratch(), &x, &input, &mut dx)?;
+/// plant.rate(&mut plant.scratch(), &x, &input, &[], &mut dx)?;
 /// let s = x[1] - state[0];
 /// assert!((dx[1] - d_state[0] + 5.0 * s).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -127,8 +127,8 @@ impl ParameterBounds {
 ///     let (mut input, mut d_state, mut shown, mut rate) = ([0.0; 2], vec![0.0; size], vec![0.0; shown_size], [0.0; 4]);
 ///     let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
 ///     law.evaluate(&mut scratch, given, &state, asked)?;
-///     plant.rate(&mut plant.scratch(), motion, &input, &mut rate)?;
-///     let truth = Truth { plant: &plant, state: motion };
+///     plant.rate(&mut plant.scratch(), motion, &input, &[], &mut rate)?;
+///     let truth = Truth { plant: &plant, state: motion, external: &[] };
 ///     let balance = law.balance(&mut scratch, truth, given, &state, &shown)?;
 ///     let moved = |x: &[f64], dx: &[f64]| x.iter().zip(dx).map(|(x, dx)| x + h * dx).collect();
 ///     Ok((balance, moved(motion, &rate), moved(&state, &d_state)))

@@ -181,7 +181,7 @@ const PLANAR_CASES: &[Case] = &[
     ("robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }\nstart.position_rad", "robot.urdf = { file = \"ur5e.urdf\" }\nstart.position_rad",
         "test.toml:12:2: the law `task_space` needs `end_effector` for a robot from a URDF", "add end_effector = { link = \"…\" } with a link of the URDF"),
     ("[law.task_space]\nkinematic_gain = [0.3, 0.2]\nbounds = { lower_m = [0.9, 0.7], upper_m = [1.1, 0.9] }", "[law.adaptive]",
-        "test.toml:10:2: agent `arm`: roots of the reference dynamics: 0, but at least 1 are needed here", "an agent may have `reference` with roots of its own"),
+        "test.toml:10:1: agent `arm`: roots of the reference dynamics: 0, but at least 1 are needed here", "an agent may have `reference` with roots of its own"),
 ];
 
 #[test]

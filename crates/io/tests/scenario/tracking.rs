@@ -59,7 +59,7 @@ const CASES: &[Case] = &[
     ("[1.0, 1.5, 2.0]\n\n[law.position_only]\ndamping = 20\nadaptation_gain = 5", "[1.0, 1.5, 2.0, 1, 1]\n\n[law.known]\n",
         "test.toml:10:15: agent `mass`: roots of the reference dynamics: 5, but a trajectory is known with 4 derivatives only", "an agent may have `reference` with roots of its own"),
     ("roots_per_s = [1.0, 1.5, 2.0]\n\n[law.position_only]\ndamping = 20\nadaptation_gain = 5", "[law.known]\n",
-        "test.toml:9:2: agent `mass`: roots of the reference dynamics: 0, but at least 1 are needed here", "an agent may have `reference` with roots of its own"),
+        "test.toml:9:1: agent `mass`: roots of the reference dynamics: 0, but at least 1 are needed here", "an agent may have `reference` with roots of its own"),
     ("error_below", "disagreement_below",
         "test.toml:17:22: `disagreement_below` is about agreement, but every agent follows a target or a leader", "error_below"),
     ("error_below = 1e-3", "error_below = 1e-3\ndisagreement_below = 1e-3",

@@ -73,7 +73,7 @@ pub struct RotorcraftMeasured<'a> {
 /// law.start(&mut (), given, &[], &mut state)?;
 /// let (mut input, mut shown, mut rate) = ([0.0; 4], vec![0.0; size(law.shown())], [0.0; 13]);
 /// law.evaluate(&mut (), given, &state, Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown })?;
-/// plant.rate(&mut plant.scratch(), &turning, &input, &mut rate)?;
+/// plant.rate(&mut plant.scratch(), &turning, &input, &[], &mut rate)?;
 /// assert!((rate[12] + 30.0 * 0.7).abs() < 1e-12 && rate[10].abs() + rate[11].abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -120,7 +120,7 @@ use crate::{LengthError, Scalar};
 ///     law.start(&mut (), given, &[], &mut state)?;
 ///     let (mut input, mut shown, mut rate) = ([0.0; 4], vec![0.0; size(law.shown())], [0.0; 10]);
 ///     law.evaluate(&mut (), given, &state, Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown })?;
-///     vehicle.rate(&mut (), &at_rest, &input, &mut rate)?;
+///     vehicle.rate(&mut (), &at_rest, &input, &[], &mut rate)?;
 ///     assert!((input[0] - 1.5 * 9.81).abs() < 1e-12 && rate.iter().all(|rate| rate.abs() < 1e-12));
 ///     // α₀ = 1 · 2 · 3
 ///     assert!((d_state[6] - 6.0 * w * shift).abs() < 1e-12);
