@@ -1,4 +1,5 @@
 //! A delay and a kind of switching of one's own: scenario files, schema, messages, verdicts, runs and reports know them.
+#![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 #[path = "../examples/own_delay.rs"]

@@ -1,4 +1,5 @@
 //! Scenario files and runs of format 1: converted by `forwardstep upgrade`, and still reported.
+#![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod support;

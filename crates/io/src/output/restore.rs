@@ -26,8 +26,10 @@ use super::{CSV, PARQUET, csv, inputs, names, parquet};
 use crate::SourceText;
 use crate::files::{ReadError, read_text};
 use crate::scenario::kinds::Kinds;
-use crate::scenario::{Inputs, Scenario, upgrade, upgraded_column};
+use crate::scenario::{Inputs, Scenario, upgrade};
 
+/// Signals of format 1 and what their columns are called now.
+const SIGNALS: [(&str, &str); 2] = [("sign", "selection"), ("omega_wanted", "omega_commanded")];
 const SCENARIO: &str = "scenario.toml";
 const SUMMARY: &str = "summary.json";
 
@@ -228,7 +230,7 @@ fn parse_summary(text: &str) -> Result<Summary, SummaryError> {
     }
     let mut summary: Summary = serde_json::from_str(text)?;
     if let Some(broken) = summary.ending.breakdown.as_mut().filter(|_| format == 1) {
-        broken.column = upgraded_column(&broken.column);
+        broken.column = column_of_now(&broken.column);
     }
     match summary.inputs.iter().find(|input| !inputs::is_copy(&input.file)) {
         Some(input) => Err(SummaryError::Copy { file: input.file.clone() }),
@@ -299,7 +301,7 @@ fn recording(
     let expected = Recording { t_s: Vec::new(), columns };
     let table = table.map(|mut table| {
         if summary.format == 1 {
-            table.iter_mut().for_each(|(name, _)| *name = upgraded_column(name));
+            table.iter_mut().for_each(|(name, _)| *name = column_of_now(name));
         }
         table
     });
@@ -355,4 +357,15 @@ fn assign(
         expected.columns.retain(|c| !missing.iter().any(|m| (m.0, m.1, m.2) == (c.agent, c.signal, c.axis)));
     }
     Ok(expected)
+}
+
+/// What a column of a table of format 1 is called now.
+fn column_of_now(name: &str) -> String {
+    let mut parts: Vec<&str> = name.splitn(3, '.').collect();
+    if let [_, signal, ..] = parts.as_mut_slice()
+        && let Some((_, new)) = SIGNALS.iter().find(|(old, _)| old == signal)
+    {
+        *signal = new;
+    }
+    parts.join(".")
 }

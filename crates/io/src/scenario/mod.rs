@@ -101,7 +101,6 @@ pub use shipped::{SHIPPED_SCENARIOS, SHIPPED_TABLES, ShippedScenario, ShippedTab
 pub use system_problem::SystemProblem;
 pub use table::TableProblem;
 pub use template::{RobotTemplate, Template, TemplateDelay, TemplateGraph};
-pub(crate) use upgrade::column as upgraded_column;
 pub use upgrade::{Moved, Upgraded, upgrade};
 pub use value_problem::ValueProblem;
 

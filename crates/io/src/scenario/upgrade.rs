@@ -1,4 +1,4 @@
-//! From scenario files of format 1, and the tables of their runs, to what is read now.
+//! From scenario files of format 1 to what is read now.
 //!
 //! Formats differ in what keys and columns are called, not in what they mean: an upgraded file is the same scenario. Comments
 //! and layout stay. The files that a scenario names are the same in both formats.
@@ -27,9 +27,6 @@ const RENAMED: [(&str, &str); 12] = [
     ("network.*.packets.loss.random.most_in_a_row", "most_consecutive"),
     ("network.*.packets.loss.bursts.most_in_a_row", "most_consecutive"),
 ];
-
-/// Signals of format 1 and what their columns are called now.
-const SIGNALS: [(&str, &str); 2] = [("sign", "selection"), ("omega_wanted", "omega_commanded")];
 
 /// A scenario file in the format that is read now.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -153,15 +150,4 @@ fn in_value(value: &mut Value, path: &mut Vec<String>) -> Result<(), Fault> {
         Value::Array(array) => Array::iter_mut(array).try_for_each(|value| in_value(value, path)),
         _ => Ok(()),
     }
-}
-
-/// What a column of a table of format 1 is called now.
-pub(crate) fn column(name: &str) -> String {
-    let mut parts: Vec<&str> = name.splitn(3, '.').collect();
-    if let [_, signal, ..] = parts.as_mut_slice()
-        && let Some((_, new)) = SIGNALS.iter().find(|(old, _)| old == signal)
-    {
-        *signal = new;
-    }
-    parts.join(".")
 }
