@@ -92,6 +92,30 @@ fn eq_6_balance_holds_along_real_runs_of_every_robot_and_order_that_tracks() {
     }
 }
 
+/// Three of one model and one order would be one batch if they were to agree.
+#[test]
+fn prop_like_robots_follow_targets_of_their_own_as_each_does_alone() {
+    let mut setup = apart(follow(true, 2, 3.0)).swap_remove(0);
+    let first = setup.agents[0].clone();
+    setup.agents = (0..3)
+        .map(|k| {
+            let mut agent = first.clone();
+            agent.name = format!("arm-{k}");
+            agent.start.q[0] += 0.3 * f64::from(k);
+            agent.following(Trajectory::new(vec![wave(0.1 * f64::from(k), 0.4, 0.7, 0.5); 2]).unwrap())
+        })
+        .collect();
+    setup.network = Network::silent(3);
+    setup.solver.method = Method::Fixed { step_s: 1e-3 };
+    let together = run(&setup);
+    for k in 0..3 {
+        let alone = run(&Setup { agents: vec![setup.agents[k].clone()], network: Network::silent(1), ..setup.clone() });
+        for (signal, axis) in [(Signal::Position, 0), (Signal::Position, 1), (Signal::Torque, 1)] {
+            assert_eq!(column(&together, k, signal, axis), column(&alone, 0, signal, axis), "{k}: {signal:?}");
+        }
+    }
+}
+
 #[test]
 fn eq_6_balance_counts_pushes_on_robots_that_track() {
     for mut setup in apart(follow(true, 2, 4.0)) {

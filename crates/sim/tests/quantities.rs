@@ -125,7 +125,9 @@ fn quantities_are_held_against_each_other() {
     for (change, path) in cases {
         assert_eq!(wrong(change), path);
     }
-    let fine: [&dyn Fn(&mut Setup); 3] = [
+    let fine: [&dyn Fn(&mut Setup); 4] = [
+        // The run lasts a second: these are as many samples as are accepted.
+        &controlled(|c| c.sample_hz = 1e7),
         &|s| s.solver.max_step_s = Some(1e-12),
         &controlled(|c| c.computation_delay_s = 0.01),
         &following(&|f| (f.design, f.beta) = (FollowingDesign::Continuous, -1.0)),
