@@ -404,6 +404,8 @@ fn a_switching_signal_that_is_not_what_it_says_is_refused() {
     let short = refused(vec![segment(0.0, 0.4, 0), segment(0.4, ever, 1)]);
     assert_eq!(short, ScheduleFault::Short { start_s: 0.0, end_s: 0.4, least_s: 0.5 });
     assert!(matches!(refused(vec![segment(0.0, f64::NAN, 0)]), ScheduleFault::Short { start_s: 0.0, .. }));
-    let nobody = refused(vec![segment(0.0, 1.0, 0), segment(1.0, ever, 7)]);
-    assert_eq!(nobody, ScheduleFault::NoSuchGraph { t_s: 1.0, graph: 7, graphs: 2 });
+    for graph in [2, 7] {
+        let nobody = refused(vec![segment(0.0, 1.0, 0), segment(1.0, ever, graph)]);
+        assert_eq!(nobody, ScheduleFault::NoSuchGraph { t_s: 1.0, graph, graphs: 2 });
+    }
 }
