@@ -99,7 +99,7 @@ pub enum NoPrediction {
 ///
 /// **Guarantees**: if the agents of such a network come to rest in agreement, as Theorems 2 and 3 promise, it is at this
 /// value, whatever the robots, the gains, the adaptation, the torques and whoever pushes for a while. With λ > 0 a value is given where
-/// tracking errors are known before the run: for known parameters and as long as nobody pushes, and for pushed point masses
+/// tracking errors are known before the run: for known parameters and as long as no external torque acts, and for pushed point masses
 /// with known parameters.
 ///
 /// # Errors

@@ -36,7 +36,7 @@ pub(crate) fn spanning_tree(setup: &Setup) -> Hypothesis {
     Hypothesis::new(Id::SpanningTree, evidence)
 }
 
-/// A spanning tree whose root is the leader: since the leader hears nobody, any tree has it as its root.
+/// A spanning tree whose root is the leader: since no edge leads to the leader, any tree has it as its root.
 pub(crate) fn leader_reaches_all(setup: &Setup) -> Hypothesis {
     if let Some(evidence) = refuted(setup) {
         return Hypothesis::new(Id::LeaderReachesAll, evidence);

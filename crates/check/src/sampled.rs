@@ -55,7 +55,7 @@ pub struct SampledAdaptation {
     pub agent: usize,
 }
 
-/// [`SampledAdaptation`] of a setup under digital control; `None` when nobody under (6)–(7) adapts, and where robots follow targets
+/// [`SampledAdaptation`] of a setup under digital control; `None` when no agent under (6)–(7) adapts, and where robots follow targets
 /// of their own: there both are of one sample.
 pub fn sampled_adaptation(setup: &Setup) -> Option<SampledAdaptation> {
     let control = setup.control.as_ref().filter(|_| setup.reference != ReferenceKind::Tracking)?;

@@ -10,11 +10,11 @@
 use std::process::ExitCode;
 
 use forwardstep::io::scenario::kinds::{
-    At, DelayKind, DelayPlan, Fault, KindError, Kinds, NetworkReader, PhaseReader, ScheduleKind, positive,
+    At, DelayKind, DelayPlan, Fault, KindError, KindTable, Kinds, NetworkReader, PhaseReader, ScheduleKind, positive,
 };
-use forwardstep::sim::ParameterError;
 use forwardstep::sim::delay::{Arrivals, Delay, DelayFunction, DelayPiece, Known};
 use forwardstep::sim::graph::Edge;
+use forwardstep::sim::quantity::{self, QuantityError};
 use forwardstep::sim::schedule::{KnownSwitching, Schedule, Segment, Segments, SwitchingSignal};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -52,9 +52,9 @@ impl DelayFunction for Collatz {
         "a Collatz staircase"
     }
 
-    fn validate(&self) -> Result<(), ParameterError> {
-        ParameterError::unless_positive("the step", self.step_s)?;
-        ParameterError::unless_positive("the time between jumps", self.hold_s)
+    fn validate(&self) -> Result<(), QuantityError> {
+        quantity::positive("", "step_s", self.step_s)?;
+        quantity::positive("", "hold_s", self.hold_s)
     }
 
     fn piece(&self, index: u64) -> DelayPiece {
@@ -87,12 +87,8 @@ pub struct CollatzFile {
 }
 
 impl DelayKind for CollatzFile {
-    fn key() -> &'static str {
-        "collatz"
-    }
-
-    fn description() -> &'static str {
-        "Jumps as the Collatz sequence does."
+    fn table() -> KindTable {
+        KindTable { key: "collatz", description: "Jumps as the Collatz sequence does." }
     }
 
     fn plan(&self, network: &mut NetworkReader<'_>) -> Result<DelayPlan, Fault> {
@@ -113,9 +109,9 @@ impl SwitchingSignal for ThueMorse {
         "switching after Thue and Morse"
     }
 
-    fn validate(&self, graphs: usize) -> Result<(), ParameterError> {
-        ParameterError::unless(graphs == 2, "the number of graphs", graphs as f64, "must be two")?;
-        ParameterError::unless_positive("the dwell time", self.dwell_s)
+    fn validate(&self, graphs: usize) -> Result<(), QuantityError> {
+        quantity::such(graphs == 2, "", "the number of graphs", graphs as f64, "must be two")?;
+        quantity::positive("", "dwell_s", self.dwell_s)
     }
 
     fn segments(&self, _: usize) -> Segments<'_> {
@@ -138,12 +134,8 @@ pub struct ThueMorseFile {
 }
 
 impl ScheduleKind for ThueMorseFile {
-    fn key() -> &'static str {
-        "thue_morse"
-    }
-
-    fn description() -> &'static str {
-        "Two phases in turn, without a period."
+    fn table() -> KindTable {
+        KindTable { key: "thue_morse", description: "Two phases in turn, without a period." }
     }
 
     fn schedule(&self, graphs: Vec<Vec<Edge>>, phases: &mut PhaseReader<'_, '_>) -> Result<Schedule, Fault> {

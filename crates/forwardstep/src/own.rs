@@ -12,11 +12,11 @@ pub use forwardstep_core::plant::{Plant, VectorField};
 pub use forwardstep_core::reference::Position;
 pub use forwardstep_core::signal::{Entries, OwnSignal, Signal, Unit};
 pub use forwardstep_io::scenario::kinds::{
-    At, DelayKind, DelayPlan, Fault, InputFolder, KindError, Kinds, LawKind, LawReader, LawTable, Mistake,
+    At, DelayKind, DelayPlan, Fault, InputFolder, KindError, KindTable, Kinds, LawKind, LawReader, LawTable, Mistake,
     NetworkReader, RobotKind, RobotRead, RobotTable, Spread, StartReader, Stop, fault, not_negative, positive,
 };
-pub use forwardstep_sim::ParameterError;
 pub use forwardstep_sim::delay::{Arrivals, Delay, DelayFunction, DelayPiece, Known as KnownDelay};
+pub use forwardstep_sim::quantity::{self, QuantityError};
 pub use forwardstep_sim::system::{Declaration, DeclaredClaim, Known};
 pub use forwardstep_sim::{
     ActuatorLimits, Assembly, Attachments, Axis, AxisUnit, Block, Coordinates, Exchange, Interface, LagrangianRobot,

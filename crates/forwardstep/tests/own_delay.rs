@@ -6,9 +6,10 @@
 #[allow(dead_code, unreachable_pub, clippy::print_stderr, reason = "an example that is a program of its own")]
 mod own_delay;
 
+mod support;
+
 use std::fs;
 use std::ops::ControlFlow;
-use std::path::Path;
 use std::process::ExitCode;
 
 use forwardstep::check::{Answer, Id, Rigour, check, predict};
@@ -16,10 +17,12 @@ use forwardstep::io::SourceText;
 use forwardstep::io::output::ending_sentence;
 use forwardstep::io::scenario::{Scenario, ScenarioError};
 use forwardstep::sim::delay::{Arrivals, Basis, Delay, DelayFunction, DelayPiece, Known};
+use forwardstep::sim::quantity::QuantityError;
 use forwardstep::sim::schedule::{Dwell, Extent};
-use forwardstep::sim::{Ending, ParameterError, Setup, simulate};
+use forwardstep::sim::{Ending, Setup, simulate};
 use forwardstep::{program_with, sim};
 use miette::Diagnostic;
+use support::assert_report_is_rebuilt;
 
 const MASSES: &str = r#"format = 2
 time = { end_s = 12 }
@@ -61,14 +64,6 @@ fn forwardstep(arguments: &[&str]) -> ExitCode {
     program_with(&kinds, ["forwardstep"].iter().chain(arguments).copied())
 }
 
-/// Every file of a folder that a report is made of, by name.
-fn pictures(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let mut files = vec![folder.join("report.html")];
-    files.extend(fs::read_dir(folder.join("plots")).unwrap().map(|entry| entry.unwrap().path()));
-    files.sort();
-    files.into_iter().map(|file| (file.display().to_string(), fs::read(&file).unwrap())).collect()
-}
-
 #[test]
 fn they_run_are_reported_and_the_report_is_rebuilt() {
     let sampled = format!("{MASSES}\n[control]\nsample_hz = 200\n");
@@ -78,12 +73,7 @@ fn they_run_are_reported_and_the_report_is_rebuilt() {
         fs::write(&file, text).unwrap();
         let (file, out_text) = (file.to_str().unwrap(), out.to_str().unwrap());
         assert_eq!(forwardstep(&["run", file, "--out", out_text]), ExitCode::SUCCESS, "the goal is met, {name}");
-        let drawn = pictures(&out);
-        assert!(drawn.len() > 2);
-        fs::remove_file(out.join("report.html")).unwrap();
-        fs::remove_dir_all(out.join("plots")).unwrap();
-        assert_eq!(forwardstep(&["report", out_text]), ExitCode::SUCCESS);
-        assert_eq!(pictures(&out), drawn, "the same from the tables");
+        assert_report_is_rebuilt(forwardstep, &out);
     }
 }
 
@@ -187,7 +177,7 @@ impl DelayFunction for Liar {
         "a liar"
     }
 
-    fn validate(&self) -> Result<(), ParameterError> {
+    fn validate(&self) -> Result<(), QuantityError> {
         Ok(())
     }
 

@@ -6,8 +6,9 @@
 #[allow(dead_code, unreachable_pub, clippy::print_stderr, reason = "an example that is a program of its own")]
 mod tank;
 
+mod support;
+
 use std::fs;
-use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -21,6 +22,7 @@ use forwardstep::{program_with, sim};
 use miette::Diagnostic;
 use sim::system::{Declaration, DeclaredClaim, Known};
 use sim::{Assembly, Block, Interface, Law, LawWords, RobotSetup, SetupError, Signal};
+use support::assert_report_is_rebuilt;
 
 const TANKS: &str = r#"format = 2
 time = { end_s = 10 }
@@ -51,14 +53,6 @@ fn forwardstep(arguments: &[&str]) -> ExitCode {
     program_with(&kinds, ["forwardstep"].iter().chain(arguments).copied())
 }
 
-/// Every file of a folder that a report is made of, by name.
-fn pictures(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let mut files = vec![folder.join("report.html")];
-    files.extend(fs::read_dir(folder.join("plots")).unwrap().map(|entry| entry.unwrap().path()));
-    files.sort();
-    files.into_iter().map(|file| (file.display().to_string(), fs::read(&file).unwrap())).collect()
-}
-
 #[test]
 fn it_runs_is_recorded_and_reported_and_the_report_is_rebuilt() {
     let folder = tempfile::tempdir().unwrap();
@@ -80,11 +74,7 @@ fn it_runs_is_recorded_and_reported_and_the_report_is_rebuilt() {
     let balance = summary["metrics"]["balance_residual"]["relative"].as_f64().unwrap();
     assert!(balance < 1e-5, "V + ∫ dissipation is constant to {balance}");
 
-    let drawn = pictures(&out);
-    fs::remove_file(out.join("report.html")).unwrap();
-    fs::remove_dir_all(out.join("plots")).unwrap();
-    assert_eq!(forwardstep(&["report", out_text]), ExitCode::SUCCESS);
-    assert_eq!(pictures(&out), drawn, "the same from the tables");
+    assert_report_is_rebuilt(forwardstep, &out);
 }
 
 #[test]

@@ -158,7 +158,7 @@ impl AgentSetup {
 }
 
 impl Network {
-    /// Nobody hears anybody.
+    /// A network without edges.
     pub fn silent(agents: usize) -> Self {
         Network::switching(agents, Schedule::fixed(Vec::new()), Vec::new())
     }

@@ -1,7 +1,7 @@
 //! A leader and how it is followed, as plain data.
 //!
 //! The leader is the last vertex of the network. It has a motion and no robot, says its position and its velocity like
-//! everybody else, and hears nobody.
+//! everybody else, and has no neighbours.
 
 use forwardstep_core::reference::{Choice, Derived, Sliding};
 

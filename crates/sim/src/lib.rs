@@ -15,7 +15,6 @@ pub mod formula;
 pub mod graph;
 pub mod leader;
 pub mod network;
-mod parameter;
 pub mod probe;
 pub mod push;
 pub mod quantity;
@@ -37,7 +36,6 @@ pub use agents::{
 pub use build::run;
 pub use closed_loop::{Assembly, Block, SetupError, VelocityQuantity, recipe, recipes, validate};
 pub use network::Network;
-pub use parameter::ParameterError;
 pub use recording::{
     Breakdown, BreakdownCause, Column, Ending, GainRates, Outcome, Progress, Recording, SampleTaken, Signal,
     Statistics, Stiffness,

@@ -7,7 +7,6 @@ use crate::coupling::Coupling;
 use crate::delay::{Delay, DelayFault};
 use crate::formula::BoundedFormula;
 use crate::graph::Weight;
-use crate::parameter::ParameterError;
 use crate::quantity::QuantityError;
 use crate::schedule::{Schedule, ScheduleFault};
 
@@ -29,7 +28,7 @@ pub struct Network {
 /// Why a network has no meaning.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NetworkError {
-    /// There is nobody.
+    /// There are no agents.
     #[error("a network needs at least one agent")]
     NoAgents,
     /// A quantity out of its range.
@@ -130,7 +129,7 @@ pub enum NetworkError {
         /// What the signal is called.
         words: &'static str,
         /// What is wrong.
-        error: ParameterError,
+        error: QuantityError,
     },
     /// A switching signal from outside that is not what its author says.
     #[error("{words} is not what it is declared to be: {fault}")]
@@ -148,7 +147,7 @@ pub enum NetworkError {
         /// What it is called.
         words: &'static str,
         /// What is wrong.
-        error: ParameterError,
+        error: QuantityError,
     },
     /// A delay from outside that is not what its author says.
     #[error("delay {delay}, {words}, is not what it is declared to be: {fault}")]
@@ -211,7 +210,7 @@ impl Network {
         let switching = |error| NetworkError::Switching { words: self.schedule.words(), error };
         self.schedule.validate().map_err(switching)?;
         self.delays.iter().enumerate().try_for_each(|(delay, kind)| {
-            let named = |error: ParameterError| NetworkError::Delay { delay, words: kind.words(), error };
+            let named = |error: QuantityError| NetworkError::Delay { delay, words: kind.words(), error };
             kind.validate().map_err(named)
         })
     }

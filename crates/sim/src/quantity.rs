@@ -102,6 +102,8 @@ pub enum Requirement {
         /// Its value.
         bound: f64,
     },
+    /// What these words say, `must be two`.
+    Such(&'static str),
     /// So large, or so small, that a run has only so many of these.
     Few {
         /// What they are.
@@ -130,12 +132,17 @@ impl fmt::Display for QuantityError {
             let (count, most) = (about(count), number(most));
             return write!(f, "about {count} {what} until the end of the run, but at most {most} are accepted");
         }
-        write!(f, "`{}` is {}, but must ", self.path.name(), number(self.value))?;
+        // What is counted has words for a name, and no key.
+        let (name, value) = (self.path.name(), number(self.value));
+        if name.contains(' ') { write!(f, "{name} is {value}, but ") } else { write!(f, "`{name}` is {value}, but ") }?;
         match self.requirement {
-            Requirement::NotNegative => f.write_str("not be negative"),
-            Requirement::Within { low, high } => write!(f, "be from {} to {}", number(low), number(high)),
-            Requirement::AtLeast { key, bound } => write!(f, "not be less than `{key}`, which is {}", number(bound)),
-            Requirement::Positive | Requirement::Few { .. } => f.write_str("be positive"),
+            Requirement::NotNegative => f.write_str("must not be negative"),
+            Requirement::Within { low, high } => write!(f, "must be from {} to {}", number(low), number(high)),
+            Requirement::AtLeast { key, bound } => {
+                write!(f, "must not be less than `{key}`, which is {}", number(bound))
+            }
+            Requirement::Such(words) => f.write_str(words),
+            Requirement::Positive | Requirement::Few { .. } => f.write_str("must be positive"),
         }
     }
 }
@@ -214,6 +221,20 @@ pub fn at_least(
     (other, bound): (&'static str, f64),
 ) -> Result<(), QuantityError> {
     check(value >= bound, at, key, value, Requirement::AtLeast { key: other, bound })
+}
+
+/// Checks that `key` at `at` is such as `words` say, which `meets` tells.
+///
+/// # Errors
+/// [`QuantityError`] if it is not.
+pub fn such(
+    meets: bool,
+    at: impl Into<Path>,
+    key: &'static str,
+    value: f64,
+    words: &'static str,
+) -> Result<(), QuantityError> {
+    check(meets, at, key, value, Requirement::Such(words))
 }
 
 /// Checks that a run has at most `most` of `what`, because `key` at `at` is `value`; it has `count`.

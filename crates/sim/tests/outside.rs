@@ -11,11 +11,12 @@ use forwardstep_sim::delay::{
     Arrivals, Basis, Delay, DelayFault, DelayFunction, DelayPiece, Known, Loss, PacketLink, SawTooth, Sinusoid,
 };
 use forwardstep_sim::network::NetworkError;
+use forwardstep_sim::quantity::{QuantityError, positive};
 use forwardstep_sim::recording::BreakdownCause;
 use forwardstep_sim::schedule::{
     Dwell, Extent, KnownSwitching, Schedule, ScheduleFault, Segment, Segments, SwitchingSignal, Window,
 };
-use forwardstep_sim::{Ending, Outcome, ParameterError, Setup, SetupError, simulate};
+use forwardstep_sim::{Ending, Outcome, Setup, SetupError, simulate};
 
 /// Three masses that agree over two graphs in turn.
 fn three() -> Setup {
@@ -37,8 +38,8 @@ impl DelayFunction for Teeth {
         "teeth"
     }
 
-    fn validate(&self) -> Result<(), ParameterError> {
-        ParameterError::unless_positive("the period", self.0.period_s)
+    fn validate(&self) -> Result<(), QuantityError> {
+        positive("", "period_s", self.0.period_s)
     }
 
     fn piece(&self, index: u64) -> DelayPiece {
@@ -80,7 +81,7 @@ impl DelayFunction for Says {
         "a liar"
     }
 
-    fn validate(&self) -> Result<(), ParameterError> {
+    fn validate(&self) -> Result<(), QuantityError> {
         Ok(())
     }
 
@@ -156,7 +157,7 @@ impl DelayFunction for Newest {
         "the newest"
     }
 
-    fn validate(&self) -> Result<(), ParameterError> {
+    fn validate(&self) -> Result<(), QuantityError> {
         Ok(())
     }
 
@@ -223,7 +224,7 @@ fn arrivals_within_a_slope_are_those_between_turning_points() {
             "a swing"
         }
 
-        fn validate(&self) -> Result<(), ParameterError> {
+        fn validate(&self) -> Result<(), QuantityError> {
             self.0.validate()
         }
 
@@ -340,8 +341,8 @@ impl SwitchingSignal for Turns {
         "turns"
     }
 
-    fn validate(&self, _: usize) -> Result<(), ParameterError> {
-        ParameterError::unless_positive("the least dwell time", self.least_s)
+    fn validate(&self, _: usize) -> Result<(), QuantityError> {
+        positive("", "least_s", self.least_s)
     }
 
     fn segments(&self, _: usize) -> Segments<'_> {

@@ -135,7 +135,7 @@ fn agents_with_targets_of_their_own_hear_nobody() {
     setup.network = common::silent(3);
     assert!(outcome(&setup).is_ok());
     setup.network = switching();
-    assert!(matches!(outcome(&setup), Err(SetupError::NobodyHears { edges: 4 })));
+    assert!(matches!(outcome(&setup), Err(SetupError::UnusedEdges { edges: 4 })));
 }
 
 #[test]

@@ -56,7 +56,7 @@ impl KindCheck for TaskSpaceRobot {
     }
 }
 
-/// Ĵ must stay away from singularity along the run, which nobody knows before.
+/// Ĵ must stay away from singularity along the run, which is not known before.
 fn jacobian(agent: &AgentSetup, law: &TaskSpaceLaw) -> KindEvidence {
     match start(agent, law) {
         Some(start) if start != 0.0 && start.is_finite() => {

@@ -34,7 +34,7 @@ pub(crate) struct Hold {
     /// A unit state, and what the dynamics return for it.
     unit: Vec<f64>,
     rate: Vec<f64>,
-    /// z and ż, which nobody asks for here.
+    /// z and ż, which are not needed here.
     unused: [Vec<f64>; 2],
     /// A, Φ and products, ℓ × ℓ, row by row.
     a: Vec<f64>,

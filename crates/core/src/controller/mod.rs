@@ -126,7 +126,7 @@ pub enum Trouble {
 pub trait Controller: Clone + Send + Sync + 'static {
     /// What it is made for.
     type Plant: Plant;
-    /// What agents tell each other; [`crate::reference::Position`] also for those that listen to nobody.
+    /// What agents tell each other; [`crate::reference::Position`] also for those without neighbours.
     type Exchange: Exchange;
     /// What it may see; what is not in it cannot be read.
     type Measured<'a>: Copy;

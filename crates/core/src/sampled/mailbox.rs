@@ -136,7 +136,7 @@ pub enum MailboxError {
     /// A slice of the wrong length.
     #[error(transparent)]
     Length(#[from] LengthError),
-    /// Nobody has this number.
+    /// No neighbour has this number.
     #[error("there is no sender {sender}: the mailbox has {senders}, counted from zero")]
     Sender {
         /// The number.

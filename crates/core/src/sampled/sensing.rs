@@ -1,7 +1,7 @@
 //! From what is measured to what a law reads.
 //!
 //! A law reads a part of its plant's output. That part is measured, but for velocities where there are encoders only: those
-//! are differenced and filtered here. What nobody reads stays zero.
+//! are differenced and filtered here. What no law reads stays zero.
 
 use alloc::vec;
 use alloc::vec::Vec;

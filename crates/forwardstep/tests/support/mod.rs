@@ -3,6 +3,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::process::ExitCode;
 
 use assert_cmd::Command;
 use assert_cmd::assert::Assert;
@@ -30,4 +31,22 @@ pub fn names(folder: &Path) -> Vec<String> {
         fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     names
+}
+
+/// Every file of a folder that a report is made of, by name.
+fn pictures(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut files = vec![folder.join("report.html")];
+    files.extend(fs::read_dir(folder.join("plots")).unwrap().map(|entry| entry.unwrap().path()));
+    files.sort();
+    files.into_iter().map(|file| (file.display().to_string(), fs::read(&file).unwrap())).collect()
+}
+
+/// The report and the plots of a run are the same when `program` draws them again from its tables.
+pub fn assert_report_is_rebuilt(program: fn(&[&str]) -> ExitCode, run: &Path) {
+    let drawn = pictures(run);
+    assert!(drawn.len() > 2);
+    fs::remove_file(run.join("report.html")).unwrap();
+    fs::remove_dir_all(run.join("plots")).unwrap();
+    assert_eq!(program(&["report", run.to_str().unwrap()]), ExitCode::SUCCESS);
+    assert_eq!(pictures(run), drawn, "the same from the tables");
 }

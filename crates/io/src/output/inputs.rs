@@ -47,7 +47,7 @@ fn clash(one: &str, other: &str) -> bool {
     one == other || below(&one, &other) || below(&other, &one)
 }
 
-/// The copies that an earlier run left in `folder` and that nobody changed since.
+/// The copies that an earlier run left in `folder` and that are unchanged since.
 pub(crate) fn of_earlier_run(folder: &Path) -> Vec<String> {
     /// The part of a summary that matters here, whatever its format.
     #[derive(Deserialize)]

@@ -2,7 +2,7 @@
 //!
 //! What a report shows comes from four places: the signals from the table; the setup from `scenario.toml` and the copies of
 //! the files that it names; how the run ended, what it cost and its notices from `summary.json`; metrics, verdicts and
-//! whether the goal was met are worked out again. In a folder that nobody touched all of it is what it was.
+//! whether the goal was met are worked out again. In a folder that is unchanged all of it is what it was.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -277,8 +277,8 @@ fn recording(
     summary: &Summary,
     remarks: &mut Vec<Remark>,
 ) -> Result<Recording, RestoreError> {
-    let columns =
-        recorded_columns(setup).map_err(|reason| RestoreError::Setup { path: folder.join(SCENARIO), reason })?;
+    let columns = recorded_columns(setup)
+        .map_err(|reason| RestoreError::Setup { path: folder.join(SCENARIO), reason: Box::new(reason) })?;
     let scenario_changed = !remarks.is_empty();
     let name = [PARQUET, CSV].into_iter().find(|name| folder.join(name).exists()).ok_or_else(|| {
         RestoreError::NotARun { path: folder.to_owned(), missing: "trajectory.parquet or trajectory.csv" }

@@ -66,7 +66,7 @@ pub enum RestoreError {
         /// The file.
         path: PathBuf,
         /// Why not.
-        reason: SetupError,
+        reason: Box<SetupError>,
     },
     /// Its table cannot be used.
     #[error("`{}`: {reason}", path.display())]

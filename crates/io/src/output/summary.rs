@@ -316,7 +316,7 @@ pub struct Solver {
 /// Times that depend on the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Timings {
-    /// Time spent simulating, s; null if nobody measured it.
+    /// Time spent simulating, s; null if it was not measured.
     #[serde(deserialize_with = "number::or_nan")]
     pub wall_s: f64,
     /// Simulated time per time spent; null likewise.

@@ -17,7 +17,7 @@ use super::value_problem::ValueProblem;
 const NAME: &str = "leader";
 const SIGN_EVERY_S: f64 = 1e-3;
 
-/// The leader and how it is followed, by agents with these axes; nothing where nobody leads. `folder` is where tables are
+/// The leader and how it is followed, by agents with these axes; nothing where there is no leader. `folder` is where tables are
 /// looked for.
 pub(super) fn following(
     file: &ScenarioFile,

@@ -27,7 +27,7 @@ pub enum SystemProblem {
     /// Followers without a leader.
     #[error("the agents are to follow a leader, but there is none")]
     NoLeader,
-    /// A leader whom nobody follows.
+    /// A leader without followers.
     #[error("there is a leader, but `reference.{reference}` does not follow one")]
     LeaderUnused {
         /// The reference dynamics.

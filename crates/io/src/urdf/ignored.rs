@@ -1,4 +1,4 @@
-//! A tally of what a file says that does not enter the model: nothing is dropped in silence.
+//! A tally of what a file says that does not enter the model: nothing is dropped without notice.
 
 use std::fmt;
 

@@ -8,7 +8,7 @@
 //!
 //! **Angles** are real numbers that are never wrapped; a continuous joint is a revolute one without position limits.
 //!
-//! **Nothing is dropped in silence.** What has no meaning is refused with its line and column ([`UrdfProblem`]); what
+//! **Nothing is dropped without notice.** What has no meaning is refused with its line and column ([`UrdfProblem`]); what
 //! was accepted but is odd, assumed or left out is listed in the robot's [`Notice`]s.
 
 mod dynamics;

@@ -201,7 +201,7 @@ pub enum SetupError {
     },
     /// Edges among agents that do not agree on anything.
     #[error("agents that follow targets of their own hear nobody, but the network has edges ({edges} in all)")]
-    NobodyHears {
+    UnusedEdges {
         /// How many, over all graphs.
         edges: usize,
     },
@@ -382,7 +382,7 @@ impl SetupError {
             SetupError::Quantity(error) | SetupError::Network(NetworkError::Quantity(error)) => error.path.clone(),
             SetupError::Network(_)
             | SetupError::AgentCount { .. }
-            | SetupError::NobodyHears { .. }
+            | SetupError::UnusedEdges { .. }
             | SetupError::LeaderHears { .. } => "network".into(),
             SetupError::Coupling => "network.coupling".into(),
             SetupError::NoAgent { .. } => "agents".into(),

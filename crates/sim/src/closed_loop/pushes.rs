@@ -17,7 +17,7 @@ use crate::system::Attachments;
 #[derive(Debug, Default)]
 pub(crate) struct Pushes {
     people: Vec<Placed>,
-    /// What acts on all agents, a block of columns for every population; empty when nobody is pushed.
+    /// What acts on all agents, a block of columns for every population; empty when no agent is pushed.
     external: Vec<f64>,
 }
 
@@ -82,7 +82,7 @@ impl Pushes {
         }
     }
 
-    /// What [`Pushes::evaluate`] computed; `None` when nobody is ever pushed.
+    /// What [`Pushes::evaluate`] computed; `None` when no agent is ever pushed.
     pub(crate) fn external(&self) -> Option<&[f64]> {
         if self.people.is_empty() { None } else { Some(&self.external) }
     }

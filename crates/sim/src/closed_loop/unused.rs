@@ -1,4 +1,4 @@
-//! What a setup states and nothing reads: refused, so that nobody takes it to have an effect.
+//! What a setup states and nothing reads: refused, so that it is not taken to have an effect.
 
 use forwardstep_core::LengthError;
 
@@ -15,7 +15,7 @@ pub(super) fn of_setup(setup: &Setup) -> Result<(), SetupError> {
     if setup.reference == ReferenceKind::Tracking && setup.agents.iter().all(tracks) {
         let edges = setup.network.schedule.graphs.iter().map(Vec::len).sum();
         if edges > 0 {
-            return Err(SetupError::NobodyHears { edges });
+            return Err(SetupError::UnusedEdges { edges });
         }
     }
     setup.control.as_ref().map_or(Ok(()), |control| of_sensors(control, &setup.agents))

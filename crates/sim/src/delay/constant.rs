@@ -1,7 +1,7 @@
 //! The same delay for ever.
 
 use super::{Arrivals, Delay, DelayFunction, DelayPiece, Known};
-use crate::parameter::ParameterError;
+use crate::quantity::{QuantityError, not_negative};
 
 /// T = s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,8 +22,8 @@ impl DelayFunction for Constant {
         "a constant delay"
     }
 
-    fn validate(&self) -> Result<(), ParameterError> {
-        ParameterError::unless_non_negative("the delay", self.s)
+    fn validate(&self) -> Result<(), QuantityError> {
+        not_negative("", "constant_s", self.s)
     }
 
     fn piece(&self, _: u64) -> DelayPiece {

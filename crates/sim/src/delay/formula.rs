@@ -4,17 +4,17 @@ use forwardstep_core::expression::Interval;
 
 use super::{Arrivals, Basis, DelayFunction, DelayPiece, Known, Unknown};
 use crate::formula::BoundedFormula;
-use crate::parameter::ParameterError;
+use crate::quantity::{QuantityError, not_negative};
 
 impl DelayFunction for BoundedFormula {
     fn words(&self) -> &'static str {
         "a formula"
     }
 
-    fn validate(&self) -> Result<(), ParameterError> {
+    fn validate(&self) -> Result<(), QuantityError> {
         let Interval { low, high } = self.within();
-        ParameterError::unless_non_negative("the lower bound of the formula", low)?;
-        ParameterError::unless_non_negative("the upper bound of the formula", high)
+        not_negative("", "the lower bound of formula_s", low)?;
+        not_negative("", "the upper bound of formula_s", high)
     }
 
     fn piece(&self, index: u64) -> DelayPiece {

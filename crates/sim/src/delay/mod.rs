@@ -10,7 +10,7 @@
 //! ([`Delay::probe`]), and a value outside the declared bounds is no delay: the run breaks down there.
 //!
 //! ```
-//! use forwardstep_sim::ParameterError;
+//! use forwardstep_sim::quantity::QuantityError;
 //! use forwardstep_sim::delay::{Arrivals, Delay, DelayFunction, DelayPiece, Known};
 //!
 //! /// T = 0.2 + 0.1 sin t².
@@ -21,7 +21,7 @@
 //!     fn words(&self) -> &'static str {
 //!         "a chirp"
 //!     }
-//!     fn validate(&self) -> Result<(), ParameterError> {
+//!     fn validate(&self) -> Result<(), QuantityError> {
 //!         Ok(())
 //!     }
 //!     fn piece(&self, _: u64) -> DelayPiece {
@@ -62,7 +62,7 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 use crate::formula::BoundedFormula;
-use crate::parameter::ParameterError;
+use crate::quantity::{QuantityError, not_negative, such};
 use crate::same::Same;
 pub use arrivals::Arrivals;
 pub use constant::Constant;
@@ -96,8 +96,8 @@ pub trait DelayFunction: Same + Debug + Send + Sync {
     /// Checks the parameters.
     ///
     /// # Errors
-    /// [`ParameterError`] for the first that makes no sense.
-    fn validate(&self) -> Result<(), ParameterError>;
+    /// [`QuantityError`] for the first that makes no sense.
+    fn validate(&self) -> Result<(), QuantityError>;
 
     /// A stretch of time on which it is smooth; number zero holds t = 0, and each begins where the one before it ends. The
     /// last has no end, and stands for all numbers after its own.
@@ -172,16 +172,12 @@ impl Delay {
     }
 
     /// Checks the parameters.
-    pub(crate) fn validate(&self) -> Result<(), ParameterError> {
+    pub(crate) fn validate(&self) -> Result<(), QuantityError> {
         self.function.validate()?;
         let [low, high] = self.known.within_s;
-        ParameterError::unless_non_negative("the least value", low)?;
-        ParameterError::unless(
-            high >= low && high.is_finite(),
-            "the largest value",
-            high,
-            "must be finite and not below the least",
-        )
+        not_negative("", "the least value", low)?;
+        let bounded = high >= low && high.is_finite();
+        such(bounded, "", "the largest value", high, "must be finite and not below the least")
     }
 
     /// What is known of all of its values.

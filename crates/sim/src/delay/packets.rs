@@ -31,7 +31,7 @@ use rand_chacha::rand_core::SeedableRng;
 use thiserror::Error;
 
 use super::{Arrivals, Basis, DelayFunction, DelayPiece, Known, Unknown};
-use crate::parameter::ParameterError;
+use crate::quantity::QuantityError;
 
 /// A link as a random process. Every pair of agents has its own stream of random numbers, which depends on the seed and on
 /// the two agents alone: neither other links nor the graph in force change it. Whether the k-th packet is lost depends on
@@ -358,7 +358,7 @@ impl DelayFunction for Trace {
     }
 
     /// It is made by a function that checks.
-    fn validate(&self) -> Result<(), ParameterError> {
+    fn validate(&self) -> Result<(), QuantityError> {
         Ok(())
     }
 

@@ -1,7 +1,7 @@
 //! A delay that jumps from value to value.
 
 use super::{Arrivals, DelayFunction, DelayPiece, Known};
-use crate::parameter::ParameterError;
+use crate::quantity::{QuantityError, not_negative, such};
 
 /// T = `values_s[k]` from `times_s[k]` until the next time.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,21 +30,21 @@ impl DelayFunction for PiecewiseConstant {
         "a piecewise constant delay"
     }
 
-    fn validate(&self) -> Result<(), ParameterError> {
+    fn validate(&self) -> Result<(), QuantityError> {
         let PiecewiseConstant { times_s, values_s, period_s } = self;
         let matched = times_s.len() == values_s.len() && !times_s.is_empty();
         let values = values_s.len() as f64;
-        ParameterError::unless(matched, "the number of values", values, "must be that of the times, and not zero")?;
-        values_s.iter().try_for_each(|value| ParameterError::unless_non_negative("a value", *value))?;
-        ParameterError::unless(times_s[0] == 0.0, "the first time", times_s[0], "must be zero")?;
+        such(matched, "", "the number of values_s", values, "must be that of times_s, and not zero")?;
+        values_s.iter().try_for_each(|value| not_negative("", "values_s", *value))?;
+        such(times_s[0] == 0.0, "", "times_s", times_s[0], "the first must be zero")?;
         for pair in times_s.windows(2) {
             let later = pair[1] > pair[0] && pair[1].is_finite();
-            ParameterError::unless(later, "a time", pair[1], "must be finite and later than the one before")?;
+            such(later, "", "times_s", pair[1], "must be finite and later than the one before")?;
         }
         match (period_s, times_s.last()) {
             (Some(period), Some(last)) => {
                 let longer = period > last && period.is_finite();
-                ParameterError::unless(longer, "the period", *period, "must be finite and longer than the last time")
+                such(longer, "", "period_s", *period, "must be finite and longer than the last time")
             }
             _ => Ok(()),
         }

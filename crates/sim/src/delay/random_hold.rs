@@ -4,7 +4,7 @@ use rand::Rng;
 
 use super::packets::{Kind, PacketError, stream};
 use super::{Arrivals, DelayFunction, DelayPiece, Known};
-use crate::parameter::ParameterError;
+use crate::quantity::QuantityError;
 
 /// Values that one delay may take one after another.
 const MOST_VALUES: usize = 100_000_000;
@@ -104,7 +104,7 @@ impl DelayFunction for RandomHold {
     }
 
     /// It is made by a function that checks.
-    fn validate(&self) -> Result<(), ParameterError> {
+    fn validate(&self) -> Result<(), QuantityError> {
         Ok(())
     }
 

@@ -3,7 +3,7 @@
 use forwardstep_core::Scalar;
 
 use super::{Arrivals, DelayFunction, DelayPiece, Known};
-use crate::parameter::ParameterError;
+use crate::quantity::{LARGEST, QuantityError, at_least, not_negative, positive, within};
 
 /// T = min + (max − min) · frac((t + offset) / period): rises, then drops. A slope of one is a packet held until the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,12 +30,12 @@ impl DelayFunction for SawTooth {
         "a saw-tooth"
     }
 
-    fn validate(&self) -> Result<(), ParameterError> {
-        ParameterError::unless_positive("the period", self.period_s)?;
-        ParameterError::unless_non_negative("the minimum", self.min_s)?;
-        ParameterError::unless_non_negative("the maximum", self.max_s)?;
-        ParameterError::unless_non_negative("the size of the offset", self.offset_s.abs())?;
-        ParameterError::unless(self.max_s >= self.min_s, "the maximum", self.max_s, "must not be below the minimum")
+    fn validate(&self) -> Result<(), QuantityError> {
+        positive("", "period_s", self.period_s)?;
+        not_negative("", "min_s", self.min_s)?;
+        within("", "offset_s", self.offset_s, -LARGEST, LARGEST)?;
+        not_negative("", "max_s", self.max_s)?;
+        at_least("", "max_s", self.max_s, ("min_s", self.min_s))
     }
 
     fn piece(&self, index: u64) -> DelayPiece {

@@ -5,7 +5,7 @@ use core::f64::consts::TAU;
 use forwardstep_core::Scalar;
 
 use super::{Arrivals, DelayFunction, DelayPiece, Known};
-use crate::parameter::ParameterError;
+use crate::quantity::{LARGEST, QuantityError, not_negative, positive, within};
 
 /// T = mean + amplitude · sin(2π t / period + phase).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,12 +25,12 @@ impl DelayFunction for Sinusoid {
         "a sinusoid"
     }
 
-    fn validate(&self) -> Result<(), ParameterError> {
-        ParameterError::unless_positive("the period", self.period_s)?;
-        ParameterError::unless_non_negative("the mean", self.mean_s)?;
-        ParameterError::unless_non_negative("the size of the phase", self.phase_rad.abs())?;
-        let requirement = "must not exceed the mean, or the delay would become negative";
-        ParameterError::unless(self.amplitude_s.abs() <= self.mean_s, "the amplitude", self.amplitude_s, requirement)
+    fn validate(&self) -> Result<(), QuantityError> {
+        positive("", "period_s", self.period_s)?;
+        not_negative("", "mean_s", self.mean_s)?;
+        within("", "phase_rad", self.phase_rad, -LARGEST, LARGEST)?;
+        // Beyond the mean the delay would become negative.
+        within("", "amplitude_s", self.amplitude_s, -self.mean_s, self.mean_s)
     }
 
     fn piece(&self, _: u64) -> DelayPiece {

@@ -5,7 +5,7 @@
 //!
 //! ```
 //! use forwardstep_sim::schedule::{KnownSwitching, Schedule, Segment, Segments, SwitchingSignal};
-//! use forwardstep_sim::ParameterError;
+//! use forwardstep_sim::quantity::QuantityError;
 //!
 //! /// Takes the graphs in turn, for 1 s, 2 s, 3 s, ….
 //! #[derive(Debug, PartialEq)]
@@ -15,7 +15,7 @@
 //!     fn words(&self) -> &'static str {
 //!         "slower and slower"
 //!     }
-//!     fn validate(&self, _: usize) -> Result<(), ParameterError> {
+//!     fn validate(&self, _: usize) -> Result<(), QuantityError> {
 //!         Ok(())
 //!     }
 //!     fn segments(&self, graphs: usize) -> Segments<'_> {
@@ -44,7 +44,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::graph::Edge;
-use crate::parameter::ParameterError;
+use crate::quantity::{QuantityError, positive, such};
 use crate::same::Same;
 
 pub use once::Once;
@@ -66,8 +66,8 @@ pub trait SwitchingSignal: Same + fmt::Debug + Send + Sync {
     /// Checks the parameters beside so many graphs.
     ///
     /// # Errors
-    /// [`ParameterError`] for the first that makes no sense.
-    fn validate(&self, graphs: usize) -> Result<(), ParameterError>;
+    /// [`QuantityError`] for the first that makes no sense.
+    fn validate(&self, graphs: usize) -> Result<(), QuantityError>;
 
     /// The stretches of time in order, from t = 0, with `graphs` graphs; endless unless the last graph stays for ever.
     fn segments(&self, graphs: usize) -> Segments<'_>;
@@ -170,7 +170,7 @@ impl Schedule {
     }
 
     /// Checks the parameters of the signal.
-    pub(crate) fn validate(&self) -> Result<(), ParameterError> {
+    pub(crate) fn validate(&self) -> Result<(), QuantityError> {
         self.signal.validate(self.graphs.len())
     }
 
@@ -211,14 +211,14 @@ fn split(phases: Vec<Phase>) -> (Vec<Vec<Edge>>, Vec<f64>) {
 }
 
 /// Each of `dwell_s` must be positive and finite.
-fn check_dwell(dwell_s: &[f64]) -> Result<(), ParameterError> {
-    dwell_s.iter().try_for_each(|dwell_s| ParameterError::unless_positive("a dwell time", *dwell_s))
+fn check_dwell(dwell_s: &[f64]) -> Result<(), QuantityError> {
+    dwell_s.iter().try_for_each(|dwell_s| positive("", "dwell_s", *dwell_s))
 }
 
 /// There must be `need` dwell times.
-fn check_count(dwell_s: &[f64], need: usize) -> Result<(), ParameterError> {
+fn check_count(dwell_s: &[f64], need: usize) -> Result<(), QuantityError> {
     let requirement = "must be that of the graphs that end";
-    ParameterError::unless(dwell_s.len() == need, "the number of dwell times", dwell_s.len() as f64, requirement)
+    such(dwell_s.len() == need, "", "the number of dwell_s", dwell_s.len() as f64, requirement)
 }
 
 /// Iterator over the stretches of a schedule.

@@ -4,7 +4,7 @@ use super::{
     Dwell, Extent, KnownSwitching, Phase, Schedule, Segment, Segments, SwitchingSignal, check_count, check_dwell, split,
 };
 use crate::graph::Edge;
-use crate::parameter::ParameterError;
+use crate::quantity::QuantityError;
 
 /// The graphs in turn; the last one stays for ever.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +32,7 @@ impl SwitchingSignal for Once {
         "switching once through"
     }
 
-    fn validate(&self, graphs: usize) -> Result<(), ParameterError> {
+    fn validate(&self, graphs: usize) -> Result<(), QuantityError> {
         check_count(&self.dwell_s, graphs.saturating_sub(1))?;
         check_dwell(&self.dwell_s)
     }

@@ -3,7 +3,7 @@
 use super::{
     Dwell, Extent, KnownSwitching, Phase, Schedule, Segment, Segments, SwitchingSignal, check_count, check_dwell, split,
 };
-use crate::parameter::ParameterError;
+use crate::quantity::QuantityError;
 
 /// The graphs in turn, again and again.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +25,7 @@ impl SwitchingSignal for Periodic {
         "periodic switching"
     }
 
-    fn validate(&self, graphs: usize) -> Result<(), ParameterError> {
+    fn validate(&self, graphs: usize) -> Result<(), QuantityError> {
         check_count(&self.dwell_s, graphs)?;
         check_dwell(&self.dwell_s)
     }

@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::{Dwell, Extent, KnownSwitching, Schedule, Segment, Segments, SwitchingSignal, check_dwell};
 use crate::graph::Edge;
-use crate::parameter::ParameterError;
+use crate::quantity::{QuantityError, such};
 
 /// A seeded random draw: at every switch one of the graphs, equally likely, for a dwell time drawn uniformly.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,10 +28,10 @@ impl SwitchingSignal for RandomSwitching {
         "random switching"
     }
 
-    fn validate(&self, _: usize) -> Result<(), ParameterError> {
+    fn validate(&self, _: usize) -> Result<(), QuantityError> {
         check_dwell(&self.dwell_s)?;
         let [low, high] = self.dwell_s;
-        ParameterError::unless(high >= low, "the longest dwell time", high, "must not be below the shortest")
+        such(high >= low, "", "dwell_s", high, "the longest must not be below the shortest")
     }
 
     fn segments(&self, graphs: usize) -> Segments<'_> {

@@ -52,7 +52,7 @@ pub struct RotorcraftMeasured<'a> {
 /// **Guarantees**: nothing that the paper states. With unlimited rotors and (50) the cascade converges as in the head of this
 /// file.
 ///
-/// A rotorcraft that hovers and turns about its vertical axis, which nobody wants, is slowed down at the rate b:
+/// A rotorcraft that hovers and turns about its vertical axis, which is not commanded, is slowed down at the rate b:
 ///
 /// ```
 /// use forwardstep_core::Gain;

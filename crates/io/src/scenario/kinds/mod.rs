@@ -116,6 +116,15 @@ pub trait LawKind: fmt::Debug {
     fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault>;
 }
 
+/// What the list of kinds says of a delay, or of a kind of switching.
+#[derive(Clone, Copy, Debug)]
+pub struct KindTable {
+    /// Its key.
+    pub key: &'static str,
+    /// What it is, in a sentence, for the schema.
+    pub description: &'static str,
+}
+
 /// What the list of kinds says of a law.
 #[derive(Clone, Copy, Debug)]
 pub struct LawTable {
@@ -239,8 +248,9 @@ impl Kinds {
     /// # Errors
     /// [`KindError`] when its key is taken.
     pub fn add_delay<F: DelayKind + DeserializeOwned + JsonSchema + 'static>(&mut self) -> Result<(), KindError> {
-        free("delay", &self.delay_keys(), F::key())?;
-        self.delays.push(delay::<F>());
+        let table = delay::<F>();
+        free("delay", &self.delay_keys(), table.key)?;
+        self.delays.push(table);
         Ok(())
     }
 
@@ -249,8 +259,9 @@ impl Kinds {
     /// # Errors
     /// [`KindError`] when its key is taken.
     pub fn add_schedule<F: ScheduleKind + DeserializeOwned + JsonSchema + 'static>(&mut self) -> Result<(), KindError> {
-        free("switching", &self.schedule_keys(), F::key())?;
-        self.schedules.push(schedule::<F>());
+        let table = schedule::<F>();
+        free("switching", &self.schedule_keys(), table.key)?;
+        self.schedules.push(table);
         Ok(())
     }
 

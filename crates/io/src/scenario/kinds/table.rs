@@ -10,7 +10,7 @@ use super::super::choice::Choice;
 use super::super::de::ValueDe;
 use super::super::fault::Fault;
 use super::super::template::RobotTemplate;
-use super::{DelayKind, LawKind, LawTable, RobotKind, RobotTable, ScheduleKind};
+use super::{DelayKind, KindTable, LawKind, LawTable, RobotKind, RobotTable, ScheduleKind};
 
 /// A key with what stands under it.
 pub(super) struct Table<T: ?Sized> {
@@ -19,6 +19,16 @@ pub(super) struct Table<T: ?Sized> {
     read: fn(Choice<'_, '_>) -> Result<Box<T>, Fault>,
     /// Of its table; `None` for a word that stands alone.
     schema: Option<fn(&mut SchemaGenerator) -> Schema>,
+}
+
+impl<T: ?Sized> Table<T> {
+    /// What `read` reads, which is an `F`.
+    fn of<F: JsonSchema>(
+        KindTable { key, description }: KindTable,
+        read: fn(Choice<'_, '_>) -> Result<Box<T>, Fault>,
+    ) -> Self {
+        Table { key, description, read, schema: Some(SchemaGenerator::subschema_for::<F>) }
+    }
 }
 
 impl<T: ?Sized> Clone for Table<T> {
@@ -44,12 +54,8 @@ pub(super) struct RobotEntry {
 impl RobotEntry {
     pub(super) fn of<F: RobotKind + DeserializeOwned + JsonSchema + 'static>() -> Self {
         let RobotTable { key, description, usual_law, template } = F::table();
-        let table: Table<dyn RobotKind> = Table {
-            key,
-            description,
-            read: |table| Ok(Box::new(F::deserialize(table.content()?)?)),
-            schema: Some(SchemaGenerator::subschema_for::<F>),
-        };
+        let table: Table<dyn RobotKind> =
+            Table::of::<F>(KindTable { key, description }, |table| Ok(Box::new(read::<F>(table)?)));
         RobotEntry { table, usual_law, template }
     }
 }
@@ -64,44 +70,32 @@ pub(super) struct LawEntry {
 impl LawEntry {
     pub(super) fn of<F: LawKind + DeserializeOwned + JsonSchema + 'static>() -> Self {
         let LawTable { key, description, made_for } = F::table();
-        let table: Table<dyn LawKind> = Table {
-            key,
-            description,
-            read: |table| Ok(Box::new(F::deserialize(table.content()?)?)),
-            schema: Some(SchemaGenerator::subschema_for::<F>),
-        };
+        let table: Table<dyn LawKind> =
+            Table::of::<F>(KindTable { key, description }, |table| Ok(Box::new(read::<F>(table)?)));
         LawEntry { table, made_for, suits: F::suits }
     }
 }
 
 /// A kind of delay.
 pub(super) fn delay<F: DelayKind + DeserializeOwned + JsonSchema + 'static>() -> Table<dyn DelayKind> {
-    Table {
-        key: F::key(),
-        description: F::description(),
-        read: |table| Ok(Box::new(F::deserialize(table.content()?)?)),
-        schema: Some(SchemaGenerator::subschema_for::<F>),
-    }
+    Table::of::<F>(F::table(), |table| Ok(Box::new(read::<F>(table)?)))
 }
 
 /// A kind of switching.
 pub(super) fn schedule<F: ScheduleKind + DeserializeOwned + JsonSchema + 'static>() -> Table<dyn ScheduleKind> {
-    Table {
-        key: F::key(),
-        description: F::description(),
-        read: |table| Ok(Box::new(F::deserialize(table.content()?)?)),
-        schema: Some(SchemaGenerator::subschema_for::<F>),
-    }
+    Table::of::<F>(F::table(), |table| Ok(Box::new(read::<F>(table)?)))
 }
 
 /// A kind of switching that is a word without a table.
 pub(super) fn word<F: ScheduleKind + Default + 'static>() -> Table<dyn ScheduleKind> {
-    Table {
-        key: F::key(),
-        description: F::description(),
-        read: |word| word.unit_variant().map(|()| -> Box<dyn ScheduleKind> { Box::new(F::default()) }),
-        schema: None,
-    }
+    let KindTable { key, description } = F::table();
+    let read = |word: Choice<'_, '_>| word.unit_variant().map(|()| -> Box<dyn ScheduleKind> { Box::new(F::default()) });
+    Table { key, description, read, schema: None }
+}
+
+/// The struct of a table.
+fn read<F: DeserializeOwned>(table: Choice<'_, '_>) -> Result<F, Fault> {
+    F::deserialize(table.content()?)
 }
 
 /// What stands at `place`: the key of one of `tables`, with that table.

@@ -8,6 +8,7 @@ use super::super::super::at::At;
 use super::super::super::fault::{Fault, not_negative};
 use super::super::super::network::NetworkReader;
 use super::super::super::values::NotNegative;
+use super::super::KindTable;
 use super::{DelayKind, DelayPlan};
 
 /// In s.
@@ -15,12 +16,8 @@ use super::{DelayKind, DelayPlan};
 pub struct ConstantFile(#[schemars(with = "NotNegative")] At<f64>);
 
 impl DelayKind for ConstantFile {
-    fn key() -> &'static str {
-        "constant_s"
-    }
-
-    fn description() -> &'static str {
-        "Always the same, in s."
+    fn table() -> KindTable {
+        KindTable { key: "constant_s", description: "Always the same, in s." }
     }
 
     fn plan(&self, _: &mut NetworkReader<'_>) -> Result<DelayPlan, Fault> {

@@ -6,6 +6,7 @@ use serde::Deserialize;
 use super::super::super::at::At;
 use super::super::super::fault::Fault;
 use super::super::super::network::NetworkReader;
+use super::super::KindTable;
 use super::{DelayKind, DelayPlan};
 
 /// A formula in t, in s, such as "0.2 + 0.1*sin(2*pi*t/3)"; it must be shown not to become negative.
@@ -13,13 +14,10 @@ use super::{DelayKind, DelayPlan};
 pub struct FormulaFile(At<String>);
 
 impl DelayKind for FormulaFile {
-    fn key() -> &'static str {
-        "formula_s"
-    }
-
-    fn description() -> &'static str {
-        "A formula in t, in s, such as \"0.2 + 0.1*sin(2*pi*t/3)\"; it must be shown not to become negative. It may contain t, \
-         pi, e, + - * / ^, sin, cos, exp, log, sqrt, abs, tanh, atan, min and max."
+    fn table() -> KindTable {
+        let description = "A formula in t, in s, such as \"0.2 + 0.1*sin(2*pi*t/3)\"; it must be shown not to become negative. It may contain t, \
+         pi, e, + - * / ^, sin, cos, exp, log, sqrt, abs, tanh, atan, min and max.";
+        KindTable { key: "formula_s", description }
     }
 
     fn plan(&self, network: &mut NetworkReader<'_>) -> Result<DelayPlan, Fault> {

@@ -13,6 +13,7 @@ use super::super::super::fault::{Fault, not_negative};
 use super::super::super::network::NetworkReader;
 use super::super::super::network_problem::NetworkProblem;
 use super::super::super::table::{Cell, Column, TableProblem, cell_number, read_table, table_text};
+use super::super::KindTable;
 use super::{DelayKind, DelayPlan, Link, LinkDelays};
 
 /// Packets that were recorded.
@@ -25,12 +26,8 @@ pub struct LogFile {
 }
 
 impl DelayKind for LogFile {
-    fn key() -> &'static str {
-        "log"
-    }
-
-    fn description() -> &'static str {
-        "Packets replayed from a CSV file."
+    fn table() -> KindTable {
+        KindTable { key: "log", description: "Packets replayed from a CSV file." }
     }
 
     fn plan(&self, network: &mut NetworkReader<'_>) -> Result<DelayPlan, Fault> {

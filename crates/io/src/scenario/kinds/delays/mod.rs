@@ -19,19 +19,15 @@ use forwardstep_sim::quantity::few;
 use super::super::fault::Fault;
 use super::super::network::NetworkReader;
 use super::super::value_problem::ValueProblem;
+use super::KindTable;
 
 /// Packets and values of random holds on all edges together; forty bytes each.
 const MOST_EVENTS: f64 = 5e6;
 
 /// A kind of delay in scenario files: its table, as it was read.
 pub trait DelayKind: fmt::Debug {
-    /// Its key in `delay`.
-    fn key() -> &'static str
-    where
-        Self: Sized;
-
-    /// What it is, in a sentence, for the schema.
-    fn description() -> &'static str
+    /// What the list says of it; its key stands in `delay`.
+    fn table() -> KindTable
     where
         Self: Sized;
 

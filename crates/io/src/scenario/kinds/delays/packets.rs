@@ -8,6 +8,7 @@ use super::super::super::at::At;
 use super::super::super::fault::{Fault, between, count, not_negative, not_negative_or, positive, seed};
 use super::super::super::network::NetworkReader;
 use super::super::super::network_problem::NetworkProblem;
+use super::super::KindTable;
 use super::{DelayKind, DelayPlan, Link, LinkDelays};
 
 /// Packets lost one after another that a bound may allow.
@@ -75,12 +76,11 @@ pub struct BurstsFile {
 }
 
 impl DelayKind for PacketsFile {
-    fn key() -> &'static str {
-        "packets"
-    }
-
-    fn description() -> &'static str {
-        "Packets that are late, lost and overtaken; the newest that has arrived is heard."
+    fn table() -> KindTable {
+        KindTable {
+            key: "packets",
+            description: "Packets that are late, lost and overtaken; the newest that has arrived is heard.",
+        }
     }
 
     fn plan(&self, _: &mut NetworkReader<'_>) -> Result<DelayPlan, Fault> {

@@ -9,6 +9,7 @@ use super::super::super::fault::{Fault, fault, filled, not_negative, positive, v
 use super::super::super::network::NetworkReader;
 use super::super::super::network_problem::NetworkProblem;
 use super::super::super::values::NotNegative;
+use super::super::KindTable;
 use super::{DelayKind, DelayPlan};
 
 /// A delay that jumps.
@@ -27,12 +28,8 @@ pub struct PiecewiseConstantFile {
 }
 
 impl DelayKind for PiecewiseConstantFile {
-    fn key() -> &'static str {
-        "piecewise_constant"
-    }
-
-    fn description() -> &'static str {
-        "Jumps from value to value."
+    fn table() -> KindTable {
+        KindTable { key: "piecewise_constant", description: "Jumps from value to value." }
     }
 
     fn plan(&self, network: &mut NetworkReader<'_>) -> Result<DelayPlan, Fault> {

@@ -10,6 +10,7 @@ use super::super::super::network::NetworkReader;
 use super::super::super::network_problem::NetworkProblem;
 use super::super::super::value_problem::ValueProblem;
 use super::super::super::values::{NotNegative, Positive};
+use super::super::KindTable;
 use super::{DelayKind, DelayPlan, Link, LinkDelays};
 
 /// A delay that takes a new value after a random time. Every edge draws its own.
@@ -28,12 +29,8 @@ pub struct RandomHoldFile {
 }
 
 impl DelayKind for RandomHoldFile {
-    fn key() -> &'static str {
-        "random_hold"
-    }
-
-    fn description() -> &'static str {
-        "Random values, each held for a random time."
+    fn table() -> KindTable {
+        KindTable { key: "random_hold", description: "Random values, each held for a random time." }
     }
 
     fn plan(&self, _: &mut NetworkReader<'_>) -> Result<DelayPlan, Fault> {

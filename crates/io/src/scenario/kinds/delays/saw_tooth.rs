@@ -8,6 +8,7 @@ use super::super::super::at::At;
 use super::super::super::fault::{Fault, fault, not_negative, positive};
 use super::super::super::network::NetworkReader;
 use super::super::super::network_problem::NetworkProblem;
+use super::super::KindTable;
 use super::{DelayKind, DelayPlan};
 
 /// A delay that rises and drops.
@@ -29,12 +30,8 @@ pub struct SawToothFile {
 }
 
 impl DelayKind for SawToothFile {
-    fn key() -> &'static str {
-        "saw_tooth"
-    }
-
-    fn description() -> &'static str {
-        "Rises from min to max over every period, then drops."
+    fn table() -> KindTable {
+        KindTable { key: "saw_tooth", description: "Rises from min to max over every period, then drops." }
     }
 
     fn plan(&self, network: &mut NetworkReader<'_>) -> Result<DelayPlan, Fault> {

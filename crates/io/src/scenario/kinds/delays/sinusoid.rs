@@ -10,6 +10,7 @@ use super::super::super::at::At;
 use super::super::super::fault::{Fault, fault, not_negative, positive};
 use super::super::super::network::NetworkReader;
 use super::super::super::network_problem::NetworkProblem;
+use super::super::KindTable;
 use super::{DelayKind, DelayPlan};
 
 /// A delay that swings.
@@ -31,12 +32,8 @@ pub struct SinusoidFile {
 }
 
 impl DelayKind for SinusoidFile {
-    fn key() -> &'static str {
-        "sinusoid"
-    }
-
-    fn description() -> &'static str {
-        "mean + amplitude · sin(2π t / period + phase)."
+    fn table() -> KindTable {
+        KindTable { key: "sinusoid", description: "mean + amplitude · sin(2π t / period + phase)." }
     }
 
     fn plan(&self, network: &mut NetworkReader<'_>) -> Result<DelayPlan, Fault> {

@@ -11,16 +11,12 @@ use forwardstep_sim::schedule::Schedule;
 
 use super::super::fault::Fault;
 use super::super::network::PhaseReader;
+use super::KindTable;
 
 /// A kind of switching in scenario files: its table, as it was read.
 pub trait ScheduleKind: fmt::Debug {
-    /// Its key in `switching`.
-    fn key() -> &'static str
-    where
-        Self: Sized;
-
-    /// What it is, in a sentence, for the schema.
-    fn description() -> &'static str
+    /// What the list says of it; its key stands in `switching`.
+    fn table() -> KindTable
     where
         Self: Sized;
 

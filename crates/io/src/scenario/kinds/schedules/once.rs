@@ -5,6 +5,7 @@ use forwardstep_sim::schedule::{Once, Schedule};
 
 use super::super::super::fault::Fault;
 use super::super::super::network::PhaseReader;
+use super::super::KindTable;
 use super::ScheduleKind;
 
 /// In turn; the last one stays for ever.
@@ -12,12 +13,8 @@ use super::ScheduleKind;
 pub struct OnceFile;
 
 impl ScheduleKind for OnceFile {
-    fn key() -> &'static str {
-        "once"
-    }
-
-    fn description() -> &'static str {
-        "In turn; the last one stays for ever."
+    fn table() -> KindTable {
+        KindTable { key: "once", description: "In turn; the last one stays for ever." }
     }
 
     fn schedule(&self, graphs: Vec<Vec<Edge>>, phases: &mut PhaseReader<'_, '_>) -> Result<Schedule, Fault> {

@@ -10,6 +10,7 @@ use super::super::super::fault::{Fault, fault, positive, seed};
 use super::super::super::network::PhaseReader;
 use super::super::super::value_problem::ValueProblem;
 use super::super::super::values::Positive;
+use super::super::KindTable;
 use super::ScheduleKind;
 
 /// At every switch one of the phases is drawn, each equally likely.
@@ -25,12 +26,8 @@ pub struct RandomSwitchingFile {
 }
 
 impl ScheduleKind for RandomSwitchingFile {
-    fn key() -> &'static str {
-        "random"
-    }
-
-    fn description() -> &'static str {
-        "Drawn at random."
+    fn table() -> KindTable {
+        KindTable { key: "random", description: "Drawn at random." }
     }
 
     fn schedule(&self, graphs: Vec<Vec<Edge>>, phases: &mut PhaseReader<'_, '_>) -> Result<Schedule, Fault> {

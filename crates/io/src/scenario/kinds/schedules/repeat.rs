@@ -5,6 +5,7 @@ use forwardstep_sim::schedule::{Periodic, Schedule};
 
 use super::super::super::fault::Fault;
 use super::super::super::network::PhaseReader;
+use super::super::KindTable;
 use super::ScheduleKind;
 
 /// In turn, again and again.
@@ -12,12 +13,8 @@ use super::ScheduleKind;
 pub struct RepeatFile;
 
 impl ScheduleKind for RepeatFile {
-    fn key() -> &'static str {
-        "repeat"
-    }
-
-    fn description() -> &'static str {
-        "In turn, again and again."
+    fn table() -> KindTable {
+        KindTable { key: "repeat", description: "In turn, again and again." }
     }
 
     fn schedule(&self, graphs: Vec<Vec<Edge>>, phases: &mut PhaseReader<'_, '_>) -> Result<Schedule, Fault> {
