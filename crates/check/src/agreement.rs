@@ -26,7 +26,8 @@
 
 use forwardstep_core::reference::polynomial;
 use forwardstep_sim::graph::{Edge, SpanningTree, laplacian, spanning_tree};
-use forwardstep_sim::{AgentSetup, Exchange, ReferenceKind, Setup};
+use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral};
+use forwardstep_sim::{AgentSetup, Exchange, Setup};
 use nalgebra::DMatrix;
 use thiserror::Error;
 
@@ -81,6 +82,9 @@ pub enum NoPrediction {
     /// The baseline conserves nothing.
     #[error("under backstepping tracking errors move it")]
     Backstepping,
+    /// Reference dynamics from outside: nothing is known of what they conserve.
+    #[error("the reference dynamics are not among those that come with forwardstep")]
+    Own,
     /// There is no single value.
     #[error("no agent reaches all others, so nothing makes them agree")]
     NoSpanningTree,
@@ -105,14 +109,17 @@ pub enum NoPrediction {
 /// # Errors
 /// [`NoPrediction`] says why there is none.
 pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
-    if matches!(setup.reference, ReferenceKind::Backstepping { .. }) {
+    if setup.reference.is::<Backstepping>() {
         return Err(NoPrediction::Backstepping);
     }
     if setup.following().is_some() {
         return Err(NoPrediction::Leader);
     }
-    if setup.reference == ReferenceKind::Tracking || setup.agents.iter().any(|agent| !is_lagrangian(agent)) {
+    if setup.tracks() || setup.agents.iter().any(|agent| !is_lagrangian(agent)) {
         return Err(NoPrediction::Law);
+    }
+    if !(setup.reference.is::<Consensus>() || setup.reference.is::<PureIntegral>()) {
+        return Err(NoPrediction::Own);
     }
     if !setup.network.coupling.is_linear() {
         return Err(NoPrediction::Coupling);
@@ -128,7 +135,7 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     let l = laplacian(n, edges).ok_or(NoPrediction::VaryingWeight)?;
     let influence = left_null_vector(n, edges, &l)?;
     // (3) and (23) hold no z in what they conserve.
-    let counts = |agent: &usize| setup.reference == ReferenceKind::Consensus && influence[*agent] > 0.0;
+    let counts = |agent: &usize| setup.reference.is::<Consensus>() && influence[*agent] > 0.0;
     if let Some(agent) = (0..n).filter(counts).find(|agent| pushed_for_ever(&setup.agents[*agent])) {
         return Err(NoPrediction::PushedForEver { agent });
     }
@@ -181,7 +188,7 @@ fn contribution(setup: &Setup, edges: &[Edge], alpha: &[f64], i: usize, axis: us
     let start = &setup.agents[i].start;
     let z = |k: usize| reference_start(&setup.agents[i], k, axis);
     let (q, dq) = (start.q[axis], start.dq[axis]);
-    let (b, w) = if setup.reference == ReferenceKind::PureIntegral {
+    let (b, w) = if setup.reference.is::<PureIntegral>() {
         (alpha[0] * q + alpha[1] * dq + z(1), alpha[1] * q + dq)
     } else {
         let above = || alpha.iter().enumerate().skip(2);

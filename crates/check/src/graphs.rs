@@ -1,8 +1,8 @@
 //! What is found of graphs and their schedule.
 
+use forwardstep_sim::Setup;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::schedule::{Dwell, Extent, Window};
-use forwardstep_sim::{ReferenceKind, Setup};
 
 use crate::hypothesis::{GraphEvidence, Hypothesis, Id, Named};
 use crate::links::varying_weights;
@@ -68,7 +68,7 @@ pub(crate) fn dwell_time(setup: &Setup) -> Hypothesis {
 /// Whether one graph stays for ever, as the reference dynamics that contain accelerations need.
 pub(crate) fn fixed_graph(setup: &Setup) -> Hypothesis {
     let schedule = &setup.network.schedule;
-    let evidence = if let ReferenceKind::Following(_) = setup.reference {
+    let evidence = if setup.following().is_some() {
         match schedule.known().dwell {
             Dwell::NeverSwitches => GraphEvidence::Stays,
             Dwell::Shortest(_) | Dwell::Drawn(_) | Dwell::Declared(_) => GraphEvidence::SwitchesUnderLeader,

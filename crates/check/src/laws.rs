@@ -1,6 +1,6 @@
 //! The kinds of systems, each with its law, one line per kind; and what setups made of them fall under.
 
-use forwardstep_sim::{AgentSetup, ReferenceKind, Setup};
+use forwardstep_sim::{AgentSetup, Setup};
 
 use crate::hypothesis::{Evidence, Hypothesis, Id, KindEvidence};
 use crate::kinds::{
@@ -33,17 +33,13 @@ pub(crate) fn claim(setup: &Setup) -> Option<Claim> {
     if treated.len() < 2 {
         return kind_of(setup.agents.first()?).claim(setup);
     }
-    Some(match setup.reference {
-        ReferenceKind::Tracking => {
-            Claim { theorem: Theorem::Targets, promises: "every agent reaches its own target".into() }
-        }
-        ReferenceKind::Consensus
-        | ReferenceKind::PureIntegral
-        | ReferenceKind::Backstepping { .. }
-        | ReferenceKind::Following(_) => Claim {
+    Some(if setup.tracks() {
+        Claim { theorem: Theorem::Targets, promises: "every agent reaches its own target".into() }
+    } else {
+        Claim {
             theorem: Theorem::Mixture(treated),
             promises: "all agents agree and come to rest: x_i − x_j → 0 and dx_i → 0".into(),
-        },
+        }
     })
 }
 
@@ -83,7 +79,7 @@ fn ends_a_run(hypothesis: &Hypothesis) -> bool {
 /// Agents that agree with each other should fall under one theorem.
 fn one_kind(setup: &Setup) -> Option<Hypothesis> {
     let treated = treated(setup);
-    let mixture = treated.len() > 1 && setup.reference != ReferenceKind::Tracking;
+    let mixture = treated.len() > 1 && !setup.tracks();
     mixture.then(|| Hypothesis::new(Id::OneKind, KindEvidence::Mixture(treated)))
 }
 

@@ -1,7 +1,7 @@
 //! How far one held sample goes: guides for the rate of a sampled controller.
 
 use forwardstep_core::Gain;
-use forwardstep_sim::{Adaptive, AgentSetup, DynamicsAt, Known, ReferenceKind, Setup};
+use forwardstep_sim::{Adaptive, AgentSetup, DynamicsAt, Known, Setup};
 use nalgebra::{DMatrix, DVector};
 
 /// How far one held sample of the damping goes: h · λ_max(M⁻¹K), largest over the agents, at their starts.
@@ -58,7 +58,7 @@ pub struct SampledAdaptation {
 /// [`SampledAdaptation`] of a setup under digital control; `None` when no agent under (6)–(7) adapts, and where robots follow targets
 /// of their own: there both are of one sample.
 pub fn sampled_adaptation(setup: &Setup) -> Option<SampledAdaptation> {
-    let control = setup.control.as_ref().filter(|_| setup.reference != ReferenceKind::Tracking)?;
+    let control = setup.control.as_ref().filter(|_| !setup.tracks())?;
     let period_s = 1.0 / control.sample_hz;
     let dz = setup.following().map_or(0.0, |following| following.gain);
     let value = |(agent, own): (usize, &AgentSetup)| {

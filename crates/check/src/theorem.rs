@@ -62,7 +62,7 @@ pub enum Theorem {
     Remark12,
     /// Swarm tracking, named in Remark 11.
     Swarm,
-    /// What the author of a law from outside states, with its source.
+    /// What the author of a law, or of reference dynamics, from outside states, with its source.
     Declared(String),
 }
 
@@ -132,7 +132,7 @@ impl Theorem {
 impl fmt::Display for Theorem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Theorem::Declared(source) => return write!(f, "as declared by the author of the law: {source}"),
+            Theorem::Declared(source) => return write!(f, "as declared by its author: {source}"),
             Theorem::Theorem1 => "Theorem 1, reference dynamics (3)",
             Theorem::Remark3 => "Remark 3, reference dynamics (23)",
             Theorem::Theorem2 => "Theorem 2, reference dynamics (a1)",

@@ -4,6 +4,7 @@
 
 mod common;
 
+use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, ReferenceDynamics};
 use std::sync::Arc;
 
 use common::{arm, column, edge, masses, noise, run, setup};
@@ -15,7 +16,7 @@ use forwardstep_sim::delay::{Delay, Loss, PacketLink, PiecewiseConstant, RandomH
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::{Exchange, Known, Outcome, ReferenceKind, Setup, Signal, TimeSpan};
+use forwardstep_sim::{Exchange, Known, Outcome, Setup, Signal, TimeSpan};
 
 /// A strongly connected triangle with different weights and delays, and a fourth that only listens.
 fn uneven() -> (Vec<Edge>, Vec<Delay>) {
@@ -69,7 +70,7 @@ fn thm1_agreed_value_is_known_for_the_pure_integrals_too() {
             .collect();
         let (edges, delays) = uneven();
         let mut setup = setup(agents, exchange, Schedule::fixed(edges), delays, 160.0);
-        setup.reference = ReferenceKind::PureIntegral;
+        setup.reference = Arc::new(PureIntegral);
         setup.time.record_every_s = 10.0;
         let report = check(&setup);
         assert_eq!(report.worst(), Answer::Holds);
@@ -91,8 +92,8 @@ fn thm1_agreed_value_is_known_for_the_pure_integrals_too() {
 }
 
 /// Two arms that first hear nobody and then each other; the largest torque within 0.1 s of the switch.
-fn torque_at_a_switch(reference: ReferenceKind, exchange: Exchange) -> f64 {
-    let roots: &[f64] = if reference == ReferenceKind::Consensus { &[1.0, 2.0] } else { &[] };
+fn torque_at_a_switch(reference: Arc<dyn ReferenceDynamics>, exchange: Exchange) -> f64 {
+    let roots: &[f64] = if reference.is::<Consensus>() { &[1.0, 2.0] } else { &[] };
     let both = vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)];
     let schedule = Schedule::once(vec![
         Phase { edges: vec![edge(0, 1, 1.0, 0)], dwell_s: 3.0 },
@@ -114,14 +115,14 @@ fn torque_at_a_switch(reference: ReferenceKind, exchange: Exchange) -> f64 {
 
 #[test]
 fn eq_aa6_torque_at_a_switch_grows_as_the_filter_narrows_and_that_of_a1_does_not() {
-    let filter = |filter_s| ReferenceKind::Backstepping { filter_s, acceleration_limit: None };
+    let filter = |filter_s| Arc::new(Backstepping { filter_s, acceleration_limit: None });
     let peaks = [1e-2, 1e-3, 1e-4].map(|filter_s| torque_at_a_switch(filter(filter_s), Exchange::Position));
     // The part that goes like 1/ε, without gravity and damping.
     let growth = (peaks[2] - peaks[1]) / (peaks[1] - peaks[0]);
     assert!((growth - 10.0).abs() < 0.5, "{peaks:?} grow by {growth}");
-    assert!(peaks[2] > 20.0 * torque_at_a_switch(ReferenceKind::Consensus, Exchange::PositionVelocity));
+    assert!(peaks[2] > 20.0 * torque_at_a_switch(Arc::new(Consensus), Exchange::PositionVelocity));
 
-    let limited = ReferenceKind::Backstepping { filter_s: 1e-4, acceleration_limit: Some(5.0) };
+    let limited = Arc::new(Backstepping { filter_s: 1e-4, acceleration_limit: Some(5.0) });
     assert!(torque_at_a_switch(limited, Exchange::Position) < 0.1 * peaks[2]);
 }
 
@@ -131,7 +132,7 @@ fn eq_3_over_a_switching_graph_is_not_covered() {
     let schedule = Schedule::periodic(vec![phase(0, 1), phase(1, 0)]);
     let agents = (0..2).map(|i| arm(i, &[1.0, 2.0])).collect();
     let mut setup = setup(agents, Exchange::PositionVelocity, schedule, vec![Delay::constant(0.1)], 1.0);
-    setup.reference = ReferenceKind::PureIntegral;
+    setup.reference = Arc::new(PureIntegral);
     let report = check(&setup);
     assert_eq!(report.worst(), Answer::NotCovered);
     assert!(report.hypotheses.iter().any(|h| h.answer() == Answer::NotCovered && h.because().contains("(a1)")));

@@ -4,16 +4,18 @@
 
 mod common;
 
+use forwardstep_sim::reference::PureIntegral;
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use common::{arm, edge, masses, setup};
 use forwardstep_check::hypothesis::{FollowingEvidence, LinkEvidence, ReferenceEvidence, Subject};
 use forwardstep_check::{Answer, Evidence, Id, Rigour, Source, Theorem, check};
 use forwardstep_core::expression::Expression;
+use forwardstep_sim::Exchange;
 use forwardstep_sim::delay::{Delay, Loss, PacketLink};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::{Exchange, ReferenceKind};
 
 /// Names may join this list. None may leave it or change: certificates, waivers and summaries of earlier versions refer to them.
 const NAMES: [&str; 47] = [
@@ -154,7 +156,7 @@ fn reference_dynamics_with_accelerations_want_a_graph_that_stays() {
     let delay = || vec![Delay::constant(0.1)];
     let answer = |schedule| {
         let mut setup = masses(Exchange::Position, 2, schedule, delay());
-        setup.reference = ReferenceKind::PureIntegral;
+        setup.reference = Arc::new(PureIntegral);
         let report = check(&setup);
         assert_eq!((report.theorem.name(), report.theorem.source()), ("remark-3", Source::Paper));
         let found = report.hypotheses.iter().find(|hypothesis| hypothesis.id == Id::FixedGraph).unwrap();

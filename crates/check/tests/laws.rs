@@ -15,8 +15,10 @@ use forwardstep_core::controller::{Floor, ParameterBounds};
 use forwardstep_core::expression::Expression;
 use forwardstep_core::robot::tree::JointKind::{Prismatic, Revolute};
 use forwardstep_core::robot::tree::{JointKind, Uncertain};
+use forwardstep_sim::reference::Consensus;
 use forwardstep_sim::trajectory::{Path, Trajectory};
 use forwardstep_sim::{AgentSetup, Setup, SpacecraftModel, ThrustKind};
+use std::sync::Arc;
 
 const X: [f64; 3] = [1.0, 0.0, 0.0];
 const Y: [f64; 3] = [0.0, 1.0, 0.0];
@@ -189,7 +191,7 @@ fn needed(agent: &AgentSetup, about: About) -> usize {
         *paths.last_mut().unwrap() = smooth(bounded);
         let mut setup = tracking(agent.clone(), paths);
         if about == About::Offset {
-            setup.reference = forwardstep_sim::ReferenceKind::Consensus;
+            setup.reference = Arc::new(Consensus);
         }
         answer(&setup, about)
     };

@@ -18,8 +18,7 @@ use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::{Path, Sinusoid, Spline, Trajectory};
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Axis, AxisUnit, Control, Exchange, Known, Network, ReferenceKind, RobotSetup, Setup, Solver,
-    Start, TimeSpan,
+    Adaptive, AgentSetup, Axis, AxisUnit, Control, Exchange, Known, Network, RobotSetup, Setup, Solver, Start, TimeSpan,
 };
 
 fn mass(index: usize) -> AgentSetup {
@@ -54,7 +53,7 @@ fn setup(design: FollowingDesign, path: Path, gain: f64) -> Setup {
     };
     Setup {
         agents: vec![mass(1), mass(2)],
-        reference: ReferenceKind::Following(Arc::new(following)),
+        reference: (Arc::new(following)),
         exchange: Exchange::PositionVelocity,
         network: Network {
             agents: 3,
@@ -150,8 +149,7 @@ fn thm8_a_gain_that_equals_its_bound_does_not_exceed_it() {
 fn thm8_only_a_sign_that_is_solved_for_is_the_set_valued_one() {
     let said = |choice| {
         let mut setup = setup(FollowingDesign::Continuous, wave(), 3.0);
-        let ReferenceKind::Following(following) = &mut setup.reference else { panic!() };
-        Arc::make_mut(following).choice = choice;
+        assert!(setup.change_reference(|following: &mut Following| following.choice = choice));
         common::answer(&setup, About::SetValued)
     };
     let choices = [Choice::Implicit, Choice::Explicit, Choice::Layer { width: 1e-6 }];

@@ -11,8 +11,10 @@ use forwardstep_core::expression::Expression;
 use forwardstep_sim::delay::{Delay, SawTooth};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
+use forwardstep_sim::reference::PureIntegral;
 use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::{Actuators, Control, Exchange, ReferenceKind, Sensors, Setup, VelocitySensor};
+use forwardstep_sim::{Actuators, Control, Exchange, Sensors, Setup, VelocitySensor};
+use std::sync::Arc;
 
 /// Two arms with κ₀ of their own over these edges.
 fn pair(first_roots: [f64; 2], edges: Vec<Edge>) -> Setup {
@@ -85,7 +87,7 @@ fn eq_3_and_23_need_a_graph_and_weights_that_stay() {
     for exchange in [Exchange::PositionVelocity, Exchange::Position] {
         let integral = |change: fn(Setup) -> Setup| {
             let mut setup = change(pair([1.0, 1.0], both_ways()));
-            (setup.reference, setup.exchange) = (ReferenceKind::PureIntegral, exchange);
+            (setup.reference, setup.exchange) = (Arc::new(PureIntegral), exchange);
             answer(&setup, About::FixedGraph)
         };
         assert_eq!(integral(|setup| setup), Answer::Holds);

@@ -4,6 +4,7 @@
 
 mod common;
 
+use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking};
 use std::sync::Arc;
 
 use common::kinds::{alone, blind_mass};
@@ -17,7 +18,7 @@ use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::{Adaptive, Control, Exchange, Known, ReferenceKind, Setup, Signal};
+use forwardstep_sim::{Adaptive, Control, Exchange, Known, Setup, Signal};
 
 /// Two masses that hear each other, and a third that only listens.
 fn three(exchange: Exchange) -> Setup {
@@ -45,7 +46,7 @@ fn eq_3_and_23_keep_their_value_whoever_pushes_for_ever() {
     // No z is in what they conserve, so a tracking error that stays does not count.
     for exchange in [Exchange::Position, Exchange::PositionVelocity] {
         let mut setup = three(exchange);
-        setup.reference = ReferenceKind::PureIntegral;
+        setup.reference = Arc::new(PureIntegral);
         let untouched = predict(&setup).unwrap();
         setup.agents[0].pushes = vec![pushed_for_ever(2.0)];
         assert_eq!(predict(&setup).unwrap(), untouched);
@@ -56,7 +57,7 @@ fn eq_3_and_23_keep_their_value_whoever_pushes_for_ever() {
         setup.agents[0].manipulability = 0.5;
         assert_eq!(predict(&setup), Err(NoPrediction::Manipulability { agent: 0 }));
         setup.agents[0].manipulability = 0.0;
-        setup.reference = ReferenceKind::Consensus;
+        setup.reference = Arc::new(Consensus);
         assert_eq!(predict(&setup), Err(NoPrediction::PushedForEver { agent: 0 }));
     }
 }
@@ -87,9 +88,9 @@ fn every_reason_for_which_there_is_none_is_the_one_that_is_said() {
         predict(&setup).err()
     };
     assert_eq!(said(&|_| {}), None);
-    let backstepping = ReferenceKind::Backstepping { filter_s: 0.1, acceleration_limit: None };
+    let backstepping = Arc::new(Backstepping { filter_s: 0.1, acceleration_limit: None });
     assert_eq!(said(&|setup| setup.reference = backstepping.clone()), Some(NoPrediction::Backstepping));
-    assert_eq!(said(&|setup| setup.reference = ReferenceKind::Tracking), Some(NoPrediction::Law));
+    assert_eq!(said(&|setup| setup.reference = Arc::new(Tracking)), Some(NoPrediction::Law));
     let blind = || {
         let mut agent = blind_mass(1.0, 1.0);
         agent.roots_per_s = vec![1.0, 2.0];

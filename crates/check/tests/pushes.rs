@@ -4,6 +4,7 @@
 
 mod common;
 
+use forwardstep_sim::reference::{Consensus, PureIntegral, ReferenceDynamics};
 use std::sync::Arc;
 
 use common::kinds::{alone, blind_mass, cascade, chain, planar_tip, rest_at, spacecraft, tracking, vehicle};
@@ -19,8 +20,7 @@ use forwardstep_sim::graph::Edge;
 use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push, Table};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Exchange, Known, Law, Method, Outcome, ReferenceKind, Robot, RobotSetup, Setup, Signal,
-    Start, ThrustKind,
+    Adaptive, AgentSetup, Exchange, Known, Law, Method, Outcome, Robot, RobotSetup, Setup, Signal, Start, ThrustKind,
 };
 
 const DAMPING: f64 = 5.0;
@@ -160,9 +160,9 @@ fn eq_31_with_lambda_the_agreement_moves_by_the_integral_of_s() {
     // Arms with known parameters: s is not known before the run, but what it moved is known after it.
     let known = Arc::new(Known { damping: Gain::Number(8.0) });
     for (reference, exchange) in [
-        (ReferenceKind::Consensus, Exchange::PositionVelocity),
-        (ReferenceKind::Consensus, Exchange::Position),
-        (ReferenceKind::PureIntegral, Exchange::PositionVelocity),
+        (Arc::new(Consensus) as Arc<dyn ReferenceDynamics>, Exchange::PositionVelocity),
+        (Arc::new(Consensus), Exchange::Position),
+        (Arc::new(PureIntegral), Exchange::PositionVelocity),
     ] {
         let agents = (0..2).map(|i| arm(i, &[1.0 + 0.2 * i as f64, 2.0], known.clone())).collect();
         let mut setup = ring(agents, exchange, 80.0);
@@ -224,9 +224,11 @@ fn eq_31_the_push_of_a_known_mass_moves_the_agreement_by_its_impulse() {
 #[test]
 fn eq_31_a_push_and_a_tracking_error_at_the_start_move_the_agreement_together() {
     // K ∫ s = ∫ τ_ext + m s(0), with z(0) of its own.
-    for (pushed, reference) in
-        [(false, ReferenceKind::Consensus), (true, ReferenceKind::Consensus), (true, ReferenceKind::PureIntegral)]
-    {
+    for (pushed, reference) in [
+        (false, Arc::new(Consensus) as Arc<dyn ReferenceDynamics>),
+        (true, Arc::new(Consensus)),
+        (true, Arc::new(PureIntegral)),
+    ] {
         let mut setup = ring((0..3).map(|i| mass(i, &[1.0, 1.7])).collect(), Exchange::Position, 150.0);
         setup.reference = reference;
         for agent in &mut setup.agents {
@@ -254,9 +256,11 @@ fn eq_31_a_push_and_a_tracking_error_at_the_start_move_the_agreement_together() 
 fn eq_31_one_agent_moves_by_lambda_over_alpha_beta_k_times_the_impulse() {
     // q = (p² + λ) s / (p (p + α)(p + β)) with s = τ_ext / (M p + K): one pole at the origin, and none for λ = 0.
     let (alpha, beta) = (1.3, 2.1);
-    for (lambda, reference) in
-        [(0.0, ReferenceKind::PureIntegral), (2.5, ReferenceKind::PureIntegral), (2.5, ReferenceKind::Consensus)]
-    {
+    for (lambda, reference) in [
+        (0.0, Arc::new(PureIntegral) as Arc<dyn ReferenceDynamics>),
+        (2.5, Arc::new(PureIntegral)),
+        (2.5, Arc::new(Consensus)),
+    ] {
         let mut setup = ring(vec![mass(0, &[alpha, beta])], Exchange::Position, 40.0);
         setup.reference = reference;
         setup.agents[0].start = Start { q: vec![0.4, -0.2], dq: vec![0.0; 2], rest: Vec::new(), reference: Vec::new() };

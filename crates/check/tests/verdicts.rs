@@ -4,6 +4,7 @@
 
 mod common;
 
+use forwardstep_sim::reference::Backstepping;
 use std::sync::Arc;
 
 use common::kinds::{alone, blind_mass, rest_at, spacecraft, tracking, vehicle};
@@ -23,7 +24,7 @@ use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{Adaptive, Control, Exchange, Known, ReferenceKind, RotorcraftModel, Setup, ThrustKind};
+use forwardstep_sim::{Adaptive, Control, Exchange, Known, RotorcraftModel, Setup, ThrustKind};
 
 /// Two masses that hear each other through delays of their own.
 fn pair(delays: [Delay; 2]) -> Setup {
@@ -101,7 +102,7 @@ fn remark_4_is_spoken_of_where_there_is_a_gain() {
 fn eq_aa6_a_derivative_that_a_filter_estimates_is_not_covered() {
     let mut setup = pair([constant(0.1), constant(0.1)]);
     assert_eq!(answers(&check(&setup), About::Derivative), []);
-    setup.reference = ReferenceKind::Backstepping { filter_s: 0.01, acceleration_limit: None };
+    setup.reference = Arc::new(Backstepping { filter_s: 0.01, acceleration_limit: None });
     assert_eq!(answer(&setup, About::Derivative), Answer::NotCovered);
 }
 
@@ -111,7 +112,7 @@ fn led(schedule: Schedule, design: FollowingDesign, [alpha, beta]: [f64; 2]) -> 
     let trajectory = Trajectory::new(vec![rest_at(0.0), rest_at(0.0)]).unwrap();
     let leader = Leader { name: "leader".into(), trajectory };
     let following = Following { leader, design, alpha, beta, gain: 1.0, choice: Choice::Implicit, period_s: 1e-3 };
-    setup.reference = ReferenceKind::Following(Arc::new(following));
+    setup.reference = Arc::new(following);
     setup.exchange = Exchange::PositionVelocity;
     setup.agents.iter_mut().for_each(|agent| agent.roots_per_s.clear());
     setup.network.agents = 3;

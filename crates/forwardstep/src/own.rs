@@ -1,4 +1,4 @@
-//! Everything that a robot, a law, a delay and a program of one's own are made of, to be imported at once.
+//! Everything that a robot, a law, reference dynamics, a delay and a program of one's own are made of, to be imported at once.
 //!
 //! `examples/tank.rs` brings a robot and a law with nothing else. The tables of scenario files derive `serde::Deserialize` and
 //! `schemars::JsonSchema`, on which a crate that brings kinds depends itself.
@@ -9,17 +9,20 @@ pub use std::sync::Arc;
 pub use forwardstep_core::LengthError;
 pub use forwardstep_core::controller::{Asked, Balance, Controller, Feedback, FeedbackInput, Given, Trouble, Truth};
 pub use forwardstep_core::plant::{Plant, VectorField};
-pub use forwardstep_core::reference::Position;
+pub use forwardstep_core::reference::{AxisInput, AxisOutput, PerAxis, Position, PositionVelocity, polynomial};
 pub use forwardstep_core::signal::{Entries, OwnSignal, Signal, Unit};
 pub use forwardstep_io::scenario::kinds::{
     At, DelayKind, DelayPlan, Fault, InputFolder, KindError, KindTable, Kinds, LawKind, LawReader, LawTable, Mistake,
-    NetworkReader, RobotKind, RobotRead, RobotTable, Spread, StartReader, Stop, fault, not_negative, positive,
+    NetworkReader, ReferenceKind, ReferenceRead, ReferenceReader, ReferenceTable, RobotKind, RobotRead, RobotTable,
+    Spread, StartReader, Stop, fault, length, not_negative, positive,
 };
 pub use forwardstep_sim::delay::{Arrivals, Delay, DelayFunction, DelayPiece, Known as KnownDelay};
 pub use forwardstep_sim::quantity::{self, QuantityError};
+pub use forwardstep_sim::reference::{
+    Dynamics, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords, Roots,
+};
 pub use forwardstep_sim::system::{Declaration, DeclaredClaim, Known};
 pub use forwardstep_sim::{
     ActuatorLimits, Assembly, Attachments, Axis, AxisUnit, Block, Coordinates, Exchange, Interface, LagrangianRobot,
-    Law, LawWords, Line, LineValue, PositionKind, ReferenceFamily, Robot, RobotInterface, RobotSetup, SetupError,
-    Start,
+    Law, LawWords, Line, LineValue, PositionKind, Robot, RobotInterface, RobotSetup, Setup, SetupError, Start,
 };

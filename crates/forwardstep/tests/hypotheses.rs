@@ -2,14 +2,16 @@
 #![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use forwardstep::sim::reference::Tracking;
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use forwardstep::check::hypothesis::{Evidence, KindEvidence, Subject};
 use forwardstep::check::{Answer, Id, Report, Rigour, Theorem, check};
 use forwardstep::core::controller::ParameterBounds;
 use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
 use forwardstep::sim::push::{Course, Effect, Function, Push};
-use forwardstep::sim::{Adaptive, ReferenceKind, Setup, TaskSpaceLaw};
+use forwardstep::sim::{Adaptive, Setup, TaskSpaceLaw};
 
 fn shipped(name: &str) -> Setup {
     open_scenario(name).unwrap_or_else(|error| panic!("{error}")).setup
@@ -26,7 +28,7 @@ fn bounded_lengths(upper: f64) -> Setup {
 /// Chains that would follow targets of their own.
 fn tracking_chains() -> Setup {
     let mut setup = shipped("framework");
-    setup.reference = ReferenceKind::Tracking;
+    setup.reference = Arc::new(Tracking);
     setup
 }
 

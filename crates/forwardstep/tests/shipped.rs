@@ -2,6 +2,7 @@
 #![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use forwardstep::sim::reference::Backstepping;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -11,7 +12,7 @@ use forwardstep::io::output::Metrics;
 use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
 use forwardstep::sim::probe::{STATES, probe_balance};
 use forwardstep::sim::trajectory::{Path, Sinusoid, Trajectory};
-use forwardstep::sim::{Ending, ReferenceKind, RotorcraftModel, TaskSpaceLaw, simulate};
+use forwardstep::sim::{Ending, RotorcraftModel, TaskSpaceLaw, simulate};
 
 fn shows_what_it_says(name: &str) {
     let scenario = open_scenario(name).unwrap_or_else(|error| panic!("{error}"));
@@ -46,7 +47,7 @@ fn thm_lyapunov_function_of_every_kind_changes_as_its_law_says() {
             }
         }
         // There z is a sum of messages, which do not stand still while the agent moves.
-        if matches!(setup.reference, ReferenceKind::Backstepping { .. }) {
+        if setup.reference.is::<Backstepping>() {
             continue;
         }
         for agent in 0..setup.agents.len() {

@@ -3,10 +3,10 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
 use forwardstep_io::scenario::open_scenario;
-use forwardstep_sim::{Control, Ending, Method, Outcome, ReferenceKind, Setup, Signal, simulate};
+use forwardstep_sim::leader::Following;
+use forwardstep_sim::{Control, Ending, Method, Outcome, Setup, Signal, simulate};
 
 /// Over the first seconds, at tight tolerance.
 fn shortened(name: &str) -> Setup {
@@ -15,9 +15,7 @@ fn shortened(name: &str) -> Setup {
     setup.time.record_every_s = 0.1;
     setup.control = None;
     setup.solver.method = Method::Adaptive { rtol: 1e-8, atol: 1e-10 };
-    if let ReferenceKind::Following(following) = &mut setup.reference {
-        Arc::make_mut(following).period_s = 2e-5;
-    }
+    setup.change_reference(|following: &mut Following| following.period_s = 2e-5);
     setup
 }
 

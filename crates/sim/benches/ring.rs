@@ -3,6 +3,7 @@
 //! Prints one line of JSON per case: wall time per simulated second over repeated runs, and the error at the end
 //! against a run with a tolerance of 1e-10. `validation/peers/ring.sh` runs this beside the peer and prints ratios.
 
+use forwardstep_sim::reference::Consensus;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -12,8 +13,8 @@ use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Axis, AxisUnit, Exchange, Known, Law, Method, Network, Outcome, ReferenceKind, Robot,
-    RobotSetup, Setup, Signal, Solver, Start, TimeSpan, simulate,
+    Adaptive, AgentSetup, Axis, AxisUnit, Exchange, Known, Law, Method, Network, Outcome, Robot, RobotSetup, Setup,
+    Signal, Solver, Start, TimeSpan, simulate,
 };
 
 const END_S: f64 = 20.0;
@@ -72,7 +73,7 @@ fn ring(model: Model, n: usize, tolerance: f64) -> Setup {
     let delay = |i: usize| Delay::constant(0.1 + 0.3 * (i % 7) as f64 / 7.0);
     Setup {
         agents: (0..n).map(agent).collect(),
-        reference: ReferenceKind::Consensus,
+        reference: Arc::new(Consensus),
         exchange: Exchange::PositionVelocity,
         network: Network {
             agents: n,

@@ -30,10 +30,11 @@ use crate::delay::Delay;
 use crate::graph::{Edge, Weight};
 use crate::network::Network;
 use crate::recording::{Outcome, Recording, Signal};
+use crate::reference::{Consensus, ReferenceDynamics, Tracking};
 use crate::schedule::{Phase, Schedule};
 use crate::setup::{
-    Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Failures, ReferenceKind, RobotSetup, Sensors, Setup,
-    Solver, Start, TimeSpan,
+    Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Failures, RobotSetup, Sensors, Setup, Solver, Start,
+    TimeSpan,
 };
 use crate::simulate::simulate;
 use crate::system::{Law, Robot};
@@ -193,20 +194,20 @@ impl Setup {
             agent.interface().is_some_and(|interface| interface.exchanges.contains(&Exchange::PositionVelocity))
         };
         let exchange = if agents.iter().all(both) { Exchange::PositionVelocity } else { Exchange::Position };
-        Setup::new(agents, ReferenceKind::Consensus, exchange, network, end_s)
+        Setup::new(agents, Arc::new(Consensus), exchange, network, end_s)
     }
 
     /// Agents each of which follows a target of its own until `end_s`.
     pub fn tracking(agents: impl Into<Vec<AgentSetup>>, end_s: f64) -> Self {
         let agents = agents.into();
         let network = Network::silent(agents.len());
-        Setup::new(agents, ReferenceKind::Tracking, Exchange::Position, network, end_s)
+        Setup::new(agents, Arc::new(Tracking), Exchange::Position, network, end_s)
     }
 
     /// Agents under any reference dynamics, in continuous time.
     pub fn new(
         agents: Vec<AgentSetup>,
-        reference: ReferenceKind,
+        reference: Arc<dyn ReferenceDynamics>,
         exchange: Exchange,
         network: Network,
         end_s: f64,

@@ -3,8 +3,14 @@
 //! The leader is the last vertex of the network. It has a motion and no robot, says its position and its velocity like
 //! everybody else, and has no neighbours.
 
-use forwardstep_core::reference::{Choice, Derived, Sliding};
+use forwardstep_core::LengthError;
+use forwardstep_core::reference::{self, Choice, Derived, Sliding, SmoothFollowing};
 
+use crate::closed_loop::{Assembly, SetupError};
+use crate::quantity::{MOST_EVENTS, QuantityError, few, positive};
+use crate::reference::{Dynamics, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords, Roots};
+use crate::setup::{Exchange, Setup};
+use crate::system::Known;
 use crate::trajectory::Trajectory;
 
 /// What everybody follows.
@@ -65,6 +71,28 @@ impl Following {
         Sliding { derived, alpha: self.alpha, beta, gamma: self.gain, choice: self.choice }
     }
 
+    /// Checks its numbers, for a run of `end_s` whose signs are set in continuous time unless `sampled`.
+    fn numbers(&self, end_s: f64, sampled: bool) -> Result<(), QuantityError> {
+        let at = "reference.leader";
+        // α and β come from the roots.
+        positive(at, "alpha", self.alpha)?;
+        if self.design != FollowingDesign::Continuous {
+            positive(at, "beta", self.beta)?;
+        }
+        if let FollowingDesign::Swarm { coupling } = self.design {
+            positive(at, "coupling", coupling)?;
+        }
+        positive(at, "gain", self.gain)?;
+        match self.choice {
+            Choice::Layer { width } => positive("reference.leader.sign.boundary_layer", "width", width),
+            Choice::Implicit | Choice::Explicit if !sampled => {
+                positive(at, "sign_period_s", self.period_s)?;
+                few(at, "sign_period_s", self.period_s, ("settings of the sign", end_s / self.period_s, MOST_EVENTS))
+            }
+            Choice::Implicit | Choice::Explicit => Ok(()),
+        }
+    }
+
     /// What drives the leader away from its followers, as a combination of the derivatives of q_0: ξ̇_0, or d³q_0 for a swarm.
     /// γ must exceed the largest size of it.
     pub fn drive(&self) -> [f64; 5] {
@@ -82,5 +110,64 @@ impl Following {
         let trajectory = &self.leader.trajectory;
         let drive = self.drive();
         (0..trajectory.axes()).map(|axis| trajectory.bounds(axis, &drive, end_s).size()).fold(0.0, f64::max)
+    }
+}
+
+/// (110), (119), (122) or swarm tracking: everybody follows a leader, the last vertex of the network.
+impl ReferenceDynamics for Following {
+    fn words(&self) -> ReferenceWords {
+        ReferenceWords { name: "following a leader", key: "leader" }
+    }
+
+    fn interface(&self) -> ReferenceInterface {
+        ReferenceInterface {
+            family: ReferenceFamily::Leader,
+            exchanges: &[Exchange::PositionVelocity],
+            roots: Roots::None,
+            manipulability: false,
+            nonlinear_coupling: false,
+        }
+    }
+
+    fn free_derivatives(&self, _: usize) -> usize {
+        match self.design {
+            FollowingDesign::Continuous => 1,
+            FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => 2,
+        }
+    }
+
+    fn known(&self) -> Known {
+        Known::Checked
+    }
+
+    fn check(&self, setup: &Setup) -> Result<(), SetupError> {
+        self.numbers(setup.time.end_s, setup.control.is_some())?;
+        let (leader, axes) = (&self.leader, setup.agents.first().map_or(0, |agent| agent.robot.axes.len()));
+        LengthError::check("the leader's trajectory", axes, leader.trajectory.axes())
+            .map_err(|error| SetupError::Length { agent: leader.name.clone(), error })?;
+        let told = self.sliding().told() > 0 && setup.control.is_none();
+        for edge in setup.network.schedule.graphs.iter().flatten() {
+            if edge.to == setup.agents.len() {
+                return Err(SetupError::LeaderHears { leader: leader.name.clone() });
+            }
+            let delay_s = setup.network.delays.get(edge.delay).map_or(0.0, |delay| delay.max_s());
+            if told && delay_s > 0.0 {
+                return Err(SetupError::DelayedDerived { delay_s });
+            }
+        }
+        Ok(())
+    }
+
+    fn dynamics(&self, assembly: &Assembly<'_>) -> Result<Dynamics, SetupError> {
+        let (agents, sliding) = (assembly.agents().len(), self.sliding());
+        Ok(match self.design {
+            FollowingDesign::Continuous => Dynamics::position_velocity(reference::Following::new(agents, sliding)),
+            FollowingDesign::Swarm { coupling } => {
+                Dynamics::position_velocity(SmoothFollowing::swarm(agents, sliding, coupling))
+            }
+            FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => {
+                Dynamics::position_velocity(SmoothFollowing::new(agents, sliding))
+            }
+        })
     }
 }

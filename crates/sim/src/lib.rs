@@ -20,6 +20,7 @@ pub mod push;
 pub mod quantity;
 mod ranges;
 pub mod recording;
+pub mod reference;
 mod same;
 pub mod schedule;
 pub mod setup;
@@ -40,13 +41,14 @@ pub use recording::{
     Breakdown, BreakdownCause, Column, Ending, GainRates, Outcome, Progress, Recording, SampleTaken, Signal,
     Statistics, Stiffness,
 };
+pub use reference::{ReferenceDynamics, ReferenceFamily};
 pub use same::Same;
 pub use setup::{
-    ATOL, Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Failures, Method, RTOL, ReferenceKind, RobotSetup,
-    Sensors, Setup, Solver, Start, TimeSpan, VelocitySensor,
+    ATOL, Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Failures, Method, RTOL, RobotSetup, Sensors, Setup,
+    Solver, Start, TimeSpan, VelocitySensor,
 };
 pub use simulate::{recorded_columns, simulate, simulate_samples};
 pub use system::{
-    ActuatorLimits, Attachments, Coordinates, Interface, Law, LawWords, Line, LineValue, PositionKind, ReferenceFamily,
-    Robot, RobotInterface,
+    ActuatorLimits, Attachments, Coordinates, Interface, Law, LawWords, Line, LineValue, PositionKind, Robot,
+    RobotInterface,
 };

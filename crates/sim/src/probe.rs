@@ -1,4 +1,4 @@
-//! What the author of a robot or of a law says of it, tried at random states: it can be refuted, and is never shown.
+//! What the author of a robot, of a law or of reference dynamics says of it, tried at random states: it can be refuted, and is never shown.
 //!
 //! The draws are always the same, so a report can be repeated. Derivatives in time are central differences, and what is held
 //! against them is a hundred times coarser than their error.
@@ -11,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::closed_loop;
 use crate::setup::{AxisUnit, RobotSetup};
 
-pub use closed_loop::probe_balance;
+pub use closed_loop::{probe_balance, probe_reference};
 
 /// States at which everything is tried.
 pub const STATES: usize = 32;
@@ -45,7 +45,7 @@ pub struct Counterexample {
     pub expected: f64,
 }
 
-/// What is said of a robot, or of a law.
+/// What is said of a robot, of a law, or of reference dynamics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Identity {
     /// M = Mᵀ.
@@ -66,6 +66,14 @@ pub enum Identity {
     Lanes,
     /// V̇ = −D, what the law says that V loses.
     Balance,
+    /// The first states of reference dynamics are z, ż, …, each the rate of the one before.
+    Derivatives,
+    /// ẋ = A x + b of reference dynamics, with an A that depends on Σ_j w_ij alone.
+    Affine,
+    /// This A is the same for each axis.
+    Axes,
+    /// z(0) is what was asked for.
+    Start,
 }
 
 impl Identity {
@@ -81,6 +89,10 @@ impl Identity {
             Identity::Acceleration => "M q̈ + C q̇ + g + D q̇ = τ",
             Identity::Lanes => "eight robots at once move as one by one",
             Identity::Balance => "V̇ is what the law says",
+            Identity::Derivatives => "the state is z, ż, …, each the rate of the one before",
+            Identity::Affine => "ẋ = A x + b, with A whatever is heard and measured",
+            Identity::Axes => "each axis has the same A",
+            Identity::Start => "z(0) is what was asked for",
         }
     }
 }

@@ -1,11 +1,8 @@
-//! Ranges of what a run is asked to do: how long, in which steps, how it samples, whom it follows.
-
-use forwardstep_core::reference::Choice;
+//! Ranges of what a run is asked to do: how long, in which steps, how it samples.
 
 use crate::coupling::Coupling;
-use crate::leader::{Following, FollowingDesign};
 use crate::quantity::{MOST_EVENTS, Path, QuantityError, at_least, few, not_negative, positive, within};
-use crate::setup::{Control, Method, ReferenceKind, Solver, TimeSpan, VelocitySensor};
+use crate::setup::{Control, Method, Solver, TimeSpan, VelocitySensor};
 
 impl TimeSpan {
     /// # Errors
@@ -66,47 +63,6 @@ impl Control {
         not_negative("control", "quantisation.position", sensors.position_quantum)?;
         not_negative("control", "quantisation.velocity", sensors.velocity_quantum)?;
         not_negative("control", "quantisation.torque", actuators.torque_quantum)
-    }
-}
-
-impl ReferenceKind {
-    /// Checks the numbers that all agents share, for a run of `end_s` whose signs are set in continuous time unless `sampled`.
-    ///
-    /// # Errors
-    /// [`QuantityError`] for the first that is out of its range.
-    pub fn check(&self, end_s: f64, sampled: bool) -> Result<(), QuantityError> {
-        match self {
-            ReferenceKind::Backstepping { filter_s, acceleration_limit } => {
-                positive("reference.backstepping", "filter_s", *filter_s)?;
-                let limit = |limit| positive("reference.backstepping", "acceleration_limit", limit);
-                acceleration_limit.map_or(Ok(()), limit)
-            }
-            ReferenceKind::Following(following) => following.check(end_s, sampled),
-            ReferenceKind::Consensus | ReferenceKind::PureIntegral | ReferenceKind::Tracking => Ok(()),
-        }
-    }
-}
-
-impl Following {
-    fn check(&self, end_s: f64, sampled: bool) -> Result<(), QuantityError> {
-        let at = "reference.leader";
-        // α and β come from the roots.
-        positive(at, "alpha", self.alpha)?;
-        if self.design != FollowingDesign::Continuous {
-            positive(at, "beta", self.beta)?;
-        }
-        if let FollowingDesign::Swarm { coupling } = self.design {
-            positive(at, "coupling", coupling)?;
-        }
-        positive(at, "gain", self.gain)?;
-        match self.choice {
-            Choice::Layer { width } => positive("reference.leader.sign.boundary_layer", "width", width),
-            Choice::Implicit | Choice::Explicit if !sampled => {
-                positive(at, "sign_period_s", self.period_s)?;
-                few(at, "sign_period_s", self.period_s, ("settings of the sign", end_s / self.period_s, MOST_EVENTS))
-            }
-            Choice::Implicit | Choice::Explicit => Ok(()),
-        }
     }
 }
 

@@ -7,7 +7,8 @@ use forwardstep_core::sampled::SafeCommand;
 use crate::leader::{Following, FollowingDesign};
 use crate::network::Network;
 use crate::push::Push;
-use crate::system::{Interface, Law, ReferenceFamily, Robot, RobotInterface};
+use crate::reference::{ReferenceDynamics, ReferenceFamily};
+use crate::system::{Interface, Law, Robot, RobotInterface};
 use crate::trajectory::Trajectory;
 
 /// A network of agents and how long to watch it.
@@ -16,7 +17,7 @@ pub struct Setup {
     /// The agents, in the order of the network's vertices.
     pub agents: Vec<AgentSetup>,
     /// What produces their reference velocities.
-    pub reference: ReferenceKind,
+    pub reference: Arc<dyn ReferenceDynamics>,
     /// What the agents tell each other.
     pub exchange: Exchange,
     /// Who hears whom, when, and how late.
@@ -31,11 +32,21 @@ pub struct Setup {
 
 impl Setup {
     /// How a leader is followed, if there is one.
-    pub fn following(&self) -> Option<&Arc<Following>> {
-        match &self.reference {
-            ReferenceKind::Following(following) => Some(following),
-            _ => None,
-        }
+    pub fn following(&self) -> Option<&Following> {
+        self.reference.downcast()
+    }
+
+    /// Whether every agent follows a target of its own.
+    pub fn tracks(&self) -> bool {
+        self.reference.interface().family == ReferenceFamily::Target
+    }
+
+    /// Changes the reference dynamics, if they are an `R`; whether they are.
+    pub fn change_reference<R: ReferenceDynamics + Clone>(&mut self, change: impl FnOnce(&mut R)) -> bool {
+        let Some(mut reference) = self.reference.downcast::<R>().cloned() else { return false };
+        change(&mut reference);
+        self.reference = Arc::new(reference);
+        true
     }
 
     /// What a message holds, in words.
@@ -60,54 +71,6 @@ impl Setup {
     pub fn vertex_name(&self, vertex: usize) -> &str {
         let leader = || self.following().map_or("", |following| &following.leader.name);
         self.agents.get(vertex).map_or_else(leader, |agent| &agent.name)
-    }
-}
-
-/// Reference dynamics, see [`forwardstep_core::reference`].
-#[derive(Clone, Debug, PartialEq)]
-pub enum ReferenceKind {
-    /// The family (aa10), (a1), (a5), (24).
-    Consensus,
-    /// (3) or, when only positions are exchanged, (23): order two, fixed graphs.
-    PureIntegral,
-    /// The baseline (aa6): exchanges positions, has no roots.
-    Backstepping {
-        /// Time constant ε of the filter that differentiates, s.
-        filter_s: f64,
-        /// Limit of the reference acceleration, rad/s² or m/s²; none for no limit.
-        acceleration_limit: Option<f64>,
-    },
-    /// (110), (119), (122) or swarm tracking: everybody follows a leader, the last vertex of the network. There are no roots.
-    Following(Arc<Following>),
-    /// Nothing is agreed upon: every agent follows a target of its own, by a law that has reference dynamics of its own.
-    Tracking,
-}
-
-impl ReferenceKind {
-    /// What leads the agents.
-    pub fn family(&self) -> ReferenceFamily {
-        match self {
-            ReferenceKind::Consensus => ReferenceFamily::Consensus,
-            ReferenceKind::PureIntegral => ReferenceFamily::PureIntegral,
-            ReferenceKind::Backstepping { .. } => ReferenceFamily::Backstepping,
-            ReferenceKind::Following(_) => ReferenceFamily::Leader,
-            ReferenceKind::Tracking => ReferenceFamily::Target,
-        }
-    }
-
-    /// How many of z(0), ż(0), … an agent's start may give.
-    pub fn free_derivatives(&self, agent: &AgentSetup) -> usize {
-        match self {
-            ReferenceKind::Consensus => agent.roots_per_s.len(),
-            // Without roots there is z alone.
-            ReferenceKind::Tracking => agent.roots_per_s.len().max(1),
-            ReferenceKind::PureIntegral => 2,
-            ReferenceKind::Following(following) => match following.design {
-                FollowingDesign::Continuous => 1,
-                _ => 2,
-            },
-            ReferenceKind::Backstepping { .. } => 0,
-        }
     }
 }
 
@@ -138,13 +101,13 @@ pub struct AgentSetup {
     /// Its robot.
     pub robot: RobotSetup,
     /// κ₀ … κ_{ℓ−1} in 1/s, all positive; their number is the order ℓ of the reference dynamics. None for
-    /// [`ReferenceKind::Backstepping`].
+    /// reference dynamics that have no roots.
     pub roots_per_s: Vec<f64>,
     /// λ of Remark 4, 1/s^ℓ: how much the reference gives way to the motion; zero for not at all.
     pub manipulability: f64,
     /// Its tracking law.
     pub law: Arc<dyn Law>,
-    /// Under [`ReferenceKind::Tracking`] where it should be; otherwise its offset from where all agree, for laws that know
+    /// Under [`Tracking`](crate::reference::Tracking) where it should be; otherwise its offset from where all agree, for laws that know
     /// offsets.
     pub target: Option<Trajectory>,
     /// Where it starts.

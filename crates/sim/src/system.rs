@@ -16,6 +16,7 @@ use forwardstep_core::signal::Block as Signals;
 use crate::agents::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::recording::Signal;
+use crate::reference::ReferenceFamily;
 use crate::setup::{AxisUnit, Exchange, RobotSetup};
 
 /// A plant as data: its geometry, which is known, but not its true parameters, which stand beside it in [`RobotSetup`].
@@ -289,19 +290,4 @@ pub struct Coordinates {
     pub unit: AxisUnit,
     /// What each of their uncertain parameters is called.
     pub parameters: Vec<String>,
-}
-
-/// Reference dynamics by what leads the agents.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReferenceFamily {
-    /// The consensus family (aa10), (a1), (a5), (24).
-    Consensus,
-    /// (3) and (23).
-    PureIntegral,
-    /// The baseline (aa6).
-    Backstepping,
-    /// (110), (119), (122) and swarm tracking.
-    Leader,
-    /// A target of every agent's own.
-    Target,
 }

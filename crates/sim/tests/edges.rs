@@ -3,6 +3,7 @@
 
 mod common;
 
+use forwardstep_sim::reference::PureIntegral;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -286,6 +287,6 @@ fn a_nonlinear_coupling_goes_with_consensus_by_positions_alone() {
     };
     assert_eq!(said(&|_| {}), None);
     assert_eq!(said(&|setup| setup.exchange = Exchange::PositionVelocity), Some(SetupError::Coupling));
-    let pure = forwardstep_sim::ReferenceKind::PureIntegral;
+    let pure = Arc::new(PureIntegral);
     assert_eq!(said(&|setup| setup.reference = pure.clone()), Some(SetupError::Coupling));
 }

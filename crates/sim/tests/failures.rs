@@ -3,6 +3,7 @@
 
 mod common;
 
+use forwardstep_sim::reference::Tracking;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -14,9 +15,7 @@ use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::delay::{Delay, SawTooth};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{
-    ChainModel, ChainStep, Ending, Failures, Outcome, ReferenceKind, Setup, SetupError, Signal, simulate,
-};
+use forwardstep_sim::{ChainModel, ChainStep, Ending, Failures, Outcome, Setup, SetupError, Signal, simulate};
 
 const HZ: f64 = 500.0;
 
@@ -90,7 +89,7 @@ fn through_zero(safe_command: Option<SafeCommand>) -> Setup {
     let mut chain = agent(1, model, &[], step, &[1.0, 2.0], &[1.0, -1.0]);
     chain.change_law(|law: &mut forwardstep_sim::ChainLaw| law.floor = 0.1);
     chain.target = Some(Trajectory::new(vec![fixed(-1.0)]).unwrap());
-    let mut setup = sampled(setup(vec![chain], ReferenceKind::Tracking, silent(1), 5.0), HZ);
+    let mut setup = sampled(setup(vec![chain], Arc::new(Tracking), silent(1), 5.0), HZ);
     setup.time.record_every_s = 0.002;
     setup.control.as_mut().unwrap().failures.safe_command = safe_command;
     setup

@@ -4,7 +4,6 @@
 mod common;
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
 use common::following::{DESIGNS, arms, masses};
 use common::{balance_residual, column, columns, run, sampled, truth};
@@ -12,9 +11,9 @@ use forwardstep_core::Gain;
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
-use forwardstep_sim::leader::FollowingDesign;
+use forwardstep_sim::leader::{Following, FollowingDesign};
 use forwardstep_sim::schedule::Schedule;
-use forwardstep_sim::{Adaptive, Method, Outcome, ReferenceKind, Setup, Signal, simulate};
+use forwardstep_sim::{Adaptive, Method, Outcome, Setup, Signal, simulate};
 
 fn at_1_khz(mut setup: Setup) -> Setup {
     setup.time.record_every_s = 1e-3;
@@ -64,9 +63,8 @@ fn eq_114_to_118_without_s_the_farthest_comes_closer_by_the_margin_of_the_gain()
     let edge = |to, from, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
     let all = (0..3).map(|to| edge(to, 3, 0.6)).chain([edge(1, 0, 1.5), edge(2, 1, 0.7), edge(0, 2, 0.4)]);
     problem.network.schedule = Schedule::fixed(all.collect());
-    let ReferenceKind::Following(following) = &mut problem.reference else { panic!() };
-    Arc::make_mut(following).choice = Choice::Implicit;
-    let following = Arc::clone(following);
+    assert!(problem.change_reference(|following: &mut Following| following.choice = Choice::Implicit));
+    let following = problem.following().unwrap().clone();
     // Known masses and z(0) = q̇(0): s vanishes for ever.
     for agent in &mut problem.agents {
         agent.start.reference = vec![agent.start.dq.clone()];

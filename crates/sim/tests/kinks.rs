@@ -4,7 +4,6 @@
 mod common;
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
 use common::following::{DESIGNS, masses};
 use common::{apart, column, columns, consensus_of_masses, last, run, vehicles};
@@ -13,10 +12,10 @@ use forwardstep_core::reference::Choice;
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
-use forwardstep_sim::leader::FollowingDesign;
+use forwardstep_sim::leader::{Following, FollowingDesign};
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::trajectory::{Path, Trajectory, TrajectoryError};
-use forwardstep_sim::{Method, Outcome, ReferenceKind, Setup, SetupError, Signal, ThrustKind, simulate};
+use forwardstep_sim::{Method, Outcome, Setup, SetupError, Signal, ThrustKind, simulate};
 
 fn t() -> Expression {
     Expression::variable(0)
@@ -33,8 +32,7 @@ fn along(axes: Vec<Expression>) -> Trajectory {
 
 fn led_along(design: FollowingDesign, path: Expression, end_s: f64) -> Setup {
     let mut setup = masses(design);
-    let ReferenceKind::Following(following) = &mut setup.reference else { panic!() };
-    Arc::make_mut(following).leader.trajectory = along(vec![path]);
+    assert!(setup.change_reference(|following: &mut Following| following.leader.trajectory = along(vec![path])));
     setup.time.end_s = end_s;
     setup
 }
@@ -116,9 +114,8 @@ fn fixed_steps_keep_their_order_across_the_kinks_of_everything() {
     tracking.time.end_s = 6.0;
     has_order_four("target", tracking, 0.02);
     let mut led = led_along(FollowingDesign::Continuous, bounce(1.3), 6.0);
-    let ReferenceKind::Following(following) = &mut led.reference else { panic!() };
     // So wide a layer has no corners where the run goes.
-    Arc::make_mut(following).choice = Choice::Layer { width: 50.0 };
+    assert!(led.change_reference(|following: &mut Following| following.choice = Choice::Layer { width: 50.0 }));
     has_order_four("leader", led, 0.02);
 
     let mut weighted = consensus_of_masses(2.3);

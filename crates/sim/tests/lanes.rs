@@ -1,6 +1,7 @@
 //! A population large enough for lanes computes, bit for bit, what its members compute one at a time.
 #![allow(clippy::unwrap_used)]
 
+use forwardstep_sim::reference::Consensus;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -11,8 +12,8 @@ use forwardstep_sim::graph::Edge;
 use forwardstep_sim::push::{Course, Effect, Function, Grip, Push};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
-    Actuators, Adaptive, AgentSetup, Axis, AxisUnit, Control, Exchange, Method, Network, ReferenceKind, RobotSetup,
-    Sensors, Setup, Solver, Start, TimeSpan, simulate,
+    Actuators, Adaptive, AgentSetup, Axis, AxisUnit, Control, Exchange, Method, Network, RobotSetup, Sensors, Setup,
+    Solver, Start, TimeSpan, simulate,
 };
 
 fn arm(index: usize, order: usize) -> AgentSetup {
@@ -62,7 +63,7 @@ fn bits_of_the_first_two(agents: usize, order: usize, control: &Option<Control>)
     let phase = |edges, dwell_s| Phase { edges, dwell_s };
     let setup = Setup {
         agents: (0..agents).map(|index| arm(index, order)).collect(),
-        reference: ReferenceKind::Consensus,
+        reference: Arc::new(Consensus),
         exchange: Exchange::PositionVelocity,
         network: Network {
             agents,

@@ -3,6 +3,7 @@
 
 mod common;
 
+use forwardstep_sim::reference::Consensus;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -12,8 +13,7 @@ use forwardstep_core::robot::{PlanarArm, PlanarLinks};
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::recording::{Breakdown, BreakdownCause};
 use forwardstep_sim::{
-    Adaptive, AgentSetup, AxisUnit, Ending, Exchange, Known, Law, ReferenceKind, RobotSetup, Setup, Signal, Start,
-    simulate,
+    Adaptive, AgentSetup, AxisUnit, Ending, Exchange, Known, Law, RobotSetup, Setup, Signal, Start, simulate,
 };
 
 /// A planar arm whose motors are too weak for it.
@@ -49,7 +49,7 @@ fn arm(index: usize, limits: Option<[f64; 2]>, adaptive: bool) -> AgentSetup {
 
 fn alone(agents: Vec<AgentSetup>) -> Setup {
     let network = silent(agents.len());
-    let mut setup = setup(agents, ReferenceKind::Consensus, network, 3.0);
+    let mut setup = setup(agents, Arc::new(Consensus), network, 3.0);
     setup.exchange = Exchange::PositionVelocity;
     setup.time.record_every_s = 0.01;
     setup

@@ -4,6 +4,7 @@
 
 mod common;
 
+use forwardstep_sim::reference::Consensus;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -17,8 +18,8 @@ use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
-    AgentSetup, AxisUnit, BreakdownCause, Ending, Known, Method, Network, Outcome, ReferenceKind, RobotSetup, Setup,
-    SetupError, Start, Stiffness, simulate, validate,
+    AgentSetup, AxisUnit, BreakdownCause, Ending, Known, Method, Network, Outcome, RobotSetup, Setup, SetupError,
+    Start, Stiffness, simulate, validate,
 };
 
 struct Counting;
@@ -90,7 +91,7 @@ fn ring(damping: f64, delay_s: f64, end_s: f64, memory_budget_bytes: u64) -> Set
         delays: vec![Delay::constant(delay_s)],
         ..silent(3)
     };
-    let mut setup = common::setup(agents, ReferenceKind::Consensus, network, end_s);
+    let mut setup = common::setup(agents, Arc::new(Consensus), network, end_s);
     setup.solver.memory_budget_bytes = memory_budget_bytes;
     setup
 }

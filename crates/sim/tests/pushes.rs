@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
+use forwardstep_sim::reference::Consensus;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -16,8 +17,8 @@ use forwardstep_sim::graph::Edge;
 use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push, PushError, Table};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Axis, AxisUnit, Ending, Exchange, Known, Law, Method, Network, Outcome, ReferenceKind, Robot,
-    RobotSetup, Setup, SetupError, Signal, Solver, Start, TimeSpan, simulate,
+    Adaptive, AgentSetup, Axis, AxisUnit, Ending, Exchange, Known, Law, Method, Network, Outcome, Robot, RobotSetup,
+    Setup, SetupError, Signal, Solver, Start, TimeSpan, simulate,
 };
 
 const MASS: f64 = 2.0;
@@ -65,7 +66,7 @@ fn alone(agents: Vec<AgentSetup>, end_s: f64) -> Setup {
             coupling: Default::default(),
         },
         agents,
-        reference: ReferenceKind::Consensus,
+        reference: Arc::new(Consensus),
         exchange: Exchange::Position,
         time: TimeSpan { end_s, record_every_s: 0.125 },
         solver: Solver { method: Method::Adaptive { rtol: 1e-10, atol: 1e-12 }, ..Solver::default() },

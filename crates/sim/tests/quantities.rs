@@ -1,6 +1,7 @@
 //! Quantities out of their range, by the path of each; and where other errors stand.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use forwardstep_sim::reference::{Backstepping, Tracking};
 use std::sync::Arc;
 
 use forwardstep_core::reference::Choice;
@@ -9,8 +10,8 @@ use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
 use forwardstep_sim::quantity::positive;
 use forwardstep_sim::trajectory::{Path, Trajectory};
 use forwardstep_sim::{
-    Actuators, AgentSetup, Control, Exchange, Failures, Known, Method, Network, ReferenceKind, RobotSetup, Sensors,
-    Setup, SetupError, VelocitySensor, validate,
+    Actuators, AgentSetup, Control, Exchange, Failures, Known, Method, Network, RobotSetup, Sensors, Setup, SetupError,
+    VelocitySensor, validate,
 };
 
 /// A change, and the path of what is wrong then.
@@ -46,7 +47,7 @@ fn following(change: &dyn Fn(&mut Following)) -> impl Fn(&mut Setup) + use<> {
     };
     change(&mut following);
     move |setup| {
-        setup.reference = ReferenceKind::Following(Arc::new(following.clone()));
+        setup.reference = Arc::new(following.clone());
         setup.agents.iter_mut().for_each(|agent| agent.roots_per_s.clear());
         setup.network = Network::silent(3);
         setup.exchange = Exchange::PositionVelocity;
@@ -71,7 +72,7 @@ fn every_quantity_is_refused_out_of_its_range_under_its_path() {
     assert_eq!(wrong(&following(&|_| ())), "nothing");
     for value in [-1.0, f64::NAN, f64::INFINITY, 1e31] {
         let fixed = |step_s| Method::Fixed { step_s };
-        let backstepping = |filter_s, limit| ReferenceKind::Backstepping { filter_s, acceleration_limit: limit };
+        let backstepping = |filter_s, limit| Arc::new(Backstepping { filter_s, acceleration_limit: limit });
         let cases: &[Case<'_>] = &[
             (&|s| s.time.end_s = value, "time.end_s"),
             (&|s| s.time.record_every_s = value, "time.record_every_s"),
@@ -140,11 +141,11 @@ fn errors_about_agents_lead_to_them() {
     let rootless = |s: &mut Setup| {
         s.agents.iter_mut().for_each(|agent| agent.roots_per_s.clear());
         s.exchange = Exchange::PositionVelocity;
-        s.reference = ReferenceKind::Backstepping { filter_s: 0.1, acceleration_limit: None };
+        s.reference = Arc::new(Backstepping { filter_s: 0.1, acceleration_limit: None });
     };
     let cases: [Case<'_>; 6] = [
         (&|s| s.agents[1].start.reference = vec![vec![0.0]; 2], "agents[1].start.reference"),
-        (&|s| s.reference = ReferenceKind::Tracking, "agents[0].name"),
+        (&|s| s.reference = Arc::new(Tracking), "agents[0].name"),
         (&rootless, "reference"),
         (&|s| s.agents[1].target = Some(at_zero()), "agents[1].target"),
         (&|s| s.network.agents = 3, "network"),

@@ -6,6 +6,7 @@
 mod cases;
 mod common;
 
+use forwardstep_sim::reference::Consensus;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -21,8 +22,8 @@ use forwardstep_sim::delay::{Delay, Loss, PacketLink};
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Ending, Outcome, ReferenceKind, Sensors, Setup, SetupError, Signal, Start, TimeSpan,
-    VelocitySensor, recipe, recipes, simulate_samples,
+    Adaptive, AgentSetup, Ending, Outcome, Sensors, Setup, SetupError, Signal, Start, TimeSpan, VelocitySensor, recipe,
+    recipes, simulate_samples,
 };
 
 /// Exact in binary, so that rows of the recording and samples are the same instants.
@@ -233,7 +234,7 @@ fn digest_robots_with_encoders_and_limits_have_the_bits_of_the_simulator() {
 #[test]
 fn digest_a_tree_of_links_has_the_bits_of_the_simulator() {
     let mut setup = common::single::anthropomorphic(Uncertain::Tool);
-    setup.reference = ReferenceKind::Consensus;
+    setup.reference = Arc::new(Consensus);
     setup.network = common::switching();
     let first = &mut setup.agents[0];
     let estimate_start = first.robot.theta.iter().map(|theta| 0.8 * theta).collect();

@@ -3,6 +3,7 @@
 
 mod common;
 
+use forwardstep_sim::reference::{Backstepping, Consensus};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -10,8 +11,8 @@ use common::{every_kind, masses, sampled, single, switching, vehicles};
 use forwardstep_core::Gain;
 use forwardstep_core::controller::ParameterBounds;
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Outcome, ReferenceKind, Setup, SetupError, SpacecraftModel, TaskSpaceLaw, ThrustKind,
-    VelocityQuantity, VelocitySensor, simulate,
+    Adaptive, AgentSetup, Outcome, Setup, SetupError, SpacecraftModel, TaskSpaceLaw, ThrustKind, VelocityQuantity,
+    VelocitySensor, simulate,
 };
 
 fn outcome(setup: &Setup) -> Result<Outcome, SetupError> {
@@ -40,7 +41,7 @@ fn lambda_is_refused_wherever_it_is_not_in_the_equations() {
         assert_eq!(law == "following a leader", name.starts_with("following"), "{name}: {law}");
     }
     let mut baseline = lagrangian();
-    baseline.reference = ReferenceKind::Backstepping { filter_s: 0.01, acceleration_limit: None };
+    baseline.reference = Arc::new(Backstepping { filter_s: 0.01, acceleration_limit: None });
     baseline.agents[0].roots_per_s.clear();
     assert!(outcome(&baseline).is_ok());
     baseline.agents[0].manipulability = 0.5;
@@ -78,7 +79,7 @@ fn roots_are_refused_where_reference_dynamics_have_none() {
         }
     }
     let mut baseline = lagrangian();
-    baseline.reference = ReferenceKind::Backstepping { filter_s: 0.01, acceleration_limit: None };
+    baseline.reference = Arc::new(Backstepping { filter_s: 0.01, acceleration_limit: None });
     assert!(matches!(outcome(&baseline), Err(SetupError::RootCount { error, .. }) if error.need == 0));
 }
 
@@ -104,7 +105,11 @@ fn a_start_of_z_has_no_more_entries_than_the_state_has() {
         let shown = own.filter(|column| matches!(column.signal, forwardstep_sim::Signal::Reference(_))).count();
         // A rate that is shown is no state.
         let rates = usize::from(["tip", "spacecraft", "following-110"].iter().any(|kind| name.starts_with(kind)));
-        assert_eq!(accepted.count(), (shown - rates).min(setup.reference.free_derivatives(agent)), "{name}");
+        assert_eq!(
+            accepted.count(),
+            (shown - rates).min(setup.reference.free_derivatives(agent.roots_per_s.len())),
+            "{name}"
+        );
     }
 }
 
@@ -143,7 +148,7 @@ fn laws_that_only_track_do_not_go_with_consensus() {
     for mut setup in
         [single::planar(None, 0.3), single::craft(single::half_a_turn([0.0; 3]), single::targets().remove(0), 5.0)]
     {
-        setup.reference = ReferenceKind::Consensus;
+        setup.reference = Arc::new(Consensus);
         assert!(matches!(outcome(&setup), Err(SetupError::OnlyTracks { .. })));
         setup.agents[0].target = None;
         assert!(matches!(outcome(&setup), Err(SetupError::OnlyTracks { .. })));

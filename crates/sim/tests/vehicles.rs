@@ -3,6 +3,7 @@
 
 mod common;
 
+use forwardstep_sim::reference::Tracking;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -14,8 +15,8 @@ use forwardstep_core::plant::Rotors;
 use forwardstep_core::robot::PlanarArm;
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::{
-    BreakdownCause, Ending, Exchange, Known, Outcome, ReferenceKind, Robot, RotorcraftModel, Setup, SetupError, Signal,
-    ThrustKind, ThrustLaw, simulate,
+    BreakdownCause, Ending, Exchange, Known, Outcome, Robot, RotorcraftModel, Setup, SetupError, Signal, ThrustKind,
+    ThrustLaw, simulate,
 };
 
 /// max over agents and axes of the spread of x − d, at the end.
@@ -179,7 +180,7 @@ fn what_makes_no_sense_is_refused() {
     assert!(matches!(refused(&|s| s.agents[1].start.rest = vec![0.0; 3]), SetupError::Length { .. }));
     assert!(matches!(refused(&|s| s.agents[1].robot.theta[0] = -1.0), SetupError::LawNumber { .. }));
     assert!(matches!(refused(&|s| law(s, &|law| law.floor = Floor::Stops(0.0))), SetupError::LawNumber { .. }));
-    assert!(matches!(refused(&|s| s.reference = ReferenceKind::Tracking), SetupError::NotTracking { .. }));
+    assert!(matches!(refused(&|s| s.reference = Arc::new(Tracking)), SetupError::NotTracking { .. }));
     let known = Arc::new(Known { damping: Gain::Number(1.0) });
     assert!(matches!(refused(&|s| s.agents[1].law = known.clone()), SetupError::LawOfAnother { .. }));
     let flat = Arc::new(RotorcraftModel { gravity: G, inertia: Gain::Diagonal(vec![1.0, 1.0, 0.0]), rotors: None });

@@ -131,7 +131,7 @@ table! {
     EveryWrench, "every-wrench", "own derivation", Source::Derived,
         "every thrust and every torque can be had";
     Declared, "declared", "declared by its author", Source::Declared,
-        "what the author of the robot or of the law of … says is so";
+        "what the author says of … is so";
     TaskSpaceGains, "task-space-gains", "Theorem 6", Source::Paper,
         "K*, K, Γ and Λ are symmetric positive definite, κ and α are positive";
     RegularJacobian, "regular-jacobian", "Theorem 6", Source::Paper,

@@ -32,6 +32,8 @@ pub struct Hypothesis {
 pub enum Subject {
     /// The setup as a whole.
     Setup,
+    /// The reference dynamics.
+    Reference,
     /// One agent.
     Agent(Named),
     /// The targets of some agents with their derivatives.

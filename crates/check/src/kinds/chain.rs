@@ -5,7 +5,7 @@ use std::sync::Arc;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::CascadeTerms;
 use forwardstep_sim::push::{Course, Function, Push};
-use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, ChainStep, Law, ReferenceKind, Setup};
+use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, ChainStep, Law, Setup};
 
 use super::{Claim, KindCheck};
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, Named};
@@ -31,18 +31,16 @@ impl KindCheck for Chain {
         let all: Vec<usize> = (0..setup.agents.len()).collect();
         let mut steps: Vec<&str> = chains(setup, &all).map(|(_, law, _)| law.words().name).collect();
         steps.dedup();
-        Some(match setup.reference {
-            ReferenceKind::Tracking => Claim {
+        Some(if setup.tracks() {
+            Claim {
                 theorem: Theorem::ChainsTrack(steps),
                 promises: "x − x_d → 0 with its derivatives below the order of the plant".into(),
-            },
-            ReferenceKind::Consensus
-            | ReferenceKind::PureIntegral
-            | ReferenceKind::Backstepping { .. }
-            | ReferenceKind::Following(_) => Claim {
+            }
+        } else {
+            Claim {
                 theorem: Theorem::ChainsAgree(steps),
                 promises: "all agents agree and come to rest, whatever their orders: x_i − x_j → 0 and dx_i → 0".into(),
-            },
+            }
         })
     }
 

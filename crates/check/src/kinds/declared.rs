@@ -25,7 +25,7 @@ impl KindCheck for DeclaredKind {
     }
 
     fn claim(&self, setup: &Setup) -> Option<Claim> {
-        let Declaration { source, promises, .. } = declaration(setup.agents.first()?);
+        let Declaration { source, promises, .. } = declaration(setup.agents.first()?.law.known());
         Some(Claim { theorem: Theorem::Declared(source), promises })
     }
 
@@ -33,7 +33,7 @@ impl KindCheck for DeclaredKind {
         let mut hypotheses = Vec::new();
         for index in agents {
             let subject = || Subject::Agent(Named::of(setup, *index));
-            for claim in declaration(&setup.agents[*index]).claims {
+            for claim in declaration(setup.agents[*index].law.known()).claims {
                 let evidence = KindEvidence::Declared { requires: claim.requires, because: claim.because };
                 hypotheses.push(Hypothesis::about(Id::Declared, subject(), evidence));
             }
@@ -55,10 +55,10 @@ impl KindCheck for DeclaredKind {
     }
 }
 
-/// What the author says. A law that says nothing, or that it is checked where it is not, must not be taken for one that has
+/// What the author says. Whoever says nothing, or that it is checked where it is not, must not be taken for one that has
 /// shown all: then there is one claim, of which nothing is known.
-fn declaration(agent: &AgentSetup) -> Declaration {
-    let mut declaration = match agent.law.known() {
+pub(crate) fn declaration(known: Known) -> Declaration {
+    let mut declaration = match known {
         Known::Declared(declaration) => declaration,
         Known::Checked => Declaration {
             source: "nothing, for it says that it is checked, and no kind here is this one".into(),

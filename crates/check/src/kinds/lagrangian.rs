@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::robot::{PlanarArm, PointMass, Ship};
-use forwardstep_sim::{Adaptive, AgentSetup, Known, ReferenceKind, Setup};
+use forwardstep_sim::{Adaptive, AgentSetup, Known, Setup};
 
 use super::{Claim, KindCheck};
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, LoopEvidence, Named, Subject};
@@ -28,7 +28,7 @@ impl KindCheck for LagrangianRobot {
     }
 
     fn claim(&self, setup: &Setup) -> Option<Claim> {
-        (setup.reference == ReferenceKind::Tracking).then(|| Claim {
+        setup.tracks().then(|| Claim {
             theorem: Theorem::RobotsTrack,
             promises: "every robot reaches its target: q − q_d → 0 and dq − dq_d → 0".into(),
         })
@@ -38,7 +38,7 @@ impl KindCheck for LagrangianRobot {
         let known = agents.iter().filter(|agent| setup.agents[**agent].law.is::<Known>()).count();
         let gains = Hypothesis::new(Id::PositiveGains, LoopEvidence::Gains { known, agents: agents.len() });
         let from_outside = agents.iter().filter(|agent| !is_shipped(&setup.agents[**agent]));
-        let roots = (setup.reference == ReferenceKind::Tracking).then(|| real_roots(setup, agents));
+        let roots = setup.tracks().then(|| real_roots(setup, agents));
         from_outside.map(|agent| three_properties(setup, *agent)).chain([gains]).chain(roots).collect()
     }
 

@@ -12,7 +12,7 @@ mod vehicle;
 use forwardstep_sim::{AgentSetup, Setup};
 
 pub(crate) use chain::Chain;
-pub(crate) use declared::DeclaredKind;
+pub(crate) use declared::{DeclaredKind, declaration};
 pub(crate) use lagrangian::{LagrangianRobot, is_lagrangian, starts_from_zero};
 pub(crate) use point_mass::PositionOnlyMass;
 pub(crate) use rotorcraft::Rotorcraft;

@@ -1,6 +1,6 @@
 //! Point masses without a measured velocity: (a7)–(a9), Remark 7.
 
-use forwardstep_sim::{AgentSetup, PositionOnlyLaw, ReferenceKind, Setup};
+use forwardstep_sim::{AgentSetup, PositionOnlyLaw, Setup};
 
 use super::{Claim, KindCheck};
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, Named};
@@ -22,19 +22,17 @@ impl KindCheck for PositionOnlyMass {
     }
 
     fn claim(&self, setup: &Setup) -> Option<Claim> {
-        Some(match setup.reference {
-            ReferenceKind::Tracking => Claim {
+        Some(if setup.tracks() {
+            Claim {
                 theorem: Theorem::PositionOnlyTracks,
                 promises: "x − x_d → 0 and dx − dx_d → 0 without a measured velocity".into(),
-            },
-            ReferenceKind::Consensus
-            | ReferenceKind::PureIntegral
-            | ReferenceKind::Backstepping { .. }
-            | ReferenceKind::Following(_) => Claim {
+            }
+        } else {
+            Claim {
                 theorem: Theorem::PositionOnlyAgree { order: setup.agents.first()?.roots_per_s.len() },
                 promises: "all agents agree and come to rest without a measured velocity: x_i − x_j → 0 and dx_i → 0"
                     .into(),
-            },
+            }
         })
     }
 

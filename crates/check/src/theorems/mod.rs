@@ -1,6 +1,7 @@
 //! Which theorem speaks about a setup, and whether its hypotheses hold: a file for each theorem or section.
 
 mod baseline;
+mod declared;
 mod following;
 mod own_targets;
 mod swarm;
@@ -9,7 +10,8 @@ mod theorem_3;
 
 pub(crate) use theorem_3::real_roots;
 
-use forwardstep_sim::{Exchange, ReferenceKind, Setup};
+use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking};
+use forwardstep_sim::{Exchange, Setup};
 
 use crate::graphs::{dwell_time, spanning_tree};
 use crate::hypothesis::{Hypothesis, Id, ReferenceEvidence};
@@ -26,14 +28,19 @@ use crate::surroundings::{applied_torque, digital, pushes_end};
 /// **Source**: Theorem 1 for (3), Remark 3 for (23), Theorem 2 for (a1), Theorem 3 for (a5) and (24); Section III-A for
 /// (aa10), which is (a5) of order one, and for the baseline (aa6), about which the paper promises nothing.
 pub fn check(setup: &Setup) -> Report {
-    match &setup.reference {
-        ReferenceKind::Consensus => consensus(setup, theorem_3::hypotheses(setup), theorem_3::claim),
-        ReferenceKind::PureIntegral => consensus(setup, theorem_1::hypotheses(setup), theorem_1::claim),
-        ReferenceKind::Backstepping { filter_s, .. } => {
-            consensus(setup, vec![baseline::derivative(*filter_s)], |_| baseline::claim())
-        }
-        ReferenceKind::Tracking => own_targets::check(setup),
-        ReferenceKind::Following(following) => following::check(setup, following),
+    let reference = &setup.reference;
+    if reference.is::<Consensus>() {
+        consensus(setup, theorem_3::hypotheses(setup), theorem_3::claim)
+    } else if reference.is::<PureIntegral>() {
+        consensus(setup, theorem_1::hypotheses(setup), theorem_1::claim)
+    } else if let Some(Backstepping { filter_s, .. }) = reference.downcast() {
+        consensus(setup, vec![baseline::derivative(*filter_s)], |_| baseline::claim())
+    } else if reference.is::<Tracking>() {
+        own_targets::check(setup)
+    } else if let Some(following) = setup.following() {
+        following::check(setup, following)
+    } else {
+        declared::check(setup)
     }
 }
 

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
+use forwardstep_sim::Setup;
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{ReferenceKind, Setup};
 
 use crate::hypothesis::{Bounded, Hypothesis, Id, MotionEvidence, Named, Subject};
 use crate::kinds::Claim;
@@ -31,7 +31,7 @@ pub(super) fn check(setup: &Setup) -> Report {
 /// Whether the targets, or the offsets, are bounded with as many derivatives as the laws need. Agents with the same answer
 /// share a hypothesis.
 pub(super) fn bounded(setup: &Setup) -> Vec<Hypothesis> {
-    let tracking = setup.reference == ReferenceKind::Tracking;
+    let tracking = setup.tracks();
     // A formation may travel: of an offset only the derivatives count.
     let lowest = if tracking { 0 } else { 1 };
     let mut groups: BTreeMap<(usize, Bounded), Vec<Named>> = BTreeMap::new();

@@ -1,5 +1,6 @@
 //! One agent of every kind beside arms and masses under (6)–(7).
 
+use forwardstep_sim::reference::Tracking;
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
@@ -12,8 +13,7 @@ use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::trajectory::{Path, Trajectory};
 use forwardstep_sim::{
     AgentSetup, AttitudeLaw, Axis, AxisUnit, ChainLaw, ChainModel, ChainStep, Estimate, Exchange, Law, PositionOnlyLaw,
-    ReferenceKind, Robot, RobotSetup, Setup, SpacecraftModel, Start, TaskSpaceLaw, ThrustKind, ThrustLaw, TipSetup,
-    VehicleModel,
+    Robot, RobotSetup, Setup, SpacecraftModel, Start, TaskSpaceLaw, ThrustKind, ThrustLaw, TipSetup, VehicleModel,
 };
 
 use super::{axis, setup};
@@ -65,7 +65,7 @@ fn start(q: &[f64], dq: &[f64], rest: &[f64]) -> Start {
 pub fn tracking(mut agent: AgentSetup, target: Vec<Path>) -> Setup {
     agent.target = Some(Trajectory::new(target).unwrap());
     let mut setup = setup(vec![agent], Exchange::Position, Schedule::fixed(Vec::new()), Vec::new(), 20.0);
-    setup.reference = ReferenceKind::Tracking;
+    setup.reference = Arc::new(Tracking);
     setup
 }
 

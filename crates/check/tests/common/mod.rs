@@ -3,6 +3,7 @@
 
 pub mod kinds;
 
+use forwardstep_sim::reference::Consensus;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -13,8 +14,8 @@ use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Axis, AxisUnit, Ending, Exchange, Known, Method, Network, Outcome, ReferenceKind, RobotSetup,
-    Setup, Signal, Solver, Start, TimeSpan, simulate,
+    Adaptive, AgentSetup, Axis, AxisUnit, Ending, Exchange, Known, Method, Network, Outcome, RobotSetup, Setup, Signal,
+    Solver, Start, TimeSpan, simulate,
 };
 
 /// A hypothesis that a test asks about.
@@ -161,7 +162,7 @@ pub fn setup(agents: Vec<AgentSetup>, exchange: Exchange, schedule: Schedule, de
     Setup {
         network: Network { agents: agents.len(), schedule, delays, weights: Vec::new(), coupling: Default::default() },
         agents,
-        reference: ReferenceKind::Consensus,
+        reference: Arc::new(Consensus),
         exchange,
         time: TimeSpan { end_s, record_every_s: 0.01 },
         solver: Solver { method: Method::Adaptive { rtol: 1e-9, atol: 1e-10 }, ..Solver::default() },

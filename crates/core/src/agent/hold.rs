@@ -7,7 +7,8 @@
 //! ẋ = f(x) = A x + b        x(h) = x + Φ(h) f(x),     Φ(h) = ∫₀ʰ exp(A σ) dσ = h + h²/2 A + h³/6 A² + …
 //! ```
 //!
-//! The columns of A, ℓ × ℓ, are what the same dynamics return for unit states when everything else is zero. The series is
+//! The columns of A, ℓ × ℓ, are what the same dynamics return for unit states, less what they return for none, when everything
+//! else is zero. The series is
 //! summed for a part of h so short that it needs few terms; then, since exp(A h) = 1 + A Φ(h),
 //!
 //! ```text
@@ -34,6 +35,8 @@ pub(crate) struct Hold {
     /// A unit state, and what the dynamics return for it.
     unit: Vec<f64>,
     rate: Vec<f64>,
+    /// What they return for no state.
+    rest: Vec<f64>,
     /// z and ż, which are not needed here.
     unused: [Vec<f64>; 2],
     /// A, Φ and products, ℓ × ℓ, row by row.
@@ -53,6 +56,7 @@ impl Hold {
             zeros: vec![0.0; channels.max(1) * axes],
             unit: state(),
             rate: state(),
+            rest: state(),
             unused: [vec![0.0; axes], vec![0.0; axes]],
             a: matrix(),
             phi: matrix(),
@@ -90,6 +94,10 @@ impl Hold {
     fn linearise<F: Reference>(&mut self, reference: &F, degree: &[f64]) -> Result<(), LengthError> {
         let nothing = Measured { q: &self.zeros[..self.axes], dq: &self.zeros[..self.axes] };
         let zero_input = Heard::new(degree, &self.zeros, self.axes)?;
+        let [z, dz] = &mut self.unused;
+        self.unit.fill(0.0);
+        let out = ReferenceOut { z, dz, d_state: &mut self.rest };
+        reference.evaluate(self.axes, nothing, &self.unit, zero_input, out)?;
         for column in 0..self.order {
             self.unit.fill(0.0);
             if let Some(one) = self.unit.get_mut(column * self.axes) {
@@ -99,7 +107,8 @@ impl Hold {
             let out = ReferenceOut { z, dz, d_state: &mut self.rate };
             reference.evaluate(self.axes, nothing, &self.unit, zero_input, out)?;
             for row in 0..self.order {
-                self.a[row * self.order + column] = self.rate.get(row * self.axes).copied().unwrap_or(0.0);
+                let of = |rates: &[f64]| rates.get(row * self.axes).copied().unwrap_or(0.0);
+                self.a[row * self.order + column] = of(&self.rate) - of(&self.rest);
             }
         }
         Ok(())
@@ -159,7 +168,9 @@ fn multiply(n: usize, a: &[f64], b: &[f64], out: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reference::{Backstepping, Consensus, Exchange, Position, PositionVelocity, PureIntegral};
+    use crate::reference::{
+        AxisOutput, Backstepping, Consensus, Exchange, PerAxis, Position, PositionVelocity, PureIntegral,
+    };
 
     /// Steps once over `h`, then in `parts` parts with the inputs held all along; both states.
     fn both_ways<F: Reference>(law: &F, start: &[f64], h: f64, parts: u32) -> [Vec<f64>; 2] {
@@ -200,6 +211,13 @@ mod tests {
             let law = PureIntegral::<Position>::new([(&[1.0, 2.0][..], lambda)]).unwrap();
             assert_same(both_ways(&law, &start[..4], 0.8, 64));
         }
+        // A rate that does not vanish with the state, with what is measured and with what is heard.
+        let drawn = PerAxis::<Position, _>::new([1, 2, 2], |given, asked: &mut AxisOutput<'_, '_>| {
+            let (z, dz) = (given.state(0), given.state(1));
+            asked.rate(0, dz);
+            asked.rate(1, 0.7 - 3.0 * dz - given.degree() * z + given.heard_position() - given.q());
+        });
+        assert_same(both_ways(&drawn, &start[..4], 0.8, 64));
         // A filter a hundred thousand times as fast as the sample has simply settled.
         let law = Backstepping::new([(1e-7, f64::INFINITY)]).unwrap();
         let [once, _] = both_ways(&law, &[5.0, -5.0], 0.01, 1);

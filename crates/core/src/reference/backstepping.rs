@@ -17,7 +17,7 @@ use alloc::vec::Vec;
 
 use thiserror::Error;
 
-use super::{Exchange, Heard, Measured, Position, Reference, ReferenceOut, check};
+use super::{Exchange, Heard, Measured, Position, Reference, ReferenceOut, Sliding, check};
 use crate::{LengthError, Scalar};
 
 /// A filter that cannot differentiate.
@@ -100,6 +100,10 @@ impl Reference for Backstepping {
 
     fn derivatives(&self) -> usize {
         0
+    }
+
+    fn sliding(&self) -> Option<&Sliding> {
+        None
     }
 
     #[inline(always)]

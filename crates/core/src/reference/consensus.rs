@@ -17,7 +17,7 @@
 //! does (α₁ = 1 for ℓ = 1): the conserved quantity that predicts the agreed value starts here.
 
 use super::polynomial::{Coefficients, RootsError};
-use super::{Exchange, Heard, Measured, Reference, ReferenceOut, check};
+use super::{Exchange, Heard, Measured, Reference, ReferenceOut, Sliding, check};
 use crate::{LengthError, Scalar};
 
 /// Reference dynamics of order ℓ for a population of agents, each with roots of its own.
@@ -84,6 +84,10 @@ impl<X: Exchange> Reference for Consensus<X> {
 
     fn derivatives(&self) -> usize {
         self.coefficients.order
+    }
+
+    fn sliding(&self) -> Option<&Sliding> {
+        None
     }
 
     #[inline(always)]

@@ -11,7 +11,7 @@ pub trait Exchange: Copy + Send + Sync + 'static {
     const CHANNELS: usize;
 
     /// Σ_j w_ij · message_j(t − T_ij), one column per axis and channel.
-    type Sums<'a>: Copy;
+    type Sums<'a>: Copy + core::fmt::Debug;
 
     /// Reads the sums out of one buffer that holds the channels one after the other, `channel` entries each.
     ///
@@ -23,6 +23,9 @@ pub trait Exchange: Copy + Send + Sync + 'static {
     /// # Errors
     /// [`LengthError`] for the first that has not.
     fn check(sums: Self::Sums<'_>, channel: usize) -> Result<(), LengthError>;
+
+    /// Σ_j w_ij q_j(t − T_ij) of entry `k`.
+    fn position(sums: Self::Sums<'_>, k: usize) -> f64;
 
     /// The part of the receiver's law that these sums enter, on entry `k`: α₀ Σ w q_j, and (α₀/κ₀) Σ w q̇_j if it is sent.
     fn term(sums: Self::Sums<'_>, k: usize, alpha_0: f64, alpha_0_over_kappa_0: f64) -> f64;
@@ -95,6 +98,11 @@ impl Exchange for Position {
     }
 
     #[inline(always)]
+    fn position(sums: PositionSums<'_>, k: usize) -> f64 {
+        sums.q[k]
+    }
+
+    #[inline(always)]
     fn term(sums: PositionSums<'_>, k: usize, alpha_0: f64, _: f64) -> f64 {
         alpha_0 * sums.q[k]
     }
@@ -114,6 +122,11 @@ impl Exchange for PositionVelocity {
     fn check(sums: PositionVelocitySums<'_>, channel: usize) -> Result<(), LengthError> {
         LengthError::check("sum of positions heard", channel, sums.q.len())?;
         LengthError::check("sum of velocities heard", channel, sums.dq.len())
+    }
+
+    #[inline(always)]
+    fn position(sums: PositionVelocitySums<'_>, k: usize) -> f64 {
+        sums.q[k]
     }
 
     #[inline(always)]

@@ -4,6 +4,7 @@
 //! - `pure_integral`: (3) and (23), which contain q̈ and are realised by their integral.
 //! - `backstepping`: (aa6), the baseline, which differentiates.
 //! - `following`: (110), (119), (122), which follow a leader.
+//! - `per_axis`: those of one's own, from one function.
 //! - `sliding`: the set-valued sign in them.
 //! - `exchange`: what agents tell each other.
 
@@ -11,6 +12,7 @@ mod backstepping;
 mod consensus;
 mod exchange;
 mod following;
+mod per_axis;
 mod polynomial;
 mod pure_integral;
 mod sliding;
@@ -19,6 +21,7 @@ pub use backstepping::{Backstepping, BacksteppingError};
 pub use consensus::Consensus;
 pub use exchange::{Exchange, Heard, Position, PositionSums, PositionVelocity, PositionVelocitySums};
 pub use following::{Following, SmoothFollowing};
+pub use per_axis::{AxisInput, AxisOutput, PerAxis};
 pub use polynomial::{RootsError, polynomial};
 pub use pure_integral::PureIntegral;
 pub use sliding::{Choice, Derived, Sliding, SlidingInputs, saturated};
@@ -67,9 +70,7 @@ pub trait Reference: Send + Sync + 'static {
 
     /// The set-valued sign in it, if it has one. The last block of state is then the value of the sign, which has rate zero and
     /// is set by who makes time pass.
-    fn sliding(&self) -> Option<&Sliding> {
-        None
-    }
+    fn sliding(&self) -> Option<&Sliding>;
 
     /// z, ż and the rate of the state, which is affine in the state and the same function for each axis: what sampled agents
     /// step exactly depends on it.

@@ -17,7 +17,7 @@
 //! fixed graphs; (a1) is the one for switching graphs.
 
 use super::polynomial::{Coefficients, RootsError};
-use super::{Exchange, Heard, Measured, Reference, ReferenceOut, check};
+use super::{Exchange, Heard, Measured, Reference, ReferenceOut, Sliding, check};
 use crate::{LengthError, Scalar};
 
 /// Reference dynamics of order two that contain q̈. State: `[z, η]`.
@@ -79,6 +79,10 @@ impl<X: Exchange> Reference for PureIntegral<X> {
 
     fn derivatives(&self) -> usize {
         1
+    }
+
+    fn sliding(&self) -> Option<&Sliding> {
+        None
     }
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! How far agents are apart, or from where they should be.
 
 use forwardstep_sim::recording::{Recording, Signal};
-use forwardstep_sim::setup::{ReferenceKind, Setup};
+use forwardstep_sim::setup::Setup;
 use serde::{Deserialize, Serialize};
 
 use super::number;
@@ -19,10 +19,7 @@ pub enum Gap {
 impl Gap {
     /// What is to vanish in a run of `setup`.
     pub fn of(setup: &Setup) -> Gap {
-        match setup.reference {
-            ReferenceKind::Tracking | ReferenceKind::Following(_) => Gap::Error,
-            _ => Gap::Disagreement,
-        }
+        if setup.reference.interface().family.is_followed() { Gap::Error } else { Gap::Disagreement }
     }
 
     /// `Disagreement` or `Error`.

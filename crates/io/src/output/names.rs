@@ -7,7 +7,7 @@ use std::collections::HashSet;
 
 use forwardstep_core::signal::{Entries, Unit};
 use forwardstep_sim::recording::{Recording, Signal};
-use forwardstep_sim::{AxisUnit, ReferenceKind, Setup};
+use forwardstep_sim::{AxisUnit, Setup};
 
 /// The name of an agent; a number when the setup has no such agent.
 pub fn agent_name(setup: &Setup, agent: usize) -> String {
@@ -133,7 +133,7 @@ fn turns(setup: &Setup, agent: usize) -> bool {
 
 /// What is to vanish: distances from targets, or between agents.
 fn gap_signal(setup: &Setup) -> Signal {
-    if setup.reference == ReferenceKind::Tracking { Signal::Error } else { Signal::Position }
+    if setup.tracks() { Signal::Error } else { Signal::Position }
 }
 
 /// The unit of what is to vanish in a run: of the distances between agents, or from their targets. Nothing for pure numbers;

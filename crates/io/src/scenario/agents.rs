@@ -3,22 +3,21 @@
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
+use forwardstep_sim::reference::Roots;
 use forwardstep_sim::{ActuatorLimits, AgentSetup, PositionKind, RobotSetup};
 
 use super::at::At;
 use super::attitude::{never_zero, shortest_rotation};
 use super::document::{Document, KeyedLaw};
 use super::fault::{Fault, count, fault, filled, positive};
-use super::file::{AgentFile, AgentReferenceFile, ReferenceFile, ScenarioFile};
+use super::file::{AgentFile, ScenarioFile};
 use super::inputs::InputFolder;
-use super::kinds::{Kinds, LawReader, RobotKind};
-use super::leader_file::LeaderDesignFile;
+use super::kinds::{AgentReferenceTable, Kinds, LawReader, ReferenceRead, RobotKind};
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
 use super::robots::{Body, RobotRead, Stop};
 use super::spread::Spread;
 use super::start::{Shared, StartReader, reject_unread};
-use super::systems_file::TrackingFile;
 use super::target::{Owner, target};
 use super::unused::spare_roots;
 use super::value_problem::ValueProblem;
@@ -32,12 +31,21 @@ const LONGEST_NAME: usize = 64;
 const MOST_ROOTS: usize = 32;
 
 /// An entry of `[[agents]]` with the names that it stands for.
-struct Population<'a> {
+pub(super) struct Population<'a> {
     file: &'a AgentFile,
     names: Vec<String>,
     kind: Box<dyn RobotKind>,
     read: RobotRead,
     law: KeyedLaw,
+    /// What it states of its own of its reference dynamics, with their key.
+    reference: Option<(&'static str, AgentReferenceTable)>,
+}
+
+impl Population<'_> {
+    /// What the axes of its robots are called.
+    pub(super) fn axis_names(&self) -> Vec<String> {
+        axis_names(&self.read.robot)
+    }
 }
 
 /// All agents, and what else is known about them while a scenario is read.
@@ -60,8 +68,8 @@ pub(super) struct Source<'a> {
     pub(super) end_s: f64,
 }
 
-/// Builds all agents, in the order of the file.
-pub(super) fn agents(source: &Source<'_>, folder: &mut InputFolder, notices: &mut Vec<Notice>) -> Result<Agents, Stop> {
+/// The entries of `[[agents]]` with their robots; there is one at least.
+pub(super) fn populations<'a>(source: &Source<'a>, folder: &mut InputFolder) -> Result<Vec<Population<'a>>, Stop> {
     let Source { file, document, kinds, text, .. } = *source;
     let mut populations: Vec<Population<'_>> = Vec::new();
     let mut seen = HashMap::new();
@@ -86,15 +94,26 @@ pub(super) fn agents(source: &Source<'_>, folder: &mut InputFolder, notices: &mu
             Some(law) => law,
             None => kinds.usual_law(usual_law).map_err(|fault| fault.at(&entry.value.robot.span))?,
         };
-        let population = Population { file: &entry.value, names, kind, read, law };
+        let reference = document.agent_reference(number, kinds)?;
+        let population = Population { file: &entry.value, names, kind, read, law, reference };
         if let Some(first) = populations.first() {
             same_axes(first, &population)?;
         }
         populations.push(population);
     }
+    Ok(populations)
+}
 
-    let counts: Vec<usize> = populations.iter().map(|population| population.names.len()).collect();
-    let of = total as usize;
+/// Builds all agents, in the order of the file.
+pub(super) fn agents(
+    source: &Source<'_>,
+    populations: &[Population<'_>],
+    reference: &Leading,
+    folder: &mut InputFolder,
+    notices: &mut Vec<Notice>,
+) -> Result<Agents, Stop> {
+    let file = source.file;
+    let of = populations.iter().map(|population| population.names.len()).sum();
     let mut read =
         Agents { agents: Vec::with_capacity(of), bodies: Vec::new(), entries: Vec::new(), populations: Vec::new() };
     let mut asked = BTreeSet::new();
@@ -122,7 +141,7 @@ pub(super) fn agents(source: &Source<'_>, folder: &mut InputFolder, notices: &mu
             populations.iter().filter(shares).map(|population| &population.read.robot).collect();
         for index in 0..names.len() {
             let member = Member { population, index, first, of, sharing: &sharing };
-            let (agent, body) = member.read(source, folder, enforce_limits, &mut asked)?;
+            let (agent, body) = member.read(source, reference, folder, enforce_limits, &mut asked)?;
             read.agents.push(agent);
             read.bodies.push(body);
             read.entries.push(number);
@@ -131,8 +150,12 @@ pub(super) fn agents(source: &Source<'_>, folder: &mut InputFolder, notices: &mu
     if let (Some(start), Some(first)) = (&file.start, read.agents.first()) {
         reject_unread(&start.value, &asked, &first.name)?;
     }
-    if let ReferenceFile::Tracking(_) = file.reference.value {
-        spare_roots(file, &mut read.agents, &counts);
+    if reference.read.dynamics.interface().roots == Roots::ByLaw {
+        let stated = populations.iter().map(|population| {
+            let stated = population.reference.as_ref().is_some_and(|(_, own)| own.roots_per_s.is_some());
+            (population.names.len(), stated)
+        });
+        spare_roots(&mut read.agents, stated);
     }
     Ok(read)
 }
@@ -153,19 +176,20 @@ impl Member<'_> {
     fn read(
         &self,
         &Source { file, kinds, end_s, .. }: &Source<'_>,
+        reference: &Leading,
         folder: &mut InputFolder,
         enforce_limits: bool,
         asked: &mut BTreeSet<&'static str>,
     ) -> Result<(AgentSetup, Body), Fault> {
-        let Member { population: Population { file: entry, names, kind, read, law }, index, first, of, sharing } =
-            *self;
+        let Member { population, index, first, of, sharing } = *self;
+        let Population { file: entry, names, kind, read, law, .. } = population;
         let name = &names[index];
         let mut read = read.clone();
         if let Some(spread) = Spread::of(entry, name, index)? {
             kind.spread(&mut read, &spread).map_err(|fault| fault.at(&entry.robot.span))?;
         }
         let RobotRead { robot, body, .. } = read;
-        let Design { roots_per_s, manipulability, free_derivatives } = design(file, entry, name)?;
+        let Design { roots_per_s, manipulability, free_derivatives } = design(reference, population, name)?;
         let place = entry.law.as_ref().or(file.law.as_ref()).map_or(&entry.robot.span, |law| &law.span);
         let law = kinds.build(law, &LawReader { agent: name, robot: &robot, body: &body, sharing });
         let law = law.map_err(|fault| fault.at(place))?;
@@ -265,17 +289,6 @@ struct Design {
     free_derivatives: usize,
 }
 
-/// The agent's own roots, else those of all; not all laws that track need any.
-fn tracked(common: &TrackingFile, own: Option<&TrackingFile>) -> Result<Design, Fault> {
-    let list = own.and_then(|own| own.roots_per_s.as_ref()).or(common.roots_per_s.as_ref());
-    let roots_per_s = match list {
-        None => Vec::new(),
-        Some(list) => roots(list)?,
-    };
-    // Without roots there is z alone.
-    Ok(Design { free_derivatives: roots_per_s.len().max(1), roots_per_s, manipulability: 0.0 })
-}
-
 /// Positive roots, as many as are accepted.
 fn roots(list: &At<Vec<At<f64>>>) -> Result<Vec<f64>, Fault> {
     let roots = filled("roots_per_s", list)?;
@@ -285,43 +298,44 @@ fn roots(list: &At<Vec<At<f64>>>) -> Result<Vec<f64>, Fault> {
     roots.iter().map(|root| positive("roots_per_s", root)).collect()
 }
 
+/// The reference dynamics of all agents, as they were read.
+pub(super) struct Leading {
+    pub(super) key: &'static str,
+    pub(super) read: ReferenceRead,
+    /// Whether agents may state roots of their own.
+    pub(super) own_roots: bool,
+    /// Where they stand.
+    pub(super) span: Range<usize>,
+}
+
 /// The agent's own roots and gain, else those of all.
-fn design(file: &ScenarioFile, entry: &AgentFile, agent: &str) -> Result<Design, Fault> {
-    let own = entry.reference.as_ref();
-    let (common, own) = match (&file.reference.value, own.map(|own| &own.value)) {
-        (ReferenceFile::Consensus(common) | ReferenceFile::PureIntegral(common), None) => (common, None),
-        (ReferenceFile::Consensus(common), Some(AgentReferenceFile::Consensus(own)))
-        | (ReferenceFile::PureIntegral(common), Some(AgentReferenceFile::PureIntegral(own))) => (common, Some(own)),
-        (ReferenceFile::Backstepping(_), None) => {
-            return Ok(Design { roots_per_s: Vec::new(), manipulability: 0.0, free_derivatives: 0 });
-        }
-        (ReferenceFile::Leader(common), None) => {
-            let free_derivatives = if common.design.value == LeaderDesignFile::Continuous { 1 } else { 2 };
-            return Ok(Design { roots_per_s: Vec::new(), manipulability: 0.0, free_derivatives });
-        }
-        (ReferenceFile::Tracking(common), None) => return tracked(common, None),
-        (ReferenceFile::Tracking(common), Some(AgentReferenceFile::Tracking(own))) => {
-            return tracked(common, Some(own));
-        }
-        (common, Some(_)) => {
-            let problem = ScenarioProblem::ReferenceDiffers { agent: agent.to_owned(), common: common.key() };
-            let span = own.map_or(0..0, |own| own.span.clone());
-            return Err(Fault::new(problem).at(&span));
-        }
-    };
-    let list = own.and_then(|own| own.roots_per_s.as_ref()).or(common.roots_per_s.as_ref());
-    let Some(list) = list else {
-        return Err(fault(&file.reference, ScenarioProblem::NoRoots { agent: agent.to_owned() }));
-    };
-    let roots_per_s = roots(list)?;
-    if matches!(file.reference.value, ReferenceFile::PureIntegral(_)) && roots_per_s.len() != 2 {
-        return Err(fault(list, ScenarioProblem::TwoRoots { found: roots_per_s.len() }));
+fn design(reference: &Leading, population: &Population<'_>, agent: &str) -> Result<Design, Fault> {
+    let Leading { key: common, read, own_roots, span } = reference;
+    let interface = read.dynamics.interface();
+    let own = population.reference.as_ref();
+    if let (Some(_), Some(at)) = (own.filter(|(key, _)| key != common), &population.file.reference) {
+        let problem = ScenarioProblem::ReferenceDiffers { agent: agent.to_owned(), common, own_roots: *own_roots };
+        return Err(fault(at, problem));
     }
-    let gain = own.and_then(|own| own.manipulability_gain.as_ref()).or(common.manipulability_gain.as_ref());
-    let manipulability = match gain {
+    let own = own.map(|(_, own)| own);
+    let list = own.and_then(|own| own.roots_per_s.as_ref()).or(read.roots_per_s.as_ref());
+    let roots_per_s = match list {
+        Some(list) => roots(list)?,
+        None if interface.roots == Roots::Every => {
+            return Err(Fault::new(ScenarioProblem::NoRoots { agent: agent.to_owned(), common }).at(span));
+        }
+        None => Vec::new(),
+    };
+    let own_gain = own.and_then(|own| own.manipulability_gain.as_ref());
+    if let (Some(gain), false) = (own_gain, interface.manipulability) {
+        let problem = ValueProblem::UnknownKey { key: "manipulability_gain".into(), allowed: vec!["roots_per_s"] };
+        return Err(fault(gain, problem));
+    }
+    let manipulability = match own_gain.or(read.manipulability_gain.as_ref()) {
         None => 0.0,
         Some(gain) if gain.value == 0.0 => 0.0,
         Some(gain) => positive("manipulability_gain", gain)?,
     };
-    Ok(Design { free_derivatives: roots_per_s.len(), roots_per_s, manipulability })
+    let free_derivatives = read.dynamics.free_derivatives(roots_per_s.len());
+    Ok(Design { free_derivatives, roots_per_s, manipulability })
 }

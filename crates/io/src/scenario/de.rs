@@ -19,7 +19,7 @@ use super::at::AT;
 use super::document::Node;
 use super::edges_file::LIST_OR_CHOICE;
 use super::fault::Fault;
-use super::file::{LAW, ROBOT};
+use super::file::{AGENT_REFERENCE, LAW, REFERENCE, ROBOT};
 use super::kinds::Kinds;
 use super::network_file::{DELAY, SWITCHING};
 use super::value_problem::ValueProblem;
@@ -240,6 +240,10 @@ impl<'de> Deserializer<'de> for ValueDe<'_, '_> {
             self.kind(self.kinds.robot(self), visitor)
         } else if name == LAW {
             self.kind(self.kinds.law(self), visitor)
+        } else if name == REFERENCE {
+            self.kind(self.kinds.reference(self), visitor)
+        } else if name == AGENT_REFERENCE {
+            self.kind(self.kinds.agent_reference(self), visitor)
         } else if name == SWITCHING {
             self.kind(self.kinds.schedule(self), visitor)
         } else if name == DELAY {

@@ -14,7 +14,7 @@ use super::de::ValueDe;
 use super::fault::{Fault, fault};
 use super::file::ScenarioFile;
 use super::kinds::schedules::ScheduleKind;
-use super::kinds::{Kinds, LawKind, RobotKind};
+use super::kinds::{AgentReferenceTable, Kinds, LawKind, ReferenceKind, RobotKind};
 use super::problem::ScenarioProblem;
 use super::value_problem::ValueProblem;
 use crate::SourceText;
@@ -91,6 +91,24 @@ impl<'i> Document<'i> {
         let own = self.entry(entry).and_then(|entry| entry.get_ref().get("law"));
         let law = own.or_else(|| self.root.get_ref().get("law"));
         law.map(|value| kinds.law(ValueDe { value, kinds })).transpose()
+    }
+
+    /// The reference dynamics of all agents.
+    pub(super) fn reference(&self, kinds: &Kinds) -> Result<(&'static str, Box<dyn ReferenceKind>), Fault> {
+        match self.root.get_ref().get("reference") {
+            Some(value) => kinds.reference(ValueDe { value, kinds }),
+            None => Err(Fault::new(ValueProblem::MissingKey { key: "reference" })),
+        }
+    }
+
+    /// What an entry of `[[agents]]` states of its own, under the key of everybody's reference dynamics.
+    pub(super) fn agent_reference(
+        &self,
+        entry: usize,
+        kinds: &Kinds,
+    ) -> Result<Option<(&'static str, AgentReferenceTable)>, Fault> {
+        let own = self.entry(entry).and_then(|entry| entry.get_ref().get("reference"));
+        own.map(|value| kinds.agent_reference(ValueDe { value, kinds }).map(|(key, own)| (key, *own))).transpose()
     }
 
     /// How the phases of the network follow each other, if it says so.

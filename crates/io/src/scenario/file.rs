@@ -10,15 +10,17 @@ use serde::de::{Deserializer, Visitor};
 use super::at::At;
 use super::attitude_file::{AttitudeStartFile, WheelStartFile};
 use super::control_file::ControlFile;
-use super::leader_file::{LeaderFile, LeaderReferenceFile};
+use super::leader_file::LeaderFile;
 use super::network_file::NetworkFile;
 use super::push_file::PushFile;
-use super::systems_file::{TargetFile, TrackingFile};
-use super::values::{Positive, StartValues};
+use super::systems_file::TargetFile;
+use super::values::StartValues;
 
-/// The names under which [`RobotFile`] and [`LawFile`] ask their deserialiser for the key of a kind.
+/// The names under which [`RobotFile`], [`LawFile`], [`ReferenceFile`] and [`AgentReferenceFile`] ask their deserialiser for the key of a kind.
 pub(super) const ROBOT: &str = "$forwardstep::Robot";
 pub(super) const LAW: &str = "$forwardstep::Law";
+pub(super) const REFERENCE: &str = "$forwardstep::Reference";
+pub(super) const AGENT_REFERENCE: &str = "$forwardstep::AgentReference";
 
 /// A forwardstep scenario: a network of robots, how they are controlled, and how long to watch them.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -110,6 +112,20 @@ pub struct LawFile {
     pub key: String,
 }
 
+/// The reference dynamics of all agents: the key of a kind, whose table stays in the tree of the file.
+#[derive(Clone, Debug)]
+pub struct ReferenceFile {
+    /// The key.
+    pub key: String,
+}
+
+/// What an agent states of its own: the key of everybody's reference dynamics, whose table stays in the tree of the file.
+#[derive(Clone, Debug)]
+pub struct AgentReferenceFile {
+    /// The key.
+    pub key: String,
+}
+
 /// Implements what a choice of a kind needs: its key goes through serde, its table stays where it is, and the schema is
 /// filled in by the list of kinds.
 macro_rules! kind {
@@ -136,6 +152,8 @@ pub(super) use kind;
 
 kind!(RobotFile, ROBOT, "RobotFile");
 kind!(LawFile, LAW, "LawFile");
+kind!(ReferenceFile, REFERENCE, "ReferenceFile");
+kind!(AgentReferenceFile, AGENT_REFERENCE, "AgentReferenceFile");
 
 pub(super) struct KeyVisitor;
 
@@ -204,91 +222,6 @@ pub struct ReferenceStartFile {
     /// Its first, second, … derivative, at most one fewer than the order has. Default: zero.
     #[serde(default)]
     pub derivatives: Vec<At<StartValues>>,
-}
-
-/// The reference dynamics of all agents.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum ReferenceFile {
-    /// Agreement on a position: the designs (aa10), (a1), (a5) and (24) of the paper.
-    Consensus(ConsensusFile),
-    /// Agreement over a fixed graph: (3) of the paper or, when only positions are exchanged, (23); two roots.
-    PureIntegral(ConsensusFile),
-    /// The baseline (aa6) that differentiates what it hears; positions are exchanged.
-    Backstepping(BacksteppingFile),
-    /// Everybody follows a leader that only some hear: (110), (119) or (122) of the paper.
-    Leader(LeaderReferenceFile),
-    /// No agreement: every agent follows a target of its own.
-    Tracking(TrackingFile),
-}
-
-impl ReferenceFile {
-    /// The key that it has in a file.
-    pub(super) fn key(&self) -> &'static str {
-        match self {
-            ReferenceFile::Consensus(_) => "consensus",
-            ReferenceFile::PureIntegral(_) => "pure_integral",
-            ReferenceFile::Backstepping(_) => "backstepping",
-            ReferenceFile::Leader(_) => "leader",
-            ReferenceFile::Tracking(_) => "tracking",
-        }
-    }
-}
-
-/// Reference dynamics that lead to agreement.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ConsensusFile {
-    /// The positive numbers κ₀, κ₁, … in 1/s; as many as the order of the reference dynamics. Agents may have their own.
-    #[schemars(with = "Option<Vec<Positive>>", length(min = 1, max = 32))]
-    pub roots_per_s: Option<At<Vec<At<f64>>>>,
-    /// What the agents tell each other.
-    pub exchange: At<ExchangeFile>,
-    /// The gain λ of Remark 4, in 1/s to the power of the order: how much the reference gives way to the motion. Default: 0.
-    pub manipulability_gain: Option<At<f64>>,
-}
-
-/// The backstepping baseline.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct BacksteppingFile {
-    /// The time constant of the filter that differentiates.
-    pub filter_s: At<f64>,
-    /// The largest reference acceleration, rad/s² or m/s². Default: none.
-    pub acceleration_limit: Option<At<f64>>,
-}
-
-/// What an agent transmits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ExchangeFile {
-    /// Its position and velocity: (a5), of which (aa10) is order 1 and (a1) order 2.
-    PositionVelocity,
-    /// Its position only: (24).
-    Position,
-}
-
-/// Reference dynamics of one agent; what is exchanged is the same for all.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum AgentReferenceFile {
-    /// Agreement on a position.
-    Consensus(AgentConsensusFile),
-    /// Agreement over a fixed graph.
-    PureIntegral(AgentConsensusFile),
-    /// A target of its own.
-    Tracking(TrackingFile),
-}
-
-/// Reference dynamics of one agent.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct AgentConsensusFile {
-    /// The positive numbers κ₀, κ₁, … in 1/s of this agent.
-    #[schemars(with = "Option<Vec<Positive>>", length(min = 1, max = 32))]
-    pub roots_per_s: Option<At<Vec<At<f64>>>>,
-    /// The gain λ of Remark 4 of this agent.
-    pub manipulability_gain: Option<At<f64>>,
 }
 
 /// How to integrate.

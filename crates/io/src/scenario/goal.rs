@@ -1,6 +1,6 @@
 //! What a scenario expects of its run.
 
-use forwardstep_sim::ReferenceKind;
+use forwardstep_sim::ReferenceDynamics;
 
 use super::at::At;
 use super::fault::{Fault, fault, positive};
@@ -38,7 +38,7 @@ impl Goal {
 }
 
 /// Reads a `[goal]` beside these reference dynamics.
-pub(super) fn goal(file: &At<GoalFile>, reference: &ReferenceKind) -> Result<Goal, Fault> {
+pub(super) fn goal(file: &At<GoalFile>, reference: &dyn ReferenceDynamics) -> Result<Goal, Fault> {
     let GoalFile { disagreement_below, error_below, expect } = &file.value;
     if let (Some(_), Some(second)) = (disagreement_below, error_below) {
         return Err(fault(second, ScenarioProblem::TwoGoals));
@@ -51,13 +51,11 @@ pub(super) fn goal(file: &At<GoalFile>, reference: &ReferenceKind) -> Result<Goa
         (_, None) => Err(fault(file, ScenarioProblem::EmptyGoal)),
         (_, Some((key, below))) => {
             let bound = positive(key, below)?;
-            match (key, reference) {
-                ("error_below", ReferenceKind::Tracking | ReferenceKind::Following(_)) => Ok(Goal::ErrorBelow(bound)),
-                ("error_below", _) => Err(fault(below, ScenarioProblem::NothingTracked)),
-                (_, ReferenceKind::Tracking | ReferenceKind::Following(_)) => {
-                    Err(fault(below, ScenarioProblem::NothingAgreed))
-                }
-                _ => Ok(Goal::DisagreementBelow(bound)),
+            match (key, reference.interface().family.is_followed()) {
+                ("error_below", true) => Ok(Goal::ErrorBelow(bound)),
+                ("error_below", false) => Err(fault(below, ScenarioProblem::NothingTracked)),
+                (_, true) => Err(fault(below, ScenarioProblem::NothingAgreed)),
+                (_, false) => Ok(Goal::DisagreementBelow(bound)),
             }
         }
     }

@@ -50,7 +50,6 @@ mod gains;
 mod goal;
 pub(crate) mod inputs;
 pub mod kinds;
-mod leader;
 pub mod leader_file;
 mod links;
 pub mod links_file;
@@ -81,12 +80,10 @@ mod value_problem;
 pub mod values;
 
 use std::fmt;
-use std::sync::Arc;
 
 use forwardstep_sim::leader::Following;
 use forwardstep_sim::{
-    ATOL, AgentSetup, Exchange, Method, Network, RTOL, ReferenceKind, Setup, Solver, TimeSpan, recorded_columns,
-    validate,
+    ATOL, AgentSetup, Method, Network, RTOL, ReferenceFamily, Setup, Solver, TimeSpan, recorded_columns, validate,
 };
 use miette::Diagnostic;
 
@@ -106,12 +103,13 @@ pub use value_problem::ValueProblem;
 
 use crate::urdf::UrdfProblem;
 use crate::{InputError, SourceText};
+use agents::Leading;
 use at::At;
 use document::Document;
 use fault::{Fault, fault, positive_count};
-use file::{AdaptiveMethodFile, ConsensusFile, ExchangeFile, MethodFile, ReferenceFile, SolverFile};
+use file::{AdaptiveMethodFile, MethodFile, ScenarioFile, SolverFile};
 use inputs::InputFolder;
-use kinds::Kinds;
+use kinds::{Kinds, ReferenceReader};
 use robots::Stop;
 
 /// The format of scenario files.
@@ -213,13 +211,15 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
     let time = TimeSpan { end_s, record_every_s };
     document.checked(time.check())?;
     let from = agents::Source { file: &file, document: &document, kinds, text: source, end_s };
-    let mut read = agents::agents(&from, &mut folder, &mut notices)?;
+    let populations = agents::populations(&from, &mut folder)?;
+    let axes = populations.first().map_or_else(Vec::new, |population| population.axis_names());
+    let leading = reference(&file, (&document, kinds), &axes, &mut folder)?;
+    let mut read = agents::agents(&from, &populations, &leading, &mut folder, &mut notices)?;
     pushes::pushes(&file.external_wrenches, &mut read, end_s, source, &mut folder, &mut notices)?;
     let agents = read.agents;
     let mut names: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
-    let axes: Vec<String> = agents.first().map_or_else(Vec::new, |agent| agents::axis_names(&agent.robot));
-    let following = leader::following(&file, &axes, end_s, &mut folder)?;
-    if let (Some(following), Some(place)) = (&following, &file.leader) {
+    let dynamics = leading.read.dynamics;
+    if let (Some(following), Some(place)) = (dynamics.downcast::<Following>(), &file.leader) {
         let name = following.leader.name.clone();
         if names.contains(&name) {
             let first_line = file.agents.span.start;
@@ -228,22 +228,22 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
         }
         names.push(name);
     }
-    let (reference, exchange) = reference(&file.reference.value, following)?;
     let vertices = (&names[..], agents.len());
     let network = match &file.network {
         Some(network) => {
             network::network(&network.value, (&document, kinds), vertices, end_s, source, &mut folder, &mut notices)
                 .map_err(|fault| fault.at(&network.span))?
         }
-        None if reference == ReferenceKind::Tracking => Network::silent(names.len()),
+        None if dynamics.interface().family == ReferenceFamily::Target => Network::silent(names.len()),
         None => return Err(fault(&file.reference, NetworkProblem::Missing).into()),
     };
     let control = file.control.as_ref().map(|file| control::control(file, axes.len())).transpose()?;
+    let (reference, exchange) = (dynamics, leading.read.exchange);
     let setup = Setup { agents, reference, exchange, network, time, solver: solver(file.solver.as_ref())?, control };
     notices.extend(Notice::coarse_sampling(&setup));
     notices.extend(Notice::targets_beyond_limits(&setup));
     let batched = |agent: &AgentSetup| agent.interface().is_some_and(|interface| interface.in_batches);
-    let agrees = setup.reference != ReferenceKind::Tracking && setup.following().is_none();
+    let agrees = !setup.reference.interface().family.is_followed();
     let refused = |error| document.refused(&setup, &read.entries, error);
     let columns = if agrees && setup.agents.iter().all(batched) {
         validate(&setup).map_err(refused)?;
@@ -252,7 +252,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
         recorded_columns(&setup).map_err(refused)?.len()
     };
     recording_fits(&setup, columns, file.time.record_every_s.as_ref().unwrap_or(&file.time.end_s))?;
-    let goal = file.goal.as_ref().map(|file| goal::goal(file, &setup.reference)).transpose()?;
+    let goal = file.goal.as_ref().map(|file| goal::goal(file, &*setup.reference)).transpose()?;
     Ok(Scenario {
         name: name.to_owned(),
         source: source.clone(),
@@ -264,27 +264,19 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
     })
 }
 
-/// What produces the reference velocities, and what is exchanged for it.
-fn reference(file: &ReferenceFile, following: Option<Arc<Following>>) -> Result<(ReferenceKind, Exchange), Fault> {
-    if let Some(following) = following {
-        return Ok((ReferenceKind::Following(following), Exchange::PositionVelocity));
-    }
-    let exchange = |file: &ConsensusFile| match file.exchange.value {
-        ExchangeFile::Position => Exchange::Position,
-        ExchangeFile::PositionVelocity => Exchange::PositionVelocity,
-    };
-    Ok(match file {
-        ReferenceFile::Consensus(file) => (ReferenceKind::Consensus, exchange(file)),
-        ReferenceFile::PureIntegral(file) => (ReferenceKind::PureIntegral, exchange(file)),
-        ReferenceFile::Backstepping(file) => {
-            let acceleration_limit = file.acceleration_limit.as_ref().map(|limit| limit.value);
-            let kind = ReferenceKind::Backstepping { filter_s: file.filter_s.value, acceleration_limit };
-            (kind, Exchange::Position)
-        }
-        // A leader's reference has been read by now.
-        ReferenceFile::Leader(_) => return Err(Fault::new(SystemProblem::NoLeader)),
-        ReferenceFile::Tracking(_) => (ReferenceKind::Tracking, Exchange::Position),
-    })
+/// What produces the reference velocities of agents with these axes, and what is exchanged for it.
+fn reference(
+    file: &ScenarioFile,
+    (document, kinds): (&Document<'_>, &Kinds),
+    axes: &[String],
+    folder: &mut InputFolder,
+) -> Result<Leading, Fault> {
+    let span = &file.reference.span;
+    let (key, kind) = document.reference(kinds)?;
+    let mut reader = ReferenceReader::new(file, axes, file.time.end_s.value, folder);
+    let read = kind.read(&mut reader).map_err(|fault| fault.at(span))?;
+    reader.refuse_unused(key)?;
+    Ok(Leading { key, read, own_roots: kinds.agents_may_state(key), span: span.clone() })
 }
 
 fn solver(file: Option<&SolverFile>) -> Result<Solver, Fault> {

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use forwardstep_check::{SampledDamping, sampled_damping};
-use forwardstep_sim::{AgentSetup, Axis, ReferenceKind, Setup};
+use forwardstep_sim::{AgentSetup, Axis, Setup};
 
 use crate::urdf;
 use crate::wording::{about, enumerate, number};
@@ -77,8 +77,7 @@ impl Notice {
     pub(super) fn targets_beyond_limits(setup: &Setup) -> Vec<Notice> {
         let end_s = setup.time.end_s;
         let beyond = |agent: &AgentSetup| -> Vec<Notice> {
-            let follows = setup.reference == ReferenceKind::Tracking
-                && agent.interface().is_some_and(|law| law.coordinates.is_none());
+            let follows = setup.tracks() && agent.interface().is_some_and(|law| law.coordinates.is_none());
             let Some(target) = agent.target.as_ref().filter(|_| follows) else { return Vec::new() };
             let mut jets = vec![[0.0; 5]; target.axes()];
             let mut first = vec![None; target.axes()];

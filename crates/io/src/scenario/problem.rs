@@ -116,6 +116,8 @@ pub enum ScenarioProblem {
     NoRoots {
         /// The agent.
         agent: String,
+        /// The key of the reference dynamics.
+        common: &'static str,
     },
     /// An agent's reference dynamics are of another kind than everybody's.
     #[error("`{agent}` cannot have reference dynamics of its own kind; those of all are `{common}`")]
@@ -124,12 +126,8 @@ pub enum ScenarioProblem {
         agent: String,
         /// The key of everybody's.
         common: &'static str,
-    },
-    /// A design of order two with another number of roots.
-    #[error("`roots_per_s` has {}, but `pure_integral` takes 2 of them", entry_count(*.found))]
-    TwoRoots {
-        /// How many there are.
-        found: usize,
+        /// Whether an agent may state anything under it.
+        own_roots: bool,
     },
     /// More derivatives than the reference dynamics have.
     #[error("`derivatives` has {}, but the reference of `{agent}` is of order {order}", entry_count(*.found))]
@@ -229,15 +227,14 @@ impl Problem for ScenarioProblem {
                 "some body has an inertia that no body can have; correct it, or let `relative` be smaller".into()
             }
             ScenarioProblem::Unit { any, .. } => format!("`{any}` takes rad or m as each axis has it"),
-            ScenarioProblem::NoRoots { .. } => {
-                "add `roots_per_s` to [reference.consensus], or `reference.consensus.roots_per_s` to the agent".into()
+            ScenarioProblem::NoRoots { common, .. } => {
+                format!("add `roots_per_s` to [reference.{common}], or `reference.{common}.roots_per_s` to the agent")
             }
-            ScenarioProblem::ReferenceDiffers { common, .. } => match *common {
-                "backstepping" => "remove it: the baseline has nothing that an agent could have of its own".into(),
-                common => format!("an agent may have `reference.{common}` with roots and a gain of its own"),
-            },
-            ScenarioProblem::TwoRoots { .. } => {
-                "(3) and (23) are of order two; other orders are `reference.consensus`".into()
+            ScenarioProblem::ReferenceDiffers { own_roots: false, .. } => {
+                "remove it: these dynamics have nothing that an agent could have of its own".into()
+            }
+            ScenarioProblem::ReferenceDiffers { common, .. } => {
+                format!("an agent may have `reference.{common}` with roots and a gain of its own")
             }
             ScenarioProblem::Derivatives { .. } => "an order of l has the derivatives 1 to l − 1".into(),
             ScenarioProblem::NoSuchAgent { name, agents } => choose(name, "the agents are", agents),

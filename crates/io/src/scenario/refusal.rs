@@ -72,7 +72,7 @@ pub(super) fn advice(error: &SetupError) -> Option<String> {
         }
         SetupError::OrderTooLow { least, .. } => format!("give it {least} roots or more"),
         SetupError::RootCount { error, .. } => {
-            format!("this law takes {} roots; an agent may have `reference` with roots of its own", error.need)
+            format!("give it {} roots; an agent may have `reference` with roots of its own", error.need)
         }
         SetupError::TorqueLimitCount { error, .. } if error.need > 0 => {
             "a single number stands for all axes".to_owned()

@@ -6,16 +6,6 @@ use serde::Deserialize;
 
 use super::at::At;
 use super::push_file::FunctionFile;
-use super::values::Positive;
-
-/// Every agent follows a target of its own.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct TrackingFile {
-    /// The positive numbers κ₀, κ₁, … in 1/s of reference dynamics that have roots: three for the law without velocity.
-    #[schemars(with = "Option<Vec<Positive>>", length(min = 1, max = 32))]
-    pub roots_per_s: Option<At<Vec<At<f64>>>>,
-}
 
 /// Where an agent should be over time; among agents that agree, its offset from where all of them are.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]

@@ -112,7 +112,7 @@ const DERIVATIVES_CASES: &[Case] = &[
     ("exchange = \"position\"", "exchange = \"position\"\nmanipulability_gain = 1",
         "test.toml:13:23: agent `chain-1`: immersion and invariance has no manipulability gain, but 1 is given", "leave `manipulability_gain` out"),
     ("[reference.consensus]", "[reference.pure_integral]",
-        "test.toml:11:15: `roots_per_s` has 3 entries, but `pure_integral` takes 2 of them", "(3) and (23) are of order two; other orders are `reference.consensus`"),
+        "test.toml:11:15: agent `chain-1`: the list of roots has 3 entries where 2 are needed", "give it 2 roots; an agent may have `reference` with roots of its own"),
     ("[reference.consensus]\nroots_per_s = [1, 2, 1.5]\nexchange = \"position\"", "[reference.tracking]\nroots_per_s = [1, 2, 1.5]",
         "test.toml:21:1: a nonlinear coupling goes with consensus by positions only", "write `exchange = \"position\"` in `reference.consensus`, or leave `coupling` out"),
     ("gain_per_s = 3", "gain_per_s = 0",

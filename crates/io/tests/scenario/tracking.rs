@@ -1,7 +1,8 @@
 //! Targets and laws without velocity: what is read, and what every mistake gets.
 
 use forwardstep_io::scenario::Goal;
-use forwardstep_sim::{PositionOnlyLaw, ReferenceKind};
+use forwardstep_sim::PositionOnlyLaw;
+use forwardstep_sim::reference::Tracking;
 
 use super::{Case, read, refused};
 
@@ -43,7 +44,7 @@ const CASES: &[Case] = &[
     ("target.formulas", "target.formula",
         "test.toml:7:8: unknown choice `formula`", "did you mean `formulas`?"),
     ("[1.0, 1.5, 2.0]", "[1.0, 1.5]",
-        "test.toml:10:15: agent `mass`: the list of roots has 2 entries where 3 are needed", "this law takes 3 roots"),
+        "test.toml:10:15: agent `mass`: the list of roots has 2 entries where 3 are needed", "give it 3 roots"),
     ("[1.0, 1.5, 2.0]", "[1.0, -1.5, 2.0]",
         "test.toml:10:21: `roots_per_s` is -1.5, but must be positive", ""),
     ("damping = 20", "damping = 0",
@@ -94,7 +95,7 @@ fn a_robot_tracks_and_targets_beyond_its_limits_are_noted() {
 fn a_target_and_its_law_are_read() {
     let scenario = read(SOUND).unwrap();
     let agent = &scenario.setup.agents[0];
-    assert_eq!(scenario.setup.reference, ReferenceKind::Tracking);
+    assert!(scenario.setup.reference.is::<Tracking>());
     assert_eq!(scenario.goal, Some(Goal::ErrorBelow(1e-3)));
     let law = PositionOnlyLaw { damping: 20.0, filter_per_s: 10.0, adaptation: 5.0, estimate_start: 0.0 };
     assert_eq!(agent.law.downcast(), Some(&law));

@@ -1,6 +1,7 @@
 //! Synthetic runs in closed form, of any shape.
 #![allow(dead_code, unreachable_pub, reason = "shared by several test programs")]
 
+use forwardstep_sim::reference::Consensus;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -15,8 +16,8 @@ use forwardstep_sim::graph::Edge;
 use forwardstep_sim::recording::{Column, Statistics};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Axis, AxisUnit, Ending, Exchange, Method, Network, Outcome, Recording, ReferenceKind,
-    RobotSetup, Setup, Signal, Solver, Start, TimeSpan,
+    Adaptive, AgentSetup, Axis, AxisUnit, Ending, Exchange, Method, Network, Outcome, Recording, RobotSetup, Setup,
+    Signal, Solver, Start, TimeSpan,
 };
 
 /// One agent with `dof` axes and `parameters` estimated parameters.
@@ -65,7 +66,7 @@ pub fn setup(agents: Vec<AgentSetup>, end_s: f64, record_every_s: f64) -> Setup 
     let phases = [ring(0), ring(1), back].into_iter().map(|edges| Phase { edges, dwell_s: end_s / 20.0 });
     Setup {
         agents,
-        reference: ReferenceKind::Consensus,
+        reference: Arc::new(Consensus),
         exchange: Exchange::PositionVelocity,
         network: Network {
             agents: count,

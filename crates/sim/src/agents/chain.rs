@@ -11,8 +11,9 @@ use forwardstep_core::reference::{Consensus, Position, polynomial};
 
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
-use crate::setup::{ReferenceKind, RobotSetup};
-use crate::system::{Attachments, Interface, Known, Law, LawWords, ReferenceFamily, Robot, RobotInterface};
+use crate::reference::ReferenceFamily;
+use crate::setup::RobotSetup;
+use crate::system::{Attachments, Interface, Known, Law, LawWords, Robot, RobotInterface};
 
 /// What a chain is made of; its true θ stands with the robot.
 #[derive(Clone, Debug)]
@@ -218,14 +219,14 @@ fn derivatives(assembly: &Assembly<'_>, terms: &Formulas) -> Chain<Formulas> {
 fn guide(assembly: &Assembly<'_>) -> Result<Guide, SetupError> {
     let own = assembly.agent();
     let roots = |error| SetupError::Roots { agent: own.name.clone(), error };
-    match assembly.setup().reference {
-        ReferenceKind::Tracking => {
+    match assembly.setup().reference.interface().family {
+        ReferenceFamily::Target => {
             let mut alpha = polynomial(&own.roots_per_s).map_err(roots)?;
             // The leading one is not listed.
             alpha.pop();
             Ok(Guide::Tracking { alpha })
         }
-        ReferenceKind::Consensus => {
+        ReferenceFamily::Consensus => {
             Ok(Guide::Consensus(Consensus::<Position>::new([(&own.roots_per_s[..], 0.0)]).map_err(roots)?))
         }
         _ => Err(assembly.wrong_reference()),

@@ -8,10 +8,9 @@ use forwardstep_core::{Gain, Lanes, LengthError};
 
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::probe::{Probe, properties};
-use crate::setup::{AgentSetup, Exchange, ReferenceKind, RobotSetup};
-use crate::system::{
-    Attachments, Interface, Known as Knowledge, Law, LawWords, ReferenceFamily, Robot, RobotInterface,
-};
+use crate::reference::ReferenceFamily;
+use crate::setup::{AgentSetup, Exchange, RobotSetup};
+use crate::system::{Attachments, Interface, Known as Knowledge, Law, LawWords, Robot, RobotInterface};
 
 /// A robot model whose kernels work on one robot or on eight at once.
 pub trait RobotModel: Robot + Clone {
@@ -66,10 +65,7 @@ impl<M: RobotModel> LagrangianRobot for M {
     }
 
     fn batch(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
-        match assembly.setup().reference {
-            ReferenceKind::Tracking => assembly.tracking(self),
-            _ => assembly.lagrangian(self),
-        }
+        if assembly.setup().tracks() { assembly.tracking(self) } else { assembly.lagrangian(self) }
     }
 
     fn dynamics_at_start(&self, agent: &AgentSetup, dz: f64) -> Result<DynamicsAt, LengthError> {
@@ -189,6 +185,7 @@ fn interface(robot: &RobotSetup, estimates: bool) -> Option<Interface> {
             ReferenceFamily::Backstepping,
             ReferenceFamily::Leader,
             ReferenceFamily::Target,
+            ReferenceFamily::Own,
         ],
         measures_velocity: true,
         manipulability: true,

@@ -6,8 +6,9 @@ use forwardstep_core::reference::{Consensus, Position, polynomial};
 use forwardstep_core::robot::PointMass;
 
 use crate::closed_loop::{Assembly, Block, SetupError};
-use crate::setup::{ReferenceKind, RobotSetup};
-use crate::system::{Interface, Known, Law, LawWords, ReferenceFamily};
+use crate::reference::ReferenceFamily;
+use crate::setup::RobotSetup;
+use crate::system::{Interface, Known, Law, LawWords};
 
 /// (a8) for a point mass, without velocity; see [`PositionOnly`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,18 +60,18 @@ impl Law for PositionOnlyLaw {
 fn guide(assembly: &Assembly<'_>) -> Result<Guide, SetupError> {
     let own = assembly.agent();
     let roots = |error| SetupError::Roots { agent: own.name.clone(), error };
-    match assembly.setup().reference {
-        ReferenceKind::Tracking => {
+    match assembly.setup().reference.interface().family {
+        ReferenceFamily::Target => {
             assembly.root_count(3)?;
             let mut alpha = polynomial(&own.roots_per_s).map_err(roots)?;
             // The leading one is not listed.
             alpha.pop();
             Ok(Guide::Tracking { alpha })
         }
-        ReferenceKind::Consensus if own.roots_per_s.len() < 2 => {
+        ReferenceFamily::Consensus if own.roots_per_s.len() < 2 => {
             Err(SetupError::OrderTooLow { agent: own.name.clone(), order: own.roots_per_s.len(), least: 2 })
         }
-        ReferenceKind::Consensus => {
+        ReferenceFamily::Consensus => {
             Ok(Guide::Consensus(Consensus::<Position>::new([(&own.roots_per_s[..], 0.0)]).map_err(roots)?))
         }
         _ => Err(assembly.wrong_reference()),

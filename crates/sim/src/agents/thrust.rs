@@ -7,8 +7,9 @@ use super::rotorcraft::{self, RotorcraftModel};
 use super::vehicle::{self, VehicleModel};
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::recording::Signal;
+use crate::reference::ReferenceFamily;
 use crate::setup::RobotSetup;
-use crate::system::{Interface, Known, Law, LawWords, Line, LineValue, ReferenceFamily};
+use crate::system::{Interface, Known, Law, LawWords, Line, LineValue};
 
 /// The control of a vehicle or a rotorcraft; its roots are those of its agent.
 #[derive(Clone, Copy, Debug, PartialEq)]

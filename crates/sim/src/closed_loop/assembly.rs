@@ -14,7 +14,7 @@ use super::solo::{Solo, Target};
 use super::valid::too_many;
 use crate::agents::{Adaptive, RobotModel};
 use crate::recording::Signal;
-use crate::setup::{AgentSetup, Axis, ReferenceKind, Setup};
+use crate::setup::{AgentSetup, Axis, Setup};
 use crate::system::{LawWords, Robot};
 use crate::trajectory::Pieces;
 
@@ -135,7 +135,7 @@ impl<'a> Assembly<'a> {
     /// # Errors
     /// [`SetupError`] when the agents have no meaning.
     pub fn lagrangian<M: RobotModel>(&self, model: &M) -> Result<Block, SetupError> {
-        members::batch(model, self.setup, self.agents).map(Block)
+        members::batch(model, self).map(Block)
     }
 
     /// A robot of Section II-B that follows a target of its own, one agent by itself.
@@ -173,7 +173,7 @@ impl<'a> Assembly<'a> {
         if start.reference.len() > vectors {
             return Err(too_many(own, vectors, start.reference.len()));
         }
-        let is_offset = setup.reference != ReferenceKind::Tracking;
+        let is_offset = !setup.tracks();
         let target = match &own.target {
             None => None,
             Some(trajectory) => {

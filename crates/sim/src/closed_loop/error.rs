@@ -12,8 +12,8 @@ use thiserror::Error;
 use crate::network::NetworkError;
 use crate::push::PushError;
 use crate::quantity::{Path, QuantityError};
-use crate::setup::{AgentSetup, ReferenceKind, Setup, Solver};
-use crate::system::ReferenceFamily;
+use crate::reference::ReferenceFamily;
+use crate::setup::{AgentSetup, Exchange, Setup, Solver};
 use crate::trajectory::TrajectoryError;
 
 /// Why a setup cannot be simulated.
@@ -127,8 +127,27 @@ pub enum SetupError {
     #[error(transparent)]
     Backstepping(#[from] BacksteppingError),
     /// The reference dynamics do not go with what is exchanged.
-    #[error("the backstepping baseline exchanges positions only")]
-    BacksteppingExchange,
+    #[error("{reference} does not go with agents that exchange {}", exchange.words().join(" and "))]
+    ReferenceExchange {
+        /// They, in words.
+        reference: &'static str,
+        /// What is exchanged.
+        exchange: Exchange,
+    },
+    /// Reference dynamics from outside that are not made for their agents.
+    #[error("{reference}: {error}")]
+    ReferenceShape {
+        /// They, in words.
+        reference: &'static str,
+        /// How many there are, and how many there must be.
+        error: LengthError,
+    },
+    /// Reference dynamics from outside with a set-valued sign.
+    #[error("{reference} has a set-valued sign, which is settled for followers of a leader only")]
+    SignWithoutLeader {
+        /// They, in words.
+        reference: &'static str,
+    },
     /// A gain of one agent.
     #[error("agent `{agent}`: {gain}: {error}")]
     Gain {
@@ -250,9 +269,6 @@ pub enum SetupError {
         /// The leader.
         leader: String,
     },
-    /// Following a leader takes velocities.
-    #[error("following a leader exchanges positions and velocities")]
-    FollowingExchange,
     /// q̈ or ż would have to be remembered.
     #[error(
         "a link has a delay of up to {delay_s} s, but accelerations are transmitted at once in continuous time; take the \
@@ -370,14 +386,9 @@ impl SetupError {
             Some(index) => Path::from("agents").index(index),
             None => Path::from("leader"),
         };
-        let reference = match setup.reference.family() {
-            ReferenceFamily::Consensus => "reference.consensus",
-            ReferenceFamily::PureIntegral => "reference.pure_integral",
-            ReferenceFamily::Backstepping => "reference.backstepping",
-            ReferenceFamily::Leader => "reference.leader",
-            ReferenceFamily::Target => "reference.tracking",
-        };
-        let roots = |agent| of(agent).key(reference).key("roots_per_s");
+        let reference = || Path::from("reference").key(setup.reference.words().key);
+        let own = |agent| of(agent).key("reference").key(setup.reference.words().key);
+        let roots = |agent| own(agent).key("roots_per_s");
         match self {
             SetupError::Quantity(error) | SetupError::Network(NetworkError::Quantity(error)) => error.path.clone(),
             SetupError::Network(_)
@@ -386,22 +397,21 @@ impl SetupError {
             | SetupError::LeaderHears { .. } => "network".into(),
             SetupError::Coupling => "network.coupling".into(),
             SetupError::NoAgent { .. } => "agents".into(),
-            SetupError::BacksteppingExchange
-            | SetupError::FollowingExchange
+            SetupError::ReferenceExchange { .. }
+            | SetupError::ReferenceShape { .. }
+            | SetupError::SignWithoutLeader { .. }
             | SetupError::OnlyTracks { .. }
             | SetupError::NotTracking { .. }
             | SetupError::ReferenceOfLaw { .. } => "reference".into(),
-            SetupError::Backstepping(BacksteppingError::Filter { .. }) => Path::from(reference).key("filter_s"),
-            SetupError::Backstepping(BacksteppingError::Limit { .. }) => {
-                Path::from(reference).key("acceleration_limit")
-            }
-            SetupError::DelayedDerived { .. } => Path::from(reference).key("design"),
-            SetupError::SendsPositionOnly { .. } => Path::from(reference).key("exchange"),
+            SetupError::Backstepping(BacksteppingError::Filter { .. }) => reference().key("filter_s"),
+            SetupError::Backstepping(BacksteppingError::Limit { .. }) => reference().key("acceleration_limit"),
+            SetupError::DelayedDerived { .. } => reference().key("design"),
+            SetupError::SendsPositionOnly { .. } => reference().key("exchange"),
             SetupError::Roots { agent, .. }
             | SetupError::OrderTooLow { agent, .. }
             | SetupError::RootCount { agent, .. }
             | SetupError::Chain { agent, error: ChainError::Guide(_) } => roots(agent),
-            SetupError::NoManipulability { agent, .. } => of(agent).key(reference).key("manipulability_gain"),
+            SetupError::NoManipulability { agent, .. } => own(agent).key("manipulability_gain"),
             SetupError::StartOfReference { agent, .. } => of(agent).key("start.reference"),
             SetupError::NoTarget { agent } | SetupError::Recipe { agent, .. } => of(agent).key("name"),
             SetupError::Trajectory { agent, .. } | SetupError::NoOffsets { agent, .. } => of(agent).key("target"),
@@ -444,8 +454,8 @@ impl SetupError {
     pub(crate) fn wrong_reference(setup: &Setup, agent: &AgentSetup) -> Self {
         let (name, law) = (agent.name.clone(), agent.law.words().name);
         let only_tracks = agent.interface().is_some_and(|interface| interface.follows == [ReferenceFamily::Target]);
-        match setup.reference {
-            ReferenceKind::Tracking => SetupError::NotTracking { agent: name, law },
+        match setup.reference.interface().family {
+            ReferenceFamily::Target => SetupError::NotTracking { agent: name, law },
             _ if only_tracks => SetupError::OnlyTracks { agent: name, law },
             _ => SetupError::ReferenceOfLaw { agent: name, law },
         }

@@ -6,13 +6,14 @@ use forwardstep_core::reference::{Position, PositionVelocity};
 use forwardstep_core::robot::Lagrangian;
 use forwardstep_core::{Gain, InverseQuadratic, Lanes, LengthError, ResolvedGain};
 
+use super::assembly::Assembly;
 use super::columns::Columns;
 use super::error::SetupError;
 use super::population::Population;
 use super::references::{Transmits, reference};
 use super::robot_batch::Member;
 use crate::agents::{Adaptive, Known, RobotModel};
-use crate::setup::{AgentSetup, Exchange, ReferenceKind, Setup};
+use crate::setup::{AgentSetup, Exchange, Setup};
 use crate::system::LawWords;
 
 /// Batches of at least so many agents are worked on in lanes.
@@ -22,9 +23,8 @@ const LANES_FROM: usize = 3;
 /// agent. Who follows a target of its own stands alone.
 pub(super) fn batches(setup: &Setup) -> Vec<Vec<usize>> {
     let agents = &setup.agents;
-    let in_batches = |agent: &AgentSetup| {
-        setup.reference != ReferenceKind::Tracking && agent.interface().is_some_and(|interface| interface.in_batches)
-    };
+    let in_batches =
+        |agent: &AgentSetup| !setup.tracks() && agent.interface().is_some_and(|interface| interface.in_batches);
     let alike = |a: &AgentSetup, b: &AgentSetup| {
         a.roots_per_s.len() == b.roots_per_s.len()
             && a.law.same_type(&*b.law)
@@ -42,23 +42,24 @@ pub(super) fn batches(setup: &Setup) -> Vec<Vec<usize>> {
 }
 
 /// Robots of one model under (6)–(7), side by side.
-pub(super) fn batch<M: RobotModel>(model: &M, setup: &Setup, group: &[usize]) -> Result<Box<dyn Columns>, SetupError> {
-    match setup.exchange {
-        Exchange::Position => boxed::<M::Kernel, Position>(model.kernel(), setup, group),
-        Exchange::PositionVelocity => boxed::<M::Kernel, PositionVelocity>(model.kernel(), setup, group),
+pub(super) fn batch<M: RobotModel>(model: &M, assembly: &Assembly<'_>) -> Result<Box<dyn Columns>, SetupError> {
+    match assembly.setup().exchange {
+        Exchange::Position => boxed::<M::Kernel, Position>(model.kernel(), assembly),
+        Exchange::PositionVelocity => boxed::<M::Kernel, PositionVelocity>(model.kernel(), assembly),
     }
 }
 
-fn boxed<R, X>(robot: R, setup: &Setup, group: &[usize]) -> Result<Box<dyn Columns>, SetupError>
+fn boxed<R, X>(robot: R, assembly: &Assembly<'_>) -> Result<Box<dyn Columns>, SetupError>
 where
     R: Lagrangian<f64> + Lagrangian<Lanes<8>> + Clone + Send + Sync + 'static,
     X: Transmits,
 {
+    let setup = assembly.setup();
     let mut members = Vec::new();
-    for &agent in group {
+    for &agent in assembly.agents() {
         members.push(member(&robot, &setup.agents[agent], agent)?);
     }
-    let reference = reference::<X>(setup, group)?;
+    let reference = reference::<X>(assembly)?;
     let sampled = setup.control.is_some();
     // What a held torque does is not what the balance balances.
     let balance = setup.solver.balance && !sampled;

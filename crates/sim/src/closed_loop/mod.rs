@@ -9,7 +9,8 @@
 //! - `sampling`: the instants at which they sample and act.
 //! - `pushes`: what acts on the robots from outside.
 //! - `recipes`: from agents to the recipes of their sampled controllers.
-//! - `references`: from agents to reference dynamics.
+//! - `references`: from reference dynamics as data to those that run.
+//! - `probe`, `probe_reference`: what a law and reference dynamics say of themselves, tried.
 //! - `guide`: the leader.
 //! - `sliding`: who sets the set-valued signs in continuous time.
 //! - `members`: from agents to batches.
@@ -28,6 +29,7 @@ mod guide;
 mod members;
 mod population;
 mod probe;
+mod probe_reference;
 mod pushes;
 mod recipes;
 mod references;
@@ -44,5 +46,6 @@ pub use assembly::{Assembly, Block};
 pub use error::{SetupError, VelocityQuantity};
 pub(crate) use members::tracking_law;
 pub use probe::probe_balance;
+pub use probe_reference::probe_reference;
 pub use recipes::{recipe, recipes};
 pub use valid::validate;

@@ -22,6 +22,7 @@ use forwardstep_core::robot::{Lagrangian, TwoVelocity};
 use forwardstep_core::sampled::{Recipe, Sampled, StartState};
 use forwardstep_core::{LengthError, Packed};
 
+use super::assembly::Assembly;
 use super::columns::{Columns, Inputs};
 use super::error::SetupError;
 use super::gain_rates::gain_rates;
@@ -336,7 +337,7 @@ where
         let recipe = |(i, member): (usize, &Member)| {
             let mut state = vec![0.0; (l.balance - l.reference) / l.n];
             take(l.n, i, &x[l.reference..l.balance], &mut state);
-            let reference = reference::<X>(setup, &[member.agent])?;
+            let reference = reference::<X>(&Assembly::new(setup, &[member.agent]))?;
             let theta_hat = if l.adaptive { state[state.len() - l.p..].to_vec() } else { member.theta.clone() };
             let mut recipe = Recipe::lagrangian(self.robots.robot.clone(), reference, member.law.clone(), theta_hat);
             recipe.start = StartState::State(state);

@@ -1,68 +1,54 @@
-//! From agents to reference dynamics. What the agents exchange is a type; which dynamics they have is known at run time
-//! only, and costs one indirect call for a whole population.
+//! From reference dynamics as data to those that run. What the agents exchange is a type; which dynamics they have is known at run
+//! time only, and costs one indirect call for a whole population.
 
 use std::sync::Arc;
 
 use forwardstep_core::reference::{
-    Backstepping, Consensus, Exchange, Following, Heard, Measured, Position, PositionVelocity, PureIntegral, Reference,
-    ReferenceOut, Sliding, SmoothFollowing,
+    Exchange, Heard, Measured, Position, PositionVelocity, Reference, ReferenceOut, Sliding,
 };
 use forwardstep_core::{Kernel, LengthError, dispatch};
 
+use super::assembly::Assembly;
 use super::error::SetupError;
-use crate::leader::FollowingDesign;
-use crate::setup::{ReferenceKind, Setup};
+use crate::reference::Dynamics;
 
 /// Reference dynamics of agents that exchange `X`.
 pub(crate) type AnyReference<X> = Arc<dyn Reference<Exchange = X>>;
 
-/// What can be exchanged, with the dynamics that exist for this exchange alone.
+/// What can be exchanged.
 pub(crate) trait Transmits: Exchange {
-    /// They for `agents` agents, if there are any of this kind.
-    fn own(kind: &ReferenceKind, agents: usize) -> Result<Option<AnyReference<Self>>, SetupError>;
+    /// The dynamics, if their agents exchange this.
+    fn of(dynamics: Dynamics) -> Option<AnyReference<Self>>;
 }
 
 impl Transmits for Position {
-    fn own(kind: &ReferenceKind, agents: usize) -> Result<Option<AnyReference<Self>>, SetupError> {
-        let ReferenceKind::Backstepping { filter_s, acceleration_limit } = kind else { return Ok(None) };
-        let limit = acceleration_limit.unwrap_or(f64::INFINITY);
-        Ok(Some(shared(Backstepping::new((0..agents).map(|_| (*filter_s, limit)))?)))
+    fn of(dynamics: Dynamics) -> Option<AnyReference<Self>> {
+        if let Dynamics::Position(reference) = dynamics { Some(reference) } else { None }
     }
 }
 
 impl Transmits for PositionVelocity {
-    fn own(kind: &ReferenceKind, agents: usize) -> Result<Option<AnyReference<Self>>, SetupError> {
-        let ReferenceKind::Following(following) = kind else { return Ok(None) };
-        let sliding = following.sliding();
-        Ok(Some(match following.design {
-            FollowingDesign::Continuous => shared(Following::new(agents, sliding)),
-            FollowingDesign::Swarm { coupling } => shared(SmoothFollowing::swarm(agents, sliding, coupling)),
-            _ => shared(SmoothFollowing::new(agents, sliding)),
-        }))
+    fn of(dynamics: Dynamics) -> Option<AnyReference<Self>> {
+        if let Dynamics::PositionVelocity(reference) = dynamics { Some(reference) } else { None }
     }
 }
 
-/// The reference dynamics of the agents in `group`.
-pub(super) fn reference<X: Transmits>(setup: &Setup, group: &[usize]) -> Result<AnyReference<X>, SetupError> {
-    let design = |agent: usize| (&setup.agents[agent].roots_per_s[..], setup.agents[agent].manipulability);
-    let designs = || group.iter().map(|&agent| design(agent));
-    let first = &setup.agents[group[0]];
-    let roots = |agent: usize| move |error| SetupError::Roots { agent: setup.agents[agent].name.clone(), error };
-    if let ReferenceKind::Consensus | ReferenceKind::PureIntegral = setup.reference {
-        // Every agent's own design first, so that the one to blame is named.
-        for &agent in group {
-            Consensus::<X>::new([design(agent)]).map_err(roots(agent))?;
-        }
+/// The reference dynamics of the agents of `assembly`.
+pub(super) fn reference<X: Transmits>(assembly: &Assembly<'_>) -> Result<AnyReference<X>, SetupError> {
+    let setup = assembly.setup();
+    let name = setup.reference.words().name;
+    let reference = X::of(setup.reference.dynamics(assembly)?)
+        .ok_or(SetupError::ReferenceExchange { reference: name, exchange: setup.exchange })?;
+    let length = |what, need, got| {
+        LengthError::check(what, need, got).map_err(|error| SetupError::ReferenceShape { reference: name, error })
+    };
+    length("agents", assembly.agents().len(), reference.agents())?;
+    let (blocks, derivatives) = (reference.vectors(), reference.derivatives());
+    length("derivatives of z in the state", derivatives.min(blocks), derivatives)?;
+    if reference.sliding().is_some() && setup.following().is_none() {
+        return Err(SetupError::SignWithoutLeader { reference: name });
     }
-    match &setup.reference {
-        ReferenceKind::Consensus => Ok(shared(Consensus::<X>::new(designs()).map_err(roots(group[0]))?)),
-        ReferenceKind::PureIntegral => Ok(shared(PureIntegral::<X>::new(designs()).map_err(roots(group[0]))?)),
-        kind => X::own(kind, group.len())?.ok_or_else(|| SetupError::wrong_reference(setup, first)),
-    }
-}
-
-fn shared<F: Reference>(reference: F) -> AnyReference<F::Exchange> {
-    Arc::new(Dispatched(reference))
+    Ok(Arc::new(Dispatched(reference)))
 }
 
 /// Reference dynamics whose right-hand side is compiled for every instruction set, as nothing can be inlined into it from

@@ -3,8 +3,9 @@
 use forwardstep_core::LengthError;
 
 use super::error::{SetupError, VelocityQuantity};
-use crate::setup::{AgentSetup, Control, ReferenceKind, Setup, VelocitySensor};
-use crate::system::{ActuatorLimits, Interface, ReferenceFamily};
+use crate::reference::{ReferenceFamily, ReferenceInterface, Roots};
+use crate::setup::{AgentSetup, Control, Setup, VelocitySensor};
+use crate::system::{ActuatorLimits, Interface};
 
 /// Everything about the whole setup.
 pub(super) fn of_setup(setup: &Setup) -> Result<(), SetupError> {
@@ -12,7 +13,7 @@ pub(super) fn of_setup(setup: &Setup) -> Result<(), SetupError> {
     let tracks = |agent: &AgentSetup| {
         agent.interface().is_some_and(|interface| interface.follows.contains(&ReferenceFamily::Target))
     };
-    if setup.reference == ReferenceKind::Tracking && setup.agents.iter().all(tracks) {
+    if setup.tracks() && setup.agents.iter().all(tracks) {
         let edges = setup.network.schedule.graphs.iter().map(Vec::len).sum();
         if edges > 0 {
             return Err(SetupError::UnusedEdges { edges });
@@ -54,25 +55,21 @@ pub(super) fn of_agent(setup: &Setup, own: &AgentSetup, interface: &Interface) -
 /// λ is read by (3), (23), (a5) and (24) beside laws that measure q̇: it multiplies q̇ − z. Where q̇ is not measured there is no
 /// such number to multiply.
 fn manipulability(setup: &Setup, own: &AgentSetup, interface: &Interface) -> Result<(), SetupError> {
-    let without = match setup.reference {
+    let without = match setup.reference.interface() {
+        _ if own.manipulability == 0.0 => return Ok(()),
         _ if !interface.manipulability => own.law.words().name,
-        ReferenceKind::Consensus | ReferenceKind::PureIntegral => return Ok(()),
-        ReferenceKind::Backstepping { .. } => "the backstepping baseline",
-        ReferenceKind::Following(_) => "following a leader",
-        ReferenceKind::Tracking => "following a target",
+        ReferenceInterface { manipulability: true, .. } => return Ok(()),
+        ReferenceInterface { manipulability: false, .. } => setup.reference.words().name,
     };
-    if own.manipulability == 0.0 {
-        return Ok(());
-    }
     Err(SetupError::NoManipulability { agent: own.name.clone(), law: without, value: own.manipulability })
 }
 
 /// Roots belong to reference dynamics that are a polynomial.
 fn roots(setup: &Setup, own: &AgentSetup, interface: &Interface) -> Result<(), SetupError> {
-    let counts = match setup.reference {
-        ReferenceKind::Consensus | ReferenceKind::PureIntegral => true,
-        ReferenceKind::Backstepping { .. } | ReferenceKind::Following(_) => false,
-        ReferenceKind::Tracking => interface.tracks_by_roots,
+    let counts = match setup.reference.interface().roots {
+        Roots::Every => true,
+        Roots::ByLaw => interface.tracks_by_roots,
+        Roots::None => false,
     };
     if counts || own.roots_per_s.is_empty() {
         return Ok(());

@@ -6,8 +6,8 @@ use super::error::SetupError;
 use super::unused;
 use crate::agents::Adaptive;
 use crate::engine::{Integrator, Radio};
-use crate::leader::Following;
-use crate::setup::{Actuators, AgentSetup, AxisUnit, Control, Exchange, ReferenceKind, Setup};
+use crate::reference::ReferenceInterface;
+use crate::setup::{Actuators, AgentSetup, AxisUnit, Control, Exchange, Setup};
 use crate::system::{LawWords, PositionKind};
 
 /// Everything that does not need a robot's kernels.
@@ -24,17 +24,16 @@ pub fn validate(setup: &Setup) -> Result<(), SetupError> {
     setup.time.check()?;
     setup.solver.check()?;
     setup.control.as_ref().map_or(Ok(()), |control| check_control(control, setup))?;
-    setup.reference.check(setup.time.end_s, setup.control.is_some())?;
+    setup.reference.check(setup)?;
     check_memory(setup)?;
-    let goes = setup.reference == ReferenceKind::Consensus && setup.exchange == Exchange::Position;
-    if !setup.network.coupling.is_linear() && !goes {
+    let ReferenceInterface { exchanges, nonlinear_coupling, .. } = setup.reference.interface();
+    let may_be_nonlinear = nonlinear_coupling && setup.exchange == Exchange::Position;
+    if !(setup.network.coupling.is_linear() || may_be_nonlinear) {
         return Err(SetupError::Coupling);
     }
-    if matches!(setup.reference, ReferenceKind::Backstepping { .. }) && setup.exchange != Exchange::Position {
-        return Err(SetupError::BacksteppingExchange);
-    }
-    if let Some(following) = setup.following() {
-        check_following(following, setup)?;
+    if !exchanges.contains(&setup.exchange) {
+        let reference = setup.reference.words().name;
+        return Err(SetupError::ReferenceExchange { reference, exchange: setup.exchange });
     }
     setup.agents.iter().try_for_each(|agent| check_agent(setup, agent))?;
     unused::of_setup(setup)?;
@@ -55,27 +54,6 @@ fn same_space(setup: &Setup) -> Result<(), SetupError> {
         if let Some(axis) = agent.robot.axes.iter().find(|axis| axis.unit != AxisUnit::Metre) {
             let (vehicle, agent) = (vehicle.name.clone(), agent.name.clone());
             return Err(SetupError::UnitsDiffer { vehicle, agent, axis: axis.name.clone() });
-        }
-    }
-    Ok(())
-}
-
-/// What following a leader needs.
-fn check_following(following: &Following, setup: &Setup) -> Result<(), SetupError> {
-    if setup.exchange != Exchange::PositionVelocity {
-        return Err(SetupError::FollowingExchange);
-    }
-    let (leader, axes) = (&following.leader, setup.agents.first().map_or(0, |agent| agent.robot.axes.len()));
-    LengthError::check("the leader's trajectory", axes, leader.trajectory.axes())
-        .map_err(|error| SetupError::Length { agent: leader.name.clone(), error })?;
-    let told = following.sliding().told() > 0 && setup.control.is_none();
-    for edge in setup.network.schedule.graphs.iter().flatten() {
-        if edge.to == setup.agents.len() {
-            return Err(SetupError::LeaderHears { leader: leader.name.clone() });
-        }
-        let delay_s = setup.network.delays.get(edge.delay).map_or(0.0, |delay| delay.max_s());
-        if told && delay_s > 0.0 {
-            return Err(SetupError::DelayedDerived { delay_s });
         }
     }
     Ok(())
@@ -115,7 +93,7 @@ fn check_control(control: &Control, setup: &Setup) -> Result<(), SetupError> {
 
 fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
     let first = &setup.agents[0];
-    let (axes, vectors) = (first.robot.axes.len(), setup.reference.free_derivatives(agent));
+    let (axes, vectors) = (first.robot.axes.len(), setup.reference.free_derivatives(agent.roots_per_s.len()));
     if agent.robot.axes.len() != axes {
         return Err(SetupError::AxesDiffer {
             agent: agent.name.clone(),
@@ -165,8 +143,7 @@ fn goes_together(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
     let Some(interface) = agent.interface() else {
         return Err(SetupError::LawOfAnother { agent: name(), law, made_for });
     };
-    let tracks = setup.reference == ReferenceKind::Tracking;
-    if !interface.follows.contains(&setup.reference.family()) {
+    if !interface.follows.contains(&setup.reference.interface().family) {
         return Err(SetupError::wrong_reference(setup, agent));
     }
     if !interface.exchanges.contains(&setup.exchange) {
@@ -175,7 +152,7 @@ fn goes_together(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
     if !interface.pushed && !agent.pushes.is_empty() {
         return Err(SetupError::NotPushed { agent: name(), law });
     }
-    match (&agent.target, tracks) {
+    match (&agent.target, setup.tracks()) {
         (None, true) => Err(SetupError::NoTarget { agent: name() }),
         (Some(_), false) if !interface.offsets => Err(SetupError::NoOffsets { agent: name(), law }),
         _ => unused::of_agent(setup, agent, &interface),

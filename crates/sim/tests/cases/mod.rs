@@ -3,6 +3,7 @@
 #![allow(unreachable_pub, dead_code, reason = "shared by several tests, none of which uses all of it")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
+use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -12,8 +13,8 @@ use forwardstep_sim::delay::{Delay, PiecewiseConstant, SawTooth, Sinusoid};
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Axis, AxisUnit, Exchange, Known, Law, Network, ReferenceKind, Robot, RobotSetup, Setup,
-    Solver, Start, TimeSpan,
+    Adaptive, AgentSetup, Axis, AxisUnit, Exchange, Known, Law, Network, Robot, RobotSetup, Setup, Solver, Start,
+    TimeSpan,
 };
 use serde::Deserialize;
 
@@ -142,11 +143,9 @@ pub fn setup(case: &Case) -> Setup {
     Setup {
         agents: case.agents.iter().enumerate().map(agent).collect(),
         reference: match case.reference {
-            ReferenceCase::Consensus => ReferenceKind::Consensus,
-            ReferenceCase::PureIntegral => ReferenceKind::PureIntegral,
-            ReferenceCase::Backstepping { filter_s } => {
-                ReferenceKind::Backstepping { filter_s, acceleration_limit: None }
-            }
+            ReferenceCase::Consensus => Arc::new(Consensus),
+            ReferenceCase::PureIntegral => Arc::new(PureIntegral),
+            ReferenceCase::Backstepping { filter_s } => Arc::new(Backstepping { filter_s, acceleration_limit: None }),
         },
         exchange: match case.exchange.as_str() {
             "position" => Exchange::Position,

@@ -1,13 +1,12 @@
 //! Chains of Section IV.
 
+use forwardstep_sim::reference::{Consensus, Tracking};
 use std::sync::Arc;
 
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::{CascadeTerms, Formulas};
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{
-    AgentSetup, AxisUnit, ChainLaw, ChainModel, ChainStep, Estimate, ReferenceKind, RobotSetup, Setup, Start,
-};
+use forwardstep_sim::{AgentSetup, AxisUnit, ChainLaw, ChainModel, ChainStep, Estimate, RobotSetup, Setup, Start};
 
 use super::{axes, setup, silent, switching, wave};
 
@@ -101,7 +100,7 @@ pub fn derivatives() -> Setup {
         agent(2, third_order(), &[0.5, 0.6], adaptive, &[1.0, 2.0, 1.5], &[-0.5, 0.1, 0.3]),
         agent(3, second_order(), &[0.8, -0.4], immersion, &[1.5, 2.0], &[-1.0, 0.3]),
     ];
-    setup(agents, ReferenceKind::Consensus, switching(), 40.0)
+    setup(agents, Arc::new(Consensus), switching(), 40.0)
 }
 
 /// Orders two, three and four with one second step, and with different numbers of differentiators.
@@ -114,7 +113,7 @@ pub fn of_all_orders(step: &ChainStep, roots: [usize; 3]) -> Setup {
         of(2, third_order(), &[0.5, 0.6], &[-0.5, 0.1, 0.3]),
         of(3, fourth_order(), &[0.4, -0.3], &[0.4, -0.2, 0.1, 0.0]),
     ];
-    setup(agents, ReferenceKind::Consensus, switching(), 40.0)
+    setup(agents, Arc::new(Consensus), switching(), 40.0)
 }
 
 pub fn linearising() -> Setup {
@@ -132,7 +131,7 @@ pub fn cascades() -> Setup {
         agent(index, strict(order), &[0.3, -0.2], step, &[1.0, 2.0, 1.5, 1.2][..order], state)
     };
     let agents = vec![of(1, 2, &[0.6, 0.0]), of(2, 3, &[-0.4, 0.1, 0.0]), of(3, 4, &[0.2, 0.0, 0.1, 0.0])];
-    setup(agents, ReferenceKind::Consensus, switching(), 60.0)
+    setup(agents, Arc::new(Consensus), switching(), 60.0)
 }
 
 /// Pure-feedback chains.
@@ -141,12 +140,7 @@ pub fn pure_feedback() -> Setup {
         let step = ChainStep::Backstepping { gains_per_s: vec![1.0; 2], estimate: estimate(&[1.0, 1.0]) };
         agent(index, pure(), &[0.4, -0.3], step, &[1.0, 2.0], state)
     };
-    setup(
-        vec![of(1, &[0.6, 0.1]), of(2, &[-0.5, 0.0]), of(3, &[0.1, -0.2])],
-        ReferenceKind::Consensus,
-        switching(),
-        60.0,
-    )
+    setup(vec![of(1, &[0.6, 0.1]), of(2, &[-0.5, 0.0]), of(3, &[0.1, -0.2])], Arc::new(Consensus), switching(), 60.0)
 }
 
 /// A chain of each kind that follows a trajectory.
@@ -162,5 +156,5 @@ pub fn tracking() -> Setup {
     for agent in &mut agents {
         agent.target = Some(Trajectory::new(vec![wave(0.1, 0.5, 0.8, 0.4)]).unwrap());
     }
-    setup(agents, ReferenceKind::Tracking, silent(3), 100.0)
+    setup(agents, Arc::new(Tracking), silent(3), 100.0)
 }

@@ -11,8 +11,7 @@ use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::trajectory::{Path, Sinusoid, Trajectory};
 use forwardstep_sim::{
-    Adaptive, AgentSetup, AxisUnit, Exchange, Known, Method, Network, ReferenceKind, RobotSetup, Setup, Solver, Start,
-    TimeSpan,
+    Adaptive, AgentSetup, AxisUnit, Exchange, Known, Method, Network, RobotSetup, Setup, Solver, Start, TimeSpan,
 };
 
 use super::axes;
@@ -65,7 +64,7 @@ pub fn arms(design: FollowingDesign, choice: Choice, estimate: f64, end_s: f64) 
     };
     Setup {
         agents: starts.iter().enumerate().map(|(k, q)| arm(k + 1, *q, estimate)).collect(),
-        reference: ReferenceKind::Following(Arc::new(following)),
+        reference: (Arc::new(following)),
         exchange: Exchange::PositionVelocity,
         network: Network {
             agents: 5,
@@ -98,7 +97,7 @@ pub fn masses(design: FollowingDesign) -> Setup {
     let wave = |amplitude, rad_per_s, phase_rad| Sinusoid { amplitude, rad_per_s, phase_rad };
     let waves = vec![wave(0.6, 0.8, 0.0), wave(0.2, 1.7, 0.5)];
     let trajectory = Trajectory::new(vec![Path::Sinusoids { offset: 0.1, waves }]).unwrap();
-    setup.reference = ReferenceKind::Following(Arc::new(Following {
+    setup.reference = Arc::new(Following {
         leader: Leader { name: "leader".into(), trajectory },
         design,
         alpha: 1.3,
@@ -106,7 +105,7 @@ pub fn masses(design: FollowingDesign) -> Setup {
         gain: 2.5,
         choice: Choice::Layer { width: 0.1 },
         period_s: 1e-3,
-    }));
+    });
     let (q, dq) = ([0.8, -0.5, 0.3], [0.1, 0.0, -0.2]);
     let (z, dz) = ([0.3, 0.1, 0.0], [0.0, 0.2, -0.1]);
     setup.agents.truncate(3);

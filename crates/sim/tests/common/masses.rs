@@ -1,10 +1,11 @@
 //! Point masses without velocity.
 
+use forwardstep_sim::reference::{Consensus, Tracking};
 use std::sync::Arc;
 
 use forwardstep_core::robot::PointMass;
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{AgentSetup, AxisUnit, PositionOnlyLaw, ReferenceKind, RobotSetup, Setup, Start};
+use forwardstep_sim::{AgentSetup, AxisUnit, PositionOnlyLaw, RobotSetup, Setup, Start};
 
 use super::{axes, setup, silent, switching, wave};
 
@@ -30,12 +31,12 @@ pub fn mass(index: usize, kg: f64, q: [f64; 2], roots: &[f64]) -> AgentSetup {
 pub fn tracking() -> Setup {
     let mut agent = mass(1, 2.0, [0.4, -0.3], &[1.0, 1.5, 2.0]);
     agent.target = Some(Trajectory::new(vec![wave(0.1, 1.0, 1.0, 0.4), wave(0.1, 0.5, 1.7, 0.4)]).unwrap());
-    setup(vec![agent], ReferenceKind::Tracking, silent(1), 40.0)
+    setup(vec![agent], Arc::new(Tracking), silent(1), 40.0)
 }
 
 pub fn consensus(order: usize) -> Setup {
     let roots = &[1.0, 2.0, 1.5][..order];
     let starts = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.5]];
     let agents = (0..3).map(|k| mass(k + 1, 1.0 + 0.7 * k as f64, starts[k], roots)).collect();
-    setup(agents, ReferenceKind::Consensus, switching(), 40.0)
+    setup(agents, Arc::new(Consensus), switching(), 40.0)
 }

@@ -16,11 +16,12 @@ use std::sync::Arc;
 use forwardstep_core::Gain;
 use forwardstep_sim::delay::{Delay, SawTooth};
 use forwardstep_sim::graph::{Edge, Weight};
+use forwardstep_sim::reference::ReferenceDynamics;
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::{Path, Sinusoid};
 use forwardstep_sim::{
-    AgentSetup, Axis, AxisUnit, Column, Ending, Exchange, Known, Method, Network, Outcome, ReferenceKind, Setup,
-    Signal, Solver, TimeSpan, simulate,
+    AgentSetup, Axis, AxisUnit, Column, Ending, Exchange, Known, Method, Network, Outcome, Setup, Signal, Solver,
+    TimeSpan, simulate,
 };
 
 pub const RTOL: f64 = 1e-8;
@@ -60,7 +61,7 @@ pub fn switching() -> Network {
     }
 }
 
-pub fn setup(agents: Vec<AgentSetup>, reference: ReferenceKind, network: Network, end_s: f64) -> Setup {
+pub fn setup(agents: Vec<AgentSetup>, reference: Arc<dyn ReferenceDynamics>, network: Network, end_s: f64) -> Setup {
     Setup {
         agents,
         reference,

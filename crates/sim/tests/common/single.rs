@@ -1,5 +1,6 @@
 //! A tip with uncertain lengths, and spacecraft without angular velocity.
 
+use forwardstep_sim::reference::Tracking;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
@@ -10,8 +11,7 @@ use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkPoint, LinkSpec, P
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip};
 use forwardstep_sim::trajectory::{Path, Spline, Trajectory};
 use forwardstep_sim::{
-    AgentSetup, AttitudeLaw, AxisUnit, Law, Method, ReferenceKind, RobotSetup, Setup, SpacecraftModel, Start,
-    TaskSpaceLaw, TipSetup,
+    AgentSetup, AttitudeLaw, AxisUnit, Law, Method, RobotSetup, Setup, SpacecraftModel, Start, TaskSpaceLaw, TipSetup,
 };
 
 use super::{RTOL, axes, fixed, setup, silent, wave};
@@ -28,7 +28,7 @@ pub fn alone(robot: RobotSetup, law: Arc<dyn Law>, start: Start, target: Vec<Pat
         enforce_limits: false,
         pushes: Vec::new(),
     };
-    let mut setup = setup(vec![agent], ReferenceKind::Tracking, silent(1), end_s);
+    let mut setup = setup(vec![agent], Arc::new(Tracking), silent(1), end_s);
     setup.solver.method = Method::Adaptive { rtol: RTOL, atol: 1e-11 };
     setup
 }

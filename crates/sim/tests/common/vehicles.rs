@@ -1,13 +1,13 @@
 //! Vehicles with one thrust, and rotorcraft.
 
+use forwardstep_sim::reference::Consensus;
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
 use forwardstep_core::controller::{Floor, Yaw};
 use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{
-    AgentSetup, AxisUnit, ReferenceKind, Robot, RobotSetup, RotorcraftModel, Setup, Start, ThrustKind, ThrustLaw,
-    VehicleModel,
+    AgentSetup, AxisUnit, Robot, RobotSetup, RotorcraftModel, Setup, Start, ThrustKind, ThrustLaw, VehicleModel,
 };
 
 use super::{axes, fixed, setup, switching, wave};
@@ -77,5 +77,5 @@ pub fn turning(index: usize) -> Trajectory {
 pub fn three(kind: &Arc<dyn Robot>, design: ThrustKind, in_formation: bool, end_s: f64) -> Setup {
     let agents =
         (0..3).map(|k| AgentSetup { target: in_formation.then(|| turning(k)), ..agent(k, kind.clone(), design) });
-    setup(agents.collect(), ReferenceKind::Consensus, switching(), end_s)
+    setup(agents.collect(), Arc::new(Consensus), switching(), end_s)
 }

@@ -36,6 +36,7 @@ fn of(subject: &Subject) -> String {
     let ordinal = |derivatives: usize| ["zeroth", "first", "second", "third", "fourth"][derivatives.min(4)];
     match subject {
         Subject::Setup => String::new(),
+        Subject::Reference => "the reference dynamics".into(),
         Subject::Agent(agent) => agent.name.clone(),
         Subject::Targets { agents, derivatives } => {
             format!("the target of {} and its derivatives up to the {}", names(agents), ordinal(*derivatives))

@@ -1,15 +1,16 @@
-//! The kinds of robots, laws, delays and switching that scenario files know, in one list, which a program of one's own can add
+//! The kinds of robots, laws, reference dynamics, delays and switching that scenario files know, in one list, which a program of one's own can add
 //! to.
 //!
 //! A kind is the struct of its table in a file. It derives `Deserialize` and `JsonSchema`, whose doc comments become the schema,
-//! holds what can be wrong as [`At`], which knows its place, and implements [`RobotKind`], [`LawKind`], [`DelayKind`] or
-//! [`ScheduleKind`]; what it finds wrong is a [`Mistake`] of its own. [`Kinds`] has them by their keys; near matches, messages and
+//! holds what can be wrong as [`At`], which knows its place, and implements [`RobotKind`], [`LawKind`], [`ReferenceKind`],
+//! [`DelayKind`] or [`ScheduleKind`]; what it finds wrong is a [`Mistake`] of its own. [`Kinds`] has them by their keys; near matches, messages and
 //! the schema come from there.
 //!
 //! - `urdf`, `planar_arm`, `point_mass`: robots under (6)–(7); `adaptive`: these laws; a mass without velocity is with it.
 //! - `task_space`: the end-effector of a robot.
 //! - `thrust`: vehicles with one thrust; `spacecraft`: an attitude.
 //! - `chain`, `cascade`: Section IV.
+//! - `references`: what leads the agents.
 //! - `delays`, `schedules`: how late a message is, and which graph is in force.
 
 pub mod adaptive;
@@ -19,6 +20,7 @@ pub mod delays;
 pub mod planar_arm;
 pub mod point_mass;
 mod problem;
+pub mod references;
 pub mod schedules;
 pub mod ship;
 pub mod spacecraft;
@@ -42,8 +44,9 @@ use super::system_problem::SystemProblem;
 
 pub use self::delays::{DelayKind, DelayPlan, Link, LinkDelays};
 pub use self::problem::{KindProblem, Mistake};
+pub use self::references::{AgentReferenceTable, ReferenceKind, ReferenceRead, ReferenceReader, ReferenceTable};
 pub use self::schedules::ScheduleKind;
-use self::table::{LawEntry, RobotEntry, Table, choice, chosen, delay, schedule, word};
+use self::table::{LawEntry, ReferenceEntry, RobotEntry, Table, choice, chosen, delay, schedule, word};
 pub use super::at::At;
 pub use super::fault::{
     Fault, between, count, fault, filled, length, not_negative, not_negative_or, positive, positive_or, values,
@@ -153,13 +156,13 @@ pub struct LawReader<'a> {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("there is a {what} `{key}` already; choose another key")]
 pub struct KindError {
-    /// What has it: `robot`, `law`, `delay` or `switching`.
+    /// What has it: `robot`, `law`, `reference`, `delay` or `switching`.
     pub what: &'static str,
     /// The key.
     pub key: &'static str,
 }
 
-/// The kinds of robots, laws, delays and switching that scenario files may name.
+/// The kinds of robots, laws, reference dynamics, delays and switching that scenario files may name.
 ///
 /// ```
 /// use forwardstep_io::scenario::kinds::Kinds;
@@ -171,6 +174,7 @@ pub struct KindError {
 pub struct Kinds {
     robots: Vec<RobotEntry>,
     laws: Vec<LawEntry>,
+    references: Vec<ReferenceEntry>,
     delays: Vec<Table<dyn DelayKind>>,
     schedules: Vec<Table<dyn ScheduleKind>>,
 }
@@ -202,6 +206,13 @@ impl Kinds {
                 LawEntry::of::<chain::LinearAdaptiveFile>(),
                 LawEntry::of::<chain::ImmersionFile>(),
                 LawEntry::of::<cascade::AdaptiveBacksteppingFile>(),
+            ],
+            references: vec![
+                ReferenceEntry::of::<references::consensus::ConsensusFile>(),
+                ReferenceEntry::of::<references::consensus::PureIntegralFile>(),
+                ReferenceEntry::of::<references::backstepping::BacksteppingFile>(),
+                ReferenceEntry::of::<references::leader::LeaderReferenceFile>(),
+                ReferenceEntry::of::<references::tracking::TrackingFile>(),
             ],
             delays: vec![
                 delay::<delays::constant::ConstantFile>(),
@@ -243,6 +254,19 @@ impl Kinds {
         Ok(())
     }
 
+    /// Adds a kind of reference dynamics.
+    ///
+    /// # Errors
+    /// [`KindError`] when its key is taken.
+    pub fn add_reference<F: ReferenceKind + DeserializeOwned + JsonSchema + 'static>(
+        &mut self,
+    ) -> Result<(), KindError> {
+        let entry = ReferenceEntry::of::<F>();
+        free("reference", &self.reference_keys(), entry.table.key)?;
+        self.references.push(entry);
+        Ok(())
+    }
+
     /// Adds a kind of delay.
     ///
     /// # Errors
@@ -275,6 +299,11 @@ impl Kinds {
         self.laws.iter().map(|entry| entry.table.key).collect()
     }
 
+    /// The keys of all reference dynamics.
+    pub fn reference_keys(&self) -> Vec<&'static str> {
+        self.references.iter().map(|entry| entry.table.key).collect()
+    }
+
     /// The keys of all delays.
     pub fn delay_keys(&self) -> Vec<&'static str> {
         self.delays.iter().map(|table| table.key).collect()
@@ -296,6 +325,11 @@ impl Kinds {
         let robots = choice("The robots that can be simulated.", self.robots.iter().map(|e| &e.table), &mut generator);
         let says = "How the velocity is made to follow the reference velocity.";
         let laws = choice(says, self.laws.iter().map(|entry| &entry.table), &mut generator);
+        let says = "The reference dynamics of all agents.";
+        let references = choice(says, self.references.iter().map(|entry| &entry.table), &mut generator);
+        let says = "What an agent states of its own, under the key of everybody's reference dynamics.";
+        let own: Vec<_> = self.references.iter().filter_map(|entry| entry.of_agents).collect();
+        let own = choice(says, own.iter(), &mut generator);
         let delays = choice("How old a message is when it is heard.", self.delays.iter(), &mut generator);
         let says = "How the phases of a network follow each other.";
         let schedules = choice(says, self.schedules.iter(), &mut generator);
@@ -303,6 +337,8 @@ impl Kinds {
         if let Some(parts) = schema.get_mut("$defs").and_then(|parts| parts.as_object_mut()) {
             parts.insert("RobotFile".into(), robots.to_value());
             parts.insert("LawFile".into(), laws.to_value());
+            parts.insert("ReferenceFile".into(), references.to_value());
+            parts.insert("AgentReferenceFile".into(), own.to_value());
             parts.insert("DelayFile".into(), delays.to_value());
             parts.insert("SwitchingFile".into(), schedules.to_value());
         }
@@ -319,6 +355,24 @@ impl Kinds {
     /// The law at `place` in the tree of a file.
     pub(super) fn law(&self, place: ValueDe<'_, '_>) -> Result<KeyedLaw, Fault> {
         chosen(self.laws.iter().map(|entry| &entry.table), place)
+    }
+
+    /// The reference dynamics at `place` in the tree of a file.
+    pub(super) fn reference(&self, place: ValueDe<'_, '_>) -> Result<(&'static str, Box<dyn ReferenceKind>), Fault> {
+        chosen(self.references.iter().map(|entry| &entry.table), place)
+    }
+
+    /// Whether agents may state something of their own under this key of reference dynamics.
+    pub(super) fn agents_may_state(&self, key: &str) -> bool {
+        self.references.iter().any(|entry| entry.table.key == key && entry.of_agents.is_some())
+    }
+
+    /// What an agent states of its own, at `place` in the tree of a file.
+    pub(super) fn agent_reference(
+        &self,
+        place: ValueDe<'_, '_>,
+    ) -> Result<(&'static str, Box<AgentReferenceTable>), Fault> {
+        chosen(self.references.iter().filter_map(|entry| entry.of_agents.as_ref()), place)
     }
 
     /// The delay at `place` in the tree of a file.
@@ -361,7 +415,9 @@ mod tests {
     #[test]
     fn no_key_is_taken_twice() {
         let kinds = Kinds::shipped();
-        for mut keys in [kinds.robot_keys(), kinds.law_keys(), kinds.delay_keys(), kinds.schedule_keys()] {
+        for mut keys in
+            [kinds.robot_keys(), kinds.law_keys(), kinds.reference_keys(), kinds.delay_keys(), kinds.schedule_keys()]
+        {
             let all = keys.len();
             keys.sort_unstable();
             keys.dedup();
@@ -372,6 +428,8 @@ mod tests {
         assert_eq!(taken.to_string(), "there is a robot `point_mass` already; choose another key");
         let taken = kinds.add_law::<adaptive::KnownFile>().unwrap_err();
         assert_eq!(taken.to_string(), "there is a law `known` already; choose another key");
+        let taken = kinds.add_reference::<references::tracking::TrackingFile>().unwrap_err();
+        assert_eq!(taken.to_string(), "there is a reference `tracking` already; choose another key");
         let taken = kinds.add_delay::<delays::saw_tooth::SawToothFile>().unwrap_err();
         assert_eq!(taken.to_string(), "there is a delay `saw_tooth` already; choose another key");
         let taken = kinds.add_schedule::<schedules::random::RandomSwitchingFile>().unwrap_err();

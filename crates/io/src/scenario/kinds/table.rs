@@ -10,7 +10,10 @@ use super::super::choice::Choice;
 use super::super::de::ValueDe;
 use super::super::fault::Fault;
 use super::super::template::RobotTemplate;
-use super::{DelayKind, KindTable, LawKind, LawTable, RobotKind, RobotTable, ScheduleKind};
+use super::{
+    AgentReferenceTable, DelayKind, KindTable, LawKind, LawTable, ReferenceKind, ReferenceTable, RobotKind, RobotTable,
+    ScheduleKind,
+};
 
 /// A key with what stands under it.
 pub(super) struct Table<T: ?Sized> {
@@ -73,6 +76,26 @@ impl LawEntry {
         let table: Table<dyn LawKind> =
             Table::of::<F>(KindTable { key, description }, |table| Ok(Box::new(read::<F>(table)?)));
         LawEntry { table, made_for, suits: F::suits }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ReferenceEntry {
+    pub(super) table: Table<dyn ReferenceKind>,
+    /// What agents may state of their own.
+    pub(super) of_agents: Option<Table<AgentReferenceTable>>,
+}
+
+impl ReferenceEntry {
+    pub(super) fn of<F: ReferenceKind + DeserializeOwned + JsonSchema + 'static>() -> Self {
+        let ReferenceTable { key, description, own_roots } = F::table();
+        let table: Table<dyn ReferenceKind> =
+            Table::of::<F>(KindTable { key, description }, |table| Ok(Box::new(read::<F>(table)?)));
+        let of_agents = own_roots.then(|| {
+            let table = KindTable { key, description };
+            Table::of::<AgentReferenceTable>(table, |table| Ok(Box::new(read::<AgentReferenceTable>(table)?)))
+        });
+        ReferenceEntry { table, of_agents }
     }
 }
 

@@ -1,0 +1,130 @@
+//! `reference.leader`: everybody follows a leader.
+
+use forwardstep_core::reference::Choice;
+use forwardstep_sim::Exchange;
+use forwardstep_sim::leader::{Following, FollowingDesign};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::super::super::at::At;
+use super::super::super::fault::{Fault, fault, positive};
+use super::super::super::system_problem::SystemProblem;
+use super::super::super::value_problem::ValueProblem;
+use super::super::super::values::Positive;
+use super::{ReferenceKind, ReferenceRead, ReferenceReader, ReferenceTable};
+
+const SIGN_EVERY_S: f64 = 1e-3;
+
+/// Reference dynamics that follow a leader, and the set-valued sign in them.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LeaderReferenceFile {
+    /// Which of the designs.
+    pub design: At<LeaderDesignFile>,
+    /// The positive numbers κ in 1/s: one for `continuous`, α = κ₀; two for the others, β = κ₀ + κ₁ and α = κ₀ κ₁.
+    #[schemars(with = "Vec<Positive>", length(min = 1, max = 2))]
+    pub roots_per_s: At<Vec<At<f64>>>,
+    /// The factor k of the differences to neighbours; for `swarm`, which needs it.
+    #[schemars(with = "Option<Positive>")]
+    pub coupling: Option<At<f64>>,
+    /// The gain γ of the sign, in rad/s² or m/s² for `continuous`, else in rad/s³ or m/s³. It must exceed what drives the
+    /// leader: see what `check` says.
+    #[schemars(with = "Positive")]
+    pub gain: At<f64>,
+    /// How a value of the sign is chosen. Default: implicit.
+    pub sign: Option<At<SignFile>>,
+    /// How often the sign is set when control is continuous, in s. Default: 0.001. Sampled controllers set it at every sample.
+    #[schemars(with = "Option<Positive>")]
+    pub sign_period_s: Option<At<f64>>,
+}
+
+/// The designs that follow a leader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LeaderDesignFile {
+    /// (110), Theorem 8: the sign acts on the reference acceleration.
+    Continuous,
+    /// (119), Theorem 9: torques are differentiable; accelerations are transmitted.
+    Differentiable,
+    /// (122), Remark 12: torques are differentiable; reference accelerations are transmitted instead.
+    WithoutAcceleration,
+    /// Swarm tracking over an undirected graph, with differences to neighbours only; not printed in the paper.
+    Swarm,
+}
+
+/// How a value of a set-valued sign is chosen.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum SignFile {
+    /// Such that it suits the end of the period: no chatter.
+    Implicit,
+    /// By the start of the period; for comparison: it chatters.
+    Explicit,
+    /// A straight line between −width and width at every instant; for comparison: an error of that size stays.
+    BoundaryLayer(LayerFile),
+}
+
+/// A boundary layer.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LayerFile {
+    /// Its width ε, in the unit of what the sign is taken of.
+    #[schemars(with = "Positive")]
+    pub width: At<f64>,
+}
+
+impl ReferenceKind for LeaderReferenceFile {
+    fn table() -> ReferenceTable {
+        ReferenceTable {
+            key: "leader",
+            description: "Everybody follows a leader that only some hear: (110), (119) or (122) of the paper.",
+            own_roots: false,
+        }
+    }
+
+    fn read(&self, reader: &mut ReferenceReader<'_>) -> Result<ReferenceRead, Fault> {
+        let leader = reader.leader()?;
+        let design = match self.design.value {
+            LeaderDesignFile::Continuous => FollowingDesign::Continuous,
+            LeaderDesignFile::Differentiable => FollowingDesign::Differentiable,
+            LeaderDesignFile::WithoutAcceleration => FollowingDesign::WithoutAcceleration,
+            LeaderDesignFile::Swarm => match &self.coupling {
+                Some(coupling) => FollowingDesign::Swarm { coupling: coupling.value },
+                None => return Err(fault(&self.design, ValueProblem::MissingKey { key: "coupling" })),
+            },
+        };
+        if let (Some(coupling), false) = (&self.coupling, matches!(design, FollowingDesign::Swarm { .. })) {
+            return Err(fault(coupling, SystemProblem::CouplingUnused));
+        }
+        let (alpha, beta) = coefficients(self, design)?;
+        let choice = match self.sign.as_ref().map(|sign| &sign.value) {
+            None | Some(SignFile::Implicit) => Choice::Implicit,
+            Some(SignFile::Explicit) => Choice::Explicit,
+            Some(SignFile::BoundaryLayer(layer)) => Choice::Layer { width: layer.width.value },
+        };
+        let layer = matches!(choice, Choice::Layer { .. });
+        if let (Some(every), true) = (&self.sign_period_s, layer || reader.sampled()) {
+            return Err(fault(every, SystemProblem::SignPeriodUnused { layer }));
+        }
+        let period_s = self.sign_period_s.as_ref().map_or(SIGN_EVERY_S, |every| every.value);
+        let following = Following { leader, design, alpha, beta, gain: self.gain.value, choice, period_s };
+        Ok(ReferenceRead::new(following, Exchange::PositionVelocity))
+    }
+}
+
+/// α and β.
+fn coefficients(file: &LeaderReferenceFile, design: FollowingDesign) -> Result<(f64, f64), Fault> {
+    let list: &At<Vec<At<f64>>> = &file.roots_per_s;
+    let mut roots = Vec::with_capacity(2);
+    for root in list.value.iter().take(3) {
+        roots.push(positive("roots_per_s", root)?);
+    }
+    match (design, roots.as_slice()) {
+        (FollowingDesign::Continuous, [root]) => Ok((*root, 1.0)),
+        (FollowingDesign::Continuous, _) => {
+            Err(fault(list, SystemProblem::LeaderRoots { found: list.value.len(), need: 1 }))
+        }
+        (_, [first, second]) => Ok((first * second, first + second)),
+        _ => Err(fault(list, SystemProblem::LeaderRoots { found: list.value.len(), need: 2 })),
+    }
+}

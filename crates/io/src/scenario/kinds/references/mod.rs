@@ -1,0 +1,141 @@
+//! The reference dynamics that scenario files know: for each the struct of its table.
+
+pub mod backstepping;
+pub mod consensus;
+pub mod leader;
+pub mod tracking;
+
+use std::fmt;
+use std::sync::Arc;
+
+use forwardstep_sim::leader::Leader;
+use forwardstep_sim::{Exchange, ReferenceDynamics};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::super::at::At;
+use super::super::fault::{Fault, fault};
+use super::super::file::ScenarioFile;
+use super::super::inputs::InputFolder;
+use super::super::leader_file::LeaderFile;
+use super::super::system_problem::SystemProblem;
+use super::super::target::{Owner, target};
+use super::super::values::Positive;
+
+/// A kind of reference dynamics in scenario files: its table, as it was read.
+pub trait ReferenceKind: fmt::Debug {
+    /// What the list says of it.
+    fn table() -> ReferenceTable
+    where
+        Self: Sized;
+
+    /// What all agents share.
+    ///
+    /// # Errors
+    /// The first mistake, at its place.
+    fn read(&self, reader: &mut ReferenceReader<'_>) -> Result<ReferenceRead, Fault>;
+}
+
+/// What the list of kinds says of reference dynamics.
+#[derive(Clone, Copy, Debug)]
+pub struct ReferenceTable {
+    /// Their key in `reference`.
+    pub key: &'static str,
+    /// What they are, in a sentence, for the schema.
+    pub description: &'static str,
+    /// Whether an agent may state roots, and a gain λ, of its own.
+    pub own_roots: bool,
+}
+
+/// Reference dynamics, and what their table says for agents that say nothing of their own.
+#[derive(Clone, Debug)]
+pub struct ReferenceRead {
+    /// They as data.
+    pub dynamics: Arc<dyn ReferenceDynamics>,
+    /// What the agents tell each other.
+    pub exchange: Exchange,
+    /// The roots of all agents without their own.
+    pub roots_per_s: Option<At<Vec<At<f64>>>>,
+    /// λ of all agents without their own.
+    pub manipulability_gain: Option<At<f64>>,
+}
+
+impl ReferenceRead {
+    /// Dynamics without roots.
+    pub fn new(dynamics: impl ReferenceDynamics, exchange: Exchange) -> Self {
+        ReferenceRead { dynamics: Arc::new(dynamics), exchange, roots_per_s: None, manipulability_gain: None }
+    }
+}
+
+/// What else reference dynamics can ask the file for.
+#[derive(Debug)]
+pub struct ReferenceReader<'a> {
+    leader: Option<&'a At<LeaderFile>>,
+    /// Whether [`ReferenceReader::leader`] was asked for.
+    asked: bool,
+    /// What the axes of the agents are called.
+    axes: &'a [String],
+    end_s: f64,
+    sampled: bool,
+    folder: &'a mut InputFolder,
+}
+
+/// The name of a leader that has none.
+const LEADER: &str = "leader";
+
+impl<'a> ReferenceReader<'a> {
+    pub(in super::super) fn new(
+        file: &'a ScenarioFile,
+        axes: &'a [String],
+        end_s: f64,
+        folder: &'a mut InputFolder,
+    ) -> Self {
+        let (leader, sampled) = (file.leader.as_ref(), file.control.is_some());
+        ReferenceReader { leader, asked: false, axes, end_s, sampled, folder }
+    }
+
+    /// What the axes of the agents are called.
+    pub fn axes(&self) -> &[String] {
+        self.axes
+    }
+
+    /// Whether controllers sample.
+    pub fn sampled(&self) -> bool {
+        self.sampled
+    }
+
+    /// The leader of the file. One that is not asked for is refused.
+    ///
+    /// # Errors
+    /// When there is none, or it has a mistake.
+    pub fn leader(&mut self) -> Result<Leader, Fault> {
+        self.asked = true;
+        let leader = &self.leader.ok_or_else(|| Fault::new(SystemProblem::NoLeader))?.value;
+        let name = match &leader.name {
+            None => LEADER.to_owned(),
+            Some(name) => super::super::agents::checked_name(name)?.to_owned(),
+        };
+        let owner = Owner { name: &name, axes: self.axes, end_s: self.end_s };
+        let trajectory = target(&leader.motion, &owner, self.folder)?;
+        Ok(Leader { name, trajectory })
+    }
+
+    /// Refuses a leader that the reference dynamics under `key` did not ask for.
+    pub(in super::super) fn refuse_unused(&self, key: &'static str) -> Result<(), Fault> {
+        match self.leader {
+            Some(leader) if !self.asked => Err(fault(leader, SystemProblem::LeaderUnused { reference: key })),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// What an agent states of its own, under the key of everybody's reference dynamics.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AgentReferenceTable {
+    /// The positive numbers κ₀, κ₁, … in 1/s of this agent.
+    #[schemars(with = "Option<Vec<Positive>>", length(min = 1, max = 32))]
+    pub roots_per_s: Option<At<Vec<At<f64>>>>,
+    /// The gain λ of Remark 4 of this agent.
+    pub manipulability_gain: Option<At<f64>>,
+}

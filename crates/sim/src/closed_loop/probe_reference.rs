@@ -1,0 +1,137 @@
+//! What reference dynamics from outside say of themselves, tried at random states.
+
+use forwardstep_core::LengthError;
+use forwardstep_core::reference::{Heard, Measured, Position, PositionVelocity, ReferenceOut};
+
+use super::assembly::Assembly;
+use super::error::SetupError;
+use super::references::{AnyReference, Transmits, reference};
+use crate::probe::{Counterexample, Draws, Identity, Probe, STATES, apart};
+use crate::setup::{Exchange, Setup};
+
+/// Axes that are tried side by side.
+const AXES: usize = 2;
+
+/// Tries whether the reference dynamics of `setup` are what the engine takes them for: z, ż, … as the state has them, rates whose
+/// part of the state is linear and the same whatever is heard and measured, which sampled agents step exactly, one axis like the
+/// other, and a start that is the one asked for.
+///
+/// # Errors
+/// [`SetupError`] when they cannot be built.
+pub fn probe_reference(setup: &Setup) -> Result<Probe, SetupError> {
+    match setup.exchange {
+        Exchange::Position => probe::<Position>(setup),
+        Exchange::PositionVelocity => probe::<PositionVelocity>(setup),
+    }
+}
+
+fn probe<X: Transmits>(setup: &Setup) -> Result<Probe, SetupError> {
+    let (mut draws, mut probe) = (Draws::new(), Probe::default());
+    for state in 0..if setup.agents.is_empty() { 0 } else { STATES } {
+        let agent = state % setup.agents.len();
+        let own = &setup.agents[agent];
+        let reference = reference::<X>(&Assembly::new(setup, &[agent]))?;
+        let free = setup.reference.free_derivatives(own.roots_per_s.len()).min(reference.vectors());
+        let tried = Tried::new(reference, &mut draws);
+        let found = tried
+            .first(free)
+            .map_err(|error| SetupError::ReferenceShape { reference: setup.reference.words().name, error })?;
+        match found {
+            None => {}
+            Some(Ok(())) => probe.states += 1,
+            Some(Err((identity, value, expected))) => {
+                probe.states += 1;
+                probe.found = Some(Counterexample { identity, t_s: 0.0, state: tried.state, value, expected });
+                break;
+            }
+        }
+    }
+    Ok(probe)
+}
+
+/// An identity with the side that the author is asked of, and the other.
+type Failure = (Identity, f64, f64);
+
+/// One agent at random states.
+struct Tried<X: Transmits> {
+    reference: AnyReference<X>,
+    degree: [f64; 1],
+    q: Vec<f64>,
+    dq: Vec<f64>,
+    sums: Vec<f64>,
+    state: Vec<f64>,
+    other: Vec<f64>,
+}
+
+/// What the dynamics give.
+#[derive(Default)]
+struct Given {
+    z: Vec<f64>,
+    dz: Vec<f64>,
+    rate: Vec<f64>,
+}
+
+impl<X: Transmits> Tried<X> {
+    fn new(reference: AnyReference<X>, draws: &mut Draws) -> Self {
+        let mut numbers = |length: usize| (0..length).map(|_| 2.0 * draws.unit()).collect::<Vec<f64>>();
+        let states = AXES * reference.vectors();
+        let (q, dq, sums) = (numbers(AXES), numbers(AXES), numbers(AXES * X::CHANNELS));
+        let (state, other) = (numbers(states), numbers(states));
+        Tried { reference, degree: [1.0 + draws.unit()], q, dq, sums, state, other }
+    }
+
+    fn at(&self, [q, dq, sums, state]: [&[f64]; 4]) -> Result<Given, LengthError> {
+        let numbers = |length| vec![0.0; length];
+        let mut given = Given { z: numbers(AXES), dz: numbers(AXES), rate: numbers(state.len()) };
+        let out = ReferenceOut { z: &mut given.z, dz: &mut given.dz, d_state: &mut given.rate };
+        let heard = Heard::new(&self.degree, sums, AXES)?;
+        self.reference.evaluate(AXES, Measured { q, dq }, state, heard, out)?;
+        Ok(given)
+    }
+
+    /// The first identity that fails; nothing where something is not finite.
+    fn first(&self, free: usize) -> Result<Option<Result<(), Failure>>, LengthError> {
+        let Tried { q, dq, sums, state, other, .. } = self;
+        let zeros = |of: &[f64]| vec![0.0; of.len()];
+        let swapped = |of: &[f64]| of.chunks_exact(AXES).flat_map(|pair| [pair[1], pair[0]]).collect::<Vec<f64>>();
+        let both: Vec<f64> = state.iter().zip(other).map(|(x, y)| x + y).collect();
+        let (no_q, no_sums, origin) = (zeros(q), zeros(sums), zeros(state));
+        let here = self.at([q, dq, sums, state])?;
+        let moved = self.at([q, dq, sums, &both])?;
+        let [alone, nothing] = [other, &origin].map(|state| self.at([&no_q, &no_q, &no_sums, state]));
+        let (alone, nothing) = (alone?, nothing?);
+        let turned = self.at([&no_q, &no_q, &no_sums, &swapped(other)])?;
+        let mut started = origin.clone();
+        let heard = Heard::new(&self.degree, sums, AXES)?;
+        self.reference.start(AXES, Measured { q, dq }, state, heard, &mut started)?;
+        let begun = self.at([q, dq, sums, &started])?;
+
+        let mut pairs: Vec<Failure> = Vec::new();
+        let mut equal = |identity, value: &[f64], expected: &[f64]| {
+            pairs.extend(value.iter().zip(expected).map(|(value, expected)| (identity, *value, *expected)));
+        };
+        let derivatives = self.reference.derivatives() * AXES;
+        if derivatives > 0 {
+            equal(Identity::Derivatives, &here.z, &state[..AXES]);
+            equal(Identity::Derivatives, &here.rate[..derivatives - AXES], &state[AXES..derivatives]);
+            equal(Identity::Derivatives, &here.dz, &here.rate[..AXES]);
+        }
+        let changes: Vec<f64> = moved.rate.iter().zip(&here.rate).map(|(moved, here)| moved - here).collect();
+        let linear: Vec<f64> = alone.rate.iter().zip(&nothing.rate).map(|(alone, zero)| alone - zero).collect();
+        equal(Identity::Affine, &changes, &linear);
+        let swapped_back: Vec<f64> =
+            swapped(&turned.rate).iter().zip(&swapped(&nothing.rate)).map(|(turned, zero)| turned - zero).collect();
+        equal(Identity::Axes, &swapped_back, &linear);
+        if free > 0 {
+            equal(Identity::Start, &begun.z, &state[..AXES]);
+        }
+        let mut all = pairs.iter().flat_map(|(_, value, expected)| [*value, *expected]);
+        if !all.all(f64::is_finite) {
+            return Ok(None);
+        }
+        let size = |values: &[f64]| values.iter().fold(1.0, |size: f64, value| size.max(value.abs()));
+        let size = size(&moved.rate).max(size(&alone.rate)).max(size(&here.dz));
+        let failed = pairs.into_iter().find(|(_, value, expected)| apart(*value, *expected, size));
+        Ok(Some(failed.map_or(Ok(()), Err)))
+    }
+}

@@ -1,0 +1,148 @@
+//! What leads the agents, as data: a file for each of the shipped reference dynamics, which come through the same door as those
+//! of a crate outside.
+//!
+//! A [`ReferenceDynamics`] says as data what it can do, and builds what runs: a [`forwardstep_core::reference::Reference`] for the
+//! agents of one batch. No method has a default body.
+
+mod backstepping;
+mod consensus;
+mod tracking;
+
+pub use backstepping::Backstepping;
+pub use consensus::{Consensus, PureIntegral};
+pub use tracking::Tracking;
+
+use std::any::Any;
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use forwardstep_core::reference::{Position, PositionVelocity, Reference};
+
+use crate::closed_loop::{Assembly, SetupError};
+use crate::setup::{Exchange, Setup};
+use crate::system::Known;
+
+/// Reference dynamics of all agents, as data.
+pub trait ReferenceDynamics: Any + Debug + Send + Sync {
+    /// What messages call it.
+    fn words(&self) -> ReferenceWords;
+
+    /// What it can do. Every feature asks this.
+    fn interface(&self) -> ReferenceInterface;
+
+    /// How many of z(0), ż(0), … the start of an agent with so many roots may give.
+    fn free_derivatives(&self, roots: usize) -> usize;
+
+    /// What is known of it about the long run.
+    fn known(&self) -> Known;
+
+    /// Checks what all agents share.
+    ///
+    /// # Errors
+    /// [`SetupError`] when it has no meaning, or not in this setup.
+    fn check(&self, setup: &Setup) -> Result<(), SetupError>;
+
+    /// What runs for the agents of `assembly`, side by side in their order, with what [`Setup::exchange`] says.
+    ///
+    /// # Errors
+    /// [`SetupError`] when an agent's part has no meaning.
+    fn dynamics(&self, assembly: &Assembly<'_>) -> Result<Dynamics, SetupError>;
+}
+
+impl dyn ReferenceDynamics {
+    /// Itself as an `R`, if it is one.
+    pub fn downcast<R: ReferenceDynamics>(&self) -> Option<&R> {
+        (self as &dyn Any).downcast_ref()
+    }
+
+    /// Whether it is an `R`.
+    pub fn is<R: ReferenceDynamics>(&self) -> bool {
+        self.downcast::<R>().is_some()
+    }
+}
+
+/// What messages call reference dynamics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ReferenceWords {
+    /// What they are, with an article: *the backstepping baseline*.
+    pub name: &'static str,
+    /// Their key under `reference` in scenario files.
+    pub key: &'static str,
+}
+
+/// What reference dynamics can do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ReferenceInterface {
+    /// What leads the agents; laws say which they follow.
+    pub family: ReferenceFamily,
+    /// What agents can exchange for it.
+    pub exchanges: &'static [Exchange],
+    /// Which agents state roots.
+    pub roots: Roots,
+    /// Whether λ of Remark 4 has an effect.
+    pub manipulability: bool,
+    /// Whether what is heard may be a nonlinear function of differences of positions, when only positions are exchanged.
+    pub nonlinear_coupling: bool,
+}
+
+/// Which agents state roots κ₀, κ₁, ….
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Roots {
+    /// All of them.
+    Every,
+    /// Those whose law tracks by roots.
+    ByLaw,
+    /// None.
+    None,
+}
+
+/// Reference dynamics by what leads the agents.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReferenceFamily {
+    /// The consensus family (aa10), (a1), (a5), (24).
+    Consensus,
+    /// (3) and (23).
+    PureIntegral,
+    /// The baseline (aa6).
+    Backstepping,
+    /// (110), (119), (122) and swarm tracking.
+    Leader,
+    /// A target of every agent's own.
+    Target,
+    /// What agents say to each other, in a way of its own: reference dynamics from outside.
+    Own,
+}
+
+impl ReferenceFamily {
+    /// Whether agents are to reach a target or a leader, and not each other.
+    pub fn is_followed(self) -> bool {
+        match self {
+            ReferenceFamily::Leader | ReferenceFamily::Target => true,
+            ReferenceFamily::Consensus
+            | ReferenceFamily::PureIntegral
+            | ReferenceFamily::Backstepping
+            | ReferenceFamily::Own => false,
+        }
+    }
+}
+
+/// Reference dynamics that run, by what their agents exchange.
+#[derive(Clone)]
+pub enum Dynamics {
+    /// Positions.
+    Position(Arc<dyn Reference<Exchange = Position>>),
+    /// Positions and velocities.
+    PositionVelocity(Arc<dyn Reference<Exchange = PositionVelocity>>),
+}
+
+impl Dynamics {
+    /// Of agents that exchange positions.
+    pub fn position(reference: impl Reference<Exchange = Position>) -> Dynamics {
+        Dynamics::Position(Arc::new(reference))
+    }
+
+    /// Of agents that exchange positions and velocities.
+    pub fn position_velocity(reference: impl Reference<Exchange = PositionVelocity>) -> Dynamics {
+        Dynamics::PositionVelocity(Arc::new(reference))
+    }
+}
