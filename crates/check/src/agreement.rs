@@ -115,7 +115,7 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     if setup.following().is_some() {
         return Err(NoPrediction::Leader);
     }
-    if setup.tracks() || setup.agents.iter().any(|agent| !is_lagrangian(agent)) {
+    if setup.all_track() || setup.agents.iter().any(|agent| !is_lagrangian(agent)) {
         return Err(NoPrediction::Law);
     }
     if !(setup.reference.is::<Consensus>() || setup.reference.is::<PureIntegral>()) {

@@ -45,8 +45,7 @@ pub(crate) fn leader_reaches_all(setup: &Setup) -> Hypothesis {
     let evidence = match network.schedule.window(network.agents, setup.time.end_s) {
         Window::Uniform { length_s, for_all_time, .. } => GraphEvidence::Reached { length_s, for_all_time },
         Window::Missing { start_s, closed_groups } => {
-            let leader = setup.agents.len();
-            let cut = closed_groups.iter().find(|group| !group.contains(&leader));
+            let cut = closed_groups.iter().find(|group| setup.leader().is_none_or(|leader| !group.contains(&leader)));
             let closed_group = cut.map_or_else(Vec::new, |group| Named::all(setup, group));
             GraphEvidence::Unreached { start_s, closed_group }
         }
@@ -85,8 +84,8 @@ pub(crate) fn fixed_graph(setup: &Setup) -> Hypothesis {
 
 /// The edges among agents, without those from the leader.
 pub(crate) fn mutual_weights(setup: &Setup) -> Hypothesis {
-    let agents = setup.agents.len();
-    let among = |edge: &&Edge| edge.from < agents && edge.to < agents;
+    let leader = setup.leader();
+    let among = |edge: &&Edge| Some(edge.from) != leader && Some(edge.to) != leader;
     let one_way = setup.network.schedule.graphs.iter().find_map(|graph| {
         let returned = |edge: &Edge| {
             graph.iter().any(|back| back.from == edge.to && back.to == edge.from && back.weight == edge.weight)

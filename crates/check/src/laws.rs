@@ -33,7 +33,7 @@ pub(crate) fn claim(setup: &Setup) -> Option<Claim> {
     if treated.len() < 2 {
         return kind_of(setup.agents.first()?).claim(setup);
     }
-    Some(if setup.tracks() {
+    Some(if setup.all_track() {
         Claim { theorem: Theorem::Targets, promises: "every agent reaches its own target".into() }
     } else {
         Claim {
@@ -79,13 +79,15 @@ fn ends_a_run(hypothesis: &Hypothesis) -> bool {
 /// Agents that agree with each other should fall under one theorem.
 fn one_kind(setup: &Setup) -> Option<Hypothesis> {
     let treated = treated(setup);
-    let mixture = treated.len() > 1 && !setup.tracks();
+    let mixture = treated.len() > 1 && !setup.all_track();
     mixture.then(|| Hypothesis::new(Id::OneKind, KindEvidence::Mixture(treated)))
 }
 
 /// Where the agents are treated, each place once.
 fn treated(setup: &Setup) -> Vec<&'static str> {
-    let mut treated: Vec<&str> = setup.agents.iter().map(|agent| kind_of(agent).treated(agent)).collect();
+    // Who leads does not agree with anybody.
+    let led = setup.agents.iter().enumerate().filter(|(agent, _)| setup.leader() != Some(*agent));
+    let mut treated: Vec<&str> = led.map(|(_, agent)| kind_of(agent).treated(agent)).collect();
     treated.sort_unstable();
     treated.dedup();
     treated

@@ -58,7 +58,7 @@ pub struct SampledAdaptation {
 /// [`SampledAdaptation`] of a setup under digital control; `None` when no agent under (6)–(7) adapts, and where robots follow targets
 /// of their own: there both are of one sample.
 pub fn sampled_adaptation(setup: &Setup) -> Option<SampledAdaptation> {
-    let control = setup.control.as_ref().filter(|_| !setup.tracks())?;
+    let control = setup.control.as_ref()?;
     let period_s = 1.0 / control.sample_hz;
     let dz = setup.following().map_or(0.0, |following| following.gain);
     let value = |(agent, own): (usize, &AgentSetup)| {
@@ -73,7 +73,8 @@ pub fn sampled_adaptation(setup: &Setup) -> Option<SampledAdaptation> {
         let value = period_s * largest(&model.mass, &(damping(own, &model)? + 0.5 * period_s * learns))?;
         Some(SampledAdaptation { value, agent })
     };
-    setup.agents.iter().enumerate().filter_map(value).max_by(|a, b| a.value.total_cmp(&b.value))
+    let followers = setup.agents.iter().enumerate().filter(|(agent, _)| !setup.tracks(*agent));
+    followers.filter_map(value).max_by(|a, b| a.value.total_cmp(&b.value))
 }
 
 /// λ_max(M⁻¹K) at the start, 1/s.

@@ -7,18 +7,19 @@ use std::sync::Arc;
 
 use common::kinds::{formula, power_of_time};
 use common::{About, axis, edge};
-use forwardstep_check::{Answer, Report, check, sampled_adaptation};
+use forwardstep_check::{Answer, Id, Report, Theorem, check, sampled_adaptation};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::reference::Choice;
 use forwardstep_core::robot::PointMass;
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
-use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
+use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::{Path, Sinusoid, Spline, Trajectory};
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Axis, AxisUnit, Control, Exchange, Known, Network, RobotSetup, Setup, Solver, Start, TimeSpan,
+    Adaptive, AgentSetup, Axis, AxisUnit, Control, Exchange, Known, Network, RobotSetup, Setup, Solver, Start,
+    TimeSpan, validate,
 };
 
 fn mass(index: usize) -> AgentSetup {
@@ -43,7 +44,7 @@ fn mass(index: usize) -> AgentSetup {
 /// Two masses in a row behind the leader, vertex 2, which moves along `path`.
 fn setup(design: FollowingDesign, path: Path, gain: f64) -> Setup {
     let following = Following {
-        leader: Leader { name: "leader".into(), trajectory: Trajectory::new(vec![path]).unwrap() },
+        leader: Leading::Motion(Leader { name: "leader".into(), trajectory: Trajectory::new(vec![path]).unwrap() }),
         design,
         alpha: 1.0,
         beta: 2.0,
@@ -53,7 +54,7 @@ fn setup(design: FollowingDesign, path: Path, gain: f64) -> Setup {
     };
     Setup {
         agents: vec![mass(1), mass(2)],
-        reference: (Arc::new(following)),
+        reference: Arc::new(following),
         exchange: Exchange::PositionVelocity,
         network: Network {
             agents: 3,
@@ -248,5 +249,67 @@ fn eq_held_adaptation_is_stable_as_long_as_its_number_is_below_two() {
         assert_eq!(s.abs() < 1.0, found.value < 2.0, "{adaptation}: {} {s}", found.value);
         let said = check(&setup).hypotheses.iter().any(|hypothesis| hypothesis.because().contains("let Γ be smaller"));
         assert_eq!(said, found.value > 2.0);
+    }
+}
+
+/// The same with an agent in front, which follows the path.
+fn led_by_agent(design: FollowingDesign, path: Path) -> Setup {
+    let mut setup = setup(design, path.clone(), 3.0);
+    let mut pilot = mass(3);
+    pilot.roots_per_s = vec![2.0];
+    pilot.target = Some(Trajectory::new(vec![path]).unwrap());
+    setup.agents.insert(0, pilot);
+    setup.network.schedule = Schedule::fixed(vec![edge(0, 1, 1.0, 0), edge(1, 2, 1.0, 0)]);
+    assert!(setup.change_reference(|following: &mut Following| following.leader = Leading::Agent(0)));
+    validate(&setup).unwrap();
+    setup
+}
+
+#[test]
+fn thm8_of_an_agent_that_leads_gamma_is_watched_and_its_own_hypotheses_are_listed() {
+    let report = check(&led_by_agent(FollowingDesign::Continuous, wave()));
+    let of = |id: Id| report.hypotheses.iter().find(|hypothesis| hypothesis.id == id).map(|found| found.answer());
+    assert_eq!(report.theorem, Theorem::Theorem8);
+    assert!(report.promises.contains("follows mass-3"), "{}", report.promises);
+    assert_eq!([of(Id::BoundedLeader), of(Id::SignGain)], [Some(Answer::Watched); 2]);
+    assert_eq!([of(Id::LeaderReachesAll), of(Id::BoundedTarget), of(Id::RealRoots)], [Some(Answer::Holds); 3]);
+    // Of a leader that is a motion there is no target.
+    let alone = check(&setup(FollowingDesign::Continuous, wave(), 3.0));
+    assert!(alone.hypotheses.iter().all(|hypothesis| !matches!(hypothesis.id, Id::BoundedTarget | Id::RealRoots)));
+    // A target without bound is the leader's own trouble.
+    let climbing = power_of_time(1.0, 2.0);
+    let report = check(&led_by_agent(FollowingDesign::Continuous, climbing));
+    let bounded = report.hypotheses.iter().find(|hypothesis| hypothesis.id == Id::BoundedTarget).unwrap();
+    assert_eq!(bounded.answer(), Answer::HoldsOnHorizon);
+}
+
+#[test]
+fn thm8_an_agent_that_does_not_reach_everybody_does_not_lead() {
+    let mut setup = led_by_agent(FollowingDesign::Continuous, wave());
+    setup.network.schedule = Schedule::fixed(vec![edge(0, 1, 1.0, 0)]);
+    let report = check(&setup);
+    let reached = report.hypotheses.iter().find(|hypothesis| hypothesis.id == Id::LeaderReachesAll).unwrap();
+    assert_eq!(reached.answer(), Answer::Violated);
+    assert!(reached.because().contains("mass-2") && !reached.because().contains("mass-3"), "{}", reached.because());
+}
+
+#[test]
+fn swarm_tracking_behind_an_agent_is_judged_like_that_behind_a_motion() {
+    let swarm = FollowingDesign::Swarm { coupling: 40.0 };
+    let mutual = |front: usize, first: usize, second: usize| {
+        Schedule::fixed(vec![edge(front, first, 1.0, 0), edge(first, second, 1.0, 0), edge(second, first, 1.0, 0)])
+    };
+    let mut led = led_by_agent(swarm, wave());
+    led.network.schedule = mutual(0, 1, 2);
+    let mut following = setup(swarm, wave(), 3.0);
+    following.network.schedule = mutual(2, 0, 1);
+    for id in [Id::MutualWeights, Id::SwarmCoupling] {
+        let [of_agent, of_motion] = [&led, &following].map(|setup| {
+            let report = check(setup);
+            let found = report.hypotheses.iter().find(|hypothesis| hypothesis.id == id).unwrap();
+            (found.answer(), found.because())
+        });
+        assert_eq!(of_agent, of_motion, "{id:?}");
+        assert_eq!(of_agent.0, Answer::Holds, "{id:?}: {}", of_agent.1);
     }
 }

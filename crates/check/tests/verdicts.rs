@@ -21,7 +21,7 @@ use forwardstep_core::sampled::SafeCommand;
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
-use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
+use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{Adaptive, Control, Exchange, Known, RotorcraftModel, Setup, ThrustKind};
@@ -110,7 +110,7 @@ fn eq_aa6_a_derivative_that_a_filter_estimates_is_not_covered() {
 fn led(schedule: Schedule, design: FollowingDesign, [alpha, beta]: [f64; 2]) -> Setup {
     let mut setup = pair([constant(0.0), constant(0.0)]);
     let trajectory = Trajectory::new(vec![rest_at(0.0), rest_at(0.0)]).unwrap();
-    let leader = Leader { name: "leader".into(), trajectory };
+    let leader = Leading::Motion(Leader { name: "leader".into(), trajectory });
     let following = Following { leader, design, alpha, beta, gain: 1.0, choice: Choice::Implicit, period_s: 1e-3 };
     setup.reference = Arc::new(following);
     setup.exchange = Exchange::PositionVelocity;

@@ -171,4 +171,5 @@ shipped! {
     immersion_and_invariance: "immersion-and-invariance",
     saturated_coupling: "saturated-coupling",
     five_ships: "five-ships",
+    pilot_ship: "pilot-ship",
 }

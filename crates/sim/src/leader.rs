@@ -1,7 +1,7 @@
 //! A leader and how it is followed, as plain data.
 //!
-//! The leader is the last vertex of the network. It has a motion and no robot, says its position and its velocity like
-//! everybody else, and has no neighbours.
+//! The leader has a motion and no robot, and is then the last vertex of the network; or it is an agent, which follows a target of
+//! its own. It says its position and its velocity like everybody else, and has no neighbours.
 
 use forwardstep_core::LengthError;
 use forwardstep_core::reference::{self, Choice, Derived, Sliding, SmoothFollowing};
@@ -9,11 +9,20 @@ use forwardstep_core::reference::{self, Choice, Derived, Sliding, SmoothFollowin
 use crate::closed_loop::{Assembly, SetupError};
 use crate::quantity::{MOST_EVENTS, QuantityError, few, positive};
 use crate::reference::{Dynamics, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords, Roots};
-use crate::setup::{Exchange, Setup};
-use crate::system::Known;
+use crate::setup::{AgentSetup, Exchange, Setup};
+use crate::system::{Known, PositionKind};
 use crate::trajectory::Trajectory;
 
 /// What everybody follows.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Leading {
+    /// A motion without a robot.
+    Motion(Leader),
+    /// An agent of the network, by its number: it follows its target, and the others follow it.
+    Agent(usize),
+}
+
+/// A motion that leads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Leader {
     /// Its name, used in tables and messages.
@@ -42,8 +51,8 @@ pub enum FollowingDesign {
 /// A leader, and the design with its gains, which all agents share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Following {
-    /// The leader.
-    pub leader: Leader,
+    /// What is followed.
+    pub leader: Leading,
     /// (110), (119), (122) or swarm tracking.
     pub design: FollowingDesign,
     /// α: 1/s in (110), 1/s² in (119) and (122).
@@ -59,6 +68,14 @@ pub struct Following {
 }
 
 impl Following {
+    /// The motion that is followed, if it is not that of an agent.
+    pub fn motion(&self) -> Option<&Leader> {
+        match &self.leader {
+            Leading::Motion(leader) => Some(leader),
+            Leading::Agent(_) => None,
+        }
+    }
+
     /// The sign as the reference dynamics have it.
     pub fn sliding(&self) -> Sliding {
         let (derived, beta) = match self.design {
@@ -105,9 +122,9 @@ impl Following {
         }
     }
 
-    /// A bound of its size from 0 to `end_s`, or for ever; infinite where nothing could be shown.
+    /// A bound of its size from 0 to `end_s`, or for ever; infinite where nothing could be shown, as of an agent that leads.
     pub fn drive_bound(&self, end_s: Option<f64>) -> f64 {
-        let trajectory = &self.leader.trajectory;
+        let Some(Leader { trajectory, .. }) = self.motion() else { return f64::INFINITY };
         let drive = self.drive();
         (0..trajectory.axes()).map(|axis| trajectory.bounds(axis, &drive, end_s).size()).fold(0.0, f64::max)
     }
@@ -142,16 +159,27 @@ impl ReferenceDynamics for Following {
 
     fn check(&self, setup: &Setup) -> Result<(), SetupError> {
         self.numbers(setup.time.end_s, setup.control.is_some())?;
-        let (leader, axes) = (&self.leader, setup.agents.first().map_or(0, |agent| agent.robot.axes.len()));
-        LengthError::check("the leader's trajectory", axes, leader.trajectory.axes())
-            .map_err(|error| SetupError::Length { agent: leader.name.clone(), error })?;
-        let told = self.sliding().told() > 0 && setup.control.is_none();
+        let told = self.sliding().told() > 0;
+        let vertex = match &self.leader {
+            Leading::Motion(leader) => {
+                let axes = setup.agents.first().map_or(0, |agent| agent.robot.axes.len());
+                LengthError::check("the leader's trajectory", axes, leader.trajectory.axes())
+                    .map_err(|error| SetupError::Length { agent: leader.name.clone(), error })?;
+                setup.agents.len()
+            }
+            Leading::Agent(index) => {
+                let (agent, agents) = (*index, setup.agents.len());
+                let own = setup.agents.get(agent).ok_or(SetupError::NoAgent { agent, agents })?;
+                leads(own, told && setup.control.is_some())?;
+                agent
+            }
+        };
         for edge in setup.network.schedule.graphs.iter().flatten() {
-            if edge.to == setup.agents.len() {
-                return Err(SetupError::LeaderHears { leader: leader.name.clone() });
+            if edge.to == vertex {
+                return Err(SetupError::LeaderHears { leader: setup.vertex_name(vertex).to_owned() });
             }
             let delay_s = setup.network.delays.get(edge.delay).map_or(0.0, |delay| delay.max_s());
-            if told && delay_s > 0.0 {
+            if told && setup.control.is_none() && delay_s > 0.0 {
                 return Err(SetupError::DelayedDerived { delay_s });
             }
         }
@@ -170,4 +198,18 @@ impl ReferenceDynamics for Following {
             }
         })
     }
+}
+
+/// Whether an agent can lead: it says a position and a velocity for every axis, and, where controllers that sample hear
+/// accelerations, one that nobody measures.
+fn leads(own: &AgentSetup, samples_accelerations: bool) -> Result<(), SetupError> {
+    let robot = own.robot.interface();
+    let why = if robot.velocity_len != own.robot.axes.len() || robot.position == PositionKind::UnitQuaternion {
+        "its robot has not a velocity for every axis"
+    } else if samples_accelerations {
+        "its acceleration would have to be sampled, which nothing measures; take the design `continuous`, or continuous time"
+    } else {
+        return Ok(());
+    };
+    Err(SetupError::CannotLead { agent: own.name.clone(), why })
 }

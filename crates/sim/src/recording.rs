@@ -185,10 +185,23 @@ pub struct Statistics {
     /// The largest rest of the inclusions that set-valued signs solve, where they are solved for, in the unit of what the
     /// sign is taken of.
     pub sign_residual: Option<f64>,
+    /// What drove an agent that leads the others.
+    pub drive: Option<Drive>,
     /// Steps of sampled controllers that failed, so that a safe command stood.
     pub failed_steps: u64,
     /// Time spent, if whoever ran it measured it: nothing in the library reads a clock.
     pub wall: Option<Duration>,
+}
+
+/// What drives an agent that leads away from those that follow it: ξ̇₀, or d³q₀ for a swarm. γ must exceed it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drive {
+    /// Its largest size at the end of any step, on any axis. Third derivatives are differences from step to step.
+    pub peak: f64,
+    /// When that was, s.
+    pub peak_s: f64,
+    /// When it was γ or more for the last time, s; `None` for never.
+    pub exceeds_until_s: Option<f64>,
 }
 
 /// How far a run has come, for progress displays.

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use forwardstep_core::sampled::SafeCommand;
 
-use crate::leader::{Following, FollowingDesign};
+use crate::leader::{Following, FollowingDesign, Leading};
 use crate::network::Network;
 use crate::push::Push;
-use crate::reference::{ReferenceDynamics, ReferenceFamily};
+use crate::reference::{ReferenceDynamics, ReferenceFamily, Tracking};
 use crate::system::{Interface, Law, Robot, RobotInterface};
 use crate::trajectory::Trajectory;
 
@@ -36,8 +36,26 @@ impl Setup {
         self.reference.downcast()
     }
 
+    /// The vertex of the leader, if there is one.
+    pub fn leader(&self) -> Option<usize> {
+        self.following().map(|following| match following.leader {
+            Leading::Motion(_) => self.agents.len(),
+            Leading::Agent(agent) => agent,
+        })
+    }
+
+    /// What leads an agent, by its number: what leads all of them, but for an agent that leads the others, which follows a target.
+    pub fn reference_of(&self, agent: usize) -> &dyn ReferenceDynamics {
+        if self.leader() == Some(agent) { &Tracking } else { &*self.reference }
+    }
+
+    /// Whether an agent follows a target of its own.
+    pub fn tracks(&self, agent: usize) -> bool {
+        self.reference_of(agent).interface().family == ReferenceFamily::Target
+    }
+
     /// Whether every agent follows a target of its own.
-    pub fn tracks(&self) -> bool {
+    pub fn all_track(&self) -> bool {
         self.reference.interface().family == ReferenceFamily::Target
     }
 
@@ -69,7 +87,7 @@ impl Setup {
 
     /// The name of a vertex of the network.
     pub fn vertex_name(&self, vertex: usize) -> &str {
-        let leader = || self.following().map_or("", |following| &following.leader.name);
+        let leader = || self.following().and_then(Following::motion).map_or("", |leader| &leader.name);
         self.agents.get(vertex).map_or_else(leader, |agent| &agent.name)
     }
 }

@@ -59,6 +59,7 @@ pub fn simulate_samples(
         match integrator.advance(&mut closed_loop) {
             Ok(None) => break Ending::Completed,
             Ok(Some(step)) => {
+                closed_loop.reached(step.end_s);
                 if let Some(breakdown) = recorder.record(&mut integrator, &mut closed_loop, step) {
                     break Ending::BrokeDown(breakdown);
                 }
@@ -82,6 +83,7 @@ pub fn simulate_samples(
     };
     let mut statistics = integrator.statistics();
     statistics.sign_residual = closed_loop.sign_residual();
+    statistics.drive = closed_loop.drive();
     statistics.failed_steps = closed_loop.failed_steps();
     Ok(Outcome { recording: recorder.recording, ending, statistics })
 }

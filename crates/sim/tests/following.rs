@@ -71,12 +71,12 @@ fn eq_114_to_118_without_s_the_farthest_comes_closer_by_the_margin_of_the_gain()
     }
     let outcome = run(&problem);
     let alpha = following.alpha;
-    let driven = following.leader.trajectory.bounds(0, &[0.0, alpha, 1.0, 0.0, 0.0], None);
+    let driven = following.motion().unwrap().trajectory.bounds(0, &[0.0, alpha, 1.0, 0.0, 0.0], None);
     let margin = following.gain - driven.high.max(-driven.low);
     assert!(margin > 0.5, "{margin}");
     let farthest = |row: usize| {
         let mut leader = [[0.0; 5]];
-        following.leader.trajectory.jets(outcome.recording.t_s[row], &mut leader);
+        following.motion().unwrap().trajectory.jets(outcome.recording.t_s[row], &mut leader);
         let away = |agent| {
             let velocity = column(&outcome, agent, Signal::Velocity, 0)[row] - leader[0][1];
             (velocity + alpha * column(&outcome, agent, Signal::Error, 0)[row]).abs()

@@ -12,7 +12,7 @@ use forwardstep_core::reference::Choice;
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
-use forwardstep_sim::leader::{Following, FollowingDesign};
+use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::trajectory::{Path, Trajectory, TrajectoryError};
 use forwardstep_sim::{Method, Outcome, Setup, SetupError, Signal, ThrustKind, simulate};
@@ -32,7 +32,8 @@ fn along(axes: Vec<Expression>) -> Trajectory {
 
 fn led_along(design: FollowingDesign, path: Expression, end_s: f64) -> Setup {
     let mut setup = masses(design);
-    assert!(setup.change_reference(|following: &mut Following| following.leader.trajectory = along(vec![path])));
+    assert!(setup.change_reference(|following: &mut Following| following.leader =
+        Leading::Motion(Leader { name: "leader".into(), trajectory: along(vec![path]) })));
     setup.time.end_s = end_s;
     setup
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::coupling::Coupling;
-use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
+use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
 use forwardstep_sim::quantity::positive;
 use forwardstep_sim::trajectory::{Path, Trajectory};
 use forwardstep_sim::{
@@ -37,7 +37,7 @@ fn at_zero() -> Trajectory {
 
 fn following(change: &dyn Fn(&mut Following)) -> impl Fn(&mut Setup) + use<> {
     let mut following = Following {
-        leader: Leader { name: "leader".into(), trajectory: at_zero() },
+        leader: Leading::Motion(Leader { name: "leader".into(), trajectory: at_zero() }),
         design: FollowingDesign::Swarm { coupling: 1.0 },
         alpha: 1.0,
         beta: 1.0,

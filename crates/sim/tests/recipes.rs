@@ -6,6 +6,7 @@
 mod cases;
 mod common;
 
+use forwardstep_sim::leader::Following;
 use forwardstep_sim::reference::Consensus;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -106,10 +107,11 @@ impl<'a> Replay<'a> {
             controller.message(t_s, &log[row].measured, &mut message).unwrap();
             messages.push(message);
         }
-        if let Some(following) = self.setup.following() {
-            let (m, len) = (following.leader.trajectory.axes(), messages[0].len());
+        // An agent that leads has said its own.
+        if let Some(leader) = self.setup.following().and_then(Following::motion) {
+            let (m, len) = (leader.trajectory.axes(), messages[0].len());
             let mut jets = vec![[0.0; 5]; m];
-            following.leader.trajectory.jets(t_s, &mut jets);
+            leader.trajectory.jets(t_s, &mut jets);
             messages.push((0..len).map(|k| jets[k % m][k / m]).collect());
         }
         messages

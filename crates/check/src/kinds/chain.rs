@@ -31,7 +31,7 @@ impl KindCheck for Chain {
         let all: Vec<usize> = (0..setup.agents.len()).collect();
         let mut steps: Vec<&str> = chains(setup, &all).map(|(_, law, _)| law.words().name).collect();
         steps.dedup();
-        Some(if setup.tracks() {
+        Some(if setup.all_track() {
             Claim {
                 theorem: Theorem::ChainsTrack(steps),
                 promises: "x − x_d → 0 with its derivatives below the order of the plant".into(),

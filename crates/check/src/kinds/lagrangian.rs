@@ -28,7 +28,7 @@ impl KindCheck for LagrangianRobot {
     }
 
     fn claim(&self, setup: &Setup) -> Option<Claim> {
-        setup.tracks().then(|| Claim {
+        setup.all_track().then(|| Claim {
             theorem: Theorem::RobotsTrack,
             promises: "every robot reaches its target: q − q_d → 0 and dq − dq_d → 0".into(),
         })
@@ -38,7 +38,8 @@ impl KindCheck for LagrangianRobot {
         let known = agents.iter().filter(|agent| setup.agents[**agent].law.is::<Known>()).count();
         let gains = Hypothesis::new(Id::PositiveGains, LoopEvidence::Gains { known, agents: agents.len() });
         let from_outside = agents.iter().filter(|agent| !is_shipped(&setup.agents[**agent]));
-        let roots = setup.tracks().then(|| real_roots(setup, agents));
+        let tracking: Vec<usize> = agents.iter().copied().filter(|agent| setup.tracks(*agent)).collect();
+        let roots = (!tracking.is_empty()).then(|| real_roots(setup, &tracking));
         from_outside.map(|agent| three_properties(setup, *agent)).chain([gains]).chain(roots).collect()
     }
 

@@ -22,7 +22,7 @@ impl KindCheck for PositionOnlyMass {
     }
 
     fn claim(&self, setup: &Setup) -> Option<Claim> {
-        Some(if setup.tracks() {
+        Some(if setup.all_track() {
             Claim {
                 theorem: Theorem::PositionOnlyTracks,
                 promises: "x − x_d → 0 and dx − dx_d → 0 without a measured velocity".into(),

@@ -3,7 +3,7 @@
 use forwardstep_sim::Setup;
 use forwardstep_sim::leader::{Following, FollowingDesign};
 
-use super::own_targets::how_far;
+use super::own_targets::{self, how_far};
 use super::swarm;
 use crate::graphs::{fixed_graph, leader_reaches_all};
 use crate::hypothesis::{FollowingEvidence, Hypothesis, Id, MotionEvidence, Subject};
@@ -45,29 +45,38 @@ pub(super) fn check(setup: &Setup, following: &Following) -> Report {
     hypotheses.extend(bounded_weights(setup));
     hypotheses.push(sign(setup, following));
     hypotheses.extend(pushes_end(setup));
+    hypotheses.extend(own_targets::bounded(setup));
     hypotheses.extend(laws::hypotheses(setup));
     hypotheses.push(shared_design(setup, following));
     hypotheses.push(applied_torque(setup));
     hypotheses.extend(digital(setup));
-    let promises = format!("everybody follows {}: q_i − q_0 → 0 and dq_i − dq_0 → 0; {torque}", following.leader.name);
+    let leader = setup.leader().map_or("", |vertex| setup.vertex_name(vertex));
+    let promises = format!("everybody follows {leader}: q_i − q_0 → 0 and dq_i − dq_0 → 0; {torque}");
     Report { theorem, promises, hypotheses }
 }
 
 /// The derivatives of the leader that the theorem wants bounded.
 fn bounded_motion(setup: &Setup, following: &Following) -> Hypothesis {
-    let bounded = how_far(&following.leader.trajectory, 1..=3, setup.time.end_s);
-    Hypothesis::new(Id::BoundedLeader, MotionEvidence::Derivatives(bounded))
+    let evidence = match following.motion() {
+        Some(leader) => MotionEvidence::Derivatives(how_far(&leader.trajectory, 1..=3, setup.time.end_s)),
+        None => MotionEvidence::OfAgent,
+    };
+    Hypothesis::new(Id::BoundedLeader, evidence)
 }
 
 /// γ against sup |ξ̇₀|∞.
 fn gain(setup: &Setup, following: &Following) -> Hypothesis {
     let end_s = setup.time.end_s;
-    let evidence = FollowingEvidence::Gain {
-        gamma: following.gain,
-        seen: following.leader.trajectory.sampled_peak(&following.drive(), end_s, LOOKS),
-        on_run: following.drive_bound(Some(end_s)),
-        for_ever: following.drive_bound(None),
-        end_s,
+    let gamma = following.gain;
+    let evidence = match following.motion() {
+        Some(leader) => FollowingEvidence::Gain {
+            gamma,
+            seen: leader.trajectory.sampled_peak(&following.drive(), end_s, LOOKS),
+            on_run: following.drive_bound(Some(end_s)),
+            for_ever: following.drive_bound(None),
+            end_s,
+        },
+        None => FollowingEvidence::GainOverAgent { gamma },
     };
     Hypothesis::about(Id::SignGain, Subject::Drive(following.design), evidence)
 }
@@ -83,6 +92,8 @@ fn sign(setup: &Setup, following: &Following) -> Hypothesis {
 /// α and β are common by what a scenario can say; what is slow is said here.
 fn shared_design(setup: &Setup, following: &Following) -> Hypothesis {
     let accelerations = following.design == FollowingDesign::Differentiable;
-    let slow = accelerations && setup.agents.iter().any(starts_from_zero);
+    let follows = |agent: &usize| !setup.tracks(*agent);
+    let followers = (0..setup.agents.len()).filter(follows);
+    let slow = accelerations && followers.map(|agent| &setup.agents[agent]).any(starts_from_zero);
     Hypothesis::new(Id::SharedDesign, FollowingEvidence::Shared { slow })
 }

@@ -31,18 +31,18 @@ pub(super) fn check(setup: &Setup) -> Report {
 /// Whether the targets, or the offsets, are bounded with as many derivatives as the laws need. Agents with the same answer
 /// share a hypothesis.
 pub(super) fn bounded(setup: &Setup) -> Vec<Hypothesis> {
-    let tracking = setup.tracks();
-    // A formation may travel: of an offset only the derivatives count.
-    let lowest = if tracking { 0 } else { 1 };
-    let mut groups: BTreeMap<(usize, Bounded), Vec<Named>> = BTreeMap::new();
+    let mut groups: BTreeMap<(usize, Bounded, bool), Vec<Named>> = BTreeMap::new();
     for (index, agent) in setup.agents.iter().enumerate() {
         if let Some(target) = &agent.target {
             let needed = kind_of(agent).target_derivatives(agent).min(MOST_DERIVATIVES);
+            let tracking = setup.tracks(index);
+            // A formation may travel: of an offset only the derivatives count.
+            let lowest = if tracking { 0 } else { 1 };
             let bounded = how_far(target, lowest..=needed, setup.time.end_s);
-            groups.entry((needed, bounded)).or_default().push(Named::of(setup, index));
+            groups.entry((needed, bounded, tracking)).or_default().push(Named::of(setup, index));
         }
     }
-    let hypothesis = |((derivatives, bounded), agents): ((usize, Bounded), Vec<Named>)| {
+    let hypothesis = |((derivatives, bounded, tracking), agents): ((usize, Bounded, bool), Vec<Named>)| {
         let subject =
             if tracking { Subject::Targets { agents, derivatives } } else { Subject::Offsets { agents, derivatives } };
         Hypothesis::about(Id::BoundedTarget, subject, MotionEvidence::Derivatives(bounded))

@@ -26,14 +26,16 @@ fn coupled(setup: &Setup, following: &Following, coupling: f64) -> FollowingEvid
     }
     let kappa = 0.5 * (beta - root.max(0.0).sqrt());
     let least = beta + kappa * kappa * kappa * kappa / (2.0 * (beta * beta - alpha) * (beta - kappa));
-    let n = setup.agents.len();
+    let vertices = setup.network.agents;
+    let followers: Vec<usize> = (0..vertices).filter(|vertex| setup.leader() != Some(*vertex)).collect();
+    let n = followers.len();
     let Some(edges) = setup.network.schedule.constant_graph() else { return FollowingEvidence::GraphSwitches };
-    let Some(all) = laplacian(setup.network.agents, edges) else { return FollowingEvidence::WeightVaries };
+    let Some(all) = laplacian(vertices, edges) else { return FollowingEvidence::WeightVaries };
     let mut shifted = Vec::with_capacity(n * n);
-    for row in 0..n {
-        for column in 0..n {
+    for row in &followers {
+        for column in &followers {
             let shift = if row == column { least / coupling } else { 0.0 };
-            shifted.push(all[row * setup.network.agents + column] - shift);
+            shifted.push(all[row * vertices + column] - shift);
         }
     }
     match Gain::Matrix(shifted).resolve(n, &[]) {

@@ -48,7 +48,7 @@ impl<C: Controller> Assemble for Feedback<C> {
             stepped.start_at(state)?;
         }
         stepped.check()?;
-        let transmitted = C::Exchange::CHANNELS * self.axes;
+        let transmitted = C::Exchange::CHANNELS.max(recipe.transmits) * self.axes;
         let reads = |signal| self.controller.reads(signal);
         Ok(Box::new(SampledFeedback {
             axes: self.axes,
@@ -96,6 +96,9 @@ impl<C: Controller> SampledFeedback<C> {
                 *jet = target.motion().jet(axis, now_s);
             }
         }
+        // Others may be told more than this law hears.
+        let heard = (C::Exchange::CHANNELS * self.axes).min(inbox.sums.len());
+        let inbox = Inbox { sums: &inbox.sums[..heard], ..inbox };
         self.asked.copy_from_slice(self.stepped.step(now_s, self.sensing.output(), inbox, &self.jets)?);
         self.sensing.accept(now_s)?;
         if let Some(Trouble::Vanishes { signal, axis, value, floor }) = self.stepped.trouble() {

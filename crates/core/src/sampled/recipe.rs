@@ -59,6 +59,9 @@ pub struct Recipe {
     pub target: Option<Target>,
     /// How the state begins; by default the first sample sets it.
     pub start: StartState,
+    /// How many vectors of what it measures a message holds, position first: what the law exchanges, or more; for one that others
+    /// follow, who hear more than it does.
+    pub transmits: usize,
     /// What is commanded when a step fails; by default the last command.
     pub safe: SafeCommand,
 }
@@ -228,7 +231,7 @@ impl Recipe {
     /// Whatever `law` assembles.
     pub fn new(law: Arc<dyn Assemble>) -> Self {
         let start = StartState::FirstSample { wanted: Vec::new() };
-        Recipe { law, limits: None, filter: None, target: None, start, safe: SafeCommand::HoldLast }
+        Recipe { law, limits: None, filter: None, target: None, start, transmits: 0, safe: SafeCommand::HoldLast }
     }
 
     /// A robot under (6)–(7) with `reference` for one agent; `theta_hat` is ϑ̂(0), or ϑ when `law` does not adapt.

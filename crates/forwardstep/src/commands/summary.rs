@@ -6,10 +6,19 @@ use comfy_table::{ContentArrangement, Table, presets};
 use forwardstep::check::Report;
 use forwardstep::io::output::names::{agent_name, gap_unit, torque_words, unit};
 use forwardstep::io::output::{Disagreement, Gap, Metrics, RunRecord};
-use forwardstep::sim::{Setup, Signal};
+use forwardstep::sim::{Drive, Setup, Signal};
 
 use super::progress::speed;
 use super::promise::list;
+
+/// What drove an agent that leads, beside γ.
+fn driven(Drive { peak, peak_s, exceeds_until_s }: Drive, gamma: f64) -> String {
+    let until = match exceeds_until_s {
+        None => format!("below γ = {gamma} all the time"),
+        Some(until_s) => format!("γ = {gamma} or more until {until_s:.2} s"),
+    };
+    format!("driven by {} at most, at {peak_s:.2} s; {until}", short(peak))
+}
 
 /// A few lines: what was promised, what happened, what it cost, and where it is.
 pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, files: &[PathBuf]) -> String {
@@ -43,6 +52,9 @@ pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, 
         rows.push(("cost of going digital", gap));
     }
     let statistics = &outcome.statistics;
+    if let (Some(drive), Some(following)) = (statistics.drive, setup.following()) {
+        rows.push(("leader", driven(drive, following.gain)));
+    }
     let steps = format!("{}, {} of them to break-points", statistics.steps, statistics.break_points);
     rows.push(("steps", format!("{steps}; {} rejected", statistics.rejected)));
     if let Some(wall_s) = statistics.wall.map(|wall| wall.as_secs_f64()) {

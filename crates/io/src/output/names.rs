@@ -133,7 +133,7 @@ fn turns(setup: &Setup, agent: usize) -> bool {
 
 /// What is to vanish: distances from targets, or between agents.
 fn gap_signal(setup: &Setup) -> Signal {
-    if setup.tracks() { Signal::Error } else { Signal::Position }
+    if setup.all_track() { Signal::Error } else { Signal::Position }
 }
 
 /// The unit of what is to vanish in a run: of the distances between agents, or from their targets. Nothing for pure numbers;

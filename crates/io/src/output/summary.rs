@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use forwardstep_check::{Answer, Report};
 use forwardstep_sim::recording::{
-    Breakdown, BreakdownCause, Column, Ending, GainRates, Recording, Statistics, Stiffness,
+    Breakdown, BreakdownCause, Column, Drive, Ending, GainRates, Recording, Statistics, Stiffness,
 };
 use forwardstep_sim::setup::Setup;
 use serde::{Deserialize, Serialize};
@@ -311,6 +311,20 @@ pub struct Solver {
     /// The largest rest of the inclusions that set-valued signs solve; absent where none are solved for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sign_residual: Option<f64>,
+    /// What drove an agent that leads the others; absent where none does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub leader_drive: Option<LeaderDrive>,
+}
+
+/// What drove an agent that leads away from those that follow it, in the unit of γ.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LeaderDrive {
+    /// Its largest size on any axis.
+    pub peak: f64,
+    /// When that was, s.
+    pub peak_s: f64,
+    /// When it was γ or more for the last time, s; null for never.
+    pub exceeds_until_s: Option<f64>,
 }
 
 /// Times that depend on the machine.
@@ -369,6 +383,10 @@ impl Summary {
                 break_points: statistics.break_points,
                 failed_steps: (statistics.failed_steps > 0).then_some(statistics.failed_steps),
                 sign_residual: statistics.sign_residual.filter(|residual| residual.is_finite()),
+                leader_drive: statistics.drive.filter(|drive| drive.peak.is_finite()).map(|drive| {
+                    let Drive { peak, peak_s, exceeds_until_s } = drive;
+                    LeaderDrive { peak, peak_s, exceeds_until_s }
+                }),
             },
             links: Link::all(&setup.network),
             digital: record.digital.clone(),
@@ -380,10 +398,13 @@ impl Summary {
 
     /// What the run cost.
     pub(crate) fn statistics(&self) -> Statistics {
-        let Solver { steps, rejected, evaluations, break_points, failed_steps, sign_residual } = self.solver;
+        let Solver { steps, rejected, evaluations, break_points, failed_steps, sign_residual, leader_drive } =
+            self.solver;
+        let drive =
+            leader_drive.map(|LeaderDrive { peak, peak_s, exceeds_until_s }| Drive { peak, peak_s, exceeds_until_s });
         let wall = Duration::try_from_secs_f64(self.timings.wall_s).ok();
         let failed_steps = failed_steps.unwrap_or(0);
-        Statistics { steps, rejected, evaluations, break_points, sign_residual, failed_steps, wall }
+        Statistics { steps, rejected, evaluations, break_points, sign_residual, drive, failed_steps, wall }
     }
 
     /// Writes it as indented JSON.

@@ -3,7 +3,8 @@
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
-use forwardstep_sim::reference::Roots;
+use forwardstep_sim::leader::{Following, Leading as Led};
+use forwardstep_sim::reference::{ReferenceDynamics, Roots, Tracking};
 use forwardstep_sim::{ActuatorLimits, AgentSetup, PositionKind, RobotSetup};
 
 use super::at::At;
@@ -42,6 +43,11 @@ pub(super) struct Population<'a> {
 }
 
 impl Population<'_> {
+    /// The names that it stands for.
+    pub(super) fn names(&self) -> &[String] {
+        &self.names
+    }
+
     /// What the axes of its robots are called.
     pub(super) fn axis_names(&self) -> Vec<String> {
         axis_names(&self.read.robot)
@@ -189,7 +195,8 @@ impl Member<'_> {
             kind.spread(&mut read, &spread).map_err(|fault| fault.at(&entry.robot.span))?;
         }
         let RobotRead { robot, body, .. } = read;
-        let Design { roots_per_s, manipulability, free_derivatives } = design(reference, population, name)?;
+        let Design { roots_per_s, manipulability, free_derivatives } =
+            design(reference, population, (first + index, name))?;
         let place = entry.law.as_ref().or(file.law.as_ref()).map_or(&entry.robot.span, |law| &law.span);
         let law = kinds.build(law, &LawReader { agent: name, robot: &robot, body: &body, sharing });
         let law = law.map_err(|fault| fault.at(place))?;
@@ -309,16 +316,24 @@ pub(super) struct Leading {
 }
 
 /// The agent's own roots and gain, else those of all.
-fn design(reference: &Leading, population: &Population<'_>, agent: &str) -> Result<Design, Fault> {
-    let Leading { key: common, read, own_roots, span } = reference;
-    let interface = read.dynamics.interface();
+fn design(reference: &Leading, population: &Population<'_>, (index, agent): (usize, &str)) -> Result<Design, Fault> {
+    let Leading { key, read, own_roots, span } = reference;
+    let leads = read.dynamics.downcast().is_some_and(|following: &Following| following.leader == Led::Agent(index));
+    // Who leads follows a target, and has nothing in common with those that follow.
+    let (dynamics, roots_of_all, gain_of_all): (&dyn ReferenceDynamics, _, _) = if leads {
+        (&Tracking, None, None)
+    } else {
+        (&*read.dynamics, read.roots_per_s.as_ref(), read.manipulability_gain.as_ref())
+    };
+    let (common, own_roots) = if leads { (dynamics.words().key, true) } else { (*key, *own_roots) };
+    let interface = dynamics.interface();
     let own = population.reference.as_ref();
-    if let (Some(_), Some(at)) = (own.filter(|(key, _)| key != common), &population.file.reference) {
-        let problem = ScenarioProblem::ReferenceDiffers { agent: agent.to_owned(), common, own_roots: *own_roots };
+    if let (Some(_), Some(at)) = (own.filter(|(key, _)| *key != common), &population.file.reference) {
+        let problem = ScenarioProblem::ReferenceDiffers { agent: agent.to_owned(), common, own_roots };
         return Err(fault(at, problem));
     }
     let own = own.map(|(_, own)| own);
-    let list = own.and_then(|own| own.roots_per_s.as_ref()).or(read.roots_per_s.as_ref());
+    let list = own.and_then(|own| own.roots_per_s.as_ref()).or(roots_of_all);
     let roots_per_s = match list {
         Some(list) => roots(list)?,
         None if interface.roots == Roots::Every => {
@@ -331,11 +346,11 @@ fn design(reference: &Leading, population: &Population<'_>, agent: &str) -> Resu
         let problem = ValueProblem::UnknownKey { key: "manipulability_gain".into(), allowed: vec!["roots_per_s"] };
         return Err(fault(gain, problem));
     }
-    let manipulability = match own_gain.or(read.manipulability_gain.as_ref()) {
+    let manipulability = match own_gain.or(gain_of_all) {
         None => 0.0,
         Some(gain) if gain.value == 0.0 => 0.0,
         Some(gain) => positive("manipulability_gain", gain)?,
     };
-    let free_derivatives = read.dynamics.free_derivatives(roots_per_s.len());
+    let free_derivatives = dynamics.free_derivatives(roots_per_s.len());
     Ok(Design { free_derivatives, roots_per_s, manipulability })
 }

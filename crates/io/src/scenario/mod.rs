@@ -213,14 +213,15 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
     let from = agents::Source { file: &file, document: &document, kinds, text: source, end_s };
     let populations = agents::populations(&from, &mut folder)?;
     let axes = populations.first().map_or_else(Vec::new, |population| population.axis_names());
-    let leading = reference(&file, (&document, kinds), &axes, &mut folder)?;
+    let names: Vec<String> = populations.iter().flat_map(|population| population.names()).cloned().collect();
+    let leading = reference(&file, (&document, kinds), [&names, &axes], &mut folder)?;
     let mut read = agents::agents(&from, &populations, &leading, &mut folder, &mut notices)?;
     pushes::pushes(&file.external_wrenches, &mut read, end_s, source, &mut folder, &mut notices)?;
     let agents = read.agents;
-    let mut names: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
+    let mut names = names;
     let dynamics = leading.read.dynamics;
-    if let (Some(following), Some(place)) = (dynamics.downcast::<Following>(), &file.leader) {
-        let name = following.leader.name.clone();
+    if let (Some(leader), Some(place)) = (dynamics.downcast().and_then(Following::motion), &file.leader) {
+        let name = leader.name.clone();
         if names.contains(&name) {
             let first_line = file.agents.span.start;
             let (first_line, _) = source.line_column(first_line);
@@ -264,16 +265,16 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
     })
 }
 
-/// What produces the reference velocities of agents with these axes, and what is exchanged for it.
+/// What produces the reference velocities of agents with these names and axes, and what is exchanged for it.
 fn reference(
     file: &ScenarioFile,
     (document, kinds): (&Document<'_>, &Kinds),
-    axes: &[String],
+    names_and_axes: [&[String]; 2],
     folder: &mut InputFolder,
 ) -> Result<Leading, Fault> {
     let span = &file.reference.span;
     let (key, kind) = document.reference(kinds)?;
-    let mut reader = ReferenceReader::new(file, axes, file.time.end_s.value, folder);
+    let mut reader = ReferenceReader::new(file, names_and_axes, file.time.end_s.value, folder);
     let read = kind.read(&mut reader).map_err(|fault| fault.at(span))?;
     reader.refuse_unused(key)?;
     Ok(Leading { key, read, own_roots: kinds.agents_may_state(key), span: span.clone() })

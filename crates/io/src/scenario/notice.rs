@@ -76,8 +76,8 @@ impl Notice {
     /// Targets that lead axes beyond their position limits, one notice per axis.
     pub(super) fn targets_beyond_limits(setup: &Setup) -> Vec<Notice> {
         let end_s = setup.time.end_s;
-        let beyond = |agent: &AgentSetup| -> Vec<Notice> {
-            let follows = setup.tracks() && agent.interface().is_some_and(|law| law.coordinates.is_none());
+        let beyond = |(index, agent): (usize, &AgentSetup)| -> Vec<Notice> {
+            let follows = setup.tracks(index) && agent.interface().is_some_and(|law| law.coordinates.is_none());
             let Some(target) = agent.target.as_ref().filter(|_| follows) else { return Vec::new() };
             let mut jets = vec![[0.0; 5]; target.axes()];
             let mut first = vec![None; target.axes()];
@@ -101,7 +101,7 @@ impl Notice {
             };
             agent.robot.axes.iter().zip(first).filter_map(notice).collect()
         };
-        setup.agents.iter().flat_map(beyond).collect()
+        setup.agents.iter().enumerate().flat_map(beyond).collect()
     }
 
     /// Digital control whose period is too long for its gain K.

@@ -56,6 +56,7 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "immersion-and-invariance",
     "saturated-coupling",
     "five-ships",
+    "pilot-ship",
 ];
 
 /// The shipped scenario of this name.

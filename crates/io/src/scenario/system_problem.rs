@@ -27,6 +27,18 @@ pub enum SystemProblem {
     /// Followers without a leader.
     #[error("the agents are to follow a leader, but there is none")]
     NoLeader,
+    /// A leader that is an agent, with another name.
+    #[error("`{agent}` leads, and has a name already")]
+    LeaderNamedTwice {
+        /// The agent.
+        agent: String,
+    },
+    /// A motion and an agent.
+    #[error("there are two leaders, a motion and an agent")]
+    TwoLeaders,
+    /// A leader that goes nowhere.
+    #[error("a leader needs a `motion`, or an `agent`")]
+    NoMotion,
     /// A leader without followers.
     #[error("there is a leader, but `reference.{reference}` does not follow one")]
     LeaderUnused {
@@ -108,7 +120,12 @@ pub enum SystemProblem {
 impl SystemProblem {
     pub(super) fn help(&self) -> Option<String> {
         let text = match self {
-            SystemProblem::NoLeader => "add `[leader]` with a `motion`".into(),
+            SystemProblem::NoLeader => "add `[leader]` with a `motion`, or with the name of an `agent`".into(),
+            SystemProblem::LeaderNamedTwice { .. } => "leave `name` out".into(),
+            SystemProblem::TwoLeaders => {
+                "leave `motion` or `agent` out; an agent that leads follows its own `target`".into()
+            }
+            SystemProblem::NoMotion => "write where it is over time, or which agent leads".into(),
             SystemProblem::SignPeriodUnused { .. } | SystemProblem::HeadingUnused => "leave it out".into(),
             SystemProblem::RateBandwidthUnused { .. } => "leave it out, or let the robot be a `rotorcraft`".into(),
             SystemProblem::LeaderUnused { .. } => "write `reference.leader`, or delete the leader".into(),

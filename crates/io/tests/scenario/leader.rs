@@ -1,7 +1,7 @@
 //! `[leader]` and `reference.leader`: what is read, and what mistakes get.
 
 use forwardstep_core::reference::Choice;
-use forwardstep_sim::leader::FollowingDesign;
+use forwardstep_sim::leader::{FollowingDesign, Leading};
 use forwardstep_sim::trajectory::Path;
 use miette::Diagnostic;
 
@@ -62,7 +62,7 @@ fn designs_signs_and_motions_are_read() {
     let points = "motion.points = { times_s = [0, 1, 3], positions = [[0], [1], [-1]] }";
     for motion in [swings, points] {
         let setup = read(&changed("motion.formulas = [\"sin(t)\"]", motion)).unwrap().setup;
-        let path = &setup.following().unwrap().leader.trajectory.paths()[0];
+        let path = &setup.following().unwrap().motion().unwrap().trajectory.paths()[0];
         assert_eq!(matches!(path, Path::Spline(_)), motion == points);
     }
     // A rule joins the agents, not the leader.
@@ -94,4 +94,79 @@ fn mistakes_about_leaders_are_reported() {
         let said = error.help().map(|help| help.to_string()).unwrap_or_default();
         assert!(said.contains(help), "{error}: {said}");
     }
+}
+
+const LED_BY_AGENT: &str = r#"format = 2
+time.end_s = 5
+[leader]
+agent = "pilot"
+[[agents]]
+name = "cart"
+count = 2
+robot.point_mass = { dimension = 1, mass_kg = 2 }
+[[agents]]
+name = "pilot"
+robot.point_mass = { dimension = 1, mass_kg = 3 }
+reference.tracking.roots_per_s = [2, 1]
+target.formulas = ["sin(t)"]
+[reference.leader]
+design = "continuous"
+roots_per_s = [1.5]
+gain = 3
+[network]
+edges = [["pilot", "cart-1"], ["cart-1", "cart-2"]]
+[goal]
+error_below = 1e-2
+"#;
+
+#[test]
+fn an_agent_leads_and_is_a_vertex_already() {
+    let setup = read(LED_BY_AGENT).unwrap().setup;
+    assert_eq!(setup.following().unwrap().leader, Leading::Agent(2));
+    assert_eq!((setup.agents.len(), setup.network.agents, setup.leader()), (3, 3, Some(2)));
+    assert_eq!((0..3).map(|agent| setup.tracks(agent)).collect::<Vec<_>>(), [false, false, true]);
+    assert_eq!((&setup.agents[2].roots_per_s[..], &setup.agents[0].roots_per_s[..]), (&[2.0, 1.0][..], &[][..]));
+    assert_eq!(setup.vertex_name(2), "pilot");
+    let one = LED_BY_AGENT.replace("\"pilot\"", "\"cart-1\"");
+    let error = read(&one).unwrap_err().to_string();
+    assert!(error.contains("cart-1"), "{error}");
+}
+
+#[test]
+fn mistakes_about_an_agent_that_leads_are_reported_at_their_place() {
+    for (from, to, message, help) in [
+        ("agent = \"pilot\"", "agent = \"pilto\"", "4:9: there is no agent `pilto`", "did you mean `pilot`?"),
+        ("agent = \"pilot\"", "agent = \"cart\"", "4:9: there is no agent `cart`", "`cart-1`"),
+        (
+            "agent = \"pilot\"",
+            "agent = \"pilot\"\nname = \"boss\"",
+            "5:8: `pilot` leads, and has a name already",
+            "leave",
+        ),
+        (
+            "agent = \"pilot\"",
+            "agent = \"pilot\"\nmotion.formulas = [\"t\"]",
+            "4:9: there are two leaders",
+            "own `target`",
+        ),
+        ("agent = \"pilot\"", "name = \"boss\"", "3:1: a leader needs a `motion`, or an `agent`", "which agent leads"),
+        ("target.formulas = [\"sin(t)\"]\n", "", "10:8: agent `pilot` is to track a target", "`target`"),
+        ("reference.tracking.roots_per_s = [2, 1]\n", "", "roots of the reference dynamics: 0", "roots of its own"),
+        ("reference.tracking", "reference.consensus", "12:1: `pilot` cannot have", "`reference.tracking`"),
+        ("count = 2", "count = 2\nreference.tracking.roots_per_s = [1]", "8:1: `cart-1` cannot have", "remove it"),
+        ("[\"cart-1\", \"cart-2\"]]", "[\"cart-1\", \"pilot\"]]", "`pilot` leads and hears nobody", ""),
+        ("count = 2", "count = 2\ntarget.formulas = [\"t\"]", "offsets", "leave its `target` out"),
+        ("error_below", "disagreement_below", "follows a target or a leader", "error_below"),
+    ] {
+        assert_eq!(LED_BY_AGENT.matches(from).count(), 1, "{from:?} must occur once");
+        let error = read(&LED_BY_AGENT.replace(from, to)).unwrap_err();
+        assert!(error.to_string().contains(message), "{error}");
+        let said = error.help().map(|help| help.to_string()).unwrap_or_default();
+        assert!(said.contains(help), "{error}: {said}");
+    }
+    let sampled = LED_BY_AGENT.replace("\"continuous\"", "\"differentiable\"").replace("[1.5]", "[1, 2]");
+    assert!(read(&sampled).is_ok());
+    let error = read(&format!("{sampled}[control]\nsample_hz = 100\n")).unwrap_err().to_string();
+    assert!(error.contains("3:1: agent `pilot` cannot lead the others: its acceleration"), "{error}");
+    assert!(read(&format!("{LED_BY_AGENT}[control]\nsample_hz = 100\n")).is_ok());
 }

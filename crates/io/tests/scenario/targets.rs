@@ -79,7 +79,7 @@ fn columns_are_named_by_axes_and_those_of_tips_by_coordinates() {
     "#;
     let setup = tabled(leader, "t_s,y,x\n0,2,1\n").unwrap().setup;
     let mut jets = [[0.0; 5]; 2];
-    setup.following().unwrap().leader.trajectory.jets(0.0, &mut jets);
+    setup.following().unwrap().motion().unwrap().trajectory.jets(0.0, &mut jets);
     assert_eq!(jets.map(|jet| jet[0]), [1.0, 2.0]);
 }
 

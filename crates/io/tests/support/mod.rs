@@ -151,6 +151,7 @@ pub fn outcome(setup: &Setup) -> Outcome {
             evaluations: 252_271,
             break_points: 180,
             sign_residual: None,
+            drive: None,
             failed_steps: 0,
             wall: Some(Duration::from_millis(1234)),
         },

@@ -219,7 +219,7 @@ fn derivatives(assembly: &Assembly<'_>, terms: &Formulas) -> Chain<Formulas> {
 fn guide(assembly: &Assembly<'_>) -> Result<Guide, SetupError> {
     let own = assembly.agent();
     let roots = |error| SetupError::Roots { agent: own.name.clone(), error };
-    match assembly.setup().reference.interface().family {
+    match assembly.reference().interface().family {
         ReferenceFamily::Target => {
             let mut alpha = polynomial(&own.roots_per_s).map_err(roots)?;
             // The leading one is not listed.

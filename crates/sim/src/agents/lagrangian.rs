@@ -65,7 +65,7 @@ impl<M: RobotModel> LagrangianRobot for M {
     }
 
     fn batch(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
-        if assembly.setup().tracks() { assembly.tracking(self) } else { assembly.lagrangian(self) }
+        if assembly.setup().tracks(assembly.agents()[0]) { assembly.tracking(self) } else { assembly.lagrangian(self) }
     }
 
     fn dynamics_at_start(&self, agent: &AgentSetup, dz: f64) -> Result<DynamicsAt, LengthError> {

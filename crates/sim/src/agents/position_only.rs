@@ -60,7 +60,7 @@ impl Law for PositionOnlyLaw {
 fn guide(assembly: &Assembly<'_>) -> Result<Guide, SetupError> {
     let own = assembly.agent();
     let roots = |error| SetupError::Roots { agent: own.name.clone(), error };
-    match assembly.setup().reference.interface().family {
+    match assembly.reference().interface().family {
         ReferenceFamily::Target => {
             assembly.root_count(3)?;
             let mut alpha = polynomial(&own.roots_per_s).map_err(roots)?;

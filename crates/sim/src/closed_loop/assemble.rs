@@ -9,6 +9,7 @@ use forwardstep_core::sampled::Recipe;
 
 use super::assembly::Assembly;
 use super::columns::{Columns, Inputs};
+use super::driven::Driven;
 use super::error::SetupError;
 use super::guide::Guide;
 use super::members::batches;
@@ -19,7 +20,8 @@ use super::sampling::Sampling;
 use super::sliding::{Place, Slider};
 use super::valid::{message_len, validate};
 use crate::engine::{DelaySystem, Happened, Heard, Port, Refuted};
-use crate::recording::{GainRates, SampleTaken, Signal};
+use crate::leader::Following;
+use crate::recording::{Drive, GainRates, SampleTaken, Signal};
 use crate::setup::{Exchange, Setup};
 
 /// All populations and where their blocks stand.
@@ -33,7 +35,9 @@ pub(crate) struct ClosedLoop<'a> {
     /// When there are set-valued signs and control is continuous.
     slider: Option<Slider<'a>>,
     /// Where q₀ stands in the state, when there is a leader.
-    leader: Option<Range<usize>>,
+    leader: Option<Port>,
+    /// When it is an agent.
+    driven: Option<Driven>,
     pushes: Pushes,
     /// When a target has its next kink, s.
     kink_s: f64,
@@ -91,6 +95,7 @@ impl<'a> ClosedLoop<'a> {
             sampling: None,
             slider: None,
             leader: None,
+            driven: following.and_then(|following| Driven::new(following, axes)),
             pushes: Pushes::default(),
             kink_s: f64::INFINITY,
             row: Vec::new(),
@@ -120,12 +125,11 @@ impl<'a> ClosedLoop<'a> {
             });
             placed += n;
         }
-        if let Some(following) = following {
-            let guide = Box::new(Guide::new(following, placed, setup.time.end_s)?);
+        if let Some(leader) = following.and_then(Following::motion) {
+            let guide = Box::new(Guide::new(leader, placed, setup.time.end_s)?);
             let first = closed_loop.start.len();
             guide.append_start(&setup.agents, &mut closed_loop.start);
             closed_loop.ports[placed] = Port { state: first, entry: placed * entries, degree: placed, stride: 1 };
-            closed_loop.leader = Some(first..first + axes);
             closed_loop.blocks.push(Block {
                 state: first..closed_loop.start.len(),
                 degree: placed..placed + 1,
@@ -135,6 +139,7 @@ impl<'a> ClosedLoop<'a> {
                 columns: guide,
             });
         }
+        closed_loop.leader = setup.leader().map(|vertex| closed_loop.ports[vertex]);
         let heard = closed_loop.start_references(setup, X::CHANNELS * axes)?;
         if let (Some(following), Some(sliding), None) = (following, sliding, &setup.control) {
             let places = closed_loop.places();
@@ -207,6 +212,18 @@ impl<'a> ClosedLoop<'a> {
     /// Who is in trouble in the state `x`, which has just been evaluated.
     pub(crate) fn trouble(&self, x: &[f64]) -> Option<(usize, Trouble)> {
         self.blocks.iter().find_map(|block| block.columns.trouble(&x[block.state.clone()]))
+    }
+
+    /// Takes note of the end of a step, in a state that has just been evaluated.
+    pub(crate) fn reached(&mut self, t_s: f64) {
+        if let Some(driven) = &mut self.driven {
+            driven.look(t_s);
+        }
+    }
+
+    /// What drove an agent that leads the others.
+    pub(crate) fn drive(&self) -> Option<Drive> {
+        self.driven.as_ref().and_then(Driven::seen)
     }
 
     /// The last delay that was found, at a sample, not to be what its author says.
@@ -293,7 +310,10 @@ impl<'a> ClosedLoop<'a> {
             signals.extend(external.flat_map(|(signal, n)| (0..*n).map(|entry| (*signal, entry))));
         }
         if self.leader.is_some() {
-            signals.iter_mut().for_each(|signals| signals.extend((0..self.axes).map(|axis| (Signal::Error, axis))));
+            // An agent that leads has an error of its own.
+            let leads = self.driven.as_ref().map(|driven| driven.agent);
+            let followers = signals.iter_mut().enumerate().filter(|(agent, _)| Some(*agent) != leads);
+            followers.for_each(|(_, signals)| signals.extend((0..self.axes).map(|axis| (Signal::Error, axis))));
         }
         signals
     }
@@ -306,19 +326,26 @@ impl<'a> ClosedLoop<'a> {
             slider.look(t_s, heard, self.pushes.external(), &mut self.blocks, x);
         }
         let (pushes, row) = (&self.pushes, &mut self.row);
-        let leader = self.leader.clone().map_or(&[][..], |leader| &x[leader]);
+        let leads = self.driven.as_ref().map(|driven| driven.agent);
+        let (leader, axes) = (self.leader, self.axes);
         for block in &mut self.blocks {
             let inputs = block.inputs(heard, pushes.external());
             let (columns, state) = (&mut block.columns, &x[block.state.clone()]);
-            columns.record(t_s, state, inputs, &mut |agent, values| match (pushes.external_on(agent), leader) {
-                ([], []) => write(agent, values),
-                (external, leader) => {
-                    row.clear();
-                    row.extend_from_slice(values);
-                    row.extend_from_slice(external);
-                    // Positions are an agent's first values.
-                    row.extend(values.iter().zip(leader).map(|(q, q_0)| q - q_0));
-                    write(agent, row);
+            columns.record(t_s, state, inputs, &mut |agent, values| {
+                let leader = leader.filter(|_| Some(agent) != leads);
+                match (pushes.external_on(agent), leader) {
+                    ([], None) => write(agent, values),
+                    (external, leader) => {
+                        row.clear();
+                        row.extend_from_slice(values);
+                        row.extend_from_slice(external);
+                        if let Some(Port { state, stride, .. }) = leader {
+                            // Positions are an agent's first values.
+                            let positions = values.iter().take(axes).enumerate();
+                            row.extend(positions.map(|(axis, q)| q - x[state + axis * stride]));
+                        }
+                        write(agent, row);
+                    }
                 }
             });
         }
@@ -336,6 +363,9 @@ impl DelaySystem for ClosedLoop<'_> {
         if let Some(slider) = &mut self.slider {
             slider.hear(heard);
             slider.add_sign_terms(t_s, self.pushes.external(), &mut self.blocks, x, dx);
+        }
+        if let (Some(driven), Some(port)) = (&mut self.driven, self.leader) {
+            driven.evaluated(t_s, &dx[port.state..]);
         }
     }
 

@@ -14,6 +14,7 @@ use super::solo::{Solo, Target};
 use super::valid::too_many;
 use crate::agents::{Adaptive, RobotModel};
 use crate::recording::Signal;
+use crate::reference::ReferenceDynamics;
 use crate::setup::{AgentSetup, Axis, Setup};
 use crate::system::{LawWords, Robot};
 use crate::trajectory::Pieces;
@@ -49,6 +50,11 @@ impl<'a> Assembly<'a> {
         self.agents
     }
 
+    /// What leads it.
+    pub fn reference(&self) -> &'a dyn ReferenceDynamics {
+        self.setup.reference_of(self.agents[0])
+    }
+
     /// Its robot as the model that the law is made for.
     ///
     /// # Errors
@@ -66,7 +72,7 @@ impl<'a> Assembly<'a> {
 
     /// The reference dynamics do not lead the law.
     pub fn wrong_reference(&self) -> SetupError {
-        SetupError::wrong_reference(self.setup, self.agent())
+        SetupError::wrong_reference(self.reference(), self.agent())
     }
 
     /// Checks how many roots the agent has.
@@ -173,7 +179,7 @@ impl<'a> Assembly<'a> {
         if start.reference.len() > vectors {
             return Err(too_many(own, vectors, start.reference.len()));
         }
-        let is_offset = !setup.tracks();
+        let is_offset = !setup.tracks(self.agents[0]);
         let target = match &own.target {
             None => None,
             Some(trajectory) => {

@@ -12,7 +12,7 @@ use thiserror::Error;
 use crate::network::NetworkError;
 use crate::push::PushError;
 use crate::quantity::{Path, QuantityError};
-use crate::reference::ReferenceFamily;
+use crate::reference::{ReferenceDynamics, ReferenceFamily};
 use crate::setup::{AgentSetup, Exchange, Setup, Solver};
 use crate::trajectory::TrajectoryError;
 
@@ -263,6 +263,14 @@ pub enum SetupError {
         /// Its law, in words.
         law: &'static str,
     },
+    /// An agent that cannot lead.
+    #[error("agent `{agent}` cannot lead the others: {why}")]
+    CannotLead {
+        /// The agent.
+        agent: String,
+        /// Why not.
+        why: &'static str,
+    },
     /// Somebody talks to the leader.
     #[error("`{leader}` leads and hears nobody, but an edge leads to it; leave that edge out")]
     LeaderHears {
@@ -387,7 +395,11 @@ impl SetupError {
             None => Path::from("leader"),
         };
         let reference = || Path::from("reference").key(setup.reference.words().key);
-        let own = |agent| of(agent).key("reference").key(setup.reference.words().key);
+        let own = |agent: &str| {
+            let index = setup.agents.iter().position(|known| known.name == agent);
+            let reference = index.map_or(&*setup.reference, |index| setup.reference_of(index));
+            of(agent).key("reference").key(reference.words().key)
+        };
         let roots = |agent| own(agent).key("roots_per_s");
         match self {
             SetupError::Quantity(error) | SetupError::Network(NetworkError::Quantity(error)) => error.path.clone(),
@@ -413,6 +425,7 @@ impl SetupError {
             | SetupError::Chain { agent, error: ChainError::Guide(_) } => roots(agent),
             SetupError::NoManipulability { agent, .. } => own(agent).key("manipulability_gain"),
             SetupError::StartOfReference { agent, .. } => of(agent).key("start.reference"),
+            SetupError::CannotLead { .. } => Path::from("leader"),
             SetupError::NoTarget { agent } | SetupError::Recipe { agent, .. } => of(agent).key("name"),
             SetupError::Trajectory { agent, .. } | SetupError::NoOffsets { agent, .. } => of(agent).key("target"),
             SetupError::UnitsDiffer { agent, .. }
@@ -450,11 +463,11 @@ impl SetupError {
         }
     }
 
-    /// The reference dynamics of `setup` do not lead the law of `agent`.
-    pub(crate) fn wrong_reference(setup: &Setup, agent: &AgentSetup) -> Self {
+    /// The reference dynamics do not lead the law of `agent`.
+    pub(crate) fn wrong_reference(reference: &dyn ReferenceDynamics, agent: &AgentSetup) -> Self {
         let (name, law) = (agent.name.clone(), agent.law.words().name);
         let only_tracks = agent.interface().is_some_and(|interface| interface.follows == [ReferenceFamily::Target]);
-        match setup.reference.interface().family {
+        match reference.interface().family {
             ReferenceFamily::Target => SetupError::NotTracking { agent: name, law },
             _ if only_tracks => SetupError::OnlyTracks { agent: name, law },
             _ => SetupError::ReferenceOfLaw { agent: name, law },

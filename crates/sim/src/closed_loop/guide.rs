@@ -13,7 +13,7 @@ use forwardstep_core::sampled::{Recipe, Sampled};
 use super::columns::{Columns, Inputs};
 use super::error::SetupError;
 use super::sampler::Digital;
-use crate::leader::Following;
+use crate::leader::Leader;
 use crate::recording::{GainRates, Signal};
 use crate::setup::{AgentSetup, Control, Setup};
 use crate::trajectory::Pieces;
@@ -27,9 +27,9 @@ pub(crate) struct Guide {
 }
 
 impl Guide {
-    pub(crate) fn new(following: &Following, vertex: usize, end_s: f64) -> Result<Self, SetupError> {
-        let wrong = |error| SetupError::Trajectory { agent: following.leader.name.clone(), error };
-        let pieces = Pieces::new(following.leader.trajectory.clone(), end_s).map_err(wrong)?;
+    pub(crate) fn new(leader: &Leader, vertex: usize, end_s: f64) -> Result<Self, SetupError> {
+        let wrong = |error| SetupError::Trajectory { agent: leader.name.clone(), error };
+        let pieces = Pieces::new(leader.trajectory.clone(), end_s).map_err(wrong)?;
         let jets = vec![[0.0; 5]; pieces.axes()];
         Ok(Guide { pieces, vertex, jets })
     }

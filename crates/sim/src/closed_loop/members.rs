@@ -24,7 +24,7 @@ const LANES_FROM: usize = 3;
 pub(super) fn batches(setup: &Setup) -> Vec<Vec<usize>> {
     let agents = &setup.agents;
     let in_batches =
-        |agent: &AgentSetup| !setup.tracks() && agent.interface().is_some_and(|interface| interface.in_batches);
+        |index: usize| !setup.tracks(index) && agents[index].interface().is_some_and(|interface| interface.in_batches);
     let alike = |a: &AgentSetup, b: &AgentSetup| {
         a.roots_per_s.len() == b.roots_per_s.len()
             && a.law.same_type(&*b.law)
@@ -32,8 +32,8 @@ pub(super) fn batches(setup: &Setup) -> Vec<Vec<usize>> {
     };
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (index, agent) in agents.iter().enumerate() {
-        let joins = in_batches(agent);
-        match groups.iter_mut().find(|group| joins && alike(&agents[group[0]], agent)) {
+        let joins = in_batches(index);
+        match groups.iter_mut().find(|group| joins && in_batches(group[0]) && alike(&agents[group[0]], agent)) {
             Some(group) => group.push(index),
             None => groups.push(vec![index]),
         }

@@ -11,7 +11,7 @@
 //! - `recipes`: from agents to the recipes of their sampled controllers.
 //! - `references`: from reference dynamics as data to those that run.
 //! - `probe`, `probe_reference`: what a law and reference dynamics say of themselves, tried.
-//! - `guide`: the leader.
+//! - `guide`: the leader; `driven`: an agent that leads.
 //! - `sliding`: who sets the set-valued signs in continuous time.
 //! - `members`: from agents to batches.
 //! - `assembly`: what a law builds its agents with.
@@ -23,6 +23,7 @@
 mod assemble;
 mod assembly;
 mod columns;
+mod driven;
 mod error;
 mod gain_rates;
 mod guide;

@@ -1,12 +1,16 @@
 //! The Lyapunov balance that a law states, tried along short runs from random starts.
 
+use std::sync::Arc;
+
 use super::assembly::Assembly;
 use super::columns::{Columns, Inputs};
 use super::error::SetupError;
 use super::valid::message_len;
+use crate::leader::{Following, Leading};
 use crate::network::Network;
 use crate::probe::{Counterexample, Draws, Identity, MOVE, Probe, STATES, apart};
 use crate::recording::Signal;
+use crate::reference::{ReferenceDynamics, Tracking};
 use crate::schedule::Schedule;
 use crate::setup::{Setup, Solver};
 
@@ -31,7 +35,7 @@ pub fn probe_balance(setup: &Setup, index: usize) -> Result<Probe, SetupError> {
     own.pushes.clear();
     let mut alone = Setup {
         agents: vec![own],
-        reference: setup.reference.clone(),
+        reference: alone_under(setup, index),
         exchange: setup.exchange,
         network: Network::switching(1, Schedule::fixed(Vec::new()), Vec::new()),
         time: setup.time,
@@ -64,6 +68,17 @@ pub fn probe_balance(setup: &Setup, index: usize) -> Result<Probe, SetupError> {
         }
     }
     Ok(probe)
+}
+
+/// What leads the agent when it is by itself: nobody's number is that of another.
+fn alone_under(setup: &Setup, index: usize) -> Arc<dyn ReferenceDynamics> {
+    if setup.leader() == Some(index) {
+        return Arc::new(Tracking);
+    }
+    match setup.following() {
+        Some(following) => Arc::new(Following { leader: Leading::Agent(usize::MAX), ..following.clone() }),
+        None => Arc::clone(&setup.reference),
+    }
 }
 
 /// What is found after a short run from `t_s` on; nothing where something is not finite.

@@ -309,6 +309,7 @@ impl<C: Controller> Columns for Solo<C> {
     fn recipes(&self, setup: &Setup, x: &[f64]) -> Result<Vec<(usize, Recipe)>, SetupError> {
         let Layout { plant, torque: (_, torques), .. } = self.layout;
         let mut recipe = Recipe::feedback(&self.plant, self.controller.clone());
+        recipe.transmits = setup.exchange.words().len();
         recipe.start = StartState::State(x[plant..self.layout.controller_end()].to_vec());
         recipe.target = self.target.as_ref().map(|Target { trajectory, is_offset }| {
             let motion = Arc::new(trajectory.trajectory().clone());
@@ -391,7 +392,13 @@ impl<C: Controller> Columns for Solo<C> {
         None
     }
 
-    fn tell(&mut self, _: f64, _: &[f64], _: &mut [f64]) {}
+    /// q̈, of one that leads.
+    fn tell(&mut self, _: f64, dx: &[f64], told: &mut [f64]) {
+        let Layout { m, velocities, .. } = self.layout;
+        if velocities == m {
+            told.copy_from_slice(&dx[m..2 * m]);
+        }
+    }
 
     fn argument(&mut self, _: &[f64], _: Inputs<'_>, _: [&[f64]; 2], _: &mut [f64]) {}
 

@@ -3,7 +3,7 @@
 use forwardstep_core::LengthError;
 
 use super::error::{SetupError, VelocityQuantity};
-use crate::reference::{ReferenceFamily, ReferenceInterface, Roots};
+use crate::reference::{ReferenceDynamics, ReferenceFamily, ReferenceInterface, Roots};
 use crate::setup::{AgentSetup, Control, Setup, VelocitySensor};
 use crate::system::{ActuatorLimits, Interface};
 
@@ -13,7 +13,7 @@ pub(super) fn of_setup(setup: &Setup) -> Result<(), SetupError> {
     let tracks = |agent: &AgentSetup| {
         agent.interface().is_some_and(|interface| interface.follows.contains(&ReferenceFamily::Target))
     };
-    if setup.tracks() && setup.agents.iter().all(tracks) {
+    if setup.all_track() && setup.agents.iter().all(tracks) {
         let edges = setup.network.schedule.graphs.iter().map(Vec::len).sum();
         if edges > 0 {
             return Err(SetupError::UnusedEdges { edges });
@@ -46,27 +46,35 @@ fn of_sensors(control: &Control, agents: &[AgentSetup]) -> Result<(), SetupError
 }
 
 /// Everything about one agent.
-pub(super) fn of_agent(setup: &Setup, own: &AgentSetup, interface: &Interface) -> Result<(), SetupError> {
-    manipulability(setup, own, interface)?;
-    roots(setup, own, interface)?;
+pub(super) fn of_agent(
+    reference: &dyn ReferenceDynamics,
+    own: &AgentSetup,
+    interface: &Interface,
+) -> Result<(), SetupError> {
+    manipulability(reference, own, interface)?;
+    roots(reference, own, interface)?;
     limits(own)
 }
 
 /// λ is read by (3), (23), (a5) and (24) beside laws that measure q̇: it multiplies q̇ − z. Where q̇ is not measured there is no
 /// such number to multiply.
-fn manipulability(setup: &Setup, own: &AgentSetup, interface: &Interface) -> Result<(), SetupError> {
-    let without = match setup.reference.interface() {
+fn manipulability(
+    reference: &dyn ReferenceDynamics,
+    own: &AgentSetup,
+    interface: &Interface,
+) -> Result<(), SetupError> {
+    let without = match reference.interface() {
         _ if own.manipulability == 0.0 => return Ok(()),
         _ if !interface.manipulability => own.law.words().name,
         ReferenceInterface { manipulability: true, .. } => return Ok(()),
-        ReferenceInterface { manipulability: false, .. } => setup.reference.words().name,
+        ReferenceInterface { manipulability: false, .. } => reference.words().name,
     };
     Err(SetupError::NoManipulability { agent: own.name.clone(), law: without, value: own.manipulability })
 }
 
 /// Roots belong to reference dynamics that are a polynomial.
-fn roots(setup: &Setup, own: &AgentSetup, interface: &Interface) -> Result<(), SetupError> {
-    let counts = match setup.reference.interface().roots {
+fn roots(reference: &dyn ReferenceDynamics, own: &AgentSetup, interface: &Interface) -> Result<(), SetupError> {
+    let counts = match reference.interface().roots {
         Roots::Every => true,
         Roots::ByLaw => interface.tracks_by_roots,
         Roots::None => false,

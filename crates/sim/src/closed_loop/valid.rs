@@ -16,7 +16,8 @@ use crate::system::{LawWords, PositionKind};
 /// [`SetupError`] when the setup has no meaning.
 pub fn validate(setup: &Setup) -> Result<(), SetupError> {
     setup.network.validate()?;
-    let leaders = usize::from(setup.following().is_some());
+    // A motion is a vertex of its own; an agent that leads is one already.
+    let leaders = usize::from(setup.following().is_some_and(|following| following.motion().is_some()));
     if setup.network.agents != setup.agents.len() + leaders {
         let agents = setup.agents.len() + leaders;
         return Err(SetupError::AgentCount { network: setup.network.agents, agents });
@@ -35,7 +36,7 @@ pub fn validate(setup: &Setup) -> Result<(), SetupError> {
         let reference = setup.reference.words().name;
         return Err(SetupError::ReferenceExchange { reference, exchange: setup.exchange });
     }
-    setup.agents.iter().try_for_each(|agent| check_agent(setup, agent))?;
+    (0..setup.agents.len()).try_for_each(|index| check_agent(setup, index))?;
     unused::of_setup(setup)?;
     same_space(setup)
 }
@@ -91,9 +92,10 @@ fn check_control(control: &Control, setup: &Setup) -> Result<(), SetupError> {
     Ok(())
 }
 
-fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
-    let first = &setup.agents[0];
-    let (axes, vectors) = (first.robot.axes.len(), setup.reference.free_derivatives(agent.roots_per_s.len()));
+fn check_agent(setup: &Setup, index: usize) -> Result<(), SetupError> {
+    let (first, agent) = (&setup.agents[0], &setup.agents[index]);
+    let vectors = setup.reference_of(index).free_derivatives(agent.roots_per_s.len());
+    let axes = first.robot.axes.len();
     if agent.robot.axes.len() != axes {
         return Err(SetupError::AxesDiffer {
             agent: agent.name.clone(),
@@ -115,7 +117,7 @@ fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
     vector("the start velocity", velocities, &agent.start.dq)?;
     // How much more a state has is known where the plant is built.
     vector("the start of the plant", agent.start.rest.len(), &agent.start.rest)?;
-    goes_together(setup, agent)?;
+    goes_together(setup, index)?;
     // The second state of a chain may be no velocity, but it has a z.
     let leads = if velocities == 0 { axes } else { velocities };
     for z in &agent.start.reference {
@@ -137,24 +139,26 @@ fn check_agent(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
 }
 
 /// Whether the law goes with the robot, the reference dynamics, what is exchanged and what acts on the agent.
-fn goes_together(setup: &Setup, agent: &AgentSetup) -> Result<(), SetupError> {
+fn goes_together(setup: &Setup, index: usize) -> Result<(), SetupError> {
+    let (agent, reference) = (&setup.agents[index], setup.reference_of(index));
     let name = || agent.name.clone();
     let LawWords { name: law, made_for } = agent.law.words();
     let Some(interface) = agent.interface() else {
         return Err(SetupError::LawOfAnother { agent: name(), law, made_for });
     };
-    if !interface.follows.contains(&setup.reference.interface().family) {
-        return Err(SetupError::wrong_reference(setup, agent));
+    if !interface.follows.contains(&reference.interface().family) {
+        return Err(SetupError::wrong_reference(reference, agent));
     }
-    if !interface.exchanges.contains(&setup.exchange) {
+    // Who leads hears nobody.
+    if !interface.exchanges.contains(&setup.exchange) && setup.leader() != Some(index) {
         return Err(SetupError::SendsPositionOnly { agent: name(), law });
     }
     if !interface.pushed && !agent.pushes.is_empty() {
         return Err(SetupError::NotPushed { agent: name(), law });
     }
-    match (&agent.target, setup.tracks()) {
+    match (&agent.target, setup.tracks(index)) {
         (None, true) => Err(SetupError::NoTarget { agent: name() }),
         (Some(_), false) if !interface.offsets => Err(SetupError::NoOffsets { agent: name(), law }),
-        _ => unused::of_agent(setup, agent, &interface),
+        _ => unused::of_agent(reference, agent, &interface),
     }
 }

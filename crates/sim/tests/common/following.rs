@@ -7,7 +7,7 @@ use forwardstep_core::reference::Choice;
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PointMass};
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
-use forwardstep_sim::leader::{Following, FollowingDesign, Leader};
+use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::trajectory::{Path, Sinusoid, Trajectory};
 use forwardstep_sim::{
@@ -54,7 +54,7 @@ pub fn arms(design: FollowingDesign, choice: Choice, estimate: f64, end_s: f64) 
         Trajectory::new(vec![path(0.3, vec![wave(0.6, 0.8, 0.0)]), path(-0.2, vec![wave(0.4, 1.1, 0.5)])]).unwrap();
     let edge = |from, to, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
     let following = Following {
-        leader: Leader { name: "leader".into(), trajectory },
+        leader: Leading::Motion(Leader { name: "leader".into(), trajectory }),
         design,
         alpha: 1.0,
         beta: 2.0,
@@ -64,7 +64,7 @@ pub fn arms(design: FollowingDesign, choice: Choice, estimate: f64, end_s: f64) 
     };
     Setup {
         agents: starts.iter().enumerate().map(|(k, q)| arm(k + 1, *q, estimate)).collect(),
-        reference: (Arc::new(following)),
+        reference: Arc::new(following),
         exchange: Exchange::PositionVelocity,
         network: Network {
             agents: 5,
@@ -98,7 +98,7 @@ pub fn masses(design: FollowingDesign) -> Setup {
     let waves = vec![wave(0.6, 0.8, 0.0), wave(0.2, 1.7, 0.5)];
     let trajectory = Trajectory::new(vec![Path::Sinusoids { offset: 0.1, waves }]).unwrap();
     setup.reference = Arc::new(Following {
-        leader: Leader { name: "leader".into(), trajectory },
+        leader: Leading::Motion(Leader { name: "leader".into(), trajectory }),
         design,
         alpha: 1.3,
         beta: 2.1,
@@ -124,5 +124,32 @@ pub fn masses(design: FollowingDesign) -> Setup {
     setup.network.schedule = Schedule::fixed(vec![edge(0, 3, 1.0), edge(1, 0, 1.5), edge(2, 1, 0.7), edge(0, 2, 0.4)]);
     setup.solver.method = Method::Adaptive { rtol: 1e-9, atol: 1e-11 };
     setup.time.record_every_s = 1.0;
+    setup
+}
+
+/// The same setup, with an agent in the place of the motion: it begins on its target and knows its mass, so that it stays
+/// there. It is agent number `place`.
+pub fn led_by_agent(mut setup: Setup, roots: &[f64], place: usize) -> Setup {
+    let trajectory = setup.following().unwrap().motion().unwrap().trajectory.clone();
+    let mut jets = vec![[0.0; 5]; trajectory.axes()];
+    trajectory.jets(0.0, &mut jets);
+    let of = |k: usize| jets.iter().map(|jet| jet[k]).collect::<Vec<f64>>();
+    let mut pilot = AgentSetup::new("pilot", RobotSetup::point_mass(jets.len(), 3.0), Known::gain(5.0))
+        .roots(roots)
+        .following(trajectory);
+    pilot.start.q = of(0);
+    pilot.start.dq = of(1);
+    pilot.start.reference = (1..roots.len()).map(of).collect();
+    let motion = setup.agents.len();
+    setup.agents.insert(place, pilot);
+    let moved = |vertex: usize| match vertex {
+        vertex if vertex == motion => place,
+        vertex if vertex >= place => vertex + 1,
+        vertex => vertex,
+    };
+    let edges = setup.network.schedule.graphs[0].iter();
+    let edges = edges.map(|edge| Edge { from: moved(edge.from), to: moved(edge.to), ..*edge }).collect();
+    setup.network.schedule = Schedule::fixed(edges);
+    assert!(setup.change_reference(|following: &mut Following| following.leader = Leading::Agent(place)));
     setup
 }

@@ -152,6 +152,10 @@ pub fn every_kind() -> Vec<(&'static str, Setup)> {
         ("following-119", arms(FollowingDesign::Differentiable, Choice::Implicit)),
         ("following-122", arms(FollowingDesign::WithoutAcceleration, Choice::Implicit)),
         ("following-as-a-swarm", arms(following::SWARM, Choice::Explicit)),
+        (
+            "following-110-an-agent",
+            following::led_by_agent(arms(FollowingDesign::Continuous, Choice::Implicit), &[2.0, 1.5], 1),
+        ),
         ("following-in-a-layer", arms(FollowingDesign::Differentiable, Choice::Layer { width: 0.05 })),
     ];
     for (_, setup) in &mut all {

@@ -20,6 +20,11 @@ pub enum FollowingEvidence {
         /// The end of the run, s.
         end_s: f64,
     },
+    /// γ beside what drives an agent that leads, which only the run knows.
+    GainOverAgent {
+        /// γ.
+        gamma: f64,
+    },
     /// How a value of the sign is chosen.
     Sign {
         /// How.
@@ -66,6 +71,7 @@ impl FollowingEvidence {
                     Answer::NotCovered
                 }
             }
+            FollowingEvidence::GainOverAgent { .. } => Answer::Watched,
             FollowingEvidence::Sign { choice, .. } => match choice {
                 Choice::Implicit => Answer::Holds,
                 Choice::Explicit | Choice::Layer { .. } => Answer::NotCovered,
@@ -85,6 +91,7 @@ impl FollowingEvidence {
                 Answer::Holds | Answer::HoldsOnHorizon => Rigour::Enclosed,
                 Answer::Violated | Answer::NotCovered | Answer::Watched => Rigour::Sampled,
             },
+            FollowingEvidence::GainOverAgent { .. } => Rigour::Watched,
             FollowingEvidence::CouplingExceeds { .. } | FollowingEvidence::CouplingNotShown { .. } => Rigour::Computed,
             FollowingEvidence::Sign { .. }
             | FollowingEvidence::Shared { .. }

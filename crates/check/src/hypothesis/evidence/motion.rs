@@ -7,6 +7,8 @@ use crate::hypothesis::{Answer, Rigour};
 pub enum MotionEvidence {
     /// How far its derivatives are bounded.
     Derivatives(Bounded),
+    /// It is that of an agent, which follows a target of its own.
+    OfAgent,
     /// One entry of a quaternion is never smaller in magnitude.
     EntryAway {
         /// Its bound.
@@ -50,12 +52,14 @@ impl MotionEvidence {
             MotionEvidence::Derivatives(Bounded::ForEver) | MotionEvidence::EntryAway { .. } => Answer::Holds,
             MotionEvidence::Derivatives(Bounded::OnRun) | MotionEvidence::NormAbove { .. } => Answer::HoldsOnHorizon,
             MotionEvidence::Derivatives(Bounded::NotShown) | MotionEvidence::NormSeen { .. } => Answer::NotCovered,
+            MotionEvidence::OfAgent => Answer::Watched,
             MotionEvidence::NormVanishes { .. } => Answer::Violated,
         }
     }
 
     pub(super) fn rigour(&self) -> Rigour {
         match self {
+            MotionEvidence::OfAgent => Rigour::Watched,
             MotionEvidence::Derivatives(_) | MotionEvidence::EntryAway { .. } => Rigour::Enclosed,
             MotionEvidence::NormAbove { .. } => Rigour::Computed,
             MotionEvidence::NormSeen { .. } | MotionEvidence::NormVanishes { .. } => Rigour::Sampled,

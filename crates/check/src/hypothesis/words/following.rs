@@ -10,6 +10,9 @@ pub(super) fn words(evidence: &FollowingEvidence) -> String {
         FollowingEvidence::Gain { gamma, seen, on_run, for_ever, end_s } => {
             gain(evidence.answer(), [*gamma, *seen, *on_run, *for_ever], *end_s)
         }
+        FollowingEvidence::GainOverAgent { gamma } => format!(
+            "γ is {gamma}; the leader is an agent, and the run says how large it becomes, and when it exceeds γ for the last time"
+        ),
         FollowingEvidence::Sign { choice, period_s } => {
             let every = match period_s {
                 Some(period_s) => format!("every {} s", seconds(*period_s)),

@@ -11,6 +11,7 @@ pub(super) fn words(evidence: &MotionEvidence) -> String {
             Bounded::NotShown => "they could not be shown to be bounded, not even on the run",
         }
         .into(),
+        MotionEvidence::OfAgent => "it is an agent, which moves as its own law and its target make it".into(),
         MotionEvidence::EntryAway { least } => {
             format!("one of its entries is never below {} in magnitude", rounded(*least))
         }

@@ -3,7 +3,7 @@
 use forwardstep_check::Answer;
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::leader::Following;
-use forwardstep_sim::recording::{Ending, Signal};
+use forwardstep_sim::recording::{Drive, Ending, Signal};
 use forwardstep_sim::setup::{Exchange, Method, Setup};
 use maud::{Markup, html};
 
@@ -359,6 +359,17 @@ fn sign_words(record: &RunRecord<'_>, following: &Following) -> String {
     format!("{chosen}{rest}{restless}")
 }
 
+/// What drove an agent that leads, beside γ.
+fn leader_words(setup: &Setup, following: &Following, drive: Drive) -> String {
+    let leader = setup.leader().map_or("", |vertex| setup.vertex_name(vertex));
+    let until = match drive.exceeds_until_s {
+        None => "and never reached γ".to_owned(),
+        Some(until_s) => format!("and was γ or more until t = {} s", number(until_s)),
+    };
+    let (peak, peak_s, gamma) = (number(drive.peak), number(drive.peak_s), number(following.gain));
+    format!("{leader} leads; what drives it was at most {peak}, at t = {peak_s} s, {until}, which is {gamma}")
+}
+
 /// How it was computed, and from what.
 pub(crate) fn provenance(record: &RunRecord<'_>) -> Markup {
     let setup = record.setup;
@@ -383,6 +394,9 @@ pub(crate) fn provenance(record: &RunRecord<'_>) -> Markup {
                     }
                     @if let Some(following) = setup.following() {
                         (fact("Sign", html! { (sign_words(record, following)) }))
+                        @if let Some(drive) = statistics.drive {
+                            (fact("Leader", html! { (leader_words(setup, following, drive)) }))
+                        }
                     }
                     (fact("Recording", html! {
                         (text::count(record.outcome.recording.t_s.len(), "row")) ", every "

@@ -8,7 +8,7 @@ pub mod tracking;
 use std::fmt;
 use std::sync::Arc;
 
-use forwardstep_sim::leader::Leader;
+use forwardstep_sim::leader::{Leader, Leading};
 use forwardstep_sim::{Exchange, ReferenceDynamics};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -18,6 +18,7 @@ use super::super::fault::{Fault, fault};
 use super::super::file::ScenarioFile;
 use super::super::inputs::InputFolder;
 use super::super::leader_file::LeaderFile;
+use super::super::problem::ScenarioProblem;
 use super::super::system_problem::SystemProblem;
 use super::super::target::{Owner, target};
 use super::super::values::Positive;
@@ -73,7 +74,8 @@ pub struct ReferenceReader<'a> {
     leader: Option<&'a At<LeaderFile>>,
     /// Whether [`ReferenceReader::leader`] was asked for.
     asked: bool,
-    /// What the axes of the agents are called.
+    /// The agents, and what their axes are called.
+    names: &'a [String],
     axes: &'a [String],
     end_s: f64,
     sampled: bool,
@@ -86,12 +88,12 @@ const LEADER: &str = "leader";
 impl<'a> ReferenceReader<'a> {
     pub(in super::super) fn new(
         file: &'a ScenarioFile,
-        axes: &'a [String],
+        [names, axes]: [&'a [String]; 2],
         end_s: f64,
         folder: &'a mut InputFolder,
     ) -> Self {
         let (leader, sampled) = (file.leader.as_ref(), file.control.is_some());
-        ReferenceReader { leader, asked: false, axes, end_s, sampled, folder }
+        ReferenceReader { leader, asked: false, names, axes, end_s, sampled, folder }
     }
 
     /// What the axes of the agents are called.
@@ -108,16 +110,31 @@ impl<'a> ReferenceReader<'a> {
     ///
     /// # Errors
     /// When there is none, or it has a mistake.
-    pub fn leader(&mut self) -> Result<Leader, Fault> {
+    pub fn leader(&mut self) -> Result<Leading, Fault> {
         self.asked = true;
-        let leader = &self.leader.ok_or_else(|| Fault::new(SystemProblem::NoLeader))?.value;
+        let place = self.leader.ok_or_else(|| Fault::new(SystemProblem::NoLeader))?;
+        let leader = &place.value;
+        let motion = match (&leader.motion, &leader.agent) {
+            (Some(motion), None) => motion,
+            (None, Some(agent)) => {
+                if let Some(name) = &leader.name {
+                    return Err(fault(name, SystemProblem::LeaderNamedTwice { agent: agent.value.clone() }));
+                }
+                let index = self.names.iter().position(|name| *name == agent.value);
+                let unknown =
+                    || ScenarioProblem::NoSuchAgent { name: agent.value.clone(), agents: self.names.to_vec() };
+                return index.map(Leading::Agent).ok_or_else(|| fault(agent, unknown()));
+            }
+            (Some(_), Some(agent)) => return Err(fault(agent, SystemProblem::TwoLeaders)),
+            (None, None) => return Err(fault(place, SystemProblem::NoMotion)),
+        };
         let name = match &leader.name {
             None => LEADER.to_owned(),
             Some(name) => super::super::agents::checked_name(name)?.to_owned(),
         };
         let owner = Owner { name: &name, axes: self.axes, end_s: self.end_s };
-        let trajectory = target(&leader.motion, &owner, self.folder)?;
-        Ok(Leader { name, trajectory })
+        let trajectory = target(motion, &owner, self.folder)?;
+        Ok(Leading::Motion(Leader { name, trajectory }))
     }
 
     /// Refuses a leader that the reference dynamics under `key` did not ask for.
