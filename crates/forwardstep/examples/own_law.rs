@@ -12,6 +12,7 @@ use forwardstep::core::plant::Mechanical;
 use forwardstep::core::reference::Position;
 use forwardstep::core::robot::{Lagrangian, PlanarArm, PlanarLinks, TwoVelocity};
 use forwardstep::core::signal::{Block as Signals, Signal};
+use forwardstep::sim::quantity;
 use forwardstep::sim::system::{Declaration, DeclaredClaim, Known};
 use forwardstep::sim::trajectory::{Path, Sinusoid, Trajectory};
 use forwardstep::sim::{
@@ -75,8 +76,8 @@ impl Law for PdPlus {
     }
 
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
-        assembly.positive("k", self.stiffness)?;
-        assembly.positive("d", self.damping)?;
+        quantity::positive(assembly.of_law(), "stiffness", self.stiffness)?;
+        quantity::positive(assembly.of_law(), "damping", self.damping)?;
         let &robot = assembly.robot::<PlanarArm>()?;
         let plant = Mechanical { robot, theta: assembly.agent().robot.theta.clone() };
         assembly.solo(plant.clone(), PdPlusControl { arm: plant, law: self.clone() })

@@ -178,8 +178,8 @@ fn what_makes_no_sense_is_refused() {
     assert!(matches!(refused(&arm), SetupError::LawOfAnother { .. }));
     assert!(matches!(refused(&|s| s.agents[1].manipulability = 0.5), SetupError::NoManipulability { .. }));
     assert!(matches!(refused(&|s| s.agents[1].start.rest = vec![0.0; 3]), SetupError::Length { .. }));
-    assert!(matches!(refused(&|s| s.agents[1].robot.theta[0] = -1.0), SetupError::LawNumber { .. }));
-    assert!(matches!(refused(&|s| law(s, &|law| law.floor = Floor::Stops(0.0))), SetupError::LawNumber { .. }));
+    assert!(matches!(refused(&|s| s.agents[1].robot.theta[0] = -1.0), SetupError::Quantity(_)));
+    assert!(matches!(refused(&|s| law(s, &|law| law.floor = Floor::Stops(0.0))), SetupError::Quantity(_)));
     assert!(matches!(refused(&|s| s.reference = Arc::new(Tracking)), SetupError::NotTracking { .. }));
     let known = Arc::new(Known { damping: Gain::Number(1.0) });
     assert!(matches!(refused(&|s| s.agents[1].law = known.clone()), SetupError::LawOfAnother { .. }));

@@ -160,18 +160,27 @@ impl<'i> Document<'i> {
     }
 }
 
-/// How far `path` leads from `value` inwards, and the place of what is there.
+/// How far `path` leads from `value` inwards, and the place of what is there. Below the layers that read files nobody knows under
+/// which key of a kind a table stands: a table with one key is gone through.
 fn deepest(mut value: &Spanned<DeValue<'_>>, path: &[Segment]) -> (usize, Range<usize>) {
     let mut depth = 0;
     for segment in path {
         let inner = match segment {
-            Segment::Key(key) => value.get_ref().get(*key),
+            Segment::Key(key) => value.get_ref().get(*key).or_else(|| only(value)?.get_ref().get(*key)),
             Segment::Index(index) => value.get_ref().get(*index),
         };
         let Some(inner) = inner else { break };
         (value, depth) = (inner, depth + 1);
     }
     (depth, value.span())
+}
+
+/// What stands under the only key of a table.
+fn only<'a, 'i>(value: &'a Spanned<DeValue<'i>>) -> Option<&'a Spanned<DeValue<'i>>> {
+    match value.get_ref() {
+        DeValue::Table(table) if table.len() == 1 => table.values().next(),
+        _ => None,
+    }
 }
 
 /// What `read` makes of an empty table under `key`.

@@ -66,6 +66,11 @@ pub fn positive(key: &'static str, number: &At<f64>) -> Result<f64, Fault> {
     checked(number, quantity::positive("", key, number.value)).map(|()| number.value)
 }
 
+/// A number, or the usual one; what it must be is checked where its kind is built.
+pub fn number_or(number: &Option<At<f64>>, usual: f64) -> f64 {
+    number.as_ref().map_or(usual, |number| number.value)
+}
+
 /// A positive number, or the usual one.
 ///
 /// # Errors

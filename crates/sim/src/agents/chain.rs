@@ -11,6 +11,7 @@ use forwardstep_core::reference::{Consensus, Position, polynomial};
 
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
+use crate::quantity::positive;
 use crate::reference::ReferenceFamily;
 use crate::setup::RobotSetup;
 use crate::system::{Attachments, Interface, Known, Law, LawWords, Robot, RobotInterface};
@@ -172,7 +173,7 @@ impl Law for ChainLaw {
         let model: &ChainModel = assembly.robot()?;
         let wrong = |error: ChainError| SetupError::Chain { agent: own.name.clone(), error };
         let floor = self.floor;
-        assembly.positive("the floor", floor)?;
+        positive(assembly.of_law(), "floor", floor)?;
         let guide = guide(assembly)?;
         match (model, &self.step) {
             (ChainModel::Derivatives(terms), ChainStep::Linearising { gain_per_s }) => {

@@ -6,6 +6,7 @@ use forwardstep_core::reference::{Consensus, Position, polynomial};
 use forwardstep_core::robot::PointMass;
 
 use crate::closed_loop::{Assembly, Block, SetupError};
+use crate::quantity::{not_negative, positive};
 use crate::reference::ReferenceFamily;
 use crate::setup::RobotSetup;
 use crate::system::{Interface, Known, Law, LawWords};
@@ -46,10 +47,9 @@ impl Law for PositionOnlyLaw {
         let own = assembly.agent();
         let &PointMass { dimension } = assembly.robot()?;
         let &PositionOnlyLaw { damping, filter_per_s, adaptation, estimate_start } = self;
-        for (what, value) in [("k", damping), ("λ_f", filter_per_s)] {
-            assembly.positive(what, value)?;
-        }
-        assembly.not_negative("γ*", adaptation)?;
+        positive(assembly.of_law(), "damping", damping)?;
+        positive(assembly.of_law(), "filter_per_s", filter_per_s)?;
+        not_negative(assembly.of_law(), "adaptation_gain", adaptation)?;
         let guide = guide(assembly)?;
         let plant = Mechanical { robot: PointMass { dimension }, theta: own.robot.theta.clone() };
         assembly.solo(plant, PositionOnly { axes: dimension, guide, damping, filter_per_s, adaptation, estimate_start })

@@ -6,6 +6,7 @@ use forwardstep_core::plant::{Rotorcraft, Rotors};
 use super::LagrangianRobot;
 use super::vehicle::plant as vehicle;
 use crate::closed_loop::{Assembly, SetupError};
+use crate::quantity::{not_negative, positive, such};
 use crate::system::{Attachments, PositionKind, Robot, RobotInterface};
 
 /// A rotorcraft. ϑ is its mass; the rest of its start is its attitude and its angular velocity.
@@ -38,11 +39,13 @@ impl Robot for RotorcraftModel {
 /// The plant, with its true mass.
 pub(super) fn plant(assembly: &Assembly<'_>, model: &RotorcraftModel) -> Result<Rotorcraft, SetupError> {
     if let Some(rotors) = &model.rotors {
-        assembly.positive("the offset of the rotors", rotors.offset)?;
-        assembly.positive("the drag of the rotors", rotors.drag)?;
-        assembly.not_negative("the least thrust of a rotor", rotors.thrust[0])?;
-        let above = rotors.thrust[1] - rotors.thrust[0];
-        assembly.positive("what the greatest thrust of a rotor has above the least", above)?;
+        let (place, [low, high]) = (assembly.of_robot().key("rotors"), rotors.thrust);
+        positive(place.clone(), "offset_m", rotors.offset)?;
+        positive(place.clone(), "drag_m", rotors.drag)?;
+        let thrust = place.key("thrust_n");
+        not_negative(thrust.clone().index(0), "", low)?;
+        not_negative(thrust.clone().index(1), "", high)?;
+        such(high > low, thrust.index(1), "", high, "must be above the least thrust")?;
     }
     Rotorcraft::new(vehicle(assembly, model.gravity)?, &model.inertia, model.rotors).map_err(|error| SetupError::Gain {
         agent: assembly.agent().name.clone(),

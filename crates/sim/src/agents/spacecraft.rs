@@ -6,6 +6,7 @@ use forwardstep_core::plant::{Spacecraft, Wheels};
 
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
+use crate::quantity::positive;
 use crate::recording::Signal;
 use crate::setup::RobotSetup;
 use crate::system::{
@@ -75,8 +76,8 @@ impl Law for AttitudeLaw {
         let SpacecraftModel { inertia_kg_m2, wheels } = assembly.robot()?;
         let plant = Spacecraft::new(*inertia_kg_m2, wheels.clone(), own.enforce_limits)
             .map_err(|error| SetupError::Spacecraft { agent: own.name.clone(), error })?;
-        assembly.positive("α₁", self.alpha[0])?;
-        assembly.positive("α₂", self.alpha[1])?;
+        positive(assembly.of_law(), "error_gain_per_s2", self.alpha[0])?;
+        positive(assembly.of_law(), "rate_gain_per_s", self.alpha[1])?;
         let start: Vec<f64> = [&own.start.q[..], &own.start.dq, &own.start.rest].concat();
         let momentum_inertial =
             plant.momentum_inertial(&start).map_err(|error| SetupError::Length { agent: own.name.clone(), error })?;

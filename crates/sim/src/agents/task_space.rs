@@ -9,9 +9,13 @@ use forwardstep_core::robot::{Lagrangian, PlanarArm, PlanarTip, TipKinematics};
 use forwardstep_core::{Gain, ResolvedGain};
 
 use crate::closed_loop::{Assembly, Block, SetupError, tracking_law};
+use crate::quantity::{LARGEST, at_least, positive, within};
 use crate::recording::Signal;
 use crate::setup::{AxisUnit, RobotSetup};
 use crate::system::{Coordinates, Interface, Known, Law, LawWords, Line, LineValue, Robot};
+
+/// A floor of det Ĵ, as a share of its value at the start, that leaves room.
+const LARGEST_FLOOR: f64 = 0.999;
 
 /// (80)–(82) for the tip of a robot; see [`forwardstep_core::controller::TaskSpace`].
 #[derive(Clone, Debug, PartialEq)]
@@ -147,10 +151,10 @@ impl TaskSpaceLaw {
                 return Err(SetupError::NotFinite { agent: own.name.clone(), what, value: *value });
             }
         }
-        assembly.positive("κ", self.kappa)?;
-        assembly.positive("α", self.alpha_per_s)?;
-        let floor = self.determinant_floor;
-        assembly.number("the floor of det Ĵ", floor, (0.0..1.0).contains(&floor), "must be from 0 to below 1")?;
+        let law = assembly.of_law();
+        positive(law.clone(), "torque_share", self.kappa)?;
+        positive(law.clone(), "reference_gain_per_s", self.alpha_per_s)?;
+        within(law, "determinant_floor", self.determinant_floor, 0.0, LARGEST_FLOOR)?;
         let adapts = self.kinematic_adaptation.as_ref();
         let kinematic_adaptation = adapts.map(|gain| assembly.gain(gain, "Λ", p)).transpose()?;
         if let Some(bounds) = &self.bounds {
@@ -172,7 +176,7 @@ impl TaskSpaceLaw {
             bounds: self.bounds.clone(),
             estimate_start: self.estimate_start.clone(),
             kinematic_start: self.kinematic_start.clone(),
-            determinant_floor: floor,
+            determinant_floor: self.determinant_floor,
             robot: robot.clone(),
             tip: tip.clone(),
         };
@@ -184,9 +188,13 @@ impl TaskSpaceLaw {
 fn check_bounds(assembly: &Assembly<'_>, bounds: &ParameterBounds, p: usize) -> Result<(), SetupError> {
     assembly.length("the lower bounds", p, bounds.lower.len())?;
     assembly.length("the upper bounds", p, bounds.upper.len())?;
-    assembly.positive("the margin of the bounds", bounds.margin)?;
-    bounds.lower.iter().zip(&bounds.upper).try_for_each(|(low, high)| {
-        let meets = low <= high && low.is_finite() && high.is_finite();
-        assembly.number("a lower bound", *low, meets, "must be finite and not above its upper bound")
-    })
+    let place = assembly.of_law().key("bounds");
+    positive(place.clone(), "margin_m", bounds.margin)?;
+    for (k, (low, high)) in bounds.lower.iter().zip(&bounds.upper).enumerate() {
+        let (lower, upper) = (place.clone().key("lower_m").index(k), place.clone().key("upper_m").index(k));
+        within(lower, "", *low, -LARGEST, LARGEST)?;
+        within(upper.clone(), "", *high, -LARGEST, LARGEST)?;
+        at_least(upper, "", *high, ("lower_m", *low))?;
+    }
+    Ok(())
 }

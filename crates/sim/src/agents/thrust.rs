@@ -6,6 +6,7 @@ use forwardstep_core::plant::Vehicle;
 use super::rotorcraft::{self, RotorcraftModel};
 use super::vehicle::{self, VehicleModel};
 use crate::closed_loop::{Assembly, Block, SetupError};
+use crate::quantity::{not_negative, positive};
 use crate::recording::Signal;
 use crate::reference::ReferenceFamily;
 use crate::setup::RobotSetup;
@@ -93,7 +94,7 @@ impl Law for ThrustLaw {
             return assembly.solo(plant, controller);
         }
         let model: &RotorcraftModel = assembly.robot()?;
-        assembly.positive("the bandwidth of the angular velocity", self.bandwidth_per_s)?;
+        positive(assembly.of_law(), "rate_bandwidth_per_s", self.bandwidth_per_s)?;
         let plant = rotorcraft::plant(assembly, model)?;
         let outer = self.outer(assembly, &plant.vehicle)?;
         let rates = RateLoop { inertia: *plant.inertia(), bandwidth_per_s: self.bandwidth_per_s };
@@ -110,27 +111,33 @@ impl ThrustLaw {
         let (design, mass) = match self.design {
             ThrustKind::Continuous => (ThrustDesign::Continuous { roots_per_s: [roots[0], roots[1]] }, vehicle.mass),
             ThrustKind::Differentiable { alpha_star, stiffness } => {
-                assembly.positive("k", stiffness)?;
-                assembly.positive("α*", alpha_star)?;
+                let design = assembly.of_law().key("design.differentiable");
+                positive(design.clone(), "stiffness", stiffness)?;
+                positive(design, "damping_per_s", alpha_star)?;
                 let roots_per_s = [roots[0], roots[1], roots[2]];
                 (ThrustDesign::Differentiable { roots_per_s, alpha_star, stiffness }, vehicle.mass)
             }
             ThrustKind::Adaptive { alpha_star, gamma_star, estimate_start } => {
-                assembly.positive("α*", alpha_star)?;
-                assembly.not_negative("γ*", gamma_star)?;
-                assembly.positive("m̂(0)", estimate_start)?;
+                let design = assembly.of_law().key("design.adaptive");
+                positive(design.clone(), "damping_per_s", alpha_star)?;
+                not_negative(design.clone(), "adaptation_gain", gamma_star)?;
+                positive(design, "estimate_start_kg", estimate_start)?;
                 let roots_per_s = [roots[0], roots[1], roots[2]];
                 (ThrustDesign::Adaptive { roots_per_s, alpha_star, gamma_star }, estimate_start)
             }
         };
-        assembly.positive("the floor of the thrust", self.floor.newtons())?;
-        if let Floor::Kept { approach_s, .. } = self.floor {
-            assembly.positive("the time in which the floor of the thrust is approached", approach_s)?;
+        let law = || assembly.of_law();
+        match self.floor {
+            Floor::Stops(floor) => positive(law().key("floor"), "stops_n", floor)?,
+            Floor::Kept { floor, approach_s } => {
+                positive(law().key("floor.kept"), "thrust_n", floor)?;
+                positive(law().key("floor.kept"), "approach_s", approach_s)?;
+            }
         }
-        assembly.not_negative("the gain of the heading", self.yaw.gain)?;
+        not_negative(law().key("yaw"), "gain_per_s", self.yaw.gain)?;
         let mut outer = Thrust::new(design, mass, vehicle.gravity)
             .map_err(|error| SetupError::Roots { agent: own.name.clone(), error })?;
-        assembly.positive("the thrust at the start", self.thrust_start.unwrap_or(mass * vehicle.gravity))?;
+        positive(law(), "thrust_start_n", self.thrust_start.unwrap_or(mass * vehicle.gravity))?;
         (outer.yaw, outer.floor, outer.thrust_start) = (self.yaw, self.floor, self.thrust_start);
         Ok(outer)
     }

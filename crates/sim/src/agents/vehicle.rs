@@ -5,6 +5,7 @@ use forwardstep_core::plant::Vehicle;
 
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, SetupError};
+use crate::quantity::positive;
 use crate::system::{ActuatorLimits, PositionKind, Robot, RobotInterface};
 
 /// (44). ϑ is its mass; the rest of its start is its attitude (q_v, q_o).
@@ -37,7 +38,7 @@ pub(super) fn plant(assembly: &Assembly<'_>, gravity: f64) -> Result<Vehicle, Se
         let error = LengthError { what: "theta", need: 1, got: own.robot.theta.len() };
         return Err(SetupError::Length { agent: own.name.clone(), error });
     };
-    assembly.positive("m", mass)?;
-    assembly.positive("g", gravity)?;
+    positive(assembly.of_robot(), "mass_kg", mass)?;
+    positive(assembly.of_robot(), "gravity_m_s2", gravity)?;
     Ok(Vehicle { mass, gravity })
 }

@@ -13,6 +13,7 @@ use super::robot_batch::Member;
 use super::solo::{Solo, Target};
 use super::valid::too_many;
 use crate::agents::{Adaptive, RobotModel};
+use crate::quantity::Path;
 use crate::recording::Signal;
 use crate::reference::ReferenceDynamics;
 use crate::setup::{AgentSetup, Axis, Setup};
@@ -84,35 +85,18 @@ impl<'a> Assembly<'a> {
             .map_err(|error| SetupError::RootCount { agent: self.agent().name.clone(), error })
     }
 
-    /// Checks a number of the law.
-    ///
-    /// # Errors
-    /// [`SetupError::LawNumber`] unless it is positive and finite.
-    pub fn positive(&self, what: &'static str, value: f64) -> Result<(), SetupError> {
-        self.number(what, value, value > 0.0 && value.is_finite(), "must be positive and finite")
+    /// Where its law stands, for the functions of [`quantity`](crate::quantity), which are told the keys of the law's table.
+    pub fn of_law(&self) -> Path {
+        self.of_agent().key("law")
     }
 
-    /// Checks a number of the law.
-    ///
-    /// # Errors
-    /// [`SetupError::LawNumber`] unless it is finite and not negative.
-    pub fn not_negative(&self, what: &'static str, value: f64) -> Result<(), SetupError> {
-        self.number(what, value, value >= 0.0 && value.is_finite(), "must be finite and not negative")
+    /// Where its robot stands.
+    pub fn of_robot(&self) -> Path {
+        self.of_agent().key("robot")
     }
 
-    /// Checks a number of the law by a requirement of its own.
-    ///
-    /// # Errors
-    /// [`SetupError::LawNumber`] unless `meets`.
-    pub fn number(
-        &self,
-        what: &'static str,
-        value: f64,
-        meets: bool,
-        requirement: &'static str,
-    ) -> Result<(), SetupError> {
-        let agent = || self.agent().name.clone();
-        if meets { Ok(()) } else { Err(SetupError::LawNumber { agent: agent(), what, value, requirement }) }
+    fn of_agent(&self) -> Path {
+        Path::from("agents").index(self.agents[0])
     }
 
     /// Checks the length of a vector of the agent.

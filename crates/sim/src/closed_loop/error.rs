@@ -322,18 +322,6 @@ pub enum SetupError {
         /// The agent.
         agent: String,
     },
-    /// A number of a law that makes no sense.
-    #[error("agent `{agent}`: {what} is {value}, but {requirement}")]
-    LawNumber {
-        /// The agent.
-        agent: String,
-        /// Which number.
-        what: &'static str,
-        /// The value.
-        value: f64,
-        /// What it must be.
-        requirement: &'static str,
-    },
     /// Bounds of kinematic parameters that are not adapted.
     #[error("agent `{agent}`: bounds of kinematic parameters have no effect where these are not adapted")]
     BoundsOfKnown {
@@ -439,7 +427,6 @@ impl SetupError {
             SetupError::Chain { agent, .. }
             | SetupError::Length { agent, .. }
             | SetupError::NotFinite { agent, .. }
-            | SetupError::LawNumber { agent, .. }
             | SetupError::LawOfAnother { agent, .. }
             | SetupError::Gain { agent, .. }
             | SetupError::Tip { agent, .. }

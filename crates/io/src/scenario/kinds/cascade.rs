@@ -11,7 +11,7 @@ use serde::Deserialize;
 use super::chain::{ChainProblem, FLOOR, adapted, chain_robot, each, list, optional};
 use super::{
     At, AxisValues, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, LawTable, RobotKind, RobotRead,
-    RobotTable, Spread, StartReader, Stop, fault, filled, length, positive_or,
+    RobotTable, Spread, StartReader, Stop, fault, filled, length, number_or,
 };
 use crate::scenario::value_problem::ValueProblem;
 use crate::scenario::values::Positive;
@@ -186,7 +186,7 @@ impl LawKind for AdaptiveBacksteppingFile {
         let order = order(agent.robot).unwrap_or_default();
         let gains_per_s = each("gains_per_s", self.gains_per_s.as_ref(), agent.agent, order)?;
         let estimate = adapted(self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), agent)?;
-        let floor = positive_or("floor", &self.floor, FLOOR)?;
+        let floor = number_or(&self.floor, FLOOR);
         Ok(Arc::new(ChainLaw { step: ChainStep::Backstepping { gains_per_s, estimate }, floor }))
     }
 }

@@ -12,7 +12,8 @@ use thiserror::Error;
 
 use super::{
     At, AxisValues, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, LawTable, Mistake, RobotKind, RobotRead,
-    RobotTable, Spread, StartReader, Stop, axis, count, estimate, fault, length, positive, positive_or, values,
+    RobotTable, Spread, StartReader, Stop, axis, count, estimate, fault, length, number_or, positive, positive_or,
+    values,
 };
 use crate::scenario::formula::formula_in;
 use crate::scenario::values::Positive;
@@ -186,7 +187,7 @@ impl LawKind for LinearisingFile {
 
     fn law(&self, _: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
         let gain_per_s = positive_or("gain_per_s", &self.gain_per_s, GAIN)?;
-        let floor = positive_or("floor", &self.floor, FLOOR)?;
+        let floor = number_or(&self.floor, FLOOR);
         Ok(Arc::new(ChainLaw { step: ChainStep::Linearising { gain_per_s }, floor }))
     }
 }
@@ -223,7 +224,7 @@ impl LawKind for LinearAdaptiveFile {
     fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
         let gain_per_s = positive_or("gain_per_s", &self.gain_per_s, GAIN)?;
         let estimate = adapted(self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), agent)?;
-        let floor = positive_or("floor", &self.floor, FLOOR)?;
+        let floor = number_or(&self.floor, FLOOR);
         Ok(Arc::new(ChainLaw { step: ChainStep::Adaptive { gain_per_s, estimate }, floor }))
     }
 }
@@ -271,7 +272,7 @@ impl LawKind for ImmersionFile {
         };
         let gain_per_s = positive_or("gain_per_s", &self.gain_per_s, GAIN)?;
         let estimate = adapted(self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), agent)?;
-        let floor = positive_or("floor", &self.floor, FLOOR)?;
+        let floor = number_or(&self.floor, FLOOR);
         Ok(Arc::new(ChainLaw { step: ChainStep::Immersion { gain_per_s, estimate, antiderivatives }, floor }))
     }
 }

@@ -49,7 +49,8 @@ pub use self::schedules::ScheduleKind;
 use self::table::{LawEntry, ReferenceEntry, RobotEntry, Table, choice, chosen, delay, schedule, word};
 pub use super::at::At;
 pub use super::fault::{
-    Fault, between, count, fault, filled, length, not_negative, not_negative_or, positive, positive_or, values,
+    Fault, between, count, fault, filled, length, not_negative, not_negative_or, number_or, positive, positive_or,
+    values,
 };
 pub use super::gains::{DampingFile, EstimateStartFile, adaptation, damping, estimate, gain, gain_or};
 pub use super::inputs::InputFolder;

@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 use super::{
     At, Fault, InputFolder, LawKind, LawReader, LawTable, RobotKind, RobotRead, RobotTable, RobotTemplate, Spread,
-    StartReader, Stop, count, not_negative_or, positive, positive_or,
+    StartReader, Stop, count, number_or, positive,
 };
 use crate::scenario::values::Positive;
 
@@ -99,9 +99,9 @@ impl LawKind for PositionOnlyFile {
 
     fn law(&self, _: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
         Ok(Arc::new(PositionOnlyLaw {
-            damping: positive_or("damping", &self.damping, DAMPING_GAIN)?,
-            filter_per_s: positive_or("filter_per_s", &self.filter_per_s, FILTER_PER_S)?,
-            adaptation: not_negative_or("adaptation_gain", &self.adaptation_gain, ADAPTATION_GAIN)?,
+            damping: number_or(&self.damping, DAMPING_GAIN),
+            filter_per_s: number_or(&self.filter_per_s, FILTER_PER_S),
+            adaptation: number_or(&self.adaptation_gain, ADAPTATION_GAIN),
             estimate_start: self.estimate_start_kg.as_ref().map_or(0.0, |start| start.value),
         }))
     }

@@ -12,7 +12,7 @@ use thiserror::Error;
 
 use super::{
     At, Fault, GainFile, InputFolder, LawKind, LawReader, LawTable, Mistake, RobotKind, RobotRead, RobotTable, Spread,
-    StartReader, Stop, axis, fault, filled, gain, gain_or, length, positive, positive_or, values,
+    StartReader, Stop, axis, fault, filled, gain, gain_or, length, number_or, positive, values,
 };
 use crate::scenario::attitude::{attitude as attitude_of, quaternion, turn};
 use crate::scenario::attitude_file::WheelStartFile;
@@ -219,8 +219,8 @@ impl LawKind for AttitudeFile {
         let agent = agent.agent;
         Ok(Arc::new(AttitudeLaw {
             alpha: [
-                positive_or("error_gain_per_s2", &self.error_gain_per_s2, ERROR_GAIN_PER_S2)?,
-                positive_or("rate_gain_per_s", &self.rate_gain_per_s, RATE_GAIN_PER_S)?,
+                number_or(&self.error_gain_per_s2, ERROR_GAIN_PER_S2),
+                number_or(&self.rate_gain_per_s, RATE_GAIN_PER_S),
             ],
             filter: gain_or("filter_gain_per_s", &self.filter_gain_per_s, FILTER_GAIN_PER_S, agent, 4)?,
             damping: gain_or("damping", &self.damping, DAMPING, agent, 4)?,

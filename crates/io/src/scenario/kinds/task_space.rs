@@ -13,11 +13,10 @@ use thiserror::Error;
 
 use super::{
     At, Body, DampingFile, EstimateStartFile, Fault, GainFile, GainOrBandwidth, LawKind, LawReader, LawTable, Mistake,
-    adaptation, between, damping, estimate, fault, filled, gain_or, length, positive_or, values,
+    adaptation, damping, estimate, fault, filled, gain_or, length, number_or, values,
 };
 use crate::scenario::gains::{has_scales, known_or_given};
 use crate::scenario::push_problem::PushProblem;
-use crate::scenario::value_problem::ValueProblem;
 use crate::scenario::values::Positive;
 
 const DAMPING: f64 = 20.0;
@@ -186,7 +185,6 @@ impl LawKind for TaskSpaceFile {
             None => theta.iter().map(|length| KINEMATIC_START * length).collect(),
             Some(file) => known_or_given("kinematic_start.given", file, agent, &theta)?,
         };
-        let floor = self.determinant_floor.as_ref();
         Ok(Arc::new(TaskSpaceLaw {
             tip,
             kinematic_names,
@@ -194,13 +192,12 @@ impl LawKind for TaskSpaceFile {
             adaptation,
             estimate_start: estimate(self.estimate_start.as_ref(), reader)?,
             task_gain: gain_or("task_gain", &self.task_gain, TASK_GAIN, agent, robot.axes.len())?,
-            kappa: positive_or("torque_share", &self.torque_share, TORQUE_SHARE)?,
-            alpha_per_s: positive_or("reference_gain_per_s", &self.reference_gain_per_s, REFERENCE_GAIN_PER_S)?,
+            kappa: number_or(&self.torque_share, TORQUE_SHARE),
+            alpha_per_s: number_or(&self.reference_gain_per_s, REFERENCE_GAIN_PER_S),
             kinematic_adaptation: Some(kinematic_adaptation),
             kinematic_start,
             bounds,
-            determinant_floor: floor
-                .map_or(Ok(DETERMINANT_FLOOR), |floor| between("determinant_floor", floor, 0.0, 0.999))?,
+            determinant_floor: number_or(&self.determinant_floor, DETERMINANT_FLOOR),
         }))
     }
 }
@@ -274,10 +271,5 @@ fn bounds(file: &BoundsFile, agent: &str, p: usize) -> Result<ParameterBounds, F
         Ok::<_, Fault>(values(&list.value))
     };
     let (lower, upper) = (list("lower_m", &file.lower_m)?, list("upper_m", &file.upper_m)?);
-    for ((low, high), place) in lower.iter().zip(&upper).zip(&file.lower_m.value) {
-        if low > high {
-            return Err(fault(place, ValueProblem::Interval { key: "bounds", low: *low, high: *high }));
-        }
-    }
-    Ok(ParameterBounds { lower, upper, margin: positive_or("margin_m", &file.margin_m, MARGIN_M)? })
+    Ok(ParameterBounds { lower, upper, margin: number_or(&file.margin_m, MARGIN_M) })
 }

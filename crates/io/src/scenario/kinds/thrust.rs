@@ -10,10 +10,9 @@ use serde::Deserialize;
 
 use super::{
     At, Fault, GainFile, InputFolder, LawKind, LawReader, LawTable, RobotKind, RobotRead, RobotTable, Spread,
-    StartReader, Stop, axis, fault, gain, not_negative, not_negative_or, positive, positive_or,
+    StartReader, Stop, axis, fault, gain, number_or,
 };
 use crate::scenario::system_problem::SystemProblem;
-use crate::scenario::value_problem::ValueProblem;
 use crate::scenario::values::{NotNegative, Positive};
 
 const GRAVITY_M_S2: f64 = 9.81;
@@ -49,8 +48,8 @@ impl RobotKind for VehicleFile {
     }
 
     fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
-        let model = VehicleModel { gravity: positive_or("gravity_m_s2", &self.gravity_m_s2, GRAVITY_M_S2)? };
-        Ok(RobotRead::new(robot(model, positive("mass_kg", &self.mass_kg)?)))
+        let model = VehicleModel { gravity: number_or(&self.gravity_m_s2, GRAVITY_M_S2) };
+        Ok(RobotRead::new(robot(model, self.mass_kg.value)))
     }
 
     fn spread(&self, read: &mut RobotRead, spread: &Spread<'_>) -> Result<(), Fault> {
@@ -110,11 +109,11 @@ impl RobotKind for RotorcraftFile {
     fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
         let place = &self.inertia_kg_m2;
         let model = RotorcraftModel {
-            gravity: positive_or("gravity_m_s2", &self.gravity_m_s2, GRAVITY_M_S2)?,
+            gravity: number_or(&self.gravity_m_s2, GRAVITY_M_S2),
             inertia: gain("inertia_kg_m2", &place.value, place, "rotorcraft", 3)?,
-            rotors: self.rotors.as_ref().map(|rotors| self::rotors(&rotors.value)).transpose()?,
+            rotors: self.rotors.as_ref().map(|rotors| self::rotors(&rotors.value)),
         };
-        Ok(RobotRead::new(robot(model, positive("mass_kg", &self.mass_kg)?)))
+        Ok(RobotRead::new(robot(model, self.mass_kg.value)))
     }
 
     fn spread(&self, read: &mut RobotRead, spread: &Spread<'_>) -> Result<(), Fault> {
@@ -130,17 +129,9 @@ impl RobotKind for RotorcraftFile {
     }
 }
 
-fn rotors(file: &RotorsFile) -> Result<Rotors, Fault> {
+fn rotors(file: &RotorsFile) -> Rotors {
     let [low, high] = &file.thrust_n.value;
-    let (low, high) = (not_negative("thrust_n", low)?, not_negative("thrust_n", high)?);
-    if low >= high {
-        return Err(fault(&file.thrust_n, ValueProblem::Range { key: "thrust_n", low, high }));
-    }
-    Ok(Rotors {
-        offset: positive("offset_m", &file.offset_m)?,
-        drag: positive("drag_m", &file.drag_m)?,
-        thrust: [low, high],
-    })
+    Rotors { offset: file.offset_m.value, drag: file.drag_m.value, thrust: [low.value, high.value] }
 }
 
 fn robot(model: impl Robot, mass: f64) -> RobotSetup {
@@ -270,18 +261,18 @@ impl LawKind for ThrustFile {
         let gravity = vehicle.or(rotorcraft).unwrap_or(GRAVITY_M_S2);
         let known = robot.theta.first().copied().unwrap_or_default();
         let (design, mass) = match &self.design {
-            None => differentiable(&DifferentiableFile::default(), known)?,
+            None => differentiable(&DifferentiableFile::default(), known),
             Some(ThrustDesignFile::Continuous) => (ThrustKind::Continuous, known),
-            Some(ThrustDesignFile::Differentiable(file)) => differentiable(file, known)?,
+            Some(ThrustDesignFile::Differentiable(file)) => differentiable(file, known),
             Some(ThrustDesignFile::Adaptive(AdaptiveThrustFile {
                 damping_per_s,
                 adaptation_gain,
                 estimate_start_kg,
             })) => {
-                let estimate_start = positive("estimate_start_kg", estimate_start_kg)?;
+                let estimate_start = estimate_start_kg.value;
                 let kind = ThrustKind::Adaptive {
-                    alpha_star: positive_or("damping_per_s", damping_per_s, DAMPING_PER_S)?,
-                    gamma_star: not_negative_or("adaptation_gain", adaptation_gain, ADAPTATION_GAIN)?,
+                    alpha_star: number_or(damping_per_s, DAMPING_PER_S),
+                    gamma_star: number_or(adaptation_gain, ADAPTATION_GAIN),
                     estimate_start,
                 };
                 (kind, estimate_start)
@@ -289,30 +280,28 @@ impl LawKind for ThrustFile {
         };
         let floor = match &self.floor {
             None => Floor::Stops(FLOOR * mass * gravity),
-            Some(FloorFile::StopsN(floor)) => Floor::Stops(positive("stops_n", floor)?),
-            Some(FloorFile::Kept(kept)) => Floor::Kept {
-                floor: positive("thrust_n", &kept.thrust_n)?,
-                approach_s: positive_or("approach_s", &kept.approach_s, APPROACH_S)?,
-            },
+            Some(FloorFile::StopsN(floor)) => Floor::Stops(floor.value),
+            Some(FloorFile::Kept(kept)) => {
+                Floor::Kept { floor: kept.thrust_n.value, approach_s: number_or(&kept.approach_s, APPROACH_S) }
+            }
         };
         Ok(Arc::new(ThrustLaw {
             design,
             yaw: yaw(self.yaw.as_ref().unwrap_or(&YawFile::default()))?,
             floor,
-            thrust_start: self.thrust_start_n.as_ref().map(|start| positive("thrust_start_n", start)).transpose()?,
-            bandwidth_per_s: positive_or("rate_bandwidth_per_s", &self.rate_bandwidth_per_s, RATE_BANDWIDTH_PER_S)?,
+            thrust_start: self.thrust_start_n.as_ref().map(|start| start.value),
+            bandwidth_per_s: number_or(&self.rate_bandwidth_per_s, RATE_BANDWIDTH_PER_S),
         }))
     }
 }
 
-fn differentiable(file: &DifferentiableFile, mass: f64) -> Result<(ThrustKind, f64), Fault> {
-    let alpha_star = positive_or("damping_per_s", &file.damping_per_s, DAMPING_PER_S)?;
-    let stiffness = positive_or("stiffness", &file.stiffness, STIFFNESS)?;
-    Ok((ThrustKind::Differentiable { alpha_star, stiffness }, mass))
+fn differentiable(file: &DifferentiableFile, mass: f64) -> (ThrustKind, f64) {
+    let alpha_star = number_or(&file.damping_per_s, DAMPING_PER_S);
+    (ThrustKind::Differentiable { alpha_star, stiffness: number_or(&file.stiffness, STIFFNESS) }, mass)
 }
 
 fn yaw(file: &YawFile) -> Result<Yaw, Fault> {
-    let gain = not_negative_or("gain_per_s", &file.gain_per_s, YAW_GAIN_PER_S)?;
+    let gain = number_or(&file.gain_per_s, YAW_GAIN_PER_S);
     if let (Some(place), Some(_)) = (file.gain_per_s.as_ref().filter(|_| gain == 0.0), file.heading_rad) {
         return Err(fault(place, SystemProblem::HeadingUnused));
     }
