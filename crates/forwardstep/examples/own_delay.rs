@@ -19,14 +19,8 @@ use forwardstep::sim::schedule::{KnownSwitching, Schedule, Segment, Segments, Sw
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-fn main() -> ExitCode {
-    match kinds() {
-        Ok(kinds) => forwardstep::program(&kinds),
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+fn main() -> Result<ExitCode, KindError> {
+    Ok(forwardstep::program(&kinds()?))
 }
 
 /// The shipped kinds and these two.

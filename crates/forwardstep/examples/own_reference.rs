@@ -24,14 +24,8 @@ pub fn kinds() -> Result<Kinds, KindError> {
     Ok(kinds)
 }
 
-fn main() -> ExitCode {
-    match kinds() {
-        Ok(kinds) => forwardstep::program(&kinds),
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+fn main() -> Result<ExitCode, KindError> {
+    Ok(forwardstep::program(&kinds()?))
 }
 
 /// Agreement between agents that are drawn home.

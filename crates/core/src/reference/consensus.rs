@@ -17,7 +17,7 @@
 //! does (α₁ = 1 for ℓ = 1): the conserved quantity that predicts the agreed value starts here.
 
 use super::polynomial::{Coefficients, RootsError};
-use super::{Exchange, Heard, Measured, Reference, ReferenceOut, Sliding, check};
+use super::{Exchange, Heard, Measured, Reference, ReferenceOut, Sliding, begin, check};
 use crate::{LengthError, Scalar};
 
 /// Reference dynamics of order ℓ for a population of agents, each with roots of its own.
@@ -151,10 +151,7 @@ impl<X: Exchange> Reference for Consensus<X> {
         state: &mut [f64],
     ) -> Result<(), LengthError> {
         let need = self.vectors() * axes * self.agents();
-        LengthError::check("start of the reference", need, given.len())?;
-        LengthError::check("reference state", need, state.len())?;
-        state.copy_from_slice(given);
-        Ok(())
+        begin([need, need], given, state)
     }
 }
 

@@ -53,7 +53,7 @@
 //! (122).
 
 use super::sliding::Sliding;
-use super::{Exchange, Heard, Measured, PositionVelocity, Reference, ReferenceOut, check};
+use super::{Exchange, Heard, Measured, PositionVelocity, Reference, ReferenceOut, begin, check};
 use crate::{LengthError, Scalar};
 
 /// (110). State: `[z, ς]`.
@@ -204,11 +204,7 @@ impl Reference for Following {
         state: &mut [f64],
     ) -> Result<(), LengthError> {
         let block = axes * self.agents;
-        LengthError::check("start of the reference", 2 * block, given.len())?;
-        LengthError::check("reference state", 2 * block, state.len())?;
-        state[..block].copy_from_slice(&given[..block]);
-        state[block..].fill(0.0);
-        Ok(())
+        begin([block, 2 * block], given, state)
     }
 }
 

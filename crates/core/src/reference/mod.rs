@@ -151,6 +151,16 @@ macro_rules! behind {
 behind!(Box);
 behind!(Arc);
 
+/// The start of dynamics whose state begins with z, ż, …: the first `stated` of its `need` entries are those given, the rest is zero.
+fn begin([stated, need]: [usize; 2], given: &[f64], state: &mut [f64]) -> Result<(), LengthError> {
+    LengthError::check("start of the reference", need, given.len())?;
+    LengthError::check("reference state", need, state.len())?;
+    let stated = stated.min(need);
+    state.fill(0.0);
+    state[..stated].copy_from_slice(&given[..stated]);
+    Ok(())
+}
+
 /// Checks the lengths that all reference dynamics share.
 #[inline(always)]
 fn check<X: Exchange>(

@@ -2,7 +2,7 @@
 
 use core::marker::PhantomData;
 
-use super::{Exchange, Heard, Measured, PositionVelocity, Reference, ReferenceOut, Sliding, check};
+use super::{Exchange, Heard, Measured, PositionVelocity, Reference, ReferenceOut, Sliding, begin, check};
 use crate::LengthError;
 
 /// Reference dynamics that a function states for one axis of one agent.
@@ -188,11 +188,6 @@ where
         state: &mut [f64],
     ) -> Result<(), LengthError> {
         let block = axes * self.agents;
-        LengthError::check("start of the reference", self.vectors * block, given.len())?;
-        LengthError::check("reference state", self.vectors * block, state.len())?;
-        let stated = (self.derivatives * block).min(state.len());
-        state.fill(0.0);
-        state[..stated].copy_from_slice(&given[..stated]);
-        Ok(())
+        begin([self.derivatives, self.vectors].map(|vectors| vectors * block), given, state)
     }
 }
