@@ -18,8 +18,8 @@ use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::{Path, Sinusoid, Spline, Trajectory};
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Axis, AxisUnit, Control, Exchange, Known, Network, RobotSetup, Setup, Solver, Start,
-    TimeSpan, validate,
+    Adaptive, AgentSetup, Axis, AxisUnit, Control, Exchange, Known, Network, PositionOnlyLaw, RobotSetup, Setup,
+    Solver, Start, TimeSpan, validate,
 };
 
 fn mass(index: usize) -> AgentSetup {
@@ -312,4 +312,48 @@ fn swarm_tracking_behind_an_agent_is_judged_like_that_behind_a_motion() {
         assert_eq!(of_agent, of_motion, "{id:?}");
         assert_eq!(of_agent.0, Answer::Holds, "{id:?}: {}", of_agent.1);
     }
+}
+
+/// Adaptive from an estimate of zero, with this Γ.
+fn adaptive(adaptation: f64) -> Adaptive {
+    let [damping, adaptation] = [10.0, adaptation].map(Gain::Number);
+    Adaptive { damping, adaptation, estimate_start: vec![0.0] }
+}
+
+#[test]
+fn thm9_what_is_said_of_those_that_follow_is_not_said_of_the_agent_that_leads() {
+    let slow = |agent: usize| {
+        let mut setup = led_by_agent(FollowingDesign::Differentiable, wave());
+        setup.agents[agent].law = Arc::new(adaptive(1.0));
+        let report = check(&setup);
+        let shared = report.hypotheses.iter().find(|hypothesis| hypothesis.id == Id::SharedDesign).unwrap();
+        shared.because().contains("very slowly")
+    };
+    assert_eq!([0, 1, 2].map(slow), [false, true, true]);
+    // Where a robot tracks, what it learns and what it applies are of one sample.
+    let sampled = |agent: usize| {
+        let mut setup = led_by_agent(FollowingDesign::Continuous, wave());
+        setup.agents[agent].law = Arc::new(adaptive(1e6));
+        setup.control = setup_sampled();
+        sampled_adaptation(&setup).map(|found| found.agent)
+    };
+    assert_eq!([0, 1, 2].map(sampled), [None, Some(1), Some(2)]);
+}
+
+fn setup_sampled() -> Option<Control> {
+    setup(FollowingDesign::Continuous, wave(), 3.0).sampled(100.0).control
+}
+
+/// A leader of another kind makes no mixture of those that follow.
+#[test]
+fn thm8_an_agent_of_another_kind_leads() {
+    let mut setup = led_by_agent(FollowingDesign::Continuous, wave());
+    let law = PositionOnlyLaw { damping: 5.0, filter_per_s: 5.0, adaptation: 1.0, estimate_start: 0.0 };
+    setup.agents[0].law = Arc::new(law);
+    setup.agents[0].roots_per_s = vec![1.0, 2.0, 3.0];
+    validate(&setup).unwrap();
+    let report = check(&setup);
+    assert_eq!(report.theorem, Theorem::Theorem8);
+    assert!(report.hypotheses.iter().all(|hypothesis| hypothesis.id != Id::OneKind));
+    assert!(report.hypotheses.iter().any(|hypothesis| hypothesis.id == Id::PositionOnlyGains));
 }

@@ -125,7 +125,7 @@ pub struct AgentSetup {
     pub manipulability: f64,
     /// Its tracking law.
     pub law: Arc<dyn Law>,
-    /// Under [`Tracking`](crate::reference::Tracking) where it should be; otherwise its offset from where all agree, for laws that know
+    /// Under [`Tracking`] where it should be; otherwise its offset from where all agree, for laws that know
     /// offsets.
     pub target: Option<Trajectory>,
     /// Where it starts.

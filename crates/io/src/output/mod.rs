@@ -26,6 +26,7 @@ mod disagreement;
 mod ending;
 mod error;
 mod folder;
+mod how;
 mod inputs;
 mod metrics;
 pub mod names;

@@ -11,9 +11,8 @@ use thiserror::Error;
 
 use crate::network::NetworkError;
 use crate::push::PushError;
-use crate::quantity::{Path, QuantityError};
-use crate::reference::{ReferenceDynamics, ReferenceFamily};
-use crate::setup::{AgentSetup, Exchange, Setup, Solver};
+use crate::quantity::QuantityError;
+use crate::setup::Exchange;
 use crate::trajectory::TrajectoryError;
 
 /// Why a setup cannot be simulated.
@@ -375,93 +374,6 @@ pub enum SetupError {
     Quantity(#[from] QuantityError),
 }
 
-impl SetupError {
-    /// Where in `setup` stands what it is about.
-    pub fn path(&self, setup: &Setup) -> Path {
-        let of = |agent: &str| match setup.agents.iter().position(|known| known.name == agent) {
-            Some(index) => Path::from("agents").index(index),
-            None => Path::from("leader"),
-        };
-        let reference = || Path::from("reference").key(setup.reference.words().key);
-        let own = |agent: &str| {
-            let index = setup.agents.iter().position(|known| known.name == agent);
-            let reference = index.map_or(&*setup.reference, |index| setup.reference_of(index));
-            of(agent).key("reference").key(reference.words().key)
-        };
-        let roots = |agent| own(agent).key("roots_per_s");
-        match self {
-            SetupError::Quantity(error) | SetupError::Network(NetworkError::Quantity(error)) => error.path.clone(),
-            SetupError::Network(_)
-            | SetupError::AgentCount { .. }
-            | SetupError::UnusedEdges { .. }
-            | SetupError::LeaderHears { .. } => "network".into(),
-            SetupError::Coupling => "network.coupling".into(),
-            SetupError::NoAgent { .. } => "agents".into(),
-            SetupError::ReferenceExchange { .. }
-            | SetupError::ReferenceShape { .. }
-            | SetupError::SignWithoutLeader { .. }
-            | SetupError::OnlyTracks { .. }
-            | SetupError::NotTracking { .. }
-            | SetupError::ReferenceOfLaw { .. } => "reference".into(),
-            SetupError::Backstepping(BacksteppingError::Filter { .. }) => reference().key("filter_s"),
-            SetupError::Backstepping(BacksteppingError::Limit { .. }) => reference().key("acceleration_limit"),
-            SetupError::DelayedDerived { .. } => reference().key("design"),
-            SetupError::SendsPositionOnly { .. } => reference().key("exchange"),
-            SetupError::Roots { agent, .. }
-            | SetupError::OrderTooLow { agent, .. }
-            | SetupError::RootCount { agent, .. }
-            | SetupError::Chain { agent, error: ChainError::Guide(_) } => roots(agent),
-            SetupError::NoManipulability { agent, .. } => own(agent).key("manipulability_gain"),
-            SetupError::StartOfReference { agent, .. } => of(agent).key("start.reference"),
-            SetupError::CannotLead { .. } => Path::from("leader"),
-            SetupError::NoTarget { agent } | SetupError::Recipe { agent, .. } => of(agent).key("name"),
-            SetupError::Trajectory { agent, .. } | SetupError::NoOffsets { agent, .. } => of(agent).key("target"),
-            SetupError::UnitsDiffer { agent, .. }
-            | SetupError::AxesDiffer { agent, .. }
-            | SetupError::Spacecraft { agent, .. }
-            | SetupError::NoEffortLimit { agent, .. }
-            | SetupError::Chain { agent, error: ChainError::Expression(_) } => of(agent).key("robot"),
-            SetupError::Chain { agent, error: ChainError::Antiderivative { parameter, .. } } => {
-                of(agent).key("law.immersion.antiderivatives").index(*parameter)
-            }
-            SetupError::Chain { agent, .. }
-            | SetupError::Length { agent, .. }
-            | SetupError::NotFinite { agent, .. }
-            | SetupError::LawOfAnother { agent, .. }
-            | SetupError::Gain { agent, .. }
-            | SetupError::Tip { agent, .. }
-            | SetupError::ProjectionOfMatrix { agent }
-            | SetupError::BoundsOfKnown { agent }
-            | SetupError::NotPushed { agent, .. } => of(agent).key("law"),
-            SetupError::Push { agent, .. } => of(agent),
-            SetupError::Limiter { .. } | SetupError::TorqueLimitCount { of_rates: false, .. } => {
-                "control.torque_limit".into()
-            }
-            SetupError::TorqueLimitCount { of_rates: true, .. } => "control.torque_rate_limit_per_s".into(),
-            SetupError::VelocityFilter(_) => "control.velocity".into(),
-            SetupError::VelocityUnused { quantity, .. } => Path::from("control").key(quantity.key()),
-            // What was not asked for is not what is wrong.
-            SetupError::Memory { budget_bytes, .. }
-                if setup.control.is_some() && *budget_bytes == Solver::default().memory_budget_bytes =>
-            {
-                "control.sample_hz".into()
-            }
-            SetupError::Memory { .. } => "solver.memory_budget_bytes".into(),
-        }
-    }
-
-    /// The reference dynamics do not lead the law of `agent`.
-    pub(crate) fn wrong_reference(reference: &dyn ReferenceDynamics, agent: &AgentSetup) -> Self {
-        let (name, law) = (agent.name.clone(), agent.law.words().name);
-        let only_tracks = agent.interface().is_some_and(|interface| interface.follows == [ReferenceFamily::Target]);
-        match reference.interface().family {
-            ReferenceFamily::Target => SetupError::NotTracking { agent: name, law },
-            _ if only_tracks => SetupError::OnlyTracks { agent: name, law },
-            _ => SetupError::ReferenceOfLaw { agent: name, law },
-        }
-    }
-}
-
 /// What is said of a sensor of velocities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VelocityQuantity {
@@ -474,7 +386,7 @@ pub enum VelocityQuantity {
 }
 
 impl VelocityQuantity {
-    fn key(self) -> &'static str {
+    pub(super) fn key(self) -> &'static str {
         match self {
             VelocityQuantity::Noise => "noise.velocity",
             VelocityQuantity::Step => "quantisation.velocity",

@@ -33,7 +33,7 @@ pub(super) fn batches(setup: &Setup) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (index, agent) in agents.iter().enumerate() {
         let joins = in_batches(index);
-        match groups.iter_mut().find(|group| joins && in_batches(group[0]) && alike(&agents[group[0]], agent)) {
+        match groups.iter_mut().find(|group| joins && alike(&agents[group[0]], agent)) {
             Some(group) => group.push(index),
             None => groups.push(vec![index]),
         }

@@ -16,7 +16,7 @@
 //! - `members`: from agents to batches.
 //! - `assembly`: what a law builds its agents with.
 //! - `unused`: what a setup states and nothing reads.
-//! - `error`: what makes a [`crate::Setup`] meaningless.
+//! - `error`: what makes a [`crate::Setup`] meaningless; `error_path`: where it stands.
 //! - `valid`: finds it.
 //! - `assemble`: all populations and what joins them: the right-hand side as a whole, and its events.
 
@@ -25,6 +25,7 @@ mod assembly;
 mod columns;
 mod driven;
 mod error;
+mod error_path;
 mod gain_rates;
 mod guide;
 mod members;
