@@ -25,6 +25,10 @@ pub trait RobotModel: Robot + Clone {
 }
 
 /// What the engine and the verdicts ask of a robot under (6)–(7). Every [`RobotModel`] is one.
+///
+/// Behind it stands the engine, compiled for that robot's kernel. A robot that is shipped hands it out of line
+/// (`#[inline(never)]` on [`Robot::lagrangian`]), so that it is compiled in this crate alone: inlined elsewhere, each program and
+/// each test would compile it again, which takes ten seconds.
 pub trait LagrangianRobot {
     /// Whether `other` is the same model, whatever its parameters, so that kernels can be shared.
     fn same_model(&self, other: &dyn Robot) -> bool;
@@ -92,6 +96,7 @@ impl Robot for Arc<Tree> {
         RobotInterface { attachments: Attachments::Links(Arc::clone(self)), ..RobotInterface::mechanical(axes) }
     }
 
+    #[inline(never)]
     fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
         Some(self)
     }
@@ -115,6 +120,7 @@ impl Robot for PlanarArm {
         RobotInterface { attachments: Attachments::PlanarTip, ..RobotInterface::mechanical(axes) }
     }
 
+    #[inline(never)]
     fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
         Some(self)
     }
@@ -138,6 +144,7 @@ impl Robot for PointMass {
         RobotInterface { numbered_axes: true, ..RobotInterface::mechanical(axes) }
     }
 
+    #[inline(never)]
     fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
         Some(self)
     }

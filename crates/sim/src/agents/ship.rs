@@ -21,6 +21,7 @@ impl Robot for Ship {
         RobotInterface::mechanical(axes)
     }
 
+    #[inline(never)]
     fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
         Some(self)
     }
