@@ -3,6 +3,8 @@
 
 mod common;
 
+use std::sync::Arc;
+
 use common::chains;
 use common::following::{DESIGNS, led_by_agent, masses};
 use common::{column, run, sampled};
@@ -11,7 +13,10 @@ use forwardstep_sim::graph::Edge;
 use forwardstep_sim::leader::{Following, FollowingDesign, Leading};
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::schedule::Schedule;
-use forwardstep_sim::{AgentSetup, Setup, SetupError, Signal, VelocitySensor, simulate};
+use forwardstep_sim::{
+    AgentSetup, LagrangianRobot, PositionKind, Robot, RobotInterface, Setup, SetupError, Signal, VelocitySensor,
+    simulate,
+};
 
 #[test]
 fn prop_an_agent_that_is_on_its_target_leads_like_the_motion() {
@@ -137,6 +142,20 @@ fn sampled_followers_follow_an_agent_that_samples_whatever_its_velocity_comes_fr
     assert!(filtered < 0.05, "{filtered}");
 }
 
+/// A robot whose position is a unit quaternion.
+#[derive(Debug)]
+struct Attitude;
+
+impl Robot for Attitude {
+    fn interface(&self, axes: usize) -> RobotInterface {
+        RobotInterface { position: PositionKind::UnitQuaternion, ..RobotInterface::mechanical(axes) }
+    }
+
+    fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
+        None
+    }
+}
+
 #[test]
 fn who_cannot_lead_is_told_why() {
     let led = |design| led_by_agent(masses(design), &[2.0], 1);
@@ -169,6 +188,9 @@ fn who_cannot_lead_is_told_why() {
         let smooth = design != FollowingDesign::Continuous;
         assert_eq!(matches!(said, Some(SetupError::CannotLead { .. })), smooth, "{design:?}: {said:?}");
     }
+    // q and −q are one attitude, which a difference does not know.
+    let said = changed(&|setup| setup.agents[1].robot.kind = Arc::new(Attitude));
+    assert!(matches!(said, Some(SetupError::CannotLead { .. })), "{said:?}");
     // The second state of a chain in feedback form is no velocity.
     let mut single = led(FollowingDesign::Continuous);
     single.agents[1] = AgentSetup { name: "pilot".into(), ..chains::tracking().agents[0].clone() };
