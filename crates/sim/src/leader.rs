@@ -201,7 +201,7 @@ impl ReferenceDynamics for Following {
 }
 
 /// Whether an agent can lead: it says a position and a velocity for every axis, and, where controllers that sample hear
-/// accelerations, one that nobody measures.
+/// accelerations, an acceleration, which no sensor measures.
 fn leads(own: &AgentSetup, samples_accelerations: bool) -> Result<(), SetupError> {
     let robot = own.robot.interface();
     let why = if robot.velocity_len != own.robot.axes.len() || robot.position == PositionKind::UnitQuaternion {

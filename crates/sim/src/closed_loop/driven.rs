@@ -51,17 +51,13 @@ impl Driven {
             };
             size = size.max((velocity * dq[c] + acceleration * ddq[c] + jerk * dddq).abs());
         }
-        let exceeds_until_s = if size >= self.gamma { Some(t_s) } else { None };
-        self.seen = Some(match self.seen {
-            Some(seen) if seen.peak >= size => {
-                Drive { exceeds_until_s: exceeds_until_s.or(seen.exceeds_until_s), ..seen }
-            }
-            seen => Drive {
-                peak: size,
-                peak_s: t_s,
-                exceeds_until_s: exceeds_until_s.or(seen.and_then(|seen| seen.exceeds_until_s)),
-            },
-        });
+        let seen = self.seen.get_or_insert(Drive { peak: size, peak_s: t_s, exceeds_until_s: None });
+        if size > seen.peak {
+            (seen.peak, seen.peak_s) = (size, t_s);
+        }
+        if size >= self.gamma {
+            seen.exceeds_until_s = Some(t_s);
+        }
         match &mut self.before {
             Some((before_s, before)) => {
                 *before_s = t_s;

@@ -149,7 +149,7 @@ fn goes_together(setup: &Setup, index: usize) -> Result<(), SetupError> {
     if !interface.follows.contains(&reference.interface().family) {
         return Err(SetupError::wrong_reference(reference, agent));
     }
-    // Who leads hears nobody.
+    // No edge leads to the agent that leads.
     if !interface.exchanges.contains(&setup.exchange) && setup.leader() != Some(index) {
         return Err(SetupError::SendsPositionOnly { agent: name(), law });
     }
