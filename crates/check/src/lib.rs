@@ -1,7 +1,7 @@
 //! What the theorems promise for a given network, with certificates and witnesses, and what can be predicted before a run.
 //!
 //! Never "proved" outside the theorems: a hypothesis *holds* for all time, holds *on the horizon*, is *watched* during the
-//! run, is *not covered by the paper*, or is *violated* with a witness.
+//! run, is *not shown*, is *not covered by the paper*, or is *violated* with a witness.
 //!
 //! The layers, each of which uses only those before it: [`hypothesis`], with its evidence and its words, and [`Theorem`];
 //! what is found about graphs, links and the loop; a file for each kind of system; a file for each theorem.

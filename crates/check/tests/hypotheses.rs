@@ -146,7 +146,7 @@ fn thm8_the_answer_about_the_gain_follows_from_its_bounds() {
     };
     assert_eq!(gain(1.0, 1.5, 1.9), (Answer::Holds, Rigour::Enclosed));
     assert_eq!(gain(1.0, 1.5, 2.0), (Answer::HoldsOnHorizon, Rigour::Enclosed));
-    assert_eq!(gain(1.0, 2.0, f64::INFINITY), (Answer::NotCovered, Rigour::Sampled));
+    assert_eq!(gain(1.0, 2.0, f64::INFINITY), (Answer::NotShown, Rigour::Sampled));
     assert_eq!(gain(2.0, 1.5, 1.9), (Answer::Violated, Rigour::Sampled));
 }
 

@@ -103,7 +103,7 @@ fn thm8_curves_and_formulas_are_bounded_as_far_as_that_can_be_shown() {
     assert_eq!(answer(&report, "jerk").0, Answer::HoldsOnHorizon);
     // √t has no velocity at the start.
     let root = Path::Formula(Expression::variable(0).sqrt_of());
-    assert_eq!(answer(&check(&setup(FollowingDesign::Continuous, root, 11.0)), "jerk").0, Answer::NotCovered);
+    assert_eq!(answer(&check(&setup(FollowingDesign::Continuous, root, 11.0)), "jerk").0, Answer::NotShown);
 }
 
 #[test]
@@ -113,7 +113,7 @@ fn thm8_velocity_acceleration_and_jerk_all_have_to_be_bounded() {
         let path = power_of_time(0.01, f64::from(bounded) - 0.5);
         common::answer(&setup(FollowingDesign::Continuous, path, 1e6), About::LeaderMotion)
     };
-    let none = Answer::NotCovered;
+    let none = Answer::NotShown;
     assert_eq!([1, 2, 3, 4].map(said), [none, none, none, Answer::HoldsOnHorizon]);
     // Where it is does not matter, so it may travel for ever.
     let travels = formula(Expression::variable(0));
@@ -127,7 +127,7 @@ fn around(design: FollowingDesign, path: &Path, gamma: f64) -> [Answer; 2] {
 
 #[test]
 fn thm8_a_gain_that_equals_its_bound_does_not_exceed_it() {
-    let (no, holds) = (Answer::NotCovered, Answer::Holds);
+    let (no, holds) = (Answer::NotShown, Answer::Holds);
     let bound = |path: &Path, end_s| {
         let setup = setup(FollowingDesign::Continuous, path.clone(), 1.0);
         setup.following().unwrap().drive_bound(end_s)
@@ -199,7 +199,7 @@ fn prop_a_swarm_needs_links_both_ways_and_enough_coupling() {
     let both = [edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)];
     // λ of [[2, −1], [−1, 1]] is (3 − √5)/2 = 0.382, and β + κ₀⁴/(2 a κ₁) = 2 + 1/6.
     assert_eq!(answer(&swarm(5.7, &both), "k λ").0, Answer::Holds);
-    assert_eq!(answer(&swarm(5.6, &both), "k λ").0, Answer::NotCovered);
+    assert_eq!(answer(&swarm(5.6, &both), "k λ").0, Answer::NotShown);
     assert_eq!(answer(&swarm(5.7, &both), "same weight").0, Answer::Holds);
     assert_eq!(answer(&swarm(5.7, &both[..2]), "same weight").0, Answer::NotCovered);
     // The paper prints no such design, so it never says more than that.

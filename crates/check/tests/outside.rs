@@ -56,7 +56,7 @@ fn a_robot_from_outside_moves_like_the_shipped_one_but_its_properties_are_declar
 
     assert_eq!(check(&shipped).worst(), Answer::Holds);
     let report = check(&outside);
-    assert_eq!(report.worst(), Answer::NotCovered);
+    assert_eq!(report.worst(), Answer::NotShown);
     let declared: Vec<_> = report.hypotheses.iter().filter(|hypothesis| hypothesis.id == Id::Declared).collect();
     assert_eq!(declared.len(), 1, "of the left one alone");
     assert!(declared[0].requires().contains("left"), "{}", declared[0].requires());
@@ -84,6 +84,6 @@ fn a_robot_that_lacks_a_property_is_violated_with_the_state() {
     // With as many parameters as it does not have, nothing can be tried, which shows nothing.
     setup.agents[0].robot.theta = vec![2.0, 2.0];
     let declared = check(&setup).hypotheses.into_iter().find(|hypothesis| hypothesis.id == Id::Declared).unwrap();
-    assert_eq!(declared.answer(), Answer::NotCovered);
+    assert_eq!(declared.answer(), Answer::NotShown);
     assert!(declared.because().contains("could not be tried"), "{}", declared.because());
 }

@@ -114,7 +114,7 @@ fn thm6_lengths_outside_their_bounds_are_named_with_the_agent() {
     assert_eq!(inside.evidence, Evidence::Kind(KindEvidence::LengthsInside));
     assert!(matches!(&inside.subject, Subject::Agent(agent) if (agent.index, &*agent.name) == (0, "arm")));
     let outside = found(0.9);
-    assert_eq!(outside.answer(), Answer::NotCovered);
+    assert_eq!(outside.answer(), Answer::Violated);
     let Evidence::Kind(KindEvidence::LengthOutside { name: Some(name), value }) = &outside.evidence else {
         panic!("{outside:?}")
     };

@@ -158,12 +158,12 @@ fn found(setup: &Setup, id: Id) -> (Answer, Rigour, String) {
 fn what_their_authors_say_is_declared_and_never_holds() {
     let setup = read(MASSES).unwrap().setup;
     let (answer, rigour, because) = found(&setup, Id::BoundedDelays);
-    assert_eq!((answer, rigour), (Answer::NotCovered, Rigour::Declared));
+    assert_eq!((answer, rigour), (Answer::NotShown, Rigour::Declared));
     assert!(because.ends_with("(declared, not shown)"), "{because}");
     let (answer, rigour, _) = found(&setup, Id::SpanningTree);
     assert_eq!((answer, rigour), (Answer::HoldsOnHorizon, Rigour::Given));
     let (answer, rigour, _) = found(&setup, Id::DwellTime);
-    assert_eq!((answer, rigour), (Answer::NotCovered, Rigour::Declared));
+    assert_eq!((answer, rigour), (Answer::NotShown, Rigour::Declared));
     assert_eq!(setup.network.schedule.known().dwell, Dwell::Declared(0.5));
     assert!(predict(&setup).is_err());
 }
@@ -210,7 +210,7 @@ fn a_refuted_claim_is_violated_and_a_run_refuses_it_or_breaks_down() {
     assert!(refused.contains("a liar") && refused.contains("0.5 s at t = 6.0"), "{refused}");
     // What is found up to a shorter end is not enough to see it; the run does.
     setup.time.end_s = 5.0;
-    assert_eq!(found(&setup, Id::BoundedDelays).0, Answer::NotCovered);
+    assert_eq!(found(&setup, Id::BoundedDelays).0, Answer::NotShown);
     let outcome = sim::run(&setup).unwrap();
     assert!(matches!(outcome.ending, Ending::BrokeDown(_)), "{:?}", outcome.ending);
     let sentence = ending_sentence(&setup, &outcome.ending);

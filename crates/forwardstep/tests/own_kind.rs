@@ -174,7 +174,7 @@ fn what_its_author_says_of_it_is_reported_as_declared_and_never_as_shown() {
     let declared: Vec<_> = report.hypotheses.iter().filter(|hypothesis| hypothesis.id == Id::Declared).collect();
     assert_eq!(declared.len(), 4, "a claim and a balance of each tank");
     for (index, hypothesis) in declared.into_iter().enumerate() {
-        assert_eq!((hypothesis.answer(), hypothesis.rigour()), (Answer::NotCovered, Rigour::Declared));
+        assert_eq!((hypothesis.answer(), hypothesis.rigour()), (Answer::NotShown, Rigour::Declared));
         let end = if index % 2 == 0 { "(declared, not shown)" } else { "it was so at 32 random states" };
         assert!(hypothesis.because().ends_with(end), "{}", hypothesis.because());
     }
@@ -237,7 +237,7 @@ fn a_law_from_outside_that_claims_nothing_or_to_be_checked_never_holds() {
             agent.law = Arc::new(Says { law: agent.law.clone(), known: known.clone() });
         }
         let report = check(&setup);
-        assert_eq!(report.worst(), Answer::NotCovered, "{known:?}");
+        assert_eq!(report.worst(), Answer::NotShown, "{known:?}");
     }
 }
 

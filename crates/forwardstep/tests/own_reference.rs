@@ -139,7 +139,7 @@ fn what_its_author_says_is_declared_and_nothing_is_predicted() {
     assert!(promises.contains("come to rest"));
     let declared: Vec<_> = hypotheses.iter().filter(|hypothesis| hypothesis.id == Id::Declared).collect();
     assert_eq!(declared.len(), 2, "what it says, and what was tried");
-    assert!(declared.iter().all(|hypothesis| hypothesis.answer() == Answer::NotCovered));
+    assert!(declared.iter().all(|hypothesis| hypothesis.answer() == Answer::NotShown));
     assert!(declared.iter().all(|hypothesis| hypothesis.rigour() == Rigour::Declared));
     assert!(predict(&setup).is_err());
 }

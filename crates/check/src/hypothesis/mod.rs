@@ -82,6 +82,8 @@ pub enum Answer {
     HoldsOnHorizon,
     /// Only a run can show it: one in which it fails stops there.
     Watched,
+    /// Neither certified nor refuted.
+    NotShown,
     /// The paper does not speak about this case.
     NotCovered,
     /// It fails, and the evidence is a witness.
@@ -89,13 +91,14 @@ pub enum Answer {
 }
 
 impl Answer {
-    /// The words used in tables: `holds`, `holds on [0, end]`, `watched during the run`,
+    /// The words used in tables: `holds`, `holds on [0, end]`, `watched during the run`, `not shown`,
     /// `not covered by the paper`, `violated`.
     pub fn words(self) -> &'static str {
         match self {
             Answer::Holds => "holds",
             Answer::HoldsOnHorizon => "holds on [0, end]",
             Answer::Watched => "watched during the run",
+            Answer::NotShown => "not shown",
             Answer::NotCovered => "not covered by the paper",
             Answer::Violated => "violated",
         }

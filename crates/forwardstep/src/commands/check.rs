@@ -17,6 +17,6 @@ pub(crate) fn check(scenario: &str, kinds: &Kinds, console: &mut Console) -> Sta
     show(&scenario, &promise, console);
     match promise.report.worst() {
         Answer::Holds | Answer::HoldsOnHorizon | Answer::Watched => Status::Fine,
-        Answer::NotCovered | Answer::Violated => Status::Missed,
+        Answer::NotShown | Answer::NotCovered | Answer::Violated => Status::Missed,
     }
 }

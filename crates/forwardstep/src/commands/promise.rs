@@ -43,7 +43,7 @@ pub(crate) fn show(scenario: &Scenario, promise: &Promise, console: &mut Console
 pub(crate) fn style(answer: Answer) -> anstyle::Style {
     match answer {
         Answer::Holds => GOOD,
-        Answer::HoldsOnHorizon | Answer::Watched | Answer::NotCovered => FAIR,
+        Answer::HoldsOnHorizon | Answer::Watched | Answer::NotShown | Answer::NotCovered => FAIR,
         Answer::Violated => BAD,
     }
 }

@@ -68,7 +68,7 @@ impl FollowingEvidence {
                 } else if on_run < gamma {
                     Answer::HoldsOnHorizon
                 } else {
-                    Answer::NotCovered
+                    Answer::NotShown
                 }
             }
             FollowingEvidence::GainOverAgent { .. } => Answer::Watched,
@@ -77,8 +77,8 @@ impl FollowingEvidence {
                 Choice::Explicit | Choice::Layer { .. } => Answer::NotCovered,
             },
             FollowingEvidence::Shared { .. } | FollowingEvidence::CouplingExceeds { .. } => Answer::Holds,
+            FollowingEvidence::CouplingNotShown { .. } => Answer::NotShown,
             FollowingEvidence::NotPrinted
-            | FollowingEvidence::CouplingNotShown { .. }
             | FollowingEvidence::ComplexRoots
             | FollowingEvidence::GraphSwitches
             | FollowingEvidence::WeightVaries => Answer::NotCovered,
@@ -89,7 +89,7 @@ impl FollowingEvidence {
         match self {
             FollowingEvidence::Gain { .. } => match self.answer() {
                 Answer::Holds | Answer::HoldsOnHorizon => Rigour::Enclosed,
-                Answer::Violated | Answer::NotCovered | Answer::Watched => Rigour::Sampled,
+                Answer::Violated | Answer::NotShown | Answer::NotCovered | Answer::Watched => Rigour::Sampled,
             },
             FollowingEvidence::GainOverAgent { .. } => Rigour::Watched,
             FollowingEvidence::CouplingExceeds { .. } | FollowingEvidence::CouplingNotShown { .. } => Rigour::Computed,

@@ -105,8 +105,8 @@ impl GraphEvidence {
             | GraphEvidence::DrawnPhases { .. }
             | GraphEvidence::Stays
             | GraphEvidence::Mutual => Answer::Holds,
+            GraphEvidence::DeclaredPhases { .. } => Answer::NotShown,
             GraphEvidence::VaryingWeight
-            | GraphEvidence::DeclaredPhases { .. }
             | GraphEvidence::Switches { .. }
             | GraphEvidence::SwitchesUnderLeader
             | GraphEvidence::OneWay { .. } => Answer::NotCovered,

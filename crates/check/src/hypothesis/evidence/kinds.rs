@@ -160,22 +160,23 @@ impl KindEvidence {
             | KindEvidence::FactorFloor { .. }
             | KindEvidence::BoundedStates { .. }
             | KindEvidence::Determinant { .. } => Answer::Watched,
+            KindEvidence::Declared { .. } | KindEvidence::Probed { probe: Probe { found: None, .. }, .. } => {
+                Answer::NotShown
+            }
             KindEvidence::Mixture(_)
-            | KindEvidence::Declared { .. }
-            | KindEvidence::Probed { probe: Probe { found: None, .. }, .. }
             | KindEvidence::MassNotAdapted { .. }
             | KindEvidence::ThrustKept { .. }
             | KindEvidence::AngularRate { .. }
             | KindEvidence::Rotors { .. }
             | KindEvidence::NoTip
-            | KindEvidence::LengthOutside { .. }
             | KindEvidence::LengthsInRegressor(_)
             | KindEvidence::LengthsNotAdapted { .. }
             | KindEvidence::MomentumPushed
             | KindEvidence::Unmatched { .. }
             | KindEvidence::SafeCommand
             | KindEvidence::NoSpacecraft => Answer::NotCovered,
-            KindEvidence::Singular { .. }
+            KindEvidence::LengthOutside { .. }
+            | KindEvidence::Singular { .. }
             | KindEvidence::FactorBelowFloor { .. }
             | KindEvidence::Probed { probe: Probe { found: Some(_), .. }, .. } => Answer::Violated,
         }

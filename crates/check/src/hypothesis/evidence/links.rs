@@ -65,12 +65,12 @@ pub enum LinkEvidence {
 impl LinkEvidence {
     pub(super) fn answer(&self) -> Answer {
         match self {
-            LinkEvidence::Delays { basis: Basis::Declared, .. } => Answer::NotCovered,
+            LinkEvidence::Delays { basis: Basis::Declared, .. } => Answer::NotShown,
             LinkEvidence::RefutedDelay { .. } => Answer::Violated,
             LinkEvidence::Delays { unknown, .. } => holds(unknown.is_empty()),
             LinkEvidence::Weights { until_s, .. } => holds(until_s.is_none()),
             LinkEvidence::Ages { bound_s: Some(bound_s), timeout_s, .. } if bound_s <= timeout_s => Answer::Holds,
-            LinkEvidence::Ages { .. } => Answer::NotCovered,
+            LinkEvidence::Ages { .. } => Answer::NotShown,
             LinkEvidence::Prompt | LinkEvidence::Coupling { .. } => Answer::Holds,
             LinkEvidence::Late { .. } => Answer::NotCovered,
         }

@@ -51,7 +51,7 @@ impl MotionEvidence {
         match self {
             MotionEvidence::Derivatives(Bounded::ForEver) | MotionEvidence::EntryAway { .. } => Answer::Holds,
             MotionEvidence::Derivatives(Bounded::OnRun) | MotionEvidence::NormAbove { .. } => Answer::HoldsOnHorizon,
-            MotionEvidence::Derivatives(Bounded::NotShown) | MotionEvidence::NormSeen { .. } => Answer::NotCovered,
+            MotionEvidence::Derivatives(Bounded::NotShown) | MotionEvidence::NormSeen { .. } => Answer::NotShown,
             MotionEvidence::OfAgent => Answer::Watched,
             MotionEvidence::NormVanishes { .. } => Answer::Violated,
         }

@@ -60,7 +60,7 @@ fn gain(answer: Answer, [gamma, seen, on_run, for_ever]: [f64; 4], end_s: f64) -
             let (bound, end_s) = (rounded_up(on_run), seconds(end_s));
             format!("γ is {gamma}, and it does not exceed {bound} until {end_s} s; {beyond}")
         }
-        Answer::NotCovered | Answer::Watched => format!(
+        Answer::NotShown | Answer::NotCovered | Answer::Watched => format!(
             "γ is {gamma}, and by sampling, which is no proof, it reaches {} on the run; no bound below γ could be shown",
             rounded_up(seen)
         ),

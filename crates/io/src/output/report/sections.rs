@@ -133,7 +133,7 @@ fn answer_style(answer: Answer) -> (&'static str, &'static str) {
         Answer::Holds => ("good", "✓"),
         Answer::HoldsOnHorizon => ("fair", "✓"),
         Answer::Watched => ("fair", "◦"),
-        Answer::NotCovered => ("warn", "?"),
+        Answer::NotShown | Answer::NotCovered => ("warn", "?"),
         Answer::Violated => ("bad", "✗"),
     }
 }
