@@ -1,6 +1,10 @@
 //! Errors of building laws and gains.
 
+use alloc::boxed::Box;
+
 use thiserror::Error;
+
+use crate::Indefinite;
 
 /// A slice of the wrong length was handed to a checked entry point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -49,10 +53,13 @@ pub enum GainError {
         /// Entry (column, row).
         lower: f64,
     },
-    /// The matrix has a non-positive leading minor.
-    #[error("the leading minor of order {order} is not positive; the matrix must be positive definite")]
-    NotPositiveDefinite {
-        /// Order of the first minor that fails, from one.
+    /// The matrix A is not positive definite, as a direction v shows.
+    #[error("the matrix is not positive definite: {0}")]
+    NotPositiveDefinite(Box<Indefinite>),
+    /// Whatever the matrix is, rounding leaves no Cholesky factor of it.
+    #[error("the matrix is so close to a singular one that its leading minor of order {order} is lost to rounding")]
+    NearlySingular {
+        /// Order of the first minor that is lost, from one.
         order: usize,
     },
     /// A bandwidth was given where nothing says what it should be multiplied by.

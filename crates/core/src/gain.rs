@@ -3,6 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use crate::definite::positive_definite;
 use crate::{GainError, LengthError, Packed, Scalar};
 
 /// A gain as a user states it.
@@ -86,7 +87,8 @@ fn matrix(size: usize, entries: &[f64]) -> Result<ResolvedGain, GainError> {
             }
         }
     }
-    cholesky(size, entries).map_err(|order| GainError::NotPositiveDefinite { order })?;
+    positive_definite(size, entries)?;
+    cholesky(size, entries).map_err(|order| GainError::NearlySingular { order })?;
     Ok(ResolvedGain::Matrix { size, entries: entries.to_vec() })
 }
 
@@ -234,14 +236,14 @@ impl InverseQuadratic {
     /// Factorises `gain`.
     ///
     /// # Errors
-    /// [`GainError::NotPositiveDefinite`] for a matrix that did not come from [`Gain::resolve`].
+    /// [`GainError::NearlySingular`] for a matrix that did not come from [`Gain::resolve`].
     pub fn new(gain: &ResolvedGain) -> Result<Self, GainError> {
         let size = gain.size();
         let (factor, diagonal) = match gain {
             ResolvedGain::Diagonal(k) => (k.clone(), true),
             ResolvedGain::Matrix { size, entries } => {
-                let not_positive = |order| GainError::NotPositiveDefinite { order };
-                (cholesky(*size, entries).map_err(not_positive)?, false)
+                let lost = |order| GainError::NearlySingular { order };
+                (cholesky(*size, entries).map_err(lost)?, false)
             }
         };
         Ok(InverseQuadratic { factor, size, diagonal, work: vec![0.0; size] })

@@ -17,6 +17,7 @@ extern crate alloc;
 pub mod agent;
 pub mod attitude;
 pub mod controller;
+mod definite;
 mod dispatch;
 mod error;
 pub mod expression;
@@ -31,6 +32,7 @@ mod scalar;
 pub mod signal;
 mod trig;
 
+pub use definite::Indefinite;
 pub use dispatch::{Kernel, dispatch};
 pub use error::{GainError, LengthError};
 pub use gain::{Gain, InverseQuadratic, ResolvedGain};

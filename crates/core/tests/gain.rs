@@ -38,14 +38,15 @@ fn regress_gains_that_are_none() {
         Gain::Matrix(vec![1.0, 0.5, 0.4, 1.0]).resolve(2, &[]),
         Err(GainError::NotSymmetric { row: 0, column: 1, upper: 0.5, lower: 0.4 })
     );
-    assert_eq!(
-        Gain::Matrix(vec![1.0, 2.0, 2.0, 1.0]).resolve(2, &[]),
-        Err(GainError::NotPositiveDefinite { order: 2 })
-    );
-    assert_eq!(
-        Gain::Matrix(vec![0.0, 0.0, 0.0, 1.0]).resolve(2, &[]),
-        Err(GainError::NotPositiveDefinite { order: 1 })
-    );
+    let refuted = |entries: [f64; 4]| Gain::Matrix(entries.to_vec()).resolve(2, &[]).unwrap_err().to_string();
+    let words = "the matrix is not positive definite: vᵀ A v =";
+    assert_eq!(refuted([1.0, 2.0, 2.0, 1.0]), format!("{words} -3 for v = (-2, 1)"));
+    assert_eq!(refuted([0.0, 0.0, 0.0, 1.0]), format!("{words} 0 for v = (1, 0)"));
+    // Exactly singular, though every pivot of a factor in f64 may come out positive.
+    assert_eq!(refuted([0.1, 0.3, 0.3, 0.9]), format!("{words} 0 for v = (-3, 1)"));
+    // Positive definite, but not to rounding.
+    let nearly = Gain::Matrix(vec![3.0, 1.0, 1.0, 0.33333333333333337]).resolve(2, &[]);
+    assert_eq!(nearly, Err(GainError::NearlySingular { order: 2 }));
     assert!(Gain::Matrix(vec![f64::NAN; 4]).resolve(2, &[]).is_err());
     assert_eq!(
         Gain::Bandwidth(20.0).resolve(2, &[1.0]),

@@ -103,15 +103,15 @@ impl Interval {
         Interval::new(down(sum(self.low, other.low)), up(sum(self.high, other.high)))
     }
 
-    pub(super) fn sub(self, other: Self) -> Self {
+    pub(crate) fn sub(self, other: Self) -> Self {
         self.add(other.neg())
     }
 
-    fn mul(self, other: Self) -> Self {
+    pub(crate) fn mul(self, other: Self) -> Self {
         self.ends(other, product)
     }
 
-    fn div(self, other: Self) -> Self {
+    pub(crate) fn div(self, other: Self) -> Self {
         if other.holds(0.0) { Interval::UNDEFINED } else { self.ends(other, quotient) }
     }
 

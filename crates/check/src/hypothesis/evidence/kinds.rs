@@ -13,7 +13,7 @@ pub enum KindEvidence {
     PositiveNumbers,
     /// Positive numbers; a mass that is not adapted is the true one.
     PositiveNumbersTrueMass,
-    /// Matrices with a Cholesky factor and positive numbers, refused otherwise when they were read.
+    /// Matrices that are positive definite in exact arithmetic and positive numbers, refused otherwise when they were read.
     PositiveMatrices,
     /// What the theorems say of agents of different kinds: where each of them is treated.
     Mixture(Vec<&'static str>),
@@ -109,7 +109,7 @@ pub enum KindEvidence {
     LengthsKnown,
     /// Lengths that the law is said not to know, by name, enter its regressor.
     LengthsInRegressor(Vec<String>),
-    /// Matrices with a Cholesky factor and positive numbers; lengths that are not adapted are the true ones.
+    /// Matrices that are positive definite in exact arithmetic and positive numbers; lengths that are not adapted are the true ones.
     PositiveMatricesTrueLengths,
     /// Lengths that are neither adapted nor true.
     LengthsNotAdapted {
@@ -190,6 +190,8 @@ impl KindEvidence {
             KindEvidence::Probed { probe: Probe { found: Some(_), .. }, .. } => Rigour::Sampled,
             KindEvidence::PositiveNumbers
             | KindEvidence::PositiveNumbersTrueMass
+            | KindEvidence::PositiveMatrices
+            | KindEvidence::PositiveMatricesTrueLengths
             | KindEvidence::Mixture(_)
             | KindEvidence::MassOfPlant
             | KindEvidence::MassNotAdapted { .. }
@@ -210,10 +212,7 @@ impl KindEvidence {
             | KindEvidence::Unmatched { .. }
             | KindEvidence::SafeCommand
             | KindEvidence::NoSpacecraft => Rigour::Exact,
-            KindEvidence::PositiveMatrices
-            | KindEvidence::PositiveMatricesTrueLengths
-            | KindEvidence::Singular { .. }
-            | KindEvidence::Momentum(_) => Rigour::Computed,
+            KindEvidence::Singular { .. } | KindEvidence::Momentum(_) => Rigour::Computed,
             KindEvidence::ThrustFloor { .. }
             | KindEvidence::FactorFloor { .. }
             | KindEvidence::BoundedStates { .. }

@@ -6,7 +6,7 @@ use crate::sampled::{SampledAdaptation, SampledDamping};
 /// What was found of the loop around a law.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LoopEvidence {
-    /// K and Γ have a Cholesky factor.
+    /// K and Γ are positive definite in exact arithmetic, refused otherwise when they were read.
     Gains {
         /// To how many agents the parameters are known; the others adapt.
         known: usize,
@@ -88,8 +88,8 @@ impl LoopEvidence {
 
     pub(super) fn rigour(&self) -> Rigour {
         match self {
-            LoopEvidence::Gains { .. } => Rigour::Computed,
-            LoopEvidence::Pushes { .. }
+            LoopEvidence::Gains { .. }
+            | LoopEvidence::Pushes { .. }
             | LoopEvidence::Applied { .. }
             | LoopEvidence::Sampling { .. }
             | LoopEvidence::Measurements(_) => Rigour::Exact,

@@ -12,7 +12,8 @@ const MOST_STATES: usize = 12;
 
 pub(super) fn words(evidence: &KindEvidence) -> String {
     match evidence {
-        KindEvidence::PositiveNumbers | KindEvidence::PositiveMatrices => "checked when they were read".into(),
+        KindEvidence::PositiveNumbers => "checked when they were read".into(),
+        KindEvidence::PositiveMatrices => "checked exactly when they were read".into(),
         KindEvidence::PositiveNumbersTrueMass => {
             "checked when they were read; an estimate that is not adapted is the true mass".into()
         }
@@ -66,7 +67,7 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
             names.join(", ")
         ),
         KindEvidence::PositiveMatricesTrueLengths => {
-            "checked when they were read; lengths that are not adapted are the true ones".into()
+            "checked exactly when they were read; lengths that are not adapted are the true ones".into()
         }
         KindEvidence::LengthsNotAdapted { agent } => {
             format!("{} does not adapt its lengths, which are not the true ones", agent.name)

@@ -13,7 +13,7 @@ pub(super) fn words(evidence: &LoopEvidence) -> String {
                 known if known == *agents => "parameters are known".to_owned(),
                 known => format!("parameters are known to {known} of {agents} agents and adapted by the others"),
             };
-            format!("checked when the gains were read; {parameters}")
+            format!("checked exactly when the gains were read; {parameters}")
         }
         LoopEvidence::Pushes { pushed, torques_for_ever, others_for_ever, hands_for_ever, last_end_s } => {
             pushes(pushed, [torques_for_ever, others_for_ever, hands_for_ever], *last_end_s)
