@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use forwardstep_check::Id;
 use thiserror::Error;
 
 /// Simulate and check networks of robots under forwardstepping control. Without a command, runs six arms.
@@ -21,7 +23,7 @@ const SIX_ARMS: &str = "six-arms";
 const EXIT_STATUS: &str = "\
 Exit status:
     0  fine
-    1  check: a hypothesis does not hold, or the paper does not cover the case; run: the goal was missed
+    1  check: a hypothesis is violated, not shown or not covered by the paper, and not accepted; run: the goal was missed
     2  input without meaning, or a folder that cannot be written to or is not that of a run
     3  the run broke down; what was computed is written
   130  interrupted by Ctrl-C; what was computed is written
@@ -39,18 +41,18 @@ pub(crate) enum Command {
         folder: PathBuf,
     },
     /// Say which theorem speaks about a scenario, and whether its hypotheses hold
-    Check {
-        /// A shipped scenario by name, or a file by its path
-        #[arg(default_value = SIX_ARMS)]
-        scenario: String,
-    },
+    Check(CheckOptions),
     /// List the shipped scenarios, or print one
     Scenarios {
         /// Print the text of this one
         name: Option<String>,
     },
-    /// Print the JSON schema of scenario files
-    Schema,
+    /// Print the JSON schema of scenario files, or of what `check --json` prints
+    Schema {
+        /// Of which documents
+        #[arg(value_enum, default_value_t)]
+        of: SchemaChoice,
+    },
     /// Convert scenario files of an earlier format to the present one, in place, and print what is renamed
     Upgrade(UpgradeOptions),
     /// Write a commented scenario to start from
@@ -85,6 +87,35 @@ pub(crate) struct RunOptions {
     /// Write the trajectory as CSV too
     #[arg(long)]
     pub(crate) csv: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckOptions {
+    /// A shipped scenario by name, or a file by its path
+    #[arg(default_value = SIX_ARMS)]
+    pub(crate) scenario: String,
+    /// Waive a hypothesis by its name, which stands in brackets behind it; may be given several times
+    #[arg(long, value_name = "NAME", value_parser = hypothesis())]
+    pub(crate) accept: Vec<Id>,
+    /// Print one JSON object; `forwardstep schema check` describes it
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Documents that have a schema.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SchemaChoice {
+    /// Scenario files
+    #[default]
+    Scenario,
+    /// What `check --json` prints
+    Check,
+}
+
+/// The names of hypotheses, with near matches for slips.
+fn hypothesis() -> impl TypedValueParser<Value = Id> {
+    let names = PossibleValuesParser::new(Id::ALL.iter().map(|id| PossibleValue::new(id.name()).help(id.place())));
+    names.try_map(|name| Id::ALL.iter().copied().find(|id| id.name() == name).ok_or("no hypothesis has this name"))
 }
 
 #[derive(Debug, Args)]

@@ -91,6 +91,14 @@ pub enum Answer {
 }
 
 impl Answer {
+    /// Whether it speaks for a design: *holds*, *holds on [0, end]* or *watched during the run*.
+    pub fn is_fine(self) -> bool {
+        match self {
+            Answer::Holds | Answer::HoldsOnHorizon | Answer::Watched => true,
+            Answer::NotShown | Answer::NotCovered | Answer::Violated => false,
+        }
+    }
+
     /// The words used in tables: `holds`, `holds on [0, end]`, `watched during the run`, `not shown`,
     /// `not covered by the paper`, `violated`.
     pub fn words(self) -> &'static str {

@@ -1,22 +1,60 @@
 //! `forwardstep check`
 
-use forwardstep::check::Answer;
+use forwardstep::check::{Id, Report};
+use forwardstep::io::output::Findings;
 use forwardstep::io::scenario::kinds::Kinds;
 
-use super::promise::{promise, show};
-use crate::console::{Console, complain};
+use super::promise::{promise, show, style};
+use crate::arguments::CheckOptions;
+use crate::console::{BOLD, Console, FAIR, Plain, complain};
 use crate::status::Status;
 
 /// Says which theorem speaks about a scenario and whether its hypotheses hold.
-pub(crate) fn check(scenario: &str, kinds: &Kinds, console: &mut Console) -> Status {
-    let scenario = match kinds.open_scenario(scenario) {
+pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console) -> Status {
+    let scenario = match kinds.open_scenario(&options.scenario) {
         Ok(scenario) => scenario,
         Err(error) => return complain(&error),
     };
     let promise = promise(&scenario.setup);
-    show(&scenario, &promise, console);
-    match promise.report.worst() {
-        Answer::Holds | Answer::HoldsOnHorizon | Answer::Watched => Status::Fine,
-        Answer::NotShown | Answer::NotCovered | Answer::Violated => Status::Missed,
+    let report = &promise.report;
+    let mut accepted = options.accept.clone();
+    accepted.sort_unstable();
+    accepted.dedup();
+    if options.json {
+        let findings = Findings::of(&scenario, env!("CARGO_PKG_VERSION"), report, &promise.agreement, &accepted);
+        match findings.to_json() {
+            Ok(text) => console.line(text),
+            Err(error) => return complain(&Plain::new(error)),
+        }
+    } else {
+        show(&scenario, &promise, console);
+        conclude(report, &accepted, console);
+    }
+    if report.worst_without(&accepted).is_fine() { Status::Fine } else { Status::Missed }
+}
+
+/// What was waived, and what it all comes to.
+fn conclude(report: &Report, accepted: &[Id], console: &mut Console) {
+    for id in accepted {
+        let said = report.hypotheses.iter().filter(|hypothesis| hypothesis.id == *id).map(|h| h.answer()).max();
+        let name = id.name();
+        console.line(match said {
+            None => format!("{FAIR}accepted{FAIR:#}: {name}, which nothing here asks for"),
+            Some(answer) if answer.is_fine() => {
+                format!("{FAIR}accepted{FAIR:#}: {name}, without need: {}", answer.words())
+            }
+            Some(answer) => format!("{FAIR}accepted{FAIR:#}: {name}, although {}", answer.words()),
+        });
+    }
+    let outcome = report.worst_without(accepted);
+    let (style, words) = (style(outcome), outcome.words());
+    let reasons: Vec<&str> = (report.hypotheses.iter())
+        .filter(|hypothesis| hypothesis.answer() == outcome && !accepted.contains(&hypothesis.id))
+        .map(|hypothesis| hypothesis.id.name())
+        .collect();
+    if outcome.is_fine() || reasons.is_empty() {
+        console.line(format_args!("{BOLD}all in all{BOLD:#}: {style}{words}{style:#}"));
+    } else {
+        console.line(format_args!("{BOLD}all in all{BOLD:#}: {style}{words}{style:#} ({})", reasons.join(", ")));
     }
 }

@@ -27,7 +27,8 @@ pub(crate) fn show(scenario: &Scenario, promise: &Promise, console: &mut Console
     console.line(format_args!("{BOLD}{}{BOLD:#}: {}", report.theorem, report.promises));
     for hypothesis in &report.hypotheses {
         let (style, words) = (style(hypothesis.answer()), hypothesis.answer().words());
-        console.line(format_args!("  {style}{words}{style:#}: {}", hypothesis.requires()));
+        let (requires, name) = (hypothesis.requires(), hypothesis.id.name());
+        console.line(format_args!("  {style}{words}{style:#}: {requires} {DIM}[{name}]{DIM:#}"));
         console.line(format_args!("    {DIM}{}{DIM:#}", hypothesis.because()));
     }
     match agreement {

@@ -1,13 +1,19 @@
 //! `forwardstep schema`
 
+use forwardstep::io::output::Findings;
 use forwardstep::io::scenario::kinds::Kinds;
 
+use crate::arguments::SchemaChoice;
 use crate::console::Console;
 use crate::status::Status;
 
-/// Prints the JSON schema of scenario files.
-pub(crate) fn schema(kinds: &Kinds, console: &mut Console) -> Status {
+/// Prints a JSON schema.
+pub(crate) fn schema(of: SchemaChoice, kinds: &Kinds, console: &mut Console) -> Status {
+    let schema = match of {
+        SchemaChoice::Scenario => kinds.schema(),
+        SchemaChoice::Check => Findings::schema(),
+    };
     // The alternate form is indented.
-    console.line(format_args!("{:#}", kinds.schema().to_value()));
+    console.line(format_args!("{:#}", schema.to_value()));
     Status::Fine
 }

@@ -25,6 +25,7 @@ mod digital;
 mod disagreement;
 mod ending;
 mod error;
+mod findings;
 mod folder;
 mod how;
 mod inputs;
@@ -42,6 +43,7 @@ mod restore_error;
 pub mod summary;
 mod table;
 mod timeline;
+mod verdicts;
 
 use std::collections::HashSet;
 use std::path::PathBuf;
@@ -49,6 +51,7 @@ use std::path::PathBuf;
 pub use digital::{DigitalCost, Figures, continuous_twin};
 pub use ending::ending_sentence;
 pub use error::{Action, EncodeError, OutputError};
+pub use findings::{Checked, FINDINGS_FORMAT, Findings, PredictedAgreement};
 pub use folder::RunFolder;
 use folder::Staging;
 pub use metrics::{

@@ -6,7 +6,6 @@
 use std::io::Write;
 use std::time::Duration;
 
-use forwardstep_check::{Answer, Report};
 use forwardstep_sim::recording::{Drive, Statistics};
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +16,7 @@ use super::inputs::content_digest;
 use super::metrics::Metrics;
 use super::packets::Link;
 use super::record::RunRecord;
+pub use super::verdicts::{Verdict, Verdicts};
 use super::{names, number};
 use crate::scenario::Goal;
 
@@ -116,49 +116,6 @@ pub struct GoalMet {
     pub expect_diverges: bool,
     /// Whether it was met.
     pub met: bool,
-}
-
-/// A [`Report`] in words.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Verdicts {
-    /// The stable name of the theorem, for example `theorem-2`; absent in documents of older versions.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub id: Option<String>,
-    /// Whose it is: `the paper`, `the paper as corrected (…)`, or derived for this software; absent like `id`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub source: Option<String>,
-    /// The theorem.
-    pub theorem: String,
-    /// What it guarantees.
-    #[serde(alias = "promises")]
-    pub guarantees: String,
-    /// The worst answer.
-    pub worst: String,
-    /// Its hypotheses.
-    pub hypotheses: Vec<Verdict>,
-}
-
-/// One hypothesis.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Verdict {
-    /// The stable name of the hypothesis, for example `spanning-tree`; absent in documents of older versions.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub id: Option<String>,
-    /// Where the paper asks for it: a theorem, an equation, a section; absent like `id`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub place: Option<String>,
-    /// Whose it is, in the words of [`Verdicts::source`]; absent like `id`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub source: Option<String>,
-    /// How the answer was found: `exact`, `enclosed`, `given`, `computed`, `sampled`, `declared` or `watched`; absent like `id`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rigour: Option<String>,
-    /// What is required.
-    pub requires: String,
-    /// `holds`, `holds on [0, end]`, `watched during the run`, `not covered by the paper` or `violated`.
-    pub answer: String,
-    /// Certificate or witness.
-    pub because: String,
 }
 
 /// Work of the integrator.
@@ -278,48 +235,5 @@ impl Summary {
     pub(crate) fn write(&self, out: &mut impl Write) -> serde_json::Result<()> {
         serde_json::to_writer_pretty(&mut *out, self)?;
         out.write_all(b"\n").map_err(serde_json::Error::io)
-    }
-}
-
-impl Verdicts {
-    pub(crate) fn of(report: &Report) -> Self {
-        let worst: Answer = report.worst();
-        Verdicts {
-            id: Some(report.theorem.name().to_owned()),
-            source: Some(report.theorem.source().words()),
-            theorem: report.theorem.to_string(),
-            guarantees: report.promises.clone(),
-            worst: worst.words().to_owned(),
-            hypotheses: (report.hypotheses.iter())
-                .map(|h| Verdict {
-                    id: Some(h.id.name().to_owned()),
-                    place: Some(h.id.place().to_owned()),
-                    source: Some(h.id.source().words()),
-                    rigour: Some(h.rigour().word().to_owned()),
-                    requires: h.requires(),
-                    answer: h.answer().words().to_owned(),
-                    because: h.because(),
-                })
-                .collect(),
-        }
-    }
-
-    /// Whether these, which may lack what older versions did not write, say what `now` says.
-    pub(crate) fn agree_with(&self, now: &Self) -> bool {
-        let mut now = now.clone();
-        let forget = |then: &Option<String>, now: &mut Option<String>| {
-            if then.is_none() {
-                *now = None;
-            }
-        };
-        forget(&self.id, &mut now.id);
-        forget(&self.source, &mut now.source);
-        for (then, now) in self.hypotheses.iter().zip(&mut now.hypotheses) {
-            forget(&then.id, &mut now.id);
-            forget(&then.place, &mut now.place);
-            forget(&then.source, &mut now.source);
-            forget(&then.rigour, &mut now.rigour);
-        }
-        *self == now
     }
 }

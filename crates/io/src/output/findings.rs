@@ -1,0 +1,100 @@
+//! What is found of a scenario before a run, for programs: what `forwardstep check --json` prints.
+
+use forwardstep_check::{Id, NoPrediction, Report};
+use schemars::{JsonSchema, Schema, schema_for};
+use serde::{Deserialize, Serialize};
+
+use super::verdicts::Verdicts;
+use crate::scenario::Scenario;
+
+/// The format of this document; it grows when fields change their meaning or vanish, not when some are added.
+pub const FINDINGS_FORMAT: u32 = 1;
+
+/// What is found of a scenario before a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(title = "forwardstep check")]
+pub struct Findings {
+    /// The format of this document, a number that grows when fields change their meaning or vanish.
+    pub format: u32,
+    /// The version of forwardstep.
+    pub version: String,
+    /// Which scenario it is.
+    pub scenario: Checked,
+    /// The theorem that speaks about it, with its hypotheses.
+    pub verdicts: Verdicts,
+    /// The stable names of hypotheses whose answers were waived.
+    pub accepted: Vec<String>,
+    /// The worst answer but for what was waived, in the words of the hypotheses.
+    pub outcome: String,
+    /// Whether the outcome is `holds`, `holds on [0, end]` or `watched during the run`; the exit status is then 0, otherwise 1.
+    pub fine: bool,
+    /// The value that the agents will agree on.
+    pub agreement: PredictedAgreement,
+    /// Remarks.
+    pub notices: Vec<String>,
+}
+
+/// Which scenario was checked.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Checked {
+    /// Its name.
+    pub name: String,
+    /// Its title.
+    pub title: String,
+    /// The BLAKE3 digest of its text, in hexadecimal.
+    pub digest_blake3: String,
+}
+
+/// The value that agents will agree on, or why it is not known before a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PredictedAgreement {
+    /// One entry per axis.
+    Value(Vec<f64>),
+    /// Why there is none.
+    NoneSince(String),
+}
+
+impl Findings {
+    /// What `report` and `agreement`, which are those of `scenario`, say when the answers about `accepted` are waived.
+    pub fn of(
+        scenario: &Scenario,
+        version: &str,
+        report: &Report,
+        agreement: &Result<Vec<f64>, NoPrediction>,
+        accepted: &[Id],
+    ) -> Findings {
+        let outcome = report.worst_without(accepted);
+        Findings {
+            format: FINDINGS_FORMAT,
+            version: version.to_owned(),
+            scenario: Checked {
+                name: scenario.name.clone(),
+                title: scenario.title.clone(),
+                digest_blake3: blake3::hash(scenario.source.text().as_bytes()).to_hex().to_string(),
+            },
+            verdicts: Verdicts::of(report),
+            accepted: accepted.iter().map(|id| id.name().to_owned()).collect(),
+            outcome: outcome.words().to_owned(),
+            fine: outcome.is_fine(),
+            agreement: match agreement {
+                Ok(value) => PredictedAgreement::Value(value.clone()),
+                Err(reason) => PredictedAgreement::NoneSince(reason.to_string()),
+            },
+            notices: scenario.notices.iter().map(ToString::to_string).collect(),
+        }
+    }
+
+    /// It as indented JSON. Numbers that are not finite are `null`.
+    ///
+    /// # Errors
+    /// Those of `serde_json`, which has none for a document of this form.
+    pub fn to_json(&self) -> serde_json::Result<String> {
+        serde_json::to_string_pretty(self)
+    }
+
+    /// The JSON schema of this document.
+    pub fn schema() -> Schema {
+        schema_for!(Findings)
+    }
+}
