@@ -186,11 +186,11 @@ mod tests {
         let decimal = [0.1, 0.3, 0.3, 0.9];
         assert!(decide(2, &decimal).unwrap_err().value.is_zero(), "0.1 · 0.9 − 0.3² as it is written");
         assert!(eliminate(2, &decimal.map(binary)).is_ok(), "f64 alone would not have shown it");
-        // And the other way round: 0.7² in f64 is above 0.49, what is written is not singular.
-        let root = [1.0, 0.7, 0.7, 0.49];
-        let of = |read: fn(f64) -> BigRational| eliminate(2, &root.map(read)).is_ok();
-        assert_eq!(decide(2, &root).is_ok(), of(written) && of(binary));
-        assert!(!of(written));
+        // Intervals of f64 alone would even have decided this one: 0.69² is 0.4761 as it is written, and less in f64.
+        assert!(positive_definite(2, &[1.0, 0.69, 0.69, 0.4761]).is_err());
+        // And the other way round.
+        let rounded = [0.3, 1.1, 1.1, 4.033333333333334];
+        assert!(eliminate(2, &rounded.map(written)).is_ok() && decide(2, &rounded).is_err());
     }
 
     #[test]
