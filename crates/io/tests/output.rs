@@ -266,6 +266,21 @@ fn names_given_by_users_are_escaped_everywhere() {
     }
 }
 
+#[test]
+fn the_page_says_where_every_hypothesis_is_asked_for_and_whose_it_is() {
+    let setup = setup(vec![agent("a", 1, 1), agent("b", 1, 1)], 1.0, 0.1);
+    let (folder, report, outcome) = (tempfile::tempdir().unwrap(), verdicts(), outcome(&setup));
+    let run = RunFolder::create(folder.path(), false).unwrap();
+    write_run(&run, &record(&setup, &outcome, &report), Options::default()).unwrap();
+    let html = fs::read_to_string(folder.path().join("report.html")).unwrap();
+    for hypothesis in &report.hypotheses {
+        let (id, rigour) = (hypothesis.id, hypothesis.rigour().word());
+        let origin = format!("<code>{}</code> · {} · {} · {rigour}", id.name(), id.place(), id.source().words());
+        assert!(html.contains(&origin), "{origin}");
+    }
+    assert!(!report.hypotheses.is_empty() && html.contains(&report.theorem.source().words()));
+}
+
 /// Which gain is to blame, and what is said when none is, or the closed loop is not stiff.
 #[test]
 fn a_run_that_outgrows_its_memory_says_what_to_lower() {

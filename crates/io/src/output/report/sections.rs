@@ -81,7 +81,7 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
             h2 { "Promised and happened" }
             div.beside {
                 div.card {
-                    h3 { "Promised" span.by { (report.theorem) } }
+                    h3 { "Promised" span.by { (report.theorem) " · " (report.theorem.source().words()) } }
                     p.promise { (report.promises) }
                     @if report.hypotheses.is_empty() { p.note { "No hypotheses were checked." } }
                     ul.hypotheses {
@@ -96,6 +96,10 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                                         @if hypothesis.answer() == Answer::Watched && record.outcome.ending == Ending::Completed {
                                             "; this run reached its horizon"
                                         }
+                                    }
+                                    p.origin {
+                                        code { (hypothesis.id.name()) } " · " (hypothesis.id.place()) " · "
+                                        (hypothesis.id.source().words()) " · " (hypothesis.rigour().word())
                                     }
                                 }
                             }
