@@ -4,6 +4,7 @@
 //! - `gain_rates`: how fast the gains of (6)–(7) make a robot.
 //! - `columns`: what the closed loop asks of its parts.
 //! - `population`: agents of one kind, side by side in columns: reference dynamics, then the robots.
+//! - `asked`: what their reference dynamics ask for.
 //! - `solo`: one agent by itself: any plant under any controller.
 //! - `sampler`: sampled controllers with their sensors and actuators.
 //! - `sampling`: the instants at which they sample and act.
@@ -20,6 +21,7 @@
 //! - `valid`: finds it.
 //! - `assemble`: all populations and what joins them: the right-hand side as a whole, and its events.
 
+mod asked;
 mod assemble;
 mod assembly;
 mod columns;

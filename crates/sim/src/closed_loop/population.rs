@@ -15,13 +15,12 @@
 use std::ops::Range;
 
 use forwardstep_core::controller::Trouble;
-use forwardstep_core::reference::{
-    Choice, Derived, Heard, Measured, Reference, ReferenceOut, Sliding, SlidingInputs, saturated,
-};
+use forwardstep_core::reference::{Choice, Derived, Heard, Measured, Reference, ReferenceOut, Sliding};
 use forwardstep_core::robot::{Lagrangian, TwoVelocity};
 use forwardstep_core::sampled::{Recipe, Sampled, StartState};
 use forwardstep_core::{LengthError, Packed};
 
+use super::asked::{Layer, add_sign_terms_now, argument, evaluate};
 use super::assembly::Assembly;
 use super::columns::{Columns, Inputs};
 use super::error::SetupError;
@@ -45,12 +44,6 @@ pub(crate) struct Population<R: Lagrangian<f64> + Lagrangian<S>, X: Transmits, S
     /// When its signs are functions of the instant.
     layer: Option<Layer>,
     record: RecordWork<<R as Lagrangian<f64>>::Scratch>,
-}
-
-/// Signs that are functions of the instant.
-struct Layer {
-    width: f64,
-    selection: Vec<f64>,
 }
 
 /// What the reference asks for at the instant at hand.
@@ -208,60 +201,6 @@ where
         }
         Ok(())
     }
-}
-
-/// What the signs of everybody are taken of.
-fn argument<X: Transmits>(
-    reference: &AnyReference<X>,
-    l: Layout,
-    x: &[f64],
-    inputs: Inputs<'_>,
-    told: [&[f64]; 2],
-    e: &mut [f64],
-) -> Result<(), LengthError> {
-    let (Some(sliding), block) = (reference.sliding(), l.block()) else { return Ok(()) };
-    let channels = X::CHANNELS;
-    LengthError::check("sums heard", channels * block, inputs.sums.len().min(channels * block))?;
-    LengthError::check("sums of positions and velocities", 2, channels.min(2))?;
-    let own = [&x[..block], &x[l.dq..l.reference], told[0]];
-    let sums = [&inputs.sums[..block], &inputs.sums[block..2 * block], told[1]];
-    sliding.argument(l.m, SlidingInputs { own, degree: inputs.degree, sums }, e)
-}
-
-/// A sign that is a function of the instant and taken of what is heard alone leans on ż, before the torque.
-fn add_sign_terms_now<X: Transmits>(
-    reference: &AnyReference<X>,
-    layer: &mut Option<Layer>,
-    l: Layout,
-    x: &[f64],
-    inputs: Inputs<'_>,
-    dz: &mut [f64],
-    d_state: &mut [f64],
-) -> Result<(), LengthError> {
-    let (Some(layer), Some(sliding)) = (layer, reference.sliding()) else { return Ok(()) };
-    if sliding.derived != Derived::Nothing {
-        return Ok(());
-    }
-    argument(reference, l, x, inputs, [&[], &[]], &mut layer.selection)?;
-    for (k, selection) in layer.selection.iter_mut().enumerate() {
-        *selection = saturated(*selection, layer.width);
-        dz[k] -= sliding.gamma * *selection;
-        d_state[k] = dz[k];
-    }
-    Ok(())
-}
-
-/// z, ż and the rate of the reference state of everybody.
-fn evaluate<X: Transmits>(
-    reference: &AnyReference<X>,
-    l: Layout,
-    x: &[f64],
-    inputs: Inputs<'_>,
-    out: ReferenceOut<'_>,
-) -> Result<(), LengthError> {
-    let measured = Measured { q: &x[..l.dq], dq: &x[l.dq..l.reference] };
-    let heard = Heard::new(inputs.degree, inputs.sums, l.block())?;
-    reference.evaluate(l.m, measured, &x[l.reference..l.theta_hat], heard, out)
 }
 
 impl<R, X, S> Columns for Population<R, X, S>

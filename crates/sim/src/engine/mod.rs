@@ -4,6 +4,7 @@
 //!
 //! - `tableau`: the Runge–Kutta methods and their continuous extensions, as numbers.
 //! - `history`: what was transmitted, as self-contained polynomial pieces.
+//! - `system`: the right-hand side, as the integrator sees it.
 //! - `timeline`: switches, delay jumps, and the arrival of their images, in order.
 //! - `hearing`: the weighted sums of delayed messages at one instant.
 //! - `kernels`: loops over columns.
@@ -17,9 +18,11 @@ mod integrator;
 mod kernels;
 mod radio;
 mod stiffness;
+mod system;
 mod tableau;
 mod timeline;
 
 pub(crate) use hearing::{Heard, Port, Refuted};
-pub(crate) use integrator::{DelaySystem, Failure, FailureCause, Happened, Integrator, Step};
+pub(crate) use integrator::{Failure, FailureCause, Integrator};
 pub(crate) use radio::Radio;
+pub(crate) use system::{DelaySystem, Happened, Step};

@@ -1,0 +1,68 @@
+//! What the reference dynamics of a population ask for at one instant: z, ż, the rate of their state, and the signs in it.
+
+use forwardstep_core::LengthError;
+use forwardstep_core::reference::{Derived, Heard, Measured, ReferenceOut, SlidingInputs, saturated};
+
+use super::columns::Inputs;
+use super::references::{AnyReference, Transmits};
+use super::robot_batch::Layout;
+
+/// Signs that are functions of the instant.
+pub(super) struct Layer {
+    pub(super) width: f64,
+    pub(super) selection: Vec<f64>,
+}
+
+/// What the signs of everybody are taken of.
+pub(super) fn argument<X: Transmits>(
+    reference: &AnyReference<X>,
+    l: Layout,
+    x: &[f64],
+    inputs: Inputs<'_>,
+    told: [&[f64]; 2],
+    e: &mut [f64],
+) -> Result<(), LengthError> {
+    let (Some(sliding), block) = (reference.sliding(), l.block()) else { return Ok(()) };
+    let channels = X::CHANNELS;
+    LengthError::check("sums heard", channels * block, inputs.sums.len().min(channels * block))?;
+    LengthError::check("sums of positions and velocities", 2, channels.min(2))?;
+    let own = [&x[..block], &x[l.dq..l.reference], told[0]];
+    let sums = [&inputs.sums[..block], &inputs.sums[block..2 * block], told[1]];
+    sliding.argument(l.m, SlidingInputs { own, degree: inputs.degree, sums }, e)
+}
+
+/// A sign that is a function of the instant and taken of what is heard alone leans on ż, before the torque.
+pub(super) fn add_sign_terms_now<X: Transmits>(
+    reference: &AnyReference<X>,
+    layer: &mut Option<Layer>,
+    l: Layout,
+    x: &[f64],
+    inputs: Inputs<'_>,
+    dz: &mut [f64],
+    d_state: &mut [f64],
+) -> Result<(), LengthError> {
+    let (Some(layer), Some(sliding)) = (layer, reference.sliding()) else { return Ok(()) };
+    if sliding.derived != Derived::Nothing {
+        return Ok(());
+    }
+    argument(reference, l, x, inputs, [&[], &[]], &mut layer.selection)?;
+    for (k, selection) in layer.selection.iter_mut().enumerate() {
+        *selection = saturated(*selection, layer.width);
+        dz[k] -= sliding.gamma * *selection;
+        d_state[k] = dz[k];
+    }
+    Ok(())
+}
+
+/// z, ż and the rate of the reference state of everybody.
+pub(super) fn evaluate<X: Transmits>(
+    reference: &AnyReference<X>,
+    l: Layout,
+    x: &[f64],
+    inputs: Inputs<'_>,
+    out: ReferenceOut<'_>,
+) -> Result<(), LengthError> {
+    let measured = Measured { q: &x[..l.dq], dq: &x[l.dq..l.reference] };
+    let heard = Heard::new(inputs.degree, inputs.sums, l.block())?;
+    reference.evaluate(l.m, measured, &x[l.reference..l.theta_hat], heard, out)
+}
