@@ -10,11 +10,11 @@
 use std::process::ExitCode;
 
 use forwardstep::io::scenario::kinds::{
-    At, DelayKind, DelayPlan, Fault, KindError, KindTable, Kinds, NetworkReader, PhaseReader, ScheduleKind, positive,
+    DelayKind, DelayPlan, Fault, KindError, KindTable, Kinds, NetworkReader, PhaseReader, ScheduleKind,
 };
 use forwardstep::sim::delay::{Arrivals, Delay, DelayFunction, DelayPiece, Known};
 use forwardstep::sim::graph::Edge;
-use forwardstep::sim::quantity::{self, QuantityError};
+use forwardstep::sim::quantity::{MOST_EVENTS, QuantityError, few, positive, such};
 use forwardstep::sim::schedule::{KnownSwitching, Schedule, Segment, Segments, SwitchingSignal};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -46,9 +46,10 @@ impl DelayFunction for Collatz {
         "a Collatz staircase"
     }
 
-    fn validate(&self) -> Result<(), QuantityError> {
-        quantity::positive("", "step_s", self.step_s)?;
-        quantity::positive("", "hold_s", self.hold_s)
+    fn validate(&self, end_s: f64) -> Result<(), QuantityError> {
+        positive("", "step_s", self.step_s)?;
+        positive("", "hold_s", self.hold_s)?;
+        few("", "hold_s", self.hold_s, ("jumps of the delay", end_s / self.hold_s, MOST_EVENTS))
     }
 
     fn piece(&self, index: u64) -> DelayPiece {
@@ -75,9 +76,9 @@ impl DelayFunction for Collatz {
 #[serde(deny_unknown_fields)]
 pub struct CollatzFile {
     /// The height of a step, in s.
-    pub step_s: At<f64>,
+    pub step_s: f64,
     /// From jump to jump, in s.
-    pub hold_s: At<f64>,
+    pub hold_s: f64,
 }
 
 impl DelayKind for CollatzFile {
@@ -85,10 +86,8 @@ impl DelayKind for CollatzFile {
         KindTable { key: "collatz", description: "Jumps as the Collatz sequence does." }
     }
 
-    fn plan(&self, network: &mut NetworkReader<'_>) -> Result<DelayPlan, Fault> {
-        let (step_s, hold_s) = (positive("step_s", &self.step_s)?, positive("hold_s", &self.hold_s)?);
-        network.few("jumps of the delay", network.end_s() / hold_s, &self.hold_s.span)?;
-        Ok(DelayPlan::Shared(Delay::new(Collatz { step_s, hold_s })))
+    fn plan(&self, _: &mut NetworkReader<'_>) -> Result<DelayPlan, Fault> {
+        Ok(DelayPlan::Shared(Delay::new(Collatz { step_s: self.step_s, hold_s: self.hold_s })))
     }
 }
 
@@ -103,9 +102,10 @@ impl SwitchingSignal for ThueMorse {
         "switching after Thue and Morse"
     }
 
-    fn validate(&self, graphs: usize) -> Result<(), QuantityError> {
-        quantity::such(graphs == 2, "", "the number of graphs", graphs as f64, "must be two")?;
-        quantity::positive("", "dwell_s", self.dwell_s)
+    fn validate(&self, graphs: usize, end_s: f64) -> Result<(), QuantityError> {
+        such(graphs == 2, "phases", "the number of graphs", graphs as f64, "must be two")?;
+        positive("switching.thue_morse", "dwell_s", self.dwell_s)?;
+        few("switching.thue_morse", "dwell_s", self.dwell_s, ("switches", end_s / self.dwell_s, MOST_EVENTS))
     }
 
     fn segments(&self, _: usize) -> Segments<'_> {
@@ -124,7 +124,7 @@ impl SwitchingSignal for ThueMorse {
 #[serde(deny_unknown_fields)]
 pub struct ThueMorseFile {
     /// How long a phase lasts, in s.
-    pub dwell_s: At<f64>,
+    pub dwell_s: f64,
 }
 
 impl ScheduleKind for ThueMorseFile {
@@ -134,9 +134,6 @@ impl ScheduleKind for ThueMorseFile {
 
     fn schedule(&self, graphs: Vec<Vec<Edge>>, phases: &mut PhaseReader<'_, '_>) -> Result<Schedule, Fault> {
         (0..phases.count()).for_each(|phase| phases.unused_dwell(phase));
-        let dwell_s = positive("dwell_s", &self.dwell_s)?;
-        let network = phases.network();
-        network.few("switches", network.end_s() / dwell_s, &self.dwell_s.span)?;
-        Ok(Schedule::new(graphs, ThueMorse { dwell_s }))
+        Ok(Schedule::new(graphs, ThueMorse { dwell_s: self.dwell_s }))
     }
 }

@@ -177,7 +177,7 @@ impl DelayFunction for Liar {
         "a liar"
     }
 
-    fn validate(&self) -> Result<(), QuantityError> {
+    fn validate(&self, _: f64) -> Result<(), QuantityError> {
         Ok(())
     }
 

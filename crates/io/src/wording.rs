@@ -1,6 +1,6 @@
 //! Numbers and near matches in messages.
 
-pub(crate) use forwardstep_sim::quantity::{about, number};
+pub(crate) use forwardstep_sim::quantity::{about, entries as entry_count, number, rounded};
 
 /// "1 list", "2 lists".
 pub(crate) fn count(number: usize, what: &str) -> String {
@@ -15,16 +15,6 @@ pub(crate) fn are(number: usize, what: &str) -> String {
 /// "1 axis", "2 axes".
 pub(crate) fn axes(number: usize) -> String {
     if number == 1 { "1 axis".into() } else { format!("{number} axes") }
-}
-
-/// "1 entry", "2 entries".
-pub(crate) fn entry_count(number: usize) -> String {
-    if number == 1 { "1 entry".into() } else { format!("{number} entries") }
-}
-
-/// A computed number without the noise of its last digits.
-pub(crate) fn rounded(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
 }
 
 /// "a, b and c", or "a, b and 17 more".

@@ -5,6 +5,11 @@
 
 use forwardstep_core::expression::{Expression, Interval, KinkError};
 
+use crate::quantity::{QuantityError, Requirement, Sign, not_negative, positive, such};
+
+/// Times at which a value that a formula must not have is looked for.
+const LOOKS: u32 = 1000;
+
 /// A formula with what it keeps within.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoundedFormula {
@@ -55,6 +60,33 @@ impl BoundedFormula {
     pub fn value(&self, t_s: f64) -> f64 {
         // Not f64::clamp, which lets not-a-number through.
         self.formula.eval(t_s).max(self.within.low).min(self.within.high)
+    }
+}
+
+impl BoundedFormula {
+    /// Checks that what messages call `key` has this sign, and is finite, until [`until_s`](Self::until_s).
+    ///
+    /// # Errors
+    /// [`QuantityError`] if that could not be shown.
+    pub fn stays(&self, key: &'static str, must: Sign) -> Result<(), QuantityError> {
+        if self.formula.is_constant() {
+            // As a number: its bounds may be wider.
+            let value = self.formula.constant().map_or(f64::NAN, |number| number.value());
+            such(!value.is_nan(), "", key, value, "must have a finite value")?;
+            return match must {
+                Sign::Positive => positive("", key, value),
+                Sign::NotNegative => not_negative("", key, value),
+            };
+        }
+        let Interval { low, high } = self.within;
+        if must.is_of(low) && must.is_of(high) {
+            return Ok(());
+        }
+        let mut looks = (0..=LOOKS).map(|k| f64::from(k) / f64::from(LOOKS) * self.until_s);
+        let seen_s = looks.find(|t_s| !must.is_of(self.formula.eval(*t_s)));
+        let value = seen_s.map_or(low, |t_s| self.formula.eval(t_s));
+        let requirement = Requirement::Throughout { must, within: [low, high], seen_s, until_s: self.until_s };
+        Err(QuantityError { path: key.into(), value, requirement })
     }
 }
 

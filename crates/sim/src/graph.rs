@@ -3,6 +3,9 @@
 use petgraph::algo::tarjan_scc;
 use petgraph::graph::DiGraph;
 
+use crate::formula::BoundedFormula;
+use crate::quantity::{QuantityError, Sign, positive};
+
 /// "`to` hears `from` with weight w": the entry w_ij of the adjacency matrix with i = `to`, j = `from`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
@@ -31,6 +34,19 @@ impl Weight {
         match self {
             Weight::Constant(weight) => Some(weight),
             Weight::Formula(_) => None,
+        }
+    }
+
+    /// Checks that it is positive; `weights` are those that follow a formula.
+    ///
+    /// # Errors
+    /// [`QuantityError`] if it is not, or could not be shown to be.
+    pub fn check(self, weights: &[BoundedFormula]) -> Result<(), QuantityError> {
+        match self {
+            Weight::Constant(weight) => positive("", "weight", weight),
+            Weight::Formula(index) => {
+                weights.get(index).map_or(Ok(()), |weight| weight.stays("weight", Sign::Positive))
+            }
         }
     }
 }

@@ -1,13 +1,12 @@
 //! Who hears whom, when, and how late.
 
-use forwardstep_core::expression::Interval;
 use thiserror::Error;
 
 use crate::coupling::Coupling;
-use crate::delay::{Delay, DelayFault};
+use crate::delay::{Delay, DelayFault, Drawn};
 use crate::formula::BoundedFormula;
 use crate::graph::Weight;
-use crate::quantity::QuantityError;
+use crate::quantity::{Path, QuantityError};
 use crate::schedule::{Schedule, ScheduleFault};
 
 /// A switching digraph with delays.
@@ -67,20 +66,6 @@ pub enum NetworkError {
         /// Receiver.
         to: usize,
     },
-    /// A weight that is not positive.
-    #[error(
-        "graph {graph} gives the edge from {from} to {to} the weight {weight}; weights must be positive and finite"
-    )]
-    Weight {
-        /// Index of the graph.
-        graph: usize,
-        /// Sender.
-        from: usize,
-        /// Receiver.
-        to: usize,
-        /// The weight.
-        weight: f64,
-    },
     /// An edge refers to a weight that does not exist.
     #[error("graph {graph} refers to weight {weight}, but there are {weights}")]
     NoSuchWeight {
@@ -90,16 +75,6 @@ pub enum NetworkError {
         weight: usize,
         /// Number of weights.
         weights: usize,
-    },
-    /// A formula for a weight that could not be shown to stay positive and finite.
-    #[error("weight {weight} could only be shown to stay within [{low}, {high}]; it must stay positive and finite")]
-    WeightBounds {
-        /// Index of the weight.
-        weight: usize,
-        /// Its lower bound.
-        low: f64,
-        /// Its upper bound.
-        high: f64,
     },
     /// A delay or a weight that is known for less than the run.
     #[error(
@@ -123,14 +98,6 @@ pub enum NetworkError {
         /// Number of delays.
         delays: usize,
     },
-    /// A switching signal with a parameter that makes no sense.
-    #[error("{words}: {error}")]
-    Switching {
-        /// What the signal is called.
-        words: &'static str,
-        /// What is wrong.
-        error: QuantityError,
-    },
     /// A switching signal from outside that is not what its author says.
     #[error("{words} is not what it is declared to be: {fault}")]
     RefutedSwitching {
@@ -138,16 +105,6 @@ pub enum NetworkError {
         words: &'static str,
         /// What was found.
         fault: ScheduleFault,
-    },
-    /// A delay with a parameter that makes no sense.
-    #[error("delay {delay}, {words}: {error}")]
-    Delay {
-        /// Index of the delay.
-        delay: usize,
-        /// What it is called.
-        words: &'static str,
-        /// What is wrong.
-        error: QuantityError,
     },
     /// A delay from outside that is not what its author says.
     #[error("delay {delay}, {words}, is not what it is declared to be: {fault}")]
@@ -162,11 +119,11 @@ pub enum NetworkError {
 }
 
 impl Network {
-    /// Checks everything that the structs themselves do not rule out.
+    /// Checks everything that the structs themselves do not rule out, for a run of `end_s`.
     ///
     /// # Errors
     /// [`NetworkError`] for the first thing found.
-    pub fn validate(&self) -> Result<(), NetworkError> {
+    pub fn validate(&self, end_s: f64) -> Result<(), NetworkError> {
         if self.agents == 0 {
             return Err(NetworkError::NoAgents);
         }
@@ -175,7 +132,7 @@ impl Network {
         }
         for (graph, edges) in self.schedule.graphs.iter().enumerate() {
             let mut seen = std::collections::HashSet::new();
-            for edge in edges {
+            for (k, edge) in edges.iter().enumerate() {
                 let (from, to) = (edge.from, edge.to);
                 if from >= self.agents || to >= self.agents {
                     return Err(NetworkError::NoSuchAgent { graph, from, to, agents: self.agents });
@@ -186,32 +143,25 @@ impl Network {
                 if !seen.insert((from, to)) {
                     return Err(NetworkError::DuplicateEdge { graph, from, to });
                 }
-                match edge.weight {
-                    Weight::Constant(weight) if !(weight > 0.0 && weight.is_finite()) => {
-                        return Err(NetworkError::Weight { graph, from, to, weight });
-                    }
-                    Weight::Formula(weight) if weight >= self.weights.len() => {
-                        return Err(NetworkError::NoSuchWeight { graph, weight, weights: self.weights.len() });
-                    }
-                    _ => {}
+                if let Weight::Formula(weight) = edge.weight
+                    && weight >= self.weights.len()
+                {
+                    return Err(NetworkError::NoSuchWeight { graph, weight, weights: self.weights.len() });
                 }
+                let at = || Path::from("network.graphs").index(graph).index(k);
+                edge.weight.check(&self.weights).map_err(|error| error.under(at()))?;
                 if edge.delay >= self.delays.len() {
                     return Err(NetworkError::NoSuchDelay { graph, delay: edge.delay, delays: self.delays.len() });
                 }
             }
         }
-        for (weight, formula) in self.weights.iter().enumerate() {
-            let Interval { low, high } = formula.within();
-            if !(low > 0.0 && high.is_finite()) {
-                return Err(NetworkError::WeightBounds { weight, low, high });
-            }
-        }
         self.coupling.check()?;
-        let switching = |error| NetworkError::Switching { words: self.schedule.words(), error };
-        self.schedule.validate().map_err(switching)?;
-        self.delays.iter().enumerate().try_for_each(|(delay, kind)| {
-            let named = |error: QuantityError| NetworkError::Delay { delay, words: kind.words(), error };
-            kind.validate().map_err(named)
+        self.schedule.check(end_s)?;
+        let mut all = Drawn::default();
+        self.delays.iter().enumerate().try_for_each(|(index, delay)| {
+            let (what, drawn) = delay.drawn();
+            let checked = delay.check(end_s).and_then(|()| all.add(what, drawn as f64));
+            Ok(checked.map_err(|error| error.under(Path::from("network.delays").index(index)))?)
         })
     }
 

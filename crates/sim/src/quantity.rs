@@ -102,6 +102,40 @@ pub enum Requirement {
         /// Its value.
         bound: f64,
     },
+    /// Not more than another.
+    AtMost {
+        /// The other.
+        key: &'static str,
+        /// Its value.
+        bound: f64,
+    },
+    /// More than another.
+    MoreThan {
+        /// The other.
+        key: &'static str,
+        /// Its value.
+        bound: f64,
+    },
+    /// A list with an entry; the value is how many it has.
+    Filled,
+    /// A list with as many entries as another; the value is how many it has.
+    AsMany {
+        /// The other.
+        key: &'static str,
+        /// How many it has.
+        need: usize,
+    },
+    /// A formula in t that meets this at all times of a run. The value is the first that was seen not to, if any was.
+    Throughout {
+        /// What it must be.
+        must: Sign,
+        /// What it could be shown to lie between.
+        within: [f64; 2],
+        /// When the value was seen, s.
+        seen_s: Option<f64>,
+        /// The end of the run, s.
+        until_s: f64,
+    },
     /// What these words say, `must be two`.
     Such(&'static str),
     /// So large, or so small, that a run has only so many of these.
@@ -115,6 +149,35 @@ pub enum Requirement {
     },
 }
 
+/// What the sign of a formula must be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sign {
+    /// Positive.
+    Positive,
+    /// Zero or more.
+    NotNegative,
+}
+
+impl Sign {
+    /// Whether `value` is finite and has it.
+    pub fn is_of(self, value: f64) -> bool {
+        value.is_finite()
+            && match self {
+                Sign::Positive => value > 0.0,
+                Sign::NotNegative => value >= 0.0,
+            }
+    }
+}
+
+impl fmt::Display for Sign {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Sign::Positive => "must be positive",
+            Sign::NotNegative => "must not be negative",
+        })
+    }
+}
+
 /// A quantity out of its range.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub struct QuantityError {
@@ -126,25 +189,76 @@ pub struct QuantityError {
     pub requirement: Requirement,
 }
 
+impl QuantityError {
+    /// The same about what stands under `at`.
+    pub fn under(mut self, at: impl Into<Path>) -> Self {
+        let mut segments = at.into().segments;
+        segments.append(&mut self.path.segments);
+        self.path.segments = segments;
+        self
+    }
+}
+
 impl fmt::Display for QuantityError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Requirement::Few { what, count, most } = self.requirement {
-            let (count, most) = (about(count), number(most));
-            return write!(f, "about {count} {what} until the end of the run, but at most {most} are accepted");
-        }
-        // What is counted has words for a name, and no key.
-        let (name, value) = (self.path.name(), number(self.value));
-        if name.contains(' ') { write!(f, "{name} is {value}, but ") } else { write!(f, "`{name}` is {value}, but ") }?;
+        let (name, value) = (Name(self.path.name()), number(self.value));
+        let is = format!("{name} is {value}, but");
         match self.requirement {
-            Requirement::NotNegative => f.write_str("must not be negative"),
-            Requirement::Within { low, high } => write!(f, "must be from {} to {}", number(low), number(high)),
+            Requirement::Positive => write!(f, "{is} {}", Sign::Positive),
+            Requirement::NotNegative => write!(f, "{is} {}", Sign::NotNegative),
+            Requirement::Within { low, high } => write!(f, "{is} must be from {} to {}", number(low), number(high)),
             Requirement::AtLeast { key, bound } => {
-                write!(f, "must not be less than `{key}`, which is {}", number(bound))
+                write!(f, "{is} must not be less than {}, which is {}", Name(key), number(bound))
             }
-            Requirement::Such(words) => f.write_str(words),
-            Requirement::Positive | Requirement::Few { .. } => f.write_str("must be positive"),
+            Requirement::AtMost { key, bound } => {
+                write!(f, "{is} must not exceed {}, which is {}", Name(key), number(bound))
+            }
+            Requirement::MoreThan { key, bound } => {
+                write!(f, "{is} must exceed {}, which is {}", Name(key), number(bound))
+            }
+            Requirement::Such(words) => write!(f, "{is} {words}"),
+            Requirement::Filled => write!(f, "{name} is empty"),
+            Requirement::AsMany { key, need } => {
+                write!(f, "{name} has {}, but {} has {}", entries(self.value as usize), Name(key), entries(need))
+            }
+            Requirement::Throughout { must, within, seen_s, until_s } => {
+                let [value, low, high] = [self.value, within[0], within[1]].map(rounded).map(number);
+                match seen_s.map(rounded).map(number) {
+                    Some(t) if self.value.is_finite() => write!(f, "{name} is {value} at t = {t} s, but {must}"),
+                    Some(t) => write!(f, "{name} has no finite value at t = {t} s"),
+                    None => write!(
+                        f,
+                        "{name} {must}, but could only be shown to lie between {low} and {high} until the end of the \
+                         run at {} s",
+                        number(until_s)
+                    ),
+                }
+            }
+            Requirement::Few { what, count, most } => {
+                let (count, most) = (about(count), number(most));
+                write!(f, "about {count} {what} until the end of the run, but at most {most} are accepted")
+            }
         }
     }
+}
+
+/// A key as messages write it. What is counted has words for a name, and no key.
+struct Name(&'static str);
+
+impl fmt::Display for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.contains(' ') { f.write_str(self.0) } else { write!(f, "`{}`", self.0) }
+    }
+}
+
+/// "1 entry", "2 entries".
+pub fn entries(count: usize) -> String {
+    if count == 1 { "1 entry".into() } else { format!("{count} entries") }
+}
+
+/// A computed number without the noise of its last digits.
+pub fn rounded(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
 }
 
 /// A number as a person would write it: plain, or with a power of ten when it is very large or small.
@@ -221,6 +335,67 @@ pub fn at_least(
     (other, bound): (&'static str, f64),
 ) -> Result<(), QuantityError> {
     check(value >= bound, at, key, value, Requirement::AtLeast { key: other, bound })
+}
+
+/// Checks that `key` at `at` does not exceed `bound`, which is what `other` is.
+///
+/// # Errors
+/// [`QuantityError`] if it does.
+pub fn at_most(
+    at: impl Into<Path>,
+    key: &'static str,
+    value: f64,
+    (other, bound): (&'static str, f64),
+) -> Result<(), QuantityError> {
+    check(value <= bound, at, key, value, Requirement::AtMost { key: other, bound })
+}
+
+/// Checks that `key` at `at` exceeds `bound`, which is what `other` is.
+///
+/// # Errors
+/// [`QuantityError`] if it does not.
+pub fn more_than(
+    at: impl Into<Path>,
+    key: &'static str,
+    value: f64,
+    (other, bound): (&'static str, f64),
+) -> Result<(), QuantityError> {
+    check(value > bound, at, key, value, Requirement::MoreThan { key: other, bound })
+}
+
+/// Checks that the list `key` at `at` has an entry.
+///
+/// # Errors
+/// [`QuantityError`] if it has none.
+pub fn filled(at: impl Into<Path>, key: &'static str, list: &[f64]) -> Result<(), QuantityError> {
+    check(!list.is_empty(), at, key, 0.0, Requirement::Filled)
+}
+
+/// Checks that the list `key` at `at` has as many entries as `other` has.
+///
+/// # Errors
+/// [`QuantityError`] if it has not.
+pub fn as_many(
+    at: impl Into<Path>,
+    key: &'static str,
+    list: &[f64],
+    (other, need): (&'static str, usize),
+) -> Result<(), QuantityError> {
+    check(list.len() == need, at, key, list.len() as f64, Requirement::AsMany { key: other, need })
+}
+
+/// Checks that every entry of the list `key` at `at` meets `check`.
+///
+/// # Errors
+/// [`QuantityError`] for the first that does not.
+pub fn each(
+    at: impl Into<Path>,
+    key: &'static str,
+    list: &[f64],
+    check: impl Fn(Path, &'static str, f64) -> Result<(), QuantityError>,
+) -> Result<(), QuantityError> {
+    let list_at = at.into().key(key);
+    list.iter().enumerate().try_for_each(|(k, value)| check(list_at.clone().index(k), "", *value))
 }
 
 /// Checks that `key` at `at` is such as `words` say, which `meets` tells.

@@ -16,6 +16,7 @@ use forwardstep_sim::delay::{Delay, PiecewiseConstant, Sinusoid};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::network::NetworkError;
+use forwardstep_sim::quantity::Requirement;
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
     Control, Exchange, Known, Network, Outcome, Sensors, Setup, SetupError, Signal, VelocitySensor, simulate,
@@ -35,7 +36,7 @@ fn indices_end_where_lists_do() {
     let said = |change: &dyn Fn(&mut Network)| {
         let mut network = pair();
         change(&mut network);
-        network.validate()
+        network.validate(20.0)
     };
     let replaced = |edge: Edge| move |network: &mut Network| network.schedule = Schedule::fixed(vec![edge]);
     assert_eq!(said(&|_| {}), Ok(()));
@@ -49,7 +50,8 @@ fn indices_end_where_lists_do() {
     assert_eq!(said(&replaced(Edge { weight: Weight::Formula(0), ..edge(0, 1) })), Err(error));
     for weight in [0.0, -1.0, f64::INFINITY] {
         let result = said(&replaced(Edge { weight: Weight::Constant(weight), ..edge(0, 1) }));
-        assert!(matches!(result, Err(NetworkError::Weight { .. })), "{weight}");
+        let Err(NetworkError::Quantity(error)) = result else { panic!("{result:?}") };
+        assert_eq!((error.path.to_string(), error.value), ("network.graphs[0][0].weight".into(), weight));
     }
     assert!(matches!(said(&|network| network.agents = 0), Err(NetworkError::NoAgents)));
 }
@@ -60,16 +62,18 @@ fn a_weight_that_touches_zero_is_refused_and_one_above_is_not() {
         let swing = Expression::variable(0).sin_of() * 0.5 + mean;
         let weights = vec![BoundedFormula::new(swing, 20.0)];
         let varying = Edge { weight: Weight::Formula(0), ..edge(0, 1) };
-        Network { schedule: Schedule::fixed(vec![varying]), weights, ..pair() }.validate()
+        Network { schedule: Schedule::fixed(vec![varying]), weights, ..pair() }.validate(20.0)
     };
-    assert!(matches!(said(0.5), Err(NetworkError::WeightBounds { weight: 0, low, .. }) if low <= 0.0));
+    let Err(NetworkError::Quantity(error)) = said(0.5) else { panic!("{:?}", said(0.5)) };
+    assert_eq!(error.path.to_string(), "network.graphs[0][0].weight");
+    assert!(matches!(error.requirement, Requirement::Throughout { within: [low, _], seen_s: None, .. } if low <= 0.0));
     assert_eq!(said(0.51), Ok(()));
 }
 
 #[test]
 fn only_the_last_phase_of_a_schedule_that_ends_may_last_any_time() {
     let phases = |dwells: [f64; 2]| dwells.map(|dwell_s| Phase { edges: vec![edge(0, 1)], dwell_s }).to_vec();
-    let said = |schedule| Network { schedule, ..pair() }.validate().is_ok();
+    let said = |schedule| Network { schedule, ..pair() }.validate(20.0).is_ok();
     assert!(said(Schedule::once(phases([1.0, 0.0]))) && said(Schedule::once(phases([1.0, f64::NAN]))));
     assert!(!said(Schedule::once(phases([0.0, 1.0]))));
     assert!(!said(Schedule::periodic(phases([1.0, 0.0]))) && !said(Schedule::periodic(phases([0.0, 1.0]))));
@@ -111,15 +115,11 @@ fn what_is_sent_arrives_later_or_not_at_all() {
 }
 
 #[test]
-fn bounds_of_a_sinusoid_do_not_ask_for_the_sign_of_its_amplitude() {
-    for amplitude_s in [0.3, -0.3] {
-        let swing = Delay::new(Sinusoid { mean_s: 0.3, amplitude_s, period_s: 1.0, phase_rad: 0.2 });
-        assert_eq!([swing.min_s(), swing.max_s()], [0.0, 0.6]);
-        let network = Network { delays: vec![swing], ..pair() };
-        assert_eq!(network.validate(), Ok(()), "it may touch zero");
-        let below = Delay::new(Sinusoid { mean_s: 0.29, amplitude_s, period_s: 1.0, phase_rad: 0.2 });
-        assert!(Network { delays: vec![below], ..network }.validate().is_err());
-    }
+fn a_sinusoid_may_touch_zero_and_its_amplitude_is_not_negative() {
+    let swing = |mean_s, amplitude_s| Delay::new(Sinusoid { mean_s, amplitude_s, period_s: 1.0, phase_rad: 0.2 });
+    assert_eq!([swing(0.3, 0.3).min_s(), swing(0.3, 0.3).max_s()], [0.0, 0.6]);
+    let said = |delay| Network { delays: vec![delay], ..pair() }.validate(20.0).is_ok();
+    assert!(said(swing(0.3, 0.3)) && !said(swing(0.29, 0.3)) && !said(swing(0.3, -0.3)));
 }
 
 #[test]

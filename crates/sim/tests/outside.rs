@@ -38,7 +38,7 @@ impl DelayFunction for Teeth {
         "teeth"
     }
 
-    fn validate(&self) -> Result<(), QuantityError> {
+    fn validate(&self, _: f64) -> Result<(), QuantityError> {
         positive("", "period_s", self.0.period_s)
     }
 
@@ -81,7 +81,7 @@ impl DelayFunction for Says {
         "a liar"
     }
 
-    fn validate(&self) -> Result<(), QuantityError> {
+    fn validate(&self, _: f64) -> Result<(), QuantityError> {
         Ok(())
     }
 
@@ -157,7 +157,7 @@ impl DelayFunction for Newest {
         "the newest"
     }
 
-    fn validate(&self) -> Result<(), QuantityError> {
+    fn validate(&self, _: f64) -> Result<(), QuantityError> {
         Ok(())
     }
 
@@ -224,8 +224,8 @@ fn arrivals_within_a_slope_are_those_between_turning_points() {
             "a swing"
         }
 
-        fn validate(&self) -> Result<(), QuantityError> {
-            self.0.validate()
+        fn validate(&self, end_s: f64) -> Result<(), QuantityError> {
+            self.0.validate(end_s)
         }
 
         fn piece(&self, index: u64) -> DelayPiece {
@@ -312,7 +312,8 @@ fn values_that_are_no_delays_or_not_as_declared_are_refused_with_time_and_value(
 fn bounds_that_bound_nothing_are_refused() {
     for within_s in [[-0.1, 0.3], [0.3, 0.1], [f64::NAN, 0.3], [0.1, f64::NAN], [0.1, f64::INFINITY]] {
         let setup = with(Delay::new(Says { within_s, ..honest() }));
-        assert!(matches!(run(&setup), Err(SetupError::Network(NetworkError::Delay { delay: 0, .. }))), "{within_s:?}");
+        let path = run(&setup).err().map(|error| error.path(&setup).to_string()).unwrap();
+        assert!(path.starts_with("network.delays[0].the "), "{within_s:?}: {path}");
     }
 }
 
@@ -341,7 +342,7 @@ impl SwitchingSignal for Turns {
         "turns"
     }
 
-    fn validate(&self, _: usize) -> Result<(), QuantityError> {
+    fn validate(&self, _: usize, _: f64) -> Result<(), QuantityError> {
         positive("", "least_s", self.least_s)
     }
 

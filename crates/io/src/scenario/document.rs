@@ -162,7 +162,7 @@ impl<'i> Document<'i> {
 
 /// How far `path` leads from `value` inwards, and the place of what is there. The simulator does not know under which key
 /// of a kind a table stands in a file: a table with one key is gone through.
-fn deepest(mut value: &Spanned<DeValue<'_>>, path: &[Segment]) -> (usize, Range<usize>) {
+pub(super) fn deepest(mut value: &Spanned<DeValue<'_>>, path: &[Segment]) -> (usize, Range<usize>) {
     let mut depth = 0;
     for segment in path {
         let inner = match segment {

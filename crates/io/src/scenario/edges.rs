@@ -8,7 +8,7 @@ use forwardstep_sim::topology::{Along, Spokes, Topology};
 
 use super::at::At;
 use super::edges_file::{AlongDirection, AlongFile, CsvFile, EdgeFile, EdgesFile, RuleFile, StarDirection, StarFile};
-use super::fault::{Fault, fault, filled, not_negative, positive_count, seed};
+use super::fault::{Fault, fault, filled, positive_count, seed};
 use super::kinds::delays::DelayPlan;
 use super::links::cell_weight;
 use super::links_file::WeightFile;
@@ -187,14 +187,13 @@ fn edges_of(text: &str) -> Result<Vec<At<EdgeFile>>, Fault> {
     let rows = read_table(text, columns)?;
     let mut edges = Vec::with_capacity(rows.len());
     for At { value: [from, to, weight, delay_s], span } in rows {
-        let delay = cell_number(&delay_s)?.map(|delay_s| {
-            Ok(At { value: DelayFile::Constant(not_negative("delay_s", &delay_s)?), span: delay_s.span })
-        });
+        let delay =
+            cell_number(&delay_s)?.map(|delay_s| At { value: DelayFile::Constant(delay_s.value), span: delay_s.span });
         let edge = EdgeFile {
             from: At { value: from.value.into_owned(), span: from.span },
             to: At { value: to.value.into_owned(), span: to.span },
             weight: cell_weight(&weight)?,
-            delay: delay.transpose()?,
+            delay,
         };
         edges.push(At { value: edge, span });
     }

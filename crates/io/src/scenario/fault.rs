@@ -5,7 +5,11 @@ use std::ops::Range;
 
 use forwardstep_sim::quantity::{self, QuantityError};
 
+use toml::Spanned;
+use toml::de::DeValue;
+
 use super::at::At;
+use super::document::deepest;
 use super::problem::ScenarioProblem;
 use super::value_problem::ValueProblem;
 use crate::SourceText;
@@ -33,10 +37,27 @@ impl Fault {
         self
     }
 
+    /// Adds the place of a quantity whose path leads inwards from `table`, unless a place is known.
+    pub(super) fn inside(self, table: &Spanned<DeValue<'_>>) -> Self {
+        match &*self.problem {
+            ScenarioProblem::Value(ValueProblem::Quantity(error)) => {
+                let (_, span) = deepest(table, error.path.segments());
+                self.at(&span)
+            }
+            _ => self,
+        }
+    }
+
     /// Says that the problem, and its place, are in another file than the scenario.
     pub(super) fn within(mut self, source: &SourceText) -> Self {
         self.source.get_or_insert_with(|| source.clone());
         self
+    }
+}
+
+impl From<QuantityError> for Fault {
+    fn from(error: QuantityError) -> Self {
+        Fault::new(ValueProblem::Quantity(error))
     }
 }
 

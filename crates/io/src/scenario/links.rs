@@ -4,13 +4,14 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
-use forwardstep_core::expression::{Expression, Interval};
-use forwardstep_sim::delay::Delay;
+use forwardstep_core::expression::Expression;
+use forwardstep_sim::delay::{self, Delay};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
+use forwardstep_sim::quantity::Sign;
 
 use super::at::At;
-use super::fault::{Fault, fault, not_negative, positive};
+use super::fault::{Fault, fault};
 use super::formula::formula;
 use super::kinds::delays::log::Log;
 use super::kinds::delays::{DelayPlan, Link, LinkDelays};
@@ -35,7 +36,7 @@ pub(super) struct Links {
     weights: HashMap<String, Weight>,
     /// The delays that are written as formulas, by their texts.
     formulas: HashMap<String, Delay>,
-    events: f64,
+    counted: delay::Drawn,
 }
 
 impl NetworkReader<'_> {
@@ -45,21 +46,11 @@ impl NetworkReader<'_> {
             return Ok(known.clone());
         }
         let formula = formula(text)?;
-        let delay = if formula.is_constant() {
-            let value = At { value: constant(&formula), span: text.span.clone() };
-            Delay::constant(finite("formula_s", &value).and_then(|value| not_negative("formula_s", &value))?)
-        } else {
-            if self.links.formulas.len() >= MOST_FORMULAS {
-                return Err(fault(text, NetworkProblem::TooManyFormulas { most: MOST_FORMULAS }));
-            }
-            let bounded = BoundedFormula::new(formula, self.end_s);
-            let Interval { low, high } = bounded.within();
-            if !(low >= 0.0 && high.is_finite()) {
-                let (witness, end_s) = (witness(bounded.formula(), self.end_s, |value| value >= 0.0), self.end_s);
-                return Err(fault(text, NetworkProblem::DelayBounds { low, high, witness, end_s }));
-            }
-            Delay::new(bounded)
-        };
+        self.few_formulas(self.links.formulas.len(), &formula, text)?;
+        let bounded = BoundedFormula::new(formula, self.end_s);
+        bounded.stays("formula_s", Sign::NotNegative)?;
+        let delay = bounded.formula().constant().map(|number| Delay::constant(number.value()));
+        let delay = delay.unwrap_or_else(|| Delay::new(bounded));
         self.links.formulas.insert(text.value.clone(), delay.clone());
         Ok(delay)
     }
@@ -86,7 +77,7 @@ impl NetworkReader<'_> {
             _ => {}
         }
         let names = [&self.names[from][..], &self.names[to]];
-        let mut link = Link { agents: (from, to), names, end_s: self.end_s, events: &mut self.links.events };
+        let mut link = Link { agents: (from, to), names, end_s: self.end_s, drawn: &mut self.links.counted };
         let delay = delays.draw(&mut link).map_err(|fault| fault.at(span))?;
         self.delays.push(delay);
         let index = self.delays.len() - 1;
@@ -96,34 +87,39 @@ impl NetworkReader<'_> {
 
     /// A weight as it is written.
     pub(super) fn weight(&mut self, weight: &At<WeightFile>) -> Result<Weight, Fault> {
-        let span = weight.span.clone();
-        let text = match &weight.value {
-            WeightFile::Number(value) => return Ok(positive("weight", &At { value: *value, span })?.into()),
-            WeightFile::Formula(text) => text,
-        };
-        if let Some(known) = self.links.weights.get(text) {
-            return Ok(*known);
+        match &weight.value {
+            WeightFile::Number(value) => {
+                let constant = Weight::Constant(*value);
+                let checked = constant.check(&self.weights).map(|()| constant);
+                checked.map_err(|error| Fault::from(error).at(&weight.span))
+            }
+            WeightFile::Formula(text) => match self.links.weights.get(text) {
+                Some(known) => Ok(*known),
+                None => self.formula_weight(&At { value: text.clone(), span: weight.span.clone() }),
+            },
         }
-        let place = At { value: text.clone(), span: span.clone() };
-        let formula = formula(&place)?;
-        let weight = if formula.is_constant() {
-            let value = finite("weight", &At { value: constant(&formula), span })?;
-            positive("weight", &value)?.into()
-        } else {
-            if self.weights.len() >= MOST_FORMULAS {
-                return Err(fault(&place, NetworkProblem::TooManyFormulas { most: MOST_FORMULAS }));
-            }
-            let bounded = BoundedFormula::new(formula, self.end_s);
-            let Interval { low, high } = bounded.within();
-            if !(low > 0.0 && high.is_finite()) {
-                let witness = witness(bounded.formula(), self.end_s, |value| value > 0.0);
-                return Err(fault(&place, NetworkProblem::WeightBounds { low, high, witness, end_s: self.end_s }));
-            }
+    }
+
+    fn formula_weight(&mut self, text: &At<String>) -> Result<Weight, Fault> {
+        let formula = formula(text)?;
+        self.few_formulas(self.weights.len(), &formula, text)?;
+        let bounded = BoundedFormula::new(formula, self.end_s);
+        bounded.stays("weight", Sign::Positive).map_err(|error| Fault::from(error).at(&text.span))?;
+        let weight = bounded.formula().constant().map(|number| Weight::Constant(number.value()));
+        let weight = weight.unwrap_or_else(|| {
             self.weights.push(bounded);
             Weight::Formula(self.weights.len() - 1)
-        };
-        self.links.weights.insert(text.clone(), weight);
+        });
+        self.links.weights.insert(text.value.clone(), weight);
         Ok(weight)
+    }
+
+    /// One formula more than `known` that change with t.
+    fn few_formulas(&self, known: usize, formula: &Expression, text: &At<String>) -> Result<(), Fault> {
+        if known < MOST_FORMULAS || formula.is_constant() {
+            return Ok(());
+        }
+        Err(fault(text, NetworkProblem::TooManyFormulas { most: MOST_FORMULAS }))
     }
 
     /// What the author should know about links when all of them have been read.
@@ -152,26 +148,6 @@ impl NetworkReader<'_> {
             notices.push(Notice::NothingArrives { links: silent.into_iter().map(names).collect() });
         }
     }
-}
-
-/// The number that a formula without t is, which may be none: 0.1 + 0.2 − 0.3 is zero.
-fn constant(formula: &Expression) -> f64 {
-    formula.constant().map_or(f64::NAN, |number| number.value())
-}
-
-/// The value of a formula without t, which may be none.
-fn finite(key: &'static str, value: &At<f64>) -> Result<At<f64>, Fault> {
-    if value.value.is_finite() { Ok(value.clone()) } else { Err(fault(value, NetworkProblem::NoValue { key })) }
-}
-
-/// A time at which a formula really has a value that it must not have, looked for here and there.
-fn witness(formula: &Expression, end_s: f64, good: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
-    const LOOKS: u32 = 1000;
-    let mut looks = (0..=LOOKS).map(|k| f64::from(k) / f64::from(LOOKS) * end_s);
-    looks.find_map(|t_s| {
-        let value = formula.eval(t_s);
-        (!(good(value) && value.is_finite())).then_some((t_s, value))
-    })
 }
 
 /// The weight in a cell of a table: a number, else a formula; none in an empty cell.

@@ -9,13 +9,13 @@ use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::delay::{Constant, Delay};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
-use forwardstep_sim::quantity::{MOST_EVENTS, few};
+use forwardstep_sim::quantity::QuantityError;
 use forwardstep_sim::schedule::Schedule;
 
 use super::at::At;
 use super::de::ValueDe;
 use super::document::{Document, Tables};
-use super::fault::{Fault, fault, filled, positive};
+use super::fault::{Fault, fault, filled};
 use super::inputs::InputFolder;
 use super::kinds::Kinds;
 use super::kinds::delays::DelayPlan;
@@ -71,7 +71,9 @@ pub(super) fn network(
         },
         (None, Some(phases)) => {
             let switching = document.switching(kinds)?;
-            reader.schedule(phases, switching.as_deref().unwrap_or(&RepeatFile), notices)?
+            let schedule = reader.schedule(phases, switching.as_deref().unwrap_or(&RepeatFile), notices)?;
+            document.checked(schedule.check(end_s))?;
+            schedule
         }
     };
     reader.link_notices(notices);
@@ -141,15 +143,6 @@ impl NetworkReader<'_> {
         self.folder
     }
 
-    /// Refuses events that no run could land on; `span` is what is to blame.
-    ///
-    /// # Errors
-    /// [`ValueProblem::Quantity`].
-    pub fn few(&self, what: &'static str, events: f64, span: &Range<usize>) -> Result<(), Fault> {
-        few("", what, events, (what, events, MOST_EVENTS))
-            .map_err(|error| Fault::new(ValueProblem::Quantity(error)).at(span))
-    }
-
     /// Equal delays share an entry, so that a message to several receivers is looked up once.
     pub(super) fn delay_index(&mut self, delay: Delay) -> usize {
         let next = self.delays.len();
@@ -167,12 +160,23 @@ impl NetworkReader<'_> {
     /// What a delay says, with everything checked that does not depend on the edge.
     pub(super) fn plan(&mut self, delay: &At<DelayFile>) -> Result<DelayPlan, Fault> {
         let table = match delay.value {
-            DelayFile::Constant(s) => return Ok(DelayPlan::Shared(Delay::constant(s))),
-            DelayFile::Kind(node) => self.tables.get(&node),
+            DelayFile::Constant(s) => {
+                let constant = Delay::constant(s);
+                // A table calls it by its column.
+                let column = |error| QuantityError { path: "delay_s".into(), ..error };
+                constant.check(self.end_s).map_err(|error| Fault::from(column(error)).at(&delay.span))?;
+                return Ok(DelayPlan::Shared(constant));
+            }
+            DelayFile::Kind(node) => self.tables.get(&node).copied(),
         };
         let Some(value) = table else { return Err(fault(delay, ValueProblem::MissingKey { key: "delay" })) };
         let (_, kind) = self.kinds.delay(ValueDe { value, kinds: self.kinds })?;
-        kind.plan(self).map_err(|fault| fault.at(&delay.span))
+        let end_s = self.end_s;
+        let checked = |plan: DelayPlan| match &plan {
+            DelayPlan::Shared(delay) => Ok(delay.check(end_s).map(|()| plan)?),
+            DelayPlan::EachLink(_) => Ok(plan),
+        };
+        kind.plan(self).and_then(checked).map_err(|fault| fault.inside(value).at(&delay.span))
     }
 }
 
@@ -203,12 +207,12 @@ impl<'n> PhaseReader<'_, 'n> {
     /// How long a phase, counted from zero, lasts.
     ///
     /// # Errors
-    /// The mistake at its place, or that the phase does not say so.
+    /// That the phase does not say so.
     pub fn dwell_s(&self, phase: usize) -> Result<f64, Fault> {
         let missing = || Fault::new(NetworkProblem::NoDwell { phase: phase + 1 }).at(&self.phases.span);
         let place = self.phases.value.get(phase).ok_or_else(missing)?;
         match &place.value.dwell_s {
-            Some(dwell) => positive("dwell_s", dwell),
+            Some(dwell) => Ok(dwell.value),
             None => Err(fault(place, NetworkProblem::NoDwell { phase: phase + 1 })),
         }
     }

@@ -1,8 +1,7 @@
 //! What the layers below refuse: where in the scenario it stands, and what to do.
 
 use forwardstep_core::controller::ChainError;
-use forwardstep_sim::network::NetworkError;
-use forwardstep_sim::quantity::{QuantityError, Requirement};
+use forwardstep_sim::quantity::{QuantityError, Requirement, Sign};
 use forwardstep_sim::{Setup, SetupError};
 
 use super::document::Document;
@@ -15,9 +14,7 @@ impl Document<'_> {
     pub(super) fn refused(&self, setup: &Setup, entries: &[usize], error: SetupError) -> Fault {
         let place = self.place(&error.path(setup), entries);
         let fault = Fault::new(match error {
-            SetupError::Quantity(error) | SetupError::Network(NetworkError::Quantity(error)) => {
-                ValueProblem::Quantity(error).into()
-            }
+            SetupError::Quantity(error) => ValueProblem::Quantity(error).into(),
             error => ScenarioProblem::Setup(error),
         });
         place.iter().fold(fault, Fault::at)
@@ -40,6 +37,13 @@ pub(super) fn advice_on_quantity(error: &QuantityError) -> Option<String> {
         Requirement::Within { high, .. } if error.path.name() == "computation_delay_s" && error.value > high => {
             "a computation must be done before the next begins; sample more slowly, or compute faster"
         }
+        Requirement::Throughout { must: Sign::NotNegative, .. } => {
+            "write `max(0, …)` or `abs(…)` around it, or in a simpler way: bounds are best where t appears once"
+        }
+        Requirement::Throughout { must: Sign::Positive, .. } => {
+            "write `max(0.1, …)` around it; an edge that is not there for a while is left out of a phase"
+        }
+        Requirement::AtMost { .. } if error.path.name() == "amplitude_s" => "a delay is never negative",
         _ => return None,
     };
     Some(text.into())

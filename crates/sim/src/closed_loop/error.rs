@@ -20,7 +20,7 @@ use crate::trajectory::TrajectoryError;
 pub enum SetupError {
     /// The network has no meaning.
     #[error("network: {0}")]
-    Network(#[from] NetworkError),
+    Network(NetworkError),
     /// A target, an offset or a leader that cannot be landed on where it has kinks.
     #[error("`{agent}`: {error}")]
     Trajectory {
@@ -372,6 +372,15 @@ pub enum SetupError {
     /// A quantity out of its range.
     #[error("{}: {_0}", _0.path)]
     Quantity(#[from] QuantityError),
+}
+
+impl From<NetworkError> for SetupError {
+    fn from(error: NetworkError) -> Self {
+        match error {
+            NetworkError::Quantity(error) => SetupError::Quantity(error),
+            error => SetupError::Network(error),
+        }
+    }
 }
 
 /// What is said of a sensor of velocities.

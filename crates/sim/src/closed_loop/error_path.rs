@@ -4,7 +4,6 @@ use forwardstep_core::controller::ChainError;
 use forwardstep_core::reference::BacksteppingError;
 
 use super::error::SetupError;
-use crate::network::NetworkError;
 use crate::quantity::Path;
 use crate::reference::{ReferenceDynamics, ReferenceFamily};
 use crate::setup::{AgentSetup, Setup, Solver};
@@ -24,7 +23,7 @@ impl SetupError {
         };
         let roots = |agent| own(agent).key("roots_per_s");
         match self {
-            SetupError::Quantity(error) | SetupError::Network(NetworkError::Quantity(error)) => error.path.clone(),
+            SetupError::Quantity(error) => error.path.clone(),
             SetupError::Network(_)
             | SetupError::AgentCount { .. }
             | SetupError::UnusedEdges { .. }

@@ -15,14 +15,14 @@ use crate::system::{LawWords, PositionKind};
 /// # Errors
 /// [`SetupError`] when the setup has no meaning.
 pub fn validate(setup: &Setup) -> Result<(), SetupError> {
-    setup.network.validate()?;
+    setup.time.check()?;
+    setup.network.validate(setup.time.end_s)?;
     // A motion is a vertex of its own; an agent that leads is one already.
     let leaders = usize::from(setup.following().is_some_and(|following| following.motion().is_some()));
     if setup.network.agents != setup.agents.len() + leaders {
         let agents = setup.agents.len() + leaders;
         return Err(SetupError::AgentCount { network: setup.network.agents, agents });
     }
-    setup.time.check()?;
     setup.solver.check()?;
     setup.control.as_ref().map_or(Ok(()), |control| check_control(control, setup))?;
     setup.reference.check(setup)?;

@@ -22,7 +22,7 @@ impl DelayFunction for Constant {
         "a constant delay"
     }
 
-    fn validate(&self) -> Result<(), QuantityError> {
+    fn validate(&self, _: f64) -> Result<(), QuantityError> {
         not_negative("", "constant_s", self.s)
     }
 

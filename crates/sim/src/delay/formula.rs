@@ -4,17 +4,15 @@ use forwardstep_core::expression::Interval;
 
 use super::{Arrivals, Basis, DelayFunction, DelayPiece, Known, Unknown};
 use crate::formula::BoundedFormula;
-use crate::quantity::{QuantityError, not_negative};
+use crate::quantity::{QuantityError, Sign};
 
 impl DelayFunction for BoundedFormula {
     fn words(&self) -> &'static str {
         "a formula"
     }
 
-    fn validate(&self) -> Result<(), QuantityError> {
-        let Interval { low, high } = self.within();
-        not_negative("", "the lower bound of formula_s", low)?;
-        not_negative("", "the upper bound of formula_s", high)
+    fn validate(&self, _: f64) -> Result<(), QuantityError> {
+        self.stays("formula_s", Sign::NotNegative)
     }
 
     fn piece(&self, index: u64) -> DelayPiece {

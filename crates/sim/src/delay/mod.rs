@@ -21,7 +21,7 @@
 //!     fn words(&self) -> &'static str {
 //!         "a chirp"
 //!     }
-//!     fn validate(&self) -> Result<(), QuantityError> {
+//!     fn validate(&self, _: f64) -> Result<(), QuantityError> {
 //!         Ok(())
 //!     }
 //!     fn piece(&self, _: u64) -> DelayPiece {
@@ -67,7 +67,7 @@ use crate::same::Same;
 pub use arrivals::Arrivals;
 pub use constant::Constant;
 pub use known::{Basis, Known, Unknown};
-pub use packets::{Loss, Packet, PacketLink, Trace};
+pub use packets::{Drawn, Loss, Packet, PacketLink, Trace};
 pub use piecewise_constant::PiecewiseConstant;
 pub use probe::DelayFault;
 pub use random_hold::RandomHold;
@@ -93,11 +93,11 @@ pub trait DelayFunction: Same + Debug + Send + Sync {
     /// What it is called in messages, as in `a saw-tooth`.
     fn words(&self) -> &'static str;
 
-    /// Checks the parameters.
+    /// Checks the parameters for a run of `end_s`, under the keys that they have in scenario files.
     ///
     /// # Errors
     /// [`QuantityError`] for the first that makes no sense.
-    fn validate(&self) -> Result<(), QuantityError>;
+    fn validate(&self, end_s: f64) -> Result<(), QuantityError>;
 
     /// A stretch of time on which it is smooth; number zero holds t = 0, and each begins where the one before it ends. The
     /// last has no end, and stands for all numbers after its own.
@@ -166,14 +166,23 @@ impl Delay {
         self.downcast()
     }
 
+    /// What was drawn or given for it, and what that is called.
+    pub(crate) fn drawn(&self) -> (&'static str, usize) {
+        let hold = self.downcast().map_or(0, |hold: &RandomHold| hold.times_s().len());
+        self.packets().map_or(("jumps of the delay", hold), |trace| ("packets", trace.packets().len()))
+    }
+
     /// What it is called in messages.
     pub fn words(&self) -> &'static str {
         self.function.words()
     }
 
-    /// Checks the parameters.
-    pub(crate) fn validate(&self) -> Result<(), QuantityError> {
-        self.function.validate()?;
+    /// Checks the parameters for a run of `end_s`, under the keys that they have in scenario files.
+    ///
+    /// # Errors
+    /// [`QuantityError`] for the first that makes no sense.
+    pub fn check(&self, end_s: f64) -> Result<(), QuantityError> {
+        self.function.validate(end_s)?;
         let [low, high] = self.known.within_s;
         not_negative("", "the least value", low)?;
         let bounded = high >= low && high.is_finite();

@@ -31,7 +31,7 @@ use rand_chacha::rand_core::SeedableRng;
 use thiserror::Error;
 
 use super::{Arrivals, Basis, DelayFunction, DelayPiece, Known, Unknown};
-use crate::quantity::QuantityError;
+use crate::quantity::{QuantityError, few, not_negative, positive, within};
 
 /// A link as a random process. Every pair of agents has its own stream of random numbers, which depends on the seed and on
 /// the two agents alone: neither other links nor the graph in force change it. Whether the k-th packet is lost depends on
@@ -85,18 +85,11 @@ pub struct Packet {
 }
 
 /// Why packets make no link.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum PacketError {
     /// A parameter out of its range.
-    #[error("{parameter} is {value}, but {requirement}")]
-    Parameter {
-        /// The parameter.
-        parameter: &'static str,
-        /// Its value.
-        value: f64,
-        /// What it must be.
-        requirement: &'static str,
-    },
+    #[error(transparent)]
+    Quantity(#[from] QuantityError),
     /// A packet whose times are no times.
     #[error("packet {packet} was sent at {send_s} s and took {delay_s} s; both must be finite and not negative")]
     Times {
@@ -115,52 +108,44 @@ pub enum PacketError {
         /// When it was sent, s.
         send_s: f64,
     },
-    /// More packets than fit into memory.
-    #[error("the link would carry {packets} packets, but at most {most} are accepted")]
-    TooMany {
-        /// How many.
-        packets: f64,
-        /// How many are accepted.
-        most: f64,
-    },
-    /// More values of a random hold than fit into memory.
-    #[error("the delay would take more than {most} values one after another; hold each for longer")]
-    TooManyValues {
-        /// How many are accepted.
-        most: usize,
-    },
 }
 
-/// Packets that one link may carry.
-const MOST_PACKETS: f64 = 1e8;
+/// Packets and values of random holds on all links of a network together; forty bytes each.
+const MOST_DRAWN: f64 = 5e6;
+
+/// How many packets and values of random holds the links of a network have so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Drawn(f64);
+
+impl Drawn {
+    /// Counts `more` of `what` besides.
+    ///
+    /// # Errors
+    /// [`QuantityError`] when all of them together exceed any memory.
+    pub fn add(&mut self, what: &'static str, more: f64) -> Result<(), QuantityError> {
+        self.0 += more;
+        few("", what, more, (what, self.0, MOST_DRAWN))
+    }
+}
 
 impl PacketLink {
     /// Checks the parameters.
     ///
     /// # Errors
-    /// [`PacketError::Parameter`] for the first that is out of its range.
-    pub fn validate(&self) -> Result<(), PacketError> {
-        let check = |parameter, value: f64, good: bool, requirement| {
-            if good && value.is_finite() {
-                Ok(())
-            } else {
-                Err(PacketError::Parameter { parameter, value, requirement })
-            }
-        };
-        let share =
-            |parameter, value: f64| check(parameter, value, (0.0..=1.0).contains(&value), "must be from 0 to 1");
-        check("the time between packets", self.every_s, self.every_s > 0.0, "must be positive and finite")?;
-        let first = (0.0..=self.every_s).contains(&self.first_s);
-        check("the time of the first packet", self.first_s, first, "must be from 0 to the time between packets")?;
-        check("the latency", self.latency_s, self.latency_s >= 0.0, "must be finite and not negative")?;
-        check("the jitter", self.jitter_s, self.jitter_s >= 0.0, "must be finite and not negative")?;
+    /// [`QuantityError`] for the first that is out of its range.
+    pub fn check(&self) -> Result<(), QuantityError> {
+        let share = |at: &'static str, key, value| within(at, key, value, 0.0, 1.0);
+        positive("", "period_s", self.every_s)?;
+        within("", "first_s", self.first_s, 0.0, self.every_s)?;
+        not_negative("", "latency_s", self.latency_s)?;
+        not_negative("", "jitter_s", self.jitter_s)?;
         match self.loss {
             Loss::Never => Ok(()),
-            Loss::Random { probability } => share("the probability of loss", probability),
+            Loss::Random { probability } => share("loss.random", "probability", probability),
             Loss::Bursts { enter, leave } => {
-                share("the probability of entering a burst", enter)?;
-                share("the probability of leaving a burst", leave)?;
-                check("the probability of leaving a burst", leave, leave > 0.0, "must be positive")
+                share("loss.bursts", "enter", enter)?;
+                positive("loss.bursts", "leave", leave)?;
+                share("loss.bursts", "leave", leave)
             }
         }
     }
@@ -193,11 +178,9 @@ impl PacketLink {
     /// # Errors
     /// [`PacketError`] when a parameter is out of its range, or there are more packets than any memory holds.
     pub fn trace(&self, (from, to): (usize, usize), until_s: f64) -> Result<Trace, PacketError> {
-        self.validate()?;
+        self.check()?;
         let packets = self.packets(until_s);
-        if packets > MOST_PACKETS || packets.is_nan() {
-            return Err(PacketError::TooMany { packets, most: MOST_PACKETS });
-        }
+        Drawn::default().add("packets", packets)?;
         let mut draw = stream(Kind::Packets, self.seed, from, to);
         let (mut bad, mut in_a_row) = (false, 0);
         let mut sent = Vec::with_capacity(packets as usize);
@@ -358,7 +341,7 @@ impl DelayFunction for Trace {
     }
 
     /// It is made by a function that checks.
-    fn validate(&self) -> Result<(), QuantityError> {
+    fn validate(&self, _: f64) -> Result<(), QuantityError> {
         Ok(())
     }
 

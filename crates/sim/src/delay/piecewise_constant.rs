@@ -1,7 +1,10 @@
 //! A delay that jumps from value to value.
 
 use super::{Arrivals, DelayFunction, DelayPiece, Known};
-use crate::quantity::{QuantityError, not_negative, such};
+use crate::quantity::{
+    LARGEST, MOST_EVENTS, Path, QuantityError, as_many, each, few, filled, more_than, not_negative, positive, such,
+    within,
+};
 
 /// T = `values_s[k]` from `times_s[k]` until the next time.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,24 +33,21 @@ impl DelayFunction for PiecewiseConstant {
         "a piecewise constant delay"
     }
 
-    fn validate(&self) -> Result<(), QuantityError> {
+    fn validate(&self, end_s: f64) -> Result<(), QuantityError> {
         let PiecewiseConstant { times_s, values_s, period_s } = self;
-        let matched = times_s.len() == values_s.len() && !times_s.is_empty();
-        let values = values_s.len() as f64;
-        such(matched, "", "the number of values_s", values, "must be that of times_s, and not zero")?;
-        values_s.iter().try_for_each(|value| not_negative("", "values_s", *value))?;
-        such(times_s[0] == 0.0, "", "times_s", times_s[0], "the first must be zero")?;
-        for pair in times_s.windows(2) {
-            let later = pair[1] > pair[0] && pair[1].is_finite();
-            such(later, "", "times_s", pair[1], "must be finite and later than the one before")?;
+        filled("", "times_s", times_s)?;
+        each("", "times_s", times_s, |at, key, time_s| within(at, key, time_s, -LARGEST, LARGEST))?;
+        such(times_s[0] == 0.0, Path::from("times_s").index(0), "", times_s[0], "must begin at 0")?;
+        for (k, pair) in times_s.windows(2).enumerate() {
+            more_than(Path::from("times_s").index(k + 1), "", pair[1], ("the one before", pair[0]))?;
         }
-        match (period_s, times_s.last()) {
-            (Some(period), Some(last)) => {
-                let longer = period > last && period.is_finite();
-                such(longer, "", "period_s", *period, "must be finite and longer than the last time")
-            }
-            _ => Ok(()),
-        }
+        as_many("", "values_s", values_s, ("times_s", times_s.len()))?;
+        each("", "values_s", values_s, not_negative)?;
+        let Some(period_s) = *period_s else { return Ok(()) };
+        positive("", "period_s", period_s)?;
+        more_than("", "period_s", period_s, ("the last time", times_s[times_s.len() - 1]))?;
+        let jumps = end_s / period_s * times_s.len() as f64;
+        few("", "period_s", period_s, ("jumps of the delay", jumps, MOST_EVENTS))
     }
 
     fn piece(&self, index: u64) -> DelayPiece {

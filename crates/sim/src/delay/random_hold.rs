@@ -2,12 +2,9 @@
 
 use rand::Rng;
 
-use super::packets::{Kind, PacketError, stream};
+use super::packets::{Drawn, Kind, stream};
 use super::{Arrivals, DelayFunction, DelayPiece, Known};
-use crate::quantity::QuantityError;
-
-/// Values that one delay may take one after another.
-const MOST_VALUES: usize = 100_000_000;
+use crate::quantity::{Path, QuantityError, at_most, each, not_negative, positive};
 
 /// A delay that takes a new value, each equally likely, after times of which each is equally likely.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,31 +22,17 @@ impl RandomHold {
     /// from `hold_s`. Every ordered pair of agents has its own stream of random numbers.
     ///
     /// # Errors
-    /// [`PacketError`] when a bound is negative or not finite, a shortest hold is not positive, a pair falls, or there are
-    /// more values than any memory holds.
+    /// [`QuantityError`] of [`check`](Self::check), and when there would be more values than fit into memory.
     pub fn draw(
         seed: u64,
         (from, to): (usize, usize),
         value_s: [f64; 2],
         hold_s: [f64; 2],
         until_s: f64,
-    ) -> Result<Self, PacketError> {
-        let check = |parameter, value: f64, good: bool, requirement| {
-            if good && value.is_finite() {
-                Ok(())
-            } else {
-                Err(PacketError::Parameter { parameter, value, requirement })
-            }
-        };
-        check("the least delay", value_s[0], value_s[0] >= 0.0, "must be finite and not negative")?;
-        check("the largest delay", value_s[1], value_s[1] >= value_s[0], "must not be below the least")?;
-        check("the shortest hold", hold_s[0], hold_s[0] > 0.0, "must be positive and finite")?;
-        check("the longest hold", hold_s[1], hold_s[1] >= hold_s[0], "must not be below the shortest")?;
-        let too_many = || PacketError::TooManyValues { most: MOST_VALUES };
-        // Too many even if every hold were the longest.
-        if until_s / hold_s[1] > MOST_VALUES as f64 {
-            return Err(too_many());
-        }
+    ) -> Result<Self, QuantityError> {
+        RandomHold::check(value_s, hold_s)?;
+        // As many as there are on average.
+        Drawn::default().add("jumps of the delay", 2.0 * until_s / (hold_s[0] + hold_s[1]))?;
         let mut draw = stream(Kind::Holds, seed, from, to);
         let mut between = |[low, high]: [f64; 2]| {
             let share: f64 = draw.random();
@@ -57,12 +40,8 @@ impl RandomHold {
             (low + share * (high - low)).clamp(low, high)
         };
         let (mut times_s, mut values_s) = (Vec::new(), Vec::new());
-        let (mut t_s, mut drawn) = (0.0, 0);
+        let mut t_s = 0.0;
         loop {
-            drawn += 1;
-            if drawn > MOST_VALUES {
-                return Err(too_many());
-            }
             let value = between(value_s);
             let next = t_s + between(hold_s);
             // A hold so short that it is lost to rounding is over at once.
@@ -70,12 +49,23 @@ impl RandomHold {
                 times_s.push(t_s);
                 values_s.push(value);
             }
-            if next > until_s || until_s.is_nan() {
+            if next > until_s {
                 break;
             }
             t_s = next;
         }
         Ok(RandomHold { value_s, hold_s, until_s, times_s, values_s })
+    }
+
+    /// Checks what [`draw`](Self::draw) is given.
+    ///
+    /// # Errors
+    /// [`QuantityError`] when a value is negative, a hold is not positive, or a pair falls.
+    pub fn check(value_s: [f64; 2], hold_s: [f64; 2]) -> Result<(), QuantityError> {
+        each("", "value_s", &value_s, not_negative)?;
+        at_most(Path::from("value_s").index(0), "", value_s[0], ("the largest", value_s[1]))?;
+        each("", "hold_s", &hold_s, positive)?;
+        at_most(Path::from("hold_s").index(0), "", hold_s[0], ("the longest", hold_s[1]))
     }
 
     /// Least and largest value, s.
@@ -104,7 +94,7 @@ impl DelayFunction for RandomHold {
     }
 
     /// It is made by a function that checks.
-    fn validate(&self) -> Result<(), QuantityError> {
+    fn validate(&self, _: f64) -> Result<(), QuantityError> {
         Ok(())
     }
 

@@ -3,7 +3,7 @@
 use forwardstep_core::Scalar;
 
 use super::{Arrivals, DelayFunction, DelayPiece, Known};
-use crate::quantity::{LARGEST, QuantityError, at_least, not_negative, positive, within};
+use crate::quantity::{LARGEST, MOST_EVENTS, QuantityError, at_most, few, not_negative, positive, within};
 
 /// T = min + (max − min) · frac((t + offset) / period): rises, then drops. A slope of one is a packet held until the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,12 +30,13 @@ impl DelayFunction for SawTooth {
         "a saw-tooth"
     }
 
-    fn validate(&self) -> Result<(), QuantityError> {
-        positive("", "period_s", self.period_s)?;
+    fn validate(&self, end_s: f64) -> Result<(), QuantityError> {
         not_negative("", "min_s", self.min_s)?;
-        within("", "offset_s", self.offset_s, -LARGEST, LARGEST)?;
         not_negative("", "max_s", self.max_s)?;
-        at_least("", "max_s", self.max_s, ("min_s", self.min_s))
+        at_most("", "min_s", self.min_s, ("max_s", self.max_s))?;
+        positive("", "period_s", self.period_s)?;
+        within("", "offset_s", self.offset_s, -LARGEST, LARGEST)?;
+        few("", "period_s", self.period_s, ("jumps of the delay", end_s / self.period_s, MOST_EVENTS))
     }
 
     fn piece(&self, index: u64) -> DelayPiece {

@@ -5,14 +5,14 @@ use core::f64::consts::TAU;
 use forwardstep_core::Scalar;
 
 use super::{Arrivals, DelayFunction, DelayPiece, Known};
-use crate::quantity::{LARGEST, QuantityError, not_negative, positive, within};
+use crate::quantity::{LARGEST, MOST_EVENTS, QuantityError, at_most, few, not_negative, positive, within};
 
 /// T = mean + amplitude · sin(2π t / period + phase).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sinusoid {
     /// In s; at least the amplitude.
     pub mean_s: f64,
-    /// In s.
+    /// In s; not negative.
     pub amplitude_s: f64,
     /// In s.
     pub period_s: f64,
@@ -25,12 +25,14 @@ impl DelayFunction for Sinusoid {
         "a sinusoid"
     }
 
-    fn validate(&self) -> Result<(), QuantityError> {
-        positive("", "period_s", self.period_s)?;
+    fn validate(&self, end_s: f64) -> Result<(), QuantityError> {
         not_negative("", "mean_s", self.mean_s)?;
-        within("", "phase_rad", self.phase_rad, -LARGEST, LARGEST)?;
+        not_negative("", "amplitude_s", self.amplitude_s)?;
         // Beyond the mean the delay would become negative.
-        within("", "amplitude_s", self.amplitude_s, -self.mean_s, self.mean_s)
+        at_most("", "amplitude_s", self.amplitude_s, ("mean_s", self.mean_s))?;
+        positive("", "period_s", self.period_s)?;
+        within("", "phase_rad", self.phase_rad, -LARGEST, LARGEST)?;
+        few("", "period_s", self.period_s, ("swings of the delay", end_s / self.period_s, MOST_EVENTS))
     }
 
     fn piece(&self, _: u64) -> DelayPiece {
@@ -44,8 +46,7 @@ impl DelayFunction for Sinusoid {
     }
 
     fn known(&self) -> Known {
-        let size = self.amplitude_s.abs();
-        Known::by_rule([(self.mean_s - size).max(0.0), self.mean_s + size])
+        Known::by_rule([(self.mean_s - self.amplitude_s).max(0.0), self.mean_s + self.amplitude_s])
     }
 
     fn arrivals(&self, search: &mut Arrivals<'_>) {

@@ -91,7 +91,7 @@ fn what_is_known_beyond_the_run_says_what_it_rests_on() {
     let rule = |bound_s| (bound_s, None, Basis::Rule, false);
     assert_eq!(known(Delay::constant(0.25)), rule(0.25));
     assert_eq!(
-        known(Delay::new(Sinusoid { mean_s: 0.5, amplitude_s: -0.25, period_s: 1.0, phase_rad: 0.0 })),
+        known(Delay::new(Sinusoid { mean_s: 0.5, amplitude_s: 0.25, period_s: 1.0, phase_rad: 0.0 })),
         rule(0.75)
     );
     assert_eq!(known(Delay::new(SawTooth { min_s: 0.1, max_s: 0.4, period_s: 1.0, offset_s: 0.0 })), rule(0.4));

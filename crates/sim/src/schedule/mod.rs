@@ -15,7 +15,7 @@
 //!     fn words(&self) -> &'static str {
 //!         "slower and slower"
 //!     }
-//!     fn validate(&self, _: usize) -> Result<(), QuantityError> {
+//!     fn validate(&self, _: usize, _: f64) -> Result<(), QuantityError> {
 //!         Ok(())
 //!     }
 //!     fn segments(&self, graphs: usize) -> Segments<'_> {
@@ -44,7 +44,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::graph::Edge;
-use crate::quantity::{QuantityError, positive, such};
+use crate::quantity::{Path, QuantityError, as_many, positive};
 use crate::same::Same;
 
 pub use once::Once;
@@ -63,11 +63,12 @@ pub trait SwitchingSignal: Same + fmt::Debug + Send + Sync {
     /// What it is called in messages, as in `random switching`.
     fn words(&self) -> &'static str;
 
-    /// Checks the parameters beside so many graphs.
+    /// Checks the parameters beside so many graphs for a run of `end_s`, under the keys that they have in `network` of a
+    /// scenario file.
     ///
     /// # Errors
     /// [`QuantityError`] for the first that makes no sense.
-    fn validate(&self, graphs: usize) -> Result<(), QuantityError>;
+    fn validate(&self, graphs: usize, end_s: f64) -> Result<(), QuantityError>;
 
     /// The stretches of time in order, from t = 0, with `graphs` graphs; endless unless the last graph stays for ever.
     fn segments(&self, graphs: usize) -> Segments<'_>;
@@ -169,9 +170,12 @@ impl Schedule {
         self.signal.words()
     }
 
-    /// Checks the parameters of the signal.
-    pub(crate) fn validate(&self) -> Result<(), QuantityError> {
-        self.signal.validate(self.graphs.len())
+    /// Checks the parameters of the signal for a run of `end_s`.
+    ///
+    /// # Errors
+    /// [`QuantityError`] for the first that makes no sense.
+    pub fn check(&self, end_s: f64) -> Result<(), QuantityError> {
+        self.signal.validate(self.graphs.len(), end_s).map_err(|error| error.under("network"))
     }
 
     /// What is known of the signal.
@@ -210,15 +214,11 @@ fn split(phases: Vec<Phase>) -> (Vec<Vec<Edge>>, Vec<f64>) {
     phases.into_iter().map(|phase| (phase.edges, phase.dwell_s)).unzip()
 }
 
-/// Each of `dwell_s` must be positive and finite.
-fn check_dwell(dwell_s: &[f64]) -> Result<(), QuantityError> {
-    dwell_s.iter().try_for_each(|dwell_s| positive("", "dwell_s", *dwell_s))
-}
-
-/// There must be `need` dwell times.
-fn check_count(dwell_s: &[f64], need: usize) -> Result<(), QuantityError> {
-    let requirement = "must be that of the graphs that end";
-    such(dwell_s.len() == need, "", "the number of dwell_s", dwell_s.len() as f64, requirement)
+/// There must be `need` dwell times, all of them positive.
+fn check_dwell(dwell_s: &[f64], need: usize) -> Result<(), QuantityError> {
+    as_many("phases", "dwell_s", dwell_s, ("the list of graphs that end", need))?;
+    let at = |phase| Path::from("phases").index(phase);
+    dwell_s.iter().enumerate().try_for_each(|(phase, dwell_s)| positive(at(phase), "dwell_s", *dwell_s))
 }
 
 /// Iterator over the stretches of a schedule.

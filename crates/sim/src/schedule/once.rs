@@ -1,8 +1,6 @@
 //! Graphs that take turns once.
 
-use super::{
-    Dwell, Extent, KnownSwitching, Phase, Schedule, Segment, Segments, SwitchingSignal, check_count, check_dwell, split,
-};
+use super::{Dwell, Extent, KnownSwitching, Phase, Schedule, Segment, Segments, SwitchingSignal, check_dwell, split};
 use crate::graph::Edge;
 use crate::quantity::QuantityError;
 
@@ -32,9 +30,8 @@ impl SwitchingSignal for Once {
         "switching once through"
     }
 
-    fn validate(&self, graphs: usize) -> Result<(), QuantityError> {
-        check_count(&self.dwell_s, graphs.saturating_sub(1))?;
-        check_dwell(&self.dwell_s)
+    fn validate(&self, graphs: usize, _: f64) -> Result<(), QuantityError> {
+        check_dwell(&self.dwell_s, graphs.saturating_sub(1))
     }
 
     fn segments(&self, graphs: usize) -> Segments<'_> {

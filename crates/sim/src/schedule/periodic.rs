@@ -1,9 +1,7 @@
 //! Graphs that take turns again and again.
 
-use super::{
-    Dwell, Extent, KnownSwitching, Phase, Schedule, Segment, Segments, SwitchingSignal, check_count, check_dwell, split,
-};
-use crate::quantity::QuantityError;
+use super::{Dwell, Extent, KnownSwitching, Phase, Schedule, Segment, Segments, SwitchingSignal, check_dwell, split};
+use crate::quantity::{MOST_EVENTS, QuantityError, few};
 
 /// The graphs in turn, again and again.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,9 +23,10 @@ impl SwitchingSignal for Periodic {
         "periodic switching"
     }
 
-    fn validate(&self, graphs: usize) -> Result<(), QuantityError> {
-        check_count(&self.dwell_s, graphs)?;
-        check_dwell(&self.dwell_s)
+    fn validate(&self, graphs: usize, end_s: f64) -> Result<(), QuantityError> {
+        check_dwell(&self.dwell_s, graphs)?;
+        let round_s: f64 = self.dwell_s.iter().sum();
+        few("phases", "", round_s, ("switches", end_s / round_s * graphs as f64, MOST_EVENTS))
     }
 
     fn segments(&self, _: usize) -> Segments<'_> {

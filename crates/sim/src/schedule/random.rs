@@ -3,9 +3,9 @@
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::{Dwell, Extent, KnownSwitching, Schedule, Segment, Segments, SwitchingSignal, check_dwell};
+use super::{Dwell, Extent, KnownSwitching, Schedule, Segment, Segments, SwitchingSignal};
 use crate::graph::Edge;
-use crate::quantity::{QuantityError, such};
+use crate::quantity::{MOST_EVENTS, Path, QuantityError, at_most, each, few, positive};
 
 /// A seeded random draw: at every switch one of the graphs, equally likely, for a dwell time drawn uniformly.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,10 +28,11 @@ impl SwitchingSignal for RandomSwitching {
         "random switching"
     }
 
-    fn validate(&self, _: usize) -> Result<(), QuantityError> {
-        check_dwell(&self.dwell_s)?;
-        let [low, high] = self.dwell_s;
-        such(high >= low, "", "dwell_s", high, "the longest must not be below the shortest")
+    fn validate(&self, _: usize, end_s: f64) -> Result<(), QuantityError> {
+        let (at, [low, high]) = (Path::from("switching.random"), self.dwell_s);
+        each(at.clone(), "dwell_s", &self.dwell_s, positive)?;
+        at_most(at.clone().key("dwell_s").index(0), "", low, ("the longest", high))?;
+        few(at, "dwell_s", low, ("switches", 2.0 * end_s / (low + high), MOST_EVENTS))
     }
 
     fn segments(&self, graphs: usize) -> Segments<'_> {

@@ -84,7 +84,7 @@ impl RobotKind for PlanarArmFile {
 
 /// The links of a planar arm as its table says.
 fn links(file: &PlanarArmFile) -> Result<PlanarLinks, Fault> {
-    let pair = |key, [first, second]: &[At<f64>; 2]| Ok([positive(key, first)?, positive(key, second)?]);
+    let pair = |key, [first, second]: &[At<f64>; 2]| Ok::<_, Fault>([positive(key, first)?, positive(key, second)?]);
     let mut links = PlanarLinks::uniform(pair("mass_kg", &file.mass_kg)?, pair("length_m", &file.length_m)?);
     if let Some([first, second]) = &file.com_m {
         links.com_m = [first.value, second.value];

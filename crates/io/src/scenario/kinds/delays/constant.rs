@@ -4,8 +4,7 @@ use forwardstep_sim::delay::Delay;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::super::super::at::At;
-use super::super::super::fault::{Fault, not_negative};
+use super::super::super::fault::Fault;
 use super::super::super::network::NetworkReader;
 use super::super::super::values::NotNegative;
 use super::super::KindTable;
@@ -13,7 +12,7 @@ use super::{DelayKind, DelayPlan};
 
 /// In s.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-pub struct ConstantFile(#[schemars(with = "NotNegative")] At<f64>);
+pub struct ConstantFile(#[schemars(with = "NotNegative")] f64);
 
 impl DelayKind for ConstantFile {
     fn table() -> KindTable {
@@ -21,6 +20,6 @@ impl DelayKind for ConstantFile {
     }
 
     fn plan(&self, _: &mut NetworkReader<'_>) -> Result<DelayPlan, Fault> {
-        Ok(DelayPlan::Shared(Delay::constant(not_negative("constant_s", &self.0)?)))
+        Ok(DelayPlan::Shared(Delay::constant(self.0)))
     }
 }

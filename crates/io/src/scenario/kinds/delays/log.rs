@@ -90,7 +90,7 @@ fn log_of(file: &str, text: &str, line_of: impl Fn(usize) -> usize) -> Result<Lo
         }
         let time = |key: &'static str, cell: &Cell<'_>| {
             // Adding zero takes the sign from a zero.
-            cell_number(cell)?.map(|number| Ok(not_negative(key, &number)? + 0.0)).transpose()
+            cell_number(cell)?.map(|number| not_negative(key, &number).map(|time_s| time_s + 0.0)).transpose()
         };
         let Some(send_s) = time("send_s", &send)? else { continue };
         let packet = Packet { send_s, delay_s: time("delay_s", &delay)? };

@@ -13,16 +13,11 @@ use std::fmt;
 use std::sync::Arc;
 
 use forwardstep_sim::Same;
-use forwardstep_sim::delay::Delay;
-use forwardstep_sim::quantity::few;
+use forwardstep_sim::delay::{Delay, Drawn};
 
 use super::super::fault::Fault;
 use super::super::network::NetworkReader;
-use super::super::value_problem::ValueProblem;
 use super::KindTable;
-
-/// Packets and values of random holds on all edges together; forty bytes each.
-const MOST_EVENTS: f64 = 5e6;
 
 /// A kind of delay in scenario files: its table, as it was read.
 pub trait DelayKind: fmt::Debug {
@@ -75,18 +70,16 @@ pub struct Link<'a> {
     pub names: [&'a str; 2],
     /// The end of the run, s.
     pub end_s: f64,
-    /// Events of all links so far.
-    pub(crate) events: &'a mut f64,
+    /// What has been drawn for all links so far.
+    pub(crate) drawn: &'a mut Drawn,
 }
 
 impl Link<'_> {
     /// Refuses jumps, packets or whatever `what` is when those of all links together exceed any memory.
     ///
     /// # Errors
-    /// [`ValueProblem::Quantity`].
+    /// [`ValueProblem::Quantity`](super::super::ValueProblem::Quantity).
     pub fn few(&mut self, what: &'static str, events: f64) -> Result<(), Fault> {
-        *self.events += events;
-        few("", what, events, (what, *self.events, MOST_EVENTS))
-            .map_err(|error| Fault::new(ValueProblem::Quantity(error)))
+        Ok(self.drawn.add(what, events)?)
     }
 }

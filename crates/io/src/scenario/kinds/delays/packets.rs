@@ -5,9 +5,10 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::super::super::at::At;
-use super::super::super::fault::{Fault, between, count, not_negative, not_negative_or, positive, seed};
+use super::super::super::fault::{Fault, count, seed};
 use super::super::super::network::NetworkReader;
 use super::super::super::network_problem::NetworkProblem;
+use super::super::super::values::NotNegative;
 use super::super::KindTable;
 use super::{DelayKind, DelayPlan, Link, LinkDelays};
 
@@ -20,22 +21,24 @@ const MOST_IN_A_ROW: u32 = 1_000_000;
 pub struct PacketsFile {
     /// From one packet to the next, in s.
     #[schemars(extend("exclusiveMinimum" = 0))]
-    pub period_s: At<f64>,
+    pub period_s: f64,
     /// When the first is sent, in s; at most `period_s`. Default: 0.
-    #[schemars(range(min = 0))]
-    pub first_s: Option<At<f64>>,
+    #[serde(default)]
+    #[schemars(with = "Option<NotNegative>")]
+    pub first_s: f64,
     /// The least time that a packet takes, in s.
     #[schemars(range(min = 0))]
-    pub latency_s: At<f64>,
+    pub latency_s: f64,
     /// Each packet takes up to this much longer, uniformly drawn, in s; beyond `period_s` packets overtake each other.
     /// Default: 0.
-    #[schemars(range(min = 0))]
-    pub jitter_s: Option<At<f64>>,
+    #[serde(default)]
+    #[schemars(with = "Option<NotNegative>")]
+    pub jitter_s: f64,
     /// The same seed gives the same packets, always.
     #[schemars(range(min = 0))]
     pub seed: At<i64>,
     /// How packets are lost. Default: none is.
-    pub loss: Option<At<LossFile>>,
+    pub loss: Option<LossFile>,
 }
 
 /// How packets are lost.
@@ -54,7 +57,7 @@ pub enum LossFile {
 pub struct RandomLossFile {
     /// How likely each packet is lost.
     #[schemars(range(min = 0, max = 1))]
-    pub probability: At<f64>,
+    pub probability: f64,
     /// No more than this are lost one after another. Default: any number may be.
     #[schemars(range(min = 1))]
     pub most_consecutive: Option<At<i64>>,
@@ -66,10 +69,10 @@ pub struct RandomLossFile {
 pub struct BurstsFile {
     /// How likely a good link turns bad from one packet to the next.
     #[schemars(range(min = 0, max = 1))]
-    pub enter: At<f64>,
+    pub enter: f64,
     /// How likely a bad link turns good from one packet to the next; a burst lasts 1/leave packets on average.
     #[schemars(extend("exclusiveMinimum" = 0), range(max = 1))]
-    pub leave: At<f64>,
+    pub leave: f64,
     /// No more than this are lost one after another. Default: any number may be.
     #[schemars(range(min = 1))]
     pub most_consecutive: Option<At<i64>>,
@@ -84,29 +87,26 @@ impl DelayKind for PacketsFile {
     }
 
     fn plan(&self, _: &mut NetworkReader<'_>) -> Result<DelayPlan, Fault> {
-        let every_s = positive("period_s", &self.period_s)?;
-        let first_s = self.first_s.as_ref().map_or(Ok(0.0), |first| between("first_s", first, 0.0, every_s))?;
-        let (loss, most_consecutive) = match self.loss.as_ref().map(|loss| &loss.value) {
+        let (loss, most_consecutive) = match self.loss {
             None => (Loss::Never, &None),
-            Some(LossFile::Random(RandomLossFile { probability, most_consecutive })) => {
-                (Loss::Random { probability: between("probability", probability, 0.0, 1.0)? }, most_consecutive)
+            Some(LossFile::Random(RandomLossFile { probability, ref most_consecutive })) => {
+                (Loss::Random { probability }, most_consecutive)
             }
-            Some(LossFile::Bursts(BurstsFile { enter, leave, most_consecutive })) => {
-                let enter = between("enter", enter, 0.0, 1.0)?;
-                positive("leave", leave)?;
-                (Loss::Bursts { enter, leave: between("leave", leave, 0.0, 1.0)? }, most_consecutive)
+            Some(LossFile::Bursts(BurstsFile { enter, leave, ref most_consecutive })) => {
+                (Loss::Bursts { enter, leave }, most_consecutive)
             }
         };
         let most = most_consecutive.as_ref().map(|most| count("most_consecutive", most, MOST_IN_A_ROW));
         let link = PacketLink {
-            every_s,
-            first_s,
-            latency_s: not_negative("latency_s", &self.latency_s)?,
-            jitter_s: not_negative_or("jitter_s", &self.jitter_s, 0.0)?,
+            every_s: self.period_s,
+            first_s: self.first_s,
+            latency_s: self.latency_s,
+            jitter_s: self.jitter_s,
             loss,
             most_in_a_row: most.transpose()?.map(|most| most as u32),
             seed: seed(&self.seed)?,
         };
+        link.check()?;
         Ok(DelayPlan::each_link(link))
     }
 }

@@ -5,10 +5,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::super::super::at::At;
-use super::super::super::fault::{Fault, fault, not_negative, positive, seed};
+use super::super::super::fault::{Fault, seed};
 use super::super::super::network::NetworkReader;
-use super::super::super::network_problem::NetworkProblem;
-use super::super::super::value_problem::ValueProblem;
 use super::super::super::values::{NotNegative, Positive};
 use super::super::KindTable;
 use super::{DelayKind, DelayPlan, Link, LinkDelays};
@@ -22,10 +20,10 @@ pub struct RandomHoldFile {
     seed: At<i64>,
     /// Least and largest value, in s.
     #[schemars(with = "[NotNegative; 2]")]
-    value_s: At<[At<f64>; 2]>,
+    value_s: [f64; 2],
     /// Shortest and longest time for which a value is held, in s.
     #[schemars(with = "[Positive; 2]")]
-    hold_s: At<[At<f64>; 2]>,
+    hold_s: [f64; 2],
 }
 
 impl DelayKind for RandomHoldFile {
@@ -34,17 +32,9 @@ impl DelayKind for RandomHoldFile {
     }
 
     fn plan(&self, _: &mut NetworkReader<'_>) -> Result<DelayPlan, Fault> {
-        type Least = fn(&'static str, &At<f64>) -> Result<f64, Fault>;
-        let pair = |key: &'static str, pair: &At<[At<f64>; 2]>, least: Least| {
-            let [low, high] = &pair.value;
-            let (low, high) = (least(key, low)?, least(key, high)?);
-            if low > high { Err(fault(pair, ValueProblem::Interval { key, low, high })) } else { Ok([low, high]) }
-        };
-        Ok(DelayPlan::each_link(Holds {
-            seed: seed(&self.seed)?,
-            value_s: pair("value_s", &self.value_s, not_negative)?,
-            hold_s: pair("hold_s", &self.hold_s, positive)?,
-        }))
+        let (value_s, hold_s) = (self.value_s, self.hold_s);
+        RandomHold::check(value_s, hold_s)?;
+        Ok(DelayPlan::each_link(Holds { seed: seed(&self.seed)?, value_s, hold_s }))
     }
 }
 
@@ -64,7 +54,6 @@ impl LinkDelays for Holds {
     fn draw(&self, link: &mut Link<'_>) -> Result<Delay, Fault> {
         let Holds { seed, value_s, hold_s } = *self;
         link.few("jumps of the delay", 2.0 * link.end_s / (hold_s[0] + hold_s[1]))?;
-        let hold = RandomHold::draw(seed, link.agents, value_s, hold_s, link.end_s);
-        Ok(Delay::new(hold.map_err(|error| Fault::new(NetworkProblem::Link(error)))?))
+        Ok(Delay::new(RandomHold::draw(seed, link.agents, value_s, hold_s, link.end_s)?))
     }
 }
