@@ -166,7 +166,7 @@ impl Law for Level {
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
         let (k, own, tank) = (self.gain, assembly.agent(), assembly.robot::<Tank>()?);
         quantity::positive(assembly.of_law(), "gain_per_s", k)?;
-        assembly.length("the parameters", 1, own.robot.theta.len())?;
+        assembly.length(assembly.of_robot(), "parameters", 1, own.robot.theta.len())?;
         let (area, limit) = (own.robot.theta[0], tank.limit.filter(|_| own.enforce_limits));
         // A ẋ = u + A w, where x is the level and A w flows in from outside.
         let plant = VectorField::new(1, [(Signal::Position, 1)], [(Signal::Own(&INFLOW), 1)], move |_, u, dx| {

@@ -33,15 +33,12 @@ use crate::recording::{Outcome, Recording, Signal};
 use crate::reference::{Consensus, ReferenceDynamics, Tracking};
 use crate::schedule::{Phase, Schedule};
 use crate::setup::{
-    Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Failures, RobotSetup, Sensors, Setup, Solver, Start,
-    TimeSpan,
+    Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Failures, RECORD_EVERY_S, RobotSetup, Sensors, Setup,
+    Solver, Start, TimeSpan,
 };
 use crate::simulate::simulate;
 use crate::system::{Law, Robot};
 use crate::trajectory::Trajectory;
-
-/// Rows of a recording are this far apart unless it is said otherwise, s.
-const RECORD_EVERY_S: f64 = 0.02;
 
 /// Simulates `setup` to its end: [`simulate`] without anybody who watches.
 ///

@@ -243,7 +243,7 @@ impl fmt::Display for QuantityError {
 }
 
 /// A key as messages write it. What is counted has words for a name, and no key.
-struct Name(&'static str);
+pub(crate) struct Name(pub(crate) &'static str);
 
 impl fmt::Display for Name {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -314,6 +314,14 @@ pub fn not_negative(at: impl Into<Path>, key: &'static str, value: f64) -> Resul
     let at = at.into();
     check(value >= 0.0, at.clone(), key, value, Requirement::NotNegative)?;
     within(at, key, value, 0.0, LARGEST)
+}
+
+/// Checks that `key` at `at` is a finite number.
+///
+/// # Errors
+/// [`QuantityError`] if it is not.
+pub fn finite(at: impl Into<Path>, key: &'static str, value: f64) -> Result<(), QuantityError> {
+    such(value.is_finite(), at, key, value, "must be a finite number")
 }
 
 /// Checks that `key` at `at` is from `low` to `high`.

@@ -1,5 +1,6 @@
 //! Ranges of what a run is asked to do: how long, in which steps, how it samples.
 
+use crate::closed_loop::SetupError;
 use crate::coupling::Coupling;
 use crate::quantity::{MOST_EVENTS, Path, QuantityError, at_least, few, not_negative, positive, within};
 use crate::setup::{Control, Method, Solver, TimeSpan, VelocitySensor};
@@ -10,6 +11,21 @@ impl TimeSpan {
     pub fn check(&self) -> Result<(), QuantityError> {
         positive("time", "end_s", self.end_s)?;
         positive("time", "record_every_s", self.record_every_s)
+    }
+}
+
+/// Numbers that a recording may hold; eight bytes each.
+const MOST_RECORDED: f64 = 1e8;
+
+impl TimeSpan {
+    /// Refuses a recording of so many columns beyond any memory, before anything is computed.
+    pub(crate) fn check_recording(&self, columns: usize) -> Result<(), SetupError> {
+        let rows = (self.end_s / self.record_every_s).floor() + 2.0;
+        if rows * columns as f64 <= MOST_RECORDED {
+            return Ok(());
+        }
+        let least_s = self.end_s / (MOST_RECORDED / columns as f64 - 2.0);
+        Err(SetupError::RecordingTooLarge { rows, columns, most: MOST_RECORDED, least_s })
     }
 }
 

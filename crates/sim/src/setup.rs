@@ -226,6 +226,9 @@ pub struct Start {
     pub reference: Vec<Vec<f64>>,
 }
 
+/// Rows of a recording are this far apart unless it is said otherwise, s.
+pub const RECORD_EVERY_S: f64 = 0.02;
+
 /// Horizon and recording interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeSpan {

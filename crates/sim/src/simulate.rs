@@ -43,7 +43,7 @@ pub fn simulate_samples(
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     samples: &mut dyn FnMut(SampleTaken<'_>),
 ) -> Result<Outcome, SetupError> {
-    let mut closed_loop = ClosedLoop::new(setup)?;
+    let mut closed_loop = assembled(setup)?;
     setup.network.lasts_until(setup.time.end_s)?;
     closed_loop.watch(samples);
     let (ports, entries) = closed_loop.ports();
@@ -115,7 +115,14 @@ fn broken(closed_loop: &mut ClosedLoop<'_>, integrator: &Integrator<'_>, failure
 /// # Errors
 /// [`SetupError`] when the setup has no meaning.
 pub fn recorded_columns(setup: &Setup) -> Result<Vec<Column>, SetupError> {
-    Ok(empty_columns(&ClosedLoop::new(setup)?, setup.agents.len()).0)
+    Ok(empty_columns(&assembled(setup)?, setup.agents.len()).0)
+}
+
+/// The closed loop, once it is known that its recording fits into memory.
+fn assembled(setup: &Setup) -> Result<ClosedLoop<'_>, SetupError> {
+    let closed_loop = ClosedLoop::new(setup)?;
+    setup.time.check_recording(closed_loop.signals(setup.agents.len()).iter().map(Vec::len).sum())?;
+    Ok(closed_loop)
 }
 
 /// All columns, and the first one of every agent.

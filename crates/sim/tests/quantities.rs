@@ -6,8 +6,10 @@ use std::sync::Arc;
 
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::coupling::Coupling;
+use forwardstep_sim::delay::Delay;
 use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
 use forwardstep_sim::quantity::positive;
+use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::trajectory::{Path, Trajectory};
 use forwardstep_sim::{
     Actuators, AgentSetup, Control, Exchange, Failures, Known, Method, Network, RobotSetup, Sensors, Setup, SetupError,
@@ -95,6 +97,13 @@ fn every_quantity_is_refused_out_of_its_range_under_its_path() {
             ),
             (&controlled(|c| c.actuators.torque_limit = Some(vec![value])), "control.torque_limit[0]"),
             (&controlled(|c| c.actuators.torque_rate_limit = Some(vec![value])), "control.torque_rate_limit_per_s[0]"),
+            (&|s| s.agents[1].roots_per_s[0] = value, "agents[1].reference.consensus.roots_per_s[0]"),
+            (&|s| s.agents[1].manipulability = value, "agents[1].reference.consensus.manipulability_gain"),
+            (&|s| s.network.delays.push(Delay::constant(value)), "network.delays[0].constant_s"),
+            (
+                &|s| s.network.schedule = Schedule::random(vec![vec![]], [value, 1.0], 1),
+                "network.switching.random.dwell_s[0]",
+            ),
             (&|s| s.network.coupling = Coupling::Saturated { limit: value }, "network.coupling.saturated"),
             (&|s| s.network.coupling = Coupling::Tanh { scale: value }, "network.coupling.tanh"),
             (&|s| s.network.coupling = Coupling::Rational { scale: value }, "network.coupling.rational"),

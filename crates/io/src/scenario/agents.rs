@@ -10,7 +10,7 @@ use forwardstep_sim::{ActuatorLimits, AgentSetup, PositionKind, RobotSetup};
 use super::at::At;
 use super::attitude::{never_zero, shortest_rotation};
 use super::document::{Document, KeyedLaw};
-use super::fault::{Fault, count, fault, filled, positive};
+use super::fault::{Fault, count, fault, filled, values};
 use super::file::{AgentFile, ScenarioFile};
 use super::inputs::InputFolder;
 use super::kinds::{AgentReferenceTable, Kinds, LawReader, ReferenceRead, RobotKind};
@@ -296,13 +296,13 @@ struct Design {
     free_derivatives: usize,
 }
 
-/// Positive roots, as many as are accepted.
+/// Roots, as many as are accepted.
 fn roots(list: &At<Vec<At<f64>>>) -> Result<Vec<f64>, Fault> {
     let roots = filled("roots_per_s", list)?;
     if roots.len() > MOST_ROOTS {
         return Err(fault(list, ValueProblem::Order { key: "roots_per_s", found: roots.len(), most: MOST_ROOTS }));
     }
-    roots.iter().map(|root| positive("roots_per_s", root)).collect()
+    Ok(values(roots))
 }
 
 /// The reference dynamics of all agents, as they were read.
@@ -346,11 +346,7 @@ fn design(reference: &Leading, population: &Population<'_>, (index, agent): (usi
         let problem = ValueProblem::UnknownKey { key: "manipulability_gain".into(), allowed: vec!["roots_per_s"] };
         return Err(fault(gain, problem));
     }
-    let manipulability = match own_gain.or(gain_of_all) {
-        None => 0.0,
-        Some(gain) if gain.value == 0.0 => 0.0,
-        Some(gain) => positive("manipulability_gain", gain)?,
-    };
+    let manipulability = own_gain.or(gain_of_all).map_or(0.0, |gain| gain.value);
     let free_derivatives = dynamics.free_derivatives(roots_per_s.len());
     Ok(Design { free_derivatives, roots_per_s, manipulability })
 }

@@ -1,12 +1,12 @@
 //! Gains and estimates of laws, as they are written and as they are read.
 
-use forwardstep_core::{Gain, GainError};
+use forwardstep_core::Gain;
 use forwardstep_sim::{Attachments, RobotSetup};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::at::At;
-use super::fault::{Fault, fault, length, positive, values};
+use super::fault::{Fault, fault, values};
 use super::kinds::LawReader;
 use super::value_problem::ValueProblem;
 use super::values::{GainFile, GainOrBandwidth, Item, Positive};
@@ -47,13 +47,10 @@ pub enum EstimateStartFile {
 /// # Errors
 /// The first mistake, at its place.
 pub fn damping(file: Option<&DampingFile>, agent: &LawReader<'_>) -> Result<Gain, Fault> {
-    let LawReader { agent, robot, .. } = *agent;
     match file {
-        Some(DampingFile::Gain(place)) => gain("damping.gain", &place.value, place, agent, robot.axes.len()),
-        Some(DampingFile::BandwidthPerS(bandwidth)) => {
-            Ok(Gain::Bandwidth(positive("damping.bandwidth_per_s", bandwidth)?))
-        }
-        None if has_scales(robot) => Ok(Gain::Bandwidth(DAMPING_BANDWIDTH_PER_S)),
+        Some(DampingFile::Gain(place)) => gain("damping.gain", &place.value, place),
+        Some(DampingFile::BandwidthPerS(bandwidth)) => Ok(Gain::Bandwidth(bandwidth.value)),
+        None if has_scales(agent.robot) => Ok(Gain::Bandwidth(DAMPING_BANDWIDTH_PER_S)),
         None => Ok(Gain::Number(DAMPING_GAIN)),
     }
 }
@@ -63,14 +60,13 @@ pub fn damping(file: Option<&DampingFile>, agent: &LawReader<'_>) -> Result<Gain
 /// # Errors
 /// The first mistake, at its place.
 pub fn adaptation(file: Option<&At<GainOrBandwidth>>, agent: &LawReader<'_>) -> Result<Gain, Fault> {
-    let LawReader { agent, robot, .. } = *agent;
     let Some(place) = file else {
         let (tree, other) = (Gain::Bandwidth(ADAPTATION_BANDWIDTH_PER_S), Gain::Number(ADAPTATION_GAIN));
-        return Ok(if has_scales(robot) { tree } else { other });
+        return Ok(if has_scales(agent.robot) { tree } else { other });
     };
     match &place.value {
-        GainOrBandwidth::Gain(file) => gain("adaptation_gain", file, place, agent, robot.theta.len()),
-        GainOrBandwidth::Bandwidth(file) => Ok(Gain::Bandwidth(positive("bandwidth_per_s", &file.bandwidth_per_s)?)),
+        GainOrBandwidth::Gain(file) => gain("adaptation_gain", file, place),
+        GainOrBandwidth::Bandwidth(file) => Ok(Gain::Bandwidth(file.bandwidth_per_s.value)),
     }
 }
 
@@ -83,89 +79,46 @@ pub(super) fn has_scales(robot: &RobotSetup) -> bool {
 ///
 /// # Errors
 /// The mistake, at its place.
-pub fn gain_or(
-    key: &'static str,
-    file: &Option<At<GainFile>>,
-    usual: f64,
-    agent: &str,
-    size: usize,
-) -> Result<Gain, Fault> {
-    file.as_ref().map_or(Ok(Gain::Number(usual)), |place| gain(key, &place.value, place, agent, size))
+pub fn gain_or(key: &'static str, file: &Option<At<GainFile>>, usual: f64) -> Result<Gain, Fault> {
+    file.as_ref().map_or(Ok(Gain::Number(usual)), |place| gain(key, &place.value, place))
 }
 
-/// Reads a gain and checks that it is symmetric positive definite and of the right size. Messages call it `key`.
+/// Reads a gain; what it must be is checked where its law is built. Messages call it `key`.
 ///
 /// # Errors
-/// The mistake, at its place.
-pub fn gain<T>(key: &'static str, file: &GainFile, place: &At<T>, agent: &str, size: usize) -> Result<Gain, Fault> {
+/// That it is no number, list of numbers or square, at its place.
+pub fn gain<T>(key: &'static str, file: &GainFile, place: &At<T>) -> Result<Gain, Fault> {
     let rows = match file {
-        GainFile::Number(value) => {
-            let number = At { value: *value, span: place.span.clone() };
-            return Ok(Gain::Number(positive(key, &number)?));
-        }
+        GainFile::Number(value) => return Ok(Gain::Number(*value)),
         GainFile::Rows(rows) => rows,
     };
-    let lists = rows.iter().filter(|row| matches!(row.value, Item::List(_))).count();
-    let gain = match lists {
-        0 => {
-            let mut diagonal = Vec::with_capacity(rows.len());
-            for row in rows {
-                let number = At { value: row.value.number().unwrap_or_default(), span: row.span.clone() };
-                diagonal.push(positive(key, &number)?);
-            }
-            Gain::Diagonal(diagonal)
+    let diagonal: Vec<f64> = rows.iter().filter_map(|row| row.value.number()).collect();
+    if diagonal.len() == rows.len() {
+        return Ok(Gain::Diagonal(diagonal));
+    }
+    let mut entries = Vec::new();
+    for (k, row) in rows.iter().enumerate() {
+        let Item::List(list) = &row.value else { return Err(fault(place, ValueProblem::MixedList { key })) };
+        if list.len() != rows.len() && diagonal.is_empty() {
+            let (rows, row_number, entries) = (rows.len(), k + 1, list.len());
+            return Err(fault(row, ValueProblem::NotSquare { key, rows, row: row_number, entries }));
         }
-        lists if lists < rows.len() => return Err(fault(place, ValueProblem::MixedList { key })),
-        _ => {
-            let mut entries = Vec::new();
-            for (k, row) in rows.iter().enumerate() {
-                let Item::List(list) = &row.value else { continue };
-                if list.len() != rows.len() {
-                    let (rows, row_number, entries) = (rows.len(), k + 1, list.len());
-                    return Err(fault(row, ValueProblem::NotSquare { key, rows, row: row_number, entries }));
-                }
-                entries.extend(values(list));
-            }
-            Gain::Matrix(entries)
-        }
-    };
-    // It is no bandwidth, so no scale is needed.
-    let Err(error) = gain.resolve(size, &[]) else { return Ok(gain) };
-    let agent = agent.to_owned();
-    let problem = match error {
-        // Rows, as they were written, whether of a diagonal or of a matrix.
-        GainError::Length(_) => ValueProblem::VectorLength { key, found: rows.len(), need: size, agent },
-        error => ValueProblem::Gain { key, agent, error },
-    };
-    Err(fault(place, problem))
+        entries.extend(values(list));
+    }
+    Ok(Gain::Matrix(entries))
 }
 
 /// ϑ̂(0) of `agent`; zero without a file.
-///
-/// # Errors
-/// [`ValueProblem::VectorLength`] when numbers are given, but not one for each parameter.
-pub fn estimate(file: Option<&EstimateStartFile>, agent: &LawReader<'_>) -> Result<Vec<f64>, Fault> {
-    let LawReader { agent, robot, .. } = *agent;
-    match file {
-        None => Ok(vec![0.0; robot.theta.len()]),
-        Some(file) => known_or_given("estimate_start.given", file, agent, &robot.theta),
-    }
+pub fn estimate(file: Option<&EstimateStartFile>, agent: &LawReader<'_>) -> Vec<f64> {
+    known_or_given(file.unwrap_or(&EstimateStartFile::Zero), &agent.robot.theta)
 }
 
 /// An estimate of `theta` at the start.
-pub(super) fn known_or_given(
-    key: &'static str,
-    file: &EstimateStartFile,
-    agent: &str,
-    theta: &[f64],
-) -> Result<Vec<f64>, Fault> {
+pub(super) fn known_or_given(file: &EstimateStartFile, theta: &[f64]) -> Vec<f64> {
     match file {
-        EstimateStartFile::Zero => Ok(vec![0.0; theta.len()]),
-        EstimateStartFile::True => Ok(theta.to_vec()),
-        EstimateStartFile::Scaled(factor) => Ok(theta.iter().map(|entry| factor.value * entry).collect()),
-        EstimateStartFile::Given(list) => {
-            length(key, &list.span, list.value.len(), theta.len(), agent)?;
-            Ok(values(&list.value))
-        }
+        EstimateStartFile::Zero => vec![0.0; theta.len()],
+        EstimateStartFile::True => theta.to_vec(),
+        EstimateStartFile::Scaled(factor) => theta.iter().map(|entry| factor.value * entry).collect(),
+        EstimateStartFile::Given(list) => values(&list.value),
     }
 }

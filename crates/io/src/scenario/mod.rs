@@ -83,7 +83,7 @@ use std::fmt;
 
 use forwardstep_sim::leader::Following;
 use forwardstep_sim::{
-    ATOL, AgentSetup, Method, Network, RTOL, ReferenceFamily, Setup, Solver, TimeSpan, recorded_columns, validate,
+    ATOL, Method, Network, RECORD_EVERY_S, RTOL, ReferenceFamily, Setup, Solver, TimeSpan, recorded_columns,
 };
 use miette::Diagnostic;
 
@@ -114,9 +114,6 @@ use robots::Stop;
 
 /// The format of scenario files.
 pub const FORMAT: i64 = 2;
-/// Numbers that a recording may hold; eight bytes each.
-const MOST_RECORDED: f64 = 1e8;
-const RECORD_EVERY_S: f64 = 0.02;
 
 /// A scenario that has been read.
 #[derive(Clone, Debug)]
@@ -243,16 +240,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
     let setup = Setup { agents, reference, exchange, network, time, solver: solver(file.solver.as_ref())?, control };
     notices.extend(Notice::coarse_sampling(&setup));
     notices.extend(Notice::targets_beyond_limits(&setup));
-    let batched = |agent: &AgentSetup| agent.interface().is_some_and(|interface| interface.in_batches);
-    let agrees = !setup.reference.interface().family.is_followed();
-    let refused = |error| document.refused(&setup, &read.entries, error);
-    let columns = if agrees && setup.agents.iter().all(batched) {
-        validate(&setup).map_err(refused)?;
-        setup.agents.iter().map(columns).sum()
-    } else {
-        recorded_columns(&setup).map_err(refused)?.len()
-    };
-    recording_fits(&setup, columns, file.time.record_every_s.as_ref().unwrap_or(&file.time.end_s))?;
+    recorded_columns(&setup).map_err(|error| document.refused(&setup, &read.entries, error))?;
     let goal = file.goal.as_ref().map(|file| goal::goal(file, &*setup.reference)).transpose()?;
     Ok(Scenario {
         name: name.to_owned(),
@@ -301,24 +289,6 @@ fn solver(file: Option<&SolverFile>) -> Result<Solver, Fault> {
         },
         balance: file.lyapunov_balance.unwrap_or(default.balance),
     })
-}
-
-/// Refuses a recording beyond any memory, before anything is computed. `place` is what is too small, or too large.
-fn recording_fits(setup: &Setup, columns: usize, place: &At<f64>) -> Result<(), Fault> {
-    let rows = (setup.time.end_s / setup.time.record_every_s).floor() + 2.0;
-    if rows * columns as f64 <= MOST_RECORDED {
-        return Ok(());
-    }
-    let least_s = setup.time.end_s / (MOST_RECORDED / columns as f64 - 2.0);
-    Err(fault(place, ScenarioProblem::RecordingTooLarge { rows, columns, most: MOST_RECORDED, least_s }))
-}
-
-/// How many columns an agent has: q, q̇, s, τ and z with its derivatives on every axis, ϑ̂, V and its dissipation, and τ_ext
-/// if it is pushed.
-fn columns(agent: &AgentSetup) -> usize {
-    let per_axis = 4 + agent.roots_per_s.len().max(2) + usize::from(!agent.pushes.is_empty());
-    let estimates = if agent.estimates() { agent.robot.theta.len() } else { 0 };
-    per_axis * agent.robot.axes.len() + estimates + 2
 }
 
 /// The JSON schema of the format with the shipped kinds, for editors.

@@ -13,7 +13,7 @@ use super::table::TableProblem;
 use super::value_problem::ValueProblem;
 use crate::Problem;
 use crate::files::ReadError;
-use crate::wording::{about, axes, choose, entry_count, number};
+use crate::wording::{axes, choose, entry_count};
 
 /// Why a scenario has no meaning.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -156,21 +156,6 @@ pub enum ScenarioProblem {
     /// A push that has no meaning.
     #[error(transparent)]
     Push(#[from] PushProblem),
-    /// A recording that would not fit into memory.
-    #[error(
-        "the recording would hold {} numbers, {} rows of {columns} columns, but at most {} fit",
-        about(*.rows * *.columns as f64), about(*.rows), number(*.most)
-    )]
-    RecordingTooLarge {
-        /// How many rows.
-        rows: f64,
-        /// How many columns.
-        columns: usize,
-        /// How many numbers are accepted.
-        most: f64,
-        /// The shortest `record_every_s` that would do.
-        least_s: f64,
-    },
     /// A goal that asks for nothing.
     #[error("the goal says nothing about the disagreement")]
     EmptyGoal,
@@ -241,9 +226,6 @@ impl Problem for ScenarioProblem {
             ScenarioProblem::Table(problem) => return problem.help(),
             ScenarioProblem::Network(problem) => return problem.help(),
             ScenarioProblem::Push(problem) => return problem.help(),
-            ScenarioProblem::RecordingTooLarge { least_s, .. } => {
-                format!("for this `end_s` let `record_every_s` be at least {}", about(1.05 * least_s))
-            }
             ScenarioProblem::EmptyGoal => {
                 "set `disagreement_below = 1e-3` (with targets `error_below`), or `expect = \"diverges\"`, or delete the goal".into()
             }

@@ -1,7 +1,7 @@
 //! What the layers below refuse: where in the scenario it stands, and what to do.
 
 use forwardstep_core::controller::ChainError;
-use forwardstep_sim::quantity::{QuantityError, Requirement, Sign};
+use forwardstep_sim::quantity::{QuantityError, Requirement, Sign, about};
 use forwardstep_sim::{Setup, SetupError};
 
 use super::document::Document;
@@ -92,6 +92,9 @@ pub(super) fn advice(error: &SetupError) -> Option<String> {
         }
         SetupError::Memory { need_bytes, .. } => {
             format!("write `memory_budget_bytes = {need_bytes}` or more in `[solver]`, sample more slowly, or shorten the longest delay")
+        }
+        SetupError::RecordingTooLarge { least_s, .. } => {
+            format!("for this `end_s` let `record_every_s` be at least {}", about(1.05 * least_s))
         }
         SetupError::UnitsDiffer { .. } => {
             "point masses, vehicles and robots with three prismatic joints have a position in space".to_owned()

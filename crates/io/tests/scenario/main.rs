@@ -15,6 +15,7 @@ mod memory;
 mod mixed;
 mod mutated;
 mod pushes;
+mod quantities;
 mod ranges;
 #[path = "../support/seeds.rs"]
 mod seeds;

@@ -182,7 +182,7 @@ const CASES: &[Case] = &[
     ("adaptation_gain = 10", "adaptation_gain = [1, 2, 3]",
         "test.toml:24:19: `adaptation_gain` has 3 entries, but `arm-1` needs 5", ""),
     ("adaptation_gain = 10", "adaptation_gain = { bandwidth_per_s = -1 }",
-        "test.toml:24:39: `bandwidth_per_s` is -1, but must be positive", ""),
+        "test.toml:24:39: `adaptation_gain.bandwidth_per_s` is -1, but must be positive", ""),
     ("estimate_start = \"zero\"", "estimate_start = \"zeros\"",
         "test.toml:25:18: unknown choice `zeros`", "did you mean `zero`?"),
     ("estimate_start = \"zero\"", "estimate_start = \"scaled\"",

@@ -47,7 +47,7 @@ const TIP_CASES: &[Case] = &[
     ("damping.bandwidth_per_s = 40", "damping.gain = [1, 2]",
         "test.toml:16:16: `damping.gain` has 2 entries, but `arm` needs 3", ""),
     ("adaptation_gain.bandwidth_per_s = 10", "adaptation_gain.bandwidth_per_s = -10",
-        "test.toml:17:35: `bandwidth_per_s` is -10, but must be positive", ""),
+        "test.toml:17:35: `adaptation_gain.bandwidth_per_s` is -10, but must be positive", ""),
     ("adaptation_gain.bandwidth_per_s = 10", "adaptation_gain = [1, 2]",
         "test.toml:17:19: `adaptation_gain` has 2 entries, but `arm` needs 30", ""),
     ("adaptation_gain.bandwidth_per_s = 10", "adaptation_gain = \"fast\"",

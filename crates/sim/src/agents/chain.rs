@@ -11,7 +11,7 @@ use forwardstep_core::reference::{Consensus, Position, polynomial};
 
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
-use crate::quantity::positive;
+use crate::quantity::{each, positive};
 use crate::reference::ReferenceFamily;
 use crate::setup::RobotSetup;
 use crate::system::{Attachments, Interface, Known, Law, LawWords, Robot, RobotInterface};
@@ -122,6 +122,32 @@ pub struct Estimate {
 }
 
 impl ChainLaw {
+    /// Every number under the key that it has in a file.
+    fn check(&self, assembly: &Assembly<'_>, model: &ChainModel) -> Result<(), SetupError> {
+        let (law, p) = (assembly.of_law(), model.parameters());
+        positive(law.clone(), "floor", self.floor)?;
+        let estimate = match &self.step {
+            ChainStep::Linearising { gain_per_s } => return Ok(positive(law, "gain_per_s", *gain_per_s)?),
+            ChainStep::Adaptive { gain_per_s, estimate } => {
+                positive(law.clone(), "gain_per_s", *gain_per_s)?;
+                estimate
+            }
+            ChainStep::Immersion { gain_per_s, estimate, antiderivatives } => {
+                positive(law.clone(), "gain_per_s", *gain_per_s)?;
+                assembly.length(law.clone(), "antiderivatives", p, antiderivatives.len())?;
+                estimate
+            }
+            ChainStep::Backstepping { gains_per_s, estimate } => {
+                assembly.length(law.clone(), "gains_per_s", model.order(), gains_per_s.len())?;
+                each(law.clone(), "gains_per_s", gains_per_s, positive)?;
+                estimate
+            }
+        };
+        assembly.length(law.clone(), "adaptation_gain", p, estimate.adaptation.len())?;
+        each(law, "adaptation_gain", &estimate.adaptation, positive)?;
+        assembly.estimate("estimate_start.given", &estimate.start, p)
+    }
+
     /// Whether it estimates parameters.
     pub fn estimates(&self) -> bool {
         !matches!(self.step, ChainStep::Linearising { .. })
@@ -173,7 +199,7 @@ impl Law for ChainLaw {
         let model: &ChainModel = assembly.robot()?;
         let wrong = |error: ChainError| SetupError::Chain { agent: own.name.clone(), error };
         let floor = self.floor;
-        positive(assembly.of_law(), "floor", floor)?;
+        self.check(assembly, model)?;
         let guide = guide(assembly)?;
         match (model, &self.step) {
             (ChainModel::Derivatives(terms), ChainStep::Linearising { gain_per_s }) => {

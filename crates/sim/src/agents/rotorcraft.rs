@@ -47,9 +47,11 @@ pub(super) fn plant(assembly: &Assembly<'_>, model: &RotorcraftModel) -> Result<
         not_negative(thrust.clone().index(1), "", high)?;
         such(high > low, thrust.index(1), "", high, "must be above the least thrust")?;
     }
+    let path = assembly.of_robot().key("inertia_kg_m2");
+    assembly.resolved(&model.inertia, path.clone(), 3, &[])?;
     Rotorcraft::new(vehicle(assembly, model.gravity)?, &model.inertia, model.rotors).map_err(|error| SetupError::Gain {
         agent: assembly.agent().name.clone(),
-        gain: "J",
+        path,
         error,
     })
 }

@@ -74,6 +74,9 @@ impl Law for AttitudeLaw {
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
         let own = assembly.agent();
         let SpacecraftModel { inertia_kg_m2, wheels } = assembly.robot()?;
+        let path = assembly.of_robot().key("inertia_kg_m2");
+        inertia_kg_m2.iter().enumerate().try_for_each(|(k, row)| positive(path.clone().index(k), "", row[k]))?;
+        assembly.resolved(&Gain::Matrix(inertia_kg_m2.concat()), path, 3, &[])?;
         let plant = Spacecraft::new(*inertia_kg_m2, wheels.clone(), own.enforce_limits)
             .map_err(|error| SetupError::Spacecraft { agent: own.name.clone(), error })?;
         positive(assembly.of_law(), "error_gain_per_s2", self.alpha[0])?;
@@ -86,8 +89,8 @@ impl Law for AttitudeLaw {
             momentum_inertial,
             wheels: wheels.clone(),
             alpha: self.alpha,
-            filter: assembly.gain(&self.filter, "Λ_f", 4)?,
-            damping: assembly.gain(&self.damping, "K", 4)?,
+            filter: assembly.gain(&self.filter, "filter_gain_per_s", 4)?,
+            damping: assembly.gain(&self.damping, "damping", 4)?,
         };
         assembly.solo(plant, controller)
     }

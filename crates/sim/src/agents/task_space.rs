@@ -142,21 +142,16 @@ impl TaskSpaceLaw {
     {
         let own = assembly.agent();
         let (m, p) = (tip.axes(), tip.parameter_count());
-        assembly.length("the axes of the tip", own.robot.axes.len(), m)?;
-        assembly.length("the start of the estimate", robot.parameter_count(), self.estimate_start.len())?;
-        assembly.length("the start of the kinematic estimate", p, self.kinematic_start.len())?;
-        assembly.length("the names of the kinematic parameters", p, self.kinematic_names.len())?;
-        for (what, values) in [("ϑ̂(0)", &self.estimate_start), ("θ̂(0)", &self.kinematic_start)] {
-            if let Some(value) = values.iter().find(|value| !value.is_finite()) {
-                return Err(SetupError::NotFinite { agent: own.name.clone(), what, value: *value });
-            }
-        }
         let law = assembly.of_law();
+        assembly.length(law.clone(), "end_effector.coordinates", own.robot.axes.len(), m)?;
+        assembly.length(law.clone(), "the names of the kinematic parameters", p, self.kinematic_names.len())?;
+        assembly.estimate("estimate_start.given", &self.estimate_start, robot.parameter_count())?;
+        assembly.estimate("kinematic_start.given", &self.kinematic_start, p)?;
         positive(law.clone(), "torque_share", self.kappa)?;
         positive(law.clone(), "reference_gain_per_s", self.alpha_per_s)?;
         within(law, "determinant_floor", self.determinant_floor, 0.0, LARGEST_FLOOR)?;
         let adapts = self.kinematic_adaptation.as_ref();
-        let kinematic_adaptation = adapts.map(|gain| assembly.gain(gain, "Λ", p)).transpose()?;
+        let kinematic_adaptation = adapts.map(|gain| assembly.gain(gain, "kinematic_gain", p)).transpose()?;
         if let Some(bounds) = &self.bounds {
             check_bounds(assembly, bounds, p)?;
             match kinematic_adaptation {
@@ -168,8 +163,8 @@ impl TaskSpaceLaw {
             }
         }
         let controller = TaskSpace {
-            law: tracking_law(&robot, own, &self.damping, Some(&self.adaptation))?,
-            task_gain: assembly.gain(&self.task_gain, "K*", m)?,
+            law: tracking_law(&robot, assembly, &self.damping, Some(&self.adaptation))?,
+            task_gain: assembly.gain(&self.task_gain, "task_gain", m)?,
             kappa: self.kappa,
             alpha: self.alpha_per_s,
             kinematic_adaptation,
@@ -186,9 +181,9 @@ impl TaskSpaceLaw {
 }
 
 fn check_bounds(assembly: &Assembly<'_>, bounds: &ParameterBounds, p: usize) -> Result<(), SetupError> {
-    assembly.length("the lower bounds", p, bounds.lower.len())?;
-    assembly.length("the upper bounds", p, bounds.upper.len())?;
     let place = assembly.of_law().key("bounds");
+    assembly.length(place.clone(), "lower_m", p, bounds.lower.len())?;
+    assembly.length(place.clone(), "upper_m", p, bounds.upper.len())?;
     positive(place.clone(), "margin_m", bounds.margin)?;
     for (k, (low, high)) in bounds.lower.iter().zip(&bounds.upper).enumerate() {
         let (lower, upper) = (place.clone().key("lower_m").index(k), place.clone().key("upper_m").index(k));

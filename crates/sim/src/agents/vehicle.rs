@@ -1,6 +1,5 @@
 //! (44): a vehicle in ℝ³ with one thrust and ideal angular-rate control.
 
-use forwardstep_core::LengthError;
 use forwardstep_core::plant::Vehicle;
 
 use super::LagrangianRobot;
@@ -33,11 +32,9 @@ impl Robot for VehicleModel {
 /// The plant, with its true mass.
 pub(super) fn plant(assembly: &Assembly<'_>, gravity: f64) -> Result<Vehicle, SetupError> {
     let own = assembly.agent();
-    assembly.length("axes", 3, own.robot.axes.len())?;
-    let [mass] = own.robot.theta[..] else {
-        let error = LengthError { what: "theta", need: 1, got: own.robot.theta.len() };
-        return Err(SetupError::Length { agent: own.name.clone(), error });
-    };
+    assembly.length(assembly.of_robot(), "axes", 3, own.robot.axes.len())?;
+    assembly.length(assembly.of_robot(), "theta", 1, own.robot.theta.len())?;
+    let mass = own.robot.theta[0];
     positive(assembly.of_robot(), "mass_kg", mass)?;
     positive(assembly.of_robot(), "gravity_m_s2", gravity)?;
     Ok(Vehicle { mass, gravity })

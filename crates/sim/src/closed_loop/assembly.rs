@@ -4,7 +4,7 @@ use forwardstep_core::controller::{ChainError, Controller, Guide, JointTracking}
 use forwardstep_core::plant::{Mechanical, Plant, total};
 use forwardstep_core::reference::polynomial;
 use forwardstep_core::signal::Block as Signals;
-use forwardstep_core::{Gain, LengthError, ResolvedGain};
+use forwardstep_core::{Gain, GainError, LengthError, ResolvedGain};
 
 use super::columns::Columns;
 use super::error::SetupError;
@@ -13,7 +13,7 @@ use super::robot_batch::Member;
 use super::solo::{Solo, Target};
 use super::valid::too_many;
 use crate::agents::{Adaptive, RobotModel};
-use crate::quantity::Path;
+use crate::quantity::{Path, each, finite, positive};
 use crate::recording::Signal;
 use crate::reference::ReferenceDynamics;
 use crate::setup::{AgentSetup, Axis, Setup};
@@ -95,28 +95,59 @@ impl<'a> Assembly<'a> {
         self.of_agent().key("robot")
     }
 
-    fn of_agent(&self) -> Path {
+    pub(super) fn of_agent(&self) -> Path {
         Path::from("agents").index(self.agents[0])
     }
 
-    /// Checks the length of a vector of the agent.
+    /// Checks the length of the list `key` at `at`.
     ///
     /// # Errors
-    /// [`SetupError::Length`] when it has another.
-    pub fn length(&self, what: &'static str, need: usize, got: usize) -> Result<(), SetupError> {
-        LengthError::check(what, need, got)
-            .map_err(|error| SetupError::Length { agent: self.agent().name.clone(), error })
+    /// [`SetupError::Entries`] when it has another.
+    pub fn length(&self, at: Path, key: &'static str, need: usize, got: usize) -> Result<(), SetupError> {
+        length(self.agent(), at.key(key), need, got)
     }
 
-    /// A gain of `size` rows that is no bandwidth.
+    /// Checks that the estimate `key` of the law's table has as many entries as there are parameters, and that all are finite.
     ///
     /// # Errors
-    /// [`SetupError::Gain`], which calls it `which`, when it has no meaning.
-    pub fn gain(&self, gain: &Gain, which: &'static str, size: usize) -> Result<ResolvedGain, SetupError> {
-        gain.resolve(size, &[]).map_err(|error| SetupError::Gain {
-            agent: self.agent().name.clone(),
-            gain: which,
-            error,
+    /// [`SetupError`], at that key, when it has not.
+    pub fn estimate(&self, key: &'static str, estimate: &[f64], parameters: usize) -> Result<(), SetupError> {
+        self.length(self.of_law(), key, parameters, estimate.len())?;
+        Ok(each(self.of_law(), key, estimate, finite)?)
+    }
+
+    /// A gain of `size` rows that is no bandwidth, under the key that it has in the law's table.
+    ///
+    /// # Errors
+    /// [`SetupError`], at that key, when it has no meaning.
+    pub fn gain(&self, gain: &Gain, key: &'static str, size: usize) -> Result<ResolvedGain, SetupError> {
+        self.resolved(gain, self.of_law().key(key), size, &[])
+    }
+
+    /// A gain, or what else must be symmetric and positive definite, at `path`; a bandwidth is multiplied by `scale`.
+    ///
+    /// # Errors
+    /// [`SetupError`], at `path` or inside, when it has no meaning.
+    pub(crate) fn resolved(
+        &self,
+        gain: &Gain,
+        path: Path,
+        size: usize,
+        scale: &[f64],
+    ) -> Result<ResolvedGain, SetupError> {
+        match gain {
+            Gain::Number(number) | Gain::Bandwidth(number) => positive(path.clone(), "", *number)?,
+            Gain::Diagonal(list) => each(path.clone(), "", list, positive)?,
+            Gain::Matrix(_) => {}
+        }
+        let agent = self.agent().name.clone();
+        gain.resolve(size, scale).map_err(|error| match (error, gain) {
+            // Counted in rows, where there are any.
+            (GainError::Length(_), Gain::Matrix(entries)) if entries.len().isqrt().pow(2) == entries.len() => {
+                SetupError::Entries { agent, path, need: size, got: entries.len().isqrt() }
+            }
+            (GainError::Length(LengthError { need, got, .. }), _) => SetupError::Entries { agent, path, need, got },
+            (error, _) => SetupError::Gain { agent, path, error },
         })
     }
 
@@ -134,7 +165,7 @@ impl<'a> Assembly<'a> {
     /// [`SetupError`] when the agent has no meaning.
     pub fn tracking<M: RobotModel>(&self, model: &M) -> Result<Block, SetupError> {
         let (own, robot) = (self.agent(), model.kernel());
-        let Member { law, theta, .. } = members::member(&robot, own, self.agents[0])?;
+        let Member { law, theta, .. } = members::member(&robot, self)?;
         // One root at least, and no more than a trajectory has derivatives.
         let roots = Guide::Tracking { alpha: own.roots_per_s.clone() };
         let wrong = |error| SetupError::Chain { agent: own.name.clone(), error: ChainError::Guide(error) };
@@ -156,7 +187,12 @@ impl<'a> Assembly<'a> {
     pub fn solo<C: Controller>(&self, plant: C::Plant, controller: C) -> Result<Block, SetupError> {
         let (setup, own) = (self.setup, self.agent());
         let start = &own.start;
-        self.length("the start", total(&plant.states()), start.q.len() + start.dq.len() + start.rest.len())?;
+        self.length(
+            self.of_agent(),
+            "start",
+            total(&plant.states()),
+            start.q.len() + start.dq.len() + start.rest.len(),
+        )?;
         self.takes_pushes(&plant)?;
         let blocks = controller.states();
         let vectors = blocks.iter().filter(|(signal, _)| matches!(signal, Signal::Reference(_))).count();
@@ -167,7 +203,7 @@ impl<'a> Assembly<'a> {
         let target = match &own.target {
             None => None,
             Some(trajectory) => {
-                self.length("the target", plant.axes(), trajectory.axes())?;
+                self.length(self.of_agent(), "target", plant.axes(), trajectory.axes())?;
                 let wrong = |error| SetupError::Trajectory { agent: own.name.clone(), error };
                 let trajectory = Pieces::new(trajectory.clone(), setup.time.end_s).map_err(wrong)?;
                 Some(Target { trajectory, is_offset })
@@ -201,6 +237,11 @@ impl<'a> Assembly<'a> {
             .rate(&mut plant.scratch(), &state, &zeros(&plant.inputs()), &external, &mut state.clone())
             .map_err(|error| SetupError::Length { agent: name.clone(), error })
     }
+}
+
+/// Checks the length of the list of `agent` at `path`.
+pub(super) fn length(agent: &AgentSetup, path: Path, need: usize, got: usize) -> Result<(), SetupError> {
+    if got == need { Ok(()) } else { Err(SetupError::Entries { agent: agent.name.clone(), path, need, got }) }
 }
 
 /// The limits of the torques, if they are to be enforced.

@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use crate::network::NetworkError;
 use crate::push::PushError;
-use crate::quantity::QuantityError;
+use crate::quantity::{Name, Path, QuantityError, about, entries, number};
 use crate::setup::Exchange;
 use crate::trajectory::TrajectoryError;
 
@@ -65,6 +65,18 @@ pub enum SetupError {
         /// What is wrong.
         error: LengthError,
     },
+    /// A list of one agent has the wrong length.
+    #[error("{} has {}, but `{agent}` needs {need}", Name(.path.name()), entries(*.got))]
+    Entries {
+        /// The agent.
+        agent: String,
+        /// Where the list stands.
+        path: Path,
+        /// How many entries it needs.
+        need: usize,
+        /// How many there are.
+        got: usize,
+    },
     /// Another number of roots than the law takes.
     #[error("agent `{agent}`: {error}")]
     RootCount {
@@ -91,16 +103,6 @@ pub enum SetupError {
         /// Its law, in words.
         law: &'static str,
         /// The gain.
-        value: f64,
-    },
-    /// A number of one agent is not finite.
-    #[error("agent `{agent}`: {what} has the entry {value}, which is not a finite number")]
-    NotFinite {
-        /// The agent.
-        agent: String,
-        /// Which vector.
-        what: &'static str,
-        /// The value.
         value: f64,
     },
     /// The roots of one agent.
@@ -148,12 +150,12 @@ pub enum SetupError {
         reference: &'static str,
     },
     /// A gain of one agent.
-    #[error("agent `{agent}`: {gain}: {error}")]
+    #[error("`{}` of `{agent}`: {error}", .path.name())]
     Gain {
         /// The agent.
         agent: String,
-        /// `K` or `Γ`.
-        gain: &'static str,
+        /// Where it stands.
+        path: Path,
         /// What is wrong.
         error: GainError,
     },
@@ -368,6 +370,21 @@ pub enum SetupError {
         need_bytes: u64,
         /// [`crate::Solver::memory_budget_bytes`].
         budget_bytes: u64,
+    },
+    /// A recording that would not fit into memory.
+    #[error(
+        "the recording would hold {} numbers, {} rows of {columns} columns, but at most {} fit",
+        about(*.rows * *.columns as f64), about(*.rows), number(*.most)
+    )]
+    RecordingTooLarge {
+        /// How many rows.
+        rows: f64,
+        /// How many columns.
+        columns: usize,
+        /// How many numbers are accepted.
+        most: f64,
+        /// The shortest [`crate::TimeSpan::record_every_s`] that would do.
+        least_s: f64,
     },
     /// A quantity out of its range.
     #[error("{}: {_0}", _0.path)]

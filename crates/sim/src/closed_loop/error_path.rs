@@ -6,7 +6,7 @@ use forwardstep_core::reference::BacksteppingError;
 use super::error::SetupError;
 use crate::quantity::Path;
 use crate::reference::{ReferenceDynamics, ReferenceFamily};
-use crate::setup::{AgentSetup, Setup, Solver};
+use crate::setup::{AgentSetup, RECORD_EVERY_S, Setup, Solver};
 
 impl SetupError {
     /// Where in `setup` stands what it is about.
@@ -24,6 +24,7 @@ impl SetupError {
         let roots = |agent| own(agent).key("roots_per_s");
         match self {
             SetupError::Quantity(error) => error.path.clone(),
+            SetupError::Entries { path, .. } | SetupError::Gain { path, .. } => path.clone(),
             SetupError::Network(_)
             | SetupError::AgentCount { .. }
             | SetupError::UnusedEdges { .. }
@@ -59,9 +60,7 @@ impl SetupError {
             }
             SetupError::Chain { agent, .. }
             | SetupError::Length { agent, .. }
-            | SetupError::NotFinite { agent, .. }
             | SetupError::LawOfAnother { agent, .. }
-            | SetupError::Gain { agent, .. }
             | SetupError::Tip { agent, .. }
             | SetupError::ProjectionOfMatrix { agent }
             | SetupError::BoundsOfKnown { agent }
@@ -80,6 +79,8 @@ impl SetupError {
                 "control.sample_hz".into()
             }
             SetupError::Memory { .. } => "solver.memory_budget_bytes".into(),
+            SetupError::RecordingTooLarge { .. } if setup.time.record_every_s == RECORD_EVERY_S => "time.end_s".into(),
+            SetupError::RecordingTooLarge { .. } => "time.record_every_s".into(),
         }
     }
 

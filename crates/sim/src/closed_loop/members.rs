@@ -4,9 +4,9 @@ use forwardstep_core::law::SlotineLi;
 use forwardstep_core::plant::total;
 use forwardstep_core::reference::{Position, PositionVelocity};
 use forwardstep_core::robot::Lagrangian;
-use forwardstep_core::{Gain, InverseQuadratic, Lanes, LengthError, ResolvedGain};
+use forwardstep_core::{Gain, InverseQuadratic, Lanes};
 
-use super::assembly::Assembly;
+use super::assembly::{Assembly, effort_limits};
 use super::columns::Columns;
 use super::error::SetupError;
 use super::population::Population;
@@ -14,7 +14,6 @@ use super::references::{Transmits, reference};
 use super::robot_batch::Member;
 use crate::agents::{Adaptive, Known, RobotModel};
 use crate::setup::{AgentSetup, Exchange, Setup};
-use crate::system::LawWords;
 
 /// Batches of at least so many agents are worked on in lanes.
 const LANES_FROM: usize = 3;
@@ -56,8 +55,8 @@ where
 {
     let setup = assembly.setup();
     let mut members = Vec::new();
-    for &agent in assembly.agents() {
-        members.push(member(&robot, &setup.agents[agent], agent)?);
+    for agent in assembly.agents() {
+        members.push(member(&robot, &Assembly::new(setup, std::slice::from_ref(agent)))?);
     }
     let reference = reference::<X>(assembly)?;
     let sampled = setup.control.is_some();
@@ -71,71 +70,67 @@ where
     })
 }
 
-/// One agent with its gains, checked.
-pub(super) fn member<R: Lagrangian<f64>>(robot: &R, agent: &AgentSetup, index: usize) -> Result<Member, SetupError> {
-    let (m, p) = (robot.dof(), robot.parameter_count());
-    let name = || agent.name.clone();
-    let length = |what, need, got| {
-        LengthError::check(what, need, got).map_err(|error| SetupError::Length { agent: name(), error })
-    };
-    length("axes", m, agent.robot.axes.len())?;
-    length("theta", p, agent.robot.theta.len())?;
-    length("what acts on it from outside", m, total(&agent.robot.interface().attachments.blocks(m)))?;
+/// The agent of `assembly` with its gains, checked.
+pub(super) fn member<R: Lagrangian<f64>>(robot: &R, assembly: &Assembly<'_>) -> Result<Member, SetupError> {
+    let (agent, at, m, p) = (assembly.agent(), assembly.of_robot(), robot.dof(), robot.parameter_count());
+    assembly.length(at.clone(), "axes", m, agent.robot.axes.len())?;
+    assembly.length(at.clone(), "theta", p, agent.robot.theta.len())?;
+    assembly.length(at, "what acts on it from outside", m, total(&agent.robot.interface().attachments.blocks(m)))?;
     let (damping, adaptation) = match (agent.law.downcast::<Adaptive>(), agent.law.downcast::<Known>()) {
         (Some(Adaptive { damping, adaptation, estimate_start }), _) => {
-            length("start of the estimate", p, estimate_start.len())?;
+            assembly.estimate("estimate_start.given", estimate_start, p)?;
             (damping, Some(adaptation))
         }
         (None, Some(Known { damping })) => (damping, None),
-        (None, None) => {
-            let LawWords { name: law, made_for } = agent.law.words();
-            return Err(SetupError::LawOfAnother { agent: name(), law, made_for });
-        }
+        (None, None) => return Err(assembly.law_of_another()),
     };
-    let law = tracking_law(robot, agent, damping, adaptation)?;
-    let estimate_cost = match &law.adaptation {
-        Some(gamma) => {
-            Some(InverseQuadratic::new(gamma).map_err(|error| SetupError::Gain { agent: name(), gain: "Γ", error })?)
-        }
-        None => None,
-    };
-    let effort_limits = if agent.enforce_limits {
-        let limit = |axis: &crate::setup::Axis| {
-            axis.effort_limit.ok_or_else(|| SetupError::NoEffortLimit { agent: name(), axis: axis.name.clone() })
-        };
-        Some(agent.robot.axes.iter().map(limit).collect::<Result<_, _>>()?)
-    } else {
-        None
-    };
-    Ok(Member { agent: index, theta: agent.robot.theta.clone(), axes: m, law, estimate_cost, effort_limits })
+    let law = tracking_law(robot, assembly, damping, adaptation)?;
+    let estimate_cost = law.adaptation.as_ref().map(InverseQuadratic::new).transpose().map_err(|error| {
+        SetupError::Gain { agent: agent.name.clone(), path: assembly.of_law().key("adaptation_gain"), error }
+    })?;
+    let effort_limits = effort_limits(agent, m)?;
+    Ok(Member {
+        agent: assembly.agents()[0],
+        theta: agent.robot.theta.clone(),
+        axes: m,
+        law,
+        estimate_cost,
+        effort_limits,
+    })
 }
 
-/// K and Γ of one agent, with its robot's natural scales for gains that are bandwidths.
+/// K and Γ of the agent of `assembly`, with its robot's natural scales for gains that are bandwidths.
 pub(crate) fn tracking_law<R: Lagrangian<f64>>(
     robot: &R,
-    agent: &AgentSetup,
+    assembly: &Assembly<'_>,
     damping: &Gain,
     adaptation: Option<&Gain>,
 ) -> Result<SlotineLi, SetupError> {
-    let (m, p) = (robot.dof(), robot.parameter_count());
-    let name = || agent.name.clone();
+    let (agent, m, p) = (assembly.agent(), robot.dof(), robot.parameter_count());
     let mut mass = vec![0.0; m * m];
     robot
         .mass_matrix(&mut robot.scratch(), &agent.start.q, &agent.robot.theta, &mut mass)
-        .map_err(|error| SetupError::Length { agent: name(), error })?;
+        .map_err(|error| SetupError::Length { agent: agent.name.clone(), error })?;
     let diagonal: Vec<f64> = mass.iter().step_by(m + 1).copied().collect();
-    let resolve = |gain: &Gain, which, size, scale: &[f64]| -> Result<ResolvedGain, SetupError> {
-        gain.resolve(size, scale).map_err(|error| SetupError::Gain { agent: name(), gain: which, error })
-    };
     let adaptation = match adaptation {
         Some(gain) => {
-            // Γ = ω² diag(scale): one ω is multiplied in here, the other by `resolve`.
+            // Γ = ω² diag(scale): one ω is multiplied in here, the other where the gain is resolved.
             let omega = if let Gain::Bandwidth(omega) = gain { *omega } else { 1.0 };
             let scale = robot.adaptation_scale(&agent.start.q, &agent.robot.theta);
             let scale: Vec<f64> = scale.iter().map(|scale| omega * scale).collect();
-            Some(resolve(gain, "Γ", p, &scale)?)
+            let path = key_of(gain, ["adaptation_gain", "adaptation_gain.bandwidth_per_s"]);
+            Some(assembly.resolved(gain, assembly.of_law().key(path), p, &scale)?)
         }
         None => None,
     };
-    Ok(SlotineLi { damping: resolve(damping, "K", m, &diagonal)?, adaptation })
+    let path = assembly.of_law().key(key_of(damping, ["damping.gain", "damping.bandwidth_per_s"]));
+    Ok(SlotineLi { damping: assembly.resolved(damping, path, m, &diagonal)?, adaptation })
+}
+
+/// The key of a gain, which is the second for a bandwidth.
+fn key_of(gain: &Gain, [itself, bandwidth]: [&'static str; 2]) -> &'static str {
+    match gain {
+        Gain::Number(_) | Gain::Diagonal(_) | Gain::Matrix(_) => itself,
+        Gain::Bandwidth(_) => bandwidth,
+    }
 }

@@ -2,10 +2,11 @@
 
 use forwardstep_core::LengthError;
 
+use super::assembly::length;
 use super::error::SetupError;
 use super::unused;
-use crate::agents::Adaptive;
 use crate::engine::{Integrator, Radio};
+use crate::quantity::{Path, each, finite, not_negative, positive};
 use crate::reference::ReferenceInterface;
 use crate::setup::{Actuators, AgentSetup, AxisUnit, Control, Exchange, Setup};
 use crate::system::{LawWords, PositionKind};
@@ -104,33 +105,30 @@ fn check_agent(setup: &Setup, index: usize) -> Result<(), SetupError> {
             first_axes: axes,
         });
     }
-    let vector = |what: &'static str, need: usize, values: &[f64]| {
-        LengthError::check(what, need, values.len())
-            .map_err(|error| SetupError::Length { agent: agent.name.clone(), error })?;
-        match values.iter().find(|value| !value.is_finite()) {
-            Some(value) => Err(SetupError::NotFinite { agent: agent.name.clone(), what, value: *value }),
-            None => Ok(()),
-        }
+    let own = Path::from("agents").index(index);
+    let vector = |key: &'static str, need: usize, values: &[f64]| {
+        length(agent, own.clone().key(key), need, values.len())?;
+        each(own.clone(), key, values, finite).map_err(SetupError::from)
     };
-    vector("the start position", axes, &agent.start.q)?;
+    vector("start.position", axes, &agent.start.q)?;
     let velocities = agent.robot.velocity_len();
-    vector("the start velocity", velocities, &agent.start.dq)?;
+    vector("start.velocity", velocities, &agent.start.dq)?;
     // How much more a state has is known where the plant is built.
-    vector("the start of the plant", agent.start.rest.len(), &agent.start.rest)?;
+    vector("start.higher_states", agent.start.rest.len(), &agent.start.rest)?;
     goes_together(setup, index)?;
     // The second state of a chain may be no velocity, but it has a z.
     let leads = if velocities == 0 { axes } else { velocities };
     for z in &agent.start.reference {
-        vector("the start of the reference", leads, z)?;
+        vector("start.reference", leads, z)?;
     }
     if agent.start.reference.len() > vectors {
         let (need, got) = (vectors, agent.start.reference.len());
         return Err(too_many(agent, need, got));
     }
-    vector("theta", agent.robot.theta.len(), &agent.robot.theta)?;
-    if let Some(Adaptive { estimate_start, .. }) = agent.law.downcast() {
-        vector("the start of the estimate", agent.robot.theta.len(), estimate_start)?;
-    }
+    vector("robot.theta", agent.robot.theta.len(), &agent.robot.theta)?;
+    let design = own.clone().key("reference").key(setup.reference_of(index).words().key);
+    each(design.clone(), "roots_per_s", &agent.roots_per_s, positive)?;
+    not_negative(design, "manipulability_gain", agent.manipulability)?;
     for (k, push) in agent.pushes.iter().enumerate() {
         let problem = |error| SetupError::Push { agent: agent.name.clone(), push: k + 1, error };
         push.check(&agent.robot).map_err(problem)?;

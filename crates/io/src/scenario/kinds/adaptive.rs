@@ -40,7 +40,7 @@ impl LawKind for AdaptiveFile {
         Ok(Arc::new(Adaptive {
             damping: damping(self.damping.as_ref(), agent)?,
             adaptation: adaptation(self.adaptation_gain.as_ref(), agent)?,
-            estimate_start: estimate(self.estimate_start.as_ref(), agent)?,
+            estimate_start: estimate(self.estimate_start.as_ref(), agent),
         }))
     }
 }

@@ -184,8 +184,8 @@ impl LawKind for AdaptiveBacksteppingFile {
 
     fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
         let order = order(agent.robot).unwrap_or_default();
-        let gains_per_s = each("gains_per_s", self.gains_per_s.as_ref(), agent.agent, order)?;
-        let estimate = adapted(self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), agent)?;
+        let gains_per_s = each(self.gains_per_s.as_ref(), order);
+        let estimate = adapted(self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), agent);
         let floor = number_or(&self.floor, FLOOR);
         Ok(Arc::new(ChainLaw { step: ChainStep::Backstepping { gains_per_s, estimate }, floor }))
     }

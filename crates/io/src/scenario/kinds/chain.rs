@@ -12,8 +12,7 @@ use thiserror::Error;
 
 use super::{
     At, AxisValues, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, LawTable, Mistake, RobotKind, RobotRead,
-    RobotTable, Spread, StartReader, Stop, axis, count, estimate, fault, length, number_or, positive, positive_or,
-    values,
+    RobotTable, Spread, StartReader, Stop, axis, count, estimate, fault, length, number_or, values,
 };
 use crate::scenario::formula::formula_in;
 use crate::scenario::values::Positive;
@@ -138,20 +137,12 @@ fn terms(robot: &RobotSetup) -> Option<&Formulas> {
 
 const MADE_FOR: &str = "`chain`, plants of derivatives";
 
-/// One number for all, or one for each of `need`.
-pub(super) fn each(
-    key: &'static str,
-    file: Option<&At<AxisValues>>,
-    agent: &str,
-    need: usize,
-) -> Result<Vec<f64>, Fault> {
-    let Some(place) = file else { return Ok(vec![GAIN; need]) };
-    match &place.value {
-        AxisValues::All(value) => Ok(vec![positive(key, &At { value: *value, span: place.span.clone() })?; need]),
-        AxisValues::Each(list) => {
-            length(key, &place.span, list.len(), need, agent)?;
-            list.iter().map(|value| positive(key, value)).collect()
-        }
+/// One number for all of `need`, or one for each.
+pub(super) fn each(file: Option<&At<AxisValues>>, need: usize) -> Vec<f64> {
+    match file.map(|place| &place.value) {
+        None => vec![GAIN; need],
+        Some(AxisValues::All(value)) => vec![*value; need],
+        Some(AxisValues::Each(list)) => values(list),
     }
 }
 
@@ -159,9 +150,8 @@ pub(super) fn adapted(
     gain: Option<&At<AxisValues>>,
     start: Option<&EstimateStartFile>,
     agent: &LawReader<'_>,
-) -> Result<Estimate, Fault> {
-    let adaptation = each("adaptation_gain", gain, agent.agent, agent.robot.theta.len())?;
-    Ok(Estimate { adaptation, start: estimate(start, agent)? })
+) -> Estimate {
+    Estimate { adaptation: each(gain, agent.robot.theta.len()), start: estimate(start, agent) }
 }
 
 /// Feedback linearisation of a chain of derivatives, with the true parameters.
@@ -186,7 +176,7 @@ impl LawKind for LinearisingFile {
     }
 
     fn law(&self, _: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
-        let gain_per_s = positive_or("gain_per_s", &self.gain_per_s, GAIN)?;
+        let gain_per_s = number_or(&self.gain_per_s, GAIN);
         let floor = number_or(&self.floor, FLOOR);
         Ok(Arc::new(ChainLaw { step: ChainStep::Linearising { gain_per_s }, floor }))
     }
@@ -222,8 +212,8 @@ impl LawKind for LinearAdaptiveFile {
     }
 
     fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
-        let gain_per_s = positive_or("gain_per_s", &self.gain_per_s, GAIN)?;
-        let estimate = adapted(self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), agent)?;
+        let gain_per_s = number_or(&self.gain_per_s, GAIN);
+        let estimate = adapted(self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), agent);
         let floor = number_or(&self.floor, FLOOR);
         Ok(Arc::new(ChainLaw { step: ChainStep::Adaptive { gain_per_s, estimate }, floor }))
     }
@@ -262,16 +252,13 @@ impl LawKind for ImmersionFile {
         let terms = terms(agent.robot).ok_or_else(none)?;
         let (order, phi) = (terms.order(), terms.regressor());
         let antiderivatives = match &self.antiderivatives {
-            Some(texts) => {
-                length("antiderivatives", &texts.span, texts.value.len(), phi.len(), agent.agent)?;
-                list(&texts.value, &derivatives(order))?
-            }
+            Some(texts) => list(&texts.value, &derivatives(order))?,
             None => {
                 phi.iter().map(|phi| Immersion::antiderivative(order, phi)).collect::<Option<_>>().ok_or_else(none)?
             }
         };
-        let gain_per_s = positive_or("gain_per_s", &self.gain_per_s, GAIN)?;
-        let estimate = adapted(self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), agent)?;
+        let gain_per_s = number_or(&self.gain_per_s, GAIN);
+        let estimate = adapted(self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), agent);
         let floor = number_or(&self.floor, FLOOR);
         Ok(Arc::new(ChainLaw { step: ChainStep::Immersion { gain_per_s, estimate, antiderivatives }, floor }))
     }

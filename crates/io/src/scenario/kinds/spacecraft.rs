@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use forwardstep_core::Gain;
 use forwardstep_core::attitude::{IDENTITY, Quaternion};
-use forwardstep_core::plant::{Spacecraft, SpacecraftError, Wheel, Wheels};
+use forwardstep_core::plant::{SpacecraftError, Wheel, Wheels};
 use forwardstep_sim::{AttitudeLaw, AxisUnit, Law, RobotSetup, SpacecraftModel, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -146,13 +146,18 @@ fn spacecraft(file: &SpacecraftFile) -> Result<RobotSetup, Fault> {
         }
     };
     let place = &file.inertia_kg_m2;
-    let inertia_kg_m2 = match gain("inertia_kg_m2", &place.value, place, "spacecraft", 3)? {
-        Gain::Matrix(entries) => std::array::from_fn(|row| std::array::from_fn(|column| entries[3 * row + column])),
-        Gain::Diagonal(entries) => diagonal(|k| entries[k]),
+    let sized = |found| length("inertia_kg_m2", &place.span, found, 3, "spacecraft");
+    let inertia_kg_m2 = match gain("inertia_kg_m2", &place.value, place)? {
+        Gain::Matrix(entries) => {
+            sized(entries.len().isqrt())?;
+            std::array::from_fn(|row| std::array::from_fn(|column| entries[3 * row + column]))
+        }
+        Gain::Diagonal(entries) => {
+            sized(entries.len())?;
+            diagonal(|k| entries[k])
+        }
         Gain::Number(entry) | Gain::Bandwidth(entry) => diagonal(|_| entry),
     };
-    Spacecraft::new(inertia_kg_m2, wheels.clone(), false)
-        .map_err(|error| fault(place, SpacecraftProblem::Unsound(error)))?;
     Ok(RobotSetup {
         kind: Arc::new(SpacecraftModel { inertia_kg_m2, wheels }),
         theta: Vec::new(),
@@ -215,15 +220,14 @@ impl LawKind for AttitudeFile {
         robot.kind.is::<SpacecraftModel>()
     }
 
-    fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
-        let agent = agent.agent;
+    fn law(&self, _: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
         Ok(Arc::new(AttitudeLaw {
             alpha: [
                 number_or(&self.error_gain_per_s2, ERROR_GAIN_PER_S2),
                 number_or(&self.rate_gain_per_s, RATE_GAIN_PER_S),
             ],
-            filter: gain_or("filter_gain_per_s", &self.filter_gain_per_s, FILTER_GAIN_PER_S, agent, 4)?,
-            damping: gain_or("damping", &self.damping, DAMPING, agent, 4)?,
+            filter: gain_or("filter_gain_per_s", &self.filter_gain_per_s, FILTER_GAIN_PER_S)?,
+            damping: gain_or("damping", &self.damping, DAMPING)?,
         }))
     }
 }

@@ -13,7 +13,7 @@ use thiserror::Error;
 
 use super::{
     At, Body, DampingFile, EstimateStartFile, Fault, GainFile, GainOrBandwidth, LawKind, LawReader, LawTable, Mistake,
-    adaptation, damping, estimate, fault, filled, gain_or, length, number_or, values,
+    adaptation, damping, estimate, fault, filled, gain_or, number_or, values,
 };
 use crate::scenario::gains::{has_scales, known_or_given};
 use crate::scenario::push_problem::PushProblem;
@@ -166,7 +166,6 @@ impl LawKind for TaskSpaceFile {
     fn law(&self, reader: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
         let LawReader { agent, robot, body, .. } = *reader;
         let (tip, theta, kinematic_names) = tip(self, agent, robot, body)?;
-        let p = theta.len();
         let scaled = has_scales(robot);
         let damping = match &self.damping {
             None if !scaled => Gain::Number(DAMPING),
@@ -176,22 +175,22 @@ impl LawKind for TaskSpaceFile {
             None if !scaled => Gain::Number(ADAPTATION),
             given => adaptation(given.as_ref(), reader)?,
         };
-        let kinematic_adaptation = gain_or("kinematic_gain", &self.kinematic_gain, KINEMATIC_GAIN, agent, p)?;
-        let bounds = self.bounds.as_ref().map(|place| bounds(&place.value, agent, p)).transpose()?;
+        let kinematic_adaptation = gain_or("kinematic_gain", &self.kinematic_gain, KINEMATIC_GAIN)?;
+        let bounds = self.bounds.as_ref().map(|place| bounds(&place.value));
         if let (Some(place), Gain::Matrix(_)) = (&self.bounds, &kinematic_adaptation) {
             return Err(fault(place, TipProblem::BoundsOfMatrix));
         }
         let kinematic_start = match &self.kinematic_start {
             None => theta.iter().map(|length| KINEMATIC_START * length).collect(),
-            Some(file) => known_or_given("kinematic_start.given", file, agent, &theta)?,
+            Some(file) => known_or_given(file, &theta),
         };
         Ok(Arc::new(TaskSpaceLaw {
             tip,
             kinematic_names,
             damping,
             adaptation,
-            estimate_start: estimate(self.estimate_start.as_ref(), reader)?,
-            task_gain: gain_or("task_gain", &self.task_gain, TASK_GAIN, agent, robot.axes.len())?,
+            estimate_start: estimate(self.estimate_start.as_ref(), reader),
+            task_gain: gain_or("task_gain", &self.task_gain, TASK_GAIN)?,
             kappa: number_or(&self.torque_share, TORQUE_SHARE),
             alpha_per_s: number_or(&self.reference_gain_per_s, REFERENCE_GAIN_PER_S),
             kinematic_adaptation: Some(kinematic_adaptation),
@@ -265,11 +264,7 @@ fn of_tree(file: &TipFile, agent: &str, tree: &Tree, body: &Body) -> Result<OfTr
     Ok((TipSetup::Point { point, coordinates, uncertain }, tip))
 }
 
-fn bounds(file: &BoundsFile, agent: &str, p: usize) -> Result<ParameterBounds, Fault> {
-    let list = |key, list: &At<Vec<At<f64>>>| {
-        length(key, &list.span, list.value.len(), p, agent)?;
-        Ok::<_, Fault>(values(&list.value))
-    };
-    let (lower, upper) = (list("lower_m", &file.lower_m)?, list("upper_m", &file.upper_m)?);
-    Ok(ParameterBounds { lower, upper, margin: number_or(&file.margin_m, MARGIN_M) })
+fn bounds(file: &BoundsFile) -> ParameterBounds {
+    let [lower, upper] = [&file.lower_m, &file.upper_m].map(|list| values(&list.value));
+    ParameterBounds { lower, upper, margin: number_or(&file.margin_m, MARGIN_M) }
 }

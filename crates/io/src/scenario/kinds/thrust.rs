@@ -110,7 +110,7 @@ impl RobotKind for RotorcraftFile {
         let place = &self.inertia_kg_m2;
         let model = RotorcraftModel {
             gravity: number_or(&self.gravity_m_s2, GRAVITY_M_S2),
-            inertia: gain("inertia_kg_m2", &place.value, place, "rotorcraft", 3)?,
+            inertia: gain("inertia_kg_m2", &place.value, place)?,
             rotors: self.rotors.as_ref().map(|rotors| self::rotors(&rotors.value)),
         };
         Ok(RobotRead::new(robot(model, self.mass_kg.value)))
