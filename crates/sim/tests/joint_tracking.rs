@@ -236,7 +236,7 @@ fn what_makes_no_sense_is_refused() {
     assert!(refused(sound().roots(&[1.0; 5])).contains("4 derivatives"));
     assert!(refused(sound().roots(&[1.0, -1.0])).contains("positive"));
     assert!(refused(AgentSetup { target: None, ..sound() }).contains("none"));
-    assert!(refused(sound().following(swing(3))).contains("2 are needed"));
+    assert!(refused(sound().following(swing(3))).contains("needs 2"));
     assert!(refused(AgentSetup { manipulability: 1.0, ..sound() }).contains("following a target"));
     let given = |vectors: usize| {
         let agent = sound();

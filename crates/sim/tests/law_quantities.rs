@@ -7,6 +7,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use common::{chains, masses, single, vehicles};
+use forwardstep_core::Gain;
 use forwardstep_core::controller::{Floor, ParameterBounds};
 use forwardstep_core::plant::Rotors;
 use forwardstep_sim::{
@@ -18,7 +19,9 @@ use forwardstep_sim::{
 fn refused(mut setup: Setup, change: impl FnOnce(&mut Setup)) -> String {
     change(&mut setup);
     match simulate(&setup, &mut |_| ControlFlow::Break(())) {
-        Err(error @ SetupError::Quantity(_)) => error.path(&setup).to_string(),
+        Err(error @ (SetupError::Quantity(_) | SetupError::Entries { .. } | SetupError::Gain { .. })) => {
+            error.path(&setup).to_string()
+        }
         other => panic!("{:?}", other.map(|outcome| outcome.ending)),
     }
 }
@@ -111,4 +114,30 @@ fn numbers_of_the_other_laws_are_refused_under_their_keys() {
     assert_eq!(bounds([0.5, 1.6], [1.5, 1.5], 0.01), "agents[0].law.bounds.upper_m[1]");
     assert_eq!(bounds([f64::NAN, 0.5], [1.5, 1.5], 0.01), "agents[0].law.bounds.lower_m[0]");
     assert_eq!(bounds([0.5, 0.5], [1.5, f64::INFINITY], 0.01), "agents[0].law.bounds.upper_m[1]");
+}
+
+#[test]
+fn gains_and_lists_are_refused_under_their_keys() {
+    let spin = single::half_a_turn([0.1, -0.05, 0.08]);
+    let craft = single::craft(spin, single::targets().swap_remove(2), 1.0);
+    let turn = |change: &dyn Fn(&mut AttitudeLaw)| law(craft.clone(), |law: &mut AttitudeLaw| change(law));
+    let tip = |change: &dyn Fn(&mut TaskSpaceLaw)| law(single::planar(None, 0.3), |law: &mut TaskSpaceLaw| change(law));
+    let crooked = || Gain::Matrix(vec![1.0, 2.0, 2.0, 1.0]);
+    assert_eq!(turn(&|law| law.filter = Gain::Diagonal(vec![1.0; 3])), "agents[0].law.filter_gain_per_s");
+    assert_eq!(turn(&|law| law.damping = Gain::Number(-1.0)), "agents[0].law.damping");
+    assert_eq!(tip(&|law| law.damping = Gain::Bandwidth(-1.0)), "agents[0].law.damping.bandwidth_per_s");
+    assert_eq!(tip(&|law| law.damping = crooked()), "agents[0].law.damping.gain");
+    assert_eq!(tip(&|law| law.adaptation = Gain::Number(0.0)), "agents[0].law.adaptation_gain");
+    assert_eq!(tip(&|law| law.task_gain = Gain::Diagonal(vec![1.0, -1.0])), "agents[0].law.task_gain[1]");
+    assert_eq!(tip(&|law| law.kinematic_adaptation = Some(crooked())), "agents[0].law.kinematic_gain");
+    assert_eq!(tip(&|law| law.estimate_start.clear()), "agents[0].law.estimate_start.given");
+    assert_eq!(tip(&|law| law.kinematic_start[1] = f64::NAN), "agents[0].law.kinematic_start.given[1]");
+    let bounds = |lower: &[f64], upper: &[f64]| {
+        let bounds = ParameterBounds { lower: lower.to_vec(), upper: upper.to_vec(), margin: 0.01 };
+        refused(single::planar(Some(bounds), 0.3), |_| {})
+    };
+    assert_eq!(bounds(&[0.5], &[1.5, 1.5]), "agents[0].law.bounds.lower_m");
+    assert_eq!(bounds(&[0.5, 0.5], &[1.5]), "agents[0].law.bounds.upper_m");
+    assert_eq!(refused(craft.clone(), |s| s.agents[0].start.q[2] = f64::NAN), "agents[0].start.position[2]");
+    assert_eq!(refused(craft, |s| s.agents[0].start.dq.clear()), "agents[0].start.velocity");
 }

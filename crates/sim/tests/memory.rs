@@ -123,7 +123,7 @@ fn a_stiff_run_ends_within_its_budget_and_names_agent_rate_and_gain() {
     let _turn = turn();
     for budget in [40_000_u64, 1_000_000, 7_777_777] {
         let mut setup = ring(2e7, 5.0, 50.0, budget);
-        setup.time.record_every_s = 1e-5;
+        setup.time.record_every_s = 1.5e-5;
         // Room for the rows that chunks are taken for, and for break-points.
         let recorded = 8 * (4096 + 2) * 20;
         let (outcome, grown) = measured(&setup);

@@ -54,7 +54,7 @@ fn lambda_is_read_beside_the_adaptive_law() {
     setup.agents[0].manipulability = 0.5;
     assert!(outcome(&setup).is_ok());
     setup.agents[0].manipulability = -0.5;
-    assert!(matches!(outcome(&setup), Err(SetupError::Roots { .. })));
+    assert!(matches!(outcome(&setup), Err(SetupError::Quantity(error)) if error.path.name() == "manipulability_gain"));
 }
 
 /// A mass under (24) with the adaptive law.

@@ -177,7 +177,7 @@ fn what_makes_no_sense_is_refused() {
     };
     assert!(matches!(refused(&arm), SetupError::LawOfAnother { .. }));
     assert!(matches!(refused(&|s| s.agents[1].manipulability = 0.5), SetupError::NoManipulability { .. }));
-    assert!(matches!(refused(&|s| s.agents[1].start.rest = vec![0.0; 3]), SetupError::Length { .. }));
+    assert!(matches!(refused(&|s| s.agents[1].start.rest = vec![0.0; 3]), SetupError::Entries { got: 9, .. }));
     assert!(matches!(refused(&|s| s.agents[1].robot.theta[0] = -1.0), SetupError::Quantity(_)));
     assert!(matches!(refused(&|s| law(s, &|law| law.floor = Floor::Stops(0.0))), SetupError::Quantity(_)));
     assert!(matches!(refused(&|s| s.reference = Arc::new(Tracking)), SetupError::NotTracking { .. }));
@@ -188,5 +188,6 @@ fn what_makes_no_sense_is_refused() {
         s.agents[1].robot.kind = flat.clone();
         s.agents[1].start.rest = vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
     });
-    assert!(matches!(refused_flat, SetupError::Gain { .. }));
+    let SetupError::Quantity(error) = refused_flat else { panic!("{refused_flat:?}") };
+    assert_eq!(error.path.to_string(), "agents[1].robot.inertia_kg_m2[2]");
 }
