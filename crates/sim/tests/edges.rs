@@ -82,6 +82,17 @@ fn only_the_last_phase_of_a_schedule_that_ends_may_last_any_time() {
 }
 
 #[test]
+fn a_run_has_so_many_switches_and_no_more() {
+    let said = |schedule| Network { schedule, ..pair() }.validate(20.0).is_ok();
+    let graphs = || vec![vec![edge(0, 1)], vec![edge(1, 0)]];
+    for (dwell_s, is_said) in [(2.1e-6, true), (1.9e-6, false)] {
+        let phases = graphs().into_iter().map(|edges| Phase { edges, dwell_s }).collect();
+        assert_eq!(said(Schedule::periodic(phases)), is_said);
+        assert_eq!(said(Schedule::random(graphs(), [0.5 * dwell_s, 1.5 * dwell_s], 1)), is_said);
+    }
+}
+
+#[test]
 fn a_formula_has_to_be_known_to_the_end_of_the_run_and_no_further() {
     let slow = Expression::variable(0).sin_of() * 0.1 + 0.2;
     let delays = vec![Delay::new(BoundedFormula::new(slow, 20.0))];
