@@ -25,22 +25,49 @@
 //! A push that never ends leaves sᵢ = K⁻¹τ_ext and zᵢ = −sᵢ, and where z is in Bᵢ and Wᵢ the network then rests elsewhere.
 
 use forwardstep_core::reference::polynomial;
-use forwardstep_sim::graph::{Edge, SpanningTree, laplacian, spanning_tree};
+use forwardstep_sim::graph::Edge;
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral};
-use forwardstep_sim::{AgentSetup, Exchange, Setup};
-use nalgebra::DMatrix;
+use forwardstep_sim::{AgentSetup, Setup};
 use thiserror::Error;
 
+use crate::conserved::Conserved;
 use crate::kinds::is_lagrangian;
-use crate::manipulation::error_integral;
+use crate::null_vector::{NoNullVector, NullVector, null_vector};
 
 /// The value that all agents will agree on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prediction {
     /// c, one entry per axis.
     pub value: Vec<f64>,
-    /// How much each agent's initial data counts: the left null vector of the Laplacian, summing to one.
+    /// How far rounding, of the decimals of the data and of what is computed from them, can have moved each entry of `value`;
+    /// that of ∫ s of Remark 4 does not count.
+    pub error_bound: Vec<f64>,
+    /// How much each agent's initial data counts: the left null vector of the Laplacian, summing to one. Zero for agents that
+    /// do not reach all others, and for what is below the range of numbers.
     pub influence: Vec<f64>,
+    /// Bound on the relative error of every entry of `influence`.
+    pub influence_error: f64,
+}
+
+impl Prediction {
+    /// The value on every axis, to six digits after the point at most, and no more than are known.
+    pub fn known_digits(&self) -> Vec<String> {
+        let each = self.value.iter().zip(&self.error_bound);
+        each.map(|(value, error_bound)| known_digits(*value, *error_bound)).collect()
+    }
+}
+
+fn known_digits(value: f64, error_bound: f64) -> String {
+    const MOST: usize = 6;
+    let is_known = |digits: &usize| error_bound <= 0.5 * 0.1_f64.powi(*digits as i32);
+    match (0..=MOST).rev().find(is_known) {
+        Some(digits) => {
+            // What rounds to zero has no sign.
+            let text = format!("{value:.digits$}");
+            if text.bytes().any(|digit| (b'1'..=b'9').contains(&digit)) { text } else { text.replace('-', "") }
+        }
+        None => format!("{value:.0} ± {error_bound:.0e}"),
+    }
 }
 
 /// Why the value agreed upon cannot be known before the run.
@@ -86,17 +113,25 @@ pub enum NoPrediction {
     #[error("the reference dynamics are not among those that come with forwardstep")]
     Own,
     /// There is no single value.
-    #[error("no agent reaches all others, so nothing makes them agree")]
-    NoSpanningTree,
+    #[error(
+        "no agent reaches all others, so nothing makes them agree: {closed_groups} groups hear nobody outside themselves"
+    )]
+    NoSpanningTree {
+        /// How many groups hear nobody outside themselves.
+        closed_groups: usize,
+    },
     /// A root is not positive.
     #[error("the reference dynamics of agent number {} are not stable", agent + 1)]
     Roots {
         /// Index of the agent.
         agent: usize,
     },
-    /// The arithmetic failed.
-    #[error("the left null vector of the Laplacian could not be computed")]
-    NullVector,
+    /// Too few of its digits are known.
+    #[error("rounding leaves it uncertain by ± {error_bound:.1e}")]
+    Uncertain {
+        /// How far it can be from what was computed; infinite where no bound was found.
+        error_bound: f64,
+    },
 }
 
 /// Predicts the value agreed upon for a fixed graph with constant delays.
@@ -131,9 +166,15 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     if !edges.iter().all(|edge| setup.network.delays[edge.delay].is_constant()) {
         return Err(NoPrediction::VaryingDelay);
     }
+    if !edges.iter().all(|edge| edge.weight.constant().is_some()) {
+        return Err(NoPrediction::VaryingWeight);
+    }
     let n = setup.agents.len();
-    let l = laplacian(n, edges).ok_or(NoPrediction::VaryingWeight)?;
-    let influence = left_null_vector(n, edges, &l)?;
+    let NullVector { entries: influence, error: influence_error } =
+        null_vector(n, edges).map_err(|reason| match reason {
+            NoNullVector::Classes(closed_groups) => NoPrediction::NoSpanningTree { closed_groups },
+            NoNullVector::Varies => NoPrediction::VaryingWeight,
+        })?;
     // (3) and (23) hold no z in what they conserve.
     let counts = |agent: &usize| setup.reference.is::<Consensus>() && influence[*agent] > 0.0;
     if let Some(agent) = (0..n).filter(counts).find(|agent| pushed_for_ever(&setup.agents[*agent])) {
@@ -145,19 +186,23 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
         .enumerate()
         .map(|(agent, a)| polynomial(&a.roots_per_s).map_err(|_| NoPrediction::Roots { agent }))
         .collect::<Result<_, _>>()?;
-    let axes = setup.agents[0].start.q.len();
-    let value = (0..axes)
-        .map(|axis| {
-            let (mut quantity, mut weight) = (0.0, 0.0);
-            for i in 0..n {
-                let (share, at_rest) = contribution(setup, edges, &alpha[i], i, axis);
-                quantity += influence[i] * (share + shift(setup, &alpha[i], i, axis, influence[i])?);
-                weight += influence[i] * at_rest;
-            }
-            Ok(quantity / weight)
-        })
-        .collect::<Result<_, _>>()?;
-    Ok(Prediction { value, influence })
+    let conserved = Conserved { setup, heard: &by_receiver(n, edges), alpha: &alpha, influence: &influence };
+    let (mut value, mut error_bound) = (Vec::new(), Vec::new());
+    for axis in 0..setup.agents[0].start.q.len() {
+        let found = conserved.quotient(axis, influence_error)?;
+        value.push(found.value);
+        error_bound.push(found.error_bound);
+    }
+    Ok(Prediction { value, error_bound, influence, influence_error })
+}
+
+/// The edges by who hears.
+fn by_receiver(agents: usize, edges: &[Edge]) -> Vec<Vec<Edge>> {
+    let mut heard = vec![Vec::new(); agents];
+    for edge in edges {
+        heard[edge.to].push(*edge);
+    }
+    heard
 }
 
 /// Whether something acts on the agent without end.
@@ -165,69 +210,17 @@ fn pushed_for_ever(agent: &AgentSetup) -> bool {
     agent.pushes.iter().any(|push| push.span_s()[1] == f64::INFINITY)
 }
 
-/// u ≥ 0 with uᵀL = 0 and Σu = 1. Only the agents that reach all others count.
-fn left_null_vector(n: usize, edges: &[Edge], l: &[f64]) -> Result<Vec<f64>, NoPrediction> {
-    let SpanningTree::Rooted { roots } = spanning_tree(n, edges) else { return Err(NoPrediction::NoSpanningTree) };
-    // Lᵀu = 0 on the roots, with its last equation, which the others imply, replaced by Σu = 1.
-    let m = roots.len();
-    let entry = |row: usize, column: usize| {
-        if row + 1 == m { 1.0 } else { l[roots[column] * n + roots[row]] }
-    };
-    let mut right = nalgebra::DVector::zeros(m);
-    right[m - 1] = 1.0;
-    let solution = DMatrix::from_fn(m, m, entry).lu().solve(&right).ok_or(NoPrediction::NullVector)?;
-    let mut influence = vec![0.0; n];
-    for (root, share) in roots.iter().zip(solution.iter()) {
-        influence[*root] = *share;
-    }
-    Ok(influence)
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Agent i's term of Q at t = 0, and what it is per unit of c at rest.
-fn contribution(setup: &Setup, edges: &[Edge], alpha: &[f64], i: usize, axis: usize) -> (f64, f64) {
-    let start = &setup.agents[i].start;
-    let z = |k: usize| reference_start(&setup.agents[i], k, axis);
-    let (q, dq) = (start.q[axis], start.dq[axis]);
-    let (b, w) = if setup.reference.is::<PureIntegral>() {
-        (alpha[0] * q + alpha[1] * dq + z(1), alpha[1] * q + dq)
-    } else {
-        let above = || alpha.iter().enumerate().skip(2);
-        let b = alpha[0] * q + alpha[1] * dq - alpha[1] * (dq - z(0));
-        (
-            b + above().map(|(r, a)| a * z(r - 1)).sum::<f64>(),
-            alpha[1] * q + above().map(|(r, a)| a * z(r - 2)).sum::<f64>(),
-        )
-    };
-    let kappa_0 = setup.agents[i].roots_per_s[0];
-    let velocity = if setup.exchange == Exchange::PositionVelocity { 1.0 / kappa_0 } else { 0.0 };
-    let (mut degree, mut past, mut past_at_rest) = (0.0, 0.0, 0.0);
-    let weighted = edges.iter().filter(|edge| edge.to == i).filter_map(|edge| Some((edge, edge.weight.constant()?)));
-    for (edge, weight) in weighted {
-        let delay_s = setup.network.delays[edge.delay].max_s();
-        let sender = &setup.agents[edge.from].start;
-        let ramp = sender.q[axis] - delay_s * sender.dq[axis];
-        degree += weight;
-        past += weight * (delay_s * sender.q[axis] - velocity * ramp);
-        past_at_rest += weight * (delay_s - velocity);
-    }
-    ((b + degree * w) / alpha[0] + past, 1.0 + degree * alpha[1] / alpha[0] + past_at_rest)
-}
-
-/// What Remark 4 adds to agent i's term of Q in the course of time.
-fn shift(setup: &Setup, alpha: &[f64], i: usize, axis: usize, influence: f64) -> Result<f64, NoPrediction> {
-    let agent = &setup.agents[i];
-    if agent.manipulability == 0.0 || influence == 0.0 {
-        return Ok(0.0);
-    }
-    let integral = error_integral(agent, axis, reference_start(agent, 0, axis));
-    integral.map(|s| agent.manipulability / alpha[0] * s).ok_or(NoPrediction::Manipulability { agent: i })
-}
-
-/// z^(k)(0), with the defaults of [`forwardstep_sim::Start`].
-fn reference_start(agent: &AgentSetup, k: usize, axis: usize) -> f64 {
-    match agent.start.reference.get(k) {
-        Some(z) => z[axis],
-        None if k == 0 => agent.start.dq[axis],
-        None => 0.0,
+    #[test]
+    fn only_known_digits_are_printed_and_zero_has_no_sign() {
+        assert_eq!(known_digits(-0.75, 1e-15), "-0.750000");
+        assert_eq!(known_digits(-1e-9, 1e-15), "0.000000");
+        assert_eq!(known_digits(-0.0, 0.0), "0.000000");
+        assert_eq!(known_digits(0.123_456_7, 4e-4), "0.123");
+        assert_eq!(known_digits(-0.4, 0.3), "0");
+        assert_eq!(known_digits(1234.5, 20.0), "1234 ± 2e1");
     }
 }

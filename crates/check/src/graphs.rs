@@ -1,7 +1,9 @@
 //! What is found of graphs and their schedule.
 
+use std::collections::HashMap;
+
 use forwardstep_sim::Setup;
-use forwardstep_sim::graph::Edge;
+use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::schedule::{Dwell, Extent, Window};
 
 use crate::hypothesis::{GraphEvidence, Hypothesis, Id, Named};
@@ -87,9 +89,9 @@ pub(crate) fn mutual_weights(setup: &Setup) -> Hypothesis {
     let leader = setup.leader();
     let among = |edge: &&Edge| Some(edge.from) != leader && Some(edge.to) != leader;
     let one_way = setup.network.schedule.graphs.iter().find_map(|graph| {
-        let returned = |edge: &Edge| {
-            graph.iter().any(|back| back.from == edge.to && back.to == edge.from && back.weight == edge.weight)
-        };
+        let weights: HashMap<(usize, usize), Weight> =
+            graph.iter().map(|edge| ((edge.from, edge.to), edge.weight)).collect();
+        let returned = |edge: &Edge| weights.get(&(edge.to, edge.from)) == Some(&edge.weight);
         graph.iter().filter(among).find(|edge| !returned(edge))
     });
     let evidence = one_way.map_or(GraphEvidence::Mutual, |edge| GraphEvidence::OneWay {

@@ -7,12 +7,14 @@
 //! what is found about graphs, links and the loop; a file for each kind of system; a file for each theorem.
 
 mod agreement;
+mod conserved;
 mod graphs;
 pub mod hypothesis;
 mod kinds;
 mod laws;
 mod links;
 mod manipulation;
+mod null_vector;
 mod report;
 mod sampled;
 mod source;

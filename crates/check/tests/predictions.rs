@@ -122,7 +122,10 @@ fn every_reason_for_which_there_is_none_is_the_one_that_is_said() {
     };
     assert_eq!(said(&varying), Some(NoPrediction::VaryingWeight));
     let one_way = Schedule::fixed(vec![edge(0, 1, 1.0, 0)]);
-    assert_eq!(said(&|setup| setup.network.schedule = one_way.clone()), Some(NoPrediction::NoSpanningTree));
+    assert_eq!(
+        said(&|setup| setup.network.schedule = one_way.clone()),
+        Some(NoPrediction::NoSpanningTree { closed_groups: 2 })
+    );
     assert_eq!(said(&|setup| setup.agents[1].roots_per_s = vec![1.0, 0.0]), Some(NoPrediction::Roots { agent: 1 }));
 }
 

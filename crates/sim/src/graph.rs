@@ -1,6 +1,6 @@
 //! Weighted digraphs in which an edge says who hears whom.
 
-use petgraph::algo::tarjan_scc;
+use petgraph::algo::kosaraju_scc;
 use petgraph::graph::DiGraph;
 
 use crate::formula::BoundedFormula;
@@ -99,14 +99,15 @@ pub fn spanning_tree<'a>(agents: usize, edges: impl IntoIterator<Item = &'a Edge
     }
 }
 
-/// The strongly connected components, each sorted, in order of their first agent.
+/// The strongly connected components, each sorted, in order of their first agent. Without recursion: a path may be as long as
+/// there are agents.
 pub fn strong_components(agents: usize, edges: &[(usize, usize)]) -> Vec<Vec<usize>> {
     let mut graph = DiGraph::<(), (), usize>::with_capacity(agents, edges.len());
     let vertices: Vec<_> = (0..agents).map(|_| graph.add_node(())).collect();
     for &(from, to) in edges {
         graph.add_edge(vertices[from], vertices[to], ());
     }
-    let mut components: Vec<Vec<usize>> = tarjan_scc(&graph)
+    let mut components: Vec<Vec<usize>> = kosaraju_scc(&graph)
         .into_iter()
         .map(|component| {
             let mut agents: Vec<usize> = component.into_iter().map(|vertex| vertex.index()).collect();
@@ -153,6 +154,15 @@ mod tests {
     fn missing_tree_names_the_closed_groups() {
         let graph = edges(&[(0, 1), (3, 2), (2, 3), (3, 1)]);
         assert_eq!(spanning_tree(4, &graph), SpanningTree::Missing { closed_groups: vec![vec![0], vec![2, 3]] });
+    }
+
+    #[test]
+    fn regress_a_path_of_a_million_needs_no_stack() {
+        let n = 1_000_000;
+        let path: Vec<(usize, usize)> = (1..n).map(|k| (k - 1, k)).collect();
+        assert_eq!(strong_components(n, &path).len(), n);
+        let ring: Vec<(usize, usize)> = (0..n).map(|k| (k, (k + 1) % n)).collect();
+        assert_eq!(strong_components(n, &ring), [(0..n).collect::<Vec<_>>()]);
     }
 
     #[test]

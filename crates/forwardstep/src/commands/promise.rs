@@ -1,6 +1,6 @@
 //! What the theorems promise for a setup, and how it is shown.
 
-use forwardstep::check::{self, Answer, NoPrediction, Report};
+use forwardstep::check::{self, Answer, NoPrediction, Prediction, Report};
 use forwardstep::io::scenario::Scenario;
 use forwardstep::sim::Setup;
 
@@ -9,14 +9,20 @@ use crate::console::{BAD, BOLD, Console, DIM, FAIR, GOOD};
 /// What was promised before a run.
 pub(crate) struct Promise {
     pub(crate) report: Report,
-    /// The value that the agents will agree on, per axis, or why it is not known.
-    pub(crate) agreement: Result<Vec<f64>, NoPrediction>,
+    /// The value that the agents will agree on, or why it is not known.
+    pub(crate) agreement: Result<Prediction, NoPrediction>,
+}
+
+impl Promise {
+    /// The value that the agents will agree on, per axis, if it is known.
+    pub(crate) fn value(&self) -> Option<&[f64]> {
+        self.agreement.as_ref().ok().map(|prediction| prediction.value.as_slice())
+    }
 }
 
 /// Looks at the hypotheses.
 pub(crate) fn promise(setup: &Setup) -> Promise {
-    let agreement = check::predict(setup).map(|prediction| prediction.value);
-    Promise { report: check::check(setup), agreement }
+    Promise { report: check::check(setup), agreement: check::predict(setup) }
 }
 
 /// The scenario in one line, and the verdicts.
@@ -32,7 +38,7 @@ pub(crate) fn show(scenario: &Scenario, promise: &Promise, console: &mut Console
         console.line(format_args!("    {DIM}{}{DIM:#}", hypothesis.because()));
     }
     match agreement {
-        Ok(value) => console.line(format_args!("  predicted agreement: {}", list(value))),
+        Ok(prediction) => console.line(format_args!("  predicted agreement: {}", first(&prediction.known_digits()))),
         Err(reason) => console.line(format_args!("  {DIM}predicted agreement: none, since {reason}{DIM:#}")),
     }
     for notice in &scenario.notices {
@@ -51,10 +57,14 @@ pub(crate) fn style(answer: Answer) -> anstyle::Style {
 
 /// Numbers to a precision that people compare by; of many the first few.
 pub(crate) fn list(values: &[f64]) -> String {
+    first(&values.iter().map(|value| format!("{value:.6}")).collect::<Vec<_>>())
+}
+
+fn first(values: &[String]) -> String {
     const SHOWN: usize = 8;
-    let shown: Vec<_> = values.iter().take(SHOWN).map(|value| format!("{value:.6}")).collect();
+    let shown = values[..values.len().min(SHOWN)].join(", ");
     match values.len().saturating_sub(SHOWN) {
-        0 => format!("({})", shown.join(", ")),
-        more => format!("({}, and {more} more)", shown.join(", ")),
+        0 => format!("({shown})"),
+        more => format!("({shown}, and {more} more)"),
     }
 }

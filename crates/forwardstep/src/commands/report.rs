@@ -22,7 +22,7 @@ fn finish(folder: &Path, kinds: &Kinds, console: &mut Console) -> Result<Status,
     for sentence in &remarks {
         remark(format_args!("note: {sentence}"));
     }
-    let record = run.record(&promise.report, promise.agreement.clone().ok(), &remarks);
+    let record = run.record(&promise.report, promise.value().map(<[f64]>::to_vec), &remarks);
     let files = run.write_report(&record).map_err(refused)?;
     for file in files {
         console.line(file.display());

@@ -46,7 +46,7 @@ fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<
     outcome.statistics.wall = Some(started.elapsed());
 
     let setup = &scenario.setup;
-    let metrics = Metrics::of(setup, &outcome.recording, promise.agreement.as_deref().ok(), scenario.goal);
+    let metrics = Metrics::of(setup, &outcome.recording, promise.value(), scenario.goal);
     let goal = scenario.goal.map(|goal| GoalOutcome { goal, met: goal.is_met(setup, &outcome, &metrics) });
     let mut record = record(&scenario, &promise, &outcome, goal);
     if setup.control.is_some() && !matches!(outcome.ending, Ending::Interrupted { .. }) {
@@ -85,7 +85,7 @@ fn record<'a>(
         setup: &scenario.setup,
         outcome,
         verdicts: &promise.report,
-        predicted_agreement: promise.agreement.clone().ok(),
+        predicted_agreement: promise.value().map(<[f64]>::to_vec),
         goal,
         digital: None,
         notices: scenario.notices.iter().map(ToString::to_string).collect(),

@@ -25,7 +25,7 @@ use super::value_problem::ValueProblem;
 use crate::SourceText;
 
 /// Agents that are accepted.
-const MOST_AGENTS: u32 = 10_000;
+const MOST_AGENTS: u32 = 200_000;
 /// Letters that a name may have, without the number that a population adds.
 const LONGEST_NAME: usize = 64;
 /// The highest order of reference dynamics that is accepted.

@@ -1,0 +1,169 @@
+//! The quantity that `agreement` derives, in numbers, with a bound on what rounding does to it.
+
+use std::ops::{Add, Mul};
+
+use forwardstep_sim::graph::Edge;
+use forwardstep_sim::reference::PureIntegral;
+use forwardstep_sim::{AgentSetup, Exchange, Setup};
+
+use crate::agreement::NoPrediction;
+use crate::manipulation::error_integral;
+use crate::null_vector::{Positive, sum_depth};
+
+/// Of the size of what is averaged: a value that is less certain than this is none.
+const USEFUL: f64 = 1e-3;
+/// Half the distance from one to the next number.
+const ROUNDING: f64 = 0.5 * f64::EPSILON;
+
+/// A sum, and the sum of the sizes of its terms, which tells what rounding can do to it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tally {
+    value: f64,
+    size: f64,
+}
+
+impl Tally {
+    fn of(value: f64) -> Tally {
+        Tally { value, size: value.abs() }
+    }
+}
+
+impl Add for Tally {
+    type Output = Tally;
+
+    fn add(self, other: Tally) -> Tally {
+        Tally { value: self.value + other.value, size: self.size + other.size }
+    }
+}
+
+impl Mul<f64> for Tally {
+    type Output = Tally;
+
+    fn mul(self, factor: f64) -> Tally {
+        Tally { value: self.value * factor, size: self.size * factor.abs() }
+    }
+}
+
+/// Q of a network.
+pub(crate) struct Conserved<'a> {
+    pub(crate) setup: &'a Setup,
+    /// For each agent the edges along which it hears, with constant weights.
+    pub(crate) heard: &'a [Vec<Edge>],
+    /// For each agent the coefficients of its polynomial.
+    pub(crate) alpha: &'a [Vec<f64>],
+    /// The left null vector.
+    pub(crate) influence: &'a [f64],
+}
+
+/// A value and how far it can be from the truth.
+pub(crate) struct Bounded {
+    pub(crate) value: f64,
+    pub(crate) error_bound: f64,
+}
+
+/// A weighted sum over all agents, and what rounding can have done to it.
+#[derive(Default)]
+struct Sum {
+    terms: Vec<f64>,
+    errors: Vec<f64>,
+    sizes: Vec<f64>,
+}
+
+impl Sum {
+    fn add(&mut self, tally: Tally, weight: f64, relative: f64) {
+        self.terms.push(weight * tally.value);
+        self.sizes.push(weight * tally.size);
+        self.errors.push(weight * tally.size * relative);
+    }
+
+    /// Value, bound on its error, size.
+    fn total(&self) -> [f64; 3] {
+        [&self.terms, &self.errors, &self.sizes].map(|all| f64::sum(all))
+    }
+}
+
+impl Conserved<'_> {
+    /// c on one axis: Q over what it is per unit of c at rest.
+    ///
+    /// # Errors
+    /// [`NoPrediction::Manipulability`] and [`NoPrediction::Uncertain`].
+    pub(crate) fn quotient(&self, axis: usize, influence_error: f64) -> Result<Bounded, NoPrediction> {
+        let (mut quantity, mut at_rest) = (Sum::default(), Sum::default());
+        for (i, weight) in self.influence.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
+            let (share, rest) = self.contribution(i, axis);
+            // Coefficients, their products and sums over the edges; what the decimals of the data were rounded by.
+            let roundings = 3 * self.alpha[i].len() + self.heard[i].len() + 20;
+            let relative = influence_error + ROUNDING * (roundings as f64 + sum_depth(self.influence.len()));
+            quantity.add(share + self.shift(i, axis)?, *weight, relative);
+            at_rest.add(rest, *weight, relative);
+        }
+        let [quantity, quantity_error, size] = quantity.total();
+        let [at_rest, at_rest_error, _] = at_rest.total();
+        // Minus zero is no answer.
+        let value = quantity / at_rest + 0.0;
+        let error_bound = 1.001 * (quantity_error + value.abs() * at_rest_error) / (at_rest - at_rest_error);
+        let known = value.is_finite() && at_rest > at_rest_error && error_bound <= USEFUL * size / at_rest;
+        if known { Ok(Bounded { value, error_bound }) } else { Err(uncertain(error_bound)) }
+    }
+
+    /// Agent i's term of Q at t = 0, and what it is per unit of c at rest.
+    fn contribution(&self, i: usize, axis: usize) -> (Tally, Tally) {
+        let (setup, alpha) = (self.setup, &self.alpha[i]);
+        let start = &setup.agents[i].start;
+        let z = |k: usize| Tally::of(reference_start(&setup.agents[i], k, axis));
+        let (q, dq) = (Tally::of(start.q[axis]), Tally::of(start.dq[axis]));
+        let (b, w) = if setup.reference.is::<PureIntegral>() {
+            (q * alpha[0] + dq * alpha[1] + z(1), q * alpha[1] + dq)
+        } else {
+            let above = || alpha.iter().enumerate().skip(2);
+            // α₁ q̇ − α₁ s with s = q̇ − z.
+            let b = q * alpha[0] + z(0) * alpha[1];
+            (
+                above().fold(b, |sum, (r, a)| sum + z(r - 1) * *a),
+                above().fold(q * alpha[1], |sum, (r, a)| sum + z(r - 2) * *a),
+            )
+        };
+        let velocity = match setup.exchange {
+            Exchange::PositionVelocity => 1.0 / setup.agents[i].roots_per_s[0],
+            Exchange::Position => 0.0,
+        };
+        let (mut degree, mut past, mut past_at_rest) = (0.0, Tally::default(), Tally::default());
+        for edge in &self.heard[i] {
+            let Some(weight) = edge.weight.constant() else { continue };
+            let delay_s = setup.network.delays[edge.delay].max_s();
+            let sender = &setup.agents[edge.from].start;
+            let (q, dq) = (Tally::of(sender.q[axis]), Tally::of(sender.dq[axis]));
+            let ramp = q + dq * -delay_s;
+            degree += weight;
+            past = past + (q * delay_s + ramp * -velocity) * weight;
+            past_at_rest = past_at_rest + (Tally::of(delay_s) + Tally::of(-velocity)) * weight;
+        }
+        let per_alpha = 1.0 / alpha[0];
+        let rest = Tally::of(1.0) + Tally::of(degree * alpha[1] * per_alpha) + past_at_rest;
+        ((b + w * degree) * per_alpha + past, rest)
+    }
+
+    /// What Remark 4 adds to agent i's term of Q in the course of time.
+    fn shift(&self, i: usize, axis: usize) -> Result<Tally, NoPrediction> {
+        let agent = &self.setup.agents[i];
+        if agent.manipulability == 0.0 {
+            return Ok(Tally::default());
+        }
+        let integral = error_integral(agent, axis, reference_start(agent, 0, axis));
+        let shift = integral.map(|s| Tally::of(agent.manipulability / self.alpha[i][0] * s));
+        shift.ok_or(NoPrediction::Manipulability { agent: i })
+    }
+}
+
+fn uncertain(error_bound: f64) -> NoPrediction {
+    NoPrediction::Uncertain { error_bound: if error_bound >= 0.0 { error_bound } else { f64::INFINITY } }
+}
+
+/// z^(k)(0), with the defaults of [`forwardstep_sim::Start`].
+fn reference_start(agent: &AgentSetup, k: usize, axis: usize) -> f64 {
+    match agent.start.reference.get(k) {
+        Some(z) => z[axis],
+        None if k == 0 => agent.start.dq[axis],
+        None => 0.0,
+    }
+}
