@@ -23,15 +23,17 @@ pub(crate) fn spanning_tree(setup: &Setup) -> Hypothesis {
     }
     let network = &setup.network;
     let evidence = match network.schedule.window(network.agents, setup.time.end_s) {
-        Window::Uniform { length_s, worst_start_s, roots, for_all_time } => {
-            GraphEvidence::Window { length_s, worst_start_s, roots: Named::all(setup, &roots), for_all_time }
-        }
-        Window::Missing { start_s, closed_groups } => GraphEvidence::Cut {
+        Window::Uniform { length_s, worst_start_s, roots, for_all_time } => GraphEvidence::Window {
+            length_s,
+            worst_start_s,
+            roots: Named::all(setup, &roots),
+            for_all_time,
+            drawn: network.schedule.known().extent == Extent::Drawn,
+        },
+        Window::EveryGraph => GraphEvidence::EveryGraph { graphs: network.schedule.graphs.len() },
+        Window::Missing { start_s, for_ever, closed_groups } => GraphEvidence::Cut {
             start_s,
-            until_s: match network.schedule.known().extent {
-                Extent::Horizon => Some(setup.time.end_s),
-                Extent::Whole | Extent::Period(_) => None,
-            },
+            until_s: (!for_ever).then_some(setup.time.end_s),
             closed_groups: closed_groups.iter().map(|group| Named::all(setup, group)).collect(),
         },
     };
@@ -46,10 +48,12 @@ pub(crate) fn leader_reaches_all(setup: &Setup) -> Hypothesis {
     let network = &setup.network;
     let evidence = match network.schedule.window(network.agents, setup.time.end_s) {
         Window::Uniform { length_s, for_all_time, .. } => GraphEvidence::Reached { length_s, for_all_time },
-        Window::Missing { start_s, closed_groups } => {
+        Window::EveryGraph => GraphEvidence::Reached { length_s: 0.0, for_all_time: true },
+        Window::Missing { start_s, for_ever, closed_groups } => {
+            let until_s = (!for_ever).then_some(setup.time.end_s);
             let cut = closed_groups.iter().find(|group| setup.leader().is_none_or(|leader| !group.contains(&leader)));
             let closed_group = cut.map_or_else(Vec::new, |group| Named::all(setup, group));
-            GraphEvidence::Unreached { start_s, closed_group }
+            GraphEvidence::Unreached { start_s, until_s, closed_group }
         }
     };
     Hypothesis::new(Id::LeaderReachesAll, evidence)
@@ -57,7 +61,12 @@ pub(crate) fn leader_reaches_all(setup: &Setup) -> Hypothesis {
 
 /// The shortest time for which a graph stays.
 pub(crate) fn dwell_time(setup: &Setup) -> Hypothesis {
-    let evidence = match setup.network.schedule.known().dwell {
+    let schedule = &setup.network.schedule;
+    if schedule.constant_graph().is_some() {
+        let evidence = refuted(setup).unwrap_or(GraphEvidence::NeverSwitches);
+        return Hypothesis::new(Id::DwellTime, evidence);
+    }
+    let evidence = match schedule.known().dwell {
         Dwell::NeverSwitches => GraphEvidence::NeverSwitches,
         Dwell::Shortest(dwell_s) => GraphEvidence::ShortestPhase { dwell_s },
         Dwell::Drawn(least_s) => GraphEvidence::DrawnPhases { least_s },
@@ -69,17 +78,11 @@ pub(crate) fn dwell_time(setup: &Setup) -> Hypothesis {
 /// Whether one graph stays for ever, as the reference dynamics that contain accelerations need.
 pub(crate) fn fixed_graph(setup: &Setup) -> Hypothesis {
     let schedule = &setup.network.schedule;
-    let evidence = if setup.following().is_some() {
-        match schedule.known().dwell {
-            Dwell::NeverSwitches => GraphEvidence::Stays,
-            Dwell::Shortest(_) | Dwell::Drawn(_) | Dwell::Declared(_) => GraphEvidence::SwitchesUnderLeader,
-        }
-    } else {
-        match schedule.graphs.len() {
-            1 if varying_weights(setup).next().is_some() => GraphEvidence::VaryingWeight,
-            1 => GraphEvidence::Stays,
-            graphs => GraphEvidence::Switches { graphs, exchange: setup.exchange },
-        }
+    let evidence = match (schedule.constant_graph(), setup.following()) {
+        (Some(_), None) if varying_weights(setup).next().is_some() => GraphEvidence::VaryingWeight,
+        (Some(_), _) => GraphEvidence::Stays,
+        (None, Some(_)) => GraphEvidence::SwitchesUnderLeader,
+        (None, None) => GraphEvidence::Switches { graphs: schedule.graphs.len(), exchange: setup.exchange },
     };
     Hypothesis::new(Id::FixedGraph, evidence)
 }

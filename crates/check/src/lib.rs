@@ -17,6 +17,7 @@ mod manipulation;
 mod null_vector;
 mod report;
 mod sampled;
+mod shifted_laplacian;
 mod source;
 mod surroundings;
 mod theorem;

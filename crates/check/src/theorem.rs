@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use forwardstep_sim::Exchange;
+
 use crate::source::Source;
 
 /// A statement about the long run. `Display` names it with its equations.
@@ -24,6 +26,15 @@ pub enum Theorem {
     Theorem3Positions {
         /// ℓ.
         order: usize,
+    },
+    /// Theorem 3 with an order of its own for every agent.
+    OwnOrders {
+        /// (a5) or (24).
+        exchange: Exchange,
+        /// The lowest ℓ.
+        least: usize,
+        /// The highest ℓ.
+        most: usize,
     },
     /// The baseline that the paper argues against; no theorem.
     Backstepping,
@@ -76,6 +87,7 @@ impl Theorem {
             Theorem::FirstOrder => "theorem-3-first-order",
             Theorem::Theorem3Velocities { .. } => "theorem-3-velocities",
             Theorem::Theorem3Positions { .. } => "theorem-3-positions",
+            Theorem::OwnOrders { .. } => "theorem-3-own-orders",
             Theorem::Backstepping => "backstepping",
             Theorem::Mixture(_) => "mixture",
             Theorem::Targets => "targets",
@@ -118,7 +130,9 @@ impl Theorem {
             Theorem::Theorem6 => Source::Corrected("E11, E12"),
             Theorem::Theorem7 => Source::Corrected("E13"),
             // Section IV leaves the second step open, Remark 7 announces its consensus, Remark 11 its swarm.
+            // So does Theorem 3 with one order for all.
             Theorem::Mixture(_)
+            | Theorem::OwnOrders { .. }
             | Theorem::RobotsTrack
             | Theorem::ChainsTrack(_)
             | Theorem::ChainsAgree(_)
@@ -142,6 +156,13 @@ impl fmt::Display for Theorem {
             }
             Theorem::Theorem3Positions { order } => {
                 return write!(f, "Theorem 3, reference dynamics (24) of order {order}");
+            }
+            Theorem::OwnOrders { exchange, least, most } => {
+                let dynamics = match exchange {
+                    Exchange::PositionVelocity => "(a5)",
+                    Exchange::Position => "(24)",
+                };
+                return write!(f, "the argument of Theorem 3, reference dynamics {dynamics} of orders {least} to {most}");
             }
             Theorem::Backstepping => "no theorem: the backstepping baseline (aa6)",
             Theorem::Mixture(treated) => {

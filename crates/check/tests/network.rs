@@ -6,7 +6,7 @@ mod common;
 
 use common::kinds::{alone, blind_mass, chain};
 use common::{About, answer, answers, arm, edge, setup};
-use forwardstep_check::{Answer, check};
+use forwardstep_check::{Answer, Source, Theorem, check};
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::delay::{Delay, SawTooth};
 use forwardstep_sim::formula::BoundedFormula;
@@ -107,27 +107,37 @@ fn eq_3_and_23_need_a_graph_and_weights_that_stay() {
 }
 
 #[test]
-fn thm3_robots_share_an_order_and_chains_need_not() {
+fn thm3_robots_and_chains_may_have_orders_of_their_own() {
     let mut arms = pair([1.0, 1.0], both_ways());
     arms.exchange = Exchange::Position;
     assert_eq!(answer(&arms, About::CommonOrder), Answer::Holds);
+    assert_eq!(answers(&check(&arms), About::OwnOrders), []);
+    // One more, then one in the middle.
     arms.agents[1].roots_per_s.push(3.0);
-    assert_eq!(answer(&arms, About::CommonOrder), Answer::NotCovered);
-    // Anyone may be the one who differs.
-    arms.agents.insert(1, arms.agents[0].clone());
-    arms.network.agents = 3;
-    assert_eq!(answer(&arms, About::CommonOrder), Answer::NotCovered);
-
+    let mut three = arms.clone();
+    three.agents.insert(1, three.agents[0].clone());
+    three.network.agents = 3;
+    for (setup, exchange) in [(arms, Exchange::PositionVelocity), (three, Exchange::Position)] {
+        let setup = Setup { exchange, ..setup };
+        let report = check(&setup);
+        assert_eq!(answer(&setup, About::OwnOrders), Answer::Holds);
+        assert_eq!(answers(&report, About::CommonOrder), []);
+        assert_eq!(report.theorem, Theorem::OwnOrders { exchange, least: 2, most: 3 });
+        assert_eq!(report.theorem.source(), Source::Derived, "the paper has one order for all");
+        // As smooth as the torque of the lowest order.
+        assert!(report.promises.contains("the torque stays continuous through"), "{}", report.promises);
+    }
     let mut chains = alone(chain(&Expression::number(1.0), 0, false));
+    assert_eq!(answer(&chains, About::CommonOrder), Answer::Holds);
     chains.agents.push(chains.agents[0].clone());
     chains.agents[1].roots_per_s.push(3.0);
     chains.network.agents = 2;
-    assert_eq!(answers(&check(&chains), About::CommonOrder), []);
+    assert_eq!(answer(&chains, About::OwnOrders), Answer::Holds);
     assert_eq!(answer(&chains, About::RealRoots), Answer::Holds);
-    // One that is no chain, and all share an order again.
+    // Nor need it be shared with what is no chain.
     chains.agents.push(blind_mass(1.0, 1.0));
     chains.network.agents = 3;
-    assert_eq!(answer(&chains, About::CommonOrder), Answer::NotCovered);
+    assert_eq!(answer(&chains, About::OwnOrders), Answer::Holds);
     assert_eq!(answer(&chains, About::OneKind), Answer::NotCovered);
 }
 

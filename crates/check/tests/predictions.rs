@@ -140,9 +140,15 @@ fn a_schedule_of_one_phase_is_one_graph() {
     let fixed = predict(&base).unwrap();
     assert_eq!(value(Schedule::periodic(vec![phase.clone()])).unwrap(), fixed);
     assert_eq!(value(Schedule::once(vec![phase.clone()])).unwrap(), fixed);
-    for two in [Schedule::periodic(vec![phase.clone(); 2]), Schedule::once(vec![phase; 2])] {
-        assert_eq!(value(two).err(), Some(NoPrediction::Switching));
+    // The same twice is one graph as well, in whatever order its edges stand.
+    let mut turned = phase.clone();
+    turned.edges.reverse();
+    for two in [Schedule::periodic(vec![phase.clone(); 2]), Schedule::once(vec![phase.clone(), turned])] {
+        assert_eq!(value(two).unwrap(), fixed);
     }
+    let mut heavier = phase.clone();
+    heavier.edges[0].weight = 3.0.into();
+    assert_eq!(value(Schedule::periodic(vec![phase, heavier])).err(), Some(NoPrediction::Switching));
 }
 
 /// K of every kind, for masses that start with a tracking error.

@@ -54,8 +54,16 @@ fn arm_and_spacecraft() -> Setup {
     setup
 }
 
+/// Robots with reference dynamics of different orders.
+fn own_orders() -> Setup {
+    let mut setup = shipped("theorem-3-24-order-4");
+    setup.agents[0].roots_per_s.pop();
+    setup
+}
+
 fn reports() -> Vec<Report> {
-    let changed = [bounded_lengths(1.5), tracking_chains(), disturbed_chain(), timed_out(), arm_and_spacecraft()];
+    let changed =
+        [bounded_lengths(1.5), tracking_chains(), disturbed_chain(), timed_out(), arm_and_spacecraft(), own_orders()];
     let shipped = SHIPPED_SCENARIOS.iter().map(|scenario| shipped(scenario.name));
     shipped.chain(changed).map(|setup| check(&setup)).collect()
 }
@@ -87,6 +95,7 @@ fn every_hypothesis_and_every_theorem_is_shown_by_some_setup() {
         "theorem-1",
         "theorem-2",
         "theorem-3-first-order",
+        "theorem-3-own-orders",
         "theorem-3-positions",
         "theorem-3-velocities",
         "theorem-4",
@@ -168,9 +177,10 @@ fn vehicles_and_rotorcraft_say_the_same_of_their_gains_once() {
     let count = |id| report.hypotheses.iter().filter(|hypothesis| hypothesis.id == id).count();
     assert_eq!([Id::ThrustGains, Id::AngularVelocity, Id::OneKind].map(count), [1, 1, 0]);
     assert_eq!(report.theorem, Theorem::Theorem4);
-    // The same of chains of another order: they need not have one.
+    // Chains of different orders are said to have orders of their own.
     let chains = check(&shipped("framework"));
-    assert!(!chains.hypotheses.iter().any(|hypothesis| hypothesis.id == Id::CommonOrder));
+    let has = |id| chains.hypotheses.iter().any(|hypothesis| hypothesis.id == id);
+    assert!(has(Id::OwnOrders) && !has(Id::CommonOrder));
 }
 
 #[test]

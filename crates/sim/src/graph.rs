@@ -77,7 +77,12 @@ pub enum SpanningTree {
 /// In the paper's words a root k* is a vertex that every other has a directed path to, along edges (i, j) "i hears j".
 pub fn spanning_tree<'a>(agents: usize, edges: impl IntoIterator<Item = &'a Edge>) -> SpanningTree {
     let edges: Vec<(usize, usize)> = edges.into_iter().map(|edge| (edge.from, edge.to)).collect();
-    let components = strong_components(agents, &edges);
+    spanning_tree_of(agents, &edges)
+}
+
+/// The same along pairs (from, to).
+pub(crate) fn spanning_tree_of(agents: usize, edges: &[(usize, usize)]) -> SpanningTree {
+    let components = strong_components(agents, edges);
     let mut home = vec![0; agents];
     for (index, component) in components.iter().enumerate() {
         for &agent in component {
@@ -85,7 +90,7 @@ pub fn spanning_tree<'a>(agents: usize, edges: impl IntoIterator<Item = &'a Edge
         }
     }
     let mut closed = vec![true; components.len()];
-    for &(from, to) in &edges {
+    for &(from, to) in edges {
         if home[from] != home[to] {
             closed[home[to]] = false;
         }

@@ -68,6 +68,10 @@ fn windows_of_phases_are_those_found_the_long_way_round() {
             let found = runs(&phases, agents, repeats);
             let schedule = if repeats { Schedule::periodic(phases.clone()) } else { Schedule::once(phases.clone()) };
             match schedule.window(agents, 100.0) {
+                Window::Uniform { length_s, for_all_time, .. } if schedule.constant_graph().is_some() => {
+                    assert_eq!((length_s, for_all_time), (0.0, true), "one graph stays for ever: {schedule:?}");
+                    assert!(found.iter().all(|(_, run)| run.is_some()));
+                }
                 Window::Uniform { length_s, worst_start_s, for_all_time, .. } => {
                     assert!(for_all_time, "a schedule of phases is known for ever");
                     let longest = found.iter().map(|(_, run)| run.unwrap()).fold(0.0, f64::max);
@@ -78,6 +82,7 @@ fn windows_of_phases_are_those_found_the_long_way_round() {
                     let others = found.iter().take(found.len() - 1).filter(|(_, run)| *run == Some(longest));
                     worst_is_last += usize::from(others.count() == 0 && found.len() > 1);
                 }
+                Window::EveryGraph => panic!("nothing is drawn"),
                 Window::Missing { .. } => {
                     assert!(found.iter().any(|(_, run)| run.is_none()), "{schedule:?}");
                     missing += 1;

@@ -70,6 +70,8 @@ table! {
         "the polynomial (25) is Hurwitz with real roots";
     CommonOrder, "common-order", "Theorem 3", Source::Paper,
         "all agents have reference dynamics of the same order";
+    OwnOrders, "own-orders", "own derivation", Source::Derived,
+        "every agent has reference dynamics of some order; the argument of Theorem 3 does not need the same for all";
     CommonFirstRoot, "common-first-root", "Theorem 3", Source::Corrected("E1"),
         "κ₀ is common within each strongly connected component of the union graph, unless graph and delays are constant";
     MeasuredDerivative, "measured-derivative", "(aa6)", Source::Paper,

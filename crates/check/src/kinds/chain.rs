@@ -54,11 +54,6 @@ impl KindCheck for Chain {
     fn target_derivatives(&self, agent: &AgentSetup) -> usize {
         agent.roots_per_s.len()
     }
-
-    /// Chains of different orders agree: nothing in the argument for (24) compares orders.
-    fn wants_common_order(&self) -> bool {
-        false
-    }
 }
 
 /// Agents with their laws and models.

@@ -49,10 +49,6 @@ impl KindCheck for DeclaredKind {
     fn target_derivatives(&self, _: &AgentSetup) -> usize {
         4
     }
-
-    fn wants_common_order(&self) -> bool {
-        true
-    }
 }
 
 /// What the author says. Whoever says nothing, or that it is checked where it is not, must not be taken for one that has

@@ -47,10 +47,6 @@ impl KindCheck for LagrangianRobot {
     fn target_derivatives(&self, agent: &AgentSetup) -> usize {
         agent.roots_per_s.len().max(2)
     }
-
-    fn wants_common_order(&self) -> bool {
-        true
-    }
 }
 
 /// Whether (6)–(7), or (6) with known parameters, controls the agent.

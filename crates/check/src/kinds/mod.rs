@@ -48,7 +48,4 @@ pub(crate) trait KindCheck: Sync {
 
     /// How many derivatives of a target, or of an offset, its law needs to be bounded.
     fn target_derivatives(&self, agent: &AgentSetup) -> usize;
-
-    /// Whether the argument for its consensus wants reference dynamics of one order.
-    fn wants_common_order(&self) -> bool;
 }

@@ -47,10 +47,6 @@ impl KindCheck for PositionOnlyMass {
     fn target_derivatives(&self, _: &AgentSetup) -> usize {
         3
     }
-
-    fn wants_common_order(&self) -> bool {
-        true
-    }
 }
 
 fn keeps_a_wrong_mass(agent: &AgentSetup) -> bool {

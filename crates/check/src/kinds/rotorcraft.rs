@@ -36,10 +36,6 @@ impl KindCheck for Rotorcraft {
     fn target_derivatives(&self, agent: &AgentSetup) -> usize {
         vehicle::target_derivatives(agent)
     }
-
-    fn wants_common_order(&self) -> bool {
-        true
-    }
 }
 
 /// The slowest body.

@@ -47,10 +47,6 @@ impl KindCheck for Spacecraft {
     fn target_derivatives(&self, _: &AgentSetup) -> usize {
         2
     }
-
-    fn wants_common_order(&self) -> bool {
-        true
-    }
 }
 
 /// h_I is given to the controller, not measured.

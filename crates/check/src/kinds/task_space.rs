@@ -50,10 +50,6 @@ impl KindCheck for TaskSpaceRobot {
     fn target_derivatives(&self, _: &AgentSetup) -> usize {
         2
     }
-
-    fn wants_common_order(&self) -> bool {
-        true
-    }
 }
 
 /// Ĵ must stay away from singularity along the run, which is not known before.

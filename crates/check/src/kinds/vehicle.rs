@@ -33,10 +33,6 @@ impl KindCheck for Vehicle {
     fn target_derivatives(&self, agent: &AgentSetup) -> usize {
         target_derivatives(agent)
     }
-
-    fn wants_common_order(&self) -> bool {
-        true
-    }
 }
 
 /// The law of a vehicle or of a rotorcraft.

@@ -70,7 +70,7 @@ fn manipulability(setup: &Setup) -> Option<Hypothesis> {
     (largest > 0.0).then(|| Hypothesis::new(Id::Manipulability, ReferenceEvidence::Manipulability { largest }))
 }
 
-/// What Theorems 1 to 3 promise Lagrangian robots under reference dynamics of this order.
+/// What Theorems 1 to 3 promise Lagrangian robots under reference dynamics of this order at least.
 fn agreement(setup: &Setup, order: usize) -> String {
     let smooth = match order {
         0 | 1 => "the torque jumps at switches and delay jumps but stays bounded".to_owned(),
@@ -84,7 +84,8 @@ fn agreement(setup: &Setup, order: usize) -> String {
     format!("{agents}: q_i − q_j → 0 and dq_i → 0; {smooth}")
 }
 
-/// The highest order of the reference dynamics.
-fn order(setup: &Setup) -> usize {
-    setup.agents.iter().map(|agent| agent.roots_per_s.len()).max().unwrap_or(0)
+/// The lowest and the highest order of the reference dynamics.
+fn orders(setup: &Setup) -> (usize, usize) {
+    let orders = || setup.agents.iter().map(|agent| agent.roots_per_s.len());
+    (orders().min().unwrap_or(0), orders().max().unwrap_or(0))
 }

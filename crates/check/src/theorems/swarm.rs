@@ -1,13 +1,13 @@
 //! Swarm tracking, which Remark 11 names and the paper does not print: what our own derivation asks for, see
 //! `forwardstep_core::reference::SmoothFollowing::swarm`.
 
-use forwardstep_core::Gain;
 use forwardstep_sim::Setup;
-use forwardstep_sim::graph::laplacian;
+use forwardstep_sim::graph::Edge;
 use forwardstep_sim::leader::Following;
 
 use crate::graphs::mutual_weights;
 use crate::hypothesis::{FollowingEvidence, Hypothesis, Id};
+use crate::shifted_laplacian::ShiftedLaplacian;
 
 pub(super) fn hypotheses(setup: &Setup, following: &Following, coupling: f64) -> [Hypothesis; 3] {
     [
@@ -17,29 +17,35 @@ pub(super) fn hypotheses(setup: &Setup, following: &Following, coupling: f64) ->
     ]
 }
 
+/// What bounds on rounding are widened by, relatively; far more than the few roundings on the way.
+const WIDER: f64 = 1e-12;
+
 /// k λ against what the derivation asks for: L − λ* is positive definite exactly if λ > λ*.
 fn coupled(setup: &Setup, following: &Following, coupling: f64) -> FollowingEvidence {
     let (alpha, beta) = (following.alpha, following.beta);
     let root = beta * beta - 4.0 * alpha;
-    if root < -1e-12 * beta * beta {
+    if root < -WIDER * beta * beta {
         return FollowingEvidence::ComplexRoots;
     }
-    let kappa = 0.5 * (beta - root.max(0.0).sqrt());
+    // The bound grows with κ₀, so that is taken as large as rounding of the difference allows.
+    let kappa = 0.5 * (beta - (root - 8.0 * f64::EPSILON * beta * beta).max(0.0).sqrt());
     let least = beta + kappa * kappa * kappa * kappa / (2.0 * (beta * beta - alpha) * (beta - kappa));
+    let least = least * (1.0 + WIDER);
+    let Some(edges) = setup.network.schedule.constant_graph() else { return FollowingEvidence::GraphSwitches };
     let vertices = setup.network.agents;
     let followers: Vec<usize> = (0..vertices).filter(|vertex| setup.leader() != Some(*vertex)).collect();
-    let n = followers.len();
-    let Some(edges) = setup.network.schedule.constant_graph() else { return FollowingEvidence::GraphSwitches };
-    let Some(all) = laplacian(vertices, edges) else { return FollowingEvidence::WeightVaries };
-    let mut shifted = Vec::with_capacity(n * n);
-    for row in &followers {
-        for column in &followers {
-            let shift = if row == column { least / coupling } else { 0.0 };
-            shifted.push(all[row * vertices + column] - shift);
-        }
+    let mut index = vec![None; vertices];
+    for (number, follower) in followers.iter().enumerate() {
+        index[*follower] = Some(number);
     }
-    match Gain::Matrix(shifted).resolve(n, &[]) {
-        Ok(_) => FollowingEvidence::CouplingExceeds { least },
-        Err(_) => FollowingEvidence::CouplingNotShown { least },
+    let heard = |edge: &Edge| Some((index[edge.to]?, index[edge.from], edge.weight.constant()));
+    let mut weights = Vec::with_capacity(edges.len());
+    for (to, from, weight) in edges.iter().filter_map(heard) {
+        let Some(weight) = weight else { return FollowingEvidence::WeightVaries };
+        weights.push((to, from, weight));
     }
+    let shift = least / coupling * (1.0 + WIDER);
+    let shown =
+        ShiftedLaplacian::new(followers.len(), &weights, shift).is_some_and(|matrix| matrix.is_shown_definite());
+    if shown { FollowingEvidence::CouplingExceeds { least } } else { FollowingEvidence::CouplingNotShown { least } }
 }

@@ -3,7 +3,7 @@
 use forwardstep_sim::{Exchange, Setup};
 
 use super::theorem_3::real_roots;
-use super::{agreement, order};
+use super::{agreement, orders};
 use crate::graphs::fixed_graph;
 use crate::hypothesis::Hypothesis;
 use crate::kinds::Claim;
@@ -14,7 +14,7 @@ pub(super) fn claim(setup: &Setup) -> Claim {
         Exchange::PositionVelocity => Theorem::Theorem1,
         Exchange::Position => Theorem::Remark3,
     };
-    Claim { theorem, promises: agreement(setup, order(setup)) }
+    Claim { theorem, promises: agreement(setup, orders(setup).0) }
 }
 
 pub(super) fn hypotheses(setup: &Setup) -> Vec<Hypothesis> {

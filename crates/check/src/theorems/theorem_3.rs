@@ -1,33 +1,28 @@
 //! Theorem 3 for (a5) and (24), of which (aa10) and Theorem 2's (a1) are members.
 
-use forwardstep_sim::graph::strong_components;
+use forwardstep_sim::graph::{Edge, strong_components};
 use forwardstep_sim::{Exchange, Setup};
 
-use super::{agreement, order};
+use super::{agreement, orders};
 use crate::hypothesis::{Hypothesis, Id, Named, ReferenceEvidence};
 use crate::kinds::Claim;
-use crate::laws::kind_of;
-use crate::links::varying_weights;
 use crate::theorem::Theorem;
 
 pub(super) fn claim(setup: &Setup) -> Claim {
-    let order = order(setup);
-    let theorem = match (setup.exchange, order) {
-        (Exchange::PositionVelocity, 1) => Theorem::FirstOrder,
-        (Exchange::PositionVelocity, 2) if same_roots(setup) => Theorem::Theorem2,
-        (Exchange::PositionVelocity, order) => Theorem::Theorem3Velocities { order },
-        (Exchange::Position, order) => Theorem::Theorem3Positions { order },
+    let (least, most) = orders(setup);
+    let theorem = match setup.exchange {
+        _ if least < most => Theorem::OwnOrders { exchange: setup.exchange, least, most },
+        Exchange::PositionVelocity if most == 1 => Theorem::FirstOrder,
+        Exchange::PositionVelocity if most == 2 && same_roots(setup) => Theorem::Theorem2,
+        Exchange::PositionVelocity => Theorem::Theorem3Velocities { order: most },
+        Exchange::Position => Theorem::Theorem3Positions { order: most },
     };
-    Claim { theorem, promises: agreement(setup, order) }
+    Claim { theorem, promises: agreement(setup, least) }
 }
 
 pub(super) fn hypotheses(setup: &Setup) -> Vec<Hypothesis> {
     let all: Vec<usize> = (0..setup.agents.len()).collect();
-    let mut hypotheses = vec![real_roots(setup, &all)];
-    if setup.agents.iter().any(|agent| kind_of(agent).wants_common_order()) {
-        hypotheses.push(common_order(setup));
-    }
-    hypotheses
+    vec![real_roots(setup, &all), one_order(setup)]
 }
 
 fn same_roots(setup: &Setup) -> bool {
@@ -40,36 +35,54 @@ pub(crate) fn real_roots(setup: &Setup, agents: &[usize]) -> Hypothesis {
     Hypothesis::new(Id::RealRoots, ReferenceEvidence::Roots { smallest_per_s: roots.fold(f64::INFINITY, f64::min) })
 }
 
-fn common_order(setup: &Setup) -> Hypothesis {
+/// The paper writes one ℓ for all agents. Its argument does not need that.
+///
+/// With χ_0 = qᵢ, χ_r = (p/κ_(r−1) + 1) χ_(r−1) and s = 0, (24) is, for the order ℓᵢ of agent i,
+///
+/// ```text
+/// d/dt χ_r = κ_r (χ_(r+1) − χ_r),  r < ℓᵢ        d/dt χ_ℓᵢ = − Σⱼ w_ij (χ_ℓᵢ − χ_0 of j, at t − T_ij):
+/// ```
+///
+/// (30), a network of first order with the vertices (i, 0) … (i, ℓᵢ). Its weights are positive, and each agent's own are constant, so it has a
+/// spanning tree over the windows over which the agents have one, rooted at (k, ℓ_k). Nowhere does an ℓᵢ meet an ℓⱼ. For (a5) with
+/// a common κ₀ it is χ_1 of j that is heard, which is there since ℓⱼ ≥ 1; where κ₀ is not common but graph and delays are
+/// constant, p + κ₀ᵢ factors out and leaves (24) with ℓᵢ − 1. s enters agent by agent as before.
+fn one_order(setup: &Setup) -> Hypothesis {
     let order = |agent: usize| setup.agents[agent].roots_per_s.len();
     let named = |agent: usize| (Named::of(setup, agent), order(agent));
-    let other = (1..setup.agents.len()).find(|agent| order(*agent) != order(0));
-    let evidence = match other {
-        None => ReferenceEvidence::Order(order(0)),
-        Some(other) => ReferenceEvidence::Orders([named(0), named(other)]),
-    };
-    Hypothesis::new(Id::CommonOrder, evidence)
+    match (1..setup.agents.len()).find(|agent| order(*agent) != order(0)) {
+        None => Hypothesis::new(Id::CommonOrder, ReferenceEvidence::Order(order(0))),
+        Some(other) => Hypothesis::new(Id::OwnOrders, ReferenceEvidence::Orders([named(0), named(other)])),
+    }
 }
 
 /// The condition that the paper's Theorem 3 leaves out for (a5), of which (aa10) and (a1) are members.
 ///
 /// What agent i hears is α₀[(κ₀ⱼ/κ₀ᵢ) ψ_j + (1 − κ₀ⱼ/κ₀ᵢ) q_j]: a weighting that is only convex when κ₀ⱼ ≤ κ₀ᵢ along j → i.
 /// Around a cycle that means equality. With a fixed graph and constant delays p + κ₀ᵢ factors out and nothing is needed.
+///
+/// Asked of graphs that recur. What a schedule that ends goes through before acts for a finite time: the reference dynamics are linear with
+/// bounded coefficients and V bounds s, so all is finite when the last graph begins, and the theorem speaks from there on, with what is
+/// still under way as its history.
 pub(super) fn common_first_root(setup: &Setup) -> Hypothesis {
-    let graphs = &setup.network.schedule.graphs;
-    let constant_delays = setup.network.used_delays().all(|index| setup.network.delays[index].is_constant());
+    let network = &setup.network;
+    let graphs = network.schedule.recurring_graphs();
+    let stays = network.schedule.constant_graph().or(match graphs {
+        [graph] => Some(graph),
+        _ => None,
+    });
+    let constant = |edge: &Edge| edge.weight.constant().is_some() && network.delays[edge.delay].is_constant();
+    let over_constants = stays.is_some_and(|graph| graph.iter().all(constant));
     let first_root = |agent: usize| setup.agents[agent].roots_per_s.first().copied().unwrap_or(f64::NAN);
     let named = |agent: usize| (Named::of(setup, agent), first_root(agent));
     let edges: Vec<(usize, usize)> = graphs.iter().flatten().map(|edge| (edge.from, edge.to)).collect();
-    let witness = strong_components(setup.network.agents, &edges).into_iter().find_map(|component| {
+    let witness = strong_components(network.agents, &edges).into_iter().find_map(|component| {
         let first = component[0];
         component.into_iter().find(|agent| first_root(*agent) != first_root(first)).map(|other| (first, other))
     });
     let evidence = match witness {
         None => ReferenceEvidence::FirstRootCommon,
-        Some(_) if graphs.len() == 1 && constant_delays && varying_weights(setup).next().is_none() => {
-            ReferenceEvidence::FirstRootsOverConstants
-        }
+        Some(_) if over_constants => ReferenceEvidence::FirstRootsOverConstants,
         Some((a, b)) => ReferenceEvidence::FirstRoots([named(a), named(b)]),
     };
     Hypothesis::new(Id::CommonFirstRoot, evidence)

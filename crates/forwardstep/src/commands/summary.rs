@@ -35,7 +35,7 @@ pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, 
         let predicted: Vec<f64> = agreement.iter().map(|axis| axis.predicted).collect();
         let reached: Vec<f64> = agreement.iter().map(|axis| axis.reached).collect();
         rows.push(("predicted agreement", list(&predicted)));
-        rows.push(("reached agreement", list(&reached)));
+        rows.push((reached_words(&metrics.disagreement), list(&reached)));
     }
     if let Some(peak) = metrics.peak_torques.iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs())) {
         let unit = unit(setup, peak.agent, Signal::Torque, peak.axis);
@@ -95,6 +95,11 @@ fn final_gap(setup: &Setup) -> &'static str {
         Gap::Disagreement => "final disagreement",
         Gap::Error => "final error",
     }
+}
+
+/// What the mean of the last positions is: where all agree, or where they do not.
+fn reached_words(disagreement: &Disagreement) -> &'static str {
+    if disagreement.is_agreement() { "reached agreement" } else { "mean, no agreement" }
 }
 
 fn disagreement(setup: &Setup, metrics: &Metrics) -> String {

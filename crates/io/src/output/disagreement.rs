@@ -78,6 +78,19 @@ impl Disagreement {
     }
 }
 
+/// What is left of the disagreement when agents are said to have agreed.
+const AGREED: f64 = 0.01;
+
+impl Disagreement {
+    /// Whether the last is at most 1 % of the largest. Whether that is enough is for the goal to say.
+    pub fn is_agreement(&self) -> bool {
+        match *self {
+            Disagreement::Measured { last, largest, .. } => last <= AGREED * largest,
+            Disagreement::Absent(_) => false,
+        }
+    }
+}
+
 /// Why there is no disagreement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

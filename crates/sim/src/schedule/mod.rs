@@ -37,6 +37,7 @@ mod once;
 mod periodic;
 mod probe;
 mod random;
+mod union;
 mod window;
 
 use std::any::{Any, TypeId};
@@ -120,6 +121,8 @@ pub enum Extent {
     Whole,
     /// So many, again and again.
     Period(usize),
+    /// Each is drawn among all graphs; those of a run tell nothing about later ones.
+    Drawn,
     /// Those of a run tell nothing about later ones.
     Horizon,
 }
@@ -188,11 +191,25 @@ impl Schedule {
         self.graphs.get(index).map_or(&[], |graph| graph)
     }
 
-    /// The one graph that is in force for ever, if there is only one.
+    /// The one graph that is in force for ever: the only one, or any of several that have the same edges with the same weights
+    /// and delays, in whatever order.
     pub fn constant_graph(&self) -> Option<&[Edge]> {
-        match &self.graphs[..] {
-            [graph] => Some(graph),
-            _ => None,
+        let (first, others) = self.graphs.split_first()?;
+        let sorted = |graph: &[Edge]| {
+            let mut edges = graph.to_vec();
+            edges.sort_by_key(|edge| (edge.to, edge.from));
+            edges
+        };
+        let (as_long, expected) = (|graph: &Vec<Edge>| graph.len() == first.len(), sorted(first));
+        let same = |graph: &Vec<Edge>| as_long(graph) && (graph == first || sorted(graph) == expected);
+        others.iter().all(same).then_some(first)
+    }
+
+    /// The graphs that may be in force at arbitrarily late times: of a schedule that ends, the one that stays.
+    pub fn recurring_graphs(&self) -> &[Vec<Edge>] {
+        match self.known().extent {
+            Extent::Whole => &self.graphs[self.graphs.len().saturating_sub(1)..],
+            Extent::Period(_) | Extent::Drawn | Extent::Horizon => &self.graphs,
         }
     }
 

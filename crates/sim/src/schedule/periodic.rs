@@ -30,13 +30,18 @@ impl SwitchingSignal for Periodic {
     }
 
     fn segments(&self, _: usize) -> Segments<'_> {
-        let period_s: f64 = self.dwell_s.iter().sum();
+        let sums = self.dwell_s.iter().scan(0.0, |sum_s, dwell_s| {
+            *sum_s += dwell_s;
+            Some(*sum_s)
+        });
+        let ends_s: Vec<f64> = sums.collect();
+        let period_s = ends_s.last().copied().unwrap_or(0.0);
         let mut start_s = 0.0;
-        let rounds = (0_u64..).flat_map(|round| (0..self.dwell_s.len()).map(move |graph| (round, graph)));
+        let graphs = ends_s.len();
+        let rounds = (0_u64..).flat_map(move |round| (0..graphs).map(move |graph| (round, graph)));
         Segments::new(rounds.map(move |(round, graph)| {
             // Summed within the period and multiplied across periods, so that rounding does not pile up.
-            let within: f64 = self.dwell_s[..=graph].iter().sum();
-            let end_s = round as f64 * period_s + within;
+            let end_s = round as f64 * period_s + ends_s[graph];
             let segment = Segment { start_s, end_s, graph };
             start_s = end_s;
             segment

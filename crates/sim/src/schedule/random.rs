@@ -50,6 +50,6 @@ impl SwitchingSignal for RandomSwitching {
     }
 
     fn known(&self) -> KnownSwitching {
-        KnownSwitching { extent: Extent::Horizon, dwell: Dwell::Drawn(self.dwell_s[0]) }
+        KnownSwitching { extent: Extent::Drawn, dwell: Dwell::Drawn(self.dwell_s[0]) }
     }
 }

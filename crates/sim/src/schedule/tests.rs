@@ -17,7 +17,10 @@ fn periodic_window_is_made_of_whole_phases() {
 #[test]
 fn once_needs_a_tree_in_its_last_graph() {
     let schedule = Schedule::once(vec![phase(1.0, &[(0, 1), (1, 2)]), phase(1.0, &[(0, 1)])]);
-    assert_eq!(schedule.window(3, 10.0), Window::Missing { start_s: 1.0, closed_groups: vec![vec![0], vec![2]] });
+    assert_eq!(
+        schedule.window(3, 10.0),
+        Window::Missing { start_s: 1.0, for_ever: true, closed_groups: vec![vec![0], vec![2]] }
+    );
     let turned = Schedule::once(vec![phase(1.0, &[(0, 1)]), phase(1.0, &[(0, 1), (1, 2)])]);
     assert!(matches!(turned.window(3, 10.0), Window::Uniform { length_s: 1.0, for_all_time: true, .. }));
 }
@@ -52,7 +55,10 @@ fn regress_a_million_switches_are_judged_at_once() {
     let graphs: Vec<Vec<Edge>> = vec![phase(0.0, &[(0, 1)]).edges, phase(0.0, &[]).edges];
     let schedule = Schedule::random(graphs, [1.0, 1.0], 3);
     let began = std::time::Instant::now();
-    assert_eq!(schedule.window(3, 1e6), Window::Missing { start_s: 0.0, closed_groups: vec![vec![0], vec![2]] });
+    assert_eq!(
+        schedule.window(3, 1e6),
+        Window::Missing { start_s: 0.0, for_ever: true, closed_groups: vec![vec![0], vec![2]] }
+    );
     assert!(matches!(schedule.window(2, 1e6), Window::Uniform { for_all_time: false, .. }));
     let took_s = began.elapsed().as_secs_f64();
     assert!(took_s < 10.0, "{took_s} s");
@@ -73,4 +79,56 @@ fn random_draws_are_reproducible_and_only_judged_on_the_horizon() {
     assert_eq!(first, schedule.segments().take(50).collect::<Vec<_>>());
     assert!(first.iter().all(|s| (0.5..=1.5).contains(&(s.end_s - s.start_s))));
     assert!(matches!(schedule.window(3, 50.0), Window::Uniform { for_all_time: false, .. }));
+}
+
+#[test]
+fn a_graph_that_is_written_twice_is_one() {
+    let edges = phase(1.0, &[(0, 1), (1, 2)]);
+    let mut turned = edges.clone();
+    turned.edges.reverse();
+    let same =
+        [Schedule::periodic(vec![edges.clone(), turned.clone()]), Schedule::once(vec![turned.clone(), edges.clone()])];
+    for schedule in same {
+        assert_eq!(schedule.constant_graph().map(<[Edge]>::len), Some(2));
+    }
+    let drawn = Schedule::random(vec![edges.edges.clone(), turned.edges.clone()], [1.0, 2.0], 4);
+    assert!(drawn.constant_graph().is_some());
+    let mut heavier = turned.clone();
+    heavier.edges[0].weight = 2.0.into();
+    let mut later = turned.clone();
+    later.edges[1].delay = 1;
+    for other in [heavier, later, phase(1.0, &[(0, 1)]), phase(1.0, &[(0, 1), (2, 1)])] {
+        assert_eq!(Schedule::periodic(vec![edges.clone(), edges.clone(), other]).constant_graph(), None);
+    }
+}
+
+#[test]
+fn what_is_drawn_is_judged_by_what_can_be_drawn() {
+    let graphs = |pairs: &[&[(usize, usize)]]| pairs.iter().map(|pairs| phase(0.0, pairs).edges).collect::<Vec<_>>();
+    let window = |pairs: &[&[(usize, usize)]], end_s| Schedule::random(graphs(pairs), [1.0, 1.5], 9).window(3, end_s);
+    assert_eq!(window(&[&[(0, 1), (1, 2)], &[(2, 1), (1, 0)]], 5.0), Window::EveryGraph);
+    // What nothing ever brings is missing for ever, and what was not drawn yet may come.
+    let never = window(&[&[(0, 1)], &[(1, 0)]], 5.0);
+    assert_eq!(never, Window::Missing { start_s: 0.0, for_ever: true, closed_groups: vec![vec![0, 1], vec![2]] });
+    assert!(matches!(window(&[&[(0, 1)], &[(1, 2)]], 0.5), Window::Missing { for_ever: false, .. }));
+    assert!(matches!(window(&[&[(0, 1)], &[(1, 2)]], 50.0), Window::Uniform { for_all_time: false, .. }));
+}
+
+#[test]
+fn only_the_last_graph_of_a_schedule_that_ends_recurs() {
+    let phases = vec![phase(1.0, &[(0, 1)]), phase(1.0, &[(1, 2)])];
+    assert_eq!(Schedule::once(phases.clone()).recurring_graphs(), [phases[1].edges.clone()]);
+    assert_eq!(Schedule::periodic(phases.clone()).recurring_graphs().len(), 2);
+}
+
+#[test]
+fn regress_as_many_graphs_as_phases_are_judged_in_seconds() {
+    let (agents, phases) = (50, 100_000);
+    let edge = |k: usize| ((k * 7919 + k / 50) % agents, (k * 104_729 + 13) % agents);
+    let pairs = (0..).map(edge).filter(|(from, to)| from != to);
+    let schedule = Schedule::periodic(pairs.take(phases).map(|pair| phase(0.1, &[pair])).collect());
+    let began = std::time::Instant::now();
+    assert!(matches!(schedule.window(agents, 1e4), Window::Uniform { for_all_time: true, .. }));
+    let took_s = began.elapsed().as_secs_f64();
+    assert!(took_s < 10.0, "{took_s} s");
 }

@@ -92,7 +92,8 @@ impl FollowingEvidence {
                 Answer::Violated | Answer::NotShown | Answer::NotCovered | Answer::Watched => Rigour::Sampled,
             },
             FollowingEvidence::GainOverAgent { .. } => Rigour::Watched,
-            FollowingEvidence::CouplingExceeds { .. } | FollowingEvidence::CouplingNotShown { .. } => Rigour::Computed,
+            FollowingEvidence::CouplingExceeds { .. } => Rigour::Enclosed,
+            FollowingEvidence::CouplingNotShown { .. } => Rigour::Computed,
             FollowingEvidence::Sign { .. }
             | FollowingEvidence::Shared { .. }
             | FollowingEvidence::NotPrinted

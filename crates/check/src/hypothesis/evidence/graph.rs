@@ -19,12 +19,20 @@ pub enum GraphEvidence {
         roots: Vec<Named>,
         /// Whether that is so for all time, or shown up to the end of the run only.
         for_all_time: bool,
+        /// Whether graphs are drawn, some of them without a tree: such a one is almost surely drawn any number of times in a row
+        /// some time, so that no window is long enough for ever.
+        drawn: bool,
+    },
+    /// Graphs are drawn, and each of them has a directed spanning tree by itself.
+    EveryGraph {
+        /// How many there are.
+        graphs: usize,
     },
     /// From some time on no union has a directed spanning tree.
     Cut {
         /// From then on, s.
         start_s: f64,
-        /// Until then, s, where a schedule drawn at random may bring the edge later; `None` for ever.
+        /// Until then, s, where a schedule that is drawn, or comes from outside, may bring the edge later; `None` for ever.
         until_s: Option<f64>,
         /// The groups that hear nobody outside themselves.
         closed_groups: Vec<Vec<Named>>,
@@ -40,6 +48,8 @@ pub enum GraphEvidence {
     Unreached {
         /// From then on, s.
         start_s: f64,
+        /// As in [`GraphEvidence::Cut`].
+        until_s: Option<f64>,
         /// They hear nobody outside themselves.
         closed_group: Vec<Named>,
     },
@@ -97,10 +107,14 @@ impl GraphEvidence {
             GraphEvidence::Window { for_all_time, .. } | GraphEvidence::Reached { for_all_time, .. } => {
                 holds(*for_all_time)
             }
-            GraphEvidence::Cut { .. } | GraphEvidence::Unreached { .. } | GraphEvidence::RefutedSwitching { .. } => {
-                Answer::Violated
+            GraphEvidence::Cut { until_s: Some(_), .. } | GraphEvidence::Unreached { until_s: Some(_), .. } => {
+                Answer::NotShown
             }
-            GraphEvidence::NeverSwitches
+            GraphEvidence::Cut { until_s: None, .. }
+            | GraphEvidence::Unreached { until_s: None, .. }
+            | GraphEvidence::RefutedSwitching { .. } => Answer::Violated,
+            GraphEvidence::EveryGraph { .. }
+            | GraphEvidence::NeverSwitches
             | GraphEvidence::ShortestPhase { .. }
             | GraphEvidence::DrawnPhases { .. }
             | GraphEvidence::Stays
@@ -118,10 +132,13 @@ impl GraphEvidence {
             GraphEvidence::Window { for_all_time, .. } | GraphEvidence::Reached { for_all_time, .. } => {
                 if *for_all_time { Rigour::Exact } else { Rigour::Given }
             }
-            GraphEvidence::Cut { until_s: Some(_), .. } | GraphEvidence::RefutedSwitching { .. } => Rigour::Given,
+            GraphEvidence::Cut { until_s: Some(_), .. }
+            | GraphEvidence::Unreached { until_s: Some(_), .. }
+            | GraphEvidence::RefutedSwitching { .. } => Rigour::Given,
             GraphEvidence::DeclaredPhases { .. } => Rigour::Declared,
             GraphEvidence::Cut { until_s: None, .. }
-            | GraphEvidence::Unreached { .. }
+            | GraphEvidence::Unreached { until_s: None, .. }
+            | GraphEvidence::EveryGraph { .. }
             | GraphEvidence::NeverSwitches
             | GraphEvidence::ShortestPhase { .. }
             | GraphEvidence::DrawnPhases { .. }

@@ -43,12 +43,11 @@ impl ReferenceEvidence {
                 }
             }
             ReferenceEvidence::Order(_)
+            | ReferenceEvidence::Orders(_)
             | ReferenceEvidence::FirstRootCommon
             | ReferenceEvidence::FirstRootsOverConstants
             | ReferenceEvidence::Manipulability { .. } => Answer::Holds,
-            ReferenceEvidence::Orders(_)
-            | ReferenceEvidence::FirstRoots(_)
-            | ReferenceEvidence::FilteredDerivative { .. } => Answer::NotCovered,
+            ReferenceEvidence::FirstRoots(_) | ReferenceEvidence::FilteredDerivative { .. } => Answer::NotCovered,
         }
     }
 

@@ -14,19 +14,36 @@ pub(super) fn words(evidence: &GraphEvidence) -> String {
         GraphEvidence::Window { length_s, roots, .. } if *length_s == 0.0 => {
             format!("one graph stays for ever and has a tree rooted at {}", names(roots))
         }
-        GraphEvidence::Window { length_s, worst_start_s, roots, .. } => format!(
-            "the smallest uniform window lasts {} s (needed from t = {} s, rooted at {})",
-            seconds(*length_s),
-            seconds(*worst_start_s),
-            names(roots)
-        ),
+        GraphEvidence::Window { length_s, worst_start_s, roots, for_all_time, drawn } => {
+            let window = format!(
+                "the smallest uniform window lasts {} s (needed from t = {} s, rooted at {})",
+                seconds(*length_s),
+                seconds(*worst_start_s),
+                names(roots)
+            );
+            match (for_all_time, drawn) {
+                (true, _) => window,
+                (false, true) => format!(
+                    "up to the end of the run {window}; later draws bring a tree again and again, but almost surely no window \
+                     is long enough for ever, since a graph without a tree can be drawn any number of times in a row"
+                ),
+                (false, false) => format!("up to the end of the run {window}"),
+            }
+        }
+        GraphEvidence::EveryGraph { graphs } => {
+            format!(
+                "each of the {graphs} graphs that can be drawn has a tree by itself, whatever is drawn for how long"
+            )
+        }
         GraphEvidence::Cut { start_s, until_s, closed_groups } => cut(*start_s, *until_s, closed_groups),
         GraphEvidence::Reached { length_s, .. } if *length_s == 0.0 => "along the edges of the graph".into(),
         GraphEvidence::Reached { length_s, .. } => {
             format!("within every {} s along the edges of the graphs in force", seconds(*length_s))
         }
-        GraphEvidence::Unreached { start_s, closed_group } => {
-            format!("from t = {} s on nothing of the leader reaches [{}]", seconds(*start_s), names(closed_group))
+        GraphEvidence::Unreached { start_s, until_s, closed_group } => {
+            let until =
+                until_s.map_or("on".to_owned(), |until_s| format!("to the end of the run at {} s", seconds(until_s)));
+            format!("from t = {} s {until} nothing of the leader reaches [{}]", seconds(*start_s), names(closed_group))
         }
         GraphEvidence::NeverSwitches => "the graph never switches".into(),
         GraphEvidence::ShortestPhase { dwell_s } => format!("the shortest phase lasts {dwell_s} s"),
@@ -73,5 +90,6 @@ fn cut(start_s: f64, until_s: Option<f64>, closed_groups: &[Vec<Named>]) -> Stri
         None => format!("from t = {} s on, whatever the window", seconds(start_s)),
     };
     let groups = groups.join(" and ");
-    format!("{span}, no agent reaches all others: {groups}{more} hear nobody outside themselves")
+    let later = until_s.map_or("", |_| "; what comes later is not known, and may bring the edges that are missing");
+    format!("{span}, no agent reaches all others: {groups}{more} hear nobody outside themselves{later}")
 }

@@ -9,7 +9,10 @@ pub(super) fn words(evidence: &ReferenceEvidence) -> String {
         }
         ReferenceEvidence::Order(order) => format!("the order is {order}"),
         ReferenceEvidence::Orders([(a, order_a), (b, order_b)]) => {
-            format!("{} has order {order_a} and {} has order {order_b}", a.name, b.name)
+            format!(
+                "{} has order {order_a} and {} has order {order_b}, each in steps of its own, as in (30)",
+                a.name, b.name
+            )
         }
         ReferenceEvidence::FirstRootCommon => "κ₀ is common wherever agents hear each other in a cycle".into(),
         ReferenceEvidence::FirstRootsOverConstants => "κ₀ differs, but the graph and the delays are constant".into(),

@@ -112,7 +112,7 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                     @if let Some(agreement) = &metrics.agreement {
                         div.scroll {
                             table.numbers {
-                                thead { tr { th { "Agreement" @if !unit.is_empty() { " in " (unit) } } th { "predicted" } th { "reached" } th { "farthest agent" } } }
+                                thead { tr { th { "Agreement" @if !unit.is_empty() { " in " (unit) } } th { "predicted" } th { (if metrics.disagreement.is_agreement() { "reached" } else { "mean, not agreed" }) } th { "farthest agent" } } }
                                 tbody {
                                     @for a in agreement.iter().take(32) {
                                         tr {
