@@ -58,9 +58,8 @@ impl Prediction {
 }
 
 fn known_digits(value: f64, error_bound: f64) -> String {
-    const MOST: usize = 6;
-    let is_known = |digits: &usize| error_bound <= 0.5 * 0.1_f64.powi(*digits as i32);
-    match (0..=MOST).rev().find(is_known) {
+    const SCALES: [f64; 7] = [1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6];
+    match SCALES.iter().rposition(|scale| error_bound * scale <= 0.5) {
         Some(digits) => {
             // What rounds to zero has no sign.
             let text = format!("{value:.digits$}");
@@ -127,11 +126,20 @@ pub enum NoPrediction {
         agent: usize,
     },
     /// Too few of its digits are known.
-    #[error("rounding leaves it uncertain by ± {error_bound:.1e}")]
+    #[error("{}", uncertain(*error_bound))]
     Uncertain {
         /// How far it can be from what was computed; infinite where no bound was found.
         error_bound: f64,
     },
+}
+
+fn uncertain(error_bound: f64) -> String {
+    if error_bound.is_finite() {
+        return format!("rounding leaves it uncertain by ± {error_bound:.1e}");
+    }
+    "no bound was found on what rounding does to it: the network is too dense to be eliminated, and parts of it hardly hear each \
+     other"
+        .into()
 }
 
 /// Predicts the value agreed upon for a fixed graph with constant delays.

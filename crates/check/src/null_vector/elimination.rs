@@ -128,14 +128,13 @@ impl<T: Positive> Elimination<T> {
             let i = entry.column as usize;
             let before = self.rows[i].len();
             let into = self.rows[i].binary_search_by_key(&(k as u32), |entry| entry.column);
-            let into = into.map_or(T::ZERO, |at| self.rows[i].remove(at).weight);
+            let into = into.map_or(T::ZERO, |at| self.rows[i][at].weight);
             if !into.is_zero() {
                 self.sources.push(Entry { column: entry.column, weight: into });
             }
-            self.lost |= merge(merged, &self.rows[i], &shares, i as u32, into);
-            self.rows[i].clear();
-            self.rows[i].extend_from_slice(merged);
-            changed(i, before, merged.len());
+            self.lost |= merge(merged, &self.rows[i], &shares, [i as u32, k as u32], into);
+            std::mem::swap(&mut self.rows[i], merged);
+            changed(i, before, self.rows[i].len());
         }
         let sources = self.sources.len() - first;
         let depth = sum_depth(row.len());
@@ -174,10 +173,16 @@ impl<T: Positive> Elimination<T> {
     }
 }
 
-/// `row` + `into` · `shares`, without column `own`; whether digits were lost.
-fn merge<T: Positive>(merged: &mut Vec<Entry<T>>, row: &[Entry<T>], shares: &[Entry<T>], own: u32, into: T) -> bool {
+/// `row` + `into` · `shares`, without columns `own`, which stands in `shares`, and `gone`, which stands in `row`; whether digits were lost.
+fn merge<T: Positive>(
+    merged: &mut Vec<Entry<T>>,
+    row: &[Entry<T>],
+    shares: &[Entry<T>],
+    [own, gone]: [u32; 2],
+    into: T,
+) -> bool {
     merged.clear();
-    let (mut row, mut lost) = (row.iter().peekable(), false);
+    let (mut row, mut lost) = (row.iter().filter(|entry| entry.column != gone).peekable(), false);
     for share in shares.iter().filter(|share| share.column != own) {
         while let Some(entry) = row.next_if(|entry| entry.column < share.column) {
             merged.push(*entry);

@@ -17,7 +17,7 @@
 //! that for û.
 
 /// Entries that may be visited.
-const MOST_VISITS: f64 = 2e9;
+const MOST_VISITS: f64 = 1e9;
 /// A sweep goes so far towards the values it finds; at 1 a cycle could go round for ever.
 const SHARE: f64 = 0.95;
 /// What tᵀA must be at least, of what it should be.
