@@ -99,7 +99,7 @@ pub fn weighted(weights: &[f64; 5], jet: &[f64; 5]) -> f64 {
     used.fold(0.0, |sum, (weight, c)| sum + weight * c)
 }
 
-fn weighted_interval(weights: &[f64; 5], jet: &[Interval; 5]) -> Interval {
+pub(super) fn weighted_interval(weights: &[f64; 5], jet: &[Interval; 5]) -> Interval {
     let used = weights.iter().zip(jet).filter(|(weight, _)| **weight != 0.0);
     let mut intervals = Intervals(&[]);
     let sum = used.fold(Interval::point(0.0), |sum, (weight, c)| {

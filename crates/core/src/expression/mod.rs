@@ -7,9 +7,11 @@
 //! - `exact`: the same with rational ends, so that 0.1 + 0.2 − 0.3 is zero;
 //! - `jet`: four derivatives over either of the first two;
 //! - `graph`: a graph without repetitions, differentiated as often as needed, and compiled to a `tape`;
-//! - `uniform`: which way it goes, and whether it is uniformly continuous.
+//! - `uniform`: which way it goes, and whether it is uniformly continuous;
+//! - `tail`: a sum of powers and logarithms with enclosed coefficients, which tells what it does from some time on;
+//! - `period`: whether it is made of waves with a common period.
 //!
-//! `bounds` cuts intervals until bounds are tight, `kinks` finds where |a|, min and max change branches, and `number` keeps
+//! `bounds` cuts intervals until bounds are tight, `for_ever` says what becomes of it on [0, ∞), `kinks` finds where |a|, min and max change branches, and `number` keeps
 //! constants as they were written.
 //!
 //! Backstepping differentiates the regressors of a chain up to one time less than its order. Differences would not be
@@ -19,11 +21,14 @@
 mod bounds;
 mod exact;
 mod float;
+mod for_ever;
 mod graph;
 mod interval;
 mod jet;
 mod kinks;
 mod number;
+mod period;
+mod tail;
 mod tape;
 mod uniform;
 
@@ -35,6 +40,7 @@ use thiserror::Error;
 
 pub use bounds::{search, weighted};
 pub use float::Floats;
+pub use for_ever::ForEver;
 pub use graph::{Graph, Node};
 pub use interval::{Interval, Intervals};
 pub use jet::{Branch, Branching, Jets};

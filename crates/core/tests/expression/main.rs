@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod enclosures;
+mod for_ever;
 mod graphs;
 mod kinks;
 mod slopes;
