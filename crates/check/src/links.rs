@@ -10,7 +10,7 @@ use forwardstep_sim::delay::{Basis, Delay, Unknown};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 
-use crate::hypothesis::{Hypothesis, Id, LinkEvidence};
+use crate::hypothesis::{Hypothesis, Id, LinkEvidence, WeightFault};
 
 /// The delays of links that are used.
 fn delays(setup: &Setup) -> impl Iterator<Item = &Delay> {
@@ -27,6 +27,9 @@ fn known_delays(setup: &Setup) -> LinkEvidence {
     let refuted = |delay: &Delay| delay.probe(end_s).err().map(|fault| (delay.words(), fault));
     if let Some((words, fault)) = delays(setup).find_map(refuted) {
         return LinkEvidence::RefutedDelay { words, fault };
+    }
+    if let Some(refuted) = delays(setup).find_map(|delay| delay.known().refuted) {
+        return LinkEvidence::RefutedBound(refuted);
     }
     let mut bound_s: f64 = 0.0;
     let mut unknown: Vec<Unknown> = Vec::new();
@@ -75,7 +78,7 @@ pub(crate) fn no_delay(setup: &Setup) -> Hypothesis {
     Hypothesis::new(Id::NoDelay, evidence)
 }
 
-/// The formulas that weights of edges follow, each once.
+/// The formulas that weights of edges follow, each once, without those that are constant.
 pub(crate) fn varying_weights(setup: &Setup) -> impl Iterator<Item = &BoundedFormula> {
     let network = &setup.network;
     let mut used = vec![false; network.weights.len()];
@@ -85,7 +88,14 @@ pub(crate) fn varying_weights(setup: &Setup) -> impl Iterator<Item = &BoundedFor
             Weight::Formula(index) => used.get_mut(index).into_iter().for_each(|used| *used = true),
         }
     }
-    network.weights.iter().zip(used).filter(|(_, used)| *used).map(|(formula, _)| formula)
+    let varies = |formula: &BoundedFormula| formula.constant().is_none();
+    network
+        .weights
+        .iter()
+        .zip(used)
+        .filter(|(_, used)| *used)
+        .map(|(formula, _)| formula)
+        .filter(move |one| varies(one))
 }
 
 /// What a nonlinear coupling must be like for the argument of Theorem 3.
@@ -94,17 +104,43 @@ pub(crate) fn coupling(setup: &Setup) -> Option<Hypothesis> {
     Some(Hypothesis::new(Id::CouplingSector, LinkEvidence::Coupling { size }))
 }
 
+/// What all weights that vary keep within, of one of their bounds.
+fn hull(setup: &Setup, of: impl Fn(&BoundedFormula) -> Interval) -> Option<Interval> {
+    varying_weights(setup).map(of).reduce(Interval::hull)
+}
+
 /// Nothing to say where weights are constant.
 pub(crate) fn bounded_weights(setup: &Setup) -> Option<Hypothesis> {
-    let hull = |of: fn(&BoundedFormula) -> Interval| {
-        let bounds = varying_weights(setup).map(of);
-        bounds.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), b| (low.min(b.low), high.max(b.high)))
-    };
-    varying_weights(setup).next()?;
-    let (within, for_ever) = (hull(BoundedFormula::within), hull(BoundedFormula::for_ever));
-    let bounded_for_ever = for_ever.0 > 0.0 && for_ever.1.is_finite();
-    let uniform = varying_weights(setup).all(|weight| weight.formula().is_uniformly_continuous());
-    let ((low, high), until_s) =
-        if bounded_for_ever && uniform { (for_ever, None) } else { (within, Some(setup.time.end_s)) };
+    let (on_run, for_ever) = (hull(setup, BoundedFormula::within)?, hull(setup, |one| one.for_ever().within)?);
+    if let Some(evidence) = varying_weights(setup).find_map(refuted_weight) {
+        return Some(Hypothesis::new(Id::BoundedWeights, evidence));
+    }
+    let bounded_for_ever = for_ever.low > 0.0 && for_ever.high.is_finite();
+    let uniform = varying_weights(setup).all(|weight| weight.for_ever().uniform);
+    let (Interval { low, high }, until_s) =
+        if bounded_for_ever && uniform { (for_ever, None) } else { (on_run, Some(setup.time.end_s)) };
     Some(Hypothesis::new(Id::BoundedWeights, LinkEvidence::Weights { low, high, until_s, bounded_for_ever }))
+}
+
+/// What shows that a weight is not bounded, or not away from zero.
+fn refuted_weight(weight: &BoundedFormula) -> Option<LinkEvidence> {
+    let (on_run, reaches) = (weight.within(), weight.for_ever().reaches);
+    let above = |low: f64| Interval { low, high: f64::INFINITY };
+    let (fault, range) = match () {
+        () if reaches.low < 0.0 => (WeightFault::Negative, above(0.0)),
+        // Below what it has on the run, so that it cannot be taken for what the run has.
+        () if reaches.low <= 0.0 => (WeightFault::Fades, above(0.5 * on_run.low)),
+        () if reaches.high == f64::INFINITY => {
+            (WeightFault::Grows, Interval { low: f64::NEG_INFINITY, high: 2.0 * on_run.high })
+        }
+        () => return None,
+    };
+    Some(LinkEvidence::RefutedWeight { fault, witness: weight.seen_outside(range) })
+}
+
+/// (119) and (122) are realised by their integrals, in which weights stand as if they were constant.
+pub(crate) fn constant_weights(setup: &Setup) -> Hypothesis {
+    let evidence = hull(setup, BoundedFormula::within)
+        .map_or(LinkEvidence::ConstantWeights, |Interval { low, high }| LinkEvidence::VaryingWeights { low, high });
+    Hypothesis::new(Id::ConstantWeights, evidence)
 }

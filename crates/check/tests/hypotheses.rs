@@ -14,11 +14,11 @@ use forwardstep_check::{Answer, Evidence, Id, Rigour, Source, Theorem, check};
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::Exchange;
 use forwardstep_sim::delay::{Delay, Loss, PacketLink};
-use forwardstep_sim::formula::BoundedFormula;
+use forwardstep_sim::formula::{BoundedFormula, Witness};
 use forwardstep_sim::schedule::{Phase, Schedule};
 
 /// Names may join this list. None may leave it or change: certificates, waivers and summaries of earlier versions refer to them.
-const NAMES: [&str; 48] = [
+const NAMES: [&str; 49] = [
     "spanning-tree",
     "leader-reaches-all",
     "dwell-time",
@@ -28,6 +28,7 @@ const NAMES: [&str; 48] = [
     "no-delay",
     "messages-in-time",
     "bounded-weights",
+    "constant-weights",
     "coupling-sector",
     "real-roots",
     "common-order",
@@ -48,6 +49,7 @@ const NAMES: [&str; 48] = [
     "shared-design",
     "printed-design",
     "swarm-coupling",
+    "defined-terms",
     "input-factor",
     "chain-gains",
     "chain-adaptation",
@@ -140,15 +142,19 @@ fn evidence_names_the_two_agents_and_their_first_roots() {
 
 #[test]
 fn thm8_the_answer_about_the_gain_follows_from_its_bounds() {
-    let gain = |seen, on_run, for_ever| {
-        let evidence = FollowingEvidence::Gain { gamma: 2.0, seen, on_run, for_ever, end_s: 9.0 };
+    let gain = |reached: Option<f64>, unbounded, for_ever| {
+        let reached = reached.map(|value| Witness { t_s: 1.0, value });
+        let (gamma, seen, on_run, end_s) = (2.0, 1.0, 1.5, 9.0);
+        let evidence = FollowingEvidence::Gain { gamma, seen, on_run, for_ever, reached, unbounded, end_s };
         let evidence = Evidence::from(evidence);
         (evidence.answer(), evidence.rigour())
     };
-    assert_eq!(gain(1.0, 1.5, 1.9), (Answer::Holds, Rigour::Enclosed));
-    assert_eq!(gain(1.0, 1.5, 2.0), (Answer::HoldsOnHorizon, Rigour::Enclosed));
-    assert_eq!(gain(1.0, 2.0, f64::INFINITY), (Answer::NotShown, Rigour::Sampled));
-    assert_eq!(gain(2.0, 1.5, 1.9), (Answer::Violated, Rigour::Sampled));
+    assert_eq!(gain(None, false, 1.9), (Answer::Holds, Rigour::Enclosed));
+    // That it is enough on the run says nothing of later.
+    assert_eq!(gain(None, false, 2.0), (Answer::NotShown, Rigour::Sampled));
+    assert_eq!(gain(None, false, f64::INFINITY), (Answer::NotShown, Rigour::Sampled));
+    assert_eq!(gain(None, true, f64::INFINITY), (Answer::Violated, Rigour::Enclosed));
+    assert_eq!(gain(Some(2.0), false, 2.5), (Answer::Violated, Rigour::Enclosed));
 }
 
 #[test]

@@ -5,14 +5,14 @@
 mod common;
 
 use common::kinds::{
-    alone, blind_mass, cascade, chain, change_tip, formula, planar_tip, power_of_time, rest_at, spacecraft, tracking,
-    tree_tip, vehicle,
+    alone, blind_mass, cascade, chain, change_tip, fading_power_of_time, formula, planar_tip, power_of_time, rest_at,
+    spacecraft, tracking, tree_tip, vehicle,
 };
 use common::{About, answer, answers, arm};
 use forwardstep_check::hypothesis::Subject;
 use forwardstep_check::{Answer, Id, Source, Theorem, check};
 use forwardstep_core::controller::{Floor, ParameterBounds};
-use forwardstep_core::expression::Expression;
+use forwardstep_core::expression::{Expression, Number};
 use forwardstep_core::robot::tree::JointKind::{Prismatic, Revolute};
 use forwardstep_core::robot::tree::{JointKind, Uncertain};
 use forwardstep_sim::reference::Consensus;
@@ -138,12 +138,27 @@ fn thm4_a_thrust_that_is_kept_above_a_floor_is_not_covered() {
 }
 
 #[test]
-fn eq_43_a_factor_of_the_input_that_varies_is_watched() {
+fn eq_43_a_factor_of_the_input_holds_where_it_keeps_away_from_zero_in_every_state_and_else_is_watched() {
     let x = || Expression::variable(0);
     let constant = chain(&Expression::number(2.0), 0, false);
     assert_eq!(answer(&alone(constant), About::Divisor), Answer::Holds);
-    let varying = chain(&(x().cos_of() + 2.0), 0, false);
-    assert_eq!(answer(&alone(varying), About::Divisor), Answer::Watched);
+    let of = |psi: Expression| {
+        let report = check(&alone(chain(&psi, 0, false)));
+        let found = report.hypotheses.iter().find(|hypothesis| hypothesis.id == Id::InputFactor).unwrap();
+        (found.answer(), found.because())
+    };
+    assert_eq!(of(x().cos_of() + 2.0), (Answer::Holds, "in every state it is 1 at least in magnitude".into()));
+    assert_eq!(of(-x().power(2.0) - 0.25).0, Answer::Holds);
+    // Positive, but as small as one likes; of both signs; below the floor of 1e-3.
+    let (answered, because) = of((-x().power(2.0)).exp_of());
+    assert!(answered == Answer::Watched && because.ends_with("comes close to zero far away"), "{because}");
+    let (answered, because) = of(x() - 0.7);
+    assert!(answered == Answer::Watched && because.ends_with("changes its sign in the state (0.7)"), "{because}");
+    assert_eq!(of(x().power(2.0) + 1e-4).0, Answer::Watched);
+    // Exactly zero, though f64 has 5.6e-17.
+    let tenth = |text: &str| Expression::number(Number::decimal(text).unwrap());
+    let (answered, because) = of(tenth("0.1") + tenth("0.2") - tenth("0.3"));
+    assert!(answered == Answer::Violated && because.contains(" is 0 for ever"), "{because}");
     // A constant may be too small from the start: the floor is 1e-3.
     for (psi, answered) in [
         (0.0, Answer::Violated),
@@ -161,8 +176,36 @@ fn eq_43_a_factor_of_the_input_that_varies_is_watched() {
     let bent = || Expression::variable(1) + Expression::variable(1).power(3.0);
     let one = || Expression::number(1.0);
     assert_eq!(answer(&alone(cascade(strict(), one(), 1)), About::Divisor), Answer::Holds);
-    assert_eq!(answer(&alone(cascade(strict(), x().cos_of() + 2.0, 1)), About::Divisor), Answer::Watched);
+    assert_eq!(answer(&alone(cascade(strict(), x().cos_of() + 2.0, 1)), About::Divisor), Answer::Holds);
     assert_eq!(answer(&alone(cascade(bent(), one(), 1)), About::Divisor), Answer::Watched);
+}
+
+#[test]
+fn eq_33_terms_have_a_value_in_every_state() {
+    let x = || Expression::variable(0);
+    let one = || Expression::number(1.0);
+    let said = |psi: Expression| {
+        let report = check(&alone(chain(&psi, 1, true)));
+        let found = report.hypotheses.iter().find(|hypothesis| hypothesis.id == Id::DefinedTerms).unwrap();
+        (found.answer(), found.because())
+    };
+    assert_eq!(said(x().cos_of() + 2.0).0, Answer::Holds);
+    let (answered, because) = said(one() / (x() - 0.7));
+    assert_eq!(
+        (answered, &*because),
+        (Answer::Violated, "ψ of agent has a pole, in the state (0.7); a run may step over it")
+    );
+    let (answered, because) = said((x() - 0.6).sqrt_of() + 1.0);
+    assert!(answered == Answer::Violated && because.contains("of what is negative"), "{because}");
+    // 0/0 may have a limit.
+    assert_eq!(said(x().sin_of() / x() + 2.0).0, Answer::NotShown);
+    // Terms of cascades as well.
+    let cascaded = |known| {
+        let report = check(&alone(cascade(known, Expression::number(1.0), 1)));
+        report.hypotheses.iter().find(|hypothesis| hypothesis.id == Id::DefinedTerms).unwrap().answer()
+    };
+    let next = || Expression::variable(1);
+    assert_eq!([cascaded(next()), cascaded(next() + one() / x())], [Answer::Holds, Answer::Violated]);
 }
 
 #[test]
@@ -177,13 +220,13 @@ fn eq_43_regressors_have_to_be_bounded_where_they_are_adapted_by_the_gradient() 
     assert_eq!(said(strict(0)), []);
 }
 
-/// A path with `bounded` derivatives that are bounded on the run, beginning with the zeroth, and no more.
+/// A path with `bounded` derivatives that are bounded for ever, beginning with the zeroth, and no more.
 fn smooth(bounded: i32) -> Path {
     // t^(k − ½) has k − 1 derivatives that are finite at t = 0.
-    power_of_time(0.01, f64::from(bounded) - 0.5)
+    fading_power_of_time(0.01, f64::from(bounded) - 0.5)
 }
 
-/// How many derivatives of its target an agent needs on the run, beside the target itself.
+/// How many derivatives of its target an agent needs, beside the target itself.
 fn needed(agent: &AgentSetup, about: About) -> usize {
     let axes = if agent.robot.kind.is::<SpacecraftModel>() { 4 } else { agent.robot.axes.len() };
     let said = |bounded: i32| {
@@ -197,7 +240,7 @@ fn needed(agent: &AgentSetup, about: About) -> usize {
     };
     let answers: Vec<Answer> = (1..=5).map(said).collect();
     let first = answers.iter().position(|answer| *answer != Answer::NotShown).unwrap_or(5);
-    assert!(answers[first..].iter().all(|answer| *answer == Answer::HoldsOnHorizon), "{answers:?}");
+    assert!(answers[first..].iter().all(|answer| *answer == Answer::Holds), "{answers:?}");
     first
 }
 
@@ -218,12 +261,12 @@ fn eq_a9_and_others_need_as_many_derivatives_of_a_target_as_they_take() {
 }
 
 #[test]
-fn targets_are_bounded_for_ever_on_the_run_or_not_at_all() {
+fn targets_are_bounded_for_ever_refuted_or_not_shown_to_be() {
     let said = |path: Path| answer(&tracking(blind_mass(5.0, 0.3), vec![path]), About::Target);
     assert_eq!(said(formula(Expression::variable(0).sin_of() * 0.3)), Answer::Holds);
-    assert_eq!(said(power_of_time(0.1, 2.0)), Answer::HoldsOnHorizon);
+    assert_eq!(said(power_of_time(0.1, 2.0)), Answer::Violated);
     // A target has to stay where it is, an offset may travel.
-    assert_eq!(said(formula(Expression::variable(0) * 0.3)), Answer::HoldsOnHorizon);
+    assert_eq!(said(formula(Expression::variable(0) * 0.3)), Answer::Violated);
     let mut travelling: Setup = alone(vehicle(ThrustKind::Continuous, Floor::Stops(1.0)));
     let drift = vec![formula(Expression::variable(0) * 0.3), rest_at(0.0), rest_at(0.0)];
     travelling.agents[0].target = Some(Trajectory::new(drift).unwrap());
@@ -243,7 +286,9 @@ fn thm7_a_quaternion_that_comes_to_zero_is_violated_and_one_that_does_not_holds(
     // It passes zero at π.
     assert_eq!(said(formula(Expression::variable(0).sin_of())), Answer::Violated);
     let shrinking = formula(Expression::variable(0) * -0.04 + 1.0);
-    assert_eq!(said(shrinking), Answer::HoldsOnHorizon, "at 20 s it is 0.2");
+    assert_eq!(said(shrinking), Answer::Violated, "at 20 s it is 0.2, and at 25 s it is zero");
+    assert_eq!(said(formula((-Expression::variable(0)).exp_of())), Answer::Violated, "it fades");
+    assert_eq!(said(formula((-Expression::variable(0)).exp_of() + 0.1)), Answer::Holds);
 }
 
 /// (6)–(7) behind reference dynamics for tracking: no theorem of the paper, and that is said.
@@ -267,5 +312,5 @@ fn robots_that_track_fall_under_no_theorem_of_the_paper_and_all_that_their_argum
     }
     // A parabola is not bounded for ever.
     let setup = tracking(arm(0, &[2.0]), vec![power_of_time(0.01, 2.0), rest_at(0.0)]);
-    assert_eq!(check(&setup).worst(), Answer::HoldsOnHorizon);
+    assert_eq!(check(&setup).worst(), Answer::Violated);
 }

@@ -63,6 +63,13 @@ fn only_a_bounded_loss_gives_a_bounded_delay() {
         assert_eq!(answer, Answer::HoldsOnHorizon);
         assert!(because.contains("any number of packets may be lost one after another"), "{because}");
     }
+    // Of a link that loses every packet, and of one on which none has arrived, nothing is known that holds.
+    let (answer, because, _) = link(Loss::Random { probability: 1.0 }, None);
+    assert_eq!((answer, because.contains("loses every packet")), (Answer::Violated, true), "{because}");
+    assert_eq!(link(Loss::Random { probability: 1.0 }, Some(3)).0, Answer::Holds);
+    assert_eq!(link(Loss::Bursts { enter: 1.0, leave: 1e-9 }, None).0, Answer::NotShown);
+    let lost = vec![Packet { send_s: 0.0, delay_s: None }, Packet { send_s: 1.0, delay_s: None }];
+    assert_eq!(links(Delay::new(Trace::new(lost, 20.0).unwrap()), None).0, Answer::NotShown);
     let packets = vec![Packet { send_s: 0.0, delay_s: Some(0.5) }, Packet { send_s: 1.0, delay_s: None }];
     let (answer, because, _) = links(Delay::new(Trace::new(packets, 20.0).unwrap()), None);
     assert_eq!(answer, Answer::HoldsOnHorizon);
@@ -84,13 +91,13 @@ fn formulas_hold_for_ever_only_where_that_is_shown() {
     let (answer, because, _) = links(delay(swing(0.5)), None);
     assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 1 s"));
     let (answer, because, _) = links(delay(growing.clone()), None);
-    assert_eq!(answer, Answer::HoldsOnHorizon);
-    assert!(because.starts_with("no delay exceeds 0.3 s until the end of the run"), "{because}");
+    assert_eq!(answer, Answer::Violated);
+    assert!(because.starts_with("a delay that is a formula exceeds every bound; at t = "), "{because}");
     let constant = || Delay::constant(0.1);
     let (_, _, weight) = links(constant(), Some(swing(1.0)));
     assert_eq!(weight.unwrap(), (Answer::Holds, "weights that follow a formula stay from 0.5 to 1.5".to_owned()));
     let (_, _, weight) = links(constant(), Some(growing));
-    assert_eq!(weight.unwrap().0, Answer::HoldsOnHorizon);
+    assert_eq!(weight.unwrap().0, Answer::Violated);
     assert_eq!(links(constant(), None).2, None);
 
     // What is said for ever is the bound for ever, not what the run happens to see of it: 0.2 + 0.1 tanh(t / 1000).
@@ -103,13 +110,62 @@ fn formulas_hold_for_ever_only_where_that_is_shown() {
     let swings = |argument: Expression| argument.sin_of() * 0.1 + 0.2;
     let faster = swings(t() * t());
     let (answer, because, weight) = links(delay(faster.clone()), Some(faster));
-    assert_eq!(answer, Answer::HoldsOnHorizon);
+    assert_eq!(answer, Answer::NotShown);
     assert!(because.contains("could not be shown to be uniformly continuous for ever"), "{because}");
     let (answer, because) = weight.unwrap();
-    assert_eq!(answer, Answer::HoldsOnHorizon);
+    assert_eq!(answer, Answer::NotShown);
     assert!(because.contains("could not be shown to be uniformly continuous for ever"), "{because}");
     let steady = swings(t() * core::f64::consts::TAU / 3.0);
     let (answer, because, weight) = links(delay(steady.clone()), Some(steady));
     assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 0.3 s"));
     assert_eq!(weight.unwrap().0, Answer::Holds);
+}
+
+#[test]
+fn weights_and_delays_are_judged_by_what_they_do_for_all_time() {
+    let t = || Expression::variable(0);
+    let one = || Expression::number(1.0);
+    let delay = |formula: Expression| {
+        let (answer, because, _) = links(Delay::new(BoundedFormula::new(formula, 20.0)), None);
+        (answer, because)
+    };
+    let weight = |formula: Expression| links(Delay::constant(0.1), Some(formula)).2.unwrap();
+    // t/(1 + t) is below one for ever; t is not bounded; what is negative later is no delay.
+    assert_eq!(delay(t() / (one() + t())), (Answer::Holds, "no delay exceeds 1 s".into()));
+    assert_eq!(delay(t()).0, Answer::Violated);
+    let (answer, because) = delay(one() - t() * 0.01);
+    assert!(answer == Answer::Violated && because.contains("becomes negative after the run"), "{because}");
+    // A pole or a root after the run: neither is shown.
+    assert_eq!(delay(one() / (t() - 100.0) + 1.0).0, Answer::NotShown);
+    assert_eq!(delay((Expression::number(50.0) - t()).sqrt_of()).0, Answer::NotShown);
+    for fading in [(-t()).exp_of(), one() / (one() + t()), one() + (t() * 0.01).cos_of()] {
+        let (answer, because) = weight(fading.clone());
+        assert_eq!(answer, Answer::Violated, "{fading:?}");
+        assert!(because.contains("its infimum is 0; at t = "), "{because}");
+    }
+    let (answer, because) = weight(one() - t() * 0.01);
+    assert!(answer == Answer::Violated && because.contains("negative after the run; at t = "), "{because}");
+    let (answer, because) = weight(one() + t().sqrt_of());
+    assert!(answer == Answer::Violated && because.contains("exceeds every bound; at t = "), "{because}");
+    assert_eq!(
+        weight((-t()).exp_of() + 0.2),
+        (Answer::Holds, "weights that follow a formula stay from 0.2 to 1.201".into())
+    );
+    // A sum of two waves is larger than the sum of their lower bounds.
+    let waves = t().sin_of() * 0.2 + t().cos_of() * 0.2 + 0.3;
+    assert_eq!(weight(waves).0, Answer::Holds);
+}
+
+#[test]
+fn bounds_are_said_outwards() {
+    let (answer, because, _) = links(Delay::constant(4e-7), None);
+    assert_eq!((answer, because.as_str()), (Answer::Holds, "no delay exceeds 0.0000004 s"));
+}
+
+#[test]
+fn a_weight_in_which_time_cancels_is_constant() {
+    let constant = Expression::number(1.0) + Expression::variable(0) * 0.0;
+    let bounded = BoundedFormula::new(constant, 20.0);
+    assert!(bounded.is_constant() && BoundedFormula::new(Expression::number(2.0), 20.0).is_constant());
+    assert!(!BoundedFormula::new(Expression::variable(0).sin_of() * 1e-9 + 1.0, 20.0).is_constant());
 }

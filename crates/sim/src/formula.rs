@@ -3,7 +3,7 @@
 //!
 //! Bounds are how a delay is shown never to be negative and a weight to stay positive.
 
-use forwardstep_core::expression::{Expression, Interval, KinkError};
+use forwardstep_core::expression::{Expression, ForEver, Interval, KinkError};
 
 use crate::quantity::{QuantityError, Requirement, Sign, not_negative, positive, such};
 
@@ -16,7 +16,7 @@ pub struct BoundedFormula {
     formula: Expression,
     until_s: f64,
     within: Interval,
-    for_ever: Interval,
+    for_ever: ForEver,
     kinks_s: Vec<f64>,
 }
 
@@ -24,7 +24,7 @@ impl BoundedFormula {
     /// Encloses `formula` on [0, `until_s`], and for ever.
     pub fn new(formula: Expression, until_s: f64) -> Self {
         let within = formula.bounds(0.0, until_s);
-        let for_ever = if formula.is_constant() { within } else { formula.bounds(0.0, f64::INFINITY) };
+        let for_ever = formula.for_ever();
         // Where they cannot be told apart they are left to the error control: the value is continuous.
         let kinks_s = kinks_s(&formula, 0.0, until_s).unwrap_or_default();
         BoundedFormula { formula, until_s, within, for_ever, kinks_s }
@@ -45,9 +45,27 @@ impl BoundedFormula {
         self.within
     }
 
-    /// What it keeps within for ever, as far as that could be shown; see [`Expression::bounds`].
-    pub fn for_ever(&self) -> Interval {
+    /// What it does for ever, as far as that could be shown; see [`Expression::for_ever`].
+    pub fn for_ever(&self) -> ForEver {
         self.for_ever
+    }
+
+    /// When it is seen to be outside `range`, and its value then: the first of many times looked at, far beyond the run, at
+    /// which that is certain. `None` where it is not seen.
+    pub fn seen_outside(&self, range: Interval) -> Option<Witness> {
+        let end_s = self.until_s;
+        times_s(end_s).find_map(|t_s| Witness::outside(t_s, self.formula.enclose(Interval::point(t_s)), range))
+    }
+
+    /// Its value, where it is shown to have one for ever, though t may be in it: 1 + 0 t. That of a formula without t may be no
+    /// number.
+    pub fn constant(&self) -> Option<f64> {
+        let Interval { low, high } = self.for_ever.within;
+        if self.formula.is_constant() {
+            // As a number: its bounds may be wider.
+            return Some(self.formula.constant().map_or(f64::NAN, |number| number.value()));
+        }
+        (low == high).then_some(low)
     }
 
     /// Where it has kinks until [`until_s`](Self::until_s), s, rising; none where they could not be told apart.
@@ -69,9 +87,7 @@ impl BoundedFormula {
     /// # Errors
     /// [`QuantityError`] if that could not be shown.
     pub fn stays(&self, key: &'static str, must: Sign) -> Result<(), QuantityError> {
-        if self.formula.is_constant() {
-            // As a number: its bounds may be wider.
-            let value = self.formula.constant().map_or(f64::NAN, |number| number.value());
+        if let Some(value) = self.constant() {
             such(!value.is_nan(), "", key, value, "must have a finite value")?;
             return match must {
                 Sign::Positive => positive("", key, value),
@@ -88,6 +104,34 @@ impl BoundedFormula {
         let requirement = Requirement::Throughout { must, within: [low, high], seen_s, until_s: self.until_s };
         Err(QuantityError { path: key.into(), value, requirement })
     }
+}
+
+/// A value that was found, and when.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Witness {
+    /// When, s.
+    pub t_s: f64,
+    /// The value, rounded towards what it is a witness against.
+    pub value: f64,
+}
+
+impl Witness {
+    /// The value at `t_s` as a witness against `range`, if what encloses it is outside.
+    pub(crate) fn outside(t_s: f64, value: Interval, range: Interval) -> Option<Witness> {
+        match () {
+            () if value.low > range.high => Some(Witness { t_s, value: value.low }),
+            () if value.high < range.low => Some(Witness { t_s, value: value.high }),
+            () => None,
+        }
+    }
+}
+
+/// Times to look at, s: evenly spread over the run, then ever further apart.
+pub(crate) fn times_s(end_s: f64) -> impl Iterator<Item = f64> {
+    const EVEN: u32 = 1000;
+    const FAR: i32 = 20_000;
+    let even = (0..=EVEN).map(move |k| end_s * f64::from(k) / f64::from(EVEN));
+    even.chain((1..FAR).map(move |k| end_s * 1.01_f64.powi(k)).take_while(|t_s| *t_s < 1e80))
 }
 
 /// Where a formula has kinks between two times, s, rising.

@@ -62,6 +62,8 @@ table! {
         "no message becomes older than the time-out, so that graphs are those that are stated";
     BoundedWeights, "bounded-weights", "own derivation", Source::Derived,
         "weights are piecewise uniformly continuous, bounded, and bounded away from zero while their edge is there";
+    ConstantWeights, "constant-weights", "(119), (122)", Source::Paper,
+        "weights are constant";
     CouplingSector, "coupling-sector", "own derivation", Source::Derived,
         "the coupling is odd and continuous, grows, and keeps within the sector (0, 1]";
 
@@ -110,6 +112,8 @@ table! {
         "k λ > β + κ₀⁴/(2 (β² − α) κ₁), λ the smallest eigenvalue of the followers' Laplacian";
 
     // Laws of Sections IV and V.
+    DefinedTerms, "defined-terms", "(33)", Source::Paper,
+        "χ, ψ and the regressors have a value, and bounded slopes on bounded sets, in every state";
     InputFactor, "input-factor", "(33)", Source::Paper,
         "the factor of the input stays away from zero";
     ChainGains, "chain-gains", "(43)", Source::Paper,

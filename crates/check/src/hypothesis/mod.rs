@@ -11,8 +11,8 @@ use forwardstep_sim::Setup;
 use forwardstep_sim::leader::FollowingDesign;
 
 pub use evidence::{
-    Bounded, Evidence, FollowingEvidence, GraphEvidence, Inexact, KindEvidence, Limited, LinkEvidence, LoopEvidence,
-    MotionEvidence, ReferenceEvidence,
+    Bounded, Evidence, FactorEverywhere, FollowingEvidence, GraphEvidence, Inexact, KindEvidence, Limited,
+    LinkEvidence, LoopEvidence, MotionEvidence, ReferenceEvidence, Term, WeightFault,
 };
 pub use id::Id;
 

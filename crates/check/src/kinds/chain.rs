@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use forwardstep_core::expression::Expression;
+use forwardstep_core::expression::{Domain, Expression};
 use forwardstep_core::plant::CascadeTerms;
 use forwardstep_sim::push::{Course, Function, Push};
 use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, ChainStep, Law, Setup};
 
 use super::{Claim, KindCheck};
-use crate::hypothesis::{Hypothesis, Id, KindEvidence, Named};
+use crate::hypothesis::{FactorEverywhere, Hypothesis, Id, KindEvidence, Named, Term};
 use crate::surroundings::acts;
 use crate::theorem::Theorem;
 
@@ -45,7 +45,7 @@ impl KindCheck for Chain {
     }
 
     fn hypotheses(&self, setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
-        let mut hypotheses = vec![input_factor(setup, agents), gains(setup, agents)];
+        let mut hypotheses = vec![defined(setup, agents), input_factor(setup, agents), gains(setup, agents)];
         hypotheses.extend(regressors(setup, agents));
         hypotheses.extend(disturbances(setup, agents));
         hypotheses
@@ -64,16 +64,59 @@ fn chains<'a>(setup: &'a Setup, agents: &'a [usize]) -> impl Iterator<Item = (us
     })
 }
 
-/// The value of an expression without variables.
+/// The value of an expression without variables, from its exact value: 0.1 + 0.2 − 0.3 is zero.
 fn constant(expression: &Expression) -> Option<f64> {
-    (expression.variables() == 0).then(|| expression.value(&[]))
+    let value = || expression.constant().map_or(f64::NAN, |number| number.value());
+    (expression.variables() == 0).then(value)
+}
+
+/// The terms of a chain, each with what it is.
+fn terms(model: &ChainModel) -> Vec<(Term, &Expression)> {
+    let named = |term: Term| move |expression| (term, expression);
+    match model {
+        ChainModel::Derivatives(terms) => {
+            let regressors = terms.regressor().iter().map(named(Term::Regressor));
+            [(Term::Drift, terms.drift()), (Term::Factor, terms.input())].into_iter().chain(regressors).collect()
+        }
+        ChainModel::Cascade(terms) => {
+            let regressors = terms.regressors().iter().flatten().map(named(Term::Regressor));
+            let known = terms.known().iter().map(named(Term::Drift));
+            known.chain([(Term::Factor, terms.input())]).chain(regressors).collect()
+        }
+    }
+}
+
+/// Whether all terms have a value wherever the state may go: the worst of what is found.
+fn defined(setup: &Setup, agents: &[usize]) -> Hypothesis {
+    let mut evidence = KindEvidence::TermsDefined;
+    // Like agents share their model.
+    let mut seen: Vec<&Expression> = Vec::new();
+    for (index, _, model) in chains(setup, agents) {
+        for (term, expression) in terms(model) {
+            if seen.contains(&expression) {
+                continue;
+            }
+            seen.push(expression);
+            match expression.domain() {
+                Domain::Everywhere => {}
+                Domain::NotShown => evidence = KindEvidence::TermNotShown { agent: Named::of(setup, index), term },
+                Domain::Fails { at, gap } => {
+                    let evidence = KindEvidence::TermFails { agent: Named::of(setup, index), term, at, gap };
+                    return Hypothesis::new(Id::DefinedTerms, evidence);
+                }
+            }
+        }
+    }
+    Hypothesis::new(Id::DefinedTerms, evidence)
 }
 
 fn input_factor(setup: &Setup, agents: &[usize]) -> Hypothesis {
-    let fixed = |model: &ChainModel| match model {
-        ChainModel::Derivatives(terms) => constant(terms.input()),
-        ChainModel::Cascade(terms) => constant(terms.input()).filter(|_| terms.is_strict()),
+    // Of a chain that is not strict, what is divided by has more factors.
+    let factor = |model: &ChainModel| match model {
+        ChainModel::Derivatives(terms) => Some(terms.input().clone()),
+        ChainModel::Cascade(terms) => terms.is_strict().then(|| terms.input().clone()),
     };
+    let fixed = |model: &ChainModel| factor(model).and_then(|input| constant(&input));
     // What is constant is known before the run, and may be too small from the start.
     let vanishing = chains(setup, agents).find_map(|(index, law, model)| {
         let value = fixed(model).filter(|value| value.is_nan() || value.abs() < law.floor)?;
@@ -82,11 +125,35 @@ fn input_factor(setup: &Setup, agents: &[usize]) -> Hypothesis {
     if let Some(evidence) = vanishing {
         return Hypothesis::new(Id::InputFactor, evidence);
     }
-    let evidence = match chains(setup, agents).find(|(.., model)| fixed(model).is_none()) {
-        None => KindEvidence::ConstantFactor,
-        Some((index, law, _)) => KindEvidence::FactorFloor { agent: Named::of(setup, index), floor: law.floor },
-    };
+    let mut smallest: Option<f64> = None;
+    for (index, law, model) in chains(setup, agents).filter(|(.., model)| fixed(model).is_none()) {
+        let everywhere = factor(model).map_or(FactorEverywhere::Unknown, |input| everywhere(&input));
+        match everywhere {
+            FactorEverywhere::Away { least } if least >= law.floor => {
+                smallest = Some(smallest.map_or(least, |other| other.min(least)));
+            }
+            FactorEverywhere::Away { .. }
+            | FactorEverywhere::Fades
+            | FactorEverywhere::Zero(_)
+            | FactorEverywhere::Unknown => {
+                let (agent, floor) = (Named::of(setup, index), law.floor);
+                return Hypothesis::new(Id::InputFactor, KindEvidence::FactorFloor { agent, floor, everywhere });
+            }
+        }
+    }
+    let evidence = smallest.map_or(KindEvidence::ConstantFactor, |least| KindEvidence::FactorAway { least });
     Hypothesis::new(Id::InputFactor, evidence)
+}
+
+/// What is known of a factor over all states.
+fn everywhere(input: &Expression) -> FactorEverywhere {
+    let (within, nonzero) = input.everywhere();
+    let least = within.low.max(-within.high);
+    match () {
+        () if nonzero && least > 0.0 => FactorEverywhere::Away { least },
+        () if nonzero => FactorEverywhere::Fades,
+        () => input.zero().map_or(FactorEverywhere::Unknown, FactorEverywhere::Zero),
+    }
 }
 
 fn gains(setup: &Setup, agents: &[usize]) -> Hypothesis {

@@ -1,6 +1,8 @@
 //! Theorem 7: spacecraft that follow an attitude without a measured angular velocity.
 
+use forwardstep_core::expression::{Expression, Interval};
 use forwardstep_core::plant;
+use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::{AgentSetup, AttitudeLaw, Setup, SpacecraftModel};
 
 use super::{Claim, KindCheck};
@@ -77,6 +79,9 @@ fn path(setup: &Setup, agent: &AgentSetup) -> Option<MotionEvidence> {
     }
     let end_s = setup.time.end_s;
     let seen = target.least_norm(end_s);
+    if let Some(evidence) = target.squared_norm().and_then(|square| norm_for_ever(square, seen.norm, end_s)) {
+        return Some(evidence);
+    }
     let fastest = |axis| {
         let speed = target.hull(axis, 1, Some(end_s));
         speed.high.max(-speed.low)
@@ -84,11 +89,25 @@ fn path(setup: &Setup, agent: &AgentSetup) -> Option<MotionEvidence> {
     let speed = (0..target.axes()).map(fastest).map(|speed| speed * speed).sum::<f64>().sqrt();
     let shown = seen.norm - speed * 0.5 * seen.every_s;
     let (t_s, norm) = (seen.t_s, seen.norm);
-    Some(if shown > 0.0 {
-        MotionEvidence::NormAbove { least: shown }
-    } else if seen.vanishes() {
+    Some(if seen.vanishes() {
         MotionEvidence::NormVanishes { t_s, norm }
+    } else if shown > 0.0 && target.squared_norm().is_none() {
+        // A curve through points.
+        MotionEvidence::NormAbove { least: shown, until_s: Some(end_s) }
+    } else if let Some(later) = target.vanishes_later(end_s) {
+        MotionEvidence::NormVanishes { t_s: later.t_s, norm: later.norm }
     } else {
         MotionEvidence::NormSeen { t_s, norm }
     })
+}
+
+/// What the square of a norm that is a formula says for all time, if anything.
+fn norm_for_ever(square: Expression, on_run: f64, end_s: f64) -> Option<MotionEvidence> {
+    let norm = BoundedFormula::new(square.sqrt_of(), end_s);
+    let found = norm.for_ever();
+    if found.within.low > 0.0 {
+        return Some(MotionEvidence::NormAbove { least: found.within.low, until_s: None });
+    }
+    let above = Interval { low: 0.5 * on_run, high: f64::INFINITY };
+    (found.reaches.low <= 0.0).then(|| MotionEvidence::NormFades { witness: norm.seen_outside(above) })
 }

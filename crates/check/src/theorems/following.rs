@@ -9,7 +9,7 @@ use crate::graphs::{fixed_graph, leader_reaches_all};
 use crate::hypothesis::{FollowingEvidence, Hypothesis, Id, MotionEvidence, Subject};
 use crate::kinds::starts_from_zero;
 use crate::laws;
-use crate::links::{bounded_weights, no_delay};
+use crate::links::{bounded_weights, constant_weights, no_delay};
 use crate::report::Report;
 use crate::surroundings::{applied_torque, digital, pushes_end};
 use crate::theorem::Theorem;
@@ -40,7 +40,11 @@ pub(super) fn check(setup: &Setup, following: &Following) -> Report {
     ];
     match following.design {
         FollowingDesign::Swarm { coupling } => hypotheses.extend(swarm::hypotheses(setup, following, coupling)),
-        FollowingDesign::Continuous | FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => {}
+        // (110) is integrated as it stands, whatever its weights do.
+        FollowingDesign::Continuous => {}
+        FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => {
+            hypotheses.push(constant_weights(setup));
+        }
     }
     hypotheses.extend(bounded_weights(setup));
     hypotheses.push(sign(setup, following));
@@ -69,24 +73,45 @@ fn gain(setup: &Setup, following: &Following) -> Hypothesis {
     let end_s = setup.time.end_s;
     let gamma = following.gain;
     let evidence = match following.motion() {
-        Some(leader) => FollowingEvidence::Gain {
-            gamma,
-            seen: leader.trajectory.sampled_peak(&following.drive(), end_s, LOOKS),
-            on_run: following.drive_bound(Some(end_s)),
-            for_ever: following.drive_bound(None),
-            end_s,
-        },
+        Some(leader) => {
+            let (motion, drive) = (&leader.trajectory, following.drive());
+            let for_ever = following.drive_bound(None);
+            let exceeds = for_ever.is_nan() || for_ever >= gamma;
+            FollowingEvidence::Gain {
+                gamma,
+                seen: motion.sampled_peak(&drive, end_s, LOOKS),
+                on_run: following.drive_bound(Some(end_s)),
+                for_ever,
+                reached: exceeds.then(|| motion.seen_to_reach(&drive, gamma, end_s)).flatten(),
+                unbounded: exceeds && motion.exceeds_every_bound(&drive),
+                end_s,
+            }
+        }
         None => FollowingEvidence::GainOverAgent { gamma },
     };
     Hypothesis::about(Id::SignGain, Subject::Drive(following.design), evidence)
 }
 
+/// A sign that is solved for every h seconds is held in between, while the leader is driven away at ξ̇₀: ξ_i − ξ_0 comes back to
+/// h sup |ξ̇₀|, whatever γ is. q_i − q_0 follows it through 1/(p + α), or 1/(p² + β p + α) with real roots, whose largest
+/// response is 1/α: h sup |ξ̇₀| / α is left.
 fn sign(setup: &Setup, following: &Following) -> Hypothesis {
-    let period_s = match &setup.control {
-        None => Some(following.period_s),
-        Some(_) => None,
+    let (sampled, period_s) = match &setup.control {
+        None => (false, following.period_s),
+        Some(control) => (true, 1.0 / control.sample_hz),
     };
-    Hypothesis::new(Id::SetValuedSign, FollowingEvidence::Sign { choice: following.choice, period_s })
+    let alpha_per_s = match following.design {
+        FollowingDesign::Continuous => following.alpha,
+        // α is the product of the two roots there.
+        FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
+            following.alpha.sqrt()
+        }
+    };
+    let left = period_s * following.drive_bound(None) / following.alpha;
+    let end_s = setup.time.end_s;
+    let evidence =
+        FollowingEvidence::Sign { choice: following.choice, sampled, period_s, rate_per_s: alpha_per_s, left, end_s };
+    Hypothesis::new(Id::SetValuedSign, evidence)
 }
 
 /// α and β are common by what a scenario can say; what is slow is said here.

@@ -1,5 +1,6 @@
 //! Agents that follow targets of their own: Sections V-A and V-C; and offsets in a formation.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
@@ -31,7 +32,7 @@ pub(super) fn check(setup: &Setup) -> Report {
 /// Whether the targets, or the offsets, are bounded with as many derivatives as the laws need. Agents with the same answer
 /// share a hypothesis.
 pub(super) fn bounded(setup: &Setup) -> Vec<Hypothesis> {
-    let mut groups: BTreeMap<(usize, Bounded, bool), Vec<Named>> = BTreeMap::new();
+    let mut groups: BTreeMap<Group, Vec<Named>> = BTreeMap::new();
     for (index, agent) in setup.agents.iter().enumerate() {
         if let Some(target) = &agent.target {
             let needed = kind_of(agent).target_derivatives(agent).min(MOST_DERIVATIVES);
@@ -39,10 +40,11 @@ pub(super) fn bounded(setup: &Setup) -> Vec<Hypothesis> {
             // A formation may travel: of an offset only the derivatives count.
             let lowest = if tracking { 0 } else { 1 };
             let bounded = how_far(target, lowest..=needed, setup.time.end_s);
-            groups.entry((needed, bounded, tracking)).or_default().push(Named::of(setup, index));
+            let group = Group { derivatives: needed, tracking, bounded };
+            groups.entry(group).or_default().push(Named::of(setup, index));
         }
     }
-    let hypothesis = |((derivatives, bounded, tracking), agents): ((usize, Bounded, bool), Vec<Named>)| {
+    let hypothesis = |(Group { derivatives, bounded, tracking }, agents): (Group, Vec<Named>)| {
         let subject =
             if tracking { Subject::Targets { agents, derivatives } } else { Subject::Offsets { agents, derivatives } };
         Hypothesis::about(Id::BoundedTarget, subject, MotionEvidence::Derivatives(bounded))
@@ -50,17 +52,55 @@ pub(super) fn bounded(setup: &Setup) -> Vec<Hypothesis> {
     groups.into_iter().map(hypothesis).collect()
 }
 
-/// How far interval arithmetic bounds some derivatives of a trajectory.
-pub(super) fn how_far(trajectory: &Trajectory, derivatives: RangeInclusive<usize>, end_s: f64) -> Bounded {
-    let all = |until_s: Option<f64>| {
-        let finite = |axis, k| trajectory.hull(axis, k, until_s).is_finite();
-        (0..trajectory.axes()).all(|axis| derivatives.clone().all(|k| finite(axis, k)))
-    };
-    if all(None) {
-        Bounded::ForEver
-    } else if all(Some(end_s)) {
-        Bounded::OnRun
-    } else {
-        Bounded::NotShown
+/// Agents that share a hypothesis: those of which the same is asked and found.
+#[derive(Clone, Copy, PartialEq)]
+struct Group {
+    derivatives: usize,
+    tracking: bool,
+    bounded: Bounded,
+}
+
+impl Group {
+    /// What tells groups apart, in the order in which they are listed.
+    fn key(&self) -> (usize, u8, [u64; 3], bool) {
+        let (rank, numbers) = match self.bounded {
+            Bounded::ForEver => (0, [0; 3]),
+            Bounded::NotShown => (1, [0; 3]),
+            Bounded::Unbounded { derivative, witness } => {
+                let [t_s, value] = witness.map_or([0; 2], |found| [found.t_s, found.value].map(f64::to_bits));
+                (2, [derivative as u64, t_s, value])
+            }
+        };
+        (self.derivatives, rank, numbers, self.tracking)
     }
+}
+
+impl Eq for Group {}
+
+impl PartialOrd for Group {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Group {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.key().cmp(&other.key())
+    }
+}
+
+/// What is known of the bounds of some derivatives of a trajectory for all time.
+pub(super) fn how_far(trajectory: &Trajectory, derivatives: RangeInclusive<usize>, end_s: f64) -> Bounded {
+    let mut found = Bounded::ForEver;
+    for (axis, derivative) in (0..trajectory.axes()).flat_map(|axis| derivatives.clone().map(move |k| (axis, k))) {
+        match trajectory.is_bounded(axis, derivative) {
+            Some(true) => {}
+            Some(false) => {
+                let witness = trajectory.seen_to_grow(axis, derivative, end_s);
+                return Bounded::Unbounded { derivative, witness };
+            }
+            None => found = Bounded::NotShown,
+        }
+    }
+    found
 }

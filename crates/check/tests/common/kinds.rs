@@ -31,6 +31,12 @@ pub fn power_of_time(c: f64, exponent: f64) -> Path {
     formula(Expression::variable(0).power(exponent) * c)
 }
 
+/// c tᵖ e⁻ᵗ, which fades with all of its derivatives.
+pub fn fading_power_of_time(c: f64, exponent: f64) -> Path {
+    let t = || Expression::variable(0);
+    formula(t().power(exponent) * (-t()).exp_of() * c)
+}
+
 fn agent(
     kind: Arc<dyn Robot>,
     theta: Vec<f64>,

@@ -11,7 +11,7 @@
 //! - `tail`: a sum of powers and logarithms with enclosed coefficients, which tells what it does from some time on;
 //! - `period`: whether it is made of waves with a common period.
 //!
-//! `bounds` cuts intervals until bounds are tight, `for_ever` says what becomes of it on [0, ∞), `kinks` finds where |a|, min and max change branches, and `number` keeps
+//! `bounds` cuts intervals until bounds are tight, `for_ever` says what becomes of it on [0, ∞), `domain` where it has a value, `kinks` finds where |a|, min and max change branches, and `number` keeps
 //! constants as they were written.
 //!
 //! Backstepping differentiates the regressors of a chain up to one time less than its order. Differences would not be
@@ -19,6 +19,7 @@
 //! law is built, and what is left at run time is a list of additions and products.
 
 mod bounds;
+mod domain;
 mod exact;
 mod float;
 mod for_ever;
@@ -39,6 +40,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use thiserror::Error;
 
 pub use bounds::{search, weighted};
+pub use domain::{Domain, Gap};
 pub use float::Floats;
 pub use for_ever::ForEver;
 pub use graph::{Graph, Node};

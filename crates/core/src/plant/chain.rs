@@ -103,6 +103,7 @@ where
 #[derive(Clone, Debug)]
 pub struct Formulas {
     order: usize,
+    chi: Expression,
     phi: Vec<Expression>,
     psi: Expression,
     tape: Tape,
@@ -125,7 +126,12 @@ impl Formulas {
             outputs.push(graph.import(phi)?);
         }
         let tape = Tape::new(&graph, &outputs)?;
-        Ok(Formulas { order, phi, psi: psi.clone(), tape })
+        Ok(Formulas { order, chi: chi.clone(), phi, psi: psi.clone(), tape })
+    }
+
+    /// χ₀.
+    pub fn drift(&self) -> &Expression {
+        &self.chi
     }
 
     /// ψ.

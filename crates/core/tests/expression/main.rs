@@ -1,6 +1,7 @@
 //! Expressions: the algebras against each other, and against numbers from elsewhere.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod domains;
 mod enclosures;
 mod for_ever;
 mod graphs;

@@ -49,8 +49,7 @@ impl NetworkReader<'_> {
         self.few_formulas(self.links.formulas.len(), &formula, text)?;
         let bounded = BoundedFormula::new(formula, self.end_s);
         bounded.stays("formula_s", Sign::NotNegative)?;
-        let delay = bounded.formula().constant().map(|number| Delay::constant(number.value()));
-        let delay = delay.unwrap_or_else(|| Delay::new(bounded));
+        let delay = bounded.constant().map_or_else(|| Delay::new(bounded), Delay::constant);
         self.links.formulas.insert(text.value.clone(), delay.clone());
         Ok(delay)
     }
@@ -105,7 +104,7 @@ impl NetworkReader<'_> {
         self.few_formulas(self.weights.len(), &formula, text)?;
         let bounded = BoundedFormula::new(formula, self.end_s);
         bounded.stays("weight", Sign::Positive).map_err(|error| Fault::from(error).at(&text.span))?;
-        let weight = bounded.formula().constant().map(|number| Weight::Constant(number.value()));
+        let weight = bounded.constant().map(Weight::Constant);
         let weight = weight.unwrap_or_else(|| {
             self.weights.push(bounded);
             Weight::Formula(self.weights.len() - 1)

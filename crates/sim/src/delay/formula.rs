@@ -2,7 +2,7 @@
 
 use forwardstep_core::expression::Interval;
 
-use super::{Arrivals, Basis, DelayFunction, DelayPiece, Known, Unknown};
+use super::{Arrivals, Basis, DelayFunction, DelayPiece, Known, Refuted, Unknown};
 use crate::formula::BoundedFormula;
 use crate::quantity::{QuantityError, Sign};
 
@@ -27,7 +27,7 @@ impl DelayFunction for BoundedFormula {
         self.value(t_s)
     }
 
-    /// On a bounded time a continuous formula is uniformly continuous; for ever it may swing faster and faster.
+    /// On a bounded time a continuous formula is bounded and uniformly continuous; what it does later is asked of all time.
     fn known(&self) -> Known {
         let (on_run, for_ever) = (self.within(), self.for_ever());
         let enclosed = Known {
@@ -35,13 +35,23 @@ impl DelayFunction for BoundedFormula {
             basis: Basis::Enclosure,
             ..Known::by_rule([on_run.low, on_run.high])
         };
-        if !(for_ever.low >= 0.0 && for_ever.high.is_finite()) {
-            Known { unknown: Some(Unknown::FormulaBound), ..enclosed }
-        } else if !self.formula().is_uniformly_continuous() {
-            Known { unknown: Some(Unknown::FormulaContinuity), ..enclosed }
+        let refuted = if for_ever.reaches.low < 0.0 {
+            Some(Refuted::Negative(self.seen_outside(Interval { low: 0.0, high: f64::INFINITY })))
+        } else if for_ever.reaches.high == f64::INFINITY {
+            // Twice what the run has, so that it cannot be taken for what the run has.
+            let twice = 2.0 * on_run.high.max(0.5);
+            Some(Refuted::Unbounded(self.seen_outside(Interval { low: f64::NEG_INFINITY, high: twice })))
         } else {
-            Known { bound_s: for_ever.high, ..enclosed }
-        }
+            None
+        };
+        let unknown = if !(for_ever.within.low >= 0.0 && for_ever.within.high.is_finite()) {
+            Some(Unknown::FormulaBound)
+        } else if !for_ever.uniform {
+            Some(Unknown::FormulaContinuity)
+        } else {
+            return Known { bound_s: for_ever.within.high, ..enclosed };
+        };
+        Known { unknown, refuted, ..enclosed }
     }
 
     fn arrivals(&self, search: &mut Arrivals<'_>) {

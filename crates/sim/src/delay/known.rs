@@ -5,6 +5,8 @@
 //! A link that holds packets has T = t − s between arrivals: slope one on every piece, one modulus of continuity for all
 //! of them.
 
+use crate::formula::Witness;
+
 /// Bounds of a delay, how far they reach and what they rest on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Known {
@@ -18,6 +20,8 @@ pub struct Known {
     pub unknown: Option<Unknown>,
     /// What the bound rests on.
     pub basis: Basis,
+    /// What shows that T is no delay that is bounded for ever.
+    pub refuted: Option<Refuted>,
     /// Whether T grows like t from one jump to the next, since the newest packet is held.
     pub holds_packets: bool,
 }
@@ -33,6 +37,19 @@ pub enum Unknown {
     PacketsInARow,
     /// Packets are replayed from a log.
     LaterPackets,
+    /// No packet that was drawn or logged arrives until the end of the run.
+    NothingArrived,
+}
+
+/// Why a delay is not one that is bounded for ever.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Refuted {
+    /// It exceeds every bound; such as this one.
+    Unbounded(Option<Witness>),
+    /// It becomes negative after the run: messages from the future.
+    Negative(Option<Witness>),
+    /// A link loses every packet.
+    EveryPacketLost,
 }
 
 /// What a bound rests on.
@@ -60,7 +77,15 @@ impl Known {
     /// What follows from the parameters of a rule.
     pub(super) fn by_rule(within_s: [f64; 2]) -> Known {
         let bound_s = within_s[1];
-        Known { within_s, until_s: None, bound_s, unknown: None, basis: Basis::Rule, holds_packets: false }
+        Known {
+            within_s,
+            until_s: None,
+            bound_s,
+            unknown: None,
+            basis: Basis::Rule,
+            refuted: None,
+            holds_packets: false,
+        }
     }
 
     /// The value if it is within the bounds, taken to the bound where only rounding leads outside, else not a number.

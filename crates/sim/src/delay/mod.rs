@@ -66,7 +66,7 @@ use crate::quantity::{QuantityError, not_negative, such};
 use crate::same::Same;
 pub use arrivals::Arrivals;
 pub use constant::Constant;
-pub use known::{Basis, Known, Unknown};
+pub use known::{Basis, Known, Refuted, Unknown};
 pub use packets::{Drawn, Loss, Packet, PacketLink, Trace};
 pub use piecewise_constant::PiecewiseConstant;
 pub use probe::DelayFault;

@@ -30,7 +30,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use thiserror::Error;
 
-use super::{Arrivals, Basis, DelayFunction, DelayPiece, Known, Unknown};
+use super::{Arrivals, Basis, DelayFunction, DelayPiece, Known, Refuted, Unknown};
 use crate::quantity::{QuantityError, few, not_negative, positive, within};
 
 /// A link as a random process. Every pair of agents has its own stream of random numbers, which depends on the seed and on
@@ -171,6 +171,12 @@ impl PacketLink {
             (_, None) => f64::INFINITY,
         };
         (lost + 1.0) * self.every_s + self.latency_s + self.jitter_s
+    }
+
+    /// Whether every packet is lost for ever.
+    pub fn loses_all(&self) -> bool {
+        let never = matches!(self.loss, Loss::Random { probability } if probability >= 1.0);
+        never && self.most_in_a_row.is_none()
     }
 
     /// The packets of the link between two agents (from, to) up to `until_s`, which counts.
@@ -362,6 +368,10 @@ impl DelayFunction for Trace {
         let numbers = |unknown| Known { unknown: Some(unknown), basis: Basis::Numbers, ..run };
         match &self.link {
             Some(link) if link.bound_s().is_finite() => Known { bound_s: link.bound_s(), ..run },
+            Some(link) if link.loses_all() => {
+                Known { refuted: Some(Refuted::EveryPacketLost), ..numbers(Unknown::NothingArrived) }
+            }
+            _ if self.arrivals() == 0 => numbers(Unknown::NothingArrived),
             Some(_) => numbers(Unknown::PacketsInARow),
             None => numbers(Unknown::LaterPackets),
         }

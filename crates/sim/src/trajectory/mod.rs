@@ -16,12 +16,16 @@ use forwardstep_core::expression::{Expression, Interval, KinkError, search, weig
 use forwardstep_core::sampled::Motion;
 use thiserror::Error;
 
+use crate::formula::{Witness, times_s};
+
 pub(crate) use pieces::Pieces;
 pub use spline::{Spline, SplineError};
 
 /// Bounds this close to values that are taken are close enough, as a part of the range: the fine end of what a gain is
 /// compared with.
 const CLOSE: f64 = 1e-6;
+/// So many times as long as a run it is looked for a norm that vanishes.
+const MOST_LATER: f64 = 1e3;
 /// Room for the roundings of a few operations.
 const ROUNDING: f64 = 1e-12;
 
@@ -128,9 +132,76 @@ impl Path {
     /// where nothing could be shown.
     pub fn bounds(&self, weights: &[f64; 5], end_s: Option<f64>) -> Interval {
         match self {
-            Path::Formula(formula) => formula.bounds_of_derivatives(weights, 0.0, end_s.unwrap_or(f64::INFINITY)),
+            Path::Formula(formula) => match end_s {
+                Some(end_s) => formula.bounds_of_derivatives(weights, 0.0, end_s),
+                None => formula.combination_for_ever(weights).within,
+            },
             Path::Sinusoids { offset, waves } => sinusoids(*offset, waves, weights, end_s),
             Path::Spline(spline) => spline.bounds(weights, end_s),
+        }
+    }
+}
+
+impl Path {
+    /// When |Σₖ `weights[k]` · (k-th derivative)| is seen to reach `size`, and its value then: at the first of many times looked
+    /// at, also far beyond `end_s`, at which that is certain. Of formulas it is enclosed; otherwise it exceeds what rounding
+    /// does.
+    fn seen_to_reach(&self, weights: &[f64; 5], size: f64, end_s: f64) -> Option<Witness> {
+        let range = Interval { low: -size, high: size };
+        let value = |t_s: f64| match self {
+            Path::Formula(formula) => formula.enclose_combination(weights, t_s),
+            Path::Sinusoids { .. } | Path::Spline(_) => {
+                let parts = weights.iter().zip(self.jet(t_s)).map(|(weight, c)| (weight * c).abs());
+                let room = ROUNDING * parts.sum::<f64>();
+                let value = weighted(weights, &self.jet(t_s));
+                Interval { low: value - room, high: value + room }
+            }
+        };
+        let last_s = match self {
+            Path::Formula(_) => f64::INFINITY,
+            // The phase of a wave is known to less than the room so long.
+            Path::Sinusoids { waves, .. } => {
+                waves.iter().fold(1e6, |last_s: f64, wave| last_s.min(1e3 / wave.rad_per_s.abs()))
+            }
+            Path::Spline(spline) => spline.ends_s()[1],
+        };
+        let times_s = times_s(end_s).filter(|t_s| *t_s <= last_s.max(end_s));
+        // Bounds are open: what is equal to `size` reaches it.
+        let reaches = |t_s: f64| {
+            Witness::outside(t_s, value(t_s), range).or_else(|| {
+                let point = value(t_s);
+                (point.low == point.high && point.size() == size).then_some(Witness { t_s, value: point.low })
+            })
+        };
+        times_s.into_iter().find_map(reaches)
+    }
+
+    /// Whether |Σₖ `weights[k]` · (k-th derivative)| is bounded for ever; `None` where neither is shown.
+    fn is_bounded(&self, weights: &[f64; 5]) -> Option<bool> {
+        match self {
+            // One look tells most.
+            Path::Formula(formula) if formula.bounds_of_derivatives(weights, 0.0, f64::INFINITY).is_finite() => {
+                Some(true)
+            }
+            Path::Formula(formula) => {
+                let found = formula.combination_for_ever(weights);
+                (found.within.is_finite() || found.is_unbounded()).then(|| found.within.is_finite())
+            }
+            Path::Sinusoids { .. } | Path::Spline(_) => Some(true),
+        }
+    }
+
+    /// As a formula in t; `None` for a curve through points.
+    fn formula(&self) -> Option<Expression> {
+        match self {
+            Path::Formula(formula) => Some(formula.clone()),
+            Path::Sinusoids { offset, waves } => {
+                let wave = |wave: &Sinusoid| {
+                    (Expression::variable(0) * wave.rad_per_s + wave.phase_rad).sin_of() * wave.amplitude
+                };
+                Some(waves.iter().map(wave).fold(Expression::number(*offset), |sum, wave| sum + wave))
+            }
+            Path::Spline(_) => None,
         }
     }
 }
@@ -149,6 +220,13 @@ impl Sinusoid {
     fn angle(&self, t_s: f64) -> f64 {
         self.rad_per_s.mul_add(t_s, self.phase_rad)
     }
+}
+
+/// The weights that single out one derivative.
+fn unit(derivative: usize) -> Option<[f64; 5]> {
+    let mut weights = [0.0; 5];
+    *weights.get_mut(derivative)? = 1.0;
+    Some(weights)
 }
 
 /// A combination of derivatives of a sinusoid is a sinusoid: Σ wₖ (d/dt)ᵏ a sin θ = p a sin θ + q a cos θ.
@@ -235,6 +313,26 @@ impl Trajectory {
         seen
     }
 
+    /// Where the norm vanishes after `end_s`, as far as it is found by looking for its minima, without proof.
+    pub fn vanishes_later(&self, end_s: f64) -> Option<LeastNorm> {
+        let norm = |t_s: f64| self.paths.iter().map(|path| path.jet(t_s)[0].powi(2)).sum::<f64>().sqrt();
+        let times_s: Vec<f64> = times_s(end_s).filter(|t_s| *t_s >= end_s && *t_s <= MOST_LATER * end_s).collect();
+        let largest = times_s.iter().map(|t_s| norm(*t_s)).fold(0.0, f64::max);
+        times_s.windows(3).find_map(|around| {
+            let [left, middle, right] = [around[0], around[1], around[2]];
+            if norm(middle) > norm(left) || norm(middle) > norm(right) {
+                return None;
+            }
+            let (mut left, mut right) = (left, right);
+            for _ in 0..100 {
+                let third = (right - left) / 3.0;
+                if norm(left + third) < norm(right - third) { right -= third } else { left += third }
+            }
+            let found = LeastNorm { t_s: left, norm: norm(left), largest, every_s: right - left };
+            found.vanishes().then_some(found)
+        })
+    }
+
     /// m.
     pub fn axes(&self) -> usize {
         self.paths.len()
@@ -256,18 +354,42 @@ impl Trajectory {
     /// An interval that holds the k-th derivative, k ≤ 4, of one axis from 0 to `end_s`, or for ever; unbounded where nothing
     /// could be shown.
     pub fn hull(&self, axis: usize, derivative: usize, end_s: Option<f64>) -> Interval {
-        let mut weights = [0.0; 5];
-        match weights.get_mut(derivative) {
-            Some(weight) => *weight = 1.0,
-            None => return Interval::WHOLE,
-        }
-        self.bounds(axis, &weights, end_s)
+        unit(derivative).map_or(Interval::WHOLE, |weights| self.bounds(axis, &weights, end_s))
     }
 
     /// An interval that holds Σₖ `weights[k]` · (k-th derivative) of one axis from 0 to `end_s`, or for ever; tighter than
     /// what the parts would give.
     pub fn bounds(&self, axis: usize, weights: &[f64; 5], end_s: Option<f64>) -> Interval {
         self.paths.get(axis).map_or(Interval::WHOLE, |path| path.bounds(weights, end_s))
+    }
+
+    /// When |Σₖ `weights[k]` · (k-th derivative)| of any axis is seen to reach `size`, and its value then; also far beyond
+    /// `end_s`.
+    pub fn seen_to_reach(&self, weights: &[f64; 5], size: f64, end_s: f64) -> Option<Witness> {
+        self.paths.iter().find_map(|path| path.seen_to_reach(weights, size, end_s))
+    }
+
+    /// Whether the k-th derivative of an axis, k ≤ 4, is bounded for ever; `None` where neither is shown.
+    pub fn is_bounded(&self, axis: usize, derivative: usize) -> Option<bool> {
+        self.paths.get(axis)?.is_bounded(&unit(derivative)?)
+    }
+
+    /// Whether Σₖ `weights[k]` · (k-th derivative) of some axis is shown to exceed every bound.
+    pub fn exceeds_every_bound(&self, weights: &[f64; 5]) -> bool {
+        self.paths.iter().any(|path| path.is_bounded(weights) == Some(false))
+    }
+
+    /// When the k-th derivative of an axis, k ≤ 4, is seen to be twice as large as it ever is until `end_s`, and its value then.
+    pub fn seen_to_grow(&self, axis: usize, derivative: usize, end_s: f64) -> Option<Witness> {
+        let (path, weights) = (self.paths.get(axis)?, unit(derivative)?);
+        let size = path.bounds(&weights, Some(end_s)).size();
+        path.seen_to_reach(&weights, 2.0 * if size.is_finite() { size.max(0.5) } else { 0.5 }, end_s)
+    }
+
+    /// The square of the norm of all axes together as a formula in t; `None` where one is a curve through points.
+    pub fn squared_norm(&self) -> Option<Expression> {
+        let squares = self.paths.iter().map(|path| Some(path.formula()?.power(2.0)));
+        squares.reduce(|sum, square| Some(sum? + square?)).flatten()
     }
 
     /// The largest |Σₖ `weights[k]` · (k-th derivative)| of any axis at `samples` + 1 times from 0 to `end_s`: no bound, but

@@ -1,6 +1,7 @@
 //! Evidence of what follows a leader.
 
 use forwardstep_core::reference::Choice;
+use forwardstep_sim::formula::Witness;
 
 use crate::hypothesis::{Answer, Rigour};
 
@@ -17,6 +18,10 @@ pub enum FollowingEvidence {
         on_run: f64,
         /// A bound for ever; infinite where none was found.
         for_ever: f64,
+        /// When it certainly reaches γ, and its value then.
+        reached: Option<Witness>,
+        /// Whether it exceeds every bound.
+        unbounded: bool,
         /// The end of the run, s.
         end_s: f64,
     },
@@ -29,8 +34,16 @@ pub enum FollowingEvidence {
     Sign {
         /// How.
         choice: Choice,
-        /// How often, s; `None` at every sample.
-        period_s: Option<f64>,
+        /// Whether sampled controllers do it, at every sample.
+        sampled: bool,
+        /// How often, s.
+        period_s: f64,
+        /// How fast q_i − q_0 follows what the sign brings to zero: α of (110), else the mean of the two roots, 1/s.
+        rate_per_s: f64,
+        /// About what stays of q_i − q_0, in units of the axes; infinite where no bound of ξ̇₀ is known.
+        left: f64,
+        /// The end of the run, s.
+        end_s: f64,
     },
     /// α, β and γ belong to the design.
     Shared {
@@ -57,22 +70,21 @@ pub enum FollowingEvidence {
     WeightVaries,
 }
 
+/// A sign is called set-valued up to this period, as a part of the time in which q_i − q_0 follows it: what stays is about this
+/// part of the largest excursion that a leader can make at the same ξ̇₀.
+const MOST_HELD: f64 = 0.01;
+
 impl FollowingEvidence {
     pub(in crate::hypothesis) fn answer(&self) -> Answer {
         match self {
-            FollowingEvidence::Gain { gamma, seen, on_run, for_ever, .. } => {
-                if seen >= gamma {
-                    Answer::Violated
-                } else if for_ever < gamma {
-                    Answer::Holds
-                } else if on_run < gamma {
-                    Answer::HoldsOnHorizon
-                } else {
-                    Answer::NotShown
-                }
+            FollowingEvidence::Gain { reached: Some(_), .. } | FollowingEvidence::Gain { unbounded: true, .. } => {
+                Answer::Violated
             }
+            FollowingEvidence::Gain { gamma, for_ever, .. } if for_ever < gamma => Answer::Holds,
+            FollowingEvidence::Gain { .. } => Answer::NotShown,
             FollowingEvidence::GainOverAgent { .. } => Answer::Watched,
-            FollowingEvidence::Sign { choice, .. } => match choice {
+            FollowingEvidence::Sign { choice, period_s, rate_per_s, end_s, .. } => match choice {
+                Choice::Implicit if period_s * rate_per_s > MOST_HELD || period_s >= end_s => Answer::NotCovered,
                 Choice::Implicit => Answer::Holds,
                 Choice::Explicit | Choice::Layer { .. } => Answer::NotCovered,
             },
@@ -88,8 +100,8 @@ impl FollowingEvidence {
     pub(super) fn rigour(&self) -> Rigour {
         match self {
             FollowingEvidence::Gain { .. } => match self.answer() {
-                Answer::Holds | Answer::HoldsOnHorizon => Rigour::Enclosed,
-                Answer::Violated | Answer::NotShown | Answer::NotCovered | Answer::Watched => Rigour::Sampled,
+                Answer::Holds | Answer::Violated => Rigour::Enclosed,
+                Answer::HoldsOnHorizon | Answer::NotShown | Answer::NotCovered | Answer::Watched => Rigour::Sampled,
             },
             FollowingEvidence::GainOverAgent { .. } => Rigour::Watched,
             FollowingEvidence::CouplingExceeds { .. } => Rigour::Enclosed,

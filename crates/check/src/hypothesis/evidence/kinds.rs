@@ -1,5 +1,6 @@
 //! Evidence of a kind of system and its law.
 
+use forwardstep_core::expression::Gap;
 use forwardstep_core::robot::tree::Uncertain;
 use forwardstep_sim::ThrustKind;
 use forwardstep_sim::probe::Probe;
@@ -68,6 +69,31 @@ pub enum KindEvidence {
     },
     /// The factor of the input is a constant that is not zero.
     ConstantFactor,
+    /// Enclosures keep the factor of the input away from zero in every state.
+    FactorAway {
+        /// It is nowhere smaller in magnitude.
+        least: f64,
+    },
+    /// The terms of chains have a value in every state.
+    TermsDefined,
+    /// A term has no value somewhere.
+    TermFails {
+        /// Whose.
+        agent: Named,
+        /// Which.
+        term: Term,
+        /// In which state, but for rounding.
+        at: Vec<f64>,
+        /// Why.
+        gap: Gap,
+    },
+    /// Whether a term has a value in every state could not be told.
+    TermNotShown {
+        /// Whose.
+        agent: Named,
+        /// Which.
+        term: Term,
+    },
     /// The factor of the input is a constant below its floor.
     FactorBelowFloor {
         /// Whose.
@@ -83,6 +109,8 @@ pub enum KindEvidence {
         agent: Named,
         /// How close.
         floor: f64,
+        /// What is known of it for all states.
+        everywhere: FactorEverywhere,
     },
     /// A run that is completed keeps states, and with them regressors, bounded.
     BoundedStates {
@@ -142,6 +170,33 @@ pub enum KindEvidence {
     },
 }
 
+/// A term of a chain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Term {
+    /// χ, or one of f_1 … f_n.
+    Drift,
+    /// An entry of φ.
+    Regressor,
+    /// ψ.
+    Factor,
+}
+
+/// What is known of a factor of the input over all states, where that is not enough.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FactorEverywhere {
+    /// It has one sign, but comes as close to zero as one likes, far away.
+    Fades,
+    /// It stays away from zero, but comes below its floor.
+    Away {
+        /// It is nowhere smaller in magnitude.
+        least: f64,
+    },
+    /// It changes its sign in this state.
+    Zero(Vec<f64>),
+    /// Nothing.
+    Unknown,
+}
+
 impl KindEvidence {
     pub(super) fn answer(&self) -> Answer {
         match self {
@@ -150,6 +205,8 @@ impl KindEvidence {
             | KindEvidence::PositiveMatrices
             | KindEvidence::MassOfPlant
             | KindEvidence::ConstantFactor
+            | KindEvidence::FactorAway { .. }
+            | KindEvidence::TermsDefined
             | KindEvidence::LengthsOutsideRegressor(_)
             | KindEvidence::LengthsKnown
             | KindEvidence::PositiveMatricesTrueLengths
@@ -160,9 +217,9 @@ impl KindEvidence {
             | KindEvidence::FactorFloor { .. }
             | KindEvidence::BoundedStates { .. }
             | KindEvidence::Determinant { .. } => Answer::Watched,
-            KindEvidence::Declared { .. } | KindEvidence::Probed { probe: Probe { found: None, .. }, .. } => {
-                Answer::NotShown
-            }
+            KindEvidence::Declared { .. }
+            | KindEvidence::TermNotShown { .. }
+            | KindEvidence::Probed { probe: Probe { found: None, .. }, .. } => Answer::NotShown,
             KindEvidence::Mixture(_)
             | KindEvidence::MassNotAdapted { .. }
             | KindEvidence::ThrustKept { .. }
@@ -176,6 +233,7 @@ impl KindEvidence {
             | KindEvidence::SafeCommand
             | KindEvidence::NoSpacecraft => Answer::NotCovered,
             KindEvidence::LengthOutside { .. }
+            | KindEvidence::TermFails { .. }
             | KindEvidence::Singular { .. }
             | KindEvidence::FactorBelowFloor { .. }
             | KindEvidence::Probed { probe: Probe { found: Some(_), .. }, .. } => Answer::Violated,
@@ -212,6 +270,10 @@ impl KindEvidence {
             | KindEvidence::Unmatched { .. }
             | KindEvidence::SafeCommand
             | KindEvidence::NoSpacecraft => Rigour::Exact,
+            KindEvidence::FactorAway { .. }
+            | KindEvidence::TermsDefined
+            | KindEvidence::TermFails { .. }
+            | KindEvidence::TermNotShown { .. } => Rigour::Enclosed,
             KindEvidence::Singular { .. } | KindEvidence::Momentum(_) => Rigour::Computed,
             KindEvidence::ThrustFloor { .. }
             | KindEvidence::FactorFloor { .. }

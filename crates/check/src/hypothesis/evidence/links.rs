@@ -1,8 +1,8 @@
 //! Evidence of delays, weights and couplings.
 
-use forwardstep_sim::delay::{Basis, DelayFault, Unknown};
+use forwardstep_sim::delay::{Basis, DelayFault, Refuted, Unknown};
+use forwardstep_sim::formula::Witness;
 
-use super::holds;
 use crate::hypothesis::{Answer, Rigour};
 
 /// What was found of the links.
@@ -28,6 +28,8 @@ pub enum LinkEvidence {
         /// What was found.
         fault: DelayFault,
     },
+    /// A delay is not bounded for ever, or is none.
+    RefutedBound(Refuted),
     /// How old messages become, and how old they may be.
     Ages {
         /// None is known to become older, s; `None` where that is not known.
@@ -55,6 +57,22 @@ pub enum LinkEvidence {
         /// Whether they are bounded for ever, so that only their uniform continuity is not known.
         bounded_for_ever: bool,
     },
+    /// A weight is not bounded, or not away from zero, for ever.
+    RefutedWeight {
+        /// How.
+        fault: WeightFault,
+        /// A value of it that shows it, if one was found.
+        witness: Option<Witness>,
+    },
+    /// No weight changes with time.
+    ConstantWeights,
+    /// A weight changes with time, where a law is realised by its integral.
+    VaryingWeights {
+        /// None is smaller.
+        low: f64,
+        /// None is larger.
+        high: f64,
+    },
     /// A nonlinear coupling out of the list, all of which are odd, continuous and in the sector.
     Coupling {
         /// The limit or scale, in the units of the axes.
@@ -62,17 +80,41 @@ pub enum LinkEvidence {
     },
 }
 
+/// What a weight does that it must not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WeightFault {
+    /// It tends to zero, or comes to it.
+    Fades,
+    /// It becomes negative.
+    Negative,
+    /// It exceeds every bound.
+    Grows,
+}
+
+/// Whether more can be known of a delay than the run shows.
+fn beyond_the_run(unknown: Unknown) -> bool {
+    match unknown {
+        Unknown::FormulaBound | Unknown::FormulaContinuity | Unknown::NothingArrived => true,
+        Unknown::PacketsInARow | Unknown::LaterPackets => false,
+    }
+}
+
 impl LinkEvidence {
     pub(super) fn answer(&self) -> Answer {
         match self {
             LinkEvidence::Delays { basis: Basis::Declared, .. } => Answer::NotShown,
-            LinkEvidence::RefutedDelay { .. } => Answer::Violated,
-            LinkEvidence::Delays { unknown, .. } => holds(unknown.is_empty()),
-            LinkEvidence::Weights { until_s, .. } => holds(until_s.is_none()),
+            LinkEvidence::RefutedDelay { .. } | LinkEvidence::RefutedBound(_) | LinkEvidence::RefutedWeight { .. } => {
+                Answer::Violated
+            }
+            LinkEvidence::Delays { unknown, .. } if unknown.is_empty() => Answer::Holds,
+            LinkEvidence::Delays { unknown, .. } if unknown.iter().any(|one| beyond_the_run(*one)) => Answer::NotShown,
+            LinkEvidence::Delays { .. } => Answer::HoldsOnHorizon,
+            LinkEvidence::Weights { until_s: None, .. } => Answer::Holds,
+            LinkEvidence::Weights { until_s: Some(_), .. } => Answer::NotShown,
             LinkEvidence::Ages { bound_s: Some(bound_s), timeout_s, .. } if bound_s <= timeout_s => Answer::Holds,
             LinkEvidence::Ages { .. } => Answer::NotShown,
-            LinkEvidence::Prompt | LinkEvidence::Coupling { .. } => Answer::Holds,
-            LinkEvidence::Late { .. } => Answer::NotCovered,
+            LinkEvidence::Prompt | LinkEvidence::Coupling { .. } | LinkEvidence::ConstantWeights => Answer::Holds,
+            LinkEvidence::Late { .. } | LinkEvidence::VaryingWeights { .. } => Answer::NotCovered,
         }
     }
 
@@ -85,7 +127,12 @@ impl LinkEvidence {
                 Basis::Declared => Rigour::Declared,
             },
             LinkEvidence::RefutedDelay { .. } => Rigour::Sampled,
-            LinkEvidence::Weights { .. } => Rigour::Enclosed,
+            LinkEvidence::RefutedBound(Refuted::EveryPacketLost) => Rigour::Exact,
+            LinkEvidence::RefutedBound(Refuted::Unbounded(_) | Refuted::Negative(_))
+            | LinkEvidence::RefutedWeight { .. }
+            | LinkEvidence::VaryingWeights { .. }
+            | LinkEvidence::Weights { .. } => Rigour::Enclosed,
+            LinkEvidence::ConstantWeights => Rigour::Exact,
             LinkEvidence::Prompt | LinkEvidence::Late { .. } | LinkEvidence::Coupling { .. } => Rigour::Exact,
         }
     }

@@ -2,6 +2,18 @@
 //!
 //! Each kind of evidence says its answer and its rigour here, and its sentence in `words`. None of the matches has an arm
 //! for the rest.
+//!
+//! # What the answers mean for what goes on after the run
+//!
+//! A theorem speaks of all time, and on a bounded time every continuous function is bounded: that a bound holds until the
+//! end of the run says nothing. So it is asked what is known of later times.
+//!
+//! - What a rule says is known for ever: a formula, a sum of waves, a table after whose last row there is rest, a periodic
+//!   schedule. It *holds* where that is certified, is *violated* where it is refuted, with a value and a time if one was
+//!   found, and else *not shown*. Whether the run sees any of it plays no part.
+//! - Of what was drawn or logged nothing is known beyond the end of the run. There, and only there, it *holds on [0, end]*,
+//!   provided the run has shown something: a link on which nothing arrives has shown nothing.
+//! - What depends on the motion is *watched*: a run in which it fails ends there.
 
 mod following;
 mod graph;
@@ -15,8 +27,8 @@ use super::{Answer, Rigour};
 
 pub use following::FollowingEvidence;
 pub use graph::GraphEvidence;
-pub use kinds::KindEvidence;
-pub use links::LinkEvidence;
+pub use kinds::{FactorEverywhere, KindEvidence, Term};
+pub use links::{LinkEvidence, WeightFault};
 pub use motion::{Bounded, MotionEvidence};
 pub use reference::ReferenceEvidence;
 pub use surroundings::{Inexact, Limited, LoopEvidence};

@@ -1,5 +1,7 @@
 //! Evidence of targets, offsets and leaders.
 
+use forwardstep_sim::formula::Witness;
+
 use crate::hypothesis::{Answer, Rigour};
 
 /// What was found of a motion.
@@ -14,10 +16,17 @@ pub enum MotionEvidence {
         /// Its bound.
         least: f64,
     },
-    /// The norm of a quaternion stays above this until the end of the run.
+    /// The norm of a quaternion stays above this.
     NormAbove {
-        /// By looking often, and by how fast it can change between two looks.
+        /// For ever by enclosures; until the end of the run by looking often, and by how fast it can change between two looks.
         least: f64,
+        /// Until when, s; `None` for ever.
+        until_s: Option<f64>,
+    },
+    /// The norm of a quaternion comes as close to zero as one likes.
+    NormFades {
+        /// A value of it below half of what it is on the run, if one was found.
+        witness: Option<Witness>,
     },
     /// The smallest norm that was seen, without a bound above zero.
     NormSeen {
@@ -35,33 +44,45 @@ pub enum MotionEvidence {
     },
 }
 
-/// How far interval arithmetic bounds something.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+/// What is known of bounds for all time.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bounded {
-    /// For all time.
+    /// Everything keeps within bounds.
     ForEver,
-    /// Up to the end of the run.
-    OnRun,
-    /// Not even that.
+    /// Neither this nor its contrary is shown.
     NotShown,
+    /// A derivative exceeds every bound.
+    Unbounded {
+        /// Which; zero for the motion itself.
+        derivative: usize,
+        /// A value of it that is twice as large as any on the run, if one was found.
+        witness: Option<Witness>,
+    },
 }
 
 impl MotionEvidence {
     pub(super) fn answer(&self) -> Answer {
         match self {
-            MotionEvidence::Derivatives(Bounded::ForEver) | MotionEvidence::EntryAway { .. } => Answer::Holds,
-            MotionEvidence::Derivatives(Bounded::OnRun) | MotionEvidence::NormAbove { .. } => Answer::HoldsOnHorizon,
+            MotionEvidence::Derivatives(Bounded::ForEver)
+            | MotionEvidence::EntryAway { .. }
+            | MotionEvidence::NormAbove { until_s: None, .. } => Answer::Holds,
+            MotionEvidence::NormAbove { until_s: Some(_), .. } => Answer::HoldsOnHorizon,
             MotionEvidence::Derivatives(Bounded::NotShown) | MotionEvidence::NormSeen { .. } => Answer::NotShown,
             MotionEvidence::OfAgent => Answer::Watched,
-            MotionEvidence::NormVanishes { .. } => Answer::Violated,
+            MotionEvidence::Derivatives(Bounded::Unbounded { .. })
+            | MotionEvidence::NormFades { .. }
+            | MotionEvidence::NormVanishes { .. } => Answer::Violated,
         }
     }
 
     pub(super) fn rigour(&self) -> Rigour {
         match self {
             MotionEvidence::OfAgent => Rigour::Watched,
-            MotionEvidence::Derivatives(_) | MotionEvidence::EntryAway { .. } => Rigour::Enclosed,
-            MotionEvidence::NormAbove { .. } => Rigour::Computed,
+            MotionEvidence::Derivatives(_)
+            | MotionEvidence::EntryAway { .. }
+            | MotionEvidence::NormFades { .. }
+            | MotionEvidence::NormAbove { until_s: None, .. } => Rigour::Enclosed,
+            MotionEvidence::NormAbove { until_s: Some(_), .. } => Rigour::Computed,
             MotionEvidence::NormSeen { .. } | MotionEvidence::NormVanishes { .. } => Rigour::Sampled,
         }
     }

@@ -1,25 +1,34 @@
 //! What follows a leader.
 
 use forwardstep_core::reference::Choice;
+use forwardstep_sim::formula::Witness;
 
-use super::numbers::{rounded_up, seconds};
+use super::numbers::{bound, bound_below, reached_above, rounded, rounded_up, seconds};
 use crate::hypothesis::{Answer, FollowingEvidence};
 
 pub(super) fn words(evidence: &FollowingEvidence) -> String {
     match evidence {
-        FollowingEvidence::Gain { gamma, seen, on_run, for_ever, end_s } => {
-            gain(evidence.answer(), [*gamma, *seen, *on_run, *for_ever], *end_s)
-        }
+        FollowingEvidence::Gain { gamma, seen, on_run, for_ever, reached, unbounded, end_s } => match reached {
+            _ if evidence.answer() == Answer::Holds => {
+                format!("γ is {gamma}, and it never exceeds {}", bound_below(*for_ever, *gamma))
+            }
+            Some(Witness { t_s, value }) => {
+                let (t_s, value) = (rounded(*t_s), reached_above(value.abs(), *gamma));
+                format!("γ is {gamma}, but at t = {t_s} s it is {value}{}", if *unbounded { GROWS } else { "" })
+            }
+            None if *unbounded => format!("γ is {gamma}{GROWS}"),
+            None => not_shown([*gamma, *seen, *on_run, *for_ever], *end_s),
+        },
         FollowingEvidence::GainOverAgent { gamma } => format!(
             "γ is {gamma}; the leader is an agent, and the run says how large it becomes, and when it exceeds γ for the last time"
         ),
-        FollowingEvidence::Sign { choice, period_s } => {
-            let every = match period_s {
-                Some(period_s) => format!("every {} s", seconds(*period_s)),
-                None => "at every sample".to_owned(),
+        FollowingEvidence::Sign { choice, sampled, period_s, left, end_s, .. } => {
+            let every = match sampled {
+                false => format!("every {} s", seconds(*period_s)),
+                true => "at every sample".to_owned(),
             };
             match choice {
-                Choice::Implicit => format!("a value of it is solved for {every}"),
+                Choice::Implicit => format!("a value of it is solved for {every}{}", held(*left, *period_s >= *end_s)),
                 Choice::Explicit => format!("it is set to 1 or −1 {every}, and chatters at that rate"),
                 Choice::Layer { width } => {
                     format!("it is replaced by sat(e/ε) with ε = {width}: an error of that size stays")
@@ -46,23 +55,37 @@ pub(super) fn words(evidence: &FollowingEvidence) -> String {
     }
 }
 
-/// γ beside what it must exceed.
-fn gain(answer: Answer, [gamma, seen, on_run, for_ever]: [f64; 4], end_s: f64) -> String {
-    match answer {
-        Answer::Violated => format!("γ is {gamma}, but it reaches {} on the run", rounded_up(seen)),
-        Answer::Holds => format!("γ is {gamma}, and it never exceeds {}", rounded_up(for_ever)),
-        Answer::HoldsOnHorizon => {
-            let beyond = if for_ever.is_finite() {
-                format!("for all time only {} could be shown", rounded_up(for_ever))
-            } else {
-                "for all time no bound could be shown".to_owned()
-            };
-            let (bound, end_s) = (rounded_up(on_run), seconds(end_s));
-            format!("γ is {gamma}, and it does not exceed {bound} until {end_s} s; {beyond}")
-        }
-        Answer::NotShown | Answer::NotCovered | Answer::Watched => format!(
-            "γ is {gamma}, and by sampling, which is no proof, it reaches {} on the run; no bound below γ could be shown",
-            rounded_up(seen)
-        ),
-    }
+/// What is left where a sign is held.
+fn held(left: f64, once: bool) -> String {
+    let left = if left.is_finite() {
+        format!("; held in between, it leaves an error of about {}", rounded_up(left))
+    } else {
+        String::new()
+    };
+    format!("{}{left}", if once { ", so once on this run" } else { "" })
+}
+
+/// What drives the leader away.
+const GROWS: &str = ", and it exceeds every bound later";
+
+/// Where a bound is not below γ, and no value is certain to reach it.
+fn not_shown([gamma, seen, on_run, for_ever]: [f64; 4], end_s: f64) -> String {
+    let (end_s, sampled) =
+        (seconds(end_s), format!("by sampling, which is no proof, it comes to {}", near(seen, gamma)));
+    let run = if on_run < gamma {
+        format!("it does not exceed {} until {end_s} s", bound_below(on_run, gamma))
+    } else {
+        sampled
+    };
+    let ever = if for_ever.is_finite() {
+        format!("only {} could be shown", bound(for_ever))
+    } else {
+        "no bound could be shown".to_owned()
+    };
+    format!("γ is {gamma}, and {run}; for all time {ever}")
+}
+
+/// A number with as many digits as tell it from another.
+fn near(value: f64, other: f64) -> f64 {
+    if value < other { bound_below(value, other) } else { reached_above(value, other) }
 }

@@ -1,11 +1,12 @@
 //! Kinds of systems and their laws.
 
+use forwardstep_core::expression::Gap;
 use forwardstep_core::robot::tree::Uncertain;
 use forwardstep_sim::ThrustKind;
 use forwardstep_sim::probe::{Counterexample, Probe};
 
-use super::numbers::rounded;
-use crate::hypothesis::{KindEvidence, Named};
+use super::numbers::{rounded, rounded_down};
+use crate::hypothesis::{FactorEverywhere, KindEvidence, Named, Term};
 
 /// States that are written out.
 const MOST_STATES: usize = 12;
@@ -44,8 +45,33 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
         KindEvidence::FactorBelowFloor { agent, value, floor } => {
             format!("that of {} is {value} for ever, which is less than its floor of {floor}", agent.name)
         }
-        KindEvidence::FactorFloor { agent, floor } => {
-            format!("the run ends where that of {} comes closer to zero than {floor}", agent.name)
+        KindEvidence::FactorFloor { agent, floor, everywhere } => {
+            let known = match everywhere {
+                FactorEverywhere::Fades => "; it has one sign in every state, but comes close to zero far away".into(),
+                FactorEverywhere::Away { least } => {
+                    format!("; in every state it is {} at least, which is less", rounded_down(*least))
+                }
+                FactorEverywhere::Zero(at) => format!("; it changes its sign {}", in_state(at)),
+                FactorEverywhere::Unknown => String::new(),
+            };
+            format!("the run ends where that of {} comes closer to zero than {floor}{known}", agent.name)
+        }
+        KindEvidence::FactorAway { least } => {
+            format!("in every state it is {} at least in magnitude", rounded_down(*least))
+        }
+        KindEvidence::TermsDefined => {
+            "no divisor comes to zero, and no root or logarithm is of what is not positive".into()
+        }
+        KindEvidence::TermFails { agent, term, at, gap } => {
+            let why = match gap {
+                Gap::Pole => "has a pole",
+                Gap::Negative => "has no value: a root, a power or a logarithm of what is negative",
+                Gap::ZeroLogarithm => "has no value: the logarithm of zero",
+            };
+            format!("{} of {} {why}, {}; a run may step over it", name(*term), agent.name, in_state(at))
+        }
+        KindEvidence::TermNotShown { agent, term } => {
+            format!("that {} of {} has could be neither shown nor refuted", name(*term), agent.name)
         }
         KindEvidence::BoundedStates { agent } => {
             format!("a run that is completed keeps the states of {} bounded, and with them its regressors", agent.name)
@@ -94,6 +120,20 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
     }
 }
 
+fn name(term: Term) -> &'static str {
+    match term {
+        Term::Drift => "χ",
+        Term::Regressor => "a regressor",
+        Term::Factor => "ψ",
+    }
+}
+
+fn in_state(at: &[f64]) -> String {
+    let numbers: Vec<String> = at.iter().take(MOST_STATES).map(|x| rounded(*x).to_string()).collect();
+    let more = if at.len() > MOST_STATES { ", …" } else { "" };
+    format!("in the state ({}{more})", numbers.join(", "))
+}
+
 /// What became of what is declared, at random states.
 fn probed(requires: &str, Probe { states, found }: &Probe) -> String {
     let Some(Counterexample { identity, t_s, state, value, expected }) = found else {
@@ -102,9 +142,7 @@ fn probed(requires: &str, Probe { states, found }: &Probe) -> String {
             states => format!("{requires}: declared, not shown; it was so at {states} random states"),
         };
     };
-    let numbers: Vec<String> = state.iter().take(MOST_STATES).map(|x| rounded(*x).to_string()).collect();
-    let more = if state.len() > MOST_STATES { ", …" } else { "" };
-    let at = format!("at {} s, in the state ({}{more})", rounded(*t_s), numbers.join(", "));
+    let at = format!("at {} s, {}", rounded(*t_s), in_state(state));
     let (identity, value, expected) = (identity.words(), rounded(*value), rounded(*expected));
     format!("{requires}: but it is not so that {identity} {at}: {value} in place of {expected}")
 }
