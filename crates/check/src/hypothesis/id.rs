@@ -62,7 +62,7 @@ table! {
         "no message becomes older than the time-out, so that graphs are those that are stated";
     BoundedWeights, "bounded-weights", "own derivation", Source::Derived,
         "weights are piecewise uniformly continuous, bounded, and bounded away from zero while their edge is there";
-    ConstantWeights, "constant-weights", "(119), (122)", Source::Paper,
+    ConstantWeights, "constant-weights", "Theorem 9, Remark 12", Source::Paper,
         "weights are constant";
     CouplingSector, "coupling-sector", "own derivation", Source::Derived,
         "the coupling is odd and continuous, grows, and keeps within the sector (0, 1]";
@@ -96,11 +96,11 @@ table! {
         "all agents are of the kind that one theorem speaks about";
 
     // Targets and leaders.
-    BoundedTarget, "bounded-target", "Section V", Source::Paper,
+    BoundedTarget, "bounded-target", "Sections V-A and V-C", Source::Paper,
         "… are bounded";
-    BoundedLeader, "bounded-leader", "Theorems 8 and 9", Source::Paper,
+    BoundedLeader, "bounded-leader", "Section V-D", Source::Paper,
         "the velocity, acceleration and jerk of the leader are bounded";
-    SignGain, "sign-gain", "(113)", Source::Paper,
+    SignGain, "sign-gain", "(113), Theorem 9", Source::Paper,
         "γ exceeds the largest entry of |…| at any time";
     SetValuedSign, "set-valued-sign", "(110), (119), (122)", Source::Paper,
         "the sign is the set-valued sgn";
@@ -114,7 +114,7 @@ table! {
     // Laws of Sections IV and V.
     DefinedTerms, "defined-terms", "(33)", Source::Paper,
         "χ, ψ and the regressors have a value, and bounded slopes on bounded sets, in every state";
-    InputFactor, "input-factor", "(33)", Source::Paper,
+    InputFactor, "input-factor", "(33), (43)", Source::Derived,
         "the factor of the input stays away from zero";
     ChainGains, "chain-gains", "(43)", Source::Paper,
         "the gains are positive";

@@ -10,12 +10,15 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::interval::{Interval, Intervals};
+use super::tail::{Series, Tails};
 use super::{Algebra, Binary, Expression, Number, Step, Unary};
 
 /// Boxes that are looked at.
 const BOXES: usize = 4000;
 /// Points that are looked at.
 const POINTS: u32 = 600;
+/// Sizes beyond which series may be used.
+const TAIL: f64 = 16.0;
 /// Halvings between two points.
 const HALVINGS: u32 = 80;
 
@@ -129,6 +132,49 @@ impl Algebra for Parts<'_> {
     }
 }
 
+/// The algebra of parts of an expression in one variable beyond some size, to one side: what series say is known as well.
+struct Beyond {
+    tails: Tails,
+    rising: bool,
+}
+
+impl Beyond {
+    fn joined(series: Series, part: Part) -> (Series, Part) {
+        if !series.is_known() {
+            return (series, part);
+        }
+        let within = part.within.and(series.range());
+        let nonzero = part.nonzero || series.keeps_from_zero();
+        (series, Part::new(if within.low <= within.high { within } else { part.within }, nonzero, part.total))
+    }
+}
+
+impl Algebra for Beyond {
+    type Value = (Series, Part);
+
+    fn number(&mut self, number: &Number) -> Self::Value {
+        Beyond::joined(self.tails.number(number), Parts(&[]).number(number))
+    }
+
+    fn variable(&mut self, index: usize) -> Self::Value {
+        let t = self.tails.variable(index);
+        let x = if self.rising { t } else { self.tails.unary(Unary::Negate, t) };
+        Beyond::joined(x, Parts(&[]).variable(index))
+    }
+
+    fn unary(&mut self, function: Unary, (series, part): Self::Value) -> Self::Value {
+        Beyond::joined(self.tails.unary(function, series), Parts(&[]).unary(function, part))
+    }
+
+    fn binary(&mut self, function: Binary, a: Self::Value, b: Self::Value) -> Self::Value {
+        Beyond::joined(self.tails.binary(function, a.0, b.0), Parts(&[]).binary(function, a.1, b.1))
+    }
+
+    fn power(&mut self, (series, part): Self::Value, exponent: &Number) -> Self::Value {
+        Beyond::joined(self.tails.power(series, exponent), Parts(&[]).power(part, exponent))
+    }
+}
+
 /// A quotient by what may come close to zero, but is on one side of it, has the sign that follows.
 fn quotient(a: Part, b: Part) -> Interval {
     let divided = Intervals(&[]).binary(Binary::Divide, a.within, b.within);
@@ -166,6 +212,16 @@ impl Expression {
         Place { of: Some(Expression::number(1.0)), inner: self.clone(), kind: Kind::Divisor }.fails().map(|(at, _)| at)
     }
 
+    /// What holds on a box.
+    fn on(&self, within: &[Interval]) -> Part {
+        let mut used = within.iter().enumerate().filter(|(index, _)| self.has(*index)).map(|(_, within)| *within);
+        let (Some(only), None) = (used.next(), used.next()) else { return self.fold(&mut Parts(within)) };
+        // To both sides of the variable that is there alone.
+        let (from, rising) = if only.high == f64::INFINITY { (only.low, true) } else { (-only.high, false) };
+        let far = from.is_finite() && from >= TAIL && (rising || only.low == f64::NEG_INFINITY);
+        if far { self.fold(&mut Beyond { tails: Tails { from }, rising }).1 } else { self.fold(&mut Parts(within)) }
+    }
+
     /// Whether something is shown on every box of a division of the whole space.
     fn shown(&self, good: impl Fn(Part) -> bool) -> bool {
         let variables = self.variables();
@@ -173,7 +229,7 @@ impl Expression {
         for _ in 0..BOXES {
             let Some(part) = waiting.pop() else { return true };
             let within: Vec<Interval> = part.iter().map(|ends| stretched(*ends)).collect();
-            if good(self.fold(&mut Parts(&within))) {
+            if good(self.on(&within)) {
                 continue;
             }
             let used = (0..variables).filter(|index| self.has(*index));

@@ -26,9 +26,14 @@ fn what_is_never_divided_by_zero_has_a_value_everywhere() {
     ] {
         assert_eq!(total.domain(), Domain::Everywhere, "{total:?}");
     }
-    // One pass does not tell x/2 + |x| + 1 from zero; cutting at zero does.
-    let cut = one() / (x() * 0.5 + x().abs_of() + 1.0);
-    assert_ne!(cut.domain(), Domain::Fails { at: vec![0.0], gap: Gap::Pole });
+    // One pass does not tell these from zero; cutting, and series far away to both sides, do.
+    for cut in [
+        x() / (x().power(2.0) - x() + 1.0),
+        one() / (x() * 0.5 + x().abs_of() + 1.0),
+        (y().power(4.0) - y().power(3.0) + 1.0).sqrt_of(),
+    ] {
+        assert_eq!(cut.domain(), Domain::Everywhere, "{cut:?}");
+    }
 }
 
 #[test]
@@ -67,7 +72,8 @@ fn what_is_zero_nowhere_is_told_from_what_is_zero_somewhere() {
     let (within, nonzero) = (-x().power(2.0)).exp_of().everywhere();
     assert!(within.low == 0.0 && nonzero);
     assert!(!x().everywhere().1 && !x().cos_of().everywhere().1 && !x().power(2.0).everywhere().1);
-    assert!(!(x().exp_of() - 1.0).everywhere().1);
+    assert!(!(x().exp_of() - 1.0).everywhere().1 && !(x().power(3.0) - x() + 1.0).everywhere().1);
+    assert!((x().power(2.0) - x() + 1.0).everywhere().1);
     assert_eq!((x() - 0.5).zero(), Some(vec![0.5]));
     assert_eq!((x().power(2.0) + 1.0).zero(), None);
 }

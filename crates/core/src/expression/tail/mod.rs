@@ -52,6 +52,11 @@ impl Series {
         }
     }
 
+    /// Whether it is zero nowhere, though it may fade.
+    pub(super) fn keeps_from_zero(&self) -> bool {
+        self.as_one().is_some_and(|(_, one)| !one.within.holds(0.0))
+    }
+
     /// Whether it is bounded by what its terms say.
     pub(super) fn is_bounded(&self) -> bool {
         let bounded = |(scale, first): (Scale, Coefficient)| scale <= Scale::ONE && first.within.is_finite();
