@@ -8,9 +8,11 @@
 //! absorbs: tanh of it is undefined too. Whoever asks is told [`Interval::WHOLE`].
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
+use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::float::{apply, repeated, whole};
 use super::{Algebra, Binary, Branch, Branching, Number, Unary};
+use crate::Scalar;
 
 /// More than the error of a sine, which is 2.2 units in its last place.
 const SINE_ERROR: f64 = 4.0 * f64::EPSILON;
@@ -70,6 +72,12 @@ impl Interval {
     #[must_use]
     pub fn sine(self) -> Self {
         self.wave(Unary::Sin, FRAC_PI_2)
+    }
+
+    /// Its square root.
+    #[must_use]
+    pub(crate) fn root(self) -> Self {
+        self.apply(Unary::Sqrt).after(&[self])
     }
 
     /// The largest size of a number in it.
@@ -306,5 +314,56 @@ impl Branching for Intervals<'_> {
     }
     fn is_zero(&self, a: Interval) -> bool {
         a == Interval::point(0.0)
+    }
+}
+
+/// Implements an operator by the function of two operands of the same meaning.
+macro_rules! operator {
+    ($($operator:ident, $name:ident, $function:ident;)*) => {
+        $(impl $operator for Interval {
+            type Output = Interval;
+            fn $name(self, other: Interval) -> Interval {
+                self.combine(Binary::$function, other).after(&[self, other])
+            }
+        })*
+    };
+}
+
+operator!(
+    Add, add, Add;
+    Sub, sub, Subtract;
+    Mul, mul, Multiply;
+    Div, div, Divide;
+);
+
+impl Neg for Interval {
+    type Output = Interval;
+    fn neg(self) -> Interval {
+        self.apply(Unary::Negate).after(&[self])
+    }
+}
+
+/// So that kernels enclose what they compute. A sum of products is rounded outwards twice.
+impl Scalar for Interval {
+    const ZERO: Self = Interval { low: 0.0, high: 0.0 };
+
+    fn splat(value: f64) -> Self {
+        Interval::point(value)
+    }
+
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        Mul::mul(self, a) + b
+    }
+
+    fn saturate(self, limit: Self) -> Self {
+        let least = self.combine(Binary::Min, limit);
+        least.combine(Binary::Max, limit.apply(Unary::Negate)).after(&[self, limit])
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        if self == Interval::point(0.0) {
+            return (self, Interval::point(1.0));
+        }
+        (self.sine().after(&[self]), self.apply(Unary::Cos).after(&[self]))
     }
 }

@@ -3,12 +3,15 @@
 //! Viscous damping D, where a robot has it, is part of ϑ: its regressor is diag of the reference velocity, so the law
 //! compensates D z and the loop dissipates K + D.
 
+mod enclosed;
+mod inertia_bound;
 mod kinematics;
 mod planar;
 mod point_mass;
 mod ship;
 pub mod tree;
 
+pub use inertia_bound::InertiaBound;
 pub use kinematics::{Posture, TipKinematics};
 pub use planar::{PlanarArm, PlanarLinks, PlanarTip};
 pub use point_mass::PointMass;

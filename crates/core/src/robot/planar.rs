@@ -13,7 +13,10 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use super::enclosed::Enclosed;
+use super::inertia_bound::InertiaBound;
 use super::{Lagrangian, TwoVelocity};
+use crate::expression::Interval;
 use crate::{LengthError, Scalar};
 
 /// The two-link planar arm; all that distinguishes one from another is in ϑ, see [`PlanarLinks::theta`].
@@ -95,6 +98,32 @@ impl PlanarTip {
         let [l1, l2] = self.length_m.map(S::splat);
         let ((s1, c1), (s12, c12)) = (q[0].sin_cos(), (q[0] + q[1]).sin_cos());
         [[l1 * c1, l1 * s1], [l2 * c12, l2 * s12]]
+    }
+}
+
+impl PlanarArm {
+    /// A bound of M(q) for all q, from the five parameters; `None` where M is not positive definite everywhere.
+    ///
+    /// M is ½ (1 + cos q₂) M₊ + ½ (1 − cos q₂) M₋, a mean of what it is at q₂ = 0 and at q₂ = π. λ_min is concave, so it is least at
+    /// one of the two and the bound is attained; A ↦ A⁻¹ is convex, so M⁻¹ is at most the same mean of the two inverses.
+    ///
+    /// # Errors
+    /// [`LengthError`] when `theta` has the wrong length.
+    pub fn inertia_bound(self, theta: &[f64]) -> Result<Option<InertiaBound>, LengthError> {
+        LengthError::check("theta", 5, theta.len())?;
+        let [t1, t2, t3] = [theta[0], theta[1], theta[2]].map(Interval::point);
+        let ends = [t3, -t3].map(|half| [t1 + half + half, t2 + half, t2]);
+        let mut least = f64::INFINITY;
+        let mut inverses = Vec::with_capacity(2);
+        for [m11, m12, m22] in ends {
+            let determinant = t1 * t2 - t2 * t2 - t3 * t3;
+            let by = |minor: Interval| minor / determinant;
+            let whole = Enclosed::from_rows(2, vec![m11, m12, m12, m22]).and_then(|whole| whole.least());
+            let Some(own) = whole else { return Ok(None) };
+            least = least.min(own);
+            inverses.extend(Enclosed::from_rows(2, vec![by(m22), by(-m12), by(-m12), by(m11)]));
+        }
+        Ok(InertiaBound::by_inverses(inverses).map(|bound| bound.at_least(least)))
     }
 }
 

@@ -3,6 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use super::inertia_bound::InertiaBound;
 use super::{Lagrangian, TwoVelocity};
 use crate::{LengthError, Scalar};
 
@@ -11,6 +12,17 @@ use crate::{LengthError, Scalar};
 pub struct PointMass {
     /// The dimension m of its space.
     pub dimension: usize,
+}
+
+impl PointMass {
+    /// M = ϑ₁ 1 for all q; `None` for a mass that is not positive.
+    ///
+    /// # Errors
+    /// [`LengthError`] when `theta` has the wrong length.
+    pub fn inertia_bound(self, theta: &[f64]) -> Result<Option<InertiaBound>, LengthError> {
+        LengthError::check("theta", 1, theta.len())?;
+        Ok(InertiaBound::by_least(theta[0], self.dimension))
+    }
 }
 
 impl<S: Scalar> Lagrangian<S> for PointMass {

@@ -25,7 +25,10 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use super::enclosed::Enclosed;
+use super::inertia_bound::InertiaBound;
 use super::{Lagrangian, TwoVelocity};
+use crate::expression::Interval;
 use crate::{LengthError, Scalar};
 
 /// m₁₁, m₂₂, m₂₃, m₃₃, d₁₁, d₂₂, d₂₃, d₃₂, d₃₃.
@@ -38,6 +41,29 @@ const INERTIAS: usize = 4;
 /// N m s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ship;
+
+impl Ship {
+    /// A bound of M_q(ψ) for all ψ; `None` where M is not positive definite.
+    ///
+    /// R is a rotation, so the eigenvalues of M_q = R M Rᵀ are those of M at every ψ, and the bound is attained. With
+    /// 2 |c y z| ≤ |c| (s y² + z²/s) for any s > 0, M⁻¹ is at most some diag(ν, ν, δ), which R leaves as it is.
+    ///
+    /// # Errors
+    /// [`LengthError`] when `theta` has the wrong length.
+    pub fn inertia_bound(self, theta: &[f64]) -> Result<Option<InertiaBound>, LengthError> {
+        LengthError::check("theta", P, theta.len())?;
+        let zero = Interval::point(0.0);
+        let [m11, m22, m23, m33] = [theta[0], theta[1], theta[2], theta[3]].map(Interval::point);
+        let whole = Enclosed::from_rows(3, vec![m11, zero, zero, zero, m22, m23, zero, m23, m33]);
+        let Some(least) = whole.and_then(|whole| whole.least()) else { return Ok(None) };
+        let determinant = m22 * m33 - m23 * m23;
+        let (sway, both, yaw) = (m33 / determinant, m23 / determinant, m22 / determinant);
+        let [both, share] = [both.size(), libm::sqrt(sway.high / yaw.high)].map(Interval::point);
+        let plane = (sway + both * share).high.max((Interval::point(1.0) / m11).high);
+        let inverse = Enclosed::diagonal(&[Interval::point(plane), Interval::point(plane), yaw + both / share]);
+        Ok(InertiaBound::by_inverses(vec![inverse]).map(|bound| bound.at_least(least)))
+    }
+}
 
 /// The axes of the body at one heading.
 #[derive(Clone, Copy)]

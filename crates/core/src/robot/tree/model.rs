@@ -13,6 +13,8 @@ use super::articulated::Articulated;
 use super::motion::{Motion, Seat, Wrench};
 use super::placement::rows;
 use super::spatial::{Inertia, Mat3, Sym3, Vec3};
+use super::uniform::enclosed_rotation;
+use crate::expression::Interval;
 use crate::{LengthError, Scalar};
 
 /// What a moving joint does along its axis.
@@ -193,6 +195,16 @@ impl Body {
             Coordinates::X => pi.renamed(),
             Coordinates::Y => pi.renamed().renamed(),
             Coordinates::Turned(e) => pi.turned(&Mat3::splat(e).transpose()),
+        }
+    }
+
+    /// The body's parameters in its inner frame, enclosed.
+    pub(super) fn enclosed_inertia(&self, pi: &[f64; 10]) -> Inertia<Interval> {
+        match &self.coordinates {
+            Coordinates::Z | Coordinates::X | Coordinates::Y => self.inner(&pi.map(Interval::point)),
+            Coordinates::Turned(e) => {
+                Inertia::from_array(&pi.map(Interval::point)).turned(&enclosed_rotation(e).transpose())
+            }
         }
     }
 

@@ -11,8 +11,8 @@ use thiserror::Error;
 
 use super::spatial::{Inertia, Sym3, Vec3};
 use super::{JointKind, Tree};
-use crate::LengthError;
 use crate::robot::Lagrangian;
+use crate::{LengthError, Scalar};
 
 /// What is wrong with the ten inertial parameters of one body, with the numbers that say so.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -130,7 +130,7 @@ pub fn inertia_defects(inertia: &[f64; 10], size_m: f64) -> Vec<InertiaDefect> {
 }
 
 /// I about the joint less what m c adds: m (c² 1 − c cᵀ) with h = m c.
-fn about_centre(m: f64, h: Vec3<f64>, i: Sym3<f64>) -> Sym3<f64> {
+pub(super) fn about_centre<S: Scalar>(m: S, h: Vec3<S>, i: Sym3<S>) -> Sym3<S> {
     let (x, y, z) = (h.x / m, h.y / m, h.z / m);
     Sym3 {
         xx: i.xx - (h.y * y + h.z * z),
@@ -241,7 +241,7 @@ impl Tree {
 }
 
 /// Powers of 1/φ with φ^(n+1) = φ + 1: the additive sequence that spreads most evenly over n dimensions.
-fn even_steps(n: usize) -> Vec<f64> {
+pub(super) fn even_steps(n: usize) -> Vec<f64> {
     let mut phi = 2.0_f64;
     for _ in 0..64 {
         phi = libm::pow(1.0 + phi, 1.0 / (n as f64 + 1.0));
