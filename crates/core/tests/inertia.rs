@@ -8,9 +8,12 @@ use common::models;
 use common::random::Random;
 use forwardstep_core::expression::Interval;
 use forwardstep_core::robot::tree::{
-    Definiteness, JointKind, LinkJoint, LinkSpec, Placement, Tree, inertia_about_frame,
+    Anchor, Assembled, JointKind, LinkJoint, LinkPoint, LinkSpec, Placement, Tree, TreeTip, Uncertain,
+    inertia_about_frame,
 };
-use forwardstep_core::robot::{InertiaBound, Lagrangian, PlanarArm, PlanarLinks, PointMass, Ship};
+use forwardstep_core::robot::{
+    Definiteness, InertiaBound, Lagrangian, PlanarArm, PlanarLinks, PointMass, Ship, TipKinematics,
+};
 use forwardstep_core::{Gain, ResolvedGain, Scalar};
 use proptest::prelude::*;
 
@@ -115,6 +118,70 @@ proptest! {
         }
         // Nothing is known of an angle that may be anything.
         prop_assert_eq!(Interval::WHOLE.sin_cos().0, Interval { low: -1.0, high: 1.0 });
+    }
+
+    #[test]
+    fn prop_extensions_change_the_dynamics_exactly_where_a_joint_is_swung(seed in any::<u64>(), joints in 1_usize..6) {
+        let mut random = Random::new(seed);
+        let mut links = random.links(joints);
+        // Directions that random ones do not have: all joints along one axis, in frames that are turned about it.
+        if random.chance(0.5) {
+            for link in &mut links {
+                let turn = [0.0, 0.0, 3.0 * random.number()];
+                link.x_parent_joint = Placement::from_xyz_rpy(link.x_parent_joint.translation, turn);
+                if let LinkJoint::Moving { axis, .. } = &mut link.joint {
+                    *axis = if random.chance(0.8) { Z } else { X };
+                }
+            }
+        }
+        let Assembled { tree, theta, .. } = Tree::assemble(&links, random.vector(9.81)).unwrap();
+        let swung = tree.swung_joints();
+        let q = random.column(joints, 3.0);
+        let dynamics = |q: &[f64]| {
+            let (mut scratch, mut g) = (Lagrangian::<f64>::scratch(&tree), vec![0.0; joints]);
+            tree.gravity(&mut scratch, q, &theta, &mut g).unwrap();
+            [mass(&tree, q, &theta), g].concat()
+        };
+        let before = dynamics(&q);
+        for (joint, kind) in tree.joint_kinds().enumerate() {
+            let mut far = q.clone();
+            far[joint] += 10.0;
+            let after = dynamics(&far);
+            let change = before.iter().zip(&after).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            if kind == JointKind::Prismatic {
+                prop_assert_eq!(change > 1e-9, swung.contains(&joint), "joint {} of {:?}: {}", joint, &swung, change);
+            } else {
+                prop_assert!(!swung.contains(&joint));
+            }
+        }
+    }
+
+    #[test]
+    fn prop_no_tip_is_farther_than_its_reach(seed in any::<u64>(), joints in 2_usize..4) {
+        let mut random = Random::new(seed);
+        let mut links = random.links(joints);
+        for (index, link) in links.iter_mut().enumerate() {
+            link.parent = index.checked_sub(1);
+            if let LinkJoint::Moving { kind, .. } = &mut link.joint {
+                *kind = JointKind::Revolute;
+            }
+        }
+        let tree = Tree::assemble(&links, GRAVITY).unwrap().tree;
+        let point = LinkPoint { link: Anchor { body: Some(joints - 1), x_body_link: Placement::IDENTITY }, at: random.vector(0.5) };
+        let coordinates: Vec<usize> = (0..joints).collect();
+        let tip = TreeTip::new(tree, &point, &coordinates, Uncertain::Tool).unwrap();
+        let (first, reach) = tip.reach().unwrap();
+        for _ in 0..30 {
+            let mut x = vec![0.0; joints];
+            tip.position(&random.column(joints, 4.0), &tip.parameters(), &mut x).unwrap();
+            let squares = x.iter().zip(first).map(|(x, first)| (x - first) * (x - first));
+            prop_assert!(squares.sum::<f64>().sqrt() <= reach);
+        }
+        if let LinkJoint::Moving { kind, .. } = &mut links[1].joint {
+            *kind = JointKind::Prismatic;
+        }
+        let tree = Tree::assemble(&links, GRAVITY).unwrap().tree;
+        prop_assert_eq!(TreeTip::new(tree, &point, &coordinates, Uncertain::Tool).unwrap().reach(), None);
     }
 
     #[test]
@@ -274,11 +341,17 @@ fn degenerate_parameters_have_no_bound() {
     assert_eq!(
         PlanarArm.inertia_bound(&[3.0, 1.0, 1.5, 0.0, 0.0]).unwrap(),
         None,
-        "singular where the arm is bent by a right angle"
+        "indefinite where the arm is stretched"
     );
     assert_eq!(PointMass { dimension: 3 }.inertia_bound(&[0.0]).unwrap(), None);
     assert_eq!(Ship.inertia_bound(&[1.0, 2.0, 2.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0]).unwrap(), None);
     assert!(PlanarArm.inertia_bound(&[1.0]).is_err() && Ship.inertia_bound(&[]).is_err());
+    let not = |found: Definiteness| matches!(found, Definiteness::Not { q, direction } if q.len() == direction.len());
+    assert!(not(PlanarArm.definiteness(&[1.0, 1.0, 0.0, 0.0, 0.0]).unwrap()));
+    assert!(not(PlanarArm.definiteness(&[3.0, 1.0, 1.5, 0.0, 0.0]).unwrap()));
+    assert!(not(PointMass { dimension: 3 }.definiteness(&[0.0]).unwrap()));
+    assert!(not(Ship.definiteness(&[1.0, 2.0, 2.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0]).unwrap()));
+    assert!(matches!(PointMass { dimension: 3 }.definiteness(&[2.0]).unwrap(), Definiteness::Uniform(_)));
     let bound = PointMass { dimension: 3 }.inertia_bound(&[2.0]).unwrap().unwrap();
     assert_eq!(bound.least(), 2.0);
     let fastest = bound.fastest(&Gain::Diagonal(vec![1.0, 3.0, 2.0]).resolve(3, &[]).unwrap()).unwrap().unwrap();

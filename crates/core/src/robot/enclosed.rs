@@ -162,4 +162,47 @@ impl Enclosed {
         }
         product
     }
+
+    /// A direction v with vᵀM v ≤ 0: a joint by itself, or one with those before it as they follow without a torque.
+    pub(crate) fn against(&self) -> Option<Vec<f64>> {
+        let n = self.size;
+        let unit = |joint: usize| (0..n).map(|k| if k == joint { 1.0 } else { 0.0 }).collect::<Vec<f64>>();
+        if let Some(joint) = (0..n).find(|joint| self.at(*joint, *joint).high <= 0.0) {
+            return Some(unit(joint));
+        }
+        let middle = |i: usize, j: usize| 0.5 * (self.at(i, j).low + self.at(i, j).high);
+        // Rows of L of L D Lᵀ, one by one; v solves Lᵀv = e_k.
+        let mut l = vec![0.0; n * n];
+        let mut pivots: Vec<f64> = Vec::with_capacity(n);
+        for k in 0..n {
+            for j in 0..k {
+                let known = (0..j).map(|i| l[k * n + i] * l[j * n + i] * pivots[i]).sum::<f64>();
+                l[k * n + j] = (middle(k, j) - known) / pivots[j];
+            }
+            let pivot = middle(k, k) - (0..k).map(|i| l[k * n + i] * l[k * n + i] * pivots[i]).sum::<f64>();
+            let mut v = unit(k);
+            for j in (0..k).rev() {
+                v[j] = -(j + 1..=k).map(|i| l[i * n + j] * v[i]).sum::<f64>();
+            }
+            if self.quadratic(&v).high <= 0.0 {
+                return Some(v);
+            }
+            if pivot.is_nan() || pivot <= 0.0 {
+                return None;
+            }
+            pivots.push(pivot);
+        }
+        None
+    }
+
+    /// vᵀM v.
+    fn quadratic(&self, v: &[f64]) -> Interval {
+        let mut sum = Interval::point(0.0);
+        for (i, a) in v.iter().enumerate() {
+            for (j, b) in v.iter().enumerate() {
+                sum = sum + Interval::point(*a) * self.at(i, j) * Interval::point(*b);
+            }
+        }
+        sum
+    }
 }

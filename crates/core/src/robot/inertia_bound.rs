@@ -26,6 +26,41 @@ pub struct InertiaBound {
     inverses: Vec<Enclosed>,
 }
 
+/// Whether M(q) is positive definite uniformly.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Definiteness {
+    /// It is, by a bound.
+    Uniform(InertiaBound),
+    /// It is not, at this q: `direction` · M(q) `direction` ≤ 0, by intervals.
+    Not {
+        /// Joint positions, rad or m.
+        q: Vec<f64>,
+        /// Velocities that have no kinetic energy, or a negative one.
+        direction: Vec<f64>,
+    },
+    /// Neither is shown. Of the postures that were looked at, M is closest to singular at this one.
+    Unknown {
+        /// Joint positions, rad or m.
+        q: Vec<f64>,
+        /// What every eigenvalue of M exceeds there; zero where that is not known.
+        least: f64,
+    },
+}
+
+impl Definiteness {
+    /// By a bound, else by what M is with all joints at zero.
+    pub(super) fn of(bound: Option<InertiaBound>, at_zero: &Enclosed) -> Self {
+        if let Some(bound) = bound {
+            return Definiteness::Uniform(bound);
+        }
+        let q = vec![0.0; at_zero.size()];
+        match at_zero.against() {
+            Some(direction) => Definiteness::Not { q, direction },
+            None => Definiteness::Unknown { q, least: at_zero.least().unwrap_or(0.0) },
+        }
+    }
+}
+
 impl InertiaBound {
     /// By matrices of which a mean is at least M(q)⁻¹; `None` unless their eigenvalues have bounds.
     pub(super) fn by_inverses(inverses: Vec<Enclosed>) -> Option<Self> {

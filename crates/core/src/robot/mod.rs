@@ -11,7 +11,7 @@ mod point_mass;
 mod ship;
 pub mod tree;
 
-pub use inertia_bound::InertiaBound;
+pub use inertia_bound::{Definiteness, InertiaBound};
 pub use kinematics::{Posture, TipKinematics};
 pub use planar::{PlanarArm, PlanarLinks, PlanarTip};
 pub use point_mass::PointMass;

@@ -14,7 +14,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::enclosed::Enclosed;
-use super::inertia_bound::InertiaBound;
+use super::inertia_bound::{Definiteness, InertiaBound};
 use super::{Lagrangian, TwoVelocity};
 use crate::expression::Interval;
 use crate::{LengthError, Scalar};
@@ -124,6 +124,17 @@ impl PlanarArm {
             inverses.extend(Enclosed::from_rows(2, vec![by(m22), by(-m12), by(-m12), by(m11)]));
         }
         Ok(InertiaBound::by_inverses(inverses).map(|bound| bound.at_least(least)))
+    }
+
+    /// Whether M(q) is positive definite uniformly. det M = ϑ₁ϑ₂ − ϑ₂² − ϑ₃² cos² q₂ is least where the arm is stretched.
+    ///
+    /// # Errors
+    /// [`LengthError`] when `theta` has the wrong length.
+    pub fn definiteness(self, theta: &[f64]) -> Result<Definiteness, LengthError> {
+        let bound = self.inertia_bound(theta)?;
+        let [t1, t2, t3] = [theta[0], theta[1], theta[2]].map(Interval::point);
+        let stretched = Enclosed::from_rows(2, vec![t1 + t3 + t3, t2 + t3, t2 + t3, t2]);
+        Ok(Definiteness::of(bound, &stretched.unwrap_or(Enclosed::zero(2))))
     }
 }
 

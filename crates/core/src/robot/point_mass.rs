@@ -3,8 +3,10 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::inertia_bound::InertiaBound;
+use super::enclosed::Enclosed;
+use super::inertia_bound::{Definiteness, InertiaBound};
 use super::{Lagrangian, TwoVelocity};
+use crate::expression::Interval;
 use crate::{LengthError, Scalar};
 
 /// A point mass in ℝᵐ with ϑ = \[mass\] and Y = ż.
@@ -22,6 +24,15 @@ impl PointMass {
     pub fn inertia_bound(self, theta: &[f64]) -> Result<Option<InertiaBound>, LengthError> {
         LengthError::check("theta", 1, theta.len())?;
         Ok(InertiaBound::by_least(theta[0], self.dimension))
+    }
+
+    /// Whether M is positive definite.
+    ///
+    /// # Errors
+    /// [`LengthError`] when `theta` has the wrong length.
+    pub fn definiteness(self, theta: &[f64]) -> Result<Definiteness, LengthError> {
+        let bound = self.inertia_bound(theta)?;
+        Ok(Definiteness::of(bound, &Enclosed::diagonal(&vec![Interval::point(theta[0]); self.dimension])))
     }
 }
 

@@ -26,7 +26,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::enclosed::Enclosed;
-use super::inertia_bound::InertiaBound;
+use super::inertia_bound::{Definiteness, InertiaBound};
 use super::{Lagrangian, TwoVelocity};
 use crate::expression::Interval;
 use crate::{LengthError, Scalar};
@@ -52,10 +52,8 @@ impl Ship {
     /// [`LengthError`] when `theta` has the wrong length.
     pub fn inertia_bound(self, theta: &[f64]) -> Result<Option<InertiaBound>, LengthError> {
         LengthError::check("theta", P, theta.len())?;
-        let zero = Interval::point(0.0);
         let [m11, m22, m23, m33] = [theta[0], theta[1], theta[2], theta[3]].map(Interval::point);
-        let whole = Enclosed::from_rows(3, vec![m11, zero, zero, zero, m22, m23, zero, m23, m33]);
-        let Some(least) = whole.and_then(|whole| whole.least()) else { return Ok(None) };
+        let Some(least) = in_body(theta).least() else { return Ok(None) };
         let determinant = m22 * m33 - m23 * m23;
         let (sway, both, yaw) = (m33 / determinant, m23 / determinant, m22 / determinant);
         let [both, share] = [both.size(), libm::sqrt(sway.high / yaw.high)].map(Interval::point);
@@ -63,6 +61,22 @@ impl Ship {
         let inverse = Enclosed::diagonal(&[Interval::point(plane), Interval::point(plane), yaw + both / share]);
         Ok(InertiaBound::by_inverses(vec![inverse]).map(|bound| bound.at_least(least)))
     }
+
+    /// Whether M_q(ψ) is positive definite uniformly.
+    ///
+    /// # Errors
+    /// [`LengthError`] when `theta` has the wrong length.
+    pub fn definiteness(self, theta: &[f64]) -> Result<Definiteness, LengthError> {
+        Ok(Definiteness::of(self.inertia_bound(theta)?, &in_body(theta)))
+    }
+}
+
+/// M, from all of ϑ.
+fn in_body(theta: &[f64]) -> Enclosed {
+    let [m11, m22, m23, m33] = [theta[0], theta[1], theta[2], theta[3]].map(Interval::point);
+    let mut whole = Enclosed::diagonal(&[m11, m22, m33]);
+    whole.set(2, 1, m23);
+    whole
 }
 
 /// The axes of the body at one heading.

@@ -2,6 +2,7 @@
 
 mod articulated;
 mod assemble;
+mod axes;
 mod composite;
 mod lagrangian;
 mod model;
@@ -19,6 +20,5 @@ pub use assemble::{Anchor, Assembled, LinkJoint, LinkSpec, TreeError, inertia_ab
 pub use model::{JointKind, Tree, TreeScratch};
 pub use physical::{InertiaDefect, MassMatrixError, inertia_defects};
 pub use placement::Placement;
-pub use subdivided::Definiteness;
 pub use tip::{TipError, TreeTip, Uncertain};
 pub use wrench::{Axes, LinkPoint, PointMotion, PointWrench};

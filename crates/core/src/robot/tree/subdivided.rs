@@ -15,28 +15,7 @@ use crate::LengthError;
 use crate::expression::Interval;
 use crate::robot::Lagrangian;
 use crate::robot::enclosed::Enclosed;
-use crate::robot::inertia_bound::InertiaBound;
-
-/// Whether M(q) is positive definite uniformly.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Definiteness {
-    /// It is, by a bound.
-    Uniform(InertiaBound),
-    /// It is not, at this q: `direction` · M(q) `direction` ≤ 0, by intervals.
-    Not {
-        /// Joint positions, rad or m.
-        q: Vec<f64>,
-        /// Velocities that have no kinetic energy, or a negative one.
-        direction: Vec<f64>,
-    },
-    /// Neither is shown. Of the postures that were looked at, M is closest to singular at this one.
-    Unknown {
-        /// Joint positions, rad or m.
-        q: Vec<f64>,
-        /// What every eigenvalue of M exceeds there; zero where that is not known.
-        least: f64,
-    },
-}
+use crate::robot::inertia_bound::{Definiteness, InertiaBound};
 
 /// Postures that are looked at.
 const SAMPLES: usize = 64;
@@ -60,7 +39,7 @@ impl Tree {
         let (mut lowest, mut seen) = (vec![0.0; self.joint_count()], f64::INFINITY);
         for q in postures(self.joint_count()) {
             let m = at.mass(&point(&q))?;
-            if let Some(direction) = against(&m) {
+            if let Some(direction) = m.against() {
                 return Ok(Definiteness::Not { q, direction });
             }
             let least = m.least().unwrap_or(0.0);
@@ -153,47 +132,4 @@ fn postures(n: usize) -> impl Iterator<Item = Vec<f64>> {
 
 fn point(q: &[f64]) -> Vec<Interval> {
     q.iter().copied().map(Interval::point).collect()
-}
-
-/// A direction v with vᵀM v ≤ 0: a joint by itself, or one with those before it as they follow without a torque.
-fn against(m: &Enclosed) -> Option<Vec<f64>> {
-    let n = m.size();
-    let unit = |joint: usize| (0..n).map(|k| if k == joint { 1.0 } else { 0.0 }).collect::<Vec<f64>>();
-    if let Some(joint) = (0..n).find(|joint| m.at(*joint, *joint).high <= 0.0) {
-        return Some(unit(joint));
-    }
-    let middle = |i: usize, j: usize| 0.5 * (m.at(i, j).low + m.at(i, j).high);
-    // Rows of L of L D Lᵀ, one by one; v solves Lᵀv = e_k.
-    let mut l = vec![0.0; n * n];
-    let mut pivots: Vec<f64> = Vec::with_capacity(n);
-    for k in 0..n {
-        for j in 0..k {
-            let known = (0..j).map(|i| l[k * n + i] * l[j * n + i] * pivots[i]).sum::<f64>();
-            l[k * n + j] = (middle(k, j) - known) / pivots[j];
-        }
-        let pivot = middle(k, k) - (0..k).map(|i| l[k * n + i] * l[k * n + i] * pivots[i]).sum::<f64>();
-        let mut v = unit(k);
-        for j in (0..k).rev() {
-            v[j] = -(j + 1..=k).map(|i| l[i * n + j] * v[i]).sum::<f64>();
-        }
-        if quadratic(m, &v).high <= 0.0 {
-            return Some(v);
-        }
-        if pivot.is_nan() || pivot <= 0.0 {
-            return None;
-        }
-        pivots.push(pivot);
-    }
-    None
-}
-
-/// vᵀM v.
-fn quadratic(m: &Enclosed, v: &[f64]) -> Interval {
-    let mut sum = Interval::point(0.0);
-    for (i, a) in v.iter().enumerate() {
-        for (j, b) in v.iter().enumerate() {
-            sum = sum + Interval::point(*a) * m.at(i, j) * Interval::point(*b);
-        }
-    }
-    sum
 }

@@ -46,10 +46,12 @@ use alloc::vec::Vec;
 
 use thiserror::Error;
 
-use super::model::{Body, Tree};
+use super::axes::Axes;
+use super::model::Tree;
 use super::motion::Seat;
 use super::spatial::{Mat3, Vec3};
 use super::{JointKind, LinkPoint};
+use crate::expression::Interval;
 use crate::robot::kinematics::{Posture, TipKinematics};
 use crate::{LengthError, trig};
 
@@ -180,6 +182,20 @@ impl TreeTip {
         inside
     }
 
+    /// What the tip cannot leave: the place of the first joint in the frame of the base, m, and the sum of all lengths behind it, m,
+    /// rounded up. `None` where a joint slides.
+    pub fn reach(&self) -> Option<([f64; 3], f64)> {
+        let bodies = &self.tree.bodies;
+        let (first, rest) = bodies.split_first()?;
+        let turning = bodies.iter().all(|body| body.kind == JointKind::Revolute);
+        let lengths = rest.iter().map(|body| body.translation).chain([self.tool]).map(|p| {
+            let p = Vec3::<Interval>::splat(p);
+            p.dot(p).root()
+        });
+        let sum = lengths.fold(Interval::point(0.0), |sum, length| sum + length);
+        turning.then_some((first.translation, sum.high))
+    }
+
     /// Where the numbers of translation c stand in θ, if they are there.
     fn place(&self, c: usize) -> Option<usize> {
         match self.uncertain {
@@ -228,53 +244,6 @@ impl TreeTip {
         }
         chain
     }
-}
-
-/// The axes of revolute joints from the base up to a body, as far as [`TreeTip::in_regressor`] goes by them, in the inner frame
-/// of that body.
-#[derive(Clone, Copy)]
-enum Axes {
-    /// There are none.
-    Nothing,
-    /// All have this direction, of length one.
-    One(Vec3<f64>),
-    /// Two differ.
-    Several,
-}
-
-impl Axes {
-    /// The axes up to the next body, which is `body`.
-    fn carried_by(self, body: &Body) -> Self {
-        let z = Vec3::new(0.0, 0.0, 1.0);
-        // The joint turns the frame about z, which leaves what is parallel to z and changes all else.
-        let (before, turns) = (Mat3::splat(&body.rotation), body.kind == JointKind::Revolute);
-        match (self, turns) {
-            (Axes::Nothing, true) => Axes::One(z),
-            (Axes::Nothing, false) => Axes::Nothing,
-            (Axes::One(axis), true) if apart(before.transpose_times(axis), z) => Axes::Several,
-            (Axes::One(_), true) => Axes::One(z),
-            (Axes::One(axis), false) => Axes::One(before.transpose_times(axis)),
-            (Axes::Several, _) => Axes::Several,
-        }
-    }
-
-    /// Whether a vector of the body's is turned by one of them at least.
-    fn turn(self, vector: Vec3<f64>) -> bool {
-        match self {
-            Axes::Nothing => false,
-            Axes::One(axis) => apart(vector, axis),
-            Axes::Several => true,
-        }
-    }
-}
-
-/// Directions that differ by less than this, rad, do so by the rounding of placements alone.
-const PARALLEL: f64 = 1e-12;
-
-/// Whether two vectors of length one have different directions, opposite ones not counted.
-fn apart(a: Vec3<f64>, b: Vec3<f64>) -> bool {
-    let cross = a.cross(b);
-    cross.dot(cross) > PARALLEL * PARALLEL
 }
 
 fn upright() -> Mat3<f64> {
