@@ -10,11 +10,13 @@ mod agreement;
 mod conserved;
 mod graphs;
 pub mod hypothesis;
+mod inertia;
 mod kinds;
 mod laws;
 mod links;
 mod manipulation;
 mod null_vector;
+mod reach;
 mod report;
 mod sampled;
 mod shifted_laplacian;
@@ -26,7 +28,9 @@ mod theorems;
 pub use agreement::{NoPrediction, Prediction, predict};
 pub use hypothesis::{Answer, Evidence, Hypothesis, Id, Rigour};
 pub use report::Report;
-pub use sampled::{SampledAdaptation, SampledDamping, sampled_adaptation, sampled_damping};
+pub use sampled::{
+    FastestDamping, SampledAdaptation, SampledDamping, fastest_damping, sampled_adaptation, sampled_damping,
+};
 pub use source::Source;
 pub use theorem::Theorem;
 pub use theorems::check;

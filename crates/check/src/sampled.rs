@@ -4,6 +4,8 @@ use forwardstep_core::Gain;
 use forwardstep_sim::{Adaptive, AgentSetup, DynamicsAt, Known, Setup};
 use nalgebra::{DMatrix, DVector};
 
+use crate::inertia::Inertias;
+
 /// How far one held sample of the damping goes: h · λ_max(M⁻¹K), largest over the agents, at their starts.
 ///
 /// Held for a period h and applied δ h late, τ = −K s moves s along a mode of x = h λ as
@@ -26,6 +28,49 @@ pub struct SampledDamping {
     pub agent: usize,
     /// The period h, s.
     pub period_s: f64,
+    /// No x at any position exceeds this, by the certified bounds of M; `None` where an agent has none.
+    pub anywhere: Option<f64>,
+}
+
+/// How fast the damping is: λ_max(M⁻¹K) in 1/s, the rate at which s decays in its fastest mode, over the agents under (6)–(7).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FastestDamping {
+    /// Index of the agent whose damping is fastest at the start.
+    pub agent: usize,
+    /// That of this agent, with M at its start, 1/s.
+    pub at_start_per_s: f64,
+    /// No rate of any of the agents exceeds this at any position, by the certified bounds of M, 1/s; `None` where one has none.
+    pub anywhere_per_s: Option<f64>,
+}
+
+/// [`FastestDamping`] of a setup; `None` when no agent is under (6)–(7), or no mass matrix can be factored.
+pub fn fastest_damping(setup: &Setup) -> Option<FastestDamping> {
+    let all: Vec<usize> = (0..setup.agents.len()).collect();
+    fastest_damping_of(setup, &all, &mut Inertias::default())
+}
+
+/// The same of some agents.
+pub(crate) fn fastest_damping_of(setup: &Setup, agents: &[usize], inertias: &mut Inertias) -> Option<FastestDamping> {
+    let mut fastest: Option<FastestDamping> = None;
+    let mut bounded = true;
+    for &agent in agents {
+        let own = &setup.agents[agent];
+        if gain(own).is_none() {
+            continue;
+        }
+        let known = fastest.and_then(|before| before.anywhere_per_s).unwrap_or(0.0);
+        let Some((at_start_per_s, anywhere_per_s)) = rates(own, inertias, known) else {
+            bounded = false;
+            continue;
+        };
+        let found = FastestDamping { agent, at_start_per_s, anywhere_per_s };
+        fastest = Some(fastest.map_or(found, |before| {
+            let first = if at_start_per_s > before.at_start_per_s { found } else { before };
+            let both = before.anywhere_per_s.zip(anywhere_per_s).map(|(a, b)| a.max(b));
+            FastestDamping { anywhere_per_s: both, ..first }
+        }));
+    }
+    fastest.map(|found| FastestDamping { anywhere_per_s: found.anywhere_per_s.filter(|_| bounded), ..found })
 }
 
 /// [`SampledDamping`] of a setup under digital control; `None` when control is continuous or no mass matrix can be factored.
@@ -36,10 +81,16 @@ pub fn sampled_damping(setup: &Setup) -> Option<SampledDamping> {
     let slow = if late < 0.5 { 2.0 / (1.0 - 2.0 * late) } else { f64::INFINITY };
     let root = 1.0 + late.sqrt();
     let [overshoots_above, unstable_above] = [1.0 / (root * root), slow.min(1.0 / late)];
-    let all = setup.agents.iter().enumerate();
-    let values = all.filter_map(|(agent, a)| fastest(a).map(|lambda| (agent, lambda)));
-    let (agent, lambda) = values.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    Some(SampledDamping { value: period_s * lambda, overshoots_above, unstable_above, agent, period_s })
+    let FastestDamping { agent, at_start_per_s, anywhere_per_s } = fastest_damping(setup)?;
+    let anywhere = anywhere_per_s.map(|rate| period_s * rate);
+    Some(SampledDamping {
+        value: period_s * at_start_per_s,
+        overshoots_above,
+        unstable_above,
+        agent,
+        period_s,
+        anywhere,
+    })
 }
 
 /// How far one held sample of damping and adaptation goes: h · λ_max(M⁻¹(K + ½ h Y Γ Yᵀ)), largest over the agents that adapt.
@@ -77,10 +128,13 @@ pub fn sampled_adaptation(setup: &Setup) -> Option<SampledAdaptation> {
     followers.filter_map(value).max_by(|a, b| a.value.total_cmp(&b.value))
 }
 
-/// λ_max(M⁻¹K) at the start, 1/s.
-fn fastest(agent: &AgentSetup) -> Option<f64> {
+/// λ_max(M⁻¹K) at the start, and what it does not exceed at any position, where that is known, 1/s: `known` if that suffices.
+fn rates(agent: &AgentSetup, inertias: &mut Inertias, known: f64) -> Option<(f64, Option<f64>)> {
     let model = model(agent, 0.0)?;
-    largest(&model.mass, &damping(agent, &model)?)
+    let at_start = largest(&model.mass, &damping(agent, &model)?)?;
+    let scale: Vec<f64> = model.mass.diagonal().iter().copied().collect();
+    let gain = gain(agent)?.resolve(scale.len(), &scale).ok()?;
+    Some((at_start, inertias.bound(&agent.robot, |bound| bound.fastest(&gain, known).ok().flatten())))
 }
 
 /// What an agent under (6)–(7) is at its start.

@@ -18,7 +18,7 @@ use forwardstep_sim::formula::{BoundedFormula, Witness};
 use forwardstep_sim::schedule::{Phase, Schedule};
 
 /// Names may join this list. None may leave it or change: certificates, waivers and summaries of earlier versions refer to them.
-const NAMES: [&str; 49] = [
+const NAMES: [&str; 53] = [
     "spanning-tree",
     "leader-reaches-all",
     "dwell-time",
@@ -36,6 +36,8 @@ const NAMES: [&str; 49] = [
     "common-first-root",
     "measured-derivative",
     "manipulability",
+    "uniform-inertia",
+    "bounded-dynamics",
     "positive-gains",
     "pushes-end",
     "applied-torque",
@@ -64,6 +66,7 @@ const NAMES: [&str; 49] = [
     "declared",
     "task-space-gains",
     "regular-jacobian",
+    "target-within-reach",
     "certain-regressor",
     "lengths-within-bounds",
     "attitude-gains",

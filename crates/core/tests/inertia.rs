@@ -74,7 +74,7 @@ fn gain(random: &mut Random, n: usize) -> (Vec<f64>, ResolvedGain) {
 fn sharpness<R: Lagrangian<f64>>(robot: &R, theta: &[f64], bound: &InertiaBound, samples: usize, seed: u64) -> f64 {
     let (n, mut random) = (robot.dof(), Random::new(seed));
     let (k, resolved) = gain(&mut random, n);
-    let fastest = bound.fastest(&resolved).unwrap().unwrap();
+    let fastest = bound.fastest(&resolved, 0.0).unwrap().unwrap();
     let mut seen = f64::INFINITY;
     for _ in 0..samples {
         let m = mass(robot, &random.column(n, 4.0), theta);
@@ -354,7 +354,10 @@ fn degenerate_parameters_have_no_bound() {
     assert!(matches!(PointMass { dimension: 3 }.definiteness(&[2.0]).unwrap(), Definiteness::Uniform(_)));
     let bound = PointMass { dimension: 3 }.inertia_bound(&[2.0]).unwrap().unwrap();
     assert_eq!(bound.least(), 2.0);
-    let fastest = bound.fastest(&Gain::Diagonal(vec![1.0, 3.0, 2.0]).resolve(3, &[]).unwrap()).unwrap().unwrap();
+    let gain = Gain::Diagonal(vec![1.0, 3.0, 2.0]).resolve(3, &[]).unwrap();
+    let fastest = bound.fastest(&gain, 0.0).unwrap().unwrap();
     assert!((1.5..1.500_01).contains(&fastest), "{fastest}");
-    assert!(bound.fastest(&Gain::Number(1.0).resolve(2, &[]).unwrap()).is_err());
+    assert_eq!(bound.fastest(&gain, 1.6).unwrap(), Some(1.6), "a bound that is given already");
+    assert!((1.5..1.500_01).contains(&bound.fastest(&gain, 1.4).unwrap().unwrap()), "what is given is no bound");
+    assert!(bound.fastest(&Gain::Number(1.0).resolve(2, &[]).unwrap(), 0.0).is_err());
 }

@@ -247,7 +247,7 @@ fn names_given_by_users_are_escaped_everywhere() {
     let outcome = outcome(&setup);
     let (folder, mut report) = (tempfile::tempdir().unwrap(), verdicts());
     let roots = vec![Named { index: 0, name: "<b onclick=alert(3)>".into() }];
-    let tree = GraphEvidence::Window { length_s: 3.0, worst_start_s: 1.0, roots, for_all_time: true };
+    let tree = GraphEvidence::Window { length_s: 3.0, worst_start_s: 1.0, roots, for_all_time: true, drawn: false };
     report.hypotheses[0].evidence = tree.into();
     assert!(report.hypotheses[0].because().contains("<b onclick"));
     let mut it = record(&setup, &outcome, &report);

@@ -81,6 +81,12 @@ table! {
     Manipulability, "manipulability", "Remark 4", Source::Paper,
         "the manipulability gain λ of Remark 4 is positive";
 
+    // Robots.
+    UniformInertia, "uniform-inertia", "Property 1", Source::Paper,
+        "the inertia matrix M(q) is symmetric and uniformly positive definite";
+    BoundedDynamics, "bounded-dynamics", "proofs of Theorems 1, 6 and 8", Source::Paper,
+        "C(q, q̇) and g(q) are bounded independent of q";
+
     // The loop around a law.
     PositiveGains, "positive-gains", "(6), (7)", Source::Paper,
         "K and Γ are symmetric positive definite";
@@ -142,6 +148,8 @@ table! {
         "K*, K, Γ and Λ are symmetric positive definite, κ and α are positive";
     RegularJacobian, "regular-jacobian", "Theorem 6", Source::Paper,
         "the estimated Jacobian of … stays away from singularity";
+    TargetWithinReach, "target-within-reach", "own derivation", Source::Derived,
+        "the target of … keeps within the reach of its tip, where alone the Jacobian can stay regular";
     CertainRegressor, "certain-regressor", "own derivation", Source::Derived,
         "the regressor of … depends on nothing uncertain";
     LengthsWithinBounds, "lengths-within-bounds", "own derivation", Source::Derived,

@@ -11,8 +11,9 @@ use forwardstep_sim::Setup;
 use forwardstep_sim::leader::FollowingDesign;
 
 pub use evidence::{
-    Bounded, Evidence, FactorEverywhere, FollowingEvidence, GraphEvidence, Inexact, KindEvidence, Limited,
-    LinkEvidence, LoopEvidence, MotionEvidence, ReferenceEvidence, Term, WeightFault,
+    Bounded, Evidence, FactorEverywhere, FollowingEvidence, GraphEvidence, InertiaUnit, Inexact, KindEvidence, Limited,
+    LinkEvidence, LoopEvidence, MotionEvidence, MotionExtent, ReachSide, ReferenceEvidence, RobotEvidence, Term,
+    WeightFault,
 };
 pub use id::Id;
 

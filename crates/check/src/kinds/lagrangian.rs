@@ -1,14 +1,11 @@
 //! Lagrangian robots under (6)–(7), or with known parameters. Where they agree, which theorem it is depends on the reference
 //! dynamics.
 
-use std::sync::Arc;
-
-use forwardstep_core::robot::tree::Tree;
-use forwardstep_core::robot::{PlanarArm, PointMass, Ship};
 use forwardstep_sim::{Adaptive, AgentSetup, Known, Setup};
 
 use super::{Claim, KindCheck};
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, LoopEvidence, Named, Subject};
+use crate::inertia::{bounded_dynamics, is_known, uniform_inertia};
 use crate::theorem::Theorem;
 use crate::theorems::real_roots;
 
@@ -37,10 +34,14 @@ impl KindCheck for LagrangianRobot {
     fn hypotheses(&self, setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
         let known = agents.iter().filter(|agent| setup.agents[**agent].law.is::<Known>()).count();
         let gains = Hypothesis::new(Id::PositiveGains, LoopEvidence::Gains { known, agents: agents.len() });
-        let from_outside = agents.iter().filter(|agent| !is_shipped(&setup.agents[**agent]));
+        let from_outside = agents.iter().filter(|agent| !is_known(&setup.agents[**agent]));
         let tracking: Vec<usize> = agents.iter().copied().filter(|agent| setup.tracks(*agent)).collect();
         let roots = (!tracking.is_empty()).then(|| real_roots(setup, &tracking));
-        from_outside.map(|agent| three_properties(setup, *agent)).chain([gains]).chain(roots).collect()
+        // Who follows a target of its own keeps near it, so that q is bounded, and with it C and g.
+        let roaming: Vec<usize> = agents.iter().copied().filter(|agent| !setup.tracks(*agent)).collect();
+        let declared = from_outside.map(|agent| three_properties(setup, *agent));
+        let inertia = uniform_inertia(setup, agents);
+        declared.chain(inertia).chain(bounded_dynamics(setup, &roaming)).chain([gains]).chain(roots).collect()
     }
 
     /// ż holds the second one even where one root asks for the first only.
@@ -52,12 +53,6 @@ impl KindCheck for LagrangianRobot {
 /// Whether (6)–(7), or (6) with known parameters, controls the agent.
 pub(crate) fn is_lagrangian(agent: &AgentSetup) -> bool {
     agent.law.is::<Adaptive>() || agent.law.is::<Known>()
-}
-
-/// Whether the robot of an agent is one of which tests here show the three properties of Section II-B.
-fn is_shipped(agent: &AgentSetup) -> bool {
-    let robot = &agent.robot.kind;
-    robot.is::<Arc<Tree>>() || robot.is::<PlanarArm>() || robot.is::<PointMass>() || robot.is::<Ship>()
 }
 
 /// That the inertia matrix is positive definite, Ṁ − 2C skew-symmetric and Y θ the dynamics: of a robot from outside, only its

@@ -9,6 +9,8 @@ use nalgebra::DMatrix;
 
 use super::{Claim, KindCheck};
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, Named, Subject};
+use crate::inertia::{bounded_dynamics, uniform_inertia};
+use crate::reach::within_reach;
 use crate::theorem::Theorem;
 
 pub(crate) struct TaskSpaceRobot;
@@ -35,12 +37,17 @@ impl KindCheck for TaskSpaceRobot {
     }
 
     fn hypotheses(&self, setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
-        let mut hypotheses = vec![Hypothesis::new(Id::TaskSpaceGains, gains(setup, agents))];
+        let mut hypotheses = uniform_inertia(setup, agents);
+        hypotheses.extend(bounded_dynamics(setup, agents));
+        hypotheses.push(Hypothesis::new(Id::TaskSpaceGains, gains(setup, agents)));
         for index in agents {
             let agent = &setup.agents[*index];
             let Some(law) = agent.law.downcast::<TaskSpaceLaw>() else { continue };
             let about = |id, evidence| Hypothesis::about(id, Subject::Agent(Named::of(setup, *index)), evidence);
             hypotheses.push(about(Id::RegularJacobian, jacobian(agent, law)));
+            let reach = within_reach(agent, law, setup.time.end_s);
+            let of = || Subject::Agent(Named::of(setup, *index));
+            hypotheses.extend(reach.map(|evidence| Hypothesis::about(Id::TargetWithinReach, of(), evidence)));
             hypotheses.extend(uncertain(agent, law).map(|evidence| about(Id::CertainRegressor, evidence)));
             hypotheses.extend(within_bounds(agent, law).map(|evidence| about(Id::LengthsWithinBounds, evidence)));
         }

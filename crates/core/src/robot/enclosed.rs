@@ -90,6 +90,11 @@ impl Enclosed {
         rest
     }
 
+    /// Whether `lambda` · diag(`weights`) − A is positive definite; `false` where that is not known.
+    pub(crate) fn keeps_below(&self, lambda: f64, weights: &[Interval]) -> bool {
+        self.below(lambda, weights).is_positive()
+    }
+
     /// A number that no λ with det(λ diag(`weights`) − A) = 0 exceeds, for A ⪰ 0; `None` where none is found.
     pub(crate) fn largest_over(&self, weights: &[Interval]) -> Option<f64> {
         let each = (0..self.size).map(|i| self.at(i, i) / *weights.get(i).unwrap_or(&Interval::WHOLE));
@@ -99,7 +104,7 @@ impl Enclosed {
             trace = trace + entry;
         }
         let mut high = trace.high * (1.0 + SHARP);
-        let holds = |lambda: f64| self.below(lambda, weights).is_positive();
+        let holds = |lambda: f64| self.keeps_below(lambda, weights);
         if !high.is_finite() || !holds(high) {
             return None;
         }

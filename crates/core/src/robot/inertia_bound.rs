@@ -90,13 +90,14 @@ impl InertiaBound {
     }
 
     /// No eigenvalue of M(q)⁻¹K is larger, whatever q, 1/s: no motion of s under τ = −K s is faster. `None` where none is known,
-    /// which is so of a K that is positive definite by rounding alone.
+    /// which is so of a K that is positive definite by rounding alone. Where `at_least` is such a bound it is the answer, which is
+    /// found sooner than the best one.
     ///
     /// λ K⁻¹ − N ⪰ 0 says λ ≥ λ_max(N K), and with K = L D Lᵀ it is λ D⁻¹ − LᵀN L ⪰ 0.
     ///
     /// # Errors
     /// [`LengthError`] when K has another size.
-    pub fn fastest(&self, gain: &ResolvedGain) -> Result<Option<f64>, LengthError> {
+    pub fn fastest(&self, gain: &ResolvedGain, at_least: f64) -> Result<Option<f64>, LengthError> {
         let size = self.inverses.first().map_or(0, Enclosed::size);
         LengthError::check("gain", size, gain.size())?;
         let point = |entries: &[f64]| entries.iter().map(|entry| Interval::point(*entry)).collect::<Vec<_>>();
@@ -108,7 +109,15 @@ impl InertiaBound {
         };
         let Some(factors) = factors else { return Ok(None) };
         let weights: Vec<Interval> = (0..size).map(|i| Interval::point(1.0) / factors.at(i, i)).collect();
-        let each = self.inverses.iter().map(|inverse| inverse.between(&factors).largest_over(&weights));
-        Ok(each.collect::<Option<Vec<f64>>>().map(|each| each.into_iter().fold(0.0, f64::max)))
+        let mut fastest = at_least;
+        for inverse in &self.inverses {
+            let inverse = inverse.between(&factors);
+            if fastest > 0.0 && inverse.keeps_below(fastest, &weights) {
+                continue;
+            }
+            let Some(own) = inverse.largest_over(&weights) else { return Ok(None) };
+            fastest = fastest.max(own);
+        }
+        Ok(Some(fastest))
     }
 }

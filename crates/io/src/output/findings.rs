@@ -1,6 +1,6 @@
 //! What is found of a scenario before a run, for programs: what `forwardstep check --json` prints.
 
-use forwardstep_check::{Id, NoPrediction, Report};
+use forwardstep_check::{Id, NoPrediction, Prediction, Report};
 use schemars::{JsonSchema, Schema, schema_for};
 use serde::{Deserialize, Serialize};
 
@@ -49,8 +49,13 @@ pub struct Checked {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PredictedAgreement {
-    /// One entry per axis.
-    Value(Vec<f64>),
+    /// The value, one entry per axis.
+    Value {
+        /// In the units of the axes.
+        value: Vec<f64>,
+        /// How far rounding can have moved each entry.
+        error_bound: Vec<f64>,
+    },
     /// Why there is none.
     NoneSince(String),
 }
@@ -61,7 +66,7 @@ impl Findings {
         scenario: &Scenario,
         version: &str,
         report: &Report,
-        agreement: &Result<Vec<f64>, NoPrediction>,
+        agreement: &Result<Prediction, NoPrediction>,
         accepted: &[Id],
     ) -> Findings {
         let outcome = report.worst_without(accepted);
@@ -78,7 +83,9 @@ impl Findings {
             outcome: outcome.words().to_owned(),
             fine: outcome.is_fine(),
             agreement: match agreement {
-                Ok(value) => PredictedAgreement::Value(value.clone()),
+                Ok(Prediction { value, error_bound, .. }) => {
+                    PredictedAgreement::Value { value: value.clone(), error_bound: error_bound.clone() }
+                }
                 Err(reason) => PredictedAgreement::NoneSince(reason.to_string()),
             },
             notices: scenario.notices.iter().map(ToString::to_string).collect(),

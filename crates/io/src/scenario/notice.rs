@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use forwardstep_check::{SampledDamping, sampled_damping};
-use forwardstep_sim::{AgentSetup, Axis, Setup};
+use forwardstep_check::{FastestDamping, SampledDamping, fastest_damping, sampled_damping};
+use forwardstep_sim::{AgentSetup, Axis, AxisUnit, Method, Setup};
 
 use crate::urdf;
 use crate::wording::{about, enumerate, number};
@@ -62,6 +62,41 @@ pub enum Notice {
         /// What the axis keeps within.
         limits: [f64; 2],
     },
+    /// Agents that start beyond position limits.
+    StartBeyondLimits {
+        /// The first of them.
+        agent: String,
+        /// Its axis.
+        axis: String,
+        /// Where it starts, with its unit.
+        value: String,
+        /// What the axis keeps within, in that unit.
+        limits: [f64; 2],
+        /// How many other axes of agents do so.
+        more: usize,
+        /// Whether the run ends there.
+        enforced: bool,
+    },
+    /// Steps that are too long for the damping, so that the integration is unstable.
+    LongSteps {
+        /// The agent whose damping is fastest.
+        agent: String,
+        /// λ_max(M⁻¹K) at its start, 1/s.
+        per_s: f64,
+        /// The fixed step, s.
+        step_s: f64,
+        /// A little less than the longest that would do at the start, s.
+        enough_s: f64,
+    },
+    /// Damping that is so fast that a run takes very many steps.
+    StiffDamping {
+        /// The agent whose damping is fastest.
+        agent: String,
+        /// λ_max(M⁻¹K) at its start, 1/s.
+        per_s: f64,
+        /// About as many steps does a run take.
+        steps: f64,
+    },
     /// A push that has no effect on the run.
     IdlePush {
         /// Its line in the scenario.
@@ -72,7 +107,65 @@ pub enum Notice {
 /// Times of a run at which a target is held against position limits.
 const LOOKS: u32 = 1000;
 
+/// h λ up to which the classical Runge–Kutta method is stable along the negative real axis.
+const STABLE_FIXED: f64 = 2.785;
+/// The same of the Dormand–Prince pair.
+const STABLE_ADAPTIVE: f64 = 3.3;
+/// Steps of a run that its author should know of.
+const MANY_STEPS: f64 = 1e6;
+
 impl Notice {
+    /// Agents that start where their joints cannot be.
+    pub(super) fn starts_beyond_limits(setup: &Setup) -> Option<Notice> {
+        let outside = |agent: &AgentSetup, axis: usize| {
+            let limits = agent.robot.axes.get(axis)?.position_limits?;
+            let value = *agent.start.q.get(axis)?;
+            (value < limits[0] || value > limits[1]).then_some((value, limits))
+        };
+        let all = || {
+            let agents = setup.agents.iter();
+            let each = agents.flat_map(|agent| (0..agent.robot.axes.len()).map(move |axis| (agent, axis)));
+            each.filter_map(|(agent, axis)| outside(agent, axis).map(|(value, limits)| (agent, axis, value, limits)))
+        };
+        // One that ends the run comes first.
+        let (agent, axis, value, limits) = all().find(|(agent, ..)| agent.enforce_limits).or_else(|| all().next())?;
+        let unit = match agent.robot.axes[axis].unit {
+            AxisUnit::Radian => " rad",
+            AxisUnit::Metre => " m",
+            AxisUnit::One => "",
+        };
+        Some(Notice::StartBeyondLimits {
+            agent: agent.name.clone(),
+            axis: agent.robot.axes[axis].name.clone(),
+            value: format!("{}{unit}", number(value)),
+            limits,
+            more: all().count() - 1,
+            enforced: agent.enforce_limits,
+        })
+    }
+
+    /// Damping that is fast beside the steps, or beside the length, of a run in continuous time.
+    pub(super) fn stiff(setup: &Setup) -> Option<Notice> {
+        if setup.control.is_some() {
+            return None;
+        }
+        let FastestDamping { agent, at_start_per_s: per_s, .. } = fastest_damping(setup)?;
+        let agent = setup.agents[agent].name.clone();
+        match setup.solver.method {
+            Method::Fixed { step_s } => (step_s * per_s > STABLE_FIXED).then(|| Notice::LongSteps {
+                agent,
+                per_s,
+                step_s,
+                // A little less, since it is shown rounded.
+                enough_s: 0.95 * STABLE_FIXED / per_s,
+            }),
+            Method::Adaptive { .. } => {
+                let steps = setup.time.end_s * per_s / STABLE_ADAPTIVE;
+                (steps > MANY_STEPS).then_some(Notice::StiffDamping { agent, per_s, steps })
+            }
+        }
+    }
+
     /// Targets that lead axes beyond their position limits, one notice per axis.
     pub(super) fn targets_beyond_limits(setup: &Setup) -> Vec<Notice> {
         let end_s = setup.time.end_s;
@@ -106,7 +199,7 @@ impl Notice {
 
     /// Digital control whose period is too long for its gain K.
     pub(super) fn coarse_sampling(setup: &Setup) -> Option<Notice> {
-        let SampledDamping { value, overshoots_above, unstable_above, agent, period_s } = sampled_damping(setup)?;
+        let SampledDamping { value, overshoots_above, unstable_above, agent, period_s, .. } = sampled_damping(setup)?;
         (value > overshoots_above).then(|| Notice::CoarseSampling {
             agent: setup.agents[agent].name.clone(),
             value,
@@ -146,6 +239,36 @@ impl fmt::Display for Notice {
                 number(*at_s),
                 number(*low),
                 number(*high)
+            ),
+            Notice::StartBeyondLimits { agent, axis, value, limits: [low, high], more, enforced } => {
+                let (low, high) = (number(*low), number(*high));
+                write!(
+                    f,
+                    "`{axis}` of `{agent}` starts at {value}, beyond its position limits: {low} to {high} are allowed"
+                )?;
+                if *enforced {
+                    write!(f, ", and the run ends there")?;
+                }
+                match more {
+                    0 => Ok(()),
+                    1 => write!(f, "; so does 1 more axis"),
+                    more => write!(f, "; so do {more} more axes of all agents"),
+                }
+            }
+            Notice::LongSteps { agent, per_s, step_s, enough_s } => write!(
+                f,
+                "`solver.step_s` is {} s, which is too long for the gain K: at the start of {agent} s decays at {} per second, which \
+                 longer steps than {} s make unstable; take shorter ones, or the adaptive method",
+                number(*step_s),
+                about(*per_s),
+                about(*enough_s)
+            ),
+            Notice::StiffDamping { agent, per_s, steps } => write!(
+                f,
+                "the gain K is stiff: at the start of {agent} s decays at {} per second, and a run in continuous time takes \
+                 about {} steps to follow that; let K be smaller",
+                about(*per_s),
+                about(*steps)
             ),
             Notice::IdlePush { line } => write!(f, "the push on line {line} does not act during the run"),
         }

@@ -108,3 +108,48 @@ fn a_target_and_its_law_are_read() {
 fn every_mistake_about_a_target_is_reported_at_its_place() {
     refused(SOUND, CASES);
 }
+
+#[test]
+fn starts_beyond_limits_and_damping_too_fast_for_the_steps_are_noted() {
+    let arm = SOUND
+        .replace("robot.point_mass = { dimension = 2, mass_kg = 2.0 }", "robot.urdf = { file = \"ur5e.urdf\", locked = { shoulder_pan_joint = 0, wrist_1_joint = 0, wrist_2_joint = 0, wrist_3_joint = 0 } }")
+        .replace("[law.position_only]\ndamping = 20\nadaptation_gain = 5", "[law.adaptive]")
+        .replace("[1.0, 1.5, 2.0]", "[4]");
+    let notices = |text: &str| -> Vec<String> {
+        let scenario = read(text).unwrap_or_else(|error| panic!("{error}"));
+        scenario.notices.iter().map(ToString::to_string).filter(|notice| !notice.contains("does not move")).collect()
+    };
+    assert_eq!(notices(&arm), Vec::<String>::new());
+    let at = |start: &str| arm.replacen("[[agents]]", &format!("[[agents]]\nstart.position_rad = {start}"), 1);
+    assert_eq!(notices(&at("[-6.2, 3.1]")), Vec::<String>::new(), "on this side of the limits");
+    assert_eq!(
+        notices(&at("[0.1, 3.5]")),
+        [
+            "`elbow_joint` of `mass` starts at 3.5 rad, beyond its position limits: -3.141592653589793 to 3.141592653589793 are allowed"
+        ]
+    );
+    let kept = at("[-7, 3.5]").replacen("[[agents]]", "[[agents]]\nenforce_limits = true", 1);
+    assert_eq!(
+        notices(&kept),
+        [
+            "`shoulder_lift_joint` of `mass` starts at -7 rad, beyond its position limits: -6.283185307179586 to 6.283185307179586 are \
+          allowed, and the run ends there; so does 1 more axis"
+        ]
+    );
+    let gain = |gain: &str| arm.replace("[law.adaptive]", &format!("[law.adaptive]\ndamping.gain = {gain}"));
+    assert_eq!(notices(&gain("1e4")), Vec::<String>::new());
+    let many = notices(&gain("1e9"));
+    assert!(
+        many.len() == 1 && many[0].starts_with("the gain K is stiff: at the start of mass s decays at"),
+        "{many:?}"
+    );
+    let fixed = |step: &str| format!("{}\n[solver]\nmethod.fixed.step_s = {step}\n", gain("100"));
+    let long = notices(&fixed("0.1"));
+    assert!(
+        long.len() == 1 && long[0].starts_with("`solver.step_s` is 0.1 s, which is too long for the gain K"),
+        "{long:?}"
+    );
+    assert_eq!(notices(&fixed("1e-5")), Vec::<String>::new());
+    // Sampled torques are held: they do not limit the steps.
+    assert_eq!(notices(&format!("{}\n[control]\nsample_hz = 1e5\n", gain("1e4"))), Vec::<String>::new());
+}

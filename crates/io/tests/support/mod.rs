@@ -162,7 +162,7 @@ pub fn outcome(setup: &Setup) -> Outcome {
 pub fn verdicts() -> Report {
     let hypothesis = |id, evidence| Hypothesis { id, subject: Subject::Setup, evidence };
     let roots = vec![Named { index: 0, name: "arm-1".into() }];
-    let tree = GraphEvidence::Window { length_s: 3.0, worst_start_s: 1.0, roots, for_all_time: true };
+    let tree = GraphEvidence::Window { length_s: 3.0, worst_start_s: 1.0, roots, for_all_time: true, drawn: false };
     let delays = LinkEvidence::Delays {
         bound_s: 0.4,
         unknown: Vec::new(),

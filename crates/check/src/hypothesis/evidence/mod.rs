@@ -21,6 +21,7 @@ mod kinds;
 mod links;
 mod motion;
 mod reference;
+mod robots;
 mod surroundings;
 
 use super::{Answer, Rigour};
@@ -31,6 +32,7 @@ pub use kinds::{FactorEverywhere, KindEvidence, Term};
 pub use links::{LinkEvidence, WeightFault};
 pub use motion::{Bounded, MotionEvidence};
 pub use reference::ReferenceEvidence;
+pub use robots::{InertiaUnit, MotionExtent, ReachSide, RobotEvidence};
 pub use surroundings::{Inexact, Limited, LoopEvidence};
 
 /// Evidence for or against a hypothesis.
@@ -50,6 +52,8 @@ pub enum Evidence {
     Motion(MotionEvidence),
     /// Of a kind of system and its law.
     Kind(KindEvidence),
+    /// Of robots before they run.
+    Robot(RobotEvidence),
 }
 
 /// Takes an answer, or a rigour, from whichever evidence there is.
@@ -63,6 +67,7 @@ macro_rules! of_any {
             Evidence::Loop(evidence) => evidence.$what(),
             Evidence::Motion(evidence) => evidence.$what(),
             Evidence::Kind(evidence) => evidence.$what(),
+            Evidence::Robot(evidence) => evidence.$what(),
         }
     };
 }
@@ -97,7 +102,8 @@ from!(
     Following(FollowingEvidence),
     Loop(LoopEvidence),
     Motion(MotionEvidence),
-    Kind(KindEvidence)
+    Kind(KindEvidence),
+    Robot(RobotEvidence)
 );
 
 /// For all time, or up to the end of the run.

@@ -7,6 +7,7 @@ mod links;
 mod motion;
 mod numbers;
 mod reference;
+mod robots;
 mod surroundings;
 
 use forwardstep_sim::leader::FollowingDesign;
@@ -28,6 +29,7 @@ pub(super) fn because(evidence: &Evidence) -> String {
         Evidence::Loop(evidence) => surroundings::words(evidence),
         Evidence::Motion(evidence) => motion::words(evidence),
         Evidence::Kind(evidence) => kinds::words(evidence),
+        Evidence::Robot(evidence) => robots::words(evidence),
     }
 }
 

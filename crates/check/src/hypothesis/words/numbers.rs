@@ -72,11 +72,14 @@ mod tests {
             assert!(up >= value && up <= value * 1.0011, "{value}: {up}");
             assert_eq!(rounded_up(up), up, "four digits are four digits");
             assert!((rounded(value) - value).abs() <= 0.00051 * value);
+            let down = rounded_down(value);
+            assert!(down <= value && down >= value / 1.0011, "{value}: {down}");
         }
         for value in [-1.2345, -4e-7, -2.0, -9.9999, f64::MAX, f64::MIN, f64::MIN_POSITIVE, 5e-324] {
             assert!(rounded_up(value) >= value && rounded_down(value) <= value, "{value}");
         }
         assert_eq!([rounded_down(1.4149), rounded_down(-1.4141), rounded_up(-1.4149)], [1.414, -1.415, -1.414]);
+        assert_eq!([rounded_down(0.0), rounded_down(f64::INFINITY)], [0.0, f64::INFINITY]);
         assert_eq!([rounded_up(1.4141), rounded_up(0.0), rounded_up(f64::INFINITY)], [1.415, 0.0, f64::INFINITY]);
     }
 

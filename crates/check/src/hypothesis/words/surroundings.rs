@@ -1,7 +1,7 @@
 //! What surrounds a law: gains, pushes, limits, sampling.
 
 use super::names;
-use super::numbers::{seconds, short};
+use super::numbers::{rounded_up, seconds, short};
 use crate::hypothesis::{Inexact, Limited, LoopEvidence, Named};
 use crate::sampled::{SampledAdaptation, SampledDamping};
 
@@ -105,7 +105,11 @@ fn held(agent: &Named, damping: &SampledDamping, filtered: bool) -> String {
     } else {
         format!("up to {overshoots} the held damping does not overshoot")
     };
-    format!("; h · λ_max(M⁻¹K) is {value} at the start ({}): {meaning}", agent.name)
+    let limit = damping.unstable_above;
+    let anywhere = damping.anywhere.filter(|anywhere| *anywhere < limit).map_or_else(String::new, |anywhere| {
+        format!("; at any q it is at most {}, and {} is where it is unstable", rounded_up(anywhere), short(limit))
+    });
+    format!("; h · λ_max(M⁻¹K) is {value} at the start ({}): {meaning}{anywhere}", agent.name)
 }
 
 fn learning_too_fast(agent: &Named, found: &SampledAdaptation) -> String {
