@@ -352,7 +352,7 @@ fn point(k: u32, variables: usize) -> Vec<f64> {
     if axes > 0 && k < ALONG * axes.min(4) {
         let mut at = vec![0.0; variables];
         let size = f64::from(along / axes) * 0.25;
-        at[(along % axes) as usize] = if k % 2 == 0 { size } else { -size };
+        at[(along % axes) as usize] = if k.is_multiple_of(2) { size } else { -size };
         return at;
     }
     const PRIMES: [u32; 8] = [2, 3, 5, 7, 11, 13, 17, 19];
