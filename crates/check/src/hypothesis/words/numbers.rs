@@ -94,9 +94,9 @@ mod tests {
 
     #[test]
     fn what_is_compared_is_said_with_the_digits_that_tell() {
-        let gamma = 1.4142135623730951;
+        let gamma = core::f64::consts::SQRT_2;
         assert_eq!([bound_below(1.2, gamma), bound_below(gamma.next_down(), gamma)], [1.2, gamma.next_down()]);
-        assert_eq!(bound_below(1.41419, gamma), 1.4142);
+        assert_eq!(bound_below(1.41409, gamma), 1.4141);
         assert_eq!(
             [reached_above(gamma, gamma), reached_above(1.41425, gamma), reached_above(2.0, gamma)],
             [gamma, 1.41425, 2.0]
