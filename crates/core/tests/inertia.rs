@@ -361,3 +361,19 @@ fn degenerate_parameters_have_no_bound() {
     assert!((1.5..1.500_01).contains(&bound.fastest(&gain, 1.4).unwrap().unwrap()), "what is given is no bound");
     assert!(bound.fastest(&Gain::Number(1.0).resolve(2, &[]).unwrap(), 0.0).is_err());
 }
+
+#[test]
+fn moments_count_where_nothing_couples_them_and_for_all_that_turns_together() {
+    use JointKind::{Prismatic, Revolute};
+    // A rod that leans between x and z may turn about its own line, which has a part along z, without energy.
+    let leaning = inertia_about_frame(2.0, [0.0; 3], [0.1, 0.0, 0.2, -0.1, 0.0, 0.1]);
+    let links = [link(None, [0.0; 3], Revolute, Z, rod()), link(Some(0), X, Revolute, Z, leaning)];
+    let assembled = Tree::assemble(&links, GRAVITY).unwrap();
+    assert_eq!(assembled.tree.inertia_bound(&assembled.theta).unwrap(), None);
+    // What slides adds its moment to that of its carrier: without it the bound would be 0.1.
+    let body = |moment: f64| inertia_about_frame(5.0, [0.0; 3], [moment, 0.0, moment, 0.0, 0.0, moment]);
+    let links = [link(None, [0.0; 3], Revolute, Z, body(0.1)), link(Some(0), [0.0; 3], Prismatic, Z, body(0.9))];
+    let (_, _, found) = definiteness(&links);
+    let Definiteness::Uniform(bound) = found else { panic!("{found:?}") };
+    assert!((bound.least() - 1.0).abs() < 1e-5, "{}", bound.least());
+}
