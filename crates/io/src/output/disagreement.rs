@@ -229,3 +229,14 @@ pub(crate) fn grows(setup: &Setup, recording: &Recording) -> bool {
     let last = largest(&overall[overall.len() - quarter..]);
     !last.is_finite() || last > largest(&overall[..quarter])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_decides_whether_agreement_was_reached() {
+        let measured = |last: f64| Disagreement::Measured { initial: 1.0, last, largest: 2.0 }.is_agreement();
+        assert_eq!([0.0, 0.02, 0.021, 2.0, f64::NAN].map(measured), [true, true, false, false, false]);
+    }
+}
