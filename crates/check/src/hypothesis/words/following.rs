@@ -3,7 +3,7 @@
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::formula::Witness;
 
-use super::numbers::{bound, bound_below, reached_above, rounded, rounded_up, seconds};
+use super::numbers::{Shown, bound, bound_below, reached_above, rounded, rounded_up, seconds};
 use crate::hypothesis::{Answer, FollowingEvidence};
 
 pub(super) fn words(evidence: &FollowingEvidence) -> String {
@@ -86,6 +86,6 @@ fn not_shown([gamma, seen, on_run, for_ever]: [f64; 4], end_s: f64) -> String {
 }
 
 /// A number with as many digits as tell it from another.
-fn near(value: f64, other: f64) -> f64 {
+fn near(value: f64, other: f64) -> Shown {
     if value < other { bound_below(value, other) } else { reached_above(value, other) }
 }

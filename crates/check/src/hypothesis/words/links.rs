@@ -3,7 +3,7 @@
 use forwardstep_sim::delay::{Basis, Refuted, Unknown};
 use forwardstep_sim::formula::Witness;
 
-use super::numbers::{bound, lower_bound, rounded, rounded_down, rounded_up, seconds};
+use super::numbers::{Shown, bound, lower_bound, rounded, rounded_down, rounded_up, seconds};
 use crate::hypothesis::{LinkEvidence, WeightFault};
 
 /// On a bounded time a continuous formula is uniformly continuous; for ever it may swing faster and faster.
@@ -62,7 +62,7 @@ pub(super) fn words(evidence: &LinkEvidence) -> String {
 }
 
 fn refuted_bound(refuted: Refuted) -> String {
-    let at = |witness: Option<Witness>, value: fn(f64) -> f64| {
+    let at = |witness: Option<Witness>, value: fn(f64) -> Shown| {
         witness.map_or(String::new(), |Witness { t_s, value: seen }| {
             format!("; at t = {} s it is {} s", rounded(t_s), value(seen))
         })
@@ -79,7 +79,7 @@ fn refuted_bound(refuted: Refuted) -> String {
 }
 
 fn refuted_weight(fault: WeightFault, witness: Option<Witness>) -> String {
-    let (what, value): (_, fn(f64) -> f64) = match fault {
+    let (what, value): (_, fn(f64) -> Shown) = match fault {
         WeightFault::Fades => ("comes as close to zero as one likes: its infimum is 0", rounded_up),
         WeightFault::Negative => ("becomes negative after the run", rounded_up),
         WeightFault::Grows => ("exceeds every bound", rounded_down),

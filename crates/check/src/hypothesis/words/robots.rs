@@ -1,7 +1,7 @@
 //! Robots before they run.
 
 use super::names;
-use super::numbers::{rounded, rounded_down, rounded_up};
+use super::numbers::{Shown, rounded, rounded_down, rounded_up};
 use crate::hypothesis::{InertiaUnit, Named, ReachSide, RobotEvidence};
 use crate::sampled::FastestDamping;
 
@@ -52,10 +52,15 @@ pub(super) fn words(evidence: &RobotEvidence) -> String {
         RobotEvidence::WithinReach { target, reach, exact, for_ever } => {
             let until = if *for_ever { "" } else { " until the end of the run" };
             let from = if *exact { "the shoulder" } else { "the first joint" };
-            let target =
-                format!("it keeps {} from {from}{until}", between(rounded_down(target.least), rounded_up(target.most)));
+            let target = format!(
+                "it keeps {} from {from}{until}",
+                between(rounded_down(target.least.max(0.0)), rounded_up(target.most))
+            );
             if *exact {
-                format!("{target}; the tip can be {}", between(rounded_up(reach.least), rounded_down(reach.most)))
+                format!(
+                    "{target}; the tip can be {}",
+                    between(rounded_up(reach.least.max(0.0)), rounded_down(reach.most))
+                )
             } else {
                 format!(
                     "{target}, and the arm is {} m long when stretched; whether it can be turned there is not asked",
@@ -73,14 +78,14 @@ pub(super) fn words(evidence: &RobotEvidence) -> String {
         }
         RobotEvidence::ReachNotShown { seen, reach } => format!(
             "it was seen {} away, but what it does between two looks is not bounded well enough; the tip can be {}",
-            between(rounded(seen.least), rounded(seen.most)),
-            between(rounded(reach.least), rounded(reach.most))
+            between(rounded(seen.least.max(0.0)), rounded(seen.most)),
+            between(rounded(reach.least.max(0.0)), rounded(reach.most))
         ),
     }
 }
 
-fn between(least: f64, most: f64) -> String {
-    format!("{} m to {} m", least.max(0.0), most)
+fn between(least: Shown, most: Shown) -> String {
+    format!("{least} m to {most} m")
 }
 
 fn fastest(agent: &Named, found: &FastestDamping) -> String {
