@@ -88,6 +88,7 @@ fn matrix(size: usize, entries: &[f64]) -> Result<ResolvedGain, GainError> {
         }
     }
     positive_definite(size, entries)?;
+    cholesky(size, entries).map_err(|order| GainError::NearlySingular { order })?;
     Ok(ResolvedGain::Matrix { size, entries: entries.to_vec() })
 }
 

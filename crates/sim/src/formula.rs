@@ -129,9 +129,11 @@ impl Witness {
 /// Times to look at, s: evenly spread over the run, then ever further apart.
 pub(crate) fn times_s(end_s: f64) -> impl Iterator<Item = f64> {
     const EVEN: u32 = 1000;
-    const FAR: i32 = 20_000;
+    const FAR: usize = 20_000;
+    const FARTHEST_S: f64 = 1e80;
     let even = (0..=EVEN).map(move |k| end_s * f64::from(k) / f64::from(EVEN));
-    even.chain((1..FAR).map(move |k| end_s * 1.01_f64.powi(k)).take_while(|t_s| *t_s < 1e80))
+    let later = |t_s: f64| Some(1.01 * t_s).filter(|t_s| *t_s < FARTHEST_S);
+    even.chain(std::iter::successors(later(end_s), move |t_s| later(*t_s)).take(FAR))
 }
 
 /// Where a formula has kinks between two times, s, rising.

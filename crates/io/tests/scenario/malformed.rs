@@ -168,7 +168,7 @@ const CASES: &[Case] = &[
     ("damping.gain = 8", "damping.gain = [[8, 1], [2, 8]]",
         "test.toml:23:16: `damping.gain` of `arm-1`: entries (0, 1) and (1, 0) differ: 1 and 2; the matrix must be symmetric", ""),
     ("damping.gain = 8", "damping.gain = [[1, 2], [2, 1]]",
-        "test.toml:23:16: `damping.gain` of `arm-1`: the leading minor of order 2 is not positive; the matrix must be positive definite", ""),
+        "test.toml:23:16: `damping.gain` of `arm-1`: the matrix is not positive definite: vᵀ A v = -3 for v = (-2, 1)", ""),
     ("damping.gain = 8", "damping.gain = [[1, 2], [2]]",
         "test.toml:23:25: `damping.gain` has 2 rows, but row 2 has 1 entry", ""),
     ("damping.gain = 8", "damping.gain = \"strong\"",

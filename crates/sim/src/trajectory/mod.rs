@@ -315,7 +315,8 @@ impl Trajectory {
 
     /// Where the norm vanishes after `end_s`, as far as it is found by looking for its minima, without proof.
     pub fn vanishes_later(&self, end_s: f64) -> Option<LeastNorm> {
-        let norm = |t_s: f64| self.paths.iter().map(|path| path.jet(t_s)[0].powi(2)).sum::<f64>().sqrt();
+        let square = |value: f64| value * value;
+        let norm = |t_s: f64| self.paths.iter().map(|path| square(path.jet(t_s)[0])).sum::<f64>().sqrt();
         let times_s: Vec<f64> = times_s(end_s).filter(|t_s| *t_s >= end_s && *t_s <= MOST_LATER * end_s).collect();
         let largest = times_s.iter().map(|t_s| norm(*t_s)).fold(0.0, f64::max);
         times_s.windows(3).find_map(|around| {
