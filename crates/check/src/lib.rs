@@ -7,6 +7,7 @@
 //! what is found about graphs, links and the loop; a file for each kind of system; a file for each theorem.
 
 mod agreement;
+pub mod certificate;
 mod conserved;
 mod graphs;
 pub mod hypothesis;
@@ -26,6 +27,7 @@ mod theorem;
 mod theorems;
 
 pub use agreement::{NoPrediction, Prediction, predict};
+pub use certificate::certify;
 pub use hypothesis::{Answer, Evidence, Hypothesis, Id, Rigour};
 pub use report::Report;
 pub use sampled::{

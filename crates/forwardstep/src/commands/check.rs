@@ -1,7 +1,11 @@
 //! `forwardstep check`
 
-use forwardstep::check::{Id, Report};
-use forwardstep::io::output::Findings;
+use std::fs;
+use std::path::Path;
+
+use forwardstep::check::{Id, Report, certify};
+use forwardstep::io::output::{Findings, certificate_document};
+use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
 
 use super::promise::{promise, show, style};
@@ -20,6 +24,11 @@ pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console
     let mut accepted = options.accept.clone();
     accepted.sort_unstable();
     accepted.dedup();
+    if let Some(path) = &options.certificate
+        && let Err(error) = certificate(path, &scenario, report)
+    {
+        return complain(&error);
+    }
     if options.json {
         let findings = Findings::of(&scenario, env!("CARGO_PKG_VERSION"), report, &promise.agreement, &accepted);
         match findings.to_json() {
@@ -31,6 +40,14 @@ pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console
         conclude(report, &accepted, console);
     }
     if report.worst_without(&accepted).is_fine() { Status::Fine } else { Status::Missed }
+}
+
+/// Writes the answers with their proofs. A waiver changes no answer.
+fn certificate(path: &Path, scenario: &Scenario, report: &Report) -> Result<(), Plain<String>> {
+    let certificate = certify(&scenario.setup, report);
+    let document = certificate_document(scenario, env!("CARGO_PKG_VERSION"), &certificate);
+    // The alternate form is indented.
+    fs::write(path, format!("{document:#}\n")).map_err(|error| Plain::new(format!("{}: {error}", path.display())))
 }
 
 /// What was waived, and what it all comes to.

@@ -19,6 +19,7 @@
 //! A run that broke down or was interrupted is written the same way, with the reason in front. Everything but the
 //! `timings` object of `summary.json` is the same for the same run, bit for bit.
 
+mod certificate;
 mod csv;
 mod decimate;
 mod digital;
@@ -48,6 +49,7 @@ mod verdicts;
 use std::collections::HashSet;
 use std::path::PathBuf;
 
+pub use certificate::{CERTIFICATE_FORMAT, certificate_document};
 pub use digital::{DigitalCost, Figures, continuous_twin};
 pub use ending::ending_sentence;
 pub use error::{Action, EncodeError, OutputError};

@@ -1,0 +1,641 @@
+"""Tampering: 500 pairs of a scenario and a certificate, of which one was changed, and the truth by another route.
+
+    FORWARDSTEP_CERTIFICATES=FOLDER python3 -m unittest checker/test_checker.py
+
+FOLDER holds NAME.json for every scenario below; a test of the program makes it. The truth comes from `truth`: floating point,
+transitive closures, sampling and determinants, where the checker follows trees, encloses, and eliminates.
+"""
+
+import copy
+import json
+import math
+import os
+import random
+import sys
+import tomllib
+import unittest
+from itertools import permutations
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+import forwardstep_checker as checker  # noqa: E402
+
+SCENARIOS = HERE.parent / "crates" / "io" / "scenarios"
+NAMES = ("theorem-1", "theorem-2", "theorem-3-a5-order-3", "theorem-3-24-order-4", "theorem-8", "first-order",
+         "ten-different-robots", "saturated-coupling", "formulas", "cut")
+PAIRS = 500
+SEED = 11
+
+
+def place_of(name):
+    own = HERE / "cases" / f"{name}.toml"
+    return own if own.is_file() else SCENARIOS / f"{name}.toml"
+
+
+def written(value):
+    """A value as TOML, tables inline."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, str):
+        return json.dumps(value)
+    if isinstance(value, list):
+        return "[" + ", ".join(written(entry) for entry in value) + "]"
+    return "{ " + ", ".join(f"{key} = {written(entry)}" for key, entry in value.items()) + " }"
+
+
+def document(scenario):
+    return "\n".join(f"{key} = {written(value)}" for key, value in scenario.items()) + "\n"
+
+
+# --- The truth by another route
+
+def names_of(scenario):
+    names = []
+    for entry in scenario["agents"]:
+        count = entry.get("count")
+        names += [entry["name"]] if count is None else [f"{entry['name']}-{k + 1}" for k in range(count)]
+    return names + (["leader"] if "leader" in scenario else [])
+
+
+def graphs_of(scenario):
+    """For every phase {(from, to): (weight, delay)}."""
+    network = scenario["network"]
+    usual = network.get("weight", 1), network.get("delay", {"constant_s": 0})
+    graphs = []
+    for edges in [network["edges"]] if "edges" in network else [phase["edges"] for phase in network["phases"]]:
+        graph = {}
+        for edge in edges:
+            own = edge if isinstance(edge, dict) else {"from": edge[0], "to": edge[1]}
+            graph[own["from"], own["to"]] = own.get("weight", usual[0]), own.get("delay", usual[1])
+        graphs.append(graph)
+    return graphs
+
+
+def closure(names, edges):
+    """Who is reached by whom, by Warshall's algorithm."""
+    reached = {(a, a) for a in names} | set(edges)
+    for k in names:
+        for i in names:
+            if (i, k) in reached:
+                reached |= {(i, j) for j in names if (k, j) in reached}
+    return reached
+
+
+def value_at(text, t):
+    return eval(text.replace("^", "**"), {"__builtins__": {}}, {**vars(math), "abs": abs, "min": min, "max": max, "t": t})
+
+
+def sampled(text, end_s):
+    values = [value_at(text, end_s * k / 4000) for k in range(4001)]
+    return min(values), max(values)
+
+
+def longest(delay, end_s):
+    """The largest delay among many samples."""
+    (kind, body), = delay.items()
+    if kind == "constant_s":
+        return body
+    if kind == "sinusoid":
+        return max(body["mean_s"] + body["amplitude_s"] * math.sin(k / 100) for k in range(700))
+    if kind == "saw_tooth":
+        return max(body["min_s"] + (body["max_s"] - body["min_s"]) * k / 10000 for k in range(10000))
+    if kind == "piecewise_constant":
+        return sorted(body["values_s"])[-1]
+    return sampled(body, end_s)[1]
+
+
+def number(text):
+    top, _, bottom = str(text).partition("/")
+    return float(top) / float(bottom or 1)
+
+
+def determinant(rows):
+    """By Leibniz' formula."""
+    n, total = len(rows), 0.0
+    for order in permutations(range(n)):
+        sign = (-1) ** sum(order[i] > order[j] for i in range(n) for j in range(i + 1, n))
+        total += sign * math.prod(rows[i][order[i]] for i in range(n))
+    return total
+
+
+def near(a, b):
+    return abs(a - b) <= 1e-6 * max(1.0, abs(a), abs(b))
+
+
+def windows_are_true(scenario, windows, sequence, exact_end=True):
+    names, graphs, led = names_of(scenario), graphs_of(scenario), "leader" in scenario
+    covered = [phase for window in windows for phase in window["phases"]]
+    if not windows or any(not window["phases"] for window in windows):
+        return False
+    if (covered != sequence) if exact_end else (covered != sequence[:len(covered)]):
+        return False
+    for window in windows:
+        steps = [tuple(step) for step in window["arborescence"]]
+        if any(phase not in window["phases"] or (a, b) not in graphs[phase - 1] for a, b, phase in steps):
+            return False
+        seen = {window["root"]}
+        for a, b, _ in steps:
+            if a not in seen:
+                return False
+            seen.add(b)
+        reached = closure(names, {(a, b) for a, b, _ in steps})
+        if window["root"] not in names or any((window["root"], name) not in reached for name in names):
+            return False
+        if led and window["root"] != "leader":
+            return False
+    return True
+
+
+def tree_is_true(scenario, entry):
+    graphs, network = graphs_of(scenario), scenario["network"]
+    proof, switching = entry["proof"], network.get("switching", "repeat")
+    recurring = list(range(1, len(graphs) + 1))
+    if switching == "once" or "edges" in network:
+        recurring = recurring[-1:]
+    if proof["kind"] == "windows" and not isinstance(switching, dict):
+        count = sum(len(window["phases"]) for window in proof["windows"]) / len(recurring)
+        right = "holds" in entry["answer"] and count == int(count)
+        return right and windows_are_true(scenario, proof["windows"], recurring * int(count))
+    if proof["kind"] == "drawn" and isinstance(switching, dict):
+        low, high = switching["random"]["dwell_s"]
+        times = [0.0] + [number(one["until_s"]) for one in proof["given"]]
+        if any(not low - 1e-6 <= b - a <= high + 1e-6 for a, b in zip(times, times[1:])) or times[-1] < scenario["time"]["end_s"]:
+            return False
+        sequence = [one["phase"] for one in proof["given"]]
+        if any(not 1 <= phase <= len(graphs) for phase in sequence):
+            return False
+        if not windows_are_true(scenario, proof["windows"], sequence, exact_end=False):
+            return False
+        ends = [0]
+        for window in proof["windows"]:
+            ends.append(ends[-1] + len(window["phases"]))
+        lengths = [times[b] - times[a] for a, b in zip(ends, ends[1:])] + [scenario["time"]["end_s"] - times[ends[-1]]]
+        return entry["answer"] == "holds on [0, end]" and max(lengths) <= number(proof["longest_s"]) + 1e-9
+    if proof["kind"] == "cut":
+        groups, names = [set(group) for group in proof["groups"]], names_of(scenario)
+        edges = {pair for phase in recurring for pair in graphs[phase - 1]}
+        # Nobody outside reaches anybody inside.
+        reached = closure(names, edges)
+        closed = all((a, b) not in reached for group in groups for b in group for a in set(names) - group)
+        apart = sum(map(len, groups)) == len(set().union(*groups)) and all(groups) and set().union(*groups) <= set(names)
+        return entry["answer"] == "violated" and len(groups) > 1 and closed and apart
+    return False
+
+
+def enclosures_are_true(scenario, entries, part, fine):
+    """Sampled, each formula keeps within what is stated; {text: within}."""
+    graphs, found = graphs_of(scenario), {}
+    for entry in entries:
+        a, b, phase = entry["edge"]
+        if not 1 <= phase <= len(graphs) or (a, b) not in graphs[phase - 1]:
+            return None
+        text = graphs[phase - 1][a, b][part]
+        text = text.get("formula_s") if isinstance(text, dict) else text
+        if not isinstance(text, str):
+            return None
+        low, high = sampled(text, scenario["time"]["end_s"])
+        within = [number(end) for end in entry["within"]]
+        if not (within[0] <= low + 1e-9 and high <= within[1] + 1e-9 and fine(within[0])):
+            return None
+        found[text] = within
+    return found
+
+
+def links_are_true(scenario, entry):
+    proof, graphs, end_s = entry["proof"], graphs_of(scenario), scenario["time"]["end_s"]
+    if entry["id"] == "bounded-weights":
+        found = enclosures_are_true(scenario, proof["enclosures"], 0, lambda low: low > 0)
+        texts = {weight for graph in graphs for weight, _ in graph.values() if isinstance(weight, str)}
+        return found is not None and texts <= set(found)
+    found = enclosures_are_true(scenario, proof["enclosures"], 1, lambda low: low >= 0)
+    if found is None or proof["given"]:
+        return False
+    bound = number(proof["bound_s"])
+    for graph in graphs:
+        for _, delay in graph.values():
+            text = delay.get("formula_s")
+            if text is not None and (text not in found or found[text][1] > bound):
+                return False
+            if longest(delay, end_s) > bound + 1e-9:
+                return False
+    return True
+
+
+def roots_of(scenario):
+    shared = next(iter(scenario["reference"].values())).get("roots_per_s", [])
+    found = {}
+    for entry in scenario["agents"]:
+        own = next(iter(entry["reference"].values()))["roots_per_s"] if "reference" in entry else shared
+        for name in names_of({"agents": [entry]}):
+            found[name] = own
+    return found
+
+
+def numbers_are_true(scenario, entry):
+    value, roots = number(entry["proof"]["value"]), roots_of(scenario)
+    if entry["id"] == "real-roots":
+        return 0 < value and all(root >= value for own in roots.values() for root in own)
+    return entry["id"] == "common-order" and all(len(own) == value for own in roots.values())
+
+
+def first_roots_are_true(scenario, entry):
+    names, roots = names_of(scenario), roots_of(scenario)
+    classes = entry["proof"].get("classes", [])
+    if sorted(name for group in classes for name in group) != sorted(names):
+        return False
+    edges = [pair for graph in graphs_of(scenario) for pair in graph]
+    reached = closure(names, edges)
+    mates = [(a, b) for a in names for b in names if (a, b) in reached and (b, a) in reached]
+    at = {name: k for k, group in enumerate(classes) for name in group}
+    same = all(roots[a][0] == roots[b][0] for group in classes for a in group for b in group)
+    return same and all(at[a] == at[b] for a, b in mates) and all(at[a] <= at[b] for a, b in edges)
+
+
+def gains_are_true(scenario, entry):
+    """Leading minors are products of pivots."""
+    stated = {(one["agent"], one["gain"]): [number(pivot) for pivot in one["pivots"]] for one in entry["proof"]["matrices"]}
+    for own in scenario["agents"]:
+        law = own.get("law", scenario.get("law", {"adaptive": {}}))
+        body = next(iter(law.values()))
+        for key in ("damping", "adaptation_gain", "gain_per_s"):
+            value = body.get(key)
+            value = next(iter(value.values())) if isinstance(value, dict) else value
+            if isinstance(value, list) and isinstance(value[0], list):
+                if any(row[j] != value[j][i] for i, row in enumerate(value) for j in range(len(value))):
+                    return False
+                minors = [determinant([row[:k] for row in value[:k]]) for k in range(1, len(value) + 1)]
+                for name in names_of({"agents": [own]}):
+                    pivots = stated.get((name, key), [])
+                    products = [math.prod(pivots[:k + 1]) for k in range(len(pivots))]
+                    if len(products) != len(minors) or not all(map(near, products, minors)) or min(minors) <= 0:
+                        return False
+            elif value is not None and min(value if isinstance(value, list) else [value]) <= 0:
+                return False
+    return True
+
+
+def drive_at(swing, alpha, t):
+    """α q̇ + q̈ of a sum of sinusoids."""
+    return sum(wave["amplitude"] * wave["rad_per_s"] * (
+        alpha * math.cos(wave["rad_per_s"] * t + wave.get("phase_rad", 0))
+        - wave["rad_per_s"] * math.sin(wave["rad_per_s"] * t + wave.get("phase_rad", 0))) for wave in swing["waves"])
+
+
+def sign_gain_is_true(scenario, entry):
+    reference, swings = scenario["reference"]["leader"], scenario["leader"]["motion"]["sinusoids"]
+    bounds = entry["proof"]["bounds"]
+    if len(bounds) != len(swings):
+        return False
+    for swing, bound in zip(swings, bounds):
+        values = [drive_at(swing, reference["roots_per_s"][0], k / 50) for k in range(5000)]
+        low, high = map(number, bound["within"])
+        if not (low <= min(values) and max(values) <= high and max(abs(low), abs(high)) < reference["gain"]):
+            return False
+    return True
+
+
+def entry_is_true(scenario, entry):
+    """Whether a claim is so and its proof shows it."""
+    each, network = entry["id"], scenario["network"]
+    if each in ("spanning-tree", "leader-reaches-all"):
+        return tree_is_true(scenario, entry)
+    # What holds for ever holds on the run.
+    if not entry["answer"].startswith("holds"):
+        return False
+    if each == "dwell-time":
+        if entry["proof"]["kind"] == "never-switches":
+            return len(graphs_of(scenario)) == 1
+        switching = network.get("switching", "repeat")
+        dwell = [phase["dwell_s"] for phase in network.get("phases", []) if "dwell_s" in phase]
+        dwell = switching["random"]["dwell_s"] if isinstance(switching, dict) else dwell
+        return bool(dwell) and 0 < number(entry["proof"]["shortest_s"]) <= min(dwell)
+    if each in ("bounded-delays", "bounded-weights"):
+        return links_are_true(scenario, entry)
+    if each in ("real-roots", "common-order"):
+        return numbers_are_true(scenario, entry)
+    if each == "common-first-root":
+        return first_roots_are_true(scenario, entry)
+    if each in ("positive-gains", "chain-adaptation"):
+        return gains_are_true(scenario, entry)
+    if each == "sign-gain":
+        return sign_gain_is_true(scenario, entry)
+    if each == "coupling-sector":
+        return {entry["proof"]["form"]: number(entry["proof"]["size"])} == network["coupling"]
+    if each == "applied-torque":
+        return not any(own.get("enforce_limits") for own in scenario["agents"])
+    if each == "no-delay":
+        return all(longest(delay, 1) == 0 for graph in graphs_of(scenario) for _, delay in graph.values())
+    if each == "bounded-leader":
+        return entry["proof"]["order"] >= 3
+    return each in ("fixed-graph", "input-factor", "set-valued-sign", "shared-design")
+
+
+def agreement_is_true(scenario, shares):
+    """uᵀL = 0 and Σu = 1, dense."""
+    names, graph = names_of(scenario), graphs_of(scenario)[0]
+    u = {name: number(share) for name, share in shares}
+    if sorted(name for name, _ in shares) != sorted(names) or min(u.values()) < 0 or not near(sum(u.values()), 1):
+        return False
+    laplacian = {(i, j): 0.0 for i in names for j in names}
+    for (source, to), (weight, _) in graph.items():
+        laplacian[to, to] += weight
+        laplacian[to, source] -= weight
+    return all(near(sum(u[i] * laplacian[i, j] for i in names), 0) for j in names)
+
+
+def truth(scenario, certificate, required):
+    """Whether a certificate is right about a scenario, in all that it claims."""
+    entries = certificate["hypotheses"]
+    if [entry["id"] for entry in entries] != required:
+        return False
+    claims = [entry for entry in entries if entry["answer"].startswith("holds") or entry["answer"] == "violated"]
+    shares = certificate.get("agreement", {}).get("influence")
+    return all(entry_is_true(scenario, entry) for entry in claims) and (shares is None or agreement_is_true(scenario, shares))
+
+
+# --- Changes
+
+def edge_lists(scenario):
+    network = scenario["network"]
+    return [network["edges"]] if "edges" in network else [phase["edges"] for phase in network["phases"]]
+
+
+def drop_edge(scenario, _, draw):
+    edges = draw.choice(edge_lists(scenario))
+    edges.pop(draw.randrange(len(edges)))
+
+
+def add_edge(scenario, _, draw):
+    edges = draw.choice(edge_lists(scenario))
+    known = {tuple(edge) if isinstance(edge, list) else (edge["from"], edge["to"]) for edge in edges}
+    names = [name for name in names_of(scenario)]
+    free = [(a, b) for a in names for b in names if a != b and b != "leader" and (a, b) not in known]
+    edges.append(list(draw.choice(free)))
+
+
+def shuffle_edges(scenario, _, draw):
+    for edges in edge_lists(scenario):
+        draw.shuffle(edges)
+
+
+def change_weight(scenario, _, draw):
+    weight = scenario["network"].get("weight", 1.0)
+    if isinstance(weight, str):
+        scenario["network"]["weight"] = draw.choice((weight.replace("2.5 +", "2.1 +"), weight.replace("1.5*", "1.2*"), weight.replace("2.5 +", "4 +")))
+    else:
+        edges = draw.choice(edge_lists(scenario))
+        k = draw.randrange(len(edges))
+        if isinstance(edges[k], list):
+            edges[k] = {"from": edges[k][0], "to": edges[k][1], "weight": draw.choice((0.5, 3.0))}
+
+
+def change_dwell(scenario, _, draw):
+    network = scenario["network"]
+    factor = draw.choice((0.5, 0.9, 1.0, 1.5, 4.0))
+    if isinstance(network.get("switching"), dict):
+        network["switching"]["random"]["dwell_s"][draw.randrange(2)] *= factor
+        network["switching"]["random"]["dwell_s"].sort()
+    elif "phases" in network and "dwell_s" in (phase := draw.choice(network["phases"])):
+        phase["dwell_s"] *= factor
+
+
+def change_delay(scenario, _, draw):
+    delay = scenario["network"].get("delay", {"constant_s": 0.0})
+    (kind, body), = delay.items()
+    factor = draw.choice((0.5, 0.9, 1.0, 1.1, 3.0))
+    if kind == "constant_s":
+        delay[kind] = body * factor
+    elif kind == "piecewise_constant":
+        body["values_s"] = [value * factor for value in body["values_s"]]
+    elif kind == "formula_s":
+        delay[kind] = draw.choice((body.replace("0.1*", "0.05*"), body.replace("0.1*", "0.15*"), body.replace("/3)", "/4)"), "0.1 + 0*t"))
+    else:
+        key = draw.choice([key for key in ("max_s", "mean_s", "amplitude_s") if key in body])
+        body[key] *= factor if key != "amplitude_s" else min(factor, 1.0)
+        body[key] = max(body[key], body.get("min_s", 0), body["amplitude_s"] if key == "mean_s" else 0)
+
+
+def change_root(scenario, _, draw):
+    lists = [next(iter(scenario["reference"].values()))["roots_per_s"]]
+    lists += [next(iter(own["reference"].values()))["roots_per_s"] for own in scenario["agents"] if "reference" in own]
+    roots = draw.choice(lists)
+    k = draw.randrange(len(roots))
+    roots[k] = draw.choice((roots[k] * 2, roots[k] / 2, roots[k]))
+
+
+def change_gain(scenario, _, draw):
+    tables = [own["law"] for own in scenario["agents"] if "law" in own] + ([scenario["law"]] if "law" in scenario else [])
+    for law in tables:
+        body = next(iter(law.values()))
+        gain = body.get("damping", {}).get("gain") if isinstance(body.get("damping"), dict) else None
+        if isinstance(gain, list) and isinstance(gain[0], list):
+            k = draw.randrange(len(gain))
+            gain[k][k] = draw.choice((gain[k][k], gain[k][k] * 2, 0.01))
+            return
+    if "leader" in scenario:
+        scenario["reference"]["leader"]["gain"] = draw.choice((0.5, 1.5, 4.0))
+
+
+def change_leader(scenario, _, draw):
+    if "leader" in scenario:
+        wave = draw.choice(scenario["leader"]["motion"]["sinusoids"])["waves"][0]
+        wave["amplitude"] *= draw.choice((0.5, 1.0, 3.0))
+
+
+def change_words(scenario, _, draw):
+    scenario["title"] = "Something else"
+    scenario["goal"] = {"disagreement_below" if "leader" not in scenario else "error_below": 0.5}
+    scenario["time"]["record_every_s"] = draw.choice((0.1, 0.2))
+
+
+def reorder_agents(scenario, _, draw):
+    draw.shuffle(scenario["agents"])
+
+
+def enforce_limits(scenario, _, draw):
+    draw.choice(scenario["agents"])["enforce_limits"] = draw.choice((True, False))
+
+
+def change_end(scenario, _, draw):
+    scenario["time"]["end_s"] = scenario["time"]["end_s"] * draw.choice((0.5, 1, 3))
+
+
+def leaves(value, path=()):
+    """Places of texts and numbers in a document."""
+    if isinstance(value, (dict, list)):
+        for key, entry in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from leaves(entry, (*path, key))
+    else:
+        yield path
+
+
+def spoil(_, certificate, draw):
+    """Changes one text or number to another that a certificate might have."""
+    places = [path for path in leaves(certificate) if path[0] in ("hypotheses", "agreement") and path[-1] not in ("kind", "id", "range", "cells")]
+    *path, last = draw.choice(places)
+    held = certificate
+    for key in path:
+        held = held[key]
+    value = held[last]
+    texts = sorted({text for text in everywhere(certificate) if isinstance(text, str) and ("-" in text or text.isalpha())})
+    if last == "answer":
+        held[last] = draw.choice(("holds", "holds on [0, end]", "violated"))
+    elif isinstance(value, int):
+        held[last] = max(1, value + draw.choice((-1, 1)))
+    elif value.lstrip("-")[:1].isdigit():
+        held[last] = draw.choice((f"{number(value) * 2:.12f}", f"{number(value) / 2:.12f}", value))
+    else:
+        held[last] = draw.choice(texts)
+
+
+def everywhere(value):
+    if isinstance(value, (dict, list)):
+        for entry in value.values() if isinstance(value, dict) else value:
+            yield from everywhere(entry)
+    else:
+        yield value
+
+
+def shorten(_, certificate, draw):
+    """Drops an entry of a list: of the hypotheses, of a tree, of a window, of bounds."""
+    lists = [held for held in lists_in(certificate["hypotheses"]) if held]
+    held = draw.choice([certificate["hypotheses"], *lists])
+    held.pop(draw.randrange(len(held)))
+
+
+def lists_in(value):
+    if isinstance(value, list) and value and not isinstance(value[0], (str, int)):
+        yield value
+    if isinstance(value, (dict, list)):
+        for entry in value.values() if isinstance(value, dict) else value:
+            yield from lists_in(entry)
+
+
+CHANGES = (drop_edge, add_edge, shuffle_edges, change_weight, change_dwell, change_delay, change_root, change_gain, change_leader,
+           change_words, reorder_agents, enforce_limits, change_end, spoil, spoil, spoil, spoil, shorten, shorten)
+
+
+def outcomes(certificate, scenario):
+    """(whether all claims are accepted, whether something is rejected), digests aside."""
+    found = checker.check(certificate, scenario, SCENARIOS, digests=False)
+    claims = [entry for entry in found if entry[2] in (checker.HOLDS, checker.ON_RUN, checker.VIOLATED)]
+    rejected = [entry for entry in found if entry[3] == checker.REJECTED]
+    return all(entry[3] == checker.ACCEPTED for entry in claims) and not rejected, rejected, found
+
+
+class Tampering(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = Path(os.environ["FORWARDSTEP_CERTIFICATES"])
+        cls.pairs = {}
+        for name in NAMES:
+            cls.pairs[name] = place_of(name).read_text(), (folder / f"{name}.json").read_text()
+
+    def test_what_was_not_changed_is_accepted_and_true(self):
+        for name, (scenario, certificate) in self.pairs.items():
+            required = [entry["id"] for entry in json.loads(certificate)["hypotheses"]]
+            accepted, _, found = outcomes(certificate, scenario)
+            self.assertTrue(accepted, (name, found))
+            self.assertTrue(truth(tomllib.loads(scenario), json.loads(certificate), required), name)
+
+    def test_five_hundred_changed_pairs_are_judged_as_the_truth_says(self):
+        draw = random.Random(SEED)
+        counts, wrong = {True: 0, False: 0}, []
+        for case in range(PAIRS):
+            name, change = draw.choice(NAMES), CHANGES[case % len(CHANGES)]
+            scenario, certificate = tomllib.loads(self.pairs[name][0]), json.loads(self.pairs[name][1])
+            required = [entry["id"] for entry in certificate["hypotheses"]]
+            before = copy.deepcopy((scenario, certificate))
+            change(scenario, certificate, draw)
+            expected = truth(scenario, certificate, required)
+            accepted, rejected, found = outcomes(json.dumps(certificate), document(scenario))
+            said = (case, name, change.__name__, before == (scenario, certificate), expected, found)
+            wrong += [said] if accepted != expected or bool(rejected) == expected else []
+            counts[expected] += 1
+        self.assertEqual(wrong, [])
+        self.assertGreater(min(counts.values()), PAIRS // 5, counts)
+
+
+class Hostile(unittest.TestCase):
+    """Nothing crashes the checker, and nothing malformed is accepted."""
+
+    SCENARIO = place_of("theorem-2").read_text()
+
+    def reject(self, certificate, scenario=None):
+        accepted, rejected, found = outcomes(certificate, scenario or self.SCENARIO)
+        self.assertTrue(rejected, (certificate[:200], found))
+
+    def test_documents_that_are_none_are_rejected(self):
+        deep = "[" * 100_000
+        for text in ("", "{", "[]", "7", "null", '"x"', deep, "{\"a\":" * 5000, '{"format": NaN}', '{"format": Infinity}',
+                     '{"format": 1.0}', '{"format": 1, "format": 1}', '{"format": ' + "9" * 6000 + "}", "\u0000", '{"format": true}'):
+            self.reject(text)
+
+    def test_fields_that_are_missing_or_of_another_type_are_rejected(self):
+        folder = Path(os.environ["FORWARDSTEP_CERTIFICATES"])
+        whole = json.loads((folder / "theorem-2.json").read_text())
+        free = ("producer", "scenario")
+        for path in [path for path in nodes(whole) if path and path[0] not in free]:
+            for value in (None, True, 3.5, -1, "", "9" * 5000, "1/0", "1e999", [], {}, [[]], {"kind": "none"}):
+                spoilt = copy.deepcopy(whole)
+                held = spoilt
+                for key in path[:-1]:
+                    held = held[key]
+                if held[path[-1]] == value and type(held[path[-1]]) is type(value):
+                    continue
+                held[path[-1]] = value
+                self.reject(json.dumps(spoilt))
+
+    def test_scenarios_without_meaning_are_rejected(self):
+        folder = Path(os.environ["FORWARDSTEP_CERTIFICATES"])
+        certificate = (folder / "theorem-2.json").read_text()
+        changes = {"end_s = 100": "end_s = nan", "weight = 1.0": "weight = 1e999999999", "count = 6": "count = 10000000000",
+                   "mean_s = 0.25": "mean_s = -inf", "dwell_s = 1.0": "dwell_s = -1.0", "roots_per_s = [1.0, 2.0]": "roots_per_s = 1",
+                   "format = 2": "format = [" + "[" * 5000, "edges = [[": "edges = [[7, ", "[law.adaptive]": "[law.adaptive.damping]"}
+        for old, new in changes.items():
+            self.assertIn(old, self.SCENARIO)
+            self.reject(certificate, self.SCENARIO.replace(old, new, 1))
+        self.reject(certificate, self.SCENARIO.replace("weight = 1.0", 'weight = "' + "(" * 3000 + "t" + ")" * 3000 + '"'))
+
+
+def nodes(value, path=()):
+    """Places of everything in a document."""
+    yield path
+    if isinstance(value, (dict, list)):
+        for key, entry in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from nodes(entry, (*path, key))
+
+
+class Enclosures(unittest.TestCase):
+    """Enclosures hold what floating point finds, and are narrow."""
+
+    def test_functions_are_enclosed(self):
+        draw = random.Random(3)
+        ranges = {"sin": (-90, 90), "cos": (-90, 90), "exp": (-20, 20), "log": (1e-6, 1e6), "sqrt": (0, 1e6), "tanh": (-9, 9), "atan": (-50, 50)}
+        for name, (low, high) in ranges.items():
+            for _ in range(100):
+                x = checker.Fraction(draw.uniform(low, high))
+                found = checker.function(name, (x, x))
+                value = getattr(math, name)(float(x))
+                self.assertLessEqual(found[0], found[1])
+                self.assertLess(found[1] - found[0], 1e-25 * max(1, abs(value)))
+                self.assertAlmostEqual(float(found[0]) / max(1, abs(value)), value / max(1, abs(value)), 12)
+
+    def test_intervals_hold_all_that_is_sampled(self):
+        draw = random.Random(4)
+        for text in ("sin(t)*cos(2*t) + t^3/9", "tanh(t - 1)/(2 + cos(t))", "exp(-t^2) + atan(3*t)", "sqrt(1 + t^2) - abs(t)", "max(t, 1)^1.5"):
+            tree = checker.formula(text)
+            for _ in range(60):
+                low = draw.uniform(-4, 4)
+                high = low + draw.uniform(0, 1.5)
+                found = checker.enclose(tree, (checker.Fraction(low), checker.Fraction(high)))
+                values = [value_at(text, low + (high - low) * k / 100) for k in range(101)]
+                self.assertLessEqual(float(found[0]), min(values) + 1e-9, text)
+                self.assertGreaterEqual(float(found[1]), max(values) - 1e-9, text)
+
+
+if __name__ == "__main__":
+    unittest.main()

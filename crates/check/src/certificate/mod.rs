@@ -1,0 +1,88 @@
+//! Certificates: what somebody who does not trust this program needs in order to check its answers.
+//!
+//! An answer alone says nothing that can be checked. A certificate adds to each of them a proof that is easy to follow and was hard
+//! to find: windows with their trees, bounds, pivots, subdivisions, shares; or a witness. All numbers are exact. The producers
+//! use the setup alone, not how the answer was found: a slip in one does not hide in the other.
+//!
+//! A hypothesis for which there is no producer, or whose producer finds nothing, has no proof; the checker then says that it
+//! could not check it.
+
+mod delays;
+mod enclosure;
+mod exact;
+mod gains;
+mod motions;
+mod numbers;
+mod period;
+mod producers;
+mod proof;
+mod shares;
+mod windows;
+
+use forwardstep_sim::Setup;
+use num_rational::BigRational;
+
+pub use exact::decimal;
+pub use proof::{DrawnPhase, Enclosure, GivenAge, Matrix, Proof, Range, TreeWindow};
+
+use crate::hypothesis::Subject;
+use crate::{Answer, Hypothesis, Id, Report};
+
+/// What a report says, with proofs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Certificate {
+    /// The stable name of the theorem.
+    pub theorem: &'static str,
+    /// Its hypotheses, in the order of the report.
+    pub statements: Vec<Statement>,
+    /// What each agent's start counts in the value agreed upon, where the network never changes: a left null vector of its
+    /// Laplacian that sums to one.
+    pub influence: Option<Vec<BigRational>>,
+}
+
+/// What is claimed of one hypothesis, and why it is so.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Statement {
+    /// Which.
+    pub id: Id,
+    /// The agents that it is about, by their vertices; none for the whole.
+    pub agents: Vec<usize>,
+    /// What was found.
+    pub answer: Answer,
+    /// Why; `None` where nothing is claimed, or no proof was found.
+    pub proof: Option<Proof>,
+}
+
+/// The certificate of `report`, which is that of `setup`.
+///
+/// ```
+/// # use forwardstep_check::{certify, check};
+/// # fn of(setup: &forwardstep_sim::Setup) {
+/// let certificate = certify(setup, &check(setup));
+/// assert_eq!(certificate.statements.len(), check(setup).hypotheses.len());
+/// # }
+/// ```
+pub fn certify(setup: &Setup, report: &Report) -> Certificate {
+    Certificate {
+        theorem: report.theorem.name(),
+        statements: report.hypotheses.iter().map(|hypothesis| statement(setup, hypothesis)).collect(),
+        influence: shares::influence(setup),
+    }
+}
+
+fn statement(setup: &Setup, hypothesis: &Hypothesis) -> Statement {
+    let agents = match &hypothesis.subject {
+        Subject::Setup | Subject::Reference | Subject::Drive(_) => Vec::new(),
+        Subject::Agent(agent) => vec![agent.index],
+        Subject::Targets { agents, .. } | Subject::Offsets { agents, .. } => {
+            agents.iter().map(|agent| agent.index).collect()
+        }
+    };
+    let answer = hypothesis.answer();
+    let claims = match answer {
+        Answer::Holds | Answer::HoldsOnHorizon | Answer::Violated => true,
+        Answer::Watched | Answer::NotShown | Answer::NotCovered => false,
+    };
+    let proof = if claims { producers::proof(setup, hypothesis.id, &agents, answer) } else { None };
+    Statement { id: hypothesis.id, agents, answer, proof }
+}

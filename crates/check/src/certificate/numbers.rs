@@ -1,0 +1,95 @@
+//! Hypotheses that a number, or a list of classes, shows.
+
+use forwardstep_core::expression::Expression;
+use forwardstep_sim::graph::strong_components;
+use forwardstep_sim::{AgentSetup, Setup};
+use num_rational::BigRational;
+
+use super::exact::written;
+use super::producers::Claim;
+use super::proof::Proof;
+use crate::Answer;
+use crate::surroundings::acts;
+
+/// A number that proves what holds.
+fn number(claim: &Claim<'_>, value: Option<BigRational>) -> Option<Proof> {
+    value.filter(|_| claim.answer == Answer::Holds).map(Proof::Number)
+}
+
+pub(super) fn real_roots(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    let roots = setup.agents.iter().flat_map(|agent| &agent.roots_per_s).copied();
+    number(claim, roots.reduce(f64::min).map(written))
+}
+
+pub(super) fn common_order(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    let order = setup.agents.first()?.roots_per_s.len();
+    number(claim, Some(BigRational::from_integer(order.into())))
+}
+
+pub(super) fn manipulability(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    let gains = setup.agents.iter().map(|agent| agent.manipulability);
+    number(claim, gains.reduce(f64::max).map(written))
+}
+
+pub(super) fn pushes_end(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    let pushes = setup.agents.iter().flat_map(|agent| &agent.pushes).filter(|push| acts(push));
+    let last_s = pushes.map(|push| push.span_s()[1]).reduce(f64::max)?;
+    // The end is a sum of two numbers as they are written, rounded once.
+    number(claim, last_s.is_finite().then(|| written(last_s.next_up())))
+}
+
+/// The strongly connected components of the union of all graphs, sorted so that no edge leads back.
+pub(super) fn common_first_root(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    if claim.answer != Answer::Holds {
+        return None;
+    }
+    let edges: Vec<(usize, usize)> =
+        setup.network.schedule.graphs.iter().flatten().map(|edge| (edge.from, edge.to)).collect();
+    let components = strong_components(setup.network.agents, &edges);
+    let first_root = |agent: &AgentSetup| agent.roots_per_s.first().copied();
+    let common = |component: &Vec<usize>| {
+        let mut roots = component.iter().map(|agent| setup.agents.get(*agent).and_then(first_root));
+        let first = roots.next().flatten();
+        roots.all(|root| root == first)
+    };
+    if !components.iter().all(common) {
+        return Some(Proof::Constant);
+    }
+    let mut home = vec![0; setup.network.agents];
+    for (index, component) in components.iter().enumerate() {
+        component.iter().for_each(|agent| home[*agent] = index);
+    }
+    let between = edges.iter().map(|(from, to)| (home[*from], home[*to])).filter(|(from, to)| from != to);
+    let order = sorted(components.len(), &between.collect::<Vec<_>>());
+    Some(Proof::Classes(order.into_iter().map(|index| components[index].clone()).collect()))
+}
+
+/// The vertices of a graph without cycles, each after all that lead to it.
+fn sorted(vertices: usize, edges: &[(usize, usize)]) -> Vec<usize> {
+    let (mut open, mut next) = (vec![0_usize; vertices], vec![Vec::new(); vertices]);
+    for (from, to) in edges {
+        open[*to] += 1;
+        next[*from].push(*to);
+    }
+    let mut order: Vec<usize> = (0..vertices).filter(|vertex| open[*vertex] == 0).collect();
+    let mut at = 0;
+    while let Some(vertex) = order.get(at).copied() {
+        at += 1;
+        for to in &next[vertex] {
+            open[*to] -= 1;
+            if open[*to] == 0 {
+                order.push(*to);
+            }
+        }
+    }
+    order
+}
+
+pub(super) fn input_factor(_: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    (claim.answer == Answer::Holds).then_some(Proof::ConstantFactor)
+}
+
+/// The sum of some expressions.
+pub(super) fn sum(parts: impl Iterator<Item = Expression>) -> Expression {
+    parts.reduce(|sum, part| sum + part).unwrap_or_else(|| Expression::number(0.0))
+}

@@ -1,0 +1,72 @@
+//! The list of producers: which hypotheses have one.
+
+use forwardstep_sim::Setup;
+
+use super::enclosure::Reach;
+use super::proof::Proof;
+use super::{delays, gains, motions, numbers, windows};
+use crate::{Answer, Id};
+
+/// Looks for a proof of an answer about a hypothesis of some agents.
+type Producer = fn(&Setup, &Claim<'_>) -> Option<Proof>;
+
+/// What is to be proved.
+pub(super) struct Claim<'a> {
+    pub(super) id: Id,
+    pub(super) agents: &'a [usize],
+    pub(super) answer: Answer,
+}
+
+impl Claim<'_> {
+    /// How far enclosures have to reach for it.
+    pub(super) fn reach(&self) -> Reach {
+        if self.answer == Answer::Holds { Reach::ForEver } else { Reach::Run }
+    }
+}
+
+const PRODUCERS: &[(Id, Producer)] = &[
+    (Id::SpanningTree, windows::spanning_tree),
+    (Id::LeaderReachesAll, windows::spanning_tree),
+    (Id::DwellTime, windows::dwell_time),
+    (Id::FixedGraph, windows::fixed_graph),
+    (Id::BoundedDelays, delays::bounded),
+    (Id::MessagesInTime, delays::in_time),
+    (Id::BoundedWeights, delays::weights),
+    (Id::CouplingSector, delays::coupling),
+    (Id::RealRoots, numbers::real_roots),
+    (Id::CommonOrder, numbers::common_order),
+    (Id::CommonFirstRoot, numbers::common_first_root),
+    (Id::Manipulability, numbers::manipulability),
+    (Id::PushesEnd, numbers::pushes_end),
+    (Id::PositiveGains, gains::definite),
+    (Id::TaskSpaceGains, gains::definite),
+    (Id::AttitudeGains, gains::definite),
+    (Id::PositionOnlyGains, gains::definite),
+    (Id::ThrustGains, gains::definite),
+    (Id::ChainGains, gains::definite),
+    (Id::ChainAdaptation, gains::definite),
+    (Id::SwarmCoupling, gains::swarm),
+    (Id::InputFactor, numbers::input_factor),
+    (Id::BoundedTarget, motions::bounded),
+    (Id::BoundedLeader, motions::bounded),
+    (Id::SignGain, motions::sign_gain),
+    (Id::NonzeroQuaternion, motions::nonzero_quaternion),
+    (Id::MutualWeights, text),
+    (Id::NoDelay, text),
+    (Id::SharedDesign, text),
+    (Id::SetValuedSign, text),
+    (Id::AppliedTorque, text),
+    (Id::KnownMasses, text),
+    (Id::KnownMomentum, text),
+];
+
+/// A proof of `answer`, which is a claim, if there is a producer and it finds one.
+pub(super) fn proof(setup: &Setup, id: Id, agents: &[usize], answer: Answer) -> Option<Proof> {
+    let (_, produce) = PRODUCERS.iter().find(|(known, _)| *known == id)?;
+    produce(setup, &Claim { id, agents, answer })
+}
+
+/// What the text of a scenario says at once. Whether a hypothesis is violated it does not say.
+fn text(_: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    (claim.answer == Answer::Holds).then_some(Proof::Text)
+}

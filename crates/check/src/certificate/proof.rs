@@ -1,0 +1,138 @@
+//! What proves a claim, or refutes a hypothesis.
+
+use num_rational::BigRational;
+
+/// A proof or a witness. Agents are vertices of the network; phases count from zero.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Proof {
+    /// Runs of phases, one after the other, that tile what recurs, each with a spanning tree.
+    Windows(Vec<TreeWindow>),
+    /// Every phase that recurs has a spanning tree: the order does not matter.
+    EveryPhase(Vec<TreeWindow>),
+    /// Windows along a sequence that was drawn, up to the end of the run.
+    Drawn {
+        /// What was drawn.
+        given: Vec<DrawnPhase>,
+        /// The windows.
+        windows: Vec<TreeWindow>,
+        /// No window, and no rest after the last, is longer, s.
+        longest_s: BigRational,
+    },
+    /// Witness: groups that hear nobody outside themselves in anything that recurs.
+    Cut(Vec<Vec<usize>>),
+    /// There is one graph.
+    NeverSwitches,
+    /// No phase is shorter, s.
+    ShortestPhase(BigRational),
+    /// There is one graph, whose weights do not change where that matters.
+    OneGraph,
+    /// The text of the scenario says so at once.
+    Text,
+    /// Bounds of delays.
+    Delays {
+        /// No delay is longer, s.
+        bound_s: BigRational,
+        /// What formulas keep within.
+        formulas: Vec<Enclosure>,
+        /// What packets that were drawn come to.
+        given: Vec<GivenAge>,
+    },
+    /// No message is older, s.
+    Ages(BigRational),
+    /// What weights keep within.
+    Weights(Vec<Enclosure>),
+    /// The form of a coupling and its limit or scale.
+    Form(&'static str, BigRational),
+    /// A number that the text bears out: the smallest root, the largest gain, an order, a time.
+    Number(BigRational),
+    /// Classes of agents with one κ₀, in an order in which no edge leads back.
+    Classes(Vec<Vec<usize>>),
+    /// Graph, weights and delays are constant.
+    Constant,
+    /// Gains are positive definite; matrices by their pivots.
+    Definite(Vec<Matrix>),
+    /// The pivots of the shifted Laplacian of the followers.
+    Laplacian(Vec<BigRational>),
+    /// Derivatives are bounded up to an order, as far as stretches of formulas tell.
+    Derivatives(usize, Range),
+    /// What drives a leader keeps within these, axis by axis.
+    Drive(Vec<Enclosure>),
+    /// Witness: at this time, s, what drives the leader reaches γ on this axis, from zero.
+    Reached(BigRational, usize),
+    /// The factor of the input is a constant.
+    ConstantFactor,
+    /// An entry of a quaternion, from zero, keeps away from zero.
+    EntryAway(usize, Enclosure),
+    /// The square of the norm of a quaternion keeps away from zero.
+    Norm(Enclosure),
+}
+
+/// A run of phases and a spanning tree of their union.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TreeWindow {
+    /// The phases, in order.
+    pub phases: Vec<usize>,
+    /// The root of the tree.
+    pub root: usize,
+    /// Its edges (from, to, phase), each from an agent that those before reach.
+    pub arborescence: Vec<(usize, usize, usize)>,
+}
+
+/// A phase that was drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnPhase {
+    /// Which.
+    pub phase: usize,
+    /// Until when, s.
+    pub until_s: BigRational,
+}
+
+/// The largest age of what is heard on a link whose packets were drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GivenAge {
+    /// The sender.
+    pub from: usize,
+    /// The receiver.
+    pub to: usize,
+    /// Its largest age, s.
+    pub worst_s: BigRational,
+}
+
+/// A full matrix among the gains of an agent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Matrix {
+    /// The agent.
+    pub agent: usize,
+    /// Its key in the table of the law.
+    pub gain: &'static str,
+    /// D of A = L D Lᵀ.
+    pub pivots: Vec<BigRational>,
+}
+
+/// What a formula keeps within, and how that is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Enclosure {
+    /// An edge (from, to, phase) whose weight or delay it is; `None` where the proof says otherwise.
+    pub edge: Option<(usize, usize, usize)>,
+    /// The stretch that is looked at.
+    pub range: Range,
+    /// What it keeps within.
+    pub within: [BigRational; 2],
+}
+
+/// A stretch of time in as many equal pieces, on each of which one pass of interval arithmetic suffices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Range {
+    /// [0, ∞) at once.
+    ForEver,
+    /// One period of the sines and cosines in it.
+    Period {
+        /// How many pieces.
+        cells: usize,
+    },
+    /// Up to the end of the run.
+    Run {
+        /// How many pieces.
+        cells: usize,
+    },
+}

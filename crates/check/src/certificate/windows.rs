@@ -1,0 +1,152 @@
+//! Windows of whole phases with spanning trees, and groups that cut a network.
+
+use std::collections::{HashMap, VecDeque};
+
+use forwardstep_sim::Setup;
+use forwardstep_sim::graph::{SpanningTree, spanning_tree as tree};
+use forwardstep_sim::schedule::{Dwell, Once, Periodic, RandomSwitching, Schedule};
+use num_rational::BigRational;
+use num_traits::Zero;
+
+use super::exact::written;
+use super::producers::Claim;
+use super::proof::{DrawnPhase, Proof, TreeWindow};
+use crate::{Answer, Id};
+
+/// Phases of a drawn sequence that a certificate holds.
+const MOST_DRAWN: usize = 50_000;
+/// Phases of a period up to which the windows are as short as they can be; beyond it one window is the whole period.
+const MOST_PHASES: usize = 2000;
+
+pub(super) fn spanning_tree(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    let schedule = &setup.network.schedule;
+    let recurring = recurring(schedule)?;
+    match claim.answer {
+        Answer::Holds if claim.id == Id::SpanningTree && drawn(schedule) => every_phase(setup, &recurring),
+        Answer::Holds => Some(Proof::Windows(tiles(setup, &recurring)?)),
+        Answer::HoldsOnHorizon => along_draw(setup),
+        Answer::Violated => cut(setup, &recurring, claim.id),
+        Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
+    }
+}
+
+/// The phases that are in force again and again, or for ever; nothing for a switching signal from outside.
+fn recurring(schedule: &Schedule) -> Option<Vec<usize>> {
+    let graphs = schedule.graphs.len();
+    if schedule.downcast::<Once>().is_some() {
+        Some(vec![graphs.checked_sub(1)?])
+    } else {
+        let known = schedule.downcast::<Periodic>().is_some() || drawn(schedule);
+        known.then(|| (0..graphs).collect())
+    }
+}
+
+fn drawn(schedule: &Schedule) -> bool {
+    schedule.graphs.len() > 1 && schedule.downcast::<RandomSwitching>().is_some()
+}
+
+/// Windows along `phases`, each as short as it can be but the last, which takes what is left.
+fn tiles(setup: &Setup, phases: &[usize]) -> Option<Vec<TreeWindow>> {
+    let step = if phases.len() > MOST_PHASES { phases.len() } else { 1 };
+    let (mut found, mut from): (Vec<TreeWindow>, usize) = (Vec::new(), 0);
+    let mut to = 0;
+    while to < phases.len() {
+        to = (to + step).min(phases.len());
+        if let Some(window) = window(setup, phases.get(from..to)?) {
+            found.push(window);
+            from = to;
+        }
+    }
+    if from < to {
+        let start = match found.pop() {
+            Some(last) => from - last.phases.len(),
+            None => from,
+        };
+        found.push(window(setup, phases.get(start..)?)?);
+    }
+    Some(found)
+}
+
+/// A spanning tree of the union of some phases, found breadth first.
+fn window(setup: &Setup, phases: &[usize]) -> Option<TreeWindow> {
+    let (schedule, vertices) = (&setup.network.schedule, setup.network.agents);
+    let edges = || phases.iter().flat_map(|phase| schedule.graph(*phase).iter().map(|edge| (*phase, edge)));
+    let SpanningTree::Rooted { roots } = tree(vertices, edges().map(|(_, edge)| edge)) else { return None };
+    let root = *roots.first()?;
+    let mut heard_by: HashMap<usize, Vec<(usize, usize)>> = HashMap::new();
+    for (phase, edge) in edges() {
+        heard_by.entry(edge.from).or_default().push((edge.to, phase));
+    }
+    let mut reached = vec![false; vertices];
+    *reached.get_mut(root)? = true;
+    let (mut queue, mut arborescence) = (VecDeque::from([root]), Vec::with_capacity(vertices));
+    while let Some(from) = queue.pop_front() {
+        for (to, phase) in heard_by.remove(&from).unwrap_or_default() {
+            let known = reached.get_mut(to)?;
+            if !*known {
+                *known = true;
+                arborescence.push((from, to, phase));
+                queue.push_back(to);
+            }
+        }
+    }
+    Some(TreeWindow { phases: phases.to_vec(), root, arborescence })
+}
+
+fn every_phase(setup: &Setup, phases: &[usize]) -> Option<Proof> {
+    phases.iter().map(|phase| window(setup, &[*phase])).collect::<Option<_>>().map(Proof::EveryPhase)
+}
+
+/// The sequence that was drawn, and windows along it until no further one is complete.
+fn along_draw(setup: &Setup) -> Option<Proof> {
+    let (schedule, end_s) = (&setup.network.schedule, setup.time.end_s);
+    if !drawn(schedule) {
+        return None;
+    }
+    let segments: Vec<_> =
+        schedule.segments().take_while(|segment| segment.start_s < end_s).take(MOST_DRAWN + 1).collect();
+    if segments.len() > MOST_DRAWN {
+        return None;
+    }
+    let given =
+        segments.iter().map(|segment| DrawnPhase { phase: segment.graph, until_s: written(segment.end_s) }).collect();
+    let phases: Vec<usize> = segments.iter().map(|segment| segment.graph).collect();
+    let times: Vec<BigRational> = std::iter::once(0.0).chain(segments.iter().map(|s| s.end_s)).map(written).collect();
+    let (mut windows, mut from, mut longest_s) = (Vec::new(), 0, BigRational::zero());
+    for to in 1..=phases.len() {
+        if let Some(window) = window(setup, phases.get(from..to)?) {
+            windows.push(window);
+            longest_s = longest_s.max(times.get(to)? - times.get(from)?);
+            from = to;
+        }
+    }
+    longest_s = longest_s.max(written(end_s) - times.get(from)?);
+    (!windows.is_empty()).then_some(Proof::Drawn { given, windows, longest_s })
+}
+
+/// The closed groups of the union of all that recurs.
+fn cut(setup: &Setup, phases: &[usize], id: Id) -> Option<Proof> {
+    let schedule = &setup.network.schedule;
+    let edges = phases.iter().flat_map(|phase| schedule.graph(*phase));
+    let SpanningTree::Missing { closed_groups } = tree(setup.network.agents, edges) else { return None };
+    if id == Id::SpanningTree {
+        return Some(Proof::Cut(closed_groups));
+    }
+    let without = closed_groups.into_iter().find(|group| setup.leader().is_none_or(|leader| !group.contains(&leader)));
+    without.map(|group| Proof::Cut(vec![group]))
+}
+
+pub(super) fn dwell_time(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    if claim.answer != Answer::Holds {
+        return None;
+    }
+    match setup.network.schedule.known().dwell {
+        Dwell::NeverSwitches => Some(Proof::NeverSwitches),
+        Dwell::Shortest(dwell_s) | Dwell::Drawn(dwell_s) => Some(Proof::ShortestPhase(written(dwell_s))),
+        Dwell::Declared(_) => None,
+    }
+}
+
+pub(super) fn fixed_graph(_: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    (claim.answer == Answer::Holds).then_some(Proof::OneGraph)
+}

@@ -1,0 +1,148 @@
+//! Certificates of the shipped scenarios, checked by the program in `checker/`, which shares no code with forwardstep.
+#![cfg(feature = "program")]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod support;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use forwardstep::check::{certify, check};
+use forwardstep::io::output::certificate_document;
+use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
+use serde_json::Value;
+use support::{folder, forwardstep, stderr, stdout};
+
+/// What is claimed, or used by a proof, and cannot be checked yet: a scenario and a hypothesis. It may only shrink: a hypothesis
+/// that has become checkable has to leave it.
+const UNCHECKED: [(&str, &str); 6] = [
+    // Property 1, and what the proof of Theorem 1 says of C and g.
+    (ROBOTS, "uniform-inertia"),
+    (ROBOTS, "bounded-dynamics"),
+    // Which lengths of a tree enter its regressor.
+    ("task-space-ur5e", "certain-regressor"),
+    // Bounds of curves through points.
+    ("attitude-from-a-table", "nonzero-quaternion"),
+    ("rest-to-rest", "nonzero-quaternion"),
+    ("remark-12", "sign-gain"),
+];
+
+/// Every scenario with robots under (6)–(7), or with an end-effector.
+const ROBOTS: &str = "every scenario with robots";
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn python(arguments: &[&str], certificates: &Path) -> Output {
+    let mut command = Command::new("python3");
+    command.args(arguments).env("FORWARDSTEP_CERTIFICATES", certificates).env("PYTHONDONTWRITEBYTECODE", "1");
+    command.current_dir(root().join("checker")).output().expect("the checker needs python3")
+}
+
+/// Writes the certificate of a scenario into `to`, under its name.
+fn certified(scenario: &str, to: &Path) -> PathBuf {
+    let scenario = open_scenario(scenario).unwrap_or_else(|error| panic!("{error}"));
+    let certificate = certify(&scenario.setup, &check(&scenario.setup));
+    let path = to.join(format!("{}.json", scenario.name));
+    fs::write(&path, certificate_document(&scenario, "0.0.0", &certificate).to_string()).unwrap();
+    path
+}
+
+/// What the checker says of a certificate, as JSON.
+fn checked(certificate: &Path, scenario: &Path) -> Value {
+    let arguments = ["forwardstep_checker.py", "--json", certificate.to_str().unwrap(), scenario.to_str().unwrap()];
+    let output = python(&arguments, Path::new(""));
+    let printed = String::from_utf8(output.stdout).unwrap();
+    serde_json::from_str(&printed).unwrap_or_else(|_| panic!("{printed}{}", String::from_utf8_lossy(&output.stderr)))
+}
+
+fn file_of(scenario: &str) -> PathBuf {
+    root().join(format!("crates/io/scenarios/{scenario}.toml"))
+}
+
+#[test]
+fn every_claim_of_every_shipped_scenario_is_accepted_but_for_those_listed() {
+    let folder = folder();
+    let (mut unchecked, mut accepted) = (BTreeSet::new(), 0);
+    for scenario in SHIPPED_SCENARIOS.iter().map(|scenario| scenario.name) {
+        let file = file_of(scenario);
+        let found = checked(&certified(file.to_str().unwrap(), folder.path()), &file);
+        for entry in found["entries"].as_array().unwrap() {
+            let text = |key: &str| entry[key].as_str().unwrap().to_owned();
+            let claims = text("words").starts_with("nothing is claimed");
+            match text("outcome").as_str() {
+                "accepted" => accepted += 1,
+                "could not check" if claims => {}
+                "could not check" => {
+                    let id = text("id");
+                    let of_robots = UNCHECKED.iter().any(|(of, known)| *of == ROBOTS && *known == id);
+                    unchecked.insert((if of_robots { ROBOTS.to_owned() } else { scenario.to_owned() }, id));
+                }
+                outcome => panic!("{scenario}: {outcome}: {entry}"),
+            }
+        }
+    }
+    let listed: BTreeSet<_> = UNCHECKED.iter().map(|(of, id)| ((*of).to_owned(), (*id).to_owned())).collect();
+    assert_eq!(unchecked, listed);
+    assert!(accepted > 250, "{accepted}");
+}
+
+#[test]
+fn pairs_that_were_tampered_with_are_judged_as_the_truth_says() {
+    let folder = folder();
+    for scenario in SHIPPED_SCENARIOS.iter().map(|scenario| scenario.name) {
+        certified(file_of(scenario).to_str().unwrap(), folder.path());
+    }
+    for case in ["formulas", "cut"] {
+        certified(root().join(format!("checker/cases/{case}.toml")).to_str().unwrap(), folder.path());
+    }
+    let output = python(&["-m", "unittest", "test_checker"], folder.path());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn the_program_writes_a_certificate_whose_digests_count_until_they_are_ignored() {
+    let folder = folder();
+    let text = fs::read_to_string(file_of("theorem-2")).unwrap();
+    fs::write(folder.path().join("own.toml"), &text).unwrap();
+    forwardstep(&folder, &["check", "own.toml", "--certificate", "own.json"]).code(0);
+    let [certificate, scenario] = ["own.json", "own.toml"].map(|name| folder.path().join(name));
+    let status = |more: &[&str]| {
+        let files = [certificate.to_str().unwrap(), scenario.to_str().unwrap()];
+        let output = python(&[&["forwardstep_checker.py"], &files[..], more].concat(), Path::new(""));
+        (output.status.code().unwrap(), String::from_utf8(output.stdout).unwrap())
+    };
+    let (code, said) = status(&[]);
+    assert_eq!(code, 2, "{said}");
+    assert!(said.contains("accepted: spanning-tree, holds"), "{said}");
+    // A comment changes nothing but the digest.
+    fs::write(&scenario, format!("# another\n{text}")).unwrap();
+    let (code, said) = status(&[]);
+    assert!(code == 1 && said.contains("(certificate.scenario.sha256)"), "{said}");
+    assert_eq!(status(&["--ignore-digests"]).0, 2);
+    // Without its second graph nothing of the first three arms reaches the others.
+    let without = text.replace(r#"["arm-2", "arm-3"],"#, "").replace(r#"["arm-4", "arm-5"],"#, "");
+    fs::write(&scenario, without).unwrap();
+    let (code, said) = status(&["--ignore-digests"]);
+    let place = "certificate.hypotheses[0].proof.windows[0].arborescence[1]";
+    assert!(code == 1 && said.contains(&format!("is no edge of this phase ({place})")), "{said}");
+}
+
+#[test]
+fn a_certificate_that_cannot_be_written_is_an_error() {
+    let folder = folder();
+    let failed = forwardstep(&folder, &["check", "theorem-2", "--certificate", "nowhere/own.json"]).code(2);
+    assert!(stderr(&failed).contains("nowhere/own.json"), "{}", stderr(&failed));
+    assert!(stdout(&failed).is_empty());
+}
+
+#[test]
+fn the_checker_is_short_enough_to_be_read() {
+    let text = fs::read_to_string(root().join("checker/forwardstep_checker.py")).unwrap();
+    let lines = text.lines().filter(|line| !line.trim().is_empty()).count();
+    assert!(lines <= 1500, "{lines} lines that are not blank");
+    assert!(text.lines().all(|line| line.chars().count() <= 140));
+}

@@ -1,0 +1,163 @@
+//! A certificate as JSON: what `forwardstep check --certificate` writes and `checker/forwardstep_checker.py` reads.
+//!
+//! Numbers are whole, or stand in quotes as decimals or as p/q, so that no reader rounds them. Agents go by their names; phases
+//! and axes count from one.
+
+use forwardstep_check::certificate::{Certificate, Enclosure, Matrix, Proof, Range, Statement, TreeWindow, decimal};
+use forwardstep_sim::Setup;
+use num_rational::BigRational;
+use serde_json::{Map, Value, json};
+use sha2::{Digest, Sha256};
+
+use crate::scenario::Scenario;
+
+/// The format of certificates; it grows when fields change their meaning or vanish.
+pub const CERTIFICATE_FORMAT: u32 = 1;
+
+/// The document of `certificate`, which is that of `scenario`, made by `version` of forwardstep.
+pub fn certificate_document(scenario: &Scenario, version: &str, certificate: &Certificate) -> Value {
+    let names = Names(&scenario.setup);
+    let inputs =
+        scenario.inputs.iter().map(|input| json!({ "file": input.name, "sha256": sha256(input.source.text()) }));
+    let mut document = json!({
+        "format": CERTIFICATE_FORMAT,
+        "producer": format!("forwardstep {version}"),
+        "scenario": {
+            "name": scenario.name,
+            "sha256": sha256(scenario.source.text()),
+            "inputs": inputs.collect::<Vec<_>>(),
+        },
+        "theorem": certificate.theorem,
+        "hypotheses": certificate.statements.iter().map(|statement| names.statement(statement)).collect::<Vec<_>>(),
+    });
+    if let (Some(shares), Value::Object(fields)) = (&certificate.influence, &mut document) {
+        let shares = shares.iter().enumerate().map(|(agent, share)| json!([names.of(agent), decimal(share)]));
+        fields.insert("agreement".into(), json!({ "influence": shares.collect::<Vec<_>>() }));
+    }
+    document
+}
+
+/// In hexadecimal.
+fn sha256(text: &str) -> String {
+    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Names of vertices.
+struct Names<'a>(&'a Setup);
+
+impl Names<'_> {
+    fn of(&self, vertex: usize) -> &str {
+        self.0.vertex_name(vertex)
+    }
+
+    fn all(&self, vertices: &[usize]) -> Vec<&str> {
+        vertices.iter().map(|vertex| self.of(*vertex)).collect()
+    }
+
+    fn statement(&self, Statement { id, agents, answer, proof }: &Statement) -> Value {
+        let mut entry = json!({ "id": id.name(), "agents": self.all(agents), "answer": answer.words() });
+        if let (Some(proof), Value::Object(fields)) = (proof, &mut entry) {
+            fields.insert("proof".into(), self.proof(proof));
+        }
+        entry
+    }
+
+    fn proof(&self, proof: &Proof) -> Value {
+        match proof {
+            Proof::Windows(windows) => json!({ "kind": "windows", "windows": self.windows(windows) }),
+            Proof::EveryPhase(windows) => json!({ "kind": "every-phase", "windows": self.windows(windows) }),
+            Proof::Drawn { given, windows, longest_s } => {
+                let given = given.iter().map(|one| json!({ "phase": one.phase + 1, "until_s": decimal(&one.until_s) }));
+                json!({
+                    "kind": "drawn",
+                    "given": given.collect::<Vec<_>>(),
+                    "windows": self.windows(windows),
+                    "longest_s": decimal(longest_s),
+                })
+            }
+            Proof::Cut(groups) => {
+                json!({ "kind": "cut", "groups": groups.iter().map(|group| self.all(group)).collect::<Vec<_>>() })
+            }
+            Proof::NeverSwitches => json!({ "kind": "never-switches" }),
+            Proof::ShortestPhase(shortest_s) => json!({ "kind": "shortest-phase", "shortest_s": decimal(shortest_s) }),
+            Proof::OneGraph => json!({ "kind": "one-graph" }),
+            Proof::Text => json!({ "kind": "text" }),
+            Proof::Delays { bound_s, formulas, given } => {
+                let given = given.iter().map(
+                    |age| json!({ "from": self.of(age.from), "to": self.of(age.to), "worst_s": decimal(&age.worst_s) }),
+                );
+                json!({
+                    "kind": "delays",
+                    "bound_s": decimal(bound_s),
+                    "enclosures": self.enclosures(formulas),
+                    "given": given.collect::<Vec<_>>(),
+                })
+            }
+            Proof::Ages(bound_s) => json!({ "kind": "ages", "bound_s": decimal(bound_s) }),
+            Proof::Weights(formulas) => json!({ "kind": "weights", "enclosures": self.enclosures(formulas) }),
+            Proof::Form(form, size) => json!({ "kind": "form", "form": form, "size": decimal(size) }),
+            Proof::Number(value) => json!({ "kind": "number", "value": decimal(value) }),
+            Proof::Classes(classes) => {
+                json!({ "kind": "classes", "classes": classes.iter().map(|class| self.all(class)).collect::<Vec<_>>() })
+            }
+            Proof::Constant => json!({ "kind": "constant" }),
+            Proof::Definite(matrices) => {
+                let matrix = |Matrix { agent, gain, pivots }: &Matrix| json!({ "agent": self.of(*agent), "gain": gain, "pivots": numbers(pivots) });
+                json!({ "kind": "definite", "matrices": matrices.iter().map(matrix).collect::<Vec<_>>() })
+            }
+            Proof::Laplacian(pivots) => json!({ "kind": "definite", "pivots": numbers(pivots) }),
+            Proof::Derivatives(order, range) => {
+                json!({ "kind": "derivatives", "order": order, "stretch": Value::Object(stretch(*range)) })
+            }
+            Proof::Drive(bounds) => json!({ "kind": "bounds", "bounds": self.enclosures(bounds) }),
+            Proof::Reached(t_s, axis) => json!({ "kind": "instant", "t_s": decimal(t_s), "axis": axis + 1 }),
+            Proof::ConstantFactor => json!({ "kind": "constant" }),
+            Proof::EntryAway(entry, bound) => {
+                json!({ "kind": "entry-away", "entry": entry + 1, "bound": self.enclosure(bound) })
+            }
+            Proof::Norm(bound) => json!({ "kind": "norm", "bound": self.enclosure(bound) }),
+        }
+    }
+
+    fn windows(&self, windows: &[TreeWindow]) -> Vec<Value> {
+        let window = |TreeWindow { phases, root, arborescence }: &TreeWindow| {
+            let steps = arborescence.iter().map(|step| self.edge(*step));
+            json!({
+                "phases": phases.iter().map(|phase| phase + 1).collect::<Vec<_>>(),
+                "root": self.of(*root),
+                "arborescence": steps.collect::<Vec<_>>(),
+            })
+        };
+        windows.iter().map(window).collect()
+    }
+
+    fn edge(&self, (from, to, phase): (usize, usize, usize)) -> Value {
+        json!([self.of(from), self.of(to), phase + 1])
+    }
+
+    fn enclosures(&self, enclosures: &[Enclosure]) -> Vec<Value> {
+        enclosures.iter().map(|enclosure| self.enclosure(enclosure)).collect()
+    }
+
+    fn enclosure(&self, Enclosure { edge, range, within }: &Enclosure) -> Value {
+        let mut fields = stretch(*range);
+        fields.extend(edge.map(|edge| ("edge".to_owned(), self.edge(edge))));
+        fields.insert("within".into(), numbers(within).into());
+        Value::Object(fields)
+    }
+}
+
+fn numbers(numbers: &[BigRational]) -> Vec<String> {
+    numbers.iter().map(decimal).collect()
+}
+
+/// A stretch of time and its pieces.
+fn stretch(range: Range) -> Map<String, Value> {
+    let (word, cells) = match range {
+        Range::ForEver => ("for-ever", None),
+        Range::Period { cells } => ("period", Some(cells)),
+        Range::Run { cells } => ("run", Some(cells)),
+    };
+    let cells = cells.map(|cells| ("cells".to_owned(), cells.into()));
+    std::iter::once(("range".to_owned(), word.into())).chain(cells).collect()
+}
