@@ -1,4 +1,5 @@
-"""Tampering: 500 pairs of a scenario and a certificate, of which one was changed, and the truth by another route.
+"""False proofs for every guard of the checker; and tampering: 500 pairs of a scenario and a certificate, of which one was changed,
+with the truth by another route.
 
     FORWARDSTEP_CERTIFICATES=FOLDER python3 -m unittest checker/test_checker.py
 
@@ -12,6 +13,7 @@ import math
 import os
 import random
 import sys
+import tempfile
 import tomllib
 import unittest
 from itertools import permutations
@@ -557,6 +559,244 @@ class Tampering(unittest.TestCase):
             counts[expected] += 1
         self.assertEqual(wrong, [])
         self.assertGreater(min(counts.values()), PAIRS // 5, counts)
+
+
+class FalseProofs(unittest.TestCase):
+    """For each guard of the checker a pair that only this guard rejects, at the boundary where there is one."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = Path(os.environ["FORWARDSTEP_CERTIFICATES"])
+
+    def judged(self, name, each, spoil_proof, *changes):
+        """The outcome of hypothesis `each` after a change of its entry and of the text of the scenario."""
+        text = place_of(name).read_text()
+        for old, other in changes:
+            self.assertIn(old, text, (name, each))
+            text = text.replace(old, other, 1)
+        certificate = json.loads((self.folder / f"{name}.json").read_text())
+        entry, = [entry for entry in certificate["hypotheses"] if entry["id"] == each][:1]
+        spoil_proof(entry)
+        found = checker.check(json.dumps(certificate), text, SCENARIOS, digests=False)
+        return [(one[3], one[4]) for one in found if one[0] in (each, "certificate")], found
+
+    def rejected(self, name, each, words, spoil_proof=lambda entry: None, *changes):
+        judged, found = self.judged(name, each, spoil_proof, *changes)
+        self.assertTrue(any(outcome == checker.REJECTED and words in said for outcome, said in judged), (each, words, found))
+
+    def accepted(self, name, each, spoil_proof=lambda entry: None, *changes):
+        judged, found = self.judged(name, each, spoil_proof, *changes)
+        self.assertEqual([outcome for outcome, _ in judged], [checker.ACCEPTED], (each, found))
+
+    def test_trees(self):
+        def steps(*edges):
+            return lambda entry: entry["proof"]["windows"][0].update(arborescence=[list(edge) for edge in edges], root="arm-1")
+
+        ring = [(f"arm-{k}", f"arm-{k % 4 + 1}", 1) for k in range(1, 5)]
+        self.accepted("theorem-1", "spanning-tree", steps(*ring[:3]))
+        # Everybody stands in it, but a cycle hangs in the air: its edges reach each other alone.
+        self.rejected("theorem-1", "spanning-tree", "has not been reached", steps(ring[1], ring[2], ring[3]))
+        self.rejected("theorem-1", "spanning-tree", "does not reach everybody", steps(*ring[:2]))
+        self.rejected("theorem-1", "spanning-tree", "is no edge", steps(*ring[:2], ("arm-2", "arm-4", 1)))
+        self.rejected("theorem-1", "spanning-tree", "outside of the window", steps(*ring[:2], ("arm-3", "arm-4", 2)))
+        # A root that is not the leader cannot reach him.
+        two = ('edges = [["leader", "arm-1"]', 'edges = [["leader", "arm-2"]')
+        self.rejected("theorem-8", "leader-reaches-all", "is no edge", lambda entry: None, two)
+        self.rejected("theorem-8", "leader-reaches-all", "reach", steps(*ring[:3]))
+
+    def test_windows(self):
+        def phases(entry, *numbers):
+            entry["proof"]["windows"][0]["phases"] = list(numbers)
+
+        self.rejected("theorem-2", "spanning-tree", "whole periods", lambda entry: phases(entry, 1, 2, 1))
+        self.rejected("theorem-2", "spanning-tree", "the phases that follow", lambda entry: phases(entry, 2, 1))
+        self.rejected("theorem-2", "spanning-tree", "must be some", lambda entry: entry["proof"].update(windows=[]))
+        self.accepted("theorem-2", "spanning-tree", lambda entry: phases(entry, 1, 2, 1, 2))
+        # Windows of a period say nothing of phases that are drawn.
+        random_ = ("[[network.phases]]", "[network.switching.random]\nseed = 1\ndwell_s = [0.5, 1.0]\n\n[[network.phases]]")
+        self.rejected("theorem-2", "spanning-tree", "drawn schedule", lambda entry: None, random_)
+
+    def test_drawn_sequences(self):
+        name, each = "theorem-3-24-order-4", "spanning-tree"
+        self.rejected(name, each, "allows", lambda entry: entry["proof"]["given"][3].update(until_s="1"))
+        self.rejected(name, each, "is no phase", lambda entry: entry["proof"]["given"][3].update(phase=4))
+        self.rejected(name, each, "before the run", lambda entry: None, ("end_s = 100", "end_s = 110"))
+        self.rejected(name, each, "before the run", lambda entry: entry["proof"]["given"].pop())
+        self.rejected(name, each, "is exceeded", lambda entry: entry["proof"].update(longest_s="1.6"))
+        # What is left after the last window counts, too.
+        self.rejected(name, each, "is exceeded", lambda entry: entry["proof"].update(windows=entry["proof"]["windows"][:2]))
+        self.rejected(name, each, "more than the proof shows", lambda entry: entry.update(answer="holds"))
+
+    def test_groups_that_cut(self):
+        def groups(*names):
+            return lambda entry: entry["proof"].update(groups=[[f"mass-{k}" for k in group] for group in names])
+
+        self.accepted("cut", "spanning-tree", groups((3, 4), (2, 1)))
+        self.rejected("cut", "spanning-tree", "not closed", groups((1,), (3, 4)))
+        self.rejected("cut", "spanning-tree", "disjoint", groups((1, 2), (1, 2, 3, 4)))
+        self.rejected("cut", "spanning-tree", "disjoint", groups((1, 2)))
+        self.rejected("cut", "spanning-tree", "must name agents", groups((1, 2), ()))
+        self.rejected("cut", "spanning-tree", "not closed", lambda entry: None, ('["mass-3", "mass-4"]]', '["mass-1", "mass-4"]]'))
+
+    def test_dwell_times_and_delays(self):
+        self.accepted("theorem-2", "dwell-time", lambda entry: entry["proof"].update(shortest_s="0.7"))
+        for least in ("0.70000000000000001", "0", "-1"):
+            self.rejected("theorem-2", "dwell-time", "shortest phase", lambda entry: entry["proof"].update(shortest_s=least))
+        self.accepted("theorem-2", "bounded-delays", lambda entry: entry["proof"].update(bound_s="1/2"))
+        self.rejected("theorem-2", "bounded-delays", "is exceeded", lambda entry: entry["proof"].update(bound_s="0.49999999999999999"))
+        # The amplitude counts: 0.3 + 0.25 exceeds a half, of which no other delay here is the reason.
+        self.rejected("theorem-2", "bounded-delays", "is exceeded", lambda entry: None, ("mean_s = 0.25", "mean_s = 0.3"))
+        negative = ('"0.2 + 0.1*sin', '"0.2 + 0.3*sin')
+        within = lambda entry: entry["proof"].update(bound_s="1", enclosures=[{**entry["proof"]["enclosures"][0], "within": ["-1", "1"]}])  # noqa: E731
+        self.rejected("formulas", "bounded-delays", "become negative", within, negative)
+        self.rejected("formulas", "bounded-delays", "does not hold", lambda entry: None, negative)
+        low = lambda entry: entry["proof"].update(enclosures=[{**entry["proof"]["enclosures"][0], "within": ["-9", "9"]}])  # noqa: E731
+        self.rejected("formulas", "bounded-weights", "come to zero", low)
+        self.rejected("formulas", "bounded-weights", "lacks", lambda entry: entry["proof"].update(enclosures=[]))
+        # One piece is too coarse for what 32 show, and a part of the period is not the whole.
+        coarse = lambda entry: entry["proof"]["enclosures"][0].update(cells=1)  # noqa: E731
+        self.rejected("formulas", "bounded-weights", "does not hold", coarse)
+        self.rejected("formulas", "bounded-weights", "does not hold", lambda entry: None, ("1.5*sin(2*t)", "1.8*sin(2*t)"))
+        slow = lambda entry: entry["proof"]["enclosures"][0].update(range="period", cells=64)  # noqa: E731
+        self.rejected("formulas", "bounded-weights", "does not hold", slow, ("+ 1.5*sin(2*t)", "+ 1.5*sin(2*t/9)"))
+        self.rejected("six-arms-over-radio", "bounded-delays", "below the latency", lambda entry: entry["proof"]["given"][0].update(worst_s="0.01"))
+        self.rejected("six-arms-over-radio", "bounded-delays", "lacks the link", lambda entry: entry["proof"]["given"].pop())
+        self.rejected("six-arms-over-radio", "bounded-delays", "more than the proof shows", lambda entry: entry.update(answer="holds"))
+
+    def test_numbers(self):
+        self.rejected("theorem-2", "real-roots", "below all roots", lambda entry: entry["proof"].update(value="1.0000000000000001"))
+        self.rejected("theorem-2", "real-roots", "positive bound", lambda entry: entry["proof"].update(value="0"))
+        self.rejected("theorem-2", "common-order", "order of all", lambda entry: entry["proof"].update(value=3))
+        self.rejected("remark-4", "manipulability", "largest gain", lambda entry: entry["proof"].update(value="3.9"))
+        self.rejected("gusts", "pushes-end", "before the end", lambda entry: entry["proof"].update(value="20.1999"))
+        self.rejected("gusts", "pushes-end", "before the end", lambda entry: None, ("for_s = 0.2", ""))
+        self.rejected("saturated-coupling", "coupling-sector", "that of the scenario", lambda entry: None, ("saturated = 0.4", "saturated = 0.5"))
+        self.rejected("saturated-coupling", "coupling-sector", "that of the scenario", lambda entry: entry["proof"].update(form="tanh"))
+
+    def test_classes(self):
+        name, each = "theorem-3-a5-order-3", "common-first-root"
+        own = ("roots_per_s = [1.0, 3.0, 5.0]", "roots_per_s = [1.5, 3.0, 5.0]")
+        self.rejected(name, each, "κ₀ differ", lambda entry: None, own)
+        apart = [[f"arm-{k}" for k in range(1, 5)], ["quick-arm-1", "quick-arm-2"]]
+        self.rejected(name, each, "an edge leads back", lambda entry: entry["proof"].update(classes=apart), own)
+        self.rejected(name, each, "every agent", lambda entry: entry["proof"]["classes"][0].pop())
+        self.rejected("theorem-2", each, "is not so", lambda entry: entry.update(proof={"kind": "constant"}))
+        self.accepted("first-order", each, lambda entry: entry.update(proof={"kind": "constant"}))
+
+    def test_gains(self):
+        name, each, matrix = "formulas", "positive-gains", "[[6, 1], [1, 4]]"
+
+        def pivots(*numbers):
+            def spoil_all(entry):
+                for one in entry["proof"]["matrices"]:
+                    one["pivots"] = list(numbers)
+            return spoil_all
+
+        self.accepted(name, each, pivots("6", "23/6"))
+        self.rejected(name, each, "are not the pivots", pivots("6", "4"))
+        # Singular, and as the pivots say; and symmetric only in its lower half.
+        self.rejected(name, each, "not all positive", pivots("4", "0"), (matrix, "[[4, 2], [2, 1]]"))
+        self.rejected(name, each, "symmetric", pivots("6", "23/6"), (matrix, "[[6, 0.5], [2, 4]]"))
+        self.rejected(name, each, "lacks `damping`", lambda entry: entry["proof"].update(matrices=[]))
+        self.rejected("theorem-2", each, "is not positive", lambda entry: None, ("damping.gain = 8", "damping.gain = 0"))
+        self.rejected("theorem-2", each, "is not positive", lambda entry: None, ("damping.gain = 8", "damping.gain = [8, -1]"))
+        self.rejected("six-arms", each, "is not positive", lambda entry: None, ("damping.bandwidth_per_s = 20", "damping.bandwidth_per_s = -20"))
+        self.rejected("double-integrators", "position-only-gains", "wrong mass", lambda entry: None, ("adaptation_gain = 10", "adaptation_gain = 0"))
+        true = (("adaptation_gain = 8 ", "adaptation_gain = 0 "), ("estimate_start_kg = 0", "estimate_start_kg = 2"))
+        self.accepted("without-velocity", "position-only-gains", lambda entry: None, *true)
+        self.rejected("without-velocity", "position-only-gains", "wrong mass", lambda entry: None, true[0])
+        self.rejected("swarm-tracking", "swarm-coupling", "are not", lambda entry: None, ("coupling = 12", "coupling = 11"))
+
+    def test_joints_need_inertia(self):
+        robot = (HERE.parent / "crates" / "io" / "robots" / "ur5e.urdf").read_text()
+        scenario = checker.Scenario(place_of("six-arms").read_text(), SCENARIOS)
+        agent = scenario.agents[0]
+        scenario.text_of = lambda _: robot
+        self.assertTrue(checker.heavy(scenario, agent))
+        scenario.text_of = lambda _: checker.re.sub(r'i(xx|yy|zz)="[^"]*"', r'i\1="0"', robot)
+        self.assertFalse(checker.heavy(scenario, agent))
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "ur5e.urdf").write_text(checker.re.sub(r'i(xx|yy|zz)="[^"]*"', r'i\1="0"', robot))
+            certificate = (self.folder / "six-arms.json").read_text()
+            found = checker.check(certificate, place_of("six-arms").read_text(), Path(folder), digests=False)
+            words = [one[4] for one in found if one[3] == checker.REJECTED]
+            self.assertEqual(words, ["arm-1 may have a joint without inertia"])
+        scenario.text_of = lambda _: "<robot><link/></robot"
+        self.assertRaises(checker.Undecided, checker.heavy, scenario, agent)
+
+    def test_motions(self):
+        self.rejected("theorem-8", "sign-gain", "reaches γ", lambda entry: None, ("gain = 2 ", "gain = 0.9 "))
+        self.rejected("theorem-8", "sign-gain", "does not hold", lambda entry: None, ("amplitude = 0.6", "amplitude = 1.2"))
+        self.rejected("theorem-8", "sign-gain", "for each axis", lambda entry: entry["proof"]["bounds"].pop())
+        instant = lambda t_s: lambda entry: entry.update(answer="violated", proof={"kind": "instant", "t_s": t_s, "axis": 1})  # noqa: E731
+        small = ("gain = 2 ", "gain = 0.6 ")
+        # α q̇ + q̈ of 0.6 sin 0.8 t is 0.48 cos 0.8 t − 0.384 sin 0.8 t, at most 0.614.
+        self.accepted("theorem-8", "sign-gain", instant("7.0"), small)
+        self.rejected("theorem-8", "sign-gain", "is no time", instant("0"), small)
+        self.rejected("theorem-8", "sign-gain", "outside of the run", instant("47"), small)
+        self.rejected("theorem-8", "bounded-leader", "too low", lambda entry: entry["proof"].update(order=2))
+        self.rejected("formation", "bounded-target", "does not bound", lambda entry: None, ("0.2*t + cos(0.3*t)", "0.2*t^2 + cos(0.3*t)"))
+        zero = ("target.formulas = [0, 0, 0, 1] ", "target.formulas = [0, 0, 0, \"sin(t)\"] ")
+        away = lambda entry: entry["proof"]["bound"].update(within=["-1", "1"])  # noqa: E731
+        self.rejected("theorem-7", "nonzero-quaternion", "holds zero", away, zero)
+        self.rejected("theorem-7", "nonzero-quaternion", "does not hold", lambda entry: None, zero)
+        self.rejected("theorem-7", "known-momentum", "by the text", lambda entry: None, (
+            "[goal]", '[[external_wrenches]]\non = ["craft"]\nby.body_torque_n_m = [1, 0, 0]\n[goal]'))
+
+    def test_factors_of_inputs(self):
+        small = ('parameters = [-0.5, 0.7] }', 'parameters = [-0.5, 0.7], psi = "1e-4" }')
+        state = ('parameters = [-0.5, 0.7] }', 'parameters = [-0.5, 0.7], psi = "2 + x" }')
+        factor = lambda entry: entry.update(answer="violated", proof={"kind": "factor", "agent": "cart-1"})  # noqa: E731
+        for change in (small, state):
+            self.rejected("saturated-coupling", "input-factor", "is not so", lambda entry: None, change)
+        self.accepted("saturated-coupling", "input-factor", factor, small)
+        self.rejected("saturated-coupling", "input-factor", "no constant factor", factor)
+
+    def test_what_the_text_says(self):
+        limits = ("[network]", "[control]\nsample_hz = 100\ntorque_limit = 5\n[network]")
+        self.rejected("theorem-2", "applied-torque", "by the text", lambda entry: None, limits)
+        self.rejected("swarm-tracking", "mutual-weights", "by the text", lambda entry: None, ('["arm-2", "arm-1"], ', ""))
+        self.rejected("theorem-8", "no-delay", "by the text", lambda entry: None, ("[network] ", "[network]\ndelay.constant_s = 0.1\n#"))
+        self.rejected("theorem-8", "set-valued-sign", "by the text", lambda entry: None, ("gain = 2 ", 'gain = 2\nsign = "explicit" #'))
+        self.rejected("theorem-1", "fixed-graph", "weight varies", lambda entry: None, ("[network]", '[network]\nweight = "2 + sin(t)"'))
+        more = ("edges = [[", "[[network.phases]]\ndwell_s = 1\nedges = []\n[[network.phases]]\ndwell_s = 1\nedges = [[")
+        self.rejected("theorem-1", "fixed-graph", "graphs differ", lambda entry: None, more)
+        self.rejected("theorem-1", "dwell-time", "graphs differ", lambda entry: None, more)
+
+    def test_the_list_of_hypotheses(self):
+        whole = json.loads((self.folder / "theorem-2.json").read_text())
+        text = place_of("theorem-2").read_text()
+
+        def said(change, scenario=text):
+            certificate = copy.deepcopy(whole)
+            change(certificate)
+            found = checker.check(json.dumps(certificate), scenario, SCENARIOS, digests=False)
+            return [one[4] for one in found if one[3] == checker.REJECTED]
+
+        self.assertEqual(said(lambda certificate: None), [])
+        for k in range(len(whole["hypotheses"])):
+            self.assertEqual(said(lambda certificate: certificate["hypotheses"].pop(k)), ["is left out"])
+        self.assertIn("speaks twice about the same", said(lambda c: c["hypotheses"].append(c["hypotheses"][0])))
+        self.assertIn("must be theorem-2", said(lambda certificate: certificate.update(theorem="theorem-1")))
+        self.assertIn("has `more`, which means nothing here", said(lambda c: c["hypotheses"][0]["proof"].update(more=1)))
+        foreign = {"id": "no-delay", "agents": [], "answer": "holds", "proof": {"kind": "text"}}
+        self.assertIn("is not asked for by this scenario", said(lambda c: c["hypotheses"].append(foreign)))
+        self.assertEqual(said(lambda certificate: None, text.replace("[network]", "[control]\nsample_hz = 100\n[network]")), ["is left out"])
+        baseless = {"id": "continuous-time", "agents": [], "answer": "holds"}
+        sampled_ = text.replace("[network]", "[control]\nsample_hz = 100\n[network]")
+        self.assertIn("is a claim that nothing before a run shows", said(lambda c: c["hypotheses"].append(baseless), sampled_))
+
+    def test_shares(self):
+        def said(*shares):
+            certificate = json.loads((self.folder / "first-order.json").read_text())
+            certificate["agreement"]["influence"] = [[f"arm-{k + 1}", share] for k, share in enumerate(shares)]
+            found = checker.check(json.dumps(certificate), place_of("first-order").read_text(), SCENARIOS, digests=False)
+            return [one[4] for one in found if one[3] == checker.REJECTED]
+
+        self.assertEqual(said("1/4", "0.25", "1/4", "1/4"), [])
+        self.assertEqual(said("1/2", "1/2", "1/2", "1/2"), ["must be shares of one"])
+        self.assertEqual(said("1/2", "1/4", "1/8", "1/8"), ["is no left null vector of the Laplacian"])
+        self.assertEqual(said("1/4", "1/4", "1/2"), ["must be [agent, share] of everybody"])
 
 
 class Hostile(unittest.TestCase):

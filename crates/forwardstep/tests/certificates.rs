@@ -131,6 +131,35 @@ fn the_program_writes_a_certificate_whose_digests_count_until_they_are_ignored()
     assert!(code == 1 && said.contains(&format!("is no edge of this phase ({place})")), "{said}");
 }
 
+/// Each a shipped scenario with a change that violates one hypothesis.
+#[test]
+fn every_answer_violated_comes_with_a_witness_that_is_replayed() {
+    let folder = folder();
+    let cases = [
+        ("theorem-2", "spanning-tree", vec![(r#"["arm-2", "arm-3"],"#, ""), (r#"["arm-4", "arm-5"],"#, "")]),
+        ("theorem-8", "leader-reaches-all", vec![(r#"["leader", "arm-1"], "#, "")]),
+        ("theorem-8", "sign-gain", vec![("gain = 2 ", "gain = 0.5 ")]),
+        (
+            "saturated-coupling",
+            "input-factor",
+            vec![("parameters = [-0.5, 0.7] }", r#"parameters = [-0.5, 0.7], psi = "1e-4" }"#)],
+        ),
+    ];
+    for (scenario, id, changes) in cases {
+        let mut text = fs::read_to_string(file_of(scenario)).unwrap();
+        for (old, new) in changes {
+            assert!(text.contains(old), "{scenario}: {old}");
+            text = text.replace(old, new);
+        }
+        let file = folder.path().join(format!("{scenario}.toml"));
+        fs::write(&file, text).unwrap();
+        let found = checked(&certified(file.to_str().unwrap(), folder.path()), &file);
+        assert_eq!(found["violated"], serde_json::json!([id]), "{found}");
+        let rejected = found["entries"].as_array().unwrap().iter().any(|entry| entry["outcome"] == "rejected");
+        assert!(!rejected, "{found}");
+    }
+}
+
 #[test]
 fn a_certificate_that_cannot_be_written_is_an_error() {
     let folder = folder();

@@ -2,7 +2,7 @@
 
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::graph::strong_components;
-use forwardstep_sim::{AgentSetup, Setup};
+use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, Setup};
 use num_rational::BigRational;
 
 use super::exact::written;
@@ -85,8 +85,24 @@ fn sorted(vertices: usize, edges: &[(usize, usize)]) -> Vec<usize> {
     order
 }
 
-pub(super) fn input_factor(_: &Setup, claim: &Claim<'_>) -> Option<Proof> {
-    (claim.answer == Answer::Holds).then_some(Proof::ConstantFactor)
+pub(super) fn input_factor(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    match claim.answer {
+        Answer::Holds => Some(Proof::ConstantFactor),
+        Answer::Violated => {
+            setup.agents.iter().position(|agent| small_factor(agent) == Some(true)).map(Proof::SmallFactor)
+        }
+        Answer::HoldsOnHorizon | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
+    }
+}
+
+/// Whether the factor of the input of a chain is a constant below its floor; nothing where it is no constant.
+fn small_factor(agent: &AgentSetup) -> Option<bool> {
+    let (law, model): (&ChainLaw, &ChainModel) = (agent.law.downcast()?, agent.robot.kind.downcast()?);
+    let factor = match model {
+        ChainModel::Derivatives(terms) => terms.input(),
+        ChainModel::Cascade(terms) => terms.input(),
+    };
+    (factor.variables() == 0).then(|| factor.value(&[]).abs() < law.floor)
 }
 
 /// The sum of some expressions.

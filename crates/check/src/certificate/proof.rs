@@ -61,6 +61,8 @@ pub enum Proof {
     Reached(BigRational, usize),
     /// The factor of the input is a constant.
     ConstantFactor,
+    /// Witness: the factor of the input of this agent is a constant below its floor.
+    SmallFactor(usize),
     /// An entry of a quaternion, from zero, keeps away from zero.
     EntryAway(usize, Enclosure),
     /// The square of the norm of a quaternion keeps away from zero.

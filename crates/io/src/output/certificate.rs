@@ -111,6 +111,7 @@ impl Names<'_> {
             }
             Proof::Drive(bounds) => json!({ "kind": "bounds", "bounds": self.enclosures(bounds) }),
             Proof::Reached(t_s, axis) => json!({ "kind": "instant", "t_s": decimal(t_s), "axis": axis + 1 }),
+            Proof::SmallFactor(agent) => json!({ "kind": "factor", "agent": self.of(*agent) }),
             Proof::ConstantFactor => json!({ "kind": "constant" }),
             Proof::EntryAway(entry, bound) => {
                 json!({ "kind": "entry-away", "entry": entry + 1, "bound": self.enclosure(bound) })
