@@ -60,7 +60,7 @@ class Rejected(Exception):
         self.words, self.place = words, place
 
 class Undecided(Exception):
-    """Something that this program cannot check."""
+    """Something that cannot be checked here."""
 
 class Meaningless(Exception):
     """A scenario that cannot be read, or has no meaning."""
@@ -168,8 +168,11 @@ def not_negative(value, where):
     such(exact(value, where) >= 0, f"{where} must not be negative")
     return Fraction(value)
 
-def table(value, where):
+def table(value, where, keys=None):
+    """A table; one with keys that are not known here may mean something that is not known here."""
     such(isinstance(value, dict), f"{where} must be a table")
+    for key in value if keys is not None else ():
+        known(key, keys.split(), f"entries of {where}")
     return value
 
 def listed(value, where):
@@ -193,7 +196,7 @@ def choice(value, where):
     raise Meaningless(f"{where} must be a word, or a table with one key")
 
 def known(kind, kinds, what):
-    """A scenario may name kinds from outside, of which nothing is known here."""
+    """Scenarios may have kinds and keys from outside."""
     if kind not in kinds:
         raise Undecided(f"{what} of the kind `{kind}` are not known")
 
@@ -272,7 +275,7 @@ def arctan_small(x):
     room = Fraction(1, 1 << 180)
     return span(total_ - room, total_ + room)
 
-# π by Machin's formula, with the room of `arctan_small`.
+# By Machin's formula.
 PI = add(multiply((16, 16), arctan_small(Fraction(1, 5))), multiply((-4, -4), arctan_small(Fraction(1, 239))))
 
 def sine_at(x, turned):
@@ -535,8 +538,7 @@ def uniform(tree):
     """Whether a formula is shown to be uniformly continuous on [0, ∞), and what it keeps within there.
 
     Sums, and functions with a bounded slope, keep uniform continuity; products of bounded factors do; so do functions that are
-    continuous on the closed bounded range of their argument, and a quotient whose divisor keeps away from zero.
-    """
+    continuous on the closed bounded range of their argument, and a quotient whose divisor keeps away from zero."""
     within = enclose(tree, (Fraction(0), INF))
     kind = tree[0]
     if not has_variable(tree) or kind == "t":
@@ -606,6 +608,22 @@ MADE_FOR = {
 CHAIN_LAWS = ("linearising", "linear_adaptive", "immersion", "adaptive_backstepping")
 DESIGNS = ("continuous", "differentiable", "without_acceleration", "swarm")
 
+# The gains of each law, by their keys. What is not written is positive by default.
+GAINS = {
+    "adaptive": ("damping", "adaptation_gain"), "known": ("damping",),
+    "task_space": ("damping", "adaptation_gain", "task_gain", "kinematic_gain", "torque_share", "reference_gain_per_s"),
+    "attitude": ("error_gain_per_s2", "rate_gain_per_s", "filter_gain_per_s", "damping"),
+    "position_only": ("damping", "filter_per_s", "adaptation_gain"),
+    "thrust": ("damping_per_s", "stiffness", "adaptation_gain", "estimate_start_kg"),
+    "linearising": ("gain_per_s",), "linear_adaptive": ("gain_per_s", "adaptation_gain"),
+    "immersion": ("gain_per_s", "adaptation_gain"), "adaptive_backstepping": ("gains_per_s", "adaptation_gain"),
+}
+OTHER_SETTINGS = (" estimate_start estimate_start_kg floor design yaw thrust_start_n rate_bandwidth_per_s end_effector kinematic_start "
+                  "bounds determinant_floor antiderivatives")
+AGENT = "name count robot parameter_variation start reference law target enforce_limits"
+CONTROL = ("sample_hz computation_delay_s velocity noise quantisation torque_limit torque_rate_limit_per_s safe_command "
+           "message_timeout_s")
+
 class Agent:
     """An agent: its name, robot, law, roots, λ, target, and the entry of the file that it comes from."""
 
@@ -630,30 +648,30 @@ Edge = collections.namedtuple("Edge", "source to weight delay")
 class Scenario:
     def __init__(self, text, folder):
         self.file, self.folder, self.inputs = read_toml(text), folder, {}
-        file = self.file
+        file = table(self.file, "the scenario", "format title time agents reference leader law start network control "
+                     "external_wrenches solver goal")
         such(file.get("format") == 2, "`format` must be 2")
         self.end_s = positive(table(file.get("time"), "time").get("end_s"), "time.end_s")
         self.reference, body = choice(file.get("reference"), "reference")
-        self.body = table(body, "reference")
+        self.body = table(body, "reference", "roots_per_s exchange manipulability_gain filter_s acceleration_limit design coupling "
+                          "gain sign sign_period_s")
         known(self.reference, ("consensus", "pure_integral", "backstepping", "leader", "tracking"), "reference dynamics")
         self.agents = []
         for number, entry in enumerate(listed(file.get("agents"), "agents")):
-            self.populate(table(entry, "agents"), f"agents[{number}]")
+            self.populate(table(entry, "agents", AGENT), f"agents[{number}]")
         self.leader, self.motion = None, None
         names = [agent.name for agent in self.agents]
         if self.reference == "leader":
-            names += self.lead(table(file.get("leader"), "leader"), names)
+            names += self.lead(table(file.get("leader"), "leader", "name motion agent"), names)
         self.names = names
         self.index = {name: k for k, name in enumerate(names)}
         such(len(self.index) == len(names), "two agents have the same name")
         for agent in self.agents:
             self.design(agent)
-        self.control = table(file["control"], "control") if "control" in file else None
+        self.control = table(file["control"], "control", CONTROL) if "control" in file else None
         self.read_network()
         self.pairs = [{(edge.source, edge.to) for edge in graph} for graph in self.graphs]
         self.read_pushes()
-
-    # Agents
 
     def populate(self, entry, place):
         name = name_of(entry.get("name"), f"{place}.name")
@@ -666,17 +684,16 @@ class Scenario:
         for each in names:
             agent = Agent(each, len(self.agents), entry, place)
             agent.law, law = choice(entry.get("law", self.file.get("law", USUAL_LAW[agent.robot])), "law")
-            agent.gains = table(law, f"law.{agent.law}")
             known(agent.law, MADE_FOR, "laws")
+            agent.gains = table(law, f"law.{agent.law}", " ".join(GAINS[agent.law]) + OTHER_SETTINGS)
             such(agent.robot in MADE_FOR[agent.law], f"the law `{agent.law}` is not made for `{agent.robot}`")
             self.agents.append(agent)
 
     def lead(self, leader, names):
         """The names that the leader adds to the vertices."""
         if "agent" in leader:
-            name = name_of(leader["agent"], "leader.agent")
-            such(name in names, f"there is no agent `{name}`")
-            self.leader = names.index(name)
+            such(leader["agent"] in names, "there is no agent of the name of the leader")
+            self.leader = names.index(leader["agent"])
             return []
         self.motion = self.trajectory(leader.get("motion"), "leader.motion")
         self.leader = len(names)
@@ -700,9 +717,8 @@ class Scenario:
 
     def exchange(self):
         if self.reference in ("consensus", "pure_integral"):
-            word = self.body.get("exchange")
-            such(word in ("position", "position_velocity"), "`exchange` must be `position` or `position_velocity`")
-            return word
+            such(self.body.get("exchange") in ("position", "position_velocity"), "`exchange` has another value than there are")
+            return self.body["exchange"]
         return "position_velocity" if self.reference == "leader" else "position"
 
     # Motions: for each axis a formula, or ("points", t, x)
@@ -751,8 +767,6 @@ class Scenario:
         head = [key.strip() for key in rows[0]]
         return [dict(zip(head, (cell.strip() for cell in row + [""] * (len(head) - len(row))))) for row in rows[1:]]
 
-    # The network
-
     def read_network(self):
         self.graphs, self.dwell, self.switching, self.coupling = [[]], [], "once", None
         network = self.file.get("network")
@@ -760,7 +774,7 @@ class Scenario:
             if self.reference != "tracking":
                 raise Meaningless("`network` is missing")
             return
-        network = table(network, "network")
+        network = table(network, "network", "weight delay coupling edges switching phases")
         self.weight, self.delay = self.read_weight(network.get("weight", 1)), self.read_delay(network.get("delay", {"constant_s": 0}))
         if "coupling" in network:
             form, scale = choice(network["coupling"], "coupling")
@@ -770,7 +784,7 @@ class Scenario:
         if "edges" in network:
             self.graphs = [self.edges(network["edges"])]
             return
-        phases = [table(phase, "phases") for phase in listed(network["phases"], "phases")]
+        phases = [table(phase, "phases", "dwell_s edges") for phase in listed(network["phases"], "phases")]
         self.graphs = [self.edges(phase.get("edges")) for phase in phases]
         self.switching, body = choice(network.get("switching", "repeat"), "switching")
         if self.switching == "random":
@@ -791,22 +805,22 @@ class Scenario:
         return kind, body, repr((kind, body))
 
     def edges(self, value):
-        rule, body = (None, None) if isinstance(value, list) else choice(value, "edges")
-        found = [self.edge(entry) for entry in value] if rule is None else self.ruled(rule, table(body, "edges"))
+        rule, body = (None, {}) if isinstance(value, list) else choice(value, "edges")
+        body = table(body, "edges", "direction among centre weight delay file")
+        found = [self.edge(entry) for entry in value] if rule is None else self.ruled(rule, body)
         pairs = {(edge.source, edge.to) for edge in found}
         if len(pairs) < len(found) or any(a == b for a, b in pairs) or any(b == self.leader for _, b in pairs):
             raise Meaningless("an edge stands twice, leads from an agent to itself, or to the leader")
         return found
 
     def vertex(self, name):
-        name = name_of(name, "an agent of an edge")
-        such(name in self.index, f"there is no agent `{name}`")
+        such(name_of(name, "an agent of an edge") in self.index, f"there is no agent `{name}`")
         return self.index[name]
 
     def edge(self, entry):
         if isinstance(entry, list) and len(entry) == 2:
             return Edge(self.vertex(entry[0]), self.vertex(entry[1]), self.weight, self.delay)
-        entry = table(entry, "an edge")
+        entry = table(entry, "an edge", "from to weight delay")
         return Edge(self.vertex(entry.get("from")), self.vertex(entry.get("to")), *self.terms(entry))
 
     def terms(self, entry):
@@ -816,17 +830,15 @@ class Scenario:
     def ruled(self, rule, body):
         """Edges by a rule, as (from, to)."""
         if rule == "csv":
-            found = []
-            for row in self.csv(body.get("file")):
-                weight, delay = row.get("weight", ""), row.get("delay_s", "")
-                own = {"from": row.get("from"), "to": row.get("to")}
-                own |= {"weight": Fraction(weight) if DECIMAL.fullmatch(weight) else weight} if weight else {}
-                own |= {"delay": {"constant_s": quantity(delay)}} if delay else {}
-                found.append(self.edge(own))
-            return found
+            rows = [{key: cell for key, cell in row.items() if cell} for row in self.csv(body.get("file"))]
+            for row in rows:
+                if DECIMAL.fullmatch(row.get("weight", "")):
+                    row["weight"] = Fraction(row["weight"])
+                if "delay_s" in row:
+                    row["delay"] = {"constant_s": quantity(row.pop("delay_s"))}
+            return [self.edge(row) for row in rows]
         members = [self.vertex(name) for name in listed(body["among"], "among")] if "among" in body else list(range(len(self.agents)))
-        direction = body.get("direction")
-        n = len(members)
+        direction, n = body.get("direction"), len(members)
         if rule in ("ring", "path"):
             pairs = list(zip(members, members[1:])) + ([(members[-1], members[0])] if rule == "ring" and n > 1 else [])
             pairs += [(b, a) for a, b in pairs] if direction == "both" else []
@@ -848,17 +860,17 @@ class Scenario:
     # What acts from outside: for every agent the end of each push, infinite where there is none
 
     def read_pushes(self):
-        members = {}
+        members = collections.defaultdict(list)
         for agent in self.agents:
-            members.setdefault(agent.name, []).append(agent)
-            if "count" in agent.entry:
-                members.setdefault(agent.entry["name"], []).append(agent)
+            for name in {agent.name, agent.entry["name"]}:
+                members[name].append(agent)
         for push in self.file.get("external_wrenches", []):
-            push = table(push, "external_wrenches")
+            push = table(push, "external_wrenches", "on from_s for_s by")
             begins = not_negative(push.get("from_s", 0), "from_s")
             ends = begins + positive(push["for_s"], "for_s") if "for_s" in push else INF
             for name in listed(push.get("on"), "on"):
-                for agent in members.get(name_of(name, "on"), []):
+                such(name_of(name, "on") in members, f"there is no agent `{name}`")
+                for agent in members[name]:
                     for first, last in self.courses(push.get("by")):
                         if max(begins, first) < min(ends, last):
                             agent.pushes.append(min(ends, last))
@@ -883,8 +895,6 @@ class Scenario:
             else:
                 raise Undecided(f"courses of the form `{form}` are not known")
             yield min(times), max(times)
-
-    # Questions that several rules ask
 
     def used(self):
         return [edge for graph in self.graphs for edge in graph]
@@ -1261,7 +1271,6 @@ def enclosed(node, tree, end_s):
     return tuple(ends)
 
 def lasts(node):
-    """Whether an enclosure is for all time."""
     return node.field("range").text() != "run"
 
 def formulas(claim, node, text_of):
@@ -1296,10 +1305,8 @@ def rule_bound(delay):
         return mean + swing
     if kind == "saw_tooth" and low <= high:
         return high
-    if kind in ("sinusoid", "saw_tooth"):
-        raise Meaningless("a delay may be negative")
-    if kind != "packets":
-        raise Undecided(f"delays of the kind `{kind}` are not known")
+    such(kind not in ("sinusoid", "saw_tooth"), "a delay may be negative")
+    known(kind, ("packets",), "delays")
     loss = choice(body["loss"], "loss")[1] if "loss" in body else {"probability": 0}
     lost = loss.get("most_consecutive")
     if 0 in (loss.get("probability"), loss.get("enter")):
@@ -1375,8 +1382,9 @@ def number(claim, value):
     if claim.id == "real-roots":
         roots = [root for agent in agents for root in agent.roots]
         require(value, roots and 0 < stated <= min(roots), "is not a positive bound below all roots")
-        rootless = [a for a in agents if not a.roots and (a.tracks or claim.scenario.reference != "leader")]
-        require(claim.proof, not any(a.law in ("adaptive", "known") for a in rootless), "is not so: an agent has no roots")
+        agreeing = claim.scenario.reference in ("consensus", "pure_integral")
+        rooted = [a for a in agents if agreeing or (a.tracks and a.law in ("adaptive", "known"))]
+        require(claim.proof, all(a.roots for a in rooted), "is not so: an agent has no roots")
     elif claim.id == "manipulability":
         require(value, stated == max(agent.manipulability for agent in agents), "is not the largest gain")
     elif claim.id == "common-order":
@@ -1429,16 +1437,6 @@ def definite(node, rows, stated):
     require(stated, [pivot.number() for pivot in stated.each()] == found, "are not the pivots of the matrix")
     require(stated, len(found) == n and min(found) > 0, "are not all positive")
 
-# The gains of each law, by their keys. What is not written is positive by default.
-GAINS = {
-    "adaptive": ("damping", "adaptation_gain"), "known": ("damping",),
-    "task_space": ("damping", "adaptation_gain", "task_gain", "kinematic_gain", "torque_share", "reference_gain_per_s"),
-    "attitude": ("error_gain_per_s2", "rate_gain_per_s", "filter_gain_per_s", "damping"),
-    "position_only": ("damping", "filter_per_s", "adaptation_gain"),
-    "thrust": ("damping_per_s", "stiffness", "adaptation_gain", "estimate_start_kg"),
-    "linearising": ("gain_per_s",), "linear_adaptive": ("gain_per_s", "adaptation_gain"),
-    "immersion": ("gain_per_s", "adaptation_gain"), "adaptive_backstepping": ("gains_per_s", "adaptation_gain"),
-}
 ASKED_OF = {"positive-gains": ("adaptive", "known"), "task-space-gains": ("task_space",), "attitude-gains": ("attitude",),
             "position-only-gains": ("position_only",), "thrust-gains": ("thrust",), "chain-gains": CHAIN_LAWS,
             "chain-adaptation": CHAIN_LAWS}
@@ -1460,13 +1458,14 @@ def gain_is_positive(claim, agent, key, value, matrices, stated):
     bandwidth = value is None and agent.robot == "urdf"
     if isinstance(value, dict):
         kind, value = choice(value, key)
+        known(kind, ("gain", "bandwidth_per_s"), "gains")
         bandwidth = kind == "bandwidth_per_s"
     if bandwidth and key == "damping":
         # The scales of K are the diagonal of M(q₀); those of Γ are positive by how they are made.
         require(claim.proof, heavy(claim.scenario, agent), f"{agent.name} may have a joint without inertia")
     if value == 0 and key == "adaptation_gain" and agent.law in ("position_only", "thrust"):
-        known = agent.settings().get("estimate_start_kg") == agent.body.get("mass_kg") and "parameter_variation" not in agent.entry
-        require(claim.proof, known, f"{agent.name} keeps a wrong mass")
+        true = agent.settings().get("estimate_start_kg") == agent.body.get("mass_kg") and "parameter_variation" not in agent.entry
+        require(claim.proof, true, f"{agent.name} keeps a wrong mass")
     elif isinstance(value, list) and value and isinstance(value[0], list):
         require(matrices, (agent.name, key) in stated, f"lacks `{key}` of {agent.name}")
         entry = stated[agent.name, key]
@@ -1520,6 +1519,8 @@ def bounded(claim, order, stretch):
         require(claim.proof, scenario.motion is not None, "is of no motion")
         motions = [(scenario.motion, 1, 3)]
     require(order, motions and order.count() >= max(most for _, _, most in motions), "is too low for a law")
+    if any(most > 3 and tree[0] == "points" for paths, _, most in motions for tree in paths):
+        raise Undecided("the third derivative of a curve through points jumps")
     for tree, lowest, most in ((tree, lowest, most) for paths, lowest, most in motions for tree in paths if tree[0] != "points"):
         for k in range(most + 1):
             if k >= lowest and not finite(tree, [(Fraction(0), INF)]):
@@ -1649,6 +1650,8 @@ def check(certificate_text, scenario_text, folder, digests=True):
             found.append((each, [agent] if agent else [], "", result, words, ""))
         agreement = document.optional("agreement")
         if agreement is not None:
+            unique = any(one[0] == "spanning-tree" and one[2:4] == (HOLDS, ACCEPTED) for one in found)
+            require(agreement, unique, "is of a network whose spanning tree is not shown")
             agreed(scenario, agreement)
             found.append(("agreement", [], HOLDS, ACCEPTED, "uᵀL = 0 and Σu = 1", ""))
         if digests:

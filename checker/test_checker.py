@@ -820,6 +820,28 @@ class FalseProofs(unittest.TestCase):
         sampled_ = text.replace("[network]", "[control]\nsample_hz = 100\n[network]")
         self.assertIn("is a claim that nothing before a run shows", said(lambda c: c["hypotheses"].append(baseless), sampled_))
 
+    def test_what_may_mean_something_unknown_is_not_accepted(self):
+        """A key, or a kind, that came after the checker."""
+        changes = (("[network]", "dropout = 0.5\n[network]"), ("[network]", "[network]\ndropout = 0.5"), ("count = 6", "count = 6\nslack = 1"),
+                   ("exchange = ", "more = 1\nexchange = "), ("adaptation_gain = 10", "adaptation_gain = 10\nleak = 1"),
+                   ("damping.gain = 8", "damping.more = 8"), ("delay.sinusoid", "delay.wobble"), ("robot.planar_arm", "robot.snake"))
+        certificate = (self.folder / "theorem-2.json").read_text()
+        for old, new in changes:
+            text = place_of("theorem-2").read_text()
+            self.assertIn(old, text)
+            found = checker.check(certificate, text.replace(old, new, 1), SCENARIOS, digests=False)
+            unknown = [one for one in found if one[3] == checker.UNCHECKED and "are not known" in one[4]]
+            self.assertTrue(unknown, (new, found))
+
+    def test_everybody_that_agrees_needs_roots(self):
+        rootless = ("reference.consensus = { roots_per_s = [1.5] }\n", "")
+        self.rejected("framework", "real-roots", "has no roots", lambda entry: None, rootless)
+
+    def test_the_third_derivative_of_a_curve_through_points_jumps(self):
+        points = ('target.formulas = ["0.2*t + cos(0.3*t)", "sin(0.3*t)", "-0.5"]', "target.points = { times_s = [1, 2], positions = [[0, 0, 0], [1, 1, 1]] }")
+        judged, found = self.judged("formation", "bounded-target", lambda entry: None, points)
+        self.assertIn((checker.UNCHECKED, "the third derivative of a curve through points jumps"), judged, found)
+
     def test_shares(self):
         def said(*shares):
             certificate = json.loads((self.folder / "first-order.json").read_text())
@@ -831,6 +853,13 @@ class FalseProofs(unittest.TestCase):
         self.assertEqual(said("1/2", "1/2", "1/2", "1/2"), ["must be shares of one"])
         self.assertEqual(said("1/2", "1/4", "1/8", "1/8"), ["is no left null vector of the Laplacian"])
         self.assertEqual(said("1/4", "1/4", "1/2"), ["must be [agent, share] of everybody"])
+        # Of two closed classes each has a null vector, and no value is agreed upon.
+        text = place_of("cut").read_text()
+        text = text[:text.index("[[network.phases]]")] + 'edges = [["mass-1", "mass-2"], ["mass-3", "mass-4"]]\n'
+        certificate = json.loads((self.folder / "cut.json").read_text())
+        certificate["agreement"] = {"influence": [["mass-1", "1"], ["mass-2", "0"], ["mass-3", "0"], ["mass-4", "0"]]}
+        found = checker.check(json.dumps(certificate), text, SCENARIOS, digests=False)
+        self.assertIn("is of a network whose spanning tree is not shown", [one[4] for one in found])
 
 
 class Hostile(unittest.TestCase):
