@@ -833,6 +833,39 @@ class FalseProofs(unittest.TestCase):
             unknown = [one for one in found if one[3] == checker.UNCHECKED and "are not known" in one[4]]
             self.assertTrue(unknown, (new, found))
 
+    def test_nobody_is_heard_by_a_leader(self):
+        """So that a root is the leader: otherwise a follower might be one."""
+        heard = ('edges = [["leader", "arm-1"]', 'edges = [["arm-1", "leader"]')
+        self.rejected("theorem-8", "leader-reaches-all", "to the leader", lambda entry: None, heard)
+
+    def test_trees_of_every_phase(self):
+        name, each = "theorem-3-24-order-4", "spanning-tree"
+        path = [["arm-1", "arm-2"], ["arm-2", "arm-3"], ["arm-3", "own-roots"]]
+        whole = "edges = " + json.dumps(path)
+        same = [('edges = [["arm-1", "arm-2"], ["arm-3", "own-roots"]]', whole), ('edges = [["arm-2", "arm-3"]]', whole),
+                ('edges = [["own-roots", "arm-1"], ["arm-2", "arm-1"]]', whole)]
+
+        def windows(*runs):
+            trees = [{"phases": list(run), "root": "arm-1", "arborescence": [[*edge, run[0]] for edge in path]} for run in runs]
+            return lambda entry: entry.update(answer="holds", proof={"kind": "every-phase", "windows": trees})
+
+        self.accepted(name, each, windows((1,), (2,), (3,)), *same)
+        # Together is not each.
+        self.rejected(name, each, "one for each phase", windows((1, 2), (3,)), *same)
+        self.rejected(name, each, "is no edge", windows((1,), (2,), (3,)), *same[:2])
+
+    def test_ages_of_messages(self):
+        text = place_of("theorem-2").read_text()
+        certificate = json.loads((self.folder / "theorem-2.json").read_text())
+        certificate["hypotheses"].append({"id": "continuous-time", "agents": [], "answer": "not covered by the paper"})
+        for bound, timeout, outcome in (("0.51", "0.51", checker.ACCEPTED), ("0.5", "0.6", checker.REJECTED), ("0.6", "0.55", checker.REJECTED)):
+            proof = {"kind": "ages", "bound_s": bound}
+            own = copy.deepcopy(certificate)
+            own["hypotheses"].append({"id": "messages-in-time", "agents": [], "answer": "holds", "proof": proof})
+            sampled_ = text.replace("[network]", f"[control]\nsample_hz = 100\nmessage_timeout_s = {timeout}\n[network]")
+            found = checker.check(json.dumps(own), sampled_, SCENARIOS, digests=False)
+            self.assertIn(("messages-in-time", outcome), [(one[0], one[3]) for one in found], found)
+
     def test_everybody_that_agrees_needs_roots(self):
         rootless = ("reference.consensus = { roots_per_s = [1.5] }\n", "")
         self.rejected("framework", "real-roots", "has no roots", lambda entry: None, rootless)
@@ -853,6 +886,11 @@ class FalseProofs(unittest.TestCase):
         self.assertEqual(said("1/2", "1/2", "1/2", "1/2"), ["must be shares of one"])
         self.assertEqual(said("1/2", "1/4", "1/8", "1/8"), ["is no left null vector of the Laplacian"])
         self.assertEqual(said("1/4", "1/4", "1/2"), ["must be [agent, share] of everybody"])
+        # A tree that is claimed for the run alone is the same tree, since the graph never changes.
+        weaker = json.loads((self.folder / "first-order.json").read_text())
+        weaker["hypotheses"][0]["answer"] = "holds on [0, end]"
+        found = checker.check(json.dumps(weaker), place_of("first-order").read_text(), SCENARIOS, digests=False)
+        self.assertIn(("agreement", checker.ACCEPTED), [(one[0], one[3]) for one in found])
         # Of two closed classes each has a null vector, and no value is agreed upon.
         text = place_of("cut").read_text()
         text = text[:text.index("[[network.phases]]")] + 'edges = [["mass-1", "mass-2"], ["mass-3", "mass-4"]]\n'
@@ -926,6 +964,16 @@ class Enclosures(unittest.TestCase):
                 self.assertLessEqual(found[0], found[1])
                 self.assertLess(found[1] - found[0], 1e-25 * max(1, abs(value)))
                 self.assertAlmostEqual(float(found[0]) / max(1, abs(value)), value / max(1, abs(value)), 12)
+
+    def test_uniform_continuity_is_not_taken_for_granted(self):
+        for text, expected in (("sin(t)*cos(t)", True), ("0.2*t + 1", True), ("exp(-abs(sin(t)))", True), ("t*sin(t)", False),
+                               ("sin(t^2)", False), ("exp(t)", False), ("t^3", False)):
+            self.assertEqual(checker.uniform(checker.formula(text))[0], expected, text)
+
+    def test_zero_times_what_has_no_value_is_not_zero(self):
+        for text in ("0*log(t - 5)", "0/(t - 5)", "0*(t - 5)^-1", "0*sqrt(t - 5)"):
+            slope = checker.derivative(checker.formula(text))
+            self.assertRaises(checker.Undecided, checker.enclose, slope, (checker.Fraction(0), checker.Fraction(10)))
 
     def test_intervals_hold_all_that_is_sampled(self):
         draw = random.Random(4)
