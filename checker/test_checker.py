@@ -786,6 +786,36 @@ class FalseProofs(unittest.TestCase):
         self.accepted("saturated-coupling", "input-factor", factor, small)
         self.rejected("saturated-coupling", "input-factor", "no constant factor", factor)
 
+    def test_inertias(self):
+        arm = "robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }"
+        limp = arm[:-2] + ", com_m = [0.5, 0.0], inertia_kg_m2 = [0.2, %s] }"
+        self.accepted("theorem-2", "uniform-inertia", lambda entry: None, (arm, limp % "1e-9"))
+        self.rejected("theorem-2", "uniform-inertia", "is not so", lambda entry: None, (arm, limp % "0"))
+        ship = "sway_kg = 33.8, sway_yaw_kg_m = 1.1, yaw_kg_m2 = 2.8"
+        self.assertIn(ship, place_of("five-ships").read_text())
+        even = "sway_kg = 4, sway_yaw_kg_m = %s, yaw_kg_m2 = 9"
+        self.accepted("five-ships", "uniform-inertia", lambda entry: None, (ship, even % "-5.999"))
+        self.rejected("five-ships", "uniform-inertia", "is not so", lambda entry: None, (ship, even % "-6"))
+        self.accepted("five-ships", "bounded-dynamics")
+
+    def test_signs_are_solved_for_often_enough(self):
+        roots = "roots_per_s = [1.0]"
+        for period, judge in (("0.01", self.accepted), ("0.0101", None), ("2", None)):
+            change = roots, f"{roots}\nsign_period_s = {period}"
+            if judge:
+                judge("theorem-8", "set-valued-sign", lambda entry: None, change)
+            else:
+                self.rejected("theorem-8", "set-valued-sign", "is not so", lambda entry: None, change)
+
+    def test_terms_of_chains_have_values_everywhere(self):
+        for text, fine in (("x^2 - sin(x)/3", True), ("1/(1 + x^2)", True), ("sqrt(1 + x^2)", True), ("abs(x)^1.5", None), ("1/x", None),
+                           ("sqrt(x^2)", None), ("log(2 + cos(x))", True), ("x/0", None), ("x^-2", None)):
+            tree = checker.formula(text, checker.STATES)
+            if fine:
+                self.assertTrue(checker.everywhere(tree), text)
+            else:
+                self.assertRaises(checker.Undecided, checker.everywhere, tree)
+
     def test_what_the_text_says(self):
         limits = ("[network]", "[control]\nsample_hz = 100\ntorque_limit = 5\n[network]")
         self.rejected("theorem-2", "applied-torque", "by the text", lambda entry: None, limits)
