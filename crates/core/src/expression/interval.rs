@@ -139,9 +139,14 @@ impl Interval {
         }
     }
 
-    /// A function that rises, computed with a small relative error.
-    fn rising(self, function: Unary) -> Self {
-        Interval::new(apply(function, self.low), apply(function, self.high)).widened()
+    /// A function that rises, computed with a small relative error, and is exactly `value` at `at`.
+    fn rising(self, function: Unary, at: f64, value: f64) -> Self {
+        let near = Interval::new(apply(function, self.low), apply(function, self.high));
+        let Interval { low, high } = near.widened();
+        // What lies on one side of `at` stays on one side of `value`: tanh t is not negative for t ≥ 0.
+        let low = if self.low >= at { low.max(value) } else { low };
+        let high = if self.high <= at { high.min(value) } else { high };
+        Interval::new(low, high)
     }
 
     /// To a whole power.
@@ -193,11 +198,11 @@ impl Interval {
             Unary::Abs => self.abs(),
             Unary::Sin => self.sine(),
             Unary::Cos => self.wave(function, 0.0),
-            Unary::Exp => clamped(self.rising(function), 0.0, f64::INFINITY),
-            Unary::Tanh => clamped(self.rising(function), -1.0, 1.0),
-            Unary::Atan => self.rising(function),
+            Unary::Exp => clamped(self.rising(function, 0.0, 1.0), 0.0, f64::INFINITY),
+            Unary::Tanh => clamped(self.rising(function, 0.0, 0.0), -1.0, 1.0),
+            Unary::Atan => self.rising(function, 0.0, 0.0),
             Unary::Log | Unary::Sqrt if self.low < 0.0 => Interval::UNDEFINED,
-            Unary::Log => self.rising(function),
+            Unary::Log => self.rising(function, 1.0, 0.0),
             Unary::Sqrt => Interval::new(down(root(self.low)), up(root(self.high))),
         }
     }

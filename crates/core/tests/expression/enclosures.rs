@@ -55,6 +55,19 @@ fn exact_results_are_not_widened_and_others_are_on_the_side_of_the_truth() {
 }
 
 #[test]
+fn functions_that_rise_stay_on_their_side_of_where_they_are_exact() {
+    for (function, at, value) in
+        [(Unary::Tanh, 0.0, 0.0), (Unary::Atan, 0.0, 0.0), (Unary::Log, 1.0, 0.0), (Unary::Exp, 0.0, 1.0)]
+    {
+        let of = |low: f64, high: f64| then(x(), Step::Unary(function)).bounds(low, high);
+        assert_eq!((of(at, at + 3.0).low, of(at - 0.5, at).high), (value, value), "{function:?}");
+        // On the other side, and across, they are widened as ever.
+        let (below, across) = (of(at - 0.5, at - 0.25), of(at - 0.5, at + 0.5));
+        assert!(below.high < value && across.low < value && across.high > value, "{function:?}");
+    }
+}
+
+#[test]
 fn without_a_value_nothing_is_claimed_whatever_is_done_with_it() {
     let on = |low, high| Interval { low, high };
     let cases = [
