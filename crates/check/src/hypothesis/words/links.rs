@@ -95,7 +95,7 @@ fn reason(unknown: Unknown) -> &'static str {
         Unknown::FormulaBound => "a formula could not be shown to be bounded for ever",
         Unknown::FormulaContinuity => SWINGS,
         Unknown::PacketsInARow => {
-            "any number of packets may be lost one after another, so no delay is the longest (`most_in_a_row` would bound them)"
+            "any number of packets may be lost one after another, so no delay is the longest (`most_consecutive` would bound them)"
         }
         Unknown::NothingArrived => "on one link no message arrives until then, so nothing is known of its delay",
         Unknown::LaterPackets => "packets are replayed from a log, which says nothing about later ones",
