@@ -149,7 +149,7 @@ fn weights_and_delays_are_judged_by_what_they_do_for_all_time() {
     assert!(answer == Answer::Violated && because.contains("exceeds every bound; at t = "), "{because}");
     assert_eq!(
         weight((-t()).exp_of() + 0.2),
-        (Answer::Holds, "weights that follow a formula stay from 0.2 to 1.201".into())
+        (Answer::Holds, "weights that follow a formula stay from 0.2 to 1.2".into())
     );
     // A sum of two waves is larger than the sum of their lower bounds.
     let waves = t().sin_of() * 0.2 + t().cos_of() * 0.2 + 0.3;
