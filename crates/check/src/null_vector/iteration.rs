@@ -134,3 +134,30 @@ impl Block {
         epsilon * slowest * (1.0 + 8.0 * f64::EPSILON)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two pairs that hear each other faintly: what one pair has too much leaves hardly any residual.
+    #[test]
+    fn an_error_that_leaves_a_small_residual_is_enclosed_all_the_same() {
+        let (faint, excess) = (1e-3, 1e-3);
+        let edges = [(0, 1, 1.0), (1, 0, 1.0), (2, 3, 1.0), (3, 2, 1.0), (1, 2, faint), (2, 1, faint)];
+        let block = Block::new(vec![1.0, 1.0 + faint, 1.0 + faint, 1.0], &edges);
+        // Weights are mutual, so that the null vector is constant.
+        let u = [1.0, 1.0, 1.0 + excess, 1.0 + excess];
+        let kept = 0;
+        let mut f: Vec<f64> = u.iter().zip(&block.out).map(|(u, out)| u * out).collect();
+        f[kept] -= f.iter().sum::<f64>();
+        let mut x = vec![0.0; 4];
+        for _ in 0..20_000 {
+            block.sweep(&mut x, &f, |_, _| 1.0);
+        }
+        let error = block.enclose(&u, &x, kept);
+        let truth = excess / (1.0 + excess);
+        assert!((truth..30.0 * truth).contains(&error), "{error}");
+        // Where the inequalities cannot be verified nothing is claimed.
+        assert_eq!(block.enclose(&u, &[0.0; 4], kept), f64::INFINITY);
+    }
+}
