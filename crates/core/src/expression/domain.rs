@@ -10,6 +10,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::interval::{Interval, Intervals};
+use super::operation::Operation;
 use super::tail::{Series, Tails};
 use super::{Algebra, Binary, Expression, Number, Step, Unary};
 
@@ -193,7 +194,7 @@ impl Expression {
         if self.shown(|part| part.total) {
             return Domain::Everywhere;
         }
-        let found = self.places().iter().find_map(Place::fails);
+        let found = self.operations().into_iter().filter_map(Place::of).find_map(|place| place.fails());
         found.map_or(Domain::NotShown, |(at, gap)| Domain::Fails { at, gap })
     }
 
@@ -248,13 +249,6 @@ impl Expression {
         }
         false
     }
-
-    /// Where a value may be missing.
-    fn places(&self) -> Vec<Place> {
-        let mut places = Places { steps: &self.steps, next: 0, found: Vec::new() };
-        self.fold(&mut places);
-        places.found
-    }
 }
 
 /// x where x/(1 + |x|) is between these.
@@ -282,6 +276,20 @@ struct Place {
 }
 
 impl Place {
+    /// The operation, if it may have no value.
+    fn of(operation: Operation<'_>) -> Option<Place> {
+        let expression = |steps: &[Step]| Expression { steps: steps.to_vec() };
+        let (of, inner, kind) = match operation {
+            Operation::Binary(Binary::Divide, [a, b]) => (Some(expression(a)), b, Kind::Divisor),
+            Operation::Unary(Unary::Log, a) => (None, a, Kind::Logarithm),
+            Operation::Unary(Unary::Sqrt, a) => (None, a, Kind::Root),
+            Operation::Power(a, exponent) if libm::trunc(exponent.value()) != exponent.value() => (None, a, Kind::Root),
+            Operation::Power(a, exponent) if exponent.value() < 0.0 => (None, a, Kind::Divisor),
+            Operation::Unary(..) | Operation::Binary(..) | Operation::Power(..) => return None,
+        };
+        Some(Place { of, inner: expression(inner), kind })
+    }
+
     /// A point where there is no value, and why.
     fn fails(&self) -> Option<(Vec<f64>, Gap)> {
         let value = |at: &[f64]| {
@@ -368,61 +376,4 @@ fn radical(mut k: u32, base: u32) -> f64 {
         k /= base;
     }
     value
-}
-
-/// The algebra that collects places; a value is the number of the first step of a sub-expression.
-struct Places<'a> {
-    steps: &'a [Step],
-    next: usize,
-    found: Vec<Place>,
-}
-
-impl Places<'_> {
-    fn step(&mut self, first: Option<usize>) -> usize {
-        self.next += 1;
-        first.unwrap_or(self.next - 1)
-    }
-
-    fn part(&self, from: usize, to: usize) -> Expression {
-        Expression { steps: self.steps[from..to].to_vec() }
-    }
-}
-
-impl Algebra for Places<'_> {
-    type Value = usize;
-
-    fn number(&mut self, _: &Number) -> usize {
-        self.step(None)
-    }
-    fn variable(&mut self, _: usize) -> usize {
-        self.step(None)
-    }
-    fn unary(&mut self, function: Unary, a: usize) -> usize {
-        let kind = match function {
-            Unary::Log => Some(Kind::Logarithm),
-            Unary::Sqrt => Some(Kind::Root),
-            Unary::Negate | Unary::Sin | Unary::Cos | Unary::Exp | Unary::Abs | Unary::Tanh | Unary::Atan => None,
-        };
-        let inner = self.part(a, self.next);
-        self.found.extend(kind.map(|kind| Place { of: None, inner, kind }));
-        self.step(Some(a))
-    }
-    fn binary(&mut self, function: Binary, a: usize, b: usize) -> usize {
-        if function == Binary::Divide {
-            let (of, inner) = (Some(self.part(a, b)), self.part(b, self.next));
-            self.found.push(Place { of, inner, kind: Kind::Divisor });
-        }
-        self.step(Some(a))
-    }
-    fn power(&mut self, a: usize, exponent: &Number) -> usize {
-        let exponent = exponent.value();
-        let kind = match libm::trunc(exponent) == exponent {
-            true if exponent >= 0.0 => None,
-            true => Some(Kind::Divisor),
-            false => Some(Kind::Root),
-        };
-        let inner = self.part(a, self.next);
-        self.found.extend(kind.map(|kind| Place { of: None, inner, kind }));
-        self.step(Some(a))
-    }
 }

@@ -9,7 +9,8 @@ use alloc::vec::Vec;
 
 use thiserror::Error;
 
-use super::{Algebra, Binary, Expression, Graph, Interval, Number, Step, Unary};
+use super::operation::Operation;
+use super::{Binary, Expression, Graph, Interval, Step, Unary};
 
 /// Kinks that an expression may have.
 pub const MOST_KINKS: usize = 10_000;
@@ -62,58 +63,21 @@ impl Expression {
     /// # Errors
     /// [`KinkError`] when that cannot be shown.
     pub fn switches(&self, from: f64, to: f64) -> Result<Vec<Switch>, KinkError> {
-        let mut arguments = Arguments { steps: self.steps(), next: 0, found: Vec::new() };
-        self.fold(&mut arguments);
-        arguments.found.iter().map(|argument| Search::new(argument).run(from, to)).collect()
+        let arguments: Vec<Expression> = self.operations().iter().filter_map(argument).collect();
+        arguments.iter().map(|argument| Search::new(argument).run(from, to)).collect()
     }
 }
 
-/// The algebra that collects arguments; a value is the number of the first step of a sub-expression.
-struct Arguments<'a> {
-    steps: &'a [Step],
-    next: usize,
-    found: Vec<Expression>,
-}
-
-impl Arguments<'_> {
-    fn step(&mut self, first: Option<usize>) -> usize {
-        self.next += 1;
-        first.unwrap_or(self.next - 1)
-    }
-}
-
-impl Algebra for Arguments<'_> {
-    type Value = usize;
-
-    fn number(&mut self, _: &Number) -> usize {
-        self.step(None)
-    }
-    fn variable(&mut self, _: usize) -> usize {
-        self.step(None)
-    }
-    fn unary(&mut self, function: Unary, a: usize) -> usize {
-        if function == Unary::Abs {
-            self.found.push(Expression { steps: self.steps[a..self.next].to_vec() });
-        }
-        self.step(Some(a))
-    }
-    fn binary(&mut self, function: Binary, a: usize, b: usize) -> usize {
-        let (first, second) = (&self.steps[a..b], &self.steps[b..self.next]);
-        let difference = match function {
-            Binary::Max => Some([first, second]),
-            Binary::Min => Some([second, first]),
-            Binary::Add | Binary::Subtract | Binary::Multiply | Binary::Divide => None,
-        };
-        if let Some(operands) = difference {
-            let mut steps = operands.concat();
-            steps.push(Step::Binary(Binary::Subtract));
-            self.found.push(Expression { steps });
-        }
-        self.step(Some(a))
-    }
-    fn power(&mut self, a: usize, _: &Number) -> usize {
-        self.step(Some(a))
-    }
+/// The argument of |a|, min or max.
+fn argument(operation: &Operation<'_>) -> Option<Expression> {
+    let difference = |a: &[Step], b: &[Step]| [a, b, &[Step::Binary(Binary::Subtract)]].concat();
+    let steps = match operation {
+        Operation::Unary(Unary::Abs, a) => a.to_vec(),
+        Operation::Binary(Binary::Max, [a, b]) => difference(a, b),
+        Operation::Binary(Binary::Min, [a, b]) => difference(b, a),
+        Operation::Unary(..) | Operation::Binary(..) | Operation::Power(..) => return None,
+    };
+    Some(Expression { steps })
 }
 
 /// A walk from left to right over the stretches of one argument.

@@ -28,6 +28,7 @@ mod interval;
 mod jet;
 mod kinks;
 mod number;
+mod operation;
 mod period;
 mod tail;
 mod tape;
