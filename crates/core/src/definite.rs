@@ -9,7 +9,6 @@
 //! positive definite.
 
 use alloc::boxed::Box;
-use alloc::format;
 use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt;
@@ -50,14 +49,8 @@ pub(crate) fn positive_definite(size: usize, entries: &[f64]) -> Result<(), Gain
 }
 
 fn decide(size: usize, entries: &[f64]) -> Result<(), Indefinite> {
-    eliminate(size, &entries.iter().map(|entry| written(*entry)).collect::<Vec<_>>())?;
+    eliminate(size, &entries.iter().map(|entry| Number::written(*entry)).collect::<Vec<_>>())?;
     eliminate(size, &entries.iter().map(|entry| binary(*entry)).collect::<Vec<_>>())
-}
-
-/// The shortest decimal that reads as this number; the number itself where that decimal would be too long to keep.
-fn written(entry: f64) -> BigRational {
-    let decimal = Number::decimal(&format!("{:e}", entry.abs())).and_then(|number| number.exact());
-    decimal.map_or_else(|| binary(entry), |size| if entry < 0.0 { -size } else { size })
 }
 
 fn binary(entry: f64) -> BigRational {
@@ -190,7 +183,7 @@ mod tests {
         assert!(positive_definite(2, &[1.0, 0.69, 0.69, 0.4761]).is_err());
         // And the other way round.
         let rounded = [0.3, 1.1, 1.1, 4.033333333333334];
-        assert!(eliminate(2, &rounded.map(written)).is_ok() && decide(2, &rounded).is_err());
+        assert!(eliminate(2, &rounded.map(Number::written)).is_ok() && decide(2, &rounded).is_err());
     }
 
     #[test]

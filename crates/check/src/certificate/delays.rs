@@ -2,19 +2,25 @@
 
 use std::collections::BTreeSet;
 
+use forwardstep_core::expression::{Expression, Interval, Number};
 use forwardstep_sim::Setup;
 use forwardstep_sim::coupling::Coupling;
-use forwardstep_sim::delay::{Basis, Delay, PacketLink, Sinusoid};
+use forwardstep_sim::delay::{Basis, Delay, PacketLink, Refuted, Sinusoid};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
 use num_rational::BigRational;
 use num_traits::Zero;
 
-use super::enclosure::enclosed;
-use super::exact::{above, written};
+use super::enclosure::steady;
+use super::exact::above;
+use super::limit::{Limit, limit};
 use super::producers::Claim;
 use super::proof::{Enclosure, GivenAge, Proof};
 use crate::Answer;
+
+/// Times at which a formula is looked at for a witness, and how many of them there are in a second.
+const LOOKS: u32 = 100_000;
+const LOOKS_PER_S: f64 = 100.0;
 
 /// All edges with their phases.
 fn edges(setup: &Setup) -> impl Iterator<Item = (usize, &Edge)> {
@@ -24,7 +30,7 @@ fn edges(setup: &Setup) -> impl Iterator<Item = (usize, &Edge)> {
 
 pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     if claim.answer == Answer::Violated {
-        return None;
+        return late_for_ever(setup);
     }
     let (end_s, reach) = (setup.time.end_s, claim.reach());
     let (mut bound_s, mut formulas, mut given) = (BigRational::zero(), Vec::new(), Vec::new());
@@ -36,7 +42,7 @@ pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
         }
         if let Some(formula) = delay.downcast::<BoundedFormula>() {
             if seen.insert(edge.delay) {
-                let mut found = enclosed(formula.formula(), end_s, reach, |within| within.low >= 0.0)?;
+                let mut found = steady(formula.formula(), end_s, reach, |within| within.low >= 0.0)?;
                 found.edge = Some((edge.from, edge.to, phase));
                 bound_s = bound_s.max(found.within[1].clone());
                 formulas.push(found);
@@ -52,6 +58,48 @@ pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     Some(Proof::Delays { bound_s, formulas, given })
 }
 
+/// A delay that exceeds every bound or becomes negative, or a link that loses every packet.
+fn late_for_ever(setup: &Setup) -> Option<Proof> {
+    edges(setup).find_map(|(phase, edge)| {
+        let (delay, at) = (setup.network.delays.get(edge.delay)?, (edge.from, edge.to, phase));
+        if delay.known().refuted == Some(Refuted::EveryPacketLost) {
+            return Some(Proof::LosesAll(at));
+        }
+        let formula = delay.downcast::<BoundedFormula>()?.formula();
+        match limit(formula) {
+            Limit::Up | Limit::Down => Some(Proof::Limit(at)),
+            Limit::Near(within) if within.high < 0.0 => Some(Proof::Limit(at)),
+            Limit::Near(_) | Limit::Unknown => {
+                first(formula, |value| value.high < 0.0).map(|t_s| Proof::Below(t_s, at))
+            }
+        }
+    })
+}
+
+/// A weight that comes to zero, becomes negative, or grows without bound.
+fn fading(setup: &Setup) -> Option<Proof> {
+    edges(setup).find_map(|(phase, edge)| {
+        let Weight::Formula(index) = edge.weight else { return None };
+        let (formula, at) = (setup.network.weights.get(index)?.formula(), (edge.from, edge.to, phase));
+        match limit(formula) {
+            Limit::Up | Limit::Down => Some(Proof::Limit(at)),
+            Limit::Near(within) if within.high <= 0.0 => Some(Proof::Limit(at)),
+            Limit::Near(_) | Limit::Unknown => {
+                first(formula, |value| value.high <= 0.0).map(|t_s| Proof::Below(t_s, at))
+            }
+        }
+    })
+}
+
+/// The first of some times at which the value of a formula is clearly of a kind.
+fn first(formula: &Expression, is: impl Fn(Interval) -> bool) -> Option<BigRational> {
+    let values = (0..=LOOKS).map(|look| f64::from(look) / LOOKS_PER_S);
+    values
+        .map(|t_s| (t_s, formula.enclose(Interval::point(t_s))))
+        .find(|(_, value)| is(*value))
+        .map(|(t_s, _)| Number::written(t_s))
+}
+
 /// Whether a link draws packets whose rule bounds nothing.
 fn is_drawn(delay: &Delay) -> bool {
     delay.packets().and_then(|trace| trace.link()).is_some_and(|link| !link.bound_s().is_finite())
@@ -59,7 +107,7 @@ fn is_drawn(delay: &Delay) -> bool {
 
 /// What a delay does not exceed, in exact numbers where its rule adds some.
 fn largest(delay: &Delay) -> BigRational {
-    let sum = |numbers: &[f64]| numbers.iter().copied().map(written).sum();
+    let sum = |numbers: &[f64]| numbers.iter().copied().map(Number::written).sum();
     if let Some(Sinusoid { mean_s, amplitude_s, .. }) = delay.downcast() {
         return sum(&[*mean_s, *amplitude_s]);
     }
@@ -67,25 +115,25 @@ fn largest(delay: &Delay) -> BigRational {
         Some((Some(link), _)) if link.bound_s().is_finite() => by_rule(link),
         // Ages are differences of sums of what is written: one rounding in each.
         Some((_, trace)) => above(trace.statistics().largest_age_s * (1.0 + 1e-12) + 1e-12),
-        None => written(delay.known().bound_s),
+        None => Number::written(delay.known().bound_s),
     }
 }
 
 /// (lost + 1) · period + latency + jitter.
 fn by_rule(link: &PacketLink) -> BigRational {
-    let rest = written(link.latency_s) + written(link.jitter_s);
+    let rest = Number::written(link.latency_s) + Number::written(link.jitter_s);
     let packets = ((link.bound_s() - link.latency_s - link.jitter_s) / link.every_s).round();
-    written(packets) * written(link.every_s) + rest
+    Number::written(packets) * Number::written(link.every_s) + rest
 }
 
 pub(super) fn in_time(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     let timeout_s = setup.control.as_ref()?.failures.message_timeout_s?;
-    (claim.answer == Answer::Holds).then(|| Proof::Ages(written(timeout_s)))
+    (claim.answer == Answer::Holds).then(|| Proof::Ages(Number::written(timeout_s)))
 }
 
 pub(super) fn weights(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     if claim.answer == Answer::Violated {
-        return None;
+        return fading(setup);
     }
     let mut seen = BTreeSet::new();
     let found = edges(setup).filter_map(|(phase, edge)| match edge.weight {
@@ -94,7 +142,7 @@ pub(super) fn weights(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     });
     let enclosure = |(index, edge): (usize, (usize, usize, usize))| {
         let formula = setup.network.weights.get(index)?.formula();
-        let found = enclosed(formula, setup.time.end_s, claim.reach(), |within| within.low > 0.0)?;
+        let found = steady(formula, setup.time.end_s, claim.reach(), |within| within.low > 0.0)?;
         Some(Enclosure { edge: Some(edge), ..found })
     };
     found.map(enclosure).collect::<Option<_>>().map(Proof::Weights)
@@ -106,8 +154,8 @@ pub(super) fn coupling(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     }
     match setup.network.coupling {
         Coupling::Linear => None,
-        Coupling::Saturated { limit } => Some(Proof::Form("saturated", written(limit))),
-        Coupling::Tanh { scale } => Some(Proof::Form("tanh", written(scale))),
-        Coupling::Rational { scale } => Some(Proof::Form("rational", written(scale))),
+        Coupling::Saturated { limit } => Some(Proof::Form("saturated", Number::written(limit))),
+        Coupling::Tanh { scale } => Some(Proof::Form("tanh", Number::written(scale))),
+        Coupling::Rational { scale } => Some(Proof::Form("rational", Number::written(scale))),
     }
 }

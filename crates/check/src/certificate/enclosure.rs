@@ -3,16 +3,15 @@
 use forwardstep_core::expression::{Expression, Interval};
 
 use super::exact::{above, below};
-use super::period::period_s;
+use super::late::late;
 use super::proof::{Enclosure, Range};
 
 /// How many pieces are tried.
 const CELLS: [usize; 6] = [1, 8, 32, 128, 512, 2048];
+/// Times from which one piece takes all that is left.
+const STARTS_S: [u32; 3] = [1, 16, 1024];
 /// Room, as a part, for the ends of pieces, which are rounded here and exact elsewhere.
 const ROOM: f64 = 1e-9;
-
-/// All t from zero on.
-const FOR_EVER: Interval = Interval { low: 0.0, high: f64::INFINITY };
 
 /// How far a proof has to reach.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,14 +22,37 @@ pub(super) enum Reach {
     Run,
 }
 
-/// The first stretch on which `formula` keeps within something that is `good`: for ever, over a period, up to `end_s`.
+/// The first stretch on which `formula` keeps within something that is `good`: for ever, over a period, in pieces of which the last
+/// has no end, up to `end_s`.
 pub(super) fn enclosed(
     formula: &Expression,
     end_s: f64,
     reach: Reach,
     good: impl Fn(Interval) -> bool,
 ) -> Option<Enclosure> {
-    found(formula, |t| formula.enclose(t), end_s, reach, good)
+    let enclose = |t: Interval| if t.high.is_finite() { formula.enclose(t) } else { late(formula, t.low).within };
+    found(formula, enclose, end_s, reach, good)
+}
+
+/// The same of a formula that is shown to be uniformly continuous as well where the stretch has no end: its slope is bounded from
+/// some time on. What repeats, and what ends, needs no more than its values.
+pub(super) fn steady(
+    formula: &Expression,
+    end_s: f64,
+    reach: Reach,
+    good: impl Fn(Interval) -> bool,
+) -> Option<Enclosure> {
+    let enclose = |t: Interval| {
+        if t.high.is_finite() {
+            return formula.enclose(t);
+        }
+        let late = late(formula, t.low);
+        // One pass in rational numbers ends at zero where rounded ends fall short of it: 0.2 + 0.2 sin 3 t.
+        let exact = formula.bounds(t.low, t.high);
+        let within = if exact.is_finite() { exact } else { late.within };
+        if late.slope.is_finite() { within } else { Interval::WHOLE }
+    };
+    found(formula, enclose, end_s, reach, good)
 }
 
 /// The same for what is made of a formula and has its period, as its derivatives have.
@@ -42,24 +64,31 @@ pub(super) fn found(
     good: impl Fn(Interval) -> bool,
 ) -> Option<Enclosure> {
     let good = |within: &Interval| within.is_finite() && good(*within);
-    let whole = Some(enclose(FOR_EVER)).filter(good);
-    if let Some(within) = whole {
+    let from = |low: f64| enclose(Interval { low, high: f64::INFINITY });
+    if let Some(within) = Some(from(0.0)).filter(good) {
         return Some(stated(Range::ForEver, within));
     }
-    let cut = |until_s: f64, range: fn(usize) -> Range| {
+    let cut = |until_s: f64, rest: Option<Interval>, range: &dyn Fn(usize) -> Range| {
         CELLS.into_iter().find_map(|cells| {
             let at = |k: usize| until_s * k as f64 / cells as f64;
             let pieces = (0..cells).map(|k| enclose(Interval { low: at(k), high: at(k + 1) }));
-            let hull = pieces.reduce(Interval::hull).filter(|hull| hull.is_finite())?;
-            let within = Some(hull.with_room(ROOM * hull.size())).filter(good)?;
-            Some(stated(range(cells), within))
+            let hull = pieces.chain(rest).reduce(Interval::hull).filter(|hull| hull.is_finite())?;
+            let wide = hull.with_room(ROOM * hull.size());
+            // What ends at zero does so exactly.
+            let within = Interval { low: if hull.low == 0.0 { 0.0 } else { wide.low }, ..wide };
+            good(&within).then(|| stated(range(cells), within))
         })
     };
-    let period = period_s(formula).and_then(|period_s| cut(period_s, |cells| Range::Period { cells }));
-    match reach {
-        Reach::ForEver => period,
-        Reach::Run => period.or_else(|| cut(end_s, |cells| Range::Run { cells })),
-    }
+    let period = || cut(formula.period()?, None, &|cells| Range::Period { cells });
+    let tail = || {
+        STARTS_S.into_iter().find_map(|until_s| {
+            let start_s = f64::from(until_s);
+            let rest = Some(from(start_s)).filter(good)?;
+            cut(start_s, Some(rest), &|cells| Range::Tail { cells, until_s })
+        })
+    };
+    let run = || (reach == Reach::Run).then(|| cut(end_s, None, &|cells| Range::Run { cells }))?;
+    period().or_else(tail).or_else(run)
 }
 
 fn stated(range: Range, within: Interval) -> Enclosure {

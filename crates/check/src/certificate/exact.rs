@@ -1,4 +1,4 @@
-//! Numbers as they were written.
+//! Short decimals beside a number, and how numbers stand in a certificate.
 
 use core::fmt::Write;
 
@@ -6,18 +6,11 @@ use forwardstep_core::expression::Number;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 
-/// The shortest decimal that reads as this number, which is what somebody wrote; zero for what is not finite.
-pub(super) fn written(value: f64) -> BigRational {
-    let size = Number::decimal(&format!("{:e}", value.abs())).and_then(|number| number.exact());
-    let size = size.or_else(|| BigRational::from_float(value.abs())).unwrap_or_else(BigRational::zero);
-    if value < 0.0 { -size } else { size }
-}
-
 /// A short decimal that is not above a finite number.
 pub(super) fn below(value: f64) -> BigRational {
     let exact = BigRational::from_float(value).unwrap_or_else(BigRational::zero);
-    let short = written(value);
-    if short <= exact { short } else { written(value.next_down()) }
+    let short = Number::written(value);
+    if short <= exact { short } else { Number::written(value.next_down()) }
 }
 
 /// A short decimal that is not below a finite number.

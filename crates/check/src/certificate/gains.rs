@@ -1,12 +1,12 @@
 //! Pivots of gains that are full matrices, and of the Laplacian under swarm tracking.
 
 use forwardstep_core::Gain;
+use forwardstep_core::expression::Number;
 use forwardstep_sim::leader::FollowingDesign;
 use forwardstep_sim::{Adaptive, AgentSetup, AttitudeLaw, Known, Setup, TaskSpaceLaw};
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
-use super::exact::written;
 use super::producers::Claim;
 use super::proof::{Matrix, Proof};
 use crate::{Answer, Id};
@@ -24,7 +24,7 @@ pub(super) fn definite(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
             match value {
                 Gain::Number(_) | Gain::Diagonal(_) | Gain::Bandwidth(_) => {}
                 Gain::Matrix(entries) => {
-                    let entries: Vec<BigRational> = entries.iter().copied().map(written).collect();
+                    let entries: Vec<BigRational> = entries.iter().copied().map(Number::written).collect();
                     matrices.push(Matrix { agent, gain, pivots: pivots(entries)? });
                 }
             }
@@ -76,7 +76,7 @@ pub(super) fn swarm(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     let FollowingDesign::Swarm { coupling } = following.design else { return None };
     let edges = setup.network.schedule.constant_graph()?;
     // α and β are products and sums of roots as they are written; the roots follow from them exactly.
-    let (alpha, beta) = (written(following.alpha), written(following.beta));
+    let (alpha, beta) = (Number::written(following.alpha), Number::written(following.beta));
     let (small, large) = roots(&alpha, &beta)?;
     let square = &small * &small;
     let two = BigRational::from_integer(2.into());
@@ -86,10 +86,10 @@ pub(super) fn swarm(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     let mut rows = vec![BigRational::zero(); n * n];
     let place = |vertex: usize| followers.iter().position(|follower| *follower == vertex);
     for k in 0..n {
-        rows[k * n + k] = -(&least / written(coupling));
+        rows[k * n + k] = -(&least / Number::written(coupling));
     }
     for edge in edges {
-        let (weight, to) = (written(edge.weight.constant()?), place(edge.to)?);
+        let (weight, to) = (Number::written(edge.weight.constant()?), place(edge.to)?);
         rows[to * n + to] += &weight;
         if let Some(from) = place(edge.from) {
             rows[to * n + from] -= weight;

@@ -11,11 +11,13 @@ mod delays;
 mod enclosure;
 mod exact;
 mod gains;
+mod late;
+mod limit;
 mod motions;
 mod numbers;
-mod period;
 mod producers;
 mod proof;
+mod ratio;
 mod shares;
 mod windows;
 

@@ -1,19 +1,21 @@
 //! Bounds of targets, offsets and leaders.
 
-use forwardstep_core::expression::{Expression, Interval};
-use forwardstep_sim::Setup;
+use forwardstep_core::expression::{Expression, Interval, Number};
 use forwardstep_sim::trajectory::{Path, Sinusoid, Trajectory};
+use forwardstep_sim::{Setup, TaskSpaceLaw, TipSetup};
 
 use super::enclosure::{Reach, enclosed, found};
-use super::exact::written;
+use super::late::late;
 use super::numbers::sum;
 use super::producers::Claim;
 use super::proof::{Enclosure, Proof, Range};
+use super::ratio::Ratio;
 use crate::laws::kind_of;
 use crate::{Answer, Id};
 
-/// Times at which a leader is looked at for a witness.
+/// Times of the run at which a leader is looked at for a witness, and doublings of the run after it.
 const LOOKS: u32 = 20_000;
+const LATER: u32 = 30;
 
 /// The motion of one axis as a formula; nothing for a curve through points.
 fn formula(path: &Path) -> Option<Expression> {
@@ -31,11 +33,8 @@ fn formula(path: &Path) -> Option<Expression> {
     }
 }
 
-/// How far the derivatives of targets, or of a leader, are bounded: for ever, else in as many pieces of the run as it takes.
+/// How far the derivatives of targets, or of a leader, are bounded, or one that is not.
 pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
-    if claim.answer == Answer::Violated {
-        return None;
-    }
     let reach = claim.reach();
     let mut order = 3;
     let mut motions: Vec<(&Trajectory, usize)> = Vec::new();
@@ -48,6 +47,12 @@ pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
             order = order.max(kind_of(agent).target_derivatives(agent).min(4));
             motions.push((agent.target.as_ref()?, usize::from(!setup.tracks(*index))));
         }
+    }
+    if claim.answer == Answer::Violated {
+        return motions.iter().enumerate().find_map(|(motion, (trajectory, lowest))| {
+            let (axis, order) = diverging(trajectory, *lowest, order)?;
+            Some(Proof::Diverges { motion, axis, order })
+        });
     }
     let mut range = Range::ForEver;
     for (trajectory, lowest) in motions {
@@ -62,14 +67,25 @@ pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     Some(Proof::Derivatives(order, range))
 }
 
-/// The stretch that needs more pieces.
+/// An axis and a derivative that goes beyond every bound, of what is a quotient of polynomials.
+fn diverging(trajectory: &Trajectory, lowest: usize, highest: usize) -> Option<(usize, usize)> {
+    trajectory.paths().iter().enumerate().find_map(|(axis, path)| {
+        let quotient = late(&formula(path)?, 1.0).ratio;
+        let derivatives = std::iter::successors(quotient, Ratio::derivative).take(highest + 1);
+        let diverges = |ratio: &Ratio| ratio.limit().is_some_and(|limit| limit.is_err());
+        derivatives.enumerate().skip(lowest).find(|(_, ratio)| diverges(ratio)).map(|(order, _)| (axis, order))
+    })
+}
+
+/// The stretch that needs more pieces, or tells less.
 fn wider(a: Range, b: Range) -> Range {
-    match (a, b) {
-        (Range::ForEver, range) | (range, Range::ForEver) => range,
-        (Range::Period { cells: a }, Range::Period { cells: b }) => Range::Period { cells: a.max(b) },
-        (Range::Run { cells: a }, Range::Run { cells: b } | Range::Period { cells: b })
-        | (Range::Period { cells: b }, Range::Run { cells: a }) => Range::Run { cells: a.max(b) },
-    }
+    let rank = |range: Range| match range {
+        Range::ForEver => (0, 0, 0),
+        Range::Period { cells } => (1, 0, cells),
+        Range::Tail { cells, until_s } => (2, until_s, cells),
+        Range::Run { cells } => (3, 0, cells),
+    };
+    if rank(a) < rank(b) { b } else { a }
 }
 
 pub(super) fn sign_gain(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
@@ -95,8 +111,9 @@ pub(super) fn sign_gain(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
 /// A time at which γ is reached clearly.
 fn instant(trajectory: &Trajectory, drive: &[f64; 5], gain: f64, end_s: f64) -> Option<Proof> {
     let mut best = (gain, None);
-    for look in 0..=LOOKS {
-        let t_s = end_s * f64::from(look) / f64::from(LOOKS);
+    let on_run = (0..=LOOKS).map(|look| end_s * f64::from(look) / f64::from(LOOKS));
+    let later = (1..=LATER).map(|look| (end_s * f64::from(look).exp2()).round());
+    for t_s in on_run.chain(later) {
         for (axis, path) in trajectory.paths().iter().enumerate() {
             let value: f64 = path.jet(t_s).iter().zip(drive).map(|(value, weight)| value * weight).sum();
             if value.abs() >= best.0 {
@@ -104,7 +121,7 @@ fn instant(trajectory: &Trajectory, drive: &[f64; 5], gain: f64, end_s: f64) -> 
             }
         }
     }
-    best.1.map(|(t_s, axis)| Proof::Reached(written(t_s), axis))
+    best.1.map(|(t_s, axis)| Proof::Reached(Number::written(t_s), axis))
 }
 
 /// One entry that keeps away from zero for ever, else the norm on the run.
@@ -122,5 +139,32 @@ pub(super) fn nonzero_quaternion(setup: &Setup, claim: &Claim<'_>) -> Option<Pro
             enclosed(&square, setup.time.end_s, Reach::Run, away).map(Proof::Norm)
         }
         Answer::Violated | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
+    }
+}
+
+/// The square of how far a target is from the base, against what a planar arm can reach; a time at which it is out of reach.
+pub(super) fn within_reach(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    let agent = setup.agents.get(*claim.agents.first()?)?;
+    let law: &TaskSpaceLaw = agent.law.downcast()?;
+    let TipSetup::Planar(tip) = &law.tip else { return None };
+    let [first, second] = tip.length_m;
+    let paths = agent.target.as_ref()?.paths();
+    let entries: Vec<Expression> = paths.iter().map(formula).collect::<Option<_>>()?;
+    let square = sum(entries.into_iter().map(|entry| entry.power(2.0)));
+    let [least, most] = [(first - second) * (first - second), (first + second) * (first + second)];
+    match claim.answer {
+        Answer::Holds | Answer::HoldsOnHorizon => {
+            let inside = |within: Interval| within.low > least && within.high < most;
+            enclosed(&square, setup.time.end_s, claim.reach(), inside).map(Proof::Distance)
+        }
+        Answer::Violated => {
+            let times = (0..=LOOKS).map(|look| setup.time.end_s * f64::from(look) / f64::from(LOOKS));
+            let out = |t_s: &f64| {
+                let found = square.enclose(Interval::point(*t_s));
+                found.low > most * (1.0 + 1e-9) || found.high < least * (1.0 - 1e-9)
+            };
+            times.into_iter().find(out).map(|t_s| Proof::OutOfReach(Number::written(t_s)))
+        }
+        Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
     }
 }

@@ -1,14 +1,14 @@
 //! Hypotheses that a number, or a list of classes, shows.
 
-use forwardstep_core::expression::Expression;
+use forwardstep_core::expression::{Expression, Number};
 use forwardstep_sim::graph::strong_components;
 use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, Setup};
 use num_rational::BigRational;
 
-use super::exact::written;
 use super::producers::Claim;
 use super::proof::Proof;
 use crate::Answer;
+use crate::kinds::chain::undefined_state;
 use crate::surroundings::acts;
 
 /// A number that proves what holds.
@@ -18,7 +18,7 @@ fn number(claim: &Claim<'_>, value: Option<BigRational>) -> Option<Proof> {
 
 pub(super) fn real_roots(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     let roots = setup.agents.iter().flat_map(|agent| &agent.roots_per_s).copied();
-    number(claim, roots.reduce(f64::min).map(written))
+    number(claim, roots.reduce(f64::min).map(Number::written))
 }
 
 pub(super) fn common_order(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
@@ -28,14 +28,14 @@ pub(super) fn common_order(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
 
 pub(super) fn manipulability(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     let gains = setup.agents.iter().map(|agent| agent.manipulability);
-    number(claim, gains.reduce(f64::max).map(written))
+    number(claim, gains.reduce(f64::max).map(Number::written))
 }
 
 pub(super) fn pushes_end(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     let pushes = setup.agents.iter().flat_map(|agent| &agent.pushes).filter(|push| acts(push));
     let last_s = pushes.map(|push| push.span_s()[1]).reduce(f64::max)?;
     // The end is a sum of two numbers as they are written, rounded once.
-    number(claim, last_s.is_finite().then(|| written(last_s.next_up())))
+    number(claim, last_s.is_finite().then(|| Number::written(last_s.next_up())))
 }
 
 /// The strongly connected components of the union of all graphs, sorted so that no edge leads back.
@@ -43,8 +43,8 @@ pub(super) fn common_first_root(setup: &Setup, claim: &Claim<'_>) -> Option<Proo
     if claim.answer != Answer::Holds {
         return None;
     }
-    let edges: Vec<(usize, usize)> =
-        setup.network.schedule.graphs.iter().flatten().map(|edge| (edge.from, edge.to)).collect();
+    let recurring = setup.network.schedule.recurring_graphs();
+    let edges: Vec<(usize, usize)> = recurring.iter().flatten().map(|edge| (edge.from, edge.to)).collect();
     let components = strong_components(setup.network.agents, &edges);
     let first_root = |agent: &AgentSetup| agent.roots_per_s.first().copied();
     let common = |component: &Vec<usize>| {
@@ -87,9 +87,21 @@ fn sorted(vertices: usize, edges: &[(usize, usize)]) -> Vec<usize> {
 
 pub(super) fn input_factor(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     match claim.answer {
-        Answer::Holds => Some(Proof::ConstantFactor),
+        Answer::Holds => Some(Proof::FactorAway),
         Answer::Violated => {
             setup.agents.iter().position(|agent| small_factor(agent) == Some(true)).map(Proof::SmallFactor)
+        }
+        Answer::HoldsOnHorizon | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
+    }
+}
+
+/// That the terms of chains have values everywhere is seen from the text; that one has none, from a state.
+pub(super) fn defined_terms(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    match claim.answer {
+        Answer::Holds => Some(Proof::Text),
+        Answer::Violated => {
+            let (agent, state) = undefined_state(setup)?;
+            Some(Proof::NoValue(agent, state.into_iter().map(Number::written).collect()))
         }
         Answer::HoldsOnHorizon | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
     }

@@ -59,10 +59,31 @@ pub enum Proof {
     Drive(Vec<Enclosure>),
     /// Witness: at this time, s, what drives the leader reaches γ on this axis, from zero.
     Reached(BigRational, usize),
-    /// The factor of the input is a constant.
-    ConstantFactor,
+    /// One pass over all states shows that the factor of the input keeps away from zero.
+    FactorAway,
     /// Witness: the factor of the input of this agent is a constant below its floor.
     SmallFactor(usize),
+    /// Witness: at this time, s, what this edge (from, to, phase) follows is not positive, or a delay is negative.
+    Below(BigRational, (usize, usize, usize)),
+    /// Witness: what this edge follows goes where it must not go as t → ∞: a weight to zero or without bound, a delay without bound.
+    Limit((usize, usize, usize)),
+    /// Witness: this edge loses every packet.
+    LosesAll((usize, usize, usize)),
+    /// Witness: a derivative of a motion goes beyond every bound as t → ∞.
+    Diverges {
+        /// Whose motion, among the agents that the claim is about; zero for a leader.
+        motion: usize,
+        /// The axis, from zero.
+        axis: usize,
+        /// The derivative.
+        order: usize,
+    },
+    /// Witness: in this state a term of this agent has no value.
+    NoValue(usize, Vec<BigRational>),
+    /// The square of the distance of a target from the base keeps within what a tip can reach.
+    Distance(Enclosure),
+    /// Witness: at this time, s, a target is out of reach.
+    OutOfReach(BigRational),
     /// An entry of a quaternion, from zero, keeps away from zero.
     EntryAway(usize, Enclosure),
     /// The square of the norm of a quaternion keeps away from zero.
@@ -131,6 +152,13 @@ pub enum Range {
     Period {
         /// How many pieces.
         cells: usize,
+    },
+    /// Pieces until a time, and one from there on.
+    Tail {
+        /// How many pieces there are before.
+        cells: usize,
+        /// From when on the last lasts, s.
+        until_s: u32,
     },
     /// Up to the end of the run.
     Run {

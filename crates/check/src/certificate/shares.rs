@@ -1,12 +1,11 @@
 //! What each agent's start counts in the value agreed upon, in exact numbers.
 
+use forwardstep_core::expression::Number;
 use forwardstep_sim::Setup;
 use forwardstep_sim::graph::{SpanningTree, spanning_tree};
 use forwardstep_sim::reference::{Consensus, PureIntegral};
 use num_rational::BigRational;
 use num_traits::{One, Zero};
-
-use super::exact::written;
 
 /// Agents among which shares are eliminated in rational numbers.
 const MOST_ROOTS: usize = 40;
@@ -30,7 +29,7 @@ pub(super) fn influence(setup: &Setup) -> Option<Vec<BigRational>> {
         let weight = edge.weight.constant()?;
         // Who is a root hears roots only.
         if let (Some(from), Some(to)) = (place(edge.from), place(edge.to)) {
-            rates[to][from] += written(weight);
+            rates[to][from] += Number::written(weight);
         }
     }
     for k in (1..n).rev() {

@@ -2,13 +2,13 @@
 
 use std::collections::{HashMap, VecDeque};
 
+use forwardstep_core::expression::Number;
 use forwardstep_sim::Setup;
 use forwardstep_sim::graph::{SpanningTree, spanning_tree as tree};
-use forwardstep_sim::schedule::{Dwell, Once, Periodic, RandomSwitching, Schedule};
+use forwardstep_sim::schedule::{Dwell, Extent, Schedule};
 use num_rational::BigRational;
 use num_traits::Zero;
 
-use super::exact::written;
 use super::producers::Claim;
 use super::proof::{DrawnPhase, Proof, TreeWindow};
 use crate::{Answer, Id};
@@ -30,19 +30,17 @@ pub(super) fn spanning_tree(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     }
 }
 
-/// The phases that are in force again and again, or for ever; nothing for a switching signal from outside.
+/// The phases that are in force again and again, or for ever; nothing where those of a run tell nothing about later ones.
 fn recurring(schedule: &Schedule) -> Option<Vec<usize>> {
-    let graphs = schedule.graphs.len();
-    if schedule.downcast::<Once>().is_some() {
-        Some(vec![graphs.checked_sub(1)?])
-    } else {
-        let known = schedule.downcast::<Periodic>().is_some() || drawn(schedule);
-        known.then(|| (0..graphs).collect())
+    match schedule.known().extent {
+        Extent::Whole => Some(vec![schedule.graphs.len().checked_sub(1)?]),
+        Extent::Period(_) | Extent::Drawn => Some((0..schedule.graphs.len()).collect()),
+        Extent::Horizon => None,
     }
 }
 
 fn drawn(schedule: &Schedule) -> bool {
-    schedule.graphs.len() > 1 && schedule.downcast::<RandomSwitching>().is_some()
+    schedule.graphs.len() > 1 && schedule.known().extent == Extent::Drawn
 }
 
 /// Windows along `phases`, each as short as it can be but the last, which takes what is left.
@@ -108,10 +106,13 @@ fn along_draw(setup: &Setup) -> Option<Proof> {
     if segments.len() > MOST_DRAWN {
         return None;
     }
-    let given =
-        segments.iter().map(|segment| DrawnPhase { phase: segment.graph, until_s: written(segment.end_s) }).collect();
+    let given = segments
+        .iter()
+        .map(|segment| DrawnPhase { phase: segment.graph, until_s: Number::written(segment.end_s) })
+        .collect();
     let phases: Vec<usize> = segments.iter().map(|segment| segment.graph).collect();
-    let times: Vec<BigRational> = std::iter::once(0.0).chain(segments.iter().map(|s| s.end_s)).map(written).collect();
+    let times: Vec<BigRational> =
+        std::iter::once(0.0).chain(segments.iter().map(|s| s.end_s)).map(Number::written).collect();
     let (mut windows, mut from, mut longest_s) = (Vec::new(), 0, BigRational::zero());
     for to in 1..=phases.len() {
         if let Some(window) = window(setup, phases.get(from..to)?) {
@@ -120,7 +121,7 @@ fn along_draw(setup: &Setup) -> Option<Proof> {
             from = to;
         }
     }
-    longest_s = longest_s.max(written(end_s) - times.get(from)?);
+    longest_s = longest_s.max(Number::written(end_s) - times.get(from)?);
     (!windows.is_empty()).then_some(Proof::Drawn { given, windows, longest_s })
 }
 
@@ -142,7 +143,7 @@ pub(super) fn dwell_time(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     }
     match setup.network.schedule.known().dwell {
         Dwell::NeverSwitches => Some(Proof::NeverSwitches),
-        Dwell::Shortest(dwell_s) | Dwell::Drawn(dwell_s) => Some(Proof::ShortestPhase(written(dwell_s))),
+        Dwell::Shortest(dwell_s) | Dwell::Drawn(dwell_s) => Some(Proof::ShortestPhase(Number::written(dwell_s))),
         Dwell::Declared(_) => None,
     }
 }

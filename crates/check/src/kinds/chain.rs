@@ -86,28 +86,42 @@ fn terms(model: &ChainModel) -> Vec<(Term, &Expression)> {
     }
 }
 
+/// The terms of the chains of these agents, each once, since like agents share their model: whose, what it is, itself.
+fn distinct_terms<'a>(setup: &'a Setup, agents: &'a [usize]) -> Vec<(usize, Term, &'a Expression)> {
+    let mut seen: Vec<(usize, Term, &Expression)> = Vec::new();
+    for (index, _, model) in chains(setup, agents) {
+        for (term, expression) in terms(model) {
+            if seen.iter().all(|(.., known)| *known != expression) {
+                seen.push((index, term, expression));
+            }
+        }
+    }
+    seen
+}
+
 /// Whether all terms have a value wherever the state may go: the worst of what is found.
 fn defined(setup: &Setup, agents: &[usize]) -> Hypothesis {
     let mut evidence = KindEvidence::TermsDefined;
-    // Like agents share their model.
-    let mut seen: Vec<&Expression> = Vec::new();
-    for (index, _, model) in chains(setup, agents) {
-        for (term, expression) in terms(model) {
-            if seen.contains(&expression) {
-                continue;
-            }
-            seen.push(expression);
-            match expression.domain() {
-                Domain::Everywhere => {}
-                Domain::NotShown => evidence = KindEvidence::TermNotShown { agent: Named::of(setup, index), term },
-                Domain::Fails { at, gap } => {
-                    let evidence = KindEvidence::TermFails { agent: Named::of(setup, index), term, at, gap };
-                    return Hypothesis::new(Id::DefinedTerms, evidence);
-                }
+    for (index, term, expression) in distinct_terms(setup, agents) {
+        match expression.domain() {
+            Domain::Everywhere => {}
+            Domain::NotShown => evidence = KindEvidence::TermNotShown { agent: Named::of(setup, index), term },
+            Domain::Fails { at, gap } => {
+                let evidence = KindEvidence::TermFails { agent: Named::of(setup, index), term, at, gap };
+                return Hypothesis::new(Id::DefinedTerms, evidence);
             }
         }
     }
     Hypothesis::new(Id::DefinedTerms, evidence)
+}
+
+/// A chain of which a term has no value in a state, and the state.
+pub(crate) fn undefined_state(setup: &Setup) -> Option<(usize, Vec<f64>)> {
+    let agents: Vec<usize> = (0..setup.agents.len()).collect();
+    distinct_terms(setup, &agents).into_iter().find_map(|(index, _, expression)| match expression.domain() {
+        Domain::Fails { at, .. } if !expression.value(&at).is_finite() => Some((index, at)),
+        Domain::Fails { .. } | Domain::Everywhere | Domain::NotShown => None,
+    })
 }
 
 fn input_factor(setup: &Setup, agents: &[usize]) -> Hypothesis {

@@ -1,6 +1,6 @@
 //! Kinds of systems, each with its law: which theorem speaks about it, and what its law adds to the hypotheses.
 
-mod chain;
+pub(crate) mod chain;
 mod declared;
 mod lagrangian;
 mod point_mass;

@@ -4,7 +4,7 @@ use alloc::format;
 use alloc::sync::Arc;
 
 use num_rational::BigRational;
-use num_traits::ToPrimitive;
+use num_traits::{ToPrimitive, Zero};
 
 use super::interval::Interval;
 
@@ -51,6 +51,17 @@ impl Number {
         let power = "0".repeat(places.unsigned_abs() as usize);
         let ratio = if places < 0 { format!("{whole}{part}/1{power}") } else { format!("{whole}{part}{power}") };
         Some(Number::rational(ratio.parse().ok()?))
+    }
+
+    /// What somebody wrote who got this `f64`: the shortest decimal that reads as it. The `f64` itself where that decimal has an
+    /// exponent beyond 300; zero for what is not finite.
+    pub fn written(value: f64) -> BigRational {
+        let decimal = Number::decimal(&format!("{:e}", value.abs())).and_then(|number| number.exact());
+        match decimal {
+            Some(size) if value < 0.0 => -size,
+            Some(size) => size,
+            None => BigRational::from_float(value).unwrap_or_else(BigRational::zero),
+        }
     }
 
     /// A rational number.

@@ -148,8 +148,9 @@ impl Algebra for Courses {
 }
 
 impl Expression {
-    /// A stretch of its one variable that holds a period of it, if it has one that can be read off.
-    pub(super) fn period(&self) -> Option<f64> {
+    /// A stretch of its one variable that holds a period of it, longer by rounding alone; `None` unless all its variables stand in
+    /// sines and cosines of angular rates with a common measure.
+    pub fn period(&self) -> Option<f64> {
         let Course::Waves(rate) = self.fold(&mut Courses) else { return None };
         let turn = if rate.pi { 2.0 } else { core::f64::consts::TAU };
         // Longer than the period by more than what is rounded here.

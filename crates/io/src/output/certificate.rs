@@ -112,7 +112,18 @@ impl Names<'_> {
             Proof::Drive(bounds) => json!({ "kind": "bounds", "bounds": self.enclosures(bounds) }),
             Proof::Reached(t_s, axis) => json!({ "kind": "instant", "t_s": decimal(t_s), "axis": axis + 1 }),
             Proof::SmallFactor(agent) => json!({ "kind": "factor", "agent": self.of(*agent) }),
-            Proof::ConstantFactor => json!({ "kind": "constant" }),
+            Proof::FactorAway => json!({ "kind": "factor-away" }),
+            Proof::Below(t_s, edge) => json!({ "kind": "below", "t_s": decimal(t_s), "edge": self.edge(*edge) }),
+            Proof::Limit(edge) => json!({ "kind": "limit", "edge": self.edge(*edge) }),
+            Proof::LosesAll(edge) => json!({ "kind": "loses-all", "edge": self.edge(*edge) }),
+            Proof::NoValue(agent, state) => {
+                json!({ "kind": "no-value", "agent": self.of(*agent), "state": numbers(state) })
+            }
+            Proof::Distance(bound) => json!({ "kind": "distance", "bound": self.enclosure(bound) }),
+            Proof::OutOfReach(t_s) => json!({ "kind": "out-of-reach", "t_s": decimal(t_s) }),
+            Proof::Diverges { motion, axis, order } => {
+                json!({ "kind": "diverges", "motion": motion + 1, "axis": axis + 1, "order": order })
+            }
             Proof::EntryAway(entry, bound) => {
                 json!({ "kind": "entry-away", "entry": entry + 1, "bound": self.enclosure(bound) })
             }
@@ -154,11 +165,11 @@ fn numbers(numbers: &[BigRational]) -> Vec<String> {
 
 /// A stretch of time and its pieces.
 fn stretch(range: Range) -> Map<String, Value> {
-    let (word, cells) = match range {
-        Range::ForEver => ("for-ever", None),
-        Range::Period { cells } => ("period", Some(cells)),
-        Range::Run { cells } => ("run", Some(cells)),
+    let fields = match range {
+        Range::ForEver => json!({ "range": "for-ever" }),
+        Range::Period { cells } => json!({ "range": "period", "cells": cells }),
+        Range::Tail { cells, until_s } => json!({ "range": "tail", "cells": cells, "until_s": until_s }),
+        Range::Run { cells } => json!({ "range": "run", "cells": cells }),
     };
-    let cells = cells.map(|cells| ("cells".to_owned(), cells.into()));
-    std::iter::once(("range".to_owned(), word.into())).chain(cells).collect()
+    fields.as_object().cloned().unwrap_or_default()
 }

@@ -1,0 +1,121 @@
+//! Quotients of polynomials in t, and what they do for large t.
+//!
+//! Intervals alone make ∞/∞ of t/(1 + t). With d the larger degree and u = 1/t, P(t)/Q(t) is (Σ pₖ u^(d−k))/(Σ qₖ u^(d−k)), and u
+//! keeps within [0, 1/T] from T on.
+
+use forwardstep_core::expression::{Interval, Number};
+use num_rational::BigRational;
+use num_traits::{One, Signed, Zero};
+
+/// Polynomials have at most this degree.
+const MOST_DEGREE: usize = 16;
+/// Powers are multiplied out up to this one.
+const MOST_POWER: i64 = 8;
+
+/// P/Q, by coefficients from t⁰ on.
+#[derive(Clone, Debug)]
+pub(super) struct Ratio {
+    over: Vec<BigRational>,
+    under: Vec<BigRational>,
+}
+
+fn convolved(a: &[BigRational], b: &[BigRational]) -> Vec<BigRational> {
+    let mut found = vec![BigRational::zero(); (a.len() + b.len()).saturating_sub(1)];
+    for (i, x) in a.iter().enumerate() {
+        for (entry, y) in found.iter_mut().skip(i).zip(b) {
+            *entry += x * y;
+        }
+    }
+    found
+}
+
+fn added(a: &[BigRational], b: &[BigRational]) -> Vec<BigRational> {
+    let zero = BigRational::zero();
+    let at = |list: &[BigRational], k: usize| list.get(k).unwrap_or(&zero).clone();
+    (0..a.len().max(b.len())).map(|k| at(a, k) + at(b, k)).collect()
+}
+
+fn derivative(a: &[BigRational]) -> Vec<BigRational> {
+    let scaled = a.iter().enumerate().skip(1).map(|(k, x)| x * BigRational::from_integer(k.into()));
+    scaled.collect()
+}
+
+fn trimmed(mut a: Vec<BigRational>) -> Vec<BigRational> {
+    while a.last().is_some_and(Zero::is_zero) {
+        a.pop();
+    }
+    a
+}
+
+impl Ratio {
+    fn new(over: Vec<BigRational>, under: Vec<BigRational>) -> Option<Ratio> {
+        let [over, under] = [trimmed(over), trimmed(under)];
+        (over.len().max(under.len()) <= MOST_DEGREE + 1).then_some(Ratio { over, under })
+    }
+
+    pub(super) fn number(number: BigRational) -> Ratio {
+        Ratio { over: trimmed(vec![number]), under: vec![BigRational::one()] }
+    }
+
+    pub(super) fn negated(&self) -> Ratio {
+        Ratio { over: self.over.iter().map(|x| -x).collect(), under: self.under.clone() }
+    }
+
+    pub(super) fn plus(&self, other: &Ratio) -> Option<Ratio> {
+        let over = added(&convolved(&self.over, &other.under), &convolved(&other.over, &self.under));
+        Ratio::new(over, convolved(&self.under, &other.under))
+    }
+
+    pub(super) fn times(&self, other: &Ratio) -> Option<Ratio> {
+        Ratio::new(convolved(&self.over, &other.over), convolved(&self.under, &other.under))
+    }
+
+    /// Q/P as Q²/(P Q), so that no pole is lost.
+    pub(super) fn inverse(&self) -> Option<Ratio> {
+        Ratio::new(convolved(&self.under, &self.under), convolved(&self.over, &self.under))
+    }
+
+    pub(super) fn power(&self, exponent: i64) -> Option<Ratio> {
+        let base = if exponent < 0 { self.inverse()? } else { self.clone() };
+        let times = |so_far: Ratio, _| so_far.times(&base);
+        (exponent.abs() <= MOST_POWER).then_some(())?;
+        (0..exponent.abs()).try_fold(Ratio::number(BigRational::one()), times)
+    }
+
+    /// (P′Q − PQ′)/Q².
+    pub(super) fn derivative(&self) -> Option<Ratio> {
+        let minus: Vec<BigRational> = convolved(&self.over, &derivative(&self.under)).into_iter().map(|x| -x).collect();
+        let over = added(&convolved(&derivative(&self.over), &self.under), &minus);
+        Ratio::new(over, convolved(&self.under, &self.under))
+    }
+
+    /// t.
+    pub(super) fn time() -> Ratio {
+        Ratio { over: vec![Zero::zero(), One::one()], under: vec![One::one()] }
+    }
+
+    /// Its limit as t → ∞: what encloses it, else whether it rises above every bound; `None` where Q is zero.
+    pub(super) fn limit(&self) -> Option<Result<Interval, bool>> {
+        let (lead, below) = (self.over.last(), self.under.last()?);
+        Some(match lead {
+            Some(lead) if self.over.len() > self.under.len() => Err((lead / below).is_positive()),
+            Some(_) | None => Ok(self.at(Interval::point(0.0))),
+        })
+    }
+
+    /// What it keeps within from `from_s` on, where that is bounded.
+    pub(super) fn from(&self, from_s: f64) -> Option<Interval> {
+        let u = Interval { low: 0.0, high: (1.0 / from_s).next_up() };
+        Some(self.at(u)).filter(|found| found.is_finite())
+    }
+
+    fn at(&self, u: Interval) -> Interval {
+        let degree = self.over.len().max(self.under.len());
+        let value = |coefficients: &[BigRational]| {
+            let padding = std::iter::repeat_n(Interval::point(0.0), degree - coefficients.len());
+            let all = coefficients.iter().map(|c| Number::rational(c.clone()).within()).chain(padding);
+            all.fold(Interval::point(0.0), |value, coefficient| value * u + coefficient)
+        };
+        value(&self.over) / value(&self.under)
+    }
+}
