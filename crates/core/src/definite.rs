@@ -169,7 +169,7 @@ mod tests {
         ];
         for (n, a) in cases {
             let found = decide(n, a).unwrap_err();
-            assert_eq!(quadratic(a, written, &found.direction), found.value);
+            assert_eq!(quadratic(a, Number::written, &found.direction), found.value);
             assert!(!found.value.is_positive() && found.order() > 0, "{found}");
         }
     }

@@ -112,7 +112,7 @@ pub(super) fn sign_gain(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
 fn instant(trajectory: &Trajectory, drive: &[f64; 5], gain: f64, end_s: f64) -> Option<Proof> {
     let mut best = (gain, None);
     let on_run = (0..=LOOKS).map(|look| end_s * f64::from(look) / f64::from(LOOKS));
-    let later = (1..=LATER).map(|look| (end_s * f64::from(look).exp2()).round());
+    let later = (1..=LATER).map(|look| (end_s * (1_u64 << look) as f64).round());
     for t_s in on_run.chain(later) {
         for (axis, path) in trajectory.paths().iter().enumerate() {
             let value: f64 = path.jet(t_s).iter().zip(drive).map(|(value, weight)| value * weight).sum();
