@@ -96,6 +96,9 @@ fn the_document_says_what_the_words_say_and_keeps_to_its_schema() {
             let lines =
                 format!("  {}: {} [{}]\n    {}\n", word("answer"), word("requires"), word("id"), word("because"));
             assert!(text.contains(&lines), "{lines}\n{text}");
+            assert_eq!(hypothesis["change"].is_null(), word("answer") == "holds", "{hypothesis}");
+            let change = hypothesis["change"].as_str().map(|change| format!("    to make it hold: {change}\n"));
+            assert!(text.contains(&change.unwrap_or_default()), "{text}");
         }
         follows(&found, &schema, &schema);
     }
@@ -133,6 +136,83 @@ fn follows(document: &Value, schema: &Value, root: &Value) {
 }
 
 /// Rounding finds a Cholesky factor of each of them.
+/// What `check` answers about a hypothesis, and the change that it names.
+fn answered(folder: &TempDir, text: &str, id: &str) -> (String, String) {
+    fs::write(folder.path().join("own.toml"), text).unwrap();
+    let output = forwardstep(folder, &["check", "--json", "own.toml"]).get_output().clone();
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{text}\n{output:?}"));
+    let all = document["verdicts"]["hypotheses"].as_array().unwrap();
+    let found = all.iter().find(|one| one["id"] == id).unwrap_or_else(|| panic!("{id}: {document}"));
+    let text = |key: &str| found[key].as_str().unwrap_or_default().to_owned();
+    assert_eq!(text("change").is_empty(), text("answer") == "holds", "{found}");
+    (text("answer"), text("change"))
+}
+
+#[test]
+fn a_change_that_is_named_makes_the_hypothesis_hold() {
+    let folder = folder();
+    let shipped =
+        |name: &str| fs::read_to_string(format!("{}/../io/scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let three = TWO.replace("count = 2", "count = 3").replace("[0.3, 0.4]]", "[0.3, 0.4], [0.5, 0.6]]");
+    let weight = |text: &str| TWO.replace("[network]", &format!("[network]\nweight = \"{text}\""));
+    let delay = |text: &str| TWO.replace("[network]", &format!("[network]\ndelay.{text}"));
+    let roots = |first: &str| {
+        let own = format!(
+            "[[agents]]\nname = \"b\"\nreference.consensus = {{ roots_per_s = [{first}, 2.0] }}\nrobot.planar_arm = {{ mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }}\nstart.position_rad = [0.1, 0.2]\n[reference.consensus]"
+        );
+        TWO.replace("[reference.consensus]", &own)
+            .replace("edges = [[\"arm-1\", \"arm-2\"]]", "switching = \"repeat\"\n[[network.phases]]\ndwell_s = 1\nedges = [[\"arm-1\", \"arm-2\"], [\"arm-2\", \"b\"], [\"b\", \"arm-1\"]]\n[[network.phases]]\ndwell_s = 1\nedges = [[\"arm-1\", \"arm-2\"]]")
+    };
+    let theorem_8 = shipped("theorem-8");
+    let sign = |period_s: &str| {
+        theorem_8.replace("[reference.leader]", &format!("[reference.leader]\nsign_period_s = {period_s}"))
+    };
+    let radio = |timeout_s: &str| {
+        let text = delay("constant_s = 0.3");
+        text.replace(
+            "sample_hz = 500",
+            &format!("sample_hz = 500\nmessage_timeout_s = {timeout_s}\nsafe_command = \"zero\""),
+        )
+    };
+    // The hypothesis, the scenario, what the change says, and the scenario with the change.
+    let cases: [(&str, String, &str, String); 11] = [
+        (
+            "spanning-tree",
+            three.clone(),
+            "an edge from arm-1 to arm-3",
+            three.replace("\"arm-2\"]]", "\"arm-2\"], [\"arm-1\", \"arm-3\"]]"),
+        ),
+        ("bounded-weights", weight("exp(-t)"), "max(w, c)", weight("max(exp(-t), 0.1)")),
+        ("bounded-weights", weight("1 + t"), "min(w, c)", weight("min(1 + t, 3)")),
+        ("bounded-delays", delay("formula_s = \"t\""), "min(T, 1)", delay("formula_s = \"min(t, 1)\"")),
+        (
+            "bounded-delays",
+            delay("packets = { seed = 1, period_s = 0.1, latency_s = 0.01, loss.random = { probability = 0.3 } }"),
+            "`most_consecutive`",
+            delay(
+                "packets = { seed = 1, period_s = 0.1, latency_s = 0.01, loss.random = { probability = 0.3, most_consecutive = 4 } }",
+            ),
+        ),
+        ("common-first-root", roots("1.5"), "κ₀ = 1 per second, the first of its roots, for b too", roots("1.0")),
+        ("applied-torque", TWO.to_owned(), "no limits", TWO.replace("torque_limit = [200, 100]\n", "")),
+        ("messages-in-time", radio("0.1"), "`message_timeout_s` of at least 0.302", radio("0.302")),
+        ("sign-gain", theorem_8.replace("gain = 2 ", "gain = 0.5 "), "γ above ", theorem_8.clone()),
+        ("set-valued-sign", sign("0.5"), "`sign_period_s` of at most 0.01", sign("0.01")),
+        (
+            "no-delay",
+            theorem_8.replace("[network]", "[network]\ndelay.constant_s = 0.1"),
+            "no delays",
+            theorem_8.clone(),
+        ),
+    ];
+    for (id, before, change, after) in cases {
+        let (answer, named) = answered(&folder, &before, id);
+        assert!(answer != "holds" && named.contains(change), "{id}: {answer}: {named}");
+        let (answer, _) = answered(&folder, &after, id);
+        assert_eq!(answer, "holds", "{id} with {named}\n{after}");
+    }
+}
+
 #[test]
 fn matrices_that_are_exactly_singular_are_refused_with_a_direction() {
     for (gain, because) in [

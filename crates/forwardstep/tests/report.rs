@@ -196,11 +196,11 @@ fn a_folder_holds_all_that_went_into_its_run() {
     let folder = folder();
     let path = folder.path();
     fs::create_dir_all(path.join("mine/tables")).unwrap();
-    fs::write(path.join("mine/fleet.toml"), FILES).unwrap();
+    fs::write(path.join("mine/network.toml"), FILES).unwrap();
     fs::write(path.join("mine/pendulum.urdf"), PENDULUM).unwrap();
     fs::write(path.join("elsewhere.urdf"), PENDULUM.replace("value=\"2\"", "value=\"3\"")).unwrap();
     fs::write(path.join("mine/tables/edges.csv"), "from,to\nhere-1,there\nthere,here-2\nhere-2,here-1\n").unwrap();
-    forwardstep(&folder, &["run", "mine/fleet.toml", "--out", "run"]).success();
+    forwardstep(&folder, &["run", "mine/network.toml", "--out", "run"]).success();
     let files = contents(&path.join("run"));
     assert_eq!(files["scenario.toml"], FILES.as_bytes());
     assert_eq!(files["inputs/pendulum.urdf"], PENDULUM.as_bytes());
@@ -244,11 +244,11 @@ fn what_changed_since_the_run_is_said() {
     let path = folder.path();
     fs::write(path.join("pendulum.urdf"), PENDULUM).unwrap();
     fs::write(
-        path.join("fleet.toml"),
+        path.join("network.toml"),
         FILES.replace("../elsewhere", "pendulum").replace(".csv.file = \"./tables/edges.csv\"", ".ring = {}"),
     )
     .unwrap();
-    forwardstep(&folder, &["run", "fleet.toml", "--out", "run"]).success();
+    forwardstep(&folder, &["run", "network.toml", "--out", "run"]).success();
     let run = path.join("run");
     let sound = contents(&run);
     let text = |name: &str| String::from_utf8(sound[name].clone()).unwrap();

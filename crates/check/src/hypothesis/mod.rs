@@ -177,4 +177,10 @@ impl Hypothesis {
     pub fn because(&self) -> String {
         words::because(&self.evidence)
     }
+
+    /// The smallest change that would make this hypothesis hold for all time, as far as it is known: an edge, γ, κ₀, a rate; `None` where
+    /// it holds. It says nothing of the other hypotheses.
+    pub fn change(&self) -> Option<String> {
+        words::change(&self.evidence)
+    }
 }

@@ -36,6 +36,9 @@ pub(crate) fn show(scenario: &Scenario, promise: &Promise, console: &mut Console
         let (requires, name) = (hypothesis.requires(), hypothesis.id.name());
         console.line(format_args!("  {style}{words}{style:#}: {requires} {DIM}[{name}]{DIM:#}"));
         console.line(format_args!("    {DIM}{}{DIM:#}", hypothesis.because()));
+        if let Some(change) = hypothesis.change() {
+            console.line(format_args!("    to make it hold: {change}"));
+        }
     }
     match agreement {
         Ok(prediction) => console.line(format_args!("  predicted agreement: {}", first(&prediction.known_digits()))),

@@ -46,6 +46,9 @@ pub struct Verdict {
     pub answer: String,
     /// Certificate or witness.
     pub because: String,
+    /// The smallest change that would make it hold for all time; absent where it holds, and like `id`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub change: Option<String>,
 }
 
 impl Verdicts {
@@ -66,6 +69,7 @@ impl Verdicts {
                     requires: h.requires(),
                     answer: h.answer().words().to_owned(),
                     because: h.because(),
+                    change: h.change(),
                 })
                 .collect(),
         }
@@ -86,6 +90,7 @@ impl Verdicts {
             forget(&then.place, &mut now.place);
             forget(&then.source, &mut now.source);
             forget(&then.rigour, &mut now.rigour);
+            forget(&then.change, &mut now.change);
         }
         *self == now
     }

@@ -44,7 +44,7 @@ impl Diagnostic for OpenError {
                 }
                 let shipped: Vec<&str> = SHIPPED_SCENARIOS.iter().map(|scenario| scenario.name).collect();
                 let text = choose(name, "shipped scenarios are", &shipped);
-                Some(Box::new(format!("{text}; for a file of your own give its path, such as `my-fleet.toml`")))
+                Some(Box::new(format!("{text}; for a file of your own give its path, such as `my-network.toml`")))
             }
             OpenError::File { path, reason: ReadError::Missing } => {
                 let known = neighbours(path, "toml");

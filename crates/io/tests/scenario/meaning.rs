@@ -178,7 +178,7 @@ fn solver_and_goal() {
 fn files_are_looked_for_beside_the_scenario_before_the_shipped_ones() {
     use forwardstep_io::scenario::open_scenario;
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("fleet.toml");
+    let path = folder.path().join("network.toml");
     let text = changed("robot.point_mass = { dimension = 2, mass_kg = 4.0 }", "robot.urdf.file = \"panda.urdf\"");
     std::fs::write(&path, text.replace("count = 2", "count = 1").replace("[[0.1, 0.2], [0.3, 0.4]]", "[0, 0]"))
         .unwrap();
@@ -216,7 +216,7 @@ fn near_matches_for_names_and_paths() {
     assert_eq!(error, "there is no scenario `theorem2`");
     assert!(help.starts_with("did you mean `theorem-2`?"), "{help}");
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("fleet.toml"), SOUND).unwrap();
+    std::fs::write(folder.path().join("network.toml"), SOUND).unwrap();
     let latin = folder.path().join("latin.toml");
     std::fs::write(&latin, b"format = 2\ntitle = \"\xc3\xa9caf\xe9\"\n").unwrap();
     let (error, help) = open(latin.to_str().unwrap());
@@ -225,7 +225,7 @@ fn near_matches_for_names_and_paths() {
     let missing = folder.path().join("flet.toml");
     let (error, help) = open(missing.to_str().unwrap());
     assert_eq!(error, format!("cannot read `{}`: there is no such file", missing.display()));
-    assert!(help.starts_with("did you mean `fleet.toml`?"), "{help}");
+    assert!(help.starts_with("did you mean `network.toml`?"), "{help}");
     assert_eq!(
         open(folder.path().to_str().unwrap()).0,
         format!("cannot read `{}`: it is a folder", folder.path().display())

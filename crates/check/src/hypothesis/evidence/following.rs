@@ -72,7 +72,7 @@ pub enum FollowingEvidence {
 
 /// A sign is called set-valued up to this period, as a part of the time in which q_i − q_0 follows it: what stays is about this
 /// part of the largest excursion that a leader can make at the same ξ̇₀.
-const MOST_HELD: f64 = 0.01;
+pub(in crate::hypothesis) const MOST_HELD: f64 = 0.01;
 
 impl FollowingEvidence {
     pub(in crate::hypothesis) fn answer(&self) -> Answer {

@@ -1,5 +1,6 @@
 //! Evidence in sentences. This is the only place where they are made.
 
+mod change;
 mod following;
 mod graph;
 mod kinds;
@@ -13,6 +14,8 @@ mod surroundings;
 use forwardstep_sim::leader::FollowingDesign;
 
 use super::{Evidence, Id, Named, Subject};
+
+pub(super) use change::change;
 
 /// What is required, of whom.
 pub(super) fn requires(id: Id, subject: &Subject) -> String {

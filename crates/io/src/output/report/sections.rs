@@ -97,6 +97,9 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                                             "; this run reached its horizon"
                                         }
                                     }
+                                    @if let Some(change) = hypothesis.change() {
+                                        p.because { "To make it hold: " (change) }
+                                    }
                                     p.origin {
                                         code { (hypothesis.id.name()) } " · " (hypothesis.id.place()) " · "
                                         (hypothesis.id.source().words()) " · " (hypothesis.rigour().word())

@@ -1,0 +1,200 @@
+//! The smallest change that would make a hypothesis hold: an edge, γ, κ₀, a rate. Nothing where it holds.
+//!
+//! It is sufficient for that hypothesis, not always necessary, and says nothing of the others. No match has an arm for the rest:
+//! evidence that is new has to say its change.
+
+mod systems;
+
+use forwardstep_core::reference::Choice;
+use forwardstep_sim::Exchange;
+use forwardstep_sim::delay::{Basis, Refuted, Unknown};
+
+use super::numbers::{bound, rounded_down, rounded_up};
+use crate::hypothesis::evidence::MOST_HELD;
+use crate::hypothesis::{
+    Answer, Evidence, FollowingEvidence, GraphEvidence, LinkEvidence, LoopEvidence, Named, ReferenceEvidence,
+    WeightFault,
+};
+
+/// Edges that are named.
+const EDGES: usize = 4;
+/// A rate is that of a design for which somebody else answers.
+const SHIPPED: &str = "one of the shipped kinds, of which the parameters tell";
+
+/// What to change; `None` where the hypothesis holds.
+pub(in crate::hypothesis) fn change(evidence: &Evidence) -> Option<String> {
+    if evidence.answer() == Answer::Holds {
+        return None;
+    }
+    match evidence {
+        Evidence::Graph(evidence) => graph(evidence),
+        Evidence::Links(evidence) => links(evidence),
+        Evidence::Reference(evidence) => reference(evidence),
+        Evidence::Following(evidence) => following(evidence),
+        Evidence::Loop(evidence) => surroundings(evidence),
+        Evidence::Motion(evidence) => systems::motion(evidence),
+        Evidence::Kind(evidence) => systems::kind(evidence),
+        Evidence::Robot(evidence) => systems::robot(evidence),
+    }
+}
+
+fn graph(evidence: &GraphEvidence) -> Option<String> {
+    Some(match evidence {
+        GraphEvidence::Window { .. } | GraphEvidence::Reached { .. } => {
+            "a spanning tree in each of the graphs that are drawn, or graphs that repeat".into()
+        }
+        GraphEvidence::Cut { closed_groups, .. } => joined(closed_groups),
+        GraphEvidence::Unreached { closed_group, .. } => {
+            let to = closed_group.first().map_or("", |agent| agent.name.as_str());
+            format!("an edge to {to} from the leader, or from an agent that hears it, in a graph that recurs")
+        }
+        GraphEvidence::DeclaredPhases { .. } | GraphEvidence::RefutedSwitching { .. } => SHIPPED.into(),
+        GraphEvidence::VaryingWeight => "weights that are constant".into(),
+        GraphEvidence::Switches { exchange, .. } => match exchange {
+            Exchange::PositionVelocity => "one graph, or `reference.consensus` with two roots, which is (a1)".into(),
+            Exchange::Position => "one graph, or `reference.consensus`, which is (24)".into(),
+        },
+        GraphEvidence::SwitchesUnderLeader => "one graph".into(),
+        GraphEvidence::OneWay { from, to } => {
+            format!("an edge from {} to {} with the weight of the one that leads back", to.name, from.name)
+        }
+        GraphEvidence::EveryGraph { .. }
+        | GraphEvidence::NeverSwitches
+        | GraphEvidence::ShortestPhase { .. }
+        | GraphEvidence::DrawnPhases { .. }
+        | GraphEvidence::Stays
+        | GraphEvidence::Mutual => return None,
+    })
+}
+
+/// One edge fewer than there are groups makes one agent reach all.
+fn joined(groups: &[Vec<Named>]) -> String {
+    let mut first = groups.iter().filter_map(|group| group.first());
+    let Some(root) = first.next() else { return "an edge that joins the groups".into() };
+    let edges: Vec<String> =
+        first.clone().take(EDGES).map(|agent| format!("from {} to {}", root.name, agent.name)).collect();
+    let more = match first.count().saturating_sub(EDGES) {
+        0 => String::new(),
+        more => format!(", and {more} more"),
+    };
+    let what = if edges.len() == 1 { "an edge" } else { "edges" };
+    format!("{what} {}{more}, in a graph that recurs", edges.join(", "))
+}
+
+fn links(evidence: &LinkEvidence) -> Option<String> {
+    Some(match evidence {
+        LinkEvidence::Delays { basis: Basis::Declared, .. } => SHIPPED.into(),
+        LinkEvidence::Delays { unknown, bound_s, .. } => {
+            let each: Vec<String> = unknown.iter().map(|reason| known(*reason, *bound_s)).collect();
+            each.join("; ")
+        }
+        LinkEvidence::RefutedDelay { .. } => SHIPPED.into(),
+        LinkEvidence::RefutedBound(refuted) => match refuted {
+            Refuted::Unbounded(_) => "an end of the formula T, such as min(T, 1)".into(),
+            Refuted::Negative(_) => "max(T, 0) in the place of the formula T".into(),
+            Refuted::EveryPacketLost => {
+                "a `probability` of loss below 1, with `most_consecutive` losses in a row".into()
+            }
+        },
+        LinkEvidence::Ages { bound_s: Some(bound_s), .. } => {
+            format!("`message_timeout_s` of at least {}", bound(*bound_s))
+        }
+        LinkEvidence::Ages { bound_s: None, .. } => {
+            "delays with a bound, such as by `most_consecutive`, and `message_timeout_s` above it".into()
+        }
+        LinkEvidence::Late { .. } => "no delays".into(),
+        LinkEvidence::Weights { bounded_for_ever: true, .. } => {
+            "a formula whose slope stays bounded, such as one in sines and cosines of multiples of t".into()
+        }
+        LinkEvidence::Weights { low, high, .. } => format!(
+            "ends of the formula w, such as min(max(w, {}), {}), and a bounded slope",
+            rounded_down(*low),
+            rounded_up(*high)
+        ),
+        LinkEvidence::RefutedWeight { fault, .. } => match fault {
+            WeightFault::Fades | WeightFault::Negative => {
+                "a floor of the formula w, such as max(w, c) with a constant c > 0".into()
+            }
+            WeightFault::Grows => "an end of the formula w, such as min(w, c) with a constant c".into(),
+        },
+        LinkEvidence::VaryingWeights { .. } => {
+            "weights that are constant, or `design = \"continuous\"`, which is (110)".into()
+        }
+        LinkEvidence::Prompt | LinkEvidence::Coupling { .. } | LinkEvidence::ConstantWeights => return None,
+    })
+}
+
+fn known(reason: Unknown, bound_s: f64) -> String {
+    match reason {
+        Unknown::FormulaBound => format!("an end of the formula T, such as min(T, {})", bound(bound_s)),
+        Unknown::FormulaContinuity => "a formula whose slope stays bounded".into(),
+        Unknown::PacketsInARow => "`most_consecutive` losses in a row".into(),
+        Unknown::NothingArrived => "packets that arrive before the run ends, and a bound of their losses".into(),
+        Unknown::LaterPackets => "a rule, such as `delay.packets`, in the place of a log".into(),
+    }
+}
+
+fn reference(evidence: &ReferenceEvidence) -> Option<String> {
+    Some(match evidence {
+        ReferenceEvidence::Roots { .. } => "roots −κ with every κ above zero".into(),
+        ReferenceEvidence::FirstRoots([(_, kappa), (other, _)]) => format!(
+            "κ₀ = {kappa} per second, the first of its roots, for {} too, and for all who hear each other in a cycle; or \
+             `exchange = \"position\"`",
+            other.name
+        ),
+        ReferenceEvidence::FilteredDerivative { .. } => {
+            "`reference.consensus` with one root, which is (aa10) and differentiates nothing".into()
+        }
+        ReferenceEvidence::Order(_)
+        | ReferenceEvidence::Orders(_)
+        | ReferenceEvidence::FirstRootCommon
+        | ReferenceEvidence::FirstRootsOverConstants
+        | ReferenceEvidence::Manipulability { .. } => return None,
+    })
+}
+
+fn following(evidence: &FollowingEvidence) -> Option<String> {
+    Some(match evidence {
+        FollowingEvidence::Gain { unbounded: true, .. } => "a leader that does not accelerate more and more".into(),
+        FollowingEvidence::Gain { for_ever, .. } if for_ever.is_finite() => format!("γ above {}", bound(*for_ever)),
+        FollowingEvidence::Gain { seen, .. } => format!(
+            "a leader whose motion can be bounded for all time, and γ above that bound, which is at least {}",
+            rounded_down(*seen)
+        ),
+        FollowingEvidence::GainOverAgent { .. } => "a leader whose motion is given before the run".into(),
+        FollowingEvidence::Sign { choice, sampled, rate_per_s, end_s, .. } => match choice {
+            Choice::Implicit if *sampled => format!("`sample_hz` of at least {}", rounded_up(rate_per_s / MOST_HELD)),
+            Choice::Implicit => {
+                let period_s = (MOST_HELD / rate_per_s).min(0.5 * end_s);
+                format!("`sign_period_s` of at most {}", rounded_down(period_s))
+            }
+            Choice::Explicit | Choice::Layer { .. } => "`sign = \"implicit\"`".into(),
+        },
+        FollowingEvidence::NotPrinted => "one of the designs that the paper prints".into(),
+        FollowingEvidence::CouplingNotShown { least } => {
+            format!("a larger `coupling` k, so that k λ exceeds {}", rounded_up(*least))
+        }
+        FollowingEvidence::ComplexRoots => "two real roots".into(),
+        FollowingEvidence::GraphSwitches => "one graph".into(),
+        FollowingEvidence::WeightVaries => "weights that are constant".into(),
+        FollowingEvidence::Shared { .. } | FollowingEvidence::CouplingExceeds { .. } => return None,
+    })
+}
+
+fn surroundings(evidence: &LoopEvidence) -> Option<String> {
+    Some(match evidence {
+        LoopEvidence::Pushes { .. } => "an end of every push, `for_s`".into(),
+        LoopEvidence::Applied { enforced, limited } => match (limited.is_empty(), enforced.is_empty()) {
+            (true, _) => "limits that are reported, without `enforce_limits`".into(),
+            (false, true) => "torques as the law asks for them: no limits and no steps in `control`".into(),
+            (false, false) => "no limits and no steps of torques in `control`, and no `enforce_limits`".into(),
+        },
+        LoopEvidence::Sampling { .. } => {
+            "continuous control, without `control`: no rate makes the theorem speak of samples".into()
+        }
+        LoopEvidence::Measurements(_) => {
+            "measured velocities, without noise and without steps; none of it is in the theorem".into()
+        }
+        LoopEvidence::Gains { .. } => return None,
+    })
+}

@@ -1,0 +1,129 @@
+//! What to change in motions, kinds of systems and robots.
+
+use forwardstep_sim::probe::Probe;
+
+use super::super::names;
+use super::super::numbers::{rounded_down, rounded_up};
+use super::SHIPPED;
+use crate::hypothesis::{Bounded, FactorEverywhere, KindEvidence, MotionEvidence, ReachSide, RobotEvidence, Term};
+
+pub(super) fn motion(evidence: &MotionEvidence) -> Option<String> {
+    Some(match evidence {
+        MotionEvidence::Derivatives(Bounded::Unbounded { derivative, .. }) => match derivative {
+            0 => "a motion that stays in bounds".into(),
+            1 => "a motion whose velocity stays in bounds".into(),
+            _ => "a motion whose derivatives stay in bounds, such as one of sines".into(),
+        },
+        MotionEvidence::Derivatives(Bounded::NotShown) => {
+            "a motion of sines, of points, or of formulas that repeat or settle: they can be bounded for all time"
+                .into()
+        }
+        MotionEvidence::OfAgent => "a leader whose motion is given before the run".into(),
+        MotionEvidence::NormAbove { .. } | MotionEvidence::NormSeen { .. } => {
+            "an entry that keeps its sign, so that the norm has a bound for all time".into()
+        }
+        MotionEvidence::NormFades { .. } | MotionEvidence::NormVanishes { .. } => {
+            "a quaternion with an entry that keeps away from zero".into()
+        }
+        MotionEvidence::Derivatives(Bounded::ForEver) | MotionEvidence::EntryAway { .. } => return None,
+    })
+}
+
+pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
+    /// What the run shows, no text does.
+    const RUN: &str = "nothing does before a run: it is watched, and a run in which it fails ends there";
+    Some(match evidence {
+        KindEvidence::Mixture(_) => "agents of one kind".into(),
+        KindEvidence::Probed { probe: Probe { found: Some(_), .. }, .. } => {
+            "a law of which what is declared is so".into()
+        }
+        KindEvidence::Declared { .. } | KindEvidence::Probed { probe: Probe { found: None, .. }, .. } => SHIPPED.into(),
+        KindEvidence::MassNotAdapted { agent } => {
+            format!("`adaptation_gain` above zero for {}, or the true mass as its estimate", agent.name)
+        }
+        KindEvidence::ThrustFloor { .. } | KindEvidence::BoundedStates { .. } | KindEvidence::Determinant { .. } => {
+            RUN.into()
+        }
+        KindEvidence::ThrustKept { .. } | KindEvidence::Rotors { .. } => {
+            "thrusts without ends: these belong to the vehicle, so compare the run with one in which they do not act"
+                .into()
+        }
+        KindEvidence::AngularRate { agent, .. } => {
+            format!("`robot.vehicle` for {}, whose angular velocity is that which the law asks for", agent.name)
+        }
+        KindEvidence::TermFails { term, at, .. } => {
+            let what = match term {
+                Term::Drift => "a χ",
+                Term::Regressor => "a regressor",
+                Term::Factor => "a ψ",
+            };
+            let states = if at.is_empty() { "" } else { " in every state, as 1/(1 + x^2) in the place of 1/x" };
+            format!("{what} with a value{states}")
+        }
+        KindEvidence::TermNotShown { .. } => {
+            "divisors, roots and logarithms of what is clearly positive, such as 1 + x^2".into()
+        }
+        KindEvidence::FactorBelowFloor { agent, value, .. } => {
+            format!("`floor` below {} for {}", rounded_down(value.abs()), agent.name)
+        }
+        KindEvidence::FactorFloor { agent, everywhere, .. } => match everywhere {
+            FactorEverywhere::Away { least } => {
+                format!("`floor` of at most {} for {}", rounded_down(*least), agent.name)
+            }
+            FactorEverywhere::Fades | FactorEverywhere::Zero(_) | FactorEverywhere::Unknown => {
+                format!("a factor for {} that keeps away from zero in every state, such as 2 + cos(x)", agent.name)
+            }
+        },
+        KindEvidence::Singular { .. } => "a start at which the Jacobian is not singular".into(),
+        KindEvidence::NoTip => "an `end_effector` that the robot has".into(),
+        KindEvidence::LengthsInRegressor(lengths) => {
+            format!("{} known, or only the tool unknown", lengths.join(", "))
+        }
+        KindEvidence::LengthsNotAdapted { agent } => {
+            format!("`kinematic_gain` above zero for {}, or the true lengths as its estimates", agent.name)
+        }
+        KindEvidence::LengthOutside { value, .. } => {
+            format!("`bounds` that hold {value}, from {} to {}", rounded_down(*value), rounded_up(*value))
+        }
+        KindEvidence::MomentumPushed => "no torque from outside".into(),
+        KindEvidence::SafeCommand => "no `safe_command`: a run then ends where the law has no value".into(),
+        KindEvidence::NoSpacecraft => "`robot.spacecraft`".into(),
+        KindEvidence::Unmatched { agent } => format!("what disturbs {} in its last equation alone", agent.name),
+        KindEvidence::PositiveNumbers
+        | KindEvidence::PositiveNumbersTrueMass
+        | KindEvidence::PositiveMatrices
+        | KindEvidence::MassOfPlant
+        | KindEvidence::ConstantFactor
+        | KindEvidence::FactorAway { .. }
+        | KindEvidence::TermsDefined
+        | KindEvidence::LengthsOutsideRegressor(_)
+        | KindEvidence::LengthsKnown
+        | KindEvidence::PositiveMatricesTrueLengths
+        | KindEvidence::LengthsInside
+        | KindEvidence::Matched
+        | KindEvidence::Momentum(_) => return None,
+    })
+}
+
+pub(super) fn robot(evidence: &RobotEvidence) -> Option<String> {
+    Some(match evidence {
+        RobotEvidence::Swung { agents, joint, .. } => format!(
+            "`{joint}` of {} locked, or parallel to the joints that turn it: its travel then changes no lever",
+            names(agents)
+        ),
+        RobotEvidence::UnknownInertia { agents, .. } => {
+            format!("mass and inertia of its own for every link of {} that moves", names(agents))
+        }
+        RobotEvidence::SingularInertia { agent, .. } => {
+            format!("mass and inertia of its own for the last link of {}", agent.name)
+        }
+        RobotEvidence::WithinReach { .. } | RobotEvidence::ReachNotShown { .. } => {
+            "a target of sines or formulas that repeat, clearly inside of what the tip can reach".into()
+        }
+        RobotEvidence::OutOfReach { side, limit_m, .. } => match side {
+            ReachSide::Beyond => format!("a target that keeps closer than {} m", rounded_down(*limit_m)),
+            ReachSide::Inside => format!("a target that keeps farther than {} m", rounded_up(*limit_m)),
+        },
+        RobotEvidence::UniformInertia { .. } | RobotEvidence::BoundedDynamics { .. } => return None,
+    })
+}
