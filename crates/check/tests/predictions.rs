@@ -5,6 +5,8 @@
 mod common;
 #[path = "predictions/course.rs"]
 mod course;
+#[path = "predictions/rate.rs"]
+mod rate;
 
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking};
 use std::sync::Arc;

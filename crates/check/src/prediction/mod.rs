@@ -7,14 +7,17 @@
 //! - `ideal`: the setup in which everybody follows exactly.
 //! - `cascade`: the cascaded variables ψ of the proofs of Theorems 2 and 3, whose spread does not grow.
 //! - `course`: the disagreement over time and the value agreed upon.
+//! - `roots`: the rate of agreement over a fixed graph with constant delays.
 //! - `settled`: when a disagreement has settled.
 
 mod cascade;
 mod course;
 mod ideal;
+mod roots;
 mod settled;
 
 pub use cascade::{CascadeSpread, NoCascade};
 pub use course::{Course, NoCourse, course};
 pub use ideal::{NoIdeal, ideal};
+pub use roots::{NoRate, Rate, rate};
 pub use settled::{SHARE, Settled, settled};
