@@ -8,6 +8,7 @@ use thiserror::Error;
 use super::cascade::{CascadeSpread, NoCascade};
 use super::ideal::{NoIdeal, ideal};
 use super::settled::{Settled, settled};
+use super::torque::{PeakTorque, peak_torques};
 
 /// How agreement comes about when every agent follows its reference exactly, s ≡ 0.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +24,8 @@ pub struct Course {
     pub within: Result<Vec<[f64; 2]>, NoCascade>,
     /// When the disagreement has settled.
     pub settled: Settled,
+    /// The largest torque of every axis of robots under (6)–(7).
+    pub peak_torques: Vec<PeakTorque>,
 }
 
 /// Why the course of agreement cannot be predicted.
@@ -82,7 +85,8 @@ pub fn course(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow<(
     let disagreement = disagreement(&recording, axes);
     let within = CascadeSpread::of(&ideal, &recording).map(|spread| spread.last());
     let settled = settled(&recording.t_s, &disagreement);
-    Ok(Course { disagreement, value: means(&recording, axes), within, settled, t_s: recording.t_s })
+    let (value, peak_torques) = (means(&recording, axes), peak_torques(setup, &recording));
+    Ok(Course { disagreement, value, within, settled, peak_torques, t_s: recording.t_s })
 }
 
 /// The positions of all agents on an axis.

@@ -9,15 +9,18 @@
 //! - `course`: the disagreement over time and the value agreed upon.
 //! - `roots`: the rate of agreement over a fixed graph with constant delays.
 //! - `settled`: when a disagreement has settled.
+//! - `torque`: peak torques along the reference.
 
 mod cascade;
 mod course;
 mod ideal;
 mod roots;
 mod settled;
+mod torque;
 
 pub use cascade::{CascadeSpread, NoCascade};
 pub use course::{Course, NoCourse, course};
 pub use ideal::{NoIdeal, ideal};
 pub use roots::{NoRate, Rate, rate};
 pub use settled::{SHARE, Settled, settled};
+pub use torque::PeakTorque;

@@ -5,13 +5,14 @@ use std::sync::Arc;
 
 use forwardstep_check::prediction::{CascadeSpread, NoCascade, Settled, settled};
 use forwardstep_check::{Course, NoCourse, NoIdeal, course, ideal, predict};
+use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::Formulas;
 use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::delay::{Delay, RandomHold, SawTooth};
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking};
 use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::{ChainModel, Control, Exchange, Known, Outcome, Progress, Setup, Signal, Start};
+use forwardstep_sim::{Adaptive, ChainModel, Control, Exchange, Known, Outcome, Progress, Setup, Signal, Start};
 
 use crate::common::kinds::{blind_mass, cascade, chain, rest_at, tracking};
 use crate::common::{arm, column, edge, noise, run, setup};
@@ -32,7 +33,7 @@ fn saw() -> Delay {
 fn arms(exchange: Exchange, order: usize) -> Setup {
     let agents = (0..4).map(|i| {
         let mut agent = arm(i, &(0..order).map(|r| 1.0 + 0.5 * r as f64).collect::<Vec<_>>());
-        agent.law = Arc::new(Known { damping: forwardstep_core::Gain::Number(8.0) });
+        agent.law = Arc::new(Known { damping: Gain::Number(8.0) });
         agent
     });
     let phase = |edges: &[(usize, usize, usize)], dwell_s| Phase {
@@ -274,4 +275,43 @@ fn whoever_hears_a_smaller_first_root_stays_within_the_interval() {
         assert!(pair[1] <= pair[0] + 1e-4 * widths[0], "{} → {}", pair[0], pair[1]);
     }
     assert!(widths[widths.len() - 1] < 0.01 * widths[0]);
+}
+
+/// The largest |τ| of an axis of a run.
+fn observed_peak(outcome: &Outcome, agent: usize, axis: usize) -> f64 {
+    column(outcome, agent, Signal::Torque, axis).iter().fold(0.0, |peak, torque| torque.abs().max(peak))
+}
+
+#[test]
+fn peak_torques_are_those_of_the_reference_where_parameters_are_known_or_nearly_so() {
+    let mut setup = arms(Exchange::Position, 2);
+    let outcome = run(&setup);
+    let peaks = predicted(&setup).peak_torques;
+    assert_eq!(
+        peaks.iter().map(|peak| (peak.agent, peak.axis)).collect::<Vec<_>>(),
+        [(0, 0), (0, 1), (1, 0), (1, 1), (2, 0), (2, 1), (3, 0), (3, 1)]
+    );
+    for peak in &peaks {
+        let observed = observed_peak(&outcome, peak.agent, peak.axis);
+        assert!((peak.value.abs() / observed - 1.0).abs() < 1e-6, "{peak:?}, not {observed}");
+        let row = (peak.t_s / setup.time.record_every_s).round() as usize;
+        assert!((column(&outcome, peak.agent, Signal::Torque, peak.axis)[row] - peak.value).abs() < 1e-5);
+        assert_eq!(peak.estimate_off, 0.0);
+    }
+    for agent in &mut setup.agents {
+        let estimate_start = agent.robot.theta.iter().map(|theta| 0.95 * theta).collect();
+        let (damping, adaptation) = (Gain::Number(8.0), Gain::Number(1.0));
+        agent.law = Arc::new(Adaptive { damping, adaptation, estimate_start });
+    }
+    let outcome = run(&setup);
+    for peak in predicted(&setup).peak_torques {
+        let observed = observed_peak(&outcome, peak.agent, peak.axis);
+        assert!((peak.value.abs() / observed - 1.0).abs() < 0.06, "{peak:?}, not {observed}");
+        assert!((peak.estimate_off - 0.05).abs() < 1e-12);
+    }
+    setup.agents = setup.agents.iter().map(|_| blind_mass(1.0, 1.0)).collect();
+    for (i, agent) in setup.agents.iter_mut().enumerate() {
+        agent.start.q[0] = noise(i);
+    }
+    assert_eq!(predicted(&setup).peak_torques, [], "the torque of another law is not that of (6)");
 }
