@@ -17,6 +17,7 @@ mod laws;
 mod links;
 mod manipulation;
 mod null_vector;
+pub mod prediction;
 mod reach;
 mod report;
 mod sampled;
@@ -29,6 +30,7 @@ mod theorems;
 pub use agreement::{NoPrediction, Prediction, predict};
 pub use certificate::certify;
 pub use hypothesis::{Answer, Evidence, Hypothesis, Id, Rigour};
+pub use prediction::{Course, NoCourse, NoIdeal, course, ideal};
 pub use report::Report;
 pub use sampled::{
     FastestDamping, SampledAdaptation, SampledDamping, fastest_damping, sampled_adaptation, sampled_damping,

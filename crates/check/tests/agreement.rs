@@ -8,10 +8,10 @@ use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Referenc
 use std::sync::Arc;
 
 use common::{arm, column, edge, masses, noise, run, setup};
+use forwardstep_check::prediction::CascadeSpread;
 use forwardstep_check::{Answer, NoPrediction, check, predict};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
-use forwardstep_core::reference::polynomial;
 use forwardstep_sim::delay::{Delay, Loss, PacketLink, PiecewiseConstant, RandomHold, SawTooth, Sinusoid};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
@@ -155,42 +155,10 @@ fn prediction_says_why_there_is_none() {
     assert_eq!(case(one_way, constant).unwrap().influence, vec![1.0, 0.0]);
 }
 
-/// Spread (max − min) at every row over the chain variables of all agents and the delay window, on one axis.
-///
-/// φ_r = ∏_{k<r} (1 + p/κ_k) q; the chain is φ₀ … φ_ℓ for (24) and φ₁ … φ_ℓ for (a5), whose first entry is what is heard.
+/// The width at every row of the interval of all cascaded variables, on one axis.
 fn spreads(setup: &Setup, outcome: &Outcome, axis: usize) -> Vec<f64> {
-    let rows = outcome.recording.t_s.len();
-    let window = (setup.network.max_delay_s() / setup.time.record_every_s).ceil() as usize + 1;
-    let mut lowest_heard = vec![f64::INFINITY; rows];
-    let mut highest_heard = vec![f64::NEG_INFINITY; rows];
-    let (mut lowest, mut highest) = (lowest_heard.clone(), highest_heard.clone());
-    for (agent, description) in setup.agents.iter().enumerate() {
-        let roots = &description.roots_per_s;
-        let first = usize::from(setup.exchange == Exchange::PositionVelocity);
-        for r in first..=roots.len() {
-            let alpha = if r == 0 { vec![1.0] } else { polynomial(&roots[..r]).unwrap() };
-            for row in 0..rows {
-                let derivative = |k: usize| match k {
-                    0 => column(outcome, agent, Signal::Position, axis)[row],
-                    1 => column(outcome, agent, Signal::Velocity, axis)[row],
-                    k => column(outcome, agent, Signal::Reference(k as u8 - 1), axis)[row],
-                };
-                let phi: f64 = alpha.iter().enumerate().map(|(k, a)| a * derivative(k)).sum::<f64>() / alpha[0];
-                (lowest[row], highest[row]) = (lowest[row].min(phi), highest[row].max(phi));
-                if r == first {
-                    (lowest_heard[row], highest_heard[row]) = (lowest_heard[row].min(phi), highest_heard[row].max(phi));
-                }
-            }
-        }
-    }
-    (0..rows)
-        .map(|row| {
-            let past = row.saturating_sub(window)..=row;
-            let low = lowest_heard[past.clone()].iter().copied().fold(lowest[row], f64::min);
-            let high = highest_heard[past].iter().copied().fold(highest[row], f64::max);
-            high - low
-        })
-        .collect()
+    let CascadeSpread { low, high } = CascadeSpread::of(setup, &outcome.recording).unwrap();
+    low[axis].iter().zip(&high[axis]).map(|(low, high)| high - low).collect()
 }
 
 #[test]

@@ -3,6 +3,10 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 mod common;
+#[path = "predictions/course.rs"]
+mod course;
+#[path = "predictions/rate.rs"]
+mod rate;
 
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking};
 use std::sync::Arc;

@@ -1,0 +1,121 @@
+//! The course of agreement: the disagreement over time and the value agreed upon, by simulating the reference dynamics alone.
+
+use std::ops::ControlFlow;
+
+use forwardstep_sim::{Ending, Progress, Recording, Setup, SetupError, Signal, simulate};
+use thiserror::Error;
+
+use super::cascade::{CascadeSpread, NoCascade};
+use super::ideal::{NoIdeal, ideal};
+use super::settled::{Settled, settled};
+use super::torque::{PeakTorque, peak_torques};
+
+/// How agreement comes about when every agent follows its reference exactly, s ≡ 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Course {
+    /// Time of every row, s: those of a run of the robots.
+    pub t_s: Vec<f64>,
+    /// max |q_i − q_j| over agents and axes, row by row; rad or m.
+    pub disagreement: Vec<f64>,
+    /// The mean of the positions at the last row, one entry per axis.
+    pub value: Vec<f64>,
+    /// Where the value agreed upon lies, one interval per axis: the cascaded variables and the messages on their way at the
+    /// last row. Theirs is an interval that never grows.
+    pub within: Result<Vec<[f64; 2]>, NoCascade>,
+    /// When the disagreement has settled.
+    pub settled: Settled,
+    /// The largest torque of every axis of robots under (6)–(7).
+    pub peak_torques: Vec<PeakTorque>,
+}
+
+/// Why the course of agreement cannot be predicted.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum NoCourse {
+    /// The references depend on more than the network.
+    #[error(transparent)]
+    Ideal(#[from] NoIdeal),
+    /// There is nothing to compare.
+    #[error("there are no two agents to compare")]
+    FewerThanTwoAgents,
+    /// Agents have different numbers of axes.
+    #[error("the agents do not have the same axes")]
+    Axes,
+    /// The setup has no meaning.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// The reference dynamics alone could not be integrated up to the horizon.
+    #[error("the reference dynamics alone break down at {t_s} s")]
+    BrokeDown {
+        /// When, s.
+        t_s: f64,
+    },
+    /// The observer asked to stop.
+    #[error("the prediction was interrupted")]
+    Interrupted,
+}
+
+impl Course {
+    /// Whether agreement is reached on the horizon: the last disagreement is at most 1 % of the largest.
+    pub fn is_reached(&self) -> bool {
+        let largest = self.disagreement.iter().copied().fold(0.0, f64::max);
+        self.disagreement.last().is_some_and(|last| *last <= super::settled::SHARE * largest)
+    }
+}
+
+/// Predicts the course of agreement of `setup` by simulating [`ideal`]; `observer` as that of [`simulate`].
+///
+/// **Guarantees**: where ϑ is known and z(0) = q̇(0) it is that of the robots, to the tolerance of the solver. Otherwise it is a prediction for s ≡ 0.
+///
+/// # Errors
+/// [`NoCourse`] when there is none.
+pub fn course(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Result<Course, NoCourse> {
+    let ideal = ideal(setup)?;
+    let [first, _, ..] = ideal.agents.as_slice() else { return Err(NoCourse::FewerThanTwoAgents) };
+    let axes = first.robot.axes.len();
+    if ideal.agents.iter().any(|agent| agent.robot.axes.len() != axes) {
+        return Err(NoCourse::Axes);
+    }
+    let outcome = simulate(&ideal, observer)?;
+    match outcome.ending {
+        Ending::Completed => {}
+        Ending::Interrupted { .. } => return Err(NoCourse::Interrupted),
+        Ending::BrokeDown(breakdown) => return Err(NoCourse::BrokeDown { t_s: breakdown.t_s }),
+    }
+    let recording = outcome.recording;
+    let disagreement = disagreement(&recording, axes);
+    let within = CascadeSpread::of(&ideal, &recording).map(|spread| spread.last());
+    let settled = settled(&recording.t_s, &disagreement);
+    let (value, peak_torques) = (means(&recording, axes), peak_torques(setup, &recording));
+    Ok(Course { disagreement, value, within, settled, peak_torques, t_s: recording.t_s })
+}
+
+/// The positions of all agents on an axis.
+fn positions(recording: &Recording, axis: usize) -> impl Iterator<Item = &[f64]> {
+    let of_axis = move |column: &&forwardstep_sim::Column| column.signal == Signal::Position && column.axis == axis;
+    recording.columns.iter().filter(of_axis).map(|column| column.values.as_slice())
+}
+
+fn disagreement(recording: &Recording, axes: usize) -> Vec<f64> {
+    let rows = recording.t_s.len();
+    let mut largest = vec![0.0_f64; rows];
+    for axis in 0..axes {
+        let (mut low, mut high) = (vec![f64::INFINITY; rows], vec![f64::NEG_INFINITY; rows]);
+        for column in positions(recording, axis) {
+            for ((low, high), q) in low.iter_mut().zip(&mut high).zip(column) {
+                (*low, *high) = (low.min(*q), high.max(*q));
+            }
+        }
+        for ((largest, low), high) in largest.iter_mut().zip(low).zip(high) {
+            *largest = largest.max(high - low);
+        }
+    }
+    largest
+}
+
+fn means(recording: &Recording, axes: usize) -> Vec<f64> {
+    let mean = |axis| {
+        let last: Vec<f64> = positions(recording, axis).filter_map(|column| column.last().copied()).collect();
+        last.iter().sum::<f64>() / last.len() as f64
+    };
+    (0..axes).map(mean).collect()
+}

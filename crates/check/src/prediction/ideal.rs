@@ -1,0 +1,162 @@
+//! The setup in which every agent follows its reference exactly.
+//!
+//! A point mass of 1 kg under (6) with its mass known has q̈ = ż − K s. From z(0) = q̇(0) on s is zero and stays so: both
+//! sides integrate the same numbers. So the reference dynamics can be simulated alone by the engine that simulates robots, over the
+//! same network, with the same switching, delays and draws.
+//!
+//! With s ≡ 0 all laws of consensus lead to one equation: x₀ = q, x₁ = q̇, … x_ℓ with dx_r/dt = x_{r+1} and
+//! dXᵢ/dt = −Σⱼ w_ij (Xᵢ − heard_j), whatever part of x is measured and whatever part is constructed. A chain of order k
+//! starts it from x₀ … x_{k−2} and z, ż, …; a robot from q, z, ż, ….
+
+use std::sync::Arc;
+
+use forwardstep_core::Gain;
+use forwardstep_core::robot::PointMass;
+use forwardstep_sim::reference::{Consensus, PureIntegral};
+use forwardstep_sim::{
+    AgentSetup, Axis, ChainLaw, ChainModel, Known, PositionOnlyLaw, RobotSetup, Setup, Solver, Start,
+};
+use thiserror::Error;
+
+use crate::kinds::is_lagrangian;
+
+/// Why there is no setup in which everybody follows its reference exactly.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum NoIdeal {
+    /// They follow a leader.
+    #[error("everybody follows a leader")]
+    Leader,
+    /// They follow targets of their own.
+    #[error("agents follow targets and do not agree with each other")]
+    Targets,
+    /// The baseline differentiates what it hears: z jumps with messages, and no velocity follows it exactly.
+    #[error("the velocity that backstepping asks for jumps with messages, so that it cannot be followed exactly")]
+    Backstepping,
+    /// Reference dynamics from outside.
+    #[error("the reference dynamics are not among those that come with forwardstep")]
+    Own,
+    /// A law whose reference is something else than derivatives of the position.
+    #[error("the law of agent number {} has no reference that is known without its robot", agent + 1)]
+    Law {
+        /// Index of the agent.
+        agent: usize,
+    },
+    /// It agrees with the others up to an offset.
+    #[error("agent number {} keeps an offset from where the others agree", agent + 1)]
+    Offset {
+        /// Index of the agent.
+        agent: usize,
+    },
+    /// Too few roots for its robot, or a start of the wrong length: the setup has no meaning.
+    #[error("the start of agent number {} does not fit its order", agent + 1)]
+    Start {
+        /// Index of the agent.
+        agent: usize,
+    },
+}
+
+/// `setup` with every agent replaced by a point mass that follows its reference exactly, in continuous time.
+///
+/// The network, its draws, the roots, the horizon and the solver are those of `setup`; agents keep their names and axes. What
+/// has no meaning or no effect while s ≡ 0 is left out: gains, estimates, λ of Remark 4, pushes, limits, sampling. Under
+/// (aa10), (a1), (a5) and (24) q̇(0) becomes z(0), which keeps what [`crate::predict`] finds conserved unless velocities are
+/// exchanged with a delay: those sent before t = 0 are then z(0), not q̇(0). Under (3) and (23) z(0) becomes q̇(0), which
+/// keeps it always.
+///
+/// # Errors
+/// [`NoIdeal`] when the reference of some agent depends on more than the network.
+pub fn ideal(setup: &Setup) -> Result<Setup, NoIdeal> {
+    let reference = &setup.reference;
+    if setup.following().is_some() {
+        return Err(NoIdeal::Leader);
+    }
+    if setup.all_track() {
+        return Err(NoIdeal::Targets);
+    }
+    if reference.is::<forwardstep_sim::reference::Backstepping>() {
+        return Err(NoIdeal::Backstepping);
+    }
+    if !(reference.is::<Consensus>() || reference.is::<PureIntegral>()) {
+        return Err(NoIdeal::Own);
+    }
+    let integral = reference.is::<PureIntegral>();
+    let agents = setup.agents.iter().enumerate();
+    Ok(Setup {
+        agents: agents.map(|(agent, own)| follower(agent, own, integral)).collect::<Result<_, _>>()?,
+        solver: Solver { balance: false, ..setup.solver },
+        control: None,
+        ..setup.clone()
+    })
+}
+
+/// Damping of what rounding leaves of s, 1/s: with s = 0 it acts on nothing.
+const DAMPING_PER_S: f64 = 1.0;
+
+fn follower(agent: usize, own: &AgentSetup, integral: bool) -> Result<AgentSetup, NoIdeal> {
+    let axes = own.robot.axes.iter().map(|axis| Axis {
+        position_limits: None,
+        velocity_limit: None,
+        effort_limit: None,
+        ..axis.clone()
+    });
+    Ok(AgentSetup {
+        robot: RobotSetup {
+            kind: Arc::new(PointMass { dimension: own.robot.axes.len() }),
+            theta: vec![1.0],
+            theta_names: vec!["mass".into()],
+            axes: axes.collect(),
+        },
+        manipulability: 0.0,
+        law: Arc::new(Known { damping: Gain::Number(DAMPING_PER_S) }),
+        target: None,
+        start: start(agent, own, integral)?,
+        enforce_limits: false,
+        pushes: Vec::new(),
+        name: own.name.clone(),
+        roots_per_s: own.roots_per_s.clone(),
+    })
+}
+
+/// q, q̇ = z, ż, … at the start.
+fn start(agent: usize, own: &AgentSetup, integral: bool) -> Result<Start, NoIdeal> {
+    if own.target.is_some() {
+        return Err(NoIdeal::Offset { agent });
+    }
+    let order = order(own).ok_or(NoIdeal::Law { agent })?;
+    let (start, axes) = (&own.start, own.robot.axes.len());
+    // x₀ … x_{k−2}, then what z follows.
+    let mut measured: Vec<Vec<f64>> = [&start.q, &start.dq, &start.rest]
+        .iter()
+        .flat_map(|part| part.chunks(axes.max(1)))
+        .map(<[f64]>::to_vec)
+        .collect();
+    if measured.len() < order || measured.iter().any(|x| x.len() != axes) {
+        return Err(NoIdeal::Start { agent });
+    }
+    let followed = if own.law.is::<PositionOnlyLaw>() { vec![0.0; axes] } else { measured[order - 1].clone() };
+    let keeps_velocity = integral || start.reference.is_empty();
+    let z = if keeps_velocity { followed } else { start.reference[0].clone() };
+    measured.truncate(order - 1);
+    measured.push(z);
+    measured.extend(start.reference.iter().skip(1).cloned());
+    measured.resize(measured.len().max(2), vec![0.0; axes]);
+    if measured.iter().any(|x| x.len() != axes) || measured.len() > own.roots_per_s.len() + 1 {
+        return Err(NoIdeal::Start { agent });
+    }
+    let mut x = measured.into_iter();
+    let (q, reference) = (x.next().unwrap_or_default(), x.collect::<Vec<_>>());
+    Ok(Start { q, dq: reference.first().cloned().unwrap_or_default(), rest: Vec::new(), reference })
+}
+
+/// k, where z follows the derivative of order k − 1 of the position.
+fn order(own: &AgentSetup) -> Option<usize> {
+    if is_lagrangian(own) || own.law.is::<PositionOnlyLaw>() {
+        return Some(2);
+    }
+    own.law.downcast::<ChainLaw>()?;
+    match own.robot.kind.downcast()? {
+        model @ ChainModel::Derivatives(_) => Some(model.order()),
+        // Its feedback leads the first state to z.
+        ChainModel::Cascade(_) => Some(1),
+    }
+}

@@ -1,0 +1,26 @@
+//! What can be said of a run before any robot is simulated: the course of agreement, from the reference dynamics alone.
+//!
+//! Everything here is about robots that follow their reference exactly, *s ≡ 0*. Then q̇ = z, the torques and the robots play
+//! no part, and what remains is a network of integrator chains: [`ideal`] writes it as a setup. What is found of it is a prediction for the
+//! run of the robots, exact where ϑ is known and z(0) = q̇(0), and otherwise off by what s does.
+//!
+//! - `ideal`: the setup in which everybody follows exactly.
+//! - `cascade`: the cascaded variables ψ of the proofs of Theorems 2 and 3, whose spread does not grow.
+//! - `course`: the disagreement over time and the value agreed upon.
+//! - `roots`: the rate of agreement over a fixed graph with constant delays.
+//! - `settled`: when a disagreement has settled.
+//! - `torque`: peak torques along the reference.
+
+mod cascade;
+mod course;
+mod ideal;
+mod roots;
+mod settled;
+mod torque;
+
+pub use cascade::{CascadeSpread, NoCascade};
+pub use course::{Course, NoCourse, course};
+pub use ideal::{NoIdeal, ideal};
+pub use roots::{NoRate, Rate, rate};
+pub use settled::{SHARE, Settled, settled};
+pub use torque::PeakTorque;

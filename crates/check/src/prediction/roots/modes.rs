@@ -1,0 +1,205 @@
+//! Groups of characteristic roots, what the start puts into each, and how the disagreement goes by the slowest of them.
+//!
+//! Around a group of m roots the integrals (1/2πi)∮ (p−c)^k Δ⁻¹b dp = R_k give its part of the solution, e^(ct) Σ_k R_k t^k/k!,
+//! whether the roots are distinct, semisimple or defective; (1/2πi)∮ tr(Δ⁻¹Δ′) dp is m. The trapezoidal rule on a circle that keeps
+//! away from all roots converges geometrically.
+
+use nalgebra::DMatrix;
+
+use super::characteristic::{C, Characteristic, exp, size};
+
+/// Points on a circle.
+const POINTS: usize = 16;
+/// The radius of the circle, as a part of the distance to the nearest root outside.
+const REACH: f64 = 0.3;
+/// How near roots stand to each other in a group, as a part of the same distance.
+const CLOSE: f64 = 0.03;
+
+/// Some roots that lie close together, and their part of the solution.
+pub(super) struct Mode {
+    /// Their mean, 1/s.
+    pub(super) root: C,
+    /// How many there are.
+    pub(super) multiplicity: usize,
+    /// R₀, R₁, …: a row per agent, a column per axis.
+    pub(super) parts: Vec<DMatrix<C>>,
+    /// The size of the last step of Newton's method, 1/s.
+    pub(super) correction: f64,
+}
+
+/// A group of candidates.
+struct Group {
+    centre: C,
+    members: usize,
+    radius: f64,
+}
+
+/// Groups of candidates, the rightmost first, without those below the real axis; none is left out but behind the last.
+fn groups(candidates: &[C], most: usize) -> Vec<Group> {
+    let mut left: Vec<C> = candidates.to_vec();
+    left.sort_by(|a, b| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
+    let mut found: Vec<Group> = Vec::new();
+    while found.len() < most && !left.is_empty() {
+        let mut members = vec![left.remove(0)];
+        loop {
+            let centre = members.iter().sum::<C>() / members.len() as f64;
+            let own = members.iter().map(|p| size(p - centre)).fold(0.0, f64::max);
+            let nearest =
+                left.iter().enumerate().map(|(k, p)| (k, size(p - centre))).min_by(|a, b| a.1.total_cmp(&b.1));
+            let others = found.iter().map(|group| size(group.centre - centre)).fold(f64::INFINITY, f64::min);
+            let away = nearest.map_or(f64::INFINITY, |(_, away)| away).min(others);
+            match nearest {
+                Some((k, distance)) if own > CLOSE * distance || distance < CLOSE * size(centre) => {
+                    members.push(left.remove(k));
+                }
+                _ => {
+                    let radius = REACH * if away.is_finite() { away } else { 1.0 + size(centre) };
+                    found.push(Group { centre, members: members.len(), radius });
+                    break;
+                }
+            }
+        }
+    }
+    found
+}
+
+/// The rightmost modes, the one at zero among them, as far as every group is what its candidates say: far from the origin
+/// candidates are poor.
+pub(super) fn modes(system: &Characteristic, candidates: &[C], most: usize) -> Vec<Mode> {
+    let mut modes = Vec::new();
+    for group in groups(candidates, 2 * most + 1) {
+        // The conjugate has the conjugate part.
+        if group.centre.im < -0.5 * group.radius {
+            continue;
+        }
+        if modes.len() > most {
+            break;
+        }
+        let Some(mode) = mode(system, &group) else { break };
+        modes.push(mode);
+    }
+    modes
+}
+
+fn mode(system: &Characteristic, group: &Group) -> Option<Mode> {
+    let integral = Integral::around(system, group.centre, group.radius, 1)?;
+    let multiplicity = group.members;
+    if size(integral.count - multiplicity as f64) > 0.1 {
+        return None;
+    }
+    let mut root = group.centre + integral.mean / multiplicity as f64;
+    let mut correction = f64::INFINITY;
+    if multiplicity == 1 {
+        for _ in 0..20 {
+            let Some(step) = newton(system, root).filter(|step| size(*step) < 0.5 * correction) else { break };
+            correction = size(step);
+            root -= step;
+        }
+    } else {
+        // At a root of several Newton's method ends far above rounding, and a mean does not.
+        // The smaller circle is off by another rounding and another tail.
+        let again = Integral::around(system, root, group.radius / 3.0, 1)?.mean / multiplicity as f64;
+        correction = size(again);
+        root += again;
+    }
+    if size(root - group.centre) > group.radius {
+        return None;
+    }
+    // What is real stays real.
+    let root = if root.im.abs() < 1e-9 * size(root) { C::from(root.re) } else { root };
+    let parts = Integral::around(system, root, group.radius, multiplicity.min(6))?.parts;
+    Some(Mode { root, multiplicity, parts, correction })
+}
+
+/// 1 / tr(Δ⁻¹Δ′): the step of Newton's method for det Δ.
+fn newton(system: &Characteristic, p: C) -> Option<C> {
+    let [delta, slope] = system.matrix(p);
+    let step = delta.lu().solve(&slope)?.trace().inv();
+    (step.re.is_finite() && step.im.is_finite()).then_some(step)
+}
+
+/// How small a relative change of the terms of Δ(p), row by row, makes it singular: |Δx| over the sum of their sizes, for a
+/// vector x with |x|∞ = 1 that it hardly maps anywhere.
+pub(super) fn backward_error(system: &Characteristic, p: C) -> f64 {
+    let [delta, _] = system.matrix(p);
+    let n = system.agents();
+    // A start that is orthogonal to nothing in particular.
+    let mut x = DMatrix::from_fn(n, 1, |i, _| C::new(1.0 + 0.37 * i as f64 % 0.71, 0.53 * i as f64 % 0.29));
+    let lu = delta.clone().lu();
+    for _ in 0..3 {
+        // Exactly singular.
+        let Some(next) = lu.solve(&x) else { return 0.0 };
+        let largest = next.iter().map(|entry| size(*entry)).fold(0.0, f64::max);
+        if !(largest.is_finite() && largest > 0.0) {
+            return 0.0;
+        }
+        x = next / C::from(largest);
+    }
+    let rest = &delta * &x;
+    let sizes = system.sizes(p);
+    rest.iter().zip(sizes).map(|(rest, whole)| size(*rest) / whole.max(f64::MIN_POSITIVE)).fold(0.0, f64::max)
+}
+
+/// Integrals over a circle, divided by 2πi.
+struct Integral {
+    /// Of tr(Δ⁻¹Δ′): how many roots are inside.
+    count: C,
+    /// Of (p−c) tr(Δ⁻¹Δ′): the sum of their distances from the centre.
+    mean: C,
+    /// Of (p−c)^k Δ⁻¹b.
+    parts: Vec<DMatrix<C>>,
+}
+
+impl Integral {
+    fn around(system: &Characteristic, centre: C, radius: f64, parts: usize) -> Option<Integral> {
+        let zero = DMatrix::zeros(system.agents(), system.axes());
+        let mut all = Integral { count: C::from(0.0), mean: C::from(0.0), parts: vec![zero; parts] };
+        for k in 0..POINTS {
+            let angle = core::f64::consts::TAU * (k as f64 + 0.5) / POINTS as f64;
+            let away = exp(C::new(0.0, angle)) * radius;
+            let [delta, slope] = system.matrix(centre + away);
+            let lu = delta.lu();
+            let share = away / POINTS as f64;
+            let trace = lu.solve(&slope)?.trace();
+            all.count += share * trace;
+            all.mean += share * away * trace;
+            let solution = lu.solve(&system.start(centre + away))?;
+            let mut factor = share;
+            for part in &mut all.parts {
+                *part += &solution * factor;
+                factor *= away;
+            }
+        }
+        Some(all)
+    }
+}
+
+impl Mode {
+    /// Whether a conjugate goes with it.
+    pub(super) fn is_pair(&self) -> bool {
+        self.root.im != 0.0
+    }
+
+    /// Its part of q at `t_s`, a row per agent, a column per axis.
+    pub(super) fn at(&self, t_s: f64) -> DMatrix<f64> {
+        let mut sum = DMatrix::zeros(self.parts[0].nrows(), self.parts[0].ncols());
+        let mut factor = exp(self.root * t_s) * if self.is_pair() { 2.0 } else { 1.0 };
+        for (k, part) in self.parts.iter().enumerate() {
+            sum.zip_apply(part, |sum, part| *sum += (part * factor).re);
+            factor *= t_s / (k + 1) as f64;
+        }
+        sum
+    }
+
+    /// The disagreement that the start puts into it: the largest |R₀ᵢ − R₀ⱼ| over agents and axes, twice that for a pair.
+    pub(super) fn excited(&self) -> f64 {
+        let part = &self.parts[0];
+        let apart = |column: usize| {
+            let entries = part.column(column);
+            let first = entries[0];
+            entries.iter().map(|entry| size(*entry - first)).fold(0.0, f64::max)
+        };
+        let largest = (0..part.ncols()).map(apart).fold(0.0, f64::max);
+        if self.is_pair() { 2.0 * largest } else { largest }
+    }
+}

@@ -1,0 +1,317 @@
+//! Predictions by simulating the reference dynamics alone, against runs of robots.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use forwardstep_check::prediction::{CascadeSpread, NoCascade, Settled, settled};
+use forwardstep_check::{Course, NoCourse, NoIdeal, course, ideal, predict};
+use forwardstep_core::Gain;
+use forwardstep_core::expression::Expression;
+use forwardstep_core::plant::Formulas;
+use forwardstep_sim::coupling::Coupling;
+use forwardstep_sim::delay::{Delay, RandomHold, SawTooth};
+use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking};
+use forwardstep_sim::schedule::{Phase, Schedule};
+use forwardstep_sim::{Adaptive, ChainModel, Control, Exchange, Known, Outcome, Progress, Setup, Signal, Start};
+
+use crate::common::kinds::{blind_mass, cascade, chain, rest_at, tracking};
+use crate::common::{arm, column, edge, noise, run, setup};
+
+fn go_on(_: Progress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+fn predicted(setup: &Setup) -> Course {
+    course(setup, &mut go_on).unwrap()
+}
+
+fn saw() -> Delay {
+    Delay::new(SawTooth { min_s: 0.0, max_s: 0.3, period_s: 0.7, offset_s: 0.1 })
+}
+
+/// Four arms with known parameters, at rest or in motion, over a graph that switches, with delays that vary.
+fn arms(exchange: Exchange, order: usize) -> Setup {
+    let agents = (0..4).map(|i| {
+        let mut agent = arm(i, &(0..order).map(|r| 1.0 + 0.5 * r as f64).collect::<Vec<_>>());
+        agent.law = Arc::new(Known { damping: Gain::Number(8.0) });
+        agent
+    });
+    let phase = |edges: &[(usize, usize, usize)], dwell_s| Phase {
+        edges: edges.iter().map(|&(from, to, delay)| edge(from, to, 1.5, delay)).collect(),
+        dwell_s,
+    };
+    let schedule = Schedule::periodic(vec![
+        phase(&[(0, 1, 0), (2, 3, 1)], 0.4),
+        phase(&[(1, 2, 1), (3, 0, 0)], 0.3),
+        phase(&[(0, 2, 0)], 0.2),
+    ]);
+    let drawn = RandomHold::draw(5, (0, 1), [0.0, 0.4], [0.1, 0.3], 60.0).unwrap();
+    let mut setup = setup(agents.collect(), exchange, schedule, vec![saw(), Delay::new(drawn)], 60.0);
+    setup.time.record_every_s = 0.02;
+    setup
+}
+
+/// max |q_i − q_j| of a run, row by row.
+fn disagreement(outcome: &Outcome, agents: usize, axes: usize) -> Vec<f64> {
+    let rows = outcome.recording.t_s.len();
+    let apart = |row: usize, axis: usize| {
+        let q = || (0..agents).map(|agent| column(outcome, agent, Signal::Position, axis)[row]);
+        q().fold(f64::NEG_INFINITY, f64::max) - q().fold(f64::INFINITY, f64::min)
+    };
+    (0..rows).map(|row| (0..axes).map(|axis| apart(row, axis)).fold(0.0, f64::max)).collect()
+}
+
+#[test]
+fn who_follows_exactly_never_has_a_tracking_error() {
+    for exchange in [Exchange::Position, Exchange::PositionVelocity] {
+        for order in 1..=4 {
+            let mut setup = arms(exchange, order);
+            // It need not start so.
+            setup.agents[1].start.reference = vec![vec![0.4, -0.3]];
+            setup.time.end_s = 5.0;
+            let outcome = run(&ideal(&setup).unwrap());
+            let errors = outcome.recording.columns.iter().filter(|column| column.signal == Signal::TrackingError);
+            let largest = errors.flat_map(|column| &column.values).fold(0.0_f64, |most, s| most.max(s.abs()));
+            assert!(largest < 1e-13, "{exchange:?} of order {order}: {largest:e}");
+        }
+    }
+}
+
+#[test]
+fn with_known_parameters_the_prediction_is_the_run() {
+    for (exchange, order) in [
+        (Exchange::Position, 1),
+        (Exchange::Position, 3),
+        (Exchange::PositionVelocity, 1),
+        (Exchange::PositionVelocity, 2),
+    ] {
+        let setup = arms(exchange, order);
+        let (predicted, outcome) = (predicted(&setup), run(&setup));
+        let observed = disagreement(&outcome, 4, 2);
+        assert_eq!(predicted.t_s, outcome.recording.t_s);
+        let away = predicted.disagreement.iter().zip(&observed).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(away < 1e-6, "{exchange:?} of order {order}: {away:e}");
+        let (Settled::At(predicted_s), Settled::At(observed_s)) =
+            (predicted.settled, settled(&outcome.recording.t_s, &observed))
+        else {
+            panic!("{exchange:?} of order {order} settles")
+        };
+        assert!((predicted_s / observed_s - 1.0).abs() < 0.01, "{predicted_s} s, {observed_s} s");
+        for axis in 0..2 {
+            let [low, high] = predicted.within.as_ref().unwrap()[axis];
+            let last = *column(&outcome, 2, Signal::Position, axis).last().unwrap();
+            assert!(low - 1e-6 <= last && last <= high + 1e-6 && high - low < 0.1, "{low} {last} {high}");
+            assert!((predicted.value[axis] - last).abs() < 0.05);
+        }
+        assert!(predicted.is_reached());
+    }
+}
+
+#[test]
+fn the_value_agreed_upon_is_the_conserved_one_where_there_is_one() {
+    for (integral, exchange, z) in [
+        (false, Exchange::Position, Some([0.7, -0.5])),
+        (false, Exchange::PositionVelocity, None),
+        (true, Exchange::Position, Some([0.7, -0.5])),
+        (true, Exchange::PositionVelocity, Some([0.7, -0.5])),
+    ] {
+        let mut setup = arms(exchange, 2);
+        if integral {
+            setup.reference = Arc::new(PureIntegral);
+        }
+        let ring: Vec<_> = (0..4).map(|i| edge(i, (i + 1) % 4, 1.0 + 0.1 * i as f64, i % 2)).collect();
+        setup.network.schedule = Schedule::fixed(ring);
+        setup.network.delays = vec![Delay::constant(0.2), Delay::constant(0.35)];
+        setup.time.end_s = 150.0;
+        // Neither z(0) nor ż(0) is what follows from q̇(0).
+        if let Some(z) = z {
+            setup.agents[2].start.reference = vec![z.to_vec(), vec![0.2, 0.1]];
+        }
+        let (predicted, conserved) = (predicted(&setup), predict(&setup).unwrap().value);
+        for axis in 0..2 {
+            assert!((predicted.value[axis] - conserved[axis]).abs() < 1e-6, "{:?} {conserved:?}", predicted.value);
+            let [low, high] = predicted.within.as_ref().unwrap()[axis];
+            assert!(low - 1e-7 <= conserved[axis] && conserved[axis] <= high + 1e-7);
+        }
+    }
+}
+
+#[test]
+fn a_chain_of_any_order_follows_the_same_reference() {
+    let zero = || Expression::number(0.0);
+    let third = Formulas::new(3, &zero(), Vec::new(), &Expression::number(1.0)).unwrap();
+    let starts = [(2, [0.3, 0.5, 0.0]), (3, [-1.0, 0.2, 0.4])];
+    let agents = starts.iter().enumerate().map(|(i, (order, x))| {
+        let mut agent = chain(&Expression::number(2.0), 0, false);
+        if *order == 3 {
+            agent.robot.kind = Arc::new(ChainModel::Derivatives(Arc::new(third.clone())));
+        }
+        agent.start = Start { q: vec![x[0]], dq: vec![x[1]], rest: x[2..*order].to_vec(), reference: Vec::new() };
+        agent.roots_per_s = vec![1.0, 2.0, 1.5];
+        agent.name = format!("chain-{i}");
+        agent
+    });
+    let edges = vec![edge(0, 1, 1.0, 0), edge(1, 0, 0.7, 0)];
+    let setup = setup(agents.collect(), Exchange::Position, Schedule::fixed(edges), vec![Delay::constant(0.3)], 10.0);
+    let (followed, outcome) = (ideal(&setup).unwrap(), run(&setup));
+    let alone = run(&followed);
+    for agent in 0..2 {
+        let [q, reference] = [&outcome, &alone].map(|outcome| column(outcome, agent, Signal::Position, 0));
+        let away = q.iter().zip(reference).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(away < 1e-7 && (q[0] - q[q.len() - 1]).abs() > 0.05, "{away:e}");
+    }
+    // A given z replaces what it follows, and in feedback form it follows the position.
+    let mut given = setup.clone();
+    given.agents[1].start.reference = vec![vec![0.9], vec![0.1]];
+    let start = &ideal(&given).unwrap().agents[1].start;
+    assert_eq!((&start.q[..], &start.dq[..]), (&[-1.0][..], &[0.2][..]));
+    assert_eq!(start.reference, [[0.2], [0.9], [0.1]]);
+    given.agents[1] = cascade(Expression::variable(1), Expression::number(1.0), 1);
+    given.agents[1].start.reference = vec![vec![0.9], vec![0.1]];
+    let start = &ideal(&given).unwrap().agents[1].start;
+    assert_eq!((&start.q[..], &start.dq[..], &start.reference[..]), (&[0.9][..], &[0.1][..], &[vec![0.1]][..]));
+    // Without a velocity z(0) is zero, whatever the velocity is.
+    given.agents[1] = blind_mass(1.0, 1.0);
+    given.agents[1].start.dq = vec![0.6];
+    assert_eq!(ideal(&given).unwrap().agents[1].start.dq, [0.0]);
+}
+
+#[test]
+fn every_reason_for_no_course_is_the_one_that_is_said() {
+    let said = |change: &dyn Fn(&mut Setup)| {
+        let mut setup = arms(Exchange::Position, 2);
+        setup.time.end_s = 1.0;
+        change(&mut setup);
+        course(&setup, &mut go_on).err()
+    };
+    let no = |reason: NoIdeal| Some(NoCourse::Ideal(reason));
+    assert_eq!(said(&|_| {}), None);
+    let backstepping = Arc::new(Backstepping { filter_s: 0.1, acceleration_limit: None });
+    assert_eq!(said(&|setup| setup.reference = backstepping.clone()), no(NoIdeal::Backstepping));
+    assert_eq!(said(&|setup| setup.reference = Arc::new(Tracking)), no(NoIdeal::Targets));
+    let spacecraft = crate::common::kinds::spacecraft();
+    assert_eq!(said(&|setup| setup.agents[2].law = spacecraft.law.clone()), no(NoIdeal::Law { agent: 2 }));
+    let offset = tracking(arm(0, &[1.0]), vec![rest_at(0.2), rest_at(0.1)]).agents[0].target.clone();
+    assert_eq!(said(&|setup| setup.agents[1].target = offset.clone()), no(NoIdeal::Offset { agent: 1 }));
+    assert_eq!(said(&|setup| setup.agents[3].start.reference = vec![vec![0.0]]), no(NoIdeal::Start { agent: 3 }));
+    assert_eq!(
+        said(&|setup| setup.agents[3].start.reference = vec![vec![0.0; 2]; 3]),
+        no(NoIdeal::Start { agent: 3 }),
+        "order two has no z̈(0)"
+    );
+    assert_eq!(said(&|setup| setup.agents[3].start.dq.clear()), no(NoIdeal::Start { agent: 3 }));
+    assert!(matches!(said(&|setup| setup.agents[0].roots_per_s[1] = -1.0), Some(NoCourse::Setup(_))));
+    let alone = |setup: &mut Setup| {
+        setup.agents.truncate(1);
+        setup.network.agents = 1;
+    };
+    assert_eq!(said(&alone), Some(NoCourse::FewerThanTwoAgents));
+    let one = |setup: &mut Setup| setup.agents[1] = blind_mass(1.0, 1.0);
+    assert_eq!(said(&one), Some(NoCourse::Axes));
+    let stop = course(&arms(Exchange::Position, 1), &mut |_| ControlFlow::Break(()));
+    assert_eq!(stop, Err(NoCourse::Interrupted));
+}
+
+#[test]
+fn what_has_no_effect_while_everybody_follows_is_left_out() {
+    let plain = arms(Exchange::Position, 2);
+    let mut busy = plain.clone();
+    for agent in &mut busy.agents {
+        (agent.manipulability, agent.enforce_limits) = (0.7, true);
+    }
+    busy.control = Some(Control {
+        failures: Default::default(),
+        sample_hz: 100.0,
+        computation_delay_s: 0.0,
+        sensors: Default::default(),
+        actuators: Default::default(),
+    });
+    assert_eq!(predicted(&busy), predicted(&plain));
+}
+
+#[test]
+fn cascaded_variables_have_an_interval_only_where_messages_are_weighted_means() {
+    let said = |change: &dyn Fn(&mut Setup)| {
+        let mut setup = arms(Exchange::PositionVelocity, 2);
+        setup.time.end_s = 0.1;
+        let outcome = run(&setup);
+        change(&mut setup);
+        CascadeSpread::of(&setup, &outcome.recording).err()
+    };
+    assert_eq!(said(&|_| {}), None);
+    assert_eq!(said(&|setup| setup.network.coupling = Coupling::Tanh { scale: 1.0 }), Some(NoCascade::Coupling));
+    assert_eq!(said(&|setup| setup.reference = Arc::new(Tracking)), Some(NoCascade::Reference));
+    assert_eq!(said(&|setup| setup.agents[2].law = blind_mass(1.0, 1.0).law), Some(NoCascade::Law { agent: 2 }));
+    assert_eq!(said(&|setup| setup.agents[1] = blind_mass(1.0, 1.0)), Some(NoCascade::Law { agent: 1 }));
+    assert_eq!(said(&|setup| setup.agents[1].roots_per_s.extend([1.0; 3])), Some(NoCascade::NotRecorded));
+    let larger = |setup: &mut Setup| setup.agents[0].roots_per_s[0] = 1.1;
+    assert_eq!(said(&larger), Some(NoCascade::FirstRoots { from: 0, to: 1 }));
+    let position = |setup: &mut Setup| {
+        larger(setup);
+        setup.exchange = Exchange::Position;
+    };
+    assert_eq!(said(&position), None);
+    let axis = |setup: &mut Setup| {
+        setup.agents[1].robot.axes.pop();
+    };
+    assert_eq!(said(&axis), Some(NoCascade::Axes));
+}
+
+#[test]
+fn whoever_hears_a_smaller_first_root_stays_within_the_interval() {
+    // Along a path, agent by agent, κ₀ⱼ ≤ κ₀ᵢ.
+    let mut setup = arms(Exchange::PositionVelocity, 2);
+    for (i, agent) in setup.agents.iter_mut().enumerate() {
+        agent.roots_per_s[0] = 1.0 + 0.4 * i as f64;
+        agent.start.dq = vec![2.0 * noise(i), -noise(i + 3)];
+    }
+    let path = (0..3).map(|i| edge(i, i + 1, 1.5, 0)).collect();
+    (setup.network.schedule, setup.network.delays) = (Schedule::fixed(path), vec![saw()]);
+    setup.time.record_every_s = 0.004;
+    setup.reference = Arc::new(Consensus);
+    let followed = ideal(&setup).unwrap();
+    let widths = CascadeSpread::of(&followed, &run(&followed).recording).unwrap().widths();
+    for pair in widths.windows(2) {
+        assert!(pair[1] <= pair[0] + 1e-4 * widths[0], "{} → {}", pair[0], pair[1]);
+    }
+    assert!(widths[widths.len() - 1] < 0.01 * widths[0]);
+}
+
+/// The largest |τ| of an axis of a run.
+fn observed_peak(outcome: &Outcome, agent: usize, axis: usize) -> f64 {
+    column(outcome, agent, Signal::Torque, axis).iter().fold(0.0, |peak, torque| torque.abs().max(peak))
+}
+
+#[test]
+fn peak_torques_are_those_of_the_reference_where_parameters_are_known_or_nearly_so() {
+    let mut setup = arms(Exchange::Position, 2);
+    let outcome = run(&setup);
+    let peaks = predicted(&setup).peak_torques;
+    assert_eq!(
+        peaks.iter().map(|peak| (peak.agent, peak.axis)).collect::<Vec<_>>(),
+        [(0, 0), (0, 1), (1, 0), (1, 1), (2, 0), (2, 1), (3, 0), (3, 1)]
+    );
+    for peak in &peaks {
+        let observed = observed_peak(&outcome, peak.agent, peak.axis);
+        assert!((peak.value.abs() / observed - 1.0).abs() < 1e-6, "{peak:?}, not {observed}");
+        let row = (peak.t_s / setup.time.record_every_s).round() as usize;
+        assert!((column(&outcome, peak.agent, Signal::Torque, peak.axis)[row] - peak.value).abs() < 1e-5);
+        assert_eq!(peak.estimate_off, 0.0);
+    }
+    for agent in &mut setup.agents {
+        let estimate_start = agent.robot.theta.iter().map(|theta| 0.95 * theta).collect();
+        let (damping, adaptation) = (Gain::Number(8.0), Gain::Number(1.0));
+        agent.law = Arc::new(Adaptive { damping, adaptation, estimate_start });
+    }
+    let outcome = run(&setup);
+    for peak in predicted(&setup).peak_torques {
+        let observed = observed_peak(&outcome, peak.agent, peak.axis);
+        assert!((peak.value.abs() / observed - 1.0).abs() < 0.06, "{peak:?}, not {observed}");
+        assert!((peak.estimate_off - 0.05).abs() < 1e-12);
+    }
+    setup.agents = setup.agents.iter().map(|_| blind_mass(1.0, 1.0)).collect();
+    for (i, agent) in setup.agents.iter_mut().enumerate() {
+        agent.start.q[0] = noise(i);
+    }
+    assert_eq!(predicted(&setup).peak_torques, [], "the torque of another law is not that of (6)");
+}

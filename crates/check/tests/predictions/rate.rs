@@ -1,0 +1,130 @@
+//! The rate of agreement from characteristic roots, against runs of the reference dynamics.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use forwardstep_check::prediction::{NoRate, Settled, rate};
+use forwardstep_check::{NoIdeal, course};
+use forwardstep_core::expression::Expression;
+use forwardstep_sim::coupling::Coupling;
+use forwardstep_sim::delay::{Delay, SawTooth};
+use forwardstep_sim::formula::BoundedFormula;
+use forwardstep_sim::graph::Weight;
+use forwardstep_sim::reference::{PureIntegral, Tracking};
+use forwardstep_sim::schedule::{Phase, Schedule};
+use forwardstep_sim::{Exchange, Setup};
+
+use crate::common::{edge, masses, noise};
+
+/// Five masses with different weights and delays.
+fn uneven(exchange: Exchange, order: usize) -> Setup {
+    let pairs = [(0, 1), (1, 2), (2, 3), (3, 4), (4, 0), (2, 0), (0, 3)];
+    let edges = pairs.iter().enumerate().map(|(k, pair)| edge(pair.0, pair.1, 1.2 + 0.5 * noise(k), k % 3));
+    let delays = vec![Delay::constant(0.0), Delay::constant(0.35), Delay::constant(0.6)];
+    let mut setup = masses(exchange, order, Schedule::fixed(edges.collect()), delays);
+    setup.time.end_s = 120.0;
+    setup
+}
+
+#[test]
+fn the_disagreement_falls_at_the_rate_of_the_rightmost_root_and_settles_when_the_modes_do() {
+    for exchange in [Exchange::Position, Exchange::PositionVelocity] {
+        for (order, integral) in [(1, false), (2, false), (3, false), (2, true)] {
+            let mut setup = uneven(exchange, order);
+            if exchange == Exchange::Position {
+                // Orders and roots of their own.
+                setup.agents[1].roots_per_s[0] = 2.5;
+                if !integral {
+                    setup.agents[3].roots_per_s.push(1.8);
+                }
+            }
+            if integral {
+                setup.reference = Arc::new(PureIntegral);
+            }
+            let found = rate(&setup).unwrap();
+            assert!(found.correction_per_s < 1e-7 && found.backward_error < 1e-12, "{found:?}");
+            let course = course(&setup, &mut |_| ControlFlow::Continue(())).unwrap();
+            let (Settled::At(by_roots_s), Settled::At(by_course_s)) = (found.settled, course.settled) else {
+                panic!("{found:?} {:?}", course.settled)
+            };
+            assert!((by_roots_s / by_course_s - 1.0).abs() < 0.02, "{by_roots_s} s, {by_course_s} s");
+            // The largest disagreement of windows as long as a turn of the root, for oscillations.
+            let turn = found.root_per_s[1];
+            let window_s = if turn > 0.0 { std::f64::consts::PI / turn } else { 0.5 };
+            let largest = |from_s: f64| {
+                let rows = course.t_s.iter().zip(&course.disagreement);
+                rows.filter(|(t_s, _)| (from_s..from_s + window_s).contains(*t_s)).map(|(_, d)| *d).fold(0.0, f64::max)
+            };
+            let (early_s, late_s) = (2.5 * by_course_s, 2.5 * by_course_s + 4.0 * window_s);
+            let slope = (largest(late_s) / largest(early_s)).ln() / (late_s - early_s);
+            assert!(
+                (slope / found.root_per_s[0] - 1.0).abs() < 0.08,
+                "{exchange:?} of order {order}: {slope}, not {found:?}"
+            );
+            assert!(found.excited > 0.01 && found.multiplicity < 6);
+        }
+    }
+}
+
+#[test]
+fn a_root_that_the_start_does_not_excite_is_said_to_be_so() {
+    // Two pairs in opposition: the slow mode between the pairs does not move.
+    let edges = vec![edge(0, 1, 2.0, 0), edge(1, 0, 2.0, 0), edge(1, 2, 0.05, 0), edge(2, 1, 0.05, 0)];
+    let mut setup = masses(Exchange::Position, 1, Schedule::fixed(edges), vec![Delay::constant(0.0)]);
+    setup.agents.truncate(3);
+    setup.network.agents = 3;
+    // The slow mode tells the third from the mean of the first two.
+    let excited = |q: [f64; 3]| {
+        let mut setup = setup.clone();
+        for (agent, q) in setup.agents.iter_mut().zip(q) {
+            (agent.start.q, agent.start.dq) = (vec![q, 0.0], vec![0.0; 2]);
+        }
+        rate(&setup).unwrap()
+    };
+    let (slow, fast) = (excited([0.0, 0.0, 1.0]), excited([1.0, -1.0, 0.0]));
+    assert_eq!(slow.root_per_s, fast.root_per_s);
+    assert!((slow.excited - 1.0).abs() < 0.1 && fast.excited < 0.05, "{slow:?} {fast:?}");
+    let (Settled::At(slow_s), Settled::At(fast_s)) = (slow.settled, fast.settled) else { panic!("both settle") };
+    assert!(slow_s > 1.4 * fast_s, "{slow_s} s, {fast_s} s");
+    assert_eq!(excited([1.0; 3]).settled, Settled::NoStart);
+}
+
+#[test]
+fn every_reason_for_no_rate_is_the_one_that_is_said() {
+    let said = |change: &dyn Fn(&mut Setup)| {
+        let mut setup = uneven(Exchange::Position, 2);
+        change(&mut setup);
+        rate(&setup).err()
+    };
+    assert_eq!(said(&|_| {}), None);
+    assert_eq!(said(&|setup| setup.reference = Arc::new(Tracking)), Some(NoRate::Ideal(NoIdeal::Targets)));
+    assert_eq!(said(&|setup| setup.network.coupling = Coupling::Tanh { scale: 1.0 }), Some(NoRate::Coupling));
+    let saw = Delay::new(SawTooth { min_s: 0.0, max_s: 0.1, period_s: 1.0, offset_s: 0.0 });
+    assert_eq!(said(&|setup| setup.network.delays[2] = saw.clone()), Some(NoRate::VaryingDelay));
+    let swing = Expression::variable(0).sin_of() * 0.5 + 1.0;
+    let varying = |setup: &mut Setup| {
+        setup.network.weights = vec![BoundedFormula::new(swing.clone(), 80.0)];
+        setup.network.schedule.graphs[0][1].weight = Weight::Formula(0);
+    };
+    assert_eq!(said(&varying), Some(NoRate::VaryingWeight));
+    let phases = |setup: &mut Setup| {
+        let edges = setup.network.schedule.graphs[0].clone();
+        let phases = vec![Phase { edges: edges[..3].to_vec(), dwell_s: 1.0 }, Phase { edges, dwell_s: 1.0 }];
+        setup.network.schedule = Schedule::periodic(phases);
+    };
+    assert_eq!(said(&phases), Some(NoRate::Switching));
+    let torn = |setup: &mut Setup| setup.network.schedule = Schedule::fixed(vec![edge(0, 1, 1.0, 0)]);
+    assert_eq!(said(&torn), Some(NoRate::NoSpanningTree));
+    let alone = |setup: &mut Setup| setup.agents.truncate(1);
+    assert_eq!(said(&alone), Some(NoRate::Agents));
+    assert_eq!(said(&|setup| setup.agents[0].roots_per_s[0] = -1.0), Some(NoRate::Unclear));
+    assert_eq!(said(&|setup| setup.network.delays.truncate(1)), Some(NoRate::Unclear));
+    // (a5) with first roots that differ may diverge: Theorem 2 asks for a common one.
+    let diverging = |setup: &mut Setup| {
+        setup.exchange = Exchange::PositionVelocity;
+        for (i, agent) in setup.agents.iter_mut().enumerate() {
+            agent.roots_per_s = vec![[0.05, 20.0][i % 2], 2.0];
+        }
+    };
+    assert_eq!(said(&diverging), None, "whether it does is for the root to say");
+}
