@@ -7,7 +7,7 @@ use num_rational::BigRational;
 use num_traits::{One, Zero};
 
 /// The shortest decimal that reads as this number, which is what somebody wrote; zero for what is not finite.
-pub(super) fn written(value: f64) -> BigRational {
+pub(crate) fn written(value: f64) -> BigRational {
     let size = Number::decimal(&format!("{:e}", value.abs())).and_then(|number| number.exact());
     let size = size.or_else(|| BigRational::from_float(value.abs())).unwrap_or_else(BigRational::zero);
     if value < 0.0 { -size } else { size }

@@ -23,6 +23,7 @@ use forwardstep_sim::Setup;
 use num_rational::BigRational;
 
 pub use exact::decimal;
+pub(crate) use exact::written;
 pub use proof::{DrawnPhase, Enclosure, GivenAge, Matrix, Proof, Range, TreeWindow};
 
 use crate::hypothesis::Subject;
