@@ -9,6 +9,7 @@
 mod agreement;
 pub mod certificate;
 mod conserved;
+pub mod derivation;
 mod graphs;
 pub mod hypothesis;
 mod inertia;

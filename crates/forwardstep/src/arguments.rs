@@ -42,6 +42,8 @@ pub(crate) enum Command {
     },
     /// Say which theorem speaks about a scenario, and whether its hypotheses hold
     Check(CheckOptions),
+    /// Derive why a scenario converges: the virtual control, the differential cascade, and how its degree is reduced
+    Explain(ExplainOptions),
     /// List the shipped scenarios, or print one
     Scenarios {
         /// Print the text of this one
@@ -103,6 +105,19 @@ pub(crate) struct CheckOptions {
     /// Write the answers with their proofs to this file, for `checker/forwardstep_checker.py`; an older one is replaced
     #[arg(long, value_name = "FILE.json")]
     pub(crate) certificate: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExplainOptions {
+    /// A shipped scenario by name, or a file by its path
+    #[arg(default_value = SIX_ARMS)]
+    pub(crate) scenario: String,
+    /// Print the equations as LaTeX, which needs amsmath; the words are comments
+    #[arg(long, conflicts_with = "json")]
+    pub(crate) latex: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// Documents that have a schema.

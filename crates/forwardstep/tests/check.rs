@@ -69,6 +69,39 @@ fn hypotheses_are_waived_by_name_and_the_waiver_is_printed() {
 
 /// Waiving one answer does not hide another that is as bad.
 #[test]
+fn an_explanation_holds_the_numbers_of_the_scenario_in_every_form() {
+    let folder = with(TWO);
+    let text = stdout(&forwardstep(&folder, &["explain", "two.toml"]).success());
+    // (a1) with α = 1, β = 2, and (a2) after degree reduction.
+    for line in [
+        "z\u{308}_i = −3 z\u{307}_i − 2 q\u{307}_i − Σ_j w_ij [",
+        "y\u{307}_i = −2 y_i − Σ_j w_ij [y_i + 2 ξ_i − 2 ξ_j] + s\u{307}_i    (a2)",
+    ] {
+        assert!(text.contains(line), "{text}");
+    }
+    let latex = stdout(&forwardstep(&folder, &["explain", "two.toml", "--latex"]).success());
+    assert!(latex.contains("\\dot{y}_{i} = -2\\, y_{i} - \\Sigma_{j\\in\\mathcal{N}_i}"), "{latex}");
+    assert_eq!(latex.matches("\\begin{equation*}").count(), latex.matches("\\end{equation*}").count());
+    let json = stdout(&forwardstep(&folder, &["explain", "two.toml", "--json"]).success());
+    let document: Value = serde_json::from_str(&json).unwrap();
+    let design = &document["designs"][0];
+    assert_eq!(design["agents"], serde_json::json!(["arm-1", "arm-2"]));
+    assert_eq!((&design["order"], &design["degree"], &design["reduced_degree"]), (&3.into(), &2.into(), &1.into()));
+    assert!(json.contains("\"paper\": \"(a2)\""), "{json}");
+    forwardstep(&folder, &["explain", "two.toml", "--json", "--latex"]).code(2);
+    assert!(stderr(&forwardstep(&folder, &["explain", "thre.toml"]).code(2)).contains("thre.toml"));
+}
+
+#[test]
+fn every_shipped_scenario_is_explained_or_says_why_not() {
+    let folder = folder();
+    for scenario in SHIPPED_SCENARIOS {
+        let text = stdout(&forwardstep(&folder, &["explain", scenario.name]).success());
+        assert!(text.contains("Reference dynamics") && !text.contains("nan") && !text.contains('…'), "{text}");
+    }
+}
+
+#[test]
 fn a_waiver_is_for_one_hypothesis_only() {
     let folder = with(&TWO.replace("[[\"arm-1\", \"arm-2\"]]", "[]"));
     let found = json(&folder, &["two.toml", "--accept", "applied-torque", "--accept", "continuous-time"], 1);

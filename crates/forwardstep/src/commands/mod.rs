@@ -4,6 +4,7 @@ mod ask;
 mod check;
 mod completions;
 mod dynamics;
+mod explain;
 mod new;
 mod progress;
 mod promise;
@@ -18,6 +19,7 @@ mod upgrade;
 
 pub(crate) use check::check;
 pub(crate) use completions::completions;
+pub(crate) use explain::explain;
 pub(crate) use new::new;
 pub(crate) use report::report;
 pub(crate) use robot::robot;

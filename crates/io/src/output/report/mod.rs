@@ -10,11 +10,13 @@ mod network;
 pub(crate) mod sections;
 pub(crate) mod text;
 
+use forwardstep_check::derivation::explain;
 use forwardstep_sim::recording::{Ending, Signal};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use self::families::Family;
 use self::interfaces::interfaces;
+use super::explanation::explanation_markup;
 use super::metrics::{Absence, Disagreement, Gap, Metrics};
 use super::palette::{self, Ground};
 use super::record::RunRecord;
@@ -73,6 +75,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
                     (signals(absence, record))
                     @if has_network(record) { (network(record, &timeline)) }
                     (interfaces(record.setup))
+                    (explanation_markup(record.setup, &explain(record.setup)))
                     (sections::digital(record))
                     (sections::loads(record.setup, metrics))
                     (sections::provenance(record))

@@ -1,0 +1,80 @@
+//! The laws of estimates and filters, which are what they are: nothing is derived of them.
+
+use super::case::{Case, Step, ThrustStep};
+use super::form::{Combination, Form, Letter, Quantity, Term};
+use super::formula::{Formula, Sign, Symbol};
+use super::notation::Notation;
+use super::polynomial::Polynomial;
+
+/// The equations of a case's estimates and filters, each with its place in the paper.
+pub(super) fn of(case: &Case<'_>, notation: &Notation) -> Vec<(Formula, &'static str)> {
+    let index = notation.own;
+    let symbol = |base| Symbol::new(base).below(index);
+    let s = |k| notation.quantity(Quantity::own(Letter::Error), k);
+    let z = |k| notation.quantity(Quantity::own(Letter::Reference), k);
+    // estimate' = −gain gradient times an error.
+    let gradient = |estimate: Symbol, gain: Symbol, factors: Vec<Formula>| {
+        let product = [Formula::from(gain)].into_iter().chain(factors).collect();
+        Formula::equal(estimate.derivative(1), Formula::minus(Formula::Product(product)))
+    };
+    let robot = |place| {
+        let q = |k| notation.quantity(Quantity::own(Letter::Position), k);
+        let regressor = Formula::Function(symbol("Y").above("T"), vec![q(0), q(1), z(0), z(1)]);
+        (gradient(symbol("ϑ").hat(), symbol("Γ"), vec![regressor, s(0)]), place)
+    };
+    match &case.step {
+        Step::Robot { known: false } => vec![robot("(7)")],
+        Step::Robot { known: true } => Vec::new(),
+        Step::TaskSpace(_) => vec![robot("(81)"), kinematic()],
+        Step::PositionOnly([_, filter]) => {
+            let y = Quantity::own(Letter::Filter);
+            let rate = Polynomial::number(filter.clone());
+            let right = Combination::of(Quantity::own(Letter::Error), rate.clone()).plus(y, &-&rate);
+            vec![
+                (notation.equation(y, 1, &Form::own(right)), "after (a9)"),
+                (gradient(symbol("m").hat(), Symbol::new("γ").above("∗"), vec![transposed(z(1)), s(0)]), "after (a9)"),
+            ]
+        }
+        Step::Thrust(ThrustStep::Adaptive, _) => {
+            vec![(
+                gradient(symbol("m").hat(), Symbol::new("γ").above("∗"), vec![transposed(symbol("w").into()), s(1)]),
+                "(58)",
+            )]
+        }
+        Step::Thrust(ThrustStep::Continuous | ThrustStep::Differentiable, _) | Step::Chain(..) | Step::Outside(_) => {
+            Vec::new()
+        }
+        Step::Attitude(_) => {
+            let y = Symbol::new("y");
+            let filtered = Formula::product([Symbol::new("Λ").below("f").into(), y.clone().into()]);
+            let driven = Formula::product([Symbol::new("K").into(), Symbol::new("Δq").above("∗").into()]);
+            let left = Formula::sum([(Sign::Plus, y.derivative(1).into()), (Sign::Plus, filtered)]);
+            vec![(Formula::equal(left, driven), "(100)")]
+        }
+    }
+}
+
+/// vᵀ of a vector.
+fn transposed(vector: Formula) -> Formula {
+    match vector {
+        Formula::Symbol(symbol) => symbol.above("T").into(),
+        other => other,
+    }
+}
+
+/// (82).
+fn kinematic() -> (Formula, &'static str) {
+    let q = |k| Formula::from(Symbol::new("q").derivative(k));
+    let factors = [
+        Symbol::new("Λ").into(),
+        Formula::Function(Symbol::new("Z").above("T"), vec![q(0), q(1)]),
+        Symbol::new("K").above("∗").into(),
+        Symbol::new("Δx").into(),
+    ];
+    (Formula::equal(Symbol::new("θ").hat().derivative(1), Formula::product(factors)), "(82)")
+}
+
+/// The letter of a nonlinear term.
+pub(super) fn nonlinear(term: Term) -> Quantity {
+    Quantity::own(Letter::Term(term))
+}

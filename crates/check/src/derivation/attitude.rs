@@ -1,0 +1,101 @@
+//! Attitude tracking, (97)–(108), in which nothing is linear but how ω, z and ω − z enter.
+
+use num_rational::BigRational;
+
+use super::adaptation::{self, nonlinear};
+use super::case::Case;
+use super::explanation::{Explained, Section, Subject};
+use super::form::{Combination, Form, Letter, Operator, Quantity, Term};
+use super::formula::{Formula, Symbol};
+use super::lower;
+use super::polynomial::Polynomial;
+use super::words;
+
+/// (97): ż.
+pub(super) fn reference([alpha_1, alpha_2]: &[BigRational; 2]) -> Form {
+    let number = |number: &BigRational| Polynomial::number(number.clone());
+    let z = Quantity::own(Letter::Reference);
+    let own = Combination::of(nonlinear(Term::DesiredAcceleration), Polynomial::one())
+        .plus(z.under(Operator::Gyroscopic), &-&Polynomial::one())
+        .plus(z, &number(&-alpha_2))
+        .plus(nonlinear(Term::DesiredRate), &number(alpha_2))
+        .plus(nonlinear(Term::AttitudeError), &number(&-alpha_1));
+    Form::own(own)
+}
+
+/// The first line of (107): the rate of Δω = ω − ω_d, from (97), ω = z + s and ω̇_d = Rᵀω̇_d^I − S(ω) ω_d.
+pub(super) fn error(reference: &Form) -> Form {
+    let one = Polynomial::one();
+    let omega = Quantity::own(Letter::Position);
+    let desired = Combination::of(nonlinear(Term::DesiredAcceleration), one.clone())
+        .plus(omega.under(Operator::Gyroscopic), &-&one);
+    let s = Combination::of(Quantity::own(Letter::Error), Polynomial::power(1));
+    let rate = reference.sum(&Form::own(s)).less(&Form::own(desired));
+    let minus = -&one;
+    // z = ω − s, under S(·) ω_d too; then ω by itself is Δω + ω_d.
+    let rate = rate.with(Letter::Reference, &one, &[(Letter::Position, one.clone()), (Letter::Error, minus)]);
+    rate.replaced(&one, |quantity| {
+        (quantity == omega).then(|| {
+            Combination::of(Quantity::own(Letter::Deviation), one.clone()).plus(nonlinear(Term::DesiredRate), &one)
+        })
+    })
+}
+
+/// (108): the derivative of ẏ + Λ_f y = K Δq*, with (106) in it.
+pub(super) fn filter_rate() -> Option<(Form, Form)> {
+    let y = Quantity::own(Letter::Filter);
+    let left = Combination::of(y, Polynomial::power(1)).plus(y.under(Operator::Filter), &Polynomial::one());
+    let right = Combination::of(nonlinear(Term::AttitudeErrorRate), Polynomial::one());
+    let differentiated = |all| Form::own(all).differentiated(super::form::Links::Constant).ok();
+    Some((differentiated(left)?, differentiated(right)?))
+}
+
+/// The explanation.
+pub(super) fn explained(case: &Case<'_>, gains: &[BigRational; 2]) -> Explained {
+    let notation = case.notation();
+    let reference = reference(gains);
+    let lower = lower::attitude();
+    let (z, s) = (Quantity::own(Letter::Reference), Quantity::own(Letter::Error));
+    let definition = Combination::of(Quantity::own(Letter::Position), Polynomial::one()).plus(z, &-&Polynomial::one());
+    let delta = notation.quantity(Quantity::own(Letter::Deviation), 1);
+    let delta_q = Formula::from(Symbol::new("Δq").above("∗").derivative(1));
+    let difference = Formula::product([
+        Formula::Function(Symbol::new("D"), vec![Symbol::new("Δq").above("∗").into()]),
+        notation.quantity(s, 0),
+    ]);
+    let input = Quantity::own(Letter::Term(lower.input));
+    let mut controller = Section::new(Subject::Controller)
+        .formula(Formula::equal(notation.form(&lower.plant), notation.quantity(input, 0)), "(94)")
+        .formula(Formula::equal(notation.quantity(input, 0), notation.form(&lower.law)), "(99)");
+    for (formula, place) in adaptation::of(case, &notation) {
+        controller = controller.formula(formula, place);
+    }
+    controller = controller
+        .words("Δq* is the quaternion of R_zᵀR, and R and R_z turn with ω and z, so it turns with their difference.")
+        .formula(Formula::equal(delta_q, difference), "(106)");
+    let cascade = Section::new(Subject::Cascade)
+        .words("Δω = ω − ω_d. The kinematics are not linear, and stand for themselves; ω, z and s enter linearly.")
+        .system(vec![Formula::equal(delta, notation.form(&error(&reference)))], "(107), first line")
+        .system(vec![Formula::equal(notation.form(&lower.left), notation.form(&lower.right))], "(107), second line")
+        .words("(The paper prints two of these signs otherwise, E13.) The upper subsystem holds s with one derivative: the cascade is of degree 1.");
+    let mut reduction = Section::new(Subject::DegreeReduction).words(
+        "Nothing has to be absorbed: s and its derivative vanish, which the filter shows, and what is left is linear in Δω but for the \
+         attitude.",
+    );
+    if let Some((left, right)) = filter_rate() {
+        reduction = reduction.formula(Formula::equal(notation.form(&left), notation.form(&right)), "(108)");
+    }
+    let sections = vec![
+        Section::new(Subject::VirtualControl)
+            .words("z is what the angular velocity ω should be; its derivative is what the virtual control ω̇ should be.")
+            .formula(Formula::equal(notation.quantity(s, 0), notation.form(&Form::own(definition))), ""),
+        Section::new(Subject::ReferenceDynamics).formula(notation.equation(z, 1, &reference), "(97)"),
+        controller,
+        cascade,
+        reduction,
+        Section::new(Subject::Convergence).words(words::of_s(&case.step)).words(
+            "Then Δω̇ = −α₂ Δω − α₁ Δq_v is what is left, for which ½ ΔωᵀΔω + 2 α₁ (1 − Δq_o) falls: Δω → 0 and Δq_v → 0.",
+        ),
+    ];
+    Explained { agents: case.agents.clone(), order: Some(2), degrees: Some([1, 1]), sections }
+}

@@ -1,0 +1,248 @@
+//! The designs in a setup: agents with the same roots, gains and kind of law, and what links they have.
+
+use forwardstep_core::expression::Number;
+use forwardstep_sim::graph::Weight;
+use forwardstep_sim::leader::{Following, FollowingDesign};
+use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral};
+use forwardstep_sim::{
+    Adaptive, AgentSetup, AttitudeLaw, ChainLaw, ChainModel, ChainStep, Exchange, Known, PositionOnlyLaw, Setup,
+    TaskSpaceLaw, ThrustKind, ThrustLaw,
+};
+use num_rational::BigRational;
+
+use super::dynamics::Heard;
+use super::form::Links;
+use super::formula::At;
+use super::laplacian::RootsOfAll;
+
+/// A design, with what an explanation needs of the setup.
+#[derive(Clone, Debug)]
+pub struct Case<'a> {
+    /// The setup.
+    pub setup: &'a Setup,
+    /// The agents, by their numbers.
+    pub agents: Vec<usize>,
+    /// What leads them.
+    pub led: Led,
+    /// Their kind of law.
+    pub step: Step,
+    /// κ₀, κ₁, …, as they are written.
+    pub roots: Vec<BigRational>,
+    /// λ.
+    pub lambda: BigRational,
+    /// What the roots of all agents have in common.
+    pub roots_of_all: RootsOfAll,
+    /// Whether all agents have plants of one order and the same order of reference dynamics.
+    pub alike: bool,
+}
+
+/// What leads a design.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Led {
+    /// The consensus family.
+    Consensus(Heard),
+    /// (3), (23), (31).
+    PureIntegral(Heard),
+    /// The baseline.
+    Backstepping,
+    /// A leader, with α, β, γ as they are written.
+    Leader(FollowingDesign, [BigRational; 3]),
+    /// A target of its own.
+    Target,
+    /// Reference dynamics from outside.
+    Outside(&'static str),
+}
+
+/// A kind of law, with the numbers that the lower subsystem has.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step {
+    /// (6)–(7), or with known parameters.
+    Robot {
+        /// Whether ϑ is known.
+        known: bool,
+    },
+    /// (a8), with k and λ_f.
+    PositionOnly([BigRational; 2]),
+    /// Section V-B, with α* and k or γ*; zeros under continuous control.
+    Thrust(ThrustStep, [BigRational; 2]),
+    /// (99).
+    Attitude([BigRational; 2]),
+    /// (80), with κ and α.
+    TaskSpace([BigRational; 2]),
+    /// (43) for a chain of this order with this gain.
+    Chain(usize, ChainStepKind, BigRational),
+    /// A law from outside.
+    Outside(&'static str),
+}
+
+/// Which control of a vehicle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ThrustStep {
+    /// (46).
+    Continuous,
+    /// (50).
+    Differentiable,
+    /// (57).
+    Adaptive,
+}
+
+/// Which second step of Section IV.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChainStepKind {
+    /// χ is known.
+    Linearising,
+    /// Adaptation.
+    Adaptive,
+    /// Immersion and invariance.
+    Immersion,
+    /// Adaptive backstepping: z follows x₁.
+    Backstepping,
+}
+
+impl Step {
+    fn of(agent: &AgentSetup) -> Step {
+        if agent.law.is::<Adaptive>() || agent.law.is::<Known>() {
+            Step::Robot { known: agent.law.is::<Known>() }
+        } else if let Some(law) = agent.law.downcast::<PositionOnlyLaw>() {
+            Step::PositionOnly([law.damping, law.filter_per_s].map(Number::written))
+        } else if let Some(law) = agent.law.downcast::<ThrustLaw>() {
+            let (step, numbers) = match law.design {
+                ThrustKind::Continuous => (ThrustStep::Continuous, [0.0; 2]),
+                ThrustKind::Differentiable { alpha_star, stiffness } => {
+                    (ThrustStep::Differentiable, [alpha_star, stiffness])
+                }
+                ThrustKind::Adaptive { alpha_star, gamma_star, .. } => (ThrustStep::Adaptive, [alpha_star, gamma_star]),
+            };
+            Step::Thrust(step, numbers.map(Number::written))
+        } else if let Some(law) = agent.law.downcast::<AttitudeLaw>() {
+            Step::Attitude(law.alpha.map(Number::written))
+        } else if let Some(law) = agent.law.downcast::<TaskSpaceLaw>() {
+            Step::TaskSpace([law.kappa, law.alpha_per_s].map(Number::written))
+        } else if let (Some(law), Some(model)) =
+            (agent.law.downcast::<ChainLaw>(), agent.robot.kind.downcast::<ChainModel>())
+        {
+            let (kind, gain) = match &law.step {
+                ChainStep::Linearising { gain_per_s } => (ChainStepKind::Linearising, *gain_per_s),
+                ChainStep::Adaptive { gain_per_s, .. } => (ChainStepKind::Adaptive, *gain_per_s),
+                ChainStep::Immersion { gain_per_s, .. } => (ChainStepKind::Immersion, *gain_per_s),
+                ChainStep::Backstepping { gains_per_s, .. } => {
+                    (ChainStepKind::Backstepping, gains_per_s.first().copied().unwrap_or(0.0))
+                }
+            };
+            Step::Chain(model.order(), kind, Number::written(gain))
+        } else {
+            Step::Outside(agent.law.words().name)
+        }
+    }
+
+    /// k: z follows the (k − 1)-th derivative.
+    pub fn plant(&self) -> usize {
+        match self {
+            Step::Chain(_, ChainStepKind::Backstepping, _) | Step::Attitude(_) => 1,
+            Step::Chain(order, ChainStepKind::Linearising | ChainStepKind::Adaptive | ChainStepKind::Immersion, _) => {
+                *order
+            }
+            Step::Robot { .. } | Step::PositionOnly(_) | Step::Thrust(..) | Step::TaskSpace(_) | Step::Outside(_) => 2,
+        }
+    }
+}
+
+/// The designs of a setup, in the order of their first agents.
+pub fn cases(setup: &Setup) -> Vec<Case<'_>> {
+    let mut cases: Vec<Case<'_>> = Vec::new();
+    for (index, agent) in setup.agents.iter().enumerate() {
+        let (led, step) = (led(setup, index), Step::of(agent));
+        let roots: Vec<BigRational> = agent.roots_per_s.iter().map(|root| Number::written(*root)).collect();
+        let lambda = Number::written(agent.manipulability);
+        let same =
+            |case: &&mut Case<'_>| case.led == led && case.step == step && case.roots == roots && case.lambda == lambda;
+        if let Some(case) = cases.iter_mut().find(same) {
+            case.agents.push(index);
+            continue;
+        }
+        let (roots_of_all, alike) = (roots_of_all(setup), alike(setup));
+        cases.push(Case { setup, agents: vec![index], led, step, roots, lambda, roots_of_all, alike });
+    }
+    cases
+}
+
+fn led(setup: &Setup, agent: usize) -> Led {
+    let reference = setup.reference_of(agent);
+    let heard = match setup.exchange {
+        Exchange::PositionVelocity => Heard::Velocities,
+        Exchange::Position if setup.network.coupling.is_linear() => Heard::Positions,
+        Exchange::Position => Heard::Coupled,
+    };
+    if setup.tracks(agent) {
+        Led::Target
+    } else if reference.is::<Consensus>() {
+        Led::Consensus(heard)
+    } else if reference.is::<PureIntegral>() {
+        Led::PureIntegral(heard)
+    } else if reference.is::<Backstepping>() {
+        Led::Backstepping
+    } else if let Some(following) = reference.downcast::<Following>() {
+        Led::Leader(following.design, [following.alpha, following.beta, following.gain].map(Number::written))
+    } else {
+        Led::Outside(reference.words().name)
+    }
+}
+
+/// Agents that agree with each other, which is not those with a target.
+fn agreeing(setup: &Setup) -> impl Iterator<Item = &AgentSetup> {
+    setup.agents.iter().enumerate().filter(|(index, _)| !setup.tracks(*index)).map(|(_, agent)| agent)
+}
+
+fn roots_of_all(setup: &Setup) -> RootsOfAll {
+    let same = |of: fn(&AgentSetup) -> &[f64]| {
+        let mut all = agreeing(setup).map(of);
+        let first = all.next();
+        all.all(|one| Some(one) == first)
+    };
+    if same(|agent| &agent.roots_per_s) {
+        RootsOfAll::Same
+    } else if same(|agent| agent.roots_per_s.get(..1).unwrap_or_default()) {
+        RootsOfAll::SameFirst
+    } else {
+        RootsOfAll::Own
+    }
+}
+
+fn alike(setup: &Setup) -> bool {
+    let mut all = agreeing(setup).map(|agent| (Step::of(agent).plant(), agent.roots_per_s.len()));
+    let first = all.next();
+    all.all(|one| Some(one) == first)
+}
+
+impl Case<'_> {
+    /// Whether weights and delays can be differentiated.
+    pub fn links(&self) -> Links {
+        let fixed = self.setup.network.schedule.constant_graph().is_some();
+        if fixed && self.weights() == At::Now && self.heard() != At::VaryingLate {
+            Links::Constant
+        } else {
+            Links::Varying
+        }
+    }
+
+    /// Whether weights are written with their time.
+    pub fn weights(&self) -> At {
+        let network = &self.setup.network;
+        let constant = |weight: Weight| weight.constant().is_some();
+        let all = network.schedule.graphs.iter().flatten().all(|edge| constant(edge.weight));
+        if all && network.schedule.constant_graph().is_some() { At::Now } else { At::Time }
+    }
+
+    /// When a neighbour's signals are taken.
+    pub fn heard(&self) -> At {
+        let network = &self.setup.network;
+        let delays = || network.schedule.graphs.iter().flatten().filter_map(|edge| network.delays.get(edge.delay));
+        if delays().all(|delay| delay.max_s() == 0.0) {
+            At::Now
+        } else if delays().all(|delay| delay.is_constant()) {
+            At::Late
+        } else {
+            At::VaryingLate
+        }
+    }
+}

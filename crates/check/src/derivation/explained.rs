@@ -1,0 +1,399 @@
+//! The explanation of one design.
+
+use forwardstep_core::expression::Number;
+use forwardstep_sim::leader::FollowingDesign;
+use num_traits::Zero;
+
+use super::cascade::Upper;
+use super::case::{Case, ChainStepKind, Led, Step, ThrustStep};
+use super::dynamics::{Dynamics, Heard, Measured, Smooth, backstepping, consensus, following, tracking};
+use super::explanation::{Explained, Section, Subject};
+use super::form::{Form, Letter, Links, Quantity, Vertex};
+use super::formula::{Formula, Symbol};
+use super::laplacian::{RootsOfAll, chain};
+use super::lower::{self, ChainError, Lower};
+use super::notation::Notation;
+use super::places::Places;
+use super::polynomial::Polynomial;
+use super::reduction::Reduced;
+use super::words;
+use super::{attitude, task_space};
+
+impl Case<'_> {
+    /// Explains it.
+    pub fn explained(&self) -> Explained {
+        match (&self.led, &self.step) {
+            (Led::Outside(name), _) => self.silent(&format!(
+                "{name} come from outside and do not say that they are linear, so nothing is derived from them."
+            )),
+            (_, Step::Outside(name)) => {
+                self.silent(&format!("{name} comes from outside, so that nothing is known here of what it does to s."))
+            }
+            (_, Step::Attitude(gains)) => attitude::explained(self, gains),
+            (_, Step::TaskSpace(gains)) => task_space::explained(self, gains),
+            (_, Step::Robot { .. } | Step::PositionOnly(_) | Step::Thrust(..) | Step::Chain(..)) => {
+                let Some(dynamics) = self.dynamics() else {
+                    return self.silent("Its reference dynamics have too few roots for its plant.");
+                };
+                self.linear(&dynamics)
+            }
+        }
+    }
+
+    fn silent(&self, words: &str) -> Explained {
+        let sections = vec![Section::new(Subject::ReferenceDynamics).words(words)];
+        Explained { agents: self.agents.clone(), order: None, degrees: None, sections }
+    }
+
+    /// What is measured of its plant.
+    fn measured(&self) -> Measured {
+        match &self.step {
+            Step::PositionOnly(_) => Measured { plant: 2, below: 1 },
+            Step::Robot { .. }
+            | Step::Thrust(..)
+            | Step::Attitude(_)
+            | Step::TaskSpace(_)
+            | Step::Chain(..)
+            | Step::Outside(_) => Measured::whole(self.step.plant()),
+        }
+    }
+
+    /// Its reference dynamics; `None` where there are too few roots.
+    pub fn dynamics(&self) -> Option<Dynamics> {
+        match &self.led {
+            Led::Consensus(heard) => consensus(&self.roots, *heard, &self.lambda, self.measured()),
+            Led::PureIntegral(heard) => consensus(&self.roots, *heard, &self.lambda, Measured::WITH_ACCELERATION),
+            Led::Backstepping => Some(backstepping()),
+            Led::Leader(FollowingDesign::Continuous, [alpha, _, gamma]) => Some(following(alpha, gamma)),
+            // Weights and delays that vary are not covered by the theorems; what is derived is for those that do not.
+            Led::Leader(..) => self.smooth().and_then(|smooth| smooth.dynamics(Links::Constant).ok()),
+            Led::Target => tracking(&self.roots, self.measured()),
+            Led::Outside(_) => None,
+        }
+    }
+
+    /// (119), (122) or swarm tracking.
+    pub fn smooth(&self) -> Option<Smooth> {
+        let Led::Leader(design, [alpha, beta, gamma]) = &self.led else { return None };
+        let (by_itself, coupling) = match design {
+            FollowingDesign::Continuous => return None,
+            FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => (true, 1.0),
+            FollowingDesign::Swarm { coupling } => (false, *coupling),
+        };
+        let [alpha, beta, gamma] = [alpha, beta, gamma].map(Clone::clone);
+        Some(Smooth { alpha, beta, gamma, by_itself, coupling: Number::written(coupling) })
+    }
+
+    /// Its lower subsystem; `None` under continuous control of a vehicle, which leaves none, and under backstepping of a chain.
+    pub fn lower(&self) -> Option<Lower> {
+        Some(match &self.step {
+            Step::Robot { known } => lower::robot(*known, None),
+            Step::PositionOnly([k, _]) => lower::position_only(k),
+            Step::Thrust(ThrustStep::Continuous, _) | Step::Outside(_) => return None,
+            Step::Thrust(ThrustStep::Differentiable, [alpha, k]) => lower::thrust(alpha, Some(k)),
+            Step::Thrust(ThrustStep::Adaptive, [alpha, _]) => lower::thrust(alpha, None),
+            Step::Attitude(_) => lower::attitude(),
+            Step::TaskSpace([kappa, _]) => lower::robot(false, Some(kappa)),
+            Step::Chain(_, ChainStepKind::Backstepping, _) => return None,
+            Step::Chain(order, ChainStepKind::Linearising, gain) => lower::chain(*order, gain, ChainError::None),
+            Step::Chain(order, ChainStepKind::Adaptive, gain) => lower::chain(*order, gain, ChainError::Adapted),
+            Step::Chain(order, ChainStepKind::Immersion, gain) => lower::chain(*order, gain, ChainError::Immersed),
+        })
+    }
+
+    /// How its quantities are written.
+    pub fn notation(&self) -> Notation {
+        let position = match self.step {
+            Step::Robot { .. } | Step::TaskSpace(_) | Step::Outside(_) => "q",
+            Step::PositionOnly(_) | Step::Thrust(..) | Step::Chain(..) => "x",
+            Step::Attitude(_) => "ω",
+        };
+        let alone = self.setup.agents.len() == 1 || self.led == Led::Target;
+        Notation {
+            position,
+            starred_error: matches!(self.step, Step::Thrust(..)),
+            own: if alone { "" } else { "i" },
+            heard: self.heard(),
+            weights: self.weights(),
+            variables: Vec::new(),
+        }
+    }
+
+    fn linear(&self, dynamics: &Dynamics) -> Explained {
+        let (notation, places) = (self.notation(), Places::of(self, dynamics.order));
+        if let Step::Thrust(ThrustStep::Continuous, _) = self.step {
+            return self.without_reference(dynamics, &notation);
+        }
+        let lower_order = self.lower().map_or(1, |lower| lower.order);
+        let upper = self.upper(dynamics);
+        let (reduction, reduced) = self.reduction(&upper, dynamics, (&notation, &places));
+        let degrees = [dynamics.upper().degree(lower_order), reduced.as_ref().map_or(0, |r| r.degree(lower_order))];
+        let left = reduced.as_ref().map_or(0, |reduced| reduced.derivatives);
+        let mut sections = vec![
+            virtual_control(dynamics, &notation, &places),
+            self.reference(dynamics, &notation, &places),
+            self.controller(&notation, &places),
+            self.cascade(dynamics, degrees[0], (&notation, &places)),
+        ];
+        sections.extend(reduction);
+        sections.extend(self.laplacian(&upper, &notation, &places));
+        let conclusion = Section::new(Subject::Convergence).words(words::of_s(&self.step));
+        sections.push(conclusion.words(words::of_all(self, left, upper.input)));
+        let order = Some(dynamics.total_order());
+        Explained { agents: self.agents.clone(), order, degrees: Some(degrees), sections }
+    }
+
+    /// The upper subsystem, relative to what is followed and behind the filter that stands in for s.
+    pub fn upper(&self, dynamics: &Dynamics) -> Upper {
+        let mut upper = dynamics.upper();
+        if !self.alike {
+            upper = upper.among_others();
+        }
+        match (&self.led, &self.step) {
+            (Led::Leader(..), _) => upper.relative_to(Quantity::of_leader(Letter::Position)),
+            (Led::Target, Step::PositionOnly([_, filter])) => {
+                upper.relative_to(Quantity::own(Letter::Target)).filtered(&lag(filter))
+            }
+            (Led::Target, _) => upper.relative_to(Quantity::own(Letter::Target)),
+            (_, Step::PositionOnly([_, filter])) => upper.filtered(&lag(filter)),
+            _ => upper,
+        }
+    }
+
+    /// (46): z is what is done, so that there is no s.
+    fn without_reference(&self, dynamics: &Dynamics, notation: &Notation) -> Explained {
+        // With s = 0 from the start z is ẋ.
+        let upper = dynamics.upper().undisturbed();
+        let equation = notation.equation(Quantity::own(Letter::Position), upper.order, &upper.right);
+        let sections = vec![
+            Section::new(Subject::ReferenceDynamics)
+                .words(
+                    "Dynamic feedback linearisation makes the thrust and two angular velocities an input u of the third derivative of x, and \
+                     u is chosen so that x obeys (24) of order two at once. There is no s, so this is no cascade.",
+                )
+                .formula(equation, "(46)"),
+        ];
+        let laplacian = self.laplacian(&upper, notation, &Places::default());
+        let sections = sections.into_iter().chain(laplacian).collect();
+        Explained { agents: self.agents.clone(), order: Some(upper.order), degrees: None, sections }
+    }
+
+    fn reference(&self, dynamics: &Dynamics, notation: &Notation, places: &Places) -> Section {
+        let mut section = Section::new(Subject::ReferenceDynamics);
+        if !self.roots.is_empty() {
+            let product = notation.polynomial(&Polynomial::with_roots(&self.roots));
+            let equation = match self.roots.len() {
+                1 => product,
+                _ => Formula::equal(notation.factors(&self.roots), product),
+            };
+            section = section
+                .words("The roots of the scenario, without their sign, give a polynomial, with p for d/dt:")
+                .formula(equation, "(25)");
+        }
+        if self.agents.iter().any(|agent| self.setup.agents[*agent].target.is_some()) && self.led != Led::Target {
+            section = section.words(format!(
+                "Agents keep an offset from where all agree; {0} stands for {0} less that offset.",
+                notation.position
+            ));
+        }
+        let z = Quantity::own(Letter::Reference);
+        section = match self.smooth() {
+            Some(smooth) if self.led_without_acceleration() => section
+                .formula(notation.equation(z, 1, &smooth.realised().right), places.reference)
+                .formula(notation.equation(Quantity::own(Letter::Integral), 1, &smooth.integral_rate()), "")
+                .words("Its derivative, for constant weights and no delay, is")
+                .formula(notation.equation(z, 2, &dynamics.right), ""),
+            _ => section.formula(notation.equation(z, dynamics.order, &dynamics.right), places.reference),
+        };
+        section = self.signs(section, notation);
+        if let Led::PureIntegral(_) = self.led {
+            let integrated = dynamics.integrated();
+            section = section
+                .words(
+                    "It is integrated once, so that no acceleration is measured and no delayed signal differentiated; the weights have to be \
+                     constant for that.",
+                )
+                .formula(notation.equation(z, 1, &integrated.dz), "Remark 2")
+                .formula(notation.equation(Quantity::own(Letter::Integral), 1, &integrated.d_eta), "");
+        }
+        if dynamics.has_network() {
+            section = section.words(words::links(self.setup, self.heard()));
+        }
+        if dynamics.order == 0
+            && let Err(refusal) = dynamics.right.differentiated(self.links())
+        {
+            section = section.words(format!(
+                "z is no state here, so its derivative has to be found by differentiating: {refusal}. A filter stands in for it."
+            ));
+        }
+        section
+    }
+
+    fn led_without_acceleration(&self) -> bool {
+        matches!(self.led, Led::Leader(FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. }, _))
+    }
+
+    /// What a sign is taken of.
+    fn signs(&self, section: Section, notation: &Notation) -> Section {
+        let Led::Leader(design, [alpha, beta, _]) = &self.led else { return section };
+        let (q, z) = (Letter::Position, Letter::Reference);
+        let (base, above, xi) = match design {
+            FollowingDesign::Continuous => ("ξ", "", vec![(q, Polynomial::factor(alpha))]),
+            FollowingDesign::Differentiable => ("ξ", "∗", vec![(q, &Polynomial::power(2) + &low(alpha, beta))]),
+            FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
+                ("ξ", "∗∗", vec![(z, Polynomial::power(1)), (q, low(alpha, beta))])
+            }
+        };
+        let symbol = |index: &'static str| Formula::from(Symbol::new(base).above(above).below(index));
+        let of = |all: super::form::Combination, (letter, a): (Letter, Polynomial)| all.plus(Quantity::own(letter), &a);
+        let form = Form::own(xi.into_iter().fold(super::form::Combination::default(), of));
+        let difference =
+            Formula::sum([(super::formula::Sign::Plus, symbol("i")), (super::formula::Sign::Minus, symbol("j"))]);
+        let weight = Formula::from(Symbol::new("w").below("ij"));
+        let argument = Formula::product([Formula::NeighbourSum, weight, Formula::bracket(difference)]);
+        let selection = Formula::Element(
+            Box::new(Symbol::new("ς").below("i").into()),
+            Box::new(Formula::Function(Symbol::new("Sgn"), vec![argument])),
+        );
+        section
+            .words("ς is a value of the set-valued sign; vertex 0 is the leader.")
+            .formula(selection, "")
+            .formula(Formula::equal(symbol("i"), notation.form(&form)), if above.is_empty() { "(4)" } else { "" })
+    }
+
+    fn controller(&self, notation: &Notation, places: &Places) -> Section {
+        let section = Section::new(Subject::Controller);
+        let Some(lower) = self.lower() else {
+            return section.words(
+                "The parameters of the chain are unknown and enter each of its equations, so z leads x₁ itself, and the steps of adaptive \
+                 backstepping make s = x₁ − z vanish. All derivatives of z up to the order of the chain are states or follow from the \
+                 reference dynamics, so nothing that was heard is differentiated.",
+            );
+        };
+        let input = Quantity::own(Letter::Term(lower.input));
+        let law = Formula::equal(notation.quantity(input, 0), notation.form(&lower.law));
+        let motion = Formula::equal(notation.form(&lower.plant), notation.quantity(input, 0));
+        let section = section.formula(motion, places.plant).formula(law, places.law);
+        super::adaptation::of(self, notation)
+            .into_iter()
+            .fold(section, |section, (formula, place)| section.formula(formula, place))
+    }
+
+    fn cascade(&self, dynamics: &Dynamics, degree: usize, (notation, places): (&Notation, &Places)) -> Section {
+        let upper =
+            notation.equation(Quantity::own(Letter::Position), dynamics.total_order(), &dynamics.loop_with_reference());
+        let mut section = Section::new(Subject::Cascade)
+            .words("The upper subsystem is what the reference dynamics make of the plant, driven by s; the lower one is what the law makes of s.");
+        let mut system = vec![upper];
+        if let Some(lower) = self.lower() {
+            system.push(Formula::equal(notation.form(&lower.left), notation.form(&lower.right)));
+        }
+        section = section.system(system, places.cascade);
+        let derivatives = dynamics.upper().derivatives_of_input();
+        let s = if notation.starred_error { "s*" } else { "s" };
+        let state = if self.lower().is_some_and(|lower| lower.order > 1) {
+            format!(", of which the state of the lower subsystem, {s} and its derivative, holds one")
+        } else {
+            String::new()
+        };
+        let count = match derivatives {
+            0 => format!("No derivative of {s} stands in the upper subsystem"),
+            1 => format!("The upper subsystem holds {s} with one derivative"),
+            n => format!("The upper subsystem holds {s} with {n} derivatives"),
+        };
+        section.words(format!("{count}{state}: the cascade is of degree {degree}."))
+    }
+
+    /// The reduction, and the last system.
+    fn reduction(
+        &self,
+        upper: &Upper,
+        dynamics: &Dynamics,
+        (notation, places): (&Notation, &Places),
+    ) -> (Option<Section>, Option<Reduced>) {
+        super::steps::reduction(self, upper, dynamics, (notation, places))
+    }
+
+    fn laplacian(&self, upper: &Upper, notation: &Notation, places: &Places) -> Option<Section> {
+        let from = match &self.led {
+            Led::Consensus(Heard::Positions) | Led::PureIntegral(Heard::Positions) => 0,
+            Led::Consensus(Heard::Velocities) | Led::PureIntegral(Heard::Velocities) => 1,
+            Led::Consensus(Heard::Coupled) | Led::PureIntegral(Heard::Coupled) => {
+                let words = "What is heard is a nonlinear function of differences, so that there is no matrix; the argument is the same, since \
+                             that function is odd and grows.";
+                return Some(Section::new(Subject::Laplacian).words(words));
+            }
+            Led::Backstepping | Led::Leader(..) | Led::Target | Led::Outside(_) => return None,
+        };
+        let section = Section::new(Subject::Laplacian);
+        let Some(laplacian) = upper.laplacian(chain(&self.roots, from, self.roots_of_all)) else {
+            return Some(section.words(
+                "The agents hear each other with different κ₀, and what is heard is no multiple of the neighbour's ψ: there is no Laplacian \
+                 form (see E1 in PAPER.md).",
+            ));
+        };
+        let named = notation.naming(&laplacian.chain);
+        let scaled = match self.roots_of_all {
+            RootsOfAll::Same => "",
+            RootsOfAll::SameFirst | RootsOfAll::Own => {
+                " ψ is divided by the last coefficient of the polynomial, since the agents' roots differ."
+            }
+        };
+        let mut section = section.words(format!(
+            "Without s every entry of ψ moves towards an average of the next one, and the last one towards what is heard: no entry of a row is \
+             negative off the diagonal, and every row sums to zero.{scaled}",
+        ));
+        for variable in &laplacian.chain.variables {
+            let definition = notation.definition(upper, &variable.state, &variable.input);
+            section = section.formula(Formula::equal(named.name(variable.name, Vertex::Own, 0), definition), "");
+        }
+        let section = section.system(notation.system(&laplacian.chain), places.laplacian);
+        let matrix = super::stacked::matrix(&laplacian.blocks);
+        let section = section
+            .words("Stacked for all agents, and without delays, the matrix of this system is the following, each entry times I_m; D_w is the diagonal \
+                    of the sums of weights and W = [w_ij].")
+            .formula(matrix, places.matrix);
+        Some(section)
+    }
+}
+
+/// 1 + p/λ_f.
+fn lag(filter: &num_rational::BigRational) -> Polynomial {
+    let rate = if filter.is_zero() { filter.clone() } else { filter.recip() };
+    Polynomial::new(vec![num_traits::One::one(), rate])
+}
+
+/// β p + α.
+fn low(alpha: &num_rational::BigRational, beta: &num_rational::BigRational) -> Polynomial {
+    Polynomial::new(vec![alpha.clone(), beta.clone()])
+}
+
+fn virtual_control(dynamics: &Dynamics, notation: &Notation, places: &Places) -> Section {
+    let (n, order) = (dynamics.total_order(), dynamics.order);
+    let position = notation.position;
+    let followed = match dynamics.plant.saturating_sub(1) {
+        0 => format!("{position} itself"),
+        1 => format!("the derivative of {position}"),
+        k => format!("the {} derivative of {position}", words::ordinal(k)),
+    };
+    let grows = match order {
+        0 => "one less, as in backstepping",
+        1 => "the same, which is order invariance",
+        _ => "more, which is order increment",
+    };
+    let words = format!(
+        "The plant is of order {} with respect to {position}, and the reference dynamics are of order {n}: {grows}. z is what {followed} should \
+         be, and s is what is missing.",
+        dynamics.plant,
+    );
+    let mut section = Section::new(Subject::VirtualControl).words(words);
+    let q = Quantity::own(Letter::Position);
+    let z = notation.quantity(Quantity::own(Letter::Reference), order);
+    section = section
+        .formula(Formula::equal(notation.quantity(Quantity::own(Letter::Error), 0), notation.definition_of_error(dynamics)), places.error)
+        .words("The design starts from the identity below. The derivative in it is taken as the virtual control, and the reference dynamics say \
+                what it should be, namely:")
+        .formula(z, "")
+        .formula(Formula::equal(notation.quantity(q, n), notation.quantity(q, n)), places.identity);
+    section
+}

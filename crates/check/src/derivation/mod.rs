@@ -1,0 +1,38 @@
+//! Why a run converges, derived from its setup: what z is, the closed loop as a differential cascade, how its degree is reduced, and the
+//! averages that are left.
+//!
+//! - `polynomial`, `form`: the one representation, linear chains with delays.
+//! - `dynamics`: reference dynamics in it; `lower`: what a law makes of s.
+//! - `cascade`: the closed loop and its degree.
+//! - `reduction`: new variables that absorb derivatives of s.
+//! - `laplacian`, `stacked`: chains of averages; all agents together.
+//! - `formula`, `notation`: formulas as trees, and from forms to them.
+//! - `case`: the designs in a setup; `explanation`: what is said of them, made by `explained`, `steps`, `attitude`, `task_space`,
+//!   `adaptation`, with `places` in the paper and `words`.
+//!
+//! Nothing is a text that is kept for a theorem: equations are multiplied, divided and substituted as polynomials in p with rational
+//! coefficients, for any order and any roots.
+
+mod adaptation;
+mod attitude;
+pub mod cascade;
+pub mod case;
+pub mod dynamics;
+mod explained;
+mod explanation;
+pub mod form;
+pub mod formula;
+pub mod laplacian;
+pub mod lower;
+pub mod notation;
+mod places;
+pub mod polynomial;
+pub mod reduction;
+pub mod stacked;
+mod steps;
+mod task_space;
+#[cfg(test)]
+mod tests;
+mod words;
+
+pub use explanation::{Explained, Explanation, Line, Section, Subject, explain};

@@ -1,0 +1,89 @@
+//! The end-effector of a robot, (76)–(82), in which Ĵᵀ K* Δx and z_r stand for themselves.
+
+use num_rational::BigRational;
+
+use super::adaptation::{self, nonlinear};
+use super::cascade::Upper;
+use super::case::Case;
+use super::dynamics::Dynamics;
+use super::explanation::{Explained, Section, Subject};
+use super::form::{Combination, Form, Letter, Quantity, Term};
+use super::formula::Formula;
+use super::lower;
+use super::polynomial::Polynomial;
+
+/// (76): ż.
+pub(super) fn reference(alpha: &BigRational) -> Dynamics {
+    let alpha = Polynomial::number(alpha.clone());
+    let own = Combination::of(nonlinear(Term::JointReference), &Polynomial::power(1) + &alpha)
+        .plus(Quantity::own(Letter::Reference), &-&alpha)
+        .plus(nonlinear(Term::TaskForce), &-&Polynomial::one());
+    Dynamics { order: 1, plant: 2, right: Form::own(own) }
+}
+
+/// The rate of q̇ − z_r − s, which is z − z_r, after (a10).
+pub(super) fn reduced(upper: &Upper) -> Form {
+    // p (p q − z_r − s) = p² q − p z_r − p s, and p q = (p q − z_r − s) + z_r + s in what is left.
+    let p = Polynomial::power(1);
+    let gone = Combination::of(nonlinear(Term::JointReference), -&p).plus(Quantity::own(Letter::Error), &-&p);
+    let one = Polynomial::one();
+    upper.right.sum(&Form::own(gone)).replaced(&p, |quantity| {
+        (quantity == Quantity::own(Letter::Position)).then(|| {
+            Combination::of(Quantity::own(Letter::Deviation), one.clone())
+                .plus(nonlinear(Term::JointReference), &one)
+                .plus(Quantity::own(Letter::Error), &one)
+        })
+    })
+}
+
+/// The explanation.
+pub(super) fn explained(case: &Case<'_>, [kappa, alpha]: &[BigRational; 2]) -> Explained {
+    let notation = case.notation();
+    let dynamics = reference(alpha);
+    let upper = dynamics.upper();
+    let lower = lower::robot(false, Some(kappa));
+    let q = Quantity::own(Letter::Position);
+    let input = Quantity::own(Letter::Term(lower.input));
+    let mut controller = Section::new(Subject::Controller)
+        .formula(Formula::equal(notation.form(&lower.plant), notation.quantity(input, 0)), "(73)")
+        .formula(Formula::equal(notation.quantity(input, 0), notation.form(&lower.law)), "(80)");
+    for (formula, place) in adaptation::of(case, &notation) {
+        controller = controller.formula(formula, place);
+    }
+    let v = Combination::of(q, Polynomial::power(1))
+        .plus(nonlinear(Term::JointReference), &-&Polynomial::one())
+        .plus(Quantity::own(Letter::Error), &-&Polynomial::one());
+    let rate = reduced(&upper)
+        .replaced(&Polynomial::one(), |quantity| (quantity == Quantity::own(Letter::Deviation)).then(|| v.clone()));
+    let v = Formula::Rate(Box::new(Formula::bracket(notation.form(&Form::own(v)))));
+    let sections = vec![
+        Section::new(Subject::VirtualControl)
+            .words("z is what the velocity of the joints should be, and its derivative what the virtual control q̈ should be. z_r would lead the end-effector along its target if Ĵ were J.")
+            .formula(Formula::equal(notation.quantity(q, 2), notation.quantity(q, 2)), "(aa3)")
+            .formula(
+                Formula::equal(notation.quantity(Quantity::own(Letter::Error), 0), notation.form(&dynamics.definition_of_error())),
+                "(79)",
+            ),
+        Section::new(Subject::ReferenceDynamics)
+            .formula(notation.equation(Quantity::own(Letter::Reference), 1, &dynamics.right), "(76)"),
+        controller,
+        Section::new(Subject::Cascade)
+            .system(
+                vec![
+                    notation.equation(q, 2, &dynamics.loop_with_reference()),
+                    Formula::equal(notation.form(&lower.left), notation.form(&lower.right)),
+                ],
+                "(a10)",
+            )
+            .words(format!("The upper subsystem holds s with one derivative: the cascade is of degree {}.", upper.degree(1))),
+        Section::new(Subject::DegreeReduction)
+            .words("q̇ − z_r − s absorbs the derivative of s; it is z − z_r.")
+            .formula(Formula::equal(v, notation.form(&rate)), "after (a10)"),
+        Section::new(Subject::Convergence).words(
+            "V = (κ/2)[|z − z_r|² + ΔxᵀK*Δx + ΔθᵀΛ⁻¹Δθ] + ½ sᵀM s + ½ ΔϑᵀΓ⁻¹Δϑ has V̇ = −sᵀK s − κ α |z − z_r|², for as long as Ĵ stays away \
+             from singularity. So s and z − z_r are bounded and square-integrable, and vanish; then ĴᵀK*Δx does, and Δx with it.",
+        ),
+    ];
+    let left = reduced(&upper).highest(Letter::Error).unwrap_or(0);
+    Explained { agents: case.agents.clone(), order: Some(2), degrees: Some([upper.degree(1), left]), sections }
+}

@@ -1,0 +1,174 @@
+//! Sentences of explanations.
+
+use forwardstep_sim::Setup;
+use forwardstep_sim::graph::Weight;
+use forwardstep_sim::leader::FollowingDesign;
+
+use super::case::{Case, Led, Step, ThrustStep};
+use super::form::Letter;
+use super::formula::At;
+
+/// `1st`, `2nd`, ….
+pub(super) fn ordinal(n: usize) -> String {
+    let ending = match (n % 10, n % 100) {
+        (_, 11..=13) => "th",
+        (1, _) => "st",
+        (2, _) => "nd",
+        (3, _) => "rd",
+        _ => "th",
+    };
+    format!("{n}{ending}")
+}
+
+/// What stands for s.
+pub(super) fn letter(input: Letter, starred: bool) -> &'static str {
+    match (input, starred) {
+        (Letter::Filter, _) => "y",
+        (_, true) => "s*",
+        (_, false) => "s",
+    }
+}
+
+/// s with so many derivatives.
+fn derivative(letter: &str, order: usize) -> String {
+    match order {
+        0 => format!("{letter} itself"),
+        1 => format!("the derivative of {letter}"),
+        n => format!("the {} derivative of {letter}", ordinal(n)),
+    }
+}
+
+/// What a new variable does.
+pub(super) fn absorbed(letter: &str, before: usize, after: usize) -> String {
+    format!("A new variable absorbs {}; {} is left.", derivative(letter, before), derivative(letter, after))
+}
+
+/// What the weights and the delays are.
+pub(super) fn links(setup: &Setup, heard: At) -> String {
+    let edges = || setup.network.schedule.graphs.iter().flatten();
+    let constants: Vec<f64> = edges().filter_map(|edge| edge.weight.constant()).collect();
+    let range = |values: &[f64]| {
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if low == high { format!("{low}") } else { format!("{low} to {high}") }
+    };
+    let formulas = edges().any(|edge| matches!(edge.weight, Weight::Formula(_)));
+    let size = match (constants.is_empty(), formulas) {
+        (true, false) => return "There are no links.".into(),
+        (true, true) => "w_ij(t) follows a formula".to_owned(),
+        (false, true) => format!("w_ij(t) is {}, or follows a formula", range(&constants)),
+        (false, false) => format!("w_ij is {}", range(&constants)),
+    };
+    let fixed = setup.network.schedule.constant_graph().is_some();
+    let graph = if fixed { " on a fixed graph" } else { ", and zero while the graph in force lacks the link" };
+    let delays = || edges().filter_map(|edge| setup.network.delays.get(edge.delay));
+    let longest = delays().map(|delay| delay.max_s()).fold(0.0, f64::max);
+    let late = match heard {
+        At::Now | At::Time => "no message is late".to_owned(),
+        At::Late => format!("T_ij is {} s", range(&delays().map(|delay| delay.max_s()).collect::<Vec<_>>())),
+        At::VaryingLate => format!("T_ij(t) is at most {longest} s"),
+    };
+    format!("{size}{graph}; {late}.")
+}
+
+/// What the law makes of s.
+pub(super) fn of_s(step: &Step) -> String {
+    match step {
+        Step::Robot { known: false } | Step::TaskSpace(_) => {
+            "V = ½ sᵀM s + ½ ΔϑᵀΓ⁻¹Δϑ has V̇ = −sᵀK s whatever z does, since Ṁ − 2C is skew-symmetric. So s is bounded and \
+             square-integrable, and ϑ̂ is bounded."
+        }
+        Step::Robot { known: true } => {
+            "V = ½ sᵀM s has V̇ = −sᵀK s whatever z does, since Ṁ − 2C is skew-symmetric. So s is bounded and square-integrable."
+        }
+        Step::PositionOnly(_) => {
+            "V = ½ m sᵀs + (k/2λ_f) yᵀy + Δm²/(2γ*) has V̇ = −k yᵀy whatever z does. So s, y and m̂ are bounded, and y is \
+             square-integrable."
+        }
+        Step::Thrust(ThrustStep::Continuous, _) => "",
+        Step::Thrust(ThrustStep::Differentiable, _) => {
+            "The lower subsystem is linear and exponentially stable, and nothing drives it: s* → 0 with its derivatives."
+        }
+        Step::Thrust(ThrustStep::Adaptive, _) => {
+            "V = ½ m ṡ*ᵀṡ* + Δm²/(2γ*) has V̇ = −α* m ṡ*ᵀṡ* whatever z does. So ṡ* is bounded and square-integrable, and m̂ is \
+             bounded; s* itself need not vanish."
+        }
+        Step::Attitude(_) => {
+            "V = ½ (ω − z)ᵀM(ω − z) + ½ ẏᵀẏ has V̇ = −ẏᵀΛ_f ẏ whatever z does, since S(h) is skew-symmetric. So ω − z is bounded, and \
+             ẏ is square-integrable; then ÿ → 0, and with it ω − z → 0."
+        }
+        Step::Chain(_, kind, _) => return chain(*kind),
+        Step::Outside(_) => "",
+    }
+    .into()
+}
+
+fn chain(kind: super::case::ChainStepKind) -> String {
+    use super::case::ChainStepKind::{Adaptive, Backstepping, Immersion, Linearising};
+    match kind {
+        Linearising => "s falls exponentially, whatever the plant is and whatever z does.",
+        Adaptive => {
+            "V = ½ s² + ½ ΔθᵀΓ⁻¹Δθ loses the square of s times the gain, whatever z does. So s is bounded and square-integrable, and θ̂ is \
+             bounded."
+        }
+        Immersion => {
+            "V = ½ s² + ζᵀΓ⁻¹ζ/(2c), with c the gain, loses squares of s and of φᵀζ, whatever z does. So both are square-integrable, and \
+             s → 0."
+        }
+        Backstepping => {
+            "V = ½ Σ e_i² + ½ ΔθᵀΓ⁻¹Δθ with e₁ = s loses Σ c_i e_i², whatever z does. So s is bounded and square-integrable, and θ̂ is \
+             bounded."
+        }
+    }
+    .into()
+}
+
+/// What follows for the upper subsystem: `left` is the highest derivative of s that the reduction leaves.
+pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
+    let s = letter(input, matches!(case.step, Step::Thrust(..)));
+    let q = case.notation().position;
+    let enters = match (&case.step, left) {
+        (Step::Thrust(ThrustStep::Adaptive, _), _) => {
+            "After the reduction the upper subsystem is driven by ṡ* alone, which is square-integrable.".to_owned()
+        }
+        (_, 0) => format!("After the reduction the upper subsystem is driven by {s} alone, without any derivative."),
+        (_, 1) => format!(
+            "After the reduction the upper subsystem is driven by {s} and its derivative, whose integral is {s} − {s}(0) and so is bounded."
+        ),
+        (_, n) => format!("After the reduction the upper subsystem is driven by {s} and {n} derivatives of it."),
+    };
+    let bounded = match &case.step {
+        Step::Robot { .. } => {
+            "So the variables of the upper subsystem are bounded; then q̇ and ṡ are, s is uniformly continuous and vanishes, ṡ vanishes"
+        }
+        Step::Thrust(..) => "So the variables of the upper subsystem are bounded, and ṡ* vanishes",
+        Step::PositionOnly(_) => "So the variables of the upper subsystem are bounded, and y and s vanish",
+        Step::Attitude(_) | Step::TaskSpace(_) | Step::Chain(..) | Step::Outside(_) => {
+            "So the variables of the upper subsystem are bounded, and s vanishes"
+        }
+    };
+    let then = match &case.led {
+        Led::Consensus(_) | Led::PureIntegral(_) => format!(
+            "Without that, each ψ moves towards an average of what is its own and what is heard, whatever the bounded delays are; as long as the \
+             graph is connected as the theorem asks, all ψ come together. {bounded}, and what is left is the undisturbed system: \
+             {q}_i − {q}_j → 0, and all derivatives of {q}_i vanish."
+        ),
+        Led::Leader(FollowingDesign::Swarm { .. }, _) => format!(
+            "Without that, the differences to the leader fall as long as the coupling and γ are as large as `forwardstep check` asks. {bounded}, and \
+             {q}_i − {q}_0 → 0 with its derivative."
+        ),
+        Led::Leader(..) => format!(
+            "Without that, the largest difference to the leader falls at a rate of γ less the largest size of what drives the leader, and \
+             vanishes in finite time. {bounded}, and {q}_i − {q}_0 → 0 with its derivative."
+        ),
+        Led::Target => format!(
+            "Without that, what is left is a linear system with the given roots, which is exponentially stable. {bounded}, and so does the distance \
+             from the target."
+        ),
+        Led::Backstepping => "Where the graph switches or a delay jumps the derivative of what is heard is infinite, and the paper promises \
+                              nothing there."
+            .into(),
+        Led::Outside(_) => String::new(),
+    };
+    format!("{enters} {then}")
+}

@@ -1,0 +1,139 @@
+//! Why a run converges, as text, LaTeX, JSON and part of the report.
+
+use forwardstep_check::derivation::{Explained, Explanation, Line};
+use forwardstep_sim::Setup;
+use maud::{Markup, PreEscaped, html};
+use serde_json::{Value, json};
+
+use super::formula::{latex, mathml, unicode};
+use super::names;
+use crate::scenario::Scenario;
+
+/// The format of the JSON document; it grows when fields change their meaning or vanish, not when some are added.
+pub const EXPLANATION_FORMAT: u32 = 1;
+
+/// More agents are not named one by one.
+const MOST_NAMES: usize = 8;
+
+/// A piece of an explanation in words, for a terminal.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TextLine {
+    /// The agents of a design.
+    Agents(String),
+    /// The heading of a section.
+    Heading(&'static str),
+    /// Sentences.
+    Words(String),
+    /// A formula, with its place in the paper.
+    Formula(String, &'static str),
+}
+
+/// An explanation line by line.
+pub fn explanation_lines(setup: &Setup, explanation: &Explanation) -> Vec<TextLine> {
+    let mut lines = Vec::new();
+    for design in &explanation.designs {
+        lines.push(TextLine::Agents(agents(setup, design)));
+        for section in &design.sections {
+            lines.push(TextLine::Heading(section.subject.heading()));
+            lines.extend(section.lines.iter().map(|line| match line {
+                Line::Words(words) => TextLine::Words(words.clone()),
+                Line::Formula(formula, place) => TextLine::Formula(unicode(formula), place),
+            }));
+        }
+    }
+    lines
+}
+
+/// Who has a design.
+fn agents(setup: &Setup, design: &Explained) -> String {
+    let names: Vec<String> =
+        design.agents.iter().take(MOST_NAMES).map(|agent| names::agent_name(setup, *agent)).collect();
+    match design.agents.len().saturating_sub(MOST_NAMES) {
+        0 => names.join(", "),
+        more => format!("{}, and {more} more", names.join(", ")),
+    }
+}
+
+/// An explanation in LaTeX: a section of equations for each design, with the words as comments. It needs amsmath.
+pub fn explanation_latex(setup: &Setup, explanation: &Explanation) -> String {
+    let mut text = String::from("% needs \\usepackage{amsmath}\n");
+    for design in &explanation.designs {
+        text += &format!("\n% {}\n", agents(setup, design).replace('\n', " "));
+        for section in &design.sections {
+            text += &format!("\\subsection*{{{}}}\n", section.subject.heading());
+            for line in &section.lines {
+                match line {
+                    Line::Words(words) => text += &format!("% {words}\n"),
+                    Line::Formula(formula, place) => {
+                        text +=
+                            &format!("\\begin{{equation*}}\n  {}{}\n\\end{{equation*}}\n", latex(formula), tag(place));
+                    }
+                }
+            }
+        }
+    }
+    text
+}
+
+/// The place in the paper as a tag.
+fn tag(place: &str) -> String {
+    let words = place.replace('ϑ', "$\\vartheta$").replace('\u{302}', "").replace('φ', "$\\varphi$");
+    if place.is_empty() { String::new() } else { format!(" \\tag*{{{words}}}") }
+}
+
+/// An explanation as JSON.
+pub fn explanation_document(scenario: &Scenario, version: &str, explanation: &Explanation) -> Value {
+    let line = |line: &Line| match line {
+        Line::Words(words) => json!({ "words": words }),
+        Line::Formula(formula, place) => {
+            json!({ "unicode": unicode(formula), "latex": latex(formula), "paper": place })
+        }
+    };
+    let design = |design: &Explained| {
+        let sections: Vec<Value> = (design.sections.iter())
+            .map(|section| {
+                let lines: Vec<Value> = section.lines.iter().map(line).collect();
+                json!({ "subject": section.subject.name(), "lines": lines })
+            })
+            .collect();
+        let names: Vec<String> = design.agents.iter().map(|agent| names::agent_name(&scenario.setup, *agent)).collect();
+        json!({
+            "agents": names,
+            "order": design.order,
+            "degree": design.degrees.map(|[before, _]| before),
+            "reduced_degree": design.degrees.map(|[_, after]| after),
+            "sections": sections,
+        })
+    };
+    let designs: Vec<Value> = explanation.designs.iter().map(design).collect();
+    let checked = json!({ "name": scenario.name, "title": scenario.title });
+    json!({ "format": EXPLANATION_FORMAT, "version": version, "scenario": checked, "designs": designs })
+}
+
+/// An explanation as a section of the report.
+pub(crate) fn explanation_markup(setup: &Setup, explanation: &Explanation) -> Markup {
+    html! {
+        section #why {
+            h2 { "Why it works" }
+            @for design in &explanation.designs {
+                details.card open[explanation.designs.len() == 1] {
+                    summary { strong { (agents(setup, design)) } @if let Some([before, after]) = design.degrees {
+                        span.by { "a cascade of degree " (before) ", reduced to " (after) }
+                    } }
+                    @for part in &design.sections {
+                        h3 { (part.subject.heading()) }
+                        @for line in &part.lines {
+                            @match line {
+                                Line::Words(words) => p { (words) },
+                                Line::Formula(formula, place) => div.formula {
+                                    (PreEscaped(mathml(formula)))
+                                    @if !place.is_empty() { span.place { (place) } }
+                                },
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
