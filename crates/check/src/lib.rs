@@ -17,9 +17,9 @@ mod laws;
 mod links;
 mod manipulation;
 mod null_vector;
+mod practical;
 mod reach;
 mod report;
-mod sampled;
 mod shifted_laplacian;
 mod source;
 mod surroundings;
@@ -29,10 +29,11 @@ mod theorems;
 pub use agreement::{NoPrediction, Prediction, predict};
 pub use certificate::certify;
 pub use hypothesis::{Answer, Evidence, Hypothesis, Id, Rigour};
-pub use report::Report;
-pub use sampled::{
-    FastestDamping, SampledAdaptation, SampledDamping, fastest_damping, sampled_adaptation, sampled_damping,
+pub use practical::{
+    Along, FastestDamping, Finding, Hold, LoadReached, MarginAt, MarginReached, Practical, PracticalAnswer,
+    RECOMMENDED_MARGIN, SamplingMargin, StaticLoad, along, fastest_damping, longest_period_s, practical,
 };
+pub use report::Report;
 pub use source::Source;
 pub use theorem::Theorem;
 pub use theorems::check;

@@ -23,7 +23,8 @@ const SIX_ARMS: &str = "six-arms";
 const EXIT_STATUS: &str = "\
 Exit status:
     0  fine
-    1  check: a hypothesis is violated, not shown or not covered by the paper, and not accepted; run: the goal was missed
+    1  check: a hypothesis is violated, not shown or not covered by the paper, and not accepted, or, with --practical, a
+       practical verdict is inadequate; run: the goal was missed
     2  input without meaning, or a folder that cannot be written to or is not that of a run
     3  the run broke down; what was computed is written
   130  interrupted by Ctrl-C; what was computed is written
@@ -97,6 +98,9 @@ pub(crate) struct CheckOptions {
     /// Waive a hypothesis by its name, which stands in brackets behind it; may be given several times
     #[arg(long, value_name = "NAME", value_parser = hypothesis())]
     pub(crate) accept: Vec<Id>,
+    /// Exit with 1 too where a practical verdict is `inadequate`: those are not from the paper and speak of single states
+    #[arg(long)]
+    pub(crate) practical: bool,
     /// Print one JSON object; `forwardstep schema check` describes it
     #[arg(long)]
     pub(crate) json: bool,
