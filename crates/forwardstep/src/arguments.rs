@@ -43,6 +43,8 @@ pub(crate) enum Command {
     },
     /// Say which theorem speaks about a scenario, and whether its hypotheses hold
     Check(CheckOptions),
+    /// Measure the longest period with which sampled controllers still work, beside the one that the sampling margin allows
+    SamplingLimit(SamplingLimitOptions),
     /// List the shipped scenarios, or print one
     Scenarios {
         /// Print the text of this one
@@ -107,6 +109,42 @@ pub(crate) struct CheckOptions {
     /// Write the answers with their proofs to this file, for `checker/forwardstep_checker.py`; an older one is replaced
     #[arg(long, value_name = "FILE.json")]
     pub(crate) certificate: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SamplingLimitOptions {
+    /// Shipped scenarios by name, or files by their paths; those in continuous time are sampled with exact measurements
+    #[arg(value_name = "SCENARIO", default_value = SIX_ARMS)]
+    pub(crate) scenarios: Vec<String>,
+    /// Let torques come late by this part of the period, from 0 to 1
+    #[arg(long, value_name = "PART", value_parser = part)]
+    pub(crate) late: Option<f64>,
+    /// Take velocities from differences of positions, filtered at this cut-off
+    #[arg(long, value_name = "HZ", value_parser = positive)]
+    pub(crate) filter_hz: Option<f64>,
+    /// A run works while no |s| exceeds this, in rad/s or m/s [default: twice that of a run with an eighth of the period]
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub(crate) peak_error: Option<f64>,
+    /// It works if no more than this remains of the disagreement, or of the error, in rad or m [default: a tenth of what there is at
+    /// the start, or twice what remains in that run]
+    #[arg(long, value_name = "GAP", value_parser = positive)]
+    pub(crate) disagreement: Option<f64>,
+    /// Print rows of a table; of scenarios in continuous time with several delays and filters
+    #[arg(long)]
+    pub(crate) table: bool,
+}
+
+/// Why a number cannot be used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("must be a number {0}")]
+pub(crate) struct NotANumber(&'static str);
+
+fn part(text: &str) -> Result<f64, NotANumber> {
+    text.parse().ok().filter(|part| (0.0..=1.0).contains(part)).ok_or(NotANumber("from 0 to 1"))
+}
+
+fn positive(text: &str) -> Result<f64, NotANumber> {
+    text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite()).ok_or(NotANumber("above 0"))
 }
 
 /// Documents that have a schema.

@@ -6,8 +6,9 @@ mod support;
 
 use std::fs;
 
-use forwardstep::check::Id;
-use forwardstep::io::scenario::SHIPPED_SCENARIOS;
+use forwardstep::check::{Id, SamplingMargin};
+use forwardstep::io::output::Deployment;
+use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
 use serde_json::Value;
 use support::{folder, forwardstep, stderr, stdout};
 use tempfile::TempDir;
@@ -100,6 +101,54 @@ fn practical_verdicts_stand_beside_the_hypotheses_and_count_where_they_are_asked
     }
     let said = stdout(&forwardstep(&with(TWO), &["check", "two.toml"]).code(1));
     assert!(said.contains("\nPractical: derived for this software, not in the paper\n  adequate: "), "{said}");
+}
+
+/// The table of SAMPLING.md, row by row.
+fn rows() -> Vec<Vec<String>> {
+    let text = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../SAMPLING.md")).unwrap();
+    let rows = text.lines().filter(|line| line.starts_with("| ") && !line.starts_with("| Scenario"));
+    rows.map(|row| row.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()).collect()
+}
+
+#[test]
+fn val_the_rules_of_the_sampling_table_are_those_of_the_scenarios() {
+    let rows = rows();
+    assert_eq!(rows.len(), 15);
+    for row in rows {
+        let [name, late, velocity, rule, measured, ratio] = &row[..] else { panic!("{row:?}") };
+        let deployment = Deployment {
+            late: late.strip_suffix(" h").map(|late| late.parse().unwrap()),
+            filter_hz: velocity.strip_prefix("filtered at ").map(|hz| hz.trim_end_matches(" Hz").parse().unwrap()),
+        };
+        let setup = open_scenario(name).unwrap().setup;
+        let found_ms = 1e3 * deployment.rule_s(&setup).unwrap();
+        let [rule, measured, ratio] = [rule, measured, ratio].map(|cell| cell.parse::<f64>().unwrap());
+        assert!((found_ms / rule - 1.0).abs() < 0.005, "{row:?}: {found_ms}");
+        assert!((rule / measured - ratio).abs() < 0.01 && ratio > 0.8 && ratio < 1.07, "{row:?}");
+        // What the margin of that very deployment says there.
+        let at =
+            |share: f64| SamplingMargin::of(&deployment.apply(&setup, share * found_ms / 1e3)).unwrap().worst.sigma;
+        assert!((at(1.0) - 1.0).abs() < 1e-6 && at(0.8) < 1.0 && at(1.1) > 1.0, "{row:?}");
+    }
+}
+
+#[test]
+fn val_a_row_of_the_sampling_table_is_what_runs_say() {
+    let here = folder();
+    let said = |arguments: &[&str]| stdout(&forwardstep(&here, &[&["sampling-limit"], arguments].concat()).success());
+    let printed = said(&["theorem-2", "--late", "0.9", "--table"]);
+    let cells: Vec<String> = rows().into_iter().nth(3).unwrap();
+    assert_eq!(printed.lines().last().unwrap(), format!("| {} |", cells.join(" | ")));
+    let in_words = said(&["theorem-2", "--late", "0.9", "--peak-error", "2.5", "--disagreement", "0.2"]);
+    assert!(
+        in_words.contains("\n  rule       11.7 ms: ") && in_words.contains("|s| ≤ 2.500, and at most 2.00e-1 "),
+        "{in_words}"
+    );
+    // What no period can do.
+    let never = ["sampling-limit", "theorem-2", "--disagreement", "1e-300"];
+    let never = stdout(&forwardstep(&here, &never).code(1));
+    assert!(never.contains("\n  measured   – ms: "), "{never}");
+    forwardstep(&here, &["sampling-limit", "theorem-2", "--late", "1.5"]).code(2);
 }
 
 #[test]

@@ -212,7 +212,7 @@ mod tests {
                     None => {
                         for step in 0..200 {
                             let period_s = hold.delay_s + f64::from(step) * 1e-5;
-                            assert!(!(share(period_s) < 1.0), "{hold:?} at {rate_per_s}: {period_s}");
+                            assert!(share(period_s) >= 1.0, "{hold:?} at {rate_per_s}: {period_s}");
                         }
                     }
                 }

@@ -97,7 +97,7 @@ impl SamplingMargin {
     pub fn answer(&self) -> PracticalAnswer {
         if self.start.is_unstable() {
             PracticalAnswer::Inadequate
-        } else if !(self.worst.sigma < 1.0) {
+        } else if self.worst.sigma >= 1.0 {
             PracticalAnswer::NotShown
         } else if self.worst.sigma > RECOMMENDED_MARGIN {
             PracticalAnswer::Marginal

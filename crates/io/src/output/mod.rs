@@ -42,6 +42,7 @@ mod record;
 mod report;
 mod restore;
 mod restore_error;
+mod sampling_limit;
 pub mod summary;
 mod table;
 mod timeline;
@@ -66,6 +67,7 @@ pub use practical::{PracticalVerdict, PracticalVerdicts, Watched, WatchedLoad, W
 pub use record::{GoalOutcome, RunRecord};
 pub use restore::{Remark, SavedRun};
 pub use restore_error::{RestoreError, SummaryError, TableError};
+pub use sampling_limit::{Accepted, Deployment, SamplingLimit, Trial};
 
 const PARQUET: &str = "trajectory.parquet";
 const CSV: &str = "trajectory.csv";
