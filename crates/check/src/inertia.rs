@@ -9,7 +9,7 @@ use forwardstep_core::robot::{Definiteness, InertiaBound, PlanarArm, PointMass, 
 use forwardstep_sim::{AgentSetup, RobotSetup, Setup};
 
 use crate::hypothesis::{Hypothesis, Id, InertiaUnit, Named, RobotEvidence};
-use crate::sampled::{FastestDamping, fastest_damping_of};
+use crate::practical::{FastestDamping, fastest_damping_of};
 
 /// Pieces into which the turns of degenerate robots may be cut.
 const PIECES: usize = 4096;

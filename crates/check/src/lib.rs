@@ -18,10 +18,10 @@ mod laws;
 mod links;
 mod manipulation;
 mod null_vector;
+mod practical;
 pub mod prediction;
 mod reach;
 mod report;
-mod sampled;
 mod shifted_laplacian;
 mod source;
 mod surroundings;
@@ -31,11 +31,12 @@ mod theorems;
 pub use agreement::{NoPrediction, Prediction, predict};
 pub use certificate::certify;
 pub use hypothesis::{Answer, Evidence, Hypothesis, Id, Rigour};
+pub use practical::{
+    Along, FastestDamping, Finding, Hold, LoadReached, MarginAt, MarginReached, Practical, PracticalAnswer,
+    RECOMMENDED_MARGIN, SamplingMargin, StaticLoad, along, fastest_damping, longest_period_s, practical,
+};
 pub use prediction::{Course, NoCourse, NoIdeal, course, ideal};
 pub use report::Report;
-pub use sampled::{
-    FastestDamping, SampledAdaptation, SampledDamping, fastest_damping, sampled_adaptation, sampled_damping,
-};
 pub use source::Source;
 pub use theorem::Theorem;
 pub use theorems::check;

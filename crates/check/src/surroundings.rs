@@ -6,7 +6,6 @@ use forwardstep_sim::{AgentSetup, Setup, VelocitySensor};
 use crate::hypothesis::{Hypothesis, Id, Inexact, Limited, LoopEvidence, Named};
 use crate::kinds::is_lagrangian;
 use crate::links::messages_in_time;
-use crate::sampled::{sampled_adaptation, sampled_damping};
 
 /// τ_ext feeds V by sᵀτ_ext, and what else acts by a factor that V bounds. What ends leaves V finite, and from then on everything
 /// is as without it.
@@ -65,13 +64,8 @@ pub(crate) fn digital(setup: &Setup) -> Vec<Hypothesis> {
         VelocitySensor::Filtered { .. } => true,
         VelocitySensor::Measured => false,
     };
-    let sampling = LoopEvidence::Sampling {
-        sample_hz: control.sample_hz,
-        computation_delay_s: control.computation_delay_s,
-        filtered,
-        damping: sampled_damping(setup).map(|found| (Named::of(setup, found.agent), found)),
-        adaptation: sampled_adaptation(setup).map(|found| (Named::of(setup, found.agent), found)),
-    };
+    let sampling =
+        LoopEvidence::Sampling { sample_hz: control.sample_hz, computation_delay_s: control.computation_delay_s };
     let mut hypotheses = vec![Hypothesis::new(Id::ContinuousTime, sampling)];
     let each = [
         (sensors.position_noise > 0.0 || sensors.velocity_noise > 0.0, Inexact::Noise),

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use common::kinds::{fading_power_of_time, formula, power_of_time};
 use common::{About, axis, edge};
-use forwardstep_check::{Answer, Id, Report, Theorem, check, sampled_adaptation};
+use forwardstep_check::{Answer, Id, Report, SamplingMargin, Theorem, check, practical};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::reference::Choice;
@@ -255,18 +255,20 @@ fn eq_held_adaptation_is_stable_as_long_as_its_number_is_below_two() {
             adaptation: Gain::Number(adaptation),
             estimate_start: vec![0.0],
         });
-        let found = sampled_adaptation(&setup).unwrap();
-        assert_eq!(found.agent, 1);
+        let found = SamplingMargin::of(&setup).unwrap().start;
+        assert_eq!(found.agent.index, 1);
+        let frozen = found.frozen_sigma.unwrap();
         let (h, k, p, m) = (1.0 / sample_hz, 10.0, adaptation * gain * gain, 2.0);
-        assert!((found.value - h / m * (k + 0.5 * h * p)).abs() < 1e-12, "{}", found.value);
+        assert!((frozen - 0.5 * h / m * (k + 0.5 * h * p)).abs() < 1e-12, "{frozen}");
+        assert!((found.sigma - 0.5 * h * (k / m + p / k)).abs() < 1e-9, "{found:?}");
         let (mut s, mut w) = (1.0_f64, 0.0);
         for _ in 0..2000 {
             s += h / m * (w - k * s);
             w -= h * p * s;
         }
-        assert_eq!(s.abs() < 1.0, found.value < 2.0, "{adaptation}: {} {s}", found.value);
-        let said = check(&setup).hypotheses.iter().any(|hypothesis| hypothesis.because().contains("let Γ be smaller"));
-        assert_eq!(said, found.value > 2.0);
+        assert_eq!(s.abs() < 1.0, frozen < 1.0, "{adaptation}: {frozen} {s}");
+        let said = practical(&setup).findings[0].because().contains("let Γ be smaller");
+        assert_eq!(said, frozen > 1.0);
     }
 }
 
@@ -353,9 +355,10 @@ fn thm9_what_is_said_of_those_that_follow_is_not_said_of_the_agent_that_leads() 
         let mut setup = led_by_agent(FollowingDesign::Continuous, wave());
         setup.agents[agent].law = Arc::new(adaptive(1e6));
         setup.control = setup_sampled();
-        sampled_adaptation(&setup).map(|found| found.agent)
+        let margin = SamplingMargin::of(&setup).unwrap();
+        (margin.adaptation_left_out, margin.start.frozen_sigma.map(|_| margin.start.agent.index))
     };
-    assert_eq!([0, 1, 2].map(sampled), [None, Some(1), Some(2)]);
+    assert_eq!([0, 1, 2].map(sampled), [(1, None), (0, Some(1)), (0, Some(2))]);
 }
 
 fn setup_sampled() -> Option<Control> {

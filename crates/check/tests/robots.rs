@@ -9,7 +9,7 @@ use std::sync::Arc;
 use common::kinds::{alone, change_tip, formula, planar_tip, rest_at, tracking, tree_tip};
 use common::{arm, noise, setup};
 use forwardstep_check::hypothesis::{InertiaUnit, ReachSide, RobotEvidence};
-use forwardstep_check::{Answer, Evidence, Hypothesis, Id, Rigour, check, fastest_damping, sampled_damping};
+use forwardstep_check::{Answer, Evidence, Hypothesis, Id, Rigour, SamplingMargin, check, fastest_damping, practical};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkSpec, Placement, Tree, Uncertain, inertia_about_frame};
@@ -256,10 +256,10 @@ fn no_posture_makes_the_damping_faster_than_is_said() {
 #[test]
 fn sampling_is_said_to_be_stable_at_every_posture_where_the_bound_shows_it() {
     let mut setup = agreeing(vec![alone(arm(0, &[1.0, 2.0])).agents.remove(0)]);
-    let because = |setup: &Setup| all(setup, Id::ContinuousTime)[0].because();
+    let because = |setup: &Setup| practical(setup).findings[0].because();
     let rates = |setup: &Setup| {
-        let found = sampled_damping(setup).unwrap();
-        (found.value, found.anywhere.unwrap(), found.unstable_above)
+        let found = SamplingMargin::of(setup).unwrap();
+        (found.start.damping_sigma, found.anywhere.unwrap())
     };
     setup.control = Some(Control {
         sample_hz: 1000.0,
@@ -268,12 +268,12 @@ fn sampling_is_said_to_be_stable_at_every_posture_where_the_bound_shows_it() {
         actuators: Default::default(),
         failures: Default::default(),
     });
-    let (value, anywhere, unstable) = rates(&setup);
-    assert!(value < anywhere && anywhere < unstable, "{value} {anywhere} {unstable}");
-    assert!((anywhere - 1e-3 * fastest_damping(&setup).unwrap().anywhere_per_s.unwrap()).abs() < 1e-12);
-    assert!(because(&setup).contains("at any q it is at most"), "{}", because(&setup));
+    let (value, anywhere) = rates(&setup);
+    assert!(value < anywhere && anywhere < 1.0, "{value} {anywhere}");
+    assert!((anywhere - 0.5e-3 * fastest_damping(&setup).unwrap().anywhere_per_s.unwrap()).abs() < 1e-12);
+    assert!(because(&setup).contains("at any q"), "{}", because(&setup));
     if let Some(control) = &mut setup.control {
-        control.sample_hz *= 0.99 * anywhere / unstable;
+        control.sample_hz *= 0.99 * anywhere;
     }
-    assert!(rates(&setup).1 > unstable && !because(&setup).contains("at any q"), "{}", because(&setup));
+    assert!(rates(&setup).1 > 1.0 && !because(&setup).contains("at any q"), "{}", because(&setup));
 }

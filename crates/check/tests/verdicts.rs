@@ -9,9 +9,7 @@ use std::sync::Arc;
 
 use common::kinds::{alone, blind_mass, rest_at, spacecraft, tracking, vehicle};
 use common::{About, answer, answers, edge, masses};
-use forwardstep_check::{
-    Answer, Id, NoPrediction, SampledDamping, check, predict, sampled_adaptation, sampled_damping,
-};
+use forwardstep_check::{Answer, Id, NoPrediction, PracticalAnswer, SamplingMargin, check, practical, predict};
 use forwardstep_core::Gain;
 use forwardstep_core::controller::Floor;
 use forwardstep_core::expression::Expression;
@@ -24,7 +22,7 @@ use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{Adaptive, Control, Exchange, Known, RotorcraftModel, Setup, ThrustKind};
+use forwardstep_sim::{Adaptive, Control, Exchange, Known, RotorcraftModel, Setup, ThrustKind, VelocitySensor};
 
 /// Two masses that hear each other through delays of their own.
 fn pair(delays: [Delay; 2]) -> Setup {
@@ -172,62 +170,92 @@ fn control(computation_delay_s: f64) -> Option<Control> {
     })
 }
 
-/// The largest x for which s_{k+1} = (1 − x (1 − δ)) s_k − x δ s_{k−1} decays, and does so without overshooting.
-fn largest(late: f64, fits: impl Fn(&[f64]) -> bool) -> f64 {
-    let (mut low, mut high) = (0.0, 10.0);
-    for _ in 0..40 {
-        let x = 0.5 * (low + high);
-        let mut s = vec![1.0, 1.0 - x * (1.0 - late)];
-        for k in 1..4000 {
-            s.push((1.0 - x * (1.0 - late)) * s[k] - x * late * s[k - 1]);
-        }
-        if fits(&s) { low = x } else { high = x }
-    }
-    low
-}
-
 #[test]
-fn eq_held_damping_overshoots_and_is_unstable_where_it_is_said_to() {
-    for late in [0.0, 0.1, 0.25, 0.4, 0.6, 0.9, 1.0] {
-        let mut setup = pair([constant(0.0), constant(0.0)]);
-        setup.control = control(0.1 * late);
-        let SampledDamping { overshoots_above, unstable_above, .. } = sampled_damping(&setup).unwrap();
-        let unstable = largest(late, |s| s[s.len() - 1].abs() < 1.0);
-        assert!((unstable - unstable_above).abs() < 0.01, "{late}: {unstable} and {unstable_above}");
-        let overshoots = largest(late, |s| s.iter().all(|s| *s > -1e-12));
-        assert!((overshoots - overshoots_above).abs() < 0.01, "{late}: {overshoots} and {overshoots_above}");
-    }
-}
-
-#[test]
-fn eq_numbers_of_held_gains_are_those_of_the_worst_agent() {
+fn eq_the_margin_is_that_of_the_worst_agent() {
     // Masses of 1 kg and 2 kg under K = 5: λ_max(M⁻¹K) is 5 and 2.5.
     for order in [[0, 1], [1, 0]] {
         let mut setup = pair([constant(0.0), constant(0.0)]);
         setup.agents = order.map(|k| setup.agents[k].clone()).to_vec();
         setup.control = control(0.0);
-        let found = sampled_damping(&setup).unwrap();
-        assert!((found.value - 0.5).abs() < 1e-12 && found.agent == order[0], "{found:?}");
-        assert_eq!(sampled_adaptation(&setup), None, "nobody adapts");
+        let found = SamplingMargin::of(&setup).unwrap();
+        assert!((found.start.sigma - 0.25).abs() < 1e-12 && found.start.agent.index == order[0], "{found:?}");
+        assert_eq!((found.start.sigma, found.start.frozen_sigma), (found.start.damping_sigma, None), "nobody adapts");
+        assert!((found.longest_s.unwrap() - 0.4).abs() < 1e-9 && (found.recommended_s.unwrap() - 0.2).abs() < 1e-9);
     }
 }
 
 #[test]
+fn the_margin_is_adequate_up_to_a_half_and_inadequate_from_one_on() {
+    let said = |sample_hz: f64, late: f64| {
+        let mut setup = pair([constant(0.0), constant(0.0)]);
+        setup.control = control(late / sample_hz);
+        setup.control.as_mut().unwrap().sample_hz = sample_hz;
+        let practical = practical(&setup);
+        let [finding] = &practical.findings[..] else { panic!("{practical:?}") };
+        assert_eq!(practical.worst(), Some(finding.answer()));
+        (finding.answer(), finding.because())
+    };
+    use PracticalAnswer::{Adequate, Inadequate, Marginal};
+    let answers = [5.01, 4.99, 2.51, 2.49].map(|sample_hz| said(sample_hz, 0.0).0);
+    assert_eq!(answers, [Adequate, Marginal, Marginal, Inadequate]);
+    // A torque that comes late by a quarter of a period: k up to 4.
+    assert_eq!([1.26, 1.24].map(|sample_hz| said(sample_hz, 0.25).0), [Marginal, Inadequate]);
+    let sentence = said(10.0, 0.0).1;
+    let said_so = "σ = 0.25 at the start (arm-1), whose fastest mode has 5/s; it reaches 1 at a period of 400 ms; keep it below \
+                   0.5, a period of 200 ms";
+    assert!(sentence.starts_with(said_so), "{sentence}");
+    let late = said(1.0, 0.9).1;
+    assert!(late.contains("with torques 900 ms late; sampling is too slow"), "{late}");
+    assert!(late.contains("no period is short enough for it"), "{late}");
+    let mut setup = pair([constant(0.0), constant(0.0)]);
+    assert_eq!(practical(&setup).worst(), None, "control is continuous");
+    setup.control = control(0.0);
+    setup.control.as_mut().unwrap().sensors.velocity = VelocitySensor::Filtered { cut_off_hz: 3.0 };
+    assert!(practical(&setup).findings[0].because().contains("5/s, with velocities filtered at 3 Hz; it reaches 1"));
+}
+
+#[test]
 fn eq_a_bandwidth_of_the_adaptation_counts_squared() {
-    // Γ = ω² diag(scale); what is learnt goes with Γ, beside what the damping does.
-    let value = |omega: f64| {
+    // Γ = ω² diag(scale): what is learnt goes with Γ, beside what the damping does, and counts for less the larger K is.
+    let found = |omega: f64, k: f64| {
         let mut setup = pair([constant(0.0), constant(0.0)]);
         let adaptation = Gain::Bandwidth(omega);
         setup.agents[0] = common::arm(0, &[1.0, 2.0]);
-        setup.agents[0].law =
-            Arc::new(Adaptive { damping: Gain::Number(1e-9), adaptation, estimate_start: vec![0.0; 5] });
+        let damping = Gain::Number(k);
+        setup.agents[0].law = Arc::new(Adaptive { damping, adaptation, estimate_start: vec![0.0; 5] });
         setup.control = control(0.0);
-        let found = sampled_adaptation(&setup).unwrap();
-        assert_eq!(found.agent, 0);
-        found.value
+        let found = SamplingMargin::of(&setup).unwrap();
+        assert_eq!(found.start.agent.index, 0);
+        found
     };
-    let (one, two) = (value(1.0), value(2.0));
-    assert!(one > 1e-3 && (two / one - 4.0).abs() < 1e-4, "{one} {two}");
+    let at = |omega: f64, k: f64| found(omega, k).start;
+    let (one, two) = (at(1.0, 1e-9), at(2.0, 1e-9));
+    let ratios = [two.frozen_sigma.unwrap() / one.frozen_sigma.unwrap(), two.sigma / one.sigma];
+    assert!(one.sigma > 1.0 && ratios.iter().all(|ratio| (ratio - 4.0).abs() < 1e-4), "{ratios:?}");
+    assert_eq!(found(1.0, 1e-9).answer(), PracticalAnswer::NotShown, "with Y frozen no mode is unstable");
+    assert!(found(40.0, 1e-9).answer() == PracticalAnswer::Inadequate, "{:?}", found(40.0, 1e-9));
+    assert!((at(1.0, 2.0).sigma - at(1.0, 2.0).damping_sigma) * 1.9e9 < one.sigma);
+}
+
+#[test]
+fn the_adaptation_of_those_that_follow_targets_of_their_own_is_not_in_the_margin() {
+    let margin = |tracks: bool| {
+        let mut setup = if tracks {
+            tracking(common::arm(0, &[1.0, 2.0]), vec![rest_at(0.1), rest_at(0.2)])
+        } else {
+            alone(common::arm(0, &[1.0, 2.0]))
+        };
+        setup.control = control(0.0);
+        SamplingMargin::of(&setup).unwrap()
+    };
+    let [own, shared] = [true, false].map(margin);
+    assert_eq!([own.adaptation_left_out, shared.adaptation_left_out], [1, 0]);
+    let [own, shared] = [own.start, shared.start];
+    assert!(own.sigma == own.damping_sigma && own.frozen_sigma.is_none(), "{own:?}");
+    assert!(
+        shared.sigma > 1.005 * shared.damping_sigma && shared.frozen_sigma > Some(shared.damping_sigma),
+        "{shared:?}"
+    );
 }
 
 #[test]

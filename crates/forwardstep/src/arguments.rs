@@ -23,7 +23,8 @@ const SIX_ARMS: &str = "six-arms";
 const EXIT_STATUS: &str = "\
 Exit status:
     0  fine
-    1  check: a hypothesis is violated, not shown or not covered by the paper, and not accepted; run: the goal was missed
+    1  check: a hypothesis is violated, not shown or not covered by the paper, and not accepted, or, with --practical, a
+       practical verdict is inadequate; run: the goal was missed
     2  input without meaning, or a folder that cannot be written to or is not that of a run
     3  the run broke down; what was computed is written
   130  interrupted by Ctrl-C; what was computed is written
@@ -44,6 +45,8 @@ pub(crate) enum Command {
     Check(CheckOptions),
     /// Derive why a scenario converges: the virtual control, the differential cascade, and how its degree is reduced
     Explain(ExplainOptions),
+    /// Measure the longest period with which sampled controllers still work, beside the one that the sampling margin allows
+    SamplingLimit(SamplingLimitOptions),
     /// List the shipped scenarios, or print one
     Scenarios {
         /// Print the text of this one
@@ -99,6 +102,9 @@ pub(crate) struct CheckOptions {
     /// Waive a hypothesis by its name, which stands in brackets behind it; may be given several times
     #[arg(long, value_name = "NAME", value_parser = hypothesis())]
     pub(crate) accept: Vec<Id>,
+    /// Exit with 1 too where a practical verdict is `inadequate`: those are not from the paper and speak of single states
+    #[arg(long)]
+    pub(crate) practical: bool,
     /// Print one JSON object; `forwardstep schema check` describes it
     #[arg(long)]
     pub(crate) json: bool,
@@ -118,6 +124,42 @@ pub(crate) struct ExplainOptions {
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SamplingLimitOptions {
+    /// Shipped scenarios by name, or files by their paths; those in continuous time are sampled with exact measurements
+    #[arg(value_name = "SCENARIO", default_value = SIX_ARMS)]
+    pub(crate) scenarios: Vec<String>,
+    /// Let torques come late by this part of the period, from 0 to 1
+    #[arg(long, value_name = "PART", value_parser = part)]
+    pub(crate) late: Option<f64>,
+    /// Take velocities from differences of positions, filtered at this cut-off
+    #[arg(long, value_name = "HZ", value_parser = positive)]
+    pub(crate) filter_hz: Option<f64>,
+    /// A run works while no |s| exceeds this, in rad/s or m/s [default: twice that of a run with an eighth of the period]
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub(crate) peak_error: Option<f64>,
+    /// It works if no more than this remains of the disagreement, or of the error, in rad or m [default: a tenth of what there is at
+    /// the start, or twice what remains in that run]
+    #[arg(long, value_name = "GAP", value_parser = positive)]
+    pub(crate) disagreement: Option<f64>,
+    /// Print rows of a table; of scenarios in continuous time with several delays and filters
+    #[arg(long)]
+    pub(crate) table: bool,
+}
+
+/// Why a number cannot be used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("must be a number {0}")]
+pub(crate) struct NotANumber(&'static str);
+
+fn part(text: &str) -> Result<f64, NotANumber> {
+    text.parse().ok().filter(|part| (0.0..=1.0).contains(part)).ok_or(NotANumber("from 0 to 1"))
+}
+
+fn positive(text: &str) -> Result<f64, NotANumber> {
+    text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite()).ok_or(NotANumber("above 0"))
 }
 
 /// Documents that have a schema.

@@ -6,8 +6,9 @@ mod support;
 
 use std::fs;
 
-use forwardstep::check::Id;
-use forwardstep::io::scenario::SHIPPED_SCENARIOS;
+use forwardstep::check::{Id, SamplingMargin};
+use forwardstep::io::output::Deployment;
+use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
 use serde_json::Value;
 use support::{folder, forwardstep, stderr, stdout};
 use tempfile::TempDir;
@@ -112,6 +113,78 @@ fn a_waiver_is_for_one_hypothesis_only() {
 }
 
 #[test]
+fn practical_verdicts_stand_beside_the_hypotheses_and_count_where_they_are_asked_for() {
+    let all = ["--accept", "continuous-time", "--accept", "applied-torque", "--accept", "spanning-tree"];
+    let found = |hz: u32, more: &[&str], status| {
+        let folder = with(&TWO.replace("sample_hz = 500", &format!("sample_hz = {hz}")));
+        let arguments = [&["two.toml"], &all[..], more].concat();
+        json(&folder, &arguments, status)
+    };
+    // λ is about 8.4/s: σ is 1 near 240 ms.
+    for (hz, answer) in [(500, "adequate"), (6, "marginal"), (3, "inadequate")] {
+        let document = found(hz, &[], 0);
+        let [sampling, load] = document["practical"]["verdicts"].as_array().unwrap().as_slice() else { panic!() };
+        assert_eq!((&sampling["id"], &sampling["answer"]), (&"sampling-margin".into(), &answer.into()), "{sampling}");
+        assert_eq!((&load["id"], &load["answer"]), (&"static-load".into(), &"adequate".into()), "{load}");
+        assert_eq!(document["practical"]["worst"], answer);
+        let sigma = sampling["numbers"]["sigma"].as_f64().unwrap();
+        let longest_s = sampling["numbers"]["longest_period_s"].as_f64().unwrap();
+        assert!((sigma * longest_s * f64::from(hz) - 1.0).abs() < 1e-9);
+        assert_eq!(found(hz, &["--practical"], i32::from(answer == "inadequate"))["fine"], true);
+    }
+    let said = stdout(&forwardstep(&with(TWO), &["check", "two.toml"]).code(1));
+    assert!(said.contains("\nPractical: derived for this software, not in the paper\n  adequate: "), "{said}");
+}
+
+/// The table of SAMPLING.md, row by row.
+fn rows() -> Vec<Vec<String>> {
+    let text = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../SAMPLING.md")).unwrap();
+    let rows = text.lines().filter(|line| line.starts_with("| ") && !line.starts_with("| Scenario"));
+    rows.map(|row| row.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()).collect()
+}
+
+#[test]
+fn val_the_rules_of_the_sampling_table_are_those_of_the_scenarios() {
+    let rows = rows();
+    assert_eq!(rows.len(), 15);
+    for row in rows {
+        let [name, late, velocity, rule, measured, ratio] = &row[..] else { panic!("{row:?}") };
+        let deployment = Deployment {
+            late: late.strip_suffix(" h").map(|late| late.parse().unwrap()),
+            filter_hz: velocity.strip_prefix("filtered at ").map(|hz| hz.trim_end_matches(" Hz").parse().unwrap()),
+        };
+        let setup = open_scenario(name).unwrap().setup;
+        let found_ms = 1e3 * deployment.rule_s(&setup).unwrap();
+        let [rule, measured, ratio] = [rule, measured, ratio].map(|cell| cell.parse::<f64>().unwrap());
+        assert!((found_ms / rule - 1.0).abs() < 0.005, "{row:?}: {found_ms}");
+        assert!((rule / measured - ratio).abs() < 0.01 && ratio > 0.8 && ratio < 1.07, "{row:?}");
+        // What the margin of that very deployment says there.
+        let at =
+            |share: f64| SamplingMargin::of(&deployment.apply(&setup, share * found_ms / 1e3)).unwrap().worst.sigma;
+        assert!((at(1.0) - 1.0).abs() < 1e-6 && at(0.8) < 1.0 && at(1.1) > 1.0, "{row:?}");
+    }
+}
+
+#[test]
+fn val_a_row_of_the_sampling_table_is_what_runs_say() {
+    let here = folder();
+    let said = |arguments: &[&str]| stdout(&forwardstep(&here, &[&["sampling-limit"], arguments].concat()).success());
+    let printed = said(&["theorem-2", "--late", "0.9", "--table"]);
+    let cells: Vec<String> = rows().into_iter().nth(3).unwrap();
+    assert_eq!(printed.lines().last().unwrap(), format!("| {} |", cells.join(" | ")));
+    let in_words = said(&["theorem-2", "--late", "0.9", "--peak-error", "2.5", "--disagreement", "0.2"]);
+    assert!(
+        in_words.contains("\n  rule       11.7 ms: ") && in_words.contains("|s| ≤ 2.500, and at most 2.00e-1 "),
+        "{in_words}"
+    );
+    // What no period can do.
+    let never = ["sampling-limit", "theorem-2", "--disagreement", "1e-300"];
+    let never = stdout(&forwardstep(&here, &never).code(1));
+    assert!(never.contains("\n  measured   – ms: "), "{never}");
+    forwardstep(&here, &["sampling-limit", "theorem-2", "--late", "1.5"]).code(2);
+}
+
+#[test]
 fn the_document_says_what_the_words_say_and_keeps_to_its_schema() {
     let here = folder();
     let schema: Value = serde_json::from_str(&stdout(&forwardstep(&here, &["schema", "check"]).success())).unwrap();
@@ -155,8 +228,9 @@ fn follows(document: &Value, schema: &Value, root: &Value) {
                 assert!(fields.contains_key(name.as_str().unwrap()), "{name} is missing");
             }
             for (name, value) in fields {
-                let field = &schema["properties"][name];
-                assert!(!field.is_null(), "{name} is unknown");
+                let own = &schema["properties"][name];
+                let field = if own.is_null() { &schema["additionalProperties"] } else { own };
+                assert!(field.is_object(), "{name} is unknown");
                 follows(value, field, root);
             }
         }

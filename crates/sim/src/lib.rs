@@ -38,8 +38,8 @@ pub use build::run;
 pub use closed_loop::{Assembly, Block, SetupError, VelocityQuantity, recipe, recipes, validate};
 pub use network::Network;
 pub use recording::{
-    Breakdown, BreakdownCause, Column, Drive, Ending, GainRates, Outcome, Progress, Recording, SampleTaken, Signal,
-    Statistics, Stiffness,
+    Breakdown, BreakdownCause, ClippedSamples, Column, Drive, Ending, GainRates, Outcome, Progress, Recording,
+    SampleTaken, Signal, Statistics, Stiffness,
 };
 pub use reference::{ReferenceDynamics, ReferenceFamily};
 pub use same::Same;

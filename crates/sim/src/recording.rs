@@ -189,8 +189,21 @@ pub struct Statistics {
     pub drive: Option<Drive>,
     /// Steps of sampled controllers that failed, so that a safe command stood.
     pub failed_steps: u64,
+    /// Commands that limits changed; `None` when control is continuous.
+    pub clipped: Option<ClippedSamples>,
     /// Time spent, if whoever ran it measured it: nothing in the library reads a clock.
     pub wall: Option<Duration>,
+}
+
+/// How many commands of sampled controllers limits changed, on one axis or more. Without any the run is that without limits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ClippedSamples {
+    /// Samples of all agents.
+    pub samples: u64,
+    /// Of these, at so many a torque was beyond its limit.
+    pub torque: u64,
+    /// At so many it would have changed faster than it may.
+    pub rate: u64,
 }
 
 /// What drives an agent that leads away from those that follow it: ξ̇₀, or d³q₀ for a swarm. γ must exceed it.

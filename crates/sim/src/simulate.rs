@@ -85,6 +85,7 @@ pub fn simulate_samples(
     statistics.sign_residual = closed_loop.sign_residual();
     statistics.drive = closed_loop.drive();
     statistics.failed_steps = closed_loop.failed_steps();
+    statistics.clipped = setup.control.is_some().then(|| closed_loop.clipped());
     Ok(Outcome { recording: recorder.recording, ending, statistics })
 }
 

@@ -19,7 +19,8 @@ use forwardstep_sim::network::NetworkError;
 use forwardstep_sim::quantity::Requirement;
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
-    Control, Exchange, Known, Network, Outcome, Sensors, Setup, SetupError, Signal, VelocitySensor, simulate,
+    ClippedSamples, Control, Exchange, Known, Network, Outcome, Sensors, Setup, SetupError, Signal, VelocitySensor,
+    simulate, simulate_samples,
 };
 
 fn edge(from: usize, to: usize) -> Edge {
@@ -225,6 +226,40 @@ fn torques_are_rounded_and_limited_for_every_kind_of_agent() {
         // Three steps of 0.3 fit below 1.1, four do not, though 1.1 is nearer to four.
         let most = all.iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
         assert!((most - 0.9).abs() < 1e-9, "{most}");
+    }
+}
+
+#[test]
+fn commands_that_limits_change_are_counted_for_every_kind_of_agent() {
+    let mut arm = planar(None, 0.3);
+    arm.time.end_s = 0.4;
+    let mut blind = masses::tracking();
+    blind.time.end_s = 1.0;
+    assert_eq!(run(&arm).statistics.clipped, None, "control is continuous");
+    for setup in [slow_masses(0.2), sampled(arm, 500.0), sampled(blind, 500.0)] {
+        let m = setup.agents[0].robot.axes.len();
+        let with = |torque: f64, rate: f64| {
+            with_control(setup.clone(), |control| {
+                control.actuators.torque_limit = Some(vec![torque; m]);
+                control.actuators.torque_rate_limit = Some(vec![rate; m]);
+            })
+        };
+        let free = run(&with(1e6, 1e9));
+        let torques = columns(&free, Signal::Torque).concat();
+        let limit = 0.5 * torques.iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
+        let (mut samples, mut at_limit) = (0, 0);
+        let limited = simulate_samples(&with(limit, 1e9), &mut |_| ControlFlow::Continue(()), &mut |sample| {
+            samples += 1;
+            at_limit += u64::from(sample.command.iter().any(|tau| tau.abs() == limit));
+        });
+        let clipped = limited.unwrap().statistics.clipped.unwrap();
+        assert_eq!(clipped, ClippedSamples { samples, torque: at_limit, rate: 0 });
+        assert!(at_limit > 0 && at_limit < samples, "{clipped:?}");
+        assert_eq!(free.statistics.clipped, Some(ClippedSamples { samples, torque: 0, rate: 0 }));
+        assert_eq!(free.recording, run(&setup).recording, "the run is that without limits");
+        // Some fail that way; until then nearly every command is too fast.
+        let slow = simulate(&with(1e15, 1e-3), &mut |_| ControlFlow::Continue(())).unwrap().statistics.clipped.unwrap();
+        assert!(slow.torque == 0 && slow.rate + 5 > slow.samples && slow.rate < slow.samples, "{slow:?}");
     }
 }
 

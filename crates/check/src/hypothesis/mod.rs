@@ -16,6 +16,7 @@ pub use evidence::{
     WeightFault,
 };
 pub use id::Id;
+pub(crate) use words::numbers;
 
 /// One hypothesis.
 #[derive(Clone, Debug, PartialEq)]

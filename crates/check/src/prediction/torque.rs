@@ -3,6 +3,7 @@
 //! With s ≡ 0 the torque (6) of a robot that knows ϑ is Y(q, q̇, z, ż) ϑ = M(q) ż + C(q, q̇) q̇ + g(q) along the reference, whatever its gains.
 //! An estimate that starts near ϑ adds little. It is a prediction, no bound: the torque also has −K s and Y Δϑ̂ in it.
 
+use forwardstep_core::robot::TwoVelocity;
 use forwardstep_sim::{Adaptive, AgentSetup, Known, Recording, Setup, Signal};
 
 /// The largest torque of an axis along the reference.
@@ -40,17 +41,17 @@ fn of_agent(index: usize, agent: &AgentSetup, ideal: &Recording) -> Option<Vec<P
     let (q, dq, ddq) = (columns(Signal::Position)?, columns(Signal::Velocity)?, columns(Signal::Reference(1))?);
     let mut peaks: Vec<PeakTorque> =
         (0..axes).map(|axis| PeakTorque { agent: index, axis, value: 0.0, t_s: 0.0, estimate_off }).collect();
-    let mut here = agent.clone();
+    let theta = &agent.robot.theta;
+    let at = |columns: &[&[f64]], row: usize| {
+        columns.iter().map(|column| column.get(row).copied()).collect::<Option<Vec<f64>>>()
+    };
     for (row, t_s) in ideal.t_s.iter().enumerate() {
-        for axis in 0..axes {
-            (here.start.q[axis], here.start.dq[axis]) = (*q[axis].get(row)?, *dq[axis].get(row)?);
-        }
-        let dynamics = model.dynamics_at_start(&here, 0.0).ok()?;
-        let theta = &agent.robot.theta;
+        let (q, dq, ddq) = (at(&q, row)?, at(&dq, row)?, at(&ddq, row)?);
+        let motion = TwoVelocity { q: &q, dq: &dq, z: &dq, dz: &ddq };
+        let dynamics = model.dynamics_at(theta, motion).ok()?;
         for (axis, peak) in peaks.iter_mut().enumerate() {
-            let standing = dynamics.regressor[axis * theta.len()..].iter().zip(theta).map(|(y, theta)| y * theta);
-            let moving = (0..axes).map(|k| dynamics.mass[axis * axes + k] * ddq[k][row]);
-            let value = standing.sum::<f64>() + moving.sum::<f64>();
+            let entries = dynamics.regressor[axis * theta.len()..].iter().zip(theta);
+            let value: f64 = entries.map(|(y, theta)| y * theta).sum();
             if value.abs() > peak.value.abs() {
                 (peak.value, peak.t_s) = (value, *t_s);
             }

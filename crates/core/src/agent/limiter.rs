@@ -25,6 +25,15 @@ pub enum LimiterError {
     Length(#[from] LengthError),
 }
 
+/// How many commands a limiter changed, on one axis or more.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Clipped {
+    /// Because a torque was beyond its limit.
+    pub torque: u64,
+    /// Because it would have changed faster than it may.
+    pub rate: u64,
+}
+
 /// Clips torques and the speed at which they change, axis by axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limiter {
@@ -34,12 +43,14 @@ pub struct Limiter {
     rate: Vec<f64>,
     /// The last torque.
     last: Vec<f64>,
+    clipped: Clipped,
 }
 
 impl Limiter {
     /// No limits on `axes` axes.
     pub fn none(axes: usize) -> Self {
-        Limiter { limit: vec![f64::INFINITY; axes], rate: vec![f64::INFINITY; axes], last: vec![0.0; axes] }
+        let none = || vec![f64::INFINITY; axes];
+        Limiter { limit: none(), rate: none(), last: vec![0.0; axes], clipped: Clipped::default() }
     }
 
     /// Limits of torque, N m or N, and of its rate, N m/s or N/s, one entry per axis each; infinity for none.
@@ -56,7 +67,7 @@ impl Limiter {
             }
         }
         let last = vec![0.0; limit.len()];
-        Ok(Limiter { limit, rate, last })
+        Ok(Limiter { limit, rate, last, clipped: Clipped::default() })
     }
 
     /// Number of axes.
@@ -64,17 +75,27 @@ impl Limiter {
         self.limit.len()
     }
 
+    /// How many commands it has changed.
+    pub fn clipped(&self) -> Clipped {
+        self.clipped
+    }
+
     /// Clips `tau`, `passed_s` after the last torque; the first one may be anything within the limits.
     #[inline(always)]
     pub fn apply(&mut self, passed_s: Option<f64>, tau: &mut [f64]) {
+        let (mut beyond, mut too_fast) = (false, false);
         for ((tau, last), (limit, rate)) in tau.iter_mut().zip(&mut self.last).zip(self.limit.iter().zip(&self.rate)) {
             let mut torque = tau.saturate(*limit);
+            beyond |= tau.abs() > *limit;
             if let Some(h) = passed_s {
+                too_fast |= (torque - *last).abs() > h * rate;
                 torque = *last + (torque - *last).saturate(h * rate);
             }
             *last = torque;
             *tau = torque;
         }
+        self.clipped.torque += u64::from(beyond);
+        self.clipped.rate += u64::from(too_fast);
     }
 
     /// Takes `torque` for the last one.
@@ -100,6 +121,19 @@ mod tests {
             steps.push(tau[0]);
         }
         assert_eq!(steps, [-5.0, -1.0, 3.0, 5.0]);
+        assert_eq!(limiter.clipped(), Clipped { torque: 4, rate: 2 });
+    }
+
+    #[test]
+    fn a_command_that_is_clipped_on_several_axes_counts_once_and_one_at_its_limit_not_at_all() {
+        let mut limiter = Limiter::new(vec![5.0; 3], vec![100.0; 3]).unwrap();
+        limiter.apply(None, &mut [5.0, -5.0, 5.0]);
+        limiter.apply(Some(0.04), &mut [1.0, -1.0, 5.0]);
+        assert_eq!(limiter.clipped(), Clipped::default());
+        limiter.apply(Some(1.0), &mut [6.0, -7.0, 5.0]);
+        assert_eq!(limiter.clipped(), Clipped { torque: 1, rate: 0 });
+        limiter.apply(Some(0.01), &mut [0.0, 0.0, f64::NAN]);
+        assert_eq!(limiter.clipped(), Clipped { torque: 1, rate: 1 });
     }
 
     #[test]

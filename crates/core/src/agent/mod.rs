@@ -45,7 +45,7 @@ mod velocity;
 
 pub use error::StepError;
 pub(crate) use error::{finite, later};
-pub use limiter::{Limiter, LimiterError};
+pub use limiter::{Clipped, Limiter, LimiterError};
 pub use velocity::{FilterError, VelocityFilter};
 
 use alloc::vec;
@@ -275,6 +275,11 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
     pub fn last(&self) -> Command<'_> {
         let Out { z, dz, s, tau, .. } = &self.out;
         Command { tau, z, dz, s }
+    }
+
+    /// How many of its torques were beyond a limit.
+    pub fn clipped(&self) -> Clipped {
+        self.limiter.clipped()
     }
 
     /// Says that since `now_s` the actuators hold `tau` in place of the last torque, so that the next one changes no faster

@@ -10,7 +10,7 @@ use super::recipe::{Assemble, Recipe, RecipeError, StartState, Target};
 use super::safe::Standing;
 use super::sensing::Sensing;
 use crate::LengthError;
-use crate::agent::{Inbox, Limiter, StepError, finite, later};
+use crate::agent::{Clipped, Inbox, Limiter, StepError, finite, later};
 use crate::controller::{Controller, Jet, Lengths, Stepped, Trouble};
 use crate::plant::total;
 use crate::reference::Exchange;
@@ -152,6 +152,10 @@ impl<C: Controller> Sampled for SampledFeedback<C> {
 
     fn command(&self) -> &[f64] {
         self.standing.command()
+    }
+
+    fn clipped(&self) -> Clipped {
+        self.limiter.clipped()
     }
 
     fn state(&self) -> &[f64] {

@@ -9,7 +9,7 @@ use super::recipe::{Assemble, Recipe, RecipeError, StartState};
 use super::safe::Standing;
 use super::sensing::Sensing;
 use crate::LengthError;
-use crate::agent::{Agent, Inbox, StepError, finite};
+use crate::agent::{Agent, Clipped, Inbox, StepError, finite};
 use crate::law::SlotineLi;
 use crate::reference::{Exchange, Measured, Reference};
 use crate::robot::Lagrangian;
@@ -141,6 +141,10 @@ where
 
     fn command(&self) -> &[f64] {
         self.standing.command()
+    }
+
+    fn clipped(&self) -> Clipped {
+        self.agent.clipped()
     }
 
     fn state(&self) -> &[f64] {

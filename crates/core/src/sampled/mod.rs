@@ -28,7 +28,7 @@ mod sensing;
 pub use mailbox::{Arrival, BeforeFirst, Counts, Keep, Mailbox, MailboxError};
 pub use recipe::{Assemble, EncoderFilter, Limits, Motion, Recipe, RecipeError, SafeCommand, StartState, Target};
 
-use crate::agent::{Inbox, StepError};
+use crate::agent::{Clipped, Inbox, StepError};
 use crate::signal::{Block, Signal};
 
 /// A controller of one agent, stepped at samples; built by [`Recipe::build`].
@@ -90,6 +90,9 @@ pub trait Sampled: Send + Sync {
     /// What the actuators are to hold now: what the last step gave, or the safe command after a failure and before the first
     /// step.
     fn command(&self) -> &[f64];
+
+    /// How many of its commands the limits of the recipe have changed.
+    fn clipped(&self) -> Clipped;
 
     /// What it carries from sample to sample: the reference dynamics, then estimates; see [`StartState::State`].
     fn state(&self) -> &[f64];

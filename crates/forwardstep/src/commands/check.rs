@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use forwardstep::check::{Id, Report, certify};
+use forwardstep::check::{Id, PracticalAnswer, Report, certify};
 use forwardstep::io::output::{Findings, certificate_document};
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
@@ -30,7 +30,14 @@ pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console
         return complain(&error);
     }
     if options.json {
-        let findings = Findings::of(&scenario, env!("CARGO_PKG_VERSION"), report, &promise.agreement, &accepted);
+        let findings = Findings::of(
+            &scenario,
+            env!("CARGO_PKG_VERSION"),
+            report,
+            &promise.practical,
+            &promise.agreement,
+            &accepted,
+        );
         match findings.to_json() {
             Ok(text) => console.line(text),
             Err(error) => return complain(&Plain::new(error)),
@@ -39,7 +46,8 @@ pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console
         show(&scenario, &promise, console);
         conclude(report, &accepted, console);
     }
-    if report.worst_without(&accepted).is_fine() { Status::Fine } else { Status::Missed }
+    let practical = !options.practical || promise.practical.worst() != Some(PracticalAnswer::Inadequate);
+    if report.worst_without(&accepted).is_fine() && practical { Status::Fine } else { Status::Missed }
 }
 
 /// Writes the answers with their proofs. A waiver changes no answer.

@@ -1,6 +1,6 @@
 //! What the theorems promise for a setup, and how it is shown.
 
-use forwardstep::check::{self, Answer, NoPrediction, Prediction, Report};
+use forwardstep::check::{self, Answer, NoPrediction, Practical, PracticalAnswer, Prediction, Report};
 use forwardstep::io::scenario::Scenario;
 use forwardstep::sim::Setup;
 
@@ -9,6 +9,8 @@ use crate::console::{BAD, BOLD, Console, DIM, FAIR, GOOD};
 /// What was promised before a run.
 pub(crate) struct Promise {
     pub(crate) report: Report,
+    /// What can be said of the loop as it is deployed.
+    pub(crate) practical: Practical,
     /// The value that the agents will agree on, or why it is not known.
     pub(crate) agreement: Result<Prediction, NoPrediction>,
 }
@@ -22,12 +24,12 @@ impl Promise {
 
 /// Looks at the hypotheses.
 pub(crate) fn promise(setup: &Setup) -> Promise {
-    Promise { report: check::check(setup), agreement: check::predict(setup) }
+    Promise { report: check::check(setup), practical: check::practical(setup), agreement: check::predict(setup) }
 }
 
 /// The scenario in one line, and the verdicts.
 pub(crate) fn show(scenario: &Scenario, promise: &Promise, console: &mut Console) {
-    let Promise { report, agreement } = promise;
+    let Promise { report, practical, agreement } = promise;
     console.line(format_args!("{BOLD}{}{BOLD:#}", scenario.title));
     console.line("");
     console.line(format_args!("{BOLD}{}{BOLD:#}: {}", report.theorem, report.promises));
@@ -44,8 +46,27 @@ pub(crate) fn show(scenario: &Scenario, promise: &Promise, console: &mut Console
         Ok(prediction) => console.line(format_args!("  predicted agreement: {}", first(&prediction.known_digits()))),
         Err(reason) => console.line(format_args!("  {DIM}predicted agreement: none, since {reason}{DIM:#}")),
     }
+    show_practical(practical, console);
     for notice in &scenario.notices {
         console.line(format_args!("{FAIR}note{FAIR:#}: {notice}"));
+    }
+}
+
+/// The practical verdicts, which are not the paper's.
+fn show_practical(practical: &Practical, console: &mut Console) {
+    if practical.findings.is_empty() {
+        return;
+    }
+    console.line(format_args!("{BOLD}Practical{BOLD:#}: {}", check::Source::Derived.words()));
+    for finding in &practical.findings {
+        let style = match finding.answer() {
+            PracticalAnswer::Adequate => GOOD,
+            PracticalAnswer::Marginal | PracticalAnswer::NotShown => FAIR,
+            PracticalAnswer::Inadequate => BAD,
+        };
+        let (words, about, name) = (finding.answer().words(), finding.about(), finding.name());
+        console.line(format_args!("  {style}{words}{style:#}: {about} {DIM}[{name}]{DIM:#}"));
+        console.line(format_args!("    {DIM}{}{DIM:#}", finding.because()));
     }
 }
 

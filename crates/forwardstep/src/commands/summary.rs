@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use comfy_table::{ContentArrangement, Table, presets};
 use forwardstep::check::Report;
 use forwardstep::io::output::names::{agent_name, gap_unit, torque_words, unit};
-use forwardstep::io::output::{Disagreement, Gap, Metrics, RunRecord};
-use forwardstep::sim::{Drive, Setup, Signal};
+use forwardstep::io::output::{Disagreement, Gap, Metrics, RunRecord, WatchedMargin};
+use forwardstep::sim::{ClippedSamples, Drive, Setup, Signal};
 
 use super::progress::speed;
 use super::promise::list;
@@ -45,6 +45,7 @@ pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, 
     if !metrics.limits_reached.is_empty() {
         rows.push(("limits exceeded", format!("{}, see the report", metrics.limits_reached.len())));
     }
+    rows.extend(watched(setup, metrics, outcome.statistics.clipped));
     if let Some(gap) = record.digital.as_ref().and_then(|cost| cost.largest_gap) {
         let unit = unit(setup, gap.agent, Signal::Position, gap.axis);
         let agent = agent_name(setup, gap.agent);
@@ -70,6 +71,24 @@ pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, 
     }
     let lines: Vec<_> = table.lines().map(|line| line.trim_end().to_owned() + "\n").collect();
     lines.concat()
+}
+
+/// The sampling margin along the run, and the commands that limits changed.
+fn watched(setup: &Setup, metrics: &Metrics, clipped: Option<ClippedSamples>) -> Vec<(&'static str, String)> {
+    let mut rows = Vec::new();
+    if let Some(WatchedMargin { agent, t_s, sigma }) = metrics.watched.and_then(|watched| watched.sampling_margin) {
+        let agent = agent_name(setup, agent);
+        rows.push(("sampling margin", format!("σ = {} at most, {agent} at {t_s:.2} s", short(sigma))));
+    }
+    if let Some(ClippedSamples { samples, torque, rate }) = clipped {
+        let words = if torque + rate == 0 {
+            format!("none of {samples} samples")
+        } else {
+            format!("{torque} by limits of torque, {rate} by limits of rate, of {samples} samples")
+        };
+        rows.push(("clipped", words));
+    }
+    rows
 }
 
 /// Three digits, with a power of ten where the number is very small or large.

@@ -1,9 +1,10 @@
 //! What is found of a scenario before a run, for programs: what `forwardstep check --json` prints.
 
-use forwardstep_check::{Id, NoPrediction, Prediction, Report};
+use forwardstep_check::{Id, NoPrediction, Practical, Prediction, Report};
 use schemars::{JsonSchema, Schema, schema_for};
 use serde::{Deserialize, Serialize};
 
+use super::practical::PracticalVerdicts;
 use super::verdicts::Verdicts;
 use crate::scenario::Scenario;
 
@@ -26,8 +27,11 @@ pub struct Findings {
     pub accepted: Vec<String>,
     /// The worst answer but for what was waived, in the words of the hypotheses.
     pub outcome: String,
-    /// Whether the outcome is `holds`, `holds on [0, end]` or `watched during the run`; the exit status is then 0, otherwise 1.
+    /// Whether the outcome is `holds`, `holds on [0, end]` or `watched during the run`; the exit status is then 0, otherwise 1. With
+    /// `--practical` it is 1 too where a practical verdict says `inadequate`; that does not count here.
     pub fine: bool,
+    /// What can be said of the loop as it is deployed; not from the paper.
+    pub practical: PracticalVerdicts,
     /// The value that the agents will agree on.
     pub agreement: PredictedAgreement,
     /// Remarks.
@@ -61,11 +65,12 @@ pub enum PredictedAgreement {
 }
 
 impl Findings {
-    /// What `report` and `agreement`, which are those of `scenario`, say when the answers about `accepted` are waived.
+    /// What `report`, `practical` and `agreement`, which are those of `scenario`, say when the answers about `accepted` are waived.
     pub fn of(
         scenario: &Scenario,
         version: &str,
         report: &Report,
+        practical: &Practical,
         agreement: &Result<Prediction, NoPrediction>,
         accepted: &[Id],
     ) -> Findings {
@@ -82,6 +87,7 @@ impl Findings {
             accepted: accepted.iter().map(|id| id.name().to_owned()).collect(),
             outcome: outcome.words().to_owned(),
             fine: outcome.is_fine(),
+            practical: PracticalVerdicts::from(practical),
             agreement: match agreement {
                 Ok(Prediction { value, error_bound, .. }) => {
                     PredictedAgreement::Value { value: value.clone(), error_bound: error_bound.clone() }

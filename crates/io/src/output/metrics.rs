@@ -7,6 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::disagreement::greater;
 pub use super::disagreement::{Absence, Disagreement, DisagreementSeries, Gap};
 use super::number;
+use super::practical::Watched;
 use super::table::Table;
 use crate::scenario::Goal;
 
@@ -36,6 +37,9 @@ pub struct Metrics {
     pub balance_residual: Option<BalanceResidual>,
     /// Predicted beside reached value, per axis; absent without a prediction or where the agents' axes differ.
     pub agreement: Option<Vec<Agreement>>,
+    /// The sampling margin and static torques along the run; absent where there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub watched: Option<Watched>,
 }
 
 /// A value, where and when.
@@ -204,6 +208,7 @@ impl Metrics {
             limits_reached: limits_reached(&table),
             balance_residual: balance_residual(&table),
             agreement: if series.is_ok() { predicted.and_then(|p| agreement(&table, p)) } else { None },
+            watched: Watched::of(setup, recording),
         }
     }
 }

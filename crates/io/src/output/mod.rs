@@ -39,10 +39,12 @@ mod packets;
 mod palette;
 mod parquet;
 mod plots;
+mod practical;
 mod record;
 mod report;
 mod restore;
 mod restore_error;
+mod sampling_limit;
 pub mod summary;
 mod table;
 mod timeline;
@@ -64,9 +66,11 @@ pub use metrics::{
     LimitReached, Metrics, Peak, Speed,
 };
 pub use packets::Link;
+pub use practical::{PracticalVerdict, PracticalVerdicts, Watched, WatchedLoad, WatchedMargin};
 pub use record::{GoalOutcome, RunRecord};
 pub use restore::{Remark, SavedRun};
 pub use restore_error::{RestoreError, SummaryError, TableError};
+pub use sampling_limit::{Accepted, Deployment, SamplingLimit, Trial};
 
 const PARQUET: &str = "trajectory.parquet";
 const CSV: &str = "trajectory.csv";

@@ -6,7 +6,7 @@
 use std::io::Write;
 use std::time::Duration;
 
-use forwardstep_sim::recording::{Drive, Statistics};
+use forwardstep_sim::recording::{ClippedSamples, Drive, Statistics};
 use serde::{Deserialize, Serialize};
 
 use super::digital::DigitalCost;
@@ -15,6 +15,7 @@ use super::inputs;
 use super::inputs::content_digest;
 use super::metrics::Metrics;
 use super::packets::Link;
+use super::practical::PracticalVerdicts;
 use super::record::RunRecord;
 pub use super::verdicts::{Verdict, Verdicts};
 use super::{names, number};
@@ -46,6 +47,9 @@ pub struct Summary {
     pub tables: Vec<TableFile>,
     /// What was promised before the run.
     pub verdicts: Verdicts,
+    /// What could be said of the loop as it is deployed; absent in documents of older versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub practical: Option<PracticalVerdicts>,
     /// What happened.
     pub metrics: Metrics,
     /// Work of the integrator.
@@ -132,12 +136,26 @@ pub struct Solver {
     /// Steps of sampled controllers that failed, so that a safe command stood; absent where none did.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failed_steps: Option<u64>,
+    /// Commands of sampled controllers that limits changed; absent in continuous time and in documents of older versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clipped: Option<Clipped>,
     /// The largest rest of the inclusions that set-valued signs solve; absent where none are solved for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sign_residual: Option<f64>,
     /// What drove an agent that leads the others; absent where none does.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub leader_drive: Option<LeaderDrive>,
+}
+
+/// How many commands of sampled controllers limits changed, on one axis or more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Clipped {
+    /// Samples of all agents.
+    pub samples: u64,
+    /// Of these, at so many a torque was beyond its limit.
+    pub torque: u64,
+    /// At so many it would have changed faster than it may.
+    pub rate: u64,
 }
 
 /// What drove an agent that leads away from those that follow it, in the unit of γ.
@@ -199,6 +217,7 @@ impl Summary {
                 met: outcome.met,
             }),
             verdicts: Verdicts::of(record.verdicts),
+            practical: Some(PracticalVerdicts::of(setup)),
             metrics,
             solver: Solver {
                 steps: statistics.steps,
@@ -206,6 +225,11 @@ impl Summary {
                 evaluations: statistics.evaluations,
                 break_points: statistics.break_points,
                 failed_steps: (statistics.failed_steps > 0).then_some(statistics.failed_steps),
+                clipped: statistics.clipped.map(|ClippedSamples { samples, torque, rate }| Clipped {
+                    samples,
+                    torque,
+                    rate,
+                }),
                 sign_residual: statistics.sign_residual.filter(|residual| residual.is_finite()),
                 leader_drive: statistics.drive.filter(|drive| drive.peak.is_finite()).map(|drive| {
                     let Drive { peak, peak_s, exceeds_until_s } = drive;
@@ -222,13 +246,14 @@ impl Summary {
 
     /// What the run cost.
     pub(crate) fn statistics(&self) -> Statistics {
-        let Solver { steps, rejected, evaluations, break_points, failed_steps, sign_residual, leader_drive } =
+        let Solver { steps, rejected, evaluations, break_points, failed_steps, clipped, sign_residual, leader_drive } =
             self.solver;
+        let clipped = clipped.map(|Clipped { samples, torque, rate }| ClippedSamples { samples, torque, rate });
         let drive =
             leader_drive.map(|LeaderDrive { peak, peak_s, exceeds_until_s }| Drive { peak, peak_s, exceeds_until_s });
         let wall = Duration::try_from_secs_f64(self.timings.wall_s).ok();
         let failed_steps = failed_steps.unwrap_or(0);
-        Statistics { steps, rejected, evaluations, break_points, sign_residual, drive, failed_steps, wall }
+        Statistics { steps, rejected, evaluations, break_points, sign_residual, drive, failed_steps, clipped, wall }
     }
 
     /// Writes it as indented JSON.

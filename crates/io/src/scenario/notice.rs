@@ -2,7 +2,9 @@
 
 use std::fmt;
 
-use forwardstep_check::{FastestDamping, SampledDamping, fastest_damping, sampled_damping};
+use forwardstep_check::{
+    FastestDamping, MarginAt, PracticalAnswer, RECOMMENDED_MARGIN, SamplingMargin, fastest_damping,
+};
 use forwardstep_sim::{AgentSetup, Axis, AxisUnit, Method, Setup};
 
 use crate::urdf;
@@ -24,18 +26,14 @@ pub enum Notice {
         /// Its line in the scenario.
         line: usize,
     },
-    /// Held damping that overshoots.
+    /// A sampling margin beyond what is recommended.
     CoarseSampling {
-        /// The agent whose damping is fastest.
+        /// The agent for which it is worst.
         agent: String,
-        /// h · λ_max(M⁻¹K) at its start.
-        value: f64,
-        /// Above this it overshoots.
-        overshoots_above: f64,
-        /// Above this it is unstable.
-        unstable_above: f64,
-        /// A sample rate that would be enough without a delay of the torque, Hz.
-        enough_hz: f64,
+        /// σ at its start, or at a posture between the starts.
+        sigma: f64,
+        /// A sample rate that would be enough, Hz; `None` where the torque comes too late for any.
+        enough_hz: Option<f64>,
     },
     /// A log has packets of edges that the network does not have.
     UnusedInLog {
@@ -197,16 +195,15 @@ impl Notice {
         setup.agents.iter().enumerate().flat_map(beyond).collect()
     }
 
-    /// Digital control whose period is too long for its gain K.
+    /// Digital control whose period is too long for its gains.
     pub(super) fn coarse_sampling(setup: &Setup) -> Option<Notice> {
-        let SampledDamping { value, overshoots_above, unstable_above, agent, period_s, .. } = sampled_damping(setup)?;
-        (value > overshoots_above).then(|| Notice::CoarseSampling {
-            agent: setup.agents[agent].name.clone(),
-            value,
-            overshoots_above,
-            unstable_above,
+        let margin = SamplingMargin::of(setup)?;
+        let SamplingMargin { worst: MarginAt { agent, sigma, .. }, recommended_s, .. } = &margin;
+        (margin.answer() > PracticalAnswer::Adequate).then(|| Notice::CoarseSampling {
+            agent: agent.name.clone(),
+            sigma: *sigma,
             // A little more, since it is shown rounded.
-            enough_hz: 1.05 * value / overshoots_above / period_s,
+            enough_hz: recommended_s.map(|period_s| 1.05 / period_s),
         })
     }
 }
@@ -215,12 +212,17 @@ impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Notice::Robot { agents, notice } => write!(f, "{agents}: {notice}"),
-            Notice::CoarseSampling { agent, value, overshoots_above, unstable_above, enough_hz } => write!(
-                f,
-                "`sample_hz` is low for the gain K: h · λ_max(M⁻¹K) is {value:.3} for {agent}; above {overshoots_above:.3} the \
-                 held damping overshoots, above {unstable_above:.3} it is unstable; sample at {} Hz, or let K be smaller",
-                about(*enough_hz)
-            ),
+            Notice::CoarseSampling { agent, sigma, enough_hz } => {
+                write!(
+                    f,
+                    "`sample_hz` is low for the gains: the sampling margin σ is {sigma:.3} for {agent}; at most \
+                     {RECOMMENDED_MARGIN} is recommended, and from 1 on it is not shown to be stable; "
+                )?;
+                match enough_hz {
+                    Some(enough_hz) => write!(f, "sample at {} Hz, or let K be smaller", about(*enough_hz)),
+                    None => f.write_str("the torque comes too late for any rate; let K be smaller"),
+                }
+            }
             Notice::UnusedDwell { line } => write!(f, "`dwell_s` on line {line} is not used"),
             Notice::UnusedInLog { file, links } => {
                 write!(f, "the packets of {} in `{file}` are not used: the network has no such edge", named(links))

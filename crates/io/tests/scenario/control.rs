@@ -154,5 +154,8 @@ fn sampling_that_is_too_slow_for_the_gain_is_said() {
     assert_eq!(notices("sample_hz = 1000"), Vec::<String>::new());
     let coarse = notices("sample_hz = 20");
     assert_eq!(coarse.len(), 1);
-    assert!(coarse[0].starts_with("`sample_hz` is low for the gain K: h · λ_max(M⁻¹K) is "), "{coarse:?}");
+    assert!(coarse[0].starts_with("`sample_hz` is low for the gains: the sampling margin σ is "), "{coarse:?}");
+    assert!(coarse[0].ends_with(" Hz, or let K be smaller"), "{coarse:?}");
+    let late = notices("sample_hz = 20\ncomputation_delay_s = 0.049");
+    assert!(late[0].ends_with("; the torque comes too late for any rate; let K be smaller"), "{late:?}");
 }

@@ -153,6 +153,7 @@ pub fn outcome(setup: &Setup) -> Outcome {
             sign_residual: None,
             drive: None,
             failed_steps: 0,
+            clipped: None,
             wall: Some(Duration::from_millis(1234)),
         },
     }

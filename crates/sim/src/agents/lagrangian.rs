@@ -9,7 +9,7 @@ use forwardstep_core::{Gain, Lanes, LengthError};
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::probe::{Probe, properties};
 use crate::reference::ReferenceFamily;
-use crate::setup::{AgentSetup, Exchange, RobotSetup};
+use crate::setup::{Exchange, RobotSetup};
 use crate::system::{Attachments, Interface, Known as Knowledge, Law, LawWords, Robot, RobotInterface};
 
 /// A robot model whose kernels work on one robot or on eight at once.
@@ -39,11 +39,11 @@ pub trait LagrangianRobot {
     /// [`SetupError`] when they have no meaning.
     fn batch(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError>;
 
-    /// M, Y and the natural scale of ϑ at the start of `agent`, where z = q̇ and every entry of ż is `dz`.
+    /// M, Y and the natural scale of ϑ, with the parameters `theta`, at one state with its z and ż.
     ///
     /// # Errors
-    /// [`LengthError`] when a vector of the agent has the wrong length.
-    fn dynamics_at_start(&self, agent: &AgentSetup, dz: f64) -> Result<DynamicsAt, LengthError>;
+    /// [`LengthError`] when a vector has the wrong length.
+    fn dynamics_at(&self, theta: &[f64], motion: TwoVelocity<'_, f64>) -> Result<DynamicsAt, LengthError>;
 
     /// Tries at random states, with the parameters of `robot`, whether it has the properties of Section II-B.
     ///
@@ -72,17 +72,19 @@ impl<M: RobotModel> LagrangianRobot for M {
         if assembly.setup().tracks(assembly.agents()[0]) { assembly.tracking(self) } else { assembly.lagrangian(self) }
     }
 
-    fn dynamics_at_start(&self, agent: &AgentSetup, dz: f64) -> Result<DynamicsAt, LengthError> {
-        fn at<K: Lagrangian<f64>>(kernel: &K, agent: &AgentSetup, dz: f64) -> Result<DynamicsAt, LengthError> {
+    fn dynamics_at(&self, theta: &[f64], motion: TwoVelocity<'_, f64>) -> Result<DynamicsAt, LengthError> {
+        fn at<K: Lagrangian<f64>>(
+            kernel: &K,
+            theta: &[f64],
+            motion: TwoVelocity<'_, f64>,
+        ) -> Result<DynamicsAt, LengthError> {
             let (m, p) = (kernel.dof(), kernel.parameter_count());
-            let (q, dq, theta) = (&agent.start.q[..], &agent.start.dq[..], &agent.robot.theta[..]);
             let (mut mass, mut regressor) = (vec![0.0; m * m], vec![0.0; m * p]);
-            kernel.mass_matrix(&mut kernel.scratch(), q, theta, &mut mass)?;
-            let motion = TwoVelocity { q, dq, z: dq, dz: &vec![dz; m] };
+            kernel.mass_matrix(&mut kernel.scratch(), motion.q, theta, &mut mass)?;
             kernel.regressor(&mut kernel.scratch(), motion, &mut regressor)?;
-            Ok(DynamicsAt { mass, regressor, adaptation_scale: kernel.adaptation_scale(q, theta) })
+            Ok(DynamicsAt { mass, regressor, adaptation_scale: kernel.adaptation_scale(motion.q, theta) })
         }
-        at(&self.kernel(), agent, dz)
+        at(&self.kernel(), theta, motion)
     }
 
     fn probe(&self, robot: &RobotSetup) -> Result<Probe, LengthError> {

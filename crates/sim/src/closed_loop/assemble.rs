@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use forwardstep_core::agent::Clipped;
 use forwardstep_core::controller::Trouble;
 use forwardstep_core::plant::total;
 use forwardstep_core::reference::{Position, PositionVelocity};
@@ -21,7 +22,7 @@ use super::sliding::{Place, Slider};
 use super::valid::{message_len, validate};
 use crate::engine::{DelaySystem, Happened, Heard, Port, Refuted};
 use crate::leader::Following;
-use crate::recording::{Drive, GainRates, SampleTaken, Signal};
+use crate::recording::{ClippedSamples, Drive, GainRates, SampleTaken, Signal};
 use crate::setup::{Exchange, Setup};
 
 /// All populations and where their blocks stand.
@@ -255,6 +256,20 @@ impl<'a> ClosedLoop<'a> {
             block.columns.taken(&mut |digital| failed += digital.failures().1);
         }
         failed
+    }
+
+    /// Commands of sampled controllers that their limits changed.
+    pub(crate) fn clipped(&self) -> ClippedSamples {
+        let mut all = ClippedSamples::default();
+        for block in &self.blocks {
+            block.columns.taken(&mut |digital| {
+                let (samples, Clipped { torque, rate }) = digital.clipped();
+                all.samples += samples;
+                all.torque += torque;
+                all.rate += rate;
+            });
+        }
+        all
     }
 
     /// The initial state.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use forwardstep_core::Scalar;
-use forwardstep_core::agent::{Inbox, StepError};
+use forwardstep_core::agent::{Clipped, Inbox, StepError};
 use forwardstep_core::plant::total;
 use forwardstep_core::sampled::Sampled;
 use forwardstep_core::signal::{Block, Signal};
@@ -40,6 +40,7 @@ pub(crate) struct Digital {
     safe: bool,
     /// Steps that failed.
     failed: u64,
+    samples: u64,
 }
 
 impl Digital {
@@ -74,6 +75,7 @@ impl Digital {
             held: vec![0.0; total(inputs)],
             safe: control.failures.safe_command.is_some(),
             failed: 0,
+            samples: 0,
             controller,
         }
     }
@@ -101,6 +103,11 @@ impl Digital {
         (self.safe, self.failed)
     }
 
+    /// Samples that were taken, and how many commands the limits changed.
+    pub(crate) fn clipped(&self) -> (u64, Clipped) {
+        (self.samples, self.controller.clipped())
+    }
+
     /// What the actuators hold.
     pub(crate) fn held(&self) -> &[f64] {
         &self.held
@@ -126,6 +133,7 @@ impl Digital {
     /// finite, the command is not finite either: the run then breaks down there.
     pub(crate) fn command(&mut self, now_s: f64, degree: f64, sums: &[f64]) {
         self.degree = degree;
+        self.samples += 1;
         let own = self.sums.len().min(sums.len());
         self.sums[..own].copy_from_slice(&sums[..own]);
         let inbox = Inbox { degree, sums: &self.sums };

@@ -2,7 +2,7 @@
 
 use super::holds;
 use crate::hypothesis::{Answer, Named, Rigour};
-use crate::sampled::FastestDamping;
+use crate::practical::FastestDamping;
 
 /// What was found of robots.
 #[derive(Clone, Debug, PartialEq)]

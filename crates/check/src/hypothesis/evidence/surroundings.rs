@@ -1,7 +1,6 @@
 //! Evidence of what surrounds a law: gains, pushes, limits, sampling.
 
 use crate::hypothesis::{Answer, Named, Rigour};
-use crate::sampled::{SampledAdaptation, SampledDamping};
 
 /// What was found of the loop around a law.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,12 +38,6 @@ pub enum LoopEvidence {
         sample_hz: f64,
         /// Torques come so much later, s.
         computation_delay_s: f64,
-        /// Whether velocities come from a filter that lags.
-        filtered: bool,
-        /// How far one held sample of the damping goes, and for whom.
-        damping: Option<(Named, SampledDamping)>,
-        /// How far one held sample of damping and adaptation goes, and for whom.
-        adaptation: Option<(Named, SampledAdaptation)>,
     },
     /// How measurements are inexact.
     Measurements(Vec<Inexact>),

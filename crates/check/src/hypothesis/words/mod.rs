@@ -6,7 +6,7 @@ mod graph;
 mod kinds;
 mod links;
 mod motion;
-mod numbers;
+pub(crate) mod numbers;
 mod reference;
 mod robots;
 mod surroundings;

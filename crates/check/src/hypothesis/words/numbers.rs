@@ -4,7 +4,7 @@ use std::fmt;
 
 /// A number as it is read: with a power of ten where decimals would be long.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Shown(f64);
+pub(crate) struct Shown(f64);
 
 impl fmt::Display for Shown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -18,12 +18,12 @@ impl fmt::Display for Shown {
 }
 
 /// With at most four digits.
-pub(super) fn rounded(value: f64) -> Shown {
+pub(crate) fn rounded(value: f64) -> Shown {
     Shown(format!("{value:.3e}").parse().unwrap_or(value))
 }
 
 /// Rounded up to four digits.
-pub(super) fn rounded_up(value: f64) -> Shown {
+pub(crate) fn rounded_up(value: f64) -> Shown {
     Shown(outwards(value, 4))
 }
 
@@ -68,11 +68,6 @@ pub(super) fn bound_below(value: f64, limit: f64) -> Shown {
 /// Something that reaches `limit`, rounded down, with as many digits as it takes to say so, and four at least.
 pub(super) fn reached_above(value: f64, limit: f64) -> Shown {
     Shown((4..17).map(|digits| -outwards(-value, digits)).find(|down| *down >= limit).unwrap_or(value))
-}
-
-/// To three digits after the point.
-pub(super) fn short(value: f64) -> f64 {
-    (value * 1000.0).round() / 1000.0
 }
 
 /// A time without the digits that rounding left behind.

@@ -3,7 +3,7 @@
 use super::names;
 use super::numbers::{Shown, rounded, rounded_down, rounded_up};
 use crate::hypothesis::{InertiaUnit, Named, ReachSide, RobotEvidence};
-use crate::sampled::FastestDamping;
+use crate::practical::FastestDamping;
 
 /// Joint positions that are written out.
 const MOST_JOINTS: usize = 12;

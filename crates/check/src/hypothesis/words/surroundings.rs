@@ -1,9 +1,8 @@
 //! What surrounds a law: gains, pushes, limits, sampling.
 
 use super::names;
-use super::numbers::{rounded_up, seconds, short};
+use super::numbers::seconds;
 use crate::hypothesis::{Inexact, Limited, LoopEvidence, Named};
-use crate::sampled::{SampledAdaptation, SampledDamping};
 
 pub(super) fn words(evidence: &LoopEvidence) -> String {
     match evidence {
@@ -25,19 +24,14 @@ pub(super) fn words(evidence: &LoopEvidence) -> String {
             }
             if reasons.is_empty() { "limits are reported, not enforced".into() } else { reasons.join(", ") }
         }
-        LoopEvidence::Sampling { sample_hz, computation_delay_s, filtered, damping, adaptation } => {
+        LoopEvidence::Sampling { sample_hz, computation_delay_s } => {
             let late = match computation_delay_s {
                 late_s if *late_s > 0.0 => format!(", torques come {late_s} s late"),
                 _ => String::new(),
             };
-            let held = damping.as_ref().map_or_else(String::new, |(agent, damping)| held(agent, damping, *filtered));
-            // What the damping alone does is said already.
-            let steady = damping.as_ref().is_none_or(|(_, damping)| damping.value < damping.unstable_above);
-            let learning = adaptation.as_ref().filter(|(_, found)| steady && found.value > 2.0);
-            let learning = learning.map_or_else(String::new, |(agent, found)| learning_too_fast(agent, found));
             format!(
                 "they sample at {sample_hz} Hz{late}; what is heard is up to a period older; as h → 0 the loop tends to the \
-                 one the theorem speaks of{held}{learning}"
+                 one the theorem speaks of"
             )
         }
         LoopEvidence::Measurements(inexact) => {
@@ -91,32 +85,4 @@ fn noise(inexact: Inexact) -> &'static str {
         Inexact::Quantum => "measurements are quantised",
         Inexact::Filter => "velocities come from filtered differences",
     }
-}
-
-fn held(agent: &Named, damping: &SampledDamping, filtered: bool) -> String {
-    let (value, overshoots) = (short(damping.value), short(damping.overshoots_above));
-    let meaning = if damping.value > damping.overshoots_above {
-        let unstable = short(damping.unstable_above);
-        format!(
-            "above {overshoots} the held damping overshoots, above {unstable} it is unstable: sample faster or let K be smaller"
-        )
-    } else if filtered {
-        format!("up to {overshoots} the held damping would not overshoot, if the filter of the velocities did not lag")
-    } else {
-        format!("up to {overshoots} the held damping does not overshoot")
-    };
-    let limit = damping.unstable_above;
-    let anywhere = damping.anywhere.filter(|anywhere| *anywhere < limit).map_or_else(String::new, |anywhere| {
-        format!("; at any q it is at most {}, and {} is where it is unstable", rounded_up(anywhere), short(limit))
-    });
-    format!("; h · λ_max(M⁻¹K) is {value} at the start ({}): {meaning}{anywhere}", agent.name)
-}
-
-fn learning_too_fast(agent: &Named, found: &SampledAdaptation) -> String {
-    format!(
-        "; h · λ_max(M⁻¹(K + ½ h Y Γ Yᵀ)) is {} at the start ({}): above 2 damping and adaptation together are unstable: \
-         sample faster or let Γ be smaller",
-        short(found.value),
-        agent.name
-    )
 }

@@ -1,0 +1,121 @@
+//! What is watched along a run: the sampling margin and static torques at the postures that were reached.
+//!
+//! Not from the paper, derived for this software; the formulas are those of `margin` and `loads`, with M, Y and g at rows of the recording.
+
+use std::collections::HashMap;
+
+use forwardstep_core::robot::TwoVelocity;
+use forwardstep_sim::Setup;
+use forwardstep_sim::recording::{Recording, Signal};
+
+use super::held::Hold;
+use super::loads::{StaticLoad, limits, load};
+use super::margin::gains;
+use super::rates::Gains;
+
+/// States that are looked at in all, spread evenly over the rows, but two of every agent at least.
+const MOST: usize = 3000;
+
+/// What was found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Along {
+    /// The largest σ, under digital control.
+    pub margin: Option<MarginReached>,
+    /// The static torque closest to its limit, where limits are known.
+    pub load: Option<LoadReached>,
+    /// States that were looked at.
+    pub states: usize,
+}
+
+/// The largest σ that was reached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MarginReached {
+    /// Index of the agent.
+    pub agent: usize,
+    /// When, s.
+    pub t_s: f64,
+    /// σ.
+    pub sigma: f64,
+}
+
+/// The static torque that came closest to its limit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadReached {
+    /// When, s.
+    pub t_s: f64,
+    /// Where, and how much.
+    pub load: StaticLoad,
+}
+
+/// The columns of a recording.
+struct Columns<'a>(HashMap<(usize, Signal, usize), &'a [f64]>);
+
+impl Columns<'_> {
+    /// A signal of an agent at one row.
+    fn at(&self, agent: usize, signal: Signal, axes: usize, row: usize) -> Option<Vec<f64>> {
+        (0..axes).map(|axis| self.0.get(&(agent, signal, axis))?.get(row).copied()).collect()
+    }
+}
+
+/// Looks at `recording`, which a run of `setup` left behind.
+pub fn along(setup: &Setup, recording: &Recording) -> Along {
+    let columns = recording.columns.iter().map(|c| ((c.agent, c.signal, c.axis), &c.values[..])).collect();
+    let columns = Columns(columns);
+    let hold = setup.control.as_ref().map(|control| (Hold::of(control), 1.0 / control.sample_hz));
+    let sampled: Vec<(usize, Option<Gains>, bool)> = (0..setup.agents.len())
+        .map(|agent| (agent, hold.and_then(|_| gains(setup, agent)), limits(setup, agent).is_some()))
+        .filter(|(_, gains, limited)| gains.is_some() || *limited)
+        .collect();
+    let mut found = Along::default();
+    for row in rows(recording.t_s.len(), sampled.len()) {
+        let t_s = recording.t_s[row];
+        for (agent, gains, limited) in &sampled {
+            found.states += 1;
+            if let (Some(gains), Some((hold, period_s))) = (gains, hold)
+                && let Some(rate) = rate(setup, &columns, *agent, gains, row)
+            {
+                let sigma = period_s * rate / hold.largest_gain(period_s);
+                if found.margin.is_none_or(|worst| sigma > worst.sigma) {
+                    found.margin = Some(MarginReached { agent: *agent, t_s, sigma });
+                }
+            }
+            if *limited
+                && let Some(load) = held(setup, &columns, *agent, row)
+                && found.load.as_ref().is_none_or(|worst| load.share() > worst.load.share())
+            {
+                found.load = Some(LoadReached { t_s, load });
+            }
+        }
+    }
+    found
+}
+
+/// Rows that are looked at: the first, the last and others between them.
+fn rows(rows: usize, agents: usize) -> Vec<usize> {
+    if agents == 0 || rows == 0 {
+        return Vec::new();
+    }
+    let most = (MOST / agents).clamp(2, rows.max(2)) - 1;
+    let mut chosen: Vec<usize> = (0..=most).map(|k| k * (rows - 1) / most).collect();
+    chosen.dedup();
+    chosen
+}
+
+/// λ of an agent at one row.
+fn rate(setup: &Setup, columns: &Columns<'_>, agent: usize, gains: &Gains, row: usize) -> Option<f64> {
+    let robot = &setup.agents[agent].robot;
+    let axes = robot.axes.len();
+    let signal = |signal| columns.at(agent, signal, axes, row);
+    let (q, dq) = (signal(Signal::Position)?, signal(Signal::Velocity)?);
+    let (z, dz) = (signal(Signal::Reference(0))?, signal(Signal::Reference(1))?);
+    let motion = TwoVelocity { q: &q, dq: &dq, z: &z, dz: &dz };
+    let dynamics = robot.kind.lagrangian()?.dynamics_at(&robot.theta, motion).ok()?;
+    let finite = dynamics.mass.iter().chain(&dynamics.regressor).all(|entry| entry.is_finite());
+    if finite { Some(gains.rates(&dynamics)?.sampled_per_s) } else { None }
+}
+
+/// The static torque of an agent at one row.
+fn held(setup: &Setup, columns: &Columns<'_>, agent: usize, row: usize) -> Option<StaticLoad> {
+    let q = columns.at(agent, Signal::Position, setup.agents[agent].robot.axes.len(), row)?;
+    load(setup, agent, &q).filter(|load| load.torque.is_finite())
+}

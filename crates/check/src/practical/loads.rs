@@ -1,0 +1,101 @@
+//! Static torques against limits: what it takes to hold a posture at rest.
+//!
+//! Not from the paper, derived for this software. At rest τ = g(q) = Y(q, 0, 0, 0) ϑ with the true ϑ. Where |g_j(q)| exceeds its limit the
+//! posture cannot be held, whatever the controller does; where it does not, motion may still ask for more.
+
+use forwardstep_core::robot::TwoVelocity;
+use forwardstep_sim::{AgentSetup, Setup};
+
+use super::PracticalAnswer;
+use super::postures::each_posture;
+use crate::hypothesis::Named;
+use crate::kinds::is_lagrangian;
+
+/// The axis that comes closest to its limit, or is farthest beyond it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StaticLoad {
+    /// The agent.
+    pub agent: Named,
+    /// Its axis.
+    pub axis: usize,
+    /// The name of that.
+    pub axis_name: String,
+    /// |g_j(q)|, N m or N.
+    pub torque: f64,
+    /// Its limit: of the actuators or, where it is tighter, of the robot.
+    pub limit: f64,
+    /// Postures that were looked at.
+    pub postures: usize,
+}
+
+impl StaticLoad {
+    /// Of the agents of a setup under (6)–(7); `None` where no limit is known.
+    pub fn of(setup: &Setup) -> Option<StaticLoad> {
+        let those: Vec<usize> = (0..setup.agents.len()).filter(|agent| limits(setup, *agent).is_some()).collect();
+        let mut worst: Option<StaticLoad> = None;
+        let mut postures = 0;
+        each_posture(setup, &those, |agent, q, _| {
+            postures += 1;
+            let found = load(setup, agent, q);
+            worst = match (worst.take(), found) {
+                (Some(worst), Some(found)) => Some(if found.share() > worst.share() { found } else { worst }),
+                (worst, found) => worst.or(found),
+            };
+        });
+        worst.map(|found| StaticLoad { postures, ..found })
+    }
+
+    /// |g_j(q)| as a part of the limit.
+    pub fn share(&self) -> f64 {
+        self.torque / self.limit
+    }
+
+    /// Whether the limits suffice to stand still.
+    pub fn answer(&self) -> PracticalAnswer {
+        if self.share() < 1.0 { PracticalAnswer::Adequate } else { PracticalAnswer::Inadequate }
+    }
+}
+
+/// That of one agent at `q`.
+pub(super) fn load(setup: &Setup, agent: usize, q: &[f64]) -> Option<StaticLoad> {
+    let own = &setup.agents[agent];
+    let gravity = gravity(own, q)?;
+    let limits = limits(setup, agent)?;
+    let axes = gravity.iter().zip(limits).zip(&own.robot.axes).enumerate();
+    let loads = axes.filter(|(_, ((_, limit), _))| limit.is_finite()).map(|(axis, ((g, limit), named))| StaticLoad {
+        agent: Named::of(setup, agent),
+        axis,
+        axis_name: named.name.clone(),
+        torque: g.abs(),
+        limit,
+        postures: 1,
+    });
+    loads.reduce(|worst, load| if load.share() > worst.share() { load } else { worst })
+}
+
+/// g(q); `None` for robots of another kind.
+fn gravity(agent: &AgentSetup, q: &[f64]) -> Option<Vec<f64>> {
+    let rest = vec![0.0; q.len()];
+    let motion = TwoVelocity { q, dq: &rest, z: &rest, dz: &rest };
+    let theta = &agent.robot.theta;
+    let dynamics = agent.robot.kind.lagrangian()?.dynamics_at(theta, motion).ok()?;
+    let row = |row: &[f64]| row.iter().zip(theta).map(|(y, theta)| y * theta).sum();
+    Some(dynamics.regressor.chunks_exact(theta.len().max(1)).map(row).collect())
+}
+
+/// The limits of the torques of an agent under (6)–(7), infinite where there is none; `None` where none is known.
+pub(super) fn limits(setup: &Setup, agent: usize) -> Option<Vec<f64>> {
+    let own = &setup.agents[agent];
+    if !is_lagrangian(own) {
+        return None;
+    }
+    let stated = setup.control.as_ref().and_then(|control| control.actuators.torque_limit.as_ref());
+    let axes = own.robot.axes.iter().enumerate();
+    let all: Vec<f64> = axes
+        .map(|(axis, own)| {
+            let stated = stated.and_then(|limits| limits.get(axis)).copied().unwrap_or(f64::INFINITY);
+            own.effort_limit.unwrap_or(f64::INFINITY).min(stated)
+        })
+        .collect();
+    all.iter().any(|limit| limit.is_finite()).then_some(all)
+}

@@ -1,0 +1,129 @@
+//! Practical verdicts: what can be said of the loop as it is deployed, sampled, noisy and limited.
+//!
+//! None of this is from the paper: it is derived for this software, at the head of each file. Practical verdicts stand beside the
+//! hypotheses of a theorem, not among them. They speak of a state or of one run, with a model that leaves something out, so that none of
+//! them can make a theorem hold or fail; the exit status of `check` does not depend on them unless it is asked to.
+//!
+//! - `held`: how fast a mode may be under a command that is held, late, or taken from filtered differences.
+//! - `rates`: how fast the modes of a robot under (6)–(7) are, and what a sample does to V.
+//! - `margin`: the sampling margin σ before a run.
+//! - `loads`: static torques against limits.
+//! - `postures`: those that both look at.
+//! - `along`: both at the postures that a run reached.
+
+mod along;
+mod held;
+mod loads;
+mod margin;
+mod postures;
+mod rates;
+mod words;
+
+use forwardstep_sim::Setup;
+
+pub use along::{Along, LoadReached, MarginReached, along};
+pub use held::{Hold, longest_period_s};
+pub use loads::StaticLoad;
+pub use margin::{MarginAt, RECOMMENDED_MARGIN, SamplingMargin};
+pub(crate) use rates::fastest_damping_of;
+pub use rates::{FastestDamping, fastest_damping};
+
+/// What a practical verdict says, from best to worst.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum PracticalAnswer {
+    /// There is enough of it.
+    Adequate,
+    /// There is enough of it, and less than recommended.
+    Marginal,
+    /// It cannot be told.
+    NotShown,
+    /// There is not enough of it.
+    Inadequate,
+}
+
+impl PracticalAnswer {
+    /// `adequate`, `marginal`, `not shown` or `inadequate`.
+    pub fn words(self) -> &'static str {
+        match self {
+            PracticalAnswer::Adequate => "adequate",
+            PracticalAnswer::Marginal => "marginal",
+            PracticalAnswer::NotShown => "not shown",
+            PracticalAnswer::Inadequate => "inadequate",
+        }
+    }
+}
+
+/// One practical verdict.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Finding {
+    /// How much of the longest useful period is used.
+    SamplingMargin(SamplingMargin),
+    /// Whether the limits of torques suffice to stand still.
+    StaticLoad(StaticLoad),
+}
+
+impl Finding {
+    /// Its stable name.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Finding::SamplingMargin(_) => "sampling-margin",
+            Finding::StaticLoad(_) => "static-load",
+        }
+    }
+
+    /// What it says.
+    pub fn answer(&self) -> PracticalAnswer {
+        match self {
+            Finding::SamplingMargin(margin) => margin.answer(),
+            Finding::StaticLoad(load) => load.answer(),
+        }
+    }
+
+    /// What it is about, in words.
+    pub fn about(&self) -> &'static str {
+        words::about(self)
+    }
+
+    /// The numbers in it, by stable names that end in their units.
+    pub fn numbers(&self) -> Vec<(&'static str, f64)> {
+        match self {
+            Finding::SamplingMargin(margin) => {
+                let always = [
+                    ("sigma", margin.worst.sigma),
+                    ("start_sigma", margin.start.sigma),
+                    ("start_fastest_mode_per_s", margin.start.fastest_per_s),
+                    ("period_s", margin.period_s),
+                ];
+                let some = [("longest_period_s", margin.longest_s), ("recommended_period_s", margin.recommended_s)];
+                always.into_iter().chain(some.into_iter().filter_map(|(name, value)| Some((name, value?)))).collect()
+            }
+            Finding::StaticLoad(load) => vec![("torque", load.torque), ("limit", load.limit), ("share", load.share())],
+        }
+    }
+
+    /// What was found, in words.
+    pub fn because(&self) -> String {
+        words::because(self)
+    }
+}
+
+/// The practical verdicts on a setup before it runs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Practical {
+    /// In the order in which they should be read.
+    pub findings: Vec<Finding>,
+}
+
+impl Practical {
+    /// The worst answer; `None` where nothing is said.
+    pub fn worst(&self) -> Option<PracticalAnswer> {
+        self.findings.iter().map(Finding::answer).max()
+    }
+}
+
+/// What can be said of `setup` as it is deployed.
+pub fn practical(setup: &Setup) -> Practical {
+    let margin = SamplingMargin::of(setup).map(Finding::SamplingMargin);
+    let load = StaticLoad::of(setup).map(Finding::StaticLoad);
+    Practical { findings: margin.into_iter().chain(load).collect() }
+}

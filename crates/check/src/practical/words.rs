@@ -1,0 +1,95 @@
+//! Sentences of practical verdicts.
+
+use super::{Finding, RECOMMENDED_MARGIN, SamplingMargin, StaticLoad};
+use crate::hypothesis::numbers::{rounded, rounded_up};
+
+/// What it is about.
+pub(super) fn about(finding: &Finding) -> &'static str {
+    match finding {
+        Finding::SamplingMargin(_) => "they sample fast enough for K and Γ",
+        Finding::StaticLoad(_) => "torques within their limits hold the robots at rest",
+    }
+}
+
+/// What was found.
+pub(super) fn because(finding: &Finding) -> String {
+    match finding {
+        Finding::SamplingMargin(margin) => sampling(margin),
+        Finding::StaticLoad(load) => standing(load),
+    }
+}
+
+fn sampling(margin: &SamplingMargin) -> String {
+    let SamplingMargin { start, worst, postures, .. } = margin;
+    let between = if worst == start {
+        String::new()
+    } else {
+        format!(", {} at most at {postures} postures between the starts ({})", rounded(worst.sigma), worst.agent.name)
+    };
+    let anywhere = margin.anywhere.filter(|anywhere| *anywhere < 1.0).map_or_else(String::new, |anywhere| {
+        format!("; of the damping alone it is at most {} at any q", rounded_up(anywhere))
+    });
+    let targets = match margin.adaptation_left_out {
+        0 => "",
+        _ => "; the adaptation of those that follow targets of their own is not in it",
+    };
+    format!(
+        "σ = {} at the start ({}), whose fastest mode has {}/s{}{between}{}; {}{anywhere}{targets}",
+        rounded(start.sigma),
+        start.agent.name,
+        rounded(start.fastest_per_s),
+        hold(margin),
+        too_slow(margin),
+        periods(margin),
+    )
+}
+
+/// What σ from 1 on means.
+fn too_slow(SamplingMargin { start, worst, .. }: &SamplingMargin) -> &'static str {
+    if start.is_unstable() && start.damping_sigma < 1.0 {
+        "; damping and adaptation together are unstable at the start: let Γ be smaller, or sample faster"
+    } else if start.is_unstable() {
+        "; sampling is too slow at the start: the fastest mode grows"
+    } else if worst.is_unstable() {
+        "; sampling is too slow at such a posture"
+    } else if worst.sigma < 1.0 {
+        ""
+    } else {
+        "; V may grow from sample to sample, though with Y frozen no mode does"
+    }
+}
+
+fn standing(StaticLoad { agent, axis_name, torque, limit, postures, .. }: &StaticLoad) -> String {
+    let (torque, limit) = (rounded(*torque), rounded(*limit));
+    let those =
+        if *postures == 1 { "at the start".into() } else { format!("of {postures} postures between the starts") };
+    format!("the largest share of a limit {those}: |g| is {torque} of {limit} ({}, {axis_name})", agent.name)
+}
+
+/// What else there is between a sample and its torque.
+fn hold(margin: &SamplingMargin) -> String {
+    let late = match margin.hold.delay_s {
+        late_s if late_s > 0.0 => format!(", with torques {} ms late", rounded(1e3 * late_s)),
+        _ => String::new(),
+    };
+    let filter = margin.hold.cut_off_rad_s.map_or_else(String::new, |cut_off| {
+        format!(
+            "{} velocities filtered at {} Hz",
+            if late.is_empty() { ", with" } else { " and" },
+            rounded(cut_off / core::f64::consts::TAU)
+        )
+    });
+    late + &filter
+}
+
+fn periods(margin: &SamplingMargin) -> String {
+    let ms = |period_s: f64| rounded(1e3 * period_s);
+    let Some(longest_s) = margin.longest_s else {
+        return "no period is short enough for it: the torques come too late".into();
+    };
+    let half = margin.recommended_s.map_or_else(
+        || format!("no period brings it below {RECOMMENDED_MARGIN}, which is recommended"),
+        |period_s| format!("keep it below {RECOMMENDED_MARGIN}, a period of {} ms", ms(period_s)),
+    );
+    format!("it reaches 1 at a period of {} ms; {half}", ms(longest_s))
+}

@@ -1,0 +1,117 @@
+//! `forwardstep sampling-limit`
+
+use forwardstep::io::output::{Accepted, Deployment, SamplingLimit, Trial};
+use forwardstep::io::scenario::Scenario;
+use forwardstep::io::scenario::kinds::Kinds;
+use forwardstep::sim::VelocitySensor;
+
+use crate::arguments::SamplingLimitOptions;
+use crate::console::{Console, DIM, Plain, complain};
+use crate::status::Status;
+
+/// Ways to sample that a table shows for scenarios in continuous time: how late as a part of the period, and the filter in Hz.
+const VARIANTS: [(Option<f64>, Option<f64>); 7] = [
+    (None, None),
+    (Some(0.25), None),
+    (Some(0.5), None),
+    (Some(0.9), None),
+    (None, Some(60.0)),
+    (None, Some(20.0)),
+    (Some(0.5), Some(60.0)),
+];
+
+/// Measures the longest period with which scenarios still work, beside the rule.
+pub(crate) fn sampling_limit(options: &SamplingLimitOptions, kinds: &Kinds, console: &mut Console) -> Status {
+    finish(options, kinds, console).unwrap_or_else(|status| status)
+}
+
+fn finish(options: &SamplingLimitOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
+    let mut status = Status::Fine;
+    if options.table {
+        console.line("| Scenario | Torque late by | Velocity | Rule, ms | Measured, ms | Rule / measured |");
+        console.line("|---|---|---|---|---|---|");
+    }
+    for name in &options.scenarios {
+        let scenario = kinds.open_scenario(name).map_err(|error| complain(&error))?;
+        for deployment in deployments(options, &scenario) {
+            let accepted = Accepted { peak_error: options.peak_error, remains: options.disagreement };
+            let mut tell = |trial: Trial| {
+                if !options.table {
+                    console.line(tried(trial));
+                }
+            };
+            let found = SamplingLimit::measure(&scenario.setup, deployment, accepted, &mut tell)
+                .map_err(|error| complain(&Plain::new(error)))?;
+            if options.table {
+                console.line(row(&scenario, deployment, &found));
+            } else {
+                conclude(&scenario, &found, console);
+            }
+            if found.measured_s.is_none() {
+                status = Status::Missed;
+            }
+        }
+    }
+    Ok(status)
+}
+
+/// As asked for; in a table all of them, unless one is asked for or the scenario samples already.
+fn deployments(options: &SamplingLimitOptions, scenario: &Scenario) -> Vec<Deployment> {
+    let asked = Deployment { late: options.late, filter_hz: options.filter_hz };
+    let all = options.table && asked == Deployment::default() && scenario.setup.control.is_none();
+    if all {
+        VARIANTS.into_iter().map(|(late, filter_hz)| Deployment { late, filter_hz }).collect()
+    } else {
+        vec![asked]
+    }
+}
+
+fn tried(trial: Trial) -> String {
+    let Trial { period_s, peak_error, remains, .. } = trial;
+    let period = ms(Some(period_s));
+    if peak_error.is_finite() {
+        format!("{DIM}  {period} ms: |s| ≤ {peak_error:.3}, {remains:.2e} remains at the end{DIM:#}")
+    } else {
+        format!("{DIM}  {period} ms: breaks down{DIM:#}")
+    }
+}
+
+fn conclude(scenario: &Scenario, found: &SamplingLimit, console: &mut Console) {
+    console.line(&scenario.title);
+    console.line(format_args!("  rule       {} ms: the sampling margin σ is 1 before the run", ms(found.rule_s)));
+    console.line(format_args!(
+        "  measured   {} ms: |s| ≤ {:.3}, and at most {:.2e} remains at the end; {} runs",
+        ms(found.measured_s),
+        found.peak_error,
+        found.remains,
+        found.trials.len()
+    ));
+}
+
+fn row(scenario: &Scenario, deployment: Deployment, found: &SamplingLimit) -> String {
+    let control = deployment.apply(&scenario.setup, found.trials.first().map_or(1e-3, |trial| trial.period_s)).control;
+    let (sensors, delay_s) =
+        control.map_or_else(Default::default, |control| (control.sensors, control.computation_delay_s));
+    let late = match (deployment.late, delay_s) {
+        (Some(late), _) => format!("{late} h"),
+        (None, 0.0) => "–".into(),
+        (None, delay_s) => format!("{} ms", ms(Some(delay_s))),
+    };
+    let velocity = match sensors.velocity {
+        VelocitySensor::Measured => "measured".into(),
+        VelocitySensor::Filtered { cut_off_hz } => format!("filtered at {cut_off_hz} Hz"),
+    };
+    let ratio = found
+        .rule_s
+        .zip(found.measured_s)
+        .map_or_else(|| "–".into(), |(rule, measured)| format!("{:.2}", rule / measured));
+    let name = &scenario.name;
+    format!("| {name} | {late} | {velocity} | {} | {} | {ratio} |", ms(found.rule_s), ms(found.measured_s))
+}
+
+/// Milliseconds to three digits.
+fn ms(period_s: Option<f64>) -> String {
+    let Some(ms) = period_s.map(|period_s| 1e3 * period_s) else { return "–".into() };
+    let places = (2.0 - ms.abs().log10().floor()).clamp(0.0, 6.0) as usize;
+    format!("{ms:.places$}")
+}

@@ -1,0 +1,120 @@
+//! Practical verdicts, and what is watched along a run, in words and numbers: parts of `summary.json`, of what `check --json` prints,
+//! and of the report.
+
+use std::collections::BTreeMap;
+
+use forwardstep_check::{Along, LoadReached, MarginReached, Practical, Source, along, practical};
+use forwardstep_sim::Setup;
+use forwardstep_sim::recording::Recording;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::number;
+
+/// What can be said of the loop as it is deployed, before a run. It is not from the paper, and counts neither for the outcome of the
+/// hypotheses nor for their exit status.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PracticalVerdicts {
+    /// Whose they are: `derived for this software, not in the paper`.
+    pub source: String,
+    /// The worst answer; absent where nothing is said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub worst: Option<String>,
+    /// One by one.
+    pub verdicts: Vec<PracticalVerdict>,
+}
+
+/// One practical verdict.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PracticalVerdict {
+    /// Its stable name, for example `sampling-margin`.
+    pub id: String,
+    /// What it is about.
+    pub about: String,
+    /// `adequate`, `marginal`, `not shown` or `inadequate`.
+    pub answer: String,
+    /// What was found.
+    pub because: String,
+    /// The numbers in it, by stable names that end in their units.
+    pub numbers: BTreeMap<String, f64>,
+}
+
+impl PracticalVerdicts {
+    /// Those on a setup.
+    pub fn of(setup: &Setup) -> PracticalVerdicts {
+        PracticalVerdicts::from(&practical(setup))
+    }
+}
+
+impl From<&Practical> for PracticalVerdicts {
+    fn from(practical: &Practical) -> Self {
+        let verdict = |finding: &forwardstep_check::Finding| PracticalVerdict {
+            id: finding.name().to_owned(),
+            about: finding.about().to_owned(),
+            answer: finding.answer().words().to_owned(),
+            because: finding.because(),
+            numbers: finding.numbers().into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
+        };
+        PracticalVerdicts {
+            source: Source::Derived.words(),
+            worst: practical.worst().map(|worst| worst.words().to_owned()),
+            verdicts: practical.findings.iter().map(verdict).collect(),
+        }
+    }
+}
+
+/// What was watched along a run, at rows of its tables.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Watched {
+    /// The largest sampling margin σ; absent in continuous time and without agents under (6)–(7).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sampling_margin: Option<WatchedMargin>,
+    /// The static torque |g_j(q)| closest to its limit; absent where no limit is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub static_load: Option<WatchedLoad>,
+    /// How many states were looked at.
+    pub states: usize,
+}
+
+/// The largest σ that was reached.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WatchedMargin {
+    /// Index of the agent.
+    pub agent: usize,
+    /// When, s.
+    pub t_s: f64,
+    /// σ.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub sigma: f64,
+}
+
+/// The static torque that came closest to its limit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WatchedLoad {
+    /// Index of the agent.
+    pub agent: usize,
+    /// The axis.
+    pub axis: usize,
+    /// When, s.
+    pub t_s: f64,
+    /// |g_j(q)|, N m or N.
+    pub torque: f64,
+    /// Its limit, N m or N.
+    pub limit: f64,
+}
+
+impl Watched {
+    /// Looks at a recording; `None` where there is nothing to be watched.
+    pub fn of(setup: &Setup, recording: &Recording) -> Option<Watched> {
+        let Along { margin, load, states } = along(setup, recording);
+        let sampling_margin = margin.map(|MarginReached { agent, t_s, sigma }| WatchedMargin { agent, t_s, sigma });
+        let static_load = load.map(|LoadReached { t_s, load }| WatchedLoad {
+            agent: load.agent.index,
+            axis: load.axis,
+            t_s,
+            torque: load.torque,
+            limit: load.limit,
+        });
+        (sampling_margin.is_some() || static_load.is_some()).then_some(Watched { sampling_margin, static_load, states })
+    }
+}

@@ -1,0 +1,84 @@
+//! Practical verdicts beside what was watched: what is said of the loop as it is deployed, not from the paper.
+
+use forwardstep_check::{PracticalAnswer, Source, practical as of_setup};
+use forwardstep_sim::recording::{ClippedSamples, Signal};
+use maud::{Markup, html};
+
+use super::super::metrics::Metrics;
+use super::super::names;
+use super::super::practical::{Watched, WatchedLoad, WatchedMargin};
+use super::super::record::RunRecord;
+use super::text::{self, number};
+
+/// Nothing where nothing is said.
+pub(crate) fn practical(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
+    let verdicts = of_setup(record.setup).findings;
+    if verdicts.is_empty() && metrics.watched.is_none() && record.outcome.statistics.clipped.is_none() {
+        return html! {};
+    }
+    html! {
+        section #practical {
+            h2 { "Practical" }
+            div.beside {
+                div.card {
+                    h3 { "Before the run" span.by { (Source::Derived.words()) } }
+                    @if verdicts.is_empty() { p.note { "Nothing is said." } }
+                    ul.hypotheses {
+                        @for finding in &verdicts {
+                            @let (class, sign) = style(finding.answer());
+                            li class=(class) {
+                                span.sign aria-hidden="true" { (sign) }
+                                div {
+                                    p { strong { (finding.about()) } " " em { (finding.answer().words()) } }
+                                    p.because { (finding.because()) }
+                                    p.origin { code { (finding.name()) } }
+                                }
+                            }
+                        }
+                    }
+                }
+                div.card {
+                    h3 { "Watched" span.by { "at rows of the recording" } }
+                    table.facts { tbody { (watched(record, metrics)) } }
+                }
+            }
+        }
+    }
+}
+
+fn style(answer: PracticalAnswer) -> (&'static str, &'static str) {
+    match answer {
+        PracticalAnswer::Adequate => ("good", "✓"),
+        PracticalAnswer::Marginal => ("fair", "✓"),
+        PracticalAnswer::NotShown => ("warn", "?"),
+        PracticalAnswer::Inadequate => ("bad", "✗"),
+    }
+}
+
+fn watched(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
+    let setup = record.setup;
+    let Watched { sampling_margin, static_load, .. } = metrics.watched.unwrap_or_default();
+    html! {
+        @if let Some(WatchedMargin { agent, t_s, sigma }) = sampling_margin {
+            (fact("Sampling margin", html! {
+                "σ = " (number(sigma)) " at most (" (names::agent_name(setup, agent)) ", t = " (number(t_s)) " s)"
+            }))
+        }
+        @if let Some(WatchedLoad { agent, axis, t_s, torque, limit }) = static_load {
+            (fact("Static torque", html! {
+                "|g| = " (number(torque)) " of " (number(limit)) " " (text::unit(&names::unit(setup, agent, Signal::Torque, axis)))
+                " at most (" (names::agent_name(setup, agent)) ", " (names::axis_words(setup, agent, axis)) ", t = " (number(t_s)) " s)"
+            }))
+        }
+        @if let Some(ClippedSamples { samples, torque, rate }) = record.outcome.statistics.clipped {
+            (fact("Clipped", html! {
+                @if torque + rate == 0 { "none of " (samples) " samples: the run is that without limits" }
+                @else { (torque) " by limits of torque and " (rate) " by limits of rate, of " (samples) " samples" }
+            }))
+        }
+    }
+}
+
+fn fact(name: &str, what: Markup) -> Markup {
+    html! { tr { th { (name) } td { (what) } } }
+}

@@ -1,0 +1,187 @@
+//! The longest period with which a scenario still works, measured by its own runs, beside the one that the sampling margin allows.
+//!
+//! A run works where it completes, no |s| exceeds what is accepted, and what remains of the disagreement, or of the error, does not
+//! either. What is accepted is stated, or taken from a run with a period far below the rule. The period is then bisected: where works and
+//! does not alternate, one of the ends is found.
+
+use std::ops::ControlFlow;
+
+use forwardstep_check::{Hold, SamplingMargin, longest_period_s};
+use forwardstep_sim::recording::{Ending, Signal};
+use forwardstep_sim::{Control, Setup, SetupError, VelocitySensor, simulate};
+
+use super::metrics::{Disagreement, Metrics};
+
+/// The run that others are compared with has a period this much shorter than the rule.
+const FINER: f64 = 8.0;
+/// A run whose |s| is this much larger than in that one does not work.
+const LARGER: f64 = 2.0;
+/// Nor one that leaves this much of the disagreement at the start, unless that one leaves half as much already.
+const REMAINS: f64 = 0.1;
+/// The period is found to this part.
+const TOLERANCE: f64 = 0.004;
+/// No period longer than this many times the first that works is tried.
+const LONGEST: f64 = 1024.0;
+
+/// How the controllers of a scenario shall sample, where that is not as it states; exact measurements where it states nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Deployment {
+    /// The computation delay as a part of the period.
+    pub late: Option<f64>,
+    /// The cut-off of the filter of velocities, Hz.
+    pub filter_hz: Option<f64>,
+}
+
+/// What a run must keep within to count as one that works.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Accepted {
+    /// The largest |s| of any axis, rad/s or m/s; by default twice that of a run with a short period.
+    pub peak_error: Option<f64>,
+    /// The final disagreement or error; by default a tenth of that at the start, or twice that of the same run.
+    pub remains: Option<f64>,
+}
+
+/// One run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trial {
+    /// Its period, s.
+    pub period_s: f64,
+    /// Its largest |s|; not finite where the run did not complete.
+    pub peak_error: f64,
+    /// Its final disagreement or error; likewise.
+    pub remains: f64,
+    /// That at its start.
+    pub initial: f64,
+}
+
+/// What was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SamplingLimit {
+    /// The period at which the sampling margin is 1 before the run, s; `None` where it says nothing.
+    pub rule_s: Option<f64>,
+    /// The longest period that works, s; `None` where the shortest one does not.
+    pub measured_s: Option<f64>,
+    /// What was accepted.
+    pub peak_error: f64,
+    /// Likewise.
+    pub remains: f64,
+    /// The runs that were made, in their order.
+    pub trials: Vec<Trial>,
+}
+
+impl Deployment {
+    /// `setup` sampled with this period.
+    pub fn apply(self, setup: &Setup, period_s: f64) -> Setup {
+        let mut sampled = setup.clone();
+        if sampled.control.is_none() {
+            sampled = sampled.sampled(1.0 / period_s);
+        }
+        if let Some(control) = &mut sampled.control {
+            control.sample_hz = 1.0 / period_s;
+            if let Some(late) = self.late {
+                control.computation_delay_s = late * period_s;
+            }
+            if let Some(cut_off_hz) = self.filter_hz {
+                control.sensors.velocity = VelocitySensor::Filtered { cut_off_hz };
+            }
+        }
+        sampled
+    }
+
+    /// The period at which the sampling margin is 1, s.
+    pub fn rule_s(self, setup: &Setup) -> Option<f64> {
+        let period_s = setup.control.as_ref().map_or(1e-3, |control| 1.0 / control.sample_hz);
+        let hold = |period_s: f64| self.apply(setup, period_s).control.as_ref().map_or(Hold::IDEAL, Hold::of);
+        longest_period_s(SamplingMargin::of(&self.apply(setup, period_s))?.worst.sampled_per_s, period_s, hold)
+    }
+
+    /// The computation delay at a period, s.
+    fn delay_s(self, setup: &Setup, period_s: f64) -> f64 {
+        let stated = |control: &Control| control.computation_delay_s;
+        self.late.map_or_else(|| setup.control.as_ref().map_or(0.0, stated), |late| late * period_s)
+    }
+}
+
+impl SamplingLimit {
+    /// Measures it; `watch` is called after every run.
+    ///
+    /// # Errors
+    /// [`SetupError`] when the setup has no meaning.
+    pub fn measure(
+        setup: &Setup,
+        deployment: Deployment,
+        accepted: Accepted,
+        watch: &mut dyn FnMut(Trial),
+    ) -> Result<SamplingLimit, SetupError> {
+        let rule_s = deployment.rule_s(setup).filter(|rule_s| rule_s.is_finite());
+        let stated_s = setup.control.as_ref().map_or(1e-3, |control| 1.0 / control.sample_hz);
+        let first_s = rule_s.map_or(stated_s, |rule_s| rule_s / FINER);
+        let first_s = first_s.max(1.001 * deployment.delay_s(setup, first_s));
+        let mut trials = Vec::new();
+        let mut run = |period_s: f64| {
+            let trial = trial(&deployment.apply(setup, period_s), period_s)?;
+            trials.push(trial);
+            watch(trial);
+            Ok::<Trial, SetupError>(trial)
+        };
+        let first = run(first_s)?;
+        let peak_error = accepted.peak_error.unwrap_or(LARGER * first.peak_error);
+        let remains = accepted.remains.unwrap_or((LARGER * first.remains).max(REMAINS * first.initial));
+        let works = |trial: Trial| trial.peak_error <= peak_error && trial.remains <= remains;
+        let measured_s = if works(first) { Some(bisect(first_s, |period_s| Ok(works(run(period_s)?)))?) } else { None };
+        Ok(SamplingLimit { rule_s, measured_s, peak_error, remains, trials })
+    }
+}
+
+/// The longest period that works, where `low_s` does.
+fn bisect(mut low_s: f64, mut works: impl FnMut(f64) -> Result<bool, SetupError>) -> Result<f64, SetupError> {
+    let most_s = LONGEST * low_s;
+    let mut high_s = 4.0 * low_s;
+    while works(high_s)? {
+        low_s = high_s;
+        high_s *= 2.0;
+        if high_s > most_s {
+            return Ok(low_s);
+        }
+    }
+    while high_s > (1.0 + TOLERANCE) * low_s {
+        let middle_s = 0.5 * (low_s + high_s);
+        if works(middle_s)? { low_s = middle_s } else { high_s = middle_s }
+    }
+    Ok(low_s)
+}
+
+/// Runs `setup` in full.
+fn trial(setup: &Setup, period_s: f64) -> Result<Trial, SetupError> {
+    let outcome = simulate(setup, &mut |_| ControlFlow::Continue(()))?;
+    let (initial, last) = match Metrics::of(setup, &outcome.recording, None, None).disagreement {
+        Disagreement::Measured { initial, last, .. } => (initial, last),
+        Disagreement::Absent(_) => (0.0, 0.0),
+    };
+    if outcome.ending != Ending::Completed {
+        return Ok(Trial { period_s, peak_error: f64::INFINITY, remains: f64::INFINITY, initial });
+    }
+    let errors = outcome.recording.columns.iter().filter(|column| column.signal == Signal::TrackingError);
+    let peak_error = errors.flat_map(|column| &column.values).fold(0.0_f64, |most, s| most.max(s.abs()));
+    Ok(Trial { period_s, peak_error, remains: last, initial })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longest_period_that_works_is_found_and_not_looked_for_for_ever() {
+        for edge in [1.01, 3.9, 4.0, 77.7] {
+            let mut tries = 0;
+            let found = bisect(1.0, |period_s| {
+                tries += 1;
+                Ok(period_s < edge)
+            });
+            let found = found.expect("no run fails");
+            assert!(found < edge && edge <= (1.0 + TOLERANCE) * found && tries < 20, "{edge}: {found} in {tries}");
+        }
+        let endless = bisect(1.0, |_| Ok(true)).expect("no run fails");
+        assert!(endless > 500.0 && endless <= 1024.0, "{endless}");
+    }
+}
