@@ -47,6 +47,8 @@ pub(crate) enum Command {
     Explain(ExplainOptions),
     /// Measure the longest period with which sampled controllers still work, beside the one that the sampling margin allows
     SamplingLimit(SamplingLimitOptions),
+    /// Draw random scenarios and try to refute what is claimed of them
+    Falsify(FalsifyOptions),
     /// List the shipped scenarios, or print one
     Scenarios {
         /// Print the text of this one
@@ -124,6 +126,25 @@ pub(crate) struct ExplainOptions {
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FalsifyOptions {
+    /// How many scenarios
+    #[arg(long, value_name = "N", default_value_t = 10_000)]
+    pub(crate) cases: u64,
+    /// The number of the first
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) from: u64,
+    /// The same seed draws the same scenarios
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Stop after this time
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub(crate) seconds: Option<f64>,
+    /// The folder for scenarios that refute something, as small as they still do
+    #[arg(long, value_name = "FOLDER", default_value = "forwardstep-refuted")]
+    pub(crate) out: PathBuf,
 }
 
 #[derive(Debug, Args)]

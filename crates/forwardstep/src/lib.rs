@@ -30,6 +30,8 @@ mod arguments;
 mod commands;
 #[cfg(feature = "program")]
 mod console;
+#[cfg(feature = "program")]
+mod falsify;
 #[cfg(feature = "files")]
 pub mod own;
 #[cfg(feature = "program")]

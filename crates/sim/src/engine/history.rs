@@ -7,6 +7,9 @@
 
 use super::kernels::continue_piece;
 
+/// A piece is continued over at most so many times its length.
+const LONGEST_CONTINUED: f64 = 1000.0;
+
 /// Reading this far beyond the end of the last piece is reading its end, s.
 const SLACK_S: f64 = 1e-12;
 
@@ -117,14 +120,18 @@ impl History {
         (offset, &mut self.data[offset..offset + self.width])
     }
 
-    /// Drafts a piece of length `h` from `t_s` on by continuing the last one; `width` numbers per coefficient. Does nothing
-    /// when there is none.
-    pub(crate) fn extrapolate(&mut self, width: usize, t_s: f64, h: f64) {
+    /// Drafts a piece of length `h` from `t_s` on by continuing the last one; `width` numbers per coefficient. False, and nothing done,
+    /// when there is none or `h` is so many times its length that a polynomial says nothing there: beside a kink of a delay that
+    /// nearly vanishes pieces are as short as the delay.
+    pub(crate) fn extrapolate(&mut self, width: usize, t_s: f64, h: f64) -> bool {
         if self.next == self.first {
-            return;
+            return false;
         }
         let (last, draft) = (self.slot(self.next - 1) * self.width, self.slot(self.next) * self.width);
         let [start, _, inverse] = self.spans[last / self.width];
+        if h * inverse > LONGEST_CONTINUED {
+            return false;
+        }
         // The ring has at least two places, so one lies before the other.
         let (low, high) = self.data.split_at_mut(last.max(draft));
         let (last, draft) = if last < draft {
@@ -133,6 +140,7 @@ impl History {
             (&high[..self.width], &mut low[draft..draft + self.width])
         };
         continue_piece(last, draft, width, (t_s - start) * inverse, h * inverse);
+        true
     }
 
     /// Keeps the draft as the piece of [`start_s`, `end_s`]. There is no room for another draft before

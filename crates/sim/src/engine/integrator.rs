@@ -283,7 +283,7 @@ impl<'a> Integrator<'a> {
         let tableau = self.tableau;
         let last = tableau.c.len() - 1;
         let mut drafted = false;
-        let (mut first, mut before) = (0.0, f64::INFINITY);
+        let (mut first, mut before) = (0.0, 0.0);
         for round in 0..DRAFT_ROUNDS {
             let mut any = Needs::default();
             let mut gathered_at = -1.0;
@@ -320,8 +320,8 @@ impl<'a> Integrator<'a> {
             if round == 0 {
                 first = gap;
             }
-            // What the next round would still change, by the contraction seen between the last two.
-            let contraction = (gap / before).min(1.0);
+            // What the next round would still change, by the contraction seen between the last two; after the first nothing is known of it.
+            let contraction = if round == 0 { 1.0 } else { (gap / before).min(1.0) };
             before = gap;
             if gap <= DRAFT_ACCURACY || contraction < 0.5 && contraction * gap <= DRAFT_ACCURACY {
                 // A step a little shorter that needs one round is cheaper; one less than half as long is not.
@@ -335,8 +335,7 @@ impl<'a> Integrator<'a> {
     /// A first draft of the current piece: the last piece continued or, after a jump, a straight line.
     fn predict(&mut self, t: f64, h: f64) {
         let width = self.hearing.width();
-        if self.smooth {
-            self.history.extrapolate(width, t, h);
+        if self.smooth && self.history.extrapolate(width, t, h) {
             return;
         }
         let (_, draft) = self.history.draft();

@@ -1,0 +1,190 @@
+//! What a case is held against.
+//!
+//! Where no tracking error is left, s ≡ 0, the interval of the cascaded variables and of what is on its way never grows, whatever the
+//! graphs and delays do: that can be refuted in finite time. Of whole closed loops the balance of V has to hold, a run whose hypotheses
+//! all hold must not break down, and its error must fall over doubled horizons. That a limit exists no run refutes: what has not fallen
+//! after the last doubling is undecided.
+
+use std::ops::ControlFlow;
+
+use forwardstep::check::prediction::CascadeSpread;
+use forwardstep::check::{Answer, Report, check, ideal};
+use forwardstep::io::diagnostic::SourceText;
+use forwardstep::io::output::Metrics;
+use forwardstep::io::scenario::{Inputs, Scenario, read_scenario};
+use forwardstep::sim::reference::PureIntegral;
+use forwardstep::sim::{Ending, Outcome, Setup, simulate};
+
+use super::case::Case;
+
+/// Doublings of the horizon at most.
+const DOUBLINGS: u32 = 4;
+/// A part of the error that counts as fallen.
+const FALLEN: f64 = 0.5;
+/// Errors below this are rounding and tolerance.
+const SMALL: f64 = 1e-5;
+/// How far V + ∫ dissipation may be off, as a part of V(0).
+const BALANCE: f64 = 1e-4;
+/// How far the interval may grow by tolerance, as a part of what it was.
+const GROWTH: f64 = 1e-6;
+
+/// What became of a case.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Verdict {
+    /// The interval of the cascade did not grow.
+    Kept,
+    /// The balance holds and the error falls.
+    Fell,
+    /// The balance holds; `check` promises nothing more.
+    Balanced,
+    /// The error had not fallen after the last doubling.
+    Undecided,
+    /// No scenario, or one that `check` or the cascade says nothing about.
+    Silent(String),
+    /// What was claimed is not so.
+    Failed(Failure),
+}
+
+/// What was claimed and is not so.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Failure {
+    /// The interval of the cascade grew by this part.
+    Grew { part: f64, t_s: f64 },
+    /// V + ∫ dissipation − V(0) is this part of V(0).
+    Unbalanced { relative: f64, t_s: f64 },
+    /// A run broke down though all hypotheses hold.
+    BrokeDown(String),
+    /// The error grew over all doublings though all hypotheses hold.
+    Rose { first: f64, last: f64 },
+}
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Failure::Grew { part, t_s } => {
+                write!(
+                    f,
+                    "without tracking errors the spread of the cascade grew by {part:.2e} of itself until t = {t_s} s"
+                )
+            }
+            Failure::Unbalanced { relative, t_s } => {
+                write!(f, "V + ∫ dissipation differs from V(0) by {relative:.2e} of it at t = {t_s} s")
+            }
+            Failure::BrokeDown(why) => write!(f, "all hypotheses hold, and the run broke down: {why}"),
+            Failure::Rose { first, last } => {
+                write!(
+                    f,
+                    "all hypotheses hold, and the error rose from {first:.3e} to {last:.3e} over 16 times the horizon"
+                )
+            }
+        }
+    }
+}
+
+impl Failure {
+    /// Whether another failure is of the same kind.
+    pub(crate) fn is_like(&self, other: &Failure) -> bool {
+        std::mem::discriminant(self) == std::mem::discriminant(other)
+    }
+}
+
+/// Judges a case.
+pub(crate) fn judge(case: &Case) -> Verdict {
+    let scenario = match read(case) {
+        Ok(scenario) => scenario,
+        Err(error) => return Verdict::Silent(error),
+    };
+    // Half of the cases, of robots that agree.
+    if case.number.is_multiple_of(2) { without_errors(&scenario.setup) } else { whole(case, &scenario.setup) }
+}
+
+/// The scenario of a case.
+pub(crate) fn read(case: &Case) -> Result<Scenario, String> {
+    let source = SourceText::new("drawn.toml", case.to_string());
+    read_scenario("drawn", &source, Inputs::default()).map_err(|error| error.to_string())
+}
+
+fn run(setup: &Setup) -> Result<Outcome, String> {
+    simulate(setup, &mut |_| ControlFlow::Continue(())).map_err(|error| error.to_string())
+}
+
+fn without_errors(setup: &Setup) -> Verdict {
+    let ideal = match ideal(setup) {
+        Ok(ideal) => ideal,
+        Err(reason) => return Verdict::Silent(reason.to_string()),
+    };
+    let varies = setup.network.schedule.graphs.iter().flatten().any(|edge| edge.weight.constant().is_none());
+    if varies && setup.reference.is::<PureIntegral>() {
+        // ẇ (ψᵢ − ψⱼ) is in what (3) and (23) integrate.
+        return Verdict::Silent("a weight varies under (3) or (23), of which nothing is claimed".into());
+    }
+    let spread = run(&ideal).and_then(|outcome| match outcome.ending {
+        Ending::Completed => {
+            let spread = CascadeSpread::of(&ideal, &outcome.recording).map_err(|reason| reason.to_string())?;
+            Ok((spread, outcome.recording.t_s))
+        }
+        Ending::Interrupted { .. } | Ending::BrokeDown(_) => Err("the run did not complete".into()),
+    });
+    match spread {
+        Ok((spread, t_s)) => grown(&spread, &t_s).map_or(Verdict::Kept, Verdict::Failed),
+        Err(reason) => Verdict::Silent(reason),
+    }
+}
+
+/// When, and by how much, the interval left what it was at the start: there, what is on its way is known exactly.
+fn grown(spread: &CascadeSpread, t_s: &[f64]) -> Option<Failure> {
+    let axes = spread.low.iter().zip(&spread.high);
+    let worst = axes.flat_map(|(low, high)| {
+        let (first, last) = (low.first().copied().unwrap_or(0.0), high.first().copied().unwrap_or(0.0));
+        // Where all start in one place, rounding is measured by how far away that is.
+        let size = (last - first).max(1e-3 * first.abs().max(last.abs())).max(f64::MIN_POSITIVE);
+        let out = move |(low, high): (&f64, &f64)| (first - low).max(high - last) / size;
+        low.iter().zip(high).map(out).zip(t_s).collect::<Vec<_>>()
+    });
+    let (part, t_s) = worst.max_by(|(a, _), (b, _)| a.total_cmp(b))?;
+    (part > GROWTH || part.is_nan()).then_some(Failure::Grew { part, t_s: *t_s })
+}
+
+fn whole(case: &Case, setup: &Setup) -> Verdict {
+    let promised = promised(&check(setup));
+    let mut first = None;
+    for doublings in 0..=DOUBLINGS {
+        // What is drawn or bounded is made for a horizon.
+        let setup = match read(&Case { end_s: case.end_s * f64::from(1 << doublings), ..case.clone() }) {
+            Ok(scenario) => scenario.setup,
+            Err(reason) => return Verdict::Silent(reason),
+        };
+        let outcome = match run(&setup) {
+            Ok(outcome) => outcome,
+            Err(reason) => return Verdict::Silent(reason),
+        };
+        if let Ending::BrokeDown(breakdown) = &outcome.ending {
+            return match promised {
+                true => Verdict::Failed(Failure::BrokeDown(format!("{:?}", breakdown.cause))),
+                false => Verdict::Silent("it broke down, and nothing is promised".into()),
+            };
+        }
+        let metrics = Metrics::of(&setup, &outcome.recording, None, None);
+        if let Some(residual) = metrics.balance_residual.filter(|residual| !(residual.relative <= BALANCE)) {
+            let (relative, t_s) = (residual.relative, residual.t_s);
+            return Verdict::Failed(Failure::Unbalanced { relative, t_s });
+        }
+        let Some(last) = metrics.disagreement.last().filter(|_| promised) else { return Verdict::Balanced };
+        let before = *first.get_or_insert(last);
+        if last <= SMALL || last < FALLEN * before {
+            return Verdict::Fell;
+        }
+        if doublings == DOUBLINGS && last > before && last > 10.0 * SMALL {
+            return Verdict::Failed(Failure::Rose { first: before, last });
+        }
+    }
+    Verdict::Undecided
+}
+
+/// Whether all hypotheses hold, for all time or as long as anything is known, without what only a run can show.
+fn promised(report: &Report) -> bool {
+    report.hypotheses.iter().all(|hypothesis| match hypothesis.answer() {
+        Answer::Holds | Answer::HoldsOnHorizon => true,
+        Answer::Watched | Answer::NotShown | Answer::NotCovered | Answer::Violated => false,
+    })
+}
