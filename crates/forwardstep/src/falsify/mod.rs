@@ -34,7 +34,7 @@ impl Tally {
             Verdict::Fell => self.fell += 1,
             Verdict::Balanced => self.balanced += 1,
             Verdict::Undecided => self.undecided.push(case),
-            Verdict::Silent(reason) => *self.silent.entry(reason).or_default() += 1,
+            Verdict::Silent(reason) => *self.silent.entry(without_numbers(&reason)).or_default() += 1,
             Verdict::Failed(failure) => self.failed.push(shrunk(case, failure)),
         }
     }
@@ -62,5 +62,104 @@ fn shrunk(mut case: Case, mut failure: Failure) -> (Case, Failure) {
             Some(found) => (case, failure) = found,
             None => return (case, failure),
         }
+    }
+}
+
+/// The same words for whichever agent and place: every number becomes `#`.
+fn without_numbers(reason: &str) -> String {
+    let mut found = String::with_capacity(reason.len());
+    for c in reason.chars() {
+        match c {
+            '0'..='9' if found.ends_with('#') => {}
+            '0'..='9' => found.push('#'),
+            c => found.push(c),
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::case::{Course, Switching, System};
+    use super::judge::{grown, judge, read};
+    use super::*;
+
+    #[test]
+    fn every_case_that_is_drawn_is_a_scenario_and_so_is_every_smaller_one() {
+        for number in 0..300 {
+            let case = Case::draw(5, number);
+            assert!(read(&case).is_ok(), "{}\n{case}", read(&case).unwrap_err());
+            assert_eq!(case, Case::draw(5, number));
+            if number % 10 == 0 {
+                for smaller in case.smaller() {
+                    assert!(smaller != case && read(&smaller).is_ok(), "{}\n{smaller}", read(&smaller).unwrap_err());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn all_kinds_and_courses_are_drawn() {
+        let cases: Vec<Case> = (0..600).map(|number| Case::draw(9, number)).collect();
+        let has = |is: &dyn Fn(&Case) -> bool| assert!(cases.iter().any(is));
+        for system in
+            [System::Arm, System::Ship, System::PositionOnly, System::Spacecraft, System::Tip, System::Chain(3)]
+        {
+            has(&|case| case.system == system);
+        }
+        has(&|case| matches!(case.system, System::Vehicle(_)));
+        has(&|case| matches!(case.course, Course::Integral { velocities: true }));
+        has(&|case| matches!(case.course, Course::Follow { .. }));
+        has(&|case| matches!(case.course, Course::Track { .. }));
+        has(&|case| case.switching == Switching::Random && case.phases.len() == 3);
+    }
+
+    /// κ₀ that differ under (a5) with a delay that jumps: the network may diverge, and `check` does not say otherwise.
+    fn unlike() -> Case {
+        let case = Case { roots: vec![vec![0.5, 1.0], vec![3.0, 1.0]], ..Case::draw(1, 6) };
+        let starts = vec![[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]];
+        let phase = |edges| super::case::Phase { dwell_s: 0.4, edges };
+        Case {
+            number: 6,
+            system: System::Mass(1),
+            course: Course::Agree { velocities: true },
+            starts,
+            phases: vec![phase(vec![(0, 1)]), phase(vec![(1, 0)])],
+            switching: Switching::Repeat,
+            delay: "constant_s = 0",
+            weight: "2.0",
+            ..case
+        }
+    }
+
+    #[test]
+    fn a_spread_that_grows_is_seen_and_nothing_is_said_of_what_is_not_claimed() {
+        assert!(matches!(judge(&unlike()), Verdict::Silent(_)));
+        let spread = |low: &[f64], high: &[f64]| forwardstep::check::prediction::CascadeSpread {
+            low: vec![low.to_vec()],
+            high: vec![high.to_vec()],
+        };
+        assert_eq!(grown(&spread(&[0.0, 0.1, 0.2], &[1.0, 1.0, 0.9]), &[0.0, 1.0, 2.0]), None);
+        let out = grown(&spread(&[0.0, 0.1, -0.01], &[1.0, 1.0, 1.02]), &[0.0, 1.0, 2.0]);
+        assert!(matches!(out, Some(Failure::Grew { part, t_s: 2.0 }) if (part - 0.02).abs() < 1e-12), "{out:?}");
+    }
+
+    #[test]
+    fn what_fails_becomes_as_small_as_it_still_fails() {
+        // Whatever has a phase with an edge from agent 1 to agent 2 "fails".
+        let is = |case: &Case| case.phases.iter().any(|phase| phase.edges.contains(&(0, 1)));
+        let case =
+            (0..).map(|number| Case::draw(2, number)).find(|case| is(case) && case.starts.len() > 3 && !case.is_led());
+        let mut case = case.unwrap();
+        while let Some(smaller) = case.smaller().into_iter().find(|smaller| is(smaller)) {
+            case = smaller;
+        }
+        assert_eq!((case.starts.len(), case.phases.len(), case.phases[0].edges.len()), (2, 1, 1), "{case}");
+        assert_eq!((case.weight, case.delay, case.end_s), ("1", "constant_s = 0", 1.0));
+    }
+
+    #[test]
+    fn reasons_are_counted_whatever_their_numbers_are() {
+        assert_eq!(without_numbers("agent 12 at 3.5 s"), "agent # at #.# s");
     }
 }
