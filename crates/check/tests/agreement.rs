@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod common;
+mod identities;
 
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, ReferenceDynamics};
 use std::sync::Arc;

@@ -27,6 +27,8 @@ pub mod lower;
 pub mod notation;
 mod places;
 pub mod polynomial;
+#[cfg(test)]
+mod properties;
 pub mod reduction;
 pub mod stacked;
 mod steps;

@@ -35,7 +35,7 @@ pub(super) fn reduction(
     if !case.has_xi(dynamics) || dynamics.order > 2 {
         section = section.words("The upper subsystem is then").system(notation.system(last), places.reduced);
     }
-    if let Some(shifted) = shifted(upper) {
+    if let Some(shifted) = upper.shifted() {
         section = section
             .words("The derivative of y that is left is absorbed by x less a part of y, so that y alone remains.")
             .system(notation.system(&shifted), places.reduced);
@@ -69,16 +69,6 @@ fn intermediate(upper: &Upper, steps: &[Reduced], notation: &Notation, mut secti
     section
 }
 
-/// x − y/λ_f in the place of x, where a filter stands in for s.
-fn shifted(upper: &Upper) -> Option<Reduced> {
-    (upper.input == Letter::Filter).then_some(())?;
-    let mut variables = upper.derivatives(upper.reference_order);
-    let first = variables.first_mut()?;
-    let input = Polynomial::number(upper.filter.coefficient(1));
-    *first = Variable { name: Name::Shifted, state: first.state.clone(), input, common: upper.alike };
-    upper.reduced(variables)
-}
-
 impl Case<'_> {
     /// How high a derivative of s the proof leaves.
     pub fn aim(&self) -> usize {
@@ -97,7 +87,7 @@ impl Case<'_> {
     }
 
     /// Whether p + κ₀ divides everything, so that ξ = q̇ + κ₀ q and what follows from it are enough.
-    fn has_xi(&self, dynamics: &Dynamics) -> bool {
+    pub fn has_xi(&self, dynamics: &Dynamics) -> bool {
         let velocities = matches!(self.led, Led::Consensus(Heard::Velocities) | Led::PureIntegral(Heard::Velocities));
         velocities && dynamics.order <= self.roots.len()
     }
@@ -118,7 +108,7 @@ impl Case<'_> {
     }
 
     /// The variables of those that follow a leader.
-    fn followed_variables(&self, upper: &Upper) -> Option<Vec<Variable>> {
+    pub fn followed_variables(&self, upper: &Upper) -> Option<Vec<Variable>> {
         let Led::Leader(design, [alpha, beta, _]) = &self.led else { return None };
         let xi = Polynomial::factor(alpha);
         let one = Polynomial::one();
