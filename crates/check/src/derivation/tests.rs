@@ -169,7 +169,7 @@ fn eq_112_114_115_and_118_for_alpha_3_and_gamma_7() {
     let xi = variable(Name::Xi, &[3, 1], &[]);
     let network: [(Quantity, &[i64]); 2] = [(own(V0), &[-1]), (heard(V0), &[1])];
     let closed = form(&[(sign, &[-7]), (own(S), &[0, 1])], &network);
-    assert_eq!(reduced(&upper, vec![xi.clone()]).rates, [closed.clone()]);
+    assert_eq!(reduced(&upper, vec![xi.clone()]).rates, std::slice::from_ref(&closed));
     // (114): Δξ̇ = the same − ξ̇₀
     let relative = upper.relative_to(Quantity::of_leader(Q));
     let drive = form(&[(Quantity::of_leader(Q), &[0, -3, -1])], &[]);

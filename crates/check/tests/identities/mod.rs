@@ -6,3 +6,4 @@
 
 mod families;
 mod moment;
+mod plants;
