@@ -64,11 +64,15 @@ impl Case<'_> {
             section = section.formula(Formula::equal(named.name(variable.name, Vertex::Own, 0), definition), "");
         }
         let section = section.system(notation.system(&laplacian.chain), places.laplacian);
-        let matrix = stacked::matrix(&laplacian.blocks);
+        if self.roots_of_all != RootsOfAll::Same {
+            return Some(section);
+        }
         let section = section
-            .words("Stacked for all agents, and without delays, the matrix of this system is the following, each entry times I_m; D_w is the diagonal \
-                    of the sums of weights and W = [w_ij].")
-            .formula(matrix, places.matrix);
+            .words(
+                "Stacked for all agents, and without delays, the matrix of this system is the following, each entry times I_m; D_w is the diagonal \
+                 of the sums of weights and W = [w_ij].",
+            )
+            .formula(stacked::matrix(&laplacian.blocks), places.matrix);
         Some(section)
     }
 }

@@ -8,6 +8,7 @@ use super::dynamics::{Dynamics, Heard};
 use super::explanation::{Section, Subject};
 use super::form::{Form, Letter, Quantity, Vertex};
 use super::formula::Formula;
+use super::laplacian::RootsOfAll;
 use super::notation::Notation;
 use super::places::Places;
 use super::polynomial::Polynomial;
@@ -24,12 +25,16 @@ pub(super) fn reduction(
     if dynamics.order == 0 {
         return (None, upper.reduced(upper.derivatives(0)));
     }
-    let section = Section::new(Subject::DegreeReduction);
+    let mut section = Section::new(Subject::DegreeReduction);
+    if upper.input == Letter::Filter {
+        section = section
+            .words("s is y and a part of its derivative, so that y stands in the place of s with one derivative more.");
+    }
     if let Some(variables) = case.followed_variables(upper) {
         return followed(case, upper, dynamics, variables, (notation, places), section);
     }
     let steps = upper.steps(case.aim());
-    let mut section = intermediate(upper, &steps, notation, section);
+    section = intermediate(upper, &steps, notation, section);
     let Some(last) = steps.last() else { return (None, None) };
     let mut found = last.clone();
     if !case.has_xi(dynamics) || dynamics.order > 2 {
@@ -102,7 +107,8 @@ impl Case<'_> {
                 (2, _) => (Name::Y, &Polynomial::with_roots(&self.roots[..1]) * &Polynomial::power(1)),
                 (_, r) => (Name::Reduced(r), state),
             };
-            Variable::constructed(name, state, [kept, dynamics.plant], self.alike)
+            let common = self.alike && r == 1 && self.roots_of_all != RootsOfAll::Own;
+            Variable::constructed(name, state, [kept, dynamics.plant], common)
         };
         (1..=dynamics.order.min(self.roots.len())).map(each).collect()
     }
@@ -188,6 +194,7 @@ fn in_paper_variables(
     }
     section = section.system(notation.system(in_xi), places.in_xi);
     if !places.stacked.is_empty()
+        && case.roots_of_all == RootsOfAll::Same
         && let Some(rows) = in_xi.stacked(upper.input)
     {
         let last = rows.len().saturating_sub(1);

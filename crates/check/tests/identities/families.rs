@@ -5,8 +5,10 @@ use std::sync::Arc;
 use forwardstep_check::derivation::cascade::Upper;
 use forwardstep_check::derivation::case::{Case, cases};
 use forwardstep_check::derivation::dynamics::declared;
-use forwardstep_check::derivation::form::Letter;
+use forwardstep_check::derivation::form::{Letter, Quantity};
+use forwardstep_check::derivation::formula::Formula;
 use forwardstep_check::derivation::polynomial::Polynomial;
+use forwardstep_check::derivation::{Line, explain};
 use forwardstep_core::reference::{
     Choice, Consensus, Exchange as Told, Heard, Measured, Position, PositionVelocity, PureIntegral, Reference,
     ReferenceOut, SmoothFollowing,
@@ -367,5 +369,31 @@ fn eq_identities_of_110_119_122_and_swarms_hold_along_real_runs() {
                 }
             }
         });
+    }
+}
+
+#[test]
+fn with_roots_of_their_own_agents_share_neither_variables_nor_a_matrix() {
+    // κ₀ differs, or only κ₁ does, or nothing.
+    for (apart, shares, matrix) in [([0.2, 0.0], false, false), ([0.0, 0.2], true, false), ([0.0; 2], true, true)] {
+        let mut setup = masses(
+            Exchange::PositionVelocity,
+            2,
+            Schedule::fixed(vec![edge(0, 1, 1.0, 0)]),
+            vec![Delay::constant(0.0)],
+        );
+        setup.agents[1].roots_per_s.iter_mut().zip(apart).for_each(|(root, apart)| *root += apart);
+        let case = &cases(&setup)[0];
+        let dynamics = case.dynamics().unwrap();
+        let reduced = case.upper(&dynamics).reduced(case.xi_variables(&dynamics)).unwrap();
+        let heard = reduced.rates[1].network.polynomial(Quantity::heard(Letter::Variable(0)));
+        assert_eq!(heard.is_zero(), !shares, "{apart:?}");
+        let explanation = explain(&setup);
+        let lines =
+            || explanation.designs.iter().flat_map(|design| &design.sections).flat_map(|section| &section.lines);
+        let is_matrix = |line: &Line| matches!(line, Line::Formula(Formula::Equal(_, right), _) if matches!(**right, Formula::Matrix(_)));
+        assert_eq!(lines().any(is_matrix), matrix, "{apart:?}");
+        let refused = |line: &Line| matches!(line, Line::Words(words) if words.contains("no Laplacian form"));
+        assert_eq!(lines().any(refused), !shares, "{apart:?}");
     }
 }
