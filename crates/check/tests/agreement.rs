@@ -1,8 +1,9 @@
 //! The conserved quantity, the spread that never grows, and the case in which it does.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 mod common;
+mod identities;
 
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, ReferenceDynamics};
 use std::sync::Arc;

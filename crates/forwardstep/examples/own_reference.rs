@@ -100,6 +100,19 @@ impl ReferenceDynamics for Anchored {
         })
     }
 
+    /// With αᵣ of ∏ (p + κᵣ): z^(ℓ) = −Σ αᵣ₋₁ xᵣ − w [Σ αᵣ xᵣ − α₀ home] − Σ_j w_ij [Σ αᵣ xᵣ − α₀ q_j], xᵣ being q, q̇, ż, ….
+    fn linear(&self, agent: &AgentSetup, _: Exchange) -> Option<LinearReference> {
+        let alpha = polynomial(&agent.roots_per_s).ok()?;
+        let order = agent.roots_per_s.len();
+        let terms = |of: &dyn Fn(usize) -> f64| {
+            let z = (0..order).map(|k| if k == 0 { 0.0 } else { of(k + 1) });
+            LinearTerms { q: vec![of(0), of(1)], z: z.collect() }
+        };
+        let own = terms(&|r| -self.weight * alpha[r] - if r == 0 { 0.0 } else { alpha[r - 1] });
+        let coupled = terms(&|r| -alpha[r]);
+        Some(LinearReference { order, own, constant: true, coupled, heard: [-alpha[0], 0.0] })
+    }
+
     fn check(&self, setup: &Setup) -> Result<(), SetupError> {
         let (homes, agents) = (self.homes.len(), setup.agents.len());
         quantity::such(homes == agents, "reference.anchored", "homes", homes as f64, "must be as many as agents")?;

@@ -19,10 +19,12 @@ pub use forwardstep_io::scenario::kinds::{
 pub use forwardstep_sim::delay::{Arrivals, Delay, DelayFunction, DelayPiece, Known as KnownDelay};
 pub use forwardstep_sim::quantity::{self, QuantityError};
 pub use forwardstep_sim::reference::{
-    Dynamics, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords, Roots,
+    Dynamics, LinearReference, LinearTerms, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords,
+    Roots,
 };
 pub use forwardstep_sim::system::{Declaration, DeclaredClaim, Known};
 pub use forwardstep_sim::{
-    ActuatorLimits, Assembly, Attachments, Axis, AxisUnit, Block, Coordinates, Exchange, Interface, LagrangianRobot,
-    Law, LawWords, Line, LineValue, PositionKind, Robot, RobotInterface, RobotSetup, Setup, SetupError, Start,
+    ActuatorLimits, AgentSetup, Assembly, Attachments, Axis, AxisUnit, Block, Coordinates, Exchange, Interface,
+    LagrangianRobot, Law, LawWords, Line, LineValue, PositionKind, Robot, RobotInterface, RobotSetup, Setup,
+    SetupError, Start,
 };

@@ -12,8 +12,10 @@ use std::fs;
 use std::process::ExitCode;
 use std::sync::Arc;
 
+use forwardstep::check::derivation::explain;
 use forwardstep::check::{Answer, Id, Report, Rigour, Theorem, check, predict};
 use forwardstep::io::SourceText;
+use forwardstep::io::output::{TextLine, explanation_lines};
 use forwardstep::io::scenario::{Scenario, ScenarioError};
 use forwardstep::own::*;
 use forwardstep::program_with;
@@ -61,6 +63,20 @@ fn read(text: &str) -> Result<Scenario, ScenarioError> {
 fn forwardstep(arguments: &[&str]) -> ExitCode {
     let kinds = own_reference::kinds().unwrap();
     program_with(&kinds, ["forwardstep"].iter().chain(arguments).copied())
+}
+
+#[test]
+fn their_linear_form_is_explained() {
+    let setup = read(HOMES).unwrap().setup;
+    let explanation = explain(&setup);
+    let design = &explanation.designs[0];
+    assert_eq!((design.agents.len(), design.order, design.degrees), (3, Some(3), Some([2, 1])));
+    let lines = explanation_lines(&setup, &explanation);
+    let has = |part: &str| lines.iter().any(|line| matches!(line, TextLine::Formula(text, _) if text.contains(part)));
+    // ℓ = 2, α = (2, 3, 1) and the weight 0.7 of a home.
+    let own = "z\u{308}_i = −3.7 z\u{307}_i − 4.1 q\u{307}_i − 1.4 q_i − Σ_j w_ij";
+    assert!(has(own) && has("[z\u{307}_i + 3 q\u{307}_i + 2 q_i − 2 q_j(t − T_ij)] + c_i"), "{lines:?}");
+    assert!(has("q\u{308}_i = z\u{307}_i + s\u{307}_i"), "{lines:?}");
 }
 
 #[test]

@@ -8,7 +8,9 @@ use forwardstep_core::reference::{self, Choice, Derived, Sliding, SmoothFollowin
 
 use crate::closed_loop::{Assembly, SetupError};
 use crate::quantity::{MOST_EVENTS, QuantityError, few, positive};
-use crate::reference::{Dynamics, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords, Roots};
+use crate::reference::{
+    Dynamics, LinearReference, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords, Roots,
+};
 use crate::setup::{AgentSetup, Exchange, Setup};
 use crate::system::{Known, PositionKind};
 use crate::trajectory::Trajectory;
@@ -155,6 +157,11 @@ impl ReferenceDynamics for Following {
 
     fn known(&self) -> Known {
         Known::Checked
+    }
+
+    /// A sign is not linear.
+    fn linear(&self, _: &AgentSetup, _: Exchange) -> Option<LinearReference> {
+        None
     }
 
     fn check(&self, setup: &Setup) -> Result<(), SetupError> {

@@ -12,7 +12,7 @@ use forwardstep_core::reference::{
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::probe::{Identity, STATES, probe_reference};
 use forwardstep_sim::reference::{
-    Dynamics, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords, Roots,
+    Dynamics, LinearReference, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords, Roots,
 };
 use forwardstep_sim::system::{Declaration, Known as Knowledge};
 use forwardstep_sim::{
@@ -76,6 +76,10 @@ impl ReferenceDynamics for Own {
 
     fn known(&self) -> Knowledge {
         Knowledge::Declared(Declaration { source: "no proof".into(), promises: "nothing".into(), claims: Vec::new() })
+    }
+
+    fn linear(&self, _: &AgentSetup, _: Exchange) -> Option<LinearReference> {
+        None
     }
 
     fn check(&self, _: &Setup) -> Result<(), SetupError> {

@@ -1,5 +1,7 @@
 //! The laws of estimates and filters, which are what they are: nothing is derived of them.
 
+use num_rational::BigRational;
+
 use super::case::{Case, Step, ThrustStep};
 use super::form::{Combination, Form, Letter, Quantity, Term};
 use super::formula::{Formula, Sign, Symbol};
@@ -35,11 +37,25 @@ pub(super) fn of(case: &Case<'_>, notation: &Notation) -> Vec<(Formula, &'static
                 (gradient(symbol("m").hat(), Symbol::new("γ").above("∗"), vec![transposed(z(1)), s(0)]), "after (a9)"),
             ]
         }
-        Step::Thrust(ThrustStep::Adaptive, _) => {
-            vec![(
-                gradient(symbol("m").hat(), Symbol::new("γ").above("∗"), vec![transposed(symbol("w").into()), s(1)]),
-                "(58)",
-            )]
+        Step::Thrust(ThrustStep::Adaptive, [alpha, _]) => {
+            let number = |number: &BigRational| Polynomial::number(number.clone());
+            let w = Combination::of(
+                Quantity::own(Letter::Reference),
+                &Polynomial::power(2) + &(&Polynomial::power(1) * &number(alpha)),
+            )
+            .plus(nonlinear(Term::Weight), &-&number(alpha));
+            let w = (Formula::equal(symbol("w"), notation.form(&Form::own(w))), "");
+            vec![
+                w,
+                (
+                    gradient(
+                        symbol("m").hat(),
+                        Symbol::new("γ").above("∗"),
+                        vec![transposed(symbol("w").into()), s(1)],
+                    ),
+                    "(58)",
+                ),
+            ]
         }
         Step::Thrust(ThrustStep::Continuous | ThrustStep::Differentiable, _) | Step::Chain(..) | Step::Outside(_) => {
             Vec::new()

@@ -6,7 +6,7 @@ use super::adaptation::{self, nonlinear};
 use super::case::Case;
 use super::explanation::{Explained, Section, Subject};
 use super::form::{Combination, Form, Letter, Operator, Quantity, Term};
-use super::formula::{Formula, Symbol};
+use super::formula::{Formula, Sign, Symbol};
 use super::lower;
 use super::polynomial::Polynomial;
 use super::words;
@@ -56,7 +56,10 @@ pub(super) fn explained(case: &Case<'_>, gains: &[BigRational; 2]) -> Explained 
     let reference = reference(gains);
     let lower = lower::attitude();
     let (z, s) = (Quantity::own(Letter::Reference), Quantity::own(Letter::Error));
-    let definition = Combination::of(Quantity::own(Letter::Position), Polynomial::one()).plus(z, &-&Polynomial::one());
+    let definition = Formula::sum([
+        (Sign::Plus, notation.quantity(Quantity::own(Letter::Position), 0)),
+        (Sign::Minus, notation.quantity(z, 0)),
+    ]);
     let delta = notation.quantity(Quantity::own(Letter::Deviation), 1);
     let delta_q = Formula::from(Symbol::new("Δq").above("∗").derivative(1));
     let difference = Formula::product([
@@ -88,7 +91,7 @@ pub(super) fn explained(case: &Case<'_>, gains: &[BigRational; 2]) -> Explained 
     let sections = vec![
         Section::new(Subject::VirtualControl)
             .words("z is what the angular velocity ω should be; its derivative is what the virtual control ω̇ should be.")
-            .formula(Formula::equal(notation.quantity(s, 0), notation.form(&Form::own(definition))), ""),
+            .formula(Formula::equal(notation.quantity(s, 0), definition), ""),
         Section::new(Subject::ReferenceDynamics).formula(notation.equation(z, 1, &reference), "(97)"),
         controller,
         cascade,

@@ -3,7 +3,7 @@
 use forwardstep_core::expression::Number;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::{Following, FollowingDesign};
-use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral};
+use forwardstep_sim::reference::{Backstepping, Consensus, LinearReference, PureIntegral};
 use forwardstep_sim::{
     Adaptive, AgentSetup, AttitudeLaw, ChainLaw, ChainModel, ChainStep, Exchange, Known, PositionOnlyLaw, Setup,
     TaskSpaceLaw, ThrustKind, ThrustLaw,
@@ -49,8 +49,8 @@ pub enum Led {
     Leader(FollowingDesign, [BigRational; 3]),
     /// A target of its own.
     Target,
-    /// Reference dynamics from outside.
-    Outside(&'static str),
+    /// Reference dynamics from outside, and what their author says that they are.
+    Outside(&'static str, Option<LinearReference>),
 }
 
 /// A kind of law, with the numbers that the lower subsystem has.
@@ -184,7 +184,7 @@ fn led(setup: &Setup, agent: usize) -> Led {
     } else if let Some(following) = reference.downcast::<Following>() {
         Led::Leader(following.design, [following.alpha, following.beta, following.gain].map(Number::written))
     } else {
-        Led::Outside(reference.words().name)
+        Led::Outside(reference.words().name, reference.linear(&setup.agents[agent], setup.exchange))
     }
 }
 

@@ -3,11 +3,13 @@
 //! A design says first what q should do, in q alone. Then derivatives that are not measured are replaced by those of z, which are
 //! constructed (Remark 6): pʳ q becomes p^(r−k+1) z for a plant of order k, z following p^(k−1) q.
 
+use forwardstep_sim::reference::{LinearReference, LinearTerms};
 use num_rational::BigRational;
-use num_traits::{One, Zero};
+use num_traits::One;
 
 use super::form::{Combination, Form, Letter, Links, Quantity, Term, Undifferentiable, Vertex};
 use super::polynomial::Polynomial;
+use crate::certificate::written;
 
 /// p^ℓ z = …, for a plant of order k.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,6 +120,19 @@ pub fn backstepping() -> Dynamics {
     Dynamics { order: 0, plant: 2, right: Form::network(difference(&one, &one)).negated() }
 }
 
+/// Reference dynamics from outside, for robots: what their author says that they are.
+pub fn declared(linear: &LinearReference) -> Dynamics {
+    let polynomial = |numbers: &[f64]| Polynomial::new(numbers.iter().map(|number| written(*number)).collect());
+    let terms = |terms: &LinearTerms| {
+        Combination::of(Quantity::own(Letter::Position), polynomial(&terms.q))
+            .plus(Quantity::own(Letter::Reference), &polynomial(&terms.z))
+    };
+    let constant = if linear.constant { Polynomial::one() } else { Polynomial::default() };
+    let own = terms(&linear.own).plus(Quantity::own(Letter::Term(Term::Constant)), &constant);
+    let network = terms(&linear.coupled).plus(Quantity::heard(Letter::Position), &-&polynomial(&linear.heard));
+    Dynamics { order: linear.order, plant: Measured::ROBOT.plant, right: Form { own, network } }
+}
+
 /// −γ ς.
 fn sign(gamma: &BigRational) -> Form {
     Form::own(term(Letter::Term(Term::Sign), -gamma))
@@ -218,9 +233,4 @@ impl Dynamics {
     pub fn has_network(&self) -> bool {
         !self.right.network.is_zero()
     }
-}
-
-/// Zero, for designs without manipulability.
-pub fn zero() -> BigRational {
-    BigRational::zero()
 }

@@ -2,15 +2,15 @@
 
 use forwardstep_core::expression::Number;
 use forwardstep_sim::leader::FollowingDesign;
-use num_traits::Zero;
+use num_rational::BigRational;
+use num_traits::{One, Zero};
 
 use super::cascade::Upper;
 use super::case::{Case, ChainStepKind, Led, Step, ThrustStep};
-use super::dynamics::{Dynamics, Heard, Measured, Smooth, backstepping, consensus, following, tracking};
+use super::dynamics::{Dynamics, Measured, Smooth, backstepping, consensus, declared, following, tracking};
 use super::explanation::{Explained, Section, Subject};
-use super::form::{Form, Letter, Links, Quantity, Vertex};
-use super::formula::{Formula, Symbol};
-use super::laplacian::{RootsOfAll, chain};
+use super::form::{Combination, Form, Letter, Links, Quantity};
+use super::formula::{Formula, Sign, Symbol};
 use super::lower::{self, ChainError, Lower};
 use super::notation::Notation;
 use super::places::Places;
@@ -23,7 +23,7 @@ impl Case<'_> {
     /// Explains it.
     pub fn explained(&self) -> Explained {
         match (&self.led, &self.step) {
-            (Led::Outside(name), _) => self.silent(&format!(
+            (Led::Outside(name, None), _) => self.silent(&format!(
                 "{name} come from outside and do not say that they are linear, so nothing is derived from them."
             )),
             (_, Step::Outside(name)) => {
@@ -68,7 +68,7 @@ impl Case<'_> {
             // Weights and delays that vary are not covered by the theorems; what is derived is for those that do not.
             Led::Leader(..) => self.smooth().and_then(|smooth| smooth.dynamics(Links::Constant).ok()),
             Led::Target => tracking(&self.roots, self.measured()),
-            Led::Outside(_) => None,
+            Led::Outside(_, linear) => linear.as_ref().map(declared),
         }
     }
 
@@ -160,27 +160,9 @@ impl Case<'_> {
         }
     }
 
-    /// (46): z is what is done, so that there is no s.
-    fn without_reference(&self, dynamics: &Dynamics, notation: &Notation) -> Explained {
-        // With s = 0 from the start z is ẋ.
-        let upper = dynamics.upper().undisturbed();
-        let equation = notation.equation(Quantity::own(Letter::Position), upper.order, &upper.right);
-        let sections = vec![
-            Section::new(Subject::ReferenceDynamics)
-                .words(
-                    "Dynamic feedback linearisation makes the thrust and two angular velocities an input u of the third derivative of x, and \
-                     u is chosen so that x obeys (24) of order two at once. There is no s, so this is no cascade.",
-                )
-                .formula(equation, "(46)"),
-        ];
-        let laplacian = self.laplacian(&upper, notation, &Places::default());
-        let sections = sections.into_iter().chain(laplacian).collect();
-        Explained { agents: self.agents.clone(), order: Some(upper.order), degrees: None, sections }
-    }
-
     fn reference(&self, dynamics: &Dynamics, notation: &Notation, places: &Places) -> Section {
         let mut section = Section::new(Subject::ReferenceDynamics);
-        if !self.roots.is_empty() {
+        if !self.roots.is_empty() && !matches!(self.led, Led::Outside(..)) {
             let product = notation.polynomial(&Polynomial::with_roots(&self.roots));
             let equation = match self.roots.len() {
                 1 => product,
@@ -195,6 +177,10 @@ impl Case<'_> {
                 "Agents keep an offset from where all agree; {0} stands for {0} less that offset.",
                 notation.position
             ));
+        }
+        if let Led::Outside(name, _) = self.led {
+            section = section
+                .words(format!("{name}: from outside, and linear as its author says. c does not depend on the state."));
         }
         let z = Quantity::own(Letter::Reference);
         section = match self.smooth() {
@@ -245,10 +231,9 @@ impl Case<'_> {
             }
         };
         let symbol = |index: &'static str| Formula::from(Symbol::new(base).above(above).below(index));
-        let of = |all: super::form::Combination, (letter, a): (Letter, Polynomial)| all.plus(Quantity::own(letter), &a);
-        let form = Form::own(xi.into_iter().fold(super::form::Combination::default(), of));
-        let difference =
-            Formula::sum([(super::formula::Sign::Plus, symbol("i")), (super::formula::Sign::Minus, symbol("j"))]);
+        let of = |all: Combination, (letter, a): (Letter, Polynomial)| all.plus(Quantity::own(letter), &a);
+        let form = Form::own(xi.into_iter().fold(Combination::default(), of));
+        let difference = Formula::sum([(Sign::Plus, symbol("i")), (Sign::Minus, symbol("j"))]);
         let weight = Formula::from(Symbol::new("w").below("ij"));
         let argument = Formula::product([Formula::NeighbourSum, weight, Formula::bracket(difference)]);
         let selection = Formula::Element(
@@ -313,58 +298,16 @@ impl Case<'_> {
     ) -> (Option<Section>, Option<Reduced>) {
         super::steps::reduction(self, upper, dynamics, (notation, places))
     }
-
-    fn laplacian(&self, upper: &Upper, notation: &Notation, places: &Places) -> Option<Section> {
-        let from = match &self.led {
-            Led::Consensus(Heard::Positions) | Led::PureIntegral(Heard::Positions) => 0,
-            Led::Consensus(Heard::Velocities) | Led::PureIntegral(Heard::Velocities) => 1,
-            Led::Consensus(Heard::Coupled) | Led::PureIntegral(Heard::Coupled) => {
-                let words = "What is heard is a nonlinear function of differences, so that there is no matrix; the argument is the same, since \
-                             that function is odd and grows.";
-                return Some(Section::new(Subject::Laplacian).words(words));
-            }
-            Led::Backstepping | Led::Leader(..) | Led::Target | Led::Outside(_) => return None,
-        };
-        let section = Section::new(Subject::Laplacian);
-        let Some(laplacian) = upper.laplacian(chain(&self.roots, from, self.roots_of_all)) else {
-            return Some(section.words(
-                "The agents hear each other with different κ₀, and what is heard is no multiple of the neighbour's ψ: there is no Laplacian \
-                 form (see E1 in PAPER.md).",
-            ));
-        };
-        let named = notation.naming(&laplacian.chain);
-        let scaled = match self.roots_of_all {
-            RootsOfAll::Same => "",
-            RootsOfAll::SameFirst | RootsOfAll::Own => {
-                " ψ is divided by the last coefficient of the polynomial, since the agents' roots differ."
-            }
-        };
-        let mut section = section.words(format!(
-            "Without s every entry of ψ moves towards an average of the next one, and the last one towards what is heard: no entry of a row is \
-             negative off the diagonal, and every row sums to zero.{scaled}",
-        ));
-        for variable in &laplacian.chain.variables {
-            let definition = notation.definition(upper, &variable.state, &variable.input);
-            section = section.formula(Formula::equal(named.name(variable.name, Vertex::Own, 0), definition), "");
-        }
-        let section = section.system(notation.system(&laplacian.chain), places.laplacian);
-        let matrix = super::stacked::matrix(&laplacian.blocks);
-        let section = section
-            .words("Stacked for all agents, and without delays, the matrix of this system is the following, each entry times I_m; D_w is the diagonal \
-                    of the sums of weights and W = [w_ij].")
-            .formula(matrix, places.matrix);
-        Some(section)
-    }
 }
 
 /// 1 + p/λ_f.
-fn lag(filter: &num_rational::BigRational) -> Polynomial {
+fn lag(filter: &BigRational) -> Polynomial {
     let rate = if filter.is_zero() { filter.clone() } else { filter.recip() };
-    Polynomial::new(vec![num_traits::One::one(), rate])
+    Polynomial::new(vec![BigRational::one(), rate])
 }
 
 /// β p + α.
-fn low(alpha: &num_rational::BigRational, beta: &num_rational::BigRational) -> Polynomial {
+fn low(alpha: &BigRational, beta: &BigRational) -> Polynomial {
     Polynomial::new(vec![alpha.clone(), beta.clone()])
 }
 
@@ -391,9 +334,9 @@ fn virtual_control(dynamics: &Dynamics, notation: &Notation, places: &Places) ->
     let z = notation.quantity(Quantity::own(Letter::Reference), order);
     section = section
         .formula(Formula::equal(notation.quantity(Quantity::own(Letter::Error), 0), notation.definition_of_error(dynamics)), places.error)
-        .words("The design starts from the identity below. The derivative in it is taken as the virtual control, and the reference dynamics say \
-                what it should be, namely:")
-        .formula(z, "")
-        .formula(Formula::equal(notation.quantity(q, n), notation.quantity(q, n)), places.identity);
+        .words("The design starts from the identity")
+        .formula(Formula::equal(notation.quantity(q, n), notation.quantity(q, n)), places.identity)
+        .words("whose sides are taken as the virtual control. What that should be is the following, which the reference dynamics define:")
+        .formula(z, "");
     section
 }

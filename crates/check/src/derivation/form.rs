@@ -105,8 +105,8 @@ pub enum Term {
     ChainRegressorError,
     /// φᵀ ζ, of immersion and invariance.
     ImmersionError,
-    /// What couples the first step of backstepping to the later ones.
-    NextError,
+    /// What reference dynamics from outside add that does not depend on the state.
+    Constant,
 }
 
 /// A linear map without a number that acts on a quantity.

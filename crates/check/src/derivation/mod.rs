@@ -7,7 +7,7 @@
 //! - `reduction`: new variables that absorb derivatives of s.
 //! - `laplacian`, `stacked`: chains of averages; all agents together.
 //! - `formula`, `notation`: formulas as trees, and from forms to them.
-//! - `case`: the designs in a setup; `explanation`: what is said of them, made by `explained`, `steps`, `attitude`, `task_space`,
+//! - `case`: the designs in a setup; `explanation`: what is said of them, made by `explained`, `steps`, `averages`, `attitude`, `task_space`,
 //!   `adaptation`, with `places` in the paper and `words`.
 //!
 //! Nothing is a text that is kept for a theorem: equations are multiplied, divided and substituted as polynomials in p with rational
@@ -15,6 +15,7 @@
 
 mod adaptation;
 mod attitude;
+mod averages;
 pub mod cascade;
 pub mod case;
 pub mod dynamics;
@@ -27,6 +28,8 @@ pub mod lower;
 pub mod notation;
 mod places;
 pub mod polynomial;
+#[cfg(test)]
+mod properties;
 pub mod reduction;
 pub mod stacked;
 mod steps;

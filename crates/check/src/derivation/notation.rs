@@ -153,7 +153,7 @@ impl Notation {
                 return Formula::product([Symbol::new("φ").above("T").into(), symbol("Δθ").into()]);
             }
             Term::ImmersionError => return Formula::product([Symbol::new("φ").above("T").into(), symbol("ζ").into()]),
-            Term::NextError => Symbol::new("e").below("2"),
+            Term::Constant => symbol("c"),
         };
         formula.into()
     }
@@ -161,8 +161,9 @@ impl Notation {
     /// A form as a sum; Σ_j w_ij […] stands after what an agent has by itself, and s at the end.
     pub fn form(&self, form: &Form) -> Formula {
         let mut terms = Vec::new();
-        let late =
-            |quantity: Quantity| matches!(quantity.letter, Letter::Error | Letter::Filter | Letter::Term(Term::Sign));
+        let late = |quantity: Quantity| {
+            matches!(quantity.letter, Letter::Error | Letter::Filter | Letter::Term(Term::Sign | Term::Constant))
+        };
         self.terms(&form.own, |quantity| !late(quantity), &mut terms);
         if !form.network.is_zero() {
             terms.push(self.network(&form.network));
@@ -210,7 +211,7 @@ impl Notation {
             }
         }
         // Where it is the same, what has a plus comes first: q̇ − z.
-        found.sort_by(|a, b| (a.0, a.1, a.4.is_negative(), a.2).cmp(&(b.0, b.1, b.4.is_negative(), b.2)));
+        found.sort_by_key(|(vertex, rank, quantity, _, c)| (*vertex, *rank, c.is_negative(), *quantity));
         to.extend(found.iter().map(|(_, _, quantity, k, c)| Formula::term(c, self.quantity(*quantity, *k))));
     }
 

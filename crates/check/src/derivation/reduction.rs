@@ -170,4 +170,14 @@ impl Upper {
         }
         steps
     }
+
+    /// With x less a part of y in the place of x, where a filter stands in for s: no derivative of y is left.
+    pub fn shifted(&self) -> Option<Reduced> {
+        (self.input == Letter::Filter).then_some(())?;
+        let mut variables = self.derivatives(self.reference_order);
+        let first = variables.first_mut()?;
+        let input = Polynomial::number(self.filter.coefficient(1));
+        *first = Variable { name: Name::Shifted, state: first.state.clone(), input, common: self.alike };
+        self.reduced(variables)
+    }
 }

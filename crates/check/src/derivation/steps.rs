@@ -8,6 +8,7 @@ use super::dynamics::{Dynamics, Heard};
 use super::explanation::{Section, Subject};
 use super::form::{Form, Letter, Quantity, Vertex};
 use super::formula::Formula;
+use super::laplacian::RootsOfAll;
 use super::notation::Notation;
 use super::places::Places;
 use super::polynomial::Polynomial;
@@ -24,18 +25,22 @@ pub(super) fn reduction(
     if dynamics.order == 0 {
         return (None, upper.reduced(upper.derivatives(0)));
     }
-    let section = Section::new(Subject::DegreeReduction);
+    let mut section = Section::new(Subject::DegreeReduction);
+    if upper.input == Letter::Filter {
+        section = section
+            .words("s is y and a part of its derivative, so that y stands in the place of s with one derivative more.");
+    }
     if let Some(variables) = case.followed_variables(upper) {
         return followed(case, upper, dynamics, variables, (notation, places), section);
     }
     let steps = upper.steps(case.aim());
-    let mut section = intermediate(upper, &steps, notation, section);
+    section = intermediate(upper, &steps, notation, section);
     let Some(last) = steps.last() else { return (None, None) };
     let mut found = last.clone();
     if !case.has_xi(dynamics) || dynamics.order > 2 {
         section = section.words("The upper subsystem is then").system(notation.system(last), places.reduced);
     }
-    if let Some(shifted) = shifted(upper) {
+    if let Some(shifted) = upper.shifted() {
         section = section
             .words("The derivative of y that is left is absorbed by x less a part of y, so that y alone remains.")
             .system(notation.system(&shifted), places.reduced);
@@ -69,16 +74,6 @@ fn intermediate(upper: &Upper, steps: &[Reduced], notation: &Notation, mut secti
     section
 }
 
-/// x − y/λ_f in the place of x, where a filter stands in for s.
-fn shifted(upper: &Upper) -> Option<Reduced> {
-    (upper.input == Letter::Filter).then_some(())?;
-    let mut variables = upper.derivatives(upper.reference_order);
-    let first = variables.first_mut()?;
-    let input = Polynomial::number(upper.filter.coefficient(1));
-    *first = Variable { name: Name::Shifted, state: first.state.clone(), input, common: upper.alike };
-    upper.reduced(variables)
-}
-
 impl Case<'_> {
     /// How high a derivative of s the proof leaves.
     pub fn aim(&self) -> usize {
@@ -86,7 +81,7 @@ impl Case<'_> {
             (Led::Target, _) | (_, Step::Chain(..)) | (_, Step::Thrust(ThrustStep::Differentiable, _)) => 0,
             (_, Step::PositionOnly(_)) => 1,
             (
-                Led::Consensus(_) | Led::PureIntegral(_) | Led::Backstepping | Led::Leader(..) | Led::Outside(_),
+                Led::Consensus(_) | Led::PureIntegral(_) | Led::Backstepping | Led::Leader(..) | Led::Outside(..),
                 Step::Robot { .. }
                 | Step::Thrust(ThrustStep::Continuous | ThrustStep::Adaptive, _)
                 | Step::Attitude(_)
@@ -97,7 +92,7 @@ impl Case<'_> {
     }
 
     /// Whether p + κ₀ divides everything, so that ξ = q̇ + κ₀ q and what follows from it are enough.
-    fn has_xi(&self, dynamics: &Dynamics) -> bool {
+    pub fn has_xi(&self, dynamics: &Dynamics) -> bool {
         let velocities = matches!(self.led, Led::Consensus(Heard::Velocities) | Led::PureIntegral(Heard::Velocities));
         velocities && dynamics.order <= self.roots.len()
     }
@@ -112,13 +107,14 @@ impl Case<'_> {
                 (2, _) => (Name::Y, &Polynomial::with_roots(&self.roots[..1]) * &Polynomial::power(1)),
                 (_, r) => (Name::Reduced(r), state),
             };
-            Variable::constructed(name, state, [kept, dynamics.plant], self.alike)
+            let common = self.alike && r == 1 && self.roots_of_all != RootsOfAll::Own;
+            Variable::constructed(name, state, [kept, dynamics.plant], common)
         };
         (1..=dynamics.order.min(self.roots.len())).map(each).collect()
     }
 
     /// The variables of those that follow a leader.
-    fn followed_variables(&self, upper: &Upper) -> Option<Vec<Variable>> {
+    pub fn followed_variables(&self, upper: &Upper) -> Option<Vec<Variable>> {
         let Led::Leader(design, [alpha, beta, _]) = &self.led else { return None };
         let xi = Polynomial::factor(alpha);
         let one = Polynomial::one();
@@ -198,6 +194,7 @@ fn in_paper_variables(
     }
     section = section.system(notation.system(in_xi), places.in_xi);
     if !places.stacked.is_empty()
+        && case.roots_of_all == RootsOfAll::Same
         && let Some(rows) = in_xi.stacked(upper.input)
     {
         let last = rows.len().saturating_sub(1);

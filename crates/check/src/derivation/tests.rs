@@ -2,7 +2,6 @@
 
 use num_rational::BigRational;
 use num_traits::{One, Zero};
-use proptest::prelude::*;
 
 use super::attitude;
 use super::cascade::Upper;
@@ -170,7 +169,7 @@ fn eq_112_114_115_and_118_for_alpha_3_and_gamma_7() {
     let xi = variable(Name::Xi, &[3, 1], &[]);
     let network: [(Quantity, &[i64]); 2] = [(own(V0), &[-1]), (heard(V0), &[1])];
     let closed = form(&[(sign, &[-7]), (own(S), &[0, 1])], &network);
-    assert_eq!(reduced(&upper, vec![xi.clone()]).rates, [closed.clone()]);
+    assert_eq!(reduced(&upper, vec![xi.clone()]).rates, std::slice::from_ref(&closed));
     // (114): Δξ̇ = the same − ξ̇₀
     let relative = upper.relative_to(Quantity::of_leader(Q));
     let drive = form(&[(Quantity::of_leader(Q), &[0, -3, -1])], &[]);
@@ -242,14 +241,17 @@ fn eq_a9_and_the_cascade_after_remark_7() {
     // With λ_f = 2: Δẋ = Δz + ẏ/2 + y, Δz̈ = −6 Δż − 11 Δz − 6 Δx, and nothing of x_d.
     let lag = Polynomial::new(vec![number(1), BigRational::new(1.into(), 2.into())]);
     let upper = a9.upper().relative_to(target).filtered(&lag);
-    let [y, half] = [Letter::Filter, Letter::Filter];
+    let y = Letter::Filter;
     let cascade = upper.steps(1);
     let last = cascade.last().unwrap();
     let filtered = Form::own(Combination::of(own(y), lag.clone()));
     assert_eq!(last.rates[0], form(&[(own(V1), &[1])], &[]).sum(&filtered));
     assert_eq!(last.rates[2], form(&[(own(V2), &[-6]), (own(V1), &[-11]), (own(V0), &[-6])], &[]));
     assert_eq!(last.degree(1), 1);
-    assert_eq!(upper.right.highest(half), Some(3));
+    assert_eq!(upper.right.highest(y), Some(3));
+    // With x − y/2 in the place of x no derivative of y is left: its first rate is Δz + y.
+    let shifted = upper.shifted().unwrap();
+    assert_eq!((shifted.rates[0].clone(), shifted.derivatives), (form(&[(own(V1), &[1]), (own(y), &[1])], &[]), 0));
 }
 
 #[test]
@@ -304,86 +306,22 @@ fn eq_107_and_108_with_the_signs_that_e13_corrects() {
 }
 
 #[test]
+fn what_is_heard_of_another_plant_stays_as_it_is() {
+    // z follows x here, and something else at neighbours of another order.
+    let dynamics = consensus(&[number(3)], Heard::Positions, &BigRational::zero(), Measured::whole(1)).unwrap();
+    let heard_in = |upper: Upper| upper.steps(0).last().unwrap().rates[1].network.clone();
+    let alike: [(Quantity, &[i64]); 5] =
+        [(own(V1), &[-1]), (own(V0), &[-3]), (heard(V0), &[3]), (own(S), &[-3]), (heard(S), &[3])];
+    assert_eq!(heard_in(dynamics.upper()), of(&alike));
+    let others: [(Quantity, &[i64]); 4] = [(own(V1), &[-1]), (own(V0), &[-3]), (heard(Q), &[3]), (own(S), &[-3])];
+    assert_eq!(heard_in(dynamics.upper().among_others()), of(&others));
+}
+
+#[test]
 fn eq_a10_is_reduced_to_degree_zero() {
     let upper = task_space::reference(&number(3)).upper();
     assert_eq!(upper.degree(1), 1);
     // d/dt (q̇ − z_r − s) = −3 (q̇ − z_r − s) − Ĵᵀ K* Δx
     let expected = form(&[(own(Letter::Deviation), &[-3]), (term(Term::TaskForce), &[-1])], &[]);
     assert_eq!(task_space::reduced(&upper), expected);
-}
-
-/// Positive roots, none of which is a whole number in general.
-fn any_roots() -> impl Strategy<Value = Vec<BigRational>> {
-    let root = (1..60_i64, 1..9_i64).prop_map(|(n, d)| BigRational::new(n.into(), d.into()));
-    proptest::collection::vec(root, 1..8)
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
-
-    #[test]
-    fn prop_26_is_of_degree_l_and_every_step_of_27_takes_one_from_it(roots in any_roots(), told in 0..2_usize) {
-        let told = [Heard::Positions, Heard::Velocities][told];
-        let upper = consensus(&roots, told, &BigRational::zero(), Measured::ROBOT).unwrap().upper();
-        let order = roots.len();
-        prop_assert_eq!((upper.order, upper.degree(1)), (order + 1, order));
-        let left: Vec<usize> = upper.steps(0).iter().map(|step| step.degree(1)).collect();
-        prop_assert_eq!(left, (0..=order).rev().collect::<Vec<_>>());
-    }
-
-    #[test]
-    fn prop_a6_and_30_are_averages_for_any_order_and_roots(roots in any_roots(), told in 0..2_usize) {
-        let told = [Heard::Positions, Heard::Velocities][told];
-        let upper = consensus(&roots, told, &BigRational::zero(), Measured::ROBOT).unwrap().upper();
-        for common in [RootsOfAll::Same, RootsOfAll::SameFirst] {
-            let laplacian = upper.laplacian(chain(&roots, told as usize, common)).unwrap();
-            // ψ̇_r = κ_r (ψ_{r+1} − ψ_r), and Σ w (ψ_j − ψ) at the end.
-            let first = told as usize;
-            for (row, blocks) in laplacian.blocks.iter().enumerate().take(roots.len() - first) {
-                let kappa = &roots[first + row];
-                prop_assert_eq!(&blocks[row].identity, &-kappa);
-                prop_assert_eq!(&blocks[row + 1].identity, kappa);
-            }
-            let last = laplacian.blocks.last().unwrap();
-            prop_assert_eq!(&last[0].weights, &BigRational::one());
-            prop_assert_eq!(&last.last().unwrap().degrees, &-BigRational::one());
-        }
-        // Where κ₀ differs what is heard is no multiple of the neighbour's ψ (E1); positions always are.
-        prop_assert_eq!(upper.laplacian(chain(&roots, told as usize, RootsOfAll::Own)).is_some(), told == Heard::Positions);
-    }
-
-    #[test]
-    fn prop_what_agents_conserve_is_x_less_alpha_1_s(roots in any_roots()) {
-        // d/dt (X − α₁ s) = −Σ w [X − α₀ q_j] whatever s does: the head of the consensus family.
-        let upper = consensus(&roots, Heard::Positions, &BigRational::zero(), Measured::ROBOT).unwrap().upper();
-        let a = Polynomial::with_roots(&roots);
-        let p = Polynomial::power(1);
-        let lifted = Variable::constructed(Name::Reduced(0), a.clone(), [2, 2], true);
-        let conserved = Variable { input: &lifted.input + &Polynomial::number(a.coefficient(1)), ..lifted };
-        let rate = Form::own(Combination::of(own(Q), &(&a * &p) - &Polynomial::power(upper.order))
-            .plus(own(S), &-&(&conserved.input * &p)));
-        prop_assert!(rate.sum(&upper.right).own.is_zero());
-    }
-
-    #[test]
-    fn prop_tracking_reduces_to_its_polynomial_and_terms_in_s_alone(roots in any_roots(), plant in 1..6_usize) {
-        prop_assume!(roots.len() >= plant);
-        let dynamics = tracking(&roots, Measured::whole(plant)).unwrap();
-        let upper = dynamics.upper().relative_to(own(Letter::Target));
-        prop_assert!(upper.right.quantities().all(|quantity| quantity.letter != Letter::Target), "the target cancels");
-        let steps = upper.steps(0);
-        let last = steps.last().unwrap();
-        let a = Polynomial::with_roots(&roots);
-        if dynamics.order > 0 {
-            prop_assert_eq!(last.degree(1), 0);
-            let rate = last.rates.last().unwrap();
-            for r in 0..roots.len() {
-                let coefficient = rate.own.polynomial(own(Letter::Variable(r))).coefficient(0);
-                prop_assert_eq!(coefficient, -a.coefficient(r));
-            }
-            // The head of `guide`: c s with c = α_{k−1}.
-            let c = rate.own.polynomial(own(S));
-            prop_assert_eq!(c, Polynomial::number(-a.coefficient(plant - 1)));
-        }
-    }
 }

@@ -3,6 +3,7 @@
 use forwardstep_sim::Setup;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::FollowingDesign;
+use num_traits::Zero;
 
 use super::case::{Case, Led, Step, ThrustStep};
 use super::form::Letter;
@@ -129,13 +130,13 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
     let q = case.notation().position;
     let enters = match (&case.step, left) {
         (Step::Thrust(ThrustStep::Adaptive, _), _) => {
-            "After the reduction the upper subsystem is driven by ṡ* alone, which is square-integrable.".to_owned()
+            "The upper subsystem is then driven by ṡ* alone, which is square-integrable.".to_owned()
         }
-        (_, 0) => format!("After the reduction the upper subsystem is driven by {s} alone, without any derivative."),
+        (_, 0) => format!("The upper subsystem is then driven by {s} alone, without any derivative."),
         (_, 1) => format!(
-            "After the reduction the upper subsystem is driven by {s} and its derivative, whose integral is {s} − {s}(0) and so is bounded."
+            "The upper subsystem is then driven by {s} and its derivative, whose integral is {s} − {s}(0) and so is bounded."
         ),
-        (_, n) => format!("After the reduction the upper subsystem is driven by {s} and {n} derivatives of it."),
+        (_, n) => format!("The upper subsystem is then driven by {s} and {n} derivatives of it."),
     };
     let bounded = match &case.step {
         Step::Robot { .. } => {
@@ -168,7 +169,13 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
         Led::Backstepping => "Where the graph switches or a delay jumps the derivative of what is heard is infinite, and the paper promises \
                               nothing there."
             .into(),
-        Led::Outside(_) => String::new(),
+        Led::Outside(..) => "What becomes of it without that is what the author of the reference dynamics declares.".into(),
     };
-    format!("{enters} {then}")
+    let moved = if case.lambda.is_zero() {
+        ""
+    } else {
+        " λ s is square-integrable, but its integral need not be bounded: it moves where the agents agree, which is what makes them give way to a \
+         hand."
+    };
+    format!("{enters} {then}{moved}")
 }

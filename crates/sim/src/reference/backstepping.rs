@@ -2,10 +2,10 @@
 
 use forwardstep_core::reference;
 
-use super::{Dynamics, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords, Roots};
+use super::{Dynamics, LinearReference, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords, Roots};
 use crate::closed_loop::{Assembly, SetupError};
 use crate::quantity::positive;
-use crate::setup::{Exchange, Setup};
+use crate::setup::{AgentSetup, Exchange, Setup};
 use crate::system::Known;
 
 /// The baseline (aa6): exchanges positions, has no roots.
@@ -38,6 +38,11 @@ impl ReferenceDynamics for Backstepping {
 
     fn known(&self) -> Known {
         Known::Checked
+    }
+
+    /// z is no state: it follows what is heard through a filter.
+    fn linear(&self, _: &AgentSetup, _: Exchange) -> Option<LinearReference> {
+        None
     }
 
     fn check(&self, _: &Setup) -> Result<(), SetupError> {

@@ -3,9 +3,9 @@
 use forwardstep_core::LengthError;
 use forwardstep_core::reference::{self, Position, PositionVelocity, Reference, RootsError};
 
-use super::{Dynamics, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords, Roots};
+use super::{Dynamics, LinearReference, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords, Roots};
 use crate::closed_loop::{Assembly, SetupError};
-use crate::setup::{Exchange, Setup};
+use crate::setup::{AgentSetup, Exchange, Setup};
 use crate::system::Known;
 
 /// What agents can exchange.
@@ -36,6 +36,10 @@ impl ReferenceDynamics for Consensus {
 
     fn known(&self) -> Known {
         Known::Checked
+    }
+
+    fn linear(&self, agent: &AgentSetup, exchange: Exchange) -> Option<LinearReference> {
+        LinearReference::consensus(agent, exchange, 2)
     }
 
     fn check(&self, _: &Setup) -> Result<(), SetupError> {
@@ -74,6 +78,10 @@ impl ReferenceDynamics for PureIntegral {
 
     fn known(&self) -> Known {
         Known::Checked
+    }
+
+    fn linear(&self, agent: &AgentSetup, exchange: Exchange) -> Option<LinearReference> {
+        LinearReference::consensus(agent, exchange, 3)
     }
 
     fn check(&self, setup: &Setup) -> Result<(), SetupError> {

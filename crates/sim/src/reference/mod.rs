@@ -6,10 +6,12 @@
 
 mod backstepping;
 mod consensus;
+mod linear;
 mod tracking;
 
 pub use backstepping::Backstepping;
 pub use consensus::{Consensus, PureIntegral};
+pub use linear::{LinearReference, LinearTerms};
 pub use tracking::Tracking;
 
 use std::any::Any;
@@ -19,7 +21,7 @@ use std::sync::Arc;
 use forwardstep_core::reference::{Position, PositionVelocity, Reference};
 
 use crate::closed_loop::{Assembly, SetupError};
-use crate::setup::{Exchange, Setup};
+use crate::setup::{AgentSetup, Exchange, Setup};
 use crate::system::Known;
 
 /// Reference dynamics of all agents, as data.
@@ -35,6 +37,10 @@ pub trait ReferenceDynamics: Any + Debug + Send + Sync {
 
     /// What is known of it about the long run.
     fn known(&self) -> Known;
+
+    /// z^(ℓ) of an agent as a linear form, on any axis, with what is exchanged, from which `forwardstep explain` derives; `None` where it is not one, or where
+    /// there is no z^(ℓ).
+    fn linear(&self, agent: &AgentSetup, exchange: Exchange) -> Option<LinearReference>;
 
     /// Checks what all agents share.
     ///

@@ -1,8 +1,8 @@
 //! No agreement: every agent follows a target of its own.
 
-use super::{Dynamics, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords, Roots};
+use super::{Dynamics, LinearReference, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords, Roots};
 use crate::closed_loop::{Assembly, SetupError};
-use crate::setup::{Exchange, Setup};
+use crate::setup::{AgentSetup, Exchange, Setup};
 use crate::system::Known;
 
 /// Nothing is agreed upon: every agent follows a target of its own, by a law that has reference dynamics of its own.
@@ -31,6 +31,11 @@ impl ReferenceDynamics for Tracking {
 
     fn known(&self) -> Known {
         Known::Checked
+    }
+
+    /// The law has the reference dynamics, not this.
+    fn linear(&self, _: &AgentSetup, _: Exchange) -> Option<LinearReference> {
+        None
     }
 
     fn check(&self, _: &Setup) -> Result<(), SetupError> {
