@@ -1,6 +1,7 @@
 //! `forwardstep check`
 
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use forwardstep::check::{Id, Report, certify};
@@ -8,7 +9,7 @@ use forwardstep::io::output::{Findings, certificate_document};
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
 
-use super::promise::{promise, show, style};
+use super::promise::{predictions, promise, show, show_predictions, style};
 use crate::arguments::CheckOptions;
 use crate::console::{BOLD, Console, FAIR, Plain, complain};
 use crate::status::Status;
@@ -29,14 +30,20 @@ pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console
     {
         return complain(&error);
     }
+    let predictions =
+        options.predict.then(|| predictions(&scenario.setup, &mut |_| ControlFlow::Continue(()))).flatten();
     if options.json {
-        let findings = Findings::of(&scenario, env!("CARGO_PKG_VERSION"), report, &promise.agreement, &accepted);
+        let findings =
+            Findings::of(&scenario, env!("CARGO_PKG_VERSION"), report, &promise.agreement, predictions, &accepted);
         match findings.to_json() {
             Ok(text) => console.line(text),
             Err(error) => return complain(&Plain::new(error)),
         }
     } else {
         show(&scenario, &promise, console);
+        if let Some(predictions) = &predictions {
+            show_predictions(&scenario.setup, predictions, console);
+        }
         conclude(report, &accepted, console);
     }
     if report.worst_without(&accepted).is_fine() { Status::Fine } else { Status::Missed }

@@ -25,6 +25,12 @@ pub struct Metrics {
     pub disagreement: Disagreement,
     /// The time from which on the disagreement stays below the goal until the end, s.
     pub settled_s: Option<f64>,
+    /// When the disagreement exceeds 1 % of its start for the last time, s; absent where it still does at the last row.
+    #[serde(default)]
+    pub settled_to_1_percent_s: Option<f64>,
+    /// The largest |s| at the last row, over all agents and axes; absent where s is not recorded.
+    #[serde(default)]
+    pub final_tracking_error: Option<f64>,
     /// Largest and final speed over all agents and axes.
     pub speed: Option<Speed>,
     /// The largest |τ| of every agent and axis.
@@ -191,6 +197,11 @@ impl Metrics {
                 (Ok(series), Some(goal)) => goal.bound().and_then(|bound| settled(table.t_s, &series.overall, bound)),
                 _ => None,
             },
+            settled_to_1_percent_s: series
+                .as_ref()
+                .ok()
+                .and_then(|series| forwardstep_check::prediction::settled(table.t_s, &series.overall).time_s()),
+            final_tracking_error: final_tracking_error(&table),
             disagreement: match &series {
                 Ok(DisagreementSeries { overall, .. }) => Disagreement::Measured {
                     initial: overall.first().copied().unwrap_or(f64::NAN),
@@ -222,6 +233,11 @@ fn speed(table: &Table<'_>) -> Option<Speed> {
     })?;
     let last = table.axes(Signal::Velocity).filter_map(|(.., dq)| dq.last()).map(|dq| dq.abs()).fold(0.0, greater);
     Some(Speed { largest: Peak { value: largest.value.abs(), ..largest }, last })
+}
+
+fn final_tracking_error(table: &Table<'_>) -> Option<f64> {
+    let last = table.axes(Signal::TrackingError).filter_map(|(.., s)| s.last().map(|s| s.abs()));
+    last.reduce(greater).filter(|s| s.is_finite())
 }
 
 fn settled(t_s: &[f64], overall: &[f64], bound: f64) -> Option<f64> {

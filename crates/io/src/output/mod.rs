@@ -37,6 +37,7 @@ mod packets;
 mod palette;
 mod parquet;
 mod plots;
+mod prediction;
 mod record;
 mod report;
 mod restore;
@@ -61,6 +62,7 @@ pub use metrics::{
     LimitReached, Metrics, Peak, Speed,
 };
 pub use packets::Link;
+pub use prediction::{CourseFound, PredictedCourse, PredictedRate, PredictedTorque, Predictions};
 pub use record::{GoalOutcome, RunRecord};
 pub use restore::{Remark, SavedRun};
 pub use restore_error::{RestoreError, SummaryError, TableError};

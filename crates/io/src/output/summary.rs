@@ -15,6 +15,7 @@ use super::inputs;
 use super::inputs::content_digest;
 use super::metrics::Metrics;
 use super::packets::Link;
+use super::prediction::Predictions;
 use super::record::RunRecord;
 pub use super::verdicts::{Verdict, Verdicts};
 use super::{names, number};
@@ -46,6 +47,9 @@ pub struct Summary {
     pub tables: Vec<TableFile>,
     /// What was promised before the run.
     pub verdicts: Verdicts,
+    /// What was predicted for robots that follow their references exactly, s ≡ 0.
+    #[serde(default)]
+    pub prediction: Option<Predictions>,
     /// What happened.
     pub metrics: Metrics,
     /// Work of the integrator.
@@ -199,6 +203,7 @@ impl Summary {
                 met: outcome.met,
             }),
             verdicts: Verdicts::of(record.verdicts),
+            prediction: record.prediction.clone(),
             metrics,
             solver: Solver {
                 steps: statistics.steps,

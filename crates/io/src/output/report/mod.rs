@@ -7,6 +7,7 @@ mod data;
 mod families;
 mod interfaces;
 mod network;
+mod predicted;
 pub(crate) mod sections;
 pub(crate) mod text;
 
@@ -70,6 +71,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
                         section.notices aria-label="Notices" { ul { @for notice in &record.notices { li { (notice) } } } }
                     }
                     (sections::verdicts(record, metrics))
+                    (predicted::section(record, metrics))
                     (signals(absence, record))
                     @if has_network(record) { (network(record, &timeline)) }
                     (interfaces(record.setup))
