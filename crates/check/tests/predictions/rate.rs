@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use forwardstep_check::prediction::{NoRate, Settled, rate};
+use forwardstep_check::prediction::{NoCascade, NoPeriodRate, NoRate, Settled, period_rate, rate};
 use forwardstep_check::{NoIdeal, course};
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::coupling::Coupling;
@@ -12,7 +12,7 @@ use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::reference::{PureIntegral, Tracking};
 use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::{Exchange, Setup};
+use forwardstep_sim::{Exchange, Progress, Setup};
 
 use crate::common::{edge, masses, noise};
 
@@ -127,4 +127,84 @@ fn every_reason_for_no_rate_is_the_one_that_is_said() {
         }
     };
     assert_eq!(said(&diverging), None, "whether it does is for the root to say");
+}
+
+fn go_on(_: Progress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// A pair that hears each other, one after the other, for so long each.
+fn in_turns(exchange: Exchange, weight: f64, dwell_s: f64, root: f64) -> Setup {
+    let phase = |from, to| Phase { edges: vec![edge(from, to, weight, 0)], dwell_s };
+    let schedule = Schedule::periodic(vec![phase(0, 1), phase(1, 0)]);
+    let mut setup = masses(exchange, 1, schedule, vec![Delay::constant(0.0)]);
+    setup.agents.truncate(2);
+    setup.network.agents = 2;
+    setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![root]);
+    setup
+}
+
+#[test]
+fn a_period_leaves_what_its_phases_leave() {
+    // With velocities and one root ψ̇₁ᵢ = −w (ψ₁ᵢ − ψ₁ⱼ): each phase leaves e^(−w T) of their difference.
+    let (weight, dwell_s) = (1.3, 0.4);
+    let found = period_rate(&in_turns(Exchange::PositionVelocity, weight, dwell_s, 50.0), &mut go_on).unwrap();
+    let wanted = (-2.0 * weight * dwell_s).exp();
+    assert!((found.factor - wanted).abs() < 1e-4 && found.wavers < 1e-3, "{found:?}, not {wanted}");
+    assert!((found.period_s - 0.8).abs() < 1e-12 && found.periods >= 3);
+    assert!((found.rate_per_s - wanted.ln() / 0.8).abs() < 1e-4);
+    // Slower than that is what −κ₀ leaves.
+    let found = period_rate(&in_turns(Exchange::PositionVelocity, weight, dwell_s, 0.6), &mut go_on).unwrap();
+    assert!((found.rate_per_s + 0.6).abs() < 5e-3, "{found:?}");
+}
+
+#[test]
+fn a_network_that_stays_has_the_rate_of_its_rightmost_root_in_any_period() {
+    // A saw-tooth of no height is a constant delay with a period.
+    let mut setup = uneven(Exchange::Position, 2);
+    let flat =
+        |delay_s: f64| Delay::new(SawTooth { min_s: delay_s, max_s: delay_s + 1e-9, period_s: 1.5, offset_s: 0.0 });
+    let by_root = rate(&setup).unwrap();
+    setup.network.delays[2] = flat(0.6);
+    let found = period_rate(&setup, &mut go_on).unwrap();
+    assert!((found.rate_per_s / by_root.root_per_s[0] - 1.0).abs() < 0.05, "{found:?} {by_root:?}");
+}
+
+#[test]
+fn every_reason_for_no_rate_per_period_is_the_one_that_is_said() {
+    let said = |change: &dyn Fn(&mut Setup)| {
+        let mut setup = in_turns(Exchange::Position, 1.0, 0.5, 2.0);
+        change(&mut setup);
+        period_rate(&setup, &mut go_on).err()
+    };
+    assert_eq!(said(&|_| {}), None);
+    assert_eq!(said(&|setup| setup.reference = Arc::new(Tracking)), Some(NoPeriodRate::Ideal(NoIdeal::Targets)));
+    let tanh = Coupling::Tanh { scale: 1.0 };
+    assert_eq!(said(&|setup| setup.network.coupling = tanh), Some(NoPeriodRate::Cascade(NoCascade::Coupling)));
+    let saw = |period_s| Delay::new(SawTooth { min_s: 0.0, max_s: 0.1, period_s, offset_s: 0.0 });
+    assert_eq!(said(&|setup| setup.network.delays[0] = saw(0.3)), None, "three periods are ten of the delay");
+    let never = std::f64::consts::SQRT_2;
+    assert_eq!(said(&|setup| setup.network.delays[0] = saw(never)), Some(NoPeriodRate::NoPeriod));
+    assert_eq!(said(&|setup| setup.network.delays.push(saw(never))), None, "no edge has it");
+    let drawn = |setup: &mut Setup| {
+        setup.network.schedule = Schedule::random(setup.network.schedule.graphs.clone(), [0.5, 0.5], 1);
+    };
+    assert_eq!(said(&drawn), Some(NoPeriodRate::NoPeriod));
+    let apart = |setup: &mut Setup| {
+        let nobody = Phase { edges: Vec::new(), dwell_s: 0.5 };
+        let one = Phase { edges: vec![edge(0, 2, 1.0, 0)], dwell_s: 0.5 };
+        setup.agents = masses(Exchange::Position, 1, Schedule::fixed(Vec::new()), Vec::new()).agents;
+        setup.network.agents = 5;
+        setup.network.schedule = Schedule::periodic(vec![nobody, one]);
+    };
+    assert_eq!(said(&apart), Some(NoPeriodRate::Stays { periods: 512 }));
+    let at_once = |setup: &mut Setup| {
+        for edge in setup.network.schedule.graphs.iter_mut().flatten() {
+            edge.weight = Weight::Constant(60.0);
+        }
+        setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![60.0]);
+    };
+    assert!(matches!(said(&at_once), Some(NoPeriodRate::Vanishes { periods: 0..3 })), "{:?}", said(&at_once));
+    let stop = period_rate(&in_turns(Exchange::Position, 1.0, 0.5, 2.0), &mut |_| ControlFlow::Break(()));
+    assert_eq!(stop, Err(NoPeriodRate::Interrupted));
 }

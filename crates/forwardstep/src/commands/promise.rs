@@ -1,5 +1,6 @@
 //! What the theorems promise for a setup, and how it is shown.
 
+use forwardstep::check::prediction::{NoRate, period_rate, rate};
 use forwardstep::check::{self, Answer, NoPrediction, Prediction, Report};
 use std::ops::ControlFlow;
 
@@ -30,7 +31,10 @@ pub(crate) fn promise(setup: &Setup) -> Promise {
 
 /// Simulates the reference dynamics alone; nothing where there is nothing to predict, or `observer` interrupts.
 pub(crate) fn predictions(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Option<Predictions> {
-    Predictions::of(&check::course(setup, observer), &check::prediction::rate(setup))
+    let (course, rate) = (check::course(setup, observer), rate(setup));
+    let repeats = matches!(rate, Err(NoRate::Switching | NoRate::VaryingDelay));
+    let period = (repeats && course.is_ok()).then(|| period_rate(setup, observer));
+    Predictions::of(&course, &rate, period.as_ref())
 }
 
 /// What is predicted, in a few lines.

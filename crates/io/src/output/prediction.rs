@@ -3,7 +3,7 @@
 //! All of it is for s ≡ 0: robots that follow their references exactly. Beside it stands what was observed.
 
 use forwardstep_check::NoIdeal;
-use forwardstep_check::prediction::{Course, NoCourse, NoRate, Rate};
+use forwardstep_check::prediction::{Course, NoCourse, NoPeriodRate, NoRate, PeriodRate, Rate};
 use forwardstep_sim::Setup;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -96,21 +96,50 @@ pub enum PredictedRate {
         /// When the disagreement settles to 1 % by it and the next roots, s.
         settled_s: Option<f64>,
     },
+    /// From what one period of a network that repeats itself leaves.
+    Period {
+        /// The common period of switching and delays, s.
+        #[serde(deserialize_with = "number::or_nan")]
+        period_s: f64,
+        /// What one period leaves of a disagreement.
+        #[serde(deserialize_with = "number::or_nan")]
+        factor: f64,
+        /// ln(factor) over the period, 1/s.
+        #[serde(deserialize_with = "number::or_nan")]
+        rate_per_s: f64,
+        /// How far the factors of single periods are from it at most, relative.
+        #[serde(deserialize_with = "number::or_nan")]
+        wavers: f64,
+        /// How many periods it is the mean of.
+        periods: usize,
+    },
     /// Why there is none.
     NoneSince(String),
 }
 
 impl Predictions {
-    /// What was found; `None` where agents follow targets or a leader, and nothing is agreed upon.
-    pub fn of(course: &Result<Course, NoCourse>, rate: &Result<Rate, NoRate>) -> Option<Predictions> {
+    /// What was found, with the rate per period where one was looked for; `None` where agents follow targets or a leader, and nothing is agreed upon.
+    pub fn of(
+        course: &Result<Course, NoCourse>,
+        rate: &Result<Rate, NoRate>,
+        period: Option<&Result<PeriodRate, NoPeriodRate>>,
+    ) -> Option<Predictions> {
         let course = match course {
             Err(NoCourse::Ideal(NoIdeal::Leader | NoIdeal::Targets) | NoCourse::Interrupted) => return None,
             Err(reason) => PredictedCourse::NoneSince(reason.to_string()),
             Ok(course) => PredictedCourse::Found(CourseFound::of(course)),
         };
-        let rate = match rate {
-            Err(reason) => PredictedRate::NoneSince(reason.to_string()),
-            Ok(rate) => PredictedRate::Roots {
+        let rate = match (rate, period) {
+            (Err(_), Some(Ok(found))) => PredictedRate::Period {
+                period_s: found.period_s,
+                factor: found.factor,
+                rate_per_s: found.rate_per_s,
+                wavers: found.wavers,
+                periods: found.periods,
+            },
+            (Err(reason), Some(Err(other))) => PredictedRate::NoneSince(format!("{reason}, and {other}")),
+            (Err(reason), None) => PredictedRate::NoneSince(reason.to_string()),
+            (Ok(rate), _) => PredictedRate::Roots {
                 root_per_s: rate.root_per_s,
                 multiplicity: rate.multiplicity,
                 correction_per_s: rate.correction_per_s,
@@ -150,6 +179,13 @@ impl Predictions {
         }
         sentences.push(match &self.rate {
             PredictedRate::NoneSince(reason) => format!("rate: none, since {reason}"),
+            PredictedRate::Period { period_s, factor, rate_per_s, wavers, periods } => {
+                let (factor, wavers) = (number_words(*factor), number_words(100.0 * wavers));
+                format!(
+                    "rate: {rate_per_s:.4} 1/s; a period of {period_s} s leaves {factor} of a disagreement, within {wavers} % over {periods} \
+                     periods"
+                )
+            }
             PredictedRate::Roots { root_per_s: [re, im], correction_per_s, excited, .. } => {
                 let turning = if *im == 0.0 { String::new() } else { format!(" ± {im:.4} i") };
                 let (correction, excited) = (number_words(*correction_per_s), number_words(*excited));
