@@ -7,12 +7,12 @@ use forwardstep_check::prediction::{NoCascade, NoPeriodRate, NoRate, Settled, pe
 use forwardstep_check::{NoIdeal, course};
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::coupling::Coupling;
-use forwardstep_sim::delay::{Delay, SawTooth};
+use forwardstep_sim::delay::{Delay, Loss, PacketLink, SawTooth};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::reference::{PureIntegral, Tracking};
 use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::{Exchange, Progress, Setup};
+use forwardstep_sim::{AgentSetup, Exchange, Method, Progress, Setup};
 
 use crate::common::{edge, masses, noise};
 
@@ -140,6 +140,7 @@ fn in_turns(exchange: Exchange, weight: f64, dwell_s: f64, root: f64) -> Setup {
     let mut setup = masses(exchange, 1, schedule, vec![Delay::constant(0.0)]);
     setup.agents.truncate(2);
     setup.network.agents = 2;
+    setup.time.end_s = 200.0;
     setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![root]);
     setup
 }
@@ -207,4 +208,68 @@ fn every_reason_for_no_rate_per_period_is_the_one_that_is_said() {
     assert!(matches!(said(&at_once), Some(NoPeriodRate::Vanishes { periods: 0..3 })), "{:?}", said(&at_once));
     let stop = period_rate(&in_turns(Exchange::Position, 1.0, 0.5, 2.0), &mut |_| ControlFlow::Break(()));
     assert_eq!(stop, Err(NoPeriodRate::Interrupted));
+}
+
+#[test]
+fn a_schedule_that_never_joins_and_drawn_delays_have_no_agreement_and_no_rate() {
+    // Two pairs that never meet.
+    let mut setup = uneven(Exchange::Position, 2);
+    setup.network.schedule = Schedule::periodic(vec![
+        Phase { edges: vec![edge(0, 1, 1.0, 0), edge(2, 3, 1.0, 1)], dwell_s: 1.0 },
+        Phase { edges: vec![edge(1, 0, 1.0, 2), edge(3, 2, 1.0, 0)], dwell_s: 0.7 },
+    ]);
+    setup.time.end_s = 30.0;
+    let course = course(&setup, &mut go_on).unwrap();
+    assert!(!course.is_reached() && course.settled == Settled::NotYet);
+    let within = course.within.unwrap();
+    assert!(within.iter().all(|[low, high]| high - low > 0.1), "{within:?}");
+    assert!(matches!(period_rate(&setup, &mut go_on), Err(NoPeriodRate::Stays { .. })));
+    assert_eq!(rate(&setup), Err(NoRate::Switching));
+    // Packets that are lost, over a tree.
+    let link = PacketLink {
+        every_s: 0.2,
+        first_s: 0.1,
+        latency_s: 0.05,
+        jitter_s: 0.3,
+        loss: Loss::Random { probability: 0.4 },
+        most_in_a_row: Some(5),
+        seed: 3,
+    };
+    let mut lossy = uneven(Exchange::PositionVelocity, 3);
+    lossy.network.delays = vec![Delay::new(link.trace((0, 1), 120.0).unwrap()); 3];
+    let course = super::course::predicted(&lossy);
+    assert!(course.is_reached() && course.within.unwrap().iter().all(|[low, high]| high - low < 0.1));
+    assert_eq!(rate(&lossy), Err(NoRate::VaryingDelay));
+    assert_eq!(period_rate(&lossy, &mut go_on), Err(NoPeriodRate::NoPeriod));
+}
+
+#[test]
+fn hundreds_of_agents_have_a_course_and_a_rate_or_a_reason() {
+    for agents in [2, 40, 120, 500] {
+        let mut setup = uneven(Exchange::Position, 2);
+        let own = setup.agents[0].clone();
+        setup.agents = (0..agents).map(|i| AgentSetup { name: format!("mass-{i}"), ..own.clone() }).collect();
+        for (i, agent) in setup.agents.iter_mut().enumerate() {
+            agent.start.q = vec![noise(i), noise(2 * i)];
+        }
+        setup.network.agents = agents;
+        // Each hears the next ones around a ring; all at once where they are few.
+        let edges = (0..agents).flat_map(|i| (1..=agents.min(4) - 1).map(move |k| edge((i + k) % agents, i, 1.0, 1)));
+        setup.network.schedule = Schedule::fixed(edges.collect());
+        setup.time.end_s = 40.0;
+        setup.time.record_every_s = 0.1;
+        setup.solver.method = Method::Adaptive { rtol: 1e-6, atol: 1e-8 };
+        let course = super::course::predicted(&setup);
+        match rate(&setup) {
+            Ok(found) if agents <= 120 => {
+                let (by_roots, by_course) = (found.settled.time_s(), course.settled.time_s());
+                if let (Some(by_roots), Some(by_course)) = (by_roots, by_course) {
+                    assert!((by_roots / by_course - 1.0).abs() < 0.2, "{agents}: {by_roots} s, {by_course} s");
+                }
+                assert!(found.root_per_s[0] < 0.0 && found.backward_error < 1e-9, "{agents}: {found:?}");
+            }
+            Err(NoRate::TooLarge { .. }) if agents > 120 => {}
+            other => panic!("{agents}: {other:?}"),
+        }
+    }
 }
