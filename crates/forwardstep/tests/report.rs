@@ -144,7 +144,10 @@ fn what_was_predicted_stands_beside_what_was_observed() {
     }
     assert!(metrics["final_tracking_error"].as_f64().unwrap() < 1e-6);
     assert!(page.contains("<section id=\"predicted\">") && page.contains("\"predicted\":"), "a section and a series");
-    assert!(page.contains("rightmost characteristic root"));
+    assert!(page.contains("rightmost characteristic root") && page.contains("Value, shoulder"));
+    let within = &course["within"][0];
+    let mean = metrics["final_means"][0].as_f64().unwrap();
+    assert!((within[0].as_f64().unwrap()..=within[1].as_f64().unwrap()).contains(&mean), "{within} {mean}");
     // Estimates start far away, and the graph switches.
     let (_, summary, page) = run("six-arms");
     assert!(summary["metrics"]["final_tracking_error"].as_f64().unwrap() > 1e-3);

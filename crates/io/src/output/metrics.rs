@@ -28,6 +28,9 @@ pub struct Metrics {
     /// When the disagreement exceeds 1 % of its start for the last time, s; absent where it still does at the last row.
     #[serde(default)]
     pub settled_to_1_percent_s: Option<f64>,
+    /// The mean of the positions at the last row, one entry per axis; absent where agents cannot be compared.
+    #[serde(default)]
+    pub final_means: Option<Vec<f64>>,
     /// The largest |s| at the last row, over all agents and axes; absent where s is not recorded.
     #[serde(default)]
     pub final_tracking_error: Option<f64>,
@@ -201,6 +204,11 @@ impl Metrics {
                 .as_ref()
                 .ok()
                 .and_then(|series| forwardstep_check::prediction::settled(table.t_s, &series.overall).time_s()),
+            final_means: series.as_ref().ok().filter(|_| Gap::of(setup) == Gap::Disagreement).and_then(|series| {
+                (0..series.per_axis.len())
+                    .map(|axis| Some(last_positions(&table, axis)?.1).filter(|mean| mean.is_finite()))
+                    .collect()
+            }),
             final_tracking_error: final_tracking_error(&table),
             disagreement: match &series {
                 Ok(DisagreementSeries { overall, .. }) => Disagreement::Measured {
@@ -342,15 +350,21 @@ pub(crate) fn balance_residuals(table: &Table<'_>, agent: usize) -> Option<Vec<f
     Some(v.iter().zip(dissipated).map(|(v, d)| (v + d - start) / scale).collect())
 }
 
+/// The positions of all agents on an axis at the last row, and their mean.
+fn last_positions(table: &Table<'_>, axis: usize) -> Option<(Vec<f64>, f64)> {
+    let last: Option<Vec<f64>> =
+        (0..table.agents()).map(|agent| table.column(agent, Signal::Position, axis)?.last().copied()).collect();
+    let last = last.filter(|last| !last.is_empty())?;
+    let mean = last.iter().sum::<f64>() / last.len() as f64;
+    Some((last, mean))
+}
+
 fn agreement(table: &Table<'_>, predicted: &[f64]) -> Option<Vec<Agreement>> {
     predicted
         .iter()
         .enumerate()
         .map(|(axis, &predicted)| {
-            let last: Option<Vec<f64>> =
-                (0..table.agents()).map(|agent| table.column(agent, Signal::Position, axis)?.last().copied()).collect();
-            let last = last.filter(|last| !last.is_empty())?;
-            let reached = last.iter().sum::<f64>() / last.len() as f64;
+            let (last, reached) = last_positions(table, axis)?;
             let distance = last.iter().map(|q| (q - predicted).abs()).fold(0.0, greater);
             Some(Agreement { axis, predicted, reached, distance })
         })

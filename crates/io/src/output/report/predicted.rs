@@ -12,6 +12,7 @@ use super::text::{self, number};
 
 /// More rows would only repeat themselves.
 const MOST_TORQUES: usize = 24;
+const MOST_AXES: usize = 32;
 
 /// The section; nothing where nothing is predicted.
 pub(crate) fn section(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
@@ -31,7 +32,6 @@ pub(crate) fn section(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                                 tr { th { (name) } td { (predicted) } td { (observed) } }
                             } }
                         }
-                        (within(setup, course))
                     }
                 }
                 @match &prediction.rate {
@@ -69,7 +69,7 @@ fn rows(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Vec<(String, 
         Disagreement::Absent(_) => ("–".to_owned(), false),
     };
     let reached = |reached: bool| if reached { "reached" } else { "not reached" }.to_owned();
-    vec![
+    let mut rows = vec![
         ("Agreement by the end".to_owned(), reached(course.reached), reached(observed_reached)),
         (
             "Settled to 1 % of the start after".to_owned(),
@@ -81,22 +81,25 @@ fn rows(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Vec<(String, 
             course.disagreement.last().map_or_else(String::new, |last| size(*last)),
             last,
         ),
-    ]
+    ];
+    rows.extend(values(setup, course, metrics));
+    rows
 }
 
-/// The value agreed upon, where it is bounded.
-fn within(setup: &Setup, course: &CourseFound) -> Markup {
-    let Some(within) = &course.within else { return html! {} };
-    html! {
-        p.note {
-            "Value agreed upon, within what no cascaded variable leaves any more: "
-            @for (axis, [low, high]) in within.iter().enumerate().take(8) {
-                @if axis > 0 { "; " }
-                (names::axis_words(setup, 0, axis)) " " (number(*low)) " to " (number(*high))
-            }
-            "."
-        }
-    }
+/// The value agreed upon on every axis, where it is bounded and reached, beside the mean of the last positions.
+fn values(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Vec<(String, String, String)> {
+    let Some(within) = course.within.as_ref().filter(|_| course.reached) else { return Vec::new() };
+    let mean = |axis: usize| metrics.final_means.as_ref().and_then(|means| means.get(axis)).copied();
+    let agreed = if metrics.disagreement.is_agreement() { "" } else { " (mean, not agreed)" };
+    let row = |(axis, [low, high]): (usize, &[f64; 2])| {
+        let half = 0.5 * (high - low);
+        (
+            format!("Value, {}", names::axis_words(setup, 0, axis)),
+            format!("{} ± {}", number(low + half), number(half)),
+            mean(axis).map_or_else(|| "–".to_owned(), |mean| format!("{}{agreed}", number(mean))),
+        )
+    };
+    within.iter().enumerate().take(MOST_AXES).map(row).collect()
 }
 
 fn torques(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Markup {
