@@ -133,6 +133,9 @@ fn system(ideal: &Setup) -> Result<Characteristic, NoRate> {
         return Err(NoRate::Coupling);
     }
     let edges = ideal.network.schedule.constant_graph().ok_or(NoRate::Switching)?;
+    if edges.iter().any(|edge| edge.from.max(edge.to) >= ideal.agents.len()) {
+        return Err(NoRate::Unclear);
+    }
     let link = |edge: &Edge| {
         let delay = ideal.network.delays.get(edge.delay).ok_or(NoRate::Unclear)?;
         if !delay.is_constant() {

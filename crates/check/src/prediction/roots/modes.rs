@@ -84,7 +84,8 @@ pub(super) fn modes(system: &Characteristic, candidates: &[C], most: usize) -> V
 fn mode(system: &Characteristic, group: &Group) -> Option<Mode> {
     let integral = Integral::around(system, group.centre, group.radius, 1)?;
     let multiplicity = group.members;
-    if size(integral.count - multiplicity as f64) > 0.1 {
+    let off = size(integral.count - multiplicity as f64);
+    if off.is_nan() || off > 0.1 {
         return None;
     }
     let mut root = group.centre + integral.mean / multiplicity as f64;
