@@ -110,6 +110,9 @@ pub(crate) struct CheckOptions {
     /// Print one JSON object; `forwardstep schema check` describes it
     #[arg(long)]
     pub(crate) json: bool,
+    /// Also predict the course of agreement, its rate and peak torques, which simulates the reference dynamics
+    #[arg(long)]
+    pub(crate) predict: bool,
     /// Write the answers with their proofs to this file, for `checker/forwardstep_checker.py`; an older one is replaced
     #[arg(long, value_name = "FILE.json")]
     pub(crate) certificate: Option<PathBuf>,

@@ -121,6 +121,46 @@ fn shipped_scenarios_are_rebuilt_byte_for_byte() {
 }
 
 #[test]
+fn what_was_predicted_stands_beside_what_was_observed() {
+    let folder = folder();
+    let run = |scenario: &str| {
+        let text = String::from_utf8(forwardstep(&folder, &["run", scenario]).success().get_output().stdout.clone());
+        let path = folder.path().join("forwardstep-runs").join(scenario);
+        let summary: serde_json::Value =
+            serde_json::from_str(&fs::read_to_string(path.join("summary.json")).unwrap()).unwrap();
+        (text.unwrap(), summary, fs::read_to_string(path.join("report.html")).unwrap())
+    };
+    // ϑ is known, and z(0) = q̇(0).
+    let (text, summary, page) = run("first-order");
+    let (course, metrics) = (&summary["prediction"]["course"]["found"], &summary["metrics"]);
+    let settled = [&course["settled_s"], &metrics["settled_to_1_percent_s"]].map(|t_s| t_s.as_f64().unwrap());
+    assert!((settled[0] / settled[1] - 1.0).abs() < 0.01, "{settled:?}");
+    assert!(text.contains(&format!("{:.2} s, predicted {:.2} s", settled[1], settled[0])), "{text}");
+    for peak in course["peak_torques"].as_array().unwrap() {
+        let same = |other: &&serde_json::Value| (&other["agent"], &other["axis"]) == (&peak["agent"], &peak["axis"]);
+        let observed = metrics["peak_torques"].as_array().unwrap().iter().find(same).unwrap();
+        let ratio = peak["value"].as_f64().unwrap() / observed["value"].as_f64().unwrap();
+        assert!((ratio - 1.0).abs() < 1e-4, "{peak} {observed}");
+    }
+    assert!(metrics["final_tracking_error"].as_f64().unwrap() < 1e-6);
+    assert!(page.contains("<section id=\"predicted\">") && page.contains("\"predicted\":"), "a section and a series");
+    assert!(page.contains("rightmost characteristic root") && page.contains("Value, shoulder"));
+    let within = &course["within"][0];
+    let mean = metrics["final_means"][0].as_f64().unwrap();
+    assert!((within[0].as_f64().unwrap()..=within[1].as_f64().unwrap()).contains(&mean), "{within} {mean}");
+    // Estimates start far away, and the graph switches.
+    let (_, summary, page) = run("six-arms");
+    assert!(summary["metrics"]["final_tracking_error"].as_f64().unwrap() > 1e-3);
+    assert!(page.contains("what they do to the course is not predicted"));
+    let rate = &summary["prediction"]["rate"]["period"];
+    assert!(rate["factor"].as_f64().unwrap() < 1.0 && page.contains(" of a disagreement, within "), "{rate}");
+    // Nothing is agreed upon.
+    let (text, summary, page) = run("theorem-8");
+    assert_eq!(summary["prediction"], serde_json::Value::Null);
+    assert!(!page.contains("<section id=\"predicted\">") && !text.contains("Predicted"));
+}
+
+#[test]
 fn broken_runs_are_rebuilt_byte_for_byte() {
     let folder = folder();
     let step = "[solver]\nmin_step_s = 5e-3\nmethod.adaptive = { rtol = 1e-13, atol = 1e-13 }";

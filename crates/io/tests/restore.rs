@@ -46,6 +46,7 @@ fn write(folder: &Path, change: impl FnOnce(&Setup, &mut Outcome)) -> Outcome {
         outcome: &outcome,
         verdicts: &forwardstep_check::check(&scenario.setup),
         predicted_agreement: None,
+        prediction: None,
         goal: None,
         digital: None,
         notices: vec!["one".into()],

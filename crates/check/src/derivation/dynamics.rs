@@ -3,13 +3,13 @@
 //! A design says first what q should do, in q alone. Then derivatives that are not measured are replaced by those of z, which are
 //! constructed (Remark 6): pʳ q becomes p^(r−k+1) z for a plant of order k, z following p^(k−1) q.
 
+use forwardstep_core::expression::Number;
 use forwardstep_sim::reference::{LinearReference, LinearTerms};
 use num_rational::BigRational;
 use num_traits::One;
 
 use super::form::{Combination, Form, Letter, Links, Quantity, Term, Undifferentiable, Vertex};
 use super::polynomial::Polynomial;
-use crate::certificate::written;
 
 /// p^ℓ z = …, for a plant of order k.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,7 +122,7 @@ pub fn backstepping() -> Dynamics {
 
 /// Reference dynamics from outside, for robots: what their author says that they are.
 pub fn declared(linear: &LinearReference) -> Dynamics {
-    let polynomial = |numbers: &[f64]| Polynomial::new(numbers.iter().map(|number| written(*number)).collect());
+    let polynomial = |numbers: &[f64]| Polynomial::new(numbers.iter().map(|number| Number::written(*number)).collect());
     let terms = |terms: &LinearTerms| {
         Combination::of(Quantity::own(Letter::Position), polynomial(&terms.q))
             .plus(Quantity::own(Letter::Reference), &polynomial(&terms.z))

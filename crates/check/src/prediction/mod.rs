@@ -7,6 +7,7 @@
 //! - `ideal`: the setup in which everybody follows exactly.
 //! - `cascade`: the cascaded variables ψ of the proofs of Theorems 2 and 3, whose spread does not grow.
 //! - `course`: the disagreement over time and the value agreed upon.
+//! - `period`: the rate of agreement over a network that repeats itself.
 //! - `roots`: the rate of agreement over a fixed graph with constant delays.
 //! - `settled`: when a disagreement has settled.
 //! - `torque`: peak torques along the reference.
@@ -14,6 +15,7 @@
 mod cascade;
 mod course;
 mod ideal;
+mod period;
 mod roots;
 mod settled;
 mod torque;
@@ -21,6 +23,7 @@ mod torque;
 pub use cascade::{CascadeSpread, NoCascade};
 pub use course::{Course, NoCourse, course};
 pub use ideal::{NoIdeal, ideal};
+pub use period::{NoPeriodRate, PeriodRate, period_rate};
 pub use roots::{NoRate, Rate, rate};
 pub use settled::{SHARE, Settled, settled};
 pub use torque::PeakTorque;

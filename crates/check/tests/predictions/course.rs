@@ -21,7 +21,7 @@ fn go_on(_: Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-fn predicted(setup: &Setup) -> Course {
+pub(crate) fn predicted(setup: &Setup) -> Course {
     course(setup, &mut go_on).unwrap()
 }
 

@@ -3,16 +3,16 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use forwardstep_check::prediction::{NoRate, Settled, rate};
+use forwardstep_check::prediction::{NoCascade, NoPeriodRate, NoRate, Settled, period_rate, rate};
 use forwardstep_check::{NoIdeal, course};
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::coupling::Coupling;
-use forwardstep_sim::delay::{Delay, SawTooth};
+use forwardstep_sim::delay::{Delay, Loss, PacketLink, SawTooth};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::reference::{PureIntegral, Tracking};
 use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::{Exchange, Setup};
+use forwardstep_sim::{AgentSetup, Exchange, Method, Progress, Setup};
 
 use crate::common::{edge, masses, noise};
 
@@ -119,6 +119,9 @@ fn every_reason_for_no_rate_is_the_one_that_is_said() {
     assert_eq!(said(&alone), Some(NoRate::Agents));
     assert_eq!(said(&|setup| setup.agents[0].roots_per_s[0] = -1.0), Some(NoRate::Unclear));
     assert_eq!(said(&|setup| setup.network.delays.truncate(1)), Some(NoRate::Unclear));
+    let nobody = |setup: &mut Setup| setup.network.schedule.graphs[0].push(edge(9, 0, 1.0, 0));
+    assert_eq!(said(&nobody), Some(NoRate::Unclear), "there is no agent 9");
+    assert_eq!(said(&|setup| setup.agents[0].roots_per_s[0] = 1e300), Some(NoRate::Unclear));
     // (a5) with first roots that differ may diverge: Theorem 2 asks for a common one.
     let diverging = |setup: &mut Setup| {
         setup.exchange = Exchange::PositionVelocity;
@@ -127,4 +130,149 @@ fn every_reason_for_no_rate_is_the_one_that_is_said() {
         }
     };
     assert_eq!(said(&diverging), None, "whether it does is for the root to say");
+}
+
+fn go_on(_: Progress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// A pair that hears each other, one after the other, for so long each.
+fn in_turns(exchange: Exchange, weight: f64, dwell_s: f64, root: f64) -> Setup {
+    let phase = |from, to| Phase { edges: vec![edge(from, to, weight, 0)], dwell_s };
+    let schedule = Schedule::periodic(vec![phase(0, 1), phase(1, 0)]);
+    let mut setup = masses(exchange, 1, schedule, vec![Delay::constant(0.0)]);
+    setup.agents.truncate(2);
+    setup.network.agents = 2;
+    setup.time.end_s = 200.0;
+    setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![root]);
+    setup
+}
+
+#[test]
+fn a_period_leaves_what_its_phases_leave() {
+    // With velocities and one root ψ̇₁ᵢ = −w (ψ₁ᵢ − ψ₁ⱼ): each phase leaves e^(−w T) of their difference.
+    let (weight, dwell_s) = (1.3, 0.4);
+    let found = period_rate(&in_turns(Exchange::PositionVelocity, weight, dwell_s, 50.0), &mut go_on).unwrap();
+    let wanted = (-2.0 * weight * dwell_s).exp();
+    assert!((found.factor - wanted).abs() < 1e-4 && found.wavers < 1e-3, "{found:?}, not {wanted}");
+    assert!((found.period_s - 0.8).abs() < 1e-12 && found.periods >= 3);
+    assert!((found.rate_per_s - wanted.ln() / 0.8).abs() < 1e-4);
+    // Slower than that is what −κ₀ leaves.
+    let found = period_rate(&in_turns(Exchange::PositionVelocity, weight, dwell_s, 0.6), &mut go_on).unwrap();
+    assert!((found.rate_per_s + 0.6).abs() < 5e-3, "{found:?}");
+}
+
+#[test]
+fn a_network_that_stays_has_the_rate_of_its_rightmost_root_in_any_period() {
+    // A saw-tooth of no height is a constant delay with a period.
+    let mut setup = uneven(Exchange::Position, 2);
+    let flat =
+        |delay_s: f64| Delay::new(SawTooth { min_s: delay_s, max_s: delay_s + 1e-9, period_s: 1.5, offset_s: 0.0 });
+    let by_root = rate(&setup).unwrap();
+    setup.network.delays[2] = flat(0.6);
+    let found = period_rate(&setup, &mut go_on).unwrap();
+    assert!((found.rate_per_s / by_root.root_per_s[0] - 1.0).abs() < 0.05, "{found:?} {by_root:?}");
+}
+
+#[test]
+fn every_reason_for_no_rate_per_period_is_the_one_that_is_said() {
+    let said = |change: &dyn Fn(&mut Setup)| {
+        let mut setup = in_turns(Exchange::Position, 1.0, 0.5, 2.0);
+        change(&mut setup);
+        period_rate(&setup, &mut go_on).err()
+    };
+    assert_eq!(said(&|_| {}), None);
+    assert_eq!(said(&|setup| setup.reference = Arc::new(Tracking)), Some(NoPeriodRate::Ideal(NoIdeal::Targets)));
+    let tanh = Coupling::Tanh { scale: 1.0 };
+    assert_eq!(said(&|setup| setup.network.coupling = tanh), Some(NoPeriodRate::Cascade(NoCascade::Coupling)));
+    let saw = |period_s| Delay::new(SawTooth { min_s: 0.0, max_s: 0.1, period_s, offset_s: 0.0 });
+    assert_eq!(said(&|setup| setup.network.delays[0] = saw(0.3)), None, "three periods are ten of the delay");
+    let never = std::f64::consts::SQRT_2;
+    assert_eq!(said(&|setup| setup.network.delays[0] = saw(never)), Some(NoPeriodRate::NoPeriod));
+    assert_eq!(said(&|setup| setup.network.delays.push(saw(never))), None, "no edge has it");
+    let drawn = |setup: &mut Setup| {
+        setup.network.schedule = Schedule::random(setup.network.schedule.graphs.clone(), [0.5, 0.5], 1);
+    };
+    assert_eq!(said(&drawn), Some(NoPeriodRate::NoPeriod));
+    let apart = |setup: &mut Setup| {
+        let nobody = Phase { edges: Vec::new(), dwell_s: 0.5 };
+        let one = Phase { edges: vec![edge(0, 2, 1.0, 0)], dwell_s: 0.5 };
+        setup.agents = masses(Exchange::Position, 1, Schedule::fixed(Vec::new()), Vec::new()).agents;
+        setup.network.agents = 5;
+        setup.network.schedule = Schedule::periodic(vec![nobody, one]);
+    };
+    assert_eq!(said(&apart), Some(NoPeriodRate::Stays { periods: 512 }));
+    let at_once = |setup: &mut Setup| {
+        for edge in setup.network.schedule.graphs.iter_mut().flatten() {
+            edge.weight = Weight::Constant(60.0);
+        }
+        setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![60.0]);
+    };
+    assert!(matches!(said(&at_once), Some(NoPeriodRate::Vanishes { periods: 0..3 })), "{:?}", said(&at_once));
+    let stop = period_rate(&in_turns(Exchange::Position, 1.0, 0.5, 2.0), &mut |_| ControlFlow::Break(()));
+    assert_eq!(stop, Err(NoPeriodRate::Interrupted));
+}
+
+#[test]
+fn a_schedule_that_never_joins_and_drawn_delays_have_no_agreement_and_no_rate() {
+    // Two pairs that never meet.
+    let mut setup = uneven(Exchange::Position, 2);
+    setup.network.schedule = Schedule::periodic(vec![
+        Phase { edges: vec![edge(0, 1, 1.0, 0), edge(2, 3, 1.0, 1)], dwell_s: 1.0 },
+        Phase { edges: vec![edge(1, 0, 1.0, 2), edge(3, 2, 1.0, 0)], dwell_s: 0.7 },
+    ]);
+    setup.time.end_s = 30.0;
+    let course = course(&setup, &mut go_on).unwrap();
+    assert!(!course.is_reached() && course.settled == Settled::NotYet);
+    let within = course.within.unwrap();
+    assert!(within.iter().all(|[low, high]| high - low > 0.1), "{within:?}");
+    assert!(matches!(period_rate(&setup, &mut go_on), Err(NoPeriodRate::Stays { .. })));
+    assert_eq!(rate(&setup), Err(NoRate::Switching));
+    // Packets that are lost, over a tree.
+    let link = PacketLink {
+        every_s: 0.2,
+        first_s: 0.1,
+        latency_s: 0.05,
+        jitter_s: 0.3,
+        loss: Loss::Random { probability: 0.4 },
+        most_in_a_row: Some(5),
+        seed: 3,
+    };
+    let mut lossy = uneven(Exchange::PositionVelocity, 3);
+    lossy.network.delays = vec![Delay::new(link.trace((0, 1), 120.0).unwrap()); 3];
+    let course = super::course::predicted(&lossy);
+    assert!(course.is_reached() && course.within.unwrap().iter().all(|[low, high]| high - low < 0.1));
+    assert_eq!(rate(&lossy), Err(NoRate::VaryingDelay));
+    assert_eq!(period_rate(&lossy, &mut go_on), Err(NoPeriodRate::NoPeriod));
+}
+
+#[test]
+fn hundreds_of_agents_have_a_course_and_a_rate_or_a_reason() {
+    for agents in [2, 40, 120, 500] {
+        let mut setup = uneven(Exchange::Position, 2);
+        let own = setup.agents[0].clone();
+        setup.agents = (0..agents).map(|i| AgentSetup { name: format!("mass-{i}"), ..own.clone() }).collect();
+        for (i, agent) in setup.agents.iter_mut().enumerate() {
+            agent.start.q = vec![noise(i), noise(2 * i)];
+        }
+        setup.network.agents = agents;
+        // Each hears the next ones around a ring; all at once where they are few.
+        let edges = (0..agents).flat_map(|i| (1..=agents.min(4) - 1).map(move |k| edge((i + k) % agents, i, 1.0, 1)));
+        setup.network.schedule = Schedule::fixed(edges.collect());
+        setup.time.end_s = 40.0;
+        setup.time.record_every_s = 0.1;
+        setup.solver.method = Method::Adaptive { rtol: 1e-6, atol: 1e-8 };
+        let course = super::course::predicted(&setup);
+        match rate(&setup) {
+            Ok(found) if agents <= 120 => {
+                let (by_roots, by_course) = (found.settled.time_s(), course.settled.time_s());
+                if let (Some(by_roots), Some(by_course)) = (by_roots, by_course) {
+                    assert!((by_roots / by_course - 1.0).abs() < 0.2, "{agents}: {by_roots} s, {by_course} s");
+                }
+                assert!(found.root_per_s[0] < 0.0 && found.backward_error < 1e-9, "{agents}: {found:?}");
+            }
+            Err(NoRate::TooLarge { .. }) if agents > 120 => {}
+            other => panic!("{agents}: {other:?}"),
+        }
+    }
 }

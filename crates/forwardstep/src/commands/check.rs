@@ -1,6 +1,7 @@
 //! `forwardstep check`
 
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use forwardstep::check::{Id, PracticalAnswer, Report, certify};
@@ -8,7 +9,7 @@ use forwardstep::io::output::{Findings, certificate_document};
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
 
-use super::promise::{promise, show, style};
+use super::promise::{predictions, promise, show, show_predictions, style};
 use crate::arguments::CheckOptions;
 use crate::console::{BOLD, Console, FAIR, Plain, complain};
 use crate::status::Status;
@@ -29,6 +30,8 @@ pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console
     {
         return complain(&error);
     }
+    let predictions =
+        options.predict.then(|| predictions(&scenario.setup, &mut |_| ControlFlow::Continue(()))).flatten();
     if options.json {
         let findings = Findings::of(
             &scenario,
@@ -36,6 +39,7 @@ pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console
             report,
             &promise.practical,
             &promise.agreement,
+            predictions,
             &accepted,
         );
         match findings.to_json() {
@@ -44,6 +48,9 @@ pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console
         }
     } else {
         show(&scenario, &promise, console);
+        if let Some(predictions) = &predictions {
+            show_predictions(&scenario.setup, predictions, console);
+        }
         conclude(report, &accepted, console);
     }
     let practical = !options.practical || promise.practical.worst() != Some(PracticalAnswer::Inadequate);

@@ -1,8 +1,12 @@
 //! What the theorems promise for a setup, and how it is shown.
 
+use std::ops::ControlFlow;
+
+use forwardstep::check::prediction::{NoRate, period_rate, rate};
 use forwardstep::check::{self, Answer, NoPrediction, Practical, PracticalAnswer, Prediction, Report};
+use forwardstep::io::output::Predictions;
 use forwardstep::io::scenario::Scenario;
-use forwardstep::sim::Setup;
+use forwardstep::sim::{Progress, Setup};
 
 use crate::console::{BAD, BOLD, Console, DIM, FAIR, GOOD};
 
@@ -25,6 +29,22 @@ impl Promise {
 /// Looks at the hypotheses.
 pub(crate) fn promise(setup: &Setup) -> Promise {
     Promise { report: check::check(setup), practical: check::practical(setup), agreement: check::predict(setup) }
+}
+
+/// Simulates the reference dynamics alone; nothing where there is nothing to predict, or `observer` interrupts.
+pub(crate) fn predictions(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Option<Predictions> {
+    let (course, rate) = (check::course(setup, observer), rate(setup));
+    let repeats = matches!(rate, Err(NoRate::Switching | NoRate::VaryingDelay));
+    let period = (repeats && course.is_ok()).then(|| period_rate(setup, observer));
+    Predictions::of(&course, &rate, period.as_ref())
+}
+
+/// What is predicted, in a few lines.
+pub(crate) fn show_predictions(setup: &Setup, predictions: &Predictions, console: &mut Console) {
+    console.line(format_args!("{BOLD}Predicted{BOLD:#} for robots that follow their references exactly, s ≡ 0:"));
+    for sentence in predictions.sentences(setup) {
+        console.line(format_args!("  {sentence}"));
+    }
 }
 
 /// The scenario in one line, and the verdicts.

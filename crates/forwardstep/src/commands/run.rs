@@ -9,10 +9,10 @@ use forwardstep::io::output::{
 };
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
-use forwardstep::sim::{Ending, Outcome, simulate};
+use forwardstep::sim::{Ending, Outcome, Progress, simulate};
 
 use super::progress::Bar;
-use super::promise::{Promise, promise, show};
+use super::promise::{Promise, predictions, promise, show, show_predictions};
 use super::stop::Stop;
 use super::summary::summary;
 use crate::arguments::RunOptions;
@@ -33,22 +33,25 @@ fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<
     // Before the run, so that no work is lost to a folder that cannot be written to.
     let folder = RunFolder::create(&path, options.force).map_err(refused)?;
     show(&scenario, &promise, console);
+    let (setup, mut bar) = (&scenario.setup, Bar::new());
+    let prediction = predictions(setup, &mut |progress| watch(&mut bar, &stop, progress));
+    bar.clear();
+    if let Some(prediction) = &prediction {
+        show_predictions(setup, prediction, console);
+    }
     console.line("");
 
     let mut bar = Bar::new();
     let started = Instant::now();
-    let outcome = simulate(&scenario.setup, &mut |progress| {
-        bar.update(progress);
-        if stop.asked().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
+    let outcome = simulate(setup, &mut |progress| watch(&mut bar, &stop, progress));
     bar.clear();
     let mut outcome = outcome.map_err(|error| complain(&Plain::new(error)))?;
     outcome.statistics.wall = Some(started.elapsed());
 
-    let setup = &scenario.setup;
     let metrics = Metrics::of(setup, &outcome.recording, promise.value(), scenario.goal);
     let goal = scenario.goal.map(|goal| GoalOutcome { goal, met: goal.is_met(setup, &outcome, &metrics) });
     let mut record = record(&scenario, &promise, &outcome, goal);
+    record.prediction = prediction;
     if setup.control.is_some() && !matches!(outcome.ending, Ending::Interrupted { .. }) {
         record.digital = digital_cost(&scenario, &outcome, &stop);
     }
@@ -70,6 +73,12 @@ fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<
     })
 }
 
+/// Shows how far it is, and stops when it is asked to.
+fn watch(bar: &mut Bar, stop: &Stop, progress: Progress) -> ControlFlow<()> {
+    bar.update(progress);
+    if stop.asked().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+}
+
 fn record<'a>(
     scenario: &'a Scenario,
     promise: &'a Promise,
@@ -86,6 +95,7 @@ fn record<'a>(
         outcome,
         verdicts: &promise.report,
         predicted_agreement: promise.value().map(<[f64]>::to_vec),
+        prediction: None,
         goal,
         digital: None,
         notices: scenario.notices.iter().map(ToString::to_string).collect(),
@@ -97,10 +107,7 @@ fn record<'a>(
 fn digital_cost(scenario: &Scenario, outcome: &Outcome, stop: &Stop) -> Option<DigitalCost> {
     let mut bar = Bar::new();
     let until_s = outcome.recording.t_s.last().copied().filter(|last| *last > 0.0)?;
-    let twin = simulate(&continuous_twin(&scenario.setup, until_s), &mut |progress| {
-        bar.update(progress);
-        if stop.asked().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
+    let twin = simulate(&continuous_twin(&scenario.setup, until_s), &mut |progress| watch(&mut bar, stop, progress));
     bar.clear();
     DigitalCost::of(&scenario.setup, outcome, &twin.ok()?, scenario.goal)
 }

@@ -31,6 +31,14 @@ pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, 
     if let Some(settled_s) = metrics.settled_s {
         rows.push(("settled after", format!("{settled_s:.2} s")));
     }
+    if let Some(course) = record.prediction.as_ref().and_then(|prediction| prediction.course()) {
+        let time = |t_s: Option<f64>| t_s.map_or_else(|| "not yet".to_owned(), |t_s| format!("{t_s:.2} s"));
+        let (predicted, observed) = (time(course.settled_s), time(metrics.settled_to_1_percent_s));
+        rows.push(("settled to 1 %", format!("{observed}, predicted {predicted}")));
+    }
+    if let Some(s) = metrics.final_tracking_error {
+        rows.push(("final tracking error", format!("|s| ≤ {}", short(s))));
+    }
     if let Some(agreement) = &metrics.agreement {
         let predicted: Vec<f64> = agreement.iter().map(|axis| axis.predicted).collect();
         let reached: Vec<f64> = agreement.iter().map(|axis| axis.reached).collect();

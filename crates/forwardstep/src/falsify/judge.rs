@@ -135,12 +135,13 @@ fn without_errors(setup: &Setup) -> Verdict {
 
 /// When, and by how much, the interval left what it was at the start: there, what is on its way is known exactly.
 pub(super) fn grown(spread: &CascadeSpread, t_s: &[f64]) -> Option<Failure> {
-    let axes = spread.low.iter().zip(&spread.high);
-    let worst = axes.flat_map(|(low, high)| {
-        let (first, last) = (low.first().copied().unwrap_or(0.0), high.first().copied().unwrap_or(0.0));
-        // Where all start in one place, rounding is measured by how far away that is.
-        let size = (last - first).max(1e-3 * first.abs().max(last.abs())).max(f64::MIN_POSITIVE);
-        let out = move |(low, high): (&f64, &f64)| (first - low).max(high - last) / size;
+    let first = |row: &[f64]| row.first().copied().unwrap_or(0.0);
+    let axes = || spread.low.iter().zip(&spread.high);
+    // Tolerances go by the sizes of numbers: of an axis on which all start in one place the others tell.
+    let sizes = axes().flat_map(|(low, high)| [first(high) - first(low), first(low).abs(), first(high).abs()]);
+    let size = sizes.fold(f64::MIN_POSITIVE, f64::max);
+    let worst = axes().flat_map(|(low, high)| {
+        let out = |(now_low, now_high): (&f64, &f64)| (first(low) - now_low).max(now_high - first(high)) / size;
         low.iter().zip(high).map(out).zip(t_s).collect::<Vec<_>>()
     });
     let (part, t_s) = worst.max_by(|(a, _), (b, _)| a.total_cmp(b))?;

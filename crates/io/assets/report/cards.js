@@ -112,6 +112,7 @@ const cards = {
         key: true,
         series: [
           ...axes.map((k, axis) => ({ label: d.names[axis], colour: ramp(axis, axes.length), width: 1.1, values: data.values("main", k, true) })),
+          ...(d.predicted == null ? [] : [{ label: "predicted", colour: colour("--ink"), dash: [6, 4], width: 1.4, values: data.values("main", d.predicted, true) }]),
           { label: axes.length ? "largest" : "disagreement", colour: colour("--ink"), width: 2.2, values: data.values("main", d.overall, true) },
         ],
       };

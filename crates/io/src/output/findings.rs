@@ -5,6 +5,7 @@ use schemars::{JsonSchema, Schema, schema_for};
 use serde::{Deserialize, Serialize};
 
 use super::practical::PracticalVerdicts;
+use super::prediction::Predictions;
 use super::verdicts::Verdicts;
 use crate::scenario::Scenario;
 
@@ -34,6 +35,9 @@ pub struct Findings {
     pub practical: PracticalVerdicts,
     /// The value that the agents will agree on.
     pub agreement: PredictedAgreement,
+    /// What is predicted for robots that follow their references exactly, s ≡ 0; absent unless it was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prediction: Option<Predictions>,
     /// Remarks.
     pub notices: Vec<String>,
 }
@@ -65,13 +69,15 @@ pub enum PredictedAgreement {
 }
 
 impl Findings {
-    /// What `report`, `practical` and `agreement`, which are those of `scenario`, say when the answers about `accepted` are waived.
+    /// What `report`, `practical` and `agreement`, which are those of `scenario`, say when the answers about `accepted` are waived, with
+    /// what is predicted, if that was asked for.
     pub fn of(
         scenario: &Scenario,
         version: &str,
         report: &Report,
         practical: &Practical,
         agreement: &Result<Prediction, NoPrediction>,
+        prediction: Option<Predictions>,
         accepted: &[Id],
     ) -> Findings {
         let outcome = report.worst_without(accepted);
@@ -94,6 +100,7 @@ impl Findings {
                 }
                 Err(reason) => PredictedAgreement::NoneSince(reason.to_string()),
             },
+            prediction,
             notices: scenario.notices.iter().map(ToString::to_string).collect(),
         }
     }

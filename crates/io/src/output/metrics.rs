@@ -26,6 +26,15 @@ pub struct Metrics {
     pub disagreement: Disagreement,
     /// The time from which on the disagreement stays below the goal until the end, s.
     pub settled_s: Option<f64>,
+    /// When the disagreement exceeds 1 % of its start for the last time, s; absent where it still does at the last row.
+    #[serde(default)]
+    pub settled_to_1_percent_s: Option<f64>,
+    /// The mean of the positions at the last row, one entry per axis; absent where agents cannot be compared.
+    #[serde(default)]
+    pub final_means: Option<Vec<f64>>,
+    /// The largest |s| at the last row, over all agents and axes; absent where s is not recorded.
+    #[serde(default)]
+    pub final_tracking_error: Option<f64>,
     /// Largest and final speed over all agents and axes.
     pub speed: Option<Speed>,
     /// The largest |τ| of every agent and axis.
@@ -195,6 +204,16 @@ impl Metrics {
                 (Ok(series), Some(goal)) => goal.bound().and_then(|bound| settled(table.t_s, &series.overall, bound)),
                 _ => None,
             },
+            settled_to_1_percent_s: series
+                .as_ref()
+                .ok()
+                .and_then(|series| forwardstep_check::prediction::settled(table.t_s, &series.overall).time_s()),
+            final_means: series.as_ref().ok().filter(|_| Gap::of(setup) == Gap::Disagreement).and_then(|series| {
+                (0..series.per_axis.len())
+                    .map(|axis| Some(last_positions(&table, axis)?.1).filter(|mean| mean.is_finite()))
+                    .collect()
+            }),
+            final_tracking_error: final_tracking_error(&table),
             disagreement: match &series {
                 Ok(DisagreementSeries { overall, .. }) => Disagreement::Measured {
                     initial: overall.first().copied().unwrap_or(f64::NAN),
@@ -227,6 +246,11 @@ fn speed(table: &Table<'_>) -> Option<Speed> {
     })?;
     let last = table.axes(Signal::Velocity).filter_map(|(.., dq)| dq.last()).map(|dq| dq.abs()).fold(0.0, greater);
     Some(Speed { largest: Peak { value: largest.value.abs(), ..largest }, last })
+}
+
+fn final_tracking_error(table: &Table<'_>) -> Option<f64> {
+    let last = table.axes(Signal::TrackingError).filter_map(|(.., s)| s.last().map(|s| s.abs()));
+    last.reduce(greater).filter(|s| s.is_finite())
 }
 
 fn settled(t_s: &[f64], overall: &[f64], bound: f64) -> Option<f64> {
@@ -331,15 +355,21 @@ pub(crate) fn balance_residuals(table: &Table<'_>, agent: usize) -> Option<Vec<f
     Some(v.iter().zip(dissipated).map(|(v, d)| (v + d - start) / scale).collect())
 }
 
+/// The positions of all agents on an axis at the last row, and their mean.
+fn last_positions(table: &Table<'_>, axis: usize) -> Option<(Vec<f64>, f64)> {
+    let last: Option<Vec<f64>> =
+        (0..table.agents()).map(|agent| table.column(agent, Signal::Position, axis)?.last().copied()).collect();
+    let last = last.filter(|last| !last.is_empty())?;
+    let mean = last.iter().sum::<f64>() / last.len() as f64;
+    Some((last, mean))
+}
+
 fn agreement(table: &Table<'_>, predicted: &[f64]) -> Option<Vec<Agreement>> {
     predicted
         .iter()
         .enumerate()
         .map(|(axis, &predicted)| {
-            let last: Option<Vec<f64>> =
-                (0..table.agents()).map(|agent| table.column(agent, Signal::Position, axis)?.last().copied()).collect();
-            let last = last.filter(|last| !last.is_empty())?;
-            let reached = last.iter().sum::<f64>() / last.len() as f64;
+            let (last, reached) = last_positions(table, axis)?;
             let distance = last.iter().map(|q| (q - predicted).abs()).fold(0.0, greater);
             Some(Agreement { axis, predicted, reached, distance })
         })

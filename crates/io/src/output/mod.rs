@@ -40,6 +40,7 @@ mod palette;
 mod parquet;
 mod plots;
 mod practical;
+mod prediction;
 mod record;
 mod report;
 mod restore;
@@ -67,6 +68,7 @@ pub use metrics::{
 };
 pub use packets::Link;
 pub use practical::{PracticalVerdict, PracticalVerdicts, Watched, WatchedLoad, WatchedMargin};
+pub use prediction::{CourseFound, PredictedCourse, PredictedRate, PredictedTorque, Predictions};
 pub use record::{GoalOutcome, RunRecord};
 pub use restore::{Remark, SavedRun};
 pub use restore_error::{RestoreError, SummaryError, TableError};

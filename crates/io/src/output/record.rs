@@ -6,6 +6,7 @@ use forwardstep_sim::setup::Setup;
 
 use super::digital::DigitalCost;
 use super::metrics::Metrics;
+use super::prediction::Predictions;
 use crate::scenario::{Goal, InputFile};
 
 /// A finished run with all that was said about it before: what [`super::write_run`] writes.
@@ -29,6 +30,8 @@ pub struct RunRecord<'a> {
     pub verdicts: &'a Report,
     /// The value the agents are predicted to agree on, per axis, when a theorem or a certificate tells.
     pub predicted_agreement: Option<Vec<f64>>,
+    /// What was predicted for s ≡ 0; `None` where nothing is, or it was interrupted.
+    pub prediction: Option<Predictions>,
     /// The scenario's goal and whether it was met.
     pub goal: Option<GoalOutcome>,
     /// What digital control cost, when there was any and the run was not interrupted.

@@ -191,6 +191,7 @@ impl SavedRun {
             outcome,
             verdicts,
             predicted_agreement,
+            prediction: summary.prediction.clone(),
             goal,
             digital: summary.digital.clone(),
             notices: summary.notices.iter().cloned().chain(remarks.iter().map(Remark::to_string)).collect(),

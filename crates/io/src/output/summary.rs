@@ -16,6 +16,7 @@ use super::inputs::content_digest;
 use super::metrics::Metrics;
 use super::packets::Link;
 use super::practical::PracticalVerdicts;
+use super::prediction::Predictions;
 use super::record::RunRecord;
 pub use super::verdicts::{Verdict, Verdicts};
 use super::{names, number};
@@ -50,6 +51,9 @@ pub struct Summary {
     /// What could be said of the loop as it is deployed; absent in documents of older versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub practical: Option<PracticalVerdicts>,
+    /// What was predicted for robots that follow their references exactly, s ≡ 0.
+    #[serde(default)]
+    pub prediction: Option<Predictions>,
     /// What happened.
     pub metrics: Metrics,
     /// Work of the integrator.
@@ -218,6 +222,7 @@ impl Summary {
             }),
             verdicts: Verdicts::of(record.verdicts),
             practical: Some(PracticalVerdicts::of(setup)),
+            prediction: record.prediction.clone(),
             metrics,
             solver: Solver {
                 steps: statistics.steps,

@@ -246,6 +246,7 @@ fn run(scenario: &Scenario, folder: &Path) -> Outcome {
         outcome: &outcome,
         verdicts: &verdicts,
         predicted_agreement: None,
+        prediction: None,
         goal: None,
         digital: None,
         notices: Vec::new(),

@@ -31,6 +31,7 @@ fn survives(text: &str) {
         Ok(scenario) => {
             forwardstep_check::check(&scenario.setup);
             let _ = forwardstep_check::predict(&scenario.setup);
+            let _ = forwardstep_check::ideal(&scenario.setup);
             let outcome = forwardstep_sim::simulate(&scenario.setup, &mut |_| ControlFlow::Break(()));
             assert!(outcome.is_ok(), "{:?} of\n{text}", outcome.err());
         }

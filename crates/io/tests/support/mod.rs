@@ -199,6 +199,7 @@ pub fn record<'a>(setup: &'a Setup, outcome: &'a Outcome, verdicts: &'a Report) 
         predicted_agreement: Some(
             (0..setup.agents.first().map_or(0, |a| a.robot.axes.len())).map(|axis| 0.3 * (axis + 1) as f64).collect(),
         ),
+        prediction: None,
         goal: Some(GoalOutcome { goal: Goal::DisagreementBelow(0.05), met: true }),
         digital: None,
         notices: Vec::new(),

@@ -36,7 +36,7 @@ pub struct Rate {
     pub correction_per_s: f64,
     /// The relative change of the characteristic matrix that makes it exactly singular there.
     pub backward_error: f64,
-    /// The disagreement at t = 0 that belongs to it, in the unit of the axes: nothing of it means that the start does not excite it, and
+    /// The largest disagreement that the start makes by it, in the unit of the axes: zero means that the start does not excite it, and
     /// the disagreement falls faster.
     pub excited: f64,
     /// When the disagreement settles, by this root and the next ones.
@@ -133,6 +133,9 @@ fn system(ideal: &Setup) -> Result<Characteristic, NoRate> {
         return Err(NoRate::Coupling);
     }
     let edges = ideal.network.schedule.constant_graph().ok_or(NoRate::Switching)?;
+    if edges.iter().any(|edge| edge.from.max(edge.to) >= ideal.agents.len()) {
+        return Err(NoRate::Unclear);
+    }
     let link = |edge: &Edge| {
         let delay = ideal.network.delays.get(edge.delay).ok_or(NoRate::Unclear)?;
         if !delay.is_constant() {

@@ -84,14 +84,19 @@ pub(super) fn modes(system: &Characteristic, candidates: &[C], most: usize) -> V
 fn mode(system: &Characteristic, group: &Group) -> Option<Mode> {
     let integral = Integral::around(system, group.centre, group.radius, 1)?;
     let multiplicity = group.members;
-    if size(integral.count - multiplicity as f64) > 0.1 {
+    let off = size(integral.count - multiplicity as f64);
+    if off.is_nan() || off > 0.1 {
         return None;
     }
     let mut root = group.centre + integral.mean / multiplicity as f64;
     let mut correction = f64::INFINITY;
     if multiplicity == 1 {
         for _ in 0..20 {
-            let Some(step) = newton(system, root).filter(|step| size(*step) < 0.5 * correction) else { break };
+            // Where the matrix is singular in `f64` nothing is left to correct.
+            let step = newton(system, root).unwrap_or_default();
+            if size(step) >= 0.5 * correction {
+                break;
+            }
             correction = size(step);
             root -= step;
         }
@@ -182,24 +187,39 @@ impl Mode {
 
     /// Its part of q at `t_s`, a row per agent, a column per axis.
     pub(super) fn at(&self, t_s: f64) -> DMatrix<f64> {
-        let mut sum = DMatrix::zeros(self.parts[0].nrows(), self.parts[0].ncols());
-        let mut factor = exp(self.root * t_s) * if self.is_pair() { 2.0 } else { 1.0 };
-        for (k, part) in self.parts.iter().enumerate() {
-            sum.zip_apply(part, |sum, part| *sum += (part * factor).re);
-            factor *= t_s / (k + 1) as f64;
+        let factor = exp(self.root * t_s) * if self.is_pair() { 2.0 } else { 1.0 };
+        self.polynomial(t_s).map(|entry| (entry * factor).re)
+    }
+
+    /// The largest disagreement that it makes, whatever its phase: of several roots it need not be at the start.
+    pub(super) fn excited(&self) -> f64 {
+        let steps = if self.multiplicity > 1 { STEPS } else { 0 };
+        let t_s = (0..=steps).map(|step| 0.1 * f64::from(step) / self.root.re.abs());
+        let largest = t_s.map(|t_s| libm::exp(self.root.re * t_s) * apart(&self.polynomial(t_s))).fold(0.0, f64::max);
+        if self.is_pair() { 2.0 * largest } else { largest }
+    }
+
+    /// Σ_k R_k t^k/k!.
+    fn polynomial(&self, t_s: f64) -> DMatrix<C> {
+        let mut sum = self.parts[0].clone();
+        let mut factor = 1.0;
+        for (k, part) in self.parts.iter().enumerate().skip(1) {
+            factor *= t_s / k as f64;
+            sum.zip_apply(part, |sum, part| *sum += part * factor);
         }
         sum
     }
+}
 
-    /// The disagreement that the start puts into it: the largest |R₀ᵢ − R₀ⱼ| over agents and axes, twice that for a pair.
-    pub(super) fn excited(&self) -> f64 {
-        let part = &self.parts[0];
-        let apart = |column: usize| {
-            let entries = part.column(column);
-            let first = entries[0];
-            entries.iter().map(|entry| size(*entry - first)).fold(0.0, f64::max)
-        };
-        let largest = (0..part.ncols()).map(apart).fold(0.0, f64::max);
-        if self.is_pair() { 2.0 * largest } else { largest }
-    }
+/// Where the largest disagreement of several roots is looked for: ten time constants.
+const STEPS: u32 = 100;
+
+/// The largest difference from the first row, over all rows and columns.
+fn apart(part: &DMatrix<C>) -> f64 {
+    let column = |column: usize| {
+        let entries = part.column(column);
+        let first = entries[0];
+        entries.iter().map(|entry| size(*entry - first)).fold(0.0, f64::max)
+    };
+    (0..part.ncols()).map(column).fold(0.0, f64::max)
 }

@@ -139,6 +139,20 @@ fn the_residue_at_zero_is_the_value_agreed_upon() {
 }
 
 #[test]
+fn of_several_roots_in_one_place_the_largest_disagreement_need_not_be_at_the_start() {
+    // The second hears the first, which rests: q₂ − q₁ = (2 t e^(−t) + e^(−2t)) of what it is at the start.
+    let mut setup = masses(Exchange::PositionVelocity, &[&[1.0, 2.0][..]; 2], &[(0, 1, 1.0, 0.0)]);
+    for (agent, q) in setup.agents.iter_mut().zip([0.0, 3.0]) {
+        agent.start = Start { q: vec![q], dq: vec![0.0], rest: Vec::new(), reference: Vec::new() };
+    }
+    let found = rate(&setup).unwrap();
+    assert_eq!(found.multiplicity, 3);
+    near(found.root_per_s, C::from(-1.0), 1e-6);
+    // 2 t e^(−t) is largest at t = 1.
+    assert!((found.excited - 6.0 / core::f64::consts::E).abs() < 1e-3, "{found:?}");
+}
+
+#[test]
 fn a_large_network_is_decided_by_its_laplacian_if_all_is_uniform() {
     let agents = 80;
     let setup = masses(Exchange::Position, &vec![&[1.0, 2.0][..]; agents], &ring(agents, 1.0, 0.2));
@@ -150,5 +164,14 @@ fn a_large_network_is_decided_by_its_laplacian_if_all_is_uniform() {
     assert!(size(rest) < 1e-9 && p.re < -1e-4 && p.re > -1e-2, "{large:?}");
     let mut uneven = setup.clone();
     uneven.agents[3].roots_per_s[0] = 1.5;
-    assert_eq!(rate(&uneven), Err(NoRate::TooLarge { unknowns: 80 * 3 + 80 * 6 }));
+    let too_large = Err(NoRate::TooLarge { unknowns: 80 * 3 + 80 * 6 });
+    assert_eq!(rate(&uneven), too_large);
+    for (weight, delay_s) in [(1.5, 0.2), (1.0, 0.3)] {
+        let mut links = ring(agents, 1.0, 0.2);
+        (links[7].2, links[7].3) = (weight, delay_s);
+        assert_eq!(rate(&masses(Exchange::Position, &vec![&[1.0, 2.0][..]; agents], &links)), too_large);
+    }
+    let more = 201;
+    let setup = masses(Exchange::Position, &vec![&[1.0, 2.0][..]; more], &ring(more, 1.0, 0.2));
+    assert_eq!(rate(&setup), Err(NoRate::TooLarge { unknowns: more * 9 }));
 }

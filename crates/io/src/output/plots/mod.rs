@@ -162,12 +162,19 @@ impl<'a> Plots<'a> {
             let colour = |axis| palette::ramp(axis, axes.len(), Ground::Light);
             let mut lines: Vec<_> =
                 axes.iter().enumerate().map(|(axis, values)| self.line(&grid, values, false, colour(axis))).collect();
+            if let Some(course) = self.record.prediction.as_ref().and_then(|prediction| prediction.course()) {
+                let points: Vec<_> = course.t_s.iter().copied().zip(course.disagreement.iter().copied()).collect();
+                lines.extend(dashes(&points, ink));
+            }
             lines.push(Line { width: 2, ..self.line(&grid, &series.overall, false, ink) });
             if !axes.is_empty() {
                 legend = (0..axes.len().min(MOST_NAMES))
                     .map(|axis| (names::gap_words(self.record.setup, axis), colour(axis)))
                     .collect();
                 legend.push(("largest".into(), ink));
+            }
+            if self.record.prediction.as_ref().is_some_and(|prediction| prediction.course().is_some()) {
+                legend.push(("predicted, dashed".into(), ink));
             }
             let unit = match names::gap_unit(self.record.setup) {
                 unit if unit.is_empty() => unit,
@@ -219,6 +226,15 @@ impl<'a> Plots<'a> {
         Line { colour, width: 1, points }
     }
 }
+
+/// Every other piece of a line.
+fn dashes(points: &[(f64, f64)], colour: [u8; 3]) -> impl Iterator<Item = Line> {
+    let pieces = points.chunks(DASH).step_by(2).filter(|piece| piece.len() > 1);
+    pieces.map(move |piece| Line { colour, width: 1, points: piece.to_vec() })
+}
+
+/// Points of a dash.
+const DASH: usize = 4;
 
 /// Which columns move most in any of the panels, at most [`MOST_PARAMETERS`] of them, in their order.
 fn largest_moves<'c>(panels: impl Iterator<Item = &'c [&'c [f64]]>) -> Vec<usize> {

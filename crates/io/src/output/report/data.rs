@@ -118,6 +118,8 @@ struct DisagreementIndex {
     unit: String,
     overall: usize,
     per_axis: Vec<usize>,
+    /// What is predicted for s ≡ 0.
+    predicted: Option<usize>,
     /// What the axes are called.
     names: Vec<String>,
 }
@@ -197,6 +199,11 @@ impl Payload {
             unit: names::gap_unit(record.setup),
             overall: main.add(&series.overall, false),
             names: (0..series.per_axis.len()).map(|axis| names::gap_words(record.setup, axis)).collect(),
+            predicted: record
+                .prediction
+                .as_ref()
+                .and_then(|prediction| prediction.course())
+                .map(|course| main.add(&course.at(table.t_s), false)),
             per_axis: series.per_axis.iter().map(|axis| main.add(axis, false)).collect(),
         });
 

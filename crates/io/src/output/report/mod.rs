@@ -8,6 +8,7 @@ mod families;
 mod interfaces;
 mod network;
 mod practical;
+mod predicted;
 pub(crate) mod sections;
 pub(crate) mod text;
 
@@ -74,6 +75,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
                     }
                     (sections::verdicts(record, metrics))
                     (practical::practical(record, metrics))
+                    (predicted::section(record, metrics))
                     (signals(absence, record))
                     @if has_network(record) { (network(record, &timeline)) }
                     (interfaces(record.setup))

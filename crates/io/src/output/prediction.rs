@@ -1,0 +1,303 @@
+//! What is predicted before any robot is simulated, for `summary.json`, `check --json`, the terminal and the report.
+//!
+//! All of it is for s ≡ 0: robots that follow their references exactly. Beside it stands what was observed.
+
+use forwardstep_check::NoIdeal;
+use forwardstep_check::prediction::{Course, NoCourse, NoPeriodRate, NoRate, PeriodRate, Rate};
+use forwardstep_sim::Setup;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::report::text::number as number_words;
+use super::{names, number};
+
+/// Points of the course that are kept.
+const MOST_POINTS: usize = 400;
+
+/// What is predicted for robots that follow their references exactly, s ≡ 0.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Predictions {
+    /// The course of agreement.
+    pub course: PredictedCourse,
+    /// The rate of agreement.
+    pub rate: PredictedRate,
+}
+
+/// The course of agreement, or why it is not predicted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PredictedCourse {
+    /// It, from the reference dynamics alone.
+    Found(CourseFound),
+    /// Why there is none.
+    NoneSince(String),
+}
+
+/// The course of agreement.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CourseFound {
+    /// Some of its times, s.
+    #[serde(deserialize_with = "number::all_or_nan")]
+    pub t_s: Vec<f64>,
+    /// max |q_i − q_j| at those times, rad or m.
+    #[serde(deserialize_with = "number::all_or_nan")]
+    pub disagreement: Vec<f64>,
+    /// Whether the disagreement at the horizon is at most 1 % of the largest.
+    pub reached: bool,
+    /// When the disagreement exceeds 1 % of its start for the last time, s; null where that is not before the horizon.
+    pub settled_s: Option<f64>,
+    /// The mean of the positions at the horizon, one entry per axis.
+    #[serde(deserialize_with = "number::all_or_nan")]
+    pub value: Vec<f64>,
+    /// Where the value agreed upon lies, lowest and highest for every axis; null where the cascaded variables bound nothing.
+    pub within: Option<Vec<[f64; 2]>>,
+    /// The largest torque of every axis of robots under the adaptive or the known law.
+    pub peak_torques: Vec<PredictedTorque>,
+}
+
+/// The largest torque of an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PredictedTorque {
+    /// Index of the agent.
+    pub agent: usize,
+    /// Index of the axis.
+    pub axis: usize,
+    /// With its sign, N m or N.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub value: f64,
+    /// When, s.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub t_s: f64,
+    /// How far the estimate starts from the truth: the largest relative error of a parameter.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub estimate_off: f64,
+}
+
+/// The rate of agreement, or why it is not predicted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PredictedRate {
+    /// From the characteristic roots of a fixed graph with constant delays.
+    Roots {
+        /// Real and imaginary part of the rightmost root beside zero, 1/s.
+        #[serde(deserialize_with = "number::pair_or_nan")]
+        root_per_s: [f64; 2],
+        /// How many roots stand there.
+        multiplicity: usize,
+        /// The size of the last correction of it, 1/s.
+        #[serde(deserialize_with = "number::or_nan")]
+        correction_per_s: f64,
+        /// The relative change of the characteristic matrix that makes it exactly singular there.
+        #[serde(deserialize_with = "number::or_nan")]
+        backward_error: f64,
+        /// The largest disagreement that the start makes by it, rad or m.
+        #[serde(deserialize_with = "number::or_nan")]
+        excited: f64,
+        /// When the disagreement settles to 1 % by it and the next roots, s.
+        settled_s: Option<f64>,
+    },
+    /// From what one period of a network that repeats itself leaves.
+    Period {
+        /// The common period of switching and delays, s.
+        #[serde(deserialize_with = "number::or_nan")]
+        period_s: f64,
+        /// What one period leaves of a disagreement.
+        #[serde(deserialize_with = "number::or_nan")]
+        factor: f64,
+        /// ln(factor) over the period, 1/s.
+        #[serde(deserialize_with = "number::or_nan")]
+        rate_per_s: f64,
+        /// How far the factors of single periods are from it at most, relative.
+        #[serde(deserialize_with = "number::or_nan")]
+        wavers: f64,
+        /// How many periods it is the mean of.
+        periods: usize,
+    },
+    /// Why there is none.
+    NoneSince(String),
+}
+
+impl Predictions {
+    /// What was found, with the rate per period where one was looked for; `None` where agents follow targets or a leader, and nothing is agreed upon.
+    pub fn of(
+        course: &Result<Course, NoCourse>,
+        rate: &Result<Rate, NoRate>,
+        period: Option<&Result<PeriodRate, NoPeriodRate>>,
+    ) -> Option<Predictions> {
+        let course = match course {
+            Err(NoCourse::Ideal(NoIdeal::Leader | NoIdeal::Targets) | NoCourse::Interrupted) => return None,
+            Err(reason) => PredictedCourse::NoneSince(reason.to_string()),
+            Ok(course) => PredictedCourse::Found(CourseFound::of(course)),
+        };
+        let rate = match (rate, period) {
+            (Err(_), Some(Ok(found))) => PredictedRate::Period {
+                period_s: found.period_s,
+                factor: found.factor,
+                rate_per_s: found.rate_per_s,
+                wavers: found.wavers,
+                periods: found.periods,
+            },
+            (Err(reason), Some(Err(other))) => PredictedRate::NoneSince(format!("{reason}, and {other}")),
+            (Err(reason), None) => PredictedRate::NoneSince(reason.to_string()),
+            (Ok(rate), _) => PredictedRate::Roots {
+                root_per_s: rate.root_per_s,
+                multiplicity: rate.multiplicity,
+                correction_per_s: rate.correction_per_s,
+                backward_error: rate.backward_error,
+                excited: rate.excited,
+                settled_s: rate.settled.time_s(),
+            },
+        };
+        Some(Predictions { course, rate })
+    }
+
+    /// The course, if there is one.
+    pub fn course(&self) -> Option<&CourseFound> {
+        match &self.course {
+            PredictedCourse::Found(course) => Some(course),
+            PredictedCourse::NoneSince(_) => None,
+        }
+    }
+
+    /// Sentences for people, without a full stop.
+    pub fn sentences(&self, setup: &Setup) -> Vec<String> {
+        let unit = names::gap_unit(setup);
+        let mut sentences = Vec::new();
+        match &self.course {
+            PredictedCourse::NoneSince(reason) => sentences.push(format!("course of agreement: none, since {reason}")),
+            PredictedCourse::Found(course) => {
+                let reached = if course.reached { "agreement is reached" } else { "agreement is not reached" };
+                let settled = course.settled_s.map(|t_s| format!(", settled to 1 % after {t_s:.2} s"));
+                let last = course.disagreement.last().copied().unwrap_or(f64::NAN);
+                let end_s = course.t_s.last().copied().unwrap_or(f64::NAN);
+                let settled = settled.unwrap_or_default();
+                let then = format!("disagreement then {} {unit}", number_words(last));
+                sentences.push(format!("{reached} by {end_s} s{settled}; {}", then.trim_end()));
+                sentences.extend(course.value_sentence());
+                sentences.extend(course.torque_sentence(setup));
+            }
+        }
+        sentences.push(match &self.rate {
+            PredictedRate::NoneSince(reason) => format!("rate: none, since {reason}"),
+            PredictedRate::Period { period_s, factor, rate_per_s, wavers, periods } => {
+                let (factor, wavers) = (number_words(*factor), number_words(100.0 * wavers));
+                format!(
+                    "rate: {rate_per_s:.4} 1/s; a period of {period_s} s leaves {factor} of a disagreement, within {wavers} % over {periods} \
+                     periods"
+                )
+            }
+            PredictedRate::Roots { root_per_s: [re, im], correction_per_s, excited, .. } => {
+                let turning = if *im == 0.0 { String::new() } else { format!(" ± {im:.4} i") };
+                let (correction, excited) = (number_words(*correction_per_s), number_words(*excited));
+                let into = format!("the start makes {excited} {unit}").trim_end().to_owned();
+                format!("rate: rightmost root {re:.4}{turning} 1/s, last corrected by {correction}; {into} of it")
+            }
+        });
+        sentences
+    }
+}
+
+impl CourseFound {
+    fn of(course: &Course) -> CourseFound {
+        let rows = course.t_s.len();
+        let every = rows.div_ceil(MOST_POINTS).max(1);
+        let kept = || (0..rows).filter(|row| row % every == 0 || row + 1 == rows);
+        CourseFound {
+            t_s: kept().map(|row| course.t_s[row]).collect(),
+            disagreement: kept().map(|row| course.disagreement[row]).collect(),
+            reached: course.is_reached(),
+            settled_s: course.settled.time_s(),
+            value: course.value.clone(),
+            within: course.within.as_ref().ok().filter(|all| all.iter().flatten().all(|end| end.is_finite())).cloned(),
+            peak_torques: (course.peak_torques.iter())
+                .map(|peak| PredictedTorque {
+                    agent: peak.agent,
+                    axis: peak.axis,
+                    value: peak.value,
+                    t_s: peak.t_s,
+                    estimate_off: peak.estimate_off,
+                })
+                .collect(),
+        }
+    }
+
+    /// The disagreement at times that rise, by straight lines between those that are kept.
+    pub(crate) fn at(&self, t_s: &[f64]) -> Vec<f64> {
+        let mut next = 0;
+        let value = |t_s: &f64| {
+            while self.t_s.get(next).is_some_and(|kept_s| kept_s < t_s) {
+                next += 1;
+            }
+            let (to, before) = (next.min(self.t_s.len().saturating_sub(1)), next.saturating_sub(1));
+            match (
+                self.t_s.get(before).zip(self.t_s.get(to)),
+                self.disagreement.get(before).zip(self.disagreement.get(to)),
+            ) {
+                (Some((from_s, to_s)), Some((from, to))) if to_s > from_s => {
+                    from + (to - from) * ((t_s - from_s) / (to_s - from_s)).clamp(0.0, 1.0)
+                }
+                (_, Some((_, to))) => *to,
+                (_, None) => f64::NAN,
+            }
+        };
+        t_s.iter().map(value).collect()
+    }
+
+    /// The largest torque of all.
+    pub(crate) fn peak_torque(&self) -> Option<&PredictedTorque> {
+        self.peak_torques.iter().reduce(|a, b| if b.value.abs() > a.value.abs() { b } else { a })
+    }
+
+    /// The middle of the interval that the value agreed upon lies in, if there is one.
+    fn value_sentence(&self) -> Option<String> {
+        let within = self.within.as_ref().filter(|_| self.reached)?;
+        let middles: Vec<String> =
+            within.iter().take(MOST_AXES).map(|[low, high]| number_words(low + 0.5 * (high - low))).collect();
+        let widest = within.iter().map(|[low, high]| 0.5 * (high - low)).fold(0.0, f64::max);
+        let more = if within.len() > MOST_AXES { ", …" } else { "" };
+        Some(format!("value agreed upon ({}{more}), to ± {}", middles.join(", "), number_words(widest)))
+    }
+
+    fn torque_sentence(&self, setup: &Setup) -> Option<String> {
+        let peak = self.peak_torque()?;
+        let unit = names::unit(setup, peak.agent, forwardstep_sim::Signal::Torque, peak.axis);
+        let (agent, axis) = (names::agent_name(setup, peak.agent), names::torque_words(setup, peak.agent, peak.axis));
+        let off = self.peak_torques.iter().map(|peak| peak.estimate_off).fold(0.0, f64::max);
+        let near = match off {
+            0.0 => String::new(),
+            off if off <= NEAR => format!("; estimates start within {:.0} % of the truth", (100.0 * off).ceil()),
+            _ => "; estimates start far from the truth, where the torque can be another".to_owned(),
+        };
+        Some(format!("peak torque {:.3} {unit}, {agent}, {axis} at {:.2} s{near}", peak.value.abs(), peak.t_s))
+    }
+}
+
+/// Axes whose value is said.
+const MOST_AXES: usize = 8;
+/// An estimate within this of the truth leaves the peak torque much as it is predicted.
+const NEAR: f64 = 0.2;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_course_is_thinned_and_read_between_its_points() {
+        let rows = 1000;
+        let course = Course {
+            t_s: (0..rows).map(f64::from).collect(),
+            disagreement: (0..rows).map(|row| f64::from(row) * 2.0).collect(),
+            value: vec![0.0],
+            within: Ok(vec![[0.0, 0.0]]),
+            settled: forwardstep_check::prediction::Settled::NotYet,
+            peak_torques: Vec::new(),
+        };
+        let found = CourseFound::of(&course);
+        assert!(found.t_s.len() <= MOST_POINTS + 1);
+        assert_eq!((found.t_s[0], found.t_s[1], found.t_s.last()), (0.0, 3.0, Some(&999.0)));
+        assert_eq!(found.at(&[0.0, 1.0, 3.0, 4.5, 999.0, 1000.0]), [0.0, 2.0, 6.0, 9.0, 1998.0, 1998.0]);
+        assert!((found.settled_s, found.reached) == (None, false));
+        let none = CourseFound { t_s: Vec::new(), disagreement: Vec::new(), ..found };
+        assert!(none.at(&[1.0])[0].is_nan());
+    }
+}

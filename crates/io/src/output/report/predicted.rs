@@ -1,0 +1,127 @@
+//! What was predicted for s ≡ 0 beside what was observed.
+
+use forwardstep_sim::Setup;
+use forwardstep_sim::recording::Signal;
+use maud::{Markup, html};
+
+use super::super::metrics::{Disagreement, Metrics};
+use super::super::names;
+use super::super::prediction::{CourseFound, PredictedCourse, PredictedRate};
+use super::super::record::RunRecord;
+use super::text::{self, number};
+
+/// More rows would only repeat themselves.
+const MOST_TORQUES: usize = 24;
+const MOST_AXES: usize = 32;
+
+/// The section; nothing where nothing is predicted.
+pub(crate) fn section(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
+    let Some(prediction) = &record.prediction else { return html! {} };
+    let (setup, unit) = (record.setup, names::gap_unit(record.setup));
+    html! {
+        section #predicted {
+            h2 { "Predicted and observed" }
+            div.card.scroll {
+                h3 { "Agreement" span.by { "predicted from the reference dynamics alone: robots that follow them exactly, s ≡ 0" } }
+                @match &prediction.course {
+                    PredictedCourse::NoneSince(reason) => p.note { "The course of agreement is not predicted, since " (reason) "." },
+                    PredictedCourse::Found(course) => {
+                        table.numbers {
+                            thead { tr { th {} th { "predicted" } th { "observed" } } }
+                            tbody { @for (name, predicted, observed) in rows(setup, course, metrics) {
+                                tr { th { (name) } td { (predicted) } td { (observed) } }
+                            } }
+                        }
+                    }
+                }
+                @match &prediction.rate {
+                    PredictedRate::NoneSince(reason) => p.note { "The rate is not predicted, since " (reason) "." },
+                    PredictedRate::Period { period_s, factor, rate_per_s, wavers, periods } => p.note {
+                        "Rate: " (number(*rate_per_s)) " 1/s. A period of " (number(*period_s)) " s leaves " (number(*factor))
+                        " of a disagreement, within " (number(100.0 * wavers)) " % over " (periods) " periods."
+                    },
+                    PredictedRate::Roots { root_per_s: [re, im], multiplicity, correction_per_s, backward_error, excited, settled_s } => p.note {
+                        "Rate: rightmost characteristic root beside zero " (number(*re)) @if *im != 0.0 { " ± " (number(*im)) " i" } " 1/s"
+                        @if *multiplicity > 1 { " (" (multiplicity) " roots)" }
+                        ", last corrected by " (number(*correction_per_s)) " 1/s, backward error " (number(*backward_error))
+                        "; the start makes a disagreement of " (number(*excited)) " " (unit) " of it"
+                        @if let Some(t_s) = settled_s { "; by it and the next roots settled to 1 % after " (number(*t_s)) " s" }
+                        "."
+                    },
+                }
+                @if let Some(s) = metrics.final_tracking_error.filter(|s| *s > 0.0) {
+                    p.note { "Tracking errors at the last row are " (number(s)) " at most; what they do to the course is not predicted." }
+                }
+            }
+            @if let Some(course) = prediction.course().filter(|course| !course.peak_torques.is_empty()) {
+                (torques(setup, course, metrics))
+            }
+        }
+    }
+}
+
+fn rows(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Vec<(String, String, String)> {
+    let unit = names::gap_unit(setup);
+    let seconds = |t_s: Option<f64>| t_s.map_or_else(|| "not yet".to_owned(), |t_s| format!("{} s", number(t_s)));
+    let size = |value: f64| format!("{} {unit}", number(value));
+    let (last, observed_reached) = match metrics.disagreement {
+        Disagreement::Measured { last, .. } => (size(last), metrics.disagreement.is_agreement()),
+        Disagreement::Absent(_) => ("–".to_owned(), false),
+    };
+    let reached = |reached: bool| if reached { "reached" } else { "not reached" }.to_owned();
+    let mut rows = vec![
+        ("Agreement by the end".to_owned(), reached(course.reached), reached(observed_reached)),
+        (
+            "Settled to 1 % of the start after".to_owned(),
+            seconds(course.settled_s),
+            seconds(metrics.settled_to_1_percent_s),
+        ),
+        (
+            "Disagreement at the end".to_owned(),
+            course.disagreement.last().map_or_else(String::new, |last| size(*last)),
+            last,
+        ),
+    ];
+    rows.extend(values(setup, course, metrics));
+    rows
+}
+
+/// The value agreed upon on every axis, where it is bounded and reached, beside the mean of the last positions.
+fn values(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Vec<(String, String, String)> {
+    let Some(within) = course.within.as_ref().filter(|_| course.reached) else { return Vec::new() };
+    let mean = |axis: usize| metrics.final_means.as_ref().and_then(|means| means.get(axis)).copied();
+    let agreed = if metrics.disagreement.is_agreement() { "" } else { " (mean, not agreed)" };
+    let row = |(axis, [low, high]): (usize, &[f64; 2])| {
+        let half = 0.5 * (high - low);
+        (
+            format!("Value, {}", names::axis_words(setup, 0, axis)),
+            format!("{} ± {}", number(low + half), number(half)),
+            mean(axis).map_or_else(|| "–".to_owned(), |mean| format!("{}{agreed}", number(mean))),
+        )
+    };
+    within.iter().enumerate().take(MOST_AXES).map(row).collect()
+}
+
+fn torques(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Markup {
+    let observed = |agent, axis| metrics.peak_torques.iter().find(|peak| (peak.agent, peak.axis) == (agent, axis));
+    html! {
+        div.card.scroll {
+            h3 { "Peak torque" span.by { "predicted with the true parameters along the reference; an indication where estimates start within 20 % of them" } }
+            table.numbers {
+                thead { tr { th { "Joint" } th { "predicted" } th { "observed" } th { "estimate starts off by" } } }
+                tbody { @for peak in course.peak_torques.iter().take(MOST_TORQUES) {
+                    @let unit = text::unit(&names::unit(setup, peak.agent, Signal::Torque, peak.axis));
+                    tr {
+                        th { span.dot.{ "a" (peak.agent) } {} (names::agent_name(setup, peak.agent)) " · " (names::torque_words(setup, peak.agent, peak.axis)) }
+                        td { (number(peak.value.abs())) " " (unit) }
+                        td { @if let Some(seen) = observed(peak.agent, peak.axis) { (number(seen.value.abs())) " " (unit) } @else { "–" } }
+                        td { (number((100.0 * peak.estimate_off).round())) " %" }
+                    }
+                } }
+            }
+            @if course.peak_torques.len() > MOST_TORQUES {
+                p.note { "The first " (MOST_TORQUES) " of " (course.peak_torques.len()) "; summary.json has all." }
+            }
+        }
+    }
+}
