@@ -9,28 +9,33 @@
 //! - `margin`: the sampling margin σ before a run.
 //! - `loads`: static torques against limits.
 //! - `postures`: those that both look at.
-//! - `along`: both at the postures that a run reached.
+//! - `power`: how large s stays when something acts for ever.
+//! - `along`: all of it at the postures that a run reached.
 
 mod along;
 mod held;
 mod loads;
 mod margin;
 mod postures;
+mod power;
 mod rates;
 mod words;
 
 use forwardstep_sim::Setup;
 
-pub use along::{Along, LoadReached, MarginReached, along};
+pub use along::{Along, LoadReached, MarginReached, PowerReached, along};
 pub use held::{Hold, longest_period_s};
 pub use loads::StaticLoad;
 pub use margin::{MarginAt, RECOMMENDED_MARGIN, SamplingMargin};
+pub use power::{PowerBound, mean_power_w};
 pub(crate) use rates::fastest_damping_of;
 pub use rates::{FastestDamping, fastest_damping};
 
 /// What a practical verdict says, from best to worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum PracticalAnswer {
+    /// A bound, of which nothing is required.
+    Bound,
     /// There is enough of it.
     Adequate,
     /// There is enough of it, and less than recommended.
@@ -42,9 +47,10 @@ pub enum PracticalAnswer {
 }
 
 impl PracticalAnswer {
-    /// `adequate`, `marginal`, `not shown` or `inadequate`.
+    /// `bound`, `adequate`, `marginal`, `not shown` or `inadequate`.
     pub fn words(self) -> &'static str {
         match self {
+            PracticalAnswer::Bound => "bound",
             PracticalAnswer::Adequate => "adequate",
             PracticalAnswer::Marginal => "marginal",
             PracticalAnswer::NotShown => "not shown",
@@ -60,6 +66,8 @@ pub enum Finding {
     SamplingMargin(SamplingMargin),
     /// Whether the limits of torques suffice to stand still.
     StaticLoad(StaticLoad),
+    /// How large s stays.
+    TrackingPower(PowerBound),
 }
 
 impl Finding {
@@ -68,6 +76,7 @@ impl Finding {
         match self {
             Finding::SamplingMargin(_) => "sampling-margin",
             Finding::StaticLoad(_) => "static-load",
+            Finding::TrackingPower(_) => "tracking-power",
         }
     }
 
@@ -76,6 +85,7 @@ impl Finding {
         match self {
             Finding::SamplingMargin(margin) => margin.answer(),
             Finding::StaticLoad(load) => load.answer(),
+            Finding::TrackingPower(_) => PracticalAnswer::Bound,
         }
     }
 
@@ -97,6 +107,13 @@ impl Finding {
                 let some = [("longest_period_s", margin.longest_s), ("recommended_period_s", margin.recommended_s)];
                 always.into_iter().chain(some.into_iter().filter_map(|(name, value)| Some((name, value?)))).collect()
             }
+            Finding::TrackingPower(bound) => vec![
+                ("mean_w", bound.mean_w),
+                ("start_w", bound.start_w),
+                ("push_w", bound.push_w),
+                ("noise_w", bound.noise_w),
+                ("span_s", bound.span_s),
+            ],
             Finding::StaticLoad(load) => vec![("torque", load.torque), ("limit", load.limit), ("share", load.share())],
         }
     }
@@ -125,5 +142,6 @@ impl Practical {
 pub fn practical(setup: &Setup) -> Practical {
     let margin = SamplingMargin::of(setup).map(Finding::SamplingMargin);
     let load = StaticLoad::of(setup).map(Finding::StaticLoad);
-    Practical { findings: margin.into_iter().chain(load).collect() }
+    let power = PowerBound::of(setup).map(Finding::TrackingPower);
+    Practical { findings: margin.into_iter().chain(load).chain(power).collect() }
 }

@@ -1,6 +1,6 @@
 //! Sentences of practical verdicts.
 
-use super::{Finding, RECOMMENDED_MARGIN, SamplingMargin, StaticLoad};
+use super::{Finding, PowerBound, RECOMMENDED_MARGIN, SamplingMargin, StaticLoad};
 use crate::hypothesis::numbers::{rounded, rounded_up};
 
 /// What it is about.
@@ -8,6 +8,7 @@ pub(super) fn about(finding: &Finding) -> &'static str {
     match finding {
         Finding::SamplingMargin(_) => "they sample fast enough for K and Γ",
         Finding::StaticLoad(_) => "torques within their limits hold the robots at rest",
+        Finding::TrackingPower(_) => "how large s stays",
     }
 }
 
@@ -16,6 +17,7 @@ pub(super) fn because(finding: &Finding) -> String {
     match finding {
         Finding::SamplingMargin(margin) => sampling(margin),
         Finding::StaticLoad(load) => standing(load),
+        Finding::TrackingPower(bound) => power(bound),
     }
 }
 
@@ -64,6 +66,24 @@ fn standing(StaticLoad { agent, axis_name, torque, limit, postures, .. }: &Stati
     let those =
         if *postures == 1 { "at the start".into() } else { format!("of {postures} postures between the starts") };
     format!("the largest share of a limit {those}: |g| is {torque} of {limit} ({}, {axis_name})", agent.name)
+}
+
+fn power(bound: &PowerBound) -> String {
+    let PowerBound { agents, span_s, start_w, push_w, noise_w, sigma, mean_w } = *bound;
+    let who = if agents == 1 { "sᵀKs".to_owned() } else { format!("Σ sᵀKs of {agents} agents") };
+    let kind = if noise_w > 0.0 { "is expected to be at most" } else { "is at most" };
+    let part = |name: &str, value: f64| match value {
+        value if value > 0.0 => format!(", {name} {} W", rounded_up(value)),
+        _ => String::new(),
+    };
+    let sampled = if sigma > 0.0 { format!(", with σ = {}", rounded(sigma)) } else { String::new() };
+    format!(
+        "the mean of {who} over {span_s} s {kind} {} W while nothing is clipped: V(0)/T {} W{}{}{sampled}",
+        rounded_up(mean_w),
+        rounded_up(start_w),
+        part("pushes", push_w),
+        part("measurement errors", noise_w),
+    )
 }
 
 /// What else there is between a sample and its torque.
