@@ -205,7 +205,7 @@ fn two_arms() -> Setup {
 fn bound(setup: &Setup) -> Option<PowerBound> {
     practical(setup).findings.into_iter().find_map(|finding| match finding {
         Finding::TrackingPower(bound) => Some(bound),
-        Finding::SamplingMargin(_) | Finding::StaticLoad(_) => None,
+        Finding::SamplingMargin(_) | Finding::LinearisedSampling(_) | Finding::StaticLoad(_) => None,
     })
 }
 

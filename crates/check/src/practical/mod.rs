@@ -7,6 +7,7 @@
 //! - `held`: how fast a mode may be under a command that is held, late, or taken from filtered differences.
 //! - `rates`: how fast the modes of a robot under (6)–(7) are, and what a sample does to V.
 //! - `margin`: the sampling margin σ before a run.
+//! - `linearised`: the same for one agent of any other kind, by differences.
 //! - `loads`: static torques against limits.
 //! - `postures`: those that both look at.
 //! - `power`: how large s stays when something acts for ever.
@@ -14,6 +15,7 @@
 
 mod along;
 mod held;
+mod linearised;
 mod loads;
 mod margin;
 mod postures;
@@ -25,6 +27,7 @@ use forwardstep_sim::Setup;
 
 pub use along::{Along, LoadReached, MarginReached, PowerReached, along};
 pub use held::{Hold, longest_period_s};
+pub use linearised::LinearisedSampling;
 pub use loads::StaticLoad;
 pub use margin::{MarginAt, RECOMMENDED_MARGIN, SamplingMargin};
 pub use power::{PowerBound, mean_power_w};
@@ -64,6 +67,8 @@ impl PracticalAnswer {
 pub enum Finding {
     /// How much of the longest useful period is used.
     SamplingMargin(SamplingMargin),
+    /// Whether the fast modes of agents outside (6)–(7) decay from sample to sample.
+    LinearisedSampling(LinearisedSampling),
     /// Whether the limits of torques suffice to stand still.
     StaticLoad(StaticLoad),
     /// How large s stays.
@@ -75,6 +80,7 @@ impl Finding {
     pub fn name(&self) -> &'static str {
         match self {
             Finding::SamplingMargin(_) => "sampling-margin",
+            Finding::LinearisedSampling(_) => "linearised-sampling",
             Finding::StaticLoad(_) => "static-load",
             Finding::TrackingPower(_) => "tracking-power",
         }
@@ -84,6 +90,7 @@ impl Finding {
     pub fn answer(&self) -> PracticalAnswer {
         match self {
             Finding::SamplingMargin(margin) => margin.answer(),
+            Finding::LinearisedSampling(found) => found.answer(),
             Finding::StaticLoad(load) => load.answer(),
             Finding::TrackingPower(_) => PracticalAnswer::Bound,
         }
@@ -106,6 +113,9 @@ impl Finding {
                 ];
                 let some = [("longest_period_s", margin.longest_s), ("recommended_period_s", margin.recommended_s)];
                 always.into_iter().chain(some.into_iter().filter_map(|(name, value)| Some((name, value?)))).collect()
+            }
+            Finding::LinearisedSampling(found) => {
+                vec![("radius", found.radius), ("leftmost", found.leftmost), ("period_s", found.period_s)]
             }
             Finding::TrackingPower(bound) => vec![
                 ("mean_w", bound.mean_w),
@@ -143,5 +153,6 @@ pub fn practical(setup: &Setup) -> Practical {
     let margin = SamplingMargin::of(setup).map(Finding::SamplingMargin);
     let load = StaticLoad::of(setup).map(Finding::StaticLoad);
     let power = PowerBound::of(setup).map(Finding::TrackingPower);
-    Practical { findings: margin.into_iter().chain(load).chain(power).collect() }
+    let linearised = LinearisedSampling::of(setup).map(Finding::LinearisedSampling);
+    Practical { findings: margin.into_iter().chain(linearised).chain(load).chain(power).collect() }
 }

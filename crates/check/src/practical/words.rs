@@ -1,12 +1,13 @@
 //! Sentences of practical verdicts.
 
-use super::{Finding, PowerBound, RECOMMENDED_MARGIN, SamplingMargin, StaticLoad};
+use super::{Finding, LinearisedSampling, PowerBound, PracticalAnswer, RECOMMENDED_MARGIN, SamplingMargin, StaticLoad};
 use crate::hypothesis::numbers::{rounded, rounded_up};
 
 /// What it is about.
 pub(super) fn about(finding: &Finding) -> &'static str {
     match finding {
         Finding::SamplingMargin(_) => "they sample fast enough for K and Γ",
+        Finding::LinearisedSampling(_) => "agents under other laws sample fast enough",
         Finding::StaticLoad(_) => "torques within their limits hold the robots at rest",
         Finding::TrackingPower(_) => "how large s stays",
     }
@@ -16,6 +17,7 @@ pub(super) fn about(finding: &Finding) -> &'static str {
 pub(super) fn because(finding: &Finding) -> String {
     match finding {
         Finding::SamplingMargin(margin) => sampling(margin),
+        Finding::LinearisedSampling(found) => linearised(found),
         Finding::StaticLoad(load) => standing(load),
         Finding::TrackingPower(bound) => power(bound),
     }
@@ -84,6 +86,20 @@ fn power(bound: &PowerBound) -> String {
         part("pushes", push_w),
         part("measurement errors", noise_w),
     )
+}
+
+fn linearised(found: &LinearisedSampling) -> String {
+    let LinearisedSampling { agent, period_s, radius, leftmost, agents } = found;
+    let (leftmost, period) = (rounded(*leftmost), rounded(1e3 * period_s));
+    let of = if *agents == 1 { String::new() } else { format!(", the worst of {agents} agents that were looked at") };
+    let meaning = match found.answer() {
+        PracticalAnswer::Inadequate => format!("a fast mode grows by {} from sample to sample", rounded(*radius)),
+        PracticalAnswer::Marginal => format!("a fast mode overshoots: its multiplier has the real part {leftmost}"),
+        PracticalAnswer::Bound | PracticalAnswer::Adequate | PracticalAnswer::NotShown => {
+            format!("no mode overshoots: no multiplier has a real part below {leftmost}")
+        }
+    };
+    format!("linearised at the start ({}{of}), with a period of {period} ms: {meaning}", agent.name)
 }
 
 /// What else there is between a sample and its torque.
