@@ -15,6 +15,8 @@ use crate::kinds::is_lagrangian;
 
 /// Multipliers farther than this from 1 are fast.
 const FAST: f64 = 0.1;
+/// Smaller multipliers are zero: what is brought back to a manifold, and commands that are remembered.
+const FORGOTTEN: f64 = 1e-6;
 /// Agents that are looked at, spread evenly.
 const MOST: usize = 16;
 
@@ -27,7 +29,7 @@ pub struct LinearisedSampling {
     pub period_s: f64,
     /// The largest size of a fast multiplier; zero where none is fast.
     pub radius: f64,
-    /// The smallest real part of all.
+    /// The smallest real part of those that are not zero.
     pub leftmost: f64,
     /// Agents that were looked at.
     pub agents: usize,
@@ -71,13 +73,14 @@ impl LinearisedSampling {
     }
 }
 
-/// The largest size of a fast multiplier, and the smallest real part of all.
+/// The largest size of a fast multiplier, and the smallest real part of those that are not zero.
 fn multipliers(setup: &Setup, agent: usize) -> Option<(f64, f64)> {
     let jacobian = sampled_jacobian(setup, agent).ok()??;
     let matrix = DMatrix::from_row_slice(jacobian.size, jacobian.size, &jacobian.entries);
     let all = matrix.complex_eigenvalues();
-    let fast = all.iter().filter(|mu| (*mu - 1.0).norm() > FAST);
-    let (radius, leftmost) =
-        (fast.map(|mu| mu.norm()).fold(0.0, f64::max), all.iter().map(|mu| mu.re).fold(1.0, f64::min));
+    let kept = || all.iter().filter(|mu| mu.norm() > FORGOTTEN);
+    let fast = kept().filter(|mu| (*mu - 1.0).norm() > FAST);
+    let radius = fast.map(|mu| mu.norm()).fold(0.0, f64::max);
+    let leftmost = kept().map(|mu| mu.re).fold(1.0, f64::min);
     (radius.is_finite() && leftmost.is_finite()).then_some((radius, leftmost))
 }

@@ -25,7 +25,7 @@ pub(super) fn because(finding: &Finding) -> String {
 
 fn sampling(margin: &SamplingMargin) -> String {
     let SamplingMargin { start, worst, postures, .. } = margin;
-    let between = if worst == start {
+    let between = if rounded(worst.sigma) == rounded(start.sigma) {
         String::new()
     } else {
         format!(", {} at most at {postures} postures between the starts ({})", rounded(worst.sigma), worst.agent.name)
@@ -73,7 +73,8 @@ fn standing(StaticLoad { agent, axis_name, torque, limit, postures, .. }: &Stati
 fn power(bound: &PowerBound) -> String {
     let PowerBound { agents, span_s, start_w, push_w, noise_w, sigma, mean_w } = *bound;
     let who = if agents == 1 { "sᵀKs".to_owned() } else { format!("Σ sᵀKs of {agents} agents") };
-    let kind = if noise_w > 0.0 { "is expected to be at most" } else { "is at most" };
+    // Sampled, what the plant does between samples is left out.
+    let kind = if noise_w > 0.0 || sigma > 0.0 { "is expected to be at most" } else { "is at most" };
     let part = |name: &str, value: f64| match value {
         value if value > 0.0 => format!(", {name} {} W", rounded_up(value)),
         _ => String::new(),
