@@ -8,16 +8,21 @@ use common::kinds::{
     alone, blind_mass, cascade, chain, change_tip, fading_power_of_time, formula, planar_tip, power_of_time, rest_at,
     spacecraft, tracking, tree_tip, vehicle,
 };
-use common::{About, answer, answers, arm};
+use common::{About, answer, answers, arm, masses};
 use forwardstep_check::hypothesis::Subject;
-use forwardstep_check::{Answer, Id, Source, Theorem, check};
+use forwardstep_check::{Answer, Id, PracticalAnswer, Source, Theorem, check, practical};
 use forwardstep_core::controller::{Floor, ParameterBounds};
 use forwardstep_core::expression::{Expression, Number};
 use forwardstep_core::robot::tree::JointKind::{Prismatic, Revolute};
 use forwardstep_core::robot::tree::{JointKind, Uncertain};
 use forwardstep_sim::reference::Consensus;
+use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::trajectory::{Path, Trajectory};
-use forwardstep_sim::{AgentSetup, Setup, SpacecraftModel, ThrustKind};
+use forwardstep_sim::{
+    AgentSetup, Ending, Exchange, SampledJacobian, Setup, Signal, SpacecraftModel, ThrustKind, VelocitySensor,
+    sampled_jacobian, simulate,
+};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 const X: [f64; 3] = [1.0, 0.0, 0.0];
@@ -313,4 +318,83 @@ fn robots_that_track_fall_under_no_theorem_of_the_paper_and_all_that_their_argum
     // A parabola is not bounded for ever.
     let setup = tracking(arm(0, &[2.0]), vec![power_of_time(0.01, 2.0), rest_at(0.0)]);
     assert_eq!(check(&setup).worst(), Answer::Violated);
+}
+
+/// The multipliers of the first agent's period.
+fn multipliers(setup: &Setup) -> Vec<nalgebra::Complex<f64>> {
+    let SampledJacobian { size, entries } = sampled_jacobian(setup, 0).unwrap().unwrap();
+    nalgebra::DMatrix::from_row_slice(size, size, &entries).complex_eigenvalues().iter().copied().collect()
+}
+
+#[test]
+fn eq_the_multipliers_of_a_sampled_mass_are_those_of_its_recursion() {
+    for (late, k) in [(0.0, 0.3), (0.0, 1.7), (0.3, 0.5), (0.5, 1.9), (0.9, 1.2)] {
+        let mut setup = masses(Exchange::Position, 2, Schedule::fixed(Vec::new()), Vec::new());
+        setup.agents.truncate(1);
+        setup.network.agents = 1;
+        // So slow that z does not count. K/m is 5.
+        setup.agents[0].roots_per_s = vec![1e-7, 2e-7];
+        setup = setup.sampled(5.0 / k);
+        setup.control.as_mut().unwrap().computation_delay_s = late * k / 5.0;
+        let found = multipliers(&setup);
+        // μ² − (1 − k (1 − δ)) μ + k δ = 0
+        let (half, product) = (0.5 * (1.0 - k * (1.0 - late)), k * late);
+        let root = nalgebra::Complex::new(half * half - product, 0.0).sqrt();
+        // The second is there where a command before is.
+        for mu in [root + half, -root + half].into_iter().filter(|mu| late > 0.0 || mu.re != 0.0) {
+            let nearest = found.iter().map(|found| (found - mu).norm()).fold(f64::INFINITY, f64::min);
+            assert!(nearest < 1e-5, "{late} {k}: {mu} is not among {found:?}");
+        }
+    }
+}
+
+/// Whether it keeps near its target to the end; a run that takes many steps has long left it.
+fn settles(setup: &Setup) -> bool {
+    let mut steps = 0;
+    let mut few = |_| {
+        steps += 1;
+        if steps < 10_000 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    };
+    let outcome = simulate(setup, &mut few).unwrap();
+    let errors = outcome.recording.columns.iter().filter(|column| column.signal == Signal::TrackingError);
+    let late =
+        errors.flat_map(|column| column.values.iter().rev().take(200)).fold(0.0_f64, |most, s| most.max(s.abs()));
+    outcome.ending == Ending::Completed && late < 0.1
+}
+
+#[test]
+fn the_linearised_period_tells_which_laws_settle_when_they_are_sampled() {
+    use PracticalAnswer::{Adequate, Inadequate, Marginal};
+    let psi = Expression::number(1.5);
+    let cascade = cascade(Expression::variable(1), Expression::number(1.0), 1);
+    for (setup, stable, unstable) in [
+        (tracking(blind_mass(1.0, 2.0), vec![rest_at(0.2)]), (0.05, Adequate), 0.1),
+        (tracking(planar_tip(), vec![rest_at(0.9), rest_at(1.0)]), (0.01, Marginal), 0.05),
+        (tracking(chain(&psi, 1, true), vec![rest_at(0.2)]), (0.4, Adequate), 0.8),
+        (tracking(chain(&psi, 1, false), vec![rest_at(0.2)]), (0.4, Marginal), 0.8),
+        (tracking(cascade, vec![rest_at(0.2)]), (0.8, Marginal), 1.6),
+    ] {
+        for (period_s, answer, settled) in [(stable.0, stable.1, true), (unstable, Inadequate, false)] {
+            let setup = setup.clone().sampled(1.0 / period_s);
+            let found = practical(&setup).findings;
+            let [finding] = &found[..] else { panic!("{found:?}") };
+            assert_eq!((finding.name(), finding.answer()), ("linearised-sampling", answer), "{}", finding.because());
+            assert_eq!(settles(&setup), settled, "{}", finding.because());
+        }
+    }
+}
+
+#[test]
+fn a_period_is_linearised_only_where_its_memory_is_known_and_for_few_of_many() {
+    let one = tracking(blind_mass(1.0, 2.0), vec![rest_at(0.2)]);
+    assert_eq!(sampled_jacobian(&one, 0).unwrap(), None, "control is continuous");
+    let mut sampled = one.sampled(20.0);
+    assert_eq!(sampled_jacobian(&sampled, 1).unwrap(), None, "there is no such agent");
+    let mut many = sampled.clone();
+    many.agents = (0..40).map(|_| sampled.agents[0].clone()).collect();
+    let said = practical(&many).findings[0].because();
+    assert!(said.contains("the worst of 14 agents that were looked at"), "{said}");
+    assert!(practical(&sampled).findings[0].because().contains("(agent), with a period of 50 ms: no mode overshoots"));
+    sampled.control.as_mut().unwrap().sensors.velocity = VelocitySensor::Filtered { cut_off_hz: 10.0 };
+    assert_eq!(sampled_jacobian(&sampled, 0).unwrap(), None, "a filter remembers");
 }

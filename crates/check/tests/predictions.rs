@@ -12,9 +12,10 @@ use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking
 use std::sync::Arc;
 
 use common::kinds::{alone, blind_mass};
-use common::{column, edge, masses, run, setup};
-use forwardstep_check::{NoPrediction, predict};
+use common::{arm, column, edge, masses, run, setup};
+use forwardstep_check::{Finding, NoPrediction, PowerBound, SamplingMargin, along, mean_power_w, practical, predict};
 use forwardstep_core::Gain;
+use forwardstep_core::agent::VelocityFilter;
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::delay::{Delay, SawTooth};
@@ -22,7 +23,7 @@ use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::{Adaptive, Control, Exchange, Known, Setup, Signal};
+use forwardstep_sim::{Adaptive, Control, Exchange, Known, Outcome, Setup, Signal, VelocitySensor};
 
 /// Two masses that hear each other, and a third that only listens.
 fn three(exchange: Exchange) -> Setup {
@@ -193,4 +194,181 @@ fn a_single_agent_stays_where_its_own_dynamics_lead() {
     let value = predict(&one).unwrap();
     assert_eq!(value.influence, [1.0]);
     assert!((ends(&one, 0, 0) - value.value[0]).abs() < 1e-6);
+}
+
+/// Two arms that hear each other and adapt.
+fn two_arms() -> Setup {
+    let edges = vec![edge(0, 1, 1.0, 0), edge(1, 0, 2.0, 0)];
+    let agents = (0..2).map(|index| arm(index, &[1.0, 2.0])).collect();
+    let delays = vec![Delay::constant(0.2)];
+    let mut setup = setup(agents, Exchange::PositionVelocity, Schedule::fixed(edges), delays, 20.0);
+    setup.time.record_every_s = 0.02;
+    setup
+}
+
+fn bound(setup: &Setup) -> Option<PowerBound> {
+    practical(setup).findings.into_iter().find_map(|finding| match finding {
+        Finding::TrackingPower(bound) => Some(bound),
+        Finding::SamplingMargin(_) | Finding::LinearisedSampling(_) | Finding::StaticLoad(_) => None,
+    })
+}
+
+fn pushed(functions: [Function; 2], from_s: f64, until_s: f64) -> Push {
+    Push { effect: Effect::Torque(Course::Each(functions.to_vec())), from_s, until_s }
+}
+
+fn sine(amplitude: f64, rate_per_s: f64) -> Function {
+    Function::Formula((Expression::variable(0) * rate_per_s).sin_of() * amplitude)
+}
+
+#[test]
+fn eq_the_power_balance_solves_its_quadratic() {
+    for (drive_w, supply_w, start_w, sigma) in
+        [(0.0, 0.0, 3.0, 0.0), (2.0, 0.0, 0.0, 0.0), (0.7, 0.3, 1.9, 0.0), (0.7, 0.3, 1.9, 0.6), (0.0, 1.0, 1.0, 0.5)]
+    {
+        let mean_w: f64 = mean_power_w(drive_w, supply_w, start_w, sigma);
+        // (1 − σ) x² = x D + E + V(0)/T
+        let fed = (mean_w * drive_w).sqrt() + supply_w + start_w;
+        assert!(((1.0 - sigma) * mean_w - fed).abs() < 1e-12 * (1.0 + fed), "{drive_w} {sigma}: {mean_w}");
+    }
+    assert_eq!(mean_power_w(1.0, 0.0, 1.0, 1.0), f64::INFINITY);
+}
+
+#[test]
+fn thm_no_mean_of_the_tracking_error_exceeds_its_power_bound() {
+    assert_eq!(bound(&two_arms()), None, "nothing feeds V but its start");
+    let strong = || [sine(4.0, 3.0), Function::Constant(-2.0)];
+    for (pushes, sample_hz) in [
+        (vec![pushed(strong(), 0.0, f64::INFINITY)], None),
+        (vec![pushed(strong(), 0.0, f64::INFINITY), pushed([sine(1.0, 40.0), sine(-0.5, 0.4)], 3.0, 5.0)], None),
+        (vec![pushed(strong(), 0.0, f64::INFINITY)], Some(400.0)),
+        (Vec::new(), Some(150.0)),
+    ] {
+        let mut setup = two_arms();
+        setup.agents[1].pushes = pushes;
+        setup = if let Some(sample_hz) = sample_hz { setup.sampled(sample_hz) } else { setup };
+        let (before, outcome) = (bound(&setup).unwrap(), run(&setup));
+        let power = along(&setup, &outcome.recording).power.unwrap();
+        let after = power.bound.unwrap();
+        let v: f64 = (0..2).map(|agent| column(&outcome, agent, Signal::Lyapunov, 0)[0]).sum();
+        assert!((before.start_w - v / 20.0).abs() < 1e-9 * v && (after.start_w - before.start_w).abs() < 1e-9 * v);
+        assert!(power.mean_w > 0.02 * after.mean_w && power.mean_w < after.mean_w, "{power:?}");
+        assert!(after.push_w <= before.push_w && before.agents == 2, "{before:?} {after:?}");
+        assert_eq!(before.sigma > 0.0, sample_hz.is_some());
+    }
+}
+
+#[test]
+fn eq_what_pushes_feed_is_known_before_the_run_where_they_are_torques() {
+    let push_w = |push: Push| {
+        let mut setup = two_arms();
+        setup.agents[1].pushes = vec![push];
+        bound(&setup).map(|bound| bound.push_w)
+    };
+    let constant = || [Function::Constant(2.0), Function::Constant(-1.0)];
+    // K is 8.
+    assert!((push_w(pushed(constant(), 0.0, f64::INFINITY)).unwrap() - 5.0 / 8.0).abs() < 1e-12);
+    assert!((push_w(pushed(constant(), 15.0, f64::INFINITY)).unwrap() - 0.25 * 5.0 / 8.0).abs() < 1e-12);
+    assert!((push_w(pushed(constant(), 5.0, 7.0)).unwrap() - 0.1 * 5.0 / 8.0).abs() < 1e-12);
+    assert!((push_w(pushed([sine(2.0, 3.0), sine(-1.0, 9.0)], 0.0, 20.0)).unwrap() - 5.0 / 8.0).abs() < 1e-6);
+    let hand = Effect::HandOnAxes {
+        axes: vec![0],
+        stiffness: vec![1.0],
+        damping: vec![0.0],
+        target: Course::Each(vec![Function::Constant(0.0)]),
+    };
+    assert_eq!(push_w(Push { effect: hand, from_s: 0.0, until_s: 1.0 }), None, "only the run knows");
+    let mut baseline = two_arms().sampled(500.0);
+    assert!(bound(&baseline).is_some());
+    baseline.reference = Arc::new(PureIntegral);
+    assert_eq!(bound(&baseline), None, "z(0) depends on what is heard");
+}
+
+#[test]
+fn eq_noise_feeds_the_power_that_its_filter_lets_through() {
+    let noise_w = |change: fn(&mut Control)| {
+        let mut setup = two_arms().sampled(500.0);
+        change(setup.control.as_mut().unwrap());
+        bound(&setup).unwrap().noise_w
+    };
+    assert_eq!(noise_w(|_| {}), 0.0);
+    // tr K is 16, of two agents.
+    assert!((noise_w(|control| control.sensors.velocity_noise = 0.01) - 32.0 * 1e-4).abs() < 1e-12);
+    assert!((noise_w(|control| control.sensors.velocity_quantum = 0.012) - 32.0 * 12e-6).abs() < 1e-12);
+    let filtered = noise_w(|control| {
+        control.sensors.velocity = VelocitySensor::Filtered { cut_off_hz: 60.0 };
+        control.sensors.position_noise = 3e-4;
+    });
+    let mut filter = VelocityFilter::new(core::f64::consts::TAU * 60.0, 1).unwrap();
+    let (mut sum, samples) = (0.0, 200_000);
+    for k in 0..samples {
+        // Even on an interval of length √12: variance one.
+        let even =
+            12.0_f64.sqrt() * ((k as f64 * 0.618_033_988_749_894_9 + 0.1 * (k as f64).sqrt() * k as f64).fract() - 0.5);
+        sum += filter.feed(0.002, &[3e-4 * even]).unwrap()[0].powi(2);
+    }
+    let found = 32.0 * sum / f64::from(samples);
+    assert!((filtered / found - 1.0).abs() < 0.02, "{filtered} {found}");
+}
+
+#[test]
+fn what_is_watched_is_the_worst_of_what_was_recorded() {
+    let mut setup = two_arms().sampled(200.0);
+    setup.agents[1].robot.axes[0].effort_limit = Some(50.0);
+    let mut outcome = run(&setup);
+    let hold = |outcome: &mut Outcome, agent: usize, rows: core::ops::Range<usize>, q: [f64; 2]| {
+        for column in &mut outcome.recording.columns {
+            if column.agent == agent && column.signal != Signal::Estimate {
+                let value = if column.signal == Signal::Position { q[column.axis] } else { 0.0 };
+                column.values[rows.clone()].fill(value);
+            }
+        }
+    };
+    let rows = outcome.recording.t_s.len();
+    for agent in 0..2 {
+        hold(&mut outcome, agent, 0..rows, [0.3, 1.5]);
+    }
+    // Stretched, the arm is lightest about its elbow, and its shoulder bears most where it is level.
+    hold(&mut outcome, 1, 400..401, [1.0, 0.0]);
+    hold(&mut outcome, 1, 700..701, [0.0, 0.8]);
+    let found = along(&setup, &outcome.recording);
+    let (margin, load) = (found.margin.unwrap(), found.load.unwrap());
+    assert_eq!((margin.agent, margin.t_s), (1, outcome.recording.t_s[400]));
+    assert_eq!((load.load.agent.index, load.load.axis, load.t_s), (1, 0, outcome.recording.t_s[700]));
+    let expected = 9.81 * (1.6 + 0.4 * 0.8_f64.cos());
+    assert!((load.load.torque - expected).abs() < 0.02 && load.load.limit == 50.0, "{load:?}");
+    // At rest there it is what is said before a run that starts there.
+    let mut there = setup.clone();
+    there.agents.iter_mut().for_each(|agent| agent.start.dq = vec![0.0; 2]);
+    there.agents[0].start.q = vec![0.3, 1.5];
+    there.agents[1].start.q = vec![1.0, 0.0];
+    assert!((SamplingMargin::of(&there).unwrap().start.sigma - margin.sigma).abs() < 1e-12, "{margin:?}");
+    let mut free = setup.clone();
+    free.control = None;
+    free.agents[1].robot.axes[0].effort_limit = None;
+    let none = along(&free, &outcome.recording);
+    assert!(none.margin.is_none() && none.load.is_none() && none.power.is_none() && none.states == 0, "{none:?}");
+}
+
+#[test]
+fn an_arm_that_its_motors_cannot_hold_is_told() {
+    let mut setup = two_arms();
+    let said = |setup: &Setup| {
+        practical(setup).findings.first().map(|finding| (finding.name(), finding.answer().words(), finding.because()))
+    };
+    assert_eq!(said(&setup), None, "no limit is known");
+    setup.agents[1].robot.axes[0].effort_limit = Some(10.0);
+    setup.agents[1].robot.axes[1].effort_limit = Some(1e4);
+    setup.agents[0].start.q = vec![1.4, 0.1];
+    setup.agents[1].start.q = vec![0.2, 0.1];
+    let (name, answer, because) = said(&setup).unwrap();
+    assert_eq!((name, answer), ("static-load", "inadequate"));
+    assert!(because.contains(" of 10 (arm-2, shoulder)"), "{because}");
+    setup.agents[1].robot.axes[0].effort_limit = Some(1e3);
+    assert_eq!(said(&setup).unwrap().1, "adequate");
+    // Those of the actuators count where they are tighter.
+    setup = setup.sampled(500.0);
+    setup.control.as_mut().unwrap().actuators.torque_limit = Some(vec![1e3, 0.5]);
+    let load = practical(&setup).findings.swap_remove(1);
+    assert!(load.answer().words() == "inadequate" && load.because().contains(" of 0.5 (arm-"), "{load:?}");
 }

@@ -123,7 +123,8 @@ fn practical_verdicts_stand_beside_the_hypotheses_and_count_where_they_are_asked
     // λ is about 8.4/s: σ is 1 near 240 ms.
     for (hz, answer) in [(500, "adequate"), (6, "marginal"), (3, "inadequate")] {
         let document = found(hz, &[], 0);
-        let [sampling, load] = document["practical"]["verdicts"].as_array().unwrap().as_slice() else { panic!() };
+        let verdicts = document["practical"]["verdicts"].as_array().unwrap();
+        let [sampling, load] = verdicts.as_slice() else { panic!("{verdicts:?}") };
         assert_eq!((&sampling["id"], &sampling["answer"]), (&"sampling-margin".into(), &answer.into()), "{sampling}");
         assert_eq!((&load["id"], &load["answer"]), (&"static-load".into(), &"adequate".into()), "{load}");
         assert_eq!(document["practical"]["worst"], answer);

@@ -35,7 +35,9 @@ pub use agents::{
     VehicleModel,
 };
 pub use build::run;
-pub use closed_loop::{Assembly, Block, SetupError, VelocityQuantity, recipe, recipes, validate};
+pub use closed_loop::{
+    Assembly, Block, SampledJacobian, SetupError, VelocityQuantity, recipe, recipes, sampled_jacobian, validate,
+};
 pub use network::Network;
 pub use recording::{
     Breakdown, BreakdownCause, ClippedSamples, Column, Drive, Ending, GainRates, Outcome, Progress, Recording,

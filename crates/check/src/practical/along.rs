@@ -1,17 +1,20 @@
-//! What is watched along a run: the sampling margin and static torques at the postures that were reached.
+//! What is watched along a run: the sampling margin and static torques at the postures that were reached, and how large s was.
 //!
-//! Not from the paper, derived for this software; the formulas are those of `margin` and `loads`, with M, Y and g at rows of the recording.
+//! Not from the paper, derived for this software; the formulas are those of `margin`, `loads` and `power`, with M, Y and g at rows of the recording.
 
 use std::collections::HashMap;
 
 use forwardstep_core::robot::TwoVelocity;
 use forwardstep_sim::Setup;
 use forwardstep_sim::recording::{Recording, Signal};
+use nalgebra::DVector;
 
 use super::held::Hold;
 use super::loads::{StaticLoad, limits, load};
 use super::margin::gains;
+use super::power::{PowerBound, is_fed, noise_w_of};
 use super::rates::Gains;
+use crate::kinds::is_lagrangian;
 
 /// States that are looked at in all, spread evenly over the rows, but two of every agent at least.
 const MOST: usize = 3000;
@@ -23,8 +26,19 @@ pub struct Along {
     pub margin: Option<MarginReached>,
     /// The static torque closest to its limit, where limits are known.
     pub load: Option<LoadReached>,
-    /// States that were looked at.
+    /// The mean of Σ sᵀKs, where something feeds V for ever.
+    pub power: Option<PowerReached>,
+    /// States that were looked at for the first two.
     pub states: usize,
+}
+
+/// The mean of Σ sᵀKs over the rows of a run, beside what it cannot exceed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PowerReached {
+    /// The mean, W.
+    pub mean_w: f64,
+    /// The bound with the pushes, V and σ of the run itself; `None` where V was not recorded.
+    pub bound: Option<PowerBound>,
 }
 
 /// The largest σ that was reached.
@@ -87,7 +101,38 @@ pub fn along(setup: &Setup, recording: &Recording) -> Along {
             }
         }
     }
+    let sigma = found.margin.map_or(0.0, |margin| margin.sigma);
+    found.power = power(setup, &columns, &recording.t_s, sigma);
     found
+}
+
+/// The mean of Σ sᵀKs over all rows, with σ as large as it became.
+fn power(setup: &Setup, columns: &Columns<'_>, t_s: &[f64], sigma: f64) -> Option<PowerReached> {
+    if !is_fed(setup) {
+        return None;
+    }
+    let (rows, [first_s, .., last_s]) = (t_s.len(), t_s) else { return None };
+    let (mut mean_w, mut start_j, mut push_w, mut noise_w, mut agents) = (0.0, Some(0.0), 0.0, 0.0, 0);
+    for agent in (0..setup.agents.len()).filter(|agent| is_lagrangian(&setup.agents[*agent])) {
+        let gains = Gains::of(&setup.agents[agent])?;
+        let axes = gains.damping.nrows();
+        let compliance = gains.damping.clone().cholesky()?.inverse();
+        for row in 0..rows {
+            let signal = |signal| columns.at(agent, signal, axes, row).map(DVector::from_vec);
+            let s = signal(Signal::TrackingError)?;
+            mean_w += s.dot(&(&gains.damping * &s)) / rows as f64;
+            push_w += signal(Signal::External).map_or(0.0, |d| d.dot(&(&compliance * &d)) / rows as f64);
+        }
+        let energy_j = columns.at(agent, Signal::Lyapunov, 1, 0).and_then(|v| v.first().copied());
+        start_j = start_j.zip(energy_j).map(|(all, own)| all + own);
+        noise_w += setup.control.as_ref().map_or(0.0, |control| noise_w_of(control, &gains));
+        agents += 1;
+    }
+    let span_s = last_s - first_s;
+    let parts = |start_j: f64| {
+        PowerBound { agents, span_s, start_w: start_j / span_s, push_w, noise_w, sigma, mean_w: f64::NAN }.worked_out()
+    };
+    (agents > 0 && mean_w.is_finite()).then(|| PowerReached { mean_w, bound: start_j.and_then(parts) })
 }
 
 /// Rows that are looked at: the first, the last and others between them.

@@ -7,30 +7,38 @@
 //! - `held`: how fast a mode may be under a command that is held, late, or taken from filtered differences.
 //! - `rates`: how fast the modes of a robot under (6)–(7) are, and what a sample does to V.
 //! - `margin`: the sampling margin σ before a run.
+//! - `linearised`: the same for one agent of any other kind, by differences.
 //! - `loads`: static torques against limits.
 //! - `postures`: those that both look at.
-//! - `along`: both at the postures that a run reached.
+//! - `power`: how large s stays when something acts for ever.
+//! - `along`: all of it at the postures that a run reached.
 
 mod along;
 mod held;
+mod linearised;
 mod loads;
 mod margin;
 mod postures;
+mod power;
 mod rates;
 mod words;
 
 use forwardstep_sim::Setup;
 
-pub use along::{Along, LoadReached, MarginReached, along};
+pub use along::{Along, LoadReached, MarginReached, PowerReached, along};
 pub use held::{Hold, longest_period_s};
+pub use linearised::LinearisedSampling;
 pub use loads::StaticLoad;
 pub use margin::{MarginAt, RECOMMENDED_MARGIN, SamplingMargin};
+pub use power::{PowerBound, mean_power_w};
 pub(crate) use rates::fastest_damping_of;
 pub use rates::{FastestDamping, fastest_damping};
 
 /// What a practical verdict says, from best to worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum PracticalAnswer {
+    /// A bound, of which nothing is required.
+    Bound,
     /// There is enough of it.
     Adequate,
     /// There is enough of it, and less than recommended.
@@ -42,9 +50,10 @@ pub enum PracticalAnswer {
 }
 
 impl PracticalAnswer {
-    /// `adequate`, `marginal`, `not shown` or `inadequate`.
+    /// `bound`, `adequate`, `marginal`, `not shown` or `inadequate`.
     pub fn words(self) -> &'static str {
         match self {
+            PracticalAnswer::Bound => "bound",
             PracticalAnswer::Adequate => "adequate",
             PracticalAnswer::Marginal => "marginal",
             PracticalAnswer::NotShown => "not shown",
@@ -58,8 +67,12 @@ impl PracticalAnswer {
 pub enum Finding {
     /// How much of the longest useful period is used.
     SamplingMargin(SamplingMargin),
+    /// Whether the fast modes of agents outside (6)–(7) decay from sample to sample.
+    LinearisedSampling(LinearisedSampling),
     /// Whether the limits of torques suffice to stand still.
     StaticLoad(StaticLoad),
+    /// How large s stays.
+    TrackingPower(PowerBound),
 }
 
 impl Finding {
@@ -67,7 +80,9 @@ impl Finding {
     pub fn name(&self) -> &'static str {
         match self {
             Finding::SamplingMargin(_) => "sampling-margin",
+            Finding::LinearisedSampling(_) => "linearised-sampling",
             Finding::StaticLoad(_) => "static-load",
+            Finding::TrackingPower(_) => "tracking-power",
         }
     }
 
@@ -75,7 +90,9 @@ impl Finding {
     pub fn answer(&self) -> PracticalAnswer {
         match self {
             Finding::SamplingMargin(margin) => margin.answer(),
+            Finding::LinearisedSampling(found) => found.answer(),
             Finding::StaticLoad(load) => load.answer(),
+            Finding::TrackingPower(_) => PracticalAnswer::Bound,
         }
     }
 
@@ -97,6 +114,16 @@ impl Finding {
                 let some = [("longest_period_s", margin.longest_s), ("recommended_period_s", margin.recommended_s)];
                 always.into_iter().chain(some.into_iter().filter_map(|(name, value)| Some((name, value?)))).collect()
             }
+            Finding::LinearisedSampling(found) => {
+                vec![("radius", found.radius), ("leftmost", found.leftmost), ("period_s", found.period_s)]
+            }
+            Finding::TrackingPower(bound) => vec![
+                ("mean_w", bound.mean_w),
+                ("start_w", bound.start_w),
+                ("push_w", bound.push_w),
+                ("noise_w", bound.noise_w),
+                ("span_s", bound.span_s),
+            ],
             Finding::StaticLoad(load) => vec![("torque", load.torque), ("limit", load.limit), ("share", load.share())],
         }
     }
@@ -125,5 +152,7 @@ impl Practical {
 pub fn practical(setup: &Setup) -> Practical {
     let margin = SamplingMargin::of(setup).map(Finding::SamplingMargin);
     let load = StaticLoad::of(setup).map(Finding::StaticLoad);
-    Practical { findings: margin.into_iter().chain(load).collect() }
+    let power = PowerBound::of(setup).map(Finding::TrackingPower);
+    let linearised = LinearisedSampling::of(setup).map(Finding::LinearisedSampling);
+    Practical { findings: margin.into_iter().chain(linearised).chain(load).chain(power).collect() }
 }

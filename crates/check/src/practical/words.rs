@@ -1,13 +1,15 @@
 //! Sentences of practical verdicts.
 
-use super::{Finding, RECOMMENDED_MARGIN, SamplingMargin, StaticLoad};
+use super::{Finding, LinearisedSampling, PowerBound, PracticalAnswer, RECOMMENDED_MARGIN, SamplingMargin, StaticLoad};
 use crate::hypothesis::numbers::{rounded, rounded_up};
 
 /// What it is about.
 pub(super) fn about(finding: &Finding) -> &'static str {
     match finding {
         Finding::SamplingMargin(_) => "they sample fast enough for K and Γ",
+        Finding::LinearisedSampling(_) => "agents under other laws sample fast enough",
         Finding::StaticLoad(_) => "torques within their limits hold the robots at rest",
+        Finding::TrackingPower(_) => "how large s stays",
     }
 }
 
@@ -15,13 +17,15 @@ pub(super) fn about(finding: &Finding) -> &'static str {
 pub(super) fn because(finding: &Finding) -> String {
     match finding {
         Finding::SamplingMargin(margin) => sampling(margin),
+        Finding::LinearisedSampling(found) => linearised(found),
         Finding::StaticLoad(load) => standing(load),
+        Finding::TrackingPower(bound) => power(bound),
     }
 }
 
 fn sampling(margin: &SamplingMargin) -> String {
     let SamplingMargin { start, worst, postures, .. } = margin;
-    let between = if worst == start {
+    let between = if rounded(worst.sigma) == rounded(start.sigma) {
         String::new()
     } else {
         format!(", {} at most at {postures} postures between the starts ({})", rounded(worst.sigma), worst.agent.name)
@@ -64,6 +68,39 @@ fn standing(StaticLoad { agent, axis_name, torque, limit, postures, .. }: &Stati
     let those =
         if *postures == 1 { "at the start".into() } else { format!("of {postures} postures between the starts") };
     format!("the largest share of a limit {those}: |g| is {torque} of {limit} ({}, {axis_name})", agent.name)
+}
+
+fn power(bound: &PowerBound) -> String {
+    let PowerBound { agents, span_s, start_w, push_w, noise_w, sigma, mean_w } = *bound;
+    let who = if agents == 1 { "sᵀKs".to_owned() } else { format!("Σ sᵀKs of {agents} agents") };
+    // Sampled, what the plant does between samples is left out.
+    let kind = if noise_w > 0.0 || sigma > 0.0 { "is expected to be at most" } else { "is at most" };
+    let part = |name: &str, value: f64| match value {
+        value if value > 0.0 => format!(", {name} {} W", rounded_up(value)),
+        _ => String::new(),
+    };
+    let sampled = if sigma > 0.0 { format!(", with σ = {}", rounded(sigma)) } else { String::new() };
+    format!(
+        "the mean of {who} over {span_s} s {kind} {} W while nothing is clipped: V(0)/T {} W{}{}{sampled}",
+        rounded_up(mean_w),
+        rounded_up(start_w),
+        part("pushes", push_w),
+        part("measurement errors", noise_w),
+    )
+}
+
+fn linearised(found: &LinearisedSampling) -> String {
+    let LinearisedSampling { agent, period_s, radius, leftmost, agents } = found;
+    let (leftmost, period) = (rounded(*leftmost), rounded(1e3 * period_s));
+    let of = if *agents == 1 { String::new() } else { format!(", the worst of {agents} agents that were looked at") };
+    let meaning = match found.answer() {
+        PracticalAnswer::Inadequate => format!("a fast mode grows by {} from sample to sample", rounded(*radius)),
+        PracticalAnswer::Marginal => format!("a fast mode overshoots: its multiplier has the real part {leftmost}"),
+        PracticalAnswer::Bound | PracticalAnswer::Adequate | PracticalAnswer::NotShown => {
+            format!("no mode overshoots: no multiplier has a real part below {leftmost}")
+        }
+    };
+    format!("linearised at the start ({}{of}), with a period of {period} ms: {meaning}", agent.name)
 }
 
 /// What else there is between a sample and its torque.

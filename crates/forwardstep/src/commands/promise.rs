@@ -80,6 +80,7 @@ fn show_practical(practical: &Practical, console: &mut Console) {
     console.line(format_args!("{BOLD}Practical{BOLD:#}: {}", check::Source::Derived.words()));
     for finding in &practical.findings {
         let style = match finding.answer() {
+            PracticalAnswer::Bound => DIM,
             PracticalAnswer::Adequate => GOOD,
             PracticalAnswer::Marginal | PracticalAnswer::NotShown => FAIR,
             PracticalAnswer::Inadequate => BAD,

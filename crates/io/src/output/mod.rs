@@ -67,7 +67,7 @@ pub use metrics::{
     LimitReached, Metrics, Peak, Speed,
 };
 pub use packets::Link;
-pub use practical::{PracticalVerdict, PracticalVerdicts, Watched, WatchedLoad, WatchedMargin};
+pub use practical::{PracticalVerdict, PracticalVerdicts, Watched, WatchedLoad, WatchedMargin, WatchedPower};
 pub use prediction::{CourseFound, PredictedCourse, PredictedRate, PredictedTorque, Predictions};
 pub use record::{GoalOutcome, RunRecord};
 pub use restore::{Remark, SavedRun};

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use forwardstep_check::{Along, LoadReached, MarginReached, Practical, Source, along, practical};
+use forwardstep_check::{Along, LoadReached, MarginReached, PowerReached, Practical, Source, along, practical};
 use forwardstep_sim::Setup;
 use forwardstep_sim::recording::Recording;
 use schemars::JsonSchema;
@@ -31,7 +31,7 @@ pub struct PracticalVerdict {
     pub id: String,
     /// What it is about.
     pub about: String,
-    /// `adequate`, `marginal`, `not shown` or `inadequate`.
+    /// `bound`, where nothing is required, `adequate`, `marginal`, `not shown` or `inadequate`.
     pub answer: String,
     /// What was found.
     pub because: String,
@@ -72,8 +72,21 @@ pub struct Watched {
     /// The static torque |g_j(q)| closest to its limit; absent where no limit is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub static_load: Option<WatchedLoad>,
-    /// How many states were looked at.
+    /// The mean of Σ sᵀKs of the agents under (6)–(7); absent where nothing feeds V for ever.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tracking_power: Option<WatchedPower>,
+    /// How many states were looked at for the first two.
     pub states: usize,
+}
+
+/// How large s was, as power.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WatchedPower {
+    /// The mean of Σ sᵀKs over all rows, W.
+    pub mean_w: f64,
+    /// What it cannot exceed, or is expected not to where there is noise, with the pushes, the start and σ of the run, W; null where V was
+    /// not recorded.
+    pub bound_w: Option<f64>,
 }
 
 /// The largest σ that was reached.
@@ -106,7 +119,9 @@ pub struct WatchedLoad {
 impl Watched {
     /// Looks at a recording; `None` where there is nothing to be watched.
     pub fn of(setup: &Setup, recording: &Recording) -> Option<Watched> {
-        let Along { margin, load, states } = along(setup, recording);
+        let Along { margin, load, power, states } = along(setup, recording);
+        let tracking_power = power
+            .map(|PowerReached { mean_w, bound }| WatchedPower { mean_w, bound_w: bound.map(|bound| bound.mean_w) });
         let sampling_margin = margin.map(|MarginReached { agent, t_s, sigma }| WatchedMargin { agent, t_s, sigma });
         let static_load = load.map(|LoadReached { t_s, load }| WatchedLoad {
             agent: load.agent.index,
@@ -115,6 +130,7 @@ impl Watched {
             torque: load.torque,
             limit: load.limit,
         });
-        (sampling_margin.is_some() || static_load.is_some()).then_some(Watched { sampling_margin, static_load, states })
+        let found = Watched { sampling_margin, static_load, tracking_power, states };
+        (sampling_margin.is_some() || static_load.is_some() || tracking_power.is_some()).then_some(found)
     }
 }

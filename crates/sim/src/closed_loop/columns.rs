@@ -51,6 +51,8 @@ pub(crate) trait Columns {
     fn taken(&self, each: &mut dyn FnMut(&Digital));
     /// Applies the torques that were commanded last.
     fn apply(&mut self);
+    /// Makes the actuators hold these commands, agent by agent.
+    fn hold(&mut self, commands: &[f64]);
     /// Brings the block `x`, which a step has just reached, back to its manifold.
     fn settle(&mut self, x: &mut [f64]);
     /// Which member is in trouble in the state `x`, which has just been evaluated.

@@ -88,6 +88,8 @@ impl Columns for Guide {
 
     fn apply(&mut self) {}
 
+    fn hold(&mut self, _: &[f64]) {}
+
     fn tell(&mut self, t_s: f64, _: &[f64], told: &mut [f64]) {
         self.put(t_s, 2, told);
     }

@@ -310,6 +310,12 @@ where
         }
     }
 
+    fn hold(&mut self, commands: &[f64]) {
+        if let Some(sampler) = &mut self.sampler {
+            sampler.hold(commands);
+        }
+    }
+
     fn selection(&self) -> Option<Range<usize>> {
         let l = self.robots.layout;
         self.reference.sliding().map(|_| l.theta_hat - l.block()..l.theta_hat)

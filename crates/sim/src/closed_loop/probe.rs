@@ -71,7 +71,7 @@ pub fn probe_balance(setup: &Setup, index: usize) -> Result<Probe, SetupError> {
 }
 
 /// What leads the agent when it is by itself. It then has the number zero, which must not be taken for that of the leader.
-fn alone_under(setup: &Setup, index: usize) -> Arc<dyn ReferenceDynamics> {
+pub(super) fn alone_under(setup: &Setup, index: usize) -> Arc<dyn ReferenceDynamics> {
     if setup.leader() == Some(index) {
         return Arc::new(Tracking);
     }

@@ -151,6 +151,11 @@ impl Digital {
         }
     }
 
+    /// Makes the actuators hold `command` instead.
+    pub(crate) fn hold(&mut self, command: &[f64]) {
+        self.held.copy_from_slice(command);
+    }
+
     /// Hands the command to the actuators.
     pub(crate) fn apply(&mut self) {
         self.held.copy_from_slice(&self.commanded);
@@ -263,6 +268,17 @@ impl Sampler {
     /// The agents with their last samples.
     pub(crate) fn agents(&self) -> &[Digital] {
         &self.agents
+    }
+
+    /// Makes the actuators hold these instead, agent by agent.
+    pub(crate) fn hold(&mut self, commands: &[f64]) {
+        let n = self.agents.len().max(1);
+        for (i, (agent, command)) in
+            self.agents.iter_mut().zip(commands.chunks_exact((commands.len() / n).max(1))).enumerate()
+        {
+            agent.hold(command);
+            give(n, i, command, &mut self.torque);
+        }
     }
 
     /// Hands the commands to the actuators.

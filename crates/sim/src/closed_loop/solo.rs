@@ -350,6 +350,12 @@ impl<C: Controller> Columns for Solo<C> {
         }
     }
 
+    fn hold(&mut self, commands: &[f64]) {
+        if let Some(digital) = &mut self.digital {
+            digital.hold(commands);
+        }
+    }
+
     fn settle(&mut self, x: &mut [f64]) {
         let Layout { plant, .. } = self.layout;
         self.plant.settle(&mut x[..plant]);

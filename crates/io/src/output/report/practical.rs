@@ -6,7 +6,7 @@ use maud::{Markup, html};
 
 use super::super::metrics::Metrics;
 use super::super::names;
-use super::super::practical::{Watched, WatchedLoad, WatchedMargin};
+use super::super::practical::{Watched, WatchedLoad, WatchedMargin, WatchedPower};
 use super::super::record::RunRecord;
 use super::text::{self, number};
 
@@ -48,6 +48,7 @@ pub(crate) fn practical(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
 
 fn style(answer: PracticalAnswer) -> (&'static str, &'static str) {
     match answer {
+        PracticalAnswer::Bound => ("fair", "≤"),
         PracticalAnswer::Adequate => ("good", "✓"),
         PracticalAnswer::Marginal => ("fair", "✓"),
         PracticalAnswer::NotShown => ("warn", "?"),
@@ -57,7 +58,7 @@ fn style(answer: PracticalAnswer) -> (&'static str, &'static str) {
 
 fn watched(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
     let setup = record.setup;
-    let Watched { sampling_margin, static_load, .. } = metrics.watched.unwrap_or_default();
+    let Watched { sampling_margin, static_load, tracking_power, .. } = metrics.watched.unwrap_or_default();
     html! {
         @if let Some(WatchedMargin { agent, t_s, sigma }) = sampling_margin {
             (fact("Sampling margin", html! {
@@ -68,6 +69,12 @@ fn watched(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
             (fact("Static torque", html! {
                 "|g| = " (number(torque)) " of " (number(limit)) " " (text::unit(&names::unit(setup, agent, Signal::Torque, axis)))
                 " at most (" (names::agent_name(setup, agent)) ", " (names::axis_words(setup, agent, axis)) ", t = " (number(t_s)) " s)"
+            }))
+        }
+        @if let Some(WatchedPower { mean_w, bound_w }) = tracking_power {
+            (fact("Σ sᵀKs", html! {
+                (number(mean_w)) " W on the average"
+                @if let Some(bound_w) = bound_w { ", at most " (number(bound_w)) " W with the pushes, the start and σ of this run" }
             }))
         }
         @if let Some(ClippedSamples { samples, torque, rate }) = record.outcome.statistics.clipped {

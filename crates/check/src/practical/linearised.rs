@@ -1,0 +1,86 @@
+//! Kinds outside (6)–(7) under digital control: the multipliers of one agent's period, linearised at its start.
+//!
+//! Not from the paper, derived for this software. Near a state at rest a period takes a small deviation ξ of plant and controller to J ξ,
+//! and J is that of the run itself, by differences ([`sampled_jacobian`]). As h → 0 all its eigenvalues μ tend to 1: those near 1 are the
+//! modes of the continuous design, slow as its reference dynamics are, and what they do is no matter of sampling. The others are fast.
+//! A fast one outside the unit circle grows from sample to sample; one to the left of the imaginary axis overshoots from sample to
+//! sample, as 1 − h λ does for h λ > 1, where the margin of (6)–(7) exceeds one half. All of it is local, and speaks of one agent by itself.
+
+use forwardstep_sim::{Setup, sampled_jacobian};
+use nalgebra::DMatrix;
+
+use super::PracticalAnswer;
+use crate::hypothesis::Named;
+use crate::kinds::is_lagrangian;
+
+/// Multipliers farther than this from 1 are fast.
+const FAST: f64 = 0.1;
+/// Smaller multipliers are zero: what is brought back to a manifold, and commands that are remembered.
+const FORGOTTEN: f64 = 1e-6;
+/// Agents that are looked at, spread evenly.
+const MOST: usize = 16;
+
+/// The multipliers of the agent for which sampling is worst.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinearisedSampling {
+    /// The agent.
+    pub agent: Named,
+    /// h, s.
+    pub period_s: f64,
+    /// The largest size of a fast multiplier; zero where none is fast.
+    pub radius: f64,
+    /// The smallest real part of those that are not zero.
+    pub leftmost: f64,
+    /// Agents that were looked at.
+    pub agents: usize,
+}
+
+impl LinearisedSampling {
+    /// Of the agents of a setup outside (6)–(7); `None` when control is continuous, there are none, velocities are filtered differences,
+    /// or nothing finite is found.
+    pub fn of(setup: &Setup) -> Option<LinearisedSampling> {
+        let period_s = 1.0 / setup.control.as_ref()?.sample_hz;
+        let others: Vec<usize> =
+            (0..setup.agents.len()).filter(|agent| !is_lagrangian(&setup.agents[*agent])).collect();
+        let stride = others.len().div_ceil(MOST).max(1);
+        let mut worst: Option<LinearisedSampling> = None;
+        let mut agents = 0;
+        for &agent in others.iter().step_by(stride) {
+            let Some((radius, leftmost)) = multipliers(setup, agent) else { continue };
+            agents += 1;
+            let found = LinearisedSampling { agent: Named::of(setup, agent), period_s, radius, leftmost, agents };
+            worst = match worst.take() {
+                Some(worst) if found.is_no_worse_than(&worst) => Some(worst),
+                _ => Some(found),
+            };
+        }
+        worst.map(|found| LinearisedSampling { agents, ..found })
+    }
+
+    /// Inadequate where a fast mode grows, marginal where one overshoots.
+    pub fn answer(&self) -> PracticalAnswer {
+        if self.radius >= 1.0 {
+            PracticalAnswer::Inadequate
+        } else if self.leftmost < 0.0 {
+            PracticalAnswer::Marginal
+        } else {
+            PracticalAnswer::Adequate
+        }
+    }
+
+    fn is_no_worse_than(&self, other: &LinearisedSampling) -> bool {
+        if self.radius.max(other.radius) >= 1.0 { self.radius <= other.radius } else { self.leftmost >= other.leftmost }
+    }
+}
+
+/// The largest size of a fast multiplier, and the smallest real part of those that are not zero.
+fn multipliers(setup: &Setup, agent: usize) -> Option<(f64, f64)> {
+    let jacobian = sampled_jacobian(setup, agent).ok()??;
+    let matrix = DMatrix::from_row_slice(jacobian.size, jacobian.size, &jacobian.entries);
+    let all = matrix.complex_eigenvalues();
+    let kept = || all.iter().filter(|mu| mu.norm() > FORGOTTEN);
+    let fast = kept().filter(|mu| (*mu - 1.0).norm() > FAST);
+    let radius = fast.map(|mu| mu.norm()).fold(0.0, f64::max);
+    let leftmost = kept().map(|mu| mu.re).fold(1.0, f64::min);
+    (radius.is_finite() && leftmost.is_finite()).then_some((radius, leftmost))
+}

@@ -1,0 +1,175 @@
+//! How large s stays, as power: what the mean of sᵀKs cannot exceed when something acts on the loop for ever.
+//!
+//! Not from the paper, derived for this software. Under (6)–(7) with a disturbance d of the torque, and E whatever else feeds V,
+//!
+//! ```text
+//! V̇ ≤ −sᵀKs + sᵀd + E
+//! ```
+//!
+//! Over a span T from t₀, let x² be the mean of sᵀKs and D² that of dᵀK⁻¹d. The mean of sᵀd = (K^½ s)ᵀ(K^−½ d) is at most x D, and V is
+//! never negative, so that x² ≤ x D + E + V(t₀)/T, and
+//!
+//! ```text
+//! x ≤ ½ D + √(¼ D² + E + V(t₀)/T)
+//! ```
+//!
+//! For several agents all of it adds up. Sampled, V loses (1 − σ) sᵀKs in place of sᵀKs (`rates`), which is to be put for K throughout:
+//! then x² ≤ (½ D + √(¼ D² + (1 − σ)(E + V(t₀)/T)))² / (1 − σ)². What the plant does between samples is left out, which vanishes at rest.
+//!
+//! A velocity that is measured with an error n makes d = −K n, so that D² is the mean of nᵀKn: tr K times the mean square of an entry. That
+//! of a step Δ of rounding is Δ²/12. Filtered differences of positions, a = e^(−ωh), with an error e of variance e² at every sample,
+//! have n = (1 − a) Σ_j aʲ (e_{k−j} − e_{k−j−1})/h, whose mean square is 2 e² (1 − a)²/(h² (1 + a)). n enters the adaptation too, as −nᵀYΔϑ,
+//! whose mean is zero since Y is one sample older; and a filter lags, which is left out. With noise the bound is thus one to be
+//! expected, not one for certain.
+
+use forwardstep_sim::push::{Course, Effect, Function, Push};
+use forwardstep_sim::{Adaptive, AgentSetup, Control, ReferenceFamily, Setup, VelocitySensor};
+use nalgebra::{DMatrix, DVector};
+
+use super::held::Hold;
+use super::margin::SamplingMargin;
+use super::rates::{Gains, dynamics};
+use crate::kinds::is_lagrangian;
+
+/// Mean square of what rounding to multiples of one does.
+const ROUNDING: f64 = 1.0 / 12.0;
+
+/// What feeds Σ V of all agents under (6)–(7), and what Σ sᵀKs is at most on the average over a span.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PowerBound {
+    /// Agents that are counted.
+    pub agents: usize,
+    /// T, s.
+    pub span_s: f64,
+    /// V(t₀)/T, W.
+    pub start_w: f64,
+    /// D² of what pushes, W.
+    pub push_w: f64,
+    /// D² of measurement errors, W: expected, not certain.
+    pub noise_w: f64,
+    /// σ; zero in continuous time.
+    pub sigma: f64,
+    /// The bound on the mean of Σ sᵀKs, W.
+    pub mean_w: f64,
+}
+
+/// x² for D² = `drive_w`, E = `supply_w` and V(t₀)/T = `start_w`, all in W, where V loses (1 − σ) sᵀKs; infinite from σ = 1 on.
+pub fn mean_power_w(drive_w: f64, supply_w: f64, start_w: f64, sigma: f64) -> f64 {
+    let kept = 1.0 - sigma;
+    if kept <= 0.0 {
+        return f64::INFINITY;
+    }
+    let x = 0.5 * drive_w.sqrt() + (0.25 * drive_w + kept * (supply_w + start_w)).sqrt();
+    x * x / (kept * kept)
+}
+
+impl PowerBound {
+    /// Over the whole run of a setup; `None` where there is nothing that feeds V but its start, or where V(0), a push or σ is not known
+    /// before the run.
+    pub fn of(setup: &Setup) -> Option<PowerBound> {
+        if !is_fed(setup) {
+            return None;
+        }
+        let (mut start_j, mut push_w, mut noise_w, mut agents) = (0.0, 0.0, 0.0, 0);
+        let span_s = setup.time.end_s;
+        for (index, agent) in setup.agents.iter().enumerate().filter(|(_, agent)| is_lagrangian(agent)) {
+            let gains = Gains::of(agent)?;
+            start_j += start_energy_j(setup, index, &gains)?;
+            push_w += pushed_w(agent, &gains, span_s)?;
+            noise_w += setup.control.as_ref().map_or(0.0, |control| noise_w_of(control, &gains));
+            agents += 1;
+        }
+        let sigma = if setup.control.is_some() { SamplingMargin::of(setup)?.worst.sigma } else { 0.0 };
+        let parts = PowerBound { agents, span_s, start_w: start_j / span_s, push_w, noise_w, sigma, mean_w: f64::NAN };
+        (agents > 0).then(|| parts.worked_out()).flatten()
+    }
+
+    /// The same with [`PowerBound::mean_w`]: the D of pushes and of noise add up, at worst. `None` where it is not finite, and where it
+    /// is zero: then what is left out is all there is. No robot has dry friction, so that E is zero.
+    pub(super) fn worked_out(self) -> Option<PowerBound> {
+        let drive = self.push_w.sqrt() + self.noise_w.sqrt();
+        let mean_w = mean_power_w(drive * drive, 0.0, self.start_w, self.sigma);
+        (mean_w > 0.0 && mean_w.is_finite()).then_some(PowerBound { mean_w, ..self })
+    }
+}
+
+/// Whether something besides the start feeds V: noise and samples, or pushes.
+pub(super) fn is_fed(setup: &Setup) -> bool {
+    setup.control.is_some() || setup.agents.iter().any(|agent| is_lagrangian(agent) && !agent.pushes.is_empty())
+}
+
+/// D² of the measurement errors of an agent, W.
+pub(super) fn noise_w_of(control: &Control, gains: &Gains) -> f64 {
+    let sensors = &control.sensors;
+    let square = |noise: f64, quantum: f64| noise * noise + ROUNDING * quantum * quantum;
+    let mean_square = match sensors.velocity {
+        VelocitySensor::Measured => square(sensors.velocity_noise, sensors.velocity_quantum),
+        VelocitySensor::Filtered { .. } => {
+            let omega_h = Hold::of(control).cut_off_rad_s.unwrap_or(f64::INFINITY) / control.sample_hz;
+            let quick = -libm::expm1(-omega_h);
+            let rate = quick * control.sample_hz;
+            square(sensors.position_noise, sensors.position_quantum) * 2.0 * rate * rate / (2.0 - quick)
+        }
+    };
+    mean_square * gains.damping.trace()
+}
+
+/// V(0) of an agent, J; `None` where z(0) follows from what is heard.
+fn start_energy_j(setup: &Setup, index: usize, gains: &Gains) -> Option<f64> {
+    match setup.reference_of(index).interface().family {
+        ReferenceFamily::Consensus | ReferenceFamily::Leader => {}
+        ReferenceFamily::PureIntegral
+        | ReferenceFamily::Backstepping
+        | ReferenceFamily::Target
+        | ReferenceFamily::Own => return None,
+    }
+    let agent = &setup.agents[index];
+    let (q, dq) = (&agent.start.q, &agent.start.dq);
+    let z = agent.start.reference.first().unwrap_or(dq);
+    let s = DVector::from_iterator(dq.len(), dq.iter().zip(z).map(|(dq, z)| dq - z));
+    let mass = DMatrix::from_row_slice(q.len(), q.len(), &dynamics(agent, q, dq, 0.0)?.mass);
+    let kinetic = 0.5 * s.dot(&(mass * &s));
+    let Some(gamma) = &gains.adaptation else { return Some(kinetic) };
+    let law: &Adaptive = agent.law.downcast()?;
+    let errors = law.estimate_start.iter().zip(&agent.robot.theta).map(|(estimate, theta)| estimate - theta);
+    let error = DVector::from_iterator(agent.robot.theta.len(), errors);
+    Some(kinetic + 0.5 * error.dot(&gamma.clone().cholesky()?.solve(&error)))
+}
+
+/// D² of the pushes of an agent over [0, `span_s`], at most, W; `None` where one depends on the motion.
+fn pushed_w(agent: &AgentSetup, gains: &Gains, span_s: f64) -> Option<f64> {
+    let inverse = gains.damping.clone().cholesky()?.inverse().abs();
+    let mut drive = 0.0;
+    for push in &agent.pushes {
+        let [begins_s, ends_s] = push.span_s();
+        let (begins_s, ends_s) = (begins_s.max(0.0), ends_s.min(span_s));
+        if begins_s < ends_s {
+            let peak = peak(push, gains.damping.nrows(), [begins_s, ends_s])?;
+            drive += (peak.dot(&(&inverse * &peak)) * (ends_s - begins_s) / span_s).sqrt();
+        }
+    }
+    Some(drive * drive)
+}
+
+/// The largest size of every entry of τ_ext while a push acts.
+fn peak(push: &Push, axes: usize, [begins_s, ends_s]: [f64; 2]) -> Option<DVector<f64>> {
+    let course = match &push.effect {
+        Effect::Torque(course) => course,
+        Effect::Wrench { .. } | Effect::HandOnAxes { .. } | Effect::HandOnPoint { .. } => return None,
+    };
+    let largest = |axis: usize| match course {
+        Course::Each(functions) => match functions.get(axis)? {
+            Function::Constant(value) => Some(value.abs()),
+            Function::Formula(formula) => {
+                let within = formula.bounds(begins_s, ends_s);
+                Some(within.low.abs().max(within.high.abs()))
+            }
+        },
+        Course::Table(table) => {
+            let column = table.values.iter().skip(axis).step_by(table.components().max(1));
+            Some(column.fold(0.0_f64, |most, value| most.max(value.abs())))
+        }
+    };
+    let all: Option<Vec<f64>> = (0..axes).map(largest).collect();
+    all.map(DVector::from_vec).filter(|peak| peak.iter().all(|peak| peak.is_finite()))
+}
