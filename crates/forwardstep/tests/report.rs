@@ -147,7 +147,9 @@ fn what_was_predicted_stands_beside_what_was_observed() {
     assert!(page.contains("rightmost characteristic root") && page.contains("Value, shoulder"));
     let within = &course["within"][0];
     let mean = metrics["final_means"][0].as_f64().unwrap();
-    assert!((within[0].as_f64().unwrap()..=within[1].as_f64().unwrap()).contains(&mean), "{within} {mean}");
+    // Both are computed to a tolerance.
+    let [low, high] = [0, 1].map(|end| within[end].as_f64().unwrap());
+    assert!(low - 1e-8 < mean && mean < high + 1e-8, "{within} {mean}");
     // Estimates start far away, and the graph switches.
     let (_, summary, page) = run("six-arms");
     assert!(summary["metrics"]["final_tracking_error"].as_f64().unwrap() > 1e-3);

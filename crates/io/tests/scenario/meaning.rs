@@ -222,7 +222,7 @@ fn near_matches_for_names_and_paths() {
     let (error, help) = open(latin.to_str().unwrap());
     assert!(error.ends_with("it is no UTF-8 text: byte 0xe9 in line 2, column 14"), "{error}");
     assert_eq!(help, "save it as UTF-8");
-    let missing = folder.path().join("flet.toml");
+    let missing = folder.path().join("netwrk.toml");
     let (error, help) = open(missing.to_str().unwrap());
     assert_eq!(error, format!("cannot read `{}`: there is no such file", missing.display()));
     assert!(help.starts_with("did you mean `network.toml`?"), "{help}");
