@@ -8,6 +8,8 @@ use clap_complete::Shell;
 use forwardstep_check::Id;
 use thiserror::Error;
 
+use crate::falsify::Target;
+
 /// Simulate and check networks of robots under forwardstepping control. Without a command, runs six arms.
 #[derive(Debug, Parser)]
 #[command(version, max_term_width = 100, after_help = EXIT_STATUS)]
@@ -49,6 +51,8 @@ pub(crate) enum Command {
     SamplingLimit(SamplingLimitOptions),
     /// Draw random scenarios and try to refute what is claimed of them
     Falsify(FalsifyOptions),
+    /// Search delays that jump and graphs that take turns for those under which a design does worst
+    Attack(AttackOptions),
     /// List the shipped scenarios, or print one
     Scenarios {
         /// Print the text of this one
@@ -148,6 +152,51 @@ pub(crate) struct FalsifyOptions {
     /// The folder for scenarios that refute something, as small as they still do
     #[arg(long, value_name = "FOLDER", default_value = "forwardstep-refuted")]
     pub(crate) out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct AttackOptions {
+    /// What is attacked
+    #[arg(value_enum)]
+    pub(crate) target: AttackTarget,
+    /// Pieces of the delay, and phases of the schedule, at most
+    #[arg(long, value_name = "N", default_value_t = 6)]
+    pub(crate) pieces: usize,
+    /// The same seed searches the same scenarios
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// How long to search
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = positive)]
+    pub(crate) seconds: f64,
+    /// The file for what is found
+    #[arg(long, value_name = "FILE", default_value = "forwardstep-attack.toml")]
+    pub(crate) out: PathBuf,
+}
+
+/// What `attack` attacks: two designs inside their theorems, and two with a hypothesis broken.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum AttackTarget {
+    /// (a1), positions and velocities exchanged: how slow can agreement be?
+    A1,
+    /// (24) of order two, positions exchanged: how slow can agreement be?
+    #[value(name = "24")]
+    Positions,
+    /// (a1) with first roots κ₀ that differ from agent to agent: does it diverge?
+    A1FirstRoots,
+    /// (119) with weights that change with time: does it fail to follow?
+    #[value(name = "119-weights")]
+    Weights,
+}
+
+impl AttackTarget {
+    pub(crate) fn target(self) -> Target {
+        match self {
+            AttackTarget::A1 => Target::Velocities,
+            AttackTarget::Positions => Target::Positions,
+            AttackTarget::A1FirstRoots => Target::FirstRoots,
+            AttackTarget::Weights => Target::Weights,
+        }
+    }
 }
 
 #[derive(Debug, Args)]

@@ -1,6 +1,7 @@
 //! One file per command.
 
 mod ask;
+mod attack;
 mod check;
 mod completions;
 mod dynamics;
@@ -19,6 +20,7 @@ mod stop;
 mod summary;
 mod upgrade;
 
+pub(crate) use attack::attack;
 pub(crate) use check::check;
 pub(crate) use completions::completions;
 pub(crate) use explain::explain;

@@ -20,9 +20,9 @@ pub(crate) struct Case {
     pub(crate) phases: Vec<Phase>,
     pub(crate) switching: Switching,
     /// A number or a formula.
-    pub(crate) weight: &'static str,
+    pub(crate) weight: String,
     /// The table of the delay.
-    pub(crate) delay: &'static str,
+    pub(crate) delay: String,
     pub(crate) end_s: f64,
 }
 
@@ -139,8 +139,8 @@ impl Case {
             known: rng.random_bool(0.3),
             phases: (0..count).map(|_| phase(rng, agents + leads, leads > 0, density)).collect(),
             switching: [Switching::Repeat, Switching::Once, Switching::Random][rng.random_range(0..3)],
-            weight: if leads > 0 { "1" } else { pick(rng, &WEIGHTS) },
-            delay: if leads > 0 { DELAYS[0] } else { pick(rng, &DELAYS) },
+            weight: if leads > 0 { "1" } else { pick(rng, &WEIGHTS) }.into(),
+            delay: if leads > 0 { DELAYS[0] } else { pick(rng, &DELAYS) }.into(),
             end_s: 30.0,
         }
     }
@@ -178,13 +178,13 @@ impl Case {
                 found.push(case);
             }
         };
-        simpler(&|case| case.delay = DELAYS[0]);
+        simpler(&|case| case.delay = DELAYS[0].into());
         simpler(&|case| {
             if case.delay != DELAYS[0] {
-                case.delay = DELAYS[1];
+                case.delay = DELAYS[1].into();
             }
         });
-        simpler(&|case| case.weight = WEIGHTS[0]);
+        simpler(&|case| case.weight = WEIGHTS[0].into());
         simpler(&|case| case.switching = Switching::Repeat);
         simpler(&|case| case.known = true);
         simpler(&|case| case.end_s = (0.5 * case.end_s).max(1.0));
@@ -206,15 +206,15 @@ impl Case {
     }
 }
 
-fn pick<T: Copy>(rng: &mut ChaCha8Rng, among: &[T]) -> T {
+pub(super) fn pick<T: Copy>(rng: &mut ChaCha8Rng, among: &[T]) -> T {
     among[rng.random_range(0..among.len())]
 }
 
-fn hundredths(rng: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
+pub(super) fn hundredths(rng: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
     (100.0 * rng.random_range(low..high)).round() / 100.0
 }
 
-fn roots(rng: &mut ChaCha8Rng, order: usize) -> Vec<f64> {
+pub(super) fn roots(rng: &mut ChaCha8Rng, order: usize) -> Vec<f64> {
     (0..order).map(|_| hundredths(rng, 0.5, 3.0)).collect()
 }
 

@@ -106,7 +106,7 @@ pub(crate) fn read(case: &Case) -> Result<Scenario, String> {
     read_scenario("drawn", &source, Inputs::default()).map_err(|error| error.to_string())
 }
 
-fn run(setup: &Setup) -> Result<Outcome, String> {
+pub(super) fn run(setup: &Setup) -> Result<Outcome, String> {
     simulate(setup, &mut |_| ControlFlow::Continue(())).map_err(|error| error.to_string())
 }
 
@@ -193,7 +193,7 @@ fn whole(case: &Case, setup: &Setup) -> Verdict {
 }
 
 /// The largest error, or disagreement, of the last quarter of a run: at its end alone it may be zero by chance.
-fn late(setup: &Setup, mut outcome: Outcome) -> Option<f64> {
+pub(super) fn late(setup: &Setup, mut outcome: Outcome) -> Option<f64> {
     let recording = &mut outcome.recording;
     let from = 3 * recording.t_s.len() / 4;
     recording.t_s.drain(..from);

@@ -1,11 +1,13 @@
 //! Tries to refute what is claimed: random scenarios over all theorems, sizes, delays and schedules.
 
+mod attack;
 mod case;
 mod judge;
 mod text;
 
 use std::collections::BTreeMap;
 
+pub(crate) use attack::{Attack, Target};
 pub(crate) use case::Case;
 pub(crate) use judge::{Failure, Verdict};
 
@@ -126,8 +128,8 @@ mod tests {
             starts,
             phases: vec![phase(vec![(0, 1)]), phase(vec![(1, 0)])],
             switching: Switching::Repeat,
-            delay: "constant_s = 0",
-            weight: "2.0",
+            delay: "constant_s = 0".into(),
+            weight: "2.0".into(),
             ..case
         }
     }
@@ -155,7 +157,7 @@ mod tests {
             case = smaller;
         }
         assert_eq!((case.starts.len(), case.phases.len(), case.phases[0].edges.len()), (2, 1, 1), "{case}");
-        assert_eq!((case.weight, case.delay, case.end_s), ("1", "constant_s = 0", 1.0));
+        assert_eq!((case.weight.as_str(), case.delay.as_str(), case.end_s), ("1", "constant_s = 0", 1.0));
     }
 
     #[test]

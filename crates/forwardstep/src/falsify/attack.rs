@@ -1,0 +1,290 @@
+//! Searches delays that jump and graphs that take turns for those under which a design does worst.
+//!
+//! Inside the class of a theorem that is a network over which agreement is slow: with s ≡ 0 the interval of the cascaded variables never
+//! grows, and the search says how little it shrinks. With one hypothesis broken it is a network over which the design fails: the
+//! nearest is that with the fewest agents, then with the fewest phases. Drawn first, then changed bit by bit as long as that helps.
+
+use std::time::{Duration, Instant};
+
+use forwardstep::check::{Answer, Id, check, ideal};
+use forwardstep::io::output::{Disagreement, Metrics};
+use forwardstep::sim::Setup;
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+
+use super::case::{Case, Course, Design, Phase, Switching, System, hundredths, pick};
+use super::judge::{late, read, run};
+
+/// What is attacked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Target {
+    /// (a5) of order two, which is (a1), over any graphs and delays.
+    Velocities,
+    /// (24) of order two.
+    Positions,
+    /// (a1) with first roots that differ.
+    FirstRoots,
+    /// (119) with weights that change with time.
+    Weights,
+}
+
+/// How long, and with how many pieces.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Attack {
+    pub(crate) target: Target,
+    /// Pieces of the delay, and phases, at most.
+    pub(crate) pieces: usize,
+    pub(crate) seed: u64,
+    pub(crate) limit: Duration,
+}
+
+/// What was found.
+#[derive(Clone, Debug)]
+pub(crate) struct Found {
+    /// The worst scenario.
+    pub(crate) case: Case,
+    /// What is left at its end, as a part of what there was at the start: of the disagreement, or of the error.
+    pub(crate) left: f64,
+    /// The hypotheses that do not hold for it.
+    pub(crate) broken: Vec<Id>,
+    /// Scenarios that were tried.
+    pub(crate) tried: u64,
+}
+
+/// More than this is left where a design fails.
+const FAILS: f64 = 10.0;
+/// An error that does not fall below this part fails to follow: signs that are held leave less.
+const STAYS: f64 = 0.05;
+/// Changes in a row that bring nothing, after which a new draw is made.
+const PATIENCE: u32 = 25;
+/// Agents at most.
+const MOST_AGENTS: usize = 4;
+
+impl Target {
+    /// Whether it lies inside the class of a theorem, so that nothing may grow.
+    pub(crate) fn is_inside(self) -> bool {
+        match self {
+            Target::Velocities | Target::Positions => true,
+            Target::FirstRoots | Target::Weights => false,
+        }
+    }
+
+    /// What is left where it fails.
+    pub(crate) fn fails(self) -> f64 {
+        match self {
+            Target::Velocities | Target::Positions => 1.0 + 1e-6,
+            Target::FirstRoots => FAILS,
+            Target::Weights => STAYS,
+        }
+    }
+}
+
+impl Attack {
+    /// The worst that is found in time; outside of a class the first that fails, made small. Nothing if no scenario could be tried.
+    pub(crate) fn search(&self, stopped: &dyn Fn() -> bool) -> Option<Found> {
+        let started = Instant::now();
+        let rng = &mut ChaCha8Rng::seed_from_u64(self.seed);
+        let mut worst: Option<(Case, f64)> = None;
+        let (mut tried, mut round) = (0, 0_u64);
+        while started.elapsed() < self.limit && !stopped() {
+            // The fewest agents first, again and again with more.
+            let agents = 2 + (round % (MOST_AGENTS as u64 - 1)) as usize;
+            round += 1;
+            let mut best = self.draw(rng, agents);
+            let mut left = self.left(&best).unwrap_or(0.0);
+            let mut idle = 0;
+            while idle < PATIENCE && started.elapsed() < self.limit && !stopped() {
+                let other = self.changed(&best, rng);
+                tried += 1;
+                match self.left(&other) {
+                    Some(more) if more > left => (best, left, idle) = (other, more, 0),
+                    Some(_) | None => idle += 1,
+                }
+                if !self.target.is_inside() && left > self.target.fails() {
+                    break;
+                }
+            }
+            if worst.as_ref().is_none_or(|(_, most)| left > *most) {
+                worst = Some((best, left));
+            }
+            if worst.as_ref().is_some_and(|(_, most)| *most > self.target.fails()) {
+                break;
+            }
+        }
+        let (mut case, mut left) = worst?;
+        if left > self.target.fails() {
+            (case, left) = self.smallest(case, left);
+        }
+        let report = check(&read(&case).ok()?.setup);
+        let broken =
+            report.hypotheses.iter().filter(|one| !matches!(one.answer(), Answer::Holds | Answer::HoldsOnHorizon));
+        Some(Found { broken: broken.map(|one| one.id).collect(), case, left, tried })
+    }
+
+    fn draw(&self, rng: &mut ChaCha8Rng, agents: usize) -> Case {
+        let (first, slow) = (hundredths(rng, 0.5, 2.0), hundredths(rng, 0.3, 1.0));
+        let own =
+            |rng: &mut ChaCha8Rng| if self.target == Target::FirstRoots { hundredths(rng, 0.1, 5.0) } else { first };
+        let velocities = self.target == Target::Velocities || self.target == Target::FirstRoots;
+        let led = self.target == Target::Weights;
+        let phases = if led { 1 } else { rng.random_range(2..=self.pieces.max(2)) };
+        let mut case = Case {
+            number: self.seed,
+            system: System::Mass(1),
+            // Far from a leader the sign of (119), which is bounded, does not cover up what ẇ leaves over.
+            starts: (0..agents)
+                .map(|k| [(if led { 50.0 } else { 1.0 }) * if k % 2 == 0 { 1.0 } else { -1.0 }, 0.0, 0.0])
+                .collect(),
+            roots: (0..agents).map(|_| if led { vec![slow, slow] } else { vec![own(rng), 2.0] }).collect(),
+            course: match self.target {
+                Target::Weights => Course::Follow { design: Design::Differentiable, margin: 2.0 },
+                Target::Velocities | Target::Positions | Target::FirstRoots => Course::Agree { velocities },
+            },
+            known: true,
+            phases: (0..phases).map(|_| Phase { dwell_s: hundredths(rng, 0.1, 3.0), edges: Vec::new() }).collect(),
+            switching: Switching::Repeat,
+            weight: "1".into(),
+            delay: "constant_s = 0".into(),
+            end_s: match self.target {
+                Target::Weights => 60.0,
+                Target::Velocities | Target::Positions => 60.0,
+                Target::FirstRoots => 240.0,
+            },
+        };
+        if led {
+            let chain = (0..agents).map(|agent| (agent, agent + 1));
+            let back = (1..agents).map(|agent| (agent + 1, agent)).filter(|_| rng.random_bool(0.5));
+            let edges: Vec<(usize, usize)> = chain.chain(back).collect();
+            case.phases.iter_mut().for_each(|phase| phase.edges.clone_from(&edges));
+            case.weight = self.weight(rng);
+        } else {
+            self.rewire(&mut case, rng);
+            case.delay = self.delay(rng);
+        }
+        case
+    }
+
+    /// A cycle through all agents, whose edges are spread over the phases.
+    fn rewire(&self, case: &mut Case, rng: &mut ChaCha8Rng) {
+        let (agents, phases) = (case.starts.len(), case.phases.len());
+        case.phases.iter_mut().for_each(|phase| phase.edges.clear());
+        for from in 0..agents {
+            let phase = rng.random_range(0..phases);
+            case.phases[phase].edges.push((from, (from + 1) % agents));
+        }
+    }
+
+    fn delay(&self, rng: &mut ChaCha8Rng) -> String {
+        let count = rng.random_range(1..=self.pieces.max(1));
+        let lengths: Vec<f64> = (0..count).map(|_| hundredths(rng, 0.1, 1.5)).collect();
+        let starts: Vec<f64> = lengths
+            .iter()
+            .scan(0.0, |sum, length| {
+                let at = *sum;
+                *sum += length;
+                Some((100.0_f64 * at).round() / 100.0)
+            })
+            .collect();
+        let values: Vec<f64> = (0..count).map(|_| hundredths(rng, 0.0, 1.5)).collect();
+        let period_s = (100.0 * lengths.iter().sum::<f64>()).round() / 100.0;
+        format!("piecewise_constant = {{ times_s = {starts:?}, values_s = {values:?}, period_s = {period_s} }}")
+    }
+
+    /// Never zero, and bounded: but ẇ/w goes to ± the product of the two last numbers, against the damping of the design.
+    fn weight(&self, rng: &mut ChaCha8Rng) -> String {
+        let (mean, part, rate) = (hundredths(rng, 1.0, 10.0), hundredths(rng, 0.5, 4.0), hundredths(rng, 0.2, 4.0));
+        format!("\"{mean}*exp({part}*sin({rate}*t))\"")
+    }
+
+    fn changed(&self, case: &Case, rng: &mut ChaCha8Rng) -> Case {
+        let mut other = case.clone();
+        if self.target == Target::Weights {
+            match rng.random_range(0..3) {
+                0 => {
+                    let slow = hundredths(rng, 0.3, 1.0);
+                    other.roots.iter_mut().for_each(|roots| *roots = vec![slow, slow]);
+                }
+                _ => other.weight = self.weight(rng),
+            }
+            return other;
+        }
+        match rng.random_range(0..5) {
+            0 => other.delay = self.delay(rng),
+            1 => self.rewire(&mut other, rng),
+            2 => {
+                let at = rng.random_range(0..other.phases.len());
+                other.phases[at].dwell_s = hundredths(rng, 0.1, 3.0);
+            }
+            3 => other.weight = pick(rng, &["1", "3", "10"]).into(),
+            _ if self.target == Target::FirstRoots => {
+                let at = rng.random_range(0..other.roots.len());
+                other.roots[at][0] = hundredths(rng, 0.1, 5.0);
+            }
+            _ => {
+                let at = rng.random_range(0..other.phases.len());
+                other.phases[at].dwell_s = pick(rng, &[0.1, 0.5, 1.0, 2.0, 3.0]);
+            }
+        }
+        other
+    }
+
+    /// What is left at the end, as a part; nothing of what is no scenario or does not complete.
+    fn left(&self, case: &Case) -> Option<f64> {
+        let setup = read(case).ok()?.setup;
+        match self.target {
+            Target::Velocities | Target::Positions | Target::FirstRoots => disagreement(&ideal(&setup).ok()?),
+            Target::Weights => {
+                let left = error_left(&setup)?;
+                // What is slow with constant weights too proves nothing.
+                let twin = || error_left(&read(&Case { weight: "1".into(), ..case.clone() }).ok()?.setup);
+                (left <= STAYS || twin()? < 0.2 * STAYS).then_some(left)
+            }
+        }
+    }
+
+    /// The smallest that still fails, with no hypothesis broken that was not before.
+    fn smallest(&self, mut case: Case, mut left: f64) -> (Case, f64) {
+        let (fails, before) = (self.target.fails(), broken(&case));
+        loop {
+            // What is shorter fails less, and is no nearer.
+            let smaller = case
+                .smaller()
+                .into_iter()
+                .filter(|smaller| smaller.end_s >= case.end_s && broken(smaller).iter().all(|id| before.contains(id)));
+            let found =
+                smaller.filter_map(|smaller| Some((self.left(&smaller)?, smaller))).find(|(left, _)| *left > fails);
+            match found {
+                Some((less, smaller)) => (case, left) = (smaller, less),
+                None => return (case, left),
+            }
+        }
+    }
+}
+
+/// The largest error of the last quarter as a part of that at the start.
+fn error_left(setup: &Setup) -> Option<f64> {
+    let outcome = run(setup).ok()?;
+    let initial = match Metrics::of(setup, &outcome.recording, None, None).disagreement {
+        Disagreement::Measured { initial, .. } => initial,
+        Disagreement::Absent(_) => return None,
+    };
+    Some(late(setup, outcome)? / initial)
+}
+
+/// The disagreement at the end as a part of that at the start.
+fn disagreement(setup: &Setup) -> Option<f64> {
+    let outcome = run(setup).ok()?;
+    match Metrics::of(setup, &outcome.recording, None, None).disagreement {
+        Disagreement::Measured { initial, last, .. } => Some(last / initial).filter(|left| left.is_finite()),
+        Disagreement::Absent(_) => None,
+    }
+}
+
+/// The hypotheses that do not hold, each once.
+fn broken(case: &Case) -> Vec<Id> {
+    let Ok(scenario) = read(case) else { return Vec::new() };
+    let report = check(&scenario.setup);
+    let fails = report.hypotheses.iter().filter(|one| !matches!(one.answer(), Answer::Holds | Answer::HoldsOnHorizon));
+    fails.map(|one| one.id).collect()
+}
