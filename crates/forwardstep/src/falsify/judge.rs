@@ -169,11 +169,11 @@ fn whole(case: &Case, setup: &Setup) -> Verdict {
             };
         }
         let metrics = Metrics::of(&setup, &outcome.recording, None, None);
-        if metrics.balance_residual.is_some_and(|residual| !(residual.relative <= BALANCE)) {
+        if metrics.balance_residual.is_some_and(|residual| is_off(residual.relative, BALANCE)) {
             // What tolerances leave falls with them.
             setup.solver.method = TIGHT;
             match run(&setup).map(|outcome| Metrics::of(&setup, &outcome.recording, None, None).balance_residual) {
-                Ok(Some(BalanceResidual { relative, t_s, .. })) if !(relative <= 0.1 * BALANCE) => {
+                Ok(Some(BalanceResidual { relative, t_s, .. })) if is_off(relative, 0.1 * BALANCE) => {
                     return Verdict::Failed(Failure::Unbalanced { relative, t_s });
                 }
                 Ok(_) => {}
@@ -190,6 +190,11 @@ fn whole(case: &Case, setup: &Setup) -> Verdict {
         }
     }
     Verdict::Undecided
+}
+
+/// What is not a number is off.
+fn is_off(relative: f64, bound: f64) -> bool {
+    relative > bound || relative.is_nan()
 }
 
 /// The largest error, or disagreement, of the last quarter of a run: at its end alone it may be zero by chance.
