@@ -16,6 +16,7 @@ mod inertia;
 mod kinds;
 mod laws;
 mod links;
+pub mod manipulability;
 mod manipulation;
 mod null_vector;
 mod practical;

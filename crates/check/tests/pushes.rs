@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod common;
+#[path = "pushes/manipulability.rs"]
+mod manipulability;
 
 use forwardstep_sim::reference::{Consensus, PureIntegral, ReferenceDynamics};
 use std::sync::Arc;

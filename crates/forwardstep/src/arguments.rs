@@ -49,6 +49,8 @@ pub(crate) enum Command {
     Explain(ExplainOptions),
     /// Measure the longest period with which sampled controllers still work, beside the one that the sampling margin allows
     SamplingLimit(SamplingLimitOptions),
+    /// Push an agent, and say how far that moves what all agree on for several manipulability gains, beside what theory says
+    Manipulability(ManipulabilityOptions),
     /// Draw random scenarios and try to refute what is claimed of them
     Falsify(FalsifyOptions),
     /// Search delays that jump and graphs that take turns for those under which a design does worst
@@ -222,6 +224,28 @@ pub(crate) struct SamplingLimitOptions {
     pub(crate) table: bool,
 }
 
+#[derive(Debug, Args)]
+pub(crate) struct ManipulabilityOptions {
+    /// Shipped scenarios by name, or files by their paths; agents are pushed at rest in agreement, for as long as the runs last
+    #[arg(value_name = "SCENARIO", default_value = "remark-4")]
+    pub(crate) scenarios: Vec<String>,
+    /// The manipulability gains of all agents, in 1/s to the power of the order
+    #[arg(long, value_name = "GAINS", value_delimiter = ',', default_value = "0,0.5,1,2", value_parser = not_negative)]
+    pub(crate) lambda: Vec<f64>,
+    /// Push this agent [default: the first that the others follow]
+    #[arg(long, value_name = "AGENT")]
+    pub(crate) on: Option<String>,
+    /// Push on this axis, counted from 1
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) axis: u32,
+    /// The torque or force, in N m or N; the theory is that of small ones
+    #[arg(long, value_name = "TORQUE", default_value_t = 0.01, value_parser = positive)]
+    pub(crate) torque: f64,
+    /// Print rows of a table
+    #[arg(long)]
+    pub(crate) table: bool,
+}
+
 /// Why a number cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("must be a number {0}")]
@@ -233,6 +257,10 @@ fn part(text: &str) -> Result<f64, NotANumber> {
 
 fn positive(text: &str) -> Result<f64, NotANumber> {
     text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite()).ok_or(NotANumber("above 0"))
+}
+
+fn not_negative(text: &str) -> Result<f64, NotANumber> {
+    text.parse().ok().filter(|number: &f64| *number >= 0.0 && number.is_finite()).ok_or(NotANumber("of at least 0"))
 }
 
 /// Documents that have a schema.

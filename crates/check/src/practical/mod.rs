@@ -20,7 +20,7 @@ mod loads;
 mod margin;
 mod postures;
 mod power;
-mod rates;
+pub(crate) mod rates;
 mod words;
 
 use forwardstep_sim::Setup;

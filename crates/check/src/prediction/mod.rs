@@ -16,7 +16,7 @@ mod cascade;
 mod course;
 mod ideal;
 mod period;
-mod roots;
+pub(crate) mod roots;
 mod settled;
 mod torque;
 

@@ -17,16 +17,17 @@ use forwardstep_sim::{AgentSetup, Exchange, Setup};
 use nalgebra::{Complex, DMatrix};
 
 /// A complex number.
-pub(super) type C = Complex<f64>;
+pub(crate) type C = Complex<f64>;
 
 /// Network, roots and start, agent by agent.
-pub(super) struct Characteristic {
+#[derive(Debug)]
+pub(crate) struct Characteristic {
     /// a₀ … a_ℓ of every agent.
-    pub(super) coefficients: Vec<Vec<f64>>,
+    pub(crate) coefficients: Vec<Vec<f64>>,
     /// κ₀ of every agent.
     pub(super) first_root: Vec<f64>,
     /// d of every agent.
-    pub(super) degree: Vec<f64>,
+    pub(crate) degree: Vec<f64>,
     pub(super) links: Vec<Link>,
     /// Whether velocities are sent.
     pub(super) velocities: bool,
@@ -35,8 +36,8 @@ pub(super) struct Characteristic {
 }
 
 /// Who hears whom, how strongly, how late.
-#[derive(Clone, Copy)]
-pub(super) struct Link {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Link {
     pub(super) from: usize,
     pub(super) to: usize,
     pub(super) weight: f64,
@@ -74,7 +75,7 @@ impl Characteristic {
     }
 
     /// Δ and dΔ/dp.
-    pub(super) fn matrix(&self, p: C) -> [DMatrix<C>; 2] {
+    pub(crate) fn matrix(&self, p: C) -> [DMatrix<C>; 2] {
         let n = self.agents();
         let (mut delta, mut slope) = (DMatrix::zeros(n, n), DMatrix::zeros(n, n));
         for (i, a) in self.coefficients.iter().enumerate() {

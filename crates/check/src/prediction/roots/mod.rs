@@ -9,7 +9,7 @@
 //! A root comes with the last step of Newton's method and the backward error of the matrix there. That no other root is further to the
 //! right is what collocation says, which is not enclosed.
 
-mod characteristic;
+pub(crate) mod characteristic;
 mod collocation;
 mod eigenvalues;
 mod modes;
@@ -129,6 +129,11 @@ fn system(ideal: &Setup) -> Result<Characteristic, NoRate> {
     if ideal.agents.len() < 2 || ideal.agents.iter().any(|agent| axes(agent) != axes(&ideal.agents[0])) {
         return Err(NoRate::Agents);
     }
+    network(ideal)
+}
+
+/// The characteristic matrix of one agent or more.
+pub(crate) fn network(ideal: &Setup) -> Result<Characteristic, NoRate> {
     if !ideal.network.coupling.is_linear() {
         return Err(NoRate::Coupling);
     }

@@ -1,0 +1,91 @@
+//! From an external torque to s at rest: (M p + K + D + Y Γ Yᵀ/p)⁻¹, and the first two terms of its series at p = 0.
+
+use forwardstep_core::robot::TwoVelocity;
+use forwardstep_sim::{AgentSetup, DynamicsAt};
+use nalgebra::{DMatrix, DVector};
+
+use crate::practical::rates::{Gains, dynamics};
+use crate::prediction::roots::characteristic::C;
+
+/// Of the largest eigenvalue of Y Γ Yᵀ: smaller ones are rounding.
+const RANK: f64 = 1e-10;
+
+/// M, K + D and Y Γ Yᵀ of one agent.
+#[derive(Debug)]
+pub(super) struct Response {
+    mass: DMatrix<f64>,
+    damping: DMatrix<f64>,
+    learning: DMatrix<f64>,
+}
+
+impl Response {
+    /// At the position of its start with all velocities zero; `None` where the law is not (6)–(7) or a gain cannot be resolved.
+    pub(super) fn at_rest(agent: &AgentSetup) -> Option<Response> {
+        let gains = Gains::of(agent)?;
+        let m = agent.robot.axes.len();
+        let DynamicsAt { mass, regressor, .. } = dynamics(agent, &agent.start.q, &vec![0.0; m], 0.0)?;
+        let mass = DMatrix::from_row_slice(m, m, &mass);
+        let learning = gains.adaptation.map_or_else(
+            || DMatrix::zeros(m, m),
+            |gamma| {
+                let y = DMatrix::from_row_slice(m, gamma.nrows(), &regressor);
+                &y * gamma * y.transpose()
+            },
+        );
+        Some(Response { mass, damping: gains.damping + viscous(agent, &regressor)?, learning })
+    }
+
+    /// [s₀, s₁] of s = s₀ + s₁ p + O(p²), for a torque on `axis` and s on the same.
+    pub(super) fn series(&self, axis: usize) -> [f64; 2] {
+        let m = self.mass.nrows();
+        let eigen = self.learning.clone().symmetric_eigen();
+        let floor = RANK * eigen.eigenvalues.amax();
+        let (mut null, mut inverse) = (Vec::new(), DMatrix::zeros(m, m));
+        for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+            if *value <= floor {
+                null.push(vector.into_owned());
+            } else {
+                inverse += vector * vector.transpose() / *value;
+            }
+        }
+        let rest = self.on_kernel(&null, axis);
+        let one = DMatrix::identity(m, m);
+        let first =
+            (&one - &rest * &self.damping) * inverse * (&one - &self.damping * &rest) - &rest * &self.mass * &rest;
+        [rest[(axis, axis)], first[(axis, axis)]]
+    }
+
+    /// N (Nᵀ (K + D) N)⁻¹ Nᵀ; zero on an axis that the kernel does not move.
+    fn on_kernel(&self, null: &[DVector<f64>], axis: usize) -> DMatrix<f64> {
+        let m = self.mass.nrows();
+        let found = (!null.is_empty()).then(|| DMatrix::from_columns(null)).filter(|n| n.row(axis).norm() > RANK);
+        let inverse =
+            found.and_then(|n| Some(&n * (n.transpose() * &self.damping * &n).try_inverse()? * n.transpose()));
+        inverse.unwrap_or_else(|| DMatrix::zeros(m, m))
+    }
+
+    /// s on `axis` per torque on it at p ≠ 0.
+    pub(super) fn at(&self, p: C, axis: usize) -> Option<C> {
+        let m = self.mass.nrows();
+        let impedance = DMatrix::from_fn(m, m, |i, j| {
+            p * self.mass[(i, j)] + self.damping[(i, j)] + C::from(self.learning[(i, j)]) / p
+        });
+        Some(impedance.try_inverse()?[(axis, axis)])
+    }
+}
+
+/// D: what Y(q, 0, z, 0) ϑ has beside gravity, column by column, since C(q, 0) = 0.
+fn viscous(agent: &AgentSetup, at_rest: &[f64]) -> Option<DMatrix<f64>> {
+    let (m, theta) = (agent.robot.axes.len(), DVector::from_column_slice(&agent.robot.theta));
+    let product = |y: &[f64]| DMatrix::from_row_slice(m, theta.len(), y) * &theta;
+    let (zero, gravity) = (vec![0.0; m], product(at_rest));
+    let mut damping = DMatrix::zeros(m, m);
+    for axis in 0..m {
+        let mut z = zero.clone();
+        z[axis] = 1.0;
+        let motion = TwoVelocity { q: &agent.start.q, dq: &zero, z: &z, dz: &zero };
+        let y = agent.robot.kind.lagrangian()?.dynamics_at(&agent.robot.theta, motion).ok()?.regressor;
+        damping.set_column(axis, &(product(&y) - &gravity));
+    }
+    Some(damping)
+}
