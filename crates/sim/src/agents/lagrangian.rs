@@ -45,6 +45,12 @@ pub trait LagrangianRobot {
     /// [`LengthError`] when a vector has the wrong length.
     fn dynamics_at(&self, theta: &[f64], motion: TwoVelocity<'_, f64>) -> Result<DynamicsAt, LengthError>;
 
+    /// M s, Y ϑ and D s, with the parameters `theta`, at one state with its z and ż.
+    ///
+    /// # Errors
+    /// [`LengthError`] when a vector has the wrong length.
+    fn products_at(&self, theta: &[f64], motion: TwoVelocity<'_, f64>, s: &[f64]) -> Result<ProductsAt, LengthError>;
+
     /// Tries at random states, with the parameters of `robot`, whether it has the properties of Section II-B.
     ///
     /// # Errors
@@ -61,6 +67,17 @@ pub struct DynamicsAt {
     pub regressor: Vec<f64>,
     /// [`Lagrangian::adaptation_scale`].
     pub adaptation_scale: Vec<f64>,
+}
+
+/// What a robot's dynamics make of s at one state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProductsAt {
+    /// M(q) s.
+    pub momentum: Vec<f64>,
+    /// Y(q, q̇, z, ż) ϑ.
+    pub model: Vec<f64>,
+    /// D(q) s.
+    pub damped: Vec<f64>,
 }
 
 impl<M: RobotModel> LagrangianRobot for M {
@@ -85,6 +102,25 @@ impl<M: RobotModel> LagrangianRobot for M {
             Ok(DynamicsAt { mass, regressor, adaptation_scale: kernel.adaptation_scale(motion.q, theta) })
         }
         at(&self.kernel(), theta, motion)
+    }
+
+    fn products_at(&self, theta: &[f64], motion: TwoVelocity<'_, f64>, s: &[f64]) -> Result<ProductsAt, LengthError> {
+        fn at<K: Lagrangian<f64>>(
+            kernel: &K,
+            theta: &[f64],
+            motion: TwoVelocity<'_, f64>,
+            s: &[f64],
+        ) -> Result<ProductsAt, LengthError> {
+            let (m, mut scratch) = (kernel.dof(), kernel.scratch());
+            let (mut mass, mut model, mut yt_s) = (vec![0.0; m * m], vec![0.0; m], vec![0.0; kernel.parameter_count()]);
+            kernel.mass_matrix(&mut scratch, motion.q, theta, &mut mass)?;
+            kernel.regressor_products(&mut scratch, motion, theta, s, &mut model, &mut yt_s)?;
+            let mut damped = vec![0.0; m];
+            kernel.add_damping(&mut scratch, motion.q, theta, s, &mut damped)?;
+            let row = |row: &[f64]| row.iter().zip(s).map(|(mass, s)| mass * s).sum();
+            Ok(ProductsAt { momentum: mass.chunks_exact(m.max(1)).map(row).collect(), model, damped })
+        }
+        at(&self.kernel(), theta, motion, s)
     }
 
     fn probe(&self, robot: &RobotSetup) -> Result<Probe, LengthError> {
