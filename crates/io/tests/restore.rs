@@ -49,6 +49,7 @@ fn write(folder: &Path, change: impl FnOnce(&Setup, &mut Outcome)) -> Outcome {
         prediction: None,
         goal: None,
         digital: None,
+        injected: Vec::new(),
         notices: vec!["one".into()],
     };
     write_run(&RunFolder::create(folder, true).unwrap(), &record, Options { csv: true }).unwrap();

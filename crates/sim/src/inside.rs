@@ -15,7 +15,7 @@ const NODES: [(f64, f64); 3] =
 /// Where in a step an instant is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
-    /// At its start, after the event there if there was one.
+    /// At its start, just after a sample; steps that begin without one do not show it.
     Start,
     /// A node of the quadrature, with its weight in an integral over time.
     Node {
@@ -69,7 +69,8 @@ pub(crate) fn show(
     watch: &mut dyn Watch,
 ) {
     let Some(taken) = closed_loop.samples() else { return };
-    if taken > *samples {
+    let sampled = taken > *samples;
+    if sampled {
         *samples = taken;
         closed_loop.last_samples(&mut |taken| watch.sampled(taken));
     }
@@ -78,7 +79,9 @@ pub(crate) fn show(
         let (x, heard) = integrator.look_inside(t_s);
         closed_loop.record(t_s, x, heard, |agent, values| watch.inside(Inside { agent, t_s, place, values }));
     };
-    look(step.start_s, Place::Start);
+    if sampled {
+        look(step.start_s, Place::Start);
+    }
     for (node, weight) in NODES {
         look(step.start_s + node * length_s, Place::Node { weight_s: weight * length_s });
     }

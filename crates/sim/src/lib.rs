@@ -31,7 +31,7 @@ pub mod topology;
 pub mod trajectory;
 
 pub use agents::{
-    Adaptive, AttitudeLaw, ChainLaw, ChainModel, ChainStep, DynamicsAt, Estimate, Known, LagrangianRobot,
+    Adaptive, AttitudeLaw, ChainLaw, ChainModel, ChainStep, DynamicsAt, Estimate, Evaluator, Known, LagrangianRobot,
     PositionOnlyLaw, ProductsAt, RobotModel, RotorcraftModel, SpacecraftModel, TaskSpaceLaw, ThrustKind, ThrustLaw,
     TipSetup, VehicleModel,
 };

@@ -27,7 +27,9 @@
 use forwardstep_core::agent::VelocityFilter;
 use forwardstep_core::robot::TwoVelocity;
 use forwardstep_sim::recording::{SampleTaken, Signal};
-use forwardstep_sim::{AgentSetup, Inside, Place, ProductsAt, Setup, VelocitySensor, Watch, recorded_columns};
+use forwardstep_sim::{
+    AgentSetup, Evaluator, Inside, Place, ProductsAt, Setup, VelocitySensor, Watch, recorded_columns,
+};
 use nalgebra::{DMatrix, DVector};
 
 use super::rates::Gains;
@@ -35,6 +37,9 @@ use crate::kinds::is_lagrangian;
 
 /// A cause is named once it has put in this part of the largest V so far.
 pub const NAMED_SHARE: f64 = 0.01;
+
+/// Torques are the same if they differ by less, relative to the largest, N m or N.
+const ROUNDING: f64 = 1e-12;
 
 /// That V is not taken to be smaller than this, J.
 const FLOOR_J: f64 = 1e-6;
@@ -149,7 +154,8 @@ impl<'a> InjectionWatch<'a> {
                     Some(VelocityFilter::new(core::f64::consts::TAU * cut_off_hz, agent.robot.axes.len()).ok()?)
                 }
             };
-            let law = Law { agent, gains: Gains::of(agent)?, places: Places::of(&own)? };
+            let (gains, places) = (Gains::of(agent)?, Places::of(&own)?);
+            let law = Law { agent, gains, places, evaluator: agent.robot.kind.lagrangian()?.evaluator() };
             let clock = [1.0 / control.sample_hz, control.computation_delay_s];
             let pushes_end = agent.pushes.iter().all(|push| push.span_s()[1] < setup.time.end_s);
             Account::new(law, filter, clock, pushes_end)
@@ -223,6 +229,7 @@ struct Law<'a> {
     agent: &'a AgentSetup,
     gains: Gains,
     places: Places,
+    evaluator: Box<dyn Evaluator>,
 }
 
 impl Law<'_> {
@@ -239,19 +246,19 @@ impl Law<'_> {
         Some(State { q, dq, z, dz: part(self.places.dz, m)?, s, theta_hat })
     }
 
-    /// M s, Y ϑ and D s at a state, with the parameters `theta`.
-    fn products(&self, theta: &[f64], state: &State, s: &DVector<f64>) -> Option<ProductsAt> {
+    /// The products at a state, with the parameters `theta`.
+    fn products(&mut self, theta: &[f64], state: &State, s: &DVector<f64>) -> Option<&ProductsAt> {
         let State { q, dq, z, dz, .. } = state;
-        self.agent.robot.kind.lagrangian()?.products_at(theta, TwoVelocity { q, dq, z, dz }, s.as_slice()).ok()
+        self.evaluator.at(theta, TwoVelocity { q, dq, z, dz }, s.as_slice()).ok()
     }
 
     /// Y ϑ̂ − K s at a state, with `q` and `dq` for what is measured.
-    fn torque(&self, state: &State, q: &[f64], dq: &[f64]) -> Option<DVector<f64>> {
+    fn torque(&mut self, state: &State, q: &[f64], dq: &[f64]) -> Option<DVector<f64>> {
         let motion = TwoVelocity { q, dq, z: &state.z, dz: &state.dz };
         let s = DVector::from_iterator(dq.len(), dq.iter().zip(&state.z).map(|(dq, z)| dq - z));
         let theta = state.theta_hat.as_ref().unwrap_or(&self.agent.robot.theta);
-        let model = self.agent.robot.kind.lagrangian()?.products_at(theta, motion, s.as_slice()).ok()?.model;
-        Some(DVector::from_vec(model) - &self.gains.damping * s)
+        let model = &self.evaluator.at(theta, motion, s.as_slice()).ok()?.model;
+        Some(DVector::from_column_slice(model) - &self.gains.damping * s)
     }
 }
 
@@ -343,7 +350,10 @@ impl<'a> Account<'a> {
                 self.jump(&state)?;
                 self.trace(t_s, &state)?;
             }
-            Place::Node { weight_s } => self.node(weight_s, &state, values)?,
+            Place::Node { weight_s } => {
+                self.arrive(t_s);
+                self.node(weight_s, &state, values)?;
+            }
             Place::End => {
                 let v_j = *values.get(self.law.places.lyapunov)?;
                 self.largest_j = self.largest_j.max(v_j);
@@ -365,8 +375,8 @@ impl<'a> Account<'a> {
             return Some(());
         }
         let (sum, change) = (&state.s + &before.s, &state.s - &before.s);
-        let momentum = self.law.products(&self.law.agent.robot.theta, state, &sum)?.momentum;
-        let held_j = 0.5 * change.dot(&DVector::from_vec(momentum));
+        let momentum = &self.law.products(&self.law.agent.robot.theta, state, &sum)?.momentum;
+        let held_j = 0.5 * dot(change.as_slice(), momentum);
         let learned_j = self.estimate_j(state) - self.estimate_j(before);
         self.add(Injection::Held, held_j);
         self.add(Injection::Adaptation, learned_j);
@@ -418,25 +428,22 @@ impl<'a> Account<'a> {
     fn node(&mut self, weight_s: f64, state: &State, values: &[f64]) -> Option<()> {
         let s = &state.s;
         let part = |from: usize| Some(DVector::from_column_slice(values.get(from..from + s.len())?));
-        let ProductsAt { momentum, model, damped } = self.law.products(&self.law.agent.robot.theta, state, s)?;
-        let truth = DVector::from_vec(model);
-        let estimated = match &state.theta_hat {
-            None => truth.clone(),
-            Some(theta_hat) => DVector::from_vec(self.law.products(theta_hat, state, s)?.model),
-        };
-        let damping = &self.law.gains.damping * s;
-        let ideal = &estimated - &damping;
-        let advance_w = DVector::from_column_slice(&state.dz).dot(&DVector::from_vec(momentum));
+        let theta = &self.law.agent.robot.theta;
+        let ProductsAt { momentum, damped, yt_s, .. } = self.law.products(theta, state, s)?;
+        let (advance_w, lost_w) = (dot(&state.dz, momentum), dot(s.as_slice(), damped));
+        let estimated_w = dot(state.theta_hat.as_ref().unwrap_or(theta), yt_s);
+        let error_w = estimated_w - dot(theta, yt_s);
+        let damping_w = s.dot(&(&self.law.gains.damping * s));
         let pushed_w = self.law.places.external.map_or(Some(0.0), |from| Some(s.dot(&part(from)?)))?;
         let Traced { held, reconstructed, computed } = &self.in_force;
         let powers_w = [
-            (Injection::Dissipated, -s.dot(&(damping + DVector::from_vec(damped)))),
-            (Injection::Held, s.dot(&(held - ideal)) + advance_w),
+            (Injection::Dissipated, -damping_w - lost_w),
+            (Injection::Held, s.dot(held) - (estimated_w - damping_w) + advance_w),
             (Injection::Reconstructed, s.dot(&(reconstructed - held))),
             (Injection::Measured, s.dot(&(computed - reconstructed))),
-            (Injection::Limited, s.dot(&(part(self.law.places.torque)? - computed))),
+            (Injection::Limited, s.dot(&taken_away(computed, &part(self.law.places.torque)?))),
             (Injection::Pushed, pushed_w),
-            (Injection::Adaptation, s.dot(&(estimated - truth))),
+            (Injection::Adaptation, error_w),
         ];
         for (injection, power_w) in powers_w {
             self.add(injection, weight_s * power_w);
@@ -464,4 +471,14 @@ impl<'a> Account<'a> {
             .filter(|injection| self.terms_j[*injection as usize] > NAMED_SHARE * self.largest_j)
             .map(|injection| (injection, t_s));
     }
+}
+
+/// What limits and rounding add to a torque; nothing where the two differ as sums in another order do.
+fn taken_away(computed: &DVector<f64>, applied: &DVector<f64>) -> DVector<f64> {
+    let rounding = ROUNDING * computed.amax().max(1.0);
+    (applied - computed).map(|change| if change.abs() > rounding { change } else { 0.0 })
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
