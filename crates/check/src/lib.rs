@@ -33,9 +33,9 @@ pub use agreement::{NoPrediction, Prediction, predict};
 pub use certificate::certify;
 pub use hypothesis::{Answer, Evidence, Hypothesis, Id, Rigour};
 pub use practical::{
-    Along, FastestDamping, Finding, Hold, LinearisedSampling, LoadReached, MarginAt, MarginReached, PowerBound,
-    PowerReached, Practical, PracticalAnswer, RECOMMENDED_MARGIN, SamplingMargin, StaticLoad, along, fastest_damping,
-    longest_period_s, mean_power_w, practical,
+    Along, FastestDamping, Finding, Hold, Injection, InjectionBalance, InjectionWatch, LinearisedSampling, LoadReached,
+    MarginAt, MarginReached, NAMED_SHARE, PowerBound, PowerReached, Practical, PracticalAnswer, RECOMMENDED_MARGIN,
+    SamplingMargin, StaticLoad, along, fastest_damping, longest_period_s, mean_power_w, practical,
 };
 pub use prediction::{Course, NoCourse, NoIdeal, course, ideal};
 pub use report::Report;

@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod common;
+#[path = "pushes/injected.rs"]
+mod injected;
 #[path = "pushes/manipulability.rs"]
 mod manipulability;
 

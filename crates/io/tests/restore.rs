@@ -8,7 +8,9 @@ use std::path::Path;
 
 use forwardstep_io::SourceText;
 use forwardstep_io::output::summary::Summary;
-use forwardstep_io::output::{Options, Remark, RestoreError, RunFolder, RunRecord, SavedRun, TableError, write_run};
+use forwardstep_io::output::{
+    FirstInjection, Injected, Options, Remark, RestoreError, RunFolder, RunRecord, SavedRun, TableError, write_run,
+};
 use forwardstep_io::scenario::read_scenario;
 use forwardstep_sim::{
     Breakdown, BreakdownCause, Ending, GainRates, Outcome, Setup, Signal, Stiffness, recorded_columns, simulate,
@@ -31,6 +33,24 @@ delay.constant_s = 0.1
 edges = [["cart-1", "cart-2"], ["cart-2", "cart-1"]]
 "#;
 
+/// What changed V of the second cart, as if it had been sampled.
+fn injected() -> Vec<Injected> {
+    vec![Injected {
+        agent: 1,
+        start_j: 3.0,
+        end_j: 1.5,
+        dissipated_j: -2.0,
+        held_j: 0.125,
+        reconstructed_j: 0.0,
+        measured_j: 0.25,
+        limited_j: 0.0625,
+        pushed_j: 0.0,
+        adaptation_j: 0.03125,
+        residual_j: 0.03125,
+        first: Some(FirstInjection { cause: "measured".into(), t_s: 0.75 }),
+    }]
+}
+
 /// Runs the carts, lets `change` have its way with the outcome, and writes their folder.
 fn write(folder: &Path, change: impl FnOnce(&Setup, &mut Outcome)) -> Outcome {
     let scenario = read_scenario("carts", &SourceText::new("carts.toml", CARTS), None).unwrap();
@@ -49,6 +69,7 @@ fn write(folder: &Path, change: impl FnOnce(&Setup, &mut Outcome)) -> Outcome {
         prediction: None,
         goal: None,
         digital: None,
+        injected: injected(),
         notices: vec!["one".into()],
     };
     write_run(&RunFolder::create(folder, true).unwrap(), &record, Options { csv: true }).unwrap();
@@ -116,6 +137,7 @@ fn a_run_comes_back_as_it_was() {
         assert_eq!((&record.outcome.ending, &record.outcome.statistics), (&written.ending, &written.statistics));
         assert_eq!((record.title, record.scenario_name, record.version), ("Two carts", "carts", "0.1.0"));
         assert_eq!(record.notices, ["one"]);
+        assert_eq!(record.injected, injected());
     }
 }
 
@@ -274,4 +296,20 @@ proptest! {
         fs::write(&path, bytes).unwrap();
         let _ = rebuild(folder.path());
     }
+}
+
+#[test]
+fn the_page_says_what_changed_v_and_what_came_first() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), |_, _| {});
+    let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
+    let (_, section) = page.split_once("<section id=\"injected\">").unwrap();
+    let (section, _) = section.split_once("</section>").unwrap();
+    let numbers: Vec<&str> = section.split("<td>").skip(1).filter_map(|cell| cell.split("</td>").next()).collect();
+    // Causes that put nothing in have no column.
+    assert_eq!(numbers, ["3", "−2", "0.125", "0.25", "0.0625", "0.03125", "1.5", "measured, t = 0.75 s"]);
+    assert!(section.contains("cart-2") && !section.contains("cart-1"), "{section}");
+    let heads = ["dissipated", "held", "measured", "limited", "adaptation"];
+    assert!(heads.iter().all(|head| section.contains(&format!(">{head}</th>"))), "{section}");
+    assert!(!section.contains("reconstructed") && !section.contains("pushed"), "{section}");
 }

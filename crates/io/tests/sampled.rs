@@ -4,9 +4,10 @@
 
 use std::ops::ControlFlow;
 
+use forwardstep_check::{Injection, InjectionBalance, InjectionWatch};
 use forwardstep_io::scenario::open_scenario;
 use forwardstep_sim::leader::Following;
-use forwardstep_sim::{Control, Ending, Method, Outcome, Setup, Signal, simulate};
+use forwardstep_sim::{Control, Ending, Method, Outcome, Setup, Signal, simulate, simulate_watched};
 
 /// Over the first seconds, at tight tolerance.
 fn shortened(name: &str) -> Setup {
@@ -19,15 +20,19 @@ fn shortened(name: &str) -> Setup {
     setup
 }
 
-fn run(setup: &Setup, sample_hz: Option<f64>) -> Outcome {
-    let mut setup = setup.clone();
-    setup.control = sample_hz.map(|sample_hz| Control {
+fn control(sample_hz: f64) -> Control {
+    Control {
         failures: Default::default(),
         sample_hz,
         computation_delay_s: 0.0,
         sensors: Default::default(),
         actuators: Default::default(),
-    });
+    }
+}
+
+fn run(setup: &Setup, sample_hz: Option<f64>) -> Outcome {
+    let mut setup = setup.clone();
+    setup.control = sample_hz.map(control);
     let outcome = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap();
     assert_eq!(outcome.ending, Ending::Completed);
     outcome
@@ -98,5 +103,36 @@ fn prop_sampled_followers_of_a_leader_stay_near_continuous_ones() {
         let (gap, way) = (gap(&run(&setup, Some(4000.0)), &continuous), way(&continuous));
         println!("{name}: {gap:.6} of {way:.3}");
         assert!(gap < 0.02 * way, "{name}: {gap} of {way}");
+    }
+}
+
+/// Over part of a second, with robots from URDF, ships with damping, hands, signs and references that differentiate.
+#[test]
+fn prop_what_is_put_into_v_adds_up_in_shipped_scenarios() {
+    for name in [
+        "six-arms-over-radio",
+        "ten-different-robots",
+        "five-ships",
+        "teleoperation",
+        "theorem-8",
+        "backstepping",
+        "remark-4",
+    ] {
+        let mut setup = open_scenario(name).unwrap_or_else(|error| panic!("{error}")).setup;
+        // Until the hand of the operator has come.
+        setup.time.end_s = if name == "teleoperation" { 5.5 } else { 0.8 };
+        setup.control.get_or_insert_with(|| control(500.0));
+        let mut watch = InjectionWatch::of(&setup).unwrap();
+        let outcome = simulate_watched(&setup, &mut |_| ControlFlow::Continue(()), &mut watch).unwrap();
+        assert_eq!(outcome.ending, Ending::Completed, "{name}");
+        let balances = watch.balances();
+        for balance in &balances {
+            let residual = balance.residual_j().abs() / balance.largest_j;
+            assert!(residual < 1e-7, "{name}: {residual}, {balance:?}");
+        }
+        // Who is at rest and has heard of nobody yet loses nothing.
+        let dissipated = |balance: &InjectionBalance| balance.term_j(Injection::Dissipated);
+        assert!(balances.iter().all(|balance| dissipated(balance) <= 0.0), "{name}: {balances:?}");
+        assert!(balances.iter().any(|balance| dissipated(balance) < 0.0), "{name}: {balances:?}");
     }
 }

@@ -13,6 +13,7 @@ pub mod delay;
 mod engine;
 pub mod formula;
 pub mod graph;
+mod inside;
 pub mod leader;
 pub mod network;
 pub mod probe;
@@ -30,14 +31,15 @@ pub mod topology;
 pub mod trajectory;
 
 pub use agents::{
-    Adaptive, AttitudeLaw, ChainLaw, ChainModel, ChainStep, DynamicsAt, Estimate, Known, LagrangianRobot,
-    PositionOnlyLaw, RobotModel, RotorcraftModel, SpacecraftModel, TaskSpaceLaw, ThrustKind, ThrustLaw, TipSetup,
-    VehicleModel,
+    Adaptive, AttitudeLaw, ChainLaw, ChainModel, ChainStep, DynamicsAt, Estimate, Evaluator, Known, LagrangianRobot,
+    PositionOnlyLaw, ProductsAt, RobotModel, RotorcraftModel, SpacecraftModel, TaskSpaceLaw, ThrustKind, ThrustLaw,
+    TipSetup, VehicleModel,
 };
 pub use build::run;
 pub use closed_loop::{
     Assembly, Block, SampledJacobian, SetupError, VelocityQuantity, recipe, recipes, sampled_jacobian, validate,
 };
+pub use inside::{Inside, Place, Watch, simulate_watched};
 pub use network::Network;
 pub use recording::{
     Breakdown, BreakdownCause, ClippedSamples, Column, Drive, Ending, GainRates, Outcome, Progress, Recording,

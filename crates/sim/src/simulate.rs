@@ -6,6 +6,7 @@ use forwardstep_core::controller::Trouble;
 
 use crate::closed_loop::{ClosedLoop, SetupError};
 use crate::engine::{Failure, FailureCause, Integrator, Refuted, Step};
+use crate::inside::{Watch, show};
 use crate::network::Network;
 use crate::recording::{
     Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, SampleTaken, Signal, Stiffness,
@@ -43,6 +44,17 @@ pub fn simulate_samples(
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     samples: &mut dyn FnMut(SampleTaken<'_>),
 ) -> Result<Outcome, SetupError> {
+    simulate_with(setup, observer, samples, None)
+}
+
+/// The same, and lets `watch` look inside every step.
+pub(crate) fn simulate_with(
+    setup: &Setup,
+    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    samples: &mut dyn FnMut(SampleTaken<'_>),
+    mut watch: Option<&mut dyn Watch>,
+) -> Result<Outcome, SetupError> {
+    let mut shown = 0;
     let mut closed_loop = assembled(setup)?;
     setup.network.lasts_until(setup.time.end_s)?;
     closed_loop.watch(samples);
@@ -60,6 +72,9 @@ pub fn simulate_samples(
             Ok(None) => break Ending::Completed,
             Ok(Some(step)) => {
                 closed_loop.reached(step.end_s);
+                if let Some(watch) = &mut watch {
+                    show(&mut integrator, &mut closed_loop, step, &mut shown, *watch);
+                }
                 if let Some(breakdown) = recorder.record(&mut integrator, &mut closed_loop, step) {
                     break Ending::BrokeDown(breakdown);
                 }

@@ -11,10 +11,12 @@
 //! - `loads`: static torques against limits.
 //! - `postures`: those that both look at.
 //! - `power`: how large s stays when something acts for ever.
+//! - `injected`: what changed V along a sampled run, cause by cause.
 //! - `along`: all of it at the postures that a run reached.
 
 mod along;
 mod held;
+mod injected;
 mod linearised;
 mod loads;
 mod margin;
@@ -27,6 +29,7 @@ use forwardstep_sim::Setup;
 
 pub use along::{Along, LoadReached, MarginReached, PowerReached, along};
 pub use held::{Hold, longest_period_s};
+pub use injected::{Injection, InjectionBalance, InjectionWatch, NAMED_SHARE};
 pub use linearised::LinearisedSampling;
 pub use loads::StaticLoad;
 pub use margin::{MarginAt, RECOMMENDED_MARGIN, SamplingMargin};

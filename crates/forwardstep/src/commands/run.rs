@@ -4,12 +4,14 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
+use forwardstep::check::InjectionWatch;
 use forwardstep::io::output::{
-    self, DigitalCost, GoalOutcome, Metrics, OutputError, RunFolder, RunRecord, continuous_twin, ending_sentence,
+    self, DigitalCost, GoalOutcome, Injected, Metrics, OutputError, RunFolder, RunRecord, continuous_twin,
+    ending_sentence,
 };
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
-use forwardstep::sim::{Ending, Outcome, Progress, simulate};
+use forwardstep::sim::{Ending, Outcome, Progress, simulate, simulate_watched};
 
 use super::progress::Bar;
 use super::promise::{Promise, predictions, promise, show, show_predictions};
@@ -43,7 +45,12 @@ fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<
 
     let mut bar = Bar::new();
     let started = Instant::now();
-    let outcome = simulate(setup, &mut |progress| watch(&mut bar, &stop, progress));
+    let mut balances = InjectionWatch::of(setup);
+    let mut observer = |progress| watch(&mut bar, &stop, progress);
+    let outcome = match &mut balances {
+        Some(balances) => simulate_watched(setup, &mut observer, balances),
+        None => simulate(setup, &mut observer),
+    };
     bar.clear();
     let mut outcome = outcome.map_err(|error| complain(&Plain::new(error)))?;
     outcome.statistics.wall = Some(started.elapsed());
@@ -52,6 +59,7 @@ fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<
     let goal = scenario.goal.map(|goal| GoalOutcome { goal, met: goal.is_met(setup, &outcome, &metrics) });
     let mut record = record(&scenario, &promise, &outcome, goal);
     record.prediction = prediction;
+    record.injected = balances.iter().flat_map(InjectionWatch::balances).map(|own| Injected::from(&own)).collect();
     if setup.control.is_some() && !matches!(outcome.ending, Ending::Interrupted { .. }) {
         record.digital = digital_cost(&scenario, &outcome, &stop);
     }
@@ -98,6 +106,7 @@ fn record<'a>(
         prediction: None,
         goal,
         digital: None,
+        injected: Vec::new(),
         notices: scenario.notices.iter().map(ToString::to_string).collect(),
     }
 }

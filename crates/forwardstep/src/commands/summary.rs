@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use comfy_table::{ContentArrangement, Table, presets};
-use forwardstep::check::Report;
+use forwardstep::check::{Injection, Report};
 use forwardstep::io::output::names::{agent_name, gap_unit, torque_words, unit};
-use forwardstep::io::output::{Disagreement, Gap, Metrics, RunRecord, WatchedMargin};
+use forwardstep::io::output::{Disagreement, FirstInjection, Gap, Injected, Metrics, RunRecord, WatchedMargin};
 use forwardstep::sim::{ClippedSamples, Drive, Setup, Signal};
 
 use super::progress::speed;
@@ -60,6 +60,7 @@ pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, 
         let gap = format!("{} {unit} from the continuous run ({agent} at {:.2} s)", short(gap.value.abs()), gap.t_s);
         rows.push(("cost of going digital", gap));
     }
+    rows.extend(injected(setup, &record.injected));
     let statistics = &outcome.statistics;
     if let (Some(drive), Some(following)) = (statistics.drive, setup.following()) {
         rows.push(("leader", driven(drive, following.gain)));
@@ -97,6 +98,28 @@ fn watched(setup: &Setup, metrics: &Metrics, clipped: Option<ClippedSamples>) ->
         rows.push(("clipped", words));
     }
     rows
+}
+
+/// What changed V of all agents together, and what first put in more than the proof allows.
+fn injected(setup: &Setup, all: &[Injected]) -> Vec<(&'static str, String)> {
+    let [start_j, end_j] = [all.iter().map(|own| own.start_j).sum::<f64>(), all.iter().map(|own| own.end_j).sum()];
+    let terms = Injection::ALL.map(|cause| (cause.name(), all.iter().map(|own| own.term_j(cause)).sum::<f64>()));
+    let terms: Vec<String> = terms
+        .into_iter()
+        .filter(|(_, energy_j)| *energy_j != 0.0)
+        .map(|(name, energy_j)| format!("{name} {}", short(energy_j)))
+        .collect();
+    if all.is_empty() || terms.is_empty() {
+        return Vec::new();
+    }
+    let first = match Injected::earliest(all) {
+        None => "nothing that put in 1 % of V".to_owned(),
+        Some((own, FirstInjection { cause, t_s })) => {
+            format!("first {cause}, {} at {t_s:.2} s", agent_name(setup, own.agent))
+        }
+    };
+    let changed = format!("{} to {} J: {}", short(start_j), short(end_j), terms.join(", "));
+    vec![("V of all agents", changed), ("beyond the proof", first)]
 }
 
 /// Three digits, with a power of ten where the number is very small or large.

@@ -31,6 +31,7 @@ mod findings;
 mod folder;
 mod formula;
 mod how;
+mod injected;
 mod inputs;
 mod metrics;
 pub mod names;
@@ -62,6 +63,7 @@ pub use explanation::{EXPLANATION_FORMAT, TextLine, explanation_document, explan
 pub use findings::{Checked, FINDINGS_FORMAT, Findings, PredictedAgreement};
 pub use folder::RunFolder;
 use folder::Staging;
+pub use injected::{FirstInjection, Injected};
 pub use metrics::{
     Absence, Agreement, BALANCE_FLOOR_J, BalanceResidual, Disagreement, DisagreementSeries, Gap, LimitKind,
     LimitReached, Metrics, Peak, Speed,

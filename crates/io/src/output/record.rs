@@ -5,6 +5,7 @@ use forwardstep_sim::recording::{BreakdownCause, Ending, Outcome};
 use forwardstep_sim::setup::Setup;
 
 use super::digital::DigitalCost;
+use super::injected::Injected;
 use super::metrics::Metrics;
 use super::prediction::Predictions;
 use crate::scenario::{Goal, InputFile};
@@ -36,6 +37,8 @@ pub struct RunRecord<'a> {
     pub goal: Option<GoalOutcome>,
     /// What digital control cost, when there was any and the run was not interrupted.
     pub digital: Option<DigitalCost>,
+    /// What changed V, agent by agent under (6)–(7); empty in continuous time.
+    pub injected: Vec<Injected>,
     /// Remarks for the reader of the report.
     pub notices: Vec<String>,
 }

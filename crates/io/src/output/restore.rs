@@ -194,6 +194,7 @@ impl SavedRun {
             prediction: summary.prediction.clone(),
             goal,
             digital: summary.digital.clone(),
+            injected: summary.injected.clone(),
             notices: summary.notices.iter().cloned().chain(remarks.iter().map(Remark::to_string)).collect(),
         }
     }

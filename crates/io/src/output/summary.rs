@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::digital::DigitalCost;
 pub use super::how::{BrokenSignal, Cause, EndingKind, How, Rates};
+use super::injected::Injected;
 use super::inputs;
 use super::inputs::content_digest;
 use super::metrics::Metrics;
@@ -64,6 +65,9 @@ pub struct Summary {
     /// What digital control cost, when there was any.
     #[serde(default)]
     pub digital: Option<DigitalCost>,
+    /// What changed V, agent by agent under (6)–(7) with digital control; absent where there are none, and in documents of older versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub injected: Vec<Injected>,
     /// Remarks.
     pub notices: Vec<String>,
     /// The only part that differs between two runs of the same scenario by the same version.
@@ -243,6 +247,7 @@ impl Summary {
             },
             links: Link::all(&setup.network),
             digital: record.digital.clone(),
+            injected: record.injected.clone(),
             notices: record.notices.clone(),
             timings: Timings { wall_s, simulated_per_wall: ending.t_s / wall_s },
             ending,

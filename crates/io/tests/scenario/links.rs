@@ -249,6 +249,7 @@ fn run(scenario: &Scenario, folder: &Path) -> Outcome {
         prediction: None,
         goal: None,
         digital: None,
+        injected: Vec::new(),
         notices: Vec::new(),
     };
     let folder = RunFolder::create(folder, false).unwrap();

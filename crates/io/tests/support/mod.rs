@@ -202,6 +202,7 @@ pub fn record<'a>(setup: &'a Setup, outcome: &'a Outcome, verdicts: &'a Report) 
         prediction: None,
         goal: Some(GoalOutcome { goal: Goal::DisagreementBelow(0.05), met: true }),
         digital: None,
+        injected: Vec::new(),
         notices: Vec::new(),
     }
 }

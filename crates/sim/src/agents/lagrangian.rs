@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass, TwoVelocity};
-use forwardstep_core::{Gain, Lanes, LengthError};
+use forwardstep_core::{Gain, Kernel, Lanes, LengthError, dispatch};
 
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::probe::{Probe, properties};
@@ -45,6 +45,9 @@ pub trait LagrangianRobot {
     /// [`LengthError`] when a vector has the wrong length.
     fn dynamics_at(&self, theta: &[f64], motion: TwoVelocity<'_, f64>) -> Result<DynamicsAt, LengthError>;
 
+    /// What works out products of its dynamics at state after state, without forming Y.
+    fn evaluator(&self) -> Box<dyn Evaluator>;
+
     /// Tries at random states, with the parameters of `robot`, whether it has the properties of Section II-B.
     ///
     /// # Errors
@@ -61,6 +64,80 @@ pub struct DynamicsAt {
     pub regressor: Vec<f64>,
     /// [`Lagrangian::adaptation_scale`].
     pub adaptation_scale: Vec<f64>,
+}
+
+/// A robot's dynamics with working memory of their own.
+pub trait Evaluator {
+    /// The products at one state with its z and ż, with the parameters `theta`.
+    ///
+    /// # Errors
+    /// [`LengthError`] when a vector has the wrong length.
+    fn at(&mut self, theta: &[f64], motion: TwoVelocity<'_, f64>, s: &[f64]) -> Result<&ProductsAt, LengthError>;
+}
+
+/// Products of a robot's dynamics at one state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProductsAt {
+    /// M(q) s.
+    pub momentum: Vec<f64>,
+    /// D(q) s.
+    pub damped: Vec<f64>,
+    /// Y(q, q̇, z, ż) ϑ.
+    pub model: Vec<f64>,
+    /// Y(q, q̇, z, ż)ᵀ s.
+    pub yt_s: Vec<f64>,
+}
+
+struct Evaluated<K: Lagrangian<f64>> {
+    kernel: K,
+    scratch: K::Scratch,
+    mass: Vec<f64>,
+    products: ProductsAt,
+}
+
+impl<K: Lagrangian<f64>> Evaluated<K> {
+    fn new(kernel: K) -> Self {
+        let m = kernel.dof();
+        let products = ProductsAt {
+            momentum: vec![0.0; m],
+            damped: vec![0.0; m],
+            model: vec![0.0; m],
+            yt_s: vec![0.0; kernel.parameter_count()],
+        };
+        Evaluated { scratch: kernel.scratch(), kernel, mass: vec![0.0; m * m], products }
+    }
+}
+
+impl<K: Lagrangian<f64>> Evaluator for Evaluated<K> {
+    fn at(&mut self, theta: &[f64], motion: TwoVelocity<'_, f64>, s: &[f64]) -> Result<&ProductsAt, LengthError> {
+        dispatch(Products { of: self, theta, motion, s })?;
+        Ok(&self.products)
+    }
+}
+
+struct Products<'a, K: Lagrangian<f64>> {
+    of: &'a mut Evaluated<K>,
+    theta: &'a [f64],
+    motion: TwoVelocity<'a, f64>,
+    s: &'a [f64],
+}
+
+impl<K: Lagrangian<f64>> Kernel for Products<'_, K> {
+    type Output = Result<(), LengthError>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Products { of: Evaluated { kernel, scratch, mass, products }, theta, motion, s } = self;
+        let ProductsAt { momentum, damped, model, yt_s } = products;
+        kernel.regressor_products(scratch, motion, theta, s, model, yt_s)?;
+        damped.fill(0.0);
+        kernel.add_damping(scratch, motion.q, theta, s, damped)?;
+        kernel.mass_matrix(scratch, motion.q, theta, mass)?;
+        for (momentum, row) in momentum.iter_mut().zip(mass.chunks_exact(s.len().max(1))) {
+            *momentum = row.iter().zip(s).map(|(mass, s)| mass * s).sum();
+        }
+        Ok(())
+    }
 }
 
 impl<M: RobotModel> LagrangianRobot for M {
@@ -85,6 +162,10 @@ impl<M: RobotModel> LagrangianRobot for M {
             Ok(DynamicsAt { mass, regressor, adaptation_scale: kernel.adaptation_scale(motion.q, theta) })
         }
         at(&self.kernel(), theta, motion)
+    }
+
+    fn evaluator(&self) -> Box<dyn Evaluator> {
+        Box::new(Evaluated::new(self.kernel()))
     }
 
     fn probe(&self, robot: &RobotSetup) -> Result<Probe, LengthError> {

@@ -19,7 +19,7 @@ mod thrust;
 mod vehicle;
 
 pub use chain::{ChainLaw, ChainModel, ChainStep, Estimate};
-pub use lagrangian::{Adaptive, DynamicsAt, Known, LagrangianRobot, RobotModel};
+pub use lagrangian::{Adaptive, DynamicsAt, Evaluator, Known, LagrangianRobot, ProductsAt, RobotModel};
 pub use position_only::PositionOnlyLaw;
 pub use rotorcraft::RotorcraftModel;
 pub use spacecraft::{AttitudeLaw, SpacecraftModel};

@@ -301,6 +301,13 @@ impl<'a> ClosedLoop<'a> {
         self.sampling.as_ref().map(Sampling::taken)
     }
 
+    /// The last sample of every agent; nothing when control is continuous or none was taken.
+    pub(crate) fn last_samples(&self, each: &mut dyn FnMut(SampleTaken<'_>)) {
+        if let Some((sample, now_s)) = self.sampling.as_ref().and_then(Sampling::last) {
+            self.blocks.iter().for_each(|block| block.columns.taken(&mut |digital| each(digital.taken(sample, now_s))));
+        }
+    }
+
     /// Agent, axis and value of the largest velocity in the state `x`.
     pub(crate) fn fastest(&self, x: &[f64]) -> Option<(usize, usize, f64)> {
         let velocities = x.iter().enumerate().filter_map(|(state, value)| match self.locate(state) {

@@ -55,6 +55,12 @@ impl<'a> Sampling<'a> {
         self.sample
     }
 
+    /// Number and time of the last sample, s.
+    pub(super) fn last(&self) -> Option<(u64, f64)> {
+        let sample = self.sample.checked_sub(1)?;
+        Some((sample, sample as f64 / self.sample_hz))
+    }
+
     fn sample_s(&self) -> f64 {
         self.sample as f64 / self.sample_hz
     }

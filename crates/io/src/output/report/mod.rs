@@ -5,6 +5,7 @@
 
 mod data;
 mod families;
+mod injected;
 mod interfaces;
 mod network;
 mod practical;
@@ -81,6 +82,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
                     (interfaces(record.setup))
                     (explanation_markup(record.setup, &explain(record.setup)))
                     (sections::digital(record))
+                    (injected::injected(record))
                     (sections::loads(record.setup, metrics))
                     (sections::provenance(record))
                     footer {

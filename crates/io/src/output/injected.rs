@@ -1,0 +1,95 @@
+//! What changed V along a run under digital control, in `summary.json` and in the report.
+
+use forwardstep_check::{Injection, InjectionBalance};
+use serde::{Deserialize, Serialize};
+
+use super::number;
+
+/// V of one agent under (6)–(7) from its first sample to the end, and what each cause put in, J: the terms add up to the change of V, but
+/// for the residual. Not from the paper, derived for this software.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Injected {
+    /// Index of the agent.
+    pub agent: usize,
+    /// V after the first sample.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub start_j: f64,
+    /// V at the end.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub end_j: f64,
+    /// −∫ sᵀ(K + D)s, which is all that the proof leaves.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub dissipated_j: f64,
+    /// By commands and references that are held between samples, and by commands that come late.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub held_j: f64,
+    /// By velocities that are filtered differences of positions.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub reconstructed_j: f64,
+    /// By noise and rounding of measurements.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub measured_j: f64,
+    /// By limits and rounding of torques.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub limited_j: f64,
+    /// By external torques.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub pushed_j: f64,
+    /// By estimates that are stepped at samples.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub adaptation_j: f64,
+    /// The change of V less all of these.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub residual_j: f64,
+    /// The first cause that the proof does not allow and that had put in more than 1 % of the largest V until then; null for none.
+    pub first: Option<FirstInjection>,
+}
+
+/// What put energy in first.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FirstInjection {
+    /// `held`, `reconstructed`, `measured`, `limited`, `pushed` or `adaptation`.
+    pub cause: String,
+    /// When, s.
+    pub t_s: f64,
+}
+
+impl From<&InjectionBalance> for Injected {
+    fn from(balance: &InjectionBalance) -> Self {
+        Injected {
+            agent: balance.agent,
+            start_j: balance.start_j,
+            end_j: balance.end_j,
+            dissipated_j: balance.term_j(Injection::Dissipated),
+            held_j: balance.term_j(Injection::Held),
+            reconstructed_j: balance.term_j(Injection::Reconstructed),
+            measured_j: balance.term_j(Injection::Measured),
+            limited_j: balance.term_j(Injection::Limited),
+            pushed_j: balance.term_j(Injection::Pushed),
+            adaptation_j: balance.term_j(Injection::Adaptation),
+            residual_j: balance.residual_j(),
+            first: balance.first.map(|(injection, t_s)| FirstInjection { cause: injection.name().to_owned(), t_s }),
+        }
+    }
+}
+
+impl Injected {
+    /// What one cause put in, J.
+    pub fn term_j(&self, injection: Injection) -> f64 {
+        match injection {
+            Injection::Dissipated => self.dissipated_j,
+            Injection::Held => self.held_j,
+            Injection::Reconstructed => self.reconstructed_j,
+            Injection::Measured => self.measured_j,
+            Injection::Limited => self.limited_j,
+            Injection::Pushed => self.pushed_j,
+            Injection::Adaptation => self.adaptation_j,
+        }
+    }
+
+    /// The agent that was fed first, with the cause and the time.
+    pub fn earliest(all: &[Injected]) -> Option<(&Injected, &FirstInjection)> {
+        let named = all.iter().filter_map(|own| Some((own, own.first.as_ref()?)));
+        named.min_by(|(_, a), (_, b)| a.t_s.total_cmp(&b.t_s))
+    }
+}
