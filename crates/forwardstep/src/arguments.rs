@@ -26,7 +26,7 @@ const EXIT_STATUS: &str = "\
 Exit status:
     0  fine
     1  check: a hypothesis is violated, not shown or not covered by the paper, and not accepted, or, with --practical, a
-       practical verdict is inadequate; run: the goal was missed
+       practical verdict is inadequate; run: the goal was missed; falsify, attack: a claim was refuted
     2  input without meaning, or a folder that cannot be written to or is not that of a run
     3  the run broke down; what was computed is written
   130  interrupted by Ctrl-C; what was computed is written
