@@ -24,8 +24,8 @@
 //!         λ = 0 under (3), (23)                            degree −1: neither leaves anything
 //! ```
 //!
-//! With P = Y Γ Yᵀ, N a basis of its kernel and P⁺ its pseudoinverse, R = N (Nᵀ (K + D) N)⁻¹ Nᵀ and
-//! S = (1 − R (K + D)) P⁺ (1 − (K + D) R) − R M R, by the Schur complement. Where gravity columns make P definite R is zero: the adaptation
+//! With P = Y Γ Yᵀ, N a basis of its kernel and P⁺ its pseudoinverse, R = N (Nᵀ (K + D) N)⁻¹ Nᵀ, and S = P⁺ on an axis where R is zero, by
+//! the Schur complement. Where gravity columns make P definite R is zero: the adaptation
 //! integrates s away and the degree falls by one, so that with λ > 0 an impulse leaves nothing either.
 //!
 //! The paper states (31) and says what it is for; degree and gain are derived for this software.

@@ -1,4 +1,4 @@
-//! From an external torque to s at rest: (M p + K + D + Y Γ Yᵀ/p)⁻¹, and the first two terms of its series at p = 0.
+//! From an external torque to s at rest: (M p + K + D + Y Γ Yᵀ/p)⁻¹, and the first term of its series at p = 0.
 
 use forwardstep_core::robot::TwoVelocity;
 use forwardstep_sim::{AgentSetup, DynamicsAt};
@@ -35,7 +35,8 @@ impl Response {
         Some(Response { mass, damping: gains.damping + viscous(agent, &regressor)?, learning })
     }
 
-    /// [s₀, s₁] of s = s₀ + s₁ p + O(p²), for a torque on `axis` and s on the same.
+    /// [s₀, s₁] of s = s₀ + s₁ p + O(p²), for a torque on `axis` and s on the same; s₁ only where s₀ is zero, since it never counts
+    /// otherwise.
     pub(super) fn series(&self, axis: usize) -> [f64; 2] {
         let m = self.mass.nrows();
         let eigen = self.learning.clone().symmetric_eigen();
@@ -48,20 +49,17 @@ impl Response {
                 inverse += vector * vector.transpose() / *value;
             }
         }
-        let rest = self.on_kernel(&null, axis);
-        let one = DMatrix::identity(m, m);
-        let first =
-            (&one - &rest * &self.damping) * inverse * (&one - &self.damping * &rest) - &rest * &self.mass * &rest;
-        [rest[(axis, axis)], first[(axis, axis)]]
+        match self.on_kernel(&null, axis) {
+            Some(rest) => [rest, 0.0],
+            None => [0.0, inverse[(axis, axis)]],
+        }
     }
 
-    /// N (Nᵀ (K + D) N)⁻¹ Nᵀ; zero on an axis that the kernel does not move.
-    fn on_kernel(&self, null: &[DVector<f64>], axis: usize) -> DMatrix<f64> {
-        let m = self.mass.nrows();
-        let found = (!null.is_empty()).then(|| DMatrix::from_columns(null)).filter(|n| n.row(axis).norm() > RANK);
-        let inverse =
-            found.and_then(|n| Some(&n * (n.transpose() * &self.damping * &n).try_inverse()? * n.transpose()));
-        inverse.unwrap_or_else(|| DMatrix::zeros(m, m))
+    /// N (Nᵀ (K + D) N)⁻¹ Nᵀ on the axis; `None` where the kernel does not move it.
+    fn on_kernel(&self, null: &[DVector<f64>], axis: usize) -> Option<f64> {
+        let null = (!null.is_empty()).then(|| DMatrix::from_columns(null)).filter(|n| n.row(axis).norm() > RANK)?;
+        let rest = &null * (null.transpose() * &self.damping * &null).try_inverse()? * null.transpose();
+        Some(rest[(axis, axis)])
     }
 
     /// s on `axis` per torque on it at p ≠ 0.

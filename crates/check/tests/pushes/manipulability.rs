@@ -211,3 +211,21 @@ fn networks_without_such_a_transfer_say_why() {
     });
     assert_eq!(sampled, NoManipulability::Sampled);
 }
+
+#[test]
+fn eq_31_what_damps_a_ship_itself_counts_beside_k() {
+    let ship = |index: usize| {
+        let mut agent = mass(index, &roots(2, index));
+        agent.robot.kind = Arc::new(forwardstep_core::robot::Ship);
+        agent.robot.theta = vec![25.8, 33.8, 1.0, 2.8, 9.0, 7.0, 0.3, 0.2, 5.0];
+        agent.robot.theta_names = vec![String::new(); 9];
+        agent.robot.axes.push(agent.robot.axes[0].clone());
+        agent.robot.axes[2].name = "heading".into();
+        agent.start.q.push(0.4);
+        agent.start.dq.push(0.0);
+        agent.manipulability = 1.2;
+        agent
+    };
+    let setup = ring((0..3).map(ship).collect(), Exchange::PositionVelocity, 150.0);
+    agrees(both(&setup, 0, 0.002), 1, 0.05);
+}
