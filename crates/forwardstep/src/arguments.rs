@@ -82,7 +82,7 @@ pub(crate) enum Command {
 /// The main job: the six arms, into the usual folder.
 impl Default for Command {
     fn default() -> Self {
-        Command::Run(RunOptions { scenario: SIX_ARMS.into(), out: None, force: false, csv: false })
+        Command::Run(RunOptions { scenario: SIX_ARMS.into(), out: None, force: false, csv: false, balance: false })
     }
 }
 
@@ -100,6 +100,10 @@ pub(crate) struct RunOptions {
     /// Write the trajectory as CSV too
     #[arg(long)]
     pub(crate) csv: bool,
+    /// Say what changed V, cause by cause, where controllers sample: every step is then looked at, which takes about as long again
+    /// as the run, or three times as long with large robots
+    #[arg(long)]
+    pub(crate) balance: bool,
 }
 
 #[derive(Debug, Args)]

@@ -372,3 +372,27 @@ fn matrices_that_are_exactly_singular_are_refused_with_a_direction() {
         }
     }
 }
+
+#[test]
+fn what_changed_v_is_said_when_asked_and_adds_up() {
+    // Masses are not known, so that V(0) is not zero.
+    let adapted = TWO.replace("[law.known]", "[law.adaptive]\nadaptation_gain = 5").replace("end_s = 30", "end_s = 1");
+    let folder = with(&adapted);
+    let run = |more: &[&str]| {
+        let arguments = [&["run", "two.toml", "--force", "--out", "run"], more].concat();
+        let said = stdout(&forwardstep(&folder, &arguments));
+        let summary = fs::read_to_string(folder.path().join("run/summary.json")).unwrap();
+        (said, serde_json::from_str::<Value>(&summary).unwrap())
+    };
+    let (said, summary) = run(&[]);
+    assert!(!said.contains("V of all agents") && summary["injected"].as_array().is_none_or(Vec::is_empty), "{said}");
+    let (said, summary) = run(&["--balance"]);
+    assert!(said.contains("V of all agents") && said.contains("beyond the proof"), "{said}");
+    for own in summary["injected"].as_array().unwrap() {
+        let joule = |key: &str| own[key].as_f64().unwrap();
+        let terms =
+            ["dissipated_j", "held_j", "reconstructed_j", "measured_j", "limited_j", "pushed_j", "adaptation_j"];
+        let sum: f64 = terms.map(joule).iter().sum();
+        assert!((joule("start_j") + sum - joule("end_j")).abs() < 1e-7 * joule("start_j"), "{own}");
+    }
+}

@@ -45,7 +45,7 @@ fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<
 
     let mut bar = Bar::new();
     let started = Instant::now();
-    let mut balances = InjectionWatch::of(setup);
+    let mut balances = if options.balance { InjectionWatch::of(setup) } else { None };
     let mut observer = |progress| watch(&mut bar, &stop, progress);
     let outcome = match &mut balances {
         Some(balances) => simulate_watched(setup, &mut observer, balances),
