@@ -1186,7 +1186,7 @@ def along_draw(claim, given, windows, longest_s):
     require(longest_s, max(lengths) <= longest_s.number(), "is exceeded by a window, or by what is left after the last")
     return f"{len(ends) - 1} windows of at most {said(longest_s.number())} s tile the given sequence", False
 
-# Two disjoint groups, or one without the leader, that hear nobody outside themselves in what recurs: no tree, for ever.
+# Two disjoint groups, or one without the leader, that hear no agent outside themselves in what recurs: no tree, for ever.
 @rule("spanning-tree leader-reaches-all", "cut")
 def cut(claim, groups):
     scenario = claim.scenario

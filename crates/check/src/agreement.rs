@@ -113,10 +113,10 @@ pub enum NoPrediction {
     Own,
     /// There is no single value.
     #[error(
-        "no agent reaches all others, so nothing makes them agree: {closed_groups} groups hear nobody outside themselves"
+        "no agent reaches all others, so nothing makes them agree: {closed_groups} groups hear no agent outside themselves"
     )]
     NoSpanningTree {
-        /// How many groups hear nobody outside themselves.
+        /// How many groups hear no agent outside themselves.
         closed_groups: usize,
     },
     /// A root is not positive.

@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     fn what_is_singular_or_one_way_is_not_shown() {
-        // Nobody hears the leader.
+        // No agent hears the leader.
         let alone = [(0, Some(1), 1.0), (1, Some(0), 1.0)];
         assert!(!ShiftedLaplacian::new(2, &alone, 0.0).unwrap().is_shown_definite());
         assert!(ShiftedLaplacian::new(2, &[(0, None, 1.0), (1, Some(0), 1.0)], 0.0).is_none());

@@ -303,7 +303,7 @@ fn thm2_hypotheses_hold_with_a_certificate_or_fail_with_a_witness() {
     let report = check(&setup(agents(), Exchange::PositionVelocity, split, delays.clone(), 1.0));
     assert_eq!(report.worst(), Answer::Violated);
     let because = report.hypotheses[0].because();
-    assert!(because.contains("[arm-1] and [arm-3] hear nobody outside themselves"), "{because}");
+    assert!(because.contains("[arm-1] and [arm-3] hear no agent outside themselves"), "{because}");
 
     let graphs = vec![vec![edge(0, 1, 1.0, 0), edge(1, 2, 1.0, 0)], vec![edge(2, 3, 1.0, 0)]];
     let random = Schedule::random(graphs, [0.1, 0.2], 1);

@@ -201,7 +201,7 @@ fn who_does_not_reach_all_counts_for_nothing_and_two_closed_groups_have_no_value
     let groups = [(0, 1, 1.0), (1, 0, 3.0), (2, 1, 1e9), (2, 3, 1.0), (4, 3, 1e-9)];
     let refused = predicted(5, &groups).unwrap_err();
     assert_eq!(refused, NoPrediction::NoSpanningTree { closed_groups: 2 });
-    assert!(refused.to_string().contains("2 groups hear nobody outside themselves"));
+    assert!(refused.to_string().contains("2 groups hear no agent outside themselves"));
 }
 
 #[test]

@@ -407,7 +407,7 @@ fn between(text: &str, low: u32, high: u32) -> Result<u32, NotBetween> {
     text.parse().ok().filter(|number| (low..=high).contains(number)).ok_or(NotBetween { low, high })
 }
 
-/// A complete graph of more agents makes a file that nobody wants to read.
+/// A complete graph of more agents makes a file too long to read.
 pub(crate) fn count_of_agents(text: &str) -> Result<u32, NotBetween> {
     between(text, 2, 100)
 }

@@ -1,4 +1,4 @@
-//! Text for people: colours on terminals only, and a pipe that closes early is nobody's fault.
+//! Text for people: colours on terminals only, and a pipe that closes early is no error.
 
 use std::fmt;
 use std::io::{self, ErrorKind, IsTerminal, Stdout, Write};
@@ -31,7 +31,7 @@ impl Console {
         Console { out: AutoStream::auto(io::stdout()), failure: None }
     }
 
-    /// Writes a line. After a failure nothing more is written: a run goes on although nobody reads its words.
+    /// Writes a line. After a failure nothing more is written: a run goes on although its words are not read.
     pub(crate) fn line(&mut self, text: impl fmt::Display) {
         self.text(format_args!("{text}\n"));
     }

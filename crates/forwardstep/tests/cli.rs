@@ -204,7 +204,11 @@ fn check_says_for_which_time_a_tree_is_missing() {
     let random = "switching.random = { seed = 1, dwell_s = [40, 50] }\n";
     for (switching, status, words) in [
         ("", 0, "the smallest uniform window lasts 2 s"),
-        (once, 1, "from t = 1 s on, whatever the window, no agent reaches all others: [arm-1] and [arm-2] hear nobody"),
+        (
+            once,
+            1,
+            "from t = 1 s on, whatever the window, no agent reaches all others: [arm-1] and [arm-2] hear no agent",
+        ),
         // One graph is drawn within the run; what a longer run would show is not claimed.
         (random, 1, "from t = 0 s to the end of the run at 30 s, no agent reaches all others"),
     ] {

@@ -36,7 +36,7 @@ pub(crate) fn enumerate(items: impl ExactSizeIterator<Item = String>) -> String 
 
 /// The candidate nearest to `word`, if it is near enough to be a slip of the pen.
 pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
-    // Comparing takes as long as the product of both lengths, and nobody types so much by hand.
+    // Comparing takes as long as the product of both lengths, and so much is not typed by hand.
     const LONGEST: usize = 200;
     if word.len() > LONGEST {
         return None;

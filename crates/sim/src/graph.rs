@@ -65,7 +65,7 @@ pub enum SpanningTree {
         /// All the agents that can be the root: one strongly connected component.
         roots: Vec<usize>,
     },
-    /// At least two groups hear nobody outside themselves, so nothing one says reaches the other.
+    /// At least two groups hear no agent outside themselves, so nothing one says reaches the other.
     Missing {
         /// The closed groups, each sorted, in order of their first agent.
         closed_groups: Vec<Vec<usize>>,

@@ -88,7 +88,7 @@ impl Topology {
         let others = agents.saturating_sub(1);
         let (all, rest) = (agents as u64, others as u64);
         match *self {
-            // A ring of two is the same in both directions, and one agent hears nobody.
+            // A ring of two is the same in both directions, and one agent hears no other.
             Topology::Ring(_) if agents <= 2 => Ok(2 * rest),
             Topology::Ring(Along::Forward) => Ok(all),
             Topology::Ring(Along::Both) => Ok(2 * all),

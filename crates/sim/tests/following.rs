@@ -194,7 +194,7 @@ fn what_cannot_be_followed_is_refused() {
     let mut hears = arms(FollowingDesign::Continuous, Choice::Implicit, 1.0, 1.0);
     let edges = &mut hears.network.schedule.graphs[0];
     edges.push(Edge { from: 0, to: 4, weight: 1.0.into(), delay: 0 });
-    assert!(refuse(&hears).contains("hears nobody"));
+    assert!(refuse(&hears).contains("hears no agent"));
 
     let mut late = arms(FollowingDesign::WithoutAcceleration, Choice::Implicit, 1.0, 1.0);
     late.network.delays[0] = Delay::constant(0.1);

@@ -18,7 +18,7 @@ pub enum Proof {
         /// No window, and no rest after the last, is longer, s.
         longest_s: BigRational,
     },
-    /// Witness: groups that hear nobody outside themselves in anything that recurs.
+    /// Witness: groups that hear no agent outside themselves in anything that recurs.
     Cut(Vec<Vec<usize>>),
     /// There is one graph.
     NeverSwitches,

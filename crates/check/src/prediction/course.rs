@@ -2,13 +2,14 @@
 
 use std::ops::ControlFlow;
 
-use forwardstep_sim::{Ending, Progress, Recording, Setup, SetupError, Signal, simulate};
+use forwardstep_sim::{Progress, Recording, Setup, Signal};
 use thiserror::Error;
 
 use super::cascade::{CascadeSpread, NoCascade};
 use super::ideal::{NoIdeal, ideal};
 use super::settled::{Settled, settled};
 use super::torque::{PeakTorque, peak_torques};
+use super::unfinished::{Unfinished, completed};
 
 /// How agreement comes about when every agent follows its reference exactly, s ≡ 0.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,18 +41,9 @@ pub enum NoCourse {
     /// Agents have different numbers of axes.
     #[error("the agents do not have the same axes")]
     Axes,
-    /// The setup has no meaning.
+    /// The reference dynamics alone were not simulated to the end.
     #[error(transparent)]
-    Setup(#[from] SetupError),
-    /// The reference dynamics alone could not be integrated up to the horizon.
-    #[error("the reference dynamics alone break down at {t_s} s")]
-    BrokeDown {
-        /// When, s.
-        t_s: f64,
-    },
-    /// The observer asked to stop.
-    #[error("the prediction was interrupted")]
-    Interrupted,
+    Unfinished(#[from] Unfinished),
 }
 
 impl Course {
@@ -62,7 +54,7 @@ impl Course {
     }
 }
 
-/// Predicts the course of agreement of `setup` by simulating [`ideal`]; `observer` as that of [`simulate`].
+/// Predicts the course of agreement of `setup` by simulating [`ideal`]; `observer` as that of [`simulate`](forwardstep_sim::simulate).
 ///
 /// **Guarantees**: where ϑ is known and z(0) = q̇(0) it is that of the robots, to the tolerance of the solver. Otherwise it is a prediction for s ≡ 0.
 ///
@@ -75,13 +67,7 @@ pub fn course(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow<(
     if ideal.agents.iter().any(|agent| agent.robot.axes.len() != axes) {
         return Err(NoCourse::Axes);
     }
-    let outcome = simulate(&ideal, observer)?;
-    match outcome.ending {
-        Ending::Completed => {}
-        Ending::Interrupted { .. } => return Err(NoCourse::Interrupted),
-        Ending::BrokeDown(breakdown) => return Err(NoCourse::BrokeDown { t_s: breakdown.t_s }),
-    }
-    let recording = outcome.recording;
+    let recording = completed(&ideal, observer)?;
     let disagreement = disagreement(&recording, axes);
     let within = CascadeSpread::of(&ideal, &recording).map(|spread| spread.last());
     let settled = settled(&recording.t_s, &disagreement);

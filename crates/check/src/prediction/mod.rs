@@ -19,6 +19,7 @@ mod period;
 pub(crate) mod roots;
 mod settled;
 mod torque;
+mod unfinished;
 
 pub use cascade::{CascadeSpread, NoCascade};
 pub use course::{Course, NoCourse, course};
@@ -27,3 +28,4 @@ pub use period::{NoPeriodRate, PeriodRate, period_rate};
 pub use roots::{NoRate, Rate, rate};
 pub use settled::{SHARE, Settled, settled};
 pub use torque::PeakTorque;
+pub use unfinished::Unfinished;

@@ -10,13 +10,12 @@ use std::ops::ControlFlow;
 
 use forwardstep_sim::delay::{Delay, PiecewiseConstant, SawTooth, Sinusoid};
 use forwardstep_sim::schedule::Periodic;
-use forwardstep_sim::{
-    AgentSetup, Axis, Ending, Method, Progress, Setup, SetupError, Solver, Start, TimeSpan, simulate,
-};
+use forwardstep_sim::{AgentSetup, Axis, Method, Progress, Setup, Solver, Start, TimeSpan};
 use thiserror::Error;
 
 use super::cascade::{CascadeSpread, NoCascade};
 use super::ideal::{NoIdeal, ideal};
+use super::unfinished::{Unfinished, completed};
 
 /// What a period leaves of a disagreement, for s ≡ 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,18 +62,9 @@ pub enum NoPeriodRate {
         /// How many.
         periods: usize,
     },
-    /// The setup has no meaning.
+    /// The reference dynamics alone were not simulated to the end.
     #[error(transparent)]
-    Setup(#[from] SetupError),
-    /// The reference dynamics alone could not be integrated.
-    #[error("the reference dynamics alone break down at {t_s} s")]
-    BrokeDown {
-        /// When, s.
-        t_s: f64,
-    },
-    /// The observer asked to stop.
-    #[error("the prediction was interrupted")]
-    Interrupted,
+    Unfinished(#[from] Unfinished),
 }
 
 /// The common period is no longer than this many times the longest one.
@@ -95,7 +85,7 @@ const FLOOR: f64 = 1e-8;
 /// Enough has fallen to see a factor.
 const FALLEN: f64 = 1e-6;
 
-/// Predicts what one period of a network that repeats itself leaves of a disagreement; `observer` as that of [`simulate`],
+/// Predicts what one period of a network that repeats itself leaves of a disagreement; `observer` as that of [`simulate`](forwardstep_sim::simulate),
 /// for every attempt anew.
 ///
 /// # Errors
@@ -115,13 +105,7 @@ pub fn period_rate(
     let most = most.min(recorded).min((HORIZONS * setup.time.end_s / period_s) as usize);
     loop {
         alone.time = TimeSpan { end_s: period_s * periods as f64, record_every_s: period_s / ROWS as f64 };
-        let outcome = simulate(&alone, observer)?;
-        match outcome.ending {
-            Ending::Completed => {}
-            Ending::Interrupted { .. } => return Err(NoPeriodRate::Interrupted),
-            Ending::BrokeDown(breakdown) => return Err(NoPeriodRate::BrokeDown { t_s: breakdown.t_s }),
-        }
-        let widths = CascadeSpread::of(&alone, &outcome.recording)?.widths();
+        let widths = CascadeSpread::of(&alone, &completed(&alone, observer)?)?.widths();
         let each: Vec<f64> = (0..=periods).filter_map(|k| widths.get(k * ROWS)).copied().collect();
         let start = each.first().copied().unwrap_or(0.0);
         // The first is the start.

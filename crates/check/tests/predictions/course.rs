@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use forwardstep_check::prediction::{CascadeSpread, NoCascade, Settled, settled};
+use forwardstep_check::prediction::{CascadeSpread, NoCascade, Settled, Unfinished, settled};
 use forwardstep_check::{Course, NoCourse, NoIdeal, course, ideal, predict};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
@@ -200,7 +200,10 @@ fn every_reason_for_no_course_is_the_one_that_is_said() {
         "order two has no z̈(0)"
     );
     assert_eq!(said(&|setup| setup.agents[3].start.dq.clear()), no(NoIdeal::Start { agent: 3 }));
-    assert!(matches!(said(&|setup| setup.agents[0].roots_per_s[1] = -1.0), Some(NoCourse::Setup(_))));
+    assert!(matches!(
+        said(&|setup| setup.agents[0].roots_per_s[1] = -1.0),
+        Some(NoCourse::Unfinished(Unfinished::Setup(_)))
+    ));
     let alone = |setup: &mut Setup| {
         setup.agents.truncate(1);
         setup.network.agents = 1;
@@ -209,7 +212,7 @@ fn every_reason_for_no_course_is_the_one_that_is_said() {
     let one = |setup: &mut Setup| setup.agents[1] = blind_mass(1.0, 1.0);
     assert_eq!(said(&one), Some(NoCourse::Axes));
     let stop = course(&arms(Exchange::Position, 1), &mut |_| ControlFlow::Break(()));
-    assert_eq!(stop, Err(NoCourse::Interrupted));
+    assert_eq!(stop, Err(NoCourse::Unfinished(Unfinished::Interrupted)));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use forwardstep_check::prediction::{NoCascade, NoPeriodRate, NoRate, Settled, period_rate, rate};
+use forwardstep_check::prediction::{NoCascade, NoPeriodRate, NoRate, Settled, Unfinished, period_rate, rate};
 use forwardstep_check::{NoIdeal, course};
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::coupling::Coupling;
@@ -210,7 +210,7 @@ fn every_reason_for_no_rate_per_period_is_the_one_that_is_said() {
     };
     assert!(matches!(said(&at_once), Some(NoPeriodRate::Vanishes { periods: 0..3 })), "{:?}", said(&at_once));
     let stop = period_rate(&in_turns(Exchange::Position, 1.0, 0.5, 2.0), &mut |_| ControlFlow::Break(()));
-    assert_eq!(stop, Err(NoPeriodRate::Interrupted));
+    assert_eq!(stop, Err(NoPeriodRate::Unfinished(Unfinished::Interrupted)));
 }
 
 #[test]

@@ -54,7 +54,7 @@ fn write(options: &NewOptions, kinds: &Kinds, console: &mut Console) -> Result<(
         return Err(refused(NewError::Exists(file.clone())));
     }
     let text = template(options, kinds)?.text();
-    // Nobody should start from what is refused, for instance because the robot changed in between.
+    // What is refused is no place to start from, for instance because the robot changed in between.
     let folder = options.file.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
     let source = SourceText::new("new scenario", text.as_str());
     kinds.read_scenario("new", &source, Some(folder)).map_err(|error| complain(&error))?;

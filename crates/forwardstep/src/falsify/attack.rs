@@ -131,6 +131,7 @@ impl Attack {
         let phases = if led { 1 } else { rng.random_range(2..=self.pieces.max(2)) };
         let mut case = Case {
             number: self.seed,
+            alone: !led,
             system: System::Mass(1),
             // Far from a leader the sign of (119), which is bounded, does not cover up what ẇ leaves over.
             starts: (0..agents)

@@ -9,6 +9,8 @@ use rand_chacha::rand_core::SeedableRng;
 pub(crate) struct Case {
     /// Which of its seed.
     pub(crate) number: u64,
+    /// Whether its references are simulated alone, s ≡ 0, or whole closed loops.
+    pub(crate) alone: bool,
     pub(crate) system: System,
     /// Where each agent starts: numbers from −1 to 1, of which each kind takes as many as it has axes.
     pub(crate) starts: Vec<[f64; 3]>,
@@ -114,7 +116,8 @@ impl Case {
     pub(crate) fn draw(seed: u64, number: u64) -> Case {
         let rng = &mut ChaCha8Rng::seed_from_u64(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ number);
         // Half of them are robots that agree, of which the references are looked at alone.
-        let (system, course) = if number.is_multiple_of(2) { (robot(rng), agree(rng)) } else { any(rng) };
+        let alone = number.is_multiple_of(2);
+        let (system, course) = if alone { (robot(rng), agree(rng)) } else { any(rng) };
         let order = least_order(system, course);
         let more = if exact_order(system, course) { 0 } else { rng.random_range(0..3) };
         let tracks = matches!(course, Course::Track { .. });
@@ -132,6 +135,7 @@ impl Case {
         let density = rng.random_range(0.2..0.7);
         Case {
             number,
+            alone,
             system,
             starts: (0..agents).map(|_| [(); 3].map(|()| hundredths(rng, -1.0, 1.0))).collect(),
             roots: (0..agents).map(|_| each(rng)).collect(),

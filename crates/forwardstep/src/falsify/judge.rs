@@ -11,7 +11,7 @@ use forwardstep::check::hypothesis::FollowingEvidence;
 use forwardstep::check::prediction::CascadeSpread;
 use forwardstep::check::{Answer, Evidence, Report, check, ideal};
 use forwardstep::io::diagnostic::SourceText;
-use forwardstep::io::output::{BalanceResidual, Disagreement, Metrics};
+use forwardstep::io::output::{BalanceResidual, Disagreement, Metrics, ending_sentence};
 use forwardstep::io::scenario::{Inputs, Scenario, read_scenario};
 use forwardstep::sim::reference::PureIntegral;
 use forwardstep::sim::{Ending, Method, Outcome, Setup, simulate};
@@ -96,8 +96,7 @@ pub(crate) fn judge(case: &Case) -> Verdict {
         Ok(scenario) => scenario,
         Err(error) => return Verdict::Silent(error),
     };
-    // Half of the cases, of robots that agree.
-    if case.number.is_multiple_of(2) { without_errors(&scenario.setup) } else { whole(case, &scenario.setup) }
+    if case.alone { without_errors(&scenario.setup) } else { whole(case, &scenario.setup) }
 }
 
 /// The scenario of a case.
@@ -162,9 +161,9 @@ fn whole(case: &Case, setup: &Setup) -> Verdict {
             Ok(outcome) => outcome,
             Err(reason) => return Verdict::Silent(reason),
         };
-        if let Ending::BrokeDown(breakdown) = &outcome.ending {
+        if let Ending::BrokeDown(_) = &outcome.ending {
             return match promised {
-                true => Verdict::Failed(Failure::BrokeDown(format!("{:?}", breakdown.cause))),
+                true => Verdict::Failed(Failure::BrokeDown(ending_sentence(&setup, &outcome.ending))),
                 false => Verdict::Silent("it broke down, and nothing is promised".into()),
             };
         }
@@ -211,11 +210,15 @@ pub(super) fn late(setup: &Setup, mut outcome: Outcome) -> Option<f64> {
 
 /// What a sign that is held for a while leaves, by what is known before the run.
 fn left(report: &Report) -> f64 {
-    let each = report.hypotheses.iter().map(|hypothesis| match &hypothesis.evidence {
-        Evidence::Following(FollowingEvidence::Sign { left, .. }) if left.is_finite() => *left,
-        _other => 0.0,
-    });
-    each.fold(0.0, f64::max)
+    let mut most: f64 = 0.0;
+    for hypothesis in &report.hypotheses {
+        if let Evidence::Following(FollowingEvidence::Sign { left, .. }) = &hypothesis.evidence
+            && left.is_finite()
+        {
+            most = most.max(*left);
+        }
+    }
+    most
 }
 
 /// Whether all hypotheses hold, for all time or as long as anything is known, without what only a run can show.

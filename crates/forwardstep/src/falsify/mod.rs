@@ -123,6 +123,7 @@ mod tests {
         let phase = |edges| super::case::Phase { dwell_s: 0.4, edges };
         Case {
             number: 6,
+            alone: true,
             system: System::Mass(1),
             course: Course::Agree { velocities: true },
             starts,

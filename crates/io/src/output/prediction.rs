@@ -3,7 +3,7 @@
 //! All of it is for s ≡ 0: robots that follow their references exactly. Beside it stands what was observed.
 
 use forwardstep_check::NoIdeal;
-use forwardstep_check::prediction::{Course, NoCourse, NoPeriodRate, NoRate, PeriodRate, Rate};
+use forwardstep_check::prediction::{Course, NoCourse, NoPeriodRate, NoRate, PeriodRate, Rate, Unfinished};
 use forwardstep_sim::Setup;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -125,7 +125,9 @@ impl Predictions {
         period: Option<&Result<PeriodRate, NoPeriodRate>>,
     ) -> Option<Predictions> {
         let course = match course {
-            Err(NoCourse::Ideal(NoIdeal::Leader | NoIdeal::Targets) | NoCourse::Interrupted) => return None,
+            Err(
+                NoCourse::Ideal(NoIdeal::Leader | NoIdeal::Targets) | NoCourse::Unfinished(Unfinished::Interrupted),
+            ) => return None,
             Err(reason) => PredictedCourse::NoneSince(reason.to_string()),
             Ok(course) => PredictedCourse::Found(CourseFound::of(course)),
         };

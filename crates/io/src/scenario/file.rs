@@ -39,7 +39,7 @@ pub struct ScenarioFile {
     pub agents: At<Vec<At<AgentFile>>>,
     /// The reference dynamics of all agents.
     pub reference: At<ReferenceFile>,
-    /// What everybody follows, where there is a leader: one more vertex of the network, which hears nobody.
+    /// What everybody follows, where there is a leader: one more vertex of the network, which hears no agent.
     pub leader: Option<At<LeaderFile>>,
     /// The tracking law of all agents that have none of their own.
     pub law: Option<At<LawFile>>,

@@ -17,7 +17,7 @@ pub enum NetworkProblem {
         name: String,
     },
     /// An edge that leads to the leader.
-    #[error("`{name}` leads and hears nobody")]
+    #[error("`{name}` leads and hears no agent")]
     LeaderHears {
         /// The leader.
         name: String,
@@ -113,7 +113,7 @@ impl NetworkProblem {
     pub fn help(&self) -> Option<String> {
         let text = match self {
             NetworkProblem::LeaderHears { .. } => "leave this edge out, or turn it round".into(),
-            NetworkProblem::Topology(_) => "an agent hears nobody twice, and never itself".into(),
+            NetworkProblem::Topology(_) => "an agent hears no other twice, and never itself".into(),
             NetworkProblem::EdgesAndPhases => "move the edges into a phase, or delete the phases".into(),
             NetworkProblem::Missing => "say who hears whom: `[network]` with `edges`".into(),
             NetworkProblem::NoGraph => "for agents that never hear each other write `edges = []`".into(),

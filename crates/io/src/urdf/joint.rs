@@ -170,7 +170,7 @@ fn read_axis(
     let scaled = given.map(|entry| entry / largest);
     let length = scaled.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
     let used = scaled.map(|entry| entry / length);
-    // Rounding to six digits is nobody's mistake.
+    // Rounding to six digits is no mistake.
     if (length * largest - 1.0).abs() > 2e-6 {
         reading.notice(&span, NoticeKind::AxisNormalised { joint: joint.to_owned(), given, used });
     }

@@ -75,7 +75,7 @@ fn mistakes_about_leaders_are_reported() {
     for (text, message, help) in [
         (changed("[leader]\nmotion.formulas = [\"sin(t)\"]\n", ""), "there is none", "add `[leader]`"),
         (changed("[1.5]", "[1, 2]"), "needs 1", "one root"),
-        (changed("[\"cart-1\", \"cart-2\"]]", "[\"cart-1\", \"leader\"]]"), "hears nobody", "turn it round"),
+        (changed("[\"cart-1\", \"cart-2\"]]", "[\"cart-1\", \"leader\"]]"), "hears no agent", "turn it round"),
         (changed("[\"sin(t)\"]", "[\"abs(sin(1e5*t))\"]"), "more than 10000 kinks", "shorten the run"),
         (changed("gain = 3", "gain = 0"), "must be positive", ""),
         (changed("gain = 3", "gain = 3\ncoupling = 1"), "belongs to the design `swarm`", ""),
@@ -154,7 +154,7 @@ fn mistakes_about_an_agent_that_leads_are_reported_at_their_place() {
         ("reference.tracking.roots_per_s = [2, 1]\n", "", "roots of the reference dynamics: 0", "roots of its own"),
         ("reference.tracking", "reference.consensus", "12:1: `pilot` cannot have", "`reference.tracking`"),
         ("count = 2", "count = 2\nreference.tracking.roots_per_s = [1]", "8:1: `cart-1` cannot have", "remove it"),
-        ("[\"cart-1\", \"cart-2\"]]", "[\"cart-1\", \"pilot\"]]", "`pilot` leads and hears nobody", ""),
+        ("[\"cart-1\", \"cart-2\"]]", "[\"cart-1\", \"pilot\"]]", "`pilot` leads and hears no agent", ""),
         ("count = 2", "count = 2\ntarget.formulas = [\"t\"]", "offsets", "leave its `target` out"),
         ("error_below", "disagreement_below", "follows a target or a leader", "error_below"),
     ] {

@@ -27,7 +27,7 @@ const TIP_CASES: &[Case] = &[
     ("[reference.tracking]\n", "[reference.tracking]\nroots_per_s = [1, 2]\n",
         "test.toml:14:15: agent `arm`: the list of roots has 2 entries where 0 are needed", "leave `roots_per_s` out"),
     ("[goal]", "[[agents]]\nname = \"other\"\nrobot.point_mass = { dimension = 3, mass_kg = 1 }\nlaw.position_only = {}\ntarget.formulas = [0, 0, 0]\nreference.tracking.roots_per_s = [1, 2, 3]\n[network]\nedges = [[\"arm\", \"other\"]]\n[goal]",
-        "test.toml:34:1: agents that follow targets of their own hear nobody, but the network has edges (1 in all)", "leave `network` out, or write `reference.consensus`"),
+        "test.toml:34:1: agents that follow targets of their own hear no other, but the network has edges (1 in all)", "leave `network` out, or write `reference.consensus`"),
 ];
 
 #[rustfmt::skip]

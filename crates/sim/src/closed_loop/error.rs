@@ -220,7 +220,7 @@ pub enum SetupError {
         error: LengthError,
     },
     /// Edges among agents that do not agree on anything.
-    #[error("agents that follow targets of their own hear nobody, but the network has edges ({edges} in all)")]
+    #[error("agents that follow targets of their own hear no other, but the network has edges ({edges} in all)")]
     UnusedEdges {
         /// How many, over all graphs.
         edges: usize,
@@ -273,7 +273,7 @@ pub enum SetupError {
         why: &'static str,
     },
     /// Somebody talks to the leader.
-    #[error("`{leader}` leads and hears nobody, but an edge leads to it; leave that edge out")]
+    #[error("`{leader}` leads and hears no agent, but an edge leads to it; leave that edge out")]
     LeaderHears {
         /// The leader.
         leader: String,

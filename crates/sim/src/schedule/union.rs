@@ -26,7 +26,7 @@ pub(super) struct Union {
     /// The edges that the union has, in any order, and where each stands among them.
     present: Vec<u32>,
     place: Vec<u32>,
-    /// How many agents each agent hears, and how many hear nobody: two of those, and there is no tree.
+    /// How many agents each agent hears, and how many hear no other: two of those, and there is no tree.
     hears: Vec<u32>,
     deaf: usize,
     /// Whether there is a spanning tree, if that was looked for since the union changed.

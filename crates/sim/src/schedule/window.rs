@@ -30,7 +30,7 @@ pub enum Window {
         start_s: f64,
         /// Whether that is so for ever, or only up to the horizon, after which an edge may come that was not there before.
         for_ever: bool,
-        /// Groups that hear nobody outside themselves in the union of all that follows.
+        /// Groups that hear no agent outside themselves in the union of all that follows.
         closed_groups: Vec<Vec<usize>>,
     },
 }

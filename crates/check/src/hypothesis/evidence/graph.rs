@@ -34,7 +34,7 @@ pub enum GraphEvidence {
         start_s: f64,
         /// Until then, s, where a schedule that is drawn, or comes from outside, may bring the edge later; `None` for ever.
         until_s: Option<f64>,
-        /// The groups that hear nobody outside themselves.
+        /// The groups that hear no agent outside themselves.
         closed_groups: Vec<Vec<Named>>,
     },
     /// The leader reaches everybody within every window this long.
@@ -50,7 +50,7 @@ pub enum GraphEvidence {
         start_s: f64,
         /// As in [`GraphEvidence::Cut`].
         until_s: Option<f64>,
-        /// They hear nobody outside themselves.
+        /// They hear no agent outside themselves.
         closed_group: Vec<Named>,
     },
     /// One graph stays for ever, so it never switches.

@@ -91,5 +91,5 @@ fn cut(start_s: f64, until_s: Option<f64>, closed_groups: &[Vec<Named>]) -> Stri
     };
     let groups = groups.join(" and ");
     let later = until_s.map_or("", |_| "; what comes later is not known, and may bring the edges that are missing");
-    format!("{span}, no agent reaches all others: {groups}{more} hear nobody outside themselves{later}")
+    format!("{span}, no agent reaches all others: {groups}{more} hear no agent outside themselves{later}")
 }

@@ -15,7 +15,7 @@ const MOST_ROWS: usize = 24;
 pub(crate) fn injected(record: &RunRecord<'_>) -> Markup {
     let Some(first) = record.injected.first() else { return html! {} };
     let setup = record.setup;
-    // Causes that act on nobody need no column.
+    // Causes that act on no agent need no column.
     let acts = |injection: &Injection| record.injected.iter().any(|own| own.term_j(*injection) != 0.0);
     let causes: Vec<Injection> = Injection::ALL.into_iter().filter(acts).collect();
     let agent = |own: &Injected| names::agent_name(setup, own.agent);
