@@ -82,7 +82,14 @@ pub(crate) enum Command {
 /// The main job: the six arms, into the usual folder.
 impl Default for Command {
     fn default() -> Self {
-        Command::Run(RunOptions { scenario: SIX_ARMS.into(), out: None, force: false, csv: false, balance: false })
+        Command::Run(RunOptions {
+            scenario: SIX_ARMS.into(),
+            out: None,
+            force: false,
+            csv: false,
+            balance: false,
+            predict: false,
+        })
     }
 }
 
@@ -104,6 +111,9 @@ pub(crate) struct RunOptions {
     /// as the run, or three times as long with large robots
     #[arg(long)]
     pub(crate) balance: bool,
+    /// Predict the course of agreement whatever that takes; otherwise large networks over long times are run without
+    #[arg(long)]
+    pub(crate) predict: bool,
 }
 
 #[derive(Debug, Args)]

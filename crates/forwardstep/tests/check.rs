@@ -240,6 +240,28 @@ fn predictions_are_made_where_they_are_asked_for_and_are_said_to_be_for_no_track
     assert!(text.contains("rate: rightmost root -1.0000 1/s"), "{text}");
 }
 
+#[test]
+fn a_run_predicts_unless_that_takes_longer_than_the_run() {
+    let folder = with(TWO);
+    let said = |arguments: &[&str]| {
+        stdout(&forwardstep(&folder, &[&["run", "two.toml", "--force"], arguments].concat()).success())
+    };
+    let (predicted, left_out) = ("Predicted for robots that follow", "Not predicted, since");
+    let text = said(&[]);
+    assert!(text.contains(predicted) && !text.contains(left_out), "{text}");
+    // 2 agents of 2 axes, and 10 horizons of one for the rate: 24 axes.
+    let of_length = |end_s: &str| {
+        fs::write(folder.path().join("two.toml"), TWO.replacen("end_s = 30", end_s, 1)).unwrap();
+    };
+    of_length("end_s = 834");
+    let text = said(&[]);
+    assert!(!text.contains(predicted) && text.contains(left_out), "{text}");
+    let text = said(&["--predict"]);
+    assert!(text.contains(predicted) && !text.contains(left_out), "{text}");
+    of_length("end_s = 833");
+    assert!(said(&[]).contains(predicted));
+}
+
 /// Whether a document has what its schema requires, and nothing that it does not know.
 fn follows(document: &Value, schema: &Value, root: &Value) {
     if let Some(name) = schema["$ref"].as_str() {

@@ -39,6 +39,17 @@ pub(crate) fn predictions(setup: &Setup, observer: &mut dyn FnMut(Progress) -> C
     Predictions::of(&course, &rate, period.as_ref())
 }
 
+/// Whether predictions take a fraction of a second. They simulate the reference dynamics of every axis over the horizon, and those of one axis over
+/// up to ten horizons for the rate: of robots with heavy dynamics a small part of a run, of many light ones a multiple.
+pub(crate) fn predicts_quickly(setup: &Setup) -> bool {
+    /// Seconds of one axis of one agent that are simulated at most.
+    const MOST_AXIS_SECONDS: f64 = 2e4;
+    /// What the rate takes, in horizons of one axis.
+    const RATE: usize = 10;
+    let axes: usize = setup.agents.iter().map(|agent| agent.robot.axes.len() + RATE).sum();
+    axes as f64 * setup.time.end_s <= MOST_AXIS_SECONDS
+}
+
 /// What is predicted, in a few lines.
 pub(crate) fn show_predictions(setup: &Setup, predictions: &Predictions, console: &mut Console) {
     console.line(format_args!("{BOLD}Predicted{BOLD:#} for robots that follow their references exactly, s ≡ 0:"));

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
-use forwardstep::check::InjectionWatch;
+use forwardstep::check::{self, InjectionWatch};
 use forwardstep::io::output::{
     self, DigitalCost, GoalOutcome, Injected, Metrics, OutputError, RunFolder, RunRecord, continuous_twin,
     ending_sentence,
@@ -14,7 +14,7 @@ use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::sim::{Ending, Outcome, Progress, simulate, simulate_watched};
 
 use super::progress::Bar;
-use super::promise::{Promise, predictions, promise, show, show_predictions};
+use super::promise::{Promise, predictions, predicts_quickly, promise, show, show_predictions};
 use super::stop::Stop;
 use super::summary::summary;
 use crate::arguments::RunOptions;
@@ -36,10 +36,15 @@ fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<
     let folder = RunFolder::create(&path, options.force).map_err(refused)?;
     show(&scenario, &promise, console);
     let (setup, mut bar) = (&scenario.setup, Bar::new());
-    let prediction = predictions(setup, &mut |progress| watch(&mut bar, &stop, progress));
+    let predicts = options.predict || predicts_quickly(setup);
+    let prediction = if predicts { predictions(setup, &mut |progress| watch(&mut bar, &stop, progress)) } else { None };
     bar.clear();
-    if let Some(prediction) = &prediction {
-        show_predictions(setup, prediction, console);
+    match &prediction {
+        Some(prediction) => show_predictions(setup, prediction, console),
+        None if predicts || check::ideal(setup).is_err() => {}
+        None => {
+            console.line("Not predicted, since that would take a good part of the run: --predict does it all the same.")
+        }
     }
     console.line("");
 
