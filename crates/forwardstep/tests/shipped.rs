@@ -137,6 +137,7 @@ shipped! {
     theorem_1: "theorem-1",
     remark_3: "remark-3",
     remark_4: "remark-4",
+    remark_4_on_a_table: "remark-4-on-a-table",
     teleoperation: "teleoperation",
     theorem_2: "theorem-2",
     theorem_3_a5_order_3: "theorem-3-a5-order-3",

@@ -22,6 +22,7 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "theorem-1",
     "remark-3",
     "remark-4",
+    "remark-4-on-a-table",
     "teleoperation",
     "theorem-2",
     "theorem-3-a5-order-3",
