@@ -83,7 +83,7 @@ fn without_numbers(reason: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::case::{Course, Switching, System};
-    use super::judge::{grown, judge, read};
+    use super::judge::{decided, grown, judge, read};
     use super::*;
 
     #[test]
@@ -145,6 +145,18 @@ mod tests {
         assert_eq!(grown(&spread(&[0.0, 0.1, 0.2], &[1.0, 1.0, 0.9]), &[0.0, 1.0, 2.0]), None);
         let out = grown(&spread(&[0.0, 0.1, -0.01], &[1.0, 1.0, 1.02]), &[0.0, 1.0, 2.0]);
         assert!(matches!(out, Some(Failure::Grew { part, t_s: 2.0 }) if (part - 0.02).abs() < 1e-12), "{out:?}");
+    }
+
+    #[test]
+    fn errors_are_held_against_the_largest_before() {
+        let decided = |errors: &[f64]| decided(errors, 1e-5);
+        assert_eq!([decided(&[]), decided(&[0.3]), decided(&[0.3, 0.15])], [None, None, None]);
+        assert_eq!([decided(&[1e-5]), decided(&[0.3, 0.149])], [Some(Verdict::Fell), Some(Verdict::Fell)]);
+        // Small by chance at first, slow from then on: that refutes nothing.
+        assert_eq!(decided(&[4.4e-3, 2.0e-2, 1.9e-2, 1.7e-2, 1.4e-2]), None);
+        assert_eq!(decided(&[0.1, 0.2, 0.4, 0.8, 1.2]), None);
+        let rose = Verdict::Failed(Failure::Rose { most: 0.8, last: 1.21 });
+        assert_eq!([decided(&[0.1, 0.2, 0.4, 0.8, 1.21]), decided(&[0.2, 0.4, 0.8, 1.21])], [Some(rose), None]);
     }
 
     #[test]
