@@ -362,10 +362,10 @@ def power(a, exponent):
     decided(a[0] > 0 or (a[0] == 0 and exponent > 0), "a base may be negative, or zero, under a broken exponent")
     if exponent == Fraction(1, 2):
         return function("sqrt", a)
-    if infinite(a[1]):
-        return Fraction(0), INF
-    at = [(Fraction(0),) * 2 if x == 0 else function("exp", multiply((exponent,) * 2, function("log", (x, x)))) for x in a]
-    return hull(*at)
+    # What has no logarithm, or none that is finite.
+    ends = [Fraction(0) if (x == 0) == (exponent > 0) else INF for x in a]
+    by_logarithm = lambda x: function("exp", multiply((exponent,) * 2, function("log", (x, x))))
+    return hull(*((end,) * 2 if x == 0 or infinite(x) else by_logarithm(x) for x, end in zip(a, ends)))
 
 def magnitude(a):
     return (Fraction(0) if a[0] <= 0 <= a[1] else min(abs(a[0]), abs(a[1]))), size(a)

@@ -1037,7 +1037,8 @@ class Enclosures(unittest.TestCase):
         for text, expected in (("t/(1 + t)", (1, 1)), ("(3*t^2 - t)/(2*t^2 + 5)", (1.5, 1.5)), ("1/log(t + 3)", (0, 0)), ("exp(-t)*sin(5*t)", (0, 0)),
                                ("1 - 0.01*t", (-math.inf, -math.inf)), ("sqrt(t)", (math.inf, math.inf)), ("atan(-t)", (-half, -half)),
                                ("tanh(t)", (1, 1)), ("2 + sin(t^2)", (1, 3)), ("t - t^2/(1 + t)", (1, 1)), ("min(t, 3)", (3, 3)),
-                               ("t^1.5", (0, math.inf)), ("t*(2 + sin(t))", (math.inf, math.inf)), ("(t - 3)/(t - 3)", (1, 1)),
+                               ("t^1.5", (math.inf, math.inf)), ("(1 + t)^-0.5", (0, 0)), ("(2 + sin(t))^1.5", (1, 3**1.5)),
+                               ("t*(2 + sin(t))", (math.inf, math.inf)), ("(t - 3)/(t - 3)", (1, 1)),
                                ("abs(-t)", (math.inf, math.inf)), ("(-t)^3", (-math.inf, -math.inf)), ("t^-2", (0, 0)), ("exp(0 - t)", (0, 0))):
             found = checker.limit(checker.formula(text))
             self.assertEqual([round(float(end), 12) for end in found], [round(end, 12) for end in expected], text)

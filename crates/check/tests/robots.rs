@@ -247,6 +247,13 @@ fn no_posture_makes_the_damping_faster_than_is_said() {
         seen = seen.max(found.at_start_per_s);
     }
     assert!(seen > 0.999 * anywhere, "{seen} of {anywhere}: for a planar arm the bound is attained");
+    // The largest bound of several counts, wherever it stands.
+    for order in [[0, 5], [5, 0]] {
+        let own = |index: usize| arm(index, &[1.0, 2.0]);
+        let bound = |agents: Vec<AgentSetup>| fastest_damping(&agreeing(agents)).unwrap().anywhere_per_s.unwrap();
+        let [first, second] = order.map(|index| bound(vec![own(index)]));
+        assert!(first != second && bound(order.map(own).to_vec()) == first.max(second), "{first}, {second}");
+    }
     // One robot without a bound leaves all without.
     setup.agents.push(tree(&[(JointKind::Revolute, Z, body(2.0)), (JointKind::Revolute, Z, [0.0; 10])]));
     let found = fastest_damping(&setup).unwrap();

@@ -96,6 +96,17 @@ fn masses(network: &str) -> String {
 
 const RING: &str = "edges = [[\"m-1\", \"m-2\"], [\"m-2\", \"m-3\"], [\"m-3\", \"m-1\"]]";
 
+/// The proof of a hypothesis.
+fn proof(scenario: &str, id: &str) -> Value {
+    let folder = folder();
+    let file = folder.path().join("own.toml");
+    fs::write(&file, scenario).unwrap();
+    let certificate = fs::read_to_string(certified(file.to_str().unwrap(), folder.path())).unwrap();
+    let certificate: Value = serde_json::from_str(&certificate).unwrap();
+    let entries = certificate["hypotheses"].as_array().unwrap();
+    entries.iter().find(|entry| entry["id"] == id).unwrap()["proof"].clone()
+}
+
 /// What `check` answers about a hypothesis, and what the checker makes of its proof.
 fn judged(scenario: &str, id: &str) -> (String, String) {
     let folder = folder();
@@ -127,6 +138,24 @@ fn what_formulas_do_for_ever_is_shown_or_refuted_by_a_witness() {
         ("1/log(t+3)", "violated"),
         ("1 - 0.01*t", "violated"),
         ("1 + t", "violated"),
+        // Functions of what decays, and of what stays.
+        ("2 + log(2 + exp(-t))", "holds"),
+        ("2 - sqrt(1 + exp(-t))", "holds"),
+        ("2 - atan(1 + exp(-t))", "holds"),
+        ("min(2, 1 + exp(-t))", "holds"),
+        ("max(0.5, exp(-t))", "holds"),
+        ("min(2 + exp(-t), 1 + exp(-2*t))", "holds"),
+        // After the run they come to a limit that is no weight, by way of every rule of limits.
+        ("1 - 0.7*atan(t/40)", "violated"),
+        ("0.9 - tanh(t/60)", "violated"),
+        ("1/(2 + exp(-t/40)) + 0.2 - 0.5*atan(t/40)", "violated"),
+        ("min(exp(-t), 1/(1 + t))", "violated"),
+        ("1 - min(2, 1.5 - exp(-t/40))", "violated"),
+        ("(1 + t)^0.5", "violated"),
+        ("(1 + t)^(-0.5)", "violated"),
+        // No limit: a time after the run at which it is no weight.
+        ("0.5 + sin(t/10)", "violated"),
+        ("1 + sin(t/20)^3 + 0.1*cos(3*t)", "violated"),
     ];
     for (weight, answer) in weights {
         let scenario = masses(&format!("weight = \"{weight}\"\ndelay.constant_s = 0.1\n{RING}"));
@@ -142,6 +171,12 @@ fn what_formulas_do_for_ever_is_shown_or_refuted_by_a_witness() {
         ("t", "violated"),
         ("sqrt(t)", "violated"),
         ("0.5 - 0.01*t", "violated"),
+        ("atan(1 + t)", "holds"),
+        ("sqrt(1 + exp(-t)) - 1", "holds"),
+        ("log(1 + exp(-t))", "holds"),
+        ("1 - 0.7*atan(t/40)", "violated"),
+        ("0.1 + 0.2*sin(t/10)", "violated"),
+        ("0.5*abs(cos(t/40)) - 0.1", "violated"),
     ];
     for (delay, answer) in delays {
         let scenario = masses(&format!("delay.formula_s = \"{delay}\"\n{RING}"));
@@ -169,6 +204,12 @@ fn proofs_reach_networks_that_are_not_shipped() {
     accepted(&format!("{}{}", phase("2"), phase("\"2 + 0*t\"")), "agreement", "holds");
     let lost = "delay.packets = { seed = 1, period_s = 0.1, latency_s = 0.02, loss.random.probability = 1 }";
     accepted(&format!("{lost}\n{RING}"), "bounded-delays", "violated");
+    // Three lost in a row at most: four periods, the latency and the jitter, exactly.
+    let ruled = "delay.packets = { seed = 1, period_s = 0.1, latency_s = 0.02, jitter_s = 0.05, \
+        loss.random = { probability = 0.5, most_consecutive = 3 } }";
+    accepted(&format!("{ruled}\n{RING}"), "bounded-delays", "holds");
+    let bound = proof(&masses(&format!("{ruled}\n{RING}")), "bounded-delays");
+    assert_eq!(bound["bound_s"], "0.47", "{bound}");
 }
 
 #[test]
