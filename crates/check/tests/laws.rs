@@ -10,7 +10,7 @@ use common::kinds::{
 };
 use common::{About, answer, answers, arm, masses};
 use forwardstep_check::hypothesis::Subject;
-use forwardstep_check::{Answer, Id, PracticalAnswer, Source, Theorem, check, practical};
+use forwardstep_check::{Answer, Finding, Id, PracticalAnswer, Source, Theorem, check, practical};
 use forwardstep_core::controller::{Floor, ParameterBounds};
 use forwardstep_core::expression::{Expression, Number};
 use forwardstep_core::robot::tree::JointKind::{Prismatic, Revolute};
@@ -381,6 +381,31 @@ fn the_linearised_period_tells_which_laws_settle_when_they_are_sampled() {
             assert_eq!((finding.name(), finding.answer()), ("linearised-sampling", answer), "{}", finding.because());
             assert_eq!(settles(&setup), settled, "{}", finding.because());
         }
+    }
+}
+
+#[test]
+fn of_several_agents_the_worst_linearised_period_is_shown() {
+    let psi = Expression::number(1.5);
+    let agents = [chain(&psi, 1, true), chain(&psi, 1, false)];
+    for period_s in [0.4, 0.8] {
+        let found = |agents: &[AgentSetup]| {
+            let mut setup = tracking(agents[0].clone(), vec![rest_at(0.2)]).sampled(1.0 / period_s);
+            let target = setup.agents[0].target.clone();
+            setup.agents = agents.iter().map(|own| AgentSetup { target: target.clone(), ..own.clone() }).collect();
+            match &practical(&setup).findings[..] {
+                [Finding::LinearisedSampling(found)] => (found.radius, found.leftmost),
+                other => panic!("{other:?}"),
+            }
+        };
+        let [first, second] = [found(&agents[..1]), found(&agents[1..])];
+        assert!(first != second && (first.0.max(second.0) >= 1.0) == (period_s > 0.5), "{first:?} {second:?}");
+        // A mode that grows counts by its size, one that overshoots by how far.
+        let first_is_worse = if period_s > 0.5 { first.0 > second.0 } else { first.1 < second.1 };
+        let worst = if first_is_worse { first } else { second };
+        let [mut turned, both] = [agents.clone(), agents.clone()];
+        turned.reverse();
+        assert_eq!([found(&both), found(&turned)], [worst; 2]);
     }
 }
 

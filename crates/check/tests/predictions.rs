@@ -21,7 +21,7 @@ use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::delay::{Delay, SawTooth};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
-use forwardstep_sim::push::{Course, Effect, Function, Push};
+use forwardstep_sim::push::{Between, Course, Effect, Function, Push, Table};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{Adaptive, Control, Exchange, Known, Outcome, Setup, Signal, VelocitySensor};
 
@@ -271,6 +271,11 @@ fn eq_what_pushes_feed_is_known_before_the_run_where_they_are_torques() {
     assert!((push_w(pushed(constant(), 15.0, f64::INFINITY)).unwrap() - 0.25 * 5.0 / 8.0).abs() < 1e-12);
     assert!((push_w(pushed(constant(), 5.0, 7.0)).unwrap() - 0.1 * 5.0 / 8.0).abs() < 1e-12);
     assert!((push_w(pushed([sine(2.0, 3.0), sine(-1.0, 9.0)], 0.0, 20.0)).unwrap() - 5.0 / 8.0).abs() < 1e-6);
+    // Of a table the largest size of every column counts: 2 and 1.
+    let values = vec![0.5, -1.0, -2.0, 0.3];
+    let table = Course::Table(Table { times_s: vec![0.0, 10.0], values, between: Between::Linear });
+    let push = Push { effect: Effect::Torque(table), from_s: 0.0, until_s: f64::INFINITY };
+    assert!((push_w(push).unwrap() - 5.0 / 8.0).abs() < 1e-12);
     let hand = Effect::HandOnAxes {
         axes: vec![0],
         stiffness: vec![1.0],

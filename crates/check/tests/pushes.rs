@@ -17,6 +17,7 @@ use forwardstep_check::{Answer, Id, NoPrediction, check, predict};
 use forwardstep_core::Gain;
 use forwardstep_core::controller::Floor;
 use forwardstep_core::expression::Expression;
+use forwardstep_core::plant::CascadeTerms;
 use forwardstep_core::reference::polynomial;
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip, PointMass};
 use forwardstep_sim::delay::Delay;
@@ -24,7 +25,8 @@ use forwardstep_sim::graph::Edge;
 use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push, Table};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Exchange, Known, Law, Method, Outcome, Robot, RobotSetup, Setup, Signal, Start, ThrustKind,
+    Adaptive, AgentSetup, ChainModel, Exchange, Known, Law, Method, Outcome, Robot, RobotSetup, Setup, Signal, Start,
+    ThrustKind,
 };
 
 const DAMPING: f64 = 5.0;
@@ -391,6 +393,17 @@ fn a_disturbance_of_a_cascade_is_covered_where_the_input_enters_a_strict_one() {
     assert_eq!(table(&[0.0, 1.0, 0.0, 2.0]), Answer::Holds);
     assert_eq!(table(&[0.0, 1.0, 0.3, 2.0]), Answer::NotCovered);
     assert_eq!(said(&alone(cascade(x(1), number(1.0), 1)), Id::MatchedDisturbance), None, "nobody is disturbed");
+    // Of three equations the first two are to be left alone.
+    let three = |values: &[f64]| {
+        let mut setup = alone(cascade(x(1), number(1.0), 1));
+        let regressors = vec![vec![number(0.0)], vec![number(0.0)], vec![x(0)]];
+        let terms = CascadeTerms::new(vec![x(1), x(2), number(0.0)], regressors, number(1.0)).unwrap();
+        setup.agents[0].robot.kind = Arc::new(ChainModel::Cascade(Arc::new(terms)));
+        setup.agents[0].pushes = vec![pulse(Effect::Torque(constant(values)))];
+        said(&setup, Id::MatchedDisturbance).unwrap().0
+    };
+    assert_eq!(three(&[0.0, 0.0, 0.7]), Answer::Holds);
+    assert_eq!([three(&[0.2, 0.0, 0.7]), three(&[0.0, 0.2, 0.7])], [Answer::NotCovered; 2]);
     // A chain of derivatives has one place only.
     let mut derivatives = alone(chain(&number(1.0), 1, true));
     derivatives.agents[0].pushes = vec![pulse(Effect::Torque(constant(&[0.3])))];
