@@ -1,6 +1,7 @@
 //! The designs in a setup: agents with the same roots, gains and kind of law, and what links they have.
 
 use forwardstep_core::expression::Number;
+use forwardstep_core::robot::TwoVelocity;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::{Following, FollowingDesign};
 use forwardstep_sim::reference::{Backstepping, Consensus, LinearReference, PureIntegral};
@@ -14,6 +15,7 @@ use super::dynamics::Heard;
 use super::form::Links;
 use super::formula::At;
 use super::laplacian::RootsOfAll;
+use super::lower::Outside;
 
 /// A design, with what an explanation needs of the setup.
 #[derive(Clone, Debug)]
@@ -147,6 +149,15 @@ impl Step {
     }
 }
 
+/// Whether the joints of a robot lose anything: D(q) v at its start, for a v without a zero.
+fn is_damped(agent: &AgentSetup) -> bool {
+    let Some(robot) = agent.robot.kind.lagrangian() else { return false };
+    let (q, v) = (&agent.start.q, vec![1.0; agent.start.q.len()]);
+    let motion = TwoVelocity { q, dq: &v, z: &v, dz: &v };
+    let mut evaluator = robot.evaluator();
+    evaluator.at(&agent.robot.theta, motion, &v).is_ok_and(|products| products.damped.iter().any(|lost| *lost != 0.0))
+}
+
 /// The designs of a setup, in the order of their first agents.
 pub fn cases(setup: &Setup) -> Vec<Case<'_>> {
     let mut cases: Vec<Case<'_>> = Vec::new();
@@ -215,6 +226,12 @@ fn alike(setup: &Setup) -> bool {
 }
 
 impl Case<'_> {
+    /// What its agents' equations of motion have beside those of the paper.
+    pub fn outside(&self) -> Outside {
+        let agents = || self.agents.iter().map(|agent| &self.setup.agents[*agent]);
+        Outside { damped: agents().any(is_damped), pushed: agents().any(|agent| !agent.pushes.is_empty()) }
+    }
+
     /// Whether weights and delays can be differentiated.
     pub fn links(&self) -> Links {
         let fixed = self.setup.network.schedule.constant_graph().is_some();

@@ -144,6 +144,10 @@ impl Notation {
                 let factors = [Symbol::new("D").above("T"), Symbol::new("K"), Symbol::new("y").derivative(1)];
                 return Formula::product(factors.map(Formula::from));
             }
+            Term::AttitudeDifference => Symbol::new("Δq").above("∗").derivative(k),
+            Term::External => {
+                Symbol::new("τ").below(if index.is_empty() { "ext".into() } else { format!("ext,{index}") })
+            }
             Term::AttitudeErrorRate => {
                 return Formula::product([Symbol::new("K").into(), Symbol::new("Δq").above("∗").derivative(k).into()]);
             }
@@ -311,6 +315,11 @@ fn operator(operator: Operator, index: &'static str) -> Option<Operated> {
         Operator::Coriolis => factor("C"),
         Operator::Damping => factor("K"),
         Operator::Mass => factor("m"),
+        Operator::Viscous => factor("D"),
+        Operator::AttitudeMap => {
+            let of = vec![Symbol::new("Δq").above("∗").into()];
+            Some(Operated::Factor(Formula::Function(Symbol::new("D"), of)))
+        }
         Operator::Filter => Some(Operated::Factor(Symbol::new("Λ").below("f").into())),
         Operator::Momentum => {
             Some(Operated::Factor(Formula::Function(Symbol::new("S"), vec![Symbol::new("h").into()])))
