@@ -40,7 +40,8 @@ impl Case<'_> {
             | Led::Backstepping
             | Led::Leader(..)
             | Led::Target
-            | Led::Outside(..) => None,
+            | Led::Outside(..)
+            | Led::Refuted(..) => None,
         }
     }
 

@@ -4,6 +4,7 @@ use forwardstep_core::expression::Number;
 use forwardstep_core::robot::TwoVelocity;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::{Following, FollowingDesign};
+use forwardstep_sim::probe::{Counterexample, probe_reference};
 use forwardstep_sim::reference::{Backstepping, Consensus, LinearReference, PureIntegral};
 use forwardstep_sim::{
     Adaptive, AgentSetup, AttitudeLaw, ChainLaw, ChainModel, ChainStep, Exchange, Known, PositionOnlyLaw, Setup,
@@ -53,6 +54,8 @@ pub enum Led {
     Target,
     /// Reference dynamics from outside, and what their author says that they are.
     Outside(&'static str, Option<LinearReference>),
+    /// The same, where at some state they are not what their author says.
+    Refuted(&'static str, Counterexample),
 }
 
 /// A kind of law, with the numbers that the lower subsystem has.
@@ -161,8 +164,13 @@ fn is_damped(agent: &AgentSetup) -> bool {
 /// The designs of a setup, in the order of their first agents.
 pub fn cases(setup: &Setup) -> Vec<Case<'_>> {
     let mut cases: Vec<Case<'_>> = Vec::new();
+    let refuted = refuted(setup);
     for (index, agent) in setup.agents.iter().enumerate() {
-        let (led, step) = (led(setup, index), Step::of(agent));
+        let led = match (led(setup, index), &refuted) {
+            (Led::Outside(name, Some(_)), Some(found)) => Led::Refuted(name, found.clone()),
+            (led, _) => led,
+        };
+        let step = Step::of(agent);
         let roots: Vec<BigRational> = agent.roots_per_s.iter().map(|root| Number::written(*root)).collect();
         let lambda = Number::written(agent.manipulability);
         let same =
@@ -175,6 +183,13 @@ pub fn cases(setup: &Setup) -> Vec<Case<'_>> {
         cases.push(Case { setup, agents: vec![index], led, step, roots, lambda, roots_of_all, alike });
     }
     cases
+}
+
+/// Where reference dynamics from outside are not what their author says; nothing of those that are shipped.
+fn refuted(setup: &Setup) -> Option<Counterexample> {
+    let outside = |agent: usize| matches!(led(setup, agent), Led::Outside(_, Some(_)));
+    // A setup that cannot be built is refused before anybody asks what follows from it.
+    (0..setup.agents.len()).any(outside).then(|| probe_reference(setup).unwrap_or_default().found)?
 }
 
 fn led(setup: &Setup, agent: usize) -> Led {

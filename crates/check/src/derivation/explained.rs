@@ -26,6 +26,11 @@ impl Case<'_> {
             (Led::Outside(name, None), _) => self.silent(&format!(
                 "{name} come from outside and do not say that they are linear, so nothing is derived from them."
             )),
+            (Led::Refuted(name, found), _) => self.silent(&format!(
+                "{name} come from outside, and they are not what they say: {}. Nothing is derived from them until what `linear` returns is z^(ℓ) \
+                 of the dynamics; `forwardstep check` tries it too.",
+                crate::hypothesis::counterexample(found)
+            )),
             (_, Step::Outside(name)) => {
                 self.silent(&format!("{name} comes from outside, so that nothing is known here of what it does to s."))
             }
@@ -69,6 +74,7 @@ impl Case<'_> {
             Led::Leader(..) => self.smooth().and_then(|smooth| smooth.dynamics(Links::Constant).ok()),
             Led::Target => tracking(&self.roots, self.measured()),
             Led::Outside(_, linear) => linear.as_ref().map(declared),
+            Led::Refuted(..) => None,
         }
     }
 

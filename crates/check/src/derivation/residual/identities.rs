@@ -131,7 +131,9 @@ pub(super) fn identities(case: &Case<'_>) -> Vec<Identity> {
             list.adaptation(case);
             in_order(list.found)
         }
-        (_, Step::Outside(_)) | (Led::Outside(_, None), _) | (_, Step::Thrust(ThrustStep::Continuous, _)) => Vec::new(),
+        (_, Step::Outside(_))
+        | (Led::Outside(_, None) | Led::Refuted(..), _)
+        | (_, Step::Thrust(ThrustStep::Continuous, _)) => Vec::new(),
         (_, Step::Robot { .. } | Step::PositionOnly(_) | Step::Thrust(..) | Step::Chain(..)) => {
             let found = case.dynamics().map_or_else(Vec::new, |dynamics| linear(case, &dynamics, notation));
             in_order(found)
