@@ -293,9 +293,12 @@ impl Notation {
     }
 }
 
-/// An exponent; orders are small.
+/// An exponent: there are no more than 32 roots.
 fn power(r: usize) -> &'static str {
-    const POWERS: [&str; 13] = ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12"];
+    const POWERS: [&str; 34] = [
+        "0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13", "14", "15", "16", "17", "18", "19",
+        "20", "21", "22", "23", "24", "25", "26", "27", "28", "29", "30", "31", "32", "33",
+    ];
     POWERS.get(r).copied().unwrap_or("…")
 }
 
