@@ -149,6 +149,9 @@ pub(crate) struct ExplainOptions {
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
+    /// Simulate the scenario in continuous time, and print how well every equation holds along the run: its largest residual, with agent and time
+    #[arg(long, conflicts_with = "latex")]
+    pub(crate) along: bool,
 }
 
 #[derive(Debug, Args)]

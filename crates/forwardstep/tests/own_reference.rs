@@ -9,10 +9,12 @@ mod own_reference;
 mod support;
 
 use std::fs;
+use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::sync::Arc;
 
 use forwardstep::check::derivation::explain;
+use forwardstep::check::derivation::residual::{Missing, Residuals};
 use forwardstep::check::{Answer, Id, Report, Rigour, Theorem, check, predict};
 use forwardstep::io::SourceText;
 use forwardstep::io::output::{TextLine, explanation_lines};
@@ -25,7 +27,7 @@ use forwardstep::sim::graph::Edge;
 use forwardstep::sim::push::{Course, Effect, Function, Push};
 use forwardstep::sim::reference::Consensus;
 use forwardstep::sim::schedule::{Phase, Schedule};
-use forwardstep::sim::{AgentSetup, Network, Outcome, Setup, Signal, simulate};
+use forwardstep::sim::{AgentSetup, Network, Outcome, Setup, Signal, simulate, simulate_moments};
 use miette::Diagnostic;
 use own_reference::Anchored;
 use support::assert_report_is_rebuilt;
@@ -77,6 +79,71 @@ fn their_linear_form_is_explained() {
     let own = "z\u{308}_i = −3.7 z\u{307}_i − 4.1 q\u{307}_i − 1.4 q_i − Σ_j w_ij";
     assert!(has(own) && has("[z\u{307}_i + 3 q\u{307}_i + 2 q_i − 2 q_j(t − T_ij)] + c_i"), "{lines:?}");
     assert!(has("q\u{308}_i = z\u{307}_i + s\u{307}_i"), "{lines:?}");
+    // Along a run it holds; c is known to the dynamics alone.
+    let mut residuals = Residuals::of(&setup).unwrap();
+    simulate_moments(&setup, &mut |_| ControlFlow::Continue(()), &mut |moment| residuals.look(moment)).unwrap();
+    let found = residuals.found().remove(0).1;
+    assert!(found.iter().all(|one| one.holds() != Some(false)), "{found:?}");
+    assert_eq!(found.iter().filter(|one| one.largest == Err(Missing::Term)).count(), 3, "{found:?}");
+}
+
+/// The same, but the linear form that it gives is not quite its own.
+#[derive(Debug)]
+struct Misdescribed(Arc<dyn ReferenceDynamics>);
+
+impl ReferenceDynamics for Misdescribed {
+    fn words(&self) -> ReferenceWords {
+        self.0.words()
+    }
+    fn interface(&self) -> ReferenceInterface {
+        self.0.interface()
+    }
+    fn free_derivatives(&self, roots: usize) -> usize {
+        self.0.free_derivatives(roots)
+    }
+    fn known(&self) -> Known {
+        self.0.known()
+    }
+    fn linear(&self, agent: &AgentSetup, exchange: Exchange) -> Option<LinearReference> {
+        let mut linear = self.0.linear(agent, exchange)?;
+        linear.coupled.z[1] += 1e-3;
+        Some(linear)
+    }
+    fn check(&self, setup: &Setup) -> Result<(), SetupError> {
+        self.0.check(setup)
+    }
+    fn dynamics(&self, assembly: &Assembly<'_>) -> Result<Dynamics, SetupError> {
+        self.0.dynamics(assembly)
+    }
+}
+
+#[test]
+fn a_linear_form_that_is_not_theirs_is_found_out_and_nothing_is_derived_from_it() {
+    let mut setup = read(HOMES).unwrap().setup;
+    let probed = |setup: &Setup| {
+        let report = check(setup);
+        let hypothesis =
+            report.hypotheses.iter().find(|one| one.because().contains("they are what they are stepped as"));
+        hypothesis.map(|one| (one.answer(), one.because())).unwrap()
+    };
+    assert_eq!(probed(&setup).0, Answer::NotShown);
+    setup.reference = Arc::new(Misdescribed(setup.reference));
+    let (answer, words) = probed(&setup);
+    assert_eq!(answer, Answer::Violated);
+    assert!(
+        words.contains("z^(ℓ) is the linear form that `linear` says it is") && words.contains(" in place of "),
+        "{words}"
+    );
+    let explanation = explain(&setup);
+    assert_eq!((explanation.designs[0].order, explanation.designs[0].degrees), (None, None));
+    let lines = explanation_lines(&setup, &explanation);
+    assert!(lines.iter().all(|line| !matches!(line, TextLine::Formula(..))), "{lines:?}");
+    let said = |part: &str| lines.iter().any(|line| matches!(line, TextLine::Words(words) if words.contains(part)));
+    assert!(
+        said("they are not what they say") && said("until what `linear` returns is z^(ℓ) of the dynamics"),
+        "{lines:?}"
+    );
+    assert_eq!(Residuals::of(&setup).unwrap().found()[0].1, []);
 }
 
 #[test]

@@ -57,7 +57,7 @@ pub fn simulate_watched(
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     watch: &mut dyn Watch,
 ) -> Result<Outcome, SetupError> {
-    simulate_with(setup, observer, &mut |_| {}, Some(watch))
+    simulate_with(setup, observer, &mut |_| {}, Some(watch), None)
 }
 
 /// Shows `step`, the last that was made, to `watch`, after the sample at its start if there was one; `samples` were shown before.

@@ -15,6 +15,7 @@ pub mod formula;
 pub mod graph;
 mod inside;
 pub mod leader;
+mod moment;
 pub mod network;
 pub mod probe;
 pub mod push;
@@ -40,6 +41,7 @@ pub use closed_loop::{
     Assembly, Block, SampledJacobian, SetupError, VelocityQuantity, recipe, recipes, sampled_jacobian, validate,
 };
 pub use inside::{Inside, Place, Watch, simulate_watched};
+pub use moment::{Moment, StateRate};
 pub use network::Network;
 pub use recording::{
     Breakdown, BreakdownCause, ClippedSamples, Column, Drive, Ending, GainRates, Outcome, Progress, Recording,
@@ -51,7 +53,7 @@ pub use setup::{
     ATOL, Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Failures, Method, RECORD_EVERY_S, RTOL, RobotSetup,
     Sensors, Setup, Solver, Start, TimeSpan, VelocitySensor,
 };
-pub use simulate::{recorded_columns, simulate, simulate_samples};
+pub use simulate::{recorded_columns, simulate, simulate_moments, simulate_samples};
 pub use system::{
     ActuatorLimits, Attachments, Coordinates, Interface, Law, LawWords, Line, LineValue, PositionKind, Robot,
     RobotInterface,

@@ -74,6 +74,10 @@ pub enum Identity {
     Axes,
     /// z(0) is what was asked for.
     Start,
+    /// z^(ℓ) is the linear form that the author says it is.
+    LinearForm,
+    /// ℓ of that form is the order of the dynamics: z^(ℓ) is a rate of a state, or the derivative of one.
+    LinearOrder,
 }
 
 impl Identity {
@@ -93,6 +97,8 @@ impl Identity {
             Identity::Affine => "ẋ = A x + b, with A whatever is heard and measured",
             Identity::Axes => "each axis has the same A",
             Identity::Start => "z(0) is what was asked for",
+            Identity::LinearForm => "z^(ℓ) is the linear form that `linear` says it is",
+            Identity::LinearOrder => "ℓ of the form that `linear` gives is that of the dynamics",
         }
     }
 }

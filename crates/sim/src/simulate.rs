@@ -7,11 +7,12 @@ use forwardstep_core::controller::Trouble;
 use crate::closed_loop::{ClosedLoop, SetupError};
 use crate::engine::{Failure, FailureCause, Integrator, Refuted, Step};
 use crate::inside::{Watch, show};
+use crate::moment::{Moment, Moments};
 use crate::network::Network;
 use crate::recording::{
     Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, SampleTaken, Signal, Stiffness,
 };
-use crate::setup::Setup;
+use crate::setup::{Setup, TimeSpan};
 
 /// Rows are made room for in chunks of this many.
 const ROWS_PER_CHUNK: usize = 4096;
@@ -44,15 +45,29 @@ pub fn simulate_samples(
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     samples: &mut dyn FnMut(SampleTaken<'_>),
 ) -> Result<Outcome, SetupError> {
-    simulate_with(setup, observer, samples, None)
+    simulate_with(setup, observer, samples, None, None)
 }
 
-/// The same, and lets `watch` look inside every step.
+/// The same, and hands every agent with its rates at every row to `each`, before the row is recorded; nothing when control is digital, where
+/// reference dynamics have no rates. The run has the same bits.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_moments(
+    setup: &Setup,
+    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    each: &mut dyn FnMut(Moment<'_>),
+) -> Result<Outcome, SetupError> {
+    simulate_with(setup, observer, &mut |_| {}, None, Some(each))
+}
+
+/// The same, and lets `watch` look inside every step, or `each` at every row.
 pub(crate) fn simulate_with(
     setup: &Setup,
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     samples: &mut dyn FnMut(SampleTaken<'_>),
     mut watch: Option<&mut dyn Watch>,
+    each: Option<&mut dyn FnMut(Moment<'_>)>,
 ) -> Result<Outcome, SetupError> {
     let mut shown = 0;
     let mut closed_loop = assembled(setup)?;
@@ -66,6 +81,7 @@ pub(crate) fn simulate_with(
     let mut integrator = Integrator::new(network, &setup.solver, end_s, closed_loop.start(), ports, entries);
     let mut recorder = Recorder::new(setup, &closed_loop);
     let mut pace = Pace::new(setup);
+    let mut moments = each.map(|each| (Moments::new(setup, &closed_loop), each));
 
     let ending = loop {
         match integrator.advance(&mut closed_loop) {
@@ -74,6 +90,9 @@ pub(crate) fn simulate_with(
                 closed_loop.reached(step.end_s);
                 if let Some(watch) = &mut watch {
                     show(&mut integrator, &mut closed_loop, step, &mut shown, *watch);
+                }
+                if let Some((moments, each)) = &mut moments {
+                    moments.show(&mut integrator, &mut closed_loop, step, *each);
                 }
                 if let Some(breakdown) = recorder.record(&mut integrator, &mut closed_loop, step) {
                     break Ending::BrokeDown(breakdown);
@@ -185,14 +204,43 @@ struct Recorder<'a> {
     recording: Recording,
     /// First column of every agent.
     first_column: Vec<usize>,
-    /// Rows written so far; row k belongs to t = k · record_every.
-    rows: usize,
+    rows: Rows,
+}
+
+/// The instants of rows: row k belongs to t = k · record_every.
+pub(crate) struct Rows {
+    time: TimeSpan,
+    /// Rows so far.
+    count: usize,
+    ended: bool,
+}
+
+impl Rows {
+    pub(crate) fn new(time: TimeSpan) -> Self {
+        Rows { time, count: 0, ended: false }
+    }
+
+    /// The instant of the next row, s, if it falls into `step`.
+    pub(crate) fn next_in(&mut self, step: Step) -> Option<f64> {
+        let end_s = self.time.end_s;
+        let t_s = self.count as f64 * self.time.record_every_s;
+        // A row that the horizon rounds away is the last row.
+        let last = t_s >= end_s * (1.0 - 1e-12);
+        let t_s = if last { end_s } else { t_s };
+        let inside = t_s < step.end_s || last && step.end_s >= end_s;
+        if !inside || self.ended {
+            return None;
+        }
+        self.ended = t_s == end_s;
+        self.count += 1;
+        Some(t_s)
+    }
 }
 
 impl<'a> Recorder<'a> {
     fn new(setup: &'a Setup, closed_loop: &ClosedLoop<'_>) -> Self {
         let (columns, first_column) = empty_columns(closed_loop, setup.agents.len());
-        Recorder { setup, recording: Recording { t_s: Vec::new(), columns }, first_column, rows: 0 }
+        Recorder { setup, recording: Recording { t_s: Vec::new(), columns }, first_column, rows: Rows::new(setup.time) }
     }
 
     /// Writes the rows that fall into `step`; the breakdown, if an enforced limit was left.
@@ -202,33 +250,25 @@ impl<'a> Recorder<'a> {
         closed_loop: &mut ClosedLoop<'_>,
         step: Step,
     ) -> Option<Breakdown> {
-        let end_s = self.setup.time.end_s;
-        loop {
-            let t_s = self.rows as f64 * self.setup.time.record_every_s;
-            // A row that the horizon rounds away is the last row.
-            let last = t_s >= end_s * (1.0 - 1e-12);
-            let t_s = if last { end_s } else { t_s };
-            let inside = t_s < step.end_s || last && step.end_s >= end_s;
-            if !inside || self.recording.t_s.last() == Some(&end_s) {
-                return None;
-            }
+        while let Some(t_s) = self.rows.next_in(step) {
             self.row(integrator, closed_loop, t_s);
             if let Some(breakdown) = self.limit_left(t_s) {
                 return Some(breakdown);
             }
         }
+        None
     }
 
     fn row(&mut self, integrator: &mut Integrator<'_>, closed_loop: &mut ClosedLoop<'_>, t_s: f64) {
-        if self.rows.is_multiple_of(ROWS_PER_CHUNK) {
-            let left = (self.setup.time.end_s / self.setup.time.record_every_s) as usize + 2 - self.rows.min(1);
-            let chunk = ROWS_PER_CHUNK.min(left.saturating_sub(self.rows) + 2);
+        let rows = self.recording.t_s.len();
+        if rows.is_multiple_of(ROWS_PER_CHUNK) {
+            let left = (self.setup.time.end_s / self.setup.time.record_every_s) as usize + 2 - rows.min(1);
+            let chunk = ROWS_PER_CHUNK.min(left.saturating_sub(rows) + 2);
             self.recording.t_s.reserve_exact(chunk);
             for column in &mut self.recording.columns {
                 column.values.reserve_exact(chunk);
             }
         }
-        self.rows += 1;
         self.recording.t_s.push(t_s);
         let (x, heard) = integrator.look_inside(t_s);
         let (columns, first) = (&mut self.recording.columns, &self.first_column);

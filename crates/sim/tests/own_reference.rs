@@ -12,7 +12,8 @@ use forwardstep_core::reference::{
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::probe::{Identity, STATES, probe_reference};
 use forwardstep_sim::reference::{
-    Dynamics, LinearReference, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords, Roots,
+    Consensus, Dynamics, LinearReference, LinearTerms, PureIntegral, ReferenceDynamics, ReferenceFamily,
+    ReferenceInterface, ReferenceWords, Roots,
 };
 use forwardstep_sim::system::{Declaration, Known as Knowledge};
 use forwardstep_sim::{
@@ -43,6 +44,17 @@ enum Way {
     OtherAcceleration,
     /// It starts from half of what was asked for.
     Halved,
+    /// It does not say what its linear form is, or says something else: by itself, beside the weights, of what is heard, without the
+    /// number, with q̈, with a derivative of z that there is not, and of another order.
+    SaysNothing,
+    SaysOtherOwn,
+    SaysOtherCoupled,
+    SaysOtherHeard,
+    SaysNoConstant,
+    SaysAcceleration,
+    SaysTooMuch,
+    SaysOtherOrder,
+    SaysNextOrder,
     /// Not a number.
     NotANumber,
     /// It is built for one agent more.
@@ -78,8 +90,29 @@ impl ReferenceDynamics for Own {
         Knowledge::Declared(Declaration { source: "no proof".into(), promises: "nothing".into(), claims: Vec::new() })
     }
 
-    fn linear(&self, _: &AgentSetup, _: Exchange) -> Option<LinearReference> {
-        None
+    /// z̈ = −2 ż − q̇ + Σ w [heard − q] + 0.3, or something else.
+    fn linear(&self, _: &AgentSetup, exchange: Exchange) -> Option<LinearReference> {
+        let velocity = if exchange == Exchange::Position { 0.0 } else { -1.0 };
+        let mut linear = LinearReference {
+            order: 2,
+            own: LinearTerms { q: vec![0.0, -1.0], z: vec![0.0, -2.0] },
+            constant: true,
+            coupled: LinearTerms { q: vec![-1.0], z: Vec::new() },
+            heard: [-1.0, velocity],
+        };
+        match self.way {
+            Way::SaysNothing => return None,
+            Way::SaysOtherOwn => linear.own.z[1] = -2.000_1,
+            Way::SaysOtherCoupled => linear.coupled.z = vec![1e-4],
+            Way::SaysOtherHeard => linear.heard[1] += 1e-4,
+            Way::SaysNoConstant => linear.constant = false,
+            Way::SaysAcceleration => linear.own.q.push(1e-4),
+            Way::SaysTooMuch => linear.own.z.push(1e-4),
+            Way::SaysOtherOrder => linear.order = 4,
+            Way::SaysNextOrder => linear.order = 3,
+            _ => {}
+        }
+        Some(linear)
     }
 
     fn check(&self, _: &Setup) -> Result<(), SetupError> {
@@ -196,6 +229,26 @@ fn setup(way: Way, exchange: Exchange) -> Setup {
     Setup::new(vec![mass(0), mass(1)], Arc::new(Own { way, exchange }), exchange, network, 3.0)
 }
 
+/// Shipped ones say their form too, (3) and (23) that of the derivative of what they integrate.
+#[test]
+fn what_shipped_reference_dynamics_say_of_themselves_is_so() {
+    let shipped: [(Arc<dyn ReferenceDynamics>, &[usize]); 2] =
+        [(Arc::new(Consensus), &[1, 2, 3, 6]), (Arc::new(PureIntegral), &[2])];
+    for ((reference, orders), exchange) in shipped.iter().flat_map(|kind| EXCHANGES.map(|exchange| (kind, exchange))) {
+        for order in orders.iter().filter(|order| exchange == Exchange::PositionVelocity || **order > 1) {
+            let mut setup = setup(Way::Plain, exchange);
+            setup.reference = Arc::clone(reference);
+            for (i, agent) in setup.agents.iter_mut().enumerate() {
+                agent.roots_per_s = (0..*order).map(|r| 0.5 + 0.7 * r as f64 + 0.1 * i as f64).collect();
+                agent.manipulability = 0.3;
+            }
+            assert!(setup.reference.linear(&setup.agents[0], exchange).is_some());
+            let probe = probe_reference(&setup).unwrap();
+            assert_eq!((probe.states, probe.found), (STATES, None), "{order} {exchange:?}");
+        }
+    }
+}
+
 const EXCHANGES: [Exchange; 2] = [Exchange::Position, Exchange::PositionVelocity];
 
 #[test]
@@ -203,6 +256,15 @@ fn what_they_say_of_themselves_is_found_out() {
     for exchange in EXCHANGES {
         for (way, found) in [
             (Way::Plain, None),
+            (Way::SaysNothing, None),
+            (Way::SaysOtherOwn, Some(Identity::LinearForm)),
+            (Way::SaysOtherCoupled, Some(Identity::LinearForm)),
+            (Way::SaysOtherHeard, Some(Identity::LinearForm)),
+            (Way::SaysNoConstant, Some(Identity::LinearForm)),
+            (Way::SaysAcceleration, Some(Identity::LinearForm)),
+            (Way::SaysTooMuch, Some(Identity::LinearForm)),
+            (Way::SaysOtherOrder, Some(Identity::LinearOrder)),
+            (Way::SaysNextOrder, Some(Identity::LinearForm)),
             (Way::Saturated, Some(Identity::Affine)),
             (Way::Bilinear, Some(Identity::Affine)),
             (Way::Uneven, Some(Identity::Axes)),

@@ -9,6 +9,7 @@ use super::form::{Combination, Form, Letter, Operator, Quantity, Term};
 use super::formula::{Formula, Sign, Symbol};
 use super::lower;
 use super::polynomial::Polynomial;
+use super::quaternion::{self, Factor, Products};
 use super::words;
 
 /// (97): ż.
@@ -41,12 +42,40 @@ pub(super) fn error(reference: &Form) -> Form {
     })
 }
 
-/// (108): the derivative of ẏ + Λ_f y = K Δq*, with (106) in it.
-pub(super) fn filter_rate() -> Option<(Form, Form)> {
+/// (100): ẏ + Λ_f y = K Δq*.
+pub(super) fn filter() -> (Form, Form) {
     let y = Quantity::own(Letter::Filter);
     let left = Combination::of(y, Polynomial::power(1)).plus(y.under(Operator::Filter), &Polynomial::one());
-    let right = Combination::of(nonlinear(Term::AttitudeErrorRate), Polynomial::one());
-    let differentiated = |all| Form::own(all).differentiated(super::form::Links::Constant).ok();
+    (Form::own(left), Form::own(Combination::of(nonlinear(Term::AttitudeErrorRate), Polynomial::one())))
+}
+
+/// (106): Δq̇* = D(Δq*) (ω − z), where s = ω − z and D(Δq*) v is ½ Δq* v, a product of quaternions.
+pub(super) fn difference_rate() -> Form {
+    let s = Quantity::own(Letter::Error).under(Operator::AttitudeMap);
+    Form::own(Combination::of(s, Polynomial::one()))
+}
+
+/// How (106) follows: the derivative of Δq* = q_z⁻¹ q, and what stands behind Δq* in it.
+fn kinematics(mut section: Section) -> Section {
+    let symbol = |below: &'static str| Symbol::new("q").below(below);
+    for (factor, left) in [(Factor::Attitude, symbol("")), (Factor::ReferenceAttitude, symbol("z"))] {
+        if let Some(rate) = Products::of(&[factor]).differentiated() {
+            section = section.formula(Formula::equal(left.derivative(1), rate.formula()), "");
+        }
+    }
+    let delta = Symbol::new("Δq").above("∗");
+    section = section.formula(Formula::equal(delta.clone(), Products::of(&quaternion::difference()).formula()), "");
+    if let Some(behind) = quaternion::turning() {
+        let product = Formula::product([delta.clone().into(), Formula::bracket(behind.formula())]);
+        section = section.formula(Formula::equal(delta.derivative(1), product), "");
+    }
+    section
+}
+
+/// (108): the derivative of ẏ + Λ_f y = K Δq*, with (106) in it.
+pub(super) fn filter_rate() -> Option<(Form, Form)> {
+    let (left, right) = filter();
+    let differentiated = |form: Form| form.differentiated(super::form::Links::Constant).ok();
     Some((differentiated(left)?, differentiated(right)?))
 }
 
@@ -54,28 +83,28 @@ pub(super) fn filter_rate() -> Option<(Form, Form)> {
 pub(super) fn explained(case: &Case<'_>, gains: &[BigRational; 2]) -> Explained {
     let notation = case.notation();
     let reference = reference(gains);
-    let lower = lower::attitude();
+    let lower = lower::attitude(case.outside());
     let (z, s) = (Quantity::own(Letter::Reference), Quantity::own(Letter::Error));
     let definition = Formula::sum([
         (Sign::Plus, notation.quantity(Quantity::own(Letter::Position), 0)),
         (Sign::Minus, notation.quantity(z, 0)),
     ]);
     let delta = notation.quantity(Quantity::own(Letter::Deviation), 1);
-    let delta_q = Formula::from(Symbol::new("Δq").above("∗").derivative(1));
-    let difference = Formula::product([
-        Formula::Function(Symbol::new("D"), vec![Symbol::new("Δq").above("∗").into()]),
-        notation.quantity(s, 0),
-    ]);
     let input = Quantity::own(Letter::Term(lower.input));
     let mut controller = Section::new(Subject::Controller)
-        .formula(Formula::equal(notation.form(&lower.plant), notation.quantity(input, 0)), "(94)")
+        .formula(lower.motion(&notation), "(94)")
         .formula(Formula::equal(notation.quantity(input, 0), notation.form(&lower.law)), "(99)");
     for (formula, place) in adaptation::of(case, &notation) {
         controller = controller.formula(formula, place);
     }
-    controller = controller
-        .words("Δq* is the quaternion of R_zᵀR, and R and R_z turn with ω and z, so it turns with their difference.")
-        .formula(Formula::equal(delta_q, difference), "(106)");
+    controller = controller.words(
+        "Δq* is the quaternion of R_zᵀR, and R and R_z turn with ω and z. With products of quaternions, in which a velocity stands \
+         for a quaternion without a scalar part, and z in coordinates of the body:",
+    );
+    let difference = nonlinear(Term::AttitudeDifference);
+    controller = kinematics(controller)
+        .words("Half the product with a velocity behind it is the matrix D of (98), so that")
+        .formula(notation.equation(difference, 1, &difference_rate()), "(106)");
     let cascade = Section::new(Subject::Cascade)
         .words("Δω = ω − ω_d. The kinematics are not linear, and stand for themselves; ω, z and s enter linearly.")
         .system(vec![Formula::equal(delta, notation.form(&error(&reference)))], "(107), first line")

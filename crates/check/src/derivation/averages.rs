@@ -30,17 +30,28 @@ impl Case<'_> {
         Explained { agents: self.agents.clone(), order: Some(upper.order), degrees: None, sections }
     }
 
+    /// The power of the chain of averages at which it begins; `None` where there is none.
+    pub(super) fn averages_from(&self) -> Option<usize> {
+        match &self.led {
+            Led::Consensus(Heard::Positions) | Led::PureIntegral(Heard::Positions) => Some(0),
+            Led::Consensus(Heard::Velocities) | Led::PureIntegral(Heard::Velocities) => Some(1),
+            Led::Consensus(Heard::Coupled)
+            | Led::PureIntegral(Heard::Coupled)
+            | Led::Backstepping
+            | Led::Leader(..)
+            | Led::Target
+            | Led::Outside(..)
+            | Led::Refuted(..) => None,
+        }
+    }
+
     pub(super) fn laplacian(&self, upper: &Upper, notation: &Notation, places: &Places) -> Option<Section> {
-        let from = match &self.led {
-            Led::Consensus(Heard::Positions) | Led::PureIntegral(Heard::Positions) => 0,
-            Led::Consensus(Heard::Velocities) | Led::PureIntegral(Heard::Velocities) => 1,
-            Led::Consensus(Heard::Coupled) | Led::PureIntegral(Heard::Coupled) => {
-                let words = "What is heard is a nonlinear function of differences, so that there is no matrix; the argument is the same, since \
-                             that function is odd and grows.";
-                return Some(Section::new(Subject::Laplacian).words(words));
-            }
-            Led::Backstepping | Led::Leader(..) | Led::Target | Led::Outside(..) => return None,
-        };
+        if let Led::Consensus(Heard::Coupled) | Led::PureIntegral(Heard::Coupled) = &self.led {
+            let words = "What is heard is a nonlinear function of differences, so that there is no matrix; the argument is the same, since \
+                         that function is odd and grows.";
+            return Some(Section::new(Subject::Laplacian).words(words));
+        }
+        let from = self.averages_from()?;
         let section = Section::new(Subject::Laplacian);
         let Some(laplacian) = upper.laplacian(chain(&self.roots, from, self.roots_of_all)) else {
             return Some(section.words(

@@ -1,8 +1,10 @@
 //! The designs in a setup: agents with the same roots, gains and kind of law, and what links they have.
 
 use forwardstep_core::expression::Number;
+use forwardstep_core::robot::TwoVelocity;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::{Following, FollowingDesign};
+use forwardstep_sim::probe::{Counterexample, probe_reference};
 use forwardstep_sim::reference::{Backstepping, Consensus, LinearReference, PureIntegral};
 use forwardstep_sim::{
     Adaptive, AgentSetup, AttitudeLaw, ChainLaw, ChainModel, ChainStep, Exchange, Known, PositionOnlyLaw, Setup,
@@ -14,6 +16,7 @@ use super::dynamics::Heard;
 use super::form::Links;
 use super::formula::At;
 use super::laplacian::RootsOfAll;
+use super::lower::Outside;
 
 /// A design, with what an explanation needs of the setup.
 #[derive(Clone, Debug)]
@@ -51,6 +54,8 @@ pub enum Led {
     Target,
     /// Reference dynamics from outside, and what their author says that they are.
     Outside(&'static str, Option<LinearReference>),
+    /// The same, where at some state they are not what their author says.
+    Refuted(&'static str, Counterexample),
 }
 
 /// A kind of law, with the numbers that the lower subsystem has.
@@ -147,11 +152,25 @@ impl Step {
     }
 }
 
+/// Whether the joints of a robot lose anything: D(q) v at its start, for a v without a zero.
+fn is_damped(agent: &AgentSetup) -> bool {
+    let Some(robot) = agent.robot.kind.lagrangian() else { return false };
+    let (q, v) = (&agent.start.q, vec![1.0; agent.start.q.len()]);
+    let motion = TwoVelocity { q, dq: &v, z: &v, dz: &v };
+    let mut evaluator = robot.evaluator();
+    evaluator.at(&agent.robot.theta, motion, &v).is_ok_and(|products| products.damped.iter().any(|lost| *lost != 0.0))
+}
+
 /// The designs of a setup, in the order of their first agents.
 pub fn cases(setup: &Setup) -> Vec<Case<'_>> {
     let mut cases: Vec<Case<'_>> = Vec::new();
+    let refuted = refuted(setup);
     for (index, agent) in setup.agents.iter().enumerate() {
-        let (led, step) = (led(setup, index), Step::of(agent));
+        let led = match (led(setup, index), &refuted) {
+            (Led::Outside(name, Some(_)), Some(found)) => Led::Refuted(name, found.clone()),
+            (led, _) => led,
+        };
+        let step = Step::of(agent);
         let roots: Vec<BigRational> = agent.roots_per_s.iter().map(|root| Number::written(*root)).collect();
         let lambda = Number::written(agent.manipulability);
         let same =
@@ -164,6 +183,13 @@ pub fn cases(setup: &Setup) -> Vec<Case<'_>> {
         cases.push(Case { setup, agents: vec![index], led, step, roots, lambda, roots_of_all, alike });
     }
     cases
+}
+
+/// Where reference dynamics from outside are not what their author says; nothing of those that are shipped.
+fn refuted(setup: &Setup) -> Option<Counterexample> {
+    let outside = |agent: usize| matches!(led(setup, agent), Led::Outside(_, Some(_)));
+    // A setup that cannot be built is refused before anybody asks what follows from it.
+    (0..setup.agents.len()).any(outside).then(|| probe_reference(setup).unwrap_or_default().found)?
 }
 
 fn led(setup: &Setup, agent: usize) -> Led {
@@ -215,6 +241,12 @@ fn alike(setup: &Setup) -> bool {
 }
 
 impl Case<'_> {
+    /// What its agents' equations of motion have beside those of the paper.
+    pub fn outside(&self) -> Outside {
+        let agents = || self.agents.iter().map(|agent| &self.setup.agents[*agent]);
+        Outside { damped: agents().any(is_damped), pushed: agents().any(|agent| !agent.pushes.is_empty()) }
+    }
+
     /// Whether weights and delays can be differentiated.
     pub fn links(&self) -> Links {
         let fixed = self.setup.network.schedule.constant_graph().is_some();

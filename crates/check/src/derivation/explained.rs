@@ -26,6 +26,11 @@ impl Case<'_> {
             (Led::Outside(name, None), _) => self.silent(&format!(
                 "{name} come from outside and do not say that they are linear, so nothing is derived from them."
             )),
+            (Led::Refuted(name, found), _) => self.silent(&format!(
+                "{name} come from outside, and they are not what they say: {}. Nothing is derived from them until what `linear` returns is z^(ℓ) \
+                 of the dynamics; `forwardstep check` tries it too.",
+                crate::hypothesis::counterexample(found)
+            )),
             (_, Step::Outside(name)) => {
                 self.silent(&format!("{name} comes from outside, so that nothing is known here of what it does to s."))
             }
@@ -69,6 +74,7 @@ impl Case<'_> {
             Led::Leader(..) => self.smooth().and_then(|smooth| smooth.dynamics(Links::Constant).ok()),
             Led::Target => tracking(&self.roots, self.measured()),
             Led::Outside(_, linear) => linear.as_ref().map(declared),
+            Led::Refuted(..) => None,
         }
     }
 
@@ -87,13 +93,13 @@ impl Case<'_> {
     /// Its lower subsystem; `None` under continuous control of a vehicle, which leaves none, and under backstepping of a chain.
     pub fn lower(&self) -> Option<Lower> {
         Some(match &self.step {
-            Step::Robot { known } => lower::robot(*known, None),
-            Step::PositionOnly([k, _]) => lower::position_only(k),
+            Step::Robot { known } => lower::robot(self.outside(), *known, None),
+            Step::PositionOnly([k, _]) => lower::position_only(self.outside(), k),
             Step::Thrust(ThrustStep::Continuous, _) | Step::Outside(_) => return None,
             Step::Thrust(ThrustStep::Differentiable, [alpha, k]) => lower::thrust(alpha, Some(k)),
             Step::Thrust(ThrustStep::Adaptive, [alpha, _]) => lower::thrust(alpha, None),
-            Step::Attitude(_) => lower::attitude(),
-            Step::TaskSpace([kappa, _]) => lower::robot(false, Some(kappa)),
+            Step::Attitude(_) => lower::attitude(self.outside()),
+            Step::TaskSpace([kappa, _]) => lower::robot(self.outside(), false, Some(kappa)),
             Step::Chain(_, ChainStepKind::Backstepping, _) => return None,
             Step::Chain(order, ChainStepKind::Linearising, gain) => lower::chain(*order, gain, ChainError::None),
             Step::Chain(order, ChainStepKind::Adaptive, gain) => lower::chain(*order, gain, ChainError::Adapted),
@@ -257,7 +263,7 @@ impl Case<'_> {
         };
         let input = Quantity::own(Letter::Term(lower.input));
         let law = Formula::equal(notation.quantity(input, 0), notation.form(&lower.law));
-        let motion = Formula::equal(notation.form(&lower.plant), notation.quantity(input, 0));
+        let motion = lower.motion(notation);
         let section = section.formula(motion, places.plant).formula(law, places.law);
         super::adaptation::of(self, notation)
             .into_iter()

@@ -95,8 +95,12 @@ pub enum Term {
     AttitudeError,
     /// D(Δq*)ᵀ K ẏ.
     AttitudeDamping,
-    /// D(Δq*) (ω − z).
+    /// Δq*.
+    AttitudeDifference,
+    /// K Δq*.
     AttitudeErrorRate,
+    /// τ_ext, or a force.
+    External,
     /// χ(x*).
     Drift,
     /// ψ(x*) u.
@@ -128,6 +132,10 @@ pub enum Operator {
     Gyroscopic,
     /// Λ_f.
     Filter,
+    /// D(q), what the joints of a robot lose.
+    Viscous,
+    /// D(Δq*) of (98).
+    AttitudeMap,
 }
 
 impl Operator {
@@ -135,7 +143,12 @@ impl Operator {
     pub fn is_constant(self) -> bool {
         match self {
             Operator::Identity | Operator::Damping | Operator::Mass | Operator::Filter => true,
-            Operator::Inertia | Operator::Coriolis | Operator::Momentum | Operator::Gyroscopic => false,
+            Operator::Inertia
+            | Operator::Coriolis
+            | Operator::Momentum
+            | Operator::Gyroscopic
+            | Operator::Viscous
+            | Operator::AttitudeMap => false,
         }
     }
 }

@@ -7,6 +7,8 @@ use num_rational::BigRational;
 use num_traits::One;
 
 use super::form::{Combination, Form, Letter, Operator, Quantity, Term};
+use super::formula::Formula;
+use super::notation::Notation;
 use super::polynomial::Polynomial;
 
 /// A second step and what it leaves.
@@ -16,6 +18,8 @@ pub struct Lower {
     pub plant: Form,
     /// The input.
     pub input: Term,
+    /// What acts beside the input: = input + this.
+    pub outside: Form,
     /// What the law makes the input.
     pub law: Form,
     /// What of s and its derivatives stands on the left of the lower subsystem.
@@ -24,6 +28,23 @@ pub struct Lower {
     pub right: Form,
     /// How many derivatives of s its state holds, and one: 1 for s alone.
     pub order: usize,
+}
+
+impl Lower {
+    /// The input alone.
+    pub fn input_alone(&self) -> Form {
+        Form::own(term(self.input))
+    }
+
+    /// The right side of the equations of motion.
+    pub fn moved_by(&self) -> Form {
+        self.input_alone().sum(&self.outside)
+    }
+
+    /// The equations of motion as they are written.
+    pub fn motion(&self, notation: &Notation) -> Formula {
+        Formula::equal(notation.form(&self.plant), notation.form(&self.moved_by()))
+    }
 }
 
 /// What an estimate is: the truth, which the equations of motion know, and its error.
@@ -53,16 +74,31 @@ fn minus(all: &Combination) -> Combination {
     times(all, &-BigRational::one())
 }
 
+/// What the paper's equations of motion leave out, and a setup may have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Outside {
+    /// D(q) q̇, in the regressor too.
+    pub damped: bool,
+    /// τ_ext, which no law knows.
+    pub pushed: bool,
+}
+
+impl Outside {
+    fn acting(self) -> Combination {
+        if self.pushed { term(Term::External) } else { Combination::default() }
+    }
+}
+
 /// The residual with the law put in, p^(follows) q = z + s, and estimates split.
 fn lower(
-    [plant, law]: [Combination; 2],
+    [plant, law, acting]: [Combination; 3],
     input: Term,
     estimate: Option<Estimate>,
     known: bool,
     [follows, order]: [usize; 2],
 ) -> Lower {
     let one = Polynomial::one();
-    let residual = Form::own(plant.sum(&minus(&law)));
+    let residual = Form::own(plant.sum(&minus(&law)).sum(&minus(&acting)));
     let split = residual.replaced(&one, |quantity| {
         let estimate = estimate.as_ref().filter(|estimate| quantity.letter == Letter::Term(estimate.letter))?;
         Some(if known { estimate.truth.clone() } else { estimate.truth.sum(&term(estimate.error)) })
@@ -81,7 +117,8 @@ fn lower(
     };
     // What has p^highest and lower powers under one operator keeps only the former on the left.
     let (left, low) = top_of(&side(true), highest);
-    Lower { plant: Form::own(plant), input, law: Form::own(law), left, right: side(false).sum(&low).negated(), order }
+    let [plant, law, outside] = [plant, law, acting].map(Form::own);
+    Lower { plant, input, outside, law, left, right: side(false).sum(&low).negated(), order }
 }
 
 /// The highest powers of what is under an operator that has them, and what is left; C s stays whole.
@@ -95,29 +132,30 @@ fn top_of(left: &Form, highest: usize) -> (Form, Form) {
     (Form::own(top), Form::own(low))
 }
 
-/// M p v + C v + g = Y ϑ for a velocity v, which is Property 3.
-fn motion(velocity: impl Fn(Operator, usize) -> Combination) -> Combination {
-    sum(&[velocity(Operator::Inertia, 1), velocity(Operator::Coriolis, 0), term(Term::Gravity)])
+/// M p v + C v + g = Y ϑ for a velocity v, which is Property 3, and D v where the robot has it.
+fn motion(damped: bool, velocity: impl Fn(Operator, usize) -> Combination) -> Combination {
+    let lost = if damped { velocity(Operator::Viscous, 0) } else { Combination::default() };
+    sum(&[velocity(Operator::Inertia, 1), velocity(Operator::Coriolis, 0), lost, term(Term::Gravity)])
 }
 
 /// (1) under (6)–(7), or with known parameters; with a force of the task space times κ for (80).
-pub fn robot(known: bool, task_force: Option<&BigRational>) -> Lower {
-    let plant = motion(|operator, r| own(Letter::Position, operator, r + 1));
-    let truth = motion(|operator, r| own(Letter::Reference, operator, r));
+pub fn robot(outside: Outside, known: bool, task_force: Option<&BigRational>) -> Lower {
+    let plant = motion(outside.damped, |operator, r| own(Letter::Position, operator, r + 1));
+    let truth = motion(outside.damped, |operator, r| own(Letter::Reference, operator, r));
     let damping = minus(&own(Letter::Error, Operator::Damping, 0));
     let force = task_force.map(|kappa| minus(&times(&term(Term::TaskForce), kappa))).unwrap_or_default();
     let law = sum(&[damping, force, term(Term::Regressor)]);
     let estimate = Estimate { letter: Term::Regressor, truth, error: Term::RegressorError };
-    lower([plant, law], Term::Torque, Some(estimate), known, [1, 1])
+    lower([plant, law, outside.acting()], Term::Torque, Some(estimate), known, [1, 1])
 }
 
 /// A point mass under (a8).
-pub fn position_only(k: &BigRational) -> Lower {
+pub fn position_only(outside: Outside, k: &BigRational) -> Lower {
     let plant = own(Letter::Position, Operator::Mass, 2);
     let law = sum(&[term(Term::MassEstimateRate), minus(&times(&own(Letter::Filter, Operator::Identity, 0), k))]);
     let truth = own(Letter::Reference, Operator::Mass, 1);
     let estimate = Estimate { letter: Term::MassEstimateRate, truth, error: Term::MassErrorRate };
-    lower([plant, law], Term::Input, Some(estimate), false, [1, 1])
+    lower([plant, law, outside.acting()], Term::Input, Some(estimate), false, [1, 1])
 }
 
 /// m (p² v + α* p v) − α* m g e₃ for a velocity v: (47), and what (50) and (57) make of z.
@@ -133,20 +171,20 @@ pub fn thrust(alpha: &BigRational, stiffness: Option<&BigRational>) -> Lower {
     match stiffness {
         Some(k) => {
             let law = truth.sum(&minus(&times(&own(Letter::Error, Operator::Identity, 0), k)));
-            lower([plant, law], Term::Input, None, true, [1, 2])
+            lower([plant, law, Combination::default()], Term::Input, None, true, [1, 2])
         }
         None => {
             let estimate = Estimate { letter: Term::MassEstimate, truth, error: Term::MassError };
-            lower([plant, term(Term::MassEstimate)], Term::Input, Some(estimate), false, [1, 2])
+            lower([plant, term(Term::MassEstimate), Combination::default()], Term::Input, Some(estimate), false, [1, 2])
         }
     }
 }
 
 /// (94) under (99). z follows ω, which stands for q here.
-pub fn attitude() -> Lower {
+pub fn attitude(outside: Outside) -> Lower {
     let motion = |letter| own(letter, Operator::Inertia, 1).sum(&minus(&own(letter, Operator::Momentum, 0)));
     let law = motion(Letter::Reference).sum(&minus(&term(Term::AttitudeDamping)));
-    lower([motion(Letter::Position), law], Term::Torque, None, true, [0, 1])
+    lower([motion(Letter::Position), law, outside.acting()], Term::Torque, None, true, [0, 1])
 }
 
 /// How the second line of (43) is stabilised.
@@ -170,5 +208,5 @@ pub fn chain(order: usize, gain: &BigRational, error: ChainError) -> Lower {
     };
     let damping = minus(&times(&own(Letter::Error, Operator::Identity, 0), gain));
     let law = sum(&[own(Letter::Reference, Operator::Identity, 1), minus(&term(Term::Drift)), damping, left_over]);
-    lower([plant, law], Term::Actuation, None, true, [order.saturating_sub(1), 1])
+    lower([plant, law, Combination::default()], Term::Actuation, None, true, [order.saturating_sub(1), 1])
 }

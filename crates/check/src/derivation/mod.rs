@@ -7,6 +7,7 @@
 //! - `reduction`: new variables that absorb derivatives of s.
 //! - `laplacian`, `stacked`: chains of averages; all agents together.
 //! - `formula`, `notation`: formulas as trees, and from forms to them.
+//! - `residual`: its identities along a run; `quaternion`: how attitudes turn.
 //! - `case`: the designs in a setup; `explanation`: what is said of them, made by `explained`, `steps`, `averages`, `attitude`, `task_space`,
 //!   `adaptation`, with `places` in the paper and `words`.
 //!
@@ -30,7 +31,9 @@ mod places;
 pub mod polynomial;
 #[cfg(test)]
 mod properties;
+mod quaternion;
 pub mod reduction;
+pub mod residual;
 pub mod stacked;
 mod steps;
 mod task_space;

@@ -144,6 +144,10 @@ impl Notation {
                 let factors = [Symbol::new("D").above("T"), Symbol::new("K"), Symbol::new("y").derivative(1)];
                 return Formula::product(factors.map(Formula::from));
             }
+            Term::AttitudeDifference => Symbol::new("Δq").above("∗").derivative(k),
+            Term::External => {
+                Symbol::new("τ").below(if index.is_empty() { "ext".into() } else { format!("ext,{index}") })
+            }
             Term::AttitudeErrorRate => {
                 return Formula::product([Symbol::new("K").into(), Symbol::new("Δq").above("∗").derivative(k).into()]);
             }
@@ -289,9 +293,12 @@ impl Notation {
     }
 }
 
-/// An exponent; orders are small.
+/// An exponent: there are no more than 32 roots.
 fn power(r: usize) -> &'static str {
-    const POWERS: [&str; 13] = ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12"];
+    const POWERS: [&str; 34] = [
+        "0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13", "14", "15", "16", "17", "18", "19",
+        "20", "21", "22", "23", "24", "25", "26", "27", "28", "29", "30", "31", "32", "33",
+    ];
     POWERS.get(r).copied().unwrap_or("…")
 }
 
@@ -311,6 +318,11 @@ fn operator(operator: Operator, index: &'static str) -> Option<Operated> {
         Operator::Coriolis => factor("C"),
         Operator::Damping => factor("K"),
         Operator::Mass => factor("m"),
+        Operator::Viscous => factor("D"),
+        Operator::AttitudeMap => {
+            let of = vec![Symbol::new("Δq").above("∗").into()];
+            Some(Operated::Factor(Formula::Function(Symbol::new("D"), of)))
+        }
         Operator::Filter => Some(Operated::Factor(Symbol::new("Λ").below("f").into())),
         Operator::Momentum => {
             Some(Operated::Factor(Formula::Function(Symbol::new("S"), vec![Symbol::new("h").into()])))

@@ -81,7 +81,12 @@ impl Case<'_> {
             (Led::Target, _) | (_, Step::Chain(..)) | (_, Step::Thrust(ThrustStep::Differentiable, _)) => 0,
             (_, Step::PositionOnly(_)) => 1,
             (
-                Led::Consensus(_) | Led::PureIntegral(_) | Led::Backstepping | Led::Leader(..) | Led::Outside(..),
+                Led::Consensus(_)
+                | Led::PureIntegral(_)
+                | Led::Backstepping
+                | Led::Leader(..)
+                | Led::Outside(..)
+                | Led::Refuted(..),
                 Step::Robot { .. }
                 | Step::Thrust(ThrustStep::Continuous | ThrustStep::Adaptive, _)
                 | Step::Attitude(_)

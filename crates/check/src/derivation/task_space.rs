@@ -41,11 +41,11 @@ pub(super) fn explained(case: &Case<'_>, [kappa, alpha]: &[BigRational; 2]) -> E
     let notation = case.notation();
     let dynamics = reference(alpha);
     let upper = dynamics.upper();
-    let lower = lower::robot(false, Some(kappa));
+    let lower = lower::robot(case.outside(), false, Some(kappa));
     let q = Quantity::own(Letter::Position);
     let input = Quantity::own(Letter::Term(lower.input));
     let mut controller = Section::new(Subject::Controller)
-        .formula(Formula::equal(notation.form(&lower.plant), notation.quantity(input, 0)), "(73)")
+        .formula(lower.motion(&notation), "(73)")
         .formula(Formula::equal(notation.quantity(input, 0), notation.form(&lower.law)), "(80)");
     for (formula, place) in adaptation::of(case, &notation) {
         controller = controller.formula(formula, place);

@@ -8,7 +8,7 @@ use super::cascade::Upper;
 use super::dynamics::{Dynamics, Heard, Measured, Smooth, backstepping, consensus, following, tracking};
 use super::form::{Combination, Form, Letter, Links, Operator, Quantity, Term, Undifferentiable};
 use super::laplacian::{RootsOfAll, chain};
-use super::lower::{self, ChainError};
+use super::lower::{self, ChainError, Outside};
 use super::polynomial::Polynomial;
 use super::reduction::{Name, Reduced, Variable};
 use super::task_space;
@@ -266,13 +266,16 @@ fn eq_52_and_the_other_lower_subsystems_follow_from_motion_and_law() {
     // (9): M ṡ + C s = −K s + Y Δϑ; (a10) with κ = 4 has −4 Ĵᵀ K* Δx more.
     let left = form(&[(own(S).under(Operator::Inertia), &[0, 1]), (own(S).under(Operator::Coriolis), &[1])], &[]);
     let right = form(&[(own(S).under(Operator::Damping), &[-1]), (term(Term::RegressorError), &[1])], &[]);
-    let robot = lower::robot(false, None);
+    let robot = lower::robot(Outside::default(), false, None);
     assert_eq!((robot.left, robot.right.clone()), (left.clone(), right.clone()));
-    let tip = lower::robot(false, Some(&number(4)));
+    let tip = lower::robot(Outside::default(), false, Some(&number(4)));
     assert_eq!((tip.left, tip.right), (left, right.sum(&form(&[(term(Term::TaskForce), &[-4])], &[]))));
-    assert_eq!(lower::robot(true, None).right, robot.right.without(Letter::Term(Term::RegressorError)));
+    assert_eq!(
+        lower::robot(Outside::default(), true, None).right,
+        robot.right.without(Letter::Term(Term::RegressorError))
+    );
     // (a8): m ṡ = −9 y + Δm ż.
-    let blind = lower::position_only(&number(9));
+    let blind = lower::position_only(Outside::default(), &number(9));
     assert_eq!(blind.left, form(&[(mass(S), &[0, 1])], &[]));
     assert_eq!(blind.right, form(&[(own(Letter::Filter), &[-9]), (term(Term::MassErrorRate), &[1])], &[]));
     // (43): ṡ = −2 s − φᵀΔθ for a chain of any order.
@@ -294,7 +297,7 @@ fn eq_107_and_108_with_the_signs_that_e13_corrects() {
     );
     assert_eq!(first, expected);
     // M ṡ = S(h) s − Dᵀ K ẏ
-    let second = lower::attitude();
+    let second = lower::attitude(Outside::default());
     assert_eq!(second.left, form(&[(own(S).under(Operator::Inertia), &[0, 1])], &[]));
     let spun = own(S).under(Operator::Momentum);
     assert_eq!(second.right, form(&[(spun, &[1]), (term(Term::AttitudeDamping), &[-1])], &[]));
@@ -324,4 +327,46 @@ fn eq_a10_is_reduced_to_degree_zero() {
     // d/dt (q̇ − z_r − s) = −3 (q̇ − z_r − s) − Ĵᵀ K* Δx
     let expected = form(&[(own(Letter::Deviation), &[-3]), (term(Term::TaskForce), &[-1])], &[]);
     assert_eq!(task_space::reduced(&upper), expected);
+}
+
+#[test]
+fn eq_106_follows_from_how_attitudes_turn() {
+    use super::quaternion::{Factor, Products, difference, turning};
+    // Δq̇* = Δq* ½ (ω − z), with ω and z as quaternions behind it.
+    let half = BigRational::new(1.into(), 2.into());
+    let [omega, z] = [Factor::Rate, Factor::Reference].map(|factor| Products::of(&[factor]));
+    let rate = turning().unwrap();
+    assert_eq!(rate, omega.scaled(&half).sum(&z.scaled(&-half)));
+    let expected = Products::of(&difference()).times(&rate);
+    assert_eq!(Products::of(&difference()).differentiated().unwrap(), expected);
+    // q⁻¹ q is one, whose derivative is zero, and no rate of ω is known.
+    let one = Products::of(&[Factor::AttitudeInverse, Factor::Attitude]);
+    assert_eq!((one.clone(), one.differentiated()), (Products::of(&[]), Some(Products::default())));
+    assert_eq!(omega.differentiated(), None);
+    let unreduced = [Factor::AttitudeInverse, Factor::ReferenceAttitude];
+    let turned = Products::of(&unreduced).differentiated().unwrap();
+    assert_eq!(turned.behind(&unreduced), None, "it turns in front: {turned:?}");
+    // In letters: Δq̇* = D(Δq*) s.
+    let s = own(S).under(Operator::AttitudeMap);
+    assert_eq!(attitude::difference_rate(), form(&[(s, &[1])], &[]));
+}
+
+#[test]
+fn what_a_robot_loses_and_what_pushes_it_reach_the_lower_subsystem() {
+    let outside = Outside { damped: true, pushed: true };
+    let [lost, pushed] = [own(S).under(Operator::Viscous), term(Term::External)];
+    for known in [false, true] {
+        let [plain, other] = [Outside::default(), outside].map(|outside| lower::robot(outside, known, None));
+        assert_eq!(other.left, plain.left);
+        assert_eq!(
+            other.right.less(&plain.right),
+            form(&[(lost, &[-1]), (pushed, &[1])], &[]),
+            "M ṡ + C s = … − D s + τ_ext"
+        );
+        assert_eq!(other.law, plain.law, "the law knows no push, and its regressor holds D");
+        assert_eq!(other.outside, form(&[(pushed, &[1])], &[]));
+    }
+    let pushed_mass = lower::position_only(Outside { damped: false, pushed: true }, &number(9));
+    let right = lower::position_only(Outside::default(), &number(9)).right;
+    assert_eq!(pushed_mass.right, right.sum(&form(&[(pushed, &[1])], &[])));
 }

@@ -169,7 +169,7 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
         Led::Backstepping => "Where the graph switches or a delay jumps the derivative of what is heard is infinite, and the paper promises \
                               nothing there."
             .into(),
-        Led::Outside(..) => "What becomes of it without that is what the author of the reference dynamics declares.".into(),
+        Led::Outside(..) | Led::Refuted(..) => "What becomes of it without that is what the author of the reference dynamics declares.".into(),
     };
     let moved = if case.lambda.is_zero() {
         ""

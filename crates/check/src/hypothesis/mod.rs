@@ -16,7 +16,7 @@ pub use evidence::{
     WeightFault,
 };
 pub use id::Id;
-pub(crate) use words::numbers;
+pub(crate) use words::{counterexample, numbers};
 
 /// One hypothesis.
 #[derive(Clone, Debug, PartialEq)]

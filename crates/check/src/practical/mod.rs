@@ -34,8 +34,8 @@ pub use linearised::LinearisedSampling;
 pub use loads::StaticLoad;
 pub use margin::{MarginAt, RECOMMENDED_MARGIN, SamplingMargin};
 pub use power::{PowerBound, mean_power_w};
-pub(crate) use rates::fastest_damping_of;
 pub use rates::{FastestDamping, fastest_damping};
+pub(crate) use rates::{Gains, fastest_damping_of};
 
 /// What a practical verdict says, from best to worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

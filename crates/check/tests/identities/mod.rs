@@ -7,3 +7,4 @@
 mod families;
 mod moment;
 mod plants;
+mod residuals;

@@ -1,11 +1,21 @@
 //! `forwardstep explain`
 
-use forwardstep::check::derivation::explain as derive;
-use forwardstep::io::output::{TextLine, explanation_document, explanation_latex, explanation_lines};
-use forwardstep::io::scenario::kinds::Kinds;
+use std::ops::ControlFlow;
 
+use forwardstep::check::derivation::explain as derive;
+use forwardstep::check::derivation::residual::{ROUNDING, Residual, Residuals};
+use forwardstep::io::output::{
+    TextLine, continuous_twin, ending_sentence, explanation_document, explanation_latex, explanation_lines,
+    residual_document, residual_lines,
+};
+use forwardstep::io::scenario::Scenario;
+use forwardstep::io::scenario::kinds::Kinds;
+use forwardstep::sim::{Ending, simulate_moments};
+
+use super::progress::Bar;
+use super::stop::Stop;
 use crate::arguments::ExplainOptions;
-use crate::console::{BOLD, Console, DIM, complain};
+use crate::console::{BOLD, Console, DIM, Plain, complain, remark};
 use crate::status::Status;
 
 /// Derives why a scenario converges.
@@ -14,6 +24,9 @@ pub(crate) fn explain(options: &ExplainOptions, kinds: &Kinds, console: &mut Con
         Ok(scenario) => scenario,
         Err(error) => return complain(&error),
     };
+    if options.along {
+        return along(&scenario, options.json, console).unwrap_or_else(|status| status);
+    }
     let explanation = derive(&scenario.setup);
     if options.json {
         let document = explanation_document(&scenario, env!("CARGO_PKG_VERSION"), &explanation);
@@ -28,6 +41,48 @@ pub(crate) fn explain(options: &ExplainOptions, kinds: &Kinds, console: &mut Con
         }
     }
     Status::Fine
+}
+
+/// The identities along a run in continuous time: under digital control none of them holds between samples.
+fn along(scenario: &Scenario, json: bool, console: &mut Console) -> Result<Status, Status> {
+    let digital = scenario.setup.control.is_some();
+    let twin = digital.then(|| continuous_twin(&scenario.setup, scenario.setup.time.end_s));
+    let setup = twin.as_ref().unwrap_or(&scenario.setup);
+    let refused = |error| complain(&Plain::new(error));
+    let mut residuals = Residuals::of(setup).map_err(refused)?;
+    let (stop, mut bar) = (Stop::listen(), Bar::new());
+    let mut observer = |progress| {
+        bar.update(progress);
+        if stop.asked().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    let outcome = simulate_moments(setup, &mut observer, &mut |moment| residuals.look(moment)).map_err(refused)?;
+    bar.clear();
+    if outcome.ending != Ending::Completed {
+        remark(ending_sentence(setup, &outcome.ending));
+    }
+    let found = residuals.found();
+    if json {
+        let mut document = residual_document(setup, &found);
+        document["scenario"] = scenario.name.as_str().into();
+        document["version"] = env!("CARGO_PKG_VERSION").into();
+        console.line(format_args!("{document:#}"));
+    } else {
+        console.line(format_args!("{BOLD}{}{BOLD:#}", scenario.title));
+        let control = if digital { ", with control in continuous time, in which the equations hold" } else { "" };
+        console.line(format_args!(
+            "Along a run of {} s{control}: the two sides of every equation, evaluated from states, their rates and what is heard. Residuals \
+             are relative to the size of the terms; up to {ROUNDING:e} they are rounding.",
+            outcome.recording.t_s.last().copied().unwrap_or(0.0)
+        ));
+        residual_lines(setup, &found).iter().for_each(|line| show(line, console));
+    }
+    let all_hold = found.iter().flat_map(|(_, residuals)| residuals).all(|one: &Residual| one.holds() != Some(false));
+    Ok(match outcome.ending {
+        Ending::BrokeDown(_) => Status::BrokeDown,
+        Ending::Interrupted { .. } => stop.asked().unwrap_or(Status::Interrupted),
+        Ending::Completed if all_hold => Status::Fine,
+        Ending::Completed => Status::Missed,
+    })
 }
 
 fn show(line: &TextLine, console: &mut Console) {

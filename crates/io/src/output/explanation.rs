@@ -32,7 +32,7 @@ pub enum TextLine {
 pub fn explanation_lines(setup: &Setup, explanation: &Explanation) -> Vec<TextLine> {
     let mut lines = Vec::new();
     for design in &explanation.designs {
-        lines.push(TextLine::Agents(agents(setup, design)));
+        lines.push(TextLine::Agents(some_names(setup, &design.agents)));
         for section in &design.sections {
             lines.push(TextLine::Heading(section.subject.heading()));
             lines.extend(section.lines.iter().map(|line| match line {
@@ -44,11 +44,10 @@ pub fn explanation_lines(setup: &Setup, explanation: &Explanation) -> Vec<TextLi
     lines
 }
 
-/// Who has a design.
-fn agents(setup: &Setup, design: &Explained) -> String {
-    let names: Vec<String> =
-        design.agents.iter().take(MOST_NAMES).map(|agent| names::agent_name(setup, *agent)).collect();
-    match design.agents.len().saturating_sub(MOST_NAMES) {
+/// Agents by name, as many as are read.
+pub(super) fn some_names(setup: &Setup, agents: &[usize]) -> String {
+    let names: Vec<String> = agents.iter().take(MOST_NAMES).map(|agent| names::agent_name(setup, *agent)).collect();
+    match agents.len().saturating_sub(MOST_NAMES) {
         0 => names.join(", "),
         more => format!("{}, and {more} more", names.join(", ")),
     }
@@ -58,12 +57,12 @@ fn agents(setup: &Setup, design: &Explained) -> String {
 pub fn explanation_latex(setup: &Setup, explanation: &Explanation) -> String {
     let mut text = String::from("% needs \\usepackage{amsmath}\n");
     for design in &explanation.designs {
-        text += &format!("\n% {}\n", agents(setup, design).replace('\n', " "));
+        text += &format!("\n{}", comment(&some_names(setup, &design.agents)));
         for section in &design.sections {
             text += &format!("\\subsection*{{{}}}\n", section.subject.heading());
             for line in &section.lines {
                 match line {
-                    Line::Words(words) => text += &format!("% {words}\n"),
+                    Line::Words(words) => text += &comment(words),
                     Line::Formula(formula, place) => {
                         text +=
                             &format!("\\begin{{equation*}}\n  {}{}\n\\end{{equation*}}\n", latex(formula), tag(place));
@@ -73,6 +72,12 @@ pub fn explanation_latex(setup: &Setup, explanation: &Explanation) -> String {
         }
     }
     text
+}
+
+/// A line of a LaTeX file that is not read. Names may hold what ends a line.
+fn comment(words: &str) -> String {
+    let one_line: String = words.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    format!("% {one_line}\n")
 }
 
 /// The place in the paper as a tag.
@@ -117,7 +122,7 @@ pub(crate) fn explanation_markup(setup: &Setup, explanation: &Explanation) -> Ma
             h2 { "Why it works" }
             @for design in &explanation.designs {
                 details.card open[explanation.designs.len() == 1] {
-                    summary { strong { (agents(setup, design)) } @if let Some([before, after]) = design.degrees {
+                    summary { strong { (some_names(setup, &design.agents)) } @if let Some([before, after]) = design.degrees {
                         span.by { "a cascade of degree " (before) ", reduced to " (after) }
                     } }
                     @for part in &design.sections {

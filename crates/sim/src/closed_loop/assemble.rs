@@ -272,6 +272,18 @@ impl<'a> ClosedLoop<'a> {
         all
     }
 
+    /// The rates of the state `x` at an instant inside the last step; what its end needs stays as it is.
+    pub(crate) fn rates_inside(&mut self, t_s: f64, x: &[f64], heard: &Heard, dx: &mut [f64]) {
+        self.pushes.evaluate(t_s, x, &mut self.blocks);
+        for block in &mut self.blocks {
+            let inputs = block.inputs(heard, self.pushes.external());
+            block.columns.rates(t_s, &x[block.state.clone()], inputs, &mut dx[block.state.clone()]);
+        }
+        if let Some(slider) = &mut self.slider {
+            slider.add_sign_terms_inside(t_s, heard, self.pushes.external(), &mut self.blocks, (x, dx));
+        }
+    }
+
     /// The initial state.
     pub(crate) fn start(&self) -> Vec<f64> {
         self.start.clone()

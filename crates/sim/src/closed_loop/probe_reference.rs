@@ -7,6 +7,7 @@ use super::assembly::Assembly;
 use super::error::SetupError;
 use super::references::{AnyReference, Transmits, reference};
 use crate::probe::{Counterexample, Draws, Identity, Probe, STATES, apart};
+use crate::reference::{LinearReference, LinearTerms};
 use crate::setup::{Exchange, Setup};
 
 /// Axes that are tried side by side.
@@ -14,7 +15,7 @@ const AXES: usize = 2;
 
 /// Tries whether the reference dynamics of `setup` are what the engine takes them for: z, ż, … as the state has them, rates whose
 /// part of the state is linear and the same whatever is heard and measured, which sampled agents step exactly, one axis like the
-/// other, and a start that is the one asked for.
+/// other, a start that is the one asked for, and z^(ℓ) the linear form that their author says it is, where there is one.
 ///
 /// # Errors
 /// [`SetupError`] when they cannot be built.
@@ -33,8 +34,9 @@ fn probe<X: Transmits>(setup: &Setup) -> Result<Probe, SetupError> {
         let reference = reference::<X>(&Assembly::new(setup, &[agent]))?;
         let free = setup.reference.free_derivatives(own.roots_per_s.len()).min(reference.vectors());
         let tried = Tried::new(reference, &mut draws);
+        let linear = setup.reference.linear(own, setup.exchange);
         let found = tried
-            .first(free)
+            .first(free, linear.as_ref())
             .map_err(|error| SetupError::ReferenceShape { reference: setup.reference.words().name, error })?;
         match found {
             None => {}
@@ -61,6 +63,8 @@ struct Tried<X: Transmits> {
     sums: Vec<f64>,
     state: Vec<f64>,
     other: Vec<f64>,
+    /// q̈ and Σ_j w_ij q̈_j.
+    accelerations: [Vec<f64>; 2],
 }
 
 /// What the dynamics give.
@@ -77,7 +81,9 @@ impl<X: Transmits> Tried<X> {
         let states = AXES * reference.vectors();
         let (q, dq, sums) = (numbers(AXES), numbers(AXES), numbers(AXES * X::CHANNELS));
         let (state, other) = (numbers(states), numbers(states));
-        Tried { reference, degree: [1.0 + draws.unit()], q, dq, sums, state, other }
+        let accelerations = [numbers(AXES), numbers(AXES)];
+        let degree = [1.0 + draws.unit()];
+        Tried { reference, degree, q, dq, sums, state, other, accelerations }
     }
 
     fn at(&self, [q, dq, sums, state]: [&[f64]; 4]) -> Result<Given, LengthError> {
@@ -90,7 +96,7 @@ impl<X: Transmits> Tried<X> {
     }
 
     /// The first identity that fails; nothing where something is not finite.
-    fn first(&self, free: usize) -> Result<Option<Result<(), Failure>>, LengthError> {
+    fn first(&self, free: usize, said: Option<&LinearReference>) -> Result<Option<Result<(), Failure>>, LengthError> {
         let Tried { q, dq, sums, state, other, .. } = self;
         let zeros = |of: &[f64]| vec![0.0; of.len()];
         let swapped = |of: &[f64]| of.chunks_exact(AXES).flat_map(|pair| [pair[1], pair[0]]).collect::<Vec<f64>>();
@@ -125,6 +131,9 @@ impl<X: Transmits> Tried<X> {
         if free > 0 {
             equal(Identity::Start, &begun.z, &state[..AXES]);
         }
+        if let Some(said) = said {
+            pairs.extend(self.linear_form(said, &here)?);
+        }
         let mut all = pairs.iter().flat_map(|(_, value, expected)| [*value, *expected]);
         if !all.all(f64::is_finite) {
             return Ok(None);
@@ -133,5 +142,45 @@ impl<X: Transmits> Tried<X> {
         let size = size(&moved.rate).max(size(&alone.rate)).max(size(&here.dz));
         let failed = pairs.into_iter().find(|(_, value, expected)| apart(*value, *expected, size));
         Ok(Some(failed.map_or(Ok(()), Err)))
+    }
+
+    /// z^(ℓ) beside the form that is said to be it; for an ℓ of one more than there are derivatives of z in the state its derivative, by the
+    /// linearity of what it is the derivative of.
+    fn linear_form(&self, linear: &LinearReference, here: &Given) -> Result<Vec<Failure>, LengthError> {
+        let Tried { q, dq, sums, state, accelerations: [ddq, heard_ddq], .. } = self;
+        let derivatives = self.reference.derivatives();
+        let top = |given: &Given| match derivatives.checked_sub(1) {
+            None => given.z.clone(),
+            Some(last) => given.rate[last * AXES..(last + 1) * AXES].to_vec(),
+        };
+        let zeros = |of: &[f64]| vec![0.0; of.len()];
+        let (no_q, no_sums, origin) = (zeros(q), zeros(sums), zeros(state));
+        // What does not depend on the state.
+        let nothing = top(&self.at([&no_q, &no_q, &no_sums, &origin])?);
+        let less_nothing = |values: Vec<f64>| values.iter().zip(&nothing).map(|(value, zero)| value - zero).collect();
+        let mut z: Vec<Vec<f64>> = state.chunks_exact(AXES).take(derivatives).map(<[f64]>::to_vec).collect();
+        let value: Vec<f64> = match linear.order.checked_sub(derivatives) {
+            Some(0) if linear.constant => less_nothing(top(here)),
+            Some(0) => top(here),
+            Some(1) => {
+                z.push(top(here));
+                let later = sums.iter().skip(AXES).chain(heard_ddq).take(sums.len()).copied();
+                less_nothing(top(&self.at([dq, ddq, &later.collect::<Vec<f64>>(), &here.rate])?))
+            }
+            _ => return Ok(vec![(Identity::LinearOrder, linear.order as f64, derivatives as f64)]),
+        };
+        // What there is not is one: a form that speaks of it is another.
+        let q_jet = [q, dq, ddq];
+        let sum = |terms: &LinearTerms, axis: usize| -> f64 {
+            let of_q = terms.q.iter().enumerate().map(|(r, a)| a * q_jet.get(r).map_or(1.0, |q| q[axis]));
+            let of_z = terms.z.iter().enumerate().map(|(r, a)| a * z.get(r).map_or(1.0, |z| z[axis]));
+            of_q.chain(of_z).sum()
+        };
+        let heard = |r: usize, axis: usize| sums.get(r * AXES + axis).copied().unwrap_or(1.0);
+        let form = |axis: usize| {
+            let told = linear.heard[0] * heard(0, axis) + linear.heard[1] * heard(1, axis);
+            sum(&linear.own, axis) + self.degree[0] * sum(&linear.coupled, axis) - told
+        };
+        Ok((0..AXES).map(|axis| (Identity::LinearForm, form(axis), value[axis])).collect())
     }
 }

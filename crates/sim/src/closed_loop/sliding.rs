@@ -210,6 +210,21 @@ impl<'a> Slider<'a> {
         }
     }
 
+    /// The same at an instant inside a step: what is heard there is not kept where signs are set at its end.
+    pub(super) fn add_sign_terms_inside(
+        &mut self,
+        t_s: f64,
+        heard: &Heard,
+        external: Option<&[f64]>,
+        blocks: &mut [Block],
+        (x, dx): (&[f64], &mut [f64]),
+    ) {
+        if self.is_layer().is_some() {
+            self.hear(heard);
+            self.add_sign_terms(t_s, external, blocks, x, dx);
+        }
+    }
+
     /// Has the signs ready to be recorded where they are functions of the instant and of what was computed.
     pub(super) fn look(&mut self, t_s: f64, heard: &Heard, external: Option<&[f64]>, blocks: &mut [Block], x: &[f64]) {
         if self.is_layer().is_none() || self.sliding.told() == 0 {

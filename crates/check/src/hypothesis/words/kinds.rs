@@ -136,15 +136,24 @@ fn in_state(at: &[f64]) -> String {
 
 /// What became of what is declared, at random states.
 fn probed(requires: &str, Probe { states, found }: &Probe) -> String {
-    let Some(Counterexample { identity, t_s, state, value, expected }) = found else {
+    let Some(found) = found else {
         return match states {
             0 => format!("{requires}: declared, not shown, and it could not be tried"),
             states => format!("{requires}: declared, not shown; it was so at {states} random states"),
         };
     };
+    format!("{requires}: but {}", counterexample(found))
+}
+
+/// Where an identity fails.
+pub(crate) fn counterexample(found: &Counterexample) -> String {
+    let Counterexample { identity, t_s, state, value, expected } = found;
     let at = format!("at {} s, {}", rounded(*t_s), in_state(state));
-    let (identity, value, expected) = (identity.words(), rounded(*value), rounded(*expected));
-    format!("{requires}: but it is not so that {identity} {at}: {value} in place of {expected}")
+    // As short as it tells the two apart.
+    let short = [value, expected].map(|x| rounded(*x).to_string());
+    let [value, expected] = if short[0] == short[1] { [value, expected].map(ToString::to_string) } else { short };
+    let identity = identity.words();
+    format!("it is not so that {identity} {at}: {value} in place of {expected}")
 }
 
 fn rate(agent: &Named, bandwidth_per_s: f64, design: ThrustKind) -> String {

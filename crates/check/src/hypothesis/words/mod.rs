@@ -16,6 +16,7 @@ use forwardstep_sim::leader::FollowingDesign;
 use super::{Evidence, Id, Named, Subject};
 
 pub(super) use change::change;
+pub(crate) use kinds::counterexample;
 
 /// What is required, of whom.
 pub(super) fn requires(id: Id, subject: &Subject) -> String {

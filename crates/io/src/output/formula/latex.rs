@@ -49,7 +49,7 @@ fn letter(symbol: &Symbol) -> String {
     if *hat {
         text = format!("\\hat{{{text}}}");
     }
-    let mut raised = above.replace('∗', "*");
+    let mut raised = above.replace('∗', "*").replace('−', "-");
     match derivative {
         0 => {}
         1 => text = format!("\\dot{{{text}}}"),

@@ -67,7 +67,7 @@ fn letter(symbol: &Symbol) -> String {
         0 => {}
         1 => text = over(text, "˙"),
         2 => text = over(text, "¨"),
-        3 => text = over(text, "⃛"),
+        3 => text = over(text, "…"),
         n => raised = format!("({n}){raised}"),
     }
     let (below, raised) = (format!("<mi>{}</mi>", escaped(below)), format!("<mi>{}</mi>", escaped(&raised)));

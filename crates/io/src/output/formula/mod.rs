@@ -57,6 +57,62 @@ mod tests {
         assert_eq!(opened, 0, "every element is closed: {page}");
     }
 
+    /// How many children an element has; `None` for any number of them, and for text alone.
+    fn children(name: &str) -> Option<usize> {
+        match name {
+            "mover" | "munder" | "msub" | "msup" | "mfrac" => Some(2),
+            "msubsup" => Some(3),
+            "mspace" => Some(0),
+            "math" | "mrow" | "mtable" | "mtr" | "mtd" | "mi" | "mn" | "mo" => None,
+            other => panic!("<{other}> is not used here"),
+        }
+    }
+
+    /// Every element has the children that MathML Core gives it, and letters, numbers and signs hold text.
+    fn assert_is_mathml(page: &str) {
+        let document = roxmltree::Document::parse(page).unwrap_or_else(|error| panic!("{error}: {page}"));
+        for element in document.descendants().filter(roxmltree::Node::is_element) {
+            let (name, inside) = (element.tag_name().name(), element.children().filter(roxmltree::Node::is_element));
+            let within = element.parent().map_or("", |parent| parent.tag_name().name());
+            let (count, text) = (inside.count(), element.text().unwrap_or_default());
+            assert!(children(name).is_none_or(|needed| needed == count), "<{name}> has {count} children: {page}");
+            match name {
+                "mi" | "mn" | "mo" => assert!(count == 0 && !text.is_empty(), "<{name}> without text: {page}"),
+                "mtr" => assert_eq!(within, "mtable"),
+                "mtd" => assert_eq!(within, "mtr"),
+                "math" => assert_eq!(within, ""),
+                _ => assert_eq!(text, "", "text belongs to letters: {page}"),
+            }
+        }
+    }
+
+    /// Braces and environments are balanced, and nothing is left that LaTeX takes for a command or knows no letter for.
+    fn assert_is_latex(text: &str) {
+        let mut depth = 0_i32;
+        for letter in text.chars() {
+            depth += i32::from(letter == '{') - i32::from(letter == '}');
+            assert!(depth >= 0 && letter.is_ascii() && !"%#$~\"".contains(letter), "{letter}: {text}");
+        }
+        assert!(depth == 0 && text.matches("\\left").count() == text.matches("\\right").count(), "{text}");
+        assert!(!text.contains('&') || text.contains("bmatrix"), "{text}");
+    }
+
+    #[test]
+    fn every_formula_of_every_shipped_scenario_is_mathml_and_latex() {
+        use crate::scenario::{SHIPPED_SCENARIOS, open_scenario};
+        use forwardstep_check::derivation::{Line, explain};
+        for scenario in SHIPPED_SCENARIOS {
+            let setup = open_scenario(scenario.name).unwrap().setup;
+            let sections = explain(&setup).designs.into_iter().flat_map(|design| design.sections);
+            for line in sections.flat_map(|section| section.lines) {
+                if let Line::Formula(formula, _) = line {
+                    assert_is_mathml(&mathml(&formula));
+                    assert_is_latex(&latex(&formula));
+                }
+            }
+        }
+    }
+
     #[test]
     fn nothing_of_a_symbol_escapes_into_the_page() {
         let page = mathml(&Symbol::new("q").below("<b>&").into());
@@ -69,6 +125,11 @@ mod tests {
         let fifth = Symbol::new("z").below("i").derivative(5);
         assert_eq!(unicode(&fifth.clone().into()), "z^(5)_i");
         assert_eq!(latex(&fifth.into()), "z^{(5)}_{i}");
+        // A combining mark would stand beside the letter, not above it.
+        let third = Symbol::new("z").derivative(3);
+        assert_eq!(mathml(&third.into()), "<math display=\"block\"><mover><mi>z</mi><mo>…</mo></mover></math>");
+        let inverse = Symbol::new("q").below("z").above("−1");
+        assert_eq!([unicode(&inverse.clone().into()), latex(&inverse.into())], ["q⁻¹_z", "q^{-1}_{z}"]);
         let rows = vec![vec![number(1, 1), number(0, 1)], vec![number(0, 1), number(1, 2)]];
         assert_eq!(unicode(&Formula::Matrix(rows.clone())), "[1, 0; 0, 1/2]".replace("1/2", "0.5"));
         assert_eq!(latex(&Formula::Matrix(rows)), "\\begin{bmatrix}1 & 0 \\\\ 0 & 0.5\\end{bmatrix}");

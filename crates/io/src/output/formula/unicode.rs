@@ -83,6 +83,7 @@ fn letter(symbol: &Symbol) -> String {
 fn raised(above: &str) -> String {
     let digit = |c: char| match c {
         '∗' => '*',
+        '−' => '⁻',
         'T' => 'ᵀ',
         '0' => '⁰',
         '1' => '¹',

@@ -1,0 +1,387 @@
+//! The values of letters at one instant of one agent.
+
+use std::ops::Range;
+
+use forwardstep_core::controller::Jet;
+use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::{Column, Moment, Signal};
+
+use super::super::case::{Case, Led, Step};
+use super::super::form::{Combination, Form, Letter, Operator, Quantity, Term, Vertex, number};
+use super::Missing;
+use super::robot::Model;
+
+/// Entries of a vector, each with the size of what it is made of, which is what it is exact to.
+pub(super) type Vector = Vec<[f64; 2]>;
+
+/// Where the signals of every agent stand in its row.
+pub(super) struct Columns(Vec<Vec<(Signal, Range<usize>)>>);
+
+impl Columns {
+    pub(super) fn new(agents: usize, columns: &[Column]) -> Columns {
+        let mut all: Vec<Vec<(Signal, Range<usize>)>> = vec![Vec::new(); agents];
+        for column in columns {
+            let Some(own) = all.get_mut(column.agent) else { continue };
+            let at = own.last().map_or(0, |(_, range)| range.end);
+            match own.last_mut() {
+                Some((signal, range)) if *signal == column.signal => range.end += 1,
+                _ => own.push((column.signal, at..at + 1)),
+            }
+        }
+        Columns(all)
+    }
+}
+
+/// The instant, and what the agent is made of.
+pub(super) struct At<'c, 'a> {
+    pub(super) case: &'c Case<'a>,
+    columns: &'c [(Signal, Range<usize>)],
+    model: Option<&'c mut Model<'a>>,
+    pub(super) moment: Moment<'c>,
+}
+
+/// How near to a kink, relative to the time, an instant is taken to be at it.
+const KINK: f64 = 1e-9;
+
+fn jets(trajectory: &Trajectory, t_s: f64) -> Vec<Jet> {
+    let mut jets = vec![[0.0; 5]; trajectory.axes()];
+    trajectory.jets(t_s, &mut jets);
+    jets
+}
+
+/// The motion of a leader that is no agent.
+fn leader<'a>(case: &Case<'a>) -> Option<&'a Trajectory> {
+    Some(&case.setup.following()?.motion()?.trajectory)
+}
+
+/// Entries as exact as they are.
+pub(super) fn exact(values: impl IntoIterator<Item = f64>) -> Vector {
+    values.into_iter().map(|value| [value, value.abs()]).collect()
+}
+
+/// `to` with so many times a vector more.
+fn add(to: &mut Vector, factor: f64, vector: &[[f64; 2]]) {
+    if to.is_empty() {
+        to.resize(vector.len(), [0.0; 2]);
+    }
+    for (to, [value, size]) in to.iter_mut().zip(vector) {
+        *to = [to[0] + factor * value, to[1] + (factor * size).abs()];
+    }
+}
+
+/// One vector less another.
+fn less(mut one: Vector, other: &[[f64; 2]]) -> Vector {
+    add(&mut one, -1.0, other);
+    one
+}
+
+impl<'c, 'a> At<'c, 'a> {
+    pub(super) fn new(
+        case: &'c Case<'a>,
+        columns: &'c Columns,
+        mut model: Option<&'c mut Model<'a>>,
+        moment: Moment<'c>,
+    ) -> Self {
+        if let Some(model) = &mut model {
+            model.forget();
+        }
+        let columns = columns.0.get(moment.agent).map_or(&[][..], Vec::as_slice);
+        At { case, columns, model, moment }
+    }
+
+    /// A signal as it is recorded.
+    pub(super) fn recorded(&self, wanted: Signal) -> Option<&'c [f64]> {
+        let (_, range) = self.columns.iter().find(|(signal, _)| *signal == wanted)?;
+        self.moment.values.get(range.clone())
+    }
+
+    /// A block of states, or the rates of one.
+    pub(super) fn state(&self, wanted: Signal, rates: bool) -> Option<Vec<f64>> {
+        let states = self.moment.states.iter().filter(|state| state.signal == wanted);
+        let values: Vec<f64> = states.map(|state| if rates { state.rate } else { state.value }).collect();
+        (!values.is_empty()).then_some(values)
+    }
+
+    /// The k-th derivative in a chain of states, the last of which has a rate.
+    fn chained(&self, chain: impl Iterator<Item = Signal>, k: usize) -> Result<Vec<f64>, Missing> {
+        let known: Vec<Signal> = chain.take_while(|signal| self.state(*signal, false).is_some()).collect();
+        let found = match (known.get(k), known.last()) {
+            (Some(signal), _) => self.state(*signal, false),
+            (None, Some(last)) if k == known.len() => self.state(*last, true),
+            _ => None,
+        };
+        found.ok_or(Missing::Derivative)
+    }
+
+    /// q, q̇, …; ω of a spacecraft.
+    pub(super) fn position(&self, k: usize) -> Result<Vec<f64>, Missing> {
+        let higher = (2..).map(|r| Signal::Derivative(r));
+        match self.case.step {
+            Step::Attitude(_) => self.chained([Signal::Velocity].into_iter(), k),
+            _ => self.chained([Signal::Position, Signal::Velocity].into_iter().chain(higher), k),
+        }
+    }
+
+    /// The same with the third derivative of the position of a vehicle, whose thrust and weight cancel when it hovers.
+    pub(super) fn moved(&self, k: usize) -> Result<Vector, Missing> {
+        match self.case.step {
+            Step::Thrust(..) if k == 3 => self.jerk(),
+            Step::Thrust(..) if k == 2 => {
+                let weighed = self.position(2)?.into_iter().zip(self.weight().unwrap_or_default());
+                Ok(weighed.map(|(ddx, weight)| [ddx, ddx.abs() + weight]).collect())
+            }
+            _ => self.position(k).map(exact),
+        }
+    }
+
+    /// z, ż, ….
+    pub(super) fn reference(&self, k: usize) -> Result<Vec<f64>, Missing> {
+        // The second state of (3), (119) and (122) is no derivative of z.
+        let integrated = matches!(self.case.led, Led::PureIntegral(_)) || self.case.smooth().is_some();
+        let most = if integrated { 1 } else { u8::MAX };
+        let found = self.chained((0..most).map(Signal::Reference), k);
+        // z that is no state is recorded.
+        match (&self.case.led, k) {
+            (Led::Backstepping, 0 | 1) => {
+                self.recorded(Signal::Reference(k as u8)).map(<[f64]>::to_vec).ok_or(Missing::Derivative)
+            }
+            _ => found,
+        }
+    }
+
+    /// s, as the law has it where it shows it, and ṡ.
+    fn error(&self, k: usize) -> Result<Vector, Missing> {
+        let order = self.case.step.plant().saturating_sub(1);
+        let mut s = less(self.moved(order + k)?, &exact(self.reference(k)?));
+        if let (0, Some(shown)) = (k, self.recorded(Signal::TrackingError)) {
+            s.iter_mut().zip(shown).for_each(|(s, shown)| s[0] = *shown);
+        }
+        Ok(s)
+    }
+
+    /// y, and ẏ = λ_f (ẋ − ṗ) where y is λ_f (x − p).
+    fn filter(&self, k: usize) -> Result<Vector, Missing> {
+        let missing = Missing::Derivative;
+        match (&self.case.step, k) {
+            (Step::PositionOnly(_), 0) => Ok(exact(self.recorded(Signal::Filter).ok_or(missing)?.to_vec())),
+            (Step::PositionOnly([_, rate]), 1) => {
+                let mut rates = Vector::new();
+                add(&mut rates, number(rate), &exact(self.position(1)?));
+                add(&mut rates, -number(rate), &exact(self.state(Signal::Filter, true).ok_or(missing)?));
+                Ok(rates)
+            }
+            (_, 0 | 1) => Ok(exact(self.state(Signal::Filter, k == 1).ok_or(missing)?)),
+            _ => Err(missing),
+        }
+    }
+
+    /// The k-th derivative of what is followed, unless it jumps at this instant.
+    fn jet(&self, trajectory: Option<&Trajectory>, k: usize) -> Result<Vector, Missing> {
+        let (trajectory, t_s) = (trajectory.ok_or(Missing::Neighbour)?, self.moment.t_s);
+        let near_s = KINK * t_s.abs().max(1.0);
+        let [now, before, after] = [t_s, t_s - near_s, t_s + near_s].map(|t_s| jets(trajectory, t_s));
+        let mut found = Vec::new();
+        for ((now, before), after) in now.iter().zip(&before).zip(&after) {
+            let (Some(now), Some(before), Some(after)) = (now.get(k), before.get(k), after.get(k)) else {
+                return Err(Missing::Derivative);
+            };
+            if (after - before).abs() > KINK.sqrt() * now.abs().max(1.0) {
+                return Err(Missing::Kink);
+            }
+            found.push(*now);
+        }
+        Ok(exact(found))
+    }
+
+    /// The trajectory that the agent follows, or its offset.
+    pub(super) fn target(&self) -> Option<Vec<Jet>> {
+        let trajectory = self.case.setup.agents.get(self.moment.agent)?.target.as_ref()?;
+        Some(jets(trajectory, self.moment.t_s))
+    }
+
+    /// The k-th derivative of an agent's own letter, or of the leader's.
+    fn own(&mut self, quantity: Quantity, k: usize) -> Result<Vector, Missing> {
+        match (quantity.letter, quantity.vertex) {
+            (Letter::Position, Vertex::Leader) => self.jet(leader(self.case), k),
+            (_, Vertex::Leader | Vertex::Neighbour) => Err(Missing::Neighbour),
+            (Letter::Position, Vertex::Own) => self.moved(k),
+            (Letter::Reference, Vertex::Own) => self.reference(k).map(exact),
+            (Letter::Error, Vertex::Own) => self.error(k),
+            (Letter::Filter, Vertex::Own) => self.filter(k),
+            (Letter::Target, Vertex::Own) => self.jet(self.case.setup.agents[self.moment.agent].target.as_ref(), k),
+            (Letter::Integral, Vertex::Own) if k < 2 => {
+                self.state(Signal::Reference(1), k == 1).map(exact).ok_or(Missing::Derivative)
+            }
+            (Letter::Deviation, Vertex::Own) => self.spacecraft_error(k),
+            (Letter::Term(term), Vertex::Own) => self.term(term, k),
+            (Letter::Integral | Letter::ReferenceDeviation | Letter::Coupled | Letter::Variable(_), Vertex::Own) => {
+                Err(Missing::Derivative)
+            }
+        }
+    }
+
+    /// Σ_j w_ij of the k-th derivative of a letter.
+    fn in_network(&mut self, quantity: Quantity, k: usize) -> Result<Vector, Missing> {
+        let (degree, axes) = (self.moment.degree, self.case.setup.agents[self.moment.agent].robot.axes.len());
+        let heard = |k: usize| {
+            let sums = self.moment.sums.get(k * axes..(k + 1) * axes);
+            sums.map(|sums| exact(sums.to_vec())).ok_or(Missing::Neighbour)
+        };
+        match (quantity.letter, quantity.vertex, k) {
+            (Letter::Position, Vertex::Neighbour, k) => heard(k),
+            (Letter::Coupled, _, 0) => {
+                let mut sum = Vector::new();
+                add(&mut sum, degree, &exact(self.position(0)?));
+                Ok(less(sum, &heard(0)?))
+            }
+            (_, Vertex::Neighbour, _) => Err(Missing::Neighbour),
+            (_, Vertex::Own | Vertex::Leader, k) => {
+                let mut sum = Vector::new();
+                add(&mut sum, degree, &self.own(quantity, k)?);
+                Ok(sum)
+            }
+        }
+    }
+
+    /// A form that is to be zero.
+    pub(super) fn form(&mut self, form: &Form) -> Result<Vector, Missing> {
+        let mut sum = Vector::new();
+        self.combination(&form.own, At::operated, &mut sum)?;
+        self.combination(&form.network, At::in_network, &mut sum)?;
+        if sum.is_empty() { Err(Missing::Definition) } else { Ok(sum) }
+    }
+
+    fn combination(
+        &mut self,
+        all: &Combination,
+        value: fn(&mut Self, Quantity, usize) -> Result<Vector, Missing>,
+        sum: &mut Vector,
+    ) -> Result<(), Missing> {
+        for (quantity, a) in all.terms() {
+            for (k, c) in a.coefficients().iter().enumerate() {
+                let c = number(c);
+                if c != 0.0 {
+                    add(sum, c, &value(self, quantity, k)?);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn operated(&mut self, quantity: Quantity, k: usize) -> Result<Vector, Missing> {
+        let Quantity { operator, letter, .. } = quantity;
+        match operator {
+            Operator::Identity => self.own(quantity, k),
+            Operator::Momentum => self.turned(letter, k),
+            _ => {
+                let vector = self.own(quantity, k)?;
+                self.under(operator, &vector)
+            }
+        }
+    }
+
+    /// An agent's model, with the states that it is asked at.
+    pub(super) fn model(&mut self) -> Result<&mut Model<'a>, Missing> {
+        self.model.as_deref_mut().ok_or(Missing::Term)
+    }
+
+    fn term(&mut self, term: Term, k: usize) -> Result<Vector, Missing> {
+        let recorded = |signal| self.recorded(signal).map(|values| exact(values.to_vec())).ok_or(Missing::Term);
+        match (term, k) {
+            (Term::Sign, 0) => recorded(Signal::Selection),
+            (Term::Torque, 0) => recorded(Signal::Torque),
+            (Term::Input, 0) if matches!(self.case.step, Step::PositionOnly(_)) => recorded(Signal::Torque),
+            (Term::External, 0) => match (recorded(self.acting()), self.is_pushed()) {
+                (Err(_), true) => Err(Missing::Pushed),
+                (Err(_), false) => Ok(exact(self.position(0)?.iter().map(|_| 0.0))),
+                (found, _) => found,
+            },
+            (Term::Input | Term::Weight | Term::MassEstimate | Term::MassError, 0) => self.vehicle_term(term),
+            (Term::Drift | Term::Actuation | Term::ChainRegressorError | Term::ImmersionError, 0) => {
+                self.chain_term(term)
+            }
+            (Term::MassEstimateRate | Term::MassErrorRate, 0) => self.mass_times_rate(term),
+            (Term::Gravity | Term::Regressor | Term::RegressorError, 0) => self.robot_term(term),
+            (
+                Term::DesiredRate
+                | Term::DesiredAcceleration
+                | Term::AttitudeError
+                | Term::AttitudeDifference
+                | Term::AttitudeDamping
+                | Term::AttitudeErrorRate,
+                _,
+            ) => self.spacecraft_term(term, k),
+            (
+                Term::Sign
+                | Term::Torque
+                | Term::Input
+                | Term::External
+                | Term::MassEstimateRate
+                | Term::MassErrorRate
+                | Term::Gravity
+                | Term::Regressor
+                | Term::RegressorError
+                | Term::Weight
+                | Term::MassEstimate
+                | Term::MassError
+                | Term::TaskForce
+                | Term::JointReference
+                | Term::Drift
+                | Term::Actuation
+                | Term::ChainRegressorError
+                | Term::ImmersionError
+                | Term::Constant,
+                _,
+            ) => Err(Missing::Term),
+        }
+    }
+
+    /// What acts on the equations of motion.
+    fn acting(&self) -> Signal {
+        if matches!(self.case.step, Step::Attitude(_)) { Signal::ExternalTorque } else { Signal::External }
+    }
+
+    pub(super) fn is_pushed(&self) -> bool {
+        !self.case.setup.agents[self.moment.agent].pushes.is_empty()
+    }
+
+    /// m̂ ż, or Δm ż.
+    fn mass_times_rate(&self, term: Term) -> Result<Vector, Missing> {
+        let estimate = self.recorded(Signal::Estimate).and_then(<[f64]>::first).ok_or(Missing::Term)?;
+        let mass = self.case.setup.agents[self.moment.agent].robot.theta.first().ok_or(Missing::Term)?;
+        let dz = self.reference(1)?;
+        let [factor, size] = match term {
+            Term::MassErrorRate => [estimate - mass, estimate.abs() + mass.abs()],
+            _ => [*estimate, estimate.abs()],
+        };
+        Ok(dz.iter().map(|dz| [factor * dz, (size * dz).abs()]).collect())
+    }
+
+    /// The rate of an estimate less what its law makes it.
+    pub(super) fn estimate(&mut self) -> Result<Vector, Missing> {
+        match self.case.step {
+            Step::PositionOnly(_) => return self.mass_estimate(),
+            Step::Thrust(..) => return self.vehicle_estimate(),
+            Step::Robot { .. } | Step::Attitude(_) | Step::TaskSpace(_) | Step::Chain(..) | Step::Outside(_) => {}
+        }
+        let rate = exact(self.state(Signal::Estimate, true).ok_or(Missing::Term)?);
+        Ok(less(rate, &self.adapted()?))
+    }
+
+    /// m̂' + γ* żᵀs, with m̂ = m̂(0) + I − γ* (żᵀx − ½ zᵀz) from the rate of I.
+    fn mass_estimate(&self) -> Result<Vector, Missing> {
+        let own = &self.case.setup.agents[self.moment.agent];
+        let law = own.law.downcast::<forwardstep_sim::PositionOnlyLaw>().ok_or(Missing::Term)?;
+        let integral = self.state(Signal::Estimate, true).ok_or(Missing::Term)?;
+        let (x, dx) = (self.position(0)?, self.position(1)?);
+        let (z, dz, ddz) = (self.reference(0)?, self.reference(1)?, self.reference(2)?);
+        let mut sum = exact(integral);
+        for k in 0..x.len() {
+            // m̂' = İ − γ* (z̈ᵀx + żᵀẋ − żᵀz), and γ* żᵀ(ẋ − z) more.
+            for term in [-ddz[k] * x[k], -dz[k] * dx[k], dz[k] * z[k], dz[k] * dx[k], -dz[k] * z[k]] {
+                add(&mut sum, law.adaptation, &[[term, term.abs()]]);
+            }
+        }
+        Ok(sum)
+    }
+}

@@ -1,0 +1,145 @@
+//! Chains of Section IV and vehicles with one thrust: their nonlinear terms at an instant.
+
+use std::sync::Arc;
+
+use forwardstep_core::attitude::{cross, rotate};
+use forwardstep_core::plant::{Formulas, Terms};
+use forwardstep_sim::{AgentSetup, ChainModel, Signal, VehicleModel};
+
+use super::super::case::{Step, ThrustStep};
+use super::super::form::{Term, number};
+use super::Missing;
+use super::moment::{At, Vector, exact};
+use super::robot::Model;
+
+/// (33) with its true θ.
+pub(super) struct Chain {
+    terms: Arc<Formulas>,
+    scratch: <Formulas as Terms>::Scratch,
+    theta: Vec<f64>,
+}
+
+impl Chain {
+    pub(super) fn of(agent: &AgentSetup) -> Option<Chain> {
+        let ChainModel::Derivatives(terms) = agent.robot.kind.downcast::<ChainModel>()? else { return None };
+        Some(Chain { terms: terms.clone(), scratch: terms.scratch(), theta: agent.robot.theta.clone() })
+    }
+
+    /// χ, ψ u, or φᵀ times what an estimate lacks of θ.
+    fn term(&mut self, term: Term, x: &[f64], [u, estimate]: [&[f64]; 2]) -> Option<[f64; 2]> {
+        let mut phi = vec![0.0; self.terms.parameters()];
+        let (chi, psi) = self.terms.terms(&mut self.scratch, x, &mut phi).ok()?;
+        let add = |[sum, size]: [f64; 2], term: f64| [sum + term, size + term.abs()];
+        match term {
+            Term::Drift => {
+                let known = phi.iter().zip(&self.theta).map(|(phi, theta)| phi * theta);
+                Some(known.fold([chi, chi.abs()], add))
+            }
+            Term::Actuation => u.first().map(|u| [psi * u, (psi * u).abs()]),
+            _ => {
+                let missing = phi.iter().zip(estimate).zip(&self.theta);
+                Some(missing.flat_map(|((phi, hat), theta)| [phi * hat, -phi * theta]).fold([0.0; 2], add))
+            }
+        }
+    }
+}
+
+impl At<'_, '_> {
+    pub(super) fn chain_term(&mut self, term: Term) -> Result<Vector, Missing> {
+        let Step::Chain(order, ..) = self.case.step else { return Err(Missing::Term) };
+        let mut x = Vec::new();
+        for k in 0..order {
+            x.extend(self.position(k)?);
+        }
+        let (u, estimate) = (self.recorded(Signal::Torque), self.recorded(Signal::Estimate));
+        let known = [u.unwrap_or_default(), estimate.unwrap_or_default()];
+        match self.model()? {
+            Model::Chain(chain) => chain.term(term, &x, known).map(|entry| vec![entry]).ok_or(Missing::Term),
+            Model::Robot(_) | Model::Spacecraft(_) => Err(Missing::Term),
+        }
+    }
+
+    fn vehicle(&self) -> Result<(f64, f64), Missing> {
+        let robot = &self.case.setup.agents[self.moment.agent].robot;
+        // A rotorcraft brings its angular velocity about by torques, and not at once.
+        let model = robot.kind.downcast::<VehicleModel>().ok_or(Missing::Term)?;
+        Ok((*robot.theta.first().ok_or(Missing::Term)?, model.gravity))
+    }
+
+    /// g e₃ of a vehicle.
+    pub(super) fn weight(&self) -> Result<[f64; 3], Missing> {
+        Ok([0.0, 0.0, self.vehicle()?.1])
+    }
+
+    /// m of a vehicle.
+    pub(super) fn mass(&self) -> Result<f64, Missing> {
+        self.case.setup.agents[self.moment.agent].robot.theta.first().copied().ok_or(Missing::Term)
+    }
+
+    /// x⃛ = −(σ̇ R e₃ + σ R S(ω) e₃)/m, less that of an offset.
+    pub(super) fn jerk(&self) -> Result<Vector, Missing> {
+        let (mass, _) = self.vehicle()?;
+        if self.is_pushed() {
+            return Err(Missing::Pushed);
+        }
+        let block = |signal, rates| self.state(signal, rates).ok_or(Missing::Term);
+        let (sigma, d_sigma) = (block(Signal::Thrust, false)?, block(Signal::Thrust, true)?);
+        let q = *block(Signal::Attitude, false)?.first_chunk().ok_or(Missing::Term)?;
+        let omega =
+            self.recorded(Signal::AngularVelocity).and_then(|omega| omega.first_chunk()).ok_or(Missing::Term)?;
+        let down = [0.0, 0.0, 1.0];
+        let (along, turned) = (rotate(q, down), rotate(q, cross(*omega, down)));
+        let offset = self.target().unwrap_or_else(|| vec![[0.0; 5]; 3]);
+        let each = along.iter().zip(&turned).zip(&offset);
+        let terms = each.map(|((a, t), jet)| [-d_sigma[0] * a / mass, -sigma[0] * t / mass, -jet[3]]);
+        Ok(terms.map(|terms| [terms.iter().sum(), terms.iter().map(|term: &f64| term.abs()).sum()]).collect())
+    }
+
+    /// g e₃, w, m̂ w, Δm w, or u* = m (x⃛ + α* ẍ − α* g e₃), which the thrust and the angular velocity bring about.
+    pub(super) fn vehicle_term(&mut self, term: Term) -> Result<Vector, Missing> {
+        let Step::Thrust(_, [alpha, _]) = &self.case.step else { return Err(Missing::Term) };
+        let ((mass, gravity), alpha) = (self.vehicle()?, number(alpha));
+        let weight = [0.0, 0.0, gravity];
+        let driven = |high: Vector, low: Vector| -> Vector {
+            let each = high.into_iter().zip(low).zip(weight);
+            each.map(|((high, low), weight)| {
+                let (low, weight) = (low.map(|x| alpha * x), alpha * weight);
+                [high[0] + low[0] - weight, high[1] + low[1] + weight.abs()]
+            })
+            .collect()
+        };
+        let factor = match term {
+            Term::Weight => return Ok(exact(weight)),
+            Term::Input => {
+                let moved = driven(self.jerk()?, self.moved(2)?);
+                return Ok(moved.into_iter().map(|entry| entry.map(|x| mass * x)).collect());
+            }
+            Term::MassEstimate => exact(self.mass_estimated()?),
+            _ => self.mass_estimated()?.map(|hat| [hat - mass, hat.abs() + mass.abs()]).to_vec(),
+        };
+        let w = driven(exact(self.reference(2)?), exact(self.reference(1)?));
+        Ok(w.into_iter().map(|[value, size]| [factor[0][0] * value, factor[0][1] * size]).collect())
+    }
+
+    fn mass_estimated(&self) -> Result<[f64; 1], Missing> {
+        let shown = self.recorded(Signal::Estimate).and_then(|estimate| estimate.first_chunk());
+        shown.copied().ok_or(Missing::Term)
+    }
+
+    /// (58) of a vehicle: m̂' + γ* wᵀṡ*, where m̂ is m̂(0) + I − γ* wᵀs*, from the rate of I.
+    pub(super) fn vehicle_estimate(&mut self) -> Result<Vector, Missing> {
+        let Step::Thrust(ThrustStep::Adaptive, [alpha, gamma]) = &self.case.step else { return Err(Missing::Term) };
+        let (alpha, gamma) = (number(alpha), number(gamma));
+        self.vehicle()?;
+        let [dx, z, ddz, dddz] = [self.position(1)?, self.reference(0)?, self.reference(2)?, self.reference(3)?];
+        let offset = self.target().unwrap_or_else(|| vec![[0.0; 5]; 3]);
+        let mut sum = exact(self.state(Signal::Estimate, true).ok_or(Missing::Term)?);
+        for k in 0..3.min(dx.len()) {
+            let dw = [dddz[k], offset[k][4], alpha * ddz[k], alpha * offset[k][3]];
+            for term in dw.into_iter().flat_map(|dw| [-gamma * dw * dx[k], gamma * dw * z[k]]) {
+                sum[0] = [sum[0][0] + term, sum[0][1] + term.abs()];
+            }
+        }
+        Ok(sum)
+    }
+}
