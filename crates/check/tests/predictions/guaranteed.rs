@@ -1,7 +1,7 @@
 //! The guaranteed rate of agreement, against closed forms and runs.
 
 use forwardstep_check::ideal;
-use forwardstep_check::prediction::guaranteed::{QUICK, THOROUGH};
+use forwardstep_check::prediction::guaranteed::WORK;
 use forwardstep_check::prediction::{CascadeSpread, Fall, GuaranteedRate, guaranteed_rate};
 use forwardstep_sim::delay::{Delay, Loss, PacketLink, RandomHold, SawTooth, Sinusoid};
 use forwardstep_sim::schedule::{Phase, Schedule};
@@ -44,7 +44,7 @@ fn left_of_pair(w: f64, kappa: f64, t: f64) -> f64 {
 #[test]
 fn a_pair_without_delay_is_left_what_its_exponentials_leave() {
     for (w, kappa) in [(0.5, 3.0), (1.0, 40.0)] {
-        let found = guaranteed_rate(&pair(w, kappa), THOROUGH).unwrap();
+        let found = guaranteed_rate(&pair(w, kappa), WORK).unwrap();
         assert!(found.falls.len() > 5 && !found.drawn);
         for Fall { t_s, left } in &found.falls {
             let exact = left_of_pair(w, kappa, *t_s);
@@ -119,14 +119,14 @@ fn prop_no_run_shrinks_less_than_is_guaranteed() {
         for (exchange, order) in [(Exchange::Position, 1), (Exchange::PositionVelocity, 2), (Exchange::Position, 3)] {
             let setup = five(exchange, order, seed);
             let started = std::time::Instant::now();
-            let found = guaranteed_rate(&setup, QUICK);
+            let found = guaranteed_rate(&setup, WORK);
             let quick = started.elapsed();
             let Ok(found) = found else {
                 eprintln!("{seed} {exchange:?} {order}: {found:?}");
                 continue;
             };
             let started = std::time::Instant::now();
-            let more = guaranteed_rate(&setup, THOROUGH).unwrap();
+            let more = guaranteed_rate(&setup, WORK).unwrap();
             let thorough = started.elapsed();
             let settled = held_against_a_run(&setup, &found);
             let settled2 = held_against_a_run(&setup, &more);

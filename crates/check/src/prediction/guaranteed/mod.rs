@@ -116,12 +116,10 @@ pub enum NoGuaranteedRate {
     },
 }
 
-/// Work for a rate that takes about a second, in multiplications, roughly.
-pub const THOROUGH: f64 = 4e8;
-/// Work for a rate on the way to something else.
-pub const QUICK: f64 = 1e7;
+/// Work for a rate, in multiplications, roughly: about a tenth of a second.
+pub const WORK: f64 = 5e7;
 
-/// Guarantees a rate of agreement of `setup` for s ≡ 0, from outward-rounded lower bounds with so much `work`, such as [`THOROUGH`].
+/// Guarantees a rate of agreement of `setup` for s ≡ 0, from outward-rounded lower bounds with so much `work`, such as [`WORK`].
 ///
 /// **Guarantees**: for every solution of the reference dynamics with s ≡ 0, whatever its start, over the graphs, weights and delays as
 /// the run has them.
