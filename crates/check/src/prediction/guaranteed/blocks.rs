@@ -12,6 +12,8 @@ use crate::prediction::SHARE;
 
 /// Times the fastest rate that a cell is long, where that is not too much work.
 const SHORT: f64 = 0.05;
+/// The same where a weight changes: what is not known of it in a cell is lost.
+const SHORTER: f64 = 0.0125;
 /// How much later than the one before it the next look at what is left is, as a part of the time since the beginning of a block.
 const LATER: f64 = 0.02;
 /// Times the horizon of the run that is looked ahead where all is known for ever.
@@ -56,8 +58,9 @@ impl<'a> Blocks<'a> {
         let edges = graphs.iter().map(Vec::len).max().unwrap_or(0) as f64 * network.sent as f64;
         let cells = work / (n * (n + 8.0 * edges));
         let sent = (network.sent * network.first.len()) as f64;
+        let short = if network.has_constant_weights() { SHORT } else { SHORTER };
         let short_s =
-            (SHORT / network.fastest_per_s()).max(network.window_s * 2.0 * sent * n / MOST_NUMBERS).min(end_s);
+            (short / network.fastest_per_s()).max(network.window_s * 2.0 * sent * n / MOST_NUMBERS).min(end_s);
         let reach_s = if repeats.is_some() { HORIZONS * end_s } else { end_s };
         [short_s, short_s.max(2.0 * end_s / cells)].map(|cell_s| Blocks { network, repeats, cell_s, reach_s, cells })
     }
@@ -70,11 +73,7 @@ impl<'a> Blocks<'a> {
             let looks = self.block(from_s, from_s == 0.0, Looks::Later, SHARE / before, &mut cells);
             let Some(best) = best(&looks, from_s).filter(|best| best.left < NOTHING) else { return falls };
             for look in looks {
-                let left = (before * look.left).next_up();
-                let listed = falls.last().map_or(NOTHING, |last| LISTED * last.left);
-                if left <= listed || left <= SHARE {
-                    falls.push(Fall { t_s: look.t_s, left });
-                }
+                falls.push(Fall { t_s: look.t_s, left: (before * look.left).next_up() });
             }
             if falls.last().is_some_and(|last| last.left <= SHARE) {
                 return falls;
@@ -131,6 +130,18 @@ impl<'a> Blocks<'a> {
         }
         found
     }
+}
+
+/// In the order of time those that leave less than all before them, by enough to be listed.
+pub(super) fn listed(mut falls: Vec<Fall>) -> Vec<Fall> {
+    falls.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
+    let mut least = NOTHING;
+    falls.retain(|fall| {
+        let is_less = fall.left <= LISTED * least || (fall.left <= SHARE && least > SHARE);
+        least = if is_less { fall.left } else { least };
+        is_less
+    });
+    falls
 }
 
 /// The look of the best mean rate.

@@ -5,7 +5,7 @@
 //! x is no less than the solution y of
 //!
 //! ```text
-//! ẏ = Σⱼ w̲ⱼ (Hⱼ − y) − E        E = Σⱼ (w̄ⱼ − w̲ⱼ) max(0, Y − min Hⱼ)        Y = max(y(0), max Hⱼ)
+//! ẏ = Σⱼ w̲ⱼ (Hⱼ − y) − E        E = Σⱼ (w̄ⱼ − w̲ⱼ) max(0, Y − min Hⱼ)        Y = y(0) + h Σⱼ w̄ⱼ max(0, max Hⱼ − y(0))
 //! ```
 //!
 //! since y ≤ Y, so that where x = y the rate of x is Σ w̲ⱼ (uⱼ − y) + Σ (wⱼ − w̲ⱼ)(uⱼ − y) ≥ ẏ. Its value is
@@ -248,23 +248,23 @@ impl<'a> Cells<'a> {
         let d: f64 = rates.clone().map(|rate| rate.low).sum();
         let x = d * h_s;
         let [e1, e2] = relaxation(x);
-        let count = rates.clone().count() as f64;
+        let (count, varies) = (rates.clone().count() as f64, rates.clone().any(|rate| rate.low < rate.high));
         // Times are off by a unit in their last place, which is more of a short cell.
         let rounding = ROUNDING * (count + 4.0) * (1.0 + to_s.abs() / h_s);
         let y = &self.y[component * n..(component + 1) * n];
         let line = &mut self.lines[2 * n * component..2 * n * (component + 1)];
         for m in 0..n {
             let own = y[m];
-            let (mut g, mut rise, mut size, mut top, mut uneven) = (0.0, 0.0, 0.0, own, false);
+            let (mut g, mut rise, mut size, mut rises) = (0.0, 0.0, 0.0, 0.0);
             for (rate, input) in rates.clone().zip(self.work.inputs.chunks_exact(2 * n)) {
                 let (first, last) = (input[m], input[n + m]);
                 g += rate.low * (first - own);
                 rise += rate.low * (last - first);
                 size += rate.high * (first + last + own);
-                top = top.max(first).max(last);
-                uneven |= rate.low != rate.high;
+                rises += rate.high * (first.max(last) - own).max(0.0);
             }
-            if uneven {
+            if varies {
+                let top = own + h_s * rises;
                 for (rate, input) in rates.clone().zip(self.work.inputs.chunks_exact(2 * n)) {
                     g -= (rate.high - rate.low) * (top - input[m].min(input[n + m])).max(0.0);
                 }

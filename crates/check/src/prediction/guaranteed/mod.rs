@@ -25,7 +25,7 @@ use forwardstep_sim::network::NetworkError;
 use forwardstep_sim::schedule::Window;
 use thiserror::Error;
 
-use self::blocks::{Blocks, is_drawn};
+use self::blocks::{Blocks, is_drawn, listed};
 pub use self::class::ClassBound;
 use self::network::{MOST_COMPONENTS, Network};
 use self::period::Repeats;
@@ -137,16 +137,10 @@ pub fn guaranteed_rate(setup: &Setup, work: f64) -> Result<GuaranteedRate, NoGua
     let repeats = Repeats::of(&network.ideal);
     let [short, long] = Blocks::of(&network, repeats, work);
     let is_settled = |falls: &[Fall]| falls.last().is_some_and(|last| last.left <= SHARE);
-    let mut falls = short.falls();
+    let mut falls = listed(short.falls());
     if !is_settled(&falls) {
         falls.extend(long.falls());
-        falls.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
-        let mut least = f64::INFINITY;
-        falls.retain(|fall| {
-            let is_less = fall.left < least;
-            least = least.min(fall.left);
-            is_less
-        });
+        falls = listed(falls);
     }
     let Some(last) = falls.last().copied() else {
         return Err(NoGuaranteedRate::Nothing { until_s: setup.time.end_s });

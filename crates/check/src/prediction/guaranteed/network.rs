@@ -58,9 +58,6 @@ impl Network {
         if let Some(agent) = ideal.agents.iter().position(|agent| !valid(&agent.roots_per_s)) {
             return Err(NoGuaranteedRate::Roots { agent });
         }
-        if ideal.reference.is::<PureIntegral>() && !has_one_laplacian(&ideal) {
-            return Err(NoGuaranteedRate::PureIntegral);
-        }
         let (mut first, mut kappa) = (Vec::new(), Vec::new());
         for agent in &ideal.agents {
             first.push(kappa.len());
@@ -75,7 +72,12 @@ impl Network {
             Exchange::PositionVelocity => 2,
         };
         let window_s = ideal.network.max_delay_s();
-        Ok(Network { ideal, first, kappa, sent, window_s })
+        let network = Network { ideal, first, kappa, sent, window_s };
+        let is_fixed = network.ideal.network.schedule.constant_graph().is_some() && network.has_constant_weights();
+        if network.ideal.reference.is::<PureIntegral>() && !is_fixed {
+            return Err(NoGuaranteedRate::PureIntegral);
+        }
+        Ok(network)
     }
 
     /// How many components there are.
@@ -128,6 +130,11 @@ impl Network {
         Interval { low: if low < LEAST_WEIGHT { 0.0 } else { low }, high: high.max(LEAST_WEIGHT) }
     }
 
+    /// Whether no weight changes.
+    pub(super) fn has_constant_weights(&self) -> bool {
+        self.ideal.network.schedule.graphs.iter().flatten().all(|edge| edge.weight.constant().is_some())
+    }
+
     /// The fastest rate of any component while any graph is in force, 1/s.
     pub(super) fn fastest_per_s(&self) -> f64 {
         let lags = self.kappa.iter().flatten().copied().fold(0.0, f64::max);
@@ -137,10 +144,4 @@ impl Network {
             self.inputs(graph, over).iter().map(degree).fold(most, f64::max)
         })
     }
-}
-
-/// Whether neither the graph nor a weight changes.
-fn has_one_laplacian(setup: &Setup) -> bool {
-    let constant = |edges: &[forwardstep_sim::graph::Edge]| edges.iter().all(|edge| edge.weight.constant().is_some());
-    setup.network.schedule.constant_graph().is_some_and(constant)
 }
