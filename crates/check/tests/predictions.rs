@@ -5,6 +5,8 @@
 mod common;
 #[path = "predictions/course.rs"]
 mod course;
+#[path = "predictions/guaranteed.rs"]
+mod guaranteed;
 #[path = "predictions/rate.rs"]
 mod rate;
 

@@ -68,7 +68,7 @@ impl CascadeSpread {
     /// # Errors
     /// [`NoCascade`] when the variables are not defined, or were not recorded.
     pub fn of(setup: &Setup, recording: &Recording) -> Result<CascadeSpread, NoCascade> {
-        check(setup)?;
+        defined(setup)?;
         let rows = recording.t_s.len();
         let axes = setup.agents.first().map_or(0, |agent| agent.robot.axes.len());
         let window_s = setup.network.max_delay_s();
@@ -115,7 +115,8 @@ impl CascadeSpread {
     }
 }
 
-fn check(setup: &Setup) -> Result<(), NoCascade> {
+/// Whether the variables are defined and their interval never grows.
+pub(super) fn defined(setup: &Setup) -> Result<(), NoCascade> {
     if !(setup.reference.is::<Consensus>() || setup.reference.is::<PureIntegral>()) {
         return Err(NoCascade::Reference);
     }

@@ -7,6 +7,7 @@
 //! - `ideal`: the setup in which everybody follows exactly.
 //! - `cascade`: the cascaded variables ψ of the proofs of Theorems 2 and 3, whose spread does not grow.
 //! - `course`: the disagreement over time and the value agreed upon.
+//! - `guaranteed`: how much of a spread is left when, for certain.
 //! - `period`: the rate of agreement over a network that repeats itself.
 //! - `roots`: the rate of agreement over a fixed graph with constant delays.
 //! - `settled`: when a disagreement has settled.
@@ -14,6 +15,7 @@
 
 mod cascade;
 mod course;
+pub mod guaranteed;
 mod ideal;
 mod period;
 pub(crate) mod roots;
@@ -23,6 +25,7 @@ mod unfinished;
 
 pub use cascade::{CascadeSpread, NoCascade};
 pub use course::{Course, NoCourse, course};
+pub use guaranteed::{ClassBound, Fall, GuaranteedRate, NoGuaranteedRate, Repeat, guaranteed_rate};
 pub use ideal::{NoIdeal, ideal};
 pub use period::{NoPeriodRate, PeriodRate, period_rate};
 pub use roots::{NoRate, Rate, rate};

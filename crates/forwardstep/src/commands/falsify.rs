@@ -48,7 +48,8 @@ fn save(folder: &Path, case: &Case, failure: &Failure, console: &mut Console) ->
 fn summary(tally: &Tally, seed: u64, console: &mut Console) {
     console.line(format_args!("{} cases of seed {seed}", tally.cases()));
     let lines = [
-        (tally.kept, "without tracking errors, whose spread never grew"),
+        (tally.kept + tally.shrank, "without tracking errors, whose spread never grew"),
+        (tally.shrank, "of these, whose spread shrank at least by what is guaranteed"),
         (tally.fell, "closed loops whose balance holds and whose error falls"),
         (tally.balanced, "closed loops whose balance holds, of which nothing more is promised"),
         (tally.undecided.len() as u64, "undecided: the error had not fallen over 16 times the horizon"),

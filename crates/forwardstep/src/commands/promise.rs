@@ -2,7 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use forwardstep::check::prediction::{NoRate, period_rate, rate};
+use forwardstep::check::prediction::guaranteed::WORK;
+use forwardstep::check::prediction::{NoRate, guaranteed_rate, period_rate, rate};
 use forwardstep::check::{self, Answer, NoPrediction, Practical, PracticalAnswer, Prediction, Report};
 use forwardstep::io::output::Predictions;
 use forwardstep::io::scenario::Scenario;
@@ -36,7 +37,7 @@ pub(crate) fn predictions(setup: &Setup, observer: &mut dyn FnMut(Progress) -> C
     let (course, rate) = (check::course(setup, observer), rate(setup));
     let repeats = matches!(rate, Err(NoRate::Switching | NoRate::VaryingDelay));
     let period = (repeats && course.is_ok()).then(|| period_rate(setup, observer));
-    Predictions::of(&course, &rate, period.as_ref())
+    Predictions::of(setup, &course, &rate, period.as_ref(), &guaranteed_rate(setup, WORK))
 }
 
 /// Whether predictions take a fraction of a second. They simulate the reference dynamics of every axis over the horizon, and those of one axis over

@@ -1,14 +1,15 @@
 //! What a case is held against.
 //!
 //! Where no tracking error is left, s ≡ 0, the interval of the cascaded variables and of what is on its way never grows, whatever the
-//! graphs and delays do: that can be refuted in finite time. Of whole closed loops the balance of V has to hold, a run whose hypotheses
+//! graphs and delays do, and shrinks by what is guaranteed: that can be refuted in finite time. Of whole closed loops the balance of V has to hold, a run whose hypotheses
 //! all hold must not break down, and its error must fall over doubled horizons. That a limit exists no run refutes: what has not fallen
 //! after the last doubling is undecided.
 
 use std::ops::ControlFlow;
 
 use forwardstep::check::hypothesis::FollowingEvidence;
-use forwardstep::check::prediction::CascadeSpread;
+use forwardstep::check::prediction::guaranteed::WORK;
+use forwardstep::check::prediction::{CascadeSpread, Fall, guaranteed_rate};
 use forwardstep::check::{Answer, Evidence, Report, check, ideal};
 use forwardstep::io::diagnostic::SourceText;
 use forwardstep::io::output::{BalanceResidual, Disagreement, Metrics, ending_sentence};
@@ -34,8 +35,10 @@ const GROWTH: f64 = 1e-6;
 /// What became of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Verdict {
-    /// The interval of the cascade did not grow.
+    /// The interval of the cascade did not grow; no fall of it is guaranteed on the horizon.
     Kept,
+    /// It shrank at least by what is guaranteed.
+    Shrank,
     /// The balance holds and the error falls.
     Fell,
     /// The balance holds; `check` promises nothing more.
@@ -53,6 +56,8 @@ pub(crate) enum Verdict {
 pub(crate) enum Failure {
     /// The interval of the cascade grew by this part.
     Grew { part: f64, t_s: f64 },
+    /// More of the interval of the cascade is left than is guaranteed.
+    LeftMore { left: f64, guaranteed: f64, t_s: f64 },
     /// V + ∫ dissipation − V(0) is this part of V(0).
     Unbalanced { relative: f64, t_s: f64 },
     /// A run broke down though all hypotheses hold.
@@ -68,6 +73,12 @@ impl std::fmt::Display for Failure {
                 write!(
                     f,
                     "without tracking errors the spread of the cascade grew by {part:.2e} of itself until t = {t_s} s"
+                )
+            }
+            Failure::LeftMore { left, guaranteed, t_s } => {
+                write!(
+                    f,
+                    "without tracking errors {left:.3e} of the spread of the cascade is left at t = {t_s} s, guaranteed is {guaranteed:.3e}"
                 )
             }
             Failure::Unbalanced { relative, t_s } => {
@@ -128,19 +139,55 @@ fn without_errors(setup: &Setup) -> Verdict {
         Ending::Interrupted { .. } | Ending::BrokeDown(_) => Err("the run did not complete".into()),
     });
     match spread {
-        Ok((spread, t_s)) => grown(&spread, &t_s).map_or(Verdict::Kept, Verdict::Failed),
+        Ok((spread, t_s)) => match grown(&spread, &t_s) {
+            Some(failure) => Verdict::Failed(failure),
+            None => shrunk(setup, &spread, &t_s),
+        },
         Err(reason) => Verdict::Silent(reason),
     }
+}
+
+/// Whether the interval shrinks by what is guaranteed, as far as anything is.
+fn shrunk(setup: &Setup, spread: &CascadeSpread, t_s: &[f64]) -> Verdict {
+    let Ok(found) = guaranteed_rate(setup, WORK) else { return Verdict::Kept };
+    match left_more(spread, t_s, setup.time.record_every_s, &found.falls) {
+        Some(Some(failure)) => Verdict::Failed(failure),
+        Some(None) => Verdict::Shrank,
+        None => Verdict::Kept,
+    }
+}
+
+/// Of which fall the interval of an axis leaves more than it should; nothing where none can be judged before the last row.
+pub(super) fn left_more(spread: &CascadeSpread, t_s: &[f64], every_s: f64, falls: &[Fall]) -> Option<Option<Failure>> {
+    // What is on its way at a row is looked at from the last row before the window on.
+    let row_of = |fall: &Fall| t_s.partition_point(|t_s| *t_s < fall.t_s + every_s);
+    let mut judged = falls.iter().filter_map(|fall| Some((*fall, row_of(fall), *t_s.get(row_of(fall))?))).peekable();
+    judged.peek()?;
+    let size = size(spread);
+    Some(judged.find_map(|(Fall { left: guaranteed, .. }, row, t_s)| {
+        let widths = spread.low.iter().zip(&spread.high).map(|(low, high)| (high[0] - low[0], high[row] - low[row]));
+        let more = |(start, now): &(f64, f64)| {
+            let over = now - guaranteed * start;
+            over > GROWTH * size || over.is_nan()
+        };
+        let (start, now) = widths.into_iter().find(more)?;
+        Some(Failure::LeftMore { left: now / start, guaranteed, t_s })
+    }))
+}
+
+/// The size of the numbers at the start. Tolerances go by it: of an axis on which all start in one place the others tell.
+fn size(spread: &CascadeSpread) -> f64 {
+    let first = |row: &[f64]| row.first().copied().unwrap_or(0.0);
+    let axes = spread.low.iter().zip(&spread.high);
+    let sizes = axes.flat_map(|(low, high)| [first(high) - first(low), first(low).abs(), first(high).abs()]);
+    sizes.fold(f64::MIN_POSITIVE, f64::max)
 }
 
 /// When, and by how much, the interval left what it was at the start: there, what is on its way is known exactly.
 pub(super) fn grown(spread: &CascadeSpread, t_s: &[f64]) -> Option<Failure> {
     let first = |row: &[f64]| row.first().copied().unwrap_or(0.0);
-    let axes = || spread.low.iter().zip(&spread.high);
-    // Tolerances go by the sizes of numbers: of an axis on which all start in one place the others tell.
-    let sizes = axes().flat_map(|(low, high)| [first(high) - first(low), first(low).abs(), first(high).abs()]);
-    let size = sizes.fold(f64::MIN_POSITIVE, f64::max);
-    let worst = axes().flat_map(|(low, high)| {
+    let size = size(spread);
+    let worst = spread.low.iter().zip(&spread.high).flat_map(|(low, high)| {
         let out = |(now_low, now_high): (&f64, &f64)| (first(low) - now_low).max(now_high - first(high)) / size;
         low.iter().zip(high).map(out).zip(t_s).collect::<Vec<_>>()
     });

@@ -14,8 +14,10 @@ pub(crate) use judge::{Failure, Verdict};
 /// What became of many cases.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tally {
-    /// Spreads that did not grow.
+    /// Spreads that did not grow, of which no fall is guaranteed.
     pub(crate) kept: u64,
+    /// Spreads that shrank at least by what is guaranteed.
+    pub(crate) shrank: u64,
     /// Closed loops whose balance holds and whose error falls.
     pub(crate) fell: u64,
     /// Closed loops whose balance holds, of which nothing more is promised.
@@ -33,6 +35,7 @@ impl Tally {
     pub(crate) fn add(&mut self, case: Case) {
         match judge::judge(&case) {
             Verdict::Kept => self.kept += 1,
+            Verdict::Shrank => self.shrank += 1,
             Verdict::Fell => self.fell += 1,
             Verdict::Balanced => self.balanced += 1,
             Verdict::Undecided => self.undecided.push(case),
@@ -44,7 +47,7 @@ impl Tally {
     /// How many were judged.
     pub(crate) fn cases(&self) -> u64 {
         let listed = self.undecided.len() + self.failed.len();
-        self.kept + self.fell + self.balanced + self.silent.values().sum::<u64>() + listed as u64
+        self.kept + self.shrank + self.fell + self.balanced + self.silent.values().sum::<u64>() + listed as u64
     }
 }
 
@@ -55,6 +58,7 @@ fn shrunk(mut case: Case, mut failure: Failure) -> (Case, Failure) {
             Verdict::Failed(found) if found.is_like(&failure) => Some((smaller, found)),
             Verdict::Failed(_)
             | Verdict::Kept
+            | Verdict::Shrank
             | Verdict::Fell
             | Verdict::Balanced
             | Verdict::Undecided
@@ -83,7 +87,9 @@ fn without_numbers(reason: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::case::{Course, Switching, System};
-    use super::judge::{decided, grown, judge, read};
+    use forwardstep::check::prediction::{CascadeSpread, Fall};
+
+    use super::judge::{decided, grown, judge, left_more, read};
     use super::*;
 
     #[test]
@@ -138,10 +144,7 @@ mod tests {
     #[test]
     fn a_spread_that_grows_is_seen_and_nothing_is_said_of_what_is_not_claimed() {
         assert!(matches!(judge(&unlike()), Verdict::Silent(_)));
-        let spread = |low: &[f64], high: &[f64]| forwardstep::check::prediction::CascadeSpread {
-            low: vec![low.to_vec()],
-            high: vec![high.to_vec()],
-        };
+        let spread = |low: &[f64], high: &[f64]| CascadeSpread { low: vec![low.to_vec()], high: vec![high.to_vec()] };
         assert_eq!(grown(&spread(&[0.0, 0.1, 0.2], &[1.0, 1.0, 0.9]), &[0.0, 1.0, 2.0]), None);
         let out = grown(&spread(&[0.0, 0.1, -0.01], &[1.0, 1.0, 1.02]), &[0.0, 1.0, 2.0]);
         assert!(matches!(out, Some(Failure::Grew { part, t_s: 2.0 }) if (part - 0.02).abs() < 1e-12), "{out:?}");
@@ -157,6 +160,20 @@ mod tests {
         assert_eq!(decided(&[0.1, 0.2, 0.4, 0.8, 1.2]), None);
         let rose = Verdict::Failed(Failure::Rose { most: 0.8, last: 1.21 });
         assert_eq!([decided(&[0.1, 0.2, 0.4, 0.8, 1.21]), decided(&[0.2, 0.4, 0.8, 1.21])], [Some(rose), None]);
+    }
+
+    #[test]
+    fn a_spread_of_which_more_is_left_than_is_guaranteed_is_seen() {
+        // The second axis is left 0.5 at 2 s, the first nothing.
+        let spread = CascadeSpread {
+            low: vec![vec![0.0; 3], vec![-1.0, -0.9, -0.5]],
+            high: vec![vec![4.0, 2.0, 0.0], vec![1.0, 0.9, 0.5]],
+        };
+        let judged = |t_s: f64, left: f64| left_more(&spread, &[0.0, 1.0, 2.0], 1.0, &[Fall { t_s, left }]);
+        assert_eq!(judged(1.0, 0.5), Some(None));
+        let failure = Failure::LeftMore { left: 0.5, guaranteed: 0.4, t_s: 2.0 };
+        assert_eq!(judged(0.5, 0.4), Some(Some(failure)));
+        assert_eq!(judged(1.5, 0.4), None, "there is no row after 2 s");
     }
 
     #[test]

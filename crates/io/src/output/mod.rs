@@ -30,6 +30,7 @@ mod explanation;
 mod findings;
 mod folder;
 mod formula;
+mod guarantee;
 mod how;
 mod injected;
 mod inputs;
@@ -64,6 +65,7 @@ pub use explanation::{EXPLANATION_FORMAT, TextLine, explanation_document, explan
 pub use findings::{Checked, FINDINGS_FORMAT, Findings, PredictedAgreement};
 pub use folder::RunFolder;
 use folder::Staging;
+pub use guarantee::{Guarantee, GuaranteeFound, GuaranteedClass, GuaranteedFall, GuaranteedRepeat};
 pub use injected::{FirstInjection, Injected};
 pub use metrics::{
     Absence, Agreement, BALANCE_FLOOR_J, BalanceResidual, Disagreement, DisagreementSeries, Gap, LimitKind,

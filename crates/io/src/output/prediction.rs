@@ -3,11 +3,14 @@
 //! All of it is for s ≡ 0: robots that follow their references exactly. Beside it stands what was observed.
 
 use forwardstep_check::NoIdeal;
-use forwardstep_check::prediction::{Course, NoCourse, NoPeriodRate, NoRate, PeriodRate, Rate, Unfinished};
+use forwardstep_check::prediction::{
+    Course, GuaranteedRate, NoCourse, NoGuaranteedRate, NoPeriodRate, NoRate, PeriodRate, Rate, Unfinished,
+};
 use forwardstep_sim::Setup;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::guarantee::Guarantee;
 use super::report::text::number as number_words;
 use super::{names, number};
 
@@ -21,6 +24,9 @@ pub struct Predictions {
     pub course: PredictedCourse,
     /// The rate of agreement.
     pub rate: PredictedRate,
+    /// How much of the spread is left when, for certain; absent where an earlier version predicted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub guarantee: Option<Guarantee>,
 }
 
 /// The course of agreement, or why it is not predicted.
@@ -120,9 +126,11 @@ pub enum PredictedRate {
 impl Predictions {
     /// What was found, with the rate per period where one was looked for; `None` where agents follow targets or a leader, and nothing is agreed upon.
     pub fn of(
+        setup: &Setup,
         course: &Result<Course, NoCourse>,
         rate: &Result<Rate, NoRate>,
         period: Option<&Result<PeriodRate, NoPeriodRate>>,
+        guaranteed: &Result<GuaranteedRate, NoGuaranteedRate>,
     ) -> Option<Predictions> {
         let course = match course {
             Err(
@@ -150,7 +158,7 @@ impl Predictions {
                 settled_s: rate.settled.time_s(),
             },
         };
-        Some(Predictions { course, rate })
+        Some(Predictions { course, rate, guarantee: Some(Guarantee::of(guaranteed, setup.time.end_s)) })
     }
 
     /// The course, if there is one.
@@ -195,6 +203,7 @@ impl Predictions {
                 format!("rate: rightmost root {re:.4}{turning} 1/s, last corrected by {correction}; {into} of it")
             }
         });
+        sentences.extend(self.guarantee.iter().flat_map(|guarantee| guarantee.sentences(setup.time.end_s)));
         sentences
     }
 }

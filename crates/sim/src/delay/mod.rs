@@ -48,6 +48,7 @@
 
 mod arrivals;
 mod constant;
+mod course;
 mod formula;
 mod known;
 pub mod packets;
@@ -66,6 +67,7 @@ use crate::quantity::{QuantityError, not_negative, such};
 use crate::same::Same;
 pub use arrivals::Arrivals;
 pub use constant::Constant;
+pub use course::SentOver;
 pub use known::{Basis, Known, Refuted, Unknown};
 pub use packets::{Drawn, Loss, Packet, PacketLink, Trace};
 pub use piecewise_constant::PiecewiseConstant;

@@ -1,3 +1,5 @@
+use forwardstep_core::expression::Expression;
+
 use super::*;
 
 fn arrivals(delay: &Delay, sent_s: f64) -> Vec<f64> {
@@ -116,4 +118,70 @@ fn what_is_known_beyond_the_run_says_what_it_rests_on() {
     assert_eq!(bound_s, held(None).max_s());
     let log = Trace::new(vec![Packet { send_s: 0.0, delay_s: Some(0.5) }], 9.0).unwrap();
     assert_eq!(known(Delay::new(log)).1, Some(Unknown::LaterPackets));
+}
+
+#[test]
+fn what_a_delay_does_on_a_part_of_a_piece_holds_all_of_its_values() {
+    /// A delay from outside, of which only the declared bounds are known.
+    #[derive(Debug, PartialEq)]
+    struct Own;
+    impl DelayFunction for Own {
+        fn words(&self) -> &'static str {
+            "a delay of one's own"
+        }
+        fn validate(&self, _: f64) -> Result<(), QuantityError> {
+            Ok(())
+        }
+        fn piece(&self, _: u64) -> DelayPiece {
+            DelayPiece::WHOLE
+        }
+        fn value(&self, _: &DelayPiece, t_s: f64) -> f64 {
+            0.2 + 0.1 * libm::sin(t_s * t_s)
+        }
+        fn known(&self) -> Known {
+            Known::declared([0.1, 0.3])
+        }
+        fn arrivals(&self, search: &mut Arrivals<'_>) {
+            search.monotone();
+        }
+    }
+    let t = Expression::variable(0);
+    let waves = BoundedFormula::new((t * 3.0).sin_of() * 0.2 + 0.2, 9.0);
+    let straight = [
+        Delay::constant(0.25),
+        Delay::new(SawTooth { min_s: 0.1, max_s: 0.4, period_s: 0.7, offset_s: 0.2 }),
+        Delay::new(PiecewiseConstant { times_s: vec![0.0, 0.3], values_s: vec![0.1, 0.2], period_s: Some(0.5) }),
+        Delay::new(RandomHold::draw(1, (0, 1), [0.05, 0.4], [0.1, 0.8], 9.0).unwrap()),
+    ];
+    let wave = Sinusoid { mean_s: 0.3, amplitude_s: 0.3, period_s: 1.4, phase_rad: 0.4 };
+    let curved = [Delay::new(wave), Delay::new(waves), Delay::new(Own)];
+    let is_straight = (0..straight.len()).map(|_| true).chain((0..curved.len()).map(|_| false));
+    for (delay, is_straight) in straight.iter().chain(&curved).zip(is_straight) {
+        let mut piece = delay.first_piece();
+        for k in 0..400 {
+            let (from_s, to_s) = (0.02 * f64::from(k), 0.02 * f64::from(k + 1));
+            while piece.end_s <= from_s {
+                piece = delay.next_piece(piece);
+            }
+            let to_s = to_s.min(piece.end_s);
+            let sent = delay.sent_over(piece, [from_s, to_s]);
+            assert_eq!(matches!(sent, SentOver::Line(_)), is_straight, "{delay:?}");
+            for part in [0.0, 0.3, 0.5, 0.9, 1.0] {
+                let value_s = delay.value_on(piece, from_s + part * (to_s - from_s));
+                let [low, high] = match sent {
+                    SentOver::Line([first, last]) => [first + part * (last - first); 2],
+                    SentOver::Within(within) => within,
+                    SentOver::Held(_) => panic!("{delay:?} holds no packets"),
+                };
+                assert!(low <= value_s + 1e-12 && value_s <= high + 1e-12, "{delay:?}: {value_s} s, not {sent:?}");
+                // As narrow as it can be, but for what only its author knows.
+                let known = delay.known();
+                assert!(known.basis == Basis::Declared || high - low < 0.03, "{delay:?}: {sent:?}");
+            }
+        }
+    }
+    let log = Trace::new(vec![Packet { send_s: 0.5, delay_s: Some(0.5) }], 9.0).unwrap();
+    let log = Delay::new(log);
+    assert_eq!(log.sent_over(log.first_piece(), [0.2, 0.3]), SentOver::Held(f64::NEG_INFINITY));
+    assert_eq!(log.sent_over(log.piece_at(2.0), [2.0, 3.0]), SentOver::Held(0.5));
 }

@@ -1,0 +1,184 @@
+//! The guaranteed rate of agreement, for `summary.json`, `check --json`, the terminal and the report. Numbers are rounded so that what is said
+//! stays true.
+
+use forwardstep_check::prediction::{ClassBound, Fall, GuaranteedRate, NoGuaranteedRate, Repeat};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::number;
+
+/// How much of the spread of all cascaded variables, and of all messages on their way, is left when, for certain and whatever the
+/// start, for s ≡ 0; or why that is not shown.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Guarantee {
+    /// It.
+    Found(GuaranteeFound),
+    /// Why there is none.
+    NoneSince(String),
+}
+
+/// How much of the spread is left when, for certain.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct GuaranteeFound {
+    /// What is left at most, later and later.
+    pub falls: Vec<GuaranteedFall>,
+    /// From when on no more than 1 % is left, s; null where that is not shown.
+    pub settled_s: Option<f64>,
+    /// What is left again and again, where graphs and delays repeat themselves.
+    pub repeat: Option<GuaranteedRepeat>,
+    /// Whether it is about the one course of graphs and delays that was drawn, logged or declared for this run.
+    pub drawn: bool,
+    /// The same for any delays up to the longest one; null where no closed form is known.
+    pub any_delay: Option<GuaranteedClass>,
+}
+
+/// No more than a part is left.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct GuaranteedFall {
+    /// From this time on, s.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub t_s: f64,
+    /// As a part of what there was at the start.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub left: f64,
+}
+
+/// No more than a part is left, again and again.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct GuaranteedRepeat {
+    /// After so long, s.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub over_s: f64,
+    /// How many windows of the graphs that is; null where windows may be as short as one likes.
+    pub windows: Option<u64>,
+    /// As a part of what there was so long ago.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub left: f64,
+}
+
+/// What any delays up to the longest one leave, by a closed form.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct GuaranteedClass {
+    /// The delays do not exceed this, s.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub delay_s: f64,
+    /// After so long, s, again and again,
+    #[serde(deserialize_with = "number::or_nan")]
+    pub over_s: f64,
+    /// log₁₀ of the part by which the spread falls.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub log10_part: f64,
+    /// log₁₀ of the time, s, after which no more than 1 % is left.
+    #[serde(deserialize_with = "number::or_nan")]
+    pub log10_settled_s: f64,
+    /// Whether that is at most 100 times the horizon.
+    pub practical: bool,
+}
+
+impl Guarantee {
+    pub(super) fn of(found: &Result<GuaranteedRate, NoGuaranteedRate>, end_s: f64) -> Guarantee {
+        match found {
+            Ok(rate) => Guarantee::Found(GuaranteeFound::of(rate, end_s)),
+            Err(reason) => Guarantee::NoneSince(reason.to_string()),
+        }
+    }
+
+    /// Sentences for people, without a full stop.
+    pub(crate) fn sentences(&self, end_s: f64) -> Vec<String> {
+        match self {
+            Guarantee::NoneSince(reason) => vec![format!("guaranteed rate: none, since {reason}")],
+            Guarantee::Found(found) => found.sentences(end_s),
+        }
+    }
+}
+
+/// Parts that are said.
+const SAID: [f64; 2] = [0.5, 0.1];
+
+impl GuaranteeFound {
+    fn of(rate: &GuaranteedRate, end_s: f64) -> GuaranteeFound {
+        let repeat = |Repeat { over_s, left }| {
+            let windows = rate.window_s.map(|window_s| (over_s / window_s) as u64);
+            GuaranteedRepeat { over_s, windows, left }
+        };
+        let class = |class: ClassBound| GuaranteedClass {
+            delay_s: class.delay_s,
+            over_s: class.over_s,
+            log10_part: class.log10_part,
+            log10_settled_s: class.log10_settled_s,
+            practical: class.is_practical(end_s),
+        };
+        GuaranteeFound {
+            falls: rate.falls.iter().map(|Fall { t_s, left }| GuaranteedFall { t_s: *t_s, left: *left }).collect(),
+            settled_s: rate.settled_s,
+            repeat: rate.repeat.map(repeat),
+            drawn: rate.drawn,
+            any_delay: rate.class.map(class),
+        }
+    }
+
+    fn sentences(&self, end_s: f64) -> Vec<String> {
+        let percent = |left: f64| format!("{} %", above(100.0 * left));
+        let first = |part: f64| self.falls.iter().find(|fall| fall.left <= part);
+        let mut parts: Vec<String> = SAID
+            .iter()
+            .filter_map(|part| Some(format!("{} after {} s", percent(*part), above(first(*part)?.t_s))))
+            .collect();
+        match self.settled_s {
+            Some(t_s) => parts.push(format!("1 % after {} s", above(t_s))),
+            None => {
+                let last = self.falls.iter().rev().find(|fall| fall.t_s <= end_s);
+                parts.extend(last.map(|last| format!("{} by {} s", percent(last.left), above(last.t_s))));
+            }
+        }
+        let mut sentence =
+            format!("guaranteed, of the spread of all cascaded variables is left at most {}", parts.join(", "));
+        sentence += if self.drawn {
+            ", whatever the start, over the graphs and delays of this run"
+        } else {
+            ", whatever the start"
+        };
+        if let Some(GuaranteedRepeat { over_s, windows, left }) = self.repeat {
+            let windows = windows.filter(|windows| *windows > 1).map(|windows| format!(", {windows} windows"));
+            let windows = windows.unwrap_or_default();
+            sentence += &format!("; {} of it after every {} s more{windows}", percent(left), above(over_s));
+        }
+        let mut sentences = vec![sentence];
+        sentences.extend(self.any_delay.as_ref().map(GuaranteedClass::sentence));
+        sentences
+    }
+}
+
+impl GuaranteedClass {
+    fn sentence(&self) -> String {
+        let size = self.log10_settled_s;
+        let time = if size < 6.0 { above(10.0_f64.powf(size)) } else { format!("10^{}", size.ceil()) };
+        let practical = if self.practical { "" } else { ", which is of no practical use" };
+        match self.delay_s {
+            0.0 => format!("guaranteed in closed form: 1 % after {time} s{practical}"),
+            delay_s => format!("guaranteed for any delays up to {} s: 1 % after {time} s{practical}", above(delay_s)),
+        }
+    }
+}
+
+/// Three digits, none of them too small.
+fn above(value: f64) -> String {
+    let places = (2 - value.log10().floor().clamp(-12.0, 2.0) as i32).max(0) as usize;
+    let scale = 10.0_f64.powi(places as i32);
+    // A decimal that rounding has put just above itself stays what it is.
+    let rounded = (value * scale * (1.0 - 4.0 * f64::EPSILON)).ceil() / scale;
+    let text = format!("{rounded:.places$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_guaranteed_is_rounded_upwards() {
+        let said = [0.0012341, 0.5, 12.301, 12.3, 100.2, 1234.5, 0.0].map(above);
+        assert_eq!(said, ["0.00124", "0.5", "12.4", "12.3", "101", "1235", "0"]);
+    }
+}
