@@ -7,6 +7,7 @@ use forwardstep_core::controller::Trouble;
 use crate::closed_loop::{ClosedLoop, SetupError};
 use crate::engine::{Failure, FailureCause, Integrator, Refuted, Step};
 use crate::inside::{Watch, show};
+use crate::jumps::{JumpWatch, NetworkJump};
 use crate::network::Network;
 use crate::recording::{
     Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, SampleTaken, Signal, Stiffness,
@@ -44,17 +45,27 @@ pub fn simulate_samples(
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     samples: &mut dyn FnMut(SampleTaken<'_>),
 ) -> Result<Outcome, SetupError> {
-    simulate_with(setup, observer, samples, None)
+    simulate_with(setup, observer, samples, Observers::default())
 }
 
-/// The same, and lets `watch` look inside every step.
+/// Who looks at a run besides the recording.
+#[derive(Default)]
+pub(crate) struct Observers<'a> {
+    /// At every step of a run under digital control, from inside.
+    pub(crate) watch: Option<&'a mut dyn Watch>,
+    /// At every agent wherever the network jumps.
+    pub(crate) jump: Option<&'a mut dyn FnMut(NetworkJump<'_>)>,
+}
+
+/// The same, and lets `observers` look at every step.
 pub(crate) fn simulate_with(
     setup: &Setup,
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     samples: &mut dyn FnMut(SampleTaken<'_>),
-    mut watch: Option<&mut dyn Watch>,
+    observers: Observers<'_>,
 ) -> Result<Outcome, SetupError> {
     let mut shown = 0;
+    let Observers { mut watch, jump } = observers;
     let mut closed_loop = assembled(setup)?;
     setup.network.lasts_until(setup.time.end_s)?;
     closed_loop.watch(samples);
@@ -65,6 +76,7 @@ pub(crate) fn simulate_with(
     let network = if setup.control.is_some() { &silent } else { &setup.network };
     let mut integrator = Integrator::new(network, &setup.solver, end_s, closed_loop.start(), ports, entries);
     let mut recorder = Recorder::new(setup, &closed_loop);
+    let mut jumps = jump.map(|jump| JumpWatch::new(&closed_loop, setup.agents.len(), jump));
     let mut pace = Pace::new(setup);
 
     let ending = loop {
@@ -74,6 +86,9 @@ pub(crate) fn simulate_with(
                 closed_loop.reached(step.end_s);
                 if let Some(watch) = &mut watch {
                     show(&mut integrator, &mut closed_loop, step, &mut shown, *watch);
+                }
+                if let Some(jumps) = &mut jumps {
+                    jumps.look(&mut integrator, &mut closed_loop, step);
                 }
                 if let Some(breakdown) = recorder.record(&mut integrator, &mut closed_loop, step) {
                     break Ending::BrokeDown(breakdown);
