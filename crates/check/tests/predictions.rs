@@ -7,6 +7,8 @@ mod common;
 mod course;
 #[path = "predictions/rate.rs"]
 mod rate;
+#[path = "predictions/smoothness.rs"]
+mod smoothness;
 
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking};
 use std::sync::Arc;

@@ -22,6 +22,7 @@ mod torque;
 mod unfinished;
 
 pub use cascade::{CascadeSpread, NoCascade};
+pub(crate) use course::disagreement;
 pub use course::{Course, NoCourse, course};
 pub use ideal::{NoIdeal, ideal};
 pub use period::{NoPeriodRate, PeriodRate, period_rate};
