@@ -20,8 +20,6 @@ pub struct FilteredJump {
     pub filter_s: f64,
     /// The jump of the torque, N m or N.
     pub jump: LargestJump,
-    /// The largest torque at a row of the recording, N m or N.
-    pub peak_torque: f64,
 }
 
 /// Those of several filters.
@@ -77,7 +75,7 @@ pub fn filters(
         let jumps = found.kinds().into_iter().filter_map(|kind| found.largest(kind, 0));
         let jump = jumps.filter(|jump| jump.size > 0.0).reduce(|a, b| if b.size > a.size { b } else { a });
         let jump = jump.ok_or(NoFilters::NoJump)?;
-        Ok(FilteredJump { filter_s: *filter_s, jump, peak_torque: found.peak_torque() })
+        Ok(FilteredJump { filter_s: *filter_s, jump })
     };
     let jumps: Vec<FilteredJump> = setups.iter().map(jump).collect::<Result<_, NoFilters>>()?;
     Ok(Filters { slope: slope(&jumps), jumps })

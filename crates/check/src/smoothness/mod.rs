@@ -31,13 +31,13 @@ mod orders;
 use std::ops::ControlFlow;
 
 use forwardstep_core::LengthError;
-use forwardstep_sim::recording::{Outcome, Signal};
+use forwardstep_sim::recording::Outcome;
 use forwardstep_sim::{Ending, NetworkJump, Progress, Setup, SetupError, simulate_jumps};
 use thiserror::Error;
 
 pub use covered::{Covered, NotCovered};
 pub use filters::{FilteredJump, Filters, NoFilters, filters};
-pub use orders::{NoOrders, OfOrder, orders};
+pub use orders::{NoOrders, OfOrder, Trace, orders, traces};
 
 use expansion::Expansion;
 
@@ -188,7 +188,7 @@ pub fn smoothness(
 }
 
 impl Smoothness {
-    /// The agents of which something is reported with the least and the most derivatives, by what they are promised: each kind once.
+    /// The agents of which something is reported, by how many derivatives that are and what is promised of them: each kind once.
     pub fn kinds(&self) -> Vec<Covered> {
         let mut kinds: Vec<Covered> = self.agents.iter().flatten().copied().collect();
         kinds.sort_by_key(|covered| (covered.derivatives, covered.continuous));
@@ -197,7 +197,7 @@ impl Smoothness {
     }
 
     /// The largest jump of the derivative of order `r` among the agents of one of the [`Smoothness::kinds`]; `None` where nothing they hear ever jumps,
-    /// or their derivatives end below.
+    /// or their derivatives end below. Torques in N m and forces in N are compared as the numbers that they are.
     pub fn largest(&self, kind: Covered, r: usize) -> Option<LargestJump> {
         let of_kind = |jump: &&TorqueJump| self.agents[jump.agent].as_ref() == Ok(&kind);
         let sizes = |jump: &TorqueJump| -> Vec<LargestJump> {
@@ -217,12 +217,6 @@ impl Smoothness {
             let continuous = self.agents[jump.agent].as_ref().ok().and_then(|covered| covered.continuous).unwrap_or(0);
             jump.derivatives.iter().take(continuous).flatten().all(|sides| sides.jump() == 0.0)
         })
-    }
-
-    /// The largest torque of any agent at a row of the recording, N m or N.
-    pub fn peak_torque(&self) -> f64 {
-        let torques = self.outcome.recording.columns.iter().filter(|column| column.signal == Signal::Torque);
-        torques.flat_map(|column| &column.values).fold(0.0, |most: f64, torque| most.max(torque.abs()))
     }
 }
 

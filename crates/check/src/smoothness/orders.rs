@@ -2,16 +2,20 @@
 
 use std::ops::ControlFlow;
 
+use forwardstep_sim::recording::{Outcome, Signal};
 use forwardstep_sim::reference::Consensus;
-use forwardstep_sim::{Progress, Setup};
+use forwardstep_sim::{Progress, Setup, simulate};
 use thiserror::Error;
 
 use super::covered::{MOST, covered};
 use super::{LargestJump, NoSmoothness, NotCovered, Smoothness, smoothness};
 use crate::prediction::{disagreement, settled};
 
+/// Rows of a trace on either side.
+const ROWS: f64 = 400.0;
+
 /// What one order gives.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct OfOrder {
     /// ℓ.
     pub order: usize,
@@ -21,8 +25,21 @@ pub struct OfOrder {
     pub jump: Option<LargestJump>,
     /// Whether no derivative below jumps.
     pub kept: bool,
-    /// The largest torque, N m or N.
-    pub peak_torque: f64,
+    /// When the rows of the recording are, s.
+    pub t_s: Vec<f64>,
+    /// The largest difference of two positions at each of them, rad or m.
+    pub disagreement: Vec<f64>,
+}
+
+/// The torque of one axis around one instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace {
+    /// ℓ.
+    pub order: usize,
+    /// Instants, s.
+    pub t_s: Vec<f64>,
+    /// The torque at each of them, N m or N.
+    pub torque: Vec<f64>,
 }
 
 /// Why orders cannot be compared.
@@ -102,15 +119,42 @@ fn of_order(setup: &Setup, order: usize) -> Setup {
     setup
 }
 
+/// The torque of the agent and axis of `at` under each of the `orders`, at instants up to `within_s` around that of `at`, which are
+/// closer together than the rows of `setup`.
+///
+/// # Errors
+/// [`NoOrders`].
+pub fn traces(
+    setup: &Setup,
+    orders: &[usize],
+    at: LargestJump,
+    within_s: f64,
+    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<Vec<Trace>, NoOrders> {
+    let trace = |order: &usize| {
+        let mut setup = of_order(setup, *order);
+        setup.time.end_s = setup.time.end_s.min(at.t_s + within_s);
+        setup.time.record_every_s = within_s / ROWS;
+        let Outcome { recording, .. } = simulate(&setup, observer).map_err(NoSmoothness::Setup)?;
+        let torque = recording.values(at.agent, Signal::Torque, at.axis).unwrap_or(&[]);
+        let near = recording.t_s.iter().zip(torque).filter(|(t_s, _)| (**t_s - at.t_s).abs() <= within_s);
+        let (t_s, torque) = near.map(|(t_s, torque)| (*t_s, *torque)).unzip();
+        Ok(Trace { order: *order, t_s, torque })
+    };
+    orders.iter().map(trace).collect()
+}
+
 fn found(order: usize, smoothness: &Smoothness, setup: &Setup) -> OfOrder {
     let recording = &smoothness.outcome.recording;
     let axes = setup.agents.first().map_or(0, |agent| agent.robot.axes.len());
     let jumps = smoothness.kinds().into_iter().filter_map(|kind| smoothness.largest(kind, order - 1));
+    let disagreement = disagreement(recording, axes);
     OfOrder {
         order,
-        settled_s: settled(&recording.t_s, &disagreement(recording, axes)).time_s(),
+        settled_s: settled(&recording.t_s, &disagreement).time_s(),
         jump: jumps.reduce(|most, next| if next.size > most.size { next } else { most }),
         kept: smoothness.kept(),
-        peak_torque: smoothness.peak_torque(),
+        t_s: recording.t_s.clone(),
+        disagreement,
     }
 }
