@@ -5,6 +5,8 @@
 mod common;
 #[path = "predictions/course.rs"]
 mod course;
+#[path = "predictions/own_smoothness.rs"]
+mod own_smoothness;
 #[path = "predictions/rate.rs"]
 mod rate;
 #[path = "predictions/smoothness.rs"]

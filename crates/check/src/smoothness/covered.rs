@@ -51,6 +51,12 @@ pub enum NotCovered {
         /// What leads it.
         reference: &'static str,
     },
+    /// Derivatives of its reference dynamics are not known.
+    #[error("{reference} is not affine in what it measures and in its state, so that its derivatives are not known")]
+    NotAffine {
+        /// What leads it.
+        reference: &'static str,
+    },
     /// Its gains cannot be resolved with its robot.
     #[error("its gains cannot be resolved with its robot")]
     Gains,

@@ -11,6 +11,9 @@ use nalgebra::DMatrix;
 use super::covered::{MOST, NotCovered, covered};
 use crate::practical::rates::Gains;
 
+/// What is left of an affine function, relative to its parts, is rounding.
+const AFFINE: f64 = 1e-9;
+
 /// What is needed to expand the torque of one agent.
 pub(super) struct Expansion {
     reference: Affine,
@@ -31,9 +34,14 @@ impl Expansion {
         let own = &setup.agents[agent];
         let (robot, gains) = own.robot.kind.lagrangian().zip(Gains::of(own)).ok_or(NotCovered::Gains)?;
         let reference = Affine { dynamics, axes: own.robot.axes.len() };
+        let derivatives = reference.determined()?;
+        // A value alone is computed, whatever they are.
+        if derivatives > 1 && !reference.is_affine()? {
+            return Err(NotCovered::NotAffine { reference: setup.reference.words().name });
+        }
         let limits = own.robot.axes.iter().map(|axis| axis.effort_limit.map(Series::splat)).collect();
         Ok(Expansion {
-            derivatives: reference.determined()?,
+            derivatives,
             reference,
             robot: robot.series_evaluator(),
             damping: constant(&gains.damping),
@@ -169,6 +177,35 @@ impl Affine {
             Dynamics::Position(reference) => (reference.vectors(), 1),
             Dynamics::PositionVelocity(reference) => (reference.vectors(), 2),
         }
+    }
+
+    /// Whether f(u + v) + f(0) = f(u) + f(v) at a few points.
+    fn is_affine(&self) -> Result<bool, LengthError> {
+        let (vectors, channels) = self.shape();
+        let n = self.axes;
+        let at = |u: f64, v: f64| {
+            // Numbers that have nothing to do with each other.
+            let entry = |k: usize| {
+                let of = |seed: f64| (seed + 0.618_033_988_749_894_9 * k as f64).fract() - 0.5;
+                u * of(0.1) + v * of(0.7)
+            };
+            let part = |first: usize, len: usize| (first..first + len).map(entry).collect::<Vec<f64>>();
+            let (q, dq, state) = (part(0, n), part(n, n), part(2 * n, vectors * n));
+            self.evaluate([&q, &dq, &state], 1.3, &part((2 + vectors) * n, channels * n))
+        };
+        for size in [0.5, 2.0, 9.0] {
+            let [both, none, u, v] = [at(size, size)?, at(0.0, 0.0)?, at(size, 0.0)?, at(0.0, size)?];
+            let values = |of: &Output| [&of.z[..], &of.dz, &of.rate].concat();
+            let [both, none, u, v] = [&both, &none, &u, &v].map(values);
+            for k in 0..both.len() {
+                let scale = both[k].abs() + none[k].abs() + u[k].abs() + v[k].abs();
+                let within = (both[k] + none[k] - u[k] - v[k]).abs() <= AFFINE * scale;
+                if !within {
+                    return Ok(false);
+                }
+            }
+        }
+        Ok(true)
     }
 
     /// How many coefficients of z and ż do not need derivatives of what is heard, from a state in which all else is known.

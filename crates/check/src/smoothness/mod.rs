@@ -157,14 +157,11 @@ pub fn smoothness(
     }
     forwardstep_sim::validate(setup)?;
     let expansions: Vec<_> = (0..setup.agents.len()).map(|agent| Expansion::new(setup, agent)).collect();
-    let agents: Vec<Result<Covered, NotCovered>> = expansions
-        .iter()
-        .enumerate()
-        .map(|(agent, expansion)| match expansion {
-            Ok(expansion) => Ok(Covered::of(setup, agent, expansion.derivatives())),
-            Err(reason) => Err(reason.clone()),
-        })
-        .collect();
+    let known = |(agent, expansion): (usize, &Result<Expansion, NotCovered>)| match expansion {
+        Ok(expansion) => Ok(Covered::of(setup, agent, expansion.derivatives())),
+        Err(reason) => Err(reason.clone()),
+    };
+    let agents: Vec<Result<Covered, NotCovered>> = expansions.iter().enumerate().map(known).collect();
     if let (Some(Err(reason)), true) = (agents.first(), agents.iter().all(Result::is_err)) {
         return Err(NoSmoothness::Nobody { name: setup.agents[0].name.clone(), reason: reason.clone() });
     }
@@ -178,13 +175,12 @@ pub fn smoothness(
             }
         });
     }
-    match &outcome.ending {
-        Ending::Completed => {}
-        Ending::Interrupted { t_s } => return Err(NoSmoothness::Early { t_s: *t_s }),
-        Ending::BrokeDown(breakdown) => return Err(NoSmoothness::Early { t_s: breakdown.t_s }),
-    }
     let Seen { switches, delay_jumps, jumps, .. } = seen;
-    Ok(Smoothness { agents, switches, delay_jumps, jumps, outcome })
+    match &outcome.ending {
+        Ending::Completed => Ok(Smoothness { agents, switches, delay_jumps, jumps, outcome }),
+        Ending::Interrupted { t_s } => Err(NoSmoothness::Early { t_s: *t_s }),
+        Ending::BrokeDown(breakdown) => Err(NoSmoothness::Early { t_s: breakdown.t_s }),
+    }
 }
 
 impl Smoothness {

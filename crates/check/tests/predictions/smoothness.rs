@@ -30,7 +30,7 @@ fn found(setup: &Setup) -> Smoothness {
     smoothness(setup, &mut go_on).unwrap()
 }
 
-fn refused(setup: &Setup) -> NoSmoothness {
+pub(crate) fn refused(setup: &Setup) -> NoSmoothness {
     smoothness(setup, &mut go_on).unwrap_err()
 }
 
@@ -51,7 +51,7 @@ fn turns() -> Schedule {
 }
 
 /// Three robots of different kinds of dynamics: planar arms, one of them with known parameters.
-fn arms(exchange: Exchange, order: usize) -> Setup {
+pub(crate) fn arms(exchange: Exchange, order: usize) -> Setup {
     let mut agents: Vec<AgentSetup> = (0..3).map(|i| arm(i, &roots(order))).collect();
     agents[2].law = Arc::new(Known { damping: Gain::Number(6.0) });
     let delays = vec![Delay::constant(0.2), steps()];
@@ -121,7 +121,7 @@ fn one_sided(outcome: &Outcome, values: &[f64], t_s: f64, side: f64, r: usize) -
 }
 
 /// Holds both sides of every derivative against differences of the run; with a push only their jumps.
-fn compare(setup: &Setup, instants: usize, pushed: bool) -> Smoothness {
+pub(crate) fn compare(setup: &Setup, instants: usize, pushed: bool) -> Smoothness {
     let smoothness = found(setup);
     let outcome = &smoothness.outcome;
     let mut times: Vec<f64> = smoothness.jumps.iter().map(|jump| jump.t_s).collect();
