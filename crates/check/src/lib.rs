@@ -24,6 +24,7 @@ pub mod prediction;
 mod reach;
 mod report;
 mod shifted_laplacian;
+pub mod smoothness;
 mod source;
 mod surroundings;
 mod theorem;

@@ -7,8 +7,12 @@ mod common;
 mod course;
 #[path = "predictions/guaranteed.rs"]
 mod guaranteed;
+#[path = "predictions/own_smoothness.rs"]
+mod own_smoothness;
 #[path = "predictions/rate.rs"]
 mod rate;
+#[path = "predictions/smoothness.rs"]
+mod smoothness;
 
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking};
 use std::sync::Arc;

@@ -30,6 +30,7 @@ pub mod robot;
 pub mod sampled;
 mod scalar;
 pub mod signal;
+mod taylor;
 mod trig;
 
 pub use definite::Indefinite;
@@ -37,3 +38,4 @@ pub use dispatch::{Kernel, dispatch};
 pub use error::{GainError, LengthError};
 pub use gain::{Gain, InverseQuadratic, ResolvedGain};
 pub use scalar::{Lanes, Packed, Scalar};
+pub use taylor::Taylor;

@@ -6,8 +6,8 @@ use crate::trig;
 
 /// A number, or several side by side, that robot kernels and laws compute with.
 ///
-/// Implemented for `f64`, `f32` and [`Lanes`], and for [`Interval`](crate::expression::Interval), which encloses what the others
-/// round. Time, history and events stay `f64`.
+/// Implemented for `f64`, `f32` and [`Lanes`], for [`Interval`](crate::expression::Interval), which encloses what the others
+/// round, and for [`Taylor`](crate::Taylor), which carries derivatives. Time, history and events stay `f64`.
 ///
 /// Every operation is correctly rounded or, for [`Scalar::sin_cos`], this crate's own code, so that a lane of a vector
 /// carries the same bits as the scalar computation.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use forwardstep_check::Id;
 use thiserror::Error;
@@ -51,6 +51,8 @@ pub(crate) enum Command {
     SamplingLimit(SamplingLimitOptions),
     /// Push an agent, and say how far that moves what all agree on for several manipulability gains, beside what theory says
     Manipulability(ManipulabilityOptions),
+    /// Say by how much every derivative of the torque jumps where the graph switches and delays jump, and which is the first
+    Smoothness(SmoothnessOptions),
     /// Draw random scenarios and try to refute what is claimed of them
     Falsify(FalsifyOptions),
     /// Search delays that jump and graphs that take turns for those under which a design does worst
@@ -261,6 +263,30 @@ pub(crate) struct ManipulabilityOptions {
     /// Print rows of a table
     #[arg(long)]
     pub(crate) table: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("comparison").args(["orders", "filters_s"])))]
+pub(crate) struct SmoothnessOptions {
+    /// Shipped scenarios by name, or files by their paths; they are simulated in continuous time
+    #[arg(value_name = "SCENARIO", default_value = SIX_ARMS)]
+    pub(crate) scenarios: Vec<String>,
+    /// Compare reference dynamics of these orders: agents keep their first roots, and repeat the last where there are too few
+    #[arg(long, value_name = "ORDERS", value_delimiter = ',', value_parser = order_of_reference)]
+    pub(crate) orders: Vec<usize>,
+    /// Put the agents under the backstepping baseline with each of these time constants of its filter, in s, and give the slope
+    #[arg(long = "filters", value_name = "SECONDS", value_delimiter = ',', value_parser = positive)]
+    pub(crate) filters_s: Vec<f64>,
+    /// Draw what --orders or --filters found of the last scenario into this file, as SVG; an older one is replaced
+    #[arg(long, value_name = "FILE.svg", requires = "comparison")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Print rows of a table
+    #[arg(long)]
+    pub(crate) table: bool,
+}
+
+fn order_of_reference(text: &str) -> Result<usize, NotBetween> {
+    order(text).map(|order| order as usize)
 }
 
 /// Why a number cannot be used.

@@ -47,6 +47,7 @@ pub fn program_with(kinds: &Kinds, arguments: impl IntoIterator<Item = impl Into
         Command::Explain(options) => commands::explain(&options, kinds, &mut console),
         Command::SamplingLimit(options) => commands::sampling_limit(&options, kinds, &mut console),
         Command::Manipulability(options) => commands::manipulability(&options, kinds, &mut console),
+        Command::Smoothness(options) => commands::smoothness(&options, kinds, &mut console),
         Command::Falsify(options) => commands::falsify(&options, &mut console),
         Command::Attack(options) => commands::attack(&options, &mut console),
         Command::Scenarios { name } => commands::scenarios(name.as_deref(), &mut console),

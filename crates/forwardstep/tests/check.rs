@@ -2,6 +2,8 @@
 #![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[path = "check/smoothness.rs"]
+mod smoothness;
 mod support;
 
 use std::fs;

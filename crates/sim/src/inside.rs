@@ -6,7 +6,7 @@ use crate::closed_loop::{ClosedLoop, SetupError};
 use crate::engine::{Integrator, Step};
 use crate::recording::{Outcome, Progress, SampleTaken};
 use crate::setup::Setup;
-use crate::simulate::simulate_with;
+use crate::simulate::{Observers, simulate_with};
 
 /// Nodes and weights of the rule of Gauss and Legendre on [0, 1] that is exact for polynomials of degree five.
 const NODES: [(f64, f64); 3] =
@@ -57,7 +57,7 @@ pub fn simulate_watched(
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     watch: &mut dyn Watch,
 ) -> Result<Outcome, SetupError> {
-    simulate_with(setup, observer, &mut |_| {}, Some(watch), None)
+    simulate_with(setup, observer, &mut |_| {}, Observers { watch: Some(watch), ..Observers::default() })
 }
 
 /// Shows `step`, the last that was made, to `watch`, after the sample at its start if there was one; `samples` were shown before.

@@ -14,6 +14,7 @@ mod engine;
 pub mod formula;
 pub mod graph;
 mod inside;
+mod jumps;
 pub mod leader;
 mod moment;
 pub mod network;
@@ -33,14 +34,16 @@ pub mod trajectory;
 
 pub use agents::{
     Adaptive, AttitudeLaw, ChainLaw, ChainModel, ChainStep, DynamicsAt, Estimate, Evaluator, Known, LagrangianRobot,
-    PositionOnlyLaw, ProductsAt, RobotModel, RotorcraftModel, SpacecraftModel, TaskSpaceLaw, ThrustKind, ThrustLaw,
-    TipSetup, VehicleModel,
+    PositionOnlyLaw, ProductsAt, RobotModel, RotorcraftModel, Series, SeriesEvaluator, SpacecraftModel, TaskSpaceLaw,
+    ThrustKind, ThrustLaw, TipSetup, VehicleModel,
 };
 pub use build::run;
 pub use closed_loop::{
-    Assembly, Block, SampledJacobian, SetupError, VelocityQuantity, recipe, recipes, sampled_jacobian, validate,
+    Assembly, Block, SampledJacobian, SetupError, VelocityQuantity, recipe, recipes, reference_dynamics,
+    sampled_jacobian, validate,
 };
 pub use inside::{Inside, Place, Watch, simulate_watched};
+pub use jumps::{HeardAt, NetworkJump, simulate_jumps};
 pub use moment::{Moment, StateRate};
 pub use network::Network;
 pub use recording::{

@@ -7,6 +7,7 @@ use forwardstep_core::controller::Trouble;
 use crate::closed_loop::{ClosedLoop, SetupError};
 use crate::engine::{Failure, FailureCause, Integrator, Refuted, Step};
 use crate::inside::{Watch, show};
+use crate::jumps::{JumpWatch, NetworkJump};
 use crate::moment::{Moment, Moments};
 use crate::network::Network;
 use crate::recording::{
@@ -45,7 +46,7 @@ pub fn simulate_samples(
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     samples: &mut dyn FnMut(SampleTaken<'_>),
 ) -> Result<Outcome, SetupError> {
-    simulate_with(setup, observer, samples, None, None)
+    simulate_with(setup, observer, samples, Observers::default())
 }
 
 /// The same, and hands every agent with its rates at every row to `each`, before the row is recorded; nothing when control is digital, where
@@ -58,18 +59,29 @@ pub fn simulate_moments(
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     each: &mut dyn FnMut(Moment<'_>),
 ) -> Result<Outcome, SetupError> {
-    simulate_with(setup, observer, &mut |_| {}, None, Some(each))
+    simulate_with(setup, observer, &mut |_| {}, Observers { moment: Some(each), ..Observers::default() })
 }
 
-/// The same, and lets `watch` look inside every step, or `each` at every row.
+/// Who looks at a run besides the recording.
+#[derive(Default)]
+pub(crate) struct Observers<'a> {
+    /// At every step of a run under digital control, from inside.
+    pub(crate) watch: Option<&'a mut dyn Watch>,
+    /// At every agent wherever the network jumps.
+    pub(crate) jump: Option<&'a mut dyn FnMut(NetworkJump<'_>)>,
+    /// At every agent with its rates, row by row.
+    pub(crate) moment: Option<&'a mut dyn FnMut(Moment<'_>)>,
+}
+
+/// The same, and lets `observers` look at every step.
 pub(crate) fn simulate_with(
     setup: &Setup,
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     samples: &mut dyn FnMut(SampleTaken<'_>),
-    mut watch: Option<&mut dyn Watch>,
-    each: Option<&mut dyn FnMut(Moment<'_>)>,
+    observers: Observers<'_>,
 ) -> Result<Outcome, SetupError> {
     let mut shown = 0;
+    let Observers { mut watch, jump, moment } = observers;
     let mut closed_loop = assembled(setup)?;
     setup.network.lasts_until(setup.time.end_s)?;
     closed_loop.watch(samples);
@@ -80,8 +92,9 @@ pub(crate) fn simulate_with(
     let network = if setup.control.is_some() { &silent } else { &setup.network };
     let mut integrator = Integrator::new(network, &setup.solver, end_s, closed_loop.start(), ports, entries);
     let mut recorder = Recorder::new(setup, &closed_loop);
+    let mut jumps = jump.map(|jump| JumpWatch::new(&closed_loop, setup.agents.len(), jump));
     let mut pace = Pace::new(setup);
-    let mut moments = each.map(|each| (Moments::new(setup, &closed_loop), each));
+    let mut moments = moment.map(|each| (Moments::new(setup, &closed_loop), each));
 
     let ending = loop {
         match integrator.advance(&mut closed_loop) {
@@ -93,6 +106,9 @@ pub(crate) fn simulate_with(
                 }
                 if let Some((moments, each)) = &mut moments {
                     moments.show(&mut integrator, &mut closed_loop, step, *each);
+                }
+                if let Some(jumps) = &mut jumps {
+                    jumps.look(&mut integrator, &mut closed_loop, step);
                 }
                 if let Some(breakdown) = recorder.record(&mut integrator, &mut closed_loop, step) {
                     break Ending::BrokeDown(breakdown);

@@ -10,7 +10,9 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 use cases::{cases, setup};
-use forwardstep_sim::{Actuators, Control, Sensors, Setup, VelocitySensor, simulate};
+use forwardstep_sim::{
+    Actuators, Control, NetworkJump, Sensors, Setup, Signal, VelocitySensor, simulate, simulate_jumps,
+};
 
 /// All Lagrangian cases, then a run of every other kind of system, continuous and sampled.
 fn setups() -> Vec<(String, Setup)> {
@@ -71,6 +73,33 @@ fn digest_same_bits_on_repeat_and_beside_other_threads() {
         });
         assert_eq!(alone, together, "{threads} threads");
     }
+}
+
+#[test]
+fn digest_a_run_whose_jumps_are_looked_at_has_the_same_bits() {
+    let (mut shown, mut apart) = (0, 0);
+    for (name, setup) in setups().into_iter().step_by(3) {
+        let mut state = None;
+        let mut look = |jump: NetworkJump<'_>| {
+            assert!(setup.control.is_none() && jump.agent < setup.agents.len(), "{name}");
+            assert!(jump.signals.len() == jump.state.len() && jump.before.sums.len() == jump.after.sums.len());
+            // Positions first, and no state jumps between two agents' turns.
+            assert_eq!(jump.signals[0], (Signal::Position, 0), "{name}");
+            assert!(jump.signals.iter().all(|(signal, _)| *signal != Signal::Dissipation));
+            shown += 1;
+            apart += usize::from(jump.before != jump.after);
+            let at = (jump.t_s, jump.agent);
+            assert!(state.is_none_or(|last| last < at), "{name}: {last:?} {at:?}", last = state);
+            state = Some(at);
+        };
+        let looked_at = simulate_jumps(&setup, &mut |_| ControlFlow::Continue(()), &mut look).unwrap();
+        let plain = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap();
+        for (one, other) in looked_at.recording.columns.iter().zip(&plain.recording.columns) {
+            assert!(one.values.iter().map(|v| v.to_bits()).eq(other.values.iter().map(|v| v.to_bits())), "{name}");
+        }
+        assert_eq!(looked_at.statistics, plain.statistics, "{name}");
+    }
+    assert!(shown > 100 && apart > 50 && apart < shown, "{shown} {apart}");
 }
 
 #[test]

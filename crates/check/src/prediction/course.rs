@@ -81,7 +81,8 @@ fn positions(recording: &Recording, axis: usize) -> impl Iterator<Item = &[f64]>
     recording.columns.iter().filter(of_axis).map(|column| column.values.as_slice())
 }
 
-fn disagreement(recording: &Recording, axes: usize) -> Vec<f64> {
+/// The largest difference of two positions on one of so many axes, row by row.
+pub(crate) fn disagreement(recording: &Recording, axes: usize) -> Vec<f64> {
     let rows = recording.t_s.len();
     let mut largest = vec![0.0_f64; rows];
     for axis in 0..axes {

@@ -24,6 +24,7 @@ mod torque;
 mod unfinished;
 
 pub use cascade::{CascadeSpread, NoCascade};
+pub(crate) use course::disagreement;
 pub use course::{Course, NoCourse, course};
 pub use guaranteed::{ClassBound, Fall, GuaranteedRate, NoGuaranteedRate, Repeat, guaranteed_rate};
 pub use ideal::{NoIdeal, ideal};

@@ -72,6 +72,7 @@ pub use metrics::{
     LimitReached, Metrics, Peak, Speed,
 };
 pub use packets::Link;
+pub use plots::{plot_filters, plot_orders};
 pub use practical::{PracticalVerdict, PracticalVerdicts, Watched, WatchedLoad, WatchedMargin, WatchedPower};
 pub use prediction::{CourseFound, PredictedCourse, PredictedRate, PredictedTorque, Predictions};
 pub use record::{GoalOutcome, RunRecord};

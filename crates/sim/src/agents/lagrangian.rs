@@ -6,16 +6,23 @@ use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass, TwoVelocity};
 use forwardstep_core::{Gain, Kernel, Lanes, LengthError, dispatch};
 
+use super::series::{OfKernel, Series, SeriesEvaluator};
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::probe::{Probe, properties};
 use crate::reference::ReferenceFamily;
 use crate::setup::{Exchange, RobotSetup};
 use crate::system::{Attachments, Interface, Known as Knowledge, Law, LawWords, Robot, RobotInterface};
 
-/// A robot model whose kernels work on one robot or on eight at once.
+/// A robot model whose kernels work on one robot, on eight at once, or on one with its derivatives.
 pub trait RobotModel: Robot + Clone {
     /// M, C, g and the products of the regressor.
-    type Kernel: Lagrangian<f64, Scratch: Send> + Lagrangian<Lanes<8>> + Clone + Send + Sync + 'static;
+    type Kernel: Lagrangian<f64, Scratch: Send>
+        + Lagrangian<Lanes<8>>
+        + Lagrangian<Series>
+        + Clone
+        + Send
+        + Sync
+        + 'static;
 
     /// Its kernel.
     fn kernel(&self) -> Self::Kernel;
@@ -47,6 +54,9 @@ pub trait LagrangianRobot {
 
     /// What works out products of its dynamics at state after state, without forming Y.
     fn evaluator(&self) -> Box<dyn Evaluator>;
+
+    /// The same with derivatives of what they give.
+    fn series_evaluator(&self) -> Box<dyn SeriesEvaluator>;
 
     /// Tries at random states, with the parameters of `robot`, whether it has the properties of Section II-B.
     ///
@@ -166,6 +176,10 @@ impl<M: RobotModel> LagrangianRobot for M {
 
     fn evaluator(&self) -> Box<dyn Evaluator> {
         Box::new(Evaluated::new(self.kernel()))
+    }
+
+    fn series_evaluator(&self) -> Box<dyn SeriesEvaluator> {
+        Box::new(OfKernel::new(self.kernel()))
     }
 
     fn probe(&self, robot: &RobotSetup) -> Result<Probe, LengthError> {

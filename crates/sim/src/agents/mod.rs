@@ -1,6 +1,6 @@
 //! The shipped kinds of robots and laws, one file each. They come in by the same traits as those of a user's own crate.
 //!
-//! - `lagrangian`: robots under (6)–(7), a batch at a time.
+//! - `lagrangian`: robots under (6)–(7), a batch at a time; `series`: their dynamics with derivatives.
 //! - `position_only`: a point mass without velocity, Remark 7.
 //! - `vehicle`, `rotorcraft`: one thrust, Section V-B; `thrust` is the law that they share.
 //! - `task_space`: the end-effector of a robot, Theorem 6.
@@ -12,6 +12,7 @@ mod chain;
 mod lagrangian;
 mod position_only;
 mod rotorcraft;
+mod series;
 mod ship;
 mod spacecraft;
 mod task_space;
@@ -22,6 +23,7 @@ pub use chain::{ChainLaw, ChainModel, ChainStep, Estimate};
 pub use lagrangian::{Adaptive, DynamicsAt, Evaluator, Known, LagrangianRobot, ProductsAt, RobotModel};
 pub use position_only::PositionOnlyLaw;
 pub use rotorcraft::RotorcraftModel;
+pub use series::{Series, SeriesEvaluator};
 pub use spacecraft::{AttitudeLaw, SpacecraftModel};
 pub use task_space::{TaskSpaceLaw, TipSetup};
 pub use thrust::{ThrustKind, ThrustLaw};

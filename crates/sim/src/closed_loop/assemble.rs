@@ -352,6 +352,16 @@ impl<'a> ClosedLoop<'a> {
         signals
     }
 
+    /// Works out what acts on all agents from outside, for [`ClosedLoop::external_on`].
+    pub(crate) fn push(&mut self, t_s: f64, x: &[f64]) {
+        self.pushes.evaluate(t_s, x, &mut self.blocks);
+    }
+
+    /// What acts on an agent as it was worked out last; empty when it is never pushed.
+    pub(crate) fn external_on(&self, agent: usize) -> &[f64] {
+        self.pushes.external_on(agent)
+    }
+
     /// Hands every agent's signals at one instant to `write`.
     pub(crate) fn record(&mut self, t_s: f64, x: &[f64], heard: &Heard, mut write: impl FnMut(usize, &[f64])) {
         let heard = self.sampling.as_ref().map_or(heard, Sampling::heard);

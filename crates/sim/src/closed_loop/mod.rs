@@ -53,5 +53,6 @@ pub(crate) use members::tracking_law;
 pub use probe::probe_balance;
 pub use probe_reference::probe_reference;
 pub use recipes::{recipe, recipes};
+pub use references::reference_dynamics;
 pub use sampled_map::{SampledJacobian, sampled_jacobian};
 pub use valid::validate;

@@ -11,6 +11,7 @@ use forwardstep_core::{Kernel, LengthError, dispatch};
 use super::assembly::Assembly;
 use super::error::SetupError;
 use crate::reference::Dynamics;
+use crate::setup::{self, Setup};
 
 /// Reference dynamics of agents that exchange `X`.
 pub(crate) type AnyReference<X> = Arc<dyn Reference<Exchange = X>>;
@@ -49,6 +50,22 @@ pub(super) fn reference<X: Transmits>(assembly: &Assembly<'_>) -> Result<AnyRefe
         return Err(SetupError::SignWithoutLeader { reference: name });
     }
     Ok(Arc::new(Dispatched(reference)))
+}
+
+/// The reference dynamics of one agent by itself, by its number.
+///
+/// # Errors
+/// [`SetupError`] when they have no meaning, or no agent has this number.
+pub fn reference_dynamics(setup: &Setup, agent: usize) -> Result<Dynamics, SetupError> {
+    if agent >= setup.agents.len() {
+        return Err(SetupError::NoAgent { agent, agents: setup.agents.len() });
+    }
+    let agents = [agent];
+    let assembly = Assembly::new(setup, &agents);
+    Ok(match setup.exchange {
+        setup::Exchange::Position => Dynamics::Position(reference(&assembly)?),
+        setup::Exchange::PositionVelocity => Dynamics::PositionVelocity(reference(&assembly)?),
+    })
 }
 
 /// Reference dynamics whose right-hand side is compiled for every instruction set, as nothing can be inlined into it from

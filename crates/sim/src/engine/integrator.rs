@@ -7,7 +7,7 @@ use super::history::History;
 use super::kernels::{PieceSource, combine, error_norm, make_piece, piece_gap};
 use super::system::{DelaySystem, Happened, Step};
 use super::tableau::{CLASSICAL, DORMAND_PRINCE, Tableau};
-use super::timeline::{Timeline, merge_until};
+use super::timeline::{Passed, Timeline, merge_until};
 use crate::network::Network;
 use crate::recording::Statistics;
 use crate::setup::{Method, Solver};
@@ -69,6 +69,8 @@ pub(crate) struct Integrator<'a> {
     stale: bool,
     /// The last piece of history goes on smoothly into this step.
     smooth: bool,
+    /// What the network did at the start of this step.
+    passed: Passed,
     /// The step that the error control would like next, s.
     proposed_step_s: f64,
     statistics: Statistics,
@@ -121,6 +123,7 @@ impl<'a> Integrator<'a> {
             piece: vec![0.0; width],
             stale: true,
             smooth: false,
+            passed: Passed::default(),
             proposed_step_s: 0.0,
             statistics: Statistics::default(),
         }
@@ -134,6 +137,11 @@ impl<'a> Integrator<'a> {
     /// The state at the end of the last step.
     pub(crate) fn state(&self) -> &[f64] {
         &self.x1
+    }
+
+    /// What the network did at the start of the last step.
+    pub(crate) fn passed(&self) -> Passed {
+        self.passed
     }
 
     /// Work done so far.
@@ -220,14 +228,15 @@ impl<'a> Integrator<'a> {
             self.k.swap(0, self.tableau.c.len() - 1);
             system.settle(&mut self.x0);
         }
+        self.passed = Passed::default();
         if t > 0.0 && self.timeline.next_s() <= merge_until(t) {
             self.statistics.break_points += 1;
-            let passed = self.timeline.pass(t);
-            if passed.switched {
+            self.passed = self.timeline.pass(t);
+            if self.passed.switched {
                 let edges = self.network.schedule.graph(self.timeline.graph());
                 self.hearing.rewire(&self.timeline, edges, &mut self.heard);
             }
-            if passed.jumped {
+            if self.passed.jumped {
                 self.restart();
             }
         }

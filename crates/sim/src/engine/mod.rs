@@ -26,3 +26,4 @@ pub(crate) use hearing::{Heard, Port, Refuted};
 pub(crate) use integrator::{Failure, FailureCause, Integrator};
 pub(crate) use radio::Radio;
 pub(crate) use system::{DelaySystem, Happened, Step};
+pub(crate) use timeline::Passed;

@@ -35,12 +35,24 @@ pub(super) struct Figure {
 /// One set of axes.
 pub(super) struct Panel {
     pub(super) title: String,
+    /// What the horizontal axis is.
+    pub(super) x: Across,
     /// Name and unit of the vertical axis.
     pub(super) y: String,
     pub(super) log: bool,
     pub(super) lines: Vec<Line>,
     /// Dashed, with a word; it does not widen the axis.
     pub(super) guide: Option<(f64, String)>,
+}
+
+/// What a horizontal axis is.
+pub(super) enum Across {
+    /// Time from zero, in s.
+    Time,
+    /// Time between the first point and the last, in s.
+    Stretch,
+    /// A quantity over whole decades, with its name and unit.
+    Log(&'static str),
 }
 
 /// Pixels for the labels of the vertical axis.
@@ -142,15 +154,17 @@ impl Panel {
         area.draw(&Text::new(self.y.clone(), place(x, 12), unit)).map_err(failed)?;
 
         let on_axis = |v: f64| on_axis(v, self.log);
-        let times = || self.lines.iter().flat_map(|line| line.points.iter().map(|p| p.0));
-        let (t0, t1) = (0.0, times().fold(0.0, f64::max));
-        let t1 = if t1 > t0 { t1 } else { t0 + 1.0 };
+        let (t0, t1) = self.across();
         let Some((low, high)) = range(&self.lines, self.log) else {
             let style = style(12, SOFT).pos(Pos::new(HPos::Left, VPos::Center));
             area.draw(&Text::new("no value can be drawn", place(LABELS, 40), style)).map_err(failed)?;
             return Ok(());
         };
-        let x_ticks = ticks(t0, t1, (width as usize / 80).max(2));
+        let (x_name, x_log) = match self.x {
+            Across::Time | Across::Stretch => ("t in s", false),
+            Across::Log(name) => (name, true),
+        };
+        let x_ticks = if x_log { decades(t0, t1) } else { ticks(t0, t1, (width as usize / 80).max(2)) };
         let y_ticks = if self.log { decades(low, high) } else { ticks(low, high, (height as usize / 36).max(2)) };
         let x_step = x_ticks.windows(2).map(|w| w[1] - w[0]).next().unwrap_or(1.0);
         let y_step = y_ticks.windows(2).map(|w| w[1] - w[0]).next().unwrap_or(1.0);
@@ -169,9 +183,9 @@ impl Panel {
             .axis_style(FRAME.stroke_width(FINE))
             .label_style(style(11, SOFT))
             .axis_desc_style(style(12, SOFT))
-            .x_desc("t in s")
+            .x_desc(x_name)
             .set_all_tick_mark_size(3 * FINE)
-            .x_label_formatter(&|t| tick(*t, x_step))
+            .x_label_formatter(&|t| if x_log { power(*t) } else { tick(*t, x_step) })
             .y_label_formatter(&|v| if self.log { power(*v) } else { tick(*v, y_step) })
             .draw()
             .map_err(failed)?;
@@ -192,13 +206,32 @@ impl Panel {
         for line in &self.lines {
             let [r, g, b] = line.colour;
             let colour = RGBColor(r, g, b).stroke_width(line.width * FINE * 5 / 4);
-            let inside = |&(t, v): &(f64, f64)| (t, on_axis(v).clamp(low, high));
+            let inside = |&(t, v): &(f64, f64)| (self::on_axis(t, x_log), on_axis(v).clamp(low, high));
             for piece in line.points.split(|p| !on_axis(p.1).is_finite()).filter(|piece| !piece.is_empty()) {
                 let path: Vec<_> = piece.iter().map(inside).collect();
                 chart.plotting_area().draw(&PathElement::new(path, colour)).map_err(failed)?;
             }
         }
         Ok(())
+    }
+
+    /// Where the horizontal axis begins and ends.
+    fn across(&self) -> (f64, f64) {
+        let times = || self.lines.iter().flat_map(|line| line.points.iter().map(|p| p.0));
+        let (low, high) = match self.x {
+            Across::Time => (0.0, times().fold(0.0, f64::max)),
+            Across::Stretch => (times().fold(f64::INFINITY, f64::min), times().fold(f64::NEG_INFINITY, f64::max)),
+            Across::Log(_) => {
+                let decades = || times().map(|t| on_axis(t, true)).filter(|t| t.is_finite());
+                let least = decades().fold(f64::INFINITY, f64::min);
+                (((least + 1e-9).floor()), (decades().fold(f64::NEG_INFINITY, f64::max) - 1e-9).ceil())
+            }
+        };
+        match (low.is_finite(), high > low) {
+            (true, true) => (low, high),
+            (true, false) => (low, low + 1.0),
+            (false, _) => (0.0, 1.0),
+        }
     }
 }
 

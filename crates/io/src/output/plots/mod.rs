@@ -1,10 +1,13 @@
 //! `plots/*.svg`: figures for print, one panel per joint, one colour per agent as in the report.
 
 mod figure;
+mod smoothness;
 
 use forwardstep_sim::recording::Signal;
 
-use self::figure::{Figure, Line, Panel};
+pub use self::smoothness::{plot_filters, plot_orders};
+
+use self::figure::{Across, Figure, Line, Panel};
 use super::decimate::Grid;
 use super::error::EncodeError;
 use super::metrics::{DisagreementSeries, Gap};
@@ -73,6 +76,7 @@ impl<'a> Plots<'a> {
             };
             Panel {
                 title: shared_axis_words(setup, axis),
+                x: Across::Time,
                 y: format!("{letter} in {units}"),
                 log: false,
                 lines: owners.iter().map(line).collect(),
@@ -124,6 +128,7 @@ impl<'a> Plots<'a> {
             };
             Panel {
                 title: format!("{name}, {part}{all}"),
+                x: Across::Time,
                 y: "in SI units".into(),
                 log: false,
                 lines: (drawn.iter().enumerate())
@@ -181,7 +186,14 @@ impl<'a> Plots<'a> {
                 unit => format!(" in {unit}"),
             };
             let guide = self.record.goal.and_then(|outcome| Some((outcome.goal.bound()?, "goal".to_owned())));
-            panels.push(Panel { title: String::new(), y: format!("{}{unit}", gap.formula()), log: true, lines, guide });
+            panels.push(Panel {
+                title: String::new(),
+                x: Across::Time,
+                y: format!("{}{unit}", gap.formula()),
+                log: true,
+                lines,
+                guide,
+            });
         }
         Figure {
             title: self.title(gap.name()),

@@ -1,0 +1,72 @@
+//! Jumps of the torque under reference dynamics from outside.
+
+use std::sync::Arc;
+
+use forwardstep_check::smoothness::{Covered, NoSmoothness, NotCovered};
+use forwardstep_core::reference::{AxisInput, AxisOutput, PerAxis, Position};
+use forwardstep_sim::reference::{
+    Backstepping, Dynamics, LinearReference, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords,
+};
+use forwardstep_sim::system::{Declaration, Known as Knowledge};
+use forwardstep_sim::{AgentSetup, Assembly, Exchange, Setup, SetupError};
+
+use crate::smoothness::{arms, compare, refused};
+
+/// ż = y − 0.5 q + 0.2 and ẏ = −2 y − q̇ − Σ_j w_ij (q − q_j) + 0.3; ż is not affine if asked.
+#[derive(Clone, Copy, Debug)]
+struct Own {
+    bent: bool,
+}
+
+impl ReferenceDynamics for Own {
+    fn words(&self) -> ReferenceWords {
+        ReferenceWords { name: "an own reference", key: "own" }
+    }
+
+    fn interface(&self) -> ReferenceInterface {
+        let like = Backstepping { filter_s: 1.0, acceleration_limit: None };
+        ReferenceInterface { family: ReferenceFamily::Own, ..like.interface() }
+    }
+
+    fn free_derivatives(&self, _: usize) -> usize {
+        2
+    }
+
+    fn known(&self) -> Knowledge {
+        Knowledge::Declared(Declaration { source: "no proof".into(), promises: "nothing".into(), claims: Vec::new() })
+    }
+
+    fn linear(&self, _: &AgentSetup, _: Exchange) -> Option<LinearReference> {
+        None
+    }
+
+    fn check(&self, _: &Setup) -> Result<(), SetupError> {
+        Ok(())
+    }
+
+    fn dynamics(&self, assembly: &Assembly<'_>) -> Result<Dynamics, SetupError> {
+        let bent = f64::from(u8::from(self.bent));
+        let law = move |given: AxisInput<'_, '_, Position>, asked: &mut AxisOutput<'_, '_>| {
+            let (z, y) = (given.state(0), given.state(1));
+            let dz = y - 0.5 * given.q() + 0.2 + bent * given.q().sin();
+            asked.reference(z, dz);
+            asked.rate(0, dz);
+            asked.rate(1, -2.0 * y - given.dq() - given.degree() * given.q() + given.heard_position() + 0.3);
+        };
+        Ok(Dynamics::position(PerAxis::new([assembly.agents().len(), 2, 1], law)))
+    }
+}
+
+#[test]
+fn own_reference_dynamics_show_themselves_how_many_derivatives_stay() {
+    let mut setup = arms(Exchange::Position, 2);
+    setup.agents.iter_mut().for_each(|agent| agent.roots_per_s.clear());
+    setup.reference = Arc::new(Own { bent: false });
+    let smoothness = compare(&setup, 2, false);
+    let kind = Covered { derivatives: 2, continuous: None };
+    assert_eq!(smoothness.kinds(), [kind]);
+    assert_eq!(smoothness.largest(kind, 0).map(|jump| jump.size), Some(0.0));
+    assert!(smoothness.largest(kind, 1).unwrap().size > 0.1);
+    setup.reference = Arc::new(Own { bent: true });
+    assert!(matches!(refused(&setup), NoSmoothness::Nobody { reason: NotCovered::NotAffine { .. }, .. }));
+}

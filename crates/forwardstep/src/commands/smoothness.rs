@@ -1,0 +1,255 @@
+//! `forwardstep smoothness`
+
+use std::fmt::Display;
+use std::fs;
+use std::ops::ControlFlow;
+
+use forwardstep::check::smoothness::{
+    self as torque, Covered, Filters, LargestJump, OfOrder, Smoothness, filters, orders, traces,
+};
+use forwardstep::io::output::{EncodeError, plot_filters, plot_orders};
+use forwardstep::io::scenario::Scenario;
+use forwardstep::io::scenario::kinds::Kinds;
+use forwardstep::sim::{AxisUnit, Progress, Setup};
+
+use super::stop::Stop;
+use crate::arguments::SmoothnessOptions;
+use crate::console::{Console, DIM, Plain, complain};
+use crate::status::Status;
+
+/// How much of the torque a plot shows on either side of a jump, s.
+const AROUND_S: f64 = 0.1;
+
+/// Reports how far derivatives of torques jump at switches and delay jumps: as scenarios are, for several orders, or under the baseline.
+pub(crate) fn smoothness(options: &SmoothnessOptions, kinds: &Kinds, console: &mut Console) -> Status {
+    finish(options, kinds, console).unwrap_or_else(|status| status)
+}
+
+fn finish(options: &SmoothnessOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
+    let stop = Stop::listen();
+    let mut observer =
+        |_: Progress| if stop.asked().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    // Whoever stops a run wants to hear nothing of it.
+    let failed = |error: &dyn Display| stop.asked().unwrap_or_else(|| complain(&Plain::new(error.to_string())));
+    let mut status = Status::Fine;
+    if options.table {
+        head(options, console);
+    }
+    for name in &options.scenarios {
+        let scenario = kinds.open_scenario(name).map_err(|error| complain(&error))?;
+        let setup = &scenario.setup;
+        if !options.table {
+            console.line(&scenario.title);
+        }
+        let kept = if !options.orders.is_empty() {
+            let found = orders(setup, &options.orders, &mut observer).map_err(|error| failed(&error))?;
+            print_orders(options, &scenario, &found, console);
+            if let Some(path) = &options.plot {
+                let drawn = draw_orders(&scenario, &found, &mut observer).map_err(|error| failed(&error))?;
+                fs::write(path, drawn).map_err(|error| failed(&format!("{}: {error}", path.display())))?;
+            }
+            found.iter().all(|of| of.kept)
+        } else if !options.filters_s.is_empty() {
+            let found = filters(setup, &options.filters_s, &mut observer).map_err(|error| failed(&error))?;
+            print_filters(options, &scenario, &found, console);
+            if let Some(path) = &options.plot {
+                let drawn = plot_filters(&found, unit_of(setup, found.jumps.first().map(|of| of.jump)));
+                let drawn = drawn.map_err(|error| failed(&error))?;
+                fs::write(path, drawn).map_err(|error| failed(&format!("{}: {error}", path.display())))?;
+            }
+            true
+        } else {
+            let found = torque::smoothness(setup, &mut observer).map_err(|error| failed(&error))?;
+            print_jumps(options, &scenario, &found, console);
+            found.kept()
+        };
+        if !kept {
+            status = Status::Missed;
+        }
+    }
+    Ok(status)
+}
+
+fn head(options: &SmoothnessOptions, console: &mut Console) {
+    let names: &[&str] = if !options.orders.is_empty() {
+        &["Scenario", "Order", "Settled, s", "First derivative that jumps", "Largest jump", "Agent and axis", "At, s"]
+    } else if !options.filters_s.is_empty() {
+        &["Scenario", "ε, s", "Largest jump of τ", "Agent and axis", "At, s", "Slope of all"]
+    } else {
+        &["Scenario", "Order", "Derivative", "Largest jump", "Agent and axis", "At, s", "Where", "Promised"]
+    };
+    console.line(format_args!("| {} |", names.join(" | ")));
+    console.line(format_args!("|{}", "---|".repeat(names.len())));
+}
+
+fn draw_orders(
+    scenario: &Scenario,
+    found: &[OfOrder],
+    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<String, Box<dyn std::error::Error>> {
+    // The first order jumps most plainly where its torque jumps most.
+    let Some((at, orders)) = found.first().and_then(|of| of.jump).map(|at| (at, orders_of(found))) else {
+        return Ok(plot_orders(found, &[], 0.0, unit_of(&scenario.setup, None))?);
+    };
+    let traces = traces(&scenario.setup, &orders, at, AROUND_S, observer)?;
+    let drawn: Result<String, EncodeError> = plot_orders(found, &traces, at.t_s, unit_of(&scenario.setup, Some(at)));
+    Ok(drawn?)
+}
+
+fn orders_of(found: &[OfOrder]) -> Vec<usize> {
+    found.iter().map(|of| of.order).collect()
+}
+
+fn print_orders(options: &SmoothnessOptions, scenario: &Scenario, found: &[OfOrder], console: &mut Console) {
+    let setup = &scenario.setup;
+    for of in found {
+        let (order, first) = (of.order, derivative(of.order - 1));
+        let settled = of.settled_s.map_or_else(|| "–".into(), digits);
+        let found = of.jump.map(|jump| [sized(setup, jump, order - 1), who(setup, jump), digits(jump.t_s)]);
+        if options.table {
+            let [size, who, at] = found.unwrap_or_else(|| ["–"; 3].map(str::to_owned));
+            console.line(format_args!("| {} | {order} | {settled} | {first} | {size} | {who} | {at} |", scenario.name));
+        } else {
+            let settled = of.settled_s.map_or_else(|| "not settled".into(), |_| format!("settled at {settled} s"));
+            let jumps = found.map_or_else(
+                || "nothing that is heard jumps".into(),
+                |[size, who, at]| {
+                    format!("the first derivative that jumps is {first}, by {size} at most: {who}, {at} s")
+                },
+            );
+            console.line(format_args!("  order {order}: {settled}; {jumps}"));
+        }
+    }
+}
+
+fn print_filters(options: &SmoothnessOptions, scenario: &Scenario, found: &Filters, console: &mut Console) {
+    let setup = &scenario.setup;
+    let last = found.jumps.len().saturating_sub(1);
+    for (k, of) in found.jumps.iter().enumerate() {
+        let (size, who, at) = (sized(setup, of.jump, 0), who(setup, of.jump), digits(of.jump.t_s));
+        if options.table {
+            let slope = if k == last { slope(found.slope) } else { "–".into() };
+            console.line(format_args!("| {} | {} | {size} | {who} | {at} | {slope} |", scenario.name, of.filter_s));
+        } else {
+            console.line(format_args!("  ε = {} s: τ jumps by {size} at most ({who}, {at} s)", of.filter_s));
+        }
+    }
+    if !options.table {
+        console.line(format_args!("  slope of the jump over ε in a log-log plot: {}", slope(found.slope)));
+    }
+}
+
+/// Three places behind the point, with a minus sign.
+fn slope(slope: f64) -> String {
+    format!("{slope:.3}").replace('-', "−")
+}
+
+fn print_jumps(options: &SmoothnessOptions, scenario: &Scenario, found: &Smoothness, console: &mut Console) {
+    let setup = &scenario.setup;
+    if !options.table {
+        console.line(format_args!(
+            "{DIM}  {} switches, and {} other instants at which a delay may jump{DIM:#}",
+            found.switches, found.delay_jumps
+        ));
+    }
+    let kinds = found.kinds();
+    for kind in kinds.iter().copied() {
+        if kinds.len() > 1 && !options.table {
+            console.line(format_args!("  agents of order {}:", kind.derivatives));
+        }
+        for r in 0..kind.derivatives {
+            let (name, promised) = (derivative(r), promised(kind, r));
+            // Where nothing is promised no order is known.
+            let order = kind.continuous.map_or_else(|| "–".into(), |_| kind.derivatives.to_string());
+            let [size, who, at, place] = match found.largest(kind, r) {
+                Some(jump) if jump.size > 0.0 => {
+                    let place = if jump.switched { "switch" } else { "delay" };
+                    [sized(setup, jump, r), who(setup, jump), digits(jump.t_s), place.into()]
+                }
+                Some(_) => ["0".to_owned(), "–".into(), "–".into(), "–".into()],
+                None => ["–".to_owned(), "–".into(), "–".into(), "–".into()],
+            };
+            if options.table {
+                console.line(format_args!(
+                    "| {} | {order} | {name} | {size} | {who} | {at} | {place} | {promised} |",
+                    scenario.name
+                ));
+            } else if place == "–" {
+                let none = if size == "0" { "does not jump" } else { "nothing that enters it jumps" };
+                console.line(format_args!("  {name:<8} {none}; promised: {promised}"));
+            } else {
+                console.line(format_args!(
+                    "  {name:<8} jumps by {size} at most: {who}, {at} s, {place}; promised: {promised}"
+                ));
+            }
+        }
+    }
+    if !options.table {
+        for (agent, reason) in setup.agents.iter().zip(&found.agents) {
+            if let Err(reason) = reason {
+                console.line(format_args!("  nothing is said of {}: {reason}", agent.name));
+            }
+        }
+    }
+}
+
+/// What is promised of the derivative of order `r`.
+fn promised(kind: Covered, r: usize) -> &'static str {
+    match kind.continuous {
+        Some(continuous) if r < continuous => "no jump",
+        Some(_) => "bounded",
+        None => "nothing",
+    }
+}
+
+/// τ, dτ/dt, d²τ/dt², ….
+fn derivative(r: usize) -> String {
+    match r {
+        0 => "τ".into(),
+        1 => "dτ/dt".into(),
+        r => format!("d{0}τ/dt{0}", superscript(r)),
+    }
+}
+
+fn superscript(n: usize) -> char {
+    "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(n).unwrap_or('ⁿ')
+}
+
+fn sized(setup: &Setup, jump: LargestJump, r: usize) -> String {
+    in_unit(jump.size, unit_of(setup, Some(jump)), r)
+}
+
+/// A derivative of order `r` of what has this unit.
+fn in_unit(value: f64, unit: &str, r: usize) -> String {
+    let per = match r {
+        0 => String::new(),
+        1 => "/s".into(),
+        r => format!("/s{}", superscript(r)),
+    };
+    format!("{} {unit}{per}", digits(value))
+}
+
+/// N m about an axis, N along one.
+fn unit_of(setup: &Setup, jump: Option<LargestJump>) -> &'static str {
+    let axis = jump.and_then(|jump| setup.agents.get(jump.agent)?.robot.axes.get(jump.axis));
+    match axis.map(|axis| axis.unit) {
+        Some(AxisUnit::Metre | AxisUnit::One) => "N",
+        Some(AxisUnit::Radian) | None => "N m",
+    }
+}
+
+fn who(setup: &Setup, jump: LargestJump) -> String {
+    let Some(agent) = setup.agents.get(jump.agent) else { return "–".into() };
+    let axis = agent.robot.axes.get(jump.axis).map_or("", |axis| axis.name.as_str());
+    format!("{}, {axis}", agent.name)
+}
+
+/// Three digits.
+fn digits(value: f64) -> String {
+    let places = |value: f64| (2.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize;
+    match value.abs() {
+        0.0 => "0".into(),
+        size if (1e-3..1e5).contains(&size) => format!("{value:.*}", places(value)),
+        _ => format!("{value:.2e}"),
+    }
+}
