@@ -79,12 +79,13 @@ fn their_linear_form_is_explained() {
     let own = "z\u{308}_i = −3.7 z\u{307}_i − 4.1 q\u{307}_i − 1.4 q_i − Σ_j w_ij";
     assert!(has(own) && has("[z\u{307}_i + 3 q\u{307}_i + 2 q_i − 2 q_j(t − T_ij)] + c_i"), "{lines:?}");
     assert!(has("q\u{308}_i = z\u{307}_i + s\u{307}_i"), "{lines:?}");
-    // Along a run it holds; c is known to the dynamics alone.
+    // Along a run it holds, with c as it is at the first row.
     let mut residuals = Residuals::of(&setup).unwrap();
     simulate_moments(&setup, &mut |_| ControlFlow::Continue(()), &mut |moment| residuals.look(moment)).unwrap();
     let found = residuals.found().remove(0).1;
     assert!(found.iter().all(|one| one.holds() != Some(false)), "{found:?}");
-    assert_eq!(found.iter().filter(|one| one.largest == Err(Missing::Term)).count(), 3, "{found:?}");
+    assert_eq!(found.iter().filter(|one| one.largest == Err(Missing::Term)).count(), 0, "{found:?}");
+    assert!(found.iter().filter(|one| one.holds() == Some(true)).count() >= 8, "{found:?}");
 }
 
 /// The same, but the linear form that it gives is not quite its own.

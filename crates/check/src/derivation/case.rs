@@ -247,6 +247,11 @@ impl Case<'_> {
         Outside { damped: agents().any(is_damped), pushed: agents().any(|agent| !agent.pushes.is_empty()) }
     }
 
+    /// Whether its reference dynamics add something that does not depend on the state.
+    pub fn has_constant(&self) -> bool {
+        matches!(&self.led, Led::Outside(_, Some(linear)) if linear.constant)
+    }
+
     /// Whether weights and delays can be differentiated.
     pub fn links(&self) -> Links {
         let fixed = self.setup.network.schedule.constant_graph().is_some();

@@ -108,6 +108,8 @@ pub struct Residuals<'a> {
     of: Vec<usize>,
     columns: Columns,
     models: Vec<Option<Model<'a>>>,
+    /// c of every agent, as it was at its first row.
+    constants: Vec<Option<Vec<f64>>>,
 }
 
 struct Design<'a> {
@@ -132,7 +134,8 @@ impl<'a> Residuals<'a> {
             design.case.agents.iter().for_each(|agent| of[*agent] = number);
         }
         let models = setup.agents.iter().map(Model::of).collect();
-        Ok(Residuals { designs, of, columns, models })
+        let constants = vec![None; setup.agents.len()];
+        Ok(Residuals { designs, of, columns, models, constants })
     }
 
     /// Evaluates all identities of one agent at one instant.
@@ -140,6 +143,15 @@ impl<'a> Residuals<'a> {
         let Some(design) = self.of.get(moment.agent).and_then(|number| self.designs.get_mut(*number)) else { return };
         let model = self.models.get_mut(moment.agent).and_then(Option::as_mut);
         let mut at = moment::At::new(&design.case, &self.columns, model, moment);
+        // What does not depend on the state is what it is at the first row.
+        let constant = &mut self.constants[moment.agent];
+        if constant.is_none() && design.case.has_constant() {
+            at.constant = Some(vec![0.0; design.case.setup.agents[moment.agent].robot.axes.len()]);
+            let mut first = design.identities.iter().filter(|(one, _)| one.subject == Subject::ReferenceDynamics);
+            let rest = first.next().and_then(|(reference, _)| reference.residual(&mut at).ok());
+            *constant = rest.map(|rest| rest.iter().map(|[value, _]| *value).collect());
+        }
+        at.constant = constant.clone();
         for (identity, largest) in &mut design.identities {
             let Ok(before) = largest else { continue };
             match identity.residual(&mut at) {

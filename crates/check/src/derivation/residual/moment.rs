@@ -38,6 +38,8 @@ pub(super) struct At<'c, 'a> {
     columns: &'c [(Signal, Range<usize>)],
     model: Option<&'c mut Model<'a>>,
     pub(super) moment: Moment<'c>,
+    /// What reference dynamics from outside add that does not depend on the state, once it is known.
+    pub(super) constant: Option<Vec<f64>>,
 }
 
 /// How near to a kink, relative to the time, an instant is taken to be at it.
@@ -86,7 +88,7 @@ impl<'c, 'a> At<'c, 'a> {
             model.forget();
         }
         let columns = columns.0.get(moment.agent).map_or(&[][..], Vec::as_slice);
-        At { case, columns, model, moment }
+        At { case, columns, model, moment, constant: None }
     }
 
     /// A signal as it is recorded.
@@ -115,7 +117,7 @@ impl<'c, 'a> At<'c, 'a> {
 
     /// q, q̇, …; ω of a spacecraft.
     pub(super) fn position(&self, k: usize) -> Result<Vec<f64>, Missing> {
-        let higher = (2..).map(|r| Signal::Derivative(r));
+        let higher = (2..).map(Signal::Derivative);
         match self.case.step {
             Step::Attitude(_) => self.chained([Signal::Velocity].into_iter(), k),
             _ => self.chained([Signal::Position, Signal::Velocity].into_iter().chain(higher), k),
@@ -288,6 +290,7 @@ impl<'c, 'a> At<'c, 'a> {
     fn term(&mut self, term: Term, k: usize) -> Result<Vector, Missing> {
         let recorded = |signal| self.recorded(signal).map(|values| exact(values.to_vec())).ok_or(Missing::Term);
         match (term, k) {
+            (Term::Constant, 0) => self.constant.clone().map(exact).ok_or(Missing::Term),
             (Term::Sign, 0) => recorded(Signal::Selection),
             (Term::Torque, 0) => recorded(Signal::Torque),
             (Term::Input, 0) if matches!(self.case.step, Step::PositionOnly(_)) => recorded(Signal::Torque),
