@@ -128,6 +128,37 @@ fn held_against_a_run(setup: &Setup, found: &GuaranteedRate) -> Option<f64> {
     outcome.recording.t_s.get(last + 1).copied()
 }
 
+#[test]
+fn prop_cells_of_any_length_leave_no_less_than_there_is() {
+    for (w, kappa) in [(0.5, 3.0), (1.0, 5.0), (2.0, 1.0)] {
+        let mut seen = 0;
+        for work in [1500.0, 3000.0, 6000.0, 20_000.0] {
+            for Fall { t_s, left } in guaranteed_rate(&pair(w, kappa), work).into_iter().flat_map(|found| found.falls) {
+                let exact = left_of_pair(w, kappa, t_s);
+                assert!(left >= exact, "{w}, {kappa}, {work} at {t_s} s: {left}, exactly {exact}");
+                seen += 1;
+            }
+        }
+        assert!(seen > 5, "{w}, {kappa}: {seen}");
+    }
+}
+
+#[test]
+fn what_repeats_counts_nothing_of_what_was_sent_before() {
+    // Σᵢ (ψ₁ᵢ/w + ψ₀ᵢ/κ + ∫ ψ₀ᵢ over the delay) is conserved: of what all agree on, messages on their way have the share T/(1/w + 1/κ + T).
+    let (w, kappa, delay_s) = (1.0, 2.0, 1.5);
+    let mut setup = pair(w, kappa);
+    setup.exchange = Exchange::Position;
+    setup.network.delays = vec![Delay::constant(delay_s)];
+    setup.time.end_s = 60.0;
+    let found = guaranteed_rate(&setup, WORK).unwrap();
+    let share = delay_s / (1.0 / w + 1.0 / kappa + delay_s);
+    let repeat = found.repeat.unwrap();
+    assert!(repeat.left >= share && repeat.left < 0.8, "{repeat:?}, not {share}");
+    // Before t = 0 all that was sent is the start.
+    assert!(found.settled_s.is_some_and(|t_s| t_s < 40.0), "{found:?}");
+}
+
 /// Lower bounds are compared with the operator itself, column by column, over the same network in many short steps: three agents of order
 /// one in a ring, of which the second hears late.
 #[test]

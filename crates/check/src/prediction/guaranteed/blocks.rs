@@ -18,7 +18,8 @@ const SHORTER: f64 = 0.0125;
 const LATER: f64 = 0.02;
 /// Times the horizon of the run that is looked ahead where all is known for ever.
 const HORIZONS: f64 = 10.0;
-/// A block ends when its mean rate has fallen to this part of the best one.
+/// A block ends when its mean rate has fallen to this part of the best one, and that was reached in half the time: what is on its way makes
+/// steps.
 const TIRED: f64 = 0.7;
 /// A block that leaves more than this gains nothing.
 const NOTHING: f64 = 0.999;
@@ -96,7 +97,7 @@ impl<'a> Blocks<'a> {
     /// One block, until it leaves `enough`, gains no more, or nothing more is known: what it leaves at some times.
     fn block(&self, from_s: f64, from_start: bool, looks: Looks, enough: f64, left: &mut f64) -> Vec<Fall> {
         let mut cells = Cells::new(self.network, from_s, from_start);
-        let (mut found, mut best): (Vec<Fall>, f64) = (Vec::new(), 0.0);
+        let (mut found, mut best, mut best_s): (Vec<Fall>, f64, f64) = (Vec::new(), 0.0, from_s);
         let next = |t_s: f64, count: usize| match looks {
             Looks::Later => t_s + (LATER * (t_s - from_s)).max(10.0 * self.cell_s),
             Looks::Every(period_s) => from_s + (count + 1) as f64 * period_s,
@@ -121,8 +122,11 @@ impl<'a> Blocks<'a> {
                     found.push(fall);
                     look_s = next(to_s, found.len());
                     let rate = fall.rate_per_s(from_s);
-                    best = best.max(rate);
-                    if fall.left <= enough || (best > 0.0 && rate < TIRED * best) {
+                    if rate > best {
+                        (best, best_s) = (rate, to_s);
+                    }
+                    let is_late = to_s - from_s > 2.0 * (best_s - from_s);
+                    if fall.left <= enough || (best > 0.0 && rate < TIRED * best && is_late) {
                         return found;
                     }
                 }

@@ -31,10 +31,18 @@ const PASSES: usize = 4;
 /// What one rounding may cost, generously, as a part.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// A past cell: the ends of the lines of all components that are sent.
+/// A past cell.
 #[derive(Debug)]
 struct Past {
+    /// The ends of the lines of all components that are sent.
     lines: Vec<f64>,
+    /// What a place in it may be off by, as a part of it.
+    rounding: f64,
+}
+
+/// What a place in a cell may be off by, as a part of it: times are off by a unit in their last place, which is more of a short cell.
+fn rounding(from_s: f64, to_s: f64) -> f64 {
+    ROUNDING * (1.0 + to_s.abs() / (to_s - from_s))
 }
 
 /// Lower bounds from one time to another.
@@ -45,6 +53,8 @@ pub(super) struct Cells<'a> {
     from_start: bool,
     begin_s: f64,
     pub(super) t_s: f64,
+    /// The end of the cell that is made, s.
+    to_s: f64,
     /// Component by component, column by column.
     y: Vec<f64>,
     /// Both ends of the line of every component over the cell that is made.
@@ -82,6 +92,7 @@ impl<'a> Cells<'a> {
             from_start,
             begin_s,
             t_s: begin_s,
+            to_s: begin_s,
             y,
             lines: vec![0.0; 2 * n * n],
             starts_s: Vec::new(),
@@ -96,11 +107,12 @@ impl<'a> Cells<'a> {
     /// Goes on to `to_s`, in one cell, during which one graph is in force.
     pub(super) fn advance(&mut self, to_s: f64, graph: usize) {
         let n = self.network.components();
+        self.to_s = to_s;
         let over = Interval { low: self.t_s, high: to_s };
         let inputs = self.network.inputs(graph, over);
-        let inner = self.look(&inputs, to_s);
+        let inner = self.look(&inputs);
         if inner {
-            self.guess(&inputs, to_s - self.t_s);
+            self.guess(&inputs);
         }
         let mut ends = vec![0.0; n * n];
         for _ in 0..if inner { PASSES } else { 1 } {
@@ -108,22 +120,26 @@ impl<'a> Cells<'a> {
                 let first = self.network.first[agent];
                 let last = self.network.first.get(agent + 1).map_or(n, |next| *next) - 1;
                 self.hear(heard);
-                self.step(last, heard.iter().map(|(_, input)| input.rate), to_s, &mut ends);
+                self.step(last, heard.iter().map(|(_, input)| input.rate), &mut ends);
                 for component in (first..last).rev() {
                     let kappa = self.network.kappa[component].unwrap_or(0.0);
                     self.work.inputs.clear();
                     self.work.inputs.extend_from_slice(&self.lines[2 * n * (component + 1)..2 * n * (component + 2)]);
-                    self.step(component, [Interval::point(kappa)].into_iter(), to_s, &mut ends);
+                    self.step(component, [Interval::point(kappa)].into_iter(), &mut ends);
                 }
             }
         }
-        self.keep(to_s, ends);
+        self.keep(ends);
     }
 
     /// Where everything that is heard over the cell was sent; whether some of it is sent in the cell itself.
-    fn look(&mut self, inputs: &[Vec<(usize, Input)>], to_s: f64) -> bool {
-        let grid =
-            Grid { starts_s: &self.starts_s, number: self.number, begin_s: self.begin_s, cell_s: [self.t_s, to_s] };
+    fn look(&mut self, inputs: &[Vec<(usize, Input)>]) -> bool {
+        let grid = Grid {
+            starts_s: &self.starts_s,
+            number: self.number,
+            begin_s: self.begin_s,
+            cell_s: [self.t_s, self.to_s],
+        };
         let mut used = vec![false; self.pieces.len()];
         inputs.iter().flatten().for_each(|(_, input)| used[input.delay] = true);
         let delays = &self.network.ideal.network.delays;
@@ -136,7 +152,8 @@ impl<'a> Cells<'a> {
     }
 
     /// Valid lines for the cell before anything is known of it: no component comes below all components and all that is heard.
-    fn guess(&mut self, inputs: &[Vec<(usize, Input)>], h_s: f64) {
+    fn guess(&mut self, inputs: &[Vec<(usize, Input)>]) {
+        let h_s = self.to_s - self.t_s;
         let n = self.network.components();
         let mut least = std::mem::take(&mut self.work.least);
         least.fill(f64::INFINITY);
@@ -178,6 +195,7 @@ impl<'a> Cells<'a> {
         inputs.clear();
         inputs.resize(2 * n * heard.len(), 0.0);
         let mut value = std::mem::take(&mut self.work.value);
+        let rounding = rounding(self.t_s, self.to_s);
         for ((place, input), line) in heard.iter().zip(inputs.chunks_exact_mut(2 * n)) {
             let (first, last) = line.split_at_mut(n);
             first.fill(f64::INFINITY);
@@ -202,7 +220,7 @@ impl<'a> Cells<'a> {
                 }
             }
             for m in 0..n {
-                let paid = self.work.shift[m] + 2.0 * ROUNDING * (first[m] + last[m]);
+                let paid = self.work.shift[m] + 2.0 * rounding * (first[m] + last[m]);
                 // Where nothing was found of a message nothing is known of it.
                 let low = if self.work.low[m].is_finite() { self.work.low[m] } else { 0.0 };
                 // The straight line, or the least of all, whichever is more in the mean.
@@ -219,7 +237,7 @@ impl<'a> Cells<'a> {
     /// The bound at a place of what is sent there.
     fn value(&self, sent: usize, component: usize, place: Place, value: &mut [f64]) {
         let n = self.network.components();
-        let (line, at) = match place {
+        let (line, at, rounding) = match place {
             Place::History => {
                 value.fill(0.0);
                 if self.from_start {
@@ -227,30 +245,31 @@ impl<'a> Cells<'a> {
                 }
                 return;
             }
-            Place::Current(at) => (&self.lines[2 * n * component..2 * n * (component + 1)], at),
+            Place::Current(at) => {
+                (&self.lines[2 * n * component..2 * n * (component + 1)], at, rounding(self.t_s, self.to_s))
+            }
             Place::Past(number, at) => {
                 let past = number.checked_sub(self.number).and_then(|index| self.past.get(index as usize));
                 let Some(past) = past else { return value.fill(0.0) };
-                (&past.lines[2 * n * sent..2 * n * (sent + 1)], at)
+                (&past.lines[2 * n * sent..2 * n * (sent + 1)], at, past.rounding)
             }
         };
         let (first, last) = line.split_at(n);
         for ((value, first), last) in value.iter_mut().zip(first).zip(last) {
-            let between = first + (last - first) * at - ROUNDING * (first + last);
+            let between = first + (last - first) * at - rounding * (first + last);
             *value = between.max(first.min(*last));
         }
     }
 
     /// One component over the cell, from the lines of its inputs and their rates.
-    fn step(&mut self, component: usize, rates: impl Iterator<Item = Interval> + Clone, to_s: f64, ends: &mut [f64]) {
+    fn step(&mut self, component: usize, rates: impl Iterator<Item = Interval> + Clone, ends: &mut [f64]) {
         let n = self.network.components();
-        let h_s = to_s - self.t_s;
+        let h_s = self.to_s - self.t_s;
         let d: f64 = rates.clone().map(|rate| rate.low).sum();
         let x = d * h_s;
         let [e1, e2] = relaxation(x);
         let (count, varies) = (rates.clone().count() as f64, rates.clone().any(|rate| rate.low < rate.high));
-        // Times are off by a unit in their last place, which is more of a short cell.
-        let rounding = ROUNDING * (count + 4.0) * (1.0 + to_s.abs() / h_s);
+        let rounding = (count + 4.0) * rounding(self.t_s, self.to_s);
         let y = &self.y[component * n..(component + 1) * n];
         let line = &mut self.lines[2 * n * component..2 * n * (component + 1)];
         for m in 0..n {
@@ -279,13 +298,14 @@ impl<'a> Cells<'a> {
         }
     }
 
-    fn keep(&mut self, to_s: f64, ends: Vec<f64>) {
+    fn keep(&mut self, ends: Vec<f64>) {
+        let to_s = self.to_s;
         let n = self.network.components();
         let mut lines = Vec::with_capacity(2 * n * self.network.sent * self.network.first.len());
         for component in self.network.all_sent() {
             lines.extend_from_slice(&self.lines[2 * n * component..2 * n * (component + 1)]);
         }
-        self.past.push_back(Past { lines });
+        self.past.push_back(Past { lines, rounding: rounding(self.t_s, to_s) });
         self.starts_s.push(self.t_s);
         (self.y, self.t_s) = (ends, to_s);
         let oldest_s = to_s - self.network.window_s;

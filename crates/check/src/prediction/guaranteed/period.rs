@@ -3,7 +3,7 @@
 use forwardstep_core::expression::Number;
 use forwardstep_sim::Setup;
 use forwardstep_sim::delay::{Delay, PiecewiseConstant, SawTooth, Sinusoid};
-use forwardstep_sim::schedule::Periodic;
+use forwardstep_sim::schedule::{Extent, Periodic};
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
 
@@ -24,7 +24,9 @@ impl Repeats {
     /// common multiple that is short enough.
     pub(super) fn of(setup: &Setup) -> Option<Repeats> {
         let network = &setup.network;
-        if network.schedule.graphs.iter().flatten().any(|edge| edge.weight.constant().is_none()) {
+        // What an author says of a signal reaches as far as it was tried.
+        let is_known = network.schedule.known().extent != Extent::Horizon;
+        if !is_known || network.schedule.graphs.iter().flatten().any(|edge| edge.weight.constant().is_none()) {
             return None;
         }
         let mut periods: Vec<BigRational> = Vec::new();
