@@ -133,7 +133,7 @@ impl GuaranteeFound {
             }
         }
         let mut sentence =
-            format!("guaranteed, of the spread of all cascaded variables is left at most {}", parts.join(", "));
+            format!("guaranteed: of the spread of all cascaded variables at most {} is left", parts.join(", "));
         sentence += if self.drawn {
             ", whatever the start, over the graphs and delays of this run"
         } else {

@@ -192,15 +192,17 @@ impl Predictions {
             PredictedRate::Period { period_s, factor, rate_per_s, wavers, periods } => {
                 let (factor, wavers) = (number_words(*factor), number_words(100.0 * wavers));
                 format!(
-                    "rate: {rate_per_s:.4} 1/s; a period of {period_s} s leaves {factor} of a disagreement, within {wavers} % over {periods} \
-                     periods"
+                    "rate: {} 1/s; a period of {period_s} s leaves {factor} of a disagreement, within {wavers} % over {periods} \
+                     periods",
+                    number_words(*rate_per_s)
                 )
             }
             PredictedRate::Roots { root_per_s: [re, im], correction_per_s, excited, .. } => {
-                let turning = if *im == 0.0 { String::new() } else { format!(" ± {im:.4} i") };
+                let turning = if *im == 0.0 { String::new() } else { format!(" ± {} i", number_words(*im)) };
+                let re = number_words(*re);
                 let (correction, excited) = (number_words(*correction_per_s), number_words(*excited));
                 let into = format!("the start makes {excited} {unit}").trim_end().to_owned();
-                format!("rate: rightmost root {re:.4}{turning} 1/s, last corrected by {correction}; {into} of it")
+                format!("rate: rightmost root {re}{turning} 1/s, last corrected by {correction}; {into} of it")
             }
         });
         sentences.extend(self.guarantee.iter().flat_map(|guarantee| guarantee.sentences(setup.time.end_s)));

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use super::explanation::{TextLine, some_names};
 use super::formula::unicode;
 use super::names;
+use super::report::text::number as number_words;
 
 /// Residuals line by line: for every design its agents and its equations, each with where its sides differ most.
 pub fn residual_lines(setup: &Setup, found: &[(Vec<usize>, Vec<Residual>)]) -> Vec<TextLine> {
@@ -35,7 +36,8 @@ fn words(setup: &Setup, residual: &Residual) -> String {
         Ok(Largest { relative, difference, agent, entry, t_s, .. }) => {
             let agent = names::agent_name(setup, *agent);
             let ends = if residual.holds() == Some(true) { "" } else { ", which is NO ROUNDING" };
-            format!("{relative:.1e} at most, at {t_s} s: {difference:.1e} in entry {} of {agent}{ends}", entry + 1)
+            let [relative, difference, t_s] = [*relative, *difference, *t_s].map(number_words);
+            format!("{relative} at most, at {t_s} s: {difference} in entry {} of {agent}{ends}", entry + 1)
         }
     }
 }
