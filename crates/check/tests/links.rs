@@ -151,6 +151,12 @@ fn weights_and_delays_are_judged_by_what_they_do_for_all_time() {
         weight((-t()).exp_of() + 0.2),
         (Answer::Holds, "weights that follow a formula stay from 0.2 to 1.2".into())
     );
+    // Two waves that drift apart, and come to −0.1 after hours: neither bound alone says that a weight holds.
+    let drifting = t().sin_of() * 0.5 - (t() * 1.0001).sin_of() * 0.5 + 0.9;
+    let (answer, because) = weight(drifting);
+    assert!(answer != Answer::Holds && !because.contains("uniformly"), "{answer:?}: {because}");
+    let (answer, because) = weight(one() + one() / (t() - 100.0).power(2.0));
+    assert!(answer != Answer::Holds && !because.contains("uniformly"), "{answer:?}: {because}");
     // A sum of two waves is larger than the sum of their lower bounds.
     let waves = t().sin_of() * 0.2 + t().cos_of() * 0.2 + 0.3;
     assert_eq!(weight(waves).0, Answer::Holds);

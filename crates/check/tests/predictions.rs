@@ -228,6 +228,23 @@ fn sine(amplitude: f64, rate_per_s: f64) -> Function {
 }
 
 #[test]
+fn what_feeds_the_mean_is_named_and_nothing_else() {
+    let said = |setup: &Setup| Finding::TrackingPower(bound(setup).unwrap()).because();
+    let push = || pushed([Function::Constant(2.0), Function::Constant(-1.0)], 0.0, f64::INFINITY);
+    let mut setup = two_arms();
+    setup.agents[1].pushes = vec![push()];
+    let text = said(&setup);
+    assert!(text.starts_with("the mean of Σ sᵀKs of 2 agents over 20 s is at most "), "{text}");
+    assert!(text.ends_with(", pushes 0.625 W") && !text.contains("σ") && !text.contains("measurement"), "{text}");
+    let text = said(&two_arms().sampled(500.0));
+    assert!(text.contains(" is expected to be at most ") && text.contains(", with σ = "), "{text}");
+    assert!(!text.contains("pushes") && !text.contains("measurement"), "{text}");
+    let mut noisy = two_arms().sampled(500.0);
+    noisy.control.as_mut().unwrap().sensors.velocity_noise = 0.01;
+    assert!(said(&noisy).contains(", measurement errors "), "{}", said(&noisy));
+}
+
+#[test]
 fn eq_the_power_balance_solves_its_quadratic() {
     for (drive_w, supply_w, start_w, sigma) in
         [(0.0, 0.0, 3.0, 0.0), (2.0, 0.0, 0.0, 0.0), (0.7, 0.3, 1.9, 0.0), (0.7, 0.3, 1.9, 0.6), (0.0, 1.0, 1.0, 0.5)]
@@ -279,7 +296,7 @@ fn eq_what_pushes_feed_is_known_before_the_run_where_they_are_torques() {
     assert!((push_w(pushed([sine(2.0, 3.0), sine(-1.0, 9.0)], 0.0, 20.0)).unwrap() - 5.0 / 8.0).abs() < 1e-6);
     // Of a table the largest size of every column counts: 2 and 1.
     let values = vec![0.5, -1.0, -2.0, 0.3];
-    let table = Course::Table(Table { times_s: vec![0.0, 10.0], values, between: Between::Linear });
+    let table = Course::Table(Table { times_s: vec![0.0, 20.0], values, between: Between::Linear });
     let push = Push { effect: Effect::Torque(table), from_s: 0.0, until_s: f64::INFINITY };
     assert!((push_w(push).unwrap() - 5.0 / 8.0).abs() < 1e-12);
     let hand = Effect::HandOnAxes {

@@ -9,6 +9,7 @@
 //! - `course`: the disagreement over time and the value agreed upon.
 //! - `guaranteed`: how much of a spread is left when, for certain.
 //! - `period`: the rate of agreement over a network that repeats itself.
+//! - `repeats`: whether the network repeats itself exactly, and after how long.
 //! - `roots`: the rate of agreement over a fixed graph with constant delays.
 //! - `settled`: when a disagreement has settled.
 //! - `torque`: peak torques along the reference.
@@ -18,6 +19,7 @@ mod course;
 pub mod guaranteed;
 mod ideal;
 mod period;
+mod repeats;
 pub(crate) mod roots;
 mod settled;
 mod torque;

@@ -8,13 +8,12 @@
 
 use std::ops::ControlFlow;
 
-use forwardstep_sim::delay::{Delay, PiecewiseConstant, SawTooth, Sinusoid};
-use forwardstep_sim::schedule::Periodic;
 use forwardstep_sim::{AgentSetup, Axis, Method, Progress, Setup, Solver, Start, TimeSpan};
 use thiserror::Error;
 
 use super::cascade::{CascadeSpread, NoCascade};
 use super::ideal::{NoIdeal, ideal};
+use super::repeats::{MOST_ROUNDS, Repeats};
 use super::unfinished::{Unfinished, completed};
 
 /// What a period leaves of a disagreement, for s ≡ 0.
@@ -67,10 +66,6 @@ pub enum NoPeriodRate {
     Unfinished(#[from] Unfinished),
 }
 
-/// The common period is no longer than this many times the longest one.
-const MOST_ROUNDS: usize = 60;
-/// Periods are the same if they differ by less than this, relative.
-const SAME: f64 = 1e-9;
 /// Rows of a period.
 const ROWS: usize = 32;
 /// Periods of the first and of the longest attempt.
@@ -95,7 +90,7 @@ pub fn period_rate(
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<PeriodRate, NoPeriodRate> {
     let mut alone = on_one_axis(ideal(setup)?);
-    let period_s = common_period(setup).ok_or(NoPeriodRate::NoPeriod)?;
+    let Some(Repeats::Every(period_s)) = Repeats::of(setup) else { return Err(NoPeriodRate::NoPeriod) };
     let [mut periods, most] = PERIODS;
     let agents = alone.agents.len();
     let recorded = MOST_NUMBERS / (ROWS * COLUMNS * agents.max(1));
@@ -134,40 +129,6 @@ fn factor(widths: &[f64], period_s: f64) -> Result<PeriodRate, NoPeriodRate> {
     let off = |pair: &[f64]| (pair[1] / pair[0] / factor - 1.0).abs();
     let wavers = widths[first..].windows(2).map(off).fold(0.0, f64::max);
     Ok(PeriodRate { period_s, factor, rate_per_s: total / periods as f64 / period_s, wavers, periods })
-}
-
-/// The common period of the graph and of every delay in use, s; weights must not change.
-fn common_period(setup: &Setup) -> Option<f64> {
-    let network = &setup.network;
-    if network.schedule.graphs.iter().flatten().any(|edge| edge.weight.constant().is_none()) {
-        return None;
-    }
-    let switching = match network.schedule.constant_graph() {
-        Some(_) => None,
-        None => Some(network.schedule.downcast::<Periodic>()?.dwell_s.iter().sum()),
-    };
-    let mut periods: Vec<f64> = switching.into_iter().collect();
-    for index in network.used_delays() {
-        let delay = &network.delays[index];
-        if !delay.is_constant() {
-            periods.push(period_of(delay)?);
-        }
-    }
-    let longest = periods.iter().copied().reduce(f64::max)?;
-    let fits = |whole: f64| {
-        periods.iter().all(|period_s| (whole / period_s - libm::rint(whole / period_s)).abs() < SAME * whole / period_s)
-    };
-    (1..=MOST_ROUNDS).map(|rounds| longest * rounds as f64).find(|whole| fits(*whole))
-}
-
-fn period_of(delay: &Delay) -> Option<f64> {
-    if let Some(saw) = delay.downcast::<SawTooth>() {
-        return Some(saw.period_s);
-    }
-    if let Some(wave) = delay.downcast::<Sinusoid>() {
-        return Some(wave.period_s);
-    }
-    delay.downcast::<PiecewiseConstant>()?.period_s
 }
 
 /// The same agents on one axis, with starts that look arbitrary, and a solver that sees small differences.

@@ -4,9 +4,9 @@
 use forwardstep_sim::delay::{Basis, Delay, RandomHold};
 use forwardstep_sim::schedule::{Extent, Segment};
 
+use super::super::repeats::Repeats;
 use super::cells::Cells;
 use super::network::Network;
-use super::period::Repeats;
 use super::{Fall, Repeat};
 use crate::prediction::SHARE;
 

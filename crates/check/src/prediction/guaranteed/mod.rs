@@ -11,14 +11,12 @@
 //! - `cells`: lower bounds of the operator, cell by cell, rounded downwards.
 //! - `blocks`: how much is left when, over blocks of time.
 //! - `class`: what is left under any delays up to the longest one, in closed form.
-//! - `period`: whether the network repeats itself exactly.
 
 mod blocks;
 mod cells;
 mod class;
 mod heard;
 mod network;
-mod period;
 
 use forwardstep_sim::Setup;
 use forwardstep_sim::network::NetworkError;
@@ -28,9 +26,9 @@ use thiserror::Error;
 use self::blocks::{Blocks, is_drawn, listed};
 pub use self::class::ClassBound;
 use self::network::{MOST_COMPONENTS, Network};
-use self::period::Repeats;
 use super::cascade::NoCascade;
 use super::ideal::NoIdeal;
+use super::repeats::Repeats;
 use super::settled::SHARE;
 
 /// How much of the spread is left when, for certain, for s ≡ 0: of the interval of all cascaded variables and of all messages on their

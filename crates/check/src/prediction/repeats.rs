@@ -8,7 +8,7 @@ use num_rational::BigRational;
 use num_traits::ToPrimitive;
 
 /// The common period is no longer than this many times the longest one.
-const MOST_ROUNDS: u32 = 60;
+pub(super) const MOST_ROUNDS: u32 = 60;
 
 /// After how long a network is what it was.
 #[derive(Clone, Copy, Debug, PartialEq)]
