@@ -1,14 +1,18 @@
 //! The command line.
 
+mod experiments;
+
+pub(crate) use experiments::{
+    AttackOptions, FalsifyOptions, ManipulabilityOptions, SamplingLimitOptions, SmoothnessOptions,
+};
+
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use forwardstep_check::Id;
 use thiserror::Error;
-
-use crate::falsify::Target;
 
 /// Simulate and check networks of robots under forwardstepping control. Without a command, runs six arms.
 #[derive(Debug, Parser)]
@@ -154,156 +158,6 @@ pub(crate) struct ExplainOptions {
     /// Simulate the scenario in continuous time, and print how well every equation holds along the run: its largest residual, with agent and time
     #[arg(long, conflicts_with = "latex")]
     pub(crate) along: bool,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct FalsifyOptions {
-    /// How many scenarios
-    #[arg(long, value_name = "N", default_value_t = 10_000)]
-    pub(crate) cases: u64,
-    /// The number of the first
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub(crate) from: u64,
-    /// The same seed draws the same scenarios
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
-    /// Stop after this time
-    #[arg(long, value_name = "S", value_parser = positive)]
-    pub(crate) seconds: Option<f64>,
-    /// The folder for scenarios that refute something, as small as they still do
-    #[arg(long, value_name = "FOLDER", default_value = "forwardstep-refuted")]
-    pub(crate) out: PathBuf,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct AttackOptions {
-    /// What is attacked
-    #[arg(value_enum)]
-    pub(crate) target: AttackTarget,
-    /// Pieces of the delay, and phases of the schedule, at most
-    #[arg(long, value_name = "N", default_value_t = 6)]
-    pub(crate) pieces: usize,
-    /// The same seed searches the same scenarios
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
-    /// How long to search
-    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = positive)]
-    pub(crate) seconds: f64,
-    /// The file for what is found
-    #[arg(long, value_name = "FILE", default_value = "forwardstep-attack.toml")]
-    pub(crate) out: PathBuf,
-}
-
-/// What `attack` attacks: two designs inside their theorems, and two with a hypothesis broken.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum AttackTarget {
-    /// (a1), positions and velocities exchanged: how slow can agreement be?
-    A1,
-    /// (24) of order two, positions exchanged: how slow can agreement be?
-    #[value(name = "24")]
-    Positions,
-    /// (a1) with first roots κ₀ that differ from agent to agent: does it diverge?
-    A1FirstRoots,
-    /// (119) with weights that change with time: does it fail to follow?
-    #[value(name = "119-weights")]
-    Weights,
-}
-
-impl AttackTarget {
-    pub(crate) fn target(self) -> Target {
-        match self {
-            AttackTarget::A1 => Target::Velocities,
-            AttackTarget::Positions => Target::Positions,
-            AttackTarget::A1FirstRoots => Target::FirstRoots,
-            AttackTarget::Weights => Target::Weights,
-        }
-    }
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct SamplingLimitOptions {
-    /// Shipped scenarios by name, or files by their paths; those in continuous time are sampled with exact measurements
-    #[arg(value_name = "SCENARIO", default_value = SIX_ARMS)]
-    pub(crate) scenarios: Vec<String>,
-    /// Let torques come late by this part of the period, from 0 to 1
-    #[arg(long, value_name = "PART", value_parser = part)]
-    pub(crate) late: Option<f64>,
-    /// Take velocities from differences of positions, filtered at this cut-off
-    #[arg(long, value_name = "HZ", value_parser = positive)]
-    pub(crate) filter_hz: Option<f64>,
-    /// A run works while no |s| exceeds this, in rad/s or m/s [default: twice that of a run with an eighth of the period]
-    #[arg(long, value_name = "S", value_parser = positive)]
-    pub(crate) peak_error: Option<f64>,
-    /// It works if no more than this remains of the disagreement, or of the error, in rad or m [default: a tenth of what there is at
-    /// the start, or twice what remains in that run]
-    #[arg(long, value_name = "GAP", value_parser = positive)]
-    pub(crate) disagreement: Option<f64>,
-    /// Print rows of a table; of scenarios in continuous time with several delays and filters
-    #[arg(long)]
-    pub(crate) table: bool,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct ManipulabilityOptions {
-    /// Shipped scenarios by name, or files by their paths; agents are pushed at rest in agreement, for as long as the runs last
-    #[arg(value_name = "SCENARIO", default_value = "remark-4")]
-    pub(crate) scenarios: Vec<String>,
-    /// The manipulability gains of all agents, in 1/s to the power of the order
-    #[arg(long, value_name = "GAINS", value_delimiter = ',', default_value = "0,0.5,1,2", value_parser = not_negative)]
-    pub(crate) lambda: Vec<f64>,
-    /// Push this agent [default: the first that the others follow]
-    #[arg(long, value_name = "AGENT")]
-    pub(crate) on: Option<String>,
-    /// Push on this axis, counted from 1
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
-    pub(crate) axis: u32,
-    /// The torque or force, in N m or N; the theory is that of small ones
-    #[arg(long, value_name = "TORQUE", default_value_t = 0.01, value_parser = positive)]
-    pub(crate) torque: f64,
-    /// Print rows of a table
-    #[arg(long)]
-    pub(crate) table: bool,
-}
-
-#[derive(Debug, Args)]
-#[command(group(ArgGroup::new("comparison").args(["orders", "filters_s"])))]
-pub(crate) struct SmoothnessOptions {
-    /// Shipped scenarios by name, or files by their paths; they are simulated in continuous time
-    #[arg(value_name = "SCENARIO", default_value = SIX_ARMS)]
-    pub(crate) scenarios: Vec<String>,
-    /// Compare reference dynamics of these orders: agents keep their first roots, and repeat the last where there are too few
-    #[arg(long, value_name = "ORDERS", value_delimiter = ',', value_parser = order_of_reference)]
-    pub(crate) orders: Vec<usize>,
-    /// Put the agents under the backstepping baseline with each of these time constants of its filter, in s, and give the slope
-    #[arg(long = "filters", value_name = "SECONDS", value_delimiter = ',', value_parser = positive)]
-    pub(crate) filters_s: Vec<f64>,
-    /// Draw what --orders or --filters found of the last scenario into this file, as SVG; an older one is replaced
-    #[arg(long, value_name = "FILE.svg", requires = "comparison")]
-    pub(crate) plot: Option<PathBuf>,
-    /// Print rows of a table
-    #[arg(long)]
-    pub(crate) table: bool,
-}
-
-fn order_of_reference(text: &str) -> Result<usize, NotBetween> {
-    order(text).map(|order| order as usize)
-}
-
-/// Why a number cannot be used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("must be a number {0}")]
-pub(crate) struct NotANumber(&'static str);
-
-fn part(text: &str) -> Result<f64, NotANumber> {
-    text.parse().ok().filter(|part| (0.0..=1.0).contains(part)).ok_or(NotANumber("from 0 to 1"))
-}
-
-fn positive(text: &str) -> Result<f64, NotANumber> {
-    text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite()).ok_or(NotANumber("above 0"))
-}
-
-fn not_negative(text: &str) -> Result<f64, NotANumber> {
-    text.parse().ok().filter(|number: &f64| *number >= 0.0 && number.is_finite()).ok_or(NotANumber("of at least 0"))
 }
 
 /// Documents that have a schema.
