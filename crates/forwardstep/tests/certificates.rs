@@ -213,6 +213,17 @@ fn proofs_reach_networks_that_are_not_shipped() {
 }
 
 #[test]
+fn swarms_with_roots_that_differ_are_certified_too() {
+    let text = SHIPPED_SCENARIOS.iter().find(|shipped| shipped.name == "swarm-tracking").unwrap().text;
+    for roots in ["[0.5, 3.0]", "[3.0, 0.5]", "[2.0, 0.1]"] {
+        let own = text.replace("roots_per_s = [1.0, 1.0]", &format!("roots_per_s = {roots}"));
+        assert_ne!(own, text);
+        let own = own.replace("coupling = 12 ", "coupling = 40 ");
+        assert_eq!(judged(&own, "swarm-coupling"), ("holds".to_owned(), "accepted".to_owned()), "{roots}");
+    }
+}
+
+#[test]
 fn witnesses_of_other_kinds_are_replayed() {
     let accepted = |scenario: &str, id: &str, expected: &str| {
         let (answer, outcome) = judged(scenario, id);
