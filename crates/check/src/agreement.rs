@@ -31,6 +31,7 @@ use forwardstep_sim::{AgentSetup, Setup};
 use thiserror::Error;
 
 use crate::conserved::Conserved;
+use crate::fixed::{NotFixed, fixed};
 use crate::kinds::is_lagrangian;
 use crate::null_vector::{NoNullVector, NullVector, null_vector};
 
@@ -72,15 +73,9 @@ fn known_digits(value: f64, error_bound: f64) -> String {
 /// Why the value agreed upon cannot be known before the run.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoPrediction {
-    /// The graph changes.
-    #[error("the graph switches")]
-    Switching,
-    /// A delay changes.
-    #[error("a delay varies with time")]
-    VaryingDelay,
-    /// A weight changes.
-    #[error("a weight varies with time")]
-    VaryingWeight,
+    /// The network changes, or is not linear: a nonlinear coupling conserves nothing over a delay.
+    #[error(transparent)]
+    NotFixed(#[from] NotFixed),
     /// The value depends on the tracking errors.
     #[error("the manipulability gain of agent number {} lets tracking errors move it", agent + 1)]
     Manipulability {
@@ -93,9 +88,6 @@ pub enum NoPrediction {
         /// Index of the agent.
         agent: usize,
     },
-    /// A nonlinear coupling conserves nothing over a delay.
-    #[error("the coupling is nonlinear")]
-    Coupling,
     /// Held inputs conserve the quantity only in the limit of short periods.
     #[error("the controllers sample")]
     Sampled,
@@ -164,24 +156,15 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     if !(setup.reference.is::<Consensus>() || setup.reference.is::<PureIntegral>()) {
         return Err(NoPrediction::Own);
     }
-    if !setup.network.coupling.is_linear() {
-        return Err(NoPrediction::Coupling);
-    }
     if setup.control.is_some() {
         return Err(NoPrediction::Sampled);
     }
-    let edges = setup.network.schedule.constant_graph().ok_or(NoPrediction::Switching)?;
-    if !edges.iter().all(|edge| setup.network.delays[edge.delay].is_constant()) {
-        return Err(NoPrediction::VaryingDelay);
-    }
-    if !edges.iter().all(|edge| edge.weight.constant().is_some()) {
-        return Err(NoPrediction::VaryingWeight);
-    }
+    let (edges, _) = fixed(&setup.network)?;
     let n = setup.agents.len();
     let NullVector { entries: influence, error: influence_error } =
         null_vector(n, edges).map_err(|reason| match reason {
             NoNullVector::Classes(closed_groups) => NoPrediction::NoSpanningTree { closed_groups },
-            NoNullVector::Varies => NoPrediction::VaryingWeight,
+            NoNullVector::Varies => NotFixed::VaryingWeight.into(),
         })?;
     // (3) and (23) hold no z in what they conserve.
     let counts = |agent: &usize| setup.reference.is::<Consensus>() && influence[*agent] > 0.0;

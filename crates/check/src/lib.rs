@@ -10,6 +10,7 @@ mod agreement;
 pub mod certificate;
 mod conserved;
 pub mod derivation;
+mod fixed;
 mod graphs;
 pub mod hypothesis;
 mod inertia;
@@ -32,6 +33,7 @@ mod theorems;
 
 pub use agreement::{NoPrediction, Prediction, predict};
 pub use certificate::certify;
+pub use fixed::NotFixed;
 pub use hypothesis::{Answer, Evidence, Hypothesis, Id, Rigour};
 pub use practical::{
     Along, FastestDamping, Finding, Hold, Injection, InjectionBalance, InjectionWatch, LinearisedSampling, LoadReached,

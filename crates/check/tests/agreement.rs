@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use common::{arm, column, edge, masses, noise, run, setup};
 use forwardstep_check::prediction::CascadeSpread;
-use forwardstep_check::{Answer, NoPrediction, check, predict};
+use forwardstep_check::{Answer, NoPrediction, NotFixed, check, predict};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::delay::{Delay, Loss, PacketLink, PiecewiseConstant, RandomHold, SawTooth, Sinusoid};
@@ -146,12 +146,12 @@ fn prediction_says_why_there_is_none() {
     let one_way = Schedule::fixed(vec![edge(0, 1, 1.0, 0)]);
     let saw = vec![Delay::new(SawTooth { min_s: 0.0, max_s: 0.1, period_s: 1.0, offset_s: 0.0 })];
     let case = |schedule, delays| predict(&setup(agents(), Exchange::Position, schedule, delays, 1.0));
-    assert_eq!(case(one_way.clone(), saw), Err(NoPrediction::VaryingDelay));
+    assert_eq!(case(one_way.clone(), saw), Err(NoPrediction::NotFixed(NotFixed::VaryingDelay)));
     assert_eq!(case(Schedule::fixed(vec![]), constant.clone()), Err(NoPrediction::NoSpanningTree { closed_groups: 2 }));
     let phase = |from, to| Phase { edges: vec![edge(from, to, 1.0, 0)], dwell_s: 1.0 };
     assert_eq!(
         case(Schedule::periodic(vec![phase(0, 1), phase(1, 0)]), constant.clone()),
-        Err(NoPrediction::Switching)
+        Err(NoPrediction::NotFixed(NotFixed::Switching))
     );
     assert_eq!(case(one_way, constant).unwrap().influence, vec![1.0, 0.0]);
 }
@@ -248,7 +248,7 @@ fn prop_spread_never_grows_over_random_packets_and_weights() {
             }
             assert!(spread[spread.len() - 1] < 0.9 * spread[0]);
         }
-        assert_eq!(predict(&setup), Err(NoPrediction::Switching));
+        assert_eq!(predict(&setup), Err(NoPrediction::NotFixed(NotFixed::Switching)));
     }
 }
 

@@ -5,7 +5,7 @@
 mod common;
 
 use common::{edge, masses};
-use forwardstep_check::{Answer, NoPrediction, check, predict};
+use forwardstep_check::{Answer, NoPrediction, NotFixed, check, predict};
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::Exchange;
 use forwardstep_sim::delay::{Delay, Loss, Packet, PacketLink, RandomHold, Trace};
@@ -27,7 +27,10 @@ fn links(delay: Delay, weight: Option<Expression>) -> (Answer, String, Option<(A
             Edge { weight: Weight::Formula(0), ..edge(0, 1, 1.0, 0) },
             Edge { weight: Weight::Formula(0), ..edge(1, 0, 1.0, 0) },
         ]);
-        assert!(matches!(predict(&setup), Err(NoPrediction::VaryingWeight | NoPrediction::VaryingDelay)));
+        assert!(matches!(
+            predict(&setup),
+            Err(NoPrediction::NotFixed(NotFixed::VaryingWeight | NotFixed::VaryingDelay))
+        ));
     }
     let report = check(&setup);
     let find = |words: &str| {

@@ -19,7 +19,9 @@ use std::sync::Arc;
 
 use common::kinds::{alone, blind_mass};
 use common::{arm, column, edge, masses, run, setup};
-use forwardstep_check::{Finding, NoPrediction, PowerBound, SamplingMargin, along, mean_power_w, practical, predict};
+use forwardstep_check::{
+    Finding, NoPrediction, NotFixed, PowerBound, SamplingMargin, along, mean_power_w, practical, predict,
+};
 use forwardstep_core::Gain;
 use forwardstep_core::agent::VelocityFilter;
 use forwardstep_core::expression::Expression;
@@ -110,7 +112,7 @@ fn every_reason_for_which_there_is_none_is_the_one_that_is_said() {
     assert_eq!(said(&|setup| setup.agents[2].law = blind().law), Some(NoPrediction::Law), "one is enough");
     assert_eq!(predict(&alone(blind())).err(), Some(NoPrediction::Law));
     let tanh = Coupling::Tanh { scale: 1.0 };
-    assert_eq!(said(&|setup| setup.network.coupling = tanh), Some(NoPrediction::Coupling));
+    assert_eq!(said(&|setup| setup.network.coupling = tanh), Some(NoPrediction::NotFixed(NotFixed::Coupling)));
     let control = Control {
         failures: Default::default(),
         sample_hz: 100.0,
@@ -121,7 +123,10 @@ fn every_reason_for_which_there_is_none_is_the_one_that_is_said() {
     assert_eq!(said(&|setup| setup.control = Some(control.clone())), Some(NoPrediction::Sampled));
     let saw = Delay::new(SawTooth { min_s: 0.0, max_s: 0.1, period_s: 1.0, offset_s: 0.0 });
     for delay in [0, 1] {
-        assert_eq!(said(&|setup| setup.network.delays[delay] = saw.clone()), Some(NoPrediction::VaryingDelay));
+        assert_eq!(
+            said(&|setup| setup.network.delays[delay] = saw.clone()),
+            Some(NoPrediction::NotFixed(NotFixed::VaryingDelay))
+        );
     }
     // A delay that no edge has changes nothing.
     assert_eq!(said(&|setup| setup.network.delays.push(saw.clone())), None);
@@ -131,7 +136,7 @@ fn every_reason_for_which_there_is_none_is_the_one_that_is_said() {
         let edges = &mut setup.network.schedule.graphs[0];
         edges[1].weight = Weight::Formula(0);
     };
-    assert_eq!(said(&varying), Some(NoPrediction::VaryingWeight));
+    assert_eq!(said(&varying), Some(NoPrediction::NotFixed(NotFixed::VaryingWeight)));
     let one_way = Schedule::fixed(vec![edge(0, 1, 1.0, 0)]);
     assert_eq!(
         said(&|setup| setup.network.schedule = one_way.clone()),
@@ -159,7 +164,10 @@ fn a_schedule_of_one_phase_is_one_graph() {
     }
     let mut heavier = phase.clone();
     heavier.edges[0].weight = 3.0.into();
-    assert_eq!(value(Schedule::periodic(vec![phase, heavier])).err(), Some(NoPrediction::Switching));
+    assert_eq!(
+        value(Schedule::periodic(vec![phase, heavier])).err(),
+        Some(NoPrediction::NotFixed(NotFixed::Switching))
+    );
 }
 
 /// K of every kind, for masses that start with a tracking error.

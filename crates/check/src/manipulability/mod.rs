@@ -42,6 +42,7 @@ use nalgebra::DMatrix;
 use thiserror::Error;
 
 use self::response::Response;
+use crate::fixed::fixed;
 use crate::null_vector::null_vector;
 use crate::prediction::roots::characteristic::{C, Characteristic};
 use crate::prediction::roots::network;
@@ -190,7 +191,7 @@ impl Manipulability {
 
 /// The left null vector of the Laplacian of a graph that stays.
 fn influence(setup: &Setup) -> Result<Vec<f64>, NoRate> {
-    let edges = setup.network.schedule.constant_graph().ok_or(NoRate::Switching)?;
+    let (edges, _) = fixed(&setup.network)?;
     let found = null_vector(setup.agents.len(), edges).map_err(|_| NoRate::NoSpanningTree)?;
     if found.entries.iter().all(|u| u.is_finite()) { Ok(found.entries) } else { Err(NoRate::Unclear) }
 }

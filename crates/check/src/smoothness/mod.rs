@@ -117,7 +117,7 @@ pub enum NoSmoothness {
     Length(#[from] LengthError),
     /// No agent is covered.
     #[error("{name}: {reason}")]
-    Nobody {
+    NoAgent {
         /// The first agent.
         name: String,
         /// Why it is not.
@@ -163,7 +163,7 @@ pub fn smoothness(
     };
     let agents: Vec<Result<Covered, NotCovered>> = expansions.iter().enumerate().map(known).collect();
     if let (Some(Err(reason)), true) = (agents.first(), agents.iter().all(Result::is_err)) {
-        return Err(NoSmoothness::Nobody { name: setup.agents[0].name.clone(), reason: reason.clone() });
+        return Err(NoSmoothness::NoAgent { name: setup.agents[0].name.clone(), reason: reason.clone() });
     }
     let mut seen = Seen { expansions, ..Seen::default() };
     let outcome = simulate_jumps(setup, observer, &mut |jump| seen.look(jump))?;

@@ -68,5 +68,5 @@ fn own_reference_dynamics_show_themselves_how_many_derivatives_stay() {
     assert_eq!(smoothness.largest(kind, 0).map(|jump| jump.size), Some(0.0));
     assert!(smoothness.largest(kind, 1).unwrap().size > 0.1);
     setup.reference = Arc::new(Own { bent: true });
-    assert!(matches!(refused(&setup), NoSmoothness::Nobody { reason: NotCovered::NotAffine { .. }, .. }));
+    assert!(matches!(refused(&setup), NoSmoothness::NoAgent { reason: NotCovered::NotAffine { .. }, .. }));
 }

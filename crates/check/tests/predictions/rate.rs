@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use forwardstep_check::prediction::{NoCascade, NoPeriodRate, NoRate, Settled, Unfinished, period_rate, rate};
-use forwardstep_check::{NoIdeal, course};
+use forwardstep_check::{NoIdeal, NotFixed, course};
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::delay::{Delay, Loss, PacketLink, SawTooth};
@@ -98,21 +98,24 @@ fn every_reason_for_no_rate_is_the_one_that_is_said() {
     };
     assert_eq!(said(&|_| {}), None);
     assert_eq!(said(&|setup| setup.reference = Arc::new(Tracking)), Some(NoRate::Ideal(NoIdeal::Targets)));
-    assert_eq!(said(&|setup| setup.network.coupling = Coupling::Tanh { scale: 1.0 }), Some(NoRate::Coupling));
+    assert_eq!(
+        said(&|setup| setup.network.coupling = Coupling::Tanh { scale: 1.0 }),
+        Some(NoRate::NotFixed(NotFixed::Coupling))
+    );
     let saw = Delay::new(SawTooth { min_s: 0.0, max_s: 0.1, period_s: 1.0, offset_s: 0.0 });
-    assert_eq!(said(&|setup| setup.network.delays[2] = saw.clone()), Some(NoRate::VaryingDelay));
+    assert_eq!(said(&|setup| setup.network.delays[2] = saw.clone()), Some(NoRate::NotFixed(NotFixed::VaryingDelay)));
     let swing = Expression::variable(0).sin_of() * 0.5 + 1.0;
     let varying = |setup: &mut Setup| {
         setup.network.weights = vec![BoundedFormula::new(swing.clone(), 80.0)];
         setup.network.schedule.graphs[0][1].weight = Weight::Formula(0);
     };
-    assert_eq!(said(&varying), Some(NoRate::VaryingWeight));
+    assert_eq!(said(&varying), Some(NoRate::NotFixed(NotFixed::VaryingWeight)));
     let phases = |setup: &mut Setup| {
         let edges = setup.network.schedule.graphs[0].clone();
         let phases = vec![Phase { edges: edges[..3].to_vec(), dwell_s: 1.0 }, Phase { edges, dwell_s: 1.0 }];
         setup.network.schedule = Schedule::periodic(phases);
     };
-    assert_eq!(said(&phases), Some(NoRate::Switching));
+    assert_eq!(said(&phases), Some(NoRate::NotFixed(NotFixed::Switching)));
     let torn = |setup: &mut Setup| setup.network.schedule = Schedule::fixed(vec![edge(0, 1, 1.0, 0)]);
     assert_eq!(said(&torn), Some(NoRate::NoSpanningTree));
     let alone = |setup: &mut Setup| setup.agents.truncate(1);
@@ -227,7 +230,7 @@ fn a_schedule_that_never_joins_and_drawn_delays_have_no_agreement_and_no_rate() 
     let within = course.within.unwrap();
     assert!(within.iter().all(|[low, high]| high - low > 0.1), "{within:?}");
     assert!(matches!(period_rate(&setup, &mut go_on), Err(NoPeriodRate::Stays { .. })));
-    assert_eq!(rate(&setup), Err(NoRate::Switching));
+    assert_eq!(rate(&setup), Err(NoRate::NotFixed(NotFixed::Switching)));
     // Packets that are lost, over a tree.
     let link = PacketLink {
         every_s: 0.2,
@@ -242,7 +245,7 @@ fn a_schedule_that_never_joins_and_drawn_delays_have_no_agreement_and_no_rate() 
     lossy.network.delays = vec![Delay::new(link.trace((0, 1), 120.0).unwrap()); 3];
     let course = super::course::predicted(&lossy);
     assert!(course.is_reached() && course.within.unwrap().iter().all(|[low, high]| high - low < 0.1));
-    assert_eq!(rate(&lossy), Err(NoRate::VaryingDelay));
+    assert_eq!(rate(&lossy), Err(NoRate::NotFixed(NotFixed::VaryingDelay)));
     assert_eq!(period_rate(&lossy, &mut go_on), Err(NoPeriodRate::NoPeriod));
 }
 

@@ -276,7 +276,7 @@ fn eq_3_stays_continuous_where_a_delay_jumps_and_not_where_the_graph_does() {
     let mut edges = setup.network.schedule.graphs[0].clone();
     edges[1].weight = Weight::Formula(0);
     setup.network.schedule = Schedule::fixed(edges);
-    assert!(matches!(refused(&setup), NoSmoothness::Nobody { reason: NotCovered::VaryingWeights { .. }, .. }));
+    assert!(matches!(refused(&setup), NoSmoothness::NoAgent { reason: NotCovered::VaryingWeights { .. }, .. }));
     // That of the consensus family does not.
     setup.reference = Arc::new(Consensus);
     assert!(compare(&setup, 1, false).kept());
@@ -342,7 +342,7 @@ fn who_is_not_covered_is_told_why() {
     sampled = sampled.sampled(100.0);
     assert_eq!(refused(&sampled), NoSmoothness::Sampled);
     let mut high = arms(Exchange::Position, 9);
-    let nobody = |name: &str, reason| NoSmoothness::Nobody { name: name.into(), reason };
+    let nobody = |name: &str, reason| NoSmoothness::NoAgent { name: name.into(), reason };
     assert_eq!(refused(&high), nobody("arm-1", NotCovered::Order { order: 9, most: 8 }));
     // One of the others is reported.
     high.agents[1].roots_per_s.pop();

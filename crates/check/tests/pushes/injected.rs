@@ -8,21 +8,11 @@ use forwardstep_core::Gain;
 use forwardstep_core::robot::PointMass;
 use forwardstep_sim::push::{Effect, Push};
 use forwardstep_sim::{
-    Actuators, Adaptive, Control, Exchange, Known, Outcome, Sensors, Setup, Signal, VelocitySensor, simulate_watched,
+    Adaptive, Control, Exchange, Known, Outcome, Sensors, Setup, Signal, VelocitySensor, simulate_watched,
 };
 
 use super::{agent, arm, constant, pulse, ring, rough_handling, run};
 use crate::common::column;
-
-fn control(sample_hz: f64) -> Control {
-    Control {
-        sample_hz,
-        computation_delay_s: 0.0,
-        sensors: Sensors::default(),
-        actuators: Actuators::default(),
-        failures: Default::default(),
-    }
-}
 
 /// Two planar arms that adapt, one of which moves faster, under exact samples.
 fn arms(sample_hz: f64) -> Setup {
@@ -32,9 +22,8 @@ fn arms(sample_hz: f64) -> Setup {
     };
     let mut setup = ring(vec![arm(0, &[1.5], law(10.0)), arm(1, &[1.2, 2.0], law(3.0))], Exchange::Position, 4.0);
     setup.agents.iter_mut().for_each(|agent| agent.start.reference = vec![vec![0.4, -0.3]]);
-    setup.control = Some(control(sample_hz));
     setup.time.record_every_s = 0.5;
-    setup
+    setup.sampled(sample_hz)
 }
 
 /// Two point masses with this many axes, whose masses are known.
@@ -50,9 +39,8 @@ fn masses(axes: usize, sample_hz: f64) -> Setup {
         agent
     };
     let mut setup = ring(vec![mass(0), mass(1)], Exchange::PositionVelocity, 4.0);
-    setup.control = Some(control(sample_hz));
     setup.time.record_every_s = 0.5;
-    setup
+    setup.sampled(sample_hz)
 }
 
 fn with(mut setup: Setup, change: impl FnOnce(&mut Control)) -> Setup {

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use forwardstep::check::prediction::guaranteed::WORK;
 use forwardstep::check::prediction::{NoRate, guaranteed_rate, period_rate, rate};
-use forwardstep::check::{self, Answer, NoPrediction, Practical, PracticalAnswer, Prediction, Report};
+use forwardstep::check::{self, Answer, NoPrediction, NotFixed, Practical, PracticalAnswer, Prediction, Report};
 use forwardstep::io::output::Predictions;
 use forwardstep::io::scenario::Scenario;
 use forwardstep::sim::{Progress, Setup};
@@ -35,7 +35,7 @@ pub(crate) fn promise(setup: &Setup) -> Promise {
 /// Simulates the reference dynamics alone; nothing where there is nothing to predict, or `observer` interrupts.
 pub(crate) fn predictions(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Option<Predictions> {
     let (course, rate) = (check::course(setup, observer), rate(setup));
-    let repeats = matches!(rate, Err(NoRate::Switching | NoRate::VaryingDelay));
+    let repeats = matches!(rate, Err(NoRate::NotFixed(NotFixed::Switching | NotFixed::VaryingDelay)));
     let period = (repeats && course.is_ok()).then(|| period_rate(setup, observer));
     Predictions::of(setup, &course, &rate, period.as_ref(), &guaranteed_rate(setup, WORK))
 }

@@ -16,6 +16,8 @@ use forwardstep_core::reference::polynomial;
 use forwardstep_sim::{AgentSetup, Exchange, Setup};
 use nalgebra::{Complex, DMatrix};
 
+use crate::fixed::Link;
+
 /// A complex number.
 pub(crate) type C = Complex<f64>;
 
@@ -33,15 +35,6 @@ pub(crate) struct Characteristic {
     pub(super) velocities: bool,
     /// x₀(0) … x_ℓ(0) of every agent, axis by axis.
     pub(super) start: Vec<Vec<Vec<f64>>>,
-}
-
-/// Who hears whom, how strongly, how late.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Link {
-    pub(super) from: usize,
-    pub(super) to: usize,
-    pub(super) weight: f64,
-    pub(super) delay_s: f64,
 }
 
 impl Characteristic {

@@ -7,8 +7,9 @@
 
 use nalgebra::DMatrix;
 
-use super::characteristic::{C, Characteristic, Link};
+use super::characteristic::{C, Characteristic};
 use super::eigenvalues::eigenvalues;
+use crate::fixed::Link;
 
 /// Chebyshev nodes cos(kπ/M) on [−1, 1] with the matrix that differentiates the polynomial through values there.
 struct Nodes {

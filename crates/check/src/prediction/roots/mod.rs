@@ -19,11 +19,12 @@ use forwardstep_sim::graph::{Edge, SpanningTree, spanning_tree};
 use nalgebra::DMatrix;
 use thiserror::Error;
 
-use self::characteristic::{C, Characteristic, Link, size};
+use self::characteristic::{C, Characteristic, size};
 use self::collocation::{candidates, unknowns};
 use self::modes::{Mode, backward_error, modes};
 use super::ideal::{NoIdeal, ideal};
 use super::settled::{Settled, settled};
+use crate::fixed::{Link, NotFixed, fixed};
 
 /// The rate of agreement, for s ≡ 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,18 +53,9 @@ pub enum NoRate {
     /// There is nothing to compare, or agents have different numbers of axes.
     #[error("there are no two agents with the same axes to compare")]
     Agents,
-    /// The graph changes.
-    #[error("the graph switches")]
-    Switching,
-    /// A delay changes.
-    #[error("a delay varies with time")]
-    VaryingDelay,
-    /// A weight changes.
-    #[error("a weight varies with time")]
-    VaryingWeight,
-    /// What is heard is no linear function.
-    #[error("the coupling is nonlinear")]
-    Coupling,
+    /// The network changes, or is not linear.
+    #[error(transparent)]
+    NotFixed(#[from] NotFixed),
     /// Zero is a root of several, and nothing makes all agree.
     #[error("no agent reaches all others")]
     NoSpanningTree,
@@ -134,22 +126,12 @@ fn system(ideal: &Setup) -> Result<Characteristic, NoRate> {
 
 /// The characteristic matrix of one agent or more.
 pub(crate) fn network(ideal: &Setup) -> Result<Characteristic, NoRate> {
-    if !ideal.network.coupling.is_linear() {
-        return Err(NoRate::Coupling);
-    }
-    let edges = ideal.network.schedule.constant_graph().ok_or(NoRate::Switching)?;
-    if edges.iter().any(|edge| edge.from.max(edge.to) >= ideal.agents.len()) {
+    let network = &ideal.network;
+    let is_there = |edge: &Edge| edge.from.max(edge.to) < ideal.agents.len() && edge.delay < network.delays.len();
+    if !network.schedule.graphs.iter().flatten().all(is_there) {
         return Err(NoRate::Unclear);
     }
-    let link = |edge: &Edge| {
-        let delay = ideal.network.delays.get(edge.delay).ok_or(NoRate::Unclear)?;
-        if !delay.is_constant() {
-            return Err(NoRate::VaryingDelay);
-        }
-        let weight = edge.weight.constant().ok_or(NoRate::VaryingWeight)?;
-        Ok(Link { from: edge.from, to: edge.to, weight, delay_s: delay.value(0.0) })
-    };
-    let links = edges.iter().map(link).collect::<Result<Vec<_>, _>>()?;
+    let (edges, links) = fixed(network)?;
     if !matches!(spanning_tree(ideal.agents.len(), edges), SpanningTree::Rooted { .. }) {
         return Err(NoRate::NoSpanningTree);
     }
