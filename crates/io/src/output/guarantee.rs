@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::number;
+use super::report::text::superscript;
 
 /// How much of the spread of all cascaded variables, and of all messages on their way, is left when, for certain and whatever the
 /// start, for s ≡ 0; or why that is not shown.
@@ -84,10 +85,10 @@ impl Guarantee {
         }
     }
 
-    /// Sentences for people, without a full stop.
+    /// Sentences for people, to stand behind "guaranteed:", without a full stop.
     pub(crate) fn sentences(&self, end_s: f64) -> Vec<String> {
         match self {
-            Guarantee::NoneSince(reason) => vec![format!("guaranteed rate: none, since {reason}")],
+            Guarantee::NoneSince(reason) => vec![format!("no rate, since {reason}")],
             Guarantee::Found(found) => found.sentences(end_s),
         }
     }
@@ -121,19 +122,22 @@ impl GuaranteeFound {
     fn sentences(&self, end_s: f64) -> Vec<String> {
         let percent = |left: f64| format!("{} %", above(100.0 * left));
         let first = |part: f64| self.falls.iter().find(|fall| fall.left <= part);
-        let mut parts: Vec<String> = SAID
+        let mut parts: Vec<[String; 2]> = SAID
             .iter()
-            .filter_map(|part| Some(format!("{} after {} s", percent(*part), above(first(*part)?.t_s))))
+            .filter_map(|part| Some([percent(*part), format!("after {} s", above(first(*part)?.t_s))]))
             .collect();
         match self.settled_s {
-            Some(t_s) => parts.push(format!("1 % after {} s", above(t_s))),
+            Some(t_s) => parts.push([percent(0.01), format!("after {} s", above(t_s))]),
             None => {
                 let last = self.falls.iter().rev().find(|fall| fall.t_s <= end_s);
-                parts.extend(last.map(|last| format!("{} by {} s", percent(last.left), above(last.t_s))));
+                parts.extend(last.map(|last| [percent(last.left), format!("by {} s", above(last.t_s))]));
             }
         }
-        let mut sentence =
-            format!("guaranteed: of the spread of all cascaded variables at most {} is left", parts.join(", "));
+        let say = |(index, [part, when]): (usize, &[String; 2])| match index {
+            0 => format!("at most {part} of the spread of all cascaded variables is left {when}"),
+            _ => format!("{part} {when}"),
+        };
+        let mut sentence = parts.iter().enumerate().map(say).collect::<Vec<_>>().join(", ");
         sentence += if self.drawn {
             ", whatever the start, over the graphs and delays of this run"
         } else {
@@ -153,11 +157,12 @@ impl GuaranteeFound {
 impl GuaranteedClass {
     fn sentence(&self) -> String {
         let size = self.log10_settled_s;
-        let time = if size < 6.0 { above(10.0_f64.powf(size)) } else { format!("10^{}", size.ceil()) };
+        let time =
+            if size < 6.0 { above(10.0_f64.powf(size)) } else { format!("10{}", superscript(size.ceil() as i32)) };
         let practical = if self.practical { "" } else { ", which is of no practical use" };
         match self.delay_s {
-            0.0 => format!("guaranteed in closed form: 1 % after {time} s{practical}"),
-            delay_s => format!("guaranteed for any delays up to {} s: 1 % after {time} s{practical}", above(delay_s)),
+            0.0 => format!("in closed form 1 % after {time} s{practical}"),
+            delay_s => format!("for any delays up to {} s 1 % after {time} s{practical}", above(delay_s)),
         }
     }
 }
@@ -180,5 +185,36 @@ mod tests {
     fn what_is_guaranteed_is_rounded_upwards() {
         let said = [0.0012341, 0.5, 12.301, 12.3, 100.2, 1234.5, 0.0].map(above);
         assert_eq!(said, ["0.00124", "0.5", "12.4", "12.3", "101", "1235", "0"]);
+    }
+
+    #[test]
+    fn what_is_guaranteed_is_said_in_one_sentence_for_the_network_and_one_for_any_delays() {
+        let fall = |t_s, left| GuaranteedFall { t_s, left };
+        let any_delay =
+            GuaranteedClass { delay_s: 0.4, over_s: 2.0, log10_part: -9.0, log10_settled_s: 28.2, practical: false };
+        let mut found = GuaranteeFound {
+            falls: vec![fall(1.0, 0.8), fall(2.0, 0.4), fall(5.0, 0.09), fall(7.0, 0.004)],
+            settled_s: Some(6.5),
+            repeat: Some(GuaranteedRepeat { over_s: 4.0, windows: Some(3), left: 0.2 }),
+            drawn: false,
+            any_delay: Some(any_delay),
+        };
+        let whole = "at most 50 % of the spread of all cascaded variables is left after 2 s, 10 % after 5 s, 1 % after 6.5 s, whatever the \
+                     start; 20 % of it after every 4 s more, 3 windows";
+        let any = "for any delays up to 0.4 s 1 % after 10²⁹ s, which is of no practical use";
+        assert_eq!(found.sentences(10.0), [whole, any]);
+        // What is not settled ends with what is left on the horizon.
+        (found.settled_s, found.repeat, found.any_delay, found.drawn) = (None, None, None, true);
+        found.falls.truncate(2);
+        let on_run = "at most 50 % of the spread of all cascaded variables is left after 2 s, 40 % by 2 s, whatever the start, over the \
+                      graphs and delays of this run";
+        assert_eq!(found.sentences(10.0), [on_run]);
+        found.falls.truncate(1);
+        assert!(
+            found.sentences(10.0)[0]
+                .starts_with("at most 80 % of the spread of all cascaded variables is left by 1 s, ")
+        );
+        let none = Guarantee::NoneSince("there is no link".into());
+        assert_eq!(none.sentences(10.0), ["no rate, since there is no link"]);
     }
 }

@@ -205,7 +205,12 @@ impl Predictions {
                 format!("rate: rightmost root {re}{turning} 1/s, last corrected by {correction}; {into} of it")
             }
         });
-        sentences.extend(self.guarantee.iter().flat_map(|guarantee| guarantee.sentences(setup.time.end_s)));
+        sentences.extend(
+            self.guarantee
+                .iter()
+                .flat_map(|guarantee| guarantee.sentences(setup.time.end_s))
+                .map(|sentence| format!("guaranteed: {sentence}")),
+        );
         sentences
     }
 }

@@ -50,7 +50,7 @@ pub(crate) fn section(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                     },
                 }
                 @for sentence in prediction.guarantee.iter().flat_map(|guarantee| guarantee.sentences(setup.time.end_s)) {
-                    p.note { "For certain: " (sentence) "." }
+                    p.note { "Guaranteed: " (sentence) "." }
                 }
                 @if let Some(s) = metrics.final_tracking_error.filter(|s| *s > 0.0) {
                     p.note { "Tracking errors at the last row are " (number(s)) " at most; what they do to the course is not predicted." }
