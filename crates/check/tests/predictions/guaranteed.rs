@@ -259,6 +259,36 @@ fn weights_and_delays_that_are_formulas_are_enclosed() {
     );
 }
 
+/// Masses with these edges, of which the first starts at one and all others at zero: of the spread is then left what the slowest has not heard
+/// of it.
+fn one_against_all(order: usize, schedule: Schedule, agents: usize, end_s: f64) -> Setup {
+    let mut setup = masses(Exchange::Position, order, schedule, vec![Delay::constant(0.0)]);
+    let mut own = setup.agents[0].clone();
+    own.start.q.fill(0.0);
+    own.start.dq.fill(0.0);
+    own.roots_per_s = vec![3.0; order];
+    setup.agents = vec![own; agents];
+    setup.agents[0].start.q.fill(1.0);
+    setup.network.agents = agents;
+    setup.time.end_s = end_s;
+    setup.time.record_every_s = 0.01;
+    setup
+}
+
+#[test]
+fn weights_that_swing_within_a_cell_may_have_any_of_their_values() {
+    // The second hears the first always alike and the third now more, now less, and the third hears the second: the less it weighs the third,
+    // the faster both learn of the first.
+    let mut schedule = Schedule::fixed(vec![edge(0, 1, 1.0, 0), edge(1, 2, 1.0, 0), edge(2, 1, 1.0, 0)]);
+    schedule.graphs[0][2].weight = Weight::Formula(0);
+    let mut setup = one_against_all(1, schedule, 3, 12.0);
+    let swings = (Expression::variable(0) * 200.0).sin_of() * 0.9 + 1.0;
+    setup.network.weights = vec![BoundedFormula::new(swings, 12.0)];
+    let found = guaranteed_rate(&setup, WORK).unwrap();
+    assert!(found.falls.len() >= 3, "{found:?}");
+    held_against_a_run(&setup, &found);
+}
+
 #[test]
 fn what_repeats_leaves_as_much_again() {
     let setup = five(Exchange::Position, 1, 4);

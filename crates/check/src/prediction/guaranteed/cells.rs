@@ -365,3 +365,34 @@ fn relaxation(x: f64) -> [f64; 2] {
 fn nested(x: f64, n: f64) -> f64 {
     (0..18).rev().fold(1.0, |rest, k| 1.0 - x / (n + f64::from(k)) * rest)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use forwardstep_sim::{AgentSetup, Known, Network as Links, RobotSetup, Setup, delay::Delay};
+
+    #[test]
+    fn lines_lie_nowhere_above_a_solution_that_bends_upwards() {
+        let mass =
+            || AgentSetup::new("mass", RobotSetup::point_mass(1, 1.0), Known::gain(1.0)).roots(&[1.0]).at(&[0.0]);
+        let links = Links::fixed(2, [(0, 1)], Delay::constant(0.0));
+        let network = Network::of(&Setup::consensus([mass(), mass()], links, 2.0)).unwrap();
+        let mut cells = Cells::new(&network, 0.0, true);
+        // All rates are 1/s: what components 0, 3 and 2 have of component 1 is a step behind one, one and two lags.
+        let step = |more: f64, t: f64| 1.0 - libm::exp(-t) * (1.0 + more * t);
+        while cells.t_s < 2.0 {
+            let (from_s, cell_s) = (cells.t_s, (0.5 * cells.t_s).clamp(1e-6, 0.05));
+            cells.advance(from_s + cell_s, 0);
+            for (component, more) in [(0, 0.0), (3, 0.0), (2, 1.0)] {
+                let [first, last] = [1, 5].map(|at| cells.lines[8 * component + at]);
+                for at in [0.0, 0.25, 0.5, 0.75, 1.0] {
+                    let (bound, exact) = (first + at * (last - first), step(more, from_s + cell_s * at));
+                    assert!(
+                        bound <= exact + 1e-15 && bound > exact - 2e-3,
+                        "{component} from {from_s} s: {bound}, not {exact}"
+                    );
+                }
+            }
+        }
+    }
+}
