@@ -29,17 +29,21 @@
 //! Δθ_k and u_k have one sign wherever c_k < 1, so V̇ has one more term, κ Σ (c_k − 1) Δθ_k u_k ≤ 0, and the theorem stands.
 //! θ̂ stays within the bounds and the margin.
 
+mod tip;
+
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{Asked, Balance, Controller, Given, Jet, Trouble, Truth};
+pub use tip::ParameterBounds;
+use tip::TaskWork;
+
+use super::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::law::{SlotineLi, SlotineLiOutput};
-use crate::linear::invert;
 use crate::plant::TaskArm;
 use crate::reference::Position;
-use crate::robot::{Lagrangian, Posture, TipKinematics, TwoVelocity};
+use crate::robot::{Lagrangian, TipKinematics, TwoVelocity};
 use crate::signal::{Block, Signal};
-use crate::{InverseQuadratic, LengthError, ResolvedGain};
+use crate::{LengthError, ResolvedGain};
 
 /// What is measured of a robot and its tip.
 #[derive(Clone, Copy, Debug)]
@@ -52,28 +56,9 @@ pub struct TaskMeasured<'a> {
     pub x: &'a [f64],
 }
 
-/// Bounds within which the kinematic parameters are known to be.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ParameterBounds {
-    /// An entry per parameter.
-    pub lower: Vec<f64>,
-    /// An entry per parameter.
-    pub upper: Vec<f64>,
-    /// How far beyond a bound an estimate may go, m; positive.
-    pub margin: f64,
-}
-
-impl ParameterBounds {
-    /// c_k: what is left of a rate in the direction of `push`.
-    fn share(&self, k: usize, theta_hat: f64, push: f64) -> f64 {
-        let beyond = if push > 0.0 { theta_hat - self.upper[k] } else { self.lower[k] - theta_hat };
-        if push == 0.0 || beyond <= 0.0 { 1.0 } else { (1.0 - beyond / self.margin).max(0.0) }
-    }
-}
-
 /// Task-space adaptive control of a robot whose tip is seen.
 ///
-/// State: z, ϑ̂, θ̂, det Ĵ(0). Shown: z, ż, s, ϑ̂, θ̂, det Ĵ, x, Δx. The target is a [`Jet`] for each coordinate of x_d.
+/// State: z, ϑ̂, θ̂, det Ĵ(0). Shown: z, ż, s, ϑ̂, θ̂, det Ĵ, x, Δx. The target is a [`Jet`](super::Jet) for each coordinate of x_d.
 ///
 /// **Source**: (76)–(82). **Measures**: q, q̇, x. **Transmits**: nothing.
 /// **Requires**: K*, K, Γ, Λ symmetric positive definite, κ and α positive; x_d with two bounded derivatives; Ĵ not singular
@@ -164,133 +149,6 @@ pub struct TaskSpace<R, T> {
     pub determinant_floor: f64,
 }
 
-/// Working memory of [`TaskSpace`].
-#[derive(Clone, Debug)]
-pub struct TaskWork<S> {
-    robot: S,
-    j: Vec<f64>,
-    dj: Vec<f64>,
-    factored: Vec<f64>,
-    inverse: Vec<f64>,
-    z_r: Vec<f64>,
-    dz_r: Vec<f64>,
-    /// Δx, K*Δx, ĴᵀK*Δx.
-    error: Vec<f64>,
-    weighted: Vec<f64>,
-    pulled: Vec<f64>,
-    /// ZᵀK*Δx and θ̂'.
-    push: Vec<f64>,
-    d_theta_hat: Vec<f64>,
-    s: Vec<f64>,
-    damped: Vec<f64>,
-    still: Vec<f64>,
-    yt_s: Vec<f64>,
-    difference: Vec<f64>,
-    inverse_gamma: Option<InverseQuadratic>,
-    inverse_lambda: Option<InverseQuadratic>,
-}
-
-/// Where the blocks of the state begin, after z: ϑ̂, θ̂, det Ĵ(0), and the end.
-#[derive(Clone, Copy)]
-struct Layout {
-    theta: usize,
-    kinematic: usize,
-    determinant: usize,
-    end: usize,
-}
-
-impl<R, T> TaskSpace<R, T>
-where
-    R: Lagrangian<f64> + Clone + Send + Sync + 'static,
-    T: TipKinematics + Clone,
-{
-    fn layout(&self) -> Layout {
-        let theta = self.tip.axes();
-        let kinematic = theta + self.robot.parameter_count();
-        let determinant = kinematic + self.tip.parameter_count();
-        Layout { theta, kinematic, determinant, end: determinant + 1 }
-    }
-
-    /// Δx and what follows from it, Ĵ and its rate, z_r and ż_r, into the working memory; returns det Ĵ.
-    fn task(
-        &self,
-        work: &mut TaskWork<R::Scratch>,
-        measured: TaskMeasured<'_>,
-        target: &[Jet],
-        theta_hat: &[f64],
-    ) -> Result<f64, LengthError> {
-        let m = self.tip.axes();
-        let TaskMeasured { q, dq, x } = measured;
-        self.check()?;
-        LengthError::check("x", m, x.len())?;
-        LengthError::check("target", m, target.len())?;
-        LengthError::check("kinematic parameters", work.push.len(), theta_hat.len())?;
-        for k in 0..m {
-            work.error[k] = x[k] - target[k][0];
-        }
-        self.task_gain.apply(&work.error, &mut work.weighted);
-        self.tip.regressor_transposed(q, dq, &work.weighted, &mut work.push)?;
-        work.d_theta_hat.fill(0.0);
-        if let Some(lambda) = &self.kinematic_adaptation {
-            lambda.add_to(&work.push, &mut work.d_theta_hat);
-            for k in 0..theta_hat.len() {
-                work.d_theta_hat[k] *= self.share(k, theta_hat[k], work.push[k]);
-            }
-        }
-        let posture = Posture { q, dq, theta: theta_hat, d_theta: &work.d_theta_hat };
-        self.tip.jacobian(posture, &mut work.j, &mut work.dj)?;
-        work.factored.copy_from_slice(&work.j);
-        let determinant = invert(m, &mut work.factored, &mut work.inverse);
-        for i in 0..m {
-            work.z_r[i] = 0.0;
-            work.pulled[i] = 0.0;
-            for k in 0..m {
-                work.z_r[i] += work.inverse[i * m + k] * target[k][1];
-                work.pulled[i] += work.j[k * m + i] * work.weighted[k];
-            }
-        }
-        work.dz_r.fill(0.0);
-        for k in 0..m {
-            let mut rest = target[k][2];
-            for i in 0..m {
-                rest -= work.dj[k * m + i] * work.z_r[i];
-            }
-            for i in 0..m {
-                work.dz_r[i] += work.inverse[i * m + k] * rest;
-            }
-        }
-        Ok(determinant)
-    }
-
-    /// c_k of the head of this file.
-    fn share(&self, k: usize, theta_hat: f64, push: f64) -> f64 {
-        match (&self.bounds, &self.kinematic_adaptation) {
-            (Some(bounds), Some(ResolvedGain::Diagonal(_))) => bounds.share(k, theta_hat, push),
-            _ => 1.0,
-        }
-    }
-
-    fn check(&self) -> Result<(), LengthError> {
-        let (m, p) = (self.tip.axes(), self.tip.parameter_count());
-        LengthError::check("axes of the robot", m, self.robot.dof())?;
-        LengthError::check("task gain", m, self.task_gain.size())?;
-        LengthError::check("damping gain", m, self.law.damping.size())?;
-        LengthError::check("start of the estimate", self.robot.parameter_count(), self.estimate_start.len())?;
-        LengthError::check("start of the kinematic estimate", p, self.kinematic_start.len())?;
-        if let Some(gamma) = &self.law.adaptation {
-            LengthError::check("adaptation gain", self.robot.parameter_count(), gamma.size())?;
-        }
-        if let Some(lambda) = &self.kinematic_adaptation {
-            LengthError::check("kinematic adaptation gain", p, lambda.size())?;
-        }
-        if let Some(bounds) = &self.bounds {
-            LengthError::check("lower bounds", p, bounds.lower.len())?;
-            LengthError::check("upper bounds", p, bounds.upper.len())?;
-        }
-        Ok(())
-    }
-}
-
 impl<R, T> Controller for TaskSpace<R, T>
 where
     R: Lagrangian<f64> + Clone + Send + Sync + 'static,
@@ -305,29 +163,7 @@ where
     const KNOWS_OFFSETS: bool = false;
 
     fn scratch(&self) -> Self::Scratch {
-        let (m, p) = (self.tip.axes(), self.tip.parameter_count());
-        let inverse = |gain: &Option<ResolvedGain>| gain.as_ref().and_then(|gain| InverseQuadratic::new(gain).ok());
-        TaskWork {
-            robot: self.robot.scratch(),
-            j: vec![0.0; m * m],
-            dj: vec![0.0; m * m],
-            factored: vec![0.0; m * m],
-            inverse: vec![0.0; m * m],
-            z_r: vec![0.0; m],
-            dz_r: vec![0.0; m],
-            error: vec![0.0; m],
-            weighted: vec![0.0; m],
-            pulled: vec![0.0; m],
-            push: vec![0.0; p],
-            d_theta_hat: vec![0.0; p],
-            s: vec![0.0; m],
-            damped: vec![0.0; m],
-            still: vec![0.0; m],
-            yt_s: vec![0.0; self.robot.parameter_count()],
-            difference: vec![0.0; p.max(self.robot.parameter_count())],
-            inverse_gamma: inverse(&self.law.adaptation),
-            inverse_lambda: inverse(&self.kinematic_adaptation),
-        }
+        self.work()
     }
 
     fn states(&self) -> Vec<Block> {
