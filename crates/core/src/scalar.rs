@@ -9,7 +9,7 @@ use crate::trig;
 /// Implemented for `f64`, `f32` and [`Lanes`], for [`Interval`](crate::expression::Interval), which encloses what the others
 /// round, and for [`Taylor`](crate::Taylor), which carries derivatives. Time, history and events stay `f64`.
 ///
-/// Every operation is correctly rounded or, for [`Scalar::sin_cos`], this crate's own code, so that a lane of a vector
+/// Every operation is correctly rounded or, for [`Scalar::sin_cos`], this crate's own code, and for [`Scalar::tanh`] one implementation everywhere, so that a lane of a vector
 /// carries the same bits as the scalar computation.
 pub trait Scalar:
     Copy
@@ -43,6 +43,9 @@ pub trait Scalar:
     /// Sine and cosine of an angle in radians, within 2.2 units in the last place for |angle| < 10⁵ and to full
     /// accuracy, slowly, beyond.
     fn sin_cos(self) -> (Self, Self);
+
+    /// Hyperbolic tangent, within a unit in the last place or two.
+    fn tanh(self) -> Self;
 
     /// [`Scalar::sin_cos`] of every angle, as far as the shortest of the three slices goes. The same bits, but several
     /// angles at once where the scalar is a single number.
@@ -189,6 +192,11 @@ impl Scalar for f64 {
     }
 
     #[inline(always)]
+    fn tanh(self) -> Self {
+        libm::tanh(self)
+    }
+
+    #[inline(always)]
     fn sin_cos_each(angles: &[Self], sin: &mut [Self], cos: &mut [Self]) {
         let n = angles.len().min(sin.len()).min(cos.len());
         let mut i = 0;
@@ -240,6 +248,11 @@ impl Scalar for f32 {
         // Through double precision: correctly rounded but for ties, and one reduction to keep right.
         let (sin, cos) = trig::sin_cos(self as f64);
         (sin as f32, cos as f32)
+    }
+
+    #[inline(always)]
+    fn tanh(self) -> Self {
+        libm::tanhf(self)
     }
 }
 
@@ -310,5 +323,10 @@ impl<const N: usize> Scalar for Lanes<N> {
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         trig::sin_cos_lanes(self)
+    }
+
+    #[inline(always)]
+    fn tanh(self) -> Self {
+        Lanes(self.0.map(libm::tanh))
     }
 }

@@ -129,6 +129,22 @@ impl<const N: usize> Scalar for Taylor<N> {
         }
         (Taylor(sin), Taylor(cos))
     }
+
+    #[inline(never)]
+    fn tanh(self) -> Self {
+        // (tanh a)' = a' (1 − tanh² a), order by order: `rest` is 1 − tanh² a as far as it is known.
+        let (mut tanh, mut rest) = ([0.0; N], [0.0; N]);
+        for k in 0..N {
+            tanh[k] = if k == 0 {
+                libm::tanh(self.0[0])
+            } else {
+                (1..=k).map(|j| j as f64 * self.0[j] * rest[k - j]).sum::<f64>() / k as f64
+            };
+            let squared: f64 = (0..=k).map(|j| tanh[j] * tanh[k - j]).sum();
+            rest[k] = if k == 0 { 1.0 - squared } else { -squared };
+        }
+        Taylor(tanh)
+    }
 }
 
 #[cfg(test)]
@@ -170,6 +186,24 @@ mod tests {
         close(cos, [c, -3.0 * s, -9.0 * c, 27.0 * s, 81.0 * c, -243.0 * s]);
         let (sin, cos) = Scalar::sin_cos(time(0.7) * time(0.7) * time(0.7));
         close(sin * sin + cos * cos, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn hyperbolic_tangents_have_the_derivatives_of_their_closed_form() {
+        let u = 0.3_f64.tanh();
+        let rest = 1.0 - u * u;
+        // By u' = 1 − u², five times, for tanh(t) and with a factor per order for tanh(2t).
+        let orders = [
+            u,
+            rest,
+            -2.0 * u * rest,
+            rest * (6.0 * u * u - 2.0),
+            u * rest * (16.0 - 24.0 * u * u),
+            rest * (16.0 - 120.0 * u * u + 120.0 * u.powi(4)),
+        ];
+        close(time(0.3).tanh(), orders);
+        let mut factor = 1.0;
+        close((Series::splat(2.0) * time(0.15)).tanh(), orders.map(|order| (order * factor, factor *= 2.0).0));
     }
 
     #[test]

@@ -3,8 +3,8 @@
 
 use forwardstep_core::robot::Lagrangian;
 use forwardstep_core::robot::tree::{
-    InertiaDefect, JointKind, LinkJoint, LinkSpec, MassMatrixError, Placement, Tree, TreeError, inertia_about_frame,
-    inertia_defects,
+    DriveError, Drives, Friction, InertiaDefect, JointKind, LinkJoint, LinkSpec, MassMatrixError, Placement, Tree,
+    TreeError, inertia_about_frame, inertia_defects,
 };
 
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
@@ -25,6 +25,28 @@ fn moving(axis: [f64; 3], damping: f64) -> LinkSpec {
 
 fn refusal(links: &[LinkSpec]) -> TreeError {
     Tree::assemble(links, GRAVITY).unwrap_err()
+}
+
+#[test]
+fn drives_need_joints_in_order_and_positive_widths() {
+    let tree = || Tree::assemble(&[moving([0.0, 0.0, 1.0], 0.3), moving([0.0, 0.0, 1.0], 0.0)], [0.0; 3]).unwrap().tree;
+    let geared = |geared: Vec<usize>| tree().with_drives(Drives { geared, ..Drives::default() });
+    let rubbing = |friction: Vec<Friction>| tree().with_drives(Drives { friction, ..Drives::default() });
+    assert_eq!(geared(vec![2]).unwrap_err(), DriveError::NoJoint { joint: 2, joints: 2 });
+    assert_eq!(geared(vec![1, 0]).unwrap_err(), DriveError::Order { joint: 0 });
+    assert_eq!(geared(vec![1, 1]).unwrap_err(), DriveError::Order { joint: 1 });
+    for width in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let error = rubbing(vec![Friction { joint: 1, width }]).unwrap_err();
+        assert!(matches!(error, DriveError::Width { joint: 1, .. }), "{error}");
+    }
+    let driven = Drives { geared: vec![1], friction: vec![Friction { joint: 0, width: 0.1 }], dry: true };
+    let driven = tree().with_drives(driven).unwrap();
+    assert_eq!(driven.theta_len(), 23);
+    assert_eq!(driven.drive_parameters(), [21..22, 22..23]);
+    let names = driven.theta_names(&["a", "b"]).unwrap();
+    assert_eq!(names[20..], ["a.damping_n_m_s", "b.armature_kg_m2", "a.friction_n_m"]);
+    // What it had is replaced.
+    assert_eq!(driven.with_drives(Drives::default()).unwrap().theta_len(), 21);
 }
 
 #[test]

@@ -49,7 +49,9 @@ fn every_method_checks<R: Lagrangian<f64>>(name: &str, robot: &R) {
     every_length(name, [m, m, p, m * m], |[q, dq, theta, c]| {
         robot.coriolis_matrix(scratch, q, dq, theta, &mut out[..c.len()])
     });
-    every_length(name, [m, p, m, m], |[q, theta, v, d]| robot.add_damping(scratch, q, theta, v, &mut out[..d.len()]));
+    every_length(name, [m, m, m, m, p, m], |[q, dq, z, dz, theta, d]| {
+        robot.add_damping(scratch, TwoVelocity { q, dq, z, dz }, theta, &mut out[..d.len()])
+    });
     every_length(name, [m, p, m], |[q, theta, g]| robot.gravity(scratch, q, theta, &mut out[..g.len()]));
     let y = &mut [0.0; 100];
     every_length(name, [m, m, m, m], |[q, dq, z, dz]| {

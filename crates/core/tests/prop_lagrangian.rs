@@ -8,7 +8,9 @@ mod common;
 use common::dual::{Dual, constants, duals};
 use common::random::Random;
 use common::{dot, error, times, transpose_times};
-use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkSpec, Placement, Tree, inertia_about_frame};
+use forwardstep_core::robot::tree::{
+    Assembled, Drives, JointKind, LinkJoint, LinkSpec, Placement, SMOOTHING_LOSS, Tree, inertia_about_frame,
+};
 use forwardstep_core::robot::{Lagrangian, PlanarArm, PlanarLinks, PlanarTip, PointMass, Ship, TwoVelocity};
 use proptest::prelude::*;
 
@@ -64,7 +66,9 @@ fn consistent<R: Lagrangian<f64> + Lagrangian<Dual>>(robot: &R, case: &Case, the
     robot.gravity(&mut scratch, &case.q, theta, &mut g).unwrap();
     let (inertial, coriolis) = (times(&m, &case.dz), times(&c, &case.z));
     let mut sum: Vec<f64> = (0..n).map(|i| inertial[i] + coriolis[i] + g[i]).collect();
-    robot.add_damping(&mut scratch, &case.q, theta, &case.z, &mut sum).unwrap();
+    let still = vec![0.0; n];
+    let resisted = TwoVelocity { q: &case.q, dq: &case.z, z: &still, dz: &still };
+    robot.add_damping(&mut scratch, resisted, theta, &mut sum).unwrap();
     assert!(error(&sum, &y_theta) < TOLERANCE, "M ż + C z + g + D z");
 
     // Symmetry of M; skew-symmetry of Ṁ − 2C, from which Ṁ = C + Cᵀ with the symmetry of M.
@@ -119,6 +123,85 @@ proptest! {
         consistent(tree, &case, &vec![0.0; estimate.len()]);
         let samples = tree.check_mass_matrix(&assembled.theta, &vec![[f64::NEG_INFINITY, f64::INFINITY]; joints], 20);
         prop_assert_eq!(samples, Ok(()));
+    }
+
+    #[test]
+    fn prop_a_tree_with_rotors_and_smooth_friction_is_lagrangian(seed in any::<u64>(), joints in 1_usize..9) {
+        let mut random = Random::new(seed);
+        let assembled = random.driven_tree(joints, false);
+        let case = Case::new(&mut random, joints);
+        consistent(&assembled.tree, &case, &assembled.theta);
+        invertible(&assembled.tree, &case, &assembled.theta);
+        consistent(&assembled.tree, &case, &random.column(assembled.theta.len(), 3.0));
+        let names: Vec<String> = (0..joints).map(|k| format!("b{k}")).collect();
+        let names = assembled.tree.theta_names(&names.iter().map(String::as_str).collect::<Vec<_>>()).unwrap();
+        prop_assert_eq!(names.len(), assembled.theta.len());
+        let scale = Lagrangian::<f64>::adaptation_scale(&assembled.tree, &case.q, &assembled.theta);
+        prop_assert_eq!(scale.len(), assembled.theta.len());
+        prop_assert!(scale.iter().all(|scale| *scale > 0.0));
+    }
+
+    /// A rotor that turns with its joint is a body without mass that turns about the axis.
+    #[test]
+    fn prop_an_armature_is_an_inertia_about_the_axis_of_its_joint_that_no_other_joint_moves(seed in any::<u64>()) {
+        let mut random = Random::new(seed);
+        let mut assembled = random.tree(4);
+        let case = Case::new(&mut random, 4);
+        let n = 16;
+        let (mut without, mut with) = (vec![0.0; n], vec![0.0; n]);
+        assembled.tree.mass_matrix(&mut assembled.tree.scratch(), &case.q, &assembled.theta, &mut without).unwrap();
+        assembled.tree = assembled.tree.with_drives(Drives { geared: vec![1, 3], ..Drives::default() }).unwrap();
+        assembled.theta.extend([0.7, 0.4]);
+        assembled.tree.mass_matrix(&mut assembled.tree.scratch(), &case.q, &assembled.theta, &mut with).unwrap();
+        for k in 0..n {
+            let expected = if k == 5 { 0.7 } else if k == 15 { 0.4 } else { 0.0 };
+            prop_assert!((with[k] - without[k] - expected).abs() < 1e-14 * with[k].abs().max(1.0), "{}", k);
+        }
+    }
+
+    /// What (6)–(7) lose beside sᵀKs: the torque of the plant at q̇ less that of Y at z, times s.
+    #[test]
+    fn prop_friction_loses_what_the_plant_has_less_what_the_regressor_has(seed in any::<u64>(), joints in 1_usize..7) {
+        for dry in [false, true] {
+            let mut random = Random::new(seed);
+            let Assembled { tree, theta, .. } = random.driven_tree(joints, dry);
+            let case = Case::new(&mut random, joints);
+            let mut lost = vec![0.0; joints];
+            tree.add_damping(&mut tree.scratch(), case.motion(), &theta, &mut lost).unwrap();
+            // M q̈ + C q̇ + g + D q̇ + F tanh(q̇/ε) of the plant, less M q̈ + C z + … of Y: without M and C what is lost.
+            let torque = |z: &[f64], dz: &[f64]| {
+                let motion = TwoVelocity { z, dz, ..case.motion() };
+                let (mut torque, mut unused) = (vec![0.0; joints], vec![0.0; theta.len()]);
+                tree.regressor_products(&mut tree.scratch(), motion, &theta, &case.s, &mut torque, &mut unused).unwrap();
+                torque
+            };
+            let mut ddq = vec![0.0; joints];
+            tree.forward_dynamics(&mut tree.scratch(), &case.q, &case.dq, &theta, &case.s, &mut ddq).unwrap();
+            let (plant, law) = (case.s.clone(), torque(&case.z, &ddq));
+            let mut coriolis = vec![0.0; joints * joints];
+            tree.coriolis_matrix(&mut tree.scratch(), &case.q, &case.dq, &theta, &mut coriolis).unwrap();
+            let s: Vec<f64> = case.dq.iter().zip(&case.z).map(|(dq, z)| dq - z).collect();
+            let moved = times(&coriolis, &s);
+            let size = ddq.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
+            for k in 0..joints {
+                prop_assert!((plant[k] - law[k] - moved[k] - lost[k]).abs() < 1e-9 * size, "{} {}", dry, k);
+            }
+            let power: f64 = s.iter().zip(&lost).map(|(s, lost)| s * lost).sum();
+            prop_assert!(dry || power >= 0.0, "{}", power);
+        }
+    }
+
+    /// With any σ ∈ Sgn q̇ the gain is at most κ ε F, and so much for some.
+    #[test]
+    fn prop_dry_friction_brings_at_most_what_its_width_allows(seed in any::<u64>()) {
+        let mut random = Random::new(seed);
+        for k in 0..200 {
+            let (dq, z) = (if k % 3 == 0 { 0.0 } else { random.number() }, random.number());
+            let sigma = if dq == 0.0 { random.number() } else { dq.signum() };
+            prop_assert!((dq - z) * ((z / 0.1).tanh() - sigma) <= SMOOTHING_LOSS * 0.1);
+        }
+        let most = |z: f64| z * (1.0 - z.tanh());
+        prop_assert!((most(0.639_232_271) - SMOOTHING_LOSS).abs() < 1e-9 && most(0.639_232_271) <= SMOOTHING_LOSS);
     }
 
     #[test]

@@ -80,6 +80,7 @@ proptest! {
     fn prop_same_bits_in_every_lane_and_without_dispatch(seed in any::<u64>(), joints in 1_usize..8) {
         let mut random = Random::new(seed);
         let assembled = random.tree(joints);
+        lanes_against_single::<8>(&random.driven_tree(joints, joints % 2 == 0).tree, &mut random);
         lanes_against_single::<8>(&assembled.tree, &mut random);
         lanes_against_single::<4>(&assembled.tree, &mut random);
         lanes_against_single::<3>(&assembled.tree, &mut random);

@@ -52,8 +52,8 @@ fn dynamics(robot: &RobotSetup) -> Result<(), Box<dyn Error>> {
     tree.gravity(&mut scratch, &q, theta, &mut gravity)?;
     let mut y = vec![0.0; n * theta.len()];
     tree.regressor(&mut scratch, TwoVelocity { q: &q, dq: &dq, z: &z, dz: &dz }, &mut y)?;
-    let mut damping = vec![0.0; n];
-    tree.add_damping(&mut scratch, &q, theta, &z, &mut damping)?;
+    let (mut damping, still) = (vec![0.0; n], vec![0.0; n]);
+    tree.add_damping(&mut scratch, TwoVelocity { q: &q, dq: &z, z: &still, dz: &still }, theta, &mut damping)?;
 
     let dot = |row: &[f64], x: &[f64]| row.iter().zip(x).map(|(a, b)| a * b).sum::<f64>();
     for k in 0..n {

@@ -184,7 +184,9 @@ impl<K: Lagrangian<f64> + Lagrangian<Lanes<8>>> Here<'_, K> {
         };
         let damping = |theta: &[f64], v: &[f64]| {
             let mut out = vec![0.0; m];
-            kernel.add_damping(&mut Lagrangian::<f64>::scratch(kernel), q, theta, v, &mut out).map(|()| out)
+            let still = vec![0.0; m];
+            let motion = TwoVelocity { q, dq: v, z: &still, dz: &still };
+            kernel.add_damping(&mut Lagrangian::<f64>::scratch(kernel), motion, theta, &mut out).map(|()| out)
         };
         let coriolis = |theta: &[f64]| {
             let mut out = vec![0.0; m * m];

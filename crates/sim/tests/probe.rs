@@ -82,10 +82,16 @@ impl<S: Scalar> Lagrangian<S> for Spoilt {
         Ok(())
     }
 
-    fn add_damping(&self, (): &mut (), q: &[S], theta: &[S], v: &[S], out: &mut [S]) -> Result<(), LengthError> {
-        Ship.add_damping(&mut (), q, theta, v, out)?;
+    fn add_damping(
+        &self,
+        (): &mut (),
+        motion: TwoVelocity<'_, S>,
+        theta: &[S],
+        out: &mut [S],
+    ) -> Result<(), LengthError> {
+        Ship.add_damping(&mut (), motion, theta, out)?;
         if self.0 == Some(Identity::Damping) {
-            out[0] = out[0] - S::splat(1e4) * v[0];
+            out[0] = out[0] - S::splat(1e4) * (motion.dq[0] - motion.z[0]);
         }
         Ok(())
     }

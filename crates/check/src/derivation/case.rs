@@ -155,8 +155,8 @@ impl Step {
 /// Whether the joints of a robot lose anything: D(q) v at its start, for a v without a zero.
 fn is_damped(agent: &AgentSetup) -> bool {
     let Some(robot) = agent.robot.kind.lagrangian() else { return false };
-    let (q, v) = (&agent.start.q, vec![1.0; agent.start.q.len()]);
-    let motion = TwoVelocity { q, dq: &v, z: &v, dz: &v };
+    let (q, v, still) = (&agent.start.q, vec![1.0; agent.start.q.len()], vec![0.0; agent.start.q.len()]);
+    let motion = TwoVelocity { q, dq: &v, z: &still, dz: &still };
     let mut evaluator = robot.evaluator();
     evaluator.at(&agent.robot.theta, motion, &v).is_ok_and(|products| products.damped.iter().any(|lost| *lost != 0.0))
 }

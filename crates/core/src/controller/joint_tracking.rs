@@ -313,7 +313,8 @@ where
         let JointTrackingWork { robot: scratch, damped, mass, difference, inverse_gamma, .. } = work;
         robot.mass_matrix(scratch, q, theta, mass)?;
         self.law.damping.apply(s, damped);
-        robot.add_damping(scratch, q, theta, s, damped)?;
+        let (dq, z) = (&truth.state[m..], &shown[..m]);
+        robot.add_damping(scratch, TwoVelocity { q, dq, z, dz: z }, theta, damped)?;
         let (mut value, mut dissipation) = (0.0, 0.0);
         for (k, s_k) in s.iter().enumerate() {
             let momentum: f64 = mass[k * m..(k + 1) * m].iter().zip(s).map(|(mass, s)| mass * s).sum();

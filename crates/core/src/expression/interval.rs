@@ -371,4 +371,8 @@ impl Scalar for Interval {
         }
         (self.sine().after(&[self]), self.apply(Unary::Cos).after(&[self]))
     }
+
+    fn tanh(self) -> Self {
+        self.apply(Unary::Tanh).after(&[self])
+    }
 }

@@ -116,17 +116,17 @@ pub trait Lagrangian<S: Scalar> {
         c: &mut [S],
     ) -> Result<(), LengthError>;
 
-    /// Adds D(q) v to `out`, the torque of viscous damping at the velocity `v`: sᵀD s is what the proof loses by it beside sᵀK s.
-    /// D need not be symmetric; D + Dᵀ ⪰ 0.
+    /// Adds to `out` what damping and friction take of the motion at q̇ less what Y has of them at z: D(q) s, s = q̇ − z, and of a friction
+    /// F [tanh(q̇/ε) − tanh(z/ε)]. Times s it is what the proof loses by them beside sᵀK s. ż is not used. D need not be symmetric;
+    /// D + Dᵀ ⪰ 0.
     ///
     /// # Errors
     /// [`LengthError`] when a slice has the wrong length.
     fn add_damping(
         &self,
         scratch: &mut Self::Scratch,
-        q: &[S],
+        motion: TwoVelocity<'_, S>,
         theta: &[S],
-        v: &[S],
         out: &mut [S],
     ) -> Result<(), LengthError>;
 

@@ -246,10 +246,15 @@ impl<S: Scalar> Lagrangian<S> for PlanarArm {
     }
 
     #[inline(always)]
-    fn add_damping(&self, (): &mut (), q: &[S], theta: &[S], v: &[S], out: &mut [S]) -> Result<(), LengthError> {
-        LengthError::check("q", 2, q.len())?;
+    fn add_damping(
+        &self,
+        (): &mut (),
+        motion: TwoVelocity<'_, S>,
+        theta: &[S],
+        out: &mut [S],
+    ) -> Result<(), LengthError> {
+        motion.check(2)?;
         LengthError::check("theta", 5, theta.len())?;
-        LengthError::check("velocity", 2, v.len())?;
         LengthError::check("damping torque", 2, out.len())
     }
 

@@ -116,10 +116,15 @@ impl<S: Scalar> Lagrangian<S> for PointMass {
     }
 
     #[inline(always)]
-    fn add_damping(&self, (): &mut (), q: &[S], theta: &[S], v: &[S], out: &mut [S]) -> Result<(), LengthError> {
-        LengthError::check("q", self.dimension, q.len())?;
+    fn add_damping(
+        &self,
+        (): &mut (),
+        motion: TwoVelocity<'_, S>,
+        theta: &[S],
+        out: &mut [S],
+    ) -> Result<(), LengthError> {
+        motion.check(self.dimension)?;
         LengthError::check("theta", 1, theta.len())?;
-        LengthError::check("velocity", self.dimension, v.len())?;
         LengthError::check("damping torque", self.dimension, out.len())
     }
 

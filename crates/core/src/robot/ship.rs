@@ -224,13 +224,19 @@ impl<S: Scalar> Lagrangian<S> for Ship {
     }
 
     #[inline(always)]
-    fn add_damping(&self, (): &mut (), q: &[S], theta: &[S], v: &[S], out: &mut [S]) -> Result<(), LengthError> {
-        LengthError::check("q", 3, q.len())?;
+    fn add_damping(
+        &self,
+        (): &mut (),
+        motion: TwoVelocity<'_, S>,
+        theta: &[S],
+        out: &mut [S],
+    ) -> Result<(), LengthError> {
+        motion.check(3)?;
         LengthError::check("theta", P, theta.len())?;
-        LengthError::check("velocity", 3, v.len())?;
         LengthError::check("damping torque", 3, out.len())?;
+        let TwoVelocity { q, dq, z, .. } = motion;
         let heading = Heading::of(q[2]);
-        let [u, v, r] = heading.to_body(v);
+        let [u, v, r] = heading.to_body(&[dq[0] - z[0], dq[1] - z[1], dq[2] - z[2]]);
         let [d11, d22, d23, d32, d33] = [theta[4], theta[5], theta[6], theta[7], theta[8]];
         let damped = heading.to_earth([d11 * u, d22.mul_add(v, d23 * r), d32.mul_add(v, d33 * r)]);
         out[0] = out[0] + damped[0];

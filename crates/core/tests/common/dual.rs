@@ -82,4 +82,9 @@ impl Scalar for Dual {
         let (sin, cos) = self.value.sin_cos();
         (Dual { value: sin, slope: cos * self.slope }, Dual { value: cos, slope: -sin * self.slope })
     }
+
+    fn tanh(self) -> Self {
+        let value = self.value.tanh();
+        Dual { value, slope: (1.0 - value * value) * self.slope }
+    }
 }

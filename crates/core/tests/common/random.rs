@@ -1,6 +1,6 @@
 //! Random trees of physical bodies, and random numbers for them, from a seed.
 
-use forwardstep_core::robot::tree::{Assembled, JointKind, LinkJoint, LinkSpec, Placement, Tree};
+use forwardstep_core::robot::tree::{Assembled, Drives, Friction, JointKind, LinkJoint, LinkSpec, Placement, Tree};
 
 /// A small generator of our own: the same trees on every machine and with every version of every crate.
 pub(crate) struct Random(u64);
@@ -86,6 +86,17 @@ impl Random {
         let links = self.links(joints);
         let gravity = self.vector(9.81);
         Tree::assemble(&links, gravity).unwrap()
+    }
+
+    /// The same with rotors and friction at some joints.
+    pub(crate) fn driven_tree(&mut self, joints: usize, dry: bool) -> Assembled {
+        let mut assembled = self.tree(joints);
+        let geared: Vec<usize> = (0..joints).filter(|_| self.chance(0.5)).collect();
+        let rubbing: Vec<usize> = (0..joints).filter(|_| self.chance(0.7)).collect();
+        assembled.theta.extend((0..geared.len() + rubbing.len()).map(|_| 1.0 + 0.9 * self.number()));
+        let friction = rubbing.into_iter().map(|joint| Friction { joint, width: 0.3 + 0.2 * self.number() }).collect();
+        assembled.tree = assembled.tree.with_drives(Drives { geared, friction, dry }).unwrap();
+        assembled
     }
 }
 

@@ -90,7 +90,7 @@ pub trait Evaluator {
 pub struct ProductsAt {
     /// M(q) s.
     pub momentum: Vec<f64>,
-    /// D(q) s.
+    /// [`Lagrangian::add_damping`]: D(q) s, with s = q̇ − z whatever `s` is, and what friction adds to it.
     pub damped: Vec<f64>,
     /// Y(q, q̇, z, ż) ϑ.
     pub model: Vec<f64>,
@@ -141,7 +141,7 @@ impl<K: Lagrangian<f64>> Kernel for Products<'_, K> {
         let ProductsAt { momentum, damped, model, yt_s } = products;
         kernel.regressor_products(scratch, motion, theta, s, model, yt_s)?;
         damped.fill(0.0);
-        kernel.add_damping(scratch, motion.q, theta, s, damped)?;
+        kernel.add_damping(scratch, motion, theta, damped)?;
         kernel.mass_matrix(scratch, motion.q, theta, mass)?;
         for (momentum, row) in momentum.iter_mut().zip(mass.chunks_exact(s.len().max(1))) {
             *momentum = row.iter().zip(s).map(|(mass, s)| mass * s).sum();

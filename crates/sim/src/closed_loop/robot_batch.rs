@@ -259,7 +259,8 @@ impl<S: Packed> Pack<S> {
             let external = w.net[k] - w.tau[k];
             w.damped[k] = w.damped[k] - external;
         }
-        robot.add_damping(&mut w.scratch, &w.q, &self.theta, &w.s, &mut w.damped)?;
+        let motion = TwoVelocity { q: &w.q, dq: &w.dq, z: &w.z, dz: &w.dz };
+        robot.add_damping(&mut w.scratch, motion, &self.theta, &mut w.damped)?;
         let mut dissipation = S::ZERO;
         for k in 0..l.m {
             dissipation = w.s[k].mul_add(w.damped[k], dissipation);

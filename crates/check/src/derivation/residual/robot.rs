@@ -72,11 +72,15 @@ impl Robot<'_> {
         self.found.as_ref().ok_or(Missing::Term)
     }
 
-    /// M a + C v + g + D v at a motion, for an acceleration and a velocity; and D v.
+    /// M a + C v + g + D v at a motion, for an acceleration and a velocity; and D v, with what friction takes at v.
     fn torque(&mut self, motion: &Motion, [a, v]: [&[f64]; 2]) -> Result<[Vec<f64>; 2], Missing> {
         let motion = TwoVelocity { z: v, dz: a, ..motion.view() };
-        let products = self.evaluator.at(&self.agent.robot.theta, motion, v).map_err(|_| Missing::Term)?;
-        Ok([products.model.clone(), products.damped.clone()])
+        let theta = &self.agent.robot.theta;
+        let model = self.evaluator.at(theta, motion, v).map_err(|_| Missing::Term)?.model.clone();
+        let still = vec![0.0; v.len()];
+        let resisted = TwoVelocity { dq: v, z: &still, ..motion };
+        let damped = self.evaluator.at(theta, resisted, v).map_err(|_| Missing::Term)?.damped.clone();
+        Ok([model, damped])
     }
 
     fn under(&mut self, motion: &Motion, operator: Operator, v: &Vector) -> Result<Vector, Missing> {

@@ -60,23 +60,59 @@ impl<S: Scalar> Articulated<S> {
     #[inline(always)]
     fn release(&mut self, slot: &Slot<S>, carried: &Handed<S>, kind: JointKind, force: S, held: bool) -> Handed<S> {
         let inertia = self.inertia.plus(&carried.inertia);
+        let reaction = self.drive(slot, carried, &inertia, kind, force, None);
+        if !held {
+            return Handed::ZERO;
+        }
+        let Seat { e, p } = slot.seat;
+        let free = match kind {
+            JointKind::Revolute => inertia.released_and_turned(&self.u, self.inverse, &e),
+            JointKind::Prismatic => inertia.minus_outer(&self.u, self.inverse).turned(&e),
+        };
+        Handed { inertia: free.shifted(p), wrench: slot.seat.on_parent(&reaction) }
+    }
+
+    /// The same for a joint with an armature: what is left along it does not vanish.
+    #[inline(always)]
+    fn release_geared(
+        &mut self,
+        slot: &Slot<S>,
+        carried: &Handed<S>,
+        kind: JointKind,
+        force: S,
+        armature: S,
+        held: bool,
+    ) -> Handed<S> {
+        let inertia = self.inertia.plus(&carried.inertia);
+        let reaction = self.drive(slot, carried, &inertia, kind, force, Some(armature));
+        if !held {
+            return Handed::ZERO;
+        }
+        let Seat { e, p } = slot.seat;
+        let free = inertia.minus_outer(&self.u, self.inverse).turned(&e);
+        Handed { inertia: free.shifted(p), wrench: slot.seat.on_parent(&reaction) }
+    }
+
+    /// U, 1/(SᵀU + I_a) and what the joint does without the body that carries it; returns what reaches that body.
+    #[inline(always)]
+    fn drive(
+        &mut self,
+        slot: &Slot<S>,
+        carried: &Handed<S>,
+        inertia: &Coupled<S>,
+        kind: JointKind,
+        force: S,
+        armature: Option<S>,
+    ) -> Wrench<S> {
         let wrench = slot.wrench.plus(&carried.wrench);
         let u = inertia.column(kind);
-        let inverse = S::splat(1.0) / u.along(kind);
+        let along = armature.map_or(u.along(kind), |armature| u.along(kind) + armature);
+        let inverse = S::splat(1.0) / along;
         let drive = (force - wrench.along(kind)) * inverse;
         self.u = u;
         self.inverse = inverse;
         self.drive = drive;
-        if !held {
-            return Handed::ZERO;
-        }
-        let reaction = Wrench { f: u.f.scaled_plus(drive, wrench.f), n: u.n.scaled_plus(drive, wrench.n) };
-        let Seat { e, p } = slot.seat;
-        let free = match kind {
-            JointKind::Revolute => inertia.released_and_turned(&u, inverse, &e),
-            JointKind::Prismatic => inertia.minus_outer(&u, inverse).turned(&e),
-        };
-        Handed { inertia: free.shifted(p), wrench: slot.seat.on_parent(&reaction) }
+        Wrench { f: u.f.scaled_plus(drive, wrench.f), n: u.n.scaled_plus(drive, wrench.n) }
     }
 }
 
@@ -196,7 +232,7 @@ impl<S: Scalar> Coupled<S> {
 }
 
 impl Tree {
-    /// `ddq` solves M q̈ = τ − C q̇ − g − D q̇.
+    /// `ddq` solves M q̈ = τ − C q̇ − g − D q̇, less the friction where it is smooth.
     #[inline(always)]
     pub(super) fn articulated<S: Scalar>(
         &self,
@@ -220,9 +256,7 @@ impl Tree {
         still.fill(S::ZERO);
         self.wrenches(slots, self.base(), TwoVelocity { q, dq, z: dq, dz: still }, theta);
         drive.copy_from_slice(tau);
-        for (k, joint) in self.damped.iter().enumerate() {
-            drive[*joint] = theta[10 * n + k].neg_mul_add(dq[*joint], drive[*joint]);
-        }
+        self.resist(dq, theta, drive);
 
         let inertias = theta.as_chunks::<10>().0;
         let mut i = 0;
@@ -238,9 +272,11 @@ impl Tree {
             let (slot, here) = (&slots[i + 1], &mut articulated[i]);
             let force = drive[i] * S::splat(body.sign);
             // One copy of the code per kind: a choice per number would cost more than the branch.
-            let handed = match body.kind {
-                JointKind::Revolute => here.release(slot, &carried, JointKind::Revolute, force, body.parent_slot > 0),
-                JointKind::Prismatic => here.release(slot, &carried, JointKind::Prismatic, force, body.parent_slot > 0),
+            let held = body.parent_slot > 0;
+            let handed = match (body.kind, body.armature) {
+                (JointKind::Revolute, None) => here.release(slot, &carried, JointKind::Revolute, force, held),
+                (JointKind::Prismatic, None) => here.release(slot, &carried, JointKind::Prismatic, force, held),
+                (kind, Some(at)) => here.release_geared(slot, &carried, kind, force, theta[at], held),
             };
             carried = Handed::ZERO;
             if body.parent_slot == i {

@@ -49,6 +49,9 @@ impl Tree {
                 }
             };
             m[i * n + i] = wrench.along(body.kind);
+            if let Some(armature) = body.armature {
+                m[i * n + i] = m[i * n + i] + theta[armature];
+            }
             let mut ancestor = i;
             loop {
                 let slot = self.bodies[ancestor].parent_slot;

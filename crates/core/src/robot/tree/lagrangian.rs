@@ -68,20 +68,15 @@ impl<S: Scalar> Lagrangian<S> for Tree {
     fn add_damping(
         &self,
         _: &mut TreeScratch<S>,
-        q: &[S],
+        motion: TwoVelocity<'_, S>,
         theta: &[S],
-        v: &[S],
         out: &mut [S],
     ) -> Result<(), LengthError> {
         let n = self.joint_count();
-        LengthError::check("q", n, q.len())?;
+        motion.check(n)?;
         LengthError::check("theta", self.theta_len(), theta.len())?;
-        LengthError::check("velocity", n, v.len())?;
         LengthError::check("damping torque", n, out.len())?;
-        // The dampings close ϑ.
-        for (joint, damping) in self.damped.iter().zip(&theta[10 * n..]) {
-            out[*joint] = damping.mul_add(v[*joint], out[*joint]);
-        }
+        self.add_losses(motion, theta, out);
         Ok(())
     }
 
@@ -139,7 +134,7 @@ impl Tree {
 
     /// See [`Lagrangian::adaptation_scale`]. r² = tr I / 2m is the mean squared distance from the joint; a body without
     /// mass or extent takes the mean over the others, and where there is none 1 kg and 0.1 m. The scale of a damping is
-    /// M_jj(q).
+    /// M_jj(q), as is that of a friction, since tanh is about one; that of an armature r² M_jj(q)/g₀².
     fn parameter_scale(&self, q: &[f64], theta: &[f64]) -> Vec<f64> {
         const STANDARD_GRAVITY: f64 = 9.81;
         let (bodies, _) = theta.as_chunks::<10>();
@@ -159,14 +154,19 @@ impl Tree {
             scale.extend([unit * r2; 3]);
             scale.extend([unit * r2 * r2; 6]);
         }
-        if !self.damped.is_empty() {
+        if self.theta_len() > 10 * self.joint_count() {
             let n = self.joint_count();
             let mut m = vec![0.0; n * n];
             // A wrong length leaves zeros, which take the fallback below.
             let _ = Lagrangian::<f64>::mass_matrix(self, &mut Tree::scratch(self), q, theta, &mut m);
             let diagonal = |joint: &usize| m.get(joint * (n + 1)).copied().and_then(usable);
             let fallback = mean((0..n).filter_map(|joint| diagonal(&joint))).unwrap_or(mean_mass * mean_spread);
-            scale.extend(self.damped.iter().map(|joint| diagonal(joint).unwrap_or(fallback)));
+            let inertia = |joint: usize| diagonal(&joint).unwrap_or(fallback);
+            let spread = |joint: usize| bodies.get(joint).and_then(spread).unwrap_or(mean_spread);
+            let armature = |joint: usize| spread(joint) * inertia(joint) / (STANDARD_GRAVITY * STANDARD_GRAVITY);
+            scale.extend(self.damped.iter().map(|joint| inertia(*joint)));
+            scale.extend(self.drives.geared.iter().map(|joint| armature(*joint)));
+            scale.extend(self.drives.friction.iter().map(|friction| inertia(friction.joint)));
         }
         scale
     }

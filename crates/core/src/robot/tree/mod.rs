@@ -4,6 +4,7 @@ mod articulated;
 mod assemble;
 mod axes;
 mod composite;
+mod drives;
 mod lagrangian;
 mod model;
 mod motion;
@@ -17,6 +18,7 @@ mod uniform;
 mod wrench;
 
 pub use assemble::{Anchor, Assembled, LinkJoint, LinkSpec, TreeError, inertia_about_frame};
+pub use drives::{DriveError, Drives, Friction, SMOOTHING_LOSS};
 pub use model::{JointKind, Tree, TreeScratch};
 pub use physical::{InertiaDefect, MassMatrixError, inertia_defects};
 pub use placement::Placement;

@@ -10,6 +10,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::articulated::Articulated;
+use super::drives::Drives;
 use super::motion::{Motion, Seat, Wrench};
 use super::placement::rows;
 use super::spatial::{Inertia, Mat3, Sym3, Vec3};
@@ -28,12 +29,13 @@ pub enum JointKind {
 
 /// A fixed-base tree of rigid bodies, ready for the kernels. Built by [`Tree::assemble`].
 ///
-/// It holds geometry, joint axes and gravity; every inertia and damping coefficient comes in as `theta`.
+/// It holds geometry, joint axes and gravity; every inertia and coefficient of its joints comes in as `theta`.
 #[derive(Clone, Debug)]
 pub struct Tree {
     pub(super) bodies: Vec<Body>,
     /// The joint of every damping parameter.
     pub(super) damped: Vec<usize>,
+    pub(super) drives: Drives,
     pub(super) gravity: [f64; 3],
 }
 
@@ -50,6 +52,8 @@ pub(super) struct Body {
     pub(super) translation: [f64; 3],
     coordinates: Coordinates,
     damped: bool,
+    /// Where its joint's armature stands in ϑ, if it has one.
+    pub(super) armature: Option<usize>,
 }
 
 /// How the coordinates of the inner frame are named in the joint frame.
@@ -167,6 +171,7 @@ impl Body {
             translation: [p.x, p.y, p.z],
             coordinates,
             damped,
+            armature: None,
         }
     }
 
@@ -225,17 +230,12 @@ impl Body {
 impl Tree {
     pub(super) fn new(bodies: Vec<Body>, gravity: [f64; 3]) -> Self {
         let damped = bodies.iter().enumerate().filter(|(_, body)| body.damped).map(|(joint, _)| joint).collect();
-        Tree { bodies, damped, gravity }
+        Tree { bodies, damped, drives: Drives::default(), gravity }
     }
 
     /// Number of joints, which is the number of moving bodies.
     pub fn joint_count(&self) -> usize {
         self.bodies.len()
-    }
-
-    /// Length of ϑ.
-    pub fn theta_len(&self) -> usize {
-        10 * self.bodies.len() + self.damped.len()
     }
 
     /// What the joint of every moving body does.
@@ -248,7 +248,7 @@ impl Tree {
         self.bodies.iter().map(|body| body.parent_slot.checked_sub(1))
     }
 
-    /// The joint of every damping parameter, in the order in which they stand at the end of ϑ.
+    /// The joint of every damping parameter, in the order in which they stand in ϑ, behind the inertias.
     pub fn damped_joints(&self) -> &[usize] {
         &self.damped
     }
@@ -282,7 +282,13 @@ impl Tree {
                 JointKind::Revolute => format!("{name}.damping_n_m_s"),
                 JointKind::Prismatic => format!("{name}.damping_n_s_m"),
             });
-        Ok(inertias.chain(dampings).collect())
+        let of = |joint: usize, revolute: &str, prismatic: &str| match self.bodies[joint].kind {
+            JointKind::Revolute => format!("{}.{revolute}", bodies[joint]),
+            JointKind::Prismatic => format!("{}.{prismatic}", bodies[joint]),
+        };
+        let armatures = self.drives.geared.iter().map(|joint| of(*joint, "armature_kg_m2", "armature_kg"));
+        let frictions = self.drives.friction.iter().map(|f| of(f.joint, "friction_n_m", "friction_n"));
+        Ok(inertias.chain(dampings).chain(armatures).chain(frictions).collect())
     }
 
     /// Allocates working memory for this tree.
@@ -296,7 +302,7 @@ impl Tree {
             cos: vec![S::ZERO; n],
             unit: vec![S::ZERO; n],
             column: vec![S::ZERO; n],
-            row: vec![S::ZERO; 10 * n + self.damped.len()],
+            row: vec![S::ZERO; self.theta_len()],
         }
     }
 

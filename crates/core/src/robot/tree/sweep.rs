@@ -41,9 +41,8 @@ impl Tree {
         self.seat(scratch, motion.q);
         let slots = scratch.slots.as_mut_slice();
         slots[0].motion = self.base();
-        let (inertias, dampings) = theta.split_at(10 * n);
-        let (gradients, damping_gradients) = yt_s.split_at_mut(10 * n);
-        let (inertias, gradients) = (inertias.as_chunks::<10>().0, gradients.as_chunks_mut::<10>().0);
+        let (gradients, drive_gradients) = yt_s.split_at_mut(10 * n);
+        let (inertias, gradients) = (theta.as_chunks::<10>().0, gradients.as_chunks_mut::<10>().0);
         let mut i = 0;
         while i < n {
             let body = &self.bodies[i];
@@ -59,10 +58,8 @@ impl Tree {
             i += 1;
         }
         self.fold_back(slots, y_theta);
-        for (k, joint) in self.damped.iter().enumerate() {
-            y_theta[*joint] = dampings[k].mul_add(motion.z[*joint], y_theta[*joint]);
-            damping_gradients[k] = motion.z[*joint] * s[*joint];
-        }
+        self.add_drives(motion, theta, y_theta);
+        self.pair_drives(motion, s, drive_gradients);
         Ok(())
     }
 
@@ -77,7 +74,7 @@ impl Tree {
     ) {
         let n = self.bodies.len();
         slots[0].motion = self.base();
-        let (gradients, damping_gradients) = yt_s.split_at_mut(10 * n);
+        let (gradients, drive_gradients) = yt_s.split_at_mut(10 * n);
         let gradients = gradients.as_chunks_mut::<10>().0;
         let mut i = 0;
         while i < n {
@@ -90,9 +87,7 @@ impl Tree {
             slot.motion = moved;
             i += 1;
         }
-        for (gradient, joint) in damping_gradients.iter_mut().zip(&self.damped) {
-            *gradient = motion.z[*joint] * s[*joint];
-        }
+        self.pair_drives(motion, s, drive_gradients);
     }
 
     /// M ż + C z + g, without damping and without the test motion: the wrenches of single bodies, seated before.
