@@ -11,8 +11,9 @@ use common::kinds::{
 use common::{About, answer, answers, arm, masses};
 use forwardstep_check::hypothesis::Subject;
 use forwardstep_check::{Answer, Finding, Id, PracticalAnswer, Source, Theorem, check, practical};
-use forwardstep_core::controller::{Floor, ParameterBounds};
+use forwardstep_core::controller::Floor;
 use forwardstep_core::expression::{Expression, Number};
+use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::robot::tree::JointKind::{Prismatic, Revolute};
 use forwardstep_core::robot::tree::{JointKind, Uncertain};
 use forwardstep_sim::reference::Consensus;
@@ -88,7 +89,7 @@ fn thm6_lengths_outside_their_bounds_violate_them() {
     // The true lengths are 1 m and 0.8 m.
     let said = |lower: [f64; 2], upper: [f64; 2]| {
         let mut agent = planar_tip();
-        let bounds = ParameterBounds { lower: lower.to_vec(), upper: upper.to_vec(), margin: 0.1 };
+        let bounds = ParameterBounds::new(lower.to_vec(), upper.to_vec(), 0.1);
         change_tip(&mut agent, |law| law.bounds = Some(bounds));
         answer(&tracking(agent, vec![rest_at(0.8), rest_at(0.6)]), About::Lengths)
     };

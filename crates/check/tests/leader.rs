@@ -262,6 +262,7 @@ fn eq_held_adaptation_is_stable_as_long_as_its_number_is_below_two() {
             damping: Gain::Number(10.0),
             adaptation: Gain::Number(adaptation),
             estimate_start: vec![0.0],
+            bounds: None,
         });
         let found = SamplingMargin::of(&setup).unwrap().start;
         assert_eq!(found.agent.index, 1);
@@ -345,7 +346,7 @@ fn swarm_tracking_behind_an_agent_is_judged_like_that_behind_a_motion() {
 /// Adaptive from an estimate of zero, with this Γ.
 fn adaptive(adaptation: f64) -> Adaptive {
     let [damping, adaptation] = [10.0, adaptation].map(Gain::Number);
-    Adaptive { damping, adaptation, estimate_start: vec![0.0] }
+    Adaptive { damping, adaptation, estimate_start: vec![0.0], bounds: None }
 }
 
 #[test]

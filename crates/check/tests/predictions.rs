@@ -82,8 +82,12 @@ fn who_is_heard_by_nobody_counts_for_nothing() {
     assert_eq!(untouched.influence[2], 0.0);
     setup.agents[2].pushes = vec![pushed_for_ever(3.0)];
     setup.agents[2].manipulability = 1.0;
-    setup.agents[2].law =
-        Arc::new(Adaptive { damping: Gain::Number(5.0), adaptation: Gain::Number(1.0), estimate_start: vec![0.0] });
+    setup.agents[2].law = Arc::new(Adaptive {
+        damping: Gain::Number(5.0),
+        adaptation: Gain::Number(1.0),
+        estimate_start: vec![0.0],
+        bounds: None,
+    });
     assert_eq!(predict(&setup).unwrap(), untouched);
     assert!((ends(&setup, 0, 0) - untouched.value[0]).abs() < 1e-6);
     // Who is heard counts.

@@ -122,8 +122,12 @@ fn rough_handling() -> Vec<Push> {
 
 #[test]
 fn prop_without_lambda_no_push_moves_the_agreement() {
-    let adaptive =
-        Arc::new(Adaptive { damping: Gain::Number(8.0), adaptation: Gain::Number(10.0), estimate_start: vec![0.0; 5] });
+    let adaptive = Arc::new(Adaptive {
+        damping: Gain::Number(8.0),
+        adaptation: Gain::Number(10.0),
+        estimate_start: vec![0.0; 5],
+        bounds: None,
+    });
     for exchange in [Exchange::Position, Exchange::PositionVelocity] {
         for order in 1..=3 {
             let roots = |i: usize| (0..order).map(|r| 1.2 + 0.8 * r as f64 + 0.1 * i as f64).collect::<Vec<_>>();

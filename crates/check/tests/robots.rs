@@ -66,6 +66,7 @@ fn tree(links: &[(JointKind, [f64; 3], [f64; 10])]) -> AgentSetup {
         damping: Gain::Number(8.0),
         adaptation: Gain::Number(10.0),
         estimate_start: vec![0.0; assembled.theta.len()],
+        bounds: None,
     });
     agent.robot.theta = assembled.theta;
     agent.robot.kind = Arc::new(Arc::new(assembled.tree));

@@ -222,7 +222,7 @@ fn eq_a_bandwidth_of_the_adaptation_counts_squared() {
         let adaptation = Gain::Bandwidth(omega);
         setup.agents[0] = common::arm(0, &[1.0, 2.0]);
         let damping = Gain::Number(k);
-        setup.agents[0].law = Arc::new(Adaptive { damping, adaptation, estimate_start: vec![0.0; 5] });
+        setup.agents[0].law = Arc::new(Adaptive { damping, adaptation, estimate_start: vec![0.0; 5], bounds: None });
         setup.control = control(0.0);
         let found = SamplingMargin::of(&setup).unwrap();
         assert_eq!(found.start.agent.index, 0);
@@ -290,8 +290,12 @@ fn two_kinds_of_agents_are_not_of_one_theorem() {
     mixed.agents[1].law = Arc::new(Known { damping: Gain::Number(5.0) });
     mixed.network.agents = 2;
     assert_eq!(answer(&mixed, About::OneKind), Answer::NotCovered);
-    mixed.agents[0].law =
-        Arc::new(Adaptive { damping: Gain::Number(5.0), adaptation: Gain::Number(1.0), estimate_start: vec![0.0] });
+    mixed.agents[0].law = Arc::new(Adaptive {
+        damping: Gain::Number(5.0),
+        adaptation: Gain::Number(1.0),
+        estimate_start: vec![0.0],
+        bounds: None,
+    });
     assert_eq!(answers(&check(&mixed), About::OneKind), [], "known and unknown parameters are one kind");
 }
 

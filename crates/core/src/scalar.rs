@@ -40,6 +40,9 @@ pub trait Scalar:
     /// The number itself, or ±`limit` where it is beyond; not-a-number stays.
     fn saturate(self, limit: Self) -> Self;
 
+    /// The number itself where it is positive, zero elsewhere; not-a-number stays.
+    fn positive(self) -> Self;
+
     /// Sine and cosine of an angle in radians, within 2.2 units in the last place for |angle| < 10⁵ and to full
     /// accuracy, slowly, beyond.
     fn sin_cos(self) -> (Self, Self);
@@ -187,6 +190,11 @@ impl Scalar for f64 {
     }
 
     #[inline(always)]
+    fn positive(self) -> Self {
+        if self < 0.0 { 0.0 } else { self }
+    }
+
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         trig::sin_cos(self)
     }
@@ -241,6 +249,11 @@ impl Scalar for f32 {
         } else {
             self
         }
+    }
+
+    #[inline(always)]
+    fn positive(self) -> Self {
+        if self < 0.0 { 0.0 } else { self }
     }
 
     #[inline(always)]
@@ -318,6 +331,11 @@ impl<const N: usize> Scalar for Lanes<N> {
             i += 1;
         }
         self
+    }
+
+    #[inline(always)]
+    fn positive(self) -> Self {
+        Lanes(self.0.map(Scalar::positive))
     }
 
     #[inline(always)]

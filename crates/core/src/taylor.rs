@@ -130,6 +130,11 @@ impl<const N: usize> Scalar for Taylor<N> {
         (Taylor(sin), Taylor(cos))
     }
 
+    /// At zero that of zero.
+    fn positive(self) -> Self {
+        if self.0[0] <= 0.0 { Self::ZERO } else { self }
+    }
+
     #[inline(never)]
     fn tanh(self) -> Self {
         // (tanh a)' = a' (1 − tanh² a), order by order: `rest` is 1 − tanh² a as far as it is known.

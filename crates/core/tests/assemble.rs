@@ -39,7 +39,11 @@ fn drives_need_joints_in_order_and_positive_widths() {
         let error = rubbing(vec![Friction { joint: 1, width }]).unwrap_err();
         assert!(matches!(error, DriveError::Width { joint: 1, .. }), "{error}");
     }
-    let driven = Drives { geared: vec![1], friction: vec![Friction { joint: 0, width: 0.1 }], dry: true };
+    for period_s in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let error = tree().with_drives(Drives { dry_s: Some(period_s), ..Drives::default() }).unwrap_err();
+        assert!(matches!(error, DriveError::Period { .. }), "{error}");
+    }
+    let driven = Drives { geared: vec![1], friction: vec![Friction { joint: 0, width: 0.1 }], dry_s: Some(1e-3) };
     let driven = tree().with_drives(driven).unwrap();
     assert_eq!(driven.theta_len(), 23);
     assert_eq!(driven.drive_parameters(), [21..22, 22..23]);

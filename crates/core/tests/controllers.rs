@@ -8,11 +8,10 @@ use forwardstep_core::Gain;
 use forwardstep_core::agent::{Agent, Inbox, Limiter, StepError};
 use forwardstep_core::controller::{
     AdaptiveBackstepping, Asked, AttitudeTracking, BacksteppingGains, Controller, Floor, Following as ChainFollowing,
-    Given, Guide, Immersion, Jet, Linearising, ParameterBounds, PositionOnly, Stepped, TaskSpace, Thrust, ThrustDesign,
-    Trouble,
+    Given, Guide, Immersion, Jet, Linearising, PositionOnly, Stepped, TaskSpace, Thrust, ThrustDesign, Trouble,
 };
 use forwardstep_core::expression::Expression;
-use forwardstep_core::law::SlotineLi;
+use forwardstep_core::law::{ParameterBounds, SlotineLi};
 use forwardstep_core::plant::{CascadeTerms, Formulas, Mechanical, Plant, Spacecraft, Wheel, Wheels, total};
 use forwardstep_core::reference::{
     Choice, Consensus, Derived, Heard, Measured, Position, PositionVelocitySums, Reference, ReferenceOut, Sliding,
@@ -57,7 +56,7 @@ fn a_sign_that_one_agent_chooses_depends_on_its_period_only_where_it_is_solved_f
 
 /// A mass under (119), sampled.
 fn sampled_follower(derived: Derived) -> Agent<PointMass, SmoothFollowing> {
-    let law = SlotineLi { damping: Gain::Number(8.0).resolve(1, &[]).unwrap(), adaptation: None };
+    let law = SlotineLi { damping: Gain::Number(8.0).resolve(1, &[]).unwrap(), adaptation: None, bounds: None };
     let reference = SmoothFollowing::new(1, Sliding { derived, ..SIGN });
     Agent::new(PointMass { dimension: 1 }, reference, law, vec![2.0], Limiter::none(1)).unwrap()
 }
@@ -241,12 +240,12 @@ fn thm6_an_estimate_beyond_its_margin_stands_and_never_turns_round() {
         let law = TaskSpace {
             robot: PlanarArm,
             tip: PlanarTip { length_m: links.length_m },
-            law: SlotineLi { damping: number(20.0, 2), adaptation: Some(number(30.0, 5)) },
+            law: SlotineLi { damping: number(20.0, 2), adaptation: Some(number(30.0, 5)), bounds: None },
             task_gain: number(20.0, 2),
             kappa: 5.0,
             alpha: 3.0,
             kinematic_adaptation: Some(number(0.3, 2)),
-            bounds: Some(ParameterBounds { lower: vec![0.9, 0.7], upper: vec![1.1, 0.9], margin: 0.1 }),
+            bounds: Some(ParameterBounds::new(vec![0.9, 0.7], vec![1.1, 0.9], 0.1)),
             estimate_start: vec![0.0; 5],
             kinematic_start: start.to_vec(),
             determinant_floor: 0.02,

@@ -62,7 +62,7 @@ fn every_method_checks<R: Lagrangian<f64>>(name: &str, robot: &R) {
         robot.adaptation_scale(&column[..length], &column[..length]);
     }
 
-    let law = SlotineLi { damping: gain(m), adaptation: Some(gain(p)) };
+    let law = SlotineLi { damping: gain(m), adaptation: Some(gain(p)), bounds: None };
     every_length(name, [m, m, m, m, p, m, m, p], |[q, dq, z, dz, theta_hat, s, tau, yt_s]| {
         let (mut s, mut tau, mut yt_s) = (s.to_vec(), tau.to_vec(), yt_s.to_vec());
         let out = SlotineLiOutput { s: &mut s, tau: &mut tau, yt_s: &mut yt_s };

@@ -20,7 +20,7 @@ use forwardstep_core::{Gain, LengthError};
 fn mass() -> Recipe {
     let reference = Consensus::<PositionVelocity>::new([(&[1.0, 2.0][..], 0.0)]).unwrap();
     let gain = |size| Gain::Number(8.0).resolve(size, &[]).unwrap();
-    let law = SlotineLi { damping: gain(1), adaptation: Some(gain(1)) };
+    let law = SlotineLi { damping: gain(1), adaptation: Some(gain(1)), bounds: None };
     Recipe::lagrangian(PointMass { dimension: 1 }, reference, law, vec![2.0])
 }
 
@@ -223,7 +223,7 @@ fn vehicle() -> Recipe {
 fn eq_122_sends_the_reference_acceleration_of_the_sample_before() {
     let choice = Choice::Implicit;
     let sliding = Sliding { derived: Derived::ReferenceAcceleration, alpha: 1.0, beta: 2.0, gamma: 0.5, choice };
-    let law = SlotineLi { damping: Gain::Number(8.0).resolve(1, &[]).unwrap(), adaptation: None };
+    let law = SlotineLi { damping: Gain::Number(8.0).resolve(1, &[]).unwrap(), adaptation: None, bounds: None };
     let reference = SmoothFollowing::new(1, sliding);
     let mut controller = Recipe::lagrangian(PointMass { dimension: 1 }, reference, law, vec![2.0]).build().unwrap();
     assert_eq!(controller.message_len(), 3);

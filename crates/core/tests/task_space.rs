@@ -5,7 +5,8 @@ mod common;
 
 use common::looped::{Looped, polynomial};
 use common::random::{Random, inertia_of};
-use forwardstep_core::controller::{Controller, Jet, ParameterBounds, TaskSpace, Trouble};
+use forwardstep_core::controller::{Controller, Jet, TaskSpace, Trouble};
+use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::law::SlotineLi;
 use forwardstep_core::plant::{Mechanical, TaskArm};
 use forwardstep_core::robot::tree::{
@@ -262,7 +263,11 @@ where
     let controller = TaskSpace {
         robot: plant.arm.robot.clone(),
         tip: plant.tip.clone(),
-        law: SlotineLi { damping: gain(random, m), adaptation: Some(gain(random, plant.arm.theta.len())) },
+        law: SlotineLi {
+            damping: gain(random, m),
+            adaptation: Some(gain(random, plant.arm.theta.len())),
+            bounds: None,
+        },
         task_gain: gain(random, m),
         kappa: 0.8,
         alpha: 1.7,
@@ -318,7 +323,7 @@ fn thm6_v_falls_as_the_proof_says_at_random_states() {
         };
         checked[0] += usize::from(check_balance(planar(), &mut random, None));
         // Estimates start beyond the upper bound, within the margin.
-        let bounds = ParameterBounds { lower: vec![0.5, 0.5], upper: vec![1.1, 0.9], margin: 5.0 };
+        let bounds = ParameterBounds::new(vec![0.5, 0.5], vec![1.1, 0.9], 5.0);
         checked[1] += usize::from(check_balance(planar(), &mut random, Some(bounds)));
         let (assembled, point) = chain(&mut random, round % 2 == 0);
         let tip = tip(&assembled, &point, if round % 4 < 2 { Uncertain::Tool } else { Uncertain::Chain });
@@ -334,7 +339,7 @@ fn planar_law(links: &PlanarLinks, bounds: Option<ParameterBounds>) -> TaskSpace
     TaskSpace {
         robot: PlanarArm,
         tip: PlanarTip { length_m: links.length_m },
-        law: SlotineLi { damping: number(20.0, 2), adaptation: Some(number(30.0, 5)) },
+        law: SlotineLi { damping: number(20.0, 2), adaptation: Some(number(30.0, 5)), bounds: None },
         task_gain: number(20.0, 2),
         kappa: 5.0,
         alpha: 3.0,
@@ -359,7 +364,7 @@ fn thm6_tip_follows_a_circle_without_its_velocity() {
         };
         vec![wave(core::f64::consts::FRAC_PI_2, 0.8), wave(0.0, 0.6)]
     };
-    let bounds = ParameterBounds { lower: vec![0.9, 0.7], upper: vec![1.1, 0.9], margin: 0.05 };
+    let bounds = ParameterBounds::new(vec![0.9, 0.7], vec![1.1, 0.9], 0.05);
     for bounds in [None, Some(bounds)] {
         let plant = TaskArm {
             arm: Mechanical { robot: PlanarArm, theta: links.theta().to_vec() },

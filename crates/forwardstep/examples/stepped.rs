@@ -80,7 +80,7 @@ impl Pair {
 /// A processor with the controller (6) led by (a1), whose neighbour starts at rest at `neighbour_m`.
 fn node(neighbour_m: f64) -> Result<Node, Box<dyn Error>> {
     let reference = Consensus::<PositionVelocity>::new([(&[1.0, 2.0][..], 0.0)])?;
-    let law = SlotineLi { damping: Gain::Number(8.0).resolve(1, &[])?, adaptation: None };
+    let law = SlotineLi { damping: Gain::Number(8.0).resolve(1, &[])?, adaptation: None, bounds: None };
     let controller = Recipe::lagrangian(PointMass { dimension: 1 }, reference, law, vec![MASS_KG]).build()?;
     let initial = BeforeFirst::Initial { stamp_s: 0.0, message: vec![neighbour_m, 0.0] };
     let mut mailbox = Mailbox::new(controller.message_len(), vec![initial])?;

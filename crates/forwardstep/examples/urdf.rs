@@ -26,6 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         damping: Gain::Bandwidth(20.0),
         adaptation: Gain::Bandwidth(5.0),
         estimate_start: vec![0.0; robot.theta.len()],
+        bounds: None,
     };
     let arm =
         |name: &str, q: f64| AgentSetup::new(name, robot.clone(), law.clone()).roots(&[1.0, 2.0]).at(&vec![q; axes]);

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use forwardstep::check::hypothesis::{Evidence, KindEvidence, Subject};
 use forwardstep::check::{Answer, Id, Report, Rigour, Theorem, check};
-use forwardstep::core::controller::ParameterBounds;
+use forwardstep::core::law::ParameterBounds;
 use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
 use forwardstep::sim::push::{Course, Effect, Function, Push};
 use forwardstep::sim::{Adaptive, Setup, TaskSpaceLaw};
@@ -20,7 +20,7 @@ fn shipped(name: &str) -> Setup {
 /// An arm whose lengths have bounds.
 fn bounded_lengths(upper: f64) -> Setup {
     let mut setup = shipped("theorem-6");
-    let bounds = ParameterBounds { lower: vec![0.5; 2], upper: vec![upper; 2], margin: 0.01 };
+    let bounds = ParameterBounds::new(vec![0.5; 2], vec![upper; 2], 0.01);
     assert!(setup.agents[0].change_law(|law: &mut TaskSpaceLaw| law.bounds = Some(bounds)));
     setup
 }

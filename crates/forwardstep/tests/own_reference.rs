@@ -236,6 +236,7 @@ fn masses(roots: [&[f64]; 3]) -> Vec<AgentSetup> {
             damping: forwardstep::core::Gain::Number(6.0),
             adaptation: forwardstep::core::Gain::Number(4.0),
             estimate_start: vec![0.3],
+            bounds: None,
         };
         AgentSetup::new(format!("mass-{k}"), robot, law).roots(roots[k]).at(&[k as f64 - 1.0, 0.4 * k as f64])
     };

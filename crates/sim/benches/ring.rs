@@ -43,9 +43,12 @@ fn ring(model: Model, n: usize, tolerance: f64) -> Setup {
         let damping = Gain::Number(8.0);
         let law: Arc<dyn Law> = match model {
             Model::Linear => Arc::new(Known { damping }),
-            Model::Arms => {
-                Arc::new(Adaptive { damping, adaptation: Gain::Number(10.0), estimate_start: vec![0.0; theta.len()] })
-            }
+            Model::Arms => Arc::new(Adaptive {
+                damping,
+                adaptation: Gain::Number(10.0),
+                estimate_start: vec![0.0; theta.len()],
+                bounds: None,
+            }),
         };
         AgentSetup {
             name: format!("agent-{i}"),

@@ -101,7 +101,7 @@ impl Adaptive {
     /// K and Γ as numbers, and ϑ̂(0) = 0 for `parameters` of them.
     pub fn gains(damping: f64, adaptation: f64, parameters: usize) -> Self {
         let (damping, adaptation) = (Gain::Number(damping), Gain::Number(adaptation));
-        Adaptive { damping, adaptation, estimate_start: vec![0.0; parameters] }
+        Adaptive { damping, adaptation, estimate_start: vec![0.0; parameters], bounds: None }
     }
 }
 

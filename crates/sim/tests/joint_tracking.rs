@@ -23,7 +23,7 @@ fn robots(adapts: bool) -> Vec<AgentSetup> {
     let of = |name: &str, robot: RobotSetup, damping: Gain, adaptation: Gain| {
         let estimate_start = vec![0.0; robot.theta.len()];
         if adapts {
-            AgentSetup::new(name, robot, Adaptive { damping, adaptation, estimate_start })
+            AgentSetup::new(name, robot, Adaptive { damping, adaptation, estimate_start, bounds: None })
         } else {
             AgentSetup::new(name, robot, Known { damping })
         }

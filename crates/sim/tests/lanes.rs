@@ -44,6 +44,7 @@ fn arm(index: usize, order: usize) -> AgentSetup {
             damping: if index == 1 { Gain::Matrix(vec![9.0, 1.0, 1.0, 7.0]) } else { Gain::Number(8.0 + index as f64) },
             adaptation: Gain::Number(10.0),
             estimate_start: vec![0.1 * index as f64; 5],
+            bounds: None,
         }),
         start: Start {
             q: vec![some(1), some(2)],

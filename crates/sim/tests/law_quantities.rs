@@ -8,7 +8,8 @@ use std::sync::Arc;
 
 use common::{chains, masses, single, vehicles};
 use forwardstep_core::Gain;
-use forwardstep_core::controller::{Floor, ParameterBounds};
+use forwardstep_core::controller::Floor;
+use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::plant::Rotors;
 use forwardstep_sim::{
     AttitudeLaw, ChainLaw, Law, PositionOnlyLaw, RotorcraftModel, Setup, SetupError, TaskSpaceLaw, ThrustKind,
@@ -93,7 +94,7 @@ fn numbers_of_the_other_laws_are_refused_under_their_keys() {
     let spin = single::half_a_turn([0.1, -0.05, 0.08]);
     let craft = single::craft(spin, single::targets().swap_remove(2), 1.0);
     let bounds = |lower: [f64; 2], upper: [f64; 2], margin| {
-        let bounds = ParameterBounds { lower: lower.to_vec(), upper: upper.to_vec(), margin };
+        let bounds = ParameterBounds::new(lower.to_vec(), upper.to_vec(), margin);
         refused(single::planar(Some(bounds), 0.3), |_| {})
     };
     let tip = |change: &dyn Fn(&mut TaskSpaceLaw)| law(single::planar(None, 0.3), |law: &mut TaskSpaceLaw| change(law));
@@ -133,7 +134,7 @@ fn gains_and_lists_are_refused_under_their_keys() {
     assert_eq!(tip(&|law| law.estimate_start.clear()), "agents[0].law.estimate_start.given");
     assert_eq!(tip(&|law| law.kinematic_start[1] = f64::NAN), "agents[0].law.kinematic_start.given[1]");
     let bounds = |lower: &[f64], upper: &[f64]| {
-        let bounds = ParameterBounds { lower: lower.to_vec(), upper: upper.to_vec(), margin: 0.01 };
+        let bounds = ParameterBounds::new(lower.to_vec(), upper.to_vec(), 0.01);
         refused(single::planar(Some(bounds), 0.3), |_| {})
     };
     assert_eq!(bounds(&[0.5], &[1.5, 1.5]), "agents[0].law.bounds.lower_m");

@@ -36,7 +36,7 @@ fn arm(index: usize, limits: Option<[f64; 2]>, adaptive: bool) -> AgentSetup {
         roots_per_s: vec![1.0, 2.0],
         manipulability: 0.0,
         law: if adaptive {
-            Arc::new(Adaptive { damping, adaptation, estimate_start: vec![0.0; 5] })
+            Arc::new(Adaptive { damping, adaptation, estimate_start: vec![0.0; 5], bounds: None })
         } else {
             Arc::new(Known { damping }) as Arc<dyn Law>
         },

@@ -199,8 +199,12 @@ fn steps_land_on_the_edges_of_a_pulse() {
 
 fn arm() -> AgentSetup {
     let links = PlanarLinks::uniform([1.2, 1.0], [1.0, 0.8]);
-    let law =
-        Arc::new(Adaptive { damping: Gain::Number(8.0), adaptation: Gain::Number(10.0), estimate_start: vec![0.0; 5] });
+    let law = Arc::new(Adaptive {
+        damping: Gain::Number(8.0),
+        adaptation: Gain::Number(10.0),
+        estimate_start: vec![0.0; 5],
+        bounds: None,
+    });
     let mut arm = agent(Arc::new(PlanarArm), links.theta().to_vec(), 2, law);
     arm.start.q = vec![0.4, -0.3];
     arm
@@ -225,6 +229,7 @@ fn jointed() -> (AgentSetup, LinkPoint) {
         damping: Gain::Bandwidth(15.0),
         adaptation: Gain::Bandwidth(5.0),
         estimate_start: vec![0.0; assembled.theta.len()],
+        bounds: None,
     });
     let point = LinkPoint { link: assembled.anchors[2], at: [0.0, 0.1, 0.2] };
     (agent(Arc::new(Arc::new(assembled.tree)), assembled.theta, 2, law), point)

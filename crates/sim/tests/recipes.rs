@@ -241,7 +241,7 @@ fn digest_a_tree_of_links_has_the_bits_of_the_simulator() {
     let first = &mut setup.agents[0];
     let estimate_start = first.robot.theta.iter().map(|theta| 0.8 * theta).collect();
     let (damping, adaptation) = (Gain::Bandwidth(20.0), Gain::Bandwidth(3.0));
-    first.law = Arc::new(Adaptive { damping, adaptation, estimate_start });
+    first.law = Arc::new(Adaptive { damping, adaptation, estimate_start, bounds: None });
     (first.target, first.roots_per_s, first.manipulability) = (None, vec![1.0, 2.0, 3.0], 0.4);
     for k in 1..3 {
         let name = format!("agent-{k}");

@@ -87,9 +87,12 @@ fn regress_the_simulator_steps_the_agent_that_runs_on_a_robot() {
     let outcome = run(&setup);
 
     let agent = &setup.agents[0];
-    let Some(Adaptive { damping, adaptation, estimate_start }) = agent.law.downcast() else { unreachable!() };
-    let law =
-        SlotineLi { damping: damping.resolve(2, &[]).unwrap(), adaptation: Some(adaptation.resolve(5, &[]).unwrap()) };
+    let Some(Adaptive { damping, adaptation, estimate_start, .. }) = agent.law.downcast() else { unreachable!() };
+    let law = SlotineLi {
+        damping: damping.resolve(2, &[]).unwrap(),
+        adaptation: Some(adaptation.resolve(5, &[]).unwrap()),
+        bounds: None,
+    };
     assert_eq!(setup.exchange, Exchange::PositionVelocity);
     let reference = Consensus::<PositionVelocity>::new([(&agent.roots_per_s[..], 0.0)]).unwrap();
     let mut twin = Agent::new(PlanarArm, reference, law, estimate_start.clone(), Limiter::none(2)).unwrap();

@@ -14,7 +14,7 @@ fn ship(name: &str, q: [f64; 3], adapts: bool) -> AgentSetup {
     let damping = Gain::Diagonal(vec![60.0, 60.0, 12.0]);
     let robot = RobotSetup::ship(THETA);
     let agent = if adapts {
-        let law = Adaptive { damping, adaptation: Gain::Bandwidth(1.5), estimate_start: vec![0.0; 9] };
+        let law = Adaptive { damping, adaptation: Gain::Bandwidth(1.5), estimate_start: vec![0.0; 9], bounds: None };
         AgentSetup::new(name, robot, law)
     } else {
         AgentSetup::new(name, robot, Known { damping })

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use common::single::{anthropomorphic, craft, half_a_turn, planar, targets};
 use common::{RTOL, assert_first_order, balance_residual, column, last, run, sampled, truth};
 use forwardstep_core::Gain;
-use forwardstep_core::controller::ParameterBounds;
+use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::robot::tree::Uncertain;
 use forwardstep_sim::recording::{Breakdown, BreakdownCause};
 use forwardstep_sim::{AttitudeLaw, Ending, Outcome, Signal, TaskSpaceLaw, simulate};
@@ -23,7 +23,7 @@ fn balance(outcome: &Outcome) -> (f64, f64) {
 
 #[test]
 fn thm6_identity_holds_along_real_runs() {
-    let bounds = ParameterBounds { lower: vec![0.9, 0.7], upper: vec![1.1, 0.9], margin: 0.2 };
+    let bounds = ParameterBounds::new(vec![0.9, 0.7], vec![1.1, 0.9], 0.2);
     let runs = [
         planar(None, 0.3),
         planar(Some(bounds), 0.3),

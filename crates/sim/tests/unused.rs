@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use common::{every_kind, masses, sampled, single, switching, vehicles};
 use forwardstep_core::Gain;
-use forwardstep_core::controller::ParameterBounds;
+use forwardstep_core::law::ParameterBounds;
 use forwardstep_sim::{
     Adaptive, AgentSetup, Outcome, Setup, SetupError, SpacecraftModel, TaskSpaceLaw, ThrustKind, VelocityQuantity,
     VelocitySensor, simulate,
@@ -62,8 +62,12 @@ fn lagrangian() -> Setup {
     let mut setup = masses::consensus(2);
     setup.agents.truncate(1);
     setup.network = common::silent(1);
-    setup.agents[0].law =
-        Arc::new(Adaptive { damping: Gain::Number(5.0), adaptation: Gain::Number(5.0), estimate_start: vec![0.0] });
+    setup.agents[0].law = Arc::new(Adaptive {
+        damping: Gain::Number(5.0),
+        adaptation: Gain::Number(5.0),
+        estimate_start: vec![0.0],
+        bounds: None,
+    });
     setup
 }
 
@@ -157,7 +161,7 @@ fn laws_that_only_track_do_not_go_with_consensus() {
 
 #[test]
 fn bounds_of_lengths_that_are_not_adapted_are_refused() {
-    let bounds = ParameterBounds { lower: vec![0.5, 0.5], upper: vec![1.5, 1.5], margin: 0.1 };
+    let bounds = ParameterBounds::new(vec![0.5, 0.5], vec![1.5, 1.5], 0.1);
     for (adapted, bounds, accepted) in
         [(true, Some(bounds.clone()), true), (false, None, true), (false, Some(bounds), false)]
     {

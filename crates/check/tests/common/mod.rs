@@ -139,6 +139,7 @@ pub fn arm(index: usize, roots_per_s: &[f64]) -> AgentSetup {
             damping: Gain::Number(8.0),
             adaptation: Gain::Number(10.0),
             estimate_start: vec![0.0; 5],
+            bounds: None,
         }),
         start: Start {
             q: vec![noise(index), noise(index + 10)],

@@ -52,6 +52,7 @@ fn arms(roots_per_s: &[f64], exchange: Exchange) -> Setup {
             damping: Gain::Matrix(vec![4.0, 1.0, 1.0, 3.0]),
             adaptation: Gain::Number(2.0),
             estimate_start: theta,
+            bounds: None,
         });
     }
     let edges = [vec![edge(0, 1, 1.5, 0), edge(1, 2, 0.7, 1)], vec![edge(2, 3, 0.4, 1), edge(3, 0, 2.0, 0)]];

@@ -304,7 +304,7 @@ fn peak_torques_are_those_of_the_reference_where_parameters_are_known_or_nearly_
     for agent in &mut setup.agents {
         let estimate_start = agent.robot.theta.iter().map(|theta| 0.95 * theta).collect();
         let (damping, adaptation) = (Gain::Number(8.0), Gain::Number(1.0));
-        agent.law = Arc::new(Adaptive { damping, adaptation, estimate_start });
+        agent.law = Arc::new(Adaptive { damping, adaptation, estimate_start, bounds: None });
     }
     let outcome = run(&setup);
     for peak in predicted(&setup).peak_torques {

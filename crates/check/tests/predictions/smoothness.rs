@@ -74,6 +74,7 @@ fn trees(order: usize) -> Setup {
             damping: Gain::Bandwidth(6.0),
             adaptation: Gain::Bandwidth(2.0),
             estimate_start: tip.robot.theta.iter().map(|theta| 0.7 * theta).collect(),
+            bounds: None,
         };
         assert_eq!(law.estimate_start.len(), parameters);
         let q = (0..3).map(|k| noise(3 * i + k)).collect();

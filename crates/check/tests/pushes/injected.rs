@@ -18,7 +18,7 @@ use crate::common::column;
 fn arms(sample_hz: f64) -> Setup {
     let law = |gamma: f64| {
         let (damping, adaptation) = (Gain::Number(8.0), Gain::Number(gamma));
-        Arc::new(Adaptive { damping, adaptation, estimate_start: vec![0.2; 5] })
+        Arc::new(Adaptive { damping, adaptation, estimate_start: vec![0.2; 5], bounds: None })
     };
     let mut setup = ring(vec![arm(0, &[1.5], law(10.0)), arm(1, &[1.2, 2.0], law(3.0))], Exchange::Position, 4.0);
     setup.agents.iter_mut().for_each(|agent| agent.start.reference = vec![vec![0.4, -0.3]]);

@@ -71,7 +71,7 @@ fn eq_31_arms_that_know_gravity_have_degree_one_and_arms_that_adapt_to_it_have_n
     let known: Arc<dyn forwardstep_sim::Law> = Arc::new(Known { damping: Gain::Matrix(vec![8.0, 1.5, 1.5, 6.0]) });
     let adaptive = |gamma: f64| {
         let adaptation = Gain::Diagonal(vec![gamma; 5]);
-        Arc::new(Adaptive { damping: Gain::Number(8.0), adaptation, estimate_start: vec![0.0; 5] })
+        Arc::new(Adaptive { damping: Gain::Number(8.0), adaptation, estimate_start: vec![0.0; 5], bounds: None })
     };
     for (law, lambda, degree) in [
         (known.clone(), 1.5, 1),
@@ -154,6 +154,7 @@ fn degree_and_gain_are_the_limit_of_the_transfer() {
         damping: Gain::Matrix(vec![8.0, 1.5, 1.5, 6.0]),
         adaptation: Gain::Diagonal(gamma),
         estimate_start: vec![0.0; 5],
+        bounds: None,
     };
     let mut seen = Vec::new();
     for (lambda, integral) in [(0.0, false), (0.6, false), (0.0, true), (0.6, true)] {

@@ -99,9 +99,12 @@ impl<R: Lagrangian<f64>> Kernel for Learn<'_, R> {
         }
         let motion = TwoVelocity { q, dq, z, dz };
         robot.regressor_products(scratch, motion, theta_hat, &out.s, &mut out.tau, &mut out.yt_s)?;
-        law.adaptation_rate(&out.yt_s, &mut out.d_theta_hat);
+        law.free_rate(&out.yt_s, &mut out.d_theta_hat);
         for (estimate, rate) in theta_hat.iter_mut().zip(&out.d_theta_hat) {
             *estimate += h * rate;
+        }
+        if let Some(bounds) = &law.bounds {
+            bounds.project(theta_hat);
         }
         Ok(())
     }

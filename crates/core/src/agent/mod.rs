@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! reference state      ẋ = A x + b with b held: stepped exactly            (`hold`)
-//! estimate             ϑ̂ ← ϑ̂ − h Γ Yᵀs, Y of the sample before, s of this one
+//! estimate             ϑ̂ ← Π(ϑ̂ − h Γ Yᵀs), Y of the sample before, s of this one, Π onto bounds if there are some
 //! torque               computed once from the sample, then held
 //! sign                 a value that suits the end of the period, with the neighbours held (`reference::sliding`)
 //! ```
@@ -101,7 +101,7 @@ pub struct Command<'a> {
 ///
 /// let reference = Consensus::<Position>::new([(&[1.0, 2.0][..], 0.0)]).expect("two positive roots");
 /// let damping = Gain::Number(8.0).resolve(1, &[]).expect("a positive gain");
-/// let law = SlotineLi { damping, adaptation: None };
+/// let law = SlotineLi { damping, adaptation: None, bounds: None };
 /// let mut agent = Agent::new(PointMass { dimension: 1 }, reference, law, vec![2.0], Limiter::none(1))?;
 ///
 /// // One neighbour stands at 1 m and counts 0.5. The agent is at rest at 0 m, and nothing jumps.

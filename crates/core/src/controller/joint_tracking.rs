@@ -65,7 +65,7 @@ pub struct MotionMeasured<'a> {
 ///
 /// // A mass of 4 kg comes to rest at zero, its mass known.
 /// let robot = PointMass { dimension: 1 };
-/// let law = SlotineLi { damping: ResolvedGain::Diagonal(vec![8.0]), adaptation: None };
+/// let law = SlotineLi { damping: ResolvedGain::Diagonal(vec![8.0]), adaptation: None, bounds: None };
 /// let law = JointTracking { robot, alpha: vec![2.0], law, estimate_start: vec![4.0] };
 /// let plant = Mechanical { robot, theta: vec![4.0] };
 ///
@@ -274,7 +274,7 @@ where
         let out = SlotineLiOutput { s: &mut *s, tau: input, yt_s: &mut *yt_s };
         self.law.output(&self.robot, robot, TwoVelocity { q, dq, z, dz }, theta_hat, out)?;
         if p > 0 {
-            self.law.adaptation_rate(yt_s, &mut d_state[reference..]);
+            self.law.adaptation_rate(theta_hat, yt_s, &mut d_state[reference..]);
         }
 
         let (shown_reference, rest) = shown.split_at_mut(self.shown_reference());
@@ -310,7 +310,7 @@ where
         LengthError::check("shown", first + p + 2 * m, shown.len())?;
         LengthError::check("theta", self.robot.parameter_count(), theta.len())?;
         let (q, s) = (&truth.state[..m], &shown[first..first + m]);
-        let JointTrackingWork { robot: scratch, damped, mass, difference, inverse_gamma, .. } = work;
+        let JointTrackingWork { robot: scratch, damped, mass, difference, inverse_gamma, yt_s, .. } = work;
         robot.mass_matrix(scratch, q, theta, mass)?;
         self.law.damping.apply(s, damped);
         let (dq, z) = (&truth.state[m..], &shown[..m]);
@@ -327,6 +327,13 @@ where
                 *difference = hat - theta;
             }
             value += 0.5 * inverse.of(difference);
+        }
+        if let Some(bounds) = &self.law.bounds {
+            let theta_hat = &state[self.reference_len()..];
+            let (z, dz) = (&shown[..m], &shown[m..2 * m]);
+            let motion = TwoVelocity { q, dq: &truth.state[m..], z, dz };
+            robot.regressor_products(scratch, motion, theta_hat, s, damped, yt_s)?;
+            dissipation += bounds.gained(theta_hat, theta, yt_s);
         }
         Ok(Balance { value, dissipation })
     }

@@ -372,6 +372,10 @@ impl Scalar for Interval {
         (self.sine().after(&[self]), self.apply(Unary::Cos).after(&[self]))
     }
 
+    fn positive(self) -> Self {
+        self.combine(Binary::Max, Interval::point(0.0)).after(&[self])
+    }
+
     fn tanh(self) -> Self {
         self.apply(Unary::Tanh).after(&[self])
     }

@@ -1,5 +1,7 @@
 //! Tracking laws: what makes q̇ follow the reference velocity z.
 
+mod bounds;
 mod slotine_li;
 
+pub use bounds::ParameterBounds;
 pub use slotine_li::{SlotineLi, SlotineLiOutput};

@@ -6,8 +6,9 @@
 //! ϑ̂' = −Γ Y(q, q̇, z, ż)ᵀ s                      (7)
 //! ```
 //!
-//! With V = ½ sᵀ M s + ½ Δϑᵀ Γ⁻¹ Δϑ and viscous damping D in ϑ, V̇ = −sᵀ(K + D)s + sᵀτ_ext along every run.
+//! ϑ̂ may be kept within bounds ([`ParameterBounds`]). With V = ½ sᵀ M s + ½ Δϑᵀ Γ⁻¹ Δϑ and viscous damping D in ϑ, V̇ = −sᵀ(K + D)s + sᵀτ_ext along every run.
 
+use super::ParameterBounds;
 use crate::robot::{Lagrangian, TwoVelocity};
 use crate::{LengthError, ResolvedGain, Scalar};
 
@@ -28,6 +29,7 @@ use crate::{LengthError, ResolvedGain, Scalar};
 /// let law = SlotineLi {
 ///     damping: Gain::Number(k).resolve(2, &[])?,
 ///     adaptation: Some(Gain::Number(gamma).resolve(5, &[])?),
+///     bounds: None,
 /// };
 /// let theta = PlanarLinks::uniform([2.0, 1.5], [1.0, 0.8]).theta();
 /// let theta_hat = [0.1, -0.4, 2.0, 1.0, 0.3];
@@ -36,7 +38,7 @@ use crate::{LengthError, ResolvedGain, Scalar};
 /// let out = SlotineLiOutput { s: &mut s, tau: &mut tau, yt_s: &mut yt_s };
 /// law.output(&PlanarArm, &mut (), motion, &theta_hat, out)?;
 /// let mut d_theta_hat = [0.0; 5];
-/// law.adaptation_rate(&yt_s, &mut d_theta_hat);
+/// law.adaptation_rate(&theta_hat, &yt_s, &mut d_theta_hat);
 ///
 /// let mut y_theta = [0.0; 2];
 /// PlanarArm.regressor_products(&mut (), motion, &theta, &s, &mut y_theta, &mut [0.0; 5])?;
@@ -52,6 +54,8 @@ pub struct SlotineLi<S = f64> {
     pub damping: ResolvedGain<S>,
     /// Γ, p × p; `None` when ϑ is known and nothing is adapted.
     pub adaptation: Option<ResolvedGain<S>>,
+    /// Bounds for ϑ̂. That V falls no slower with them needs a diagonal Γ.
+    pub bounds: Option<ParameterBounds<S>>,
 }
 
 /// Where [`SlotineLi::output`] puts its results.
@@ -91,15 +95,21 @@ impl<S: Scalar> SlotineLi<S> {
         Ok(())
     }
 
-    /// ϑ̂' from Yᵀs. Zero when ϑ is known.
+    /// ϑ̂' from Yᵀs and ϑ̂. Zero when ϑ is known.
     #[inline(always)]
-    pub fn adaptation_rate(&self, yt_s: &[S], d_theta_hat: &mut [S]) {
-        match &self.adaptation {
-            Some(gamma) => {
-                d_theta_hat.fill(S::ZERO);
-                gamma.subtract_from(yt_s, d_theta_hat);
-            }
-            None => d_theta_hat.fill(S::ZERO),
+    pub fn adaptation_rate(&self, theta_hat: &[S], yt_s: &[S], d_theta_hat: &mut [S]) {
+        self.free_rate(yt_s, d_theta_hat);
+        if let Some(bounds) = &self.bounds {
+            bounds.slow(theta_hat, d_theta_hat);
+        }
+    }
+
+    /// −Γ Yᵀs, whatever the bounds.
+    #[inline(always)]
+    pub fn free_rate(&self, yt_s: &[S], d_theta_hat: &mut [S]) {
+        d_theta_hat.fill(S::ZERO);
+        if let Some(gamma) = &self.adaptation {
+            gamma.subtract_from(yt_s, d_theta_hat);
         }
     }
 }

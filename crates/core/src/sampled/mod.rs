@@ -45,7 +45,7 @@ use crate::signal::{Block, Signal};
 /// use forwardstep_core::Gain;
 ///
 /// let reference = Consensus::<Position>::new([(&[1.0, 2.0][..], 0.0)]).expect("two positive roots");
-/// let law = SlotineLi { damping: Gain::Number(8.0).resolve(1, &[])?, adaptation: None };
+/// let law = SlotineLi { damping: Gain::Number(8.0).resolve(1, &[])?, adaptation: None, bounds: None };
 /// let recipe = Recipe::lagrangian(PointMass { dimension: 1 }, reference, law, vec![2.0]);
 /// let mut controller: Box<dyn Sampled> = recipe.build()?;
 /// assert_eq!(controller.measures(), [(Signal::Position, 1), (Signal::Velocity, 1)]);

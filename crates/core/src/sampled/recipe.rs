@@ -31,7 +31,7 @@ use crate::robot::Lagrangian;
 /// let reference = Consensus::<PositionVelocity>::new([(&[1.0, 2.0][..], 0.0)]).expect("two positive roots");
 /// let damping = Gain::Number(20.0).resolve(2, &[]).expect("a positive gain");
 /// let adaptation = Gain::Number(5.0).resolve(5, &[]).expect("a positive gain");
-/// let law = SlotineLi { damping, adaptation: Some(adaptation) };
+/// let law = SlotineLi { damping, adaptation: Some(adaptation), bounds: None };
 /// let guess = PlanarLinks::uniform([2.0, 1.5], [1.0, 0.8]).theta().to_vec();
 ///
 /// let mut recipe = Recipe::lagrangian(PlanarArm, reference, law, guess);
@@ -159,7 +159,7 @@ pub enum StartState {
 /// # use forwardstep_core::reference::{Consensus, Position};
 /// use forwardstep_core::sampled::{Recipe, SafeCommand, Sampled};
 /// # let reference = Consensus::<Position>::new([(&[1.0][..], 0.0)]).expect("a positive root");
-/// # let law = SlotineLi { damping: Gain::Number(8.0).resolve(1, &[])?, adaptation: None };
+/// # let law = SlotineLi { damping: Gain::Number(8.0).resolve(1, &[])?, adaptation: None, bounds: None };
 ///
 /// let mut recipe = Recipe::lagrangian(PointMass { dimension: 1 }, reference, law, vec![2.0]);
 /// recipe.safe = SafeCommand::Values(vec![-0.5]);

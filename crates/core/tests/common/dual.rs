@@ -83,6 +83,10 @@ impl Scalar for Dual {
         (Dual { value: sin, slope: cos * self.slope }, Dual { value: cos, slope: -sin * self.slope })
     }
 
+    fn positive(self) -> Self {
+        if self.value < 0.0 { Self::ZERO } else { self }
+    }
+
     fn tanh(self) -> Self {
         let value = self.value.tanh();
         Dual { value, slope: (1.0 - value * value) * self.slope }

@@ -95,7 +95,7 @@ impl Random {
         let rubbing: Vec<usize> = (0..joints).filter(|_| self.chance(0.7)).collect();
         assembled.theta.extend((0..geared.len() + rubbing.len()).map(|_| 1.0 + 0.9 * self.number()));
         let friction = rubbing.into_iter().map(|joint| Friction { joint, width: 0.3 + 0.2 * self.number() }).collect();
-        assembled.tree = assembled.tree.with_drives(Drives { geared, friction, dry }).unwrap();
+        assembled.tree = assembled.tree.with_drives(Drives { geared, friction, dry_s: dry.then_some(1e-3) }).unwrap();
         assembled
     }
 }

@@ -31,7 +31,12 @@ fn the_sound_scenario_is_read_as_written() {
     assert_eq!(setup.agents[1].start.q, [0.3, 0.4]);
     assert_eq!(
         arm.law.downcast(),
-        Some(&Adaptive { damping: Gain::Number(8.0), adaptation: Gain::Number(10.0), estimate_start: vec![0.0; 5] })
+        Some(&Adaptive {
+            damping: Gain::Number(8.0),
+            adaptation: Gain::Number(10.0),
+            estimate_start: vec![0.0; 5],
+            bounds: None
+        })
     );
     assert_eq!((cart.start.q.as_slice(), cart.robot.theta.as_slice()), ([0.0, 0.0].as_slice(), [4.0].as_slice()));
     let schedule = &setup.network.schedule;

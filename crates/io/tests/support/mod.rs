@@ -44,6 +44,7 @@ pub fn agent(name: &str, dof: usize, parameters: usize) -> AgentSetup {
             damping: Gain::Number(8.0),
             adaptation: Gain::Number(10.0),
             estimate_start: vec![0.0; parameters],
+            bounds: None,
         }),
         start: Start { q: vec![0.0; dof], dq: vec![0.0; dof], rest: Vec::new(), reference: Vec::new() },
         enforce_limits: false,

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass, TwoVelocity};
 use forwardstep_core::{Gain, Kernel, Lanes, LengthError, dispatch};
@@ -268,6 +269,8 @@ pub struct Adaptive {
     pub adaptation: Gain,
     /// ϑ̂(0).
     pub estimate_start: Vec<f64>,
+    /// Bounds that ϑ̂ is kept within; they need a Γ that is no full matrix.
+    pub bounds: Option<ParameterBounds>,
 }
 
 /// τ = −K s + Y ϑ with the true parameters.

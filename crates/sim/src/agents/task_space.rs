@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
-use forwardstep_core::controller::{ParameterBounds, TaskSpace};
+use forwardstep_core::controller::TaskSpace;
+use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::plant::{Mechanical, TaskArm};
 use forwardstep_core::robot::tree::{LinkPoint, Tree, TreeTip, Uncertain};
 use forwardstep_core::robot::{Lagrangian, PlanarArm, PlanarTip, TipKinematics};
 use forwardstep_core::{Gain, ResolvedGain};
 
 use crate::closed_loop::{Assembly, Block, SetupError, tracking_law};
-use crate::quantity::{LARGEST, at_least, positive, within};
+use crate::quantity::{positive, within};
 use crate::recording::Signal;
 use crate::setup::{AxisUnit, RobotSetup};
 use crate::system::{Coordinates, Interface, Known, Law, LawWords, Line, LineValue, Robot};
@@ -153,7 +154,7 @@ impl TaskSpaceLaw {
         let adapts = self.kinematic_adaptation.as_ref();
         let kinematic_adaptation = adapts.map(|gain| assembly.gain(gain, "kinematic_gain", p)).transpose()?;
         if let Some(bounds) = &self.bounds {
-            check_bounds(assembly, bounds, p)?;
+            assembly.bounds(bounds, ["lower_m", "upper_m", "margin_m"], p)?;
             match kinematic_adaptation {
                 None => return Err(SetupError::BoundsOfKnown { agent: own.name.clone() }),
                 Some(ResolvedGain::Matrix { .. }) => {
@@ -178,18 +179,4 @@ impl TaskSpaceLaw {
         let plant = TaskArm { arm: Mechanical { robot, theta: own.robot.theta.clone() }, tip, tip_theta };
         assembly.solo(plant, controller)
     }
-}
-
-fn check_bounds(assembly: &Assembly<'_>, bounds: &ParameterBounds, p: usize) -> Result<(), SetupError> {
-    let place = assembly.of_law().key("bounds");
-    assembly.length(place.clone(), "lower_m", p, bounds.lower.len())?;
-    assembly.length(place.clone(), "upper_m", p, bounds.upper.len())?;
-    positive(place.clone(), "margin_m", bounds.margin)?;
-    for (k, (low, high)) in bounds.lower.iter().zip(&bounds.upper).enumerate() {
-        let (lower, upper) = (place.clone().key("lower_m").index(k), place.clone().key("upper_m").index(k));
-        within(lower, "", *low, -LARGEST, LARGEST)?;
-        within(upper.clone(), "", *high, -LARGEST, LARGEST)?;
-        at_least(upper, "", *high, ("lower_m", *low))?;
-    }
-    Ok(())
 }

@@ -12,6 +12,7 @@ use super::assembly::Assembly;
 use super::columns::{Columns, Inputs};
 use super::driven::Driven;
 use super::error::SetupError;
+use super::frictions::{Frictions, is_acted_on};
 use super::guide::Guide;
 use super::members::batches;
 use super::pushes::Pushes;
@@ -40,6 +41,8 @@ pub(crate) struct ClosedLoop<'a> {
     /// When it is an agent.
     driven: Option<Driven>,
     pushes: Pushes,
+    /// When some agents have dry friction.
+    frictions: Option<Frictions>,
     /// When a target has its next kink, s.
     kink_s: f64,
     /// A row of the recording of an agent that is pushed or follows a leader.
@@ -98,6 +101,7 @@ impl<'a> ClosedLoop<'a> {
             leader: None,
             driven: following.and_then(|following| Driven::new(following, axes)),
             pushes: Pushes::default(),
+            frictions: None,
             kink_s: f64::INFINITY,
             row: Vec::new(),
             axes,
@@ -107,7 +111,7 @@ impl<'a> ClosedLoop<'a> {
             let n = group.len();
             let columns = setup.agents[group[0]].law.block(&Assembly::new(setup, &group))?.0;
             let robot = &setup.agents[group[0]].robot;
-            let pushed = group.iter().any(|agent| !setup.agents[*agent].pushes.is_empty());
+            let pushed = group.iter().any(|agent| is_acted_on(&setup.agents[*agent]));
             let each = if pushed { total(&robot.interface().attachments.blocks(robot.axes.len())) } else { 0 };
             let outside = external..external + n * each;
             external = outside.end;
@@ -146,7 +150,7 @@ impl<'a> ClosedLoop<'a> {
             let places = closed_loop.places();
             let states = closed_loop.start.len();
             closed_loop.slider =
-                Some(Slider::new(&setup.network, sliding, following.period_s, axes, places, heard, states));
+                Some(Slider::new(&setup.network, sliding, following.period_s, axes, places, heard.clone(), states));
         }
         if let Some(control) = &setup.control {
             for block in &mut closed_loop.blocks {
@@ -158,6 +162,7 @@ impl<'a> ClosedLoop<'a> {
             closed_loop.sampling = Some(Sampling::new(setup, control, ports.clone(), entries, start));
         }
         closed_loop.pushes = Pushes::new(setup, &closed_loop.ports, &closed_loop.blocks);
+        closed_loop.frictions = Frictions::new(setup, &closed_loop.ports, &closed_loop.blocks, heard);
         closed_loop.kink_s = closed_loop.next_kink_s(0.0);
         let longest = closed_loop.blocks.iter().map(|block| block.columns.signals().len()).max();
         closed_loop.row = Vec::with_capacity(longest.unwrap_or(0) + external + axes);
@@ -404,6 +409,9 @@ impl DelaySystem for ClosedLoop<'_> {
             let inputs = block.inputs(heard, self.pushes.external());
             block.columns.rates(t_s, &x[block.state.clone()], inputs, &mut dx[block.state.clone()]);
         }
+        if let Some(frictions) = &mut self.frictions {
+            frictions.hear(heard);
+        }
         if let Some(slider) = &mut self.slider {
             slider.hear(heard);
             slider.add_sign_terms(t_s, self.pushes.external(), &mut self.blocks, x, dx);
@@ -422,7 +430,8 @@ impl DelaySystem for ClosedLoop<'_> {
     fn next_event_s(&self) -> f64 {
         let sample_s = self.sampling.as_ref().map_or(f64::INFINITY, Sampling::next_s);
         let set_s = self.slider.as_ref().map_or(f64::INFINITY, Slider::next_s);
-        sample_s.min(self.pushes.next_event_s()).min(self.kink_s).min(set_s)
+        let rubs_s = self.frictions.as_ref().map_or(f64::INFINITY, Frictions::next_s);
+        sample_s.min(self.pushes.next_event_s()).min(self.kink_s).min(set_s).min(rubs_s)
     }
 
     fn happen(&mut self, until_s: f64, x: &mut [f64]) -> Happened {
@@ -440,8 +449,11 @@ impl DelaySystem for ClosedLoop<'_> {
             }
             happened = happened.max(slider.happen(until_s, self.pushes.external(), &mut self.blocks, x));
         }
-        match &mut self.sampling {
-            Some(sampling) => happened.max(sampling.happen(until_s, &mut self.blocks, x)),
+        if let Some(sampling) = &mut self.sampling {
+            happened = happened.max(sampling.happen(until_s, &mut self.blocks, x));
+        }
+        match &mut self.frictions {
+            Some(frictions) => frictions.happen(until_s, happened, &mut self.pushes, &mut self.blocks, x),
             None => happened,
         }
     }

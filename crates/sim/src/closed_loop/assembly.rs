@@ -1,6 +1,7 @@
 //! What a law builds its agents with.
 
 use forwardstep_core::controller::{ChainError, Controller, Guide, JointTracking};
+use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::plant::{Mechanical, Plant, total};
 use forwardstep_core::reference::polynomial;
 use forwardstep_core::signal::Block as Signals;
@@ -13,7 +14,7 @@ use super::robot_batch::Member;
 use super::solo::{Solo, Target};
 use super::valid::too_many;
 use crate::agents::{Adaptive, RobotModel};
-use crate::quantity::{Path, each, finite, positive};
+use crate::quantity::{LARGEST, Path, at_least, each, finite, positive, within};
 use crate::recording::Signal;
 use crate::reference::ReferenceDynamics;
 use crate::setup::{AgentSetup, Axis, Setup};
@@ -114,6 +115,33 @@ impl<'a> Assembly<'a> {
     pub fn estimate(&self, key: &'static str, estimate: &[f64], parameters: usize) -> Result<(), SetupError> {
         self.length(self.of_law(), key, parameters, estimate.len())?;
         Ok(each(self.of_law(), key, estimate, finite)?)
+    }
+
+    /// Checks `bounds` of what is estimated, whose lower and upper ends and margins have these `keys` in the table `bounds` of the law.
+    ///
+    /// # Errors
+    /// [`SetupError`], at the key and entry of the first that has no meaning.
+    pub fn bounds(
+        &self,
+        bounds: &ParameterBounds,
+        keys: [&'static str; 3],
+        parameters: usize,
+    ) -> Result<(), SetupError> {
+        let place = self.of_law().key("bounds");
+        let [lower, upper, margin] = keys;
+        self.length(place.clone(), lower, parameters, bounds.lower.len())?;
+        self.length(place.clone(), upper, parameters, bounds.upper.len())?;
+        self.length(place.clone(), margin, parameters, bounds.margin.len())?;
+        for entry in &bounds.margin {
+            positive(place.clone(), margin, *entry)?;
+        }
+        for (k, (low, high)) in bounds.lower.iter().zip(&bounds.upper).enumerate() {
+            let [at_low, at_high] = [lower, upper].map(|key| place.clone().key(key).index(k));
+            within(at_low, "", *low, -LARGEST, LARGEST)?;
+            within(at_high.clone(), "", *high, -LARGEST, LARGEST)?;
+            at_least(at_high, "", *high, (lower, *low))?;
+        }
+        Ok(())
     }
 
     /// A gain of `size` rows that is no bandwidth, under the key that it has in the law's table.

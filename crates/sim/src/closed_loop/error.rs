@@ -317,8 +317,10 @@ pub enum SetupError {
         /// What is wrong.
         error: SpacecraftError,
     },
-    /// Bounds of kinematic parameters beside a full matrix Λ.
-    #[error("agent `{agent}`: bounds of kinematic parameters need Λ to be a number or a diagonal, not a matrix")]
+    /// Bounds of estimates beside a full matrix Γ or Λ.
+    #[error(
+        "agent `{agent}`: bounds of what is estimated need the gain of its adaptation to be a number or a diagonal, not a matrix"
+    )]
     ProjectionOfMatrix {
         /// The agent.
         agent: String,

@@ -93,12 +93,13 @@ mod tests {
         let known = rates(
             &PointMass { dimension: 2 },
             &[2.0],
-            SlotineLi { damping: damping.clone(), adaptation: None },
+            SlotineLi { damping: damping.clone(), adaptation: None, bounds: None },
             motion,
         );
         assert!((known.damping_per_s - 4.0).abs() < 1e-3 && known.adaptation_per_s.is_none(), "{known:?}");
         let adaptation = Some(ResolvedGain::Diagonal(vec![18.0]));
-        let adaptive = rates(&PointMass { dimension: 2 }, &[2.0], SlotineLi { damping, adaptation }, motion);
+        let adaptive =
+            rates(&PointMass { dimension: 2 }, &[2.0], SlotineLi { damping, adaptation, bounds: None }, motion);
         assert!((adaptive.adaptation_per_s.unwrap() - 15.0).abs() < 1e-9, "{adaptive:?}");
     }
 
@@ -106,7 +107,7 @@ mod tests {
     fn the_rate_of_the_damping_of_an_arm_is_that_of_its_lightest_motion() {
         let theta = PlanarLinks::uniform([2.0, 1.5], [1.0, 0.8]).theta();
         let motion = TwoVelocity { q: &[0.3, 0.4], dq: &[0.0; 2], z: &[0.0; 2], dz: &[0.0; 2] };
-        let law = SlotineLi { damping: ResolvedGain::Diagonal(vec![7.0; 2]), adaptation: None };
+        let law = SlotineLi { damping: ResolvedGain::Diagonal(vec![7.0; 2]), adaptation: None, bounds: None };
         let mut m = [0.0; 4];
         PlanarArm.mass_matrix(&mut Lagrangian::<f64>::scratch(&PlanarArm), motion.q, &theta, &mut m).unwrap();
         let (mean, determinant) = (0.5 * (m[0] + m[3]), m[0] * m[3] - m[1] * m[2]);

@@ -4,7 +4,7 @@ use forwardstep_core::law::SlotineLi;
 use forwardstep_core::plant::total;
 use forwardstep_core::reference::{Position, PositionVelocity};
 use forwardstep_core::robot::Lagrangian;
-use forwardstep_core::{Gain, InverseQuadratic, Lanes};
+use forwardstep_core::{Gain, InverseQuadratic, Lanes, ResolvedGain};
 
 use super::assembly::{Assembly, effort_limits};
 use super::columns::Columns;
@@ -76,15 +76,22 @@ pub(super) fn member<R: Lagrangian<f64>>(robot: &R, assembly: &Assembly<'_>) -> 
     assembly.length(at.clone(), "axes", m, agent.robot.axes.len())?;
     assembly.length(at.clone(), "theta", p, agent.robot.theta.len())?;
     assembly.length(at, "what acts on it from outside", m, total(&agent.robot.interface().attachments.blocks(m)))?;
-    let (damping, adaptation) = match (agent.law.downcast::<Adaptive>(), agent.law.downcast::<Known>()) {
-        (Some(Adaptive { damping, adaptation, estimate_start }), _) => {
+    let (damping, adaptation, bounds) = match (agent.law.downcast::<Adaptive>(), agent.law.downcast::<Known>()) {
+        (Some(Adaptive { damping, adaptation, estimate_start, bounds }), _) => {
             assembly.estimate("estimate_start.given", estimate_start, p)?;
-            (damping, Some(adaptation))
+            (damping, Some(adaptation), bounds.as_ref())
         }
-        (None, Some(Known { damping })) => (damping, None),
+        (None, Some(Known { damping })) => (damping, None, None),
         (None, None) => return Err(assembly.law_of_another()),
     };
-    let law = tracking_law(robot, assembly, damping, adaptation)?;
+    let mut law = tracking_law(robot, assembly, damping, adaptation)?;
+    if let Some(bounds) = bounds {
+        assembly.bounds(bounds, ["lower", "upper", "margin"], p)?;
+        if !matches!(law.adaptation, Some(ResolvedGain::Diagonal(_))) {
+            return Err(SetupError::ProjectionOfMatrix { agent: agent.name.clone() });
+        }
+        law.bounds = Some(bounds.clone());
+    }
     let estimate_cost = law.adaptation.as_ref().map(InverseQuadratic::new).transpose().map_err(|error| {
         SetupError::Gain { agent: agent.name.clone(), path: assembly.of_law().key("adaptation_gain"), error }
     })?;
@@ -124,7 +131,7 @@ pub(crate) fn tracking_law<R: Lagrangian<f64>>(
         None => None,
     };
     let path = assembly.of_law().key(key_of(damping, ["damping.gain", "damping.bandwidth_per_s"]));
-    Ok(SlotineLi { damping: assembly.resolved(damping, path, m, &diagonal)?, adaptation })
+    Ok(SlotineLi { damping: assembly.resolved(damping, path, m, &diagonal)?, adaptation, bounds: None })
 }
 
 /// The key of a gain, which is the second for a bandwidth.

@@ -28,6 +28,7 @@ mod columns;
 mod driven;
 mod error;
 mod error_path;
+mod frictions;
 mod gain_rates;
 mod guide;
 mod members;

@@ -1,4 +1,5 @@
-//! Pushes in the closed loop: which piece of each is in force, and the external torque that it gives.
+//! Pushes in the closed loop: which piece of each is in force, and the external torque that it gives. Dry friction, which
+//! [`super::frictions`] sets, is a part of it.
 
 use std::sync::Arc;
 
@@ -8,6 +9,7 @@ use forwardstep_core::robot::tree::{Axes, PointWrench, Tree, TreeScratch};
 use forwardstep_core::signal::Block as Signals;
 
 use super::assemble::Block;
+use super::frictions::is_acted_on;
 use crate::engine::{Happened, Port};
 use crate::push::{Between, Course, Effect, Grip, Push};
 use crate::setup::{AgentSetup, Setup};
@@ -34,6 +36,8 @@ struct Placed {
     q: Vec<f64>,
     dq: Vec<f64>,
     torque: Vec<f64>,
+    /// What its dry friction takes, entry by entry, if it has any.
+    rubbing: Vec<f64>,
 }
 
 impl Pushes {
@@ -51,6 +55,7 @@ impl Pushes {
                 q: vec![0.0; agent.robot.axes.len()],
                 dq: vec![0.0; agent.robot.velocity_len()],
                 torque: vec![0.0; total(&pushed.signals)],
+                rubbing: Vec::new(),
                 pushed,
             });
         }
@@ -71,11 +76,12 @@ impl Pushes {
     /// Computes what acts on everybody at `t_s` in the state `x` of the `blocks`.
     pub(super) fn evaluate(&mut self, t_s: f64, x: &[f64], blocks: &mut [Block]) {
         for placed in &mut self.people {
-            let Placed { pushed, block, external, stride, q, dq, torque } = placed;
+            let Placed { pushed, block, external, stride, q, dq, torque, rubbing } = placed;
             let Block { columns, state, .. } = &mut blocks[*block];
             columns.motion(pushed.agent, t_s, &x[state.clone()], q, dq);
             let checked = pushed.torque(t_s, q, dq, torque);
             debug_assert_eq!(checked, Ok(()), "lengths are fixed when the closed loop is built");
+            torque.iter_mut().zip(rubbing).for_each(|(torque, rubs)| *torque -= *rubs);
             for (k, torque) in torque.iter().enumerate() {
                 self.external[*external + k * *stride] = *torque;
             }
@@ -91,6 +97,14 @@ impl Pushes {
     pub(crate) fn external_on(&self, agent: usize) -> &[f64] {
         let placed = self.people.iter().find(|placed| placed.pushed.agent == agent);
         placed.map_or(&[], |placed| &placed.torque)
+    }
+
+    /// From now on dry friction takes this from the joints of an agent.
+    pub(super) fn rub(&mut self, agent: usize, torque: &[f64]) {
+        if let Some(placed) = self.people.iter_mut().find(|placed| placed.pushed.agent == agent) {
+            placed.rubbing.clear();
+            placed.rubbing.extend_from_slice(torque);
+        }
     }
 
     /// When a push begins, ends or enters another piece next, s.
@@ -127,7 +141,7 @@ impl Pushed {
             Attachments::Links(tree) => Some((Arc::clone(&tree), tree.scratch())),
             _ => None,
         };
-        (!actions.is_empty()).then_some(Pushed { agent: index, signals, actions, tree })
+        is_acted_on(agent).then_some(Pushed { agent: index, signals, actions, tree })
     }
 
     /// The sum of what all pushes do to the agent at `t_s`.

@@ -3,7 +3,7 @@
 //! A pack is as many neighbouring members as the scalar `S` has lanes; the bits do not depend on how many that is. Which
 //! reference the robots follow is not known here.
 
-use forwardstep_core::law::{SlotineLi, SlotineLiOutput};
+use forwardstep_core::law::{ParameterBounds, SlotineLi, SlotineLiOutput};
 use forwardstep_core::robot::{Lagrangian, TwoVelocity};
 use forwardstep_core::{InverseQuadratic, Kernel, LengthError, Packed, ResolvedGain, dispatch};
 
@@ -201,13 +201,18 @@ impl<S: Packed> Pack<S> {
             .as_ref()
             .map(|own| ResolvedGain::pack(|lane| member(lane).law.adaptation.as_ref().unwrap_or(own)));
         let damping = ResolvedGain::pack(|lane| &member(lane).law.damping);
+        // A member without bounds beside one with bounds has bounds that are never reached.
+        let bounded = (0..S::WIDTH).any(|lane| member(lane).law.bounds.is_some());
+        let anywhere = ParameterBounds::anywhere(member(0).theta.len());
+        let bounds =
+            bounded.then(|| ParameterBounds::pack(|lane| member(lane).law.bounds.as_ref().unwrap_or(&anywhere)));
         // A member without limits beside one with limits has limits that are never reached.
         let limit = |lane: usize, k: usize| member(lane).effort_limits.as_ref().map_or(f64::INFINITY, |l| l[k]);
         let limited = (0..S::WIDTH).any(|lane| member(lane).effort_limits.is_some());
         let axes = member(0).axes;
         Pack {
             first,
-            law: SlotineLi { damping, adaptation },
+            law: SlotineLi { damping, adaptation, bounds },
             theta: pack(|member| &member.theta),
             effort_limits: limited.then(|| (0..axes).map(|k| S::from_lanes(|lane| limit(lane, k))).collect()),
         }
@@ -265,6 +270,9 @@ impl<S: Packed> Pack<S> {
         for k in 0..l.m {
             dissipation = w.s[k].mul_add(w.damped[k], dissipation);
         }
+        if let Some(bounds) = &self.law.bounds {
+            dissipation = dissipation + bounds.gained(&w.theta_hat, &self.theta, &w.yt_s);
+        }
         Ok(dissipation)
     }
 }
@@ -298,7 +306,7 @@ impl<S: Packed, T> Work<S, T> {
     #[inline(always)]
     fn learn(&mut self, l: Layout, pack: &Pack<S>, dx: &mut [f64]) {
         if l.adaptive {
-            pack.law.adaptation_rate(&self.yt_s, &mut self.d_theta_hat);
+            pack.law.adaptation_rate(&self.theta_hat, &self.yt_s, &mut self.d_theta_hat);
             give(l, pack.first, &self.d_theta_hat, &mut dx[l.theta_hat..]);
         }
     }

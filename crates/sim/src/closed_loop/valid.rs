@@ -4,6 +4,7 @@ use forwardstep_core::LengthError;
 
 use super::assembly::length;
 use super::error::SetupError;
+use super::frictions::is_acted_on;
 use super::unused;
 use crate::engine::{Integrator, Radio};
 use crate::quantity::{Path, each, finite, not_negative, positive};
@@ -151,7 +152,7 @@ fn goes_together(setup: &Setup, index: usize) -> Result<(), SetupError> {
     if !interface.exchanges.contains(&setup.exchange) && setup.leader() != Some(index) {
         return Err(SetupError::SendsPositionOnly { agent: name(), law });
     }
-    if !interface.pushed && !agent.pushes.is_empty() {
+    if !interface.pushed && is_acted_on(agent) {
         return Err(SetupError::NotPushed { agent: name(), law });
     }
     match (&agent.target, setup.tracks(index)) {

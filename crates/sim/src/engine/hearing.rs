@@ -28,7 +28,7 @@ pub(crate) struct Port {
 }
 
 /// What all agents hear.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Heard {
     /// Σ_j w_ij.
     pub(crate) degree: Vec<f64>,

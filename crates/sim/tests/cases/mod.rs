@@ -210,9 +210,12 @@ fn agent((index, case): (usize, &AgentCase)) -> AgentSetup {
     };
     let damping = gain(&case.k);
     let law: Arc<dyn Law> = match &case.gamma {
-        Some(gamma) if !case.knows_theta => {
-            Arc::new(Adaptive { damping, adaptation: gain(gamma), estimate_start: case.start.theta_hat.clone() })
-        }
+        Some(gamma) if !case.knows_theta => Arc::new(Adaptive {
+            damping,
+            adaptation: gain(gamma),
+            estimate_start: case.start.theta_hat.clone(),
+            bounds: None,
+        }),
         _ => Arc::new(Known { damping }),
     };
     AgentSetup {

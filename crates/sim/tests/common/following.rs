@@ -37,6 +37,7 @@ pub fn arm(index: usize, q: [f64; 2], estimate: f64) -> AgentSetup {
             damping: Gain::Number(20.0),
             adaptation: Gain::Number(10.0),
             estimate_start: theta.iter().map(|theta| estimate * theta).collect(),
+            bounds: None,
         }),
         target: None,
         start: Start { q: q.to_vec(), dq: vec![0.0; 2], rest: Vec::new(), reference: Vec::new() },

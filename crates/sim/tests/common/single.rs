@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
-use forwardstep_core::controller::ParameterBounds;
+use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::plant::{Wheel, Wheels};
 use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkPoint, LinkSpec, Placement, Tree, Uncertain};
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip};

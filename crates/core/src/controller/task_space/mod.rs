@@ -24,21 +24,18 @@
 //! and gains sᵀτ_ext from what acts from outside
 //! (the second subsystem of the paper's cascade prints Y(q, q̇, z_r, ż_r) in the adaptation; (81) is what V̇ needs).
 //!
-//! **Projection.** When bounds for θ̂ are given, and Λ is diagonal, let u = ZᵀK*Δx and θ̂_k' = c_k Λ_k u_k. c_k is one but where θ̂_k
-//! is beyond a bound and u_k leads further out; there it falls to zero over a margin. While θ keeps to the bounds,
-//! Δθ_k and u_k have one sign wherever c_k < 1, so V̇ has one more term, κ Σ (c_k − 1) Δθ_k u_k ≤ 0, and the theorem stands.
-//! θ̂ stays within the bounds and the margin.
+//! **Projection** of θ̂ ([`ParameterBounds`]), when bounds are given and Λ is diagonal: with u = ZᵀK*Δx, V̇ has one more term,
+//! κ Σ (c_k − 1) Δθ_k u_k ≤ 0.
 
 mod tip;
 
 use alloc::vec;
 use alloc::vec::Vec;
 
-pub use tip::ParameterBounds;
 use tip::TaskWork;
 
 use super::{Asked, Balance, Controller, Given, Trouble, Truth};
-use crate::law::{SlotineLi, SlotineLiOutput};
+use crate::law::{ParameterBounds, SlotineLi, SlotineLiOutput};
 use crate::plant::TaskArm;
 use crate::reference::Position;
 use crate::robot::{Lagrangian, TipKinematics, TwoVelocity};
@@ -82,7 +79,7 @@ pub struct TaskMeasured<'a> {
 /// let law = TaskSpace {
 ///     robot: PlanarArm,
 ///     tip,
-///     law: SlotineLi { damping: number(8.0, 2)?, adaptation: Some(number(3.0, 5)?) },
+///     law: SlotineLi { damping: number(8.0, 2)?, adaptation: Some(number(3.0, 5)?), bounds: None },
 ///     task_gain: number(20.0, 2)?,
 ///     kappa: 1.5,
 ///     alpha: 2.0,
@@ -242,7 +239,7 @@ where
         for k in 0..m {
             asked.input[k] -= self.kappa * work.pulled[k];
         }
-        self.law.adaptation_rate(&work.yt_s, &mut rest[..l.kinematic - m]);
+        self.law.adaptation_rate(&state[l.theta..l.kinematic], &work.yt_s, &mut rest[..l.kinematic - m]);
         rest[l.kinematic - m..l.determinant - m].copy_from_slice(&work.d_theta_hat);
         rest[l.determinant - m] = 0.0;
 
@@ -323,7 +320,9 @@ where
         if let Some(inverse) = inverse_lambda {
             for (k, hat) in theta_hat.iter().enumerate() {
                 difference[k] = hat - plant.tip_theta[k];
-                dissipation += self.kappa * (1.0 - self.share(k, *hat, push[k])) * difference[k] * push[k];
+                if let Some(bounds) = self.enforced_bounds() {
+                    dissipation += self.kappa * difference[k] * (push[k] - bounds.slowed(k, *hat, push[k]));
+                }
             }
             value += 0.5 * self.kappa * inverse.of(difference);
         }

@@ -5,28 +5,10 @@ use alloc::vec::Vec;
 
 use super::{TaskMeasured, TaskSpace};
 use crate::controller::Jet;
+use crate::law::ParameterBounds;
 use crate::linear::invert;
 use crate::robot::{Lagrangian, Posture, TipKinematics};
 use crate::{InverseQuadratic, LengthError, ResolvedGain};
-
-/// Bounds within which the kinematic parameters are known to be.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ParameterBounds {
-    /// An entry per parameter.
-    pub lower: Vec<f64>,
-    /// An entry per parameter.
-    pub upper: Vec<f64>,
-    /// How far beyond a bound an estimate may go, m; positive.
-    pub margin: f64,
-}
-
-impl ParameterBounds {
-    /// c_k: what is left of a rate in the direction of `push`.
-    fn share(&self, k: usize, theta_hat: f64, push: f64) -> f64 {
-        let beyond = if push > 0.0 { theta_hat - self.upper[k] } else { self.lower[k] - theta_hat };
-        if push == 0.0 || beyond <= 0.0 { 1.0 } else { (1.0 - beyond / self.margin).max(0.0) }
-    }
-}
 
 /// Working memory of [`TaskSpace`].
 #[derive(Clone, Debug)]
@@ -124,8 +106,8 @@ where
         work.d_theta_hat.fill(0.0);
         if let Some(lambda) = &self.kinematic_adaptation {
             lambda.add_to(&work.push, &mut work.d_theta_hat);
-            for k in 0..theta_hat.len() {
-                work.d_theta_hat[k] *= self.share(k, theta_hat[k], work.push[k]);
+            if let Some(bounds) = self.enforced_bounds() {
+                bounds.slow(theta_hat, &mut work.d_theta_hat);
             }
         }
         let posture = Posture { q, dq, theta: theta_hat, d_theta: &work.d_theta_hat };
@@ -153,12 +135,10 @@ where
         Ok(determinant)
     }
 
-    /// c_k of the head of the law.
-    pub(super) fn share(&self, k: usize, theta_hat: f64, push: f64) -> f64 {
-        match (&self.bounds, &self.kinematic_adaptation) {
-            (Some(bounds), Some(ResolvedGain::Diagonal(_))) => bounds.share(k, theta_hat, push),
-            _ => 1.0,
-        }
+    /// The bounds, where Λ is diagonal.
+    pub(super) fn enforced_bounds(&self) -> Option<&ParameterBounds> {
+        let diagonal = matches!(self.kinematic_adaptation, Some(ResolvedGain::Diagonal(_)));
+        self.bounds.as_ref().filter(|_| diagonal)
     }
 
     pub(super) fn check(&self) -> Result<(), LengthError> {
@@ -175,8 +155,7 @@ where
             LengthError::check("kinematic adaptation gain", p, lambda.size())?;
         }
         if let Some(bounds) = &self.bounds {
-            LengthError::check("lower bounds", p, bounds.lower.len())?;
-            LengthError::check("upper bounds", p, bounds.upper.len())?;
+            bounds.check(p)?;
         }
         Ok(())
     }

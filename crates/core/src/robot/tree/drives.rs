@@ -45,8 +45,8 @@ pub struct Drives {
     /// The joints with Coulomb friction.
     pub friction: Vec<Friction>,
     /// The friction of the plant is set-valued: [`Lagrangian::forward_dynamics`](crate::robot::Lagrangian::forward_dynamics) leaves it to
-    /// whoever solves for σ. Otherwise it is F tanh(q̇/ε).
-    pub dry: bool,
+    /// [`Stick`](super::Stick), which holds it over periods of so many seconds at most. Otherwise it is F tanh(q̇/ε).
+    pub dry_s: Option<f64>,
 }
 
 /// Why drives have no meaning.
@@ -65,6 +65,12 @@ pub enum DriveError {
     Order {
         /// The joint.
         joint: usize,
+    },
+    /// A period is not positive.
+    #[error("dry friction is held over periods of {period_s} s, which must be positive and finite")]
+    Period {
+        /// The period, s.
+        period_s: f64,
     },
     /// A width is not positive.
     #[error("the width of the friction of joint {joint} is {width}, but must be positive and finite")]
@@ -99,6 +105,9 @@ impl Tree {
             drives.friction.iter().find(|f| !(f.width > 0.0 && f.width.is_finite()))
         {
             return Err(DriveError::Width { joint, width });
+        }
+        if let Some(period_s) = drives.dry_s.filter(|period_s| !(*period_s > 0.0 && period_s.is_finite())) {
+            return Err(DriveError::Period { period_s });
         }
         let first = 10 * joints + self.damped.len();
         for (joint, body) in self.bodies.iter_mut().enumerate() {
@@ -166,7 +175,7 @@ impl Tree {
         for (own, joint) in theta[damping..].iter().zip(&self.damped) {
             drive[*joint] = own.neg_mul_add(dq[*joint], drive[*joint]);
         }
-        if !self.drives.dry {
+        if self.drives.dry_s.is_none() {
             for (own, Friction { joint, width }) in theta[friction..].iter().zip(&self.drives.friction) {
                 drive[*joint] = own.neg_mul_add(smoothed(dq[*joint], *width), drive[*joint]);
             }
@@ -181,7 +190,7 @@ impl Tree {
             out[joint] = own.mul_add(motion.dq[joint] - motion.z[joint], out[joint]);
         }
         for (own, &Friction { joint, width }) in theta[friction..].iter().zip(&self.drives.friction) {
-            let plant = if self.drives.dry { S::ZERO } else { smoothed(motion.dq[joint], width) };
+            let plant = if self.drives.dry_s.is_some() { S::ZERO } else { smoothed(motion.dq[joint], width) };
             out[joint] = own.mul_add(plant - smoothed(motion.z[joint], width), out[joint]);
         }
     }

@@ -41,6 +41,7 @@ impl LawKind for AdaptiveFile {
             damping: damping(self.damping.as_ref(), agent)?,
             adaptation: adaptation(self.adaptation_gain.as_ref(), agent)?,
             estimate_start: estimate(self.estimate_start.as_ref(), agent),
+            bounds: None,
         }))
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
-use forwardstep_core::controller::ParameterBounds;
+use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::robot::TipKinematics;
 use forwardstep_core::robot::tree::{LinkPoint, TipError, Tree, TreeTip, Uncertain};
 use forwardstep_sim::{Attachments, Law, RobotSetup, TaskSpaceLaw, TipSetup};
@@ -266,5 +266,5 @@ fn of_tree(file: &TipFile, agent: &str, tree: &Tree, body: &Body) -> Result<OfTr
 
 fn bounds(file: &BoundsFile) -> ParameterBounds {
     let [lower, upper] = [&file.lower_m, &file.upper_m].map(|list| values(&list.value));
-    ParameterBounds { lower, upper, margin: number_or(&file.margin_m, MARGIN_M) }
+    ParameterBounds::new(lower, upper, number_or(&file.margin_m, MARGIN_M))
 }

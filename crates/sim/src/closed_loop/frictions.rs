@@ -1,0 +1,138 @@
+//! Dry friction in the closed loop: when σ ∈ Sgn q̇ is set, and from what.
+//!
+//! Set-valued friction is held over a period, as the set-valued signs of a leader's followers are, and set anew at every event between: a
+//! torque that jumps moves a joint that sticks. See [`Stick`] for what is solved.
+
+use std::sync::Arc;
+
+use forwardstep_core::robot::tree::{Stick, Tree};
+
+use super::assemble::Block;
+use super::pushes::Pushes;
+use crate::engine::{Happened, Heard, Port};
+use crate::recording::Signal;
+use crate::setup::{AgentSetup, Setup};
+
+/// Instants that are closer than this share of a period are one.
+const ROUNDING: f64 = 1e-9;
+
+/// Everybody with dry friction.
+pub(super) struct Frictions {
+    each: Vec<Rubbed>,
+    period_s: f64,
+    /// How many regular instants have passed.
+    set: u64,
+    /// What was heard when the right-hand side was last evaluated: at the end of a step, which is the instant at hand.
+    heard: Heard,
+    rates: Vec<f64>,
+}
+
+/// An agent with dry friction, and where its numbers stand.
+struct Rubbed {
+    agent: usize,
+    block: usize,
+    tree: Arc<Tree>,
+    theta: Vec<f64>,
+    stick: Stick,
+    /// Where q̇ stands in the state of its block, joint by joint.
+    velocities: Vec<usize>,
+    q: Vec<f64>,
+    dq: Vec<f64>,
+    ddq: Vec<f64>,
+}
+
+/// The tree of an agent and the longest period over which its dry friction is held, s; `None` when it has none.
+pub(super) fn dry_friction(agent: &AgentSetup) -> Option<(&Arc<Tree>, f64)> {
+    let tree = agent.robot.kind.downcast::<Arc<Tree>>()?;
+    let drives = tree.drives();
+    drives.dry_s.filter(|_| !drives.friction.is_empty()).map(|period_s| (tree, period_s))
+}
+
+/// Whether something ever acts on an agent from outside of its law: a push or dry friction.
+pub(super) fn is_acted_on(agent: &AgentSetup) -> bool {
+    !agent.pushes.is_empty() || dry_friction(agent).is_some()
+}
+
+impl Frictions {
+    /// `ports` says where the agents' numbers stand in the `blocks`, and `heard` what is heard at t = 0; `None` when nothing rubs dryly.
+    pub(super) fn new(setup: &Setup, ports: &[Port], blocks: &[Block], heard: Heard) -> Option<Self> {
+        let mut each = Vec::new();
+        let mut period_s = f64::INFINITY;
+        for (index, (agent, port)) in setup.agents.iter().zip(ports).enumerate() {
+            let Some((tree, own_s)) = dry_friction(agent) else { continue };
+            let place = blocks.iter().enumerate().find(|(_, block)| block.degree.contains(&port.degree));
+            let Some((block, Block { columns, state, .. })) = place else { continue };
+            let n = tree.joint_count();
+            let mut velocities = vec![0; n];
+            for at in 0..state.len() {
+                if let (found, Signal::Velocity, axis) = columns.locate(at)
+                    && found == index
+                {
+                    velocities[axis] = at;
+                }
+            }
+            period_s = period_s.min(own_s);
+            let joints = || vec![0.0; n];
+            each.push(Rubbed {
+                agent: index,
+                block,
+                tree: Arc::clone(tree),
+                theta: agent.robot.theta.clone(),
+                stick: Stick::new(tree),
+                velocities,
+                q: joints(),
+                dq: joints(),
+                ddq: joints(),
+            });
+        }
+        let states = blocks.last().map_or(0, |block| block.state.end);
+        (!each.is_empty()).then(|| Frictions { each, period_s, set: 0, heard, rates: vec![0.0; states] })
+    }
+
+    /// Takes note of what is heard.
+    pub(super) fn hear(&mut self, heard: &Heard) {
+        self.heard.degree.copy_from_slice(&heard.degree);
+        self.heard.sums.copy_from_slice(&heard.sums);
+    }
+
+    /// When friction is set next, s.
+    pub(super) fn next_s(&self) -> f64 {
+        self.set as f64 * self.period_s
+    }
+
+    /// Sets friction at `now_s` in the state `x`, if it is time or something `happened`.
+    pub(super) fn happen(
+        &mut self,
+        now_s: f64,
+        happened: Happened,
+        pushes: &mut Pushes,
+        blocks: &mut [Block],
+        x: &[f64],
+    ) -> Happened {
+        let due = self.next_s() <= now_s;
+        if !due && happened == Happened::Nothing {
+            return happened;
+        }
+        while self.next_s() <= now_s + ROUNDING * self.period_s {
+            self.set += 1;
+        }
+        let h_s = self.next_s() - now_s;
+        pushes.evaluate(now_s, x, blocks);
+        for block in blocks.iter_mut() {
+            let (inputs, rates) = (block.inputs(&self.heard, pushes.external()), &mut self.rates[block.state.clone()]);
+            block.columns.rates(now_s, &x[block.state.clone()], inputs, rates);
+        }
+        for rubbed in &mut self.each {
+            let Rubbed { agent, block, tree, theta, stick, velocities, q, dq, ddq } = rubbed;
+            let Block { columns, state, .. } = &mut blocks[*block];
+            columns.motion(*agent, now_s, &x[state.clone()], q, dq);
+            for (ddq, at) in ddq.iter_mut().zip(velocities) {
+                *ddq = self.rates[state.start + *at];
+            }
+            let checked = stick.set(tree, h_s, theta, [q, dq, ddq]);
+            debug_assert_eq!(checked, Ok(()), "lengths are fixed when the closed loop is built");
+            pushes.rub(*agent, stick.torque());
+        }
+        happened.max(Happened::Sampled)
+    }
+}

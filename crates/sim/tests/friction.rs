@@ -1,0 +1,267 @@
+//! Friction at the joints, and estimates that are kept within bounds: closed forms, the balance of V, and what samples make of them.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+
+use std::sync::Arc;
+
+use forwardstep_core::Gain;
+use forwardstep_core::expression::Expression;
+use forwardstep_core::law::ParameterBounds;
+use forwardstep_core::robot::tree::{
+    Drives, Friction, JointKind, LinkJoint, LinkSpec, Placement, SMOOTHING_LOSS, Tree, inertia_about_frame,
+};
+use forwardstep_sim::delay::Delay;
+use forwardstep_sim::push::{Course, Effect, Function, Push};
+use forwardstep_sim::trajectory::{Path, Sinusoid, Trajectory};
+use forwardstep_sim::{
+    Adaptive, AgentSetup, Axis, AxisUnit, Ending, Method, Network, Outcome, RobotSetup, Setup, Signal, run,
+};
+
+const MASS_KG: f64 = 2.0;
+const FRICTION_N: f64 = 3.0;
+
+/// Links in a row, prismatic or revolute, with friction and armature at every joint.
+fn chain(kinds: &[(JointKind, [f64; 3])], dry_s: Option<f64>, gravity: [f64; 3]) -> (Tree, Vec<f64>) {
+    let link = |k: usize| {
+        let (kind, axis) = kinds[k];
+        LinkSpec {
+            parent: k.checked_sub(1),
+            x_parent_joint: Placement { translation: [0.4, 0.0, 0.0], ..Placement::IDENTITY },
+            joint: LinkJoint::Moving { kind, axis, damping: 0.1 * k as f64 },
+            inertia: inertia_about_frame(MASS_KG, [0.2, 0.0, 0.0], [0.03, 0.0, 0.05, 0.0, 0.0, 0.04]),
+        }
+    };
+    let assembled = Tree::assemble(&(0..kinds.len()).map(link).collect::<Vec<_>>(), gravity).unwrap();
+    let friction = (0..kinds.len()).map(|joint| Friction { joint, width: 0.05 }).collect();
+    let drives = Drives { geared: (0..kinds.len()).collect(), friction, dry_s };
+    let mut theta = assembled.theta;
+    theta.extend((0..kinds.len()).map(|k| 0.1 + 0.05 * k as f64));
+    theta.extend(kinds.iter().map(|_| FRICTION_N));
+    (assembled.tree.with_drives(drives).unwrap(), theta)
+}
+
+fn axes(n: usize) -> Vec<Axis> {
+    (0..n).map(|k| Axis::new(format!("j{k}"), AxisUnit::Radian)).collect()
+}
+
+fn column(outcome: &Outcome, agent: usize, signal: Signal, axis: usize) -> Vec<f64> {
+    outcome.recording.values(agent, signal, axis).unwrap().to_vec()
+}
+
+/// One block on rails that nothing controls (K is next to nothing), and what pushes it.
+fn block(dry_s: Option<f64>, push: Function, velocity: f64, end_s: f64) -> Setup {
+    let (tree, theta) = chain(&[(JointKind::Prismatic, [1.0, 0.0, 0.0])], dry_s, [0.0; 3]);
+    // A law that does next to nothing.
+    let nothing = |p: usize| Adaptive {
+        damping: Gain::Number(1e-9),
+        adaptation: Gain::Number(1e-15),
+        estimate_start: vec![0.0; p],
+        bounds: None,
+    };
+    let robot = RobotSetup::tree(tree, theta.clone(), vec![Axis::new("rail", AxisUnit::Metre)]);
+    let mut agent = AgentSetup::new("block", robot, nothing(theta.len())).roots(&[1.0]).at(&[0.0]).moving(&[velocity]);
+    agent.start.reference = vec![vec![0.0]];
+    let effect = Effect::Torque(Course::Each(vec![push]));
+    agent.pushes = vec![Push { effect, from_s: 0.0, until_s: f64::INFINITY }];
+    let mut setup = Setup::consensus([agent], Network::silent(1), end_s);
+    setup.time.record_every_s = 0.01;
+    setup.solver.method = Method::Adaptive { rtol: 1e-9, atol: 1e-12 };
+    setup
+}
+
+const INERTIA_KG: f64 = MASS_KG + 0.1;
+
+#[test]
+fn a_block_slows_down_at_f_over_m_and_stops() {
+    for period_s in [1e-2, 1e-3] {
+        let outcome = run(&block(Some(period_s), Function::Constant(0.0), 1.2, 2.0)).unwrap();
+        let (x, v) = (column(&outcome, 0, Signal::Position, 0), column(&outcome, 0, Signal::Velocity, 0));
+        // The law knows no friction at z = 0, and K is nothing.
+        let stops_s = 1.2 * INERTIA_KG / FRICTION_N;
+        for (row, t) in outcome.recording.t_s.iter().enumerate() {
+            let t = t.min(stops_s);
+            let (want_v, want_x) = (1.2 - FRICTION_N / INERTIA_KG * t, 1.2 * t - 0.5 * FRICTION_N / INERTIA_KG * t * t);
+            assert!(
+                (v[row] - want_v).abs() < 2.0 * period_s && (x[row] - want_x).abs() < period_s,
+                "{row}: {} {}",
+                v[row],
+                x[row]
+            );
+        }
+        assert!(v.last().unwrap().abs() < 1e-9, "it stands: {:?}", v.last());
+    }
+}
+
+#[test]
+fn a_block_sticks_until_the_push_exceeds_f_and_friction_balances_it() {
+    // 2 t N: more than 3 N from 1.5 s on.
+    let ramp = Expression::variable(0) * 2.0;
+    let ramp = Function::Formula(ramp);
+    let outcome = run(&block(Some(1e-3), ramp, 0.0, 4.0)).unwrap();
+    let (x, external) = (column(&outcome, 0, Signal::Position, 0), column(&outcome, 0, Signal::External, 0));
+    for (row, t) in outcome.recording.t_s.iter().enumerate() {
+        let late = (t - 1.5).max(0.0);
+        // ẍ = 2 (t − 1.5)/m.
+        let want = late.powi(3) / (3.0 * INERTIA_KG);
+        assert!((x[row] - want).abs() < 5e-3 * (1.0 + late), "{t} s: {}, not {want}", x[row]);
+        let net = if late > 0.0 { 2.0 * late } else { 0.0 };
+        assert!((external[row] - net).abs() < 5e-3, "{t} s: {}", external[row]);
+    }
+}
+
+#[test]
+fn smooth_friction_creeps_where_dry_friction_sticks() {
+    // 1 N of 3: F tanh(v/ε) = 1.
+    let outcome = run(&block(None, Function::Constant(1.0), 0.0, 4.0)).unwrap();
+    let v = column(&outcome, 0, Signal::Velocity, 0);
+    let creeps = 0.05 * (1.0_f64 / FRICTION_N).atanh();
+    assert!((v.last().unwrap() - creeps).abs() < 1e-6, "{:?}, not {creeps}", v.last());
+    let stuck = run(&block(Some(1e-3), Function::Constant(1.0), 0.0, 4.0)).unwrap();
+    assert!(stuck.recording.last(0, Signal::Position, 0).abs() < 1e-6);
+}
+
+/// Four arms of three joints that agree, with all that is at their joints estimated.
+fn arms(agents: usize, dry_s: Option<f64>, bounds: bool, seed: u64) -> Setup {
+    let kinds = [
+        (JointKind::Revolute, [0.0, 0.0, 1.0]),
+        (JointKind::Revolute, [0.0, 1.0, 0.0]),
+        (JointKind::Prismatic, [1.0, 0.0, 0.0]),
+    ];
+    let (tree, theta) = chain(&kinds, dry_s, [0.0, 0.0, -9.81]);
+    let tree = Arc::new(tree);
+    let mut draws = seed;
+    // Uniform in [−1, 1), the same everywhere.
+    let mut random = || {
+        draws = draws.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (draws >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    let arm = |k: usize| {
+        let robot = RobotSetup::new(Arc::clone(&tree), theta.clone(), axes(3));
+        let slack: Vec<f64> = theta.iter().map(|own| 0.2 * own.abs() + 0.02).collect();
+        let [lower, upper] =
+            [-1.0, 1.0].map(|sign| theta.iter().zip(&slack).map(|(own, by)| own + sign * by).collect());
+        let law = Adaptive {
+            damping: Gain::Number(10.0),
+            adaptation: Gain::Number(4.0),
+            estimate_start: theta.iter().zip(&slack).map(|(own, by)| own + by * random()).collect(),
+            bounds: bounds.then(|| ParameterBounds::new(lower, upper, 0.01)),
+        };
+        AgentSetup::new(format!("arm-{k}"), robot, law)
+            .roots(&[1.0, 2.0])
+            .at(&[random(), random(), random()])
+            .moving(&[random(), random(), random()])
+    };
+    let ring = (0..agents).map(|k| (k, (k + 1) % agents)).filter(|(from, to)| from != to);
+    let network = Network::fixed(agents, ring, Delay::constant(0.1));
+    let agents: Vec<AgentSetup> = (0..agents).map(arm).collect();
+    let mut setup = Setup::consensus(agents, network, 6.0);
+    setup.solver.method = Method::Adaptive { rtol: 1e-9, atol: 1e-11 };
+    setup.solver.balance = true;
+    setup.time.record_every_s = 0.02;
+    setup
+}
+
+/// The largest V + ∫ what it loses, less V(0), of V(0).
+fn unbalanced(outcome: &Outcome, agents: usize) -> f64 {
+    assert_eq!(outcome.ending, Ending::Completed);
+    (0..agents).fold(0.0, |worst: f64, agent| {
+        let (v, lost) = (column(outcome, agent, Signal::Lyapunov, 0), column(outcome, agent, Signal::Dissipation, 0));
+        v.iter().zip(&lost).fold(worst, |worst, (now, lost)| worst.max((now + lost - v[0]).abs() / v[0]))
+    })
+}
+
+#[test]
+fn thm1_v_balances_with_rotors_friction_and_bounds_smooth_or_dry_alone_or_in_lanes() {
+    for (agents, dry_s) in [(1, None), (4, None), (2, Some(2e-3)), (5, Some(2e-3))] {
+        for bounds in [false, true] {
+            let outcome = run(&arms(agents, dry_s, bounds, 3)).unwrap();
+            let off = unbalanced(&outcome, agents);
+            assert!(off < 1e-7, "{agents} {dry_s:?} {bounds}: {off}");
+        }
+    }
+}
+
+#[test]
+fn v_balances_where_some_have_bounds_and_some_a_full_matrix_and_where_targets_are_followed() {
+    let mut setup = arms(4, None, true, 13);
+    setup.agents[1].change_law(|law: &mut Adaptive| law.bounds = None);
+    setup.agents[2].change_law(|law: &mut Adaptive| {
+        let p = law.estimate_start.len();
+        law.bounds = None;
+        law.adaptation = Gain::Matrix((0..p * p).map(|k| if k % (p + 1) == 0 { 4.0 } else { 0.01 }).collect());
+    });
+    let outcome = run(&setup).unwrap();
+    assert!(unbalanced(&outcome, 4) < 1e-7);
+    let wave = |k: usize| Path::Sinusoids {
+        offset: 0.2,
+        waves: vec![Sinusoid { amplitude: 0.5, rad_per_s: 1.0 + k as f64, phase_rad: 0.0 }],
+    };
+    for dry_s in [None, Some(2e-3)] {
+        let mut tracking = arms(1, dry_s, true, 17);
+        let target = Trajectory::new((0..3).map(wave).collect()).unwrap();
+        let agent = tracking.agents.swap_remove(0).following(target);
+        let mut tracking = Setup { solver: tracking.solver, ..Setup::tracking([agent], 6.0) };
+        tracking.time.record_every_s = 0.02;
+        assert!(unbalanced(&run(&tracking).unwrap(), 1) < 1e-7, "{dry_s:?}");
+    }
+}
+
+#[test]
+fn thm1_smooth_friction_is_covered_and_all_agree() {
+    let mut setup = arms(4, None, false, 5);
+    setup.time.end_s = 60.0;
+    setup.solver.balance = false;
+    setup.solver.method = Method::Adaptive { rtol: 1e-6, atol: 1e-8 };
+    let outcome = run(&setup).unwrap();
+    for axis in 0..3 {
+        let ends: Vec<f64> = (0..4).map(|agent| outcome.recording.last(agent, Signal::Position, axis)).collect();
+        let spread = ends.iter().fold(0.0_f64, |worst, end| worst.max((end - ends[0]).abs()));
+        assert!(spread < 2e-3, "{axis}: {ends:?}");
+    }
+}
+
+#[test]
+fn estimates_keep_to_their_bounds_and_margins_and_at_samples_to_the_bounds() {
+    let mut setup = arms(3, None, true, 11);
+    // A push that the law takes for parameters.
+    for agent in &mut setup.agents {
+        let course = Course::Each(vec![Function::Constant(6.0); 3]);
+        agent.pushes = vec![Push { effect: Effect::Torque(course), from_s: 0.0, until_s: f64::INFINITY }];
+    }
+    setup.solver.balance = false;
+    let bounds = setup.agents[0].law.downcast::<Adaptive>().unwrap().bounds.clone().unwrap();
+    let free = {
+        let mut free = setup.clone();
+        free.agents.iter_mut().for_each(|agent| {
+            agent.change_law(|law: &mut Adaptive| law.bounds = None);
+        });
+        free
+    };
+    let strays = |outcome: &Outcome| {
+        (0..bounds.lower.len()).fold(f64::NEG_INFINITY, |worst, k| {
+            let hats = (0..3).flat_map(|agent| column(outcome, agent, Signal::Estimate, k));
+            hats.fold(worst, |worst, hat| worst.max(hat - bounds.upper[k]).max(bounds.lower[k] - hat))
+        })
+    };
+    let margin = 0.01;
+    let (kept, lost) = (strays(&run(&setup).unwrap()), strays(&run(&free).unwrap()));
+    assert!(kept > 0.0 && kept < margin + 1e-9, "beyond a bound, within its margin: {kept}");
+    assert!(lost > 5.0 * margin, "without bounds: {lost}");
+    let sampled = strays(&run(&setup.sampled(200.0)).unwrap());
+    assert!(sampled <= 0.0, "{sampled}");
+}
+
+#[test]
+fn v_grows_by_what_dry_friction_brings_at_most() {
+    // V̇ = −sᵀ(K + D)s + Σ s (F tanh(z/ε) − F σ), and the last is κ ε ΣF at most.
+    let mut setup = arms(4, Some(1e-3), false, 7);
+    setup.time.end_s = 10.0;
+    let outcome = run(&setup).unwrap();
+    let most_w = SMOOTHING_LOSS * 0.05 * 3.0 * FRICTION_N;
+    for agent in 0..4 {
+        let v = column(&outcome, agent, Signal::Lyapunov, 0);
+        for (k, pair) in v.windows(2).enumerate() {
+            assert!(pair[1] - pair[0] <= 1.05 * most_w * 0.02 + 1e-9, "{agent} row {k}: {pair:?}");
+        }
+    }
+}
