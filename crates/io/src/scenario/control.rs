@@ -5,14 +5,14 @@ use forwardstep_sim::{Actuators, Control, Failures, Sensors, VelocitySensor};
 
 use super::at::At;
 use super::control_file::{ControlFile, SafeCommandFile, VelocityFile};
-use super::fault::{self, Fault, filled, seed, values};
+use super::fault::{Fault, filled, seed, values};
 use super::values::AxisValues;
 
 /// Reads how the controllers of agents with `axes` axes sample.
 pub(super) fn control(file: &ControlFile, axes: usize) -> Result<Control, Fault> {
     let or_zero = |number: Option<&At<f64>>| number.map_or(0.0, |number| number.value);
     let (noise, steps) = (file.noise.as_ref(), file.quantisation.as_ref());
-    let limits = |values: &Option<At<AxisValues>>| values.as_ref().map(|values| per_axis(&values.value, axes));
+    let limits = |values: &Option<At<AxisValues>>| values.as_ref().map(|values| values.value.each(axes));
     Ok(Control {
         sample_hz: file.sample_hz.value,
         computation_delay_s: or_zero(file.computation_delay_s.as_ref()),
@@ -46,12 +46,4 @@ fn failures(file: &ControlFile) -> Result<Failures, Fault> {
         Some(SafeCommandFile::Values(list)) => Some(SafeCommand::Values(values(filled("values", list)?))),
     };
     Ok(Failures { safe_command, message_timeout_s: file.message_timeout_s.as_ref().map(|timeout| timeout.value) })
-}
-
-/// One number for all axes, or one for each.
-fn per_axis(values: &AxisValues, axes: usize) -> Vec<f64> {
-    match values {
-        AxisValues::All(value) => vec![*value; axes],
-        AxisValues::Each(list) => fault::values(list),
-    }
 }

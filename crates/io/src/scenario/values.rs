@@ -9,6 +9,7 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 
 use super::at::At;
+use super::fault::values;
 
 /// An entry of a list: a number, or a list of numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +49,16 @@ pub enum AxisValues {
     All(f64),
     /// One for each.
     Each(Vec<At<f64>>),
+}
+
+impl AxisValues {
+    /// One for each of `axes`, or as many as were written.
+    pub fn each(&self, axes: usize) -> Vec<f64> {
+        match self {
+            AxisValues::All(value) => vec![*value; axes],
+            AxisValues::Each(list) => values(list),
+        }
+    }
 }
 
 /// A gain, or a bandwidth that is multiplied by a natural scale.

@@ -25,6 +25,8 @@ pub(super) struct Moving {
     pub(super) robot: RobotSetup,
     /// The types of the joints, one per degree of freedom.
     pub(super) kinds: Vec<MotionKind>,
+    /// Their Coulomb friction, N m or N.
+    pub(super) coulomb: Vec<f64>,
     /// The links that moving joints carry, one per degree of freedom.
     pub(super) bodies: Vec<String>,
     /// The mass that is rigid with the base.
@@ -83,7 +85,10 @@ pub(super) fn build(
     let axes = freedoms.iter().map(|freedom| axis(freedom.joint, freedom.motion)).collect();
     let robot = RobotSetup { kind: Arc::new(Arc::new(assembled.tree)), theta: assembled.theta, theta_names, axes };
     let kinds = freedoms.iter().map(|freedom| freedom.motion.kind).collect();
-    Ok(Moving { robot, kinds, bodies, held_mass_kg, anchors: assembled.anchors })
+    let coulomb =
+        freedoms.iter().map(|freedom| freedom.motion.friction.as_ref().map_or(0.0, |friction| friction.value));
+    let coulomb = coulomb.collect();
+    Ok(Moving { robot, kinds, coulomb, bodies, held_mass_kg, anchors: assembled.anchors })
 }
 
 /// The kernels' error, at the link it is about.
@@ -184,7 +189,7 @@ fn freedoms<'a>(joints: &'a [Joint], arranged: &[Held], locks: &[Option<f64>]) -
     freedoms
 }
 
-/// Refuses or notes what the model has not: Coulomb friction and mimicry. In the order of the file.
+/// Refuses or notes what is left out: Coulomb friction, unless it is read, and mimicry. In the order of the file.
 fn look_at_joints(
     reading: &mut Reading<'_>,
     joints: &[Joint],
@@ -202,8 +207,10 @@ fn look_at_joints(
                     reading.error(friction.span.clone(), UrdfProblem::Friction { joint: name, friction: value })
                 );
             }
-            left_out.push((name, value));
-            first.get_or_insert_with(|| friction.span.clone());
+            if policy == FrictionPolicy::Ignore {
+                left_out.push((name, value));
+                first.get_or_insert_with(|| friction.span.clone());
+            }
         }
         if let Some(mimic) = &motion.mimic {
             let kind = NoticeKind::MimicFree { joint: joint.name.clone(), leader: mimic.value.clone() };

@@ -11,6 +11,7 @@
 //! **Nothing is dropped without notice.** What has no meaning is refused with its line and column ([`UrdfProblem`]); what
 //! was accepted but is odd, assumed or left out is listed in the robot's [`Notice`]s.
 
+mod drives;
 mod dynamics;
 mod ignored;
 mod joint;
@@ -26,6 +27,7 @@ mod xml;
 use forwardstep_core::robot::tree::Anchor;
 use forwardstep_sim::setup::RobotSetup;
 
+pub use drives::{JointDrives, JointFriction};
 pub use ignored::{IgnoreReason, IgnoredItem};
 pub use joint::MotionKind;
 pub use notice::{Notice, NoticeKind};
@@ -56,7 +58,7 @@ impl Default for UrdfOptions {
     }
 }
 
-/// What to do about Coulomb friction, which is not part of the model.
+/// What to do about Coulomb friction in the file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FrictionPolicy {
     /// Refuse the file.
@@ -64,6 +66,8 @@ pub enum FrictionPolicy {
     Refuse,
     /// Leave it out, with a notice.
     Ignore,
+    /// Read it, for [`UrdfRobot::with_drives`].
+    Read,
 }
 
 /// A robot read from a URDF file.
@@ -77,6 +81,8 @@ pub struct UrdfRobot {
     pub base: String,
     /// What each degree of freedom does.
     pub kinds: Vec<MotionKind>,
+    /// Coulomb friction of each, N m or N, as the file states it; no part of `robot` yet.
+    pub coulomb: Vec<f64>,
     /// The moving bodies in the order of the degrees of freedom, each by the link that its joint carries.
     pub bodies: Vec<String>,
     /// The mass that is rigid with the base and so does not enter, in kg.
@@ -124,8 +130,8 @@ pub fn read_urdf(source: &SourceText, options: &UrdfOptions) -> Result<UrdfRobot
     notices.sort_by_key(|notice| notice.span.as_ref().map_or(usize::MAX, |span| span.start));
     let links: Vec<String> = arranged.iter().map(|held| links[held.link].name.clone()).collect();
     let base = links.first().cloned().unwrap_or_default();
-    let Moving { robot, kinds, bodies, held_mass_kg, anchors } = moving;
-    Ok(UrdfRobot { name, robot, base, kinds, bodies, held_mass_kg, links, anchors, notices })
+    let Moving { robot, kinds, coulomb, bodies, held_mass_kg, anchors } = moving;
+    Ok(UrdfRobot { name, robot, base, kinds, coulomb, bodies, held_mass_kg, links, anchors, notices })
 }
 
 fn read_robot(

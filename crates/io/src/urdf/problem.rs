@@ -206,8 +206,8 @@ pub enum UrdfProblem {
         /// Upper.
         upper: f64,
     },
-    /// Coulomb friction, which is not part of the model.
-    #[error("joint `{joint}` has Coulomb friction {}, which is not modelled", number(*.friction))]
+    /// Coulomb friction, of which nothing says how to model it.
+    #[error("joint `{joint}` has Coulomb friction {}, and nothing says how to model it", number(*.friction))]
     Friction {
         /// The joint.
         joint: String,
@@ -320,7 +320,7 @@ impl Problem for UrdfProblem {
                 _ => "write it as three revolute joints whose axes meet, through light links".to_owned(),
             },
             UrdfProblem::Friction { .. } => {
-                "set `friction = \"ignore\"` in the scenario, or say `--ignore-friction` to `robot`, to leave it out"
+                "in the scenario set `friction.dry = {}` or `friction.smooth = {}` to have it in robot and law, or `friction = \"ignore\"` to leave it out, as `--ignore-friction` does for `robot`"
                     .to_owned()
             }
             UrdfProblem::NotPositiveDefinite { .. } => {

@@ -2,14 +2,17 @@
 
 use std::sync::Arc;
 
+use forwardstep_core::law::ParameterBounds;
+use forwardstep_core::robot::tree::Tree;
 use forwardstep_sim::{Adaptive, Known, Law, RobotSetup};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
     At, DampingFile, EstimateStartFile, Fault, GainOrBandwidth, LawKind, LawReader, LawTable, adaptation, damping,
-    estimate,
+    estimate, positive, values,
 };
+use crate::scenario::values::Positive;
 
 /// The adaptive tracking law.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
@@ -19,8 +22,78 @@ pub struct AdaptiveFile {
     pub damping: Option<DampingFile>,
     /// The gain Γ. Default: a bandwidth of 5 1/s for a URDF, 10 otherwise.
     pub adaptation_gain: Option<At<GainOrBandwidth>>,
-    /// The estimate at the start. Default: zero.
+    /// The estimate at the start. Default: zero, or the nearest within the bounds.
     pub estimate_start: Option<EstimateStartFile>,
+    /// Bounds that the estimate is kept within. Default: none. What disturbs a loop for long, as dry friction does, makes estimates drift
+    /// without.
+    pub bounds: Option<EstimateBoundsFile>,
+}
+
+/// Bounds that the estimate is kept within.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum EstimateBoundsFile {
+    /// Every parameter is known to so large a share of itself, or of a hundredth of the largest alike; a friction F lies between zero and 2 F.
+    Within(#[schemars(with = "Positive")] At<f64>),
+    /// These.
+    Given(GivenBoundsFile),
+}
+
+/// Bounds of the estimate, an entry per parameter.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GivenBoundsFile {
+    /// The lowest values.
+    pub lower: At<Vec<At<f64>>>,
+    /// The highest values.
+    pub upper: At<Vec<At<f64>>>,
+}
+
+/// How far beyond its bounds an estimate may go in continuous time, as a share of their distance.
+const MARGIN: f64 = 0.05;
+/// A margin, in the unit of the parameter, over which a rate can fall to zero without making the loop stiff.
+const LEAST_MARGIN: f64 = 1e-6;
+/// A parameter that is small beside its like is known no better than that share of the largest.
+const LEAST: f64 = 0.01;
+
+impl EstimateBoundsFile {
+    fn of(&self, robot: &RobotSetup) -> Result<ParameterBounds, Fault> {
+        let (lower, upper): (Vec<f64>, Vec<f64>) = match self {
+            EstimateBoundsFile::Within(share) => {
+                positive("bounds.within", share)?;
+                let slack = like(robot).into_iter().zip(&robot.theta);
+                let slack = slack.map(|(largest, own)| share.value * own.abs().max(LEAST * largest));
+                let ends = robot.theta.iter().zip(slack).map(|(own, slack)| (own - slack, own + slack));
+                let mut ends: Vec<(f64, f64)> = ends.collect();
+                if let Some(tree) = robot.kind.downcast::<Arc<Tree>>() {
+                    let [_, frictions] = tree.drive_parameters();
+                    for (end, own) in ends[frictions.clone()].iter_mut().zip(&robot.theta[frictions]) {
+                        *end = (0.0, 2.0 * own);
+                    }
+                }
+                ends.into_iter().unzip()
+            }
+            EstimateBoundsFile::Given(GivenBoundsFile { lower, upper }) => (values(&lower.value), values(&upper.value)),
+        };
+        let margin = lower.iter().zip(&upper).map(|(low, high)| (MARGIN * (high - low)).max(LEAST_MARGIN));
+        Ok(ParameterBounds { margin: margin.collect(), lower, upper })
+    }
+}
+
+/// For every parameter the largest of its kind: masses, first moments, inertias of the bodies of a tree, and the rest.
+fn like(robot: &RobotSetup) -> Vec<f64> {
+    let bodies = robot.kind.downcast::<Arc<Tree>>().map_or(0, |tree| tree.joint_count());
+    let kind = |k: usize| match (k < 10 * bodies, k % 10) {
+        (true, 0) => 0,
+        (true, 1..=3) => 1,
+        (true, _) => 2,
+        (false, _) => 3,
+    };
+    let mut largest = [0.0_f64; 4];
+    for (k, own) in robot.theta.iter().enumerate() {
+        largest[kind(k)] = largest[kind(k)].max(own.abs());
+    }
+    (0..robot.theta.len()).map(|k| largest[kind(k)]).collect()
 }
 
 impl LawKind for AdaptiveFile {
@@ -37,11 +110,16 @@ impl LawKind for AdaptiveFile {
     }
 
     fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
+        let bounds = self.bounds.as_ref().map(|bounds| bounds.of(agent.robot)).transpose()?;
+        let mut estimate_start = estimate(self.estimate_start.as_ref(), agent);
+        if let (None, Some(bounds)) = (&self.estimate_start, &bounds) {
+            bounds.project(&mut estimate_start);
+        }
         Ok(Arc::new(Adaptive {
             damping: damping(self.damping.as_ref(), agent)?,
             adaptation: adaptation(self.adaptation_gain.as_ref(), agent)?,
-            estimate_start: estimate(self.estimate_start.as_ref(), agent),
-            bounds: None,
+            estimate_start,
+            bounds,
         }))
     }
 }

@@ -139,11 +139,7 @@ const MADE_FOR: &str = "`chain`, plants of derivatives";
 
 /// One number for all of `need`, or one for each.
 pub(super) fn each(file: Option<&At<AxisValues>>, need: usize) -> Vec<f64> {
-    match file.map(|place| &place.value) {
-        None => vec![GAIN; need],
-        Some(AxisValues::All(value)) => vec![*value; need],
-        Some(AxisValues::Each(list)) => values(list),
-    }
+    file.map_or_else(|| vec![GAIN; need], |place| place.value.each(need))
 }
 
 pub(super) fn adapted(

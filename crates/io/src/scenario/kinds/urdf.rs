@@ -7,12 +7,15 @@ use forwardstep_sim::{RobotSetup, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{At, Body, Fault, InputFolder, RobotKind, RobotRead, RobotTable, Spread, StartReader, Stop, fault};
+use super::{
+    At, AxisValues, Body, Fault, InputFolder, RobotKind, RobotRead, RobotTable, Spread, StartReader, Stop, fault,
+    number_or,
+};
 use crate::SourceText;
 use crate::files::ReadError;
 use crate::scenario::problem::ScenarioProblem;
-use crate::scenario::values::Named;
-use crate::urdf::{self, FrictionPolicy, UrdfOptions, UrdfProblem};
+use crate::scenario::values::{Named, Positive};
+use crate::urdf::{self, FrictionPolicy, JointDrives, JointFriction, UrdfOptions, UrdfProblem};
 
 /// Positions at which the mass matrix of a tree is looked at.
 const SAMPLES: usize = 16;
@@ -27,18 +30,74 @@ pub struct UrdfFile {
     /// Joints held at a value, in rad or m; each removes one axis.
     #[serde(default)]
     pub locked: Named,
-    /// What to do with Coulomb friction in the URDF, which the law does not cover.
+    /// The inertia of the rotors behind the gears, for all joints or for each, in kg m² or kg: n²J for a rotor with the inertia J that
+    /// turns n times as fast as its joint. Default: none.
+    pub armature: Option<At<AxisValues>>,
+    /// What to do with Coulomb friction. Without it a URDF that states some is refused.
     pub friction: Option<FrictionFile>,
     /// Gravity in the base frame, in m/s². Default: [0, 0, -9.81].
     pub gravity_m_s2: Option<[f64; 3]>,
 }
 
 /// What to do with Coulomb friction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FrictionFile {
     /// Simulate without it.
     Ignore,
+    /// F sgn(q̇), set-valued, so that joints stick. The law compensates F tanh(z/ε); no theorem covers what is left.
+    Dry(DryFile),
+    /// F tanh(q̇/ε), which the theorems cover.
+    Smooth(SmoothFile),
+}
+
+/// Dry friction.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DryFile {
+    /// F for all joints or for each, in N m or N. Default: what the URDF states.
+    pub coulomb: Option<At<AxisValues>>,
+    /// ε of the law, in rad/s or m/s. Default: 0.01.
+    pub width: Option<At<AxisValues>>,
+    /// The longest period over which the friction of the robot is held, in s. Default: 0.001.
+    #[schemars(with = "Option<Positive>")]
+    pub period_s: Option<At<f64>>,
+}
+
+/// Smooth friction.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SmoothFile {
+    /// F for all joints or for each, in N m or N. Default: what the URDF states.
+    pub coulomb: Option<At<AxisValues>>,
+    /// ε of robot and law, in rad/s or m/s. Default: 0.01.
+    pub width: Option<At<AxisValues>>,
+}
+
+/// ε, rad/s or m/s.
+const WIDTH: f64 = 0.01;
+/// The longest period over which dry friction is held, s.
+const PERIOD_S: f64 = 1e-3;
+
+impl FrictionFile {
+    /// The friction of a robot whose URDF states `stated`.
+    fn of(&self, stated: &[f64]) -> Option<JointFriction> {
+        let (coulomb, width, dry_s) = match self {
+            FrictionFile::Ignore => return None,
+            FrictionFile::Dry(DryFile { coulomb, width, period_s }) => {
+                (coulomb, width, Some(number_or(period_s, PERIOD_S)))
+            }
+            FrictionFile::Smooth(SmoothFile { coulomb, width }) => (coulomb, width, None),
+        };
+        let each = |file: &Option<At<AxisValues>>, usual: Vec<f64>| {
+            file.as_ref().map_or(usual, |values| values.value.each(stated.len()))
+        };
+        Some(JointFriction {
+            coulomb: each(coulomb, stated.to_vec()),
+            width: each(width, vec![WIDTH; stated.len()]),
+            dry_s,
+        })
+    }
 }
 
 impl RobotKind for UrdfFile {
@@ -78,12 +137,18 @@ fn from_urdf(file: &UrdfFile, folder: &mut InputFolder) -> Result<RobotRead, Sto
         locked: file.locked.0.iter().map(|(joint, value)| (joint.value.clone(), value.value)).collect(),
         friction: match file.friction {
             Some(FrictionFile::Ignore) => FrictionPolicy::Ignore,
+            Some(FrictionFile::Dry(_) | FrictionFile::Smooth(_)) => FrictionPolicy::Read,
             None => usual.friction,
         },
         gravity: file.gravity_m_s2.unwrap_or(usual.gravity),
     };
     match urdf::read_urdf(&source, &options) {
         Ok(read) => {
+            let drives = JointDrives {
+                armature: file.armature.as_ref().map_or(Vec::new(), |values| values.value.each(read.coulomb.len())),
+                friction: file.friction.as_ref().and_then(|friction| friction.of(&read.coulomb)),
+            };
+            let read = read.with_drives(&drives).map_err(Fault::from)?;
             let links = read.links.into_iter().zip(read.anchors).collect();
             Ok(RobotRead { robot: read.robot, notices: read.notices, body: Body { links, tip: None } })
         }
