@@ -1,5 +1,8 @@
 //! What surrounds a law: pushes, limits, sampling.
 
+use std::sync::Arc;
+
+use forwardstep_core::robot::tree::{Drives, SMOOTHING_LOSS, Tree};
 use forwardstep_sim::push::Push;
 use forwardstep_sim::{AgentSetup, Setup, VelocitySensor};
 
@@ -54,6 +57,30 @@ pub(crate) fn applied_torque(setup: &Setup) -> Hypothesis {
     });
     let evidence = LoopEvidence::Applied { limited, enforced: Named::all(setup, &enforced) };
     Hypothesis::new(Id::AppliedTorque, evidence)
+}
+
+/// Friction at the joints of trees: what is smooth damps, of what is dry V gains at most κ Σ ε F.
+pub(crate) fn friction(setup: &Setup) -> Option<Hypothesis> {
+    let rubbing = |index: &usize| drives(&setup.agents[*index]).is_some_and(|drives| !drives.friction.is_empty());
+    let those: Vec<usize> = (0..setup.agents.len()).filter(rubbing).collect();
+    let dry: Vec<usize> = those.iter().copied().filter(|index| dry_loss_w(&setup.agents[*index]).is_some()).collect();
+    let most_w = dry.iter().filter_map(|index| dry_loss_w(&setup.agents[*index])).sum();
+    let evidence = LoopEvidence::Friction { dry: Named::all(setup, &dry), most_w };
+    (!those.is_empty()).then(|| Hypothesis::new(Id::SmoothFriction, evidence))
+}
+
+fn drives(agent: &AgentSetup) -> Option<&Drives> {
+    agent.robot.kind.downcast::<Arc<Tree>>().map(|tree| tree.drives())
+}
+
+/// κ Σ ε F of an agent whose friction is dry, W: what V gains by it at most.
+pub(crate) fn dry_loss_w(agent: &AgentSetup) -> Option<f64> {
+    let tree = agent.robot.kind.downcast::<Arc<Tree>>()?;
+    let Drives { friction, dry_s, .. } = tree.drives();
+    dry_s.filter(|_| !friction.is_empty())?;
+    let [_, at] = tree.drive_parameters();
+    let forces = agent.robot.theta.get(at)?;
+    Some(SMOOTHING_LOSS * friction.iter().zip(forces).map(|(friction, force)| friction.width * force).sum::<f64>())
 }
 
 /// Under digital control: the theorems speak of continuous time and of exact measurements.

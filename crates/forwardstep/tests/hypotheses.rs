@@ -120,11 +120,11 @@ fn thm6_lengths_outside_their_bounds_are_named_with_the_agent() {
         report.hypotheses.into_iter().find(|hypothesis| hypothesis.id == Id::LengthsWithinBounds).unwrap()
     };
     let inside = found(1.5);
-    assert_eq!(inside.evidence, Evidence::Kind(KindEvidence::LengthsInside));
+    assert_eq!(inside.evidence, Evidence::Kind(KindEvidence::ParametersInside));
     assert!(matches!(&inside.subject, Subject::Agent(agent) if (agent.index, &*agent.name) == (0, "arm")));
     let outside = found(0.9);
     assert_eq!(outside.answer(), Answer::Violated);
-    let Evidence::Kind(KindEvidence::LengthOutside { name: Some(name), value }) = &outside.evidence else {
+    let Evidence::Kind(KindEvidence::ParameterOutside { name: Some(name), value }) = &outside.evidence else {
         panic!("{outside:?}")
     };
     assert_eq!(*value, 1.0);

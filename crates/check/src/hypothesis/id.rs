@@ -152,6 +152,10 @@ table! {
         "the target of … keeps within the reach of its tip, where alone the Jacobian can stay regular";
     CertainRegressor, "certain-regressor", "own derivation", Source::Derived,
         "the regressor of … depends on nothing uncertain";
+    ParametersWithinBounds, "parameters-within-bounds", "own derivation", Source::Derived,
+        "the true parameters of … lie within the bounds of their estimates";
+    SmoothFriction, "smooth-friction", "own derivation", Source::Derived,
+        "friction at the joints is a smooth function of their velocities";
     LengthsWithinBounds, "lengths-within-bounds", "own derivation", Source::Derived,
         "the true lengths of … lie within the bounds of their estimates";
     AttitudeGains, "attitude-gains", "Theorem 7", Source::Paper,

@@ -41,13 +41,28 @@ impl KindCheck for LagrangianRobot {
         let roaming: Vec<usize> = agents.iter().copied().filter(|agent| !setup.tracks(*agent)).collect();
         let declared = from_outside.map(|agent| three_properties(setup, *agent));
         let inertia = uniform_inertia(setup, agents);
-        declared.chain(inertia).chain(bounded_dynamics(setup, &roaming)).chain([gains]).chain(roots).collect()
+        let bounds = agents.iter().filter_map(|agent| within_bounds(setup, *agent));
+        let own = declared.chain(inertia).chain(bounded_dynamics(setup, &roaming)).chain([gains]).chain(bounds);
+        own.chain(roots).collect()
     }
 
     /// ż holds the second one even where one root asks for the first only.
     fn target_derivatives(&self, agent: &AgentSetup) -> usize {
         agent.roots_per_s.len().max(2)
     }
+}
+
+/// That ϑ lies within the bounds that ϑ̂ is kept within, if there are some.
+fn within_bounds(setup: &Setup, index: usize) -> Option<Hypothesis> {
+    let robot = &setup.agents[index].robot;
+    let bounds = setup.agents[index].law.downcast::<Adaptive>()?.bounds.as_ref()?;
+    let ends = bounds.lower.iter().zip(&bounds.upper);
+    let outside = robot.theta.iter().zip(ends).position(|(own, (low, high))| !(low <= own && own <= high));
+    let evidence = outside.map_or(KindEvidence::ParametersInside, |k| KindEvidence::ParameterOutside {
+        name: robot.theta_names.get(k).cloned(),
+        value: robot.theta[k],
+    });
+    Some(Hypothesis::about(Id::ParametersWithinBounds, Subject::Agent(Named::of(setup, index)), evidence))
 }
 
 /// Whether (6)–(7), or (6) with known parameters, controls the agent.

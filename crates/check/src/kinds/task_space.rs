@@ -133,7 +133,7 @@ fn within_bounds(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<KindEvidence>
         _ => false,
     };
     let outside = (0..theta.len()).find(|k| !inside(*k));
-    Some(outside.map_or(KindEvidence::LengthsInside, |k| KindEvidence::LengthOutside {
+    Some(outside.map_or(KindEvidence::ParametersInside, |k| KindEvidence::ParameterOutside {
         name: law.kinematic_names.get(k).cloned(),
         value: theta[k],
     }))

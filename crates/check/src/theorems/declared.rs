@@ -11,7 +11,7 @@ use crate::kinds::declaration;
 use crate::laws;
 use crate::links::{bounded_delays, bounded_weights};
 use crate::report::Report;
-use crate::surroundings::{applied_torque, digital, pushes_end};
+use crate::surroundings::{applied_torque, digital, friction, pushes_end};
 use crate::theorem::Theorem;
 
 /// What the author promises, with what the network and the laws add to it.
@@ -32,6 +32,7 @@ pub(super) fn check(setup: &Setup) -> Report {
     hypotheses.extend(own_targets::bounded(setup));
     hypotheses.extend(laws::hypotheses(setup));
     hypotheses.push(applied_torque(setup));
+    hypotheses.extend(friction(setup));
     hypotheses.extend(digital(setup));
     Report { theorem: Theorem::Declared(source), promises, hypotheses }
 }

@@ -19,7 +19,7 @@ use crate::kinds::Claim;
 use crate::laws;
 use crate::links::{bounded_delays, bounded_weights, coupling};
 use crate::report::Report;
-use crate::surroundings::{applied_torque, digital, pushes_end};
+use crate::surroundings::{applied_torque, digital, friction, pushes_end};
 
 /// Which theorem speaks about `setup`, and whether its hypotheses hold.
 ///
@@ -59,6 +59,7 @@ fn consensus(setup: &Setup, own: Vec<Hypothesis>, claim: fn(&Setup) -> Claim) ->
     hypotheses.extend(own_targets::bounded(setup));
     hypotheses.extend(laws::hypotheses(setup));
     hypotheses.push(applied_torque(setup));
+    hypotheses.extend(friction(setup));
     hypotheses.extend(digital(setup));
     let Claim { theorem, promises } = laws::claim(setup).unwrap_or_else(|| claim(setup));
     Report { theorem, promises, hypotheses }

@@ -11,7 +11,7 @@ use crate::hypothesis::{Bounded, Hypothesis, Id, MotionEvidence, Named, Subject}
 use crate::kinds::Claim;
 use crate::laws::{self, kind_of};
 use crate::report::Report;
-use crate::surroundings::{applied_torque, digital, pushes_end};
+use crate::surroundings::{applied_torque, digital, friction, pushes_end};
 use crate::theorem::Theorem;
 
 /// Trajectories have as many derivatives.
@@ -25,6 +25,7 @@ pub(super) fn check(setup: &Setup) -> Report {
     hypotheses.extend(pushes_end(setup));
     hypotheses.extend(laws::hypotheses(setup));
     hypotheses.push(applied_torque(setup));
+    hypotheses.extend(friction(setup));
     hypotheses.extend(digital(setup));
     Report { theorem, promises, hypotheses }
 }

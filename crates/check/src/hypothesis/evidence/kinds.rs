@@ -144,13 +144,13 @@ pub enum KindEvidence {
         /// Whose.
         agent: Named,
     },
-    /// The true lengths lie within the bounds.
-    LengthsInside,
+    /// The true parameters, or lengths, lie within the bounds.
+    ParametersInside,
     /// One does not.
-    LengthOutside {
+    ParameterOutside {
         /// Its name, if it has one.
         name: Option<String>,
-        /// Its value, m.
+        /// Its value, in its unit.
         value: f64,
     },
     /// h_I by the start, N m s.
@@ -210,7 +210,7 @@ impl KindEvidence {
             | KindEvidence::LengthsOutsideRegressor(_)
             | KindEvidence::LengthsKnown
             | KindEvidence::PositiveMatricesTrueLengths
-            | KindEvidence::LengthsInside
+            | KindEvidence::ParametersInside
             | KindEvidence::Matched
             | KindEvidence::Momentum(_) => Answer::Holds,
             KindEvidence::ThrustFloor { .. }
@@ -232,7 +232,7 @@ impl KindEvidence {
             | KindEvidence::Unmatched { .. }
             | KindEvidence::SafeCommand
             | KindEvidence::NoSpacecraft => Answer::NotCovered,
-            KindEvidence::LengthOutside { .. }
+            KindEvidence::ParameterOutside { .. }
             | KindEvidence::TermFails { .. }
             | KindEvidence::Singular { .. }
             | KindEvidence::FactorBelowFloor { .. }
@@ -263,8 +263,8 @@ impl KindEvidence {
             | KindEvidence::LengthsKnown
             | KindEvidence::LengthsInRegressor(_)
             | KindEvidence::LengthsNotAdapted { .. }
-            | KindEvidence::LengthsInside
-            | KindEvidence::LengthOutside { .. }
+            | KindEvidence::ParametersInside
+            | KindEvidence::ParameterOutside { .. }
             | KindEvidence::MomentumPushed
             | KindEvidence::Matched
             | KindEvidence::Unmatched { .. }

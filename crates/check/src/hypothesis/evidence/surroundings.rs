@@ -41,6 +41,13 @@ pub enum LoopEvidence {
     },
     /// How measurements are inexact.
     Measurements(Vec<Inexact>),
+    /// The joints of some rub, and by what.
+    Friction {
+        /// Those whose friction is set-valued.
+        dry: Vec<Named>,
+        /// κ Σ ε F of them: what V may gain at most, W.
+        most_w: f64,
+    },
 }
 
 /// What an actuator does not do.
@@ -76,6 +83,7 @@ impl LoopEvidence {
             LoopEvidence::Applied { limited, enforced } => unless(!limited.is_empty() || !enforced.is_empty()),
             LoopEvidence::Sampling { .. } => Answer::NotCovered,
             LoopEvidence::Measurements(inexact) => unless(!inexact.is_empty()),
+            LoopEvidence::Friction { dry, .. } => unless(!dry.is_empty()),
         }
     }
 
@@ -85,7 +93,8 @@ impl LoopEvidence {
             | LoopEvidence::Pushes { .. }
             | LoopEvidence::Applied { .. }
             | LoopEvidence::Sampling { .. }
-            | LoopEvidence::Measurements(_) => Rigour::Exact,
+            | LoopEvidence::Measurements(_)
+            | LoopEvidence::Friction { .. } => Rigour::Exact,
         }
     }
 }

@@ -38,6 +38,15 @@ pub(super) fn words(evidence: &LoopEvidence) -> String {
             let words: Vec<&str> = inexact.iter().map(|inexact| noise(*inexact)).collect();
             words.join(", ")
         }
+        LoopEvidence::Friction { dry, .. } if dry.is_empty() => {
+            "it is F tanh(q̇/ε), and the law has F̂ tanh(z/ε): since tanh rises, what is left of it damps".into()
+        }
+        LoopEvidence::Friction { dry, most_w } => {
+            format!(
+                "it is set-valued for {}: V may grow by {most_w:.4} W, which keeps s small and not zero",
+                names(dry)
+            )
+        }
     }
 }
 

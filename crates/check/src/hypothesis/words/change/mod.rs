@@ -195,6 +195,9 @@ fn surroundings(evidence: &LoopEvidence) -> Option<String> {
         LoopEvidence::Measurements(_) => {
             "measured velocities, without noise and without steps; none of it is in the theorem".into()
         }
+        LoopEvidence::Friction { .. } => {
+            "`friction.smooth`; with dry friction a smaller `width` and estimated friction keep s smaller".into()
+        }
         LoopEvidence::Gains { .. } => return None,
     })
 }

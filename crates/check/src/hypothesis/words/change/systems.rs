@@ -82,7 +82,7 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
         KindEvidence::LengthsNotAdapted { agent } => {
             format!("`kinematic_gain` above zero for {}, or the true lengths as its estimates", agent.name)
         }
-        KindEvidence::LengthOutside { value, .. } => {
+        KindEvidence::ParameterOutside { value, .. } => {
             format!("`bounds` that hold {value}, from {} to {}", rounded_down(*value), rounded_up(*value))
         }
         KindEvidence::MomentumPushed => "no torque from outside".into(),
@@ -99,7 +99,7 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
         | KindEvidence::LengthsOutsideRegressor(_)
         | KindEvidence::LengthsKnown
         | KindEvidence::PositiveMatricesTrueLengths
-        | KindEvidence::LengthsInside
+        | KindEvidence::ParametersInside
         | KindEvidence::Matched
         | KindEvidence::Momentum(_) => return None,
     })
