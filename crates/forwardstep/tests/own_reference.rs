@@ -212,7 +212,7 @@ fn the_schema_holds_them_and_the_program_without_them_does_not_know_them() {
 fn agents_have_roots_of_their_own() {
     let text = HOMES.replace("count = 3", "count = 3\nreference.anchored.roots_per_s = [1, 2, 3]");
     let Setup { agents, .. } = read(&text).unwrap().setup;
-    assert!(agents.iter().all(|agent| agent.roots_per_s == [1.0, 2.0, 3.0]));
+    assert!(agents.iter().all(|agent| agent.roots_per_s.real == [1.0, 2.0, 3.0]));
 }
 
 #[test]

@@ -20,6 +20,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
+use forwardstep_core::reference::RootSet;
 use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PointMass};
 
@@ -120,7 +121,7 @@ impl AgentSetup {
         AgentSetup {
             name: name.into(),
             robot,
-            roots_per_s: Vec::new(),
+            roots_per_s: RootSet::default(),
             manipulability: 0.0,
             law: Arc::new(law),
             target: None,
@@ -130,9 +131,9 @@ impl AgentSetup {
         }
     }
 
-    /// Reference dynamics with these κ₀ … κ_{ℓ−1}, 1/s.
-    pub fn roots(mut self, roots_per_s: &[f64]) -> Self {
-        self.roots_per_s = roots_per_s.to_vec();
+    /// Reference dynamics with these κ₀ … κ_{ℓ−1}, 1/s, or with pairs of complex roots too.
+    pub fn roots(mut self, roots_per_s: impl Into<RootSet>) -> Self {
+        self.roots_per_s = roots_per_s.into();
         self
     }
 

@@ -34,6 +34,7 @@ const PRODUCERS: &[(Id, Producer)] = &[
     (Id::BoundedWeights, delays::weights),
     (Id::CouplingSector, delays::coupling),
     (Id::RealRoots, numbers::real_roots),
+    (Id::Hurwitz, numbers::hurwitz),
     (Id::CommonOrder, numbers::common_order),
     (Id::CommonFirstRoot, numbers::common_first_root),
     (Id::Manipulability, numbers::manipulability),

@@ -66,6 +66,7 @@ mod pushes;
 mod random;
 mod refusal;
 mod robots;
+pub mod roots;
 mod shipped;
 mod spread;
 mod start;
