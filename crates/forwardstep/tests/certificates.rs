@@ -17,10 +17,8 @@ use support::{folder, forwardstep, stderr, stdout};
 
 /// What is claimed, or used by a proof, and cannot be checked yet: a scenario and a hypothesis. It may only shrink: a hypothesis
 /// that has become checkable has to leave it.
-const UNCHECKED: [(&str, &str); 5] = [
-    // Which lengths of a tree enter its regressor, and how far its tip reaches: both need the kinematics of the tree, which the checker does not
-    // have.
-    ("task-space-ur5e", "certain-regressor"),
+const UNCHECKED: [(&str, &str); 4] = [
+    // How far a tip reaches takes the kinematics of its tree, which the checker does not have.
     ("task-space-ur5e", "target-within-reach"),
     // Bounds of curves through points, which are splines of degree five: their slopes solve a block tridiagonal system that the checker does not
     // solve.
@@ -223,8 +221,8 @@ fn swarms_with_roots_that_differ_are_certified_too() {
     }
 }
 
-/// A shipped scenario with other roots.
-fn with_roots(name: &str, old: &str, new: &str) -> String {
+/// A shipped scenario with something else in it.
+fn changed(name: &str, old: &str, new: &str) -> String {
     let text = fs::read_to_string(file_of(name)).unwrap();
     assert!(text.contains(old), "{name}");
     text.replace(old, new)
@@ -241,33 +239,36 @@ const PAIRS: [(&str, &str, &str); 4] = [
 #[test]
 fn complex_roots_are_certified_where_a_hurwitz_polynomial_is_enough() {
     for (name, old, new) in PAIRS {
-        let text = with_roots(name, old, new);
+        let text = changed(name, old, new);
         assert_eq!(judged(&text, "hurwitz"), ("holds".to_owned(), "accepted".to_owned()), "{name}");
     }
     // Elsewhere nothing is claimed.
     let three = ("[1.0, 1.5, 2.0]", "[1.5, { real = 0.7, imaginary = 2.0 }]");
     let two = ("[1.0, 1.0]", "[{ real = 0.5, imaginary = 0.5 }]");
     for (name, id, (old, new)) in [("theorem-4", "real-roots", three), ("swarm-tracking", "swarm-coupling", two)] {
-        let text = with_roots(name, old, new);
+        let text = changed(name, old, new);
         assert_eq!(judged(&text, id), ("not shown".to_owned(), "could not check".to_owned()), "{name}");
     }
+}
+
+/// What the checker says of a hypothesis by the certificate of a shipped scenario beside another text.
+fn outcome_beside(name: &str, text: &str, id: &str) -> (String, String) {
+    let folder = folder();
+    let certificate = certified(file_of(name).to_str().unwrap(), folder.path());
+    let file = folder.path().join(format!("{name}.toml"));
+    fs::write(&file, text).unwrap();
+    let arguments = ["forwardstep_checker.py", "--json", "--ignore-digests"];
+    let files = [certificate.to_str().unwrap(), file.to_str().unwrap()];
+    let printed = String::from_utf8(python(&[&arguments[..], &files[..]].concat(), Path::new("")).stdout).unwrap();
+    let found: Value = serde_json::from_str(&printed).unwrap();
+    let entry = found["entries"].as_array().unwrap().iter().find(|entry| entry["id"] == id).unwrap();
+    (entry["outcome"].as_str().unwrap().to_owned(), entry["words"].as_str().unwrap().to_owned())
 }
 
 /// The certificate stands; the scenario beside it is another.
 #[test]
 fn a_certificate_is_rejected_beside_roots_that_have_lost_the_property() {
-    let folder = folder();
-    let outcome = |name: &str, (old, new): (&str, &str), id: &str| {
-        let certificate = certified(file_of(name).to_str().unwrap(), folder.path());
-        let file = folder.path().join(format!("{name}.toml"));
-        fs::write(&file, with_roots(name, old, new)).unwrap();
-        let arguments = ["forwardstep_checker.py", "--json", "--ignore-digests"];
-        let files = [certificate.to_str().unwrap(), file.to_str().unwrap()];
-        let printed = String::from_utf8(python(&[&arguments[..], &files[..]].concat(), Path::new("")).stdout).unwrap();
-        let found: Value = serde_json::from_str(&printed).unwrap();
-        let entry = found["entries"].as_array().unwrap().iter().find(|entry| entry["id"] == id).unwrap();
-        (entry["outcome"].as_str().unwrap().to_owned(), entry["words"].as_str().unwrap().to_owned())
-    };
+    let outcome = |name: &str, (old, new): (&str, &str), id: &str| outcome_beside(name, &changed(name, old, new), id);
     let is = |found: (String, String), outcome: &str, words: &str| {
         assert!(found.0 == outcome && found.1.contains(words), "{found:?}");
     };
@@ -284,6 +285,18 @@ fn a_certificate_is_rejected_beside_roots_that_have_lost_the_property() {
     // The period of 1 ms is short enough for 100 swings per unit of decay, not for more.
     let fast = "[{ real = 0.02, imaginary = 5.0 }]";
     is(outcome("theorem-9", (two, fast), "set-valued-sign"), "rejected", "is not so by the text");
+}
+
+#[test]
+fn only_an_uncertain_tool_is_certified_to_stay_out_of_the_regressor() {
+    let tool = (
+        "end_effector = { link = \"tool0\", at_m = [0, 0, 0.15] }",
+        "end_effector = { link = \"tool0\", at_m = [0, 0, 0.15], uncertain = \"chain\" }",
+    );
+    let text = changed("task-space-ur5e", tool.0, tool.1);
+    assert_eq!(outcome_beside("task-space-ur5e", &text, "certain-regressor").0, "rejected");
+    let same = changed("task-space-ur5e", "at_m = [0, 0, 0.15]", "at_m = [0, 0, 0.25]");
+    assert_eq!(outcome_beside("task-space-ur5e", &same, "certain-regressor").0, "accepted");
 }
 
 /// Beside the certificate of the shipped scenario: without one or two entries the norm is another, and without three it vanishes at t = 0.
