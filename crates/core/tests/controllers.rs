@@ -106,7 +106,7 @@ fn a_sample_that_does_not_come_later_is_refused_and_changes_nothing() {
 
 /// (a8) and (a9) for one axis, sampled.
 fn blind() -> Stepped<PositionOnly> {
-    let mut alpha = polynomial(&[1.0, 1.5, 2.0]).unwrap();
+    let mut alpha = polynomial([1.0, 1.5, 2.0]).unwrap();
     alpha.pop();
     let law = PositionOnly {
         axes: 1,

@@ -245,7 +245,7 @@ fn masses(roots: [&[f64]; 3]) -> Vec<AgentSetup> {
 /// What stands at a home: nothing moves it, and it hears nobody.
 fn standing(k: usize, at: &[f64]) -> AgentSetup {
     let known = forwardstep::sim::Known::gain(1.0);
-    AgentSetup::new(format!("home-{k}"), RobotSetup::point_mass(2, 1.0), known).roots(&[1.0, 2.0]).at(at)
+    AgentSetup::new(format!("home-{k}"), RobotSetup::point_mass(2, 1.0), known).roots([1.0, 2.0]).at(at)
 }
 
 const HOME: [[f64; 2]; 3] = [[0.2, -0.4], [1.0, 0.3], [-0.6, 0.9]];

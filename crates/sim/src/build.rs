@@ -6,7 +6,7 @@
 //! use forwardstep_sim::{AgentSetup, Known, Network, RobotSetup, Setup, Signal, run};
 //!
 //! let cart = |name: &str, x: f64| {
-//!     AgentSetup::new(name, RobotSetup::point_mass(1, 2.0), Known::gain(8.0)).roots(&[1.0, 2.0]).at(&[x])
+//!     AgentSetup::new(name, RobotSetup::point_mass(1, 2.0), Known::gain(8.0)).roots([1.0, 2.0]).at(&[x])
 //! };
 //! let network = Network::fixed(2, [(0, 1), (1, 0)], Delay::constant(0.1));
 //! let setup = Setup::consensus([cart("left", 0.0), cart("right", 1.0)], network, 20.0);

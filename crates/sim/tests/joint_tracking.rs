@@ -221,7 +221,7 @@ fn targets_come_from_formulas_with_kinks_and_from_points_of_a_table() {
     let points = |values: [f64; 3]| Path::Spline(Spline::new(vec![1.0, 3.0, 5.0], values.to_vec()).unwrap());
     let kinked = || Path::Formula((Expression::variable(0) - 2.0).abs_of() * 0.2);
     for target in [vec![points([0.2, 0.9, 0.1]), points([1.4, 0.8, 1.2])], vec![kinked(), fixed(1.0)]] {
-        let arm = robots(true).swap_remove(0).roots(&[2.0, 3.0]).following(Trajectory::new(target).unwrap());
+        let arm = robots(true).swap_remove(0).roots([2.0, 3.0]).following(Trajectory::new(target).unwrap());
         let outcome = run(&alone(vec![arm], 25.0));
         assert!(error(&outcome, 2) < 5e-3, "{}", error(&outcome, 2));
         assert!(balance_residual(&outcome, 0, 1e-3) <= 20.0 * RTOL);
@@ -230,7 +230,7 @@ fn targets_come_from_formulas_with_kinks_and_from_points_of_a_table() {
 
 #[test]
 fn limits_of_axes_hold_for_robots_that_track() {
-    let mut arm = robots(false).swap_remove(0).roots(&[2.0]).following(swing(2));
+    let mut arm = robots(false).swap_remove(0).roots([2.0]).following(swing(2));
     arm.robot.axes.iter_mut().for_each(|axis| axis.effort_limit = Some(15.0));
     arm.enforce_limits = true;
     for setup in [alone(vec![arm.clone()], 3.0), sampled(alone(vec![arm.clone()], 3.0), 500.0)] {
@@ -247,14 +247,14 @@ fn limits_of_axes_hold_for_robots_that_track() {
 
 #[test]
 fn what_makes_no_sense_is_refused() {
-    let sound = || robots(true).swap_remove(0).roots(&[2.0, 3.0]).following(swing(2));
+    let sound = || robots(true).swap_remove(0).roots([2.0, 3.0]).following(swing(2));
     let refused = |agent: AgentSetup| {
         simulate(&alone(vec![agent], 1.0), &mut |_| ControlFlow::Continue(())).map(|_| ()).unwrap_err().to_string()
     };
     assert!(simulate(&alone(vec![sound()], 0.1), &mut |_| ControlFlow::Continue(())).is_ok());
     assert!(refused(AgentSetup { roots_per_s: Vec::new().into(), ..sound() }).contains("at least 1"));
-    assert!(refused(sound().roots(&[1.0; 5])).contains("4 derivatives"));
-    assert!(refused(sound().roots(&[1.0, -1.0])).contains("positive"));
+    assert!(refused(sound().roots([1.0; 5])).contains("4 derivatives"));
+    assert!(refused(sound().roots([1.0, -1.0])).contains("positive"));
     assert!(refused(AgentSetup { target: None, ..sound() }).contains("none"));
     assert!(refused(sound().following(swing(3))).contains("needs 2"));
     assert!(refused(AgentSetup { manipulability: 1.0, ..sound() }).contains("following a target"));

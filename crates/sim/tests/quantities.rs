@@ -20,7 +20,7 @@ use forwardstep_sim::{
 type Case<'a> = (&'a dyn Fn(&mut Setup), &'a str);
 
 fn setup() -> Setup {
-    let cart = |name: &str| AgentSetup::new(name, RobotSetup::point_mass(1, 2.0), Known::gain(4.0)).roots(&[1.0]);
+    let cart = |name: &str| AgentSetup::new(name, RobotSetup::point_mass(1, 2.0), Known::gain(4.0)).roots([1.0]);
     let mut setup = Setup::consensus([cart("one").at(&[1.0]), cart("two").at(&[0.0])], Network::silent(2), 1.0);
     setup.exchange = Exchange::Position;
     setup.control = Some(Control {

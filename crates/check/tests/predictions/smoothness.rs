@@ -214,7 +214,7 @@ fn eq_a5_the_last_derivative_jumps_by_the_inertia_of_the_estimates_times_the_jum
         // Without delay everything that is heard is in the row of the switch.
         setup.network.delays = vec![Delay::constant(0.0); 2];
         let smoothness = found(&setup);
-        let (outcome, alpha) = (&smoothness.outcome, polynomial(&roots(order)).unwrap());
+        let (outcome, alpha) = (&smoothness.outcome, polynomial(roots(order)).unwrap());
         let row = 2000;
         assert_eq!(outcome.recording.t_s[row], 1.0);
         let graphs = &setup.network.schedule.graphs;
