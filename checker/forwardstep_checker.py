@@ -217,8 +217,7 @@ def infinite(x):
 def rounded(x, upwards):
     if infinite(x) or x.numerator.bit_length() + x.denominator.bit_length() <= 600:
         return x
-    shift = 160 - (x.numerator.bit_length() - x.denominator.bit_length())
-    scale = Fraction(1 << shift) if shift >= 0 else Fraction(1, 1 << -shift)
+    scale = Fraction(2) ** (160 - x.numerator.bit_length() + x.denominator.bit_length())
     scaled = x * scale
     return (math.ceil(scaled) if upwards else math.floor(scaled)) / scale
 
@@ -267,17 +266,19 @@ def taylor(term, ratio):
         low, high, k = low - Fraction(1, 1 << 380), high + Fraction(1, 1 << 380), k + 1
     return span(low - Fraction(1, 1 << 198), high + Fraction(1, 1 << 198))
 
-# |x| ≤ 1/2: x − x³/3 + …, whose rest is at most the next term.
-def arctan_small(x):
+# |x| ≤ 1/2: x + s x³/3 + s² x⁵/5 + …, arctan for s = −1 and artanh for s = 1, whose rest is at most twice the next term. The cut of
+# x moves it by less than 2^-238.
+def odd_series(x, sign):
+    x = Fraction(math.floor(x * (1 << 240)), 1 << 240)
     total_, power_, k = Fraction(0), x, 0
     while abs(power_) > Fraction(1, 1 << 200):
         total_ += power_ / (2 * k + 1)
-        power_, k = Fraction(math.floor(-power_ * x * x * (1 << 600)), 1 << 600), k + 1
+        power_, k = Fraction(math.floor(sign * power_ * x * x * (1 << 600)), 1 << 600), k + 1
     room = Fraction(1, 1 << 180)
     return span(total_ - room, total_ + room)
 
 # By Machin's formula.
-PI = add(multiply((16, 16), arctan_small(Fraction(1, 5))), multiply((-4, -4), arctan_small(Fraction(1, 239))))
+PI = add(multiply((16, 16), odd_series(Fraction(1, 5), -1)), multiply((-4, -4), odd_series(Fraction(1, 239), -1)))
 
 # sin x, or cos x where `turned`, of a rational x: reduced by multiples of π, then Taylor; sin is 1-Lipschitz.
 def sine_at(x, turned):
@@ -286,8 +287,7 @@ def sine_at(x, turned):
     near = Fraction(math.floor((x + (half - n) * PI[0]) * (1 << 220)), 1 << 220)
     room = abs(half - n) * (PI[1] - PI[0]) + Fraction(1, 1 << 219)
     square = -near * near
-    value = taylor(near, lambda k: square / (2 * k * (2 * k + 1)))
-    value = add(value, (-room, room))
+    value = add(taylor(near, lambda k: square / (2 * k * (2 * k + 1))), (-room, room))
     return minus(value) if n % 2 else value
 
 # sin of an interval, or cos: its ends, and 1 or −1 where a crest or a trough may lie inside.
@@ -315,21 +315,12 @@ def exp_at(x):
         value = multiply(value, value)
     return value
 
-# x = m 2^k with 1 ≤ m < 2; log m = 2 artanh((m − 1)/(m + 1)), whose rest is at most the next term times 9/8.
+# x = m 2^k with 1 ≤ m < 2; log m = 2 artanh((m − 1)/(m + 1)).
 def log_at(x):
-    def of(m):
-        u = Fraction(math.floor((m - 1) / (m + 1) * (1 << 240)), 1 << 240)
-        square, power, value, k = u * u, u, Fraction(0), 0
-        while power > Fraction(1, 1 << 210):
-            value += power / (2 * k + 1)
-            power = Fraction(math.floor(power * square * (1 << 300)), 1 << 300)
-            k += 1
-        return 2 * value - Fraction(1, 1 << 180), 2 * value + Fraction(1, 1 << 180)
-
     k = x.numerator.bit_length() - x.denominator.bit_length()
     m = x / Fraction(2) ** k
     k, m = (k - 1, 2 * m) if m < 1 else (k, m)
-    return add(of(m), multiply((k, k), of(Fraction(2))))
+    return add(multiply((2, 2), odd_series((m - 1) / (m + 1), 1)), multiply((2 * k, 2 * k), odd_series(Fraction(1, 3), 1)))
 
 def sqrt_at(x):
     scale = 1 << max(0, 400 - x.numerator.bit_length() + x.denominator.bit_length())
@@ -337,9 +328,7 @@ def sqrt_at(x):
     return Fraction(root, scale), Fraction(root + (root * root != x * scale * scale), scale)
 
 def tanh_at(x):
-    decay = exp_at(-2 * abs(x))
-    value = multiply(add((1, 1), minus(decay)), inverse(add((1, 1), decay)))
-    return minus(value) if x < 0 else value
+    return add((1, 1), multiply((-2, -2), inverse(add((1, 1), exp_at(2 * x)))))
 
 # By odd symmetry, π/2 − atan 1/x beyond one, and atan x = 2 atan(x/(1 + √(1 + x²))).
 def atan_at(x):
@@ -349,7 +338,7 @@ def atan_at(x):
         return add(multiply(PI, (Fraction(1, 2),) * 2), minus(atan_at(1 / x)))
     root = sqrt_at(1 + x * x)
     ends = [rounded(x / (1 + end), side) for end, side in zip(root, (True, False))]
-    return multiply((2, 2), (arctan_small(ends[1])[0], arctan_small(ends[0])[1]))
+    return multiply((2, 2), (odd_series(ends[1], -1)[0], odd_series(ends[0], -1)[1]))
 
 def power(a, exponent):
     if exponent.denominator == 1:
@@ -642,6 +631,7 @@ MADE_FOR = {
     "linear_adaptive": ("chain",), "immersion": ("chain",),
     "adaptive_backstepping": ("strict_feedback", "pure_feedback"),
 }
+DIRECTIONS = {"ring": ("forward", "both"), "path": ("forward", "both"), "star": ("out", "in", "both"), "complete": ()}
 CHAIN_LAWS = ("linearising", "linear_adaptive", "immersion", "adaptive_backstepping")
 DESIGNS = ("continuous", "differentiable", "without_acceleration", "swarm")
 
@@ -674,9 +664,17 @@ class Agent:
 
     # The table of its law that has gains: of vehicles that of the design.
     def settings(self):
-        if self.law != "thrust":
-            return self.gains
-        return table(choice(self.gains.get("design", "differentiable"), "design")[1], "design")
+        design = choice(self.gains.get("design", "differentiable"), "design")[1]
+        return table(design, "design") if self.law == "thrust" else self.gains
+
+# κ of a real root −κ as (κ, 0), and (a, b), (a, −b) of a pair −a ± b i; real ones first, so that κ₀ is the first where there is one.
+def roots_of(*tables):
+    found, file = [], next((table_["roots_per_s"] for table_ in tables if "roots_per_s" in table_), None)
+    for root in [] if file is None else listed(file, "roots_per_s"):
+        paired = root if isinstance(root, dict) else {"real": root, "imaginary": 0}
+        a, b = (exact(table(paired, "roots_per_s", "real imaginary").get(key), key) for key in ("real", "imaginary"))
+        found += [(a, b), (a, -b)] if root is paired else [(a, b)]
+    return sorted(found, key=lambda root: root[1] != 0)
 
 # `to` hears `source`; the weight is a rational number, or the text of a formula.
 Edge = collections.namedtuple("Edge", "source to weight delay")
@@ -742,8 +740,7 @@ class Scenario:
         common = "tracking" if leads else self.reference
         such(key in (None, common), f"{agent.name} states reference dynamics of another kind")
         shared = {} if leads or self.reference == "leader" else self.body
-        roots = table(own, "reference").get("roots_per_s", shared.get("roots_per_s", []))
-        agent.roots = [exact(root, "roots_per_s") for root in listed(roots, "roots_per_s")] if roots != [] else []
+        agent.roots = roots_of(table(own, "reference"), shared)
         key = "manipulability_gain"
         agent.manipulability = not_negative(own.get(key, shared.get(key, 0)), key)
         agent.tracks = leads or self.reference == "tracking"
@@ -872,24 +869,21 @@ class Scenario:
                 row |= {"weight": Fraction(row["weight"])} if DECIMAL.fullmatch(row.get("weight", "")) else {}
                 row |= {"delay": {"constant_s": quantity(row.pop("delay_s"))}} if "delay_s" in row else {}
             return [self.edge(row) for row in rows]
+        known(rule, DIRECTIONS, "edges")
         members = [self.vertex(name) for name in listed(body["among"], "among")] if "among" in body else list(range(len(self.agents)))
         direction, n = body.get("direction"), len(members)
         if rule in ("ring", "path"):
             pairs = list(zip(members, members[1:])) + ([(members[-1], members[0])] if rule == "ring" and n > 1 else [])
             pairs += [(b, a) for a, b in pairs] if direction == "both" else []
-            allowed = (None, "forward", "both")
         elif rule == "star":
             centre = self.vertex(body.get("centre"))
             others = [member for member in members if member != centre]
             pairs = [(centre, other) for other in others] if direction in (None, "out", "both") else []
             pairs += [(other, centre) for other in others] if direction in ("in", "both") else []
-            allowed = (None, "out", "in", "both")
-        elif rule == "complete":
-            such(n * n <= MOST_EDGES, "there are too many edges")
-            pairs, allowed = [(a, b) for a in members for b in members if a != b], (None,)
         else:
-            known(rule, ("csv", "ring", "path", "star", "complete"), "edges")
-        such(direction in allowed, "`direction` is not one of the rule")
+            such(n * n <= MOST_EDGES, "there are too many edges")
+            pairs = [(a, b) for a in members for b in members if a != b]
+        such(direction in (None, *DIRECTIONS[rule]), "`direction` is not one of the rule")
         return [Edge(a, b, *self.terms(body)) for a, b in dict.fromkeys(pairs)]
 
     # What acts from outside: for every agent the end of each push, infinite where there is none
@@ -1022,6 +1016,7 @@ def requirements(scenario):
     ask(agreeing and any(agent.manipulability > 0 for agent in agents), "manipulability")
     ask(reference == "leader", "bounded-leader", "sign-gain", "leader-reaches-all", "no-delay", "set-valued-sign", "shared-design")
     ask(reference == "leader" and scenario.body.get("design") in DESIGNS[1:3], "constant-weights")
+    ask(rooted(scenario) or reference == "leader" and scenario.body.get("design") != "swarm", "hurwitz")
     ask(reference == "leader" and scenario.body.get("design") == "swarm", "printed-design", "mutual-weights", "swarm-coupling")
     ask(reference != "tracking" and scenario.varying(), "bounded-weights")
     ask(any(agent.pushes for agent in agents), "pushes-end")
@@ -1045,7 +1040,6 @@ def requirements(scenario):
     ask(any(agent.pushes and agent.robot != "chain" for agent in chains), "matched-disturbance")
     robots_ = [agent for agent in agents if agent.law in ("adaptive", "known")]
     ask(robots_, "positive-gains")
-    ask(any(agent.tracks for agent in robots_), "real-roots")
     ask(robots_ or "task_space" in laws, "uniform-inertia")
     ask(any(not agent.tracks for agent in robots_) or "task_space" in laws, "bounded-dynamics")
     ask(True, "applied-torque")
@@ -1064,6 +1058,10 @@ def requirements(scenario):
         found.update((each, agent.name) for each in of)
     return found
 
+# Who follows a target by roots.
+def rooted(scenario):
+    return [agent for agent in scenario.agents if agent.tracks and agent.law in ("adaptive", "known", "position_only", *CHAIN_LAWS)]
+
 # Whether measurements have noise, steps, or come from a filter.
 def inexact(control):
     velocity = choice(control.get("velocity", "measured"), "velocity")[0]
@@ -1071,7 +1069,7 @@ def inexact(control):
     return velocity != "measured" or any(exact(part.get(entry, 0), entry) > 0 for part, entry in parts)
 
 # What may be spoken about robot by robot.
-SEVERAL = ("uniform-inertia",)
+SEVERAL = ("uniform-inertia", "hurwitz")
 # Hypotheses that only a run can show, or that the paper does not cover whenever they are asked for: no claim is right.
 NEVER = ("one-kind", "measured-derivative", "printed-design", "nonzero-thrust", "angular-velocity", "every-wrench",
          "bounded-regressors", "regular-jacobian", "continuous-time", "exact-measurements")
@@ -1293,11 +1291,21 @@ def terms(body):
     return [formula(body, STATES)] if isinstance(body, str) else [term for each in held for term in terms(each)]
 
 # A value of the sign is solved for so often that the error that stays, about h sup|ξ̇₀|/α, is small: h κ₀, or h √(κ₀κ₁), ≤ 0.01.
+# For a pair the response swings: its absolute integral is coth(π a/(2 b))/α < (1 + b/a)/α.
 def set_valued(scenario):
     h = exact(scenario.body.get("sign_period_s", Fraction(1, 1000)), "sign_period_s")
     h = h if scenario.control is None else 1 / positive(scenario.control.get("sample_hz"), "sample_hz")
-    roots = [exact(root, "roots_per_s") for root in listed(scenario.body.get("roots_per_s"), "roots_per_s")]
-    return scenario.body.get("sign", "implicit") == "implicit" and 10_000 * h * h * roots[0] * roots[-1] <= 1 and h < scenario.end_s
+    (alpha, _), (a, b) = coefficients(scenario), roots_of(scenario.body)[0]
+    mean = alpha * (a if scenario.body.get("design") == "continuous" else 1 + abs(b) / a)
+    return scenario.body.get("sign", "implicit") == "implicit" and 10_000 * h * h * mean <= 1 and h < scenario.end_s
+
+# α and β of the reference dynamics of a leader: p + α, or p² + β p + α.
+def coefficients(scenario):
+    roots, design = roots_of(scenario.body), scenario.body.get("design")
+    such(len(roots) == (1 if design == "continuous" else 2), "`roots_per_s` has not as many entries as the design needs")
+    such(min(roots)[0] > 0 and (design != "continuous" or roots[0][1] == 0), "`roots_per_s` must be positive")
+    (a, b), (c, d) = roots[0], roots[-1]
+    return (a, Fraction(1)) if design == "continuous" else (a * c - b * d, a + c)
 
 # In this state, x1, x2, … or x, dx, d2x, …, a term of the agent has no value.
 @rule("defined-terms", "no-value")
@@ -1332,6 +1340,9 @@ TEXT = {
     "known-masses": lambda scenario, _: all(design_of(a) == "continuous" for a in scenario.agents if a.law == "thrust"),
     "known-momentum": lambda scenario, names: not any(a.pushes for a in scenario.agents if a.name in names),
     "set-valued-sign": lambda scenario, _: set_valued(scenario),
+    # Nothing sits on a tool: its place enters the Jacobian of the tip, and neither M nor C nor g.
+    "certain-regressor": lambda scenario, names: all(a.gains["end_effector"].get("uncertain", "tool") == "tool"
+                                                     for a in scenario.agents if a.name in names),
 }
 
 @rule(" ".join(TEXT), "text")
@@ -1503,15 +1514,16 @@ def coupling(claim, form, size):
     require(form, (form.text(), size.number()) == claim.scenario.coupling, "is not that of the scenario")
     return f"{form.text()} with {said(size.number())}"
 
-@rule("real-roots manipulability common-order pushes-end", "number")
+# Agents that agree need real roots; those that follow a target or a leader need roots to the left of the axis.
+@rule("real-roots hurwitz manipulability common-order pushes-end", "number")
 def number(claim, value):
     agents, stated = claim.scenario.agents, value.number()
-    if claim.id == "real-roots":
-        roots = [root for agent in agents for root in agent.roots]
-        require(value, roots and 0 < stated <= min(roots), "is not a positive bound below all roots")
-        agreeing = claim.scenario.reference in ("consensus", "pure_integral")
-        rooted = [a for a in agents if agreeing or (a.tracks and a.law in ("adaptive", "known"))]
-        require(claim.proof, all(a.roots for a in rooted), "is not so: an agent has no roots")
+    if claim.id in ("real-roots", "hurwitz"):
+        of = [agent.roots for agent in (agents if claim.id == "real-roots" else rooted(claim.scenario))]
+        of += [roots_of(claim.scenario.body)] if claim.scenario.reference == "leader" else []
+        require(claim.proof, of and all(of), "is not so: an agent has no roots")
+        require(value, 0 < stated <= min(min(of))[0], "is not a positive bound below all roots")
+        require(claim.proof, claim.id == "hurwitz" or not any(b for roots in of for _, b in roots), "is not so: a root is complex")
     elif claim.id == "manipulability":
         require(value, stated == max(agent.manipulability for agent in agents), "is not the largest gain")
     elif claim.id == "common-order":
@@ -1658,9 +1670,8 @@ def finite(tree, stretches):
 def drive(claim):
     scenario, design = claim.scenario, claim.scenario.body.get("design")
     require(claim.proof, scenario.motion is not None, "is of no motion")
-    roots = [positive(root, "roots_per_s") for root in listed(scenario.body.get("roots_per_s"), "roots_per_s")]
-    such(len(roots) == (1 if design == "continuous" else 2), "`roots_per_s` has not as many entries as the design needs")
-    factors = {"continuous": (roots[0], 1, 0), "swarm": (0, 0, 1)}.get(design, (math.prod(roots), sum(roots), 1))
+    alpha, beta = coefficients(scenario)
+    factors = {"continuous": (alpha, 1, 0), "swarm": (0, 0, 1)}.get(design, (alpha, beta, 1))
     decided(smooth(scenario.motion), "the bound of a curve through points cannot be checked yet")
     found = []
     for tree in scenario.motion:
@@ -1691,7 +1702,8 @@ def sign_gain_instant(claim, t_s, axis):
 def swarm(claim, pivots):
     scenario = claim.scenario
     require(claim.proof, scenario.fixed() and not scenario.varying(), "is not so: the Laplacian changes")
-    small, large = sorted(positive(root, "roots_per_s") for root in pair(scenario.body.get("roots_per_s")))
+    (small, turn), (large, _) = sorted(roots_of(scenario.body))
+    require(claim.proof, small > 0 and turn == 0, "is for real roots")
     least = small + large + small**4 / (2 * ((small + large) ** 2 - small * large) * large)
     followers = [k for k in range(len(scenario.names)) if k != scenario.leader]
     shift = least / positive(scenario.body.get("coupling"), "coupling")
@@ -1836,8 +1848,7 @@ def same(node, text, inputs):
     for entry in node.field("inputs").each():
         entry.only("file", "sha256")
         data = inputs.get(entry.field("file").text())
-        known = data is None or hashlib.sha256(data).hexdigest() == entry.field("sha256").text()
-        require(entry, known, "is not that of the file")
+        require(entry, data is None or hashlib.sha256(data).hexdigest() == entry.field("sha256").text(), "is not that of the file")
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(description="Check a certificate of forwardstep against a scenario, without forwardstep.")
@@ -1851,8 +1862,7 @@ def main(arguments=None):
         found = check(certificate, scenario, options.scenario.resolve().parent, not options.ignore_digests)
     except Meaningless as error:
         found = [("certificate", [], "", REJECTED, str(error), "")]
-    results = {entry[3] for entry in found}
-    whole = REJECTED if REJECTED in results else UNCHECKED if UNCHECKED in results or not found else ACCEPTED
+    whole = max((entry[3] for entry in found), key=(ACCEPTED, UNCHECKED, REJECTED).index, default=UNCHECKED)
     violated = [entry[0] for entry in found if entry[2:4] == (VIOLATED, ACCEPTED)]
     if options.json:
         entries = [dict(zip(("id", "agents", "answer", "outcome", "words", "place"), entry)) for entry in found]

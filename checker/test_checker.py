@@ -238,9 +238,12 @@ def roots_of(scenario):
 
 def numbers_are_true(scenario, entry):
     value, roots = number(entry["proof"]["value"]), roots_of(scenario)
-    if entry["id"] == "real-roots":
-        return 0 < value and all(root >= value for own in roots.values() for root in own)
-    return entry["id"] == "common-order" and all(len(own) == value for own in roots.values())
+    every = [root for own in roots.values() for root in own]
+    if entry["id"] in ("real-roots", "hurwitz"):
+        real = entry["id"] == "hurwitz" or not any(isinstance(root, dict) for root in every)
+        return real and 0 < value and all((root["real"] if isinstance(root, dict) else root) >= value for root in every)
+    orders = [sum(2 if isinstance(root, dict) else 1 for root in own) for own in roots.values()]
+    return entry["id"] == "common-order" and all(order == value for order in orders)
 
 
 def first_roots_are_true(scenario, entry):
@@ -252,7 +255,8 @@ def first_roots_are_true(scenario, entry):
     reached = closure(names, edges)
     mates = [(a, b) for a in names for b in names if (a, b) in reached and (b, a) in reached]
     at = {name: k for k, group in enumerate(classes) for name in group}
-    same = all(roots[a][0] == roots[b][0] for group in classes for a in group for b in group)
+    first = {name: next((root for root in own if not isinstance(root, dict)), None) for name, own in roots.items()}
+    same = all(first[a] == first[b] for group in classes for a in group for b in group)
     return same and all(at[a] == at[b] for a, b in mates) and all(at[a] <= at[b] for a, b in edges)
 
 
@@ -336,7 +340,7 @@ def entry_is_true(scenario, entry):
         return bool(dwell) and 0 < number(entry["proof"]["shortest_s"]) <= min(dwell)
     if each in ("bounded-delays", "bounded-weights"):
         return links_are_true(scenario, entry)
-    if each in ("real-roots", "common-order"):
+    if each in ("real-roots", "hurwitz", "common-order"):
         return numbers_are_true(scenario, entry)
     if each == "common-first-root":
         return first_roots_are_true(scenario, entry)
@@ -447,7 +451,10 @@ def change_root(scenario, _, draw):
     lists += [next(iter(own["reference"].values()))["roots_per_s"] for own in scenario["agents"] if "reference" in own]
     roots = draw.choice(lists)
     k = draw.randrange(len(roots))
-    roots[k] = draw.choice((roots[k] * 2, roots[k] / 2, roots[k]))
+    if "consensus" in scenario["reference"] and len(roots) > 1 and draw.random() < 0.25:
+        roots[:2] = [{"real": max(roots[:2]), "imaginary": 0.5}]
+    else:
+        roots[k] = draw.choice((roots[k] * 2, roots[k] / 2, roots[k]))
 
 
 def change_gain(scenario, _, draw):

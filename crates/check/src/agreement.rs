@@ -117,6 +117,12 @@ pub enum NoPrediction {
         /// Index of the agent.
         agent: usize,
     },
+    /// Nothing shows that all agree.
+    #[error("not all roots of agent number {} are real, so that nothing shows that all agree", agent + 1)]
+    ComplexRoots {
+        /// Index of the agent.
+        agent: usize,
+    },
     /// Too few of its digits are known.
     #[error("{}", uncertain(*error_bound))]
     Uncertain {
@@ -170,6 +176,9 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     let counts = |agent: &usize| setup.reference.is::<Consensus>() && influence[*agent] > 0.0;
     if let Some(agent) = (0..n).filter(counts).find(|agent| pushed_for_ever(&setup.agents[*agent])) {
         return Err(NoPrediction::PushedForEver { agent });
+    }
+    if let Some(agent) = setup.agents.iter().position(|agent| agent.roots_per_s.all_real().is_none()) {
+        return Err(NoPrediction::ComplexRoots { agent });
     }
     let alpha: Vec<Vec<f64>> = setup
         .agents

@@ -18,7 +18,7 @@ use forwardstep_sim::formula::{BoundedFormula, Witness};
 use forwardstep_sim::schedule::{Phase, Schedule};
 
 /// Names may join this list. None may leave it or change: certificates, waivers and summaries of earlier versions refer to them.
-const NAMES: [&str; 53] = [
+const NAMES: [&str; 54] = [
     "spanning-tree",
     "leader-reaches-all",
     "dwell-time",
@@ -31,6 +31,7 @@ const NAMES: [&str; 53] = [
     "constant-weights",
     "coupling-sector",
     "real-roots",
+    "hurwitz",
     "common-order",
     "own-orders",
     "common-first-root",

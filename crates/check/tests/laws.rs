@@ -117,7 +117,7 @@ fn thm6_a_jacobian_that_is_singular_at_the_start_is_violated() {
 fn eq_a8_and_57_an_estimate_that_is_not_adapted_has_to_be_the_mass() {
     let blind = |adaptation, start| {
         let mut agent = blind_mass(adaptation, start);
-        agent.roots_per_s.truncate(2);
+        agent.roots_per_s.real.truncate(2);
         answer(&alone(agent), About::PositionOnlyGains)
     };
     assert_eq!([blind(5.0, 0.3), blind(0.0, 2.0), blind(0.0, 0.3)], [Answer::Holds, Answer::Holds, Answer::NotCovered]);
@@ -257,7 +257,7 @@ fn eq_a9_and_others_need_as_many_derivatives_of_a_target_as_they_take() {
     assert_eq!(needed(&spacecraft(), About::Target), 2);
     for roots in 1..=4 {
         let mut plant = chain(&Expression::number(1.0), 0, false);
-        plant.roots_per_s = vec![1.0; roots];
+        plant.roots_per_s = vec![1.0; roots].into();
         assert_eq!(needed(&plant, About::Target), roots, "as many as there are roots");
     }
     let floor = Floor::Stops(1.0);
@@ -309,7 +309,7 @@ fn robots_that_track_fall_under_no_theorem_of_the_paper_and_all_that_their_argum
         assert_eq!(report.theorem.source(), Source::Derived);
         assert!(report.theorem.to_string().starts_with("no theorem of the paper"));
         let has = |id: Id| report.hypotheses.iter().any(|hypothesis| hypothesis.id == id);
-        assert!([Id::BoundedTarget, Id::PositiveGains, Id::RealRoots, Id::AppliedTorque].into_iter().all(has));
+        assert!([Id::BoundedTarget, Id::PositiveGains, Id::Hurwitz, Id::AppliedTorque].into_iter().all(has));
         let asked = report.hypotheses.iter().find_map(|hypothesis| match &hypothesis.subject {
             Subject::Targets { derivatives, .. } => Some(*derivatives),
             _ => None,
@@ -334,7 +334,7 @@ fn eq_the_multipliers_of_a_sampled_mass_are_those_of_its_recursion() {
         setup.agents.truncate(1);
         setup.network.agents = 1;
         // So slow that z does not count. K/m is 5.
-        setup.agents[0].roots_per_s = vec![1e-7, 2e-7];
+        setup.agents[0].roots_per_s = vec![1e-7, 2e-7].into();
         setup = setup.sampled(5.0 / k);
         setup.control.as_mut().unwrap().computation_delay_s = late * k / 5.0;
         let found = multipliers(&setup);

@@ -32,7 +32,7 @@ fn mass(index: usize) -> AgentSetup {
             theta_names: vec!["mass".into()],
             axes: vec![Axis { unit: AxisUnit::Metre, ..axis("x") }],
         },
-        roots_per_s: Vec::new(),
+        roots_per_s: Vec::new().into(),
         manipulability: 0.0,
         law: Arc::new(Known { damping: Gain::Number(10.0) }),
         target: None,
@@ -285,7 +285,7 @@ fn eq_held_adaptation_is_stable_as_long_as_its_number_is_below_two() {
 fn led_by_agent(design: FollowingDesign, path: Path) -> Setup {
     let mut setup = setup(design, path.clone(), 3.0);
     let mut pilot = mass(3);
-    pilot.roots_per_s = vec![2.0];
+    pilot.roots_per_s = vec![2.0].into();
     pilot.target = Some(Trajectory::new(vec![path]).unwrap());
     setup.agents.insert(0, pilot);
     setup.network.schedule = Schedule::fixed(vec![edge(0, 1, 1.0, 0), edge(1, 2, 1.0, 0)]);
@@ -301,10 +301,13 @@ fn thm8_of_an_agent_that_leads_gamma_is_watched_and_its_own_hypotheses_are_liste
     assert_eq!(report.theorem, Theorem::Theorem8);
     assert!(report.promises.contains("follows mass-3"), "{}", report.promises);
     assert_eq!([of(Id::BoundedLeader), of(Id::SignGain)], [Some(Answer::Watched); 2]);
-    assert_eq!([of(Id::LeaderReachesAll), of(Id::BoundedTarget), of(Id::RealRoots)], [Some(Answer::Holds); 3]);
+    assert_eq!([of(Id::LeaderReachesAll), of(Id::BoundedTarget), of(Id::Hurwitz)], [Some(Answer::Holds); 3]);
     // Of a leader that is a motion there is no target.
     let alone = check(&setup(FollowingDesign::Continuous, wave(), 3.0));
     assert!(alone.hypotheses.iter().all(|hypothesis| !matches!(hypothesis.id, Id::BoundedTarget | Id::RealRoots)));
+    // The leader's own roots and those of the design are listed apart.
+    let listed = |report: &Report| report.hypotheses.iter().filter(|hypothesis| hypothesis.id == Id::Hurwitz).count();
+    assert_eq!([listed(&report), listed(&alone)], [2, 1]);
     // A target without bound is the leader's own trouble.
     let climbing = power_of_time(1.0, 2.0);
     let report = check(&led_by_agent(FollowingDesign::Continuous, climbing));
@@ -380,7 +383,7 @@ fn thm8_an_agent_of_another_kind_leads() {
     let mut setup = led_by_agent(FollowingDesign::Continuous, wave());
     let law = PositionOnlyLaw { damping: 5.0, filter_per_s: 5.0, adaptation: 1.0, estimate_start: 0.0 };
     setup.agents[0].law = Arc::new(law);
-    setup.agents[0].roots_per_s = vec![1.0, 2.0, 3.0];
+    setup.agents[0].roots_per_s = vec![1.0, 2.0, 3.0].into();
     validate(&setup).unwrap();
     let report = check(&setup);
     assert_eq!(report.theorem, Theorem::Theorem8);

@@ -63,9 +63,9 @@ fn thm3_unequal_first_roots_hold_only_where_nothing_varies() {
     assert_eq!(cascaded, [Answer::Holds; 4]);
     // The first root is meant, and (24) has no such condition.
     let mut setup = with_varying_delay(pair([1.0, 1.0], both_ways()));
-    setup.agents[1].roots_per_s[1] = 3.0;
+    setup.agents[1].roots_per_s.real[1] = 3.0;
     assert_eq!(said(setup.clone()), Answer::Holds);
-    setup.agents[1].roots_per_s[0] = 1.5;
+    setup.agents[1].roots_per_s.real[0] = 1.5;
     setup.exchange = Exchange::Position;
     assert_eq!(answers(&check(&setup), About::CommonFirstRoot), []);
 }
@@ -78,7 +78,7 @@ fn thm3_a_component_is_looked_at_to_its_end() {
     let delays = vec![Delay::constant(0.1)];
     let mut ring = setup(agents, Exchange::PositionVelocity, Schedule::fixed(edges), delays, 10.0);
     assert_eq!(answer(&with_varying_delay(ring.clone()), About::CommonFirstRoot), Answer::NotCovered);
-    ring.agents[2].roots_per_s[0] = 1.0;
+    ring.agents[2].roots_per_s.real[0] = 1.0;
     assert_eq!(answer(&with_varying_delay(ring), About::CommonFirstRoot), Answer::Holds);
 }
 
@@ -113,7 +113,7 @@ fn thm3_robots_and_chains_may_have_orders_of_their_own() {
     assert_eq!(answer(&arms, About::CommonOrder), Answer::Holds);
     assert_eq!(answers(&check(&arms), About::OwnOrders), []);
     // One more, then one in the middle.
-    arms.agents[1].roots_per_s.push(3.0);
+    arms.agents[1].roots_per_s.real.push(3.0);
     let mut three = arms.clone();
     three.agents.insert(1, three.agents[0].clone());
     three.network.agents = 3;
@@ -130,7 +130,7 @@ fn thm3_robots_and_chains_may_have_orders_of_their_own() {
     let mut chains = alone(chain(&Expression::number(1.0), 0, false));
     assert_eq!(answer(&chains, About::CommonOrder), Answer::Holds);
     chains.agents.push(chains.agents[0].clone());
-    chains.agents[1].roots_per_s.push(3.0);
+    chains.agents[1].roots_per_s.real.push(3.0);
     chains.network.agents = 2;
     assert_eq!(answer(&chains, About::OwnOrders), Answer::Holds);
     assert_eq!(answer(&chains, About::RealRoots), Answer::Holds);
@@ -145,7 +145,7 @@ fn thm3_robots_and_chains_may_have_orders_of_their_own() {
 fn thm3_a_root_that_is_not_positive_is_violated() {
     for roots in [[1.0, 0.0], [-1.0, 2.0]] {
         let mut setup = pair([1.0, 1.0], both_ways());
-        setup.agents[1].roots_per_s = roots.to_vec();
+        setup.agents[1].roots_per_s = roots.to_vec().into();
         assert_eq!(answer(&setup, About::RealRoots), Answer::Violated);
     }
 }

@@ -110,7 +110,7 @@ fn every_reason_for_which_there_is_none_is_the_one_that_is_said() {
     assert_eq!(said(&|setup| setup.reference = Arc::new(Tracking)), Some(NoPrediction::Law));
     let blind = || {
         let mut agent = blind_mass(1.0, 1.0);
-        agent.roots_per_s = vec![1.0, 2.0];
+        agent.roots_per_s = vec![1.0, 2.0].into();
         agent
     };
     assert_eq!(said(&|setup| setup.agents[2].law = blind().law), Some(NoPrediction::Law), "one is enough");
@@ -146,7 +146,10 @@ fn every_reason_for_which_there_is_none_is_the_one_that_is_said() {
         said(&|setup| setup.network.schedule = one_way.clone()),
         Some(NoPrediction::NoSpanningTree { closed_groups: 2 })
     );
-    assert_eq!(said(&|setup| setup.agents[1].roots_per_s = vec![1.0, 0.0]), Some(NoPrediction::Roots { agent: 1 }));
+    assert_eq!(
+        said(&|setup| setup.agents[1].roots_per_s = vec![1.0, 0.0].into()),
+        Some(NoPrediction::Roots { agent: 1 })
+    );
 }
 
 #[test]

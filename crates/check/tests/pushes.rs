@@ -41,7 +41,7 @@ fn agent(index: usize, roots_per_s: &[f64], kind: Arc<dyn Robot>, theta: Vec<f64
             theta,
             axes: vec![axis("a"), axis("b")],
         },
-        roots_per_s: roots_per_s.to_vec(),
+        roots_per_s: roots_per_s.to_vec().into(),
         manipulability: 0.0,
         law,
         start: Start {
@@ -149,7 +149,8 @@ fn normaliser(setup: &Setup, influence: &[f64]) -> f64 {
     let term = |(i, agent): (usize, &AgentSetup)| {
         let alpha = polynomial(&agent.roots_per_s).unwrap();
         let heard = edges.iter().filter(|edge| edge.to == i).map(|edge| {
-            let velocity = if setup.exchange == Exchange::PositionVelocity { 1.0 / agent.roots_per_s[0] } else { 0.0 };
+            let velocity =
+                if setup.exchange == Exchange::PositionVelocity { 1.0 / agent.roots_per_s.real[0] } else { 0.0 };
             edge.weight.constant().unwrap()
                 * (alpha[1] / alpha[0] + setup.network.delays[edge.delay].max_s() - velocity)
         });

@@ -161,7 +161,7 @@ fn thm1_c_and_g_are_bounded_unless_a_revolute_joint_swings_a_prismatic_one() {
         answer == Answer::NotShown && matches!(&evidence, RobotEvidence::Swung { agents, .. } if agents.len() == 2)
     );
     // Who follows a target of its own keeps near it.
-    swung.roots_per_s = vec![1.0];
+    swung.roots_per_s = vec![1.0].into();
     assert!(all(&tracking(swung, vec![rest_at(0.1), rest_at(0.2)]), Id::BoundedDynamics).is_empty());
 }
 

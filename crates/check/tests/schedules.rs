@@ -81,7 +81,7 @@ fn regress_only_first_roots_that_hear_each_other_again_and_again_are_compared() 
     let (cycle, tree) = (phase(2.0, &[(0, 1), (1, 0)]), phase(2.0, &[(0, 1), (1, 2)]));
     let setup = |schedule, delay| {
         let mut setup = three(Exchange::PositionVelocity, 2, schedule, delay);
-        setup.agents[1].roots_per_s = vec![0.3, 2.0];
+        setup.agents[1].roots_per_s = vec![0.3, 2.0].into();
         setup
     };
     let ends = setup(Schedule::once(vec![cycle.clone(), tree.clone()]), saw());
@@ -165,7 +165,7 @@ fn prop_agents_of_different_orders_agree() {
         for (agent, order) in setup.agents.iter_mut().zip([[1, 2, 4], [3, 1, 2], [2, 3, 1]][case % 3]) {
             // κ₀ is common, which (a5) needs and (24) does not.
             let own = |r: usize, x: f64| if r == 0 && case % 2 == 1 { 1.3 } else { 0.8 + 2.0 * x };
-            agent.roots_per_s = (0..order).map(|r| own(r, draw.next())).collect();
+            agent.roots_per_s = (0..order).map(|r| own(r, draw.next())).collect::<Vec<_>>().into();
         }
         assert_eq!(check(&setup).worst(), Answer::Holds, "{:?}", check(&setup));
         let [first, last] = spread(&setup, 200.0);

@@ -129,7 +129,7 @@ fn eq_43_for_tracking_of_order_two_is_the_third_order_system_of_a9() {
         psi: |x: &[f64]| 2.0 + x[0] * x[0],
     };
     let roots = [1.0, 2.0, 1.5];
-    let alpha = polynomial(&roots).unwrap();
+    let alpha = polynomial(roots).unwrap();
     let law = Linearising::new(terms, Vec::new(), following(tracking(&roots))).unwrap();
     let plant = Chain { terms, theta: Vec::new() };
     let jet: Jet = [0.4, -0.3, 0.9, 1.4, -2.0];

@@ -105,7 +105,7 @@ fn a_sample_that_does_not_come_later_is_refused_and_changes_nothing() {
 
 /// (a8) and (a9) for one axis, sampled.
 fn blind() -> Stepped<PositionOnly> {
-    let mut alpha = polynomial(&[1.0, 1.5, 2.0]).unwrap();
+    let mut alpha = polynomial([1.0, 1.5, 2.0]).unwrap();
     alpha.pop();
     let law = PositionOnly {
         axes: 1,
@@ -284,8 +284,7 @@ fn thm6_an_estimate_beyond_its_margin_stands_and_never_turns_round() {
 
 #[test]
 fn eq_45_a_thrust_that_is_kept_above_a_floor_is_trouble_only_where_it_is_none() {
-    let design = ThrustDesign::Continuous { roots_per_s: [1.0, 0.7] };
-    let mut law = Thrust::new(design, 1.3, 9.81).unwrap();
+    let mut law = Thrust::new(ThrustDesign::Continuous, [1.0, 0.7], 1.3, 9.81).unwrap();
     let told = |law: &Thrust, sigma: f64| law.trouble(&[sigma, 0.0], &[]).is_some();
     law.floor = Floor::Stops(2.0);
     assert_eq!([2.1, 2.0, 1.0, -1.0].map(|sigma| told(&law, sigma)), [false, true, true, true]);

@@ -214,9 +214,8 @@ impl Motion for Corner {
 
 fn vehicle() -> Recipe {
     use forwardstep_core::controller::{Thrust, ThrustDesign};
-    let design = ThrustDesign::Continuous { roots_per_s: [1.0, 1.5] };
     let plant = Vehicle { mass: 1.2, gravity: 9.81 };
-    Recipe::feedback(&plant, Thrust::new(design, plant.mass, plant.gravity).unwrap())
+    Recipe::feedback(&plant, Thrust::new(ThrustDesign::Continuous, [1.0, 1.5], plant.mass, plant.gravity).unwrap())
 }
 
 #[test]

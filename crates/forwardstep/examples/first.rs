@@ -5,7 +5,7 @@ use forwardstep::sim::{AgentSetup, Known, Network, RobotSetup, Setup, SetupError
 
 fn main() -> Result<(), SetupError> {
     let mass = |name: &str, at: f64| {
-        AgentSetup::new(name, RobotSetup::point_mass(1, 2.0), Known::gain(8.0)).roots(&[1.0, 2.0]).at(&[at])
+        AgentSetup::new(name, RobotSetup::point_mass(1, 2.0), Known::gain(8.0)).roots([1.0, 2.0]).at(&[at])
     };
     let network = Network::fixed(2, [(0, 1), (1, 0)], Delay::constant(0.3));
     let setup = Setup::consensus([mass("left", 0.0), mass("right", 1.0)], network, 20.0);

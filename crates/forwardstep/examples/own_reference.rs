@@ -33,7 +33,7 @@ fn main() -> Result<ExitCode, KindError> {
 #[serde(deny_unknown_fields)]
 pub struct AnchoredFile {
     /// The positive numbers κ₀, κ₁, … in 1/s. Agents may have their own.
-    pub roots_per_s: Option<At<Vec<At<f64>>>>,
+    pub roots_per_s: Option<RootsFile>,
     /// Where each agent is drawn: a number for every axis.
     pub homes: Vec<At<Vec<At<f64>>>>,
     /// How much a home counts beside neighbours.

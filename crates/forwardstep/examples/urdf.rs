@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         bounds: None,
     };
     let arm =
-        |name: &str, q: f64| AgentSetup::new(name, robot.clone(), law.clone()).roots(&[1.0, 2.0]).at(&vec![q; axes]);
+        |name: &str, q: f64| AgentSetup::new(name, robot.clone(), law.clone()).roots([1.0, 2.0]).at(&vec![q; axes]);
     let network = Network::fixed(2, [(0, 1), (1, 0)], Delay::constant(0.3));
     let recording = run(&Setup::consensus([arm("left", -0.4), arm("right", 0.4)], network, 40.0))?.recording;
     for axis in 0..axes {

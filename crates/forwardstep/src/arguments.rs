@@ -3,7 +3,7 @@
 mod experiments;
 
 pub(crate) use experiments::{
-    AttackOptions, FalsifyOptions, ManipulabilityOptions, SamplingLimitOptions, SmoothnessOptions,
+    AttackOptions, AttackTarget, FalsifyOptions, ManipulabilityOptions, SamplingLimitOptions, SmoothnessOptions,
 };
 
 use std::path::PathBuf;

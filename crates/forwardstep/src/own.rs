@@ -9,12 +9,14 @@ pub use std::sync::Arc;
 pub use forwardstep_core::LengthError;
 pub use forwardstep_core::controller::{Asked, Balance, Controller, Feedback, FeedbackInput, Given, Trouble, Truth};
 pub use forwardstep_core::plant::{Plant, VectorField};
-pub use forwardstep_core::reference::{AxisInput, AxisOutput, PerAxis, Position, PositionVelocity, polynomial};
+pub use forwardstep_core::reference::{
+    AxisInput, AxisOutput, PerAxis, Position, PositionVelocity, RootPair, RootSet, polynomial,
+};
 pub use forwardstep_core::signal::{Entries, OwnSignal, Signal, Unit};
 pub use forwardstep_io::scenario::kinds::{
     At, DelayKind, DelayPlan, Fault, InputFolder, KindError, KindTable, Kinds, LawKind, LawReader, LawTable, Mistake,
     NetworkReader, ReferenceKind, ReferenceRead, ReferenceReader, ReferenceTable, RobotKind, RobotRead, RobotTable,
-    Spread, StartReader, Stop, fault, length, not_negative, positive,
+    RootsFile, Spread, StartReader, Stop, fault, length, not_negative, positive,
 };
 pub use forwardstep_sim::delay::{Arrivals, Delay, DelayFunction, DelayPiece, Known as KnownDelay};
 pub use forwardstep_sim::quantity::{self, QuantityError};

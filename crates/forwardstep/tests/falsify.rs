@@ -45,7 +45,11 @@ fn a_folder_that_cannot_be_written_to_is_no_matter_while_nothing_is_refuted() {
 #[test]
 fn attack_finds_a_network_over_which_a_broken_hypothesis_matters() {
     let folder = folder();
-    for (target, id) in [("a1-first-roots", "common-first-root"), ("119-weights", "constant-weights")] {
+    for (target, id) in [
+        ("a1-first-roots", "common-first-root"),
+        ("24-complex-roots", "real-roots"),
+        ("119-weights", "constant-weights"),
+    ] {
         let said = stdout(&forwardstep(&folder, &["attack", target, "--seconds", "60", "--out", "found.toml"]).code(0));
         assert!(said.contains("fails: ") && said.contains(&format!("do not hold for it: {id}\n")), "{target}: {said}");
         // What is saved is a scenario that says the same of itself.
@@ -57,6 +61,88 @@ fn attack_finds_a_network_over_which_a_broken_hypothesis_matters() {
         let gap = &summary["metrics"]["disagreement"]["measured"];
         let [initial, last] = ["initial", "last"].map(|when| gap[when].as_f64().unwrap());
         assert!(last > 0.05 * initial, "{target}: {last} from {initial}");
+    }
+}
+
+/// Two masses that hear each other in turns, with these roots.
+fn turns(roots: &str, delay: &str) -> String {
+    format!(
+        "format = 2\n[time]\nend_s = 60\n[[agents]]\nname = \"m\"\ncount = 2\nrobot.point_mass = {{ mass_kg = 2, dimension = 1 }}\n\
+         start.position_m = [[0.0], [1.0]]\n[reference.consensus]\nroots_per_s = {roots}\nexchange = \"position\"\n\
+         [network]\nweight = 4\ndelay.constant_s = {delay}\n[[network.phases]]\ndwell_s = 0.5\nedges = [[\"m-1\", \"m-2\"]]\n\
+         [[network.phases]]\ndwell_s = 2.5\nedges = [[\"m-2\", \"m-1\"]]\n"
+    )
+}
+
+/// How much is left, of the worst and as stated, in percent.
+fn percents(said: &str) -> [f64; 2] {
+    let number = |after: &str| said.split(after).nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    [number(if said.contains("grows: ") { "grows: " } else { "worst: " }), number("as stated it is ")]
+}
+
+#[test]
+fn attack_varies_a_scenario_within_the_delays_and_dwell_times_that_it_states() {
+    let folder = folder();
+    fs::write(folder.path().join("own.toml"), turns("[1.0, 2.0]", "0.4")).unwrap();
+    let arguments = ["attack", "own.toml", "--seconds", "3", "--pieces", "4", "--out", "found.toml"];
+    let said = stdout(&forwardstep(&folder, &arguments).code(0));
+    assert!(
+        said.contains("of the interval of all cascaded variables") && said.contains("do not hold for it: none\n"),
+        "{said}"
+    );
+    let [worst, stated] = percents(&said);
+    assert!(worst > 1.5 * stated && worst < 100.0, "{said}");
+    // What is saved is the same scenario with a network inside the stated bounds, and is as bad.
+    let text = fs::read_to_string(folder.path().join("found.toml")).unwrap();
+    let found: toml::Table = toml::from_str(&text).unwrap();
+    let numbers =
+        |list: &toml::Value| -> Vec<f64> { list.as_array().unwrap().iter().map(|x| x.as_float().unwrap()).collect() };
+    let network = &found["network"];
+    let delays = network["delay"].get("piecewise_constant").map_or_else(
+        || vec![network["delay"]["constant_s"].as_float().unwrap()],
+        |pieces| numbers(&pieces["values_s"]),
+    );
+    assert!(delays.iter().all(|delay_s| (0.0..=0.4).contains(delay_s)), "{text}");
+    let phases = network["phases"].as_array().unwrap();
+    assert!((2..=4).contains(&phases.len()), "{text}");
+    for phase in phases {
+        assert!((0.5..=2.5).contains(&phase["dwell_s"].as_float().unwrap()), "{text}");
+    }
+    let again = ["attack", "found.toml", "--seconds", "0.2", "--out", "again.toml"];
+    let [_, as_saved] = percents(&stdout(&forwardstep(&folder, &again).code(0)));
+    assert!((as_saved / worst - 1.0).abs() < 1e-2, "{as_saved} {worst}");
+}
+
+#[test]
+fn attack_finds_where_a_scenario_outside_of_its_theorem_grows() {
+    let folder = folder();
+    let text = turns("[{ real = 0.5, imaginary = 4.0 }]", "0");
+    fs::write(folder.path().join("own.toml"), &text).unwrap();
+    let arguments = ["attack", "own.toml", "--seconds", "60", "--out", "found.toml"];
+    let said = stdout(&forwardstep(&folder, &arguments).code(0));
+    assert!(said.contains("grows: ") && said.contains("do not hold for it: real-roots\n"), "{said}");
+    assert!(percents(&said)[0] > 1000.0, "{said}");
+    forwardstep(&folder, &["check", "found.toml", "--accept", "real-roots"]).code(0);
+}
+
+#[test]
+fn attack_says_why_a_scenario_cannot_be_attacked() {
+    let folder = folder();
+    let fixed = turns("[1.0, 2.0]", "0").split("[[network.phases]]").next().unwrap().to_owned();
+    fs::write(folder.path().join("fixed.toml"), format!("{fixed}edges = [[\"m-1\", \"m-2\"]]\n")).unwrap();
+    let same = turns("[1.0, 2.0]", "0.4").replace("[[0.0], [1.0]]", "[[1.0], [1.0]]");
+    fs::write(folder.path().join("same.toml"), same).unwrap();
+    for (scenario, reason) in [
+        ("theorem-8", "everybody follows a leader"),
+        ("through-waypoints", "agents follow targets"),
+        ("fixed.toml", "it leaves nothing open"),
+        ("same.toml", "agents start together"),
+        ("nowhere.toml", "cannot read"),
+        ("a2", "there is no scenario `a2`"),
+    ] {
+        let failed = forwardstep(&folder, &["attack", scenario, "--seconds", "1"]).code(2);
+        let said = String::from_utf8(failed.get_output().stderr.clone()).unwrap();
+        assert!(said.contains(reason), "{scenario}: {said}");
     }
 }
 

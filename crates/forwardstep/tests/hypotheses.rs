@@ -57,7 +57,7 @@ fn arm_and_spacecraft() -> Setup {
 /// Robots with reference dynamics of different orders.
 fn own_orders() -> Setup {
     let mut setup = shipped("theorem-3-24-order-4");
-    setup.agents[0].roots_per_s.pop();
+    setup.agents[0].roots_per_s.real.pop();
     setup
 }
 

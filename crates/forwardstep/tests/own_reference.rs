@@ -212,7 +212,7 @@ fn the_schema_holds_them_and_the_program_without_them_does_not_know_them() {
 fn agents_have_roots_of_their_own() {
     let text = HOMES.replace("count = 3", "count = 3\nreference.anchored.roots_per_s = [1, 2, 3]");
     let Setup { agents, .. } = read(&text).unwrap().setup;
-    assert!(agents.iter().all(|agent| agent.roots_per_s == [1.0, 2.0, 3.0]));
+    assert!(agents.iter().all(|agent| agent.roots_per_s.real == [1.0, 2.0, 3.0]));
 }
 
 #[test]
@@ -246,7 +246,7 @@ fn masses(roots: [&[f64]; 3]) -> Vec<AgentSetup> {
 /// What stands at a home: nothing moves it, and it hears nobody.
 fn standing(k: usize, at: &[f64]) -> AgentSetup {
     let known = forwardstep::sim::Known::gain(1.0);
-    AgentSetup::new(format!("home-{k}"), RobotSetup::point_mass(2, 1.0), known).roots(&[1.0, 2.0]).at(at)
+    AgentSetup::new(format!("home-{k}"), RobotSetup::point_mass(2, 1.0), known).roots([1.0, 2.0]).at(at)
 }
 
 const HOME: [[f64; 2]; 3] = [[0.2, -0.4], [1.0, 0.3], [-0.6, 0.9]];

@@ -16,7 +16,7 @@ const END_S: f64 = 20.0;
 /// The same two carts, controllers and packets in the simulator.
 fn setup() -> Setup {
     let cart = |name: &str, x: f64| {
-        AgentSetup::new(name, RobotSetup::point_mass(1, MASS_KG), Known::gain(8.0)).roots(&[1.0, 2.0]).at(&[x])
+        AgentSetup::new(name, RobotSetup::point_mass(1, MASS_KG), Known::gain(8.0)).roots([1.0, 2.0]).at(&[x])
     };
     let packet = |tick| Packet { send_s: f64::from(tick) * PERIOD_S, delay_s: latency_s(tick) };
     let trace = Trace::new((0..(END_S / PERIOD_S) as u32).map(packet).collect(), END_S).unwrap();

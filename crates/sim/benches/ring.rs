@@ -58,7 +58,7 @@ fn ring(model: Model, n: usize, tolerance: f64) -> Setup {
                 theta,
                 axes: (0..m).map(axis).collect(),
             },
-            roots_per_s: vec![1.0],
+            roots_per_s: vec![1.0].into(),
             manipulability: 0.0,
             law,
             start: Start {

@@ -6,7 +6,7 @@
 //! use forwardstep_sim::{AgentSetup, Known, Network, RobotSetup, Setup, Signal, run};
 //!
 //! let cart = |name: &str, x: f64| {
-//!     AgentSetup::new(name, RobotSetup::point_mass(1, 2.0), Known::gain(8.0)).roots(&[1.0, 2.0]).at(&[x])
+//!     AgentSetup::new(name, RobotSetup::point_mass(1, 2.0), Known::gain(8.0)).roots([1.0, 2.0]).at(&[x])
 //! };
 //! let network = Network::fixed(2, [(0, 1), (1, 0)], Delay::constant(0.1));
 //! let setup = Setup::consensus([cart("left", 0.0), cart("right", 1.0)], network, 20.0);
@@ -20,6 +20,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
+use forwardstep_core::reference::RootSet;
 use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PointMass};
 
@@ -120,7 +121,7 @@ impl AgentSetup {
         AgentSetup {
             name: name.into(),
             robot,
-            roots_per_s: Vec::new(),
+            roots_per_s: RootSet::default(),
             manipulability: 0.0,
             law: Arc::new(law),
             target: None,
@@ -130,9 +131,9 @@ impl AgentSetup {
         }
     }
 
-    /// Reference dynamics with these κ₀ … κ_{ℓ−1}, 1/s.
-    pub fn roots(mut self, roots_per_s: &[f64]) -> Self {
-        self.roots_per_s = roots_per_s.to_vec();
+    /// Reference dynamics with these κ₀ … κ_{ℓ−1}, 1/s, or with pairs of complex roots too.
+    pub fn roots(mut self, roots_per_s: impl Into<RootSet>) -> Self {
+        self.roots_per_s = roots_per_s.into();
         self
     }
 

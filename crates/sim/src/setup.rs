@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use forwardstep_core::reference::RootSet;
 use forwardstep_core::sampled::SafeCommand;
 
 use crate::leader::{Following, FollowingDesign, Leading};
@@ -118,9 +119,9 @@ pub struct AgentSetup {
     pub name: String,
     /// Its robot.
     pub robot: RobotSetup,
-    /// κ₀ … κ_{ℓ−1} in 1/s, all positive; their number is the order ℓ of the reference dynamics. None for
-    /// reference dynamics that have no roots.
-    pub roots_per_s: Vec<f64>,
+    /// κ₀ … κ_{ℓ−1} in 1/s, all positive, and pairs of complex roots; their number is the order ℓ of the reference dynamics. None
+    /// for reference dynamics that have no roots.
+    pub roots_per_s: RootSet,
     /// λ of Remark 4, 1/s^ℓ: how much the reference gives way to the motion; zero for not at all.
     pub manipulability: f64,
     /// Its tracking law.

@@ -307,7 +307,7 @@ fn the_cut_off_of_the_filter_is_in_hertz() {
     // Nothing but damping acts, and z stays at zero: τ = −K q̇ as it is filtered.
     setup.agents[0].law = Arc::new(Known { damping: Gain::Number(1e-6) });
     setup.agents[0].start.reference = vec![vec![0.0; 2]; 2];
-    setup.agents[0].roots_per_s = vec![1e-9, 1e-9];
+    setup.agents[0].roots_per_s = vec![1e-9, 1e-9].into();
     setup.time.end_s = 1.0;
     let outcome = run(&setup);
     let (tau, dq) = (column(&outcome, 0, Signal::Torque, 0), setup.agents[0].start.dq[0]);

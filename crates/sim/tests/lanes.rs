@@ -37,7 +37,7 @@ fn arm(index: usize, order: usize) -> AgentSetup {
             theta_names: vec![String::new(); 5],
             axes: vec![axis("shoulder"), axis("elbow")],
         },
-        roots_per_s: (0..order).map(|r| 1.0 + 0.7 * r as f64 + 0.1 * index as f64).collect(),
+        roots_per_s: (0..order).map(|r| 1.0 + 0.7 * r as f64 + 0.1 * index as f64).collect::<Vec<_>>().into(),
         manipulability: 0.0,
         law: Arc::new(Adaptive {
             // One agent with a full matrix beside others with a diagonal.

@@ -179,7 +179,7 @@ fn who_cannot_lead_is_told_why() {
     assert_eq!(changed(&|setup| setup.agents[1].target = None), Some(SetupError::NoTarget { agent: "pilot".into() }));
     let said = changed(&|setup| setup.agents[1].roots_per_s.clear());
     assert!(matches!(said, Some(SetupError::Chain { agent, .. }) if agent == "pilot"));
-    let said = changed(&|setup| setup.agents[2].roots_per_s = vec![1.0]);
+    let said = changed(&|setup| setup.agents[2].roots_per_s = vec![1.0].into());
     assert!(matches!(said, Some(SetupError::RootCount { agent, .. }) if agent == setup_name(2)));
     let said = changed(&|setup| setup.agents[2].target = setup.agents[1].target.clone());
     assert!(matches!(said, Some(SetupError::NoOffsets { agent, .. }) if agent == setup_name(2)));

@@ -33,7 +33,7 @@ fn arm(index: usize, limits: Option<[f64; 2]>, adaptive: bool) -> AgentSetup {
             theta_names: vec![String::new(); 5],
             axes: both,
         },
-        roots_per_s: vec![1.0, 2.0],
+        roots_per_s: vec![1.0, 2.0].into(),
         manipulability: 0.0,
         law: if adaptive {
             Arc::new(Adaptive { damping, adaptation, estimate_start: vec![0.0; 5], bounds: None })

@@ -72,7 +72,7 @@ fn mass(index: usize, damping: f64) -> AgentSetup {
             theta_names: vec!["mass".into()],
             axes: axes(&["x"], AxisUnit::Metre),
         },
-        roots_per_s: vec![1.0],
+        roots_per_s: vec![1.0].into(),
         manipulability: 0.0,
         law: Arc::new(Known { damping: Gain::Number(damping) }),
         target: None,

@@ -239,7 +239,8 @@ fn what_shipped_reference_dynamics_say_of_themselves_is_so() {
             let mut setup = setup(Way::Plain, exchange);
             setup.reference = Arc::clone(reference);
             for (i, agent) in setup.agents.iter_mut().enumerate() {
-                agent.roots_per_s = (0..*order).map(|r| 0.5 + 0.7 * r as f64 + 0.1 * i as f64).collect();
+                agent.roots_per_s =
+                    (0..*order).map(|r| 0.5 + 0.7 * r as f64 + 0.1 * i as f64).collect::<Vec<_>>().into();
                 agent.manipulability = 0.3;
             }
             assert!(setup.reference.linear(&setup.agents[0], exchange).is_some());

@@ -40,7 +40,7 @@ fn agent(kind: Arc<dyn Robot>, theta: Vec<f64>, axes: usize, law: Arc<dyn Law>) 
             theta,
             axes: (0..axes).map(axis).collect(),
         },
-        roots_per_s: vec![1.0, 2.0],
+        roots_per_s: vec![1.0, 2.0].into(),
         manipulability: 0.0,
         law,
         start: Start { q: vec![0.0; axes], dq: vec![0.0; axes], rest: Vec::new(), reference: Vec::new() },

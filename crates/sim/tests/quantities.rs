@@ -4,7 +4,7 @@
 use forwardstep_sim::reference::{Backstepping, Tracking};
 use std::sync::Arc;
 
-use forwardstep_core::reference::Choice;
+use forwardstep_core::reference::{Choice, RootPair};
 use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
@@ -20,7 +20,7 @@ use forwardstep_sim::{
 type Case<'a> = (&'a dyn Fn(&mut Setup), &'a str);
 
 fn setup() -> Setup {
-    let cart = |name: &str| AgentSetup::new(name, RobotSetup::point_mass(1, 2.0), Known::gain(4.0)).roots(&[1.0]);
+    let cart = |name: &str| AgentSetup::new(name, RobotSetup::point_mass(1, 2.0), Known::gain(4.0)).roots([1.0]);
     let mut setup = Setup::consensus([cart("one").at(&[1.0]), cart("two").at(&[0.0])], Network::silent(2), 1.0);
     setup.exchange = Exchange::Position;
     setup.control = Some(Control {
@@ -97,7 +97,15 @@ fn every_quantity_is_refused_out_of_its_range_under_its_path() {
             ),
             (&controlled(|c| c.actuators.torque_limit = Some(vec![value])), "control.torque_limit[0]"),
             (&controlled(|c| c.actuators.torque_rate_limit = Some(vec![value])), "control.torque_rate_limit_per_s[0]"),
-            (&|s| s.agents[1].roots_per_s[0] = value, "agents[1].reference.consensus.roots_per_s[0]"),
+            (&|s| s.agents[1].roots_per_s.real[0] = value, "agents[1].reference.consensus.roots_per_s[0]"),
+            (
+                &|s| s.agents[1].roots_per_s.pairs = vec![RootPair { real: value, imaginary: 1.0 }],
+                "agents[1].reference.consensus.roots_per_s[1].real",
+            ),
+            (
+                &|s| s.agents[1].roots_per_s.pairs = vec![RootPair { real: 1.0, imaginary: value }],
+                "agents[1].reference.consensus.roots_per_s[1].imaginary",
+            ),
             (&|s| s.agents[1].manipulability = value, "agents[1].reference.consensus.manipulability_gain"),
             (&|s| s.network.delays.push(Delay::constant(value)), "network.delays[0].constant_s"),
             (

@@ -242,7 +242,7 @@ fn digest_a_tree_of_links_has_the_bits_of_the_simulator() {
     let estimate_start = first.robot.theta.iter().map(|theta| 0.8 * theta).collect();
     let (damping, adaptation) = (Gain::Bandwidth(20.0), Gain::Bandwidth(3.0));
     first.law = Arc::new(Adaptive { damping, adaptation, estimate_start, bounds: None });
-    (first.target, first.roots_per_s, first.manipulability) = (None, vec![1.0, 2.0, 3.0], 0.4);
+    (first.target, first.roots_per_s, first.manipulability) = (None, [1.0, 2.0, 3.0].into(), 0.4);
     for k in 1..3 {
         let name = format!("agent-{k}");
         let q = setup.agents[0].start.q.iter().map(|q| q + 0.3 * k as f64).collect();

@@ -94,7 +94,7 @@ fn regress_the_simulator_steps_the_agent_that_runs_on_a_robot() {
         bounds: None,
     };
     assert_eq!(setup.exchange, Exchange::PositionVelocity);
-    let reference = Consensus::<PositionVelocity>::new([(&agent.roots_per_s[..], 0.0)]).unwrap();
+    let reference = Consensus::<PositionVelocity>::new([(&agent.roots_per_s, 0.0)]).unwrap();
     let mut twin = Agent::new(PlanarArm, reference, law, estimate_start.clone(), Limiter::none(2)).unwrap();
     let read = |signal, row: usize| [0, 1].map(|axis| column(&outcome, 0, signal, axis)[row]);
     let start: Vec<f64> = (0..2).flat_map(|r| read(Signal::Reference(r), 0)).collect();

@@ -19,7 +19,7 @@ fn ship(name: &str, q: [f64; 3], adapts: bool) -> AgentSetup {
     } else {
         AgentSetup::new(name, robot, Known { damping })
     };
-    agent.roots(&[0.8, 1.2]).at(&q).moving(&[0.3, -0.2, 0.4])
+    agent.roots([0.8, 1.2]).at(&q).moving(&[0.3, -0.2, 0.4])
 }
 
 fn ships(adapts: bool) -> Setup {

@@ -73,7 +73,8 @@ fn lagrangian() -> Setup {
 
 #[test]
 fn roots_are_refused_where_reference_dynamics_have_none() {
-    for (name, setup, outcome) in changed(|agent| agent.roots_per_s = vec![1.0; agent.roots_per_s.len().max(1)]) {
+    for (name, setup, outcome) in changed(|agent| agent.roots_per_s = vec![1.0; agent.roots_per_s.len().max(1)].into())
+    {
         let rootless = ["tip", "spacecraft", "following"].iter().any(|kind| name.starts_with(kind));
         match outcome {
             Err(SetupError::RootCount { error, .. }) => {

@@ -170,7 +170,7 @@ fn what_makes_no_sense_is_refused() {
         assert!(setup.agents[1].change_law(change));
     };
     assert!(matches!(refused(&|s| s.exchange = Exchange::PositionVelocity), SetupError::SendsPositionOnly { .. }));
-    assert!(matches!(refused(&|s| s.agents[1].roots_per_s.truncate(2)), SetupError::RootCount { .. }));
+    assert!(matches!(refused(&|s| s.agents[1].roots_per_s.real.truncate(2)), SetupError::RootCount { .. }));
     let arm = |s: &mut Setup| {
         s.agents[1].robot.kind = Arc::new(PlanarArm);
         s.agents[1].start.rest.clear();

@@ -124,7 +124,7 @@ fn instant(trajectory: &Trajectory, drive: &[f64; 5], gain: f64, end_s: f64) -> 
     best.1.map(|(t_s, axis)| Proof::Reached(Number::written(t_s), axis))
 }
 
-/// One entry that keeps away from zero for ever, else the norm on the run.
+/// One entry that keeps away from zero for ever, else the norm, for ever or on the run.
 pub(super) fn nonzero_quaternion(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     let target = setup.agents.get(*claim.agents.first()?)?.target.as_ref()?;
     let entries: Vec<Expression> = target.paths().iter().map(formula).collect::<Option<_>>()?;
@@ -132,12 +132,13 @@ pub(super) fn nonzero_quaternion(setup: &Setup, claim: &Claim<'_>) -> Option<Pro
     let for_ever = |(entry, formula): (usize, &Expression)| {
         enclosed(formula, setup.time.end_s, Reach::ForEver, away).map(|found| Proof::EntryAway(entry, found))
     };
+    let norm = || {
+        let square = sum(entries.iter().map(|entry| entry.clone().power(2.0)));
+        enclosed(&square, setup.time.end_s, claim.reach(), away).map(Proof::Norm)
+    };
     match claim.answer {
-        Answer::Holds => entries.iter().enumerate().find_map(for_ever),
-        Answer::HoldsOnHorizon => {
-            let square = sum(entries.iter().map(|entry| entry.clone().power(2.0)));
-            enclosed(&square, setup.time.end_s, Reach::Run, away).map(Proof::Norm)
-        }
+        Answer::Holds => entries.iter().enumerate().find_map(for_ever).or_else(norm),
+        Answer::HoldsOnHorizon => norm(),
         Answer::Violated | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
     }
 }

@@ -10,6 +10,7 @@ use super::proof::Proof;
 use crate::Answer;
 use crate::kinds::chain::undefined_state;
 use crate::surroundings::acts;
+use crate::theorems::slowest_per_s;
 
 /// A number that proves what holds.
 fn number(claim: &Claim<'_>, value: Option<BigRational>) -> Option<Proof> {
@@ -17,8 +18,16 @@ fn number(claim: &Claim<'_>, value: Option<BigRational>) -> Option<Proof> {
 }
 
 pub(super) fn real_roots(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
-    let roots = setup.agents.iter().flat_map(|agent| &agent.roots_per_s).copied();
-    number(claim, roots.reduce(f64::min).map(Number::written))
+    let slowest = setup.agents.iter().filter_map(|agent| agent.roots_per_s.slowest_per_s());
+    number(claim, slowest.reduce(f64::min).map(Number::written))
+}
+
+/// A line to the left of which all roots lie. Those of a leader's reference dynamics are kept by coefficients.
+pub(super) fn hurwitz(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    let tracking = setup.agents.iter().enumerate().filter(|(agent, _)| setup.tracks(*agent));
+    let own = tracking.filter_map(|(_, agent)| agent.roots_per_s.slowest_per_s());
+    let led = setup.following().map(slowest_per_s);
+    number(claim, own.chain(led).reduce(f64::min).map(Number::written))
 }
 
 pub(super) fn common_order(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
@@ -46,7 +55,7 @@ pub(super) fn common_first_root(setup: &Setup, claim: &Claim<'_>) -> Option<Proo
     let recurring = setup.network.schedule.recurring_graphs();
     let edges: Vec<(usize, usize)> = recurring.iter().flatten().map(|edge| (edge.from, edge.to)).collect();
     let components = strong_components(setup.network.agents, &edges);
-    let first_root = |agent: &AgentSetup| agent.roots_per_s.first().copied();
+    let first_root = |agent: &AgentSetup| agent.roots_per_s.first_real();
     let common = |component: &Vec<usize>| {
         let mut roots = component.iter().map(|agent| setup.agents.get(*agent).and_then(first_root));
         let first = roots.next().flatten();

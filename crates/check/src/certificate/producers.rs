@@ -1,6 +1,7 @@
 //! The list of producers: which hypotheses have one.
 
-use forwardstep_sim::Setup;
+use forwardstep_core::robot::tree::Uncertain;
+use forwardstep_sim::{Setup, TaskSpaceLaw, TipSetup};
 
 use super::enclosure::Reach;
 use super::proof::Proof;
@@ -34,6 +35,7 @@ const PRODUCERS: &[(Id, Producer)] = &[
     (Id::BoundedWeights, delays::weights),
     (Id::CouplingSector, delays::coupling),
     (Id::RealRoots, numbers::real_roots),
+    (Id::Hurwitz, numbers::hurwitz),
     (Id::CommonOrder, numbers::common_order),
     (Id::CommonFirstRoot, numbers::common_first_root),
     (Id::Manipulability, numbers::manipulability),
@@ -56,6 +58,7 @@ const PRODUCERS: &[(Id, Producer)] = &[
     (Id::DefinedTerms, numbers::defined_terms),
     (Id::TargetWithinReach, motions::within_reach),
     (Id::OwnOrders, text),
+    (Id::CertainRegressor, certain_regressor),
     (Id::ConstantWeights, text),
     (Id::MutualWeights, text),
     (Id::NoDelay, text),
@@ -75,4 +78,13 @@ pub(super) fn proof(setup: &Setup, id: Id, agents: &[usize], answer: Answer) -> 
 /// What the text of a scenario says at once. Whether a hypothesis is violated it does not say.
 fn text(_: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     (claim.answer == Answer::Holds).then_some(Proof::Text)
+}
+
+/// Of an uncertain tool the text says it; which lengths of a chain a regressor holds takes the kinematics of the tree.
+fn certain_regressor(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    let of_tool = |agent: &usize| {
+        let law: Option<&TaskSpaceLaw> = setup.agents.get(*agent).and_then(|agent| agent.law.downcast());
+        law.is_some_and(|law| matches!(law.tip, TipSetup::Point { uncertain: Uncertain::Tool, .. }))
+    };
+    claim.agents.iter().all(of_tool).then(|| text(setup, claim))?
 }

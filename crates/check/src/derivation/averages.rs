@@ -32,6 +32,7 @@ impl Case<'_> {
 
     /// The power of the chain of averages at which it begins; `None` where there is none.
     pub(super) fn averages_from(&self) -> Option<usize> {
+        self.roots.all_real()?;
         match &self.led {
             Led::Consensus(Heard::Positions) | Led::PureIntegral(Heard::Positions) => Some(0),
             Led::Consensus(Heard::Velocities) | Led::PureIntegral(Heard::Velocities) => Some(1),
@@ -51,9 +52,14 @@ impl Case<'_> {
                          that function is odd and grows.";
             return Some(Section::new(Subject::Laplacian).words(words));
         }
-        let from = self.averages_from()?;
         let section = Section::new(Subject::Laplacian);
-        let Some(laplacian) = upper.laplacian(chain(&self.roots, from, self.roots_of_all)) else {
+        if let (Led::Consensus(_) | Led::PureIntegral(_), None) = (&self.led, self.roots.all_real()) {
+            return Some(section.words(
+                "Not all roots are real: no chain of first-order averages leads from q to what is sent, so that there is no Laplacian form.",
+            ));
+        }
+        let (from, roots) = (self.averages_from()?, self.roots.all_real()?);
+        let Some(laplacian) = upper.laplacian(chain(roots, from, self.roots_of_all)) else {
             return Some(section.words(
                 "The agents hear each other with different κ₀, and what is heard is no multiple of the neighbour's ψ: there is no Laplacian \
                  form (see E1 in PAPER.md).",

@@ -1,6 +1,7 @@
 //! The designs in a setup: agents with the same roots, gains and kind of law, and what links they have.
 
 use forwardstep_core::expression::Number;
+use forwardstep_core::reference::RootSet;
 use forwardstep_core::robot::TwoVelocity;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::{Following, FollowingDesign};
@@ -13,6 +14,7 @@ use forwardstep_sim::{
 use num_rational::BigRational;
 
 use super::dynamics::Heard;
+use super::factors::Factors;
 use super::form::Links;
 use super::formula::At;
 use super::laplacian::RootsOfAll;
@@ -29,8 +31,8 @@ pub struct Case<'a> {
     pub led: Led,
     /// Their kind of law.
     pub step: Step,
-    /// κ₀, κ₁, …, as they are written.
-    pub roots: Vec<BigRational>,
+    /// The roots of (25), as they are written.
+    pub roots: Factors,
     /// λ.
     pub lambda: BigRational,
     /// What the roots of all agents have in common.
@@ -171,7 +173,7 @@ pub fn cases(setup: &Setup) -> Vec<Case<'_>> {
             (led, _) => led,
         };
         let step = Step::of(agent);
-        let roots: Vec<BigRational> = agent.roots_per_s.iter().map(|root| Number::written(*root)).collect();
+        let roots = Factors::written(&agent.roots_per_s);
         let lambda = Number::written(agent.manipulability);
         let same =
             |case: &&mut Case<'_>| case.led == led && case.step == step && case.roots == roots && case.lambda == lambda;
@@ -220,14 +222,11 @@ fn agreeing(setup: &Setup) -> impl Iterator<Item = &AgentSetup> {
 }
 
 fn roots_of_all(setup: &Setup) -> RootsOfAll {
-    let same = |of: fn(&AgentSetup) -> &[f64]| {
-        let mut all = agreeing(setup).map(of);
-        let first = all.next();
-        all.all(|one| Some(one) == first)
-    };
-    if same(|agent| &agent.roots_per_s) {
+    let Some(first) = agreeing(setup).next().map(|agent| &agent.roots_per_s) else { return RootsOfAll::Same };
+    let same = |is: fn(&RootSet, &RootSet) -> bool| agreeing(setup).all(|agent| is(&agent.roots_per_s, first));
+    if same(RootSet::eq) {
         RootsOfAll::Same
-    } else if same(|agent| agent.roots_per_s.get(..1).unwrap_or_default()) {
+    } else if same(|one, other| one.first_real() == other.first_real()) {
         RootsOfAll::SameFirst
     } else {
         RootsOfAll::Own

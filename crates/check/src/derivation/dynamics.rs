@@ -8,6 +8,7 @@ use forwardstep_sim::reference::{LinearReference, LinearTerms};
 use num_rational::BigRational;
 use num_traits::One;
 
+use super::factors::Factors;
 use super::form::{Combination, Form, Letter, Links, Quantity, Term, Undifferentiable, Vertex};
 use super::polynomial::Polynomial;
 
@@ -77,25 +78,28 @@ pub enum Heard {
     Coupled,
 }
 
-/// The consensus family: with A(p) = ∏_r (p + κ_r),
+/// The consensus family: with A(p) = ∏_r (p + κ_r), or with factors (p + a)² + b² in it,
 ///
 /// ```text
 /// p A(p) q_i = −Σ_j w_ij [ A(p) q_i − what is heard of q_j ] + λ s_i
 /// ```
 ///
 /// before z takes the place of what is not measured. (aa10), (a1), (a5) and (24) for [`Measured::ROBOT`], (3), (23) and (31) for
-/// [`Measured::WITH_ACCELERATION`], (43) with (24) for others. `None` without roots, or with too few for the plant.
-pub fn consensus(roots: &[BigRational], heard: Heard, lambda: &BigRational, measured: Measured) -> Option<Dynamics> {
-    let first = roots.first()?;
-    let order = (roots.len() + 2).checked_sub(measured.plant)?;
-    let a = Polynomial::with_roots(roots);
+/// [`Measured::WITH_ACCELERATION`], (43) with (24) for others. `None` without roots, with too few for the
+/// plant, or with velocities and no real one.
+pub fn consensus(roots: &Factors, heard: Heard, lambda: &BigRational, measured: Measured) -> Option<Dynamics> {
+    let order = (roots.order() + 2).checked_sub(measured.plant).filter(|_| roots.order() > 0)?;
+    let a = roots.product();
     let alpha_0 = a.coefficient(0);
-    let top = Polynomial::power(roots.len() + 1);
+    let top = Polynomial::power(roots.order() + 1);
     let own = Combination::of(Quantity::own(Letter::Position), &top - &(&a * &Polynomial::power(1)))
         .sum(&term(Letter::Error, lambda.clone()));
     let bracket = match heard {
         Heard::Positions => difference(&a, &Polynomial::number(alpha_0)),
-        Heard::Velocities => difference(&a, &Polynomial::factor(first).scaled(&(alpha_0 / first))),
+        Heard::Velocities => {
+            let first = roots.real.first()?;
+            difference(&a, &Polynomial::factor(first).scaled(&(alpha_0 / first)))
+        }
         // φ(q_i − q_j) where q_i − q_j stood.
         Heard::Coupled => difference(&(&a - &Polynomial::number(alpha_0.clone())), &Polynomial::default())
             .sum(&term(Letter::Coupled, alpha_0)),
@@ -106,12 +110,12 @@ pub fn consensus(roots: &[BigRational], heard: Heard, lambda: &BigRational, meas
 
 /// A target q_d: A(p)(q − q_d) = 0 before z takes the place of what is not measured; (a9) and (43) for tracking. `None` without roots,
 /// or with too few for the plant.
-pub fn tracking(roots: &[BigRational], measured: Measured) -> Option<Dynamics> {
-    let order = (roots.len() + 1).checked_sub(measured.plant)?;
-    let a = Polynomial::with_roots(roots);
-    let wanted = Combination::of(Quantity::own(Letter::Position), &Polynomial::power(roots.len()) - &a)
+pub fn tracking(roots: &Factors, measured: Measured) -> Option<Dynamics> {
+    let order = (roots.order() + 1).checked_sub(measured.plant)?;
+    let a = roots.product();
+    let wanted = Combination::of(Quantity::own(Letter::Position), &Polynomial::power(roots.order()) - &a)
         .plus(Quantity::own(Letter::Target), &a);
-    (!roots.is_empty()).then(|| measured.dynamics(order, &Form::own(wanted)))
+    (roots.order() > 0).then(|| measured.dynamics(order, &Form::own(wanted)))
 }
 
 /// The velocity of backstepping, before (aa6): −Σ_j w_ij (q_i − q_j).

@@ -168,9 +168,9 @@ impl Case<'_> {
 
     fn reference(&self, dynamics: &Dynamics, notation: &Notation, places: &Places) -> Section {
         let mut section = Section::new(Subject::ReferenceDynamics);
-        if !self.roots.is_empty() && !matches!(self.led, Led::Outside(..)) {
-            let product = notation.polynomial(&Polynomial::with_roots(&self.roots));
-            let equation = match self.roots.len() {
+        if self.roots.order() > 0 && !matches!(self.led, Led::Outside(..)) {
+            let product = notation.polynomial(&self.roots.product());
+            let equation = match self.roots.factors().count() {
                 1 => product,
                 _ => Formula::equal(notation.factors(&self.roots), product),
             };

@@ -1,7 +1,7 @@
 //! Why a run converges, derived from its setup: what z is, the closed loop as a differential cascade, how its degree is reduced, and the
 //! averages that are left.
 //!
-//! - `polynomial`, `form`: the one representation, linear chains with delays.
+//! - `polynomial`, `form`: the one representation, linear chains with delays; `factors`: (25) by its roots.
 //! - `dynamics`: reference dynamics in it; `lower`: what a law makes of s.
 //! - `cascade`: the closed loop and its degree.
 //! - `reduction`: new variables that absorb derivatives of s.
@@ -22,6 +22,7 @@ pub mod case;
 pub mod dynamics;
 mod explained;
 mod explanation;
+pub mod factors;
 pub mod form;
 pub mod formula;
 pub mod laplacian;

@@ -5,6 +5,7 @@ use num_traits::{One, Signed};
 
 use super::cascade::Upper;
 use super::dynamics::Dynamics;
+use super::factors::Factors;
 use super::form::{Combination, Form, Letter, Operator, Quantity, Term, Vertex};
 use super::formula::{At, Formula, Sign, Symbol};
 use super::polynomial::Polynomial;
@@ -283,13 +284,10 @@ impl Notation {
         Formula::Sum(terms.collect())
     }
 
-    /// ∏ (p + κ).
-    pub fn factors(&self, roots: &[BigRational]) -> Formula {
-        let factor = |kappa: &BigRational| {
-            let terms = [(Sign::Plus, Symbol::new("p").into()), Formula::signed(kappa)];
-            Formula::Function(Symbol::new(""), vec![Formula::sum(terms)])
-        };
-        Formula::Product(roots.iter().map(factor).collect())
+    /// ∏ (p + κ), and p² + 2 a p + a² + b² for pairs.
+    pub fn factors(&self, roots: &Factors) -> Formula {
+        let factor = |factor: Polynomial| Formula::Function(Symbol::new(""), vec![self.polynomial(&factor)]);
+        Formula::Product(roots.factors().map(factor).collect())
     }
 }
 

@@ -5,6 +5,7 @@ use num_traits::{One, Zero};
 use proptest::prelude::*;
 
 use super::dynamics::{Heard, Measured, consensus, tracking};
+use super::factors::Factors;
 use super::form::{Combination, Form, Letter, Quantity};
 use super::laplacian::{RootsOfAll, chain};
 use super::polynomial::Polynomial;
@@ -22,7 +23,7 @@ proptest! {
     #[test]
     fn prop_26_is_of_degree_l_and_every_step_of_27_takes_one_from_it(roots in any_roots(), told in 0..2_usize) {
         let told = [Heard::Positions, Heard::Velocities][told];
-        let upper = consensus(&roots, told, &BigRational::zero(), Measured::ROBOT).unwrap().upper();
+        let upper = consensus(&Factors::of_real(&roots), told, &BigRational::zero(), Measured::ROBOT).unwrap().upper();
         let order = roots.len();
         prop_assert_eq!((upper.order, upper.degree(1)), (order + 1, order));
         let left: Vec<usize> = upper.steps(0).iter().map(|step| step.degree(1)).collect();
@@ -32,7 +33,7 @@ proptest! {
     #[test]
     fn prop_a6_and_30_are_averages_for_any_order_and_roots(roots in any_roots(), told in 0..2_usize) {
         let told = [Heard::Positions, Heard::Velocities][told];
-        let upper = consensus(&roots, told, &BigRational::zero(), Measured::ROBOT).unwrap().upper();
+        let upper = consensus(&Factors::of_real(&roots), told, &BigRational::zero(), Measured::ROBOT).unwrap().upper();
         for common in [RootsOfAll::Same, RootsOfAll::SameFirst] {
             let laplacian = upper.laplacian(chain(&roots, told as usize, common)).unwrap();
             // ψ̇_r = κ_r (ψ_{r+1} − ψ_r), and Σ w (ψ_j − ψ) at the end.
@@ -53,7 +54,7 @@ proptest! {
     #[test]
     fn prop_what_agents_conserve_is_x_less_alpha_1_s(roots in any_roots()) {
         // d/dt (X − α₁ s) = −Σ w [X − α₀ q_j] whatever s does: the head of the consensus family.
-        let upper = consensus(&roots, Heard::Positions, &BigRational::zero(), Measured::ROBOT).unwrap().upper();
+        let upper = consensus(&Factors::of_real(&roots), Heard::Positions, &BigRational::zero(), Measured::ROBOT).unwrap().upper();
         let a = Polynomial::with_roots(&roots);
         let p = Polynomial::power(1);
         let lifted = Variable::constructed(Name::Reduced(0), a.clone(), [2, 2], true);
@@ -66,7 +67,7 @@ proptest! {
     #[test]
     fn prop_tracking_reduces_to_its_polynomial_and_terms_in_s_alone(roots in any_roots(), plant in 1..6_usize) {
         prop_assume!(roots.len() >= plant);
-        let dynamics = tracking(&roots, Measured::whole(plant)).unwrap();
+        let dynamics = tracking(&Factors::of_real(&roots), Measured::whole(plant)).unwrap();
         let upper = dynamics.upper().relative_to(Quantity::own(Letter::Target));
         prop_assert!(upper.right.quantities().all(|quantity| quantity.letter != Letter::Target), "the target cancels");
         let steps = upper.steps(0);

@@ -99,23 +99,23 @@ impl Case<'_> {
     /// Whether p + κ₀ divides everything, so that ξ = q̇ + κ₀ q and what follows from it are enough.
     pub fn has_xi(&self, dynamics: &Dynamics) -> bool {
         let velocities = matches!(self.led, Led::Consensus(Heard::Velocities) | Led::PureIntegral(Heard::Velocities));
-        velocities && dynamics.order <= self.roots.len()
+        velocities && dynamics.order <= self.roots.order()
     }
 
     /// ξ and y = ξ̇ − ṡ for order two; for others what the chain of ψ holds besides s.
     pub fn xi_variables(&self, dynamics: &Dynamics) -> Vec<Variable> {
         let kept = 2;
         let each = |r: usize| {
-            let state = Polynomial::with_roots(&self.roots[..r]);
+            let state = self.roots.first(r);
             let (name, state) = match (dynamics.order, r) {
                 (_, 1) => (Name::Xi, state),
-                (2, _) => (Name::Y, &Polynomial::with_roots(&self.roots[..1]) * &Polynomial::power(1)),
+                (2, _) => (Name::Y, &self.roots.first(1) * &Polynomial::power(1)),
                 (_, r) => (Name::Reduced(r), state),
             };
             let common = self.alike && r == 1 && self.roots_of_all != RootsOfAll::Own;
             Variable::constructed(name, state, [kept, dynamics.plant], common)
         };
-        (1..=dynamics.order.min(self.roots.len())).map(each).collect()
+        (1..=dynamics.order.min(self.roots.order())).map(each).collect()
     }
 
     /// The variables of those that follow a leader.
@@ -218,7 +218,7 @@ fn in_paper_variables(
             .words(
                 "z is the output of a stable filter that these variables and s drive, so it is bounded when they are:",
             )
-            .formula(named.equation(z, case.roots.len().min(dynamics.order), &filter), places.filter);
+            .formula(named.equation(z, case.roots.order().min(dynamics.order), &filter), places.filter);
     }
     section
 }

@@ -6,6 +6,7 @@ use num_traits::{One, Zero};
 use super::attitude;
 use super::cascade::Upper;
 use super::dynamics::{Dynamics, Heard, Measured, Smooth, backstepping, consensus, following, tracking};
+use super::factors::Factors;
 use super::form::{Combination, Form, Letter, Links, Operator, Quantity, Term, Undifferentiable};
 use super::laplacian::{RootsOfAll, chain};
 use super::lower::{self, ChainError, Outside};
@@ -55,7 +56,7 @@ fn variable(name: Name, state: &[i64], input: &[i64]) -> Variable {
 
 fn robot(roots: &[i64], told: Heard, measured: Measured) -> Dynamics {
     let roots: Vec<BigRational> = roots.iter().map(|root| number(*root)).collect();
-    consensus(&roots, told, &BigRational::zero(), measured).unwrap()
+    consensus(&Factors::of_real(&roots), told, &BigRational::zero(), measured).unwrap()
 }
 
 fn reduced(upper: &Upper, variables: Vec<Variable>) -> Reduced {
@@ -234,7 +235,7 @@ fn eq_3_is_integrated_without_acceleration_and_without_differentiating_what_is_h
 #[test]
 fn eq_a9_and_the_cascade_after_remark_7() {
     let roots = [1, 2, 3].map(number);
-    let a9 = tracking(&roots, Measured { plant: 2, below: 1 }).unwrap();
+    let a9 = tracking(&Factors::of_real(&roots), Measured { plant: 2, below: 1 }).unwrap();
     // (a9): z̈ = x⃛_d − 6 (ż − ẍ_d) − 11 (z − ẋ_d) − 6 (x − x_d)
     let target = own(Letter::Target);
     assert_eq!(a9.right, form(&[(target, &[6, 11, 6, 1]), (own(Z), &[-11, -6]), (own(Q), &[-6])], &[]));
@@ -311,7 +312,8 @@ fn eq_107_and_108_with_the_signs_that_e13_corrects() {
 #[test]
 fn what_is_heard_of_another_plant_stays_as_it_is() {
     // z follows x here, and something else at neighbours of another order.
-    let dynamics = consensus(&[number(3)], Heard::Positions, &BigRational::zero(), Measured::whole(1)).unwrap();
+    let dynamics =
+        consensus(&Factors::of_real(&[number(3)]), Heard::Positions, &BigRational::zero(), Measured::whole(1)).unwrap();
     let heard_in = |upper: Upper| upper.steps(0).last().unwrap().rates[1].network.clone();
     let alike: [(Quantity, &[i64]); 5] =
         [(own(V1), &[-1]), (own(V0), &[-3]), (heard(V0), &[3]), (own(S), &[-3]), (heard(S), &[3])];

@@ -149,6 +149,9 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
         }
     };
     let then = match &case.led {
+        Led::Consensus(_) | Led::PureIntegral(_) if case.roots.all_real().is_none() => "Without that, what is left is linear, but no chain of \
+             averages, since not all roots are real: the theorem does not say that agents agree, and over graphs that switch they may not."
+            .into(),
         Led::Consensus(_) | Led::PureIntegral(_) => format!(
             "Without that, each ψ moves towards an average of what is its own and what is heard, whatever the bounded delays are; as long as the \
              graph is connected as the theorem asks, all ψ come together. {bounded}, and what is left is the undisturbed system: \

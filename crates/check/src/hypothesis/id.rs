@@ -70,6 +70,8 @@ table! {
     // Reference dynamics.
     RealRoots, "real-roots", "(25)", Source::Paper,
         "the polynomial (25) is Hurwitz with real roots";
+    Hurwitz, "hurwitz", "(a9), (43), Theorem 9", Source::Paper,
+        "the polynomial of what follows a target or a leader is Hurwitz";
     CommonOrder, "common-order", "Theorem 3", Source::Paper,
         "all agents have reference dynamics of the same order";
     OwnOrders, "own-orders", "own derivation", Source::Derived,

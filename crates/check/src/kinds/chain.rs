@@ -11,6 +11,7 @@ use super::{Claim, KindCheck};
 use crate::hypothesis::{FactorEverywhere, Hypothesis, Id, KindEvidence, Named, Term};
 use crate::surroundings::acts;
 use crate::theorem::Theorem;
+use crate::theorems::hurwitz;
 
 pub(crate) struct Chain;
 
@@ -48,6 +49,7 @@ impl KindCheck for Chain {
         let mut hypotheses = vec![defined(setup, agents), input_factor(setup, agents), gains(setup, agents)];
         hypotheses.extend(regressors(setup, agents));
         hypotheses.extend(disturbances(setup, agents));
+        hypotheses.extend(hurwitz(setup, agents));
         hypotheses
     }
 

@@ -7,7 +7,7 @@ use super::{Claim, KindCheck};
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, LoopEvidence, Named, Subject};
 use crate::inertia::{bounded_dynamics, is_known, uniform_inertia};
 use crate::theorem::Theorem;
-use crate::theorems::real_roots;
+use crate::theorems::hurwitz;
 
 pub(crate) struct LagrangianRobot;
 
@@ -35,15 +35,13 @@ impl KindCheck for LagrangianRobot {
         let known = agents.iter().filter(|agent| setup.agents[**agent].law.is::<Known>()).count();
         let gains = Hypothesis::new(Id::PositiveGains, LoopEvidence::Gains { known, agents: agents.len() });
         let from_outside = agents.iter().filter(|agent| !is_known(&setup.agents[**agent]));
-        let tracking: Vec<usize> = agents.iter().copied().filter(|agent| setup.tracks(*agent)).collect();
-        let roots = (!tracking.is_empty()).then(|| real_roots(setup, &tracking));
         // Who follows a target of its own keeps near it, so that q is bounded, and with it C and g.
         let roaming: Vec<usize> = agents.iter().copied().filter(|agent| !setup.tracks(*agent)).collect();
         let declared = from_outside.map(|agent| three_properties(setup, *agent));
         let inertia = uniform_inertia(setup, agents);
         let bounds = agents.iter().filter_map(|agent| within_bounds(setup, *agent));
         let own = declared.chain(inertia).chain(bounded_dynamics(setup, &roaming)).chain([gains]).chain(bounds);
-        own.chain(roots).collect()
+        own.chain(hurwitz(setup, agents)).collect()
     }
 
     /// ż holds the second one even where one root asks for the first only.

@@ -5,6 +5,7 @@ use forwardstep_sim::{AgentSetup, PositionOnlyLaw, Setup};
 use super::{Claim, KindCheck};
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, Named};
 use crate::theorem::Theorem;
+use crate::theorems::hurwitz;
 
 pub(crate) struct PositionOnlyMass;
 
@@ -41,7 +42,8 @@ impl KindCheck for PositionOnlyMass {
         let evidence = wrong.map_or(KindEvidence::PositiveNumbersTrueMass, |agent| KindEvidence::MassNotAdapted {
             agent: Named::of(setup, *agent),
         });
-        vec![Hypothesis::new(Id::PositionOnlyGains, evidence)]
+        let gains = Hypothesis::new(Id::PositionOnlyGains, evidence);
+        [gains].into_iter().chain(hurwitz(setup, agents)).collect()
     }
 
     fn target_derivatives(&self, _: &AgentSetup) -> usize {

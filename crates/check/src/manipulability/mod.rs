@@ -46,7 +46,7 @@ use crate::fixed::fixed;
 use crate::null_vector::null_vector;
 use crate::prediction::roots::characteristic::{C, Characteristic};
 use crate::prediction::roots::network;
-use crate::prediction::{NoIdeal, NoRate, ideal};
+use crate::prediction::{NoIdeal, NoRate, ideal, rate};
 
 /// The transfer from a torque on one axis of one agent to the value agreed upon on this axis, with every agent at its start at rest.
 #[derive(Debug)]
@@ -137,6 +137,10 @@ impl Manipulability {
             return Err(NoManipulability::NoInfluence { agent });
         }
         let response = Response::at_rest(own).ok_or(NoManipulability::Law { agent })?;
+        if setup.agents.iter().any(|agent| agent.roots_per_s.all_real().is_none()) {
+            // With real roots everything comes to rest again; with others only where no characteristic root says otherwise.
+            rate(setup)?;
+        }
         let alpha_0 = polynomial(&own.roots_per_s).map_err(|_| NoRate::Unclear)?[0];
         let (a, degree) = (&system.coefficients[agent], system.degree[agent]);
         let mut numerator: Vec<f64> = if setup.reference.is::<PureIntegral>() {

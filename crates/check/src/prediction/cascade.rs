@@ -45,6 +45,12 @@ pub enum NoCascade {
         /// Index of the agent.
         agent: usize,
     },
+    /// There are no first-order averages between a position and what is sent.
+    #[error("not all roots of agent number {} are real, so that there is no chain of averages", agent + 1)]
+    ComplexRoots {
+        /// Index of the agent.
+        agent: usize,
+    },
     /// Then messages are no weighted means of cascaded variables.
     #[error("agent number {} hears velocities of agent number {}, whose first root is larger", to + 1, from + 1)]
     FirstRoots {
@@ -84,7 +90,7 @@ impl CascadeSpread {
                     for (x, column) in x.iter_mut().zip(&columns) {
                         *x = column[row];
                     }
-                    let psi = cascade(&setup_of.roots_per_s, &mut x);
+                    let psi = cascade(&setup_of.roots_per_s.real, &mut x);
                     widen(&mut own, row, psi);
                     let told = match setup.exchange {
                         Exchange::Position => 1,
@@ -126,11 +132,14 @@ pub(super) fn defined(setup: &Setup) -> Result<(), NoCascade> {
     if let Some(agent) = setup.agents.iter().position(|agent| !is_lagrangian(agent)) {
         return Err(NoCascade::Law { agent });
     }
+    if let Some(agent) = setup.agents.iter().position(|agent| agent.roots_per_s.all_real().is_none()) {
+        return Err(NoCascade::ComplexRoots { agent });
+    }
     let axes = |agent: &forwardstep_sim::AgentSetup| agent.robot.axes.len();
     if setup.agents.iter().any(|agent| axes(agent) != axes(&setup.agents[0])) {
         return Err(NoCascade::Axes);
     }
-    let first_root = |agent: usize| setup.agents.get(agent).and_then(|agent| agent.roots_per_s.first());
+    let first_root = |agent: usize| setup.agents.get(agent).and_then(|agent| agent.roots_per_s.first_real());
     let larger = |from: usize, to: usize| first_root(from) > first_root(to);
     let mut edges = setup.network.schedule.graphs.iter().flatten();
     match edges.find(|edge| larger(edge.from, edge.to)) {

@@ -65,6 +65,12 @@ pub enum NoOrders {
         /// Why.
         reason: NotCovered,
     },
+    /// A pair of complex roots cannot be taken apart or repeated.
+    #[error("not all roots of {name} are real: which of them an order keeps is not defined")]
+    ComplexRoots {
+        /// The agent.
+        name: String,
+    },
     /// There are no jumps to report.
     #[error(transparent)]
     Smoothness(#[from] NoSmoothness),
@@ -84,6 +90,9 @@ pub fn orders(
     }
     if let Some(order) = orders.iter().copied().find(|order| !(1..=MOST).contains(order)) {
         return Err(NoOrders::Order { order });
+    }
+    if let Some(agent) = setup.agents.iter().find(|agent| agent.roots_per_s.all_real().is_none()) {
+        return Err(NoOrders::ComplexRoots { name: agent.name.clone() });
     }
     let setups: Vec<(usize, Setup)> = orders.iter().map(|order| (*order, of_order(setup, *order))).collect();
     if let Some((name, reason)) = uncovered(setups.iter().map(|(_, setup)| setup))? {
@@ -111,8 +120,8 @@ pub(super) fn uncovered<'a>(
 fn of_order(setup: &Setup, order: usize) -> Setup {
     let mut setup = setup.clone();
     for agent in &mut setup.agents {
-        if let Some(last) = agent.roots_per_s.last().copied() {
-            agent.roots_per_s.resize(order, last);
+        if let Some(last) = agent.roots_per_s.real.last().copied() {
+            agent.roots_per_s.real.resize(order, last);
         }
         agent.start.reference.truncate(order);
     }

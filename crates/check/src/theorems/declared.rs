@@ -5,6 +5,7 @@ use forwardstep_sim::probe::probe_reference;
 use forwardstep_sim::system::{Declaration, DeclaredClaim};
 
 use super::own_targets;
+use super::theorem_3::complex_roots;
 use crate::graphs::dwell_time;
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, Subject};
 use crate::kinds::declaration;
@@ -28,6 +29,8 @@ pub(super) fn check(setup: &Setup) -> Report {
     hypotheses.push(declared(KindEvidence::Probed { requires, probe }));
     hypotheses.extend([dwell_time(setup), bounded_delays(setup)]);
     hypotheses.extend(bounded_weights(setup));
+    // Their author knows of roots −κ.
+    hypotheses.extend(complex_roots(setup));
     hypotheses.extend(pushes_end(setup));
     hypotheses.extend(own_targets::bounded(setup));
     hypotheses.extend(laws::hypotheses(setup));

@@ -6,7 +6,7 @@ use forwardstep_sim::leader::{Following, FollowingDesign};
 use super::own_targets::{self, how_far};
 use super::swarm;
 use crate::graphs::{fixed_graph, leader_reaches_all};
-use crate::hypothesis::{FollowingEvidence, Hypothesis, Id, MotionEvidence, Subject};
+use crate::hypothesis::{FollowingEvidence, Hypothesis, Id, MotionEvidence, ReferenceEvidence, Subject};
 use crate::kinds::starts_from_zero;
 use crate::laws;
 use crate::links::{bounded_weights, constant_weights, no_delay};
@@ -41,9 +41,10 @@ pub(super) fn check(setup: &Setup, following: &Following) -> Report {
     match following.design {
         FollowingDesign::Swarm { coupling } => hypotheses.extend(swarm::hypotheses(setup, following, coupling)),
         // (110) is integrated as it stands, whatever its weights do.
-        FollowingDesign::Continuous => {}
+        FollowingDesign::Continuous => hypotheses.push(stable(following)),
         FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => {
             hypotheses.push(constant_weights(setup));
+            hypotheses.push(stable(following));
         }
     }
     hypotheses.extend(bounded_weights(setup));
@@ -67,6 +68,22 @@ fn bounded_motion(setup: &Setup, following: &Following) -> Hypothesis {
         None => MotionEvidence::OfAgent,
     };
     Hypothesis::new(Id::BoundedLeader, evidence)
+}
+
+/// How far all roots of p + α, or of p² + β p + α, are from the axis at least, 1/s. Of two real roots the smaller one is α over the larger, which is below β; a pair has the real part
+/// −β/2.
+pub(crate) fn slowest_per_s(following: &Following) -> f64 {
+    let (alpha, beta) = (following.alpha, following.beta);
+    match following.design {
+        FollowingDesign::Continuous => alpha,
+        FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
+            (0.5 * beta).min(alpha / beta) * (1.0 - 1e-12)
+        }
+    }
+}
+
+fn stable(following: &Following) -> Hypothesis {
+    Hypothesis::new(Id::Hurwitz, ReferenceEvidence::Hurwitz { slowest_per_s: slowest_per_s(following) })
 }
 
 /// γ against sup |ξ̇₀|∞.
@@ -95,24 +112,39 @@ fn gain(setup: &Setup, following: &Following) -> Hypothesis {
 
 /// A sign that is solved for every h seconds is held in between, while the leader is driven away at ξ̇₀: ξ_i − ξ_0 comes back to
 /// h sup |ξ̇₀|, whatever γ is. q_i − q_0 follows it through 1/(p + α), or 1/(p² + β p + α) with real roots, whose largest
-/// response is 1/α: h sup |ξ̇₀| / α is left.
+/// response is 1/α: h sup |ξ̇₀| / α is left. With roots −a ± b i the response swings, and its absolute integral is
+/// coth(π a/(2 b))/α, which is below (1 + b/a)/α, since coth x < 1 + 1/x.
 fn sign(setup: &Setup, following: &Following) -> Hypothesis {
     let (sampled, period_s) = match &setup.control {
         None => (false, following.period_s),
         Some(control) => (true, 1.0 / control.sample_hz),
     };
+    let swing = swing(following);
     let alpha_per_s = match following.design {
         FollowingDesign::Continuous => following.alpha,
         // α is the product of the two roots there.
         FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
-            following.alpha.sqrt()
+            (following.alpha * swing).sqrt()
         }
     };
-    let left = period_s * following.drive_bound(None) / following.alpha;
+    let left = period_s * following.drive_bound(None) / following.alpha * swing;
     let end_s = setup.time.end_s;
     let evidence =
         FollowingEvidence::Sign { choice: following.choice, sampled, period_s, rate_per_s: alpha_per_s, left, end_s };
     Hypothesis::new(Id::SetValuedSign, evidence)
+}
+
+/// 1 + b/a for roots −a ± b i, else one.
+fn swing(following: &Following) -> f64 {
+    match following.design {
+        FollowingDesign::Continuous => 1.0,
+        FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
+            let half = 0.5 * following.beta;
+            let turns = following.alpha / (half * half) - 1.0;
+            // Two equal real roots, but for rounding.
+            if turns > 1e-12 { 1.0 + turns.sqrt() } else { 1.0 }
+        }
+    }
 }
 
 /// α and β are common by what a scenario can say; what is slow is said here.

@@ -8,7 +8,8 @@ mod swarm;
 mod theorem_1;
 mod theorem_3;
 
-pub(crate) use theorem_3::real_roots;
+pub(crate) use following::slowest_per_s;
+pub(crate) use own_targets::hurwitz;
 
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking};
 use forwardstep_sim::{Exchange, Setup};

@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 use forwardstep_sim::Setup;
 use forwardstep_sim::trajectory::Trajectory;
 
-use crate::hypothesis::{Bounded, Hypothesis, Id, MotionEvidence, Named, Subject};
+use crate::hypothesis::{Bounded, Hypothesis, Id, MotionEvidence, Named, ReferenceEvidence, Subject};
 use crate::kinds::Claim;
 use crate::laws::{self, kind_of};
 use crate::report::Report;
@@ -28,6 +28,14 @@ pub(super) fn check(setup: &Setup) -> Report {
     hypotheses.extend(friction(setup));
     hypotheses.extend(digital(setup));
     Report { theorem, promises, hypotheses }
+}
+
+/// That the polynomials of those of `agents` that follow targets by roots are Hurwitz: (a9), and (43) when it tracks. What is left without s is
+/// one linear system with these roots for each agent, real or not.
+pub(crate) fn hurwitz(setup: &Setup, agents: &[usize]) -> Option<Hypothesis> {
+    let tracking = agents.iter().filter(|agent| setup.tracks(**agent));
+    let slowest = tracking.filter_map(|agent| setup.agents[*agent].roots_per_s.slowest_per_s()).reduce(f64::min)?;
+    Some(Hypothesis::new(Id::Hurwitz, ReferenceEvidence::Hurwitz { slowest_per_s: slowest }))
 }
 
 /// Whether the targets, or the offsets, are bounded with as many derivatives as the laws need. Agents with the same answer

@@ -21,18 +21,27 @@ pub(super) fn claim(setup: &Setup) -> Claim {
 }
 
 pub(super) fn hypotheses(setup: &Setup) -> Vec<Hypothesis> {
-    let all: Vec<usize> = (0..setup.agents.len()).collect();
-    vec![real_roots(setup, &all), one_order(setup)]
+    vec![real_roots(setup), one_order(setup)]
 }
 
 fn same_roots(setup: &Setup) -> bool {
     setup.agents.windows(2).all(|pair| pair[0].roots_per_s == pair[1].roots_per_s)
 }
 
-/// That the polynomials of these agents are stable.
-pub(crate) fn real_roots(setup: &Setup, agents: &[usize]) -> Hypothesis {
-    let roots = agents.iter().flat_map(|agent| &setup.agents[*agent].roots_per_s).copied();
-    Hypothesis::new(Id::RealRoots, ReferenceEvidence::Roots { smallest_per_s: roots.fold(f64::INFINITY, f64::min) })
+/// That the polynomials of these agents are stable and have real roots: those of consensus, where every root is a step of the chain of averages
+/// (30). With a pair of complex roots such a step weighs something negatively, and (24) grows under some schedules.
+pub(super) fn real_roots(setup: &Setup) -> Hypothesis {
+    let slowest = setup.agents.iter().filter_map(|agent| agent.roots_per_s.slowest_per_s());
+    let smallest_per_s = slowest.fold(f64::INFINITY, f64::min);
+    complex_roots(setup).unwrap_or_else(|| Hypothesis::new(Id::RealRoots, ReferenceEvidence::Roots { smallest_per_s }))
+}
+
+/// That it is not so, where an agent that does not follow a target has a pair.
+pub(super) fn complex_roots(setup: &Setup) -> Option<Hypothesis> {
+    let pair = |agent: usize| Some((agent, *setup.agents[agent].roots_per_s.pairs.first()?));
+    let (agent, pair) = (0..setup.agents.len()).filter(|agent| !setup.tracks(*agent)).find_map(pair)?;
+    let evidence = ReferenceEvidence::ComplexRoots { agent: Named::of(setup, agent), pair };
+    Some(Hypothesis::new(Id::RealRoots, evidence))
 }
 
 /// The paper writes one ℓ for all agents. Its argument does not need that.
@@ -73,7 +82,7 @@ pub(super) fn common_first_root(setup: &Setup) -> Hypothesis {
     });
     let constant = |edge: &Edge| edge.weight.constant().is_some() && network.delays[edge.delay].is_constant();
     let over_constants = stays.is_some_and(|graph| graph.iter().all(constant));
-    let first_root = |agent: usize| setup.agents[agent].roots_per_s.first().copied().unwrap_or(f64::NAN);
+    let first_root = |agent: usize| setup.agents[agent].roots_per_s.first_real().unwrap_or(f64::NAN);
     let named = |agent: usize| (Named::of(setup, agent), first_root(agent));
     let edges: Vec<(usize, usize)> = graphs.iter().flatten().map(|edge| (edge.from, edge.to)).collect();
     let witness = strong_components(network.agents, &edges).into_iter().find_map(|component| {

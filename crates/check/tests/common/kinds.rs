@@ -53,7 +53,7 @@ fn agent(
             theta,
             axes: (0..axes).map(|k| Axis { unit, ..axis(["x", "y", "z", "o"][k]) }).collect(),
         },
-        roots_per_s: Vec::new(),
+        roots_per_s: Vec::new().into(),
         manipulability: 0.0,
         law,
         target: None,
@@ -85,7 +85,7 @@ pub fn blind_mass(adaptation: f64, estimate_start: f64) -> AgentSetup {
     let law = Arc::new(PositionOnlyLaw { damping: 20.0, filter_per_s: 20.0, adaptation, estimate_start });
     let mut agent =
         agent(Arc::new(PointMass { dimension: 1 }), vec![2.0], law, start(&[0.3], &[0.0], &[]), 1, AxisUnit::Metre);
-    agent.roots_per_s = vec![1.0, 1.5, 2.0];
+    agent.roots_per_s = vec![1.0, 1.5, 2.0].into();
     agent
 }
 
@@ -101,7 +101,7 @@ pub fn vehicle(design: ThrustKind, floor: Floor) -> AgentSetup {
     let rest = start(&[0.0; 3], &[0.0; 3], &[0.0, 0.0, 0.0, 1.0]);
     let kind = Arc::new(VehicleModel { gravity: 9.81 });
     let mut agent = agent(kind, vec![2.0], Arc::new(law), rest, 3, AxisUnit::Metre);
-    agent.roots_per_s = vec![1.0; design.order()];
+    agent.roots_per_s = vec![1.0; design.order()].into();
     agent
 }
 
@@ -194,6 +194,6 @@ fn of_chain(model: ChainModel, parameters: usize, step: ChainStep) -> AgentSetup
     let law = Arc::new(ChainLaw { step, floor: 1e-3 });
     let start = if model.has_velocity() { start(&[0.3], &[0.0], &[]) } else { start(&[0.3], &[], &[0.0]) };
     let mut agent = agent(Arc::new(model), vec![0.5; parameters], law, start, 1, AxisUnit::Metre);
-    agent.roots_per_s = vec![1.0, 2.0];
+    agent.roots_per_s = vec![1.0, 2.0].into();
     agent
 }

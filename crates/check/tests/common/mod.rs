@@ -133,7 +133,7 @@ pub fn arm(index: usize, roots_per_s: &[f64]) -> AgentSetup {
             theta_names: vec![String::new(); 5],
             axes: vec![axis("shoulder"), axis("elbow")],
         },
-        roots_per_s: roots_per_s.to_vec(),
+        roots_per_s: roots_per_s.to_vec().into(),
         manipulability: 0.0,
         law: Arc::new(Adaptive {
             damping: Gain::Number(8.0),

@@ -123,7 +123,7 @@ fn consensus_jets<X: Told>(setup: &Setup, outcome: &Outcome, at_row: [usize; 3])
         heard.iter().map(|(edge, sent)| weight(edge) * motion(setup, outcome, edge.from, axis, *sent)[k]).sum()
     };
     let degree = heard.iter().map(|(edge, _)| weight(edge)).sum();
-    let law = Consensus::<X>::new([(&roots[..], setup.agents[agent].manipulability)]).unwrap();
+    let law = Consensus::<X>::new([(roots, setup.agents[agent].manipulability)]).unwrap();
     let (rate, _) = evaluate(&law, [own[0], own[1]], &z, degree, &[sum(0), sum(1)]);
     z.push(*rate.last().unwrap());
     if roots.len() == 1 {
@@ -164,7 +164,7 @@ fn eq_identities_of_aa10_a1_a5_and_24_hold_along_real_runs_of_any_order() {
             for (i, agent) in setup.agents.iter_mut().enumerate() {
                 agent.manipulability = 0.1 * i as f64;
                 let apart = if exchange == Exchange::Position { 0.15 * i as f64 } else { 0.0 };
-                agent.roots_per_s.iter_mut().for_each(|root| *root += 0.3 + apart);
+                agent.roots_per_s.real.iter_mut().for_each(|root| *root += 0.3 + apart);
             }
             own_start(&mut setup, order);
             let outcome = run(&setup);
@@ -221,7 +221,7 @@ fn eq_30_and_a6_hold_along_real_runs_without_s() {
         each_case(&setup, |case, agent| {
             let first = usize::from(exchange == Exchange::PositionVelocity);
             let upper = case.upper(&case.dynamics().unwrap());
-            let chain = forwardstep_check::derivation::laplacian::chain(&case.roots, first, case.roots_of_all);
+            let chain = forwardstep_check::derivation::laplacian::chain(&case.roots.real, first, case.roots_of_all);
             let laplacian = upper.laplacian(chain).unwrap();
             for row in ROWS {
                 let jets = |agent: usize, row: usize| {
@@ -274,14 +274,14 @@ fn eq_identities_of_3_23_and_31_hold_along_real_runs() {
         let mut setup = short(masses(exchange, 2, Schedule::fixed(edges.clone()), delays));
         setup.reference = Arc::new(PureIntegralData);
         setup.agents[1].manipulability = 0.4;
-        setup.agents.iter_mut().for_each(|agent| agent.roots_per_s[0] += 0.3);
+        setup.agents.iter_mut().for_each(|agent| agent.roots_per_s.real[0] += 0.3);
         own_start(&mut setup, 2);
         let outcome = run(&setup);
         each_case(&setup, |case, agent| {
             for (axis, row) in (0..2).flat_map(|axis| ROWS.map(|row| (axis, row))) {
                 let told = |agent: usize, row: usize| motion(&setup, &outcome, agent, axis, row);
                 let jets = |agent: usize, row: usize| {
-                    let design = [(&setup.agents[agent].roots_per_s[..], setup.agents[agent].manipulability)];
+                    let design = [(&setup.agents[agent].roots_per_s, setup.agents[agent].manipulability)];
                     let place = [agent, axis, row];
                     match exchange {
                         Exchange::Position => {
@@ -382,7 +382,7 @@ fn with_roots_of_their_own_agents_share_neither_variables_nor_a_matrix() {
             Schedule::fixed(vec![edge(0, 1, 1.0, 0)]),
             vec![Delay::constant(0.0)],
         );
-        setup.agents[1].roots_per_s.iter_mut().zip(apart).for_each(|(root, apart)| *root += apart);
+        setup.agents[1].roots_per_s.real.iter_mut().zip(apart).for_each(|(root, apart)| *root += apart);
         let case = &cases(&setup)[0];
         let dynamics = case.dynamics().unwrap();
         let reduced = case.upper(&dynamics).reduced(case.xi_variables(&dynamics)).unwrap();

@@ -56,7 +56,14 @@ fn eq_identities_of_own_targets_hold_along_real_runs() {
                     let own = motion(&setup, &outcome, agent, 0, row);
                     let followed = target().jet(row as f64 * STEP_S);
                     let mut z = recorded_reference(&outcome, [agent, 0, row], order - 1);
-                    z.push(guided(&tracked(&setup.agents[agent].roots_per_s), 2, &own[..2], &z, [0.0; 2], &[followed]));
+                    z.push(guided(
+                        &tracked(&setup.agents[agent].roots_per_s.real),
+                        2,
+                        &own[..2],
+                        &z,
+                        [0.0; 2],
+                        &[followed],
+                    ));
                     Jets { followed: followed.to_vec(), ..Jets::new(row + agent, &own, &z) }
                 };
                 assert_all(case, &format!("target, {order} roots"), &moment(&setup, agent, row, &jets));
@@ -93,8 +100,8 @@ fn eq_identities_of_a9_and_of_remark_7_hold_along_real_runs() {
                         .map(|(edge, sent)| weight(edge) * motion(&setup, &outcome, edge.from, 0, *sent)[0]);
                     let told = [heard.iter().map(|(edge, _)| weight(edge)).sum(), sum.sum()];
                     let guide = match tracks {
-                        true => tracked(roots),
-                        false => Guide::Consensus(Consensus::new([(&roots[..], 0.0)]).unwrap()),
+                        true => tracked(&roots.real),
+                        false => Guide::Consensus(Consensus::new([(roots, 0.0)]).unwrap()),
                     };
                     z.push(guided(&guide, 2, &own[..1], &z, told, &[followed]));
                     let y = at(&outcome, agent, Signal::Filter, 0, row);
@@ -136,7 +143,7 @@ fn eq_identities_of_43_hold_along_real_runs_of_chains_of_any_order() {
             agent.start.dq = (1..k.min(2)).map(entry).collect();
             agent.start.rest = (2..k).map(entry).collect();
             let count = if tracks { 4 } else { k + 1 };
-            agent.roots_per_s = (0..count).map(|r| 0.8 + 0.3 * r as f64).collect();
+            agent.roots_per_s = (0..count).map(|r| 0.8 + 0.3 * r as f64).collect::<Vec<_>>().into();
             agent.target = tracks.then(|| Trajectory::new(vec![target()]).unwrap());
             agent
         };
@@ -171,8 +178,8 @@ fn eq_identities_of_43_hold_along_real_runs_of_chains_of_any_order() {
                     let sum = heard.iter().map(|(edge, sent)| weight(edge) * state(edge.from, *sent)[0]);
                     let told = [heard.iter().map(|(edge, _)| weight(edge)).sum(), sum.sum()];
                     let guide = match tracks {
-                        true => tracked(roots),
-                        false => Guide::Consensus(Consensus::new([(&roots[..], 0.0)]).unwrap()),
+                        true => tracked(&roots.real),
+                        false => Guide::Consensus(Consensus::new([(roots, 0.0)]).unwrap()),
                     };
                     z.push(guided(&guide, k, &x, &z, told, &[followed]));
                     x.push(-x[0] * x[0] * x[0] + 2.0 * at(&outcome, agent, Signal::Torque, 0, row));
@@ -194,7 +201,7 @@ fn eq_identities_of_49_and_54_hold_along_real_runs_of_vehicles() {
     for design in designs {
         let mut setup = kinds::alone(kinds::vehicle(design, Floor::Stops(1.0)));
         setup.agents = (0..4).map(|i| setup.agents[0].clone_with(i)).collect();
-        setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![0.9, 1.4, 2.2]);
+        setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![0.9, 1.4, 2.2].into());
         setup.network.agents = 4;
         setup.network.schedule =
             Schedule::fixed(vec![edge(0, 1, 0.5, 0), edge(1, 2, 0.7, 1), edge(2, 0, 0.4, 0), edge(2, 3, 0.3, 1)]);
@@ -220,7 +227,7 @@ fn eq_identities_of_49_and_54_hold_along_real_runs_of_vehicles() {
                     let sum: f64 =
                         heard.iter().map(|(edge, sent)| weight(edge) * motion(edge.from, axis, *sent)[0]).sum();
                     let degree = heard.iter().map(|(edge, _)| weight(edge)).sum();
-                    let law = Consensus::<Position>::new([(&setup.agents[agent].roots_per_s[..], 0.0)]).unwrap();
+                    let law = Consensus::<Position>::new([(&setup.agents[agent].roots_per_s, 0.0)]).unwrap();
                     z.push(*evaluate(&law, [own[0], own[1]], &z, degree, &[sum]).0.last().unwrap());
                     Jets::new(row + agent, &own, &z)
                 };

@@ -110,7 +110,7 @@ fn a_run_of_something_else_is_noticed_by_the_equations_that_speak_of_it_and_by_n
     };
     // Reference dynamics, and all that follows from them.
     let of_reference = ["(a1)", "(26) for (a1)", "(27)", "(a2)", "degree_reduction", "laplacian"];
-    let roots = change(|run| run.agents[2].roots_per_s[1] *= 1.0 + 1e-7);
+    let roots = change(|run| run.agents[2].roots_per_s.real[1] *= 1.0 + 1e-7);
     assert!(roots.iter().all(|name| of_reference.contains(name)) && roots.contains(&"(a1)"), "{roots:?}");
     let lambda = change(|run| run.agents[0].manipulability = 1e-6);
     assert!(lambda.iter().all(|name| of_reference.contains(name)) && lambda.contains(&"(a1)"), "{lambda:?}");

@@ -147,7 +147,7 @@ fn a_chain_of_any_order_follows_the_same_reference() {
             agent.robot.kind = Arc::new(ChainModel::Derivatives(Arc::new(third.clone())));
         }
         agent.start = Start { q: vec![x[0]], dq: vec![x[1]], rest: x[2..*order].to_vec(), reference: Vec::new() };
-        agent.roots_per_s = vec![1.0, 2.0, 1.5];
+        agent.roots_per_s = vec![1.0, 2.0, 1.5].into();
         agent.name = format!("chain-{i}");
         agent
     });
@@ -201,7 +201,7 @@ fn every_reason_for_no_course_is_the_one_that_is_said() {
     );
     assert_eq!(said(&|setup| setup.agents[3].start.dq.clear()), no(NoIdeal::Start { agent: 3 }));
     assert!(matches!(
-        said(&|setup| setup.agents[0].roots_per_s[1] = -1.0),
+        said(&|setup| setup.agents[0].roots_per_s.real[1] = -1.0),
         Some(NoCourse::Unfinished(Unfinished::Setup(_)))
     ));
     let alone = |setup: &mut Setup| {
@@ -246,8 +246,8 @@ fn cascaded_variables_have_an_interval_only_where_messages_are_weighted_means() 
     assert_eq!(said(&|setup| setup.reference = Arc::new(Tracking)), Some(NoCascade::Reference));
     assert_eq!(said(&|setup| setup.agents[2].law = blind_mass(1.0, 1.0).law), Some(NoCascade::Law { agent: 2 }));
     assert_eq!(said(&|setup| setup.agents[1] = blind_mass(1.0, 1.0)), Some(NoCascade::Law { agent: 1 }));
-    assert_eq!(said(&|setup| setup.agents[1].roots_per_s.extend([1.0; 3])), Some(NoCascade::NotRecorded));
-    let larger = |setup: &mut Setup| setup.agents[0].roots_per_s[0] = 1.1;
+    assert_eq!(said(&|setup| setup.agents[1].roots_per_s.real.extend([1.0; 3])), Some(NoCascade::NotRecorded));
+    let larger = |setup: &mut Setup| setup.agents[0].roots_per_s.real[0] = 1.1;
     assert_eq!(said(&larger), Some(NoCascade::FirstRoots { from: 0, to: 1 }));
     let position = |setup: &mut Setup| {
         larger(setup);
@@ -265,7 +265,7 @@ fn whoever_hears_a_smaller_first_root_stays_within_the_interval() {
     // Along a path, agent by agent, κ₀ⱼ ≤ κ₀ᵢ.
     let mut setup = arms(Exchange::PositionVelocity, 2);
     for (i, agent) in setup.agents.iter_mut().enumerate() {
-        agent.roots_per_s[0] = 1.0 + 0.4 * i as f64;
+        agent.roots_per_s.real[0] = 1.0 + 0.4 * i as f64;
         agent.start.dq = vec![2.0 * noise(i), -noise(i + 3)];
     }
     let path = (0..3).map(|i| edge(i, i + 1, 1.5, 0)).collect();

@@ -25,7 +25,7 @@ fn pair(w: f64, kappa: f64) -> Setup {
     setup.agents.truncate(2);
     setup.network.agents = 2;
     setup.time.end_s = 6.0;
-    setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![kappa]);
+    setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![kappa].into());
     setup
 }
 
@@ -175,7 +175,7 @@ fn a_ring_with_delays_is_left_little_more_than_its_operator_leaves() {
         let mut setup = masses(Exchange::Position, 1, Schedule::fixed(edges), delays);
         setup.agents.truncate(3);
         setup.network.agents = 3;
-        setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![kappa]);
+        setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![kappa].into());
         let found = guaranteed_rate(&setup, WORK).unwrap();
         let falls: Vec<Fall> = found.falls.iter().copied().filter(|fall| fall.t_s < 6.0).collect();
         assert!(falls.len() >= 3, "{found:?}");
@@ -266,7 +266,7 @@ fn one_against_all(order: usize, schedule: Schedule, agents: usize, end_s: f64) 
     let mut own = setup.agents[0].clone();
     own.start.q.fill(0.0);
     own.start.dq.fill(0.0);
-    own.roots_per_s = vec![3.0; order];
+    own.roots_per_s = vec![3.0; order].into();
     setup.agents = vec![own; agents];
     setup.agents[0].start.q.fill(1.0);
     setup.network.agents = agents;
@@ -343,12 +343,12 @@ fn every_reason_for_no_guaranteed_rate_is_the_one_that_is_said() {
     assert_eq!(said(&tanh), Some(NoGuaranteedRate::Cascade(NoCascade::Coupling)));
     let roots = |setup: &mut Setup| {
         setup.exchange = Exchange::PositionVelocity;
-        setup.agents[0].roots_per_s[0] = 7.0;
+        setup.agents[0].roots_per_s.real[0] = 7.0;
     };
     let first = NoCascade::FirstRoots { from: 0, to: 1 };
     assert_eq!(said(&roots), Some(NoGuaranteedRate::Cascade(first)));
     for root in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let roots = |setup: &mut Setup| setup.agents[3].roots_per_s[1] = root;
+        let roots = |setup: &mut Setup| setup.agents[3].roots_per_s.real[1] = root;
         assert_eq!(said(&roots), Some(NoGuaranteedRate::Roots { agent: 3 }));
     }
     assert!(said(&|setup| setup.agents[2].roots_per_s.clear()).is_some());
@@ -380,7 +380,7 @@ fn every_reason_for_no_guaranteed_rate_is_the_one_that_is_said() {
         setup.network.schedule = five(Exchange::Position, 2, 1).network.schedule;
     };
     assert_eq!(said(&switching), Some(NoGuaranteedRate::PureIntegral));
-    let many = |setup: &mut Setup| setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![1.0; 30]);
+    let many = |setup: &mut Setup| setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![1.0; 30].into());
     assert_eq!(said(&many), Some(NoGuaranteedRate::TooLarge { components: 155 }));
 }
 
@@ -391,13 +391,13 @@ fn numbers_of_any_size_have_a_rate_or_a_reason() {
         for edge in setup.network.schedule.graphs.iter_mut().flatten() {
             edge.weight = Weight::Constant(size);
         }
-        setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![size]);
+        setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![size].into());
         if let Ok(found) = guaranteed_rate(&setup, 1e6) {
             assert!(found.falls.iter().all(|fall| fall.left > 0.0 && fall.left < 1.0), "{size}: {found:?}");
             assert!(found.settled_s.is_none_or(|t_s| t_s.is_finite()), "{size}: {found:?}");
         }
         let mut fast = five(Exchange::Position, 1, 0);
-        fast.agents[2].roots_per_s = vec![size];
+        fast.agents[2].roots_per_s = vec![size].into();
         guaranteed_rate(&fast, 1e6).ok();
     }
 }

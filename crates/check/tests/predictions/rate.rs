@@ -33,9 +33,9 @@ fn the_disagreement_falls_at_the_rate_of_the_rightmost_root_and_settles_when_the
             let mut setup = uneven(exchange, order);
             if exchange == Exchange::Position {
                 // Orders and roots of their own.
-                setup.agents[1].roots_per_s[0] = 2.5;
+                setup.agents[1].roots_per_s.real[0] = 2.5;
                 if !integral {
-                    setup.agents[3].roots_per_s.push(1.8);
+                    setup.agents[3].roots_per_s.real.push(1.8);
                 }
             }
             if integral {
@@ -120,16 +120,16 @@ fn every_reason_for_no_rate_is_the_one_that_is_said() {
     assert_eq!(said(&torn), Some(NoRate::NoSpanningTree));
     let alone = |setup: &mut Setup| setup.agents.truncate(1);
     assert_eq!(said(&alone), Some(NoRate::Agents));
-    assert_eq!(said(&|setup| setup.agents[0].roots_per_s[0] = -1.0), Some(NoRate::Unclear));
+    assert_eq!(said(&|setup| setup.agents[0].roots_per_s.real[0] = -1.0), Some(NoRate::Unclear));
     assert_eq!(said(&|setup| setup.network.delays.truncate(1)), Some(NoRate::Unclear));
     let nobody = |setup: &mut Setup| setup.network.schedule.graphs[0].push(edge(9, 0, 1.0, 0));
     assert_eq!(said(&nobody), Some(NoRate::Unclear), "there is no agent 9");
-    assert_eq!(said(&|setup| setup.agents[0].roots_per_s[0] = 1e300), Some(NoRate::Unclear));
+    assert_eq!(said(&|setup| setup.agents[0].roots_per_s.real[0] = 1e300), Some(NoRate::Unclear));
     // (a5) with first roots that differ may diverge: Theorem 2 asks for a common one.
     let diverging = |setup: &mut Setup| {
         setup.exchange = Exchange::PositionVelocity;
         for (i, agent) in setup.agents.iter_mut().enumerate() {
-            agent.roots_per_s = vec![[0.05, 20.0][i % 2], 2.0];
+            agent.roots_per_s = vec![[0.05, 20.0][i % 2], 2.0].into();
         }
     };
     assert_eq!(said(&diverging), None, "whether it does is for the root to say");
@@ -147,7 +147,7 @@ fn in_turns(exchange: Exchange, weight: f64, dwell_s: f64, root: f64) -> Setup {
     setup.agents.truncate(2);
     setup.network.agents = 2;
     setup.time.end_s = 200.0;
-    setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![root]);
+    setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![root].into());
     setup
 }
 
@@ -209,7 +209,7 @@ fn every_reason_for_no_rate_per_period_is_the_one_that_is_said() {
         for edge in setup.network.schedule.graphs.iter_mut().flatten() {
             edge.weight = Weight::Constant(60.0);
         }
-        setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![60.0]);
+        setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![60.0].into());
     };
     assert!(matches!(said(&at_once), Some(NoPeriodRate::Vanishes { periods: 0..3 })), "{:?}", said(&at_once));
     let stop = period_rate(&in_turns(Exchange::Position, 1.0, 0.5, 2.0), &mut |_| ControlFlow::Break(()));

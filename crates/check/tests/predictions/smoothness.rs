@@ -215,7 +215,7 @@ fn eq_a5_the_last_derivative_jumps_by_the_inertia_of_the_estimates_times_the_jum
         // Without delay everything that is heard is in the row of the switch.
         setup.network.delays = vec![Delay::constant(0.0); 2];
         let smoothness = found(&setup);
-        let (outcome, alpha) = (&smoothness.outcome, polynomial(&roots(order)).unwrap());
+        let (outcome, alpha) = (&smoothness.outcome, polynomial(roots(order)).unwrap());
         let row = 2000;
         assert_eq!(outcome.recording.t_s[row], 1.0);
         let graphs = &setup.network.schedule.graphs;
@@ -331,7 +331,7 @@ fn a_higher_order_is_smoother_and_slower() {
 
     assert_eq!(orders(&setup, &[2, 9], &mut go_on), Err(NoOrders::Order { order: 9 }));
     assert_eq!(orders(&setup, &[0], &mut go_on), Err(NoOrders::Order { order: 0 }));
-    setup.agents[1] = AgentSetup { roots_per_s: roots(2), ..blind_mass(1.0, 1.0) };
+    setup.agents[1] = AgentSetup { roots_per_s: roots(2).into(), ..blind_mass(1.0, 1.0) };
     assert!(matches!(orders(&setup, &[1], &mut go_on), Err(NoOrders::Agent { reason: NotCovered::Law { .. }, .. })));
     setup.reference = Arc::new(Tracking);
     assert!(matches!(orders(&setup, &[1], &mut go_on), Err(NoOrders::Family { .. })));
@@ -346,7 +346,7 @@ fn who_is_not_covered_is_told_why() {
     let nobody = |name: &str, reason| NoSmoothness::NoAgent { name: name.into(), reason };
     assert_eq!(refused(&high), nobody("arm-1", NotCovered::Order { order: 9, most: 8 }));
     // One of the others is reported.
-    high.agents[1].roots_per_s.pop();
+    high.agents[1].roots_per_s.real.pop();
     high.solver.max_step_s = None;
     let mixed = found(&high);
     assert!(mixed.agents[0].is_err() && mixed.agents[1].is_ok());
@@ -355,7 +355,7 @@ fn who_is_not_covered_is_told_why() {
     let alone = tracking(arm(0, &roots(2)), vec![rest_at(0.3), rest_at(0.1)]);
     assert_eq!(refused(&alone), nobody("arm-1", NotCovered::OwnTarget));
     let mut broken = arms(Exchange::Position, 2);
-    broken.agents[0].roots_per_s[0] = -1.0;
+    broken.agents[0].roots_per_s.real[0] = -1.0;
     assert!(matches!(refused(&broken), NoSmoothness::Setup(_)));
     let mut stopped = arms(Exchange::Position, 2);
     stopped.time.end_s = 1.5;

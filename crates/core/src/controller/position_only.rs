@@ -63,7 +63,7 @@ pub struct PositionMeasured<'a> {
 /// use forwardstep_core::controller::{Asked, Controller, Given, Guide, PositionOnly};
 /// use forwardstep_core::reference::{Heard, polynomial};
 ///
-/// let mut alpha = polynomial(&[1.0, 2.0, 3.0])?;
+/// let mut alpha = polynomial([1.0, 2.0, 3.0])?;
 /// alpha.pop();
 /// let guide = Guide::Tracking { alpha: alpha.clone() };
 /// let law = PositionOnly { axes: 1, guide, damping: 8.0, filter_per_s: 20.0, adaptation: 3.0, estimate_start: 1.5 };

@@ -17,6 +17,7 @@
 //! does (α₁ = 1 for ℓ = 1): the conserved quantity that predicts the agreed value starts here.
 
 use super::polynomial::{Coefficients, RootsError};
+use super::roots::RootSet;
 use super::{Exchange, Heard, Measured, Reference, ReferenceOut, Sliding, begin, check};
 use crate::{LengthError, Scalar};
 
@@ -60,9 +61,13 @@ impl<X: Exchange> Consensus<X> {
     /// Builds the dynamics from the roots κ₀ … κ_{ℓ−1} and the manipulability gain λ (zero for none) of every agent.
     ///
     /// # Errors
-    /// [`RootsError`] when there are no roots, one is not positive, agents differ in their number, or a λ is negative.
-    pub fn new<'a>(designs: impl IntoIterator<Item = (&'a [f64], f64)>) -> Result<Self, RootsError> {
-        Ok(Consensus { exchange: core::marker::PhantomData, coefficients: Coefficients::new(designs)? })
+    /// [`RootsError`] when there are no roots, one is not positive, agents differ in their number, a λ is negative,
+    /// or velocities are sent and no root is real.
+    pub fn new<R: Into<RootSet>>(designs: impl IntoIterator<Item = (R, f64)>) -> Result<Self, RootsError> {
+        Ok(Consensus {
+            exchange: core::marker::PhantomData,
+            coefficients: Coefficients::new(designs, X::CHANNELS > 1)?,
+        })
     }
 
     /// ℓ.

@@ -15,6 +15,7 @@ mod following;
 mod per_axis;
 mod polynomial;
 mod pure_integral;
+mod roots;
 mod sliding;
 
 pub use backstepping::{Backstepping, BacksteppingError};
@@ -24,6 +25,7 @@ pub use following::{Following, SmoothFollowing};
 pub use per_axis::{AxisInput, AxisOutput, PerAxis};
 pub use polynomial::{RootsError, polynomial};
 pub use pure_integral::PureIntegral;
+pub use roots::{RootPair, RootSet};
 pub use sliding::{Choice, Derived, Sliding, SlidingInputs, saturated};
 
 use alloc::boxed::Box;

@@ -5,7 +5,9 @@ use alloc::vec::Vec;
 
 use thiserror::Error;
 
-/// A root that does not make a Hurwitz polynomial with real roots.
+use super::roots::{RootPair, RootSet};
+
+/// Roots that do not make a Hurwitz polynomial, or not the one that is needed.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum RootsError {
     /// No roots at all.
@@ -19,6 +21,22 @@ pub enum RootsError {
         /// The offending value, 1/s.
         value: f64,
     },
+    /// A pair of complex roots that does not decay, or does not turn.
+    #[error(
+        "the pair {index} of complex roots has the real part {} and the imaginary part {} per second, but both must be positive and \
+         finite; a real root is written as a number",
+        pair.real,
+        pair.imaginary
+    )]
+    Pair {
+        /// Position in the list of pairs, from zero.
+        index: usize,
+        /// The pair.
+        pair: RootPair,
+    },
+    /// Velocities are sent, and there is no κ₀ to divide them by.
+    #[error("all roots are complex, but (a5), which sends velocities, needs a real one: κ₀, the first real root")]
+    NoRealRoot,
     /// A manipulability gain that is not a number from zero up.
     #[error("the manipulability gain is {value}, but must be finite and not negative")]
     Manipulability {
@@ -35,32 +53,46 @@ pub enum RootsError {
     },
 }
 
-/// The coefficients α₀ … α_{ℓ−1}, α_ℓ = 1 of ∏ᵣ (p + κᵣ): polynomial (25).
+/// The coefficients α₀ … α_{ℓ−1}, α_ℓ = 1 of ∏ᵣ (p + κᵣ) · ∏ₖ ((p + aₖ)² + bₖ²): polynomial (25), with pairs of complex roots.
 ///
 /// # Errors
-/// [`RootsError`] when there are no roots or one is not positive and finite.
+/// [`RootsError`] when there are no roots or one is not positive and finite, or a part of a pair is not.
 ///
 /// ```
 /// use forwardstep_core::reference::polynomial;
 ///
 /// // (p + 1)(p + 2)(p + 4)
-/// assert_eq!(polynomial(&[1.0, 2.0, 4.0])?, [8.0, 14.0, 7.0, 1.0]);
-/// assert!(polynomial(&[1.0, -2.0]).is_err());
+/// assert_eq!(polynomial([1.0, 2.0, 4.0])?, [8.0, 14.0, 7.0, 1.0]);
+/// assert!(polynomial([1.0, -2.0]).is_err());
 /// # Ok::<(), forwardstep_core::reference::RootsError>(())
 /// ```
-pub fn polynomial(roots_per_s: &[f64]) -> Result<Vec<f64>, RootsError> {
-    if roots_per_s.is_empty() {
+pub fn polynomial(roots_per_s: impl Into<RootSet>) -> Result<Vec<f64>, RootsError> {
+    let RootSet { real, pairs } = roots_per_s.into();
+    if real.is_empty() && pairs.is_empty() {
         return Err(RootsError::Empty);
     }
+    let is_positive = |value: f64| value > 0.0 && value.is_finite();
     let mut alpha = vec![1.0];
-    for (index, kappa) in roots_per_s.iter().enumerate() {
-        if !(*kappa > 0.0 && kappa.is_finite()) {
+    for (index, kappa) in real.iter().enumerate() {
+        if !is_positive(*kappa) {
             return Err(RootsError::NotPositive { index, value: *kappa });
         }
         // (p + κ) · Σ αᵣ pʳ
         alpha.insert(0, 0.0);
         for r in 0..alpha.len() - 1 {
             alpha[r] += kappa * alpha[r + 1];
+        }
+    }
+    for (index, pair) in pairs.iter().enumerate() {
+        let RootPair { real: a, imaginary: b } = *pair;
+        if !(is_positive(a) && is_positive(b)) {
+            return Err(RootsError::Pair { index, pair: *pair });
+        }
+        // (p² + 2 a p + a² + b²) · Σ αᵣ pʳ
+        alpha.splice(0..0, [0.0; 2]);
+        for r in 0..alpha.len() - 1 {
+            let next = alpha.get(r + 2).map_or(0.0, |above| (a * a + b * b) * above);
+            alpha[r] += 2.0 * a * alpha[r + 1] + next;
         }
     }
     Ok(alpha)
@@ -73,18 +105,22 @@ pub(crate) struct Coefficients {
     pub(crate) agents: usize,
     /// αᵣ of every agent: entry `r · agents + agent`, r = 0 … ℓ.
     pub(crate) alpha: Vec<f64>,
-    /// α₀/κ₀ of every agent.
+    /// α₀/κ₀ of every agent that hears velocities.
     pub(crate) alpha_0_over_kappa_0: Vec<f64>,
     /// λ of every agent, Remark 4.
     pub(crate) lambda: Vec<f64>,
 }
 
 impl Coefficients {
-    /// From the roots and λ of every agent.
-    pub(crate) fn new<'a>(designs: impl IntoIterator<Item = (&'a [f64], f64)>) -> Result<Self, RootsError> {
+    /// From the roots and λ of every agent; `velocities` says whether they are sent.
+    pub(crate) fn new<R: Into<RootSet>>(
+        designs: impl IntoIterator<Item = (R, f64)>,
+        velocities: bool,
+    ) -> Result<Self, RootsError> {
         let (mut columns, mut alpha_0_over_kappa_0, mut lambda) = (Vec::<Vec<f64>>::new(), Vec::new(), Vec::new());
         for (roots, manipulability) in designs {
-            let alpha = polynomial(roots)?;
+            let roots = roots.into();
+            let alpha = polynomial(&roots)?;
             if let Some(first) = columns.first().map(Vec::len)
                 && first != alpha.len()
             {
@@ -93,7 +129,12 @@ impl Coefficients {
             if !(manipulability >= 0.0 && manipulability.is_finite()) {
                 return Err(RootsError::Manipulability { value: manipulability });
             }
-            alpha_0_over_kappa_0.push(alpha[0] / roots[0]);
+            alpha_0_over_kappa_0.push(match roots.first_real() {
+                Some(kappa_0) => alpha[0] / kappa_0,
+                None if velocities => return Err(RootsError::NoRealRoot),
+                // Nothing is heard that it would multiply.
+                None => 0.0,
+            });
             lambda.push(manipulability);
             columns.push(alpha);
         }
@@ -115,9 +156,45 @@ mod tests {
 
     #[test]
     fn eq_25_roots_give_the_polynomial() {
-        assert_eq!(polynomial(&[2.0]), Ok(vec![2.0, 1.0]));
-        assert_eq!(polynomial(&[1.0, 2.0, 3.0]), Ok(vec![6.0, 11.0, 6.0, 1.0]));
-        assert_eq!(polynomial(&[]), Err(RootsError::Empty));
-        assert_eq!(polynomial(&[1.0, -2.0]), Err(RootsError::NotPositive { index: 1, value: -2.0 }));
+        assert_eq!(polynomial([2.0]), Ok(vec![2.0, 1.0]));
+        assert_eq!(polynomial([1.0, 2.0, 3.0]), Ok(vec![6.0, 11.0, 6.0, 1.0]));
+        assert_eq!(polynomial([]), Err(RootsError::Empty));
+        assert_eq!(polynomial([1.0, -2.0]), Err(RootsError::NotPositive { index: 1, value: -2.0 }));
+    }
+
+    fn with(real: &[f64], pairs: &[[f64; 2]]) -> RootSet {
+        let pairs = pairs.iter().map(|[real, imaginary]| RootPair { real: *real, imaginary: *imaginary });
+        RootSet { real: real.to_vec(), pairs: pairs.collect() }
+    }
+
+    /// At p = −a + b i of a pair, and at p = −κ, the polynomial vanishes; its leading coefficient is one.
+    #[test]
+    fn eq_25_with_pairs_vanishes_at_its_roots() {
+        let (real, pairs) = ([0.7, 2.5], [[0.1, 2.0], [1.5, 0.25]]);
+        let alpha = polynomial(with(&real, &pairs)).unwrap();
+        assert_eq!((alpha.len(), alpha[6]), (7, 1.0));
+        let value =
+            |[x, y]: [f64; 2]| alpha.iter().rev().fold([0.0; 2], |[u, v], next| [u * x - v * y + next, u * y + v * x]);
+        let all = real.iter().map(|kappa| [-kappa, 0.0]).chain(pairs.iter().map(|[a, b]| [-a, *b]));
+        for root in all {
+            let [u, v] = value(root);
+            assert!(u.abs() < 1e-12 && v.abs() < 1e-12, "{root:?} {u} {v}");
+        }
+    }
+
+    #[test]
+    fn pairs_must_decay_and_turn() {
+        for [a, b] in [[0.0, 1.0], [-0.1, 1.0], [1.0, 0.0], [1.0, -2.0], [f64::NAN, 1.0], [1.0, f64::INFINITY]] {
+            let found = polynomial(with(&[1.0], &[[1.0, 1.0], [a, b]]));
+            assert!(matches!(found, Err(RootsError::Pair { index: 1, .. })), "{a} {b} {found:?}");
+        }
+    }
+
+    #[test]
+    fn velocities_need_a_real_root_and_positions_do_not() {
+        let design = || [(with(&[], &[[1.0, 2.0]]), 0.0)];
+        assert_eq!(Coefficients::new(design(), true).map(|_| ()), Err(RootsError::NoRealRoot));
+        let found = Coefficients::new(design(), false).unwrap();
+        assert_eq!((found.order, found.alpha), (2, vec![5.0, 2.0, 1.0]));
     }
 }

@@ -17,6 +17,7 @@
 //! fixed graphs; (a1) is the one for switching graphs.
 
 use super::polynomial::{Coefficients, RootsError};
+use super::roots::RootSet;
 use super::{Exchange, Heard, Measured, Reference, ReferenceOut, Sliding, check};
 use crate::{LengthError, Scalar};
 
@@ -56,9 +57,10 @@ impl<X: Exchange> PureIntegral<X> {
     /// Builds the dynamics from the two roots κ₀ = α, κ₁ = β and the manipulability gain λ (zero for none) of every agent.
     ///
     /// # Errors
-    /// [`RootsError`] when an agent has not two roots, one is not positive, or a λ is negative.
-    pub fn new<'a>(designs: impl IntoIterator<Item = (&'a [f64], f64)>) -> Result<Self, RootsError> {
-        let coefficients = Coefficients::new(designs)?;
+    /// [`RootsError`] when an agent has not two roots, one is not positive, a λ is negative, or velocities are sent
+    /// and no root is real.
+    pub fn new<R: Into<RootSet>>(designs: impl IntoIterator<Item = (R, f64)>) -> Result<Self, RootsError> {
+        let coefficients = Coefficients::new(designs, X::CHANNELS > 1)?;
         if coefficients.order != 2 {
             return Err(RootsError::Order { need: 2, got: coefficients.order });
         }

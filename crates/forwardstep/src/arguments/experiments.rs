@@ -29,9 +29,10 @@ pub(crate) struct FalsifyOptions {
 
 #[derive(Debug, Args)]
 pub(crate) struct AttackOptions {
-    /// What is attacked
-    #[arg(value_enum)]
-    pub(crate) target: AttackTarget,
+    /// What is attacked: a design (a1, 24, a1-first-roots, 24-complex-roots or 119-weights), or a shipped scenario by its name, or a file by its
+    /// path, whose delays and schedules are varied within what it states
+    #[arg(value_name = "DESIGN|SCENARIO")]
+    pub(crate) what: String,
     /// Pieces of the delay, and phases of the schedule, at most
     #[arg(long, value_name = "N", default_value_t = 6)]
     pub(crate) pieces: usize,
@@ -46,7 +47,7 @@ pub(crate) struct AttackOptions {
     pub(crate) out: PathBuf,
 }
 
-/// What `attack` attacks: two designs inside their theorems, and two with a hypothesis broken.
+/// What `attack` attacks: two designs inside their theorems, and three with a hypothesis broken.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum AttackTarget {
     /// (a1), positions and velocities exchanged: how slow can agreement be?
@@ -56,17 +57,26 @@ pub(crate) enum AttackTarget {
     Positions,
     /// (a1) with first roots κ₀ that differ from agent to agent: does it diverge?
     A1FirstRoots,
+    /// (24) with a pair of complex roots, over graphs that switch: does it diverge?
+    #[value(name = "24-complex-roots")]
+    ComplexRoots,
     /// (119) with weights that change with time: does it fail to follow?
     #[value(name = "119-weights")]
     Weights,
 }
 
 impl AttackTarget {
-    pub(crate) fn target(self) -> Target {
+    /// The design of this name, if it is one.
+    pub(crate) fn named(name: &str) -> Option<Target> {
+        AttackTarget::from_str(name, false).ok().map(AttackTarget::target)
+    }
+
+    fn target(self) -> Target {
         match self {
             AttackTarget::A1 => Target::Velocities,
             AttackTarget::Positions => Target::Positions,
             AttackTarget::A1FirstRoots => Target::FirstRoots,
+            AttackTarget::ComplexRoots => Target::ComplexRoots,
             AttackTarget::Weights => Target::Weights,
         }
     }

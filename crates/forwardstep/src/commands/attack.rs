@@ -3,17 +3,30 @@
 use std::fs;
 use std::time::Duration;
 
+use forwardstep::check::Id;
+use forwardstep::io::scenario::kinds::Kinds;
+
 use super::stop::Stop;
-use crate::arguments::AttackOptions;
+use crate::arguments::{AttackOptions, AttackTarget};
 use crate::console::{BAD, Console, DIM, GOOD, Plain, complain};
-use crate::falsify::Attack;
+use crate::falsify::{Attack, GROWS, OwnAttack, OwnFound, Target};
 use crate::status::Status;
 
-/// Searches for delays and schedules under which a design does worst.
-pub(crate) fn attack(options: &AttackOptions, console: &mut Console) -> Status {
+/// Searches for delays and schedules under which a design, or a scenario, does worst.
+pub(crate) fn attack(options: &AttackOptions, kinds: &Kinds, console: &mut Console) -> Status {
     let stop = Stop::listen();
-    let limit = Duration::try_from_secs_f64(options.seconds).unwrap_or(Duration::MAX);
-    let target = options.target.target();
+    match AttackTarget::named(&options.what) {
+        Some(target) => design(target, options, &stop, console),
+        None => scenario(options, kinds, &stop, console).unwrap_or_else(|status| status),
+    }
+}
+
+fn limit(options: &AttackOptions) -> Duration {
+    Duration::try_from_secs_f64(options.seconds).unwrap_or(Duration::MAX)
+}
+
+fn design(target: Target, options: &AttackOptions, stop: &Stop, console: &mut Console) -> Status {
+    let limit = limit(options);
     let attack = Attack { target, pieces: options.pieces, seed: options.seed, limit };
     let Some(found) = attack.search(&|| stop.asked().is_some()) else {
         console.line("nothing could be tried in this time");
@@ -21,27 +34,68 @@ pub(crate) fn attack(options: &AttackOptions, console: &mut Console) -> Status {
     };
     let inside = target.is_inside();
     let refuted = inside && found.left > 1.0 + 1e-6;
-    let percent = 100.0 * found.left;
+    let percent = percent(found.left);
     console.line(format_args!("{} scenarios tried, with at most {} pieces", found.tried, options.pieces));
     if inside {
         let style = if refuted { BAD } else { GOOD };
         let agents = found.case.starts.len();
         console.line(format_args!(
-            "  {style}worst{style:#}: {percent:.3} % of the disagreement of {agents} agents is left after {} s",
+            "  {style}worst{style:#}: {percent} % of the disagreement of {agents} agents is left after {} s",
             found.case.end_s
         ));
     } else if found.left > target.fails() {
-        console.line(format_args!("  {BAD}fails{BAD:#}: {percent:.3} % of what there was at the start is left"));
+        console.line(format_args!("  {BAD}fails{BAD:#}: {percent} % of what there was at the start is left"));
     } else {
-        console.line(format_args!("  nothing fails; the worst leaves {percent:.3} % of what there was at the start"));
+        console.line(format_args!("  nothing fails; the worst leaves {percent} % of what there was at the start"));
     }
-    let broken: Vec<&str> = found.broken.iter().map(|id| id.name()).collect();
-    let words = if broken.is_empty() { "none".to_owned() } else { broken.join(", ") };
+    let words = listed(&found.broken);
     console.line(format_args!("  hypotheses that do not hold for it: {words}"));
-    let text = format!("# {percent:.3} % is left; hypotheses that do not hold: {words}\n{}", found.case);
-    if let Err(error) = fs::write(&options.out, text) {
-        return complain(&Plain::new(error));
+    let text = format!("# {percent} % is left; hypotheses that do not hold: {words}\n{}", found.case);
+    saved(options, &text, console)
+        .map_or_else(|status| status, |()| stop.asked().unwrap_or(if refuted { Status::Missed } else { Status::Fine }))
+}
+
+/// A scenario of the user's own, within the delays and schedules that it allows.
+fn scenario(options: &AttackOptions, kinds: &Kinds, stop: &Stop, console: &mut Console) -> Result<Status, Status> {
+    let scenario = kinds.open_scenario(&options.what).map_err(|error| complain(&error))?;
+    let (pieces, seed, limit) = (options.pieces, options.seed, limit(options));
+    let attack = OwnAttack { scenario: &scenario, kinds, pieces, seed, limit };
+    let failed = |error| complain(&Plain::new(format!("`{}` cannot be attacked: {error}", options.what)));
+    let OwnFound { text, worst, stated, broken, tried } = attack.search(&|| stop.asked().is_some()).map_err(failed)?;
+    let grows = worst.grew || (!worst.of_interval && worst.part > GROWS);
+    let [part, before] = [worst.part, stated.part].map(percent);
+    let of = if worst.of_interval { "interval of all cascaded variables" } else { "disagreement" };
+    let end_s = scenario.setup.time.end_s;
+    console.line(format_args!("{tried} networks tried, with at most {pieces} pieces"));
+    let style = if grows { BAD } else { GOOD };
+    let word = if grows { "grows" } else { "worst" };
+    console.line(format_args!(
+        "  {style}{word}{style:#}: {part} % of the {of} is left after {end_s} s without tracking errors; as stated it is {before} %"
+    ));
+    let words = listed(&broken);
+    console.line(format_args!("  hypotheses that do not hold for it: {words}"));
+    if let [first, rest @ ..] = &scenario.inputs[..] {
+        let more = rest.iter().map(|file| format!(", {}", file.name)).collect::<String>();
+        console.line(format_args!("  {DIM}what is saved names files of the scenario: {}{more}{DIM:#}", first.name));
     }
+    saved(options, &format!("# {part} % is left; hypotheses that do not hold: {words}\n{text}"), console)?;
+    // That the interval never grows is what the proofs say.
+    Ok(stop.asked().unwrap_or(if worst.grew { Status::Missed } else { Status::Fine }))
+}
+
+/// A part in percent, with digits that say something whatever its size.
+fn percent(part: f64) -> String {
+    let percent = 100.0 * part;
+    if percent == 0.0 || (1e-2..1e6).contains(&percent) { format!("{percent:.3}") } else { format!("{percent:.3e}") }
+}
+
+fn listed(broken: &[Id]) -> String {
+    let names: Vec<&str> = broken.iter().map(|id| id.name()).collect();
+    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+}
+
+fn saved(options: &AttackOptions, text: &str, console: &mut Console) -> Result<(), Status> {
+    fs::write(&options.out, text).map_err(|error| complain(&Plain::new(error)))?;
     console.line(format_args!("  {DIM}saved: {}{DIM:#}", options.out.display()));
-    stop.asked().unwrap_or(if refuted { Status::Missed } else { Status::Fine })
+    Ok(())
 }

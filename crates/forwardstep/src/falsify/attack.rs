@@ -25,6 +25,8 @@ pub(crate) enum Target {
     Positions,
     /// (a1) with first roots that differ.
     FirstRoots,
+    /// (24) with a pair of complex roots, over graphs that switch.
+    ComplexRoots,
     /// (119) with weights that change with time.
     Weights,
 }
@@ -66,7 +68,7 @@ impl Target {
     pub(crate) fn is_inside(self) -> bool {
         match self {
             Target::Velocities | Target::Positions => true,
-            Target::FirstRoots | Target::Weights => false,
+            Target::FirstRoots | Target::ComplexRoots | Target::Weights => false,
         }
     }
 
@@ -74,7 +76,7 @@ impl Target {
     pub(crate) fn fails(self) -> f64 {
         match self {
             Target::Velocities | Target::Positions => 1.0 + 1e-6,
-            Target::FirstRoots => FAILS,
+            Target::FirstRoots | Target::ComplexRoots => FAILS,
             Target::Weights => STAYS,
         }
     }
@@ -137,10 +139,19 @@ impl Attack {
             starts: (0..agents)
                 .map(|k| [(if led { 50.0 } else { 1.0 }) * if k % 2 == 0 { 1.0 } else { -1.0 }, 0.0, 0.0])
                 .collect(),
-            roots: (0..agents).map(|_| if led { vec![slow, slow] } else { vec![own(rng), 2.0] }).collect(),
+            roots: (0..agents)
+                .map(|_| match self.target {
+                    Target::Weights => vec![slow, slow],
+                    Target::ComplexRoots => Vec::new(),
+                    Target::Velocities | Target::Positions | Target::FirstRoots => vec![own(rng), 2.0],
+                })
+                .collect(),
+            pair: (self.target == Target::ComplexRoots).then(|| pair(rng)),
             course: match self.target {
                 Target::Weights => Course::Follow { design: Design::Differentiable, margin: 2.0 },
-                Target::Velocities | Target::Positions | Target::FirstRoots => Course::Agree { velocities },
+                Target::Velocities | Target::Positions | Target::FirstRoots | Target::ComplexRoots => {
+                    Course::Agree { velocities }
+                }
             },
             known: true,
             phases: (0..phases).map(|_| Phase { dwell_s: hundredths(rng, 0.1, 3.0), edges: Vec::new() }).collect(),
@@ -148,9 +159,8 @@ impl Attack {
             weight: "1".into(),
             delay: "constant_s = 0".into(),
             end_s: match self.target {
-                Target::Weights => 60.0,
-                Target::Velocities | Target::Positions => 60.0,
-                Target::FirstRoots => 240.0,
+                Target::Weights | Target::Velocities | Target::Positions => 60.0,
+                Target::FirstRoots | Target::ComplexRoots => 240.0,
             },
         };
         if led {
@@ -218,6 +228,7 @@ impl Attack {
                 other.phases[at].dwell_s = hundredths(rng, 0.1, 3.0);
             }
             3 => other.weight = pick(rng, &["1", "3", "10"]).into(),
+            _ if self.target == Target::ComplexRoots => other.pair = Some(pair(rng)),
             _ if self.target == Target::FirstRoots => {
                 let at = rng.random_range(0..other.roots.len());
                 other.roots[at][0] = hundredths(rng, 0.1, 5.0);
@@ -235,6 +246,16 @@ impl Attack {
         let setup = read(case).ok()?.setup;
         match self.target {
             Target::Velocities | Target::Positions | Target::FirstRoots => disagreement(&ideal(&setup).ok()?),
+            Target::ComplexRoots => {
+                let left = disagreement(&ideal(&setup).ok()?)?;
+                // What grows over one of its graphs for ever proves nothing about those that take turns.
+                let grows = |phase: &Phase| -> Option<bool> {
+                    let alone = Case { phases: vec![phase.clone()], ..case.clone() };
+                    Some(disagreement(&ideal(&read(&alone).ok()?.setup).ok()?)? > FAILS)
+                };
+                let proves = left <= FAILS || !case.phases.iter().any(|phase| grows(phase).unwrap_or(true));
+                proves.then_some(left)
+            }
             Target::Weights => {
                 let left = error_left(&setup)?;
                 // What is slow with constant weights too proves nothing.
@@ -261,6 +282,11 @@ impl Attack {
             }
         }
     }
+}
+
+/// A pair of complex roots with little damping.
+fn pair(rng: &mut ChaCha8Rng) -> [f64; 2] {
+    [hundredths(rng, 0.05, 1.0), hundredths(rng, 0.5, 5.0)]
 }
 
 /// The largest error of the last quarter as a part of that at the start.

@@ -16,6 +16,8 @@ pub(crate) struct Case {
     pub(crate) starts: Vec<[f64; 3]>,
     /// κ₀, κ₁, … of each agent.
     pub(crate) roots: Vec<Vec<f64>>,
+    /// a and b of a pair of complex roots −a ± b i that all agents have besides.
+    pub(crate) pair: Option<[f64; 2]>,
     pub(crate) course: Course,
     /// Whether the law knows its robot.
     pub(crate) known: bool,
@@ -139,6 +141,7 @@ impl Case {
             system,
             starts: (0..agents).map(|_| [(); 3].map(|()| hundredths(rng, -1.0, 1.0))).collect(),
             roots: (0..agents).map(|_| each(rng)).collect(),
+            pair: None,
             course,
             known: rng.random_bool(0.3),
             phases: (0..count).map(|_| phase(rng, agents + leads, leads > 0, density)).collect(),

@@ -3,6 +3,7 @@
 mod attack;
 mod case;
 mod judge;
+mod own;
 mod text;
 
 use std::collections::BTreeMap;
@@ -10,6 +11,7 @@ use std::collections::BTreeMap;
 pub(crate) use attack::{Attack, Target};
 pub(crate) use case::Case;
 pub(crate) use judge::{Failure, Verdict};
+pub(crate) use own::{GROWS, OwnAttack, OwnFound};
 
 /// What became of many cases.
 #[derive(Clone, Debug, Default)]

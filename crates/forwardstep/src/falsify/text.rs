@@ -12,10 +12,10 @@ impl Display for Case {
         if self.is_led() {
             writeln!(f, "[leader]\nmotion.sinusoids = [{}]\n", repeated(self.axes(), LEADER))?;
         }
-        for (agent, (start, roots)) in self.starts.iter().zip(&self.roots).enumerate() {
+        for (agent, start) in self.starts.iter().enumerate() {
             writeln!(f, "[[agents]]\nname = \"a{}\"\n{}\n{}", agent + 1, self.robot(), self.start(start))?;
             if let Course::Agree { .. } = self.course {
-                writeln!(f, "reference.consensus = {{ roots_per_s = {roots:?} }}")?;
+                writeln!(f, "reference.consensus = {{ roots_per_s = {} }}", self.roots_of(agent))?;
             }
             if let Course::Track { rate } = self.course {
                 writeln!(f, "{}", self.target(rate))?;
@@ -47,6 +47,13 @@ impl Case {
             System::Chain(_) => 1,
             System::Spacecraft => 4,
         }
+    }
+
+    /// The list of roots of an agent.
+    fn roots_of(&self, agent: usize) -> String {
+        let real = self.roots.get(agent).into_iter().flatten().map(|root| format!("{root:?}"));
+        let pair = self.pair.map(|[real, imaginary]| format!("{{ real = {real:?}, imaginary = {imaginary:?} }}"));
+        format!("[{}]", real.chain(pair).collect::<Vec<_>>().join(", "))
     }
 
     fn robot(&self) -> String {
@@ -101,15 +108,15 @@ impl Case {
 
     fn reference(&self) -> String {
         let exchange = |velocities: bool| if velocities { "position_velocity" } else { "position" };
-        let roots = self.roots.first().cloned().unwrap_or_default();
+        let (roots, first) = (self.roots_of(0), self.roots.first().cloned().unwrap_or_default());
         match self.course {
             Course::Agree { velocities } => format!("[reference.consensus]\nexchange = \"{}\"\n", exchange(velocities)),
             Course::Integral { velocities } => {
-                format!("[reference.pure_integral]\nroots_per_s = {roots:?}\nexchange = \"{}\"\n", exchange(velocities))
+                format!("[reference.pure_integral]\nroots_per_s = {roots}\nexchange = \"{}\"\n", exchange(velocities))
             }
-            Course::Follow { design, margin } => led(design, margin, &roots),
-            Course::Track { .. } if roots.is_empty() => "[reference.tracking]\n".into(),
-            Course::Track { .. } => format!("[reference.tracking]\nroots_per_s = {roots:?}\n"),
+            Course::Follow { design, margin } => led(design, margin, &first),
+            Course::Track { .. } if first.is_empty() => "[reference.tracking]\n".into(),
+            Course::Track { .. } => format!("[reference.tracking]\nroots_per_s = {roots}\n"),
         }
     }
 

@@ -3,6 +3,7 @@
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
+use forwardstep_core::reference::RootSet;
 use forwardstep_sim::leader::{Following, Leading as Led};
 use forwardstep_sim::reference::{ReferenceDynamics, Roots, Tracking};
 use forwardstep_sim::{ActuatorLimits, AgentSetup, PositionKind, RobotSetup};
@@ -10,13 +11,14 @@ use forwardstep_sim::{ActuatorLimits, AgentSetup, PositionKind, RobotSetup};
 use super::at::At;
 use super::attitude::{never_zero, shortest_rotation};
 use super::document::{Document, KeyedLaw};
-use super::fault::{Fault, count, fault, filled, values};
+use super::fault::{Fault, count, fault, filled};
 use super::file::{AgentFile, ScenarioFile};
 use super::inputs::InputFolder;
 use super::kinds::{AgentReferenceTable, Kinds, LawReader, ReferenceRead, RobotKind};
 use super::notice::Notice;
 use super::problem::ScenarioProblem;
 use super::robots::{Body, RobotRead, Stop};
+use super::roots::roots;
 use super::spread::Spread;
 use super::start::{Shared, StartReader, reject_unread};
 use super::target::{Owner, target};
@@ -28,8 +30,6 @@ use crate::SourceText;
 const MOST_AGENTS: u32 = 200_000;
 /// Letters that a name may have, without the number that a population adds.
 const LONGEST_NAME: usize = 64;
-/// The highest order of reference dynamics that is accepted.
-const MOST_ROOTS: usize = 32;
 
 /// An entry of `[[agents]]` with the names that it stands for.
 pub(super) struct Population<'a> {
@@ -290,19 +290,10 @@ fn limits(population: &Population<'_>) -> Result<bool, Fault> {
 
 /// What one agent's reference dynamics are made of.
 struct Design {
-    roots_per_s: Vec<f64>,
+    roots_per_s: RootSet,
     manipulability: f64,
     /// How many of z(0), ż(0), … a start may give.
     free_derivatives: usize,
-}
-
-/// Roots, as many as are accepted.
-fn roots(list: &At<Vec<At<f64>>>) -> Result<Vec<f64>, Fault> {
-    let roots = filled("roots_per_s", list)?;
-    if roots.len() > MOST_ROOTS {
-        return Err(fault(list, ValueProblem::Order { key: "roots_per_s", found: roots.len(), most: MOST_ROOTS }));
-    }
-    Ok(values(roots))
 }
 
 /// The reference dynamics of all agents, as they were read.
@@ -339,7 +330,7 @@ fn design(reference: &Leading, population: &Population<'_>, (index, agent): (usi
         None if interface.roots == Roots::Every => {
             return Err(Fault::new(ScenarioProblem::NoRoots { agent: agent.to_owned(), common }).at(span));
         }
-        None => Vec::new(),
+        None => RootSet::default(),
     };
     let own_gain = own.and_then(|own| own.manipulability_gain.as_ref());
     if let (Some(gain), false) = (own_gain, interface.manipulability) {

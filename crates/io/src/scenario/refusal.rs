@@ -1,6 +1,7 @@
 //! What the layers below refuse: where in the scenario it stands, and what to do.
 
 use forwardstep_core::controller::ChainError;
+use forwardstep_core::reference::RootsError;
 use forwardstep_sim::quantity::{QuantityError, Requirement, Sign, about};
 use forwardstep_sim::{Setup, SetupError};
 
@@ -73,6 +74,9 @@ pub(super) fn advice(error: &SetupError) -> Option<String> {
         SetupError::VelocityUnused { .. } => "leave it out".to_owned(),
         SetupError::RootCount { error, .. } if error.need == 0 => {
             "leave `roots_per_s` out: this law has reference dynamics of its own".to_owned()
+        }
+        SetupError::Roots { error: RootsError::NoRealRoot, .. } => {
+            "add a real root, or write `exchange = \"position\"`".to_owned()
         }
         SetupError::OrderTooLow { least, .. } => format!("give it {least} roots or more"),
         SetupError::RootCount { error, .. } => {

@@ -4,7 +4,7 @@ use forwardstep_core::expression::KinkError;
 use forwardstep_sim::trajectory::{SplineError, TrajectoryError};
 use thiserror::Error;
 
-use crate::wording::{entry_count, enumerate, number};
+use crate::wording::{count, entry_count, enumerate, number};
 
 /// Why one of these has no meaning.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -67,7 +67,7 @@ pub enum SystemProblem {
     #[error("`heading_rad` has no effect beside `gain_per_s` = 0")]
     HeadingUnused,
     /// As many roots as the design has.
-    #[error("`roots_per_s` has {}, but this design needs {need}", entry_count(*.found))]
+    #[error("`roots_per_s` has {}, but this design needs {need}", count(*.found, "root"))]
     LeaderRoots {
         /// How many there are.
         found: usize,
@@ -129,7 +129,9 @@ impl SystemProblem {
             SystemProblem::SignPeriodUnused { .. } | SystemProblem::HeadingUnused => "leave it out".into(),
             SystemProblem::RateBandwidthUnused { .. } => "leave it out, or let the robot be a `rotorcraft`".into(),
             SystemProblem::LeaderUnused { .. } => "write `reference.leader`, or delete the leader".into(),
-            SystemProblem::LeaderRoots { .. } => "`continuous` has one root, the other designs have two".into(),
+            SystemProblem::LeaderRoots { .. } => {
+                "`continuous` has one root, which is real, the other designs have two, or a pair of complex ones".into()
+            }
             SystemProblem::TargetValue { .. } => {
                 "roots, logarithms and quotients need arguments that stay where they have values".into()
             }

@@ -48,6 +48,15 @@ fn designs_signs_and_motions_are_read() {
     let following = setup.following().unwrap();
     assert_eq!((following.alpha, following.beta), (3.0, 4.0));
     assert_eq!(following.design, FollowingDesign::WithoutAcceleration);
+    // (p + 0.5)² + 2²
+    let pair = two.replace("[1.0, 3.0]", "[{ real = 0.5, imaginary = 2 }]");
+    let setup = read(&pair).unwrap().setup;
+    assert_eq!(setup.following().map(|following| (following.alpha, following.beta)), Some((4.25, 1.0)));
+    let one = |text: String| read(&text).unwrap_err().to_string();
+    let needs = |found: &str, need: usize| format!("`roots_per_s` has {found}, but this design needs {need}");
+    assert!(one(pair.replace("without_acceleration", "continuous")).contains(&needs("2 roots", 1)));
+    assert!(one(pair.replace("= 2 }]", "= 2 }, 1]")).contains(&needs("3 roots", 2)));
+    assert!(one(changed("[1.5]", "[]")).contains(&needs("0 roots", 1)));
     let swarm = two.replace("without_acceleration", "swarm").replace("gain = 3", "gain = 3\ncoupling = 7");
     assert_eq!(read(&swarm).unwrap().setup.following().unwrap().design, FollowingDesign::Swarm { coupling: 7.0 });
     for (sign, choice) in [
@@ -125,7 +134,7 @@ fn an_agent_leads_and_is_a_vertex_already() {
     assert_eq!(setup.following().unwrap().leader, Leading::Agent(2));
     assert_eq!((setup.agents.len(), setup.network.agents, setup.leader()), (3, 3, Some(2)));
     assert_eq!((0..3).map(|agent| setup.tracks(agent)).collect::<Vec<_>>(), [false, false, true]);
-    assert_eq!((&setup.agents[2].roots_per_s[..], &setup.agents[0].roots_per_s[..]), (&[2.0, 1.0][..], &[][..]));
+    assert_eq!([2, 0].map(|agent| setup.agents[agent].roots_per_s.clone()), [[2.0, 1.0][..].into(), [][..].into()]);
     assert_eq!(setup.vertex_name(2), "pilot");
     let one = LED_BY_AGENT.replace("\"pilot\"", "\"cart-1\"");
     let error = read(&one).unwrap_err().to_string();

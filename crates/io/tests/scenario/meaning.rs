@@ -1,6 +1,7 @@
 //! What a sound scenario turns into.
 
 use forwardstep_core::Gain;
+use forwardstep_core::reference::{RootPair, RootSet};
 use forwardstep_core::robot::PlanarArm;
 use forwardstep_io::scenario::Goal;
 use forwardstep_sim::delay::{Delay, PiecewiseConstant, SawTooth, Sinusoid};
@@ -26,7 +27,7 @@ fn the_sound_scenario_is_read_as_written() {
     let [arm, _, cart] = setup.agents.as_slice() else { panic!("three agents") };
     assert!(arm.robot.kind.is::<PlanarArm>());
     assert_eq!((arm.robot.theta.len(), arm.robot.theta_names.len()), (5, 5));
-    assert_eq!(arm.roots_per_s, [1.0, 2.0]);
+    assert_eq!(arm.roots_per_s.real, [1.0, 2.0]);
     assert_eq!((arm.start.q.as_slice(), arm.start.dq.as_slice()), ([0.1, 0.2].as_slice(), [0.0, 0.0].as_slice()));
     assert_eq!(setup.agents[1].start.q, [0.3, 0.4]);
     assert_eq!(
@@ -61,6 +62,26 @@ fn arms_from_a_urdf_have_bandwidths_by_default_and_others_numbers() {
 }
 
 #[test]
+fn pairs_of_complex_roots_count_twice_wherever_they_stand() {
+    let pair = |real, imaginary| RootPair { real, imaginary };
+    let text = changed("[1.0, 2.0]", "[{ real = 0.1, imaginary = 2 }, 3, { real = 1.5, imaginary = 0.5 }]");
+    let own = "name = \"cart\"\nreference.consensus.roots_per_s = [2, { real = 1, imaginary = 1 }]";
+    let setup = setup(&text.replace("name = \"cart\"", own));
+    let [arm, _, cart] = setup.agents.as_slice() else { panic!("three agents") };
+    assert_eq!(arm.roots_per_s, RootSet { real: vec![3.0], pairs: vec![pair(0.1, 2.0), pair(1.5, 0.5)] });
+    assert_eq!((arm.roots_per_s.len(), arm.roots_per_s.first_real()), (5, Some(3.0)));
+    assert_eq!(cart.roots_per_s, RootSet { real: vec![2.0], pairs: vec![pair(1.0, 1.0)] });
+    // 32 roots are accepted, which 16 pairs are; a real one more is not.
+    let pairs = ["{ real = 1, imaginary = 1 }"; 16].join(", ");
+    let many = |list: &str| {
+        read(&changed("[1.0, 2.0]", list).replace("position_velocity", "position")).map(|read| read.setup.agents.len())
+    };
+    assert_eq!(many(&format!("[{pairs}]")).unwrap(), 3);
+    let refused = many(&format!("[{pairs}, 1]")).unwrap_err().to_string();
+    assert!(refused.contains("33"), "{refused}");
+}
+
+#[test]
 fn an_agents_own_tables_win() {
     let own = "name = \"cart\"\nlaw.known.damping.gain = [[3, 1], [1, 3]]\nreference.consensus.roots_per_s = [1, 4, 9]\n\
                start = { velocity = [1, 2], reference = { z = [3, 4], derivatives = [[5, 6]] } }\nenforce_limits = false";
@@ -68,7 +89,7 @@ fn an_agents_own_tables_win() {
     let setup = setup(&text);
     let [arm, _, cart] = setup.agents.as_slice() else { panic!("three agents") };
     assert_eq!(cart.law.downcast(), Some(&Known { damping: Gain::Matrix(vec![3.0, 1.0, 1.0, 3.0]) }));
-    assert_eq!(cart.roots_per_s, [1.0, 4.0, 9.0]);
+    assert_eq!(cart.roots_per_s.real, [1.0, 4.0, 9.0]);
     assert_eq!((cart.start.q.as_slice(), cart.start.dq.as_slice()), ([7.0, 8.0].as_slice(), [1.0, 2.0].as_slice()));
     assert_eq!(cart.start.reference, [[3.0, 4.0], [5.0, 6.0]]);
     assert!(!cart.enforce_limits && !arm.enforce_limits);

@@ -65,7 +65,7 @@ const CASES: &[Case] = &[
     ("end_s = 10", "end_s = 0", "5:9", |s| { s.time.end_s = 0.0; Ok(()) }, "time.end_s"),
     ("record_every_s = 0.1", "record_every_s = 1e-9", "6:18", |s| { s.time.record_every_s = 1e-9; Ok(()) }, "time.record_every_s"),
     // Reference dynamics.
-    ("[1.0, 2.0]", "[1.0, -2.0]", "19:21", |s| { s.agents[0].roots_per_s[1] = -2.0; Ok(()) }, "agents[0].reference.consensus.roots_per_s[1]"),
+    ("[1.0, 2.0]", "[1.0, -2.0]", "19:21", |s| { s.agents[0].roots_per_s.real[1] = -2.0; Ok(()) }, "agents[0].reference.consensus.roots_per_s[1]"),
     ("[1.0, 2.0]", "[1.0, 2.0]\nmanipulability_gain = -1", "20:23", |s| { s.agents[0].manipulability = -1.0; Ok(()) }, "agents[0].reference.consensus.manipulability_gain"),
     // K.
     ("damping.gain = 8", "damping.gain = -8", "23:16", |s| law(s, |law| law.damping = Gain::Number(-8.0)), "damping.gain"),

@@ -24,7 +24,7 @@ name = "arm"
 count = 2
 robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8], gravity_m_s2 = 9.81 }
 [reference.consensus]
-roots_per_s = [1.0, 2.0]
+roots_per_s = [1.0, { real = 1.5, imaginary = 0.5 }]
 exchange = "position"
 [network]
 coupling.tanh = 0.3

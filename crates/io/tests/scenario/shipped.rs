@@ -97,7 +97,8 @@ fn the_schema_refuses_what_the_reader_refuses_of_single_values() {
         (&parts["NetworkFile"], "oneOf"),
         (&parts["NetworkFile"]["properties"]["phases"], "minItems"),
         (&parts["ConsensusFile"]["properties"]["roots_per_s"], "minItems"),
-        (&parts["ConsensusFile"]["properties"]["roots_per_s"]["items"], "exclusiveMinimum"),
+        (&parts["RootFile"]["anyOf"][0], "exclusiveMinimum"),
+        (&parts["PairFile"]["properties"]["real"], "exclusiveMinimum"),
         (&parts["PlanarArmFile"]["properties"]["mass_kg"]["items"], "exclusiveMinimum"),
         (&parts["GoalFile"], "minProperties"),
     ] {

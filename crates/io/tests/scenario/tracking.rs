@@ -80,7 +80,7 @@ fn a_robot_tracks_and_targets_beyond_its_limits_are_noted() {
         .replace("[1.0, 1.5, 2.0]", "[4]");
     let notices = |text: &str| -> Vec<String> {
         let scenario = read(text).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(scenario.setup.agents[0].roots_per_s, [4.0]);
+        assert_eq!(scenario.setup.agents[0].roots_per_s.real, [4.0]);
         scenario.notices.iter().map(ToString::to_string).filter(|notice| notice.contains("target")).collect()
     };
     assert!(notices(&text).is_empty());

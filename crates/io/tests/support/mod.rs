@@ -38,7 +38,7 @@ pub fn agent(name: &str, dof: usize, parameters: usize) -> AgentSetup {
             theta_names: (0..parameters).map(|k| format!("link_{}.{}", k / 10 + 1, quantity[k % 10])).collect(),
             axes: axes.collect(),
         },
-        roots_per_s: vec![1.0, 2.0],
+        roots_per_s: vec![1.0, 2.0].into(),
         manipulability: 0.0,
         law: Arc::new(Adaptive {
             damping: Gain::Number(8.0),

@@ -254,7 +254,7 @@ fn guide(assembly: &Assembly<'_>) -> Result<Guide, SetupError> {
             Ok(Guide::Tracking { alpha })
         }
         ReferenceFamily::Consensus => {
-            Ok(Guide::Consensus(Consensus::<Position>::new([(&own.roots_per_s[..], 0.0)]).map_err(roots)?))
+            Ok(Guide::Consensus(Consensus::<Position>::new([(&own.roots_per_s, 0.0)]).map_err(roots)?))
         }
         _ => Err(assembly.wrong_reference()),
     }

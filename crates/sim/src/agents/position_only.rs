@@ -72,7 +72,7 @@ fn guide(assembly: &Assembly<'_>) -> Result<Guide, SetupError> {
             Err(SetupError::OrderTooLow { agent: own.name.clone(), order: own.roots_per_s.len(), least: 2 })
         }
         ReferenceFamily::Consensus => {
-            Ok(Guide::Consensus(Consensus::<Position>::new([(&own.roots_per_s[..], 0.0)]).map_err(roots)?))
+            Ok(Guide::Consensus(Consensus::<Position>::new([(&own.roots_per_s, 0.0)]).map_err(roots)?))
         }
         _ => Err(assembly.wrong_reference()),
     }

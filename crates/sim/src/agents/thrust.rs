@@ -106,24 +106,21 @@ impl ThrustLaw {
     /// The outer law, which knows the true mass unless it adapts it.
     fn outer(&self, assembly: &Assembly<'_>, vehicle: &Vehicle) -> Result<Thrust, SetupError> {
         let own = assembly.agent();
-        let roots = &own.roots_per_s;
         assembly.root_count(self.design.order())?;
         let (design, mass) = match self.design {
-            ThrustKind::Continuous => (ThrustDesign::Continuous { roots_per_s: [roots[0], roots[1]] }, vehicle.mass),
+            ThrustKind::Continuous => (ThrustDesign::Continuous, vehicle.mass),
             ThrustKind::Differentiable { alpha_star, stiffness } => {
                 let design = assembly.of_law().key("design.differentiable");
                 positive(design.clone(), "stiffness", stiffness)?;
                 positive(design, "damping_per_s", alpha_star)?;
-                let roots_per_s = [roots[0], roots[1], roots[2]];
-                (ThrustDesign::Differentiable { roots_per_s, alpha_star, stiffness }, vehicle.mass)
+                (ThrustDesign::Differentiable { alpha_star, stiffness }, vehicle.mass)
             }
             ThrustKind::Adaptive { alpha_star, gamma_star, estimate_start } => {
                 let design = assembly.of_law().key("design.adaptive");
                 positive(design.clone(), "damping_per_s", alpha_star)?;
                 not_negative(design.clone(), "adaptation_gain", gamma_star)?;
                 positive(design, "estimate_start_kg", estimate_start)?;
-                let roots_per_s = [roots[0], roots[1], roots[2]];
-                (ThrustDesign::Adaptive { roots_per_s, alpha_star, gamma_star }, estimate_start)
+                (ThrustDesign::Adaptive { alpha_star, gamma_star }, estimate_start)
             }
         };
         let law = || assembly.of_law();
@@ -135,7 +132,7 @@ impl ThrustLaw {
             }
         }
         not_negative(law().key("yaw"), "gain_per_s", self.yaw.gain)?;
-        let mut outer = Thrust::new(design, mass, vehicle.gravity)
+        let mut outer = Thrust::new(design, &own.roots_per_s, mass, vehicle.gravity)
             .map_err(|error| SetupError::Roots { agent: own.name.clone(), error })?;
         positive(law(), "thrust_start_n", self.thrust_start.unwrap_or(mass * vehicle.gravity))?;
         (outer.yaw, outer.floor, outer.thrust_start) = (self.yaw, self.floor, self.thrust_start);

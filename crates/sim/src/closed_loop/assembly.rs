@@ -195,7 +195,7 @@ impl<'a> Assembly<'a> {
         let (own, robot) = (self.agent(), model.kernel());
         let Member { law, theta, .. } = members::member(&robot, self)?;
         // One root at least, and no more than a trajectory has derivatives.
-        let roots = Guide::Tracking { alpha: own.roots_per_s.clone() };
+        let roots = Guide::Tracking { alpha: vec![1.0; own.roots_per_s.len()] };
         let wrong = |error| SetupError::Chain { agent: own.name.clone(), error: ChainError::Guide(error) };
         roots.check(1, 1).map_err(wrong)?;
         let mut alpha =

@@ -19,7 +19,7 @@ use crate::setup::{AgentSetup, Control, Failures, Setup, VelocitySensor};
 /// use forwardstep_core::sampled::Sampled;
 /// use forwardstep_sim::{AgentSetup, Known, Network, RobotSetup, Setup, recipe};
 ///
-/// let cart = AgentSetup::new("cart", RobotSetup::point_mass(1, 2.0), Known::gain(4.0)).roots(&[1.0]).at(&[1.0]);
+/// let cart = AgentSetup::new("cart", RobotSetup::point_mass(1, 2.0), Known::gain(4.0)).roots([1.0]).at(&[1.0]);
 /// let setup = Setup::consensus([cart], Network::silent(1), 1.0);
 /// let recipe = recipe(&setup, 0)?;
 /// let mut controller = recipe.build().expect("a recipe that was checked");

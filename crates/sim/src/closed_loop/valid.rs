@@ -128,7 +128,13 @@ fn check_agent(setup: &Setup, index: usize) -> Result<(), SetupError> {
     }
     vector("robot.theta", agent.robot.theta.len(), &agent.robot.theta)?;
     let design = own.clone().key("reference").key(setup.reference_of(index).words().key);
-    each(design.clone(), "roots_per_s", &agent.roots_per_s, positive)?;
+    each(design.clone(), "roots_per_s", &agent.roots_per_s.real, positive)?;
+    // As if they stood behind the real ones.
+    for (pair, index) in agent.roots_per_s.pairs.iter().zip(agent.roots_per_s.real.len()..) {
+        let place = || design.clone().key("roots_per_s").index(index);
+        positive(place(), "real", pair.real)?;
+        positive(place(), "imaginary", pair.imaginary)?;
+    }
     not_negative(design, "manipulability_gain", agent.manipulability)?;
     for (k, push) in agent.pushes.iter().enumerate() {
         let problem = |error| SetupError::Push { agent: agent.name.clone(), push: k + 1, error };

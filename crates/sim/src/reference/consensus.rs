@@ -1,7 +1,7 @@
 //! The family (aa10), (a1), (a5), (24), and its pure integrals (3), (23): agents with roots of their own.
 
 use forwardstep_core::LengthError;
-use forwardstep_core::reference::{self, Position, PositionVelocity, Reference, RootsError};
+use forwardstep_core::reference::{self, Position, PositionVelocity, Reference, RootSet, RootsError};
 
 use super::{Dynamics, LinearReference, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords, Roots};
 use crate::closed_loop::{Assembly, SetupError};
@@ -102,7 +102,7 @@ impl ReferenceDynamics for PureIntegral {
 }
 
 /// Roots and λ of one agent.
-type Design<'a> = (&'a [f64], f64);
+type Design<'a> = (&'a RootSet, f64);
 
 /// Reference dynamics from the designs of all agents.
 fn designed<'a, R: Reference>(
@@ -115,6 +115,6 @@ fn designed<'a, R: Reference>(
     for agent in agents() {
         new(vec![(&agent.roots_per_s, agent.manipulability)]).map_err(|error| roots(&agent.name, error))?;
     }
-    let designs = agents().map(|agent| (&agent.roots_per_s[..], agent.manipulability)).collect();
+    let designs = agents().map(|agent| (&agent.roots_per_s, agent.manipulability)).collect();
     new(designs).map_err(|error| roots(&assembly.agent().name, error))
 }

@@ -32,7 +32,7 @@ impl LinearReference {
     /// The consensus family with pʳ q as it is for r below `measured` and p^(r−1) z above. `None` for roots without meaning.
     pub(super) fn consensus(agent: &AgentSetup, exchange: Exchange, measured: usize) -> Option<Self> {
         let alpha = polynomial(&agent.roots_per_s).ok()?;
-        let (order, first) = (agent.roots_per_s.len(), *agent.roots_per_s.first()?);
+        let order = agent.roots_per_s.len();
         let split = |of: &dyn Fn(usize) -> f64| {
             let count = order + 1;
             let q = (0..measured.min(count)).map(of).collect();
@@ -47,7 +47,7 @@ impl LinearReference {
         let coupled = split(&|r| -alpha[r]);
         let velocity = match exchange {
             Exchange::Position => 0.0,
-            Exchange::PositionVelocity => -alpha[0] / first,
+            Exchange::PositionVelocity => -alpha[0] / agent.roots_per_s.first_real()?,
         };
         Some(LinearReference { order, own, constant: false, coupled, heard: [-alpha[0], velocity] })
     }

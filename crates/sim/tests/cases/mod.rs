@@ -226,7 +226,7 @@ fn agent((index, case): (usize, &AgentCase)) -> AgentSetup {
             theta,
             axes: (1..=case.start.q.len()).map(axis).collect(),
         },
-        roots_per_s: case.roots.clone(),
+        roots_per_s: case.roots.clone().into(),
         manipulability: case.lambda,
         law,
         start: Start {

@@ -41,7 +41,7 @@ pub fn agent(
             theta_names: (1..=theta.len()).map(|k| format!("theta{k}")).collect(),
             axes: axes(&["x"], AxisUnit::Metre),
         },
-        roots_per_s: roots.to_vec(),
+        roots_per_s: roots.to_vec().into(),
         manipulability: 0.0,
         law: Arc::new(ChainLaw { step, floor: 1e-3 }),
         target: None,

@@ -31,7 +31,7 @@ pub fn arm(index: usize, q: [f64; 2], estimate: f64) -> AgentSetup {
             axes: axes(&["shoulder", "elbow"], AxisUnit::Radian),
             theta: theta.clone(),
         },
-        roots_per_s: Vec::new(),
+        roots_per_s: Vec::new().into(),
         manipulability: 0.0,
         law: Arc::new(Adaptive {
             damping: Gain::Number(20.0),

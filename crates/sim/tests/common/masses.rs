@@ -18,7 +18,7 @@ pub fn mass(index: usize, kg: f64, q: [f64; 2], roots: &[f64]) -> AgentSetup {
             theta_names: vec!["mass".into()],
             axes: axes(&["x", "y"], AxisUnit::Metre),
         },
-        roots_per_s: roots.to_vec(),
+        roots_per_s: roots.to_vec().into(),
         manipulability: 0.0,
         law: Arc::new(PositionOnlyLaw { damping: 20.0, filter_per_s: 20.0, adaptation: 5.0, estimate_start: 0.3 }),
         target: None,

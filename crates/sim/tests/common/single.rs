@@ -20,7 +20,7 @@ pub fn alone(robot: RobotSetup, law: Arc<dyn Law>, start: Start, target: Vec<Pat
     let agent = AgentSetup {
         name: "agent".into(),
         robot,
-        roots_per_s: Vec::new(),
+        roots_per_s: Vec::new().into(),
         manipulability: 0.0,
         law,
         target: Some(Trajectory::new(target).unwrap()),

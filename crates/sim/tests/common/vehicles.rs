@@ -41,7 +41,7 @@ pub fn agent(index: usize, kind: Arc<dyn Robot>, design: ThrustKind) -> AgentSet
             theta_names: vec!["mass".into()],
             axes: axes(&["x", "y", "z"], AxisUnit::Metre),
         },
-        roots_per_s: vec![1.0, 1.5, 2.0][..design.order()].to_vec(),
+        roots_per_s: [1.0, 1.5, 2.0][..design.order()].into(),
         manipulability: 0.0,
         law: Arc::new(ThrustLaw {
             design,

@@ -298,7 +298,8 @@ fn reductions(case: &Case<'_>, (dynamics, upper): (&Dynamics, &Upper), places: &
     }
     // With s, which the printed form leaves out.
     if let Some(from) = case.averages_from()
-        && let variables = chain(&case.roots, from, case.roots_of_all)
+        && let Some(roots) = case.roots.all_real()
+        && let variables = chain(roots, from, case.roots_of_all)
         && upper.laplacian(variables.clone()).is_some()
         && let Some(disturbed) = upper.reduced(variables)
     {

@@ -38,7 +38,8 @@ pub enum FollowingEvidence {
         sampled: bool,
         /// How often, s.
         period_s: f64,
-        /// How fast q_i − q_0 follows what the sign brings to zero: α of (110), else the mean of the two roots, 1/s.
+        /// How fast q_i − q_0 follows what the sign brings to zero: α of (110), else the mean of the two roots, 1/s;
+        /// larger for complex ones, whose response swings.
         rate_per_s: f64,
         /// About what stays of q_i − q_0, in units of the axes; infinite where no bound of ξ̇₀ is known.
         left: f64,
@@ -89,11 +90,10 @@ impl FollowingEvidence {
                 Choice::Explicit | Choice::Layer { .. } => Answer::NotCovered,
             },
             FollowingEvidence::Shared { .. } | FollowingEvidence::CouplingExceeds { .. } => Answer::Holds,
-            FollowingEvidence::CouplingNotShown { .. } => Answer::NotShown,
-            FollowingEvidence::NotPrinted
-            | FollowingEvidence::ComplexRoots
-            | FollowingEvidence::GraphSwitches
-            | FollowingEvidence::WeightVaries => Answer::NotCovered,
+            FollowingEvidence::CouplingNotShown { .. } | FollowingEvidence::ComplexRoots => Answer::NotShown,
+            FollowingEvidence::NotPrinted | FollowingEvidence::GraphSwitches | FollowingEvidence::WeightVaries => {
+                Answer::NotCovered
+            }
         }
     }
 

@@ -1,5 +1,7 @@
 //! Evidence of reference dynamics.
 
+use forwardstep_core::reference::RootPair;
+
 use crate::hypothesis::{Answer, Named, Rigour};
 
 /// What was found of the reference dynamics.
@@ -9,6 +11,18 @@ pub enum ReferenceEvidence {
     Roots {
         /// The smallest κ, 1/s.
         smallest_per_s: f64,
+    },
+    /// Roots of an agent that have to be real are not.
+    ComplexRoots {
+        /// The agent.
+        agent: Named,
+        /// Its first pair.
+        pair: RootPair,
+    },
+    /// All roots, real or not, lie to the left of a line.
+    Hurwitz {
+        /// How far it is from the axis at least, 1/s.
+        slowest_per_s: f64,
     },
     /// All are of this order.
     Order(usize),
@@ -35,8 +49,9 @@ pub enum ReferenceEvidence {
 impl ReferenceEvidence {
     pub(super) fn answer(&self) -> Answer {
         match self {
-            ReferenceEvidence::Roots { smallest_per_s } => {
-                if *smallest_per_s > 0.0 {
+            ReferenceEvidence::Roots { smallest_per_s: slowest_per_s }
+            | ReferenceEvidence::Hurwitz { slowest_per_s } => {
+                if *slowest_per_s > 0.0 {
                     Answer::Holds
                 } else {
                     Answer::Violated
@@ -47,6 +62,7 @@ impl ReferenceEvidence {
             | ReferenceEvidence::FirstRootCommon
             | ReferenceEvidence::FirstRootsOverConstants
             | ReferenceEvidence::Manipulability { .. } => Answer::Holds,
+            ReferenceEvidence::ComplexRoots { .. } => Answer::NotShown,
             ReferenceEvidence::FirstRoots(_) | ReferenceEvidence::FilteredDerivative { .. } => Answer::NotCovered,
         }
     }

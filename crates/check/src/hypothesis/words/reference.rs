@@ -7,6 +7,14 @@ pub(super) fn words(evidence: &ReferenceEvidence) -> String {
         ReferenceEvidence::Roots { smallest_per_s } => {
             format!("roots −κ were given; the smallest κ is {smallest_per_s} per second")
         }
+        ReferenceEvidence::ComplexRoots { agent, pair } => format!(
+            "{} has the complex roots −{} ± {}i per second. What it tells the others is then no average of what it is told, and networks \
+             that switch or delay can diverge",
+            agent.name, pair.real, pair.imaginary
+        ),
+        ReferenceEvidence::Hurwitz { slowest_per_s } => {
+            format!("the real part of every root is −{slowest_per_s} per second at most")
+        }
         ReferenceEvidence::Order(order) => format!("the order is {order}"),
         ReferenceEvidence::Orders([(a, order_a), (b, order_b)]) => {
             format!(

@@ -79,7 +79,7 @@ impl ClassBound {
         let hops = if same_root { agents - 1.0 } else { agents * (agents - 2.0) + 1.0 };
         let order = network.ideal.agents.iter().map(|agent| agent.roots_per_s.len()).max()? as f64;
         let chain = |roots: &[f64]| roots.iter().map(|root| libm::log((root * step_s).min(1.0))).sum::<f64>();
-        let chain = network.ideal.agents.iter().map(|agent| chain(&agent.roots_per_s)).fold(0.0, f64::min);
+        let chain = network.ideal.agents.iter().map(|agent| chain(&agent.roots_per_s.real)).fold(0.0, f64::min);
         let hop = libm::log((network.least_weight() * lasts_s).min(1.0)) + chain;
         let delay_s = network.window_s;
         let over_s = (hops * (delay_s + waits_s + order * step_s) + order * step_s + delay_s).next_up();

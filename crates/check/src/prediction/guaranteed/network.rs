@@ -55,13 +55,13 @@ impl Network {
         ideal.network.validate(end_s)?;
         ideal.network.lasts_until(end_s)?;
         let valid = |roots: &[f64]| !roots.is_empty() && roots.iter().all(|root| *root > 0.0 && root.is_finite());
-        if let Some(agent) = ideal.agents.iter().position(|agent| !valid(&agent.roots_per_s)) {
+        if let Some(agent) = ideal.agents.iter().position(|agent| !valid(&agent.roots_per_s.real)) {
             return Err(NoGuaranteedRate::Roots { agent });
         }
         let (mut first, mut kappa) = (Vec::new(), Vec::new());
         for agent in &ideal.agents {
             first.push(kappa.len());
-            kappa.extend(agent.roots_per_s.iter().copied().map(Some));
+            kappa.extend(agent.roots_per_s.real.iter().copied().map(Some));
             kappa.push(None);
         }
         if kappa.len() > MOST_COMPONENTS {
@@ -107,7 +107,7 @@ impl Network {
             match self.ideal.exchange {
                 Exchange::Position => inputs[edge.to].push(input(0, 1.0)),
                 Exchange::PositionVelocity => {
-                    let root = |agent: usize| self.ideal.agents[agent].roots_per_s[0];
+                    let root = |agent: usize| self.ideal.agents[agent].roots_per_s.real[0];
                     let share = (root(edge.from) / root(edge.to)).min(1.0);
                     inputs[edge.to].push(input(1, share));
                     if share < 1.0 {

@@ -44,16 +44,19 @@ impl Characteristic {
         for link in &links {
             *degree.get_mut(link.to)? += link.weight;
         }
+        let velocities = ideal.exchange == Exchange::PositionVelocity;
+        // Of positions alone nothing is heard of it, so that any number will do.
+        let first_root = |agent: &AgentSetup| agent.roots_per_s.first_real().or((!velocities).then_some(1.0));
         let scaled = |agent: &AgentSetup| {
             let alpha = polynomial(&agent.roots_per_s).ok()?;
             Some(alpha.iter().map(|a| a / alpha[0]).collect::<Vec<_>>())
         };
         Some(Characteristic {
             coefficients: ideal.agents.iter().map(scaled).collect::<Option<_>>()?,
-            first_root: ideal.agents.iter().map(|agent| agent.roots_per_s.first().copied()).collect::<Option<_>>()?,
+            first_root: ideal.agents.iter().map(first_root).collect::<Option<_>>()?,
             degree,
             links,
-            velocities: ideal.exchange == Exchange::PositionVelocity,
+            velocities,
             start: ideal.agents.iter().map(derivatives).collect(),
         })
     }

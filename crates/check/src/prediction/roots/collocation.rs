@@ -5,6 +5,7 @@
 //! what is heard is that polynomial at the delay. Roots far from the origin are poor, the rightmost ones good; either way
 //! they are only where Newton's method begins.
 
+use forwardstep_core::reference::{RootPair, RootSet};
 use nalgebra::DMatrix;
 
 use super::characteristic::{C, Characteristic};
@@ -84,7 +85,7 @@ fn longest(system: &Characteristic, parts: &[Part]) -> Vec<[f64; 2]> {
 }
 
 /// The eigenvalues of the generator with `m` + 1 nodes per late variable, none when they do not converge.
-pub(super) fn candidates(system: &Characteristic, roots_per_s: &[&[f64]], m: usize) -> Option<Vec<C>> {
+pub(super) fn candidates(system: &Characteristic, roots_per_s: &[&RootSet], m: usize) -> Option<Vec<C>> {
     let parts = parts(system);
     let (longest, nodes) = (longest(system, &parts), Nodes::new(m));
     let [mut later, _] = unknowns(system);
@@ -102,9 +103,12 @@ pub(super) fn candidates(system: &Characteristic, roots_per_s: &[&[f64]], m: usi
     let column = |agent: usize, r: usize, k: usize| if k == 0 { own[agent] + r } else { history[agent][r] + k - 1 };
     let mut generator = DMatrix::zeros(later, later);
     for (i, roots) in roots_per_s.iter().enumerate() {
-        for (r, root) in roots.iter().enumerate() {
+        for (r, root) in roots.real.iter().enumerate() {
             generator[(own[i] + r, own[i] + r)] -= root;
             generator[(own[i] + r, own[i] + r + 1)] += root;
+        }
+        for (k, pair) in roots.pairs.iter().enumerate() {
+            averages_of_a_pair(&mut generator, own[i] + roots.real.len() + 2 * k, *pair);
         }
         let top = own[i] + roots.len();
         generator[(top, top)] -= system.degree[i];
@@ -128,6 +132,18 @@ pub(super) fn candidates(system: &Characteristic, roots_per_s: &[&[f64]], m: usi
         }
     }
     eigenvalues(&generator)
+}
+
+/// ψ at `at`, ψ⁺ = ψ + 2 a ψ̇/c² + ψ̈/c² with c² = a² + b² two places on, and y = ψ + ψ̇/c between them:
+/// ψ̇ = c (y − ψ) and ẏ = (c − 2 a)(y − ψ) + c (ψ⁺ − ψ).
+fn averages_of_a_pair(generator: &mut DMatrix<f64>, at: usize, RootPair { real: a, imaginary: b }: RootPair) {
+    let c = libm::hypot(a, b);
+    let rates = [[-c, c, 0.0], [a + a - c - c, c - a - a, c]];
+    for (row, rates) in rates.into_iter().enumerate() {
+        for (column, rate) in rates.into_iter().enumerate() {
+            generator[(at + row, at + column)] += rate;
+        }
+    }
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ mod collocation;
 mod eigenvalues;
 mod modes;
 
+use forwardstep_core::reference::RootSet;
 use forwardstep_sim::Setup;
 use forwardstep_sim::graph::{Edge, SpanningTree, spanning_tree};
 use nalgebra::DMatrix;
@@ -68,6 +69,12 @@ pub enum NoRate {
         /// Unknowns of the smallest collocation.
         unknowns: usize,
     },
+    /// A root lies to the right of the axis, as it may where roots of the reference dynamics are complex.
+    #[error("the disagreement grows: a characteristic root has the real part {per_s:.4} per second")]
+    Grows {
+        /// Its real part, 1/s.
+        per_s: f64,
+    },
     /// Roots that could not be told apart, or a setup without meaning.
     #[error("the characteristic roots could not be told apart")]
     Unclear,
@@ -103,7 +110,7 @@ pub fn rate(setup: &Setup) -> Result<Rate, NoRate> {
 /// The rightmost modes of a setup in which everybody follows exactly, that at zero first.
 fn all_modes(ideal: &Setup) -> Result<Vec<Mode>, NoRate> {
     let system = system(ideal)?;
-    let roots: Vec<&[f64]> = ideal.agents.iter().map(|agent| &agent.roots_per_s[..]).collect();
+    let roots: Vec<&RootSet> = ideal.agents.iter().map(|agent| &agent.roots_per_s).collect();
     let found = all_candidates(&system, &roots)?;
     let most = if system.agents() <= 60 { 8 } else { 3 };
     let modes = modes(&system, &found, most);
@@ -112,6 +119,7 @@ fn all_modes(ideal: &Setup) -> Result<Vec<Mode>, NoRate> {
         [zero, slowest, ..] if size(zero.root) <= 1e-6 * fastest && zero.multiplicity == 1 && slowest.root.re < 0.0 => {
             Ok(modes)
         }
+        [first, ..] if first.root.re > 1e-6 * fastest => Err(NoRate::Grows { per_s: first.root.re }),
         _ => Err(NoRate::Unclear),
     }
 }
@@ -139,7 +147,7 @@ pub(crate) fn network(ideal: &Setup) -> Result<Characteristic, NoRate> {
 }
 
 /// Where roots are, by the eigenvalues of one matrix, or of one for every eigenvalue of the Laplacian.
-fn all_candidates(system: &Characteristic, roots: &[&[f64]]) -> Result<Vec<C>, NoRate> {
+fn all_candidates(system: &Characteristic, roots: &[&RootSet]) -> Result<Vec<C>, NoRate> {
     let [states, late] = unknowns(system);
     let [least, most] = NODES;
     let smallest = states + least * late;
@@ -164,7 +172,7 @@ fn is_uniform(system: &Characteristic) -> bool {
 
 /// With everything uniform, every eigenvalue μ of the weights over the degree has the roots of (p + d) P − μ d (1 + v p/κ₀) e^(−pT). A
 /// complex μ is two real agents that hear themselves and each other.
-fn by_laplacian(system: &Characteristic, roots: &[f64]) -> Option<Vec<C>> {
+fn by_laplacian(system: &Characteristic, roots: &RootSet) -> Option<Vec<C>> {
     let n = system.agents();
     let mut shares = DMatrix::zeros(n, n);
     for link in &system.links {

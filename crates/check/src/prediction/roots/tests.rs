@@ -29,7 +29,7 @@ fn masses(exchange: Exchange, roots: &[&[f64]], links: &[(usize, usize, f64, f64
                 effort_limit: None,
             }],
         },
-        roots_per_s: roots.to_vec(),
+        roots_per_s: roots.to_vec().into(),
         manipulability: 0.0,
         law: Arc::new(Known { damping: Gain::Number(1.0) }),
         target: None,
@@ -163,7 +163,7 @@ fn a_large_network_is_decided_by_its_laplacian_if_all_is_uniform() {
     let rest = (p + 1.0) * (p + 1.0) * (p / 2.0 + 1.0) - mu * characteristic::exp(-p * 0.2);
     assert!(size(rest) < 1e-9 && p.re < -1e-4 && p.re > -1e-2, "{large:?}");
     let mut uneven = setup.clone();
-    uneven.agents[3].roots_per_s[0] = 1.5;
+    uneven.agents[3].roots_per_s.real[0] = 1.5;
     let too_large = Err(NoRate::TooLarge { unknowns: 80 * 3 + 80 * 6 });
     assert_eq!(rate(&uneven), too_large);
     for (weight, delay_s) in [(1.5, 0.2), (1.0, 0.3)] {

@@ -60,10 +60,10 @@ pub struct RotorcraftMeasured<'a> {
 /// use forwardstep_core::plant::{Plant, Rotorcraft, Vehicle};
 /// use forwardstep_core::reference::Heard;
 ///
-/// let design = ThrustDesign::Differentiable { roots_per_s: [1.0, 2.0, 3.0], alpha_star: 4.0, stiffness: 20.0 };
+/// let design = ThrustDesign::Differentiable { alpha_star: 4.0, stiffness: 20.0 };
 /// let vehicle = Vehicle { mass: 1.5, gravity: 9.81 };
 /// let plant = Rotorcraft::new(vehicle, &Gain::Diagonal(vec![0.02, 0.03, 0.04]), None)?;
-/// let mut outer = Thrust::new(design, vehicle.mass, vehicle.gravity)?;
+/// let mut outer = Thrust::new(design, [1.0, 2.0, 3.0], vehicle.mass, vehicle.gravity)?;
 /// outer.yaw.gain = 0.0;
 /// let law = ThrustCascade { outer, rates: RateLoop { inertia: *plant.inertia(), bandwidth_per_s: 30.0 } };
 /// let turning = [0.5, 1.0, -2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.7];

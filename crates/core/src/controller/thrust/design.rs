@@ -4,14 +4,9 @@
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ThrustDesign {
     /// (45), (46): ω and σ̇ jump where the network switches.
-    Continuous {
-        /// α and β, 1/s.
-        roots_per_s: [f64; 2],
-    },
+    Continuous,
     /// (49), (50), Theorem 4: ω and σ̇ are differentiable.
     Differentiable {
-        /// α, β and γ, 1/s.
-        roots_per_s: [f64; 3],
         /// α*, 1/s.
         alpha_star: f64,
         /// k, kg/s².
@@ -19,8 +14,6 @@ pub enum ThrustDesign {
     },
     /// (49), (57), (58), Theorem 5: the mass need not be known.
     Adaptive {
-        /// α, β and γ, 1/s.
-        roots_per_s: [f64; 3],
         /// α*, 1/s.
         alpha_star: f64,
         /// γ*, kg s²/m².
@@ -63,13 +56,11 @@ impl Floor {
 }
 
 impl ThrustDesign {
-    /// α, β, and γ where there is one, 1/s.
-    pub fn roots_per_s(&self) -> &[f64] {
+    /// How many roots it has: α, β, and γ where there is one.
+    pub fn order(self) -> usize {
         match self {
-            ThrustDesign::Continuous { roots_per_s } => roots_per_s,
-            ThrustDesign::Differentiable { roots_per_s, .. } | ThrustDesign::Adaptive { roots_per_s, .. } => {
-                roots_per_s
-            }
+            ThrustDesign::Continuous => 2,
+            ThrustDesign::Differentiable { .. } | ThrustDesign::Adaptive { .. } => 3,
         }
     }
 
@@ -81,7 +72,7 @@ impl ThrustDesign {
     /// Numbers in z, ż, z̈; none under (46).
     pub(super) fn reference_len(&self) -> usize {
         match self {
-            ThrustDesign::Continuous { .. } => 0,
+            ThrustDesign::Continuous => 0,
             _ => 9,
         }
     }
@@ -89,7 +80,7 @@ impl ThrustDesign {
     /// α*, k and γ*; zeros under (46).
     pub(super) fn gains(&self) -> [f64; 3] {
         match *self {
-            ThrustDesign::Continuous { .. } => [0.0; 3],
+            ThrustDesign::Continuous => [0.0; 3],
             ThrustDesign::Differentiable { alpha_star, stiffness, .. } => [alpha_star, stiffness, 0.0],
             ThrustDesign::Adaptive { alpha_star, gamma_star, .. } => [alpha_star, 0.0, gamma_star],
         }

@@ -75,7 +75,9 @@ use alloc::vec::Vec;
 use super::{Balance, Jet};
 use crate::attitude::{cross, dot, rotate, rotate_back};
 use crate::plant::{Vehicle, VehicleState};
-use crate::reference::{Consensus, Heard, Measured, Position, Reference, ReferenceOut, RootsError};
+use crate::reference::{
+    Consensus, Heard, Measured, Position, Reference, ReferenceOut, RootSet, RootsError, polynomial,
+};
 use crate::signal::{Block, Signal};
 use crate::{LengthError, Scalar};
 
@@ -107,9 +109,9 @@ use crate::{LengthError, Scalar};
 /// use forwardstep_core::plant::{Plant, Vehicle};
 /// use forwardstep_core::reference::Heard;
 ///
-/// let design = ThrustDesign::Differentiable { roots_per_s: [1.0, 2.0, 3.0], alpha_star: 4.0, stiffness: 20.0 };
+/// let design = ThrustDesign::Differentiable { alpha_star: 4.0, stiffness: 20.0 };
 /// let vehicle = Vehicle { mass: 1.5, gravity: 9.81 };
-/// let law = Thrust::new(design, vehicle.mass, vehicle.gravity)?;
+/// let law = Thrust::new(design, [1.0, 2.0, 3.0], vehicle.mass, vehicle.gravity)?;
 /// let at_rest = [0.5, 1.0, -2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
 /// for shift in [0.0, 0.1] {
 ///     let w = 0.8;
@@ -130,6 +132,8 @@ use crate::{LengthError, Scalar};
 #[derive(Clone, Debug)]
 pub struct Thrust {
     consensus: Consensus<Position>,
+    /// The coefficient of p in (25), which for two roots is their sum; read by (46) alone.
+    alpha_plus_beta: f64,
     design: ThrustDesign,
     /// m, or m̂(0) under (58), kg.
     pub mass: f64,
@@ -160,13 +164,25 @@ fn check_target(target: &[Jet]) -> Result<(), LengthError> {
 }
 
 impl Thrust {
-    /// A vehicle of mass `mass` (what is known of it) that keeps heading zero and stops where σ falls to a tenth of m g.
+    /// A vehicle of mass `mass` (what is known of it) that keeps heading zero and stops where σ falls to a tenth of m g. The roots
+    /// −α, −β and, where there is one, −γ are in 1/s.
     ///
     /// # Errors
-    /// [`RootsError`] when a root is not positive.
-    pub fn new(design: ThrustDesign, mass: f64, gravity: f64) -> Result<Self, RootsError> {
+    /// [`RootsError`] when a root is not positive, or there are not [`ThrustDesign::order`] of them.
+    pub fn new(
+        design: ThrustDesign,
+        roots_per_s: impl Into<RootSet>,
+        mass: f64,
+        gravity: f64,
+    ) -> Result<Self, RootsError> {
+        let roots = roots_per_s.into();
+        if roots.len() != design.order() {
+            return Err(RootsError::Order { need: design.order(), got: roots.len() });
+        }
+        let alpha_plus_beta = polynomial(&roots)?[1];
         Ok(Thrust {
-            consensus: Consensus::new([(design.roots_per_s(), 0.0)])?,
+            consensus: Consensus::new([(roots, 0.0)])?,
+            alpha_plus_beta,
             design,
             mass,
             gravity,
@@ -275,11 +291,11 @@ impl Thrust {
         let own = Measured { q: &x, dq: &dx };
         let (mut z, mut dz) = ([0.0; 3], [0.0; 3]);
 
-        let (a, u, du) = if let ThrustDesign::Continuous { roots_per_s: [alpha, beta] } = self.design {
+        let (a, u, du) = if self.design == ThrustDesign::Continuous {
             let mut rate = [0.0; 6];
             let out = ReferenceOut { z: &mut z, dz: &mut dz, d_state: &mut rate };
             self.consensus.evaluate(3, own, &[0.0; 6], heard, out)?;
-            let a = alpha + beta + heard.degree.first().copied().unwrap_or(0.0);
+            let a = self.alpha_plus_beta + heard.degree.first().copied().unwrap_or(0.0);
             let mut u: [f64; 3] = core::array::from_fn(|k| self.mass * (rate[3 + k] + d(k, 3) + a * d(k, 2)));
             u[2] -= a * self.mass * self.gravity;
             (a, u, None)

@@ -14,10 +14,9 @@ const DEGREE: f64 = 1.7;
 const SUMS: [f64; 3] = [0.9, -2.0, 4.1];
 const ROOTS: [f64; 3] = [1.0, 0.7, 1.6];
 
-const CONTINUOUS: ThrustDesign = ThrustDesign::Continuous { roots_per_s: [1.0, 0.7] };
-const DIFFERENTIABLE: ThrustDesign =
-    ThrustDesign::Differentiable { roots_per_s: ROOTS, alpha_star: 2.0, stiffness: 3.0 };
-const ADAPTIVE: ThrustDesign = ThrustDesign::Adaptive { roots_per_s: ROOTS, alpha_star: 2.0, gamma_star: 0.4 };
+const CONTINUOUS: ThrustDesign = ThrustDesign::Continuous;
+const DIFFERENTIABLE: ThrustDesign = ThrustDesign::Differentiable { alpha_star: 2.0, stiffness: 3.0 };
+const ADAPTIVE: ThrustDesign = ThrustDesign::Adaptive { alpha_star: 2.0, gamma_star: 0.4 };
 
 /// An offset that moves, with its derivatives.
 fn offset(t: f64) -> [Jet; 3] {
@@ -32,7 +31,7 @@ fn offset(t: f64) -> [Jet; 3] {
 fn vehicle(design: ThrustDesign) -> (Vehicle, Thrust) {
     // The adaptive law starts from a mass that is wrong.
     let known = if design.adapts() { 0.8 * MASS } else { MASS };
-    let mut law = Thrust::new(design, known, G).unwrap();
+    let mut law = Thrust::new(design, &ROOTS[..design.order()], known, G).unwrap();
     law.yaw = Yaw { heading: 0.3, rate: 0.2, gain: 1.5 };
     (Vehicle { mass: MASS, gravity: G }, law)
 }

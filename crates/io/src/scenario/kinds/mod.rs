@@ -57,6 +57,7 @@ pub use super::gains::{DampingFile, EstimateStartFile, adaptation, damping, esti
 pub use super::inputs::InputFolder;
 pub use super::network::{NetworkReader, PhaseReader};
 pub use super::robots::{Body, RobotRead, Stop, axis};
+pub use super::roots::{RootFile, RootsFile};
 pub use super::spread::Spread;
 pub use super::start::StartReader;
 pub use super::systems_file::TargetFile;

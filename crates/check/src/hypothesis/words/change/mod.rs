@@ -137,6 +137,11 @@ fn known(reason: Unknown, bound_s: f64) -> String {
 fn reference(evidence: &ReferenceEvidence) -> Option<String> {
     Some(match evidence {
         ReferenceEvidence::Roots { .. } => "roots −κ with every κ above zero".into(),
+        ReferenceEvidence::ComplexRoots { agent, pair } => {
+            let kappa = rounded_up(libm::hypot(pair.real, pair.imaginary));
+            format!("real roots for {}, such as {kappa} per second twice instead of this pair", agent.name)
+        }
+        ReferenceEvidence::Hurwitz { .. } => "roots with real parts below zero".into(),
         ReferenceEvidence::FirstRoots([(_, kappa), (other, _)]) => format!(
             "κ₀ = {kappa} per second, the first of its roots, for {} too, and for all who hear each other in a cycle; or \
              `exchange = \"position\"`",

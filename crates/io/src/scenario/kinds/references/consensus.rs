@@ -7,16 +7,17 @@ use serde::Deserialize;
 
 use super::super::super::at::At;
 use super::super::super::fault::Fault;
-use super::super::super::values::Positive;
+use super::super::super::roots::{RootFile, RootsFile};
 use super::{ReferenceKind, ReferenceRead, ReferenceReader, ReferenceTable};
 
 /// Reference dynamics that lead to agreement.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ConsensusFile {
-    /// The positive numbers κ₀, κ₁, … in 1/s; as many as the order of the reference dynamics. Agents may have their own.
-    #[schemars(with = "Option<Vec<Positive>>", length(min = 1, max = 32))]
-    pub roots_per_s: Option<At<Vec<At<f64>>>>,
+    /// The positive numbers κ₀, κ₁, … in 1/s; as many as the order of the reference dynamics, for which a pair of complex roots, as
+    /// `{ real = 0.5, imaginary = 2 }`, counts twice. The theorems need real ones. Agents may have their own.
+    #[schemars(with = "Option<Vec<RootFile>>", length(min = 1, max = 32))]
+    pub roots_per_s: Option<RootsFile>,
     /// What the agents tell each other.
     pub exchange: At<ExchangeFile>,
     /// The gain λ of Remark 4, in 1/s to the power of the order: how much the reference gives way to the motion. Default: 0.

@@ -1,13 +1,14 @@
 //! `reference.leader`: everybody follows a leader.
 
-use forwardstep_core::reference::Choice;
+use forwardstep_core::reference::{Choice, RootPair};
 use forwardstep_sim::Exchange;
 use forwardstep_sim::leader::{Following, FollowingDesign};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::super::super::at::At;
-use super::super::super::fault::{Fault, fault, positive};
+use super::super::super::fault::{Fault, fault};
+use super::super::super::roots::{RootFile, RootsFile, checked_roots};
 use super::super::super::system_problem::SystemProblem;
 use super::super::super::value_problem::ValueProblem;
 use super::super::super::values::Positive;
@@ -21,9 +22,10 @@ const SIGN_EVERY_S: f64 = 1e-3;
 pub struct LeaderReferenceFile {
     /// Which of the designs.
     pub design: At<LeaderDesignFile>,
-    /// The positive numbers κ in 1/s: one for `continuous`, α = κ₀; two for the others, β = κ₀ + κ₁ and α = κ₀ κ₁.
-    #[schemars(with = "Vec<Positive>", length(min = 1, max = 2))]
-    pub roots_per_s: At<Vec<At<f64>>>,
+    /// The positive numbers κ in 1/s: one for `continuous`, α = κ₀; two for the others, β = κ₀ + κ₁ and α = κ₀ κ₁, or a pair
+    /// of complex roots, as `{ real = 0.5, imaginary = 2 }`.
+    #[schemars(with = "Vec<RootFile>", length(min = 1, max = 2))]
+    pub roots_per_s: RootsFile,
     /// The factor k of the differences to neighbours; for `swarm`, which needs it.
     #[schemars(with = "Option<Positive>")]
     pub coupling: Option<At<f64>>,
@@ -114,17 +116,15 @@ impl ReferenceKind for LeaderReferenceFile {
 
 /// α and β.
 fn coefficients(file: &LeaderReferenceFile, design: FollowingDesign) -> Result<(f64, f64), Fault> {
-    let list: &At<Vec<At<f64>>> = &file.roots_per_s;
-    let mut roots = Vec::with_capacity(2);
-    for root in list.value.iter().take(3) {
-        roots.push(positive("roots_per_s", root)?);
-    }
-    match (design, roots.as_slice()) {
-        (FollowingDesign::Continuous, [root]) => Ok((*root, 1.0)),
-        (FollowingDesign::Continuous, _) => {
-            Err(fault(list, SystemProblem::LeaderRoots { found: list.value.len(), need: 1 }))
-        }
-        (_, [first, second]) => Ok((first * second, first + second)),
-        _ => Err(fault(list, SystemProblem::LeaderRoots { found: list.value.len(), need: 2 })),
+    let list = &file.roots_per_s;
+    // Three are too many already.
+    let roots = checked_roots(&list.value[..list.value.len().min(3)])?;
+    let wrong = |need| Err(fault(list, SystemProblem::LeaderRoots { found: roots.len().max(list.value.len()), need }));
+    match (design, roots.real.as_slice(), roots.pairs.as_slice()) {
+        (FollowingDesign::Continuous, [root], []) => Ok((*root, 1.0)),
+        (FollowingDesign::Continuous, ..) => wrong(1),
+        (_, [first, second], []) => Ok((first * second, first + second)),
+        (_, [], [RootPair { real, imaginary }]) => Ok((real * real + imaginary * imaginary, real + real)),
+        _ => wrong(2),
     }
 }

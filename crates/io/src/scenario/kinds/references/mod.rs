@@ -19,9 +19,9 @@ use super::super::file::ScenarioFile;
 use super::super::inputs::InputFolder;
 use super::super::leader_file::LeaderFile;
 use super::super::problem::ScenarioProblem;
+use super::super::roots::{RootFile, RootsFile};
 use super::super::system_problem::SystemProblem;
 use super::super::target::{Owner, target};
-use super::super::values::Positive;
 
 /// A kind of reference dynamics in scenario files: its table, as it was read.
 pub trait ReferenceKind: fmt::Debug {
@@ -56,7 +56,7 @@ pub struct ReferenceRead {
     /// What the agents tell each other.
     pub exchange: Exchange,
     /// The roots of all agents without their own.
-    pub roots_per_s: Option<At<Vec<At<f64>>>>,
+    pub roots_per_s: Option<RootsFile>,
     /// λ of all agents without their own.
     pub manipulability_gain: Option<At<f64>>,
 }
@@ -150,9 +150,9 @@ impl<'a> ReferenceReader<'a> {
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AgentReferenceTable {
-    /// The positive numbers κ₀, κ₁, … in 1/s of this agent.
-    #[schemars(with = "Option<Vec<Positive>>", length(min = 1, max = 32))]
-    pub roots_per_s: Option<At<Vec<At<f64>>>>,
+    /// The positive numbers κ₀, κ₁, … in 1/s of this agent, and pairs of complex roots.
+    #[schemars(with = "Option<Vec<RootFile>>", length(min = 1, max = 32))]
+    pub roots_per_s: Option<RootsFile>,
     /// The gain λ of Remark 4 of this agent.
     pub manipulability_gain: Option<At<f64>>,
 }

@@ -5,18 +5,18 @@ use forwardstep_sim::reference::Tracking;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::super::super::at::At;
 use super::super::super::fault::Fault;
-use super::super::super::values::Positive;
+use super::super::super::roots::{RootFile, RootsFile};
 use super::{ReferenceKind, ReferenceRead, ReferenceReader, ReferenceTable};
 
 /// Every agent follows a target of its own.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TrackingFile {
-    /// The positive numbers κ₀, κ₁, … in 1/s of reference dynamics that have roots: three for the law without velocity.
-    #[schemars(with = "Option<Vec<Positive>>", length(min = 1, max = 32))]
-    pub roots_per_s: Option<At<Vec<At<f64>>>>,
+    /// The positive numbers κ₀, κ₁, … in 1/s of reference dynamics that have roots: three for the law without velocity. A
+    /// pair of complex roots, as `{ real = 0.5, imaginary = 2 }`, counts twice.
+    #[schemars(with = "Option<Vec<RootFile>>", length(min = 1, max = 32))]
+    pub roots_per_s: Option<RootsFile>,
 }
 
 impl ReferenceKind for TrackingFile {
