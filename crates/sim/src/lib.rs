@@ -43,7 +43,7 @@ pub use closed_loop::{
     sampled_jacobian, validate,
 };
 pub use inside::{Inside, Place, Watch, simulate_watched};
-pub use jumps::{HeardAt, NetworkJump, simulate_jumps};
+pub use jumps::{HeardAt, InputJump, InputOrder, NetworkJump, input_orders, simulate_jumps};
 pub use moment::{Moment, StateRate};
 pub use network::Network;
 pub use recording::{

@@ -92,7 +92,7 @@ pub(crate) fn simulate_with(
     let network = if setup.control.is_some() { &silent } else { &setup.network };
     let mut integrator = Integrator::new(network, &setup.solver, end_s, closed_loop.start(), ports, entries);
     let mut recorder = Recorder::new(setup, &closed_loop);
-    let mut jumps = jump.map(|jump| JumpWatch::new(&closed_loop, setup.agents.len(), jump));
+    let mut jumps = jump.map(|jump| JumpWatch::new(&mut closed_loop, setup.agents.len(), jump));
     let mut pace = Pace::new(setup);
     let mut moments = moment.map(|each| (Moments::new(setup, &closed_loop), each));
 

@@ -352,6 +352,18 @@ impl<'a> ClosedLoop<'a> {
         signals
     }
 
+    /// The inputs of every agent's plant, and where each stands in a row of [`ClosedLoop::record`].
+    pub(crate) fn inputs(&self, agents: usize) -> Vec<Vec<(Signal, Range<usize>)>> {
+        let of = |port: &Port| self.blocks.iter().find(|block| block.degree.contains(&port.degree));
+        let inputs = |port| of(port).map_or_else(Vec::new, |block| block.columns.inputs());
+        self.ports.iter().take(agents).map(inputs).collect()
+    }
+
+    /// Whether set-valued signs are set in continuous time.
+    pub(crate) fn has_signs(&self) -> bool {
+        self.slider.is_some()
+    }
+
     /// Works out what acts on all agents from outside, for [`ClosedLoop::external_on`].
     pub(crate) fn push(&mut self, t_s: f64, x: &[f64]) {
         self.pushes.evaluate(t_s, x, &mut self.blocks);

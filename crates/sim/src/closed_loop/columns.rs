@@ -71,6 +71,8 @@ pub(crate) trait Columns {
     fn add_sign_terms(&mut self, selection: &[f64], dx: &mut [f64]);
     /// Signals and axes of one member, in the order in which they are recorded.
     fn signals(&self) -> Vec<(Signal, usize)>;
+    /// What the inputs of one member's plant are, and where each stands among its [`Columns::signals`].
+    fn inputs(&self) -> Vec<(Signal, Range<usize>)>;
     /// Which member, signal and axis a state of the block is.
     fn locate(&self, state: usize) -> (usize, Signal, usize);
     /// The rates that its gains give to a member, the one with the number `agent` among all, in the state `x`, which has just

@@ -125,6 +125,10 @@ impl Columns for Guide {
         Vec::new()
     }
 
+    fn inputs(&self) -> Vec<(Signal, Range<usize>)> {
+        Vec::new()
+    }
+
     fn locate(&self, state: usize) -> (usize, Signal, usize) {
         let m = self.jets.len();
         (self.vertex, if state < m { Signal::Position } else { Signal::Velocity }, state % m)

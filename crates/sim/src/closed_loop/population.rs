@@ -384,6 +384,12 @@ where
         signals
     }
 
+    fn inputs(&self) -> Vec<(Signal, Range<usize>)> {
+        let signals = self.signals();
+        let first = signals.iter().position(|(signal, _)| *signal == Signal::Torque).unwrap_or(signals.len());
+        vec![(Signal::Torque, first..first + self.robots.layout.m)]
+    }
+
     fn locate(&self, state: usize) -> (usize, Signal, usize) {
         let l = self.robots.layout;
         let agent = self.members[state % l.n].agent;

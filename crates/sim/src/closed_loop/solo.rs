@@ -415,6 +415,16 @@ impl<C: Controller> Columns for Solo<C> {
         self.all_signals().into_iter().flat_map(axes).collect()
     }
 
+    fn inputs(&self) -> Vec<(Signal, Range<usize>)> {
+        let mut at = self.layout.plant;
+        let place = |(signal, count): Block| {
+            let first = at;
+            at += count;
+            (signal, first..at)
+        };
+        self.plant.inputs().into_iter().map(place).collect()
+    }
+
     fn locate(&self, state: usize) -> (usize, Signal, usize) {
         let mut first = 0;
         for (signal, count) in self.plant.states().into_iter().chain(self.controller.states()) {
