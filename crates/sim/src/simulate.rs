@@ -85,6 +85,9 @@ pub(crate) fn simulate_with(
     let mut closed_loop = assembled(setup)?;
     setup.network.lasts_until(setup.time.end_s)?;
     closed_loop.watch(samples);
+    if let (Some(control), true) = (&setup.control, watch.is_some()) {
+        closed_loop.trace(control);
+    }
     let (ports, entries) = closed_loop.ports();
     let end_s = setup.time.end_s;
     // Messages of sampled controllers do not flow: nothing of the network enters the motion between two samples.

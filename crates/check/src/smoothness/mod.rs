@@ -174,7 +174,7 @@ pub fn smoothness(
         expansions.push(expansion);
     }
     if let (Some(Err(reason)), true) = (agents.first(), agents.iter().all(Result::is_err)) {
-        return Err(NoSmoothness::NoAgent { name: setup.agents[0].name.clone(), reason: reason.clone() });
+        return Err(NoSmoothness::NoAgent { name: setup.agents[0].name.clone(), reason: *reason });
     }
     let said = agents.iter().map(Result::is_ok).collect();
     let mut seen = Seen { expansions, said, ..Seen::default() };

@@ -25,6 +25,7 @@ use super::assembly::Assembly;
 use super::columns::{Columns, Inputs};
 use super::error::SetupError;
 use super::gain_rates::gain_rates;
+use super::injected::Energy;
 use super::recipes::used;
 use super::references::{AnyReference, Transmits, reference};
 use super::robot_batch::{Drive, Layout, Member, RobotBatch};
@@ -303,6 +304,11 @@ where
     fn taken(&self, each: &mut dyn FnMut(&Digital)) {
         self.sampler.iter().flat_map(Sampler::agents).for_each(each);
     }
+
+    // Robots in lanes have an account of their own, from rows alone.
+    fn trace(&mut self, _: &Control) {}
+
+    fn energies(&mut self, _: f64, _: &[f64], _: Inputs<'_>, _: &mut dyn FnMut(usize, Energy)) {}
 
     fn apply(&mut self) {
         if let Some(sampler) = &mut self.sampler {
