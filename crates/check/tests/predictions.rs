@@ -7,6 +7,8 @@ mod common;
 mod course;
 #[path = "predictions/guaranteed.rs"]
 mod guaranteed;
+#[path = "predictions/inputs_smoothness.rs"]
+mod inputs_smoothness;
 #[path = "predictions/own_smoothness.rs"]
 mod own_smoothness;
 #[path = "predictions/rate.rs"]

@@ -5,6 +5,8 @@
 mod common;
 #[path = "pushes/injected.rs"]
 mod injected;
+#[path = "pushes/injected_alone.rs"]
+mod injected_alone;
 #[path = "pushes/manipulability.rs"]
 mod manipulability;
 

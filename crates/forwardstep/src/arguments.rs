@@ -66,7 +66,7 @@ pub(crate) enum Command {
         /// Print the text of this one
         name: Option<String>,
     },
-    /// Print the JSON schema of scenario files, or of what `check --json` prints
+    /// Print the JSON schema of scenario files, or of what `check --json` or `smoothness --json` prints
     Schema {
         /// Of which documents
         #[arg(value_enum, default_value_t)]
@@ -168,6 +168,8 @@ pub(crate) enum SchemaChoice {
     Scenario,
     /// What `check --json` prints
     Check,
+    /// What `smoothness --json` prints
+    Smoothness,
 }
 
 /// The names of hypotheses, with near matches for slips.

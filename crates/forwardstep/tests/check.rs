@@ -108,15 +108,8 @@ fn every_shipped_scenario_is_explained_or_says_why_not() {
 }
 
 /// Equations that are not evaluated, though they say more than what their letters stand for: their scenario, and how many.
-const NOT_EVALUATED: [(&str, usize); 7] = [
-    ("theorem-6", 5),
-    ("task-space-ur5e", 5),
-    ("theorem-9", 3),
-    ("remark-12", 3),
-    ("swarm-tracking", 3),
-    ("gusts", 2),
-    ("formation", 2),
-];
+/// An inner loop turns these vehicles, so that what (52) makes of s* does not hold.
+const NOT_EVALUATED: [(&str, usize); 2] = [("gusts", 1), ("formation", 1)];
 
 #[test]
 fn every_identity_of_every_shipped_scenario_holds_along_its_run() {
@@ -142,8 +135,7 @@ fn every_identity_of_every_shipped_scenario_holds_along_its_run() {
         let expected = NOT_EVALUATED.iter().find(|(name, _)| *name == shipped.name).map_or(0, |(_, count)| *count);
         assert_eq!(left.clone().count(), expected, "{}: {:?}", shipped.name, left.collect::<Vec<_>>());
         let held = found.iter().filter(|one| one.holds() == Some(true)).count();
-        // Of continuous thrust there is no s, so that nothing is a cascade.
-        assert!(held > 0 || shipped.name.contains("continuous") || expected > 0, "{}: {found:?}", shipped.name);
+        assert!(held > 0, "{}: {found:?}", shipped.name);
     }
 }
 

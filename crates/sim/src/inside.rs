@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::closed_loop::{ClosedLoop, SetupError};
+use crate::closed_loop::{ClosedLoop, Energy, SetupError};
 use crate::engine::{Integrator, Step};
 use crate::recording::{Outcome, Progress, SampleTaken};
 use crate::setup::Setup;
@@ -37,6 +37,8 @@ pub struct Inside<'a> {
     pub place: Place,
     /// Its signals, as [`crate::recorded_columns`] lists them.
     pub values: &'a [f64],
+    /// V and what changes it, of an agent that is by itself: all but the robots under (6)–(7) of a network.
+    pub energy: Option<Energy>,
 }
 
 /// Who looks at a run under digital control from inside.
@@ -75,9 +77,15 @@ pub(crate) fn show(
         closed_loop.last_samples(&mut |taken| watch.sampled(taken));
     }
     let length_s = step.end_s - step.start_s;
+    let mut energies = Vec::new();
     let mut look = |t_s: f64, place: Place| {
         let (x, heard) = integrator.look_inside(t_s);
-        closed_loop.record(t_s, x, heard, |agent, values| watch.inside(Inside { agent, t_s, place, values }));
+        energies.clear();
+        closed_loop.energies(t_s, x, heard, &mut |agent, energy| energies.push((agent, energy)));
+        closed_loop.record(t_s, x, heard, |agent, values| {
+            let energy = energies.iter().find(|(of, _)| *of == agent).map(|(_, energy)| *energy);
+            watch.inside(Inside { agent, t_s, place, values, energy });
+        });
     };
     if sampled {
         look(step.start_s, Place::Start);

@@ -1,6 +1,12 @@
 //! What every agent is and hears where the network jumps: just before and just after every switch and every jump of a delay.
 
+mod variation;
+
 use std::ops::ControlFlow;
+
+pub use variation::{InputJump, InputOrder};
+
+use variation::Variation;
 
 use crate::closed_loop::{ClosedLoop, SetupError};
 use crate::engine::{Heard, Integrator, Passed, Port, Step};
@@ -27,6 +33,8 @@ pub struct NetworkJump<'a> {
     pub after: HeardAt<'a>,
     /// What acts on it from outside just before; empty when it is never pushed.
     pub external: &'a [f64],
+    /// What derivatives of its inputs do, input by input.
+    pub inputs: &'a [InputJump],
 }
 
 /// What one agent hears at one instant.
@@ -51,10 +59,24 @@ pub fn simulate_jumps(
     simulate_with(setup, observer, &mut |_| {}, Observers { jump: Some(jump), ..Observers::default() })
 }
 
+/// Of every agent, how its inputs depend on what it hears; orders may be lower than found here where a run comes to states in which a law does
+/// something else. Nothing depends on it under digital control, and where a set-valued sign is part of the reference dynamics nothing is said.
+///
+/// # Errors
+/// [`SetupError`] when the setup has no meaning.
+pub fn input_orders(setup: &Setup) -> Result<Vec<Vec<InputOrder>>, SetupError> {
+    let mut closed_loop = ClosedLoop::new(setup)?;
+    Ok(Variation::new(&mut closed_loop, setup.agents.len()).inputs())
+}
+
 /// Keeps what is heard at the end of every step, to set beside it what is heard at the start of the next.
 pub(crate) struct JumpWatch<'a> {
     jump: &'a mut dyn FnMut(NetworkJump<'_>),
     agents: Vec<Agent>,
+    variation: Variation,
+    /// What all heard at the end of the last step.
+    before: Heard,
+    dx: Vec<f64>,
 }
 
 /// Where the numbers of one agent stand, and what they were.
@@ -89,8 +111,14 @@ impl Sums {
 
 impl<'a> JumpWatch<'a> {
     /// Of the first `agents` vertices, which are not the leader.
-    pub(crate) fn new(closed_loop: &ClosedLoop<'_>, agents: usize, jump: &'a mut dyn FnMut(NetworkJump<'_>)) -> Self {
+    pub(crate) fn new(
+        closed_loop: &mut ClosedLoop<'_>,
+        agents: usize,
+        jump: &'a mut dyn FnMut(NetworkJump<'_>),
+    ) -> Self {
+        let variation = Variation::new(closed_loop, agents);
         let (ports, entries) = closed_loop.ports();
+        let before = Heard { degree: vec![0.0; ports.len()], sums: vec![0.0; ports.len() * entries] };
         let sums = || Sums { degree: 0.0, sums: vec![0.0; entries] };
         let agent = |port: Port| Agent {
             port,
@@ -110,7 +138,8 @@ impl<'a> JumpWatch<'a> {
                 agent.signals.push((signal, axis));
             }
         }
-        JumpWatch { jump, agents }
+        let dx = vec![0.0; closed_loop.start().len()];
+        JumpWatch { jump, agents, variation, before, dx }
     }
 
     /// Looks at `step`, the last that was made.
@@ -121,6 +150,7 @@ impl<'a> JumpWatch<'a> {
         let Passed { switched, jumped } = integrator.passed();
         if jumped {
             let (x, heard) = integrator.look_inside(step.start_s);
+            let jumps = self.variation.jumps(closed_loop, step.start_s, x, [&self.before, heard]);
             for (index, agent) in self.agents.iter_mut().enumerate() {
                 agent.after.read(heard, agent.port);
                 agent.state.clear();
@@ -134,10 +164,17 @@ impl<'a> JumpWatch<'a> {
                     before: agent.before.at(),
                     after: agent.after.at(),
                     external: &agent.external,
+                    inputs: &jumps[index],
                 });
             }
         }
         let (x, heard) = integrator.look_inside(step.end_s);
+        if jumped {
+            // What is asked of the last evaluation is asked of the end of the step.
+            closed_loop.rates_inside(step.end_s, x, heard, &mut self.dx);
+        }
+        self.before.degree.clone_from(&heard.degree);
+        self.before.sums.clone_from(&heard.sums);
         closed_loop.push(step.end_s, x);
         for (index, agent) in self.agents.iter_mut().enumerate() {
             agent.before.read(heard, agent.port);

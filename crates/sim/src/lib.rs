@@ -39,11 +39,11 @@ pub use agents::{
 };
 pub use build::run;
 pub use closed_loop::{
-    Assembly, Block, SampledJacobian, SetupError, VelocityQuantity, recipe, recipes, reference_dynamics,
-    sampled_jacobian, validate,
+    Assembly, Block, Energy, Powers, SampledJacobian, SetupError, VelocityQuantity, recipe, recipes,
+    reference_dynamics, sampled_jacobian, validate,
 };
 pub use inside::{Inside, Place, Watch, simulate_watched};
-pub use jumps::{HeardAt, NetworkJump, simulate_jumps};
+pub use jumps::{HeardAt, InputJump, InputOrder, NetworkJump, input_orders, simulate_jumps};
 pub use moment::{Moment, StateRate};
 pub use network::Network;
 pub use recording::{

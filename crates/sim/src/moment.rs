@@ -17,6 +17,8 @@ pub struct Moment<'a> {
     pub values: &'a [f64],
     /// What is integrated of it. An agent with an offset is described relative to it.
     pub states: &'a [StateRate],
+    /// The same of all agents at this instant.
+    pub agents: &'a [Vec<StateRate>],
     /// Σ_j w_ij.
     pub degree: f64,
     /// Σ_j w_ij times the messages of its neighbours, as they arrive now: an entry per axis of q_j, then of q̇_j if velocities are sent.
@@ -89,15 +91,18 @@ impl Moments {
                 values[agent].extend_from_slice(row);
             });
             closed_loop.rates_inside(t_s, x, heard, &mut self.dx);
-            for (agent, (port, indices)) in self.agents.iter().enumerate() {
-                for (state, index) in self.states[agent].iter_mut().zip(indices) {
+            for (states, (_, indices)) in self.states.iter_mut().zip(&self.agents) {
+                for (state, index) in states.iter_mut().zip(indices) {
                     (state.value, state.rate) = (x[*index], self.dx[*index]);
                 }
+            }
+            for (agent, (port, _)) in self.agents.iter().enumerate() {
                 for c in 0..self.entries {
                     self.sums[c] = heard.sums[port.entry + c * port.stride];
                 }
                 let (values, states, sums) = (&self.values[agent], &self.states[agent], &self.sums);
-                each(Moment { agent, t_s, values, states, degree: heard.degree[port.degree], sums });
+                let (agents, degree) = (&self.states, heard.degree[port.degree]);
+                each(Moment { agent, t_s, values, states, agents, degree, sums });
             }
         }
     }

@@ -85,6 +85,9 @@ pub(crate) fn simulate_with(
     let mut closed_loop = assembled(setup)?;
     setup.network.lasts_until(setup.time.end_s)?;
     closed_loop.watch(samples);
+    if let (Some(control), true) = (&setup.control, watch.is_some()) {
+        closed_loop.trace(control);
+    }
     let (ports, entries) = closed_loop.ports();
     let end_s = setup.time.end_s;
     // Messages of sampled controllers do not flow: nothing of the network enters the motion between two samples.
@@ -92,7 +95,7 @@ pub(crate) fn simulate_with(
     let network = if setup.control.is_some() { &silent } else { &setup.network };
     let mut integrator = Integrator::new(network, &setup.solver, end_s, closed_loop.start(), ports, entries);
     let mut recorder = Recorder::new(setup, &closed_loop);
-    let mut jumps = jump.map(|jump| JumpWatch::new(&closed_loop, setup.agents.len(), jump));
+    let mut jumps = jump.map(|jump| JumpWatch::new(&mut closed_loop, setup.agents.len(), jump));
     let mut pace = Pace::new(setup);
     let mut moments = moment.map(|each| (Moments::new(setup, &closed_loop), each));
 

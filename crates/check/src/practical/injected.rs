@@ -22,22 +22,30 @@
 //! ```
 //!
 //! add up to the change of V. Had z moved with ż and ϑ̂ with (7), sᵀMż and sᵀYΔϑ would cancel against the jumps; what is left of them is what
-//! holding z and stepping ϑ̂ do. Where z reads positions itself, as under (3) and (aa6), their noise jumps with z and counts as held.
+//! holding z and stepping ϑ̂ do. Agents with a target of their own, chains, vehicles, spacecraft and all others that are by themselves have these terms
+//! from their plant, their controller and the balance of its proof, [`Energy`](forwardstep_sim::Energy), where what stepping estimates does counts as held.
+//! Where z reads positions itself, as under (3) and (aa6), their noise jumps with z and counts as held.
 
 mod account;
 mod state;
+mod tally;
 
 use forwardstep_core::agent::VelocityFilter;
 use forwardstep_sim::recording::{SampleTaken, Signal};
+use forwardstep_sim::system::Known;
 use forwardstep_sim::{Inside, Setup, VelocitySensor, Watch, recorded_columns};
 
 use self::account::Account;
 use self::state::{Law, Places};
+use self::tally::Tally;
 use super::rates::Gains;
 use crate::kinds::is_lagrangian;
 
 /// A cause is named once it has put in this part of the largest V so far.
 pub const NAMED_SHARE: f64 = 0.01;
+
+/// That V is not taken to be smaller than this, J.
+const FLOOR_J: f64 = 1e-6;
 
 /// What changes V.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -127,20 +135,44 @@ impl InjectionBalance {
     }
 }
 
-/// Looks at the agents of a run under (6)–(7), but for those that follow a target of their own.
+/// Names what the proof does not allow, the largest where several come at once: what has put in more than [`NAMED_SHARE`] of the largest V.
+fn name_first(terms: &[f64; 7], largest: f64, pushes_end: bool, t_s: f64) -> Option<(Injection, f64)> {
+    let allowed = |injection: Injection| match injection {
+        Injection::Dissipated => true,
+        Injection::Pushed => pushes_end,
+        Injection::Held
+        | Injection::Reconstructed
+        | Injection::Measured
+        | Injection::Limited
+        | Injection::Adaptation => false,
+    };
+    let put_in = Injection::ALL.into_iter().filter(|injection| !allowed(*injection));
+    let most = put_in.max_by(|a, b| terms[*a as usize].total_cmp(&terms[*b as usize]));
+    most.filter(|injection| terms[*injection as usize] > NAMED_SHARE * largest).map(|injection| (injection, t_s))
+}
+
+/// Looks at the agents of a run: at robots under (6)–(7) in a network from their rows, at all others through the balance of their own law.
 pub struct InjectionWatch<'a> {
-    agents: Vec<Option<Account<'a>>>,
+    agents: Vec<Option<Looked<'a>>>,
+}
+
+/// How an agent is looked at.
+enum Looked<'a> {
+    Robot(Box<Account<'a>>),
+    ByItself(Tally),
 }
 
 impl<'a> InjectionWatch<'a> {
-    /// `None` where control is continuous, or no agent is of this kind.
+    /// `None` where control is continuous, or nothing is known of V of any agent.
     pub fn of(setup: &'a Setup) -> Option<Self> {
         let control = setup.control.as_ref()?;
         let columns = recorded_columns(setup).ok()?;
         let account = |index: usize| {
             let agent = &setup.agents[index];
+            let pushes_end = agent.pushes.iter().all(|push| push.span_s()[1] < setup.time.end_s);
             if !is_lagrangian(agent) || setup.tracks(index) {
-                return None;
+                // A law from outside may state no V.
+                return matches!(agent.law.known(), Known::Checked).then(|| Looked::ByItself(Tally::new(pushes_end)));
             }
             let own: Vec<Signal> = columns.iter().filter(|c| c.agent == index).map(|c| c.signal).collect();
             let filter = match control.sensors.velocity {
@@ -152,8 +184,7 @@ impl<'a> InjectionWatch<'a> {
             let (gains, places) = (Gains::of(agent)?, Places::of(&own)?);
             let law = Law { agent, gains, places, evaluator: agent.robot.kind.lagrangian()?.evaluator() };
             let clock = [1.0 / control.sample_hz, control.computation_delay_s];
-            let pushes_end = agent.pushes.iter().all(|push| push.span_s()[1] < setup.time.end_s);
-            Account::new(law, filter, clock, pushes_end)
+            Account::new(law, filter, clock, pushes_end).map(|account| Looked::Robot(Box::new(account)))
         };
         let agents: Vec<_> = (0..setup.agents.len()).map(account).collect();
         agents.iter().any(Option::is_some).then_some(InjectionWatch { agents })
@@ -161,14 +192,17 @@ impl<'a> InjectionWatch<'a> {
 
     /// The balance of every agent that was looked at.
     pub fn balances(&self) -> Vec<InjectionBalance> {
-        let balance = |(agent, account): (usize, &Option<Account<'_>>)| account.as_ref()?.balance(agent);
+        let balance = |(agent, looked): (usize, &Option<Looked<'_>>)| match looked.as_ref()? {
+            Looked::Robot(account) => account.balance(agent),
+            Looked::ByItself(tally) => tally.balance(agent),
+        };
         self.agents.iter().enumerate().filter_map(balance).collect()
     }
 }
 
 impl Watch for InjectionWatch<'_> {
     fn sampled(&mut self, taken: SampleTaken<'_>) {
-        if let Some(Some(account)) = self.agents.get_mut(taken.agent) {
+        if let Some(Some(Looked::Robot(account))) = self.agents.get_mut(taken.agent) {
             account.sample = Some((taken.now_s, taken.measured.to_vec()));
         }
     }
@@ -176,7 +210,12 @@ impl Watch for InjectionWatch<'_> {
     fn inside(&mut self, at: Inside<'_>) {
         let Some(slot) = self.agents.get_mut(at.agent) else { return };
         // Better nothing than a sum that leaves something out.
-        if slot.as_mut().is_some_and(|account| account.look(at).is_none()) {
+        let looked = match slot {
+            None => return,
+            Some(Looked::Robot(account)) => account.look(at),
+            Some(Looked::ByItself(tally)) => tally.look(at),
+        };
+        if looked.is_none() {
             *slot = None;
         }
     }

@@ -44,20 +44,25 @@ pub(crate) struct Rates {
 impl Gains {
     /// `None` where the law is another or a gain cannot be resolved.
     pub(crate) fn of(agent: &AgentSetup) -> Option<Gains> {
-        let stated = gain(agent)?;
+        let adaptive = agent.law.downcast().map(|Adaptive { adaptation, .. }| adaptation);
+        Gains::resolved(agent, gain(agent)?, adaptive)
+    }
+
+    /// K and Γ as they are stated for a robot, whatever its law; `None` where one cannot be resolved.
+    pub(crate) fn resolved(agent: &AgentSetup, damping: &Gain, adaptation: Option<&Gain>) -> Option<Gains> {
         let axes = agent.robot.axes.len();
         let DynamicsAt { mass, adaptation_scale, .. } = dynamics(agent, &agent.start.q, &agent.start.dq, 0.0)?;
         let scale: Vec<f64> = mass.iter().copied().step_by(axes + 1).collect();
-        let adaptation = match agent.law.downcast() {
+        let adaptation = match adaptation {
             None => None,
-            Some(Adaptive { adaptation, .. }) => {
+            Some(adaptation) => {
                 // Γ = ω² diag(scale): one ω is multiplied in here, the other by `resolve`.
                 let omega = if let Gain::Bandwidth(omega) = adaptation { *omega } else { 1.0 };
                 let scale: Vec<f64> = adaptation_scale.iter().map(|scale| omega * scale).collect();
                 Some(dense(adaptation, scale.len(), &scale)?)
             }
         };
-        Some(Gains { damping: dense(stated, axes, &scale)?, adaptation })
+        Some(Gains { damping: dense(damping, axes, &scale)?, adaptation })
     }
 
     /// The same without the adaptation.

@@ -1,33 +1,36 @@
-//! Of which agents the jumps of the torque are known, and what they are promised.
+//! Of which agents the jumps of the input are known, and what they are promised.
 
-use forwardstep_core::LengthError;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::reference::{Consensus, Dynamics, PureIntegral, ReferenceFamily};
-use forwardstep_sim::{Series, Setup, SetupError, reference_dynamics};
+use forwardstep_sim::{
+    ChainLaw, ChainModel, InputOrder, PositionOnlyLaw, Series, Setup, Signal, ThrustLaw, reference_dynamics,
+};
 use thiserror::Error;
 
 use crate::kinds::is_lagrangian;
 
-/// One agent of which jumps are reported.
+/// One input of an agent, of which jumps are reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Covered {
-    /// Derivatives that what is heard determines: τ, τ̇, … as many as this.
+    /// What it is: τ, or what else drives a plant.
+    pub signal: Signal,
+    /// Derivatives that what is heard determines: u, u̇, … as many as this.
     pub derivatives: usize,
-    /// How many of them must not jump: ℓ − 1 for the consensus family of order ℓ. `None` where nothing is promised.
+    /// How many of them must not jump. `None` where nothing is promised.
     pub continuous: Option<usize>,
 }
 
 /// Why nothing is reported of an agent.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum NotCovered {
-    /// Its law is another.
-    #[error("its torque is not that of (6), but of {law}, whose derivatives are not built")]
+    /// Its law is another, where robots under (6)–(7) are compared.
+    #[error("its law is {law}")]
     Law {
         /// The law, with an article.
         law: &'static str,
     },
     /// It follows a target.
-    #[error("it follows a target of its own, and no switch and no delay reaches its torque")]
+    #[error("it follows a target of its own, and no switch and no delay reaches its input")]
     OwnTarget,
     /// A set-valued sign is part of its reference dynamics.
     #[error(
@@ -37,62 +40,29 @@ pub enum NotCovered {
         /// What leads it.
         reference: &'static str,
     },
-    /// More derivatives stay continuous than are computed.
-    #[error("its reference dynamics have the order {order}; derivatives are computed up to order {most}")]
-    Order {
-        /// ℓ.
-        order: usize,
-        /// The most.
-        most: usize,
-    },
-    /// Weights that change stand beside more than the highest derivative.
-    #[error("a weight changes with time, and derivatives of weights would enter {reference}")]
-    VaryingWeights {
-        /// What leads it.
-        reference: &'static str,
-    },
-    /// Derivatives of its reference dynamics are not known.
-    #[error("{reference} is not affine in what it measures and in its state, so that its derivatives are not known")]
-    NotAffine {
-        /// What leads it.
-        reference: &'static str,
-    },
-    /// Its gains cannot be resolved with its robot.
-    #[error("its gains cannot be resolved with its robot")]
-    Gains,
-    /// Its reference dynamics cannot be built.
-    #[error(transparent)]
-    Reference(Box<SetupError>),
-    /// They do not have the shape that they state.
-    #[error(transparent)]
-    Length(#[from] LengthError),
+    /// No derivative of its input depends on what is heard.
+    #[error("no derivative of its input depends on what it hears")]
+    Deaf,
 }
 
-/// The most derivatives.
+/// The most derivatives that a series has.
 pub(super) const MOST: usize = size_of::<Series>() / size_of::<f64>();
 
-/// The reference dynamics of an agent, if its torque can be expanded.
-pub(super) fn covered(setup: &Setup, agent: usize) -> Result<Dynamics, NotCovered> {
-    let own = &setup.agents[agent];
-    if !is_lagrangian(own) {
-        return Err(NotCovered::Law { law: own.law.words().name });
-    }
+/// Why nothing is said of an agent, if so.
+pub(super) fn refused(setup: &Setup, agent: usize) -> Option<NotCovered> {
     if setup.tracks(agent) {
-        return Err(NotCovered::OwnTarget);
+        return Some(NotCovered::OwnTarget);
     }
-    let reference = setup.reference.words().name;
-    if setup.reference.interface().family == ReferenceFamily::Leader {
-        return Err(NotCovered::Sign { reference });
-    }
-    let order = own.roots_per_s.len();
-    if setup.reference.is::<Consensus>() {
-        if order > MOST {
-            return Err(NotCovered::Order { order, most: MOST });
-        }
-    } else if varying_weights(setup) {
-        return Err(NotCovered::VaryingWeights { reference });
-    }
-    reference_dynamics(setup, agent).map_err(|error| NotCovered::Reference(Box::new(error)))
+    let sign = setup.reference.interface().family == ReferenceFamily::Leader;
+    sign.then(|| NotCovered::Sign { reference: setup.reference.words().name })
+}
+
+/// The reference dynamics of an agent, if its torque is that of (6)–(7) and can be expanded; derivatives of weights are not known.
+pub(super) fn expandable(setup: &Setup, agent: usize) -> Option<Dynamics> {
+    let own = &setup.agents[agent];
+    let known = if setup.reference.is::<Consensus>() { own.roots_per_s.len() <= MOST } else { !varying_weights(setup) };
+    let expandable = known && is_lagrangian(own) && refused(setup, agent).is_none();
+    expandable.then(|| reference_dynamics(setup, agent).ok()).flatten()
 }
 
 /// Whether some weight of some graph changes with time.
@@ -100,18 +70,50 @@ fn varying_weights(setup: &Setup) -> bool {
     setup.network.schedule.graphs.iter().flatten().any(|edge| matches!(edge.weight, Weight::Formula(_)))
 }
 
-impl Covered {
-    /// What an agent with so many derivatives is promised.
-    pub(super) fn of(setup: &Setup, agent: usize, derivatives: usize) -> Self {
-        let order = setup.agents[agent].roots_per_s.len();
+/// What is reported of an agent, from the derivatives that an expansion of its torque determines, or from the `orders` of its inputs.
+pub(super) fn covered(
+    setup: &Setup,
+    agent: usize,
+    expanded: Option<usize>,
+    orders: &[InputOrder],
+) -> Result<Vec<Covered>, NotCovered> {
+    if let Some(reason) = refused(setup, agent) {
+        return Err(reason);
+    }
+    let of = |signal, derivatives| Covered { signal, derivatives, continuous: continuous(setup, agent, signal) };
+    if let Some(derivatives) = expanded {
+        return Ok(vec![of(Signal::Torque, derivatives)]);
+    }
+    let known = orders.iter().filter_map(|input| Some(of(input.signal, input.order? + 1)));
+    let known: Vec<Covered> = known.collect();
+    if known.is_empty() { Err(NotCovered::Deaf) } else { Ok(known) }
+}
+
+/// How many derivatives of an input of an agent must not jump.
+///
+/// With N − 1 roots and a plant of order k, z follows the (k − 1)-th derivative, ℓ = N − k + 1, and the input reads up to ż:
+/// ℓ − 1 = roots + 1 − k, as (43) says. Of a vehicle with one thrust ω reads z̈ through (50) and the virtual control itself through (46), one derivative
+/// more than the torques of robots, and σ is an integral of what ω reads. Where an inner loop turns the vehicle, and of laws and reference dynamics from
+/// outside, nothing is promised.
+fn continuous(setup: &Setup, agent: usize, signal: Signal) -> Option<usize> {
+    let own = &setup.agents[agent];
+    let order = own.roots_per_s.len();
+    if setup.reference.is::<PureIntegral>() {
         let fixed = setup.network.schedule.constant_graph().is_some();
-        let continuous = if setup.reference.is::<Consensus>() {
-            Some(order.saturating_sub(1))
-        } else if setup.reference.is::<PureIntegral>() && fixed {
-            Some(1)
-        } else {
-            None
-        };
-        Covered { derivatives, continuous }
+        return (fixed && is_lagrangian(own)).then_some(1);
+    }
+    if !setup.reference.is::<Consensus>() {
+        None
+    } else if is_lagrangian(own) || own.law.is::<PositionOnlyLaw>() {
+        Some(order.saturating_sub(1))
+    } else if own.law.is::<ChainLaw>() {
+        let model: &ChainModel = own.robot.kind.downcast()?;
+        Some((order + 1).saturating_sub(model.order()))
+    } else if own.law.is::<ThrustLaw>() && signal == Signal::Thrust {
+        Some(order.saturating_sub(1))
+    } else if own.law.is::<ThrustLaw>() && signal == Signal::AngularVelocity {
+        Some(order.saturating_sub(2))
+    } else {
+        None
     }
 }

@@ -8,7 +8,7 @@ use forwardstep_sim::reference::Dynamics;
 use forwardstep_sim::{HeardAt, NetworkJump, Series, SeriesEvaluator, Setup};
 use nalgebra::DMatrix;
 
-use super::covered::{MOST, NotCovered, covered};
+use super::covered::{MOST, expandable};
 use crate::practical::rates::Gains;
 
 /// What is left of an affine function, relative to its parts, is rounding.
@@ -28,19 +28,22 @@ pub(super) struct Expansion {
 }
 
 impl Expansion {
-    /// Of an agent, by its number.
-    pub(super) fn new(setup: &Setup, agent: usize) -> Result<Self, NotCovered> {
-        let dynamics = covered(setup, agent)?;
+    /// Of an agent, by its number; `None` where no derivative beyond the value of its torque can be expanded.
+    ///
+    /// # Errors
+    /// [`LengthError`] when its reference dynamics do not have the shape that they state.
+    pub(super) fn new(setup: &Setup, agent: usize) -> Result<Option<Self>, LengthError> {
         let own = &setup.agents[agent];
-        let (robot, gains) = own.robot.kind.lagrangian().zip(Gains::of(own)).ok_or(NotCovered::Gains)?;
+        let parts = own.robot.kind.lagrangian().zip(Gains::of(own)).zip(expandable(setup, agent));
+        let Some(((robot, gains), dynamics)) = parts else { return Ok(None) };
         let reference = Affine { dynamics, axes: own.robot.axes.len() };
         let derivatives = reference.determined()?;
         // A value alone is computed, whatever they are.
         if derivatives > 1 && !reference.is_affine()? {
-            return Err(NotCovered::NotAffine { reference: setup.reference.words().name });
+            return Ok(None);
         }
         let limits = own.robot.axes.iter().map(|axis| axis.effort_limit.map(Series::splat)).collect();
-        Ok(Expansion {
+        Ok(Some(Expansion {
             derivatives,
             reference,
             robot: robot.series_evaluator(),
@@ -48,7 +51,7 @@ impl Expansion {
             adaptation: gains.adaptation.as_ref().map(constant),
             theta: own.robot.theta.iter().copied().map(Series::splat).collect(),
             effort_limits: if own.enforce_limits { limits } else { None },
-        })
+        }))
     }
 
     /// Derivatives of the torque, the torque itself counted, that do not need derivatives of what is heard.

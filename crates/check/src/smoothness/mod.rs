@@ -1,4 +1,4 @@
-//! How smooth the torque is: the jumps of its derivatives at every switch of the graph and every jump of a delay.
+//! How smooth inputs are: the jumps of their derivatives at every switch of the graph and every jump of a delay.
 //!
 //! Not from the paper, which says *ℓ − 1 times differentiable*; derived for this software, and E2 in PAPER.md says in which sense.
 //! At a switch or a jump of a delay at t* an agent hears something else just after than just before. Its state (q, q̇, z, ż, …, z^(ℓ−1), ϑ̂) does not
@@ -14,6 +14,9 @@
 //! truncated Taylor arithmetic ([`Taylor`](forwardstep_core::Taylor)) with the models and the reference dynamics that run, so nothing of this is put in:
 //! derivatives of what is heard are not-a-number, and the first derivative of the torque that would need one is the first not
 //! reported. (6)–(7) under [`Backstepping`](forwardstep_sim::reference::Backstepping) have none that does not jump: z itself does.
+//!
+//! The inputs of other plants, of other laws, and of robots whose reference dynamics cannot be expanded, jump as the first variation of the closed loop
+//! says, [`InputJump`]: that needs no series, and says nothing of the values on both sides.
 //!
 //! What acts from outside is held at its value just before. It moves q̈ on both sides alike, and no jump up to τ⁽ˡ⁻¹⁾ depends on its
 //! derivatives; a push that begins at t* is not the network's doing.
@@ -31,42 +34,54 @@ mod orders;
 use std::ops::ControlFlow;
 
 use forwardstep_core::LengthError;
-use forwardstep_sim::recording::Outcome;
-use forwardstep_sim::{Ending, NetworkJump, Progress, Setup, SetupError, simulate_jumps};
+use forwardstep_sim::recording::{Outcome, Signal};
+use forwardstep_sim::{Ending, InputJump, NetworkJump, Progress, Setup, SetupError, input_orders, simulate_jumps};
 use thiserror::Error;
 
 pub use covered::{Covered, NotCovered};
 pub use filters::{FilteredJump, Filters, NoFilters, filters};
 pub use orders::{NoOrders, OfOrder, Trace, orders, traces};
 
+use covered::covered;
 use expansion::Expansion;
 
-/// The jumps of the torque along one run.
+/// The jumps of the inputs along one run.
 #[derive(Clone, Debug)]
 pub struct Smoothness {
-    /// Of every agent, what was looked at.
-    pub agents: Vec<Result<Covered, NotCovered>>,
+    /// Of every agent, its inputs that were looked at.
+    pub agents: Vec<Result<Vec<Covered>, NotCovered>>,
     /// Instants at which the graph switched.
     pub switches: usize,
     /// Other instants at which delays jumped, or might have.
     pub delay_jumps: usize,
     /// Every instant at which what an agent hears jumped, in the order of time.
-    pub jumps: Vec<TorqueJump>,
+    pub jumps: Vec<Jump>,
     /// The run.
     pub outcome: Outcome,
 }
 
-/// What the torque of one agent did at one instant.
+/// What an input of one agent did at one instant.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TorqueJump {
+pub struct Jump {
     /// Index of the agent.
     pub agent: usize,
+    /// The input.
+    pub signal: Signal,
     /// The instant, s.
     pub t_s: f64,
     /// Whether the graph changed; otherwise a delay jumped.
     pub switched: bool,
-    /// The r-th derivative on every axis, for r = 0, 1, ….
-    pub derivatives: Vec<Vec<Sides>>,
+    /// The r-th derivative of every entry, for r = 0, 1, ….
+    pub derivatives: Vec<Vec<Change>>,
+}
+
+/// What a derivative of an input did at an instant, in the unit of the input over sʳ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Change {
+    /// How far it jumps.
+    pub jump: f64,
+    /// What it jumps from and to, of a robot under (6)–(7) whose torque was expanded.
+    pub sides: Option<Sides>,
 }
 
 /// A derivative of the torque on both sides of an instant, N m/sʳ or N/sʳ. Where something acts from outside they are those under its value just before,
@@ -79,25 +94,20 @@ pub struct Sides {
     pub after: f64,
 }
 
-impl Sides {
-    /// How far it jumps.
-    pub fn jump(self) -> f64 {
-        self.after - self.before
-    }
-}
-
 /// The largest jump of one derivative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LargestJump {
     /// Index of the agent.
     pub agent: usize,
-    /// Index of the axis.
+    /// The input.
+    pub signal: Signal,
+    /// Its entry.
     pub axis: usize,
     /// The instant, s.
     pub t_s: f64,
     /// Whether the graph changed; otherwise a delay jumped.
     pub switched: bool,
-    /// How large it is, N m/sʳ or N/sʳ.
+    /// How large it is, in the unit of the input over sʳ.
     pub size: f64,
 }
 
@@ -112,7 +122,7 @@ pub enum NoSmoothness {
     /// The setup has no meaning.
     #[error(transparent)]
     Setup(#[from] SetupError),
-    /// The dynamics of a robot do not have the size that the robot states.
+    /// The dynamics of a robot, or of its reference, do not have the size that is stated.
     #[error(transparent)]
     Length(#[from] LengthError),
     /// No agent is covered.
@@ -131,7 +141,7 @@ pub enum NoSmoothness {
     },
     /// A derivative is not finite.
     #[error(
-        "derivative {derivative} of the torque of {name} is not finite at {t_s} s: the motion is too violent for numbers"
+        "derivative {derivative} of the input of {name} is not finite at {t_s} s: the motion is too violent for numbers"
     )]
     NotFinite {
         /// The agent.
@@ -143,7 +153,7 @@ pub enum NoSmoothness {
     },
 }
 
-/// Simulates `setup` and reports what the derivatives of every torque do where the network jumps; `observer` as that of
+/// Simulates `setup` and reports what the derivatives of every input do where the network jumps; `observer` as that of
 /// [`forwardstep_sim::simulate`].
 ///
 /// # Errors
@@ -156,17 +166,19 @@ pub fn smoothness(
         return Err(NoSmoothness::Sampled);
     }
     forwardstep_sim::validate(setup)?;
-    let expansions: Vec<_> = (0..setup.agents.len()).map(|agent| Expansion::new(setup, agent)).collect();
-    let known = |(agent, expansion): (usize, &Result<Expansion, NotCovered>)| match expansion {
-        Ok(expansion) => Ok(Covered::of(setup, agent, expansion.derivatives())),
-        Err(reason) => Err(reason.clone()),
-    };
-    let agents: Vec<Result<Covered, NotCovered>> = expansions.iter().enumerate().map(known).collect();
-    if let (Some(Err(reason)), true) = (agents.first(), agents.iter().all(Result::is_err)) {
-        return Err(NoSmoothness::NoAgent { name: setup.agents[0].name.clone(), reason: reason.clone() });
+    let mut agents = Vec::new();
+    let mut expansions = Vec::new();
+    for (agent, orders) in input_orders(setup)?.into_iter().enumerate() {
+        let expansion = Expansion::new(setup, agent)?;
+        agents.push(covered(setup, agent, expansion.as_ref().map(Expansion::derivatives), &orders));
+        expansions.push(expansion);
     }
-    let mut seen = Seen { expansions, ..Seen::default() };
-    let outcome = simulate_jumps(setup, observer, &mut |jump| seen.look(jump))?;
+    if let (Some(Err(reason)), true) = (agents.first(), agents.iter().all(Result::is_err)) {
+        return Err(NoSmoothness::NoAgent { name: setup.agents[0].name.clone(), reason: *reason });
+    }
+    let said = agents.iter().map(Result::is_ok).collect();
+    let mut seen = Seen { expansions, said, ..Seen::default() };
+    let outcome = simulate_jumps(setup, observer, &mut |jump| seen.look(&jump))?;
     if let Some((agent, t_s, trouble)) = seen.trouble {
         return Err(match trouble {
             Trouble::Length(error) => error.into(),
@@ -184,22 +196,30 @@ pub fn smoothness(
 }
 
 impl Smoothness {
-    /// The agents of which something is reported, by how many derivatives that are and what is promised of them: each kind once.
+    /// The inputs of which something is reported, by what they are, how many derivatives that is and what is promised of them: each kind once.
     pub fn kinds(&self) -> Vec<Covered> {
-        let mut kinds: Vec<Covered> = self.agents.iter().flatten().copied().collect();
-        kinds.sort_by_key(|covered| (covered.derivatives, covered.continuous));
+        let mut kinds: Vec<Covered> = self.agents.iter().flatten().flatten().copied().collect();
+        kinds.sort_by_key(|covered| (covered.signal, covered.derivatives, covered.continuous));
         kinds.dedup();
         kinds
     }
 
-    /// The largest jump of the derivative of order `r` among the agents of one of the [`Smoothness::kinds`]; `None` where nothing they hear ever jumps,
+    /// The agents that have an input of this kind.
+    pub fn agents_of(&self, kind: Covered) -> Vec<usize> {
+        let has = |agent: &usize| self.agents[*agent].as_ref().is_ok_and(|inputs| inputs.contains(&kind));
+        (0..self.agents.len()).filter(has).collect()
+    }
+
+    /// The largest jump of the derivative of order `r` among the inputs of one of the [`Smoothness::kinds`]; `None` where nothing they hear ever jumps,
     /// or their derivatives end below. Torques in N m and forces in N are compared as the numbers that they are.
     pub fn largest(&self, kind: Covered, r: usize) -> Option<LargestJump> {
-        let of_kind = |jump: &&TorqueJump| self.agents[jump.agent].as_ref() == Ok(&kind);
-        let sizes = |jump: &TorqueJump| -> Vec<LargestJump> {
-            let TorqueJump { agent, t_s, switched, .. } = *jump;
-            let each =
-                |(axis, sides): (usize, &Sides)| LargestJump { agent, axis, t_s, switched, size: sides.jump().abs() };
+        let of_kind = |jump: &&Jump| self.of(jump) == Some(kind);
+        let sizes = |jump: &Jump| -> Vec<LargestJump> {
+            let Jump { agent, signal, t_s, switched, .. } = *jump;
+            let each = |(axis, change): (usize, &Change)| {
+                let size = change.jump.abs();
+                LargestJump { agent, signal, axis, t_s, switched, size }
+            };
             jump.derivatives.get(r).into_iter().flatten().enumerate().map(each).collect()
         };
         let all = self.jumps.iter().filter(of_kind).flat_map(sizes);
@@ -210,21 +230,29 @@ impl Smoothness {
     /// Whether no derivative jumps that must not.
     pub fn kept(&self) -> bool {
         self.jumps.iter().all(|jump| {
-            let continuous = self.agents[jump.agent].as_ref().ok().and_then(|covered| covered.continuous).unwrap_or(0);
-            jump.derivatives.iter().take(continuous).flatten().all(|sides| sides.jump() == 0.0)
+            let continuous = self.of(jump).and_then(|covered| covered.continuous).unwrap_or(0);
+            jump.derivatives.iter().take(continuous).flatten().all(|change| change.jump == 0.0)
         })
+    }
+
+    fn of(&self, jump: &Jump) -> Option<Covered> {
+        let inputs = self.agents.get(jump.agent)?.as_ref().ok()?;
+        inputs.iter().copied().find(|covered| covered.signal == jump.signal)
     }
 }
 
 /// What a run shows.
 #[derive(Default)]
 struct Seen {
-    expansions: Vec<Result<Expansion, NotCovered>>,
+    /// Of every agent, where its torque is expanded; of the others the first variation is reported.
+    expansions: Vec<Option<Expansion>>,
+    /// Whether something is said of an agent.
+    said: Vec<bool>,
     switches: usize,
     delay_jumps: usize,
     /// The last instant counted, s.
     counted_s: f64,
-    jumps: Vec<TorqueJump>,
+    jumps: Vec<Jump>,
     /// The first that could not be computed: agent, instant, why.
     trouble: Option<(usize, f64, Trouble)>,
 }
@@ -236,37 +264,47 @@ enum Trouble {
 }
 
 impl Seen {
-    fn look(&mut self, jump: NetworkJump<'_>) {
+    fn look(&mut self, jump: &NetworkJump<'_>) {
         if jump.t_s > self.counted_s {
             self.counted_s = jump.t_s;
             if jump.switched { self.switches += 1 } else { self.delay_jumps += 1 }
         }
-        let NetworkJump { agent, t_s, switched, .. } = jump;
-        let Some(Ok(expansion)) = self.expansions.get_mut(agent) else { return };
+        let NetworkJump { agent, t_s, switched, .. } = *jump;
+        let said = self.said.get(agent).copied().unwrap_or(false);
         // From the same numbers both sides would compute the same.
-        if self.trouble.is_some() || jump.before == jump.after {
+        if !said || self.trouble.is_some() || jump.before == jump.after {
             return;
         }
-        let sides =
-            expansion.torque(&jump, jump.before).and_then(|before| Ok((before, expansion.torque(&jump, jump.after)?)));
-        let (before, after) = match sides {
-            Ok(sides) => sides,
-            Err(error) => {
-                self.trouble = Some((agent, t_s, Trouble::Length(error)));
-                return;
-            }
+        let changes = match self.expansions.get_mut(agent).and_then(Option::as_mut) {
+            Some(expansion) => expanded(expansion, jump).map(|changes| vec![(Signal::Torque, changes)]),
+            None => Ok(jump.inputs.iter().map(varied).collect()),
         };
-        let sides = |r: usize| {
-            before
-                .iter()
-                .zip(&after)
-                .map(move |(before, after)| Sides { before: before.derivative(r), after: after.derivative(r) })
-        };
-        let derivatives: Vec<Vec<Sides>> = (0..expansion.derivatives()).map(|r| sides(r).collect()).collect();
-        if let Some(r) = derivatives.iter().position(|sides| sides.iter().any(|sides| !sides.jump().is_finite())) {
-            self.trouble = Some((agent, t_s, Trouble::NotFinite(r)));
-            return;
+        match changes {
+            Ok(changes) => changes.into_iter().for_each(|(signal, derivatives)| {
+                let infinite = |changes: &Vec<Change>| changes.iter().any(|change| !change.jump.is_finite());
+                match derivatives.iter().position(infinite) {
+                    Some(r) => self.trouble = Some((agent, t_s, Trouble::NotFinite(r))),
+                    None => self.jumps.push(Jump { agent, signal, t_s, switched, derivatives }),
+                }
+            }),
+            Err(error) => self.trouble = Some((agent, t_s, Trouble::Length(error))),
         }
-        self.jumps.push(TorqueJump { agent, t_s, switched, derivatives });
     }
+}
+
+/// Every derivative of a torque, from its series on both sides.
+fn expanded(expansion: &mut Expansion, jump: &NetworkJump<'_>) -> Result<Vec<Vec<Change>>, LengthError> {
+    let (before, after) = (expansion.torque(jump, jump.before)?, expansion.torque(jump, jump.after)?);
+    let change = |r: usize| {
+        let sides = before.iter().zip(&after).map(move |(before, after)| (before.derivative(r), after.derivative(r)));
+        let of = |(before, after)| Change { jump: after - before, sides: Some(Sides { before, after }) };
+        sides.map(of).collect()
+    };
+    Ok((0..expansion.derivatives()).map(change).collect())
+}
+
+/// Every derivative of an input, from the first variation.
+fn varied(input: &InputJump) -> (Signal, Vec<Vec<Change>>) {
+    let change = |jump: &f64| Change { jump: *jump, sides: None };
+    (input.signal, input.derivatives.iter().map(|entries| entries.iter().map(change).collect()).collect())
 }

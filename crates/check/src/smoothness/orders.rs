@@ -2,13 +2,14 @@
 
 use std::ops::ControlFlow;
 
-use forwardstep_sim::recording::{Outcome, Signal};
+use forwardstep_sim::recording::Outcome;
 use forwardstep_sim::reference::Consensus;
-use forwardstep_sim::{Progress, Setup, simulate};
+use forwardstep_sim::{AgentSetup, Progress, Setup, simulate, validate};
 use thiserror::Error;
 
-use super::covered::{MOST, covered};
+use super::covered::{MOST, refused};
 use super::{LargestJump, NoSmoothness, NotCovered, Smoothness, smoothness};
+use crate::kinds::is_lagrangian;
 use crate::prediction::{disagreement, settled};
 
 /// Rows of a trace on either side.
@@ -101,18 +102,24 @@ pub fn orders(
     setups.iter().map(|(order, setup)| Ok(found(*order, &smoothness(setup, observer)?, setup))).collect()
 }
 
-/// The first agent of some setup that is not covered, and why.
+/// The first agent of some setup that is not a robot under (6)–(7) in a network, and why.
+///
+/// # Errors
+/// [`NoSmoothness::Setup`] when there is none and some setup has no meaning.
 pub(super) fn uncovered<'a>(
-    setups: impl Iterator<Item = &'a Setup>,
+    setups: impl Iterator<Item = &'a Setup> + Clone,
 ) -> Result<Option<(String, NotCovered)>, NoSmoothness> {
-    for setup in setups {
+    let other = |own: &AgentSetup| NotCovered::Law { law: own.law.words().name };
+    for setup in setups.clone() {
         for (agent, own) in setup.agents.iter().enumerate() {
-            match covered(setup, agent) {
-                Ok(_) => {}
-                Err(NotCovered::Reference(error)) => return Err(NoSmoothness::Setup(*error)),
-                Err(reason) => return Ok(Some((own.name.clone(), reason))),
+            let reason = refused(setup, agent).or_else(|| (!is_lagrangian(own)).then(|| other(own)));
+            if let Some(reason) = reason {
+                return Ok(Some((own.name.clone(), reason)));
             }
         }
+    }
+    for setup in setups {
+        validate(setup)?;
     }
     Ok(None)
 }
@@ -145,7 +152,7 @@ pub fn traces(
         setup.time.end_s = setup.time.end_s.min(at.t_s + within_s);
         setup.time.record_every_s = within_s / ROWS;
         let Outcome { recording, .. } = simulate(&setup, observer).map_err(NoSmoothness::Setup)?;
-        let torque = recording.values(at.agent, Signal::Torque, at.axis).unwrap_or(&[]);
+        let torque = recording.values(at.agent, at.signal, at.axis).unwrap_or(&[]);
         let near = recording.t_s.iter().zip(torque).filter(|(t_s, _)| (**t_s - at.t_s).abs() <= within_s);
         let (t_s, torque) = near.map(|(t_s, torque)| (*t_s, *torque)).unzip();
         Ok(Trace { order: *order, t_s, torque })

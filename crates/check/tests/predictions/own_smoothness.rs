@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
-use forwardstep_check::smoothness::{Covered, NoSmoothness, NotCovered};
+use forwardstep_check::smoothness::Covered;
 use forwardstep_core::reference::{AxisInput, AxisOutput, PerAxis, Position};
 use forwardstep_sim::reference::{
     Backstepping, Dynamics, LinearReference, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords,
 };
 use forwardstep_sim::system::{Declaration, Known as Knowledge};
-use forwardstep_sim::{AgentSetup, Assembly, Exchange, Setup, SetupError};
+use forwardstep_sim::{AgentSetup, Assembly, Exchange, Setup, SetupError, Signal};
 
-use crate::smoothness::{arms, compare, refused};
+use crate::smoothness::{arms, compare};
 
 /// ż = y − 0.5 q + 0.2 and ẏ = −2 y − q̇ − Σ_j w_ij (q − q_j) + 0.3; ż is not affine if asked.
 #[derive(Clone, Copy, Debug)]
@@ -61,12 +61,15 @@ impl ReferenceDynamics for Own {
 fn own_reference_dynamics_show_themselves_how_many_derivatives_stay() {
     let mut setup = arms(Exchange::Position, 2);
     setup.agents.iter_mut().for_each(|agent| agent.roots_per_s.clear());
-    setup.reference = Arc::new(Own { bent: false });
-    let smoothness = compare(&setup, 2, false);
-    let kind = Covered { derivatives: 2, continuous: None };
-    assert_eq!(smoothness.kinds(), [kind]);
-    assert_eq!(smoothness.largest(kind, 0).map(|jump| jump.size), Some(0.0));
-    assert!(smoothness.largest(kind, 1).unwrap().size > 0.1);
-    setup.reference = Arc::new(Own { bent: true });
-    assert!(matches!(refused(&setup), NoSmoothness::NoAgent { reason: NotCovered::NotAffine { .. }, .. }));
+    // Those that are not affine are not expanded, and the first variation says the same of them.
+    for bent in [false, true] {
+        setup.reference = Arc::new(Own { bent });
+        let smoothness = compare(&setup, 2, false);
+        let kind = Covered { signal: Signal::Torque, derivatives: 2, continuous: None };
+        assert_eq!(smoothness.kinds(), [kind]);
+        assert_eq!(smoothness.largest(kind, 0).map(|jump| jump.size), Some(0.0));
+        assert!(smoothness.largest(kind, 1).unwrap().size > 0.1);
+        let sides = smoothness.jumps.iter().flat_map(|jump| &jump.derivatives).flatten().map(|change| change.sides);
+        assert!({ sides }.all(|sides| sides.is_none() == bent));
+    }
 }

@@ -139,6 +139,9 @@ pub(crate) struct SmoothnessOptions {
     /// Put the agents under the backstepping baseline with each of these time constants of its filter, in s, and give the slope
     #[arg(long = "filters", value_name = "SECONDS", value_delimiter = ',', value_parser = positive)]
     pub(crate) filters_s: Vec<f64>,
+    /// Print what is found as one JSON object, which `schema smoothness` describes
+    #[arg(long, conflicts_with = "table")]
+    pub(crate) json: bool,
     /// Draw what --orders or --filters found of the last scenario into this file, as SVG; an older one is replaced
     #[arg(long, value_name = "FILE.svg", requires = "comparison")]
     pub(crate) plot: Option<PathBuf>,

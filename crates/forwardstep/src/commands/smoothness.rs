@@ -5,12 +5,14 @@ use std::fs;
 use std::ops::ControlFlow;
 
 use forwardstep::check::smoothness::{
-    self as torque, Covered, Filters, LargestJump, OfOrder, Smoothness, filters, orders, traces,
+    self as input, Covered, Filters, LargestJump, OfOrder, Smoothness, filters, orders, traces,
 };
-use forwardstep::io::output::{EncodeError, plot_filters, plot_orders};
+use forwardstep::io::output::{
+    EncodeError, SmoothScenario, SmoothnessDocument, SmoothnessFound, names, plot_filters, plot_orders,
+};
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
-use forwardstep::sim::{AxisUnit, Progress, Setup};
+use forwardstep::sim::{Progress, Setup, Signal};
 
 use super::stop::Stop;
 use crate::arguments::SmoothnessOptions;
@@ -32,40 +34,53 @@ fn finish(options: &SmoothnessOptions, kinds: &Kinds, console: &mut Console) -> 
     // Whoever stops a run wants to hear nothing of it.
     let failed = |error: &dyn Display| stop.asked().unwrap_or_else(|| complain(&Plain::new(error.to_string())));
     let mut status = Status::Fine;
+    let mut documents = Vec::new();
     if options.table {
         head(options, console);
     }
     for name in &options.scenarios {
         let scenario = kinds.open_scenario(name).map_err(|error| complain(&error))?;
         let setup = &scenario.setup;
-        if !options.table {
+        let words = !options.json;
+        if words && !options.table {
             console.line(&scenario.title);
         }
-        let kept = if !options.orders.is_empty() {
+        let (kept, document) = if !options.orders.is_empty() {
             let found = orders(setup, &options.orders, &mut observer).map_err(|error| failed(&error))?;
-            print_orders(options, &scenario, &found, console);
+            if words {
+                print_orders(options, &scenario, &found, console);
+            }
             if let Some(path) = &options.plot {
                 let drawn = draw_orders(&scenario, &found, &mut observer).map_err(|error| failed(&error))?;
                 fs::write(path, drawn).map_err(|error| failed(&format!("{}: {error}", path.display())))?;
             }
-            found.iter().all(|of| of.kept)
+            (found.iter().all(|of| of.kept), SmoothnessFound::orders(setup, &found))
         } else if !options.filters_s.is_empty() {
             let found = filters(setup, &options.filters_s, &mut observer).map_err(|error| failed(&error))?;
-            print_filters(options, &scenario, &found, console);
+            if words {
+                print_filters(options, &scenario, &found, console);
+            }
             if let Some(path) = &options.plot {
-                let drawn = plot_filters(&found, unit_of(setup, found.jumps.first().map(|of| of.jump)));
+                let drawn = plot_filters(&found, &unit_of(setup, found.jumps.first().map(|of| of.jump)));
                 let drawn = drawn.map_err(|error| failed(&error))?;
                 fs::write(path, drawn).map_err(|error| failed(&format!("{}: {error}", path.display())))?;
             }
-            true
+            (true, SmoothnessFound::filters(setup, &found))
         } else {
-            let found = torque::smoothness(setup, &mut observer).map_err(|error| failed(&error))?;
-            print_jumps(options, &scenario, &found, console);
-            found.kept()
+            let found = input::smoothness(setup, &mut observer).map_err(|error| failed(&error))?;
+            if words {
+                print_jumps(options, &scenario, &found, console);
+            }
+            (found.kept(), SmoothnessFound::as_it_is(setup, &found))
         };
+        documents.push(SmoothScenario::new(&scenario, document));
         if !kept {
             status = Status::Missed;
         }
+    }
+    if options.json {
+        let document = SmoothnessDocument::new(env!("CARGO_PKG_VERSION"), documents);
+        console.line(document.to_json().map_err(|error| failed(&error))?);
     }
     Ok(status)
 }
@@ -89,10 +104,10 @@ fn draw_orders(
 ) -> Result<String, Box<dyn std::error::Error>> {
     // The first order jumps most plainly where its torque jumps most.
     let Some((at, orders)) = found.first().and_then(|of| of.jump).map(|at| (at, orders_of(found))) else {
-        return Ok(plot_orders(found, &[], 0.0, unit_of(&scenario.setup, None))?);
+        return Ok(plot_orders(found, &[], 0.0, &unit_of(&scenario.setup, None))?);
     };
     let traces = traces(&scenario.setup, &orders, at, AROUND_S, observer)?;
-    let drawn: Result<String, EncodeError> = plot_orders(found, &traces, at.t_s, unit_of(&scenario.setup, Some(at)));
+    let drawn: Result<String, EncodeError> = plot_orders(found, &traces, at.t_s, &unit_of(&scenario.setup, Some(at)));
     Ok(drawn?)
 }
 
@@ -103,7 +118,7 @@ fn orders_of(found: &[OfOrder]) -> Vec<usize> {
 fn print_orders(options: &SmoothnessOptions, scenario: &Scenario, found: &[OfOrder], console: &mut Console) {
     let setup = &scenario.setup;
     for of in found {
-        let (order, first) = (of.order, derivative(of.order - 1));
+        let (order, first) = (of.order, derivative(Signal::Torque, of.order - 1));
         let settled = of.settled_s.map_or_else(|| "–".into(), digits);
         let found = of.jump.map(|jump| [sized(setup, jump, order - 1), who(setup, jump), digits(jump.t_s)]);
         if options.table {
@@ -154,13 +169,21 @@ fn print_jumps(options: &SmoothnessOptions, scenario: &Scenario, found: &Smoothn
     }
     let kinds = found.kinds();
     for kind in kinds.iter().copied() {
+        // That of the reference dynamics, where all have the same.
+        let mut orders: Vec<usize> =
+            found.agents_of(kind).into_iter().map(|agent| setup.agents[agent].roots_per_s.len()).collect();
+        orders.sort_unstable();
+        orders.dedup();
+        let order = match (orders.as_slice(), kind.continuous) {
+            ([order], Some(_)) => order.to_string(),
+            _ => "–".into(),
+        };
         if kinds.len() > 1 && !options.table {
-            console.line(format_args!("  agents of order {}:", kind.derivatives));
+            let of = names::some_names(setup, &found.agents_of(kind));
+            console.line(format_args!("  {} of {of}:", letter(kind.signal)));
         }
         for r in 0..kind.derivatives {
-            let (name, promised) = (derivative(r), promised(kind, r));
-            // Where nothing is promised no order is known.
-            let order = kind.continuous.map_or_else(|| "–".into(), |_| kind.derivatives.to_string());
+            let (name, promised) = (derivative(kind.signal, r), promised(kind, r));
             let [size, who, at, place] = match found.largest(kind, r) {
                 Some(jump) if jump.size > 0.0 => {
                     let place = if jump.switched { "switch" } else { "delay" };
@@ -202,12 +225,23 @@ fn promised(kind: Covered, r: usize) -> &'static str {
     }
 }
 
+/// What an input is called in formulas.
+fn letter(signal: Signal) -> String {
+    match signal {
+        Signal::Torque => "τ".into(),
+        Signal::Thrust => "σ".into(),
+        Signal::AngularVelocity => "ω".into(),
+        other => other.name(),
+    }
+}
+
 /// τ, dτ/dt, d²τ/dt², ….
-fn derivative(r: usize) -> String {
+fn derivative(signal: Signal, r: usize) -> String {
+    let letter = letter(signal);
     match r {
-        0 => "τ".into(),
-        1 => "dτ/dt".into(),
-        r => format!("d{0}τ/dt{0}", superscript(r)),
+        0 => letter,
+        1 => format!("d{letter}/dt"),
+        r => format!("d{0}{letter}/dt{0}", superscript(r)),
     }
 }
 
@@ -216,32 +250,31 @@ fn superscript(n: usize) -> char {
 }
 
 fn sized(setup: &Setup, jump: LargestJump, r: usize) -> String {
-    in_unit(jump.size, unit_of(setup, Some(jump)), r)
+    in_unit(jump.size, &unit_of(setup, Some(jump)), r)
 }
 
 /// A derivative of order `r` of what has this unit.
 fn in_unit(value: f64, unit: &str, r: usize) -> String {
-    let per = match r {
+    let (unit, power) = unit.strip_suffix("/s").map_or((unit, r), |unit| (unit, r + 1));
+    let per = match power {
         0 => String::new(),
         1 => "/s".into(),
-        r => format!("/s{}", superscript(r)),
+        power => format!("/s{}", superscript(power)),
     };
     format!("{} {unit}{per}", digits(value))
 }
 
-/// N m about an axis, N along one.
-fn unit_of(setup: &Setup, jump: Option<LargestJump>) -> &'static str {
-    let axis = jump.and_then(|jump| setup.agents.get(jump.agent)?.robot.axes.get(jump.axis));
-    match axis.map(|axis| axis.unit) {
-        Some(AxisUnit::Metre | AxisUnit::One) => "N",
-        Some(AxisUnit::Radian) | None => "N m",
-    }
+/// That of an input.
+fn unit_of(setup: &Setup, jump: Option<LargestJump>) -> String {
+    jump.map_or_else(|| "N m".into(), |jump| names::unit(setup, jump.agent, jump.signal, jump.axis))
 }
 
 fn who(setup: &Setup, jump: LargestJump) -> String {
-    let Some(agent) = setup.agents.get(jump.agent) else { return "–".into() };
-    let axis = agent.robot.axes.get(jump.axis).map_or("", |axis| axis.name.as_str());
-    format!("{}, {axis}", agent.name)
+    let agent = names::agent_name(setup, jump.agent);
+    match names::entry_words(setup, jump.agent, jump.signal, jump.axis).as_str() {
+        "" => agent,
+        entry => format!("{agent}, {entry}"),
+    }
 }
 
 /// Three digits.

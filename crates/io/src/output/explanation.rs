@@ -12,9 +12,6 @@ use crate::scenario::Scenario;
 /// The format of the JSON document; it grows when fields change their meaning or vanish, not when some are added.
 pub const EXPLANATION_FORMAT: u32 = 1;
 
-/// More agents are not named one by one.
-const MOST_NAMES: usize = 8;
-
 /// A piece of an explanation in words, for a terminal.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TextLine {
@@ -32,7 +29,7 @@ pub enum TextLine {
 pub fn explanation_lines(setup: &Setup, explanation: &Explanation) -> Vec<TextLine> {
     let mut lines = Vec::new();
     for design in &explanation.designs {
-        lines.push(TextLine::Agents(some_names(setup, &design.agents)));
+        lines.push(TextLine::Agents(names::some_names(setup, &design.agents)));
         for section in &design.sections {
             lines.push(TextLine::Heading(section.subject.heading()));
             lines.extend(section.lines.iter().map(|line| match line {
@@ -44,20 +41,11 @@ pub fn explanation_lines(setup: &Setup, explanation: &Explanation) -> Vec<TextLi
     lines
 }
 
-/// Agents by name, as many as are read.
-pub(super) fn some_names(setup: &Setup, agents: &[usize]) -> String {
-    let names: Vec<String> = agents.iter().take(MOST_NAMES).map(|agent| names::agent_name(setup, *agent)).collect();
-    match agents.len().saturating_sub(MOST_NAMES) {
-        0 => names.join(", "),
-        more => format!("{}, and {more} more", names.join(", ")),
-    }
-}
-
 /// An explanation in LaTeX: a section of equations for each design, with the words as comments. It needs amsmath.
 pub fn explanation_latex(setup: &Setup, explanation: &Explanation) -> String {
     let mut text = String::from("% needs \\usepackage{amsmath}\n");
     for design in &explanation.designs {
-        text += &format!("\n{}", comment(&some_names(setup, &design.agents)));
+        text += &format!("\n{}", comment(&names::some_names(setup, &design.agents)));
         for section in &design.sections {
             text += &format!("\\subsection*{{{}}}\n", section.subject.heading());
             for line in &section.lines {
@@ -122,7 +110,7 @@ pub(crate) fn explanation_markup(setup: &Setup, explanation: &Explanation) -> Ma
             h2 { "Why it works" }
             @for design in &explanation.designs {
                 details.card open[explanation.designs.len() == 1] {
-                    summary { strong { (some_names(setup, &design.agents)) } @if let Some([before, after]) = design.degrees {
+                    summary { strong { (names::some_names(setup, &design.agents)) } @if let Some([before, after]) = design.degrees {
                         span.by { "a cascade of degree " (before) ", reduced to " (after) }
                     } }
                     @for part in &design.sections {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::number;
 
-/// V of one agent under (6)–(7) from its first sample to the end, and what each cause put in, J: the terms add up to the change of V, but
+/// V of one agent from its first sample to the end, and what each cause put in, in J or the unit of its V: the terms add up to the change of V, but
 /// for the residual. Not from the paper, derived for this software.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Injected {
@@ -17,7 +17,7 @@ pub struct Injected {
     /// V at the end.
     #[serde(deserialize_with = "number::or_nan")]
     pub end_j: f64,
-    /// −∫ sᵀ(K + D)s, which is all that the proof leaves.
+    /// What the proof leaves: −∫ sᵀ(K + D)s under (6)–(7).
     #[serde(deserialize_with = "number::or_nan")]
     pub dissipated_j: f64,
     /// By commands and references that are held between samples, and by commands that come late.
@@ -35,7 +35,7 @@ pub struct Injected {
     /// By external torques.
     #[serde(deserialize_with = "number::or_nan")]
     pub pushed_j: f64,
-    /// By estimates that are stepped at samples.
+    /// By estimates that are stepped at samples; of agents by themselves that counts as held.
     #[serde(deserialize_with = "number::or_nan")]
     pub adaptation_j: f64,
     /// The change of V less all of these.

@@ -49,6 +49,7 @@ mod residuals;
 mod restore;
 mod restore_error;
 mod sampling_limit;
+mod smoothness;
 pub mod summary;
 mod table;
 mod timeline;
@@ -80,6 +81,10 @@ pub use residuals::{residual_document, residual_lines};
 pub use restore::{Remark, SavedRun};
 pub use restore_error::{RestoreError, SummaryError, TableError};
 pub use sampling_limit::{Accepted, Deployment, SamplingLimit, Trial};
+pub use smoothness::{
+    FilteredInput, LargestInputJump, NothingSaid, SMOOTHNESS_FORMAT, SmoothInput, SmoothOrder, SmoothScenario,
+    SmoothnessDocument, SmoothnessFound,
+};
 
 const PARQUET: &str = "trajectory.parquet";
 const CSV: &str = "trajectory.csv";

@@ -14,6 +14,18 @@ pub fn agent_name(setup: &Setup, agent: usize) -> String {
     setup.agents.get(agent).map_or_else(|| format!("agent-{}", agent + 1), |a| a.name.clone())
 }
 
+/// More agents are not named one by one.
+const MOST_NAMES: usize = 8;
+
+/// Agents by name, as many as are read.
+pub fn some_names(setup: &Setup, agents: &[usize]) -> String {
+    let names: Vec<String> = agents.iter().take(MOST_NAMES).map(|agent| agent_name(setup, *agent)).collect();
+    match agents.len().saturating_sub(MOST_NAMES) {
+        0 => names.join(", "),
+        more => format!("{}, and {more} more", names.join(", ")),
+    }
+}
+
 /// The name of an axis of an agent: the joint's name for arms, a number from one for point masses.
 pub fn axis_name(setup: &Setup, agent: usize, axis: usize) -> String {
     let robot = setup.agents.get(agent).map(|a| &a.robot);

@@ -4,7 +4,7 @@ use forwardstep_check::derivation::residual::{Largest, ROUNDING, Residual};
 use forwardstep_sim::Setup;
 use serde_json::{Value, json};
 
-use super::explanation::{TextLine, some_names};
+use super::explanation::TextLine;
 use super::formula::unicode;
 use super::names;
 use super::report::text::number as number_words;
@@ -13,7 +13,7 @@ use super::report::text::number as number_words;
 pub fn residual_lines(setup: &Setup, found: &[(Vec<usize>, Vec<Residual>)]) -> Vec<TextLine> {
     let mut lines = Vec::new();
     for (agents, residuals) in found {
-        lines.push(TextLine::Agents(some_names(setup, agents)));
+        lines.push(TextLine::Agents(names::some_names(setup, agents)));
         if residuals.is_empty() {
             lines.push(TextLine::Words("Nothing is derived that could be evaluated.".into()));
         }

@@ -14,6 +14,7 @@ use super::driven::Driven;
 use super::error::SetupError;
 use super::frictions::{Frictions, is_acted_on};
 use super::guide::Guide;
+use super::injected::Energy;
 use super::members::batches;
 use super::pushes::Pushes;
 use super::recipes::built;
@@ -24,7 +25,7 @@ use super::valid::{message_len, validate};
 use crate::engine::{DelaySystem, Happened, Heard, Port, Refuted};
 use crate::leader::Following;
 use crate::recording::{ClippedSamples, Drive, GainRates, SampleTaken, Signal};
-use crate::setup::{Exchange, Setup};
+use crate::setup::{Control, Exchange, Setup};
 
 /// All populations and where their blocks stand.
 pub(crate) struct ClosedLoop<'a> {
@@ -355,6 +356,33 @@ impl<'a> ClosedLoop<'a> {
             followers.for_each(|(_, signals)| signals.extend((0..self.axes).map(|axis| (Signal::Error, axis))));
         }
         signals
+    }
+
+    /// The inputs of every agent's plant, and where each stands in a row of [`ClosedLoop::record`].
+    pub(crate) fn inputs(&self, agents: usize) -> Vec<Vec<(Signal, Range<usize>)>> {
+        let of = |port: &Port| self.blocks.iter().find(|block| block.degree.contains(&port.degree));
+        let inputs = |port| of(port).map_or_else(Vec::new, |block| block.columns.inputs());
+        self.ports.iter().take(agents).map(inputs).collect()
+    }
+
+    /// Traces commands under digital control to what they came from.
+    pub(crate) fn trace(&mut self, control: &Control) {
+        self.blocks.iter_mut().for_each(|block| block.columns.trace(control));
+    }
+
+    /// Hands V and the parts of V̇ of every agent whose commands are traced to `each`, by its number.
+    pub(crate) fn energies(&mut self, t_s: f64, x: &[f64], heard: &Heard, each: &mut dyn FnMut(usize, Energy)) {
+        let heard = self.sampling.as_ref().map_or(heard, Sampling::heard);
+        self.pushes.evaluate(t_s, x, &mut self.blocks);
+        for block in &mut self.blocks {
+            let inputs = block.inputs(heard, self.pushes.external());
+            block.columns.energies(t_s, &x[block.state.clone()], inputs, each);
+        }
+    }
+
+    /// Whether set-valued signs are set in continuous time.
+    pub(crate) fn has_signs(&self) -> bool {
+        self.slider.is_some()
     }
 
     /// Works out what acts on all agents from outside, for [`ClosedLoop::external_on`].

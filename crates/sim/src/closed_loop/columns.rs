@@ -9,6 +9,7 @@ use forwardstep_core::controller::Trouble;
 use forwardstep_core::sampled::{Recipe, Sampled};
 
 use super::error::SetupError;
+use super::injected::Energy;
 use super::sampler::Digital;
 use crate::recording::{GainRates, Signal};
 use crate::setup::{AgentSetup, Control, Setup};
@@ -49,6 +50,10 @@ pub(crate) trait Columns {
     fn command(&mut self, now_s: f64, inputs: Inputs<'_>, x: &mut [f64]);
     /// Hands every agent under digital control to `each`.
     fn taken(&self, each: &mut dyn FnMut(&Digital));
+    /// From now on commands under digital control are traced to what they came from, where [`Columns::energies`] asks for it.
+    fn trace(&mut self, control: &Control);
+    /// Hands V and the parts of V̇ of every agent whose commands are traced to `each`, by its number.
+    fn energies(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, each: &mut dyn FnMut(usize, Energy));
     /// Applies the torques that were commanded last.
     fn apply(&mut self);
     /// Makes the actuators hold these commands, agent by agent.
@@ -71,6 +76,8 @@ pub(crate) trait Columns {
     fn add_sign_terms(&mut self, selection: &[f64], dx: &mut [f64]);
     /// Signals and axes of one member, in the order in which they are recorded.
     fn signals(&self) -> Vec<(Signal, usize)>;
+    /// What the inputs of one member's plant are, and where each stands among its [`Columns::signals`].
+    fn inputs(&self) -> Vec<(Signal, Range<usize>)>;
     /// Which member, signal and axis a state of the block is.
     fn locate(&self, state: usize) -> (usize, Signal, usize);
     /// The rates that its gains give to a member, the one with the number `agent` among all, in the state `x`, which has just

@@ -12,6 +12,7 @@ use forwardstep_core::sampled::{Recipe, Sampled};
 
 use super::columns::{Columns, Inputs};
 use super::error::SetupError;
+use super::injected::Energy;
 use super::sampler::Digital;
 use crate::leader::Leader;
 use crate::recording::{GainRates, Signal};
@@ -86,6 +87,11 @@ impl Columns for Guide {
 
     fn taken(&self, _: &mut dyn FnMut(&Digital)) {}
 
+    // A leader has no command.
+    fn trace(&mut self, _: &Control) {}
+
+    fn energies(&mut self, _: f64, _: &[f64], _: Inputs<'_>, _: &mut dyn FnMut(usize, Energy)) {}
+
     fn apply(&mut self) {}
 
     fn hold(&mut self, _: &[f64]) {}
@@ -122,6 +128,10 @@ impl Columns for Guide {
     fn add_sign_terms(&mut self, _: &[f64], _: &mut [f64]) {}
 
     fn signals(&self) -> Vec<(Signal, usize)> {
+        Vec::new()
+    }
+
+    fn inputs(&self) -> Vec<(Signal, Range<usize>)> {
         Vec::new()
     }
 

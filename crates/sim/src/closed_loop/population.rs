@@ -25,6 +25,7 @@ use super::assembly::Assembly;
 use super::columns::{Columns, Inputs};
 use super::error::SetupError;
 use super::gain_rates::gain_rates;
+use super::injected::Energy;
 use super::recipes::used;
 use super::references::{AnyReference, Transmits, reference};
 use super::robot_batch::{Drive, Layout, Member, RobotBatch};
@@ -304,6 +305,11 @@ where
         self.sampler.iter().flat_map(Sampler::agents).for_each(each);
     }
 
+    // Robots in lanes have an account of their own, from rows alone.
+    fn trace(&mut self, _: &Control) {}
+
+    fn energies(&mut self, _: f64, _: &[f64], _: Inputs<'_>, _: &mut dyn FnMut(usize, Energy)) {}
+
     fn apply(&mut self) {
         if let Some(sampler) = &mut self.sampler {
             sampler.apply();
@@ -382,6 +388,12 @@ where
             axes(Signal::Dissipation, 1);
         }
         signals
+    }
+
+    fn inputs(&self) -> Vec<(Signal, Range<usize>)> {
+        let signals = self.signals();
+        let first = signals.iter().position(|(signal, _)| *signal == Signal::Torque).unwrap_or(signals.len());
+        vec![(Signal::Torque, first..first + self.robots.layout.m)]
     }
 
     fn locate(&self, state: usize) -> (usize, Signal, usize) {

@@ -108,6 +108,11 @@ impl Digital {
         (self.samples, self.controller.clipped())
     }
 
+    /// The plant's output as the sensors saw it at the last sample; velocities of their own, where they are measured.
+    pub(crate) fn output(&self) -> &[f64] {
+        &self.output
+    }
+
     /// What the actuators hold.
     pub(crate) fn held(&self) -> &[f64] {
         &self.held

@@ -16,6 +16,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use forwardstep_core::LengthError;
+use forwardstep_core::agent::VelocityFilter;
 use forwardstep_core::controller::{Asked, Controller, Given, Jet, Trouble, Truth};
 use forwardstep_core::plant::{Plant, total};
 use forwardstep_core::reference::Heard;
@@ -24,10 +25,11 @@ use forwardstep_core::signal::Block;
 
 use super::columns::{Columns, Inputs};
 use super::error::SetupError;
+use super::injected::{Energy, Outside, Pair, Tracing};
 use super::recipes::used;
 use super::sampler::Digital;
 use crate::recording::{GainRates, Signal};
-use crate::setup::{AgentSetup, Control, Setup};
+use crate::setup::{AgentSetup, Control, Setup, VelocitySensor};
 use crate::trajectory::Pieces;
 
 /// A plant and its controller.
@@ -38,6 +40,8 @@ pub(crate) struct Solo<C: Controller> {
     target: Option<Target>,
     effort_limits: Option<Vec<f64>>,
     digital: Option<Digital>,
+    /// What commands came from, where that is asked for.
+    tracing: Option<Tracing>,
     layout: Layout,
     plant_scratch: <C::Plant as Plant>::Scratch,
     scratch: C::Scratch,
@@ -125,6 +129,7 @@ impl<C: Controller> Solo<C> {
             target,
             effort_limits,
             digital: None,
+            tracing: None,
             layout,
             now,
             shown: Vec::new(),
@@ -227,6 +232,44 @@ impl<C: Controller> Solo<C> {
         Ok(())
     }
 
+    /// Traces the command of a sample that has just been taken, if that is asked for.
+    fn trace_command(&mut self, now_s: f64, own: &[f64], inputs: Inputs<'_>) -> Result<(), LengthError> {
+        let (Some(tracing), Some(digital)) = (&mut self.tracing, &self.digital) else { return Ok(()) };
+        let mut jets = self.now.jets.clone();
+        if let Some(target) = &self.target {
+            target.trajectory.trajectory().jets(now_s, &mut jets);
+        }
+        let outside = Outside { degree: inputs.degree, sums: inputs.sums, jets: &jets };
+        let mut pair = Pair {
+            plant: &self.plant,
+            controller: &self.controller,
+            plant_scratch: &mut self.plant_scratch,
+            scratch: &mut self.scratch,
+            lengths: [self.now.input.len(), self.now.shown.len(), self.layout.controller],
+        };
+        tracing.sampled(&mut pair, now_s, own, digital.output(), outside, self.layout.m)
+    }
+
+    fn try_energy(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>) -> Result<Option<Energy>, LengthError> {
+        if self.tracing.is_none() {
+            return Ok(None);
+        }
+        self.look(t_s, x)?;
+        self.control(x, inputs)?;
+        let Some(tracing) = &self.tracing else { return Ok(None) };
+        let own = &x[self.layout.plant..self.layout.controller_end()];
+        let outside = Outside { degree: inputs.degree, sums: inputs.sums, jets: &self.now.jets };
+        let mut pair = Pair {
+            plant: &self.plant,
+            controller: &self.controller,
+            plant_scratch: &mut self.plant_scratch,
+            scratch: &mut self.scratch,
+            lengths: [self.now.input.len(), self.now.shown.len(), self.layout.controller],
+        };
+        let acting = [&self.now.input[..], inputs.external.unwrap_or_default()];
+        tracing.energy(&mut pair, [&self.now.state, own], outside, acting).map(Some)
+    }
+
     fn all_signals(&self) -> Vec<Block> {
         let mut blocks = self.plant.states();
         blocks.extend(self.plant.inputs());
@@ -304,6 +347,9 @@ impl<C: Controller> Columns for Solo<C> {
         if let Some(digital) = &mut self.digital {
             digital.sense(t_s, &self.now.output, sent);
         }
+        if let Some(tracing) = &mut self.tracing {
+            tracing.exact.copy_from_slice(&self.now.output);
+        }
     }
 
     fn recipes(&self, setup: &Setup, x: &[f64]) -> Result<Vec<(usize, Recipe)>, SetupError> {
@@ -338,6 +384,25 @@ impl<C: Controller> Columns for Solo<C> {
             }
             first += count;
         }
+        let traced = self.trace_command(now_s, &x[plant..end], inputs);
+        debug_assert_eq!(traced, Ok(()), "lengths are fixed when the agent is built");
+    }
+
+    fn trace(&mut self, control: &Control) {
+        let filtered = match control.sensors.velocity {
+            VelocitySensor::Filtered { cut_off_hz } if self.controller.reads(Signal::Velocity) => Some(cut_off_hz),
+            VelocitySensor::Filtered { .. } | VelocitySensor::Measured => None,
+        };
+        let filter = filtered.and_then(|hz| VelocityFilter::new(core::f64::consts::TAU * hz, self.layout.m).ok());
+        self.tracing = Some(Tracing::new(filter, self.now.output.len(), self.now.input.len()));
+    }
+
+    fn energies(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, each: &mut dyn FnMut(usize, Energy)) {
+        let energy = self.try_energy(t_s, x, inputs);
+        debug_assert!(energy.is_ok(), "lengths are fixed when the agent is built");
+        if let Ok(Some(energy)) = energy {
+            each(self.agent, energy);
+        }
     }
 
     fn taken(&self, each: &mut dyn FnMut(&Digital)) {
@@ -347,6 +412,9 @@ impl<C: Controller> Columns for Solo<C> {
     fn apply(&mut self) {
         if let Some(digital) = &mut self.digital {
             digital.apply();
+        }
+        if let Some(tracing) = &mut self.tracing {
+            tracing.applied();
         }
     }
 
@@ -413,6 +481,16 @@ impl<C: Controller> Columns for Solo<C> {
     fn signals(&self) -> Vec<(Signal, usize)> {
         let axes = |(signal, count)| (0..count).map(move |axis| (signal, axis));
         self.all_signals().into_iter().flat_map(axes).collect()
+    }
+
+    fn inputs(&self) -> Vec<(Signal, Range<usize>)> {
+        let mut at = self.layout.plant;
+        let place = |(signal, count): Block| {
+            let first = at;
+            at += count;
+            (signal, first..at)
+        };
+        self.plant.inputs().into_iter().map(place).collect()
     }
 
     fn locate(&self, state: usize) -> (usize, Signal, usize) {

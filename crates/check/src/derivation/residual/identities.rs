@@ -32,6 +32,8 @@ enum Rest {
     Form(Form),
     /// The rate of an estimate, which has entries of its own.
     Estimate,
+    /// The same of lengths, (82).
+    Kinematic,
     /// Known from the start not to be evaluated.
     Missing(Missing),
 }
@@ -42,6 +44,7 @@ impl Identity {
         match &self.rest {
             Rest::Form(form) => at.form(form),
             Rest::Estimate => at.estimate(),
+            Rest::Kinematic => at.kinematic_estimate(),
             Rest::Missing(missing) => Err(*missing),
         }
     }
@@ -57,7 +60,7 @@ struct Frame {
     followed: Option<Quantity>,
     /// The letters in which variables are made.
     letters: [Letter; 2],
-    /// z̈ as the derivative of an integrated ż, where weights are constant.
+    /// z̈ as the derivative of a ż that holds an integrated variable, where weights are constant.
     integrated: Option<Form>,
 }
 
@@ -72,6 +75,8 @@ impl Frame {
         let constant = matches!(case.led, Led::PureIntegral(_)) && case.weights() == AtTime::Now;
         // Nothing that is heard stands in ż itself.
         let dz = case.dynamics().filter(|_| constant).map(|dynamics| dynamics.integrated().dz);
+        // Theorems 8 and 9 take links as constant, and what is heard of the motion of others is then known with all of its derivatives.
+        let dz = dz.or_else(|| Some(case.smooth().filter(|_| case.weights() == AtTime::Now)?.realised().right));
         let integrated = dz.and_then(|dz| dz.differentiated(Links::Constant).ok());
         Frame { plant: upper.plant, error, followed, letters: [upper.state, upper.input], integrated }
     }
@@ -131,9 +136,10 @@ pub(super) fn identities(case: &Case<'_>) -> Vec<Identity> {
             list.adaptation(case);
             in_order(list.found)
         }
-        (_, Step::Outside(_))
-        | (Led::Outside(_, None) | Led::Refuted(..), _)
-        | (_, Step::Thrust(ThrustStep::Continuous, _)) => Vec::new(),
+        (_, Step::Outside(_)) | (Led::Outside(_, None) | Led::Refuted(..), _) => Vec::new(),
+        (_, Step::Thrust(ThrustStep::Continuous, _)) => {
+            case.dynamics().map_or_else(Vec::new, |dynamics| continuous(case, &dynamics, notation))
+        }
         (_, Step::Robot { .. } | Step::PositionOnly(_) | Step::Thrust(..) | Step::Chain(..)) => {
             let found = case.dynamics().map_or_else(Vec::new, |dynamics| linear(case, &dynamics, notation));
             in_order(found)
@@ -218,6 +224,7 @@ impl List {
         for (formula, place) in adaptation::of(case, &self.notation) {
             let rest = match (&case.step, place) {
                 (Step::Robot { .. } | Step::TaskSpace(_), "(7)" | "(81)") => Rest::Estimate,
+                (Step::TaskSpace(_), "(82)") => Rest::Kinematic,
                 (Step::PositionOnly([_, rate]), "after (a9)") if is_rate_of(&formula, "y") => {
                     let y = Quantity::own(Letter::Filter);
                     let number = |number| Polynomial::number(number);
@@ -305,6 +312,29 @@ fn reductions(case: &Case<'_>, (dynamics, upper): (&Dynamics, &Upper), places: &
     {
         list.system(Subject::Laplacian, &disturbed, "");
     }
+}
+
+/// (46) and its averages: no z, and no s.
+fn continuous(case: &Case<'_>, dynamics: &Dynamics, notation: Notation) -> Vec<Identity> {
+    let upper = dynamics.upper().undisturbed();
+    let frame = Frame {
+        // Every derivative of x up to the last has a value.
+        plant: upper.order + 1,
+        error: Combination::default(),
+        followed: None,
+        letters: [upper.state, upper.input],
+        integrated: None,
+    };
+    let mut list = List::new(notation, frame);
+    let x = Quantity::own(Letter::Position);
+    list.equation(Subject::ReferenceDynamics, (x, upper.order), &upper.right, "(46)");
+    if let Some(from) = case.averages_from()
+        && let Some(roots) = case.roots.all_real()
+        && let Some(reduced) = upper.reduced(chain(roots, from, case.roots_of_all))
+    {
+        list.system(Subject::Laplacian, &reduced, "");
+    }
+    list.found
 }
 
 /// (94), (97)–(107).

@@ -2,7 +2,7 @@
 //!
 //! - `identities`: which equations, each as one form that is to be zero.
 //! - `moment`: the values of letters at one instant of one agent.
-//! - `robot`, `spacecraft`, `plants`: nonlinear terms and matrices.
+//! - `robot`, `task_space`, `spacecraft`, `plants`: nonlinear terms and matrices.
 //!
 //! An equation is brought to q, q̇, …, q^(k) for a plant of order k, z, …, z^(ℓ), s and ṡ by exact arithmetic, with p^(k−1) q = z + s above;
 //! what the reductions absorb cancels there. Every number then comes from a state, or from the rate of one, as the closed loop
@@ -13,6 +13,7 @@ mod moment;
 mod plants;
 mod robot;
 mod spacecraft;
+mod task_space;
 
 use std::fmt;
 
@@ -78,6 +79,8 @@ pub enum Missing {
     Limited,
     /// Something acts from outside that the equation does not speak of.
     Pushed,
+    /// An inner loop stands between what is asked for and what the plant does.
+    InnerLoop,
     /// Both sides are the same by what their letters stand for.
     Definition,
     /// What is followed has a kink there.
@@ -94,6 +97,7 @@ impl fmt::Display for Missing {
             Missing::Term => "it holds a term that is known to the law alone",
             Missing::Limited => "limits are enforced, which may change what the law asks for",
             Missing::Pushed => "something acts from outside that it does not speak of",
+            Missing::InnerLoop => "an inner loop brings about what it takes to be there at once",
             Missing::Definition => "both sides are the same by definition of their letters",
             Missing::Kink => "what is followed has a kink there",
             Missing::NoRow => "the run made no row",

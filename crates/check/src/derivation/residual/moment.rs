@@ -4,10 +4,11 @@ use std::ops::Range;
 
 use forwardstep_core::controller::Jet;
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{Column, Moment, Signal};
+use forwardstep_sim::{Column, Moment, Signal, StateRate};
 
 use super::super::case::{Case, Led, Step};
 use super::super::form::{Combination, Form, Letter, Operator, Quantity, Term, Vertex, number};
+use super::super::formula::At as AtTime;
 use super::Missing;
 use super::robot::Model;
 
@@ -71,6 +72,13 @@ fn add(to: &mut Vector, factor: f64, vector: &[[f64; 2]]) {
     }
 }
 
+/// A block of states, or the rates of one.
+fn block(states: &[StateRate], wanted: Signal, rates: bool) -> Option<Vec<f64>> {
+    let states = states.iter().filter(|state| state.signal == wanted);
+    let values: Vec<f64> = states.map(|state| if rates { state.rate } else { state.value }).collect();
+    (!values.is_empty()).then_some(values)
+}
+
 /// One vector less another.
 fn less(mut one: Vector, other: &[[f64; 2]]) -> Vector {
     add(&mut one, -1.0, other);
@@ -99,9 +107,7 @@ impl<'c, 'a> At<'c, 'a> {
 
     /// A block of states, or the rates of one.
     pub(super) fn state(&self, wanted: Signal, rates: bool) -> Option<Vec<f64>> {
-        let states = self.moment.states.iter().filter(|state| state.signal == wanted);
-        let values: Vec<f64> = states.map(|state| if rates { state.rate } else { state.value }).collect();
-        (!values.is_empty()).then_some(values)
+        block(self.moment.states, wanted, rates)
     }
 
     /// The k-th derivative in a chain of states, the last of which has a rate.
@@ -178,7 +184,7 @@ impl<'c, 'a> At<'c, 'a> {
     }
 
     /// The k-th derivative of what is followed, unless it jumps at this instant.
-    fn jet(&self, trajectory: Option<&Trajectory>, k: usize) -> Result<Vector, Missing> {
+    pub(super) fn jet(&self, trajectory: Option<&Trajectory>, k: usize) -> Result<Vector, Missing> {
         let (trajectory, t_s) = (trajectory.ok_or(Missing::Neighbour)?, self.moment.t_s);
         let near_s = KINK * t_s.abs().max(1.0);
         let [now, before, after] = [t_s, t_s - near_s, t_s + near_s].map(|t_s| jets(trajectory, t_s));
@@ -230,7 +236,7 @@ impl<'c, 'a> At<'c, 'a> {
             sums.map(|sums| exact(sums.to_vec())).ok_or(Missing::Neighbour)
         };
         match (quantity.letter, quantity.vertex, k) {
-            (Letter::Position, Vertex::Neighbour, k) => heard(k),
+            (Letter::Position, Vertex::Neighbour, k) => heard(k).or_else(|_| self.at_once(k)),
             (Letter::Coupled, _, 0) => {
                 let mut sum = Vector::new();
                 add(&mut sum, degree, &exact(self.position(0)?));
@@ -243,6 +249,32 @@ impl<'c, 'a> At<'c, 'a> {
                 Ok(sum)
             }
         }
+    }
+
+    /// Σ_j w_ij of the k-th derivative of q_j beyond what is transmitted, on a fixed graph on which no message is late: from the states of the others
+    /// and their rates.
+    fn at_once(&self, k: usize) -> Result<Vector, Missing> {
+        let setup = self.case.setup;
+        let network = &setup.network;
+        let edges = network.schedule.constant_graph().ok_or(Missing::Neighbour)?;
+        if self.case.heard() != AtTime::Now || !network.coupling.is_linear() {
+            return Err(Missing::Neighbour);
+        }
+        let axes = setup.agents[self.moment.agent].robot.axes.len();
+        let mut sum = exact(vec![0.0; axes]);
+        for edge in edges.iter().filter(|edge| edge.to == self.moment.agent) {
+            let weight = edge.weight.constant().ok_or(Missing::Neighbour)?;
+            let moved = match self.moment.agents.get(edge.from) {
+                Some(states) => {
+                    let (signal, rates) = if k == 0 { (Signal::Position, false) } else { (Signal::Velocity, k == 2) };
+                    let found = block(states, signal, rates).filter(|_| k <= 2);
+                    exact(found.ok_or(Missing::Neighbour)?)
+                }
+                None => self.jet(leader(self.case), k)?,
+            };
+            add(&mut sum, weight, &moved);
+        }
+        Ok(sum)
     }
 
     /// A form that is to be zero.
@@ -305,6 +337,7 @@ impl<'c, 'a> At<'c, 'a> {
             }
             (Term::MassEstimateRate | Term::MassErrorRate, 0) => self.mass_times_rate(term),
             (Term::Gravity | Term::Regressor | Term::RegressorError, 0) => self.robot_term(term),
+            (Term::TaskForce | Term::JointReference, _) => self.task_term(term, k),
             (
                 Term::DesiredRate
                 | Term::DesiredAcceleration
@@ -327,8 +360,6 @@ impl<'c, 'a> At<'c, 'a> {
                 | Term::Weight
                 | Term::MassEstimate
                 | Term::MassError
-                | Term::TaskForce
-                | Term::JointReference
                 | Term::Drift
                 | Term::Actuation
                 | Term::ChainRegressorError

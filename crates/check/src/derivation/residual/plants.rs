@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use forwardstep_core::attitude::{cross, rotate};
 use forwardstep_core::plant::{Formulas, Terms};
-use forwardstep_sim::{AgentSetup, ChainModel, Signal, VehicleModel};
+use forwardstep_sim::{AgentSetup, ChainModel, RotorcraftModel, Signal, VehicleModel};
 
 use super::super::case::{Step, ThrustStep};
 use super::super::form::{Term, number};
@@ -60,10 +60,15 @@ impl At<'_, '_> {
     }
 
     fn vehicle(&self) -> Result<(f64, f64), Missing> {
-        let robot = &self.case.setup.agents[self.moment.agent].robot;
-        // A rotorcraft brings its angular velocity about by torques, and not at once.
-        let model = robot.kind.downcast::<VehicleModel>().ok_or(Missing::Term)?;
-        Ok((*robot.theta.first().ok_or(Missing::Term)?, model.gravity))
+        let kind = &self.case.setup.agents[self.moment.agent].robot.kind;
+        let vehicle = kind.downcast().map(|model: &VehicleModel| model.gravity);
+        let gravity = vehicle.or_else(|| kind.downcast().map(|model: &RotorcraftModel| model.gravity));
+        Ok((self.mass()?, gravity.ok_or(Missing::Term)?))
+    }
+
+    /// Whether torques bring its angular velocity about, and not at once.
+    fn is_rotorcraft(&self) -> bool {
+        self.case.setup.agents[self.moment.agent].robot.kind.is::<RotorcraftModel>()
     }
 
     /// g e₃ of a vehicle.
@@ -78,15 +83,22 @@ impl At<'_, '_> {
 
     /// x⃛ = −(σ̇ R e₃ + σ R S(ω) e₃)/m, less that of an offset.
     pub(super) fn jerk(&self) -> Result<Vector, Missing> {
-        let (mass, _) = self.vehicle()?;
+        if self.is_rotorcraft() {
+            return Err(Missing::InnerLoop);
+        }
         if self.is_pushed() {
             return Err(Missing::Pushed);
         }
+        self.jerk_with(Signal::AngularVelocity)
+    }
+
+    /// The same with the angular velocity that stands in this column, whatever pushes.
+    fn jerk_with(&self, angular_velocity: Signal) -> Result<Vector, Missing> {
+        let (mass, _) = self.vehicle()?;
         let block = |signal, rates| self.state(signal, rates).ok_or(Missing::Term);
         let (sigma, d_sigma) = (block(Signal::Thrust, false)?, block(Signal::Thrust, true)?);
         let q = *block(Signal::Attitude, false)?.first_chunk().ok_or(Missing::Term)?;
-        let omega =
-            self.recorded(Signal::AngularVelocity).and_then(|omega| omega.first_chunk()).ok_or(Missing::Term)?;
+        let omega = self.recorded(angular_velocity).and_then(|omega| omega.first_chunk()).ok_or(Missing::Term)?;
         let down = [0.0, 0.0, 1.0];
         let (along, turned) = (rotate(q, down), rotate(q, cross(*omega, down)));
         let offset = self.target().unwrap_or_else(|| vec![[0.0; 5]; 3]);
@@ -111,7 +123,8 @@ impl At<'_, '_> {
         let factor = match term {
             Term::Weight => return Ok(exact(weight)),
             Term::Input => {
-                let moved = driven(self.jerk()?, self.moved(2)?);
+                let moved = if self.is_rotorcraft() { self.asked()? } else { [self.jerk()?, self.moved(2)?] };
+                let moved = driven(moved[0].clone(), moved[1].clone());
                 return Ok(moved.into_iter().map(|entry| entry.map(|x| mass * x)).collect());
             }
             Term::MassEstimate => exact(self.mass_estimated()?),
@@ -119,6 +132,18 @@ impl At<'_, '_> {
         };
         let w = driven(exact(self.reference(2)?), exact(self.reference(1)?));
         Ok(w.into_iter().map(|[value, size]| [factor[0][0] * value, factor[0][1] * size]).collect())
+    }
+
+    /// x⃛ and ẍ of a rotorcraft as its thrust and the angular velocity asked for would make them, with no push, less those of an offset.
+    fn asked(&self) -> Result<[Vector; 2], Missing> {
+        let (mass, gravity) = self.vehicle()?;
+        let block = |signal| self.state(signal, false).ok_or(Missing::Term);
+        let (sigma, q) = (block(Signal::Thrust)?, *block(Signal::Attitude)?.first_chunk().ok_or(Missing::Term)?);
+        let offset = self.target().unwrap_or_else(|| vec![[0.0; 5]; 3]);
+        let each = rotate(q, [0.0, 0.0, 1.0]).into_iter().zip([0.0, 0.0, gravity]).zip(&offset);
+        let terms = each.map(|((along, weight), jet)| [weight, -sigma[0] * along / mass, -jet[2]]);
+        let ddx = terms.map(|terms| [terms.iter().sum(), terms.iter().map(|term: &f64| term.abs()).sum()]).collect();
+        Ok([self.jerk_with(Signal::AngularVelocityWanted)?, ddx])
     }
 
     fn mass_estimated(&self) -> Result<[f64; 1], Missing> {

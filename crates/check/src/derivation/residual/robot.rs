@@ -1,12 +1,13 @@
 //! Robots under (6)–(7): M, C, g, D and Y at an instant.
 
 use forwardstep_core::robot::TwoVelocity;
-use forwardstep_sim::{AgentSetup, DynamicsAt, Evaluator, Signal, SpacecraftModel};
+use forwardstep_sim::{AgentSetup, DynamicsAt, Evaluator, Signal, SpacecraftModel, TaskSpaceLaw};
 
 use super::super::case::Step;
 use super::super::form::{Operator, Term};
 use super::Missing;
 use super::moment::{At, Vector, exact};
+use super::task_space::Tip;
 use crate::practical::Gains;
 
 /// What an agent's nonlinear terms are computed with.
@@ -24,6 +25,8 @@ pub(super) struct Robot<'a> {
     agent: &'a AgentSetup,
     gains: Option<Gains>,
     evaluator: Box<dyn Evaluator>,
+    /// Of a robot in task space.
+    pub(super) tip: Option<Tip>,
     /// M and Y at the instant at hand, once they were asked for.
     found: Option<DynamicsAt>,
 }
@@ -37,7 +40,9 @@ impl<'a> Model<'a> {
             return Some(Model::Chain(chain));
         }
         let evaluator = agent.robot.kind.lagrangian()?.evaluator();
-        Some(Model::Robot(Robot { agent, gains: Gains::of(agent), evaluator, found: None }))
+        let of_tip = |law: &TaskSpaceLaw| Gains::resolved(agent, &law.damping, Some(&law.adaptation));
+        let gains = Gains::of(agent).or_else(|| of_tip(agent.law.downcast()?));
+        Some(Model::Robot(Robot { agent, gains, evaluator, tip: Tip::of(agent), found: None }))
     }
 
     /// Forgets the instant before.

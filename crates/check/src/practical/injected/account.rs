@@ -5,13 +5,10 @@ use forwardstep_sim::{Inside, Place, ProductsAt};
 use nalgebra::{DMatrix, DVector};
 
 use super::state::{Law, State};
-use super::{Injection, InjectionBalance, NAMED_SHARE};
+use super::{FLOOR_J, Injection, InjectionBalance, name_first};
 
 /// Torques are the same if they differ by less, relative to the largest, N m or N.
 const ROUNDING: f64 = 1e-12;
-
-/// That V is not taken to be smaller than this, J.
-const FLOOR_J: f64 = 1e-6;
 
 /// What a command came from: the law at the exact state of its sample, the same with the filter's velocity, and with what was measured.
 #[derive(Clone)]
@@ -109,7 +106,7 @@ impl<'a> Account<'a> {
                 let v_j = *values.get(self.law.places.lyapunov)?;
                 self.largest_j = self.largest_j.max(v_j);
                 self.before = Some((v_j, state));
-                self.name_first(t_s);
+                self.first = self.first.or_else(|| name_first(&self.terms_j, self.largest_j, self.pushes_end, t_s));
             }
         }
         Some(())
@@ -200,27 +197,6 @@ impl<'a> Account<'a> {
             self.add(injection, weight_s * power_w);
         }
         Some(())
-    }
-
-    /// Names what the proof does not allow, the largest where several come at once.
-    fn name_first(&mut self, t_s: f64) {
-        if self.first.is_some() {
-            return;
-        }
-        let allowed = |injection: Injection| match injection {
-            Injection::Dissipated => true,
-            Injection::Pushed => self.pushes_end,
-            Injection::Held
-            | Injection::Reconstructed
-            | Injection::Measured
-            | Injection::Limited
-            | Injection::Adaptation => false,
-        };
-        let put_in = Injection::ALL.into_iter().filter(|injection| !allowed(*injection));
-        let largest = put_in.max_by(|a, b| self.terms_j[*a as usize].total_cmp(&self.terms_j[*b as usize]));
-        self.first = largest
-            .filter(|injection| self.terms_j[*injection as usize] > NAMED_SHARE * self.largest_j)
-            .map(|injection| (injection, t_s));
     }
 }
 

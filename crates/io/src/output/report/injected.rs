@@ -29,7 +29,7 @@ pub(crate) fn injected(record: &RunRecord<'_>) -> Markup {
         section #injected {
             h2 { "What changed V" }
             div.card.scroll {
-                h3 { "Energy put into V by each cause, in J" span.by { (Source::Derived.words()) } }
+                h3 { "Energy put into V by each cause, in J or the unit of V" span.by { (Source::Derived.words()) } }
                 table.numbers {
                     thead { tr {
                         th {} th { "V at the start" }
@@ -46,7 +46,7 @@ pub(crate) fn injected(record: &RunRecord<'_>) -> Markup {
                 p.note {
                     @for cause in &causes { (cause.name()) ": " (cause.words()) ". " }
                     "The proof allows what is dissipated, and pushes that end; a cause is named once it has put in more than 1 % of the "
-                    "largest V so far. The terms add up to the change of V within " (number(residual)) " J."
+                    "largest V so far. The terms add up to the change of V within " (number(residual)) "."
                 }
             }
         }
