@@ -84,6 +84,11 @@ impl PowerBound {
         (agents > 0).then(|| parts.worked_out()).flatten()
     }
 
+    /// Whether it is one to be expected, not one for certain: with noise, and between samples.
+    pub(super) fn is_expected(&self) -> bool {
+        self.noise_w > 0.0 || self.sigma > 0.0
+    }
+
     /// The same with [`PowerBound::mean_w`]: the D of pushes and of noise add up, at worst. `None` where it is not finite, and where it
     /// is zero: then what is left out is all there is. No robot has dry friction, so that E is zero.
     pub(super) fn worked_out(self) -> Option<PowerBound> {
