@@ -40,6 +40,7 @@ pub use linearised::LinearisedSampling;
 pub use loads::StaticLoad;
 pub use margin::{MarginAt, RECOMMENDED_MARGIN, SamplingMargin};
 pub use power::{PowerBound, mean_power_w};
+pub(crate) use power::{is_fed, start_energy_j};
 pub use rates::{FastestDamping, fastest_damping};
 pub(crate) use rates::{Gains, fastest_damping_of};
 

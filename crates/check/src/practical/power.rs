@@ -99,7 +99,7 @@ impl PowerBound {
 }
 
 /// Whether something besides the start feeds V: noise and samples, or pushes.
-pub(super) fn is_fed(setup: &Setup) -> bool {
+pub(crate) fn is_fed(setup: &Setup) -> bool {
     setup.control.is_some() || setup.agents.iter().any(|agent| is_lagrangian(agent) && !agent.pushes.is_empty())
 }
 
@@ -120,7 +120,7 @@ pub(super) fn noise_w_of(control: &Control, gains: &Gains) -> f64 {
 }
 
 /// V(0) of an agent, J; `None` where z(0) follows from what is heard.
-fn start_energy_j(setup: &Setup, index: usize, gains: &Gains) -> Option<f64> {
+pub(crate) fn start_energy_j(setup: &Setup, index: usize, gains: &Gains) -> Option<f64> {
     match setup.reference_of(index).interface().family {
         ReferenceFamily::Consensus | ReferenceFamily::Leader => {}
         ReferenceFamily::PureIntegral

@@ -149,9 +149,13 @@ fn axes(AgreementBound { axes, expected, .. }: &AgreementBound) -> String {
 }
 
 fn linearised(found: &LinearisedSampling) -> String {
-    let LinearisedSampling { agent, period_s, radius, leftmost, agents } = found;
+    let LinearisedSampling { agent, period_s, radius, leftmost, agents, of: all } = found;
     let (leftmost, period) = (rounded(*leftmost), rounded(1e3 * period_s));
-    let of = if *agents == 1 { String::new() } else { format!(", the worst of {agents} agents that were looked at") };
+    let of = match (*agents, *all) {
+        (1, 1) => String::new(),
+        (agents, all) if agents == all => format!(", the worst of all {all} agents"),
+        (agents, all) => format!(", the worst of {agents} of {all} agents that were looked at"),
+    };
     let meaning = match found.answer() {
         PracticalAnswer::Inadequate => format!("a fast mode grows by {} from sample to sample", rounded(*radius)),
         PracticalAnswer::Marginal => format!("a fast mode overshoots: its multiplier has the real part {leftmost}"),
