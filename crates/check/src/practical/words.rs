@@ -136,8 +136,13 @@ fn axes(AgreementBound { axes, expected, .. }: &AgreementBound) -> String {
         } else {
             String::new()
         };
+        // More than half a turn says nothing of a joint.
+        let use_of_it = match *unit == " rad" && *disagreement > core::f64::consts::PI {
+            true => ", of no practical use",
+            false => "",
+        };
         let (disagreement, tracking) = (rounded_up(*disagreement), rounded_up(*tracking));
-        format!("RMS disagreement ≤ {disagreement}{unit}{drift} ({name}, RMS s ≤ {tracking}{unit}/s)")
+        format!("RMS disagreement ≤ {disagreement}{unit}{drift} ({name}, RMS s ≤ {tracking}{unit}/s{use_of_it})")
     };
     let kind = if *expected { "is expected to be: " } else { "is: " };
     let both = if rounded(least.tracking) == rounded(most.tracking) {

@@ -268,6 +268,7 @@ fn what_s_adds_is_said_with_its_numbers() {
         "{text}"
     );
     assert!(!text.contains("posture") && !text.contains("error of all measured"), "{text}");
+    assert!(!text.contains("no practical use"), "{text}");
     let number = |name: &str| numbers.iter().find(|(known, _)| *known == name).unwrap().1;
     assert!(is_near(number("rms_disagreement"), number("rms_gain_s") * number("rms_tracking"), 1e-12));
     assert_eq!(number("drift_per_s"), 0.0);
@@ -275,6 +276,12 @@ fn what_s_adds_is_said_with_its_numbers() {
     assert!(
         text.contains("there is expected to be: ") && text.contains("; a constant error of all measured velocities")
     );
+    // Γ far too small for estimates that start at zero: V(0) is large.
+    let mut vague = setup.clone();
+    let law: &forwardstep_sim::Adaptive = vague.agents[0].law.downcast().unwrap();
+    let adaptation = Gain::Number(0.01);
+    vague.agents[0].law = Arc::new(forwardstep_sim::Adaptive { adaptation, ..law.clone() });
+    assert!(said(&vague).unwrap().1.contains(" rad/s, of no practical use); over "), "{:?}", said(&vague));
     // With λ everybody may be moved.
     setup.agents[0].manipulability = 0.5;
     let (_, text, numbers) = said(&setup).unwrap();

@@ -80,7 +80,7 @@ impl Agent {
     /// The fastest rate of its own, to a factor: the largest root of a polynomial by the sizes of its coefficients, where Σ w_ij = `degree`, 1/s.
     pub(super) fn fastest_per_s(&self, degree: f64) -> f64 {
         let coefficients = self.characteristic.iter().map(|[own, coupled]| (own + degree * coupled).abs());
-        let sizes = coefficients.rev().zip(1_u8..).map(|(a, k)| a.powf(1.0 / f64::from(k)));
+        let sizes = coefficients.rev().zip(1_u8..).map(|(a, k)| libm::pow(a, 1.0 / f64::from(k)));
         sizes.fold(degree, f64::max)
     }
 
@@ -113,8 +113,8 @@ impl Agent {
 fn exponential(a: &DMatrix<f64>) -> DMatrix<f64> {
     const TERMS: u8 = 16;
     let largest = a.row_iter().map(|row| row.iter().map(|entry| entry.abs()).sum::<f64>()).fold(0.0, f64::max);
-    let halvings = (2.0 * largest).max(1.0).log2().ceil() as i32;
-    let small = a * 0.5_f64.powi(halvings);
+    let halvings = libm::log2((2.0 * largest).max(1.0)).ceil() as i32;
+    let small = a * libm::exp2(-f64::from(halvings));
     let one = DMatrix::identity(a.nrows(), a.ncols());
     // From the last term on: 1 + A/1 (1 + A/2 (1 + …)).
     let series = (1..=TERMS).rev().fold(one.clone(), |sum, k| &one + (&small * sum) / f64::from(k));
