@@ -283,8 +283,11 @@ fn what_s_adds_is_said_with_its_numbers() {
     vague.agents[0].law = Arc::new(forwardstep_sim::Adaptive { adaptation, ..law.clone() });
     assert!(said(&vague).unwrap().1.contains(" rad/s, of no practical use); over "), "{:?}", said(&vague));
     // With λ everybody may be moved.
-    setup.agents[0].manipulability = 0.5;
+    setup.agents.iter_mut().for_each(|agent| agent.manipulability = 0.5);
     let (_, text, numbers) = said(&setup).unwrap();
+    let number = |name: &str| numbers.iter().find(|(known, _)| *known == name).unwrap().1;
+    assert!(is_near(number("drift_per_s"), number("drift_rms_gain") * number("rms_tracking"), 1e-12));
+    assert!(number("drift_gain") > 1.3 * number("drift_rms_gain"));
     assert!(text.contains(" rad, and the posture may move at ≤ ") && text.contains(" rad/s ("), "{text}");
     assert!(
         text.contains("everybody together moves by at most ")
