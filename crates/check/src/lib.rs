@@ -36,9 +36,10 @@ pub use certificate::certify;
 pub use fixed::NotFixed;
 pub use hypothesis::{Answer, Evidence, Hypothesis, Id, Rigour};
 pub use practical::{
-    Along, FastestDamping, Finding, Hold, Injection, InjectionBalance, InjectionWatch, LinearisedSampling, LoadReached,
-    MarginAt, MarginReached, NAMED_SHARE, PowerBound, PowerReached, Practical, PracticalAnswer, RECOMMENDED_MARGIN,
-    SamplingMargin, StaticLoad, along, fastest_damping, longest_period_s, mean_power_w, practical,
+    AgreementBound, Along, AxisBound, FastestDamping, Finding, Hold, Injection, InjectionBalance, InjectionWatch,
+    LinearisedSampling, LoadReached, MarginAt, MarginReached, NAMED_SHARE, NoReferenceGains, Over, PowerBound,
+    PowerReached, Practical, PracticalAnswer, RECOMMENDED_MARGIN, ReferenceGains, SamplingMargin, StaticLoad, along,
+    fastest_damping, longest_period_s, mean_power_w, practical,
 };
 pub use prediction::{Course, NoCourse, NoIdeal, course, ideal};
 pub use report::Report;

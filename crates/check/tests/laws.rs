@@ -418,8 +418,14 @@ fn a_period_is_linearised_only_where_its_memory_is_known_and_for_few_of_many() {
     assert_eq!(sampled_jacobian(&sampled, 1).unwrap(), None, "there is no such agent");
     let mut many = sampled.clone();
     many.agents = (0..40).map(|_| sampled.agents[0].clone()).collect();
-    let said = practical(&many).findings[0].because();
-    assert!(said.contains("the worst of 14 agents that were looked at"), "{said}");
+    let said = |many: &Setup| practical(many).findings[0].because();
+    assert!(said(&many).contains("(agent, the worst of all 40 agents)"), "{}", said(&many));
+    // Of very many, as many as have 4000 states together.
+    let states = sampled_jacobian(&sampled, 0).unwrap().unwrap().size;
+    let (all, stride) = (2 * (4000 / states) + 1, 3);
+    many.agents = (0..all).map(|_| sampled.agents[0].clone()).collect();
+    let looked_at = all.div_ceil(stride);
+    assert!(said(&many).contains(&format!("the worst of {looked_at} of {all} agents")), "{}", said(&many));
     assert!(practical(&sampled).findings[0].because().contains("(agent), with a period of 50 ms: no mode overshoots"));
     sampled.control.as_mut().unwrap().sensors.velocity = VelocitySensor::Filtered { cut_off_hz: 10.0 };
     assert_eq!(sampled_jacobian(&sampled, 0).unwrap(), None, "a filter remembers");

@@ -5,6 +5,8 @@
 mod common;
 #[path = "predictions/course.rs"]
 mod course;
+#[path = "predictions/gains.rs"]
+mod gains;
 #[path = "predictions/guaranteed.rs"]
 mod guaranteed;
 #[path = "predictions/inputs_smoothness.rs"]
@@ -232,7 +234,10 @@ fn two_arms() -> Setup {
 fn bound(setup: &Setup) -> Option<PowerBound> {
     practical(setup).findings.into_iter().find_map(|finding| match finding {
         Finding::TrackingPower(bound) => Some(bound),
-        Finding::SamplingMargin(_) | Finding::LinearisedSampling(_) | Finding::StaticLoad(_) => None,
+        Finding::SamplingMargin(_)
+        | Finding::LinearisedSampling(_)
+        | Finding::StaticLoad(_)
+        | Finding::TrackingDisagreement(_) => None,
     })
 }
 

@@ -17,8 +17,9 @@ use crate::kinds::is_lagrangian;
 const FAST: f64 = 0.1;
 /// Smaller multipliers are zero: what is brought back to a manifold, and commands that are remembered.
 const FORGOTTEN: f64 = 1e-6;
-/// Agents that are looked at, spread evenly.
-const MOST: usize = 16;
+/// Agents that are looked at, spread evenly: all, while they have no more states together, and so many at least.
+const MOST_STATES: usize = 4000;
+const LEAST: usize = 16;
 
 /// The multipliers of the agent for which sampling is worst.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +34,8 @@ pub struct LinearisedSampling {
     pub leftmost: f64,
     /// Agents that were looked at.
     pub agents: usize,
+    /// Agents outside (6)–(7).
+    pub of: usize,
 }
 
 impl LinearisedSampling {
@@ -42,13 +45,15 @@ impl LinearisedSampling {
         let period_s = 1.0 / setup.control.as_ref()?.sample_hz;
         let others: Vec<usize> =
             (0..setup.agents.len()).filter(|agent| !is_lagrangian(&setup.agents[*agent])).collect();
-        let stride = others.len().div_ceil(MOST).max(1);
+        let of = others.len();
+        let states = sampled_jacobian(setup, *others.first()?).ok()?.map_or(1, |jacobian| jacobian.size);
+        let stride = of.div_ceil((MOST_STATES / states.max(1)).max(LEAST)).max(1);
         let mut worst: Option<LinearisedSampling> = None;
         let mut agents = 0;
         for &agent in others.iter().step_by(stride) {
             let Some((radius, leftmost)) = multipliers(setup, agent) else { continue };
             agents += 1;
-            let found = LinearisedSampling { agent: Named::of(setup, agent), period_s, radius, leftmost, agents };
+            let found = LinearisedSampling { agent: Named::of(setup, agent), period_s, radius, leftmost, agents, of };
             worst = match worst.take() {
                 Some(worst) if found.is_no_worse_than(&worst) => Some(worst),
                 _ => Some(found),

@@ -12,9 +12,13 @@
 //! - `postures`: those that both look at.
 //! - `power`: how large s stays when something acts for ever.
 //! - `injected`: what changed V along a sampled run, cause by cause.
+//! - `gains`: what the reference dynamics make of s.
+//! - `agreement`: what s adds to the disagreement, and how fast it moves the posture.
 //! - `along`: all of it at the postures that a run reached.
 
+mod agreement;
 mod along;
+mod gains;
 mod held;
 mod injected;
 mod linearised;
@@ -27,13 +31,16 @@ mod words;
 
 use forwardstep_sim::Setup;
 
+pub use agreement::{AgreementBound, AxisBound};
 pub use along::{Along, LoadReached, MarginReached, PowerReached, along};
+pub use gains::{NoReferenceGains, Over, ReferenceGains};
 pub use held::{Hold, longest_period_s};
 pub use injected::{Injection, InjectionBalance, InjectionWatch, NAMED_SHARE};
 pub use linearised::LinearisedSampling;
 pub use loads::StaticLoad;
 pub use margin::{MarginAt, RECOMMENDED_MARGIN, SamplingMargin};
 pub use power::{PowerBound, mean_power_w};
+pub(crate) use power::{is_fed, start_energy_j};
 pub use rates::{FastestDamping, fastest_damping};
 pub(crate) use rates::{Gains, fastest_damping_of};
 
@@ -76,6 +83,8 @@ pub enum Finding {
     StaticLoad(StaticLoad),
     /// How large s stays.
     TrackingPower(PowerBound),
+    /// What s does to agreement.
+    TrackingDisagreement(AgreementBound),
 }
 
 impl Finding {
@@ -86,6 +95,7 @@ impl Finding {
             Finding::LinearisedSampling(_) => "linearised-sampling",
             Finding::StaticLoad(_) => "static-load",
             Finding::TrackingPower(_) => "tracking-power",
+            Finding::TrackingDisagreement(_) => "tracking-disagreement",
         }
     }
 
@@ -96,6 +106,7 @@ impl Finding {
             Finding::LinearisedSampling(found) => found.answer(),
             Finding::StaticLoad(load) => load.answer(),
             Finding::TrackingPower(_) => PracticalAnswer::Bound,
+            Finding::TrackingDisagreement(bound) => bound.answer(),
         }
     }
 
@@ -127,6 +138,7 @@ impl Finding {
                 ("noise_w", bound.noise_w),
                 ("span_s", bound.span_s),
             ],
+            Finding::TrackingDisagreement(bound) => bound.numbers(),
             Finding::StaticLoad(load) => vec![("torque", load.torque), ("limit", load.limit), ("share", load.share())],
         }
     }
@@ -155,7 +167,9 @@ impl Practical {
 pub fn practical(setup: &Setup) -> Practical {
     let margin = SamplingMargin::of(setup).map(Finding::SamplingMargin);
     let load = StaticLoad::of(setup).map(Finding::StaticLoad);
-    let power = PowerBound::of(setup).map(Finding::TrackingPower);
+    let power = PowerBound::of(setup);
+    let agreement = AgreementBound::of(setup, power.as_ref()).map(Finding::TrackingDisagreement);
+    let power = power.map(Finding::TrackingPower);
     let linearised = LinearisedSampling::of(setup).map(Finding::LinearisedSampling);
-    Practical { findings: margin.into_iter().chain(linearised).chain(load).chain(power).collect() }
+    Practical { findings: margin.into_iter().chain(linearised).chain(load).chain(power).chain(agreement).collect() }
 }

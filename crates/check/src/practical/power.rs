@@ -84,6 +84,11 @@ impl PowerBound {
         (agents > 0).then(|| parts.worked_out()).flatten()
     }
 
+    /// Whether it is one to be expected, not one for certain: with noise, and between samples.
+    pub(super) fn is_expected(&self) -> bool {
+        self.noise_w > 0.0 || self.sigma > 0.0
+    }
+
     /// The same with [`PowerBound::mean_w`]: the D of pushes and of noise add up, at worst. `None` where it is not finite, and where it
     /// is zero: then what is left out is all there is. No robot has dry friction, so that E is zero.
     pub(super) fn worked_out(self) -> Option<PowerBound> {
@@ -94,7 +99,7 @@ impl PowerBound {
 }
 
 /// Whether something besides the start feeds V: noise and samples, or pushes.
-pub(super) fn is_fed(setup: &Setup) -> bool {
+pub(crate) fn is_fed(setup: &Setup) -> bool {
     setup.control.is_some() || setup.agents.iter().any(|agent| is_lagrangian(agent) && !agent.pushes.is_empty())
 }
 
@@ -115,7 +120,7 @@ pub(super) fn noise_w_of(control: &Control, gains: &Gains) -> f64 {
 }
 
 /// V(0) of an agent, J; `None` where z(0) follows from what is heard.
-fn start_energy_j(setup: &Setup, index: usize, gains: &Gains) -> Option<f64> {
+pub(crate) fn start_energy_j(setup: &Setup, index: usize, gains: &Gains) -> Option<f64> {
     match setup.reference_of(index).interface().family {
         ReferenceFamily::Consensus | ReferenceFamily::Leader => {}
         ReferenceFamily::PureIntegral

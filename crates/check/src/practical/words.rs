@@ -1,6 +1,9 @@
 //! Sentences of practical verdicts.
 
-use super::{Finding, LinearisedSampling, PowerBound, PracticalAnswer, RECOMMENDED_MARGIN, SamplingMargin, StaticLoad};
+use super::{
+    AgreementBound, AxisBound, Finding, LinearisedSampling, Over, PowerBound, PracticalAnswer, RECOMMENDED_MARGIN,
+    ReferenceGains, SamplingMargin, StaticLoad,
+};
 use crate::hypothesis::numbers::{rounded, rounded_up};
 
 /// What it is about.
@@ -10,6 +13,7 @@ pub(super) fn about(finding: &Finding) -> &'static str {
         Finding::LinearisedSampling(_) => "agents under other laws sample fast enough",
         Finding::StaticLoad(_) => "torques within their limits hold the robots at rest",
         Finding::TrackingPower(_) => "how large s stays",
+        Finding::TrackingDisagreement(_) => "what s adds to the disagreement",
     }
 }
 
@@ -20,6 +24,7 @@ pub(super) fn because(finding: &Finding) -> String {
         Finding::LinearisedSampling(found) => linearised(found),
         Finding::StaticLoad(load) => standing(load),
         Finding::TrackingPower(bound) => power(bound),
+        Finding::TrackingDisagreement(bound) => agreement(bound),
     }
 }
 
@@ -74,7 +79,7 @@ fn power(bound: &PowerBound) -> String {
     let PowerBound { agents, span_s, start_w, push_w, noise_w, sigma, mean_w } = *bound;
     let who = if agents == 1 { "sᵀKs".to_owned() } else { format!("Σ sᵀKs of {agents} agents") };
     // Sampled, what the plant does between samples is left out.
-    let kind = if noise_w > 0.0 || sigma > 0.0 { "is expected to be at most" } else { "is at most" };
+    let kind = if bound.is_expected() { "is expected to be at most" } else { "is at most" };
     let part = |name: &str, value: f64| match value {
         value if value > 0.0 => format!(", {name} {} W", rounded_up(value)),
         _ => String::new(),
@@ -89,10 +94,73 @@ fn power(bound: &PowerBound) -> String {
     )
 }
 
+fn agreement(bound: &AgreementBound) -> String {
+    let gains = match &bound.gains {
+        Ok(gains) => gains,
+        Err(reason) => return format!("no gain from s to the disagreement is given, since {reason}"),
+    };
+    let ReferenceGains { peak_s, rms_s, drift_peak, drift_rms, bias, over } = *gains;
+    let network = match over {
+        Over::Fixed => "the fixed graph".to_owned(),
+        Over::Period(period_s) => format!("the network, which repeats itself every {} s,", rounded(period_s)),
+        Over::Horizon(end_s) => format!("the network, which does not repeat itself, as it is written up to {end_s} s"),
+    };
+    let moved = if drift_peak == 0.0 {
+        "; it does not move what all agree on for ever".to_owned()
+    } else {
+        format!(
+            "; everybody together moves by at most {} RMS s and {} max|s|",
+            rounded_up(drift_rms),
+            rounded_up(drift_peak)
+        )
+    };
+    let error = bias.filter(|_| bound.measured).map_or_else(String::new, |bias| {
+        format!("; a constant error of all measured velocities moves everybody at {} times itself", rounded(bias))
+    });
+    format!(
+        "{}over {network} RMS disagreement ≤ {} s × RMS s, and at any time ≤ {} s × max|s|, or half of what s varies by{moved}{error}",
+        axes(bound),
+        rounded_up(rms_s),
+        rounded_up(peak_s),
+    )
+}
+
+/// The bounds on s put through the gains.
+fn axes(AgreementBound { axes, expected, .. }: &AgreementBound) -> String {
+    let Some([least, most]) = axes else {
+        return "how large s is cannot be told before the run; ".into();
+    };
+    let one = |AxisBound { name, unit, tracking, disagreement, drift }: &AxisBound| {
+        let drift = if *drift > 0.0 {
+            format!(", and the posture may move at ≤ {}{unit}/s", rounded_up(*drift))
+        } else {
+            String::new()
+        };
+        // More than half a turn says nothing of a joint.
+        let use_of_it = match *unit == " rad" && *disagreement > core::f64::consts::PI {
+            true => ", of no practical use",
+            false => "",
+        };
+        let (disagreement, tracking) = (rounded_up(*disagreement), rounded_up(*tracking));
+        format!("RMS disagreement ≤ {disagreement}{unit}{drift} ({name}, RMS s ≤ {tracking}{unit}/s{use_of_it})")
+    };
+    let kind = if *expected { "is expected to be: " } else { "is: " };
+    let both = if rounded(least.tracking) == rounded(most.tracking) {
+        one(most)
+    } else {
+        format!("{}, {}", one(least), one(most))
+    };
+    format!("beside what s = 0 leaves there {kind}{both}; ")
+}
+
 fn linearised(found: &LinearisedSampling) -> String {
-    let LinearisedSampling { agent, period_s, radius, leftmost, agents } = found;
+    let LinearisedSampling { agent, period_s, radius, leftmost, agents, of: all } = found;
     let (leftmost, period) = (rounded(*leftmost), rounded(1e3 * period_s));
-    let of = if *agents == 1 { String::new() } else { format!(", the worst of {agents} agents that were looked at") };
+    let of = match (*agents, *all) {
+        (1, 1) => String::new(),
+        (agents, all) if agents == all => format!(", the worst of all {all} agents"),
+        (agents, all) => format!(", the worst of {agents} of {all} agents that were looked at"),
+    };
     let meaning = match found.answer() {
         PracticalAnswer::Inadequate => format!("a fast mode grows by {} from sample to sample", rounded(*radius)),
         PracticalAnswer::Marginal => format!("a fast mode overshoots: its multiplier has the real part {leftmost}"),

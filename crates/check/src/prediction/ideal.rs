@@ -149,7 +149,7 @@ fn start(agent: usize, own: &AgentSetup, integral: bool) -> Result<Start, NoIdea
 }
 
 /// k, where z follows the derivative of order k − 1 of the position.
-fn order(own: &AgentSetup) -> Option<usize> {
+pub(crate) fn order(own: &AgentSetup) -> Option<usize> {
     if is_lagrangian(own) || own.law.is::<PositionOnlyLaw>() {
         return Some(2);
     }

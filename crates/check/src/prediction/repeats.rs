@@ -12,7 +12,7 @@ pub(super) const MOST_ROUNDS: u32 = 60;
 
 /// After how long a network is what it was.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Repeats {
+pub(crate) enum Repeats {
     /// It never changes.
     Always,
     /// After so long, s.
@@ -22,7 +22,7 @@ pub(super) enum Repeats {
 impl Repeats {
     /// From the numbers as they are written; none where something is drawn, logged, a formula, or happens once, or periods have no
     /// common multiple that is short enough.
-    pub(super) fn of(setup: &Setup) -> Option<Repeats> {
+    pub(crate) fn of(setup: &Setup) -> Option<Repeats> {
         let network = &setup.network;
         // What an author says of a signal reaches as far as it was tried.
         let is_known = network.schedule.known().extent != Extent::Horizon;

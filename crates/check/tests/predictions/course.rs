@@ -229,7 +229,11 @@ fn what_has_no_effect_while_everybody_follows_is_left_out() {
         sensors: Default::default(),
         actuators: Default::default(),
     });
-    assert_eq!(predicted(&busy), predicted(&plain));
+    let (mut plain, busy) = (predicted(&plain), predicted(&busy));
+    // What is commanded may then be another, so that V may grow.
+    assert!(busy.peak_torques.iter().all(|peak| peak.at_most.is_none()));
+    plain.peak_torques.iter_mut().for_each(|peak| assert!(peak.at_most.take().is_some()));
+    assert!(busy == plain);
 }
 
 #[test]
@@ -300,6 +304,8 @@ fn peak_torques_are_those_of_the_reference_where_parameters_are_known_or_nearly_
         let row = (peak.t_s / setup.time.record_every_s).round() as usize;
         assert!((column(&outcome, peak.agent, Signal::Torque, peak.axis)[row] - peak.value).abs() < 1e-5);
         assert_eq!(peak.estimate_off, 0.0);
+        // Nothing feeds V, which is zero.
+        assert!((peak.at_most.unwrap() / peak.value.abs() - 1.0).abs() < 1e-9 && peak.is_practical(), "{peak:?}");
     }
     for agent in &mut setup.agents {
         let estimate_start = agent.robot.theta.iter().map(|theta| 0.95 * theta).collect();
@@ -317,4 +323,69 @@ fn peak_torques_are_those_of_the_reference_where_parameters_are_known_or_nearly_
         agent.start.q[0] = noise(i);
     }
     assert_eq!(predicted(&setup).peak_torques, [], "the torque of another law is not that of (6)");
+}
+
+#[test]
+fn eq_what_v_can_add_to_a_torque_is_that_of_its_norm() {
+    // Masses of m under K: √(2 · ½ m s²) √(K²/m) = K |s|, and |Y ϑ| = m |ż| is zero while nobody hears anything and rests.
+    let mut setup = super::three(Exchange::Position);
+    setup.network.schedule = Schedule::fixed(Vec::new());
+    for agent in &mut setup.agents {
+        agent.robot.theta = vec![3.0];
+        (agent.start.q, agent.start.dq) = (vec![0.0; 2], vec![0.0; 2]);
+    }
+    setup.agents[1].start.dq = vec![0.3, -0.4];
+    setup.agents[1].start.reference = vec![vec![0.0; 2]];
+    let peaks = predicted(&setup).peak_torques;
+    let at_most = |agent: usize| peaks.iter().find(|peak| peak.agent == agent).unwrap().at_most.unwrap();
+    // K is 5, |s| is 0.5.
+    assert!((at_most(1) - 2.5).abs() < 1e-9 && at_most(0) < 1e-12, "{peaks:?}");
+    // Γ adds Y Γ Yᵀ = γ ż² and ½ Δm²/γ: where ż is zero, √(m s² + Δm²/γ) K/√m.
+    let (damping, adaptation) = (Gain::Number(5.0), Gain::Number(2.0));
+    setup.agents[1].law = Arc::new(Adaptive { damping, adaptation, estimate_start: vec![2.0] });
+    let expected = (3.0 * 0.25 + 1.0 / 2.0_f64).sqrt() * 5.0 / 3.0_f64.sqrt();
+    let peaks = predicted(&setup).peak_torques;
+    let found = peaks.iter().find(|peak| peak.agent == 1).unwrap();
+    assert!((found.at_most.unwrap() - expected).abs() < 1e-9 && !found.is_practical(), "{found:?} {expected}");
+    // What may feed V takes the bound away: limits from the one that has them, a push from all.
+    setup.agents[1].enforce_limits = true;
+    let without: Vec<usize> =
+        predicted(&setup).peak_torques.iter().filter(|peak| peak.at_most.is_none()).map(|peak| peak.agent).collect();
+    assert_eq!(without, [1, 1]);
+    setup.agents[0].pushes = vec![super::pushed_for_ever(1.0)];
+    assert!(predicted(&setup).peak_torques.iter().all(|peak| peak.at_most.is_none()));
+}
+
+#[test]
+fn val_no_run_exceeds_what_v_allows_near_its_reference() {
+    let mut largest = 0.0_f64;
+    for (case, off) in [0.0, 0.05, 0.3, 1.0].into_iter().enumerate() {
+        for family in 0..3 {
+            let exchange = [Exchange::Position, Exchange::PositionVelocity][(case + family) % 2];
+            let mut setup = arms(exchange, 2);
+            for (i, agent) in setup.agents.iter_mut().enumerate() {
+                if family == 1 {
+                    agent.robot.kind = Arc::new(forwardstep_core::robot::PointMass { dimension: 2 });
+                    (agent.robot.theta, agent.robot.theta_names) = (vec![1.5 + i as f64], vec!["mass".into()]);
+                }
+                let estimate_start = agent.robot.theta.iter().map(|theta| (1.0 - off) * theta).collect();
+                let (damping, adaptation) = (Gain::Number(6.0), Gain::Number(4.0));
+                let known = Gain::Matrix(vec![7.0, 1.0, 1.0, 4.0]);
+                agent.law = if family == 2 {
+                    Arc::new(Known { damping: known })
+                } else {
+                    Arc::new(Adaptive { damping, adaptation, estimate_start })
+                };
+                let z = agent.start.dq.iter().enumerate().map(|(k, dq)| dq + off * noise(7 * i + k + case));
+                agent.start.reference = vec![z.collect()];
+            }
+            let outcome = run(&setup);
+            for peak in predicted(&setup).peak_torques {
+                let (observed, at_most) = (observed_peak(&outcome, peak.agent, peak.axis), peak.at_most.unwrap());
+                assert!(observed <= at_most * (1.0 + 1e-6), "{case} {family}: {observed} {peak:?}");
+                largest = largest.max(observed / at_most);
+            }
+        }
+    }
+    assert!(largest > 0.9, "{largest}");
 }

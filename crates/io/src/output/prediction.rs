@@ -77,6 +77,10 @@ pub struct PredictedTorque {
     /// How far the estimate starts from the truth: the largest relative error of a parameter.
     #[serde(deserialize_with = "number::or_nan")]
     pub estimate_off: f64,
+    /// What its size cannot exceed while V ≤ V(0) and the state stays near that of s ≡ 0, N m or N; null where V(0) is not known, or V may
+    /// grow, as with pushes and under digital control.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_most: Option<f64>,
 }
 
 /// The rate of agreement, or why it is not predicted.
@@ -234,6 +238,7 @@ impl CourseFound {
                     value: peak.value,
                     t_s: peak.t_s,
                     estimate_off: peak.estimate_off,
+                    at_most: peak.at_most,
                 })
                 .collect(),
         }
@@ -286,7 +291,13 @@ impl CourseFound {
             off if off <= NEAR => format!("; estimates start within {:.0} % of the truth", (100.0 * off).ceil()),
             _ => "; estimates start far from the truth, where the torque can be another".to_owned(),
         };
-        Some(format!("peak torque {:.3} {unit}, {agent}, {axis} at {:.2} s{near}", peak.value.abs(), peak.t_s))
+        // Twice the prediction is too much to choose a motor by.
+        let at_most = peak.at_most.map_or_else(String::new, |at_most| match at_most / peak.value.abs() {
+            ratio if ratio <= 1.0 => String::new(),
+            ratio if ratio <= 2.0 => format!("; while V ≤ V(0) at most {at_most:.3} {unit} near this course"),
+            ratio => format!("; the bound by V(0) is {ratio:.1} times as large, and of no practical use"),
+        });
+        Some(format!("peak torque {:.3} {unit}, {agent}, {axis} at {:.2} s{near}{at_most}", peak.value.abs(), peak.t_s))
     }
 }
 

@@ -111,13 +111,14 @@ fn torques(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Markup {
         div.card.scroll {
             h3 { "Peak torque" span.by { "predicted with the true parameters along the reference; an indication where estimates start within 20 % of them" } }
             table.numbers {
-                thead { tr { th { "Joint" } th { "predicted" } th { "observed" } th { "estimate starts off by" } } }
+                thead { tr { th { "Joint" } th { "predicted" } th { "observed" } th title="while V ≤ V(0), near the course of s ≡ 0" { "bound by V(0)" } th { "estimate starts off by" } } }
                 tbody { @for peak in course.peak_torques.iter().take(MOST_TORQUES) {
                     @let unit = text::unit(&names::unit(setup, peak.agent, Signal::Torque, peak.axis));
                     tr {
                         th { span.dot.{ "a" (peak.agent) } {} (names::agent_name(setup, peak.agent)) " · " (names::torque_words(setup, peak.agent, peak.axis)) }
                         td { (number(peak.value.abs())) " " (unit) }
                         td { @if let Some(seen) = observed(peak.agent, peak.axis) { (number(seen.value.abs())) " " (unit) } @else { "–" } }
+                        td { @if let Some(at_most) = peak.at_most { (number(at_most)) " " (unit) } @else { "–" } }
                         td { (number((100.0 * peak.estimate_off).round())) " %" }
                     }
                 } }
