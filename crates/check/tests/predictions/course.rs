@@ -342,7 +342,7 @@ fn eq_what_v_can_add_to_a_torque_is_that_of_its_norm() {
     assert!((at_most(1) - 2.5).abs() < 1e-9 && at_most(0) < 1e-12, "{peaks:?}");
     // Γ adds Y Γ Yᵀ = γ ż² and ½ Δm²/γ: where ż is zero, √(m s² + Δm²/γ) K/√m.
     let (damping, adaptation) = (Gain::Number(5.0), Gain::Number(2.0));
-    setup.agents[1].law = Arc::new(Adaptive { damping, adaptation, estimate_start: vec![2.0] });
+    setup.agents[1].law = Arc::new(Adaptive { damping, adaptation, estimate_start: vec![2.0], bounds: None });
     let expected = (3.0 * 0.25 + 1.0 / 2.0_f64).sqrt() * 5.0 / 3.0_f64.sqrt();
     let peaks = predicted(&setup).peak_torques;
     let found = peaks.iter().find(|peak| peak.agent == 1).unwrap();
@@ -374,7 +374,7 @@ fn val_no_run_exceeds_what_v_allows_near_its_reference() {
                 agent.law = if family == 2 {
                     Arc::new(Known { damping: known })
                 } else {
-                    Arc::new(Adaptive { damping, adaptation, estimate_start })
+                    Arc::new(Adaptive { damping, adaptation, estimate_start, bounds: None })
                 };
                 let z = agent.start.dq.iter().enumerate().map(|(k, dq)| dq + off * noise(7 * i + k + case));
                 agent.start.reference = vec![z.collect()];
