@@ -31,6 +31,7 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "backstepping",
     "from-a-log",
     "six-arms-over-radio",
+    "six-arms-with-friction",
     "without-velocity",
     "double-integrators",
     "thrust-continuous",
