@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use forwardstep_core::robot::tree::{Drives, SMOOTHING_LOSS, Tree};
+use forwardstep_core::robot::tree::{Drives, Friction, SMOOTHING_LOSS, Tree};
 use forwardstep_sim::push::Push;
 use forwardstep_sim::{AgentSetup, Setup, VelocitySensor};
 
@@ -71,6 +71,18 @@ pub(crate) fn friction(setup: &Setup) -> Option<Hypothesis> {
 
 fn drives(agent: &AgentSetup) -> Option<&Drives> {
     agent.robot.kind.downcast::<Arc<Tree>>().map(|tree| tree.drives())
+}
+
+/// F tanh(v/ε) of an agent, joint by joint, and whether its robot has that and not F σ; `None` where nothing rubs.
+pub(crate) fn smoothed_friction(agent: &AgentSetup, v: &[f64]) -> Option<(Vec<f64>, bool)> {
+    let tree = agent.robot.kind.downcast::<Arc<Tree>>()?;
+    let Drives { friction, dry_s, .. } = tree.drives();
+    let [_, at] = tree.drive_parameters();
+    let mut torque = vec![0.0; v.len()];
+    for (Friction { joint, width }, force) in friction.iter().zip(agent.robot.theta.get(at)?) {
+        *torque.get_mut(*joint)? = force * libm::tanh(v.get(*joint)? / width);
+    }
+    (!friction.is_empty()).then_some((torque, dry_s.is_none()))
 }
 
 /// κ Σ ε F of an agent whose friction is dry, W: what V gains by it at most.

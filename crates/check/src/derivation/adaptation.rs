@@ -8,6 +8,16 @@ use super::formula::{Formula, Sign, Symbol};
 use super::notation::Notation;
 use super::polynomial::Polynomial;
 
+/// An estimate that is kept within bounds: Π of what it would be.
+fn projected(law: Formula) -> Formula {
+    match law {
+        Formula::Equal(left, right) => {
+            Formula::Equal(left, Box::new(Formula::Function(Symbol::new("Π"), vec![*right])))
+        }
+        other => other,
+    }
+}
+
 /// The equations of a case's estimates and filters, each with its place in the paper.
 pub(super) fn of(case: &Case<'_>, notation: &Notation) -> Vec<(Formula, &'static str)> {
     let index = notation.own;
@@ -22,7 +32,8 @@ pub(super) fn of(case: &Case<'_>, notation: &Notation) -> Vec<(Formula, &'static
     let robot = |place| {
         let q = |k| notation.quantity(Quantity::own(Letter::Position), k);
         let regressor = Formula::Function(symbol("Y").above("T"), vec![q(0), q(1), z(0), z(1)]);
-        (gradient(symbol("ϑ").hat(), symbol("Γ"), vec![regressor, s(0)]), place)
+        let law = gradient(symbol("ϑ").hat(), symbol("Γ"), vec![regressor, s(0)]);
+        (if case.is_bounded() { projected(law) } else { law }, place)
     };
     match &case.step {
         Step::Robot { known: false } => vec![robot("(7)")],

@@ -18,7 +18,8 @@ use super::factors::Factors;
 use super::form::Links;
 use super::formula::At;
 use super::laplacian::RootsOfAll;
-use super::lower::Outside;
+use super::lower::{Outside, Rubbing};
+use crate::surroundings::smoothed_friction;
 
 /// A design, with what an explanation needs of the setup.
 #[derive(Clone, Debug)]
@@ -160,7 +161,11 @@ fn is_damped(agent: &AgentSetup) -> bool {
     let (q, v, still) = (&agent.start.q, vec![1.0; agent.start.q.len()], vec![0.0; agent.start.q.len()]);
     let motion = TwoVelocity { q, dq: &v, z: &still, dz: &still };
     let mut evaluator = robot.evaluator();
-    evaluator.at(&agent.robot.theta, motion, &v).is_ok_and(|products| products.damped.iter().any(|lost| *lost != 0.0))
+    let Ok(products) = evaluator.at(&agent.robot.theta, motion, &v) else { return false };
+    let rubs = smoothed_friction(agent, &v)
+        .filter(|(_, is_smooth)| *is_smooth)
+        .map_or_else(|| still.clone(), |(rubs, _)| rubs);
+    products.damped.iter().zip(rubs).any(|(lost, rubs)| *lost != rubs)
 }
 
 /// The designs of a setup, in the order of their first agents.
@@ -243,7 +248,21 @@ impl Case<'_> {
     /// What its agents' equations of motion have beside those of the paper.
     pub fn outside(&self) -> Outside {
         let agents = || self.agents.iter().map(|agent| &self.setup.agents[*agent]);
-        Outside { damped: agents().any(is_damped), pushed: agents().any(|agent| !agent.pushes.is_empty()) }
+        let rubs = |agent: &AgentSetup| smoothed_friction(agent, &agent.start.dq).map(|(_, is_smooth)| is_smooth);
+        let dry = agents().any(|agent| rubs(agent) == Some(false));
+        let rubbing = match (dry, agents().any(|agent| rubs(agent) == Some(true))) {
+            (true, _) => Some(Rubbing::Dry),
+            (false, true) => Some(Rubbing::Smooth),
+            (false, false) => None,
+        };
+        let pushed = dry || agents().any(|agent| !agent.pushes.is_empty());
+        Outside { damped: agents().any(is_damped), pushed, rubbing }
+    }
+
+    /// Whether estimates of ϑ are kept within bounds.
+    pub fn is_bounded(&self) -> bool {
+        let laws = self.agents.iter().filter_map(|agent| self.setup.agents[*agent].law.downcast::<Adaptive>());
+        laws.into_iter().any(|law| law.bounds.is_some())
     }
 
     /// Whether its reference dynamics add something that does not depend on the state.

@@ -99,8 +99,12 @@ pub enum Term {
     AttitudeDifference,
     /// K Δq*.
     AttitudeErrorRate,
-    /// τ_ext, or a force.
+    /// τ_ext, or a force; dry friction is a part of it.
     External,
+    /// F tanh(q̇/ε).
+    Friction,
+    /// F tanh(z/ε).
+    ReferenceFriction,
     /// χ(x*).
     Drift,
     /// ψ(x*) u.

@@ -81,6 +81,17 @@ pub struct Outside {
     pub damped: bool,
     /// τ_ext, which no law knows.
     pub pushed: bool,
+    /// Friction at the joints, in the regressor as F tanh(z/ε).
+    pub rubbing: Option<Rubbing>,
+}
+
+/// What the friction of a robot is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rubbing {
+    /// F tanh(q̇/ε).
+    Smooth,
+    /// F σ, which stands in τ_ext.
+    Dry,
 }
 
 impl Outside {
@@ -132,16 +143,19 @@ fn top_of(left: &Form, highest: usize) -> (Form, Form) {
     (Form::own(top), Form::own(low))
 }
 
-/// M p v + C v + g = Y ϑ for a velocity v, which is Property 3, and D v where the robot has it.
-fn motion(damped: bool, velocity: impl Fn(Operator, usize) -> Combination) -> Combination {
+/// M p v + C v + g = Y ϑ for a velocity v, which is Property 3, and D v and the friction where the robot has them.
+fn motion(damped: bool, friction: Option<Term>, velocity: impl Fn(Operator, usize) -> Combination) -> Combination {
     let lost = if damped { velocity(Operator::Viscous, 0) } else { Combination::default() };
-    sum(&[velocity(Operator::Inertia, 1), velocity(Operator::Coriolis, 0), lost, term(Term::Gravity)])
+    let rubs = friction.map(term).unwrap_or_default();
+    sum(&[velocity(Operator::Inertia, 1), velocity(Operator::Coriolis, 0), lost, rubs, term(Term::Gravity)])
 }
 
 /// (1) under (6)–(7), or with known parameters; with a force of the task space times κ for (80).
 pub fn robot(outside: Outside, known: bool, task_force: Option<&BigRational>) -> Lower {
-    let plant = motion(outside.damped, |operator, r| own(Letter::Position, operator, r + 1));
-    let truth = motion(outside.damped, |operator, r| own(Letter::Reference, operator, r));
+    let rubs = outside.rubbing.filter(|rubbing| *rubbing == Rubbing::Smooth).map(|_| Term::Friction);
+    let plant = motion(outside.damped, rubs, |operator, r| own(Letter::Position, operator, r + 1));
+    let rubs = outside.rubbing.map(|_| Term::ReferenceFriction);
+    let truth = motion(outside.damped, rubs, |operator, r| own(Letter::Reference, operator, r));
     let damping = minus(&own(Letter::Error, Operator::Damping, 0));
     let force = task_force.map(|kappa| minus(&times(&term(Term::TaskForce), kappa))).unwrap_or_default();
     let law = sum(&[damping, force, term(Term::Regressor)]);

@@ -121,6 +121,12 @@ impl Notation {
             Term::Sign => symbol("ς").derivative(k),
             Term::Torque => symbol("τ"),
             Term::Gravity => symbol("g"),
+            Term::Friction | Term::ReferenceFriction => {
+                let (letter, k) = if term == Term::Friction { (Letter::Position, 1) } else { (Letter::Reference, 0) };
+                let argument = [Symbol::new("ε").above("−1").into(), self.letter(letter, Vertex::Own, k)];
+                let smoothed = Formula::Function(Symbol::new("tanh"), vec![Formula::product(argument)]);
+                return Formula::product([symbol("F").into(), smoothed]);
+            }
             Term::Regressor => return regressor(symbol("ϑ").hat()),
             Term::RegressorError => return regressor(symbol("Δϑ")),
             Term::Input => symbol("u").above(if self.starred_error { "∗" } else { "" }),

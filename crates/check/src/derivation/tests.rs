@@ -355,7 +355,7 @@ fn eq_106_follows_from_how_attitudes_turn() {
 
 #[test]
 fn what_a_robot_loses_and_what_pushes_it_reach_the_lower_subsystem() {
-    let outside = Outside { damped: true, pushed: true };
+    let outside = Outside { damped: true, pushed: true, ..Outside::default() };
     let [lost, pushed] = [own(S).under(Operator::Viscous), term(Term::External)];
     for known in [false, true] {
         let [plain, other] = [Outside::default(), outside].map(|outside| lower::robot(outside, known, None));
@@ -368,7 +368,7 @@ fn what_a_robot_loses_and_what_pushes_it_reach_the_lower_subsystem() {
         assert_eq!(other.law, plain.law, "the law knows no push, and its regressor holds D");
         assert_eq!(other.outside, form(&[(pushed, &[1])], &[]));
     }
-    let pushed_mass = lower::position_only(Outside { damped: false, pushed: true }, &number(9));
+    let pushed_mass = lower::position_only(Outside { pushed: true, ..Outside::default() }, &number(9));
     let right = lower::position_only(Outside::default(), &number(9)).right;
     assert_eq!(pushed_mass.right, right.sum(&form(&[(pushed, &[1])], &[])));
 }

@@ -11,6 +11,7 @@ use super::super::form::{Combination, Form, Letter, Operator, Quantity, Term, Ve
 use super::super::formula::At as AtTime;
 use super::Missing;
 use super::robot::Model;
+use crate::surroundings::dry_loss_w;
 
 /// Entries of a vector, each with the size of what it is made of, which is what it is exact to.
 pub(super) type Vector = Vec<[f64; 2]>;
@@ -336,7 +337,9 @@ impl<'c, 'a> At<'c, 'a> {
                 self.chain_term(term)
             }
             (Term::MassEstimateRate | Term::MassErrorRate, 0) => self.mass_times_rate(term),
-            (Term::Gravity | Term::Regressor | Term::RegressorError, 0) => self.robot_term(term),
+            (Term::Gravity | Term::Regressor | Term::RegressorError | Term::Friction | Term::ReferenceFriction, 0) => {
+                self.robot_term(term)
+            }
             (Term::TaskForce | Term::JointReference, _) => self.task_term(term, k),
             (
                 Term::DesiredRate
@@ -355,6 +358,8 @@ impl<'c, 'a> At<'c, 'a> {
                 | Term::MassEstimateRate
                 | Term::MassErrorRate
                 | Term::Gravity
+                | Term::Friction
+                | Term::ReferenceFriction
                 | Term::Regressor
                 | Term::RegressorError
                 | Term::Weight
@@ -376,7 +381,8 @@ impl<'c, 'a> At<'c, 'a> {
     }
 
     pub(super) fn is_pushed(&self) -> bool {
-        !self.case.setup.agents[self.moment.agent].pushes.is_empty()
+        let agent = &self.case.setup.agents[self.moment.agent];
+        !agent.pushes.is_empty() || dry_loss_w(agent).is_some()
     }
 
     /// m̂ ż, or Δm ż.

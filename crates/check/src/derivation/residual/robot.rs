@@ -1,7 +1,7 @@
 //! Robots under (6)–(7): M, C, g, D and Y at an instant.
 
 use forwardstep_core::robot::TwoVelocity;
-use forwardstep_sim::{AgentSetup, DynamicsAt, Evaluator, Signal, SpacecraftModel, TaskSpaceLaw};
+use forwardstep_sim::{Adaptive, AgentSetup, DynamicsAt, Evaluator, Signal, SpacecraftModel, TaskSpaceLaw};
 
 use super::super::case::Step;
 use super::super::form::{Operator, Term};
@@ -9,6 +9,7 @@ use super::Missing;
 use super::moment::{At, Vector, exact};
 use super::task_space::Tip;
 use crate::practical::Gains;
+use crate::surroundings::smoothed_friction;
 
 /// What an agent's nonlinear terms are computed with.
 pub(super) enum Model<'a> {
@@ -77,14 +78,20 @@ impl Robot<'_> {
         self.found.as_ref().ok_or(Missing::Term)
     }
 
-    /// M a + C v + g + D v at a motion, for an acceleration and a velocity; and D v, with what friction takes at v.
+    /// M a + C v + g + D v at a motion, for an acceleration and a velocity; and D v. Both without friction.
     fn torque(&mut self, motion: &Motion, [a, v]: [&[f64]; 2]) -> Result<[Vec<f64>; 2], Missing> {
         let motion = TwoVelocity { z: v, dz: a, ..motion.view() };
         let theta = &self.agent.robot.theta;
-        let model = self.evaluator.at(theta, motion, v).map_err(|_| Missing::Term)?.model.clone();
+        let mut model = self.evaluator.at(theta, motion, v).map_err(|_| Missing::Term)?.model.clone();
         let still = vec![0.0; v.len()];
         let resisted = TwoVelocity { dq: v, z: &still, ..motion };
-        let damped = self.evaluator.at(theta, resisted, v).map_err(|_| Missing::Term)?.damped.clone();
+        let mut damped = self.evaluator.at(theta, resisted, v).map_err(|_| Missing::Term)?.damped.clone();
+        if let Some((rubs, is_smooth)) = smoothed_friction(self.agent, v) {
+            model.iter_mut().zip(&rubs).for_each(|(model, rubs)| *model -= rubs);
+            if is_smooth {
+                damped.iter_mut().zip(&rubs).for_each(|(damped, rubs)| *damped -= rubs);
+            }
+        }
         Ok([model, damped])
     }
 
@@ -114,6 +121,13 @@ impl Robot<'_> {
 
     /// g, Y ϑ̂ or Y Δϑ.
     fn term(&mut self, motion: &Motion, term: Term, estimate: Option<&[f64]>) -> Result<Vector, Missing> {
+        if let Some(v) = match term {
+            Term::Friction => Some(&motion.dq),
+            Term::ReferenceFriction => Some(&motion.z),
+            _ => None,
+        } {
+            return smoothed_friction(self.agent, v).map(|(rubs, _)| exact(rubs)).ok_or(Missing::Term);
+        }
         if term == Term::Gravity {
             let zero = vec![0.0; motion.q.len()];
             return Ok(exact(self.torque(motion, [&zero, &zero])?[0].clone()));
@@ -129,8 +143,8 @@ impl Robot<'_> {
         Ok(times(&self.dynamics(motion)?.regressor, &parameter))
     }
 
-    /// −Γ Yᵀ s.
-    fn adapted(&mut self, motion: &Motion) -> Result<Vector, Missing> {
+    /// −Γ Yᵀ s, slowed at the bounds if there are some.
+    fn adapted(&mut self, motion: &Motion, estimate: Option<&[f64]>) -> Result<Vector, Missing> {
         let s: Vec<[f64; 2]> = motion.dq.iter().zip(&motion.z).map(|(dq, z)| [dq - z, dq.abs() + z.abs()]).collect();
         let p = self.agent.robot.theta.len();
         let y = self.dynamics(motion)?.regressor.clone();
@@ -140,7 +154,14 @@ impl Robot<'_> {
         };
         let pulled: Vector = (0..p).map(column).collect();
         let gamma = self.gains.as_ref().and_then(|gains| gains.adaptation.as_ref()).ok_or(Missing::Term)?;
-        Ok(times(gamma.transpose().as_slice(), &pulled))
+        let mut rates = times(gamma.transpose().as_slice(), &pulled);
+        let bounds = self.agent.law.downcast::<Adaptive>().and_then(|law| law.bounds.as_ref());
+        if let (Some(bounds), Some(estimate)) = (bounds, estimate) {
+            for (k, ([rate, _], hat)) in rates.iter_mut().zip(estimate).enumerate() {
+                *rate = bounds.slowed(k, *hat, *rate);
+            }
+        }
+        Ok(rates)
     }
 }
 
@@ -183,9 +204,9 @@ impl At<'_, '_> {
     }
 
     pub(super) fn adapted(&mut self) -> Result<Vector, Missing> {
-        let motion = self.motion()?;
+        let (motion, estimate) = (self.motion()?, self.recorded(Signal::Estimate));
         match self.model()? {
-            Model::Robot(robot) => robot.adapted(&motion),
+            Model::Robot(robot) => robot.adapted(&motion, estimate),
             Model::Spacecraft(_) | Model::Chain(_) => Err(Missing::Term),
         }
     }

@@ -199,5 +199,5 @@ impl Tree {
 /// tanh(v/ε).
 #[inline(always)]
 fn smoothed<S: Scalar>(v: S, width: f64) -> S {
-    (v * S::splat(1.0 / width)).tanh()
+    Scalar::tanh(v * S::splat(1.0 / width))
 }
