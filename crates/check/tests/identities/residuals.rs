@@ -8,6 +8,8 @@ use forwardstep_check::derivation::Subject;
 use forwardstep_check::derivation::residual::{Missing, Residual, Residuals};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
+use forwardstep_core::law::ParameterBounds;
+use forwardstep_core::robot::tree::{Drives, Friction, JointKind, LinkJoint, LinkSpec, Placement, Tree};
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
@@ -131,6 +133,58 @@ fn a_run_of_something_else_is_noticed_by_the_equations_that_speak_of_it_and_by_n
         run.agents[0].pushes.push(Push { effect, from_s: 0.2, until_s: 0.6 });
     });
     assert_eq!(pushed, ["(1)", "(26) for (a1)"]);
+}
+
+/// Four trees with damping, rotors and friction, whose estimates are kept within bounds.
+fn rubbing_arms(dry_s: Option<f64>, friction_n_m: f64) -> Setup {
+    let mut setup = arms(&[1.0, 2.0], Exchange::PositionVelocity);
+    let tree = |damping: f64| {
+        let link = |k: usize| LinkSpec {
+            parent: k.checked_sub(1),
+            x_parent_joint: Placement { translation: [0.4, 0.1, 0.2], ..Placement::IDENTITY },
+            joint: LinkJoint::Moving { kind: JointKind::Revolute, axis: [0.0, 1.0, 0.0], damping },
+            inertia: [3.0, 0.5, 0.0, 0.0, 0.1, 0.0, 0.5, 0.0, 0.0, 0.5],
+        };
+        let assembled = Tree::assemble(&[link(0), link(1)], [0.0, 0.0, -9.81]).unwrap();
+        let friction = vec![Friction { joint: 0, width: 0.3 }, Friction { joint: 1, width: 0.2 }];
+        let theta = [&assembled.theta[..], &[0.3, friction_n_m, 0.7]].concat();
+        let drives = Drives { geared: vec![1], friction, dry_s };
+        (Arc::new(assembled.tree.with_drives(drives).unwrap()), theta)
+    };
+    let trees = [tree(0.0), tree(0.4)];
+    for (i, agent) in setup.agents.iter_mut().enumerate() {
+        let (tree, theta) = &trees[i % 2];
+        agent.robot.kind = Arc::new(Arc::clone(tree));
+        agent.robot.theta.clone_from(theta);
+        agent.robot.theta_names = (0..theta.len()).map(|k| format!("t{k}")).collect();
+        let ends = |by: f64| theta.iter().map(|own| own + by * (own.abs() + 0.1)).collect();
+        agent.law = Arc::new(Adaptive {
+            damping: Gain::Number(4.0),
+            adaptation: Gain::Number(2.0),
+            // At a bound, so that projection acts.
+            estimate_start: theta.iter().map(|own| own + 0.31 * (own.abs() + 0.1)).collect(),
+            bounds: Some(ParameterBounds::new(ends(-0.3), ends(0.3), 0.05)),
+        });
+    }
+    setup
+}
+
+#[test]
+fn identities_hold_with_rotors_and_friction_smooth_or_dry_and_notice_another_friction() {
+    for dry_s in [None, Some(2e-3)] {
+        let derived = rubbing_arms(dry_s, 0.5);
+        assert_eq!(noticed(&derived, &derived), [""; 0], "{dry_s:?}");
+        let mut other = derived.clone();
+        other.agents[1].robot = rubbing_arms(dry_s, 0.500_01).agents.swap_remove(1).robot;
+        // Dry friction is a part of what acts from outside, whatever it is: no equation holds F then.
+        let noticed_by: &[&str] = if dry_s.is_none() { &["(1)", "(26) for (a1)"] } else { &[] };
+        assert_eq!(noticed(&other, &derived), noticed_by);
+        let mut free = derived.clone();
+        for agent in &mut free.agents {
+            assert!(agent.change_law(|law: &mut Adaptive| law.bounds = None));
+        }
+        assert_eq!(noticed(&free, &derived), ["(7)"], "{dry_s:?}");
+    }
 }
 
 #[test]

@@ -113,6 +113,9 @@ pub(super) struct Positive;
 /// Stands for a number that is not negative in the schema.
 pub(super) struct NotNegative;
 
+/// Stands for a number that is not negative, for all axes or for each, in the schema.
+pub(super) struct NotNegativeEach;
+
 /// Numbers by name, in the order of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Named(pub Vec<(At<String>, At<f64>)>);
@@ -279,6 +282,9 @@ fn numbers() -> Schema {
 
 inline_schema!(Positive, "Positive", |_generator| json_schema!({ "type": "number", "exclusiveMinimum": 0 }));
 inline_schema!(NotNegative, "NotNegative", |_generator| json_schema!({ "type": "number", "minimum": 0 }));
+inline_schema!(NotNegativeEach, "NotNegativeEach", |_generator| json_schema!({
+    "anyOf": [{ "type": "number", "minimum": 0 }, { "type": "array", "items": { "type": "number", "minimum": 0 } }],
+}));
 inline_schema!(AxisValues, "AxisValues", |_generator| json_schema!({
     "anyOf": [
         { "type": "number", "exclusiveMinimum": 0 },

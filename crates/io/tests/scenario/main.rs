@@ -4,6 +4,7 @@
 mod blind;
 mod chains;
 mod control;
+mod drives;
 mod edges;
 mod formulas;
 mod leader;

@@ -83,6 +83,8 @@ fn command(base: &str) -> String {
             'α' => "\\alpha",
             'γ' => "\\gamma",
             'Γ' => "\\Gamma",
+            'Π' => "\\Pi",
+            'ε' => "\\varepsilon",
             'Δ' => "\\Delta ",
             'ζ' => "\\zeta",
             'η' => "\\eta",

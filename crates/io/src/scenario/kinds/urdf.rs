@@ -3,18 +3,20 @@
 use std::sync::Arc;
 
 use forwardstep_core::robot::tree::Tree;
+use forwardstep_sim::quantity::{self, Path, QuantityError};
 use forwardstep_sim::{RobotSetup, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
     At, AxisValues, Body, Fault, InputFolder, RobotKind, RobotRead, RobotTable, Spread, StartReader, Stop, fault,
-    number_or,
+    positive_or,
 };
 use crate::SourceText;
 use crate::files::ReadError;
+use crate::scenario::fault::checked;
 use crate::scenario::problem::ScenarioProblem;
-use crate::scenario::values::{Named, Positive};
+use crate::scenario::values::{Named, NotNegativeEach, Positive};
 use crate::urdf::{self, FrictionPolicy, JointDrives, JointFriction, UrdfOptions, UrdfProblem};
 
 /// Positions at which the mass matrix of a tree is looked at.
@@ -32,6 +34,7 @@ pub struct UrdfFile {
     pub locked: Named,
     /// The inertia of the rotors behind the gears, for all joints or for each, in kg m² or kg: n²J for a rotor with the inertia J that
     /// turns n times as fast as its joint. Default: none.
+    #[schemars(with = "Option<NotNegativeEach>")]
     pub armature: Option<At<AxisValues>>,
     /// What to do with Coulomb friction. Without it a URDF that states some is refused.
     pub friction: Option<FrictionFile>,
@@ -56,6 +59,7 @@ pub enum FrictionFile {
 #[serde(deny_unknown_fields)]
 pub struct DryFile {
     /// F for all joints or for each, in N m or N. Default: what the URDF states.
+    #[schemars(with = "Option<NotNegativeEach>")]
     pub coulomb: Option<At<AxisValues>>,
     /// ε of the law, in rad/s or m/s. Default: 0.01.
     pub width: Option<At<AxisValues>>,
@@ -69,6 +73,7 @@ pub struct DryFile {
 #[serde(deny_unknown_fields)]
 pub struct SmoothFile {
     /// F for all joints or for each, in N m or N. Default: what the URDF states.
+    #[schemars(with = "Option<NotNegativeEach>")]
     pub coulomb: Option<At<AxisValues>>,
     /// ε of robot and law, in rad/s or m/s. Default: 0.01.
     pub width: Option<At<AxisValues>>,
@@ -81,23 +86,37 @@ const PERIOD_S: f64 = 1e-3;
 
 impl FrictionFile {
     /// The friction of a robot whose URDF states `stated`.
-    fn of(&self, stated: &[f64]) -> Option<JointFriction> {
+    fn of(&self, stated: &[f64]) -> Result<Option<JointFriction>, Fault> {
         let (coulomb, width, dry_s) = match self {
-            FrictionFile::Ignore => return None,
+            FrictionFile::Ignore => return Ok(None),
             FrictionFile::Dry(DryFile { coulomb, width, period_s }) => {
-                (coulomb, width, Some(number_or(period_s, PERIOD_S)))
+                (coulomb, width, Some(positive_or("period_s", period_s, PERIOD_S)?))
             }
             FrictionFile::Smooth(SmoothFile { coulomb, width }) => (coulomb, width, None),
         };
-        let each = |file: &Option<At<AxisValues>>, usual: Vec<f64>| {
-            file.as_ref().map_or(usual, |values| values.value.each(stated.len()))
-        };
-        Some(JointFriction {
-            coulomb: each(coulomb, stated.to_vec()),
-            width: each(width, vec![WIDTH; stated.len()]),
-            dry_s,
-        })
+        let coulomb = each("coulomb", coulomb, stated, quantity::not_negative)?;
+        let width = each("width", width, &vec![WIDTH; stated.len()], quantity::positive)?;
+        Ok(Some(JointFriction { coulomb, width, dry_s }))
     }
+}
+
+/// One number for each axis, each of which meets `check`, or the usual ones.
+fn each(
+    key: &'static str,
+    file: &Option<At<AxisValues>>,
+    usual: &[f64],
+    check: fn(Path, &'static str, f64) -> Result<(), QuantityError>,
+) -> Result<Vec<f64>, Fault> {
+    let Some(place) = file else { return Ok(usual.to_vec()) };
+    let numbers = place.value.each(usual.len());
+    match &place.value {
+        AxisValues::All(number) => checked(place, check(Path::default(), key, *number))?,
+        AxisValues::Each(list) => {
+            checked(place, quantity::as_many("", key, &numbers, ("axes", usual.len())))?;
+            list.iter().try_for_each(|entry| checked(entry, check(Path::default(), key, entry.value)))?;
+        }
+    }
+    Ok(numbers)
 }
 
 impl RobotKind for UrdfFile {
@@ -144,9 +163,11 @@ fn from_urdf(file: &UrdfFile, folder: &mut InputFolder) -> Result<RobotRead, Sto
     };
     match urdf::read_urdf(&source, &options) {
         Ok(read) => {
+            let none = vec![0.0; read.coulomb.len()];
+            let friction = file.friction.as_ref().map(|friction| friction.of(&read.coulomb)).transpose()?;
             let drives = JointDrives {
-                armature: file.armature.as_ref().map_or(Vec::new(), |values| values.value.each(read.coulomb.len())),
-                friction: file.friction.as_ref().and_then(|friction| friction.of(&read.coulomb)),
+                armature: each("armature", &file.armature, &none, quantity::not_negative)?,
+                friction: friction.flatten(),
             };
             let read = read.with_drives(&drives).map_err(Fault::from)?;
             let links = read.links.into_iter().zip(read.anchors).collect();
