@@ -821,6 +821,8 @@ class FalseProofs(unittest.TestCase):
         instant = lambda t_s: lambda entry: entry.update(answer="violated", proof={"kind": "instant", "t_s": t_s, "axis": 1})  # noqa: E731
         self.rejected("remark-12", "sign-gain", "is no time", instant("1"), ("gain = 2 ", "gain = 0.1 "))
         self.accepted("remark-12", "sign-gain", instant("3"), ("gain = 2 ", "gain = 0.1 "))
+        # Where the third derivative jumps both sides count.
+        self.rejected("remark-12", "sign-gain", "is no time", instant("2"), ("gain = 2 ", "gain = 0.1 "))
         # A quaternion that vanishes at a point, and one that does between two.
         for row in ("[0, 0, 0, 0]", "[0, 0, 0, -1]"):
             wide = lambda entry: entry["proof"]["bound"].update(within=["-9", "9"])  # noqa: E731
@@ -1169,9 +1171,8 @@ class Enclosures(unittest.TestCase):
             self.assertEqual([end[1:3] for end in ends[:1] + ends[-1:]], [[0, 0]] * (2 if inside else 0))
             self.assertEqual(ends[1:-1:2], ends[2::2])
             for order in range(4):
-                for _ in range(20):
-                    low = checker.Fraction(draw.randrange(-20, 80), 10)
-                    high = low + checker.Fraction(draw.randrange(30), 10)
+                drawn = [checker.Fraction(draw.randrange(-20, 80), 10) for _ in range(20)]
+                for low, high in [(low, low + checker.Fraction(draw.randrange(30), 10)) for low in drawn] + list(zip(times, times)):
                     found = checker.enclose(("points", times, values, order), (low, high))
                     for x in (low + (high - low) * k / 20 for k in range(21)):
                         pieces = [one for one in checker.curve(times, values) if one[0] <= x <= one[1]]
