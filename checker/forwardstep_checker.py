@@ -50,22 +50,27 @@ UNCLAIMED = ("watched during the run", "not shown", "not covered by the paper")
 
 # What is larger is refused, so that nothing takes all memory.
 MOST_BYTES, MOST_DIGITS, MOST_NESTED = 64 << 20, 4000, 256
-MOST_AGENTS, MOST_EDGES, MOST_CELLS, MOST_ROWS, MOST_DEGREE = 200_000, 1_000_000, 100_000, 64, 16
+MOST_AGENTS, MOST_EDGES, MOST_CELLS, MOST_ROWS, MOST_DEGREE, MOST_POINTS = 200_000, 1_000_000, 100_000, 64, 16, 300
 
 # A claim that is not shown; `place` is where in the certificate.
 class Rejected(Exception):
+    outcome = REJECTED
     def __init__(self, words, place=""):
         super().__init__(words)
-        self.words, self.place = words, place
+        self.place = place
+
+def require(node, condition, words):
+    if not condition:
+        raise Rejected(words, node.place)
 
 # Something that cannot be checked here.
-class Undecided(Exception): pass
+class Undecided(Exception): outcome = UNCHECKED
 
 # Something that has no value.
 class Undefined(Undecided): pass
 
 # A scenario that cannot be read, or has no meaning.
-class Meaningless(Exception): pass
+class Meaningless(Exception): outcome = REJECTED
 
 # --- Numbers and documents
 
@@ -84,17 +89,12 @@ class Node:
     def __init__(self, value, place):
         self.value, self.place = value, place
 
-    def reject(self, words):
-        raise Rejected(words, self.place)
-
     def typed(self, kind, words):
-        if not isinstance(self.value, kind) or isinstance(self.value, bool):
-            self.reject(f"must be {words}")
+        require(self, isinstance(self.value, kind) and not isinstance(self.value, bool), f"must be {words}")
         return self.value
 
     def field(self, key):
-        if key not in self.typed(dict, "an object"):
-            self.reject(f"lacks `{key}`")
+        require(self, key in self.typed(dict, "an object"), f"lacks `{key}`")
         return Node(self.value[key], f"{self.place}.{key}")
 
     def optional(self, key):
@@ -103,8 +103,7 @@ class Node:
     # Refuses fields that nothing reads: what stands in a certificate counts.
     def only(self, *keys):
         for key in self.typed(dict, "an object"):
-            if key not in keys:
-                self.reject(f"has `{key}`, which means nothing here")
+            require(self, key in keys, f"has `{key}`, which means nothing here")
 
     def each(self):
         return [Node(value, f"{self.place}[{k}]") for k, value in enumerate(self.typed(list, "a list"))]
@@ -118,8 +117,8 @@ class Node:
     # A whole number, a decimal in quotes, or "p/q" in quotes.
     def number(self):
         text = str(self.typed((int, str), "a whole number, or a number in quotes"))
-        if len(text) > MOST_DIGITS or not (RATIO.fullmatch(text) or DECIMAL.fullmatch(text)):
-            self.reject("is no decimal and no p/q of moderate length")
+        legible = len(text) <= MOST_DIGITS and (RATIO.fullmatch(text) or DECIMAL.fullmatch(text))
+        require(self, legible, "is no decimal and no p/q of moderate length")
         return Fraction(text)
 
 # The document as a node. Numbers in it are whole or stand in quotes, so that none is rounded on the way.
@@ -127,15 +126,9 @@ def read_certificate(text):
     def no(words):
         raise Rejected(words, "certificate")
 
-    def pairs(items):
-        found = dict(items)
-        if len(found) < len(items):
-            no("an object has a key twice")
-        return found
-
     try:
         return Node(json.loads(
-            text, object_pairs_hook=pairs,
+            text, object_pairs_hook=lambda items: dict(items) if len(dict(items)) == len(items) else no("an object has a key twice"),
             parse_float=lambda number: no(f"{number[:40]} stands without quotes: it would be rounded"),
             parse_constant=lambda word: no(f"{word} is not a number"),
             parse_int=lambda digits: int(digits) if len(digits) <= 30 else no("a whole number is too long")), "certificate")
@@ -370,12 +363,52 @@ def function(name, a):
     right, zero, one = multiply(PI, (Fraction(1, 2),) * 2), (Fraction(0),) * 2, (Fraction(1),) * 2
     at, low, high, known_ = {
         "exp": (exp_at, zero, (INF, INF), {0: one}), "log": (log_at, None, (INF, INF), {1: zero}), "sqrt": (sqrt_at, None, (INF, INF), {}),
-        "tanh": (tanh_at, minus(one), one, {0: zero}), "atan": (atan_at, minus(right), right, {0: zero}),
-    }[name]
+        "tanh": (tanh_at, minus(one), one, {0: zero}), "atan": (atan_at, minus(right), right, {0: zero})}[name]
     ends = [known_.get(x) or ((low if x < 0 else high) if infinite(x) else at(x)) for x in a]
     return ends[0][0], ends[1][1]
 
-# --- Formulas: ("number", q), ("pi",), ("e",), ("t",), ("f", name, a), (op, a, b) for + - * / min max, ("^", a, q)
+# --- Curves through points: at rest before the first and after the last; between them pieces of degree five, so that four derivatives
+# --- are continuous at every point inside
+
+# p(x + by) by powers of x, for a polynomial p by powers of x.
+def moved(p, by):
+    return [sum(math.comb(n, k) * p[n] * by ** (n - k) for n in range(k, len(p))) for k in range(len(p))]
+
+# Pieces by powers of the time since each starts, of a curve that leaves the first point at rest with these coefficients of t³ and t⁴;
+# and those of t and t² at the last point.
+def shot(times, values, third, fourth):
+    found, state = [], [values[0], Fraction(0), Fraction(0), third, fourth]
+    for length, value in zip((late - early for early, late in zip(times, times[1:])), values[1:]):
+        found.append([*state, (value - sum(c * length**k for k, c in enumerate(state))) / length**5])
+        state = moved(found[-1], length)[:5]
+    return found, state[1], state[2]
+
+# (start, end, piece) of the curve that ends at rest: the last state is affine in what the first point leaves open.
+@functools.cache
+def curve(times, values):
+    decided(len(times) <= MOST_POINTS, "a curve through so many points is not computed here")
+    (_, v, a), (_, v_3, a_3), (_, v_4, a_4) = (shot(times, values, *map(Fraction, begin)) for begin in ((0, 0), (1, 0), (0, 1)))
+    # One point leaves nothing open.
+    determinant = (v_3 - v) * (a_4 - a) - (v_4 - v) * (a_3 - a) or 1
+    third, fourth = ((v_4 - v) * a - (a_4 - a) * v) / determinant, ((a_3 - a) * v - (v_3 - v) * a) / determinant
+    inside = zip(times, times[1:], shot(times, values, third, fourth)[0])
+    return [(-INF, times[0], [values[0]]), *inside, (times[-1], INF, [values[-1]])]
+
+# What a derivative of such a curve keeps within: a polynomial does within its Bernstein coefficients.
+def along_points(times, values, order, t):
+    found = []
+    for start, end, piece in curve(times, values):
+        if start <= t[1] and t[0] <= end:
+            rate = functools.reduce(lambda p, _: [n * c for n, c in enumerate(p)][1:] + [Fraction(0)], range(order), piece)
+            if len(rate) > 1:
+                low = max(start, t[0])
+                scaled = [c * (min(end, t[1]) - low) ** k for k, c in enumerate(moved(rate, low - start))]
+                rate = [sum(Fraction(math.comb(j, k), math.comb(5, k)) * scaled[k] for k in range(j + 1)) for j in range(6)]
+            found.append(span(min(rate), max(rate)))
+    return functools.reduce(hull, found)
+
+# --- Formulas: ("number", q), ("pi",), ("e",), ("t",), ("f", name, a), (op, a, b) for + - * / min max, ("^", a, q); and ("points",
+# --- times, values, order) for a derivative of a curve
 
 FUNCTIONS = ("sin", "cos", "exp", "log", "sqrt", "abs", "tanh", "atan")
 NUMBER = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
@@ -399,10 +432,8 @@ def shaped(node, names, depth):
     def inner(part):
         return shaped(part, names, depth + 1)
 
-    if isinstance(node, ast.Name) and node.id in names:
-        return ("t",) if node.id == "t" else ("state", node.id)
-    if isinstance(node, ast.Name) and node.id in ("pi", "e"):
-        return (node.id,)
+    if isinstance(node, ast.Name) and node.id in (*names, "pi", "e"):
+        return (node.id,) if node.id in ("t", "pi", "e") else ("state", node.id)
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.UAdd, ast.USub)):
         return inner(node.operand) if isinstance(node.op, ast.UAdd) else ("f", "neg", inner(node.operand))
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow):
@@ -412,7 +443,7 @@ def shaped(node, names, depth):
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
         name = node.func.id
         if name == "_" and len(node.args) == 1 and isinstance(node.args[0], ast.Constant):
-            return "number", quantity(str(node.args[0].value))
+            return "number", decimal(str(node.args[0].value))
         arguments = [inner(argument) for argument in node.args]
         if name in FUNCTIONS and len(arguments) == 1:
             return "f", name, arguments[0]
@@ -420,19 +451,12 @@ def shaped(node, names, depth):
             return functools.reduce(lambda a, b: (name, a, b), arguments)
     raise Meaningless("a formula has something that no formula has")
 
-def quantity(text):
-    try:
-        return decimal(text)
-    except ValueError as error:
-        raise Meaningless(str(error)) from None
-
 def has_variable(tree):
-    return tree[0] in ("t", "state") or any(isinstance(part, tuple) and has_variable(part) for part in tree[1:])
+    return tree[0] in ("t", "state", "points") or any(isinstance(part, tuple) and has_variable(part) for part in tree[1:])
 
 COMBINED = {
-    "+": add, "-": lambda a, b: add(a, minus(b)), "*": multiply, "/": lambda a, b: multiply(a, inverse(b)),
-    "hull": hull, "min": lambda a, b: (min(a[0], b[0]), min(a[1], b[1])), "max": lambda a, b: (max(a[0], b[0]), max(a[1], b[1])),
-}
+    "+": add, "-": lambda a, b: add(a, minus(b)), "*": multiply, "/": lambda a, b: multiply(a, inverse(b)), "hull": hull,
+    "min": lambda a, b: tuple(map(min, a, b)), "max": lambda a, b: tuple(map(max, a, b))}
 
 def convolved(p, q):
     return [sum((p[i] * q[k - i] for i in range(len(p)) if 0 <= k - i < len(q)), Fraction(0)) for k in range(len(p) + len(q) - 1)]
@@ -442,25 +466,23 @@ def quotient(tree):
     kind = tree[0]
     if kind in ("number", "t"):
         return ([tree[1]] if kind == "number" else [Fraction(0), Fraction(1)]), [Fraction(1)]
+    if tree[:2] == ("f", "neg"):
+        return quotient(("-", ZERO, tree[2]))
     parts = [quotient(part) for part in tree[1:] if isinstance(part, tuple)]
-    if None in parts or tree[:2] not in (("f", "neg"), (kind, tree[1])) or kind not in ("f", "+", "-", "*", "/", "^"):
+    if None in parts or kind not in ("+", "-", "*", "/", "^") or kind == "^" and (tree[2].denominator > 1 or abs(tree[2]) > 8):
         return None
     (a, b), (c, d) = parts[0], parts[-1]
-    if kind == "f":
-        found = ([-x for x in a], b) if tree[1] == "neg" else None
-    elif kind == "^":
-        n = tree[2]
-        if n.denominator > 1 or abs(n) > 8:
-            return None
-        a, b = (convolved(b, b), convolved(a, b)) if n < 0 else (a, b)
-        found = functools.reduce(lambda x, _: (convolved(x[0], a), convolved(x[1], b)), range(abs(int(n))), ([Fraction(1)], [Fraction(1)]))
+    if kind == "^":
+        a, b = (convolved(b, b), convolved(a, b)) if tree[2] < 0 else (a, b)
+        repeated = range(abs(int(tree[2])))
+        found = functools.reduce(lambda x, _: (convolved(x[0], a), convolved(x[1], b)), repeated, ([Fraction(1)], [Fraction(1)]))
     elif kind in "+-":
         c = c if kind == "+" else [-x for x in c]
         sides = convolved(a, d), convolved(c, b)
         found = [sum(pair_) for pair_ in itertools.zip_longest(*sides, fillvalue=Fraction(0))], convolved(b, d)
     else:
         found = (convolved(a, c), convolved(b, d)) if kind == "*" else (convolved(convolved(a, d), d), convolved(convolved(b, c), d))
-    return found if found is not None and max(map(len, found)) <= 2 * MOST_DEGREE else None
+    return found if max(map(len, found)) <= 2 * MOST_DEGREE else None
 
 def trimmed(p):
     return trimmed(p[:-1]) if p and p[-1] == 0 else p
@@ -494,12 +516,10 @@ def in_one_pass(tree, t):
     kind = tree[0]
     if kind in ("number", "t", "pi", "e"):
         return {"t": t, "pi": PI}.get(kind) or ((tree[1],) * 2 if kind == "number" else exp_at(Fraction(1)))
-    if kind == "f":
-        return function(tree[1], enclose(tree[2], t))
-    if kind == "^":
-        return power(enclose(tree[1], t), tree[2])
-    if kind == "state":
-        return t.get(tree[1], WHOLE) if isinstance(t, dict) else WHOLE
+    if kind in ("f", "^"):
+        return function(tree[1], enclose(tree[2], t)) if kind == "f" else power(enclose(tree[1], t), tree[2])
+    if kind in ("state", "points"):
+        return along_points(*tree[1:], t) if kind == "points" else t.get(tree[1], WHOLE) if isinstance(t, dict) else WHOLE
     return COMBINED[kind](enclose(tree[1], t), enclose(tree[2], t))
 
 # The rational number that a formula without variables is: its enclosure, where that is one number.
@@ -547,6 +567,8 @@ def derivative(tree, kinks=False):
     kind = tree[0]
     if kind == "t" or not has_variable(tree):
         return ONE if kind == "t" else ZERO
+    if kind == "points":
+        return *tree[:3], tree[3] + 1
     parts = [part for part in tree[1:] if isinstance(part, tuple)]
     (a, b), (da, db) = (parts[0], parts[-1]), (derivative(part, kinks) for part in (parts[0], parts[-1]))
     if kind in "+-":
@@ -560,10 +582,9 @@ def derivative(tree, kinks=False):
     if kind in ("min", "max") and kinks:
         return "hull", da, db
     outer = {
-        "neg": ("number", Fraction(-1)), "sin": ("f", "cos", a), "cos": ("f", "neg", ("f", "sin", a)), "exp": tree,
-        "log": ("/", ONE, a), "sqrt": ("/", ("number", Fraction(1, 2)), tree), "tanh": ("-", ONE, ("^", tree, Fraction(2))),
-        "atan": ("/", ONE, ("+", ONE, ("^", a, Fraction(2)))),
-    } | ({"abs": ("hull", ("number", Fraction(-1)), ONE)} if kinks else {})
+        "neg": ("number", Fraction(-1)), "sin": ("f", "cos", a), "cos": ("f", "neg", ("f", "sin", a)), "exp": tree, "log": ("/", ONE, a),
+        "sqrt": ("/", ("number", Fraction(1, 2)), tree), "tanh": ("-", ONE, ("^", tree, Fraction(2))),
+        "atan": ("/", ONE, ("+", ONE, ("^", a, Fraction(2))))} | ({"abs": ("hull", ("number", Fraction(-1)), ONE)} if kinks else {})
     decided(kind == "f" and tree[1] in outer, "a derivative has kinks")
     return times(da, outer[tree[1]])
 
@@ -595,8 +616,7 @@ def multiple(tree):
         (a, n), (b, m) = multiple(tree[1]), multiple(tree[2])
         return (a * b, n + m) if tree[0] == "*" else (a / b, n - m)
     if tree[:2] == ("f", "neg"):
-        a, n = multiple(tree[2])
-        return -a, n
+        return multiple(("*", ("number", Fraction(-1)), tree[2]))
     value = constant(tree)
     decided(value != 0, "an angle does not change")
     return value, 0
@@ -609,7 +629,7 @@ def period(tree):
             slope = derivative(part[2])
             decided(not has_variable(slope), "an angle is not linear in t")
             return [multiple(slope)]
-        decided(part[0] not in ("t", "state"), "t stands outside of sines and cosines")
+        decided(part[0] not in ("t", "state", "points"), "t stands outside of sines and cosines")
         return [rate for inner in part[1:] if isinstance(inner, tuple) for rate in rates(inner)]
 
     found = rates(tree)
@@ -619,37 +639,30 @@ def period(tree):
 
 # --- The scenario, read from its text
 
-USUAL_LAW = {
-    "planar_arm": "adaptive", "point_mass": "adaptive", "ship": "adaptive", "urdf": "adaptive", "vehicle": "thrust",
-    "rotorcraft": "thrust", "spacecraft": "attitude", "chain": "linear_adaptive",
-    "strict_feedback": "adaptive_backstepping", "pure_feedback": "adaptive_backstepping",
-}
 LAGRANGIAN = ("planar_arm", "point_mass", "ship", "urdf")
 MADE_FOR = {
     "adaptive": LAGRANGIAN, "known": LAGRANGIAN, "position_only": ("point_mass",), "thrust": ("vehicle", "rotorcraft"),
-    "task_space": ("planar_arm", "urdf"), "attitude": ("spacecraft",), "linearising": ("chain",),
-    "linear_adaptive": ("chain",), "immersion": ("chain",),
-    "adaptive_backstepping": ("strict_feedback", "pure_feedback"),
+    "task_space": ("planar_arm", "urdf"), "attitude": ("spacecraft",), "linear_adaptive": ("chain",), "linearising": ("chain",),
+    "immersion": ("chain",), "adaptive_backstepping": ("strict_feedback", "pure_feedback"),
 }
+# The first of those that are made for a robot.
+USUAL_LAW = {robot: law for law, robots in reversed(MADE_FOR.items()) for robot in robots}
 DIRECTIONS = {"ring": ("forward", "both"), "path": ("forward", "both"), "star": ("out", "in", "both"), "complete": ()}
 CHAIN_LAWS = ("linearising", "linear_adaptive", "immersion", "adaptive_backstepping")
 DESIGNS = ("continuous", "differentiable", "without_acceleration", "swarm")
 
 # The gains of each law, by their keys. What is not written is positive by default.
 GAINS = {
-    "adaptive": ("damping", "adaptation_gain"), "known": ("damping",),
+    "adaptive": ("damping", "adaptation_gain"), "known": ("damping",), "position_only": ("damping", "filter_per_s", "adaptation_gain"),
     "task_space": ("damping", "adaptation_gain", "task_gain", "kinematic_gain", "torque_share", "reference_gain_per_s"),
     "attitude": ("error_gain_per_s2", "rate_gain_per_s", "filter_gain_per_s", "damping"),
-    "position_only": ("damping", "filter_per_s", "adaptation_gain"),
-    "thrust": ("damping_per_s", "stiffness", "adaptation_gain", "estimate_start_kg"),
-    "linearising": ("gain_per_s",), "linear_adaptive": ("gain_per_s", "adaptation_gain"),
-    "immersion": ("gain_per_s", "adaptation_gain"), "adaptive_backstepping": ("gains_per_s", "adaptation_gain"),
-}
+    "thrust": ("damping_per_s", "stiffness", "adaptation_gain", "estimate_start_kg"), "linearising": ("gain_per_s",),
+    "linear_adaptive": ("gain_per_s", "adaptation_gain"), "immersion": ("gain_per_s", "adaptation_gain"),
+    "adaptive_backstepping": ("gains_per_s", "adaptation_gain")}
 OTHER_SETTINGS = (" estimate_start estimate_start_kg floor design yaw thrust_start_n rate_bandwidth_per_s end_effector kinematic_start "
                   "bounds determinant_floor antiderivatives")
 AGENT = "name count robot parameter_variation start reference law target enforce_limits"
-CONTROL = ("sample_hz computation_delay_s velocity noise quantisation torque_limit torque_rate_limit_per_s safe_command "
-           "message_timeout_s")
+CONTROL = "sample_hz computation_delay_s velocity noise quantisation torque_limit torque_rate_limit_per_s safe_command message_timeout_s"
 
 # An agent: its name, robot, law, roots, λ, target, and the entry of the file that it comes from.
 class Agent:
@@ -659,8 +672,7 @@ class Agent:
         known(self.robot, USUAL_LAW, "robots")
         table(self.body, f"{place}.robot.{self.robot}")
         self.enforced = entry.get("enforce_limits", False) is not False
-        self.roots, self.manipulability, self.pushes = [], Fraction(0), []
-        self.target = None
+        self.roots, self.manipulability, self.pushes, self.target = [], Fraction(0), [], None
 
     # The table of its law that has gains: of vehicles that of the design.
     def settings(self):
@@ -668,9 +680,9 @@ class Agent:
         return table(design, "design") if self.law == "thrust" else self.gains
 
 # κ of a real root −κ as (κ, 0), and (a, b), (a, −b) of a pair −a ± b i; real ones first, so that κ₀ is the first where there is one.
-def roots_of(*tables):
-    found, file = [], next((table_["roots_per_s"] for table_ in tables if "roots_per_s" in table_), None)
-    for root in [] if file is None else listed(file, "roots_per_s"):
+def roots_of(body):
+    found = []
+    for root in listed(body["roots_per_s"], "roots_per_s") if "roots_per_s" in body else []:
         paired = root if isinstance(root, dict) else {"real": root, "imaginary": 0}
         a, b = (exact(table(paired, "roots_per_s", "real imaginary").get(key), key) for key in ("real", "imaginary"))
         found += [(a, b), (a, -b)] if root is paired else [(a, b)]
@@ -694,12 +706,11 @@ class Scenario:
         for number, entry in enumerate(listed(file.get("agents"), "agents")):
             self.populate(table(entry, "agents", AGENT), f"agents[{number}]")
         self.leader, self.motion = None, None
-        names = [agent.name for agent in self.agents]
+        self.names = [agent.name for agent in self.agents]
         if self.reference == "leader":
-            names += self.lead(table(file.get("leader"), "leader", "name motion agent"), names)
-        self.names = names
-        self.index = {name: k for k, name in enumerate(names)}
-        such(len(self.index) == len(names), "two agents have the same name")
+            self.lead(table(file.get("leader"), "leader", "name motion agent"))
+        self.index = {name: k for k, name in enumerate(self.names)}
+        such(len(self.index) == len(self.names), "two agents have the same name")
         for agent in self.agents:
             self.design(agent)
         self.control = table(file["control"], "control", CONTROL) if "control" in file else None
@@ -709,11 +720,9 @@ class Scenario:
 
     def populate(self, entry, place):
         name = name_of(entry.get("name"), f"{place}.name")
-        names = [name]
-        if "count" in entry:
-            number = exact(entry["count"], f"{place}.count")
-            such(number.denominator == 1 and 1 <= number <= MOST_AGENTS, f"{place}.count must be a whole number of agents")
-            names = [f"{name}-{k}" for k in range(1, int(number) + 1)]
+        number = exact(entry.get("count", 1), f"{place}.count")
+        such(number.denominator == 1 and 1 <= number <= MOST_AGENTS, f"{place}.count must be a whole number of agents")
+        names = [f"{name}-{k}" for k in range(1, int(number) + 1)] if "count" in entry else [name]
         such(len(self.agents) + len(names) <= MOST_AGENTS, "there are too many agents")
         for each in names:
             agent = Agent(each, len(self.agents), entry, place)
@@ -723,26 +732,22 @@ class Scenario:
             such(agent.robot in MADE_FOR[agent.law], f"the law `{agent.law}` is not made for `{agent.robot}`")
             self.agents.append(agent)
 
-    # The names that the leader adds to the vertices.
-    def lead(self, leader, names):
+    # The leader is an agent, or one vertex more.
+    def lead(self, leader):
         if "agent" in leader:
-            such(leader["agent"] in names, "there is no agent of the name of the leader")
-            self.leader = names.index(leader["agent"])
-            return []
-        self.motion = self.trajectory(leader.get("motion"), "leader.motion")
-        self.leader = len(names)
-        return [name_of(leader.get("name", "leader"), "leader.name")]
+            such(leader["agent"] in self.names, "there is no agent of the name of the leader")
+            self.leader = self.names.index(leader["agent"])
+        else:
+            self.leader, self.motion = len(self.names), self.trajectory(leader.get("motion"), "leader.motion")
+            self.names.append(name_of(leader.get("name", "leader"), "leader.name"))
 
     # Roots, λ and the target of one agent: its own, else those of all. Who leads shares nothing with those that follow.
     def design(self, agent):
         leads = agent.index == self.leader
         key, own = choice(agent.entry["reference"], "reference") if "reference" in agent.entry else (None, {})
-        common = "tracking" if leads else self.reference
-        such(key in (None, common), f"{agent.name} states reference dynamics of another kind")
-        shared = {} if leads or self.reference == "leader" else self.body
-        agent.roots = roots_of(table(own, "reference"), shared)
-        key = "manipulability_gain"
-        agent.manipulability = not_negative(own.get(key, shared.get(key, 0)), key)
+        such(key in (None, "tracking" if leads else self.reference), f"{agent.name} states reference dynamics of another kind")
+        own = ({} if leads or self.reference == "leader" else self.body) | table(own, "reference")
+        agent.roots, agent.manipulability = roots_of(own), not_negative(own.get("manipulability_gain", 0), "manipulability_gain")
         agent.tracks = leads or self.reference == "tracking"
         if "target" in agent.entry:
             agent.target = self.trajectory(agent.entry["target"], f"target of {agent.name}")
@@ -753,7 +758,7 @@ class Scenario:
             return self.body["exchange"]
         return "position_velocity" if self.reference == "leader" else "position"
 
-    # Motions: for each axis a formula, or ("points", t, x)
+    # Motions: for each axis a formula, or a curve through points
 
     def trajectory(self, file, where):
         kind, body = choice(file, where)
@@ -767,12 +772,12 @@ class Scenario:
         elif kind == "csv":
             table_ = self.csv(table(body, where).get("file"))
             such(table_ and "t_s" in table_[0], f"{where}: the table lacks rows, or the column `t_s`")
-            times = [quantity(row["t_s"]) for row in table_]
-            rows = [[quantity(cell) for key, cell in row.items() if key != "t_s"] for row in table_]
+            times = [decimal(row["t_s"]) for row in table_]
+            rows = [[decimal(cell) for key, cell in row.items() if key != "t_s"] for row in table_]
         known(kind, ("points", "csv"), "motions")
         such(len(rows) == len(times) and len({len(row) for row in rows}) == 1, f"{where} must have as many entries for every time")
         such(all(early < late for early, late in zip(times, times[1:])), f"{where}: times must rise")
-        return [("points", times, [row[axis] for row in rows]) for axis in range(len(rows[0]))]
+        return [("points", tuple(times), tuple(row[axis] for row in rows), 0) for axis in range(len(rows[0]))]
 
     # offset + Σ amplitude · sin(rate · t + phase), as a formula.
     @staticmethod
@@ -787,11 +792,10 @@ class Scenario:
     # The text of a file that the scenario names: beside it, in `inputs` beside it, or among the shipped robots.
     def text_of(self, name):
         name = name_of(name, "file")
-        for place in (self.folder / name, self.folder / "inputs" / name, SHIPPED_ROBOTS / name):
-            if place.is_file():
-                self.inputs[name], text = read(place)
-                return text
-        raise Undecided(f"the file `{name}` is not found beside the scenario")
+        places = [folder / name for folder in (self.folder, self.folder / "inputs", SHIPPED_ROBOTS) if (folder / name).is_file()]
+        decided(places, f"the file `{name}` is not found beside the scenario")
+        self.inputs[name], text = read(places[0])
+        return text
 
     def csv(self, name):
         rows = [row for row in csv.reader(io.StringIO(self.text_of(name))) if row and not row[0].lstrip().startswith("#")]
@@ -853,9 +857,7 @@ class Scenario:
         return self.index[name]
 
     def edge(self, entry):
-        if isinstance(entry, list) and len(entry) == 2:
-            return Edge(self.vertex(entry[0]), self.vertex(entry[1]), self.weight, self.delay)
-        entry = table(entry, "an edge", "from to weight delay")
+        entry = dict(zip(("from", "to"), pair(entry))) if isinstance(entry, list) else table(entry, "an edge", "from to weight delay")
         return Edge(self.vertex(entry.get("from")), self.vertex(entry.get("to")), *self.terms(entry))
 
     def terms(self, entry):
@@ -867,39 +869,35 @@ class Scenario:
             rows = [{key: cell for key, cell in row.items() if cell} for row in self.csv(body.get("file"))]
             for row in rows:
                 row |= {"weight": Fraction(row["weight"])} if DECIMAL.fullmatch(row.get("weight", "")) else {}
-                row |= {"delay": {"constant_s": quantity(row.pop("delay_s"))}} if "delay_s" in row else {}
+                row |= {"delay": {"constant_s": decimal(row.pop("delay_s"))}} if "delay_s" in row else {}
             return [self.edge(row) for row in rows]
         known(rule, DIRECTIONS, "edges")
         members = [self.vertex(name) for name in listed(body["among"], "among")] if "among" in body else list(range(len(self.agents)))
         direction, n = body.get("direction"), len(members)
         if rule in ("ring", "path"):
             pairs = list(zip(members, members[1:])) + ([(members[-1], members[0])] if rule == "ring" and n > 1 else [])
-            pairs += [(b, a) for a, b in pairs] if direction == "both" else []
         elif rule == "star":
             centre = self.vertex(body.get("centre"))
-            others = [member for member in members if member != centre]
-            pairs = [(centre, other) for other in others] if direction in (None, "out", "both") else []
-            pairs += [(other, centre) for other in others] if direction in ("in", "both") else []
+            pairs = [(centre, member) for member in members if member != centre]
         else:
             such(n * n <= MOST_EDGES, "there are too many edges")
             pairs = [(a, b) for a in members for b in members if a != b]
         such(direction in (None, *DIRECTIONS[rule]), "`direction` is not one of the rule")
+        back = [(b, a) for a, b in pairs]
+        pairs = {"both": pairs + back, "in": back}.get(direction, pairs)
         return [Edge(a, b, *self.terms(body)) for a, b in dict.fromkeys(pairs)]
 
     # What acts from outside: for every agent the end of each push, infinite where there is none
 
     def read_pushes(self):
-        members = collections.defaultdict(list)
-        for agent in self.agents:
-            for name in {agent.name, agent.entry["name"]}:
-                members[name].append(agent)
         for push in self.file.get("external_wrenches", []):
             push = table(push, "external_wrenches", "on from_s for_s by")
             begins = not_negative(push.get("from_s", 0), "from_s")
             ends = begins + positive(push["for_s"], "for_s") if "for_s" in push else INF
             for name in listed(push.get("on"), "on"):
-                such(name_of(name, "on") in members, f"there is no agent `{name}`")
-                for agent in members[name]:
+                meant = [agent for agent in self.agents if name in (agent.name, agent.entry["name"])]
+                such(meant, f"there is no agent `{name}`")
+                for agent in meant:
                     for first, last in self.courses(push.get("by")):
                         if max(begins, first) < min(ends, last):
                             agent.pushes.append(min(ends, last))
@@ -915,7 +913,7 @@ class Scenario:
             times = [Fraction(0), INF]
             if form != "formulas":
                 times = [exact(t, "times_s") for t in listed(table(rows, "rows").get("times_s"), "times_s")] if form == "rows" else [
-                    quantity(row.get("t_s", "")) for row in self.csv(table(rows, "csv").get("file"))]
+                    decimal(row.get("t_s", "")) for row in self.csv(table(rows, "csv").get("file"))]
             yield min(times), max(times)
 
     def used(self):
@@ -943,8 +941,7 @@ class Scenario:
     def limited(self):
         control = self.control or {}
         steps = exact(table(control.get("quantisation", {}), "quantisation").get("torque", 0), "torque")
-        limits = [key for key in ("torque_limit", "torque_rate_limit_per_s") if key in control]
-        return bool(limits) or steps != 0 or any(agent.enforced for agent in self.agents)
+        return steps != 0 or {"torque_limit", "torque_rate_limit_per_s"} & set(control) or any(agent.enforced for agent in self.agents)
 
     # [from, to, phase] of the certificate as numbers; None for who is unknown.
     def triple(self, node):
@@ -952,16 +949,21 @@ class Scenario:
         require(node, len(parts) == 3, "must be [from, to, phase]")
         return [self.index.get(part.text()) for part in parts[:2]] + [parts[2].count() - 1]
 
+    # The edge that such a triple means.
+    def edge_at(self, node):
+        *ends, phase = self.triple(node)
+        edges = [edge for edge in self.graphs[phase] if [edge.source, edge.to] == ends] if 0 <= phase < len(self.graphs) else []
+        require(node, edges, "is no edge of this phase")
+        return edges[0]
+
 # The bytes of a file and its text.
 def read(path):
     try:
         such(path.stat().st_size <= MOST_BYTES, f"{path} is too large")
         data = path.read_bytes()
         return data, data.decode("utf-8")
-    except OSError as error:
-        raise Meaningless(f"{path} cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise Meaningless(f"{path} is not UTF-8") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise Meaningless(f"{path} cannot be read: {error}") from None
 
 # --- Which theorem speaks, and what it asks for
 
@@ -998,64 +1000,54 @@ def theorem(scenario):
 
 # The hypotheses that a certificate must speak about: (id, name of an agent, or "" for the whole).
 def requirements(scenario):
-    agents, reference = scenario.agents, scenario.reference
-    laws, robots = {agent.law for agent in agents}, {agent.robot for agent in agents}
-    found = set()
-
-    def ask(condition, *ids):
-        found.update((each, "") for each in ids if condition)
-
-    agreeing = reference in ("consensus", "pure_integral", "backstepping")
-    ask(agreeing, "spanning-tree", "dwell-time", "bounded-delays")
-    ask(reference in ("consensus", "pure_integral"), "real-roots")
-    ask(reference == "consensus", "common-order" if len({len(agent.roots) for agent in agents}) == 1 else "own-orders")
-    ask(reference in ("pure_integral", "leader"), "fixed-graph")
-    ask(reference == "backstepping", "measured-derivative")
-    ask(agreeing and scenario.coupling is not None, "coupling-sector")
-    ask(agreeing and scenario.exchange() == "position_velocity", "common-first-root")
-    ask(agreeing and any(agent.manipulability > 0 for agent in agents), "manipulability")
-    ask(reference == "leader", "bounded-leader", "sign-gain", "leader-reaches-all", "no-delay", "set-valued-sign", "shared-design")
-    ask(reference == "leader" and scenario.body.get("design") in DESIGNS[1:3], "constant-weights")
-    ask(rooted(scenario) or reference == "leader" and scenario.body.get("design") != "swarm", "hurwitz")
-    ask(reference == "leader" and scenario.body.get("design") == "swarm", "printed-design", "mutual-weights", "swarm-coupling")
-    ask(reference != "tracking" and scenario.varying(), "bounded-weights")
-    ask(any(agent.pushes for agent in agents), "pushes-end")
-    led = {treated(agent) for agent in agents if agent.index != scenario.leader}
-    ask(len(led) > 1 and reference != "tracking", "one-kind")
-    for law in laws & {"position_only", "task_space", "attitude"}:
-        ask(True, f"{law.replace('_', '-')}-gains")
-    flying = [agent for agent in agents if agent.law == "thrust"]
-    for robot in ("vehicle", "rotorcraft"):
-        designs = {design_of(agent) for agent in flying if agent.robot == robot}
-        ask(designs == {"continuous"}, "known-masses")
-        ask(designs - {"continuous"}, "thrust-gains")
-    ask(flying, "nonzero-thrust")
-    ask("rotorcraft" in robots, "angular-velocity")
-    ask(any("rotors" in agent.body for agent in flying), "every-wrench")
-    chains = [agent for agent in agents if agent.law in CHAIN_LAWS]
-    estimates = any(agent.law != "linearising" for agent in chains)
-    ask(chains, "defined-terms", "input-factor", "chain-adaptation" if estimates else "chain-gains")
-    gradient = [agent for agent in chains if agent.law in ("linear_adaptive", "adaptive_backstepping")]
-    ask(any(agent.body.get("parameters") for agent in gradient), "bounded-regressors")
-    ask(any(agent.pushes and agent.robot != "chain" for agent in chains), "matched-disturbance")
-    robots_ = [agent for agent in agents if agent.law in ("adaptive", "known")]
-    ask(robots_, "positive-gains")
-    ask(robots_ or "task_space" in laws, "uniform-inertia")
-    ask(any(not agent.tracks for agent in robots_) or "task_space" in laws, "bounded-dynamics")
-    ask(True, "applied-torque")
-    control = scenario.control
-    if control is not None:
-        ask(True, "continuous-time")
-        ask(inexact(control), "exact-measurements")
-        ask("message_timeout_s" in control, "messages-in-time")
+    agents, reference, design, control = scenario.agents, scenario.reference, scenario.body.get("design"), scenario.control
+    agreeing, leading = reference in ("consensus", "pure_integral", "backstepping"), reference == "leader"
+    kinds = {treated(agent) for agent in agents if agent.index != scenario.leader}
+    tips, flying, chains, lagrangian, adaptive = ([agent for agent in agents if agent.law in laws] for laws in (
+        ("task_space",), ("thrust",), CHAIN_LAWS, ("adaptive", "known"), ("linear_adaptive", "adaptive_backstepping")))
+    designs = [{design_of(agent) for agent in flying if agent.robot == robot} for robot in ("vehicle", "rotorcraft")]
+    asked = [
+        (agreeing, "spanning-tree dwell-time bounded-delays"),
+        (reference in ("consensus", "pure_integral"), "real-roots"),
+        (reference == "consensus", "common-order" if len({len(agent.roots) for agent in agents}) == 1 else "own-orders"),
+        (reference == "pure_integral" or leading, "fixed-graph"),
+        (reference == "backstepping", "measured-derivative"),
+        (agreeing and scenario.coupling is not None, "coupling-sector"),
+        (agreeing and scenario.exchange() == "position_velocity", "common-first-root"),
+        (agreeing and any(agent.manipulability > 0 for agent in agents), "manipulability"),
+        (leading, "bounded-leader sign-gain leader-reaches-all no-delay set-valued-sign shared-design"),
+        (leading and design in DESIGNS[1:3], "constant-weights"),
+        (rooted(scenario) or leading and design != "swarm", "hurwitz"),
+        (leading and design == "swarm", "printed-design mutual-weights swarm-coupling"),
+        (reference != "tracking" and scenario.varying(), "bounded-weights"),
+        (any(agent.pushes for agent in agents), "pushes-end"),
+        (len(kinds) > 1 and reference != "tracking", "one-kind"),
+        (True, " ".join(f"{a.law.replace('_', '-')}-gains" for a in agents if a.law in ("position_only", "task_space", "attitude"))),
+        ({"continuous"} in designs, "known-masses"),
+        (any(each - {"continuous"} for each in designs), "thrust-gains"),
+        (flying, "nonzero-thrust"),
+        (any(agent.robot == "rotorcraft" for agent in agents), "angular-velocity"),
+        (any("rotors" in agent.body for agent in flying), "every-wrench"),
+        (chains, "defined-terms input-factor " + ("chain-adaptation" if any(a.law != "linearising" for a in chains) else "chain-gains")),
+        (any(agent.body.get("parameters") for agent in adaptive), "bounded-regressors"),
+        (any(agent.pushes and agent.robot != "chain" for agent in chains), "matched-disturbance"),
+        (lagrangian, "positive-gains"),
+        (lagrangian or tips, "uniform-inertia"),
+        (any(not agent.tracks for agent in lagrangian) or tips, "bounded-dynamics"),
+        (frictions(scenario), "smooth-friction"),
+        (True, "applied-torque"),
+        (control is not None, "continuous-time"),
+        (control is not None and inexact(control), "exact-measurements"),
+        (control is not None and "message_timeout_s" in control, "messages-in-time"),
+    ]
+    found = {(each, "") for condition, ids in asked if condition for each in ids.split()}
     for agent in agents:
-        of = {"task_space": ["regular-jacobian"], "attitude": ["known-momentum"]}.get(agent.law, [])
-        of += ["target-within-reach"] if agent.law == "task_space" and agent.robot == "planar_arm" else []
-        of += ["bounded-target"] if agent.target else []
-        of += ["nonzero-quaternion"] if agent.target and agent.law == "attitude" else []
-        of += ["certain-regressor"] if agent.law == "task_space" and agent.robot == "urdf" else []
-        of += ["lengths-within-bounds"] if agent.law == "task_space" and "bounds" in agent.gains else []
-        found.update((each, agent.name) for each in of)
+        tip, attitude, bounds = agent.law == "task_space", agent.law == "attitude", "bounds" in agent.gains
+        own = [(tip, "regular-jacobian"), (attitude, "known-momentum"), (tip and agent.robot == "planar_arm", "target-within-reach"),
+               (agent.target, "bounded-target"), (agent.target and attitude, "nonzero-quaternion"),
+               (tip and agent.robot == "urdf", "certain-regressor"), (tip and bounds, "lengths-within-bounds"),
+               (agent.law == "adaptive" and bounds, "parameters-within-bounds")]
+        found |= {(each, agent.name) for condition, each in own if condition}
     return found
 
 # Who follows a target by roots.
@@ -1107,18 +1099,15 @@ class Claim:
         require(self.proof.field("kind"), check is not None, f"is no proof of `{self.id}`")
         fields = check.__code__.co_varnames[1:check.__code__.co_argcount]
         self.proof.only("kind", *fields)
+        needed_ = len(fields) - len(check.__defaults__ or ())
         try:
-            found = check(self, *(self.proof.field(field) for field in fields))
+            found = check(self, *map(self.proof.field, fields[:needed_]), *map(self.proof.optional, fields[needed_:]))
         except Undecided as reason:
             return UNCHECKED, str(reason)
         words, always = found if isinstance(found, tuple) else (found, True)
         shown = (VIOLATED,) if kind in WITNESSES else (HOLDS, ON_RUN) if always else (ON_RUN,)
         require(self.entry.field("answer"), self.answer in shown, f"is more than the proof shows: {' or '.join(shown)}")
         return ACCEPTED, words
-
-def require(node, condition, words):
-    if not condition:
-        node.reject(words)
 
 # Follows an arborescence: triples [from, to, phase] of edges that exist, each from who has been reached; all are.
 def reach(scenario, node, root, allowed):
@@ -1218,10 +1207,23 @@ def shortest_phase(claim, shortest_s):
 def robots(scenario):
     return [agent for agent in scenario.agents if agent.law in ("adaptive", "known", "task_space")]
 
-# For every joint of a URDF that moves: whether it slides, whether one above it turns, and the mass and the pivots of the central
-# inertia of each body that it moves with its link, up to the next joints.
-def links(scenario, agent):
-    found, moving = [], ("revolute", "continuous", "prismatic")
+MOVING = ("revolute", "continuous", "prismatic")
+
+# For what reads the URDF of an agent, as (agent, XML, what is locked).
+def of_urdf(reader):
+    def guarded(scenario, agent):
+        try:
+            root = ElementTree.fromstring(scenario.text_of(agent.body.get("file")))
+            return reader(agent, root, table(agent.body.get("locked", {}), "locked"))
+        except (ElementTree.ParseError, AttributeError, TypeError, LookupError, RecursionError, ValueError):
+            raise Undecided("a URDF cannot be read here") from None
+    return guarded
+
+# For every joint of a URDF that moves: whether it slides, whether one above it turns, its friction, and the mass and the pivots of the
+# central inertia of each body that it moves with its link, up to the next joints.
+@of_urdf
+def links(agent, root, locked):
+    found = []
 
     def body(link):
         if (inertial := link.find("inertial")) is None:
@@ -1234,27 +1236,60 @@ def links(scenario, agent):
         own.append(bodies[name])
         for joint in (joint for joint in joints if joint.find("parent").get("link") == name):
             kind, child = joint.get("type"), joint.find("child").get("link")
-            such(kind in (*moving, "fixed"), "a joint is of a kind that no robot here has")
+            such(kind in (*MOVING, "fixed"), "a joint is of a kind that no robot here has")
             if kind == "fixed" or joint.get("name") in locked:
                 visit(child, own, turned)
             else:
-                found.append((kind == "prismatic", turned, []))
-                visit(child, found[-1][2], turned or kind != "prismatic")
+                rubs = sum(decimal(of.get("friction", "0")) for of in joint.findall("dynamics"))
+                found.append((kind == "prismatic", turned, rubs, []))
+                visit(child, found[-1][-1], turned or kind != "prismatic")
 
-    try:
-        root = ElementTree.fromstring(scenario.text_of(agent.body.get("file")))
-        bodies, joints = {link.get("name"): body(link) for link in root.findall("link")}, root.findall("joint")
-        locked, children = table(agent.body.get("locked", {}), "locked"), {joint.find("child").get("link") for joint in joints}
-        for name in set(bodies) - children:
-            visit(name, [], False)
-    except (ElementTree.ParseError, AttributeError, TypeError, LookupError, RecursionError, ValueError):
-        raise Undecided("a URDF cannot be read here") from None
+    bodies, joints = {link.get("name"): body(link) for link in root.findall("link")}, root.findall("joint")
+    for name in set(bodies) - {joint.find("child").get("link") for joint in joints}:
+        visit(name, [], False)
+    return found
+
+# From tip to base along a URDF: where the first joint that moves is, and the square of all lengths behind it, which no posture exceeds.
+@of_urdf
+def outstretched(agent, root, locked):
+    def numbers(element, key):
+        return [decimal(x) for x in ("0 0 0" if element is None else element.get(key, "0 0 0")).split()]
+
+    def turn(k, angle):
+        (i, j), sin, cos = ((k + 1) % 3, (k + 2) % 3), sine((angle,) * 2, False), sine((angle,) * 2, True)
+        at[i], at[j] = (add(multiply(cos, at[i]), minus(multiply(sin, at[j]))), add(multiply(sin, at[i]), multiply(cos, at[j])))
+
+    tip, joints = agent.gains["end_effector"], {joint.find("child").get("link"): joint for joint in root.findall("joint")}
+    link, length, at = tip["link"], (Fraction(0),) * 2, [(exact(x, "at_m"),) * 2 for x in tip.get("at_m", [0] * 3)]
+    while link in joints:
+        joint = joints.pop(link)
+        link, origin = joint.find("parent").get("link"), joint.find("origin")
+        decided(joint.get("type") != "prismatic", "a joint that slides carries the tip")
+        if joint.get("name") in locked:
+            axis = numbers(joint.find("axis"), "xyz")
+            decided(sorted(axis) == [0, 0, 1], "a joint is locked about an oblique axis")
+            turn(axis.index(1), exact(locked[joint.get("name")], "locked"))
+        elif joint.get("type") in MOVING:
+            length, at = add(length, function("sqrt", functools.reduce(add, (power(x, Fraction(2)) for x in at)))), [(Fraction(0),) * 2] * 3
+        for k, angle in enumerate(numbers(origin, "rpy")):
+            turn(k, angle)
+        at = [add(own, (x, x)) for own, x in zip(at, numbers(origin, "xyz"), strict=True)]
+    return [at["xyz".index(axis)] for axis in tip.get("coordinates", "xyz")], multiply(length, length)
+
+# The kinds of friction at the joints of robots where there is some.
+def frictions(scenario):
+    found = set()
+    for agent in (agent for agent in scenario.agents if "friction" in agent.body):
+        kind, body = choice(agent.body["friction"], "friction")
+        known(kind, ("ignore", "dry", "smooth"), "frictions")
+        force = body.get("coulomb", [stated for _, _, stated, _ in links(scenario, agent)])
+        found |= {kind for x in (force if isinstance(force, list) else [force]) if exact(x, "coulomb") and kind != "ignore"}
     return found
 
 # Every link that moves has mass and a central inertia ≻ 0, with all that is fixed to it: so 2 T ≥ μ Σ(|vᵢ|² + |ωᵢ|²), and these
 # bound q̇ for all q: |q̇ᵢ| ≤ |ωᵢ| + |ωₚ|, or ≤ |vᵢ| + |vₚ| + rᵢ |ωₚ| where i slides on p.
 def solid(scenario, agent):
-    groups = [bodies for _, _, bodies in links(scenario, agent)]
+    groups = [bodies for *_, bodies in links(scenario, agent)]
     possible = all(mass >= 0 and min(found) >= 0 and len(found) == 3 for bodies in groups for mass, found in bodies)
     whole = [any(mass > 0 and min(found) > 0 for mass, found in bodies) for bodies in groups]
     # A link at an end that weighs nothing moves without effort.
@@ -1265,9 +1300,25 @@ def solid(scenario, agent):
 
 # q enters C and g by sines and cosines of angles, and by the travel of joints that slide where one above them turns.
 def unturned(scenario, agent):
-    turned = agent.robot == "urdf" and any(slides and turned for slides, turned, _ in links(scenario, agent))
+    turned = agent.robot == "urdf" and any(slides and turned for slides, turned, *_ in links(scenario, agent))
     decided(not turned, "directions of the axes of a URDF are not compared here")
     return True
+
+# Masses, lengths, centres of mass and central inertias of a planar arm.
+def planar(body):
+    of = {key: [exact(x, key) for x in pair(body[key])] for key in body if key != "gravity_m_s2"}
+    m, l_ = of["mass_kg"], of["length_m"]
+    return m, l_, of.get("com_m", [x / 2 for x in l_]), of.get("inertia_kg_m2", [m[k] * l_[k] ** 2 / 12 for k in (0, 1)])
+
+# A share on either side of a parameter, or all from zero to twice a friction, holds it; bounds that are given have to.
+def bounds_hold(agent):
+    kind, body = choice(agent.gains["bounds"], "bounds")
+    known(kind, ("within", "given"), "bounds")
+    if kind == "within":
+        return exact(body, "within") > 0
+    decided(agent.robot == "point_mass" and "parameter_variation" not in agent.entry, "the parameters of this robot are not computed here")
+    (lower,), (upper,) = body["lower"], body["upper"]
+    return exact(lower, "lower") <= exact(agent.body["mass_kg"], "mass_kg") <= exact(upper, "upper")
 
 # M is positive definite at all q, by a bound that does not depend on q: a mass is positive; the minors of a ship's are, in its
 # body; of a planar arm with a = I₁ + m₁c₁² and b = I₂ + m₂c₂² det M = (a + m₂l₁²) b − (m₂l₁c₂ cos q₂)² ≥ ab + m₂l₁²I₂.
@@ -1280,9 +1331,7 @@ def definite_inertia(scenario, agent):
         of = table(agent.body.get("inertia"), "inertia")
         m_11, m_22, m_23, m_33 = (exact(of.get(key, 0), key) for key in ("surge_kg", "sway_kg", "sway_yaw_kg_m", "yaw_kg_m2"))
         return min(m_11, m_22) > 0 and m_22 * m_33 > m_23 ** 2
-    pair = {key: [exact(x, key) for x in listed(agent.body[key], key)] for key in agent.body if key != "gravity_m_s2"}
-    m, l_ = pair["mass_kg"], pair["length_m"]
-    c, i = pair.get("com_m", [x / 2 for x in l_]), pair.get("inertia_kg_m2", [m[k] * l_[k] ** 2 / 12 for k in (0, 1)])
+    m, l_, c, i = planar(agent.body)
     a, b = (i[k] + m[k] * c[k] ** 2 for k in (0, 1))
     return min(m + l_ + [b]) > 0 and min(i) >= 0 and a * b + m[1] * l_[0] ** 2 * i[1] > 0
 
@@ -1310,9 +1359,8 @@ def coefficients(scenario):
 # In this state, x1, x2, … or x, dx, d2x, …, a term of the agent has no value.
 @rule("defined-terms", "no-value")
 def no_value(claim, agent, state):
-    at = [entry.number() for entry in state.each()]
-    names = [f"x{k}" for k in range(1, len(at) + 1)], ["x", "dx", *(f"d{k}x" for k in range(2, len(at)))][:len(at)]
-    found = {name: (value,) * 2 for each in names for name, value in zip(each, at)}
+    at = [(entry.number(),) * 2 for entry in state.each()]
+    found = dict(zip(STATES[:8], at)) | dict(zip(STATES[8:], at))
     of = [one for one in claim.scenario.agents if one.name == agent.text() and one.law in CHAIN_LAWS]
     require(agent, of, "is no chain")
     for term in terms(of[0].body):
@@ -1340,6 +1388,8 @@ TEXT = {
     "known-masses": lambda scenario, _: all(design_of(a) == "continuous" for a in scenario.agents if a.law == "thrust"),
     "known-momentum": lambda scenario, names: not any(a.pushes for a in scenario.agents if a.name in names),
     "set-valued-sign": lambda scenario, _: set_valued(scenario),
+    "smooth-friction": lambda scenario, _: frictions(scenario) <= {"smooth"},
+    "parameters-within-bounds": lambda scenario, names: all(bounds_hold(a) for a in scenario.agents if a.name in names),
     # Nothing sits on a tool: its place enters the Jacobian of the tip, and neither M nor C nor g.
     "certain-regressor": lambda scenario, names: all(a.gains["end_effector"].get("uncertain", "tool") == "tool"
                                                      for a in scenario.agents if a.name in names),
@@ -1361,8 +1411,8 @@ def pieces(node, tree, end_s):
     elif kind == "tail":
         length = node.field("until_s").number()
         require(node.field("until_s"), length > 0, "must be positive")
-    elif kind != "run":
-        node.field("range").reject("must be `for-ever`, `period`, `tail` or `run`")
+    else:
+        require(node.field("range"), kind == "run", "must be `for-ever`, `period`, `tail` or `run`")
     cells = node.field("cells").count()
     require(node.field("cells"), 0 < cells <= MOST_CELLS, "must be some")
     found = [multiply(unit, (length * k / cells, length * (k + 1) / cells)) for k in range(cells)]
@@ -1386,18 +1436,19 @@ def lasts(node):
 def formulas(claim, node, text_of):
     found = {}
     for entry in node.each():
-        *ends, phase = claim.scenario.triple(entry.field("edge"))
-        graph = claim.scenario.graphs[phase] if 0 <= phase < len(claim.scenario.graphs) else []
-        texts = [text_of(edge) for edge in graph if [edge.source, edge.to] == ends]
-        require(entry.field("edge"), texts, "is no edge of this phase")
-        if texts[0] is None:
+        text = text_of(claim.scenario.edge_at(entry.field("edge")))
+        if text is None:
             continue  # What is constant, though by a formula, needs no enclosure.
-        tree = formula(texts[0])
+        tree = formula(text)
         within = enclosed(entry, tree, claim.scenario.end_s)
         # A formula that repeats, and has a value everywhere, is uniformly continuous; so is one whose slope is bounded from a time on.
         repeats, last = entry.field("range").text() == "period", pieces(entry, tree, claim.scenario.end_s)[-1:]
-        found[texts[0]] = *within, lasts(entry) and (repeats or finite(derivative(tree, kinks=True), last))
+        found[text] = *within, lasts(entry) and (repeats or finite(derivative(tree, kinks=True), last))
     return found
+
+# The formula that the delay of an edge follows, as a text.
+def formula_of(edge):
+    return edge.delay[1] if edge.delay[0] == "formula_s" else None
 
 # What no value of a delay exceeds by the parameters of its rule; None where the rule does not say.
 def rule_bound(delay):
@@ -1425,7 +1476,7 @@ def rule_bound(delay):
 def logged(scenario, edge):
     names, newest, worst = (scenario.names[edge.source], scenario.names[edge.to]), Fraction(0), Fraction(0)
     rows = [row for row in scenario.csv(table(edge.delay[1], "log").get("file")) if (row.get("from"), row.get("to")) == names]
-    packets = [(quantity(row["send_s"]), quantity(row["delay_s"])) for row in rows if row.get("delay_s")]
+    packets = [(decimal(row["send_s"]), decimal(row["delay_s"])) for row in rows if row.get("delay_s")]
     for arrives, sent in sorted((sent + delay, sent) for sent, delay in packets):
         if arrives <= scenario.end_s and sent > newest:
             worst, newest = max(worst, arrives - newest), sent
@@ -1435,7 +1486,7 @@ def logged(scenario, edge):
 @rule("bounded-delays", "delays")
 def delays(claim, bound_s, enclosures, given):
     scenario, always, largest, ages = claim.scenario, True, Fraction(0), {}
-    shown = formulas(claim, enclosures, lambda edge: edge.delay[1] if edge.delay[0] == "formula_s" else None)
+    shown = formulas(claim, enclosures, formula_of)
     for entry in given.each():
         entry.only("from", "to", "worst_s")
         ages[entry.field("from").text(), entry.field("to").text()] = entry.field("worst_s")
@@ -1474,36 +1525,31 @@ def weights(claim, enclosures):
     words = (f"{text} keeps within [{said(low)}, {said(high)}]" for text, (low, high, _) in shown.items())
     return "; ".join(words), all(shown[text][2] for text in claim.scenario.varying())
 
-# The edge [from, to, phase] of a witness, and the formula that its weight or delay follows.
+# The formula that the weight or delay of an edge follows.
 def followed(claim, node):
-    *ends, phase = claim.scenario.triple(node)
-    graph = claim.scenario.graphs[phase] if 0 <= phase < len(claim.scenario.graphs) else []
-    edges = [edge for edge in graph if [edge.source, edge.to] == ends]
-    require(node, edges, "is no edge")
-    text = edges[0].weight if claim.id == "bounded-weights" else edges[0].delay[1] if edges[0].delay[0] == "formula_s" else None
-    return edges[0], formula(text) if isinstance(text, str) else None
+    edge = claim.scenario.edge_at(node)
+    text = edge.weight if claim.id == "bounded-weights" else formula_of(edge)
+    require(node, isinstance(text, str), "has no formula")
+    return formula(text)
 
 # A time at which a weight is not positive, or a delay is negative.
 @rule("bounded-weights bounded-delays", "below")
 def below(claim, t_s, edge):
-    _, tree = followed(claim, edge)
-    require(t_s, tree is not None and t_s.number() >= 0, "is of no formula, or before the start")
-    high = enclose(tree, (t_s.number(),) * 2)[1]
+    require(t_s, t_s.number() >= 0, "is before the start")
+    high = enclose(followed(claim, edge), (t_s.number(),) * 2)[1]
     require(t_s, high < 0 or (high == 0 and claim.id == "bounded-weights"), "is no such time")
     return f"{said(high)} at t = {said(t_s.number())} s"
 
 # As t → ∞ a weight comes to zero, becomes negative or exceeds every bound; a delay exceeds every bound or becomes negative.
 @rule("bounded-weights bounded-delays", "limit")
 def far_away(claim, edge):
-    _, tree = followed(claim, edge)
-    require(edge, tree is not None, "has no formula")
-    low, high = limit(tree)
+    low, high = limit(followed(claim, edge))
     require(edge, infinite(low) or high < 0 or (high == 0 and claim.id == "bounded-weights"), f"stays near [{said(low)}, {said(high)}]")
     return f"goes to {said(high)} as t grows"
 
 @rule("bounded-delays", "loses-all")
 def loses_all(claim, edge):
-    found, _ = followed(claim, edge)
+    found = claim.scenario.edge_at(edge)
     rule_, loss = choice(found.delay[1].get("loss", "never"), "loss") if found.delay[0] == "packets" else (None, {})
     require(edge, rule_ == "random" and loss.get("probability") == 1 and rule_bound(found.delay) is None, "does not lose every packet")
     return "every packet is lost"
@@ -1578,9 +1624,8 @@ def definite(node, rows, stated):
     require(stated, [pivot.number() for pivot in stated.each()] == found, "are not the pivots of the matrix")
     require(stated, len(found) == n and min(found) > 0, "are not all positive")
 
-ASKED_OF = {"positive-gains": ("adaptive", "known"), "task-space-gains": ("task_space",), "attitude-gains": ("attitude",),
-            "position-only-gains": ("position_only",), "thrust-gains": ("thrust",), "chain-gains": CHAIN_LAWS,
-            "chain-adaptation": CHAIN_LAWS}
+ASKED_OF = {"positive-gains": ("adaptive", "known"), "chain-gains": CHAIN_LAWS, "chain-adaptation": CHAIN_LAWS} | {
+    f"{law.replace('_', '-')}-gains": (law,) for law in ("task_space", "attitude", "position_only", "thrust")}
 
 # Numbers are positive, matrices are by their pivots; a mass that is not adapted is the true one.
 @rule(" ".join(ASKED_OF), "definite")
@@ -1659,43 +1704,72 @@ def diverges(claim, motion, axis, order):
     require(order, infinite(limit(tree)[0]), "stays bounded, or swings")
     return f"derivative {order.count()} of axis {axis.count()} goes to {said(limit(tree)[0])}"
 
-def smooth(paths):
-    return all(tree[0] != "points" for tree in paths)
-
 # Whether a formula is shown to be bounded on each of some stretches.
 def finite(tree, stretches):
     return not any(infinite(end) for stretch in stretches for end in attempt(enclose, tree, stretch) or WHOLE)
 
-# What γ must exceed, axis by axis: α q̇ + q̈, α q̇ + β q̈ + d³q, or d³q, as formulas.
+# What drives who follows a leader, axis by axis, must stay below γ: α q̇ + q̈, α q̇ + β q̈ + d³q, or d³q.
 def drive(claim):
     scenario, design = claim.scenario, claim.scenario.body.get("design")
     require(claim.proof, scenario.motion is not None, "is of no motion")
     alpha, beta = coefficients(scenario)
-    factors = {"continuous": (alpha, 1, 0), "swarm": (0, 0, 1)}.get(design, (alpha, beta, 1))
-    decided(smooth(scenario.motion), "the bound of a curve through points cannot be checked yet")
-    found = []
-    for tree in scenario.motion:
-        rates = itertools.accumulate((derivative,) * 3, lambda inner, of: of(inner), initial=tree)
-        terms_ = [times(("number", Fraction(factor)), rate) for factor, rate in zip((0, *factors), rates)]
-        found.append(functools.reduce(plus, terms_))
-    return found, positive(scenario.body.get("gain"), "gain")
+    factors = {"continuous": (0, alpha, 1, 0), "swarm": (0, 0, 0, 1)}.get(design, (0, alpha, beta, 1))
+    gamma = positive(scenario.body.get("gain"), "gain")
+    rates = [itertools.accumulate((derivative,) * 3, lambda inner, of: of(inner), initial=tree) for tree in scenario.motion]
+    sums = [functools.reduce(plus, (times(("number", Fraction(factor)), rate) for factor, rate in zip(factors, each))) for each in rates]
+    return [(tree, (-gamma,) * 2, (gamma,) * 2) for tree in sums]
+
+def squares(trees):
+    return functools.reduce(plus, [("^", tree, Fraction(2)) for tree in trees])
+
+def quaternion(claim):
+    paths = [tree for name in claim.agents for tree in claim.scenario.agents[claim.scenario.index[name]].target or []]
+    decided(len(paths) == 4, "is of no quaternion")
+    return paths
+
+# The square of how far a target is from where the reach of a tip is counted.
+def reached(claim):
+    agent = claim.scenario.agents[claim.scenario.index[claim.agents[0]]]
+    if agent.robot == "planar_arm":
+        first, second = planar(agent.body)[1]
+        return [(squares(agent.target), ((first - second) ** 2,) * 2, ((first + second) ** 2,) * 2)]
+    base, most = outstretched(claim.scenario, agent)
+    away = [plus(tree, ("f", "neg", ("hull", *(("number", end) for end in at)))) for tree, at in zip(agent.target, base, strict=True)]
+    # Not all that is nearer can be reached.
+    return [(squares(away), (Fraction(-1),) * 2, most)]
+
+# What has to stay strictly between two numbers: (formula, what holds the lower one, what holds the upper one).
+LIMITS = {"sign-gain": drive, "target-within-reach": reached, "nonzero-quaternion": lambda claim: [
+    (squares(quaternion(claim)), (Fraction(0),) * 2, (INF, INF))]}
 
 @rule("sign-gain", "bounds")
-def sign_gain(claim, bounds):
-    trees, gamma = drive(claim)
-    require(bounds, len(bounds.each()) == len(trees), "must be one for each axis")
-    for entry, tree in zip(bounds.each(), trees):
-        require(entry.field("within"), size(enclosed(entry, tree, claim.scenario.end_s)) < gamma, f"reaches γ = {said(gamma)}")
-    return f"the drive stays below γ = {said(gamma)}", all(lasts(entry) for entry in bounds.each())
+@rule("target-within-reach", "distance")
+@rule("nonzero-quaternion", "norm")
+def kept(claim, bounds=None, bound=None):
+    limits, entries = LIMITS[claim.id](claim), bounds.each() if bounds else [bound] if bound else []
+    require(claim.proof, len(entries) == len(limits), "must have one bound for each axis")
+    for entry, (tree, least, most) in zip(entries, limits):
+        low, high = enclosed(entry, tree, claim.scenario.end_s)
+        require(entry.field("within"), least[1] < low and high < most[0], f"leaves ({said(least[1])}, {said(most[0])})")
+    return f"within ({said(limits[0][1][1])}, {said(limits[0][2][0])})", all(lasts(entry) for entry in entries)
 
 @rule("sign-gain", "instant")
-def sign_gain_instant(claim, t_s, axis):
-    trees, gamma = drive(claim)
-    require(axis, 1 <= axis.count() <= len(trees), "is no axis")
-    require(t_s, t_s.number() >= 0, "comes before the start")
-    found = enclose(trees[axis.count() - 1], (t_s.number(),) * 2)
-    require(t_s, max(found[0], -found[1]) >= gamma, "is no time at which γ is reached")
-    return f"at t = {said(t_s.number())} s the drive is {said(found[0])}"
+@rule("target-within-reach", "out-of-reach")
+def left(claim, t_s, axis=None):
+    limits, k = LIMITS[claim.id](claim), axis.count() if axis else 1
+    require(t_s, 1 <= k <= len(limits) and t_s.number() >= 0, "comes before the start, or is of no axis")
+    tree, least, most = limits[k - 1]
+    low, high = enclose(tree, (t_s.number(),) * 2)
+    require(t_s, high <= least[0] or low >= most[1], f"is no time outside: [{said(low)}, {said(high)}]")
+    return f"{said(low)} at t = {said(t_s.number())} s"
+
+# One entry keeps away from zero.
+@rule("nonzero-quaternion", "entry-away")
+def entry_away(claim, entry, bound):
+    require(entry, 1 <= entry.count() <= 4, "is no entry")
+    within = enclosed(bound, quaternion(claim)[entry.count() - 1], claim.scenario.end_s)
+    require(bound.field("within"), max(within[0], -within[1]) > 0, "holds zero")
+    return f"entry {entry.count()} keeps within [{said(within[0])}, {said(within[1])}]", lasts(bound)
 
 # k λ > β + κ⁴/(2 (β² − α) (β − κ)), κ the smaller root: L − (…/k) 1 of the followers is positive definite.
 @rule("swarm-coupling", "definite")
@@ -1735,50 +1809,6 @@ def small_factor(claim, agent):
     require(agent, found.get(agent.text(), False), "has no constant factor below its floor")
     return f"ψ of {agent.text()} is too small"
 
-def quaternion(claim):
-    paths = [tree for name in claim.agents for tree in claim.scenario.agents[claim.scenario.index[name]].target or []]
-    decided(len(paths) == 4 and smooth(paths), "a curve through points cannot be checked yet")
-    return paths
-
-# One entry keeps away from zero.
-@rule("nonzero-quaternion", "entry-away")
-def entry_away(claim, entry, bound):
-    require(entry, 1 <= entry.count() <= 4, "is no entry")
-    within = enclosed(bound, quaternion(claim)[entry.count() - 1], claim.scenario.end_s)
-    require(bound.field("within"), max(within[0], -within[1]) > 0, "holds zero")
-    return f"entry {entry.count()} keeps within [{said(within[0])}, {said(within[1])}]", lasts(bound)
-
-# The sum of squares keeps away from zero.
-@rule("nonzero-quaternion", "norm")
-def norm(claim, bound):
-    squares = [("^", tree, Fraction(2)) for tree in quaternion(claim)]
-    within = enclosed(bound, functools.reduce(lambda a, b: ("+", a, b), squares), claim.scenario.end_s)
-    require(bound.field("within"), within[0] > 0, "holds zero")
-    return f"the norm squared keeps within [{said(within[0])}, {said(within[1])}]", lasts(bound)
-
-# The square of how far the target is from the base of a planar arm, and those of what it can reach.
-def reached(claim):
-    agent = claim.scenario.agents[claim.scenario.index[claim.agents[0]]]
-    planar = agent.robot == "planar_arm" and smooth(agent.target or [])
-    decided(planar, "what this robot reaches, or where a curve through points leads, is not computed here")
-    first, second = (exact(x, "length_m") for x in pair(agent.body.get("length_m")))
-    squares = functools.reduce(lambda a, b: ("+", a, b), [("^", tree, Fraction(2)) for tree in agent.target])
-    return squares, (first - second) ** 2, (first + second) ** 2
-
-@rule("target-within-reach", "distance")
-def distance(claim, bound):
-    square, least, most = reached(claim)
-    low, high = enclosed(bound, square, claim.scenario.end_s)
-    require(bound.field("within"), least < low and high < most, f"leaves ({said(least)}, {said(most)})")
-    return f"the square of the distance keeps within [{said(low)}, {said(high)}]", lasts(bound)
-
-@rule("target-within-reach", "out-of-reach")
-def out_of_reach(claim, t_s):
-    square, least, most = reached(claim)
-    low, high = enclose(square, (t_s.number(),) * 2)
-    require(t_s, t_s.number() >= 0 and (high < least or low > most), "is no such time")
-    return f"the square of the distance is {said(low)} at t = {said(t_s.number())} s"
-
 # --- The whole certificate
 
 # All outcomes: a list of (id, agents, answer, outcome, words, place).
@@ -1803,12 +1833,8 @@ def check(certificate_text, scenario_text, folder, digests=True):
         if digests:
             same(document.field("scenario"), scenario_text, scenario.inputs)
         return found
-    except Rejected as error:
-        failure = REJECTED, error.words, error.place
-    except Meaningless as error:
-        failure = REJECTED, f"the scenario: {error}", ""
-    except Undecided as error:
-        failure = UNCHECKED, str(error), ""
+    except (Rejected, Meaningless, Undecided) as error:
+        failure = error.outcome, str(error), getattr(error, "place", "")
     except (RecursionError, MemoryError, ArithmeticError, ValueError, TypeError, LookupError, AttributeError) as error:
         failure = REJECTED, f"cannot be checked in this form ({type(error).__name__}: {str(error)[:80]})", ""
     return [*found, ("certificate", [], "", *failure)]
@@ -1824,7 +1850,7 @@ def outcome(scenario, entry, asked, spoken):
     try:
         return claim.id, claim.agents, claim.answer, *claim.judge(), ""
     except Rejected as error:
-        return claim.id, claim.agents, claim.answer, REJECTED, error.words, error.place
+        return claim.id, claim.agents, claim.answer, REJECTED, str(error), error.place
 
 # The shares u ≥ 0 with uᵀL = 0 and Σu = 1 of a fixed network: what each agent's start counts in the value agreed upon.
 def agreed(scenario, node):

@@ -795,7 +795,7 @@ class FalseProofs(unittest.TestCase):
         self.assertTrue(checker.unturned(scenario, agent), "a locked joint does not turn")
 
     def test_motions(self):
-        self.rejected("theorem-8", "sign-gain", "reaches γ", lambda entry: None, ("gain = 2 ", "gain = 0.9 "))
+        self.rejected("theorem-8", "sign-gain", "leaves", lambda entry: None, ("gain = 2 ", "gain = 0.9 "))
         self.rejected("theorem-8", "sign-gain", "does not hold", lambda entry: None, ("amplitude = 0.6", "amplitude = 1.2"))
         self.rejected("theorem-8", "sign-gain", "for each axis", lambda entry: entry["proof"]["bounds"].pop())
         instant = lambda t_s: lambda entry: entry.update(answer="violated", proof={"kind": "instant", "t_s": t_s, "axis": 1})  # noqa: E731
@@ -813,6 +813,99 @@ class FalseProofs(unittest.TestCase):
         self.rejected("theorem-7", "nonzero-quaternion", "does not hold", lambda entry: None, zero)
         self.rejected("theorem-7", "known-momentum", "by the text", lambda entry: None, (
             "[goal]", '[[external_wrenches]]\non = ["craft"]\nby.body_torque_n_m = [1, 0, 0]\n[goal]'))
+
+    def test_curves_through_points(self):
+        self.rejected("remark-12", "sign-gain", "leaves", lambda entry: None, ("gain = 2 ", "gain = 0.4 "))
+        self.rejected("remark-12", "sign-gain", "does not hold", lambda entry: None, ("[0.8, -0.4]", "[1.6, -0.4]"))
+        self.rejected("remark-12", "sign-gain", "does not hold", lambda entry: None, ("times_s = [2, 6,", "times_s = [2, 3,"))
+        instant = lambda t_s: lambda entry: entry.update(answer="violated", proof={"kind": "instant", "t_s": t_s, "axis": 1})  # noqa: E731
+        self.rejected("remark-12", "sign-gain", "is no time", instant("1"), ("gain = 2 ", "gain = 0.1 "))
+        self.accepted("remark-12", "sign-gain", instant("3"), ("gain = 2 ", "gain = 0.1 "))
+        # Where the third derivative jumps both sides count.
+        self.rejected("remark-12", "sign-gain", "is no time", instant("2"), ("gain = 2 ", "gain = 0.1 "))
+        # A quaternion that vanishes at a point, and one that does between two.
+        for row in ("[0, 0, 0, 0]", "[0, 0, 0, -1]"):
+            wide = lambda entry: entry["proof"]["bound"].update(within=["-9", "9"])  # noqa: E731
+            self.rejected("rest-to-rest", "nonzero-quaternion", "does not hold", lambda entry: None, ("[0, 0, 0, 1]", row))
+            self.rejected("rest-to-rest", "nonzero-quaternion", "holds zero", wide, ("[0, 0, 0, 1]", row))
+        name, certificate = "attitude-from-a-table", (self.folder / "attitude-from-a-table.json").read_text()
+        rows = (SCENARIOS / "overflight.csv").read_text()
+        for row, outcome in (("20,0.136512,-0.402270,0.060797,0.903242", checker.ACCEPTED), ("20,0,0,0,0", checker.REJECTED)):
+            with tempfile.TemporaryDirectory() as folder:
+                old, = [line for line in rows.splitlines() if line.startswith("20,")]
+                (Path(folder) / "overflight.csv").write_text(rows.replace(old, old if outcome == checker.ACCEPTED else row))
+                found = checker.check(certificate, place_of(name).read_text(), Path(folder), digests=False)
+                self.assertEqual([one[3] for one in found if one[0] == "nonzero-quaternion"], [outcome], found)
+
+    def test_reach_of_a_tip(self):
+        name, each = "task-space-ur5e", "target-within-reach"
+        wide = lambda entry: entry["proof"]["bound"].update(within=["0", "99"])  # noqa: E731
+        far = ("-0.60 + 0.08", "-1.60 + 0.08")
+        self.rejected(name, each, "does not hold", lambda entry: None, far)
+        self.rejected(name, each, "leaves", wide, far)
+        out = lambda t_s: lambda entry: entry.update(answer="violated", proof={"kind": "out-of-reach", "t_s": t_s})  # noqa: E731
+        self.accepted(name, each, out("2"), far)
+        self.rejected(name, each, "is no time", out("2"))
+        self.rejected(name, each, "before the start", out("-2"), far)
+        robot = (HERE.parent / "crates" / "io" / "robots" / "ur5e.urdf").read_text()
+        certificate = (self.folder / f"{name}.json").read_text()
+        # Without its forearm it gets to 0.425 m and what the wrist adds; a joint that slides, or is locked aslant, is not known.
+        for old, new, outcome in (("-0.3922 0 0", "-0.3922 0 0", checker.ACCEPTED), ("-0.3922 0 0", "0 0 0", checker.REJECTED),
+                                  ('elbow_joint" type="revolute"', 'elbow_joint" type="prismatic"', checker.UNCHECKED)):
+            self.assertIn(old, robot)
+            with tempfile.TemporaryDirectory() as folder:
+                (Path(folder) / "ur5e.urdf").write_text(robot.replace(old, new, 1))
+                found = checker.check(certificate, place_of(name).read_text(), Path(folder), digests=False)
+                self.assertEqual([one[3] for one in found if one[0] == each], [outcome], found)
+
+    def test_lengths_of_a_tree_are_those_of_its_geometry(self):
+        scenario = checker.Scenario(place_of("task-space-ur5e").read_text(), SCENARIOS)
+        agent, half = scenario.agents[0], math.pi / 2
+        base, most = checker.outstretched(scenario, agent)
+        self.assertEqual([float(low) for low, _ in base], [0, 0, 0])
+        # The wrist stays bent: its links count as one, from elbow to tool, by rotations in floating point.
+        x, y, z = 0.0, 0.0, 0.15 + 0.0996
+        for angles, (dx, dy, dz), turn in (((-half, 0, 0), (0, 0, 0.0997), 0.0), ((half, 0, 0), (0, 0, 0.1333), -1.57),
+                                          ((0, 0, 0), (-0.3922, 0, 0), -3.14)):
+            x, y = x * math.cos(turn) - y * math.sin(turn), x * math.sin(turn) + y * math.cos(turn)
+            y, z = y * math.cos(angles[0]) - z * math.sin(angles[0]), y * math.sin(angles[0]) + z * math.cos(angles[0])
+            x, y, z = x + dx, y + dy, z + dz
+        self.assertAlmostEqual(math.sqrt(float(most[0])), 0.1625 + 0.425 + math.hypot(x, y, z), 12)
+        self.assertLess(most[1] - most[0], 1e-40)
+        robot = scenario.text_of("ur5e.urdf")
+        placed = '<child link="shoulder_link"/><origin xyz="1 2 3" rpy="0 0 1"/>'
+        scenario.text_of = lambda _: robot.replace('<child link="shoulder_link"/>', placed)
+        agent.gains["end_effector"]["coordinates"] = ["z", "x"]
+        base, longer = checker.outstretched(scenario, agent)
+        self.assertEqual([float(low) for low, _ in base], [3, 1])
+        self.assertAlmostEqual(float(longer[0]), float(most[0]), 12)
+        # With its first joint locked as well it starts at the second: turned by that joint and by the place of the first.
+        agent.body["locked"]["shoulder_pan_joint"] = checker.Fraction(1, 2)
+        scenario.text_of = lambda _: robot.replace('<child link="shoulder_link"/>', placed).replace('xyz="0 0 0.1625"', 'xyz="2 0 0"')
+        base, shorter = checker.outstretched(scenario, agent)
+        self.assertAlmostEqual(float(base[1][0]), 1 + 2 * math.cos(1.5), 12)
+        self.assertAlmostEqual(math.sqrt(float(shorter[0])), 0.425 + math.hypot(x, y, z), 12)
+        scenario.text_of = lambda _: robot.replace('<axis xyz="0 0 1"/>', '<axis xyz="0 0.6 0.8"/>')
+        self.assertRaises(checker.Undecided, checker.outstretched, scenario, agent)
+
+    def test_friction_and_bounds(self):
+        self.accepted("friction", "smooth-friction")
+        self.rejected("friction", "smooth-friction", "by the text", lambda entry: None, ("friction.smooth", "friction.dry"))
+        for none in ("coulomb = 0", "coulomb = [0, 0, 0, 0, 0, 0]"):
+            without = ("coulomb = [2, 2, 2, 0.5, 0.5, 0.5]", none)
+            self.rejected("friction", "smooth-friction", "is not asked for", lambda entry: None, without)
+        # What the URDF states, which is none.
+        self.rejected("friction", "smooth-friction", "is not asked for", lambda entry: None, ("coulomb = [2, 2, 2, 0.5, 0.5, 0.5], ", ""))
+        both = [checker.ACCEPTED] * 2
+        judged, found = self.judged("bounds", "parameters-within-bounds", lambda entry: None, ("upper = [2.5]", "upper = [2]"))
+        self.assertEqual([outcome for outcome, _ in judged], both, found)
+        for bounds in (("lower = [2]", "lower = [2.001]"), ("upper = [2.5]", "upper = [1.999]"), ("mass_kg = 2,", "mass_kg = 3,")):
+            self.rejected("bounds", "parameters-within-bounds", "by the text", lambda entry: None, bounds)
+        for none in ("0", "-0.1"):
+            self.rejected("friction", "parameters-within-bounds", "by the text", lambda entry: None, ("within = 0.3", f"within = {none}"))
+        unknown = ("law.adaptive.bounds", "parameter_variation = { seed = 1, relative = 0.1 }\nlaw.adaptive.bounds")
+        judged, found = self.judged("bounds", "parameters-within-bounds", lambda entry: None, unknown)
+        self.assertIn((checker.UNCHECKED, "the parameters of this robot are not computed here"), judged, found)
 
     def test_factors_of_inputs(self):
         small = ('parameters = [-0.5, 0.7] }', 'parameters = [-0.5, 0.7], psi = "1e-4" }')
@@ -1062,6 +1155,30 @@ class Enclosures(unittest.TestCase):
         for text in ("0*log(t - 5)", "0/(t - 5)", "0*(t - 5)^-1", "0*sqrt(t - 5)"):
             slope = checker.derivative(checker.formula(text))
             self.assertRaises(checker.Undecided, checker.enclose, slope, (checker.Fraction(0), checker.Fraction(10)))
+
+    def test_curves_are_those_that_are_defined(self):
+        """Through the points, at rest at both ends, four derivatives that agree inside; what they keep within holds samples."""
+        draw, rate = random.Random(6), lambda p, n: p if n == 0 else rate([k * c for k, c in enumerate(p)][1:], n - 1)
+        at = lambda p, x: sum(c * x**k for k, c in enumerate(p))  # noqa: E731
+        for count in (1, 2, 3, 4, 7):
+            times = tuple(checker.Fraction(draw.randrange(10 * k, 10 * k + 9), 10) for k in range(count))
+            values = tuple(checker.Fraction(draw.randrange(-50, 50), 10) for _ in times)
+            first, *inside, last = checker.curve(times, values)
+            self.assertEqual((first, last), ((-checker.INF, times[0], [values[0]]), (times[-1], checker.INF, [values[-1]])))
+            ends = [[at(rate(piece, n), x) for n in range(5)] for start, end, piece in inside for x in (0, end - start)]
+            self.assertEqual([(start, end) for start, end, _ in inside], list(zip(times, times[1:])))
+            self.assertEqual([one[0] for one in ends[::2]] + [one[0] for one in ends[-1:]], list(values[:None if inside else 0]))
+            self.assertEqual([end[1:3] for end in ends[:1] + ends[-1:]], [[0, 0]] * (2 if inside else 0))
+            self.assertEqual(ends[1:-1:2], ends[2::2])
+            for order in range(4):
+                drawn = [checker.Fraction(draw.randrange(-20, 80), 10) for _ in range(20)]
+                for low, high in [(low, low + checker.Fraction(draw.randrange(30), 10)) for low in drawn] + list(zip(times, times)):
+                    found = checker.enclose(("points", times, values, order), (low, high))
+                    for x in (low + (high - low) * k / 20 for k in range(21)):
+                        pieces = [one for one in checker.curve(times, values) if one[0] <= x <= one[1]]
+                        sampled_ = [at(rate(piece, order), 0 if start == -checker.INF else x - start) for start, _, piece in pieces]
+                        self.assertTrue(all(found[0] <= value <= found[1] for value in sampled_), (times, values, order, low, high))
+        self.assertRaises(checker.Undecided, checker.curve, tuple(range(400)), (checker.Fraction(1),) * 400)
 
     def test_intervals_hold_all_that_is_sampled(self):
         draw = random.Random(4)

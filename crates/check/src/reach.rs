@@ -16,12 +16,12 @@ const LOOKS: u32 = 4000;
 const ROUNDING: f64 = 1e-9;
 
 /// Where a tip can be: between two distances from a point, in the coordinates that are controlled.
-struct Reach {
-    from: Vec<f64>,
-    least: f64,
-    most: f64,
+pub(crate) struct Reach {
+    pub(crate) from: Vec<f64>,
+    pub(crate) least: f64,
+    pub(crate) most: f64,
     /// Whether every such place can be reached, or only no other.
-    exact: bool,
+    pub(crate) exact: bool,
 }
 
 /// Whether the target is within reach, as far as that is known; nothing for a tip that slides.
@@ -86,7 +86,8 @@ impl Reach {
     }
 }
 
-fn reach(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<Reach> {
+/// What the tip of an agent can reach; nothing for a tip that slides.
+pub(crate) fn reach(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<Reach> {
     match &law.tip {
         TipSetup::Planar(tip) => agent.robot.kind.is::<PlanarArm>().then(|| {
             let [first, second] = tip.length_m;

@@ -8,7 +8,7 @@ use super::proof::{Enclosure, Range};
 
 /// How many pieces are tried.
 const CELLS: [usize; 6] = [1, 8, 32, 128, 512, 2048];
-/// Times from which one piece takes all that is left.
+/// Times from which one piece takes all that is left of a formula.
 const STARTS_S: [u32; 3] = [1, 16, 1024];
 /// Room, as a part, for the ends of pieces, which are rounded here and exact elsewhere.
 const ROOM: f64 = 1e-9;
@@ -30,8 +30,33 @@ pub(super) fn enclosed(
     reach: Reach,
     good: impl Fn(Interval) -> bool,
 ) -> Option<Enclosure> {
-    let enclose = |t: Interval| if t.high.is_finite() { formula.enclose(t) } else { late(formula, t.low).within };
-    found(formula, enclose, end_s, reach, good)
+    found(&Stretches::of(formula), |t| late_or_whole(formula, t), end_s, reach, good)
+}
+
+/// What a formula keeps within on a stretch of time, which may have no end.
+pub(super) fn late_or_whole(formula: &Expression, t_s: Interval) -> Interval {
+    if t_s.high.is_finite() { formula.enclose(t_s) } else { late(formula, t_s.low).within }
+}
+
+/// What is tried besides [0, ∞) at once and the run.
+pub(super) struct Stretches {
+    period_s: Option<f64>,
+    /// Times from which one piece takes all that is left.
+    starts_s: Vec<u32>,
+}
+
+impl Stretches {
+    /// Those of a formula, which may repeat.
+    pub(super) fn of(formula: &Expression) -> Self {
+        Stretches { period_s: formula.period(), starts_s: STARTS_S.to_vec() }
+    }
+
+    /// Those of what stays where it is from a time on.
+    pub(super) fn until(last_s: f64) -> Self {
+        let whole = last_s.ceil().max(1.0);
+        let start_s = (whole <= f64::from(u32::MAX)).then_some(whole as u32);
+        Stretches { period_s: None, starts_s: start_s.into_iter().collect() }
+    }
 }
 
 /// The same of a formula that is shown to be uniformly continuous as well where the stretch has no end: its slope is bounded from
@@ -52,12 +77,12 @@ pub(super) fn steady(
         let within = if exact.is_finite() { exact } else { late.within };
         if late.slope.is_finite() { within } else { Interval::WHOLE }
     };
-    found(formula, enclose, end_s, reach, good)
+    found(&Stretches::of(formula), enclose, end_s, reach, good)
 }
 
 /// The same for what is made of a formula and has its period, as its derivatives have.
 pub(super) fn found(
-    formula: &Expression,
+    stretches: &Stretches,
     enclose: impl Fn(Interval) -> Interval,
     end_s: f64,
     reach: Reach,
@@ -79,9 +104,10 @@ pub(super) fn found(
             good(&within).then(|| stated(range(cells), within))
         })
     };
-    let period = || cut(formula.period()?, None, &|cells| Range::Period { cells });
+    let period = || cut(stretches.period_s?, None, &|cells| Range::Period { cells });
     let tail = || {
-        STARTS_S.into_iter().find_map(|until_s| {
+        stretches.starts_s.iter().find_map(|until_s| {
+            let until_s = *until_s;
             let start_s = f64::from(until_s);
             let rest = Some(from(start_s)).filter(good)?;
             cut(start_s, Some(rest), &|cells| Range::Tail { cells, until_s })

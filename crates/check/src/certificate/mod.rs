@@ -7,6 +7,7 @@
 //! A hypothesis for which there is no producer, or whose producer finds nothing, has no proof; the checker then says that it
 //! could not check it.
 
+mod courses;
 mod delays;
 mod enclosure;
 mod exact;

@@ -1,9 +1,10 @@
 //! Bounds of targets, offsets and leaders.
 
 use forwardstep_core::expression::{Expression, Interval, Number};
-use forwardstep_sim::trajectory::{Path, Sinusoid, Trajectory};
-use forwardstep_sim::{Setup, TaskSpaceLaw, TipSetup};
+use forwardstep_sim::Setup;
+use forwardstep_sim::trajectory::{Path, Trajectory};
 
+use super::courses::Course;
 use super::enclosure::{Reach, enclosed, found};
 use super::late::late;
 use super::numbers::sum;
@@ -11,27 +12,14 @@ use super::producers::Claim;
 use super::proof::{Enclosure, Proof, Range};
 use super::ratio::Ratio;
 use crate::laws::kind_of;
+use crate::reach::reach;
 use crate::{Answer, Id};
 
 /// Times of the run at which a leader is looked at for a witness, and doublings of the run after it.
 const LOOKS: u32 = 20_000;
 const LATER: u32 = 30;
-
-/// The motion of one axis as a formula; nothing for a curve through points.
-fn formula(path: &Path) -> Option<Expression> {
-    match path {
-        Path::Formula(formula) => Some(formula.clone()),
-        Path::Sinusoids { offset, waves } => {
-            let wave = |wave: &Sinusoid| {
-                let angle =
-                    Expression::number(wave.rad_per_s) * Expression::variable(0) + Expression::number(wave.phase_rad);
-                Expression::number(wave.amplitude) * angle.sin_of()
-            };
-            Some(Expression::number(*offset) + sum(waves.iter().map(wave)))
-        }
-        Path::Spline(_) => None,
-    }
-}
+/// Room, as a part, for sums that are rounded here and exact elsewhere.
+const ROOM: f64 = 1e-9;
 
 /// How far the derivatives of targets, or of a leader, are bounded, or one that is not.
 pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
@@ -56,12 +44,13 @@ pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     }
     let mut range = Range::ForEver;
     for (trajectory, lowest) in motions {
-        for formula in trajectory.paths().iter().filter_map(formula) {
+        // What goes through points is bounded whatever the points are.
+        for course in trajectory.paths().iter().map(Course::of).filter(|course| course.formula().is_some()) {
             let size = |t: Interval| {
-                let jet = formula.enclose_jet(t);
+                let jet = course.enclose_jet(t);
                 jet.into_iter().take(order + 1).skip(lowest).reduce(Interval::hull).unwrap_or(Interval::point(0.0))
             };
-            range = wider(range, found(&formula, size, setup.time.end_s, reach, |_| true)?.range);
+            range = wider(range, found(&course.stretches(), size, setup.time.end_s, reach, |_| true)?.range);
         }
     }
     Some(Proof::Derivatives(order, range))
@@ -70,7 +59,7 @@ pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
 /// An axis and a derivative that goes beyond every bound, of what is a quotient of polynomials.
 fn diverging(trajectory: &Trajectory, lowest: usize, highest: usize) -> Option<(usize, usize)> {
     trajectory.paths().iter().enumerate().find_map(|(axis, path)| {
-        let quotient = late(&formula(path)?, 1.0).ratio;
+        let quotient = late(Course::of(path).formula()?, 1.0).ratio;
         let derivatives = std::iter::successors(quotient, Ratio::derivative).take(highest + 1);
         let diverges = |ratio: &Ratio| ratio.limit().is_some_and(|limit| limit.is_err());
         derivatives.enumerate().skip(lowest).find(|(_, ratio)| diverges(ratio)).map(|(order, _)| (axis, order))
@@ -95,15 +84,15 @@ pub(super) fn sign_gain(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
         return instant(trajectory, &drive, following.gain, setup.time.end_s);
     }
     let enclosure = |path: &Path| -> Option<Enclosure> {
-        let formula = formula(path)?;
+        let course = Course::of(path);
         // As a checker adds them: each derivative by itself.
         let weighted = |t: Interval| {
-            let parts = formula.enclose_jet(t).into_iter().zip(drive).filter(|(_, weight)| *weight != 0.0);
+            let parts = course.enclose_jet(t).into_iter().zip(drive).filter(|(_, weight)| *weight != 0.0);
             let scaled = parts.map(|(part, weight)| (part.low * weight, part.high * weight));
             let (low, high) = scaled.fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
             Interval { low, high }.with_room(1e-9 * low.abs().max(high.abs()))
         };
-        found(&formula, weighted, setup.time.end_s, claim.reach(), |within| within.size() < following.gain)
+        found(&course.stretches(), weighted, setup.time.end_s, claim.reach(), |within| within.size() < following.gain)
     };
     trajectory.paths().iter().map(enclosure).collect::<Option<_>>().map(Proof::Drive)
 }
@@ -127,15 +116,14 @@ fn instant(trajectory: &Trajectory, drive: &[f64; 5], gain: f64, end_s: f64) -> 
 /// One entry that keeps away from zero for ever, else the norm, for ever or on the run.
 pub(super) fn nonzero_quaternion(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     let target = setup.agents.get(*claim.agents.first()?)?.target.as_ref()?;
-    let entries: Vec<Expression> = target.paths().iter().map(formula).collect::<Option<_>>()?;
+    let entries: Vec<Course<'_>> = target.paths().iter().map(Course::of).collect();
     let away = |within: Interval| within.low > 0.0 || within.high < 0.0;
-    let for_ever = |(entry, formula): (usize, &Expression)| {
-        enclosed(formula, setup.time.end_s, Reach::ForEver, away).map(|found| Proof::EntryAway(entry, found))
+    let for_ever = |(entry, course): (usize, &Course<'_>)| {
+        let enclose = |t: Interval| course.enclose(t);
+        let shown = found(&course.stretches(), enclose, setup.time.end_s, Reach::ForEver, away)?;
+        Some(Proof::EntryAway(entry, shown))
     };
-    let norm = || {
-        let square = sum(entries.iter().map(|entry| entry.clone().power(2.0)));
-        enclosed(&square, setup.time.end_s, claim.reach(), away).map(Proof::Norm)
-    };
+    let norm = || squares(&entries, setup.time.end_s, claim.reach(), away).map(Proof::Norm);
     match claim.answer {
         Answer::Holds => entries.iter().enumerate().find_map(for_ever).or_else(norm),
         Answer::HoldsOnHorizon => norm(),
@@ -143,25 +131,47 @@ pub(super) fn nonzero_quaternion(setup: &Setup, claim: &Claim<'_>) -> Option<Pro
     }
 }
 
-/// The square of how far a target is from the base, against what a planar arm can reach; a time at which it is out of reach.
+/// The first stretch on which the sum of squares keeps within something that is `good`.
+fn squares(courses: &[Course<'_>], end_s: f64, reach: Reach, good: impl Fn(Interval) -> bool) -> Option<Enclosure> {
+    // A formula may repeat, and has a limit, as a whole.
+    let formulas: Option<Vec<Expression>> = courses.iter().map(|course| course.formula().cloned()).collect();
+    if let Some(formulas) = formulas {
+        return enclosed(&sum(formulas.into_iter().map(|entry| entry.power(2.0))), end_s, reach, good);
+    }
+    let last = courses.iter().find(|course| course.formula().is_none())?;
+    found(&last.stretches(), |t| square(courses, t), end_s, reach, good)
+}
+
+/// What the sum of squares keeps within on a stretch of time.
+fn square(courses: &[Course<'_>], t_s: Interval) -> Interval {
+    let each = courses.iter().map(|course| {
+        let within = course.enclose(t_s);
+        let least = within.low.max(-within.high).max(0.0);
+        Interval { low: least * least, high: within.size() * within.size() }
+    });
+    let sum = each.fold(Interval::point(0.0), |sum, square| sum + square);
+    sum.with_room(ROOM * sum.high)
+}
+
+/// The square of how far a target is from where the reach of a tip is counted, against what can be reached; a time at which it is out
+/// of reach.
 pub(super) fn within_reach(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     let agent = setup.agents.get(*claim.agents.first()?)?;
-    let law: &TaskSpaceLaw = agent.law.downcast()?;
-    let TipSetup::Planar(tip) = &law.tip else { return None };
-    let [first, second] = tip.length_m;
-    let paths = agent.target.as_ref()?.paths();
-    let entries: Vec<Expression> = paths.iter().map(formula).collect::<Option<_>>()?;
-    let square = sum(entries.into_iter().map(|entry| entry.power(2.0)));
-    let [least, most] = [(first - second) * (first - second), (first + second) * (first + second)];
+    let known = reach(agent, agent.law.downcast()?)?;
+    let paths = agent.target.as_ref()?.paths().iter();
+    let entries: Vec<Course<'_>> = paths.zip(&known.from).map(|(path, from)| Course::of(path).from(*from)).collect();
+    // Not all that is nearer than a tree can get can be reached.
+    let least = if known.exact { known.least * known.least } else { -1.0 };
+    let most = known.most * known.most;
     match claim.answer {
         Answer::Holds | Answer::HoldsOnHorizon => {
             let inside = |within: Interval| within.low > least && within.high < most;
-            enclosed(&square, setup.time.end_s, claim.reach(), inside).map(Proof::Distance)
+            squares(&entries, setup.time.end_s, claim.reach(), inside).map(Proof::Distance)
         }
         Answer::Violated => {
             let times = (0..=LOOKS).map(|look| setup.time.end_s * f64::from(look) / f64::from(LOOKS));
             let out = |t_s: &f64| {
-                let found = square.enclose(Interval::point(*t_s));
+                let found = square(&entries, Interval::point(*t_s));
                 found.low > most * (1.0 + 1e-9) || found.high < least * (1.0 - 1e-9)
             };
             times.into_iter().find(out).map(|t_s| Proof::OutOfReach(Number::written(t_s)))

@@ -67,6 +67,8 @@ const PRODUCERS: &[(Id, Producer)] = &[
     (Id::AppliedTorque, text),
     (Id::KnownMasses, text),
     (Id::KnownMomentum, text),
+    (Id::SmoothFriction, text),
+    (Id::ParametersWithinBounds, text),
 ];
 
 /// A proof of `answer`, which is a claim, if there is a producer and it finds one.

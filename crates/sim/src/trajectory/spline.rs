@@ -135,6 +135,30 @@ impl Spline {
         }
     }
 
+    /// What the value and four derivatives keep within while time does within `t_s`, by one set of Bernstein coefficients for every
+    /// piece that it meets. At a point both sides count.
+    pub fn enclose_jet(&self, t_s: Interval) -> [Interval; 5] {
+        let mut hulls: [Option<Interval>; 5] = [None; 5];
+        let mut take = |k: usize, found: Interval| hulls[k] = Some(hulls[k].map_or(found, |hull| hull.hull(found)));
+        let [first_s, last_s] = self.ends_s();
+        let held = [(t_s.low <= first_s, self.values.first()), (t_s.high >= last_s, self.values.last())];
+        for value in held.into_iter().filter(|(meets, _)| *meets).filter_map(|(_, value)| value) {
+            (0..5).for_each(|k| take(k, Interval::point(if k == 0 { *value } else { 0.0 })));
+        }
+        let met = self.t_s.windows(2).zip(&self.pieces).filter(|(t, _)| t[0] <= t_s.high && t_s.low <= t[1]);
+        for (t, piece) in met {
+            let (from, to) = ((t_s.low - t[0]).max(0.0), t_s.high.min(t[1]) - t[0]);
+            for k in 0..5 {
+                let mut weights = [0.0; 5];
+                weights[k] = 1.0;
+                let b = bernstein(&combined(piece, &weights), from, to);
+                let (low, high) = b.iter().fold((b[0], b[0]), |(low, high), b| (low.min(*b), high.max(*b)));
+                take(k, Interval { low, high }.with_room(ROUNDING * low.abs().max(high.abs())));
+            }
+        }
+        hulls.map(|hull| hull.unwrap_or(Interval::WHOLE))
+    }
+
     /// See [`super::Path::bounds`].
     pub fn bounds(&self, weights: &[f64; 5], end_s: Option<f64>) -> Interval {
         let end_s = end_s.unwrap_or(f64::INFINITY);
