@@ -56,7 +56,7 @@ fn arms(kinds: &[(JointKind, [f64; 3])], agents: usize, dry_s: Option<f64>, off:
         };
         let at = |joint: usize| (1.3 * (k * n + joint) as f64).sin();
         AgentSetup::new(format!("arm-{k}"), robot, law)
-            .roots(&[1.0, 2.0])
+            .roots([1.0, 2.0])
             .at(&(0..n).map(at).collect::<Vec<_>>())
             .moving(&vec![0.0; n])
     };
