@@ -15,6 +15,8 @@ mod inputs_smoothness;
 mod own_smoothness;
 #[path = "predictions/rate.rs"]
 mod rate;
+#[path = "predictions/rubbing.rs"]
+mod rubbing;
 #[path = "predictions/smoothness.rs"]
 mod smoothness;
 

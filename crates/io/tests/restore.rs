@@ -44,9 +44,10 @@ fn injected() -> Vec<Injected> {
         reconstructed_j: 0.0,
         measured_j: 0.25,
         limited_j: 0.0625,
+        rubbed_j: 0.03125,
         pushed_j: 0.0,
         adaptation_j: 0.03125,
-        residual_j: 0.03125,
+        residual_j: 0.0,
         first: Some(FirstInjection { cause: "measured".into(), t_s: 0.75 }),
     }]
 }

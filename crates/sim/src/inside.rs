@@ -39,6 +39,8 @@ pub struct Inside<'a> {
     pub values: &'a [f64],
     /// V and what changes it, of an agent that is by itself: all but the robots under (6)–(7) of a network.
     pub energy: Option<Energy>,
+    /// What dry friction takes from its joints, which is in `values` as a part of what acts from outside; empty where none is set.
+    pub rubs: &'a [f64],
 }
 
 /// Who looks at a run under digital control from inside.
@@ -78,13 +80,16 @@ pub(crate) fn show(
     }
     let length_s = step.end_s - step.start_s;
     let mut energies = Vec::new();
+    // Dry friction is held over a step.
+    let rubs = closed_loop.rubs();
     let mut look = |t_s: f64, place: Place| {
         let (x, heard) = integrator.look_inside(t_s);
         energies.clear();
         closed_loop.energies(t_s, x, heard, &mut |agent, energy| energies.push((agent, energy)));
         closed_loop.record(t_s, x, heard, |agent, values| {
             let energy = energies.iter().find(|(of, _)| *of == agent).map(|(_, energy)| *energy);
-            watch.inside(Inside { agent, t_s, place, values, energy });
+            let rubs = rubs.iter().find(|(of, _)| *of == agent).map_or(&[][..], |(_, rubs)| rubs);
+            watch.inside(Inside { agent, t_s, place, values, energy, rubs });
         });
     };
     if sampled {

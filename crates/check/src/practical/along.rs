@@ -12,9 +12,10 @@ use nalgebra::DVector;
 use super::held::Hold;
 use super::loads::{StaticLoad, limits, load};
 use super::margin::gains;
-use super::power::{PowerBound, is_fed, noise_w_of};
+use super::power::{PowerBound, is_fed, noise_w_of, pushed_w};
 use super::rates::Gains;
 use crate::kinds::is_lagrangian;
+use crate::surroundings::dry_loss_w;
 
 /// States that are looked at in all, spread evenly over the rows, but two of every agent at least.
 const MOST: usize = 3000;
@@ -37,7 +38,8 @@ pub struct Along {
 pub struct PowerReached {
     /// The mean, W.
     pub mean_w: f64,
-    /// The bound with the pushes, V and σ of the run itself; `None` where V was not recorded.
+    /// The bound with the pushes, V and σ of the run itself; `None` where V was not recorded, and where a hand pushes a robot with dry
+    /// friction: the recording has the sum of both.
     pub bound: Option<PowerBound>,
 }
 
@@ -112,27 +114,35 @@ fn power(setup: &Setup, columns: &Columns<'_>, t_s: &[f64], sigma: f64) -> Optio
         return None;
     }
     let (rows, [first_s, .., last_s]) = (t_s.len(), t_s) else { return None };
-    let (mut mean_w, mut start_j, mut push_w, mut noise_w, mut agents) = (0.0, Some(0.0), 0.0, 0.0, 0);
+    let span_s = last_s - first_s;
+    let (mut mean_w, mut start_j, mut push_w, mut agents) = (0.0, Some(0.0), Some(0.0), 0);
+    let (mut noise_w, mut friction_w) = (0.0, 0.0);
     for agent in (0..setup.agents.len()).filter(|agent| is_lagrangian(&setup.agents[*agent])) {
         let gains = Gains::of(&setup.agents[agent])?;
         let axes = gains.damping.nrows();
         let compliance = gains.damping.clone().cholesky()?.inverse();
+        let dry_w = dry_loss_w(&setup.agents[agent]);
+        let mut own_w = 0.0;
         for row in 0..rows {
             let signal = |signal| columns.at(agent, signal, axes, row).map(DVector::from_vec);
             let s = signal(Signal::TrackingError)?;
             mean_w += s.dot(&(&gains.damping * &s)) / rows as f64;
-            push_w += signal(Signal::External).map_or(0.0, |d| d.dot(&(&compliance * &d)) / rows as f64);
+            own_w += signal(Signal::External).map_or(0.0, |d| d.dot(&(&compliance * &d)) / rows as f64);
         }
+        // Dry friction is a part of what was recorded, and no push.
+        let own_w = dry_w.map_or(Some(own_w), |_| pushed_w(&setup.agents[agent], &gains, [*first_s, *last_s]));
+        push_w = push_w.zip(own_w).map(|(all, own)| all + own);
+        friction_w += dry_w.unwrap_or(0.0);
         let energy_j = columns.at(agent, Signal::Lyapunov, 1, 0).and_then(|v| v.first().copied());
         start_j = start_j.zip(energy_j).map(|(all, own)| all + own);
         noise_w += setup.control.as_ref().map_or(0.0, |control| noise_w_of(control, &gains));
         agents += 1;
     }
-    let span_s = last_s - first_s;
-    let parts = |start_j: f64| {
-        PowerBound { agents, span_s, start_w: start_j / span_s, push_w, noise_w, sigma, mean_w: f64::NAN }.worked_out()
+    let parts = |(start_j, push_w): (f64, f64)| {
+        let start_w = start_j / span_s;
+        PowerBound { agents, span_s, start_w, push_w, noise_w, friction_w, sigma, mean_w: f64::NAN }.worked_out()
     };
-    (agents > 0 && mean_w.is_finite()).then(|| PowerReached { mean_w, bound: start_j.and_then(parts) })
+    (agents > 0 && mean_w.is_finite()).then(|| PowerReached { mean_w, bound: start_j.zip(push_w).and_then(parts) })
 }
 
 /// Rows that are looked at: the first, the last and others between them.

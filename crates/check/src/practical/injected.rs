@@ -17,12 +17,13 @@
 //! reconstructed    ∫ sᵀ(τ_reconstructed − τ_held)
 //! measured         ∫ sᵀ(τ_computed − τ_reconstructed)
 //! limited          ∫ sᵀ(τ_applied − τ_computed)
+//! rubbed           ∫ sᵀ(F tanh(z/ε) − F σ)
 //! pushed           ∫ sᵀτ_ext
 //! adaptation       ∫ sᵀYΔϑ + Σ [½ ΔϑᵀΓ⁻¹Δϑ]
 //! ```
 //!
 //! add up to the change of V. Had z moved with ż and ϑ̂ with (7), sᵀMż and sᵀYΔϑ would cancel against the jumps; what is left of them is what
-//! holding z and stepping ϑ̂ do. Agents with a target of their own, chains, vehicles, spacecraft and all others that are by themselves have these terms
+//! holding z and stepping ϑ̂ do. Dry friction F σ stands here, less what Y has in its place; what is recorded as external has both. Agents with a target of their own, chains, vehicles, spacecraft and all others that are by themselves have these terms
 //! from their plant, their controller and the balance of its proof, [`Energy`](forwardstep_sim::Energy), where what stepping estimates does counts as held.
 //! Where z reads positions itself, as under (3) and (aa6), their noise jumps with z and counts as held.
 
@@ -60,6 +61,8 @@ pub enum Injection {
     Measured,
     /// Torques are limited and rounded.
     Limited,
+    /// Friction is dry where the law takes it for smooth.
+    Rubbed,
     /// Something acts from outside.
     Pushed,
     /// Estimates are stepped at samples.
@@ -68,12 +71,13 @@ pub enum Injection {
 
 impl Injection {
     /// All, in the order in which commands are traced from the ideal law to the plant.
-    pub const ALL: [Injection; 7] = [
+    pub const ALL: [Injection; 8] = [
         Injection::Dissipated,
         Injection::Held,
         Injection::Reconstructed,
         Injection::Measured,
         Injection::Limited,
+        Injection::Rubbed,
         Injection::Pushed,
         Injection::Adaptation,
     ];
@@ -86,6 +90,7 @@ impl Injection {
             Injection::Reconstructed => "reconstructed",
             Injection::Measured => "measured",
             Injection::Limited => "limited",
+            Injection::Rubbed => "rubbed",
             Injection::Pushed => "pushed",
             Injection::Adaptation => "adaptation",
         }
@@ -99,6 +104,7 @@ impl Injection {
             Injection::Reconstructed => "velocities from filtered differences",
             Injection::Measured => "noise and rounding of measurements",
             Injection::Limited => "limits and rounding of torques",
+            Injection::Rubbed => "dry friction",
             Injection::Pushed => "external torques",
             Injection::Adaptation => "estimates stepped at samples",
         }
@@ -117,7 +123,7 @@ pub struct InjectionBalance {
     /// The largest V at the end of a step, J.
     pub largest_j: f64,
     /// What each of [`Injection::ALL`] put in, J.
-    pub terms_j: [f64; 7],
+    pub terms_j: [f64; 8],
     /// The first that the proof does not allow and that put in more than [`NAMED_SHARE`] of the largest V so far, with its time, s.
     /// The proof allows what is dissipated, and pushes that end.
     pub first: Option<(Injection, f64)>,
@@ -136,7 +142,7 @@ impl InjectionBalance {
 }
 
 /// Names what the proof does not allow, the largest where several come at once: what has put in more than [`NAMED_SHARE`] of the largest V.
-fn name_first(terms: &[f64; 7], largest: f64, pushes_end: bool, t_s: f64) -> Option<(Injection, f64)> {
+fn name_first(terms: &[f64; 8], largest: f64, pushes_end: bool, t_s: f64) -> Option<(Injection, f64)> {
     let allowed = |injection: Injection| match injection {
         Injection::Dissipated => true,
         Injection::Pushed => pushes_end,
@@ -144,6 +150,7 @@ fn name_first(terms: &[f64; 7], largest: f64, pushes_end: bool, t_s: f64) -> Opt
         | Injection::Reconstructed
         | Injection::Measured
         | Injection::Limited
+        | Injection::Rubbed
         | Injection::Adaptation => false,
     };
     let put_in = Injection::ALL.into_iter().filter(|injection| !allowed(*injection));

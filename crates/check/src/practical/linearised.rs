@@ -81,6 +81,10 @@ impl LinearisedSampling {
 /// The largest size of a fast multiplier, and the smallest real part of those that are not zero.
 fn multipliers(setup: &Setup, agent: usize) -> Option<(f64, f64)> {
     let jacobian = sampled_jacobian(setup, agent).ok()??;
+    // The search for eigenvalues does not end on what is not finite.
+    if !jacobian.entries.iter().all(|entry| entry.is_finite()) {
+        return None;
+    }
     let matrix = DMatrix::from_row_slice(jacobian.size, jacobian.size, &jacobian.entries);
     let all = matrix.complex_eigenvalues();
     let kept = || all.iter().filter(|mu| mu.norm() > FORGOTTEN);

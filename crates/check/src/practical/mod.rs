@@ -136,6 +136,7 @@ impl Finding {
                 ("start_w", bound.start_w),
                 ("push_w", bound.push_w),
                 ("noise_w", bound.noise_w),
+                ("friction_w", bound.friction_w),
                 ("span_s", bound.span_s),
             ],
             Finding::TrackingDisagreement(bound) => bound.numbers(),

@@ -21,6 +21,10 @@
 //! have n = (1 − a) Σ_j aʲ (e_{k−j} − e_{k−j−1})/h, whose mean square is 2 e² (1 − a)²/(h² (1 + a)). n enters the adaptation too, as −nᵀYΔϑ,
 //! whose mean is zero since Y is one sample older; and a filter lags, which is left out. With noise the bound is thus one to be
 //! expected, not one for certain.
+//!
+//! Dry friction F σ, σ ∈ Sgn q̇, which the law takes for F tanh(z/ε), feeds V by κ ε F at every joint at most, κ = max x (1 − tanh x)
+//! ([`SMOOTHING_LOSS`](forwardstep_core::robot::tree::SMOOTHING_LOSS)): E is the sum of these. That of a run holds σ over short periods, and what
+//! that adds vanishes with them.
 
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::{Adaptive, AgentSetup, Control, ReferenceFamily, Setup, VelocitySensor};
@@ -30,6 +34,7 @@ use super::held::Hold;
 use super::margin::SamplingMargin;
 use super::rates::{Gains, dynamics};
 use crate::kinds::is_lagrangian;
+use crate::surroundings::dry_loss_w;
 
 /// Mean square of what rounding to multiples of one does.
 const ROUNDING: f64 = 1.0 / 12.0;
@@ -47,6 +52,8 @@ pub struct PowerBound {
     pub push_w: f64,
     /// D² of measurement errors, W: expected, not certain.
     pub noise_w: f64,
+    /// E, which dry friction feeds at most, W.
+    pub friction_w: f64,
     /// σ; zero in continuous time.
     pub sigma: f64,
     /// The bound on the mean of Σ sᵀKs, W.
@@ -70,17 +77,19 @@ impl PowerBound {
         if !is_fed(setup) {
             return None;
         }
-        let (mut start_j, mut push_w, mut noise_w, mut agents) = (0.0, 0.0, 0.0, 0);
+        let (mut start_j, mut push_w, mut noise_w, mut friction_w, mut agents) = (0.0, 0.0, 0.0, 0.0, 0);
         let span_s = setup.time.end_s;
         for (index, agent) in setup.agents.iter().enumerate().filter(|(_, agent)| is_lagrangian(agent)) {
             let gains = Gains::of(agent)?;
             start_j += start_energy_j(setup, index, &gains)?;
-            push_w += pushed_w(agent, &gains, span_s)?;
+            push_w += pushed_w(agent, &gains, [0.0, span_s])?;
+            friction_w += dry_loss_w(agent).unwrap_or(0.0);
             noise_w += setup.control.as_ref().map_or(0.0, |control| noise_w_of(control, &gains));
             agents += 1;
         }
         let sigma = if setup.control.is_some() { SamplingMargin::of(setup)?.worst.sigma } else { 0.0 };
-        let parts = PowerBound { agents, span_s, start_w: start_j / span_s, push_w, noise_w, sigma, mean_w: f64::NAN };
+        let start_w = start_j / span_s;
+        let parts = PowerBound { agents, span_s, start_w, push_w, noise_w, friction_w, sigma, mean_w: f64::NAN };
         (agents > 0).then(|| parts.worked_out()).flatten()
     }
 
@@ -90,17 +99,18 @@ impl PowerBound {
     }
 
     /// The same with [`PowerBound::mean_w`]: the D of pushes and of noise add up, at worst. `None` where it is not finite, and where it
-    /// is zero: then what is left out is all there is. No robot has dry friction, so that E is zero.
+    /// is zero: then what is left out is all there is.
     pub(super) fn worked_out(self) -> Option<PowerBound> {
         let drive = self.push_w.sqrt() + self.noise_w.sqrt();
-        let mean_w = mean_power_w(drive * drive, 0.0, self.start_w, self.sigma);
+        let mean_w = mean_power_w(drive * drive, self.friction_w, self.start_w, self.sigma);
         (mean_w > 0.0 && mean_w.is_finite()).then_some(PowerBound { mean_w, ..self })
     }
 }
 
-/// Whether something besides the start feeds V: noise and samples, or pushes.
+/// Whether something besides the start feeds V: noise and samples, pushes, or dry friction.
 pub(crate) fn is_fed(setup: &Setup) -> bool {
-    setup.control.is_some() || setup.agents.iter().any(|agent| is_lagrangian(agent) && !agent.pushes.is_empty())
+    let fed = |agent: &AgentSetup| is_lagrangian(agent) && (!agent.pushes.is_empty() || dry_loss_w(agent).is_some());
+    setup.control.is_some() || setup.agents.iter().any(fed)
 }
 
 /// D² of the measurement errors of an agent, W.
@@ -141,16 +151,16 @@ pub(crate) fn start_energy_j(setup: &Setup, index: usize, gains: &Gains) -> Opti
     Some(kinetic + 0.5 * error.dot(&gamma.clone().cholesky()?.solve(&error)))
 }
 
-/// D² of the pushes of an agent over [0, `span_s`], at most, W; `None` where one depends on the motion.
-fn pushed_w(agent: &AgentSetup, gains: &Gains, span_s: f64) -> Option<f64> {
+/// D² of the pushes of an agent from one time to another, at most, W; `None` where one depends on the motion.
+pub(super) fn pushed_w(agent: &AgentSetup, gains: &Gains, [first_s, last_s]: [f64; 2]) -> Option<f64> {
     let inverse = gains.damping.clone().cholesky()?.inverse().abs();
     let mut drive = 0.0;
     for push in &agent.pushes {
         let [begins_s, ends_s] = push.span_s();
-        let (begins_s, ends_s) = (begins_s.max(0.0), ends_s.min(span_s));
+        let (begins_s, ends_s) = (begins_s.max(first_s), ends_s.min(last_s));
         if begins_s < ends_s {
             let peak = peak(push, gains.damping.nrows(), [begins_s, ends_s])?;
-            drive += (peak.dot(&(&inverse * &peak)) * (ends_s - begins_s) / span_s).sqrt();
+            drive += (peak.dot(&(&inverse * &peak)) * (ends_s - begins_s) / (last_s - first_s)).sqrt();
         }
     }
     Some(drive * drive)

@@ -9,7 +9,7 @@
 //! |τ_j − (Y ϑ)_j| = |(−K s + Y Δϑ̂)_j| ≤ √(2 V) √((K M⁻¹ K + P)_jj)
 //! ```
 //!
-//! and V ≤ V(0) in continuous time without pushes and limits. That is certain wherever M and Y are those of the run. Before the run they are not
+//! and V ≤ V(0) in continuous time without pushes, dry friction and limits. That is certain wherever M and Y are those of the run. Before the run they are not
 //! known but along the reference, where they are taken: the sum is a bound for certain where s ≡ 0, since V(0) = 0, and otherwise as far as q, q̇, z and ż
 //! stay near those that s ≡ 0 leads to. With estimates that start far from ϑ it is many times what is reached. Not from the paper.
 
@@ -33,7 +33,7 @@ pub struct PeakTorque {
     /// How far the estimate starts from the truth: the largest |ϑ̂ − ϑ| of an entry over |ϑ|; zero where ϑ is known.
     pub estimate_off: f64,
     /// What its size cannot exceed while V is at most V(0) and M and Y are those along the reference; `None` where V(0) is not known, or V
-    /// may grow: under digital control, with pushes, and with limits that are enforced.
+    /// may grow: under digital control, with pushes or dry friction, and with limits that are enforced.
     pub at_most: Option<f64>,
 }
 

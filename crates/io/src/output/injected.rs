@@ -32,6 +32,9 @@ pub struct Injected {
     /// By limits and rounding of torques.
     #[serde(deserialize_with = "number::or_nan")]
     pub limited_j: f64,
+    /// By friction that is dry where the law takes it for smooth; of agents by themselves that counts as pushed.
+    #[serde(default, deserialize_with = "number::or_nan")]
+    pub rubbed_j: f64,
     /// By external torques.
     #[serde(deserialize_with = "number::or_nan")]
     pub pushed_j: f64,
@@ -48,7 +51,7 @@ pub struct Injected {
 /// What put energy in first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FirstInjection {
-    /// `held`, `reconstructed`, `measured`, `limited`, `pushed` or `adaptation`.
+    /// `held`, `reconstructed`, `measured`, `limited`, `rubbed`, `pushed` or `adaptation`.
     pub cause: String,
     /// When, s.
     pub t_s: f64,
@@ -65,6 +68,7 @@ impl From<&InjectionBalance> for Injected {
             reconstructed_j: balance.term_j(Injection::Reconstructed),
             measured_j: balance.term_j(Injection::Measured),
             limited_j: balance.term_j(Injection::Limited),
+            rubbed_j: balance.term_j(Injection::Rubbed),
             pushed_j: balance.term_j(Injection::Pushed),
             adaptation_j: balance.term_j(Injection::Adaptation),
             residual_j: balance.residual_j(),
@@ -82,6 +86,7 @@ impl Injected {
             Injection::Reconstructed => self.reconstructed_j,
             Injection::Measured => self.measured_j,
             Injection::Limited => self.limited_j,
+            Injection::Rubbed => self.rubbed_j,
             Injection::Pushed => self.pushed_j,
             Injection::Adaptation => self.adaptation_j,
         }

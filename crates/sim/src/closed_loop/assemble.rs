@@ -380,6 +380,11 @@ impl<'a> ClosedLoop<'a> {
         }
     }
 
+    /// What dry friction takes from the joints of every agent that has any.
+    pub(crate) fn rubs(&self) -> Vec<(usize, Vec<f64>)> {
+        self.pushes.rubs()
+    }
+
     /// Whether set-valued signs are set in continuous time.
     pub(crate) fn has_signs(&self) -> bool {
         self.slider.is_some()

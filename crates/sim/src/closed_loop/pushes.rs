@@ -107,6 +107,12 @@ impl Pushes {
         }
     }
 
+    /// What dry friction takes from the joints of every agent that has any.
+    pub(super) fn rubs(&self) -> Vec<(usize, Vec<f64>)> {
+        let rubbed = self.people.iter().filter(|placed| !placed.rubbing.is_empty());
+        rubbed.map(|placed| (placed.pushed.agent, placed.rubbing.clone())).collect()
+    }
+
     /// When a push begins, ends or enters another piece next, s.
     pub(crate) fn next_event_s(&self) -> f64 {
         let actions = self.people.iter().flat_map(|placed| &placed.pushed.actions);

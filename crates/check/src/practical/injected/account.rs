@@ -40,7 +40,7 @@ pub(super) struct Account<'a> {
     /// The end of the step before: V and the state.
     before: Option<(f64, State)>,
     largest_j: f64,
-    terms_j: [f64; 7],
+    terms_j: [f64; 8],
     first: Option<(Injection, f64)>,
 }
 
@@ -70,7 +70,7 @@ impl<'a> Account<'a> {
             start_j: None,
             before: None,
             largest_j: FLOOR_J,
-            terms_j: [0.0; 7],
+            terms_j: [0.0; 8],
             first: None,
         })
     }
@@ -89,7 +89,7 @@ impl<'a> Account<'a> {
     }
 
     /// `None` only where a vector has the wrong length.
-    pub(super) fn look(&mut self, Inside { t_s, place, values, .. }: Inside<'_>) -> Option<()> {
+    pub(super) fn look(&mut self, Inside { t_s, place, values, rubs, .. }: Inside<'_>) -> Option<()> {
         let state = self.law.state(values)?;
         match place {
             Place::Start => {
@@ -100,7 +100,7 @@ impl<'a> Account<'a> {
             }
             Place::Node { weight_s } => {
                 self.arrive(t_s);
-                self.node(weight_s, &state, values)?;
+                self.node(weight_s, &state, values, rubs)?;
             }
             Place::End => {
                 let v_j = *values.get(self.law.places.lyapunov)?;
@@ -173,7 +173,7 @@ impl<'a> Account<'a> {
     }
 
     /// Adds what acts at a node of the quadrature.
-    fn node(&mut self, weight_s: f64, state: &State, values: &[f64]) -> Option<()> {
+    fn node(&mut self, weight_s: f64, state: &State, values: &[f64], rubs: &[f64]) -> Option<()> {
         let s = &state.s;
         let part = |from: usize| Some(DVector::from_column_slice(values.get(from..from + s.len())?));
         let theta = &self.law.agent.robot.theta;
@@ -182,15 +182,18 @@ impl<'a> Account<'a> {
         let estimated_w = dot(state.theta_hat.as_ref().unwrap_or(theta), yt_s);
         let error_w = estimated_w - dot(theta, yt_s);
         let damping_w = s.dot(&(&self.law.gains.damping * s));
-        let pushed_w = self.law.places.external.map_or(Some(0.0), |from| Some(s.dot(&part(from)?)))?;
+        // What Y has in place of dry friction counts against it: `lost_w` has it with its sign turned.
+        let (smooth_w, rubs_w) = (self.law.smoothed_w(state), dot(s.as_slice(), rubs));
+        let external_w = self.law.places.external.map_or(Some(0.0), |from| Some(s.dot(&part(from)?)))?;
         let Traced { held, reconstructed, computed } = &self.in_force;
         let powers_w = [
-            (Injection::Dissipated, -damping_w - lost_w),
+            (Injection::Dissipated, -damping_w - lost_w - smooth_w),
             (Injection::Held, s.dot(held) - (estimated_w - damping_w) + advance_w),
             (Injection::Reconstructed, s.dot(&(reconstructed - held))),
             (Injection::Measured, s.dot(&(computed - reconstructed))),
             (Injection::Limited, s.dot(&taken_away(computed, &part(self.law.places.torque)?))),
-            (Injection::Pushed, pushed_w),
+            (Injection::Rubbed, smooth_w - rubs_w),
+            (Injection::Pushed, external_w + rubs_w),
             (Injection::Adaptation, error_w),
         ];
         for (injection, power_w) in powers_w {

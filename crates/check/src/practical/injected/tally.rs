@@ -11,13 +11,13 @@ pub(super) struct Tally {
     /// V at the end of the step before.
     before: Option<f64>,
     largest: f64,
-    terms: [f64; 7],
+    terms: [f64; 8],
     first: Option<(Injection, f64)>,
 }
 
 impl Tally {
     pub(super) fn new(pushes_end: bool) -> Self {
-        Tally { pushes_end, start: None, before: None, largest: super::FLOOR_J, terms: [0.0; 7], first: None }
+        Tally { pushes_end, start: None, before: None, largest: super::FLOOR_J, terms: [0.0; 8], first: None }
     }
 
     pub(super) fn balance(&self, agent: usize) -> Option<InjectionBalance> {
