@@ -373,8 +373,7 @@ mod tests {
 
     #[test]
     fn lines_lie_nowhere_above_a_solution_that_bends_upwards() {
-        let mass =
-            || AgentSetup::new("mass", RobotSetup::point_mass(1, 1.0), Known::gain(1.0)).roots(&[1.0]).at(&[0.0]);
+        let mass = || AgentSetup::new("mass", RobotSetup::point_mass(1, 1.0), Known::gain(1.0)).roots([1.0]).at(&[0.0]);
         let links = Links::fixed(2, [(0, 1)], Delay::constant(0.0));
         let network = Network::of(&Setup::consensus([mass(), mass()], links, 2.0)).unwrap();
         let mut cells = Cells::new(&network, 0.0, true);
