@@ -3,8 +3,8 @@
 
 use forwardstep_core::robot::Lagrangian;
 use forwardstep_core::robot::tree::{
-    DriveError, Drives, Friction, InertiaDefect, JointKind, LinkJoint, LinkSpec, MassMatrixError, Placement, Tree,
-    TreeError, inertia_about_frame, inertia_defects,
+    DriveError, Drives, Friction, InertiaDefect, JointKind, LinkJoint, LinkSpec, MassMatrixError, Placement, Stick,
+    Tree, TreeError, inertia_about_frame, inertia_defects,
 };
 
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
@@ -225,4 +225,52 @@ fn prop_defects_do_not_depend_on_axes() {
             assert!((moment - want).abs() < 1e-11 * (1.0 + angle * angle));
         }
     }
+}
+
+/// From one period to the next, with one joint that nothing rubs between two that rub: M⁻¹ couples all of them.
+#[test]
+fn eq_dry_friction_suits_the_velocity_that_a_period_ends_with() {
+    let links = [moving([0.0, 0.0, 1.0], 0.3), ball(Some(0)), ball(Some(1))];
+    let assembled = Tree::assemble(&links, GRAVITY).unwrap();
+    let forces = [2.0, 0.5];
+    let friction = [0, 2].map(|joint| Friction { joint, width: 0.1 }).to_vec();
+    let drives = Drives { geared: vec![1], friction, dry_s: Some(0.1) };
+    let (tree, mut theta) = (assembled.tree.with_drives(drives).unwrap(), assembled.theta);
+    theta.extend([0.2, forces[0], forces[1]]);
+    let (mut scratch, mut stick) = (tree.scratch(), Stick::new(&tree));
+    let mut ends = [0; 3];
+    for k in 0..300 {
+        let wave = |rate: f64| (rate * f64::from(k)).sin();
+        let (h_s, q) = (0.02 + 0.01 * wave(0.7), [wave(1.1), 2.0 * wave(1.3), 2.0 * wave(1.7)]);
+        let dq = [0.1 * wave(1.9), 0.1 * wave(2.3), 0.1 * wave(2.9)];
+        let pushed = [6.0 * wave(3.1), 3.0 * wave(3.7), 1.5 * wave(4.1)];
+        let mut under = |rubbed: &[f64]| {
+            let tau: Vec<f64> = pushed.iter().zip(rubbed).map(|(push, rubbed)| push - rubbed).collect();
+            let mut ddq = [0.0; 3];
+            tree.forward_dynamics(&mut scratch, &q, &dq, &theta, &tau, &mut ddq).unwrap();
+            ddq
+        };
+        let before = under(stick.torque());
+        stick.set(&tree, h_s, &theta, [&q, &dq, &before]).unwrap();
+        let after = under(stick.torque());
+        assert_eq!(stick.torque()[1], 0.0);
+        for (joint, force) in [0, 2].into_iter().zip(forces) {
+            let (end, sigma) = (dq[joint] + h_s * after[joint], stick.torque()[joint] / force);
+            let (suits, which) = match sigma {
+                1.0 => (end > -1e-10, 0),
+                -1.0 => (end < 1e-10, 1),
+                inside => (inside.abs() < 1.0 && end.abs() < 1e-10, 2),
+            };
+            assert!(suits, "{k}, joint {joint}: σ = {sigma}, and the period ends with {end}");
+            ends[which] += 1;
+        }
+    }
+    assert!(ends.iter().all(|count| *count > 50), "it slides either way, and sticks: {ends:?}");
+    let short = [0.0; 2];
+    let full = [0.0; 3];
+    for wrong in [[&short[..], &full, &full], [&full, &short, &full], [&full, &full, &short]] {
+        assert!(stick.set(&tree, 0.1, &theta, wrong).is_err());
+    }
+    let other = Tree::assemble(&links[..2], GRAVITY).unwrap();
+    assert!(stick.set(&other.tree, 0.1, &other.theta, [&short; 3]).is_err());
 }

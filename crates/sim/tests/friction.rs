@@ -120,6 +120,39 @@ fn smooth_friction_creeps_where_dry_friction_sticks() {
     assert!(stuck.recording.last(0, Signal::Position, 0).abs() < 1e-6);
 }
 
+#[test]
+fn friction_answers_at_once_to_a_push_that_begins_within_a_period() {
+    // From 0.503 s on 5 N, of which 2 are left: what was held must not stay until 0.51 s.
+    let mut setup = block(Some(1e-2), Function::Constant(5.0), 0.0, 1.0);
+    setup.agents[0].pushes[0].from_s = 0.503;
+    let outcome = run(&setup).unwrap();
+    let want = (5.0 - FRICTION_N) / INERTIA_KG * (1.0 - 0.503);
+    let found = outcome.recording.last(0, Signal::Velocity, 0);
+    assert!((found - want).abs() < 1e-6, "{found}, not {want}");
+}
+
+#[test]
+fn a_joint_that_sticks_stands_whatever_its_law_makes_of_what_it_hears() {
+    // K brings less than F, and what is heard of the other moves; what is left is of second order in the period.
+    let mut setup = block(Some(1e-3), Function::Constant(0.0), 0.0, 2.0);
+    let mut other = setup.agents[0].clone();
+    (other.name, other.start.q[0]) = ("other".into(), 0.3);
+    let wave = Expression::variable(0).sin_of() * 30.0;
+    other.pushes[0].effect = Effect::Torque(Course::Each(vec![Function::Formula(wave)]));
+    setup.agents.push(other);
+    setup.network = Network::fixed(2, [(1, 0)], Delay::constant(0.1));
+    setup.agents[0].pushes.clear();
+    setup.agents[0].change_law(|law: &mut Adaptive| law.damping = Gain::Number(1.0));
+    let outcome = run(&setup).unwrap();
+    let torque = column(&outcome, 0, Signal::Torque, 0);
+    let v = column(&outcome, 0, Signal::Velocity, 0);
+    let sticks = torque.iter().take_while(|torque| torque.abs() < 0.9 * FRICTION_N).count();
+    let [least, most] = [f64::min, f64::max].map(|of| torque[..sticks].iter().copied().fold(0.0, of));
+    assert!(sticks > 50 && most - least > 1.0, "{sticks} rows, {least}, {most}");
+    let moves = v[..sticks].iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    assert!(moves < 1e-5, "{moves} m/s");
+}
+
 /// Four arms of three joints that agree, with all that is at their joints estimated.
 fn arms(agents: usize, dry_s: Option<f64>, bounds: bool, seed: u64) -> Setup {
     let kinds = [
