@@ -18,7 +18,7 @@ use forwardstep_sim::formula::{BoundedFormula, Witness};
 use forwardstep_sim::schedule::{Phase, Schedule};
 
 /// Names may join this list. None may leave it or change: certificates, waivers and summaries of earlier versions refer to them.
-const NAMES: [&str; 54] = [
+const NAMES: [&str; 56] = [
     "spanning-tree",
     "leader-reaches-all",
     "dwell-time",
@@ -69,6 +69,8 @@ const NAMES: [&str; 54] = [
     "regular-jacobian",
     "target-within-reach",
     "certain-regressor",
+    "parameters-within-bounds",
+    "smooth-friction",
     "lengths-within-bounds",
     "attitude-gains",
     "known-momentum",

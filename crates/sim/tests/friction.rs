@@ -59,7 +59,7 @@ fn block(dry_s: Option<f64>, push: Function, velocity: f64, end_s: f64) -> Setup
         bounds: None,
     };
     let robot = RobotSetup::tree(tree, theta.clone(), vec![Axis::new("rail", AxisUnit::Metre)]);
-    let mut agent = AgentSetup::new("block", robot, nothing(theta.len())).roots(&[1.0]).at(&[0.0]).moving(&[velocity]);
+    let mut agent = AgentSetup::new("block", robot, nothing(theta.len())).roots([1.0]).at(&[0.0]).moving(&[velocity]);
     agent.start.reference = vec![vec![0.0]];
     let effect = Effect::Torque(Course::Each(vec![push]));
     agent.pushes = vec![Push { effect, from_s: 0.0, until_s: f64::INFINITY }];
@@ -179,10 +179,11 @@ fn arms(agents: usize, dry_s: Option<f64>, bounds: bool, seed: u64) -> Setup {
             estimate_start: theta.iter().zip(&slack).map(|(own, by)| own + by * random()).collect(),
             bounds: bounds.then(|| ParameterBounds::new(lower, upper, 0.01)),
         };
-        AgentSetup::new(format!("arm-{k}"), robot, law)
-            .roots(&[1.0, 2.0])
-            .at(&[random(), random(), random()])
-            .moving(&[random(), random(), random()])
+        AgentSetup::new(format!("arm-{k}"), robot, law).roots([1.0, 2.0]).at(&[random(), random(), random()]).moving(&[
+            random(),
+            random(),
+            random(),
+        ])
     };
     let ring = (0..agents).map(|k| (k, (k + 1) % agents)).filter(|(from, to)| from != to);
     let network = Network::fixed(agents, ring, Delay::constant(0.1));

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use forwardstep_check::prediction::{CascadeSpread, NoCascade, Settled, Unfinished, settled};
+use forwardstep_check::prediction::{CascadeSpread, NoCascade, PeakTorque, Settled, Unfinished, settled};
 use forwardstep_check::{Course, NoCourse, NoIdeal, course, ideal, predict};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
@@ -347,6 +347,21 @@ fn eq_what_v_can_add_to_a_torque_is_that_of_its_norm() {
     let peaks = predicted(&setup).peak_torques;
     let found = peaks.iter().find(|peak| peak.agent == 1).unwrap();
     assert!((found.at_most.unwrap() - expected).abs() < 1e-9 && !found.is_practical(), "{found:?} {expected}");
+    // Elsewhere z falls from 0.2 by its root, and with it ż: the most is at the start, m |ż| + … √(K²/m + γ ż²).
+    let mut moving = setup.clone();
+    moving.agents[1].start.reference = vec![vec![0.2, 0.0]];
+    moving.agents[1].start.dq = vec![0.5, -0.4];
+    moving.agents[1].roots_per_s = [2.0].into();
+    let peaks = predicted(&moving).peak_torques;
+    let found = peaks.iter().find(|peak| peak.agent == 1).unwrap();
+    let expected = 3.0 * 0.4 + (3.0 * 0.25 + 1.0 / 2.0_f64).sqrt() * (25.0 / 3.0 + 2.0 * 0.4 * 0.4_f64).sqrt();
+    assert!((found.at_most.unwrap() - expected).abs() < 1e-6 * expected, "{found:?} {expected}");
+    assert!((found.value + 1.2).abs() < 1e-6 && (found.estimate_off - 1.0 / 3.0).abs() < 1e-12, "{found:?}");
+    // Twice what is predicted, of whatever sign, is practical still; an estimate that is right is off by nothing.
+    let is_practical = |at_most: f64| PeakTorque { value: -1.2, at_most: Some(at_most), ..*found }.is_practical();
+    assert_eq!([2.4, 2.5].map(is_practical), [true, false]);
+    moving.agents[1].change_law(|law: &mut Adaptive| law.estimate_start = vec![3.0]);
+    assert!(predicted(&moving).peak_torques.iter().all(|peak| peak.estimate_off == 0.0));
     // What may feed V takes the bound away: limits from the one that has them, a push from all.
     setup.agents[1].enforce_limits = true;
     let without: Vec<usize> =

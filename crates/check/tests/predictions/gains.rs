@@ -272,6 +272,29 @@ fn what_s_adds_is_said_with_its_numbers() {
     let number = |name: &str| numbers.iter().find(|(known, _)| *known == name).unwrap().1;
     assert!(is_near(number("rms_disagreement"), number("rms_gain_s") * number("rms_tracking"), 1e-12));
     assert_eq!(number("drift_per_s"), 0.0);
+    // rms |s_a| ≤ √(x² (K⁻¹)_aa), and the axis with the larger K has the smaller bound.
+    let mut uneven = setup.clone();
+    for agent in &mut uneven.agents {
+        agent.change_law(|law: &mut forwardstep_sim::Adaptive| law.damping = Gain::Matrix(vec![4.0, 0.0, 0.0, 9.0]));
+    }
+    let power_w = practical(&uneven).findings.into_iter().find_map(|finding| match finding {
+        Finding::TrackingPower(power) => Some(power.mean_w),
+        Finding::SamplingMargin(_)
+        | Finding::LinearisedSampling(_)
+        | Finding::StaticLoad(_)
+        | Finding::TrackingDisagreement(_) => None,
+    });
+    let [least, most] = bound(&uneven).unwrap().axes.unwrap();
+    assert!(is_near(most.tracking, (power_w.unwrap() / 4.0).sqrt(), 1e-12), "{most:?} {power_w:?}");
+    assert!(is_near(least.tracking, most.tracking / 1.5, 1e-12) && least.name != most.name, "{least:?} {most:?}");
+    let sampled = said(&setup.clone().sampled(500.0)).unwrap().2;
+    assert!(sampled.iter().any(|(name, bias)| *name == "drift_by_velocity_error" && *bias < 0.0), "{sampled:?}");
+    assert_eq!(bound(&ring(3, 1, Exchange::Position, 0.0)), None, "nothing feeds s");
+    let mut three = ring(3, 1, Exchange::Position, 0.0);
+    three.agents[1].pushes = setup.agents[1].pushes.clone();
+    assert!(bound(&three).unwrap().axes.is_some());
+    three.agents.truncate(1);
+    assert_eq!(bound(&three), None, "one alone agrees");
     let text = said(&setup.clone().sampled(500.0)).unwrap().1;
     assert!(
         text.contains("there is expected to be: ") && text.contains("; a constant error of all measured velocities")
