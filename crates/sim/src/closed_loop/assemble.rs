@@ -1,5 +1,7 @@
 //! All populations with what joins them: the right-hand side as a whole, and its events.
 
+mod running;
+
 use std::ops::Range;
 
 use forwardstep_core::agent::Clipped;
@@ -22,7 +24,7 @@ use super::references::Transmits;
 use super::sampling::Sampling;
 use super::sliding::{Place, Slider};
 use super::valid::{message_len, validate};
-use crate::engine::{DelaySystem, Happened, Heard, Port, Refuted};
+use crate::engine::{Heard, Port, Refuted};
 use crate::leader::Following;
 use crate::recording::{ClippedSamples, Drive, GainRates, SampleTaken, Signal};
 use crate::setup::{Control, Exchange, Setup};
@@ -278,18 +280,6 @@ impl<'a> ClosedLoop<'a> {
         all
     }
 
-    /// The rates of the state `x` at an instant inside the last step; what its end needs stays as it is.
-    pub(crate) fn rates_inside(&mut self, t_s: f64, x: &[f64], heard: &Heard, dx: &mut [f64]) {
-        self.pushes.evaluate(t_s, x, &mut self.blocks);
-        for block in &mut self.blocks {
-            let inputs = block.inputs(heard, self.pushes.external());
-            block.columns.rates(t_s, &x[block.state.clone()], inputs, &mut dx[block.state.clone()]);
-        }
-        if let Some(slider) = &mut self.slider {
-            slider.add_sign_terms_inside(t_s, heard, self.pushes.external(), &mut self.blocks, (x, dx));
-        }
-    }
-
     /// The initial state.
     pub(crate) fn start(&self) -> Vec<f64> {
         self.start.clone()
@@ -388,106 +378,5 @@ impl<'a> ClosedLoop<'a> {
     /// Whether set-valued signs are set in continuous time.
     pub(crate) fn has_signs(&self) -> bool {
         self.slider.is_some()
-    }
-
-    /// Works out what acts on all agents from outside, for [`ClosedLoop::external_on`].
-    pub(crate) fn push(&mut self, t_s: f64, x: &[f64]) {
-        self.pushes.evaluate(t_s, x, &mut self.blocks);
-    }
-
-    /// What acts on an agent as it was worked out last; empty when it is never pushed.
-    pub(crate) fn external_on(&self, agent: usize) -> &[f64] {
-        self.pushes.external_on(agent)
-    }
-
-    /// Hands every agent's signals at one instant to `write`.
-    pub(crate) fn record(&mut self, t_s: f64, x: &[f64], heard: &Heard, mut write: impl FnMut(usize, &[f64])) {
-        let heard = self.sampling.as_ref().map_or(heard, Sampling::heard);
-        self.pushes.evaluate(t_s, x, &mut self.blocks);
-        if let Some(slider) = &mut self.slider {
-            slider.look(t_s, heard, self.pushes.external(), &mut self.blocks, x);
-        }
-        let (pushes, row) = (&self.pushes, &mut self.row);
-        let leads = self.driven.as_ref().map(|driven| driven.agent);
-        let (leader, axes) = (self.leader, self.axes);
-        for block in &mut self.blocks {
-            let inputs = block.inputs(heard, pushes.external());
-            let (columns, state) = (&mut block.columns, &x[block.state.clone()]);
-            columns.record(t_s, state, inputs, &mut |agent, values| {
-                let leader = leader.filter(|_| Some(agent) != leads);
-                match (pushes.external_on(agent), leader) {
-                    ([], None) => write(agent, values),
-                    (external, leader) => {
-                        row.clear();
-                        row.extend_from_slice(values);
-                        row.extend_from_slice(external);
-                        if let Some(Port { state, stride, .. }) = leader {
-                            // Positions are an agent's first values.
-                            let positions = values.iter().take(axes).enumerate();
-                            row.extend(positions.map(|(axis, q)| q - x[state + axis * stride]));
-                        }
-                        write(agent, row);
-                    }
-                }
-            });
-        }
-    }
-}
-
-impl DelaySystem for ClosedLoop<'_> {
-    fn rates(&mut self, t_s: f64, x: &[f64], heard: &Heard, dx: &mut [f64]) {
-        let heard = self.sampling.as_ref().map_or(heard, Sampling::heard);
-        self.pushes.evaluate(t_s, x, &mut self.blocks);
-        for block in &mut self.blocks {
-            let inputs = block.inputs(heard, self.pushes.external());
-            block.columns.rates(t_s, &x[block.state.clone()], inputs, &mut dx[block.state.clone()]);
-        }
-        if let Some(frictions) = &mut self.frictions {
-            frictions.hear(heard);
-        }
-        if let Some(slider) = &mut self.slider {
-            slider.hear(heard);
-            slider.add_sign_terms(t_s, self.pushes.external(), &mut self.blocks, x, dx);
-        }
-        if let (Some(driven), Some(port)) = (&mut self.driven, self.leader) {
-            driven.evaluated(t_s, &dx[port.state..]);
-        }
-    }
-
-    fn settle(&mut self, x: &mut [f64]) {
-        for block in &mut self.blocks {
-            block.columns.settle(&mut x[block.state.clone()]);
-        }
-    }
-
-    fn next_event_s(&self) -> f64 {
-        let sample_s = self.sampling.as_ref().map_or(f64::INFINITY, Sampling::next_s);
-        let set_s = self.slider.as_ref().map_or(f64::INFINITY, Slider::next_s);
-        let rubs_s = self.frictions.as_ref().map_or(f64::INFINITY, Frictions::next_s);
-        sample_s.min(self.pushes.next_event_s()).min(self.kink_s).min(set_s).min(rubs_s)
-    }
-
-    fn happen(&mut self, until_s: f64, x: &mut [f64]) -> Happened {
-        let mut happened = self.pushes.happen(until_s);
-        if self.kink_s <= until_s {
-            for block in &mut self.blocks {
-                block.columns.pass_kink(until_s, &mut x[block.state.clone()]);
-            }
-            self.kink_s = self.next_kink_s(until_s);
-            happened = Happened::Jumped;
-        }
-        if let Some(slider) = &mut self.slider {
-            if slider.next_s() <= until_s {
-                self.pushes.evaluate(until_s, x, &mut self.blocks);
-            }
-            happened = happened.max(slider.happen(until_s, self.pushes.external(), &mut self.blocks, x));
-        }
-        if let Some(sampling) = &mut self.sampling {
-            happened = happened.max(sampling.happen(until_s, &mut self.blocks, x));
-        }
-        match &mut self.frictions {
-            Some(frictions) => frictions.happen(until_s, happened, &mut self.pushes, &mut self.blocks, x),
-            None => happened,
-        }
     }
 }
