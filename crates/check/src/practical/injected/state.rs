@@ -1,14 +1,12 @@
 //! The law (6) of one agent at one instant, from a row of its run.
 
-use std::sync::Arc;
-
 use forwardstep_core::robot::TwoVelocity;
-use forwardstep_core::robot::tree::{Drives, Friction, Tree};
 use forwardstep_sim::recording::Signal;
 use forwardstep_sim::{AgentSetup, Evaluator, ProductsAt};
 use nalgebra::DVector;
 
 use super::super::rates::Gains;
+use crate::surroundings::smoothed_friction;
 
 /// Where signals stand in a row.
 #[derive(Clone, Copy)]
@@ -77,15 +75,10 @@ impl Law<'_> {
 
     /// sᵀF tanh(z/ε), W: what Y has in place of dry friction; zero where there is none.
     pub(super) fn smoothed_w(&self, state: &State) -> f64 {
-        let Some(tree) = self.agent.robot.kind.downcast::<Arc<Tree>>() else { return 0.0 };
-        let Drives { friction, dry_s: Some(_), .. } = tree.drives() else { return 0.0 };
-        let [_, at] = tree.drive_parameters();
-        let forces = self.agent.robot.theta.get(at).unwrap_or_default();
-        let joint = |(friction, force): (&Friction, &f64)| {
-            let Friction { joint, width } = *friction;
-            state.s[joint] * force * (state.z[joint] / width).tanh()
-        };
-        friction.iter().zip(forces).map(joint).sum()
+        match smoothed_friction(self.agent, &state.z) {
+            Some((rubs, false)) => rubs.iter().zip(state.s.iter()).map(|(rubs, s)| rubs * s).sum(),
+            Some((_, true)) | None => 0.0,
+        }
     }
 
     /// Y ϑ̂ − K s at a state, with `q` and `dq` for what is measured.
