@@ -95,7 +95,7 @@ pub(super) fn populations<'a>(source: &Source<'a>, folder: &mut InputFolder) -> 
             }
         }
         let (usual_law, kind) = document.robot(number, kinds)?;
-        let read = kind.read(folder).map_err(|stop| stop.at(&entry.value.robot.span))?;
+        let read = kind.read(folder).map_err(|stop| document.in_robot(number, stop))?;
         let law = match document.law(number, kinds)? {
             Some(law) => law,
             None => kinds.usual_law(usual_law).map_err(|fault| fault.at(&entry.value.robot.span))?,

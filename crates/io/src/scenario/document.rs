@@ -16,6 +16,7 @@ use super::file::ScenarioFile;
 use super::kinds::schedules::ScheduleKind;
 use super::kinds::{AgentReferenceTable, Kinds, LawKind, ReferenceKind, RobotKind};
 use super::problem::ScenarioProblem;
+use super::robots::Stop;
 use super::value_problem::ValueProblem;
 use crate::SourceText;
 
@@ -83,6 +84,14 @@ impl<'i> Document<'i> {
         match self.entry(entry).and_then(|entry| entry.get_ref().get("robot")) {
             Some(value) => kinds.robot(ValueDe { value, kinds }),
             None => Err(Fault::new(ValueProblem::MissingKey { key: "robot" })),
+        }
+    }
+
+    /// A problem of the robot of an entry of `[[agents]]`, with the place of the quantity that it is about.
+    pub(super) fn in_robot(&self, entry: usize, stop: Stop) -> Stop {
+        match (stop, self.entry(entry).and_then(|entry| entry.get_ref().get("robot"))) {
+            (Stop::Here(fault), Some(table)) => Stop::Here(fault.inside(table).at(&table.span())),
+            (stop, _) => stop,
         }
     }
 

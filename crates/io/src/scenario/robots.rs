@@ -1,6 +1,5 @@
 //! What reading a robot gives.
 
-use std::ops::Range;
 use std::rc::Rc;
 
 use forwardstep_core::robot::PlanarTip;
@@ -28,14 +27,6 @@ impl From<Fault> for Stop {
 }
 
 impl Stop {
-    /// Adds the place in the scenario unless a closer one is known.
-    pub(super) fn at(self, span: &Range<usize>) -> Self {
-        match self {
-            Stop::Here(fault) => Stop::Here(fault.at(span)),
-            Stop::Robot(error) => Stop::Robot(error),
-        }
-    }
-
     /// Names the scenario file.
     pub(super) fn in_file(self, source: &SourceText) -> ScenarioError {
         match self {

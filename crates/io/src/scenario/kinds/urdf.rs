@@ -3,18 +3,16 @@
 use std::sync::Arc;
 
 use forwardstep_core::robot::tree::Tree;
-use forwardstep_sim::quantity::{self, Path, QuantityError};
 use forwardstep_sim::{RobotSetup, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
     At, AxisValues, Body, Fault, InputFolder, RobotKind, RobotRead, RobotTable, Spread, StartReader, Stop, fault,
-    positive_or,
+    number_or,
 };
 use crate::SourceText;
 use crate::files::ReadError;
-use crate::scenario::fault::checked;
 use crate::scenario::problem::ScenarioProblem;
 use crate::scenario::values::{Named, NotNegativeEach, Positive};
 use crate::urdf::{self, FrictionPolicy, JointDrives, JointFriction, UrdfOptions, UrdfProblem};
@@ -86,37 +84,21 @@ const PERIOD_S: f64 = 1e-3;
 
 impl FrictionFile {
     /// The friction of a robot whose URDF states `stated`.
-    fn of(&self, stated: &[f64]) -> Result<Option<JointFriction>, Fault> {
+    fn of(&self, stated: &[f64]) -> Option<JointFriction> {
         let (coulomb, width, dry_s) = match self {
-            FrictionFile::Ignore => return Ok(None),
+            FrictionFile::Ignore => return None,
             FrictionFile::Dry(DryFile { coulomb, width, period_s }) => {
-                (coulomb, width, Some(positive_or("period_s", period_s, PERIOD_S)?))
+                (coulomb, width, Some(number_or(period_s, PERIOD_S)))
             }
             FrictionFile::Smooth(SmoothFile { coulomb, width }) => (coulomb, width, None),
         };
-        let coulomb = each("coulomb", coulomb, stated, quantity::not_negative)?;
-        let width = each("width", width, &vec![WIDTH; stated.len()], quantity::positive)?;
-        Ok(Some(JointFriction { coulomb, width, dry_s }))
+        Some(JointFriction { coulomb: each(coulomb, stated), width: each(width, &vec![WIDTH; stated.len()]), dry_s })
     }
 }
 
-/// One number for each axis, each of which meets `check`, or the usual ones.
-fn each(
-    key: &'static str,
-    file: &Option<At<AxisValues>>,
-    usual: &[f64],
-    check: fn(Path, &'static str, f64) -> Result<(), QuantityError>,
-) -> Result<Vec<f64>, Fault> {
-    let Some(place) = file else { return Ok(usual.to_vec()) };
-    let numbers = place.value.each(usual.len());
-    match &place.value {
-        AxisValues::All(number) => checked(place, check(Path::default(), key, *number))?,
-        AxisValues::Each(list) => {
-            checked(place, quantity::as_many("", key, &numbers, ("axes", usual.len())))?;
-            list.iter().try_for_each(|entry| checked(entry, check(Path::default(), key, entry.value)))?;
-        }
-    }
-    Ok(numbers)
+/// One number for each axis, or the usual ones.
+fn each(file: &Option<At<AxisValues>>, usual: &[f64]) -> Vec<f64> {
+    file.as_ref().map_or_else(|| usual.to_vec(), |place| place.value.each(usual.len()))
 }
 
 impl RobotKind for UrdfFile {
@@ -164,11 +146,8 @@ fn from_urdf(file: &UrdfFile, folder: &mut InputFolder) -> Result<RobotRead, Sto
     match urdf::read_urdf(&source, &options) {
         Ok(read) => {
             let none = vec![0.0; read.coulomb.len()];
-            let friction = file.friction.as_ref().map(|friction| friction.of(&read.coulomb)).transpose()?;
-            let drives = JointDrives {
-                armature: each("armature", &file.armature, &none, quantity::not_negative)?,
-                friction: friction.flatten(),
-            };
+            let friction = file.friction.as_ref().and_then(|friction| friction.of(&read.coulomb));
+            let drives = JointDrives { armature: each(&file.armature, &none), friction };
             let read = read.with_drives(&drives).map_err(Fault::from)?;
             let links = read.links.into_iter().zip(read.anchors).collect();
             Ok(RobotRead { robot: read.robot, notices: read.notices, body: Body { links, tip: None } })
