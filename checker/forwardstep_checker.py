@@ -1035,6 +1035,7 @@ def requirements(scenario):
         (lagrangian or tips, "uniform-inertia"),
         (any(not agent.tracks for agent in lagrangian) or tips, "bounded-dynamics"),
         (frictions(scenario), "smooth-friction"),
+        (any("bounds" in agent.gains for agent in lagrangian), "parameters-within-bounds"),
         (True, "applied-torque"),
         (control is not None, "continuous-time"),
         (control is not None and inexact(control), "exact-measurements"),
@@ -1045,8 +1046,7 @@ def requirements(scenario):
         tip, attitude, bounds = agent.law == "task_space", agent.law == "attitude", "bounds" in agent.gains
         own = [(tip, "regular-jacobian"), (attitude, "known-momentum"), (tip and agent.robot == "planar_arm", "target-within-reach"),
                (agent.target, "bounded-target"), (agent.target and attitude, "nonzero-quaternion"),
-               (tip and agent.robot == "urdf", "certain-regressor"), (tip and bounds, "lengths-within-bounds"),
-               (agent.law == "adaptive" and bounds, "parameters-within-bounds")]
+               (tip and agent.robot == "urdf", "certain-regressor"), (tip and bounds, "lengths-within-bounds")]
         found |= {(each, agent.name) for condition, each in own if condition}
     return found
 
@@ -1312,7 +1312,7 @@ def planar(body):
 
 # A share on either side of a parameter, or all from zero to twice a friction, holds it; bounds that are given have to.
 def bounds_hold(agent):
-    kind, body = choice(agent.gains["bounds"], "bounds")
+    kind, body = choice(agent.gains.get("bounds", {"within": 1}), "bounds")
     known(kind, ("within", "given"), "bounds")
     if kind == "within":
         return exact(body, "within") > 0
@@ -1389,7 +1389,7 @@ TEXT = {
     "known-momentum": lambda scenario, names: not any(a.pushes for a in scenario.agents if a.name in names),
     "set-valued-sign": lambda scenario, _: set_valued(scenario),
     "smooth-friction": lambda scenario, _: frictions(scenario) <= {"smooth"},
-    "parameters-within-bounds": lambda scenario, names: all(bounds_hold(a) for a in scenario.agents if a.name in names),
+    "parameters-within-bounds": lambda scenario, _: all(bounds_hold(a) for a in scenario.agents if a.law == "adaptive"),
     # Nothing sits on a tool: its place enters the Jacobian of the tip, and neither M nor C nor g.
     "certain-regressor": lambda scenario, names: all(a.gains["end_effector"].get("uncertain", "tool") == "tool"
                                                      for a in scenario.agents if a.name in names),

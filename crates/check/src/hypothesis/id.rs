@@ -155,7 +155,7 @@ table! {
     CertainRegressor, "certain-regressor", "own derivation", Source::Derived,
         "the regressor of … depends on nothing uncertain";
     ParametersWithinBounds, "parameters-within-bounds", "own derivation", Source::Derived,
-        "the true parameters of … lie within the bounds of their estimates";
+        "the true parameters lie within the bounds of their estimates";
     SmoothFriction, "smooth-friction", "own derivation", Source::Derived,
         "friction at the joints is a smooth function of their velocities";
     LengthsWithinBounds, "lengths-within-bounds", "own derivation", Source::Derived,

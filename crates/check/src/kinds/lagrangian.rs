@@ -39,7 +39,7 @@ impl KindCheck for LagrangianRobot {
         let roaming: Vec<usize> = agents.iter().copied().filter(|agent| !setup.tracks(*agent)).collect();
         let declared = from_outside.map(|agent| three_properties(setup, *agent));
         let inertia = uniform_inertia(setup, agents);
-        let bounds = agents.iter().filter_map(|agent| within_bounds(setup, *agent));
+        let bounds = within_bounds(setup, agents);
         let own = declared.chain(inertia).chain(bounded_dynamics(setup, &roaming)).chain([gains]).chain(bounds);
         own.chain(hurwitz(setup, agents)).collect()
     }
@@ -50,17 +50,22 @@ impl KindCheck for LagrangianRobot {
     }
 }
 
-/// That ϑ lies within the bounds that ϑ̂ is kept within, if there are some.
-fn within_bounds(setup: &Setup, index: usize) -> Option<Hypothesis> {
-    let robot = &setup.agents[index].robot;
-    let bounds = setup.agents[index].law.downcast::<Adaptive>()?.bounds.as_ref()?;
-    let ends = bounds.lower.iter().zip(&bounds.upper);
-    let outside = robot.theta.iter().zip(ends).position(|(own, (low, high))| !(low <= own && own <= high));
-    let evidence = outside.map_or(KindEvidence::ParametersInside, |k| KindEvidence::ParameterOutside {
-        name: robot.theta_names.get(k).cloned(),
-        value: robot.theta[k],
+/// That ϑ lies within the bounds that ϑ̂ is kept within, of all agents with such bounds.
+fn within_bounds(setup: &Setup, agents: &[usize]) -> Option<Hypothesis> {
+    let bounded = agents.iter().filter_map(|index| {
+        let bounds = setup.agents[*index].law.downcast::<Adaptive>()?.bounds.as_ref()?;
+        let ends = bounds.lower.iter().zip(&bounds.upper);
+        let theta = setup.agents[*index].robot.theta.iter();
+        Some((*index, theta.zip(ends).position(|(own, (low, high))| !(low <= own && own <= high))))
     });
-    Some(Hypothesis::about(Id::ParametersWithinBounds, Subject::Agent(Named::of(setup, index)), evidence))
+    let bounded: Vec<(usize, Option<usize>)> = bounded.collect();
+    let outside = bounded.iter().find_map(|(index, outside)| Some((*index, (*outside)?)));
+    let evidence = outside.map_or(KindEvidence::ParametersInside, |(index, k)| KindEvidence::ParameterOutside {
+        agent: Named::of(setup, index),
+        name: setup.agents[index].robot.theta_names.get(k).cloned(),
+        value: setup.agents[index].robot.theta[k],
+    });
+    (!bounded.is_empty()).then(|| Hypothesis::new(Id::ParametersWithinBounds, evidence))
 }
 
 /// Whether (6)–(7), or (6) with known parameters, controls the agent.

@@ -49,7 +49,8 @@ impl KindCheck for TaskSpaceRobot {
             let of = || Subject::Agent(Named::of(setup, *index));
             hypotheses.extend(reach.map(|evidence| Hypothesis::about(Id::TargetWithinReach, of(), evidence)));
             hypotheses.extend(uncertain(agent, law).map(|evidence| about(Id::CertainRegressor, evidence)));
-            hypotheses.extend(within_bounds(agent, law).map(|evidence| about(Id::LengthsWithinBounds, evidence)));
+            hypotheses
+                .extend(within_bounds(setup, *index, law).map(|evidence| about(Id::LengthsWithinBounds, evidence)));
         }
         hypotheses
     }
@@ -125,7 +126,8 @@ fn gains(setup: &Setup, agents: &[usize]) -> KindEvidence {
     })
 }
 
-fn within_bounds(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<KindEvidence> {
+fn within_bounds(setup: &Setup, index: usize, law: &TaskSpaceLaw) -> Option<KindEvidence> {
+    let agent = &setup.agents[index];
     let bounds = law.bounds.as_ref()?;
     let theta = law.tip.parameters(&*agent.robot.kind)?;
     let inside = |k: usize| match (bounds.lower.get(k), bounds.upper.get(k)) {
@@ -134,6 +136,7 @@ fn within_bounds(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<KindEvidence>
     };
     let outside = (0..theta.len()).find(|k| !inside(*k));
     Some(outside.map_or(KindEvidence::ParametersInside, |k| KindEvidence::ParameterOutside {
+        agent: Named::of(setup, index),
         name: law.kinematic_names.get(k).cloned(),
         value: theta[k],
     }))

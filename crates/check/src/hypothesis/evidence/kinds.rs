@@ -148,6 +148,8 @@ pub enum KindEvidence {
     ParametersInside,
     /// One does not.
     ParameterOutside {
+        /// Whose it is.
+        agent: Named,
         /// Its name, if it has one.
         name: Option<String>,
         /// Its value, in its unit.

@@ -99,8 +99,8 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
             format!("{} does not adapt its lengths, which are not the true ones", agent.name)
         }
         KindEvidence::ParametersInside => "they do, so projection only speeds the proof up".into(),
-        KindEvidence::ParameterOutside { name, value } => {
-            format!("{} is {value}, which is outside", name.as_deref().unwrap_or("one"))
+        KindEvidence::ParameterOutside { agent, name, value } => {
+            format!("{} of {} is {value}, which is outside", name.as_deref().unwrap_or("one"), agent.name)
         }
         KindEvidence::Momentum([x, y, z]) => {
             format!("h_I = [{x:.4}, {y:.4}, {z:.4}] N m s by the start, and nothing acts from outside")
