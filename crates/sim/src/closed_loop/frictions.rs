@@ -118,13 +118,16 @@ impl Frictions {
         }
         let h_s = self.next_s() - now_s;
         pushes.evaluate(now_s, x, blocks);
-        for block in blocks.iter_mut() {
-            let (inputs, rates) = (block.inputs(&self.heard, pushes.external()), &mut self.rates[block.state.clone()]);
-            block.columns.rates(now_s, &x[block.state.clone()], inputs, rates);
-        }
+        // Agents that follow one another mostly share a block.
+        let mut evaluated = None;
         for rubbed in &mut self.each {
             let Rubbed { agent, block, tree, theta, stick, velocities, q, dq, ddq } = rubbed;
-            let Block { columns, state, .. } = &mut blocks[*block];
+            let Some(own) = blocks.get_mut(*block) else { continue };
+            if evaluated.replace(*block) != Some(*block) {
+                let (inputs, rates) = (own.inputs(&self.heard, pushes.external()), &mut self.rates[own.state.clone()]);
+                own.columns.rates(now_s, &x[own.state.clone()], inputs, rates);
+            }
+            let Block { columns, state, .. } = own;
             columns.motion(*agent, now_s, &x[state.clone()], q, dq);
             for (ddq, at) in ddq.iter_mut().zip(velocities) {
                 *ddq = self.rates[state.start + *at];
