@@ -22,7 +22,8 @@
 //!
 //! With λ > 0 (Remark 4) Ḃᵢ gains λ sᵢ, so Q moves by Σᵢ uᵢ (λᵢ/α₀) ∫ sᵢ dt: in general only the run knows by how much, see
 //! `manipulation` for where it is known before. With λ = 0 no push moves Q, since no torque enters Bᵢ and Wᵢ.
-//! A push that never ends leaves sᵢ = K⁻¹τ_ext and zᵢ = −sᵢ, and where z is in Bᵢ and Wᵢ the network then rests elsewhere.
+//! A push that never ends leaves sᵢ = K⁻¹τ_ext and zᵢ = −sᵢ, and where z is in Bᵢ and Wᵢ the network then rests elsewhere. So does dry
+//! friction, which may hold a joint while z is not zero.
 
 use forwardstep_core::reference::polynomial;
 use forwardstep_sim::graph::Edge;
@@ -34,6 +35,7 @@ use crate::conserved::Conserved;
 use crate::fixed::{NotFixed, fixed};
 use crate::kinds::is_lagrangian;
 use crate::null_vector::{NoNullVector, NullVector, null_vector};
+use crate::surroundings::dry_loss_w;
 
 /// The value that all agents will agree on.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,6 +87,12 @@ pub enum NoPrediction {
     /// Its tracking error does not vanish, and takes part in what is conserved.
     #[error("agent number {} is pushed for ever", agent + 1)]
     PushedForEver {
+        /// Index of the agent.
+        agent: usize,
+    },
+    /// Its tracking error need not vanish either.
+    #[error("the joints of agent number {} have dry friction, which keeps its tracking error from vanishing", agent + 1)]
+    DryFriction {
         /// Index of the agent.
         agent: usize,
     },
@@ -176,6 +184,9 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     let counts = |agent: &usize| setup.reference.is::<Consensus>() && influence[*agent] > 0.0;
     if let Some(agent) = (0..n).filter(counts).find(|agent| pushed_for_ever(&setup.agents[*agent])) {
         return Err(NoPrediction::PushedForEver { agent });
+    }
+    if let Some(agent) = (0..n).filter(counts).find(|agent| dry_loss_w(&setup.agents[*agent]).is_some()) {
+        return Err(NoPrediction::DryFriction { agent });
     }
     if let Some(agent) = setup.agents.iter().position(|agent| agent.roots_per_s.all_real().is_none()) {
         return Err(NoPrediction::ComplexRoots { agent });

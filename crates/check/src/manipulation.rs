@@ -4,17 +4,19 @@
 //! parameters M ṡ + C s + (K + D) s = τ_ext, and ∫ s follows in two cases:
 //!
 //! ```text
-//! nothing pushes and s(0) = 0        s ≡ 0, whatever the robot
+//! nothing acts and s(0) = 0          s ≡ 0, whatever the robot
 //! a point mass, s → 0                K ∫ s dt = ∫ τ_ext dt + m s(0),  since M = m 1 and C = D = 0
 //! ```
 //!
 //! The second is what Remark 4 wants: a push moves the agreement by as much as its impulse says, and λ = 0 makes it not move
-//! at all. A hand gives a torque that only the run knows.
+//! at all. A hand and dry friction give torques that only the run knows.
 
 use forwardstep_core::Gain;
 use forwardstep_core::robot::PointMass;
 use forwardstep_sim::push::{Between, Course, Effect, Function, Push, Table};
 use forwardstep_sim::{AgentSetup, Known};
+
+use crate::surroundings::dry_loss_w;
 
 /// ∫ s dt over all time on one axis, if it is known before the run. `z_0` is z(0).
 pub(crate) fn error_integral(agent: &AgentSetup, axis: usize, z_0: f64) -> Option<f64> {
@@ -23,7 +25,7 @@ pub(crate) fn error_integral(agent: &AgentSetup, axis: usize, z_0: f64) -> Optio
         return None;
     }
     let s_0 = agent.start.dq[axis] - z_0;
-    if agent.pushes.is_empty() && follows(agent) {
+    if agent.pushes.is_empty() && dry_loss_w(agent).is_none() && follows(agent) {
         return Some(0.0);
     }
     let (true, [mass]) = (agent.robot.kind.is::<PointMass>(), agent.robot.theta.as_slice()) else { return None };

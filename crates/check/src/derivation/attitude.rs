@@ -125,7 +125,7 @@ pub(super) fn explained(case: &Case<'_>, gains: &[BigRational; 2]) -> Explained 
         controller,
         cascade,
         reduction,
-        Section::new(Subject::Convergence).words(words::of_s(&case.step)).words(
+        Section::new(Subject::Convergence).words(words::of_s(case)).words(
             "Then Δω̇ = −α₂ Δω − α₁ Δq_v is what is left, for which ½ ΔωᵀΔω + 2 α₁ (1 − Δq_o) falls: Δω → 0 and Δq_v → 0.",
         ),
     ];

@@ -255,8 +255,13 @@ impl Case<'_> {
             (false, true) => Some(Rubbing::Smooth),
             (false, false) => None,
         };
-        let pushed = dry || agents().any(|agent| !agent.pushes.is_empty());
+        let pushed = dry || self.is_pushed();
         Outside { damped: agents().any(is_damped), pushed, rubbing }
+    }
+
+    /// Whether something pushes its agents; friction is none.
+    pub fn is_pushed(&self) -> bool {
+        self.agents.iter().any(|agent| !self.setup.agents[*agent].pushes.is_empty())
     }
 
     /// Whether estimates of ϑ are kept within bounds.

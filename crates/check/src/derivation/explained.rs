@@ -11,7 +11,7 @@ use super::dynamics::{Dynamics, Measured, Smooth, backstepping, consensus, decla
 use super::explanation::{Explained, Section, Subject};
 use super::form::{Combination, Form, Letter, Links, Quantity};
 use super::formula::{Formula, Sign, Symbol};
-use super::lower::{self, ChainError, Lower};
+use super::lower::{self, ChainError, Lower, Rubbing};
 use super::notation::Notation;
 use super::places::Places;
 use super::polynomial::Polynomial;
@@ -143,7 +143,7 @@ impl Case<'_> {
         ];
         sections.extend(reduction);
         sections.extend(self.laplacian(&upper, &notation, &places));
-        let conclusion = Section::new(Subject::Convergence).words(words::of_s(&self.step));
+        let conclusion = Section::new(Subject::Convergence).words(words::of_s(self));
         sections.push(conclusion.words(words::of_all(self, left, upper.input)));
         let order = Some(dynamics.total_order());
         Explained { agents: self.agents.clone(), order, degrees: Some(degrees), sections }
@@ -264,7 +264,11 @@ impl Case<'_> {
         let input = Quantity::own(Letter::Term(lower.input));
         let law = Formula::equal(notation.quantity(input, 0), notation.form(&lower.law));
         let motion = lower.motion(notation);
-        let section = section.formula(motion, places.plant).formula(law, places.law);
+        let mut section = section.formula(motion, places.plant).formula(law, places.law);
+        if self.outside().rubbing == Some(Rubbing::Dry) {
+            section =
+                section.words("τ_ext holds the dry friction −F σ, where σ is a value of the set-valued sign of q̇.");
+        }
         super::adaptation::of(self, notation)
             .into_iter()
             .fold(section, |section, (formula, place)| section.formula(formula, place))

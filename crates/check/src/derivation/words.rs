@@ -1,5 +1,6 @@
 //! Sentences of explanations.
 
+use forwardstep_core::robot::tree::SMOOTHING_LOSS;
 use forwardstep_sim::Setup;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::FollowingDesign;
@@ -8,6 +9,7 @@ use num_traits::Zero;
 use super::case::{Case, Led, Step, ThrustStep};
 use super::form::Letter;
 use super::formula::At;
+use super::lower::Rubbing;
 
 /// `1st`, `2nd`, ….
 pub(super) fn ordinal(n: usize) -> String {
@@ -73,15 +75,10 @@ pub(super) fn links(setup: &Setup, heard: At) -> String {
 }
 
 /// What the law makes of s.
-pub(super) fn of_s(step: &Step) -> String {
-    match step {
-        Step::Robot { known: false } | Step::TaskSpace(_) => {
-            "V = ½ sᵀM s + ½ ΔϑᵀΓ⁻¹Δϑ has V̇ = −sᵀK s whatever z does, since Ṁ − 2C is skew-symmetric. So s is bounded and \
-             square-integrable, and ϑ̂ is bounded."
-        }
-        Step::Robot { known: true } => {
-            "V = ½ sᵀM s has V̇ = −sᵀK s whatever z does, since Ṁ − 2C is skew-symmetric. So s is bounded and square-integrable."
-        }
+pub(super) fn of_s(case: &Case<'_>) -> String {
+    match &case.step {
+        Step::Robot { known } => return robot(case, *known),
+        Step::TaskSpace(_) => return robot(case, false),
         Step::PositionOnly(_) => {
             "V = ½ m sᵀs + (k/2λ_f) yᵀy + Δm²/(2γ*) has V̇ = −k yᵀy whatever z does. So s, y and m̂ are bounded, and y is \
              square-integrable."
@@ -102,6 +99,36 @@ pub(super) fn of_s(step: &Step) -> String {
         Step::Outside(_) => "",
     }
     .into()
+}
+
+/// What (6)–(7), or known parameters, make of V, and what it loses or gains beside the terms of the paper.
+fn robot(case: &Case<'_>, known: bool) -> String {
+    let outside = case.outside();
+    let v = if known { "½ sᵀM s" } else { "½ sᵀM s + ½ ΔϑᵀΓ⁻¹Δϑ" };
+    let lost = if outside.damped { "sᵀ(K + D)s" } else { "sᵀK s" };
+    let skew = "since Ṁ − 2C is skew-symmetric";
+    let vanishing = "So s is bounded and square-integrable";
+    let (balance, because, so) = match outside.rubbing {
+        None => (format!("V̇ = −{lost}"), String::new(), vanishing),
+        Some(Rubbing::Smooth) => {
+            (format!("V̇ = −{lost} − sᵀF[tanh(ε⁻¹q̇) − tanh(ε⁻¹z)] ≤ −{lost}"), " and tanh rises".to_owned(), vanishing)
+        }
+        Some(Rubbing::Dry) => (
+            format!("V̇ ≤ −{lost} + {SMOOTHING_LOSS:.4} Σ ε F"),
+            format!(
+                ", and s (σ − tanh(ε⁻¹z)) ≥ −{SMOOTHING_LOSS:.4} ε for every σ of Sgn(q̇), whether a joint slides or sticks"
+            ),
+            "So s is small in the mean over a long time, and need not vanish",
+        ),
+    };
+    let estimates = match (known, outside.rubbing) {
+        (true, _) => "",
+        (false, Some(Rubbing::Dry)) if case.is_bounded() => ", and ϑ̂ stays within its bounds",
+        (false, Some(Rubbing::Dry)) => ", and nothing keeps ϑ̂ from drifting",
+        (false, _) => ", and ϑ̂ is bounded",
+    };
+    let pushed = if case.is_pushed() { " While something pushes, its power sᵀτ_ext comes beside that." } else { "" };
+    format!("V = {v} has {balance} whatever z does, {skew}{because}. {so}{estimates}.{pushed}")
 }
 
 fn chain(kind: super::case::ChainStepKind) -> String {
@@ -148,6 +175,10 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
             "So the variables of the upper subsystem are bounded, and s vanishes"
         }
     };
+    let bounded = match case.outside().rubbing {
+        Some(Rubbing::Dry) => return format!("{enters} {}", with_dry_friction(case)),
+        Some(Rubbing::Smooth) | None => bounded,
+    };
     let then = match &case.led {
         Led::Consensus(_) | Led::PureIntegral(_) if case.roots.all_real().is_none() => "Without that, what is left is linear, but no chain of \
              averages, since not all roots are real: the theorem does not say that agents agree, and over graphs that switch they may not."
@@ -181,4 +212,20 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
          hand."
     };
     format!("{enters} {then}{moved}")
+}
+
+/// What is left where s need not vanish.
+fn with_dry_friction(case: &Case<'_>) -> String {
+    let undisturbed = match &case.led {
+        Led::Consensus(_) | Led::PureIntegral(_) => "all agents would come together",
+        Led::Leader(..) => "all agents would reach the leader",
+        Led::Target => "the distance from the target would vanish",
+        Led::Backstepping | Led::Outside(..) | Led::Refuted(..) => {
+            "the reference dynamics would do what is said of them"
+        }
+    };
+    format!(
+        "Without that, {undisturbed}. Since s need not vanish, differences in proportion to it stay: the theorem does not cover this, and \
+         `forwardstep check` says how large s stays."
+    )
 }

@@ -47,6 +47,7 @@ use crate::null_vector::null_vector;
 use crate::prediction::roots::characteristic::{C, Characteristic};
 use crate::prediction::roots::network;
 use crate::prediction::{NoIdeal, NoRate, ideal, rate};
+use crate::surroundings::dry_loss_w;
 
 /// The transfer from a torque on one axis of one agent to the value agreed upon on this axis, with every agent at its start at rest.
 #[derive(Debug)]
@@ -98,6 +99,15 @@ pub enum NoManipulability {
     /// Held inputs have another one.
     #[error("the controllers sample, and the transfer is that of continuous control; leave `control` out")]
     Sampled,
+    /// A joint that sticks does not move at all.
+    #[error(
+        "the joints of agent number {} have dry friction and stick at rest, so that no transfer describes them; `friction.smooth` has one",
+        agent + 1
+    )]
+    DryFriction {
+        /// Index of the agent.
+        agent: usize,
+    },
     /// There is no such axis.
     #[error("there is no axis {} of agent number {}", axis + 1, agent + 1)]
     NoSuchAxis {
@@ -130,6 +140,9 @@ impl Manipulability {
         let own = own.ok_or(NoManipulability::NoSuchAxis { agent, axis })?;
         if setup.control.is_some() {
             return Err(NoManipulability::Sampled);
+        }
+        if let Some(agent) = setup.agents.iter().position(|agent| dry_loss_w(agent).is_some()) {
+            return Err(NoManipulability::DryFriction { agent });
         }
         let system = network(&ideal(setup)?)?;
         let influence = influence(setup)?;

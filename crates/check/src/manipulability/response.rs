@@ -10,6 +10,9 @@ use crate::prediction::roots::characteristic::C;
 /// Of the largest eigenvalue of Y Γ Yᵀ: smaller ones are rounding.
 const RANK: f64 = 1e-10;
 
+/// rad/s or m/s: so slow that the friction tanh(q̇/ε) of any width is linear, and a power of two, so that D is exact.
+const SLOW: f64 = 1.0 / (1_u64 << 40) as f64;
+
 /// M, K + D and Y Γ Yᵀ of one agent.
 #[derive(Debug)]
 pub(super) struct Response {
@@ -32,7 +35,7 @@ impl Response {
                 &y * gamma * y.transpose()
             },
         );
-        Some(Response { mass, damping: gains.damping + viscous(agent, &regressor)?, learning })
+        Some(Response { mass, damping: gains.damping + viscous(agent)?, learning })
     }
 
     /// [s₀, s₁] of s = s₀ + s₁ p + O(p²), for a torque on `axis` and s on the same; s₁ only where s₀ is zero, since it never counts
@@ -72,18 +75,18 @@ impl Response {
     }
 }
 
-/// D: what Y(q, 0, z, 0) ϑ has beside gravity, column by column, since C(q, 0) = 0.
-fn viscous(agent: &AgentSetup, at_rest: &[f64]) -> Option<DMatrix<f64>> {
-    let (m, theta) = (agent.robot.axes.len(), DVector::from_column_slice(&agent.robot.theta));
-    let product = |y: &[f64]| DMatrix::from_row_slice(m, theta.len(), y) * &theta;
-    let (zero, gravity) = (vec![0.0; m], product(at_rest));
+/// D and, where friction is smooth, F/ε: what is lost at rest per speed, column by column.
+fn viscous(agent: &AgentSetup) -> Option<DMatrix<f64>> {
+    let m = agent.robot.axes.len();
+    let zero = vec![0.0; m];
+    let mut evaluator = agent.robot.kind.lagrangian()?.evaluator();
     let mut damping = DMatrix::zeros(m, m);
     for axis in 0..m {
-        let mut z = zero.clone();
-        z[axis] = 1.0;
-        let motion = TwoVelocity { q: &agent.start.q, dq: &zero, z: &z, dz: &zero };
-        let y = agent.robot.kind.lagrangian()?.dynamics_at(&agent.robot.theta, motion).ok()?.regressor;
-        damping.set_column(axis, &(product(&y) - &gravity));
+        let mut slow = zero.clone();
+        slow[axis] = SLOW;
+        let motion = TwoVelocity { q: &agent.start.q, dq: &slow, z: &zero, dz: &zero };
+        let lost = &evaluator.at(&agent.robot.theta, motion, &slow).ok()?.damped;
+        damping.set_column(axis, &(DVector::from_column_slice(lost) / SLOW));
     }
     Some(damping)
 }

@@ -8,6 +8,7 @@ use forwardstep_sim::{
 use thiserror::Error;
 
 use crate::kinds::is_lagrangian;
+use crate::surroundings::dry_loss_w;
 
 /// One input of an agent, of which jumps are reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +41,12 @@ pub enum NotCovered {
         /// What leads it.
         reference: &'static str,
     },
+    /// Dry friction jumps at instants of its own.
+    #[error(
+        "its joints have dry friction, which jumps whenever a joint turns round or sticks, and dτ/dt with it: what the network does is not \
+         all that jumps; `friction.smooth` shows what the design does"
+    )]
+    DryFriction,
     /// No derivative of its input depends on what is heard.
     #[error("no derivative of its input depends on what it hears")]
     Deaf,
@@ -52,6 +59,9 @@ pub(super) const MOST: usize = size_of::<Series>() / size_of::<f64>();
 pub(super) fn refused(setup: &Setup, agent: usize) -> Option<NotCovered> {
     if setup.tracks(agent) {
         return Some(NotCovered::OwnTarget);
+    }
+    if dry_loss_w(&setup.agents[agent]).is_some() {
+        return Some(NotCovered::DryFriction);
     }
     let sign = setup.reference.interface().family == ReferenceFamily::Leader;
     sign.then(|| NotCovered::Sign { reference: setup.reference.words().name })

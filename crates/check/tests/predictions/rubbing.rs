@@ -3,7 +3,12 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use forwardstep_check::{Finding, Injection, InjectionBalance, InjectionWatch, PowerBound, along};
+use forwardstep_check::derivation::{Line, Subject, explain};
+use forwardstep_check::manipulability::{Manipulability, NoManipulability, Trial, measure};
+use forwardstep_check::smoothness::{NoSmoothness, NotCovered, smoothness};
+use forwardstep_check::{
+    Finding, Injection, InjectionBalance, InjectionWatch, NoPrediction, PowerBound, along, predict,
+};
 use forwardstep_core::Gain;
 use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::robot::tree::{
@@ -11,7 +16,8 @@ use forwardstep_core::robot::tree::{
 };
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
-use forwardstep_sim::{Adaptive, AgentSetup, Axis, AxisUnit, Network, RobotSetup, Setup, simulate_watched};
+use forwardstep_sim::reference::PureIntegral;
+use forwardstep_sim::{Adaptive, AgentSetup, Axis, AxisUnit, Known, Network, RobotSetup, Setup, simulate_watched};
 
 use super::common::run;
 use super::course::predicted;
@@ -179,4 +185,85 @@ fn prop_what_dry_friction_puts_into_v_counts_by_itself_and_not_as_pushed() {
     let terms = |balance: &InjectionBalance| [Injection::Rubbed, Injection::Pushed].map(|of| balance.term_j(of));
     assert!(terms(&pushed[0])[1] == 0.0 && terms(&pushed[1])[1] > 0.05, "{pushed:?}");
     assert!(pushed.iter().all(|balance| terms(balance)[0] < most_j), "{pushed:?}");
+}
+
+#[test]
+fn what_needs_an_s_that_vanishes_is_refused_where_joints_rub_dryly() {
+    let (dry, smooth) = (arms(PLANAR, 2, Some(1e-3), 0.0), arms(PLANAR, 2, None, 0.0));
+    assert_eq!(predict(&dry), Err(NoPrediction::DryFriction { agent: 0 }));
+    assert!(predict(&smooth).is_ok());
+    let transfer = |setup: &Setup| Manipulability::of(setup, 1, 0).err();
+    assert_eq!((transfer(&dry), transfer(&smooth)), (Some(NoManipulability::DryFriction { agent: 0 }), None));
+    let jumps = |setup: &Setup| smoothness(setup, &mut |_| ControlFlow::Continue(())).err();
+    let refused = Some(NoSmoothness::NoAgent { name: "arm-0".into(), reason: NotCovered::DryFriction });
+    assert_eq!((jumps(&dry), jumps(&smooth)), (refused, None));
+    // (3) and (23) conserve nothing that friction moves, but for the manipulability gain, which lets s do so.
+    let integral = |dry_s, lambda| {
+        let mut setup = arms(PLANAR, 2, dry_s, 0.0);
+        setup.reference = Arc::new(PureIntegral);
+        for agent in &mut setup.agents {
+            agent.law = Arc::new(Known { damping: Gain::Number(30.0) });
+            agent.manipulability = lambda;
+        }
+        predict(&setup)
+    };
+    assert!(integral(Some(1e-3), 0.0).is_ok() && integral(None, 0.5).is_ok());
+    assert_eq!(integral(Some(1e-3), 0.5), Err(NoPrediction::Manipulability { agent: 0 }));
+}
+
+#[test]
+fn eq_31_smooth_friction_damps_a_slow_push_by_f_over_its_width() {
+    let gain = |width: f64| {
+        let mut setup = arms(PLANAR, 2, None, 0.0);
+        let law = Arc::new(Known { damping: Gain::Number(30.0) });
+        for agent in &mut setup.agents {
+            agent.law = law.clone();
+            let tree = Tree::clone(agent.robot.kind.downcast::<Arc<Tree>>().unwrap());
+            let friction = (0..2).map(|joint| Friction { joint, width }).collect();
+            agent.robot.kind = Arc::new(Arc::new(tree.with_drives(Drives { friction, ..Drives::default() }).unwrap()));
+        }
+        let theory = Manipulability::of(&setup, 0, 1).unwrap().low_frequency();
+        let trial = Trial { agent: 0, axis: 1, torque: 0.01, for_s: 1.0 };
+        let measured = measure(&setup, trial, &mut |_| ControlFlow::Continue(())).unwrap();
+        assert!((measured.by_constant / theory.by_constant() - 1.0).abs() < 1e-3, "{measured:?} {theory:?}");
+        theory.gain
+    };
+    // (K + D + F/ε)⁻¹ with D = 0.1.
+    let ratio = gain(0.05) / gain(0.1);
+    assert!((ratio - (30.1 + FRICTION / 0.1) / (30.1 + FRICTION / 0.05)).abs() < 1e-9, "{ratio}");
+}
+
+/// The words of a section of what is explained of the first design.
+fn explained(setup: &Setup, subject: Subject) -> String {
+    let design = explain(setup).designs.swap_remove(0);
+    let section = design.sections.into_iter().find(|section| section.subject == subject).unwrap();
+    let words = section.lines.into_iter().filter_map(|line| match line {
+        Line::Words(words) => Some(words),
+        Line::Formula(..) => None,
+    });
+    words.collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn why_a_loop_converges_says_what_friction_and_pushes_bring_into_v() {
+    let words = |setup: &Setup| explained(setup, Subject::Convergence);
+    let smooth = words(&arms(PLANAR, 2, None, 0.0));
+    assert!(smooth.contains("V̇ = −sᵀ(K + D)s − sᵀF[tanh(ε⁻¹q̇) − tanh(ε⁻¹z)] ≤ −sᵀ(K + D)s"), "{smooth}");
+    assert!(smooth.contains("tanh rises") && smooth.contains("s is bounded and square-integrable"), "{smooth}");
+    assert!(smooth.contains("q_i − q_j → 0") && !smooth.contains("τ_ext"), "{smooth}");
+    let mut setup = arms(PLANAR, 2, Some(1e-3), 0.0);
+    let dry = words(&setup);
+    assert!(dry.contains("V̇ ≤ −sᵀ(K + D)s + 0.2785 Σ ε F") && dry.contains("need not vanish"), "{dry}");
+    assert!(dry.contains("ϑ̂ stays within its bounds"), "{dry}");
+    assert!(!dry.contains("square-integrable") && !dry.contains("→ 0") && !dry.contains("τ_ext"), "{dry}");
+    assert!(explained(&setup, Subject::Controller).contains("τ_ext holds the dry friction"));
+    assert_eq!(explained(&arms(PLANAR, 2, None, 0.0), Subject::Controller), "");
+    let effect = Effect::Torque(Course::Each(vec![Function::Constant(3.0), sine(2.0, 5.0)]));
+    setup.agents[1].pushes = vec![Push { effect, from_s: 1.0, until_s: 4.0 }];
+    let mut law = setup.agents[0].law.downcast::<Adaptive>().unwrap().clone();
+    law.bounds = None;
+    let law = Arc::new(law);
+    setup.agents.iter_mut().for_each(|agent| agent.law = law.clone());
+    let pushed = words(&setup);
+    assert!(pushed.contains("its power sᵀτ_ext") && pushed.contains("nothing keeps ϑ̂ from drifting"), "{pushed}");
 }
