@@ -10,9 +10,17 @@ use crate::hypothesis::{Hypothesis, Id, Inexact, Limited, LoopEvidence, Named};
 use crate::kinds::is_lagrangian;
 use crate::links::messages_in_time;
 
+/// What every theorem asks of what surrounds its law.
+pub(crate) fn surroundings(setup: &Setup) -> Vec<Hypothesis> {
+    let mut hypotheses: Vec<Hypothesis> = pushes_end(setup).into_iter().chain([applied_torque(setup)]).collect();
+    hypotheses.extend(friction(setup));
+    hypotheses.extend(digital(setup));
+    hypotheses
+}
+
 /// τ_ext feeds V by sᵀτ_ext, and what else acts by a factor that V bounds. What ends leaves V finite, and from then on everything
 /// is as without it.
-pub(crate) fn pushes_end(setup: &Setup) -> Option<Hypothesis> {
+fn pushes_end(setup: &Setup) -> Option<Hypothesis> {
     let pushed = |some: fn(&AgentSetup, &Push) -> bool| -> Vec<Named> {
         let agents = setup.agents.iter().enumerate();
         let those = agents.filter(|(_, agent)| agent.pushes.iter().any(|push| acts(push) && some(agent, push)));
@@ -44,7 +52,7 @@ fn endless(push: &Push) -> bool {
 }
 
 /// What keeps the torque from being what the law asks for.
-pub(crate) fn applied_torque(setup: &Setup) -> Hypothesis {
+fn applied_torque(setup: &Setup) -> Hypothesis {
     let enforced: Vec<usize> = (0..setup.agents.len()).filter(|agent| setup.agents[*agent].enforce_limits).collect();
     let limited = setup.control.as_ref().map_or_else(Vec::new, |control| {
         let actuators = &control.actuators;
@@ -60,7 +68,7 @@ pub(crate) fn applied_torque(setup: &Setup) -> Hypothesis {
 }
 
 /// Friction at the joints of trees: what is smooth damps, of what is dry V gains at most κ Σ ε F.
-pub(crate) fn friction(setup: &Setup) -> Option<Hypothesis> {
+fn friction(setup: &Setup) -> Option<Hypothesis> {
     let rubbing = |index: &usize| drives(&setup.agents[*index]).is_some_and(|drives| !drives.friction.is_empty());
     let those: Vec<usize> = (0..setup.agents.len()).filter(rubbing).collect();
     let dry: Vec<usize> = those.iter().copied().filter(|index| dry_loss_w(&setup.agents[*index]).is_some()).collect();
@@ -96,7 +104,7 @@ pub(crate) fn dry_loss_w(agent: &AgentSetup) -> Option<f64> {
 }
 
 /// Under digital control: the theorems speak of continuous time and of exact measurements.
-pub(crate) fn digital(setup: &Setup) -> Vec<Hypothesis> {
+fn digital(setup: &Setup) -> Vec<Hypothesis> {
     let Some(control) = &setup.control else { return Vec::new() };
     let sensors = &control.sensors;
     let filtered = match sensors.velocity {

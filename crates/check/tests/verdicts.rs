@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
+#[path = "verdicts/asked.rs"]
+mod asked;
 mod common;
 #[path = "verdicts/complex_roots.rs"]
 mod complex_roots;

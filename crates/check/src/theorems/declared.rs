@@ -4,15 +4,12 @@ use forwardstep_sim::Setup;
 use forwardstep_sim::probe::probe_reference;
 use forwardstep_sim::system::{Declaration, DeclaredClaim};
 
-use super::own_targets;
 use super::theorem_3::complex_roots;
 use crate::graphs::dwell_time;
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, Subject};
 use crate::kinds::declaration;
-use crate::laws;
 use crate::links::{bounded_delays, bounded_weights};
 use crate::report::Report;
-use crate::surroundings::{applied_torque, digital, friction, pushes_end};
 use crate::theorem::Theorem;
 
 /// What the author promises, with what the network and the laws add to it.
@@ -31,11 +28,5 @@ pub(super) fn check(setup: &Setup) -> Report {
     hypotheses.extend(bounded_weights(setup));
     // Their author knows of roots −κ.
     hypotheses.extend(complex_roots(setup));
-    hypotheses.extend(pushes_end(setup));
-    hypotheses.extend(own_targets::bounded(setup));
-    hypotheses.extend(laws::hypotheses(setup));
-    hypotheses.push(applied_torque(setup));
-    hypotheses.extend(friction(setup));
-    hypotheses.extend(digital(setup));
     Report { theorem: Theorem::Declared(source), promises, hypotheses }
 }

@@ -3,15 +3,13 @@
 use forwardstep_sim::Setup;
 use forwardstep_sim::leader::{Following, FollowingDesign};
 
-use super::own_targets::{self, how_far};
+use super::own_targets::how_far;
 use super::swarm;
 use crate::graphs::{fixed_graph, leader_reaches_all};
 use crate::hypothesis::{FollowingEvidence, Hypothesis, Id, MotionEvidence, ReferenceEvidence, Subject};
 use crate::kinds::starts_from_zero;
-use crate::laws;
 use crate::links::{bounded_weights, constant_weights, no_delay};
 use crate::report::Report;
-use crate::surroundings::{applied_torque, digital, friction, pushes_end};
 use crate::theorem::Theorem;
 
 /// Times at which a leader is looked at whose bounds could not be shown.
@@ -49,13 +47,7 @@ pub(super) fn check(setup: &Setup, following: &Following) -> Report {
     }
     hypotheses.extend(bounded_weights(setup));
     hypotheses.push(sign(setup, following));
-    hypotheses.extend(pushes_end(setup));
-    hypotheses.extend(own_targets::bounded(setup));
-    hypotheses.extend(laws::hypotheses(setup));
     hypotheses.push(shared_design(setup, following));
-    hypotheses.push(applied_torque(setup));
-    hypotheses.extend(friction(setup));
-    hypotheses.extend(digital(setup));
     let leader = setup.leader().map_or("", |vertex| setup.vertex_name(vertex));
     let promises = format!("everybody follows {leader}: q_i − q_0 → 0 and dq_i − dq_0 → 0; {torque}");
     Report { theorem, promises, hypotheses }

@@ -20,7 +20,7 @@ use crate::kinds::Claim;
 use crate::laws;
 use crate::links::{bounded_delays, bounded_weights, coupling};
 use crate::report::Report;
-use crate::surroundings::{applied_torque, digital, friction, pushes_end};
+use crate::surroundings::surroundings;
 
 /// Which theorem speaks about `setup`, and whether its hypotheses hold.
 ///
@@ -29,6 +29,15 @@ use crate::surroundings::{applied_torque, digital, friction, pushes_end};
 /// **Source**: Theorem 1 for (3), Remark 3 for (23), Theorem 2 for (a1), Theorem 3 for (a5) and (24); Section III-A for
 /// (aa10), which is (a5) of order one, and for the baseline (aa6), about which the paper promises nothing.
 pub fn check(setup: &Setup) -> Report {
+    let Report { theorem, promises, mut hypotheses } = of_reference(setup);
+    hypotheses.extend(own_targets::bounded(setup));
+    hypotheses.extend(laws::hypotheses(setup));
+    hypotheses.extend(surroundings(setup));
+    Report { theorem, promises, hypotheses }
+}
+
+/// Which theorem speaks about the reference dynamics, and what it asks of them and of the network.
+fn of_reference(setup: &Setup) -> Report {
     let reference = &setup.reference;
     if reference.is::<Consensus>() {
         consensus(setup, theorem_3::hypotheses(setup), theorem_3::claim)
@@ -52,16 +61,10 @@ fn consensus(setup: &Setup, own: Vec<Hypothesis>, claim: fn(&Setup) -> Claim) ->
     hypotheses.extend(coupling(setup));
     hypotheses.extend(own);
     hypotheses.extend(manipulability(setup));
-    hypotheses.extend(pushes_end(setup));
     match setup.exchange {
         Exchange::PositionVelocity => hypotheses.push(theorem_3::common_first_root(setup)),
         Exchange::Position => {}
     }
-    hypotheses.extend(own_targets::bounded(setup));
-    hypotheses.extend(laws::hypotheses(setup));
-    hypotheses.push(applied_torque(setup));
-    hypotheses.extend(friction(setup));
-    hypotheses.extend(digital(setup));
     let Claim { theorem, promises } = laws::claim(setup).unwrap_or_else(|| claim(setup));
     Report { theorem, promises, hypotheses }
 }
