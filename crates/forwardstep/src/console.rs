@@ -1,10 +1,15 @@
-//! Text for people: colours on terminals only, and a pipe that closes early is no error.
+//! Text for people: colours on terminals only, nothing else that a terminal would obey, and a pipe that closes early is no error.
+//!
+//! All that the program says leaves here. What others wrote and it repeats, names of files above all, is escaped where it is named
+//! ([`forwardstep::io::shown`]); what slips through is escaped here.
 
+use std::ffi::OsString;
 use std::fmt;
 use std::io::{self, ErrorKind, IsTerminal, Stdout, Write};
 
 use anstream::AutoStream;
 use anstyle::{AnsiColor, Style};
+use forwardstep::io::{breaks_lines, shown, steers_terminals};
 use miette::{Diagnostic, MietteHandlerOpts, ReportHandler};
 
 use crate::status::Status;
@@ -36,8 +41,18 @@ impl Console {
         self.text(format_args!("{text}\n"));
     }
 
-    /// Writes text as it is.
+    /// Writes text.
     pub(crate) fn text(&mut self, text: impl fmt::Display) {
+        self.verbatim(harmless(&text.to_string(), |c| c.escape_debug().to_string()));
+    }
+
+    /// Writes a JSON document, whose strings have escapes of their own.
+    pub(crate) fn json(&mut self, document: impl fmt::Display) {
+        self.verbatim(harmless(&format!("{document}\n"), |c| format!("\\u{:04x}", u32::from(c))));
+    }
+
+    /// Writes the text of a file as it is, which a reader will ask for again.
+    pub(crate) fn verbatim(&mut self, text: impl fmt::Display) {
         if self.failure.is_none()
             && let Err(error) = write!(self.out, "{text}").and_then(|()| self.out.flush())
         {
@@ -62,14 +77,54 @@ pub(crate) fn complain(mistake: &dyn Diagnostic) -> Status {
         options = options.color(false);
     }
     let handler = options.build();
+    let said = Shown { handler: &handler, mistake }.to_string();
     // A closed standard error leaves only the exit status to tell.
-    let _ = writeln!(io::stderr(), "{}", Shown { handler: &handler, mistake });
+    let _ = writeln!(io::stderr(), "{}", harmless(&said, |c| c.escape_debug().to_string()));
     Status::BadInput
+}
+
+/// Explains a mistake in the arguments on standard error, or shows the help that they ask for on standard output.
+pub(crate) fn show_usage(answer: &clap::Error, arguments: &[OsString]) {
+    // What is asked for repeats no argument.
+    if !answer.use_stderr() {
+        // A closed output leaves only the exit status to tell.
+        let _ = answer.print();
+        return;
+    }
+    let mut said = answer.render().ansi().to_string();
+    for argument in arguments.iter().map(|argument| argument.to_string_lossy()).filter(|a| a.contains(breaks_lines)) {
+        said = said.replace(&*argument, &shown(&*argument).to_string());
+    }
+    let _ = write!(AutoStream::auto(io::stderr()), "{}", harmless(&said, |c| c.escape_debug().to_string()));
 }
 
 /// Says one sentence on standard error.
 pub(crate) fn remark(sentence: impl fmt::Display) {
+    let sentence = harmless(&sentence.to_string(), |c| c.escape_debug().to_string());
     let _ = writeln!(AutoStream::auto(io::stderr()), "{sentence}");
+}
+
+/// The same text with all `escaped` that a terminal would obey, but for colours.
+fn harmless(text: &str, escaped: impl Fn(char) -> String) -> String {
+    let mut shown = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(c) = rest.chars().next() {
+        let colour = colour(rest);
+        let (piece, tail) = rest.split_at(colour.unwrap_or(c.len_utf8()));
+        match colour {
+            None if steers_terminals(c) || c == '\r' => shown.push_str(&escaped(c)),
+            None | Some(_) => shown.push_str(piece),
+        }
+        rest = tail;
+    }
+    shown
+}
+
+/// How long the sequence for a colour or a weight is with which a text begins, `ESC [ 1 ; 31 m`, in bytes; `None` if there is none.
+fn colour(text: &str) -> Option<usize> {
+    const BEGINS: &str = "\u{1b}[";
+    let end = text.strip_prefix(BEGINS)?.find(|c: char| !c.is_ascii_digit() && c != ';')? + BEGINS.len();
+    text[end..].starts_with('m').then_some(end + 1)
 }
 
 struct Shown<'a> {
@@ -111,5 +166,32 @@ impl<E: fmt::Debug + fmt::Display> std::error::Error for Plain<E> {}
 impl<E: fmt::Debug + fmt::Display> Diagnostic for Plain<E> {
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
         self.help.map(|help| Box::new(help) as Box<dyn fmt::Display>)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn escaped(text: &str) -> String {
+        harmless(text, |c| c.escape_debug().to_string())
+    }
+
+    #[test]
+    fn colours_pass_and_whatever_else_a_terminal_would_obey_is_escaped() {
+        let own = format!("{BOLD}holds{BOLD:#}: {BAD}q\u{307}{BAD:#}\n\tnext \u{1b}[38;5;1;4mline\u{1b}[m");
+        assert_eq!(escaped(&own), own);
+        for (text, shown) in [
+            ("\u{1b}[2J", "\\u{1b}[2J"),
+            ("\u{1b}[31", "\\u{1b}[31"),
+            ("\u{1b}]0;title\u{7}", "\\u{1b}]0;title\\u{7}"),
+            ("\u{1b}\u{1b}[1m\u{1b}", "\\u{1b}\u{1b}[1m\\u{1b}"),
+            ("a\u{9b}2Jb\rc\u{8}", "a\\u{9b}2Jb\\rc\\u{8}"),
+            ("\u{202e}gpj.exe\u{2066}\u{200f}", "\\u{202e}gpj.exe\\u{2066}\\u{200f}"),
+        ] {
+            assert_eq!(escaped(text), shown);
+        }
+        let json = harmless("\"\u{202e}\u{9b}\"", |c| format!("\\u{:04x}", u32::from(c)));
+        assert_eq!(json, "\"\\u202e\\u009b\"");
     }
 }

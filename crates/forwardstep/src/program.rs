@@ -31,11 +31,11 @@ pub fn program(kinds: &Kinds) -> ExitCode {
 
 /// [`program`] with these arguments, the first of which is its name.
 pub fn program_with(kinds: &Kinds, arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
-    let command = match Arguments::try_parse_from(arguments) {
+    let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    let command = match Arguments::try_parse_from(&arguments) {
         Ok(Arguments { command }) => command.unwrap_or_default(),
         Err(error) => {
-            // A closed output leaves only the exit status to tell.
-            let _ = error.print();
+            console::show_usage(&error, &arguments);
             return u8::try_from(error.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from);
         }
     };

@@ -335,3 +335,53 @@ fn a_run_under_nohup_outlives_its_terminal() {
     let (status, _) = stopped(&folder(), command, &["-HUP", "-TERM"]);
     assert_eq!(status, Some(143));
 }
+
+/// Names that would colour, clear, turn round or forge what a terminal shows.
+#[cfg(unix)]
+#[test]
+fn no_name_from_outside_reaches_the_terminal_raw() {
+    const EVIL: &str = "a\u{1b}[31m\u{1b}[2J\u{202e}\u{9b}\r\nerror: forged\u{2028}";
+    let folder = folder();
+    let named = |end: &str| format!("{EVIL}{end}");
+    fs::write(folder.path().join(named(".toml")), QUICK).unwrap();
+    fs::write(folder.path().join(named("2.toml")), QUICK.replace("title", "titel")).unwrap();
+    fs::write(folder.path().join(named(".urdf")), "<robot").unwrap();
+    fs::create_dir(folder.path().join(named(".d"))).unwrap();
+    let urdf = QUICK
+        .replace("robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }", "robot.urdf.file = \"x.urdf\"");
+    fs::write(folder.path().join("urdf.toml"), urdf).unwrap();
+    let (fine, wrong, robot, run) = (named(".toml"), named("2.toml"), named(".urdf"), named(".d"));
+    let option = format!("--{EVIL}");
+    for arguments in [
+        &["check", &fine][..],
+        &["check", &fine, "--json"],
+        &["explain", &fine, "--latex"],
+        &["run", &fine, "--out", &run],
+        &["run", &fine, "--out", &run],
+        &["report", &run],
+        &["report", EVIL],
+        &["check", &wrong],
+        &["check", "missing.toml"],
+        &["check", "urdf.toml"],
+        &["check", EVIL],
+        &["robot", &robot],
+        &["robot", EVIL],
+        &["upgrade", &wrong],
+        &["upgrade", EVIL],
+        &["new", "--robot", &robot],
+        &["new", &fine],
+        &["run", "six-arms", &option],
+        &["run", "six-arms", "--set", EVIL],
+        &["check", "six-arms", "--accept", EVIL],
+        &["check", "six-arms", "--certificate", &run],
+        &["scenarios", EVIL],
+        &[EVIL],
+    ] {
+        let done = forwardstep(&folder, arguments);
+        for said in [stdout(&done), stderr(&done)] {
+            let raw = |c: char| c.is_control() && c != '\n' && c != '\t' || matches!(c, '\u{202e}' | '\u{2028}');
+            assert!(!said.contains(raw), "{arguments:?}: {said:?}");
+            assert!(!said.lines().any(|line| line.trim_start().starts_with("error: forged")), "{arguments:?}: {said}");
+        }
+    }
+}

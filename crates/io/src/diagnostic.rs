@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use miette::{Diagnostic, LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
+use crate::shown::{one_line, printable, shown, steers_terminals};
+
 /// Lines longer than this are not shown whole, in bytes.
 const LONGEST_LINE: usize = 400;
 /// What is shown before and after the place in such a line, and of what is marked, in bytes.
 const AROUND: usize = 60;
-/// Messages longer than this are cut, in bytes.
-const LONGEST_MESSAGE: usize = 2000;
 
 /// A file's name and text, shared by all that is said about it.
 #[derive(Clone, Debug)]
@@ -58,46 +58,6 @@ impl SourceText {
     }
 }
 
-/// Whether a character of a file would do something to a terminal rather than appear on it.
-pub(crate) fn steers_terminals(c: char) -> bool {
-    c.is_control() && !matches!(c, '\t' | '\n' | '\r') || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
-}
-
-/// Whether a character does not belong into a line of text.
-pub(crate) fn breaks_lines(c: char) -> bool {
-    // The separators of lines and paragraphs are no control characters.
-    c.is_control() || steers_terminals(c) || matches!(c, '\u{2028}' | '\u{2029}')
-}
-
-/// The same text with question marks in place of such characters, and of returns that end no line, as many as they have
-/// bytes.
-fn printable(text: &str) -> String {
-    let mut shown = String::with_capacity(text.len());
-    for (start, c) in text.char_indices() {
-        let returns = c == '\r' && !text[start + 1..].starts_with('\n');
-        if returns || steers_terminals(c) { (0..c.len_utf8()).for_each(|_| shown.push('?')) } else { shown.push(c) }
-    }
-    shown
-}
-
-/// A message as one line of reasonable length, whatever of a file it quotes.
-pub(crate) fn one_line(message: impl fmt::Display) -> String {
-    let message = message.to_string();
-    let mut line = String::with_capacity(message.len().min(LONGEST_MESSAGE));
-    for c in message.chars() {
-        if line.len() + c.len_utf8() > LONGEST_MESSAGE {
-            line.push('…');
-            break;
-        }
-        if breaks_lines(c) {
-            line.extend(c.escape_debug());
-        } else {
-            line.push(c);
-        }
-    }
-    line
-}
-
 /// The nearest place between two characters at or before `offset`.
 fn boundary(text: &str, offset: usize) -> usize {
     let mut offset = offset.min(text.len());
@@ -130,7 +90,7 @@ impl SourceCode for SourceText {
             let (one, at) = self.line_column(start);
             (line, column, lines) = (one - 1, at - 1, 1);
         }
-        Ok(Box::new(MietteSpanContents::new_named(self.name().to_owned(), data, whole, line, column, lines)))
+        Ok(Box::new(MietteSpanContents::new_named(shown(self.name()).to_string(), data, whole, line, column, lines)))
     }
 }
 
@@ -156,9 +116,9 @@ impl<P: Problem> fmt::Display for InputError<P> {
         match &self.span {
             Some(span) => {
                 let (line, column) = self.source.line_column(span.start);
-                write!(f, "{}:{line}:{column}: {}", self.source.name(), one_line(&self.problem))
+                write!(f, "{}:{line}:{column}: {}", shown(self.source.name()), one_line(&self.problem))
             }
-            None => write!(f, "{}: {}", self.source.name(), one_line(&self.problem)),
+            None => write!(f, "{}: {}", shown(self.source.name()), one_line(&self.problem)),
         }
     }
 }

@@ -8,9 +8,11 @@ mod files;
 pub mod output;
 pub mod robot;
 pub mod scenario;
+mod shown;
 pub mod urdf;
 mod wording;
 
 pub use diagnostic::{InputError, Problem, SourceText};
 pub use files::ReadError;
+pub use shown::{Shown, breaks_lines, shown, steers_terminals};
 pub use urdf::{UrdfOptions, UrdfRobot, read_urdf};

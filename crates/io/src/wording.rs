@@ -2,6 +2,8 @@
 
 pub(crate) use forwardstep_sim::quantity::{about, entries as entry_count, number, rounded};
 
+use crate::shown;
+
 /// "1 list", "2 lists".
 pub(crate) fn count(number: usize, what: &str) -> String {
     if number == 1 { format!("1 {what}") } else { format!("{number} {what}s") }
@@ -57,15 +59,16 @@ pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a s
 
 /// "did you mean `x`?"
 pub(crate) fn did_you_mean(nearest: Option<&str>) -> Option<String> {
-    nearest.map(|name| format!("did you mean `{name}`?"))
+    nearest.map(|name| format!("did you mean `{}`?", shown(name)))
 }
 
 /// "did you mean `x`? `kind` are `a`, `b`, `c`": the near match, if any, and what there is.
 pub(crate) fn choose(word: &str, kind: &str, candidates: &[impl AsRef<str>]) -> String {
-    const SHOWN: usize = 24;
+    // All that ships fits; of a folder with many files the first are named.
+    const MOST: usize = 100;
     let names = || candidates.iter().map(AsRef::as_ref);
-    let listed: Vec<_> = names().take(SHOWN).map(|name| format!("`{name}`")).collect();
-    let more = if candidates.len() > SHOWN { ", …" } else { "" };
+    let listed: Vec<_> = names().take(MOST).map(|name| format!("`{}`", shown(name))).collect();
+    let more = if candidates.len() > MOST { ", …" } else { "" };
     let listed = format!("{kind} {}{more}", listed.join(", "));
     match did_you_mean(nearest(word, names()).as_deref()) {
         Some(question) => format!("{question} {listed}"),

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use forwardstep::check::Id;
 use forwardstep::io::scenario::kinds::Kinds;
+use forwardstep::io::shown;
 
 use super::stop::Stop;
 use crate::arguments::{AttackOptions, AttackTarget};
@@ -96,6 +97,6 @@ fn listed(broken: &[Id]) -> String {
 
 fn saved(options: &AttackOptions, text: &str, console: &mut Console) -> Result<(), Status> {
     fs::write(&options.out, text).map_err(|error| complain(&Plain::new(error)))?;
-    console.line(format_args!("  {DIM}saved: {}{DIM:#}", options.out.display()));
+    console.line(format_args!("  {DIM}saved: {}{DIM:#}", shown(&options.out)));
     Ok(())
 }

@@ -8,6 +8,7 @@ use forwardstep::check::{Id, PracticalAnswer, Report, certify};
 use forwardstep::io::output::{Findings, certificate_document};
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
+use forwardstep::io::shown;
 
 use super::promise::{predictions, promise, show, show_predictions, style};
 use crate::arguments::CheckOptions;
@@ -43,7 +44,7 @@ pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console
             &accepted,
         );
         match findings.to_json() {
-            Ok(text) => console.line(text),
+            Ok(text) => console.json(text),
             Err(error) => return complain(&Plain::new(error)),
         }
     } else {
@@ -62,7 +63,7 @@ fn certificate(path: &Path, scenario: &Scenario, report: &Report) -> Result<(), 
     let certificate = certify(&scenario.setup, report);
     let document = certificate_document(scenario, env!("CARGO_PKG_VERSION"), &certificate);
     // The alternate form is indented.
-    fs::write(path, format!("{document:#}\n")).map_err(|error| Plain::new(format!("{}: {error}", path.display())))
+    fs::write(path, format!("{document:#}\n")).map_err(|error| Plain::new(format!("{}: {error}", shown(path))))
 }
 
 /// What was waived, and what it all comes to.

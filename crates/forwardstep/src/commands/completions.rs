@@ -12,6 +12,6 @@ pub(crate) fn completions(shell: Shell, console: &mut Console) -> Status {
     // Into memory first: the generator knows no closed pipe.
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Arguments::command(), env!("CARGO_PKG_NAME"), &mut script);
-    console.text(String::from_utf8_lossy(&script));
+    console.verbatim(String::from_utf8_lossy(&script));
     Status::Fine
 }

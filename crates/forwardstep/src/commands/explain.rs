@@ -31,9 +31,9 @@ pub(crate) fn explain(options: &ExplainOptions, kinds: &Kinds, console: &mut Con
     if options.json {
         let document = explanation_document(&scenario, env!("CARGO_PKG_VERSION"), &explanation);
         // The alternate form is indented.
-        console.line(format_args!("{document:#}"));
+        console.json(format_args!("{document:#}"));
     } else if options.latex {
-        console.text(explanation_latex(&scenario.setup, &explanation));
+        console.verbatim(explanation_latex(&scenario.setup, &explanation));
     } else {
         console.line(format_args!("{BOLD}{}{BOLD:#}", scenario.title));
         for line in explanation_lines(&scenario.setup, &explanation) {
@@ -65,7 +65,7 @@ fn along(scenario: &Scenario, json: bool, console: &mut Console) -> Result<Statu
         let mut document = residual_document(setup, &found);
         document["scenario"] = scenario.name.as_str().into();
         document["version"] = env!("CARGO_PKG_VERSION").into();
-        console.line(format_args!("{document:#}"));
+        console.json(format_args!("{document:#}"));
     } else {
         console.line(format_args!("{BOLD}{}{BOLD:#}", scenario.title));
         let control = if digital { ", with control in continuous time, in which the equations hold" } else { "" };

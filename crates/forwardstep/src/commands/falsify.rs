@@ -1,5 +1,6 @@
 //! `forwardstep falsify`
 
+use forwardstep::io::shown;
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -41,7 +42,7 @@ fn save(folder: &Path, case: &Case, failure: &Failure, console: &mut Console) ->
     let path = folder.join(format!("refuted-{}.toml", case.number));
     let written = fs::create_dir_all(folder).and_then(|()| fs::write(&path, format!("# {failure}\n{case}")));
     written.map_err(|error| complain(&Plain::new(error)))?;
-    console.line(format_args!("  {DIM}saved, as small as it still fails: {}{DIM:#}", path.display()));
+    console.line(format_args!("  {DIM}saved, as small as it still fails: {}{DIM:#}", shown(&path)));
     Ok(())
 }
 

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use forwardstep::io::robot::open_robot;
 use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::io::scenario::{RobotTemplate, Template, TemplateDelay, TemplateGraph};
+use forwardstep::io::shown;
 use forwardstep::io::urdf::{FrictionPolicy, NoticeKind, shipped_robot};
 use forwardstep::io::{SourceText, UrdfOptions};
 use forwardstep::sim::Exchange;
@@ -20,11 +21,11 @@ use crate::status::Status;
 /// Why nothing was written.
 #[derive(Clone, Debug, PartialEq, Error)]
 enum NewError {
-    #[error("`{}` already exists", .0.display())]
+    #[error("`{}` already exists", shown(.0))]
     Exists(PathBuf),
-    #[error("cannot write `{}`: {reason}", path.display())]
+    #[error("cannot write `{}`: {reason}", shown(path))]
     Write { path: PathBuf, reason: ErrorKind },
-    #[error("the path of the robot, `{}`, cannot be written down in a scenario", .0.display())]
+    #[error("the path of the robot, `{}`, cannot be written down in a scenario", shown(.0))]
     NotText(PathBuf),
 }
 
@@ -59,10 +60,10 @@ fn write(options: &NewOptions, kinds: &Kinds, console: &mut Console) -> Result<(
     let source = SourceText::new("new scenario", text.as_str());
     kinds.read_scenario("new", &source, Some(folder)).map_err(|error| complain(&error))?;
     match &options.file {
-        None => console.text(text),
+        None => console.verbatim(text),
         Some(file) => {
             write_new(file, &text).map_err(refused)?;
-            console.line(format_args!("wrote {0}; next: forwardstep run {0}", file.display()));
+            console.line(format_args!("wrote {0}; next: forwardstep run {0}", shown(&file)));
         }
     }
     Ok(())

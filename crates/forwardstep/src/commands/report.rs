@@ -4,6 +4,7 @@ use std::path::Path;
 
 use forwardstep::io::output::SavedRun;
 use forwardstep::io::scenario::kinds::Kinds;
+use forwardstep::io::shown;
 
 use super::promise::promise;
 use super::run::refused;
@@ -25,7 +26,7 @@ fn finish(folder: &Path, kinds: &Kinds, console: &mut Console) -> Result<Status,
     let record = run.record(&promise.report, promise.value().map(<[f64]>::to_vec), &remarks);
     let files = run.write_report(&record).map_err(refused)?;
     for file in files {
-        console.line(file.display());
+        console.line(shown(&file));
     }
     Ok(Status::Fine)
 }

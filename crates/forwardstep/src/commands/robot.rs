@@ -26,7 +26,7 @@ pub(crate) fn robot(options: &RobotOptions, console: &mut Console) -> Status {
     };
     match at {
         Some(path) => match dynamics_at(path, &robot) {
-            Ok(dynamics) if *json => console.line(dynamics.to_json()),
+            Ok(dynamics) if *json => console.json(dynamics.to_json()),
             Ok(dynamics) => {
                 show_dynamics(&dynamics, &robot, console);
                 show_notices(&RobotDescription::new(&robot).notices, console);
@@ -35,7 +35,7 @@ pub(crate) fn robot(options: &RobotOptions, console: &mut Console) -> Status {
         },
         None => {
             let description = RobotDescription::new(&robot);
-            if *json { console.line(description.to_json()) } else { show(&description, console) }
+            if *json { console.json(description.to_json()) } else { show(&description, console) }
         }
     }
     Status::Fine

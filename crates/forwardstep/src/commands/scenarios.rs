@@ -20,7 +20,7 @@ pub(crate) fn scenarios(name: Option<&str>, console: &mut Console) -> Status {
         }
         Some(name) => match shipped_scenario(name.trim_end_matches(".toml")) {
             Some(shipped) => {
-                console.text(shipped.text);
+                console.verbatim(shipped.text);
                 Status::Fine
             }
             None => complain(&OpenError::Unknown { name: name.to_owned() }),

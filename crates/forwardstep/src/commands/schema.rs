@@ -15,6 +15,6 @@ pub(crate) fn schema(of: SchemaChoice, kinds: &Kinds, console: &mut Console) -> 
         SchemaChoice::Smoothness => SmoothnessDocument::schema(),
     };
     // The alternate form is indented.
-    console.line(format_args!("{:#}", schema.to_value()));
+    console.json(format_args!("{:#}", schema.to_value()));
     Status::Fine
 }

@@ -12,6 +12,7 @@ use forwardstep::io::output::{
 };
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
+use forwardstep::io::shown;
 use forwardstep::sim::{Progress, Setup, Signal};
 
 use super::stop::Stop;
@@ -52,7 +53,7 @@ fn finish(options: &SmoothnessOptions, kinds: &Kinds, console: &mut Console) -> 
             }
             if let Some(path) = &options.plot {
                 let drawn = draw_orders(&scenario, &found, &mut observer).map_err(|error| failed(&error))?;
-                fs::write(path, drawn).map_err(|error| failed(&format!("{}: {error}", path.display())))?;
+                fs::write(path, drawn).map_err(|error| failed(&format!("{}: {error}", shown(path))))?;
             }
             (found.iter().all(|of| of.kept), SmoothnessFound::orders(setup, &found))
         } else if !options.filters_s.is_empty() {
@@ -63,7 +64,7 @@ fn finish(options: &SmoothnessOptions, kinds: &Kinds, console: &mut Console) -> 
             if let Some(path) = &options.plot {
                 let drawn = plot_filters(&found, &unit_of(setup, found.jumps.first().map(|of| of.jump)));
                 let drawn = drawn.map_err(|error| failed(&error))?;
-                fs::write(path, drawn).map_err(|error| failed(&format!("{}: {error}", path.display())))?;
+                fs::write(path, drawn).map_err(|error| failed(&format!("{}: {error}", shown(path))))?;
             }
             (true, SmoothnessFound::filters(setup, &found))
         } else {
@@ -80,7 +81,7 @@ fn finish(options: &SmoothnessOptions, kinds: &Kinds, console: &mut Console) -> 
     }
     if options.json {
         let document = SmoothnessDocument::new(env!("CARGO_PKG_VERSION"), documents);
-        console.line(document.to_json().map_err(|error| failed(&error))?);
+        console.json(document.to_json().map_err(|error| failed(&error))?);
     }
     Ok(status)
 }

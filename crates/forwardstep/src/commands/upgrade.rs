@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use forwardstep::io::SourceText;
 use forwardstep::io::scenario::upgrade as converted;
+use forwardstep::io::shown;
 use thiserror::Error;
 
 use crate::arguments::UpgradeOptions;
@@ -17,9 +18,9 @@ use crate::status::Status;
 enum UpgradeError {
     #[error("`--out` names one file, but several are to be converted")]
     OneFile,
-    #[error("cannot read `{}`: {reason}", path.display())]
+    #[error("cannot read `{}`: {reason}", shown(path))]
     Read { path: PathBuf, reason: std::io::Error },
-    #[error("cannot write `{}`: {reason}", path.display())]
+    #[error("cannot write `{}`: {reason}", shown(path))]
     Write { path: PathBuf, reason: std::io::Error },
 }
 
@@ -52,13 +53,13 @@ fn one(path: &Path, options: &UpgradeOptions, console: &mut Console) -> Result<(
     }
     let mut say = |line: String| if options.stdout { remark(line) } else { console.line(line) };
     if upgraded.moved.is_empty() {
-        say(format!("{} is of the present format", path.display()));
+        say(format!("{} is of the present format", shown(path)));
     }
     for moved in &upgraded.moved {
-        say(format!("{}:{}: {} → {}", path.display(), moved.line, moved.from, moved.to));
+        say(format!("{}:{}: {} → {}", shown(path), moved.line, moved.from, moved.to));
     }
     if options.stdout {
-        console.text(upgraded.text);
+        console.verbatim(upgraded.text);
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! What can go wrong while results are written.
 
+use crate::shown;
 use std::io;
 use std::path::PathBuf;
 
@@ -7,25 +8,25 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
     /// The folder holds files already and was not to be replaced.
-    #[error("{} already exists and is not empty", path.display())]
+    #[error("{} already exists and is not empty", shown(path))]
     FolderNotEmpty {
         /// The folder.
         path: PathBuf,
     },
     /// There is a file where the folder should be.
-    #[error("{} exists and is not a folder", path.display())]
+    #[error("{} exists and is not a folder", shown(path))]
     NotAFolder {
         /// The file.
         path: PathBuf,
     },
     /// Another run writes into the folder.
-    #[error("another run is writing to {}", path.display())]
+    #[error("another run is writing to {}", shown(path))]
     FolderInUse {
         /// The folder.
         path: PathBuf,
     },
     /// The operating system refused.
-    #[error("could not {action} {}: {source}", path.display())]
+    #[error("could not {action} {}: {source}", shown(path))]
     Io {
         /// What was tried.
         action: Action,
@@ -35,7 +36,7 @@ pub enum OutputError {
         source: io::Error,
     },
     /// A table or plot could not be encoded.
-    #[error("could not encode {}: {reason}", path.display())]
+    #[error("could not encode {}: {reason}", shown(path))]
     Encode {
         /// The file.
         path: PathBuf,

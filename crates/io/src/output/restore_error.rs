@@ -12,13 +12,14 @@ use super::error::OutputError;
 use super::summary::FORMAT;
 use crate::files::ReadError;
 use crate::scenario::ScenarioError;
+use crate::shown;
 
 /// A folder that no report can be built from.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RestoreError {
     /// There is nothing.
-    #[error("there is no folder `{}`", path.display())]
+    #[error("there is no folder `{}`", shown(path))]
     NoFolder {
         /// What was asked for.
         path: PathBuf,
@@ -26,7 +27,7 @@ pub enum RestoreError {
         meant: Option<PathBuf>,
     },
     /// It is a file.
-    #[error("`{}` is not a folder", path.display())]
+    #[error("`{}` is not a folder", shown(path))]
     NotAFolder {
         /// The file.
         path: PathBuf,
@@ -34,7 +35,7 @@ pub enum RestoreError {
         meant: Option<PathBuf>,
     },
     /// It lacks a file that every run writes.
-    #[error("`{}` holds no whole run: there is no {missing} in it", path.display())]
+    #[error("`{}` holds no whole run: there is no {missing} in it", shown(path))]
     NotARun {
         /// The folder.
         path: PathBuf,
@@ -42,7 +43,7 @@ pub enum RestoreError {
         missing: &'static str,
     },
     /// A file of it cannot be read.
-    #[error("cannot read `{}`: {reason}", path.display())]
+    #[error("cannot read `{}`: {reason}", shown(path))]
     File {
         /// The file.
         path: PathBuf,
@@ -50,7 +51,7 @@ pub enum RestoreError {
         reason: ReadError,
     },
     /// Its summary is not one.
-    #[error("`{}`: {reason}", path.display())]
+    #[error("`{}`: {reason}", shown(path))]
     Summary {
         /// The file.
         path: PathBuf,
@@ -61,7 +62,7 @@ pub enum RestoreError {
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
     /// Its scenario cannot be simulated.
-    #[error("`{}`: {reason}", path.display())]
+    #[error("`{}`: {reason}", shown(path))]
     Setup {
         /// The file.
         path: PathBuf,
@@ -69,7 +70,7 @@ pub enum RestoreError {
         reason: Box<SetupError>,
     },
     /// Its table cannot be used.
-    #[error("`{}`: {reason}", path.display())]
+    #[error("`{}`: {reason}", shown(path))]
     Table {
         /// The file.
         path: PathBuf,
@@ -178,7 +179,7 @@ impl RestoreError {
         const AGAIN: &str = "run the scenario again";
         Some(match self {
             RestoreError::NoFolder { meant: Some(meant), .. } | RestoreError::NotAFolder { meant: Some(meant), .. } => {
-                format!("did you mean `{}`?", meant.display())
+                format!("did you mean `{}`?", shown(meant))
             }
             RestoreError::NoFolder { .. } | RestoreError::NotAFolder { .. } => {
                 "give the folder of a run, such as `forwardstep-runs/six-arms`".into()

@@ -9,6 +9,7 @@ use thiserror::Error;
 use super::state::{JointState, read_state};
 use super::state_problem::StateProblem;
 use crate::files::{ReadError, neighbours, read_text};
+use crate::shown;
 use crate::urdf::{self, SHIPPED_ROBOTS, UrdfOptions, UrdfProblem, UrdfRobot};
 use crate::wording::choose;
 use crate::{InputError, SourceText};
@@ -17,13 +18,13 @@ use crate::{InputError, SourceText};
 #[derive(Clone, Debug, Error)]
 pub enum OpenRobotError {
     /// Neither a shipped robot nor a file.
-    #[error("there is no robot `{name}`")]
+    #[error("there is no robot `{}`", shown(name))]
     Unknown {
         /// What was asked for.
         name: String,
     },
     /// A file that cannot be read.
-    #[error("cannot read `{}`: {reason}", path.display())]
+    #[error("cannot read `{}`: {reason}", shown(path))]
     File {
         /// The file.
         path: PathBuf,

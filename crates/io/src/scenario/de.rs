@@ -23,7 +23,7 @@ use super::file::{AGENT_REFERENCE, LAW, REFERENCE, ROBOT};
 use super::kinds::Kinds;
 use super::network_file::{DELAY, SWITCHING};
 use super::value_problem::ValueProblem;
-use crate::diagnostic::breaks_lines;
+use crate::shown::breaks_lines;
 
 /// Bytes that a text may have.
 const LONGEST_TEXT: usize = 500;

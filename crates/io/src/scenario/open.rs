@@ -10,19 +10,20 @@ use super::shipped::{SHIPPED_SCENARIOS, shipped_scenario};
 use super::{Scenario, ScenarioError};
 use crate::SourceText;
 use crate::files::{ReadError, neighbours, read_text};
+use crate::shown;
 use crate::wording::choose;
 
 /// Why there is no scenario to run.
 #[derive(Clone, Debug, Error)]
 pub enum OpenError {
     /// Neither a shipped scenario nor a file.
-    #[error("there is no scenario `{name}`")]
+    #[error("there is no scenario `{}`", shown(name))]
     Unknown {
         /// What was asked for.
         name: String,
     },
     /// A file that cannot be read.
-    #[error("cannot read `{}`: {reason}", path.display())]
+    #[error("cannot read `{}`: {reason}", shown(path))]
     File {
         /// The file.
         path: PathBuf,
@@ -40,7 +41,7 @@ impl Diagnostic for OpenError {
             OpenError::Unknown { name } => {
                 let file = format!("{name}.toml");
                 if !name.is_empty() && Path::new(&file).is_file() {
-                    return Some(Box::new(format!("did you mean the file `{file}`?")));
+                    return Some(Box::new(format!("did you mean the file `{}`?", shown(&file))));
                 }
                 let shipped: Vec<&str> = SHIPPED_SCENARIOS.iter().map(|scenario| scenario.name).collect();
                 let text = choose(name, "shipped scenarios are", &shipped);

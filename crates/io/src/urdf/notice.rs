@@ -7,7 +7,7 @@ use forwardstep_core::robot::tree::InertiaDefect;
 
 use super::ignored::{IgnoredItem, write_grouped};
 use crate::SourceText;
-use crate::diagnostic::one_line;
+use crate::shown::{one_line, shown};
 use crate::wording::{enumerate, number, rounded};
 
 /// Something in an accepted file that the user should know about.
@@ -31,8 +31,10 @@ impl Notice {
 impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.place() {
-            Some((line, column)) => write!(f, "{}:{line}:{column}: {}", self.source.name(), one_line(&self.kind)),
-            None => write!(f, "{}: {}", self.source.name(), one_line(&self.kind)),
+            Some((line, column)) => {
+                write!(f, "{}:{line}:{column}: {}", shown(self.source.name()), one_line(&self.kind))
+            }
+            None => write!(f, "{}: {}", shown(self.source.name()), one_line(&self.kind)),
         }
     }
 }

@@ -8,7 +8,7 @@ use super::ignored::{IgnoreReason, Tally};
 use super::notice::{Notice, NoticeKind};
 use super::problem::UrdfProblem;
 use super::subject::{AttributeOf, Owner, Size};
-use crate::diagnostic::breaks_lines;
+use crate::shown::breaks_lines;
 use crate::wording::nearest;
 use crate::{InputError, SourceText};
 
