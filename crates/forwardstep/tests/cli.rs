@@ -385,3 +385,36 @@ fn no_name_from_outside_reaches_the_terminal_raw() {
         }
     }
 }
+
+#[test]
+fn a_run_that_ends_too_early_says_so_and_how_long_would_be_enough() {
+    let folder = folder();
+    let run = |end_s: &str| {
+        let text =
+            format!("{QUICK}[goal]\ndisagreement_below = 1e-3\n").replace("end_s = 30", &format!("end_s = {end_s}"));
+        fs::write(folder.path().join("two.toml"), text).unwrap();
+        forwardstep(&folder, &["run", "two.toml", "--out", "two", "--force"])
+    };
+    let short = run("3").code(1);
+    let text = stdout(&short);
+    let words = text.lines().find(|line| line.trim_start().starts_with("in words")).unwrap();
+    assert!(words.contains("not agreed: ") && words.contains(" rad apart (arm-1, arm-2), still moving at "), "{words}");
+    assert!(words.ends_with(" rad/s, and coming closer"), "{words}");
+    let page = fs::read_to_string(folder.path().join("two/report.html")).unwrap();
+    assert!(page.contains("not agreed: ") && page.contains("run longer"));
+    let advised = text.split("`time.end_s = ").nth(1).and_then(|rest| rest.split('`').next()).unwrap();
+    assert!(advised.parse::<f64>().unwrap() < 30.0, "{advised}");
+    let long = stdout(&run(advised).success());
+    assert!(long.contains("in words") && long.contains(" agreed: ") && !long.contains("to change"), "{long}");
+}
+
+#[test]
+fn a_goal_about_one_agent_alone_is_refused() {
+    let folder = folder();
+    let text = QUICK.replace("count = 2\n", "").replace("[[0.1, 0.2], [0.3, 0.4]]", "[0.1, 0.2]");
+    let (text, _) = text.split_once("edges").unwrap();
+    fs::write(folder.path().join("one.toml"), format!("{text}edges = []\n[goal]\ndisagreement_below = 1e-3\n"))
+        .unwrap();
+    let refused = stderr(&forwardstep(&folder, &["check", "one.toml"]).code(2));
+    assert!(refused.contains("compares agents, but there is one only") && refused.contains("one.toml:"), "{refused}");
+}

@@ -5,7 +5,10 @@ use std::path::{Path, PathBuf};
 use comfy_table::{ContentArrangement, Table, presets};
 use forwardstep::check::{Injection, Report};
 use forwardstep::io::output::names::{agent_name, gap_unit, torque_words, unit};
-use forwardstep::io::output::{Disagreement, FirstInjection, Gap, Injected, Metrics, RunRecord, WatchedMargin};
+use forwardstep::io::output::{
+    Conclusion, Disagreement, FirstInjection, Gap, Injected, Metrics, RunRecord, WatchedMargin,
+};
+use forwardstep::io::shown;
 use forwardstep::sim::{ClippedSamples, Drive, Setup, Signal};
 
 use super::progress::speed;
@@ -24,6 +27,10 @@ fn driven(Drive { peak, peak_s, exceeds_until_s }: Drive, gamma: f64) -> String 
 pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, files: &[PathBuf]) -> String {
     let RunRecord { setup, outcome, .. } = record;
     let mut rows: Vec<(&str, String)> = vec![("verdict", verdict(record.verdicts))];
+    if let Some(Conclusion { sentence, advice, .. }) = Conclusion::of(record, metrics) {
+        rows.push(("in words", sentence));
+        rows.extend(advice.into_iter().map(|line| ("to change", line)));
+    }
     if let Some(goal) = &record.goal {
         rows.push(("goal", format!("{}: {}", if goal.met { "met" } else { "missed" }, goal.goal.words())));
     }
@@ -167,8 +174,8 @@ fn disagreement(setup: &Setup, metrics: &Metrics) -> String {
 fn names(folder: &Path, files: &[PathBuf]) -> String {
     let report = files.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));
     match report {
-        Some(report) => format!("{} and {} others in that folder", report.display(), files.len() - 1),
-        None => folder.display().to_string(),
+        Some(report) => format!("{} and {} others in that folder", shown(report), files.len() - 1),
+        None => shown(folder).to_string(),
     }
 }
 

@@ -20,6 +20,7 @@
 //! `timings` object of `summary.json` is the same for the same run, bit for bit.
 
 mod certificate;
+mod conclusion;
 mod csv;
 mod decimate;
 mod digital;
@@ -59,6 +60,7 @@ use std::collections::HashSet;
 use std::path::PathBuf;
 
 pub use certificate::{CERTIFICATE_FORMAT, certificate_document};
+pub use conclusion::Conclusion;
 pub use digital::{DigitalCost, Figures, continuous_twin};
 pub use ending::ending_sentence;
 pub use error::{Action, EncodeError, OutputError};

@@ -1,6 +1,6 @@
 //! What a scenario expects of its run.
 
-use forwardstep_sim::ReferenceDynamics;
+use forwardstep_sim::Setup;
 
 use super::at::At;
 use super::fault::{Fault, fault, positive};
@@ -37,8 +37,8 @@ impl Goal {
     }
 }
 
-/// Reads a `[goal]` beside these reference dynamics.
-pub(super) fn goal(file: &At<GoalFile>, reference: &dyn ReferenceDynamics) -> Result<Goal, Fault> {
+/// Reads the `[goal]` of a setup.
+pub(super) fn goal(file: &At<GoalFile>, setup: &Setup) -> Result<Goal, Fault> {
     let GoalFile { disagreement_below, error_below, expect } = &file.value;
     if let (Some(_), Some(second)) = (disagreement_below, error_below) {
         return Err(fault(second, ScenarioProblem::TwoGoals));
@@ -51,10 +51,11 @@ pub(super) fn goal(file: &At<GoalFile>, reference: &dyn ReferenceDynamics) -> Re
         (_, None) => Err(fault(file, ScenarioProblem::EmptyGoal)),
         (_, Some((key, below))) => {
             let bound = positive(key, below)?;
-            match (key, reference.interface().family.is_followed()) {
+            match (key, setup.reference.interface().family.is_followed()) {
                 ("error_below", true) => Ok(Goal::ErrorBelow(bound)),
                 ("error_below", false) => Err(fault(below, ScenarioProblem::NothingTracked)),
                 (_, true) => Err(fault(below, ScenarioProblem::NothingAgreed)),
+                (_, false) if setup.agents.len() < 2 => Err(fault(below, ScenarioProblem::OneAgent)),
                 (_, false) => Ok(Goal::DisagreementBelow(bound)),
             }
         }

@@ -246,7 +246,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
     notices.extend(Notice::starts_beyond_limits(&setup));
     notices.extend(Notice::stiff(&setup));
     recorded_columns(&setup).map_err(|error| document.refused(&setup, &read.entries, error))?;
-    let goal = file.goal.as_ref().map(|file| goal::goal(file, &*setup.reference)).transpose()?;
+    let goal = file.goal.as_ref().map(|file| goal::goal(file, &setup)).transpose()?;
     Ok(Scenario {
         name: name.to_owned(),
         source: source.clone(),

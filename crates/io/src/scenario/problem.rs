@@ -174,6 +174,9 @@ pub enum ScenarioProblem {
     /// A disagreement among agents that do not agree.
     #[error("`disagreement_below` is about agreement, but every agent follows a target or a leader")]
     NothingAgreed,
+    /// A disagreement of one agent.
+    #[error("`disagreement_below` compares agents, but there is one only")]
+    OneAgent,
     /// What a kind finds wrong with its table.
     #[error(transparent)]
     Kind(KindProblem),
@@ -232,6 +235,7 @@ impl Problem for ScenarioProblem {
             ScenarioProblem::ThresholdUnused { .. } | ScenarioProblem::TwoGoals => "delete one of the two".into(),
             ScenarioProblem::NothingTracked => "write `disagreement_below`".into(),
             ScenarioProblem::NothingAgreed => "write `error_below`".into(),
+            ScenarioProblem::OneAgent => "leave `[goal]` out, or give it others to agree with by `count` or another `[[agents]]`".into(),
             ScenarioProblem::Kind(problem) => return problem.help(),
             ScenarioProblem::Setup(error) => return refusal::advice(error),
             _ => return None,

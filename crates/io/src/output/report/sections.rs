@@ -7,6 +7,7 @@ use forwardstep_sim::recording::{Drive, Ending, Signal};
 use forwardstep_sim::setup::{Exchange, Method, Setup};
 use maud::{Markup, html};
 
+use super::super::conclusion::Conclusion;
 use super::super::ending::ending_sentence;
 use super::super::metrics::{Disagreement, Gap, LimitKind, Metrics};
 use super::super::names;
@@ -36,6 +37,10 @@ pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                     span.badge.(class) { (word) }
                 }
                 span { (ending_sentence(setup, &record.outcome.ending)) }
+            }
+            @if let Some(Conclusion { reached, sentence, advice }) = Conclusion::of(record, metrics) {
+                p.conclusion { strong.good[reached].bad[!reached] { (sentence) } }
+                @if !advice.is_empty() { ul.advice { @for line in advice { li { (line) } } } }
             }
             dl.figures {
                 @match metrics.disagreement {

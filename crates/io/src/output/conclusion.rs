@@ -1,0 +1,253 @@
+//! What a run came to, in plain words: whether what was to vanish did, how far it is, and what to change.
+
+use forwardstep_check::Report;
+use forwardstep_sim::recording::{Ending, Signal};
+use forwardstep_sim::setup::Setup;
+
+use super::disagreement::{Disagreement, DisagreementSeries, Gap, greater};
+use super::metrics::Metrics;
+use super::names::{agent_name, gap_unit, gap_words, unit};
+use super::prediction::{PredictedRate, Predictions};
+use super::record::RunRecord;
+use super::table::Table;
+use crate::scenario::Goal;
+use crate::wording::about;
+
+/// What is left of the largest gap when it is said to have vanished, without a goal.
+const VANISHED: f64 = 0.01;
+/// In a quarter of the run a gap that falls becomes smaller than this much of itself.
+const FALLS: f64 = 0.9;
+/// A longer run is advised up to so many times its length.
+const LONGEST: f64 = 100.0;
+/// s at the end, in 1/s of the gap, counts as left over above this.
+const LEFT_OVER: f64 = 1e-3;
+
+/// What a run came to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Conclusion {
+    /// Whether what was to vanish did, as far as the goal asks, or to 1 % where there is none.
+    pub reached: bool,
+    /// One sentence without a full stop.
+    pub sentence: String,
+    /// What to change where it was not reached; the most likely first.
+    pub advice: Vec<String>,
+}
+
+impl Conclusion {
+    /// `None` for a run that broke down or was expected to diverge, and where nothing can be compared.
+    pub fn of(record: &RunRecord<'_>, metrics: &Metrics) -> Option<Conclusion> {
+        let bound = match record.goal.map(|outcome| outcome.goal) {
+            Some(Goal::ExpectDiverges) => return None,
+            goal => goal.and_then(|goal| goal.bound()),
+        };
+        let (Disagreement::Measured { last, largest, .. }, Ending::Completed | Ending::Interrupted { .. }) =
+            (metrics.disagreement, &record.outcome.ending)
+        else {
+            return None;
+        };
+        let table = Table::new(record.setup, &record.outcome.recording);
+        let series = DisagreementSeries::of_table(&table).ok()?;
+        let end = End::of(&table, &series)?;
+        let bound = bound.unwrap_or(VANISHED * largest);
+        // What was nothing from the start has vanished as well.
+        let reached = last < bound || last == 0.0;
+        let trend = Trend::of(&series.overall);
+        let sentence = end.sentence(record.setup, reached, trend);
+        let advice = if reached { Vec::new() } else { advice(record, metrics, trend, bound / last) };
+        Some(Conclusion { reached, sentence, advice })
+    }
+}
+
+/// What is furthest off at the last row.
+struct End {
+    kind: Gap,
+    axis: usize,
+    /// The agent furthest from its target; two agents furthest apart.
+    agents: Vec<usize>,
+    gap: f64,
+    /// The largest speed of any agent on that axis, where it is recorded.
+    speed: Option<f64>,
+}
+
+impl End {
+    fn of(table: &Table<'_>, series: &DisagreementSeries) -> Option<End> {
+        let last_of = |values: &[f64]| values.last().copied();
+        let gaps = series.per_axis.iter().enumerate().filter_map(|(axis, values)| Some((axis, last_of(values)?)));
+        let (axis, gap) = gaps.reduce(|a, b| if greater(a.1, b.1).to_bits() == a.1.to_bits() { a } else { b })?;
+        let kind = Gap::of(table.setup);
+        let agents = 0..table.agents();
+        let value = |agent: usize| {
+            let offset = || table.column(agent, Signal::Offset, axis).and_then(last_of).unwrap_or(0.0);
+            match kind {
+                Gap::Error => table.column(agent, Signal::Error, axis).and_then(last_of).map(f64::abs),
+                Gap::Disagreement => {
+                    table.column(agent, Signal::Position, axis).and_then(last_of).map(|q| q - offset())
+                }
+            }
+        };
+        let values = || agents.clone().filter_map(|agent| Some((agent, value(agent)?)));
+        let highest = values().max_by(|a, b| a.1.total_cmp(&b.1))?.0;
+        let lowest = values().min_by(|a, b| a.1.total_cmp(&b.1))?.0;
+        let agents_named = match kind {
+            Gap::Error => vec![highest],
+            Gap::Disagreement => vec![lowest.min(highest), lowest.max(highest)],
+        };
+        let speeds = agents.filter_map(|agent| table.column(agent, Signal::Velocity, axis).and_then(last_of));
+        let speed = speeds.map(f64::abs).reduce(greater);
+        Some(End { kind, axis, agents: agents_named, gap, speed })
+    }
+
+    fn sentence(&self, setup: &Setup, reached: bool, trend: Trend) -> String {
+        let End { kind, axis, agents, gap, speed } = self;
+        let with_unit = |value: f64, unit: String| format!("{} {unit}", about(value)).trim_end().to_owned();
+        let size = with_unit(*gap, gap_unit(setup));
+        let names: Vec<String> = agents.iter().map(|agent| agent_name(setup, *agent)).collect();
+        let led = setup.following().is_some();
+        let (done, so_far) = match (kind, led) {
+            (Gap::Disagreement, _) => ("agreed", format!("{size} apart")),
+            (Gap::Error, true) => ("with the leader", format!("{size} from the leader")),
+            (Gap::Error, false) => ("on target", format!("{size} from the target")),
+        };
+        if reached {
+            return format!("{done}: {so_far} at most");
+        }
+        let still = match speed {
+            Some(speed) if *kind == Gap::Disagreement => {
+                let first = agents.first().copied().unwrap_or(0);
+                format!(", still moving at {}", with_unit(*speed, unit(setup, first, Signal::Velocity, *axis)))
+            }
+            Some(_) | None => String::new(),
+        };
+        format!("not {done}: {} {so_far} ({}){still}, {}", gap_words(setup, *axis), names.join(", "), trend.words())
+    }
+}
+
+/// What the gap does at the end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Trend {
+    /// It becomes smaller by this much of itself in a quarter of the run.
+    Falls(f64),
+    /// It neither falls nor grows much.
+    Stays,
+    /// It grows.
+    Grows,
+}
+
+impl Trend {
+    /// By the largest value of the last quarter of the rows and of the one before.
+    fn of(overall: &[f64]) -> Trend {
+        let quarter = overall.len() / 4;
+        if quarter == 0 {
+            return Trend::Stays;
+        }
+        let largest = |part: &[f64]| part.iter().copied().fold(0.0, greater);
+        let end = overall.len();
+        let [before, last] = [2, 1].map(|back| largest(&overall[end - back * quarter..end - (back - 1) * quarter]));
+        match last / before {
+            left if left < FALLS => Trend::Falls(left),
+            left if left > 1.0 / FALLS => Trend::Grows,
+            _ => Trend::Stays,
+        }
+    }
+
+    fn words(self) -> &'static str {
+        match self {
+            Trend::Falls(_) => "and coming closer",
+            Trend::Stays => "and not coming closer",
+            Trend::Grows => "and getting worse",
+        }
+    }
+}
+
+/// What to change: `share` of the gap is what may be left.
+fn advice(record: &RunRecord<'_>, metrics: &Metrics, trend: Trend, share: f64) -> Vec<String> {
+    let mut advice: Vec<String> = Vec::new();
+    if let (Trend::Falls(left), Some(last_t_s)) = (trend, metrics.last_t_s) {
+        let more = share.ln() / left.ln() / 4.0;
+        // Once more as much as it takes at this rate, which need not stay.
+        let end_s = nice(last_t_s * (1.0 + 1.25 * more));
+        if more.is_finite() && more <= LONGEST {
+            advice.push(format!("run longer: at this rate `time.end_s = {end_s}` is enough"));
+        }
+    }
+    advice.extend(slow(record.prediction.as_ref(), metrics, share));
+    advice.extend(hypotheses(record.verdicts));
+    if let Some(clipped) = record.outcome.statistics.clipped
+        && clipped.torque + clipped.rate > 0
+    {
+        let (torque, samples) = (clipped.torque + clipped.rate, clipped.samples);
+        advice.push(format!("limits changed {torque} of {samples} commands: raise them, or ask for less"));
+    }
+    if let (Some(s), Disagreement::Measured { last, .. }) = (metrics.final_tracking_error, metrics.disagreement)
+        && !matches!(trend, Trend::Falls(_))
+        && s > LEFT_OVER * last
+    {
+        advice.push(format!(
+            "robots do not follow their references, |s| is still {}: raise the damping, or see what acts on them",
+            about(s)
+        ));
+    }
+    if advice.is_empty() {
+        advice.push("see `forwardstep check --predict` for how fast the design is without tracking errors".into());
+    }
+    advice
+}
+
+/// How long the design takes by itself, where that is longer than the run.
+fn slow(prediction: Option<&Predictions>, metrics: &Metrics, share: f64) -> Option<String> {
+    let rate_per_s = match &prediction?.rate {
+        PredictedRate::Roots { root_per_s: [rate_per_s, _], .. } | PredictedRate::Period { rate_per_s, .. } => {
+            *rate_per_s
+        }
+        PredictedRate::NoneSince(_) => return None,
+    };
+    let takes_s = share.ln() / rate_per_s;
+    let is_slow = rate_per_s < 0.0 && takes_s > metrics.last_t_s? / 4.0;
+    is_slow.then(|| {
+        format!(
+            "the design is slow, whatever the robots do: it needs some {} s more; larger weights, more links or larger roots make it faster",
+            about(takes_s)
+        )
+    })
+}
+
+/// The hypotheses that keep the theorem from speaking, with the change that would let it.
+fn hypotheses(report: &Report) -> Vec<String> {
+    const MOST: usize = 3;
+    let broken = report.hypotheses.iter().filter(|hypothesis| !hypothesis.answer().is_fine());
+    let words = broken.map(|hypothesis| {
+        let change = hypothesis.change().map_or_else(String::new, |change| format!("; to make it hold: {change}"));
+        let (answer, requires, name) = (hypothesis.answer().words(), hypothesis.requires(), hypothesis.id.name());
+        format!("{answer} [{name}]: {requires}{change}")
+    });
+    words.take(MOST).collect()
+}
+
+/// The next number of one or two digits and zeros.
+fn nice(value: f64) -> f64 {
+    let step = 10.0_f64.powf(value.abs().log10().floor() - 1.0);
+    (value / step).ceil() * step
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_trend_is_that_of_the_last_quarters() {
+        let of = |values: &[f64]| Trend::of(values);
+        assert_eq!(of(&[8.0, 8.0, 8.0, 8.0, 4.0, 3.0, 2.0, 1.0]), Trend::Falls(0.5));
+        assert_eq!(of(&[1.0, 1.0, 1.0, 1.0, 2.0, 3.0, 3.0, 2.9]), Trend::Stays);
+        assert_eq!(of(&[9.0, 9.0, 9.0, 9.0, 2.0, 3.0, 3.0, 4.0]), Trend::Grows);
+        assert_eq!(of(&[1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]), Trend::Stays, "nothing is left");
+        assert_eq!(of(&[3.0, 2.0, 1.0]), Trend::Stays, "too short to tell");
+    }
+
+    #[test]
+    fn a_time_is_advised_that_one_would_write() {
+        let advised = [12.3, 99.1, 100.0, 1234.5, 0.0431].map(nice);
+        for (found, expected) in advised.into_iter().zip([13.0, 100.0, 100.0, 1300.0, 0.044]) {
+            assert!((found / expected - 1.0_f64).abs() < 1e-12, "{found}");
+        }
+    }
+}
