@@ -2,6 +2,7 @@
 
 mod baseline;
 mod declared;
+mod desired;
 mod following;
 mod own_targets;
 mod swarm;
@@ -11,7 +12,7 @@ mod theorem_3;
 pub(crate) use following::slowest_per_s;
 pub(crate) use own_targets::hurwitz;
 
-use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking};
+use forwardstep_sim::reference::{Backstepping, Consensus, Desired, PureIntegral, Tracking};
 use forwardstep_sim::{Exchange, Setup};
 
 use crate::graphs::{dwell_time, spanning_tree};
@@ -40,6 +41,8 @@ pub fn check(setup: &Setup) -> Report {
         own_targets::check(setup)
     } else if let Some(following) = setup.following() {
         following::check(setup, following)
+    } else if let Some(desired) = reference.downcast::<Desired>() {
+        desired::of(setup, desired)
     } else {
         declared::check(setup)
     }

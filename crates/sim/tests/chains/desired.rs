@@ -162,7 +162,7 @@ fn remark_6_tracking_in_x_and_in_z_is_one_motion_without_s() {
     for agent in &mut setup.agents {
         agent.target = tracking().agents[0].target.clone();
     }
-    let with = |written| run(&under(setup.clone(), following(by_roots(0, &ROOTS), written)));
+    let with = |written| run(&under(setup.clone(), following(by_roots(0, ROOTS), written)));
     let truth = with(WrittenIn::Measured);
     let error = column(&truth, 0, Signal::Error, 0);
     assert!(error.last().unwrap().abs() < 1e-2 && error[0].abs() > 0.3);

@@ -44,6 +44,29 @@ pub enum ReferenceEvidence {
         /// The largest.
         largest: f64,
     },
+    /// Desired dynamics are a design of the paper.
+    Design {
+        /// Its equation.
+        design: &'static str,
+        /// How many roots it has.
+        order: usize,
+    },
+    /// The polynomial of a target has its roots to the left of the axis by the criterion of Routh and Hurwitz.
+    Stable {
+        /// Its degree.
+        order: usize,
+    },
+    /// It has not.
+    Unstable {
+        /// The first row of the array of Routh whose first entry is not positive, from zero.
+        row: usize,
+        /// Its degree.
+        order: usize,
+    },
+    /// Desired dynamics in which agents hear each other are no design that is known.
+    NoDesign,
+    /// They are written in variables in which none is known.
+    NoDesignInThese,
 }
 
 impl ReferenceEvidence {
@@ -62,7 +85,13 @@ impl ReferenceEvidence {
             | ReferenceEvidence::FirstRootCommon
             | ReferenceEvidence::FirstRootsOverConstants
             | ReferenceEvidence::Manipulability { .. } => Answer::Holds,
-            ReferenceEvidence::ComplexRoots { .. } => Answer::NotShown,
+            ReferenceEvidence::Design { .. } => Answer::Holds,
+            // What is stable has no certificate without its roots.
+            ReferenceEvidence::ComplexRoots { .. }
+            | ReferenceEvidence::Stable { .. }
+            | ReferenceEvidence::NoDesign
+            | ReferenceEvidence::NoDesignInThese => Answer::NotShown,
+            ReferenceEvidence::Unstable { .. } => Answer::Violated,
             ReferenceEvidence::FirstRoots(_) | ReferenceEvidence::FilteredDerivative { .. } => Answer::NotCovered,
         }
     }

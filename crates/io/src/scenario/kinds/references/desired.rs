@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use forwardstep_core::reference::WrittenIn;
+use forwardstep_core::reference::{RootSet, WrittenIn};
 use forwardstep_sim::quantity::within;
 use forwardstep_sim::reference::{Desired, DesiredPolynomial};
 use schemars::JsonSchema;
@@ -12,7 +12,7 @@ use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 
 use super::super::super::at::At;
 use super::super::super::fault::{Fault, checked, fault, filled, values};
-use super::super::super::roots::{RootFile, RootsFile, roots};
+use super::super::super::roots::{RootFile, RootsFile, checked_roots};
 use super::super::super::value_problem::ValueProblem;
 use super::{ReferenceKind, ReferenceRead, ReferenceReader, ReferenceTable};
 
@@ -111,7 +111,10 @@ impl PolynomialFile {
                 DesiredPolynomial::Roots {
                     // Within these bounds nothing is lost.
                     integrators: integrators as usize,
-                    roots: roots_per_s.as_ref().map_or_else(|| Ok(Default::default()), roots)?,
+                    roots: match roots_per_s {
+                        Some(list) => checked_roots(filled("roots_per_s", list)?)?,
+                        None => RootSet::default(),
+                    },
                 }
             }
         };
