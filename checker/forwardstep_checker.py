@@ -696,7 +696,7 @@ def designed(key, body):
     zeros, told = own.get("integrators", 0), "position_velocity" if heard[1:] else "position"
     agrees = zeros == 1 and coupled == {"roots_per_s": own.get("roots_per_s")} and body.get("written_in", "measured") == "measured"
     agrees = agrees and heard[:1] in ([], [product]) and all(b == 0 and v * a == product for v in heard[1:] for a, b in roots[:1])
-    decided(roots and (not (zeros or coupled or heard) if tracks else agrees), "these desired dynamics are not checked here")
+    decided("nonlinear" not in body and roots and (not (zeros or coupled or heard) if tracks else agrees), "dynamics of no known design")
     return True, ("tracking" if tracks else "consensus", {"roots_per_s": own["roots_per_s"], "exchange": told})
 
 class Scenario:

@@ -36,6 +36,9 @@ pub(crate) enum Design {
 /// The design that the desired dynamics of `setup` are, with its roots; `None` for other reference dynamics, and for none of the paper.
 pub(crate) fn design(setup: &Setup) -> Option<(Design, RootSet)> {
     let desired: &Desired = setup.reference.downcast()?;
+    if desired.protocol.is_some() {
+        return None;
+    }
     let DesiredPolynomial::Roots { integrators, roots } = &desired.polynomial else { return None };
     if roots.is_empty() {
         return None;

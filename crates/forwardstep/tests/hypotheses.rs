@@ -10,7 +10,8 @@ use std::sync::Arc;
 use forwardstep::check::hypothesis::{Evidence, KindEvidence, Subject};
 use forwardstep::check::{Answer, Id, Report, Rigour, Theorem, check};
 use forwardstep::core::law::ParameterBounds;
-use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
+use forwardstep::io::SourceText;
+use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario, read_scenario};
 use forwardstep::sim::push::{Course, Effect, Function, Push};
 use forwardstep::sim::{Adaptive, Setup, TaskSpaceLaw};
 
@@ -169,6 +170,7 @@ fn eq_43_desired_dynamics_are_judged_by_the_design_that_they_are() {
             heard: heard.to_vec(),
             follows_target: false,
             written,
+            protocol: None,
         };
         robots.exchange = desired.exchange();
         robots.reference = Arc::new(desired);
@@ -180,6 +182,48 @@ fn eq_43_desired_dynamics_are_judged_by_the_design_that_they_are() {
     assert_eq!(with(&[2.0, 2.0], WrittenIn::Measured), ("theorem-2", design, Answer::Holds));
     assert_eq!(with(&[2.0, 1.5], WrittenIn::Measured), other);
     assert_eq!(with(&[], WrittenIn::Measured), ("theorem-3-positions", design, Answer::Holds));
+}
+
+/// What is said of a nonlinear protocol is declared and tried: nothing holds by it, and what diverges is violated with a run.
+#[test]
+fn eq_43_a_nonlinear_protocol_is_declared_and_can_be_refuted() {
+    let of = |text: &str| {
+        let scenario = read_scenario("own", &SourceText::new("own.toml", text), None).unwrap();
+        let report = check(&scenario.setup);
+        let hypotheses = report.hypotheses.iter().take(3);
+        (report.theorem.name(), hypotheses.map(|found| (found.answer(), found.rigour())).collect::<Vec<_>>())
+    };
+    let text = r#"format = 2
+title = "a nonlinear protocol"
+time.end_s = 40
+[[agents]]
+name = "cart"
+count = 2
+robot.chain = { order = 2, chi = "-x", psi = "2 + cos(x)" }
+start.position_m = [[0.5], [-0.5]]
+[reference.desired]
+polynomial = [0, 1]
+nonlinear = "tanh(2*(heard - weights*x))"
+stable_because = "its potential and kinetic energy fall"
+input_to_state_stable_because = "a test"
+[law.linearising]
+[network]
+edges = [["cart-1", "cart-2"], ["cart-2", "cart-1"]]
+"#;
+    let declared = (Answer::NotShown, Rigour::Declared);
+    assert_eq!(of(text), ("desired-dynamics", vec![declared, declared, (Answer::NotShown, Rigour::Sampled)]));
+    let violated = vec![declared, declared, (Answer::Violated, Rigour::Sampled)];
+    // They drive each other apart; and a cubic drives them to infinity in finite time.
+    for wrong in ["-tanh(2*(heard - weights*x))", "x^3"] {
+        assert_eq!(of(&text.replace("tanh(2*(heard - weights*x))", wrong)), ("desired-dynamics", violated.clone()));
+    }
+    let target = text.replace(
+        "nonlinear = \"tanh(2*(heard - weights*x))\"",
+        "follows_target = true\nnonlinear = \"-(x - xd)^3 - x\"",
+    );
+    let target = target.replace("[[0.5], [-0.5]]", "[[0.5], [-0.5]]\ntarget.formulas = [\"0.1*sin(t)\"]");
+    let (theorem, found) = of(target.split("[network]").next().unwrap());
+    assert_eq!((theorem, found[2].0), ("chains-track", Answer::NotShown));
 }
 
 #[test]

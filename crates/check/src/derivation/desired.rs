@@ -8,7 +8,7 @@ use super::cascade::Upper;
 use super::dynamics::{Dynamics, Measured};
 use super::explanation::{Section, Subject};
 use super::factors::Factors;
-use super::form::{Combination, Form, Letter, Quantity};
+use super::form::{Combination, Form, Letter, Quantity, Term};
 use super::formula::{Formula, Symbol};
 use super::notation::Notation;
 use super::polynomial::Polynomial;
@@ -39,6 +39,9 @@ fn wanted(desired: &Desired) -> Form {
         [] => Polynomial::number(b.coefficient(0)),
         list => Polynomial::new(list.iter().map(|number| Number::written(*number)).collect()),
     };
+    if desired.protocol.is_some() {
+        own = own.plus(Quantity::own(Letter::Term(Term::Protocol)), &Polynomial::one());
+    }
     let bracket = Combination::of(q, b).plus(Quantity::heard(Letter::Position), &-&heard);
     Form::own(own).less(&Form::network(bracket))
 }
@@ -86,4 +89,10 @@ pub(super) fn parts(desired: &Desired, upper: &Upper, notation: &Notation, secti
         .formula(Formula::equal(Symbol::new("𝒵"), notation.form(&in_x)), "(43)")
         .formula(Formula::equal(Symbol::new("𝓕"), notation.form(&of_s)), "(43)")
         .words(why)
+        .words(if desired.protocol.is_some() {
+            "f is the nonlinear protocol of the scenario. Its arguments are those that 𝒵 has: derivatives of z in it are those of x less those of s, so that it \
+             belongs to 𝓕 too; it holds none of s above the one before the highest."
+        } else {
+            ""
+        })
 }

@@ -4,17 +4,21 @@
 //! reduction are derived by `forwardstep explain`; that 𝒵 does what it is for where s ≡ 0 is shown for targets alone, by the
 //! criterion of Routh and Hurwitz: what is left is A(p)(x − x_d) = 0, and what s adds to it is square-integrable once its derivatives are
 //! absorbed, if s is.
+//!
+//! Of a nonlinear protocol its author says what is needed: that its dynamics are globally exponentially stable without s, and input-to-state
+//! stable from s, which is bounded and vanishes by the law. That is reported as declared, and runs may refute it.
 
 use forwardstep_core::reference::WrittenIn;
 use forwardstep_sim::Setup;
-use forwardstep_sim::reference::Desired;
+use forwardstep_sim::reference::{Desired, Protocol};
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
+use super::tried::tried;
 use super::{check, own_targets};
 use crate::derivation::polynomial_of;
 use crate::graphs::dwell_time;
-use crate::hypothesis::{Hypothesis, Id, ReferenceEvidence};
+use crate::hypothesis::{Hypothesis, Id, KindEvidence, ReferenceEvidence};
 use crate::instance::{design, designed, name};
 use crate::laws;
 use crate::links::{bounded_delays, bounded_weights};
@@ -30,12 +34,16 @@ pub(super) fn of(setup: &Setup, desired: &Desired) -> Report {
         report.hypotheses.insert(0, Hypothesis::new(Id::DesiredDesign, evidence));
         return report;
     }
+    let said = match &desired.protocol {
+        Some(protocol) => nonlinear(setup, protocol),
+        None if desired.follows_target => vec![Hypothesis::new(Id::DesiredDynamics, stability(desired))],
+        None => vec![Hypothesis::new(Id::DesiredDynamics, unknown(desired))],
+    };
     if desired.follows_target {
-        let mut report = own_targets::check(setup);
-        report.hypotheses.insert(0, Hypothesis::new(Id::DesiredDynamics, stability(desired)));
-        return report;
+        let report = own_targets::check(setup);
+        return Report { hypotheses: said.into_iter().chain(report.hypotheses).collect(), ..report };
     }
-    let mut hypotheses = vec![Hypothesis::new(Id::DesiredDynamics, unknown(desired))];
+    let mut hypotheses = said;
     hypotheses.extend([dwell_time(setup), bounded_delays(setup)]);
     hypotheses.extend(bounded_weights(setup));
     hypotheses.extend(pushes_end(setup));
@@ -45,6 +53,18 @@ pub(super) fn of(setup: &Setup, desired: &Desired) -> Report {
     hypotheses.extend(digital(setup));
     let promises = "what the desired dynamics do without s, as s vanishes".into();
     Report { theorem: Theorem::Desired, promises, hypotheses }
+}
+
+/// What the author of a nonlinear protocol says, and what runs say of that.
+fn nonlinear(setup: &Setup, protocol: &Protocol) -> Vec<Hypothesis> {
+    let declared = |requires: &str, because: &Option<String>| {
+        let because = because.clone().unwrap_or_else(|| "nothing is said of it".into());
+        KindEvidence::Declared { requires: requires.into(), because }
+    };
+    let stable = declared("without s they are globally exponentially stable", &protocol.stable_because);
+    let robust = declared("they are input-to-state stable from s", &protocol.input_to_state_stable_because);
+    let of = |evidence| Hypothesis::new(Id::DesiredDynamics, evidence);
+    vec![of(stable), of(robust), Hypothesis::new(Id::DesiredDynamics, tried(setup))]
 }
 
 /// Why nothing is known of a 𝒵 in which agents hear each other.

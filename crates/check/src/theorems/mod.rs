@@ -8,6 +8,7 @@ mod own_targets;
 mod swarm;
 mod theorem_1;
 mod theorem_3;
+mod tried;
 
 pub(crate) use following::slowest_per_s;
 pub(crate) use own_targets::hurwitz;

@@ -40,7 +40,8 @@ use thiserror::Error;
 use super::Jet;
 use crate::LengthError;
 use crate::reference::{
-    Consensus, DesiredDynamics, Exchange, Heard, Measured, Place, Position, Reference, ReferenceOut, WrittenIn,
+    Consensus, DesiredDynamics, Exchange, Heard, Measured, Place, Position, ProtocolWork, Reference, ReferenceOut,
+    WrittenIn,
 };
 use crate::signal::Signal;
 
@@ -139,7 +140,11 @@ impl Guide {
         let blocks = if let Guide::Consensus(consensus) = self { consensus.order() } else { 0 };
         let axis = || vec![0.0; axes];
         let all = || vec![0.0; blocks * axes];
-        GuideWork { q: axis(), dq: axis(), z: axis(), dz: axis(), state: all(), rate: all() }
+        let protocol = match self {
+            Guide::Desired(desired) => desired.work(),
+            Guide::Tracking { .. } | Guide::Consensus(_) => ProtocolWork::default(),
+        };
+        GuideWork { q: axis(), dq: axis(), z: axis(), dz: axis(), state: all(), rate: all(), protocol }
     }
 
     /// d/dt of z, ż, …, z^(ℓ−1) for a plant of order `k` with `axes` axes.
@@ -181,7 +186,7 @@ impl Guide {
             }
             Guide::Consensus(consensus) => {
                 // As a robot would call it: x₀ is its position, x₁ its velocity, x₂ its ż, …. Its z is not used.
-                let GuideWork { q, dq, z, dz, state, rate } = work;
+                let GuideWork { q, dq, z, dz, state, rate, .. } = work;
                 LengthError::check("room for the reference", consensus.vectors() * axes, state.len())?;
                 LengthError::check("room for an axis", axes, q.len())?;
                 for axis in 0..axes {
@@ -205,7 +210,7 @@ impl Guide {
                     let x = |r: usize| measured[r * axes + entry];
                     let (place, given) = (Place { block: axes, entry }, (own, heard.degree[0], heard.sums));
                     let target = target.get(entry).map(|jet| &jet[..]);
-                    desired.rate::<Position>(k, place, x, given, target, d_state);
+                    desired.rate::<Position>(k, place, x, given, target, (&mut work.protocol, d_state))?;
                 }
             }
         }
@@ -259,4 +264,5 @@ pub struct GuideWork {
     dz: Vec<f64>,
     state: Vec<f64>,
     rate: Vec<f64>,
+    protocol: ProtocolWork,
 }

@@ -23,13 +23,19 @@
 //! z = v_1,    v̇_m = v_{m+1} − a_{N−m} y  for m < ℓ,    v̇_ℓ = R
 //! ```
 //!
+//! **A nonlinear protocol** adds f to the right side, a function of x, ẋ, …, x^(N−1), of Σ_j w_ij x_j(t−T_ij) and Σ_j w_ij, and of x_d and its
+//! derivatives, in which x^(r) is replaced as above. In x alone its arguments z^(r) are x^(k−1+r) − s^(r), so that f stands in 𝒵 and in 𝓕; the
+//! highest derivative of s is s^(ℓ) still, and so is the degree. It is not written in x: what is not measured cannot be integrated through f.
+//!
 //! (24) of order ℓ is γ_r = α_{r−1}, b_r = α_r, c₀ = α₀; (a5) has c₁ = α₀/κ₀ besides; (a9) is γ_r = α_r with a target.
 
+use alloc::vec;
 use alloc::vec::Vec;
 
 use thiserror::Error;
 
 use super::{Exchange, Heard, Measured, Reference, ReferenceOut, Sliding, begin, check};
+use crate::expression::{Expression, ExpressionError, Graph, Tape};
 use crate::{LengthError, Scalar};
 
 /// In which variables 𝒵 is written: Remark 6.
@@ -44,18 +50,19 @@ pub enum WrittenIn {
     X,
 }
 
-/// Linear desired dynamics of one kind of agent, as the head of this file has them.
-#[derive(Clone, Debug, PartialEq)]
+/// Desired dynamics of one kind of agent, as the head of this file has them: linear, or with f.
+#[derive(Clone, Debug)]
 pub struct DesiredDynamics {
     own: Vec<f64>,
     coupled: Vec<f64>,
     heard: [f64; 2],
     tracks: bool,
     written: WrittenIn,
+    protocol: Option<Tape>,
 }
 
 /// Desired dynamics without meaning.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum DesiredError {
     /// N = 0.
     #[error("the desired dynamics have no coefficients, but their order is how many there are")]
@@ -76,6 +83,12 @@ pub enum DesiredError {
         /// How many there are.
         got: usize,
     },
+    /// A function without a value that can be computed, or of more than there is.
+    #[error(transparent)]
+    Protocol(#[from] ExpressionError),
+    /// A nonlinear protocol in x alone.
+    #[error("a nonlinear protocol is not written in x, since what is not measured cannot be integrated through it")]
+    ProtocolInX,
     /// A target and neighbours at once.
     #[error("the desired dynamics follow a target and hear neighbours, but one of both is what they are for")]
     TargetAndNeighbours,
@@ -104,7 +117,35 @@ impl DesiredDynamics {
                 return Err(DesiredError::NotFinite { index, value: list[index] });
             }
         }
-        Ok(DesiredDynamics { own, coupled, heard, tracks, written })
+        Ok(DesiredDynamics { own, coupled, heard, tracks, written, protocol: None })
+    }
+
+    /// The same with f, whose variables are x, ẋ, …, x^(N−1), Σ_j w_ij x_j, Σ_j w_ij, and x_d, …, x_d^(N) where a target is followed.
+    ///
+    /// # Errors
+    /// [`DesiredError`] when f has another variable, is too large, or 𝒵 is written in x.
+    pub fn with_protocol(self, protocol: &Expression) -> Result<Self, DesiredError> {
+        if self.written == WrittenIn::X {
+            return Err(DesiredError::ProtocolInX);
+        }
+        let order = self.order();
+        let mut graph = Graph::new(order + 2 + if self.tracks { order + 1 } else { 0 });
+        let value = graph.import(protocol)?;
+        Ok(DesiredDynamics { protocol: Some(Tape::new(&graph, &[value])?), ..self })
+    }
+
+    /// Whether there is an f.
+    pub fn is_linear(&self) -> bool {
+        self.protocol.is_none()
+    }
+
+    /// Room for one evaluation.
+    pub(crate) fn work(&self) -> ProtocolWork {
+        self.protocol.as_ref().map_or_else(ProtocolWork::default, |tape| ProtocolWork {
+            variables: vec![0.0; tape.variables()],
+            workspace: tape.workspace(),
+            value: [0.0],
+        })
     }
 
     /// N.
@@ -162,11 +203,11 @@ impl DesiredDynamics {
         x: impl Fn(usize) -> f64,
         (state, degree, sums): (&[f64], f64, X::Sums<'_>),
         target: Option<&[f64]>,
-        d_state: &mut [f64],
-    ) {
+        (work, d_state): (&mut ProtocolWork, &mut [f64]),
+    ) -> Result<(), LengthError> {
         let (order, vectors) = (self.order(), self.vectors(plant));
         let Place { block, entry } = place;
-        let Some(top) = vectors.checked_sub(1) else { return };
+        let Some(top) = vectors.checked_sub(1) else { return Ok(()) };
         let z = |r: usize| state[r * block + entry];
         let y = x(plant - 1);
         for m in 0..top {
@@ -195,6 +236,15 @@ impl DesiredDynamics {
                 coupled.fold(rate + told, |rate, (r, coupled)| (degree * coupled).neg_mul_add(written(r), rate))
             }
         };
+        let Some(tape) = &self.protocol else { return Ok(()) };
+        let ProtocolWork { variables, workspace, value } = work;
+        let network = [X::position(sums, entry), degree];
+        let desired = target.into_iter().flatten().copied().take(order + 1);
+        let all = (0..order).map(written).chain(network).chain(desired);
+        variables.iter_mut().zip(all).for_each(|(variable, value)| *variable = value);
+        tape.evaluate(variables, workspace, value)?;
+        d_state[top * block + entry] += value[0];
+        Ok(())
     }
 
     /// From z, ż, … in `state`, as they are to start, to v_1, v_2, …, if that is what is integrated: v_{i+1} is z^(i) with what
@@ -212,6 +262,14 @@ impl DesiredDynamics {
             }
         }
     }
+}
+
+/// Working memory of f.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ProtocolWork {
+    variables: Vec<f64>,
+    workspace: Vec<f64>,
+    value: [f64; 1],
 }
 
 /// Where the entry of an axis stands in a block, and how long a block is.
@@ -260,9 +318,9 @@ pub struct Desired<X> {
 }
 
 impl<X: Exchange> Desired<X> {
-    /// For so many agents. `None` when N is below two, or a target is followed, which a population has not.
+    /// For so many agents. `None` when N is below two, there is an f, or a target is followed, which a population has not.
     pub fn new(agents: usize, dynamics: DesiredDynamics) -> Option<Self> {
-        let suits = dynamics.order() >= ROBOT && !dynamics.tracks;
+        let suits = dynamics.order() >= ROBOT && !dynamics.tracks && dynamics.is_linear();
         suits.then_some(Desired { exchange: core::marker::PhantomData, agents, dynamics })
     }
 }
@@ -301,10 +359,11 @@ impl<X: Exchange> Reference for Desired<X> {
         let n = self.agents;
         check([axes, n, self.vectors()], measured, state, heard, &out)?;
         let block = axes * n;
+        let mut none = ProtocolWork::default();
         for entry in 0..block {
             let x = |r: usize| if r == 0 { measured.q[entry] } else { measured.dq[entry] };
             let given = (state, heard.degree[entry % n], heard.sums);
-            self.dynamics.rate::<X>(ROBOT, Place { block, entry }, x, given, None, out.d_state);
+            self.dynamics.rate::<X>(ROBOT, Place { block, entry }, x, given, None, (&mut none, out.d_state))?;
         }
         out.z.copy_from_slice(&state[..block]);
         out.dz.copy_from_slice(&out.d_state[..block]);

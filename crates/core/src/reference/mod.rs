@@ -22,8 +22,8 @@ mod sliding;
 
 pub use backstepping::{Backstepping, BacksteppingError};
 pub use consensus::Consensus;
-pub(crate) use desired::Place;
 pub use desired::{Desired, DesiredDynamics, DesiredError, WrittenIn};
+pub(crate) use desired::{Place, ProtocolWork};
 pub use exchange::{Exchange, Heard, Position, PositionSums, PositionVelocity, PositionVelocitySums};
 pub use following::{Following, SmoothFollowing};
 pub use per_axis::{AxisInput, AxisOutput, PerAxis};

@@ -104,6 +104,15 @@ pub enum SetupError {
         /// k.
         least: usize,
     },
+    /// A nonlinear protocol for a robot that is no chain.
+    #[error(
+        "a nonlinear protocol leads chains, which step any reference dynamics, and agent `{agent}` is another robot, which is sampled by the exact \
+         solution of linear ones: leave `nonlinear` out, or write the robot as a `chain`"
+    )]
+    ProtocolOfChains {
+        /// The agent.
+        agent: String,
+    },
     /// A law that takes desired dynamics in what is measured alone.
     #[error(
         "agent `{agent}`: {law} follows a target by desired dynamics that are written in what is measured, not in x or z alone"

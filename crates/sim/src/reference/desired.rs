@@ -1,6 +1,7 @@
 //! Desired dynamics that a user writes down: what x should do, of any order (Section IV-B).
 
 use forwardstep_core::controller::Guide;
+use forwardstep_core::expression::Expression;
 use forwardstep_core::reference::{
     self, DesiredDynamics, DesiredError, Position, PositionVelocity, RootSet, WrittenIn, polynomial,
 };
@@ -29,6 +30,19 @@ pub struct Desired {
     pub follows_target: bool,
     /// The variables that 𝒵 is written in.
     pub written: WrittenIn,
+    /// What is added to the right side, a nonlinear protocol.
+    pub protocol: Option<Protocol>,
+}
+
+/// A nonlinear protocol f, with what its author says of the dynamics that it makes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Protocol {
+    /// f of x, ẋ, …, x^(N−1), then Σ_j w_ij x_j(t−T_ij) and Σ_j w_ij, then x_d, ẋ_d, …, x_d^(N) where a target is followed.
+    pub term: Expression,
+    /// Why agents agree, or targets are reached, exponentially and from everywhere, where s ≡ 0.
+    pub stable_because: Option<String>,
+    /// Why they are input-to-state stable from s.
+    pub input_to_state_stable_because: Option<String>,
 }
 
 /// A polynomial in p = d/dt.
@@ -98,7 +112,11 @@ impl Desired {
         let coupled = self.coupling.as_ref().map_or(Ok(Vec::new()), DesiredPolynomial::coefficients).map_err(roots)?;
         let heard = [0, 1].map(|r| self.heard.get(r).copied().unwrap_or(0.0));
         let heard = if self.heard.is_empty() { [coupled.first().copied().unwrap_or(0.0), 0.0] } else { heard };
-        DesiredDynamics::new(own, coupled, heard, self.follows_target, self.written).map_err(wrong)
+        let linear = DesiredDynamics::new(own, coupled, heard, self.follows_target, self.written).map_err(wrong)?;
+        match &self.protocol {
+            None => Ok(linear),
+            Some(protocol) => linear.with_protocol(&protocol.term).map_err(wrong),
+        }
     }
 
     /// The same for a law that has its reference dynamics inside.
@@ -139,7 +157,7 @@ impl ReferenceDynamics for Desired {
     }
 
     fn linear(&self, agent: &AgentSetup, _: Exchange) -> Option<LinearReference> {
-        let dynamics = self.dynamics_of(&agent.name).ok()?;
+        let dynamics = self.dynamics_of(&agent.name).ok().filter(DesiredDynamics::is_linear)?;
         let (plant, order) = (plant_order(agent), dynamics.vectors(plant_order(agent)));
         let from = match self.written {
             WrittenIn::Measured => plant,
@@ -172,6 +190,9 @@ impl ReferenceDynamics for Desired {
         }
         for agent in &setup.agents {
             let (order, least) = (dynamics.order(), plant_order(agent));
+            if self.protocol.is_some() && !agent.robot.kind.is::<ChainModel>() {
+                return Err(SetupError::ProtocolOfChains { agent: agent.name.clone() });
+            }
             if order < least {
                 return Err(SetupError::DesiredOrder { agent: agent.name.clone(), order, least });
             }

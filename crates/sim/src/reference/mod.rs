@@ -12,7 +12,7 @@ mod tracking;
 
 pub use backstepping::Backstepping;
 pub use consensus::{Consensus, PureIntegral};
-pub use desired::{Desired, DesiredPolynomial};
+pub use desired::{Desired, DesiredPolynomial, Protocol};
 pub use linear::{LinearReference, LinearTerms};
 pub use tracking::Tracking;
 

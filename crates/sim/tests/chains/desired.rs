@@ -6,11 +6,11 @@ use std::sync::Arc;
 use forwardstep_core::Gain;
 use forwardstep_core::reference::{RootPair, RootSet, WrittenIn};
 use forwardstep_sim::graph::{Edge, Weight};
-use forwardstep_sim::reference::{Desired, DesiredPolynomial, PureIntegral, Tracking};
+use forwardstep_sim::reference::{Desired, DesiredPolynomial, Protocol, PureIntegral, Tracking};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{ChainStep, Exchange, Known, Network, Outcome, Setup, SetupError, Signal, simulate};
 
-use crate::common::chains::{estimate, of_all_orders, tracking};
+use crate::common::chains::{estimate, of_all_orders, tracking, x};
 use crate::common::{assert_first_order, balance_residual, column, columns, consensus_of_masses, run, switching};
 
 fn by_roots(integrators: usize, roots: impl Into<RootSet>) -> DesiredPolynomial {
@@ -25,11 +25,12 @@ fn agreeing(roots: &[f64], heard: &[f64], written: WrittenIn) -> Desired {
         heard: heard.to_vec(),
         follows_target: false,
         written,
+        protocol: None,
     }
 }
 
 fn following(polynomial: DesiredPolynomial, written: WrittenIn) -> Desired {
-    Desired { polynomial, coupling: None, heard: Vec::new(), follows_target: true, written }
+    Desired { polynomial, coupling: None, heard: Vec::new(), follows_target: true, written, protocol: None }
 }
 
 /// `setup` under these desired dynamics.
@@ -203,6 +204,7 @@ fn eq_lyapunov_identities_hold_whatever_desired_dynamics_lead() {
             heard: Vec::new(),
             follows_target: false,
             written,
+            protocol: None,
         };
         for step in steps() {
             let mut setup = of_all_orders(&step, [3; 3]);
@@ -265,4 +267,92 @@ fn desired_dynamics_without_meaning_are_refused() {
     // Thrust and velocity-free masses have reference dynamics of their own.
     let masses = crate::common::masses::consensus(3);
     assert!(matches!(refused(masses, agreeing(&ROOTS[..3], &[], measured)), SetupError::ReferenceOfLaw { .. }));
+}
+
+/// f alone, without any linear part.
+fn nonlinear(order: usize, term: forwardstep_core::expression::Expression) -> Desired {
+    let said = || Some("a test".to_owned());
+    Desired {
+        polynomial: DesiredPolynomial::Coefficients(vec![0.0; order]),
+        coupling: None,
+        heard: Vec::new(),
+        follows_target: false,
+        written: WrittenIn::Measured,
+        protocol: Some(Protocol { term, stable_because: said(), input_to_state_stable_because: said() }),
+    }
+}
+
+/// (24) with roots 1, 2 and 1.5 as one formula: f has x, …, x^(3), what is heard and the weights where they belong.
+#[test]
+fn eq_43_a_linear_protocol_as_a_formula_is_the_linear_one() {
+    let [a0, a1, a2] = [3.0, 6.5, 4.5];
+    let own = x(1) * a0 + x(2) * a1 + x(3) * a2;
+    let all = x(0) * a0 + x(1) * a1 + x(2) * a2 + x(3);
+    let term = -own - x(5) * all + x(4) * a0;
+    for written in [WrittenIn::Measured, WrittenIn::Z] {
+        let mut setup = of_all_orders(&steps()[1], [3; 3]);
+        setup.time.end_s = 10.0;
+        let linear = run(&under(setup.clone(), agreeing(&ROOTS[..3], &[], written)));
+        let formula = run(&under(setup, Desired { written, ..nonlinear(4, term.clone()) }));
+        let gap = apart(&linear, &formula);
+        assert!(gap < 1e-9, "{written:?}: {gap:e}");
+    }
+}
+
+/// (a9) in the same way: x_d and its derivatives stand behind the weights.
+#[test]
+fn eq_43_tracking_as_a_formula_is_tracking() {
+    let alpha = forwardstep_core::reference::polynomial([1.0, 2.0, 1.5]).unwrap();
+    let error = |r: usize| x(r) - x(5 + r);
+    let term = x(8) - error(0) * alpha[0] - error(1) * alpha[1] - error(2) * alpha[2];
+    let mut setup = tracking();
+    setup.time.end_s = 10.0;
+    let linear = following(by_roots(0, [1.0, 2.0, 1.5]), WrittenIn::Measured);
+    let formula = Desired { follows_target: true, ..nonlinear(3, term) };
+    let gap = apart(&run(&under(setup.clone(), linear)), &run(&under(setup, formula)));
+    assert!(gap < 1e-9, "{gap:e}");
+}
+
+/// ẍ_i = −ẋ_i − ẋ_i³ + tanh(2 Σ_j w_ij (x_j − x_i)): agents that start ten metres apart agree, in continuous time and sampled, and the
+/// balance of the second step holds.
+#[test]
+fn eq_43_a_nonlinear_protocol_leads_plants_of_orders_one_and_two() {
+    let term = -x(1) - x(1).power(3.0) + ((x(2) - x(3) * x(0)) * 2.0).tanh_of();
+    let mut setup = of_all_orders(&steps()[0], [3; 3]);
+    let (mut slow, second) = (setup.agents[0].clone(), setup.agents[0].clone());
+    slow.name = "second".into();
+    slow.start.q = vec![-9.0];
+    setup.agents = vec![second, slow];
+    setup.network = Network { schedule: Schedule::fixed(two_way()), ..Network { agents: 2, ..switching() } };
+    setup.time.end_s = 40.0;
+    let setup = under(setup, nonlinear(2, term));
+    let outcome = run(&setup);
+    let positions = columns(&outcome, Signal::Position);
+    let gap = |row: usize| (positions[0][row] - positions[1][row]).abs();
+    let last = positions[0].len() - 1;
+    assert!(gap(0) > 9.0 && gap(last) < 1e-3, "{} {}", gap(0), gap(last));
+    for agent in 0..2 {
+        assert!(balance_residual(&outcome, agent, 1.0) < 1e-7);
+    }
+    let mut short = setup;
+    short.time.end_s = 3.0;
+    assert_first_order(&short, 250.0);
+}
+
+fn two_way() -> Vec<Edge> {
+    let edge = |from, to| Edge { from, to, weight: Weight::Constant(0.8), delay: 0 };
+    vec![edge(0, 1), edge(1, 0)]
+}
+
+#[test]
+fn nonlinear_protocols_without_meaning_are_refused() {
+    let refused = |setup: Setup, desired: Desired| {
+        simulate(&under(setup, desired), &mut |_| std::ops::ControlFlow::Continue(())).unwrap_err()
+    };
+    let chains = || of_all_orders(&steps()[0], [3; 3]);
+    let in_x = Desired { written: WrittenIn::X, ..nonlinear(4, -x(0)) };
+    assert!(matches!(refused(chains(), in_x), SetupError::Desired { .. }));
+    // Without a target there is no variable beyond the weights.
+    assert!(matches!(refused(chains(), nonlinear(4, x(6))), SetupError::Desired { .. }));
+    assert!(matches!(refused(consensus_of_masses(1.0), nonlinear(3, -x(0))), SetupError::ProtocolOfChains { .. }));
 }

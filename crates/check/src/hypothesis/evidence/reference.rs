@@ -67,6 +67,26 @@ pub enum ReferenceEvidence {
     NoDesign,
     /// They are written in variables in which none is known.
     NoDesignInThese,
+    /// Runs of a nonlinear protocol alone, from states that are drawn.
+    Tried {
+        /// How many were made.
+        runs: usize,
+        /// One that refutes what is declared.
+        found: Option<TriedRun>,
+    },
+}
+
+/// A run of desired dynamics that ends farther from what they are for than it began.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TriedRun {
+    /// Where the agents start.
+    pub start: Vec<f64>,
+    /// Whether there is an s, which vanishes.
+    pub disturbed: bool,
+    /// The distance at most in the first tenth of the run.
+    pub from: f64,
+    /// The distance at the end; infinite where the run breaks down.
+    pub to: f64,
 }
 
 impl ReferenceEvidence {
@@ -90,14 +110,32 @@ impl ReferenceEvidence {
             ReferenceEvidence::ComplexRoots { .. }
             | ReferenceEvidence::Stable { .. }
             | ReferenceEvidence::NoDesign
-            | ReferenceEvidence::NoDesignInThese => Answer::NotShown,
-            ReferenceEvidence::Unstable { .. } => Answer::Violated,
+            | ReferenceEvidence::NoDesignInThese
+            | ReferenceEvidence::Tried { found: None, .. } => Answer::NotShown,
+            ReferenceEvidence::Unstable { .. } | ReferenceEvidence::Tried { found: Some(_), .. } => Answer::Violated,
             ReferenceEvidence::FirstRoots(_) | ReferenceEvidence::FilteredDerivative { .. } => Answer::NotCovered,
         }
     }
 
-    /// All of it is compared as it was given.
+    /// All of it is compared as it was given, but for what was run.
     pub(super) fn rigour(&self) -> Rigour {
-        Rigour::Exact
+        match self {
+            ReferenceEvidence::Tried { .. } => Rigour::Sampled,
+            ReferenceEvidence::Roots { .. }
+            | ReferenceEvidence::ComplexRoots { .. }
+            | ReferenceEvidence::Hurwitz { .. }
+            | ReferenceEvidence::Order(_)
+            | ReferenceEvidence::Orders(_)
+            | ReferenceEvidence::FirstRootCommon
+            | ReferenceEvidence::FirstRootsOverConstants
+            | ReferenceEvidence::FirstRoots(_)
+            | ReferenceEvidence::FilteredDerivative { .. }
+            | ReferenceEvidence::Manipulability { .. }
+            | ReferenceEvidence::Design { .. }
+            | ReferenceEvidence::Stable { .. }
+            | ReferenceEvidence::Unstable { .. }
+            | ReferenceEvidence::NoDesign
+            | ReferenceEvidence::NoDesignInThese => Rigour::Exact,
+        }
     }
 }

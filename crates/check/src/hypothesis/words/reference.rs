@@ -1,6 +1,13 @@
 //! Reference dynamics.
 
-use crate::hypothesis::ReferenceEvidence;
+use crate::hypothesis::{ReferenceEvidence, TriedRun};
+
+/// The first of these numbers.
+fn list(numbers: &[f64]) -> String {
+    let shown: Vec<String> = numbers.iter().take(6).map(|number| format!("{number:.4}")).collect();
+    let more = if numbers.len() > shown.len() { ", …" } else { "" };
+    format!("({}{more})", shown.join(", "))
+}
 
 pub(super) fn words(evidence: &ReferenceEvidence) -> String {
     match evidence {
@@ -51,6 +58,18 @@ pub(super) fn words(evidence: &ReferenceEvidence) -> String {
             "agents hear each other in another way than in (24) and (a5), and nothing is known of where that leads over graphs that switch and \
              links that are late"
                 .into()
+        }
+        ReferenceEvidence::Tried { runs, found: None } => format!(
+            "{runs} runs of these dynamics alone, from states that were drawn, half of them with an s that vanishes, came closer to what they are for; \
+             that shows nothing of others"
+        ),
+        ReferenceEvidence::Tried { found: Some(TriedRun { start, disturbed, from, to }), .. } => {
+            let with = if *disturbed { "with an s that vanishes" } else { "without s" };
+            let end = if to.is_finite() { format!("ends at {to:.3e}") } else { "breaks down".into() };
+            format!(
+                "a run of these dynamics alone, {with}, from x = {}, is at most {from:.3e} from what they are for when it begins, and {end}",
+                list(start)
+            )
         }
         ReferenceEvidence::NoDesignInThese => {
             "in these variables s itself may stand beside what agents hear, or weights have to be constant; a proof is known of dynamics \

@@ -161,6 +161,10 @@ fn reference(evidence: &ReferenceEvidence) -> Option<String> {
              no `heard`: this is (24), about which Theorem 3 speaks"
                 .into()
         }
+        ReferenceEvidence::Tried { found: Some(_), .. } => "a protocol whose runs converge from every state".into(),
+        ReferenceEvidence::Tried { found: None, .. } => {
+            "linear dynamics by their roots, of which `check` can tell".into()
+        }
         ReferenceEvidence::NoDesignInThese => "`written_in = \"measured\"`".into(),
         ReferenceEvidence::Design { .. }
         | ReferenceEvidence::Order(_)

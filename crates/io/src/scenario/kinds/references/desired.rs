@@ -4,7 +4,7 @@ use std::fmt;
 
 use forwardstep_core::reference::{RootSet, WrittenIn};
 use forwardstep_sim::quantity::within;
-use forwardstep_sim::reference::{Desired, DesiredPolynomial};
+use forwardstep_sim::reference::{Desired, DesiredPolynomial, Protocol};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
@@ -12,8 +12,11 @@ use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 
 use super::super::super::at::At;
 use super::super::super::fault::{Fault, checked, fault, filled, values};
+use super::super::super::formula::formula_in;
 use super::super::super::roots::{RootFile, RootsFile, checked_roots};
+use super::super::super::system_problem::SystemProblem;
 use super::super::super::value_problem::ValueProblem;
+use super::super::chain::derivatives;
 use super::{ReferenceKind, ReferenceRead, ReferenceReader, ReferenceTable};
 
 /// The highest order of desired dynamics that is accepted.
@@ -37,6 +40,14 @@ pub struct DesiredFile {
     pub follows_target: Option<bool>,
     /// In which variables the reference dynamics are written; it makes a difference only where x does not follow them. Default: `measured`.
     pub written_in: Option<WrittenInFile>,
+    /// A nonlinear protocol: a formula that is added to the right side, for chains. Its variables are x, dx, d2x, … below the order,
+    /// `heard` and `weights`, the sums over the neighbours of weight times position and of weights, and xd, dxd, d2xd, … of a target.
+    /// Default: none.
+    pub nonlinear: Option<At<String>>,
+    /// Why these dynamics do without s what they are for, exponentially and from everywhere: reported as declared, and tried.
+    pub stable_because: Option<At<String>>,
+    /// Why they are input-to-state stable from s: reported as declared, and tried.
+    pub input_to_state_stable_because: Option<At<String>>,
 }
 
 /// A polynomial in d/dt.
@@ -123,11 +134,34 @@ impl PolynomialFile {
     }
 }
 
+impl DesiredFile {
+    /// The nonlinear protocol of dynamics of this order, with what is said of it.
+    fn protocol(&self, order: usize) -> Result<Option<Protocol>, Fault> {
+        let because = |text: &Option<At<String>>| text.as_ref().map(|text| text.value.clone());
+        let Some(text) = &self.nonlinear else {
+            return match self.stable_because.as_ref().or(self.input_to_state_stable_because.as_ref()) {
+                Some(unused) => Err(fault(unused, SystemProblem::SaidOfLinear)),
+                None => Ok(None),
+            };
+        };
+        let mut names = derivatives(order, "x");
+        names.extend(["heard", "weights"].map(str::to_owned));
+        if self.follows_target == Some(true) {
+            names.extend(derivatives(order + 1, "xd"));
+        }
+        Ok(Some(Protocol {
+            term: formula_in(text, &names)?,
+            stable_because: because(&self.stable_because),
+            input_to_state_stable_because: because(&self.input_to_state_stable_because),
+        }))
+    }
+}
+
 impl ReferenceKind for DesiredFile {
     fn table() -> ReferenceTable {
         ReferenceTable {
             key: "desired",
-            description: "Desired dynamics of any order that the file states, linear: the general framework of Section IV-B.",
+            description: "Desired dynamics of any order that the file states, linear or with a nonlinear protocol: the general framework of Section IV-B.",
             own_roots: false,
         }
     }
@@ -143,8 +177,11 @@ impl ReferenceKind for DesiredFile {
             None => Vec::new(),
         };
         let coupling = self.coupling_polynomial.as_ref();
+        let polynomial = PolynomialFile::read("polynomial", &self.polynomial)?;
+        let protocol = self.protocol(polynomial.order())?;
         let desired = Desired {
-            polynomial: PolynomialFile::read("polynomial", &self.polynomial)?,
+            polynomial,
+            protocol,
             coupling: coupling.map(|place| PolynomialFile::read("coupling_polynomial", place)).transpose()?,
             heard,
             follows_target: self.follows_target.unwrap_or(false),
