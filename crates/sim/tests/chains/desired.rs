@@ -299,12 +299,12 @@ fn eq_43_a_linear_protocol_as_a_formula_is_the_linear_one() {
     }
 }
 
-/// (a9) in the same way: x_d and its derivatives stand behind the weights.
+/// (a9) in the same way: x_d and its derivatives stand behind the weights. Its highest one is there without f.
 #[test]
 fn eq_43_tracking_as_a_formula_is_tracking() {
     let alpha = forwardstep_core::reference::polynomial([1.0, 2.0, 1.5]).unwrap();
     let error = |r: usize| x(r) - x(5 + r);
-    let term = x(8) - error(0) * alpha[0] - error(1) * alpha[1] - error(2) * alpha[2];
+    let term = -(error(0) * alpha[0]) - error(1) * alpha[1] - error(2) * alpha[2];
     let mut setup = tracking();
     setup.time.end_s = 10.0;
     let linear = following(by_roots(0, [1.0, 2.0, 1.5]), WrittenIn::Measured);
