@@ -42,8 +42,7 @@ import xml.etree.ElementTree as ElementTree
 from fractions import Fraction
 from pathlib import Path
 
-FORMAT = 1
-SHIPPED_ROBOTS = Path(__file__).resolve().parent.parent / "crates" / "io" / "robots"
+FORMAT, SHIPPED_ROBOTS = 1, Path(__file__).resolve().parent.parent / "crates" / "io" / "robots"
 ACCEPTED, REJECTED, UNCHECKED = "accepted", "rejected", "could not check"
 HOLDS, ON_RUN, VIOLATED = "holds", "holds on [0, end]", "violated"
 UNCLAIMED = ("watched during the run", "not shown", "not covered by the paper")
@@ -74,8 +73,7 @@ class Meaningless(Exception): outcome = REJECTED
 
 # --- Numbers and documents
 
-DECIMAL = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d{1,3})?", re.ASCII)
-RATIO = re.compile(r"-?\d+(/[1-9]\d*)?", re.ASCII)
+DECIMAL, RATIO = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d{1,3})?", re.ASCII), re.compile(r"-?\d+(/[1-9]\d*)?", re.ASCII)
 
 # A decimal as the rational number that it is.
 def decimal(text):
@@ -200,8 +198,7 @@ def said(number):
 
 # --- Intervals with rational ends; an end that is not known is an infinite float
 
-INF = math.inf
-WHOLE = (-INF, INF)
+INF, WHOLE = math.inf, (-math.inf, math.inf)
 
 def infinite(x):
     return isinstance(x, float)
@@ -278,8 +275,7 @@ def sine_at(x, turned):
     half = Fraction(1, 2) if turned else Fraction(0)
     n = round(x / PI[0] + half)
     near = Fraction(math.floor((x + (half - n) * PI[0]) * (1 << 220)), 1 << 220)
-    room = abs(half - n) * (PI[1] - PI[0]) + Fraction(1, 1 << 219)
-    square = -near * near
+    room, square = abs(half - n) * (PI[1] - PI[0]) + Fraction(1, 1 << 219), -near * near
     value = add(taylor(near, lambda k: square / (2 * k * (2 * k + 1))), (-room, room))
     return minus(value) if n % 2 else value
 
@@ -489,8 +485,7 @@ def trimmed(p):
 
 # P/Q for all t with 1/t in the interval u: by u^d P and u^d Q, d the larger degree, which are polynomials in u.
 def far(p, q, u):
-    degree = max(len(p), len(q))
-    values = []
+    degree, values = max(len(p), len(q)), []
     for coefficients in (p, q):
         rising = [Fraction(0)] * (degree - len(coefficients)) + coefficients[::-1]
         values.append(functools.reduce(lambda value, c: add(multiply(value, u), (c, c)), rising[::-1], (Fraction(0),) * 2))
@@ -691,6 +686,19 @@ def roots_of(body):
 # `to` hears `source`; the weight is a rational number, or the text of a formula.
 Edge = collections.namedtuple("Edge", "source to weight delay")
 
+# Desired dynamics as the design of the paper that they are: p K(p) beside weights of K(p), or K(p) with a target, K by its roots.
+def designed(key, body):
+    if key != "desired":
+        return False, (key, body)
+    own, coupled = (body[part] if isinstance(body.get(part), dict) else {} for part in ("polynomial", "coupling_polynomial"))
+    roots, heard = roots_of(own), [exact(number, "heard") for number in body.get("heard", [])]
+    tracks, product = body.get("follows_target", False), math.prod(1 if b < 0 else a * a + b * b if b else a for a, b in roots)
+    zeros, told = own.get("integrators", 0), "position_velocity" if heard[1:] else "position"
+    agrees = zeros == 1 and coupled == {"roots_per_s": own.get("roots_per_s")} and body.get("written_in", "measured") == "measured"
+    agrees = agrees and heard[:1] in ([], [product]) and all(b == 0 and v * a == product for v in heard[1:] for a, b in roots[:1])
+    decided("nonlinear" not in body and roots and (not (zeros or coupled or heard) if tracks else agrees), "dynamics of no known design")
+    return True, ("tracking" if tracks else "consensus", {"roots_per_s": own["roots_per_s"], "exchange": told})
+
 class Scenario:
     def __init__(self, text, folder):
         self.file, self.folder, self.inputs = read_toml(text), folder, {}
@@ -698,7 +706,7 @@ class Scenario:
                      "external_wrenches solver goal")
         such(file.get("format") == 2, "`format` must be 2")
         self.end_s = positive(table(file.get("time"), "time").get("end_s"), "time.end_s")
-        self.reference, body = choice(file.get("reference"), "reference")
+        self.desired, (self.reference, body) = designed(*choice(file.get("reference"), "reference"))
         self.body = table(body, "reference", "roots_per_s exchange manipulability_gain filter_s acceleration_limit design coupling "
                           "gain sign sign_period_s")
         known(self.reference, ("consensus", "pure_integral", "backstepping", "leader", "tracking"), "reference dynamics")
@@ -719,8 +727,7 @@ class Scenario:
         self.read_pushes()
 
     def populate(self, entry, place):
-        name = name_of(entry.get("name"), f"{place}.name")
-        number = exact(entry.get("count", 1), f"{place}.count")
+        name, number = name_of(entry.get("name"), f"{place}.name"), exact(entry.get("count", 1), f"{place}.count")
         such(number.denominator == 1 and 1 <= number <= MOST_AGENTS, f"{place}.count must be a whole number of agents")
         names = [f"{name}-{k}" for k in range(1, int(number) + 1)] if "count" in entry else [name]
         such(len(self.agents) + len(names) <= MOST_AGENTS, "there are too many agents")
@@ -884,8 +891,7 @@ class Scenario:
             pairs = [(a, b) for a in members for b in members if a != b]
         such(direction in (None, *DIRECTIONS[rule]), "`direction` is not one of the rule")
         back = [(b, a) for a, b in pairs]
-        pairs = {"both": pairs + back, "in": back}.get(direction, pairs)
-        return [Edge(a, b, *self.terms(body)) for a, b in dict.fromkeys(pairs)]
+        return [Edge(a, b, *self.terms(body)) for a, b in dict.fromkeys({"both": pairs + back, "in": back}.get(direction, pairs))]
 
     # What acts from outside: for every agent the end of each push, infinite where there is none
 
@@ -995,8 +1001,7 @@ def theorem(scenario):
         return "backstepping" if scenario.reference == "backstepping" else "theorem-1" if velocities else "remark-3"
     if not velocities or order == 1:
         return "theorem-3-first-order" if velocities else "theorem-3-positions"
-    same_ = all(agent.roots == agents[0].roots for agent in agents)
-    return "theorem-2" if order == 2 and same_ else "theorem-3-velocities"
+    return "theorem-2" if order == 2 and all(agent.roots == agents[0].roots for agent in agents) else "theorem-3-velocities"
 
 # The hypotheses that a certificate must speak about: (id, name of an agent, or "" for the whole).
 def requirements(scenario):
@@ -1036,7 +1041,7 @@ def requirements(scenario):
         (any(not agent.tracks for agent in lagrangian) or tips, "bounded-dynamics"),
         (frictions(scenario), "smooth-friction"),
         (any("bounds" in agent.gains for agent in lagrangian), "parameters-within-bounds"),
-        (True, "applied-torque"),
+        (True, "applied-torque" + " desired-design" * scenario.desired),
         (control is not None, "continuous-time"),
         (control is not None and inexact(control), "exact-measurements"),
         (control is not None and "message_timeout_s" in control, "messages-in-time"),
@@ -1126,8 +1131,7 @@ def tiled(claim, windows, sequence):
     ends = [0]
     for window in windows.each():
         window.only("phases", "root", "arborescence")
-        phases = [phase.count() - 1 for phase in window.field("phases").each()]
-        at = ends[-1]
+        phases, at = [phase.count() - 1 for phase in window.field("phases").each()], ends[-1]
         require(window.field("phases"), phases == sequence[at:at + len(phases)], "are not the phases that follow")
         # No edge leads to a leader, so that a root from which everybody is reached is the leader where there is one.
         reach(claim.scenario, window.field("arborescence"), window.field("root"), phases)
@@ -1384,7 +1388,7 @@ TEXT = {
     "no-delay": lambda scenario, _: all(rule_bound(edge.delay) == 0 for edge in scenario.used()),
     "applied-torque": lambda scenario, _: not scenario.limited(),
     # α, β and γ stand once; a continuous design has the mass of its plant; without torques from outside h_I is that of the start.
-    "shared-design": lambda scenario, _: scenario.reference == "leader",
+    "shared-design": lambda scenario, _: scenario.reference == "leader", "desired-design": lambda scenario, _: scenario.desired,
     "known-masses": lambda scenario, _: all(design_of(a) == "continuous" for a in scenario.agents if a.law == "thrust"),
     "known-momentum": lambda scenario, names: not any(a.pushes for a in scenario.agents if a.name in names),
     "set-valued-sign": lambda scenario, _: set_valued(scenario),
@@ -1415,8 +1419,7 @@ def pieces(node, tree, end_s):
         require(node.field("range"), kind == "run", "must be `for-ever`, `period`, `tail` or `run`")
     cells = node.field("cells").count()
     require(node.field("cells"), 0 < cells <= MOST_CELLS, "must be some")
-    found = [multiply(unit, (length * k / cells, length * (k + 1) / cells)) for k in range(cells)]
-    return found + [(length, INF)] * (kind == "tail")
+    return [multiply(unit, (length * k / cells, length * (k + 1) / cells)) for k in range(cells)] + [(length, INF)] * (kind == "tail")
 
 # Checks that a formula keeps within what is stated, piece by piece; (low, high).
 def enclosed(node, tree, end_s):
@@ -1859,8 +1862,7 @@ def agreed(scenario, node):
     stated = {pair_.each()[0].text(): pair_.each()[1].number() for pair_ in influence.each() if len(pair_.each()) == 2}
     require(influence, set(stated) == set(scenario.names) and len(influence.each()) == len(stated), "must be [agent, share] of everybody")
     require(node, scenario.fixed() and not scenario.varying(), "is of no fixed network")
-    shares = [stated[name] for name in scenario.names]
-    flow = [Fraction(0)] * len(shares)
+    shares, flow = [stated[name] for name in scenario.names], [Fraction(0)] * len(scenario.names)
     for edge in scenario.graphs[0]:
         flow[edge.to] += shares[edge.to] * edge.weight
         flow[edge.source] -= shares[edge.to] * edge.weight

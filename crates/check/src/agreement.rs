@@ -33,6 +33,7 @@ use thiserror::Error;
 
 use crate::conserved::Conserved;
 use crate::fixed::{NotFixed, fixed};
+use crate::instance::designed;
 use crate::kinds::is_lagrangian;
 use crate::null_vector::{NoNullVector, NullVector, null_vector};
 use crate::surroundings::dry_loss_w;
@@ -158,6 +159,8 @@ fn uncertain(error_bound: f64) -> String {
 /// # Errors
 /// [`NoPrediction`] says why there is none.
 pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
+    let designed = designed(setup);
+    let setup = designed.as_ref().unwrap_or(setup);
     if setup.reference.is::<Backstepping>() {
         return Err(NoPrediction::Backstepping);
     }

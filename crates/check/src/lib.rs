@@ -14,6 +14,7 @@ mod fixed;
 mod graphs;
 pub mod hypothesis;
 mod inertia;
+mod instance;
 mod kinds;
 mod laws;
 mod links;

@@ -73,6 +73,8 @@ pub enum Theorem {
     Remark12,
     /// Swarm tracking, named in Remark 11.
     Swarm,
+    /// (43) with desired dynamics that are no design of the paper.
+    Desired,
     /// What the author of a law, or of reference dynamics, from outside states, with its source.
     Declared(String),
 }
@@ -105,6 +107,7 @@ impl Theorem {
             Theorem::Theorem9 => "theorem-9",
             Theorem::Remark12 => "remark-12",
             Theorem::Swarm => "swarm",
+            Theorem::Desired => "desired-dynamics",
             Theorem::Declared(_) => "declared",
         }
     }
@@ -137,6 +140,7 @@ impl Theorem {
             | Theorem::ChainsTrack(_)
             | Theorem::ChainsAgree(_)
             | Theorem::PositionOnlyAgree { .. }
+            | Theorem::Desired
             | Theorem::Swarm => Source::Derived,
             Theorem::Declared(_) => Source::Declared,
         }
@@ -190,6 +194,7 @@ impl fmt::Display for Theorem {
             Theorem::Theorem8 => "Theorem 8, reference dynamics (110)",
             Theorem::Theorem9 => "Theorem 9, reference dynamics (119)",
             Theorem::Remark12 => "Remark 12, reference dynamics (122)",
+            Theorem::Desired => "Section IV, (43) with desired dynamics that are no design of the paper",
             Theorem::Swarm => "no theorem of the paper: swarm tracking (Remark 11) as derived for this software",
         })
     }

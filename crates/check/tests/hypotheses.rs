@@ -18,7 +18,7 @@ use forwardstep_sim::formula::{BoundedFormula, Witness};
 use forwardstep_sim::schedule::{Phase, Schedule};
 
 /// Names may join this list. None may leave it or change: certificates, waivers and summaries of earlier versions refer to them.
-const NAMES: [&str; 56] = [
+const NAMES: [&str; 58] = [
     "spanning-tree",
     "leader-reaches-all",
     "dwell-time",
@@ -36,6 +36,8 @@ const NAMES: [&str; 56] = [
     "own-orders",
     "common-first-root",
     "measured-derivative",
+    "desired-design",
+    "desired-dynamics",
     "manipulability",
     "uniform-inertia",
     "bounded-dynamics",

@@ -16,6 +16,8 @@ pub enum Signal {
     Coordinate(u8),
     /// z^(k): k = 0 the reference velocity z, k = 1 the reference acceleration ż, … up to the larger of 1 and ℓ − 1.
     Reference(u8),
+    /// v_{k+1}, k ≥ 1, which is integrated in the place of z^(k) where desired dynamics are written in x alone.
+    ReferenceIntegral(u8),
     /// ς, the value of a set-valued sign, within [−1, 1].
     Selection,
     /// s = q̇ − z, or d^(k−1)x/dt^(k−1) − z for a plant of order k; under backstepping the errors of all its steps.
@@ -206,6 +208,7 @@ impl Signal {
             Signal::Reference(0) => Row::new("z", Axis(1), Axes, WithAll),
             Signal::Reference(1) => Row::new("dz", Axis(2), Axes, WithAll).jumps(),
             Signal::Reference(k) => Row::new(format!("d{k}z"), Axis(k.saturating_add(1)), Axes, WithAll).jumps(),
+            Signal::ReferenceIntegral(k) => Row::new(format!("v{}", k.saturating_add(1)), Axis(k.saturating_add(1)), Axes, card("Integrals of the reference", "v, in the place of derivatives of z")).jumps(),
             Signal::Selection => Row::new("selection", Fixed("1"), Axes, card("Set-valued sign", "ς, within [−1, 1]")).jumps(),
             Signal::TrackingError => Row::new("s", Axis(1), Axes, WithAll),
             Signal::Torque => Row::new("tau", Torque, Axes, WithAll).jumps(),

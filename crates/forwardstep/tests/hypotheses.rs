@@ -2,14 +2,16 @@
 #![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use forwardstep::sim::reference::Tracking;
+use forwardstep::core::reference::WrittenIn;
+use forwardstep::sim::reference::{Desired, DesiredPolynomial, Tracking};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use forwardstep::check::hypothesis::{Evidence, KindEvidence, Subject};
 use forwardstep::check::{Answer, Id, Report, Rigour, Theorem, check};
 use forwardstep::core::law::ParameterBounds;
-use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
+use forwardstep::io::SourceText;
+use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario, read_scenario};
 use forwardstep::sim::push::{Course, Effect, Function, Push};
 use forwardstep::sim::{Adaptive, Setup, TaskSpaceLaw};
 
@@ -61,9 +63,28 @@ fn own_orders() -> Setup {
     setup
 }
 
+/// `shipped` with another of what its desired dynamics are made of.
+fn desired(shipped_name: &str, change: impl FnOnce(&mut Desired)) -> Setup {
+    let mut setup = shipped(shipped_name);
+    assert!(setup.change_reference(change));
+    setup
+}
+
+/// Desired dynamics by coefficients, the first of which stand for x.
+fn coefficients(list: &[f64]) -> DesiredPolynomial {
+    DesiredPolynomial::Coefficients(list.to_vec())
+}
+
 fn reports() -> Vec<Report> {
-    let changed =
-        [bounded_lengths(1.5), tracking_chains(), disturbed_chain(), timed_out(), arm_and_spacecraft(), own_orders()];
+    let changed = [
+        bounded_lengths(1.5),
+        tracking_chains(),
+        disturbed_chain(),
+        timed_out(),
+        arm_and_spacecraft(),
+        own_orders(),
+        desired("desired-dynamics", |desired| desired.heard = vec![1.0]),
+    ];
     let shipped = SHIPPED_SCENARIOS.iter().map(|scenario| shipped(scenario.name));
     shipped.chain(changed).map(|setup| check(&setup)).collect()
 }
@@ -84,6 +105,7 @@ fn every_hypothesis_and_every_theorem_is_shown_by_some_setup() {
         "chains-agree",
         "chains-track",
         "continuous-thrust",
+        "desired-dynamics",
         "mixture",
         "position-only-tracks",
         "remark-12",
@@ -111,6 +133,97 @@ fn every_hypothesis_and_every_theorem_is_shown_by_some_setup() {
         assert!(!requires.contains('…') && !requires.is_empty() && !because.is_empty(), "{hypothesis:?}");
         assert_eq!(hypothesis.answer() == Answer::Watched, hypothesis.rigour() == Rigour::Watched, "{hypothesis:?}");
     }
+}
+
+/// (24), (a5) and tracking are recognised by exact numbers; what is another design is not shown, and what cannot work is violated.
+#[test]
+fn eq_43_desired_dynamics_are_judged_by_the_design_that_they_are() {
+    let of = |setup: &Setup| {
+        let report = check(setup);
+        (report.theorem.name(), report.hypotheses[0].id, report.hypotheses[0].answer())
+    };
+    let agreed = |change: fn(&mut Desired)| of(&desired("desired-dynamics", change));
+    let (design, open) = (Id::DesiredDesign, Id::DesiredDynamics);
+    assert_eq!(agreed(|_| {}), ("chains-agree", design, Answer::Holds));
+    assert_eq!(agreed(|desired| desired.heard = vec![2.0]), ("chains-agree", design, Answer::Holds));
+    let other = ("desired-dynamics", open, Answer::NotShown);
+    assert_eq!(agreed(|desired| desired.heard = vec![2.0_f64.next_up()]), other);
+    assert_eq!(agreed(|desired| desired.written = WrittenIn::Z), other);
+    assert_eq!(agreed(|desired| desired.written = WrittenIn::X), other);
+    assert_eq!(agreed(|desired| desired.coupling = Some(coefficients(&[2.0]))), other);
+    assert_eq!(agreed(|desired| desired.polynomial = coefficients(&[0.0, 2.0, 3.0])), other);
+    let tracked = |change: fn(&mut Desired)| of(&desired("desired-in-z", change));
+    assert_eq!(tracked(|_| {}), ("chains-track", design, Answer::Holds));
+    // (p + 1)⁴, and with a pair of roots to the right of the axis.
+    let stable = |desired: &mut Desired| desired.polynomial = coefficients(&[1.0, 4.0, 6.0, 4.0]);
+    assert_eq!(tracked(stable), ("chains-track", open, Answer::NotShown));
+    let unstable = |desired: &mut Desired| desired.polynomial = coefficients(&[1.0, 4.0, 1.0, 4.0]);
+    assert_eq!(tracked(unstable), ("chains-track", open, Answer::Violated));
+
+    // On robots of order two the form in x is (23), or (3) where velocities are exchanged.
+    let mut robots = shipped("theorem-1");
+    let by_roots = |integrators| DesiredPolynomial::Roots { integrators, roots: [1.0, 2.0].into() };
+    let mut with = |heard: &[f64], written| {
+        let desired = Desired {
+            polynomial: by_roots(1),
+            coupling: Some(by_roots(0)),
+            heard: heard.to_vec(),
+            follows_target: false,
+            written,
+            protocol: None,
+        };
+        robots.exchange = desired.exchange();
+        robots.reference = Arc::new(desired);
+        robots.agents.iter_mut().for_each(|agent| agent.roots_per_s.clear());
+        of(&robots)
+    };
+    assert_eq!(with(&[2.0, 2.0], WrittenIn::X), ("theorem-1", design, Answer::Holds));
+    assert_eq!(with(&[], WrittenIn::X), ("remark-3", design, Answer::Holds));
+    assert_eq!(with(&[2.0, 2.0], WrittenIn::Measured), ("theorem-2", design, Answer::Holds));
+    assert_eq!(with(&[2.0, 1.5], WrittenIn::Measured), other);
+    assert_eq!(with(&[], WrittenIn::Measured), ("theorem-3-positions", design, Answer::Holds));
+}
+
+/// What is said of a nonlinear protocol is declared and tried: nothing holds by it, and what diverges is violated with a run.
+#[test]
+fn eq_43_a_nonlinear_protocol_is_declared_and_can_be_refuted() {
+    let of = |text: &str| {
+        let scenario = read_scenario("own", &SourceText::new("own.toml", text), None).unwrap();
+        let report = check(&scenario.setup);
+        let hypotheses = report.hypotheses.iter().take(3);
+        (report.theorem.name(), hypotheses.map(|found| (found.answer(), found.rigour())).collect::<Vec<_>>())
+    };
+    let text = r#"format = 2
+title = "a nonlinear protocol"
+time.end_s = 40
+[[agents]]
+name = "cart"
+count = 2
+robot.chain = { order = 2, chi = "-x", psi = "2 + cos(x)" }
+start.position_m = [[0.5], [-0.5]]
+[reference.desired]
+polynomial = [0, 1]
+nonlinear = "tanh(2*(heard - weights*x))"
+stable_because = "its potential and kinetic energy fall"
+input_to_state_stable_because = "a test"
+[law.linearising]
+[network]
+edges = [["cart-1", "cart-2"], ["cart-2", "cart-1"]]
+"#;
+    let declared = (Answer::NotShown, Rigour::Declared);
+    assert_eq!(of(text), ("desired-dynamics", vec![declared, declared, (Answer::NotShown, Rigour::Sampled)]));
+    let violated = vec![declared, declared, (Answer::Violated, Rigour::Sampled)];
+    // They drive each other apart; and a cubic drives them to infinity in finite time.
+    for wrong in ["-tanh(2*(heard - weights*x))", "x^3"] {
+        assert_eq!(of(&text.replace("tanh(2*(heard - weights*x))", wrong)), ("desired-dynamics", violated.clone()));
+    }
+    let target = text.replace(
+        "nonlinear = \"tanh(2*(heard - weights*x))\"",
+        "follows_target = true\nnonlinear = \"-(x - xd)^3 - x\"",
+    );
+    let target = target.replace("[[0.5], [-0.5]]", "[[0.5], [-0.5]]\ntarget.formulas = [\"0.1*sin(t)\"]");
+    let (theorem, found) = of(target.split("[network]").next().unwrap());
+    assert_eq!((theorem, found[2].0), ("chains-track", Answer::NotShown));
 }
 
 #[test]

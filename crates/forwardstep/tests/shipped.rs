@@ -209,6 +209,8 @@ shipped! {
     remark_12: "remark-12",
     swarm_tracking: "swarm-tracking",
     framework: "framework",
+    desired_dynamics: "desired-dynamics",
+    desired_in_z: "desired-in-z",
     strict_feedback: "strict-feedback",
     pure_feedback: "pure-feedback",
     immersion_and_invariance: "immersion-and-invariance",

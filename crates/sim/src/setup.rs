@@ -8,7 +8,7 @@ use forwardstep_core::sampled::SafeCommand;
 use crate::leader::{Following, FollowingDesign, Leading};
 use crate::network::Network;
 use crate::push::Push;
-use crate::reference::{ReferenceDynamics, ReferenceFamily, Tracking};
+use crate::reference::{ReferenceDynamics, Tracking};
 use crate::system::{Interface, Law, Robot, RobotInterface};
 use crate::trajectory::Trajectory;
 
@@ -52,12 +52,12 @@ impl Setup {
 
     /// Whether an agent follows a target of its own.
     pub fn tracks(&self, agent: usize) -> bool {
-        self.reference_of(agent).interface().family == ReferenceFamily::Target
+        self.reference_of(agent).interface().family.has_targets()
     }
 
     /// Whether every agent follows a target of its own.
     pub fn all_track(&self) -> bool {
-        self.reference.interface().family == ReferenceFamily::Target
+        self.reference.interface().family.has_targets()
     }
 
     /// Changes the reference dynamics, if they are an `R`; whether they are.

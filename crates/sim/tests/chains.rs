@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod common;
+#[path = "chains/desired.rs"]
+mod desired;
 
 use std::ops::ControlFlow;
 

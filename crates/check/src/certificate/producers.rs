@@ -36,6 +36,7 @@ const PRODUCERS: &[(Id, Producer)] = &[
     (Id::CouplingSector, delays::coupling),
     (Id::RealRoots, numbers::real_roots),
     (Id::Hurwitz, numbers::hurwitz),
+    (Id::DesiredDesign, text),
     (Id::CommonOrder, numbers::common_order),
     (Id::CommonFirstRoot, numbers::common_first_root),
     (Id::Manipulability, numbers::manipulability),

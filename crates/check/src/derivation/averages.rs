@@ -41,6 +41,7 @@ impl Case<'_> {
             | Led::Backstepping
             | Led::Leader(..)
             | Led::Target
+            | Led::Desired(_)
             | Led::Outside(..)
             | Led::Refuted(..) => None,
         }

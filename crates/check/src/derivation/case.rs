@@ -1,12 +1,12 @@
 //! The designs in a setup: agents with the same roots, gains and kind of law, and what links they have.
 
 use forwardstep_core::expression::Number;
-use forwardstep_core::reference::RootSet;
+use forwardstep_core::reference::{RootSet, WrittenIn};
 use forwardstep_core::robot::TwoVelocity;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::{Following, FollowingDesign};
 use forwardstep_sim::probe::{Counterexample, probe_reference};
-use forwardstep_sim::reference::{Backstepping, Consensus, LinearReference, PureIntegral};
+use forwardstep_sim::reference::{Backstepping, Consensus, Desired, LinearReference, PureIntegral};
 use forwardstep_sim::{
     Adaptive, AgentSetup, AttitudeLaw, ChainLaw, ChainModel, ChainStep, Exchange, Known, PositionOnlyLaw, Setup,
     TaskSpaceLaw, ThrustKind, ThrustLaw,
@@ -19,6 +19,7 @@ use super::form::Links;
 use super::formula::At;
 use super::laplacian::RootsOfAll;
 use super::lower::{Outside, Rubbing};
+use crate::instance::{Design, design};
 use crate::surroundings::smoothed_friction;
 
 /// A design, with what an explanation needs of the setup.
@@ -38,6 +39,8 @@ pub struct Case<'a> {
     pub lambda: BigRational,
     /// What the roots of all agents have in common.
     pub roots_of_all: RootsOfAll,
+    /// The desired dynamics that a user wrote down, whether they are a design of the paper or not.
+    pub desired: Option<&'a Desired>,
     /// Whether all agents have plants of one order and the same order of reference dynamics.
     pub alike: bool,
 }
@@ -55,6 +58,8 @@ pub enum Led {
     Leader(FollowingDesign, [BigRational; 3]),
     /// A target of its own.
     Target,
+    /// Desired dynamics that are no design of the paper.
+    Desired(Desired),
     /// Reference dynamics from outside, and what their author says that they are.
     Outside(&'static str, Option<LinearReference>),
     /// The same, where at some state they are not what their author says.
@@ -172,13 +177,15 @@ fn is_damped(agent: &AgentSetup) -> bool {
 pub fn cases(setup: &Setup) -> Vec<Case<'_>> {
     let mut cases: Vec<Case<'_>> = Vec::new();
     let refuted = refuted(setup);
+    let instance = design(setup);
+    let desired = setup.reference.downcast::<Desired>();
     for (index, agent) in setup.agents.iter().enumerate() {
         let led = match (led(setup, index), &refuted) {
             (Led::Outside(name, Some(_)), Some(found)) => Led::Refuted(name, found.clone()),
             (led, _) => led,
         };
         let step = Step::of(agent);
-        let roots = Factors::written(&agent.roots_per_s);
+        let roots = Factors::written(instance.as_ref().map_or(&agent.roots_per_s, |(_, roots)| roots));
         let lambda = Number::written(agent.manipulability);
         let same =
             |case: &&mut Case<'_>| case.led == led && case.step == step && case.roots == roots && case.lambda == lambda;
@@ -187,7 +194,7 @@ pub fn cases(setup: &Setup) -> Vec<Case<'_>> {
             continue;
         }
         let (roots_of_all, alike) = (roots_of_all(setup), alike(setup));
-        cases.push(Case { setup, agents: vec![index], led, step, roots, lambda, roots_of_all, alike });
+        cases.push(Case { setup, agents: vec![index], led, step, roots, lambda, roots_of_all, desired, alike });
     }
     cases
 }
@@ -206,7 +213,14 @@ fn led(setup: &Setup, agent: usize) -> Led {
         Exchange::Position if setup.network.coupling.is_linear() => Heard::Positions,
         Exchange::Position => Heard::Coupled,
     };
-    if setup.tracks(agent) {
+    if let Some(desired) = reference.downcast::<Desired>() {
+        match design(setup) {
+            Some((Design::Consensus, _)) => Led::Consensus(heard),
+            Some((Design::PureIntegral, _)) => Led::PureIntegral(heard),
+            Some((Design::Tracking, _)) if desired.written == WrittenIn::Measured => Led::Target,
+            Some((Design::Tracking, _)) | None => Led::Desired(desired.clone()),
+        }
+    } else if setup.tracks(agent) {
         Led::Target
     } else if reference.is::<Consensus>() {
         Led::Consensus(heard)
@@ -262,6 +276,20 @@ impl Case<'_> {
     /// Whether something pushes its agents; friction is none.
     pub fn is_pushed(&self) -> bool {
         self.agents.iter().any(|agent| !self.setup.agents[*agent].pushes.is_empty())
+    }
+
+    /// Whether a target is what leads it.
+    pub fn is_led_to_target(&self) -> bool {
+        match &self.led {
+            Led::Target => true,
+            Led::Desired(desired) => desired.follows_target,
+            Led::Consensus(_)
+            | Led::PureIntegral(_)
+            | Led::Backstepping
+            | Led::Leader(..)
+            | Led::Outside(..)
+            | Led::Refuted(..) => false,
+        }
     }
 
     /// Whether estimates of ϑ are kept within bounds.

@@ -52,7 +52,7 @@ impl Measured {
         })
     }
 
-    fn dynamics(self, order: usize, wanted: &Form) -> Dynamics {
+    pub(super) fn dynamics(self, order: usize, wanted: &Form) -> Dynamics {
         Dynamics { order, plant: self.plant, right: self.constructed(wanted) }
     }
 }

@@ -73,6 +73,7 @@ impl Case<'_> {
             // Weights and delays that vary are not covered by the theorems; what is derived is for those that do not.
             Led::Leader(..) => self.smooth().and_then(|smooth| smooth.dynamics(Links::Constant).ok()),
             Led::Target => tracking(&self.roots, self.measured()),
+            Led::Desired(desired) => super::desired::dynamics(desired, self.step.plant()),
             Led::Outside(_, linear) => linear.as_ref().map(declared),
             Led::Refuted(..) => None,
         }
@@ -114,7 +115,7 @@ impl Case<'_> {
             Step::PositionOnly(_) | Step::Thrust(..) | Step::Chain(..) => "x",
             Step::Attitude(_) => "ω",
         };
-        let alone = self.setup.agents.len() == 1 || self.led == Led::Target;
+        let alone = self.setup.agents.len() == 1 || self.is_led_to_target();
         Notation {
             position,
             starred_error: matches!(self.step, Step::Thrust(..)),
@@ -160,14 +161,17 @@ impl Case<'_> {
             (Led::Target, Step::PositionOnly([_, filter])) => {
                 upper.relative_to(Quantity::own(Letter::Target)).filtered(&lag(filter))
             }
-            (Led::Target, _) => upper.relative_to(Quantity::own(Letter::Target)),
+            _ if self.is_led_to_target() => upper.relative_to(Quantity::own(Letter::Target)),
             (_, Step::PositionOnly([_, filter])) => upper.filtered(&lag(filter)),
             _ => upper,
         }
     }
 
     fn reference(&self, dynamics: &Dynamics, notation: &Notation, places: &Places) -> Section {
-        let mut section = Section::new(Subject::ReferenceDynamics);
+        let mut section = self.desired.map_or_else(
+            || Section::new(Subject::ReferenceDynamics),
+            |desired| super::desired::asked(desired, notation),
+        );
         if self.roots.order() > 0 && !matches!(self.led, Led::Outside(..)) {
             let product = notation.polynomial(&self.roots.product());
             let equation = match self.roots.factors().count() {
@@ -296,6 +300,9 @@ impl Case<'_> {
             1 => format!("The upper subsystem holds {s} with one derivative"),
             n => format!("The upper subsystem holds {s} with {n} derivatives"),
         };
+        if let Some(desired) = self.desired {
+            section = super::desired::parts(desired, &dynamics.upper(), notation, section);
+        }
         section.words(format!("{count}{state}: the cascade is of degree {degree}."))
     }
 

@@ -115,6 +115,8 @@ pub enum Term {
     ImmersionError,
     /// What reference dynamics from outside add that does not depend on the state.
     Constant,
+    /// f of desired dynamics, a nonlinear protocol.
+    Protocol,
 }
 
 /// A linear map without a number that acts on a quantity.

@@ -2,7 +2,7 @@
 //! averages that are left.
 //!
 //! - `polynomial`, `form`: the one representation, linear chains with delays; `factors`: (25) by its roots.
-//! - `dynamics`: reference dynamics in it; `lower`: what a law makes of s.
+//! - `dynamics`: reference dynamics in it; `desired`: those that a user writes down, as 𝒵 and 𝓕 of (43); `lower`: what a law makes of s.
 //! - `cascade`: the closed loop and its degree.
 //! - `reduction`: new variables that absorb derivatives of s.
 //! - `laplacian`, `stacked`: chains of averages; all agents together.
@@ -19,6 +19,7 @@ mod attitude;
 mod averages;
 pub mod cascade;
 pub mod case;
+pub mod desired;
 pub mod dynamics;
 mod explained;
 mod explanation;
@@ -42,4 +43,6 @@ mod task_space;
 mod tests;
 mod words;
 
+pub(crate) use desired::polynomial_of;
 pub use explanation::{Explained, Explanation, Line, Section, Subject, explain};
+pub(crate) use factors::Factors;

@@ -165,6 +165,7 @@ impl Notation {
             }
             Term::ImmersionError => return Formula::product([Symbol::new("φ").above("T").into(), symbol("ζ").into()]),
             Term::Constant => symbol("c"),
+            Term::Protocol => symbol("f"),
         };
         formula.into()
     }
@@ -173,7 +174,10 @@ impl Notation {
     pub fn form(&self, form: &Form) -> Formula {
         let mut terms = Vec::new();
         let late = |quantity: Quantity| {
-            matches!(quantity.letter, Letter::Error | Letter::Filter | Letter::Term(Term::Sign | Term::Constant))
+            matches!(
+                quantity.letter,
+                Letter::Error | Letter::Filter | Letter::Term(Term::Sign | Term::Constant | Term::Protocol)
+            )
         };
         self.terms(&form.own, |quantity| !late(quantity), &mut terms);
         if !form.network.is_zero() {

@@ -47,7 +47,7 @@ impl Places {
                 Places { identity: "(aa2)", reference: "before (aa6)", cascade: "after (aa6)", ..Places::default() }
             }
             Led::Leader(design, _) => leader(design),
-            Led::Target | Led::Outside(..) | Led::Refuted(..) => Places::default(),
+            Led::Target | Led::Desired(_) | Led::Outside(..) | Led::Refuted(..) => Places::default(),
         };
         own_step(case, order, places)
     }

@@ -85,6 +85,7 @@ impl Case<'_> {
                 | Led::PureIntegral(_)
                 | Led::Backstepping
                 | Led::Leader(..)
+                | Led::Desired(_)
                 | Led::Outside(..)
                 | Led::Refuted(..),
                 Step::Robot { .. }

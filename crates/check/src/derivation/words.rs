@@ -200,6 +200,11 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
             "Without that, what is left is a linear system with the given roots, which is exponentially stable. {bounded}, and so does the distance \
              from the target."
         ),
+        Led::Desired(desired) if desired.follows_target => format!(
+            "Without that, what is left is a linear system with the given polynomial, which is exponentially stable where that is Hurwitz, as \
+             `forwardstep check` says. {bounded}, and so does the distance from the target."
+        ),
+        Led::Desired(_) => "What becomes of it without that is what the scenario asks for, and no theorem of the paper says where that leads.".into(),
         Led::Backstepping => "Where the graph switches or a delay jumps the derivative of what is heard is infinite, and the paper promises \
                               nothing there."
             .into(),
@@ -220,7 +225,7 @@ fn with_dry_friction(case: &Case<'_>) -> String {
         Led::Consensus(_) | Led::PureIntegral(_) => "all agents would come together",
         Led::Leader(..) => "all agents would reach the leader",
         Led::Target => "the distance from the target would vanish",
-        Led::Backstepping | Led::Outside(..) | Led::Refuted(..) => {
+        Led::Backstepping | Led::Desired(_) | Led::Outside(..) | Led::Refuted(..) => {
             "the reference dynamics would do what is said of them"
         }
     };

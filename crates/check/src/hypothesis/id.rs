@@ -80,6 +80,10 @@ table! {
         "κ₀ is common within each strongly connected component of the union graph, unless graph and delays are constant";
     MeasuredDerivative, "measured-derivative", "(aa6)", Source::Paper,
         "what is heard has a derivative that can be measured";
+    DesiredDesign, "desired-design", "(43), Section IV-B", Source::Derived,
+        "the desired dynamics are a design of the paper";
+    DesiredDynamics, "desired-dynamics", "(43), Section IV-B", Source::Paper,
+        "the desired dynamics do without s what they are for";
     Manipulability, "manipulability", "Remark 4", Source::Paper,
         "the manipulability gain λ of Remark 4 is positive";
 

@@ -13,7 +13,7 @@ use forwardstep_sim::leader::FollowingDesign;
 pub use evidence::{
     Bounded, Evidence, FactorEverywhere, FollowingEvidence, GraphEvidence, InertiaUnit, Inexact, KindEvidence, Limited,
     LinkEvidence, LoopEvidence, MotionEvidence, MotionExtent, ReachSide, ReferenceEvidence, RobotEvidence, Term,
-    WeightFault,
+    TriedRun, WeightFault,
 };
 pub use id::Id;
 pub(crate) use words::{counterexample, numbers};

@@ -43,6 +43,7 @@ use thiserror::Error;
 
 use self::response::Response;
 use crate::fixed::fixed;
+use crate::instance::designed;
 use crate::null_vector::null_vector;
 use crate::prediction::roots::characteristic::{C, Characteristic};
 use crate::prediction::roots::network;
@@ -136,6 +137,8 @@ impl Manipulability {
     /// # Errors
     /// [`NoManipulability`] says why there is none.
     pub fn of(setup: &Setup, agent: usize, axis: usize) -> Result<Manipulability, NoManipulability> {
+        let designed = designed(setup);
+        let setup = designed.as_ref().unwrap_or(setup);
         let own = setup.agents.get(agent).filter(|own| axis < own.robot.axes.len());
         let own = own.ok_or(NoManipulability::NoSuchAxis { agent, axis })?;
         if setup.control.is_some() {

@@ -31,6 +31,8 @@ mod words;
 
 use forwardstep_sim::Setup;
 
+use crate::instance::designed;
+
 pub use agreement::{AgreementBound, AxisBound};
 pub use along::{Along, LoadReached, MarginReached, PowerReached, along};
 pub use gains::{NoReferenceGains, Over, ReferenceGains};
@@ -166,6 +168,8 @@ impl Practical {
 
 /// What can be said of `setup` as it is deployed.
 pub fn practical(setup: &Setup) -> Practical {
+    let designed = designed(setup);
+    let setup = designed.as_ref().unwrap_or(setup);
     let margin = SamplingMargin::of(setup).map(Finding::SamplingMargin);
     let load = StaticLoad::of(setup).map(Finding::StaticLoad);
     let power = PowerBound::of(setup);

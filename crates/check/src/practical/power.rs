@@ -132,10 +132,11 @@ pub(super) fn noise_w_of(control: &Control, gains: &Gains) -> f64 {
 /// V(0) of an agent, J; `None` where z(0) follows from what is heard.
 pub(crate) fn start_energy_j(setup: &Setup, index: usize, gains: &Gains) -> Option<f64> {
     match setup.reference_of(index).interface().family {
-        ReferenceFamily::Consensus | ReferenceFamily::Leader => {}
+        ReferenceFamily::Consensus | ReferenceFamily::Desired | ReferenceFamily::Leader => {}
         ReferenceFamily::PureIntegral
         | ReferenceFamily::Backstepping
         | ReferenceFamily::Target
+        | ReferenceFamily::DesiredTarget
         | ReferenceFamily::Own => return None,
     }
     let agent = &setup.agents[index];

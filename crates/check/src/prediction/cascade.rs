@@ -19,6 +19,7 @@ use forwardstep_sim::reference::{Consensus, PureIntegral};
 use forwardstep_sim::{Exchange, Recording, Setup, Signal};
 use thiserror::Error;
 
+use crate::instance::designed;
 use crate::kinds::is_lagrangian;
 
 /// The interval of all cascaded variables and of all messages on their way, row by row.
@@ -74,6 +75,8 @@ impl CascadeSpread {
     /// # Errors
     /// [`NoCascade`] when the variables are not defined, or were not recorded.
     pub fn of(setup: &Setup, recording: &Recording) -> Result<CascadeSpread, NoCascade> {
+        let designed = designed(setup);
+        let setup = designed.as_ref().unwrap_or(setup);
         defined(setup)?;
         let rows = recording.t_s.len();
         let axes = setup.agents.first().map_or(0, |agent| agent.robot.axes.len());

@@ -18,6 +18,7 @@ use forwardstep_sim::{
 };
 use thiserror::Error;
 
+use crate::instance::designed;
 use crate::kinds::is_lagrangian;
 
 /// Why there is no setup in which everybody follows its reference exactly.
@@ -66,6 +67,8 @@ pub enum NoIdeal {
 /// # Errors
 /// [`NoIdeal`] when the reference of some agent depends on more than the network.
 pub fn ideal(setup: &Setup) -> Result<Setup, NoIdeal> {
+    let designed = designed(setup);
+    let setup = designed.as_ref().unwrap_or(setup);
     let reference = &setup.reference;
     if setup.following().is_some() {
         return Err(NoIdeal::Leader);

@@ -2,16 +2,18 @@
 
 mod baseline;
 mod declared;
+mod desired;
 mod following;
 mod own_targets;
 mod swarm;
 mod theorem_1;
 mod theorem_3;
+mod tried;
 
 pub(crate) use following::slowest_per_s;
 pub(crate) use own_targets::hurwitz;
 
-use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking};
+use forwardstep_sim::reference::{Backstepping, Consensus, Desired, PureIntegral, Tracking};
 use forwardstep_sim::{Exchange, Setup};
 
 use crate::graphs::{dwell_time, spanning_tree};
@@ -29,6 +31,11 @@ use crate::surroundings::surroundings;
 /// **Source**: Theorem 1 for (3), Remark 3 for (23), Theorem 2 for (a1), Theorem 3 for (a5) and (24); Section III-A for
 /// (aa10), which is (a5) of order one, and for the baseline (aa6), about which the paper promises nothing.
 pub fn check(setup: &Setup) -> Report {
+    if let Some((like, design)) = desired::recognised(setup) {
+        let mut report = check(&like);
+        report.hypotheses.insert(0, design);
+        return report;
+    }
     let Report { theorem, promises, mut hypotheses } = of_reference(setup);
     hypotheses.extend(own_targets::bounded(setup));
     hypotheses.extend(laws::hypotheses(setup));
@@ -49,6 +56,8 @@ fn of_reference(setup: &Setup) -> Report {
         own_targets::check(setup)
     } else if let Some(following) = setup.following() {
         following::check(setup, following)
+    } else if let Some(desired) = reference.downcast::<Desired>() {
+        desired::check(setup, desired)
     } else {
         declared::check(setup)
     }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use forwardstep_sim::Setup;
+use forwardstep_sim::reference::Desired;
 use forwardstep_sim::trajectory::Trajectory;
 
 use crate::hypothesis::{Bounded, Hypothesis, Id, MotionEvidence, Named, ReferenceEvidence, Subject};
@@ -37,7 +38,8 @@ pub(super) fn bounded(setup: &Setup) -> Vec<Hypothesis> {
     let mut groups: BTreeMap<Group, Vec<Named>> = BTreeMap::new();
     for (index, agent) in setup.agents.iter().enumerate() {
         if let Some(target) = &agent.target {
-            let needed = kind_of(agent).target_derivatives(agent).min(MOST_DERIVATIVES);
+            let desired = setup.reference.downcast::<Desired>().map(|desired| desired.polynomial.order());
+            let needed = desired.unwrap_or_else(|| kind_of(agent).target_derivatives(agent)).min(MOST_DERIVATIVES);
             let tracking = setup.tracks(index);
             // A formation may travel: of an offset only the derivatives count.
             let lowest = if tracking { 0 } else { 1 };

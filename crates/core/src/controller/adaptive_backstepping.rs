@@ -39,7 +39,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::following::{ChainError, ChainMeasured, positive, vanishes};
-use super::guide::{Guide, GuideWork, Leads};
+use super::guide::{Guide, GuideError, GuideWork, Leads};
 use super::steps::Steps;
 use super::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::LengthError;
@@ -138,6 +138,9 @@ impl AdaptiveBackstepping {
         let BacksteppingGains { gains_per_s, adaptation, floor } = gains;
         let n = terms.order();
         guide.check(1, n)?;
+        if (0..guide.vectors(1)).any(|r| !matches!(guide.signal(r), Signal::Reference(_))) {
+            return Err(GuideError::NoDerivatives.into());
+        }
         LengthError::check("gains of the steps", n, gains_per_s.len())?;
         LengthError::check("adaptation gains", terms.parameters(), adaptation.len())?;
         LengthError::check("theta_hat", terms.parameters(), estimate_start.len())?;

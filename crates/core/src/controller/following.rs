@@ -105,7 +105,7 @@ impl Following {
 
     /// z, ż, …, z^(ℓ−1).
     pub(super) fn states(&self, order: usize) -> Vec<Block> {
-        (0..self.guide.vectors(order)).map(|r| (Signal::Reference(r as u8), 1)).collect()
+        (0..self.guide.vectors(order)).map(|r| (self.guide.signal(r), 1)).collect()
     }
 
     /// z, ż, …, s, ψ, the estimates, and what is left to the target.
@@ -125,7 +125,7 @@ impl Following {
     pub(super) fn start(
         &self,
         order: usize,
-        x: &[f64],
+        (x, degree): (&[f64], &[f64]),
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
@@ -138,7 +138,8 @@ impl Following {
             LengthError::check("the start of the reference", 1, wanted.len())?;
             *z = wanted[0];
         }
-        Ok(())
+        let top = x.len().saturating_sub(1);
+        self.guide.begin(order, &x[top..], degree.first().copied().unwrap_or(0.0), reference)
     }
 
     /// The rate of the reference, s, and the terms of the plant; shows all of it.

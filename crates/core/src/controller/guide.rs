@@ -29,6 +29,8 @@
 //!
 //! **A nonlinear protocol.** Where the network hands over x_i − φ(x_i − x_j(t−T)) in place of x_j(t−T), the equation above has
 //! α₀ Σ_j w_ij φ(x_i − x_j(t−T)) where it had α₀ Σ_j w_ij (x_i − x_j(t−T)), and nothing here changes.
+//!
+//! **Desired dynamics** of which both are instances are those of [`DesiredDynamics`], of any order N ≥ k.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -37,7 +39,11 @@ use thiserror::Error;
 
 use super::Jet;
 use crate::LengthError;
-use crate::reference::{Consensus, Heard, Measured, Position, Reference, ReferenceOut};
+use crate::reference::{
+    Consensus, DesiredDynamics, Exchange, Heard, Measured, Place, Position, ProtocolWork, Reference, ReferenceOut,
+    WrittenIn,
+};
+use crate::signal::Signal;
 
 /// Where z leads.
 #[derive(Clone, Debug)]
@@ -49,6 +55,8 @@ pub enum Guide {
     },
     /// To agreement with the neighbours: (24) for one agent.
     Consensus(Consensus<Position>),
+    /// Where desired dynamics that a user writes down lead, with x as far as the order of the plant measured.
+    Desired(DesiredDynamics),
 }
 
 /// Why a guide does not suit a plant.
@@ -70,17 +78,23 @@ pub enum GuideError {
         /// How many there are.
         got: usize,
     },
+    /// A law that uses derivatives of z, which are no states there.
+    #[error(
+        "the desired dynamics are written in x, so that derivatives of z are integrated and no states, but the law uses them: write the dynamics          in what is measured or in z"
+    )]
+    NoDerivatives,
 }
 
 /// Derivatives in a [`Jet`].
 const DERIVATIVES: usize = 4;
 
 impl Guide {
-    /// How many roots it was made from: N for tracking, N − 1 for consensus.
+    /// How many roots it was made from: N for tracking and for desired dynamics, N − 1 for consensus.
     pub fn roots(&self) -> usize {
         match self {
             Guide::Tracking { alpha } => alpha.len(),
             Guide::Consensus(consensus) => consensus.order(),
+            Guide::Desired(desired) => desired.order(),
         }
     }
 
@@ -89,12 +103,17 @@ impl Guide {
         match self {
             Guide::Tracking { alpha } => (alpha.len() + 1).saturating_sub(k),
             Guide::Consensus(consensus) => (consensus.order() + 2).saturating_sub(k),
+            Guide::Desired(desired) => desired.vectors(k),
         }
     }
 
     /// Whether it leads to a trajectory.
     pub fn tracks(&self) -> bool {
-        matches!(self, Guide::Tracking { .. })
+        match self {
+            Guide::Tracking { .. } => true,
+            Guide::Consensus(_) => false,
+            Guide::Desired(desired) => desired.tracks(),
+        }
     }
 
     /// ℓ for a plant of order `k`, if it is at least `least`.
@@ -106,7 +125,10 @@ impl Guide {
         if self.tracks() && got > DERIVATIVES {
             return Err(GuideError::TooMany { most: DERIVATIVES, got });
         }
-        let least = if self.tracks() { (least + k).saturating_sub(1) } else { (least + k).saturating_sub(2) };
+        let least = match self {
+            Guide::Tracking { .. } | Guide::Desired(_) => (least + k).saturating_sub(1),
+            Guide::Consensus(_) => (least + k).saturating_sub(2),
+        };
         if got < least {
             return Err(GuideError::TooFew { least, got });
         }
@@ -118,7 +140,11 @@ impl Guide {
         let blocks = if let Guide::Consensus(consensus) = self { consensus.order() } else { 0 };
         let axis = || vec![0.0; axes];
         let all = || vec![0.0; blocks * axes];
-        GuideWork { q: axis(), dq: axis(), z: axis(), dz: axis(), state: all(), rate: all() }
+        let protocol = match self {
+            Guide::Desired(desired) => desired.work(),
+            Guide::Tracking { .. } | Guide::Consensus(_) => ProtocolWork::default(),
+        };
+        GuideWork { q: axis(), dq: axis(), z: axis(), dz: axis(), state: all(), rate: all(), protocol }
     }
 
     /// d/dt of z, ż, …, z^(ℓ−1) for a plant of order `k` with `axes` axes.
@@ -160,7 +186,7 @@ impl Guide {
             }
             Guide::Consensus(consensus) => {
                 // As a robot would call it: x₀ is its position, x₁ its velocity, x₂ its ż, …. Its z is not used.
-                let GuideWork { q, dq, z, dz, state, rate } = work;
+                let GuideWork { q, dq, z, dz, state, rate, .. } = work;
                 LengthError::check("room for the reference", consensus.vectors() * axes, state.len())?;
                 LengthError::check("room for an axis", axes, q.len())?;
                 for axis in 0..axes {
@@ -174,8 +200,45 @@ impl Guide {
                 consensus.evaluate(axes, Measured { q, dq }, state, heard, out)?;
                 d_state[top..].copy_from_slice(&rate[rate.len() - axes..]);
             }
+            Guide::Desired(desired) => {
+                LengthError::check("the order of the plant", 1, k.min(1))?;
+                LengthError::check("what is measured", k * axes, measured.len())?;
+                LengthError::check("target", if desired.tracks() { axes } else { 0 }, target.len())?;
+                LengthError::check("degree", 1, heard.degree.len())?;
+                Position::check(heard.sums, axes)?;
+                for entry in 0..axes {
+                    let x = |r: usize| measured[r * axes + entry];
+                    let (place, given) = (Place { block: axes, entry }, (own, heard.degree[0], heard.sums));
+                    let target = target.get(entry).map(|jet| &jet[..]);
+                    desired.rate::<Position>(k, place, x, given, target, (&mut work.protocol, d_state))?;
+                }
+            }
         }
         Ok(())
+    }
+
+    /// From z, ż, … in `state`, as they are to start, to what is integrated; `top` is x^(k−1), `degree` Σ_j w_ij.
+    ///
+    /// # Errors
+    /// [`LengthError`] when the state has another length.
+    pub fn begin(&self, k: usize, top: &[f64], degree: f64, state: &mut [f64]) -> Result<(), LengthError> {
+        let block = top.len();
+        LengthError::check("reference state", self.vectors(k) * block, state.len())?;
+        match self {
+            Guide::Tracking { .. } | Guide::Consensus(_) => {}
+            Guide::Desired(desired) => {
+                for (entry, top) in top.iter().enumerate() {
+                    desired.begin(k, Place { block, entry }, *top, degree, state);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// What block `r` of its state is: z^(r), or what stands in its place where desired dynamics are written in x.
+    pub fn signal(&self, r: usize) -> Signal {
+        let in_x = matches!(self, Guide::Desired(desired) if desired.written() == WrittenIn::X);
+        if in_x && r > 0 { Signal::ReferenceIntegral(r as u8) } else { Signal::Reference(r as u8) }
     }
 }
 
@@ -201,4 +264,5 @@ pub struct GuideWork {
     dz: Vec<f64>,
     state: Vec<f64>,
     rate: Vec<f64>,
+    protocol: ProtocolWork,
 }

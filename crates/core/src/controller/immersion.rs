@@ -234,7 +234,7 @@ impl Controller for Immersion {
     ) -> Result<(), LengthError> {
         LengthError::check("state", self.at() + self.terms.parameters(), state.len())?;
         let x = given.measured.x;
-        self.following.start(self.terms.order(), x, wanted, state)?;
+        self.following.start(self.terms.order(), (x, given.heard.degree), wanted, state)?;
         self.tape.evaluate(x, &mut work.workspace, &mut work.out)?;
         for (j, theta_hat) in state[self.at()..].iter_mut().enumerate() {
             *theta_hat = self.estimate_start[j] - self.adaptation[j] * work.out[j];

@@ -165,7 +165,8 @@ impl<T: Terms> Controller for Linearising<T> {
         state: &mut [f64],
     ) -> Result<(), LengthError> {
         LengthError::check("state", self.at() + self.estimates(), state.len())?;
-        self.following.start(self.terms.order(), given.measured.x, wanted, state)?;
+        let known = (given.measured.x, given.heard.degree);
+        self.following.start(self.terms.order(), known, wanted, state)?;
         state[self.at()..].copy_from_slice(&self.theta[..self.estimates()]);
         Ok(())
     }

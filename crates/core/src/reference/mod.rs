@@ -1,6 +1,7 @@
 //! Reference dynamics: what produces the reference velocity z and the reference acceleration ż.
 //!
 //! - `consensus`: the family (aa10), (a1), (a5), (24), which only integrates what it constructed itself.
+//! - `desired`: linear ones of any order that a user writes down, for plants of any order.
 //! - `pure_integral`: (3) and (23), which contain q̈ and are realised by their integral.
 //! - `backstepping`: (aa6), the baseline, which differentiates.
 //! - `following`: (110), (119), (122), which follow a leader.
@@ -10,6 +11,7 @@
 
 mod backstepping;
 mod consensus;
+mod desired;
 mod exchange;
 mod following;
 mod per_axis;
@@ -20,6 +22,8 @@ mod sliding;
 
 pub use backstepping::{Backstepping, BacksteppingError};
 pub use consensus::Consensus;
+pub use desired::{Desired, DesiredDynamics, DesiredError, WrittenIn};
+pub(crate) use desired::{Place, ProtocolWork};
 pub use exchange::{Exchange, Heard, Position, PositionSums, PositionVelocity, PositionVelocitySums};
 pub use following::{Following, SmoothFollowing};
 pub use per_axis::{AxisInput, AxisOutput, PerAxis};

@@ -84,9 +84,7 @@ pub mod values;
 use std::fmt;
 
 use forwardstep_sim::leader::Following;
-use forwardstep_sim::{
-    ATOL, Method, Network, RECORD_EVERY_S, RTOL, ReferenceFamily, Setup, Solver, TimeSpan, recorded_columns,
-};
+use forwardstep_sim::{ATOL, Method, Network, RECORD_EVERY_S, RTOL, Setup, Solver, TimeSpan, recorded_columns};
 use miette::Diagnostic;
 
 pub use goal::Goal;
@@ -235,7 +233,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
             network::network(&network.value, (&document, kinds), vertices, end_s, source, &mut folder, &mut notices)
                 .map_err(|fault| fault.at(&network.span))?
         }
-        None if dynamics.interface().family == ReferenceFamily::Target => Network::silent(names.len()),
+        None if dynamics.interface().family.has_targets() => Network::silent(names.len()),
         None => return Err(fault(&file.reference, NetworkProblem::Missing).into()),
     };
     let control = file.control.as_ref().map(|file| control::control(file, axes.len())).transpose()?;

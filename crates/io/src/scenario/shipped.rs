@@ -53,6 +53,8 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "remark-12",
     "swarm-tracking",
     "framework",
+    "desired-dynamics",
+    "desired-in-z",
     "strict-feedback",
     "pure-feedback",
     "immersion-and-invariance",

@@ -45,6 +45,9 @@ pub enum SystemProblem {
         /// The reference dynamics.
         reference: &'static str,
     },
+    /// Something said of a nonlinear protocol where there is none.
+    #[error("this is said of dynamics with a formula `nonlinear`, but there is none: of linear ones `check` finds it")]
+    SaidOfLinear,
     /// A coupling where there is none.
     #[error("`coupling` belongs to the design `swarm`")]
     CouplingUnused,

@@ -12,7 +12,7 @@ use forwardstep_core::reference::{Consensus, Position, polynomial};
 use super::LagrangianRobot;
 use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::quantity::{each, positive};
-use crate::reference::ReferenceFamily;
+use crate::reference::{Desired, ReferenceFamily};
 use crate::setup::RobotSetup;
 use crate::system::{Attachments, Interface, Known, Law, LawWords, Robot, RobotInterface};
 
@@ -181,7 +181,12 @@ impl Law for ChainLaw {
             (ChainModel::Derivatives(_) | ChainModel::Cascade(_), _) => return None,
         };
         Some(Interface {
-            follows: &[ReferenceFamily::Consensus, ReferenceFamily::Target],
+            follows: &[
+                ReferenceFamily::Consensus,
+                ReferenceFamily::Target,
+                ReferenceFamily::Desired,
+                ReferenceFamily::DesiredTarget,
+            ],
             measures_velocity: robot.velocity_len() > 0,
             tracks_by_roots: true,
             pushed: true,
@@ -256,6 +261,12 @@ fn guide(assembly: &Assembly<'_>) -> Result<Guide, SetupError> {
         ReferenceFamily::Consensus => {
             Ok(Guide::Consensus(Consensus::<Position>::new([(&own.roots_per_s, 0.0)]).map_err(roots)?))
         }
-        _ => Err(assembly.wrong_reference()),
+        ReferenceFamily::Desired | ReferenceFamily::DesiredTarget => {
+            assembly.reference().downcast::<Desired>().ok_or_else(|| assembly.wrong_reference())?.guide(own)
+        }
+        ReferenceFamily::PureIntegral
+        | ReferenceFamily::Backstepping
+        | ReferenceFamily::Leader
+        | ReferenceFamily::Own => Err(assembly.wrong_reference()),
     }
 }

@@ -292,6 +292,8 @@ fn interface(robot: &RobotSetup, estimates: bool) -> Option<Interface> {
             ReferenceFamily::Backstepping,
             ReferenceFamily::Leader,
             ReferenceFamily::Target,
+            ReferenceFamily::Desired,
+            ReferenceFamily::DesiredTarget,
             ReferenceFamily::Own,
         ],
         measures_velocity: true,

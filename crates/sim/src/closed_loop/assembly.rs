@@ -3,7 +3,7 @@
 use forwardstep_core::controller::{ChainError, Controller, Guide, JointTracking};
 use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::plant::{Mechanical, Plant, total};
-use forwardstep_core::reference::polynomial;
+use forwardstep_core::reference::{WrittenIn, polynomial};
 use forwardstep_core::signal::Block as Signals;
 use forwardstep_core::{Gain, GainError, LengthError, ResolvedGain};
 
@@ -16,7 +16,7 @@ use super::valid::too_many;
 use crate::agents::{Adaptive, RobotModel};
 use crate::quantity::{LARGEST, Path, at_least, each, finite, positive, within};
 use crate::recording::Signal;
-use crate::reference::ReferenceDynamics;
+use crate::reference::{Desired, ReferenceDynamics};
 use crate::setup::{AgentSetup, Axis, Setup};
 use crate::system::{LawWords, Robot};
 use crate::trajectory::Pieces;
@@ -195,13 +195,24 @@ impl<'a> Assembly<'a> {
         let (own, robot) = (self.agent(), model.kernel());
         let Member { law, theta, .. } = members::member(&robot, self)?;
         // One root at least, and no more than a trajectory has derivatives.
-        let roots = Guide::Tracking { alpha: vec![1.0; own.roots_per_s.len()] };
         let wrong = |error| SetupError::Chain { agent: own.name.clone(), error: ChainError::Guide(error) };
-        roots.check(1, 1).map_err(wrong)?;
-        let mut alpha =
-            polynomial(&own.roots_per_s).map_err(|error| SetupError::Roots { agent: own.name.clone(), error })?;
-        // The leading one is not listed.
-        alpha.pop();
+        let suits = |order: usize| Guide::Tracking { alpha: vec![1.0; order] }.check(1, 1).map_err(wrong);
+        let alpha = if let Some(desired) = self.reference().downcast::<Desired>() {
+            let dynamics = desired.dynamics_of(&own.name)?;
+            if dynamics.written() != WrittenIn::Measured {
+                let (agent, law) = (own.name.clone(), own.law.words().name);
+                return Err(SetupError::DesiredVariables { agent, law });
+            }
+            suits(dynamics.order())?;
+            dynamics.own().to_vec()
+        } else {
+            suits(own.roots_per_s.len())?;
+            let mut alpha =
+                polynomial(&own.roots_per_s).map_err(|error| SetupError::Roots { agent: own.name.clone(), error })?;
+            // The leading one is not listed.
+            alpha.pop();
+            alpha
+        };
         let adaptive = own.law.downcast().map(|law: &Adaptive| law.estimate_start.clone());
         let estimate_start = adaptive.unwrap_or_else(|| theta.clone());
         let plant = Mechanical { robot: robot.clone(), theta };
@@ -223,7 +234,10 @@ impl<'a> Assembly<'a> {
         )?;
         self.takes_pushes(&plant)?;
         let blocks = controller.states();
-        let vectors = blocks.iter().filter(|(signal, _)| matches!(signal, Signal::Reference(_))).count();
+        let vectors = blocks
+            .iter()
+            .filter(|(signal, _)| matches!(signal, Signal::Reference(_) | Signal::ReferenceIntegral(_)))
+            .count();
         if start.reference.len() > vectors {
             return Err(too_many(own, vectors, start.reference.len()));
         }

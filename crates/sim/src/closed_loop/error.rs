@@ -3,7 +3,7 @@
 use forwardstep_core::agent::{FilterError, LimiterError};
 use forwardstep_core::controller::ChainError;
 use forwardstep_core::plant::SpacecraftError;
-use forwardstep_core::reference::{BacksteppingError, RootsError};
+use forwardstep_core::reference::{BacksteppingError, DesiredError, RootsError};
 use forwardstep_core::robot::tree::TipError;
 use forwardstep_core::sampled::RecipeError;
 use forwardstep_core::{GainError, LengthError};
@@ -84,6 +84,44 @@ pub enum SetupError {
         agent: String,
         /// How many there are, and how many there must be.
         error: LengthError,
+    },
+    /// Desired dynamics without meaning.
+    #[error("{error}")]
+    Desired {
+        /// What is wrong.
+        error: DesiredError,
+    },
+    /// Desired dynamics of a lower order than a plant.
+    #[error(
+        "the desired dynamics are of order {order}, but the plant of agent `{agent}` is of order {least}: they must be of that order or of a \
+         higher one"
+    )]
+    DesiredOrder {
+        /// The agent.
+        agent: String,
+        /// N.
+        order: usize,
+        /// k.
+        least: usize,
+    },
+    /// A nonlinear protocol for a robot that is no chain.
+    #[error(
+        "a nonlinear protocol leads chains, which step any reference dynamics, and agent `{agent}` is another robot, which is sampled by the exact \
+         solution of linear ones: leave `nonlinear` out, or write the robot as a `chain`"
+    )]
+    ProtocolOfChains {
+        /// The agent.
+        agent: String,
+    },
+    /// A law that takes desired dynamics in what is measured alone.
+    #[error(
+        "agent `{agent}`: {law} follows a target by desired dynamics that are written in what is measured, not in x or z alone"
+    )]
+    DesiredVariables {
+        /// The agent.
+        agent: String,
+        /// What its law is called.
+        law: &'static str,
     },
     /// Limits for axes where the robot has another number of torques.
     #[error("agent `{agent}`: {error}")]

@@ -37,6 +37,10 @@ impl SetupError {
             | SetupError::OnlyTracks { .. }
             | SetupError::NotTracking { .. }
             | SetupError::ReferenceOfLaw { .. } => "reference".into(),
+            SetupError::Desired { .. } => reference(),
+            SetupError::ProtocolOfChains { .. } => reference().key("nonlinear"),
+            SetupError::DesiredVariables { .. } => reference().key("written_in"),
+            SetupError::DesiredOrder { .. } => reference().key("polynomial"),
             SetupError::Backstepping(BacksteppingError::Filter { .. }) => reference().key("filter_s"),
             SetupError::Backstepping(BacksteppingError::Limit { .. }) => reference().key("acceleration_limit"),
             SetupError::DelayedDerived { .. } => reference().key("design"),
@@ -88,8 +92,12 @@ impl SetupError {
     pub(crate) fn wrong_reference(reference: &dyn ReferenceDynamics, agent: &AgentSetup) -> Self {
         let (name, law) = (agent.name.clone(), agent.law.words().name);
         let only_tracks = agent.interface().is_some_and(|interface| interface.follows == [ReferenceFamily::Target]);
+        let follows_targets =
+            agent.interface().is_some_and(|interface| interface.follows.contains(&ReferenceFamily::Target));
         match reference.interface().family {
-            ReferenceFamily::Target => SetupError::NotTracking { agent: name, law },
+            ReferenceFamily::Target | ReferenceFamily::DesiredTarget if !follows_targets => {
+                SetupError::NotTracking { agent: name, law }
+            }
             _ if only_tracks => SetupError::OnlyTracks { agent: name, law },
             _ => SetupError::ReferenceOfLaw { agent: name, law },
         }

@@ -3,7 +3,7 @@
 use forwardstep_core::LengthError;
 
 use super::error::{SetupError, VelocityQuantity};
-use crate::reference::{ReferenceDynamics, ReferenceFamily, ReferenceInterface, Roots};
+use crate::reference::{ReferenceDynamics, ReferenceInterface, Roots};
 use crate::setup::{AgentSetup, Control, Setup, VelocitySensor};
 use crate::system::{ActuatorLimits, Interface};
 
@@ -11,7 +11,7 @@ use crate::system::{ActuatorLimits, Interface};
 pub(super) fn of_setup(setup: &Setup) -> Result<(), SetupError> {
     // A law that cannot track is refused for that.
     let tracks = |agent: &AgentSetup| {
-        agent.interface().is_some_and(|interface| interface.follows.contains(&ReferenceFamily::Target))
+        agent.interface().is_some_and(|interface| interface.follows.iter().any(|family| family.has_targets()))
     };
     if setup.all_track() && setup.agents.iter().all(tracks) {
         let edges = setup.network.schedule.graphs.iter().map(Vec::len).sum();

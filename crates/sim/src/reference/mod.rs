@@ -6,11 +6,13 @@
 
 mod backstepping;
 mod consensus;
+mod desired;
 mod linear;
 mod tracking;
 
 pub use backstepping::Backstepping;
 pub use consensus::{Consensus, PureIntegral};
+pub use desired::{Desired, DesiredPolynomial, Protocol};
 pub use linear::{LinearReference, LinearTerms};
 pub use tracking::Tracking;
 
@@ -115,6 +117,10 @@ pub enum ReferenceFamily {
     Leader,
     /// A target of every agent's own.
     Target,
+    /// Desired dynamics that a user writes down, in which agents hear each other.
+    Desired,
+    /// The same, in which every agent follows a target.
+    DesiredTarget,
     /// What agents say to each other, in a way of its own: reference dynamics from outside.
     Own,
 }
@@ -123,10 +129,24 @@ impl ReferenceFamily {
     /// Whether agents are to reach a target or a leader, and not each other.
     pub fn is_followed(self) -> bool {
         match self {
-            ReferenceFamily::Leader | ReferenceFamily::Target => true,
+            ReferenceFamily::Leader | ReferenceFamily::Target | ReferenceFamily::DesiredTarget => true,
             ReferenceFamily::Consensus
             | ReferenceFamily::PureIntegral
             | ReferenceFamily::Backstepping
+            | ReferenceFamily::Desired
+            | ReferenceFamily::Own => false,
+        }
+    }
+
+    /// Whether every agent has a target of its own to reach.
+    pub fn has_targets(self) -> bool {
+        match self {
+            ReferenceFamily::Target | ReferenceFamily::DesiredTarget => true,
+            ReferenceFamily::Consensus
+            | ReferenceFamily::PureIntegral
+            | ReferenceFamily::Backstepping
+            | ReferenceFamily::Leader
+            | ReferenceFamily::Desired
             | ReferenceFamily::Own => false,
         }
     }

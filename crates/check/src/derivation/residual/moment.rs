@@ -369,7 +369,8 @@ impl<'c, 'a> At<'c, 'a> {
                 | Term::Actuation
                 | Term::ChainRegressorError
                 | Term::ImmersionError
-                | Term::Constant,
+                | Term::Constant
+                | Term::Protocol,
                 _,
             ) => Err(Missing::Term),
         }

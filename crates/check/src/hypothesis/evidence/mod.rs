@@ -32,7 +32,7 @@ pub use graph::GraphEvidence;
 pub use kinds::{FactorEverywhere, KindEvidence, Term};
 pub use links::{LinkEvidence, WeightFault};
 pub use motion::{Bounded, MotionEvidence};
-pub use reference::ReferenceEvidence;
+pub use reference::{ReferenceEvidence, TriedRun};
 pub use robots::{InertiaUnit, MotionExtent, ReachSide, RobotEvidence};
 pub use surroundings::{Inexact, Limited, LoopEvidence};
 

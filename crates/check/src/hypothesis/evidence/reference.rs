@@ -44,6 +44,49 @@ pub enum ReferenceEvidence {
         /// The largest.
         largest: f64,
     },
+    /// Desired dynamics are a design of the paper.
+    Design {
+        /// Its equation.
+        design: &'static str,
+        /// How many roots it has.
+        order: usize,
+    },
+    /// The polynomial of a target has its roots to the left of the axis by the criterion of Routh and Hurwitz.
+    Stable {
+        /// Its degree.
+        order: usize,
+    },
+    /// It has not.
+    Unstable {
+        /// The first row of the array of Routh whose first entry is not positive, from zero.
+        row: usize,
+        /// Its degree.
+        order: usize,
+    },
+    /// Desired dynamics in which agents hear each other are no design that is known.
+    NoDesign,
+    /// They are written in variables in which none is known.
+    NoDesignInThese,
+    /// Runs of a nonlinear protocol alone, from states that are drawn.
+    Tried {
+        /// How many were made.
+        runs: usize,
+        /// One that refutes what is declared.
+        found: Option<TriedRun>,
+    },
+}
+
+/// A run of desired dynamics that ends farther from what they are for than it began.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TriedRun {
+    /// Where the agents start.
+    pub start: Vec<f64>,
+    /// Whether there is an s, which vanishes.
+    pub disturbed: bool,
+    /// The distance at most in the first tenth of the run.
+    pub from: f64,
+    /// The distance at the end; infinite where the run breaks down.
+    pub to: f64,
 }
 
 impl ReferenceEvidence {
@@ -62,13 +105,37 @@ impl ReferenceEvidence {
             | ReferenceEvidence::FirstRootCommon
             | ReferenceEvidence::FirstRootsOverConstants
             | ReferenceEvidence::Manipulability { .. } => Answer::Holds,
-            ReferenceEvidence::ComplexRoots { .. } => Answer::NotShown,
+            ReferenceEvidence::Design { .. } => Answer::Holds,
+            // What is stable has no certificate without its roots.
+            ReferenceEvidence::ComplexRoots { .. }
+            | ReferenceEvidence::Stable { .. }
+            | ReferenceEvidence::NoDesign
+            | ReferenceEvidence::NoDesignInThese
+            | ReferenceEvidence::Tried { found: None, .. } => Answer::NotShown,
+            ReferenceEvidence::Unstable { .. } | ReferenceEvidence::Tried { found: Some(_), .. } => Answer::Violated,
             ReferenceEvidence::FirstRoots(_) | ReferenceEvidence::FilteredDerivative { .. } => Answer::NotCovered,
         }
     }
 
-    /// All of it is compared as it was given.
+    /// All of it is compared as it was given, but for what was run.
     pub(super) fn rigour(&self) -> Rigour {
-        Rigour::Exact
+        match self {
+            ReferenceEvidence::Tried { .. } => Rigour::Sampled,
+            ReferenceEvidence::Roots { .. }
+            | ReferenceEvidence::ComplexRoots { .. }
+            | ReferenceEvidence::Hurwitz { .. }
+            | ReferenceEvidence::Order(_)
+            | ReferenceEvidence::Orders(_)
+            | ReferenceEvidence::FirstRootCommon
+            | ReferenceEvidence::FirstRootsOverConstants
+            | ReferenceEvidence::FirstRoots(_)
+            | ReferenceEvidence::FilteredDerivative { .. }
+            | ReferenceEvidence::Manipulability { .. }
+            | ReferenceEvidence::Design { .. }
+            | ReferenceEvidence::Stable { .. }
+            | ReferenceEvidence::Unstable { .. }
+            | ReferenceEvidence::NoDesign
+            | ReferenceEvidence::NoDesignInThese => Rigour::Exact,
+        }
     }
 }

@@ -1,6 +1,13 @@
 //! Reference dynamics.
 
-use crate::hypothesis::ReferenceEvidence;
+use crate::hypothesis::{ReferenceEvidence, TriedRun};
+
+/// The first of these numbers.
+fn list(numbers: &[f64]) -> String {
+    let shown: Vec<String> = numbers.iter().take(6).map(|number| format!("{number:.4}")).collect();
+    let more = if numbers.len() > shown.len() { ", …" } else { "" };
+    format!("({}{more})", shown.join(", "))
+}
 
 pub(super) fn words(evidence: &ReferenceEvidence) -> String {
     match evidence {
@@ -34,6 +41,40 @@ pub(super) fn words(evidence: &ReferenceEvidence) -> String {
         }
         ReferenceEvidence::Manipulability { largest } => {
             format!("the largest λ is {largest}; tracking errors move the value agreed upon")
+        }
+        ReferenceEvidence::Design { design, order } => {
+            let roots = if *order == 1 { "one root".to_owned() } else { format!("{order} roots") };
+            format!("they are {design} with {roots}, by comparison of their polynomials with exact numbers")
+        }
+        ReferenceEvidence::Stable { order } => format!(
+            "by the criterion of Routh and Hurwitz, with exact numbers, all {order} roots of their polynomial have negative real parts; but a \
+             certificate can be had of roots that are stated alone"
+        ),
+        ReferenceEvidence::Unstable { row, order } => format!(
+            "their polynomial is of degree {order}, and not Hurwitz: in the array of Routh the first entry of row {row}, counted from 0, is not \
+             positive"
+        ),
+        ReferenceEvidence::NoDesign => {
+            "agents hear each other in another way than in (24) and (a5), and nothing is known of where that leads over graphs that switch and \
+             links that are late"
+                .into()
+        }
+        ReferenceEvidence::Tried { runs, found: None } => format!(
+            "{runs} runs of these dynamics alone, from states that were drawn, half of them with an s that vanishes, came closer to what they are for; \
+             that shows nothing of others"
+        ),
+        ReferenceEvidence::Tried { found: Some(TriedRun { start, disturbed, from, to }), .. } => {
+            let with = if *disturbed { "with an s that vanishes" } else { "without s" };
+            let end = if to.is_finite() { format!("ends at {to:.3e}") } else { "breaks down".into() };
+            format!(
+                "a run of these dynamics alone, {with}, from x = {}, is at most {from:.3e} from what they are for when it begins, and {end}",
+                list(start)
+            )
+        }
+        ReferenceEvidence::NoDesignInThese => {
+            "in these variables s itself may stand beside what agents hear, or weights have to be constant; a proof is known of dynamics \
+             in what is measured alone, and of those of order three in x, on robots"
+                .into()
         }
     }
 }

@@ -100,6 +100,8 @@ fn command(base: &str) -> String {
             'χ' => "\\chi",
             'ψ' => "\\psi",
             'Ψ' => "\\Psi",
+            '𝒵' => "\\mathcal{Z}",
+            '𝓕' => "\\mathcal{F}",
             'ω' => "\\omega",
             '′' => "'",
             other => {

@@ -75,7 +75,7 @@ impl RobotKind for ChainFile {
 
     fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
         let order = count("order", &self.order, MOST_DERIVATIVES)?;
-        let names = derivatives(order);
+        let names = derivatives(order, "x");
         let chi = optional(self.chi.as_ref(), &names, 0.0)?;
         let psi = optional(self.psi.as_ref(), &names, 1.0)?;
         let phi = list(&self.regressor.value, &names)?;
@@ -98,12 +98,12 @@ impl RobotKind for ChainFile {
     }
 }
 
-/// x, dx, d2x, ….
-fn derivatives(order: usize) -> Vec<String> {
+/// x, dx, d2x, … of a letter x.
+pub(super) fn derivatives(order: usize, letter: &str) -> Vec<String> {
     let name = |r: usize| match r {
-        0 => "x".to_owned(),
-        1 => "dx".to_owned(),
-        r => format!("d{r}x"),
+        0 => letter.to_owned(),
+        1 => format!("d{letter}"),
+        r => format!("d{r}{letter}"),
     };
     (0..order).map(name).collect()
 }
@@ -248,7 +248,7 @@ impl LawKind for ImmersionFile {
         let terms = terms(agent.robot).ok_or_else(none)?;
         let (order, phi) = (terms.order(), terms.regressor());
         let antiderivatives = match &self.antiderivatives {
-            Some(texts) => list(&texts.value, &derivatives(order))?,
+            Some(texts) => list(&texts.value, &derivatives(order, "x"))?,
             None => {
                 phi.iter().map(|phi| Immersion::antiderivative(order, phi)).collect::<Option<_>>().ok_or_else(none)?
             }

@@ -125,6 +125,7 @@ impl Kinds {
                 ReferenceEntry::of::<references::backstepping::BacksteppingFile>(),
                 ReferenceEntry::of::<references::leader::LeaderReferenceFile>(),
                 ReferenceEntry::of::<references::tracking::TrackingFile>(),
+                ReferenceEntry::of::<references::desired::DesiredFile>(),
             ],
             delays: vec![
                 delay::<delays::constant::ConstantFile>(),

@@ -150,7 +150,24 @@ fn reference(evidence: &ReferenceEvidence) -> Option<String> {
         ReferenceEvidence::FilteredDerivative { .. } => {
             "`reference.consensus` with one root, which is (aa10) and differentiates nothing".into()
         }
-        ReferenceEvidence::Order(_)
+        ReferenceEvidence::Stable { .. } => {
+            "`polynomial = { roots_per_s = [...] }`, with the roots in place of the coefficients".into()
+        }
+        ReferenceEvidence::Unstable { .. } => {
+            "a polynomial whose roots have negative real parts, stated by `roots_per_s`".into()
+        }
+        ReferenceEvidence::NoDesign => {
+            "`polynomial = { integrators = 1, roots_per_s = [...] }`, `coupling_polynomial` with the same roots and \
+             no `heard`: this is (24), about which Theorem 3 speaks"
+                .into()
+        }
+        ReferenceEvidence::Tried { found: Some(_), .. } => "a protocol whose runs converge from every state".into(),
+        ReferenceEvidence::Tried { found: None, .. } => {
+            "linear dynamics by their roots, of which `check` can tell".into()
+        }
+        ReferenceEvidence::NoDesignInThese => "`written_in = \"measured\"`".into(),
+        ReferenceEvidence::Design { .. }
+        | ReferenceEvidence::Order(_)
         | ReferenceEvidence::Orders(_)
         | ReferenceEvidence::FirstRootCommon
         | ReferenceEvidence::FirstRootsOverConstants

@@ -2,6 +2,7 @@
 
 pub mod backstepping;
 pub mod consensus;
+pub mod desired;
 pub mod leader;
 pub mod tracking;
 

@@ -1,0 +1,99 @@
+//! Desired dynamics that are a design of the paper.
+//!
+//! What a user writes down is A(p) x = what is heard, with the polynomials of (43) as it is meant there. By comparison with (24), (a5),
+//! (3), (23) and (43) for tracking, all with exact numbers, it is one of these where
+//!
+//! ```text
+//! consensus       A(p) = p K(p), B = K, c₀ = K(0), and c₁ = 0 or K(0)/κ₀       (24) or (a5) in what is measured; of order three, and
+//!                                                                              in x, on Lagrangian robots, (23) or (3)
+//! tracking        A = K, and a target                                          (43)
+//! ```
+//!
+//! with a K that is given by its roots. Tracking is the same in whatever variables it is written: what differs is a sum of derivatives
+//! of s, which drives a linear system that is exponentially stable. Consensus is not: written in z it holds s itself beside p K(p), whose
+//! integral need not be bounded.
+
+use std::sync::Arc;
+
+use forwardstep_core::expression::Number;
+use forwardstep_core::reference::{RootSet, WrittenIn};
+use forwardstep_sim::reference::{Consensus, Desired, DesiredPolynomial, PureIntegral, Tracking};
+use forwardstep_sim::{Exchange, ReferenceDynamics, Setup};
+
+use crate::derivation::Factors;
+
+/// Which design desired dynamics are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Design {
+    /// (a5) or (24).
+    Consensus,
+    /// (3) or (23).
+    PureIntegral,
+    /// (43) for a target.
+    Tracking,
+}
+
+/// The design that the desired dynamics of `setup` are, with its roots; `None` for other reference dynamics, and for none of the paper.
+pub(crate) fn design(setup: &Setup) -> Option<(Design, RootSet)> {
+    let desired: &Desired = setup.reference.downcast()?;
+    if desired.protocol.is_some() {
+        return None;
+    }
+    let DesiredPolynomial::Roots { integrators, roots } = &desired.polynomial else { return None };
+    if roots.is_empty() {
+        return None;
+    }
+    if desired.follows_target {
+        let alone = *integrators == 0 && desired.coupling.is_none() && desired.heard.is_empty();
+        return alone.then(|| (Design::Tracking, roots.clone()));
+    }
+    let same = DesiredPolynomial::Roots { integrators: 0, roots: roots.clone() };
+    let agrees = *integrators == 1 && desired.coupling.as_ref() == Some(&same) && hears(desired, roots);
+    let design = match desired.written {
+        WrittenIn::Measured => Design::Consensus,
+        WrittenIn::X if roots.len() == 2 && lagrangian(setup) => Design::PureIntegral,
+        WrittenIn::X | WrittenIn::Z => return None,
+    };
+    agrees.then(|| (design, roots.clone()))
+}
+
+fn lagrangian(setup: &Setup) -> bool {
+    setup.agents.iter().all(|agent| agent.robot.kind.lagrangian().is_some())
+}
+
+/// Whether what is heard is α₀ x_j, or (α₀/κ₀)(p + κ₀) x_j.
+fn hears(desired: &Desired, roots: &RootSet) -> bool {
+    let alpha_0 = Factors::written(roots).product().coefficient(0);
+    let kappa_0 = roots.first_real().map(Number::written);
+    let heard: Vec<_> = desired.heard.iter().map(|number| Number::written(*number)).collect();
+    match &heard[..] {
+        [] => true,
+        [position] => *position == alpha_0,
+        [position, velocity] => *position == alpha_0 && kappa_0.is_some_and(|kappa_0| velocity * kappa_0 == alpha_0),
+        _ => false,
+    }
+}
+
+/// `setup` with the design in the place of desired dynamics that are one; `None` where they are none.
+pub(crate) fn designed(setup: &Setup) -> Option<Setup> {
+    let (design, roots) = design(setup)?;
+    let reference: Arc<dyn ReferenceDynamics> = match design {
+        Design::Consensus => Arc::new(Consensus),
+        Design::PureIntegral => Arc::new(PureIntegral),
+        Design::Tracking => Arc::new(Tracking),
+    };
+    let mut setup = Setup { reference, ..setup.clone() };
+    setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = roots.clone());
+    Some(setup)
+}
+
+/// What the design is called, with its equation.
+pub(crate) fn name(design: Design, exchange: Exchange) -> &'static str {
+    match (design, exchange) {
+        (Design::Consensus, Exchange::Position) => "(24)",
+        (Design::Consensus, Exchange::PositionVelocity) => "(a5)",
+        (Design::PureIntegral, Exchange::Position) => "(23)",
+        (Design::PureIntegral, Exchange::PositionVelocity) => "(3)",
+        (Design::Tracking, _) => "(43) for a target",
+    }
+}
