@@ -7,6 +7,7 @@
 //! - `exact`: the same with rational ends, so that 0.1 + 0.2 − 0.3 is zero;
 //! - `jet`: four derivatives over either of the first two;
 //! - `graph`: a graph without repetitions, differentiated as often as needed, and compiled to a `tape`;
+//! - `series`: truncated power series in several variables, laid out in advance as a list of multiplications;
 //! - `uniform`: which way it goes, and whether it is uniformly continuous;
 //! - `tail`: a sum of powers and logarithms with enclosed coefficients, which tells what it does from some time on;
 //! - `period`: whether it is made of waves with a common period.
@@ -15,8 +16,8 @@
 //! constants as they were written.
 //!
 //! Backstepping differentiates the regressors of a chain up to one time less than its order. Differences would not be
-//! exact, and numbers that carry all their derivatives grow with every variable. A graph is differentiated once, when the
-//! law is built, and what is left at run time is a list of additions and products.
+//! exact. For low orders a graph is differentiated once, when the law is built, and what is left at run time is a list of additions and
+//! products. For high orders the graph of all derivatives grows faster than the numbers that carry them: `series`.
 
 mod bounds;
 mod domain;
@@ -30,6 +31,7 @@ mod kinks;
 mod number;
 mod operation;
 mod period;
+mod series;
 mod tail;
 mod tape;
 mod uniform;
@@ -49,6 +51,8 @@ pub use interval::{Interval, Intervals};
 pub use jet::{Branch, Branching, Jets};
 pub use kinks::{KinkError, MOST_KINKS, Switch, bisect};
 pub use number::{MOST_DIGITS, Number};
+use series::MOST_PRODUCTS;
+pub(crate) use series::{Program, Register, Series, Term};
 pub use tape::Tape;
 
 /// Steps that an expression may have.
@@ -148,6 +152,14 @@ pub enum ExpressionError {
         /// The name of the function.
         function: &'static str,
     },
+    /// The series of a design take too long.
+    #[error(
+        "with its derivatives one evaluation of the law takes more than {} million multiplications, about 5 ms, and {} MB; every \
+         equation less divides that by three: use fewer equations or parameters, or regressors of fewer states",
+        MOST_PRODUCTS / 1_000_000,
+        MOST_PRODUCTS * 4 / 1_000_000
+    )]
+    TooCostly,
     /// The derivatives grow too large.
     #[error("with its derivatives this takes more than {MOST_NODES} operations; use fewer parameters or simpler terms")]
     TooLarge,
