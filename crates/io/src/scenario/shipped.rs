@@ -54,6 +54,7 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "swarm-tracking",
     "framework",
     "strict-feedback",
+    "strict-feedback-order-10",
     "pure-feedback",
     "immersion-and-invariance",
     "saturated-coupling",
