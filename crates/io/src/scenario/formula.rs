@@ -27,7 +27,7 @@ pub use super::formula_problem::FormulaProblem;
 use super::formula_problem::{A_VALUE, A_VALUE_OF_VARIABLES, AN_OPERATOR, CHOICES, CONSTANTS, FUNCTIONS, JUMPS};
 use super::value_problem::ValueProblem;
 
-/// Parentheses, signs and powers within each other: the reader calls itself for each.
+/// Parentheses, signs, powers and operators within each other: the reader calls itself for each.
 pub(super) const MOST_NESTED: usize = 128;
 
 /// What is wrong with a formula, and which bytes of it are.

@@ -129,7 +129,7 @@ pub enum FormulaProblem {
     OpenParenthesis,
     /// Parentheses, signs or powers too deep within each other.
     #[error(
-        "the formula is nested too deeply: more than {MOST_NESTED} parentheses, signs or powers stand within each other"
+        "the formula is nested too deeply: more than {MOST_NESTED} parentheses, signs, powers and operators stand within each other"
     )]
     TooDeep,
     /// More steps than are accepted.
