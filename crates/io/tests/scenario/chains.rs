@@ -227,8 +227,6 @@ const CASCADES_CASES: &[Case] = &[
         "test.toml:6:41: found \"x1\" where a list should stand", ""),
     ("[[\"x1^2\", \"0\"], [\"x1*x2\", \"sin(x2)\"]]", "[[0], [0]]",
         "test.toml:6:42: found 0 where a text in quotes should stand", ""),
-    ("[[\"x1^2\", \"0\"], [\"x1*x2\", \"sin(x2)\"]]", "[[\"0\"], [\"0\"], [\"0\"], [\"0\"], [\"0\"], [\"0\"], [\"0\"]]",
-        "test.toml:15:15: agent `strict`: roots of the reference dynamics: 2, but at least 6 are needed here", ""),
     ("parameters = [0.5, -0.8]", "parameters = [0.5]",
         "test.toml:6:92: `parameters` has 1 entry, but `regressor` needs 2", ""),
     ("parameters = [0.5, -0.8]", "params = [0.5, -0.8]",
