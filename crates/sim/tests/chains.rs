@@ -7,10 +7,16 @@ mod desired;
 
 use std::ops::ControlFlow;
 
-use common::chains::{adaptive, cascades, derivatives, linearising, pure_feedback, tracking};
-use common::{assert_first_order, balance_residual, column, last, run, truth};
+use std::sync::Arc;
+
+use common::chains::{
+    adaptive, agent, cascades, derivatives, estimate, linearising, number, pure_feedback, tracking, x,
+};
+use common::{assert_first_order, balance_residual, column, last, run, setup, silent, switching, truth};
+use forwardstep_core::plant::{CascadeTerms, Formulas};
 use forwardstep_sim::coupling::Coupling;
-use forwardstep_sim::{Outcome, Signal, simulate};
+use forwardstep_sim::reference::Consensus;
+use forwardstep_sim::{ChainModel, ChainStep, Outcome, Setup, Signal, simulate};
 
 fn spread(outcome: &Outcome, row: usize) -> f64 {
     let x: Vec<f64> = (0..3).map(|agent| column(outcome, agent, Signal::Position, 0)[row]).collect();
@@ -107,5 +113,70 @@ fn regress_chains_start_with_a_reference_and_with_the_state_that_the_model_has()
         start.dq.clear();
         start.rest.push(0.0);
         assert!(simulate(&setup, &mut |_| ControlFlow::Continue(())).is_err());
+    }
+}
+
+/// 1, 1.1, 1.2, ….
+fn roots(count: usize) -> Vec<f64> {
+    (0..count).map(|r| 1.0 + 0.1 * r as f64).collect()
+}
+
+/// Three chains in strict-feedback form of an order, with so many parameters.
+fn backstepping(order: usize, parameters: usize) -> Setup {
+    let size = if order > 4 { 0.01 } else { 0.5 };
+    let phi = |i: usize, j: usize| if (i + j).is_multiple_of(2) { x(i).sin_of() * size } else { x(0) * x(i) * size };
+    let rows = (0..order).map(|i| (0..parameters).map(|j| phi(i, j)).collect());
+    let model = ChainModel::Cascade(Arc::new(CascadeTerms::strict(rows.collect()).unwrap()));
+    let of = |index: usize| {
+        let estimate = estimate(&vec![1.0; parameters]);
+        let step = ChainStep::Backstepping { gains_per_s: vec![1.0; order], estimate };
+        let mut state = vec![0.0; order];
+        state[0] = 0.5 - 0.4 * index as f64;
+        let theta = &[0.3, -0.2, 0.4][..parameters];
+        agent(index, model.clone(), theta, step, &roots(order.max(2) - 1), &state)
+    };
+    setup((1..=3).map(of).collect(), Arc::new(Consensus), switching(), 1.2)
+}
+
+#[test]
+fn eq_lyapunov_identities_hold_for_chains_of_any_order() {
+    for order in [1, 2, 7, 10] {
+        for parameters in [0, 1, 3] {
+            let outcome = run(&backstepping(order, parameters));
+            for agent in 0..3 {
+                let error = balance_residual(&outcome, agent, 1e-3);
+                assert!(error <= 1e-7, "order {order}, {parameters} parameters: {error:e}");
+            }
+        }
+    }
+}
+
+/// ẋ of a chain that hears nothing is a sum of the modes e^(−κt) of its roots, whatever its order.
+#[test]
+fn val_chains_of_any_order_move_as_the_modes_of_their_roots() {
+    for order in [2, 9, 20] {
+        let roots = roots(order - 1);
+        let modes = [(0.4, roots[0]), (-0.3, roots[roots.len() - 1])];
+        let exact = |r: i32, t: f64| {
+            let mode = |(size, kappa): &(f64, f64)| match r {
+                0 => size * (1.0 - (-kappa * t).exp()) / kappa,
+                r => size * (-kappa).powi(r - 1) * (-kappa * t).exp(),
+            };
+            modes.iter().map(mode).sum::<f64>()
+        };
+        let state: Vec<f64> = (0..order as i32).map(|r| exact(r, 0.0)).collect();
+        let model = ChainModel::Derivatives(Arc::new(
+            Formulas::new(order, &number(0.0), vec![x(0).sin_of()], &number(2.0)).unwrap(),
+        ));
+        let step = ChainStep::Linearising { gain_per_s: 2.0 };
+        let mut one = agent(1, model, &[0.7], step, &roots, &state);
+        // One differentiator: z alone.
+        one.start.reference = vec![vec![exact(order as i32 - 1, 0.0)]];
+        let outcome = run(&setup(vec![one], Arc::new(Consensus), silent(1), 3.0));
+        let position = column(&outcome, 0, Signal::Position, 0);
+        for (row, t) in outcome.recording.t_s.iter().enumerate() {
+            let error = (position[row] - exact(0, *t)).abs();
+            assert!(error < 1e-6, "order {order} at {t}: {error:e}");
+        }
     }
 }

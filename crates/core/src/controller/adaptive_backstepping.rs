@@ -35,15 +35,13 @@
 //! **Disturbances.** w_i in the equation of x_i adds Σ_j e_j ∂e_j/∂x_i w_i to V̇. For the last equation of a strict-feedback chain
 //! that is e_n w_n, and V stays finite under a bounded w_n. Slopes of earlier steps may grow with the state.
 
-use alloc::vec;
 use alloc::vec::Vec;
 
 use super::following::{ChainError, ChainMeasured, positive, vanishes};
 use super::guide::{Guide, GuideError, GuideWork, Leads};
-use super::steps::Steps;
+use super::recursion::{Recursion, RecursionWork, Stepped};
 use super::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::LengthError;
-use crate::expression::Tape;
 use crate::plant::{Cascade, CascadeTerms};
 use crate::reference::Position;
 use crate::signal::{Block, Signal};
@@ -106,10 +104,7 @@ pub struct AdaptiveBackstepping {
     adaptation: Vec<f64>,
     estimate_start: Vec<f64>,
     floor: f64,
-    /// u, its factor, e, θ̂'.
-    tape: Tape,
-    /// Σ_j e_j ∂e_j/∂x_i, an entry per equation: what V gains from a disturbance of it.
-    gains: Tape,
+    recursion: Recursion,
 }
 
 /// Gains of [`AdaptiveBackstepping`].
@@ -146,18 +141,8 @@ impl AdaptiveBackstepping {
         LengthError::check("theta_hat", terms.parameters(), estimate_start.len())?;
         positive(&gains_per_s)?;
         positive(&adaptation)?;
-        let Steps { mut graph, input, divisor, errors, d_theta_hat } = Steps::new(terms, &gains_per_s, &adaptation)?;
-        let mut outputs = vec![input, divisor];
-        outputs.extend(&errors);
-        outputs.extend(d_theta_hat);
-        let tape = Tape::new(&graph, &outputs)?;
-        let mut gains = Vec::with_capacity(n);
-        for i in 0..n {
-            let slopes = errors.iter().map(|e| graph.derivative(*e, i)).collect::<Result<Vec<_>, _>>()?;
-            gains.push(graph.dot(&slopes, &errors));
-        }
-        let gains = Tape::new(&graph, &gains)?;
-        Ok(AdaptiveBackstepping { order: n, guide, gains_per_s, adaptation, estimate_start, floor, tape, gains })
+        let recursion = Recursion::new(terms, &gains_per_s, &adaptation)?;
+        Ok(AdaptiveBackstepping { order: n, guide, gains_per_s, adaptation, estimate_start, floor, recursion })
     }
 
     /// ℓ.
@@ -184,11 +169,7 @@ impl AdaptiveBackstepping {
 #[derive(Clone, Debug)]
 pub struct BacksteppingWork {
     guide: GuideWork,
-    variables: Vec<f64>,
-    workspace: Vec<f64>,
-    out: Vec<f64>,
-    /// Of [`AdaptiveBackstepping::gains`].
-    gains: [Vec<f64>; 2],
+    recursion: RecursionWork,
 }
 
 impl Controller for AdaptiveBackstepping {
@@ -201,13 +182,7 @@ impl Controller for AdaptiveBackstepping {
     const KNOWS_OFFSETS: bool = false;
 
     fn scratch(&self) -> BacksteppingWork {
-        BacksteppingWork {
-            guide: self.guide.work(1),
-            variables: vec![0.0; self.tape.variables()],
-            workspace: self.tape.workspace(),
-            out: vec![0.0; self.tape.outputs()],
-            gains: [self.gains.workspace(), vec![0.0; self.order]],
-        }
+        BacksteppingWork { guide: self.guide.work(1), recursion: self.recursion.work() }
     }
 
     fn states(&self) -> Vec<Block> {
@@ -279,19 +254,19 @@ impl Controller for AdaptiveBackstepping {
         let leads = Leads { measured: &x[..1], state: z, heard: given.heard, target };
         self.guide.rate(1, 1, leads, &mut work.guide, &mut d_state[..vectors])?;
 
-        let BacksteppingWork { variables, workspace, out, .. } = work;
-        variables[..n].copy_from_slice(x);
-        variables[n..n + p].copy_from_slice(theta_hat);
+        let given = &mut work.recursion.given;
+        given[..n].copy_from_slice(x);
+        given[n..n + p].copy_from_slice(theta_hat);
         // z^(ℓ) is a rate.
-        for (r, y) in variables[n + p..].iter_mut().enumerate() {
+        for (r, y) in given[n + p..].iter_mut().enumerate() {
             *y = if r < vectors { z[r] } else { d_state[vectors - 1] };
         }
-        self.tape.evaluate(variables, workspace, out)?;
-        input[0] = out[0];
-        d_state[vectors..].copy_from_slice(&out[2 + n..]);
+        let Stepped { input: u, divisor, errors, d_theta_hat } = self.recursion.evaluate(&mut work.recursion)?;
+        input[0] = u;
+        d_state[vectors..].copy_from_slice(d_theta_hat);
         shown[..vectors].copy_from_slice(z);
-        shown[vectors..][..n].copy_from_slice(&out[2..2 + n]);
-        shown[vectors + n] = out[1];
+        shown[vectors..][..n].copy_from_slice(errors);
+        shown[vectors + n] = divisor;
         shown[vectors + n + 1..][..p].copy_from_slice(theta_hat);
         if let (Some(jet), Some(error)) = (target.first(), shown.last_mut()) {
             *error = x[0] - jet[0];
@@ -327,14 +302,13 @@ impl Controller for AdaptiveBackstepping {
             value += 0.5 * delta * delta / self.adaptation[j];
         }
         if !truth.external.is_empty() {
-            let BacksteppingWork { variables, gains: [workspace, gains], .. } = work;
             LengthError::check("state of the plant", self.order, truth.state.len())?;
             let (z, theta_hat) = state.split_at(vectors);
             let known = truth.state.iter().chain(theta_hat).chain(z);
             // The last derivative of z is in no error.
-            variables.iter_mut().zip(known).for_each(|(variable, value)| *variable = *value);
-            self.gains.evaluate(variables, workspace, gains)?;
-            dissipation -= gains.iter().zip(truth.external).map(|(gain, w)| gain * w).sum::<f64>();
+            work.recursion.given.iter_mut().zip(known).for_each(|(given, value)| *given = *value);
+            let slopes = self.recursion.slopes(&mut work.recursion)?;
+            dissipation -= slopes.iter().zip(truth.external).map(|(slope, w)| slope * w).sum::<f64>();
         }
         Ok(Balance { value, dissipation })
     }

@@ -8,7 +8,8 @@
 //! - `joint_tracking`: (6)–(7) behind reference dynamics for tracking, a robot that follows a trajectory.
 //! - `linearising`, `immersion`: (33) by feedback linearisation, with χ known or adapted, and by immersion and
 //!   invariance; `following` is what they share.
-//! - `adaptive_backstepping`: strict-feedback and pure-feedback chains; `steps` is the recursion.
+//! - `adaptive_backstepping`: strict-feedback and pure-feedback chains; `steps` is the recursion, `steps_in_series` the same in power series
+//!   for high orders, and `recursion` takes the faster one.
 //! - `feedback`: any, from closures.
 //! - `guide`: where z leads, for plants of any order.
 //! - `position_only`: (a7)–(a9), a point mass without velocity measurement.
@@ -25,8 +26,10 @@ mod immersion;
 mod joint_tracking;
 mod linearising;
 mod position_only;
+mod recursion;
 mod stepped;
 mod steps;
+mod steps_in_series;
 mod task_space;
 mod thrust;
 

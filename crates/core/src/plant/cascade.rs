@@ -18,6 +18,9 @@ use crate::LengthError;
 use crate::expression::{Expression, ExpressionError, Graph, Tape};
 use crate::signal::{Block, Signal};
 
+/// A [`Signal::Coordinate`] numbers a state.
+const MOST_STATES: usize = u8::MAX as usize;
+
 /// f, φ and ψ. Variable i, from zero, is x_{i+1}.
 #[derive(Clone, Debug)]
 pub struct CascadeTerms {
@@ -33,6 +36,12 @@ pub enum CascadeError {
     /// No equation at all.
     #[error("a chain needs at least one equation")]
     Empty,
+    /// More states than there are numbers for.
+    #[error("a chain has {order} equations, but its states are numbered from 1 to {MOST_STATES}")]
+    TooMany {
+        /// How many there are.
+        order: usize,
+    },
     /// Equations that do not match.
     #[error(transparent)]
     Length(#[from] LengthError),
@@ -55,13 +64,16 @@ impl CascadeTerms {
     /// A pure-feedback chain: f_1 … f_n, then φ_1 … φ_n with as many entries each as there are parameters, then ψ.
     ///
     /// # Errors
-    /// [`CascadeError`] when the lists differ in length or an equation uses a variable further up than the next.
+    /// [`CascadeError`] when there are more than 255 equations, the lists differ in length or an equation uses a variable further up than the next.
     pub fn new(
         known: Vec<Expression>,
         regressors: Vec<Vec<Expression>>,
         input: Expression,
     ) -> Result<Self, CascadeError> {
         let n = known.len();
+        if n > MOST_STATES {
+            return Err(CascadeError::TooMany { order: n });
+        }
         LengthError::check("regressors of a chain", n, regressors.len())?;
         let parameters = regressors.first().ok_or(CascadeError::Empty)?.len();
         for (i, (known, regressor)) in known.iter().zip(&regressors).enumerate() {

@@ -34,6 +34,31 @@ pub enum RootsError {
         /// The pair.
         pair: RootPair,
     },
+    /// More roots than blocks of reference state can be numbered.
+    #[error("{found} roots were given, but the blocks of reference state are numbered up to {most}")]
+    TooMany {
+        /// How many there are.
+        found: usize,
+        /// How many there may be.
+        most: usize,
+    },
+    /// A polynomial whose coefficients do not say where its roots are.
+    #[error(
+        "the coefficients of the polynomial of these {count} roots say {lost:.1} of 16 digits less about its stability, and at most \
+         {MOST_DIGITS_LOST} may be lost: use fewer roots, roots that are further apart, or pairs with more damping"
+    )]
+    IllConditioned {
+        /// How many roots there are.
+        count: usize,
+        /// Decimal digits.
+        lost: f64,
+    },
+    /// A coefficient beyond the largest number.
+    #[error("a coefficient of the polynomial of these {count} roots is beyond 1e308: use smaller roots, or fewer")]
+    Overflow {
+        /// How many roots there are.
+        count: usize,
+    },
     /// Velocities are sent, and there is no κ₀ to divide them by.
     #[error("all roots are complex, but (a5), which sends velocities, needs a real one: κ₀, the first real root")]
     NoRealRoot,
@@ -53,10 +78,36 @@ pub enum RootsError {
     },
 }
 
+/// Roots that may be numbered.
+const MOST_ROOTS: usize = 254;
+/// Digits that rounding the coefficients may cost.
+const MOST_DIGITS_LOST: f64 = 12.0;
+
+/// How many digits less the coefficients of P say about its stability: the decimal logarithm of the largest P(ω)/|P(iω)|.
+///
+/// All coefficients are positive, so Σ αᵣ ωʳ = P(ω). Changing each by the part ε changes P(iω) by ε P(ω) at most, and P stays Hurwitz as long
+/// as that is less than |P(iω)| for every ω. N equal roots lose 0.15 N digits, at ω = κ; roots that are far apart lose less, and a pair with
+/// the damping ratio ζ loses −log₁₀ ζ. ω is looked for at the sizes of all roots.
+pub(crate) fn digits_lost(roots: &RootSet) -> f64 {
+    let at = |omega: f64| {
+        let real = roots.real.iter().map(|kappa| libm::log10((omega + kappa) / libm::hypot(omega, *kappa)));
+        let pairs = roots.pairs.iter().map(|RootPair { real: a, imaginary: b }| {
+            // |(iω + a)² + b²| = |iω + a + b i| |iω + a − b i|
+            let (far, near) = (libm::hypot(*a, omega + b), libm::hypot(*a, omega - b));
+            let along = libm::hypot(omega + a, *b);
+            libm::log10(along / far) + libm::log10(along / near)
+        });
+        real.chain(pairs).sum::<f64>()
+    };
+    let sizes = roots.real.iter().copied().chain(roots.pairs.iter().map(|pair| libm::hypot(pair.real, pair.imaginary)));
+    sizes.map(at).fold(0.0, f64::max)
+}
+
 /// The coefficients α₀ … α_{ℓ−1}, α_ℓ = 1 of ∏ᵣ (p + κᵣ) · ∏ₖ ((p + aₖ)² + bₖ²): polynomial (25), with pairs of complex roots.
 ///
 /// # Errors
-/// [`RootsError`] when there are no roots or one is not positive and finite, or a part of a pair is not.
+/// [`RootsError`] when there are no roots or one is not positive and finite, or a part of a pair is not, and when the coefficients
+/// would not say in `f64` where the roots are.
 ///
 /// ```
 /// use forwardstep_core::reference::polynomial;
@@ -67,10 +118,27 @@ pub enum RootsError {
 /// # Ok::<(), forwardstep_core::reference::RootsError>(())
 /// ```
 pub fn polynomial(roots_per_s: impl Into<RootSet>) -> Result<Vec<f64>, RootsError> {
-    let RootSet { real, pairs } = roots_per_s.into();
-    if real.is_empty() && pairs.is_empty() {
+    let roots = roots_per_s.into();
+    let count = roots.len();
+    if count == 0 {
         return Err(RootsError::Empty);
     }
+    if count > MOST_ROOTS {
+        return Err(RootsError::TooMany { found: count, most: MOST_ROOTS });
+    }
+    let alpha = expanded(&roots)?;
+    if !alpha.iter().all(|alpha| alpha.is_finite()) {
+        return Err(RootsError::Overflow { count });
+    }
+    let lost = digits_lost(&roots);
+    if lost > MOST_DIGITS_LOST {
+        return Err(RootsError::IllConditioned { count, lost });
+    }
+    Ok(alpha)
+}
+
+/// The product of all factors.
+fn expanded(RootSet { real, pairs }: &RootSet) -> Result<Vec<f64>, RootsError> {
     let is_positive = |value: f64| value > 0.0 && value.is_finite();
     let mut alpha = vec![1.0];
     for (index, kappa) in real.iter().enumerate() {
@@ -180,6 +248,42 @@ mod tests {
             let [u, v] = value(root);
             assert!(u.abs() < 1e-12 && v.abs() < 1e-12, "{root:?} {u} {v}");
         }
+    }
+
+    /// Against the coefficients: Σ αᵣ ωʳ over |Σ αᵣ (iω)ʳ|.
+    #[test]
+    fn digits_are_lost_where_the_polynomial_is_small_for_its_terms() {
+        let direct = |roots: &RootSet, omega: f64| {
+            let alpha = polynomial(roots).unwrap();
+            let value = alpha.iter().rev().fold([0.0; 2], |[u, v], next| [next - v * omega, u * omega]);
+            let size = alpha.iter().rev().fold(0.0, |sum, next| sum * omega + next);
+            libm::log10(size / libm::hypot(value[0], value[1]))
+        };
+        for roots in
+            [with(&[1.0; 9], &[]), with(&[0.7, 2.5, 40.0], &[[0.1, 2.0], [1.5, 0.25]]), with(&[], &[[0.01, 3.0]])]
+        {
+            let most =
+                (0..4000).map(|k| direct(&roots, libm::pow(10.0, f64::from(k) * 1e-3 - 2.0))).fold(0.0, f64::max);
+            let found = digits_lost(&roots);
+            assert!(found <= most + 1e-3 && found > 0.85 * most, "{roots:?}: {found} {most}");
+        }
+        // Half the decimal logarithm of two for each.
+        assert!((digits_lost(&with(&[3.0; 20], &[])) - 10.0 * libm::log10(2.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn roots_that_the_coefficients_cannot_hold_are_refused_with_what_is_lost() {
+        assert_eq!(polynomial(with(&[1.0; 79], &[])).unwrap().len(), 80);
+        let lost = 40.0 * libm::log10(2.0);
+        let found = polynomial(with(&[1.0; 80], &[])).unwrap_err();
+        assert!(matches!(found, RootsError::IllConditioned { count: 80, lost: found } if (found - lost).abs() < 1e-9));
+        assert!(alloc::format!("{found}").contains("these 80 roots say 12.0 of 16 digits less"), "{found}");
+        // Far apart, as many are well told.
+        let apart: Vec<f64> = (0..80).map(|k| libm::exp2(f64::from(k) * 0.2 - 8.0)).collect();
+        assert!(digits_lost(&apart.clone().into()) < 8.0 && polynomial(apart).is_ok());
+        assert!(matches!(polynomial(with(&[], &[[1e-13, 1.0]])), Err(RootsError::IllConditioned { count: 2, .. })));
+        assert_eq!(polynomial(with(&[1e100; 4], &[])), Err(RootsError::Overflow { count: 4 }));
+        assert_eq!(polynomial(vec![1.0; 255]), Err(RootsError::TooMany { found: 255, most: 254 }));
     }
 
     #[test]

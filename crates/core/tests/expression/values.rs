@@ -27,8 +27,13 @@ fn steps_that_make_no_value_are_refused() {
     assert_eq!(Expression::new(vec![Step::Binary(Add)]), Err(ExpressionError::Unbalanced));
     assert_eq!(Expression::new(vec![number(), number()]), Err(ExpressionError::Unbalanced));
     assert_eq!(Expression::new(vec![Step::Number(f64::NAN.into())]), Err(ExpressionError::NotFinite));
-    assert_eq!(Expression::new(vec![number(); 300]), Err(ExpressionError::TooLong { steps: 300 }));
-    assert_eq!(Expression::new(vec![number(); 40]), Err(ExpressionError::TooDeep { waiting: 33 }));
+    assert_eq!(Expression::new(vec![number(); 600]), Err(ExpressionError::TooLong { steps: 600 }));
+    assert_eq!(Expression::new(vec![number(); 40]), Err(ExpressionError::Unbalanced));
+    // However many wait.
+    let mut steps = vec![number(); 200];
+    steps.extend(vec![Step::Binary(Add); 199]);
+    let sum = Expression::new(steps).unwrap();
+    assert_eq!(sum.value(&[]), 200.0);
 }
 
 #[test]

@@ -16,7 +16,7 @@
 
 use std::ops::Range;
 
-use forwardstep_core::expression::{Binary, Expression, ExpressionError, MOST_STEPS, Number, Step, Unary};
+use forwardstep_core::expression::{Binary, Expression, MOST_STEPS, Number, Step, Unary};
 use forwardstep_sim::quantity::LARGEST;
 use thiserror::Error;
 
@@ -27,8 +27,8 @@ pub use super::formula_problem::FormulaProblem;
 use super::formula_problem::{A_VALUE, A_VALUE_OF_VARIABLES, AN_OPERATOR, CHOICES, CONSTANTS, FUNCTIONS, JUMPS};
 use super::value_problem::ValueProblem;
 
-/// Parentheses, signs and powers within each other.
-const MOST_NESTED: usize = 64;
+/// Parentheses, signs, powers and operators within each other: the reader calls itself for each.
+pub(super) const MOST_NESTED: usize = 128;
 
 /// What is wrong with a formula, and which bytes of it are.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -122,11 +122,9 @@ impl<'a> Parser<'a> {
         if self.peek().is_some() {
             return Err(self.unexpected(AN_OPERATOR));
         }
-        Expression::new(self.steps).map_err(|error| {
-            let long = matches!(error, ExpressionError::TooLong { .. });
-            let problem = if long { FormulaProblem::TooLong } else { FormulaProblem::TooDeep };
-            FormulaFault { problem, at: 0..self.text.len() }
-        })
+        // Its length was counted, and every operator has its operands.
+        Expression::new(self.steps)
+            .map_err(|_| FormulaFault { problem: FormulaProblem::TooLong, at: 0..self.text.len() })
     }
 
     /// The next character that is no blank.

@@ -3,6 +3,7 @@
 use forwardstep_core::expression::{Binary, MOST_DIGITS, MOST_STEPS, Number, Unary};
 use thiserror::Error;
 
+use super::formula::MOST_NESTED;
 use crate::wording::{choose, nearest};
 
 /// Functions of one argument.
@@ -127,10 +128,14 @@ pub enum FormulaProblem {
     #[error("this parenthesis is not closed")]
     OpenParenthesis,
     /// Parentheses, signs or powers too deep within each other.
-    #[error("the formula is nested too deeply")]
+    #[error(
+        "the formula is nested too deeply: more than {MOST_NESTED} parentheses, signs, powers and operators stand within each other"
+    )]
     TooDeep,
     /// More steps than are accepted.
-    #[error("the formula is too long: it has more than {MOST_STEPS} numbers and operations")]
+    #[error(
+        "the formula is too long: it has more than {MOST_STEPS} numbers and operations, and a value of it would take more than 2 μs at every stage of every step"
+    )]
     TooLong,
 }
 
@@ -168,6 +173,10 @@ impl FormulaProblem {
             FormulaProblem::NumberTooLong { .. } => {
                 format!("numbers may have {MOST_DIGITS} digits and be as small as 1e-300; they are kept exactly as they are written")
             }
+            FormulaProblem::TooLong => {
+                "long functions of time may be given by points instead".into()
+            }
+            FormulaProblem::TooDeep => "the reader calls itself for every level; sums and products need no parentheses of their own".into(),
             FormulaProblem::NumberTooLarge { .. } => "numbers may be up to 1e30 in size".into(),
             _ => return None,
         };

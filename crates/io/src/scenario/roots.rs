@@ -9,12 +9,8 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, MapAccess, Visitor};
 
 use super::at::At;
-use super::fault::{Fault, fault, filled, positive};
-use super::value_problem::ValueProblem;
+use super::fault::{Fault, filled, positive};
 use super::values::Positive;
-
-/// The highest order of reference dynamics that is accepted.
-const MOST_ROOTS: usize = 32;
 
 /// A list of roots.
 pub type RootsFile = At<Vec<At<RootFile>>>;
@@ -73,16 +69,12 @@ impl<'de> Deserialize<'de> for RootFile {
     }
 }
 
-/// Roots, as many as are accepted. A list of numbers alone is checked where it is used; beside pairs each is checked here, where its place
+/// Roots. How many there may be depends on how far apart they are, and is checked where the polynomial is made. A list of numbers alone is checked where it is used; beside pairs each is checked here, where its place
 /// is known.
 pub(super) fn roots(list: &RootsFile) -> Result<RootSet, Fault> {
     let entries = filled("roots_per_s", list)?;
     let numbers: Option<Vec<f64>> = entries.iter().map(|root| root.value.number()).collect();
-    let roots = numbers.map_or_else(|| checked_roots(entries), |numbers| Ok(numbers.into()))?;
-    if roots.len() > MOST_ROOTS {
-        return Err(fault(list, ValueProblem::Order { key: "roots_per_s", found: roots.len(), most: MOST_ROOTS }));
-    }
-    Ok(roots)
+    numbers.map_or_else(|| checked_roots(entries), |numbers| Ok(numbers.into()))
 }
 
 /// Roots whose real parts are below zero.

@@ -56,6 +56,7 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "desired-dynamics",
     "desired-in-z",
     "strict-feedback",
+    "strict-feedback-order-10",
     "pure-feedback",
     "immersion-and-invariance",
     "saturated-coupling",

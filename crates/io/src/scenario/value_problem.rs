@@ -170,8 +170,8 @@ pub enum ValueProblem {
         /// The other.
         second: &'static str,
     },
-    /// Reference dynamics of an order beyond use.
-    #[error("`{key}` has {}, but at most {most} are accepted", entry_count(*.found))]
+    /// More states than there are numbers for.
+    #[error("`{key}` has {}, but the states of an agent are numbered from 1 to {most}", entry_count(*.found))]
     Order {
         /// The key.
         key: &'static str,

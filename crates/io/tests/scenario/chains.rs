@@ -34,9 +34,9 @@ disagreement_below = 1e-3
 #[rustfmt::skip]
 const DERIVATIVES_CASES: &[Case] = &[
     ("order = 3", "order = 0",
-        "test.toml:7:25: `order` is 0, but must be from 1 to 8", ""),
-    ("order = 3", "order = 9",
-        "test.toml:7:25: `order` is 9, but must be from 1 to 8", ""),
+        "test.toml:7:25: `order` is 0, but must be from 1 to 255", ""),
+    ("order = 3", "order = 256",
+        "test.toml:7:25: `order` is 256, but must be from 1 to 255", ""),
     ("order = 3", "order = 2.5",
         "test.toml:7:25: found 2.5 where a whole number should stand", ""),
     ("order = 3, ", "",
@@ -227,8 +227,6 @@ const CASCADES_CASES: &[Case] = &[
         "test.toml:6:41: found \"x1\" where a list should stand", ""),
     ("[[\"x1^2\", \"0\"], [\"x1*x2\", \"sin(x2)\"]]", "[[0], [0]]",
         "test.toml:6:42: found 0 where a text in quotes should stand", ""),
-    ("[[\"x1^2\", \"0\"], [\"x1*x2\", \"sin(x2)\"]]", "[[\"0\"], [\"0\"], [\"0\"], [\"0\"], [\"0\"], [\"0\"], [\"0\"]]",
-        "test.toml:6:40: `regressors` has 7 entries, but at most 6 are accepted", ""),
     ("parameters = [0.5, -0.8]", "parameters = [0.5]",
         "test.toml:6:92: `parameters` has 1 entry, but `regressor` needs 2", ""),
     ("parameters = [0.5, -0.8]", "params = [0.5, -0.8]",

@@ -122,8 +122,15 @@ fn no_nesting_is_too_much_for_the_stack() {
     let long = format!("1{}", " + t".repeat(100_000));
     assert_eq!(parse_formula(&long).unwrap_err().problem, FormulaProblem::TooLong);
     // Numbers that wait: each parenthesis leaves one behind.
-    let waiting = format!("{}1{}", "1 + (".repeat(40), ")".repeat(40));
-    assert_eq!(parse_formula(&waiting).unwrap_err().problem, FormulaProblem::TooDeep);
+    let waiting = |depth: usize| parse_formula(&format!("{}1{}", "1 + (".repeat(depth), ")".repeat(depth)));
+    assert_eq!(waiting(60).unwrap().value(&[0.0]), 61.0);
+    let deep = waiting(200).unwrap_err().problem;
+    assert_eq!(deep, FormulaProblem::TooDeep);
+    assert!(deep.to_string().contains("more than 128") && deep.help().unwrap().contains("calls itself"), "{deep}");
+    let terms = |count: usize| parse_formula(&format!("1{}", " + t".repeat(count)));
+    assert_eq!(terms(255).unwrap().value(&[2.0]), 511.0);
+    let long = terms(256).unwrap_err().problem;
+    assert!(long.to_string().contains("more than 512 numbers") && long.help().unwrap().contains("points"), "{long}");
 }
 
 proptest! {

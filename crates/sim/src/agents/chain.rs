@@ -234,7 +234,9 @@ impl Law for ChainLaw {
                     Cascade::new(terms.as_ref().clone(), own.robot.theta.clone()).map_err(|error| match error {
                         CascadeError::Length(error) => SetupError::Length { agent: own.name.clone(), error },
                         CascadeError::Expression(error) => wrong(ChainError::Expression(error)),
-                        CascadeError::Empty | CascadeError::Above { .. } => assembly.law_of_another(),
+                        CascadeError::Empty | CascadeError::TooMany { .. } | CascadeError::Above { .. } => {
+                            assembly.law_of_another()
+                        }
                     })?;
                 assembly.solo(plant, law)
             }

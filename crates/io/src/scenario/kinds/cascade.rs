@@ -8,7 +8,7 @@ use forwardstep_sim::{ChainLaw, ChainModel, ChainStep, Law, RobotSetup, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::chain::{ChainProblem, FLOOR, adapted, chain_robot, each, list, optional};
+use super::chain::{ChainProblem, FLOOR, MOST_STATES, adapted, chain_robot, each, list, optional};
 use super::{
     At, AxisValues, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, LawTable, RobotKind, RobotRead,
     RobotTable, Spread, StartReader, Stop, fault, filled, length, number_or,
@@ -16,16 +16,13 @@ use super::{
 use crate::scenario::value_problem::ValueProblem;
 use crate::scenario::values::Positive;
 
-/// The highest order that is accepted, since these chains are differentiated.
-const MOST_EQUATIONS: usize = 6;
-
 /// A chain in strict-feedback form: the rate of x1 is x2 and parameters times functions of x1, the rate of x2 is x3 and
 /// parameters times functions of x1 and x2, and so on; the last rate has the input in place of the next state.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StrictFeedbackFile {
     /// For each equation what the parameters are multiplied by: a formula in x1, x2, … for each parameter.
-    #[schemars(length(min = 1, max = 6))]
+    #[schemars(length(min = 1, max = 255))]
     pub regressors: At<Vec<At<Vec<At<String>>>>>,
     /// The true parameters.
     #[serde(default)]
@@ -63,10 +60,10 @@ impl RobotKind for StrictFeedbackFile {
 #[serde(deny_unknown_fields)]
 pub struct PureFeedbackFile {
     /// For each equation what is known: a formula in the states up to the next one.
-    #[schemars(length(min = 1, max = 6))]
+    #[schemars(length(min = 1, max = 255))]
     pub known: At<Vec<At<String>>>,
     /// For each equation what the parameters are multiplied by.
-    #[schemars(length(min = 1, max = 6))]
+    #[schemars(length(min = 1, max = 255))]
     pub regressors: At<Vec<At<Vec<At<String>>>>>,
     /// What the input is multiplied by in the last equation. Default: 1.
     pub psi: Option<At<String>>,
@@ -135,8 +132,8 @@ fn cascade(
 
 fn equations(file: &At<Vec<At<Vec<At<String>>>>>) -> Result<Vec<Vec<Expression>>, Fault> {
     let rows = filled("regressors", file)?;
-    if rows.len() > MOST_EQUATIONS {
-        return Err(fault(file, ValueProblem::Order { key: "regressors", found: rows.len(), most: MOST_EQUATIONS }));
+    if rows.len() > MOST_STATES {
+        return Err(fault(file, ValueProblem::Order { key: "regressors", found: rows.len(), most: MOST_STATES }));
     }
     let need = rows.first().map_or(0, |row| row.value.len());
     for (k, row) in rows.iter().enumerate() {

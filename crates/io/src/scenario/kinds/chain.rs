@@ -17,8 +17,9 @@ use super::{
 use crate::scenario::formula::formula_in;
 use crate::scenario::values::Positive;
 
-/// The highest order that is accepted.
-const MOST_DERIVATIVES: u32 = 8;
+/// The states of a chain are numbered in the columns of a run, from 1 to 255. What an order costs, and how many digits its roots leave,
+/// is checked where the law is made.
+pub(super) const MOST_STATES: usize = u8::MAX as usize;
 /// Where the factor of the input counts as zero.
 pub(super) const FLOOR: f64 = 1e-3;
 /// k, c and Γ.
@@ -49,7 +50,7 @@ impl Mistake for ChainProblem {
 #[serde(deny_unknown_fields)]
 pub struct ChainFile {
     /// The order k.
-    #[schemars(range(min = 1, max = 8))]
+    #[schemars(range(min = 1, max = 255))]
     pub order: At<i64>,
     /// What is known of χ. Default: 0.
     pub chi: Option<At<String>>,
@@ -74,7 +75,7 @@ impl RobotKind for ChainFile {
     }
 
     fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
-        let order = count("order", &self.order, MOST_DERIVATIVES)?;
+        let order = count("order", &self.order, u8::MAX.into())?;
         let names = derivatives(order, "x");
         let chi = optional(self.chi.as_ref(), &names, 0.0)?;
         let psi = optional(self.psi.as_ref(), &names, 1.0)?;

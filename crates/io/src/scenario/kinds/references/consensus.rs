@@ -16,7 +16,7 @@ use super::{ReferenceKind, ReferenceRead, ReferenceReader, ReferenceTable};
 pub struct ConsensusFile {
     /// The positive numbers κ₀, κ₁, … in 1/s; as many as the order of the reference dynamics, for which a pair of complex roots, as
     /// `{ real = 0.5, imaginary = 2 }`, counts twice. The theorems need real ones. Agents may have their own.
-    #[schemars(with = "Option<Vec<RootFile>>", length(min = 1, max = 32))]
+    #[schemars(with = "Option<Vec<RootFile>>", length(min = 1))]
     pub roots_per_s: Option<RootsFile>,
     /// What the agents tell each other.
     pub exchange: At<ExchangeFile>,

@@ -152,7 +152,7 @@ impl<'a> ReferenceReader<'a> {
 #[serde(deny_unknown_fields)]
 pub struct AgentReferenceTable {
     /// The positive numbers κ₀, κ₁, … in 1/s of this agent, and pairs of complex roots.
-    #[schemars(with = "Option<Vec<RootFile>>", length(min = 1, max = 32))]
+    #[schemars(with = "Option<Vec<RootFile>>", length(min = 1))]
     pub roots_per_s: Option<RootsFile>,
     /// The gain λ of Remark 4 of this agent.
     pub manipulability_gain: Option<At<f64>>,

@@ -15,7 +15,7 @@ use super::{ReferenceKind, ReferenceRead, ReferenceReader, ReferenceTable};
 pub struct TrackingFile {
     /// The positive numbers κ₀, κ₁, … in 1/s of reference dynamics that have roots: three for the law without velocity. A
     /// pair of complex roots, as `{ real = 0.5, imaginary = 2 }`, counts twice.
-    #[schemars(with = "Option<Vec<RootFile>>", length(min = 1, max = 32))]
+    #[schemars(with = "Option<Vec<RootFile>>", length(min = 1))]
     pub roots_per_s: Option<RootsFile>,
 }
 
