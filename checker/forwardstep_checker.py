@@ -809,8 +809,9 @@ class Scenario:
         if network is None:
             such(self.reference == "tracking", "`network` is missing")
             return
-        network = table(network, "network", "weight delay coupling edges switching phases")
+        network = table(network, "network", "weight delay link_delays coupling edges switching phases")
         self.weight, self.delay = self.read_weight(network.get("weight", 1)), self.read_delay(network.get("delay", {"constant_s": 0}))
+        self.links = {(link.source, link.to): link.delay for link in map(self.edge, network.get("link_delays", []))}
         if "coupling" in network:
             form, scale = choice(network["coupling"], "coupling")
             known(form, ("saturated", "tanh", "rational"), "couplings")
@@ -848,9 +849,8 @@ class Scenario:
         body = table(body, "edges", "direction among centre weight delay file")
         found = [self.edge(entry) for entry in value] if rule is None else self.ruled(rule, body)
         pairs = {(edge.source, edge.to) for edge in found}
-        plain = len(pairs) == len(found) and not any(a == b or b == self.leader for a, b in pairs)
-        such(plain, "an edge stands twice, leads from an agent to itself, or to the leader")
-        return found
+        such(len(pairs) == len(found) and all(a != b != self.leader for a, b in pairs), "an edge stands twice, or where none can")
+        return [edge._replace(delay=edge.delay or self.links.get((edge.source, edge.to)) or self.delay) for edge in found]
 
     def vertex(self, name):
         such(name_of(name, "an agent of an edge") in self.index, f"there is no agent `{name}`")
@@ -862,7 +862,7 @@ class Scenario:
 
     def terms(self, entry):
         weight = self.read_weight(entry["weight"]) if "weight" in entry else self.weight
-        return weight, self.read_delay(entry["delay"]) if "delay" in entry else self.delay
+        return weight, self.read_delay(entry["delay"]) if "delay" in entry else None
 
     def ruled(self, rule, body):
         if rule == "csv":

@@ -84,6 +84,16 @@ pub enum NetworkProblem {
         /// The receiver.
         to: String,
     },
+    /// A delay of a link that is stated once more, by `link_delays` or by an edge.
+    #[error("the delay of the link from `{from}` to `{to}` is stated in `link_delays` on line {first_line} already")]
+    LinkDelayTwice {
+        /// The sender.
+        from: String,
+        /// The receiver.
+        to: String,
+        /// Where `link_delays` states it.
+        first_line: usize,
+    },
     /// An edge that a log says nothing about.
     #[error("the log `{file}` has no packet from `{from}` to `{to}`")]
     NotInLog {
@@ -122,6 +132,9 @@ impl NetworkProblem {
             }
             NetworkProblem::LinkDiffers { .. } => {
                 "packets are those of a radio, whatever the graph: give `delay.packets` once, for the network".into()
+            }
+            NetworkProblem::LinkDelayTwice { .. } => {
+                "`link_delays` holds for all graphs; leave one of the two statements out".into()
             }
             NetworkProblem::NotInLog { .. } => {
                 "every edge of the network needs at least one row; a lost packet has an empty `delay_s`".into()

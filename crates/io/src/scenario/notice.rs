@@ -42,6 +42,11 @@ pub enum Notice {
         /// Names of sender and receiver.
         links: Vec<(String, String)>,
     },
+    /// Links whose delay is stated for all graphs, and which no graph has.
+    UnusedLinkDelay {
+        /// Names of sender and receiver.
+        links: Vec<(String, String)>,
+    },
     /// Links on which no packet arrives before the end of the run.
     NothingArrives {
         /// Names of sender and receiver.
@@ -226,6 +231,9 @@ impl fmt::Display for Notice {
             Notice::UnusedDwell { line } => write!(f, "`dwell_s` on line {line} is not used"),
             Notice::UnusedInLog { file, links } => {
                 write!(f, "the packets of {} in `{file}` are not used: the network has no such edge", named(links))
+            }
+            Notice::UnusedLinkDelay { links } => {
+                write!(f, "`link_delays` states a delay for {}, but the network has no such edge", named(links))
             }
             Notice::NothingArrives { links } => {
                 write!(
