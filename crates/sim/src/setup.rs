@@ -223,7 +223,8 @@ pub struct Start {
     pub dq: Vec<f64>,
     /// The rest of a plant's state, if it has more than q and q̇.
     pub rest: Vec<f64>,
-    /// z(0), ż(0), … z^(ℓ−1)(0); missing ones take z(0) = q̇(0) where q̇ is measured, else zero, and zero derivatives.
+    /// z(0), ż(0), … z^(ℓ−1)(0); missing ones take z(0) = q̇(0) where q̇ is measured, else zero, and zero derivatives. Then what
+    /// [`Interface::further_starts`] has, empty for the usual start. Of the backstepping baseline, instead, what its filter holds.
     pub reference: Vec<Vec<f64>>,
 }
 

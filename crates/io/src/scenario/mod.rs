@@ -244,6 +244,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
     notices.extend(Notice::coarse_sampling(&setup));
     notices.extend(Notice::targets_beyond_limits(&setup));
     notices.extend(Notice::starts_beyond_limits(&setup));
+    notices.extend(Notice::rotation(&setup));
     notices.extend(Notice::stiff(&setup));
     recorded_columns(&setup).map_err(|error| document.refused(&setup, &read.entries, error))?;
     let goal = file.goal.as_ref().map(|file| goal::goal(file, &*setup.reference)).transpose()?;

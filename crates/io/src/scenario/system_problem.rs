@@ -155,6 +155,11 @@ impl SystemProblem {
                 "attitude" => "vehicles, rotorcraft and spacecraft have an attitude".into(),
                 "angular_velocity_rad_s" => "rotorcraft and spacecraft have an angular velocity".into(),
                 "spacecraft" => "only spacecraft start by it".into(),
+                "rotation" => "only spacecraft with a target choose between q and -q".into(),
+                "filter" => "only spacecraft and agents under `reference.backstepping` have a filter".into(),
+                "z" | "derivatives" => {
+                    "under `reference.backstepping` it follows from what is heard, and `filter` may be stated; spacecraft have `z` alone".into()
+                }
                 "higher_states" => {
                     "only chains of order two or more in feedback form, else of order three or more, have any".into()
                 }

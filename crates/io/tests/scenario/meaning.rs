@@ -257,3 +257,59 @@ fn near_matches_for_names_and_paths() {
         format!("cannot read `{}`: it is a folder", folder.path().display())
     );
 }
+
+/// Two masses in a plane under (aa6), of which one states what its filter holds.
+const FILTERED: &str = r#"format = 2
+time = { end_s = 0.5, record_every_s = 0.1 }
+[[agents]]
+name = "mass"
+count = 2
+robot.point_mass = { dimension = 2, mass_kg = 2 }
+start.position_m = [[0, 1], [2, 4]]
+[[agents]]
+name = "other"
+robot.point_mass = { dimension = 2, mass_kg = 3 }
+start = { position_m = [1, 0], reference.filter = [0.25, -0.5] }
+[reference.backstepping]
+filter_s = 0.5
+[network]
+edges.ring = {}
+"#;
+
+#[test]
+fn what_the_filter_of_the_baseline_holds_is_stated_or_settled() {
+    use forwardstep_sim::{Signal, simulate};
+    let control = "[control]\nsample_hz = 100\n";
+    for text in [FILTERED.to_owned(), format!("{FILTERED}{control}")] {
+        let setup = read(&text).unwrap_or_else(|error| panic!("{error}")).setup;
+        assert_eq!(setup.agents[2].start.reference, [[0.25, -0.5]]);
+        let outcome = simulate(&setup, &mut |_| std::ops::ControlFlow::Continue(())).unwrap();
+        let at_start = |agent: usize, signal: Signal, axis: usize| {
+            let columns = &outcome.recording.columns;
+            let found = columns.iter().find(|c| (c.agent, c.signal, c.axis) == (agent, signal, axis));
+            found.unwrap().values[0]
+        };
+        // q̇_r = −(q − q_j), ż = (q̇_r − f)/ε: `other` hears mass-2, and those whose filter has settled have none.
+        for (axis, f) in [0.25, -0.5].into_iter().enumerate() {
+            let z = [1.0, 4.0][axis];
+            assert_eq!(at_start(2, Signal::Reference(0), axis), z);
+            assert_eq!(at_start(2, Signal::Reference(1), axis), (z - f) / 0.5);
+            assert_eq!(at_start(0, Signal::Reference(1), axis), 0.0);
+            assert_eq!(at_start(1, Signal::Reference(1), axis), 0.0);
+        }
+    }
+    let each = FILTERED.replace("start.position_m", "start.reference.filter = [[1, 2], [3, 4]]\nstart.position_m");
+    assert_eq!(read(&each).unwrap().setup.agents[1].start.reference, [[3.0, 4.0]]);
+    #[rustfmt::skip]
+    let cases: &[super::Case] = &[
+        ("reference.filter = [0.25, -0.5]", "reference.filter = [0.25]",
+            "test.toml:11:50: `filter` has 1 entries, but `other` needs 2", ""),
+        ("reference.filter = [0.25, -0.5]", "reference.z = [0.25, 1]",
+            "test.toml:11:45: `z` says nothing about `other`", "`filter` may be stated"),
+        ("[reference.backstepping]\nfilter_s = 0.5", "[reference.consensus]\nroots_per_s = [1]\nexchange = \"position\"",
+            "test.toml:11:50: `filter` says nothing about `other`", "agents under `reference.backstepping`"),
+        ("reference.filter = [0.25, -0.5]", "reference.attitude = [0, 0, 0, 1]",
+            "test.toml:11:52: `attitude` says nothing about `other`", "vehicles, rotorcraft and spacecraft have an attitude"),
+    ];
+    super::refused(FILTERED, cases);
+}

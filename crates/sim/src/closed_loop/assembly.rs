@@ -224,6 +224,7 @@ impl<'a> Assembly<'a> {
         self.takes_pushes(&plant)?;
         let blocks = controller.states();
         let vectors = blocks.iter().filter(|(signal, _)| matches!(signal, Signal::Reference(_))).count();
+        let vectors = vectors + own.interface().map_or(0, |law| law.further_starts.len());
         if start.reference.len() > vectors {
             return Err(too_many(own, vectors, start.reference.len()));
         }
