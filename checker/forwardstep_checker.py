@@ -391,8 +391,7 @@ def curve(times, values):
     # One point leaves nothing open.
     determinant = (v_3 - v) * (a_4 - a) - (v_4 - v) * (a_3 - a) or 1
     third, fourth = ((v_4 - v) * a - (a_4 - a) * v) / determinant, ((a_3 - a) * v - (v_3 - v) * a) / determinant
-    inside = zip(times, times[1:], shot(times, values, third, fourth)[0])
-    return [(-INF, times[0], [values[0]]), *inside, (times[-1], INF, [values[-1]])]
+    return [(-INF, times[0], [values[0]]), *zip(times, times[1:], shot(times, values, third, fourth)[0]), (times[-1], INF, [values[-1]])]
 
 # What a derivative of such a curve keeps within: a polynomial does within its Bernstein coefficients.
 def along_points(times, values, order, t):
@@ -478,8 +477,7 @@ def quotient(tree):
         found = functools.reduce(lambda x, _: (convolved(x[0], a), convolved(x[1], b)), repeated, ([Fraction(1)], [Fraction(1)]))
     elif kind in "+-":
         c = c if kind == "+" else [-x for x in c]
-        sides = convolved(a, d), convolved(c, b)
-        found = [sum(pair_) for pair_ in itertools.zip_longest(*sides, fillvalue=Fraction(0))], convolved(b, d)
+        found = [sum(pair_) for pair_ in itertools.zip_longest(convolved(a, d), convolved(c, b), fillvalue=Fraction(0))], convolved(b, d)
     else:
         found = (convolved(a, c), convolved(b, d)) if kind == "*" else (convolved(convolved(a, d), d), convolved(convolved(b, c), d))
     return found if max(map(len, found)) <= 2 * MOST_DEGREE else None
@@ -680,8 +678,15 @@ class Agent:
         return table(design, "design") if self.law == "thrust" else self.gains
 
 # κ of a real root −κ as (κ, 0), and (a, b), (a, −b) of a pair −a ± b i; real ones first, so that κ₀ is the first where there is one.
+# Those of p² + β p + α may be irrational: real ones are rounded towards the axis, pairs away from the real one.
+FINE = 10**30
 def roots_of(body):
     found = []
+    if "alpha" in body:
+        alpha, half = positive(body["alpha"], "alpha"), positive(body.get("beta", 1), "beta") / 2
+        apart = half * half - alpha
+        near = Fraction(math.isqrt(abs(apart.numerator) * FINE**2 // apart.denominator) + (apart != 0), FINE)
+        return [(alpha, 0)] if "beta" not in body else [(half - near, 0), (half + near, 0)] if apart >= 0 else [(half, near)] * 2
     for root in listed(body["roots_per_s"], "roots_per_s") if "roots_per_s" in body else []:
         paired = root if isinstance(root, dict) else {"real": root, "imaginary": 0}
         a, b = (exact(table(paired, "roots_per_s", "real imaginary").get(key), key) for key in ("real", "imaginary"))
@@ -700,7 +705,7 @@ class Scenario:
         self.end_s = positive(table(file.get("time"), "time").get("end_s"), "time.end_s")
         self.reference, body = choice(file.get("reference"), "reference")
         self.body = table(body, "reference", "roots_per_s exchange manipulability_gain filter_s acceleration_limit design coupling "
-                          "gain sign sign_period_s")
+                          "gain sign sign_period_s alpha beta")
         known(self.reference, ("consensus", "pure_integral", "backstepping", "leader", "tracking"), "reference dynamics")
         self.agents = []
         for number, entry in enumerate(listed(file.get("agents"), "agents")):
@@ -828,13 +833,11 @@ class Scenario:
             such(self.dwell[0] <= self.dwell[1], "`dwell_s` must rise")
             return
         known(self.switching, ("repeat", "once"), "switching")
-        counted = phases if self.switching == "repeat" else phases[:-1]
-        self.dwell = [positive(phase.get("dwell_s"), "dwell_s") for phase in counted]
+        self.dwell = [positive(phase.get("dwell_s"), "dwell_s") for phase in (phases if self.switching == "repeat" else phases[:-1])]
 
     # A rational number, or the text of a formula that is not shown to be one for ever, as 2 + 0 t is.
     def read_weight(self, value):
-        tree = formula(value) if isinstance(value, str) else ("number", exact(value, "weight"))
-        same_ = constant_for_ever(tree)
+        same_ = constant_for_ever(formula(value) if isinstance(value, str) else ("number", exact(value, "weight")))
         return value if same_ is None else positive(same_, "weight")
 
     # (kind, its table, its text): equal texts are one delay.
@@ -884,8 +887,7 @@ class Scenario:
             pairs = [(a, b) for a in members for b in members if a != b]
         such(direction in (None, *DIRECTIONS[rule]), "`direction` is not one of the rule")
         back = [(b, a) for a, b in pairs]
-        pairs = {"both": pairs + back, "in": back}.get(direction, pairs)
-        return [Edge(a, b, *self.terms(body)) for a, b in dict.fromkeys(pairs)]
+        return [Edge(a, b, *self.terms(body)) for a, b in dict.fromkeys({"both": pairs + back, "in": back}.get(direction, pairs))]
 
     # What acts from outside: for every agent the end of each push, infinite where there is none
 
@@ -995,8 +997,7 @@ def theorem(scenario):
         return "backstepping" if scenario.reference == "backstepping" else "theorem-1" if velocities else "remark-3"
     if not velocities or order == 1:
         return "theorem-3-first-order" if velocities else "theorem-3-positions"
-    same_ = all(agent.roots == agents[0].roots for agent in agents)
-    return "theorem-2" if order == 2 and same_ else "theorem-3-velocities"
+    return "theorem-2" if order == 2 and all(agent.roots == agents[0].roots for agent in agents) else "theorem-3-velocities"
 
 # The hypotheses that a certificate must speak about: (id, name of an agent, or "" for the whole).
 def requirements(scenario):
@@ -1149,8 +1150,7 @@ def tiling(claim, windows):
 @rule("spanning-tree leader-reaches-all", "every-phase")
 def every_phase(claim, windows):
     phases = claim.scenario.recurring()
-    ends = tiled(claim, windows, phases)
-    require(windows, ends == list(range(len(phases) + 1)), "must be one for each phase")
+    require(windows, tiled(claim, windows, phases) == list(range(len(phases) + 1)), "must be one for each phase")
     return f"each of {len(phases)} graphs has a spanning tree"
 
 # A drawn sequence up to the end of the run, tiled by windows but for a rest that is no longer than is stated.
@@ -1353,6 +1353,8 @@ def coefficients(scenario):
     roots, design = roots_of(scenario.body), scenario.body.get("design")
     such(len(roots) == (1 if design == "continuous" else 2), "`roots_per_s` has not as many entries as the design needs")
     such(min(roots)[0] > 0 and (design != "continuous" or roots[0][1] == 0), "`roots_per_s` must be positive")
+    if "alpha" in scenario.body:
+        return positive(scenario.body["alpha"], "alpha"), positive(scenario.body.get("beta", 1), "beta")
     (a, b), (c, d) = roots[0], roots[-1]
     return (a, Fraction(1)) if design == "continuous" else (a * c - b * d, a + c)
 
@@ -1415,8 +1417,7 @@ def pieces(node, tree, end_s):
         require(node.field("range"), kind == "run", "must be `for-ever`, `period`, `tail` or `run`")
     cells = node.field("cells").count()
     require(node.field("cells"), 0 < cells <= MOST_CELLS, "must be some")
-    found = [multiply(unit, (length * k / cells, length * (k + 1) / cells)) for k in range(cells)]
-    return found + [(length, INF)] * (kind == "tail")
+    return [multiply(unit, (length * k / cells, length * (k + 1) / cells)) for k in range(cells)] + [(length, INF)] * (kind == "tail")
 
 # Checks that a formula keeps within what is stated, piece by piece; (low, high).
 def enclosed(node, tree, end_s):
@@ -1777,11 +1778,11 @@ def swarm(claim, pivots):
     scenario = claim.scenario
     require(claim.proof, scenario.fixed() and not scenario.varying(), "is not so: the Laplacian changes")
     (small, turn), (large, _) = sorted(roots_of(scenario.body))
+    require(claim.proof, "alpha" not in scenario.body, "is for roots that are stated")
     require(claim.proof, small > 0 and turn == 0, "is for real roots")
     least = small + large + small**4 / (2 * ((small + large) ** 2 - small * large) * large)
     followers = [k for k in range(len(scenario.names)) if k != scenario.leader]
-    shift = least / positive(scenario.body.get("coupling"), "coupling")
-    rows = [[-shift if i == j else Fraction(0) for j in followers] for i in followers]
+    rows = [[-least / positive(scenario.body.get("coupling"), "coupling") if i == j else Fraction(0) for j in followers] for i in followers]
     at = {vertex: k for k, vertex in enumerate(followers)}
     for edge in scenario.graphs[0]:
         rows[at[edge.to]][at[edge.to]] += edge.weight

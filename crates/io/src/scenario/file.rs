@@ -68,6 +68,28 @@ pub struct TimeFile {
     /// Rows of the tables are this far apart, in s. Default: 0.02.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub record_every_s: Option<At<f64>>,
+    /// Where rows are, in the place of `record_every_s`. The start and the end of the run have one in any case.
+    pub record_at: Option<At<RecordAtFile>>,
+}
+
+/// When rows are recorded.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum RecordAtFile {
+    /// At every sample of the controllers, just after it.
+    Samples,
+    /// At these times, in s; rising.
+    TimesS(At<Vec<At<f64>>>),
+    /// At the times of a table.
+    Csv(TimesCsvFile),
+}
+
+/// A table of times.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TimesCsvFile {
+    /// The CSV file, beside the scenario file or in `inputs` beside it, with one column, `t_s`, rising.
+    pub file: At<String>,
 }
 
 /// One agent, or a population of agents of one kind.
