@@ -13,6 +13,7 @@ use forwardstep_sim::quantity::Sign;
 use super::at::At;
 use super::fault::{Fault, fault};
 use super::formula::formula;
+use super::kinds::delays::hold_log::Holds;
 use super::kinds::delays::log::Log;
 use super::kinds::delays::{DelayPlan, Link, LinkDelays};
 use super::links_file::{LinkDelayFile, WeightFile};
@@ -33,6 +34,8 @@ pub(super) struct Links {
     /// The delay of each edge (from, to), and whether it stays with the link.
     drawn: HashMap<(usize, usize, bool), Drawn>,
     pub(super) logs: BTreeMap<String, Arc<Log>>,
+    /// Held values that were read, by their files.
+    pub(super) held: HashMap<String, Arc<Holds>>,
     weights: HashMap<String, Weight>,
     /// The delays that are written as formulas, by their texts.
     formulas: HashMap<String, Delay>,
