@@ -387,8 +387,7 @@ def curve(times, values):
     # One point leaves nothing open.
     determinant = (v_3 - v) * (a_4 - a) - (v_4 - v) * (a_3 - a) or 1
     third, fourth = ((v_4 - v) * a - (a_4 - a) * v) / determinant, ((a_3 - a) * v - (v_3 - v) * a) / determinant
-    inside = zip(times, times[1:], shot(times, values, third, fourth)[0])
-    return [(-INF, times[0], [values[0]]), *inside, (times[-1], INF, [values[-1]])]
+    return [(-INF, times[0], [values[0]]), *zip(times, times[1:], shot(times, values, third, fourth)[0]), (times[-1], INF, [values[-1]])]
 
 # What a derivative of such a curve keeps within: a polynomial does within its Bernstein coefficients.
 def along_points(times, values, order, t):
@@ -474,8 +473,7 @@ def quotient(tree):
         found = functools.reduce(lambda x, _: (convolved(x[0], a), convolved(x[1], b)), repeated, ([Fraction(1)], [Fraction(1)]))
     elif kind in "+-":
         c = c if kind == "+" else [-x for x in c]
-        sides = convolved(a, d), convolved(c, b)
-        found = [sum(pair_) for pair_ in itertools.zip_longest(*sides, fillvalue=Fraction(0))], convolved(b, d)
+        found = [sum(pair_) for pair_ in itertools.zip_longest(convolved(a, d), convolved(c, b), fillvalue=Fraction(0))], convolved(b, d)
     else:
         found = (convolved(a, c), convolved(b, d)) if kind == "*" else (convolved(convolved(a, d), d), convolved(convolved(b, c), d))
     return found if max(map(len, found)) <= 2 * MOST_DEGREE else None
@@ -675,8 +673,15 @@ class Agent:
         return table(design, "design") if self.law == "thrust" else self.gains
 
 # κ of a real root −κ as (κ, 0), and (a, b), (a, −b) of a pair −a ± b i; real ones first, so that κ₀ is the first where there is one.
+# Those of p² + β p + α may be irrational: real ones are rounded towards the axis, pairs away from the real one.
+FINE = 10**30
 def roots_of(body):
     found = []
+    if "alpha" in body:
+        alpha, half = positive(body["alpha"], "alpha"), positive(body.get("beta", 1), "beta") / 2
+        apart = half * half - alpha
+        near = Fraction(math.isqrt(abs(apart.numerator) * FINE**2 // apart.denominator) + (apart != 0), FINE)
+        return [(alpha, 0)] if "beta" not in body else [(half - near, 0), (half + near, 0)] if apart >= 0 else [(half, near)] * 2
     for root in listed(body["roots_per_s"], "roots_per_s") if "roots_per_s" in body else []:
         paired = root if isinstance(root, dict) else {"real": root, "imaginary": 0}
         a, b = (exact(table(paired, "roots_per_s", "real imaginary").get(key), key) for key in ("real", "imaginary"))
@@ -708,7 +713,7 @@ class Scenario:
         self.end_s = positive(table(file.get("time"), "time").get("end_s"), "time.end_s")
         self.desired, (self.reference, body) = designed(*choice(file.get("reference"), "reference"))
         self.body = table(body, "reference", "roots_per_s exchange manipulability_gain filter_s acceleration_limit design coupling "
-                          "gain sign sign_period_s")
+                          "gain sign sign_period_s alpha beta")
         known(self.reference, ("consensus", "pure_integral", "backstepping", "leader", "tracking"), "reference dynamics")
         self.agents = []
         for number, entry in enumerate(listed(file.get("agents"), "agents")):
@@ -816,8 +821,9 @@ class Scenario:
         if network is None:
             such(self.reference == "tracking", "`network` is missing")
             return
-        network = table(network, "network", "weight delay coupling edges switching phases")
+        network = table(network, "network", "weight delay link_delays coupling edges switching phases")
         self.weight, self.delay = self.read_weight(network.get("weight", 1)), self.read_delay(network.get("delay", {"constant_s": 0}))
+        self.links = {(link.source, link.to): link.delay for link in map(self.edge, network.get("link_delays", []))}
         if "coupling" in network:
             form, scale = choice(network["coupling"], "coupling")
             known(form, ("saturated", "tanh", "rational"), "couplings")
@@ -834,13 +840,11 @@ class Scenario:
             such(self.dwell[0] <= self.dwell[1], "`dwell_s` must rise")
             return
         known(self.switching, ("repeat", "once"), "switching")
-        counted = phases if self.switching == "repeat" else phases[:-1]
-        self.dwell = [positive(phase.get("dwell_s"), "dwell_s") for phase in counted]
+        self.dwell = [positive(phase.get("dwell_s"), "dwell_s") for phase in (phases if self.switching == "repeat" else phases[:-1])]
 
     # A rational number, or the text of a formula that is not shown to be one for ever, as 2 + 0 t is.
     def read_weight(self, value):
-        tree = formula(value) if isinstance(value, str) else ("number", exact(value, "weight"))
-        same_ = constant_for_ever(tree)
+        same_ = constant_for_ever(formula(value) if isinstance(value, str) else ("number", exact(value, "weight")))
         return value if same_ is None else positive(same_, "weight")
 
     # (kind, its table, its text): equal texts are one delay.
@@ -855,9 +859,8 @@ class Scenario:
         body = table(body, "edges", "direction among centre weight delay file")
         found = [self.edge(entry) for entry in value] if rule is None else self.ruled(rule, body)
         pairs = {(edge.source, edge.to) for edge in found}
-        plain = len(pairs) == len(found) and not any(a == b or b == self.leader for a, b in pairs)
-        such(plain, "an edge stands twice, leads from an agent to itself, or to the leader")
-        return found
+        such(len(pairs) == len(found) and all(a != b != self.leader for a, b in pairs), "an edge stands twice, or where none can")
+        return [edge._replace(delay=edge.delay or self.links.get((edge.source, edge.to)) or self.delay) for edge in found]
 
     def vertex(self, name):
         such(name_of(name, "an agent of an edge") in self.index, f"there is no agent `{name}`")
@@ -869,7 +872,7 @@ class Scenario:
 
     def terms(self, entry):
         weight = self.read_weight(entry["weight"]) if "weight" in entry else self.weight
-        return weight, self.read_delay(entry["delay"]) if "delay" in entry else self.delay
+        return weight, self.read_delay(entry["delay"]) if "delay" in entry else None
 
     def ruled(self, rule, body):
         if rule == "csv":
@@ -1153,8 +1156,7 @@ def tiling(claim, windows):
 @rule("spanning-tree leader-reaches-all", "every-phase")
 def every_phase(claim, windows):
     phases = claim.scenario.recurring()
-    ends = tiled(claim, windows, phases)
-    require(windows, ends == list(range(len(phases) + 1)), "must be one for each phase")
+    require(windows, tiled(claim, windows, phases) == list(range(len(phases) + 1)), "must be one for each phase")
     return f"each of {len(phases)} graphs has a spanning tree"
 
 # A drawn sequence up to the end of the run, tiled by windows but for a rest that is no longer than is stated.
@@ -1357,6 +1359,8 @@ def coefficients(scenario):
     roots, design = roots_of(scenario.body), scenario.body.get("design")
     such(len(roots) == (1 if design == "continuous" else 2), "`roots_per_s` has not as many entries as the design needs")
     such(min(roots)[0] > 0 and (design != "continuous" or roots[0][1] == 0), "`roots_per_s` must be positive")
+    if "alpha" in scenario.body:
+        return positive(scenario.body["alpha"], "alpha"), positive(scenario.body.get("beta", 1), "beta")
     (a, b), (c, d) = roots[0], roots[-1]
     return (a, Fraction(1)) if design == "continuous" else (a * c - b * d, a + c)
 
@@ -1780,11 +1784,11 @@ def swarm(claim, pivots):
     scenario = claim.scenario
     require(claim.proof, scenario.fixed() and not scenario.varying(), "is not so: the Laplacian changes")
     (small, turn), (large, _) = sorted(roots_of(scenario.body))
+    require(claim.proof, "alpha" not in scenario.body, "is for roots that are stated")
     require(claim.proof, small > 0 and turn == 0, "is for real roots")
     least = small + large + small**4 / (2 * ((small + large) ** 2 - small * large) * large)
     followers = [k for k in range(len(scenario.names)) if k != scenario.leader]
-    shift = least / positive(scenario.body.get("coupling"), "coupling")
-    rows = [[-shift if i == j else Fraction(0) for j in followers] for i in followers]
+    rows = [[-least / positive(scenario.body.get("coupling"), "coupling") if i == j else Fraction(0) for j in followers] for i in followers]
     at = {vertex: k for k, vertex in enumerate(followers)}
     for edge in scenario.graphs[0]:
         rows[at[edge.to]][at[edge.to]] += edge.weight

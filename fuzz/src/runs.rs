@@ -8,7 +8,7 @@ use forwardstep::io::SourceText;
 use forwardstep::io::output::{self, GoalOutcome, Metrics, RunFolder, RunRecord, ending_sentence};
 use forwardstep::io::scenario::{OpenError, Scenario, open_scenario, read_scenario};
 use forwardstep::sim::schedule::Extent;
-use forwardstep::sim::{Outcome, simulate};
+use forwardstep::sim::{Outcome, RecordAt, simulate};
 
 use crate::{Scratch, complaint, one_line, prompt, within};
 
@@ -83,6 +83,7 @@ pub fn tried(scratch: &Scratch, mut scenario: Scenario) {
     }
     // A first step may last for the whole run.
     let time = &mut scenario.setup.time;
+    time.record_at = RecordAt::Intervals;
     time.record_every_s = time.record_every_s.max(time.end_s / MOST_ROWS);
     let mut steps = 0;
     let outcome = simulate(&scenario.setup, &mut |_| {

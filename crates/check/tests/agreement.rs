@@ -264,7 +264,7 @@ fn thm3_a5_with_unequal_first_roots_diverges_and_24_does_not() {
         setup.network.agents = 2;
         setup.agents[0].roots_per_s = vec![4.0].into();
         setup.agents[1].roots_per_s = vec![0.2].into();
-        setup.time = TimeSpan { end_s: 54.0, record_every_s: 4.5 };
+        setup.time = TimeSpan { end_s: 54.0, record_every_s: 4.5, record_at: forwardstep_sim::RecordAt::Intervals };
         setup
     };
     let disagreement = |setup: &Setup| -> Vec<f64> {

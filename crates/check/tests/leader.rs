@@ -64,7 +64,7 @@ fn setup(design: FollowingDesign, path: Path, gain: f64) -> Setup {
             weights: Vec::new(),
             coupling: Default::default(),
         },
-        time: TimeSpan { end_s: 20.0, record_every_s: 0.1 },
+        time: TimeSpan { end_s: 20.0, record_every_s: 0.1, record_at: forwardstep_sim::RecordAt::Intervals },
         solver: Solver::default(),
         control: None,
     }

@@ -195,6 +195,10 @@ fn proofs_reach_networks_that_are_not_shipped() {
     accepted(&format!("{ruled}\n{RING}"), "bounded-delays", "holds");
     let bound = proof(&masses(&format!("{ruled}\n{RING}")), "bounded-delays");
     assert_eq!(bound["bound_s"], "0.47", "{bound}");
+    // The delay of one link, stated beside the graph, is the longest of all.
+    let link = format!("{RING}\n[[network.link_delays]]\nfrom = \"m-2\"\nto = \"m-3\"\n{ruled}");
+    accepted(&link, "bounded-delays", "holds");
+    assert_eq!(proof(&masses(&link), "bounded-delays")["bound_s"], "0.47");
 }
 
 #[test]

@@ -85,7 +85,7 @@ fn ring(model: Model, n: usize, tolerance: f64) -> Setup {
             weights: Vec::new(),
             coupling: Default::default(),
         },
-        time: TimeSpan { end_s: END_S, record_every_s: END_S },
+        time: TimeSpan { end_s: END_S, record_every_s: END_S, record_at: forwardstep_sim::RecordAt::Intervals },
         solver: Solver {
             method: Method::Adaptive { rtol: tolerance, atol: tolerance },
             balance: false,

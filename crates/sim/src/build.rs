@@ -34,8 +34,8 @@ use crate::recording::{Outcome, Recording, Signal};
 use crate::reference::{Consensus, ReferenceDynamics, Tracking};
 use crate::schedule::{Phase, Schedule};
 use crate::setup::{
-    Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Failures, RECORD_EVERY_S, RobotSetup, Sensors, Setup,
-    Solver, Start, TimeSpan,
+    Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Failures, RECORD_EVERY_S, RecordAt, RobotSetup, Sensors,
+    Setup, Solver, Start, TimeSpan,
 };
 use crate::simulate::simulate;
 use crate::system::{Law, Robot};
@@ -210,7 +210,7 @@ impl Setup {
         network: Network,
         end_s: f64,
     ) -> Self {
-        let time = TimeSpan { end_s, record_every_s: RECORD_EVERY_S };
+        let time = TimeSpan { end_s, record_every_s: RECORD_EVERY_S, record_at: RecordAt::Intervals };
         Setup { agents, reference, exchange, network, time, solver: Solver::default(), control: None }
     }
 

@@ -53,8 +53,8 @@ pub use recording::{
 pub use reference::{ReferenceDynamics, ReferenceFamily};
 pub use same::Same;
 pub use setup::{
-    ATOL, Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Failures, Method, RECORD_EVERY_S, RTOL, RobotSetup,
-    Sensors, Setup, Solver, Start, TimeSpan, VelocitySensor,
+    ATOL, Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Failures, Method, RECORD_EVERY_S, RTOL, RecordAt,
+    RobotSetup, Sensors, Setup, Solver, Start, TimeSpan, VelocitySensor,
 };
 pub use simulate::{recorded_columns, simulate, simulate_moments, simulate_samples};
 pub use system::{

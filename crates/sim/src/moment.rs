@@ -68,7 +68,7 @@ impl Moments {
                 states.push(StateRate { signal, entry, value: 0.0, rate: 0.0 });
             }
         }
-        let (rows, sums, dx) = (Rows::new(setup.time), vec![0.0; entries], vec![0.0; len]);
+        let (rows, sums, dx) = (Rows::new(setup.time.clone()), vec![0.0; entries], vec![0.0; len]);
         Moments { rows, entries, agents, states, values: vec![Vec::new(); count], sums, dx }
     }
 

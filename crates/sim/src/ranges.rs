@@ -2,15 +2,27 @@
 
 use crate::closed_loop::SetupError;
 use crate::coupling::Coupling;
-use crate::quantity::{MOST_EVENTS, Path, QuantityError, at_least, few, not_negative, positive, within};
-use crate::setup::{Control, Method, Solver, TimeSpan, VelocitySensor};
+use crate::quantity::{MOST_EVENTS, Path, QuantityError, at_least, few, more_than, not_negative, positive, within};
+use crate::setup::{Control, Method, RecordAt, Solver, TimeSpan, VelocitySensor};
 
 impl TimeSpan {
     /// # Errors
     /// [`QuantityError`] for the first number that is out of its range.
     pub fn check(&self) -> Result<(), QuantityError> {
         positive("time", "end_s", self.end_s)?;
-        positive("time", "record_every_s", self.record_every_s)
+        positive("time", "record_every_s", self.record_every_s)?;
+        match &self.record_at {
+            RecordAt::Intervals => Ok(()),
+            RecordAt::Rate { hz } => positive("time", "record_at", *hz),
+            RecordAt::Times(times_s) => {
+                let at = || Path::from("time.record_at.times_s");
+                let mut before_s = -1.0;
+                times_s.iter().enumerate().try_for_each(|(k, t_s)| {
+                    within(at().index(k), "", *t_s, 0.0, self.end_s)?;
+                    more_than(at().index(k), "", *t_s, ("the one before", std::mem::replace(&mut before_s, *t_s)))
+                })
+            }
+        }
     }
 }
 
@@ -20,12 +32,23 @@ const MOST_RECORDED: f64 = 1e8;
 impl TimeSpan {
     /// Refuses a recording of so many columns beyond any memory, before anything is computed.
     pub(crate) fn check_recording(&self, columns: usize) -> Result<(), SetupError> {
-        let rows = (self.end_s / self.record_every_s).floor() + 2.0;
+        let rows = self.most_rows();
         if rows * columns as f64 <= MOST_RECORDED {
             return Ok(());
         }
         let least_s = self.end_s / (MOST_RECORDED / columns as f64 - 2.0);
+        let least_s = (self.record_at == RecordAt::Intervals).then_some(least_s);
         Err(SetupError::RecordingTooLarge { rows, columns, most: MOST_RECORDED, least_s })
+    }
+
+    /// No recording has more rows.
+    pub(crate) fn most_rows(&self) -> f64 {
+        let between = match &self.record_at {
+            RecordAt::Intervals => (self.end_s / self.record_every_s).floor(),
+            RecordAt::Rate { hz } => (self.end_s * hz).floor(),
+            RecordAt::Times(times_s) => times_s.len() as f64,
+        };
+        between + 2.0
     }
 }
 

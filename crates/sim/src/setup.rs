@@ -223,20 +223,38 @@ pub struct Start {
     pub dq: Vec<f64>,
     /// The rest of a plant's state, if it has more than q and q̇.
     pub rest: Vec<f64>,
-    /// z(0), ż(0), … z^(ℓ−1)(0); missing ones take z(0) = q̇(0) where q̇ is measured, else zero, and zero derivatives.
+    /// z(0), ż(0), … z^(ℓ−1)(0); missing ones take z(0) = q̇(0) where q̇ is measured, else zero, and zero derivatives. Then what
+    /// [`Interface::further_starts`] has, empty for the usual start. Of the backstepping baseline, instead, what its filter holds.
     pub reference: Vec<Vec<f64>>,
 }
 
 /// Rows of a recording are this far apart unless it is said otherwise, s.
 pub const RECORD_EVERY_S: f64 = 0.02;
 
-/// Horizon and recording interval.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Horizon and recording.
+#[derive(Clone, Debug, PartialEq)]
 pub struct TimeSpan {
     /// The run covers [0, `end_s`].
     pub end_s: f64,
-    /// Rows of the recording are this far apart; the last row is at `end_s`.
+    /// Rows of the recording are this far apart, unless `record_at` says otherwise.
     pub record_every_s: f64,
+    /// When there are rows. The first is at 0 and the last at `end_s`, whatever this says.
+    pub record_at: RecordAt,
+}
+
+/// When rows of a recording are taken.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum RecordAt {
+    /// Every [`TimeSpan::record_every_s`].
+    #[default]
+    Intervals,
+    /// At k/hz for k = 0, 1, …: with [`Control::sample_hz`] at the very instants of the samples, just after them.
+    Rate {
+        /// Rows per second.
+        hz: f64,
+    },
+    /// At these times, which rise, s.
+    Times(Arc<[f64]>),
 }
 
 /// Digital control: at every sample all agents measure, send, hear and compute, and hold the torque until the next.

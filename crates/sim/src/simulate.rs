@@ -13,7 +13,7 @@ use crate::network::Network;
 use crate::recording::{
     Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, SampleTaken, Signal, Stiffness,
 };
-use crate::setup::{Setup, TimeSpan};
+use crate::setup::{RecordAt, Setup, TimeSpan};
 
 /// Rows are made room for in chunks of this many.
 const ROWS_PER_CHUNK: usize = 4096;
@@ -226,23 +226,41 @@ struct Recorder<'a> {
     rows: Rows,
 }
 
-/// The instants of rows: row k belongs to t = k · record_every.
+/// The instants of rows: row k belongs to t = k · record_every, to t = k / hz, or to the time that is stated.
 pub(crate) struct Rows {
     time: TimeSpan,
     /// Rows so far.
     count: usize,
+    /// 1 where the first of the stated times is not the start, which has a row all the same.
+    before: usize,
     ended: bool,
 }
 
 impl Rows {
     pub(crate) fn new(time: TimeSpan) -> Self {
-        Rows { time, count: 0, ended: false }
+        let starts = match &time.record_at {
+            RecordAt::Intervals | RecordAt::Rate { .. } => true,
+            RecordAt::Times(times_s) => times_s.first() == Some(&0.0),
+        };
+        Rows { time, count: 0, before: usize::from(!starts), ended: false }
+    }
+
+    /// When the next row is, s; not before the end where there is no more.
+    fn next_s(&self) -> f64 {
+        match &self.time.record_at {
+            RecordAt::Intervals => self.count as f64 * self.time.record_every_s,
+            RecordAt::Rate { hz } => self.count as f64 / hz,
+            RecordAt::Times(times_s) => match self.count.checked_sub(self.before) {
+                None => 0.0,
+                Some(k) => times_s.get(k).copied().unwrap_or(self.time.end_s),
+            },
+        }
     }
 
     /// The instant of the next row, s, if it falls into `step`.
     pub(crate) fn next_in(&mut self, step: Step) -> Option<f64> {
         let end_s = self.time.end_s;
-        let t_s = self.count as f64 * self.time.record_every_s;
+        let t_s = self.next_s();
         // A row that the horizon rounds away is the last row.
         let last = t_s >= end_s * (1.0 - 1e-12);
         let t_s = if last { end_s } else { t_s };
@@ -259,7 +277,12 @@ impl Rows {
 impl<'a> Recorder<'a> {
     fn new(setup: &'a Setup, closed_loop: &ClosedLoop<'_>) -> Self {
         let (columns, first_column) = empty_columns(closed_loop, setup.agents.len());
-        Recorder { setup, recording: Recording { t_s: Vec::new(), columns }, first_column, rows: Rows::new(setup.time) }
+        Recorder {
+            setup,
+            recording: Recording { t_s: Vec::new(), columns },
+            first_column,
+            rows: Rows::new(setup.time.clone()),
+        }
     }
 
     /// Writes the rows that fall into `step`; the breakdown, if an enforced limit was left.
@@ -281,7 +304,7 @@ impl<'a> Recorder<'a> {
     fn row(&mut self, integrator: &mut Integrator<'_>, closed_loop: &mut ClosedLoop<'_>, t_s: f64) {
         let rows = self.recording.t_s.len();
         if rows.is_multiple_of(ROWS_PER_CHUNK) {
-            let left = (self.setup.time.end_s / self.setup.time.record_every_s) as usize + 2 - rows.min(1);
+            let left = self.setup.time.most_rows() as usize - rows.min(1);
             let chunk = ROWS_PER_CHUNK.min(left.saturating_sub(rows) + 2);
             self.recording.t_s.reserve_exact(chunk);
             for column in &mut self.recording.columns {

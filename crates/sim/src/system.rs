@@ -223,6 +223,8 @@ pub struct Interface {
     pub in_batches: bool,
     /// What follows a target, where that is something else than the axes of the robot.
     pub coordinates: Option<Coordinates>,
+    /// Lengths of what else of the law's own state a start may give, after as many of z(0), ż(0), … as its reference dynamics have.
+    pub further_starts: &'static [usize],
     /// Values to compare its signals with.
     pub lines: Vec<Line>,
 }
@@ -242,6 +244,7 @@ impl Interface {
             estimates: false,
             in_batches: false,
             coordinates: None,
+            further_starts: &[],
             lines: Vec::new(),
         }
     }

@@ -76,7 +76,7 @@ fn bits_of_the_first_two(agents: usize, order: usize, control: &Option<Control>)
             weights: Vec::new(),
             coupling: Default::default(),
         },
-        time: TimeSpan { end_s: 3.0, record_every_s: 0.1 },
+        time: TimeSpan { end_s: 3.0, record_every_s: 0.1, record_at: forwardstep_sim::RecordAt::Intervals },
         solver: Solver { method: Method::Fixed { step_s: 0.01 }, ..Solver::default() },
         control: control.clone(),
     };

@@ -68,7 +68,7 @@ fn alone(agents: Vec<AgentSetup>, end_s: f64) -> Setup {
         agents,
         reference: Arc::new(Consensus),
         exchange: Exchange::Position,
-        time: TimeSpan { end_s, record_every_s: 0.125 },
+        time: TimeSpan { end_s, record_every_s: 0.125, record_at: forwardstep_sim::RecordAt::Intervals },
         solver: Solver { method: Method::Adaptive { rtol: 1e-10, atol: 1e-12 }, ..Solver::default() },
         control: None,
     }

@@ -208,7 +208,7 @@ fn digest_every_kind_has_the_bits_of_the_simulator_when_it_is_driven_from_outsid
         assert_eq!(counts.late, 0, "{name}");
         // At a rate that binary numbers cannot write, with noise.
         let mut setup = common::sampled(setup, 500.0);
-        setup.time = TimeSpan { end_s: 1.0, record_every_s: 0.002 };
+        setup.time = TimeSpan { end_s: 1.0, record_every_s: 0.002, record_at: forwardstep_sim::RecordAt::Intervals };
         let control = setup.control.as_mut().unwrap();
         let measured = |agent: &AgentSetup| agent.interface().unwrap().measures_velocity;
         let velocity_noise = if setup.agents.iter().any(measured) { 1e-5 } else { 0.0 };

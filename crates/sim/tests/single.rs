@@ -119,3 +119,79 @@ fn val_tips_and_spacecraft_agree_with_an_independent_solver() {
         assert!(worst < 1e-6, "{}: {worst:e}", truth.name);
     }
 }
+
+/// V̇ does not ask where z, R_z and y start, nor which of q and −q: a sign, a z, an attitude of the reference, and a filter that has
+/// not settled.
+#[test]
+fn thm7_identity_holds_from_every_start_of_its_states() {
+    let z = || vec![0.2, -0.1, 0.05];
+    let starts = [
+        vec![z()],
+        vec![vec![0.0; 3], vec![0.0, 0.6, 0.0, -1.6]],
+        vec![vec![0.0; 3], Vec::new(), vec![0.4, -0.3, 0.2, 2.5]],
+        vec![z(), vec![0.5, 0.1, -0.2, 1.0], vec![-1.0, 0.5, 0.0, 1.0]],
+    ];
+    for (index, reference) in starts.into_iter().enumerate() {
+        for sign in [1.0, -1.0] {
+            let mut setup = craft(half_a_turn([0.1, -0.05, 0.08]), targets().swap_remove(index), 5.0);
+            let start = &mut setup.agents[0].start;
+            start.q.iter_mut().for_each(|x| *x *= sign);
+            start.reference = reference.clone();
+            let outcome = run(&setup);
+            let (error, lost) = balance(&outcome);
+            assert!(error <= 10.0 * RTOL, "start {index}: {error}");
+            assert!(lost > 0.9, "start {index} lost {lost}");
+            let angle = column(&outcome, 0, Signal::Angle, 0);
+            assert!(angle.last().unwrap() < &5e-3, "start {index}: {angle:?}");
+            for (axis, z) in reference[0].iter().enumerate() {
+                assert_eq!(column(&outcome, 0, Signal::Reference(0), axis)[0], *z);
+            }
+            // (100) with K = 3 and Λ_f = 1.
+            let rate: Vec<f64> = (0..4).map(|k| column(&outcome, 0, Signal::FilterRate, k)[0]).collect();
+            let settled = rate.iter().all(|rate| rate.abs() < 1e-12);
+            assert_eq!(settled, reference.get(2).is_none(), "{rate:?}");
+        }
+    }
+    let filtered = |y: &[f64]| {
+        let mut setup = craft(half_a_turn([0.0; 3]), targets().swap_remove(0), 5.0);
+        setup.agents[0].start.reference = vec![vec![0.0; 3], Vec::new(), y.to_vec()];
+        setup.time.end_s = 0.1;
+        column(&run(&setup), 0, Signal::FilterRate, 1)[0]
+    };
+    assert!((filtered(&[0.0, 0.7, 0.0, 3.0]) + 0.7).abs() < 1e-15);
+}
+
+#[test]
+fn the_sign_of_the_quaternion_chooses_the_way_round() {
+    for control in [false, true] {
+        let furthest = |sign: f64| {
+            let half = 0.5_f64;
+            let q = [0.0, 0.0, libm::sin(half), libm::cos(half)].map(|x| sign * x);
+            let mut setup = craft(half_a_turn([0.0; 3]), targets().swap_remove(0), 5.0);
+            setup.agents[0].start.q = q.to_vec();
+            let setup = if control { sampled(setup, 50.0) } else { setup };
+            let outcome = run(&setup);
+            let angle = column(&outcome, 0, Signal::Angle, 0);
+            assert!((angle[0] - 1.0).abs() < 1e-12 && angle.last().unwrap() < &5e-3, "{angle:?}");
+            angle.iter().fold(0.0_f64, |most, angle| most.max(*angle))
+        };
+        assert!(furthest(1.0) < 1.0 + 1e-9);
+        assert!(furthest(-1.0) > 3.1);
+    }
+}
+
+#[test]
+fn starts_of_further_states_have_their_lengths() {
+    let refused = |reference: Vec<Vec<f64>>| {
+        let mut setup = craft(half_a_turn([0.0; 3]), targets().swap_remove(0), 5.0);
+        setup.agents[0].start.reference = reference;
+        simulate(&setup, &mut |_| ControlFlow::Break(())).err().map(|error| error.to_string())
+    };
+    let z = || vec![0.0; 3];
+    assert_eq!(refused(vec![z(), vec![], vec![]]), None);
+    for wrong in [vec![vec![]], vec![z(), vec![0.0; 3]], vec![z(), vec![], vec![1.0; 5]], vec![z(), vec![f64::NAN; 4]]]
+    {
+        assert!(refused(wrong.clone()).is_some(), "{wrong:?}");
+    }
+    assert!(refused(vec![z(), vec![], vec![], vec![]]).unwrap().contains("has 4 entries where 3 are needed"));
+}

@@ -99,7 +99,11 @@ pub fn period_rate(
     }
     let most = most.min(recorded).min((HORIZONS * setup.time.end_s / period_s) as usize);
     loop {
-        alone.time = TimeSpan { end_s: period_s * periods as f64, record_every_s: period_s / ROWS as f64 };
+        alone.time = TimeSpan {
+            end_s: period_s * periods as f64,
+            record_every_s: period_s / ROWS as f64,
+            record_at: forwardstep_sim::RecordAt::Intervals,
+        };
         let widths = CascadeSpread::of(&alone, &completed(&alone, observer)?)?.widths();
         let each: Vec<f64> = (0..=periods).filter_map(|k| widths.get(k * ROWS)).copied().collect();
         let start = each.first().copied().unwrap_or(0.0);

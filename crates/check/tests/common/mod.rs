@@ -167,7 +167,7 @@ pub fn setup(agents: Vec<AgentSetup>, exchange: Exchange, schedule: Schedule, de
         agents,
         reference: Arc::new(Consensus),
         exchange,
-        time: TimeSpan { end_s, record_every_s: 0.01 },
+        time: TimeSpan { end_s, record_every_s: 0.01, record_at: forwardstep_sim::RecordAt::Intervals },
         solver: Solver { method: Method::Adaptive { rtol: 1e-9, atol: 1e-10 }, ..Solver::default() },
         control: None,
     }

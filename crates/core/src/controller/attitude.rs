@@ -29,8 +29,11 @@
 //!
 //! The paper prints −S(ω − z) ω_d here and −S(h)(ω − z) in the equation of ω̇ − ż; neither changes the law or V̇.
 //!
-//! q and −q are one attitude, but (97) leads to Δq_o = 1: a start with Δq_o < 0 takes the long way round. Choose the sign of
-//! the quaternion at the start so that Δq_o ≥ 0.
+//! q and −q are one attitude, but (97) leads to Δq_o = 1: a start with Δq_o < 0 takes the long way round. The sign of the
+//! quaternion at the start chooses between the two: Δq_o ≥ 0 is the short way.
+//!
+//! Nothing above asks where z, R_z and y start: V̇ is what it is for every start, and V(0) has ½ ẏᵀẏ besides the energy of ω − z
+//! where y(0) ≠ Λ_f⁻¹ K Δq*(0).
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -56,8 +59,9 @@ pub struct AttitudeMeasured<'a> {
 /// State: z (3), q_z (4), y (4). Shown: z, ż, Δq_v, the angle of R_dᵀR, ẏ, τ. The target is a [`Jet`] for each of the four entries of
 /// a quaternion of any norm but zero, see [`Desired`].
 ///
-/// The start is z(0) = 0 unless another is wanted, R_z(0) = R(0), and y(0) = Λ_f⁻¹ K Δq*(0), so that ẏ(0) = 0: then V(0) is
-/// the energy ½ (ω − z)ᵀM(ω − z) alone.
+/// The start is z(0) = 0, R_z(0) = R(0), and y(0) = Λ_f⁻¹ K Δq*(0), so that ẏ(0) = 0 and V(0) is the energy
+/// ½ (ω − z)ᵀM(ω − z) alone. Others may be wanted: z(0), then the quaternion of R_z(0), of any norm, then y(0); what is empty or
+/// missing starts as said.
 ///
 /// **Source**: (97)–(105). **Measures**: attitude. **Transmits**: nothing.
 /// **Requires**: α₁, α₂ positive; K and Λ_f symmetric positive definite; M and h_I known; R_d with two bounded derivatives; wheels
@@ -128,6 +132,17 @@ fn four(x: &[f64]) -> [f64; 4] {
     core::array::from_fn(|k| x[k])
 }
 
+/// The start of one part of the state, if it is wanted.
+fn stated<const N: usize>(
+    wanted: &[Vec<f64>],
+    part: usize,
+    what: &'static str,
+) -> Result<Option<[f64; N]>, LengthError> {
+    let Some(given) = wanted.get(part).filter(|given| !given.is_empty()) else { return Ok(None) };
+    let wrong = |_| LengthError { what, need: N, got: given.len() };
+    given.as_slice().try_into().map(Some).map_err(wrong)
+}
+
 impl AttitudeTracking {
     /// ẏ of (100), for the attitude q.
     fn filter_rate(&self, q: Quaternion, q_z: Quaternion, y: &[f64]) -> ([f64; 4], [f64; 4]) {
@@ -186,15 +201,18 @@ impl Controller for AttitudeTracking {
         LengthError::check("filter gain", 4, self.filter.size())?;
         LengthError::check("damping gain", 4, self.damping.size())?;
         state.fill(0.0);
-        if let Some(z) = wanted.first() {
-            LengthError::check("the start of the reference", 3, z.len())?;
-            state[..3].copy_from_slice(z);
-        }
         let q = normalized(*given.measured.q);
-        state[3..7].copy_from_slice(&q);
-        let mut y = [0.0; 4];
-        self.damping.apply(&difference(q, q), &mut y);
-        self.filter.solve(&mut y);
+        let z = stated::<3>(wanted, 0, "the start of the reference")?.unwrap_or_default();
+        let q_z = stated(wanted, 1, "the start of the reference attitude")?.map_or(q, normalized);
+        let settled = || {
+            let mut y = [0.0; 4];
+            self.damping.apply(&difference(q, q_z), &mut y);
+            self.filter.solve(&mut y);
+            y
+        };
+        let y = stated(wanted, 2, "the start of the filter")?.unwrap_or_else(settled);
+        state[..3].copy_from_slice(&z);
+        state[3..7].copy_from_slice(&q_z);
         state[7..].copy_from_slice(&y);
         Ok(())
     }

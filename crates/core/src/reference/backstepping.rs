@@ -11,8 +11,11 @@
 //! ε ḟ = q̇_r − f        ż ≈ sat( (q̇_r − f)/ε )
 //! ```
 //!
+//! f(0) = q̇_r(0), as of a filter that has settled, unless another is stated.
+//!
 //! At a jump of size Δ that is Δ/ε for a while: the torque grows as the filter narrows, which is the point.
 
+use alloc::vec;
 use alloc::vec::Vec;
 
 use thiserror::Error;
@@ -63,6 +66,8 @@ pub struct Backstepping {
     rate: Vec<f64>,
     /// Limit of ż of every agent.
     limit: Vec<f64>,
+    /// f(0) of every agent, where it is stated.
+    starts: Vec<Option<Vec<f64>>>,
 }
 
 impl Backstepping {
@@ -83,7 +88,14 @@ impl Backstepping {
             rate.push(1.0 / epsilon);
             limit.push(bound);
         }
-        Ok(Backstepping { rate, limit })
+        let starts = vec![None; rate.len()];
+        Ok(Backstepping { rate, limit, starts })
+    }
+
+    /// The same with f(0), rad/s or m/s on every axis, of the agents that state it; further ones start settled.
+    pub fn starting_at(mut self, starts: impl IntoIterator<Item = Option<Vec<f64>>>) -> Self {
+        self.starts.iter_mut().zip(starts).for_each(|(own, start)| *own = start);
+        self
     }
 }
 
@@ -141,9 +153,17 @@ impl Reference for Backstepping {
         LengthError::check("reference state", block, state.len())?;
         LengthError::check("degree", self.rate.len(), heard.degree.len())?;
         Position::check(heard.sums, block)?;
+        self.starts
+            .iter()
+            .flatten()
+            .try_for_each(|start| LengthError::check("start of the filter", axes, start.len()))?;
         for k in 0..block {
-            // The filter has settled: no derivative at the start.
-            state[k] = heard.sums.q[k] - heard.degree[k % self.rate.len()] * measured.q[k];
+            let (agent, axis) = (k % self.rate.len(), k / self.rate.len());
+            // Else the filter has settled: no derivative at the start.
+            state[k] = match &self.starts[agent] {
+                Some(start) => start[axis],
+                None => heard.sums.q[k] - heard.degree[agent] * measured.q[k],
+            };
         }
         Ok(())
     }

@@ -12,11 +12,13 @@ use crate::scenario::inputs::INPUTS;
 const SEAL: &str = "summary.json";
 
 /// Every file that a run may write, but for the copies of its inputs.
-pub(crate) const FILES: [&str; 10] = [
+pub(crate) const FILES: [&str; 12] = [
     "scenario.toml",
     "trajectory.parquet",
     "trajectory.csv",
     "packets.csv",
+    "phases.csv",
+    "holds.csv",
     "report.html",
     "plots/positions.svg",
     "plots/torques.svg",

@@ -8,6 +8,8 @@
 //! | `trajectory.parquet` | every recorded signal, one column each ([`names`] says how they are called) |
 //! | `trajectory.csv` | the same numbers with all their digits, when asked for |
 //! | `packets.csv` | every packet of every link, where links carry packets; `delay.log` replays it |
+//! | `phases.csv` | when each phase began, where phases are drawn; `switching.log` replays it |
+//! | `holds.csv` | when each value of every random hold began, where there are some; `delay.hold_log` replays it |
 //! | `summary.json` | [`summary::Summary`]: verdicts, metrics, how it ended |
 //! | `report.html` | one self-contained page that opens offline |
 //! | `plots/*.svg` | positions, torques, estimates and disagreement, one panel per joint |
@@ -25,6 +27,7 @@ mod csv;
 mod decimate;
 mod digital;
 mod disagreement;
+mod draws;
 mod ending;
 mod error;
 mod explanation;
@@ -128,6 +131,12 @@ pub fn write_run(folder: &RunFolder, record: &RunRecord<'_>, options: Options) -
     }
     if !packets::links(&record.setup.network).is_empty() {
         staging.write("packets.csv", |out| Ok(packets::write(out, record.setup)?))?;
+    }
+    if draws::draws_phases(&record.setup.network) {
+        staging.write("phases.csv", |out| Ok(draws::write_phases(out, record.setup)?))?;
+    }
+    if !draws::holds(&record.setup.network).is_empty() {
+        staging.write("holds.csv", |out| Ok(draws::write_holds(out, record.setup)?))?;
     }
     write_pictures(&mut staging, record, &metrics)?;
     staging.write("summary.json", |out| Ok(summary::Summary::of(record, metrics, tables).write(out)?))?;

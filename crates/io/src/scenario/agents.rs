@@ -5,11 +5,11 @@ use std::ops::Range;
 
 use forwardstep_core::reference::RootSet;
 use forwardstep_sim::leader::{Following, Leading as Led};
-use forwardstep_sim::reference::{ReferenceDynamics, Roots, Tracking};
+use forwardstep_sim::reference::{ReferenceDynamics, ReferenceFamily, Roots, Tracking};
 use forwardstep_sim::{ActuatorLimits, AgentSetup, PositionKind, RobotSetup};
 
 use super::at::At;
-use super::attitude::{never_zero, shortest_rotation};
+use super::attitude::{never_zero, rotation};
 use super::document::{Document, KeyedLaw};
 use super::fault::{Fault, count, fault, filled};
 use super::file::{AgentFile, ScenarioFile};
@@ -20,7 +20,7 @@ use super::problem::ScenarioProblem;
 use super::robots::{Body, RobotRead, Stop};
 use super::roots::roots;
 use super::spread::Spread;
-use super::start::{Shared, StartReader, reject_unread};
+use super::start::{FreeStart, Shared, StartReader, reject_unread};
 use super::target::{Owner, target};
 use super::unused::spare_roots;
 use super::value_problem::ValueProblem;
@@ -195,8 +195,7 @@ impl Member<'_> {
             kind.spread(&mut read, &spread).map_err(|fault| fault.at(&entry.robot.span))?;
         }
         let RobotRead { robot, body, .. } = read;
-        let Design { roots_per_s, manipulability, free_derivatives } =
-            design(reference, population, (first + index, name))?;
+        let Design { roots_per_s, manipulability, free_start } = design(reference, population, (first + index, name))?;
         let place = entry.law.as_ref().or(file.law.as_ref()).map_or(&entry.robot.span, |law| &law.span);
         let law = kinds.build(law, &LawReader { agent: name, robot: &robot, body: &body, sharing });
         let law = law.map_err(|fault| fault.at(place))?;
@@ -209,16 +208,16 @@ impl Member<'_> {
         let target = entry.target.as_ref().map(|file| target(file, &owner, folder)).transpose()?;
         let own = entry.start.as_ref().map(|file| Shared { file, index, of: names.len() });
         let common = file.start.as_ref().map(|file| Shared { file, index: first + index, of });
-        let mut given = StartReader::new(name, &robot, free_derivatives, own, common);
+        let mut given = StartReader::new(name, &robot, free_start, own, common);
         let mut start = kind.start(&robot, &mut given)?;
-        given.reject_unused()?;
-        asked.extend(given.asked());
         if let (Some(target), Some(place)) = (&target, &entry.target)
             && robot.interface().position == PositionKind::UnitQuaternion
         {
             never_zero(place, target, end_s)?;
-            shortest_rotation(&mut start, target);
+            rotation(&mut start, target, given.rotation());
         }
+        given.reject_unused()?;
+        asked.extend(given.asked());
         let agent = AgentSetup {
             law,
             start,
@@ -292,8 +291,8 @@ fn limits(population: &Population<'_>) -> Result<bool, Fault> {
 struct Design {
     roots_per_s: RootSet,
     manipulability: f64,
-    /// How many of z(0), ż(0), … a start may give.
-    free_derivatives: usize,
+    /// What a start may say of it.
+    free_start: FreeStart,
 }
 
 /// The reference dynamics of all agents, as they were read.
@@ -338,6 +337,15 @@ fn design(reference: &Leading, population: &Population<'_>, (index, agent): (usi
         return Err(fault(gain, problem));
     }
     let manipulability = own_gain.or(gain_of_all).map_or(0.0, |gain| gain.value);
-    let free_derivatives = dynamics.free_derivatives(roots_per_s.len());
-    Ok(Design { free_derivatives, roots_per_s, manipulability })
+    let free_start = match interface.family {
+        ReferenceFamily::Backstepping => FreeStart::Filter,
+        ReferenceFamily::Consensus
+        | ReferenceFamily::PureIntegral
+        | ReferenceFamily::Leader
+        | ReferenceFamily::Target
+        | ReferenceFamily::Desired
+        | ReferenceFamily::DesiredTarget
+        | ReferenceFamily::Own => FreeStart::Derivatives(dynamics.free_derivatives(roots_per_s.len())),
+    };
+    Ok(Design { free_start, roots_per_s, manipulability })
 }

@@ -1,13 +1,16 @@
 //! An attitude → a unit quaternion.
 
+use std::f64::consts::TAU;
+
 use forwardstep_core::Scalar;
-use forwardstep_core::attitude::{Quaternion, difference, normalized};
+use forwardstep_core::attitude::{Quaternion, angle, difference, normalized};
 use forwardstep_sim::Start;
 use forwardstep_sim::trajectory::Trajectory;
 
 use super::at::At;
 use super::attitude_file::{AttitudeStartFile, TurnFile};
 use super::fault::{Fault, fault};
+use super::file::RotationFile;
 use super::system_problem::SystemProblem;
 
 /// Either way of writing it.
@@ -44,14 +47,30 @@ pub(super) fn never_zero<T>(place: &At<T>, target: &Trajectory, end_s: f64) -> R
     if nearest.vanishes() { Err(fault(place, SystemProblem::NoAttitude { t_s: nearest.t_s })) } else { Ok(()) }
 }
 
-/// Of the two quaternions of the attitude at the start, takes the one that is nearer to the target: the law leads to Δq_o = 1
-/// and would otherwise take the long way round.
-pub(super) fn shortest_rotation(start: &mut Start, target: &Trajectory) {
+/// Of the two quaternions of the attitude at the start, takes the one that is asked for: the law leads to Δq_o = 1, by the short
+/// way from Δq_o ≥ 0 and else by the long way. R_z keeps its place beside it.
+pub(super) fn rotation(start: &mut Start, target: &Trajectory, way: RotationFile) {
+    let Some([.., cosine]) = error_at_start(start, target) else { return };
+    let other = match way {
+        RotationFile::Shortest => cosine < 0.0,
+        RotationFile::Longest => cosine > 0.0,
+        RotationFile::AsStated => false,
+    };
+    if other {
+        start.q.iter_mut().chain(start.reference.get_mut(1).into_iter().flatten()).for_each(|x| *x = -*x);
+    }
+}
+
+/// Δq(0), of any norm.
+fn error_at_start(start: &Start, target: &Trajectory) -> Option<Quaternion> {
     let mut jets = [[0.0; 5]; 4];
     target.jets(0.0, &mut jets);
-    if let Some(q) = start.q.first_chunk_mut::<4>()
-        && difference(*q, jets.map(|jet| jet[0]))[3] < 0.0
-    {
-        *q = q.map(|x| -x);
-    }
+    start.q.first_chunk::<4>().map(|q| difference(*q, jets.map(|jet| jet[0])))
+}
+
+/// The angle by which the law turns a spacecraft from this start to where its target is then, from 0 to 2π, rad; it would turn −q by
+/// what is left of 2π.
+pub(super) fn turn_rad(start: &Start, target: &Trajectory) -> Option<f64> {
+    let error = error_at_start(start, target)?;
+    Some(if error[3] < 0.0 { TAU - angle(error) } else { angle(error) })
 }

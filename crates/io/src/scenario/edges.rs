@@ -45,20 +45,15 @@ impl NetworkReader<'_> {
         let mut read = Vec::with_capacity(edges.len());
         for place in edges {
             let EdgeFile { from, to, weight, delay } = &place.value;
-            let (j, i) = (self.agent(from)?, self.agent(to)?);
-            if i == j {
-                return Err(fault(place, NetworkProblem::SelfLoop { name: to.value.clone() }));
-            }
-            if i >= self.agents {
-                return Err(fault(place, NetworkProblem::LeaderHears { name: to.value.clone() }));
-            }
+            let (j, i) = self.ends((from, to), place)?;
             if let Some(start) = seen.insert((j, i), place.span.start) {
                 let (first_line, _) = source.line_column(start);
                 let (from, to) = (from.value.clone(), to.value.clone());
                 return Err(fault(place, NetworkProblem::EdgeTwice { from, to, first_line }));
             }
-            let (weight, plan) = self.terms(weight, delay)?;
+            let (weight, own) = self.terms(weight, delay)?;
             let span = delay.as_ref().map_or(&place.span, |delay| &delay.span);
+            let plan = self.plan_of(own.as_ref().map(|plan| (plan, span)), (j, i))?;
             let delay = self.delay_of(&plan, j, i, span)?;
             read.push(Edge { from: j, to: i, weight, delay });
         }
@@ -94,13 +89,14 @@ impl NetworkReader<'_> {
         };
         let Rule { topology, members, weight, delay } = rule;
         let span_of_delay = delay.as_ref().map_or(span, |delay| &delay.span);
-        let (weight, plan) = self.terms(weight, delay)?;
+        let (weight, own) = self.terms(weight, delay)?;
         let refused = |error| Fault::new(NetworkProblem::Topology(error)).at(place);
         self.few_edges(topology.edge_count(members.len()).map_err(refused)?, span)?;
         let pairs = topology.edges(members.len()).map_err(refused)?;
         let mut edges = Vec::with_capacity(pairs.len());
         for (j, i) in pairs {
             let (from, to) = (members[j], members[i]);
+            let plan = self.plan_of(own.as_ref().map(|plan| (plan, span_of_delay)), (from, to))?;
             edges.push(Edge { from, to, weight, delay: self.delay_of(&plan, from, to, span_of_delay)? });
         }
         Ok(edges)
@@ -148,18 +144,31 @@ impl NetworkReader<'_> {
         Ok(members)
     }
 
-    /// Weight and delay of an edge: its own, else the network's.
+    /// The weight of an edge, its own, else the network's; and a delay of its own.
     fn terms(
         &mut self,
         weight: &Option<At<WeightFile>>,
         delay: &Option<At<DelayFile>>,
-    ) -> Result<(Weight, DelayPlan), Fault> {
+    ) -> Result<(Weight, Option<DelayPlan>), Fault> {
         let weight = weight.as_ref().map_or(Ok(self.weight), |weight| self.weight(weight))?;
-        let plan = match delay {
-            Some(delay) => self.plan(delay)?,
-            None => self.default_delay.clone(),
-        };
+        let plan = delay.as_ref().map(|delay| self.plan(delay)).transpose()?;
         Ok((weight, plan))
+    }
+
+    /// The vertices at the ends of a link that can be.
+    pub(super) fn ends<T>(
+        &self,
+        (from, to): (&At<String>, &At<String>),
+        place: &At<T>,
+    ) -> Result<(usize, usize), Fault> {
+        let (j, i) = (self.agent(from)?, self.agent(to)?);
+        if i == j {
+            return Err(fault(place, NetworkProblem::SelfLoop { name: to.value.clone() }));
+        }
+        if i >= self.agents {
+            return Err(fault(place, NetworkProblem::LeaderHears { name: to.value.clone() }));
+        }
+        Ok((j, i))
     }
 
     /// Refuses more edges than fit into memory.

@@ -68,6 +68,28 @@ pub struct TimeFile {
     /// Rows of the tables are this far apart, in s. Default: 0.02.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub record_every_s: Option<At<f64>>,
+    /// Where rows are, in the place of `record_every_s`. The start and the end of the run have one in any case.
+    pub record_at: Option<At<RecordAtFile>>,
+}
+
+/// When rows are recorded.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum RecordAtFile {
+    /// At every sample of the controllers, just after it.
+    Samples,
+    /// At these times, in s; rising.
+    TimesS(At<Vec<At<f64>>>),
+    /// At the times of a table.
+    Csv(TimesCsvFile),
+}
+
+/// A table of times.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TimesCsvFile {
+    /// The CSV file, beside the scenario file or in `inputs` beside it, with one column, `t_s`, rising.
+    pub file: At<String>,
 }
 
 /// One agent, or a population of agents of one kind.
@@ -207,10 +229,25 @@ pub struct StartFile {
     pub angular_velocity_rad_s: Option<At<[f64; 3]>>,
     /// Where spacecraft start.
     pub spacecraft: Option<At<WheelStartFile>>,
+    /// Which of the two quaternions of its attitude a spacecraft with a target starts with, q or −q: they are one attitude, but
+    /// the law leads one of them round the longer way. Default: shortest.
+    pub rotation: Option<At<RotationFile>>,
     /// What else there is of a chain: its derivatives from the second on, or x2, x3, … of one in feedback form.
     pub higher_states: Option<At<StartValues>>,
     /// The state of the reference dynamics.
     pub reference: Option<At<ReferenceStartFile>>,
+}
+
+/// The way round from an attitude to a target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RotationFile {
+    /// By 180 degrees at most.
+    Shortest,
+    /// By 180 degrees at least.
+    Longest,
+    /// Whichever the stated quaternion leads to; an axis and an angle θ are (sin(θ/2) axis, cos(θ/2)).
+    AsStated,
 }
 
 /// The initial state of the reference dynamics, in the units of the axes.
@@ -222,6 +259,11 @@ pub struct ReferenceStartFile {
     /// Its first, second, … derivative, at most one fewer than the order has. Default: zero.
     #[serde(default)]
     pub derivatives: Vec<At<StartValues>>,
+    /// Of a spacecraft the attitude R_z that turns with z. Default: its own attitude.
+    pub attitude: Option<At<AttitudeStartFile>>,
+    /// What the filter holds: of a spacecraft y, four numbers; under `reference.backstepping` one for every axis, in rad/s or m/s.
+    /// Default: what it settles at.
+    pub filter: Option<At<StartValues>>,
 }
 
 /// How to integrate.

@@ -13,9 +13,10 @@ use forwardstep_sim::quantity::Sign;
 use super::at::At;
 use super::fault::{Fault, fault};
 use super::formula::formula;
+use super::kinds::delays::hold_log::Holds;
 use super::kinds::delays::log::Log;
 use super::kinds::delays::{DelayPlan, Link, LinkDelays};
-use super::links_file::WeightFile;
+use super::links_file::{LinkDelayFile, WeightFile};
 use super::network::NetworkReader;
 use super::network_problem::NetworkProblem;
 use super::notice::Notice;
@@ -33,10 +34,23 @@ pub(super) struct Links {
     /// The delay of each edge (from, to), and whether it stays with the link.
     drawn: HashMap<(usize, usize, bool), Drawn>,
     pub(super) logs: BTreeMap<String, Arc<Log>>,
+    /// Held values that were read, by their files.
+    pub(super) held: HashMap<String, Arc<Holds>>,
     weights: HashMap<String, Weight>,
     /// The delays that are written as formulas, by their texts.
     formulas: HashMap<String, Delay>,
     counted: delay::Drawn,
+    /// What `link_delays` states.
+    stated: HashMap<(usize, usize), Stated>,
+}
+
+/// The delay of one link for all graphs.
+struct Stated {
+    plan: DelayPlan,
+    /// Its line in the scenario.
+    line: usize,
+    /// Whether some graph has the edge.
+    used: bool,
 }
 
 impl NetworkReader<'_> {
@@ -52,6 +66,46 @@ impl NetworkReader<'_> {
         let delay = bounded.constant().map_or_else(|| Delay::new(bounded), Delay::constant);
         self.links.formulas.insert(text.value.clone(), delay.clone());
         Ok(delay)
+    }
+
+    /// Reads the delays that links have in all graphs.
+    pub(super) fn link_delays(&mut self, delays: &[At<LinkDelayFile>]) -> Result<(), Fault> {
+        for place in delays {
+            let LinkDelayFile { from, to, delay } = &place.value;
+            let ends = self.ends((from, to), place)?;
+            if let Some(first) = self.links.stated.get(&ends) {
+                return Err(self.stated_twice(ends, first.line).at(&place.span));
+            }
+            let (line, _) = self.source.line_column(place.span.start);
+            let plan = self.plan(delay)?;
+            self.links.stated.insert(ends, Stated { plan, line, used: false });
+        }
+        Ok(())
+    }
+
+    /// What the delay of an edge is drawn from: its own, which is written at a place, else that of its link, else the network's.
+    pub(super) fn plan_of(
+        &mut self,
+        own: Option<(&DelayPlan, &Range<usize>)>,
+        ends: (usize, usize),
+    ) -> Result<DelayPlan, Fault> {
+        match (own, self.links.stated.get_mut(&ends)) {
+            (None, None) => Ok(self.default_delay.clone()),
+            (Some((plan, _)), None) => Ok(plan.clone()),
+            (None, Some(stated)) => {
+                stated.used = true;
+                Ok(stated.plan.clone())
+            }
+            (Some((_, span)), Some(stated)) => {
+                let line = stated.line;
+                Err(self.stated_twice(ends, line).at(span))
+            }
+        }
+    }
+
+    fn stated_twice(&self, (from, to): (usize, usize), first_line: usize) -> Fault {
+        let (from, to) = (self.names[from].clone(), self.names[to].clone());
+        Fault::new(NetworkProblem::LinkDelayTwice { from, to, first_line })
     }
 
     /// Index of the delay of one edge; `span` is where the edge is written.
@@ -132,6 +186,13 @@ impl NetworkReader<'_> {
             if !unused.is_empty() {
                 notices.push(Notice::UnusedInLog { file: file.clone(), links: unused });
             }
+        }
+        let unused = self.links.stated.iter().filter(|(_, stated)| !stated.used);
+        let mut unused: Vec<_> = unused.map(|(&(from, to), stated)| (stated.line, from, to)).collect();
+        unused.sort_unstable();
+        if !unused.is_empty() {
+            let names = |(_, from, to): (usize, usize, usize)| (self.names[from].clone(), self.names[to].clone());
+            notices.push(Notice::UnusedLinkDelay { links: unused.into_iter().map(names).collect() });
         }
         let mut silent: Vec<(usize, usize)> = Vec::new();
         for (&(from, to, _), (_, index)) in &self.links.drawn {

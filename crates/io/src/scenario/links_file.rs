@@ -1,4 +1,4 @@
-//! Weights of links as they are written.
+//! Weights of links, and delays of theirs for all graphs, as they are written.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -7,6 +7,9 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::{Deserializer, Visitor};
 
+use super::at::At;
+use super::network_file::DelayFile;
+
 /// A weight: a number, or a formula in t.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WeightFile {
@@ -14,6 +17,18 @@ pub enum WeightFile {
     Number(f64),
     /// Changes with t.
     Formula(String),
+}
+
+/// The delay of one link, whichever graph is in force.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LinkDelayFile {
+    /// The agent that is heard.
+    pub from: At<String>,
+    /// The agent that hears it.
+    pub to: At<String>,
+    /// The delay of this edge in every graph that has it.
+    pub delay: At<DelayFile>,
 }
 
 impl<'de> Deserialize<'de> for WeightFile {

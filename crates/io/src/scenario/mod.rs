@@ -68,6 +68,7 @@ mod refusal;
 mod rewired;
 mod robots;
 pub mod roots;
+mod rows;
 mod shipped;
 mod spread;
 mod start;
@@ -84,7 +85,9 @@ pub mod values;
 use std::fmt;
 
 use forwardstep_sim::leader::Following;
-use forwardstep_sim::{ATOL, Method, Network, RECORD_EVERY_S, RTOL, Setup, Solver, TimeSpan, recorded_columns};
+use forwardstep_sim::{
+    ATOL, Method, Network, RECORD_EVERY_S, RTOL, RecordAt, Setup, Solver, TimeSpan, recorded_columns,
+};
 use miette::Diagnostic;
 
 pub use goal::Goal;
@@ -206,8 +209,9 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
     let mut notices = Vec::new();
     let record_every_s = file.time.record_every_s.as_ref().map_or(RECORD_EVERY_S, |every| every.value);
     let end_s = file.time.end_s.value;
-    let time = TimeSpan { end_s, record_every_s };
+    let mut time = TimeSpan { end_s, record_every_s, record_at: RecordAt::Intervals };
     document.checked(time.check())?;
+    time.record_at = rows::record_at(&file.time, file.control.as_ref(), &mut folder)?;
     let from = agents::Source { file: &file, document: &document, kinds, text: source, end_s };
     let populations = agents::populations(&from, &mut folder)?;
     let axes = populations.first().map_or_else(Vec::new, |population| population.axis_names());
@@ -242,6 +246,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
     notices.extend(Notice::coarse_sampling(&setup));
     notices.extend(Notice::targets_beyond_limits(&setup));
     notices.extend(Notice::starts_beyond_limits(&setup));
+    notices.extend(Notice::rotation(&setup));
     notices.extend(Notice::stiff(&setup));
     recorded_columns(&setup).map_err(|error| document.refused(&setup, &read.entries, error))?;
     let goal = file.goal.as_ref().map(|file| goal::goal(file, &setup)).transpose()?;

@@ -62,6 +62,7 @@ pub(super) fn network(
     if let Some(delay) = &file.delay {
         reader.default_delay = reader.plan(delay)?;
     }
+    reader.link_delays(&file.link_delays)?;
     let schedule = match (&file.edges, &file.phases) {
         (Some(_), Some(phases)) => return Err(fault(phases, NetworkProblem::EdgesAndPhases)),
         (None, None) => return Err(Fault::new(NetworkProblem::NoGraph)),

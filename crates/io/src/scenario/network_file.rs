@@ -11,7 +11,7 @@ use super::at::At;
 use super::document::Node;
 use super::edges_file::EdgesFile;
 use super::file::{KeyVisitor, kind};
-use super::links_file::WeightFile;
+use super::links_file::{LinkDelayFile, WeightFile};
 use super::values::Positive;
 
 /// The names under which [`SwitchingFile`] and [`DelayFile`] ask their deserialiser for a kind.
@@ -27,6 +27,9 @@ pub struct NetworkFile {
     pub weight: Option<At<WeightFile>>,
     /// The delay of every edge that has none of its own. Default: none.
     pub delay: Option<At<DelayFile>>,
+    /// Delays of single links, stated once for all phases. An edge whose link is here states none of its own.
+    #[serde(default)]
+    pub link_delays: Vec<At<LinkDelayFile>>,
     /// How strongly a disagreement acts: bounded or saturated for a nonlinear protocol. Default: in proportion. Only with
     /// `exchange = "position"`.
     pub coupling: Option<At<CouplingFile>>,

@@ -84,6 +84,16 @@ pub enum NetworkProblem {
         /// The receiver.
         to: String,
     },
+    /// A delay of a link that is stated once more, by `link_delays` or by an edge.
+    #[error("the delay of the link from `{from}` to `{to}` is stated in `link_delays` on line {first_line} already")]
+    LinkDelayTwice {
+        /// The sender.
+        from: String,
+        /// The receiver.
+        to: String,
+        /// Where `link_delays` states it.
+        first_line: usize,
+    },
     /// An edge that a log says nothing about.
     #[error("the log `{file}` has no packet from `{from}` to `{to}`")]
     NotInLog {
@@ -93,6 +103,41 @@ pub enum NetworkProblem {
         from: String,
         /// The receiver.
         to: String,
+    },
+    /// A link whose held values a log does not have.
+    #[error("the log `{file}` has no hold {hold} from `{from}` to `{to}`")]
+    NotHeld {
+        /// The log.
+        file: String,
+        /// Its number.
+        hold: usize,
+        /// The sender.
+        from: String,
+        /// The receiver.
+        to: String,
+    },
+    /// A log that does not begin with the run.
+    #[error("this log does not begin at 0 s")]
+    StartsLate,
+    /// A log that does not say when it ends.
+    #[error("this log does not say when it ends")]
+    NoEnd,
+    /// Something after the end of a log.
+    #[error("this comes after the end of the log")]
+    AfterTheEnd,
+    /// A log that is shorter than the run.
+    #[error("this log ends at {} s, but the run ends at {} s", number(*.until_s), number(*.end_s))]
+    LogEndsEarly {
+        /// Until when it is, s.
+        until_s: f64,
+        /// The end of the run, s.
+        end_s: f64,
+    },
+    /// A number of a phase or of a hold that is not whole.
+    #[error("{} is no whole number", number(*.found))]
+    NotANumber {
+        /// What there is.
+        found: f64,
     },
     /// Two packets of one edge sent at one time.
     #[error("a second packet from `{from}` to `{to}` sent at {} s; the first is on line {first_line}", number(*.send_s))]
@@ -122,6 +167,14 @@ impl NetworkProblem {
             }
             NetworkProblem::LinkDiffers { .. } => {
                 "packets are those of a radio, whatever the graph: give `delay.packets` once, for the network".into()
+            }
+            NetworkProblem::NotHeld { .. } => "every link that names this log needs its lines".into(),
+            NetworkProblem::NoEnd | NetworkProblem::AfterTheEnd => {
+                "the last line has a time alone: when the last value ends".into()
+            }
+            NetworkProblem::LogEndsEarly { .. } => "shorten the run, or write a longer log".into(),
+            NetworkProblem::LinkDelayTwice { .. } => {
+                "`link_delays` holds for all graphs; leave one of the two statements out".into()
             }
             NetworkProblem::NotInLog { .. } => {
                 "every edge of the network needs at least one row; a lost packet has an empty `delay_s`".into()

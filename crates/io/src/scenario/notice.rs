@@ -5,8 +5,9 @@ use std::fmt;
 use forwardstep_check::{
     FastestDamping, MarginAt, PracticalAnswer, RECOMMENDED_MARGIN, SamplingMargin, fastest_damping,
 };
-use forwardstep_sim::{AgentSetup, Axis, AxisUnit, Method, Setup};
+use forwardstep_sim::{AgentSetup, Axis, AxisUnit, Method, PositionKind, Setup};
 
+use super::attitude::turn_rad;
 use crate::urdf;
 use crate::wording::{about, enumerate, number};
 
@@ -42,6 +43,11 @@ pub enum Notice {
         /// Names of sender and receiver.
         links: Vec<(String, String)>,
     },
+    /// Links whose delay is stated for all graphs, and which no graph has.
+    UnusedLinkDelay {
+        /// Names of sender and receiver.
+        links: Vec<(String, String)>,
+    },
     /// Links on which no packet arrives before the end of the run.
     NothingArrives {
         /// Names of sender and receiver.
@@ -59,6 +65,15 @@ pub enum Notice {
         value: f64,
         /// What the axis keeps within.
         limits: [f64; 2],
+    },
+    /// Which way round spacecraft turn to their targets.
+    Rotation {
+        /// The one that turns by the largest angle.
+        agent: String,
+        /// That angle at the start, degrees: up to 180 the short way, beyond the long way.
+        degrees: f64,
+        /// How many others there are.
+        more: usize,
     },
     /// Agents that start beyond position limits.
     StartBeyondLimits {
@@ -140,6 +155,18 @@ impl Notice {
             more: all().count() - 1,
             enforced: agent.enforce_limits,
         })
+    }
+
+    /// Which of q and −q spacecraft with a target start with, in angles.
+    pub(super) fn rotation(setup: &Setup) -> Option<Notice> {
+        let turn = |agent: &AgentSetup| {
+            let turns = agent.robot.interface().position == PositionKind::UnitQuaternion;
+            let target = agent.target.as_ref().filter(|_| turns)?;
+            Some((agent.name.clone(), turn_rad(&agent.start, target)?.to_degrees()))
+        };
+        let turns = || setup.agents.iter().filter_map(turn);
+        let (agent, degrees) = turns().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some(Notice::Rotation { agent, degrees, more: turns().count() - 1 })
     }
 
     /// Damping that is fast beside the steps, or beside the length, of a run in continuous time.
@@ -227,6 +254,9 @@ impl fmt::Display for Notice {
             Notice::UnusedInLog { file, links } => {
                 write!(f, "the packets of {} in `{file}` are not used: the network has no such edge", named(links))
             }
+            Notice::UnusedLinkDelay { links } => {
+                write!(f, "`link_delays` states a delay for {}, but the network has no such edge", named(links))
+            }
             Notice::NothingArrives { links } => {
                 write!(
                     f,
@@ -255,6 +285,16 @@ impl fmt::Display for Notice {
                     0 => Ok(()),
                     1 => write!(f, "; so does 1 more axis"),
                     more => write!(f, "; so do {more} more axes of all agents"),
+                }
+            }
+            Notice::Rotation { agent, degrees, more } => {
+                let way = if *degrees > 180.0 { "long" } else { "short" };
+                let (turn, other) = (about(*degrees), about(360.0 - degrees));
+                write!(f, "{agent} turns by {turn}° to its target, the {way} way; from −q it would be {other}°")?;
+                match more {
+                    0 => Ok(()),
+                    1 => write!(f, "; 1 more spacecraft turns by no more"),
+                    more => write!(f, "; {more} more spacecraft turn by no more"),
                 }
             }
             Notice::LongSteps { agent, per_s, step_s, enough_s } => write!(

@@ -12,6 +12,8 @@ pub(super) enum Stream {
     Reference(usize),
     /// States of a chain beyond its velocity.
     Higher,
+    /// What filters hold.
+    Filter,
     /// Parameters of robots.
     Spread,
 }
@@ -22,6 +24,7 @@ impl Stream {
             Stream::Position => 0,
             Stream::Velocity => 1,
             Stream::Reference(derivative) => 2 + derivative as u64,
+            Stream::Filter => u64::MAX - 2,
             Stream::Higher => u64::MAX - 1,
             Stream::Spread => u64::MAX,
         }

@@ -97,7 +97,8 @@ pub(super) fn advice(error: &SetupError) -> Option<String> {
         SetupError::Memory { need_bytes, .. } => {
             format!("write `memory_budget_bytes = {need_bytes}` or more in `[solver]`, sample more slowly, or shorten the longest delay")
         }
-        SetupError::RecordingTooLarge { least_s, .. } => {
+        SetupError::RecordingTooLarge { least_s: None, .. } => "record at fewer times, or write `record_every_s`".to_owned(),
+        SetupError::RecordingTooLarge { least_s: Some(least_s), .. } => {
             format!("for this `end_s` let `record_every_s` be at least {}", about(1.05 * least_s))
         }
         SetupError::UnitsDiffer { .. } => {

@@ -30,7 +30,7 @@ pub struct Rewired {
 pub fn stated_network(source: &SourceText) -> Option<StatedNetwork> {
     let document: DocumentMut = source.text().parse().ok()?;
     let network = document.get("network")?.as_table_like()?;
-    let own = ["edges", "phases"].iter().filter_map(|key| network.get(key)).any(states_delays);
+    let own = ["edges", "phases", "link_delays"].iter().filter_map(|key| network.get(key)).any(states_delays);
     let phases = network.get("phases").map(phases).unwrap_or_default();
     let switching = network.get("switching");
     let random = switching.and_then(|item| item.as_table_like()?.get("random")?.as_table_like()?.get("dwell_s"));

@@ -9,7 +9,7 @@ use forwardstep_sim::{AxisUnit, RobotSetup, Start};
 use super::at::At;
 use super::attitude::attitude;
 use super::fault::{Fault, fault, length, seed, values};
-use super::file::StartFile;
+use super::file::{ReferenceStartFile, RotationFile, StartFile};
 use super::problem::ScenarioProblem;
 use super::random::{Stream, draws};
 use super::system_problem::SystemProblem;
@@ -26,6 +26,15 @@ pub(super) struct Shared<'a> {
     pub(super) of: usize,
 }
 
+/// What a start may say of reference dynamics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FreeStart {
+    /// So many of z(0), ż(0), ….
+    Derivatives(usize),
+    /// What their filter holds.
+    Filter,
+}
+
 /// A key of the start table and the unit that all axes must have for it.
 type Key<'a> = (&'static str, Option<AxisUnit>, &'a Option<At<StartValues>>);
 
@@ -35,8 +44,8 @@ type Key<'a> = (&'static str, Option<AxisUnit>, &'a Option<At<StartValues>>);
 pub struct StartReader<'a> {
     name: &'a str,
     robot: &'a RobotSetup,
-    /// How many of z(0), ż(0), … may be given.
-    order: usize,
+    /// How many of z(0), ż(0), … may be given, or what a filter holds instead.
+    free: FreeStart,
     own: Option<Shared<'a>>,
     common: Option<Shared<'a>>,
     asked: Vec<&'static str>,
@@ -46,11 +55,11 @@ impl<'a> StartReader<'a> {
     pub(super) fn new(
         name: &'a str,
         robot: &'a RobotSetup,
-        order: usize,
+        free: FreeStart,
         own: Option<Shared<'a>>,
         common: Option<Shared<'a>>,
     ) -> Self {
-        StartReader { name, robot, order, own, common, asked: Vec::new() }
+        StartReader { name, robot, free, own, common, asked: Vec::new() }
     }
 
     /// The name of the agent.
@@ -127,18 +136,60 @@ impl<'a> StartReader<'a> {
         self.asked.push("reference");
         let given = self.both().find_map(|table| Some((table, table.file.value.reference.as_ref()?)));
         let Some((table, state)) = given else { return Ok(Vec::new()) };
-        let (derivatives, need) = (&state.value.derivatives, self.robot.axes.len());
-        let z = state.value.z.as_ref().map(|z| self.vector("z", z, table, Stream::Reference(0), need)).transpose()?;
+        let need = self.robot.axes.len();
+        let ReferenceStartFile { z, derivatives, attitude, filter } = &state.value;
+        self.no_other("attitude", attitude)?;
+        let order = match self.free {
+            FreeStart::Filter => {
+                self.no_other("z", z)?;
+                self.no_other("derivatives", &derivatives.first().cloned())?;
+                let filter = filter.as_ref().map(|filter| self.vector("filter", filter, table, Stream::Filter, need));
+                return Ok(filter.transpose()?.into_iter().collect());
+            }
+            FreeStart::Derivatives(order) => order,
+        };
+        self.no_other("filter", filter)?;
+        let z = z.as_ref().map(|z| self.vector("z", z, table, Stream::Reference(0), need)).transpose()?;
         let mut reference = vec![z.unwrap_or_else(|| led.to_vec())];
         for (k, derivative) in derivatives.iter().enumerate() {
-            if k + 1 >= self.order {
+            if k + 1 >= order {
                 let (found, name) = (derivatives.len(), self.name.to_owned());
-                let problem = ScenarioProblem::Derivatives { found, agent: name, order: self.order };
+                let problem = ScenarioProblem::Derivatives { found, agent: name, order };
                 return Err(fault(derivative, problem));
             }
             reference.push(self.vector("derivatives", derivative, table, Stream::Reference(k + 1), need)?);
         }
         Ok(reference)
+    }
+
+    /// z(0) of a spacecraft, the quaternion of R_z(0) and y(0), each empty where it is not given.
+    ///
+    /// # Errors
+    /// The first mistake, at its place.
+    pub(super) fn attitude_reference(&mut self) -> Result<Vec<Vec<f64>>, Fault> {
+        self.asked.push("reference");
+        let given = self.both().find_map(|table| Some((table, table.file.value.reference.as_ref()?)));
+        let Some((table, state)) = given else { return Ok(Vec::new()) };
+        let ReferenceStartFile { z, derivatives, attitude: attitude_z, filter } = &state.value;
+        self.no_other("derivatives", &derivatives.first().cloned())?;
+        let z = z.as_ref().map(|z| self.vector("z", z, table, Stream::Reference(0), 3)).transpose()?;
+        let q_z = attitude_z.as_ref().map(attitude).transpose()?;
+        let y = filter.as_ref().map(|filter| self.vector("filter", filter, table, Stream::Filter, 4)).transpose()?;
+        Ok(vec![z.unwrap_or_else(|| vec![0.0; 3]), q_z.map_or_else(Vec::new, |q| q.to_vec()), y.unwrap_or_default()])
+    }
+
+    /// Which of the two quaternions of an attitude it starts with.
+    pub(super) fn rotation(&mut self) -> RotationFile {
+        let given = self.tables(&["rotation"]).find_map(|table| table.rotation.as_ref());
+        given.map_or(RotationFile::Shortest, |given| given.value)
+    }
+
+    /// Refuses what the reference dynamics of this agent do not have.
+    fn no_other<T>(&self, key: &'static str, stated: &Option<At<T>>) -> Result<(), Fault> {
+        match stated {
+            None => Ok(()),
+            Some(place) => Err(fault(place, SystemProblem::StartUnused { key, agent: self.name.to_owned() })),
+        }
     }
 
     /// Where a robot starts that has a position and nothing else.
@@ -271,6 +322,7 @@ fn keys(file: &StartFile) -> Vec<(&'static str, Range<usize>)> {
         ("attitude", file.attitude.as_ref().map(|attitude| attitude.span.clone())),
         ("angular_velocity_rad_s", file.angular_velocity_rad_s.as_ref().map(|rate| rate.span.clone())),
         ("spacecraft", file.spacecraft.as_ref().map(|craft| craft.span.clone())),
+        ("rotation", file.rotation.as_ref().map(|rotation| rotation.span.clone())),
         ("higher_states", span(&file.higher_states)),
         ("reference", file.reference.as_ref().map(|reference| reference.span.clone())),
     ];

@@ -69,6 +69,18 @@ pub enum SystemProblem {
     /// A heading that nothing leads to.
     #[error("`heading_rad` has no effect beside `gain_per_s` = 0")]
     HeadingUnused,
+    /// Rows at an interval and elsewhere.
+    #[error("both `record_every_s` and `record_at` say when rows are recorded")]
+    RowsTwice,
+    /// Rows at samples that are not taken.
+    #[error("rows are to be recorded at samples, but control is continuous")]
+    NoSamples,
+    /// Coefficients of the design that asks for roots.
+    #[error("`swarm` is stated by its roots")]
+    SwarmByRoots,
+    /// A β for a design that has none.
+    #[error("`continuous` has no β")]
+    BetaUnused,
     /// As many roots as the design has.
     #[error("`roots_per_s` has {}, but this design needs {need}", count(*.found, "root"))]
     LeaderRoots {
@@ -132,6 +144,10 @@ impl SystemProblem {
             SystemProblem::SignPeriodUnused { .. } | SystemProblem::HeadingUnused => "leave it out".into(),
             SystemProblem::RateBandwidthUnused { .. } => "leave it out, or let the robot be a `rotorcraft`".into(),
             SystemProblem::LeaderUnused { .. } => "write `reference.leader`, or delete the leader".into(),
+            SystemProblem::RowsTwice => "leave one of them out".into(),
+            SystemProblem::NoSamples => "write `[control]` with `sample_hz`, or `record_at.times_s`".into(),
+            SystemProblem::SwarmByRoots => "write `roots_per_s` with two real roots, which its derivation asks for".into(),
+            SystemProblem::BetaUnused => "leave it out: (110) has α alone".into(),
             SystemProblem::LeaderRoots { .. } => {
                 "`continuous` has one root, which is real, the other designs have two, or a pair of complex ones".into()
             }
@@ -158,6 +174,11 @@ impl SystemProblem {
                 "attitude" => "vehicles, rotorcraft and spacecraft have an attitude".into(),
                 "angular_velocity_rad_s" => "rotorcraft and spacecraft have an angular velocity".into(),
                 "spacecraft" => "only spacecraft start by it".into(),
+                "rotation" => "only spacecraft with a target choose between q and -q".into(),
+                "filter" => "only spacecraft and agents under `reference.backstepping` have a filter".into(),
+                "z" | "derivatives" => {
+                    "under `reference.backstepping` it follows from what is heard, and `filter` may be stated; spacecraft have `z` alone".into()
+                }
                 "higher_states" => {
                     "only chains of order two or more in feedback form, else of order three or more, have any".into()
                 }

@@ -100,7 +100,7 @@ const DERIVATIVES_CASES: &[Case] = &[
     ("higher_states = [0.1]", "higher_states = [0.1, 0]",
         "test.toml:8:75: `higher_states` has 2 entries, but `chain-1` needs 1", ""),
     ("higher_states = [0.1]", "higher_state = [0.1]",
-        "test.toml:8:59: unknown key `higher_state`", "did you mean `higher_states`? allowed here: `position_rad`, `position_m`, `position`, `velocity_rad_s`, `velocity_m_s`, `velocity`, `attitude`, `angular_velocity_rad_s`, `spacecraft`, `higher_states`, `reference`"),
+        "test.toml:8:59: unknown key `higher_state`", "did you mean `higher_states`? allowed here: `position_rad`, `position_m`, `position`, `velocity_rad_s`, `velocity_m_s`, `velocity`, `attitude`, `angular_velocity_rad_s`, `spacecraft`, `rotation`, `higher_states`, `reference`"),
     ("higher_states = [0.1]", "attitude = [0, 0, 0, 1]",
         "test.toml:8:70: `attitude` says nothing about `chain-1`", "vehicles, rotorcraft and spacecraft have an attitude"),
     ("[1, 2, 1.5]", "[1]",

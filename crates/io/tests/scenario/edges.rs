@@ -227,3 +227,101 @@ fn tables_with_other_names_are_offered() {
     assert_eq!(error.to_string(), "test.toml:32:18: cannot read the table `edge.csv`: there is no such file");
     assert!(error.help().unwrap().to_string().starts_with("did you mean `edges.csv`?"));
 }
+
+/// Two phases that share an edge, which says nothing of its delay.
+const SHARED: &str = r#"format = 2
+time = { end_s = 10 }
+[[agents]]
+name = "cart"
+count = 3
+robot.point_mass = { dimension = 1, mass_kg = 2 }
+[reference.consensus]
+roots_per_s = [1]
+exchange = "position_velocity"
+[network]
+delay.constant_s = 0.1
+[[network.link_delays]]
+from = "cart-1"
+to = "cart-2"
+delay.random_hold = { seed = 3, value_s = [0.05, 0.4], hold_s = [0.1, 0.8] }
+[[network.phases]]
+dwell_s = 1
+edges = [["cart-1", "cart-2"], ["cart-2", "cart-3"]]
+[[network.phases]]
+dwell_s = 2
+edges.ring = {}
+[[network.phases]]
+dwell_s = 2
+edges = [["cart-2", "cart-1"], { from = "cart-3", to = "cart-1", delay.constant_s = 0.3 }]
+"#;
+
+/// The table of the delay in [`SHARED`].
+const OF_LINK: &str = "[[network.link_delays]]\nfrom = \"cart-1\"\nto = \"cart-2\"\ndelay.random_hold = { seed = 3, value_s = [0.05, 0.4], hold_s = [0.1, 0.8] }\n";
+
+#[test]
+fn the_delay_of_a_link_holds_in_every_phase_that_has_it() {
+    let network = read(SHARED).unwrap_or_else(|error| panic!("{error}")).setup.network;
+    let [first, ring, last] = &network.schedule.graphs[..] else { panic!() };
+    let of = |edges: &[forwardstep_sim::graph::Edge], ends| {
+        let edge = edges.iter().find(|edge| (edge.from, edge.to) == ends).unwrap();
+        (edge.delay, network.delays[edge.delay].clone())
+    };
+    // Drawn once: the same delay, not two that look alike.
+    assert_eq!(of(first, (0, 1)), of(ring, (0, 1)));
+    assert!(of(first, (0, 1)).1.downcast::<forwardstep_sim::delay::RandomHold>().is_some());
+    // A link is directed, and all others keep the delay of the network or their own.
+    for (edges, ends, s) in [(first, (1, 2), 0.1), (ring, (2, 0), 0.1), (last, (1, 0), 0.1), (last, (2, 0), 0.3)] {
+        assert_eq!(of(edges, ends).1, forwardstep_sim::delay::Delay::constant(s), "{ends:?}");
+    }
+    // The same as if every edge had it of its own.
+    let own = "{ from = \"cart-1\", to = \"cart-2\", delay.random_hold = { seed = 3, value_s = [0.05, 0.4], hold_s = [0.1, 0.8] } }";
+    let spelled = SHARED.replace(OF_LINK, "").replace("[[\"cart-1\", \"cart-2\"]", &format!("[{own}"));
+    let ring_spelled = format!("edges = [{own}, [\"cart-2\", \"cart-3\"], [\"cart-3\", \"cart-1\"]]");
+    let spelled = spelled.replace("edges.ring = {}", &ring_spelled);
+    let spelled = read(&spelled).unwrap_or_else(|error| panic!("{error}")).setup.network;
+    let delays = |network: &forwardstep_sim::Network| -> Vec<_> {
+        let edges = network.schedule.graphs.iter().flatten();
+        edges.map(|edge| ((edge.from, edge.to), network.delays[edge.delay].clone())).collect()
+    };
+    let sorted = |mut all: Vec<((usize, usize), _)>| {
+        all.sort_by_key(|(ends, _)| *ends);
+        all
+    };
+    assert_eq!(sorted(delays(&network)), sorted(delays(&spelled)));
+    assert_eq!(network.delays.len(), 3);
+}
+
+#[test]
+fn a_delay_of_a_link_that_no_graph_has_is_a_notice() {
+    let text = SHARED.replace("to = \"cart-2\"\ndelay.random", "to = \"cart-3\"\ndelay.random");
+    let said: Vec<String> = read(&text).unwrap().notices.iter().map(ToString::to_string).collect();
+    assert_eq!(said, ["`link_delays` states a delay for cart-1 → cart-3, but the network has no such edge"]);
+    assert!(read(SHARED).unwrap().notices.is_empty());
+    // A graph that never changes may have them too.
+    let fixed = format!("{}edges.ring = {{}}\n{OF_LINK}", SHARED.split_once("[[network.link").unwrap().0);
+    let network = read(&fixed).unwrap_or_else(|error| panic!("{error}")).setup.network;
+    assert_eq!(network.delays.len(), 2);
+}
+
+#[rustfmt::skip]
+const LINK_DELAYS: &[super::Case] = &[
+    ("edges = [[\"cart-1\", \"cart-2\"]", "edges = [{ from = \"cart-1\", to = \"cart-2\", delay.constant_s = 0.3 }",
+        "test.toml:18:44: the delay of the link from `cart-1` to `cart-2` is stated in `link_delays` on line 12 already", "leave one of the two statements out"),
+    ("edges.ring = {}", "edges.ring.delay.constant_s = 0.1",
+        "test.toml:21:12: the delay of the link from `cart-1` to `cart-2` is stated in `link_delays` on line 12 already", "leave one of the two statements out"),
+    ("[[network.phases]]\ndwell_s = 1\n", "[[network.link_delays]]\nfrom = \"cart-1\"\nto = \"cart-2\"\ndelay.constant_s = 0.2\n[[network.phases]]\ndwell_s = 1\n",
+        "test.toml:16:1: the delay of the link from `cart-1` to `cart-2` is stated in `link_delays` on line 12 already", "leave one of the two statements out"),
+    ("to = \"cart-2\"\ndelay.random_hold", "to = \"cart-1\"\ndelay.random_hold",
+        "test.toml:12:1: `cart-1` cannot hear itself", ""),
+    ("to = \"cart-2\"\ndelay.random_hold", "to = \"cart-4\"\ndelay.random_hold",
+        "test.toml:14:6: there is no agent `cart-4`", "did you mean `cart-1`?"),
+    ("delay.random_hold = { seed = 3, value_s = [0.05, 0.4], hold_s = [0.1, 0.8] }", "delay.constant_s = -1",
+        "test.toml:15:20: `constant_s` is -1, but must not be negative", ""),
+    ("delay.random_hold = { seed = 3, value_s = [0.05, 0.4], hold_s = [0.1, 0.8] }", "",
+        "test.toml:12:1: the key `delay` is missing", ""),
+];
+
+#[test]
+fn a_delay_that_is_stated_twice_is_refused_with_both_places() {
+    super::refused(SHARED, LINK_DELAYS);
+}

@@ -179,3 +179,50 @@ fn mistakes_about_an_agent_that_leads_are_reported_at_their_place() {
     assert!(error.contains("3:1: agent `pilot` cannot lead the others: its acceleration"), "{error}");
     assert!(read(&format!("{LED_BY_AGENT}[control]\nsample_hz = 100\n")).is_ok());
 }
+
+/// α and β as the paper writes them are those of the roots that they have.
+#[test]
+fn a_leader_is_followed_by_alpha_and_beta_as_by_roots() {
+    let following =
+        |text: &str| read(text).unwrap_or_else(|error| panic!("{error}")).setup.following().cloned().unwrap();
+    assert_eq!(following(&changed("roots_per_s = [1.5]", "alpha = 1.5")), following(SOUND));
+    for (design, roots, stated) in [
+        ("differentiable", "[1.0, 3.0]", "alpha = 3\nbeta = 4"),
+        ("without_acceleration", "[{ real = 0.5, imaginary = 2 }]", "alpha = 4.25\nbeta = 1"),
+    ] {
+        let by_roots = changed("continuous", design).replace("[1.5]", roots);
+        let stated = by_roots.replace(&format!("roots_per_s = {roots}"), stated);
+        assert_eq!(following(&stated), following(&by_roots), "{design}");
+    }
+    // Roots that no number of a file is: p² + p + 0.2.
+    let irrational =
+        following(&changed("continuous", "differentiable").replace("roots_per_s = [1.5]", "alpha = 0.2\nbeta = 1"));
+    assert_eq!((irrational.alpha, irrational.beta), (0.2, 1.0));
+}
+
+#[test]
+fn mistakes_about_alpha_and_beta_are_reported() {
+    let two = changed("continuous", "differentiable");
+    let swarm =
+        changed("\"continuous\"", "\"swarm\"\ncoupling = 9").replace("roots_per_s = [1.5]", "alpha = 4\nbeta = 4");
+    for (text, message) in [
+        (
+            changed("roots_per_s = [1.5]", "roots_per_s = [1.5]\nalpha = 1.5"),
+            "test.toml:12:9: both `roots_per_s` and `alpha` are given",
+        ),
+        (two.replace("[1.5]", "[1, 2]\nbeta = 3"), "test.toml:12:8: both `roots_per_s` and `beta` are given"),
+        (changed("roots_per_s = [1.5]", "alpha = 1.5\nbeta = 1"), "test.toml:12:8: `continuous` has no β"),
+        (two.replace("roots_per_s = [1.5]", "alpha = 1.5"), "the key `beta` is missing"),
+        (two.replace("roots_per_s = [1.5]", "beta = 1.5"), "the key `alpha` is missing"),
+        (two.replace("roots_per_s = [1.5]\n", ""), "the key `roots_per_s` is missing"),
+        (
+            two.replace("roots_per_s = [1.5]", "alpha = 0\nbeta = 1"),
+            "test.toml:11:9: `alpha` is 0, but must be positive",
+        ),
+        (swarm, "test.toml:12:9: `swarm` is stated by its roots"),
+        (two.replace("roots_per_s = [1.5]", "alpha = 1\nbeta = nan"), "nan is not a finite number"),
+    ] {
+        let error = read(&text).unwrap_err().to_string();
+        assert!(error.contains(message), "{error}");
+    }
+}

@@ -304,3 +304,115 @@ fn the_shipped_log_is_that_of_the_run_it_names() {
         assert_eq!(drawn.packets().unwrap().packets(), logged.packets().unwrap().packets());
     }
 }
+
+/// Phases that are drawn, and random holds: one of a link for all phases, and two that another link has in two phases.
+const DRAWN: &str = r#"format = 2
+time = { end_s = 4, record_every_s = 0.05 }
+[[agents]]
+name = "cart"
+count = 3
+robot.point_mass = { dimension = 2, mass_kg = 2 }
+start.position = { random = { seed = 1, within = [-1, 1] } }
+[reference.consensus]
+roots_per_s = [1, 2]
+exchange = "position"
+[network]
+switching.random = { seed = 4, dwell_s = [0.1, 0.7] }
+[[network.link_delays]]
+from = "cart-1"
+to = "cart-2"
+delay.random_hold = { seed = 3, value_s = [0.05, 0.4], hold_s = [0.1, 0.8] }
+[[network.phases]]
+edges = [["cart-1", "cart-2"], { from = "cart-2", to = "cart-3", delay.random_hold = { seed = 5, value_s = [0, 0.2], hold_s = [0.3, 0.4] } }]
+[[network.phases]]
+edges = [["cart-1", "cart-2"], { from = "cart-2", to = "cart-3", delay.random_hold = { seed = 6, value_s = [0, 0.3], hold_s = [0.2, 0.9] } }]
+[[network.phases]]
+edges = [["cart-3", "cart-1"]]
+"#;
+
+/// [`DRAWN`] from the tables of its run.
+fn from_tables(text: &str) -> String {
+    let parts = [
+        ("switching.random = { seed = 4, dwell_s = [0.1, 0.7] }", "switching.log.file = \"phases.csv\""),
+        ("random_hold = { seed = 3, value_s = [0.05, 0.4], hold_s = [0.1, 0.8] }", "hold_log.file = \"holds.csv\""),
+        ("random_hold = { seed = 5, value_s = [0, 0.2], hold_s = [0.3, 0.4] }", "hold_log.file = \"holds.csv\""),
+        (
+            "random_hold = { seed = 6, value_s = [0, 0.3], hold_s = [0.2, 0.9] }",
+            "hold_log = { file = \"holds.csv\", hold = 2 }",
+        ),
+    ];
+    parts.into_iter().fold(text.to_owned(), |text, (from, to)| {
+        assert!(text.contains(from), "{from}");
+        text.replace(from, to)
+    })
+}
+
+#[test]
+fn a_run_is_repeated_from_what_was_drawn_for_it() {
+    for control in ["", "[control]\nsample_hz = 50\n"] {
+        let text = format!("{DRAWN}{control}");
+        let folder = tempfile::tempdir().unwrap();
+        let drawn = read(&text).unwrap_or_else(|error| panic!("{error}"));
+        let first = run(&drawn, &folder.path().join("run"));
+        let replay = beside(&from_tables(&text), &folder.path().join("run")).unwrap_or_else(|error| panic!("{error}"));
+        assert!(replay.notices.is_empty());
+        let again = run(&replay, &folder.path().join("again"));
+        // The same break-points, so the same steps and the same bits.
+        assert_eq!(first.recording, again.recording);
+        assert_eq!(first.statistics.break_points, again.statistics.break_points);
+        let phases = std::fs::read_to_string(folder.path().join("run/phases.csv")).unwrap();
+        assert!(phases.starts_with("t_s,phase\n0,") && phases.lines().count() > 8, "{phases}");
+        let holds = std::fs::read_to_string(folder.path().join("run/holds.csv")).unwrap();
+        for link in ["cart-1,cart-2,1,0,", "cart-2,cart-3,1,0,", "cart-2,cart-3,2,0,"] {
+            assert!(holds.contains(link), "{holds}");
+        }
+        // What is replayed is not drawn.
+        assert!(!folder.path().join("again/phases.csv").exists() && !folder.path().join("again/holds.csv").exists());
+        // What is known for this run alone is not claimed for ever.
+        let tables: Vec<bool> =
+            replay.setup.network.delays.iter().map(|delay| delay.known().unknown.is_some()).collect();
+        assert_eq!(tables.iter().filter(|log| **log).count(), 3);
+        let longer = from_tables(&text).replace("end_s = 4", "end_s = 400");
+        let refused = beside(&longer, &folder.path().join("run")).unwrap_err().to_string();
+        assert!(refused.contains("but the run ends at 400 s"), "{refused}");
+    }
+}
+
+/// Tables of phases, and of holds, with what they get.
+#[rustfmt::skip]
+const TABLES: &[(&str, &str, &str)] = &[
+    ("phases.csv", "t_s,phase\n0,1\n1,4\n5,\n", "phases.csv:3:3: `phase` is 4, but must be from 1 to 3"),
+    ("phases.csv", "t_s,phase\n0,1.5\n5,\n", "phases.csv:2:3: 1.5 is no whole number"),
+    ("phases.csv", "t_s,phase\n0.5,1\n5,\n", "phases.csv:2:1: this log does not begin at 0 s"),
+    ("phases.csv", "t_s,phase\n5,\n", "phases.csv:2:1: this log does not begin at 0 s"),
+    ("phases.csv", "t_s,phase\n0,1\n5,2\n", "phases.csv: this log does not say when it ends"),
+    ("phases.csv", "t_s,phase\n0,1\n5,\n6,1\n", "phases.csv:4:1: this comes after the end of the log"),
+    ("phases.csv", "t_s,phase\n0,1\n3,\n", "phases.csv:3:1: this log ends at 3 s, but the run ends at 4 s"),
+    ("phases.csv", "t_s\n0\n", "phases.csv: the column `phase` is missing"),
+    ("holds.csv", "from,to,hold,t_s,delay_s\ncart-1,cart-2,1,0,0.1\ncart-1,cart-2,1,5,\n", "test.toml:18:66: the log `holds.csv` has no hold 1 from `cart-2` to `cart-3`"),
+    ("holds.csv", "from,to,hold,t_s,delay_s\ncart-1,cart-2,0,0,0.1\n", "holds.csv:2:15: `hold` is 0, but must be from 1 to 1000000"),
+    ("holds.csv", "from,to,hold,t_s,delay_s\ncart-1,cart-2,1,0,-0.1\n", "holds.csv:2:19: `delay_s` is -0.1, but must not be negative"),
+    ("holds.csv", "from,to,hold,t_s,delay_s\ncart-1,cart-2,1,0,0.1\n", "holds.csv: this log does not say when it ends"),
+    ("holds.csv", "from,to,hold,t_s,delay_s\ncart-1,cart-2,1,0.1,0.1\n", "holds.csv:2:17: this log does not begin at 0 s"),
+    ("holds.csv", "from,to,hold,t_s,delay_s\ncart-1,cart-2,1,0,0.1\ncart-1,cart-2,1,1,\n", "holds.csv:3:17: this log ends at 1 s, but the run ends at 4 s"),
+];
+
+#[test]
+fn every_mistake_in_a_table_of_draws_is_reported_at_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    run(&read(DRAWN).unwrap(), &folder.path().join("run"));
+    let mut wrong = Vec::new();
+    for (file, table, line) in TABLES {
+        let own = tempfile::tempdir().unwrap();
+        for name in ["phases.csv", "holds.csv"] {
+            std::fs::copy(folder.path().join("run").join(name), own.path().join(name)).unwrap();
+        }
+        std::fs::write(own.path().join(file), table).unwrap();
+        super::seeds::keep("csv", table);
+        let found = beside(&from_tables(DRAWN), own.path()).err().map(|error| error.to_string()).unwrap_or_default();
+        if !found.ends_with(line) {
+            wrong.push(format!("{table:?}: {found:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

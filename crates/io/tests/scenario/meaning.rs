@@ -257,3 +257,149 @@ fn near_matches_for_names_and_paths() {
         format!("cannot read `{}`: it is a folder", folder.path().display())
     );
 }
+
+/// Two masses in a plane under (aa6), of which one states what its filter holds.
+const FILTERED: &str = r#"format = 2
+time = { end_s = 0.5, record_every_s = 0.1 }
+[[agents]]
+name = "mass"
+count = 2
+robot.point_mass = { dimension = 2, mass_kg = 2 }
+start.position_m = [[0, 1], [2, 4]]
+[[agents]]
+name = "other"
+robot.point_mass = { dimension = 2, mass_kg = 3 }
+start = { position_m = [1, 0], reference.filter = [0.25, -0.5] }
+[reference.backstepping]
+filter_s = 0.5
+[network]
+edges.ring = {}
+"#;
+
+#[test]
+fn what_the_filter_of_the_baseline_holds_is_stated_or_settled() {
+    use forwardstep_sim::{Signal, simulate};
+    let control = "[control]\nsample_hz = 100\n";
+    for text in [FILTERED.to_owned(), format!("{FILTERED}{control}")] {
+        let setup = read(&text).unwrap_or_else(|error| panic!("{error}")).setup;
+        assert_eq!(setup.agents[2].start.reference, [[0.25, -0.5]]);
+        let outcome = simulate(&setup, &mut |_| std::ops::ControlFlow::Continue(())).unwrap();
+        let at_start = |agent: usize, signal: Signal, axis: usize| {
+            let columns = &outcome.recording.columns;
+            let found = columns.iter().find(|c| (c.agent, c.signal, c.axis) == (agent, signal, axis));
+            found.unwrap().values[0]
+        };
+        // q̇_r = −(q − q_j), ż = (q̇_r − f)/ε: `other` hears mass-2, and those whose filter has settled have none.
+        for (axis, f) in [0.25, -0.5].into_iter().enumerate() {
+            let z = [1.0, 4.0][axis];
+            assert_eq!(at_start(2, Signal::Reference(0), axis), z);
+            assert_eq!(at_start(2, Signal::Reference(1), axis), (z - f) / 0.5);
+            assert_eq!(at_start(0, Signal::Reference(1), axis), 0.0);
+            assert_eq!(at_start(1, Signal::Reference(1), axis), 0.0);
+        }
+    }
+    let each = FILTERED.replace("start.position_m", "start.reference.filter = [[1, 2], [3, 4]]\nstart.position_m");
+    assert_eq!(read(&each).unwrap().setup.agents[1].start.reference, [[3.0, 4.0]]);
+    #[rustfmt::skip]
+    let cases: &[super::Case] = &[
+        ("reference.filter = [0.25, -0.5]", "reference.filter = [0.25]",
+            "test.toml:11:51: `filter` has 1 entry, but `other` needs 2", ""),
+        ("reference.filter = [0.25, -0.5]", "reference.z = [0.25, 1]",
+            "test.toml:11:46: `z` says nothing about `other`", "`filter` may be stated"),
+        ("[reference.backstepping]\nfilter_s = 0.5", "[reference.consensus]\nroots_per_s = [1]\nexchange = \"position\"",
+            "test.toml:11:51: `filter` says nothing about `other`", "agents under `reference.backstepping`"),
+        ("reference.filter = [0.25, -0.5]", "reference.attitude = [0, 0, 0, 1]",
+            "test.toml:11:53: `attitude` says nothing about `other`", "vehicles, rotorcraft and spacecraft have an attitude"),
+    ];
+    super::refused(FILTERED, cases);
+}
+
+/// One that switches at 1 s and at 3 s, to be recorded in many ways.
+fn recorded(record: &str, control: &str) -> String {
+    let text = super::SOUND.replace("record_every_s = 0.1\n", record).replace("end_s = 10", "end_s = 2.5");
+    text.replace("[goal]", &format!("{control}[goal]"))
+}
+
+#[test]
+fn rows_are_where_they_are_asked_for() {
+    use forwardstep_sim::{RecordAt, simulate};
+    const HZ: f64 = 70.0;
+    let control = format!("[control]\nsample_hz = {HZ}\n");
+    let outcome = |text: &str| {
+        let setup = read(text).unwrap_or_else(|error| panic!("{error}")).setup;
+        simulate(&setup, &mut |_| std::ops::ControlFlow::Continue(())).unwrap()
+    };
+    let times = |text: &str| outcome(text).recording.t_s;
+    // Samples, to the bit, and the end.
+    let at_samples = recorded("record_at = \"samples\"\n", &control);
+    let expected: Vec<f64> = (0..175).map(|k| f64::from(k) / HZ).chain([2.5]).collect();
+    assert_eq!(times(&at_samples), expected);
+    // Times as they are stated, with the start and the end; at a switch just after it.
+    let stated = |list: &str| recorded(&format!("record_at.times_s = [{list}]\n"), "");
+    assert_eq!(times(&stated("0.3, 1, 1.7")), [0.0, 0.3, 1.0, 1.7, 2.5]);
+    assert_eq!(times(&stated("0, 2.5")), [0.0, 2.5]);
+    assert_eq!(times(&stated("0, 1e-9")), [0.0, 1e-9, 2.5]);
+    assert_eq!(times(&stated("")), [0.0, 2.5]);
+    // What is recorded does not depend on where else there are rows.
+    for control in ["", &control] {
+        let often = outcome(&recorded("record_every_s = 0.25\n", control)).recording;
+        let some = outcome(&recorded("record_at.times_s = [0.5, 1, 2.25]\n", control)).recording;
+        for (row, k) in [0, 2, 4, 9, 10].into_iter().enumerate() {
+            assert_eq!(some.t_s[row], often.t_s[k]);
+            for (some, often) in some.columns.iter().zip(&often.columns) {
+                assert_eq!(some.values[row].to_bits(), often.values[k].to_bits(), "{:?} at row {row}", some.signal);
+            }
+        }
+    }
+    let setup = read(&at_samples).unwrap().setup;
+    assert_eq!(setup.time.record_at, RecordAt::Rate { hz: HZ });
+}
+
+#[test]
+fn times_of_rows_come_from_a_table_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = |table: &str| {
+        std::fs::write(folder.path().join("times.csv"), table).unwrap();
+        let text = recorded("record_at.csv.file = \"times.csv\"\n", "");
+        let source = forwardstep_io::SourceText::new("test.toml", text);
+        forwardstep_io::scenario::read_scenario("test", &source, Some(folder.path()))
+    };
+    let scenario = read("t_s\n0.25\n2\n").unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(scenario.setup.time.record_at, forwardstep_sim::RecordAt::Times([0.25, 2.0].into()));
+    assert_eq!(scenario.inputs.len(), 1);
+    for (table, line) in [
+        ("t_s\n2\n0.25\n", "times.csv:3:1: `t_s` goes from 2 to 0.25, but must rise"),
+        ("t_s\n2\n3\n", "times.csv:3:1: `t_s` is 3, but must be from 0 to 2.5"),
+        ("t_s\n-1\n", "times.csv:2:1: `t_s` is -1, but must be from 0 to 2.5"),
+    ] {
+        let error = read(table).unwrap_err().to_string();
+        assert!(error.ends_with(line), "{error}");
+    }
+}
+
+#[rustfmt::skip]
+const RECORDS: &[super::Case] = &[
+    ("record_every_s = 0.1", "record_every_s = 0.1\nrecord_at = \"samples\"",
+        "test.toml:6:18: both `record_every_s` and `record_at` say when rows are recorded", "leave one of them out"),
+    ("record_every_s = 0.1", "record_at = \"samples\"",
+        "test.toml:6:13: rows are to be recorded at samples, but control is continuous", "`[control]`"),
+    ("record_every_s = 0.1", "record_at.times_s = [1, 1]",
+        "test.toml:6:25: `times_s` goes from 1 to 1, but must rise", ""),
+    ("record_every_s = 0.1", "record_at.times_s = [1, 11]",
+        "test.toml:6:25: `times_s` is 11, but must be from 0 to 10", ""),
+    ("record_every_s = 0.1", "record_at.times_s = [nan]",
+        "test.toml:6:22: nan is not a finite number", ""),
+    ("record_every_s = 0.1", "record_at = \"sample\"",
+        "test.toml:6:13: unknown choice `sample`", "did you mean `samples`?"),
+];
+
+#[test]
+fn mistakes_about_rows_are_reported_at_their_place() {
+    super::refused(super::SOUND, RECORDS);
+    // As many rows as at an interval, and no more.
+    let many = super::SOUND.replace("record_every_s = 0.1\n", "record_at = \"samples\"\n");
+    let many = many.replace("[goal]", "[control]\nsample_hz = 900000\n[goal]");
+    let error = read(&many).unwrap_err();
+    assert!(error.to_string().contains("the recording would hold"), "{error}");
+    assert!(miette::Diagnostic::help(&error).unwrap().to_string().contains("record at fewer times"));
+}

@@ -91,6 +91,8 @@ fn rest() -> Vec<String> {
     all.push(of_order_three("immersion]\nadaptation_gain = 2\nantiderivatives = [\"d2x*sin(x)\", \"d2x*dx\"]"));
     all.push(of_order_three("linear_adaptive]\nadaptation_gain = [2, 1]\nfloor = 1e-2"));
     all.push(of_order_three("linearising]\nfloor = 1e-2"));
+    let stated = [("\"continuous\"", "\"differentiable\""), ("roots_per_s = [1.5]", "alpha = 2\nbeta = 3")];
+    all.push(stated.iter().fold(FOLLOWERS.to_owned(), |text, (from, to)| text.replace(from, to)));
     all.extend([ARMS, FOLLOWERS].map(str::to_owned));
     all
 }

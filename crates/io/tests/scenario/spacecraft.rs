@@ -223,3 +223,75 @@ fn its_limits_are_those_of_its_wheels() {
     let text = SPACECRAFT.replace("name = \"craft\"", "name = \"craft\"\nenforce_limits = true");
     assert!(read(&text).unwrap().setup.agents[0].enforce_limits);
 }
+
+/// A quaternion at 1 rad from the target, and −q.
+const STATED: &str = "attitude = [0, 0, 0.479425538604203, 0.877582561890373]\n";
+
+fn started(start: &str) -> forwardstep_io::scenario::Scenario {
+    let text = SPACECRAFT.split_once("[agents.start.spacecraft]").unwrap();
+    let (_, rest) = text.1.split_once("[agents.robot").unwrap();
+    let text = format!("{}[agents.start]\n{start}[agents.robot{rest}", text.0);
+    read(&text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn the_way_round_is_the_one_that_is_asked_for_and_is_said() {
+    let minus = STATED
+        .replace("[0, 0, 0.479425538604203, 0.877582561890373]", "[0, 0, -0.479425538604203, -0.877582561890373]");
+    let short = "craft turns by 57° to its target, the short way; from −q it would be 300°";
+    let long = "craft turns by 300° to its target, the long way; from −q it would be 57°";
+    for (key, plus_sign, minus_sign) in
+        [("", 1.0, 1.0), ("shortest", 1.0, 1.0), ("longest", -1.0, -1.0), ("as_stated", 1.0, -1.0)]
+    {
+        for (stated, sign) in [(STATED, plus_sign), (&minus, minus_sign)] {
+            let rotation = if key.is_empty() { String::new() } else { format!("rotation = \"{key}\"\n") };
+            let scenario = started(&format!("{stated}{rotation}"));
+            let o = scenario.setup.agents[0].start.q[3];
+            assert!((o - sign * 0.877582561890373_f64).abs() < 1e-12, "{key} {stated}: {o}");
+            let said: Vec<String> = scenario.notices.iter().map(ToString::to_string).collect();
+            assert_eq!(said, [if sign > 0.0 { short } else { long }]);
+        }
+    }
+    // Half a turn is as long either way, and stays as it is written.
+    for key in ["shortest", "longest", "as_stated"] {
+        let scenario = started(&format!("attitude = [0, 1, 0, 0]\nrotation = \"{key}\"\n"));
+        assert_eq!(scenario.setup.agents[0].start.q, [0.0, 1.0, 0.0, 0.0]);
+        assert!(scenario.notices[0].to_string().contains("turns by 180° to its target, the short way"));
+    }
+}
+
+#[test]
+fn the_states_of_the_law_start_as_they_are_stated() {
+    let state =
+        "reference = { z = [0.1, 0.2, 0.3], attitude = { axis = [0, 0, 2], angle_rad = 0 }, filter = [1, 2, 3, 4] }\n";
+    let reference = started(&format!("{STATED}{state}")).setup.agents[0].start.reference.clone();
+    assert_eq!(reference, [vec![0.1, 0.2, 0.3], vec![0.0, 0.0, 0.0, 1.0], vec![1.0, 2.0, 3.0, 4.0]]);
+    // The attitude of the reference turns its sign with that of the craft.
+    let reference =
+        started(&format!("{STATED}rotation = \"longest\"\n{state}")).setup.agents[0].start.reference.clone();
+    assert_eq!(reference[1], [0.0, 0.0, 0.0, -1.0]);
+    let alone = started(&format!("{STATED}reference.filter.random = {{ seed = 1, within = [-1, 1] }}\n"));
+    let reference = &alone.setup.agents[0].start.reference;
+    assert_eq!((reference[0].as_slice(), reference[1].len(), reference[2].len()), (&[0.0; 3][..], 0, 4));
+    assert!(reference[2].iter().all(|y| y.abs() <= 1.0 && *y != 0.0));
+}
+
+#[rustfmt::skip]
+const STATES: &[Case] = &[
+    ("[agents.robot.spacecraft]", "[agents.start]\nreference.z = [0, 0, 0, 0]\n[agents.robot.spacecraft]",
+        "test.toml:15:15: `z` has 4 entries, but `craft` needs 3", ""),
+    ("[agents.robot.spacecraft]", "[agents.start]\nreference.derivatives = [[0, 0, 0]]\n[agents.robot.spacecraft]",
+        "test.toml:15:26: `derivatives` says nothing about `craft`", "spacecraft have `z` alone"),
+    ("[agents.robot.spacecraft]", "[agents.start]\nreference.attitude = [0, 0, 0, 0]\n[agents.robot.spacecraft]",
+        "test.toml:15:22: this is zero and has no direction", "[0, 0, 0, 1] is no turn"),
+    ("[agents.robot.spacecraft]", "[agents.start]\nreference.filter = [0, 0, 0]\n[agents.robot.spacecraft]",
+        "test.toml:15:20: `filter` has 3 entries, but `craft` needs 4", ""),
+    ("[agents.robot.spacecraft]", "[agents.start]\nrotation = \"long\"\n[agents.robot.spacecraft]",
+        "test.toml:15:12: unknown choice `long`", "did you mean"),
+];
+
+#[test]
+fn mistakes_about_states_are_reported_at_their_place() {
+    let text = SPACECRAFT.replace("[agents.start.spacecraft]\n", "[agents.start.spacecraft]\n");
+    super::refused(&text, STATES);
+}

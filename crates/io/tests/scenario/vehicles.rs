@@ -86,7 +86,7 @@ const VEHICLES_CASES: &[Case] = &[
     ("start.attitude = [0, 0, 0, 1]", "start.attitude = { axis = [0, 0, 1], angle_deg = 1 }",
         "test.toml:9:38: unknown key `angle_deg`", "did you mean `angle_rad`? allowed here: `axis`, `angle_rad`"),
     ("start.attitude = [0, 0, 0, 1]", "start.atitude = [0, 0, 0, 1]",
-        "test.toml:9:7: unknown key `atitude`", "did you mean `attitude`? allowed here: `position_rad`, `position_m`, `position`, `velocity_rad_s`, `velocity_m_s`, `velocity`, `attitude`, `angular_velocity_rad_s`, `spacecraft`, `higher_states`, `reference`"),
+        "test.toml:9:7: unknown key `atitude`", "did you mean `attitude`? allowed here: `position_rad`, `position_m`, `position`, `velocity_rad_s`, `velocity_m_s`, `velocity`, `attitude`, `angular_velocity_rad_s`, `spacecraft`, `rotation`, `higher_states`, `reference`"),
     ("start.attitude = [0, 0, 0, 1]", "start.angular_velocity_rad_s = [0, 0, 1]",
         "test.toml:9:32: `angular_velocity_rad_s` says nothing about `vehicle-1`", "rotorcraft and spacecraft have an angular velocity"),
     ("start.attitude = [0, 0, 0, 1]", "start.spacecraft = { angle_rad = 1, axis = [0, 0, 1] }",

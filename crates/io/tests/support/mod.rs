@@ -79,7 +79,7 @@ pub fn setup(agents: Vec<AgentSetup>, end_s: f64, record_every_s: f64) -> Setup 
             weights: Vec::new(),
             coupling: Default::default(),
         },
-        time: TimeSpan { end_s, record_every_s },
+        time: TimeSpan { end_s, record_every_s, record_at: forwardstep_sim::RecordAt::Intervals },
         solver: Solver {
             method: Method::Adaptive { rtol: 1e-6, atol: 1e-8 },
             max_step_s: None,

@@ -304,6 +304,7 @@ fn interface(robot: &RobotSetup, estimates: bool) -> Option<Interface> {
         estimates,
         in_batches: true,
         coordinates: None,
+        further_starts: &[],
         lines: Vec::new(),
     })
 }

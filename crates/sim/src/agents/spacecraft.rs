@@ -63,7 +63,8 @@ impl Law for AttitudeLaw {
     }
 
     fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
-        let interface = || Interface { pushed: true, ..Interface::of::<AttitudeTracking>() };
+        // q_z and y.
+        let interface = || Interface { pushed: true, further_starts: &[4, 4], ..Interface::of::<AttitudeTracking>() };
         robot.kind.is::<SpacecraftModel>().then(interface)
     }
 

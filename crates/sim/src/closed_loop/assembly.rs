@@ -238,6 +238,7 @@ impl<'a> Assembly<'a> {
             .iter()
             .filter(|(signal, _)| matches!(signal, Signal::Reference(_) | Signal::ReferenceIntegral(_)))
             .count();
+        let vectors = vectors + own.interface().map_or(0, |law| law.further_starts.len());
         if start.reference.len() > vectors {
             return Err(too_many(own, vectors, start.reference.len()));
         }

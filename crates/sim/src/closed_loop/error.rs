@@ -423,8 +423,8 @@ pub enum SetupError {
         columns: usize,
         /// How many numbers are accepted.
         most: f64,
-        /// The shortest [`crate::TimeSpan::record_every_s`] that would do.
-        least_s: f64,
+        /// The shortest [`crate::TimeSpan::record_every_s`] that would do, where that says how many there are.
+        least_s: Option<f64>,
     },
     /// A quantity out of its range.
     #[error("{}: {_0}", _0.path)]

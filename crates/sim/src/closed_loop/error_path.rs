@@ -83,6 +83,7 @@ impl SetupError {
                 "control.sample_hz".into()
             }
             SetupError::Memory { .. } => "solver.memory_budget_bytes".into(),
+            SetupError::RecordingTooLarge { least_s: None, .. } => "time.record_at".into(),
             SetupError::RecordingTooLarge { .. } if setup.time.record_every_s == RECORD_EVERY_S => "time.end_s".into(),
             SetupError::RecordingTooLarge { .. } => "time.record_every_s".into(),
         }

@@ -38,7 +38,7 @@ pub fn probe_balance(setup: &Setup, index: usize) -> Result<Probe, SetupError> {
         reference: alone_under(setup, index),
         exchange: setup.exchange,
         network: Network::switching(1, Schedule::fixed(Vec::new()), Vec::new()),
-        time: setup.time,
+        time: setup.time.clone(),
         solver: Solver { balance: true, ..setup.solver },
         control: None,
     };

@@ -7,6 +7,7 @@ use super::assembly::Assembly;
 use super::error::SetupError;
 use super::references::{AnyReference, Transmits, reference};
 use crate::probe::{Counterexample, Draws, Identity, Probe, STATES, apart};
+use crate::reference::ReferenceFamily;
 use crate::reference::{LinearReference, LinearTerms};
 use crate::setup::{Exchange, Setup};
 
@@ -32,7 +33,10 @@ fn probe<X: Transmits>(setup: &Setup) -> Result<Probe, SetupError> {
         let agent = state % setup.agents.len();
         let own = &setup.agents[agent];
         let reference = reference::<X>(&Assembly::new(setup, &[agent]))?;
+        // What a filter holds is no z.
+        let leads = setup.reference.interface().family != ReferenceFamily::Backstepping;
         let free = setup.reference.free_derivatives(own.roots_per_s.len()).min(reference.vectors());
+        let free = if leads { free } else { 0 };
         let tried = Tried::new(reference, &mut draws);
         let linear = setup.reference.linear(own, setup.exchange);
         let found = tried

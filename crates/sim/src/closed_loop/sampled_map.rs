@@ -54,7 +54,7 @@ pub fn sampled_jacobian(setup: &Setup, index: usize) -> Result<Option<SampledJac
         reference: alone_under(setup, index),
         exchange: setup.exchange,
         network: Network::switching(1, Schedule::fixed(Vec::new()), Vec::new()),
-        time: setup.time,
+        time: setup.time.clone(),
         solver: Solver { balance: false, ..setup.solver },
         control: Some(exact.clone()),
     };

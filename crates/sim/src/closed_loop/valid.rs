@@ -119,12 +119,16 @@ fn check_agent(setup: &Setup, index: usize) -> Result<(), SetupError> {
     goes_together(setup, index)?;
     // The second state of a chain may be no velocity, but it has a z.
     let leads = if velocities == 0 { axes } else { velocities };
-    for z in &agent.start.reference {
+    let further = agent.interface().map_or(&[][..], |law| law.further_starts);
+    let starts = &agent.start.reference;
+    for z in starts.iter().take(vectors) {
         vector("start.reference", leads, z)?;
     }
-    if agent.start.reference.len() > vectors {
-        let (need, got) = (vectors, agent.start.reference.len());
-        return Err(too_many(agent, need, got));
+    for (values, need) in starts.iter().skip(vectors).zip(further) {
+        vector("start.reference", if values.is_empty() { 0 } else { *need }, values)?;
+    }
+    if starts.len() > vectors + further.len() {
+        return Err(too_many(agent, vectors + further.len(), starts.len()));
     }
     vector("robot.theta", agent.robot.theta.len(), &agent.robot.theta)?;
     let design = own.clone().key("reference").key(setup.reference_of(index).words().key);

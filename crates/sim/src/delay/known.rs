@@ -37,6 +37,8 @@ pub enum Unknown {
     PacketsInARow,
     /// Packets are replayed from a log.
     LaterPackets,
+    /// Values are replayed from a log.
+    LaterHolds,
     /// No packet that was drawn or logged arrives until the end of the run.
     NothingArrived,
 }

@@ -50,6 +50,7 @@ mod arrivals;
 mod constant;
 mod course;
 mod formula;
+mod hold_log;
 mod known;
 pub mod packets;
 mod piecewise_constant;
@@ -68,6 +69,7 @@ use crate::same::Same;
 pub use arrivals::Arrivals;
 pub use constant::Constant;
 pub use course::SentOver;
+pub use hold_log::HoldLog;
 pub use known::{Basis, Known, Refuted, Unknown};
 pub use packets::{Drawn, Loss, Packet, PacketLink, Trace};
 pub use piecewise_constant::PiecewiseConstant;
@@ -85,6 +87,7 @@ fn is_shipped(function: TypeId) -> bool {
         TypeId::of::<SawTooth>(),
         TypeId::of::<BoundedFormula>(),
         TypeId::of::<RandomHold>(),
+        TypeId::of::<HoldLog>(),
         TypeId::of::<Trace>(),
     ]
     .contains(&function)

@@ -83,6 +83,16 @@ impl RandomHold {
         &self.times_s
     }
 
+    /// The values, s.
+    pub fn values_s(&self) -> &[f64] {
+        &self.values_s
+    }
+
+    /// Until when they are drawn, s.
+    pub fn until_s(&self) -> f64 {
+        self.until_s
+    }
+
     fn clamped(&self, index: u64) -> usize {
         (index as usize).min(self.times_s.len() - 1)
     }

@@ -32,8 +32,9 @@ impl ReferenceDynamics for Backstepping {
         }
     }
 
+    /// None of z, but what its filter holds.
     fn free_derivatives(&self, _: usize) -> usize {
-        0
+        1
     }
 
     fn known(&self) -> Known {
@@ -53,6 +54,9 @@ impl ReferenceDynamics for Backstepping {
 
     fn dynamics(&self, assembly: &Assembly<'_>) -> Result<Dynamics, SetupError> {
         let each = (self.filter_s, self.acceleration_limit.unwrap_or(f64::INFINITY));
-        Ok(Dynamics::position(reference::Backstepping::new(assembly.agents().iter().map(|_| each))?))
+        let agents = || assembly.agents().iter().map(|agent| &assembly.setup().agents[*agent]);
+        let starts = agents().map(|agent| agent.start.reference.first().cloned());
+        let filters = reference::Backstepping::new(agents().map(|_| each))?.starting_at(starts);
+        Ok(Dynamics::position(filters))
     }
 }

@@ -34,7 +34,7 @@ pub trait ReferenceDynamics: Any + Debug + Send + Sync {
     /// What it can do. Every feature asks this.
     fn interface(&self) -> ReferenceInterface;
 
-    /// How many of z(0), ż(0), … the start of an agent with so many roots may give.
+    /// How many of z(0), ż(0), …, or of what filters hold, the start of an agent with so many roots may give.
     fn free_derivatives(&self, roots: usize) -> usize;
 
     /// What is known of it about the long run.

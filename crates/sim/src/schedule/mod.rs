@@ -33,6 +33,7 @@
 //! assert_eq!(schedule.segments().nth(2).map(|segment| (segment.start_s, segment.graph)), Some((3.0, 0)));
 //! ```
 
+mod logged;
 mod once;
 mod periodic;
 mod probe;
@@ -48,6 +49,7 @@ use crate::graph::Edge;
 use crate::quantity::{Path, QuantityError, as_many, positive};
 use crate::same::Same;
 
+pub use logged::Logged;
 pub use once::Once;
 pub use periodic::Periodic;
 pub use probe::ScheduleFault;
@@ -56,7 +58,8 @@ pub use window::Window;
 
 /// The signals that come with forwardstep. What any other says of itself is declared by its author.
 fn is_shipped(signal: TypeId) -> bool {
-    [TypeId::of::<Once>(), TypeId::of::<Periodic>(), TypeId::of::<RandomSwitching>()].contains(&signal)
+    [TypeId::of::<Once>(), TypeId::of::<Periodic>(), TypeId::of::<RandomSwitching>(), TypeId::of::<Logged>()]
+        .contains(&signal)
 }
 
 /// Which of some graphs is in force when, the same whenever it is asked.

@@ -159,7 +159,7 @@ pub fn setup(case: &Case) -> Setup {
             weights: Vec::new(),
             coupling: Default::default(),
         },
-        time: TimeSpan { end_s: case.end_s, record_every_s: 1.0 },
+        time: TimeSpan { end_s: case.end_s, record_every_s: 1.0, record_at: forwardstep_sim::RecordAt::Intervals },
         solver: Solver::default(),
         control: None,
     }

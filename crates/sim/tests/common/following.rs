@@ -86,7 +86,7 @@ pub fn arms(design: FollowingDesign, choice: Choice, estimate: f64, end_s: f64) 
             weights: Vec::new(),
             coupling: Default::default(),
         },
-        time: TimeSpan { end_s, record_every_s: 0.01 },
+        time: TimeSpan { end_s, record_every_s: 0.01, record_at: forwardstep_sim::RecordAt::Intervals },
         solver: Solver { method: Method::Adaptive { rtol: 1e-7, atol: 1e-9 }, ..Solver::default() },
         control: None,
     }

@@ -67,7 +67,7 @@ pub fn setup(agents: Vec<AgentSetup>, reference: Arc<dyn ReferenceDynamics>, net
         reference,
         exchange: Exchange::Position,
         network,
-        time: TimeSpan { end_s, record_every_s: 0.05 },
+        time: TimeSpan { end_s, record_every_s: 0.05, record_at: forwardstep_sim::RecordAt::Intervals },
         solver: Solver { method: Method::Adaptive { rtol: RTOL, atol: 1e-10 }, ..Solver::default() },
         control: None,
     }
@@ -159,7 +159,7 @@ pub fn every_kind() -> Vec<(&'static str, Setup)> {
         ("following-in-a-layer", arms(FollowingDesign::Differentiable, Choice::Layer { width: 0.05 })),
     ];
     for (_, setup) in &mut all {
-        setup.time = TimeSpan { end_s: 4.0, record_every_s: 0.01 };
+        setup.time = TimeSpan { end_s: 4.0, record_every_s: 0.01, record_at: forwardstep_sim::RecordAt::Intervals };
     }
     all
 }

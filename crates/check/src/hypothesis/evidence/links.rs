@@ -95,7 +95,7 @@ pub enum WeightFault {
 fn beyond_the_run(unknown: Unknown) -> bool {
     match unknown {
         Unknown::FormulaBound | Unknown::FormulaContinuity | Unknown::NothingArrived => true,
-        Unknown::PacketsInARow | Unknown::LaterPackets => false,
+        Unknown::PacketsInARow | Unknown::LaterPackets | Unknown::LaterHolds => false,
     }
 }
 

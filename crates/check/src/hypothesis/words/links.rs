@@ -98,6 +98,7 @@ fn reason(unknown: Unknown) -> &'static str {
             "any number of packets may be lost one after another, so no delay is the longest (`most_consecutive` would bound them)"
         }
         Unknown::NothingArrived => "on one link no message arrives until then, so nothing is known of its delay",
+        Unknown::LaterHolds => "values are replayed from a log, which says nothing about later ones",
         Unknown::LaterPackets => "packets are replayed from a log, which says nothing about later ones",
     }
 }

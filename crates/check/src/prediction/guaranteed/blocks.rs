@@ -1,7 +1,7 @@
 //! How much of the spread is left when, for certain: the operator over blocks of time, each begun anew where the one before it no longer
 //! gains.
 
-use forwardstep_sim::delay::{Basis, Delay, RandomHold};
+use forwardstep_sim::delay::{Basis, Delay, HoldLog, RandomHold};
 use forwardstep_sim::schedule::{Extent, Segment};
 
 use super::super::repeats::Repeats;
@@ -165,7 +165,8 @@ pub(super) fn is_drawn(network: &Network) -> bool {
     let ideal = &network.ideal.network;
     let drawn = |delay: &Delay| {
         let known = delay.known();
-        known.holds_packets || known.basis == Basis::Declared || delay.downcast::<RandomHold>().is_some()
+        let drawn = delay.downcast::<RandomHold>().is_some() || delay.downcast::<HoldLog>().is_some();
+        known.holds_packets || known.basis == Basis::Declared || drawn
     };
     let switching = match ideal.schedule.known().extent {
         Extent::Drawn => ideal.schedule.constant_graph().is_none(),

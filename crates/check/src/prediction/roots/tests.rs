@@ -59,7 +59,7 @@ fn masses(exchange: Exchange, roots: &[&[f64]], links: &[(usize, usize, f64, f64
             weights: Vec::new(),
             coupling: Default::default(),
         },
-        time: TimeSpan { end_s: 10.0, record_every_s: 0.1 },
+        time: TimeSpan { end_s: 10.0, record_every_s: 0.1, record_at: forwardstep_sim::RecordAt::Intervals },
         solver: Solver::default(),
         control: None,
     }

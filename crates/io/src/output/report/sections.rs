@@ -4,7 +4,7 @@ use forwardstep_check::Answer;
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::leader::Following;
 use forwardstep_sim::recording::{Drive, Ending, Signal};
-use forwardstep_sim::setup::{Exchange, Method, Setup};
+use forwardstep_sim::setup::{Exchange, Method, RecordAt, Setup};
 use maud::{Markup, html};
 
 use super::super::conclusion::Conclusion;
@@ -411,8 +411,12 @@ pub(crate) fn provenance(record: &RunRecord<'_>) -> Markup {
                         }
                     }
                     (fact("Recording", html! {
-                        (text::count(record.outcome.recording.t_s.len(), "row")) ", every "
-                        (number(setup.time.record_every_s)) " s"
+                        (text::count(record.outcome.recording.t_s.len(), "row"))
+                        @match &setup.time.record_at {
+                            RecordAt::Intervals => { ", every " (number(setup.time.record_every_s)) " s" }
+                            RecordAt::Rate { hz } => { ", at every sample, " (number(*hz)) " per second" }
+                            RecordAt::Times(_) => ", at the times that the scenario states",
+                        }
                     }))
                     (fact("Exchanged", html! { @match setup.exchange {
                         Exchange::Position => "positions",

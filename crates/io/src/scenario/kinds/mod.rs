@@ -136,11 +136,13 @@ impl Kinds {
                 delay::<delays::random_hold::RandomHoldFile>(),
                 delay::<delays::packets::PacketsFile>(),
                 delay::<delays::log::LogFile>(),
+                delay::<delays::hold_log::HoldLogFile>(),
             ],
             schedules: vec![
                 word::<schedules::repeat::RepeatFile>(),
                 word::<schedules::once::OnceFile>(),
                 schedule::<schedules::random::RandomSwitchingFile>(),
+                schedule::<schedules::log::SwitchingLogFile>(),
             ],
         }
     }

@@ -122,8 +122,8 @@ impl RobotKind for SpacecraftFile {
                 values(&list.value)
             }
         };
-        let (q, rate) = (q.unwrap_or(IDENTITY), rate.unwrap_or_default());
-        Ok(Start { q: q.to_vec(), dq: rate.to_vec(), rest, reference: Vec::new() })
+        let (q, rate, reference) = (q.unwrap_or(IDENTITY), rate.unwrap_or_default(), given.attitude_reference()?);
+        Ok(Start { q: q.to_vec(), dq: rate.to_vec(), rest, reference })
     }
 }
 

@@ -130,6 +130,7 @@ fn known(reason: Unknown, bound_s: f64) -> String {
         Unknown::FormulaContinuity => "a formula whose slope stays bounded".into(),
         Unknown::PacketsInARow => "`most_consecutive` losses in a row".into(),
         Unknown::NothingArrived => "packets that arrive before the run ends, and a bound of their losses".into(),
+        Unknown::LaterHolds => "a rule, such as `delay.random_hold`, in the place of a log".into(),
         Unknown::LaterPackets => "a rule, such as `delay.packets`, in the place of a log".into(),
     }
 }

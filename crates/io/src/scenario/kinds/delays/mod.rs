@@ -2,6 +2,7 @@
 
 pub mod constant;
 pub mod formula;
+pub mod hold_log;
 pub mod log;
 pub mod packets;
 pub mod piecewise_constant;

@@ -24,8 +24,16 @@ pub struct LeaderReferenceFile {
     pub design: At<LeaderDesignFile>,
     /// The positive numbers κ in 1/s: one for `continuous`, α = κ₀; two for the others, β = κ₀ + κ₁ and α = κ₀ κ₁, or a pair
     /// of complex roots, as `{ real = 0.5, imaginary = 2 }`.
-    #[schemars(with = "Vec<RootFile>", length(min = 1, max = 2))]
-    pub roots_per_s: RootsFile,
+    /// Needed unless α and β are given.
+    #[schemars(with = "Option<Vec<RootFile>>", length(min = 1, max = 2))]
+    pub roots_per_s: Option<RootsFile>,
+    /// α as the paper writes it, in the place of roots: in 1/s for `continuous`, in 1/s² for the others, which need β too. Not for `swarm`,
+    /// which the paper does not print.
+    #[schemars(with = "Option<Positive>")]
+    pub alpha: Option<At<f64>>,
+    /// β as the paper writes it, in 1/s; not for `continuous`, which has none.
+    #[schemars(with = "Option<Positive>")]
+    pub beta: Option<At<f64>>,
     /// The factor k of the differences to neighbours; for `swarm`, which needs it.
     #[schemars(with = "Option<Positive>")]
     pub coupling: Option<At<f64>>,
@@ -114,9 +122,30 @@ impl ReferenceKind for LeaderReferenceFile {
     }
 }
 
-/// α and β.
+/// α and β: as they are stated, else those of the roots.
 fn coefficients(file: &LeaderReferenceFile, design: FollowingDesign) -> Result<(f64, f64), Fault> {
-    let list = &file.roots_per_s;
+    let LeaderReferenceFile { roots_per_s, alpha, beta, .. } = file;
+    let twice =
+        |place: &At<f64>, second| Err(fault(place, ValueProblem::SameQuantity { first: "roots_per_s", second }));
+    let continuous = design == FollowingDesign::Continuous;
+    let swarm = matches!(design, FollowingDesign::Swarm { .. });
+    match (roots_per_s, alpha, beta) {
+        (Some(_), Some(alpha), _) => twice(alpha, "alpha"),
+        (Some(_), None, Some(beta)) => twice(beta, "beta"),
+        (Some(list), None, None) => of_roots(list, design),
+        (None, Some(place), _) | (None, None, Some(place)) if swarm => Err(fault(place, SystemProblem::SwarmByRoots)),
+        (None, Some(_), Some(beta)) if continuous => Err(fault(beta, SystemProblem::BetaUnused)),
+        // p + α.
+        (None, Some(alpha), None) if continuous => Ok((alpha.value, 1.0)),
+        (None, Some(alpha), Some(beta)) => Ok((alpha.value, beta.value)),
+        (None, Some(_), None) => Err(Fault::new(ValueProblem::MissingKey { key: "beta" })),
+        (None, None, Some(_)) => Err(Fault::new(ValueProblem::MissingKey { key: "alpha" })),
+        (None, None, None) => Err(Fault::new(ValueProblem::MissingKey { key: "roots_per_s" })),
+    }
+}
+
+/// α and β of roots.
+fn of_roots(list: &RootsFile, design: FollowingDesign) -> Result<(f64, f64), Fault> {
     // Three are too many already.
     let roots = checked_roots(&list.value[..list.value.len().min(3)])?;
     let wrong = |need| Err(fault(list, SystemProblem::LeaderRoots { found: roots.len().max(list.value.len()), need }));

@@ -1,5 +1,6 @@
 //! The kinds of switching that scenario files know: for each the struct of its table, or a word that stands alone.
 
+pub mod log;
 pub mod once;
 pub mod random;
 pub mod repeat;
