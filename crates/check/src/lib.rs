@@ -15,6 +15,7 @@ mod graphs;
 pub mod hypothesis;
 mod inertia;
 mod kinds;
+mod late_leader;
 mod laws;
 mod links;
 pub mod manipulability;
