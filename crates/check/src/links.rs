@@ -68,7 +68,7 @@ pub(crate) fn messages_in_time(setup: &Setup) -> Option<Hypothesis> {
 
 /// Whether some link that is used is not known to be without delay from the way it is stated.
 pub(crate) fn is_late(setup: &Setup) -> bool {
-    delays(setup).any(|delay| delay.max_s() > 0.0 || !delay.is_constant())
+    delays(setup).any(|delay| delay.max_s() > 0.0 || delay.known().basis != Basis::Rule)
 }
 
 pub(crate) fn no_delay(setup: &Setup) -> Hypothesis {

@@ -205,6 +205,8 @@ shipped! {
     sinusoidal_attitude: "sinusoidal-attitude",
     attitude_from_a_table: "attitude-from-a-table",
     theorem_8: "theorem-8",
+    leader_over_turns: "leader-over-turns",
+    leader_over_late_links: "leader-over-late-links",
     theorem_9: "theorem-9",
     remark_12: "remark-12",
     swarm_tracking: "swarm-tracking",

@@ -49,6 +49,8 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "sinusoidal-attitude",
     "attitude-from-a-table",
     "theorem-8",
+    "leader-over-turns",
+    "leader-over-late-links",
     "theorem-9",
     "remark-12",
     "swarm-tracking",
