@@ -998,6 +998,26 @@ class FalseProofs(unittest.TestCase):
         heard = ('edges = [["leader", "arm-1"]', 'edges = [["arm-1", "leader"]')
         self.rejected("theorem-8", "leader-reaches-all", "to the leader", lambda entry: None, heard)
 
+    def test_a_leader_in_every_graph(self):
+        name, each = "leader-over-turns", "leader-in-every-graph"
+        gone = ('["leader", "arm-4"], ', "")
+        unheard = lambda phase, *group: lambda entry: entry.update(  # noqa: E731
+            answer="violated", proof={"kind": "unheard", "phase": phase, "group": list(group)})
+        self.accepted(name, each)
+        self.rejected(name, each, "is no edge", lambda entry: None, gone)
+        self.rejected(name, each, "one for each phase", lambda entry: entry["proof"]["windows"].pop())
+        self.accepted(name, each, unheard(2, "arm-4"), gone)
+        self.accepted(name, each, unheard(2, "arm-4", "arm-3", "arm-2", "arm-1"), gone)
+        self.rejected(name, each, "somebody else", unheard(2, "arm-4"))
+        self.rejected(name, each, "somebody else", unheard(1, "arm-4"), gone)
+        self.rejected(name, each, "somebody else", unheard(2, "arm-3"), gone)
+        self.rejected(name, each, "does not recur", unheard(4, "arm-4"), gone)
+        self.rejected(name, each, "must name agents", unheard(2, "leader"), gone)
+        self.rejected(name, each, "must name agents", unheard(2), gone)
+        # With delays besides it is another statement, and so are graphs that do not take turns.
+        self.rejected("leader-over-late-links", "bounded-delays", "theorem", lambda entry: None, ("delay.random_hold = { seed = 7, "
+                      "hold_s = [0.1, 0.3], value_s = [0.0, 0.05] }", "delay.constant_s = 0"))
+
     def test_trees_of_every_phase(self):
         name, each = "theorem-3-24-order-4", "spanning-tree"
         path = [["arm-1", "arm-2"], ["arm-2", "arm-3"], ["arm-3", "own-roots"]]
