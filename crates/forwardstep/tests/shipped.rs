@@ -207,6 +207,7 @@ shipped! {
     theorem_8: "theorem-8",
     leader_over_turns: "leader-over-turns",
     leader_over_late_links: "leader-over-late-links",
+    vehicles_behind_a_leader: "vehicles-behind-a-leader",
     theorem_9: "theorem-9",
     remark_12: "remark-12",
     swarm_tracking: "swarm-tracking",

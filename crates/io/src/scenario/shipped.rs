@@ -51,6 +51,7 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "theorem-8",
     "leader-over-turns",
     "leader-over-late-links",
+    "vehicles-behind-a-leader",
     "theorem-9",
     "remark-12",
     "swarm-tracking",
