@@ -7,10 +7,11 @@
 //! rounding.
 
 use forwardstep_sim::Setup;
+use forwardstep_sim::graph::{SpanningTree, spanning_tree};
 use forwardstep_sim::leader::Following;
 
 /// Edges that may be visited by sweeping.
-const MOST_VISITS: usize = 200_000_000;
+const MOST_VISITS: usize = 50_000_000;
 /// A change that is no more than this part of the largest entry ends the sweeping.
 const SETTLED: f64 = 1e-13;
 /// What is asked for beyond what is needed, as a part of the largest: far more than sweeping and rounding leave.
@@ -52,6 +53,9 @@ struct Row {
 
 fn rows(setup: &Setup) -> Option<Vec<Row>> {
     let edges = setup.network.schedule.constant_graph()?;
+    if let SpanningTree::Missing { .. } = spanning_tree(setup.network.agents, edges) {
+        return None;
+    }
     let mut index = vec![None; setup.network.agents];
     let followers = (0..setup.network.agents).filter(|vertex| setup.leader() != Some(*vertex));
     let mut count = 0;
