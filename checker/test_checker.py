@@ -950,7 +950,7 @@ class FalseProofs(unittest.TestCase):
         limits = ("[network]", "[control]\nsample_hz = 100\ntorque_limit = 5\n[network]")
         self.rejected("theorem-2", "applied-torque", "by the text", lambda entry: None, limits)
         self.rejected("swarm-tracking", "mutual-weights", "by the text", lambda entry: None, ('["arm-2", "arm-1"], ', ""))
-        self.rejected("theorem-8", "no-delay", "by the text", lambda entry: None, ("[network] ", "[network]\ndelay.constant_s = 0.1\n#"))
+        self.rejected("theorem-9", "no-delay", "by the text", lambda entry: None, ("[network]", "[network]\ndelay.constant_s = 0.1"))
         self.rejected("theorem-8", "set-valued-sign", "by the text", lambda entry: None, ("gain = 2 ", 'gain = 2\nsign = "explicit" #'))
         self.rejected("theorem-1", "fixed-graph", "weight varies", lambda entry: None, ("[network]", '[network]\nweight = "2 + sin(t)"'))
         more = ("edges = [[", "[[network.phases]]\ndwell_s = 1\nedges = []\n[[network.phases]]\ndwell_s = 1\nedges = [[")
