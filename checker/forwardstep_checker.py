@@ -642,7 +642,7 @@ MADE_FOR = {
 USUAL_LAW = {robot: law for law, robots in reversed(MADE_FOR.items()) for robot in robots}
 DIRECTIONS = {"ring": ("forward", "both"), "path": ("forward", "both"), "star": ("out", "in", "both"), "complete": ()}
 CHAIN_LAWS = ("linearising", "linear_adaptive", "immersion", "adaptive_backstepping")
-DESIGNS = ("continuous", "differentiable", "without_acceleration", "swarm")
+DESIGNS, LED = ("continuous", "differentiable", "without_acceleration", "swarm"), ("theorem-9", "remark-12", "swarm")
 
 # The gains of each law, by their keys. What is not written is positive by default.
 GAINS = {
@@ -718,8 +718,7 @@ class Scenario:
         self.agents = []
         for number, entry in enumerate(listed(file.get("agents"), "agents")):
             self.populate(table(entry, "agents", AGENT), f"agents[{number}]")
-        self.leader, self.motion = None, None
-        self.names = [agent.name for agent in self.agents]
+        self.leader, self.motion, self.names = None, None, [agent.name for agent in self.agents]
         if self.reference == "leader":
             self.lead(table(file.get("leader"), "leader", "name motion agent"))
         self.index = {name: k for k, name in enumerate(self.names)}
@@ -941,6 +940,11 @@ class Scenario:
     def recurring(self):
         return [len(self.graphs) - 1] if self.switching == "once" else list(range(len(self.graphs)))
 
+    # What (110) works over: whether graphs take turns, or links delay.
+    def over(self):
+        turns, late = not self.fixed(), any(rule_bound(edge.delay) != 0 for edge in self.used())
+        return "" if turns == late else "-switching" if turns else "-late"
+
     # Whether all edges among agents lead both ways with the same weight.
     def mutual(self, graph):
         among = {(edge.source, edge.to, edge.weight) for edge in graph if self.leader not in (edge.source, edge.to)}
@@ -987,7 +991,7 @@ def treated(agent):
 def theorem(scenario):
     tracking, agents = scenario.reference == "tracking", scenario.agents
     if scenario.reference == "leader":
-        return dict(zip(DESIGNS, ("theorem-8", "theorem-9", "remark-12", "swarm"))).get(scenario.body.get("design"), "no design")
+        return dict(zip(DESIGNS, ("theorem-8" + scenario.over(), *LED))).get(scenario.body.get("design"), "no design")
     kinds = {treated(agent) for agent in agents}
     if len(kinds) > 1:
         return "targets" if tracking else "mixture"
@@ -1010,6 +1014,7 @@ def theorem(scenario):
 def requirements(scenario):
     agents, reference, design, control = scenario.agents, scenario.reference, scenario.body.get("design"), scenario.control
     agreeing, leading = reference in ("consensus", "pure_integral", "backstepping"), reference == "leader"
+    turns, late = (leading and design == DESIGNS[0] and scenario.over() == each for each in ("-switching", "-late"))
     kinds = {treated(agent) for agent in agents if agent.index != scenario.leader}
     tips, flying, chains, lagrangian, adaptive = ([agent for agent in agents if agent.law in laws] for laws in (
         ("task_space",), ("thrust",), CHAIN_LAWS, ("adaptive", "known"), ("linear_adaptive", "adaptive_backstepping")))
@@ -1018,13 +1023,14 @@ def requirements(scenario):
         (agreeing, "spanning-tree dwell-time bounded-delays"),
         (reference in ("consensus", "pure_integral"), "real-roots"),
         (reference == "consensus", "common-order" if len({len(agent.roots) for agent in agents}) == 1 else "own-orders"),
-        (reference == "pure_integral" or leading, "fixed-graph"),
+        (reference == "pure_integral" or leading and not turns, "fixed-graph"),
         (reference == "backstepping", "measured-derivative"),
         (agreeing and scenario.coupling is not None, "coupling-sector"),
         (agreeing and scenario.exchange() == "position_velocity", "common-first-root"),
         (agreeing and any(agent.manipulability > 0 for agent in agents), "manipulability"),
-        (leading, "bounded-leader sign-gain leader-reaches-all no-delay set-valued-sign shared-design"),
-        (leading and design in DESIGNS[1:3], "constant-weights"),
+        (leading, "bounded-leader sign-gain set-valued-sign shared-design " + ("bounded-delays" if late else "no-delay")),
+        (leading, "leader-in-every-graph dwell-time" if turns else "leader-reaches-all"),
+        (leading and (late or design in DESIGNS[1:3]), "constant-weights"),
         (rooted(scenario) or leading and design != "swarm", "hurwitz"),
         (leading and design == "swarm", "printed-design mutual-weights swarm-coupling"),
         (reference != "tracking" and scenario.varying(), "bounded-weights"),
@@ -1076,7 +1082,7 @@ NEVER = ("one-kind", "measured-derivative", "printed-design", "nonzero-thrust", 
 # --- Rules: each shows one kind of proof of some hypotheses. Their parameters are the fields of the proof. A rule gives words,
 # --- and whether what is shown holds for all time where that is not plain. `WITNESSES` show that a hypothesis is violated.
 RULES = {}
-WITNESSES = ("cut", "instant", "factor", "below", "limit", "loses-all", "diverges", "no-value", "out-of-reach")
+WITNESSES = ("cut", "unheard", "instant", "factor", "below", "limit", "loses-all", "diverges", "no-value", "out-of-reach")
 
 def rule(ids, kind):
     def note(check):
@@ -1153,7 +1159,7 @@ def tiling(claim, windows):
     return f"{len(windows.each())} windows tile {covered} phases, each with a spanning tree"
 
 # Each phase that recurs has a tree of its own: the order does not matter.
-@rule("spanning-tree leader-reaches-all", "every-phase")
+@rule("spanning-tree leader-reaches-all leader-in-every-graph", "every-phase")
 def every_phase(claim, windows):
     phases = claim.scenario.recurring()
     require(windows, tiled(claim, windows, phases) == list(range(len(phases) + 1)), "must be one for each phase")
@@ -1182,8 +1188,7 @@ def along_draw(claim, given, windows, longest_s):
 # Two disjoint groups, or one without the leader, that hear no agent outside themselves in what recurs: no tree, for ever.
 @rule("spanning-tree leader-reaches-all", "cut")
 def cut(claim, groups):
-    scenario = claim.scenario
-    sets = [{scenario.index.get(name.text()) for name in group.each()} for group in groups.each()]
+    scenario, sets = claim.scenario, [{claim.scenario.index.get(name.text()) for name in group.each()} for group in groups.each()]
     require(groups, sets and all(sets) and None not in set().union(*sets), "must name agents")
     if claim.id == "leader-reaches-all":
         require(groups, len(sets) == 1 and scenario.leader not in sets[0], "must be one group without the leader")
@@ -1194,6 +1199,15 @@ def cut(claim, groups):
             heard = any(to in group and source not in group for group in sets)
             require(groups, not heard, f"are not closed: {scenario.names[to]} hears {scenario.names[source]} in phase {phase + 1}")
     return f"{len(sets)} closed groups"
+
+# In this phase, which recurs, a group without the leader hears no agent outside itself.
+@rule("leader-in-every-graph", "unheard")
+def unheard(claim, phase, group):
+    scenario, at, found = claim.scenario, phase.count() - 1, {claim.scenario.index.get(name.text()) for name in group.each()}
+    require(phase, at in scenario.recurring(), "does not recur")
+    require(group, found and not found & {None, scenario.leader}, "must name agents, and not the leader")
+    require(group, not any(to in found and source not in found for source, to in scenario.pairs[at]), "hear somebody else")
+    return f"{len(found)} agents hear nothing of the leader in phase {at + 1}"
 
 @rule("dwell-time", "never-switches")
 @rule("fixed-graph", "one-graph")
@@ -1492,14 +1506,12 @@ def logged(scenario, edge):
 # A rule bounds its delay for ever, an enclosure a formula; logs and drawn packets do up to the end of the run.
 @rule("bounded-delays", "delays")
 def delays(claim, bound_s, enclosures, given):
-    scenario, always, largest, ages = claim.scenario, True, Fraction(0), {}
-    shown = formulas(claim, enclosures, formula_of)
+    scenario, always, largest, ages, shown = claim.scenario, True, Fraction(0), {}, formulas(claim, enclosures, formula_of)
     for entry in given.each():
         entry.only("from", "to", "worst_s")
         ages[entry.field("from").text(), entry.field("to").text()] = entry.field("worst_s")
     for edge in {(edge.source, edge.to, edge.delay[2]): edge for edge in scenario.used()}.values():
-        kind, body, _ = edge.delay
-        worst = rule_bound(edge.delay)
+        (kind, body, _), worst = edge.delay, rule_bound(edge.delay)
         if kind == "formula_s":
             require(enclosures, body in shown and shown[body][0] >= 0, f"lacks `{body}`, or lets it become negative")
             worst, always = shown[body][1], always and shown[body][2]
@@ -1587,8 +1599,7 @@ def number(claim, value):
 
 @rule("common-first-root", "constant")
 def all_constant(claim):
-    scenario = claim.scenario
-    edges = [edge for phase in scenario.recurring() for edge in scenario.graphs[phase]]
+    scenario, edges = claim.scenario, [edge for phase in claim.scenario.recurring() for edge in claim.scenario.graphs[phase]]
     varies = any(isinstance(edge.weight, str) or edge.delay[0] != "constant_s" for edge in edges)
     require(claim.proof, scenario.fixed(scenario.recurring()) and not varies, "is not so by the text")
     return "graph, weights and delays are constant from the last switch on"
@@ -1604,8 +1615,7 @@ def common_first_root(claim, classes):
         first = {tuple(scenario.agents[scenario.index[name.text()]].roots[:1]) for name in group.each()}
         require(group, len(first) == 1, "has agents whose κ₀ differ")
     require(classes, len(place) == len(scenario.names), "must hold every agent")
-    at = [place[name] for name in scenario.names]
-    edges = [edge for phase in scenario.recurring() for edge in scenario.pairs[phase]]
+    at, edges = [place[name] for name in scenario.names], [edge for phase in scenario.recurring() for edge in scenario.pairs[phase]]
     require(classes, all(at[source] <= at[to] for source, to in edges), "are not in order: an edge leads back")
     return f"{len(classes.each())} classes in order"
 

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 
 use forwardstep_sim::Setup;
-use forwardstep_sim::graph::{Edge, Weight};
+use forwardstep_sim::graph::{Edge, SpanningTree, Weight, spanning_tree as tree};
+use forwardstep_sim::leader::Following;
 use forwardstep_sim::schedule::{Dwell, Extent, Window};
 
 use crate::hypothesis::{GraphEvidence, Hypothesis, Id, Named};
@@ -59,6 +60,27 @@ pub(crate) fn leader_reaches_all(setup: &Setup) -> Hypothesis {
     Hypothesis::new(Id::LeaderReachesAll, evidence)
 }
 
+/// The same of each graph by itself: what is heard now and then is not enough where a sign takes neighbours together in the meantime.
+pub(crate) fn leader_in_every_graph(setup: &Setup) -> Hypothesis {
+    if let Some(evidence) = refuted(setup) {
+        return Hypothesis::new(Id::LeaderInEveryGraph, evidence);
+    }
+    let network = &setup.network;
+    let for_all_time = network.schedule.known().extent != Extent::Horizon;
+    let graphs = network.schedule.recurring_graphs();
+    let before = network.schedule.graphs.len() - graphs.len();
+    let unheard = graphs.iter().enumerate().find_map(|(at, graph)| match tree(network.agents, graph) {
+        SpanningTree::Rooted { .. } => None,
+        SpanningTree::Missing { closed_groups } => {
+            let cut = closed_groups.iter().find(|group| setup.leader().is_none_or(|leader| !group.contains(&leader)));
+            let closed_group = cut.map_or_else(Vec::new, |group| Named::all(setup, group));
+            Some(GraphEvidence::Unheard { phase: before + at + 1, closed_group, for_all_time })
+        }
+    });
+    let evidence = unheard.unwrap_or(GraphEvidence::InEveryGraph { graphs: graphs.len(), for_all_time });
+    Hypothesis::new(Id::LeaderInEveryGraph, evidence)
+}
+
 /// The shortest time for which a graph stays.
 pub(crate) fn dwell_time(setup: &Setup) -> Hypothesis {
     let schedule = &setup.network.schedule;
@@ -81,7 +103,7 @@ pub(crate) fn fixed_graph(setup: &Setup) -> Hypothesis {
     let evidence = match (schedule.constant_graph(), setup.following()) {
         (Some(_), None) if varying_weights(setup).next().is_some() => GraphEvidence::VaryingWeight,
         (Some(_), _) => GraphEvidence::Stays,
-        (None, Some(_)) => GraphEvidence::SwitchesUnderLeader,
+        (None, Some(Following { design, .. })) => GraphEvidence::SwitchesUnderLeader { design: *design },
         (None, None) => GraphEvidence::Switches { graphs: schedule.graphs.len(), exchange: setup.exchange },
     };
     Hypothesis::new(Id::FixedGraph, evidence)

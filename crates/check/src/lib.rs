@@ -16,6 +16,7 @@ pub mod hypothesis;
 mod inertia;
 mod instance;
 mod kinds;
+mod late_leader;
 mod laws;
 mod links;
 pub mod manipulability;

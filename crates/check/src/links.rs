@@ -66,6 +66,11 @@ pub(crate) fn messages_in_time(setup: &Setup) -> Option<Hypothesis> {
     Some(Hypothesis::new(Id::MessagesInTime, evidence))
 }
 
+/// Whether some link that is used is not known to be without delay from the way it is stated.
+pub(crate) fn is_late(setup: &Setup) -> bool {
+    delays(setup).any(|delay| delay.max_s() > 0.0 || delay.known().basis != Basis::Rule)
+}
+
 pub(crate) fn no_delay(setup: &Setup) -> Hypothesis {
     let bound_s = delays(setup).map(Delay::max_s).fold(0.0, f64::max);
     let evidence = if bound_s > 0.0 {

@@ -67,6 +67,10 @@ pub enum Theorem {
     Theorem7,
     /// Theorem 8.
     Theorem8,
+    /// (110) over graphs that take turns.
+    SwitchingLeader,
+    /// (110) over links that delay.
+    LateLeader,
     /// Theorem 9.
     Theorem9,
     /// Remark 12.
@@ -104,6 +108,8 @@ impl Theorem {
             Theorem::Theorem6 => "theorem-6",
             Theorem::Theorem7 => "theorem-7",
             Theorem::Theorem8 => "theorem-8",
+            Theorem::SwitchingLeader => "theorem-8-switching",
+            Theorem::LateLeader => "theorem-8-late",
             Theorem::Theorem9 => "theorem-9",
             Theorem::Remark12 => "remark-12",
             Theorem::Swarm => "swarm",
@@ -141,6 +147,8 @@ impl Theorem {
             | Theorem::ChainsAgree(_)
             | Theorem::PositionOnlyAgree { .. }
             | Theorem::Desired
+            | Theorem::SwitchingLeader
+            | Theorem::LateLeader
             | Theorem::Swarm => Source::Derived,
             Theorem::Declared(_) => Source::Declared,
         }
@@ -192,6 +200,10 @@ impl fmt::Display for Theorem {
             Theorem::Theorem6 => "Theorem 6, (80) to (82) with the reference dynamics (76)",
             Theorem::Theorem7 => "Theorem 7, (99) to (105) with the reference dynamics (97)",
             Theorem::Theorem8 => "Theorem 8, reference dynamics (110)",
+            Theorem::SwitchingLeader => {
+                "no theorem of the paper: (110) over graphs that take turns as derived for this software"
+            }
+            Theorem::LateLeader => "no theorem of the paper: (110) over links that delay as derived for this software",
             Theorem::Theorem9 => "Theorem 9, reference dynamics (119)",
             Theorem::Remark12 => "Remark 12, reference dynamics (122)",
             Theorem::Desired => "Section IV, (43) with desired dynamics that are no design of the paper",

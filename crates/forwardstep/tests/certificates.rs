@@ -460,6 +460,7 @@ fn every_answer_violated_comes_with_a_witness_that_is_replayed() {
     let cases = [
         ("theorem-2", "spanning-tree", vec![(r#"["arm-2", "arm-3"],"#, ""), (r#"["arm-4", "arm-5"],"#, "")]),
         ("theorem-8", "leader-reaches-all", vec![(r#"["leader", "arm-1"], "#, "")]),
+        ("leader-over-turns", "leader-in-every-graph", vec![(r#"["leader", "arm-4"], "#, "")]),
         ("theorem-8", "sign-gain", vec![("gain = 2 ", "gain = 0.5 ")]),
         (
             "saturated-coupling",

@@ -283,7 +283,8 @@ fn the_document_says_what_the_words_say_and_keeps_to_its_schema() {
         assert_eq!(found.get("prediction"), None, "it was not asked for");
         let predicted = json(&here, &[scenario.name, "--predict"], status);
         follows(&predicted, &schema, &schema);
-        let leads = ["theorem-8", "theorem-9", "remark-12"].contains(&scenario.name);
+        let leads = ["theorem-8", "leader-over-turns", "leader-over-late-links", "theorem-9", "remark-12"]
+            .contains(&scenario.name);
         assert!(!(leads && predicted.get("prediction").is_some()), "{}: nothing is agreed upon", scenario.name);
     }
 }
@@ -402,7 +403,7 @@ fn a_change_that_is_named_makes_the_hypothesis_hold() {
         TWO.replace("[reference.consensus]", &own)
             .replace("edges = [[\"arm-1\", \"arm-2\"]]", "switching = \"repeat\"\n[[network.phases]]\ndwell_s = 1\nedges = [[\"arm-1\", \"arm-2\"], [\"arm-2\", \"b\"], [\"b\", \"arm-1\"]]\n[[network.phases]]\ndwell_s = 1\nedges = [[\"arm-1\", \"arm-2\"]]")
     };
-    let theorem_8 = shipped("theorem-8");
+    let (theorem_8, turns) = (shipped("theorem-8"), shipped("leader-over-turns"));
     let sign = |period_s: &str| {
         theorem_8.replace("[reference.leader]", &format!("[reference.leader]\nsign_period_s = {period_s}"))
     };
@@ -414,7 +415,7 @@ fn a_change_that_is_named_makes_the_hypothesis_hold() {
         )
     };
     // The hypothesis, the scenario, what the change says, and the scenario with the change.
-    let cases: [(&str, String, &str, String); 11] = [
+    let cases: [(&str, String, &str, String); 12] = [
         (
             "spanning-tree",
             three.clone(),
@@ -439,9 +440,15 @@ fn a_change_that_is_named_makes_the_hypothesis_hold() {
         ("set-valued-sign", sign("0.5"), "`sign_period_s` of at most 0.01", sign("0.01")),
         (
             "no-delay",
-            theorem_8.replace("[network]", "[network]\ndelay.constant_s = 0.1"),
+            turns.replacen("[[network.phases]]", "[network]\ndelay.constant_s = 0.1\n[[network.phases]]", 1),
             "no delays",
-            theorem_8.clone(),
+            turns.clone(),
+        ),
+        (
+            "leader-in-every-graph",
+            turns.replace("[\"leader\", \"arm-4\"], ", ""),
+            "in phase 2 an edge to arm-4 from the leader",
+            turns.clone(),
         ),
     ];
     for (id, before, change, after) in cases {

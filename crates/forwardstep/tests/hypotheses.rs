@@ -125,6 +125,8 @@ fn every_hypothesis_and_every_theorem_is_shown_by_some_setup() {
         "theorem-6",
         "theorem-7",
         "theorem-8",
+        "theorem-8-late",
+        "theorem-8-switching",
         "theorem-9",
     ];
     assert_eq!(theorems, names.into());

@@ -9,10 +9,11 @@ use common::following::{DESIGNS, arms, masses};
 use common::{balance_residual, column, columns, run, sampled, truth};
 use forwardstep_core::Gain;
 use forwardstep_core::reference::Choice;
-use forwardstep_sim::delay::Delay;
+use forwardstep_sim::delay::{Delay, PiecewiseConstant, SawTooth};
 use forwardstep_sim::graph::Edge;
-use forwardstep_sim::leader::{Following, FollowingDesign};
-use forwardstep_sim::schedule::Schedule;
+use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
+use forwardstep_sim::schedule::{Phase, Schedule};
+use forwardstep_sim::trajectory::{Path, Trajectory};
 use forwardstep_sim::{Adaptive, Method, Outcome, Setup, Signal, simulate};
 
 fn at_1_khz(mut setup: Setup) -> Setup {
@@ -53,48 +54,214 @@ fn thm8_thm9_remark12_everybody_follows_and_no_sign_chatters() {
     }
 }
 
+/// How far each agent is from the leader in ξ, by rows, for masses that are known and start on their reference: s vanishes for ever.
+fn without_s(problem: &mut Setup) -> (Outcome, Vec<[f64; 3]>) {
+    problem.solver.method = Method::Adaptive { rtol: 1e-7, atol: 1e-9 };
+    problem.time.record_every_s = 0.01;
+    assert!(problem.change_reference(|following: &mut Following| following.choice = Choice::Implicit));
+    for agent in &mut problem.agents {
+        agent.start.reference = vec![agent.start.dq.clone()];
+    }
+    let outcome = run(problem);
+    let following = problem.following().unwrap();
+    let away = |row: usize| {
+        let mut leader = [[0.0; 5]];
+        following.motion().unwrap().trajectory.jets(outcome.recording.t_s[row], &mut leader);
+        [0, 1, 2].map(|agent| {
+            let velocity = column(&outcome, agent, Signal::Velocity, 0)[row] - leader[0][1];
+            (velocity + following.alpha * column(&outcome, agent, Signal::Error, 0)[row]).abs()
+        })
+    };
+    let rows = (0..outcome.recording.t_s.len()).map(away).collect();
+    (outcome, rows)
+}
+
+/// sup|ξ̇₀|.
+fn driven(problem: &Setup) -> f64 {
+    problem.following().unwrap().drive_bound(None)
+}
+
+/// Where the farthest is, row by row, it is nearer by `margin` for every second since, until nobody is away. A value of the sign is held
+/// for a while.
+fn comes_closer(problem: &mut Setup) -> Result<f64, String> {
+    let (outcome, rows) = without_s(problem);
+    let following = problem.following().unwrap();
+    let margin = following.gain - driven(problem);
+    assert!(margin > 0.5, "{margin}");
+    let slack = 2.0 * following.gain * following.period_s;
+    let farthest: Vec<f64> = rows.iter().map(|row| row.iter().copied().fold(0.0, f64::max)).collect();
+    let t_s = &outcome.recording.t_s;
+    for row in 1..farthest.len() {
+        let (before, after) = (farthest[row - 1], farthest[row]);
+        if after > (before - margin * (t_s[row] - t_s[row - 1])).max(0.0) + slack {
+            return Err(format!("row {row}: {before} {after}"));
+        }
+    }
+    let arrived = farthest.iter().position(|away| *away <= slack).ok_or("nobody arrives")?;
+    assert!(farthest[0] > 0.5 && t_s[arrived] <= farthest[0] / margin, "{} s", t_s[arrived]);
+    Ok(farthest[0])
+}
+
 /// With s ≡ 0 (114) to (118) are ξ̃' = −L ξ̃ − γ ς − ξ̇₀. Where everybody hears the leader, the farthest comes closer at γ − sup|ξ̇₀|
 /// at least, until nobody is away. ξ has one derivative of the leader more for each differentiator.
 #[test]
 fn eq_114_to_118_without_s_the_farthest_comes_closer_by_the_margin_of_the_gain() {
     let mut problem = masses(FollowingDesign::Continuous);
-    problem.solver.method = Method::Adaptive { rtol: 1e-7, atol: 1e-9 };
-    problem.time.record_every_s = 0.01;
     let edge = |to, from, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
     let all = (0..3).map(|to| edge(to, 3, 0.6)).chain([edge(1, 0, 1.5), edge(2, 1, 0.7), edge(0, 2, 0.4)]);
     problem.network.schedule = Schedule::fixed(all.collect());
-    assert!(problem.change_reference(|following: &mut Following| following.choice = Choice::Implicit));
-    let following = problem.following().unwrap().clone();
-    // Known masses and z(0) = q̇(0): s vanishes for ever.
-    for agent in &mut problem.agents {
-        agent.start.reference = vec![agent.start.dq.clone()];
+    comes_closer(&mut problem).unwrap();
+}
+
+/// Numbers from 0 to 1, the same for the same seed.
+fn draws(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1_u64 << 53) as f64
     }
-    let outcome = run(&problem);
-    let alpha = following.alpha;
-    let driven = following.motion().unwrap().trajectory.bounds(0, &[0.0, alpha, 1.0, 0.0, 0.0], None);
-    let margin = following.gain - driven.high.max(-driven.low);
-    assert!(margin > 0.5, "{margin}");
-    let farthest = |row: usize| {
-        let mut leader = [[0.0; 5]];
-        following.motion().unwrap().trajectory.jets(outcome.recording.t_s[row], &mut leader);
-        let away = |agent| {
-            let velocity = column(&outcome, agent, Signal::Velocity, 0)[row] - leader[0][1];
-            (velocity + alpha * column(&outcome, agent, Signal::Error, 0)[row]).abs()
-        };
-        (0..3).map(away).fold(0.0, f64::max)
-    };
-    // A value of the sign is held for a millisecond.
-    let slack = 2.0 * following.gain * following.period_s;
-    let mut arrived_s = None;
-    for row in 1..outcome.recording.t_s.len() {
-        let (before, after) = (farthest(row - 1), farthest(row));
-        let step_s = outcome.recording.t_s[row] - outcome.recording.t_s[row - 1];
-        assert!(after <= (before - margin * step_s).max(0.0) + slack, "row {row}: {before} {after}");
-        if after <= slack && arrived_s.is_none() {
-            arrived_s = Some(outcome.recording.t_s[row]);
+}
+
+/// A tree from the leader, vertex 3, and more edges, with weights from 0.1 to 10.
+fn rooted(draw: &mut impl FnMut() -> f64, delays: usize) -> Vec<Edge> {
+    let mut order = [0, 1, 2];
+    order.swap(2, (3.0 * draw()) as usize);
+    order.swap(1, (2.0 * draw()) as usize);
+    let mut pairs: Vec<(usize, usize)> = Vec::new();
+    for (at, to) in order.into_iter().enumerate() {
+        let parent = ((at as f64 + 1.0) * draw()) as usize;
+        pairs.push((if parent == 0 { 3 } else { order[parent - 1] }, to));
+    }
+    for (from, to) in [(0, 1), (1, 2), (2, 0), (3, 1)] {
+        if draw() < 0.3 && !pairs.contains(&(from, to)) {
+            pairs.push((from, to));
         }
     }
-    assert!(farthest(0) > 0.5 && arrived_s.unwrap() <= farthest(0) / margin, "{arrived_s:?}");
+    let weight = |draw: &mut dyn FnMut() -> f64| 10.0_f64.powf(2.0 * draw() - 1.0);
+    pairs
+        .into_iter()
+        .map(|(from, to)| Edge { from, to, weight: weight(draw).into(), delay: (delays as f64 * draw()) as usize })
+        .collect()
+}
+
+/// Our own derivation: the same over graphs that take turns, at any pace and with any weights, if the leader reaches everybody in each.
+#[test]
+fn prop_over_graphs_that_take_turns_the_farthest_comes_closer_by_the_margin_of_the_gain() {
+    for seed in 1..=40 {
+        let mut draw = draws(seed);
+        let mut problem = masses(FollowingDesign::Continuous);
+        problem.time.end_s = 3.0;
+        let phases = (0..2 + (3.0 * draw()) as usize)
+            .map(|_| Phase { dwell_s: 0.02 + 0.5 * draw() * draw(), edges: rooted(&mut draw, 1) })
+            .collect();
+        problem.network.schedule = Schedule::periodic(phases);
+        comes_closer(&mut problem).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+    }
+}
+
+/// With the leader heard over windows only the sign takes the first agent back to the second, and nothing of the leader reaches that.
+#[test]
+fn prop_a_leader_that_is_heard_over_windows_only_is_not_followed() {
+    let mut problem = masses(FollowingDesign::Continuous);
+    problem.time.end_s = 20.0;
+    assert!(problem.change_reference(|following: &mut Following| {
+        let rests = Trajectory::new(vec![Path::Sinusoids { offset: 0.0, waves: Vec::new() }]).unwrap();
+        following.leader = Leading::Motion(Leader { name: "leader".into(), trajectory: rests });
+    }));
+    for agent in &mut problem.agents {
+        (agent.start.q, agent.start.dq) = (vec![1.0], vec![0.0]);
+    }
+    let edge = |to, from| Edge { from, to, weight: 1.0.into(), delay: 0 };
+    let phase = |edges| Phase { dwell_s: 1.0, edges };
+    let turns = |both: &[Edge]| vec![phase([vec![edge(0, 3)], both.to_vec()].concat()), phase(both.to_vec())];
+    // The first hears the leader, then the second; in the third phase the second hears the first.
+    let third = edge(2, 1);
+    let windows = vec![phase(vec![edge(0, 3), third]), phase(vec![edge(0, 1), third]), phase(vec![edge(1, 0), third])];
+    problem.network.schedule = Schedule::periodic(windows);
+    let (_, rows) = without_s(&mut problem);
+    let last = rows[rows.len() - 1];
+    assert!((last[1] - 1.3).abs() < 0.02 && (last[2] - 1.3).abs() < 0.02, "ξ is α q: {last:?}");
+    // Fewer edges are no matter, an absent leader is.
+    problem.network.schedule = Schedule::periodic(turns(&[edge(1, 0), third]));
+    let (_, rows) = without_s(&mut problem);
+    assert!(rows[rows.len() - 1].iter().all(|away| *away < 1e-2), "{:?}", rows[rows.len() - 1]);
+}
+
+/// Who hears nobody any more is pulled nowhere.
+#[test]
+fn regress_an_agent_that_hears_nobody_has_no_sign() {
+    let mut problem = masses(FollowingDesign::Continuous);
+    problem.time.end_s = 4.0;
+    let edge = |to, from| Edge { from, to, weight: 1.0.into(), delay: 0 };
+    let all = vec![edge(0, 3), edge(1, 3), edge(2, 3)];
+    let phase = |edges| Phase { dwell_s: 0.5, edges };
+    // Far from arriving when it is cut off, with the sign at its end.
+    problem.agents[0].start.q = vec![5.0];
+    problem.network.schedule = Schedule::once(vec![phase(all.clone()), phase(all[1..].to_vec())]);
+    let (outcome, _) = without_s(&mut problem);
+    let selection = column(&outcome, 0, Signal::Selection, 0);
+    let at = |t_s: f64| selection[outcome.recording.t_s.iter().position(|t| *t >= t_s).unwrap()];
+    assert_eq!((at(0.4).abs(), at(0.51), at(3.9)), (1.0, 0.0, 0.0));
+}
+
+/// c of L c = D Σ_j w_ij T_ij, by sweeping.
+fn behind(edges: &[Edge], delays_s: &[f64], drive: f64) -> [f64; 3] {
+    let weight = |edge: &Edge| edge.weight.constant().unwrap();
+    let mut c = [0.0; 3];
+    for _ in 0..100_000 {
+        for to in 0..3 {
+            let heard = edges.iter().filter(|edge| edge.to == to);
+            let (mut sum, mut degree) = (0.0, 0.0);
+            for edge in heard {
+                let of = if edge.from == 3 { 0.0 } else { c[edge.from] };
+                sum += weight(edge) * (of + drive * delays_s[edge.delay]);
+                degree += weight(edge);
+            }
+            c[to] = sum / degree;
+        }
+    }
+    c
+}
+
+/// Our own derivation: with delays below T_ij on a fixed graph, whatever they do, |ξ̃_i| comes to c_i.
+#[test]
+fn prop_with_delays_everybody_comes_as_near_to_the_leader_as_they_let_it() {
+    let mut nearest: f64 = 0.0;
+    for seed in 1..=20 {
+        let mut draw = draws(seed);
+        let mut problem = masses(FollowingDesign::Continuous);
+        problem.time.end_s = 14.0;
+        let longest_s = [0.02 + 0.2 * draw(), 0.02 + 0.1 * draw(), 0.05];
+        problem.network.delays = vec![
+            Delay::constant(longest_s[0]),
+            Delay::new(SawTooth { min_s: 0.0, max_s: longest_s[1], period_s: 0.31, offset_s: 0.0 }),
+            Delay::new(PiecewiseConstant {
+                times_s: vec![0.0, 0.2],
+                values_s: vec![longest_s[2], 0.01],
+                period_s: Some(0.45),
+            }),
+        ];
+        let edges = rooted(&mut draw, 3);
+        problem.network.schedule = Schedule::fixed(edges.clone());
+        let (_, rows) = without_s(&mut problem);
+        let c = behind(&edges, &longest_s, driven(&problem));
+        let following = problem.following().unwrap();
+        let slack = 4.0 * following.gain * following.period_s;
+        for row in &rows[rows.len() / 2..] {
+            for agent in 0..3 {
+                assert!(
+                    row[agent] <= c[agent] + slack,
+                    "seed {seed}, agent {agent}: {} above {}",
+                    row[agent],
+                    c[agent]
+                );
+                nearest = nearest.max(row[agent] / c[agent]);
+            }
+        }
+    }
+    assert!(nearest > 0.5, "a bound that says little: {nearest}");
 }
 
 /// V + ∫ sᵀ(K + D)s = V(0): what produces z does not matter to it.

@@ -28,6 +28,7 @@ impl Claim<'_> {
 const PRODUCERS: &[(Id, Producer)] = &[
     (Id::SpanningTree, windows::spanning_tree),
     (Id::LeaderReachesAll, windows::spanning_tree),
+    (Id::LeaderInEveryGraph, windows::in_every_graph),
     (Id::DwellTime, windows::dwell_time),
     (Id::FixedGraph, windows::fixed_graph),
     (Id::BoundedDelays, delays::bounded),

@@ -20,6 +20,13 @@ pub enum Proof {
     },
     /// Witness: groups that hear no agent outside themselves in anything that recurs.
     Cut(Vec<Vec<usize>>),
+    /// Witness: a group that hears no agent outside itself in a phase that recurs.
+    Unheard {
+        /// The phase.
+        phase: usize,
+        /// The group, without the leader.
+        group: Vec<usize>,
+    },
     /// There is one graph.
     NeverSwitches,
     /// No phase is shorter, s.

@@ -95,6 +95,22 @@ fn every_phase(setup: &Setup, phases: &[usize]) -> Option<Proof> {
     phases.iter().map(|phase| window(setup, &[*phase])).collect::<Option<_>>().map(Proof::EveryPhase)
 }
 
+/// A tree of each graph that recurs, or the group that one of them cuts off.
+pub(super) fn in_every_graph(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    let recurring = recurring(&setup.network.schedule)?;
+    match claim.answer {
+        Answer::Holds => every_phase(setup, &recurring),
+        Answer::Violated => {
+            let cut_off = |phase: usize| match tree(setup.network.agents, setup.network.schedule.graph(phase)) {
+                SpanningTree::Missing { closed_groups } => without_leader(setup, closed_groups),
+                SpanningTree::Rooted { .. } => None,
+            };
+            recurring.into_iter().find_map(|phase| Some(Proof::Unheard { phase, group: cut_off(phase)? }))
+        }
+        Answer::HoldsOnHorizon | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
+    }
+}
+
 /// The sequence that was drawn, and windows along it until no further one is complete.
 fn along_draw(setup: &Setup) -> Option<Proof> {
     let (schedule, end_s) = (&setup.network.schedule, setup.time.end_s);
@@ -133,8 +149,11 @@ fn cut(setup: &Setup, phases: &[usize], id: Id) -> Option<Proof> {
     if id == Id::SpanningTree {
         return Some(Proof::Cut(closed_groups));
     }
-    let without = closed_groups.into_iter().find(|group| setup.leader().is_none_or(|leader| !group.contains(&leader)));
-    without.map(|group| Proof::Cut(vec![group]))
+    without_leader(setup, closed_groups).map(|group| Proof::Cut(vec![group]))
+}
+
+fn without_leader(setup: &Setup, closed_groups: Vec<Vec<usize>>) -> Option<Vec<usize>> {
+    closed_groups.into_iter().find(|group| setup.leader().is_none_or(|leader| !group.contains(&leader)))
 }
 
 pub(super) fn dwell_time(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {

@@ -48,6 +48,8 @@ table! {
         "the union of the graphs over uniformly bounded windows contains a directed spanning tree";
     LeaderReachesAll, "leader-reaches-all", "Theorems 8 and 9", Source::Paper,
         "the leader reaches everybody: the graph contains a directed spanning tree rooted at it";
+    LeaderInEveryGraph, "leader-in-every-graph", "own derivation", Source::Derived,
+        "the leader reaches everybody in each of the graphs that take turns";
     DwellTime, "dwell-time", "Section II-A", Source::Paper,
         "graphs stay for at least some positive dwell time";
     FixedGraph, "fixed-graph", "Theorems 1, 8 and 9, Remark 3", Source::Paper,

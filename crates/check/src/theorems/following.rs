@@ -5,20 +5,54 @@ use forwardstep_sim::leader::{Following, FollowingDesign};
 
 use super::own_targets::how_far;
 use super::swarm;
-use crate::graphs::{fixed_graph, leader_reaches_all};
+use crate::graphs::{dwell_time, fixed_graph, leader_in_every_graph, leader_reaches_all};
+use crate::hypothesis::numbers::rounded_up;
 use crate::hypothesis::{FollowingEvidence, Hypothesis, Id, MotionEvidence, ReferenceEvidence, Subject};
 use crate::kinds::starts_from_zero;
-use crate::links::{bounded_weights, constant_weights, no_delay};
+use crate::late_leader::behind;
+use crate::links::{bounded_delays, bounded_weights, constant_weights, is_late, no_delay};
 use crate::report::Report;
 use crate::theorem::Theorem;
 
 /// Times at which a leader is looked at whose bounds could not be shown.
 const LOOKS: u32 = 20_000;
 
+/// What a leader is followed over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Over {
+    /// A fixed graph without delay, as the paper has it; or what neither the paper nor our derivations speak about.
+    Fixed,
+    /// (110) over graphs that take turns.
+    Turns,
+    /// (110) over a fixed graph whose links delay.
+    Late,
+}
+
+impl Over {
+    fn of(setup: &Setup, design: FollowingDesign) -> Over {
+        let turns = setup.network.schedule.constant_graph().is_none();
+        match design {
+            FollowingDesign::Continuous => match (turns, is_late(setup)) {
+                (true, false) => Over::Turns,
+                (false, true) => Over::Late,
+                (false, false) | (true, true) => Over::Fixed,
+            },
+            FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
+                Over::Fixed
+            }
+        }
+    }
+}
+
 /// What is promised to agents that follow a leader.
 pub(super) fn check(setup: &Setup, following: &Following) -> Report {
+    let over = Over::of(setup, following.design);
     let theorem = match following.design {
-        FollowingDesign::Continuous => Theorem::Theorem8,
+        FollowingDesign::Continuous => match over {
+            Over::Fixed => Theorem::Theorem8,
+            Over::Turns => Theorem::SwitchingLeader,
+            Over::Late => Theorem::LateLeader,
+        },
         FollowingDesign::Differentiable => Theorem::Theorem9,
         FollowingDesign::WithoutAcceleration => Theorem::Remark12,
         FollowingDesign::Swarm { .. } => Theorem::Swarm,
@@ -29,17 +63,19 @@ pub(super) fn check(setup: &Setup, following: &Following) -> Report {
             "the torque is differentiable"
         }
     };
-    let mut hypotheses = vec![
-        bounded_motion(setup, following),
-        gain(setup, following),
-        leader_reaches_all(setup),
-        fixed_graph(setup),
-        no_delay(setup),
-    ];
+    let mut hypotheses = vec![bounded_motion(setup, following), gain(setup, following)];
+    hypotheses.extend(match over {
+        Over::Fixed => [leader_reaches_all(setup), fixed_graph(setup), no_delay(setup)],
+        Over::Turns => [leader_in_every_graph(setup), dwell_time(setup), no_delay(setup)],
+        Over::Late => [leader_reaches_all(setup), fixed_graph(setup), bounded_delays(setup)],
+    });
     match following.design {
         FollowingDesign::Swarm { coupling } => hypotheses.extend(swarm::hypotheses(setup, following, coupling)),
-        // (110) is integrated as it stands, whatever its weights do.
-        FollowingDesign::Continuous => hypotheses.push(stable(following)),
+        // (110) is integrated as it stands, whatever its weights do. How far it stays behind is known of constant ones.
+        FollowingDesign::Continuous => {
+            hypotheses.extend((over == Over::Late).then(|| constant_weights(setup)));
+            hypotheses.push(stable(following));
+        }
         FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => {
             hypotheses.push(constant_weights(setup));
             hypotheses.push(stable(following));
@@ -49,7 +85,16 @@ pub(super) fn check(setup: &Setup, following: &Following) -> Report {
     hypotheses.push(sign(setup, following));
     hypotheses.push(shared_design(setup, following));
     let leader = setup.leader().map_or("", |vertex| setup.vertex_name(vertex));
-    let promises = format!("everybody follows {leader}: q_i − q_0 → 0 and dq_i − dq_0 → 0; {torque}");
+    let promises = match over {
+        Over::Fixed | Over::Turns => format!("everybody follows {leader}: q_i − q_0 → 0 and dq_i − dq_0 → 0; {torque}"),
+        Over::Late => {
+            let near = match behind(setup, following) {
+                Some(bound) => format!("in the end no |q_i − q_0| exceeds {}", rounded_up(bound)),
+                None => "in the end |q_i − q_0| keeps within a bound in proportion to them and to sup|ξ̇_0|".to_owned(),
+            };
+            format!("everybody follows {leader} as closely as the delays let it: {near}; {torque}")
+        }
+    };
     Report { theorem, promises, hypotheses }
 }
 

@@ -30,7 +30,43 @@
 //! neighbour's, e is positive there and that entry falls at a rate of γ − sup|ξ̇_0|∞ or more, likewise the smallest rises: ξ̃
 //! vanishes, as the paper takes from Cao and Ren. s vanishes by (6)–(7) and enters through its derivative alone: the degree
 //! reduction of the paper.
-
+//!
+//! **Graphs that take turns** (our own derivation, for (110) without delay). Let L(t) be the Laplacian of the graph in force, in
+//! which the leader reaches everybody at almost every t, D = sup|ξ̇_0|∞ < γ, s ≡ 0, and let x = max(0, max_i ξ̃_i) of an axis be
+//! positive. At almost every t all those at the maximum have the same derivative, ẋ. The leader is not among them and reaches
+//! them, so that one of them hears somebody lower: there e > 0, ς = 1, and ẋ ≤ −(γ − D). Likewise the minimum. So max|ξ̃_i| falls
+//! at γ − D at least until it is zero, whatever the order and the length of the phases are, with weights of any size, equal or
+//! not, and with a γ of its own for every agent if each exceeds D. With s ≠ 0 let y = ξ̃ − s, ẏ ∈ −L(y + s) − γ Sgn[L(y + s)] − ξ̇_0.
+//! With a dwell time and weights that are uniformly continuous, bounded, and bounded away from zero, ẏ = −L y is exponentially
+//! stable, so y is bounded, and s → 0 as in the paper. Were limsup|y| = δ > 0, pieces of y before times at which |y| is nearly δ
+//! would, along a subsequence, converge uniformly to a motion with s = 0 over a limit of the graphs (phases no shorter than the dwell
+//! time, again with the leader reaching everybody), that ends at δ and never exceeds it, though it falls at γ − D: a contradiction.
+//!
+//! It is not enough that the leader reaches everybody over windows. Let it rest at 0 and two agents be at ξ = 1; the leader is
+//! heard by the first, then the first hears the second, then the second the first, in turns. The sign takes the first all the way
+//! back to the second in a finite time, and nothing of the leader is left in it when it is heard: the second stays at 1 for ever
+//! if its phase lasts 1/γ or longer. Without the sign both would come to rest at 0. And whoever is not heard from a leader that
+//! moves drifts from it at |ξ̇_0| meanwhile.
+//!
+//! (119) and (122) jump in ξ* and ξ** where the graph switches: p holds what was integrated with the former weights, so that
+//! (w⁻ − w⁺)(q̇_i − q̇_j) is added, and what grows so from far away no γ makes up for.
+//!
+//! **Links that delay** (our own derivation, for (110) on a fixed graph with constant weights). Let messages be up to T_ij old,
+//! whatever the delays do below that. Relative to the leader, e_i = Σ_j w_ij (ξ̃_i − ξ̃_j(t − T) + δ_ij) with |δ_ij| ≤ D T_ij. Let
+//! L c = D Σ_j w_ij T_ij, c ≥ 0 since L is a nonsingular M-matrix, and let r be the largest |ξ̃_j|/c_j over what is still under way.
+//! Whoever has ξ̃_i > (r − η) c_i hears no more than r c_j of the others, so that
+//!
+//! ```text
+//! e_i ≥ Σ_j w_ij [(r − η) c_i − r c_j − D T_ij] = (r − 1) (L c)_i − η d_i c_i > 0      for small η, if r > 1 and (L c)_i > 0
+//! ```
+//!
+//! (where some (L c)_i is zero take a c a little larger) and falls at γ − D at least. So r comes down to 1: in the end
+//! |ξ̃_i| ≤ c_i and |q_i − q_0| ≤ c_i/α, in proportion to the delays and to sup|ξ̇_0| whatever γ is; s only adds what vanishes with
+//! it. Where the links from the leader alone delay, all by the same T, ξ_0(t − T) takes the place of the leader's, and is followed
+//! exactly. Graphs that take turns besides leave no such c in general: with the leader at rest, and two agents of which one hears
+//! the leader and the other one the first, in turns with a delay as long as a phase, each hears of the other what that had when it
+//! did not hear the leader, and the motion in that phase repeats itself for ever.
+//!
 //! **Swarm tracking.** An undirected graph, a leader that some hear, and nothing but differences to neighbours: no agent uses
 //! its own velocity or position by itself. Made differentiable by one differentiator,
 //!
@@ -60,7 +96,8 @@ use crate::{LengthError, Scalar};
 ///
 /// **Source**: (110), Theorem 8. **Measures**: q, q̇. **Transmits**: q, q̇.
 /// **Requires**: a fixed graph without delay in which the leader reaches everybody; a common α; γ > sup|q̈_0 + α q̇_0|∞.
-/// **Guarantees**: q_i − q_0 → 0 and q̇_i − q̇_0 → 0 under (6)–(7).
+/// **Guarantees**: q_i − q_0 → 0 and q̇_i − q̇_0 → 0 under (6)–(7). By derivations of our own, at the head of this file, the same over
+/// graphs that take turns if the leader reaches everybody in each, and on a fixed graph with delays a bound of what is left.
 /// **Deviates from the paper**: the sign is set-valued, see [`Sliding`].
 ///
 /// ```

@@ -29,7 +29,8 @@ pub(crate) struct FalsifyOptions {
 
 #[derive(Debug, Args)]
 pub(crate) struct AttackOptions {
-    /// What is attacked: a design (a1, 24, a1-first-roots, 24-complex-roots or 119-weights), or a shipped scenario by its name, or a file by its
+    /// What is attacked: a design (a1, 24, a1-first-roots, 24-complex-roots, 119-weights,
+    /// 110-windows, 110-late-turns or 122-turns), or a shipped scenario by its name, or a file by its
     /// path, whose delays and schedules are varied within what it states
     #[arg(value_name = "DESIGN|SCENARIO")]
     pub(crate) what: String,
@@ -47,7 +48,7 @@ pub(crate) struct AttackOptions {
     pub(crate) out: PathBuf,
 }
 
-/// What `attack` attacks: two designs inside their theorems, and three with a hypothesis broken.
+/// What `attack` attacks: two designs inside their theorems, and some with a hypothesis broken.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum AttackTarget {
     /// (a1), positions and velocities exchanged: how slow can agreement be?
@@ -63,6 +64,15 @@ pub(crate) enum AttackTarget {
     /// (119) with weights that change with time: does it fail to follow?
     #[value(name = "119-weights")]
     Weights,
+    /// (110) over graphs in each of which the leader reaches some only: does an error stay?
+    #[value(name = "110-windows")]
+    Windows,
+    /// (110) over graphs that take turns, with delays besides: does an error stay?
+    #[value(name = "110-late-turns")]
+    LateTurns,
+    /// (122) over graphs that take turns, each with weights of its own: does the error grow?
+    #[value(name = "122-turns")]
+    Integrals,
 }
 
 impl AttackTarget {
@@ -78,6 +88,9 @@ impl AttackTarget {
             AttackTarget::A1FirstRoots => Target::FirstRoots,
             AttackTarget::ComplexRoots => Target::ComplexRoots,
             AttackTarget::Weights => Target::Weights,
+            AttackTarget::Windows => Target::Windows,
+            AttackTarget::LateTurns => Target::LateTurns,
+            AttackTarget::Integrals => Target::Integrals,
         }
     }
 }

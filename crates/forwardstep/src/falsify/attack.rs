@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use forwardstep::check::{Answer, Id, check, ideal};
 use forwardstep::io::output::{Disagreement, Metrics};
 use forwardstep::sim::Setup;
+use forwardstep::sim::graph::{Edge, SpanningTree, spanning_tree};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -29,6 +30,12 @@ pub(crate) enum Target {
     ComplexRoots,
     /// (119) with weights that change with time.
     Weights,
+    /// (110) over graphs in each of which the leader reaches some agents only.
+    Windows,
+    /// (110) over graphs that take turns, with delays besides.
+    LateTurns,
+    /// (122) over graphs that take turns, each with weights of its own.
+    Integrals,
 }
 
 /// How long, and with how many pieces.
@@ -68,7 +75,12 @@ impl Target {
     pub(crate) fn is_inside(self) -> bool {
         match self {
             Target::Velocities | Target::Positions => true,
-            Target::FirstRoots | Target::ComplexRoots | Target::Weights => false,
+            Target::FirstRoots
+            | Target::ComplexRoots
+            | Target::Weights
+            | Target::Windows
+            | Target::LateTurns
+            | Target::Integrals => false,
         }
     }
 
@@ -76,8 +88,42 @@ impl Target {
     pub(crate) fn fails(self) -> f64 {
         match self {
             Target::Velocities | Target::Positions => 1.0 + 1e-6,
-            Target::FirstRoots | Target::ComplexRoots => FAILS,
-            Target::Weights => STAYS,
+            Target::FirstRoots | Target::ComplexRoots | Target::Integrals => FAILS,
+            Target::Weights | Target::Windows | Target::LateTurns => STAYS,
+        }
+    }
+
+    /// The design by which a leader is followed, if there is one, and whether the leader moves. Where it rests, every graph by itself, and all of
+    /// them without delay, lead everybody to it, as is shown: what stays away stays for the hypothesis that is broken.
+    fn leading(self) -> Option<(Design, bool)> {
+        match self {
+            Target::Velocities | Target::Positions | Target::FirstRoots | Target::ComplexRoots => None,
+            Target::Weights => Some((Design::Differentiable, true)),
+            Target::Windows | Target::LateTurns => Some((Design::Continuous, false)),
+            Target::Integrals => Some((Design::WithoutAcceleration, false)),
+        }
+    }
+
+    /// How far from a leader agents start. Far from it the sign of (119) and (122), which is bounded, does not cover up what is left over.
+    fn away(self) -> f64 {
+        match self {
+            Target::Weights | Target::Integrals => 50.0,
+            Target::Velocities
+            | Target::Positions
+            | Target::FirstRoots
+            | Target::ComplexRoots
+            | Target::Windows
+            | Target::LateTurns => 1.0,
+        }
+    }
+
+    /// Whether the delays are part of what is searched.
+    fn delays(self) -> bool {
+        match self {
+            Target::Velocities | Target::Positions | Target::FirstRoots | Target::ComplexRoots | Target::LateTurns => {
+                true
+            }
+            Target::Weights | Target::Windows | Target::Integrals => false,
         }
     }
 }
@@ -129,41 +175,45 @@ impl Attack {
         let own =
             |rng: &mut ChaCha8Rng| if self.target == Target::FirstRoots { hundredths(rng, 0.1, 5.0) } else { first };
         let velocities = self.target == Target::Velocities || self.target == Target::FirstRoots;
-        let led = self.target == Target::Weights;
-        let phases = if led { 1 } else { rng.random_range(2..=self.pieces.max(2)) };
+        let led = self.target.leading();
+        let phases = if self.target == Target::Weights { 1 } else { rng.random_range(2..=self.pieces.max(2)) };
+        let away = self.target.away();
         let mut case = Case {
             number: self.seed,
-            alone: !led,
+            alone: led.is_none(),
             system: System::Mass(1),
-            // Far from a leader the sign of (119), which is bounded, does not cover up what ẇ leaves over.
-            starts: (0..agents)
-                .map(|k| [(if led { 50.0 } else { 1.0 }) * if k % 2 == 0 { 1.0 } else { -1.0 }, 0.0, 0.0])
-                .collect(),
+            starts: (0..agents).map(|k| [if k % 2 == 0 { away } else { -away }, 0.0, 0.0]).collect(),
             roots: (0..agents)
                 .map(|_| match self.target {
-                    Target::Weights => vec![slow, slow],
+                    Target::Weights | Target::Integrals => vec![slow, slow],
+                    Target::Windows | Target::LateTurns => vec![first],
                     Target::ComplexRoots => Vec::new(),
                     Target::Velocities | Target::Positions | Target::FirstRoots => vec![own(rng), 2.0],
                 })
                 .collect(),
             pair: (self.target == Target::ComplexRoots).then(|| pair(rng)),
-            course: match self.target {
-                Target::Weights => Course::Follow { design: Design::Differentiable, margin: 2.0 },
-                Target::Velocities | Target::Positions | Target::FirstRoots | Target::ComplexRoots => {
-                    Course::Agree { velocities }
-                }
+            course: match led {
+                Some((design, moves)) => Course::Follow { design, margin: 2.0, moves },
+                None => Course::Agree { velocities },
             },
             known: true,
-            phases: (0..phases).map(|_| Phase { dwell_s: hundredths(rng, 0.1, 3.0), edges: Vec::new() }).collect(),
+            phases: (0..phases)
+                .map(|_| Phase { dwell_s: hundredths(rng, 0.1, 3.0), edges: Vec::new(), weight: None })
+                .collect(),
             switching: Switching::Repeat,
             weight: "1".into(),
             delay: "constant_s = 0".into(),
             end_s: match self.target {
-                Target::Weights | Target::Velocities | Target::Positions => 60.0,
+                Target::Weights
+                | Target::Velocities
+                | Target::Positions
+                | Target::Windows
+                | Target::LateTurns
+                | Target::Integrals => 60.0,
                 Target::FirstRoots | Target::ComplexRoots => 240.0,
             },
         };
-        if led {
+        if self.target == Target::Weights {
             let chain = (0..agents).map(|agent| (agent, agent + 1));
             let back = (1..agents).map(|agent| (agent + 1, agent)).filter(|_| rng.random_bool(0.5));
             let edges: Vec<(usize, usize)> = chain.chain(back).collect();
@@ -171,15 +221,34 @@ impl Attack {
             case.weight = self.weight(rng);
         } else {
             self.rewire(&mut case, rng);
-            case.delay = self.delay(rng);
+            if self.target.delays() {
+                case.delay = self.delay(rng);
+            }
         }
         case
     }
 
-    /// A cycle through all agents, whose edges are spread over the phases.
+    /// A cycle through all agents, whose edges are spread over the phases; or trees from the leader, a new one for every phase, or one that is
+    /// spread over them.
     fn rewire(&self, case: &mut Case, rng: &mut ChaCha8Rng) {
         let (agents, phases) = (case.starts.len(), case.phases.len());
         case.phases.iter_mut().for_each(|phase| phase.edges.clear());
+        if self.target == Target::Windows {
+            for edge in tree(rng, agents).into_iter().chain(tree(rng, agents)) {
+                let phase = rng.random_range(0..phases);
+                if !case.phases[phase].edges.contains(&edge) {
+                    case.phases[phase].edges.push(edge);
+                }
+            }
+            return;
+        }
+        if self.target.leading().is_some() {
+            for phase in &mut case.phases {
+                phase.edges = tree(rng, agents);
+                phase.weight = (self.target == Target::Integrals).then(|| pick(rng, &[0.3, 1.0, 3.0, 10.0, 30.0]));
+            }
+            return;
+        }
         for from in 0..agents {
             let phase = rng.random_range(0..phases);
             case.phases[phase].edges.push((from, (from + 1) % agents));
@@ -221,8 +290,8 @@ impl Attack {
             return other;
         }
         match rng.random_range(0..5) {
-            0 => other.delay = self.delay(rng),
-            1 => self.rewire(&mut other, rng),
+            0 if self.target.delays() => other.delay = self.delay(rng),
+            0 | 1 => self.rewire(&mut other, rng),
             2 => {
                 let at = rng.random_range(0..other.phases.len());
                 other.phases[at].dwell_s = hundredths(rng, 0.1, 3.0);
@@ -256,6 +325,14 @@ impl Attack {
                 let proves = left <= FAILS || !case.phases.iter().any(|phase| grows(phase).unwrap_or(true));
                 proves.then_some(left)
             }
+            // Whom the leader never reaches, of windows or of graphs, cannot follow it.
+            Target::Windows => {
+                rooted(&setup, setup.network.schedule.graphs.iter().flatten()).then(|| error_left(&setup))?
+            }
+            Target::LateTurns | Target::Integrals => {
+                let each = setup.network.schedule.graphs.iter().all(|graph| rooted(&setup, graph));
+                each.then(|| error_left(&setup))?
+            }
             Target::Weights => {
                 let left = error_left(&setup)?;
                 // What is slow with constant weights too proves nothing.
@@ -282,6 +359,21 @@ impl Attack {
             }
         }
     }
+}
+
+/// Whether these edges lead from one vertex to all; where there is a leader, which hears nobody, that is the leader.
+fn rooted<'a>(setup: &Setup, edges: impl IntoIterator<Item = &'a Edge>) -> bool {
+    matches!(spanning_tree(setup.network.agents, edges), SpanningTree::Rooted { .. })
+}
+
+/// A tree from the leader, vertex 0, to all agents.
+fn tree(rng: &mut ChaCha8Rng, agents: usize) -> Vec<(usize, usize)> {
+    let mut order: Vec<usize> = (1..=agents).collect();
+    for last in (1..agents).rev() {
+        order.swap(last, rng.random_range(0..=last));
+    }
+    let parent = |rng: &mut ChaCha8Rng, at: usize| rng.random_range(0..=at).checked_sub(1);
+    (0..agents).map(|at| (parent(rng, at).map_or(0, |before| order[before]), order[at])).collect()
 }
 
 /// A pair of complex roots with little damping.

@@ -63,10 +63,17 @@ pub(crate) enum Course {
     Agree { velocities: bool },
     /// They agree by (3) or (23).
     Integral { velocities: bool },
-    /// They follow a leader by this design, with γ this many times a bound of what drives it.
-    Follow { design: Design, margin: f64 },
+    /// They follow a leader by this design, with γ this many times a bound of what drives it when it moves; it may rest.
+    Follow { design: Design, margin: f64, moves: bool },
     /// Each follows a target, at this rate, rad/s.
     Track { rate: f64 },
+}
+
+impl Course {
+    /// Whether there is a leader that moves.
+    pub(super) fn moves(self) -> bool {
+        matches!(self, Course::Follow { moves: true, .. })
+    }
 }
 
 /// Designs that follow a leader.
@@ -84,6 +91,8 @@ pub(crate) struct Phase {
     pub(crate) dwell_s: f64,
     /// From, to; agent 0 is the leader where there is one, and the others follow.
     pub(crate) edges: Vec<(usize, usize)>,
+    /// The weight of its edges, if it is not that of all.
+    pub(crate) weight: Option<f64>,
 }
 
 /// How graphs take turns.
@@ -192,6 +201,7 @@ impl Case {
             }
         });
         simpler(&|case| case.weight = WEIGHTS[0].into());
+        simpler(&|case| case.phases.iter_mut().for_each(|phase| phase.weight = None));
         simpler(&|case| case.switching = Switching::Repeat);
         simpler(&|case| case.known = true);
         simpler(&|case| case.end_s = (0.5 * case.end_s).max(1.0));
@@ -239,7 +249,7 @@ fn agree(rng: &mut ChaCha8Rng) -> Course {
 fn any(rng: &mut ChaCha8Rng) -> (System, Course) {
     let track = Course::Track { rate: hundredths(rng, 0.2, 1.5) };
     let designs = [Design::Continuous, Design::Differentiable, Design::WithoutAcceleration, Design::Swarm];
-    let follow = Course::Follow { design: pick(rng, &designs), margin: hundredths(rng, 1.05, 2.0) };
+    let follow = Course::Follow { design: pick(rng, &designs), margin: hundredths(rng, 1.05, 2.0), moves: true };
     let positions = Course::Agree { velocities: false };
     let thrust = pick(rng, &[Thrust::Continuous, Thrust::Differentiable, Thrust::Adaptive]);
     let order = rng.random_range(1..=3);
@@ -293,5 +303,5 @@ fn phase(rng: &mut ChaCha8Rng, vertices: usize, leads: bool, density: f64) -> Ph
             }
         }
     }
-    Phase { dwell_s: pick(rng, &[0.4, 1.0, 2.5]), edges }
+    Phase { dwell_s: pick(rng, &[0.4, 1.0, 2.5]), edges, weight: None }
 }

@@ -128,7 +128,7 @@ mod tests {
     fn unlike() -> Case {
         let case = Case { roots: vec![vec![0.5, 1.0], vec![3.0, 1.0]], ..Case::draw(1, 6) };
         let starts = vec![[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]];
-        let phase = |edges| super::case::Phase { dwell_s: 0.4, edges };
+        let phase = |edges| super::case::Phase { dwell_s: 0.4, edges, weight: None };
         Case {
             number: 6,
             alone: true,

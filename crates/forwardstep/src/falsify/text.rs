@@ -10,7 +10,8 @@ impl Display for Case {
         writeln!(f, "format = 2\ntitle = \"Drawn case {number}\"\n")?;
         writeln!(f, "[time]\nend_s = {}\nrecord_every_s = 0.05\n", self.end_s)?;
         if self.is_led() {
-            writeln!(f, "[leader]\nmotion.sinusoids = [{}]\n", repeated(self.axes(), LEADER))?;
+            let motion = if self.course.moves() { LEADER } else { "{ waves = [] }" };
+            writeln!(f, "[leader]\nmotion.sinusoids = [{}]\n", repeated(self.axes(), motion))?;
         }
         for (agent, start) in self.starts.iter().enumerate() {
             writeln!(f, "[[agents]]\nname = \"a{}\"\n{}\n{}", agent + 1, self.robot(), self.start(start))?;
@@ -114,7 +115,7 @@ impl Case {
             Course::Integral { velocities } => {
                 format!("[reference.pure_integral]\nroots_per_s = {roots}\nexchange = \"{}\"\n", exchange(velocities))
             }
-            Course::Follow { design, margin } => led(design, margin, &first),
+            Course::Follow { design, margin, .. } => led(design, margin, &first),
             Course::Track { .. } if first.is_empty() => "[reference.tracking]\n".into(),
             Course::Track { .. } => format!("[reference.tracking]\nroots_per_s = {roots}\n"),
         }
@@ -169,13 +170,20 @@ impl Case {
         }
         for phase in &self.phases {
             let edges: Vec<String> =
-                phase.edges.iter().map(|(from, to)| format!("[{}, {}]", name(*from), name(*to))).collect();
+                phase.edges.iter().map(|(from, to)| edge(&name(*from), &name(*to), phase.weight)).collect();
             match self.phases.len() {
                 1 => writeln!(f, "edges = [{}]", edges.join(", "))?,
                 _ => writeln!(f, "\n[[network.phases]]\ndwell_s = {}\nedges = [{}]", phase.dwell_s, edges.join(", "))?,
             }
         }
         Ok(())
+    }
+}
+
+fn edge(from: &str, to: &str, weight: Option<f64>) -> String {
+    match weight {
+        None => format!("[{from}, {to}]"),
+        Some(weight) => format!("{{ from = {from}, to = {to}, weight = {weight:?} }}"),
     }
 }
 

@@ -78,6 +78,9 @@ impl Names<'_> {
             Proof::Cut(groups) => {
                 json!({ "kind": "cut", "groups": groups.iter().map(|group| self.all(group)).collect::<Vec<_>>() })
             }
+            Proof::Unheard { phase, group } => {
+                json!({ "kind": "unheard", "phase": phase + 1, "group": self.all(group) })
+            }
             Proof::NeverSwitches => json!({ "kind": "never-switches" }),
             Proof::ShortestPhase(shortest_s) => json!({ "kind": "shortest-phase", "shortest_s": decimal(shortest_s) }),
             Proof::OneGraph => json!({ "kind": "one-graph" }),

@@ -11,7 +11,7 @@
 //! a box complementarity problem. L is a nonsingular M-matrix when the leader reaches everybody, and there is one solution.
 //! Projected Gauss–Seidel, ς_i ← sat[(e_i + hγ Σ_j w_ij ς_j)/(hγ d_i)], comes closer to it with every sweep, since what is
 //! inside the bracket is a mean of the neighbours' values with weights whose sum is at most one; it starts from the last
-//! solution. Links with a delay bring nothing of this period, and stand in e only.
+//! solution, or from zero where the graph is new: a group that hears no agent outside itself has many solutions. Links with a delay bring nothing of this period, and stand in e only.
 //!
 //! The motion of the robots between two settings is what it is, whatever was held here: for (110) and (119) the sign reaches
 //! the motion through M⁻¹M̂. So nothing is claimed beyond the largest |r − e| that sweeping left, which is reported.
@@ -110,6 +110,8 @@ impl<'a> Slider<'a> {
 
     fn rewire(&mut self) {
         self.links.clear();
+        // Who hears nobody outside a group that agrees is pulled nowhere, not where it was pulled before.
+        self.selection.fill(0.0);
         for edge in self.network.schedule.graph(self.segment.graph) {
             let (from, to) = (self.places[edge.from], self.places[edge.to]);
             let delayed = self.network.delays.get(edge.delay).is_some_and(|delay| delay.max_s() > 0.0);

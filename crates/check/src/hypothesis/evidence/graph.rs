@@ -1,6 +1,7 @@
 //! Evidence of graphs and their schedule.
 
 use forwardstep_sim::Exchange;
+use forwardstep_sim::leader::FollowingDesign;
 use forwardstep_sim::schedule::ScheduleFault;
 
 use super::holds;
@@ -53,6 +54,22 @@ pub enum GraphEvidence {
         /// They hear no agent outside themselves.
         closed_group: Vec<Named>,
     },
+    /// The leader reaches everybody in each graph that is in force at arbitrarily late times.
+    InEveryGraph {
+        /// How many there are.
+        graphs: usize,
+        /// As in [`GraphEvidence::Window`].
+        for_all_time: bool,
+    },
+    /// A graph in which nothing of the leader reaches some, in force again and again or for ever.
+    Unheard {
+        /// Which phase, from one.
+        phase: usize,
+        /// They hear no agent outside themselves.
+        closed_group: Vec<Named>,
+        /// As in [`GraphEvidence::Window`].
+        for_all_time: bool,
+    },
     /// One graph stays for ever, so it never switches.
     NeverSwitches,
     /// The shortest of the phases, but for a last one that stays.
@@ -88,8 +105,11 @@ pub enum GraphEvidence {
         /// What is exchanged.
         exchange: Exchange,
     },
-    /// A leader is followed over a graph that switches.
-    SwitchesUnderLeader,
+    /// A leader is followed over a graph that switches, by a design for which that matters.
+    SwitchesUnderLeader {
+        /// The design; (110) here if messages are late besides.
+        design: FollowingDesign,
+    },
     /// Every edge among agents leads both ways with the same weight.
     Mutual,
     /// An edge that does not.
@@ -104,14 +124,16 @@ pub enum GraphEvidence {
 impl GraphEvidence {
     pub(super) fn answer(&self) -> Answer {
         match self {
-            GraphEvidence::Window { for_all_time, .. } | GraphEvidence::Reached { for_all_time, .. } => {
-                holds(*for_all_time)
-            }
+            GraphEvidence::Window { for_all_time, .. }
+            | GraphEvidence::Reached { for_all_time, .. }
+            | GraphEvidence::InEveryGraph { for_all_time, .. } => holds(*for_all_time),
+            GraphEvidence::Unheard { for_all_time: false, .. } => Answer::NotShown,
             GraphEvidence::Cut { until_s: Some(_), .. } | GraphEvidence::Unreached { until_s: Some(_), .. } => {
                 Answer::NotShown
             }
             GraphEvidence::Cut { until_s: None, .. }
             | GraphEvidence::Unreached { until_s: None, .. }
+            | GraphEvidence::Unheard { for_all_time: true, .. }
             | GraphEvidence::RefutedSwitching { .. } => Answer::Violated,
             GraphEvidence::EveryGraph { .. }
             | GraphEvidence::NeverSwitches
@@ -122,15 +144,22 @@ impl GraphEvidence {
             GraphEvidence::DeclaredPhases { .. } => Answer::NotShown,
             GraphEvidence::VaryingWeight
             | GraphEvidence::Switches { .. }
-            | GraphEvidence::SwitchesUnderLeader
+            | GraphEvidence::SwitchesUnderLeader { .. }
             | GraphEvidence::OneWay { .. } => Answer::NotCovered,
         }
     }
 
     pub(super) fn rigour(&self) -> Rigour {
         match self {
-            GraphEvidence::Window { for_all_time, .. } | GraphEvidence::Reached { for_all_time, .. } => {
-                if *for_all_time { Rigour::Exact } else { Rigour::Given }
+            GraphEvidence::Window { for_all_time, .. }
+            | GraphEvidence::Reached { for_all_time, .. }
+            | GraphEvidence::InEveryGraph { for_all_time, .. }
+            | GraphEvidence::Unheard { for_all_time, .. } => {
+                if *for_all_time {
+                    Rigour::Exact
+                } else {
+                    Rigour::Given
+                }
             }
             GraphEvidence::Cut { until_s: Some(_), .. }
             | GraphEvidence::Unreached { until_s: Some(_), .. }
@@ -145,7 +174,7 @@ impl GraphEvidence {
             | GraphEvidence::Stays
             | GraphEvidence::VaryingWeight
             | GraphEvidence::Switches { .. }
-            | GraphEvidence::SwitchesUnderLeader
+            | GraphEvidence::SwitchesUnderLeader { .. }
             | GraphEvidence::Mutual
             | GraphEvidence::OneWay { .. } => Rigour::Exact,
         }

@@ -1,6 +1,7 @@
 //! Graphs and their schedule.
 
 use forwardstep_sim::Exchange;
+use forwardstep_sim::leader::FollowingDesign;
 
 use super::names;
 use super::numbers::seconds;
@@ -45,6 +46,15 @@ pub(super) fn words(evidence: &GraphEvidence) -> String {
                 until_s.map_or("on".to_owned(), |until_s| format!("to the end of the run at {} s", seconds(until_s)));
             format!("from t = {} s {until} nothing of the leader reaches [{}]", seconds(*start_s), names(closed_group))
         }
+        GraphEvidence::InEveryGraph { graphs, for_all_time } => {
+            let until = if *for_all_time { "" } else { ", up to the end of the run" };
+            format!("along the edges of each of the {graphs} graphs by itself, in whatever order they come{until}")
+        }
+        GraphEvidence::Unheard { phase, closed_group, .. } => format!(
+            "in phase {phase} nothing of the leader reaches [{}], who hear no agent outside themselves: the leader moves away from \
+             them meanwhile, and with the sign they draw others with them, so that an error stays",
+            names(closed_group)
+        ),
         GraphEvidence::NeverSwitches => "the graph never switches".into(),
         GraphEvidence::ShortestPhase { dwell_s } => format!("the shortest phase lasts {dwell_s} s"),
         GraphEvidence::DrawnPhases { least_s } => format!("no phase is shorter than {least_s} s"),
@@ -68,12 +78,28 @@ pub(super) fn words(evidence: &GraphEvidence) -> String {
                  {instead}, is made for that"
             )
         }
-        GraphEvidence::SwitchesUnderLeader => {
-            "the graph switches; the paper follows a leader over fixed graphs only".into()
-        }
+        GraphEvidence::SwitchesUnderLeader { design } => switches_under_leader(*design).into(),
         GraphEvidence::Mutual => "every edge among them leads both ways".into(),
         GraphEvidence::OneWay { from, to } => {
             format!("{} hears {}, but not the other way round with the same weight", to.name, from.name)
+        }
+    }
+}
+
+/// Why a fixed graph is asked for: see the head of `reference/following.rs` in the core.
+fn switches_under_leader(design: FollowingDesign) -> &'static str {
+    match design {
+        FollowingDesign::Continuous => {
+            "the graph switches, and messages are late: what an agent said before a switch may come back to it after the next, \
+             so that an error can go round for ever"
+        }
+        FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => {
+            "the graph switches: the integral that the design is realised by keeps what former neighbours left in it, and the \
+             error can grow"
+        }
+        FollowingDesign::Swarm { .. } => {
+            "the graph switches: the integral that the design is realised by keeps what former neighbours left in it, and the \
+             function that shows convergence changes with the graph"
         }
     }
 }

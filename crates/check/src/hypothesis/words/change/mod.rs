@@ -8,6 +8,7 @@ mod systems;
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::Exchange;
 use forwardstep_sim::delay::{Basis, Refuted, Unknown};
+use forwardstep_sim::leader::FollowingDesign;
 
 use super::numbers::{bound, rounded_down, rounded_up};
 use crate::hypothesis::evidence::MOST_HELD;
@@ -54,7 +55,18 @@ fn graph(evidence: &GraphEvidence) -> Option<String> {
             Exchange::PositionVelocity => "one graph, or `reference.consensus` with two roots, which is (a1)".into(),
             Exchange::Position => "one graph, or `reference.consensus`, which is (24)".into(),
         },
-        GraphEvidence::SwitchesUnderLeader => "one graph".into(),
+        GraphEvidence::InEveryGraph { .. } => "graphs that repeat".into(),
+        GraphEvidence::Unheard { phase, closed_group, .. } => {
+            let to = closed_group.first().map_or("", |agent| agent.name.as_str());
+            format!("in phase {phase} an edge to {to} from the leader, or from an agent that hears it")
+        }
+        GraphEvidence::SwitchesUnderLeader { design } => match design {
+            FollowingDesign::Continuous => "one graph, or links without delay".into(),
+            FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => {
+                "one graph, or the design `continuous`, which is (110)".into()
+            }
+            FollowingDesign::Swarm { .. } => "one graph".into(),
+        },
         GraphEvidence::OneWay { from, to } => {
             format!("an edge from {} to {} with the weight of the one that leads back", to.name, from.name)
         }

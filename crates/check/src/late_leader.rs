@@ -1,0 +1,113 @@
+//! How far behind their leader agents stay under (110) when messages are late, on a fixed graph: our own derivation.
+//!
+//! With D = sup|ξ̇_0|∞ < γ, delays of at most T_ij on the edges, L the Laplacian of the followers with the weights to the leader and
+//! L c = D Σ_j w_ij T_ij, the error of ξ_i comes to c_i or less, see the head of `reference/following.rs` in the core. L is a
+//! nonsingular M-matrix where the leader reaches everybody, so that c is not negative, and whatever v has L v ≥ D Σ_j w_ij T_ij in
+//! all components is no smaller than c. Such a v is looked for by sweeping to and fro, in any precision, and verified with a bound on
+//! rounding.
+
+use forwardstep_sim::Setup;
+use forwardstep_sim::graph::{SpanningTree, spanning_tree};
+use forwardstep_sim::leader::Following;
+
+/// Edges that may be visited by sweeping.
+const MOST_VISITS: usize = 50_000_000;
+/// A change that is no more than this part of the largest entry ends the sweeping.
+const SETTLED: f64 = 1e-13;
+/// What is asked for beyond what is needed, as a part of the largest: far more than sweeping and rounding leave.
+const MORE: f64 = 1e-9;
+
+/// A bound of what is left of q_i − q_0, in the unit of the axes; nothing where none could be verified, as of a leader that is
+/// an agent, of a delay without a bound, or of a weight that varies.
+pub(crate) fn behind(setup: &Setup, following: &Following) -> Option<f64> {
+    let drive = following.drive_bound(None);
+    let rows = rows(setup)?;
+    let needed: Vec<f64> = rows.iter().map(|row| drive * row.weight_s).collect();
+    let most = needed.iter().copied().fold(0.0, f64::max);
+    if !most.is_finite() {
+        return None;
+    }
+    let asked: Vec<f64> = rows.iter().zip(&needed).map(|(row, each)| each + MORE * most * row.degree).collect();
+    let c = solved(&rows, &asked)?;
+    let exceeds = rows.iter().zip(&c).zip(&needed).all(|((row, own), needed)| {
+        let heard: f64 = row.heard.iter().map(|(from, weight)| weight * c[*from]).sum();
+        let terms = row.terms as f64 + 4.0;
+        let rounding = terms * f64::EPSILON * (row.degree * own + heard + needed);
+        row.degree * own - heard - rounding >= *needed
+    });
+    let largest = c.into_iter().fold(0.0, f64::max);
+    exceeds.then_some(largest / following.alpha * (1.0 + 4.0 * f64::EPSILON)).filter(|bound| bound.is_finite())
+}
+
+/// What one follower hears.
+struct Row {
+    /// Σ_j w_ij over all, the leader among them.
+    degree: f64,
+    /// How many they are.
+    terms: usize,
+    /// Σ_j w_ij T_ij.
+    weight_s: f64,
+    /// The followers among them, by their rows, with the weights.
+    heard: Vec<(usize, f64)>,
+}
+
+fn rows(setup: &Setup) -> Option<Vec<Row>> {
+    let edges = setup.network.schedule.constant_graph()?;
+    if let SpanningTree::Missing { .. } = spanning_tree(setup.network.agents, edges) {
+        return None;
+    }
+    let mut index = vec![None; setup.network.agents];
+    let followers = (0..setup.network.agents).filter(|vertex| setup.leader() != Some(*vertex));
+    let mut count = 0;
+    for vertex in followers {
+        index[vertex] = Some(count);
+        count += 1;
+    }
+    let mut rows: Vec<Row> =
+        (0..count).map(|_| Row { degree: 0.0, terms: 0, weight_s: 0.0, heard: Vec::new() }).collect();
+    // Controllers that sample hear up to a period later.
+    let period_s = setup.control.as_ref().map_or(0.0, |control| 1.0 / control.sample_hz);
+    for edge in edges {
+        let Some(to) = *index.get(edge.to)? else { continue };
+        let weight = edge.weight.constant()?;
+        let known = setup.network.delays.get(edge.delay)?.known();
+        if known.unknown.is_some() {
+            return None;
+        }
+        let row = rows.get_mut(to)?;
+        row.degree += weight;
+        row.terms += 1;
+        row.weight_s += weight * (known.bound_s + period_s);
+        row.heard.extend(index.get(edge.from)?.map(|from| (from, weight)));
+    }
+    Some(rows)
+}
+
+/// L c = `asked` by sweeping to and fro, from below.
+fn solved(rows: &[Row], asked: &[f64]) -> Option<Vec<f64>> {
+    let mut c = vec![0.0_f64; rows.len()];
+    let visits: usize = rows.iter().map(|row| 1 + row.heard.len()).sum();
+    for sweep in 0..MOST_VISITS / visits.max(1) {
+        let mut change = 0.0_f64;
+        let mut one = |i: usize| {
+            let row = &rows[i];
+            let heard: f64 = row.heard.iter().map(|(from, weight)| weight * c[*from]).sum();
+            let value = (asked[i] + heard) / row.degree;
+            change = change.max((value - c[i]).abs());
+            c[i] = value;
+        };
+        if sweep % 2 == 0 {
+            (0..rows.len()).for_each(&mut one)
+        } else {
+            (0..rows.len()).rev().for_each(&mut one)
+        }
+        let largest = c.iter().copied().fold(0.0, f64::max);
+        if !largest.is_finite() {
+            return None;
+        }
+        if change <= SETTLED * largest {
+            break;
+        }
+    }
+    Some(c)
+}
