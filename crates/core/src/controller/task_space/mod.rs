@@ -287,19 +287,20 @@ where
             work.s[k] = truth.state[m + k] - state[k];
         }
 
-        // Y(q, 0, z, ż) ϑ = M ż + D z + g.
-        let (inertia, damping) = {
+        // Y(q, 0, 0, s) ϑ = M s + g.
+        let inertia = {
             let TaskWork { robot, still, s, damped, yt_s, .. } = work;
-            let mut paired = |z: &[f64], dz: &[f64]| -> Result<f64, LengthError> {
-                let motion = TwoVelocity { q, dq: still, z, dz };
+            let mut paired = |dz: &[f64]| -> Result<f64, LengthError> {
+                let motion = TwoVelocity { q, dq: still, z: still, dz };
                 plant.arm.robot.regressor_products(robot, motion, &plant.arm.theta, s, damped, yt_s)?;
                 Ok(s.iter().zip(damped.iter()).map(|(s, torque)| s * torque).sum())
             };
-            let gravity = paired(still, still)?;
-            (paired(still, s)? - gravity, paired(s, still)? - gravity)
+            paired(s)? - paired(still)?
         };
         self.law.damping.apply(&work.s, &mut work.damped);
-        let mut dissipation = damping;
+        let motion = TwoVelocity { q, dq: &truth.state[m..2 * m], z: &state[..m], dz: &work.still };
+        plant.arm.robot.add_damping(&mut work.robot, motion, &plant.arm.theta, &mut work.damped)?;
+        let mut dissipation = 0.0;
         let (mut task, mut strayed) = (0.0, 0.0);
         for k in 0..m {
             dissipation += work.s[k] * work.damped[k];
