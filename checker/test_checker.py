@@ -896,9 +896,8 @@ class FalseProofs(unittest.TestCase):
             self.rejected("friction", "smooth-friction", "is not asked for", lambda entry: None, without)
         # What the URDF states, which is none.
         self.rejected("friction", "smooth-friction", "is not asked for", lambda entry: None, ("coulomb = [2, 2, 2, 0.5, 0.5, 0.5], ", ""))
-        both = [checker.ACCEPTED] * 2
         judged, found = self.judged("bounds", "parameters-within-bounds", lambda entry: None, ("upper = [2.5]", "upper = [2]"))
-        self.assertEqual([outcome for outcome, _ in judged], both, found)
+        self.assertEqual([outcome for outcome, _ in judged], [checker.ACCEPTED], found)
         for bounds in (("lower = [2]", "lower = [2.001]"), ("upper = [2.5]", "upper = [1.999]"), ("mass_kg = 2,", "mass_kg = 3,")):
             self.rejected("bounds", "parameters-within-bounds", "by the text", lambda entry: None, bounds)
         for none in ("0", "-0.1"):
