@@ -244,6 +244,17 @@ fn robots_in_closed_form_have_the_same_keys_and_none_leaves_them_as_they_were() 
         let error = read(&text(&format!("robot.{robot}"))).unwrap_err().to_string();
         assert!(error.contains(said), "{robot}: {error}");
     }
+    // Where robots differ, what acts at their joints does not.
+    for robot in [
+        "planar_arm = { mass_kg = [2, 1], length_m = [1, 1], damping = 0.2, armature = 0.1, friction.dry = { coulomb = 0.5 } }",
+        "point_mass = { dimension = 2, mass_kg = 1, damping = 0.2, friction.dry = { coulomb = 0.5 } }",
+    ] {
+        let same = plain(&format!("robot.{robot}"));
+        let varied = plain(&format!("robot.{robot}\nparameter_variation = {{ seed = 1, relative = 0.1 }}"));
+        let bodies = same.theta.len() - drives(&same).count();
+        assert!(same.theta[..bodies].iter().zip(&varied.theta).all(|(one, other)| one != other), "{:?}", varied.theta);
+        assert_eq!((&same.theta[bodies..], drives(&same)), (&varied.theta[bodies..], drives(&varied)));
+    }
     // Without a velocity nothing can be said against friction.
     let blind = text("robot.point_mass = { dimension = 2, mass_kg = 1, damping = 0.1 }")
         .replace("[law.adaptive]\nbounds.within = 0.3", "[law.position_only]");
