@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
+use forwardstep_core::robot::tree::JointKind;
 use forwardstep_core::robot::{Definiteness, InertiaBound};
-use forwardstep_sim::{AgentSetup, Attachments, Axis, AxisUnit, Robot, RobotSetup, Setup};
+use forwardstep_sim::{AgentSetup, Attachments, AxisUnit, Robot, RobotSetup, Setup};
 
 use crate::hypothesis::{Hypothesis, Id, InertiaUnit, Named, RobotEvidence};
 use crate::practical::{FastestDamping, fastest_damping_of};
@@ -45,11 +46,18 @@ impl Inertias {
 }
 
 fn unit(robot: &RobotSetup) -> InertiaUnit {
-    let slides = |axis: &Axis| axis.unit == AxisUnit::Metre;
-    match (robot.axes.iter().any(slides), robot.axes.iter().all(slides)) {
+    let slides: Vec<bool> = match robot.interface().attachments {
+        Attachments::Links(tree) => tree.joint_kinds().map(|kind| kind == JointKind::Prismatic).collect(),
+        Attachments::Axes
+        | Attachments::PlanarTip
+        | Attachments::AxesAndBody
+        | Attachments::Body
+        | Attachments::Equations(_) => robot.axes.iter().map(|axis| axis.unit == AxisUnit::Metre).collect(),
+    };
+    match (slides.contains(&true), slides.contains(&false)) {
         (false, _) => InertiaUnit::Turning,
-        (true, true) => InertiaUnit::Sliding,
-        (true, false) => InertiaUnit::Mixed,
+        (true, false) => InertiaUnit::Sliding,
+        (true, true) => InertiaUnit::Mixed,
     }
 }
 

@@ -250,7 +250,9 @@ fn robots_in_closed_form_have_the_same_keys_and_none_leaves_them_as_they_were() 
         "point_mass = { dimension = 2, mass_kg = 1, damping = 0.2, friction.dry = { coulomb = 0.5 } }",
     ] {
         let same = plain(&format!("robot.{robot}"));
-        let varied = plain(&format!("robot.{robot}\nparameter_variation = {{ seed = 1, relative = 0.1 }}"));
+        let two = text(&format!("robot.{robot}\ncount = 2\nparameter_variation = {{ seed = 1, relative = 0.1 }}"));
+        let two = two.replace("start.position = [0.5, 1.0]", "start.position = [[0.5, 1.0], [0.5, 1.0]]");
+        let varied = read(&two).unwrap().setup.agents[0].robot.clone();
         let bodies = same.theta.len() - drives(&same).count();
         assert!(same.theta[..bodies].iter().zip(&varied.theta).all(|(one, other)| one != other), "{:?}", varied.theta);
         assert_eq!((&same.theta[bodies..], drives(&same)), (&varied.theta[bodies..], drives(&varied)));
