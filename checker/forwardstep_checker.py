@@ -192,6 +192,12 @@ def choice(value, where):
 def known(kind, kinds, what):
     decided(kind in kinds, f"{what} of the kind `{kind}` are not known")
 
+# The same, of those that are known.
+def chosen(value, where, kinds, what):
+    kind, body = choice(value, where)
+    known(kind, kinds, what)
+    return kind, body
+
 # A number for a message.
 def said(number):
     return str(number) if len(str(number)) <= 24 else f"{float(number):.9g}"
@@ -661,8 +667,7 @@ CONTROL = "sample_hz computation_delay_s velocity noise quantisation torque_limi
 class Agent:
     def __init__(self, name, index, entry, place):
         self.name, self.index, self.entry, self.place = name, index, entry, place
-        self.robot, self.body = choice(entry.get("robot"), f"{place}.robot")
-        known(self.robot, USUAL_LAW, "robots")
+        self.robot, self.body = chosen(entry.get("robot"), f"{place}.robot", USUAL_LAW, "robots")
         table(self.body, f"{place}.robot.{self.robot}")
         self.enforced = entry.get("enforce_limits", False) is not False
         self.roots, self.manipulability, self.pushes, self.target = [], Fraction(0), [], None
@@ -737,8 +742,7 @@ class Scenario:
         such(len(self.agents) + len(names) <= MOST_AGENTS, "there are too many agents")
         for each in names:
             agent = Agent(each, len(self.agents), entry, place)
-            agent.law, law = choice(entry.get("law", self.file.get("law", USUAL_LAW[agent.robot])), "law")
-            known(agent.law, MADE_FOR, "laws")
+            agent.law, law = chosen(entry.get("law", self.file.get("law", USUAL_LAW[agent.robot])), "law", MADE_FOR, "laws")
             agent.gains = table(law, f"law.{agent.law}", " ".join(GAINS[agent.law]) + OTHER_SETTINGS)
             such(agent.robot in MADE_FOR[agent.law], f"the law `{agent.law}` is not made for `{agent.robot}`")
             self.agents.append(agent)
@@ -824,8 +828,7 @@ class Scenario:
         self.weight, self.delay = self.read_weight(network.get("weight", 1)), self.read_delay(network.get("delay", {"constant_s": 0}))
         self.links = {(link.source, link.to): link.delay for link in map(self.edge, network.get("link_delays", []))}
         if "coupling" in network:
-            form, scale = choice(network["coupling"], "coupling")
-            known(form, ("saturated", "tanh", "rational"), "couplings")
+            form, scale = chosen(network["coupling"], "coupling", ("saturated", "tanh", "rational"), "couplings")
             self.coupling = form, positive(scale, "coupling")
         such(("edges" in network) != ("phases" in network), "the network must have either `edges` or `phases`")
         if "edges" in network:
@@ -1300,9 +1303,8 @@ def outstretched(agent, root, locked):
 def frictions(scenario):
     found = set()
     for agent in (agent for agent in scenario.agents if "friction" in agent.body):
-        kind, body = choice(agent.body["friction"], "friction")
-        known(kind, ("ignore", "dry", "smooth"), "frictions")
-        force = body.get("coulomb", [stated for _, _, stated, _ in links(scenario, agent)])
+        kind, body = chosen(agent.body["friction"], "friction", ("ignore", "dry", "smooth"), "frictions")
+        force = body["coulomb"] if "coulomb" in body else [stated for _, _, stated, _ in links(scenario, agent)]
         found |= {kind for x in (force if isinstance(force, list) else [force]) if exact(x, "coulomb") and kind != "ignore"}
     return found
 
@@ -1326,27 +1328,28 @@ def unturned(scenario, agent):
 
 # Masses, lengths, centres of mass and central inertias of a planar arm.
 def planar(body):
-    of = {key: [exact(x, key) for x in pair(body[key])] for key in body if key != "gravity_m_s2"}
+    of = {key: [exact(x, key) for x in pair(body[key])] for key in ("mass_kg", "length_m", "com_m", "inertia_kg_m2") if key in body}
     m, l_ = of["mass_kg"], of["length_m"]
     return m, l_, of.get("com_m", [x / 2 for x in l_]), of.get("inertia_kg_m2", [m[k] * l_[k] ** 2 / 12 for k in (0, 1)])
 
 # A share on either side of a parameter, or all from zero to twice a friction, holds it; bounds that are given have to.
 def bounds_hold(agent):
-    kind, body = choice(agent.gains.get("bounds", {"within": 1}), "bounds")
-    known(kind, ("within", "given"), "bounds")
+    kind, body = chosen(agent.gains.get("bounds", {"within": 1}), "bounds", ("within", "given"), "bounds")
     if kind == "within":
         return exact(body, "within") > 0
-    decided(agent.robot == "point_mass" and "parameter_variation" not in agent.entry, "the parameters of this robot are not computed here")
+    plain = agent.robot == "point_mass" and "parameter_variation" not in agent.entry and not {"damping", "friction"} & set(agent.body)
+    decided(plain, "the parameters of this robot are not computed here")
     (lower,), (upper,) = body["lower"], body["upper"]
     return exact(lower, "lower") <= exact(agent.body["mass_kg"], "mass_kg") <= exact(upper, "upper")
 
 # M is positive definite at all q, by a bound that does not depend on q: a mass is positive; the minors of a ship's are, in its
-# body; of a planar arm with a = I₁ + m₁c₁² and b = I₂ + m₂c₂² det M = (a + m₂l₁²) b − (m₂l₁c₂ cos q₂)² ≥ ab + m₂l₁²I₂.
+# body; of a planar arm with a = I₁ + m₁c₁² and b = I₂ + m₂c₂² det M = (a + m₂l₁²) b − (m₂l₁c₂ cos q₂)² ≥ ab + m₂l₁²I₂. Rotors A ⪰ 0
+# turn M into M + A ⪰ M.
 def definite_inertia(scenario, agent):
-    if agent.robot == "urdf":
-        return solid(scenario, agent)
-    if agent.robot == "point_mass":
-        return exact(agent.body.get("mass_kg"), "mass_kg") > 0
+    rotors = agent.body.get("armature", 0)
+    such(min(exact(x, "armature") for x in (rotors if isinstance(rotors, list) else [rotors])) >= 0, "an armature is negative")
+    if agent.robot in ("urdf", "point_mass"):
+        return solid(scenario, agent) if agent.robot == "urdf" else exact(agent.body.get("mass_kg"), "mass_kg") > 0
     if agent.robot == "ship":
         of = table(agent.body.get("inertia"), "inertia")
         m_11, m_22, m_23, m_33 = (exact(of.get(key, 0), key) for key in ("surge_kg", "sway_kg", "sway_yaw_kg_m", "yaw_kg_m2"))
@@ -1660,8 +1663,7 @@ def gains(claim, matrices):
 def gain_is_positive(claim, agent, key, value, matrices, stated):
     bandwidth = value is None and agent.robot == "urdf"
     if isinstance(value, dict):
-        kind, value = choice(value, key)
-        known(kind, ("gain", "bandwidth_per_s"), "gains")
+        kind, value = chosen(value, key, ("gain", "bandwidth_per_s"), "gains")
         bandwidth = kind == "bandwidth_per_s"
     if bandwidth and key == "damping":
         # The scales of K are the diagonal of M(q₀); those of Γ are positive by how they are made.

@@ -4,43 +4,35 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use forwardstep_core::robot::tree::{JointKind, Tree};
-use forwardstep_core::robot::{Definiteness, InertiaBound, PlanarArm, PointMass, Ship};
-use forwardstep_sim::{AgentSetup, RobotSetup, Setup};
+use forwardstep_core::robot::tree::JointKind;
+use forwardstep_core::robot::{Definiteness, InertiaBound};
+use forwardstep_sim::{AgentSetup, Attachments, AxisUnit, Robot, RobotSetup, Setup};
 
 use crate::hypothesis::{Hypothesis, Id, InertiaUnit, Named, RobotEvidence};
 use crate::practical::{FastestDamping, fastest_damping_of};
 
-/// Pieces into which the turns of degenerate robots may be cut.
-const PIECES: usize = 4096;
-
 /// Whether M(q) is uniformly positive definite, of robots that many agents may share.
 #[derive(Default)]
 pub(crate) struct Inertias {
-    /// By model and by the bits of ϑ.
+    models: Vec<Arc<dyn Robot>>,
+    /// By the number of the model and by the bits of ϑ.
     known: BTreeMap<(usize, Vec<u64>), Rc<Definiteness>>,
 }
 
 impl Inertias {
     /// That of a robot; `None` for one of which nothing is known here.
     pub(crate) fn of(&mut self, robot: &RobotSetup) -> Option<Rc<Definiteness>> {
-        let kind = &robot.kind;
-        // A tree by its address, which is nowhere near zero.
-        let model = match kind.downcast::<Arc<Tree>>() {
-            Some(tree) => Arc::as_ptr(tree) as usize,
-            None if kind.is::<PlanarArm>() => 0,
-            None if kind.is::<Ship>() => 1,
-            None => 2,
-        };
+        let own = robot.kind.lagrangian()?;
+        let model = self.models.iter().position(|model| own.same_model(&**model)).unwrap_or_else(|| {
+            self.models.push(Arc::clone(&robot.kind));
+            self.models.len() - 1
+        });
         let key = (model, robot.theta.iter().map(|entry| entry.to_bits()).collect::<Vec<_>>());
         if let Some(found) = self.known.get(&key) {
             return Some(Rc::clone(found));
         }
-        let found = Rc::new(definiteness(robot)?);
-        // A point mass has its dimension beside ϑ, and costs nothing.
-        if model != 2 {
-            self.known.insert(key, Rc::clone(&found));
-        }
+        let found = Rc::new(own.definiteness(&robot.theta)?);
+        self.known.insert(key, Rc::clone(&found));
         Some(found)
     }
 
@@ -53,35 +45,19 @@ impl Inertias {
     }
 }
 
-fn definiteness(robot: &RobotSetup) -> Option<Definiteness> {
-    let (kind, theta) = (&robot.kind, &robot.theta[..]);
-    if let Some(tree) = kind.downcast::<Arc<Tree>>() {
-        tree.definiteness(theta, PIECES).ok()
-    } else if let Some(arm) = kind.downcast::<PlanarArm>() {
-        arm.definiteness(theta).ok()
-    } else if let Some(mass) = kind.downcast::<PointMass>() {
-        mass.definiteness(theta).ok()
-    } else {
-        kind.downcast::<Ship>()?.definiteness(theta).ok()
-    }
-}
-
 fn unit(robot: &RobotSetup) -> InertiaUnit {
-    let kind = &robot.kind;
-    if let Some(tree) = kind.downcast::<Arc<Tree>>() {
-        let slides = |kind| kind == JointKind::Prismatic;
-        let (some, all) = (tree.joint_kinds().any(slides), tree.joint_kinds().all(slides));
-        match (some, all) {
-            (false, _) => InertiaUnit::Turning,
-            (true, true) => InertiaUnit::Sliding,
-            (true, false) => InertiaUnit::Mixed,
-        }
-    } else if kind.is::<PointMass>() {
-        InertiaUnit::Sliding
-    } else if kind.is::<Ship>() {
-        InertiaUnit::Mixed
-    } else {
-        InertiaUnit::Turning
+    let slides: Vec<bool> = match robot.interface().attachments {
+        Attachments::Links(tree) => tree.joint_kinds().map(|kind| kind == JointKind::Prismatic).collect(),
+        Attachments::Axes
+        | Attachments::PlanarTip
+        | Attachments::AxesAndBody
+        | Attachments::Body
+        | Attachments::Equations(_) => robot.axes.iter().map(|axis| axis.unit == AxisUnit::Metre).collect(),
+    };
+    match (slides.contains(&true), slides.contains(&false)) {
+        (false, _) => InertiaUnit::Turning,
+        (true, false) => InertiaUnit::Sliding,
+        (true, true) => InertiaUnit::Mixed,
     }
 }
 
@@ -160,16 +136,16 @@ pub(crate) fn bounded_dynamics(setup: &Setup, agents: &[usize]) -> Option<Hypoth
 
 /// Whether the robot of an agent is one of which tests here show the three properties of Section II-B.
 pub(crate) fn is_known(agent: &AgentSetup) -> bool {
-    let robot = &agent.robot.kind;
-    robot.is::<Arc<Tree>>() || robot.is::<PlanarArm>() || robot.is::<PointMass>() || robot.is::<Ship>()
+    agent.robot.kind.lagrangian().is_some_and(|robot| robot.swung_axes().is_some())
 }
 
 fn swung(agent: &AgentSetup) -> Vec<usize> {
-    agent.robot.kind.downcast::<Arc<Tree>>().map_or_else(Vec::new, |tree| tree.swung_joints())
+    agent.robot.kind.lagrangian().and_then(|robot| robot.swung_axes()).unwrap_or_default()
 }
 
-/// Whether directions had to be compared to know that no joint is swung.
+/// Whether directions had to be compared to know that no joint is swung: those of a tree.
 fn slides_behind_turns(agent: &AgentSetup) -> bool {
-    let tree = agent.robot.kind.downcast::<Arc<Tree>>();
-    tree.is_some_and(|tree| unit(&agent.robot) == InertiaUnit::Mixed && tree.swung_joints().is_empty())
+    let robot = agent.robot.interface();
+    let of_links = matches!(robot.attachments, Attachments::Links(_));
+    of_links && unit(&agent.robot) == InertiaUnit::Mixed && swung(agent).is_empty()
 }

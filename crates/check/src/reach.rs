@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use forwardstep_core::expression::Interval;
-use forwardstep_core::robot::PlanarArm;
 use forwardstep_core::robot::tree::{Tree, TreeTip};
 use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{AgentSetup, TaskSpaceLaw, TipSetup};
@@ -89,7 +88,7 @@ impl Reach {
 /// What the tip of an agent can reach; nothing for a tip that slides.
 pub(crate) fn reach(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<Reach> {
     match &law.tip {
-        TipSetup::Planar(tip) => agent.robot.kind.is::<PlanarArm>().then(|| {
+        TipSetup::Planar(tip) => law.tip.parameters(&*agent.robot.kind).is_some().then(|| {
             let [first, second] = tip.length_m;
             Reach { from: vec![0.0; 2], least: (first - second).abs(), most: first + second, exact: true }
         }),

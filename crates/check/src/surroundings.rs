@@ -1,8 +1,6 @@
 //! What surrounds a law: pushes, limits, sampling.
 
-use std::sync::Arc;
-
-use forwardstep_core::robot::tree::{Drives, Friction, SMOOTHING_LOSS, Tree};
+use forwardstep_core::robot::{Friction, SMOOTHING_LOSS};
 use forwardstep_sim::push::Push;
 use forwardstep_sim::{AgentSetup, Setup, VelocitySensor};
 
@@ -67,9 +65,9 @@ fn applied_torque(setup: &Setup) -> Hypothesis {
     Hypothesis::new(Id::AppliedTorque, evidence)
 }
 
-/// Friction at the joints of trees: what is smooth damps, of what is dry V gains at most κ Σ ε F.
+/// Friction at the joints: what is smooth damps, of what is dry V gains at most κ Σ ε F.
 fn friction(setup: &Setup) -> Option<Hypothesis> {
-    let rubbing = |index: &usize| drives(&setup.agents[*index]).is_some_and(|drives| !drives.friction.is_empty());
+    let rubbing = |index: &usize| !setup.agents[*index].robot.interface().drives.friction.is_empty();
     let those: Vec<usize> = (0..setup.agents.len()).filter(rubbing).collect();
     let dry: Vec<usize> = those.iter().copied().filter(|index| dry_loss_w(&setup.agents[*index]).is_some()).collect();
     let most_w = dry.iter().filter_map(|index| dry_loss_w(&setup.agents[*index])).sum();
@@ -77,30 +75,24 @@ fn friction(setup: &Setup) -> Option<Hypothesis> {
     (!those.is_empty()).then(|| Hypothesis::new(Id::SmoothFriction, evidence))
 }
 
-fn drives(agent: &AgentSetup) -> Option<&Drives> {
-    agent.robot.kind.downcast::<Arc<Tree>>().map(|tree| tree.drives())
-}
-
 /// F tanh(v/ε) of an agent, joint by joint, and whether its robot has that and not F σ; `None` where nothing rubs.
 pub(crate) fn smoothed_friction(agent: &AgentSetup, v: &[f64]) -> Option<(Vec<f64>, bool)> {
-    let tree = agent.robot.kind.downcast::<Arc<Tree>>()?;
-    let Drives { friction, dry_s, .. } = tree.drives();
-    let [_, at] = tree.drive_parameters();
+    let drives = agent.robot.interface().drives;
+    let [.., forces] = agent.robot.drive_parameters(&drives)?;
     let mut torque = vec![0.0; v.len()];
-    for (Friction { joint, width }, force) in friction.iter().zip(agent.robot.theta.get(at)?) {
+    for (Friction { joint, width }, force) in drives.friction.iter().zip(forces) {
         *torque.get_mut(*joint)? = force * libm::tanh(v.get(*joint)? / width);
     }
-    (!friction.is_empty()).then_some((torque, dry_s.is_none()))
+    (!drives.friction.is_empty()).then_some((torque, drives.dry_s.is_none()))
 }
 
 /// κ Σ ε F of an agent whose friction is dry, W: what V gains by it at most.
 pub(crate) fn dry_loss_w(agent: &AgentSetup) -> Option<f64> {
-    let tree = agent.robot.kind.downcast::<Arc<Tree>>()?;
-    let Drives { friction, dry_s, .. } = tree.drives();
-    dry_s.filter(|_| !friction.is_empty())?;
-    let [_, at] = tree.drive_parameters();
-    let forces = agent.robot.theta.get(at)?;
-    Some(SMOOTHING_LOSS * friction.iter().zip(forces).map(|(friction, force)| friction.width * force).sum::<f64>())
+    let drives = agent.robot.interface().drives;
+    drives.dry_s.filter(|_| !drives.friction.is_empty())?;
+    let [.., forces] = agent.robot.drive_parameters(&drives)?;
+    let losses = drives.friction.iter().zip(forces).map(|(friction, force)| friction.width * force);
+    Some(SMOOTHING_LOSS * losses.sum::<f64>())
 }
 
 /// Under digital control: the theorems speak of continuous time and of exact measurements.

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use forwardstep_check::{Answer, Id, Rigour, check};
-use forwardstep_core::robot::PointMass;
+use forwardstep_core::robot::{Definiteness, Drives, PointMass};
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::system::{Robot, RobotInterface};
 use forwardstep_sim::{AgentSetup, Known, LagrangianRobot, Network, RobotModel, RobotSetup, Setup, Signal, run};
@@ -32,6 +32,18 @@ impl RobotModel for Sledge {
 
     fn shares_kernel(&self, _: &Self) -> bool {
         true
+    }
+
+    fn with_drives(&self, _: Drives) -> Option<Arc<dyn Robot>> {
+        None
+    }
+
+    fn definiteness(&self, _: &[f64]) -> Option<Definiteness> {
+        None
+    }
+
+    fn swung_axes(&self) -> Option<Vec<usize>> {
+        None
     }
 }
 

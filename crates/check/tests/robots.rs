@@ -80,6 +80,7 @@ fn prop_1_agents_with_one_unit_share_a_line_with_the_smallest_bound() {
     let mut mass = arm(3, &[1.0, 2.0]);
     mass.robot.kind = Arc::new(PointMass { dimension: 2 });
     mass.robot.theta = vec![0.25];
+    mass.robot.axes.iter_mut().for_each(|axis| axis.unit = AxisUnit::Metre);
     let mut setup = agreeing(vec![arm(2, &[1.0, 2.0]), arm(0, &[1.0, 2.0]), arm(1, &[1.0, 2.0]), mass]);
     // The first weighs less than its siblings, as robots with a variation of their own may.
     setup.agents[1].robot.theta.iter_mut().for_each(|entry| *entry *= 0.5);

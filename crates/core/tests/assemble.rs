@@ -1,11 +1,11 @@
 //! Building trees: what is refused, what is named, and which bodies cannot exist.
 #![allow(clippy::unwrap_used)] // In helpers too.
 
-use forwardstep_core::robot::Lagrangian;
 use forwardstep_core::robot::tree::{
-    DriveError, Drives, Friction, InertiaDefect, JointKind, LinkJoint, LinkSpec, MassMatrixError, Placement, Stick,
-    Tree, TreeError, inertia_about_frame, inertia_defects,
+    InertiaDefect, JointKind, LinkJoint, LinkSpec, MassMatrixError, Placement, Tree, TreeError, inertia_about_frame,
+    inertia_defects,
 };
+use forwardstep_core::robot::{DriveError, Drives, Friction, Lagrangian, Stick};
 
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
@@ -43,14 +43,19 @@ fn drives_need_joints_in_order_and_positive_widths() {
         let error = tree().with_drives(Drives { dry_s: Some(period_s), ..Drives::default() }).unwrap_err();
         assert!(matches!(error, DriveError::Period { .. }), "{error}");
     }
-    let driven = Drives { geared: vec![1], friction: vec![Friction { joint: 0, width: 0.1 }], dry_s: Some(1e-3) };
+    let friction = vec![Friction { joint: 0, width: 0.1 }];
+    let driven = Drives { damped: vec![0], geared: vec![1], friction, dry_s: Some(1e-3) };
     let driven = tree().with_drives(driven).unwrap();
     assert_eq!(driven.theta_len(), 23);
-    assert_eq!(driven.drive_parameters(), [21..22, 22..23]);
+    assert_eq!(driven.drives().ranges_in(23), Some([20..21, 21..22, 22..23]));
+    assert_eq!(driven.drives().ranges_in(2), None);
     let names = driven.theta_names(&["a", "b"]).unwrap();
     assert_eq!(names[20..], ["a.damping_n_m_s", "b.armature_kg_m2", "a.friction_n_m"]);
-    // What it had is replaced.
-    assert_eq!(driven.with_drives(Drives::default()).unwrap().theta_len(), 21);
+    let damped = tree().with_drives(Drives { damped: vec![1, 1], ..Drives::default() });
+    assert_eq!(damped.unwrap_err(), DriveError::Order { joint: 1 });
+    // What it had is replaced, damping too.
+    assert_eq!(tree().theta_len(), 21);
+    assert_eq!(driven.with_drives(Drives::default()).unwrap().theta_len(), 20);
 }
 
 #[test]
@@ -99,7 +104,7 @@ fn regress_bodies_anchors_names_and_damping() {
     assert_eq!(assembled.moving, [1, 3, 4]);
     assert_eq!(tree.parents().collect::<Vec<_>>(), [None, Some(0), Some(0)]);
     assert_eq!(tree.joint_kinds().nth(1), Some(JointKind::Prismatic));
-    assert_eq!(tree.damped_joints(), [0, 1]);
+    assert_eq!(tree.drives().damped, [0, 1]);
     assert_eq!(tree.gravity_m_s2(), GRAVITY);
     assert_eq!(assembled.theta[30..], [0.3, 4.0]);
     // The second ball is lumped into the first body: masses 2 + 2, at 0.5 and 1.5.
@@ -234,10 +239,11 @@ fn eq_dry_friction_suits_the_velocity_that_a_period_ends_with() {
     let assembled = Tree::assemble(&links, GRAVITY).unwrap();
     let forces = [2.0, 0.5];
     let friction = [0, 2].map(|joint| Friction { joint, width: 0.1 }).to_vec();
-    let drives = Drives { geared: vec![1], friction, dry_s: Some(0.1) };
+    let drives = Drives { geared: vec![1], friction, dry_s: Some(0.1), ..assembled.tree.drives().clone() };
     let (tree, mut theta) = (assembled.tree.with_drives(drives).unwrap(), assembled.theta);
     theta.extend([0.2, forces[0], forces[1]]);
-    let (mut scratch, mut stick) = (tree.scratch(), Stick::new(&tree));
+    let (mut scratch, mut stick) = (tree.scratch(), Stick::new(tree.drives(), 3));
+    let mut mass = [0.0; 9];
     let mut ends = [0; 3];
     for k in 0..300 {
         let wave = |rate: f64| (rate * f64::from(k)).sin();
@@ -251,7 +257,8 @@ fn eq_dry_friction_suits_the_velocity_that_a_period_ends_with() {
             ddq
         };
         let before = under(stick.torque());
-        stick.set(&tree, h_s, &theta, [&q, &dq, &before]).unwrap();
+        tree.mass_matrix(&mut tree.scratch(), &q, &theta, &mut mass).unwrap();
+        stick.set(h_s, &mass, &forces, [&dq, &before]).unwrap();
         let after = under(stick.torque());
         assert_eq!(stick.torque()[1], 0.0);
         for (joint, force) in [0, 2].into_iter().zip(forces) {
@@ -268,9 +275,9 @@ fn eq_dry_friction_suits_the_velocity_that_a_period_ends_with() {
     assert!(ends.iter().all(|count| *count > 50), "it slides either way, and sticks: {ends:?}");
     let short = [0.0; 2];
     let full = [0.0; 3];
-    for wrong in [[&short[..], &full, &full], [&full, &short, &full], [&full, &full, &short]] {
-        assert!(stick.set(&tree, 0.1, &theta, wrong).is_err());
+    for wrong in [[&short[..], &full], [&full, &short]] {
+        assert!(stick.set(0.1, &mass, &forces, wrong).is_err());
     }
-    let other = Tree::assemble(&links[..2], GRAVITY).unwrap();
-    assert!(stick.set(&other.tree, 0.1, &other.theta, [&short; 3]).is_err());
+    assert!(stick.set(0.1, &mass[..4], &forces, [&full, &full]).is_err());
+    assert!(stick.set(0.1, &mass, &forces[..1], [&full, &full]).is_err());
 }

@@ -3,7 +3,7 @@
 
 use forwardstep_core::law::{SlotineLi, SlotineLiOutput};
 use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkSpec, Placement, Tree};
-use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass, Ship, TwoVelocity};
+use forwardstep_core::robot::{Driven, Drives, Friction, Lagrangian, PlanarArm, PointMass, Ship, TwoVelocity};
 use forwardstep_core::{Gain, LengthError, ResolvedGain};
 
 const LONGEST: usize = 40;
@@ -93,5 +93,10 @@ fn prop_robots_and_law_check_every_length() {
     every_method_checks("planar arm", &PlanarArm);
     every_method_checks("point mass", &PointMass { dimension: 2 });
     every_method_checks("ship", &Ship);
+    let friction = vec![Friction { joint: 0, width: 0.1 }];
+    for geared in [vec![], vec![1]] {
+        let drives = Drives { damped: vec![0], geared, friction: friction.clone(), dry_s: None };
+        every_method_checks("planar arm with drives", &Driven::new(PlanarArm, drives).unwrap());
+    }
     every_method_checks("tree", &two_joints());
 }

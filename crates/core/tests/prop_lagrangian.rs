@@ -8,10 +8,11 @@ mod common;
 use common::dual::{Dual, constants, duals};
 use common::random::Random;
 use common::{dot, error, times, transpose_times};
-use forwardstep_core::robot::tree::{
-    Assembled, Drives, JointKind, LinkJoint, LinkSpec, Placement, SMOOTHING_LOSS, Tree, inertia_about_frame,
+use forwardstep_core::robot::tree::{Assembled, JointKind, LinkJoint, LinkSpec, Placement, Tree, inertia_about_frame};
+use forwardstep_core::robot::{
+    Driven, Drives, Friction, Lagrangian, PlanarArm, PlanarLinks, PlanarTip, PointMass, SMOOTHING_LOSS, Ship,
+    TwoVelocity,
 };
-use forwardstep_core::robot::{Lagrangian, PlanarArm, PlanarLinks, PlanarTip, PointMass, Ship, TwoVelocity};
 use proptest::prelude::*;
 
 const TOLERANCE: f64 = 1.0e-11;
@@ -150,7 +151,8 @@ proptest! {
         let n = 16;
         let (mut without, mut with) = (vec![0.0; n], vec![0.0; n]);
         assembled.tree.mass_matrix(&mut assembled.tree.scratch(), &case.q, &assembled.theta, &mut without).unwrap();
-        assembled.tree = assembled.tree.with_drives(Drives { geared: vec![1, 3], ..Drives::default() }).unwrap();
+        let drives = Drives { geared: vec![1, 3], ..assembled.tree.drives().clone() };
+        assembled.tree = assembled.tree.with_drives(drives).unwrap();
         assembled.theta.extend([0.7, 0.4]);
         assembled.tree.mass_matrix(&mut assembled.tree.scratch(), &case.q, &assembled.theta, &mut with).unwrap();
         for k in 0..n {
@@ -279,7 +281,77 @@ proptest! {
         let (tree, _) = products(&assembled.tree, &case, &assembled.theta);
         let (closed, _) = products(&PlanarArm, &case, &links.theta());
         prop_assert!(error(&tree, &closed) < TOLERANCE);
+
+        // With what acts at the joints: the same products, losses, accelerations and inertia.
+        let drives = random_drives(&mut random, 2);
+        let own = driving(&mut random, &drives);
+        let with = |mut theta: Vec<f64>| { theta.extend(&own); theta };
+        let tree = assembled.tree.with_drives(drives.clone()).unwrap();
+        let (tree_theta, theta) = (with(assembled.theta), with(links.theta().to_vec()));
+        let arm = Driven::new(PlanarArm, drives).unwrap();
+        let [of_tree, closed] = [described(&tree, &case, &tree_theta), described(&arm, &case, &theta)];
+        for (k, (one, other)) in of_tree.iter().zip(&closed).enumerate() {
+            prop_assert!(error(one, other) < 1e-9, "{}: {:?} {:?}", k, one, other);
+        }
+        let (_, yt_s) = products(&tree, &case, &tree_theta);
+        let (_, other) = products(&arm, &case, &theta);
+        prop_assert!(error(&yt_s[20..], &other[5..]) < TOLERANCE);
     }
+
+    #[test]
+    fn prop_robots_in_closed_form_with_drives_are_lagrangian(seed in any::<u64>(), dimension in 1_usize..18) {
+        let mut random = Random::new(seed);
+        let case = Case::new(&mut random, dimension);
+        let drives = random_drives(&mut random, dimension);
+        let own = driving(&mut random, &drives);
+        let mass = Driven::new(PointMass { dimension }, drives).unwrap();
+        let mut theta = vec![1.5 + random.number()];
+        theta.extend(&own);
+        consistent(&mass, &case, &theta);
+        invertible(&mass, &case, &theta);
+        consistent(&mass, &case, &random.column(theta.len(), 3.0));
+        let scale = Lagrangian::<f64>::adaptation_scale(&mass, &case.q, &theta);
+        prop_assert!(scale.len() == theta.len() && scale.iter().all(|scale| *scale > 0.0), "{:?}", scale);
+
+        // M of an arm and of a ship is no diagonal.
+        let case = Case::new(&mut random, 2);
+        let drives = Drives { geared: vec![1], dry_s: None, ..random_drives(&mut random, 2) };
+        let mut theta = PlanarLinks::uniform([2.0, 1.5], [1.0, 0.8]).theta().to_vec();
+        theta.extend(driving(&mut random, &drives));
+        let arm = Driven::new(PlanarArm, drives).unwrap();
+        consistent(&arm, &case, &theta);
+        invertible(&arm, &case, &theta);
+        let case = Case::new(&mut random, 3);
+        let drives = Drives { geared: vec![0, 2], dry_s: None, ..random_drives(&mut random, 3) };
+        let mut theta = vec![2.0, 3.0, 0.7, 1.5, 0.3, 0.9, 0.2, -0.4, 0.8];
+        theta.extend(driving(&mut random, &drives));
+        invertible(&Driven::new(Ship, drives).unwrap(), &case, &theta);
+    }
+}
+
+/// Drives of some joints; friction is smooth.
+fn random_drives(random: &mut Random, joints: usize) -> Drives {
+    let mut some = || (0..joints).filter(|_| random.chance(0.6)).collect::<Vec<usize>>();
+    let [damped, geared, rubbing] = [some(), some(), some()];
+    let friction = rubbing.into_iter().map(|joint| Friction { joint, width: 0.3 + 0.1 * joint as f64 }).collect();
+    Drives { damped, geared, friction, dry_s: None }
+}
+
+/// Parameters of drives.
+fn driving(random: &mut Random, drives: &Drives) -> Vec<f64> {
+    (0..drives.count()).map(|_| 1.0 + 0.9 * random.number()).collect()
+}
+
+/// Yϑ, what is lost, q̈, M and g.
+fn described<R: Lagrangian<f64>>(robot: &R, case: &Case, theta: &[f64]) -> [Vec<f64>; 5] {
+    let (n, mut scratch) = (robot.dof(), robot.scratch());
+    let [mut lost, mut ddq, mut g] = [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
+    let mut mass = vec![0.0; n * n];
+    robot.add_damping(&mut scratch, case.motion(), theta, &mut lost).unwrap();
+    robot.forward_dynamics(&mut scratch, &case.q, &case.dq, theta, &case.s, &mut ddq).unwrap();
+    robot.mass_matrix(&mut scratch, &case.q, theta, &mut mass).unwrap();
+    robot.gravity(&mut scratch, &case.q, theta, &mut g).unwrap();
+    [products(robot, case, theta).0, lost, ddq, mass, g]
 }
 
 #[test]

@@ -199,7 +199,7 @@ pub(crate) struct RobotOptions {
     /// Hold a joint at a position, in rad or m; may be given several times
     #[arg(long, value_name = "JOINT=VALUE", value_parser = lock)]
     pub(crate) lock: Vec<(String, f64)>,
-    /// Leave Coulomb friction out instead of refusing a robot that has some; `--at` always does
+    /// Leave Coulomb friction out; `--at` always does
     #[arg(long)]
     pub(crate) ignore_friction: bool,
     /// Print one JSON object
@@ -247,6 +247,9 @@ pub(crate) struct NewOptions {
     /// Their robot: planar_arm, point_mass, ur5e, panda or the path of a URDF [default: planar_arm]
     #[arg(long, value_name = "ROBOT")]
     pub(crate) robot: Option<String>,
+    /// Give every joint dry friction, and keep estimates within bounds
+    #[arg(long)]
+    pub(crate) dry_friction: bool,
     /// The order of the reference dynamics, 1 to 8 [default: 2]
     #[arg(long, value_name = "L", value_parser = order)]
     pub(crate) order: Option<u32>,

@@ -318,6 +318,28 @@ fn friction_and_bounds_are_certified_by_the_text() {
     is(&outside, "parameters-within-bounds", "violated", "could not check");
 }
 
+#[test]
+fn robots_in_closed_form_with_drives_are_certified_by_the_text() {
+    let is = |robot: &str, id: &str, answer: &str, outcome: &str| {
+        let text = fs::read_to_string(root().join("checker/cases/friction.toml")).unwrap();
+        let (head, rest) = text.split_once("robot.urdf").unwrap();
+        let rest = rest.split_once("\n\n").unwrap().1;
+        let text = format!("{head}robot.{robot}\nstart.position = [[0, 0], [0.2, 0.1]]\n\n{rest}");
+        assert_eq!(judged(&text, id), (answer.to_owned(), outcome.to_owned()), "{id}: {text}");
+    };
+    let arm = "planar_arm = { mass_kg = [2, 1], length_m = [1, 0.8], damping = 0.1, armature = [0.2, 0], friction.smooth = { coulomb = [0.5, 0] } }";
+    let mass = "point_mass = { dimension = 2, mass_kg = 2, damping = [0, 1], friction.smooth = { coulomb = 0.5 } }";
+    for robot in [arm, mass] {
+        for id in
+            ["uniform-inertia", "bounded-dynamics", "smooth-friction", "parameters-within-bounds", "positive-gains"]
+        {
+            is(robot, id, "holds", "accepted");
+        }
+        is(&robot.replace("smooth", "dry"), "smooth-friction", "not covered by the paper", "could not check");
+        is(&robot.replace("smooth", "dry"), "uniform-inertia", "holds", "accepted");
+    }
+}
+
 /// Targets, leaders and attitudes along curves through points, and tips of trees.
 #[test]
 fn curves_through_points_and_tips_of_trees_are_enclosed() {

@@ -96,6 +96,27 @@ fn a_robot_of_ones_own_is_found_from_the_scenario() {
 }
 
 #[test]
+fn dry_friction_is_written_for_robots_with_joints_and_estimates_are_kept_near_what_is_known() {
+    let folder = folder();
+    fs::write(folder.path().join("tree.urdf"), TREE.replace("damping=\"0.7\"", "damping=\"0.7\" friction=\"0.1\""))
+        .unwrap();
+    for (robot, line) in [
+        ("planar_arm", "friction.dry = { coulomb = 0.5 } }"),
+        ("point_mass", "friction.dry = { coulomb = 0.5 } }"),
+        ("ur5e", "robot.urdf = { file = \"ur5e.urdf\", friction.dry = { coulomb = 0.5 } }"),
+        ("tree.urdf", "robot.urdf = { file = \"tree.urdf\", friction.dry = {} }"),
+    ] {
+        let file = format!("{}.toml", robot.trim_end_matches(".urdf"));
+        forwardstep(&folder, &["new", &file, "--robot", robot, "--agents", "2", "--dry-friction"]).success();
+        let text = fs::read_to_string(folder.path().join(&file)).unwrap();
+        assert!(text.contains(line) && text.contains("bounds.within = 0.3") && !text.contains("\"ignore\""), "{text}");
+        assert_eq!(text.matches("estimate_start").count(), 1, "{text}");
+        let report = stdout(&forwardstep(&folder, &["check", &file]).code(1));
+        assert!(report.contains("smooth-friction") || report.contains("dry friction"), "{report}");
+    }
+}
+
+#[test]
 fn mistakes_are_status_two_and_nothing_is_overwritten() {
     let folder = folder();
     fs::write(folder.path().join("mine.toml"), "mine").unwrap();

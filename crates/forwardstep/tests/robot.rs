@@ -130,12 +130,17 @@ fn a_robot_is_described() {
 }
 
 #[test]
-fn friction_is_refused_unless_it_is_left_out_anyway() {
+fn friction_is_shown_unless_it_is_left_out() {
     let folder = folder();
     let rough = TREE.replace("damping=\"0.7\"", "damping=\"0.7\" friction=\"0.1\"");
     fs::write(folder.path().join("rough.urdf"), rough).unwrap();
-    let error = stderr(&forwardstep(&folder, &["robot", "rough.urdf"]).code(2));
-    assert!(error.contains("rough.urdf:62:39:") && error.contains("--ignore-friction"), "{error}");
+    let text = stdout(&forwardstep(&folder, &["robot", "rough.urdf"]).success());
+    let [turn, slide] =
+        ["turn ", "z_slide "].map(|joint| text.lines().find(|line| line.trim_start().starts_with(joint)).unwrap());
+    assert!(turn.contains("0.7 N m s/rad ") && turn.ends_with(" 0.1 N m") && slide.ends_with("none"), "{text}");
+    let json: Value =
+        serde_json::from_str(&stdout(&forwardstep(&folder, &["robot", "rough.urdf", "--json"]).success())).unwrap();
+    assert_eq!((&json["joints"][0]["friction"], &json["joints"][1]["friction"]), (&json!(0.1), &json!(0.0)));
     let text = stdout(&forwardstep(&folder, &["robot", "rough.urdf", "--ignore-friction"]).success());
     assert!(text.contains("Coulomb friction is left out, as asked: 0.1 of `turn`"), "{text}");
 

@@ -8,7 +8,6 @@ use std::sync::Arc;
 
 use forwardstep::check::{Answer, check};
 use forwardstep::core::Gain;
-use forwardstep::core::robot::tree::Tree;
 use forwardstep::io::SourceText;
 use forwardstep::io::output::{Disagreement, Metrics};
 use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario, read_scenario, shipped_scenario};
@@ -106,7 +105,7 @@ fn arms_with_dry_friction_agree_from_other_starts_and_with_a_wrong_guess_and_not
         let text = text.replace("seed = 7", &format!("seed = {seed}"));
         let mut setup = read_scenario("friction", &SourceText::new("friction.toml", text), None).unwrap().setup;
         for agent in &mut setup.agents {
-            let [_, frictions] = agent.robot.kind.downcast::<Arc<Tree>>().unwrap().drive_parameters();
+            let [.., frictions] = agent.robot.interface().drives.ranges_in(agent.robot.theta.len()).unwrap();
             assert!(agent.change_law(|law: &mut Adaptive| change(law, frictions.clone())));
         }
         let mut outcome = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap();

@@ -10,6 +10,7 @@ mod build;
 mod closed_loop;
 pub mod coupling;
 pub mod delay;
+pub mod drives;
 mod engine;
 pub mod formula;
 pub mod graph;

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use forwardstep_core::reference::RootSet;
+use forwardstep_core::robot::Drives;
 use forwardstep_core::sampled::SafeCommand;
 
 use crate::leader::{Following, FollowingDesign, Leading};
@@ -180,6 +181,12 @@ impl RobotSetup {
     /// What its data mean.
     pub fn interface(&self) -> RobotInterface {
         self.kind.interface(self.axes.len())
+    }
+
+    /// The true dampings, armatures and frictions of `drives`, which are its own and close ϑ; `None` when ϑ is too short.
+    pub fn drive_parameters(&self, drives: &Drives) -> Option<[&[f64]; 3]> {
+        let [dampings, armatures, frictions] = drives.ranges_in(self.theta.len())?;
+        Some([self.theta.get(dampings)?, self.theta.get(armatures)?, self.theta.get(frictions)?])
     }
 
     /// Numbers of a velocity, which are those of a position but for a spacecraft.

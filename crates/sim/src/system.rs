@@ -10,6 +10,7 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 use forwardstep_core::controller::Controller;
+use forwardstep_core::robot::Drives;
 use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::signal::Block as Signals;
 
@@ -39,6 +40,8 @@ pub struct RobotInterface {
     pub position: PositionKind,
     /// What can act on it from outside, and where.
     pub attachments: Attachments,
+    /// What acts at its joints, whose parameters close its ϑ.
+    pub drives: Drives,
     /// Whose limits are those of its actuators.
     pub actuator_limits: ActuatorLimits,
     /// Whether its axes have numbers in place of their names.
@@ -57,6 +60,7 @@ impl RobotInterface {
             rest_len: 0,
             position: PositionKind::Coordinates,
             attachments: Attachments::Axes,
+            drives: Drives::default(),
             actuator_limits: ActuatorLimits::Axes,
             numbered_axes: false,
             torques_on_body: false,

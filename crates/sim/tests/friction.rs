@@ -7,14 +7,15 @@ use std::sync::Arc;
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::law::ParameterBounds;
-use forwardstep_core::robot::tree::{
-    Drives, Friction, JointKind, LinkJoint, LinkSpec, Placement, SMOOTHING_LOSS, Tree, inertia_about_frame,
-};
+use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkSpec, Placement, Tree, inertia_about_frame};
+use forwardstep_core::robot::{Drives, Friction, PlanarArm, PlanarLinks, PlanarTip, PointMass, SMOOTHING_LOSS};
 use forwardstep_sim::delay::Delay;
+use forwardstep_sim::drives::{JointDrives, JointFriction};
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::trajectory::{Path, Sinusoid, Trajectory};
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Axis, AxisUnit, Ending, Method, Network, Outcome, RobotSetup, Setup, Signal, run,
+    Adaptive, AgentSetup, Axis, AxisUnit, Ending, Method, Network, Outcome, RobotSetup, Setup, Signal, TaskSpaceLaw,
+    TipSetup, run,
 };
 
 const MASS_KG: f64 = 2.0;
@@ -33,7 +34,7 @@ fn chain(kinds: &[(JointKind, [f64; 3])], dry_s: Option<f64>, gravity: [f64; 3])
     };
     let assembled = Tree::assemble(&(0..kinds.len()).map(link).collect::<Vec<_>>(), gravity).unwrap();
     let friction = (0..kinds.len()).map(|joint| Friction { joint, width: 0.05 }).collect();
-    let drives = Drives { geared: (0..kinds.len()).collect(), friction, dry_s };
+    let drives = Drives { geared: (0..kinds.len()).collect(), friction, dry_s, ..assembled.tree.drives().clone() };
     let mut theta = assembled.theta;
     theta.extend((0..kinds.len()).map(|k| 0.1 + 0.05 * k as f64));
     theta.extend(kinds.iter().map(|_| FRICTION_N));
@@ -70,6 +71,71 @@ fn block(dry_s: Option<f64>, push: Function, velocity: f64, end_s: f64) -> Setup
 }
 
 const INERTIA_KG: f64 = MASS_KG + 0.1;
+
+/// The same block in closed form, whose rotor is part of its mass.
+fn mass(setup: &Setup) -> Setup {
+    let mut setup = setup.clone();
+    let agent = &mut setup.agents[0];
+    let dry_s = agent.robot.interface().drives.dry_s;
+    let friction = Some(JointFriction { coulomb: vec![FRICTION_N], width: vec![0.05], dry_s });
+    agent.robot =
+        RobotSetup::point_mass(1, INERTIA_KG).with_drives(&JointDrives { friction, ..JointDrives::default() }).unwrap();
+    assert!(agent.change_law(|law: &mut Adaptive| law.estimate_start = vec![0.0; 2]));
+    setup
+}
+
+#[test]
+fn a_mass_with_friction_slides_sticks_and_creeps_as_a_block_on_rails() {
+    let ramp = || Function::Formula(Expression::variable(0) * 2.0);
+    let setups = [
+        block(Some(1e-3), Function::Constant(0.0), 1.2, 2.0),
+        block(Some(1e-3), ramp(), 0.0, 4.0),
+        block(None, Function::Constant(1.0), 0.7, 4.0),
+    ];
+    for setup in setups {
+        let [rails, mass] = [&setup, &mass(&setup)].map(|setup| run(setup).unwrap());
+        for signal in [Signal::Position, Signal::Velocity, Signal::External] {
+            for (one, other) in column(&rails, 0, signal, 0).iter().zip(column(&mass, 0, signal, 0)) {
+                assert!((one - other).abs() < 1e-7, "{signal:?}: {one} {other}");
+            }
+        }
+    }
+}
+
+#[test]
+fn drives_of_robots_in_closed_form_are_data_and_robots_without_keep_their_kernels() {
+    let links = PlanarLinks::uniform([2.0, 1.5], [1.0, 0.8]);
+    let friction = JointFriction { coulomb: vec![0.0, 0.5], width: vec![0.01; 2], dry_s: Some(1e-3) };
+    let drives =
+        JointDrives { damping: Some(vec![0.3, 0.0]), armature: vec![0.2, 0.1], friction: Some(friction.clone()) };
+    let arm = RobotSetup::planar_arm(&links).with_drives(&drives).unwrap();
+    let names = ["shoulder.damping_n_m_s", "shoulder.armature_kg_m2", "elbow.armature_kg_m2", "elbow.friction_n_m"];
+    assert_eq!(arm.theta_names[5..], names);
+    assert_eq!((arm.damping(), arm.armature(), arm.coulomb()), (vec![0.3, 0.0], vec![0.2, 0.1], vec![0.0, 0.5]));
+    let found = arm.interface().drives;
+    assert_eq!((found.damped, found.geared, found.dry_s), (vec![0], vec![0, 1], Some(1e-3)));
+    // M, C, g, Y, accelerations and lanes agree, where friction is a function of q̇.
+    let smooth = JointFriction { dry_s: None, ..friction.clone() };
+    let smooth = arm.clone().with_drives(&JointDrives { friction: Some(smooth), ..drives }).unwrap();
+    assert_eq!(smooth.kind.lagrangian().unwrap().probe(&smooth).unwrap().found, None);
+    // Damping stays unless it is stated, the rest is replaced; without any it is the robot of before.
+    let damped = arm.clone().with_drives(&JointDrives::default()).unwrap();
+    assert_eq!((damped.theta.len(), damped.theta_names.len(), damped.damping()), (6, 6, vec![0.3, 0.0]));
+    let bare = arm.with_drives(&JointDrives { damping: Some(vec![0.0; 2]), ..JointDrives::default() }).unwrap();
+    assert!(bare.kind.is::<PlanarArm>());
+    assert_eq!((bare.theta.as_slice(), bare.theta_names.len()), (&links.theta()[..], 5));
+    assert!(RobotSetup::point_mass(3, 1.0).with_drives(&JointDrives::default()).unwrap().kind.is::<PointMass>());
+    // What has no meaning.
+    let wrong = |drives: JointDrives| RobotSetup::planar_arm(&links).with_drives(&drives).unwrap_err().to_string();
+    assert!(wrong(JointDrives { armature: vec![0.1; 3], ..JointDrives::default() }).contains("armature"));
+    assert!(wrong(JointDrives { damping: Some(vec![f64::NAN, 0.0]), ..JointDrives::default() }).contains("NaN"));
+    let negative = JointFriction { coulomb: vec![-1.0, 0.0], ..friction };
+    assert!(wrong(JointDrives { friction: Some(negative), ..JointDrives::default() }).contains("-1"));
+    let ship = RobotSetup::ship([2.0, 3.0, 0.7, 1.5, 0.3, 0.9, 0.2, -0.4, 0.8]);
+    let armed = JointDrives { armature: vec![0.1; 3], ..JointDrives::default() };
+    assert!(ship.clone().with_drives(&armed).unwrap_err().to_string().contains("no joints"));
+    assert_eq!(ship.with_drives(&JointDrives::default()).unwrap().theta.len(), 9);
+}
 
 #[test]
 fn a_block_slows_down_at_f_over_m_and_stops() {
@@ -193,6 +259,88 @@ fn arms(agents: usize, dry_s: Option<f64>, bounds: bool, seed: u64) -> Setup {
     setup.solver.balance = true;
     setup.time.record_every_s = 0.02;
     setup
+}
+
+/// Planar arms, or masses in the plane, with all that can act at their joints.
+fn closed_forms(arms: bool, agents: usize, dry_s: Option<f64>, bounds: bool) -> Setup {
+    let links = PlanarLinks::uniform([2.0, 1.5], [1.0, 0.8]);
+    let agent = |k: usize| {
+        let robot = if arms { RobotSetup::planar_arm(&links) } else { RobotSetup::point_mass(2, 3.0) };
+        let drives = JointDrives {
+            damping: Some(vec![0.2, 0.1]),
+            armature: if arms { vec![0.3, 0.1] } else { Vec::new() },
+            friction: Some(JointFriction { coulomb: vec![2.0, 1.0], width: vec![0.05, 0.04], dry_s }),
+        };
+        let robot = robot.with_drives(&drives).unwrap();
+        let theta = robot.theta.clone();
+        let [lower, upper] = [0.8, 1.2].map(|share| theta.iter().map(|own| own * share).collect());
+        let law = Adaptive {
+            damping: Gain::Number(8.0),
+            adaptation: Gain::Number(4.0),
+            estimate_start: theta.iter().map(|own| if bounds { 0.8 * own } else { 0.3 * own }).collect(),
+            bounds: bounds.then(|| ParameterBounds::new(lower, upper, 0.01)),
+        };
+        let at = k as f64;
+        AgentSetup::new(format!("agent-{k}"), robot, law)
+            .roots([1.0, 2.0])
+            .at(&[0.4 * at - 0.5, 0.7 - 0.3 * at])
+            .moving(&[0.5 - 0.2 * at, 0.3])
+    };
+    let ring = (0..agents).map(|k| (k, (k + 1) % agents)).filter(|(from, to)| from != to);
+    let network = Network::fixed(agents, ring, Delay::constant(0.1));
+    let mut setup = Setup::consensus((0..agents).map(agent).collect::<Vec<_>>(), network, 6.0);
+    setup.solver.method = Method::Adaptive { rtol: 1e-9, atol: 1e-11 };
+    setup.solver.balance = true;
+    setup.time.record_every_s = 0.02;
+    setup
+}
+
+#[test]
+fn thm1_v_balances_for_robots_in_closed_form_with_drives_alone_or_in_lanes() {
+    for arms in [true, false] {
+        for (agents, dry_s) in [(1, None), (4, None), (2, Some(2e-3)), (5, Some(2e-3))] {
+            for bounds in [false, true] {
+                let outcome = run(&closed_forms(arms, agents, dry_s, bounds)).unwrap();
+                let off = unbalanced(&outcome, agents);
+                assert!(off < 1e-7, "{arms} {agents} {dry_s:?} {bounds}: {off}");
+            }
+        }
+    }
+}
+
+#[test]
+fn thm6_v_balances_for_a_tip_of_an_arm_with_drives_smooth_or_dry() {
+    for dry_s in [None, Some(2e-3)] {
+        let mut agent = closed_forms(true, 1, dry_s, false).agents.swap_remove(0);
+        let tip = TipSetup::Planar(PlanarTip { length_m: [1.0, 0.8] });
+        agent.law = Arc::new(TaskSpaceLaw {
+            tip,
+            damping: Gain::Number(8.0),
+            adaptation: Gain::Number(4.0),
+            estimate_start: agent.robot.theta.iter().map(|own| 0.5 * own).collect(),
+            task_gain: Gain::Number(6.0),
+            kappa: 1.0,
+            alpha_per_s: 5.0,
+            kinematic_adaptation: Some(Gain::Number(0.1)),
+            kinematic_names: vec!["l1".into(), "l2".into()],
+            kinematic_start: vec![0.9, 0.9],
+            bounds: None,
+            determinant_floor: 0.01,
+        });
+        agent.roots_per_s = forwardstep_core::reference::RootSet::default();
+        (agent.start.q, agent.start.dq) = (vec![0.3, 1.2], vec![0.2, -0.4]);
+        let wave = |offset: f64, amplitude: f64| Path::Sinusoids {
+            offset,
+            waves: vec![Sinusoid { amplitude, rad_per_s: 1.0, phase_rad: 0.0 }],
+        };
+        let target = Trajectory::new(vec![wave(0.9, 0.2), wave(0.8, 0.1)]).unwrap();
+        let mut setup = Setup::tracking([agent.following(target)], 6.0);
+        setup.solver.method = Method::Adaptive { rtol: 1e-9, atol: 1e-11 };
+        setup.solver.balance = true;
+        let outcome = run(&setup).unwrap();
+        let off = unbalanced(&outcome, 1);
+        assert!(off < 1e-7, "{dry_s:?}: {off}");
+    }
 }
 
 /// The largest V + ∫ what it loses, less V(0), of V(0).

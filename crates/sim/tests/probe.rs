@@ -4,7 +4,7 @@
 use std::any::type_name;
 use std::sync::Arc;
 
-use forwardstep_core::robot::{Lagrangian, PointMass, Ship, TwoVelocity};
+use forwardstep_core::robot::{Definiteness, Drives, Lagrangian, PointMass, Ship, TwoVelocity};
 use forwardstep_core::{LengthError, Scalar};
 use forwardstep_sim::probe::{Identity, STATES};
 use forwardstep_sim::system::{Robot, RobotInterface};
@@ -131,6 +131,18 @@ impl RobotModel for Spoilt {
 
     fn shares_kernel(&self, other: &Self) -> bool {
         self == other
+    }
+
+    fn with_drives(&self, _: Drives) -> Option<Arc<dyn Robot>> {
+        None
+    }
+
+    fn definiteness(&self, _: &[f64]) -> Option<Definiteness> {
+        None
+    }
+
+    fn swung_axes(&self) -> Option<Vec<usize>> {
+        None
     }
 }
 

@@ -1,6 +1,6 @@
 //! Sentences of explanations.
 
-use forwardstep_core::robot::tree::SMOOTHING_LOSS;
+use forwardstep_core::robot::SMOOTHING_LOSS;
 use forwardstep_sim::Setup;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::FollowingDesign;

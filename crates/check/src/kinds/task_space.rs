@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use forwardstep_core::robot::tree::{Tree, TreeTip};
-use forwardstep_core::robot::{PlanarArm, Posture, TipKinematics};
+use forwardstep_core::robot::{Posture, TipKinematics};
 use forwardstep_sim::{AgentSetup, Setup, TaskSpaceLaw, TipSetup};
 use nalgebra::DMatrix;
 
@@ -74,7 +74,9 @@ fn jacobian(agent: &AgentSetup, law: &TaskSpaceLaw) -> KindEvidence {
 /// det Ĵ at the start; nothing for a robot that has no such tip.
 fn start(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<f64> {
     match &law.tip {
-        TipSetup::Planar(tip) => agent.robot.kind.is::<PlanarArm>().then(|| determinant(tip, agent, law)).flatten(),
+        TipSetup::Planar(tip) => {
+            law.tip.parameters(&*agent.robot.kind).is_some().then(|| determinant(tip, agent, law)).flatten()
+        }
         TipSetup::Point { point, coordinates, uncertain } => {
             let tree = agent.robot.kind.downcast::<Arc<Tree>>()?;
             let tip = TreeTip::new((**tree).clone(), point, coordinates, *uncertain).ok()?;

@@ -23,7 +23,7 @@
 //! expected, not one for certain.
 //!
 //! Dry friction F σ, σ ∈ Sgn q̇, which the law takes for F tanh(z/ε), feeds V by κ ε F at every joint at most, κ = max x (1 − tanh x)
-//! ([`SMOOTHING_LOSS`](forwardstep_core::robot::tree::SMOOTHING_LOSS)): E is the sum of these. That of a run holds σ over short periods, and what
+//! ([`SMOOTHING_LOSS`](forwardstep_core::robot::SMOOTHING_LOSS)): E is the sum of these. That of a run holds σ over short periods, and what
 //! that adds vanishes with them.
 
 use forwardstep_sim::push::{Course, Effect, Function, Push};

@@ -9,7 +9,8 @@ use forwardstep_check::derivation::residual::{Missing, Residual, Residuals};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::law::ParameterBounds;
-use forwardstep_core::robot::tree::{Drives, Friction, JointKind, LinkJoint, LinkSpec, Placement, Tree};
+use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkSpec, Placement, Tree};
+use forwardstep_core::robot::{Drives, Friction};
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
@@ -148,7 +149,7 @@ fn rubbing_arms(dry_s: Option<f64>, friction_n_m: f64) -> Setup {
         let assembled = Tree::assemble(&[link(0), link(1)], [0.0, 0.0, -9.81]).unwrap();
         let friction = vec![Friction { joint: 0, width: 0.3 }, Friction { joint: 1, width: 0.2 }];
         let theta = [&assembled.theta[..], &[0.3, friction_n_m, 0.7]].concat();
-        let drives = Drives { geared: vec![1], friction, dry_s };
+        let drives = Drives { geared: vec![1], friction, dry_s, ..assembled.tree.drives().clone() };
         (Arc::new(assembled.tree.with_drives(drives).unwrap()), theta)
     };
     let trees = [tree(0.0), tree(0.4)];

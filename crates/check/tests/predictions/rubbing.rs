@@ -11,9 +11,8 @@ use forwardstep_check::{
 };
 use forwardstep_core::Gain;
 use forwardstep_core::law::ParameterBounds;
-use forwardstep_core::robot::tree::{
-    Drives, Friction, JointKind, LinkJoint, LinkSpec, Placement, SMOOTHING_LOSS, Tree, inertia_about_frame,
-};
+use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkSpec, Placement, Tree, inertia_about_frame};
+use forwardstep_core::robot::{Drives, Friction, SMOOTHING_LOSS};
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::reference::PureIntegral;
@@ -38,7 +37,8 @@ fn rubbing(kinds: &[(JointKind, [f64; 3])], dry_s: Option<f64>) -> (Tree, Vec<f6
     let friction = (0..kinds.len()).map(|joint| Friction { joint, width: WIDTH }).collect();
     let mut theta = assembled.theta;
     theta.extend(kinds.iter().map(|_| FRICTION));
-    (assembled.tree.with_drives(Drives { friction, dry_s, ..Drives::default() }).unwrap(), theta)
+    let drives = Drives { friction, dry_s, ..assembled.tree.drives().clone() };
+    (assembled.tree.with_drives(drives).unwrap(), theta)
 }
 
 const Z: [f64; 3] = [0.0, 0.0, 1.0];
@@ -220,7 +220,8 @@ fn eq_31_smooth_friction_damps_a_slow_push_by_f_over_its_width() {
             agent.law = law.clone();
             let tree = Tree::clone(agent.robot.kind.downcast::<Arc<Tree>>().unwrap());
             let friction = (0..2).map(|joint| Friction { joint, width }).collect();
-            agent.robot.kind = Arc::new(Arc::new(tree.with_drives(Drives { friction, ..Drives::default() }).unwrap()));
+            let drives = Drives { friction, ..tree.drives().clone() };
+            agent.robot.kind = Arc::new(Arc::new(tree.with_drives(drives).unwrap()));
         }
         let theory = Manipulability::of(&setup, 0, 1).unwrap().low_frequency();
         let trial = Trial { agent: 0, axis: 1, torque: 0.01, for_s: 1.0 };

@@ -3,19 +3,25 @@
 //! Viscous damping D, where a robot has it, is part of ϑ: its regressor is diag of the reference velocity, so the law
 //! compensates D z and the loop dissipates K + D.
 
+mod driven;
+mod drives;
 mod enclosed;
 mod inertia_bound;
 mod kinematics;
 mod planar;
 mod point_mass;
 mod ship;
+mod stick;
 pub mod tree;
 
+pub use driven::{Driven, DrivenScratch};
+pub use drives::{DriveError, Drives, Friction, SMOOTHING_LOSS};
 pub use inertia_bound::{Definiteness, InertiaBound};
 pub use kinematics::{Posture, TipKinematics};
 pub use planar::{PlanarArm, PlanarLinks, PlanarTip};
 pub use point_mass::PointMass;
 pub use ship::Ship;
+pub use stick::Stick;
 
 use alloc::vec::Vec;
 

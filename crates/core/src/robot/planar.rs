@@ -226,6 +226,7 @@ impl<S: Scalar> Lagrangian<S> for PlanarArm {
         Ok(())
     }
 
+    #[inline(always)]
     fn mass_matrix(&self, (): &mut (), q: &[S], theta: &[S], m: &mut [S]) -> Result<(), LengthError> {
         LengthError::check("q", 2, q.len())?;
         LengthError::check("theta", 5, theta.len())?;

@@ -95,6 +95,7 @@ impl<S: Scalar> Lagrangian<S> for PointMass {
         Ok(())
     }
 
+    #[inline(always)]
     fn mass_matrix(&self, (): &mut (), q: &[S], theta: &[S], m: &mut [S]) -> Result<(), LengthError> {
         LengthError::check("q", self.dimension, q.len())?;
         LengthError::check("theta", 1, theta.len())?;

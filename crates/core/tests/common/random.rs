@@ -1,6 +1,7 @@
 //! Random trees of physical bodies, and random numbers for them, from a seed.
 
-use forwardstep_core::robot::tree::{Assembled, Drives, Friction, JointKind, LinkJoint, LinkSpec, Placement, Tree};
+use forwardstep_core::robot::tree::{Assembled, JointKind, LinkJoint, LinkSpec, Placement, Tree};
+use forwardstep_core::robot::{Drives, Friction};
 
 /// A small generator of our own: the same trees on every machine and with every version of every crate.
 pub(crate) struct Random(u64);
@@ -95,7 +96,8 @@ impl Random {
         let rubbing: Vec<usize> = (0..joints).filter(|_| self.chance(0.7)).collect();
         assembled.theta.extend((0..geared.len() + rubbing.len()).map(|_| 1.0 + 0.9 * self.number()));
         let friction = rubbing.into_iter().map(|joint| Friction { joint, width: 0.3 + 0.2 * self.number() }).collect();
-        assembled.tree = assembled.tree.with_drives(Drives { geared, friction, dry_s: dry.then_some(1e-3) }).unwrap();
+        let drives = Drives { geared, friction, dry_s: dry.then_some(1e-3), ..assembled.tree.drives().clone() };
+        assembled.tree = assembled.tree.with_drives(drives).unwrap();
         assembled
     }
 }

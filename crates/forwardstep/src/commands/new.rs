@@ -27,6 +27,8 @@ enum NewError {
     Write { path: PathBuf, reason: ErrorKind },
     #[error("the path of the robot, `{}`, cannot be written down in a scenario", shown(.0))]
     NotText(PathBuf),
+    #[error("`{0}` has no joints that could rub")]
+    NoJoints(String),
 }
 
 impl NewError {
@@ -35,6 +37,7 @@ impl NewError {
             NewError::Exists(_) => Some("give another name; nothing is ever overwritten"),
             NewError::Write { reason: ErrorKind::NotFound, .. } => Some("make its folder first"),
             NewError::Write { .. } => None,
+            NewError::NoJoints(_) => Some("leave `--dry-friction` out, or take an arm"),
             NewError::NotText(_) => Some("copy the robot beside the scenario"),
         }
     }
@@ -71,13 +74,17 @@ fn write(options: &NewOptions, kinds: &Kinds, console: &mut Console) -> Result<(
 
 fn template(options: &NewOptions, kinds: &Kinds) -> Result<Template, Status> {
     let asker = Asker::new();
-    let NewOptions { file, name, agents, robot: given, order: given_order, exchange, graph, delay } = options;
+    let NewOptions { file, name, agents, robot: given, dry_friction, order: given_order, exchange, graph, delay } =
+        options;
     let stem = || file.as_ref()?.file_stem()?.to_str().map(str::to_owned);
     let offered: Vec<&str> = kinds.robot_keys().into_iter().filter(|key| kinds.template(key).is_some()).collect();
     let question = format!("robot: {}, ur5e, panda or the path of a URDF", offered.join(", "));
     let first = offered.first().copied().unwrap_or_default().to_owned();
     let given = asker.ask(given.clone(), &question, first, |answer| Ok::<_, &str>(answer.to_owned()));
-    let usual = Template::new(robot(&given, file.as_deref(), kinds)?);
+    let chosen = robot(&given, file.as_deref(), kinds)?;
+    let chosen =
+        if *dry_friction { chosen.rubbing().ok_or_else(|| refused(NewError::NoJoints(given)))? } else { chosen };
+    let usual = Template::new(chosen);
     Ok(Template {
         title: name.clone().or_else(stem).unwrap_or(usual.title),
         robot: usual.robot,

@@ -17,7 +17,7 @@ pub(crate) fn robot(options: &RobotOptions, console: &mut Console) -> Status {
     let RobotOptions { robot, lock, ignore_friction, json, at } = options;
     let friction = match *ignore_friction || at.is_some() {
         true => FrictionPolicy::Ignore,
-        false => FrictionPolicy::Refuse,
+        false => FrictionPolicy::Read,
     };
     let options = UrdfOptions { locked: lock.clone(), friction, ..UrdfOptions::default() };
     let robot = match open_robot(robot, &options) {
@@ -53,9 +53,10 @@ fn show(description: &RobotDescription, console: &mut Console) {
     let RobotDescription { name, base, joints, bodies, moving_mass_kg, held_mass_kg, notices } = description;
     console.line(format_args!("{BOLD}{name}{BOLD:#} on its base {base}"));
     console.line("");
-    let mut rows = vec![["joint", "type", "position", "velocity", "effort", "damping"].map(String::from)];
+    let mut rows = vec![["joint", "type", "position", "velocity", "effort", "damping", "friction"].map(String::from)];
     rows.extend(joints.iter().map(joint_row));
     console.text(table(&rows, 2));
+    console.line("A URDF states no armature; `robot.urdf.armature` of a scenario does.");
     console.line("");
     let mut rows = vec![["body", "mass", "centre of mass in its frame"].map(String::from)];
     rows.extend(bodies.iter().map(|body| {
@@ -74,9 +75,8 @@ fn show(description: &RobotDescription, console: &mut Console) {
 }
 
 /// Type, and every limit with its unit.
-fn joint_row(joint: &JointDescription) -> [String; 6] {
-    let JointDescription { name, kind, unit, effort_unit, position_limits, velocity_limit, effort_limit, damping } =
-        joint;
+fn joint_row(joint: &JointDescription) -> [String; 7] {
+    let JointDescription { name, kind, unit, effort_unit, position_limits, velocity_limit, effort_limit, .. } = joint;
     let limit = |limit: &Option<f64>, unit: &str| match limit {
         Some(limit) => format!("{} {unit}", short(*limit)),
         None => "unlimited".to_owned(),
@@ -85,13 +85,17 @@ fn joint_row(joint: &JointDescription) -> [String; 6] {
         || format!("unlimited, {unit}"),
         |[lower, upper]| format!("{} to {} {unit}", short(lower), short(upper)),
     );
-    let damping = match (*damping, *unit) {
+    let damping = match (joint.damping, *unit) {
         (0.0, _) => "none".to_owned(),
         (damping, "rad") => format!("{} N m s/rad", short(damping)),
         (damping, _) => format!("{} N s/m", short(damping)),
     };
+    let friction = match joint.friction {
+        0.0 => "none".to_owned(),
+        friction => format!("{} {effort_unit}", short(friction)),
+    };
     let (velocity, effort) = (limit(velocity_limit, &format!("{unit}/s")), limit(effort_limit, effort_unit));
-    [name.clone(), (*kind).to_owned(), position, velocity, effort, damping]
+    [name.clone(), (*kind).to_owned(), position, velocity, effort, damping, friction]
 }
 
 fn show_dynamics(dynamics: &Dynamics, robot: &UrdfRobot, console: &mut Console) {

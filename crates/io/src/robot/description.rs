@@ -1,9 +1,6 @@
 //! What there is to say about a robot, for people and as JSON.
 
-use std::sync::Arc;
-
-use forwardstep_core::robot::tree::Tree;
-use forwardstep_sim::{AxisUnit, RobotSetup};
+use forwardstep_sim::AxisUnit;
 use serde::Serialize;
 
 use crate::urdf::{MotionKind, UrdfRobot};
@@ -47,6 +44,8 @@ pub struct JointDescription {
     pub effort_limit: Option<f64>,
     /// Viscous damping, in N m s/rad or N s/m.
     pub damping: f64,
+    /// Coulomb friction as the file states it, in the unit of efforts.
+    pub friction: f64,
 }
 
 /// What is rigid together and moves.
@@ -64,9 +63,9 @@ impl RobotDescription {
     /// Describes `robot`.
     pub fn new(robot: &UrdfRobot) -> Self {
         let theta = &robot.robot.theta;
-        let damping = damping(&robot.robot);
-        let kinds = robot.kinds.iter().zip(&robot.robot.axes).zip(damping);
-        let joints = kinds.map(|((kind, axis), damping)| {
+        let losses = robot.robot.damping().into_iter().zip(&robot.coulomb);
+        let kinds = robot.kinds.iter().zip(&robot.robot.axes).zip(losses);
+        let joints = kinds.map(|((kind, axis), (damping, friction))| {
             let (unit, effort_unit) = match axis.unit {
                 AxisUnit::Radian => ("rad", "N m"),
                 AxisUnit::Metre => ("m", "N"),
@@ -85,6 +84,7 @@ impl RobotDescription {
                 velocity_limit: axis.velocity_limit,
                 effort_limit: axis.effort_limit,
                 damping,
+                friction: *friction,
             }
         });
         let parameters = theta.chunks_exact(10).zip(&robot.bodies);
@@ -134,18 +134,6 @@ impl Dynamics {
     pub fn to_json(&self) -> String {
         to_json(self)
     }
-}
-
-/// The damping of every degree of freedom; in ϑ it stands after the inertias, for those that have some.
-fn damping(robot: &RobotSetup) -> Vec<f64> {
-    let count = robot.axes.len();
-    let mut damping = vec![0.0; count];
-    if let Some(tree) = robot.kind.downcast::<Arc<Tree>>() {
-        for (joint, value) in tree.damped_joints().iter().zip(robot.theta.iter().skip(10 * count)) {
-            damping[*joint] = *value;
-        }
-    }
-    damping
 }
 
 /// Texts, lists and numbers always have a JSON.

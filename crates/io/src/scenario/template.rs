@@ -47,6 +47,8 @@ pub struct RobotTemplate {
     pub says: &'static str,
     /// The lines of its law, with comments.
     pub law: String,
+    /// The keys that give it dry friction, if it can have some.
+    pub dry_friction: Option<&'static str>,
 }
 
 impl RobotTemplate {
@@ -54,7 +56,7 @@ impl RobotTemplate {
     pub fn adaptive(damping: &str, gain: &str) -> String {
         let damping = commented(damping, "K of torque = -K s + Y theta_hat");
         let gain = commented(gain, "how fast estimates change");
-        let start = commented("estimate_start = \"zero\"", "nothing is known; or \"true\", { scaled = 0.5 }");
+        let start = nothing_known();
         format!(
             "# How the robot is made to follow; with [law.known] and damping alone its parameters are known.\n\
              [law.adaptive]\n{damping}{gain}{start}"
@@ -69,7 +71,21 @@ impl RobotTemplate {
             line: format!("robot.urdf = {{ file = {}{friction} }}", quoted(file)),
             says: "beside this file, or shipped: ur5e.urdf, panda.urdf",
             law: RobotTemplate::adaptive("damping.bandwidth_per_s = 20", "adaptation_gain = { bandwidth_per_s = 5 }"),
+            dry_friction: Some(if has_friction { "friction.dry = {}" } else { "friction.dry = { coulomb = 0.5 }" }),
         }
+    }
+
+    /// The same robot with dry friction, as its file states it or 0.5 N m, and estimates kept near what is known, without which they drift;
+    /// `None` for one that has no joints to rub.
+    pub fn rubbing(mut self) -> Option<Self> {
+        let friction = self.dry_friction?;
+        let line = self.line.strip_suffix(" }")?;
+        let line = line.strip_suffix(", friction = \"ignore\"").unwrap_or(line);
+        self.line = format!("{line}, {friction} }}");
+        let known = commented("estimate_start = { scaled = 0.8 }", "of what is true");
+        let bounds = commented("bounds.within = 0.3", "estimates stay within 30 %, a friction within 0 and 2 F");
+        self.law = self.law.replace(&nothing_known(), &(known + &bounds));
+        Some(self)
     }
 }
 
@@ -207,6 +223,11 @@ const GOAL: &str = "\
 # [goal]
 # disagreement_below = 1e-3                         # max |q_i - q_j| over all axes at the end
 ";
+
+/// How the estimate starts, as long as nothing says otherwise.
+fn nothing_known() -> String {
+    commented("estimate_start = \"zero\"", "nothing is known; or \"true\", { scaled = 0.5 }")
+}
 
 /// A line with its comment in the column that the shipped scenarios use.
 fn commented(line: &str, comment: &str) -> String {

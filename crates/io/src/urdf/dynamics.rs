@@ -169,7 +169,7 @@ fn look_at_inertias(
 fn theta_names(assembled: &Assembled, bodies: &[String], freedoms: &[Freedom<'_>]) -> Result<Vec<String>, LengthError> {
     let bodies: Vec<&str> = bodies.iter().map(String::as_str).collect();
     let mut names = assembled.tree.theta_names(&bodies)?;
-    for (name, joint) in names.iter_mut().skip(10 * bodies.len()).zip(assembled.tree.damped_joints()) {
+    for (name, joint) in names.iter_mut().skip(10 * bodies.len()).zip(&assembled.tree.drives().damped) {
         if let Some(((_, quantity), freedom)) = name.rsplit_once('.').zip(freedoms.get(*joint)) {
             *name = format!("{}.{quantity}", freedom.joint.name);
         }

@@ -11,7 +11,6 @@
 //! **Nothing is dropped without notice.** What has no meaning is refused with its line and column ([`UrdfProblem`]); what
 //! was accepted but is odd, assumed or left out is listed in the robot's [`Notice`]s.
 
-mod drives;
 mod dynamics;
 mod ignored;
 mod joint;
@@ -27,7 +26,6 @@ mod xml;
 use forwardstep_core::robot::tree::Anchor;
 use forwardstep_sim::setup::RobotSetup;
 
-pub use drives::{JointDrives, JointFriction};
 pub use ignored::{IgnoreReason, IgnoredItem};
 pub use joint::MotionKind;
 pub use notice::{Notice, NoticeKind};
@@ -66,7 +64,7 @@ pub enum FrictionPolicy {
     Refuse,
     /// Leave it out, with a notice.
     Ignore,
-    /// Read it, for [`UrdfRobot::with_drives`].
+    /// Read it, for [`RobotSetup::with_drives`].
     Read,
 }
 

@@ -320,7 +320,7 @@ impl Problem for UrdfProblem {
                 _ => "write it as three revolute joints whose axes meet, through light links".to_owned(),
             },
             UrdfProblem::Friction { .. } => {
-                "in the scenario set `friction.dry = {}` or `friction.smooth = {}` to have it in robot and law, or `friction = \"ignore\"` to leave it out, as `--ignore-friction` does for `robot`"
+                "in the scenario set `friction.dry = {}` or `friction.smooth = {}` to have it in robot and law, or `friction = \"ignore\"` to leave it out"
                     .to_owned()
             }
             UrdfProblem::NotPositiveDefinite { .. } => {

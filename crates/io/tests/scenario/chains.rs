@@ -156,7 +156,7 @@ const DERIVATIVES_CASES: &[Case] = &[
     ("[law.immersion]\ngain_per_s = 3\nadaptation_gain = [20, 5]\nestimate_start.scaled = 0.5\nantiderivatives = [\"d2x*sin(x)\", \"d2x*dx\"]\nfloor = 1e-2", "[law.adaptive]",
         "test.toml:14:2: agent `chain-1`: the law `adaptive` is made for arms and point masses", "for this robot there is `linearising`, `linear_adaptive` and `immersion`"),
     ("[law.immersion]\ngain_per_s = 3\nadaptation_gain = [20, 5]\nestimate_start.scaled = 0.5\nantiderivatives = [\"d2x*sin(x)\", \"d2x*dx\"]\nfloor = 1e-2", "[law.position_only]",
-        "test.toml:14:2: agent `chain-1`: the law `position_only` is made for point masses", "for this robot there is `linearising`, `linear_adaptive` and `immersion`"),
+        "test.toml:14:2: agent `chain-1`: the law `position_only` is made for point masses without damping and friction, of which it knows no velocity to compensate them at", "for this robot there is `linearising`, `linear_adaptive` and `immersion`"),
     ("coupling.saturated = 0.4", "coupling.saturated = 0",
         "test.toml:22:22: `saturated` is 0, but must be positive", ""),
     ("coupling.saturated = 0.4", "coupling.tanh = -1",

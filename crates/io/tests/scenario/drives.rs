@@ -1,8 +1,6 @@
 //! Rotors, friction and bounds of estimates: what the keys mean, and what is said of mistakes in them.
 
-use std::sync::Arc;
-
-use forwardstep_core::robot::tree::Tree;
+use forwardstep_core::robot::{Drives, PlanarArm, PointMass};
 use forwardstep_io::scenario::{Scenario, ScenarioError};
 use forwardstep_sim::Adaptive;
 use miette::Diagnostic;
@@ -39,12 +37,12 @@ end_s = 1
 
 [[agents]]
 name = "dry"
-robot.urdf = { file = "gantry.urdf", armature = 0.2, friction.dry = { coulomb = [0.5, 0.1, 0.2], width = [0.02, 0.01, 0.01] } }
+robot.urdf = { file = "gantry.urdf", damping = 0.3, armature = 0.2, friction.dry = { coulomb = [0.5, 0.1, 0.2], width = [0.02, 0.01, 0.01] } }
 start.position_m = [0.0, 0.0, 0.0]
 
 [[agents]]
 name = "smooth"
-robot.urdf = { file = "gantry.urdf", armature = [0.2, 0.1, 0.1], friction.smooth = { coulomb = 0.5, width = 0.02 } }
+robot.urdf = { file = "gantry.urdf", damping = [0.3, 0, 0.1], armature = [0.2, 0.1, 0.1], friction.smooth = { coulomb = 0.5, width = 0.02 } }
 start.position_m = [0.0, 0.0, 0.0]
 
 [[agents]]
@@ -63,6 +61,53 @@ bounds.within = 0.3
 edges = [["dry", "smooth"], ["smooth", "smoother"]]
 "#;
 
+/// The same for robots in closed form, which agree with nobody.
+pub(super) const CLOSED: &str = r#"format = 2
+
+[time]
+end_s = 1
+
+[[agents]]
+name = "arm"
+robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8], damping = 0.2, armature = 0.1, friction.dry = { coulomb = 0.5, width = 0.02, period_s = 0.002 } }
+start.position_rad = [0.5, 1.0]
+
+[[agents]]
+name = "other-arm"
+robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8], damping = [0.2, 0], armature = [0, 0.1], friction.smooth = { coulomb = [0.5, 0.2], width = [0.02, 0.01] } }
+start.position_rad = [0.5, 1.0]
+
+[[agents]]
+name = "dry-arm"
+robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8], friction.dry = { coulomb = [0.5, 0], width = [0.02, 0.01] } }
+start.position_rad = [0.5, 1.0]
+
+[[agents]]
+name = "smooth-arm"
+robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8], friction.smooth = { coulomb = 0.5, width = 0.02 } }
+start.position_rad = [0.5, 1.0]
+
+[[agents]]
+name = "mass"
+robot.point_mass = { dimension = 2, mass_kg = 3.0, damping = 0.2, friction.dry = { coulomb = 0.5, width = 0.02, period_s = 0.002 } }
+start.position_m = [0.5, 1.0]
+
+[[agents]]
+name = "other-mass"
+robot.point_mass = { dimension = 2, mass_kg = 3.0, damping = [0.2, 0], friction.smooth = { coulomb = [0.5, 0.2], width = [0.02, 0.01] } }
+start.position_m = [0.5, 1.0]
+
+[reference.consensus]
+roots_per_s = [1.0]
+exchange = "position"
+
+[law.adaptive]
+bounds.within = 0.3
+
+[network]
+edges = []
+"#;
+
 fn with(drives: &str, law: &str) -> Result<Scenario, ScenarioError> {
     read(&ONE.replace("DRIVES", drives).replace("LAW", law))
 }
@@ -77,7 +122,7 @@ fn armature_and_friction_are_read_for_all_joints_or_for_each() {
     let scenario =
         with("armature = [0.2, 0], friction.dry = { coulomb = [0, 0.5], width = 0.02, period_s = 0.004 }", "").unwrap();
     let robot = &scenario.setup.agents[0].robot;
-    let drives = robot.kind.downcast::<Arc<Tree>>().unwrap().drives().clone();
+    let drives = robot.interface().drives;
     assert_eq!((drives.geared.as_slice(), drives.dry_s), (&[0][..], Some(0.004)));
     assert_eq!(drives.friction.iter().map(|f| (f.joint, f.width)).collect::<Vec<_>>(), [(1, 0.02)]);
     let own = robot.theta.len() - 2;
@@ -86,12 +131,12 @@ fn armature_and_friction_are_read_for_all_joints_or_for_each() {
 
     let scenario = with("friction.smooth = { coulomb = 0.3 }", "").unwrap();
     let robot = &scenario.setup.agents[0].robot;
-    let drives = robot.kind.downcast::<Arc<Tree>>().unwrap().drives().clone();
+    let drives = robot.interface().drives;
     assert_eq!((drives.dry_s, drives.friction.len(), drives.friction[0].width), (None, 2, 0.01));
     assert_eq!(robot.theta[robot.theta.len() - 2..], [0.3, 0.3]);
     // The file states none, and nothing else does.
     let scenario = with("friction.dry = {}", "").unwrap();
-    assert!(scenario.setup.agents[0].robot.kind.downcast::<Arc<Tree>>().unwrap().drives().dry_s.is_none());
+    assert!(scenario.setup.agents[0].robot.interface().drives.dry_s.is_none());
 }
 
 #[test]
@@ -138,4 +183,83 @@ fn mistakes_in_drives_and_bounds_have_a_place_and_say_what_is_wrong() {
         assert!(words.contains(said), "{drives} {law}: {words}");
         assert!(words.contains("test.toml:"), "{words}");
     }
+}
+
+#[test]
+fn a_small_damping_is_not_measured_by_the_torques_of_gravity() {
+    // ϑ of the arm reaches 34 N m; a damping of 0.2 N m s is known to 30 % of itself.
+    let scenario = read(CLOSED).unwrap();
+    let bounds = scenario.setup.agents[0].law.downcast::<Adaptive>().unwrap().bounds.clone().unwrap();
+    assert!((bounds.lower[5] - 0.14).abs() < 1e-12 && (bounds.upper[5] - 0.26).abs() < 1e-12, "{:?}", bounds.lower);
+    // The armature, 0.1 kg m², and the friction, 0.5 N m.
+    assert!((bounds.lower[7] - 0.07).abs() < 1e-12 && (bounds.upper[8] - 0.13).abs() < 1e-12);
+    assert_eq!((bounds.lower[9], bounds.upper[10]), (0.0, 1.0));
+}
+
+#[test]
+fn a_damping_in_the_scenario_is_a_parameter_of_every_joint_where_it_is_not_zero() {
+    let damping = |keys: &str| with(keys, "").unwrap().setup.agents[0].robot.clone();
+    let (none, some, all) = (damping("damping = 0"), damping("damping = [0, 0.7]"), damping("damping = 0.5"));
+    assert_eq!((none.damping(), some.damping(), all.damping()), (vec![0.0; 2], vec![0.0, 0.7], vec![0.5; 2]));
+    let bodies = none.theta.len();
+    assert_eq!(some.theta_names[bodies..], ["panda_joint7.damping_n_m_s"]);
+    assert_eq!((some.theta[bodies], all.theta.len()), (0.7, bodies + 2));
+}
+
+#[test]
+fn robots_in_closed_form_have_the_same_keys_and_none_leaves_them_as_they_were() {
+    let robots: Vec<_> = read(CLOSED).unwrap().setup.agents.into_iter().map(|agent| agent.robot).collect();
+    let [arm, other, dry, _, mass, sliding] = &robots[..] else { panic!("{} robots", robots.len()) };
+    let drives = |robot: &forwardstep_sim::RobotSetup| robot.interface().drives;
+    assert_eq!((arm.damping(), arm.armature(), arm.coulomb()), (vec![0.2; 2], vec![0.1; 2], vec![0.5; 2]));
+    assert_eq!((other.damping(), other.armature(), other.coulomb()), (vec![0.2, 0.0], vec![0.0, 0.1], vec![0.5, 0.2]));
+    assert_eq!((drives(arm).dry_s, drives(other).dry_s, drives(dry).dry_s), (Some(0.002), None, Some(0.001)));
+    assert_eq!(drives(other).friction.iter().map(|f| f.width).collect::<Vec<_>>(), [0.02, 0.01]);
+    assert_eq!(mass.theta_names, ["mass", "x.damping_n_s_m", "y.damping_n_s_m", "x.friction_n", "y.friction_n"]);
+    assert_eq!((sliding.theta.as_slice(), drives(sliding).dry_s), (&[3.0, 0.2, 0.5, 0.2][..], None));
+
+    let text = |robot: &str| {
+        CLOSED.split_once("robot.").unwrap().0.to_owned()
+            + robot
+            + "\nstart.position = [0.5, 1.0]\n"
+            + CLOSED.split_once("[reference").unwrap().1.replacen(".consensus]", "[reference.consensus]", 1).as_str()
+    };
+    let plain = |robot: &str| read(&text(robot)).unwrap().setup.agents[0].robot.clone();
+    let bare = plain(
+        "robot.planar_arm = { mass_kg = [2, 1], length_m = [1, 1], damping = 0, friction.dry = { coulomb = 0 } }",
+    );
+    assert!(bare.kind.is::<PlanarArm>() && drives(&bare) == Drives::default());
+    assert!(plain("robot.point_mass = { dimension = 2, mass_kg = 1 }").kind.is::<PointMass>());
+    for (robot, said) in [
+        ("planar_arm = { mass_kg = [2, 1], length_m = [1, 1], armature = [0.1] }", "`armature` has 1 entry"),
+        ("planar_arm = { mass_kg = [2, 1], length_m = [1, 1], friction.dry = {} }", "coulomb"),
+        ("planar_arm = { mass_kg = [2, 1], length_m = [1, 1], friction = \"ignore\" }", "unknown"),
+        ("point_mass = { dimension = 2, mass_kg = 1, armature = 0.1 }", "unknown key `armature`"),
+        ("point_mass = { dimension = 2, mass_kg = 1, damping = -1 }", "is -1, but must not be negative"),
+        (
+            "ship = { inertia = { surge_kg = 1, sway_kg = 1, yaw_kg_m2 = 1 }, friction.dry = { coulomb = 1 } }",
+            "unknown key",
+        ),
+    ] {
+        let error = read(&text(&format!("robot.{robot}"))).unwrap_err().to_string();
+        assert!(error.contains(said), "{robot}: {error}");
+    }
+    // Where robots differ, what acts at their joints does not.
+    for robot in [
+        "planar_arm = { mass_kg = [2, 1], length_m = [1, 1], damping = 0.2, armature = 0.1, friction.dry = { coulomb = 0.5 } }",
+        "point_mass = { dimension = 2, mass_kg = 1, damping = 0.2, friction.dry = { coulomb = 0.5 } }",
+    ] {
+        let same = plain(&format!("robot.{robot}"));
+        let two = text(&format!("robot.{robot}\ncount = 2\nparameter_variation = {{ seed = 1, relative = 0.1 }}"));
+        let two = two.replace("start.position = [0.5, 1.0]", "start.position = [[0.5, 1.0], [0.5, 1.0]]");
+        let varied = read(&two).unwrap().setup.agents[0].robot.clone();
+        let bodies = same.theta.len() - drives(&same).count();
+        assert!(same.theta[..bodies].iter().zip(&varied.theta).all(|(one, other)| one != other), "{:?}", varied.theta);
+        assert_eq!((&same.theta[bodies..], drives(&same)), (&varied.theta[bodies..], drives(&varied)));
+    }
+    // Without a velocity nothing can be said against friction.
+    let blind = text("robot.point_mass = { dimension = 2, mass_kg = 1, damping = 0.1 }")
+        .replace("[law.adaptive]\nbounds.within = 0.3", "[law.position_only]");
+    let error = read(&blind).unwrap_err().to_string();
+    assert!(error.contains("point masses without damping and friction"), "{error}");
 }

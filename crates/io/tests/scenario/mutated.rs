@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use super::blind::BLIND;
 use super::chains::{CASCADES, DERIVATIVES};
-use super::drives::DRIVES;
+use super::drives::{CLOSED, DRIVES};
 use super::edges::RULES;
 use super::links::LINKS;
 use super::mixed::MIXED;
@@ -19,8 +19,22 @@ use super::vehicles::VEHICLES;
 use super::{SOUND, read};
 
 /// Every sound scenario that tests change.
-pub(super) const SYSTEMS: [&str; 13] =
-    [SOUND, DRIVES, RULES, LINKS, PUSHES, BLIND, CASCADES, DERIVATIVES, MIXED, SPACECRAFT, PLANAR, TIP, VEHICLES];
+pub(super) const SYSTEMS: [&str; 14] = [
+    SOUND,
+    DRIVES,
+    CLOSED,
+    RULES,
+    LINKS,
+    PUSHES,
+    BLIND,
+    CASCADES,
+    DERIVATIVES,
+    MIXED,
+    SPACECRAFT,
+    PLANAR,
+    TIP,
+    VEHICLES,
+];
 
 pub(super) fn texts() -> Vec<&'static str> {
     SHIPPED_SCENARIOS.iter().map(|scenario| scenario.text).chain(SYSTEMS).collect()

@@ -54,7 +54,7 @@ const CASES: &[Case] = &[
     ("adaptation_gain = 5", "adaptation_gain = -5",
         "test.toml:14:19: `adaptation_gain` is -5, but must not be negative", ""),
     ("robot.point_mass = { dimension = 2, mass_kg = 2.0 }", "robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }",
-        "test.toml:12:2: agent `mass`: the law `position_only` is made for point masses", "`adaptive`, `known` and `task_space`"),
+        "test.toml:12:2: agent `mass`: the law `position_only` is made for point masses without damping and friction, of which it knows no velocity to compensate them at", "`adaptive`, `known` and `task_space`"),
     ("robot.point_mass = { dimension = 2, mass_kg = 2.0 }\ntarget.formulas = [\"sin(t)\", 0.5]", "robot.vehicle = { mass_kg = 2.0 }\nlaw.thrust.design.differentiable = {}\ntarget.formulas = [\"sin(t)\", 0.5, 0]",
         "test.toml:10:2: agent `mass`: the thrust law does not follow a target of its own; it goes with consensus", "laws that track are `adaptive`, `known`"),
     ("[1.0, 1.5, 2.0]\n\n[law.position_only]\ndamping = 20\nadaptation_gain = 5", "[1.0, 1.5, 2.0, 1, 1]\n\n[law.known]\n",

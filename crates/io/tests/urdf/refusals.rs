@@ -176,7 +176,7 @@ fn refusals() -> Vec<(String, UrdfOptions, &'static str)> {
             with_joint("revolute", r#"<dynamics damping="0.1" friction="0.2"/>"#),
             default(),
             r#"r.urdf:4:110: joint `turn` has Coulomb friction 0.2, and nothing says how to model it
-  help: in the scenario set `friction.dry = {}` or `friction.smooth = {}` to have it in robot and law, or `friction = "ignore"` to leave it out, as `--ignore-friction` does for `robot`"#,
+  help: in the scenario set `friction.dry = {}` or `friction.smooth = {}` to have it in robot and law, or `friction = "ignore"` to leave it out"#,
         ),
         (
             with_arm(

@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use forwardstep_core::law::ParameterBounds;
-use forwardstep_core::robot::tree::Tree;
-use forwardstep_core::robot::{Lagrangian, PlanarArm, PointMass, TwoVelocity};
+use forwardstep_core::robot::{Definiteness, Drives, Lagrangian, TwoVelocity};
 use forwardstep_core::{Gain, Kernel, Lanes, LengthError, dispatch};
 
 use super::series::{OfKernel, Series, SeriesEvaluator};
@@ -12,7 +11,7 @@ use crate::closed_loop::{Assembly, Block, SetupError};
 use crate::probe::{Probe, properties};
 use crate::reference::ReferenceFamily;
 use crate::setup::{Exchange, RobotSetup};
-use crate::system::{Attachments, Interface, Known as Knowledge, Law, LawWords, Robot, RobotInterface};
+use crate::system::{Interface, Known as Knowledge, Law, LawWords, Robot};
 
 /// A robot model whose kernels work on one robot, on eight at once, or on one with its derivatives.
 pub trait RobotModel: Robot + Clone {
@@ -30,6 +29,15 @@ pub trait RobotModel: Robot + Clone {
 
     /// Whether the kernel of `other` is the same, whatever the parameters, so that both can share it.
     fn shares_kernel(&self, other: &Self) -> bool;
+
+    /// See [`LagrangianRobot::with_drives`].
+    fn with_drives(&self, drives: Drives) -> Option<Arc<dyn Robot>>;
+
+    /// See [`LagrangianRobot::definiteness`].
+    fn definiteness(&self, theta: &[f64]) -> Option<Definiteness>;
+
+    /// See [`LagrangianRobot::swung_axes`].
+    fn swung_axes(&self) -> Option<Vec<usize>>;
 }
 
 /// What the engine and the verdicts ask of a robot under (6)–(7). Every [`RobotModel`] is one.
@@ -52,6 +60,15 @@ pub trait LagrangianRobot {
     /// # Errors
     /// [`LengthError`] when a vector has the wrong length.
     fn dynamics_at(&self, theta: &[f64], motion: TwoVelocity<'_, f64>) -> Result<DynamicsAt, LengthError>;
+
+    /// The same with `drives` in the place of what acts at its joints; `None` for a model that cannot have any, or not these.
+    fn with_drives(&self, drives: Drives) -> Option<Arc<dyn Robot>>;
+
+    /// Whether M(q) with the parameters `theta` is positive definite uniformly; `None` where nothing is known of it.
+    fn definiteness(&self, theta: &[f64]) -> Option<Definiteness>;
+
+    /// The axes whose travel may make C or g unbounded; `None` where nothing is known of them.
+    fn swung_axes(&self) -> Option<Vec<usize>>;
 
     /// What works out products of its dynamics at state after state, without forming Y.
     fn evaluator(&self) -> Box<dyn Evaluator>;
@@ -84,6 +101,12 @@ pub trait Evaluator {
     /// # Errors
     /// [`LengthError`] when a vector has the wrong length.
     fn at(&mut self, theta: &[f64], motion: TwoVelocity<'_, f64>, s: &[f64]) -> Result<&ProductsAt, LengthError>;
+
+    /// M(q), row by row, with the parameters `theta`.
+    ///
+    /// # Errors
+    /// [`LengthError`] when a vector has the wrong length.
+    fn mass(&mut self, theta: &[f64], q: &[f64]) -> Result<&[f64], LengthError>;
 }
 
 /// Products of a robot's dynamics at one state.
@@ -123,6 +146,11 @@ impl<K: Lagrangian<f64>> Evaluator for Evaluated<K> {
     fn at(&mut self, theta: &[f64], motion: TwoVelocity<'_, f64>, s: &[f64]) -> Result<&ProductsAt, LengthError> {
         dispatch(Products { of: self, theta, motion, s })?;
         Ok(&self.products)
+    }
+
+    fn mass(&mut self, theta: &[f64], q: &[f64]) -> Result<&[f64], LengthError> {
+        self.kernel.mass_matrix(&mut self.scratch, q, theta, &mut self.mass)?;
+        Ok(&self.mass)
     }
 }
 
@@ -175,6 +203,18 @@ impl<M: RobotModel> LagrangianRobot for M {
         at(&self.kernel(), theta, motion)
     }
 
+    fn with_drives(&self, drives: Drives) -> Option<Arc<dyn Robot>> {
+        RobotModel::with_drives(self, drives)
+    }
+
+    fn definiteness(&self, theta: &[f64]) -> Option<Definiteness> {
+        RobotModel::definiteness(self, theta)
+    }
+
+    fn swung_axes(&self) -> Option<Vec<usize>> {
+        RobotModel::swung_axes(self)
+    }
+
     fn evaluator(&self) -> Box<dyn Evaluator> {
         Box::new(Evaluated::new(self.kernel()))
     }
@@ -185,78 +225,6 @@ impl<M: RobotModel> LagrangianRobot for M {
 
     fn probe(&self, robot: &RobotSetup) -> Result<Probe, LengthError> {
         properties(&self.kernel(), robot)
-    }
-}
-
-/// A fixed-base tree of rigid bodies, for example from a URDF.
-impl Robot for Arc<Tree> {
-    fn interface(&self, axes: usize) -> RobotInterface {
-        RobotInterface { attachments: Attachments::Links(Arc::clone(self)), ..RobotInterface::mechanical(axes) }
-    }
-
-    #[inline(never)]
-    fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
-        Some(self)
-    }
-}
-
-impl RobotModel for Arc<Tree> {
-    type Kernel = Tree;
-
-    fn kernel(&self) -> Tree {
-        Tree::clone(self)
-    }
-
-    fn shares_kernel(&self, other: &Self) -> bool {
-        Arc::ptr_eq(self, other)
-    }
-}
-
-/// The two-link planar arm in closed form.
-impl Robot for PlanarArm {
-    fn interface(&self, axes: usize) -> RobotInterface {
-        RobotInterface { attachments: Attachments::PlanarTip, ..RobotInterface::mechanical(axes) }
-    }
-
-    #[inline(never)]
-    fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
-        Some(self)
-    }
-}
-
-impl RobotModel for PlanarArm {
-    type Kernel = PlanarArm;
-
-    fn kernel(&self) -> PlanarArm {
-        *self
-    }
-
-    fn shares_kernel(&self, _: &Self) -> bool {
-        true
-    }
-}
-
-/// A point mass in ℝᵐ.
-impl Robot for PointMass {
-    fn interface(&self, axes: usize) -> RobotInterface {
-        RobotInterface { numbered_axes: true, ..RobotInterface::mechanical(axes) }
-    }
-
-    #[inline(never)]
-    fn lagrangian(&self) -> Option<&dyn LagrangianRobot> {
-        Some(self)
-    }
-}
-
-impl RobotModel for PointMass {
-    type Kernel = PointMass;
-
-    fn kernel(&self) -> PointMass {
-        *self
-    }
-
-    fn shares_kernel(&self, other: &Self) -> bool {
-        self == other
     }
 }
 

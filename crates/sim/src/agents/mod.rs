@@ -1,6 +1,6 @@
 //! The shipped kinds of robots and laws, one file each. They come in by the same traits as those of a user's own crate.
 //!
-//! - `lagrangian`: robots under (6)–(7), a batch at a time; `series`: their dynamics with derivatives.
+//! - `lagrangian`: robots under (6)–(7), a batch at a time; `models`: those that are shipped; `series`: their dynamics with derivatives.
 //! - `position_only`: a point mass without velocity, Remark 7.
 //! - `vehicle`, `rotorcraft`: one thrust, Section V-B; `thrust` is the law that they share.
 //! - `task_space`: the end-effector of a robot, Theorem 6.
@@ -10,6 +10,7 @@
 
 mod chain;
 mod lagrangian;
+mod models;
 mod position_only;
 mod rotorcraft;
 mod series;

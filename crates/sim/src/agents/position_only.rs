@@ -26,7 +26,10 @@ pub struct PositionOnlyLaw {
 
 impl Law for PositionOnlyLaw {
     fn words(&self) -> LawWords {
-        LawWords { name: "the law without velocity", made_for: "point masses" }
+        LawWords {
+            name: "the law without velocity",
+            made_for: "point masses without damping and friction, of which it knows no velocity to compensate them at",
+        }
     }
 
     fn interface(&self, robot: &RobotSetup) -> Option<Interface> {

@@ -1,6 +1,8 @@
 //! A fully actuated surface ship: q = (x, y, ψ) in the earth frame, under (6)–(7).
 
-use forwardstep_core::robot::Ship;
+use std::sync::Arc;
+
+use forwardstep_core::robot::{Definiteness, Drives, Ship};
 
 use super::lagrangian::{LagrangianRobot, RobotModel};
 use crate::setup::{Axis, AxisUnit, RobotSetup};
@@ -36,5 +38,18 @@ impl RobotModel for Ship {
 
     fn shares_kernel(&self, _: &Self) -> bool {
         true
+    }
+
+    /// It floats and has no joints: what water takes of its motion is D, and water has no dry friction.
+    fn with_drives(&self, drives: Drives) -> Option<Arc<dyn Robot>> {
+        (drives.count() == 0).then(|| Arc::new(*self) as Arc<dyn Robot>)
+    }
+
+    fn definiteness(&self, theta: &[f64]) -> Option<Definiteness> {
+        Ship::definiteness(*self, theta).ok()
+    }
+
+    fn swung_axes(&self) -> Option<Vec<usize>> {
+        Some(Vec::new())
     }
 }

@@ -6,7 +6,7 @@ use forwardstep_core::controller::TaskSpace;
 use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::plant::{Mechanical, TaskArm};
 use forwardstep_core::robot::tree::{LinkPoint, Tree, TreeTip, Uncertain};
-use forwardstep_core::robot::{Lagrangian, PlanarArm, PlanarTip, TipKinematics};
+use forwardstep_core::robot::{Driven, Lagrangian, PlanarArm, PlanarTip, TipKinematics};
 use forwardstep_core::{Gain, ResolvedGain};
 
 use crate::closed_loop::{Assembly, Block, SetupError, tracking_law};
@@ -67,7 +67,7 @@ impl TipSetup {
     /// The true θ of the tip of `robot`; nothing for a robot that has no such tip.
     pub fn parameters(&self, robot: &dyn Robot) -> Option<Vec<f64>> {
         match self {
-            TipSetup::Planar(tip) => robot.is::<PlanarArm>().then(|| tip.length_m.to_vec()),
+            TipSetup::Planar(tip) => is_planar(robot).then(|| tip.length_m.to_vec()),
             TipSetup::Point { point, coordinates, uncertain } => {
                 let tree = robot.downcast::<Arc<Tree>>()?;
                 let tip = TreeTip::new(Tree::clone(tree), point, coordinates, *uncertain).ok()?;
@@ -84,7 +84,7 @@ impl Law for TaskSpaceLaw {
 
     fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
         let suits = match self.tip {
-            TipSetup::Planar(_) => robot.kind.is::<PlanarArm>(),
+            TipSetup::Planar(_) => is_planar(&*robot.kind),
             TipSetup::Point { .. } => robot.kind.is::<Arc<Tree>>(),
         };
         let truth = self.tip.parameters(&*robot.kind).unwrap_or_default();
@@ -105,9 +105,10 @@ impl Law for TaskSpaceLaw {
 
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
         match &self.tip {
-            TipSetup::Planar(tip) => {
-                self.with_tip(assembly, *assembly.robot::<PlanarArm>()?, *tip, tip.length_m.to_vec())
-            }
+            TipSetup::Planar(tip) => match assembly.agent().robot.kind.downcast::<Driven<PlanarArm>>() {
+                Some(arm) => self.with_tip(assembly, arm.clone(), *tip, tip.length_m.to_vec()),
+                None => self.with_tip(assembly, *assembly.robot::<PlanarArm>()?, *tip, tip.length_m.to_vec()),
+            },
             TipSetup::Point { point, coordinates, uncertain } => {
                 let tree = Tree::clone(assembly.robot::<Arc<Tree>>()?);
                 let tip = TreeTip::new(tree.clone(), point, coordinates, *uncertain)
@@ -117,6 +118,11 @@ impl Law for TaskSpaceLaw {
             }
         }
     }
+}
+
+/// Whether a robot has the tip of a planar arm.
+fn is_planar(robot: &dyn Robot) -> bool {
+    robot.is::<PlanarArm>() || robot.is::<Driven<PlanarArm>>()
 }
 
 impl TaskSpaceLaw {

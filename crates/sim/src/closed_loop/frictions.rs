@@ -3,12 +3,11 @@
 //! Set-valued friction is held over a period, as the set-valued signs of a leader's followers are, and set anew at every event between: a
 //! torque that jumps moves a joint that sticks. See [`Stick`] for what is solved.
 
-use std::sync::Arc;
-
-use forwardstep_core::robot::tree::{Stick, Tree};
+use forwardstep_core::robot::{Drives, Stick};
 
 use super::assemble::Block;
 use super::pushes::Pushes;
+use crate::agents::Evaluator;
 use crate::engine::{Happened, Heard, Port};
 use crate::recording::Signal;
 use crate::setup::{AgentSetup, Setup};
@@ -31,8 +30,10 @@ pub(super) struct Frictions {
 struct Rubbed {
     agent: usize,
     block: usize,
-    tree: Arc<Tree>,
+    robot: Box<dyn Evaluator>,
     theta: Vec<f64>,
+    /// F of each joint that rubs.
+    forces: Vec<f64>,
     stick: Stick,
     /// Where q̇ stands in the state of its block, joint by joint.
     velocities: Vec<usize>,
@@ -41,11 +42,11 @@ struct Rubbed {
     ddq: Vec<f64>,
 }
 
-/// The tree of an agent and the longest period over which its dry friction is held, s; `None` when it has none.
-pub(super) fn dry_friction(agent: &AgentSetup) -> Option<(&Arc<Tree>, f64)> {
-    let tree = agent.robot.kind.downcast::<Arc<Tree>>()?;
-    let drives = tree.drives();
-    drives.dry_s.filter(|_| !drives.friction.is_empty()).map(|period_s| (tree, period_s))
+/// The drives of an agent and the longest period over which its dry friction is held, s; `None` when it has none.
+pub(super) fn dry_friction(agent: &AgentSetup) -> Option<(Drives, f64)> {
+    let drives = agent.robot.interface().drives;
+    let period_s = drives.dry_s.filter(|_| !drives.friction.is_empty())?;
+    Some((drives, period_s))
 }
 
 /// Whether something ever acts on an agent from outside of its law: a push or dry friction.
@@ -59,10 +60,13 @@ impl Frictions {
         let mut each = Vec::new();
         let mut period_s = f64::INFINITY;
         for (index, (agent, port)) in setup.agents.iter().zip(ports).enumerate() {
-            let Some((tree, own_s)) = dry_friction(agent) else { continue };
+            let (Some((drives, own_s)), Some(robot)) = (dry_friction(agent), agent.robot.kind.lagrangian()) else {
+                continue;
+            };
             let place = blocks.iter().enumerate().find(|(_, block)| block.degree.contains(&port.degree));
             let Some((block, Block { columns, state, .. })) = place else { continue };
-            let n = tree.joint_count();
+            let n = agent.robot.axes.len();
+            let forces = agent.robot.drive_parameters(&drives).map_or_else(Vec::new, |[.., forces]| forces.to_vec());
             let mut velocities = vec![0; n];
             for at in 0..state.len() {
                 if let (found, Signal::Velocity, axis) = columns.locate(at)
@@ -76,9 +80,10 @@ impl Frictions {
             each.push(Rubbed {
                 agent: index,
                 block,
-                tree: Arc::clone(tree),
+                robot: robot.evaluator(),
                 theta: agent.robot.theta.clone(),
-                stick: Stick::new(tree),
+                forces,
+                stick: Stick::new(&drives, n),
                 velocities,
                 q: joints(),
                 dq: joints(),
@@ -121,7 +126,7 @@ impl Frictions {
         // Agents that follow one another mostly share a block.
         let mut evaluated = None;
         for rubbed in &mut self.each {
-            let Rubbed { agent, block, tree, theta, stick, velocities, q, dq, ddq } = rubbed;
+            let Rubbed { agent, block, robot, theta, forces, stick, velocities, q, dq, ddq } = rubbed;
             let Some(own) = blocks.get_mut(*block) else { continue };
             if evaluated.replace(*block) != Some(*block) {
                 let (inputs, rates) = (own.inputs(&self.heard, pushes.external()), &mut self.rates[own.state.clone()]);
@@ -132,7 +137,7 @@ impl Frictions {
             for (ddq, at) in ddq.iter_mut().zip(velocities) {
                 *ddq = self.rates[state.start + *at];
             }
-            let checked = stick.set(tree, h_s, theta, [q, dq, ddq]);
+            let checked = robot.mass(theta, q).and_then(|mass| stick.set(h_s, mass, forces, [dq, ddq]));
             debug_assert_eq!(checked, Ok(()), "lengths are fixed when the closed loop is built");
             pushes.rub(*agent, stick.torque());
         }

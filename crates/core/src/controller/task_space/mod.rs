@@ -287,19 +287,21 @@ where
             work.s[k] = truth.state[m + k] - state[k];
         }
 
-        // Y(q, 0, z, ż) ϑ = M ż + D z + g.
-        let (inertia, damping) = {
+        // Y(q, 0, 0, ż) ϑ = M ż + g, and beside g stands what damping and friction take.
+        let (inertia, lost) = {
             let TaskWork { robot, still, s, damped, yt_s, .. } = work;
-            let mut paired = |z: &[f64], dz: &[f64]| -> Result<f64, LengthError> {
-                let motion = TwoVelocity { q, dq: still, z, dz };
-                plant.arm.robot.regressor_products(robot, motion, &plant.arm.theta, s, damped, yt_s)?;
-                Ok(s.iter().zip(damped.iter()).map(|(s, torque)| s * torque).sum())
-            };
-            let gravity = paired(still, still)?;
-            (paired(still, s)? - gravity, paired(s, still)? - gravity)
+            let (arm, theta) = (&plant.arm.robot, &plant.arm.theta);
+            let power = |torque: &[f64], s: &[f64]| -> f64 { s.iter().zip(torque).map(|(s, torque)| s * torque).sum() };
+            arm.regressor_products(robot, TwoVelocity { q, dq: still, z: still, dz: s }, theta, s, damped, yt_s)?;
+            let whole = power(damped, s);
+            arm.regressor_products(robot, TwoVelocity { q, dq: still, z: still, dz: still }, theta, s, damped, yt_s)?;
+            let gravity = power(damped, s);
+            let moving = TwoVelocity { q, dq: &truth.state[m..2 * m], z: &state[..m], dz: still };
+            arm.add_damping(robot, moving, theta, damped)?;
+            (whole - gravity, power(damped, s) - gravity)
         };
         self.law.damping.apply(&work.s, &mut work.damped);
-        let mut dissipation = damping;
+        let mut dissipation = lost;
         let (mut task, mut strayed) = (0.0, 0.0);
         for k in 0..m {
             dissipation += work.s[k] * work.damped[k];

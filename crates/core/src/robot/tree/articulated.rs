@@ -256,7 +256,7 @@ impl Tree {
         still.fill(S::ZERO);
         self.wrenches(slots, self.base(), TwoVelocity { q, dq, z: dq, dz: still }, theta);
         drive.copy_from_slice(tau);
-        self.resist(dq, theta, drive);
+        self.drives.resist(dq, &theta[self.body_parameters()..], drive);
 
         let inertias = theta.as_chunks::<10>().0;
         let mut i = 0;

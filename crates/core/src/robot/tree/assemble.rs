@@ -159,7 +159,8 @@ impl Tree {
             return Err(TreeError::Gravity { gravity });
         }
         let mut anchors: Vec<Anchor> = Vec::with_capacity(links.len());
-        let (mut bodies, mut inertias, mut dampings) = (Vec::new(), Vec::<[f64; 10]>::new(), Vec::new());
+        let (mut bodies, mut inertias) = (Vec::new(), Vec::<[f64; 10]>::new());
+        let (mut damped, mut dampings) = (Vec::new(), Vec::new());
         let mut moving = Vec::new();
         for (link, spec) in links.iter().enumerate() {
             check_link(link, spec)?;
@@ -183,11 +184,11 @@ impl Tree {
                 }
                 LinkJoint::Moving { kind, axis, damping } => {
                     let axis = checked_axis(link, axis)?;
-                    let damped = damping != 0.0;
-                    if damped {
+                    if damping != 0.0 {
+                        damped.push(bodies.len());
                         dampings.push(damping);
                     }
-                    let body = Body::new(held_by.body, &x_body_joint, kind, axis, damped, &bodies);
+                    let body = Body::new(held_by.body, &x_body_joint, kind, axis, &bodies);
                     bodies.push(body);
                     inertias.push(spec.inertia);
                     moving.push(link);
@@ -201,7 +202,7 @@ impl Tree {
         }
         let mut theta: Vec<f64> = inertias.into_iter().flatten().collect();
         theta.extend(dampings);
-        Ok(Assembled { tree: Tree::new(bodies, gravity), theta, moving, anchors })
+        Ok(Assembled { tree: Tree::new(bodies, damped, gravity), theta, moving, anchors })
     }
 }
 

@@ -76,7 +76,7 @@ impl<S: Scalar> Lagrangian<S> for Tree {
         motion.check(n)?;
         LengthError::check("theta", self.theta_len(), theta.len())?;
         LengthError::check("damping torque", n, out.len())?;
-        self.add_losses(motion, theta, out);
+        self.drives.add_losses(motion, &theta[self.body_parameters()..], out);
         Ok(())
     }
 
@@ -134,11 +134,9 @@ impl Tree {
 
     /// See [`Lagrangian::adaptation_scale`]. r² = tr I / 2m is the mean squared distance from the joint; a body without
     /// mass or extent takes the mean over the others, and where there is none 1 kg and 0.1 m. The scale of a damping is
-    /// M_jj(q), that of an armature r² M_jj(q)/g₀². A friction has nothing to do with M: its scale is 0.16 s² F, with which the usual 5/s
-    /// make Γ = 4 F per rad.
+    /// M_jj(q), that of an armature r² M_jj(q)/g₀².
     fn parameter_scale(&self, q: &[f64], theta: &[f64]) -> Vec<f64> {
         const STANDARD_GRAVITY: f64 = 9.81;
-        const FRICTION_S2: f64 = 0.16;
         let (bodies, _) = theta.as_chunks::<10>();
         let bodies = bodies.get(..self.joint_count()).unwrap_or(bodies);
         let usable = |x: f64| (x > 0.0 && x.is_finite()).then_some(x);
@@ -166,11 +164,8 @@ impl Tree {
             let inertia = |joint: usize| diagonal(&joint).unwrap_or(fallback);
             let spread = |joint: usize| bodies.get(joint).and_then(spread).unwrap_or(mean_spread);
             let armature = |joint: usize| spread(joint) * inertia(joint) / (STANDARD_GRAVITY * STANDARD_GRAVITY);
-            scale.extend(self.damped.iter().map(|joint| inertia(*joint)));
-            scale.extend(self.drives.geared.iter().map(|joint| armature(*joint)));
-            let [_, frictions] = self.drive_parameters();
-            let friction = |own: &f64| FRICTION_S2 * usable(own.abs()).unwrap_or(fallback);
-            scale.extend(theta.get(frictions).unwrap_or_default().iter().map(friction));
+            let own = theta.get(self.body_parameters()..).unwrap_or_default();
+            scale.extend(self.drives.scales(own, inertia, armature, fallback));
         }
         scale
     }

@@ -11,7 +11,6 @@ mod motion;
 mod physical;
 mod placement;
 mod spatial;
-mod stick;
 mod subdivided;
 mod sweep;
 mod tip;
@@ -19,10 +18,8 @@ mod uniform;
 mod wrench;
 
 pub use assemble::{Anchor, Assembled, LinkJoint, LinkSpec, TreeError, inertia_about_frame};
-pub use drives::{DriveError, Drives, Friction, SMOOTHING_LOSS};
 pub use model::{JointKind, Tree, TreeScratch};
 pub use physical::{InertiaDefect, MassMatrixError, inertia_defects};
 pub use placement::Placement;
-pub use stick::Stick;
 pub use tip::{TipError, TreeTip, Uncertain};
 pub use wrench::{Axes, LinkPoint, PointMotion, PointWrench};

@@ -10,12 +10,12 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::articulated::Articulated;
-use super::drives::Drives;
 use super::motion::{Motion, Seat, Wrench};
 use super::placement::rows;
 use super::spatial::{Inertia, Mat3, Sym3, Vec3};
 use super::uniform::enclosed_rotation;
 use crate::expression::Interval;
+use crate::robot::Drives;
 use crate::{LengthError, Scalar};
 
 /// What a moving joint does along its axis.
@@ -33,8 +33,6 @@ pub enum JointKind {
 #[derive(Clone, Debug)]
 pub struct Tree {
     pub(super) bodies: Vec<Body>,
-    /// The joint of every damping parameter.
-    pub(super) damped: Vec<usize>,
     pub(super) drives: Drives,
     pub(super) gravity: [f64; 3],
 }
@@ -51,7 +49,6 @@ pub(super) struct Body {
     pub(super) rotation: [[f64; 3]; 3],
     pub(super) translation: [f64; 3],
     coordinates: Coordinates,
-    damped: bool,
     /// Where its joint's armature stands in ϑ, if it has one.
     pub(super) armature: Option<usize>,
 }
@@ -153,7 +150,6 @@ impl Body {
         x_parent_joint: &super::Placement,
         kind: JointKind,
         axis: [f64; 3],
-        damped: bool,
         bodies: &[Body],
     ) -> Self {
         let (coordinates, sign) = Coordinates::of_axis(axis);
@@ -170,7 +166,6 @@ impl Body {
             rotation: rows(&e),
             translation: [p.x, p.y, p.z],
             coordinates,
-            damped,
             armature: None,
         }
     }
@@ -228,9 +223,8 @@ impl Body {
 }
 
 impl Tree {
-    pub(super) fn new(bodies: Vec<Body>, gravity: [f64; 3]) -> Self {
-        let damped = bodies.iter().enumerate().filter(|(_, body)| body.damped).map(|(joint, _)| joint).collect();
-        Tree { bodies, damped, drives: Drives::default(), gravity }
+    pub(super) fn new(bodies: Vec<Body>, damped: Vec<usize>, gravity: [f64; 3]) -> Self {
+        Tree { bodies, drives: Drives { damped, ..Drives::default() }, gravity }
     }
 
     /// Number of joints, which is the number of moving bodies.
@@ -246,11 +240,6 @@ impl Tree {
     /// The body that carries each body; `None` for the base.
     pub fn parents(&self) -> impl ExactSizeIterator<Item = Option<usize>> + '_ {
         self.bodies.iter().map(|body| body.parent_slot.checked_sub(1))
-    }
-
-    /// The joint of every damping parameter, in the order in which they stand in ϑ, behind the inertias.
-    pub fn damped_joints(&self) -> &[usize] {
-        &self.damped
     }
 
     /// The gravity vector in the base frame, m/s².
@@ -277,15 +266,11 @@ impl Tree {
         ];
         LengthError::check("body names", self.bodies.len(), bodies.len())?;
         let inertias = bodies.iter().flat_map(|body| ENTRIES.iter().map(move |entry| format!("{body}.{entry}")));
-        let dampings =
-            self.bodies.iter().zip(bodies).filter(|(body, _)| body.damped).map(|(body, name)| match body.kind {
-                JointKind::Revolute => format!("{name}.damping_n_m_s"),
-                JointKind::Prismatic => format!("{name}.damping_n_s_m"),
-            });
         let of = |joint: usize, revolute: &str, prismatic: &str| match self.bodies[joint].kind {
             JointKind::Revolute => format!("{}.{revolute}", bodies[joint]),
             JointKind::Prismatic => format!("{}.{prismatic}", bodies[joint]),
         };
+        let dampings = self.drives.damped.iter().map(|joint| of(*joint, "damping_n_m_s", "damping_n_s_m"));
         let armatures = self.drives.geared.iter().map(|joint| of(*joint, "armature_kg_m2", "armature_kg"));
         let frictions = self.drives.friction.iter().map(|f| of(f.joint, "friction_n_m", "friction_n"));
         Ok(inertias.chain(dampings).chain(armatures).chain(frictions).collect())

@@ -58,8 +58,8 @@ impl Tree {
             i += 1;
         }
         self.fold_back(slots, y_theta);
-        self.add_drives(motion, theta, y_theta);
-        self.pair_drives(motion, s, drive_gradients);
+        self.drives.add(motion, &theta[10 * n..], y_theta);
+        self.drives.pair(motion, s, drive_gradients);
         Ok(())
     }
 
@@ -87,7 +87,7 @@ impl Tree {
             slot.motion = moved;
             i += 1;
         }
-        self.pair_drives(motion, s, drive_gradients);
+        self.drives.pair(motion, s, drive_gradients);
     }
 
     /// M ż + C z + g, without damping and without the test motion: the wrenches of single bodies, seated before.

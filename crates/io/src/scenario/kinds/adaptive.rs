@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use forwardstep_core::law::ParameterBounds;
-use forwardstep_core::robot::tree::Tree;
-use forwardstep_sim::{Adaptive, Known, Law, RobotSetup};
+use forwardstep_sim::{Adaptive, Attachments, Known, Law, RobotSetup};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -65,11 +64,9 @@ impl EstimateBoundsFile {
                 let slack = slack.map(|(largest, own)| share.value * own.abs().max(LEAST * largest));
                 let ends = robot.theta.iter().zip(slack).map(|(own, slack)| (own - slack, own + slack));
                 let mut ends: Vec<(f64, f64)> = ends.collect();
-                if let Some(tree) = robot.kind.downcast::<Arc<Tree>>() {
-                    let [_, frictions] = tree.drive_parameters();
-                    for (end, own) in ends[frictions.clone()].iter_mut().zip(&robot.theta[frictions]) {
-                        *end = (0.0, 2.0 * own);
-                    }
+                let frictions = robot.interface().drives.ranges_in(robot.theta.len());
+                for k in frictions.into_iter().flat_map(|[.., frictions]| frictions) {
+                    ends[k] = (0.0, 2.0 * robot.theta[k]);
                 }
                 ends.into_iter().unzip()
             }
@@ -80,16 +77,20 @@ impl EstimateBoundsFile {
     }
 }
 
-/// For every parameter the largest of its kind: masses, first moments, inertias of the bodies of a tree, and the rest.
+/// For every parameter the largest of its kind: masses, first moments, inertias of the bodies of a tree, else what a body has; dampings,
+/// armatures, frictions.
 fn like(robot: &RobotSetup) -> Vec<f64> {
-    let bodies = robot.kind.downcast::<Arc<Tree>>().map_or(0, |tree| tree.joint_count());
-    let kind = |k: usize| match (k < 10 * bodies, k % 10) {
-        (true, 0) => 0,
-        (true, 1..=3) => 1,
-        (true, _) => 2,
-        (false, _) => 3,
+    let interface = robot.interface();
+    let of_links = matches!(interface.attachments, Attachments::Links(_));
+    let drives = interface.drives.ranges_in(robot.theta.len()).unwrap_or_default();
+    let kind = |k: usize| match (drives.iter().position(|own| own.contains(&k)), of_links, k % 10) {
+        (Some(drive), ..) => 4 + drive,
+        (None, true, 0) => 0,
+        (None, true, 1..=3) => 1,
+        (None, true, _) => 2,
+        (None, false, _) => 3,
     };
-    let mut largest = [0.0_f64; 4];
+    let mut largest = [0.0_f64; 7];
     for (k, own) in robot.theta.iter().enumerate() {
         largest[kind(k)] = largest[kind(k)].max(own.abs());
     }

@@ -7,6 +7,7 @@
 //! the schema come from there.
 //!
 //! - `urdf`, `planar_arm`, `point_mass`: robots under (6)–(7); `adaptive`: these laws; a mass without velocity is with it.
+//! - `drives`: friction at their joints.
 //! - `task_space`: the end-effector of a robot.
 //! - `thrust`: vehicles with one thrust; `spacecraft`: an attitude.
 //! - `chain`, `cascade`: Section IV.
@@ -17,6 +18,7 @@ pub mod adaptive;
 pub mod cascade;
 pub mod chain;
 pub mod delays;
+pub mod drives;
 mod kind;
 pub mod planar_arm;
 pub mod point_mass;

@@ -8,11 +8,12 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use thiserror::Error;
 
+use super::drives::{StatedFrictionFile, driven};
 use super::{
-    At, Body, Fault, InputFolder, Mistake, RobotKind, RobotRead, RobotTable, RobotTemplate, Spread, StartReader, Stop,
-    not_negative, positive,
+    At, AxisValues, Body, Fault, InputFolder, Mistake, RobotKind, RobotRead, RobotTable, RobotTemplate, Spread,
+    StartReader, Stop, not_negative, positive,
 };
-use crate::scenario::values::{NotNegative, Positive};
+use crate::scenario::values::{NotNegative, NotNegativeEach, Positive};
 
 /// An arm whose mass matrix is not positive definite.
 #[derive(Debug, Error)]
@@ -43,6 +44,15 @@ pub struct PlanarArmFile {
     /// Gravity, pointing down, in m/s². Default: 9.81.
     #[schemars(range(min = 0))]
     pub gravity_m_s2: Option<At<f64>>,
+    /// Viscous damping of both joints or of each, in N m s. Default: none.
+    #[schemars(with = "Option<NotNegativeEach>")]
+    pub damping: Option<At<AxisValues>>,
+    /// The inertia of the rotors behind the gears, for both joints or for each, in kg m²: n²J for a rotor with the inertia J that turns n
+    /// times as fast as its joint. Default: none.
+    #[schemars(with = "Option<NotNegativeEach>")]
+    pub armature: Option<At<AxisValues>>,
+    /// Coulomb friction. Default: none.
+    pub friction: Option<StatedFrictionFile>,
 }
 
 impl RobotKind for PlanarArmFile {
@@ -56,12 +66,14 @@ impl RobotKind for PlanarArmFile {
                 line: "robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }".into(),
                 says: "uniform links",
                 law: RobotTemplate::adaptive("damping.gain = 8", "adaptation_gain = 10"),
+                dry_friction: Some("friction.dry = { coulomb = 0.5 }"),
             }),
         }
     }
 
     fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
         let (robot, body) = arm(&links(self)?)?;
+        let robot = driven(robot, self.damping.as_ref(), self.armature.as_ref(), self.friction.as_ref())?;
         Ok(RobotRead { robot, body, notices: Vec::new() })
     }
 
@@ -73,7 +85,10 @@ impl RobotKind for PlanarArmFile {
             links.com_m[k] *= length;
             links.inertia_kg_m2[k] *= mass * length * length;
         }
-        (read.robot, read.body) = arm(&links).map_err(|_| spread.unsound())?;
+        // What acts at the joints stays.
+        let (robot, body) = arm(&links).map_err(|_| spread.unsound())?;
+        read.robot = driven(robot, self.damping.as_ref(), self.armature.as_ref(), self.friction.as_ref())?;
+        read.body = body;
         Ok(())
     }
 

@@ -7,11 +7,12 @@ use forwardstep_sim::{Law, PositionOnlyLaw, RobotSetup, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::drives::{StatedFrictionFile, driven};
 use super::{
-    At, Fault, InputFolder, LawKind, LawReader, LawTable, RobotKind, RobotRead, RobotTable, RobotTemplate, Spread,
-    StartReader, Stop, count, number_or, positive,
+    At, AxisValues, Fault, InputFolder, LawKind, LawReader, LawTable, RobotKind, RobotRead, RobotTable, RobotTemplate,
+    Spread, StartReader, Stop, count, number_or, positive,
 };
-use crate::scenario::values::Positive;
+use crate::scenario::values::{NotNegativeEach, Positive};
 
 /// Axes a point mass may have.
 const MOST_DIMENSIONS: u32 = 100;
@@ -31,6 +32,11 @@ pub struct PointMassFile {
     /// Its mass, in kg.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub mass_kg: At<f64>,
+    /// Viscous damping along all axes or along each, in N s/m. Default: none.
+    #[schemars(with = "Option<NotNegativeEach>")]
+    pub damping: Option<At<AxisValues>>,
+    /// Coulomb friction along every axis by itself, as of a stage on rails. Default: none.
+    pub friction: Option<StatedFrictionFile>,
 }
 
 impl RobotKind for PointMassFile {
@@ -44,16 +50,19 @@ impl RobotKind for PointMassFile {
                 line: "robot.point_mass = { dimension = 2, mass_kg = 4.0 }".into(),
                 says: "in a plane",
                 law: RobotTemplate::adaptive("damping.gain = 8", "adaptation_gain = 10"),
+                dry_friction: Some("friction.dry = { coulomb = 0.5 }"),
             }),
         }
     }
 
     fn read(&self, _: &mut InputFolder) -> Result<RobotRead, Stop> {
-        Ok(RobotRead::new(point_mass(self)?))
+        let mass = point_mass(self)?;
+        Ok(RobotRead::new(driven(mass, self.damping.as_ref(), None, self.friction.as_ref())?))
     }
 
     fn spread(&self, read: &mut RobotRead, spread: &Spread<'_>) -> Result<(), Fault> {
-        spread.scale_each(&mut read.robot.theta);
+        // The mass comes first; what acts along the axes stays.
+        spread.scale_each(&mut read.robot.theta[..1]);
         Ok(())
     }
 
@@ -89,7 +98,7 @@ impl LawKind for PositionOnlyFile {
         LawTable {
             key: "position_only",
             description: "A point mass of unknown mass whose velocity is not measured: (a8) of the paper.",
-            made_for: "point masses",
+            made_for: "point masses without damping and friction, of which it knows no velocity to compensate them at",
         }
     }
 

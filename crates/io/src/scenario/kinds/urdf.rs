@@ -3,19 +3,20 @@
 use std::sync::Arc;
 
 use forwardstep_core::robot::tree::Tree;
+use forwardstep_sim::drives::JointDrives;
 use forwardstep_sim::{RobotSetup, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::drives::{FrictionFile, each};
 use super::{
     At, AxisValues, Body, Fault, InputFolder, RobotKind, RobotRead, RobotTable, Spread, StartReader, Stop, fault,
-    number_or,
 };
 use crate::SourceText;
 use crate::files::ReadError;
 use crate::scenario::problem::ScenarioProblem;
-use crate::scenario::values::{Named, NotNegativeEach, Positive};
-use crate::urdf::{self, FrictionPolicy, JointDrives, JointFriction, UrdfOptions, UrdfProblem};
+use crate::scenario::values::{Named, NotNegativeEach};
+use crate::urdf::{self, FrictionPolicy, UrdfOptions, UrdfProblem};
 
 /// Positions at which the mass matrix of a tree is looked at.
 const SAMPLES: usize = 16;
@@ -30,6 +31,9 @@ pub struct UrdfFile {
     /// Joints held at a value, in rad or m; each removes one axis.
     #[serde(default)]
     pub locked: Named,
+    /// Viscous damping, for all joints or for each, in N m s or N s/m. Default: what the URDF states.
+    #[schemars(with = "Option<NotNegativeEach>")]
+    pub damping: Option<At<AxisValues>>,
     /// The inertia of the rotors behind the gears, for all joints or for each, in kg m² or kg: n²J for a rotor with the inertia J that
     /// turns n times as fast as its joint. Default: none.
     #[schemars(with = "Option<NotNegativeEach>")]
@@ -38,67 +42,6 @@ pub struct UrdfFile {
     pub friction: Option<FrictionFile>,
     /// Gravity in the base frame, in m/s². Default: [0, 0, -9.81].
     pub gravity_m_s2: Option<[f64; 3]>,
-}
-
-/// What to do with Coulomb friction.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum FrictionFile {
-    /// Simulate without it.
-    Ignore,
-    /// F sgn(q̇), set-valued, so that joints stick. The law compensates F tanh(z/ε); no theorem covers what is left.
-    Dry(DryFile),
-    /// F tanh(q̇/ε), which the theorems cover.
-    Smooth(SmoothFile),
-}
-
-/// Dry friction.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct DryFile {
-    /// F for all joints or for each, in N m or N. Default: what the URDF states.
-    #[schemars(with = "Option<NotNegativeEach>")]
-    pub coulomb: Option<At<AxisValues>>,
-    /// ε of the law, in rad/s or m/s. Default: 0.01.
-    pub width: Option<At<AxisValues>>,
-    /// The longest period over which the friction of the robot is held, in s. Default: 0.001.
-    #[schemars(with = "Option<Positive>")]
-    pub period_s: Option<At<f64>>,
-}
-
-/// Smooth friction.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SmoothFile {
-    /// F for all joints or for each, in N m or N. Default: what the URDF states.
-    #[schemars(with = "Option<NotNegativeEach>")]
-    pub coulomb: Option<At<AxisValues>>,
-    /// ε of robot and law, in rad/s or m/s. Default: 0.01.
-    pub width: Option<At<AxisValues>>,
-}
-
-/// ε, rad/s or m/s.
-const WIDTH: f64 = 0.01;
-/// The longest period over which dry friction is held, s.
-const PERIOD_S: f64 = 1e-3;
-
-impl FrictionFile {
-    /// The friction of a robot whose URDF states `stated`.
-    fn of(&self, stated: &[f64]) -> Option<JointFriction> {
-        let (coulomb, width, dry_s) = match self {
-            FrictionFile::Ignore => return None,
-            FrictionFile::Dry(DryFile { coulomb, width, period_s }) => {
-                (coulomb, width, Some(number_or(period_s, PERIOD_S)))
-            }
-            FrictionFile::Smooth(SmoothFile { coulomb, width }) => (coulomb, width, None),
-        };
-        Some(JointFriction { coulomb: each(coulomb, stated), width: each(width, &vec![WIDTH; stated.len()]), dry_s })
-    }
-}
-
-/// One number for each axis, or the usual ones.
-fn each(file: &Option<At<AxisValues>>, usual: &[f64]) -> Vec<f64> {
-    file.as_ref().map_or_else(|| usual.to_vec(), |place| place.value.each(usual.len()))
 }
 
 impl RobotKind for UrdfFile {
@@ -145,12 +88,13 @@ fn from_urdf(file: &UrdfFile, folder: &mut InputFolder) -> Result<RobotRead, Sto
     };
     match urdf::read_urdf(&source, &options) {
         Ok(read) => {
-            let none = vec![0.0; read.coulomb.len()];
+            let axes = read.coulomb.len();
+            let damping = file.damping.as_ref().map(|place| place.value.each(axes));
             let friction = file.friction.as_ref().and_then(|friction| friction.of(&read.coulomb));
-            let drives = JointDrives { armature: each(&file.armature, &none), friction };
-            let read = read.with_drives(&drives).map_err(Fault::from)?;
+            let drives = JointDrives { damping, armature: each(file.armature.as_ref(), &vec![0.0; axes]), friction };
+            let robot = read.robot.with_drives(&drives).map_err(Fault::from)?;
             let links = read.links.into_iter().zip(read.anchors).collect();
-            Ok(RobotRead { robot: read.robot, notices: read.notices, body: Body { links, tip: None } })
+            Ok(RobotRead { robot, notices: read.notices, body: Body { links, tip: None } })
         }
         Err(error) => match lock_of(&error.problem, &file.locked) {
             // What is wrong stands in the scenario, not in the URDF.

@@ -14,22 +14,21 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::drives::Friction;
-use super::model::{Tree, TreeScratch};
+use super::Drives;
 use crate::LengthError;
 use crate::linear::invert;
 use crate::reference::saturated;
-use crate::robot::Lagrangian;
 
 /// Sweeps at one instant.
 const MOST_SWEEPS: usize = 400;
 /// Values that change by less are settled.
 const SETTLED: f64 = 1e-13;
 
-/// The dry friction of one tree.
+/// The dry friction of one robot.
 #[derive(Clone, Debug)]
 pub struct Stick {
-    scratch: TreeScratch<f64>,
+    /// The joints that rub.
+    joints: Vec<usize>,
     mass: Vec<f64>,
     /// M⁻¹.
     mobility: Vec<f64>,
@@ -41,17 +40,16 @@ pub struct Stick {
 }
 
 impl Stick {
-    /// Nothing rubs yet: σ is zero.
-    pub fn new(tree: &Tree) -> Self {
-        let n = tree.joint_count();
-        let joints = || vec![0.0; n];
+    /// For a robot with so many axes. Nothing rubs yet: σ is zero.
+    pub fn new(drives: &Drives, axes: usize) -> Self {
+        let each = || vec![0.0; axes];
         Stick {
-            scratch: tree.scratch(),
-            mass: vec![0.0; n * n],
-            mobility: vec![0.0; n * n],
-            sigma: joints(),
-            torque: joints(),
-            free: joints(),
+            joints: drives.friction.iter().map(|friction| friction.joint).collect(),
+            mass: vec![0.0; axes * axes],
+            mobility: vec![0.0; axes * axes],
+            sigma: each(),
+            torque: each(),
+            free: each(),
         }
     }
 
@@ -60,26 +58,27 @@ impl Stick {
         &self.torque
     }
 
-    /// Sets σ for a period `h_s` from the state q, q̇ on. `ddq` is q̈ there, under the friction that is held until now.
+    /// Sets σ for a period `h_s` from a state on with the inertia `mass` = M(q), armatures included, row by row, and with `forces` F, those
+    /// of the joints that rub. `ddq` is q̈ there, under the friction that is held until now.
     ///
     /// # Errors
     /// [`LengthError`] when a slice has the wrong length.
-    pub fn set(&mut self, tree: &Tree, h_s: f64, theta: &[f64], [q, dq, ddq]: [&[f64]; 3]) -> Result<(), LengthError> {
+    pub fn set(&mut self, h_s: f64, mass: &[f64], forces: &[f64], [dq, ddq]: [&[f64]; 2]) -> Result<(), LengthError> {
         let n = self.sigma.len();
-        LengthError::check("joints", n, tree.joint_count())?;
+        LengthError::check("mass matrix", n * n, mass.len())?;
+        LengthError::check("frictions", self.joints.len(), forces.len())?;
         LengthError::check("dq", n, dq.len())?;
         LengthError::check("ddq", n, ddq.len())?;
-        tree.mass_matrix(&mut self.scratch, q, theta, &mut self.mass)?;
+        self.mass.copy_from_slice(mass);
         invert(n, &mut self.mass, &mut self.mobility);
         for i in 0..n {
             let row = &self.mobility[i * n..(i + 1) * n];
             let rubbed: f64 = row.iter().zip(&self.torque).map(|(entry, torque)| entry * torque).sum();
             self.free[i] = dq[i] + h_s * (ddq[i] + rubbed);
         }
-        let [_, frictions] = tree.drive_parameters();
         for _ in 0..MOST_SWEEPS {
             let mut change = 0.0_f64;
-            for (Friction { joint, .. }, force) in tree.drives().friction.iter().zip(&theta[frictions.clone()]) {
+            for (joint, force) in self.joints.iter().zip(forces) {
                 let (i, row) = (*joint, &self.mobility[joint * n..(joint + 1) * n]);
                 let others: f64 = (0..n).filter(|k| *k != i).map(|k| row[k] * self.torque[k]).sum();
                 let value = saturated(self.free[i] - h_s * others, h_s * row[i] * force);
