@@ -41,7 +41,7 @@ pub use linearising::Linearising;
 pub use position_only::{PositionMeasured, PositionOnly};
 pub(crate) use stepped::Lengths;
 pub use stepped::Stepped;
-pub use task_space::{TaskMeasured, TaskSpace};
+pub use task_space::{NullSpace, TaskMeasured, TaskSpace};
 pub use thrust::{Floor, RateLoop, RotorcraftMeasured, Thrust, ThrustCascade, ThrustDesign, Yaw};
 
 use alloc::vec::Vec;
