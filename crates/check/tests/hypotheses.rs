@@ -18,7 +18,7 @@ use forwardstep_sim::formula::{BoundedFormula, Witness};
 use forwardstep_sim::schedule::{Phase, Schedule};
 
 /// Names may join this list. None may leave it or change: certificates, waivers and summaries of earlier versions refer to them.
-const NAMES: [&str; 56] = [
+const NAMES: [&str; 57] = [
     "spanning-tree",
     "leader-reaches-all",
     "dwell-time",
@@ -74,6 +74,7 @@ const NAMES: [&str; 56] = [
     "lengths-within-bounds",
     "attitude-gains",
     "known-momentum",
+    "start-attitude",
     "nonzero-quaternion",
 ];
 

@@ -139,6 +139,11 @@ pub trait Controller: Clone + Send + Sync + 'static {
     /// Whether a target may also be an offset from where all agree.
     const KNOWS_OFFSETS: bool;
 
+    /// Entries of a target that it follows: one for each of the plant's `axes`, unless other coordinates follow.
+    fn target_len(&self, axes: usize) -> usize {
+        axes
+    }
+
     /// Allocates working memory.
     fn scratch(&self) -> Self::Scratch;
 

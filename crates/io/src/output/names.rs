@@ -164,6 +164,7 @@ pub fn gap_unit(setup: &Setup) -> String {
                 first
             }
         }
+        Some(first) if first == "m" && units.all(|unit| unit == "m" || unit == "1") => "m or 1".into(),
         Some(_) => "rad or m".into(),
     }
 }
@@ -185,7 +186,7 @@ pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String 
         Unit::Axis(k) => format!("{length}/s^{k}"),
         Unit::Target => {
             let coordinates = setup.agents.get(agent).and_then(|agent| agent.interface()?.coordinates);
-            letters(coordinates.map_or(own, |of| Some(of.unit))).into()
+            letters(coordinates.map_or(own, |of| of.units.get(axis).copied())).into()
         }
         Unit::Torque if turns(setup, agent) => "N m".into(),
         Unit::Torque | Unit::Effort if length == "m" => "N".into(),

@@ -179,6 +179,10 @@ where
     const MEASURES: &'static [&'static str] = &["position", "velocity", "task-space position"];
     const KNOWS_OFFSETS: bool = false;
 
+    fn target_len(&self, _: usize) -> usize {
+        self.followed()
+    }
+
     fn scratch(&self) -> Self::Scratch {
         self.work()
     }

@@ -60,7 +60,7 @@ where
     T: TipKinematics + Clone,
 {
     /// Entries of the target.
-    pub(super) fn target_len(&self) -> usize {
+    pub(super) fn followed(&self) -> usize {
         self.tip.axes() + if self.tip.turns() { 4 } else { 0 }
     }
 
@@ -73,7 +73,7 @@ where
         sign: Option<f64>,
     ) -> Result<(), LengthError> {
         let axes = self.tip.axes();
-        LengthError::check("target", self.target_len(), target.len())?;
+        LengthError::check("target", self.followed(), target.len())?;
         for k in 0..axes {
             work.error[k] = measured.x[k] - target[k][0];
             work.d_target[k] = target[k][1];
