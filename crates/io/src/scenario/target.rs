@@ -90,10 +90,11 @@ pub(super) fn target(file: &At<TargetFile>, owner: &Owner<'_>, folder: &mut Inpu
     }
 }
 
-/// q and −q are one attitude: of the quaternions of two rows in turn, takes the second with the sign that is nearer to the first, so
+/// q and −q are one attitude, and the law for a pose takes the nearer: of the quaternions of two rows in turn, takes the second with the sign that is nearer to the first, so
 /// that a curve through them does not pass close to zero.
 fn one_sign(numbers: &mut [f64], owner: &Owner<'_>) {
-    let Some(first) = owner.quaternion else { return };
+    // Of a spacecraft the table is taken as it is written: its law goes the way round that the signs say.
+    let Some(first @ 1..) = owner.quaternion else { return };
     let mut before: Option<[f64; 4]> = None;
     for row in numbers.chunks_exact_mut(owner.axes.len().max(1)) {
         let Some(q) = row.get_mut(first..).and_then(|rest| rest.first_chunk_mut::<4>()) else { return };
