@@ -7,7 +7,7 @@ use std::collections::HashSet;
 
 use forwardstep_core::signal::{Entries, Unit};
 use forwardstep_sim::recording::{Recording, Signal};
-use forwardstep_sim::{AxisUnit, Setup};
+use forwardstep_sim::{AgentSetup, AxisUnit, Setup};
 
 /// The name of an agent; a number when the setup has no such agent.
 pub fn agent_name(setup: &Setup, agent: usize) -> String {
@@ -152,7 +152,12 @@ fn gap_signal(setup: &Setup) -> Signal {
 /// `rad or m` where agents differ.
 pub fn gap_unit(setup: &Setup) -> String {
     let signal = gap_signal(setup);
-    let axes = |agent: usize| 0..setup.agents.get(agent).map_or(0, |agent| agent.robot.axes.len());
+    // Redundant joints are more than the coordinates that follow.
+    let entries = |agent: &AgentSetup| match agent.interface().and_then(|law| law.coordinates) {
+        Some(of) if signal == Signal::Error => of.units.len(),
+        _ => agent.robot.axes.len(),
+    };
+    let axes = |agent: usize| 0..setup.agents.get(agent).map_or(0, entries);
     let all = (0..setup.agents.len()).flat_map(|agent| axes(agent).map(move |axis| (agent, axis)));
     let mut units = all.map(|(agent, axis)| unit(setup, agent, signal, axis));
     match units.next() {
