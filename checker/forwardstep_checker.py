@@ -653,13 +653,13 @@ DESIGNS, LED = ("continuous", "differentiable", "without_acceleration", "swarm")
 # The gains of each law, by their keys. What is not written is positive by default.
 GAINS = {
     "adaptive": ("damping", "adaptation_gain"), "known": ("damping",), "position_only": ("damping", "filter_per_s", "adaptation_gain"),
-    "task_space": ("damping", "adaptation_gain", "task_gain", "kinematic_gain", "torque_share", "reference_gain_per_s"),
+    "task_space": ("damping", "adaptation_gain", "task_gain", "kinematic_gain", "torque_share", "reference_gain_per_s", "attitude_gain"),
     "attitude": ("error_gain_per_s2", "rate_gain_per_s", "filter_gain_per_s", "damping"),
     "thrust": ("damping_per_s", "stiffness", "adaptation_gain", "estimate_start_kg"), "linearising": ("gain_per_s",),
     "linear_adaptive": ("gain_per_s", "adaptation_gain"), "immersion": ("gain_per_s", "adaptation_gain"),
     "adaptive_backstepping": ("gains_per_s", "adaptation_gain")}
 OTHER_SETTINGS = (" estimate_start estimate_start_kg floor design yaw thrust_start_n rate_bandwidth_per_s end_effector kinematic_start "
-                  "bounds determinant_floor antiderivatives")
+                  "bounds determinant_floor antiderivatives null_space")
 AGENT = "name count robot parameter_variation start reference law target enforce_limits"
 CONTROL = "sample_hz computation_delay_s velocity noise quantisation torque_limit torque_rate_limit_per_s safe_command message_timeout_s"
 
@@ -987,9 +987,13 @@ def design_of(agent):
     return choice(agent.gains.get("design", "differentiable"), "design")[0]
 
 def treated(agent):
-    kinds = {"position_only": "position only", "task_space": "task space", "attitude": "attitude", "thrust": "thrust"}
-    kind = kinds.get(agent.law, "chain" if agent.law in CHAIN_LAWS else "lagrangian")
-    return f"thrust {design_of(agent)}" if kind == "thrust" else kind
+    kinds, usual = {"position_only": "position only", "task_space": "task space", "attitude": "attitude"}, "lagrangian"
+    return f"thrust {design_of(agent)}" if agent.law == "thrust" else kinds.get(agent.law, "chain" if agent.law in CHAIN_LAWS else usual)
+
+# Of tips with more than a position, or with more joints than coordinates.
+def extension(agent):
+    posed = agent.law == "task_space" and table(agent.gains.get("end_effector", {}), "end_effector").get("follows") == "pose"
+    return "-pose" if posed else "-redundant" if "null_space" in agent.gains else ""
 
 def theorem(scenario):
     tracking, agents = scenario.reference == "tracking", scenario.agents
@@ -999,8 +1003,8 @@ def theorem(scenario):
     if len(kinds) > 1:
         return "targets" if tracking else "mixture"
     named = {"thrust continuous": "continuous-thrust", "thrust differentiable": "theorem-4", "thrust adaptive": "theorem-5",
-             "task space": "theorem-6", "attitude": "theorem-7", "chain": "chains-track" if tracking else "chains-agree",
-             "position only": "position-only-tracks" if tracking else "remark-7"}
+             "task space": "theorem-6" + max(map(extension, agents)), "attitude": "theorem-7",
+             "chain": f"chains-{'track' if tracking else 'agree'}", "position only": "position-only-tracks" if tracking else "remark-7"}
     kind = kinds.pop()
     if kind in named or tracking:
         return named.get(kind, "robots-track")
@@ -1042,14 +1046,12 @@ def requirements(scenario):
         (True, " ".join(f"{a.law.replace('_', '-')}-gains" for a in agents if a.law in ("position_only", "task_space", "attitude"))),
         ({"continuous"} in designs, "known-masses"),
         (any(each - {"continuous"} for each in designs), "thrust-gains"),
-        (flying, "nonzero-thrust"),
-        (any(agent.robot == "rotorcraft" for agent in agents), "angular-velocity"),
+        (flying, "nonzero-thrust"), (any(agent.robot == "rotorcraft" for agent in agents), "angular-velocity"),
         (any("rotors" in agent.body for agent in flying), "every-wrench"),
         (chains, "defined-terms input-factor " + ("chain-adaptation" if any(a.law != "linearising" for a in chains) else "chain-gains")),
         (any(agent.body.get("parameters") for agent in adaptive), "bounded-regressors"),
         (any(agent.pushes and agent.robot != "chain" for agent in chains), "matched-disturbance"),
-        (lagrangian, "positive-gains"),
-        (lagrangian or tips, "uniform-inertia"),
+        (lagrangian, "positive-gains"), (lagrangian or tips, "uniform-inertia"),
         (any(not agent.tracks for agent in lagrangian) or tips, "bounded-dynamics"),
         (frictions(scenario), "smooth-friction"),
         (any("bounds" in agent.gains for agent in lagrangian), "parameters-within-bounds"),
@@ -1060,10 +1062,11 @@ def requirements(scenario):
     ]
     found = {(each, "") for condition, ids in asked if condition for each in ids.split()}
     for agent in agents:
-        tip, attitude, bounds = agent.law == "task_space", agent.law == "attitude", "bounds" in agent.gains
+        tip, attitude, posed = agent.law == "task_space", agent.law == "attitude", extension(agent) == "-pose"
         own = [(tip, "regular-jacobian"), (attitude, "known-momentum"), (tip and agent.robot == "planar_arm", "target-within-reach"),
-               (agent.target, "bounded-target"), (agent.target and attitude, "nonzero-quaternion"),
-               (tip and agent.robot == "urdf", "certain-regressor"), (tip and bounds, "lengths-within-bounds")]
+               (agent.target, "bounded-target"), (agent.target and (attitude or posed), "nonzero-quaternion"),
+               (tip and agent.robot == "urdf", "certain-regressor"), (tip and "bounds" in agent.gains, "lengths-within-bounds"),
+               (posed, "start-attitude")]
         found |= {(each, agent.name) for condition, each in own if condition}
     return found
 
@@ -1081,7 +1084,7 @@ def inexact(control):
 SEVERAL = ("uniform-inertia", "hurwitz")
 # Hypotheses that only a run can show, or that the paper does not cover whenever they are asked for: no claim is right.
 NEVER = ("one-kind", "measured-derivative", "printed-design", "nonzero-thrust", "angular-velocity", "every-wrench",
-         "bounded-regressors", "regular-jacobian", "continuous-time", "exact-measurements")
+         "bounded-regressors", "regular-jacobian", "start-attitude", "continuous-time", "exact-measurements")
 # --- Rules: each shows one kind of proof of some hypotheses. Their parameters are the fields of the proof. A rule gives words,
 # --- and whether what is shown holds for all time where that is not plain. `WITNESSES` show that a hypothesis is violated.
 RULES = {}
@@ -1743,8 +1746,8 @@ def squares(trees):
 
 def quaternion(claim):
     paths = [tree for name in claim.agents for tree in claim.scenario.agents[claim.scenario.index[name]].target or []]
-    decided(len(paths) == 4, "is of no quaternion")
-    return paths
+    decided(len(paths) in (4, 7), "is of no quaternion")
+    return paths[-4:]
 
 # The square of how far a target is from where the reach of a tip is counted.
 def reached(claim):
@@ -1753,7 +1756,7 @@ def reached(claim):
         first, second = planar(agent.body)[1]
         return [(squares(agent.target), ((first - second) ** 2,) * 2, ((first + second) ** 2,) * 2)]
     base, most = outstretched(claim.scenario, agent)
-    away = [plus(tree, ("f", "neg", ("hull", *(("number", end) for end in at)))) for tree, at in zip(agent.target, base, strict=True)]
+    away = [plus(tree, ("f", "neg", ("hull", *(("number", end) for end in at)))) for tree, at in zip(agent.target, base)]
     # Not all that is nearer can be reached.
     return [(squares(away), (Fraction(-1),) * 2, most)]
 

@@ -72,8 +72,11 @@ fn goes_on(setup: &Setup) -> bool {
 
 /// Whether the evidence is that a run would end where the hypothesis fails.
 fn ends_a_run(hypothesis: &Hypothesis) -> bool {
-    use KindEvidence::{Determinant, FactorFloor, ThrustFloor};
-    matches!(&hypothesis.evidence, Evidence::Kind(ThrustFloor { .. } | FactorFloor { .. } | Determinant { .. }))
+    use KindEvidence::{Determinant, FactorFloor, SingularValue, ThrustFloor};
+    let watched = |evidence: &KindEvidence| {
+        matches!(evidence, ThrustFloor { .. } | FactorFloor { .. } | Determinant { .. } | SingularValue { .. })
+    };
+    matches!(&hypothesis.evidence, Evidence::Kind(evidence) if watched(evidence))
 }
 
 /// Agents that agree with each other should fall under one theorem.

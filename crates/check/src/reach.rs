@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use forwardstep_core::expression::Interval;
-use forwardstep_core::robot::tree::{Tree, TreeTip};
+use forwardstep_core::robot::tree::Tree;
 use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{AgentSetup, TaskSpaceLaw, TipSetup};
 
@@ -37,7 +37,7 @@ pub(crate) fn within_reach(agent: &AgentSetup, law: &TaskSpaceLaw, end_s: f64) -
     }
     // Between two looks it gets no farther than its speed takes it.
     let on_run = extent(target, &reach, Some(end_s));
-    let speed = (0..target.axes()).map(|axis| target.hull(axis, 1, Some(end_s)).size());
+    let speed = (0..reach.from.len()).map(|axis| target.hull(axis, 1, Some(end_s)).size());
     let room =
         0.5 * end_s / f64::from(LOOKS) * speed.map(|speed| speed * speed).sum::<f64>().sqrt() + ROUNDING * reach.most;
     let room = if room.is_finite() { room } else { f64::INFINITY };
@@ -92,9 +92,8 @@ pub(crate) fn reach(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<Reach> {
             let [first, second] = tip.length_m;
             Reach { from: vec![0.0; 2], least: (first - second).abs(), most: first + second, exact: true }
         }),
-        TipSetup::Point { point, coordinates, uncertain } => {
-            let tree = agent.robot.kind.downcast::<Arc<Tree>>()?;
-            let tip = TreeTip::new((**tree).clone(), point, coordinates, *uncertain).ok()?;
+        TipSetup::Point { coordinates, .. } => {
+            let tip = law.tip.of_tree(agent.robot.kind.downcast::<Arc<Tree>>()?)?.ok()?;
             let (first, most) = tip.reach()?;
             let from = coordinates.iter().filter_map(|coordinate| first.get(*coordinate).copied()).collect();
             Some(Reach { from, least: 0.0, most, exact: false })

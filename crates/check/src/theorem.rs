@@ -63,6 +63,10 @@ pub enum Theorem {
     Theorem5,
     /// Theorem 6.
     Theorem6,
+    /// The argument of Theorem 6 for positions and orientations of six joints.
+    Theorem6Pose,
+    /// The argument of Theorem 6 with a null-space term of redundant joints.
+    Theorem6Redundant,
     /// Theorem 7.
     Theorem7,
     /// Theorem 8.
@@ -106,6 +110,8 @@ impl Theorem {
             Theorem::Theorem4 => "theorem-4",
             Theorem::Theorem5 => "theorem-5",
             Theorem::Theorem6 => "theorem-6",
+            Theorem::Theorem6Pose => "theorem-6-pose",
+            Theorem::Theorem6Redundant => "theorem-6-redundant",
             Theorem::Theorem7 => "theorem-7",
             Theorem::Theorem8 => "theorem-8",
             Theorem::SwitchingLeader => "theorem-8-switching",
@@ -149,6 +155,8 @@ impl Theorem {
             | Theorem::Desired
             | Theorem::SwitchingLeader
             | Theorem::LateLeader
+            | Theorem::Theorem6Pose
+            | Theorem::Theorem6Redundant
             | Theorem::Swarm => Source::Derived,
             Theorem::Declared(_) => Source::Declared,
         }
@@ -198,6 +206,12 @@ impl fmt::Display for Theorem {
             Theorem::Theorem4 => "Theorem 4, (50) with the reference dynamics (49)",
             Theorem::Theorem5 => "Theorem 5, (57) and (58) with the reference dynamics (49)",
             Theorem::Theorem6 => "Theorem 6, (80) to (82) with the reference dynamics (76)",
+            Theorem::Theorem6Pose => {
+                "no theorem of the paper: the argument of Theorem 6 for poses, with k_o Δq_v beside K_p Δp in (76) and (80) to (82)"
+            }
+            Theorem::Theorem6Redundant => {
+                "no theorem of the paper: the argument of Theorem 6 with a null-space term of redundant joints in z_r"
+            }
             Theorem::Theorem7 => "Theorem 7, (99) to (105) with the reference dynamics (97)",
             Theorem::Theorem8 => "Theorem 8, reference dynamics (110)",
             Theorem::SwitchingLeader => {

@@ -118,6 +118,28 @@ pub fn angle(q: Quaternion) -> f64 {
     2.0 * libm::atan2(libm::sqrt(dot(q_v, q_v)), q_o.abs())
 }
 
+/// The quaternion of a rotation matrix, by rows, whose largest entry is positive: of the four ways to write it the one that divides
+/// by the largest number.
+pub fn from_matrix(r: &[[f64; 3]; 3]) -> Quaternion {
+    let (x, y, z) = (r[0][0], r[1][1], r[2][2]);
+    // Four times the squares of the entries, less than one each.
+    let squares = [x - y - z, y - x - z, z - x - y, x + y + z];
+    let mut most = 3;
+    for k in 0..3 {
+        if squares[k] > squares[most] {
+            most = k;
+        }
+    }
+    let head = 1.0 + squares[most];
+    let (apart, sum) = (|i: usize, k: usize| r[i][k] - r[k][i], |i: usize, k: usize| r[i][k] + r[k][i]);
+    normalized(match most {
+        0 => [head, sum(0, 1), sum(0, 2), apart(2, 1)],
+        1 => [sum(0, 1), head, sum(1, 2), apart(0, 2)],
+        2 => [sum(0, 2), sum(1, 2), head, apart(1, 0)],
+        _ => [apart(2, 1), apart(0, 2), apart(1, 0), head],
+    })
+}
+
 /// A desired attitude at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Desired {

@@ -70,6 +70,10 @@ pub enum Signal {
     KinematicEstimate,
     /// det Ĵ of the estimated Jacobian. One entry.
     Determinant,
+    /// The smallest singular value of the estimated Jacobian, of tips with poses or redundant joints. One entry.
+    SingularValue,
+    /// Δq_o beside Δq_v, of the same sign along the whole run as at its start. One entry.
+    ErrorScalar,
     /// A signal that a kind of one's own brings.
     Own(&'static OwnSignal),
 }
@@ -235,6 +239,8 @@ impl Signal {
             Signal::TaskPosition => Row::new("x", Fixed("m"), Coordinates, card("Position of the tip", "x")),
             Signal::KinematicEstimate => Row::new("kinematic_hat", Fixed("m"), CoordinateParameters, card("Estimated lengths", "θ̂")),
             Signal::Determinant => Row::new("det_jacobian", Volume, One, card("Regularity of the estimated Jacobian", "det Ĵ")),
+            Signal::SingularValue => Row::new("sigma_min_jacobian", Fixed("SI"), One, card("Regularity of the estimated Jacobian", "smallest singular value of Ĵ")),
+            Signal::ErrorScalar => Row::new("error_scalar", Fixed("1"), One, card("Scalar part of the attitude error", "Δq_o; 1 and −1 are the target’s attitude")),
             Signal::Own(own) => Row { may_jump: own.may_jump, ..Row::new(own.symbol, own.unit, own.entries, card(own.title, own.letters)) },
         }
     }

@@ -249,6 +249,8 @@ fn thm6_an_estimate_beyond_its_margin_stands_and_never_turns_round() {
             estimate_start: vec![0.0; 5],
             kinematic_start: start.to_vec(),
             determinant_floor: 0.02,
+            attitude_gain: 1.0,
+            null_space: None,
         };
         let output = [0.3, 1.2, 0.7, -0.4, 0.5 + error, 0.6 + error];
         let target = [[0.5, 0.0, 0.0, 0.0, 0.0], [0.6, 0.0, 0.0, 0.0, 0.0]];

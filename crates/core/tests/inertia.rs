@@ -8,7 +8,7 @@ use common::models;
 use common::random::Random;
 use forwardstep_core::expression::Interval;
 use forwardstep_core::robot::tree::{
-    Anchor, Assembled, JointKind, LinkJoint, LinkPoint, LinkSpec, Placement, Tree, TreeTip, Uncertain,
+    Anchor, Assembled, Follows, JointKind, LinkJoint, LinkPoint, LinkSpec, Placement, Tree, TreeTip, Uncertain,
     inertia_about_frame,
 };
 use forwardstep_core::robot::{
@@ -169,7 +169,7 @@ proptest! {
         let tree = Tree::assemble(&links, GRAVITY).unwrap().tree;
         let point = LinkPoint { link: Anchor { body: Some(joints - 1), x_body_link: Placement::IDENTITY }, at: random.vector(0.5) };
         let coordinates: Vec<usize> = (0..joints).collect();
-        let tip = TreeTip::new(tree, &point, &coordinates, Uncertain::Tool).unwrap();
+        let tip = TreeTip::new(tree, &point, &coordinates, Follows::Position, Uncertain::Tool).unwrap();
         let (first, reach) = tip.reach().unwrap();
         for _ in 0..30 {
             let mut x = vec![0.0; joints];
@@ -181,7 +181,7 @@ proptest! {
             *kind = JointKind::Prismatic;
         }
         let tree = Tree::assemble(&links, GRAVITY).unwrap().tree;
-        prop_assert_eq!(TreeTip::new(tree, &point, &coordinates, Uncertain::Tool).unwrap().reach(), None);
+        prop_assert_eq!(TreeTip::new(tree, &point, &coordinates, Follows::Position, Uncertain::Tool).unwrap().reach(), None);
     }
 
     #[test]

@@ -198,6 +198,8 @@ shipped! {
     through_waypoints: "through-waypoints",
     theorem_6: "theorem-6",
     task_space_ur5e: "task-space-ur5e",
+    pose_ur5e: "pose-ur5e",
+    redundant_panda: "redundant-panda",
     theorem_7: "theorem-7",
     tumbling_target: "tumbling-target",
     rest_to_rest: "rest-to-rest",

@@ -293,8 +293,10 @@ pub struct DeclaredClaim {
 pub struct Coordinates {
     /// What each is called.
     pub names: Vec<String>,
-    /// Their unit.
-    pub unit: AxisUnit,
+    /// The unit of each.
+    pub units: Vec<AxisUnit>,
+    /// Where the four entries of a quaternion begin among them, if there is one.
+    pub quaternion: Option<usize>,
     /// What each of their uncertain parameters is called.
     pub parameters: Vec<String>,
 }

@@ -116,7 +116,9 @@ fn instant(trajectory: &Trajectory, drive: &[f64; 5], gain: f64, end_s: f64) -> 
 /// One entry that keeps away from zero for ever, else the norm, for ever or on the run.
 pub(super) fn nonzero_quaternion(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     let target = setup.agents.get(*claim.agents.first()?)?.target.as_ref()?;
-    let entries: Vec<Course<'_>> = target.paths().iter().map(Course::of).collect();
+    // Of a pose, after the position.
+    let first = target.axes().saturating_sub(4);
+    let entries: Vec<Course<'_>> = target.paths()[first..].iter().map(Course::of).collect();
     let away = |within: Interval| within.low > 0.0 || within.high < 0.0;
     let for_ever = |(entry, course): (usize, &Course<'_>)| {
         let enclose = |t: Interval| course.enclose(t);

@@ -1,5 +1,7 @@
 //! The end-effector of a robot, (76)–(82), in which Ĵᵀ K* Δx and z_r stand for themselves.
 
+use forwardstep_core::robot::tree::Follows;
+use forwardstep_sim::TaskSpaceLaw;
 use num_rational::BigRational;
 
 use super::adaptation::{self, nonlinear};
@@ -56,7 +58,7 @@ pub(super) fn explained(case: &Case<'_>, [kappa, alpha]: &[BigRational; 2]) -> E
     let rate = reduced(&upper)
         .replaced(&Polynomial::one(), |quantity| (quantity == Quantity::own(Letter::Deviation)).then(|| v.clone()));
     let v = Formula::Rate(Box::new(Formula::bracket(notation.form(&Form::own(v)))));
-    let sections = vec![
+    let mut sections = vec![
         Section::new(Subject::VirtualControl)
             .words("z is what the velocity of the joints should be, and its derivative what the virtual control q̈ should be. z_r would lead the end-effector along its target if Ĵ were J.")
             .formula(Formula::equal(notation.quantity(q, 2), notation.quantity(q, 2)), "(aa3)")
@@ -85,5 +87,25 @@ pub(super) fn explained(case: &Case<'_>, [kappa, alpha]: &[BigRational; 2]) -> E
         ),
     ];
     let left = reduced(&upper).highest(Letter::Error).unwrap_or(0);
+    sections.extend(extension(case).map(|words| Section::new(Subject::Convergence).words(words)));
     Explained { agents: case.agents.clone(), order: Some(2), degrees: Some([upper.degree(1), left]), sections }
+}
+
+/// What a pose or redundant joints change, which is not in the paper.
+fn extension(case: &Case<'_>) -> Option<&'static str> {
+    let agent = case.setup.agents.get(*case.agents.first()?)?;
+    match agent.law.downcast::<TaskSpaceLaw>()?.tip.follows() {
+        Follows::Position => None,
+        Follows::RedundantPosition => Some(
+            "Not from the paper: there are more joints than coordinates, Ĵ⁻¹ stands for Ĵ⁺ = Ĵᵀ(ĴĴᵀ)⁻¹, and z_r = Ĵ⁺dx_d + (I − Ĵ⁺Ĵ)φ with \
+             φ_k = −k_n r_k/√(1 + r_k²), r = q − q_n. The proof takes of z_r only that Ĵz_r = dx_d and that it is bounded with its \
+             derivative, so V and V̇ are the same; q̇ − z_r → 0, and the free motion of the joints is that of φ.",
+        ),
+        Follows::Pose => Some(
+            "Not from the paper: x is a position and an orientation. K*Δx stands for e = (K_pΔp, k_oΔq_v), Δq the quaternion of R R_dᵀ, \
+             and ½ΔxᵀK*Δx for U = ½ΔpᵀK_pΔp + 2k_o(1 − Δq_o). d/dt 2(1 − Δq_o) = Δq_vᵀ(ω − ω_d) in coordinates of the base, so the \
+             rate of U is eᵀ(Jq̇ − dx_d), dx_d = (dp_d, ω_d), and V̇ is the same. k_o is one number: with a matrix there is no U. Then e \
+             vanishes: Δp → 0 and Δq_v → 0, which is the attitude reached for Δq_o = 1 and for Δq_o = −1.",
+        ),
+    }
 }

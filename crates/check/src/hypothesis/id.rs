@@ -170,6 +170,8 @@ table! {
         "K and Λ_f are symmetric positive definite, α₁ and α₂ are positive";
     KnownMomentum, "known-momentum", "Theorem 7", Source::Paper,
         "the inertia of … and its angular momentum h_I are known and constant";
+    StartAttitude, "start-attitude", "own derivation", Source::Derived,
+        "the start of … is not half a turn from the attitude of its target";
     NonzeroQuaternion, "nonzero-quaternion", "own derivation", Source::Derived,
         "the quaternion that … is to follow is never zero";
 }

@@ -3,6 +3,7 @@
 use forwardstep_core::expression::{Expression, Interval};
 use forwardstep_core::plant;
 use forwardstep_sim::formula::BoundedFormula;
+use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{AgentSetup, AttitudeLaw, Setup, SpacecraftModel};
 
 use super::{Claim, KindCheck};
@@ -40,7 +41,7 @@ impl KindCheck for Spacecraft {
             let agent = &setup.agents[*index];
             let subject = || Subject::Agent(Named::of(setup, *index));
             hypotheses.push(Hypothesis::about(Id::KnownMomentum, subject(), momentum(agent)));
-            let path = path(setup, agent);
+            let path = agent.target.as_ref().and_then(|target| never_zero(target, setup.time.end_s));
             hypotheses.extend(path.map(|evidence| Hypothesis::about(Id::NonzeroQuaternion, subject(), evidence)));
         }
         hypotheses
@@ -67,8 +68,7 @@ fn momentum(agent: &AgentSetup) -> KindEvidence {
 
 /// The path of the desired attitude, as a quaternion of any norm, must not pass zero. It stays away from it for ever where
 /// one of its entries does; else, on the run, where it cannot get there between two looks, however fast it moves.
-fn path(setup: &Setup, agent: &AgentSetup) -> Option<MotionEvidence> {
-    let target = agent.target.as_ref()?;
+pub(super) fn never_zero(target: &Trajectory, end_s: f64) -> Option<MotionEvidence> {
     let away = |axis| {
         let hull = target.hull(axis, 0, None);
         hull.low.max(-hull.high)
@@ -77,7 +77,6 @@ fn path(setup: &Setup, agent: &AgentSetup) -> Option<MotionEvidence> {
     if away > 0.0 {
         return Some(MotionEvidence::EntryAway { least: away });
     }
-    let end_s = setup.time.end_s;
     let seen = target.least_norm(end_s);
     if let Some(evidence) = target.squared_norm().and_then(|square| norm_for_ever(square, seen.norm, end_s)) {
         return Some(evidence);

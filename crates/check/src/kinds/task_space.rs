@@ -2,11 +2,14 @@
 
 use std::sync::Arc;
 
-use forwardstep_core::robot::tree::{Tree, TreeTip};
+use forwardstep_core::attitude::{difference, normalized};
+use forwardstep_core::robot::tree::{Follows, Tree};
 use forwardstep_core::robot::{Posture, TipKinematics};
-use forwardstep_sim::{AgentSetup, Setup, TaskSpaceLaw, TipSetup};
+use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::{AgentSetup, Law, Setup, TaskSpaceLaw, TipSetup};
 use nalgebra::DMatrix;
 
+use super::spacecraft::never_zero;
 use super::{Claim, KindCheck};
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, Named, Subject};
 use crate::inertia::{bounded_dynamics, uniform_inertia};
@@ -28,12 +31,27 @@ impl KindCheck for TaskSpaceRobot {
         "Theorem 6"
     }
 
-    fn claim(&self, _: &Setup) -> Option<Claim> {
-        Some(Claim {
-            theorem: Theorem::Theorem6,
-            promises: "x − x_d → 0 and dx − dx_d → 0 with uncertain lengths and parameters, without a measured dx"
-                .into(),
-        })
+    fn claim(&self, setup: &Setup) -> Option<Claim> {
+        let laws = || setup.agents.iter().filter_map(|agent| agent.law.downcast::<TaskSpaceLaw>());
+        let some = |follows| laws().any(|law| law.tip.follows() == follows);
+        let (theorem, promises) = if some(Follows::RedundantPosition) {
+            let more = if some(Follows::Pose) { "; of poses Δp → 0 and Δq_v → 0" } else { "" };
+            (
+                Theorem::Theorem6Redundant,
+                format!(
+                    "x − x_d → 0 and dx − dx_d → 0 with uncertain lengths and parameters, without a measured dx, and dq − z_r → 0: \
+                     joints beyond the coordinates move as the null-space term says{more}"
+                ),
+            )
+        } else if some(Follows::Pose) {
+            let promises = "Δp → 0, Δq_v → 0 (the attitude is reached, with Δq_o → 1 or −1), and their rates, with uncertain lengths \
+                            and parameters, without a measured velocity of the end-effector";
+            (Theorem::Theorem6Pose, promises.into())
+        } else {
+            let promises = "x − x_d → 0 and dx − dx_d → 0 with uncertain lengths and parameters, without a measured dx";
+            (Theorem::Theorem6, promises.into())
+        };
+        Some(Claim { theorem, promises })
     }
 
     fn hypotheses(&self, setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
@@ -45,9 +63,14 @@ impl KindCheck for TaskSpaceRobot {
             let Some(law) = agent.law.downcast::<TaskSpaceLaw>() else { continue };
             let about = |id, evidence| Hypothesis::about(id, Subject::Agent(Named::of(setup, *index)), evidence);
             hypotheses.push(about(Id::RegularJacobian, jacobian(agent, law)));
+            hypotheses.extend(attitude(agent, law).map(|evidence| about(Id::StartAttitude, evidence)));
             let reach = within_reach(agent, law, setup.time.end_s);
             let of = || Subject::Agent(Named::of(setup, *index));
             hypotheses.extend(reach.map(|evidence| Hypothesis::about(Id::TargetWithinReach, of(), evidence)));
+            if law.tip.follows() == Follows::Pose {
+                let path = desired(agent, law).and_then(|path| never_zero(&path, setup.time.end_s));
+                hypotheses.extend(path.map(|evidence| Hypothesis::about(Id::NonzeroQuaternion, of(), evidence)));
+            }
             hypotheses.extend(uncertain(agent, law).map(|evidence| about(Id::CertainRegressor, evidence)));
             hypotheses
                 .extend(within_bounds(setup, *index, law).map(|evidence| about(Id::LengthsWithinBounds, evidence)));
@@ -60,45 +83,70 @@ impl KindCheck for TaskSpaceRobot {
     }
 }
 
+/// Smallest singular values below this part of the largest are taken for zero, as by the law.
+const ROUNDING: f64 = 1e-6;
+
 /// Ĵ must stay away from singularity along the run, which is not known before.
 fn jacobian(agent: &AgentSetup, law: &TaskSpaceLaw) -> KindEvidence {
-    match start(agent, law) {
-        Some(start) if start != 0.0 && start.is_finite() => {
-            KindEvidence::Determinant { start, floor: law.determinant_floor }
-        }
-        Some(start) => KindEvidence::Singular { start },
-        None => KindEvidence::NoTip,
+    let Some(j) = with_tip(agent, law, |tip| start(tip, agent, law)).flatten() else { return KindEvidence::NoTip };
+    let floor = law.determinant_floor;
+    if law.tip.follows() != Follows::Position {
+        let values = j.singular_values();
+        let (smallest, largest) = (values.min(), values.max());
+        let regular = smallest.is_finite() && smallest > ROUNDING * largest;
+        return if regular {
+            KindEvidence::SingularValue { start: smallest, floor }
+        } else {
+            KindEvidence::RankDeficient { smallest, largest }
+        };
+    }
+    match j.determinant() {
+        start if start != 0.0 && start.is_finite() => KindEvidence::Determinant { start, floor },
+        start => KindEvidence::Singular { start },
     }
 }
 
-/// det Ĵ at the start; nothing for a robot that has no such tip.
-fn start(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<f64> {
+/// Something of the tip of an agent; nothing for a robot that has no such tip.
+fn with_tip<V>(agent: &AgentSetup, law: &TaskSpaceLaw, what: impl FnOnce(&dyn TipKinematics) -> V) -> Option<V> {
     match &law.tip {
-        TipSetup::Planar(tip) => {
-            law.tip.parameters(&*agent.robot.kind).is_some().then(|| determinant(tip, agent, law)).flatten()
-        }
-        TipSetup::Point { point, coordinates, uncertain } => {
-            let tree = agent.robot.kind.downcast::<Arc<Tree>>()?;
-            let tip = TreeTip::new((**tree).clone(), point, coordinates, *uncertain).ok()?;
-            determinant(&tip, agent, law)
-        }
+        TipSetup::Planar(tip) => law.tip.parameters(&*agent.robot.kind).is_some().then(|| what(tip)),
+        TipSetup::Point { .. } => Some(what(&law.tip.of_tree(agent.robot.kind.downcast::<Arc<Tree>>()?)?.ok()?)),
     }
 }
 
-fn determinant(tip: &impl TipKinematics, agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<f64> {
-    let (m, still) = (tip.axes(), vec![0.0; law.kinematic_start.len()]);
-    let (mut j, mut dj) = (vec![0.0; m * m], vec![0.0; m * m]);
-    let posture = Posture { q: &agent.start.q, dq: &vec![0.0; m], theta: &law.kinematic_start, d_theta: &still };
+/// Ĵ at the start.
+fn start(tip: &dyn TipKinematics, agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<DMatrix<f64>> {
+    let (n, m, still) = (tip.joints(), tip.rows(), vec![0.0; law.kinematic_start.len()]);
+    let (mut j, mut dj) = (vec![0.0; m * n], vec![0.0; m * n]);
+    let posture = Posture { q: &agent.start.q, dq: &vec![0.0; n], theta: &law.kinematic_start, d_theta: &still };
     tip.jacobian(posture, &mut j, &mut dj).ok()?;
-    Some(DMatrix::from_row_slice(m, m, &j).determinant())
+    Some(DMatrix::from_row_slice(m, n, &j))
+}
+
+/// The quaternion of the target of a pose.
+fn desired(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<Trajectory> {
+    let first = law.interface(&agent.robot)?.coordinates?.quaternion?;
+    agent.target.as_ref()?.quaternion(first)
+}
+
+/// Scalar parts below this are those of half a turn, as far as floating-point numbers tell.
+const HALF_TURN: f64 = 1e-6;
+
+/// |Δq_o| at the start of a pose, of which the law takes the sign.
+fn attitude(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<KindEvidence> {
+    let mut jets = [[0.0; 5]; 4];
+    desired(agent, law)?.jets(0.0, &mut jets);
+    let own = with_tip(agent, law, |tip| tip.attitude(&agent.start.q)).flatten()?;
+    let scalar = difference(own, normalized(jets.map(|jet| jet[0])))[3].abs();
+    Some(if scalar > HALF_TURN { KindEvidence::AttitudeApart { scalar } } else { KindEvidence::HalfTurn { scalar } })
 }
 
 /// Y(q, q̇, z, ż) has to be known but for ϑ. That of a tree is stated with all its translations, as they are in the file, and the
 /// head of `robot/tree/tip.rs` of the core derives which of them it holds. A planar arm's has no length in it: they are in its ϑ.
 fn uncertain(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<KindEvidence> {
-    let TipSetup::Point { point, coordinates, uncertain } = &law.tip else { return None };
+    let TipSetup::Point { uncertain, .. } = &law.tip else { return None };
     let tree = agent.robot.kind.downcast::<Arc<Tree>>()?;
-    let inside = TreeTip::new((**tree).clone(), point, coordinates, *uncertain).ok()?.in_regressor();
+    let inside = law.tip.of_tree(tree)?.ok()?.in_regressor();
     let names = law.kinematic_names.iter().zip(inside).filter(|(_, inside)| *inside).map(|(name, _)| name.clone());
     let names: Vec<String> = names.collect();
     Some(if names.is_empty() {

@@ -7,7 +7,7 @@ use forwardstep_core::Gain;
 use forwardstep_core::controller::{Floor, Yaw};
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::{CascadeTerms, Formulas, Wheel, Wheels};
-use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkPoint, LinkSpec, Placement, Tree, Uncertain};
+use forwardstep_core::robot::tree::{Follows, JointKind, LinkJoint, LinkPoint, LinkSpec, Placement, Tree, Uncertain};
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip, PointMass};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::trajectory::{Path, Trajectory};
@@ -120,6 +120,8 @@ fn task_space(tip: TipSetup, kinematic_start: &[f64], parameters: usize) -> Arc<
         adaptation: Gain::Number(30.0),
         estimate_start: vec![0.0; parameters],
         task_gain: Gain::Number(20.0),
+        attitude_gain: 20.0,
+        null_space: None,
         kappa: 5.0,
         alpha_per_s: 3.0,
         kinematic_adaptation: Some(Gain::Number(0.3)),
@@ -142,7 +144,7 @@ pub fn tree_tip(kinds: [JointKind; 3], axes: [[f64; 3]; 3], uncertain: Uncertain
     };
     let assembled = Tree::assemble(&[link(0), link(1), link(2)], [0.0, 0.0, -9.81]).unwrap();
     let point = LinkPoint { link: assembled.anchors[2], at: [0.4, 0.0, 0.1] };
-    let tip = TipSetup::Point { point, coordinates: vec![0, 1, 2], uncertain };
+    let tip = TipSetup::Point { point, coordinates: vec![0, 1, 2], follows: Follows::Position, uncertain };
     let mut theta = vec![0.4, 0.0, 0.1];
     if uncertain == Uncertain::Chain {
         theta = [[0.3, 0.2, 0.5], [0.3, 0.2, 0.5], [0.4, 0.0, 0.1]].concat();

@@ -44,7 +44,7 @@ pub use linearising::Linearising;
 pub use position_only::{PositionMeasured, PositionOnly};
 pub(crate) use stepped::Lengths;
 pub use stepped::Stepped;
-pub use task_space::{TaskMeasured, TaskSpace};
+pub use task_space::{NullSpace, TaskMeasured, TaskSpace};
 pub use thrust::{Floor, RateLoop, RotorcraftMeasured, Thrust, ThrustCascade, ThrustDesign, Yaw};
 
 use alloc::vec::Vec;
@@ -141,6 +141,11 @@ pub trait Controller: Clone + Send + Sync + 'static {
 
     /// Whether a target may also be an offset from where all agree.
     const KNOWS_OFFSETS: bool;
+
+    /// Entries of a target that it follows: one for each of the plant's `axes`, unless other coordinates follow.
+    fn target_len(&self, axes: usize) -> usize {
+        axes
+    }
 
     /// Allocates working memory.
     fn scratch(&self) -> Self::Scratch;

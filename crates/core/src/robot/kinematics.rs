@@ -22,6 +22,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::PlanarTip;
+use crate::attitude::Quaternion;
 use crate::{LengthError, trig};
 
 /// What the Jacobian and its rate depend on.
@@ -50,12 +51,30 @@ impl Posture<'_> {
     }
 }
 
-/// A tip whose position has as many coordinates as the robot has axes, so that J is square.
+/// A tip of which the position, or the position and the orientation, are to follow a target.
 ///
-/// **Source**: (71), (72), Property 4. Nothing panics, whatever the numbers.
+/// The rows of J are those of the position and, of a pose, three of the angular velocity in coordinates of the base. The latter hold
+/// no length, so θ is in the former alone.
+///
+/// **Source**: (71), (72), Property 4; poses are not in the paper. Nothing panics, whatever the numbers.
 pub trait TipKinematics: Send + Sync + 'static {
-    /// m: axes of the robot and coordinates of the tip.
+    /// n: joints of the robot, columns of J.
+    fn joints(&self) -> usize;
+
+    /// Coordinates of the position.
     fn axes(&self) -> usize;
+
+    /// Whether the orientation is to follow too.
+    fn turns(&self) -> bool;
+
+    /// Rows of J: three more than coordinates of the position where the orientation is to follow.
+    fn rows(&self) -> usize {
+        self.axes() + if self.turns() { 3 } else { 0 }
+    }
+
+    /// Where the orientation is to follow: the quaternion of the tip in the base, **continuous** in q ∈ ℝⁿ, of norm one. It changes
+    /// its sign with every full turn of a joint.
+    fn attitude(&self, q: &[f64]) -> Option<Quaternion>;
 
     /// Length of θ.
     fn parameter_count(&self) -> usize;
@@ -63,19 +82,19 @@ pub trait TipKinematics: Send + Sync + 'static {
     /// Names with units for the entries of θ.
     fn parameter_names(&self) -> Vec<String>;
 
-    /// x = f(q; θ), m entries.
+    /// x = f(q; θ), the position, an entry per coordinate.
     ///
     /// # Errors
     /// [`LengthError`] when a slice has the wrong length.
     fn position(&self, q: &[f64], theta: &[f64], x: &mut [f64]) -> Result<(), LengthError>;
 
-    /// J(q; θ) and dJ/dt, row by row, m² entries each.
+    /// J(q; θ) and dJ/dt, row by row, [`TipKinematics::rows`] times n entries each.
     ///
     /// # Errors
     /// [`LengthError`] when a slice has the wrong length.
     fn jacobian(&self, posture: Posture<'_>, j: &mut [f64], dj: &mut [f64]) -> Result<(), LengthError>;
 
-    /// Z(q, ξ)ᵀ v, an entry per parameter, without forming Z.
+    /// Z(q, ξ)ᵀ v, an entry per parameter, without forming Z; v has an entry per row of J.
     ///
     /// # Errors
     /// [`LengthError`] when a slice has the wrong length.
@@ -89,8 +108,20 @@ pub trait TipKinematics: Send + Sync + 'static {
 ///     [  l₁ cos q₁ + l₂ cos(q₁+q₂)    l₂ cos(q₁+q₂) ]
 /// ```
 impl TipKinematics for PlanarTip {
+    fn joints(&self) -> usize {
+        2
+    }
+
     fn axes(&self) -> usize {
         2
+    }
+
+    fn turns(&self) -> bool {
+        false
+    }
+
+    fn attitude(&self, _: &[f64]) -> Option<Quaternion> {
+        None
     }
 
     fn parameter_count(&self) -> usize {

@@ -30,8 +30,9 @@ impl<C: Controller> Assemble for Feedback<C> {
             None => 0,
             Some(Target::Offset(_)) if !C::KNOWS_OFFSETS => return Err(RecipeError::NoOffsets),
             Some(target) => {
-                LengthError::check("the target", self.axes, target.motion().axes())?;
-                self.axes
+                let entries = self.controller.target_len(self.axes);
+                LengthError::check("the target", entries, target.motion().axes())?;
+                entries
             }
         };
         let input = total(&self.inputs);

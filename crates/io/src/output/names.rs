@@ -7,7 +7,7 @@ use std::collections::HashSet;
 
 use forwardstep_core::signal::{Entries, Unit};
 use forwardstep_sim::recording::{Recording, Signal};
-use forwardstep_sim::{AxisUnit, Setup};
+use forwardstep_sim::{AgentSetup, AxisUnit, Setup};
 
 /// The name of an agent; a number when the setup has no such agent.
 pub fn agent_name(setup: &Setup, agent: usize) -> String {
@@ -152,7 +152,12 @@ fn gap_signal(setup: &Setup) -> Signal {
 /// `rad or m` where agents differ.
 pub fn gap_unit(setup: &Setup) -> String {
     let signal = gap_signal(setup);
-    let axes = |agent: usize| 0..setup.agents.get(agent).map_or(0, |agent| agent.robot.axes.len());
+    // Redundant joints are more than the coordinates that follow.
+    let entries = |agent: &AgentSetup| match agent.interface().and_then(|law| law.coordinates) {
+        Some(of) if signal == Signal::Error => of.units.len(),
+        _ => agent.robot.axes.len(),
+    };
+    let axes = |agent: usize| 0..setup.agents.get(agent).map_or(0, entries);
     let all = (0..setup.agents.len()).flat_map(|agent| axes(agent).map(move |axis| (agent, axis)));
     let mut units = all.map(|(agent, axis)| unit(setup, agent, signal, axis));
     match units.next() {
@@ -164,6 +169,7 @@ pub fn gap_unit(setup: &Setup) -> String {
                 first
             }
         }
+        Some(first) if first == "m" && units.all(|unit| unit == "m" || unit == "1") => "m or 1".into(),
         Some(_) => "rad or m".into(),
     }
 }
@@ -185,7 +191,7 @@ pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String 
         Unit::Axis(k) => format!("{length}/s^{k}"),
         Unit::Target => {
             let coordinates = setup.agents.get(agent).and_then(|agent| agent.interface()?.coordinates);
-            letters(coordinates.map_or(own, |of| Some(of.unit))).into()
+            letters(coordinates.map_or(own, |of| of.units.get(axis).copied())).into()
         }
         Unit::Torque if turns(setup, agent) => "N m".into(),
         Unit::Torque | Unit::Effort if length == "m" => "N".into(),

@@ -200,21 +200,23 @@ impl Member<'_> {
         let law = kinds.build(law, &LawReader { agent: name, robot: &robot, body: &body, sharing });
         let law = law.map_err(|fault| fault.at(place))?;
         // Where something else than its axes follows the target, the law names it.
-        let axes = law
-            .interface(&robot)
-            .and_then(|law| law.coordinates)
-            .map_or_else(|| axis_names(&robot), |named| named.names);
-        let owner = Owner { name, axes: &axes, end_s };
+        let coordinates = law.interface(&robot).and_then(|law| law.coordinates);
+        let turns = robot.interface().position == PositionKind::UnitQuaternion;
+        let quaternion = coordinates.as_ref().map_or(turns.then_some(0), |named| named.quaternion);
+        let axes = coordinates.map_or_else(|| axis_names(&robot), |named| named.names);
+        let owner = Owner { name, axes: &axes, quaternion, end_s };
         let target = entry.target.as_ref().map(|file| target(file, &owner, folder)).transpose()?;
         let own = entry.start.as_ref().map(|file| Shared { file, index, of: names.len() });
         let common = file.start.as_ref().map(|file| Shared { file, index: first + index, of });
         let mut given = StartReader::new(name, &robot, free_start, own, common);
         let mut start = kind.start(&robot, &mut given)?;
-        if let (Some(target), Some(place)) = (&target, &entry.target)
-            && robot.interface().position == PositionKind::UnitQuaternion
+        if let (Some(target), Some(place), Some(first)) = (&target, &entry.target, quaternion)
+            && let Some(attitude) = target.quaternion(first)
         {
-            never_zero(place, target, end_s)?;
-            rotation(&mut start, target, given.rotation());
+            never_zero(place, &attitude, end_s)?;
+            if turns {
+                rotation(&mut start, target, given.rotation());
+            }
         }
         given.reject_unused()?;
         asked.extend(given.asked());

@@ -31,14 +31,19 @@ pub(super) fn quaternion(file: &At<Quaternion>) -> Result<Quaternion, Fault> {
 
 /// A turn about an axis of any length.
 pub(super) fn turn(axis: &At<[f64; 3]>, angle_rad: &At<f64>) -> Result<Quaternion, Fault> {
+    let [x, y, z, _] = direction(axis)?;
+    let (sin, cos) = Scalar::sin_cos(0.5 * angle_rad.value);
+    Ok([sin * x, sin * y, sin * z, cos])
+}
+
+/// Half a turn about an axis of any length.
+pub(super) fn direction(axis: &At<[f64; 3]>) -> Result<Quaternion, Fault> {
     if axis.value.iter().all(|x| *x == 0.0) {
         let instead = "[0, 0, 1] is the third axis; for no turn let `angle_rad` be 0";
         return Err(fault(axis, SystemProblem::NoDirection { instead }));
     }
     let [x, y, z] = axis.value;
-    let [x, y, z, _] = normalized([x, y, z, 0.0]);
-    let (sin, cos) = Scalar::sin_cos(0.5 * angle_rad.value);
-    Ok([sin * x, sin * y, sin * z, cos])
+    Ok(normalized([x, y, z, 0.0]))
 }
 
 /// Refuses a target that is no attitude at some time.

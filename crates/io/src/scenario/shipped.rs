@@ -43,6 +43,8 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "through-waypoints",
     "theorem-6",
     "task-space-ur5e",
+    "pose-ur5e",
+    "redundant-panda",
     "theorem-7",
     "tumbling-target",
     "rest-to-rest",

@@ -104,6 +104,9 @@ pub enum SystemProblem {
         /// When, s.
         t_s: f64,
     },
+    /// A pose for what has none.
+    #[error("`pose` is for an end-effector whose position and orientation follow the target")]
+    NotAPose,
     /// A direction that is zero.
     #[error("this is zero and has no direction")]
     NoDirection {
@@ -168,6 +171,10 @@ impl SystemProblem {
             }
             SystemProblem::NoAttitude { .. } => {
                 "a quaternion may have any length but zero, vector part first: [0, 0, 0, 1] is no turn".into()
+            }
+            SystemProblem::NotAPose => {
+                "let `follows` of the law's `end_effector` be \"pose\", or write `formulas`, an entry for each axis"
+                    .into()
             }
             SystemProblem::NoDirection { instead } => (*instead).into(),
             SystemProblem::StartUnused { key, .. } => match *key {

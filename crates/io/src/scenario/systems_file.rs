@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::at::At;
+use super::attitude_file::AttitudeStartFile;
 use super::push_file::FunctionFile;
 
 /// Where an agent should be over time; among agents that agree, its offset from where all of them are.
@@ -19,6 +20,30 @@ pub enum TargetFile {
     Points(PointsFile),
     /// The same through points of a table.
     Csv(TargetCsvFile),
+    /// Position and orientation of an end-effector of which both follow.
+    Pose(PoseTargetFile),
+}
+
+/// Where an end-effector should be and how it should be turned, in the base.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PoseTargetFile {
+    /// A number or a formula in t for each of x, y and z, in m.
+    pub position: At<Vec<At<FunctionFile>>>,
+    /// The orientation of the link at the start. Default: that of the base.
+    pub attitude: Option<At<AttitudeStartFile>>,
+    /// How it turns from there on. Default: not at all.
+    pub turning: Option<TurningFile>,
+}
+
+/// A constant angular velocity.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TurningFile {
+    /// About this axis of the base, of any length.
+    pub axis: At<[f64; 3]>,
+    /// At this rate, in rad/s.
+    pub rad_per_s: At<f64>,
 }
 
 /// A constant and sinusoids.
@@ -49,7 +74,8 @@ pub struct WaveFile {
 #[serde(deny_unknown_fields)]
 pub struct TargetCsvFile {
     /// The CSV file, beside the scenario file or in `inputs` beside it. Its first line names its columns: `t_s`, rising, and one
-    /// for each axis by its name; of the tip of a robot `x`, `y`, `z`; of the quaternion of a spacecraft `x`, `y`, `z` and, for
+    /// for each axis by its name; of the tip of a robot `x`, `y`, `z`, and of its orientation `q_x`, `q_y`,
+    /// `q_z`, `q_o`; of the quaternion of a spacecraft `x`, `y`, `z` and, for
     /// the scalar part, `o`.
     pub file: At<String>,
 }

@@ -65,7 +65,7 @@ const TIP_CASES: &[Case] = &[
     ("task_gain = 200", "task_gain = [[1, 2, 0], [2, 1, 0], [0, 0, 1]]",
         "test.toml:19:13: `task_gain` of `arm`: the matrix is not positive definite: vᵀ A v = -3 for v = (-2, 1, 0)", ""),
     ("task_gain = 200", "task_gains = 200",
-        "test.toml:19:1: unknown key `task_gains`", "did you mean `task_gain`? allowed here: `end_effector`, `damping`, `adaptation_gain`, `estimate_start`, `task_gain`, `torque_share`, `reference_gain_per_s`, `kinematic_gain`, `kinematic_start`, `bounds`, `determinant_floor`"),
+        "test.toml:19:1: unknown key `task_gains`", "did you mean `task_gain`? allowed here: `end_effector`, `damping`, `adaptation_gain`, `estimate_start`, `task_gain`, `attitude_gain`, `null_space`, `torque_share`, `reference_gain_per_s`, `kinematic_gain`, `kinematic_start`, `bounds`, `determinant_floor`"),
     ("torque_share = 2", "torque_share = 0",
         "test.toml:20:16: `torque_share` is 0, but must be positive", ""),
     ("torque_share = 2", "torque_share = [2, 2, 2]",
@@ -73,7 +73,7 @@ const TIP_CASES: &[Case] = &[
     ("reference_gain_per_s = 6", "reference_gain_per_s = -6",
         "test.toml:21:24: `reference_gain_per_s` is -6, but must be positive", ""),
     ("reference_gain_per_s = 6", "reference_gain = 6",
-        "test.toml:21:1: unknown key `reference_gain`", "did you mean `reference_gain_per_s`? allowed here: `end_effector`, `damping`, `adaptation_gain`, `estimate_start`, `task_gain`, `torque_share`, `reference_gain_per_s`, `kinematic_gain`, `kinematic_start`, `bounds`, `determinant_floor`"),
+        "test.toml:21:1: unknown key `reference_gain`", "did you mean `reference_gain_per_s`? allowed here: `end_effector`, `damping`, `adaptation_gain`, `estimate_start`, `task_gain`, `attitude_gain`, `null_space`, `torque_share`, `reference_gain_per_s`, `kinematic_gain`, `kinematic_start`, `bounds`, `determinant_floor`"),
     ("kinematic_gain = 1", "kinematic_gain = -1",
         "test.toml:22:18: `kinematic_gain` is -1, but must be positive", ""),
     ("kinematic_gain = 1", "kinematic_gain = [1, 2]",
@@ -93,7 +93,7 @@ const TIP_CASES: &[Case] = &[
     ("link = \"tool0\"", "link = \"tool1\"",
         "test.toml:25:25: `arm` has no link `tool1`", "did you mean `tool0`? its links are `base_link`, `shoulder_link`, `upper_arm_link`, `forearm_link`, `wrist_1_link`, `wrist_2_link`, `wrist_3_link`, `tool0`"),
     ("link = \"tool0\"", "links = \"tool0\"",
-        "test.toml:25:18: unknown key `links`", "did you mean `link`? allowed here: `link`, `at_m`, `coordinates`, `uncertain`"),
+        "test.toml:25:18: unknown key `links`", "did you mean `link`? allowed here: `link`, `at_m`, `coordinates`, `follows`, `uncertain`"),
     ("link = \"tool0\", ", "",
         "test.toml:25:16: the key `link` is missing", ""),
     ("at_m = [0, 0, 0.15]", "at_m = [0, 0.15]",
@@ -183,6 +183,62 @@ const PLANAR_CASES: &[Case] = &[
     ("[law.task_space]\nkinematic_gain = [0.3, 0.2]\nbounds = { lower_m = [0.9, 0.7], upper_m = [1.1, 0.9] }", "[law.adaptive]",
         "test.toml:10:1: agent `arm`: roots of the reference dynamics: 0, but at least 1 are needed here", "an agent may have `reference` with roots of its own"),
 ];
+
+/// All six joints of a UR5e, for a pose.
+pub(super) const POSE: &str = r#"format = 2
+time = { end_s = 2 }
+
+[[agents]]
+name = "arm"
+start.position_rad = [0.4, -1.2, 1.6, -1.9, -1.5, 0.3]
+
+[agents.target.pose]
+position = ["-0.6 + 0.1*cos(t)", -0.4, 0.3]
+attitude = { axis = [1, 0, 0], angle_rad = 3 }
+turning = { axis = [0, 0, 2], rad_per_s = 0.1 }
+
+[agents.robot.urdf]
+file = "ur5e.urdf"
+
+[reference.tracking]
+
+[law.task_space]
+attitude_gain = 60
+end_effector = { link = "tool0", at_m = [0, 0, 0.15], follows = "pose" }
+"#;
+
+#[rustfmt::skip]
+const POSE_CASES: &[Case] = &[
+    ("attitude_gain = 60", "attitude_gain = 0",
+        "test.toml:19:17: `attitude_gain` is 0, but must be positive", ""),
+    ("attitude_gain = 60", "attitude_gain = -1",
+        "test.toml:19:17: `attitude_gain` is -1, but must be positive", ""),
+    ("attitude_gain = 60", "attitude_gain = [60, 60, 60]",
+        "test.toml:19:17: found a list where a number should stand", ""),
+    ("attitude_gain = 60", "null_space.posture = [0, 0, 0, 0, 0, 0]",
+        "test.toml:19:1: a pose leaves none of its six joints free, and the theorem has no null-space term beside an orientation", "leave `null_space` out"),
+    ("follows = \"pose\"", "follows = \"pose\", coordinates = [\"x\", \"y\"]",
+        "test.toml:20:87: a pose has the coordinates x, y, z in this order, not others", "leave `coordinates` out"),
+    ("file = \"ur5e.urdf\"", "file = \"ur5e.urdf\"\nlocked = { wrist_3_joint = 0 }",
+        "test.toml:21:16: 5 joints move; a pose has three coordinates and three angles, and is followed by exactly six joints (with fewer it cannot be reached, and the theorem has no null-space term beside an orientation)", ""),
+    ("attitude_gain = 60", "null_space.posture = [0, 0]",
+        "test.toml:19:1: a pose leaves none of its six joints free, and the theorem has no null-space term beside an orientation", "leave `null_space` out"),
+    ("file = \"ur5e.urdf\"", "file = \"panda.urdf\"",
+        "test.toml:20:25: `arm` has no link `tool0`", "its links are `panda_link0`, `panda_link1`, `panda_link2`, `panda_link3`, `panda_link4`, `panda_link5`, `panda_link6`, `panda_link7`, `panda_link8`"),
+    ("axis = [1, 0, 0], angle_rad = 3", "axis = [0, 0, 0], angle_rad = 3",
+        "test.toml:10:21: this is zero and has no direction", "[0, 0, 1] is the third axis; for no turn let `angle_rad` be 0"),
+    ("attitude = { axis = [1, 0, 0], angle_rad = 3 }", "attitude = [0, 0, 0, 0]",
+        "test.toml:10:12: this is zero and has no direction", "[0, 0, 0, 1] is no turn"),
+    ("position = [\"-0.6 + 0.1*cos(t)\", -0.4, 0.3]", "position = [-0.4, 0.3]",
+        "test.toml:9:12: `position` has 2 entries, but `arm` needs 3", ""),
+    ("attitude_gain = 60\nend_effector = { link = \"tool0\", at_m = [0, 0, 0.15], follows = \"pose\" }", "null_space.posture = [0, 0, 0, 0, 0, 0]\nend_effector = { link = \"tool0\" }",
+        "test.toml:8:1: `pose` is for an end-effector whose position and orientation follow the target", "let `follows` of the law's `end_effector` be \"pose\", or write `formulas`, an entry for each axis"),
+];
+
+#[test]
+fn mistakes_about_a_pose_are_reported_at_their_place() {
+    refused(POSE, POSE_CASES);
+}
 
 #[test]
 fn mistakes_about_the_tip_of_a_urdf_are_reported_at_their_place() {

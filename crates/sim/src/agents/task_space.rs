@@ -2,21 +2,24 @@
 
 use std::sync::Arc;
 
-use forwardstep_core::controller::TaskSpace;
+use forwardstep_core::controller::{NullSpace, TaskSpace};
 use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::plant::{Mechanical, TaskArm};
-use forwardstep_core::robot::tree::{LinkPoint, Tree, TreeTip, Uncertain};
+use forwardstep_core::robot::tree::{Follows, LinkPoint, TipError, Tree, TreeTip, Uncertain};
 use forwardstep_core::robot::{Driven, Lagrangian, PlanarArm, PlanarTip, TipKinematics};
 use forwardstep_core::{Gain, ResolvedGain};
 
 use crate::closed_loop::{Assembly, Block, SetupError, tracking_law};
-use crate::quantity::{positive, within};
+use crate::quantity::{finite, positive, within};
 use crate::recording::Signal;
 use crate::setup::{AxisUnit, RobotSetup};
 use crate::system::{Coordinates, Interface, Known, Law, LawWords, Line, LineValue, Robot};
 
 /// A floor of det Ĵ, as a share of its value at the start, that leaves room.
 const LARGEST_FLOOR: f64 = 0.999;
+
+/// The entries of a quaternion among the coordinates of a pose.
+const OF_ATTITUDE: [&str; 4] = ["q_x", "q_y", "q_z", "q_o"];
 
 /// (80)–(82) for the tip of a robot; see [`forwardstep_core::controller::TaskSpace`].
 #[derive(Clone, Debug, PartialEq)]
@@ -29,8 +32,12 @@ pub struct TaskSpaceLaw {
     pub adaptation: Gain,
     /// ϑ̂(0).
     pub estimate_start: Vec<f64>,
-    /// K*.
+    /// K*; of a pose K_p, of its position.
     pub task_gain: Gain,
+    /// k_o, of poses alone.
+    pub attitude_gain: f64,
+    /// What redundant joints do beside; the tip of no other robot has one.
+    pub null_space: Option<NullSpace>,
     /// κ.
     pub kappa: f64,
     /// α, 1/s.
@@ -43,7 +50,7 @@ pub struct TaskSpaceLaw {
     pub kinematic_start: Vec<f64>,
     /// Projection of θ̂; none by default.
     pub bounds: Option<ParameterBounds>,
-    /// The run ends when det Ĵ falls below this share of its first value.
+    /// The run ends when det Ĵ, or of poses and redundant joints its smallest singular value, falls below this share of its first value.
     pub determinant_floor: f64,
 }
 
@@ -58,6 +65,8 @@ pub enum TipSetup {
         point: LinkPoint,
         /// Which coordinates are controlled: x = 0, y = 1, z = 2 of the base.
         coordinates: Vec<usize>,
+        /// What of it follows the target.
+        follows: Follows,
         /// Which translations are θ.
         uncertain: Uncertain,
     },
@@ -68,11 +77,25 @@ impl TipSetup {
     pub fn parameters(&self, robot: &dyn Robot) -> Option<Vec<f64>> {
         match self {
             TipSetup::Planar(tip) => is_planar(robot).then(|| tip.length_m.to_vec()),
-            TipSetup::Point { point, coordinates, uncertain } => {
-                let tree = robot.downcast::<Arc<Tree>>()?;
-                let tip = TreeTip::new(Tree::clone(tree), point, coordinates, *uncertain).ok()?;
-                Some(tip.parameters())
+            TipSetup::Point { .. } => Some(self.of_tree(robot.downcast::<Arc<Tree>>()?)?.ok()?.parameters()),
+        }
+    }
+
+    /// The tip as one of a tree; nothing for that of a planar arm.
+    pub fn of_tree(&self, tree: &Tree) -> Option<Result<TreeTip, TipError>> {
+        match self {
+            TipSetup::Planar(_) => None,
+            TipSetup::Point { point, coordinates, follows, uncertain } => {
+                Some(TreeTip::new(tree.clone(), point, coordinates, *follows, *uncertain))
             }
+        }
+    }
+
+    /// What of the tip follows the target.
+    pub fn follows(&self) -> Follows {
+        match self {
+            TipSetup::Planar(_) => Follows::Position,
+            TipSetup::Point { follows, .. } => *follows,
         }
     }
 }
@@ -109,9 +132,9 @@ impl Law for TaskSpaceLaw {
                 Some(arm) => self.with_tip(assembly, arm.clone(), *tip, tip.length_m.to_vec()),
                 None => self.with_tip(assembly, *assembly.robot::<PlanarArm>()?, *tip, tip.length_m.to_vec()),
             },
-            TipSetup::Point { point, coordinates, uncertain } => {
+            TipSetup::Point { point, coordinates, follows, uncertain } => {
                 let tree = Tree::clone(assembly.robot::<Arc<Tree>>()?);
-                let tip = TreeTip::new(tree.clone(), point, coordinates, *uncertain)
+                let tip = TreeTip::new(tree.clone(), point, coordinates, *follows, *uncertain)
                     .map_err(|error| SetupError::Tip { agent: assembly.agent().name.clone(), error })?;
                 let theta = tip.parameters();
                 self.with_tip(assembly, tree, tip, theta)
@@ -132,8 +155,14 @@ impl TaskSpaceLaw {
             TipSetup::Point { coordinates, .. } => coordinates,
         };
         let names = list.iter().filter_map(|coordinate| ["x", "y", "z"].get(*coordinate));
-        let names = names.map(|name| (*name).to_owned()).collect();
-        Coordinates { names, unit: AxisUnit::Metre, parameters: self.kinematic_names.clone() }
+        let mut names: Vec<String> = names.map(|name| (*name).to_owned()).collect();
+        let mut units = vec![AxisUnit::Metre; names.len()];
+        let quaternion = (self.tip.follows() == Follows::Pose).then_some(names.len());
+        if quaternion.is_some() {
+            names.extend(OF_ATTITUDE.map(str::to_owned));
+            units.extend([AxisUnit::One; OF_ATTITUDE.len()]);
+        }
+        Coordinates { names, units, quaternion, parameters: self.kinematic_names.clone() }
     }
 
     fn with_tip<R, T>(
@@ -148,12 +177,27 @@ impl TaskSpaceLaw {
         T: TipKinematics + Clone,
     {
         let own = assembly.agent();
-        let (m, p) = (tip.axes(), tip.parameter_count());
+        let (n, m, p) = (tip.joints(), tip.axes(), tip.parameter_count());
         let law = assembly.of_law();
-        assembly.length(law.clone(), "end_effector.coordinates", own.robot.axes.len(), m)?;
+        assembly.length(law.clone(), "end_effector", own.robot.axes.len(), n)?;
         assembly.length(law.clone(), "the names of the kinematic parameters", p, self.kinematic_names.len())?;
         assembly.estimate("estimate_start.given", &self.estimate_start, robot.parameter_count())?;
         assembly.estimate("kinematic_start.given", &self.kinematic_start, p)?;
+        if tip.turns() {
+            positive(law.clone(), "attitude_gain", self.attitude_gain)?;
+        }
+        match (&self.null_space, n > tip.rows()) {
+            (Some(NullSpace { rate_per_s, posture }), true) => {
+                positive(law.clone(), "null_space.rate_per_s", *rate_per_s)?;
+                assembly.length(law.clone(), "null_space.posture", n, posture.len())?;
+                posture.iter().try_for_each(|entry| finite(law.clone(), "null_space.posture", *entry))?;
+            }
+            (None, false) => {}
+            (null_space, _) => {
+                let (agent, has) = (own.name.clone(), null_space.is_some());
+                return Err(SetupError::NullSpace { agent, has });
+            }
+        }
         positive(law.clone(), "torque_share", self.kappa)?;
         positive(law.clone(), "reference_gain_per_s", self.alpha_per_s)?;
         within(law, "determinant_floor", self.determinant_floor, 0.0, LARGEST_FLOOR)?;
@@ -172,6 +216,8 @@ impl TaskSpaceLaw {
         let controller = TaskSpace {
             law: tracking_law(&robot, assembly, &self.damping, Some(&self.adaptation))?,
             task_gain: assembly.gain(&self.task_gain, "task_gain", m)?,
+            attitude_gain: self.attitude_gain,
+            null_space: self.null_space.clone(),
             kappa: self.kappa,
             alpha: self.alpha_per_s,
             kinematic_adaptation,

@@ -246,7 +246,8 @@ impl<'a> Assembly<'a> {
         let target = match &own.target {
             None => None,
             Some(trajectory) => {
-                self.length(self.of_agent(), "target", plant.axes(), trajectory.axes())?;
+                let entries = controller.target_len(plant.axes());
+                self.length(self.of_agent(), "target", entries, trajectory.axes())?;
                 let wrong = |error| SetupError::Trajectory { agent: own.name.clone(), error };
                 let trajectory = Pieces::new(trajectory.clone(), setup.time.end_s).map_err(wrong)?;
                 Some(Target { trajectory, is_offset })

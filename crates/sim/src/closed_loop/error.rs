@@ -363,6 +363,18 @@ pub enum SetupError {
         /// The agent.
         agent: String,
     },
+    /// A null-space term without redundant joints, or redundant joints without one.
+    #[error("agent `{agent}`: {}", if *has {
+        "a null-space term is for more joints than coordinates of the tip"
+    } else {
+        "more joints than coordinates of the tip need a null-space term"
+    })]
+    NullSpace {
+        /// The agent.
+        agent: String,
+        /// There is such a term.
+        has: bool,
+    },
     /// Bounds of kinematic parameters that are not adapted.
     #[error("agent `{agent}`: bounds of kinematic parameters have no effect where these are not adapted")]
     BoundsOfKnown {

@@ -68,6 +68,7 @@ impl SetupError {
             | SetupError::Tip { agent, .. }
             | SetupError::ProjectionOfMatrix { agent }
             | SetupError::BoundsOfKnown { agent }
+            | SetupError::NullSpace { agent, .. }
             | SetupError::NotPushed { agent, .. } => of(agent).key("law"),
             SetupError::Push { agent, .. } => of(agent),
             SetupError::Limiter { .. } | SetupError::TorqueLimitCount { of_rates: false, .. } => {

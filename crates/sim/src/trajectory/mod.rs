@@ -295,6 +295,11 @@ impl Trajectory {
         Ok(Trajectory { paths })
     }
 
+    /// Four axes from this one on, as the quaternion of a pose; nothing where there are fewer.
+    pub fn quaternion(&self, first: usize) -> Option<Trajectory> {
+        Some(Trajectory { paths: self.paths.get(first..first.checked_add(4)?)?.to_vec() })
+    }
+
     /// Looks at the norm of all axes together, 2001 times from 0 to `end_s`.
     pub fn least_norm(&self, end_s: f64) -> LeastNorm {
         const PARTS: u32 = 2000;

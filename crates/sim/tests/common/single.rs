@@ -7,7 +7,7 @@ use std::sync::Arc;
 use forwardstep_core::Gain;
 use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::plant::{Wheel, Wheels};
-use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkPoint, LinkSpec, Placement, Tree, Uncertain};
+use forwardstep_core::robot::tree::{Follows, JointKind, LinkJoint, LinkPoint, LinkSpec, Placement, Tree, Uncertain};
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip};
 use forwardstep_sim::trajectory::{Path, Spline, Trajectory};
 use forwardstep_sim::{
@@ -47,6 +47,8 @@ pub fn planar(bounds: Option<ParameterBounds>, kinematic_gain: f64) -> Setup {
         adaptation: Gain::Number(30.0),
         estimate_start: vec![0.0; 5],
         task_gain: Gain::Number(20.0),
+        attitude_gain: 20.0,
+        null_space: None,
         kappa: 5.0,
         alpha_per_s: 3.0,
         kinematic_adaptation: Some(Gain::Number(kinematic_gain)),
@@ -84,11 +86,13 @@ pub fn anthropomorphic(uncertain: Uncertain) -> Setup {
         Uncertain::Chain => (vec![0.05, 0.1, 0.1, 0.7, 0.0, 0.0, 0.6, 0.0, 0.02], 9),
     };
     let law = TaskSpaceLaw {
-        tip: TipSetup::Point { point, coordinates: vec![0, 1, 2], uncertain },
+        tip: TipSetup::Point { point, coordinates: vec![0, 1, 2], follows: Follows::Position, uncertain },
         damping: Gain::Bandwidth(20.0),
         adaptation: Gain::Bandwidth(3.0),
         estimate_start: vec![0.0; assembled.theta.len()],
         task_gain: Gain::Diagonal(vec![20.0, 25.0, 15.0]),
+        attitude_gain: 20.0,
+        null_space: None,
         kappa: 5.0,
         alpha_per_s: 3.0,
         kinematic_adaptation: Some(Gain::Number(0.3)),

@@ -3,7 +3,9 @@
 //! Ĵ and its rate are those of the kinematics with θ̂ and θ̂' as they are integrated, so that ż_r is the derivative of the z_r of the run.
 
 use forwardstep_core::ResolvedGain;
-use forwardstep_core::robot::tree::{Tree, TreeTip};
+use forwardstep_core::attitude::{Desired, product};
+use forwardstep_core::controller::NullSpace;
+use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::robot::{Posture, TipKinematics};
 use forwardstep_sim::{AgentSetup, Signal, TaskSpaceLaw, TipSetup};
 use nalgebra::{DMatrix, DVector};
@@ -16,8 +18,11 @@ use super::robot::{Model, times};
 /// An end-effector and the gains of its law.
 pub(super) struct Tip {
     kinematics: Box<dyn TipKinematics>,
-    /// K*.
+    /// K*, or K_p and k_o.
     stiffness: ResolvedGain,
+    attitude_gain: f64,
+    /// Of redundant joints.
+    null_space: Option<NullSpace>,
     /// Λ; `None` where θ̂ stays as it is.
     adaptation: Option<ResolvedGain>,
     /// Whether θ̂ is kept within bounds, which (82) does not speak of.
@@ -29,9 +34,8 @@ impl Tip {
         let law: &TaskSpaceLaw = agent.law.downcast()?;
         let kinematics: Box<dyn TipKinematics> = match &law.tip {
             TipSetup::Planar(tip) => Box::new(*tip),
-            TipSetup::Point { point, coordinates, uncertain } => {
-                let tree = agent.robot.kind.downcast::<std::sync::Arc<Tree>>()?;
-                Box::new(TreeTip::new(Tree::clone(tree), point, coordinates, *uncertain).ok()?)
+            TipSetup::Point { .. } => {
+                Box::new(law.tip.of_tree(agent.robot.kind.downcast::<std::sync::Arc<Tree>>()?)?.ok()?)
             }
         };
         let stiffness = law.task_gain.resolve(kinematics.axes(), &[]).ok()?;
@@ -39,7 +43,8 @@ impl Tip {
             Some(gain) => Some(gain.resolve(kinematics.parameter_count(), &[]).ok()?),
             None => None,
         };
-        Some(Tip { kinematics, stiffness, adaptation, bounded: law.bounds.is_some() })
+        let (attitude_gain, null_space) = (law.attitude_gain, law.null_space.clone());
+        Some(Tip { kinematics, stiffness, attitude_gain, null_space, adaptation, bounded: law.bounds.is_some() })
     }
 }
 
@@ -49,9 +54,11 @@ struct Seen {
     dq: Vec<f64>,
     /// θ̂ and θ̂'.
     estimate: [Vec<f64>; 2],
-    /// x − x_d.
+    /// x − x_d, or Δp.
     error: Vector,
-    /// ẋ_d and ẍ_d.
+    /// Δq_v of a pose, or nothing.
+    turned: Vector,
+    /// ẋ_d and ẍ_d, with ω_d and ω̇_d of a pose.
     target: [Vec<f64>; 2],
 }
 
@@ -74,34 +81,67 @@ fn gained(gain: &ResolvedGain, vector: &Vector) -> Vector {
 impl Tip {
     /// Ĵ and its rate, row by row.
     fn jacobian(&self, seen: &Seen) -> Result<[Vec<f64>; 2], Missing> {
-        let m = self.kinematics.axes();
-        let (mut j, mut dj) = (vec![0.0; m * m], vec![0.0; m * m]);
+        let size = self.kinematics.rows() * self.kinematics.joints();
+        let (mut j, mut dj) = (vec![0.0; size], vec![0.0; size]);
         let [theta, d_theta] = &seen.estimate;
         let posture = Posture { q: &seen.q, dq: &seen.dq, theta, d_theta };
         self.kinematics.jacobian(posture, &mut j, &mut dj).map_err(|_| Missing::Term)?;
         Ok([j, dj])
     }
 
-    /// Ĵᵀ K* Δx.
-    fn pulled(&self, seen: &Seen) -> Result<Vector, Missing> {
-        let m = self.kinematics.axes();
-        let [j, _] = self.jacobian(seen)?;
-        let transposed: Vec<f64> = (0..m * m).map(|k| j[(k % m) * m + k / m]).collect();
-        Ok(times(&transposed, &gained(&self.stiffness, &seen.error)))
+    /// K* Δx, or e.
+    fn weighted(&self, seen: &Seen) -> Vector {
+        let turned = seen.turned.iter().map(|[value, size]| [self.attitude_gain * value, self.attitude_gain * size]);
+        gained(&self.stiffness, &seen.error).into_iter().chain(turned).collect()
     }
 
-    /// z_r = Ĵ⁻¹ ẋ_d, or ż_r = Ĵ⁻¹ (ẍ_d − (dĴ/dt) z_r).
+    /// Ĵᵀ K* Δx.
+    fn pulled(&self, seen: &Seen) -> Result<Vector, Missing> {
+        let (m, n) = (self.kinematics.rows(), self.kinematics.joints());
+        let [j, _] = self.jacobian(seen)?;
+        let transposed: Vec<f64> = (0..m * n).map(|k| j[(k % m) * n + k / m]).collect();
+        Ok(times(&transposed, &self.weighted(seen)))
+    }
+
+    /// z_r = Ĵ⁺ẋ_d + (I − Ĵ⁺Ĵ) φ, or its derivative by that of the pseudo-inverse Ĵ⁺ = ĴᵀA⁻¹; with a square Ĵ that is (77) and (78).
     fn leading(&self, seen: &Seen, k: usize) -> Result<Vector, Missing> {
-        let m = self.kinematics.axes();
-        let [j, dj] = self.jacobian(seen)?.map(|matrix| DMatrix::from_row_slice(m, m, &matrix));
+        let (m, n) = (self.kinematics.rows(), self.kinematics.joints());
+        let [j, dj] = self.jacobian(seen)?.map(|matrix| DMatrix::from_row_slice(m, n, &matrix));
         let [dx, ddx] = [0, 1].map(|k| DVector::from_column_slice(&seen.target[k]));
-        let factored = j.lu();
-        let z_r = factored.solve(&dx).ok_or(Missing::Term)?;
-        if k == 0 {
-            return Ok(exact(z_r.iter().copied()));
+        if m == n {
+            let factored = j.lu();
+            let z_r = factored.solve(&dx).ok_or(Missing::Term)?;
+            if k == 0 {
+                return Ok(exact(z_r.iter().copied()));
+            }
+            let found = factored.solve(&(ddx - dj * z_r)).ok_or(Missing::Term)?;
+            return Ok(exact(found.iter().copied()));
         }
-        let found = factored.solve(&(ddx - dj * z_r)).ok_or(Missing::Term)?;
+        let a = (&j * j.transpose()).try_inverse().ok_or(Missing::Term)?;
+        let plus = j.transpose() * &a;
+        let [phi, d_phi] = self.wished(seen);
+        let free = |v: &DVector<f64>| v - &plus * (&j * v);
+        if k == 0 {
+            return Ok(exact((&plus * dx + free(&phi)).iter().copied()));
+        }
+        let rate_of_a = &dj * j.transpose() + &j * dj.transpose();
+        let d_plus = dj.transpose() * &a - &plus * rate_of_a * &a;
+        let found = &d_plus * &dx + &plus * ddx - &d_plus * (&j * &phi) - &plus * (&dj * &phi) + free(&d_phi);
         Ok(exact(found.iter().copied()))
+    }
+
+    /// φ and φ̇.
+    fn wished(&self, seen: &Seen) -> [DVector<f64>; 2] {
+        let Some(NullSpace { rate_per_s, posture }) = &self.null_space else {
+            return [DVector::zeros(seen.q.len()), DVector::zeros(seen.q.len())];
+        };
+        let apart = |k: usize| seen.q[k] - posture[k];
+        let phi = DVector::from_fn(seen.q.len(), |k, _| -rate_per_s * apart(k) / apart(k).hypot(1.0));
+        let d_phi = DVector::from_fn(seen.q.len(), |k, _| {
+            let root = apart(k).hypot(1.0);
+            -rate_per_s * seen.dq[k] / (root * root * root)
+        });
+        [phi, d_phi]
     }
 
     /// Λ Zᵀ K* Δx.
@@ -110,7 +150,7 @@ impl Tip {
             return Err(Missing::Limited);
         }
         let mut push = vec![0.0; self.kinematics.parameter_count()];
-        let weighted = values(&gained(&self.stiffness, &seen.error));
+        let weighted = values(&self.weighted(seen));
         let found = self.kinematics.regressor_transposed(&seen.q, &seen.dq, &weighted, &mut push);
         found.map_err(|_| Missing::Term)?;
         match &self.adaptation {
@@ -125,15 +165,35 @@ impl At<'_, '_> {
         let followed = self.case.setup.agents[self.moment.agent].target.as_ref();
         let [x_d, dx_d, ddx_d] = [self.jet(followed, 0)?, self.jet(followed, 1)?, self.jet(followed, 2)?];
         let x = self.recorded(Signal::TaskPosition).ok_or(Missing::Term)?;
-        let error = x.iter().zip(x_d).map(|(x, [x_d, _])| [x - x_d, x.abs() + x_d.abs()]).collect();
+        let error: Vector = x.iter().zip(x_d).map(|(x, [x_d, _])| [x - x_d, x.abs() + x_d.abs()]).collect();
         let estimate = |rates| self.state(Signal::KinematicEstimate, rates).ok_or(Missing::Term);
+        let mut target = [values(&dx_d), values(&ddx_d)];
+        let turned = self.turned_away(error.len(), &mut target)?;
         Ok(Seen {
             q: self.position(0)?,
             dq: self.position(1)?,
             estimate: [estimate(false)?, estimate(true)?],
             error,
-            target: [values(&dx_d), values(&ddx_d)],
+            turned,
+            target,
         })
+    }
+
+    /// Δq_v of a pose, the quaternion of R R_dᵀ with the sign of the recorded Δq_o; in the place of the rates of the desired
+    /// quaternion its angular velocity and acceleration.
+    fn turned_away(&self, axes: usize, target: &mut [Vec<f64>; 2]) -> Result<Vector, Missing> {
+        let Some([scalar]) = self.recorded(Signal::ErrorScalar) else { return Ok(Vec::new()) };
+        let jets = self.target().ok_or(Missing::Term)?;
+        let path = jets.get(axes..).and_then(|rest| rest.first_chunk::<4>()).ok_or(Missing::Term)?;
+        let own: &[f64; 4] = self.recorded(Signal::Attitude).and_then(|q| q.first_chunk()).ok_or(Missing::Term)?;
+        let Desired { q: [x, y, z, o], omega, d_omega } = Desired::from_path(path);
+        let error = product(*own, [-x, -y, -z, o]);
+        let sign = if error[3] * scalar < 0.0 { -1.0 } else { 1.0 };
+        for (target, rates) in target.iter_mut().zip([omega, d_omega]) {
+            target.truncate(axes);
+            target.extend(rates);
+        }
+        Ok(error[..3].iter().map(|entry| [sign * entry, 1.0]).collect())
     }
 
     fn tip(&mut self) -> Result<&Tip, Missing> {

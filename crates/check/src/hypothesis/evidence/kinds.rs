@@ -129,6 +129,30 @@ pub enum KindEvidence {
         /// Its value.
         start: f64,
     },
+    /// The smallest singular value of Ĵ at the start; a run ends where it falls below a part of that.
+    SingularValue {
+        /// Its value.
+        start: f64,
+        /// The part.
+        floor: f64,
+    },
+    /// Ĵ has not full rank at the start.
+    RankDeficient {
+        /// The smallest singular value.
+        smallest: f64,
+        /// The largest.
+        largest: f64,
+    },
+    /// |Δq_o| at the start.
+    AttitudeApart {
+        /// Its value.
+        scalar: f64,
+    },
+    /// Δq_o is zero at the start.
+    HalfTurn {
+        /// Its magnitude.
+        scalar: f64,
+    },
     /// The law is for another robot.
     NoTip,
     /// None of the lengths that are uncertain enters the dynamics.
@@ -218,8 +242,10 @@ impl KindEvidence {
             KindEvidence::ThrustFloor { .. }
             | KindEvidence::FactorFloor { .. }
             | KindEvidence::BoundedStates { .. }
+            | KindEvidence::SingularValue { .. }
             | KindEvidence::Determinant { .. } => Answer::Watched,
             KindEvidence::Declared { .. }
+            | KindEvidence::AttitudeApart { .. }
             | KindEvidence::TermNotShown { .. }
             | KindEvidence::Probed { probe: Probe { found: None, .. }, .. } => Answer::NotShown,
             KindEvidence::Mixture(_)
@@ -237,6 +263,8 @@ impl KindEvidence {
             KindEvidence::ParameterOutside { .. }
             | KindEvidence::TermFails { .. }
             | KindEvidence::Singular { .. }
+            | KindEvidence::RankDeficient { .. }
+            | KindEvidence::HalfTurn { .. }
             | KindEvidence::FactorBelowFloor { .. }
             | KindEvidence::Probed { probe: Probe { found: Some(_), .. }, .. } => Answer::Violated,
         }
@@ -276,10 +304,15 @@ impl KindEvidence {
             | KindEvidence::TermsDefined
             | KindEvidence::TermFails { .. }
             | KindEvidence::TermNotShown { .. } => Rigour::Enclosed,
-            KindEvidence::Singular { .. } | KindEvidence::Momentum(_) => Rigour::Computed,
+            KindEvidence::Singular { .. }
+            | KindEvidence::RankDeficient { .. }
+            | KindEvidence::AttitudeApart { .. }
+            | KindEvidence::HalfTurn { .. }
+            | KindEvidence::Momentum(_) => Rigour::Computed,
             KindEvidence::ThrustFloor { .. }
             | KindEvidence::FactorFloor { .. }
             | KindEvidence::BoundedStates { .. }
+            | KindEvidence::SingularValue { .. }
             | KindEvidence::Determinant { .. } => Rigour::Watched,
         }
     }

@@ -80,6 +80,19 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
             format!("its determinant starts at {start:.3}; a run ends where it falls below {floor} of that")
         }
         KindEvidence::Singular { start } => format!("its determinant starts at {start}"),
+        KindEvidence::SingularValue { start, floor } => {
+            format!("its smallest singular value starts at {start:.3}; a run ends where it falls below {floor} of that")
+        }
+        KindEvidence::RankDeficient { smallest, largest } => {
+            format!("its singular values start from {smallest:.3e} to {largest:.3}")
+        }
+        KindEvidence::AttitudeApart { scalar } => format!(
+            "the scalar part of the error starts at {scalar:.3}, with the sign for the shorter way, which is kept: −q and q are one \
+             attitude; computed without a certificate"
+        ),
+        KindEvidence::HalfTurn { scalar } => format!(
+            "the scalar part of the error starts at {scalar:.1e}: both ways are equally long, and rounding chooses between them"
+        ),
         KindEvidence::NoTip => "the law has no tip of this robot".into(),
         KindEvidence::LengthsOutsideRegressor(Uncertain::Tool) => {
             "only the tool is uncertain, which the dynamics do not contain".into()

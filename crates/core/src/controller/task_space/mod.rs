@@ -24,14 +24,21 @@
 //! and gains sᵀτ_ext from what acts from outside
 //! (the second subsystem of the paper's cascade prints Y(q, q̇, z_r, ż_r) in the adaptation; (81) is what V̇ needs).
 //!
+//! **Poses** and **redundant joints** are not in the paper; `pose.rs` and `null_space.rs` derive them. Both keep V̇: a pose has another
+//! potential in the place of ½ ΔxᵀK*Δx, whose rate is eᵀ(J q̇ − ẋ_d) with another e in the place of K*Δx, and redundant joints
+//! another z_r with Ĵ z_r = ẋ_d.
+//!
 //! **Projection** of θ̂ ([`ParameterBounds`]), when bounds are given and Λ is diagonal: with u = ZᵀK*Δx, V̇ has one more term,
 //! κ Σ (c_k − 1) Δθ_k u_k ≤ 0.
 
+mod null_space;
+mod pose;
 mod tip;
 
 use alloc::vec;
 use alloc::vec::Vec;
 
+pub use null_space::NullSpace;
 use tip::TaskWork;
 
 use super::{Asked, Balance, Controller, Given, Trouble, Truth};
@@ -42,6 +49,9 @@ use crate::robot::{Lagrangian, TipKinematics, TwoVelocity};
 use crate::signal::{Block, Signal};
 use crate::{LengthError, ResolvedGain};
 
+/// A smallest singular value below this part of the largest is rounding.
+const ROUNDING: f64 = 1e-6;
+
 /// What is measured of a robot and its tip.
 #[derive(Clone, Copy, Debug)]
 pub struct TaskMeasured<'a> {
@@ -49,7 +59,7 @@ pub struct TaskMeasured<'a> {
     pub q: &'a [f64],
     /// q̇.
     pub dq: &'a [f64],
-    /// x.
+    /// x, the position of the tip. Its orientation is known from q, for the directions of the joints are known.
     pub x: &'a [f64],
 }
 
@@ -57,12 +67,16 @@ pub struct TaskMeasured<'a> {
 ///
 /// State: z, ϑ̂, θ̂, det Ĵ(0). Shown: z, ż, s, ϑ̂, θ̂, det Ĵ, x, Δx. The target is a [`Jet`](super::Jet) for each coordinate of x_d.
 ///
+/// Of poses and redundant joints the smallest singular value of Ĵ stands in the place of det Ĵ. A pose has one state more, the
+/// sign that Δq has throughout; what is shown goes on with Δq_v after Δp, Δq_o, the angle, and the quaternion of the tip; and its
+/// target goes on with the four entries of a quaternion of any norm but zero, see [`Desired`](crate::attitude::Desired).
+///
 /// **Source**: (76)–(82). **Measures**: q, q̇, x. **Transmits**: nothing.
 /// **Requires**: K*, K, Γ, Λ symmetric positive definite, κ and α positive; x_d with two bounded derivatives; Ĵ not singular
 /// along the run.
 /// **Guarantees**: Δx → 0 and Δẋ → 0.
 /// **Deviates from the paper**: dĴ/dt is said to contain θ̂'; J may have a known part; projection may be asked for; z(0) = q̇(0)
-/// unless another start is wanted.
+/// unless another start is wanted. Poses and redundant joints are extensions with their own proofs.
 ///
 /// V of the proof loses sᵀK s + κ α |z − z_r|², though neither ϑ nor the lengths are known:
 ///
@@ -81,6 +95,8 @@ pub struct TaskMeasured<'a> {
 ///     tip,
 ///     law: SlotineLi { damping: number(8.0, 2)?, adaptation: Some(number(3.0, 5)?), bounds: None },
 ///     task_gain: number(20.0, 2)?,
+///     attitude_gain: 1.0,
+///     null_space: None,
 ///     kappa: 1.5,
 ///     alpha: 2.0,
 ///     kinematic_adaptation: Some(number(0.5, 2)?),
@@ -128,8 +144,12 @@ pub struct TaskSpace<R, T> {
     pub tip: T,
     /// K and Γ.
     pub law: SlotineLi,
-    /// K*, m × m.
+    /// K*, of a pose K_p: an entry per coordinate of the position.
     pub task_gain: ResolvedGain,
+    /// k_o of a pose; counts for nothing where positions alone follow.
+    pub attitude_gain: f64,
+    /// What redundant joints do beside; counts for nothing where none is. Without it z_r is the shortest that leads the tip.
+    pub null_space: Option<NullSpace>,
     /// κ.
     pub kappa: f64,
     /// α, 1/s.
@@ -142,7 +162,7 @@ pub struct TaskSpace<R, T> {
     pub estimate_start: Vec<f64>,
     /// θ̂(0), or θ when it is known.
     pub kinematic_start: Vec<f64>,
-    /// The run is in trouble when det Ĵ falls below this share of det Ĵ(0).
+    /// The run is in trouble when det Ĵ, or the smallest singular value, falls below this share of its first value.
     pub determinant_floor: f64,
 }
 
@@ -159,31 +179,43 @@ where
     const MEASURES: &'static [&'static str] = &["position", "velocity", "task-space position"];
     const KNOWS_OFFSETS: bool = false;
 
+    fn target_len(&self, _: usize) -> usize {
+        self.followed()
+    }
+
     fn scratch(&self) -> Self::Scratch {
         self.work()
     }
 
     fn states(&self) -> Vec<Block> {
-        vec![
-            (Signal::Reference(0), self.tip.axes()),
+        let mut states = vec![
+            (Signal::Reference(0), self.tip.joints()),
             (Signal::Estimate, self.robot.parameter_count()),
             (Signal::KinematicEstimate, self.tip.parameter_count()),
-            (Signal::Determinant, 1),
-        ]
+            (self.regularity(), 1),
+        ];
+        if self.tip.turns() {
+            states.push((Signal::ErrorScalar, 1));
+        }
+        states
     }
 
     fn shown(&self) -> Vec<Block> {
-        let m = self.tip.axes();
-        vec![
-            (Signal::Reference(0), m),
-            (Signal::Reference(1), m),
-            (Signal::TrackingError, m),
+        let n = self.tip.joints();
+        let mut shown = vec![
+            (Signal::Reference(0), n),
+            (Signal::Reference(1), n),
+            (Signal::TrackingError, n),
             (Signal::Estimate, self.robot.parameter_count()),
             (Signal::KinematicEstimate, self.tip.parameter_count()),
-            (Signal::Determinant, 1),
-            (Signal::TaskPosition, m),
-            (Signal::Error, m),
-        ]
+            (self.regularity(), 1),
+            (Signal::TaskPosition, self.tip.axes()),
+            (Signal::Error, self.tip.rows()),
+        ];
+        if self.tip.turns() {
+            shown.extend([(Signal::ErrorScalar, 1), (Signal::Angle, 1), (Signal::Attitude, 4)]);
+        }
+        shown
     }
 
     fn reads(&self, signal: Signal) -> bool {
@@ -191,9 +223,9 @@ where
     }
 
     fn see<'a>(&self, output: &'a [f64]) -> Result<TaskMeasured<'a>, LengthError> {
-        let m = self.tip.axes();
-        LengthError::check("output", 3 * m, output.len())?;
-        Ok(TaskMeasured { q: &output[..m], dq: &output[m..2 * m], x: &output[2 * m..] })
+        let n = self.tip.joints();
+        LengthError::check("output", 2 * n + self.tip.axes(), output.len())?;
+        Ok(TaskMeasured { q: &output[..n], dq: &output[n..2 * n], x: &output[2 * n..] })
     }
 
     fn start(
@@ -211,7 +243,18 @@ where
         state[..l.theta].copy_from_slice(z);
         state[l.theta..l.kinematic].copy_from_slice(&self.estimate_start);
         state[l.kinematic..l.determinant].copy_from_slice(&self.kinematic_start);
-        state[l.determinant] = self.task(work, given.measured, given.target, &self.kinematic_start)?;
+        if self.tip.turns() {
+            state[l.sign] = 1.0;
+        }
+        state[l.determinant] = self.task(work, given.measured, given.target, state)?;
+        if self.tip.turns() {
+            // Of the two quaternions of the error the nearer to no turn; with a right angle's half, this one.
+            state[l.sign] = if work.error_scalar < 0.0 { -1.0 } else { 1.0 };
+        }
+        if self.regularity() == Signal::SingularValue {
+            // Where Ĵ is singular from the start, rounding is no measure.
+            state[l.determinant] = state[l.determinant].max(ROUNDING * work.largest);
+        }
         Ok(())
     }
 
@@ -222,12 +265,12 @@ where
         state: &[f64],
         asked: Asked<'_>,
     ) -> Result<(), LengthError> {
-        let (m, l) = (self.tip.axes(), self.layout());
+        let (m, l) = (self.tip.joints(), self.layout());
         LengthError::check("state", l.end, state.len())?;
         LengthError::check("rate", l.end, asked.d_state.len())?;
-        LengthError::check("shown", l.end + 4 * m, asked.shown.len())?;
-        let (z, theta_hat) = (&state[..m], &state[l.kinematic..l.determinant]);
-        let determinant = self.task(work, given.measured, given.target, theta_hat)?;
+        LengthError::check("shown", l.shown, asked.shown.len())?;
+        let z = &state[..m];
+        let determinant = self.task(work, given.measured, given.target, state)?;
         let (dz, rest) = asked.d_state.split_at_mut(m);
         for k in 0..m {
             dz[k] = work.dz_r[k] - self.alpha * (z[k] - work.z_r[k]) - work.pulled[k];
@@ -241,28 +284,31 @@ where
         }
         self.law.adaptation_rate(&state[l.theta..l.kinematic], &work.yt_s, &mut rest[..l.kinematic - m]);
         rest[l.kinematic - m..l.determinant - m].copy_from_slice(&work.d_theta_hat);
-        rest[l.determinant - m] = 0.0;
+        rest[l.determinant - m..].fill(0.0);
 
         let (reference, rest) = asked.shown.split_at_mut(2 * m);
         reference[..m].copy_from_slice(z);
         reference[m..].copy_from_slice(dz);
         let (s, rest) = rest.split_at_mut(m);
         s.copy_from_slice(&work.s);
-        let (estimates, rest) = rest.split_at_mut(l.end - m);
-        estimates.copy_from_slice(&state[m..]);
-        estimates[l.determinant - m] = determinant;
-        rest[..m].copy_from_slice(x);
-        rest[m..].copy_from_slice(&work.error);
+        let (estimates, rest) = rest.split_at_mut(l.determinant - m);
+        estimates.copy_from_slice(&state[m..l.determinant]);
+        rest[0] = determinant;
+        let (position, rest) = rest[1..].split_at_mut(x.len());
+        position.copy_from_slice(x);
+        let (error, rest) = rest.split_at_mut(work.error.len());
+        error.copy_from_slice(&work.error);
+        work.show_attitude(rest);
         Ok(())
     }
 
     fn trouble(&self, state: &[f64], shown: &[f64]) -> Option<Trouble> {
         let l = self.layout();
-        let (start, value) = (*state.get(l.determinant)?, *shown.get(l.determinant + 2 * self.tip.axes())?);
+        let (start, value) = (*state.get(l.determinant)?, *shown.get(l.determinant + 2 * self.tip.joints())?);
         // A change of sign is below the floor too.
         let floor = self.determinant_floor * start;
         let vanishes = if start < 0.0 { value > floor } else { value < floor };
-        vanishes.then_some(Trouble::Vanishes { signal: Signal::Determinant, axis: 0, value, floor })
+        vanishes.then_some(Trouble::Vanishes { signal: self.regularity(), axis: 0, value, floor })
     }
 
     fn settle(&self, _: &mut [f64]) {}
@@ -275,13 +321,13 @@ where
         state: &[f64],
         _: &[f64],
     ) -> Result<Balance, LengthError> {
-        let (m, l, plant) = (self.tip.axes(), self.layout(), truth.plant);
+        let (m, l, plant) = (self.tip.joints(), self.layout(), truth.plant);
         LengthError::check("state", l.end, state.len())?;
         LengthError::check("theta", self.robot.parameter_count(), plant.arm.theta.len())?;
         LengthError::check("kinematic parameters", self.tip.parameter_count(), plant.tip_theta.len())?;
         LengthError::check("state of the plant", 2 * m, truth.state.len())?;
         let theta_hat = &state[l.kinematic..l.determinant];
-        self.task(work, given.measured, given.target, theta_hat)?;
+        self.task(work, given.measured, given.target, state)?;
         let q = &truth.state[..m];
         for k in 0..m {
             work.s[k] = truth.state[m + k] - state[k];
@@ -302,14 +348,13 @@ where
         };
         self.law.damping.apply(&work.s, &mut work.damped);
         let mut dissipation = lost;
-        let (mut task, mut strayed) = (0.0, 0.0);
+        let mut strayed = 0.0;
         for k in 0..m {
             dissipation += work.s[k] * work.damped[k];
             dissipation -= truth.external.get(k).map_or(0.0, |external| work.s[k] * external);
-            task += work.error[k] * work.weighted[k];
             strayed += (state[k] - work.z_r[k]) * (state[k] - work.z_r[k]);
         }
-        let mut value = 0.5 * inertia + 0.5 * self.kappa * (strayed + task);
+        let mut value = 0.5 * inertia + 0.5 * self.kappa * (strayed + 2.0 * self.potential(work));
         dissipation += self.kappa * self.alpha * strayed;
 
         let TaskWork { difference, inverse_gamma, inverse_lambda, push, .. } = work;

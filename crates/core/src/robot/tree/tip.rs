@@ -17,6 +17,8 @@
 //! where Ω(ξ) is Ω with ξ for q̇. What a prismatic joint adds to a translation is known. The place of the first joint on the
 //! base is in x and not in J.
 //!
+//! Of a pose J has three rows more: column c is a_c for a revolute joint and zero for a prismatic one. They hold no length.
+//!
 //! # Which of these lengths the regressor holds
 //!
 //! Theorem 6 has unknown lengths and unknown ϑ apart: Y(q, q̇, z, ż) has to be known. Y of a tree holds the place p of each joint
@@ -44,13 +46,14 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use thiserror::Error;
-
 use super::axes::Axes;
+use super::follows::{Follows, MOST_JOINTS, TipError};
 use super::model::Tree;
 use super::motion::Seat;
 use super::spatial::{Mat3, Vec3};
+use super::turned::Turned;
 use super::{JointKind, LinkPoint};
+use crate::attitude::Quaternion;
 use crate::expression::Interval;
 use crate::robot::kinematics::{Posture, TipKinematics};
 use crate::{LengthError, trig};
@@ -77,65 +80,35 @@ pub struct TreeTip {
     /// Which of the coordinates of the base frame are controlled.
     coordinates: Vec<usize>,
     uncertain: Uncertain,
+    /// Of a pose.
+    turned: Option<Turned>,
 }
-
-/// Why a point of a tree is not a tip whose Jacobian can be inverted.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum TipError {
-    /// More or fewer joints than coordinates.
-    #[error(
-        "{joints} joints move and {coordinates} coordinates of the tip are to be controlled; task-space control needs as many \
-         joints as coordinates (a redundant Jacobian has no inverse): lock joints or choose other coordinates"
-    )]
-    Size {
-        /// Moving joints.
-        joints: usize,
-        /// Coordinates chosen.
-        coordinates: usize,
-    },
-    /// A coordinate is chosen twice, or there is no such coordinate.
-    #[error("coordinate {coordinate} (of x = 0, y = 1, z = 2 of the base) is chosen twice, or there is none")]
-    Coordinate {
-        /// The coordinate.
-        coordinate: usize,
-    },
-    /// A joint does not move the point.
-    #[error("joint {joint} does not carry the tip; lock it or choose a tip behind it")]
-    Beside {
-        /// The joint, from zero.
-        joint: usize,
-    },
-}
-
-/// Joints at most: coordinates of a point.
-const MOST: usize = 3;
 
 /// The chain at one instant.
 #[derive(Clone, Copy)]
 struct Chain {
     /// w_c and its rate; entry 0 leads from the base to the first joint.
-    w: [Vec3<f64>; MOST + 1],
-    dw: [Vec3<f64>; MOST + 1],
-    a: [Vec3<f64>; MOST],
-    da: [Vec3<f64>; MOST],
+    w: [Vec3<f64>; MOST_JOINTS + 1],
+    dw: [Vec3<f64>; MOST_JOINTS + 1],
+    a: [Vec3<f64>; MOST_JOINTS],
+    da: [Vec3<f64>; MOST_JOINTS],
 }
 
 impl TreeTip {
     /// For a point of a link; `coordinates` are numbers of axes of the base frame, x = 0, y = 1, z = 2.
     ///
     /// # Errors
-    /// [`TipError`] when J is not square or a joint has no part in it.
-    pub fn new(tree: Tree, point: &LinkPoint, coordinates: &[usize], uncertain: Uncertain) -> Result<Self, TipError> {
-        for (index, coordinate) in coordinates.iter().enumerate() {
-            if *coordinate > 2 || coordinates[..index].contains(coordinate) {
-                return Err(TipError::Coordinate { coordinate: *coordinate });
-            }
-        }
+    /// [`TipError`] when the joints are too few or too many for what is to follow, or one has no part in it.
+    pub fn new(
+        tree: Tree,
+        point: &LinkPoint,
+        coordinates: &[usize],
+        follows: Follows,
+        uncertain: Uncertain,
+    ) -> Result<Self, TipError> {
         let joints = tree.bodies.len();
-        if joints != coordinates.len() {
-            return Err(TipError::Size { joints, coordinates: coordinates.len() });
-        }
-        let mut carries = [false; MOST];
+        follows.check(joints, coordinates)?;
+        let mut carries = [false; MOST_JOINTS];
         let mut at = point.link.body.filter(|body| *body < joints);
         while let Some(body) = at {
             carries[body] = true;
@@ -145,7 +118,9 @@ impl TreeTip {
             return Err(TipError::Beside { joint });
         }
         // Every joint carries the tip, so each is held by the one before it.
-        Ok(TreeTip { tree, tool: point.link.x_body_link.point(point.at), coordinates: coordinates.to_vec(), uncertain })
+        let turned = (follows == Follows::Pose).then(|| Turned::of(&tree, &point.link.x_body_link.rotation));
+        let tool = point.link.x_body_link.point(point.at);
+        Ok(TreeTip { tree, tool, coordinates: coordinates.to_vec(), uncertain, turned })
     }
 
     /// θ of the model itself.
@@ -220,7 +195,12 @@ impl TreeTip {
     fn chain(&self, posture: Posture<'_>) -> Chain {
         let Posture { q, dq, theta, d_theta } = posture;
         let still = Vec3::ZERO;
-        let mut chain = Chain { w: [still; 4], dw: [still; 4], a: [still; 3], da: [still; 3] };
+        let mut chain = Chain {
+            w: [still; MOST_JOINTS + 1],
+            dw: [still; MOST_JOINTS + 1],
+            a: [still; MOST_JOINTS],
+            da: [still; MOST_JOINTS],
+        };
         let (mut e, mut omega) = (upright(), still);
         let joints = self.tree.bodies.len();
         for c in 0..=joints {
@@ -251,8 +231,20 @@ fn upright() -> Mat3<f64> {
 }
 
 impl TipKinematics for TreeTip {
+    fn joints(&self) -> usize {
+        self.tree.bodies.len()
+    }
+
     fn axes(&self) -> usize {
         self.coordinates.len()
+    }
+
+    fn attitude(&self, q: &[f64]) -> Option<Quaternion> {
+        self.turned.as_ref().map(|turned| turned.attitude(&self.tree, q))
+    }
+
+    fn turns(&self) -> bool {
+        self.turned.is_some()
     }
 
     fn parameter_count(&self) -> usize {
@@ -280,11 +272,11 @@ impl TipKinematics for TreeTip {
     }
 
     fn position(&self, q: &[f64], theta: &[f64], x: &mut [f64]) -> Result<(), LengthError> {
-        let still = [0.0; 3 * MOST];
-        let (m, p) = (self.axes(), self.parameter_count());
-        let posture = Posture { q, dq: &still[..m], theta, d_theta: &still[..p] };
-        posture.check(m, p)?;
-        LengthError::check("x", m, x.len())?;
+        let still = [0.0; 3 * MOST_JOINTS];
+        let (n, p) = (self.joints(), self.parameter_count());
+        let posture = Posture { q, dq: &still[..n], theta, d_theta: &still[..p] };
+        posture.check(n, p)?;
+        LengthError::check("x", self.axes(), x.len())?;
         let sum = self.chain(posture).w.iter().fold(Vec3::ZERO, |sum, w| sum.plus(*w));
         for (x, coordinate) in x.iter_mut().zip(&self.coordinates) {
             *x = component(sum, *coordinate);
@@ -293,13 +285,13 @@ impl TipKinematics for TreeTip {
     }
 
     fn jacobian(&self, posture: Posture<'_>, j: &mut [f64], dj: &mut [f64]) -> Result<(), LengthError> {
-        let m = self.axes();
-        posture.check(m, self.parameter_count())?;
-        LengthError::check("Jacobian", m * m, j.len())?;
-        LengthError::check("rate of the Jacobian", m * m, dj.len())?;
+        let (n, m) = (self.joints(), self.axes());
+        posture.check(n, self.parameter_count())?;
+        LengthError::check("Jacobian", self.rows() * n, j.len())?;
+        LengthError::check("rate of the Jacobian", self.rows() * n, dj.len())?;
         let chain = self.chain(posture);
         let (mut behind, mut d_behind) = (Vec3::ZERO, Vec3::ZERO);
-        for c in (0..m).rev() {
+        for c in (0..n).rev() {
             behind = behind.plus(chain.w[c + 1]);
             d_behind = d_behind.plus(chain.dw[c + 1]);
             let (a, da) = (chain.a[c], chain.da[c]);
@@ -308,18 +300,26 @@ impl TipKinematics for TreeTip {
                 JointKind::Prismatic => (a, da),
             };
             for (row, coordinate) in self.coordinates.iter().enumerate() {
-                j[row * m + c] = component(column, *coordinate);
-                dj[row * m + c] = component(d_column, *coordinate);
+                j[row * n + c] = component(column, *coordinate);
+                dj[row * n + c] = component(d_column, *coordinate);
+            }
+            if self.turns() {
+                // What slides does not turn.
+                let turning = f64::from(self.tree.bodies[c].kind == JointKind::Revolute);
+                for k in 0..3 {
+                    j[(m + k) * n + c] = turning * component(a, k);
+                    dj[(m + k) * n + c] = turning * component(da, k);
+                }
             }
         }
         Ok(())
     }
 
     fn regressor_transposed(&self, q: &[f64], xi: &[f64], v: &[f64], zt_v: &mut [f64]) -> Result<(), LengthError> {
-        let m = self.axes();
-        LengthError::check("q", m, q.len())?;
-        LengthError::check("xi", m, xi.len())?;
-        LengthError::check("v", m, v.len())?;
+        let n = self.joints();
+        LengthError::check("q", n, q.len())?;
+        LengthError::check("xi", n, xi.len())?;
+        LengthError::check("v", self.rows(), v.len())?;
         LengthError::check("kinematic gradient", self.parameter_count(), zt_v.len())?;
         let mut full = [0.0; 3];
         for (v, coordinate) in v.iter().zip(&self.coordinates) {

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
+use forwardstep_core::controller::NullSpace;
 use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::robot::TipKinematics;
-use forwardstep_core::robot::tree::{LinkPoint, TipError, Tree, TreeTip, Uncertain};
+use forwardstep_core::robot::tree::{Follows, LinkPoint, TipError, Tree, TreeTip, Uncertain};
 use forwardstep_sim::{Attachments, Law, RobotSetup, TaskSpaceLaw, TipSetup};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -13,7 +14,7 @@ use thiserror::Error;
 
 use super::{
     At, Body, DampingFile, EstimateStartFile, Fault, GainFile, GainOrBandwidth, LawKind, LawReader, LawTable, Mistake,
-    adaptation, damping, estimate, fault, filled, gain_or, number_or, values,
+    adaptation, damping, estimate, fault, filled, gain_or, length, number_or, values,
 };
 use crate::scenario::gains::{has_scales, known_or_given};
 use crate::scenario::push_problem::PushProblem;
@@ -22,10 +23,14 @@ use crate::scenario::values::Positive;
 const DAMPING: f64 = 20.0;
 const ADAPTATION: f64 = 30.0;
 const TASK_GAIN: f64 = 20.0;
+const ATTITUDE_GAIN: f64 = 20.0;
+const NULL_SPACE_RATE_PER_S: f64 = 1.0;
 const TORQUE_SHARE: f64 = 5.0;
 const REFERENCE_GAIN_PER_S: f64 = 3.0;
 const KINEMATIC_GAIN: f64 = 0.3;
 const KINEMATIC_START: f64 = 1.2;
+/// Joints of an arm with poses.
+const POSE_JOINTS: usize = 6;
 const MARGIN_M: f64 = 0.01;
 const DETERMINANT_FLOOR: f64 = 0.01;
 
@@ -49,6 +54,17 @@ enum TipProblem {
     /// A tip where there is one already.
     #[error("the tip of a planar arm is the end of its second link; `end_effector` is for robots from a URDF")]
     OfPlanarArm,
+    /// A gain of an orientation that does not follow.
+    #[error("`attitude_gain` is for an end-effector whose orientation follows the target too")]
+    NoPose,
+    /// A null-space term of a pose.
+    #[error("a pose leaves none of its six joints free, and the theorem has no null-space term beside an orientation")]
+    PoseNullSpace,
+    /// A null-space term of a planar arm.
+    #[error(
+        "a planar arm has as many joints as its tip has coordinates; `null_space` is for redundant robots from a URDF"
+    )]
+    PlanarNullSpace,
     /// Bounds beside a full matrix.
     #[error("`bounds` need `kinematic_gain` to be a number or a diagonal, not a matrix")]
     BoundsOfMatrix,
@@ -60,7 +76,18 @@ impl Mistake for TipProblem {
             TipProblem::Beside { joint, .. } => format!("add `{joint}` to `locked`, or choose a link behind it"),
             TipProblem::OfPlanarArm => "leave `end_effector` out".into(),
             TipProblem::Unsound(TipError::Coordinate { .. }) => "choose `x`, `y` and `z`, each at most once".into(),
+            TipProblem::Unsound(TipError::Size { joints, coordinates }) if joints > coordinates => {
+                "`locked` of the robot holds joints of a URDF; or leave the others to `null_space = { posture = [...] }`".into()
+            }
             TipProblem::Unsound(TipError::Size { .. }) => "`locked` of the robot holds joints of a URDF".into(),
+            TipProblem::Unsound(TipError::PoseJoints { joints }) if *joints > POSE_JOINTS => {
+                "lock joints of the robot until six move, or let the position alone follow, with `null_space`".into()
+            }
+            TipProblem::Unsound(TipError::PoseCoordinates) => "leave `coordinates` out".into(),
+            TipProblem::Unsound(TipError::NotRedundant { .. }) | TipProblem::PoseNullSpace | TipProblem::PlanarNullSpace => {
+                "leave `null_space` out".into()
+            }
+            TipProblem::NoPose => "leave it out, or let `follows` of the end-effector be \"pose\"".into(),
             TipProblem::Missing => "add end_effector = { link = \"…\" } with a link of the URDF".into(),
             TipProblem::Unsound(_) | TipProblem::BoundsOfMatrix => return None,
         })
@@ -81,6 +108,12 @@ pub struct TaskSpaceFile {
     pub estimate_start: Option<EstimateStartFile>,
     /// The gain K* on the error of the tip in the reference dynamics: a number, a diagonal or a matrix. Default: 20.
     pub task_gain: Option<At<GainFile>>,
+    /// The gain k_o on Δq_v of an end-effector whose orientation follows too. It is one number: with a matrix no energy is left to
+    /// fall. Default: 20.
+    #[schemars(with = "Option<Positive>")]
+    pub attitude_gain: Option<At<f64>>,
+    /// What joints beyond the coordinates of the tip do: not from the paper.
+    pub null_space: Option<At<NullSpaceFile>>,
     /// The gain κ with which that error enters the torque. Default: 5.
     #[schemars(with = "Option<Positive>")]
     pub torque_share: Option<At<f64>>,
@@ -94,7 +127,8 @@ pub struct TaskSpaceFile {
     pub kinematic_start: Option<EstimateStartFile>,
     /// Keeps the estimates of the lengths within bounds. Default: there are none.
     pub bounds: Option<At<BoundsFile>>,
-    /// The run ends when det Ĵ falls below this share of its first value. Default: 0.01.
+    /// The run ends when det Ĵ, or of poses and redundant joints its smallest singular value, falls below this share of its first
+    /// value. Default: 0.01.
     #[schemars(range(min = 0, max = 1))]
     pub determinant_floor: Option<At<f64>>,
 }
@@ -110,8 +144,32 @@ pub struct TipFile {
     /// Which coordinates of the base frame are controlled: as many as joints move. Default: all three.
     #[schemars(length(min = 1, max = 3))]
     pub coordinates: Option<At<Vec<At<CoordinateFile>>>>,
+    /// What follows the target. Default: the position.
+    pub follows: Option<FollowsFile>,
     /// Which lengths are uncertain. Default: the tool.
     pub uncertain: Option<UncertainFile>,
+}
+
+/// What of the end-effector follows the target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FollowsFile {
+    /// Its position.
+    Position,
+    /// Its position and its orientation, by exactly six joints: not from the paper. The target has a quaternion after the
+    /// position, of the link in the base.
+    Pose,
+}
+
+/// The posture that redundant joints keep to where the tip leaves them free.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NullSpaceFile {
+    /// How fast each joint at most goes there, in 1/s. Default: 1.
+    #[schemars(with = "Option<Positive>")]
+    pub rate_per_s: Option<At<f64>>,
+    /// The posture, an entry per joint, in rad or m.
+    pub posture: At<Vec<At<f64>>>,
 }
 
 /// A coordinate of the base frame.
@@ -184,6 +242,10 @@ impl LawKind for TaskSpaceFile {
             None => theta.iter().map(|length| KINEMATIC_START * length).collect(),
             Some(file) => known_or_given(file, &theta),
         };
+        if let (Some(place), false) = (&self.attitude_gain, tip.follows() == Follows::Pose) {
+            return Err(fault(place, TipProblem::NoPose));
+        }
+        let null_space = self.null_space.as_ref().map(|place| null_space(&place.value, agent, robot)).transpose()?;
         Ok(Arc::new(TaskSpaceLaw {
             tip,
             kinematic_names,
@@ -191,6 +253,8 @@ impl LawKind for TaskSpaceFile {
             adaptation,
             estimate_start: estimate(self.estimate_start.as_ref(), reader),
             task_gain: gain_or("task_gain", &self.task_gain, TASK_GAIN)?,
+            attitude_gain: number_or(&self.attitude_gain, ATTITUDE_GAIN),
+            null_space,
             kappa: number_or(&self.torque_share, TORQUE_SHARE),
             alpha_per_s: number_or(&self.reference_gain_per_s, REFERENCE_GAIN_PER_S),
             kinematic_adaptation: Some(kinematic_adaptation),
@@ -208,13 +272,24 @@ fn tip(
     robot: &RobotSetup,
     body: &Body,
 ) -> Result<(TipSetup, Vec<f64>, Vec<String>), Fault> {
+    if let (Attachments::PlanarTip, Some(place)) = (robot.interface().attachments, &file.null_space) {
+        return Err(fault(place, TipProblem::PlanarNullSpace));
+    }
     match (robot.interface().attachments, &body.tip, &file.end_effector) {
         (Attachments::PlanarTip, Some(tip), None) => {
             Ok((TipSetup::Planar(*tip), tip.length_m.to_vec(), tip.parameter_names()))
         }
         (Attachments::PlanarTip, _, Some(place)) => Err(fault(place, TipProblem::OfPlanarArm)),
         (Attachments::Links(tree), _, Some(place)) => {
-            of_tree(&place.value, agent, &tree, body).and_then(|(setup, tip)| {
+            let follows = match (place.value.follows, &file.null_space) {
+                (Some(FollowsFile::Pose), Some(null_space)) => {
+                    return Err(fault(null_space, TipProblem::PoseNullSpace));
+                }
+                (Some(FollowsFile::Pose), None) => Follows::Pose,
+                (Some(FollowsFile::Position) | None, Some(_)) => Follows::RedundantPosition,
+                (Some(FollowsFile::Position) | None, None) => Follows::Position,
+            };
+            of_tree(&place.value, agent, (&tree, follows), body).and_then(|(setup, tip)| {
                 let tip = tip.map_err(|error| no_tip(place, robot, error))?;
                 Ok((setup, tip.parameters(), tip.parameter_names()))
             })
@@ -231,14 +306,16 @@ fn no_tip(place: &At<TipFile>, robot: &RobotSetup, error: TipError) -> Fault {
             let joint = robot.axes.get(*joint).map_or_else(String::new, |axis| axis.name.clone());
             fault(link, TipProblem::Beside { joint, link: link.value.clone() })
         }
-        (TipError::Coordinate { .. }, Some(coordinates)) => fault(coordinates, TipProblem::Unsound(error)),
+        (TipError::Coordinate { .. } | TipError::PoseCoordinates, Some(coordinates)) => {
+            fault(coordinates, TipProblem::Unsound(error))
+        }
         _ => fault(place, TipProblem::Unsound(error)),
     }
 }
 
 type OfTree = (TipSetup, Result<TreeTip, TipError>);
 
-fn of_tree(file: &TipFile, agent: &str, tree: &Tree, body: &Body) -> Result<OfTree, Fault> {
+fn of_tree(file: &TipFile, agent: &str, (tree, follows): (&Tree, Follows), body: &Body) -> Result<OfTree, Fault> {
     let Some((_, link)) = body.links.iter().find(|(name, _)| *name == file.link.value) else {
         let links = body.links.iter().map(|(name, _)| name.clone()).collect();
         let (link, agent) = (file.link.value.clone(), agent.to_owned());
@@ -260,8 +337,14 @@ fn of_tree(file: &TipFile, agent: &str, tree: &Tree, body: &Body) -> Result<OfTr
         None | Some(UncertainFile::Tool) => Uncertain::Tool,
         Some(UncertainFile::Chain) => Uncertain::Chain,
     };
-    let tip = TreeTip::new(tree.clone(), &point, &coordinates, uncertain);
-    Ok((TipSetup::Point { point, coordinates, uncertain }, tip))
+    let tip = TreeTip::new(tree.clone(), &point, &coordinates, follows, uncertain);
+    Ok((TipSetup::Point { point, coordinates, follows, uncertain }, tip))
+}
+
+fn null_space(file: &NullSpaceFile, agent: &str, robot: &RobotSetup) -> Result<NullSpace, Fault> {
+    let posture = values(&file.posture.value);
+    length("posture", &file.posture.span, posture.len(), robot.axes.len(), agent)?;
+    Ok(NullSpace { rate_per_s: number_or(&file.rate_per_s, NULL_SPACE_RATE_PER_S), posture })
 }
 
 fn bounds(file: &BoundsFile) -> ParameterBounds {

@@ -41,9 +41,14 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
         KindEvidence::MassNotAdapted { agent } => {
             format!("`adaptation_gain` above zero for {}, or the true mass as its estimate", agent.name)
         }
-        KindEvidence::ThrustFloor { .. } | KindEvidence::BoundedStates { .. } | KindEvidence::Determinant { .. } => {
-            RUN.into()
+        KindEvidence::ThrustFloor { .. }
+        | KindEvidence::BoundedStates { .. }
+        | KindEvidence::SingularValue { .. }
+        | KindEvidence::Determinant { .. } => RUN.into(),
+        KindEvidence::AttitudeApart { .. } => {
+            "nothing in a scenario: it is computed from the start, without proof".into()
         }
+        KindEvidence::HalfTurn { .. } => "a start, or an attitude of the target, that is not half a turn away".into(),
         KindEvidence::ThrustKept { .. } | KindEvidence::Rotors { .. } => {
             "thrusts without ends: these belong to the vehicle, so compare the run with one in which they do not act"
                 .into()
@@ -74,7 +79,9 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
                 format!("a factor for {} that keeps away from zero in every state, such as 2 + cos(x)", agent.name)
             }
         },
-        KindEvidence::Singular { .. } => "a start at which the Jacobian is not singular".into(),
+        KindEvidence::Singular { .. } | KindEvidence::RankDeficient { .. } => {
+            "a start at which the Jacobian is not singular".into()
+        }
         KindEvidence::NoTip => "an `end_effector` that the robot has".into(),
         KindEvidence::LengthsInRegressor(lengths) => {
             format!("{} known, or only the tool unknown", lengths.join(", "))

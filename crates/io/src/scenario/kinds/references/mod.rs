@@ -133,7 +133,7 @@ impl<'a> ReferenceReader<'a> {
             None => LEADER.to_owned(),
             Some(name) => super::super::agents::checked_name(name)?.to_owned(),
         };
-        let owner = Owner { name: &name, axes: self.axes, end_s: self.end_s };
+        let owner = Owner { name: &name, axes: self.axes, quaternion: None, end_s: self.end_s };
         let trajectory = target(motion, &owner, self.folder)?;
         Ok(Leading::Motion(Leader { name, trajectory }))
     }
