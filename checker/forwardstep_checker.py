@@ -679,13 +679,12 @@ class Agent:
 
 # κ of a real root −κ as (κ, 0), and (a, b), (a, −b) of a pair −a ± b i; real ones first, so that κ₀ is the first where there is one.
 # Those of p² + β p + α may be irrational: real ones are rounded towards the axis, pairs away from the real one.
-FINE = 10**30
 def roots_of(body):
     found = []
     if "alpha" in body:
         alpha, half = positive(body["alpha"], "alpha"), positive(body.get("beta", 1), "beta") / 2
         apart = half * half - alpha
-        near = Fraction(math.isqrt(abs(apart.numerator) * FINE**2 // apart.denominator) + (apart != 0), FINE)
+        near = Fraction(math.isqrt(abs(apart.numerator) * 10**60 // apart.denominator) + (apart != 0), 10**30)
         return [(alpha, 0)] if "beta" not in body else [(half - near, 0), (half + near, 0)] if apart >= 0 else [(half, near)] * 2
     for root in listed(body["roots_per_s"], "roots_per_s") if "roots_per_s" in body else []:
         paired = root if isinstance(root, dict) else {"real": root, "imaginary": 0}
@@ -1027,36 +1026,29 @@ def requirements(scenario):
         ("task_space",), ("thrust",), CHAIN_LAWS, ("adaptive", "known"), ("linear_adaptive", "adaptive_backstepping")))
     designs = [{design_of(agent) for agent in flying if agent.robot == robot} for robot in ("vehicle", "rotorcraft")]
     asked = [
-        (agreeing, "spanning-tree dwell-time bounded-delays"),
-        (reference in ("consensus", "pure_integral"), "real-roots"),
+        (agreeing, "spanning-tree dwell-time bounded-delays"), (reference in ("consensus", "pure_integral"), "real-roots"),
         (reference == "consensus", "common-order" if len({len(agent.roots) for agent in agents}) == 1 else "own-orders"),
-        (reference == "pure_integral" or leading and not turns, "fixed-graph"),
-        (reference == "backstepping", "measured-derivative"),
+        (reference == "pure_integral" or leading and not turns, "fixed-graph"), (reference == "backstepping", "measured-derivative"),
         (agreeing and scenario.coupling is not None, "coupling-sector"),
         (agreeing and scenario.exchange() == "position_velocity", "common-first-root"),
         (agreeing and any(agent.manipulability > 0 for agent in agents), "manipulability"),
         (leading, "bounded-leader sign-gain set-valued-sign shared-design " + ("bounded-delays" if late else "no-delay")),
         (leading, "leader-in-every-graph dwell-time" if turns else "leader-reaches-all"),
-        (leading and (late or design in DESIGNS[1:3]), "constant-weights"),
-        (rooted(scenario) or leading and design != "swarm", "hurwitz"),
+        (leading and (late or design in DESIGNS[1:3]), "constant-weights"), (rooted(scenario) or leading and design != "swarm", "hurwitz"),
         (leading and design == "swarm", "printed-design mutual-weights swarm-coupling"),
-        (reference != "tracking" and scenario.varying(), "bounded-weights"),
-        (any(agent.pushes for agent in agents), "pushes-end"),
+        (reference != "tracking" and scenario.varying(), "bounded-weights"), (any(agent.pushes for agent in agents), "pushes-end"),
         (len(kinds) > 1 and reference != "tracking", "one-kind"),
         (True, " ".join(f"{a.law.replace('_', '-')}-gains" for a in agents if a.law in ("position_only", "task_space", "attitude"))),
-        ({"continuous"} in designs, "known-masses"),
-        (any(each - {"continuous"} for each in designs), "thrust-gains"),
+        ({"continuous"} in designs, "known-masses"), (any(each - {"continuous"} for each in designs), "thrust-gains"),
         (flying, "nonzero-thrust"), (any(agent.robot == "rotorcraft" for agent in agents), "angular-velocity"),
         (any("rotors" in agent.body for agent in flying), "every-wrench"),
         (chains, "defined-terms input-factor " + ("chain-adaptation" if any(a.law != "linearising" for a in chains) else "chain-gains")),
         (any(agent.body.get("parameters") for agent in adaptive), "bounded-regressors"),
         (any(agent.pushes and agent.robot != "chain" for agent in chains), "matched-disturbance"),
         (lagrangian, "positive-gains"), (lagrangian or tips, "uniform-inertia"),
-        (any(not agent.tracks for agent in lagrangian) or tips, "bounded-dynamics"),
-        (frictions(scenario), "smooth-friction"),
+        (any(not agent.tracks for agent in lagrangian) or tips, "bounded-dynamics"), (frictions(scenario), "smooth-friction"),
         (any("bounds" in agent.gains for agent in lagrangian), "parameters-within-bounds"),
-        (True, "applied-torque" + " desired-design" * scenario.desired),
-        (control is not None, "continuous-time"),
+        (True, "applied-torque" + " desired-design" * scenario.desired), (control is not None, "continuous-time"),
         (control is not None and inexact(control), "exact-measurements"),
         (control is not None and "message_timeout_s" in control, "messages-in-time"),
     ]
@@ -1064,9 +1056,8 @@ def requirements(scenario):
     for agent in agents:
         tip, attitude, posed = agent.law == "task_space", agent.law == "attitude", extension(agent) == "-pose"
         own = [(tip, "regular-jacobian"), (attitude, "known-momentum"), (tip and agent.robot == "planar_arm", "target-within-reach"),
-               (agent.target, "bounded-target"), (agent.target and (attitude or posed), "nonzero-quaternion"),
-               (tip and agent.robot == "urdf", "certain-regressor"), (tip and "bounds" in agent.gains, "lengths-within-bounds"),
-               (posed, "start-attitude")]
+               (agent.target, "bounded-target"), (agent.target and (attitude or posed), "nonzero-quaternion"), (posed, "start-attitude"),
+               (tip and agent.robot == "urdf", "certain-regressor"), (tip and "bounds" in agent.gains, "lengths-within-bounds")]
         found |= {(each, agent.name) for condition, each in own if condition}
     return found
 
@@ -1399,7 +1390,7 @@ def no_value(claim, agent, state):
                 return f"{agent.text()} has a term without a value there"
     raise Undecided("whether a term has a value in this state is not decided here")
 
-STATES = [f"x{k}" for k in range(1, 9)] + ["x", "dx"] + [f"d{k}x" for k in range(2, 9)]
+STATES = [f"x{k}" for k in range(1, 256)] + ["x", "dx"] + [f"d{k}x" for k in range(2, 256)]
 TEXT = {
     "uniform-inertia": lambda scenario, _: all([definite_inertia(scenario, agent) for agent in robots(scenario)]),
     "bounded-dynamics": lambda scenario, _: robots(scenario) and all(unturned(scenario, agent) for agent in robots(scenario)),

@@ -326,6 +326,8 @@ fn thm6_v_balances_for_a_tip_of_an_arm_with_drives_smooth_or_dry() {
             kinematic_start: vec![0.9, 0.9],
             bounds: None,
             determinant_floor: 0.01,
+            attitude_gain: 1.0,
+            null_space: None,
         });
         agent.roots_per_s = forwardstep_core::reference::RootSet::default();
         (agent.start.q, agent.start.dq) = (vec![0.3, 1.2], vec![0.2, -0.4]);

@@ -4,9 +4,8 @@ use std::sync::Arc;
 
 use forwardstep_check::{Answer, Hypothesis, Id, Theorem, check};
 use forwardstep_core::expression::Expression;
-use forwardstep_core::robot::tree::{
-    Drives, Friction, JointKind, LinkJoint, LinkSpec, Placement, Tree, inertia_about_frame,
-};
+use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkSpec, Placement, Tree, inertia_about_frame};
+use forwardstep_core::robot::{Drives, Friction};
 use forwardstep_sim::delay::{Delay, SawTooth};
 use forwardstep_sim::leader::FollowingDesign;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
