@@ -860,7 +860,7 @@ class Scenario:
         body = table(body, "edges", "direction among centre weight delay file")
         found = [self.edge(entry) for entry in value] if rule is None else self.ruled(rule, body)
         pairs = {(edge.source, edge.to) for edge in found}
-        such(len(pairs) == len(found) and all(a != b != self.leader for a, b in pairs), "an edge stands twice, or where none can")
+        such(len(pairs) == len(found) and all(a != b != self.leader for a, b in pairs), "an edge stands twice, to itself, or to the leader")
         return [edge._replace(delay=edge.delay or self.links.get((edge.source, edge.to)) or self.delay) for edge in found]
 
     def vertex(self, name):
@@ -1379,7 +1379,7 @@ def coefficients(scenario):
 @rule("defined-terms", "no-value")
 def no_value(claim, agent, state):
     at = [(entry.number(),) * 2 for entry in state.each()]
-    found = dict(zip(STATES[:8], at)) | dict(zip(STATES[8:], at))
+    found = dict(zip(STATES[:255], at)) | dict(zip(STATES[255:], at))
     of = [one for one in claim.scenario.agents if one.name == agent.text() and one.law in CHAIN_LAWS]
     require(agent, of, "is no chain")
     for term in terms(of[0].body):

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use forwardstep_sim::Setup;
 use forwardstep_sim::graph::{Edge, SpanningTree, Weight, spanning_tree as tree};
 use forwardstep_sim::leader::Following;
-use forwardstep_sim::schedule::{Dwell, Extent, Window};
+use forwardstep_sim::schedule::{Dwell, Extent, KnownSwitching, Window};
 
 use crate::hypothesis::{GraphEvidence, Hypothesis, Id, Named};
 use crate::links::varying_weights;
@@ -88,7 +88,10 @@ pub(crate) fn dwell_time(setup: &Setup) -> Hypothesis {
         let evidence = refuted(setup).unwrap_or(GraphEvidence::NeverSwitches);
         return Hypothesis::new(Id::DwellTime, evidence);
     }
-    let evidence = match schedule.known().dwell {
+    let KnownSwitching { extent, dwell } = schedule.known();
+    let evidence = match dwell {
+        Dwell::NeverSwitches if extent == Extent::Horizon => GraphEvidence::LoggedPhases { dwell_s: None },
+        Dwell::Shortest(dwell_s) if extent == Extent::Horizon => GraphEvidence::LoggedPhases { dwell_s: Some(dwell_s) },
         Dwell::NeverSwitches => GraphEvidence::NeverSwitches,
         Dwell::Shortest(dwell_s) => GraphEvidence::ShortestPhase { dwell_s },
         Dwell::Drawn(least_s) => GraphEvidence::DrawnPhases { least_s },

@@ -129,11 +129,11 @@ fn chain_of_three() -> Schedule {
 }
 
 #[test]
-fn thm8_a_leader_that_is_heard_at_random_reaches_everybody_on_the_run_only() {
+fn thm9_a_leader_that_is_heard_at_random_reaches_everybody_on_the_run_only() {
     let graphs = vec![vec![edge(2, 0, 1.0, 0)], vec![edge(0, 1, 1.0, 0)]];
     let random = Schedule::random(graphs.clone(), [0.1, 0.2], 1);
     let said = |schedule: Schedule| {
-        let setup = led(schedule, FollowingDesign::Continuous, [1.0, 1.0]);
+        let setup = led(schedule, FollowingDesign::Differentiable, [1.0, 2.5]);
         [answer(&setup, About::LeaderReaches), answer(&setup, About::LeaderFixed)]
     };
     assert_eq!(said(random), [Answer::HoldsOnHorizon, Answer::NotCovered]);

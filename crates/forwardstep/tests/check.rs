@@ -108,8 +108,8 @@ fn every_shipped_scenario_is_explained_or_says_why_not() {
 }
 
 /// Equations that are not evaluated, though they say more than what their letters stand for: their scenario, and how many.
-/// An inner loop turns these vehicles, so that what (52) makes of s* does not hold.
-const NOT_EVALUATED: [(&str, usize); 2] = [("gusts", 1), ("formation", 1)];
+/// An inner loop turns these vehicles, so that what (52) makes of s* does not hold. The bounds of the lengths change (82) while they act.
+const NOT_EVALUATED: [(&str, usize); 3] = [("gusts", 1), ("formation", 1), ("pose-ur5e", 1)];
 
 #[test]
 fn every_identity_of_every_shipped_scenario_holds_along_its_run() {

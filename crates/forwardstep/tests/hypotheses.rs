@@ -123,6 +123,8 @@ fn every_hypothesis_and_every_theorem_is_shown_by_some_setup() {
         "theorem-4",
         "theorem-5",
         "theorem-6",
+        "theorem-6-pose",
+        "theorem-6-redundant",
         "theorem-7",
         "theorem-8",
         "theorem-8-late",

@@ -12,6 +12,7 @@ use nalgebra::DMatrix;
 use super::PracticalAnswer;
 use crate::hypothesis::Named;
 use crate::kinds::is_lagrangian;
+use crate::prediction::roots::eigenvalues::eigenvalues;
 
 /// Multipliers farther than this from 1 are fast.
 const FAST: f64 = 0.1;
@@ -81,12 +82,7 @@ impl LinearisedSampling {
 /// The largest size of a fast multiplier, and the smallest real part of those that are not zero.
 fn multipliers(setup: &Setup, agent: usize) -> Option<(f64, f64)> {
     let jacobian = sampled_jacobian(setup, agent).ok()??;
-    // The search for eigenvalues does not end on what is not finite.
-    if !jacobian.entries.iter().all(|entry| entry.is_finite()) {
-        return None;
-    }
-    let matrix = DMatrix::from_row_slice(jacobian.size, jacobian.size, &jacobian.entries);
-    let all = matrix.complex_eigenvalues();
+    let all = eigenvalues(&DMatrix::from_row_slice(jacobian.size, jacobian.size, &jacobian.entries))?;
     let kept = || all.iter().filter(|mu| mu.norm() > FORGOTTEN);
     let fast = kept().filter(|mu| (*mu - 1.0).norm() > FAST);
     let radius = fast.map(|mu| mu.norm()).fold(0.0, f64::max);

@@ -10,7 +10,7 @@ use forwardstep_sim::delay::{Delay, SawTooth};
 use forwardstep_sim::leader::FollowingDesign;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::reference::{Backstepping, PureIntegral, Tracking};
-use forwardstep_sim::schedule::{Phase, Schedule};
+use forwardstep_sim::schedule::{Logged, Phase, Schedule};
 use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{Exchange, Setup};
 
@@ -182,4 +182,29 @@ fn thm3_first_roots_that_differ_need_one_graph_that_stays_with_all_its_weights_a
     assert_eq!(differing(once.clone()), Answer::Holds);
     once.network.schedule = Schedule::periodic(vec![phase(vec![edge(0, 1, 1.0, 0)]), phase(both())]);
     assert_eq!(differing(once), broken);
+}
+
+#[test]
+fn what_a_table_says_of_switching_is_known_for_the_run_and_no_longer() {
+    let logged = |starts_s: Vec<f64>, graphs: Vec<usize>| {
+        let mut setup = pair([constant(0.1), constant(0.1)]);
+        let each = vec![vec![edge(0, 1, 1.0, 0)], vec![edge(1, 0, 1.0, 1)]];
+        setup.network.schedule = Schedule::logged(each, Logged { starts_s, graphs, until_s: 20.0 });
+        setup
+    };
+    let several = logged(vec![0.0, 1.0, 3.0], vec![0, 1, 0]);
+    let dwell = the(&several, Id::DwellTime);
+    assert_eq!(dwell.answer(), Answer::HoldsOnHorizon);
+    assert!(dwell.because().contains("lasts 1 s") && dwell.change().is_some(), "{dwell:?}");
+    assert_eq!(the(&several, Id::SpanningTree).answer(), Answer::HoldsOnHorizon);
+    // One phase is all that was seen of two.
+    let one = logged(vec![0.0], vec![1]);
+    assert_eq!(the(&one, Id::DwellTime).answer(), Answer::HoldsOnHorizon);
+    assert_eq!(the(&one, Id::SpanningTree).answer(), Answer::HoldsOnHorizon);
+    for setup in [several, one] {
+        assert!(check(&setup).hypotheses.iter().all(|asked| {
+            !matches!(asked.id, Id::DwellTime | Id::SpanningTree | Id::LeaderInEveryGraph)
+                || asked.answer() != Answer::Holds
+        }));
+    }
 }

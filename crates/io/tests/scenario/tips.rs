@@ -232,7 +232,7 @@ const POSE_CASES: &[Case] = &[
     ("position = [\"-0.6 + 0.1*cos(t)\", -0.4, 0.3]", "position = [-0.4, 0.3]",
         "test.toml:9:12: `position` has 2 entries, but `arm` needs 3", ""),
     ("attitude_gain = 60\nend_effector = { link = \"tool0\", at_m = [0, 0, 0.15], follows = \"pose\" }", "null_space.posture = [0, 0, 0, 0, 0, 0]\nend_effector = { link = \"tool0\" }",
-        "test.toml:8:1: `pose` is for an end-effector whose position and orientation follow the target", "let `follows` of the law's `end_effector` be \"pose\", or write `formulas`, an entry for each axis"),
+        "test.toml:8:9: `pose` is for an end-effector whose position and orientation follow the target", "let `follows` of the law's `end_effector` be \"pose\", or write `formulas`, an entry for each axis"),
 ];
 
 #[test]

@@ -136,9 +136,9 @@ impl Tip {
             return [DVector::zeros(seen.q.len()), DVector::zeros(seen.q.len())];
         };
         let apart = |k: usize| seen.q[k] - posture[k];
-        let phi = DVector::from_fn(seen.q.len(), |k, _| -rate_per_s * apart(k) / apart(k).hypot(1.0));
+        let phi = DVector::from_fn(seen.q.len(), |k, _| -rate_per_s * apart(k) / libm::hypot(apart(k), 1.0));
         let d_phi = DVector::from_fn(seen.q.len(), |k, _| {
-            let root = apart(k).hypot(1.0);
+            let root = libm::hypot(apart(k), 1.0);
             -rate_per_s * seen.dq[k] / (root * root * root)
         });
         [phi, d_phi]

@@ -82,6 +82,11 @@ pub enum GraphEvidence {
         /// In s.
         least_s: f64,
     },
+    /// The shortest of the phases of a table, which says nothing of what follows it.
+    LoggedPhases {
+        /// In s; `None` where it has one phase alone.
+        dwell_s: Option<f64>,
+    },
     /// The author of a switching signal says that phases last at least this long.
     DeclaredPhases {
         /// In s.
@@ -141,6 +146,7 @@ impl GraphEvidence {
             | GraphEvidence::DrawnPhases { .. }
             | GraphEvidence::Stays
             | GraphEvidence::Mutual => Answer::Holds,
+            GraphEvidence::LoggedPhases { .. } => Answer::HoldsOnHorizon,
             GraphEvidence::DeclaredPhases { .. } => Answer::NotShown,
             GraphEvidence::VaryingWeight
             | GraphEvidence::Switches { .. }
@@ -163,6 +169,7 @@ impl GraphEvidence {
             }
             GraphEvidence::Cut { until_s: Some(_), .. }
             | GraphEvidence::Unreached { until_s: Some(_), .. }
+            | GraphEvidence::LoggedPhases { .. }
             | GraphEvidence::RefutedSwitching { .. } => Rigour::Given,
             GraphEvidence::DeclaredPhases { .. } => Rigour::Declared,
             GraphEvidence::Cut { until_s: None, .. }

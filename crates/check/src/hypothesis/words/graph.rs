@@ -57,6 +57,10 @@ pub(super) fn words(evidence: &GraphEvidence) -> String {
         ),
         GraphEvidence::NeverSwitches => "the graph never switches".into(),
         GraphEvidence::ShortestPhase { dwell_s } => format!("the shortest phase lasts {dwell_s} s"),
+        GraphEvidence::LoggedPhases { dwell_s: Some(dwell_s) } => {
+            format!("the shortest phase of the table lasts {dwell_s} s")
+        }
+        GraphEvidence::LoggedPhases { dwell_s: None } => "the table has one phase".into(),
         GraphEvidence::DrawnPhases { least_s } => format!("no phase is shorter than {least_s} s"),
         GraphEvidence::DeclaredPhases { least_s } => {
             format!("no phase is shorter than {least_s} s (declared, not shown)")

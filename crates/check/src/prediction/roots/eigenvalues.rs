@@ -13,7 +13,7 @@ const SMALL: [f64; 3] = [1e-14, 1e-13, 1e-12];
 ///
 /// The QR algorithm has no exceptional shifts and stalls on a matrix that permutes, as that of a ring does: it is given a
 /// mirror image, which has the same eigenvalues and no structure.
-pub(super) fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<C>> {
+pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<C>> {
     if matrix.iter().any(|entry| !entry.is_finite()) {
         return None;
     }

@@ -11,7 +11,7 @@
 
 pub(crate) mod characteristic;
 mod collocation;
-mod eigenvalues;
+pub(crate) mod eigenvalues;
 mod modes;
 
 use forwardstep_core::reference::RootSet;

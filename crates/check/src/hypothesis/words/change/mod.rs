@@ -70,6 +70,7 @@ fn graph(evidence: &GraphEvidence) -> Option<String> {
         GraphEvidence::OneWay { from, to } => {
             format!("an edge from {} to {} with the weight of the one that leads back", to.name, from.name)
         }
+        GraphEvidence::LoggedPhases { .. } => "phases that repeat, or end with one that stays".into(),
         GraphEvidence::EveryGraph { .. }
         | GraphEvidence::NeverSwitches
         | GraphEvidence::ShortestPhase { .. }
