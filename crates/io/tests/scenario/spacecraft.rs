@@ -292,6 +292,5 @@ const STATES: &[Case] = &[
 
 #[test]
 fn mistakes_about_states_are_reported_at_their_place() {
-    let text = SPACECRAFT.replace("[agents.start.spacecraft]\n", "[agents.start.spacecraft]\n");
-    super::refused(&text, STATES);
+    super::refused(SPACECRAFT, STATES);
 }
