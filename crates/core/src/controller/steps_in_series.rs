@@ -17,6 +17,7 @@
 //!
 //! The law, its proof and its value are those of `steps`; only roundings differ.
 
+use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::LengthError;
