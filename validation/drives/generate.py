@@ -1,8 +1,8 @@
 """Writes drives.json: what Pinocchio and MuJoCo make of rotors, damping and dry friction.
 
-    python -m venv /tmp/validation-drives
-    /tmp/validation-drives/bin/pip install -r requirements.txt
-    /tmp/validation-drives/bin/python generate.py
+    python3 -m venv venv
+    venv/bin/pip install -r requirements.txt
+    venv/bin/python generate.py
 
 `robots`: shipped robots with an armature and a damping at every joint. For random q, dq, tau:
     mass      M(q) + A, by Pinocchio
