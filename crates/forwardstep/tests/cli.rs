@@ -418,3 +418,21 @@ fn a_goal_about_one_agent_alone_is_refused() {
     let refused = stderr(&forwardstep(&folder, &["check", "one.toml"]).code(2));
     assert!(refused.contains("compares agents, but there is one only") && refused.contains("one.toml:"), "{refused}");
 }
+
+#[test]
+fn thm6_a_start_without_an_inverse_ends_the_run_with_the_value_that_vanishes() {
+    let folder = folder();
+    for (name, start, signal) in [
+        ("theorem-6", "[0.3, 0]", "arm.det_jacobian is 0 where"),
+        ("pose-ur5e", "[0, 0, 0, 0, 0, 0]", "arm.sigma_min_jacobian is 0 where"),
+    ] {
+        let shipped = stdout(&forwardstep(&folder, &["scenarios", name]).success());
+        let lines = shipped.lines().map(|line| match line.starts_with("start.position_rad") {
+            true => format!("start.position_rad = {start}\n"),
+            false => format!("{line}\n"),
+        });
+        fs::write(folder.path().join("arm.toml"), lines.collect::<String>()).unwrap();
+        let ended = stderr(&forwardstep(&folder, &["run", "arm.toml", "--force"]).code(3));
+        assert!(ended.contains("Broke down at t = 0 s") && ended.contains(signal), "{name}: {ended}");
+    }
+}

@@ -116,10 +116,8 @@ pub(crate) fn simulate_with(
                 if let Some(breakdown) = recorder.record(&mut integrator, &mut closed_loop, step) {
                     break Ending::BrokeDown(breakdown);
                 }
-                if let Some((agent, trouble)) = closed_loop.trouble(integrator.state()) {
-                    let Trouble::Vanishes { signal, axis, value, floor } = trouble;
-                    let cause = BreakdownCause::Vanished { value, floor };
-                    break Ending::BrokeDown(Breakdown { t_s: step.end_s, agent, signal, axis, cause });
+                if let Some(breakdown) = vanished(&closed_loop, &integrator, step.end_s) {
+                    break Ending::BrokeDown(breakdown);
                 }
                 if let Some(breakdown) = pace.ran_away(&integrator, &closed_loop, step.end_s) {
                     break Ending::BrokeDown(breakdown);
@@ -142,8 +140,21 @@ pub(crate) fn simulate_with(
     Ok(Outcome { recording: recorder.recording, ending, statistics })
 }
 
+/// What a law divides by, where it comes too close to zero in the state that was evaluated last.
+fn vanished(closed_loop: &ClosedLoop<'_>, integrator: &Integrator<'_>, t_s: f64) -> Option<Breakdown> {
+    let (agent, Trouble::Vanishes { signal, axis, value, floor }) = closed_loop.trouble(integrator.state())?;
+    Some(Breakdown { t_s, agent, signal, axis, cause: BreakdownCause::Vanished { value, floor } })
+}
+
 /// Who broke a run, in which signal, and why.
 fn broken(closed_loop: &mut ClosedLoop<'_>, integrator: &Integrator<'_>, failure: Failure) -> Breakdown {
+    // Before the first step the start is what was evaluated: where a law divides by zero there, that is why no number is finite.
+    if matches!(failure.cause, FailureCause::NotFinite)
+        && integrator.statistics().steps == 0
+        && let Some(breakdown) = vanished(closed_loop, integrator, failure.t_s)
+    {
+        return breakdown;
+    }
     let (agent, signal, axis) = closed_loop.locate(failure.state);
     let mut stiffness = |rate_per_s: Option<f64>| {
         let gains = closed_loop.gain_rates(agent, integrator.failed_in());

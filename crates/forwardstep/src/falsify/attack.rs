@@ -361,7 +361,7 @@ impl Attack {
     }
 }
 
-/// Whether these edges lead from one vertex to all; where there is a leader, which hears nobody, that is the leader.
+/// Whether these edges lead from one vertex to all; where there is a leader, which hears no other, that is the leader.
 fn rooted<'a>(setup: &Setup, edges: impl IntoIterator<Item = &'a Edge>) -> bool {
     matches!(spanning_tree(setup.network.agents, edges), SpanningTree::Rooted { .. })
 }

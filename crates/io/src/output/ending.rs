@@ -65,6 +65,10 @@ fn cause(setup: &Setup, breakdown: &Breakdown) -> String {
             "ran away: it is {value:.2e}, and {steps} steps did not reach the next sample; sample faster, or let K or the \
              delay of the torque be smaller"
         ),
+        // Adding zero leaves no sign at a zero.
+        BreakdownCause::Vanished { value, .. } if breakdown.t_s <= 0.0 => {
+            format!("is {} where it starts, and the law divides by it; start elsewhere", about(value + 0.0))
+        }
         BreakdownCause::Vanished { value, floor } => format!(
             "is {value:.3e}: the law divides by it, and it must stay away from zero by {floor}; start elsewhere, or choose \
              slower gains"

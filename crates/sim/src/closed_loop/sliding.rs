@@ -110,7 +110,7 @@ impl<'a> Slider<'a> {
 
     fn rewire(&mut self) {
         self.links.clear();
-        // Who hears nobody outside a group that agrees is pulled nowhere, not where it was pulled before.
+        // An agent that hears no other is pulled nowhere, not where it was pulled before.
         self.selection.fill(0.0);
         for edge in self.network.schedule.graph(self.segment.graph) {
             let (from, to) = (self.places[edge.from], self.places[edge.to]);

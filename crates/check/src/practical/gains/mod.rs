@@ -94,7 +94,7 @@ pub enum NoReferenceGains {
         /// Index of the agent.
         agent: usize,
     },
-    /// One agent disagrees with nobody.
+    /// One agent alone has no disagreement.
     #[error("there are no two agents to compare")]
     FewerThanTwoAgents,
     /// Messages stop counting when they are old.

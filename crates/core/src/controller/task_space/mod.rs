@@ -305,9 +305,9 @@ where
     fn trouble(&self, state: &[f64], shown: &[f64]) -> Option<Trouble> {
         let l = self.layout();
         let (start, value) = (*state.get(l.determinant)?, *shown.get(l.determinant + 2 * self.tip.joints())?);
-        // A change of sign is below the floor too.
+        // A change of sign is below the floor too, and a start at zero is there at once.
         let floor = self.determinant_floor * start;
-        let vanishes = if start < 0.0 { value > floor } else { value < floor };
+        let vanishes = if start < 0.0 { value >= floor } else { value <= floor };
         vanishes.then_some(Trouble::Vanishes { signal: self.regularity(), axis: 0, value, floor })
     }
 
