@@ -78,6 +78,11 @@ pub(crate) enum Command {
     New(NewOptions),
     /// Describe a robot, or compute its dynamics at a state
     Robot(RobotOptions),
+    /// Print the manual page, or write those of all commands to a folder
+    Man {
+        /// The folder, which must exist [default: the page of the program, on standard output]
+        folder: Option<PathBuf>,
+    },
     /// Print a script that completes commands and options in a shell
     Completions {
         /// The shell
@@ -241,10 +246,14 @@ pub(crate) struct NewOptions {
     /// The title of the scenario [default: the name of the file]
     #[arg(long)]
     pub(crate) name: Option<String>,
-    /// How many agents there are, 2 to 100 [default: 4]
+    /// A shipped scenario to copy instead of all that follows: see `forwardstep scenarios`
+    #[arg(long, value_name = "SCENARIO", conflicts_with_all = ["name", "agents", "robot", "dry_friction", "order", "exchange", "leader", "graph", "delay"])]
+    pub(crate) like: Option<String>,
+    /// How many agents there are, 1 to 100; two or more where they are to agree [default: 4]
     #[arg(long, value_name = "N", value_parser = count_of_agents)]
     pub(crate) agents: Option<u32>,
-    /// Their robot: planar_arm, point_mass, ur5e, panda or the path of a URDF [default: planar_arm]
+    /// Their robot: a kind (planar_arm, point_mass, ship, vehicle, rotorcraft, spacecraft, chain, strict_feedback, pure_feedback), ur5e, panda
+    /// or the path of a URDF [default: planar_arm]
     #[arg(long, value_name = "ROBOT")]
     pub(crate) robot: Option<String>,
     /// Give every joint dry friction, and keep estimates within bounds
@@ -256,12 +265,18 @@ pub(crate) struct NewOptions {
     /// What agents tell each other [default: position_velocity]
     #[arg(long, value_enum)]
     pub(crate) exchange: Option<ExchangeChoice>,
+    /// Let all follow a leader whom the first of them hears, instead of agreeing
+    #[arg(long, conflicts_with_all = ["order", "exchange"])]
+    pub(crate) leader: bool,
     /// Who hears whom [default: ring]
     #[arg(long, value_enum)]
     pub(crate) graph: Option<GraphChoice>,
-    /// How late [default: constant]
+    /// How late [default: constant; none where there is a leader]
     #[arg(long, value_enum)]
     pub(crate) delay: Option<DelayChoice>,
+    /// Write it without trying it
+    #[arg(long)]
+    pub(crate) untried: bool,
 }
 
 /// As scenarios spell it.
@@ -279,17 +294,28 @@ pub(crate) enum GraphChoice {
     Ring,
     /// Both ways between neighbours in a row
     Path,
+    /// Both ways between the first and every other
+    Star,
     /// Everybody hears everybody
     Complete,
+    /// A ring in random order and as many random edges
+    Random,
+    /// A ring, of which one half is there while the other is not
+    Switching,
 }
 
 /// As scenarios spell it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "snake_case")]
 pub(crate) enum DelayChoice {
+    /// Always as old
     Constant,
+    /// Growing older until the next message arrives
     #[value(alias = "saw-tooth")]
     SawTooth,
+    /// Packets that are late and get lost, between controllers at 500 Hz
+    Radio,
+    /// Messages arrive at once
     None,
 }
 
@@ -307,7 +333,7 @@ fn between(text: &str, low: u32, high: u32) -> Result<u32, NotBetween> {
 
 /// A complete graph of more agents makes a file too long to read.
 pub(crate) fn count_of_agents(text: &str) -> Result<u32, NotBetween> {
-    between(text, 2, 100)
+    between(text, 1, 100)
 }
 
 pub(crate) fn order(text: &str) -> Result<u32, NotBetween> {

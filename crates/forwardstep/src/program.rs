@@ -55,6 +55,7 @@ pub fn program_with(kinds: &Kinds, arguments: impl IntoIterator<Item = impl Into
         Command::Upgrade(options) => commands::upgrade(&options, &mut console),
         Command::New(options) => commands::new(&options, kinds, &mut console),
         Command::Robot(options) => commands::robot(&options, &mut console),
+        Command::Man { folder } => commands::man(folder.as_deref(), &mut console),
         Command::Completions { shell } => commands::completions(shell, &mut console),
     };
     // Text that could not be written is a failure of its own, but must not hide another.

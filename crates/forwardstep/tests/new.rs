@@ -7,66 +7,118 @@ mod support;
 use std::fs;
 use std::ops::ControlFlow;
 
-use forwardstep::io::SourceText;
+use forwardstep::check::{Answer, check};
+use forwardstep::io::robot::open_robot;
 use forwardstep::io::scenario::kinds::Kinds;
-use forwardstep::io::scenario::{RobotTemplate, Template, TemplateDelay, TemplateGraph, read_scenario};
+use forwardstep::io::scenario::{
+    RobotTemplate, SHIPPED_SCENARIOS, Scenario, TaskTemplate, Template, TemplateDelay, TemplateGraph, read_scenario,
+};
+use forwardstep::io::{SourceText, UrdfOptions};
 use forwardstep::sim::{Ending, Exchange, simulate};
 use support::{folder, forwardstep, stderr, stdout};
 
 const TREE: &str = include_str!("../../../validation/urdf/tree.urdf");
 
+/// Every kind of robot that `new` offers, and two from URDFs.
+fn robots() -> Vec<RobotTemplate> {
+    let kinds = Kinds::shipped();
+    let known = kinds.robot_keys().into_iter().filter_map(|key| kinds.template(key));
+    let urdf = |file| RobotTemplate::urdf(file, false, &open_robot(file, &UrdfOptions::default()).unwrap().robot);
+    known.chain([urdf("ur5e.urdf"), urdf("panda.urdf")]).collect()
+}
+
+fn read(template: &Template) -> Scenario {
+    let text = template.text();
+    read_scenario("new", &SourceText::new("new", text.as_str()), None).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+fn runs(template: &Template) {
+    let mut scenario = read(template);
+    assert_eq!(scenario.title, template.title);
+    assert_eq!(scenario.setup.agents.len(), template.agents as usize);
+    scenario.setup.time.end_s = 0.3;
+    let outcome = simulate(&scenario.setup, &mut |_| ControlFlow::Continue(())).unwrap();
+    assert_eq!(outcome.ending, Ending::Completed, "{}", template.text());
+}
+
 #[test]
 fn every_combination_is_a_scenario_that_runs() {
-    let (kinds, urdf) = (Kinds::shipped(), |file| RobotTemplate::urdf(file, false));
-    let known = |key| kinds.template(key).unwrap();
-    let robots = [known("planar_arm"), known("point_mass"), urdf("ur5e.urdf"), urdf("panda.urdf")];
+    use TemplateGraph::{Complete, Path, Random, Ring, Star, Switching};
+    let graphs = [Ring, Path, Star, Complete, Random, Switching];
+    let delays = [TemplateDelay::Constant, TemplateDelay::SawTooth, TemplateDelay::Radio, TemplateDelay::None];
     let exchanges = [Exchange::Position, Exchange::PositionVelocity];
-    let graphs = [TemplateGraph::Ring, TemplateGraph::Path, TemplateGraph::Complete];
-    let delays = [TemplateDelay::Constant, TemplateDelay::SawTooth, TemplateDelay::None];
-    let mut count = 0;
+    let (mut count, robots) = (0, robots());
     for robot in &robots {
-        for (exchange, graph) in exchanges.iter().flat_map(|exchange| graphs.map(|graph| (*exchange, graph))) {
-            for (delay, agents, order) in
-                delays.iter().flat_map(|delay| [(*delay, 2, 1), (*delay, 3, 8), (*delay, 5, 3)])
-            {
+        let TaskTemplate::Agree { lowest_order, exchange: only, follows } = robot.task else {
+            runs(&Template::new(robot.clone()));
+            continue;
+        };
+        for (k, (graph, delay)) in graphs.iter().flat_map(|graph| delays.map(|delay| (*graph, delay))).enumerate() {
+            let (agents, order) = [(2, 1), (3, 8), (5, 3)][k % 3];
+            for exchange in exchanges.into_iter().filter(|exchange| only.is_none_or(|only| only == *exchange)) {
                 let title = format!("{}, \"{exchange:?}\", {graph:?}, {delay:?} \\ {agents}, {order}", robot.line);
-                let template = Template { title, agents, robot: robot.clone(), order, exchange, graph, delay };
-                let text = template.text();
-                let mut scenario = read_scenario("new", &SourceText::new("new", text.as_str()), None)
-                    .unwrap_or_else(|error| panic!("{error}\n{text}"));
-                assert_eq!(scenario.title, template.title);
-                assert_eq!(scenario.setup.agents.len(), agents as usize);
-                assert_eq!(scenario.setup.agents[0].roots_per_s.len(), order as usize);
-                scenario.setup.time.end_s = 0.3;
-                let outcome = simulate(&scenario.setup, &mut |_| ControlFlow::Continue(())).unwrap();
-                assert_eq!(outcome.ending, Ending::Completed, "{}", template.title);
+                let usual = Template::new(robot.clone());
+                let template =
+                    Template { title, agents, order: order.max(lowest_order), exchange, graph, delay, ..usual };
+                assert_eq!(read(&template).setup.agents[0].roots_per_s.len(), template.order as usize);
+                runs(&template);
                 count += 1;
             }
         }
+        if follows {
+            for graph in [Ring, Path, Star, Complete, Random] {
+                let usual = Template::new(robot.clone());
+                runs(&Template { leader: true, graph, delay: TemplateDelay::None, ..usual });
+            }
+        }
     }
-    assert_eq!(count, 4 * 2 * 3 * 3 * 3);
+    let choosing =
+        robots.iter().filter(|robot| matches!(robot.task, TaskTemplate::Agree { exchange: None, .. })).count();
+    assert_eq!((robots.len(), choosing, count), (11, 5, 24 * (2 * 5 + 5)));
+}
+
+#[test]
+fn agents_start_within_their_limits_and_a_random_graph_reaches_everybody() {
+    for robot in robots() {
+        for agent in read(&Template { agents: 9, ..Template::new(robot) }).setup.agents {
+            for (axis, q) in agent.robot.axes.iter().zip(&agent.start.q) {
+                let [low, high] = axis.position_limits.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+                assert!(low < *q && *q < high, "{} of {} starts at {q}", axis.name, agent.name);
+            }
+        }
+    }
+    for agents in [2, 3, 17, 100] {
+        let arm = Kinds::shipped().template("planar_arm").unwrap();
+        let report = check(&read(&Template { agents, graph: TemplateGraph::Random, ..Template::new(arm) }).setup);
+        assert_eq!(report.worst(), Answer::Holds, "{agents}");
+    }
 }
 
 #[test]
 fn options_are_written_down_and_the_scenario_runs() {
     let folder = folder();
-    let cases: [&[&str]; 5] = [
+    let cases: [&[&str]; 9] = [
         &[],
         &["--robot", "point_mass", "--agents", "2", "--order", "1", "--graph", "path", "--delay", "none"],
         &["--robot", "ur5e", "--order", "3", "--exchange", "position", "--graph", "complete"],
         &["--robot", "panda", "--agents", "3", "--delay", "saw_tooth", "--name", "Three \"arms\""],
         &["--robot", "planar_arm", "--exchange", "position-velocity", "--delay", "saw-tooth", "--order", "4"],
+        &["--robot", "ship", "--leader", "--agents", "1"],
+        &["--robot", "spacecraft"],
+        &["--robot", "vehicle", "--graph", "switching", "--delay", "radio", "--agents", "3"],
+        &["--robot", "strict-feedback", "--graph", "star"],
     ];
     for (k, options) in cases.iter().enumerate() {
         let file = format!("case-{k}.toml");
         let mut arguments = vec!["new", &file];
         arguments.extend(*options);
         let written = forwardstep(&folder, &arguments).success();
-        assert_eq!(
-            (stdout(&written), stderr(&written)),
-            (format!("wrote {file}; next: forwardstep run {file}\n"), String::new())
-        );
+        assert_eq!(stdout(&written), format!("wrote {file}; next: forwardstep run {file}\n"));
+        assert!(stderr(&written).starts_with("tried "), "{}", stderr(&written));
         let text = fs::read_to_string(folder.path().join(&file)).unwrap();
+        let (schema, text) = text.split_once('\n').unwrap();
+        assert_eq!(schema, "#:schema ./forwardstep.schema.json");
+        assert!(text.contains("\n[goal]\n"), "what was reached is the goal: {text}");
         if !options.contains(&"--name") {
             arguments.extend(["--name", file.trim_end_matches(".toml")]);
         }
@@ -74,6 +126,8 @@ fn options_are_written_down_and_the_scenario_runs() {
         assert_eq!(stdout(&forwardstep(&folder, &arguments).success()), text, "to standard output as well");
         forwardstep(&folder, &["run", &file]).success();
     }
+    let schema = fs::read_to_string(folder.path().join("forwardstep.schema.json")).unwrap();
+    assert_eq!(schema, stdout(&forwardstep(&folder, &["schema"]).success()));
     let text = fs::read_to_string(folder.path().join("case-3.toml")).unwrap();
     for line in ["count = 3 ", "delay.saw_tooth = ", "[\"arm-3\", \"arm-1\"]", "robot.urdf = { file = \"panda.urdf\" }"]
     {
@@ -120,12 +174,21 @@ fn dry_friction_is_written_for_robots_with_joints_and_estimates_are_kept_near_wh
 fn mistakes_are_status_two_and_nothing_is_overwritten() {
     let folder = folder();
     fs::write(folder.path().join("mine.toml"), "mine").unwrap();
-    let cases: [(&[&str], &str); 8] = [
+    let cases: [(&[&str], &str); 17] = [
         (&["mine.toml"], "`mine.toml` already exists"),
         (&["none/new.toml"], "make its folder first"),
         (&["new.toml", "--robot", "ur5"], "did you mean `ur5e`?"),
         (&["new.toml", "--robot", "none.urdf"], "cannot read `none.urdf`"),
-        (&["new.toml", "--agents", "1"], "must be a whole number from 2 to 100"),
+        (&["new.toml", "--agents", "0"], "must be a whole number from 1 to 100"),
+        (&["new.toml", "--agents", "1"], "nobody to agree with"),
+        (&["new.toml", "--robot", "vehicle", "--order", "2"], "order 3 or higher, not 2"),
+        (&["new.toml", "--robot", "chain", "--exchange", "position_velocity"], "positions of others only"),
+        (&["new.toml", "--robot", "rotorcraft", "--leader"], "vehicles-behind-a-leader"),
+        (&["new.toml", "--leader", "--delay", "radio"], "leader-over-late-links"),
+        (&["new.toml", "--leader", "--order", "2"], "cannot be used with"),
+        (&["new.toml", "--robot", "spacecraft", "--graph", "star"], "a target of its own"),
+        (&["new.toml", "--robot", "ship", "--dry-friction"], "no joints that could rub"),
+        (&["new.toml", "--like", "theorem-11"], "did you mean"),
         (&["new.toml", "--order", "0"], "must be a whole number from 1 to 8"),
         (&["new.toml", "--graph", "rings"], "ring"),
         (&["new.toml", "--delay", "some"], "saw_tooth"),
@@ -139,3 +202,47 @@ fn mistakes_are_status_two_and_nothing_is_overwritten() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     assert_eq!(fs::read_to_string(folder.path().join("mine.toml")).unwrap(), "mine");
 }
+
+#[test]
+fn any_shipped_scenario_is_a_place_to_start_from() {
+    let folder = folder();
+    for shipped in SHIPPED_SCENARIOS {
+        let file = format!("{}-of-mine.toml", shipped.name);
+        assert_eq!(stderr(&forwardstep(&folder, &["new", &file, "--like", shipped.name]).success()), "");
+        let text = fs::read_to_string(folder.path().join(&file)).unwrap();
+        assert_eq!(text.split_once('\n').unwrap().1, shipped.text);
+    }
+    // Tables are found beside a copy as well.
+    forwardstep(&folder, &["run", "from-a-log-of-mine.toml"]).success();
+}
+
+#[test]
+fn what_does_not_agree_in_time_gets_more_time_or_other_gains_or_says_why_not() {
+    let folder = folder();
+    let told = stderr(&forwardstep(&folder, &["new", "slow.toml", "--agents", "12"]).success());
+    let text = fs::read_to_string(folder.path().join("slow.toml")).unwrap();
+    assert!(!text.contains("\nend_s = 60 ") && told.lines().count() == 1, "{told}{text}");
+    forwardstep(&folder, &["run", "slow.toml"]).success();
+    // A joint that leaves its limits while nothing is known of the robot.
+    fs::write(folder.path().join("tight.urdf"), PENDULUM.replace("LIMIT", "0.3").replace("DAMPING", "0")).unwrap();
+    let told =
+        stderr(&forwardstep(&folder, &["new", "tight.toml", "--robot", "tight.urdf", "--agents", "2"]).success());
+    assert!(
+        told.contains("but hinge of arm-") && told.contains("of everything known") || told.contains("all known"),
+        "{told}"
+    );
+    // Damping without the inertia of the rotors behind it.
+    fs::write(folder.path().join("light.urdf"), PENDULUM.replace("LIMIT", "3").replace("DAMPING", "1e5")).unwrap();
+    let told = stderr(&forwardstep(&folder, &["new", "light.toml", "--robot", "light.urdf", "--agents", "2"]).code(1));
+    assert!(told.contains("D/λ_min(M)") && told.contains("`armature`") && told.contains("no trial did"), "{told}");
+    let text = fs::read_to_string(folder.path().join("light.toml")).unwrap();
+    assert!(text.contains("# [goal]") && text.contains("damping.bandwidth_per_s = 20 "), "{text}");
+    forwardstep(&folder, &["new", "untried.toml", "--robot", "light.urdf", "--agents", "2", "--untried"]).success();
+}
+
+/// A pendulum of 1 kg, half a metre long.
+const PENDULUM: &str = r#"<robot name="pendulum"><link name="base"/><link name="rod"><inertial><origin xyz="0.5 0 0"/><mass value="1"/>
+<inertia ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="hinge" type="revolute"><parent link="base"/><child link="rod"/><axis xyz="0 1 0"/>
+<limit lower="-LIMIT" upper="LIMIT" effort="100" velocity="10"/><dynamics damping="DAMPING"/></joint></robot>
+"#;

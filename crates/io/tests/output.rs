@@ -293,7 +293,8 @@ fn a_run_that_outgrows_its_memory_says_what_to_lower() {
         let (head, why) = sentence.split_once("; ").unwrap();
         (head.to_owned(), why.to_owned())
     };
-    let gains = |damping_per_s, adaptation_per_s| Some(GainRates { damping_per_s, adaptation_per_s });
+    let gains =
+        |damping_per_s, adaptation_per_s| Some(GainRates { damping_per_s, viscous_per_s: 0.0, adaptation_per_s });
     let (head, why) = sentence(&setup, 1e-8, 1e8, gains(200.0, Some(3e7)));
     assert_eq!(
         head,
@@ -310,6 +311,9 @@ fn a_run_that_outgrows_its_memory_says_what_to_lower() {
     assert!(why.ends_with(": lower `law.adaptive.damping`."), "{why}");
     let (_, why) = sentence(&setup, 1e-8, 1e8, gains(6e8, Some(1e7)));
     assert!(why.contains("no gain of its law explains it"), "{why}");
+    let rubs = Some(GainRates { damping_per_s: 50.0, viscous_per_s: 8e7, adaptation_per_s: Some(1e3) });
+    let (_, why) = sentence(&setup, 1e-8, 1e8, rubs);
+    assert!(why.contains(" D/λ_min(M) is about 8e7 1/s and ") && why.contains("state the `armature`"), "{why}");
     let (_, why) = sentence(&setup, 1e-8, 1e8, None);
     assert_eq!(why, "the closed loop is stiff, its fastest rate is about 1e8 1/s.");
     let (_, why) = sentence(&setup, 1e-8, 1e6, gains(1e6, None));

@@ -167,6 +167,8 @@ impl Stiffness {
 pub struct GainRates {
     /// λ_max(M⁻¹K), which is K/λ_min(M) where K is a number.
     pub damping_per_s: f64,
+    /// λ_max(M⁻¹D), where D is the viscous damping of the robot itself; 0 without.
+    pub viscous_per_s: f64,
     /// √λ_max(M⁻¹YΓYᵀ), the frequency at which s and the estimate turn into each other; `None` when nothing is adapted.
     pub adaptation_per_s: Option<f64>,
 }

@@ -46,6 +46,16 @@ impl Asker {
         }
     }
 
+    /// The same for yes or no, which is usual.
+    pub(crate) fn confirm(&self, question: &str) -> bool {
+        let parse = |answer: &str| match answer.to_lowercase().as_str() {
+            "y" | "yes" => Ok("yes"),
+            "n" | "no" => Ok("no"),
+            _ => Err("yes or no"),
+        };
+        self.ask(None, &format!("{question}: yes, no"), "no", parse) == "yes"
+    }
+
     /// The same for one of several.
     pub(crate) fn choose<T: ValueEnum + Clone>(&self, given: Option<T>, question: &str, usual: T) -> T {
         let names: Vec<String> = T::value_variants().iter().map(name).collect();

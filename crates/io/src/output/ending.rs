@@ -106,11 +106,19 @@ fn because(setup: &Setup, breakdown: &Breakdown, is_stiff: bool, stiffness: &Sti
 fn blamed(agent: &AgentSetup, fastest_per_s: f64, gains: GainRates) -> String {
     let law = if agent.estimates() { "adaptive" } else { "known" };
     let damping = (gains.damping_per_s, "K/λ_min(M)", format!("lower `law.{law}.damping`"));
+    // Gears turn with their rotors, whose inertia a URDF leaves out.
+    let viscous = || {
+        let advice =
+            "that is the robot's own damping: state the `armature` of its joints, or lock those that are so light";
+        (gains.viscous_per_s, "D/λ_min(M)", advice.to_owned())
+    };
     let adaptation = |rate| {
         let advice = "lower `law.adaptive.adaptation_gain`, or let it start nearer and slower: Y grows with the motion";
         (rate, "√(Γ‖Y‖²/λ_min(M))", advice.to_owned())
     };
-    let rates: Vec<_> = [Some(damping), gains.adaptation_per_s.map(adaptation)].into_iter().flatten().collect();
+    let viscous = (gains.viscous_per_s > 0.0).then(viscous);
+    let rates = [Some(damping), viscous, gains.adaptation_per_s.map(adaptation)];
+    let rates: Vec<_> = rates.into_iter().flatten().collect();
     let told: Vec<String> =
         rates.iter().map(|(rate, symbol, _)| format!("{symbol} is about {} 1/s", about(*rate))).collect();
     let apart = |rate: f64| (rate / fastest_per_s).max(fastest_per_s / rate);

@@ -55,6 +55,9 @@ pub struct Rates {
     pub fastest_per_s: f64,
     /// K/λ_min(M) of the agent, where it is a robot under (6)–(7).
     pub damping_per_s: Option<f64>,
+    /// D/λ_min(M) of the agent, where D is the viscous damping of the robot itself.
+    #[serde(default)]
+    pub viscous_per_s: Option<f64>,
     /// √(Γ‖Y‖²/λ_min(M)) of the agent, where it adapts besides.
     pub adaptation_per_s: Option<f64>,
 }
@@ -65,13 +68,15 @@ impl Rates {
         Rates {
             fastest_per_s: rate_per_s,
             damping_per_s: gains.map(|gains| gains.damping_per_s),
+            viscous_per_s: gains.map(|gains| gains.viscous_per_s),
             adaptation_per_s: gains.and_then(|gains| gains.adaptation_per_s),
         }
     }
 
     fn restore(self) -> Stiffness {
-        let Rates { fastest_per_s, damping_per_s, adaptation_per_s } = self;
-        let gains = damping_per_s.map(|damping_per_s| GainRates { damping_per_s, adaptation_per_s });
+        let Rates { fastest_per_s, damping_per_s, viscous_per_s, adaptation_per_s } = self;
+        let viscous_per_s = viscous_per_s.unwrap_or(0.0);
+        let gains = damping_per_s.map(|damping_per_s| GainRates { damping_per_s, viscous_per_s, adaptation_per_s });
         Stiffness { rate_per_s: fastest_per_s, gains }
     }
 }

@@ -3,7 +3,7 @@
 //! A column is called `<agent>.<signal>.<axis>`: [`Signal::name`], and the joint's name for arms, a number from one for
 //! point masses, the parameter's name for `theta_hat`; `lyapunov` and `dissipation` have no axis part.
 
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 
 use forwardstep_core::signal::{Entries, Unit};
 use forwardstep_sim::recording::{Recording, Signal};
@@ -159,18 +159,13 @@ pub fn gap_unit(setup: &Setup) -> String {
     };
     let axes = |agent: usize| 0..setup.agents.get(agent).map_or(0, entries);
     let all = (0..setup.agents.len()).flat_map(|agent| axes(agent).map(move |axis| (agent, axis)));
-    let mut units = all.map(|(agent, axis)| unit(setup, agent, signal, axis));
-    match units.next() {
-        None => String::new(),
-        Some(first) if units.all(|unit| unit == first) => {
-            if first == "1" {
-                String::new()
-            } else {
-                first
-            }
-        }
-        Some(first) if first == "m" && units.all(|unit| unit == "m" || unit == "1") => "m or 1".into(),
-        Some(_) => "rad or m".into(),
+    let units: BTreeSet<String> = all.map(|(agent, axis)| unit(setup, agent, signal, axis)).collect();
+    let units: Vec<&str> = units.iter().map(String::as_str).collect();
+    match units.as_slice() {
+        [] | ["1"] => String::new(),
+        [one] => (*one).to_owned(),
+        ["1", "m"] => "m or 1".into(),
+        _ => "rad or m".into(),
     }
 }
 

@@ -101,7 +101,7 @@ pub use rewired::{Rewired, StatedNetwork, rewired, stated_network};
 pub use shipped::{SHIPPED_SCENARIOS, SHIPPED_TABLES, ShippedScenario, ShippedTable, shipped_scenario};
 pub use system_problem::SystemProblem;
 pub use table::TableProblem;
-pub use template::{RobotTemplate, Template, TemplateDelay, TemplateGraph};
+pub use template::{LawTemplate, RobotTemplate, TaskTemplate, Template, TemplateDelay, TemplateGraph, Tuning};
 pub use upgrade::{Moved, Upgraded, upgrade};
 pub use value_problem::ValueProblem;
 

@@ -14,7 +14,7 @@ use super::problem::ScenarioProblem;
 use super::random::{Stream, draws};
 use super::system_problem::SystemProblem;
 use super::value_problem::ValueProblem;
-use super::values::{Item, RandomFile, StartValues};
+use super::values::{Item, RandomFile, StartValues, Within};
 
 /// The `start` of one agent with the position of the agent among those that share it.
 #[derive(Clone, Copy, Debug)]
@@ -277,7 +277,7 @@ impl<'a> StartReader<'a> {
     ) -> Result<Vec<f64>, Fault> {
         let length = |found: usize, place: &Range<usize>| length(key, place, found, need, self.name);
         let rows = match &value.value {
-            StartValues::Random(random) => return draw(random, stream, table.index, need),
+            StartValues::Random(random) => return self.draw(random, stream, table.index, need),
             StartValues::Rows(rows) => rows,
         };
         let lists: Vec<_> = rows.iter().filter(|row| matches!(row.value, Item::List(_))).collect();
@@ -298,6 +298,22 @@ impl<'a> StartReader<'a> {
             }
             _ => Ok(vec![0.0; need]),
         }
+    }
+
+    /// `need` numbers, each drawn uniformly.
+    fn draw(&self, random: &RandomFile, stream: Stream, index: usize, need: usize) -> Result<Vec<f64>, Fault> {
+        let within = match &random.within.value {
+            Within::All(pair) => vec![*pair; need],
+            Within::Each(pairs) => {
+                length("within", &random.within.span, pairs.len(), need, self.name)?;
+                pairs.clone()
+            }
+        };
+        if let Some([low, high]) = within.iter().copied().find(|[low, high]| low > high) {
+            return Err(fault(&random.within, ValueProblem::Interval { key: "within", low, high }));
+        }
+        let units = draws(seed(&random.seed)?, stream, index, need);
+        Ok(units.zip(within).map(|(unit, [low, high])| low * (1.0 - unit) + high * unit).collect())
     }
 }
 
@@ -327,14 +343,4 @@ fn keys(file: &StartFile) -> Vec<(&'static str, Range<usize>)> {
         ("reference", file.reference.as_ref().map(|reference| reference.span.clone())),
     ];
     all.into_iter().filter_map(|(key, span)| Some((key, span?))).collect()
-}
-
-/// One number per axis, drawn uniformly.
-fn draw(random: &RandomFile, stream: Stream, index: usize, length: usize) -> Result<Vec<f64>, Fault> {
-    let [low, high] = random.within.value;
-    if low > high {
-        return Err(fault(&random.within, ValueProblem::Interval { key: "within", low, high }));
-    }
-    let units = draws(seed(&random.seed)?, stream, index, length);
-    Ok(units.map(|unit| low * (1.0 - unit) + high * unit).collect())
 }

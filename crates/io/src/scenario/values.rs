@@ -6,7 +6,7 @@ use std::fmt;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Unexpected, Visitor};
 
 use super::at::At;
 use super::fault::values;
@@ -103,8 +103,17 @@ pub struct RandomFile {
     /// The same seed gives the same numbers, always.
     #[schemars(range(min = 0))]
     pub seed: At<i64>,
-    /// Lowest and highest value.
-    pub within: At<[f64; 2]>,
+    /// Lowest and highest value, of all entries or of each.
+    pub within: At<Within>,
+}
+
+/// Between which values a draw lies.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Within {
+    /// The same for all entries: the lowest and the highest.
+    All([f64; 2]),
+    /// One such pair for each.
+    Each(Vec<[f64; 2]>),
 }
 
 /// Stands for a positive number in the schema.
@@ -136,6 +145,7 @@ deserialize_any!(AxisValues, AxisVisitor);
 deserialize_any!(GainFile, GainVisitor);
 deserialize_any!(GainOrBandwidth, GainOrBandwidthVisitor);
 deserialize_any!(StartValues, StartVisitor);
+deserialize_any!(Within, WithinVisitor);
 
 fn rows<'de, A: SeqAccess<'de>>(seq: A) -> Result<Rows, A::Error> {
     Rows::deserialize(SeqAccessDeserializer::new(seq))
@@ -235,6 +245,30 @@ impl<'de> Visitor<'de> for StartVisitor {
     }
 }
 
+struct WithinVisitor;
+
+impl<'de> Visitor<'de> for WithinVisitor {
+    type Value = Within;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("[low, high], or one such pair per axis")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Within, A::Error> {
+        let rows = rows(seq)?;
+        let numbers = |row: &At<Item>| row.value.number();
+        let pair = |row: &At<Item>| match &row.value {
+            Item::List(list) => <[f64; 2]>::try_from(values(list)).ok(),
+            Item::Number(_) => None,
+        };
+        let all = rows.iter().map(numbers).collect::<Option<Vec<_>>>().and_then(|all| <[f64; 2]>::try_from(all).ok());
+        let each = || rows.iter().map(pair).collect::<Option<Vec<_>>>().filter(|each| !each.is_empty());
+        all.map(Within::All)
+            .or_else(|| each().map(Within::Each))
+            .ok_or_else(|| A::Error::invalid_type(Unexpected::Seq, &self))
+    }
+}
+
 impl<'de> Deserialize<'de> for Named {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct NamedVisitor;
@@ -285,6 +319,10 @@ inline_schema!(NotNegative, "NotNegative", |_generator| json_schema!({ "type": "
 inline_schema!(NotNegativeEach, "NotNegativeEach", |_generator| json_schema!({
     "anyOf": [{ "type": "number", "minimum": 0 }, { "type": "array", "items": { "type": "number", "minimum": 0 } }],
 }));
+inline_schema!(Within, "Within", |_generator| {
+    let pair = json_schema!({ "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 });
+    json_schema!({ "anyOf": [pair, { "type": "array", "items": pair, "minItems": 1 }] })
+});
 inline_schema!(AxisValues, "AxisValues", |_generator| json_schema!({
     "anyOf": [
         { "type": "number", "exclusiveMinimum": 0 },

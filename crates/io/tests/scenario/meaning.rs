@@ -134,6 +134,19 @@ fn random_starts_repeat_and_stay_when_agents_are_added() {
 }
 
 #[test]
+fn every_axis_may_start_within_an_interval_of_its_own() {
+    let drawn = |within: &str| {
+        let text = changed("[[0.1, 0.2], [0.3, 0.4]]", &format!("{{ random = {{ seed = 7, within = {within} }} }}"));
+        setup(&text).agents[..2].iter().flat_map(|agent| agent.start.q.clone()).collect::<Vec<_>>()
+    };
+    let (one, each) = (drawn("[0, 1]"), drawn("[[-2, 3], [5, 5.5]]"));
+    for (axis, (unit, found)) in one.iter().zip(&each).enumerate() {
+        let [low, high] = [[-2.0, 3.0], [5.0, 5.5]][axis % 2];
+        assert!((low + (high - low) * unit - found).abs() < 1e-12, "{one:?} {each:?}");
+    }
+}
+
+#[test]
 fn networks_of_every_kind() {
     let phases = &SOUND[SOUND.find("[[network.phases]]").unwrap()..SOUND.find("[goal]").unwrap()];
     let fixed = SOUND.replace(

@@ -6,7 +6,8 @@
 //! M ṡ = −K s + Y Δϑ,   Δϑ' = −Γ Yᵀ s
 //! ```
 //!
-//! By itself the damping has the rates of M⁻¹K, and the adaptation the frequencies √(M⁻¹ Y Γ Yᵀ).
+//! By itself the damping has the rates of M⁻¹K, and the adaptation the frequencies √(M⁻¹ Y Γ Yᵀ). The robot has rates of its own, those
+//! of M⁻¹D for its viscous damping D; at rest Y(q, 0, z, 0)ϑ = D z + g, since C(q, 0) = 0.
 
 use forwardstep_core::robot::{Lagrangian, TwoVelocity};
 use forwardstep_core::{LengthError, ResolvedGain};
@@ -30,6 +31,25 @@ pub(super) fn gain_rates<R: Lagrangian<f64>>(
     let mass = ResolvedGain::Matrix { size: m, entries };
     let damping = &member.law.damping;
     let damping_per_s = largest(&mass, |s, force| damping.apply(s, force));
+    let rest = vec![0.0; m];
+    let torque = |scratch: &mut R::Scratch, z: &[f64]| {
+        let mut y = vec![0.0; m * p];
+        robot.regressor(scratch, TwoVelocity { q: motion.q, dq: &rest, z, dz: &rest }, &mut y)?;
+        let dot = |row: &[f64]| row.iter().zip(&member.theta).map(|(y, theta)| y * theta).sum::<f64>();
+        Ok::<_, LengthError>((0..m).map(|axis| dot(&y[axis * p..(axis + 1) * p])).collect::<Vec<_>>())
+    };
+    let gravity = torque(scratch, &rest)?;
+    let mut viscous = Vec::with_capacity(m * m);
+    for axis in 0..m {
+        let z: Vec<f64> = (0..m).map(|other| f64::from(u8::from(other == axis))).collect();
+        // Column by column; power iterations do not mind a transpose.
+        viscous.extend(torque(scratch, &z)?.iter().zip(&gravity).map(|(all, g)| all - g));
+    }
+    let viscous_per_s = largest(&mass, |s, force| {
+        for (row, force) in viscous.chunks_exact(m.max(1)).zip(force) {
+            *force = row.iter().zip(s).map(|(d, s)| d * s).sum();
+        }
+    });
     let mut adaptation_per_s = None;
     if let Some(gamma) = &member.law.adaptation {
         let mut y = vec![0.0; m * p];
@@ -46,8 +66,8 @@ pub(super) fn gain_rates<R: Lagrangian<f64>>(
         });
         adaptation_per_s = Some(squared.sqrt());
     }
-    let finite = damping_per_s.is_finite() && adaptation_per_s.is_none_or(f64::is_finite);
-    Ok(finite.then_some(GainRates { damping_per_s, adaptation_per_s }))
+    let finite = damping_per_s.is_finite() && viscous_per_s.is_finite() && adaptation_per_s.is_none_or(f64::is_finite);
+    Ok(finite.then_some(GainRates { damping_per_s, viscous_per_s, adaptation_per_s }))
 }
 
 /// λ_max(M⁻¹A), where A is symmetric and not negative.
@@ -75,7 +95,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
     use forwardstep_core::law::SlotineLi;
-    use forwardstep_core::robot::{PlanarArm, PlanarLinks, PointMass};
+    use forwardstep_core::robot::{Driven, Drives, PlanarArm, PlanarLinks, PointMass};
 
     use super::*;
 
@@ -97,10 +117,21 @@ mod tests {
             motion,
         );
         assert!((known.damping_per_s - 4.0).abs() < 1e-3 && known.adaptation_per_s.is_none(), "{known:?}");
+        assert_eq!(known.viscous_per_s, 0.0);
         let adaptation = Some(ResolvedGain::Diagonal(vec![18.0]));
         let adaptive =
             rates(&PointMass { dimension: 2 }, &[2.0], SlotineLi { damping, adaptation, bounds: None }, motion);
         assert!((adaptive.adaptation_per_s.unwrap() - 15.0).abs() < 1e-9, "{adaptive:?}");
+    }
+
+    #[test]
+    fn the_damping_of_a_robot_has_a_rate_of_its_own() {
+        let drives = Drives { damped: vec![0, 1], ..Drives::default() };
+        let robot = Driven::new(PointMass { dimension: 2 }, drives).unwrap();
+        let motion = TwoVelocity { q: &[0.3, 0.1], dq: &[2.0, 1.0], z: &[1.0, 0.0], dz: &[3.0, 4.0] };
+        let law = SlotineLi { damping: ResolvedGain::Diagonal(vec![1.0; 2]), adaptation: None, bounds: None };
+        let found = rates(&robot, &[2.0, 10.0, 30.0], law, motion);
+        assert!((found.viscous_per_s - 15.0).abs() < 1e-9 && (found.damping_per_s - 0.5).abs() < 1e-9, "{found:?}");
     }
 
     #[test]

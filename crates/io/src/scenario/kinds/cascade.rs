@@ -10,8 +10,8 @@ use serde::Deserialize;
 
 use super::chain::{ChainProblem, FLOOR, MOST_STATES, adapted, chain_robot, each, list, optional};
 use super::{
-    At, AxisValues, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, LawTable, RobotKind, RobotRead,
-    RobotTable, Spread, StartReader, Stop, fault, filled, length, number_or,
+    At, AxisValues, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, LawTable, LawTemplate, RobotKind,
+    RobotRead, RobotTable, RobotTemplate, Spread, StartReader, Stop, TaskTemplate, fault, filled, length, number_or,
 };
 use crate::scenario::value_problem::ValueProblem;
 use crate::scenario::values::Positive;
@@ -35,7 +35,18 @@ impl RobotKind for StrictFeedbackFile {
             key: "strict_feedback",
             description: "A parametric chain in strict-feedback form.",
             usual_law: "adaptive_backstepping",
-            template: None,
+            template: Some(RobotTemplate {
+                name: "chain",
+                line: "robot.strict_feedback = { regressors = [[\"x1^2\", \"0\"], [\"x1*x2\", \"sin(x2)\"]], parameters = [0.5, -0.8] }".into(),
+                says: "each list is a row of regressors",
+                starts: vec![[-1.0, 1.0]],
+                law: LawTemplate::Lines(
+                    "# Backstepping with tuning functions; nothing is known of the parameters.\n\
+                     [law.adaptive_backstepping]\ngains_per_s = 1\nadaptation_gain = 1\n",
+                ),
+                dry_friction: None,
+                task: TaskTemplate::of_order(2),
+            }),
         }
     }
 
@@ -78,7 +89,18 @@ impl RobotKind for PureFeedbackFile {
             key: "pure_feedback",
             description: "A parametric chain in pure-feedback form.",
             usual_law: "adaptive_backstepping",
-            template: None,
+            template: Some(RobotTemplate {
+                name: "chain",
+                line: "robot.pure_feedback = { known = [\"x2 + 0.2*x2^3\", \"0\"], regressors = [[\"x1^2 + 0.3*tanh(x2)\", \"0\"], [\"tanh(x2)\", \"x1*x2\"]], parameters = [0.4, -0.3] }".into(),
+                says: "each list is a row of regressors",
+                starts: vec![[-0.6, 0.6]],
+                law: LawTemplate::Lines(
+                    "# Backstepping with tuning functions; nothing is known of the parameters.\n\
+                     [law.adaptive_backstepping]\ngains_per_s = 1\nadaptation_gain = 1\n",
+                ),
+                dry_friction: None,
+                task: TaskTemplate::of_order(2),
+            }),
         }
     }
 

@@ -11,8 +11,9 @@ use serde::Deserialize;
 use thiserror::Error;
 
 use super::{
-    At, AxisValues, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, LawTable, Mistake, RobotKind, RobotRead,
-    RobotTable, Spread, StartReader, Stop, axis, count, estimate, fault, length, number_or, values,
+    At, AxisValues, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, LawTable, LawTemplate, Mistake,
+    RobotKind, RobotRead, RobotTable, RobotTemplate, Spread, StartReader, Stop, TaskTemplate, axis, count, estimate,
+    fault, length, number_or, values,
 };
 use crate::scenario::formula::formula_in;
 use crate::scenario::values::Positive;
@@ -70,7 +71,17 @@ impl RobotKind for ChainFile {
             key: "chain",
             description: "A plant of any order with formulas for χ and ψ: Section IV of the paper.",
             usual_law: "linear_adaptive",
-            template: None,
+            template: Some(RobotTemplate {
+                name: "plant",
+                line: "robot.chain = { order = 2, chi = \"-x^3 - dx*abs(dx)\", psi = \"1 + x^2\" }".into(),
+                says: "the second derivative of x is chi + psi u",
+                starts: vec![[-1.0, 1.0]],
+                law: LawTemplate::Lines(
+                    "# The input that makes the plant linear.\n[law.linearising]\ngain_per_s = 2\n",
+                ),
+                dry_friction: None,
+                task: TaskTemplate::of_order(2),
+            }),
         }
     }
 

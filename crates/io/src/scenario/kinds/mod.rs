@@ -63,7 +63,7 @@ pub use super::roots::{RootFile, RootsFile};
 pub use super::spread::Spread;
 pub use super::start::StartReader;
 pub use super::systems_file::TargetFile;
-pub use super::template::RobotTemplate;
+pub use super::template::{LawTemplate, RobotTemplate, TaskTemplate};
 pub use super::values::{AxisValues, GainFile, GainOrBandwidth};
 
 /// A key that is taken.

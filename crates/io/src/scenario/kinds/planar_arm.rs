@@ -10,8 +10,8 @@ use thiserror::Error;
 
 use super::drives::{StatedFrictionFile, driven};
 use super::{
-    At, AxisValues, Body, Fault, InputFolder, Mistake, RobotKind, RobotRead, RobotTable, RobotTemplate, Spread,
-    StartReader, Stop, not_negative, positive,
+    At, AxisValues, Body, Fault, InputFolder, LawTemplate, Mistake, RobotKind, RobotRead, RobotTable, RobotTemplate,
+    Spread, StartReader, Stop, TaskTemplate, not_negative, positive,
 };
 use crate::scenario::values::{NotNegative, NotNegativeEach, Positive};
 
@@ -65,8 +65,10 @@ impl RobotKind for PlanarArmFile {
                 name: "arm",
                 line: "robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }".into(),
                 says: "uniform links",
-                law: RobotTemplate::adaptive("damping.gain = 8", "adaptation_gain = 10"),
+                starts: vec![[-1.0, 1.0]; 2],
+                law: LawTemplate::Adaptive,
                 dry_friction: Some("friction.dry = { coulomb = 0.5 }"),
+                task: TaskTemplate::LAGRANGIAN,
             }),
         }
     }

@@ -9,8 +9,8 @@ use serde::Deserialize;
 
 use super::drives::{StatedFrictionFile, driven};
 use super::{
-    At, AxisValues, Fault, InputFolder, LawKind, LawReader, LawTable, RobotKind, RobotRead, RobotTable, RobotTemplate,
-    Spread, StartReader, Stop, count, number_or, positive,
+    At, AxisValues, Fault, InputFolder, LawKind, LawReader, LawTable, LawTemplate, RobotKind, RobotRead, RobotTable,
+    RobotTemplate, Spread, StartReader, Stop, TaskTemplate, count, number_or, positive,
 };
 use crate::scenario::values::{NotNegativeEach, Positive};
 
@@ -49,8 +49,10 @@ impl RobotKind for PointMassFile {
                 name: "mass",
                 line: "robot.point_mass = { dimension = 2, mass_kg = 4.0 }".into(),
                 says: "in a plane",
-                law: RobotTemplate::adaptive("damping.gain = 8", "adaptation_gain = 10"),
+                starts: vec![[-2.0, 2.0]; 2],
+                law: LawTemplate::Adaptive,
                 dry_friction: Some("friction.dry = { coulomb = 0.5 }"),
+                task: TaskTemplate::LAGRANGIAN,
             }),
         }
     }

@@ -6,7 +6,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
-    At, Fault, InputFolder, RobotKind, RobotRead, RobotTable, Spread, StartReader, Stop, fault, not_negative, positive,
+    At, Fault, InputFolder, LawTemplate, RobotKind, RobotRead, RobotTable, RobotTemplate, Spread, StartReader, Stop,
+    TaskTemplate, fault, not_negative, positive,
 };
 use crate::scenario::value_problem::ValueProblem;
 
@@ -64,7 +65,15 @@ impl RobotKind for ShipFile {
             key: "ship",
             description: "A fully actuated surface ship: its position is (x, y, ψ) in the earth frame.",
             usual_law: "adaptive",
-            template: None,
+            template: Some(RobotTemplate {
+                name: "ship",
+                line: "robot.ship = { inertia = { surge_kg = 25.8, sway_kg = 33.8, sway_yaw_kg_m = 1.1, yaw_kg_m2 = 2.8 }, damping = { surge_n_s_m = 12.0, sway_n_s_m = 17.0, sway_yaw_n_s = 0.4, yaw_sway_n_s = 0.7, yaw_n_m_s = 1.5 } }".into(),
+                says: "x, y and the heading",
+                starts: vec![[-2.0, 2.0], [-2.0, 2.0], [-1.0, 1.0]],
+                law: LawTemplate::Adaptive,
+                dry_friction: None,
+                task: TaskTemplate::LAGRANGIAN,
+            }),
         }
     }
 

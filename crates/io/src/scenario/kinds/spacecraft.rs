@@ -11,8 +11,9 @@ use serde::Deserialize;
 use thiserror::Error;
 
 use super::{
-    At, Fault, GainFile, InputFolder, LawKind, LawReader, LawTable, Mistake, RobotKind, RobotRead, RobotTable, Spread,
-    StartReader, Stop, axis, fault, filled, gain, gain_or, length, number_or, positive, values,
+    At, Fault, GainFile, InputFolder, LawKind, LawReader, LawTable, LawTemplate, Mistake, RobotKind, RobotRead,
+    RobotTable, RobotTemplate, Spread, StartReader, Stop, TaskTemplate, axis, fault, filled, gain, gain_or, length,
+    number_or, positive, values,
 };
 use crate::scenario::attitude::{attitude as attitude_of, quaternion, turn};
 use crate::scenario::attitude_file::WheelStartFile;
@@ -80,7 +81,23 @@ impl RobotKind for SpacecraftFile {
             key: "spacecraft",
             description: "A spacecraft that turns itself by reaction wheels.",
             usual_law: "attitude",
-            template: None,
+            template: Some(RobotTemplate {
+                name: "craft",
+                line: "robot.spacecraft = { inertia_kg_m2 = [[10, 0.5, -0.3], [0.5, 8, 0.2], [-0.3, 0.2, 6]], wheels = [{ axis = [1, 0, 0] }, { axis = [0, 1, 0] }, { axis = [0, 0, 1] }] }".into(),
+                says: "about its own axes",
+                starts: Vec::new(),
+                law: LawTemplate::Lines(
+                    "# Attitude without a measured angular velocity: (99) to (105).\n\
+                     [law.attitude]\nerror_gain_per_s2 = 0.5\nrate_gain_per_s = 1.2\nfilter_gain_per_s = 1\ndamping = 3\n",
+                ),
+                dry_friction: None,
+                task: TaskTemplate::Track {
+                    agent: "start.spacecraft = { axis = [1, 2, -1], angle_rad = 2.5, rate_rad_s = [0.05, -0.03, 0.04] }\n\
+                            # Where it is to look: a quaternion of any length, vector part first, of formulas in t.\n\
+                            target.formulas = [\"0\", \"0\", \"sin(0.1*t)\", \"cos(0.1*t)\"]\n",
+                    reference: "# Each follows its own target.\n[reference.tracking]\n",
+                },
+            }),
         }
     }
 

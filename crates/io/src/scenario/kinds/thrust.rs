@@ -9,8 +9,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
-    At, Fault, GainFile, InputFolder, LawKind, LawReader, LawTable, RobotKind, RobotRead, RobotTable, Spread,
-    StartReader, Stop, axis, fault, gain, number_or,
+    At, Fault, GainFile, InputFolder, LawKind, LawReader, LawTable, LawTemplate, RobotKind, RobotRead, RobotTable,
+    RobotTemplate, Spread, StartReader, Stop, TaskTemplate, axis, fault, gain, number_or,
 };
 use crate::scenario::system_problem::SystemProblem;
 use crate::scenario::values::{NotNegative, Positive};
@@ -43,7 +43,20 @@ impl RobotKind for VehicleFile {
             key: "vehicle",
             description: "A vehicle in space with one thrust along its own axis, whose angular velocity obeys at once.",
             usual_law: "thrust",
-            template: None,
+            template: Some(RobotTemplate {
+                name: "vehicle",
+                line: "robot.vehicle = { mass_kg = 1.5 }".into(),
+                says: "the third axis points down",
+                starts: vec![[-2.0, 2.0]; 3],
+                law: LawTemplate::Lines(
+                    "# How the thrust and the rates of turning make it follow.\n\
+                     [law.thrust]\n\
+                     design.differentiable = { damping_per_s = 3, stiffness = 4 }\n\
+                     yaw = { heading_rad = 0.8 }\n",
+                ),
+                dry_friction: None,
+                task: TaskTemplate::of_order(3),
+            }),
         }
     }
 
@@ -102,7 +115,20 @@ impl RobotKind for RotorcraftFile {
             key: "rotorcraft",
             description: "The same as a rigid body with inertia that torques turn.",
             usual_law: "thrust",
-            template: None,
+            template: Some(RobotTemplate {
+                name: "quadrotor",
+                line: "robot.rotorcraft = { mass_kg = 1.2, inertia_kg_m2 = [0.012, 0.012, 0.022], rotors = { offset_m = 0.15, drag_m = 0.02, thrust_n = [0.2, 8] } }".into(),
+                says: "the third axis points down",
+                starts: vec![[-2.0, 2.0]; 3],
+                law: LawTemplate::Lines(
+                    "# How the thrust and the rates of turning make it follow.\n\
+                     [law.thrust]\n\
+                     design.differentiable = { damping_per_s = 3, stiffness = 4 }\n\
+                     yaw = { heading_rad = 0.8 }\nrate_bandwidth_per_s = 30\n",
+                ),
+                dry_friction: None,
+                task: TaskTemplate::of_order(3),
+            }),
         }
     }
 

@@ -1,0 +1,212 @@
+//! A new scenario is tried before it is written: gains and horizon are those with which its robots do what they are to do.
+
+use std::ops::ControlFlow;
+
+use forwardstep::io::output::{Disagreement, LimitKind, Metrics, ending_sentence, names};
+use forwardstep::io::scenario::{LawTemplate, Scenario, Template, Tuning};
+use forwardstep::sim::recording::BreakdownCause;
+use forwardstep::sim::{Ending, Setup, simulate};
+
+use crate::commands::progress::Bar;
+use crate::console::{Plain, complain};
+use crate::status::Status;
+
+/// What may be left of the largest gap, and is written as the goal.
+const LEFT: f64 = 0.01;
+/// The gap of the trial is at most this much of the goal, since other machines round differently.
+const MARGIN: f64 = 0.5;
+/// A gap that falls is waited for up to so long, s: before other gains are tried, and after.
+const LONGEST_S: [f64; 2] = [150.0, 2e4];
+/// A gap falls if this much of the largest is left at the end.
+const FALLS: f64 = 0.7;
+/// What one trial may take, and all of them together: some tens of seconds. A step costs the squares of how many axes the robots have, and
+/// something for each.
+const EFFORT: [usize; 2] = [300_000_000, 900_000_000];
+/// What a step costs for each robot besides.
+const EACH: usize = 30;
+/// A trial ends early if it has not come this far, of its horizon, after this much of what it may take.
+const SO_FAR: [f64; 2] = [0.01, 0.1];
+/// Steps of at most this mean length are so short for a reason that is looked for, s.
+const SHORT_S: f64 = 1e-4;
+
+/// The robot itself makes the closed loop stiff where its damping has this much of the fastest rate, which is known to a factor of two.
+const OWN: f64 = 0.3;
+
+/// The gains that are tried, one after the other: the usual ones, faster learning, learning from nearby, slower gains, no learning at all.
+const TUNINGS: [Tuning; 6] = [
+    Tuning::USUAL,
+    Tuning { adaptation_per_s: 20.0, ..Tuning::USUAL },
+    Tuning { adaptation_per_s: 20.0, known: 0.8, ..Tuning::USUAL },
+    Tuning { damping_per_s: 4.0, adaptation_per_s: 4.0, known: 0.8 },
+    Tuning { known: 1.0, ..Tuning::USUAL },
+    Tuning { damping_per_s: 1.0, adaptation_per_s: 1.0, known: 1.0 },
+];
+
+/// What the trials came to.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Tried {
+    /// The scenario with the gains, the horizon and the goal that were found; as it was given where none were.
+    pub(super) template: Template,
+    /// Whether the robots did what they are to do.
+    pub(super) works: bool,
+    /// What happened, a sentence each.
+    pub(super) says: Vec<String>,
+}
+
+/// How one run went.
+enum Went {
+    /// The gap vanished; a joint left its limits on the way.
+    Well { goal: f64, gap: String, leaves: Option<String> },
+    /// The gap falls, and would have vanished by then, s.
+    TooShort { needs_s: f64, gap: String },
+    /// Anything else, in words.
+    Badly(String),
+    /// What no gains would change.
+    Hopeless(String),
+}
+
+/// Tries a scenario with several gains and horizons. `read` reads its text.
+pub(super) fn tried(template: Template, read: &dyn Fn(&Template) -> Result<Scenario, Status>) -> Result<Tried, Status> {
+    let adapts = template.robot.law == LawTemplate::Adaptive;
+    let tunings = if adapts { &TUNINGS[..] } else { &TUNINGS[..1] };
+    let patience: &[f64] = if adapts { &LONGEST_S } else { &LONGEST_S[1..] };
+    let tries = patience.iter().flat_map(|longest_s| tunings.iter().map(move |tuning| (*longest_s, *tuning)));
+    let (mut effort, mut says, mut second_best) = (EFFORT[1], Vec::new(), None);
+    for (longest_s, tuning) in tries {
+        if effort == 0 || (longest_s > LONGEST_S[0] && second_best.is_some()) {
+            break;
+        }
+        let mut candidate = Template { tuning, ..template.clone() };
+        let described = describe(tuning, adapts);
+        loop {
+            match run(&read(&candidate)?, &mut effort)? {
+                Went::Well { goal, gap, leaves } => {
+                    candidate.goal = Some(goal);
+                    let Some(axis) = leaves else {
+                        says.push(format!("{described}{gap} after {} s", candidate.end_s));
+                        return Ok(Tried { template: candidate, works: true, says });
+                    };
+                    says.push(format!(
+                        "{described}{gap} after {} s, but {axis} leaves its limits on the way",
+                        candidate.end_s
+                    ));
+                    second_best.get_or_insert(candidate);
+                }
+                Went::TooShort { needs_s, .. } if needs_s <= longest_s && needs_s > candidate.end_s => {
+                    candidate.end_s = needs_s;
+                    continue;
+                }
+                Went::TooShort { gap, .. } => says.push(format!("{described}still {gap} after {} s", candidate.end_s)),
+                Went::Badly(what) => says.push(format!("{described}{what}")),
+                Went::Hopeless(what) => {
+                    says.push(format!("{described}{what}"));
+                    effort = 0;
+                }
+            }
+            break;
+        }
+    }
+    Ok(match second_best {
+        // Limits of positions are reported, not enforced: the robots agree all the same.
+        Some(template) => Tried { template, works: true, says },
+        None => Tried { template, works: false, says },
+    })
+}
+
+/// The gains in words that begin a sentence.
+fn describe(tuning: Tuning, adapts: bool) -> String {
+    let Tuning { damping_per_s, adaptation_per_s, known } = tuning;
+    if !adapts {
+        return "as it is: ".to_owned();
+    }
+    let knows = match known {
+        0.0 => "nothing known".to_owned(),
+        1.0 => "all known".to_owned(),
+        share => format!("{share} of everything known"),
+    };
+    format!("with bandwidths of {damping_per_s} and {adaptation_per_s} per second and {knows}: ")
+}
+
+/// Simulates a scenario, as long as there is `effort` left.
+fn run(scenario: &Scenario, effort: &mut usize) -> Result<Went, Status> {
+    let (setup, mut bar) = (&scenario.setup, Bar::new());
+    let step: usize = setup.agents.iter().map(|agent| agent.robot.axes.len().pow(2) + EACH).sum();
+    let mut left = EFFORT[0].min(*effort);
+    let given = left;
+    let outcome = simulate(setup, &mut |progress| {
+        bar.update(progress);
+        left = left.saturating_sub(step);
+        let crawls = progress.t_s < SO_FAR[0] * progress.end_s && (left as f64) < (1.0 - SO_FAR[1]) * given as f64;
+        if left == 0 || crawls { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    bar.clear();
+    *effort -= given - left;
+    let outcome = outcome.map_err(|error| complain(&Plain::new(error)))?;
+    let metrics = Metrics::of(setup, &outcome.recording, None, None);
+    let end_s = setup.time.end_s;
+    match outcome.ending {
+        Ending::Completed => {}
+        Ending::Interrupted { t_s } => {
+            let mean_s = t_s * step as f64 / (given - left).max(1) as f64;
+            return Ok(too_many(setup, mean_s).unwrap_or_else(|| {
+                Went::Badly(format!("too many steps for a trial, which got to {} s of {end_s} s", about(t_s)))
+            }));
+        }
+        Ending::BrokeDown(_) => return Ok(Went::Badly(ending_sentence(setup, &outcome.ending))),
+    }
+    let Disagreement::Measured { last, largest, .. } = metrics.disagreement else {
+        return Ok(Went::Badly("there is nothing to compare".to_owned()));
+    };
+    let goal = one_digit(LEFT * largest);
+    let from = match (setup.following(), setup.agents.iter().any(|agent| agent.target.is_some())) {
+        (Some(_), _) => "from the leader",
+        (None, true) => "from the target",
+        (None, false) => "apart",
+    };
+    let words = [about(last), names::gap_unit(setup), from.to_owned()].into_iter().filter(|word| !word.is_empty());
+    let gap = words.collect::<Vec<_>>().join(" ");
+    if last <= MARGIN * goal {
+        let leaves = metrics.limits_reached.iter().find(|limit| limit.kind == LimitKind::Position);
+        let leaves = leaves.map(|limit| {
+            format!("{} of {}", names::axis_name(setup, limit.agent, limit.axis), names::agent_name(setup, limit.agent))
+        });
+        return Ok(Went::Well { goal, gap, leaves });
+    }
+    if last.is_finite() && last < FALLS * largest {
+        // As fast as from the largest to the last, and some more.
+        let needs_s = 1.2 * end_s * (MARGIN * goal / largest).ln() / (last / largest).ln();
+        return Ok(Went::TooShort { needs_s: (needs_s / 10.0).ceil() * 10.0, gap });
+    }
+    Ok(Went::Badly(format!("{gap} after {end_s} s, and not coming closer")))
+}
+
+/// Why steps are as short as `mean_s`, where that is because the closed loop is stiff: a run that may not take them says so at once.
+fn too_many(setup: &Setup, mean_s: f64) -> Option<Went> {
+    if mean_s > SHORT_S {
+        return None;
+    }
+    let mut coarse = setup.clone();
+    coarse.solver.min_step_s = 2.0 * mean_s;
+    let outcome = simulate(&coarse, &mut |_| ControlFlow::Continue(())).ok()?;
+    let Ending::BrokeDown(breakdown) = &outcome.ending else { return None };
+    let BreakdownCause::StepUnderFloor { step_s, stiffness: Some(stiffness) } = &breakdown.cause else { return None };
+    let what = ending_sentence(&coarse, &outcome.ending);
+    let own = stiffness.gains.is_some_and(|gains| gains.viscous_per_s > OWN * stiffness.rate_per_s);
+    let explains = stiffness.explains(*step_s) || stiffness.forbids(coarse.solver.min_step_s);
+    explains.then_some(if own { Went::Hopeless(what) } else { Went::Badly(what) })
+}
+
+/// The next number of one digit and zeros.
+fn one_digit(value: f64) -> f64 {
+    let decade = 10.0_f64.powf(value.log10().floor());
+    (value / decade).ceil() * decade
+}
+
+/// A number of two digits.
+fn about(value: f64) -> String {
+    let digits = format!("{value:.1e}");
+    match digits.parse::<f64>() {
+        Ok(rounded) if rounded >= 1e-3 => rounded.to_string(),
+        _ => digits,
+    }
+}
