@@ -60,6 +60,8 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "framework",
     "desired-dynamics",
     "desired-in-z",
+    "desired-in-x",
+    "desired-nonlinear",
     "strict-feedback",
     "strict-feedback-order-10",
     "pure-feedback",
