@@ -35,7 +35,7 @@ fn shows_what_it_says(name: &str) {
         // That the attitude starts less than half a turn away has no certificate.
         "pose-ur5e" => &[Answer::NotShown],
         // What its author says of a nonlinear protocol is declared.
-        "desired-nonlinear" => &[Answer::NotShown],
+        "desired-nonlinear" | "desired-together" => &[Answer::NotShown],
         _ => &[Answer::Holds, Answer::HoldsOnHorizon, Answer::Watched],
     };
     assert!(expected.contains(&worst), "{name}: {}", worst.words());
@@ -246,6 +246,7 @@ shipped! {
     desired_in_z: "desired-in-z",
     desired_in_x: "desired-in-x",
     desired_nonlinear: "desired-nonlinear",
+    desired_together: "desired-together",
     strict_feedback: "strict-feedback",
     strict_feedback_order_10: "strict-feedback-order-10",
     pure_feedback: "pure-feedback",

@@ -74,6 +74,7 @@ const RATES: [(&str, f64); 22] = [
     ("desired-in-z", 500.0),
     ("desired-in-x", 500.0),
     ("desired-nonlinear", 500.0),
+    ("desired-together", 500.0),
     ("strict-feedback", 500.0),
     ("pure-feedback", 500.0),
     ("immersion-and-invariance", 500.0),

@@ -62,6 +62,7 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "desired-in-z",
     "desired-in-x",
     "desired-nonlinear",
+    "desired-together",
     "strict-feedback",
     "strict-feedback-order-10",
     "pure-feedback",
