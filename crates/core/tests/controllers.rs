@@ -29,7 +29,8 @@ fn eq_119_122_and_swarm_start_with_the_wanted_reference_acceleration() {
     for law in
         [SmoothFollowing::new(1, SIGN), SmoothFollowing::swarm(1, SIGN, 3.0), SmoothFollowing::swarm(1, SIGN, 0.2)]
     {
-        let heard = || Heard { degree: &degree, sums: PositionVelocitySums { q: &sums[..1], dq: &sums[1..] } };
+        let heard =
+            || Heard { degree: &degree, sums: PositionVelocitySums { q: &sums[..1], dq: &sums[1..] }, time_s: 0.0 };
         let measured = Measured { q: &q, dq: &dq };
         let mut state = [0.0; 3];
         law.start(1, measured, &[z, dz, 0.0], heard(), &mut state).unwrap();

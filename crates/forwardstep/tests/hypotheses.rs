@@ -228,6 +228,11 @@ edges = [["cart-1", "cart-2"], ["cart-2", "cart-1"]]
     let target = target.replace("[[0.5], [-0.5]]", "[[0.5], [-0.5]]\ntarget.formulas = [\"0.1*sin(t)\"]");
     let (theorem, found) = of(target.split("[network]").next().unwrap());
     assert_eq!((theorem, found[2].0), ("chains-track", Answer::NotShown));
+    // A target, neighbours and time in one: what is asked of links is asked all the same. Carts that flee each other are found out.
+    let both = target.replace("-(x - xd)^3 - x", "-(x - xd) + (1 + exp(-t))*(heard - weights*x)");
+    assert_eq!(of(&both), ("desired-dynamics", vec![declared, declared, (Answer::NotShown, Rigour::Sampled)]));
+    let flee = both.replace("(1 + exp(-t))", "-(2 + exp(-t))");
+    assert_eq!(of(&flee), ("desired-dynamics", violated));
 }
 
 #[test]

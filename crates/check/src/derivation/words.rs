@@ -200,6 +200,9 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
             "Without that, what is left is a linear system with the given roots, which is exponentially stable. {bounded}, and so does the distance \
              from the target."
         ),
+        Led::Desired(desired) if desired.protocol.is_some() => {
+            "Without that, what is left is what the scenario states, of which its author says where it leads.".into()
+        }
         Led::Desired(desired) if desired.follows_target => format!(
             "Without that, what is left is a linear system with the given polynomial, which is exponentially stable where that is Hurwitz, as \
              `forwardstep check` says. {bounded}, and so does the distance from the target."

@@ -1,7 +1,7 @@
 //! Of which agents the jumps of the input are known, and what they are promised.
 
 use forwardstep_sim::graph::Weight;
-use forwardstep_sim::reference::{Consensus, Dynamics, PureIntegral, ReferenceFamily};
+use forwardstep_sim::reference::{Consensus, Desired, Dynamics, PureIntegral, ReferenceFamily};
 use forwardstep_sim::{
     ChainLaw, ChainModel, InputOrder, PositionOnlyLaw, Series, Setup, Signal, ThrustLaw, reference_dynamics,
 };
@@ -33,6 +33,9 @@ pub enum NotCovered {
     /// It follows a target.
     #[error("it follows a target of its own, and no switch and no delay reaches its input")]
     OwnTarget,
+    /// It follows a target, and hears others by a protocol of the scenario.
+    #[error("it follows a target and hears others by a protocol that the scenario states, which is not expanded")]
+    Protocol,
     /// A set-valued sign is part of its reference dynamics.
     #[error(
         "{reference} has a set-valued sign, which is set at instants of its own: what the network does is not all that jumps"
@@ -58,7 +61,8 @@ pub(super) const MOST: usize = size_of::<Series>() / size_of::<f64>();
 /// Why nothing is said of an agent, if so.
 pub(super) fn refused(setup: &Setup, agent: usize) -> Option<NotCovered> {
     if setup.tracks(agent) {
-        return Some(NotCovered::OwnTarget);
+        let hears = setup.reference.downcast().is_some_and(Desired::hears_beside_target);
+        return Some(if hears { NotCovered::Protocol } else { NotCovered::OwnTarget });
     }
     if dry_loss_w(&setup.agents[agent]).is_some() {
         return Some(NotCovered::DryFriction);

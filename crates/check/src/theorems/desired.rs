@@ -38,10 +38,11 @@ pub(super) fn check(setup: &Setup, desired: &Desired) -> Report {
         None if desired.follows_target => vec![Hypothesis::new(Id::DesiredDynamics, stability(desired))],
         None => vec![Hypothesis::new(Id::DesiredDynamics, unknown(desired))],
     };
-    if desired.follows_target {
+    if desired.follows_target && setup.network.schedule.graphs.iter().all(Vec::is_empty) {
         let report = own_targets::check(setup);
         return Report { hypotheses: said.into_iter().chain(report.hypotheses).collect(), ..report };
     }
+    // With a target besides, what neighbours add is part of the protocol, and what is asked of links is asked all the same.
     let mut hypotheses = said;
     hypotheses.extend([dwell_time(setup), bounded_delays(setup)]);
     hypotheses.extend(bounded_weights(setup));

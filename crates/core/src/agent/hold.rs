@@ -183,7 +183,7 @@ mod tests {
             let mut state = start.to_vec();
             for _ in 0..parts {
                 let (mut z, mut dz, mut rate) = ([0.0; 2], [0.0; 2], vec![0.0; start.len()]);
-                let heard = Heard { degree: &degree, sums: F::Exchange::split(&sums, axes).unwrap() };
+                let heard = Heard { degree: &degree, sums: F::Exchange::split(&sums, axes).unwrap(), time_s: 0.0 };
                 let out = ReferenceOut { z: &mut z, dz: &mut dz, d_state: &mut rate };
                 law.evaluate(axes, Measured { q: &q, dq: &dq }, &state, heard, out).unwrap();
                 hold.advance(law, &degree, h / f64::from(parts), &mut state, &rate).unwrap();
@@ -237,7 +237,7 @@ mod tests {
             let mut state = [0.4, -1.3];
             let mut rate = [0.0; 2];
             let out = ReferenceOut { z: &mut [0.0], dz: &mut [0.0], d_state: &mut rate };
-            law.evaluate(1, measured, &state, Heard { degree: &[0.0], sums }, out).unwrap();
+            law.evaluate(1, measured, &state, Heard { degree: &[0.0], sums, time_s: 0.0 }, out).unwrap();
             let [z, dz] = state;
             Hold::new(1, 2, 1).advance(&law, &[0.0], h, &mut state, &rate).unwrap();
             // α₁ = a + b: ż relaxes towards −α₀ q̇ / α₁.

@@ -190,7 +190,7 @@ where
         LengthError::check("input", self.inputs, asked.input.len())?;
         LengthError::check("rate", self.start.len(), asked.d_state.len())?;
         LengthError::check("shown", total(&self.shown), asked.shown.len())?;
-        let heard = Heard { degree: given.heard.degree, sums: given.heard.sums };
+        let heard = Heard { degree: given.heard.degree, sums: given.heard.sums, time_s: given.heard.time_s };
         (self.law)(self.input(given.measured, heard, given.target, state)?, asked);
         Ok(())
     }
@@ -210,7 +210,7 @@ where
         shown: &[f64],
     ) -> Result<Balance, LengthError> {
         LengthError::check("shown", total(&self.shown), shown.len())?;
-        let heard = Heard { degree: given.heard.degree, sums: given.heard.sums };
+        let heard = Heard { degree: given.heard.degree, sums: given.heard.sums, time_s: given.heard.time_s };
         Ok((self.balance)(truth, self.input(given.measured, heard, given.target, state)?, shown))
     }
 }

@@ -208,7 +208,7 @@ impl Guide {
                 Position::check(heard.sums, axes)?;
                 for entry in 0..axes {
                     let x = |r: usize| measured[r * axes + entry];
-                    let (place, given) = (Place { block: axes, entry }, (own, heard.degree[0], heard.sums));
+                    let (place, given) = (Place { block: axes, entry }, (own, heard.degree[0], heard));
                     let target = target.get(entry).map(|jet| &jet[..]);
                     desired.rate::<Position>(k, place, x, given, target, (&mut work.protocol, d_state))?;
                 }

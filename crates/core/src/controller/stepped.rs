@@ -1,6 +1,6 @@
 //! Any controller, sampled.
 //!
-//! Between two samples nothing is measured and nothing is heard, so both are held; a target moves on by its Taylor
+//! Between two samples nothing is measured and nothing is heard, so both are held; time goes on, and a target moves on by its Taylor
 //! polynomial. Over such a period the state of the controller is stepped by the classical Runge–Kutta method, whose error is
 //! of order five in a period and lost beside the first order of the hold, and brought back to its manifold.
 
@@ -61,11 +61,19 @@ struct Held {
     degree: [f64; 1],
     sums: Vec<f64>,
     target: Vec<Jet>,
+    time_s: f64,
 }
 
 impl Held {
-    fn given<'a, C: Controller>(&'a self, controller: &C, target: &'a [Jet]) -> Result<Given<'a, C>, LengthError> {
+    /// A time `later_s` after the sample, when the target has moved on.
+    fn given<'a, C: Controller>(
+        &'a self,
+        controller: &C,
+        target: &'a [Jet],
+        later_s: f64,
+    ) -> Result<Given<'a, C>, LengthError> {
         let heard = Heard::new(&self.degree, &self.sums, self.sums.len() / C::Exchange::CHANNELS)?;
+        let heard = heard.at(self.time_s + later_s);
         Ok(Given { measured: controller.see(&self.output)?, heard, target })
     }
 }
@@ -114,6 +122,7 @@ impl<C: Controller> Stepped<C> {
                 degree: [0.0],
                 sums: vec![0.0; C::Exchange::CHANNELS * lengths.axes],
                 target: vec![[0.0; 5]; targets],
+                time_s: 0.0,
             },
             work: Work { stage: vec![0.0; n], k: vec![0.0; n], sum: vec![0.0; n], target: vec![[0.0; 5]; targets] },
             input: vec![0.0; lengths.input],
@@ -135,10 +144,10 @@ impl<C: Controller> Stepped<C> {
         let Stepped { controller, scratch, started, wanted, state, held, work, input, shown, .. } = self;
         let mut first = state.clone();
         if !*started {
-            controller.start(scratch, held.given(controller, &work.target)?, wanted, &mut first)?;
+            controller.start(scratch, held.given(controller, &work.target, 0.0)?, wanted, &mut first)?;
         }
         let asked = Asked { input, d_state: &mut work.k, shown };
-        controller.evaluate(scratch, held.given(controller, &work.target)?, &first, asked)?;
+        controller.evaluate(scratch, held.given(controller, &work.target, 0.0)?, &first, asked)?;
         input.fill(0.0);
         shown.fill(0.0);
         Ok(())
@@ -188,13 +197,14 @@ impl<C: Controller> Stepped<C> {
         self.held.degree = [inbox.degree];
         self.held.sums.copy_from_slice(inbox.sums);
         self.held.target.copy_from_slice(target);
+        self.held.time_s = now_s;
         self.work.target.copy_from_slice(target);
         let Stepped { controller, scratch, started, wanted, state, held, work, input, shown, .. } = self;
         if !*started {
-            controller.start(scratch, held.given(controller, &work.target)?, wanted, state)?;
+            controller.start(scratch, held.given(controller, &work.target, 0.0)?, wanted, state)?;
         }
         let asked = Asked { input, d_state: &mut work.k, shown };
-        controller.evaluate(scratch, held.given(controller, &work.target)?, state, asked)?;
+        controller.evaluate(scratch, held.given(controller, &work.target, 0.0)?, state, asked)?;
         self.started = true;
         self.last_s = Some(now_s);
         Ok(&self.input)
@@ -210,7 +220,7 @@ impl<C: Controller> Stepped<C> {
             for (moved, jet) in target.iter_mut().zip(&held.target) {
                 *moved = shifted(jet, when * h);
             }
-            let given = held.given(controller, target)?;
+            let given = held.given(controller, target, when * h)?;
             controller.evaluate(scratch, given, stage, Asked { input, d_state: k, shown })?;
             for i in 0..state.len() {
                 sum[i] += weight * k[i];

@@ -181,7 +181,7 @@ mod tests {
         sums: <R::Exchange as Exchange>::Sums<'_>,
     ) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
         let (mut z, mut dz, mut rate) = (vec![0.0; 2], vec![0.0; 2], vec![0.0; state.len()]);
-        let heard = Heard { degree: &[W], sums };
+        let heard = Heard { degree: &[W], sums, time_s: 0.0 };
         let out = ReferenceOut { z: &mut z, dz: &mut dz, d_state: &mut rate };
         law.evaluate(2, Measured { q: &Q, dq: &DQ }, state, heard, out).unwrap();
         (z, dz, rate)
@@ -239,7 +239,7 @@ mod tests {
     #[test]
     fn wrong_lengths_are_errors() {
         let law = Consensus::<Position>::new([(&[1.0][..], 0.0)]).unwrap();
-        let heard = Heard { degree: &[W], sums: PositionSums { q: &[0.0] } };
+        let heard = Heard { degree: &[W], sums: PositionSums { q: &[0.0] }, time_s: 0.0 };
         let out = ReferenceOut { z: &mut [0.0], dz: &mut [0.0], d_state: &mut [0.0] };
         let result = law.evaluate(1, Measured { q: &Q, dq: &DQ }, &[0.0], heard, out);
         assert_eq!(result, Err(LengthError { what: "q", need: 1, got: 2 }));

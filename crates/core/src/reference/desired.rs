@@ -23,9 +23,10 @@
 //! z = v_1,    v̇_m = v_{m+1} − a_{N−m} y  for m < ℓ,    v̇_ℓ = R
 //! ```
 //!
-//! **A nonlinear protocol** adds f to the right side, a function of x, ẋ, …, x^(N−1), of Σ_j w_ij x_j(t−T_ij) and Σ_j w_ij, and of x_d and its
-//! derivatives, in which x^(r) is replaced as above. In x alone its arguments z^(r) are x^(k−1+r) − s^(r), so that f stands in 𝒵 and in 𝓕; the
-//! highest derivative of s is s^(ℓ) still, and so is the degree. It is not written in x: what is not measured cannot be integrated through f.
+//! **A nonlinear protocol** adds f to the right side, a function of x, ẋ, …, x^(N−1), of Σ_j w_ij x_j(t−T_ij) and Σ_j w_ij, of x_d and its
+//! derivatives, and of t, in which x^(r) is replaced as above. In x alone its arguments z^(r) are x^(k−1+r) − s^(r), so that f stands in 𝒵
+//! and in 𝓕; the highest derivative of s is s^(ℓ) still, and so is the degree. With f a target and neighbours may stand in one 𝒵: t, x_d and
+//! what is heard hold no s of the agent's own. It is not written in x: what is not measured cannot be integrated through f.
 //!
 //! (24) of order ℓ is γ_r = α_{r−1}, b_r = α_r, c₀ = α₀; (a5) has c₁ = α₀/κ₀ besides; (a9) is γ_r = α_r with a target.
 
@@ -89,8 +90,11 @@ pub enum DesiredError {
     /// A nonlinear protocol in x alone.
     #[error("a nonlinear protocol is not written in x, since what is not measured cannot be integrated through it")]
     ProtocolInX,
-    /// A target and neighbours at once.
-    #[error("the desired dynamics follow a target and hear neighbours, but one of both is what they are for")]
+    /// A target and neighbours at once, without f.
+    #[error(
+        "the desired dynamics follow a target and hear neighbours, but one of both is what linear ones are for: to do both, state what neighbours \
+         add as a nonlinear protocol, and what is known of it"
+    )]
     TargetAndNeighbours,
 }
 
@@ -120,7 +124,8 @@ impl DesiredDynamics {
         Ok(DesiredDynamics { own, coupled, heard, tracks, written, protocol: None })
     }
 
-    /// The same with f, whose variables are x, ẋ, …, x^(N−1), Σ_j w_ij x_j, Σ_j w_ij, and x_d, …, x_d^(N) where a target is followed.
+    /// The same with f, whose variables are x, ẋ, …, x^(N−1), Σ_j w_ij x_j, Σ_j w_ij, then x_d, …, x_d^(N) where a target is followed,
+    /// and t.
     ///
     /// # Errors
     /// [`DesiredError`] when f has another variable, is too large, or 𝒵 is written in x.
@@ -129,7 +134,7 @@ impl DesiredDynamics {
             return Err(DesiredError::ProtocolInX);
         }
         let order = self.order();
-        let mut graph = Graph::new(order + 2 + if self.tracks { order + 1 } else { 0 });
+        let mut graph = Graph::new(order + 3 + if self.tracks { order + 1 } else { 0 });
         let value = graph.import(protocol)?;
         Ok(DesiredDynamics { protocol: Some(Tape::new(&graph, &[value])?), ..self })
     }
@@ -201,7 +206,7 @@ impl DesiredDynamics {
         plant: usize,
         place: Place,
         x: impl Fn(usize) -> f64,
-        (state, degree, sums): (&[f64], f64, X::Sums<'_>),
+        (state, degree, Heard { sums, time_s, .. }): (&[f64], f64, Heard<'_, X>),
         target: Option<&[f64]>,
         (work, d_state): (&mut ProtocolWork, &mut [f64]),
     ) -> Result<(), LengthError> {
@@ -240,7 +245,7 @@ impl DesiredDynamics {
         let ProtocolWork { variables, workspace, value } = work;
         let network = [X::position(sums, entry), degree];
         let desired = target.into_iter().flatten().copied().take(order + 1);
-        let all = (0..order).map(written).chain(network).chain(desired);
+        let all = (0..order).map(written).chain(network).chain(desired).chain([time_s]);
         variables.iter_mut().zip(all).for_each(|(variable, value)| *variable = value);
         tape.evaluate(variables, workspace, value)?;
         d_state[top * block + entry] += value[0];
@@ -362,7 +367,7 @@ impl<X: Exchange> Reference for Desired<X> {
         let mut none = ProtocolWork::default();
         for entry in 0..block {
             let x = |r: usize| if r == 0 { measured.q[entry] } else { measured.dq[entry] };
-            let given = (state, heard.degree[entry % n], heard.sums);
+            let given = (state, heard.degree[entry % n], heard);
             self.dynamics.rate::<X>(ROBOT, Place { block, entry }, x, given, None, (&mut none, out.d_state))?;
         }
         out.z.copy_from_slice(&state[..block]);

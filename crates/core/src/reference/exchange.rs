@@ -38,17 +38,25 @@ pub struct Heard<'a, X: Exchange> {
     pub degree: &'a [f64],
     /// Σ_j w_ij · message_j(t − T_ij).
     pub sums: X::Sums<'a>,
+    /// When, t in s, for a protocol that says so. Zero in a population of robots, whose dynamics are the same at all times.
+    pub time_s: f64,
 }
 
 impl<'a, X: Exchange> Heard<'a, X> {
-    /// Reads `sums`, channels of `channel` entries one after the other.
+    /// Reads `sums`, channels of `channel` entries one after the other, at t = 0.
     ///
     /// # Errors
     /// [`LengthError`] when they are too few.
     #[inline(always)]
     pub fn new(degree: &'a [f64], sums: &'a [f64], channel: usize) -> Result<Self, LengthError> {
         let too_short = LengthError { what: "sums heard", need: X::CHANNELS * channel, got: sums.len() };
-        Ok(Heard { degree, sums: X::split(sums, channel).ok_or(too_short)? })
+        Ok(Heard { degree, sums: X::split(sums, channel).ok_or(too_short)?, time_s: 0.0 })
+    }
+
+    /// The same at another time.
+    #[inline(always)]
+    pub fn at(self, time_s: f64) -> Self {
+        Heard { time_s, ..self }
     }
 }
 

@@ -346,7 +346,8 @@ mod tests {
         degree: f64,
     ) -> (f64, [f64; N]) {
         let (mut z, mut dz, mut rate) = ([0.0], [0.0], [0.0; N]);
-        let heard = Heard { degree: &[degree], sums: PositionVelocitySums { q: &[sums[0]], dq: &[sums[1]] } };
+        let heard =
+            Heard { degree: &[degree], sums: PositionVelocitySums { q: &[sums[0]], dq: &[sums[1]] }, time_s: 0.0 };
         let out = ReferenceOut { z: &mut z, dz: &mut dz, d_state: &mut rate };
         law.evaluate(1, Measured { q: &[own[0]], dq: &[own[1]] }, &state, heard, out).unwrap();
         assert_eq!(z[0], state[0]);
@@ -391,7 +392,7 @@ mod tests {
         let law = SmoothFollowing::new(1, sliding(Derived::ReferenceAcceleration, BETA));
         let (q, dq, z, dz) = (0.3, -0.7, 0.4, 2.5);
         let mut state = [0.0; 3];
-        let heard = Heard { degree: &[W], sums: PositionVelocitySums { q: &[0.2], dq: &[-0.9] } };
+        let heard = Heard { degree: &[W], sums: PositionVelocitySums { q: &[0.2], dq: &[-0.9] }, time_s: 0.0 };
         law.start(1, Measured { q: &[q], dq: &[dq] }, &[z, dz, 0.0], heard, &mut state).unwrap();
         let (got, _) = evaluate(&law, [q, dq], state, [0.2, -0.9], W);
         assert!((got - dz).abs() < 1e-14 && state[0] == z);

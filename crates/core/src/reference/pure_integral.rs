@@ -156,7 +156,8 @@ mod tests {
         let law = PureIntegral::<X>::new([(&[ALPHA, BETA][..], LAMBDA)]).unwrap();
         let (mut z_out, mut dz, mut rate) = ([0.0], [0.0], [0.0; 2]);
         let out = ReferenceOut { z: &mut z_out, dz: &mut dz, d_state: &mut rate };
-        law.evaluate(1, Measured { q: &[q], dq: &[dq] }, &[z, eta], Heard { degree: &[W], sums }, out).unwrap();
+        law.evaluate(1, Measured { q: &[q], dq: &[dq] }, &[z, eta], Heard { degree: &[W], sums, time_s: 0.0 }, out)
+            .unwrap();
         [dz[0], rate[0], rate[1]]
     }
 
@@ -184,7 +185,7 @@ mod tests {
         let law = PureIntegral::<Position>::new([(&[ALPHA, BETA][..], 0.0)]).unwrap();
         let (q, dq, z, dz) = (0.3, -0.7, 0.4, 2.5);
         let mut state = [0.0; 2];
-        let heard = Heard { degree: &[W], sums: PositionSums { q: &[0.2] } };
+        let heard = Heard { degree: &[W], sums: PositionSums { q: &[0.2] }, time_s: 0.0 };
         law.start(1, Measured { q: &[q], dq: &[dq] }, &[z, dz], heard, &mut state).unwrap();
         let [got, ..] = evaluate::<Position>(PositionSums { q: &[0.2] }, [q, dq, state[0], state[1]]);
         assert!((got - dz).abs() < 1e-14 && state[0] == z);

@@ -68,6 +68,7 @@ pub(super) struct Outside<'a> {
     pub(super) degree: &'a [f64],
     pub(super) sums: &'a [f64],
     pub(super) jets: &'a [Jet],
+    pub(super) time_s: f64,
 }
 
 /// A plant and its controller, with room to work in.
@@ -182,7 +183,7 @@ impl<C: Controller> Pair<'_, C> {
     fn given<'g>(&self, output: &'g [f64], outside: Outside<'g>) -> Result<Given<'g, C>, LengthError> {
         let axes = self.plant.axes();
         let sums = outside.sums.get(..C::Exchange::CHANNELS * axes).unwrap_or(outside.sums);
-        let heard = Heard::new(outside.degree, sums, axes)?;
+        let heard = Heard::new(outside.degree, sums, axes)?.at(outside.time_s);
         Ok(Given { measured: self.controller.see(output)?, heard, target: outside.jets })
     }
 

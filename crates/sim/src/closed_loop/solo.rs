@@ -75,6 +75,7 @@ impl Layout {
 
 /// Everything about the instant at hand.
 struct Now {
+    t_s: f64,
     jets: Vec<Jet>,
     state: Vec<f64>,
     output: Vec<f64>,
@@ -107,6 +108,7 @@ impl<C: Controller> Solo<C> {
         };
         let input = total(&inputs);
         let now = Now {
+            t_s: 0.0,
             jets: vec![[0.0; 5]; target.as_ref().map_or(0, |target| target.trajectory.axes())],
             state: vec![0.0; layout.plant],
             output: vec![0.0; plant.output_len()],
@@ -138,6 +140,7 @@ impl<C: Controller> Solo<C> {
     /// The target, the plant's state and what sensors could see at `t_s`.
     fn look(&mut self, t_s: f64, x: &[f64]) -> Result<(), LengthError> {
         let Layout { m, velocities, plant, .. } = self.layout;
+        self.now.t_s = t_s;
         if let Some(target) = &self.target {
             target.trajectory.jets(t_s, &mut self.now.jets);
         }
@@ -156,13 +159,13 @@ impl<C: Controller> Solo<C> {
     /// The input that reaches the plant, what is shown, and the rate of the controller's state.
     fn control(&mut self, x: &[f64], inputs: Inputs<'_>) -> Result<(), LengthError> {
         let Layout { m, plant, .. } = self.layout;
-        let Now { jets, state, output, input, shown, d_controller } = &mut self.now;
+        let Now { t_s, jets, state, output, input, shown, d_controller } = &mut self.now;
         if let Some(digital) = &self.digital {
             input.copy_from_slice(digital.held());
             d_controller.fill(0.0);
         } else {
             let own = &x[plant..self.layout.controller_end()];
-            let heard = Heard::new(inputs.degree, inputs.sums, m)?;
+            let heard = Heard::new(inputs.degree, inputs.sums, m)?.at(*t_s);
             let given = Given { measured: self.controller.see(output)?, heard, target: jets };
             self.controller.evaluate(&mut self.scratch, given, own, Asked { input, d_state: d_controller, shown })?;
         }
@@ -200,7 +203,7 @@ impl<C: Controller> Solo<C> {
     fn balance(&mut self, x: &[f64], inputs: Inputs<'_>) -> Result<(f64, f64), LengthError> {
         let Layout { m, plant, .. } = self.layout;
         let own = &x[plant..self.layout.controller_end()];
-        let heard = Heard::new(inputs.degree, inputs.sums, m)?;
+        let heard = Heard::new(inputs.degree, inputs.sums, m)?.at(self.now.t_s);
         let given = Given { measured: self.controller.see(&self.now.output)?, heard, target: &self.now.jets };
         let truth = Truth { plant: &self.plant, state: &self.now.state, external: inputs.external.unwrap_or_default() };
         let balance = self.controller.balance(&mut self.scratch, truth, given, own, &self.now.shown)?;
@@ -233,7 +236,7 @@ impl<C: Controller> Solo<C> {
         if let Some(target) = &self.target {
             target.trajectory.trajectory().jets(now_s, &mut jets);
         }
-        let outside = Outside { degree: inputs.degree, sums: inputs.sums, jets: &jets };
+        let outside = Outside { degree: inputs.degree, sums: inputs.sums, jets: &jets, time_s: now_s };
         let mut pair = Pair {
             plant: &self.plant,
             controller: &self.controller,
@@ -252,7 +255,7 @@ impl<C: Controller> Solo<C> {
         self.control(x, inputs)?;
         let Some(tracing) = &self.tracing else { return Ok(None) };
         let own = &x[self.layout.plant..self.layout.controller_end()];
-        let outside = Outside { degree: inputs.degree, sums: inputs.sums, jets: &self.now.jets };
+        let outside = Outside { degree: inputs.degree, sums: inputs.sums, jets: &self.now.jets, time_s: t_s };
         let mut pair = Pair {
             plant: &self.plant,
             controller: &self.controller,

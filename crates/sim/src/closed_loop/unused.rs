@@ -3,7 +3,7 @@
 use forwardstep_core::LengthError;
 
 use super::error::{SetupError, VelocityQuantity};
-use crate::reference::{ReferenceDynamics, ReferenceInterface, Roots};
+use crate::reference::{Desired, ReferenceDynamics, ReferenceInterface, Roots};
 use crate::setup::{AgentSetup, Control, Setup, VelocitySensor};
 use crate::system::{ActuatorLimits, Interface};
 
@@ -13,7 +13,8 @@ pub(super) fn of_setup(setup: &Setup) -> Result<(), SetupError> {
     let tracks = |agent: &AgentSetup| {
         agent.interface().is_some_and(|interface| interface.follows.iter().any(|family| family.has_targets()))
     };
-    if setup.all_track() && setup.agents.iter().all(tracks) {
+    let hears = setup.reference.downcast().is_some_and(Desired::hears_beside_target);
+    if setup.all_track() && !hears && setup.agents.iter().all(tracks) {
         let edges = setup.network.schedule.graphs.iter().map(Vec::len).sum();
         if edges > 0 {
             return Err(SetupError::UnusedEdges { edges });

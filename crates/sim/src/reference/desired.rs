@@ -37,7 +37,7 @@ pub struct Desired {
 /// A nonlinear protocol f, with what its author says of the dynamics that it makes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Protocol {
-    /// f of x, ẋ, …, x^(N−1), then Σ_j w_ij x_j(t−T_ij) and Σ_j w_ij, then x_d, ẋ_d, …, x_d^(N) where a target is followed.
+    /// f of x, ẋ, …, x^(N−1), then Σ_j w_ij x_j(t−T_ij) and Σ_j w_ij, then x_d, ẋ_d, …, x_d^(N) where a target is followed, then t.
     pub term: Expression,
     /// Why agents agree, or targets are reached, exponentially and from everywhere, where s ≡ 0.
     pub stable_because: Option<String>,
@@ -92,6 +92,11 @@ fn plant_order(agent: &AgentSetup) -> usize {
 }
 
 impl Desired {
+    /// Whether agents hear each other although they follow targets.
+    pub fn hears_beside_target(&self) -> bool {
+        self.follows_target && self.protocol.is_some()
+    }
+
     /// What is exchanged for it.
     pub fn exchange(&self) -> Exchange {
         if self.heard.len() > 1 { Exchange::PositionVelocity } else { Exchange::Position }
@@ -185,7 +190,8 @@ impl ReferenceDynamics for Desired {
 
     fn check(&self, setup: &Setup) -> Result<(), SetupError> {
         let dynamics = self.dynamics_of(setup.agents.first().map_or("", |agent| &agent.name))?;
-        if self.follows_target && (self.coupling.is_some() || !self.heard.is_empty()) {
+        let linear = self.protocol.is_none();
+        if linear && self.follows_target && (self.coupling.is_some() || !self.heard.is_empty()) {
             return Err(SetupError::Desired { error: DesiredError::TargetAndNeighbours });
         }
         for agent in &setup.agents {

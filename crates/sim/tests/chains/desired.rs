@@ -4,7 +4,9 @@
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
+use forwardstep_core::expression::Expression;
 use forwardstep_core::reference::{RootPair, RootSet, WrittenIn};
+use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::reference::{Desired, DesiredPolynomial, Protocol, PureIntegral, Tracking};
 use forwardstep_sim::schedule::Schedule;
@@ -270,7 +272,7 @@ fn desired_dynamics_without_meaning_are_refused() {
 }
 
 /// f alone, without any linear part.
-fn nonlinear(order: usize, term: forwardstep_core::expression::Expression) -> Desired {
+fn nonlinear(order: usize, term: Expression) -> Desired {
     let said = || Some("a test".to_owned());
     Desired {
         polynomial: DesiredPolynomial::Coefficients(vec![0.0; order]),
@@ -339,6 +341,34 @@ fn eq_43_a_nonlinear_protocol_leads_plants_of_orders_one_and_two() {
     assert_first_order(&short, 250.0);
 }
 
+/// ẍ_i = ẍ_d − a₁ė_i − a₀e_i − (1 + 4 exp(−t/10)) Σ_j w_ij (x_i − x_j), with e_i = x_i − x_d and one target: differences of e obey what
+/// stands there, and their mean the rest, whatever the coupling. In x alone as in z, in continuous time and sampled.
+#[test]
+fn eq_43_time_a_target_and_neighbours_stand_in_one_protocol() {
+    let share = Expression::number(1.0) + (x(7) * -0.1).exp_of() * 4.0;
+    let term = share * (x(2) - x(3) * x(0));
+    let polynomial = DesiredPolynomial::Coefficients(vec![0.3, 1.1]);
+    let mut setup = tracking();
+    let agent = setup.agents[2].clone();
+    let mut other = agent.clone();
+    (other.name, other.start.q) = ("other".into(), vec![agent.start.q[0] - 2.0]);
+    setup.agents = vec![agent, other];
+    setup.network =
+        Network { schedule: Schedule::fixed(two_way()), delays: vec![Delay::constant(0.0)], ..Network::silent(2) };
+    setup.time.end_s = 6.0;
+    let with = |term| Desired { polynomial: polynomial.clone(), follows_target: true, ..nonlinear(2, term) };
+    let (coupled, alone) = (under(setup.clone(), with(term)), under(setup, with(x(0) * 0.0)));
+    let (near, far) = (run(&coupled), run(&alone));
+    let last = |outcome: &Outcome, agent| *column(outcome, agent, Signal::Error, 0).last().unwrap();
+    let gap = |outcome: &Outcome| (last(outcome, 0) - last(outcome, 1)).abs();
+    assert!(gap(&near) < 0.2 * gap(&far), "{} {}", gap(&near), gap(&far));
+    let mean = |outcome: &Outcome| last(outcome, 0) + last(outcome, 1);
+    assert!((mean(&near) - mean(&far)).abs() < 1e-5, "{} {}", mean(&near), mean(&far));
+    let mut short = coupled;
+    short.time.end_s = 3.0;
+    assert_first_order(&short, 250.0);
+}
+
 fn two_way() -> Vec<Edge> {
     let edge = |from, to| Edge { from, to, weight: Weight::Constant(0.8), delay: 0 };
     vec![edge(0, 1), edge(1, 0)]
@@ -352,7 +382,7 @@ fn nonlinear_protocols_without_meaning_are_refused() {
     let chains = || of_all_orders(&steps()[0], [3; 3]);
     let in_x = Desired { written: WrittenIn::X, ..nonlinear(4, -x(0)) };
     assert!(matches!(refused(chains(), in_x), SetupError::Desired { .. }));
-    // Without a target there is no variable beyond the weights.
-    assert!(matches!(refused(chains(), nonlinear(4, x(6))), SetupError::Desired { .. }));
+    // Without a target there is no variable beyond the weights but t.
+    assert!(matches!(refused(chains(), nonlinear(4, x(7))), SetupError::Desired { .. }));
     assert!(matches!(refused(consensus_of_masses(1.0), nonlinear(3, -x(0))), SetupError::ProtocolOfChains { .. }));
 }

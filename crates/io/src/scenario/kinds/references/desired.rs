@@ -41,8 +41,8 @@ pub struct DesiredFile {
     /// In which variables the reference dynamics are written; it makes a difference only where x does not follow them. Default: `measured`.
     pub written_in: Option<WrittenInFile>,
     /// A nonlinear protocol: a formula that is added to the right side, for chains. Its variables are x, dx, d2x, … below the order,
-    /// `heard` and `weights`, the sums over the neighbours of weight times position and of weights, and xd, dxd, d2xd, … of a target.
-    /// Default: none.
+    /// `heard` and `weights`, the sums over the neighbours of weight times position and of weights, xd, dxd, d2xd, … of a target, and t in
+    /// s. With it agents may follow targets and hear neighbours. Default: none.
     pub nonlinear: Option<At<String>>,
     /// Why these dynamics do without s what they are for, exponentially and from everywhere: reported as declared, and tried.
     pub stable_because: Option<At<String>>,
@@ -149,6 +149,7 @@ impl DesiredFile {
         if self.follows_target == Some(true) {
             names.extend(derivatives(order + 1, "xd"));
         }
+        names.push("t".to_owned());
         Ok(Some(Protocol {
             term: formula_in(text, &names)?,
             stable_because: because(&self.stable_because),
