@@ -239,10 +239,9 @@ impl<T: Terms> Controller for Linearising<T> {
         if let Some(bounds) = &self.bounds {
             self.terms.terms(&mut work.terms, truth.state, &mut work.phi)?;
             let theta_hat = &state[self.at()..];
-            let pulled: Vec<f64> =
-                self.adaptation.iter().flatten().zip(&work.phi).map(|(g, phi)| -g * phi * s).collect();
-            for (j, (gamma, pulled)) in self.adaptation.iter().flatten().zip(&pulled).enumerate() {
-                let withheld = -pulled - bounds.slowed(j, theta_hat[j], -pulled);
+            for (j, gamma) in self.adaptation.iter().flatten().enumerate() {
+                let rate = gamma * work.phi[j] * s;
+                let withheld = rate - bounds.slowed(j, theta_hat[j], rate);
                 dissipation += (theta_hat[j] - truth.plant.theta[j]) * withheld / gamma;
             }
         }
