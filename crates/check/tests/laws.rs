@@ -122,7 +122,7 @@ fn eq_a8_and_57_an_estimate_that_is_not_adapted_has_to_be_the_mass() {
     };
     assert_eq!([blind(5.0, 0.3), blind(0.0, 2.0), blind(0.0, 0.3)], [Answer::Holds, Answer::Holds, Answer::NotCovered]);
     let flown = |gamma_star, estimate_start| {
-        let design = ThrustKind::Adaptive { alpha_star: 3.0, gamma_star, estimate_start };
+        let design = ThrustKind::Adaptive { alpha_star: 3.0, gamma_star, estimate_start, bounds: None };
         answer(&alone(vehicle(design, Floor::Stops(1.0))), About::ThrustGains)
     };
     assert_eq!([flown(0.2, 0.3), flown(0.0, 2.0), flown(0.0, 0.3)], [Answer::Holds, Answer::Holds, Answer::NotCovered]);

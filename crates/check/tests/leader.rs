@@ -385,7 +385,7 @@ fn setup_sampled() -> Option<Control> {
 #[test]
 fn thm8_an_agent_of_another_kind_leads() {
     let mut setup = led_by_agent(FollowingDesign::Continuous, wave());
-    let law = PositionOnlyLaw { damping: 5.0, filter_per_s: 5.0, adaptation: 1.0, estimate_start: 0.0 };
+    let law = PositionOnlyLaw { damping: 5.0, filter_per_s: 5.0, adaptation: 1.0, estimate_start: 0.0, bounds: None };
     setup.agents[0].law = Arc::new(law);
     setup.agents[0].roots_per_s = vec![1.0, 2.0, 3.0].into();
     validate(&setup).unwrap();

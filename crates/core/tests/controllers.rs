@@ -115,6 +115,7 @@ fn blind() -> Stepped<PositionOnly> {
         filter_per_s: 2.0,
         adaptation: 0.5,
         estimate_start: 0.7,
+        bounds: None,
     };
     let plant = Mechanical { robot: PointMass { dimension: 1 }, theta: vec![2.0] };
     let start = vec![0.1; total(&law.states())];

@@ -27,8 +27,15 @@ fn mass() -> Recipe {
 /// The same without velocity, towards agreement.
 fn blind(knows: Guide) -> Recipe {
     let plant = Mechanical { robot: PointMass { dimension: 1 }, theta: vec![2.0] };
-    let law =
-        PositionOnly { axes: 1, guide: knows, damping: 4.0, filter_per_s: 10.0, adaptation: 0.5, estimate_start: 1.5 };
+    let law = PositionOnly {
+        axes: 1,
+        guide: knows,
+        damping: 4.0,
+        filter_per_s: 10.0,
+        adaptation: 0.5,
+        estimate_start: 1.5,
+        bounds: None,
+    };
     Recipe::feedback(&plant, law)
 }
 

@@ -10,6 +10,7 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 use forwardstep_core::controller::Controller;
+use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::robot::Drives;
 use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::signal::Block as Signals;
@@ -167,6 +168,11 @@ pub trait Law: Any + Debug + Send + Sync {
 
     /// What is known of it about the long run.
     fn known(&self) -> Known;
+
+    /// Bounds that its estimate of the robot's parameters is kept within. Default: none.
+    fn kept_within(&self) -> Option<ParameterBounds> {
+        None
+    }
 
     /// Checks what only this law can check, and builds the agents of `assembly`, which share a batch.
     ///

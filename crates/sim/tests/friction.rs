@@ -318,6 +318,7 @@ fn thm6_v_balances_for_a_tip_of_an_arm_with_drives_smooth_or_dry() {
             damping: Gain::Number(8.0),
             adaptation: Gain::Number(4.0),
             estimate_start: agent.robot.theta.iter().map(|own| 0.5 * own).collect(),
+            estimate_bounds: None,
             task_gain: Gain::Number(6.0),
             kappa: 1.0,
             alpha_per_s: 5.0,

@@ -46,7 +46,9 @@ fn numbers_of_thrust_laws_are_refused_under_their_keys() {
         assert_eq!(differentiable(bad, 1.0), "agents[0].law.design.differentiable.damping_per_s");
         assert_eq!(differentiable(1.0, bad), "agents[0].law.design.differentiable.stiffness");
         let adapted = |alpha_star, gamma_star, estimate_start| {
-            changed(&adaptive, &|law| law.design = ThrustKind::Adaptive { alpha_star, gamma_star, estimate_start })
+            changed(&adaptive, &|law| {
+                law.design = ThrustKind::Adaptive { alpha_star, gamma_star, estimate_start, bounds: None }
+            })
         };
         assert_eq!(adapted(bad, 1.0, 1.0), "agents[0].law.design.adaptive.damping_per_s");
         assert_eq!(adapted(1.0, bad, 1.0), "agents[0].law.design.adaptive.adaptation_gain");

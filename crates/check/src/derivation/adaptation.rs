@@ -24,7 +24,18 @@ pub(super) fn of(case: &Case<'_>, notation: &Notation) -> Vec<(Formula, &'static
     let symbol = |base| Symbol::new(base).below(index);
     let s = |k| notation.quantity(Quantity::own(Letter::Error), k);
     let z = |k| notation.quantity(Quantity::own(Letter::Reference), k);
-    // estimate' = −gain gradient times an error.
+    // estimate' = −gain gradient times an error; or of what is found, which comes back at a rate, and its part within bounds is used.
+    let found = |estimate: Symbol, gain: Symbol, factors: Vec<Formula>, back: Symbol, place| {
+        let found = symbol("μ");
+        let product = Formula::product([Formula::from(gain)].into_iter().chain(factors));
+        let beyond = Formula::bracket(Formula::sum([
+            (Sign::Plus, found.clone().into()),
+            (Sign::Minus, estimate.clone().into()),
+        ]));
+        let rate = [(Sign::Minus, product), (Sign::Minus, Formula::product([back.into(), beyond]))];
+        let used = Formula::Function(Symbol::new("Π"), vec![found.clone().into()]);
+        vec![(Formula::equal(found.derivative(1), Formula::sum(rate)), place), (Formula::equal(estimate, used), "")]
+    };
     let gradient = |estimate: Symbol, gain: Symbol, factors: Vec<Formula>| {
         let product = [Formula::from(gain)].into_iter().chain(factors).collect();
         Formula::equal(estimate.derivative(1), Formula::minus(Formula::Product(product)))
@@ -38,15 +49,22 @@ pub(super) fn of(case: &Case<'_>, notation: &Notation) -> Vec<(Formula, &'static
     match &case.step {
         Step::Robot { known: false } => vec![robot("(7)")],
         Step::Robot { known: true } => Vec::new(),
-        Step::TaskSpace(_) => vec![robot("(81)"), kinematic()],
+        Step::TaskSpace(_) => {
+            let (law, place) = kinematic();
+            vec![robot("(81)"), (if case.has_bounded_lengths() { projected(law) } else { law }, place)]
+        }
         Step::PositionOnly([_, filter]) => {
             let y = Quantity::own(Letter::Filter);
             let rate = Polynomial::number(filter.clone());
             let right = Combination::of(Quantity::own(Letter::Error), rate.clone()).plus(y, &-&rate);
-            vec![
-                (notation.equation(y, 1, &Form::own(right)), "after (a9)"),
-                (gradient(symbol("m").hat(), Symbol::new("γ").above("∗"), vec![transposed(z(1)), s(0)]), "after (a9)"),
-            ]
+            let filtered = (notation.equation(y, 1, &Form::own(right)), "after (a9)");
+            let (estimate, gain, factors) =
+                (symbol("m").hat(), Symbol::new("γ").above("∗"), vec![transposed(z(1)), s(0)]);
+            if case.is_bounded() {
+                let found = found(estimate, gain, factors, Symbol::new("λ").below("f"), "after (a9)");
+                return [filtered].into_iter().chain(found).collect();
+            }
+            vec![filtered, (gradient(estimate, gain, factors), "after (a9)")]
         }
         Step::Thrust(ThrustStep::Adaptive, [alpha, _]) => {
             let number = |number: &BigRational| Polynomial::number(number.clone());
@@ -56,17 +74,13 @@ pub(super) fn of(case: &Case<'_>, notation: &Notation) -> Vec<(Formula, &'static
             )
             .plus(nonlinear(Term::Weight), &-&number(alpha));
             let w = (Formula::equal(symbol("w"), notation.form(&Form::own(w))), "");
-            vec![
-                w,
-                (
-                    gradient(
-                        symbol("m").hat(),
-                        Symbol::new("γ").above("∗"),
-                        vec![transposed(symbol("w").into()), s(1)],
-                    ),
-                    "(58)",
-                ),
-            ]
+            let (estimate, gain) = (symbol("m").hat(), Symbol::new("γ").above("∗"));
+            let factors = vec![transposed(symbol("w").into()), s(1)];
+            if case.is_bounded() {
+                let found = found(estimate, gain, factors, Symbol::new("α").above("∗"), "(58)");
+                return [w].into_iter().chain(found).collect();
+            }
+            vec![w, (gradient(estimate, gain, factors), "(58)")]
         }
         Step::Thrust(ThrustStep::Continuous | ThrustStep::Differentiable, _) | Step::Chain(..) | Step::Outside(_) => {
             Vec::new()

@@ -294,7 +294,12 @@ impl Case<'_> {
 
     /// Whether estimates of ϑ are kept within bounds.
     pub fn is_bounded(&self) -> bool {
-        let laws = self.agents.iter().filter_map(|agent| self.setup.agents[*agent].law.downcast::<Adaptive>());
+        self.agents.iter().any(|agent| self.setup.agents[*agent].law.kept_within().is_some())
+    }
+
+    /// Whether estimates of lengths are.
+    pub fn has_bounded_lengths(&self) -> bool {
+        let laws = self.agents.iter().filter_map(|agent| self.setup.agents[*agent].law.downcast::<TaskSpaceLaw>());
         laws.into_iter().any(|law| law.bounds.is_some())
     }
 

@@ -79,6 +79,7 @@ pub(super) fn of_s(case: &Case<'_>) -> String {
     match &case.step {
         Step::Robot { known } => return robot(case, *known),
         Step::TaskSpace(_) => return robot(case, false),
+        Step::PositionOnly(_) if case.is_bounded() => return clamped("V = ½ m sᵀs + (k/2λ_f) yᵀy", "V̇ ≤ −k yᵀy", "So s and y are bounded, and y is square-integrable."),
         Step::PositionOnly(_) => {
             "V = ½ m sᵀs + (k/2λ_f) yᵀy + Δm²/(2γ*) has V̇ = −k yᵀy whatever z does. So s, y and m̂ are bounded, and y is \
              square-integrable."
@@ -86,6 +87,13 @@ pub(super) fn of_s(case: &Case<'_>) -> String {
         Step::Thrust(ThrustStep::Continuous, _) => "",
         Step::Thrust(ThrustStep::Differentiable, _) => {
             "The lower subsystem is linear and exponentially stable, and nothing drives it: s* → 0 with its derivatives."
+        }
+        Step::Thrust(ThrustStep::Adaptive, _) if case.is_bounded() => {
+            return clamped(
+                "V = ½ m ṡ*ᵀṡ*",
+                "V̇ ≤ −α* m ṡ*ᵀṡ*",
+                "So ṡ* is bounded and square-integrable; s* itself need not vanish.",
+            );
         }
         Step::Thrust(ThrustStep::Adaptive, _) => {
             "V = ½ m ṡ*ᵀṡ* + Δm²/(2γ*) has V̇ = −α* m ṡ*ᵀṡ* whatever z does. So ṡ* is bounded and square-integrable, and m̂ is \
@@ -95,7 +103,7 @@ pub(super) fn of_s(case: &Case<'_>) -> String {
             "V = ½ (ω − z)ᵀM(ω − z) + ½ ẏᵀẏ has V̇ = −ẏᵀΛ_f ẏ whatever z does, since S(h) is skew-symmetric. So ω − z is bounded, and \
              ẏ is square-integrable; then ÿ → 0, and with it ω − z → 0."
         }
-        Step::Chain(_, kind, _) => return chain(*kind),
+        Step::Chain(_, kind, _) => return chain(*kind) + if case.is_bounded() { kept(*kind) } else { "" },
         Step::Outside(_) => "",
     }
     .into()
@@ -129,6 +137,30 @@ fn robot(case: &Case<'_>, known: bool) -> String {
     };
     let pushed = if case.is_pushed() { " While something pushes, its power sᵀτ_ext comes beside that." } else { "" };
     format!("V = {v} has {balance} whatever z does, {skew}{because}. {so}{estimates}.{pushed}")
+}
+
+/// What V has of a mass that is used no farther than its bounds.
+fn clamped(rest: &str, balance: &str, so: &str) -> String {
+    format!(
+        "{rest} + W/γ*, with W = ∫ (Π(σ) − m) dσ from m to μ, has {balance} whatever z does: μ is what is found of the mass, m̂ = Π(μ) what is \
+         used of it within the bounds, and W ≥ ½ Δm². {so}"
+    )
+}
+
+/// What bounds of θ̂ change of that.
+fn kept(kind: super::case::ChainStepKind) -> &'static str {
+    use super::case::ChainStepKind::{Adaptive, Backstepping, Immersion, Linearising};
+    match kind {
+        Linearising => "",
+        Adaptive => " At the bounds of θ̂ its rate is slowed, which only takes more from V.",
+        Immersion => {
+            " θ̂ + β is used no farther than its bounds, so that ζ = Π(θ̂ + β) − θ; V has ∫ ζᵀΓ⁻¹ d(θ̂ + β)/c for its last term, and falls no \
+             slower."
+        }
+        Backstepping => {
+            " θ̂ stays strictly between its bounds, where Γ(θ̂) vanishes: V has ∫ ΔθᵀΓ(θ̂)⁻¹ dθ̂ for its last term, and loses the same."
+        }
+    }
 }
 
 fn chain(kind: super::case::ChainStepKind) -> String {

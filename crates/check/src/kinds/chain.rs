@@ -7,6 +7,7 @@ use forwardstep_core::plant::CascadeTerms;
 use forwardstep_sim::push::{Course, Function, Push};
 use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, ChainStep, Law, Setup};
 
+use super::bounds::within_bounds;
 use super::{Claim, KindCheck};
 use crate::hypothesis::{FactorEverywhere, Hypothesis, Id, KindEvidence, Named, Term};
 use crate::surroundings::acts;
@@ -48,6 +49,7 @@ impl KindCheck for Chain {
     fn hypotheses(&self, setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
         let mut hypotheses = vec![defined(setup, agents), input_factor(setup, agents), gains(setup, agents)];
         hypotheses.extend(regressors(setup, agents));
+        hypotheses.extend(within_bounds(setup, agents));
         hypotheses.extend(disturbances(setup, agents));
         hypotheses.extend(hurwitz(setup, agents));
         hypotheses

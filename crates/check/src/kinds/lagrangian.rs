@@ -3,6 +3,7 @@
 
 use forwardstep_sim::{Adaptive, AgentSetup, Known, Setup};
 
+use super::bounds::within_bounds;
 use super::{Claim, KindCheck};
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, LoopEvidence, Named, Subject};
 use crate::inertia::{bounded_dynamics, is_known, uniform_inertia};
@@ -48,24 +49,6 @@ impl KindCheck for LagrangianRobot {
     fn target_derivatives(&self, agent: &AgentSetup) -> usize {
         agent.roots_per_s.len().max(2)
     }
-}
-
-/// That ϑ lies within the bounds that ϑ̂ is kept within, of all agents with such bounds.
-fn within_bounds(setup: &Setup, agents: &[usize]) -> Option<Hypothesis> {
-    let bounded = agents.iter().filter_map(|index| {
-        let bounds = setup.agents[*index].law.downcast::<Adaptive>()?.bounds.as_ref()?;
-        let ends = bounds.lower.iter().zip(&bounds.upper);
-        let theta = setup.agents[*index].robot.theta.iter();
-        Some((*index, theta.zip(ends).position(|(own, (low, high))| !(low <= own && own <= high))))
-    });
-    let bounded: Vec<(usize, Option<usize>)> = bounded.collect();
-    let outside = bounded.iter().find_map(|(index, outside)| Some((*index, (*outside)?)));
-    let evidence = outside.map_or(KindEvidence::ParametersInside, |(index, k)| KindEvidence::ParameterOutside {
-        agent: Named::of(setup, index),
-        name: setup.agents[index].robot.theta_names.get(k).cloned(),
-        value: setup.agents[index].robot.theta[k],
-    });
-    (!bounded.is_empty()).then(|| Hypothesis::new(Id::ParametersWithinBounds, evidence))
 }
 
 /// Whether (6)–(7), or (6) with known parameters, controls the agent.

@@ -1,5 +1,6 @@
 //! Kinds of systems, each with its law: which theorem speaks about it, and what its law adds to the hypotheses.
 
+mod bounds;
 pub(crate) mod chain;
 mod declared;
 mod lagrangian;

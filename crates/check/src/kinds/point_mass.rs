@@ -2,6 +2,7 @@
 
 use forwardstep_sim::{AgentSetup, PositionOnlyLaw, Setup};
 
+use super::bounds::within_bounds;
 use super::{Claim, KindCheck};
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, Named};
 use crate::theorem::Theorem;
@@ -43,7 +44,7 @@ impl KindCheck for PositionOnlyMass {
             agent: Named::of(setup, *agent),
         });
         let gains = Hypothesis::new(Id::PositionOnlyGains, evidence);
-        [gains].into_iter().chain(hurwitz(setup, agents)).collect()
+        [gains].into_iter().chain(within_bounds(setup, agents)).chain(hurwitz(setup, agents)).collect()
     }
 
     fn target_derivatives(&self, _: &AgentSetup) -> usize {

@@ -9,6 +9,7 @@ use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{AgentSetup, Law, Setup, TaskSpaceLaw, TipSetup};
 use nalgebra::DMatrix;
 
+use super::bounds::within_bounds;
 use super::spacecraft::never_zero;
 use super::{Claim, KindCheck};
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, Named, Subject};
@@ -58,6 +59,7 @@ impl KindCheck for TaskSpaceRobot {
         let mut hypotheses = uniform_inertia(setup, agents);
         hypotheses.extend(bounded_dynamics(setup, agents));
         hypotheses.push(Hypothesis::new(Id::TaskSpaceGains, gains(setup, agents)));
+        hypotheses.extend(within_bounds(setup, agents));
         for index in agents {
             let agent = &setup.agents[*index];
             let Some(law) = agent.law.downcast::<TaskSpaceLaw>() else { continue };
@@ -72,8 +74,9 @@ impl KindCheck for TaskSpaceRobot {
                 hypotheses.extend(path.map(|evidence| Hypothesis::about(Id::NonzeroQuaternion, of(), evidence)));
             }
             hypotheses.extend(uncertain(agent, law).map(|evidence| about(Id::CertainRegressor, evidence)));
-            hypotheses
-                .extend(within_bounds(setup, *index, law).map(|evidence| about(Id::LengthsWithinBounds, evidence)));
+            hypotheses.extend(
+                lengths_within_bounds(setup, *index, law).map(|evidence| about(Id::LengthsWithinBounds, evidence)),
+            );
         }
         hypotheses
     }
@@ -176,7 +179,7 @@ fn gains(setup: &Setup, agents: &[usize]) -> KindEvidence {
     })
 }
 
-fn within_bounds(setup: &Setup, index: usize, law: &TaskSpaceLaw) -> Option<KindEvidence> {
+fn lengths_within_bounds(setup: &Setup, index: usize, law: &TaskSpaceLaw) -> Option<KindEvidence> {
     let agent = &setup.agents[index];
     let bounds = law.bounds.as_ref()?;
     let theta = law.tip.parameters(&*agent.robot.kind)?;

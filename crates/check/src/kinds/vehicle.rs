@@ -3,6 +3,7 @@
 use forwardstep_core::controller::Floor;
 use forwardstep_sim::{AgentSetup, Setup, ThrustKind, ThrustLaw, VehicleModel};
 
+use super::bounds::within_bounds;
 use super::{Claim, KindCheck};
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, Named};
 use crate::theorem::Theorem;
@@ -69,7 +70,8 @@ pub(super) fn claim(setup: &Setup) -> Option<Claim> {
 
 /// What the outer law asks for, with or without a body.
 pub(super) fn outer_law(setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
-    vec![gains(setup, agents), thrust(setup, agents)]
+    let always = [gains(setup, agents), thrust(setup, agents)];
+    always.into_iter().chain(within_bounds(setup, agents)).collect()
 }
 
 /// Agents with their laws.

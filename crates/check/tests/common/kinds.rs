@@ -82,7 +82,7 @@ pub fn alone(agent: AgentSetup) -> Setup {
 
 /// A mass of 2 kg without velocity, whose estimate starts at `estimate_start`.
 pub fn blind_mass(adaptation: f64, estimate_start: f64) -> AgentSetup {
-    let law = Arc::new(PositionOnlyLaw { damping: 20.0, filter_per_s: 20.0, adaptation, estimate_start });
+    let law = Arc::new(PositionOnlyLaw { damping: 20.0, filter_per_s: 20.0, adaptation, estimate_start, bounds: None });
     let mut agent =
         agent(Arc::new(PointMass { dimension: 1 }), vec![2.0], law, start(&[0.3], &[0.0], &[]), 1, AxisUnit::Metre);
     agent.roots_per_s = vec![1.0, 1.5, 2.0].into();
@@ -119,6 +119,7 @@ fn task_space(tip: TipSetup, kinematic_start: &[f64], parameters: usize) -> Arc<
         damping: Gain::Number(20.0),
         adaptation: Gain::Number(30.0),
         estimate_start: vec![0.0; parameters],
+        estimate_bounds: None,
         task_gain: Gain::Number(20.0),
         attitude_gain: 20.0,
         null_space: None,
@@ -174,7 +175,7 @@ pub fn spacecraft() -> AgentSetup {
 pub fn chain(psi: &Expression, parameters: usize, adaptive: bool) -> AgentSetup {
     let phi = vec![Expression::variable(1); parameters];
     let model = Formulas::new(2, &Expression::number(0.0), phi, psi).unwrap();
-    let estimate = Estimate { adaptation: vec![1.0; parameters], start: vec![0.0; parameters] };
+    let estimate = Estimate { adaptation: vec![1.0; parameters], start: vec![0.0; parameters], bounds: None };
     let step = if adaptive {
         ChainStep::Adaptive { gain_per_s: 2.0, estimate }
     } else {
@@ -187,7 +188,7 @@ pub fn chain(psi: &Expression, parameters: usize, adaptive: bool) -> AgentSetup 
 pub fn cascade(known: Expression, input: Expression, parameters: usize) -> AgentSetup {
     let regressors = vec![vec![Expression::number(0.0); parameters], vec![Expression::variable(0); parameters]];
     let terms = CascadeTerms::new(vec![known, Expression::number(0.0)], regressors, input).unwrap();
-    let estimate = Estimate { adaptation: vec![1.0; parameters], start: vec![0.0; parameters] };
+    let estimate = Estimate { adaptation: vec![1.0; parameters], start: vec![0.0; parameters], bounds: None };
     let step = ChainStep::Backstepping { gains_per_s: vec![1.0; 2], estimate };
     of_chain(ChainModel::Cascade(Arc::new(terms)), parameters, step)
 }

@@ -196,7 +196,7 @@ fn eq_identities_of_49_and_54_hold_along_real_runs_of_vehicles() {
     use forwardstep_core::controller::Floor;
     let designs = [
         ThrustKind::Differentiable { alpha_star: 3.0, stiffness: 4.0 },
-        ThrustKind::Adaptive { alpha_star: 3.0, gamma_star: 0.2, estimate_start: 1.6 },
+        ThrustKind::Adaptive { alpha_star: 3.0, gamma_star: 0.2, estimate_start: 1.6, bounds: None },
     ];
     for design in designs {
         let mut setup = kinds::alone(kinds::vehicle(design, Floor::Stops(1.0)));

@@ -39,7 +39,7 @@ fn number(value: f64) -> Expression {
 fn third_order(order: usize, adaptive: bool) -> AgentSetup {
     let psi = x(0).sin_of() + 2.0;
     let phi = if adaptive { vec![x(0) * x(0)] } else { Vec::new() };
-    let estimate = Estimate { adaptation: vec![1.0; phi.len()], start: vec![0.2; phi.len()] };
+    let estimate = Estimate { adaptation: vec![1.0; phi.len()], start: vec![0.2; phi.len()], bounds: None };
     let theta = vec![0.5; phi.len()];
     let model = ChainModel::Derivatives(Arc::new(Formulas::new(3, &number(0.0), phi, &psi).unwrap()));
     let step = if adaptive {
@@ -118,7 +118,7 @@ fn designs() -> [(ThrustKind, usize); 3] {
     [
         (ThrustKind::Continuous, 0),
         (ThrustKind::Differentiable { alpha_star: 3.0, stiffness: 4.0 }, 1),
-        (ThrustKind::Adaptive { alpha_star: 3.0, gamma_star: 0.2, estimate_start: 1.6 }, 1),
+        (ThrustKind::Adaptive { alpha_star: 3.0, gamma_star: 0.2, estimate_start: 1.6, bounds: None }, 1),
     ]
 }
 

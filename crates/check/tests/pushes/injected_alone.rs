@@ -63,7 +63,8 @@ fn designs() -> Vec<(&'static str, Setup)> {
         (
             "vehicles that adapt",
             two(&|| {
-                let design = ThrustKind::Adaptive { alpha_star: 3.0, gamma_star: 0.2, estimate_start: 1.6 };
+                let design =
+                    ThrustKind::Adaptive { alpha_star: 3.0, gamma_star: 0.2, estimate_start: 1.6, bounds: None };
                 vehicle(design, Floor::Stops(0.1))
             }),
         ),

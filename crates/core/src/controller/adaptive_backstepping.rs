@@ -34,14 +34,18 @@
 //!
 //! **Disturbances.** w_i in the equation of x_i adds Σ_j e_j ∂e_j/∂x_i w_i to V̇. For the last equation of a strict-feedback chain
 //! that is e_n w_n, and V stays finite under a bounded w_n. Slopes of earlier steps may grow with the state.
+//!
+//! **Bounds** of θ̂ take a gain Γ(θ̂) that vanishes there; `interior` derives why, and why a projection is not admissible.
 
 use alloc::vec::Vec;
 
 use super::following::{ChainError, ChainMeasured, positive, vanishes};
 use super::guide::{Guide, GuideError, GuideWork, Leads};
+use super::interior::{Interior, Metric};
 use super::recursion::{Recursion, RecursionWork, Stepped};
 use super::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::LengthError;
+use crate::law::{ParameterBounds, Range};
 use crate::plant::{Cascade, CascadeTerms};
 use crate::reference::Position;
 use crate::signal::{Block, Signal};
@@ -105,6 +109,8 @@ pub struct AdaptiveBackstepping {
     estimate_start: Vec<f64>,
     floor: f64,
     recursion: Recursion,
+    /// Where ξ is integrated in the place of θ̂.
+    interior: Option<Interior>,
 }
 
 /// Gains of [`AdaptiveBackstepping`].
@@ -130,6 +136,20 @@ impl AdaptiveBackstepping {
         gains: BacksteppingGains,
         estimate_start: Vec<f64>,
     ) -> Result<Self, ChainError> {
+        AdaptiveBackstepping::within(terms, guide, gains, estimate_start, None)
+    }
+
+    /// The same with estimates that stay strictly between bounds, if there are some; their margins are not read.
+    ///
+    /// # Errors
+    /// As [`AdaptiveBackstepping::new`], and when an estimate does not start between its bounds.
+    pub fn within(
+        terms: &CascadeTerms,
+        guide: Guide,
+        gains: BacksteppingGains,
+        estimate_start: Vec<f64>,
+        bounds: Option<&ParameterBounds>,
+    ) -> Result<Self, ChainError> {
         let BacksteppingGains { gains_per_s, adaptation, floor } = gains;
         let n = terms.order();
         guide.check(1, n)?;
@@ -141,8 +161,24 @@ impl AdaptiveBackstepping {
         LengthError::check("theta_hat", terms.parameters(), estimate_start.len())?;
         positive(&gains_per_s)?;
         positive(&adaptation)?;
-        let recursion = Recursion::new(terms, &gains_per_s, &adaptation)?;
-        Ok(AdaptiveBackstepping { order: n, guide, gains_per_s, adaptation, estimate_start, floor, recursion })
+        let interior = bounds.map(|bounds| interior(bounds, &estimate_start)).transpose()?;
+        let slopes = interior.as_ref().map_or_else(Vec::new, |interior| interior.slopes(n));
+        let recursion = Recursion::new(terms, &gains_per_s, Metric { gamma: &adaptation, slopes: &slopes })?;
+        Ok(AdaptiveBackstepping {
+            order: n,
+            guide,
+            gains_per_s,
+            adaptation,
+            estimate_start,
+            floor,
+            recursion,
+            interior,
+        })
+    }
+
+    /// θ̂ of what is integrated.
+    fn estimate(&self, k: usize, integrated: f64) -> f64 {
+        self.interior.as_ref().map_or(integrated, |interior| interior.theta_hat(k, integrated))
     }
 
     /// ℓ.
@@ -162,6 +198,19 @@ impl AdaptiveBackstepping {
 
     fn shown_len(&self) -> usize {
         self.vectors() + self.order + 1 + self.parameters() + usize::from(self.guide.tracks())
+    }
+}
+
+/// Bounds with a start between them.
+fn interior(bounds: &ParameterBounds, start: &[f64]) -> Result<Interior, ChainError> {
+    bounds.check(start.len())?;
+    let interior = Interior::new(bounds);
+    match start.iter().enumerate().find(|(k, start)| !interior.holds(*k, **start)) {
+        None => Ok(interior),
+        Some((parameter, start)) => {
+            let Range { lower, upper } = bounds.range(parameter);
+            Err(ChainError::StartAtBound { parameter, start: *start, lower, upper })
+        }
     }
 }
 
@@ -231,6 +280,9 @@ impl Controller for AdaptiveBackstepping {
             *z = wanted[0];
         }
         theta_hat.copy_from_slice(&self.estimate_start);
+        if let Some(interior) = &self.interior {
+            theta_hat.iter_mut().enumerate().for_each(|(k, own)| *own = interior.xi(k, *own));
+        }
         Ok(())
     }
 
@@ -249,7 +301,11 @@ impl Controller for AdaptiveBackstepping {
         LengthError::check("shown", self.shown_len(), shown.len())?;
         let x = given.measured.x;
         LengthError::check("x", n, x.len())?;
-        let (z, theta_hat) = state.split_at(vectors);
+        let (z, integrated) = state.split_at(vectors);
+        let theta_hat = &mut shown[vectors + n + 1..][..p];
+        for (k, (hat, integrated)) in theta_hat.iter_mut().zip(integrated).enumerate() {
+            *hat = self.estimate(k, *integrated);
+        }
         let target = if self.guide.tracks() { given.target } else { &[] };
         let leads = Leads { measured: &x[..1], state: z, heard: given.heard, target };
         self.guide.rate(1, 1, leads, &mut work.guide, &mut d_state[..vectors])?;
@@ -267,7 +323,6 @@ impl Controller for AdaptiveBackstepping {
         shown[..vectors].copy_from_slice(z);
         shown[vectors..][..n].copy_from_slice(errors);
         shown[vectors + n] = divisor;
-        shown[vectors + n + 1..][..p].copy_from_slice(theta_hat);
         if let (Some(jet), Some(error)) = (target.first(), shown.last_mut()) {
             *error = x[0] - jet[0];
         }
@@ -299,11 +354,13 @@ impl Controller for AdaptiveBackstepping {
         }
         for (j, theta) in truth.plant.theta().iter().enumerate() {
             let delta = state[vectors + j] - theta;
-            value += 0.5 * delta * delta / self.adaptation[j];
+            let divergence =
+                self.interior.as_ref().map_or(0.5 * delta * delta, |of| of.divergence(j, state[vectors + j], *theta));
+            value += divergence / self.adaptation[j];
         }
         if !truth.external.is_empty() {
             LengthError::check("state of the plant", self.order, truth.state.len())?;
-            let (z, theta_hat) = state.split_at(vectors);
+            let (z, theta_hat) = (&state[..vectors], &shown[vectors + self.order + 1..][..self.parameters()]);
             let known = truth.state.iter().chain(theta_hat).chain(z);
             // The last derivative of z is in no error.
             work.recursion.given.iter_mut().zip(known).for_each(|(given, value)| *given = *value);

@@ -46,6 +46,22 @@ pub enum ChainError {
         /// What it should be.
         regressor: f64,
     },
+    /// A start at which an estimate would stay.
+    #[error(
+        "the estimate of parameter {} starts at {start}, and this law keeps it strictly between its bounds, {lower} and {upper}, where \
+         it adapts: let it start between them",
+        .parameter + 1
+    )]
+    StartAtBound {
+        /// Which one, from zero.
+        parameter: usize,
+        /// Where it starts.
+        start: f64,
+        /// Its lower bound.
+        lower: f64,
+        /// Its upper bound.
+        upper: f64,
+    },
     /// Terms that cannot be differentiated.
     #[error(transparent)]
     Expression(#[from] ExpressionError),

@@ -29,6 +29,10 @@
 //!
 //! A disturbance w of the plant enters ṡ as it is and ζ' as Γ φ w, which adds (s + η/k) w to V̇. That is at most
 //! (k/2)(s + η/k)² + w²/(2k), so that V̇ ≤ w²/(2k): a bounded w leaves V finite at all times.
+//!
+//! **Bounds.** The rate of θ̂ + β holds dv/dt, which is not known, so it cannot be slowed down at a bound: u takes Π(θ̂ + β) instead, as
+//! derived in `law::clamped`, with ρ = k. The plant then has ṡ = −k s − φᵀζ with ζ = Π(θ̂ + β) − θ, the rate of θ̂ + β is
+//! −Γ φ φᵀζ − k (θ̂ + β − Π(θ̂ + β)), and V = ½ s² + Σ W_j/(k γ_j) has the V̇ from above with this ζ in η, and what returning takes off.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -37,6 +41,7 @@ use super::following::{ChainError, ChainMeasured, Following, FollowingWork, posi
 use super::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::LengthError;
 use crate::expression::{Expression, Graph, Tape};
+use crate::law::ParameterBounds;
 use crate::plant::{Chain, Formulas, FormulasWork, Terms};
 use crate::reference::Position;
 use crate::signal::{Block, Signal};
@@ -98,6 +103,7 @@ pub struct Immersion {
     following: Following,
     adaptation: Vec<f64>,
     estimate_start: Vec<f64>,
+    bounds: Option<ParameterBounds>,
     /// Φ_j, then Σ_r ∂Φ_j/∂x_r x_{r+1} of every parameter.
     tape: Tape,
 }
@@ -139,7 +145,16 @@ impl Immersion {
         compare(&terms, &Tape::new(&graph, &slopes)?)?;
         values.extend(turned);
         let tape = Tape::new(&graph, &values)?;
-        Ok(Immersion { terms, following, adaptation, estimate_start, tape })
+        Ok(Immersion { terms, following, adaptation, estimate_start, bounds: None, tape })
+    }
+
+    /// The same with an estimate that is used no farther than `bounds`; their margins are not read.
+    ///
+    /// # Errors
+    /// [`ChainError`] when there is not an entry for each parameter.
+    pub fn bounded(self, bounds: ParameterBounds) -> Result<Self, ChainError> {
+        bounds.check(self.terms.parameters())?;
+        Ok(Immersion { bounds: Some(bounds), ..self })
     }
 
     /// Φ = φ v for a φ without v, the highest derivative of a plant of order `order`.
@@ -260,9 +275,14 @@ impl Controller for Immersion {
         let mut chi = found.chi;
         for j in 0..p {
             let (phi, gamma) = (following.phi[j], self.adaptation[j]);
-            let estimate = state[at + j] + gamma * out[j];
-            chi += phi * estimate;
+            let mut estimate = state[at + j] + gamma * out[j];
             d_state[at + j] = -gamma * (phi * dv + out[p + j]);
+            if let Some(bounds) = &self.bounds {
+                let range = bounds.range(j);
+                d_state[at + j] -= self.following.gain_per_s * range.beyond(estimate);
+                estimate = range.nearest(estimate);
+            }
+            chi += phi * estimate;
             shown[at + 2 + j] = estimate;
         }
         input[0] = (dv - chi) / found.psi;
@@ -280,7 +300,7 @@ impl Controller for Immersion {
         work: &mut ImmersionWork,
         truth: Truth<'_, Self::Plant>,
         _: Given<'_, Self>,
-        _: &[f64],
+        state: &[f64],
         shown: &[f64],
     ) -> Result<Balance, LengthError> {
         let (p, k) = (self.terms.parameters(), self.following.gain_per_s);
@@ -288,13 +308,21 @@ impl Controller for Immersion {
         let s = self.following.s(&self.terms, p, shown)?;
         let FollowingWork { terms, phi, .. } = &mut work.following;
         self.terms.terms(terms, truth.state, phi)?;
-        let (mut value, mut eta) = (0.5 * s * s, 0.0);
+        let (mut value, mut eta, mut withheld) = (0.5 * s * s, 0.0, 0.0);
         for j in 0..p {
             let zeta = shown[self.at() + 2 + j] - truth.plant.theta[j];
             eta += phi[j] * zeta;
-            value += 0.5 * zeta * zeta / (k * self.adaptation[j]);
+            let mut learnt = 0.5 * zeta * zeta;
+            if let Some(bounds) = &self.bounds {
+                self.tape.evaluate(truth.state, &mut work.workspace, &mut work.out)?;
+                let (range, theta) = (bounds.range(j), truth.plant.theta[j]);
+                let mu = state.get(self.at() + j).copied().unwrap_or(f64::NAN) + self.adaptation[j] * work.out[j];
+                learnt = range.potential(mu, theta);
+                withheld += range.withheld(mu, theta) / self.adaptation[j];
+            }
+            value += learnt / (k * self.adaptation[j]);
         }
         let power: f64 = truth.external.iter().map(|w| (s + eta / k) * w).sum();
-        Ok(Balance { value, dissipation: k * s * s + s * eta + eta * eta / k - power })
+        Ok(Balance { value, dissipation: k * s * s + s * eta + eta * eta / k + withheld - power })
     }
 }

@@ -18,11 +18,15 @@
 //! follows as soon as φ is bounded along the run, for then ṡ is; φ is bounded if x* is, or if its functions are. Neither step
 //! differentiates anything: ż is a state of the reference for ℓ ≥ 2, and for ℓ = 1 what its dynamics give.
 
+//!
+//! θ̂ may be kept within bounds: ϑ̂_j' = c_j γ_j φ_j s by the projection of `law::bounds`, which takes from V̇ what that file derives.
+
 use alloc::vec::Vec;
 
 use super::following::{ChainError, ChainMeasured, Following, FollowingWork, positive};
 use super::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::LengthError;
+use crate::law::ParameterBounds;
 use crate::plant::{Chain, Terms};
 use crate::reference::Position;
 use crate::signal::{Block, Signal};
@@ -81,6 +85,7 @@ pub struct Linearising<T> {
     theta: Vec<f64>,
     /// The diagonal of Γ, if θ is adapted.
     adaptation: Option<Vec<f64>>,
+    bounds: Option<ParameterBounds>,
 }
 
 impl<T: Terms> Linearising<T> {
@@ -91,7 +96,7 @@ impl<T: Terms> Linearising<T> {
     pub fn new(terms: T, theta: Vec<f64>, following: Following) -> Result<Self, ChainError> {
         following.check(&terms)?;
         LengthError::check("theta", terms.parameters(), theta.len())?;
-        Ok(Linearising { terms, following, theta, adaptation: None })
+        Ok(Linearising { terms, following, theta, adaptation: None, bounds: None })
     }
 
     /// For a plant with these terms and unknown θ; `adaptation` is the diagonal of Γ, `estimate_start` is θ̂(0).
@@ -107,6 +112,15 @@ impl<T: Terms> Linearising<T> {
         LengthError::check("adaptation gains", terms.parameters(), adaptation.len())?;
         positive(&adaptation)?;
         Ok(Linearising { adaptation: Some(adaptation), ..Linearising::new(terms, estimate_start, following)? })
+    }
+
+    /// The same with estimates that are kept within `bounds`.
+    ///
+    /// # Errors
+    /// [`ChainError`] when there is not an entry for each parameter.
+    pub fn bounded(self, bounds: ParameterBounds) -> Result<Self, ChainError> {
+        bounds.check(self.terms.parameters())?;
+        Ok(Linearising { bounds: Some(bounds), ..self })
     }
 
     /// How z is followed.
@@ -190,7 +204,8 @@ impl<T: Terms> Controller for Linearising<T> {
         }
         input[0] = (found.dz - chi - self.following.gain_per_s * found.s) / found.psi;
         for (j, gamma) in self.adaptation.iter().flatten().enumerate() {
-            d_state[at + j] = gamma * work.phi[j] * found.s;
+            let rate = gamma * work.phi[j] * found.s;
+            d_state[at + j] = self.bounds.as_ref().map_or(rate, |bounds| bounds.slowed(j, theta_hat[j], rate));
             shown[at + 2 + j] = theta_hat[j];
         }
         Ok(())
@@ -204,7 +219,7 @@ impl<T: Terms> Controller for Linearising<T> {
 
     fn balance(
         &self,
-        _: &mut Self::Scratch,
+        work: &mut Self::Scratch,
         truth: Truth<'_, Self::Plant>,
         _: Given<'_, Self>,
         state: &[f64],
@@ -220,6 +235,16 @@ impl<T: Terms> Controller for Linearising<T> {
             value += 0.5 * delta * delta / gamma;
         }
         let power: f64 = truth.external.iter().map(|w| s * w).sum();
-        Ok(Balance { value, dissipation: self.following.gain_per_s * s * s - power })
+        let mut dissipation = self.following.gain_per_s * s * s - power;
+        if let Some(bounds) = &self.bounds {
+            self.terms.terms(&mut work.terms, truth.state, &mut work.phi)?;
+            let theta_hat = &state[self.at()..];
+            for (j, gamma) in self.adaptation.iter().flatten().enumerate() {
+                let rate = gamma * work.phi[j] * s;
+                let withheld = rate - bounds.slowed(j, theta_hat[j], rate);
+                dissipation += (theta_hat[j] - truth.plant.theta[j]) * withheld / gamma;
+            }
+        }
+        Ok(Balance { value, dissipation })
     }
 }

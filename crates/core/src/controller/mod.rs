@@ -23,6 +23,7 @@ mod feedback;
 mod following;
 mod guide;
 mod immersion;
+mod interior;
 mod joint_tracking;
 mod linearising;
 mod position_only;

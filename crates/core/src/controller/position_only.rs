@@ -22,6 +22,9 @@
 //!
 //! while nothing acts from outside; a force f adds sᵀf. So y is square-integrable, s is bounded, and s = y + ẏ/λ_f.
 //!
+//! **Bounds.** żᵀs is not measured, so m̂' cannot be slowed down at a bound: u takes Π(m̂) with what is found by parts for μ, as derived in
+//! `law::clamped`, with ρ = λ_f. V has W/γ* for its last term, and V̇ = −k yᵀy − (λ_f/γ*)(Π(μ) − m)(μ − Π(μ)).
+//!
 //! **Consensus**, which Remark 7 announces and does not print. Let agents exchange positions and let each take (24) of order
 //! ℓ ≥ 2 with its own z where (24) has ẋ. With ẋ = z + y + ẏ/λ_f let x' = x − y/λ_f, so ẋ' = z + y. In x' the agents follow
 //! (24) for integrators, whose state converges for switching graphs and delays as in Theorem 3, driven by y in its first
@@ -35,6 +38,7 @@ use alloc::vec::Vec;
 use super::guide::{Guide, GuideWork, Leads};
 use super::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::LengthError;
+use crate::law::Range;
 use crate::plant::Mechanical;
 use crate::reference::Position;
 use crate::robot::PointMass;
@@ -66,7 +70,7 @@ pub struct PositionMeasured<'a> {
 /// let mut alpha = polynomial([1.0, 2.0, 3.0])?;
 /// alpha.pop();
 /// let guide = Guide::Tracking { alpha: alpha.clone() };
-/// let law = PositionOnly { axes: 1, guide, damping: 8.0, filter_per_s: 20.0, adaptation: 3.0, estimate_start: 1.5 };
+/// let law = PositionOnly { axes: 1, guide, damping: 8.0, filter_per_s: 20.0, adaptation: 3.0, estimate_start: 1.5, bounds: None };
 /// let target = [[0.2, 0.1, -0.3, 0.4, 0.0]];
 /// let given = Given { measured: law.see(&[0.5, 9.9])?, heard: Heard::new(&[0.0], &[0.0], 1)?, target: &target };
 /// let mut scratch = law.scratch();
@@ -99,6 +103,8 @@ pub struct PositionOnly {
     pub adaptation: f64,
     /// m̂(0), kg.
     pub estimate_start: f64,
+    /// Where m is known to be, kg.
+    pub bounds: Option<Range>,
 }
 
 impl PositionOnly {
@@ -115,6 +121,11 @@ impl PositionOnly {
             sum += dz[k] * x[k] - 0.5 * z[k] * z[k];
         }
         self.adaptation * sum
+    }
+
+    /// m̂, or μ where there are bounds.
+    fn found(&self, integral: f64, x: &[f64], z: &[f64], dz: &[f64]) -> f64 {
+        self.estimate_start + integral - self.by_parts(x, z, dz)
     }
 }
 
@@ -199,7 +210,8 @@ impl Controller for PositionOnly {
         let target = if self.guide.tracks() { given.target } else { &[] };
         let leads = Leads { measured: x, state: &state[..p], heard: given.heard, target };
         self.guide.rate(2, m, leads, work, &mut asked.d_state[..p])?;
-        let m_hat = self.estimate_start + state[i] - self.by_parts(x, z, dz);
+        let mu = self.found(state[i], x, z, dz);
+        let m_hat = self.bounds.map_or(mu, |range| range.nearest(mu));
         let mut d_i = 0.0;
         for k in 0..m {
             let y = self.filter_per_s * (x[k] - state[p + k]);
@@ -213,6 +225,9 @@ impl Controller for PositionOnly {
             }
         }
         asked.d_state[i] = self.adaptation * d_i;
+        if let Some(range) = self.bounds {
+            asked.d_state[i] -= self.filter_per_s * range.beyond(mu);
+        }
         asked.shown[..p].copy_from_slice(&state[..p]);
         asked.shown[i] = m_hat;
         Ok(())
@@ -244,8 +259,14 @@ impl Controller for PositionOnly {
             power += truth.external.get(k).map_or(0.0, |force| s * force);
         }
         let delta = shown[i] - mass;
-        let learnt = if self.adaptation > 0.0 { delta * delta / (2.0 * self.adaptation) } else { 0.0 };
+        let (mut learnt, mut withheld) = (0.5 * delta * delta, 0.0);
+        if let Some(range) = self.bounds {
+            let mu = self.found(state[i], &truth.state[..m], &state[..m], &state[m..2 * m]);
+            (learnt, withheld) = (range.potential(mu, mass), self.filter_per_s * range.withheld(mu, mass));
+        }
+        let [learnt, withheld] =
+            [learnt, withheld].map(|of| if self.adaptation > 0.0 { of / self.adaptation } else { 0.0 });
         let value = 0.5 * mass * ss + 0.5 * self.damping / self.filter_per_s * yy + learnt;
-        Ok(Balance { value, dissipation: self.damping * yy - power })
+        Ok(Balance { value, dissipation: self.damping * yy + withheld - power })
     }
 }

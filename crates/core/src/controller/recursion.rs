@@ -22,6 +22,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use super::interior::Metric;
 use super::steps::Steps;
 use super::steps_in_series::SeriesSteps;
 use crate::LengthError;
@@ -69,16 +70,16 @@ pub(super) struct Stepped<'a> {
     pub(super) divisor: f64,
     /// e_1 … e_n.
     pub(super) errors: &'a [f64],
-    /// θ̂'.
+    /// Γ τ_n: θ̂', or ξ' of `interior`.
     pub(super) d_theta_hat: &'a [f64],
 }
 
 impl Recursion {
-    /// For a chain, with c_1 … c_n and the diagonal of Γ.
+    /// For a chain, with c_1 … c_n and the diagonal of Γ, or Γ(θ̂).
     ///
     /// # Errors
     /// [`ExpressionError`] when a term that must be differentiated has no derivative, or it takes too many multiplications.
-    pub(super) fn new(terms: &CascadeTerms, gains: &[f64], gamma: &[f64]) -> Result<Self, ExpressionError> {
+    pub(super) fn new(terms: &CascadeTerms, gains: &[f64], gamma: Metric<'_>) -> Result<Self, ExpressionError> {
         let (order, parameters) = (terms.order(), terms.parameters());
         let series = SeriesSteps::new(terms, gains, gamma)?;
         let shape = if series.products() > FEW_PRODUCTS {
@@ -141,7 +142,7 @@ impl Recursion {
 }
 
 /// Both tapes.
-fn tape(terms: &CascadeTerms, gains: &[f64], gamma: &[f64]) -> Result<Shape, ExpressionError> {
+fn tape(terms: &CascadeTerms, gains: &[f64], gamma: Metric<'_>) -> Result<Shape, ExpressionError> {
     let Steps { mut graph, input, divisor, errors, d_theta_hat } = Steps::new(terms, gains, gamma)?;
     let mut outputs = vec![input, divisor];
     outputs.extend(&errors);

@@ -27,7 +27,7 @@ use crate::reference::{Exchange, Heard};
 /// use forwardstep_core::robot::PointMass;
 ///
 /// let guide = Guide::Consensus(Consensus::new([(&[1.0, 2.0][..], 0.0)])?);
-/// let law = PositionOnly { axes: 1, guide, damping: 8.0, filter_per_s: 20.0, adaptation: 0.0, estimate_start: 2.0 };
+/// let law = PositionOnly { axes: 1, guide, damping: 8.0, filter_per_s: 20.0, adaptation: 0.0, estimate_start: 2.0, bounds: None };
 /// let plant = Mechanical { robot: PointMass { dimension: 1 }, theta: vec![2.0] };
 /// // z, ż, p, I of a mass that is held at 1 m and has no neighbours: z̈ = −(κ₀ + κ₁) ż − κ₀ κ₁ z, and p follows.
 /// let mut stepped = Stepped::new(law, &plant, 0, &[1.0, -1.0, 1.0, 0.0])?;

@@ -35,6 +35,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use super::interior::Metric;
 use crate::expression::{ExpressionError, Graph, Node};
 use crate::plant::CascadeTerms;
 
@@ -48,14 +49,18 @@ pub(super) struct Steps {
     pub(super) divisor: Node,
     /// e_1 … e_n.
     pub(super) errors: Vec<Node>,
-    /// θ̂'.
+    /// Γ τ_n: θ̂', or ξ' of `interior`.
     pub(super) d_theta_hat: Vec<Node>,
 }
 
 impl Steps {
-    /// For a chain, with c_1 … c_n and the diagonal of Γ.
-    pub(super) fn new(terms: &CascadeTerms, gains: &[f64], gamma: &[f64]) -> Result<Self, ExpressionError> {
-        let (n, p) = (terms.order(), terms.parameters());
+    /// For a chain, with c_1 … c_n and the diagonal of Γ, or Γ(θ̂).
+    pub(super) fn new<'a>(
+        terms: &CascadeTerms,
+        gains: &[f64],
+        gamma: impl Into<Metric<'a>>,
+    ) -> Result<Self, ExpressionError> {
+        let (n, p, Metric { gamma, slopes }) = (terms.order(), terms.parameters(), gamma.into());
         let mut graph = Graph::new(n + p + n + 1);
         let theta_hat = (0..p).map(|j| graph.variable(n + j)).collect::<Result<Vec<_>, _>>()?;
         let y = (0..=n).map(|j| graph.variable(n + p + j)).collect::<Result<Vec<_>, _>>()?;
@@ -67,6 +72,7 @@ impl Steps {
             phi.push(regressor);
         }
         let psi = graph.import(terms.input())?;
+        let slopes = slopes.iter().map(|slope| graph.import(slope)).collect::<Result<Vec<_>, _>>()?;
 
         let x_1 = graph.variable(0)?;
         let mut errors = vec![graph.minus(x_1, y[0])];
@@ -80,14 +86,19 @@ impl Steps {
             let theta = (0..p).map(|j| graph.derivative(e, n + j)).collect::<Result<Vec<_>, _>>()?;
             by_theta.push(theta);
             // Γ w and Γ τ.
-            let (mut gamma_w, mut gamma_tau) = (Vec::new(), Vec::new());
+            let (mut gamma_w, mut gamma_tau, mut driven_by) = (Vec::new(), Vec::new(), Vec::new());
             for j in 0..p {
                 let column: Vec<Node> = phi[..=i].iter().map(|phi| phi[j]).collect();
                 let w = graph.dot(&by_x, &column);
                 let driven = graph.times(w, e);
                 tau[j] = graph.plus(tau[j], driven);
-                gamma_w.push(graph.scaled(gamma[j], w));
-                gamma_tau.push(graph.scaled(gamma[j], tau[j]));
+                let [mut of_w, mut of_tau] = [w, tau[j]].map(|of| graph.scaled(gamma[j], of));
+                driven_by.push(of_tau);
+                if let Some(slope) = slopes.get(j) {
+                    [of_w, of_tau] = [of_w, of_tau].map(|of| graph.times(*slope, of));
+                }
+                gamma_w.push(of_w);
+                gamma_tau.push(of_tau);
             }
             let mut next = graph.scaled(gains[i], e);
             if let Some(before) = i.checked_sub(1) {
@@ -112,7 +123,7 @@ impl Steps {
                 let ratio = graph.over(next, divisor);
                 let zero = graph.zero();
                 let input = graph.minus(zero, ratio);
-                return Ok(Steps { graph, input, divisor, errors, d_theta_hat: gamma_tau });
+                return Ok(Steps { graph, input, divisor, errors, d_theta_hat: driven_by });
             }
             errors.push(next);
         }
@@ -121,8 +132,10 @@ impl Steps {
 
 #[cfg(test)]
 mod tests {
+    use super::super::interior::Interior;
     use super::*;
     use crate::expression::{Expression, Tape};
+    use crate::law::ParameterBounds;
 
     const GAMMA: [f64; 2] = [0.7, 1.9];
     const THETA: [f64; 2] = [0.8, -1.3];
@@ -143,10 +156,11 @@ mod tests {
         (0..count).map(|_| next()).collect()
     }
 
-    /// |V̇ + Σ c e²| over the size of its terms, at random states.
-    fn worst(terms: &CascadeTerms, gains: &[f64]) -> f64 {
+    /// |V̇ + Σ c e²| over the size of its terms, at random states, where Γ(θ̂) is Γ times these.
+    fn worst(terms: &CascadeTerms, gains: &[f64], slopes: &[Expression]) -> f64 {
         let (n, p) = (terms.order(), terms.parameters());
-        let Steps { mut graph, input, errors, d_theta_hat, .. } = Steps::new(terms, gains, &GAMMA[..p]).unwrap();
+        let metric = Metric { gamma: &GAMMA[..p], slopes };
+        let Steps { mut graph, input, errors, d_theta_hat, .. } = Steps::new(terms, gains, metric).unwrap();
         // ẋ with the true parameters and this u; V̇ by the chain rule.
         let mut rates = Vec::new();
         for (known, regressor) in terms.known().iter().zip(terms.regressors()) {
@@ -161,7 +175,10 @@ mod tests {
         let psi = graph.import(terms.input()).unwrap();
         let driven = graph.times(psi, input);
         rates[n - 1] = graph.plus(rates[n - 1], driven);
-        rates.extend(&d_theta_hat);
+        for (j, rate) in d_theta_hat.iter().enumerate() {
+            let slope = slopes.get(j).map(|slope| graph.import(slope).unwrap());
+            rates.push(slope.map_or(*rate, |slope| graph.times(slope, *rate)));
+        }
         let y: Vec<Node> = (1..=n).map(|j| graph.variable(n + p + j).unwrap()).collect();
         rates.extend(y);
         let mut terms = Vec::new();
@@ -204,7 +221,11 @@ mod tests {
         for n in 1..=4 {
             let terms = CascadeTerms::strict(all[..n].to_vec()).unwrap();
             assert!(terms.is_strict());
-            assert!(worst(&terms, &[1.0, 1.3, 0.9, 1.1][..n]) < 1e-12, "order {n}");
+            assert!(worst(&terms, &[1.0, 1.3, 0.9, 1.1][..n], &[]) < 1e-12, "order {n}");
+            // Between bounds Γ depends on θ̂.
+            let bounds = ParameterBounds::new(vec![-1.7, -1.9], vec![1.8, 2.6], 1.0);
+            let slopes = Interior::new(&bounds).slopes(n);
+            assert!(worst(&terms, &[1.0, 1.3, 0.9, 1.1][..n], &slopes) < 1e-12, "order {n}, between bounds");
         }
     }
 
@@ -215,7 +236,9 @@ mod tests {
             vec![vec![x(1).power(2.0), x(2).tanh_of() * 0.3], vec![x(3).sin_of() * 0.2, x(1)], vec![x(3), x(2) * x(1)]];
         let terms = CascadeTerms::new(known, regressors, x(1).cos_of() + 2.0).unwrap();
         assert!(!terms.is_strict());
-        assert!(worst(&terms, &[1.0, 1.3, 0.9]) < 1e-11);
+        assert!(worst(&terms, &[1.0, 1.3, 0.9], &[]) < 1e-11);
+        let slopes = Interior::new(&ParameterBounds::new(vec![-1.7, -1.9], vec![1.8, 2.6], 1.0)).slopes(3);
+        assert!(worst(&terms, &[1.0, 1.3, 0.9], &slopes) < 1e-11);
     }
 
     #[test]
@@ -223,7 +246,8 @@ mod tests {
         // ẋ_1 = x_2 + θ x_1², ẋ_2 = u.
         let terms = CascadeTerms::strict(vec![vec![x(1).power(2.0)], vec![Expression::number(0.0)]]).unwrap();
         let (c_1, c_2, gamma) = (1.0, 1.3, 0.7);
-        let Steps { graph, input, errors, d_theta_hat, divisor } = Steps::new(&terms, &[c_1, c_2], &[gamma]).unwrap();
+        let Steps { graph, input, errors, d_theta_hat, divisor } =
+            Steps::new(&terms, &[c_1, c_2], &[gamma][..]).unwrap();
         let tape = Tape::new(&graph, &[input, errors[1], d_theta_hat[0], divisor]).unwrap();
         let (mut workspace, mut out) = (tape.workspace(), [0.0; 4]);
         let at = numbers(5, 6);

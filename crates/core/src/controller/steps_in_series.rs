@@ -20,6 +20,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use super::interior::Metric;
 use crate::LengthError;
 use crate::expression::{ExpressionError, Program, Register, Series, Term};
 use crate::plant::CascadeTerms;
@@ -77,16 +78,21 @@ impl Fields {
 }
 
 impl SeriesSteps {
-    /// For a chain, with c_1 … c_n and the diagonal of Γ.
+    /// For a chain, with c_1 … c_n and the diagonal of Γ, or Γ(θ̂).
     ///
     /// # Errors
     /// [`ExpressionError`] when a term that must be differentiated has no derivative, or it takes too many multiplications.
-    pub(super) fn new(terms: &CascadeTerms, gains: &[f64], gamma: &[f64]) -> Result<Self, ExpressionError> {
-        let (n, p) = (terms.order(), terms.parameters());
+    pub(super) fn new<'a>(
+        terms: &CascadeTerms,
+        gains: &[f64],
+        gamma: impl Into<Metric<'a>>,
+    ) -> Result<Self, ExpressionError> {
+        let (n, p, Metric { gamma, slopes }) = (terms.order(), terms.parameters(), gamma.into());
         let layout = Layout { n, p };
         let mut series = Series::new(n + p + 1);
         let fields = Fields::new(&mut series, terms)?;
         let psi = series.import(terms.input(), 0)?;
+        let slopes = slopes.iter().map(|slope| series.import(slope, n)).collect::<Result<Vec<_>, _>>()?;
         let theta_hat = (0..p).map(|j| series.variable(layout.theta(j))).collect::<Result<Vec<_>, _>>()?;
         let (x_1, y) = (series.variable(0)?, series.jet(layout.time(), n + p, n));
         let mut errors = vec![series.sum(&[Term::Scaled(1.0, x_1), Term::Scaled(-1.0, y)], n)?];
@@ -110,8 +116,13 @@ impl SeriesSteps {
                     tau.push(series.sum(&fields.along_regressor(j, &value_by_x), degree)?);
                     let [e_by, value_by] = [e, before].map(|of| series.slope(of, layout.theta(j)));
                     next.push(Term::Product(1.0, theta_hat[j], w));
-                    next.push(Term::Product(gamma[j], e_by, tau[j]));
-                    next.push(Term::Product(gamma[j], value_by, w));
+                    let [mut tuned, mut mirrored] = [tau[j], w];
+                    if let Some(slope) = slopes.get(j) {
+                        tuned = series.sum(&[Term::Product(1.0, *slope, tuned)], degree)?;
+                        mirrored = series.sum(&[Term::Product(1.0, *slope, mirrored)], degree)?;
+                    }
+                    next.push(Term::Product(gamma[j], e_by, tuned));
+                    next.push(Term::Product(gamma[j], value_by, mirrored));
                 }
             }
             let next = series.sum(&next, degree)?;
@@ -144,7 +155,7 @@ impl SeriesSteps {
         self.program.workspace()
     }
 
-    /// u, its factor, e_1 … e_n, θ̂', and then Σ_j e_j ∂e_j/∂v for v = x_1 … x_n, θ̂, t.
+    /// u, its factor, e_1 … e_n, Γ τ_n, and then Σ_j e_j ∂e_j/∂v for v = x_1 … x_n, θ̂, t.
     ///
     /// # Errors
     /// [`LengthError`] when a slice has the wrong length.
@@ -166,9 +177,11 @@ impl SeriesSteps {
 mod tests {
     use alloc::{format, vec};
 
+    use super::super::interior::Interior;
     use super::super::steps::Steps;
     use super::*;
     use crate::expression::{Expression, Tape};
+    use crate::law::ParameterBounds;
 
     const GAMMA: [f64; 3] = [0.7, 1.9, 1.1];
     const THETA: [f64; 3] = [0.8, -1.3, 0.4];
@@ -226,8 +239,12 @@ mod tests {
         let chains = (1..=5).flat_map(|n| [strict(n, 0), strict(n, 1), strict(n, 3)]).chain((1..=4).map(pure));
         for terms in chains {
             let (n, p) = (terms.order(), terms.parameters());
+            // Every other chain has bounds.
+            let bounds = ParameterBounds::new(vec![-1.3; p], vec![1.6; p], 1.0);
+            let slopes = if n % 2 == 0 { Interior::new(&bounds).slopes(n) } else { Vec::new() };
+            let metric = Metric { gamma: &GAMMA[..p], slopes: &slopes };
             let Steps { mut graph, input, divisor, errors, d_theta_hat } =
-                Steps::new(&terms, &gains(n), &GAMMA[..p]).unwrap();
+                Steps::new(&terms, &gains(n), metric).unwrap();
             let mut outputs = vec![input, divisor];
             outputs.extend(&errors);
             outputs.extend(&d_theta_hat);
@@ -237,7 +254,7 @@ mod tests {
             }
             let tape = Tape::new(&graph, &outputs).unwrap();
             let (mut workspace, mut expected) = (tape.workspace(), vec![0.0; outputs.len()]);
-            let series = SeriesSteps::new(&terms, &gains(n), &GAMMA[..p]).unwrap();
+            let series = SeriesSteps::new(&terms, &gains(n), metric).unwrap();
             for seed in 1..20 {
                 let given = numbers(seed, 2 * n + p + 1);
                 tape.evaluate(&given, &mut workspace, &mut expected).unwrap();

@@ -2,6 +2,7 @@
 
 use forwardstep_sim::recording::{Breakdown, BreakdownCause, Ending, GainRates, Stiffness};
 use forwardstep_sim::setup::{AgentSetup, Method, Setup};
+use forwardstep_sim::{ChainLaw, ChainStep};
 
 use super::names;
 use crate::wording::{about, number};
@@ -27,7 +28,14 @@ pub fn ending_sentence(setup: &Setup, ending: &Ending) -> String {
 /// What happened to the signal that broke a run.
 fn cause(setup: &Setup, breakdown: &Breakdown) -> String {
     match &breakdown.cause {
-        BreakdownCause::NotFinite => "is no longer a finite number".to_owned(),
+        BreakdownCause::NotFinite => match steps_of_backstepping(setup, breakdown) {
+            Some(order) => format!(
+                "is no finite number where it starts: each of the {order} steps of backstepping multiplies slopes of the regressors that the \
+                 step before has multiplied already, so that what they grow to is beyond every number; take smaller regressors, in other \
+                 units or for smaller states, or a lower order"
+            ),
+            None => "is no longer a finite number".to_owned(),
+        },
         BreakdownCause::StepUnderFloor { step_s, stiffness } => {
             let floor_s = setup.solver.min_step_s;
             let why = stiffness.as_ref().map_or_else(String::new, |stiffness| {
@@ -76,6 +84,15 @@ fn cause(setup: &Setup, breakdown: &Breakdown) -> String {
         BreakdownCause::PositionLimit { value, limits: [low, high] } => {
             format!("left its limits [{low}, {high}]: it is {value}")
         }
+    }
+}
+
+/// The order of backstepping that gives no finite number at the start.
+fn steps_of_backstepping(setup: &Setup, breakdown: &Breakdown) -> Option<usize> {
+    let law = setup.agents.get(breakdown.agent).filter(|_| breakdown.t_s <= 0.0)?.law.downcast()?;
+    match law {
+        ChainLaw { step: ChainStep::Backstepping { gains_per_s, .. }, .. } => Some(gains_per_s.len()),
+        ChainLaw { .. } => None,
     }
 }
 

@@ -30,8 +30,10 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "ten-different-robots",
     "backstepping",
     "from-a-log",
+    "replayed-draws",
     "six-arms-over-radio",
     "six-arms-with-friction",
+    "planar-arms-with-friction",
     "without-velocity",
     "double-integrators",
     "thrust-continuous",
@@ -46,6 +48,7 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "pose-ur5e",
     "redundant-panda",
     "theorem-7",
+    "the-long-way-round",
     "tumbling-target",
     "rest-to-rest",
     "sinusoidal-attitude",
@@ -67,6 +70,7 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "strict-feedback-order-10",
     "pure-feedback",
     "immersion-and-invariance",
+    "estimates-within-bounds",
     "saturated-coupling",
     "five-ships",
     "pilot-ship",
@@ -87,8 +91,10 @@ pub struct ShippedTable {
 }
 
 /// All of them. A file of the same name beside a scenario is read in its place.
-pub const SHIPPED_TABLES: [ShippedTable; 2] = [
+pub const SHIPPED_TABLES: [ShippedTable; 4] = [
     ShippedTable { name: "radio-log.csv", text: include_str!("../../scenarios/radio-log.csv") },
+    ShippedTable { name: "replayed-phases.csv", text: include_str!("../../scenarios/replayed-phases.csv") },
+    ShippedTable { name: "replayed-holds.csv", text: include_str!("../../scenarios/replayed-holds.csv") },
     ShippedTable { name: "overflight.csv", text: include_str!("../../scenarios/overflight.csv") },
 ];
 

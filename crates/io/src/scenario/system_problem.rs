@@ -75,9 +75,6 @@ pub enum SystemProblem {
     /// Rows at samples that are not taken.
     #[error("rows are to be recorded at samples, but control is continuous")]
     NoSamples,
-    /// Coefficients of the design that asks for roots.
-    #[error("`swarm` is stated by its roots")]
-    SwarmByRoots,
     /// A β for a design that has none.
     #[error("`continuous` has no β")]
     BetaUnused,
@@ -149,7 +146,6 @@ impl SystemProblem {
             SystemProblem::LeaderUnused { .. } => "write `reference.leader`, or delete the leader".into(),
             SystemProblem::RowsTwice => "leave one of them out".into(),
             SystemProblem::NoSamples => "write `[control]` with `sample_hz`, or `record_at.times_s`".into(),
-            SystemProblem::SwarmByRoots => "write `roots_per_s` with two real roots, which its derivation asks for".into(),
             SystemProblem::BetaUnused => "leave it out: (110) has α alone".into(),
             SystemProblem::LeaderRoots { .. } => {
                 "`continuous` has one root, which is real, the other designs have two, or a pair of complex ones".into()

@@ -189,6 +189,7 @@ fn a_leader_is_followed_by_alpha_and_beta_as_by_roots() {
     for (design, roots, stated) in [
         ("differentiable", "[1.0, 3.0]", "alpha = 3\nbeta = 4"),
         ("without_acceleration", "[{ real = 0.5, imaginary = 2 }]", "alpha = 4.25\nbeta = 1"),
+        ("swarm\"\ncoupling = 9 # \"", "[1.0, 3.0]", "alpha = 3\nbeta = 4"),
     ] {
         let by_roots = changed("continuous", design).replace("[1.5]", roots);
         let stated = by_roots.replace(&format!("roots_per_s = {roots}"), stated);
@@ -203,8 +204,7 @@ fn a_leader_is_followed_by_alpha_and_beta_as_by_roots() {
 #[test]
 fn mistakes_about_alpha_and_beta_are_reported() {
     let two = changed("continuous", "differentiable");
-    let swarm =
-        changed("\"continuous\"", "\"swarm\"\ncoupling = 9").replace("roots_per_s = [1.5]", "alpha = 4\nbeta = 4");
+    let swarm = changed("\"continuous\"", "\"swarm\"\ncoupling = 9").replace("roots_per_s = [1.5]", "alpha = 4");
     for (text, message) in [
         (
             changed("roots_per_s = [1.5]", "roots_per_s = [1.5]\nalpha = 1.5"),
@@ -219,7 +219,7 @@ fn mistakes_about_alpha_and_beta_are_reported() {
             two.replace("roots_per_s = [1.5]", "alpha = 0\nbeta = 1"),
             "test.toml:11:9: `alpha` is 0, but must be positive",
         ),
-        (swarm, "test.toml:12:9: `swarm` is stated by its roots"),
+        (swarm, "the key `beta` is missing"),
         (two.replace("roots_per_s = [1.5]", "alpha = 1\nbeta = nan"), "nan is not a finite number"),
     ] {
         let error = read(&text).unwrap_err().to_string();

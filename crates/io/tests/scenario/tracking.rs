@@ -97,7 +97,7 @@ fn a_target_and_its_law_are_read() {
     let agent = &scenario.setup.agents[0];
     assert!(scenario.setup.reference.is::<Tracking>());
     assert_eq!(scenario.goal, Some(Goal::ErrorBelow(1e-3)));
-    let law = PositionOnlyLaw { damping: 20.0, filter_per_s: 10.0, adaptation: 5.0, estimate_start: 0.0 };
+    let law = PositionOnlyLaw { damping: 20.0, filter_per_s: 10.0, adaptation: 5.0, estimate_start: 0.0, bounds: None };
     assert_eq!(agent.law.downcast(), Some(&law));
     let mut jets = [[0.0; 5]; 2];
     agent.target.as_ref().unwrap().jets(0.0, &mut jets);

@@ -188,7 +188,7 @@ const VEHICLES_CASES: &[Case] = &[
     ("design.differentiable = { damping_per_s = 3, stiffness = 4 }", "design.adaptive = { estimate_start_kg = 1, damping_per_s = -1 }",
         "test.toml:26:60: `damping_per_s` is -1, but must be positive", ""),
     ("design.differentiable = { damping_per_s = 3, stiffness = 4 }", "design.adaptive = { estimate_start_kg = 1, stiffness = 1 }",
-        "test.toml:26:44: unknown key `stiffness`", "allowed here: `damping_per_s`, `adaptation_gain`, `estimate_start_kg`"),
+        "test.toml:26:44: unknown key `stiffness`", "allowed here: `damping_per_s`, `adaptation_gain`, `estimate_start_kg`, `bounds`"),
     ("yaw = { heading_rad = 0.8, rate_rad_s = 0.1, gain_per_s = 2 }", "yaw = { gain_per_s = -1 }",
         "test.toml:27:22: `gain_per_s` is -1, but must not be negative", ""),
     ("yaw = { heading_rad = 0.8, rate_rad_s = 0.1, gain_per_s = 2 }", "yaw = { heading_rad = \"north\" }",

@@ -6,6 +6,7 @@ mod drives;
 mod hostile;
 mod notices;
 mod pinocchio;
+mod poses;
 mod refusals;
 mod robots;
 #[path = "../support/seeds.rs"]

@@ -6,6 +6,7 @@ use forwardstep_core::controller::{
     AdaptiveBackstepping, BacksteppingGains, ChainError, Following, Guide, Immersion, Linearising,
 };
 use forwardstep_core::expression::Expression;
+use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::plant::{Cascade, CascadeError, CascadeTerms, Chain, Formulas, Terms};
 use forwardstep_core::reference::{Consensus, Position, polynomial};
 
@@ -119,6 +120,8 @@ pub struct Estimate {
     pub adaptation: Vec<f64>,
     /// θ̂(0); θ̂(0) + β(0) under immersion and invariance.
     pub start: Vec<f64>,
+    /// Bounds that θ̂ is kept within. Their margins count for nothing but under adaptation by the gradient.
+    pub bounds: Option<ParameterBounds>,
 }
 
 impl ChainLaw {
@@ -144,13 +147,26 @@ impl ChainLaw {
             }
         };
         assembly.length(law.clone(), "adaptation_gain", p, estimate.adaptation.len())?;
+        if let Some(bounds) = &estimate.bounds {
+            assembly.bounds(bounds, ["lower", "upper", "margin"], p)?;
+        }
         each(law, "adaptation_gain", &estimate.adaptation, positive)?;
         assembly.estimate("estimate_start.given", &estimate.start, p)
     }
 
     /// Whether it estimates parameters.
     pub fn estimates(&self) -> bool {
-        !matches!(self.step, ChainStep::Linearising { .. })
+        self.estimate().is_some()
+    }
+
+    /// How it does.
+    pub fn estimate(&self) -> Option<&Estimate> {
+        match &self.step {
+            ChainStep::Linearising { .. } => None,
+            ChainStep::Adaptive { estimate, .. }
+            | ChainStep::Immersion { estimate, .. }
+            | ChainStep::Backstepping { estimate, .. } => Some(estimate),
+        }
     }
 }
 
@@ -199,6 +215,10 @@ impl Law for ChainLaw {
         Known::Checked
     }
 
+    fn kept_within(&self) -> Option<ParameterBounds> {
+        self.estimate()?.bounds.clone()
+    }
+
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
         let own = assembly.agent();
         let model: &ChainModel = assembly.robot()?;
@@ -216,20 +236,27 @@ impl Law for ChainLaw {
             (ChainModel::Derivatives(terms), ChainStep::Adaptive { gain_per_s, estimate }) => {
                 let following = Following { guide, gain_per_s: *gain_per_s, floor };
                 let (gamma, start) = (estimate.adaptation.clone(), estimate.start.clone());
-                let law = Linearising::adaptive(Formulas::clone(terms), following, gamma, start).map_err(wrong)?;
+                let mut law = Linearising::adaptive(Formulas::clone(terms), following, gamma, start).map_err(wrong)?;
+                if let Some(bounds) = &estimate.bounds {
+                    law = law.bounded(bounds.clone()).map_err(wrong)?;
+                }
                 assembly.solo(derivatives(assembly, terms), law)
             }
             (ChainModel::Derivatives(terms), ChainStep::Immersion { gain_per_s, estimate, antiderivatives }) => {
                 let following = Following { guide, gain_per_s: *gain_per_s, floor };
                 let (gamma, start) = (estimate.adaptation.clone(), estimate.start.clone());
-                let law =
+                let mut law =
                     Immersion::new(Formulas::clone(terms), antiderivatives, following, gamma, start).map_err(wrong)?;
+                if let Some(bounds) = &estimate.bounds {
+                    law = law.bounded(bounds.clone()).map_err(wrong)?;
+                }
                 assembly.solo(derivatives(assembly, terms), law)
             }
             (ChainModel::Cascade(terms), ChainStep::Backstepping { gains_per_s, estimate }) => {
                 let gains_per_s = gains_per_s.clone();
                 let gains = BacksteppingGains { gains_per_s, adaptation: estimate.adaptation.clone(), floor };
-                let law = AdaptiveBackstepping::new(terms, guide, gains, estimate.start.clone()).map_err(wrong)?;
+                let (start, bounds) = (estimate.start.clone(), estimate.bounds.as_ref());
+                let law = AdaptiveBackstepping::within(terms, guide, gains, start, bounds).map_err(wrong)?;
                 let plant =
                     Cascade::new(terms.as_ref().clone(), own.robot.theta.clone()).map_err(|error| match error {
                         CascadeError::Length(error) => SetupError::Length { agent: own.name.clone(), error },

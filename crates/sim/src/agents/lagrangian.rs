@@ -295,6 +295,10 @@ impl Law for Adaptive {
         Knowledge::Checked
     }
 
+    fn kept_within(&self) -> Option<ParameterBounds> {
+        self.bounds.clone()
+    }
+
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
         block(assembly)
     }

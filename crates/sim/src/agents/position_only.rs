@@ -1,6 +1,7 @@
 //! A point mass whose velocity is not measured: (a7)–(a9) and Remark 7.
 
 use forwardstep_core::controller::{Guide, PositionOnly};
+use forwardstep_core::law::{ParameterBounds, Range};
 use forwardstep_core::plant::Mechanical;
 use forwardstep_core::reference::{Consensus, Position, polynomial};
 use forwardstep_core::robot::PointMass;
@@ -22,6 +23,8 @@ pub struct PositionOnlyLaw {
     pub adaptation: f64,
     /// m̂(0), kg.
     pub estimate_start: f64,
+    /// Where m is known to be, kg; m̂ keeps to it.
+    pub bounds: Option<Range>,
 }
 
 impl Law for PositionOnlyLaw {
@@ -46,16 +49,23 @@ impl Law for PositionOnlyLaw {
         Known::Checked
     }
 
+    fn kept_within(&self) -> Option<ParameterBounds> {
+        self.bounds.map(|Range { lower, upper }| ParameterBounds::new(vec![lower], vec![upper], 1.0))
+    }
+
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
         let own = assembly.agent();
         let &PointMass { dimension } = assembly.robot()?;
-        let &PositionOnlyLaw { damping, filter_per_s, adaptation, estimate_start } = self;
+        let &PositionOnlyLaw { damping, filter_per_s, adaptation, estimate_start, bounds } = self;
         positive(assembly.of_law(), "damping", damping)?;
         positive(assembly.of_law(), "filter_per_s", filter_per_s)?;
         not_negative(assembly.of_law(), "adaptation_gain", adaptation)?;
+        assembly.range(assembly.of_law().key("bounds"), bounds, adaptation)?;
         let guide = guide(assembly)?;
         let plant = Mechanical { robot: PointMass { dimension }, theta: own.robot.theta.clone() };
-        assembly.solo(plant, PositionOnly { axes: dimension, guide, damping, filter_per_s, adaptation, estimate_start })
+        let axes = dimension;
+        let law = PositionOnly { axes, guide, damping, filter_per_s, adaptation, estimate_start, bounds };
+        assembly.solo(plant, law)
     }
 }
 

@@ -32,6 +32,8 @@ pub struct TaskSpaceLaw {
     pub adaptation: Gain,
     /// ϑ̂(0).
     pub estimate_start: Vec<f64>,
+    /// Bounds that ϑ̂ is kept within; they need a Γ that is no full matrix.
+    pub estimate_bounds: Option<ParameterBounds>,
     /// K*; of a pose K_p, of its position.
     pub task_gain: Gain,
     /// k_o, of poses alone.
@@ -126,6 +128,10 @@ impl Law for TaskSpaceLaw {
         Known::Checked
     }
 
+    fn kept_within(&self) -> Option<ParameterBounds> {
+        self.estimate_bounds.clone()
+    }
+
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
         match &self.tip {
             TipSetup::Planar(tip) => match assembly.agent().robot.kind.downcast::<Driven<PlanarArm>>() {
@@ -213,8 +219,17 @@ impl TaskSpaceLaw {
                 Some(ResolvedGain::Diagonal(_)) => {}
             }
         }
+        let mut law = tracking_law(&robot, assembly, &self.damping, Some(&self.adaptation))?;
+        if let Some(bounds) = &self.estimate_bounds {
+            let place = assembly.of_law().key("estimate_bounds");
+            assembly.bounds_at(place, bounds, ["lower", "upper", "margin"], own.robot.theta.len())?;
+            if !matches!(law.adaptation, Some(ResolvedGain::Diagonal(_))) {
+                return Err(SetupError::ProjectionOfMatrix { agent: own.name.clone() });
+            }
+            law.bounds = Some(bounds.clone());
+        }
         let controller = TaskSpace {
-            law: tracking_law(&robot, assembly, &self.damping, Some(&self.adaptation))?,
+            law,
             task_gain: assembly.gain(&self.task_gain, "task_gain", m)?,
             attitude_gain: self.attitude_gain,
             null_space: self.null_space.clone(),

@@ -1,6 +1,7 @@
 //! (45)–(58): the law of vehicles with one thrust, by angular velocities or, for rotorcraft, by torques.
 
 use forwardstep_core::controller::{Floor, RateLoop, Thrust, ThrustCascade, ThrustDesign, Yaw};
+use forwardstep_core::law::{ParameterBounds, Range};
 use forwardstep_core::plant::Vehicle;
 
 use super::rotorcraft::{self, RotorcraftModel};
@@ -47,6 +48,8 @@ pub enum ThrustKind {
         gamma_star: f64,
         /// m̂(0), kg.
         estimate_start: f64,
+        /// Where m is known to be, kg; m̂ keeps to it.
+        bounds: Option<Range>,
     },
 }
 
@@ -87,6 +90,15 @@ impl Law for ThrustLaw {
         Known::Checked
     }
 
+    fn kept_within(&self) -> Option<ParameterBounds> {
+        match self.design {
+            ThrustKind::Adaptive { bounds, .. } => {
+                bounds.map(|Range { lower, upper }| ParameterBounds::new(vec![lower], vec![upper], 1.0))
+            }
+            ThrustKind::Continuous | ThrustKind::Differentiable { .. } => None,
+        }
+    }
+
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
         if let Ok(VehicleModel { gravity }) = assembly.robot() {
             let plant = vehicle::plant(assembly, *gravity)?;
@@ -107,6 +119,7 @@ impl ThrustLaw {
     fn outer(&self, assembly: &Assembly<'_>, vehicle: &Vehicle) -> Result<Thrust, SetupError> {
         let own = assembly.agent();
         assembly.root_count(self.design.order())?;
+        let mut within = None;
         let (design, mass) = match self.design {
             ThrustKind::Continuous => (ThrustDesign::Continuous, vehicle.mass),
             ThrustKind::Differentiable { alpha_star, stiffness } => {
@@ -115,11 +128,13 @@ impl ThrustLaw {
                 positive(design, "damping_per_s", alpha_star)?;
                 (ThrustDesign::Differentiable { alpha_star, stiffness }, vehicle.mass)
             }
-            ThrustKind::Adaptive { alpha_star, gamma_star, estimate_start } => {
+            ThrustKind::Adaptive { alpha_star, gamma_star, estimate_start, bounds } => {
                 let design = assembly.of_law().key("design.adaptive");
                 positive(design.clone(), "damping_per_s", alpha_star)?;
                 not_negative(design.clone(), "adaptation_gain", gamma_star)?;
-                positive(design, "estimate_start_kg", estimate_start)?;
+                positive(design.clone(), "estimate_start_kg", estimate_start)?;
+                assembly.range(design.key("bounds"), bounds, gamma_star)?;
+                within = bounds;
                 (ThrustDesign::Adaptive { alpha_star, gamma_star }, estimate_start)
             }
         };
@@ -136,6 +151,7 @@ impl ThrustLaw {
             .map_err(|error| SetupError::Roots { agent: own.name.clone(), error })?;
         positive(law(), "thrust_start_n", self.thrust_start.unwrap_or(mass * vehicle.gravity))?;
         (outer.yaw, outer.floor, outer.thrust_start) = (self.yaw, self.floor, self.thrust_start);
+        outer.bounds = within;
         Ok(outer)
     }
 }

@@ -1,7 +1,7 @@
 //! What a law builds its agents with.
 
 use forwardstep_core::controller::{ChainError, Controller, Guide, JointTracking};
-use forwardstep_core::law::ParameterBounds;
+use forwardstep_core::law::{ParameterBounds, Range};
 use forwardstep_core::plant::{Mechanical, Plant, total};
 use forwardstep_core::reference::{WrittenIn, polynomial};
 use forwardstep_core::signal::Block as Signals;
@@ -127,7 +127,20 @@ impl<'a> Assembly<'a> {
         keys: [&'static str; 3],
         parameters: usize,
     ) -> Result<(), SetupError> {
-        let place = self.of_law().key("bounds");
+        self.bounds_at(self.of_law().key("bounds"), bounds, keys, parameters)
+    }
+
+    /// The same in the table at `place`.
+    ///
+    /// # Errors
+    /// As [`Assembly::bounds`].
+    pub(crate) fn bounds_at(
+        &self,
+        place: Path,
+        bounds: &ParameterBounds,
+        keys: [&'static str; 3],
+        parameters: usize,
+    ) -> Result<(), SetupError> {
         let [lower, upper, margin] = keys;
         self.length(place.clone(), lower, parameters, bounds.lower.len())?;
         self.length(place.clone(), upper, parameters, bounds.upper.len())?;
@@ -140,6 +153,20 @@ impl<'a> Assembly<'a> {
             within(at_low, "", *low, -LARGEST, LARGEST)?;
             within(at_high.clone(), "", *high, -LARGEST, LARGEST)?;
             at_least(at_high, "", *high, (lower, *low))?;
+        }
+        Ok(())
+    }
+
+    /// Checks the bounds of one estimate, in the table at `place`, which has to be adapted with the gain `gamma`.
+    ///
+    /// # Errors
+    /// [`SetupError`] when they have no meaning, or no effect.
+    pub(crate) fn range(&self, place: Path, range: Option<Range>, gamma: f64) -> Result<(), SetupError> {
+        let Some(Range { lower, upper }) = range else { return Ok(()) };
+        let bounds = ParameterBounds::new(vec![lower], vec![upper], 1.0);
+        self.bounds_at(place, &bounds, ["lower", "upper", "margin"], 1)?;
+        if gamma == 0.0 {
+            return Err(SetupError::BoundsOfKnown { agent: self.agent().name.clone() });
         }
         Ok(())
     }

@@ -375,8 +375,8 @@ pub enum SetupError {
         /// There is such a term.
         has: bool,
     },
-    /// Bounds of kinematic parameters that are not adapted.
-    #[error("agent `{agent}`: bounds of kinematic parameters have no effect where these are not adapted")]
+    /// Bounds of parameters that are not adapted.
+    #[error("agent `{agent}`: bounds of estimates have no effect where these are not adapted: leave them out")]
     BoundsOfKnown {
         /// The agent.
         agent: String,

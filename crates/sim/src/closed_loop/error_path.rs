@@ -62,6 +62,9 @@ impl SetupError {
             SetupError::Chain { agent, error: ChainError::Antiderivative { parameter, .. } } => {
                 of(agent).key("law.immersion.antiderivatives").index(*parameter)
             }
+            SetupError::Chain { agent, error: ChainError::StartAtBound { .. } } => {
+                of(agent).key("law.adaptive_backstepping.estimate_start")
+            }
             SetupError::Chain { agent, .. }
             | SetupError::Length { agent, .. }
             | SetupError::LawOfAnother { agent, .. }

@@ -19,7 +19,7 @@ pub fn number(value: f64) -> Expression {
 }
 
 pub fn estimate(gamma: &[f64]) -> Estimate {
-    Estimate { adaptation: gamma.to_vec(), start: vec![0.0; gamma.len()] }
+    Estimate { adaptation: gamma.to_vec(), start: vec![0.0; gamma.len()], bounds: None }
 }
 
 pub fn agent(

@@ -14,7 +14,8 @@ use super::{axes, fixed, setup, switching, wave};
 
 pub const G: f64 = 9.81;
 pub const DIFFERENTIABLE: ThrustKind = ThrustKind::Differentiable { alpha_star: 3.0, stiffness: 4.0 };
-pub const ADAPTIVE: ThrustKind = ThrustKind::Adaptive { alpha_star: 3.0, gamma_star: 0.2, estimate_start: 0.8 };
+pub const ADAPTIVE: ThrustKind =
+    ThrustKind::Adaptive { alpha_star: 3.0, gamma_star: 0.2, estimate_start: 0.8, bounds: None };
 
 pub fn vehicle() -> Arc<dyn Robot> {
     Arc::new(VehicleModel { gravity: G })

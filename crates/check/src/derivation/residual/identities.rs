@@ -235,7 +235,7 @@ impl List {
                 }
                 (Step::PositionOnly(_), "after (a9)") | (Step::Thrust(..), "(58)") => Rest::Estimate,
                 // What w stands for.
-                (Step::Thrust(..), "") => Rest::Missing(Missing::Definition),
+                (Step::Thrust(..) | Step::PositionOnly(_), "") => Rest::Missing(Missing::Definition),
                 _ => Rest::Missing(Missing::Term),
             };
             self.push(Subject::Controller, (formula, place), rest);

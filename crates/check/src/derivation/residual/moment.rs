@@ -409,7 +409,7 @@ impl<'c, 'a> At<'c, 'a> {
         Ok(less(rate, &self.adapted()?))
     }
 
-    /// m̂' + γ* żᵀs, with m̂ = m̂(0) + I − γ* (żᵀx − ½ zᵀz) from the rate of I.
+    /// m̂' + γ* żᵀs, with m̂ = m̂(0) + I − γ* (żᵀx − ½ zᵀz) from the rate of I; with bounds that is μ, which comes back.
     fn mass_estimate(&self) -> Result<Vector, Missing> {
         let own = &self.case.setup.agents[self.moment.agent];
         let law = own.law.downcast::<forwardstep_sim::PositionOnlyLaw>().ok_or(Missing::Term)?;
@@ -422,6 +422,13 @@ impl<'c, 'a> At<'c, 'a> {
             for term in [-ddz[k] * x[k], -dz[k] * dx[k], dz[k] * z[k], dz[k] * dx[k], -dz[k] * z[k]] {
                 add(&mut sum, law.adaptation, &[[term, term.abs()]]);
             }
+        }
+        if let Some(range) = law.bounds {
+            let integral =
+                self.state(Signal::Estimate, false).and_then(|own| own.first().copied()).ok_or(Missing::Term)?;
+            let by_parts: f64 = (0..x.len()).map(|k| dz[k] * x[k] - 0.5 * z[k] * z[k]).sum();
+            let back = law.filter_per_s * range.beyond(law.estimate_start + integral - law.adaptation * by_parts);
+            add(&mut sum, 1.0, &[[back, back.abs()]]);
         }
         Ok(sum)
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use forwardstep_core::attitude::{cross, rotate};
 use forwardstep_core::plant::{Formulas, Terms};
-use forwardstep_sim::{AgentSetup, ChainModel, RotorcraftModel, Signal, VehicleModel};
+use forwardstep_sim::{AgentSetup, ChainModel, RotorcraftModel, Signal, ThrustKind, ThrustLaw, VehicleModel};
 
 use super::super::case::{Step, ThrustStep};
 use super::super::form::{Term, number};
@@ -151,7 +151,7 @@ impl At<'_, '_> {
         shown.copied().ok_or(Missing::Term)
     }
 
-    /// (58) of a vehicle: m̂' + γ* wᵀṡ*, where m̂ is m̂(0) + I − γ* wᵀs*, from the rate of I.
+    /// (58) of a vehicle: m̂' + γ* wᵀṡ*, where m̂ is m̂(0) + I − γ* wᵀs*, from the rate of I; with bounds that is μ, which comes back.
     pub(super) fn vehicle_estimate(&mut self) -> Result<Vector, Missing> {
         let Step::Thrust(ThrustStep::Adaptive, [alpha, gamma]) = &self.case.step else { return Err(Missing::Term) };
         let (alpha, gamma) = (number(alpha), number(gamma));
@@ -164,6 +164,16 @@ impl At<'_, '_> {
             for term in dw.into_iter().flat_map(|dw| [-gamma * dw * dx[k], gamma * dw * z[k]]) {
                 sum[0] = [sum[0][0] + term, sum[0][1] + term.abs()];
             }
+        }
+        let law = self.case.setup.agents[self.moment.agent].law.downcast::<ThrustLaw>().map(|law| law.design);
+        if let Some(ThrustKind::Adaptive { estimate_start, bounds: Some(range), .. }) = law {
+            let (_, gravity) = self.vehicle()?;
+            let (dz, integral) = (self.reference(1)?, self.state(Signal::Estimate, false).ok_or(Missing::Term)?);
+            let weight = |k: usize| if k == 2 { alpha * gravity } else { 0.0 };
+            let w = |k: usize| ddz[k] + offset[k][3] + alpha * (dz[k] + offset[k][2]) - weight(k);
+            let ws: f64 = (0..3).map(|k| w(k) * (dx[k] - z[k] - offset[k][1])).sum();
+            let back = alpha * range.beyond(estimate_start + integral[0] - gamma * ws);
+            sum[0] = [sum[0][0] + back, sum[0][1] + back.abs()];
         }
         Ok(sum)
     }

@@ -1,7 +1,7 @@
 //! Robots under (6)–(7): M, C, g, D and Y at an instant.
 
 use forwardstep_core::robot::TwoVelocity;
-use forwardstep_sim::{Adaptive, AgentSetup, DynamicsAt, Evaluator, Signal, SpacecraftModel, TaskSpaceLaw};
+use forwardstep_sim::{AgentSetup, DynamicsAt, Evaluator, Signal, SpacecraftModel, TaskSpaceLaw};
 
 use super::super::case::Step;
 use super::super::form::{Operator, Term};
@@ -155,7 +155,7 @@ impl Robot<'_> {
         let pulled: Vector = (0..p).map(column).collect();
         let gamma = self.gains.as_ref().and_then(|gains| gains.adaptation.as_ref()).ok_or(Missing::Term)?;
         let mut rates = times(gamma.transpose().as_slice(), &pulled);
-        let bounds = self.agent.law.downcast::<Adaptive>().and_then(|law| law.bounds.as_ref());
+        let bounds = self.agent.law.kept_within();
         if let (Some(bounds), Some(estimate)) = (bounds, estimate) {
             for (k, ([rate, _], hat)) in rates.iter_mut().zip(estimate).enumerate() {
                 *rate = bounds.slowed(k, *hat, *rate);

@@ -5,6 +5,7 @@
 use forwardstep_core::ResolvedGain;
 use forwardstep_core::attitude::{Desired, product};
 use forwardstep_core::controller::NullSpace;
+use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::robot::tree::Tree;
 use forwardstep_core::robot::{Posture, TipKinematics};
 use forwardstep_sim::{AgentSetup, Signal, TaskSpaceLaw, TipSetup};
@@ -25,8 +26,8 @@ pub(super) struct Tip {
     null_space: Option<NullSpace>,
     /// Λ; `None` where θ̂ stays as it is.
     adaptation: Option<ResolvedGain>,
-    /// Whether θ̂ is kept within bounds, which (82) does not speak of.
-    bounded: bool,
+    /// What θ̂ is kept within.
+    bounds: Option<ParameterBounds>,
 }
 
 impl Tip {
@@ -44,7 +45,7 @@ impl Tip {
             None => None,
         };
         let (attitude_gain, null_space) = (law.attitude_gain, law.null_space.clone());
-        Some(Tip { kinematics, stiffness, attitude_gain, null_space, adaptation, bounded: law.bounds.is_some() })
+        Some(Tip { kinematics, stiffness, attitude_gain, null_space, adaptation, bounds: law.bounds.clone() })
     }
 }
 
@@ -144,17 +145,22 @@ impl Tip {
         [phi, d_phi]
     }
 
-    /// Λ Zᵀ K* Δx.
+    /// Λ Zᵀ K* Δx, slowed at the bounds if there are some.
     fn adapted(&self, seen: &Seen) -> Result<Vector, Missing> {
-        if self.bounded {
-            return Err(Missing::Limited);
-        }
         let mut push = vec![0.0; self.kinematics.parameter_count()];
         let weighted = values(&self.weighted(seen));
         let found = self.kinematics.regressor_transposed(&seen.q, &seen.dq, &weighted, &mut push);
         found.map_err(|_| Missing::Term)?;
         match &self.adaptation {
-            Some(lambda) => Ok(gained(lambda, &exact(push))),
+            Some(lambda) => {
+                let mut rates = gained(lambda, &exact(push));
+                if let Some(bounds) = &self.bounds {
+                    for (k, ([rate, _], hat)) in rates.iter_mut().zip(&seen.estimate[0]).enumerate() {
+                        *rate = bounds.slowed(k, *hat, *rate);
+                    }
+                }
+                Ok(rates)
+            }
             None => Ok(exact(push.iter().map(|_| 0.0))),
         }
     }

@@ -29,7 +29,8 @@
 //! another z_r with Ĵ z_r = ẋ_d.
 //!
 //! **Projection** of θ̂ ([`ParameterBounds`]), when bounds are given and Λ is diagonal: with u = ZᵀK*Δx, V̇ has one more term,
-//! κ Σ (c_k − 1) Δθ_k u_k ≤ 0.
+//! κ Σ (c_k − 1) Δθ_k u_k ≤ 0. (81) is a gradient of the same kind: ϑ̂ is kept within the bounds of [`SlotineLi`], with the term that they
+//! bring there.
 
 mod null_space;
 mod pose;
@@ -357,6 +358,17 @@ where
         let mut value = 0.5 * inertia + 0.5 * self.kappa * (strayed + 2.0 * self.potential(work));
         dissipation += self.kappa * self.alpha * strayed;
 
+        if let Some(bounds) = &self.law.bounds {
+            let TaskMeasured { q, dq, .. } = given.measured;
+            let TaskWork { robot, dz_r, z_r, pulled, s, damped, yt_s, .. } = &mut *work;
+            let z = &state[..m];
+            for k in 0..m {
+                dz_r[k] -= self.alpha * (z[k] - z_r[k]) + pulled[k];
+            }
+            let (motion, theta_hat) = (TwoVelocity { q, dq, z, dz: dz_r }, &state[l.theta..l.kinematic]);
+            self.robot.regressor_products(robot, motion, theta_hat, s, damped, yt_s)?;
+            dissipation += bounds.gained(theta_hat, &plant.arm.theta, yt_s);
+        }
         let TaskWork { difference, inverse_gamma, inverse_lambda, push, .. } = work;
         if let Some(inverse) = inverse_gamma {
             for (k, hat) in state[l.theta..l.kinematic].iter().enumerate() {

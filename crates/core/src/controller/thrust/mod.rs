@@ -48,6 +48,9 @@
 //! The paper parts wᵀẍ, and wᵀż stays under the integral; that is the same number. Parting wᵀṡ keeps I small: where all
 //! is well it tends to a constant, while ∫ wᵀż + ẇᵀẋ follows the motion.
 //!
+//! **Bounds.** wᵀṡ holds the acceleration, so m̂' cannot be slowed down at a bound: u takes Π(m̂) with what is found by parts for μ, as derived
+//! in `law::clamped`, with ρ = α*. V has W/γ* for its last term, and loses (α*/γ*)(Π(μ) − m)(μ − Π(μ)) more.
+//!
 //! **Heading.** ω₃ is free. Let b = R e₁, where the body looks, and ψ_r the heading to keep, ψ̇_r = r. Then
 //!
 //! ```text
@@ -74,6 +77,7 @@ use alloc::vec::Vec;
 
 use super::{Balance, Jet};
 use crate::attitude::{cross, dot, rotate, rotate_back};
+use crate::law::Range;
 use crate::plant::{Vehicle, VehicleState};
 use crate::reference::{
     Consensus, Heard, Measured, Position, Reference, ReferenceOut, RootSet, RootsError, polynomial,
@@ -145,6 +149,8 @@ pub struct Thrust {
     pub floor: Floor,
     /// σ(0), N; m g or m̂(0) g when it is not given.
     pub thrust_start: Option<f64>,
+    /// Where m is known to be, kg; read under (58).
+    pub bounds: Option<Range>,
 }
 
 /// What the outer law asks for at one instant.
@@ -189,6 +195,7 @@ impl Thrust {
             yaw: Yaw { heading: 0.0, rate: 0.0, gain: 1.0 },
             floor: Floor::Stops(0.1 * mass * gravity),
             thrust_start: None,
+            bounds: None,
         })
     }
 
@@ -306,12 +313,16 @@ impl Thrust {
             let (s, w) = self.error_and_push(measured.dx, reference, target);
             let dw: [f64; 3] =
                 core::array::from_fn(|k| d_reference[6 + k] + d(k, 4) + alpha_star * (reference[6 + k] + d(k, 3)));
-            let mass = match rest.get(2) {
+            let mut mass = match rest.get(2) {
                 Some(integral) => self.mass + integral - gamma_star * dot(w, s),
                 None => self.mass,
             };
             if let (Some(d_integral), Some(shown)) = (d_rest.get_mut(2), shown.last_mut()) {
                 *d_integral = gamma_star * dot(dw, s);
+                if let Some(range) = self.bounds {
+                    *d_integral -= alpha_star * range.beyond(mass);
+                    mass = range.nearest(mass);
+                }
                 *shown = mass;
             }
             shown[..9].copy_from_slice(reference);
@@ -375,15 +386,21 @@ impl Thrust {
             core::array::from_fn(|k| ddx[k] - reference[3 + k] - target.get(k).map_or(0.0, |jet| jet[2]));
         let mut value = 0.5 * vehicle.mass * dot(ds, ds) + 0.5 * stiffness * dot(s, s);
         let force = |along: [f64; 3]| along.iter().zip(external).map(|(a, f)| a * f).sum::<f64>() / vehicle.mass;
-        let mut power = stiffness * force(s);
+        let (mut power, mut withheld) = (stiffness * force(s), 0.0);
         if let Some(integral) = rest.get(2)
             && gamma_star > 0.0
         {
-            let delta = self.mass + integral - gamma_star * dot(w, s) - vehicle.mass;
-            value += delta * delta / (2.0 * gamma_star);
+            let mu = self.mass + integral - gamma_star * dot(w, s);
+            let mut delta = mu - vehicle.mass;
+            let mut learnt = 0.5 * delta * delta;
+            if let Some(range) = self.bounds {
+                (delta, learnt) = (range.nearest(mu) - vehicle.mass, range.potential(mu, vehicle.mass));
+                withheld = alpha_star / gamma_star * range.withheld(mu, vehicle.mass);
+            }
+            value += learnt / gamma_star;
             power -= delta * force(w);
         }
         let slipped: f64 = ds.iter().zip(slip).map(|(ds, slip)| ds * slip).sum();
-        Ok(Balance { value, dissipation: alpha_star * vehicle.mass * dot(ds, ds) - slipped - power })
+        Ok(Balance { value, dissipation: alpha_star * vehicle.mass * dot(ds, ds) + withheld - slipped - power })
     }
 }

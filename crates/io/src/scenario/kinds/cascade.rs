@@ -8,6 +8,7 @@ use forwardstep_sim::{ChainLaw, ChainModel, ChainStep, Law, RobotSetup, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::bounds::EstimateBoundsFile;
 use super::chain::{ChainProblem, FLOOR, MOST_STATES, adapted, chain_robot, each, list, optional};
 use super::{
     At, AxisValues, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, LawTable, LawTemplate, RobotKind,
@@ -173,8 +174,10 @@ pub struct AdaptiveBacksteppingFile {
     pub gains_per_s: Option<At<AxisValues>>,
     /// The gain Γ, one for all parameters or one for each. Default: 1.
     pub adaptation_gain: Option<At<AxisValues>>,
-    /// The estimate at the start. Default: zero.
+    /// The estimate at the start. Default: zero; between bounds that zero is not between, their middle.
     pub estimate_start: Option<EstimateStartFile>,
+    /// Bounds that the estimate stays strictly between: it adapts more slowly near them, and cannot start there. Default: none.
+    pub bounds: Option<EstimateBoundsFile>,
     /// The run ends where the factor of the input in the last step comes closer to zero. Default: 1e-3.
     #[schemars(with = "Option<Positive>")]
     pub floor: Option<At<f64>>,
@@ -204,7 +207,13 @@ impl LawKind for AdaptiveBacksteppingFile {
     fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
         let order = order(agent.robot).unwrap_or_default();
         let gains_per_s = each(self.gains_per_s.as_ref(), order);
-        let estimate = adapted(self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), agent);
+        let (gain, start, bounds) = (self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), self.bounds.as_ref());
+        let mut estimate = adapted(gain, start, bounds, agent)?;
+        if let (None, Some(bounds)) = (start, &estimate.bounds) {
+            for (start, (low, high)) in estimate.start.iter_mut().zip(bounds.lower.iter().zip(&bounds.upper)) {
+                *start = if *low < 0.0 && 0.0 < *high { 0.0 } else { 0.5 * (low + high) };
+            }
+        }
         let floor = number_or(&self.floor, FLOOR);
         Ok(Arc::new(ChainLaw { step: ChainStep::Backstepping { gains_per_s, estimate }, floor }))
     }

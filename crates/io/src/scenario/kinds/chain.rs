@@ -10,10 +10,11 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use thiserror::Error;
 
+use super::bounds::{EstimateBoundsFile, started};
 use super::{
     At, AxisValues, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, LawTable, LawTemplate, Mistake,
-    RobotKind, RobotRead, RobotTable, RobotTemplate, Spread, StartReader, Stop, TaskTemplate, axis, count, estimate,
-    fault, length, number_or, values,
+    RobotKind, RobotRead, RobotTable, RobotTemplate, Spread, StartReader, Stop, TaskTemplate, axis, count, fault,
+    length, number_or, values,
 };
 use crate::scenario::formula::formula_in;
 use crate::scenario::values::Positive;
@@ -157,9 +158,12 @@ pub(super) fn each(file: Option<&At<AxisValues>>, need: usize) -> Vec<f64> {
 pub(super) fn adapted(
     gain: Option<&At<AxisValues>>,
     start: Option<&EstimateStartFile>,
+    bounds: Option<&EstimateBoundsFile>,
     agent: &LawReader<'_>,
-) -> Estimate {
-    Estimate { adaptation: each(gain, agent.robot.theta.len()), start: estimate(start, agent) }
+) -> Result<Estimate, Fault> {
+    let bounds = bounds.map(|bounds| bounds.of(agent.robot)).transpose()?;
+    let start = started(start, bounds.as_ref(), agent);
+    Ok(Estimate { adaptation: each(gain, agent.robot.theta.len()), start, bounds })
 }
 
 /// Feedback linearisation of a chain of derivatives, with the true parameters.
@@ -199,8 +203,10 @@ pub struct LinearAdaptiveFile {
     pub gain_per_s: Option<At<f64>>,
     /// The gain Γ, one for all parameters or one for each. Default: 1.
     pub adaptation_gain: Option<At<AxisValues>>,
-    /// The estimate at the start. Default: zero.
+    /// The estimate at the start. Default: zero, or the nearest within the bounds.
     pub estimate_start: Option<EstimateStartFile>,
+    /// Bounds that the estimate is kept within, by projection. Default: none.
+    pub bounds: Option<EstimateBoundsFile>,
     /// The run ends where ψ comes closer to zero. Default: 1e-3.
     #[schemars(with = "Option<Positive>")]
     pub floor: Option<At<f64>>,
@@ -221,7 +227,8 @@ impl LawKind for LinearAdaptiveFile {
 
     fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
         let gain_per_s = number_or(&self.gain_per_s, GAIN);
-        let estimate = adapted(self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), agent);
+        let (gain, start, bounds) = (self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), self.bounds.as_ref());
+        let estimate = adapted(gain, start, bounds, agent)?;
         let floor = number_or(&self.floor, FLOOR);
         Ok(Arc::new(ChainLaw { step: ChainStep::Adaptive { gain_per_s, estimate }, floor }))
     }
@@ -236,8 +243,10 @@ pub struct ImmersionFile {
     pub gain_per_s: Option<At<f64>>,
     /// The gain Γ, one for all parameters or one for each. Default: 1.
     pub adaptation_gain: Option<At<AxisValues>>,
-    /// The estimate at the start. Default: zero.
+    /// The estimate at the start. Default: zero, or the nearest within the bounds.
     pub estimate_start: Option<EstimateStartFile>,
+    /// Bounds beyond which the estimate is not used. Default: none.
+    pub bounds: Option<EstimateBoundsFile>,
     /// For each parameter a formula whose derivative by the highest derivative of x is the regressor. Default: the regressor
     /// times that derivative, for regressors without it.
     pub antiderivatives: Option<At<Vec<At<String>>>>,
@@ -266,7 +275,8 @@ impl LawKind for ImmersionFile {
             }
         };
         let gain_per_s = number_or(&self.gain_per_s, GAIN);
-        let estimate = adapted(self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), agent);
+        let (gain, start, bounds) = (self.adaptation_gain.as_ref(), self.estimate_start.as_ref(), self.bounds.as_ref());
+        let estimate = adapted(gain, start, bounds, agent)?;
         let floor = number_or(&self.floor, FLOOR);
         Ok(Arc::new(ChainLaw { step: ChainStep::Immersion { gain_per_s, estimate, antiderivatives }, floor }))
     }

@@ -7,7 +7,7 @@
 //! the schema come from there.
 //!
 //! - `urdf`, `planar_arm`, `point_mass`: robots under (6)–(7); `adaptive`: these laws; a mass without velocity is with it.
-//! - `drives`: friction at their joints.
+//! - `drives`: friction at their joints; `bounds`: what estimates are kept within.
 //! - `task_space`: the end-effector of a robot.
 //! - `thrust`: vehicles with one thrust; `spacecraft`: an attitude.
 //! - `chain`, `cascade`: Section IV.
@@ -15,6 +15,7 @@
 //! - `delays`, `schedules`: how late a message is, and which graph is in force.
 
 pub mod adaptive;
+pub mod bounds;
 pub mod cascade;
 pub mod chain;
 pub mod delays;

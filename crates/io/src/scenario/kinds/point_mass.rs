@@ -7,6 +7,7 @@ use forwardstep_sim::{Law, PositionOnlyLaw, RobotSetup, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::bounds::EstimateBoundsFile;
 use super::drives::{StatedFrictionFile, driven};
 use super::{
     At, AxisValues, Fault, InputFolder, LawKind, LawReader, LawTable, LawTemplate, RobotKind, RobotRead, RobotTable,
@@ -91,8 +92,10 @@ pub struct PositionOnlyFile {
     /// The gain γ* of the mass estimate. Default: 10. Zero to keep the estimate as it is.
     #[schemars(range(min = 0))]
     pub adaptation_gain: Option<At<f64>>,
-    /// The mass estimate at the start, in kg. Default: 0.
+    /// The mass estimate at the start, in kg. Default: 0, or the nearest within the bounds.
     pub estimate_start_kg: Option<At<f64>>,
+    /// Bounds beyond which the mass estimate is not used. Default: none.
+    pub bounds: Option<EstimateBoundsFile>,
 }
 
 impl LawKind for PositionOnlyFile {
@@ -108,12 +111,15 @@ impl LawKind for PositionOnlyFile {
         robot.kind.is::<PointMass>()
     }
 
-    fn law(&self, _: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
+    fn law(&self, reader: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
+        let bounds = self.bounds.as_ref().map(|bounds| bounds.of_mass(reader.robot, reader.agent)).transpose()?;
+        let nearest = bounds.map_or(0.0, |range| range.nearest(0.0));
         Ok(Arc::new(PositionOnlyLaw {
             damping: number_or(&self.damping, DAMPING_GAIN),
             filter_per_s: number_or(&self.filter_per_s, FILTER_PER_S),
             adaptation: number_or(&self.adaptation_gain, ADAPTATION_GAIN),
-            estimate_start: self.estimate_start_kg.as_ref().map_or(0.0, |start| start.value),
+            estimate_start: self.estimate_start_kg.as_ref().map_or(nearest, |start| start.value),
+            bounds,
         }))
     }
 }

@@ -12,9 +12,10 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use thiserror::Error;
 
+use super::bounds::{EstimateBoundsFile, started};
 use super::{
     At, Body, DampingFile, EstimateStartFile, Fault, GainFile, GainOrBandwidth, LawKind, LawReader, LawTable, Mistake,
-    adaptation, damping, estimate, fault, filled, gain_or, length, number_or, values,
+    adaptation, damping, fault, filled, gain_or, length, number_or, values,
 };
 use crate::scenario::gains::{has_scales, known_or_given};
 use crate::scenario::push_problem::PushProblem;
@@ -104,8 +105,10 @@ pub struct TaskSpaceFile {
     pub damping: Option<DampingFile>,
     /// The gain Γ. Default: a bandwidth of 5 1/s for a URDF, 30 otherwise.
     pub adaptation_gain: Option<At<GainOrBandwidth>>,
-    /// The estimate of the parameters at the start. Default: zero.
+    /// The estimate of the parameters at the start. Default: zero, or the nearest within `estimate_bounds`.
     pub estimate_start: Option<EstimateStartFile>,
+    /// Bounds that the estimate of the parameters is kept within. Default: none.
+    pub estimate_bounds: Option<EstimateBoundsFile>,
     /// The gain K* on the error of the tip in the reference dynamics: a number, a diagonal or a matrix. Default: 20.
     pub task_gain: Option<At<GainFile>>,
     /// The gain k_o on Δq_v of an end-effector whose orientation follows too. It is one number: with a matrix no energy is left to
@@ -234,6 +237,7 @@ impl LawKind for TaskSpaceFile {
             given => adaptation(given.as_ref(), reader)?,
         };
         let kinematic_adaptation = gain_or("kinematic_gain", &self.kinematic_gain, KINEMATIC_GAIN)?;
+        let estimate_bounds = self.estimate_bounds.as_ref().map(|bounds| bounds.of(robot)).transpose()?;
         let bounds = self.bounds.as_ref().map(|place| bounds(&place.value));
         if let (Some(place), Gain::Matrix(_)) = (&self.bounds, &kinematic_adaptation) {
             return Err(fault(place, TipProblem::BoundsOfMatrix));
@@ -251,7 +255,8 @@ impl LawKind for TaskSpaceFile {
             kinematic_names,
             damping,
             adaptation,
-            estimate_start: estimate(self.estimate_start.as_ref(), reader),
+            estimate_start: started(self.estimate_start.as_ref(), estimate_bounds.as_ref(), reader),
+            estimate_bounds,
             task_gain: gain_or("task_gain", &self.task_gain, TASK_GAIN)?,
             attitude_gain: number_or(&self.attitude_gain, ATTITUDE_GAIN),
             null_space,

@@ -8,6 +8,7 @@ use forwardstep_sim::{AxisUnit, Law, Robot, RobotSetup, RotorcraftModel, Start, 
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::bounds::EstimateBoundsFile;
 use super::{
     At, Fault, GainFile, InputFolder, LawKind, LawReader, LawTable, LawTemplate, RobotKind, RobotRead, RobotTable,
     RobotTemplate, Spread, StartReader, Stop, TaskTemplate, axis, fault, gain, number_or,
@@ -226,6 +227,8 @@ pub struct AdaptiveThrustFile {
     /// The mass estimate at the start, in kg; positive, for the thrust starts with it.
     #[schemars(with = "Positive")]
     pub estimate_start_kg: At<f64>,
+    /// Bounds beyond which the mass estimate is not used. Default: none.
+    pub bounds: Option<EstimateBoundsFile>,
 }
 
 /// The heading of a vehicle.
@@ -294,12 +297,14 @@ impl LawKind for ThrustFile {
                 damping_per_s,
                 adaptation_gain,
                 estimate_start_kg,
+                bounds,
             })) => {
                 let estimate_start = estimate_start_kg.value;
                 let kind = ThrustKind::Adaptive {
                     alpha_star: number_or(damping_per_s, DAMPING_PER_S),
                     gamma_star: number_or(adaptation_gain, ADAPTATION_GAIN),
                     estimate_start,
+                    bounds: bounds.as_ref().map(|bounds| bounds.of_mass(robot, agent.agent)).transpose()?,
                 };
                 (kind, estimate_start)
             }

@@ -27,8 +27,8 @@ pub struct LeaderReferenceFile {
     /// Needed unless α and β are given.
     #[schemars(with = "Option<Vec<RootFile>>", length(min = 1, max = 2))]
     pub roots_per_s: Option<RootsFile>,
-    /// α as the paper writes it, in the place of roots: in 1/s for `continuous`, in 1/s² for the others, which need β too. Not for `swarm`,
-    /// which the paper does not print.
+    /// α as the paper writes it, in the place of roots: in 1/s for `continuous`, in 1/s² for the others, which need β too. For `swarm`,
+    /// which the paper does not print, p² + β p + α should have real roots, β² ≥ 4 α: what it promises is derived for these.
     #[schemars(with = "Option<Positive>")]
     pub alpha: Option<At<f64>>,
     /// β as the paper writes it, in 1/s; not for `continuous`, which has none.
@@ -128,12 +128,10 @@ fn coefficients(file: &LeaderReferenceFile, design: FollowingDesign) -> Result<(
     let twice =
         |place: &At<f64>, second| Err(fault(place, ValueProblem::SameQuantity { first: "roots_per_s", second }));
     let continuous = design == FollowingDesign::Continuous;
-    let swarm = matches!(design, FollowingDesign::Swarm { .. });
     match (roots_per_s, alpha, beta) {
         (Some(_), Some(alpha), _) => twice(alpha, "alpha"),
         (Some(_), None, Some(beta)) => twice(beta, "beta"),
         (Some(list), None, None) => of_roots(list, design),
-        (None, Some(place), _) | (None, None, Some(place)) if swarm => Err(fault(place, SystemProblem::SwarmByRoots)),
         (None, Some(_), Some(beta)) if continuous => Err(fault(beta, SystemProblem::BetaUnused)),
         // p + α.
         (None, Some(alpha), None) if continuous => Ok((alpha.value, 1.0)),
