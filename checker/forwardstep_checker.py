@@ -95,22 +95,18 @@ class Node:
         require(self, key in self.typed(dict, "an object"), f"lacks `{key}`")
         return Node(self.value[key], f"{self.place}.{key}")
 
-    def optional(self, key):
-        return self.field(key) if key in self.typed(dict, "an object") else None
+    def optional(self, key): return self.field(key) if key in self.typed(dict, "an object") else None
 
     # Refuses fields that nothing reads: what stands in a certificate counts.
     def only(self, *keys):
         for key in self.typed(dict, "an object"):
             require(self, key in keys, f"has `{key}`, which means nothing here")
 
-    def each(self):
-        return [Node(value, f"{self.place}[{k}]") for k, value in enumerate(self.typed(list, "a list"))]
+    def each(self): return [Node(value, f"{self.place}[{k}]") for k, value in enumerate(self.typed(list, "a list"))]
 
-    def text(self):
-        return self.typed(str, "a text")
+    def text(self): return self.typed(str, "a text")
 
-    def count(self):
-        return self.typed(int, "a whole number")
+    def count(self): return self.typed(int, "a whole number")
 
     # A whole number, a decimal in quotes, or "p/q" in quotes.
     def number(self):
@@ -139,9 +135,11 @@ def read_toml(text):
     except (RecursionError, ValueError) as error:
         raise Meaningless(f"is not TOML, or nested too deeply: {error}") from None
 
-def such(condition, words):
+# `value`, which has a meaning under this condition.
+def such(condition, words, value=None):
     if not condition:
         raise Meaningless(words)
+    return value
 
 def decided(condition, words):
     if not condition:
@@ -150,16 +148,11 @@ def decided(condition, words):
 # A number of a scenario.
 def exact(value, where):
     such(isinstance(value, (int, Fraction)) and not isinstance(value, bool), f"{where} must be a number")
-    such(isinstance(value, Fraction) or value.bit_length() <= 4 * MOST_DIGITS, f"{where} is too long")
-    return Fraction(value)
+    return such(isinstance(value, Fraction) or value.bit_length() <= 4 * MOST_DIGITS, f"{where} is too long", Fraction(value))
 
-def positive(value, where):
-    such(exact(value, where) > 0, f"{where} must be positive")
-    return Fraction(value)
+def positive(value, where): return such((x := exact(value, where)) > 0, f"{where} must be positive", x)
 
-def not_negative(value, where):
-    such(exact(value, where) >= 0, f"{where} must not be negative")
-    return Fraction(value)
+def not_negative(value, where): return such((x := exact(value, where)) >= 0, f"{where} must not be negative", x)
 
 # A table; one with keys that are not known here may mean something that is not known here.
 def table(value, where, keys=None):
@@ -168,17 +161,11 @@ def table(value, where, keys=None):
         known(key, keys.split(), f"entries of {where}")
     return value
 
-def listed(value, where):
-    such(isinstance(value, list) and value, f"{where} must be a list that is not empty")
-    return value
+def listed(value, where): return such(isinstance(value, list) and value, f"{where} must be a list that is not empty", value)
 
-def pair(value):
-    such(isinstance(value, list) and len(value) == 2, "where a pair must be there is something else")
-    return value
+def pair(value): return such(isinstance(value, list) and len(value) == 2, "where a pair must be there is something else", value)
 
-def name_of(value, where):
-    such(isinstance(value, str), f"{where} must be a text")
-    return value
+def name_of(value, where): return such(isinstance(value, str), f"{where} must be a text", value)
 
 # A word, or a table with one key: (key, what stands under it).
 def choice(value, where):
@@ -199,15 +186,13 @@ def chosen(value, where, kinds, what):
     return kind, body
 
 # A number for a message.
-def said(number):
-    return str(number) if len(str(number)) <= 24 else f"{float(number):.9g}"
+def said(number): return str(number) if len(str(number)) <= 24 else f"{float(number):.9g}"
 
 # --- Intervals with rational ends; an end that is not known is an infinite float
 
 INF, WHOLE = math.inf, (-math.inf, math.inf)
 
-def infinite(x):
-    return isinstance(x, float)
+def infinite(x): return isinstance(x, float)
 
 # x, or a shorter number on the stated side of it, by less than one part in 2^150.
 def rounded(x, upwards):
@@ -217,11 +202,9 @@ def rounded(x, upwards):
     scaled = x * scale
     return (math.ceil(scaled) if upwards else math.floor(scaled)) / scale
 
-def span(low, high):
-    return rounded(low, False), rounded(high, True)
+def span(low, high): return rounded(low, False), rounded(high, True)
 
-def total(x, y):
-    return x if infinite(x) else y if infinite(y) else x + y
+def total(x, y): return x if infinite(x) else y if infinite(y) else x + y
 
 def product(x, y):
     if x == 0 or y == 0:
@@ -230,11 +213,9 @@ def product(x, y):
         return INF if (x > 0) == (y > 0) else -INF
     return x * y
 
-def add(a, b):
-    return span(total(a[0], b[0]), total(a[1], b[1]))
+def add(a, b): return span(total(a[0], b[0]), total(a[1], b[1]))
 
-def minus(a):
-    return -a[1], -a[0]
+def minus(a): return -a[1], -a[0]
 
 def multiply(a, b):
     ends = [product(x, y) for x in a for y in b]
@@ -246,11 +227,9 @@ def inverse(a):
     ends = [Fraction(0) if infinite(x) else 1 / x for x in a]
     return span(min(ends), max(ends))
 
-def hull(a, b):
-    return min(a[0], b[0]), max(a[1], b[1])
+def hull(a, b): return min(a[0], b[0]), max(a[1], b[1])
 
-def size(a):
-    return max(abs(a[0]), abs(a[1]))
+def size(a): return max(abs(a[0]), abs(a[1]))
 
 # term + term·ratio(1) + term·ratio(1)·ratio(2) + …, for ratios that fall below 1/2: the rest is at most twice the last.
 def taylor(term, ratio):
@@ -322,8 +301,7 @@ def sqrt_at(x):
     root = math.isqrt(math.floor(x * scale * scale))
     return Fraction(root, scale), Fraction(root + (root * root != x * scale * scale), scale)
 
-def tanh_at(x):
-    return add((1, 1), multiply((-2, -2), inverse(add((1, 1), exp_at(2 * x)))))
+def tanh_at(x): return add((1, 1), multiply((-2, -2), inverse(add((1, 1), exp_at(2 * x)))))
 
 # By odd symmetry, π/2 − atan 1/x beyond one, and atan x = 2 atan(x/(1 + √(1 + x²))).
 def atan_at(x):
@@ -351,8 +329,7 @@ def power(a, exponent):
     by_logarithm = lambda x: function("exp", multiply((exponent,) * 2, function("log", (x, x))))
     return hull(*((end,) * 2 if x == 0 or infinite(x) else by_logarithm(x) for x, end in zip(a, ends)))
 
-def magnitude(a):
-    return (Fraction(0) if a[0] <= 0 <= a[1] else min(abs(a[0]), abs(a[1]))), size(a)
+def magnitude(a): return (Fraction(0) if a[0] <= 0 <= a[1] else min(abs(a[0]), abs(a[1]))), size(a)
 
 def function(name, a):
     if (name == "sqrt" and a[0] < 0) or (name == "log" and a[0] <= 0):
@@ -430,8 +407,7 @@ def formula(text, names=("t",)):
 def shaped(node, names, depth):
     such(depth <= MOST_NESTED, "a formula is nested too deeply")
 
-    def inner(part):
-        return shaped(part, names, depth + 1)
+    def inner(part): return shaped(part, names, depth + 1)
 
     if isinstance(node, ast.Name) and node.id in (*names, "pi", "e"):
         return (node.id,) if node.id in ("t", "pi", "e") else ("state", node.id)
@@ -484,8 +460,7 @@ def quotient(tree):
         found = (convolved(a, c), convolved(b, d)) if kind == "*" else (convolved(convolved(a, d), d), convolved(convolved(b, c), d))
     return found if max(map(len, found)) <= 2 * MOST_DEGREE else None
 
-def trimmed(p):
-    return trimmed(p[:-1]) if p and p[-1] == 0 else p
+def trimmed(p): return trimmed(p[:-1]) if p and p[-1] == 0 else p
 
 # P/Q for all t with 1/t in the interval u: by u^d P and u^d Q, d the larger degree, which are polynomials in u.
 def far(p, q, u):
@@ -534,8 +509,7 @@ def constant_for_ever(tree):
     low, high = attempt(enclose, tree, (Fraction(0), INF)) or WHOLE
     return low if low == high else None
 
-def plus(a, b):
-    return b if a == ZERO else a if b == ZERO else ("+", a, b)
+def plus(a, b): return b if a == ZERO else a if b == ZERO else ("+", a, b)
 
 # Nothing is dropped that may lack a value.
 def times(a, b):
@@ -558,8 +532,7 @@ def everywhere(tree):
         enclose(tree, WHOLE)
     return all(everywhere(part) for part in tree[1:] if isinstance(part, tuple))
 
-def negated(tree):
-    return tree if tree == ZERO else ("f", "neg", tree)
+def negated(tree): return tree if tree == ZERO else ("f", "neg", tree)
 
 # By t, where there are no kinks; with `kinks` what encloses the slopes on both sides of them.
 def derivative(tree, kinks=False):
@@ -926,11 +899,9 @@ class Scenario:
                     decimal(row.get("t_s", "")) for row in self.csv(table(rows, "csv").get("file"))]
             yield min(times), max(times)
 
-    def used(self):
-        return [edge for graph in self.graphs for edge in graph]
+    def used(self): return [edge for graph in self.graphs for edge in graph]
 
-    def varying(self):
-        return sorted({edge.weight for edge in self.used() if isinstance(edge.weight, str)})
+    def varying(self): return sorted({edge.weight for edge in self.used() if isinstance(edge.weight, str)})
 
     # Whether one graph, with its weights and delays, is in force in all phases, or in these.
     def fixed(self, phases=None):
@@ -982,8 +953,7 @@ def read(path):
 
 # --- Which theorem speaks, and what it asks for
 
-def design_of(agent):
-    return choice(agent.gains.get("design", "differentiable"), "design")[0]
+def design_of(agent): return choice(agent.gains.get("design", "differentiable"), "design")[0]
 
 def treated(agent):
     kinds, usual = {"position_only": "position only", "task_space": "task space", "attitude": "attitude"}, "lagrangian"
@@ -1447,8 +1417,7 @@ def enclosed(node, tree, end_s):
         require(node.field("within"), ends[0] <= found[0] and found[1] <= ends[1], words)
     return tuple(ends)
 
-def lasts(node):
-    return node.field("range").text() != "run"
+def lasts(node): return node.field("range").text() != "run"
 
 # Enclosures of formulas, each named by an edge: {text: (low, high, whether for ever and uniformly continuous)}.
 def formulas(claim, node, text_of):
@@ -1465,8 +1434,7 @@ def formulas(claim, node, text_of):
     return found
 
 # The formula that the delay of an edge follows, as a text.
-def formula_of(edge):
-    return edge.delay[1] if edge.delay[0] == "formula_s" else None
+def formula_of(edge): return edge.delay[1] if edge.delay[0] == "formula_s" else None
 
 # What no value of a delay exceeds by the parameters of its rule; None where the rule does not say.
 def rule_bound(delay):
@@ -1732,8 +1700,7 @@ def drive(claim):
     sums = [functools.reduce(plus, (times(("number", Fraction(factor)), rate) for factor, rate in zip(factors, each))) for each in rates]
     return [(tree, (-gamma,) * 2, (gamma,) * 2) for tree in sums]
 
-def squares(trees):
-    return functools.reduce(plus, [("^", tree, Fraction(2)) for tree in trees])
+def squares(trees): return functools.reduce(plus, [("^", tree, Fraction(2)) for tree in trees])
 
 def quaternion(claim):
     paths = [tree for name in claim.agents for tree in claim.scenario.agents[claim.scenario.index[name]].target or []]
