@@ -83,10 +83,7 @@ def decimal(text):
     return Fraction(plain)
 
 # A value of the certificate with its place. What has the wrong type is rejected there.
-class Node:
-    def __init__(self, value, place):
-        self.value, self.place = value, place
-
+class Node(collections.namedtuple("Node", "value place")):
     def typed(self, kind, words):
         require(self, isinstance(self.value, kind) and not isinstance(self.value, bool), f"must be {words}")
         return self.value
@@ -95,22 +92,18 @@ class Node:
         require(self, key in self.typed(dict, "an object"), f"lacks `{key}`")
         return Node(self.value[key], f"{self.place}.{key}")
 
-    def optional(self, key):
-        return self.field(key) if key in self.typed(dict, "an object") else None
+    def optional(self, key): return self.field(key) if key in self.typed(dict, "an object") else None
 
     # Refuses fields that nothing reads: what stands in a certificate counts.
     def only(self, *keys):
         for key in self.typed(dict, "an object"):
             require(self, key in keys, f"has `{key}`, which means nothing here")
 
-    def each(self):
-        return [Node(value, f"{self.place}[{k}]") for k, value in enumerate(self.typed(list, "a list"))]
+    def each(self): return [Node(value, f"{self.place}[{k}]") for k, value in enumerate(self.typed(list, "a list"))]
 
-    def text(self):
-        return self.typed(str, "a text")
+    def text(self): return self.typed(str, "a text")
 
-    def count(self):
-        return self.typed(int, "a whole number")
+    def count(self): return self.typed(int, "a whole number")
 
     # A whole number, a decimal in quotes, or "p/q" in quotes.
     def number(self):
@@ -139,9 +132,11 @@ def read_toml(text):
     except (RecursionError, ValueError) as error:
         raise Meaningless(f"is not TOML, or nested too deeply: {error}") from None
 
-def such(condition, words):
+# `value`, which has a meaning under this condition.
+def such(condition, words, value=None):
     if not condition:
         raise Meaningless(words)
+    return value
 
 def decided(condition, words):
     if not condition:
@@ -150,16 +145,11 @@ def decided(condition, words):
 # A number of a scenario.
 def exact(value, where):
     such(isinstance(value, (int, Fraction)) and not isinstance(value, bool), f"{where} must be a number")
-    such(isinstance(value, Fraction) or value.bit_length() <= 4 * MOST_DIGITS, f"{where} is too long")
-    return Fraction(value)
+    return such(isinstance(value, Fraction) or value.bit_length() <= 4 * MOST_DIGITS, f"{where} is too long", Fraction(value))
 
-def positive(value, where):
-    such(exact(value, where) > 0, f"{where} must be positive")
-    return Fraction(value)
+def positive(value, where): return such((x := exact(value, where)) > 0, f"{where} must be positive", x)
 
-def not_negative(value, where):
-    such(exact(value, where) >= 0, f"{where} must not be negative")
-    return Fraction(value)
+def not_negative(value, where): return such((x := exact(value, where)) >= 0, f"{where} must not be negative", x)
 
 # A table; one with keys that are not known here may mean something that is not known here.
 def table(value, where, keys=None):
@@ -168,17 +158,11 @@ def table(value, where, keys=None):
         known(key, keys.split(), f"entries of {where}")
     return value
 
-def listed(value, where):
-    such(isinstance(value, list) and value, f"{where} must be a list that is not empty")
-    return value
+def listed(value, where): return such(isinstance(value, list) and value, f"{where} must be a list that is not empty", value)
 
-def pair(value):
-    such(isinstance(value, list) and len(value) == 2, "where a pair must be there is something else")
-    return value
+def pair(value): return such(isinstance(value, list) and len(value) == 2, "where a pair must be there is something else", value)
 
-def name_of(value, where):
-    such(isinstance(value, str), f"{where} must be a text")
-    return value
+def name_of(value, where): return such(isinstance(value, str), f"{where} must be a text", value)
 
 # A word, or a table with one key: (key, what stands under it).
 def choice(value, where):
@@ -199,15 +183,13 @@ def chosen(value, where, kinds, what):
     return kind, body
 
 # A number for a message.
-def said(number):
-    return str(number) if len(str(number)) <= 24 else f"{float(number):.9g}"
+def said(number): return str(number) if len(str(number)) <= 24 else f"{float(number):.9g}"
 
 # --- Intervals with rational ends; an end that is not known is an infinite float
 
 INF, WHOLE = math.inf, (-math.inf, math.inf)
 
-def infinite(x):
-    return isinstance(x, float)
+def infinite(x): return isinstance(x, float)
 
 # x, or a shorter number on the stated side of it, by less than one part in 2^150.
 def rounded(x, upwards):
@@ -217,11 +199,9 @@ def rounded(x, upwards):
     scaled = x * scale
     return (math.ceil(scaled) if upwards else math.floor(scaled)) / scale
 
-def span(low, high):
-    return rounded(low, False), rounded(high, True)
+def span(low, high): return rounded(low, False), rounded(high, True)
 
-def total(x, y):
-    return x if infinite(x) else y if infinite(y) else x + y
+def total(x, y): return x if infinite(x) else y if infinite(y) else x + y
 
 def product(x, y):
     if x == 0 or y == 0:
@@ -230,11 +210,9 @@ def product(x, y):
         return INF if (x > 0) == (y > 0) else -INF
     return x * y
 
-def add(a, b):
-    return span(total(a[0], b[0]), total(a[1], b[1]))
+def add(a, b): return span(total(a[0], b[0]), total(a[1], b[1]))
 
-def minus(a):
-    return -a[1], -a[0]
+def minus(a): return -a[1], -a[0]
 
 def multiply(a, b):
     ends = [product(x, y) for x in a for y in b]
@@ -246,11 +224,9 @@ def inverse(a):
     ends = [Fraction(0) if infinite(x) else 1 / x for x in a]
     return span(min(ends), max(ends))
 
-def hull(a, b):
-    return min(a[0], b[0]), max(a[1], b[1])
+def hull(a, b): return min(a[0], b[0]), max(a[1], b[1])
 
-def size(a):
-    return max(abs(a[0]), abs(a[1]))
+def size(a): return max(abs(a[0]), abs(a[1]))
 
 # term + term·ratio(1) + term·ratio(1)·ratio(2) + …, for ratios that fall below 1/2: the rest is at most twice the last.
 def taylor(term, ratio):
@@ -303,9 +279,8 @@ def exp_at(x):
         return (Fraction(2) ** 2000, INF) if x > 0 else (Fraction(0), Fraction(1, 1 << 2000))
     halvings = max(0, math.ceil(abs(x)).bit_length() + 1)
     small = Fraction(math.floor(x / (1 << halvings) * (1 << 240)), 1 << 240)
-    value = taylor(Fraction(1), lambda k: small / k)
     # The cut of `small` moves exp by less than 2^-239.
-    value = add(value, (Fraction(-1, 1 << 238), Fraction(1, 1 << 238)))
+    value = add(taylor(Fraction(1), lambda k: small / k), (Fraction(-1, 1 << 238), Fraction(1, 1 << 238)))
     for _ in range(halvings):
         value = multiply(value, value)
     return value
@@ -322,8 +297,7 @@ def sqrt_at(x):
     root = math.isqrt(math.floor(x * scale * scale))
     return Fraction(root, scale), Fraction(root + (root * root != x * scale * scale), scale)
 
-def tanh_at(x):
-    return add((1, 1), multiply((-2, -2), inverse(add((1, 1), exp_at(2 * x)))))
+def tanh_at(x): return add((1, 1), multiply((-2, -2), inverse(add((1, 1), exp_at(2 * x)))))
 
 # By odd symmetry, π/2 − atan 1/x beyond one, and atan x = 2 atan(x/(1 + √(1 + x²))).
 def atan_at(x):
@@ -351,8 +325,7 @@ def power(a, exponent):
     by_logarithm = lambda x: function("exp", multiply((exponent,) * 2, function("log", (x, x))))
     return hull(*((end,) * 2 if x == 0 or infinite(x) else by_logarithm(x) for x, end in zip(a, ends)))
 
-def magnitude(a):
-    return (Fraction(0) if a[0] <= 0 <= a[1] else min(abs(a[0]), abs(a[1]))), size(a)
+def magnitude(a): return (Fraction(0) if a[0] <= 0 <= a[1] else min(abs(a[0]), abs(a[1]))), size(a)
 
 def function(name, a):
     if (name == "sqrt" and a[0] < 0) or (name == "log" and a[0] <= 0):
@@ -373,8 +346,7 @@ def function(name, a):
 # --- are continuous at every point inside
 
 # p(x + by) by powers of x, for a polynomial p by powers of x.
-def moved(p, by):
-    return [sum(math.comb(n, k) * p[n] * by ** (n - k) for n in range(k, len(p))) for k in range(len(p))]
+def moved(p, by): return [sum(math.comb(n, k) * p[n] * by ** (n - k) for n in range(k, len(p))) for k in range(len(p))]
 
 # Pieces by powers of the time since each starts, of a curve that leaves the first point at rest with these coefficients of t³ and t⁴;
 # and those of t and t² at the last point.
@@ -430,8 +402,7 @@ def formula(text, names=("t",)):
 def shaped(node, names, depth):
     such(depth <= MOST_NESTED, "a formula is nested too deeply")
 
-    def inner(part):
-        return shaped(part, names, depth + 1)
+    def inner(part): return shaped(part, names, depth + 1)
 
     if isinstance(node, ast.Name) and node.id in (*names, "pi", "e"):
         return (node.id,) if node.id in ("t", "pi", "e") else ("state", node.id)
@@ -452,8 +423,10 @@ def shaped(node, names, depth):
             return functools.reduce(lambda a, b: (name, a, b), arguments)
     raise Meaningless("a formula has something that no formula has")
 
-def has_variable(tree):
-    return tree[0] in ("t", "state", "points") or any(isinstance(part, tuple) and has_variable(part) for part in tree[1:])
+# The formulas that a formula is made of.
+def parts_of(tree): return [part for part in tree[1:] if isinstance(part, tuple)] if tree[0] != "points" else []
+
+def has_variable(tree): return tree[0] in ("t", "state", "points") or any(map(has_variable, parts_of(tree)))
 
 COMBINED = {
     "+": add, "-": lambda a, b: add(a, minus(b)), "*": multiply, "/": lambda a, b: multiply(a, inverse(b)), "hull": hull,
@@ -469,7 +442,7 @@ def quotient(tree):
         return ([tree[1]] if kind == "number" else [Fraction(0), Fraction(1)]), [Fraction(1)]
     if tree[:2] == ("f", "neg"):
         return quotient(("-", ZERO, tree[2]))
-    parts = [quotient(part) for part in tree[1:] if isinstance(part, tuple)]
+    parts = list(map(quotient, parts_of(tree)))
     if None in parts or kind not in ("+", "-", "*", "/", "^") or kind == "^" and (tree[2].denominator > 1 or abs(tree[2]) > 8):
         return None
     (a, b), (c, d) = parts[0], parts[-1]
@@ -484,8 +457,7 @@ def quotient(tree):
         found = (convolved(a, c), convolved(b, d)) if kind == "*" else (convolved(convolved(a, d), d), convolved(convolved(b, c), d))
     return found if max(map(len, found)) <= 2 * MOST_DEGREE else None
 
-def trimmed(p):
-    return trimmed(p[:-1]) if p and p[-1] == 0 else p
+def trimmed(p): return trimmed(p[:-1]) if p and p[-1] == 0 else p
 
 # P/Q for all t with 1/t in the interval u: by u^d P and u^d Q, d the larger degree, which are polynomials in u.
 def far(p, q, u):
@@ -534,8 +506,7 @@ def constant_for_ever(tree):
     low, high = attempt(enclose, tree, (Fraction(0), INF)) or WHOLE
     return low if low == high else None
 
-def plus(a, b):
-    return b if a == ZERO else a if b == ZERO else ("+", a, b)
+def plus(a, b): return b if a == ZERO else a if b == ZERO else ("+", a, b)
 
 # Nothing is dropped that may lack a value.
 def times(a, b):
@@ -545,7 +516,7 @@ def times(a, b):
 # Whether a formula may lack a value somewhere.
 def partial(tree):
     own = tree[0] in ("/", "^") or tree[:2] in (("f", "log"), ("f", "sqrt"))
-    return own or any(isinstance(part, tuple) and partial(part) for part in tree[1:])
+    return own or any(map(partial, parts_of(tree)))
 
 ZERO, ONE = ("number", Fraction(0)), ("number", Fraction(1))
 
@@ -556,10 +527,9 @@ def everywhere(tree):
     decided(not partly or enclose(tree[1] if broken else tree[2], WHOLE)[0] > 0, "a root or a logarithm may be of what is not positive")
     if tree[0] in ("/", "^"):
         enclose(tree, WHOLE)
-    return all(everywhere(part) for part in tree[1:] if isinstance(part, tuple))
+    return all(map(everywhere, parts_of(tree)))
 
-def negated(tree):
-    return tree if tree == ZERO else ("f", "neg", tree)
+def negated(tree): return tree if tree == ZERO else ("f", "neg", tree)
 
 # By t, where there are no kinks; with `kinks` what encloses the slopes on both sides of them.
 def derivative(tree, kinks=False):
@@ -568,8 +538,8 @@ def derivative(tree, kinks=False):
         return ONE if kind == "t" else ZERO
     if kind == "points":
         return *tree[:3], tree[3] + 1
-    parts = [part for part in tree[1:] if isinstance(part, tuple)]
-    (a, b), (da, db) = (parts[0], parts[-1]), (derivative(part, kinks) for part in (parts[0], parts[-1]))
+    a, *_, b = parts_of(tree) * 2
+    da, db = derivative(a, kinks), derivative(b, kinks)
     if kind in "+-":
         return plus(da, db if kind == "+" else negated(db))
     if kind == "*":
@@ -595,7 +565,7 @@ def limit(tree):
         return ((INF if p[-1] / q[-1] > 0 else -INF),) * 2 if len(p) > len(q) else far(p, q, (Fraction(0),) * 2)
     if not has_variable(tree):
         return enclose(tree, WHOLE)
-    parts = [limit(part) for part in tree[1:] if isinstance(part, tuple)]
+    parts = list(map(limit, parts_of(tree)))
     if kind in ("f", "^"):
         return function(tree[1], parts[0]) if kind == "f" else power(parts[0], tree[2])
     if kind == "-":
@@ -629,7 +599,7 @@ def period(tree):
             decided(not has_variable(slope), "an angle is not linear in t")
             return [multiple(slope)]
         decided(part[0] not in ("t", "state", "points"), "t stands outside of sines and cosines")
-        return [rate for inner in part[1:] if isinstance(inner, tuple) for rate in rates(inner)]
+        return [rate for inner in parts_of(part) for rate in rates(inner)]
 
     found = rates(tree)
     decided(len({n for _, n in found}) == 1 and found[0][1] in (0, 1), "no common period is known")
@@ -642,8 +612,7 @@ LAGRANGIAN = ("planar_arm", "point_mass", "ship", "urdf")
 MADE_FOR = {
     "adaptive": LAGRANGIAN, "known": LAGRANGIAN, "position_only": ("point_mass",), "thrust": ("vehicle", "rotorcraft"),
     "task_space": ("planar_arm", "urdf"), "attitude": ("spacecraft",), "linear_adaptive": ("chain",), "linearising": ("chain",),
-    "immersion": ("chain",), "adaptive_backstepping": ("strict_feedback", "pure_feedback"),
-}
+    "immersion": ("chain",), "adaptive_backstepping": ("strict_feedback", "pure_feedback")}
 # The first of those that are made for a robot.
 USUAL_LAW = {robot: law for law, robots in reversed(MADE_FOR.items()) for robot in robots}
 DIRECTIONS = {"ring": ("forward", "both"), "path": ("forward", "both"), "star": ("out", "in", "both"), "complete": ()}
@@ -695,18 +664,40 @@ def roots_of(body):
 # `to` hears `source`; the weight is a rational number, or the text of a formula.
 Edge = collections.namedtuple("Edge", "source to weight delay")
 
-# Desired dynamics as the design of the paper that they are: p K(p) beside weights of K(p), or K(p) with a target, K by its roots.
+# A polynomial in p by its coefficients from p⁰ on: these without the leading one, which is 1, or its roots.
+def polynomial(file):
+    if isinstance(file, list):
+        return [exact(c, "polynomial") for c in file] + [Fraction(1)]
+    factors = [[a * a + b * b, 2 * a, 1] if b else [a, 1] for a, b in roots_of(file) if b >= 0]
+    return functools.reduce(convolved, [[0, 1]] * int(exact(file.get("integrators", 0), "integrators")) + factors, [Fraction(1)])
+
+# The first column of the array of Routh up to the first entry that is not positive: there is none if and only if all roots of the
+# polynomial lie to the left of the axis.
+def routh(coefficients):
+    above, row, column = coefficients[::-2], coefficients[-2::-2], [coefficients[-1]]
+    while len(column) < len(coefficients) and column[-1] > 0:
+        column.append(row[0] if row else Fraction(0))
+        if column[-1] > 0:
+            rest = itertools.zip_longest(above[1:], row[1:], fillvalue=Fraction(0))
+            above, row = row, [a - above[0] / column[-1] * b for a, b in rest]
+    return column
+
+# Desired dynamics as the design of the paper that they are: p K(p) beside weights of K(p), or K(p) with a target, K by its roots; and
+# before it whether they are one, and the polynomial of what is no such K but follows a target.
 def designed(key, body):
     if key != "desired":
-        return False, (key, body)
+        return False, None, (key, body)
     own, coupled = (body[part] if isinstance(body.get(part), dict) else {} for part in ("polynomial", "coupling_polynomial"))
-    roots, heard = roots_of(own), [exact(number, "heard") for number in body.get("heard", [])]
-    tracks, product = body.get("follows_target", False), math.prod(1 if b < 0 else a * a + b * b if b else a for a, b in roots)
+    roots, heard, tracks = roots_of(own), [exact(number, "heard") for number in body.get("heard", [])], body.get("follows_target", False)
     zeros, told = own.get("integrators", 0), "position_velocity" if heard[1:] else "position"
+    product = polynomial({"roots_per_s": own["roots_per_s"]})[0] if roots else None
     agrees = zeros == 1 and coupled == {"roots_per_s": own.get("roots_per_s")} and body.get("written_in", "measured") == "measured"
     agrees = agrees and heard[:1] in ([], [product]) and all(b == 0 and v * a == product for v in heard[1:] for a, b in roots[:1])
-    decided("nonlinear" not in body and roots and (not (zeros or coupled or heard) if tracks else agrees), "dynamics of no known design")
-    return True, ("tracking" if tracks else "consensus", {"roots_per_s": own["roots_per_s"], "exchange": told})
+    alone = tracks and not (heard or "coupling_polynomial" in body)
+    decided("nonlinear" not in body and (alone if tracks else roots and agrees), "dynamics of no known design")
+    if alone and (zeros or not roots):
+        return False, polynomial(body["polynomial"]), ("tracking", {})
+    return True, None, ("tracking" if tracks else "consensus", {"roots_per_s": own["roots_per_s"], "exchange": told})
 
 class Scenario:
     def __init__(self, text, folder):
@@ -715,7 +706,7 @@ class Scenario:
                      "external_wrenches solver goal")
         such(file.get("format") == 2, "`format` must be 2")
         self.end_s = positive(table(file.get("time"), "time").get("end_s"), "time.end_s")
-        self.desired, (self.reference, body) = designed(*choice(file.get("reference"), "reference"))
+        self.desired, self.polynomial, (self.reference, body) = designed(*choice(file.get("reference"), "reference"))
         self.body = table(body, "reference", "roots_per_s exchange manipulability_gain filter_s acceleration_limit design coupling "
                           "gain sign sign_period_s alpha beta")
         known(self.reference, ("consensus", "pure_integral", "backstepping", "leader", "tracking"), "reference dynamics")
@@ -768,8 +759,7 @@ class Scenario:
 
     def exchange(self):
         if self.reference in ("consensus", "pure_integral"):
-            such(self.body.get("exchange") in ("position", "position_velocity"), "`exchange` has another value than there are")
-            return self.body["exchange"]
+            return such((told := self.body.get("exchange")) in ("position", "position_velocity"), "`exchange` has another value", told)
         return "position_velocity" if self.reference == "leader" else "position"
 
     # Motions: for each axis a formula, or a curve through points
@@ -840,8 +830,21 @@ class Scenario:
             self.dwell = [positive(x, "dwell_s") for x in pair(table(body, "switching").get("dwell_s"))]
             such(self.dwell[0] <= self.dwell[1], "`dwell_s` must rise")
             return
-        known(self.switching, ("repeat", "once"), "switching")
+        known(self.switching, ("repeat", "once", "log"), "switching")
+        if self.switching == "log":
+            self.logged = self.log(self.csv(table(body, "switching", "file").get("file")), "phase")
+            such(all(phase in range(1, len(phases) + 1) for phase, *_ in self.logged), "a log has a phase that is none")
+            # The last may be cut short by the end of the table.
+            self.dwell = [end - start for _, start, end in self.logged[:-1] or self.logged]
+            return
         self.dwell = [positive(phase.get("dwell_s"), "dwell_s") for phase in (phases if self.switching == "repeat" else phases[:-1])]
+
+    # (entry, from when, until when) of the rows of a log; the last of them is the end.
+    def log(self, rows, key):
+        times, entries = [decimal(row["t_s"]) for row in rows], [row.get(key) for row in rows]
+        such(len(rows) > 1 and times[0] == 0 and all(a < b for a, b in zip(times, times[1:])), "a log must begin at 0 and rise")
+        such(all(entries[:-1]) and not entries[-1] and times[-1] >= self.end_s, "a log must end with an empty line, and not before the run")
+        return [(decimal(entry), start, end) for entry, start, end in zip(entries, times, times[1:])]
 
     # A rational number, or the text of a formula that is not shown to be one for ever, as 2 + 0 t is.
     def read_weight(self, value):
@@ -863,9 +866,7 @@ class Scenario:
         such(len(pairs) == len(found) and all(a != b != self.leader for a, b in pairs), "an edge stands twice, to itself, or to the leader")
         return [edge._replace(delay=edge.delay or self.links.get((edge.source, edge.to)) or self.delay) for edge in found]
 
-    def vertex(self, name):
-        such(name_of(name, "an agent of an edge") in self.index, f"there is no agent `{name}`")
-        return self.index[name]
+    def vertex(self, name): return such(name_of(name, "an agent") in self.index, f"there is no agent `{name}`", self.index.get(name))
 
     def edge(self, entry):
         entry = dict(zip(("from", "to"), pair(entry))) if isinstance(entry, list) else table(entry, "an edge", "from to weight delay")
@@ -926,11 +927,9 @@ class Scenario:
                     decimal(row.get("t_s", "")) for row in self.csv(table(rows, "csv").get("file"))]
             yield min(times), max(times)
 
-    def used(self):
-        return [edge for graph in self.graphs for edge in graph]
+    def used(self): return [edge for graph in self.graphs for edge in graph]
 
-    def varying(self):
-        return sorted({edge.weight for edge in self.used() if isinstance(edge.weight, str)})
+    def varying(self): return sorted({edge.weight for edge in self.used() if isinstance(edge.weight, str)})
 
     # Whether one graph, with its weights and delays, is in force in all phases, or in these.
     def fixed(self, phases=None):
@@ -939,8 +938,12 @@ class Scenario:
         return all(graph == graphs[0] for graph in graphs)
 
     # The phases that are in force again and again, or for ever.
-    def recurring(self):
-        return [len(self.graphs) - 1] if self.switching == "once" else list(range(len(self.graphs)))
+    def recurring(self): return [len(self.graphs) - 1] if self.switching == "once" else list(range(len(self.graphs)))
+
+    # The same where what comes after the run is known.
+    def for_ever(self):
+        decided(self.switching != "log", "what comes after a log is not known")
+        return self.recurring()
 
     # What (110) works over: whether graphs take turns, or links delay.
     def over(self):
@@ -982,8 +985,7 @@ def read(path):
 
 # --- Which theorem speaks, and what it asks for
 
-def design_of(agent):
-    return choice(agent.gains.get("design", "differentiable"), "design")[0]
+def design_of(agent): return choice(agent.gains.get("design", "differentiable"), "design")[0]
 
 def treated(agent):
     kinds, usual = {"position_only": "position only", "task_space": "task space", "attitude": "attitude"}, "lagrangian"
@@ -1044,12 +1046,11 @@ def requirements(scenario):
         (any("rotors" in agent.body for agent in flying), "every-wrench"),
         (chains, "defined-terms input-factor " + ("chain-adaptation" if any(a.law != "linearising" for a in chains) else "chain-gains")),
         (any(agent.body.get("parameters") for agent in adaptive), "bounded-regressors"),
-        (any(agent.pushes and agent.robot != "chain" for agent in chains), "matched-disturbance"),
-        (lagrangian, "positive-gains"), (lagrangian or tips, "uniform-inertia"),
-        (any(not agent.tracks for agent in lagrangian) or tips, "bounded-dynamics"), (frictions(scenario), "smooth-friction"),
-        (any("bounds" in agent.gains for agent in lagrangian), "parameters-within-bounds"),
-        (True, "applied-torque" + " desired-design" * scenario.desired), (control is not None, "continuous-time"),
-        (control is not None and inexact(control), "exact-measurements"),
+        (any(agent.pushes and agent.robot != "chain" for agent in chains), "matched-disturbance"), (lagrangian, "positive-gains"),
+        (lagrangian or tips, "uniform-inertia"), (any(not agent.tracks for agent in lagrangian) or tips, "bounded-dynamics"),
+        (frictions(scenario), "smooth-friction"), (any("bounds" in agent.gains for agent in lagrangian), "parameters-within-bounds"),
+        (scenario.polynomial, "desired-dynamics"), (True, "applied-torque" + " desired-design" * scenario.desired),
+        (control is not None, "continuous-time"), (control is not None and inexact(control), "exact-measurements"),
         (control is not None and "message_timeout_s" in control, "messages-in-time"),
     ]
     found = {(each, "") for condition, ids in asked if condition for each in ids.split()}
@@ -1063,7 +1064,7 @@ def requirements(scenario):
 
 # Who follows a target by roots.
 def rooted(scenario):
-    return [agent for agent in scenario.agents if agent.tracks and agent.law in ("adaptive", "known", "position_only", *CHAIN_LAWS)]
+    return [a for a in scenario.agents if a.tracks and treated(a) in ("lagrangian", "chain", "position only") and not scenario.polynomial]
 
 # Whether measurements have noise, steps, or come from a filter.
 def inexact(control):
@@ -1079,7 +1080,7 @@ NEVER = ("one-kind", "measured-derivative", "printed-design", "nonzero-thrust", 
 # --- Rules: each shows one kind of proof of some hypotheses. Their parameters are the fields of the proof. A rule gives words,
 # --- and whether what is shown holds for all time where that is not plain. `WITNESSES` show that a hypothesis is violated.
 RULES = {}
-WITNESSES = ("cut", "unheard", "instant", "factor", "below", "limit", "loses-all", "diverges", "no-value", "out-of-reach")
+WITNESSES = ("cut", "unheard", "instant", "factor", "below", "limit", "loses-all", "diverges", "no-value", "out-of-reach", "no-routh")
 
 def rule(ids, kind):
     def note(check):
@@ -1148,7 +1149,7 @@ def tiled(claim, windows, sequence):
 # Windows tile whole periods: any stretch of time twice as long as the longest of them holds a whole one.
 @rule("spanning-tree leader-reaches-all", "windows")
 def tiling(claim, windows):
-    scenario, phases = claim.scenario, claim.scenario.recurring()
+    scenario, phases = claim.scenario, claim.scenario.for_ever()
     require(claim.proof, scenario.switching != "random" or len(scenario.graphs) == 1, "is of no drawn schedule")
     covered = sum(len(window.field("phases").each()) for window in windows.each())
     require(windows, covered % len(phases) == 0 and covered <= MOST_CELLS, "must cover whole periods")
@@ -1158,40 +1159,43 @@ def tiling(claim, windows):
 # Each phase that recurs has a tree of its own: the order does not matter.
 @rule("spanning-tree leader-reaches-all leader-in-every-graph", "every-phase")
 def every_phase(claim, windows):
-    phases = claim.scenario.recurring()
+    phases = claim.scenario.for_ever()
     require(windows, tiled(claim, windows, phases) == list(range(len(phases) + 1)), "must be one for each phase")
     return f"each of {len(phases)} graphs has a spanning tree"
 
-# A drawn sequence up to the end of the run, tiled by windows but for a rest that is no longer than is stated.
-@rule("spanning-tree leader-reaches-all", "drawn")
-def along_draw(claim, given, windows, longest_s):
-    scenario = claim.scenario
-    require(claim.proof, scenario.switching == "random", "is of a schedule that is not drawn")
+# (phase, from when, until when) of a drawn sequence that is given.
+def drawn(scenario, given):
     # Drawn in floating point: a dwell may leave its bounds by a part of 10^9.
-    low, high = scenario.dwell[0] * (1 - Fraction(1, 10**9)), scenario.dwell[1] * (1 + Fraction(1, 10**9))
-    sequence, times = [], [Fraction(0)]
+    (low, high), room, found, start = scenario.dwell, Fraction(1, 10**9), [], Fraction(0)
     for entry in given.each():
         entry.only("phase", "until_s")
-        sequence.append(entry.field("phase").count() - 1)
-        times.append(entry.field("until_s").number())
-        require(entry, 0 <= sequence[-1] < len(scenario.graphs), "is no phase")
-        require(entry, low <= times[-1] - times[-2] <= high, "lasts shorter or longer than the scenario allows")
-    require(given, times[-1] >= scenario.end_s, "ends before the run")
-    ends = tiled(claim, windows, sequence)
+        found.append((entry.field("phase").count(), start, start := entry.field("until_s").number()))
+        require(entry, 1 <= found[-1][0] <= len(scenario.graphs), "is no phase")
+        require(entry, low * (1 - room) <= start - found[-1][1] <= high * (1 + room), "lasts shorter or longer than the scenario allows")
+    require(given, start >= scenario.end_s, "ends before the run")
+    return found
+
+# Such a sequence, or that of a log, tiled by windows up to the end of the run but for a rest that is no longer than is stated.
+@rule("spanning-tree leader-reaches-all", "drawn")
+@rule("spanning-tree leader-reaches-all", "logged")
+def along(claim, windows, longest_s, given=None):
+    scenario, kind = claim.scenario, claim.proof.field("kind").text()
+    require(claim.proof, (scenario.switching, given is None) == (("random", False) if kind == "drawn" else ("log", True)), f"is not {kind}")
+    sequence = drawn(scenario, given) if given else scenario.logged
+    times, ends = [Fraction(0), *(end for *_, end in sequence)], tiled(claim, windows, [int(phase) - 1 for phase, *_ in sequence])
     lengths = [times[b] - times[a] for a, b in zip(ends, ends[1:])] + [scenario.end_s - times[ends[-1]]]
     require(longest_s, max(lengths) <= longest_s.number(), "is exceeded by a window, or by what is left after the last")
-    return f"{len(ends) - 1} windows of at most {said(longest_s.number())} s tile the given sequence", False
+    return f"{len(ends) - 1} windows of at most {said(longest_s.number())} s tile the sequence that is {kind}", False
 
 # Two disjoint groups, or one without the leader, that hear no agent outside themselves in what recurs: no tree, for ever.
 @rule("spanning-tree leader-reaches-all", "cut")
 def cut(claim, groups):
     scenario, sets = claim.scenario, [{claim.scenario.index.get(name.text()) for name in group.each()} for group in groups.each()]
     require(groups, sets and all(sets) and None not in set().union(*sets), "must name agents")
-    if claim.id == "leader-reaches-all":
-        require(groups, len(sets) == 1 and scenario.leader not in sets[0], "must be one group without the leader")
-    else:
-        require(groups, len(sets) >= 2 and sum(map(len, sets)) == len(set().union(*sets)), "must be two or more that are disjoint")
-    for phase in scenario.recurring():
+    led, apart = claim.id == "leader-reaches-all", sum(map(len, sets)) == len(set().union(*sets))
+    fits = len(sets) == 1 and scenario.leader not in sets[0] if led else len(sets) >= 2 and apart
+    require(groups, fits, f"must be {'one group without the leader' if led else 'two or more that are disjoint'}")
+    for phase in scenario.for_ever():
         for source, to in scenario.pairs[phase]:
             heard = any(to in group and source not in group for group in sets)
             require(groups, not heard, f"are not closed: {scenario.names[to]} hears {scenario.names[source]} in phase {phase + 1}")
@@ -1201,7 +1205,7 @@ def cut(claim, groups):
 @rule("leader-in-every-graph", "unheard")
 def unheard(claim, phase, group):
     scenario, at, found = claim.scenario, phase.count() - 1, {claim.scenario.index.get(name.text()) for name in group.each()}
-    require(phase, at in scenario.recurring(), "does not recur")
+    require(phase, at in scenario.for_ever(), "does not recur")
     require(group, found and not found & {None, scenario.leader}, "must name agents, and not the leader")
     require(group, not any(to in found and source not in found for source, to in scenario.pairs[at]), "hear somebody else")
     return f"{len(found)} agents hear nothing of the leader in phase {at + 1}"
@@ -1218,11 +1222,10 @@ def fixed_graph(claim):
 def shortest_phase(claim, shortest_s):
     dwell = claim.scenario.dwell
     require(shortest_s, dwell and 0 < shortest_s.number() <= min(dwell), "is not below the shortest phase")
-    return f"phases last {said(shortest_s.number())} s at least"
+    return f"phases last {said(shortest_s.number())} s at least", claim.scenario.switching != "log"
 
 # Those whose M, C and g the proofs use.
-def robots(scenario):
-    return [agent for agent in scenario.agents if agent.law in ("adaptive", "known", "task_space")]
+def robots(scenario): return [agent for agent in scenario.agents if agent.law in ("adaptive", "known", "task_space")]
 
 MOVING = ("revolute", "continuous", "prismatic")
 
@@ -1269,8 +1272,7 @@ def links(agent, root, locked):
 # From tip to base along a URDF: where the first joint that moves is, and the square of all lengths behind it, which no posture exceeds.
 @of_urdf
 def outstretched(agent, root, locked):
-    def numbers(element, key):
-        return [decimal(x) for x in ("0 0 0" if element is None else element.get(key, "0 0 0")).split()]
+    def numbers(element, key): return [decimal(x) for x in ("0 0 0" if element is None else element.get(key, "0 0 0")).split()]
 
     def turn(k, angle):
         (i, j), sin, cos = ((k + 1) % 3, (k + 2) % 3), sine((angle,) * 2, False), sine((angle,) * 2, True)
@@ -1335,6 +1337,14 @@ def bounds_hold(agent):
     decided(plain, "the parameters of this robot are not computed here")
     (lower,), (upper,) = body["lower"], body["upper"]
     return exact(lower, "lower") <= exact(agent.body["mass_kg"], "mass_kg") <= exact(upper, "upper")
+
+# The place of an uncertain tool on its link, or the lengths of a planar arm, within the bounds that their estimates keep.
+def lengths_hold(agent):
+    tip, bounds = table(agent.gains.get("end_effector", {}), "end_effector"), table(agent.gains["bounds"], "bounds", "lower_m upper_m")
+    decided("parameter_variation" not in agent.entry and tip.get("uncertain", "tool") == "tool", "these lengths are not read here")
+    true = agent.body["length_m"] if agent.robot == "planar_arm" else tip.get("at_m", [0] * 3)
+    of = [[exact(x, "bounds") for x in listed(entries, "bounds")] for entries in (bounds["lower_m"], true, bounds["upper_m"])]
+    return len({len(entries) for entries in of}) == 1 and all(low <= x <= high for low, x, high in zip(*of))
 
 # M is positive definite at all q, by a bound that does not depend on q: a mass is positive; the minors of a ship's are, in its
 # body; of a planar arm with a = I₁ + m₁c₁² and b = I₂ + m₂c₂² det M = (a + m₂l₁²) b − (m₂l₁c₂ cos q₂)² ≥ ab + m₂l₁²I₂. Rotors A ⪰ 0
@@ -1409,6 +1419,7 @@ TEXT = {
     "set-valued-sign": lambda scenario, _: set_valued(scenario),
     "smooth-friction": lambda scenario, _: frictions(scenario) <= {"smooth"},
     "parameters-within-bounds": lambda scenario, _: all(bounds_hold(a) for a in scenario.agents if a.law == "adaptive"),
+    "lengths-within-bounds": lambda scenario, names: all(lengths_hold(a) for a in scenario.agents if a.name in names),
     # Nothing sits on a tool: its place enters the Jacobian of the tip, and neither M nor C nor g.
     "certain-regressor": lambda scenario, names: all(a.gains["end_effector"].get("uncertain", "tool") == "tool"
                                                      for a in scenario.agents if a.name in names),
@@ -1447,8 +1458,7 @@ def enclosed(node, tree, end_s):
         require(node.field("within"), ends[0] <= found[0] and found[1] <= ends[1], words)
     return tuple(ends)
 
-def lasts(node):
-    return node.field("range").text() != "run"
+def lasts(node): return node.field("range").text() != "run"
 
 # Enclosures of formulas, each named by an edge: {text: (low, high, whether for ever and uniformly continuous)}.
 def formulas(claim, node, text_of):
@@ -1465,15 +1475,14 @@ def formulas(claim, node, text_of):
     return found
 
 # The formula that the delay of an edge follows, as a text.
-def formula_of(edge):
-    return edge.delay[1] if edge.delay[0] == "formula_s" else None
+def formula_of(edge): return edge.delay[1] if edge.delay[0] == "formula_s" else None
 
 # What no value of a delay exceeds by the parameters of its rule; None where the rule does not say.
 def rule_bound(delay):
     kind, body, _ = delay
     if kind == "constant_s":
         return not_negative(body, kind)
-    if kind in ("formula_s", "log"):
+    if kind in ("formula_s", "log", "hold_log"):
         return None
     if kind in ("piecewise_constant", "random_hold"):
         values = table(body, kind).get("values_s" if kind == "piecewise_constant" else "value_s")
@@ -1490,10 +1499,15 @@ def rule_bound(delay):
     lost = 0 if never else 1 if loss.get("leave") == 1 else loss.get("most_consecutive")
     return None if lost is None else (not_negative(lost, "most_consecutive") + 1) * period_s + latency + jitter
 
-# The largest age of what is heard on a link whose packets are logged: the newest that has arrived; before the first, t.
+# The largest held value of a log, or age of what is heard on a link whose packets are: the newest that has arrived; before the
+# first, t.
 def logged(scenario, edge):
     names, newest, worst = (scenario.names[edge.source], scenario.names[edge.to]), Fraction(0), Fraction(0)
-    rows = [row for row in scenario.csv(table(edge.delay[1], "log").get("file")) if (row.get("from"), row.get("to")) == names]
+    body = table(edge.delay[1], "log", "file hold")
+    rows = [row for row in scenario.csv(body.get("file")) if (row.get("from"), row.get("to")) == names]
+    if edge.delay[0] == "hold_log":
+        held = scenario.log([row for row in rows if decimal(row["hold"]) == exact(body.get("hold", 1), "hold")], "delay_s")
+        return max(not_negative(value, "delay_s") for value, *_ in held)
     packets = [(decimal(row["send_s"]), decimal(row["delay_s"])) for row in rows if row.get("delay_s")]
     for arrives, sent in sorted((sent + delay, sent) for sent, delay in packets):
         if arrives <= scenario.end_s and sent > newest:
@@ -1512,7 +1526,7 @@ def delays(claim, bound_s, enclosures, given):
         if kind == "formula_s":
             require(enclosures, body in shown and shown[body][0] >= 0, f"lacks `{body}`, or lets it become negative")
             worst, always = shown[body][1], always and shown[body][2]
-        elif kind == "log":
+        elif kind in ("log", "hold_log"):
             worst, always = logged(scenario, edge), False
         elif worst is None:
             link = scenario.names[edge.source], scenario.names[edge.to]
@@ -1594,6 +1608,14 @@ def number(claim, value):
         require(value, all(end <= stated for agent in agents for end in agent.pushes), "comes before the end of a push")
     return said(stated)
 
+@rule("desired-dynamics", "routh")
+@rule("desired-dynamics", "no-routh")
+def hurwitz(claim, column):
+    found = routh(claim.scenario.polynomial)
+    require(column, [entry.number() for entry in column.each()] == found, "is not the first column of the array")
+    require(column, (found[-1] > 0) == (claim.proof.field("kind").text() == "routh"), "shows the opposite")
+    return f"the array of Routh has {len(found)} entries, the last {said(found[-1])}"
+
 @rule("common-first-root", "constant")
 def all_constant(claim):
     scenario, edges = claim.scenario, [edge for phase in claim.scenario.recurring() for edge in claim.scenario.graphs[phase]]
@@ -1673,12 +1695,11 @@ def gain_is_positive(claim, agent, key, value, matrices, stated):
         entries = [exact(x, key) for x in (value if isinstance(value, list) else [value])]
         require(claim.proof, entries and min(entries) > 0, f"{agent.name} has a gain `{key}` that is not positive")
 
-# How many derivatives of a target a law needs, four at most.
-def needed(agent):
-    if agent.law == "thrust":
-        return 3 if design_of(agent) == "continuous" else 4
-    least = len(agent.roots) if agent.law in CHAIN_LAWS else max(len(agent.roots), 2)
-    return min({"position_only": 3, "task_space": 2, "attitude": 2}.get(agent.law, least), 4)
+# How many derivatives of a target a law needs, or the order of what follows it, four at most.
+def needed(agent, polynomial):
+    order = len(agent.roots) if agent.law in CHAIN_LAWS else max(len(agent.roots), 2)
+    known_ = {"position_only": 3, "task_space": 2, "attitude": 2, "thrust": 3 if design_of(agent) == "continuous" else 4}
+    return min(len(polynomial) - 1 if polynomial else known_.get(agent.law, order), 4)
 
 # For each motion of a claim its axes, and the lowest and the highest derivative that has to be bounded.
 def motions_of(claim):
@@ -1686,7 +1707,7 @@ def motions_of(claim):
         require(claim.proof, claim.scenario.motion is not None, "is of no motion")
         return [(claim.scenario.motion, 1, 3)]
     agents = [claim.scenario.agents[claim.scenario.index[name]] for name in claim.agents]
-    return [(agent.target or [], 0 if agent.tracks else 1, needed(agent)) for agent in agents]
+    return [(agent.target or [], 0 if agent.tracks else 1, needed(agent, claim.scenario.polynomial)) for agent in agents]
 
 # Curves through points are polynomials on finitely many pieces and constant elsewhere; derivatives of formulas are enclosed, on
 # [0, ∞) at once or on the stretch that is stated.
@@ -1718,8 +1739,7 @@ def diverges(claim, motion, axis, order):
     return f"derivative {order.count()} of axis {axis.count()} goes to {said(limit(tree)[0])}"
 
 # Whether a formula is shown to be bounded on each of some stretches.
-def finite(tree, stretches):
-    return not any(infinite(end) for stretch in stretches for end in attempt(enclose, tree, stretch) or WHOLE)
+def finite(tree, stretches): return not any(infinite(end) for stretch in stretches for end in attempt(enclose, tree, stretch) or WHOLE)
 
 # What drives who follows a leader, axis by axis, must stay below γ: α q̇ + q̈, α q̇ + β q̈ + d³q, or d³q.
 def drive(claim):
@@ -1732,8 +1752,7 @@ def drive(claim):
     sums = [functools.reduce(plus, (times(("number", Fraction(factor)), rate) for factor, rate in zip(factors, each))) for each in rates]
     return [(tree, (-gamma,) * 2, (gamma,) * 2) for tree in sums]
 
-def squares(trees):
-    return functools.reduce(plus, [("^", tree, Fraction(2)) for tree in trees])
+def squares(trees): return functools.reduce(plus, [("^", tree, Fraction(2)) for tree in trees])
 
 def quaternion(claim):
     paths = [tree for name in claim.agents for tree in claim.scenario.agents[claim.scenario.index[name]].target or []]

@@ -609,7 +609,7 @@ class FalseProofs(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = Path(os.environ["FORWARDSTEP_CERTIFICATES"])
 
-    def judged(self, name, each, spoil_proof, *changes):
+    def judged(self, name, each, spoil_proof, *changes, files=None):
         """The outcome of hypothesis `each` after a change of its entry and of the text of the scenario."""
         text = place_of(name).read_text()
         for old, other in changes:
@@ -618,7 +618,7 @@ class FalseProofs(unittest.TestCase):
         certificate = json.loads((self.folder / f"{name}.json").read_text())
         entry, = [entry for entry in certificate["hypotheses"] if entry["id"] == each][:1]
         spoil_proof(entry)
-        found = checker.check(json.dumps(certificate), text, SCENARIOS, digests=False)
+        found = checker.check(json.dumps(certificate), text, files or place_of(name).parent, digests=False)
         return [(one[3], one[4]) for one in found if one[0] in (each, "certificate")], found
 
     def rejected(self, name, each, words, spoil_proof=lambda entry: None, *changes):
@@ -1015,6 +1015,96 @@ class FalseProofs(unittest.TestCase):
         # With delays besides it is another statement, and so are graphs that do not take turns.
         self.rejected("leader-over-late-links", "bounded-delays", "theorem", lambda entry: None, ("delay.random_hold = { seed = 7, "
                       "hold_s = [0.1, 0.3], value_s = [0.0, 0.05] }", "delay.constant_s = 0"))
+
+    def test_polynomials_of_targets(self):
+        name, each = "desired-target", "desired-dynamics"
+        put = lambda kind, answer, *column: lambda entry: entry.update(answer=answer, proof={"kind": kind, "column": list(column)})  # noqa: E731
+        by = lambda text: ("polynomial = [6, 11, 6]", f"polynomial = {text}")  # noqa: E731
+        shown, refuted = lambda *column: put("routh", "holds", *column), lambda *column: put("no-routh", "violated", *column)  # noqa: E731
+        _, found = self.judged(name, each, lambda entry: None)
+        self.assertEqual({one[3] for one in found}, {checker.ACCEPTED}, found)
+        self.rejected(name, "bounded-target", "too low", lambda entry: entry["proof"].update(order=2))
+        # p³ + 6 p² + 11 p + 6, and with another constant that stays below 66.
+        self.accepted(name, each, shown(1, "6.0", 10, "6"))
+        self.accepted(name, each, shown(1, 6, "11/600", "65.89"), by("[65.89, 11, 6]"))
+        self.rejected(name, each, "first column", lambda entry: None, by("[7, 11, 6]"))
+        self.rejected(name, each, "first column", shown(1, 6, 11, 6))
+        self.rejected(name, each, "first column", shown(1, 6, 10))
+        # On the axis and beyond it: a row begins with zero, or with what is negative.
+        for constant, entry in ((66, 0), (72, -1)):
+            self.accepted(name, each, refuted(1, 6, entry), by(f"[{constant}, 11, 6]"))
+            self.rejected(name, each, "opposite", shown(1, 6, entry), by(f"[{constant}, 11, 6]"))
+        self.rejected(name, each, "opposite", refuted(1, 6, 10, 6))
+        # By roots, p (p + 1) (p² + 2 p + 5) = p⁴ + 3 p³ + 7 p² + 5 p: the row of the constant vanishes.
+        roots = "{ integrators = 1, roots_per_s = [1, { real = 1, imaginary = 2 }] }"
+        self.accepted(name, each, refuted(1, 3, "16/3", 5, 0), by(roots))
+        # Of what hears neighbours as well, or has a term that is not linear, nothing is known.
+        for more in ("coupling_polynomial = [0]", "heard = [1]", 'nonlinear = "-x^3"'):
+            judged, found = self.judged(name, each, lambda entry: None, ("follows_target = true", f"follows_target = true\n{more}"))
+            self.assertEqual([outcome for outcome, _ in judged], [checker.UNCHECKED], found)
+
+    def test_routh_tells_polynomials_by_their_roots(self):
+        draw = random.Random(8)
+        for _ in range(300):
+            signs, p = [draw.choice((1, 1, 1, 1, -1)) for _ in range(draw.randrange(1, 6))], [checker.Fraction(1)]
+            for sign in signs:
+                a, b = checker.Fraction(draw.randrange(1, 30), 7), checker.Fraction(draw.randrange(0, 40), 7)
+                p = checker.convolved(p, draw.choice(([sign * a, checker.Fraction(1)], [a * a + b * b, sign * 2 * a, checker.Fraction(1)])))
+            self.assertEqual(checker.routh(p)[-1] > 0, min(signs) > 0, p)
+
+    def test_logs(self):
+        name, logs = "logs", {file: (HERE / "cases" / file).read_text() for file in ("logs-phases.csv", "logs-holds.csv")}
+        with tempfile.TemporaryDirectory() as files:
+            def beside(file=None, old="", new=""):
+                for each, text in logs.items():
+                    self.assertTrue(each != file or old in text)
+                    (Path(files) / each).write_text(text.replace(old, new, 1) if each == file else text)
+                return {"files": Path(files)}
+
+            def said(each, spoil_proof=lambda entry: None, **other):
+                return self.judged(name, each, spoil_proof, **other)[0][0]
+
+            put = lambda **fields: lambda entry: entry["proof"].update(fields)  # noqa: E731
+            for each in ("spanning-tree", "dwell-time", "bounded-delays"):
+                self.assertEqual(said(each, **beside())[0], checker.ACCEPTED)
+                # Nothing is known of what comes after a log.
+                self.assertEqual(said(each, lambda entry: entry.update(answer="holds"), **beside())[0], checker.REJECTED)
+            for each, spoilt, words in (("spanning-tree", put(longest_s="1.79"), "is exceeded"), ("dwell-time", put(shortest_s="0.41"), "not below"),
+                                        ("bounded-delays", put(bound_s="0.29"), "is exceeded"), ("spanning-tree", put(kind="drawn"), "is not drawn")):
+                outcome, what = said(each, spoilt, **beside())
+                self.assertTrue(outcome == checker.REJECTED and words in what, (each, what))
+            for each, file, old, new, words in (
+                    ("spanning-tree", "phases", "0.8,2", "0.8,1", "phases that follow"), ("spanning-tree", "phases", "1.5,1", "1.5,3", "is none"),
+                    ("spanning-tree", "phases", "5.5,", "4.9,", "not before the run"), ("spanning-tree", "phases", "5.5,", "5.5,2", "an empty line"),
+                    ("spanning-tree", "phases", "1.5,1", "1.5,", "an empty line"), ("spanning-tree", "phases", "0,1", "0.1,1", "begin at 0"), ("dwell-time", "phases", "1.9,1", "1.6,1", "not below"),
+                    ("bounded-delays", "holds", "1.5,0.25", "1.5,0.35", "is exceeded"), ("bounded-delays", "holds", "1.5,0.25", "1.5,-0.1", "negative"),
+                    ("bounded-delays", "holds", "1,5,", "1,4.9,", "not before the run"), ("bounded-delays", "holds", "1,5,", "1,1.2,", "rise")):
+                outcome, what = said(each, **beside(f"logs-{file}.csv", old, new))
+                self.assertTrue(outcome == checker.REJECTED and words in what, (each, old, new, what))
+            # Windows that would do for what repeats.
+            tree = [["mass-1", "mass-2", 1], ["mass-2", "mass-3", 2]]
+            proof = {"kind": "windows", "windows": [{"phases": [1, 2], "root": "mass-1", "arborescence": tree}]}
+            for answer in ("holds", "holds on [0, end]"):
+                found = said("spanning-tree", lambda entry: entry.update(answer=answer, proof=proof), **beside())
+                self.assertEqual(found, (checker.UNCHECKED, "what comes after a log is not known"))
+            # Other numbers with which the same bounds are right; a hold of another number is another one.
+            for each, file, old, new in (("dwell-time", "phases", "1.9,1", "2,1"), ("spanning-tree", "phases", "5.5,", "5,"),
+                                         # The last may be cut short.
+                                         ("dwell-time", "phases", "4.1,2", "5.2,2"),
+                                         ("bounded-delays", "holds", "1.5,0.25", "1.5,0.3"),
+                                         ("bounded-delays", "holds", "mass-2,mass-3,1,0,0.3", "mass-2,mass-3,2,0,9\nmass-2,mass-3,1,0,0.3")):
+                self.assertEqual(said(each, **beside(f"logs-{file}.csv", old, new))[0], checker.ACCEPTED, (each, old, new))
+
+    def test_places_of_tools(self):
+        name, each = "pose-ur5e", "lengths-within-bounds"
+        self.accepted(name, each)
+        self.accepted(name, each, lambda entry: None, ("at_m = [0, 0, 0.15]", "at_m = [0.05, 0, 0.3]"))
+        for place in ("[0, 0, 0.31]", "[0, -0.06, 0.15]", "[0, 0, 0.049]", "[0, 0]"):
+            self.rejected(name, each, "by the text", lambda entry: None, ("at_m = [0, 0, 0.15]", f"at_m = {place}"))
+        chain = ("at_m = [0, 0, 0.15]", 'at_m = [0, 0, 0.15], uncertain = "chain"')
+        for unknown in (chain, ('name = "arm"', 'name = "arm"\nparameter_variation.uniform = 0.1')):
+            judged, found = self.judged(name, each, lambda entry: None, unknown)
+            self.assertEqual([outcome for outcome, _ in judged], [checker.UNCHECKED], found)
 
     def test_trees_of_every_phase(self):
         name, each = "theorem-3-24-order-4", "spanning-tree"

@@ -19,6 +19,7 @@ mod numbers;
 mod producers;
 mod proof;
 mod ratio;
+mod routh;
 mod shares;
 mod windows;
 

@@ -2,6 +2,7 @@
 
 use forwardstep_core::expression::{Expression, Interval, Number};
 use forwardstep_sim::Setup;
+use forwardstep_sim::reference::Desired;
 use forwardstep_sim::trajectory::{Path, Trajectory};
 
 use super::courses::Course;
@@ -30,9 +31,10 @@ pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
         motions.push((&setup.following()?.motion()?.trajectory, 1));
     } else {
         order = 0;
+        let desired = setup.reference.downcast::<Desired>().map(|desired| desired.polynomial.order());
         for index in claim.agents {
             let agent = setup.agents.get(*index)?;
-            order = order.max(kind_of(agent).target_derivatives(agent).min(4));
+            order = order.max(desired.unwrap_or_else(|| kind_of(agent).target_derivatives(agent)).min(4));
             motions.push((agent.target.as_ref()?, usize::from(!setup.tracks(*index))));
         }
     }

@@ -5,7 +5,7 @@ use forwardstep_sim::{Setup, TaskSpaceLaw, TipSetup};
 
 use super::enclosure::Reach;
 use super::proof::Proof;
-use super::{delays, gains, motions, numbers, windows};
+use super::{delays, gains, motions, numbers, routh, windows};
 use crate::{Answer, Id};
 
 /// Looks for a proof of an answer about a hypothesis of some agents.
@@ -38,6 +38,7 @@ const PRODUCERS: &[(Id, Producer)] = &[
     (Id::RealRoots, numbers::real_roots),
     (Id::Hurwitz, numbers::hurwitz),
     (Id::DesiredDesign, text),
+    (Id::DesiredDynamics, routh::of_target),
     (Id::CommonOrder, numbers::common_order),
     (Id::CommonFirstRoot, numbers::common_first_root),
     (Id::Manipulability, numbers::manipulability),
@@ -60,7 +61,8 @@ const PRODUCERS: &[(Id, Producer)] = &[
     (Id::DefinedTerms, numbers::defined_terms),
     (Id::TargetWithinReach, motions::within_reach),
     (Id::OwnOrders, text),
-    (Id::CertainRegressor, certain_regressor),
+    (Id::CertainRegressor, of_no_chain),
+    (Id::LengthsWithinBounds, of_no_chain),
     (Id::ConstantWeights, text),
     (Id::MutualWeights, text),
     (Id::NoDelay, text),
@@ -84,11 +86,15 @@ fn text(_: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     (claim.answer == Answer::Holds).then_some(Proof::Text)
 }
 
-/// Of an uncertain tool the text says it; which lengths of a chain a regressor holds takes the kinematics of the tree.
-fn certain_regressor(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
-    let of_tool = |agent: &usize| {
+/// Of an uncertain tool, and of the lengths of a planar arm, the text says it; which lengths of a chain there are, and which of them a
+/// regressor holds, takes the kinematics of the tree.
+fn of_no_chain(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    let stated = |agent: &usize| {
         let law: Option<&TaskSpaceLaw> = setup.agents.get(*agent).and_then(|agent| agent.law.downcast());
-        law.is_some_and(|law| matches!(law.tip, TipSetup::Point { uncertain: Uncertain::Tool, .. }))
+        law.is_some_and(|law| match law.tip {
+            TipSetup::Planar(_) => true,
+            TipSetup::Point { uncertain, .. } => uncertain == Uncertain::Tool,
+        })
     };
-    claim.agents.iter().all(of_tool).then(|| text(setup, claim))?
+    claim.agents.iter().all(stated).then(|| text(setup, claim))?
 }

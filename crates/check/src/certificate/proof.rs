@@ -18,6 +18,13 @@ pub enum Proof {
         /// No window, and no rest after the last, is longer, s.
         longest_s: BigRational,
     },
+    /// Windows along the sequence of a log, up to the end of the run.
+    Logged {
+        /// The windows.
+        windows: Vec<TreeWindow>,
+        /// No window, and no rest after the last, is longer, s.
+        longest_s: BigRational,
+    },
     /// Witness: groups that hear no agent outside themselves in anything that recurs.
     Cut(Vec<Vec<usize>>),
     /// Witness: a group that hears no agent outside itself in a phase that recurs.
@@ -52,6 +59,10 @@ pub enum Proof {
     Form(&'static str, BigRational),
     /// A number that the text bears out: the smallest root, the largest gain, an order, a time.
     Number(BigRational),
+    /// The first column of the array of Routh, without an entry that is not positive.
+    Routh(Vec<BigRational>),
+    /// Witness: this column up to its first entry that is not positive.
+    NoRouth(Vec<BigRational>),
     /// Classes of agents with one κ₀, in an order in which no edge leads back.
     Classes(Vec<Vec<usize>>),
     /// Graph, weights and delays are constant.

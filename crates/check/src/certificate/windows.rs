@@ -5,7 +5,7 @@ use std::collections::{HashMap, VecDeque};
 use forwardstep_core::expression::Number;
 use forwardstep_sim::Setup;
 use forwardstep_sim::graph::{SpanningTree, spanning_tree as tree};
-use forwardstep_sim::schedule::{Dwell, Extent, Schedule};
+use forwardstep_sim::schedule::{Dwell, Extent, Logged, Schedule};
 use num_rational::BigRational;
 use num_traits::Zero;
 
@@ -20,13 +20,15 @@ const MOST_PHASES: usize = 2000;
 
 pub(super) fn spanning_tree(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     let schedule = &setup.network.schedule;
+    if claim.answer == Answer::HoldsOnHorizon {
+        return along(setup);
+    }
     let recurring = recurring(schedule)?;
     match claim.answer {
         Answer::Holds if claim.id == Id::SpanningTree && drawn(schedule) => every_phase(setup, &recurring),
         Answer::Holds => Some(Proof::Windows(tiles(setup, &recurring)?)),
-        Answer::HoldsOnHorizon => along_draw(setup),
         Answer::Violated => cut(setup, &recurring, claim.id),
-        Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
+        Answer::HoldsOnHorizon | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
     }
 }
 
@@ -111,10 +113,11 @@ pub(super) fn in_every_graph(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> 
     }
 }
 
-/// The sequence that was drawn, and windows along it until no further one is complete.
-fn along_draw(setup: &Setup) -> Option<Proof> {
+/// Windows along the sequence that was drawn, which is given, or that of a log, until no further one is complete.
+fn along(setup: &Setup) -> Option<Proof> {
     let (schedule, end_s) = (&setup.network.schedule, setup.time.end_s);
-    if !drawn(schedule) {
+    let logged = schedule.downcast::<Logged>().is_some();
+    if !drawn(schedule) && !logged {
         return None;
     }
     let segments: Vec<_> =
@@ -138,7 +141,10 @@ fn along_draw(setup: &Setup) -> Option<Proof> {
         }
     }
     longest_s = longest_s.max(Number::written(end_s) - times.get(from)?);
-    (!windows.is_empty()).then_some(Proof::Drawn { given, windows, longest_s })
+    if windows.is_empty() {
+        return None;
+    }
+    Some(if logged { Proof::Logged { windows, longest_s } } else { Proof::Drawn { given, windows, longest_s } })
 }
 
 /// The closed groups of the union of all that recurs.
@@ -157,14 +163,25 @@ fn without_leader(setup: &Setup, closed_groups: Vec<Vec<usize>>) -> Option<Vec<u
 }
 
 pub(super) fn dwell_time(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
-    if claim.answer != Answer::Holds {
-        return None;
+    let schedule = &setup.network.schedule;
+    match claim.answer {
+        Answer::Holds => {}
+        Answer::HoldsOnHorizon => return shortest_logged(schedule),
+        Answer::Violated | Answer::Watched | Answer::NotShown | Answer::NotCovered => return None,
     }
-    match setup.network.schedule.known().dwell {
+    match schedule.known().dwell {
         Dwell::NeverSwitches => Some(Proof::NeverSwitches),
         Dwell::Shortest(dwell_s) | Dwell::Drawn(dwell_s) => Some(Proof::ShortestPhase(Number::written(dwell_s))),
         Dwell::Declared(_) => None,
     }
+}
+
+/// The shortest phase of a log but for the last, which the end of the table may cut short, from times as they are written.
+fn shortest_logged(schedule: &Schedule) -> Option<Proof> {
+    let log: &Logged = schedule.downcast()?;
+    let times: Vec<BigRational> = log.starts_s.iter().copied().map(Number::written).collect();
+    let shortest_s = times.windows(2).map(|pair| &pair[1] - &pair[0]).min();
+    Some(Proof::ShortestPhase(shortest_s.unwrap_or_else(|| Number::written(log.until_s))))
 }
 
 pub(super) fn fixed_graph(_: &Setup, claim: &Claim<'_>) -> Option<Proof> {

@@ -75,6 +75,9 @@ impl Names<'_> {
                     "longest_s": decimal(longest_s),
                 })
             }
+            Proof::Logged { windows, longest_s } => {
+                json!({ "kind": "logged", "windows": self.windows(windows), "longest_s": decimal(longest_s) })
+            }
             Proof::Cut(groups) => {
                 json!({ "kind": "cut", "groups": groups.iter().map(|group| self.all(group)).collect::<Vec<_>>() })
             }
@@ -100,6 +103,8 @@ impl Names<'_> {
             Proof::Weights(formulas) => json!({ "kind": "weights", "enclosures": self.enclosures(formulas) }),
             Proof::Form(form, size) => json!({ "kind": "form", "form": form, "size": decimal(size) }),
             Proof::Number(value) => json!({ "kind": "number", "value": decimal(value) }),
+            Proof::Routh(column) => json!({ "kind": "routh", "column": numbers(column) }),
+            Proof::NoRouth(column) => json!({ "kind": "no-routh", "column": numbers(column) }),
             Proof::Classes(classes) => {
                 json!({ "kind": "classes", "classes": classes.iter().map(|class| self.all(class)).collect::<Vec<_>>() })
             }

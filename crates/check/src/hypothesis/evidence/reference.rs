@@ -105,10 +105,8 @@ impl ReferenceEvidence {
             | ReferenceEvidence::FirstRootCommon
             | ReferenceEvidence::FirstRootsOverConstants
             | ReferenceEvidence::Manipulability { .. } => Answer::Holds,
-            ReferenceEvidence::Design { .. } => Answer::Holds,
-            // What is stable has no certificate without its roots.
+            ReferenceEvidence::Design { .. } | ReferenceEvidence::Stable { .. } => Answer::Holds,
             ReferenceEvidence::ComplexRoots { .. }
-            | ReferenceEvidence::Stable { .. }
             | ReferenceEvidence::NoDesign
             | ReferenceEvidence::NoDesignInThese
             | ReferenceEvidence::Tried { found: None, .. } => Answer::NotShown,

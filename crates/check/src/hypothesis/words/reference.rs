@@ -47,8 +47,8 @@ pub(super) fn words(evidence: &ReferenceEvidence) -> String {
             format!("they are {design} with {roots}, by comparison of their polynomials with exact numbers")
         }
         ReferenceEvidence::Stable { order } => format!(
-            "by the criterion of Routh and Hurwitz, with exact numbers, all {order} roots of their polynomial have negative real parts; but a \
-             certificate can be had of roots that are stated alone"
+            "by the criterion of Routh and Hurwitz, with exact numbers, all {order} roots of their polynomial have negative real \
+             parts"
         ),
         ReferenceEvidence::Unstable { row, order } => format!(
             "their polynomial is of degree {order}, and not Hurwitz: in the array of Routh the first entry of row {row}, counted from 0, is not \

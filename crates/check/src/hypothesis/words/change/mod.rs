@@ -164,11 +164,8 @@ fn reference(evidence: &ReferenceEvidence) -> Option<String> {
         ReferenceEvidence::FilteredDerivative { .. } => {
             "`reference.consensus` with one root, which is (aa10) and differentiates nothing".into()
         }
-        ReferenceEvidence::Stable { .. } => {
-            "`polynomial = { roots_per_s = [...] }`, with the roots in place of the coefficients".into()
-        }
         ReferenceEvidence::Unstable { .. } => {
-            "a polynomial whose roots have negative real parts, stated by `roots_per_s`".into()
+            "a polynomial whose roots have negative real parts, as `roots_per_s` states them".into()
         }
         ReferenceEvidence::NoDesign => {
             "`polynomial = { integrators = 1, roots_per_s = [...] }`, `coupling_polynomial` with the same roots and \
@@ -181,6 +178,7 @@ fn reference(evidence: &ReferenceEvidence) -> Option<String> {
         }
         ReferenceEvidence::NoDesignInThese => "`written_in = \"measured\"`".into(),
         ReferenceEvidence::Design { .. }
+        | ReferenceEvidence::Stable { .. }
         | ReferenceEvidence::Order(_)
         | ReferenceEvidence::Orders(_)
         | ReferenceEvidence::FirstRootCommon
