@@ -41,11 +41,14 @@ Exit status:
 pub(crate) enum Command {
     /// Simulate a scenario and write tables and a report
     Run(RunOptions),
-    /// Build the report and the plots of a run anew from its tables, without simulating again
+    /// Build the report and the plots of a run anew from its tables, without simulating again; of a run that was cut off, write all that it left
     Report {
         /// The folder of the run
         #[arg(value_name = "DIR")]
         folder: PathBuf,
+        /// Write everything about the run into this folder instead, which is made, and leave DIR as it is
+        #[arg(long, value_name = "ELSEWHERE")]
+        out: Option<PathBuf>,
     },
     /// Say which theorem speaks about a scenario, and whether its hypotheses hold
     Check(CheckOptions),

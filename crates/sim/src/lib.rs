@@ -25,6 +25,7 @@ pub mod quantity;
 mod ranges;
 pub mod recording;
 pub mod reference;
+mod rows;
 mod same;
 pub mod schedule;
 pub mod setup;
@@ -52,12 +53,13 @@ pub use recording::{
     SampleTaken, Signal, Statistics, Stiffness,
 };
 pub use reference::{ReferenceDynamics, ReferenceFamily};
+pub use rows::RowSink;
 pub use same::Same;
 pub use setup::{
     ATOL, Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Failures, Method, RECORD_EVERY_S, RTOL, RecordAt,
     RobotSetup, Sensors, Setup, Solver, Start, TimeSpan, VelocitySensor,
 };
-pub use simulate::{recorded_columns, simulate, simulate_moments, simulate_samples};
+pub use simulate::{recorded_columns, simulate, simulate_into, simulate_moments, simulate_samples};
 pub use system::{
     ActuatorLimits, Attachments, Coordinates, Interface, Law, LawWords, Line, LineValue, PositionKind, Robot,
     RobotInterface,

@@ -68,6 +68,11 @@ pub enum Ending {
         /// Simulated time, s.
         t_s: f64,
     },
+    /// Whoever simulated ended before the run did, and these rows were kept elsewhere. No simulation says so of itself.
+    CutOff {
+        /// Time of the last row that was kept, s.
+        t_s: f64,
+    },
     /// Something went wrong that no smaller step could mend.
     BrokeDown(Breakdown),
 }

@@ -13,6 +13,7 @@ use crate::network::Network;
 use crate::recording::{
     Breakdown, BreakdownCause, Column, Ending, Outcome, Progress, Recording, SampleTaken, Signal, Stiffness,
 };
+use crate::rows::RowSink;
 use crate::setup::{RecordAt, Setup, TimeSpan};
 
 /// Rows are made room for in chunks of this many.
@@ -62,6 +63,20 @@ pub fn simulate_moments(
     simulate_with(setup, observer, &mut |_| {}, Observers { moment: Some(each), ..Observers::default() })
 }
 
+/// The same, and hands every row to `rows` when it is recorded; `watch`, if there is one, looks at every step as in
+/// [`crate::simulate_watched`]. The run has the same bits.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_into<'a>(
+    setup: &Setup,
+    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    watch: Option<&'a mut dyn Watch>,
+    rows: &'a mut dyn RowSink,
+) -> Result<Outcome, SetupError> {
+    simulate_with(setup, observer, &mut |_| {}, Observers { watch, rows: Some(rows), ..Observers::default() })
+}
+
 /// Who looks at a run besides the recording.
 #[derive(Default)]
 pub(crate) struct Observers<'a> {
@@ -71,6 +86,8 @@ pub(crate) struct Observers<'a> {
     pub(crate) jump: Option<&'a mut dyn FnMut(NetworkJump<'_>)>,
     /// At every agent with its rates, row by row.
     pub(crate) moment: Option<&'a mut dyn FnMut(Moment<'_>)>,
+    /// At every row that is recorded.
+    pub(crate) rows: Option<&'a mut dyn RowSink>,
 }
 
 /// The same, and lets `observers` look at every step.
@@ -81,7 +98,7 @@ pub(crate) fn simulate_with(
     observers: Observers<'_>,
 ) -> Result<Outcome, SetupError> {
     let mut shown = 0;
-    let Observers { mut watch, jump, moment } = observers;
+    let Observers { mut watch, jump, moment, rows } = observers;
     let mut closed_loop = assembled(setup)?;
     setup.network.lasts_until(setup.time.end_s)?;
     closed_loop.watch(samples);
@@ -94,7 +111,7 @@ pub(crate) fn simulate_with(
     let silent = Network::silent(setup.network.agents);
     let network = if setup.control.is_some() { &silent } else { &setup.network };
     let mut integrator = Integrator::new(network, &setup.solver, end_s, closed_loop.start(), ports, entries);
-    let mut recorder = Recorder::new(setup, &closed_loop);
+    let mut recorder = Recorder::new(setup, &closed_loop, rows);
     let mut jumps = jump.map(|jump| JumpWatch::new(&mut closed_loop, setup.agents.len(), jump));
     let mut pace = Pace::new(setup);
     let mut moments = moment.map(|each| (Moments::new(setup, &closed_loop), each));
@@ -123,7 +140,8 @@ pub(crate) fn simulate_with(
                     break Ending::BrokeDown(breakdown);
                 }
                 let progress = Progress { t_s: step.end_s, end_s };
-                if observer(progress).is_break() && step.end_s < end_s {
+                let stops = recorder.step_ends().is_break();
+                if (observer(progress).is_break() || stops) && step.end_s < end_s {
                     break Ending::Interrupted { t_s: step.end_s };
                 }
             }
@@ -229,12 +247,16 @@ impl Pace {
 }
 
 /// Writes rows as steps go by.
-struct Recorder<'a> {
+struct Recorder<'a, 'r> {
     setup: &'a Setup,
     recording: Recording,
     /// First column of every agent.
     first_column: Vec<usize>,
+    /// The row that is being made.
+    row: Vec<f64>,
     rows: Rows,
+    /// Who else takes the rows.
+    sink: Option<&'r mut dyn RowSink>,
 }
 
 /// The instants of rows: row k belongs to t = k · record_every, to t = k / hz, or to the time that is stated.
@@ -285,14 +307,16 @@ impl Rows {
     }
 }
 
-impl<'a> Recorder<'a> {
-    fn new(setup: &'a Setup, closed_loop: &ClosedLoop<'_>) -> Self {
+impl<'a, 'r> Recorder<'a, 'r> {
+    fn new(setup: &'a Setup, closed_loop: &ClosedLoop<'_>, sink: Option<&'r mut dyn RowSink>) -> Self {
         let (columns, first_column) = empty_columns(closed_loop, setup.agents.len());
         Recorder {
             setup,
+            row: vec![f64::NAN; columns.len()],
             recording: Recording { t_s: Vec::new(), columns },
             first_column,
             rows: Rows::new(setup.time.clone()),
+            sink,
         }
     }
 
@@ -322,14 +346,22 @@ impl<'a> Recorder<'a> {
                 column.values.reserve_exact(chunk);
             }
         }
-        self.recording.t_s.push(t_s);
         let (x, heard) = integrator.look_inside(t_s);
-        let (columns, first) = (&mut self.recording.columns, &self.first_column);
+        let (row, first) = (&mut self.row, &self.first_column);
         closed_loop.record(t_s, x, heard, |agent, values| {
-            for (column, value) in columns[first[agent]..].iter_mut().zip(values) {
-                column.values.push(*value);
+            for (place, value) in row[first[agent]..].iter_mut().zip(values) {
+                *place = *value;
             }
         });
+        self.recording.row(t_s, &self.row);
+        if let Some(sink) = &mut self.sink {
+            sink.row(t_s, &self.row);
+        }
+    }
+
+    /// Lets whoever else takes the rows know; whether the run is to go on.
+    fn step_ends(&mut self) -> ControlFlow<()> {
+        self.sink.as_mut().map_or(ControlFlow::Continue(()), |sink| sink.step())
     }
 
     fn limit_left(&self, t_s: f64) -> Option<Breakdown> {

@@ -30,7 +30,7 @@ pub(super) fn completed(
     let outcome = simulate(ideal, observer)?;
     match outcome.ending {
         Ending::Completed => Ok(outcome.recording),
-        Ending::Interrupted { .. } => Err(Unfinished::Interrupted),
+        Ending::Interrupted { .. } | Ending::CutOff { .. } => Err(Unfinished::Interrupted),
         Ending::BrokeDown(breakdown) => Err(Unfinished::BrokeDown { t_s: breakdown.t_s }),
     }
 }

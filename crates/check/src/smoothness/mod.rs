@@ -190,7 +190,7 @@ pub fn smoothness(
     let Seen { switches, delay_jumps, jumps, .. } = seen;
     match &outcome.ending {
         Ending::Completed => Ok(Smoothness { agents, switches, delay_jumps, jumps, outcome }),
-        Ending::Interrupted { t_s } => Err(NoSmoothness::Early { t_s: *t_s }),
+        Ending::Interrupted { t_s } | Ending::CutOff { t_s } => Err(NoSmoothness::Early { t_s: *t_s }),
         Ending::BrokeDown(breakdown) => Err(NoSmoothness::Early { t_s: breakdown.t_s }),
     }
 }

@@ -37,7 +37,7 @@ pub(super) fn tried(setup: &Setup) -> ReferenceEvidence {
         // A setup that cannot be built is refused before anybody asks what follows from it.
         let Ok(outcome) = simulate(&alone, &mut observer) else { break };
         let (from, to) = match outcome.ending {
-            Ending::Interrupted { .. } => continue,
+            Ending::Interrupted { .. } | Ending::CutOff { .. } => continue,
             Ending::Completed => distances(setup, &outcome),
             Ending::BrokeDown(_) => (distances(setup, &outcome).0, f64::INFINITY),
         };

@@ -79,7 +79,7 @@ fn along(scenario: &Scenario, json: bool, console: &mut Console) -> Result<Statu
     let all_hold = found.iter().flat_map(|(_, residuals)| residuals).all(|one: &Residual| one.holds() != Some(false));
     Ok(match outcome.ending {
         Ending::BrokeDown(_) => Status::BrokeDown,
-        Ending::Interrupted { .. } => stop.asked().unwrap_or(Status::Interrupted),
+        Ending::Interrupted { .. } | Ending::CutOff { .. } => stop.asked().unwrap_or(Status::Interrupted),
         Ending::Completed if all_hold => Status::Fine,
         Ending::Completed => Status::Missed,
     })

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use forwardstep::io::output::SavedRun;
+use forwardstep::io::output::{RunFolder, SavedRun, ending_sentence};
 use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::io::shown;
 
@@ -11,20 +11,31 @@ use super::run::refused;
 use crate::console::{Console, complain, remark};
 use crate::status::Status;
 
-/// Builds the report and the plots of a run anew from its tables.
-pub(crate) fn report(folder: &Path, kinds: &Kinds, console: &mut Console) -> Status {
-    finish(folder, kinds, console).unwrap_or_else(|status| status)
+/// Builds the report and the plots of a run anew from its tables, or all of it elsewhere.
+pub(crate) fn report(folder: &Path, out: Option<&Path>, kinds: &Kinds, console: &mut Console) -> Status {
+    finish(folder, out, kinds, console).unwrap_or_else(|status| status)
 }
 
-fn finish(folder: &Path, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
-    let run = SavedRun::open_with(folder, kinds).map_err(|error| complain(&error))?;
+fn finish(folder: &Path, out: Option<&Path>, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
+    let run = match out {
+        Some(_) => SavedRun::look_with(folder, kinds),
+        None => SavedRun::open_with(folder, kinds),
+    }
+    .map_err(|error| complain(&error))?;
+    if let Some(ending) = run.unfinished() {
+        remark(ending_sentence(run.setup(), ending));
+    }
     let promise = promise(run.setup());
     let remarks = run.remarks(&promise.report, env!("CARGO_PKG_VERSION"));
     for sentence in &remarks {
         remark(format_args!("note: {sentence}"));
     }
     let record = run.record(&promise.report, promise.value().map(<[f64]>::to_vec), &remarks);
-    let files = run.write_report(&record).map_err(refused)?;
+    let files = match out {
+        Some(out) => RunFolder::create(out, false).and_then(|elsewhere| run.write_into(&elsewhere, &record)),
+        None => run.write_report(&record),
+    }
+    .map_err(refused)?;
     for file in files {
         console.line(shown(&file));
     }

@@ -6,12 +6,14 @@ use std::time::Instant;
 
 use forwardstep::check::{self, InjectionWatch};
 use forwardstep::io::output::{
-    self, DigitalCost, GoalOutcome, Injected, Metrics, OutputError, RunFolder, RunRecord, continuous_twin,
+    self, DigitalCost, GoalOutcome, Injected, Journal, Metrics, OutputError, RunFolder, RunRecord, continuous_twin,
     ending_sentence,
 };
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
-use forwardstep::sim::{Ending, Outcome, Progress, simulate, simulate_watched};
+use forwardstep::sim::{
+    Ending, Outcome, Progress, Recording, Statistics, Watch, recorded_columns, simulate, simulate_into,
+};
 
 use super::progress::Bar;
 use super::promise::{Promise, predictions, predicts_quickly, promise, show, show_predictions};
@@ -52,10 +54,12 @@ fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<
     let started = Instant::now();
     let mut balances = if options.balance { InjectionWatch::of(setup) } else { None };
     let mut observer = |progress| watch(&mut bar, &stop, progress);
-    let outcome = match &mut balances {
-        Some(balances) => simulate_watched(setup, &mut observer, balances),
-        None => simulate(setup, &mut observer),
-    };
+    let nothing = nothing_yet(&scenario)?;
+    let mut start = record(&scenario, &promise, &nothing, None);
+    start.prediction = prediction.clone();
+    let mut journal = Journal::new(&folder, start, || started.elapsed());
+    let balance = balances.as_mut().map(|balances| balances as &mut dyn Watch);
+    let outcome = simulate_into(setup, &mut observer, balance, &mut journal);
     bar.clear();
     let mut outcome = outcome.map_err(|error| complain(&Plain::new(error)))?;
     outcome.statistics.wall = Some(started.elapsed());
@@ -65,6 +69,11 @@ fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<
     let mut record = record(&scenario, &promise, &outcome, goal);
     record.prediction = prediction;
     record.injected = balances.iter().flat_map(InjectionWatch::balances).map(|own| Injected::from(&own)).collect();
+    let lost = journal.failure().map(ToString::to_string);
+    if let Some(error) = &lost {
+        remark(format_args!("{error}; the run was stopped, since its rows could no longer be kept"));
+    }
+    journal.end(&record, metrics.clone());
     if setup.control.is_some() && !matches!(outcome.ending, Ending::Interrupted { .. }) {
         record.digital = digital_cost(&scenario, &outcome, &stop);
     }
@@ -80,10 +89,18 @@ fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<
     Ok(match outcome.ending {
         Ending::BrokeDown(_) => Status::BrokeDown,
         _ if cut_short.is_some() => cut_short.unwrap_or(Status::Interrupted),
-        Ending::Interrupted { .. } => stop.asked().unwrap_or(Status::Interrupted),
+        _ if lost.is_some() => Status::BadInput,
+        Ending::Interrupted { .. } | Ending::CutOff { .. } => stop.asked().unwrap_or(Status::Interrupted),
         Ending::Completed if goal.is_some_and(|goal| !goal.met) => Status::Missed,
         Ending::Completed => Status::Fine,
     })
+}
+
+/// The outcome before the first step.
+fn nothing_yet(scenario: &Scenario) -> Result<Outcome, Status> {
+    let columns = recorded_columns(&scenario.setup).map_err(|error| complain(&Plain::new(error)))?;
+    let recording = Recording { t_s: Vec::new(), columns };
+    Ok(Outcome { recording, ending: Ending::Interrupted { t_s: 0.0 }, statistics: Statistics::default() })
 }
 
 /// Shows how far it is, and stops when it is asked to.

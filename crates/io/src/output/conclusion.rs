@@ -40,9 +40,8 @@ impl Conclusion {
             Some(Goal::ExpectDiverges) => return None,
             goal => goal.and_then(|goal| goal.bound()),
         };
-        let (Disagreement::Measured { last, largest, .. }, Ending::Completed | Ending::Interrupted { .. }) =
-            (metrics.disagreement, &record.outcome.ending)
-        else {
+        let Disagreement::Measured { last, largest, .. } = metrics.disagreement else { return None };
+        if matches!(record.outcome.ending, Ending::BrokeDown(_)) {
             return None;
         };
         let table = Table::new(record.setup, &record.outcome.recording);

@@ -49,7 +49,7 @@ impl DigitalCost {
         let control = setup.control.as_ref()?;
         let twin_ended_at_s = match &twin.ending {
             Ending::Completed => None,
-            Ending::Interrupted { t_s } => Some(*t_s),
+            Ending::Interrupted { t_s } | Ending::CutOff { t_s } => Some(*t_s),
             Ending::BrokeDown(breakdown) => Some(breakdown.t_s),
         };
         Some(DigitalCost {

@@ -17,6 +17,9 @@ pub fn ending_sentence(setup: &Setup, ending: &Ending) -> String {
         Ending::Interrupted { t_s } => {
             format!("Interrupted at t = {t_s} s of {} s; everything until then is kept.", setup.time.end_s)
         }
+        Ending::CutOff { t_s } => {
+            format!("Was cut off at t = {t_s} s of {} s; everything until then was kept.", setup.time.end_s)
+        }
         Ending::BrokeDown(breakdown) => {
             let column = names::column_name(setup, breakdown.agent, breakdown.signal, breakdown.axis);
             let cause = cause(setup, breakdown);

@@ -105,6 +105,9 @@ impl OutputError {
             OutputError::Io { source, .. } => match source.kind() {
                 io::ErrorKind::PermissionDenied => Some("choose a folder you may write to"),
                 io::ErrorKind::StorageFull => Some("free some space on the disk, or choose a folder on another one"),
+                io::ErrorKind::FileTooLarge => {
+                    Some("raise the limit on the size of files (`ulimit -f`), or record fewer rows")
+                }
                 io::ErrorKind::ReadOnlyFilesystem => Some("choose a folder on a disk that can be written to"),
                 _ => None,
             },

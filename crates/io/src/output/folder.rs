@@ -1,15 +1,18 @@
 //! The folder of a run, and files that appear in it only when they are complete.
 
-use std::fs::{self, File, OpenOptions, TryLockError};
+use std::fs::{self, File, TryLockError};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use super::disk::{Disk, DiskFile, SystemDisk};
 use super::error::{Action, EncodeError, OutputError};
 use super::inputs;
+use super::journal::JOURNAL;
 use crate::scenario::inputs::INPUTS;
 
 /// The file whose presence says that a folder is complete: removed first and renamed last.
-const SEAL: &str = "summary.json";
+pub(super) const SEAL: &str = "summary.json";
 
 /// Every file that a run may write, but for the copies of its inputs.
 pub(crate) const FILES: [&str; 12] = [
@@ -38,6 +41,7 @@ pub struct RunFolder {
     made: Vec<PathBuf>,
     /// Held open for its lock, which ends with the process at the latest.
     _lock: Option<File>,
+    disk: Arc<dyn Disk>,
 }
 
 impl RunFolder {
@@ -50,7 +54,15 @@ impl RunFolder {
     /// [`OutputError`] when the folder is not empty, is a file, is being written by another run, or cannot be created or
     /// written to.
     pub fn create(path: impl Into<PathBuf>, force: bool) -> Result<RunFolder, OutputError> {
-        let mut folder = RunFolder { path: path.into(), made: Vec::new(), _lock: None };
+        RunFolder::create_on(Arc::new(SystemDisk), path, force)
+    }
+
+    /// The same; what is written goes through `disk`.
+    ///
+    /// # Errors
+    /// As of [`RunFolder::create`].
+    pub fn create_on(disk: Arc<dyn Disk>, path: impl Into<PathBuf>, force: bool) -> Result<RunFolder, OutputError> {
+        let mut folder = RunFolder { path: path.into(), made: Vec::new(), _lock: None, disk };
         let path = &folder.path;
         match fs::metadata(path) {
             Ok(meta) if !meta.is_dir() => return Err(OutputError::NotAFolder { path: path.clone() }),
@@ -79,7 +91,7 @@ impl RunFolder {
         if !path.is_dir() {
             return Err(OutputError::NotAFolder { path });
         }
-        let folder = RunFolder { _lock: lock(&path)?, path, made: Vec::new() };
+        let folder = RunFolder { _lock: lock(&path)?, path, made: Vec::new(), disk: Arc::new(SystemDisk) };
         folder.probe()?;
         Ok(folder)
     }
@@ -87,13 +99,23 @@ impl RunFolder {
     /// Finds out whether files can be written.
     fn probe(&self) -> Result<(), OutputError> {
         let probe = self.path.join(".forwardstep.partial");
-        File::create(&probe).map_err(io_error(Action::WriteInto, &self.path))?;
-        fs::remove_file(&probe).map_err(io_error(Action::WriteInto, &self.path))
+        let _ = self.disk.remove_file(&probe); // of a writer that was killed
+        self.disk.create_file(&probe).map_err(io_error(Action::WriteInto, &self.path))?;
+        self.disk.remove_file(&probe).map_err(io_error(Action::WriteInto, &self.path))
     }
 
     /// Where it is.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    pub(super) fn disk(&self) -> &dyn Disk {
+        &*self.disk
+    }
+
+    /// Whether a run writes into `path` now, as far as can be told.
+    pub(super) fn is_in_use(path: &Path) -> bool {
+        matches!(lock(path), Err(OutputError::FolderInUse { .. }))
     }
 
     /// Starts to write files into it.
@@ -108,7 +130,7 @@ impl RunFolder {
         }
     }
 
-    fn partial(&self, name: &str) -> PathBuf {
+    pub(super) fn partial(&self, name: &str) -> PathBuf {
         let (folder, file) = name.rsplit_once('/').map_or(("", name), |(folder, file)| (folder, file));
         self.path.join(folder).join(format!(".{file}.partial"))
     }
@@ -154,6 +176,7 @@ fn is_empty(path: &Path, among_inputs: bool) -> Result<bool, OutputError> {
             continue;
         }
         let is_leftover = name == ".forwardstep.partial"
+            || name == format!(".{JOURNAL}.partial")
             || FILES.iter().filter_map(|f| f.rsplit('/').next()).any(|f| name == format!(".{f}.partial"))
             || among_inputs && name.starts_with('.') && name.ends_with(".partial");
         if !is_leftover {
@@ -163,7 +186,7 @@ fn is_empty(path: &Path, among_inputs: bool) -> Result<bool, OutputError> {
     Ok(true)
 }
 
-fn io_error(action: Action, path: &Path) -> impl FnOnce(io::Error) -> OutputError {
+pub(super) fn io_error(action: Action, path: &Path) -> impl FnOnce(io::Error) -> OutputError {
     let path = path.to_owned();
     move |source| OutputError::Io { action, path, source }
 }
@@ -181,17 +204,13 @@ impl Staging<'_> {
         name: &str,
         fill: impl FnOnce(&mut StagedFile) -> Result<(), FillError>,
     ) -> Result<blake3::Hash, OutputError> {
-        let path = self.folder.path.join(name);
+        let (disk, path) = (self.folder.disk(), self.folder.path.join(name));
         let partial = self.folder.partial(name);
         if let Some(parent) = partial.parent() {
-            fs::create_dir_all(parent).map_err(io_error(Action::CreateFolder, parent))?;
+            disk.create_folders(parent).map_err(io_error(Action::CreateFolder, parent))?;
         }
-        let _ = fs::remove_file(&partial); // of a writer that was killed
-        let file = OpenOptions::new()
-            .write(true)
-            .create_new(true)
-            .open(&partial)
-            .map_err(io_error(Action::CreateFile, &path))?;
+        let _ = disk.remove_file(&partial); // of a writer that was killed
+        let file = disk.create_file(&partial).map_err(io_error(Action::CreateFile, &path))?;
         self.names.push(name.to_owned());
         let mut staged = StagedFile::new(file);
         let filled = fill(&mut staged).and_then(|()| staged.finish().map_err(FillError::Io));
@@ -212,13 +231,14 @@ impl Staging<'_> {
         self.write(name, |out| Ok(out.write_all(text.as_bytes())?))
     }
 
-    /// Gives all files their names, the seal last, and removes those of an earlier run that this one did not write.
-    pub(crate) fn publish(mut self) -> Result<Vec<PathBuf>, OutputError> {
+    /// Gives all files their names, the seal last, and removes those of an earlier run that this one did not write. The journal goes
+    /// when all of them would survive a power cut, unless it `keeps` something that they have not.
+    pub(crate) fn publish(mut self, keeps: bool) -> Result<Vec<PathBuf>, OutputError> {
         let folder = self.folder;
         let earlier = inputs::of_earlier_run(&folder.path);
         let remove = |name: &str| {
             let path = folder.path.join(name);
-            match fs::remove_file(&path) {
+            match folder.disk().remove_file(&path) {
                 Err(error) if error.kind() != io::ErrorKind::NotFound => {
                     Err(io_error(Action::RemoveFile, &path)(error))
                 }
@@ -232,7 +252,13 @@ impl Staging<'_> {
             folder.remove_empty_above(name);
         }
         self.names.sort_by_key(|name| *name == SEAL);
-        self.name_all()
+        let published = self.name_all()?;
+        if !keeps && folder.path.join(JOURNAL).exists() {
+            // Where it stays, readers see by the seal that it is over.
+            let synced = folder.disk().sync_folder(&folder.path);
+            let _ = synced.and_then(|()| folder.disk().remove_file(&folder.path.join(JOURNAL)));
+        }
+        Ok(published)
     }
 
     /// Gives all files their names and leaves everything else in the folder as it is.
@@ -245,7 +271,7 @@ impl Staging<'_> {
         let mut published = Vec::new();
         for name in &self.names {
             let path = folder.path.join(name);
-            fs::rename(folder.partial(name), &path).map_err(io_error(Action::RenameFile, &path))?;
+            folder.disk().rename(&folder.partial(name), &path).map_err(io_error(Action::RenameFile, &path))?;
             published.push(path);
         }
         Ok(published)
@@ -255,7 +281,7 @@ impl Staging<'_> {
 impl Drop for Staging<'_> {
     fn drop(&mut self) {
         for name in &self.names {
-            let _ = fs::remove_file(self.folder.partial(name));
+            let _ = self.folder.disk().remove_file(&self.folder.partial(name));
             self.folder.remove_empty_above(name);
         }
     }
@@ -281,20 +307,20 @@ impl<E: Into<EncodeError>> From<E> for FillError {
 
 /// A file under its temporary name, which remembers the system's refusal whatever an encoder makes of it.
 pub(crate) struct StagedFile {
-    file: BufWriter<File>,
+    file: BufWriter<Box<dyn DiskFile>>,
     failure: Option<io::Error>,
     /// Of what was written so far.
     digest: blake3::Hasher,
 }
 
 impl StagedFile {
-    fn new(file: File) -> Self {
+    fn new(file: Box<dyn DiskFile>) -> Self {
         StagedFile { file: BufWriter::with_capacity(1 << 16, file), failure: None, digest: blake3::Hasher::new() }
     }
 
     fn finish(&mut self) -> io::Result<()> {
         self.flush()?;
-        let synced = self.file.get_ref().sync_all();
+        let synced = self.file.get_mut().sync();
         self.watch(synced)
     }
 

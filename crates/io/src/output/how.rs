@@ -10,7 +10,7 @@ use super::{names, number};
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct How {
-    /// `completed`, `interrupted` or `broke_down`.
+    /// `completed`, `interrupted`, `cut_off` or `broke_down`.
     pub kind: EndingKind,
     /// The simulated time that was reached, s.
     #[serde(deserialize_with = "number::or_nan")]
@@ -24,7 +24,7 @@ pub struct How {
     pub breakdown: Option<BrokenSignal>,
 }
 
-/// The three endings.
+/// The four endings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EndingKind {
@@ -32,6 +32,8 @@ pub enum EndingKind {
     Completed,
     /// Stopped from outside.
     Interrupted,
+    /// The program ended before the run did; the rows come from its journal.
+    CutOff,
     /// Stopped because of what happened inside.
     BrokeDown,
 }
@@ -147,6 +149,7 @@ impl How {
         let (kind, t_s, breakdown) = match ending {
             Ending::Completed => (EndingKind::Completed, setup.time.end_s, None),
             Ending::Interrupted { t_s } => (EndingKind::Interrupted, *t_s, None),
+            Ending::CutOff { t_s } => (EndingKind::CutOff, *t_s, None),
             Ending::BrokeDown(breakdown) => {
                 let cause = match breakdown.cause {
                     BreakdownCause::NotFinite => Cause::NotFinite,
@@ -175,6 +178,7 @@ impl How {
         Some(match (self.kind, &self.breakdown) {
             (EndingKind::Completed, _) => Ending::Completed,
             (EndingKind::Interrupted, _) => Ending::Interrupted { t_s },
+            (EndingKind::CutOff, _) => Ending::CutOff { t_s },
             (EndingKind::BrokeDown, None) => return None,
             (EndingKind::BrokeDown, Some(BrokenSignal { agent, column, cause })) => {
                 let is_it =

@@ -10,6 +10,7 @@
 //! | `packets.csv` | every packet of every link, where links carry packets; `delay.log` replays it |
 //! | `phases.csv` | when each phase began, where phases are drawn; `switching.log` replays it |
 //! | `holds.csv` | when each value of every random hold began, where there are some; `delay.hold_log` replays it |
+//! | `rows.journal` | the rows of a run that is still going on, or was cut off: [`journal`] |
 //! | `summary.json` | [`summary::Summary`]: verdicts, metrics, how it ended |
 //! | `report.html` | one self-contained page that opens offline |
 //! | `plots/*.svg` | positions, torques, estimates and disagreement, one panel per joint |
@@ -27,6 +28,7 @@ mod csv;
 mod decimate;
 mod digital;
 mod disagreement;
+mod disk;
 mod draws;
 mod ending;
 mod error;
@@ -38,6 +40,7 @@ mod guarantee;
 mod how;
 mod injected;
 mod inputs;
+pub mod journal;
 mod metrics;
 pub mod names;
 mod number;
@@ -48,10 +51,12 @@ mod plots;
 mod practical;
 mod prediction;
 mod record;
+mod remark;
 mod report;
 mod residuals;
 mod restore;
 mod restore_error;
+mod restore_journal;
 mod sampling_limit;
 mod smoothness;
 pub mod summary;
@@ -65,6 +70,7 @@ use std::path::PathBuf;
 pub use certificate::{CERTIFICATE_FORMAT, certificate_document};
 pub use conclusion::Conclusion;
 pub use digital::{DigitalCost, Figures, continuous_twin};
+pub use disk::{Disk, DiskFile};
 pub use ending::ending_sentence;
 pub use error::{Action, EncodeError, OutputError};
 pub use explanation::{EXPLANATION_FORMAT, TextLine, explanation_document, explanation_latex, explanation_lines};
@@ -73,6 +79,7 @@ pub use folder::RunFolder;
 use folder::Staging;
 pub use guarantee::{Guarantee, GuaranteeFound, GuaranteedClass, GuaranteedFall, GuaranteedRepeat};
 pub use injected::{FirstInjection, Injected};
+pub use journal::{Journal, JournalError};
 pub use metrics::{
     Absence, Agreement, BALANCE_FLOOR_J, BalanceResidual, Disagreement, DisagreementSeries, Gap, LimitKind,
     LimitReached, Metrics, Peak, Speed,
@@ -82,8 +89,9 @@ pub use plots::{plot_filters, plot_orders};
 pub use practical::{PracticalVerdict, PracticalVerdicts, Watched, WatchedLoad, WatchedMargin, WatchedPower};
 pub use prediction::{CourseFound, PredictedCourse, PredictedRate, PredictedTorque, Predictions};
 pub use record::{GoalOutcome, RunRecord};
+pub use remark::Remark;
 pub use residuals::{residual_document, residual_lines};
-pub use restore::{Remark, SavedRun};
+pub use restore::SavedRun;
 pub use restore_error::{RestoreError, SummaryError, TableError};
 pub use sampling_limit::{Accepted, Deployment, SamplingLimit, Trial};
 pub use smoothness::{
@@ -110,6 +118,16 @@ pub struct Options {
 /// [`OutputError`] with the file and what was tried; an unfinished run leaves no files behind, and does not harm those
 /// of an earlier one unless it fails while renaming.
 pub fn write_run(folder: &RunFolder, record: &RunRecord<'_>, options: Options) -> Result<Vec<PathBuf>, OutputError> {
+    write_all(folder, record, options, false)
+}
+
+/// The same; the journal in the folder stays where it `keeps` what could not be read.
+fn write_all(
+    folder: &RunFolder,
+    record: &RunRecord<'_>,
+    options: Options,
+    keeps: bool,
+) -> Result<Vec<PathBuf>, OutputError> {
     let recording = &record.outcome.recording;
     let metrics = metrics(record);
     let mut staging = folder.stage();
@@ -140,7 +158,7 @@ pub fn write_run(folder: &RunFolder, record: &RunRecord<'_>, options: Options) -
     }
     write_pictures(&mut staging, record, &metrics)?;
     staging.write("summary.json", |out| Ok(summary::Summary::of(record, metrics, tables).write(out)?))?;
-    staging.publish()
+    staging.publish(keeps)
 }
 
 /// Writes what is drawn from the tables, `report.html` and `plots/*.svg`, anew into a folder of a run, and leaves everything

@@ -72,7 +72,7 @@ impl Goal {
                         | BreakdownCause::RanAway { .. }
                         | BreakdownCause::Vanished { .. } => true,
                     },
-                    Ending::Completed | Ending::Interrupted { .. } => grows(),
+                    Ending::Completed | Ending::Interrupted { .. } | Ending::CutOff { .. } => grows(),
                 }
             }
         }

@@ -5,21 +5,23 @@
 //! whether the goal was met are worked out again. In a folder that is unchanged all of it is what it was.
 
 use std::collections::HashMap;
-use std::fmt;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use forwardstep_check::Report;
 use forwardstep_sim::recorded_columns;
-use forwardstep_sim::recording::{Outcome, Recording, Signal};
+use forwardstep_sim::recording::{Ending, Outcome, Recording, Signal};
 use forwardstep_sim::setup::Setup;
 use serde::Deserialize;
 
 use super::error::OutputError;
 use super::folder::RunFolder;
+use super::journal::JOURNAL;
 use super::metrics::Metrics;
 use super::record::{GoalOutcome, RunRecord};
+use super::remark::Remark;
 use super::restore_error::{RestoreError, SummaryError, TableError};
+use super::restore_journal;
 use super::summary::{FORMAT, Summary, Verdicts};
 use super::table::NamedColumns;
 use super::{CSV, PARQUET, csv, inputs, names, parquet};
@@ -30,87 +32,35 @@ use crate::scenario::{Inputs, Scenario, upgrade};
 
 /// Signals of format 1 and what their columns are called now.
 const SIGNALS: [(&str, &str); 2] = [("sign", "selection"), ("omega_wanted", "omega_commanded")];
-const SCENARIO: &str = "scenario.toml";
-const SUMMARY: &str = "summary.json";
+pub(super) const SCENARIO: &str = "scenario.toml";
+pub(super) const SUMMARY: &str = "summary.json";
 
 /// A run that was read back from its folder.
 #[derive(Debug)]
 pub struct SavedRun {
-    folder: RunFolder,
-    scenario: Scenario,
+    path: PathBuf,
+    /// Where it may be written to.
+    folder: Option<RunFolder>,
+    saved: Saved,
+}
+
+/// What a folder holds.
+#[derive(Debug)]
+pub(super) struct Saved {
+    pub(super) scenario: Scenario,
     /// The scenario as it stands in the folder.
-    text: String,
-    summary: Summary,
-    outcome: Outcome,
-    remarks: Vec<Remark>,
-}
-
-/// What is no longer as it was at the time of the run.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Remark {
-    /// `scenario.toml` says something else, apart from its title.
-    ScenarioChanged,
-    /// A file that the scenario names says something else, or was not among them.
-    InputChanged {
-        /// The name in the scenario.
-        name: String,
-    },
-    /// The table was read from CSV that the run did not write.
-    OtherCsv,
-    /// The tables lack columns that a run would record now.
-    ColumnsMissing {
-        /// One of them.
-        first: String,
-        /// How many they are.
-        count: usize,
-    },
-    /// The verdicts are others than those given before the run.
-    VerdictsDiffer,
-    /// The run was written in an earlier format.
-    Upgraded,
-    /// Another version simulated.
-    OtherVersion {
-        /// The version that simulated.
-        simulated: String,
-        /// This one.
-        now: String,
-    },
-}
-
-impl fmt::Display for Remark {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Remark::ScenarioChanged => f.write_str(
-                "scenario.toml was changed after the run; the signals are those of the run, verdicts and limits those of the \
-                 changed scenario",
-            ),
-            Remark::InputChanged { name } => write!(
-                f,
-                "`{name}`, which the scenario names, is not what it was at the time of the run; the signals are those of the \
-                 run, verdicts and limits follow the file"
-            ),
-            Remark::OtherCsv => write!(f, "{CSV} is not as the run wrote it; its numbers are shown as they are"),
-            Remark::ColumnsMissing { first, count: 1 } => write!(f, "the tables have no column `{first}`"),
-            Remark::ColumnsMissing { first, count } => {
-                write!(f, "the tables have no column `{first}` and lack {} more", count - 1)
-            }
-            Remark::VerdictsDiffer => {
-                f.write_str("the verdicts were worked out anew and are not those given before the run, which summary.json has")
-            }
-            Remark::Upgraded => f.write_str(
-                "the run was written in an earlier format; it is shown under the names that `forwardstep upgrade` gives",
-            ),
-            Remark::OtherVersion { simulated, now } => {
-                write!(f, "simulated by forwardstep {simulated}; this page was made by forwardstep {now}")
-            }
-        }
-    }
+    pub(super) text: String,
+    pub(super) summary: Summary,
+    pub(super) outcome: Outcome,
+    pub(super) remarks: Vec<Remark>,
+    /// So many bytes of the journal were left out, if that is where it is from.
+    pub(super) left_out: Option<u64>,
 }
 
 impl SavedRun {
     /// Reads the run in the folder `path`: its scenario with the copies of the files that it names, its summary, and its
-    /// table, `trajectory.parquet` or, where there is none, `trajectory.csv`. As long as this lives, no run gets the folder.
+    /// table, `trajectory.parquet` or, where there is none, `trajectory.csv`; or, where it was cut off, its journal. As long as this
+    /// lives, no run gets the folder.
     ///
     /// # Errors
     /// [`RestoreError`] with the file and what is wrong with it.
@@ -123,48 +73,32 @@ impl SavedRun {
     /// # Errors
     /// As of [`SavedRun::open`].
     pub fn open_with(path: &Path, kinds: &Kinds) -> Result<SavedRun, RestoreError> {
-        match path.metadata().map_err(ReadError::from) {
-            Ok(found) if found.is_dir() => {}
-            Ok(_) => {
-                let meant = path.parent().filter(|parent| is_run(parent)).map(Path::to_owned);
-                return Err(RestoreError::NotAFolder { path: path.to_owned(), meant });
-            }
-            Err(ReadError::Missing) => {
-                let meant = Some(Path::new("forwardstep-runs").join(path)).filter(|meant| is_run(meant));
-                return Err(RestoreError::NoFolder { path: path.to_owned(), meant });
-            }
-            Err(reason) => return Err(RestoreError::File { path: path.to_owned(), reason }),
-        }
-        let (summary, text) = (text_of(path, SUMMARY)?, text_of(path, SCENARIO)?);
-        let summary =
-            parse_summary(&summary).map_err(|reason| RestoreError::Summary { path: path.join(SUMMARY), reason })?;
-        let folder = RunFolder::open(path)?;
-        let (scenario, upgraded) = scenario(path, &text, &summary, kinds)?;
-        let mut remarks = changes(&scenario, &text, &summary);
-        remarks.extend(upgraded.then_some(Remark::Upgraded));
-        let recording = recording(path, &scenario.setup, &summary, &mut remarks)?;
-        let ending = summary.ending.restore(&scenario.setup, &recording).ok_or_else(|| {
-            let broken = summary.ending.breakdown.as_ref();
-            let column = broken.map_or_else(|| "nothing".to_owned(), |broken| format!("`{}`", broken.column));
-            RestoreError::Summary { path: path.join(SUMMARY), reason: SummaryError::Breakdown { column } }
-        })?;
-        let outcome = Outcome { recording, ending, statistics: summary.statistics() };
-        Ok(SavedRun { folder, scenario, text, summary, outcome, remarks })
+        let saved = Saved::read(path, kinds, &mut |path| RunFolder::open(path).map(Some))?;
+        Ok(SavedRun { path: path.to_owned(), folder: saved.1, saved: saved.0 })
+    }
+
+    /// [`SavedRun::open_with`] without a claim on the folder, which need not be writable and may be that of a run that goes on.
+    ///
+    /// # Errors
+    /// As of [`SavedRun::open`].
+    pub fn look_with(path: &Path, kinds: &Kinds) -> Result<SavedRun, RestoreError> {
+        let saved = Saved::read(path, kinds, &mut |_| Ok(None))?;
+        Ok(SavedRun { path: path.to_owned(), folder: saved.1, saved: saved.0 })
     }
 
     /// What was simulated, as the scenario says now.
     pub fn setup(&self) -> &Setup {
-        &self.scenario.setup
+        &self.saved.scenario.setup
     }
 
     /// What is not as it was at the time of the run, given the verdicts of today and the `version` that asks.
     pub fn remarks(&self, verdicts: &Report, version: &str) -> Vec<Remark> {
-        let mut remarks = self.remarks.clone();
-        if !self.summary.verdicts.agree_with(&Verdicts::of(verdicts)) {
+        let mut remarks = self.saved.remarks.clone();
+        if !self.saved.summary.verdicts.agree_with(&Verdicts::of(verdicts)) {
             remarks.push(Remark::VerdictsDiffer);
         }
-        if version != self.summary.version {
-            let (simulated, now) = (self.summary.version.clone(), version.to_owned());
+        if version != self.saved.summary.version {
+            let (simulated, now) = (self.saved.summary.version.clone(), version.to_owned());
             remarks.push(Remark::OtherVersion { simulated, now });
         }
         remarks
@@ -177,14 +111,14 @@ impl SavedRun {
         predicted_agreement: Option<Vec<f64>>,
         remarks: &[Remark],
     ) -> RunRecord<'a> {
-        let (scenario, summary, outcome) = (&self.scenario, &self.summary, &self.outcome);
+        let Saved { scenario, summary, outcome, text, .. } = &self.saved;
         let setup = &scenario.setup;
         let metrics = Metrics::of(setup, &outcome.recording, predicted_agreement.as_deref(), scenario.goal);
         let goal = scenario.goal.map(|goal| GoalOutcome { goal, met: goal.is_met(setup, outcome, &metrics) });
         RunRecord {
             title: &scenario.title,
             scenario_name: &scenario.name,
-            scenario_text: &self.text,
+            scenario_text: text,
             inputs: &scenario.inputs,
             version: &summary.version,
             setup,
@@ -199,17 +133,95 @@ impl SavedRun {
         }
     }
 
-    /// Writes `report.html` and `plots/*.svg` anew and leaves everything else in the folder as it is; the files written.
+    /// How the run ended, if it was not finished: if its rows come from its journal.
+    pub fn unfinished(&self) -> Option<&Ending> {
+        self.saved.left_out.is_some().then_some(&self.saved.outcome.ending)
+    }
+
+    /// Writes everything about the run into another folder; the files written.
+    ///
+    /// # Errors
+    /// [`OutputError`] with the file and what was tried.
+    pub fn write_into(&self, folder: &RunFolder, record: &RunRecord<'_>) -> Result<Vec<PathBuf>, OutputError> {
+        super::write_run(folder, record, super::Options::default())
+    }
+
+    /// Writes `report.html` and `plots/*.svg` anew and leaves everything else in the folder as it is; the files written. A run that
+    /// was cut off gets all its files, and its journal goes, unless a part of it could not be read.
     ///
     /// # Errors
     /// [`OutputError`] with the file and what was tried. A failure harms no file that was there.
     pub fn write_report(&self, record: &RunRecord<'_>) -> Result<Vec<PathBuf>, OutputError> {
-        super::write_report(&self.folder, record)
+        let opened;
+        let folder = match &self.folder {
+            Some(folder) => folder,
+            None => {
+                opened = RunFolder::open(&self.path)?;
+                &opened
+            }
+        };
+        match self.saved.left_out {
+            None => super::write_report(folder, record),
+            Some(left_out) => super::write_all(folder, record, super::Options::default(), left_out > 0),
+        }
+    }
+}
+
+impl Saved {
+    /// Reads the folder `path`; `claim` is asked for it as soon as there is something to read.
+    fn read(
+        path: &Path,
+        kinds: &Kinds,
+        claim: &mut dyn FnMut(&Path) -> Result<Option<RunFolder>, OutputError>,
+    ) -> Result<(Saved, Option<RunFolder>), RestoreError> {
+        match path.metadata().map_err(ReadError::from) {
+            Ok(found) if found.is_dir() => {}
+            Ok(_) => {
+                let meant = path.parent().filter(|parent| is_run(parent)).map(Path::to_owned);
+                return Err(RestoreError::NotAFolder { path: path.to_owned(), meant });
+            }
+            Err(ReadError::Missing) => {
+                let meant = Some(Path::new("forwardstep-runs").join(path)).filter(|meant| is_run(meant));
+                return Err(RestoreError::NoFolder { path: path.to_owned(), meant });
+            }
+            Err(reason) => return Err(RestoreError::File { path: path.to_owned(), reason }),
+        }
+        if path.join(JOURNAL).exists() {
+            let folder = claim(path)?;
+            if let Some(saved) = restore_journal::saved(path, kinds)? {
+                return Ok((saved, folder));
+            }
+            drop(folder);
+        }
+        let (summary, text) = (text_of(path, SUMMARY)?, text_of(path, SCENARIO)?);
+        let summary =
+            parse_summary(&summary).map_err(|reason| RestoreError::Summary { path: path.join(SUMMARY), reason })?;
+        let folder = claim(path)?;
+        let copies = copies(path, &summary);
+        let inputs = copies.iter().fold(Inputs::from(Some(path)), |inputs, (name, path)| inputs.file_at(name, path));
+        let read = scenario(path, &text, &summary.scenario.name, inputs, kinds);
+        let (scenario, upgraded) = read.map_err(|error| {
+            // A copy that is gone is not the scenario's mistake.
+            let mut lost =
+                copies.into_iter().filter_map(|(_, path)| read_text(&path).err().map(|reason| (path, reason)));
+            let gone = matches!(error, RestoreError::Scenario(_)).then(|| lost.next()).flatten();
+            gone.map_or(error, |(path, reason)| RestoreError::File { path, reason })
+        })?;
+        let mut remarks = changes(&scenario, &text, &summary);
+        remarks.extend(upgraded.then_some(Remark::Upgraded));
+        let recording = recording(path, &scenario.setup, &summary, &mut remarks)?;
+        let ending = summary.ending.restore(&scenario.setup, &recording).ok_or_else(|| {
+            let broken = summary.ending.breakdown.as_ref();
+            let column = broken.map_or_else(|| "nothing".to_owned(), |broken| format!("`{}`", broken.column));
+            RestoreError::Summary { path: path.join(SUMMARY), reason: SummaryError::Breakdown { column } }
+        })?;
+        let outcome = Outcome { recording, ending, statistics: summary.statistics() };
+        Ok((Saved { scenario, text, summary, outcome, remarks, left_out: None }, folder))
     }
 }
 
 fn is_run(path: &Path) -> bool {
-    path.join(SUMMARY).is_file()
+    path.join(SUMMARY).is_file() || path.join(JOURNAL).is_file()
 }
 
 fn text_of(folder: &Path, name: &'static str) -> Result<String, RestoreError> {
@@ -240,25 +252,28 @@ fn parse_summary(text: &str) -> Result<Summary, SummaryError> {
     }
 }
 
-/// The scenario, with the files that it names read from their copies; and whether it was upgraded.
-fn scenario(folder: &Path, text: &str, summary: &Summary, kinds: &Kinds) -> Result<(Scenario, bool), RestoreError> {
+/// The files that the scenario names, by name, and where their copies are.
+fn copies(folder: &Path, summary: &Summary) -> Vec<(String, PathBuf)> {
+    summary.inputs.iter().map(|input| (input.name.clone(), folder.join(&input.file))).collect()
+}
+
+/// The scenario; and whether it was upgraded.
+pub(super) fn scenario(
+    folder: &Path,
+    text: &str,
+    name: &str,
+    inputs: Inputs,
+    kinds: &Kinds,
+) -> Result<(Scenario, bool), RestoreError> {
     let source = SourceText::new(folder.join(SCENARIO).display().to_string(), text);
     let upgraded = upgrade(&source)?;
     let source = SourceText::new(source.name(), upgraded.text);
-    let copies: Vec<(String, PathBuf)> =
-        summary.inputs.iter().map(|input| (input.name.clone(), folder.join(&input.file))).collect();
-    let inputs = copies.iter().fold(Inputs::from(Some(folder)), |inputs, (name, path)| inputs.file_at(name, path));
-    let read = kinds.read_scenario(&summary.scenario.name, &source, inputs);
-    let scenario = read.map_err(|error| {
-        // A copy that is gone is not the scenario's mistake.
-        let lost = copies.into_iter().find_map(|(_, path)| read_text(&path).err().map(|reason| (path, reason)));
-        lost.map_or_else(|| error.into(), |(path, reason)| RestoreError::File { path, reason })
-    })?;
+    let scenario = kinds.read_scenario(name, &source, inputs)?;
     Ok((scenario, !upgraded.moved.is_empty()))
 }
 
 /// What scenario and inputs say now and did not say then.
-fn changes(scenario: &Scenario, text: &str, summary: &Summary) -> Vec<Remark> {
+pub(super) fn changes(scenario: &Scenario, text: &str, summary: &Summary) -> Vec<Remark> {
     let then = &summary.scenario;
     let same = blake3::hash(text.as_bytes()).to_hex().as_str() == then.digest_blake3
         || then.content_digest_blake3.is_some() && inputs::content_digest(text) == then.content_digest_blake3;
@@ -316,7 +331,7 @@ fn recording(
 }
 
 /// Fills the columns that a run records from those of a table that have their names.
-fn assign(
+pub(super) fn assign(
     setup: &Setup,
     mut expected: Recording,
     table: NamedColumns,

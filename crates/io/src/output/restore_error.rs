@@ -9,6 +9,7 @@ use miette::Diagnostic;
 use thiserror::Error;
 
 use super::error::OutputError;
+use super::journal::JournalError;
 use super::summary::FORMAT;
 use crate::files::ReadError;
 use crate::scenario::ScenarioError;
@@ -57,6 +58,14 @@ pub enum RestoreError {
         path: PathBuf,
         /// What is wrong.
         reason: SummaryError,
+    },
+    /// The journal of the run that was cut off cannot be used.
+    #[error("`{}`: {reason}", shown(path))]
+    Journal {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: JournalError,
     },
     /// Its scenario has a mistake.
     #[error(transparent)]
@@ -195,7 +204,8 @@ impl RestoreError {
                 Some(help) => help.into(),
                 None => format!("restore it from a copy, or {AGAIN}"),
             },
-            RestoreError::Summary { reason: SummaryError::Newer { .. }, .. } => {
+            RestoreError::Journal { reason: JournalError::Newer { .. }, .. }
+            | RestoreError::Summary { reason: SummaryError::Newer { .. }, .. } => {
                 "use the version that wrote it, or a later one".into()
             }
             RestoreError::Summary { .. } | RestoreError::Setup { .. } => format!("restore it from a copy, or {AGAIN}"),
@@ -208,7 +218,10 @@ impl RestoreError {
                 }
                 _ => format!("restore it from a copy, or {AGAIN}"),
             },
-            RestoreError::Folder(OutputError::FolderInUse { .. }) => "wait until it has ended".into(),
+            RestoreError::Journal { .. } => format!("restore it from a copy, or {AGAIN}"),
+            RestoreError::Folder(OutputError::FolderInUse { .. }) => {
+                "wait until it has ended, or see what it has until now in another folder with --out".into()
+            }
             RestoreError::Folder(OutputError::Io { source, .. }) if source.kind() == ErrorKind::PermissionDenied => {
                 "make the folder writable for yourself, or copy it to where you may write".into()
             }

@@ -44,7 +44,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
     let table = Table::new(record.setup, &record.outcome.recording);
     let reached_s = match &record.outcome.ending {
         Ending::Completed => record.setup.time.end_s,
-        Ending::Interrupted { t_s } => *t_s,
+        Ending::Interrupted { t_s } | Ending::CutOff { t_s } => *t_s,
         Ending::BrokeDown(breakdown) => breakdown.t_s,
     };
     let until_s = table.t_s.last().copied().unwrap_or(0.0).max(if reached_s.is_finite() { reached_s } else { 0.0 });

@@ -24,6 +24,7 @@ pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
     let (class, word) = match record.outcome.ending {
         Ending::Completed => ("good", "Completed"),
         Ending::Interrupted { .. } => ("warn", "Interrupted"),
+        Ending::CutOff { .. } => ("warn", "Cut off"),
         Ending::BrokeDown(_) => ("bad", "Broke down"),
     };
     html! {

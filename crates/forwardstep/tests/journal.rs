@@ -1,0 +1,165 @@
+//! Runs that are killed, or whose files may not grow, and what `forwardstep report` makes of what they left.
+#![cfg(all(feature = "program", unix))]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod support;
+
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command as Process, Stdio};
+use std::time::{Duration, Instant};
+
+use forwardstep::io::output::SavedRun;
+use forwardstep::sim::Recording;
+use support::{folder, forwardstep, names, stderr};
+use tempfile::TempDir;
+
+/// A run of some seconds, since its steps are short.
+const LONG: &str = r#"
+format = 2
+title = "Two arms"
+time = { end_s = 20, record_every_s = 0.01 }
+solver.method.fixed.step_s = 2e-5
+[[agents]]
+name = "arm"
+count = 2
+robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }
+start.position_rad = [[0.1, 0.2], [0.3, 0.4]]
+[reference.consensus]
+roots_per_s = [1.0, 2.0]
+exchange = "position_velocity"
+[network]
+delay.constant_s = 0.1
+edges.csv.file = "../links.csv"
+"#;
+const LINKS: &str = "from,to\narm-1,arm-2\narm-2,arm-1\n";
+
+/// A folder with the scenario below it and a file that it names above that.
+fn scenario() -> TempDir {
+    let folder = folder();
+    fs::create_dir(folder.path().join("mine")).unwrap();
+    fs::write(folder.path().join("mine/long.toml"), LONG).unwrap();
+    fs::write(folder.path().join("links.csv"), LINKS).unwrap();
+    folder
+}
+
+fn start(folder: &TempDir, out: &str) -> Child {
+    Process::new(assert_cmd::cargo::cargo_bin("forwardstep"))
+        .current_dir(folder)
+        .args(["run", "mine/long.toml", "--out", out])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap()
+}
+
+/// Waits until a run has a journal; whether it has, rather than that it has ended.
+fn has_journal(run: &mut Child, out: &Path) -> bool {
+    let started = Instant::now();
+    loop {
+        if out.join("rows.journal").exists() {
+            return true;
+        }
+        if run.try_wait().unwrap().is_some() {
+            return false;
+        }
+        assert!(started.elapsed() < Duration::from_secs(120), "a run of some seconds");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// What a folder recorded.
+fn recording(out: &Path) -> Recording {
+    let run = SavedRun::open(out).unwrap();
+    let verdicts = forwardstep::check::check(run.setup());
+    run.record(&verdicts, None, &[]).outcome.recording.clone()
+}
+
+/// That the rows of `part` are the first of `whole`, bit for bit; how many they are.
+fn first_rows(part: &Recording, whole: &Recording) -> usize {
+    let rows = part.t_s.len();
+    let bits = |values: &[f64]| values[..rows].iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(&part.t_s), bits(&whole.t_s));
+    assert_eq!(part.columns.len(), whole.columns.len());
+    for (one, other) in part.columns.iter().zip(&whole.columns) {
+        assert_eq!(bits(&one.values), bits(&other.values));
+        assert_eq!(one.values.len(), rows);
+    }
+    rows
+}
+
+#[test]
+fn a_run_that_was_killed_has_its_rows() {
+    let folder = scenario();
+    let path = |out: &str| folder.path().join(out);
+    forwardstep(&folder, &["run", "mine/long.toml", "--out", "whole"]).success();
+    assert!(!names(&path("whole")).contains(&"rows.journal".to_owned()), "the tables are whole");
+    let whole = recording(&path("whole"));
+    let mut counts = Vec::new();
+    for (k, wait_ms) in [0, 30, 400, 1100, 1900].into_iter().enumerate() {
+        let out = format!("killed-{k}");
+        let mut run = start(&folder, &out);
+        assert!(has_journal(&mut run, &path(&out)) || k > 2);
+        std::thread::sleep(Duration::from_millis(wait_ms));
+        let live = path(&out).join("rows.journal").exists();
+        if k == 2 && live {
+            let error = stderr(&forwardstep(&folder, &["report", &out]).code(2));
+            assert!(error.contains("another run is writing to") && error.contains("--out"), "{error}");
+            let note = stderr(&forwardstep(&folder, &["report", &out, "--out", "looked-at"]).success());
+            assert!(note.contains("still going on"), "{note}");
+        }
+        run.kill().unwrap();
+        run.wait().unwrap();
+        let cut_off = path(&out).join("rows.journal").exists();
+        if k == 1 {
+            // Its files are not needed any more, and a run does not take the place of what was kept.
+            let error = stderr(&forwardstep(&folder, &["run", "first-order", "--out", &out]).code(2));
+            assert!(error.contains("is not empty"), "{error}");
+            fs::rename(path("links.csv"), path("moved.csv")).unwrap();
+        }
+        let note = stderr(&forwardstep(&folder, &["report", &out, "--out", &format!("{out}-elsewhere")]).success());
+        let again = stderr(&forwardstep(&folder, &["report", &out]).success());
+        assert_eq!(note.contains("Was cut off at t = "), cut_off, "{note}");
+        assert_eq!(note, again);
+        let (here, elsewhere) = (recording(&path(&out)), recording(&path(&format!("{out}-elsewhere"))));
+        assert_eq!(here, elsewhere);
+        counts.push(first_rows(&here, &whole));
+        assert!(!cut_off || fs::read_to_string(path(&out).join("report.html")).unwrap().contains("Cut off"));
+        assert!(!names(&path(&out)).contains(&"rows.journal".to_owned()));
+        if k == 1 {
+            fs::rename(path("moved.csv"), path("links.csv")).unwrap();
+        }
+    }
+    assert!(counts[0] > 1, "{counts:?}");
+    assert!(counts[4] > counts[0], "a journal grows: {counts:?}");
+}
+
+#[test]
+fn a_run_whose_files_may_not_grow_keeps_what_it_could() {
+    let folder = scenario();
+    let path = |out: &str| folder.path().join(out);
+    fs::write(path("mine/longer.toml"), LONG.replace("end_s = 20", "end_s = 200")).unwrap();
+    // A megabyte, in blocks of 512 bytes: some seconds of rows, and less than all of them.
+    let limited = Process::new("sh")
+        .current_dir(&folder)
+        .args(["-c", "ulimit -f 2000; exec \"$0\" run mine/longer.toml --out limited"])
+        .arg(assert_cmd::cargo::cargo_bin("forwardstep"))
+        .output()
+        .unwrap();
+    let said = String::from_utf8(limited.stderr).unwrap();
+    assert_eq!(limited.status.code(), Some(2), "{said}");
+    assert!(said.contains("rows.journal") && said.contains("its rows could no longer be kept"), "{said}");
+    assert!(said.contains("File too large"), "{said}");
+    let written = path("limited").join("summary.json").exists();
+    let note = stderr(&forwardstep(&folder, &["report", "limited", "--out", "elsewhere"]).success());
+    assert_eq!(note.contains("Was cut off at t = "), !written, "{note}");
+    forwardstep(&folder, &["run", "mine/long.toml", "--out", "whole"]).success();
+    let (mut kept, whole) = (recording(&path("elsewhere")), recording(&path("whole")));
+    let rows = kept.t_s.len();
+    assert!(rows > 100, "{rows}");
+    // The last row of the shorter run lies just before its end.
+    let common = rows.min(whole.t_s.len() - 1);
+    kept.t_s.truncate(common);
+    kept.columns.iter_mut().for_each(|column| column.values.truncate(common));
+    assert_eq!(first_rows(&kept, &whole), common);
+}

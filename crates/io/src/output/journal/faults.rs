@@ -1,0 +1,168 @@
+//! A disk whose operations fail, each in its turn, while a run is journaled and its folder is written.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+
+use forwardstep_check::Report;
+
+use super::super::disk::SystemDisk;
+use super::super::{Disk, DiskFile, Options, RunFolder, SavedRun, write_run};
+use super::JOURNAL;
+use super::tests::{carts, journaled, nothing, record, same_rows, whole};
+use crate::scenario::Scenario;
+use crate::scenario::kinds::Kinds;
+
+/// A disk that fails once or for good.
+#[derive(Debug)]
+struct Faulty(Arc<Mutex<Faults>>);
+
+#[derive(Debug)]
+struct Faults {
+    /// So many operations succeed before one fails.
+    left: usize,
+    /// Whether all others fail after it.
+    for_good: bool,
+    fired: bool,
+}
+
+impl Faults {
+    fn next(&mut self) -> io::Result<()> {
+        if self.fired && self.for_good {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        if self.fired || self.left > 0 {
+            self.left = self.left.saturating_sub(1);
+            return Ok(());
+        }
+        self.fired = true;
+        Err(io::ErrorKind::StorageFull.into())
+    }
+}
+
+impl Faulty {
+    fn next(&self) -> io::Result<()> {
+        self.0.lock().unwrap().next()
+    }
+}
+
+impl Disk for Faulty {
+    fn create_folders(&self, path: &Path) -> io::Result<()> {
+        self.next()?;
+        SystemDisk.create_folders(path)
+    }
+
+    fn create_file(&self, path: &Path) -> io::Result<Box<dyn DiskFile>> {
+        self.next()?;
+        let file = fs::File::create_new(path)?;
+        let is_journal = path.to_string_lossy().contains(JOURNAL);
+        Ok(Box::new(FaultyFile { file, faults: self.0.clone(), synced: 0, length: 0, spoilt: false, is_journal }))
+    }
+
+    fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
+        self.next()?;
+        SystemDisk.rename(from, to)
+    }
+
+    fn remove_file(&self, path: &Path) -> io::Result<()> {
+        self.next()?;
+        SystemDisk.remove_file(path)
+    }
+
+    fn sync_folder(&self, _: &Path) -> io::Result<()> {
+        self.next()
+    }
+}
+
+/// A write that fails has written a part; a sync that fails has lost what was not synced before.
+struct FaultyFile {
+    file: fs::File,
+    faults: Arc<Mutex<Faults>>,
+    synced: u64,
+    length: u64,
+    spoilt: bool,
+    is_journal: bool,
+}
+
+impl Write for FaultyFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        assert!(!(self.spoilt && self.is_journal), "nothing is written behind what failed");
+        let result = self.faults.lock().unwrap().next();
+        let part = if result.is_ok() { bytes } else { &bytes[..bytes.len() / 2] };
+        self.file.write_all(part)?;
+        self.length += part.len() as u64;
+        self.spoilt = result.is_err();
+        result.map(|()| part.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl DiskFile for FaultyFile {
+    fn sync(&mut self) -> io::Result<()> {
+        assert!(!(self.spoilt && self.is_journal), "a sync that failed is not tried again");
+        let result = self.faults.lock().unwrap().next();
+        match result {
+            Ok(()) => self.synced = self.length,
+            Err(_) => {
+                self.spoilt = true;
+                self.file.set_len(self.synced)?;
+            }
+        }
+        result
+    }
+}
+
+/// Runs the carts in `path` on a disk whose operation number `left` fails. Whether it did, and the rows that must be there.
+fn run_on_faulty(carts: &(Scenario, Report), path: PathBuf, left: usize, for_good: bool) -> (bool, usize) {
+    let faults = Arc::new(Mutex::new(Faults { left, for_good, fired: false }));
+    let Ok(folder) = RunFolder::create_on(Arc::new(Faulty(faults.clone())), path, true) else { return (true, 0) };
+    let (outcome, kept, journal_failed) = journaled(carts, &folder, true);
+    let written = write_run(&folder, &record(carts, &outcome), Options::default());
+    let fired = faults.lock().unwrap().fired;
+    let rows = outcome.recording.t_s.len();
+    assert!(written.is_ok() || fired);
+    (fired, if written.is_ok() || !journal_failed { rows } else { kept })
+}
+
+#[test]
+fn whatever_fails_the_rows_that_were_kept_are_found() {
+    let carts = carts();
+    let outcome = whole(&carts);
+    for for_good in [false, true] {
+        for earlier in [false, true] {
+            let mut left = 0;
+            loop {
+                let folder = tempfile::tempdir().unwrap();
+                let path = folder.path().join("run");
+                if earlier {
+                    // An earlier run under the same names, which this one replaces.
+                    let before = RunFolder::create(&path, false).unwrap();
+                    write_run(&before, &record(&carts, &nothing(&carts)), Options::default()).unwrap();
+                }
+                let (fired, kept) = run_on_faulty(&carts, path.clone(), left, for_good);
+                match SavedRun::look_with(&path, &Kinds::shipped()) {
+                    Ok(run) => {
+                        let rows = same_rows(&run, &outcome, &carts);
+                        assert!(rows >= kept, "operation {left}: {rows} of {kept} rows");
+                        // Somebody looks at it again on a disk that works, and then once more.
+                        let record = run.record(&carts.1, None, &[]);
+                        run.write_report(&record).unwrap();
+                        let again = SavedRun::open(&path).unwrap();
+                        assert_eq!(same_rows(&again, &outcome, &carts), rows);
+                        assert!(again.unfinished().is_none());
+                    }
+                    Err(error) => assert_eq!(kept, 0, "operation {left}: {error}"),
+                }
+                if !fired {
+                    break;
+                }
+                left += 1;
+            }
+            assert!(left > 60, "{left} operations");
+        }
+    }
+}

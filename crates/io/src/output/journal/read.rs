@@ -1,0 +1,121 @@
+//! Reading a journal: the longest part of it from the beginning that holds.
+
+use std::io::{self, Read};
+
+use thiserror::Error;
+
+use super::super::summary::Summary;
+use super::super::table::NamedColumns;
+use super::{Chain, END, FORMAT, FRAME_BYTES, FRAME_HEAD, HEAD, Head, MAGIC, MOST_TEXT_BYTES, ROWS};
+
+/// Why no rows can be read from a journal.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum JournalError {
+    /// It cannot be read.
+    #[error("it cannot be read: {0}")]
+    Unreadable(#[from] io::Error),
+    /// It is something else.
+    #[error("it is no journal of a run")]
+    NotAJournal,
+    /// A later version wrote it.
+    #[error("its format is {found}, and this version of forwardstep reads format {FORMAT}")]
+    Newer {
+        /// Its format.
+        found: u32,
+    },
+    /// Nothing of it can be trusted.
+    #[error("its head, without which the rows mean nothing, was damaged")]
+    Head,
+}
+
+/// What a journal says.
+pub(crate) struct ReadJournal {
+    pub(crate) head: Head,
+    pub(crate) columns: NamedColumns,
+    /// Of a run that ended in order.
+    pub(crate) end: Option<Summary>,
+    /// Bytes behind all that holds.
+    pub(crate) left_out: u64,
+}
+
+/// Reads a journal of `length` bytes. What is behind a frame that does not hold is left out, whatever it says.
+pub(crate) fn read(mut input: impl Read, length: u64) -> Result<ReadJournal, JournalError> {
+    let mut opening = [0; 20];
+    let opened = input.read_exact(&mut opening);
+    let (magic, format) = opening.split_at(MAGIC.len());
+    match opened {
+        Err(error) if error.kind() != io::ErrorKind::UnexpectedEof => return Err(error.into()),
+        Ok(()) if magic == MAGIC => {}
+        _ => return Err(JournalError::NotAJournal),
+    }
+    let found = format.try_into().map(u32::from_le_bytes).unwrap_or_default();
+    if found != FORMAT {
+        return Err(JournalError::Newer { found });
+    }
+    let mut frames = Frames { input, left: length.saturating_sub(opening.len() as u64), chain: Chain::start(&opening) };
+    let head: Head = match frames.next(0) {
+        Some((HEAD, text)) => serde_json::from_slice(&text).map_err(|_| JournalError::Head)?,
+        _ => return Err(JournalError::Head),
+    };
+    let mut columns: NamedColumns = head.columns.iter().map(|name| (name.clone(), Vec::new())).collect();
+    let row_bytes = 8 * columns.len();
+    if row_bytes == 0 {
+        return Err(JournalError::Head);
+    }
+    let mut end = None;
+    let mut left_out = frames.left;
+    while end.is_none() {
+        let Some((kind, content)) = frames.next(row_bytes as u64) else { break };
+        match kind {
+            ROWS if content.len().is_multiple_of(row_bytes) => add_rows(&mut columns, &content, row_bytes),
+            END => match serde_json::from_slice(&content) {
+                Ok(summary) => end = Some(summary),
+                Err(_) => break,
+            },
+            _ => break,
+        }
+        left_out = frames.left;
+    }
+    Ok(ReadJournal { head, columns, end, left_out })
+}
+
+fn add_rows(columns: &mut NamedColumns, content: &[u8], row_bytes: usize) {
+    for row in content.chunks_exact(row_bytes) {
+        for ((_, values), bytes) in columns.iter_mut().zip(row.chunks_exact(8)) {
+            values.extend(bytes.try_into().map(f64::from_le_bytes));
+        }
+    }
+}
+
+/// The frames that follow one another.
+struct Frames<R> {
+    input: R,
+    /// Bytes that are not looked at yet.
+    left: u64,
+    chain: Chain,
+}
+
+impl<R: Read> Frames<R> {
+    /// The next frame, its kind and its content, if there is one and it holds.
+    fn next(&mut self, row_bytes: u64) -> Option<(u32, Vec<u8>)> {
+        let mut head = [0; FRAME_HEAD];
+        self.left.checked_sub(FRAME_HEAD as u64)?;
+        self.input.read_exact(&mut head).ok()?;
+        let kind = u32::from_le_bytes(head[..4].try_into().ok()?);
+        let length = u64::from_le_bytes(head[4..12].try_into().ok()?);
+        let most = if kind == ROWS { row_bytes.max(FRAME_BYTES as u64) } else { MOST_TEXT_BYTES };
+        let left = self.left.checked_sub(FRAME_HEAD as u64)?.checked_sub(length)?;
+        if length > most {
+            return None;
+        }
+        // Room is made as bytes come: a length alone takes no memory.
+        let mut content = Vec::new();
+        self.input.by_ref().take(length).read_to_end(&mut content).ok()?;
+        if content.len() as u64 != length || self.chain.next(kind, &content) != head[12..] {
+            return None;
+        }
+        self.left = left;
+        Some((kind, content))
+    }
+}

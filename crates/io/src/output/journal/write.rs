@@ -1,0 +1,173 @@
+//! Writing a journal while a run goes on.
+
+use std::io::ErrorKind;
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+use forwardstep_sim::RowSink;
+
+use super::super::disk::DiskFile;
+use super::super::error::{Action, EncodeError, OutputError};
+use super::super::folder::{RunFolder, SEAL, io_error};
+use super::super::inputs::file_digest;
+use super::super::metrics::Metrics;
+use super::super::names;
+use super::super::record::RunRecord;
+use super::super::summary::Summary;
+use super::{Chain, END, FRAME_BYTES, HEAD, Head, JOURNAL, MOST_TEXT_BYTES, ROWS, opening};
+
+/// As often it is written at most.
+const EVERY: Duration = Duration::from_secs(1);
+
+/// Keeps the rows of a run in its folder while it goes on; [`super::super::write_run`] takes the file away when the tables are whole.
+///
+/// Nothing is written before the first second is over. When it cannot be written any more, the run is stopped: what it would compute from then
+/// on could not be kept.
+pub struct Journal<'f> {
+    folder: &'f RunFolder,
+    /// The run before its first step.
+    start: RunRecord<'f>,
+    /// The time since some moment: a library reads no clock of its own.
+    clock: Box<dyn Fn() -> Duration + 'f>,
+    every: Duration,
+    /// When it was written last, or began to wait.
+    written: Duration,
+    /// Once there is one.
+    file: Option<Box<dyn DiskFile>>,
+    chain: Chain,
+    /// Rows that are not written yet.
+    rows: Vec<u8>,
+    row_bytes: usize,
+    failure: Option<OutputError>,
+}
+
+impl<'f> Journal<'f> {
+    /// A journal of the run that is to begin. `start` is the record of it with the columns that it will record and no rows, `clock` the time
+    /// since any moment.
+    pub fn new(folder: &'f RunFolder, start: RunRecord<'f>, clock: impl Fn() -> Duration + 'f) -> Self {
+        Journal {
+            folder,
+            every: EVERY,
+            written: clock(),
+            clock: Box::new(clock),
+            file: None,
+            chain: Chain::start(&opening()),
+            rows: Vec::new(),
+            row_bytes: 8 * (start.outcome.recording.columns.len() + 1),
+            failure: None,
+            start,
+        }
+    }
+
+    /// The same, but written at most once in `every`, and not before.
+    #[must_use]
+    pub fn every(self, every: Duration) -> Self {
+        Journal { every, ..self }
+    }
+
+    /// Why it is no longer written, if that is so.
+    pub fn failure(&self) -> Option<&OutputError> {
+        self.failure.as_ref()
+    }
+
+    /// Writes the rows that wait and how the run ended, if there is a file; a run that was short needs none.
+    pub fn end(&mut self, record: &RunRecord<'_>, metrics: Metrics) {
+        if self.file.is_some() && self.failure.is_none() {
+            self.failure = self.write_end(record, metrics).err();
+        }
+    }
+
+    fn write_end(&mut self, record: &RunRecord<'_>, metrics: Metrics) -> Result<(), OutputError> {
+        let text = serde_json::to_vec(&Summary::of(record, metrics, Vec::new()));
+        let text = text.map_err(|error| self.unencodable(error.into()))?;
+        let mut bytes = Vec::new();
+        self.frame_rows(&mut bytes);
+        self.frame_text(&mut bytes, END, &text)?;
+        self.append(&bytes)
+    }
+
+    /// Writes the rows that wait; the first time into a file that gets its name when all of that is on the disk.
+    fn write(&mut self) -> Result<(), OutputError> {
+        let mut bytes = Vec::new();
+        if self.file.is_some() {
+            self.frame_rows(&mut bytes);
+            return self.append(&bytes);
+        }
+        let head = serde_json::to_vec(&self.head()).map_err(|error| self.unencodable(error.into()))?;
+        bytes.extend(opening());
+        self.frame_text(&mut bytes, HEAD, &head)?;
+        self.frame_rows(&mut bytes);
+        let disk = self.folder.disk();
+        let (path, partial) = (self.folder.path().join(JOURNAL), self.folder.partial(JOURNAL));
+        let _ = disk.remove_file(&partial); // of a writer that was killed
+        self.file = Some(disk.create_file(&partial).map_err(io_error(Action::CreateFile, &path))?);
+        let named = self.append(&bytes).and_then(|()| {
+            disk.rename(&partial, &path).map_err(io_error(Action::RenameFile, &path))?;
+            disk.sync_folder(self.folder.path()).map_err(io_error(Action::WriteFile, &path))
+        });
+        if named.is_err() {
+            let _ = disk.remove_file(&partial);
+        }
+        named
+    }
+
+    /// Writes to the end of the file, to the disk.
+    fn append(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
+        let Some(file) = &mut self.file else { return Ok(()) };
+        let written = file.write_all(bytes).and_then(|()| file.sync());
+        written.map_err(io_error(Action::WriteFile, &self.folder.path().join(JOURNAL)))
+    }
+
+    /// Puts the rows that wait into frames.
+    fn frame_rows(&mut self, bytes: &mut Vec<u8>) {
+        let most = (FRAME_BYTES / self.row_bytes).max(1) * self.row_bytes;
+        for rows in self.rows.chunks(most) {
+            self.chain.frame(bytes, ROWS, rows);
+        }
+        self.rows.clear();
+    }
+
+    fn frame_text(&mut self, bytes: &mut Vec<u8>, kind: u32, text: &[u8]) -> Result<(), OutputError> {
+        if text.len() as u64 > MOST_TEXT_BYTES {
+            let path = self.folder.path().join(JOURNAL);
+            return Err(io_error(Action::WriteFile, &path)(ErrorKind::FileTooLarge.into()));
+        }
+        self.chain.frame(bytes, kind, text);
+        Ok(())
+    }
+
+    fn head(&self) -> Head {
+        let record = &self.start;
+        let text = |input: &crate::scenario::InputFile| (input.name.clone(), input.source.text().to_owned());
+        Head {
+            columns: names::table_header(record.setup, &record.outcome.recording),
+            replaces_blake3: file_digest(&self.folder.path().join(SEAL)).ok(),
+            scenario: record.scenario_text.to_owned(),
+            inputs: record.inputs.iter().map(text).collect(),
+            summary: Summary::of(record, super::super::metrics(record), Vec::new()),
+        }
+    }
+
+    fn unencodable(&self, reason: EncodeError) -> OutputError {
+        OutputError::Encode { path: self.folder.path().join(JOURNAL), reason }
+    }
+}
+
+impl RowSink for Journal<'_> {
+    fn row(&mut self, t_s: f64, values: &[f64]) {
+        if self.failure.is_none() && 8 * (values.len() + 1) == self.row_bytes {
+            self.rows.extend(t_s.to_le_bytes());
+            values.iter().for_each(|value| self.rows.extend(value.to_le_bytes()));
+        }
+    }
+
+    fn step(&mut self) -> ControlFlow<()> {
+        // Time counts from the end of the last write: a slow disk must not hold up a run for more than half of it.
+        if self.failure.is_none() && !self.rows.is_empty() && (self.clock)().saturating_sub(self.written) >= self.every
+        {
+            self.failure = self.write().err();
+            self.written = (self.clock)();
+        }
+        if self.failure.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
