@@ -1048,9 +1048,9 @@ def requirements(scenario):
         (any(agent.body.get("parameters") for agent in adaptive), "bounded-regressors"),
         (any(agent.pushes and agent.robot != "chain" for agent in chains), "matched-disturbance"), (lagrangian, "positive-gains"),
         (lagrangian or tips, "uniform-inertia"), (any(not agent.tracks for agent in lagrangian) or tips, "bounded-dynamics"),
-        (frictions(scenario), "smooth-friction"), (any("bounds" in agent.gains for agent in lagrangian), "parameters-within-bounds"),
-        (scenario.polynomial, "desired-dynamics"), (True, "applied-torque" + " desired-design" * scenario.desired),
-        (control is not None, "continuous-time"), (control is not None and inexact(control), "exact-measurements"),
+        (any("bounds" in a.gains for a in agents if a.law != "task_space"), "parameters-within-bounds"),
+        (frictions(scenario), "smooth-friction"), (scenario.polynomial, "desired-dynamics"), (control is not None, "continuous-time"),
+        (True, "applied-torque" + " desired-design" * scenario.desired), (control is not None and inexact(control), "exact-measurements"),
         (control is not None and "message_timeout_s" in control, "messages-in-time"),
     ]
     found = {(each, "") for condition, ids in asked if condition for each in ids.split()}
@@ -1418,7 +1418,7 @@ TEXT = {
     "known-momentum": lambda scenario, names: not any(a.pushes for a in scenario.agents if a.name in names),
     "set-valued-sign": lambda scenario, _: set_valued(scenario),
     "smooth-friction": lambda scenario, _: frictions(scenario) <= {"smooth"},
-    "parameters-within-bounds": lambda scenario, _: all(bounds_hold(a) for a in scenario.agents if a.law == "adaptive"),
+    "parameters-within-bounds": lambda scenario, _: all(bounds_hold(a) for a in scenario.agents if a.law != "task_space"),
     "lengths-within-bounds": lambda scenario, names: all(lengths_hold(a) for a in scenario.agents if a.name in names),
     # Nothing sits on a tool: its place enters the Jacobian of the tip, and neither M nor C nor g.
     "certain-regressor": lambda scenario, names: all(a.gains["end_effector"].get("uncertain", "tool") == "tool"

@@ -33,7 +33,10 @@ def row(robots, path):
     """The cells of one robot, and whether something is wrong."""
     name = str(path.relative_to(robots))
     with tempfile.TemporaryDirectory() as folder:
-        new = program(folder, "new", "robot.toml", "--robot", str(path), "--agents", "3")
+        try:
+            new = program(folder, "new", "robot.toml", "--robot", str(path), "--agents", "3")
+        except subprocess.TimeoutExpired:
+            return [name, "no answer", "", "", "", f"not within {TIMEOUT_S} s"], True
         if new.returncode == 2:
             reason = new.stderr.strip().splitlines()[0].strip(" ×").replace(str(path), path.name)
             return [name, "no scenario", "", "", "", reason], False
@@ -43,6 +46,7 @@ def row(robots, path):
         if new.returncode == 1:
             return [name, "does not agree", "", "", str(len(tried)), tried[-1][3]], False
         text = (Path(folder) / "robot.toml").read_text()
+        print(name, flush=True)
         value = lambda key: re.search(rf"^{key} = (.*?) *#", text, re.M).group(1)
         gains = f"{value('damping.bandwidth_per_s')}, {value('adaptation_gain')[20:-2].strip()}, {value('estimate_start')}"
         ran = program(folder, "run", "robot.toml")

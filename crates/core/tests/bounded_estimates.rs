@@ -63,11 +63,13 @@ fn balances<C: Controller<Exchange = Position>>(
     x: &[f64],
     state: &[f64],
 ) -> Instant {
-    let h = 1e-6;
     let now = at(law, plant, m, x, state);
+    let fastest = now.d_plant.iter().chain(&now.d_law).fold(1.0_f64, |most, rate| most.max(rate.abs()));
+    let h = 3e-3 / fastest;
     let value = |h: f64| at(law, plant, m, &moved(x, &now.d_plant, h), &moved(state, &now.d_law, h)).balance.value;
-    let slope = (value(h) - value(-h)) / (2.0 * h);
-    let close = 1e-4 * (1.0 + now.balance.dissipation.abs() + now.balance.value.abs());
+    let difference = |h: f64| (value(h) - value(-h)) / (2.0 * h);
+    let slope = (4.0 * difference(h / 2.0) - difference(h)) / 3.0;
+    let close = 3e-4 * (1.0 + now.balance.dissipation.abs() + now.balance.value.abs());
     assert!((slope + now.balance.dissipation).abs() < close, "{slope} is not -{}", now.balance.dissipation);
     now
 }

@@ -111,7 +111,7 @@ fn a_run_comes_back_as_it_was() {
                 need_bytes: 3e15,
                 stiffness: Some(Stiffness {
                     rate_per_s: 1.3e12,
-                    gains: Some(GainRates { damping_per_s: 3.0, adaptation_per_s: Some(1.2e12) }),
+                    gains: Some(GainRates { damping_per_s: 3.0, viscous_per_s: 0.5, adaptation_per_s: Some(1.2e12) }),
                 }),
             },
         }),

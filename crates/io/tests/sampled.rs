@@ -53,7 +53,7 @@ fn way(outcome: &Outcome) -> f64 {
 }
 
 /// Scenario, and the lower of two sample rates, in Hz.
-const RATES: [(&str, f64); 22] = [
+const RATES: [(&str, f64); 25] = [
     ("without-velocity", 500.0),
     ("double-integrators", 500.0),
     ("thrust-continuous", 500.0),

@@ -182,7 +182,7 @@ impl Case<'_> {
                 .words("The roots of the scenario, without their sign, give a polynomial, with p for d/dt:")
                 .formula(equation, "(25)");
         }
-        if self.agents.iter().any(|agent| self.setup.agents[*agent].target.is_some()) && self.led != Led::Target {
+        if self.agents.iter().any(|agent| self.setup.agents[*agent].target.is_some()) && !self.is_led_to_target() {
             section = section.words(format!(
                 "Agents keep an offset from where all agree; {0} stands for {0} less that offset.",
                 notation.position

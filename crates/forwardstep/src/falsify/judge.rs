@@ -136,7 +136,9 @@ fn without_errors(setup: &Setup) -> Verdict {
             let spread = CascadeSpread::of(&ideal, &outcome.recording).map_err(|reason| reason.to_string())?;
             Ok((spread, outcome.recording.t_s))
         }
-        Ending::Interrupted { .. } | Ending::CutOff { .. } | Ending::BrokeDown(_) => Err("the run did not complete".into()),
+        Ending::Interrupted { .. } | Ending::CutOff { .. } | Ending::BrokeDown(_) => {
+            Err("the run did not complete".into())
+        }
     });
     match spread {
         Ok((spread, t_s)) => match grown(&spread, &t_s) {

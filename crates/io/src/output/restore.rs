@@ -82,8 +82,12 @@ impl SavedRun {
     /// # Errors
     /// As of [`SavedRun::open`].
     pub fn look_with(path: &Path, kinds: &Kinds) -> Result<SavedRun, RestoreError> {
-        let saved = Saved::read(path, kinds, &mut |_| Ok(None))?;
-        Ok(SavedRun { path: path.to_owned(), folder: saved.1, saved: saved.0 })
+        let (mut saved, folder) = Saved::read(path, kinds, &mut |_| Ok(None))?;
+        // Who has claimed the folder themselves knows that nobody else has.
+        if saved.left_out.is_some() && RunFolder::is_in_use(path) {
+            saved.remarks.push(Remark::StillRunning);
+        }
+        Ok(SavedRun { path: path.to_owned(), folder, saved })
     }
 
     /// What was simulated, as the scenario says now.

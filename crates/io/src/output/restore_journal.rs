@@ -7,7 +7,6 @@ use std::path::Path;
 use forwardstep_sim::recorded_columns;
 use forwardstep_sim::recording::{Ending, Outcome, Recording};
 
-use super::folder::RunFolder;
 use super::inputs;
 use super::journal::{self, JOURNAL, ReadJournal};
 use super::remark::Remark;
@@ -62,9 +61,6 @@ fn restored(folder: &Path, read: ReadJournal, kinds: &Kinds) -> Result<Saved, Re
     remarks.push(Remark::FromJournal { rows, cut_off });
     if left_out > 0 {
         remarks.push(Remark::JournalDamaged { bytes: left_out });
-    }
-    if RunFolder::is_in_use(folder) {
-        remarks.push(Remark::StillRunning);
     }
     let ending = if cut_off {
         let t_s = recording.t_s.last().copied().unwrap_or(0.0);

@@ -137,8 +137,6 @@ pub(super) fn identities(case: &Case<'_>) -> Vec<Identity> {
             in_order(list.found)
         }
         (_, Step::Outside(_)) | (Led::Outside(_, None) | Led::Refuted(..), _) => Vec::new(),
-        // f is a symbol, which has no value here.
-        (Led::Desired(desired), _) if desired.protocol.is_some() => Vec::new(),
         (_, Step::Thrust(ThrustStep::Continuous, _)) => {
             case.dynamics().map_or_else(Vec::new, |dynamics| continuous(case, &dynamics, notation))
         }

@@ -39,8 +39,8 @@ enum NewError {
     NoJoints(String),
     #[error("one agent alone has nobody to agree with")]
     Alone,
-    #[error("the law of `{}` needs reference dynamics of order {lowest} or higher, not {order}", shown(robot))]
-    Order { robot: String, lowest: u32, order: u32 },
+    #[error("the law of `{}` needs reference dynamics of {}, not {order}", shown(robot), orders(*.needs))]
+    Order { robot: String, needs: [u32; 2], order: u32 },
     #[error("the law of `{}` needs positions of others only", shown(.0))]
     Exchange(String),
     #[error("the law of `{}` does not follow the references of leaders", shown(.0))]
@@ -60,7 +60,7 @@ impl NewError {
             NewError::NoJoints(_) => Some("leave `--dry-friction` out, or take an arm"),
             NewError::NotText(_) => Some("copy the robot beside the scenario"),
             NewError::Alone => Some("take two or more, or a spacecraft, which has a target of its own"),
-            NewError::Order { .. } => Some("raise `--order`"),
+            NewError::Order { .. } => Some("choose another `--order`, or leave it out"),
             NewError::Exchange(_) => Some("leave `--exchange` out"),
             NewError::Leads(_) => Some("see `forwardstep new --like vehicles-behind-a-leader`"),
             NewError::LedOver => {
@@ -69,6 +69,11 @@ impl NewError {
             NewError::HearsNobody(_) => Some("leave the network and the reference out"),
         }
     }
+}
+
+/// Orders in words.
+fn orders([lowest, highest]: [u32; 2]) -> String {
+    if lowest == highest { format!("order {lowest}") } else { format!("order {lowest} or higher") }
 }
 
 fn refused(error: NewError) -> Status {
@@ -152,8 +157,8 @@ fn template(options: &NewOptions, kinds: &Kinds) -> Result<Template, Status> {
     let mut template = Template::new(chosen);
     template.title = options.name.clone().or_else(stem).unwrap_or(template.title);
     template.agents = asker.ask(options.agents, "number of agents", template.agents, count_of_agents);
-    let (lowest, exchange, follows) = match template.robot.task {
-        TaskTemplate::Agree { lowest_order, exchange, follows } => (lowest_order, exchange, follows),
+    let (needs, exchange, follows) = match template.robot.task {
+        TaskTemplate::Agree { orders, exchange, follows } => (orders, exchange, follows),
         TaskTemplate::Track { .. } => {
             let NewOptions { order, exchange, leader, graph, delay, .. } = options;
             let networked = order.is_some() || exchange.is_some() || *leader || graph.is_some() || delay.is_some();
@@ -169,8 +174,8 @@ fn template(options: &NewOptions, kinds: &Kinds) -> Result<Template, Status> {
     }
     if !template.leader {
         template.order = asker.ask(options.order, "order of the reference dynamics", template.order, order);
-        if template.order < lowest {
-            return Err(refused(NewError::Order { robot: given, lowest, order: template.order }));
+        if !(needs[0]..=needs[1]).contains(&template.order) {
+            return Err(refused(NewError::Order { robot: given, needs, order: template.order }));
         }
         let stated = options.exchange.or_else(|| exchange.map(choice));
         template.exchange = match asker.choose(stated, "exchange", ExchangeChoice::PositionVelocity) {

@@ -146,7 +146,7 @@ fn run(scenario: &Scenario, effort: &mut usize) -> Result<Went, Status> {
     let end_s = setup.time.end_s;
     match outcome.ending {
         Ending::Completed => {}
-        Ending::Interrupted { t_s } => {
+        Ending::Interrupted { t_s } | Ending::CutOff { t_s } => {
             let mean_s = t_s * step as f64 / (given - left).max(1) as f64;
             return Ok(too_many(setup, mean_s).unwrap_or_else(|| {
                 Went::Badly(format!("too many steps for a trial, which got to {} s of {end_s} s", about(t_s)))

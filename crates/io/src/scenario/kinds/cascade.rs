@@ -46,7 +46,7 @@ impl RobotKind for StrictFeedbackFile {
                      [law.adaptive_backstepping]\ngains_per_s = 1\nadaptation_gain = 1\n",
                 ),
                 dry_friction: None,
-                task: TaskTemplate::of_order(2),
+                task: TaskTemplate::of_orders(2, u32::MAX),
             }),
         }
     }
@@ -100,7 +100,7 @@ impl RobotKind for PureFeedbackFile {
                      [law.adaptive_backstepping]\ngains_per_s = 1\nadaptation_gain = 1\n",
                 ),
                 dry_friction: None,
-                task: TaskTemplate::of_order(2),
+                task: TaskTemplate::of_orders(2, u32::MAX),
             }),
         }
     }

@@ -81,7 +81,7 @@ impl RobotKind for ChainFile {
                     "# The input that makes the plant linear.\n[law.linearising]\ngain_per_s = 2\n",
                 ),
                 dry_friction: None,
-                task: TaskTemplate::of_order(2),
+                task: TaskTemplate::of_orders(2, u32::MAX),
             }),
         }
     }

