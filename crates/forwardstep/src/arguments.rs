@@ -109,7 +109,7 @@ impl Default for Command {
 
 #[derive(Debug, Args)]
 pub(crate) struct RunOptions {
-    /// A shipped scenario by name, or a file by its path
+    /// A shipped scenario by name, or a file or the folder of a run by its path
     #[arg(default_value = SIX_ARMS)]
     pub(crate) scenario: String,
     /// The folder to write to [default: forwardstep-runs/ and the scenario's name]
@@ -132,7 +132,7 @@ pub(crate) struct RunOptions {
 
 #[derive(Debug, Args)]
 pub(crate) struct CheckOptions {
-    /// A shipped scenario by name, or a file by its path
+    /// A shipped scenario by name, or a file or the folder of a run by its path
     #[arg(default_value = SIX_ARMS)]
     pub(crate) scenario: String,
     /// Waive a hypothesis by its name, which stands in brackets behind it; may be given several times
@@ -154,7 +154,7 @@ pub(crate) struct CheckOptions {
 
 #[derive(Debug, Args)]
 pub(crate) struct ExplainOptions {
-    /// A shipped scenario by name, or a file by its path
+    /// A shipped scenario by name, or a file or the folder of a run by its path
     #[arg(default_value = SIX_ARMS)]
     pub(crate) scenario: String,
     /// Print the equations as LaTeX, which needs amsmath; the words are comments

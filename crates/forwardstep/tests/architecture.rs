@@ -156,7 +156,7 @@ fn always_built(floor: &str) -> BTreeSet<String> {
 fn a_library_needs_nothing_of_the_program() {
     let library = ["forwardstep-check", "forwardstep-core", "forwardstep-sim"].map(String::from);
     assert_eq!(always_built("forwardstep"), library.into());
-    let report = ["base64", "blake3", "csv", "maud", "parquet", "plotters", "sha2"].map(String::from).into();
+    let report = ["base64", "blake3", "csv", "maud", "parquet", "plotters", "sha2", "snap"].map(String::from).into();
     let readers = always_built("io");
     assert!(readers.is_disjoint(&report) && readers.contains("toml"), "{readers:?}");
     // A workspace member turns features on by itself only where it says so.

@@ -115,6 +115,13 @@ fn an_existing_folder_is_kept_unless_forced() {
     assert!(error.contains("already exists") && error.contains("--force"), "{error}");
     assert_eq!(names(&out), ["notes.txt", "summary.json"]);
     assert_eq!(fs::read_to_string(out.join("summary.json")).unwrap(), "mine");
+    // What no run wrote stays, whatever is asked for.
+    let error = stderr(&forwardstep(&folder, &["run", "two.toml", "--force"]).code(2));
+    assert!(error.contains("was not written by a run"), "{error}");
+    assert_eq!(fs::read_to_string(out.join("summary.json")).unwrap(), "mine");
+    fs::remove_dir_all(&out).unwrap();
+    forwardstep(&folder, &["run", "two.toml"]).success();
+    fs::write(out.join("notes.txt"), "mine too").unwrap();
     forwardstep(&folder, &["run", "two.toml", "--force"]).success();
     assert_eq!(summary(&out)["title"], "Two arms");
     assert_eq!(fs::read_to_string(out.join("notes.txt")).unwrap(), "mine too");

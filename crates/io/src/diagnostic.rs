@@ -12,6 +12,9 @@ use crate::shown::{one_line, printable, shown, steers_terminals};
 const LONGEST_LINE: usize = 400;
 /// What is shown before and after the place in such a line, and of what is marked, in bytes.
 const AROUND: usize = 60;
+/// What stands in scenarios and robots and hardly anywhere else. Of a file that has none of it, which may have been named by mistake, nothing
+/// is shown but the line of the mistake.
+const FAMILIAR: [&str; 5] = ["[[agents]]", "[network]", "[time]", "format = ", "<robot"];
 
 /// A file's name and text, shared by all that is said about it.
 #[derive(Clone, Debug)]
@@ -76,6 +79,8 @@ impl SourceCode for SourceText {
         lines_after: usize,
     ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
         let text = self.shown();
+        let is_familiar = FAMILIAR.iter().any(|own| text.contains(own));
+        let (lines_before, lines_after) = if is_familiar { (lines_before, lines_after) } else { (0, 0) };
         let contents = text.read_span(span, lines_before, lines_after)?;
         let (mut data, mut whole) = (contents.data(), *contents.span());
         let (mut line, mut column, mut lines) = (contents.line(), contents.column(), contents.line_count());

@@ -1,12 +1,16 @@
 //! Text files, and what stands beside them.
 
+use std::fmt;
+use std::fs::{File, FileType};
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 use thiserror::Error;
 
+use crate::foreign::{Foreign, foreign_bytes, foreign_text};
+
 /// Files larger than this are not read.
-const MOST_BYTES: u64 = 1 << 26;
+pub(crate) const MOST_BYTES: u64 = 1 << 26;
 
 /// Why a text file cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -18,6 +22,12 @@ pub enum ReadError {
     /// It is a folder.
     #[error("it is a folder")]
     Folder,
+    /// It is neither a file nor a folder, and might give bytes for ever, or none.
+    #[error("it is {0}, and no file")]
+    NotAFile(Special),
+    /// It is clearly meant for something else; nothing of it is quoted.
+    #[error("it holds {0}")]
+    Foreign(Foreign),
     /// It is larger than anything that is meant to be read.
     #[error("it is larger than {} MiB", MOST_BYTES >> 20)]
     TooLarge,
@@ -36,6 +46,52 @@ pub enum ReadError {
     Refused(ErrorKind),
 }
 
+/// What has a name among files and is none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Special {
+    /// A pipe.
+    Pipe,
+    /// A socket.
+    Socket,
+    /// A device.
+    Device,
+    /// Something that this system does not tell.
+    Other,
+}
+
+impl fmt::Display for Special {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Special::Pipe => "a pipe",
+            Special::Socket => "a socket",
+            Special::Device => "a device",
+            Special::Other => "something special",
+        })
+    }
+}
+
+impl Special {
+    #[cfg(unix)]
+    fn of(kind: FileType) -> Special {
+        use std::os::unix::fs::FileTypeExt;
+        if kind.is_fifo() {
+            Special::Pipe
+        } else if kind.is_socket() {
+            Special::Socket
+        } else if kind.is_char_device() || kind.is_block_device() {
+            Special::Device
+        } else {
+            Special::Other
+        }
+    }
+
+    #[cfg(not(unix))]
+    fn of(_: FileType) -> Special {
+        Special::Other
+    }
+}
+
 impl From<std::io::Error> for ReadError {
     fn from(error: std::io::Error) -> Self {
         match error.kind() {
@@ -49,14 +105,30 @@ impl From<std::io::Error> for ReadError {
 impl ReadError {
     /// What the user can do about it, apart from naming another file.
     pub(crate) fn help(self) -> Option<&'static str> {
-        matches!(self, ReadError::NotUtf8 { .. }).then_some("save it as UTF-8")
+        match self {
+            ReadError::NotUtf8 { .. } => Some("save it as UTF-8"),
+            ReadError::NotAFile(_) => Some("save what it gives as a file, and name that"),
+            _ => None,
+        }
     }
+}
+
+/// Opens a file, and nothing else: who opens a pipe for reading waits until somebody writes.
+pub(crate) fn open_file(path: &Path) -> Result<File, ReadError> {
+    let kind = std::fs::metadata(path)?.file_type();
+    if kind.is_dir() {
+        return Err(ReadError::Folder);
+    }
+    if !kind.is_file() {
+        return Err(ReadError::NotAFile(Special::of(kind)));
+    }
+    Ok(File::open(path)?)
 }
 
 /// Reads a text file of reasonable size.
 pub(crate) fn read_text(path: &Path) -> Result<String, ReadError> {
     let mut bytes = Vec::new();
-    std::fs::File::open(path)?.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
+    open_file(path)?.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
     text_of(bytes)
 }
 
@@ -65,7 +137,10 @@ pub(crate) fn text_of(bytes: Vec<u8>) -> Result<String, ReadError> {
     if bytes.len() as u64 > MOST_BYTES {
         return Err(ReadError::TooLarge);
     }
-    String::from_utf8(bytes).map_err(|error| {
+    if let Some(foreign) = foreign_bytes(&bytes) {
+        return Err(ReadError::Foreign(foreign));
+    }
+    let text = String::from_utf8(bytes).map_err(|error| {
         let (sound, rest) = error.as_bytes().split_at(error.utf8_error().valid_up_to());
         let before = String::from_utf8_lossy(sound);
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
@@ -74,7 +149,11 @@ pub(crate) fn text_of(bytes: Vec<u8>) -> Result<String, ReadError> {
             line: before.matches('\n').count() + 1,
             column: before[line_start..].chars().count() + 1,
         }
-    })
+    })?;
+    match foreign_text(&text) {
+        Some(foreign) => Err(ReadError::Foreign(foreign)),
+        None => Ok(text),
+    }
 }
 
 /// Whether a file of this name ends in `.extension`.

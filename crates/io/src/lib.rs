@@ -4,6 +4,7 @@
 
 pub mod diagnostic;
 mod files;
+mod foreign;
 #[cfg(feature = "report")]
 pub mod output;
 pub mod robot;
@@ -13,6 +14,7 @@ pub mod urdf;
 mod wording;
 
 pub use diagnostic::{InputError, Problem, SourceText};
-pub use files::ReadError;
+pub use files::{ReadError, Special};
+pub use foreign::Foreign;
 pub use shown::{Shown, breaks_lines, shown, steers_terminals};
 pub use urdf::{UrdfOptions, UrdfRobot, read_urdf};

@@ -166,6 +166,39 @@ fn force_replaces_what_a_run_writes_and_nothing_else() {
 }
 
 #[test]
+fn force_spares_a_folder_that_no_run_wrote_and_what_was_changed_in_one() {
+    let (setup, outcome) = two_arms();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    for (file, text) in
+        [("thesis.tex", "years of work"), ("scenario.toml", "mine"), ("summary.json", "{\"format\": 2}")]
+    {
+        fs::write(path.join(file), text).unwrap();
+        let refused = RunFolder::create(path, true).unwrap_err();
+        assert!(matches!(refused, OutputError::NotOfARun { .. }), "{file}: {refused}");
+        fs::remove_file(path.join(file)).unwrap();
+    }
+    write(path, &setup, &outcome);
+    assert!(RunFolder::create(path, true).is_ok());
+    for file in ["scenario.toml", "trajectory.parquet", "trajectory.csv", "phases.csv"] {
+        let before = fs::read(path.join(file)).ok();
+        fs::write(path.join(file), "mine").unwrap();
+        match RunFolder::create(path, true) {
+            Err(OutputError::Changed { path: changed }) => assert_eq!(changed, path.join(file)),
+            other => panic!("{file}: {other:?}"),
+        }
+        match before {
+            Some(bytes) => fs::write(path.join(file), bytes).unwrap(),
+            None => fs::remove_file(path.join(file)).unwrap(),
+        }
+    }
+    assert!(RunFolder::create(path, true).is_ok());
+    // A run that ended while it gave its files their names.
+    fs::rename(path.join("summary.json"), path.join(".summary.json.partial")).unwrap();
+    assert!(RunFolder::create(path, true).is_ok());
+}
+
+#[test]
 fn leftovers_of_a_killed_writer_do_not_count() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("plots")).unwrap();

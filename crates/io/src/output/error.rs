@@ -13,6 +13,18 @@ pub enum OutputError {
         /// The folder.
         path: PathBuf,
     },
+    /// The folder was to be replaced, and no run wrote it.
+    #[error("{} was not written by a run, and stays as it is", shown(path))]
+    NotOfARun {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The folder was to be replaced, and holds what no run can write again.
+    #[error("{} is not as the run in that folder wrote it, and stays as it is", shown(path))]
+    Changed {
+        /// The file.
+        path: PathBuf,
+    },
     /// There is a file where the folder should be.
     #[error("{} exists and is not a folder", shown(path))]
     NotAFolder {
@@ -99,6 +111,12 @@ impl OutputError {
         match self {
             OutputError::FolderNotEmpty { .. } => {
                 Some("choose another folder, or replace the files of the earlier run with --force")
+            }
+            OutputError::NotOfARun { .. } => {
+                Some("choose another folder: --force replaces only what an earlier run wrote")
+            }
+            OutputError::Changed { .. } => {
+                Some("move it elsewhere if you need it, or remove it, or choose another folder")
             }
             OutputError::NotAFolder { .. } => Some("choose another folder"),
             OutputError::FolderInUse { .. } => Some("wait until it has ended, or choose another folder with --out"),

@@ -7,16 +7,18 @@ use std::sync::Arc;
 
 use super::disk::{Disk, DiskFile, SystemDisk};
 use super::error::{Action, EncodeError, OutputError};
-use super::inputs;
 use super::journal::JOURNAL;
+use super::{earlier, inputs};
 use crate::scenario::inputs::INPUTS;
+use crate::scenario::run_folder::MANIFEST;
 
 /// The file whose presence says that a folder is complete: removed first and renamed last.
 pub(super) const SEAL: &str = "summary.json";
 
 /// Every file that a run may write, but for the copies of its inputs.
-pub(crate) const FILES: [&str; 12] = [
+pub(crate) const FILES: [&str; 13] = [
     "scenario.toml",
+    MANIFEST,
     "trajectory.parquet",
     "trajectory.csv",
     "packets.csv",
@@ -47,11 +49,12 @@ pub struct RunFolder {
 impl RunFolder {
     /// Prepares `path` for a run, before the run, so that hours of work are not lost to a folder that cannot be written.
     ///
-    /// Missing folders are created, parents too. A folder that holds anything is refused unless `force`; then files that a
-    /// run writes will be replaced, and all others stay as they are. Remains of a writer that was killed do not count.
+    /// Missing folders are created, parents too. A folder that holds anything is refused unless `force`; then one that
+    /// a run wrote is taken, unless its scenario or a table was changed since. What that run wrote will be replaced, and everything
+    /// else stays as it is. Remains of a writer that was killed do not count.
     ///
     /// # Errors
-    /// [`OutputError`] when the folder is not empty, is a file, is being written by another run, or cannot be created or
+    /// [`OutputError`] when the folder is not empty or must be kept, is a file, is being written by another run, or cannot be created or
     /// written to.
     pub fn create(path: impl Into<PathBuf>, force: bool) -> Result<RunFolder, OutputError> {
         RunFolder::create_on(Arc::new(SystemDisk), path, force)
@@ -75,8 +78,11 @@ impl RunFolder {
             }
         }
         folder._lock = lock(path)?;
-        if !force && !is_empty(path, false)? {
-            return Err(OutputError::FolderNotEmpty { path: path.clone() });
+        if !is_empty(path, false)? {
+            if !force {
+                return Err(OutputError::FolderNotEmpty { path: path.clone() });
+            }
+            earlier::may_be_replaced(path)?;
         }
         folder.probe()?;
         Ok(folder)

@@ -3,16 +3,17 @@
 //! A file keeps its name where that is a name below the scenario, so that `scenario.toml` finds it there. One whose name
 //! leads elsewhere (`../arm.urdf`, `/robots/arm.urdf`) gets a name below `inputs/outside`, which only `summary.json` tells.
 
-use std::fs::File;
 use std::path::Path;
 
 use serde::Deserialize;
 use toml::Table;
 
 use super::summary::Input;
-use crate::files::read_text;
+use crate::files::{ReadError, open_file, read_text};
 use crate::scenario::InputFile;
 use crate::scenario::inputs::{INPUTS, plain_name};
+use crate::scenario::run_folder::MANIFEST;
+pub(crate) use crate::scenario::run_folder::is_copy;
 
 /// What is copied: the entry of the summary and the text.
 pub(crate) fn copies(inputs: &[InputFile]) -> Vec<(Input, &str)> {
@@ -30,7 +31,7 @@ pub(crate) fn copies(inputs: &[InputFile]) -> Vec<(Input, &str)> {
         let free = |file: &String| {
             // The same text under two spellings of one name is one file.
             let same = |other: &Input| other.file == *file && other.digest_blake3 == digest_blake3;
-            copies.iter().all(|(other, _)| same(other) || !clash(&other.file, file))
+            copies.iter().all(|(other, _)| same(other) || !clash(&other.file, file)) && !clash(MANIFEST, file)
         };
         if let Some(file) = own.chain(others).find(free) {
             copies.push((Input { name: input.name.clone(), file, digest_blake3 }, text));
@@ -63,15 +64,10 @@ pub(crate) fn of_earlier_run(folder: &Path) -> Vec<String> {
         .collect()
 }
 
-/// Whether a copy may have this name. A summary may have been edited, and must not lead out of its folder.
-pub(crate) fn is_copy(file: &str) -> bool {
-    plain_name(file).is_some_and(|plain| plain == file && plain.starts_with(&format!("{INPUTS}/")))
-}
-
 /// The BLAKE3 digest of a file, in hexadecimal.
-pub(crate) fn file_digest(path: &Path) -> std::io::Result<String> {
+pub(crate) fn file_digest(path: &Path) -> Result<String, ReadError> {
     let mut hasher = blake3::Hasher::new();
-    hasher.update_reader(File::open(path)?)?;
+    hasher.update_reader(open_file(path)?)?;
     Ok(hasher.finalize().to_hex().to_string())
 }
 
@@ -110,6 +106,7 @@ mod tests {
     fn no_copy_takes_the_place_of_another() {
         assert_eq!(files(&[("../a", "1"), ("outside", "2")]), ["inputs/outside", "inputs/outside-2/a"]);
         assert_eq!(files(&[("arm", "1"), ("ARM", "2")]), ["inputs/arm", "inputs/outside/ARM"]);
+        assert_eq!(files(&[("manifest.json", "1")]), ["inputs/outside/manifest.json"]);
         assert_eq!(files(&[("arm", "1"), ("./arm", "1")]), ["inputs/arm", "inputs/arm"]);
     }
 

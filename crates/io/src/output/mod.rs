@@ -16,6 +16,7 @@
 //! | `plots/*.svg` | positions, torques, estimates and disagreement, one panel per joint |
 //! | `scenario.toml` | the text the run was made from |
 //! | `inputs/` | the files that this text names, so that the folder holds all that went into the run |
+//! | `inputs/manifest.json` | which of them stands for which name in the text; `run` takes the folder, wherever it is |
 //!
 //! [`SavedRun`] reads such a folder back, and writes the report and the plots anew from its tables.
 //!
@@ -30,6 +31,7 @@ mod digital;
 mod disagreement;
 mod disk;
 mod draws;
+mod earlier;
 mod ending;
 mod error;
 mod explanation;
@@ -59,6 +61,7 @@ mod restore_error;
 mod restore_journal;
 mod sampling_limit;
 mod smoothness;
+mod stored_table;
 pub mod summary;
 mod table;
 mod timeline;
@@ -98,6 +101,9 @@ pub use smoothness::{
     FilteredInput, LargestInputJump, NothingSaid, SMOOTHNESS_FORMAT, SmoothInput, SmoothOrder, SmoothScenario,
     SmoothnessDocument, SmoothnessFound,
 };
+pub use stored_table::ParquetProblem;
+
+use crate::scenario::run_folder::{Copied, MANIFEST, Manifest};
 
 const PARQUET: &str = "trajectory.parquet";
 const CSV: &str = "trajectory.csv";
@@ -133,11 +139,17 @@ fn write_all(
     let mut staging = folder.stage();
     staging.write_text("scenario.toml", record.scenario_text)?;
     let mut copied = HashSet::new();
+    let mut listed = Vec::new();
     for (input, text) in inputs::copies(record.inputs) {
+        listed.push(Copied { name: input.name, file: input.file.clone() });
         if !copied.contains(&input.file) {
             staging.write_text(&input.file, text)?;
             copied.insert(input.file);
         }
+    }
+    if !listed.is_empty() {
+        let listed = serde_json::to_string_pretty(&Manifest::new(listed));
+        staging.write(MANIFEST, |out| Ok(std::io::Write::write_all(out, listed?.as_bytes())?))?;
     }
     let mut tables = Vec::new();
     let mut table = |file: &str, digest: blake3::Hash| {
@@ -148,13 +160,13 @@ fn write_all(
         table(CSV, staging.write(CSV, |out| Ok(csv::write(out, record.setup, recording)?))?);
     }
     if !packets::links(&record.setup.network).is_empty() {
-        staging.write("packets.csv", |out| Ok(packets::write(out, record.setup)?))?;
+        table("packets.csv", staging.write("packets.csv", |out| Ok(packets::write(out, record.setup)?))?);
     }
     if draws::draws_phases(&record.setup.network) {
-        staging.write("phases.csv", |out| Ok(draws::write_phases(out, record.setup)?))?;
+        table("phases.csv", staging.write("phases.csv", |out| Ok(draws::write_phases(out, record.setup)?))?);
     }
     if !draws::holds(&record.setup.network).is_empty() {
-        staging.write("holds.csv", |out| Ok(draws::write_holds(out, record.setup)?))?;
+        table("holds.csv", staging.write("holds.csv", |out| Ok(draws::write_holds(out, record.setup)?))?);
     }
     write_pictures(&mut staging, record, &metrics)?;
     staging.write("summary.json", |out| Ok(summary::Summary::of(record, metrics, tables).write(out)?))?;

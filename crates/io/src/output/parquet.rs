@@ -1,25 +1,20 @@
 //! `trajectory.parquet`: wide, one f64 column per recorded signal.
 
-use std::fs::File;
 use std::io::Write;
 use std::sync::Arc;
 
 use forwardstep_sim::recording::Recording;
 use forwardstep_sim::setup::Setup;
 use parquet::basic::{Compression, Encoding, Repetition, Type as PhysicalType};
-use parquet::column::reader::ColumnReader;
 use parquet::data_type::DoubleType;
 use parquet::errors::Result;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
-use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
 use super::names;
 use super::record::RunRecord;
-use super::restore_error::TableError;
-use super::table::NamedColumns;
 
 /// Rows of a row group: small enough to skip through a long run, large enough to compress well.
 pub(crate) const ROWS_PER_GROUP: usize = 8192;
@@ -87,27 +82,4 @@ fn units(setup: &Setup, recording: &Recording, header: &[String]) -> String {
     let units = std::iter::once("s".to_owned()).chain(columns);
     let object: serde_json::Map<_, _> = header.iter().cloned().zip(units.map(serde_json::Value::from)).collect();
     serde_json::Value::Object(object).to_string()
-}
-
-/// Reads columns back, whatever their names.
-pub(crate) fn read(file: File) -> std::result::Result<NamedColumns, TableError> {
-    let reader = SerializedFileReader::new(file)?;
-    let schema = reader.metadata().file_metadata().schema_descr();
-    let mut columns: NamedColumns = schema.columns().iter().map(|c| (c.path().string(), Vec::new())).collect();
-    for group in 0..reader.num_row_groups() {
-        let group = reader.get_row_group(group)?;
-        for (k, (name, values)) in columns.iter_mut().enumerate() {
-            let mut column = match group.get_column_reader(k)? {
-                ColumnReader::DoubleColumnReader(column) if schema.column(k).max_def_level() == 0 => column,
-                _ => return Err(TableError::NotNumbers { column: name.clone() }),
-            };
-            loop {
-                let (rows, ..) = column.read_records(ROWS_PER_GROUP, None, None, values)?;
-                if rows == 0 {
-                    break;
-                }
-            }
-        }
-    }
-    Ok(columns)
 }

@@ -5,7 +5,6 @@
 //! whether the goal was met are worked out again. In a folder that is unchanged all of it is what it was.
 
 use std::collections::HashMap;
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use forwardstep_check::Report;
@@ -24,9 +23,9 @@ use super::restore_error::{RestoreError, SummaryError, TableError};
 use super::restore_journal;
 use super::summary::{FORMAT, Summary, Verdicts};
 use super::table::NamedColumns;
-use super::{CSV, PARQUET, csv, inputs, names, parquet};
+use super::{CSV, PARQUET, csv, inputs, names, stored_table};
 use crate::SourceText;
-use crate::files::{ReadError, read_text};
+use crate::files::{MOST_BYTES, ReadError, open_file, read_text};
 use crate::scenario::kinds::Kinds;
 use crate::scenario::{Inputs, Scenario, upgrade};
 
@@ -34,6 +33,8 @@ use crate::scenario::{Inputs, Scenario, upgrade};
 const SIGNALS: [(&str, &str); 2] = [("sign", "selection"), ("omega_wanted", "omega_commanded")];
 pub(super) const SCENARIO: &str = "scenario.toml";
 pub(super) const SUMMARY: &str = "summary.json";
+/// A sign, seventeen digits, a point, an exponent and a comma take 25 bytes at most; a share of what Parquet says of its pages is added.
+const MOST_BYTES_OF_A_NUMBER: u64 = 64;
 
 /// A run that was read back from its folder.
 #[derive(Debug)]
@@ -305,14 +306,20 @@ fn recording(
         RestoreError::NotARun { path: folder.to_owned(), missing: "trajectory.parquet or trajectory.csv" }
     })?;
     let path = folder.join(name);
-    let unreadable = |error: std::io::Error| RestoreError::File { path: path.clone(), reason: error.into() };
+    let unreadable = |reason: ReadError| RestoreError::File { path: path.clone(), reason };
     let unusable = |reason| RestoreError::Table { path: path.clone(), reason, scenario_changed };
-    let file = File::open(&path).map_err(unreadable)?;
+    let file = open_file(&path).map_err(unreadable)?;
+    // Neither Parquet nor CSV takes more for a number, and no text in the table is longer than the scenario may be.
+    let most = (summary.metrics.rows as u64 + 1)
+        .saturating_mul(columns.len() as u64 + 1)
+        .saturating_mul(MOST_BYTES_OF_A_NUMBER);
+    if file.metadata().map_err(|error| unreadable(error.into()))?.len() > most.saturating_add(MOST_BYTES) {
+        return Err(unusable(TableError::TooLarge { written: summary.metrics.rows }));
+    }
     let digest = inputs::file_digest(&path).map_err(unreadable)?;
     let as_written = summary.tables.iter().any(|table| table.file == name && table.digest_blake3 == digest);
     let table = if name == PARQUET {
-        // Its decoder sees nothing but what the encoder wrote.
-        if as_written { parquet::read(file) } else { Err(TableError::Digest) }
+        if as_written { stored_table::read(file) } else { Err(TableError::Digest) }
     } else {
         if !as_written {
             remarks.push(Remark::OtherCsv);

@@ -10,6 +10,7 @@ use thiserror::Error;
 
 use super::error::OutputError;
 use super::journal::JournalError;
+use super::stored_table::ParquetProblem;
 use super::summary::FORMAT;
 use crate::files::ReadError;
 use crate::scenario::ScenarioError;
@@ -129,7 +130,7 @@ pub enum TableError {
     Digest,
     /// Parquet that cannot be read.
     #[error(transparent)]
-    Parquet(#[from] parquet::errors::ParquetError),
+    Parquet(#[from] ParquetProblem),
     /// CSV that cannot be read.
     #[error(transparent)]
     Csv(#[from] csv::Error),
@@ -166,6 +167,12 @@ pub enum TableError {
     MissingColumn {
         /// Its name.
         column: String,
+    },
+    /// It cannot be what the run wrote.
+    #[error("it is much larger than the {written} rows that the run wrote can be")]
+    TooLarge {
+        /// How many rows the run wrote.
+        written: usize,
     },
     /// Rows were lost, or came from elsewhere.
     #[error("it has {found} rows, and the run wrote {written}")]

@@ -69,6 +69,7 @@ mod rewired;
 mod robots;
 pub mod roots;
 mod rows;
+pub(crate) mod run_folder;
 mod shipped;
 mod spread;
 mod start;

@@ -7,10 +7,11 @@ use thiserror::Error;
 
 use super::kinds::Kinds;
 use super::shipped::{SHIPPED_SCENARIOS, shipped_scenario};
-use super::{Scenario, ScenarioError};
+use super::{Scenario, ScenarioError, run_folder};
 use crate::SourceText;
 use crate::files::{ReadError, neighbours, read_text};
 use crate::shown;
+use crate::shown::one_line;
 use crate::wording::choose;
 
 /// Why there is no scenario to run.
@@ -29,6 +30,14 @@ pub enum OpenError {
         path: PathBuf,
         /// Why not.
         reason: ReadError,
+    },
+    /// The folder of a run whose list of copies is none.
+    #[error("`{}` is no list of copies as runs write it: {}", shown(path), one_line(reason))]
+    Manifest {
+        /// The list.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
     },
     /// A file with a mistake.
     #[error(transparent)]
@@ -53,6 +62,7 @@ impl Diagnostic for OpenError {
                 (!known.is_empty()).then(|| Box::new(choose(name, "in that folder:", &known)) as Box<_>)
             }
             OpenError::File { reason, .. } => reason.help().map(|help| Box::new(help) as Box<_>),
+            OpenError::Manifest { .. } => Some(Box::new("restore it from a copy, or run the original scenario again")),
             OpenError::Scenario(error) => error.help(),
         }
     }
@@ -72,7 +82,7 @@ impl Diagnostic for OpenError {
     }
 }
 
-/// Opens the shipped scenario of this name, else the file at this path. A path with a folder, such as `./six-arms`, is
+/// Opens the shipped scenario of this name, else the file at this path, or what was run in the folder at this path. A path with a folder, such as `./six-arms`, is
 /// always a file.
 ///
 /// # Errors
@@ -97,6 +107,9 @@ fn open(name_or_path: &str, kinds: &Kinds) -> Result<Scenario, OpenError> {
         return Ok(kinds.read_scenario(shipped.name, &source, None)?);
     }
     let path = Path::new(name_or_path);
+    if run_folder::is_run_folder(path) {
+        return run_folder::open(path, kinds);
+    }
     let text = read_text(path).map_err(|reason| {
         let looks_like_a_name = path.extension().is_none() && path.components().count() <= 1;
         if reason == ReadError::Missing && looks_like_a_name {

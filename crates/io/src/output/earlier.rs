@@ -1,0 +1,63 @@
+//! Whether a folder may be replaced: only where a run wrote it, and only what that run wrote.
+//!
+//! Its summary says what that was, with digests of the scenario and the tables. The report and the pictures follow from these and are not
+//! compared.
+
+use std::path::Path;
+
+use serde::Deserialize;
+
+use super::error::OutputError;
+use super::folder::SEAL;
+use super::inputs::file_digest;
+use super::journal::JOURNAL;
+use super::summary::TableFile;
+use crate::files::read_text;
+
+/// The files that nothing else holds.
+const OWN: [&str; 6] =
+    ["scenario.toml", "trajectory.parquet", "trajectory.csv", "packets.csv", "phases.csv", "holds.csv"];
+
+/// The part of a summary that matters here, whatever its format.
+#[derive(Deserialize)]
+struct Earlier {
+    #[serde(rename = "format")]
+    _format: u32,
+    scenario: Scenario,
+    #[serde(default)]
+    tables: Vec<TableFile>,
+}
+
+#[derive(Deserialize)]
+struct Scenario {
+    digest_blake3: String,
+}
+
+/// Refuses a folder that must be kept.
+pub(super) fn may_be_replaced(folder: &Path) -> Result<(), OutputError> {
+    let summary = read_text(&folder.join(SEAL)).ok();
+    let Some(earlier) = summary.and_then(|text| serde_json::from_str::<Earlier>(&text).ok()) else {
+        let holds = |name: &str| folder.join(name).symlink_metadata().is_ok();
+        // A run that ended while it gave its files their names took the old summary away and left the new one; one that was killed before
+        // left its journal.
+        if !holds(SEAL) && (holds(".summary.json.partial") || holds(JOURNAL)) {
+            return Ok(());
+        }
+        return Err(OutputError::NotOfARun { path: folder.to_owned() });
+    };
+    for name in OWN {
+        let path = folder.join(name);
+        if path.symlink_metadata().is_err() {
+            continue;
+        }
+        let written = if name == OWN[0] {
+            Some(&earlier.scenario.digest_blake3)
+        } else {
+            earlier.tables.iter().find(|table| table.file == name).map(|table| &table.digest_blake3)
+        };
+        if written.is_none() || file_digest(&path).ok().as_ref() != written {
+            return Err(OutputError::Changed { path });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,97 @@
+//! The folder of a run is a scenario that runs again, wherever it is.
+#![cfg(feature = "report")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use forwardstep_io::output::{Options, RunFolder, RunRecord, write_run};
+use forwardstep_io::scenario::{OpenError, open_scenario};
+use forwardstep_sim::simulate;
+
+const CARTS: &str = r#"format = 2
+title = "Two carts"
+time = { end_s = 0.5, record_every_s = 0.1 }
+[[agents]]
+name = "cart"
+count = 2
+robot.urdf.file = "../robots/cart.urdf"
+start.position_m = [[0], [1]]
+[reference.consensus]
+roots_per_s = [1, 2]
+exchange = "position_velocity"
+[network]
+delay.constant_s = 0.1
+edges.csv.file = "edges.csv"
+"#;
+const CART: &str = r#"<robot name="cart"><link name="rail"/>
+<link name="cart"><inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="slide" type="prismatic"><parent link="rail"/><child link="cart"/><axis xyz="1 0 0"/>
+<limit lower="-3" upper="3" velocity="2" effort="50"/></joint></robot>"#;
+
+/// Runs a scenario and writes its folder.
+fn run(scenario: &Path, out: &Path) {
+    let scenario = open_scenario(scenario.to_str().unwrap()).unwrap();
+    let outcome = simulate(&scenario.setup, &mut |_| ControlFlow::Continue(())).unwrap();
+    let record = RunRecord {
+        title: &scenario.title,
+        scenario_name: &scenario.name,
+        scenario_text: scenario.source.text(),
+        inputs: &scenario.inputs,
+        version: "0.1.0",
+        setup: &scenario.setup,
+        outcome: &outcome,
+        verdicts: &forwardstep_check::check(&scenario.setup),
+        predicted_agreement: None,
+        prediction: None,
+        goal: None,
+        digital: None,
+        injected: Vec::new(),
+        notices: Vec::new(),
+    };
+    write_run(&RunFolder::create(out, false).unwrap(), &record, Options::default()).unwrap();
+}
+
+#[test]
+fn a_folder_runs_again_where_none_of_its_files_are() {
+    let here = tempfile::tempdir().unwrap();
+    for (file, text) in [
+        ("robots/cart.urdf", CART),
+        ("mine/carts.toml", CARTS),
+        ("mine/edges.csv", "from,to\ncart-1,cart-2\ncart-2,cart-1\n"),
+    ] {
+        let path = here.path().join(file);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+    let there = tempfile::tempdir().unwrap();
+    let folders = ["first", "second", "third"].map(|name| there.path().join(name).join("carts"));
+    run(&here.path().join("mine/carts.toml"), &folders[0]);
+    drop(here);
+    run(&folders[0], &folders[1]);
+    run(&folders[1], &folders[2]);
+    for file in ["trajectory.parquet", "scenario.toml", "inputs/manifest.json", "inputs/edges.csv"] {
+        let bytes = |k: usize| fs::read(folders[k].join(file)).unwrap();
+        assert!(bytes(0) == bytes(1) && bytes(1) == bytes(2), "{file}");
+    }
+    assert_eq!(fs::read_to_string(folders[2].join("inputs/outside/cart.urdf")).unwrap(), CART);
+}
+
+#[test]
+fn a_list_of_copies_cannot_lead_out_of_its_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("inputs")).unwrap();
+    fs::write(folder.path().join("scenario.toml"), CARTS).unwrap();
+    for list in [
+        "",
+        "{}",
+        r#"{"format": 2, "files": []}"#,
+        r#"{"format": 1, "files": [{"name": "edges.csv", "file": "/etc/hostname"}]}"#,
+        r#"{"format": 1, "files": [{"name": "edges.csv", "file": "inputs/../../edges.csv"}]}"#,
+    ] {
+        fs::write(folder.path().join("inputs/manifest.json"), list).unwrap();
+        let opened = open_scenario(folder.path().to_str().unwrap());
+        assert!(matches!(opened, Err(OpenError::Manifest { .. })), "{list}");
+    }
+}

@@ -1,0 +1,107 @@
+//! What stands where a file is expected and is none, or is clearly another.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+
+use std::fs;
+use std::path::Path;
+
+use forwardstep_io::robot::open_robot;
+use forwardstep_io::scenario::open_scenario;
+use forwardstep_io::urdf::UrdfOptions;
+use miette::Report;
+
+const KEY: &str =
+    "-----BEGIN OPENSSH PRIVATE KEY-----\nb3BlbnNzaC1rZXktdjEAAAAABG5vbmU\n-----END OPENSSH PRIVATE KEY-----\n";
+const ACCOUNTS: &str = "root:x:0:0:root:/root:/bin/bash\ndaemon:x:1:1:daemon:/usr/sbin:/usr/sbin/nologin\n";
+const SETTINGS: &str = "HOST=example.org\nDB_PASSWORD=hunter2\n";
+const WITH_EDGES: &str = r#"format = 2
+title = "Two carts"
+time = { end_s = 1 }
+[[agents]]
+name = "cart"
+count = 2
+robot.point_mass = { dimension = 1, mass_kg = 2 }
+[reference.consensus]
+roots_per_s = [1, 2]
+exchange = "position_velocity"
+[network]
+edges.csv.file = "edges.csv"
+"#;
+
+/// All that is said about a file at this path, given as a scenario, as a robot, and as a table that a scenario names.
+fn said(path: &Path) -> [String; 3] {
+    let name = path.to_str().unwrap();
+    let scenario = Report::new(open_scenario(name).unwrap_err());
+    let robot = Report::new(open_robot(name, &UrdfOptions::default()).unwrap_err());
+    let naming = path.with_extension("naming.toml");
+    fs::write(&naming, WITH_EDGES.replace("\"edges.csv\"", &format!("\"{name}\""))).unwrap();
+    let table = Report::new(open_scenario(naming.to_str().unwrap()).unwrap_err());
+    [scenario, robot, table].map(|report| format!("{report:?}"))
+}
+
+#[test]
+fn what_is_clearly_something_else_is_named_and_never_quoted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("arm");
+    for (bytes, what, hidden) in [
+        (KEY.as_bytes(), "it holds a key or a certificate", "b3Blbn"),
+        (ACCOUNTS.as_bytes(), "it holds a list of accounts", "/bin/bash"),
+        (SETTINGS.as_bytes(), "it holds passwords or tokens", "example.org"),
+        (b"\x7fELF\x02\x01\x01 secrets", "it holds a program, an archive", "secrets"),
+    ] {
+        fs::write(&path, bytes).unwrap();
+        for said in said(&path) {
+            assert!(said.contains(what) && !said.contains(hidden), "{said}");
+        }
+    }
+}
+
+#[test]
+fn of_a_text_that_may_be_anything_only_the_line_of_the_mistake_is_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("letter.toml");
+    fs::write(&path, "first = 1\nDear Ms Lovelace,\nplease keep this between us\n").unwrap();
+    let [scenario, robot, _] = said(&path);
+    for said in [&scenario, &robot] {
+        assert!(!said.contains("between us"), "{said}");
+    }
+    assert!(scenario.contains("Dear Ms Lovelace") && !scenario.contains("first = 1"), "{scenario}");
+    // Around a mistake in a scenario there are lines to find it by.
+    fs::write(&path, WITH_EDGES.replace("count = 2", "count = two")).unwrap();
+    assert!(said(&path)[0].contains("robot.point_mass"));
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_devices_and_folders_are_refused_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("pipe");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    for said in said(&pipe) {
+        assert!(said.contains("it is a pipe, and no file"), "{said}");
+    }
+    let room = folder.path().join("room");
+    fs::create_dir(&room).unwrap();
+    for said in said(&room) {
+        assert!(said.contains("it is a folder"), "{said}");
+    }
+    let (device, socket) = (folder.path().join("device"), folder.path().join("socket"));
+    std::os::unix::fs::symlink("/dev/zero", &device).unwrap();
+    let _listening = std::os::unix::net::UnixListener::bind(&socket).unwrap();
+    assert!(said(&device).iter().all(|said| said.contains("it is a device, and no file")));
+    assert!(said(&socket).iter().all(|said| said.contains("it is a socket, and no file")));
+}
+
+#[cfg(all(unix, feature = "report"))]
+#[test]
+fn pipes_in_the_folder_of_a_run_are_refused_at_once() {
+    use forwardstep_io::output::SavedRun;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    for name in ["summary.json", "scenario.toml"] {
+        assert!(std::process::Command::new("mkfifo").arg(path.join(name)).status().unwrap().success());
+        let said = SavedRun::open(path).unwrap_err().to_string();
+        assert!(said.contains("it is a pipe, and no file"), "{said}");
+        fs::remove_file(path.join(name)).unwrap();
+        fs::write(path.join(name), "{}").unwrap();
+    }
+}
