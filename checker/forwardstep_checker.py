@@ -204,11 +204,8 @@ def span(low, high): return rounded(low, False), rounded(high, True)
 def total(x, y): return x if infinite(x) else y if infinite(y) else x + y
 
 def product(x, y):
-    if x == 0 or y == 0:
-        return Fraction(0)
-    if infinite(x) or infinite(y):
-        return INF if (x > 0) == (y > 0) else -INF
-    return x * y
+    unbounded = infinite(x) or infinite(y)
+    return Fraction(0) if x == 0 or y == 0 else x * y if not unbounded else INF if (x > 0) == (y > 0) else -INF
 
 def add(a, b): return span(total(a[0], b[0]), total(a[1], b[1]))
 
@@ -510,13 +507,11 @@ def plus(a, b): return b if a == ZERO else a if b == ZERO else ("+", a, b)
 
 # Nothing is dropped that may lack a value.
 def times(a, b):
-    plain = ZERO in (a, b) and not partial(a) and not partial(b)
-    return ZERO if plain else b if a == ONE else a if b == ONE else ("*", a, b)
+    return ZERO if ZERO in (a, b) and not partial(a) and not partial(b) else b if a == ONE else a if b == ONE else ("*", a, b)
 
 # Whether a formula may lack a value somewhere.
 def partial(tree):
-    own = tree[0] in ("/", "^") or tree[:2] in (("f", "log"), ("f", "sqrt"))
-    return own or any(map(partial, parts_of(tree)))
+    return tree[0] in ("/", "^") or tree[:2] in (("f", "log"), ("f", "sqrt")) or any(map(partial, parts_of(tree)))
 
 ZERO, ONE = ("number", Fraction(0)), ("number", Fraction(1))
 
@@ -611,8 +606,9 @@ def period(tree):
 LAGRANGIAN = ("planar_arm", "point_mass", "ship", "urdf")
 MADE_FOR = {
     "adaptive": LAGRANGIAN, "known": LAGRANGIAN, "position_only": ("point_mass",), "thrust": ("vehicle", "rotorcraft"),
-    "task_space": ("planar_arm", "urdf"), "attitude": ("spacecraft",), "linear_adaptive": ("chain",), "linearising": ("chain",),
-    "immersion": ("chain",), "adaptive_backstepping": ("strict_feedback", "pure_feedback")}
+    "task_space": ("planar_arm", "urdf"), "attitude": ("spacecraft",),
+    "linear_adaptive": ("chain", "vector_chain"), "linearising": ("chain", "vector_chain"), "immersion": ("chain",),
+    "adaptive_backstepping": ("strict_feedback", "pure_feedback")}
 # The first of those that are made for a robot.
 USUAL_LAW = {robot: law for law, robots in reversed(MADE_FOR.items()) for robot in robots}
 DIRECTIONS = {"ring": ("forward", "both"), "path": ("forward", "both"), "star": ("out", "in", "both"), "complete": ()}
@@ -909,9 +905,8 @@ class Scenario:
                 meant = [agent for agent in self.agents if name in (agent.name, agent.entry["name"])]
                 such(meant, f"there is no agent `{name}`")
                 for agent in meant:
-                    for first, last in self.courses(push.get("by")):
-                        if max(begins, first) < min(ends, last):
-                            agent.pushes.append(min(ends, last))
+                    acting = ((max(begins, first), min(ends, last)) for first, last in self.courses(push.get("by")))
+                    agent.pushes += [last for first, last in acting if first < last]
 
     # From when until when the tables of a push have values; (0, ∞) for formulas.
     def courses(self, by):
@@ -1046,7 +1041,7 @@ def requirements(scenario):
         (any("rotors" in agent.body for agent in flying), "every-wrench"),
         (chains, "defined-terms input-factor " + ("chain-adaptation" if any(a.law != "linearising" for a in chains) else "chain-gains")),
         (any(agent.body.get("parameters") for agent in adaptive), "bounded-regressors"),
-        (any(agent.pushes and agent.robot != "chain" for agent in chains), "matched-disturbance"), (lagrangian, "positive-gains"),
+        (any(agent.pushes and agent.robot.endswith("feedback") for agent in chains), "matched-disturbance"), (lagrangian, "positive-gains"),
         (lagrangian or tips, "uniform-inertia"), (any(not agent.tracks for agent in lagrangian) or tips, "bounded-dynamics"),
         (any("bounds" in a.gains for a in agents if a.law != "task_space"), "parameters-within-bounds"),
         (frictions(scenario), "smooth-friction"), (scenario.polynomial, "desired-dynamics"), (control is not None, "continuous-time"),
@@ -1390,7 +1385,7 @@ def coefficients(scenario):
 def no_value(claim, agent, state):
     at = [(entry.number(),) * 2 for entry in state.each()]
     found = dict(zip(STATES[:255], at)) | dict(zip(STATES[255:], at))
-    of = [one for one in claim.scenario.agents if one.name == agent.text() and one.law in CHAIN_LAWS]
+    of = [one for one in claim.scenario.agents if one.name == agent.text() and one.law in CHAIN_LAWS and one.robot != "vector_chain"]
     require(agent, of, "is no chain")
     for term in terms(of[0].body):
         try:
@@ -1400,7 +1395,8 @@ def no_value(claim, agent, state):
                 return f"{agent.text()} has a term without a value there"
     raise Undecided("whether a term has a value in this state is not decided here")
 
-STATES = [f"x{k}" for k in range(1, 256)] + ["x", "dx"] + [f"d{k}x" for k in range(2, 256)]
+STATES = [f"x{k}" for k in range(1, 256)] + ["x", "dx"] + [f"d{k}x" for k in range(2, 256)] + [
+    f"d{order}x{k}" for order in ("", *range(2, 16)) for k in range(1, 33)]
 TEXT = {
     "uniform-inertia": lambda scenario, _: all([definite_inertia(scenario, agent) for agent in robots(scenario)]),
     "bounded-dynamics": lambda scenario, _: robots(scenario) and all(unturned(scenario, agent) for agent in robots(scenario)),
@@ -1822,12 +1818,19 @@ def swarm(claim, pivots):
     definite(claim.proof, rows, pivots)
     return f"k λ exceeds {said(least)}"
 
-# For every chain what encloses the factor of its input in every state, and the floor.
+# For every chain what encloses the factor of its input in every state, and the floor. Of a matrix its smallest singular value: once rows
+# have the sign of the diagonal, that is at least the smallest eigenvalue of the symmetric part, which Gershgorin's discs bound.
 def factors(scenario):
-    for agent in scenario.agents:
-        if agent.law in CHAIN_LAWS:
-            written = {"chain": agent.body.get("psi", "1"), "strict_feedback": "1"}.get(agent.robot, "x1")
-            yield agent.name, enclose(formula(written, STATES), WHOLE), positive(agent.gains.get("floor", Fraction(1, 1000)), "floor")
+    for agent in (one for one in scenario.agents if one.law in CHAIN_LAWS):
+        psi = {"strict_feedback": "1", "pure_feedback": "x1"}.get(agent.robot, agent.body.get("psi", "1"))
+        within = dominance(psi) if isinstance(psi, list) else enclose(formula(psi, STATES), WHOLE)
+        yield agent.name, within, positive(agent.gains.get("floor", Fraction(1, 1000)), "floor")
+
+def dominance(psi):
+    such(all(len(row) == len(psi) for row in psi), "ψ is not square")
+    a = [[enclose(formula(entry, STATES), WHOLE) for entry in row] for row in psi]
+    others = [sum(size(a[i][j]) + size(a[j][i]) for j in range(len(a)) if j != i) for i in range(len(a))]
+    return min(max(row[i][0], -row[i][1]) - others[i] / 2 for i, row in enumerate(a)), INF
 
 @rule("input-factor", "factor-away")
 def input_factor(claim):
@@ -1853,8 +1856,7 @@ def check(certificate_text, scenario_text, folder, digests=True):
         scenario = Scenario(scenario_text, folder)
         asked, spoken = requirements(scenario), set()
         require(document.field("theorem"), document.field("theorem").text() == theorem(scenario), f"must be {theorem(scenario)}")
-        for entry in document.field("hypotheses").each():
-            found.append(outcome(scenario, entry, asked, spoken))
+        found += [outcome(scenario, entry, asked, spoken) for entry in document.field("hypotheses").each()]
         found += [(each, [agent] if agent else [], "", REJECTED, "is left out", "") for each, agent in sorted(asked - spoken)]
         agreement = document.optional("agreement")
         if agreement is not None:

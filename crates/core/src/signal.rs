@@ -42,7 +42,7 @@ pub enum Signal {
     Offset,
     /// y, the output of a filter that stands in for a velocity that is not measured.
     Filter,
-    /// What the law divides by, which must stay away from zero. One entry.
+    /// What the law divides by, which must stay away from zero; of a matrix that it inverts, the smallest singular value. One entry.
     Divisor,
     /// The attitude as a quaternion (q_v, q_o), four entries.
     Attitude,

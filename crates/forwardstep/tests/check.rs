@@ -157,6 +157,29 @@ fn every_identity_of_every_shipped_scenario_holds_along_its_run() {
 }
 
 #[test]
+fn eq_33_and_eq_43_hold_along_a_run_that_is_disturbed_and_where_s_is_zero() {
+    // It starts with s = 0 and is disturbed in the middle; both axes of the second pull at each other.
+    let plants = [
+        ("robot.chain = { order = 2, chi = \"-x^3 + sin(x)*dx\", psi = \"3 + cos(3*x)\" }", "[[0.5], [-0.4]]", "[1.0]"),
+        (
+            "robot.vector_chain = { order = 2, chi = [\"-x1 + x2\", \"-x2^3 + dx1\"], psi = [[\"2\", \"sin(x1)\"], [\"-0.5\", \"2\"]] }",
+            "[[0.5, -0.2], [-0.4, 0.8]]",
+            "[1.0, -2.0]",
+        ),
+    ];
+    for (plant, starts, disturbance) in plants {
+        let scenario = format!(
+            "format = 2\ntime.end_s = 6\n[[agents]]\nname = \"plant\"\ncount = 2\n{plant}\nstart.position_m = {starts}\n\
+             [law.linearising]\ngain_per_s = 3\n[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position\"\n\
+             [network]\nedges.ring = {{}}\n[[external_wrenches]]\non = [\"plant-1\"]\nfrom_s = 2\nfor_s = 1\nby.disturbance = {disturbance}\n"
+        );
+        let text = stdout(&forwardstep(&with(&scenario), &["explain", "two.toml", "--along"]).success());
+        assert!(text.contains("ψ_i u_i + w_i") && text.contains("ṡ_i = −3 s_i + w_i"), "{text}");
+        assert!(text.contains("the power s w comes beside that") && !text.contains("NO ROUNDING"), "{text}");
+    }
+}
+
+#[test]
 fn as_many_roots_as_there_may_be_are_explained() {
     let roots: Vec<String> = (0..32).map(|r| format!("{}", 0.5 + 0.1 * f64::from(r))).collect();
     let folder = with(&TWO.replace("[1.0, 2.0]", &format!("[{}]", roots.join(", "))));

@@ -245,6 +245,7 @@ shipped! {
     remark_12: "remark-12",
     swarm_tracking: "swarm-tracking",
     framework: "framework",
+    vector_plants: "vector-plants",
     desired_dynamics: "desired-dynamics",
     desired_in_z: "desired-in-z",
     desired_in_x: "desired-in-x",

@@ -53,7 +53,7 @@ fn way(outcome: &Outcome) -> f64 {
 }
 
 /// Scenario, and the lower of two sample rates, in Hz.
-const RATES: [(&str, f64); 25] = [
+const RATES: [(&str, f64); 26] = [
     ("without-velocity", 500.0),
     ("double-integrators", 500.0),
     ("thrust-continuous", 500.0),
@@ -70,6 +70,7 @@ const RATES: [(&str, f64); 25] = [
     ("tumbling-target", 500.0),
     ("remark-12", 500.0),
     ("framework", 500.0),
+    ("vector-plants", 500.0),
     ("desired-dynamics", 500.0),
     ("desired-in-z", 500.0),
     ("desired-in-x", 500.0),

@@ -9,6 +9,7 @@ use super::producers::Claim;
 use super::proof::Proof;
 use crate::Answer;
 use crate::kinds::chain::undefined_state;
+use crate::kinds::matrix_factor::least_by_dominance;
 use crate::surroundings::acts;
 use crate::theorems::slowest_per_s;
 
@@ -96,7 +97,7 @@ fn sorted(vertices: usize, edges: &[(usize, usize)]) -> Vec<usize> {
 
 pub(super) fn input_factor(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     match claim.answer {
-        Answer::Holds => Some(Proof::FactorAway),
+        Answer::Holds => setup.agents.iter().all(is_dominant).then_some(Proof::FactorAway),
         Answer::Violated => {
             setup.agents.iter().position(|agent| small_factor(agent) == Some(true)).map(Proof::SmallFactor)
         }
@@ -110,9 +111,23 @@ pub(super) fn defined_terms(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
         Answer::Holds => Some(Proof::Text),
         Answer::Violated => {
             let (agent, state) = undefined_state(setup)?;
+            // The letters of a plant with several axes have two numbers, which a state in a certificate has not.
+            if let Some(ChainModel::Vector(_)) = setup.agents[agent].robot.kind.downcast() {
+                return None;
+            }
             Some(Proof::NoValue(agent, state.into_iter().map(Number::written).collect()))
         }
         Answer::HoldsOnHorizon | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
+    }
+}
+
+/// Whether the factor of the input of a plant with several axes, where it is one, keeps its inverse because its diagonal outweighs the rest; what
+/// its determinant shows has no certificate.
+fn is_dominant(agent: &AgentSetup) -> bool {
+    let (law, model): (Option<&ChainLaw>, Option<&ChainModel>) = (agent.law.downcast(), agent.robot.kind.downcast());
+    match (law, model) {
+        (Some(law), Some(ChainModel::Vector(terms))) => least_by_dominance(terms.input()) >= law.floor,
+        _ => true,
     }
 }
 
@@ -121,6 +136,8 @@ fn small_factor(agent: &AgentSetup) -> Option<bool> {
     let (law, model): (&ChainLaw, &ChainModel) = (agent.law.downcast()?, agent.robot.kind.downcast()?);
     let factor = match model {
         ChainModel::Derivatives(terms) => terms.input(),
+        // That a matrix has no inverse is not replayed.
+        ChainModel::Vector(_) => return None,
         ChainModel::Cascade(terms) => terms.input(),
     };
     (factor.variables() == 0).then(|| factor.value(&[]).abs() < law.floor)

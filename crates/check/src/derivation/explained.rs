@@ -101,10 +101,15 @@ impl Case<'_> {
             Step::Thrust(ThrustStep::Adaptive, [alpha, _]) => lower::thrust(alpha, None),
             Step::Attitude(_) => lower::attitude(self.outside()),
             Step::TaskSpace([kappa, _]) => lower::robot(self.outside(), false, Some(kappa)),
-            Step::Chain(_, ChainStepKind::Backstepping, _) => return None,
-            Step::Chain(order, ChainStepKind::Linearising, gain) => lower::chain(*order, gain, ChainError::None),
-            Step::Chain(order, ChainStepKind::Adaptive, gain) => lower::chain(*order, gain, ChainError::Adapted),
-            Step::Chain(order, ChainStepKind::Immersion, gain) => lower::chain(*order, gain, ChainError::Immersed),
+            Step::Chain(order, kind, gain) => {
+                let error = match kind {
+                    ChainStepKind::Backstepping => return None,
+                    ChainStepKind::Linearising => ChainError::None,
+                    ChainStepKind::Adaptive => ChainError::Adapted,
+                    ChainStepKind::Immersion => ChainError::Immersed,
+                };
+                lower::chain(self.outside(), *order, gain, error)
+            }
         })
     }
 

@@ -101,6 +101,8 @@ pub enum Term {
     AttitudeErrorRate,
     /// τ_ext, or a force; dry friction is a part of it.
     External,
+    /// w, which acts on the last equation of a chain.
+    Disturbance,
     /// F tanh(q̇/ε).
     Friction,
     /// F tanh(z/ε).

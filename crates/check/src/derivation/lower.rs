@@ -213,7 +213,7 @@ pub enum ChainError {
 }
 
 /// (33) of order k with ψ u = ż − χ̂ − c s: by feedback linearisation, adaptation or immersion.
-pub fn chain(order: usize, gain: &BigRational, error: ChainError) -> Lower {
+pub fn chain(outside: Outside, order: usize, gain: &BigRational, error: ChainError) -> Lower {
     let plant = own(Letter::Position, Operator::Identity, order).sum(&minus(&term(Term::Drift)));
     let left_over = match error {
         ChainError::None => Combination::default(),
@@ -222,5 +222,6 @@ pub fn chain(order: usize, gain: &BigRational, error: ChainError) -> Lower {
     };
     let damping = minus(&times(&own(Letter::Error, Operator::Identity, 0), gain));
     let law = sum(&[own(Letter::Reference, Operator::Identity, 1), minus(&term(Term::Drift)), damping, left_over]);
-    lower([plant, law, Combination::default()], Term::Actuation, None, true, [order.saturating_sub(1), 1])
+    let acting = if outside.pushed { term(Term::Disturbance) } else { Combination::default() };
+    lower([plant, law, acting], Term::Actuation, None, true, [order.saturating_sub(1), 1])
 }

@@ -158,6 +158,7 @@ impl Notation {
             Term::AttitudeErrorRate => {
                 return Formula::product([Symbol::new("K").into(), Symbol::new("Δq").above("∗").derivative(k).into()]);
             }
+            Term::Disturbance => symbol("w"),
             Term::Drift => symbol("χ"),
             Term::Actuation => return Formula::product([symbol("ψ").into(), symbol("u").into()]),
             Term::ChainRegressorError => {

@@ -281,9 +281,13 @@ fn eq_52_and_the_other_lower_subsystems_follow_from_motion_and_law() {
     assert_eq!(blind.right, form(&[(own(Letter::Filter), &[-9]), (term(Term::MassErrorRate), &[1])], &[]));
     // (43): ṡ = −2 s − φᵀΔθ for a chain of any order.
     for order in 1..6 {
-        let chain = lower::chain(order, &number(2), ChainError::Adapted);
+        let chain = lower::chain(Outside::default(), order, &number(2), ChainError::Adapted);
         assert_eq!(chain.left, form(&[(own(S), &[0, 1])], &[]));
         assert_eq!(chain.right, form(&[(own(S), &[-2]), (term(Term::ChainRegressorError), &[-1])], &[]));
+        // And with what disturbs it, which the law does not know.
+        let pushed = Outside { pushed: true, ..Outside::default() };
+        let disturbed = lower::chain(pushed, order, &number(2), ChainError::None);
+        assert_eq!(disturbed.right, form(&[(own(S), &[-2]), (term(Term::Disturbance), &[1])], &[]));
     }
 }
 

@@ -103,7 +103,11 @@ pub(super) fn of_s(case: &Case<'_>) -> String {
             "V = ½ (ω − z)ᵀM(ω − z) + ½ ẏᵀẏ has V̇ = −ẏᵀΛ_f ẏ whatever z does, since S(h) is skew-symmetric. So ω − z is bounded, and \
              ẏ is square-integrable; then ÿ → 0, and with it ω − z → 0."
         }
-        Step::Chain(_, kind, _) => return chain(*kind) + if case.is_bounded() { kept(*kind) } else { "" },
+        Step::Chain(_, kind, _) => {
+            let bounds = if case.is_bounded() { kept(*kind) } else { "" };
+            let pushed = if case.is_pushed() { " While something disturbs it, the power s w comes beside that." } else { "" };
+            return chain(*kind) + bounds + pushed;
+        }
         Step::Outside(_) => "",
     }
     .into()

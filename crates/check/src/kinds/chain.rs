@@ -8,6 +8,7 @@ use forwardstep_sim::push::{Course, Function, Push};
 use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, ChainStep, Law, Setup};
 
 use super::bounds::within_bounds;
+use super::matrix_factor;
 use super::{Claim, KindCheck};
 use crate::hypothesis::{FactorEverywhere, Hypothesis, Id, KindEvidence, Named, Term};
 use crate::surroundings::acts;
@@ -82,6 +83,11 @@ fn terms(model: &ChainModel) -> Vec<(Term, &Expression)> {
             let regressors = terms.regressor().iter().map(named(Term::Regressor));
             [(Term::Drift, terms.drift()), (Term::Factor, terms.input())].into_iter().chain(regressors).collect()
         }
+        ChainModel::Vector(terms) => {
+            let drift = terms.drift().iter().map(named(Term::Drift));
+            let factor = terms.input().iter().flatten().map(named(Term::Factor));
+            drift.chain(factor).chain(terms.regressor().iter().flatten().map(named(Term::Regressor))).collect()
+        }
         ChainModel::Cascade(terms) => {
             let regressors = terms.regressors().iter().flatten().map(named(Term::Regressor));
             let known = terms.known().iter().map(named(Term::Drift));
@@ -129,42 +135,76 @@ pub(crate) fn undefined_state(setup: &Setup) -> Option<(usize, Vec<f64>)> {
 }
 
 fn input_factor(setup: &Setup, agents: &[usize]) -> Hypothesis {
-    // Of a chain that is not strict, what is divided by has more factors.
-    let factor = |model: &ChainModel| match model {
-        ChainModel::Derivatives(terms) => Some(terms.input().clone()),
-        ChainModel::Cascade(terms) => terms.is_strict().then(|| terms.input().clone()),
-    };
-    let fixed = |model: &ChainModel| factor(model).and_then(|input| constant(&input));
+    let all = || chains(setup, agents).map(|(index, law, model)| (index, law.floor, factor(model)));
     // What is constant is known before the run, and may be too small from the start.
-    let vanishing = chains(setup, agents).find_map(|(index, law, model)| {
-        let value = fixed(model).filter(|value| value.is_nan() || value.abs() < law.floor)?;
-        Some(KindEvidence::FactorBelowFloor { agent: Named::of(setup, index), value, floor: law.floor })
+    let vanishing = all().find_map(|(index, floor, factor)| {
+        let agent = Named::of(setup, index);
+        match factor {
+            Factor::Number(input) => {
+                let value = constant(input).filter(|value| value.is_nan() || value.abs() < floor)?;
+                Some(KindEvidence::FactorBelowFloor { agent, value, floor })
+            }
+            Factor::Matrix(input) => {
+                matrix_factor::is_singular(input).then_some(KindEvidence::FactorSingular { agent })
+            }
+            Factor::More => None,
+        }
     });
     if let Some(evidence) = vanishing {
         return Hypothesis::new(Id::InputFactor, evidence);
     }
-    let mut smallest: Option<f64> = None;
-    for (index, law, model) in chains(setup, agents).filter(|(.., model)| fixed(model).is_none()) {
-        let everywhere = factor(model).map_or(FactorEverywhere::Unknown, |input| everywhere(&input));
-        match everywhere {
-            FactorEverywhere::Away { least } if least >= law.floor => {
-                smallest = Some(smallest.map_or(least, |other| other.min(least)));
-            }
-            FactorEverywhere::Away { .. }
+    let is_constant = |factor: &Factor<'_>| matches!(factor, Factor::Number(input) if constant(input).is_some());
+    let (mut smallest, mut any_matrix) = (f64::INFINITY, false);
+    for (index, floor, factor) in all().filter(|(.., factor)| !is_constant(factor)) {
+        let matrix = matches!(factor, Factor::Matrix(_));
+        match everywhere(factor) {
+            FactorEverywhere::Away { least } if least >= floor => smallest = smallest.min(least),
+            everywhere @ (FactorEverywhere::Away { .. }
             | FactorEverywhere::Fades
             | FactorEverywhere::Zero(_)
-            | FactorEverywhere::Unknown => {
-                let (agent, floor) = (Named::of(setup, index), law.floor);
-                return Hypothesis::new(Id::InputFactor, KindEvidence::FactorFloor { agent, floor, everywhere });
+            | FactorEverywhere::Unknown) => {
+                let agent = Named::of(setup, index);
+                let evidence = KindEvidence::FactorFloor { agent, floor, everywhere, matrix };
+                return Hypothesis::new(Id::InputFactor, evidence);
             }
         }
+        any_matrix |= matrix;
     }
-    let evidence = smallest.map_or(KindEvidence::ConstantFactor, |least| KindEvidence::FactorAway { least });
+    let evidence = match smallest.is_finite() {
+        true => KindEvidence::FactorAway { least: smallest, matrix: any_matrix },
+        false => KindEvidence::ConstantFactor,
+    };
     Hypothesis::new(Id::InputFactor, evidence)
 }
 
+/// What a law divides by.
+enum Factor<'a> {
+    Number(&'a Expression),
+    /// Whose smallest singular value counts.
+    Matrix(&'a [Vec<Expression>]),
+    /// Of a chain that is not strict: more than the last equation says.
+    More,
+}
+
+fn factor(model: &ChainModel) -> Factor<'_> {
+    match model {
+        ChainModel::Derivatives(terms) => Factor::Number(terms.input()),
+        ChainModel::Vector(terms) => Factor::Matrix(terms.input()),
+        ChainModel::Cascade(terms) if terms.is_strict() => Factor::Number(terms.input()),
+        ChainModel::Cascade(_) => Factor::More,
+    }
+}
+
 /// What is known of a factor over all states.
-fn everywhere(input: &Expression) -> FactorEverywhere {
+fn everywhere(factor: Factor<'_>) -> FactorEverywhere {
+    let input = match factor {
+        Factor::Number(input) => input,
+        Factor::Matrix(input) => {
+            let least = matrix_factor::least_everywhere(input);
+            return if least > 0.0 { FactorEverywhere::Away { least } } else { FactorEverywhere::Unknown };
+        }
+        Factor::More => return FactorEverywhere::Unknown,
+    };
     let (within, nonzero) = input.everywhere();
     let least = within.low.max(-within.high);
     match () {
@@ -186,7 +226,7 @@ fn disturbances(setup: &Setup, agents: &[usize]) -> Option<Hypothesis> {
     let mut disturbed = chains(setup, agents)
         .filter_map(|(index, _, model)| match model {
             ChainModel::Cascade(terms) => pushed(index).next().map(|_| (index, terms)),
-            ChainModel::Derivatives(_) => None,
+            ChainModel::Derivatives(_) | ChainModel::Vector(_) => None,
         })
         .peekable();
     disturbed.peek()?;

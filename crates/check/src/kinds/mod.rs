@@ -4,6 +4,7 @@ mod bounds;
 pub(crate) mod chain;
 mod declared;
 mod lagrangian;
+pub(crate) mod matrix_factor;
 mod point_mass;
 mod rotorcraft;
 mod spacecraft;

@@ -158,7 +158,7 @@ pub(crate) fn order(own: &AgentSetup) -> Option<usize> {
     }
     own.law.downcast::<ChainLaw>()?;
     match own.robot.kind.downcast()? {
-        model @ ChainModel::Derivatives(_) => Some(model.order()),
+        model @ (ChainModel::Derivatives(_) | ChainModel::Vector(_)) => Some(model.order()),
         // Its feedback leads the first state to z.
         ChainModel::Cascade(_) => Some(1),
     }

@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use forwardstep_core::expression::Expression;
-use forwardstep_core::plant::Formulas;
+use forwardstep_core::plant::VectorFormulas;
 use forwardstep_sim::{
     AgentSetup, ChainLaw, ChainModel, ChainStep, Ending, Outcome, RobotSetup, Setup, Signal, Solver, Start, simulate,
 };
@@ -72,20 +72,22 @@ fn alone(setup: &Setup, run: usize) -> Option<Setup> {
 
 fn integrators(own: &AgentSetup, drawn_as: usize, run: usize) -> Option<AgentSetup> {
     let law: &ChainLaw = own.law.downcast()?;
-    let order = match (&law.step, own.robot.kind.downcast::<ChainModel>()?) {
-        (ChainStep::Backstepping { .. }, _) => 1,
-        (_, model) => model.order(),
+    let (order, axes) = match (&law.step, own.robot.kind.downcast::<ChainModel>()?) {
+        (ChainStep::Backstepping { .. }, _) => (1, 1),
+        (_, model) => (model.order(), model.axes()),
     };
-    let zero = Expression::number(0.0);
-    let terms = Formulas::new(order, &zero, Vec::new(), &Expression::number(1.0)).ok()?;
-    let state: Vec<f64> = (0..order).map(|r| drawn(drawn_as * 8 + r)).collect();
-    let top = state.last().copied()?;
-    let (q, above) = state.split_at(1);
-    let (dq, rest) = above.split_at(above.len().min(1));
-    let reference = if is_disturbed(run) { vec![vec![top + drawn(drawn_as + 7)]] } else { Vec::new() };
+    let unit = |row| (0..axes).map(|column| Expression::number(f64::from(u8::from(row == column)))).collect();
+    let (drift, factor) = (vec![Expression::number(0.0); axes], (0..axes).map(unit).collect());
+    let terms = VectorFormulas::new(order, drift, vec![Vec::new(); axes], factor).ok()?;
+    let state: Vec<f64> = (0..order * axes).map(|r| drawn(drawn_as * 8 + r)).collect();
+    let top = &state[state.len() - axes..];
+    let (q, above) = state.split_at(axes);
+    let (dq, rest) = above.split_at(above.len().min(axes));
+    let beside = || top.iter().map(|top| top + drawn(drawn_as + 7)).collect();
+    let reference = if is_disturbed(run) { vec![beside()] } else { Vec::new() };
     Some(AgentSetup {
         robot: RobotSetup {
-            kind: Arc::new(ChainModel::Derivatives(Arc::new(terms))),
+            kind: Arc::new(ChainModel::Vector(Arc::new(terms))),
             theta: Vec::new(),
             theta_names: Vec::new(),
             axes: own.robot.axes.clone(),
@@ -102,21 +104,18 @@ fn integrators(own: &AgentSetup, drawn_as: usize, run: usize) -> Option<AgentSet
 fn distances(setup: &Setup, outcome: &Outcome) -> (f64, f64) {
     let tracks = setup.all_track();
     let wanted = if tracks { Signal::Error } else { Signal::Position };
-    let columns: Vec<&[f64]> = outcome
-        .recording
-        .columns
-        .iter()
-        .filter(|column| column.signal == wanted)
-        .map(|column| column.values.as_slice())
-        .collect();
-    let distance = |row: usize| {
-        let values = columns.iter().filter_map(|column| column.get(row).copied());
+    let columns: Vec<_> = outcome.recording.columns.iter().filter(|column| column.signal == wanted).collect();
+    let axes = columns.iter().map(|column| column.axis + 1).max().unwrap_or(0);
+    let distance_along = |row: usize, axis: usize| {
+        let along = columns.iter().filter(|column| column.axis == axis);
+        let values = along.filter_map(|column| column.values.get(row).copied());
         if tracks {
             return values.map(f64::abs).fold(0.0, f64::max);
         }
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
         high - low
     };
+    let distance = |row: usize| (0..axes).map(|axis| distance_along(row, axis)).fold(0.0, f64::max);
     let rows = outcome.recording.t_s.len();
     let from = (0..rows.div_ceil(10)).map(distance).fold(0.0, f64::max);
     (from, rows.checked_sub(1).map_or(f64::NAN, distance))

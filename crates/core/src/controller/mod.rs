@@ -7,7 +7,7 @@
 //! - `attitude`: (97)–(105), a spacecraft without angular velocity measurement.
 //! - `joint_tracking`: (6)–(7) behind reference dynamics for tracking, a robot that follows a trajectory.
 //! - `linearising`, `immersion`: (33) by feedback linearisation, with χ known or adapted, and by immersion and
-//!   invariance; `following` is what they share.
+//!   invariance; `following` is what they share. `vector_linearising`: the first with several axes and a matrix ψ.
 //! - `adaptive_backstepping`: strict-feedback and pure-feedback chains; `steps` is the recursion, `steps_in_series` the same in power series
 //!   for high orders, and `recursion` takes the faster one.
 //! - `feedback`: any, from closures.
@@ -33,6 +33,7 @@ mod steps;
 mod steps_in_series;
 mod task_space;
 mod thrust;
+mod vector_linearising;
 
 pub use adaptive_backstepping::{AdaptiveBackstepping, BacksteppingGains, BacksteppingWork};
 pub use attitude::{AttitudeMeasured, AttitudeTracking};
@@ -47,6 +48,7 @@ pub(crate) use stepped::Lengths;
 pub use stepped::Stepped;
 pub use task_space::{NullSpace, TaskMeasured, TaskSpace};
 pub use thrust::{Floor, RateLoop, RotorcraftMeasured, Thrust, ThrustCascade, ThrustDesign, Yaw};
+pub use vector_linearising::{VectorLinearising, VectorLinearisingWork};
 
 use alloc::vec::Vec;
 

@@ -1,6 +1,7 @@
 //! Systems to be controlled, as vector fields, when they are more than a robot under (6)–(7).
 //!
 //! - `mechanical`: (1), a robot.
+//! - `chain`, `vector_chain`: (33) with one axis and with several.
 //! - `vehicle`: (44), a thrust-propelled vehicle.
 //! - `rotorcraft`: the same as a rigid body with torques and rotors.
 
@@ -10,6 +11,7 @@ mod mechanical;
 mod rotorcraft;
 mod spacecraft;
 mod task_arm;
+mod vector_chain;
 mod vector_field;
 mod vehicle;
 
@@ -19,6 +21,7 @@ pub use mechanical::Mechanical;
 pub use rotorcraft::{Rotorcraft, Rotors};
 pub use spacecraft::{Spacecraft, SpacecraftError, Wheel, Wheels};
 pub use task_arm::TaskArm;
+pub use vector_chain::{VectorChain, VectorFormulas, VectorFormulasWork};
 pub use vector_field::VectorField;
 pub use vehicle::{Vehicle, VehicleState};
 

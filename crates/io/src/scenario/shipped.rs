@@ -61,6 +61,7 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "remark-12",
     "swarm-tracking",
     "framework",
+    "vector-plants",
     "desired-dynamics",
     "desired-in-z",
     "desired-in-x",

@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use forwardstep_core::controller::{
-    AdaptiveBackstepping, BacksteppingGains, ChainError, Following, Guide, Immersion, Linearising,
+    AdaptiveBackstepping, BacksteppingGains, ChainError, Following, Guide, Immersion, Linearising, VectorLinearising,
 };
 use forwardstep_core::expression::Expression;
 use forwardstep_core::law::ParameterBounds;
-use forwardstep_core::plant::{Cascade, CascadeError, CascadeTerms, Chain, Formulas, Terms};
+use forwardstep_core::plant::{
+    Cascade, CascadeError, CascadeTerms, Chain, Formulas, Terms, VectorChain, VectorFormulas,
+};
 use forwardstep_core::reference::{Consensus, Position, polynomial};
 
 use super::LagrangianRobot;
@@ -22,6 +24,8 @@ use crate::system::{Attachments, Interface, Known, Law, LawWords, Robot, RobotIn
 pub enum ChainModel {
     /// (33): the k-th derivative of x is χ + ψ u.
     Derivatives(Arc<Formulas>),
+    /// The same with several axes, whose ψ is a matrix.
+    Vector(Arc<VectorFormulas>),
     /// A strict-feedback or pure-feedback chain.
     Cascade(Arc<CascadeTerms>),
 }
@@ -31,19 +35,32 @@ impl ChainModel {
     pub fn order(&self) -> usize {
         match self {
             ChainModel::Derivatives(terms) => terms.order(),
+            ChainModel::Vector(terms) => terms.order(),
             ChainModel::Cascade(terms) => terms.order(),
+        }
+    }
+
+    /// m.
+    pub fn axes(&self) -> usize {
+        match self {
+            ChainModel::Vector(terms) => terms.axes(),
+            ChainModel::Derivatives(_) | ChainModel::Cascade(_) => 1,
         }
     }
 
     /// Whether the second state is the velocity of the first.
     pub fn has_velocity(&self) -> bool {
-        matches!(self, ChainModel::Derivatives(terms) if terms.order() > 1)
+        match self {
+            ChainModel::Derivatives(_) | ChainModel::Vector(_) => self.order() > 1,
+            ChainModel::Cascade(_) => false,
+        }
     }
 
     /// Entries of θ.
     pub fn parameters(&self) -> usize {
         match self {
             ChainModel::Derivatives(terms) => terms.parameters(),
+            ChainModel::Vector(terms) => terms.parameters(),
             ChainModel::Cascade(terms) => terms.parameters(),
         }
     }
@@ -54,10 +71,10 @@ impl Robot for ChainModel {
         // The second state of a chain in feedback form is no velocity.
         RobotInterface {
             velocity_len: if self.has_velocity() { axes } else { 0 },
-            rest_len: self.order().saturating_sub(1 + usize::from(self.has_velocity())),
+            rest_len: self.order().saturating_sub(1 + usize::from(self.has_velocity())) * axes,
             // Of a chain of derivatives only the last equation is one that something can be added to.
             attachments: Attachments::Equations(match self {
-                ChainModel::Derivatives(_) => 1,
+                ChainModel::Derivatives(_) | ChainModel::Vector(_) => self.axes(),
                 ChainModel::Cascade(terms) => terms.order(),
             }),
             numbered_axes: true,
@@ -193,8 +210,11 @@ impl Law for ChainLaw {
             (ChainModel::Derivatives(_), ChainStep::Linearising { .. } | ChainStep::Adaptive { .. }) => {
                 Interface::of::<Linearising<Formulas>>()
             }
+            (ChainModel::Vector(_), ChainStep::Linearising { .. } | ChainStep::Adaptive { .. }) => {
+                Interface::of::<VectorLinearising>()
+            }
             (ChainModel::Derivatives(_), ChainStep::Immersion { .. }) => Interface::of::<Immersion>(),
-            (ChainModel::Derivatives(_) | ChainModel::Cascade(_), _) => return None,
+            (ChainModel::Derivatives(_) | ChainModel::Vector(_) | ChainModel::Cascade(_), _) => return None,
         };
         Some(Interface {
             follows: &[
@@ -242,6 +262,22 @@ impl Law for ChainLaw {
                 }
                 assembly.solo(derivatives(assembly, terms), law)
             }
+            (ChainModel::Vector(terms), ChainStep::Linearising { gain_per_s }) => {
+                let following = Following { guide, gain_per_s: *gain_per_s, floor };
+                let (terms, theta) = (VectorFormulas::clone(terms), own.robot.theta.clone());
+                let law = VectorLinearising::new(terms.clone(), theta.clone(), following).map_err(wrong)?;
+                assembly.solo(VectorChain { terms, theta }, law)
+            }
+            (ChainModel::Vector(terms), ChainStep::Adaptive { gain_per_s, estimate }) => {
+                let following = Following { guide, gain_per_s: *gain_per_s, floor };
+                let (gamma, start) = (estimate.adaptation.clone(), estimate.start.clone());
+                let (terms, theta) = (VectorFormulas::clone(terms), own.robot.theta.clone());
+                let mut law = VectorLinearising::adaptive(terms.clone(), following, gamma, start).map_err(wrong)?;
+                if let Some(bounds) = &estimate.bounds {
+                    law = law.bounded(bounds.clone()).map_err(wrong)?;
+                }
+                assembly.solo(VectorChain { terms, theta }, law)
+            }
             (ChainModel::Derivatives(terms), ChainStep::Immersion { gain_per_s, estimate, antiderivatives }) => {
                 let following = Following { guide, gain_per_s: *gain_per_s, floor };
                 let (gamma, start) = (estimate.adaptation.clone(), estimate.start.clone());
@@ -267,7 +303,9 @@ impl Law for ChainLaw {
                     })?;
                 assembly.solo(plant, law)
             }
-            (ChainModel::Derivatives(_) | ChainModel::Cascade(_), _) => Err(assembly.law_of_another()),
+            (ChainModel::Derivatives(_) | ChainModel::Vector(_) | ChainModel::Cascade(_), _) => {
+                Err(assembly.law_of_another())
+            }
         }
     }
 }

@@ -159,9 +159,16 @@ impl<'c, 'a> At<'c, 'a> {
     }
 
     /// s, as the law has it where it shows it, and ṡ.
-    fn error(&self, k: usize) -> Result<Vector, Missing> {
+    fn error(&mut self, k: usize) -> Result<Vector, Missing> {
         let order = self.case.step.plant().saturating_sub(1);
         let mut s = less(self.moved(order + k)?, &exact(self.reference(k)?));
+        // The highest derivative of a chain is a sum that may be much smaller than its parts.
+        if let (1, Step::Chain(..)) = (k, &self.case.step) {
+            for part in [Term::Drift, Term::Actuation] {
+                let parts = self.chain_term(part).unwrap_or_default();
+                s.iter_mut().zip(parts).for_each(|(s, part)| s[1] += part[1]);
+            }
+        }
         if let (0, Some(shown)) = (k, self.recorded(Signal::TrackingError)) {
             s.iter_mut().zip(shown).for_each(|(s, shown)| s[0] = *shown);
         }
@@ -327,7 +334,7 @@ impl<'c, 'a> At<'c, 'a> {
             (Term::Sign, 0) => recorded(Signal::Selection),
             (Term::Torque, 0) => recorded(Signal::Torque),
             (Term::Input, 0) if matches!(self.case.step, Step::PositionOnly(_)) => recorded(Signal::Torque),
-            (Term::External, 0) => match (recorded(self.acting()), self.is_pushed()) {
+            (Term::External | Term::Disturbance, 0) => match (recorded(self.acting()), self.is_pushed()) {
                 (Err(_), true) => Err(Missing::Pushed),
                 (Err(_), false) => Ok(exact(self.position(0)?.iter().map(|_| 0.0))),
                 (found, _) => found,
@@ -355,6 +362,7 @@ impl<'c, 'a> At<'c, 'a> {
                 | Term::Torque
                 | Term::Input
                 | Term::External
+                | Term::Disturbance
                 | Term::MassEstimateRate
                 | Term::MassErrorRate
                 | Term::Gravity
@@ -378,7 +386,13 @@ impl<'c, 'a> At<'c, 'a> {
 
     /// What acts on the equations of motion.
     fn acting(&self) -> Signal {
-        if matches!(self.case.step, Step::Attitude(_)) { Signal::ExternalTorque } else { Signal::External }
+        match self.case.step {
+            Step::Attitude(_) => Signal::ExternalTorque,
+            Step::Chain(..) => Signal::Disturbance,
+            Step::Robot { .. } | Step::PositionOnly(_) | Step::Thrust(..) | Step::TaskSpace(_) | Step::Outside(_) => {
+                Signal::External
+            }
+        }
     }
 
     pub(super) fn is_pushed(&self) -> bool {

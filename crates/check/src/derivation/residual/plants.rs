@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use forwardstep_core::attitude::{cross, rotate};
-use forwardstep_core::plant::{Formulas, Terms};
+use forwardstep_core::plant::{Formulas, Terms, VectorFormulas};
 use forwardstep_sim::{AgentSetup, ChainModel, RotorcraftModel, Signal, ThrustKind, ThrustLaw, VehicleModel};
 
 use super::super::case::{Step, ThrustStep};
@@ -14,33 +14,61 @@ use super::robot::Model;
 
 /// (33) with its true θ.
 pub(super) struct Chain {
-    terms: Arc<Formulas>,
-    scratch: <Formulas as Terms>::Scratch,
+    terms: ChainTerms,
     theta: Vec<f64>,
+}
+
+enum ChainTerms {
+    One(Arc<Formulas>),
+    Several(Arc<VectorFormulas>),
+}
+
+impl ChainTerms {
+    /// χ₀, ψ row by row and Y row by row.
+    fn at(&self, x: &[f64]) -> Option<[Vec<f64>; 3]> {
+        match self {
+            ChainTerms::One(terms) => {
+                let mut phi = vec![0.0; terms.parameters()];
+                let (chi, psi) = terms.terms(&mut terms.scratch(), x, &mut phi).ok()?;
+                Some([vec![chi], vec![psi], phi])
+            }
+            ChainTerms::Several(terms) => {
+                let mut work = terms.work();
+                terms.terms(&mut work, x).ok()?;
+                Some([work.chi().to_vec(), work.psi().to_vec(), work.regressor().to_vec()])
+            }
+        }
+    }
 }
 
 impl Chain {
     pub(super) fn of(agent: &AgentSetup) -> Option<Chain> {
-        let ChainModel::Derivatives(terms) = agent.robot.kind.downcast::<ChainModel>()? else { return None };
-        Some(Chain { terms: terms.clone(), scratch: terms.scratch(), theta: agent.robot.theta.clone() })
+        let terms = match agent.robot.kind.downcast::<ChainModel>()? {
+            ChainModel::Derivatives(terms) => ChainTerms::One(terms.clone()),
+            ChainModel::Vector(terms) => ChainTerms::Several(terms.clone()),
+            ChainModel::Cascade(_) => return None,
+        };
+        Some(Chain { terms, theta: agent.robot.theta.clone() })
     }
 
-    /// χ, ψ u, or φᵀ times what an estimate lacks of θ.
-    fn term(&mut self, term: Term, x: &[f64], [u, estimate]: [&[f64]; 2]) -> Option<[f64; 2]> {
-        let mut phi = vec![0.0; self.terms.parameters()];
-        let (chi, psi) = self.terms.terms(&mut self.scratch, x, &mut phi).ok()?;
+    /// χ, ψ u, or Y times what an estimate lacks of θ.
+    fn term(&self, term: Term, x: &[f64], [u, estimate]: [&[f64]; 2]) -> Option<Vector> {
+        let [chi, psi, phi] = self.terms.at(x)?;
         let add = |[sum, size]: [f64; 2], term: f64| [sum + term, size + term.abs()];
-        match term {
+        let (m, p) = (chi.len(), self.theta.len());
+        let (psi, phi) = (|row: usize| &psi[row * m..][..m], |row: usize| &phi[row * p..][..p]);
+        let entry = |row: usize| match term {
             Term::Drift => {
-                let known = phi.iter().zip(&self.theta).map(|(phi, theta)| phi * theta);
-                Some(known.fold([chi, chi.abs()], add))
+                let known = phi(row).iter().zip(&self.theta).map(|(phi, theta)| phi * theta);
+                known.fold([chi[row], chi[row].abs()], add)
             }
-            Term::Actuation => u.first().map(|u| [psi * u, (psi * u).abs()]),
+            Term::Actuation => psi(row).iter().zip(u).map(|(psi, u)| psi * u).fold([0.0; 2], add),
             _ => {
-                let missing = phi.iter().zip(estimate).zip(&self.theta);
-                Some(missing.flat_map(|((phi, hat), theta)| [phi * hat, -phi * theta]).fold([0.0; 2], add))
+                let missing = phi(row).iter().zip(estimate).zip(&self.theta);
+                missing.flat_map(|((phi, hat), theta)| [phi * hat, -phi * theta]).fold([0.0; 2], add)
             }
-        }
+        };
+        (term != Term::Actuation || u.len() == m).then(|| (0..m).map(entry).collect())
     }
 }
 
@@ -54,7 +82,7 @@ impl At<'_, '_> {
         let (u, estimate) = (self.recorded(Signal::Torque), self.recorded(Signal::Estimate));
         let known = [u.unwrap_or_default(), estimate.unwrap_or_default()];
         match self.model()? {
-            Model::Chain(chain) => chain.term(term, &x, known).map(|entry| vec![entry]).ok_or(Missing::Term),
+            Model::Chain(chain) => chain.term(term, &x, known).ok_or(Missing::Term),
             Model::Robot(_) | Model::Spacecraft(_) => Err(Missing::Term),
         }
     }

@@ -73,6 +73,8 @@ pub enum KindEvidence {
     FactorAway {
         /// It is nowhere smaller in magnitude.
         least: f64,
+        /// Whether a factor is a matrix, whose magnitude is its smallest singular value.
+        matrix: bool,
     },
     /// The terms of chains have a value in every state.
     TermsDefined,
@@ -103,6 +105,11 @@ pub enum KindEvidence {
         /// Its floor.
         floor: f64,
     },
+    /// The factor of the input is a constant matrix without an inverse.
+    FactorSingular {
+        /// Whose.
+        agent: Named,
+    },
     /// A run ends where the factor of the input comes close to zero.
     FactorFloor {
         /// Whose.
@@ -111,6 +118,8 @@ pub enum KindEvidence {
         floor: f64,
         /// What is known of it for all states.
         everywhere: FactorEverywhere,
+        /// Whether it is a matrix, whose magnitude is its smallest singular value.
+        matrix: bool,
     },
     /// A run that is completed keeps states, and with them regressors, bounded.
     BoundedStates {
@@ -266,6 +275,7 @@ impl KindEvidence {
             | KindEvidence::RankDeficient { .. }
             | KindEvidence::HalfTurn { .. }
             | KindEvidence::FactorBelowFloor { .. }
+            | KindEvidence::FactorSingular { .. }
             | KindEvidence::Probed { probe: Probe { found: Some(_), .. }, .. } => Answer::Violated,
         }
     }
@@ -289,6 +299,7 @@ impl KindEvidence {
             | KindEvidence::ConstantFactor
             | KindEvidence::NoTip
             | KindEvidence::FactorBelowFloor { .. }
+            | KindEvidence::FactorSingular { .. }
             | KindEvidence::LengthsOutsideRegressor(_)
             | KindEvidence::LengthsKnown
             | KindEvidence::LengthsInRegressor(_)

@@ -45,7 +45,8 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
         KindEvidence::FactorBelowFloor { agent, value, floor } => {
             format!("that of {} is {value} for ever, which is less than its floor of {floor}", agent.name)
         }
-        KindEvidence::FactorFloor { agent, floor, everywhere } => {
+        KindEvidence::FactorSingular { agent } => format!("that of {} is a matrix without an inverse", agent.name),
+        KindEvidence::FactorFloor { agent, floor, everywhere, matrix } => {
             let known = match everywhere {
                 FactorEverywhere::Fades => "; it has one sign in every state, but comes close to zero far away".into(),
                 FactorEverywhere::Away { least } => {
@@ -54,10 +55,17 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
                 FactorEverywhere::Zero(at) => format!("; it changes its sign {}", in_state(at)),
                 FactorEverywhere::Unknown => String::new(),
             };
-            format!("the run ends where that of {} comes closer to zero than {floor}{known}", agent.name)
+            let falls = match matrix {
+                true => "comes to a smallest singular value below",
+                false => "comes closer to zero than",
+            };
+            format!("the run ends where that of {} {falls} {floor}{known}", agent.name)
         }
-        KindEvidence::FactorAway { least } => {
+        KindEvidence::FactorAway { least, matrix: false } => {
             format!("in every state it is {} at least in magnitude", rounded_down(*least))
+        }
+        KindEvidence::FactorAway { least, matrix: true } => {
+            format!("in every state its smallest singular value is {} at least", rounded_down(*least))
         }
         KindEvidence::TermsDefined => {
             "no divisor comes to zero, and no root or logarithm is of what is not positive".into()

@@ -187,7 +187,7 @@ pub struct AdaptiveBacksteppingFile {
 fn order(robot: &RobotSetup) -> Option<usize> {
     match robot.kind.downcast() {
         Some(model @ ChainModel::Cascade(_)) => Some(model.order()),
-        Some(ChainModel::Derivatives(_)) | None => None,
+        Some(ChainModel::Derivatives(_) | ChainModel::Vector(_)) | None => None,
     }
 }
 

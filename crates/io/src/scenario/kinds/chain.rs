@@ -103,12 +103,18 @@ impl RobotKind for ChainFile {
     }
 
     fn start(&self, robot: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
-        let q = given.position()?;
-        let dq = if robot.velocity_len() > 0 { given.velocity()? } else { Vec::new() };
-        let rest = given.higher_states(robot.interface().rest_len)?;
-        let led = [&q[..], &dq, &rest].concat().last().map(|top| vec![*top]).unwrap_or_default();
-        Ok(Start { reference: given.reference(&led)?, q, dq, rest })
+        chain_start(robot, given)
     }
+}
+
+/// x, its derivatives below the order of the plant, and z, which follows the highest of them.
+pub(super) fn chain_start(robot: &RobotSetup, given: &mut StartReader<'_>) -> Result<Start, Fault> {
+    let q = given.position()?;
+    let dq = if robot.velocity_len() > 0 { given.velocity()? } else { Vec::new() };
+    let rest = given.higher_states(robot.interface().rest_len)?;
+    let state = [&q[..], &dq, &rest].concat();
+    let led = &state[state.len().saturating_sub(q.len())..];
+    Ok(Start { reference: given.reference(led)?, q, dq, rest })
 }
 
 /// x, dx, d2x, … of a letter x.
@@ -132,23 +138,32 @@ pub(super) fn list(texts: &[At<String>], names: &[String]) -> Result<Vec<Express
 pub(super) fn chain_robot(model: ChainModel, parameters: &At<Vec<At<f64>>>) -> Result<RobotSetup, Fault> {
     let need = model.parameters();
     length("parameters", &parameters.span, parameters.value.len(), need, "regressor")?;
+    let axes = match model.axes() {
+        1 => vec![axis("x", AxisUnit::Metre)],
+        axes => (1..=axes).map(|k| axis(&format!("x{k}"), AxisUnit::Metre)).collect(),
+    };
     Ok(RobotSetup {
         kind: Arc::new(model),
         theta: values(&parameters.value),
         theta_names: (1..=need).map(|k| format!("theta{k}")).collect(),
-        axes: vec![axis("x", AxisUnit::Metre)],
+        axes,
     })
 }
 
-/// The terms of a plant of derivatives.
+/// Whether it is a plant of derivatives, with one axis or several.
+fn has_derivatives(robot: &RobotSetup) -> bool {
+    matches!(robot.kind.downcast(), Some(ChainModel::Derivatives(_) | ChainModel::Vector(_)))
+}
+
+/// The terms of a plant of derivatives with one axis.
 fn terms(robot: &RobotSetup) -> Option<&Formulas> {
     match robot.kind.downcast() {
         Some(ChainModel::Derivatives(terms)) => Some(terms),
-        Some(ChainModel::Cascade(_)) | None => None,
+        Some(ChainModel::Vector(_) | ChainModel::Cascade(_)) | None => None,
     }
 }
 
-const MADE_FOR: &str = "`chain`, plants of derivatives";
+const MADE_FOR: &str = "`chain` and `vector_chain`, plants of derivatives";
 
 /// One number for all of `need`, or one for each.
 pub(super) fn each(file: Option<&At<AxisValues>>, need: usize) -> Vec<f64> {
@@ -173,7 +188,7 @@ pub struct LinearisingFile {
     /// How fast the tracking error vanishes, in 1/s. Default: 1.
     #[schemars(with = "Option<Positive>")]
     pub gain_per_s: Option<At<f64>>,
-    /// The run ends where ψ comes closer to zero. Default: 1e-3.
+    /// The run ends where ψ comes closer to zero; of a matrix, its smallest singular value. Default: 1e-3.
     #[schemars(with = "Option<Positive>")]
     pub floor: Option<At<f64>>,
 }
@@ -184,7 +199,7 @@ impl LawKind for LinearisingFile {
     }
 
     fn suits(robot: &RobotSetup) -> bool {
-        terms(robot).is_some()
+        has_derivatives(robot)
     }
 
     fn law(&self, _: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
@@ -207,7 +222,7 @@ pub struct LinearAdaptiveFile {
     pub estimate_start: Option<EstimateStartFile>,
     /// Bounds that the estimate is kept within, by projection. Default: none.
     pub bounds: Option<EstimateBoundsFile>,
-    /// The run ends where ψ comes closer to zero. Default: 1e-3.
+    /// The run ends where ψ comes closer to zero; of a matrix, its smallest singular value. Default: 1e-3.
     #[schemars(with = "Option<Positive>")]
     pub floor: Option<At<f64>>,
 }
@@ -222,7 +237,7 @@ impl LawKind for LinearAdaptiveFile {
     }
 
     fn suits(robot: &RobotSetup) -> bool {
-        terms(robot).is_some()
+        has_derivatives(robot)
     }
 
     fn law(&self, agent: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
@@ -257,7 +272,7 @@ pub struct ImmersionFile {
 
 impl LawKind for ImmersionFile {
     fn table() -> LawTable {
-        LawTable { key: "immersion", description: "The same by immersion and invariance.", made_for: MADE_FOR }
+        LawTable { key: "immersion", description: "The same by immersion and invariance.", made_for: "`chain`" }
     }
 
     fn suits(robot: &RobotSetup) -> bool {

@@ -10,7 +10,7 @@
 //! - `drives`: friction at their joints; `bounds`: what estimates are kept within.
 //! - `task_space`: the end-effector of a robot.
 //! - `thrust`: vehicles with one thrust; `spacecraft`: an attitude.
-//! - `chain`, `cascade`: Section IV.
+//! - `chain`, `vector_chain`, `cascade`: Section IV.
 //! - `references`: what leads the agents.
 //! - `delays`, `schedules`: how late a message is, and which graph is in force.
 
@@ -32,6 +32,7 @@ mod table;
 pub mod task_space;
 pub mod thrust;
 pub mod urdf;
+pub mod vector_chain;
 
 use std::sync::Arc;
 
@@ -107,6 +108,7 @@ impl Kinds {
                 RobotEntry::of::<thrust::RotorcraftFile>(),
                 RobotEntry::of::<spacecraft::SpacecraftFile>(),
                 RobotEntry::of::<chain::ChainFile>(),
+                RobotEntry::of::<vector_chain::VectorChainFile>(),
                 RobotEntry::of::<cascade::StrictFeedbackFile>(),
                 RobotEntry::of::<cascade::PureFeedbackFile>(),
             ],

@@ -71,9 +71,18 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
         KindEvidence::FactorBelowFloor { agent, value, .. } => {
             format!("`floor` below {} for {}", rounded_down(value.abs()), agent.name)
         }
-        KindEvidence::FactorFloor { agent, everywhere, .. } => match everywhere {
+        KindEvidence::FactorSingular { agent } => {
+            format!("rows of ψ for {} of which none follows from the others", agent.name)
+        }
+        KindEvidence::FactorFloor { agent, everywhere, matrix, .. } => match everywhere {
             FactorEverywhere::Away { least } => {
                 format!("`floor` of at most {} for {}", rounded_down(*least), agent.name)
+            }
+            FactorEverywhere::Fades | FactorEverywhere::Zero(_) | FactorEverywhere::Unknown if *matrix => {
+                format!(
+                    "a ψ for {} whose diagonal outweighs the rest of its rows and columns in every state",
+                    agent.name
+                )
             }
             FactorEverywhere::Fades | FactorEverywhere::Zero(_) | FactorEverywhere::Unknown => {
                 format!("a factor for {} that keeps away from zero in every state, such as 2 + cos(x)", agent.name)

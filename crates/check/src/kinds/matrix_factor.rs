@@ -1,0 +1,145 @@
+//! How far a matrix ψ of the state stays from having no inverse, whatever the state is.
+//!
+//! Every entry is enclosed over all states by itself. Of the bounds on the smallest singular value that such enclosures give, the better
+//! one is taken:
+//!
+//! - *Dominance.* Rows may change their sign, which is an orthogonal factor, so let the diagonal be positive. For any v,
+//!   ‖A v‖ ‖v‖ ≥ vᵀAv = vᵀ½(A + Aᵀ)v, so σ_min(A) is at least the smallest eigenvalue of the symmetric part, and by Gershgorin's discs that is at
+//!   least min_i (a_ii − ½ Σ_{j≠i} (|a_ij| + |a_ji|)).
+//! - *Determinant.* The product of the other m − 1 singular values is at most the power m − 1 of their quadratic mean, so
+//!   σ_min ≥ |det A| ((m − 1)/‖A‖_F²)^((m−1)/2) with Frobenius' norm; for m = 1 it is |A|.
+//!
+//! All sums are rounded outwards. The power is not, by which a few units in the last place could be gained: its base is moved down by much
+//! more than they are.
+
+use forwardstep_core::expression::{Expression, Interval};
+
+/// Matrices with more rows have too many terms in their determinant.
+const MOST_EXPANDED: usize = 6;
+/// More than any rounding of a power.
+const ROOM: f64 = 1e-12;
+
+/// A lower bound on the smallest singular value in every state; zero where none is found.
+pub(super) fn least_everywhere(psi: &[Vec<Expression>]) -> f64 {
+    let entries = enclosed(psi);
+    dominance(&entries).max(by_determinant(&entries))
+}
+
+/// The same, by dominance alone.
+pub(crate) fn least_by_dominance(psi: &[Vec<Expression>]) -> f64 {
+    dominance(&enclosed(psi))
+}
+
+fn enclosed(psi: &[Vec<Expression>]) -> Vec<Vec<Interval>> {
+    psi.iter().map(|row| row.iter().map(|entry| entry.everywhere().0).collect()).collect()
+}
+
+/// Whether it is constant and, by exact arithmetic, has no inverse.
+pub(super) fn is_singular(psi: &[Vec<Expression>]) -> bool {
+    psi.len() <= MOST_EXPANDED
+        && psi.iter().flatten().all(|entry| entry.variables() == 0)
+        && determinant(psi, &(0..psi.len()).collect::<Vec<_>>(), &Expression::number(0.0))
+            .constant()
+            .is_some_and(|exact| exact.value() == 0.0)
+}
+
+fn dominance(entries: &[Vec<Interval>]) -> f64 {
+    let size = |row: usize, column: usize| Interval::point(entries[row][column].size());
+    let row = |i: usize| {
+        let own = entries[i][i].low.max(-entries[i][i].high);
+        let others = (0..entries.len()).filter(|j| *j != i);
+        let sum = others.fold(Interval::point(0.0), |sum, j| sum + size(i, j) + size(j, i));
+        (Interval::point(own) - sum * Interval::point(0.5)).low
+    };
+    // Not a number, where something has no value, is no bound.
+    (0..entries.len()).map(row).fold(f64::INFINITY, |least, row| if row >= 0.0 { least.min(row) } else { 0.0 })
+}
+
+fn by_determinant(entries: &[Vec<Interval>]) -> f64 {
+    let m = entries.len();
+    if m > MOST_EXPANDED {
+        return 0.0;
+    }
+    let found = determinant(entries, &(0..m).collect::<Vec<_>>(), &Interval::point(0.0));
+    let least = found.low.max(-found.high);
+    let square = |entry: &Interval| Interval::point(entry.size()) * Interval::point(entry.size());
+    let norm = entries.iter().flatten().fold(Interval::point(0.0), |sum, entry| sum + square(entry)).high;
+    let others = m.saturating_sub(1) as f64;
+    let bound = if m == 1 { least } else { least * (others / norm * (1.0 - ROOM)).powf(others / 2.0) * (1.0 - ROOM) };
+    if bound > 0.0 && bound.is_finite() { bound } else { 0.0 }
+}
+
+/// By expansion along the rows from that after `rows.len() − columns.len()` on, over `columns`.
+fn determinant<S>(rows: &[Vec<S>], columns: &[usize], zero: &S) -> S
+where
+    S: Clone + std::ops::Add<Output = S> + std::ops::Sub<Output = S> + std::ops::Mul<Output = S>,
+{
+    let row = &rows[rows.len() - columns.len()];
+    if let [last] = columns {
+        return row[*last].clone();
+    }
+    let mut sum = zero.clone();
+    for (place, column) in columns.iter().enumerate() {
+        let others: Vec<usize> = columns.iter().copied().filter(|other| other != column).collect();
+        let term = row[*column].clone() * determinant(rows, &others, zero);
+        sum = if place % 2 == 0 { sum + term } else { sum - term };
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(rows: &[&[f64]]) -> Vec<Vec<Expression>> {
+        rows.iter().map(|row| row.iter().map(|entry| Expression::number(*entry)).collect()).collect()
+    }
+
+    #[test]
+    fn prop_the_bound_is_below_the_smallest_singular_value_and_near_it_where_it_is_sharp() {
+        // A multiple of a rotation has equal singular values; both bounds meet them where they apply.
+        let turned = least_everywhere(&numbers(&[&[0.6, -0.8], &[0.8, 0.6]]));
+        assert!((turned - std::f64::consts::FRAC_1_SQRT_2).abs() < 1e-9, "{turned}");
+        let diagonal = least_everywhere(&numbers(&[&[-3.0, 0.0, 0.0], &[0.0, 2.0, 0.0], &[0.0, 0.0, 5.0]]));
+        assert_eq!(diagonal, 2.0);
+        let swapped = least_everywhere(&numbers(&[&[0.0, 1.0], &[1.0, 0.0]]));
+        assert!(swapped > 0.7 && swapped <= 1.0, "{swapped}");
+        for singular in [&[&[1.0, 2.0][..], &[2.0, 4.0]][..], &[&[0.0, 0.0], &[0.0, 1.0]]] {
+            assert_eq!(least_everywhere(&numbers(singular)), 0.0);
+        }
+    }
+
+    #[test]
+    fn prop_the_bound_holds_in_random_states_of_random_matrices() {
+        let mut drawn = (0..).map(|k: u32| (f64::from(k) * 0.618_033_988_749_894_9).fract() * 2.0 - 1.0);
+        let mut bounded = 0;
+        for _ in 0..200 {
+            let [a, b, c, d, e] = std::array::from_fn(|_| drawn.next().unwrap_or(0.0));
+            let x = Expression::variable(0);
+            // a + 2 + b sin x and so on: [2 + a + b sin x, c; d cos x, 2 + e]
+            let psi = vec![
+                vec![Expression::number(2.0 + a) + Expression::number(b) * x.sin_of(), Expression::number(c)],
+                vec![Expression::number(d) * x.cos_of(), Expression::number(2.0 + e)],
+            ];
+            let least = least_everywhere(&psi);
+            bounded += usize::from(least > 0.0);
+            for k in 0..40 {
+                let [p, q, r, s] = [0, 1, 2, 3].map(|at| psi[at / 2][at % 2].value(&[f64::from(k) * 0.3]));
+                // Of two rows the singular values solve σ⁴ − ‖A‖² σ² + det² = 0.
+                let (norm, det) = (p * p + q * q + r * r + s * s, p * s - q * r);
+                let smallest = ((norm - (norm * norm - 4.0 * det * det).max(0.0).sqrt()) / 2.0).max(0.0).sqrt();
+                assert!(least <= smallest + 1e-9, "{least} > {smallest}");
+            }
+        }
+        assert!(bounded > 100, "{bounded}");
+    }
+
+    #[test]
+    fn a_constant_matrix_without_an_inverse_is_found_by_exact_numbers() {
+        // 0.1 · 0.9 − 0.3 · 0.3, which is no zero in binary numbers.
+        assert!(is_singular(&numbers(&[&[0.5, 1.5], &[1.0, 3.0]])));
+        assert!(is_singular(&numbers(&[&[1.0, 2.0, 3.0], &[4.0, 5.0, 6.0], &[7.0, 8.0, 9.0]])));
+        assert!(!is_singular(&numbers(&[&[1.0, 2.0], &[2.0, 4.5]])));
+        assert!(!is_singular(&[vec![Expression::variable(0)]]));
+    }
+}
