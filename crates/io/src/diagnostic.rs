@@ -70,6 +70,15 @@ fn boundary(text: &str, offset: usize) -> usize {
     offset
 }
 
+/// From the beginning of the line where `span` begins to the end of that where it ends.
+fn whole_lines(text: &str, span: &SourceSpan) -> SourceSpan {
+    let start = boundary(text, span.offset());
+    let start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+    let end = boundary(text, span.offset().saturating_add(span.len()));
+    let end = text[end..].find(['\r', '\n']).map_or(text.len(), |newline| end + newline);
+    (start, end - start).into()
+}
+
 impl SourceCode for SourceText {
     /// The lines around a place; of a very long line the part around it, so that no message is as long as its file.
     fn read_span<'a>(
@@ -80,8 +89,11 @@ impl SourceCode for SourceText {
     ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
         let text = self.shown();
         let is_familiar = FAMILIAR.iter().any(|own| text.contains(own));
-        let (lines_before, lines_after) = if is_familiar { (lines_before, lines_after) } else { (0, 0) };
-        let contents = text.read_span(span, lines_before, lines_after)?;
+        let contents = if is_familiar {
+            text.read_span(span, lines_before, lines_after)?
+        } else {
+            text.read_span(&whole_lines(text, span), 0, 0)?
+        };
         let (mut data, mut whole) = (contents.data(), *contents.span());
         let (mut line, mut column, mut lines) = (contents.line(), contents.column(), contents.line_count());
         if data.split(|byte| *byte == b'\n').any(|line| line.len() > LONGEST_LINE) {

@@ -46,7 +46,7 @@ pub(super) fn read(from: impl Read, start: u64) -> Result<Footer, TableError> {
     let (mut columns, mut groups) = (Vec::new(), Vec::new());
     let (mut rows, mut numbers, mut free) = (None, Ok(()), HEAD);
     let mut thrift = Thrift(from);
-    thrift.fields(|thrift, field| {
+    let read = thrift.fields(|thrift, field| {
         match field {
             (2, Kind::List) => {
                 let mut first = true;
@@ -70,8 +70,10 @@ pub(super) fn read(from: impl Read, start: u64) -> Result<Footer, TableError> {
             _ => return Ok(false),
         }
         Ok(true)
-    })?;
+    });
+    // Columns of another kind explain everything behind them that is strange.
     numbers?;
+    read?;
     let found: usize = groups.iter().map(|group: &Group| group.rows).sum();
     if columns.is_empty() || rows != i64::try_from(found).ok() {
         return Err(ParquetProblem::Malformed.into());
