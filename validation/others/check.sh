@@ -10,5 +10,6 @@ if [ ! -e "$environment/complete" ]; then
     "$environment/bin/pip" install --quiet --require-hashes -r "$here/requirements.txt"
     touch "$environment/complete"
 fi
-cargo build --release --quiet --manifest-path "$root/Cargo.toml" -p forwardstep
-"$environment/bin/python" "$here/check.py" "$@"
+# With FORWARDSTEP a program that is built already.
+[ -n "${FORWARDSTEP:-}" ] || cargo build --release --quiet --manifest-path "$root/Cargo.toml" -p forwardstep
+"$environment/bin/python" "$here/check.py" ${FORWARDSTEP:+--binary "$FORWARDSTEP"} "$@"

@@ -1,6 +1,7 @@
 //! The command line.
 
 mod experiments;
+mod suggest;
 
 pub(crate) use experiments::{
     AttackOptions, AttackTarget, FalsifyOptions, ManipulabilityOptions, SamplingLimitOptions, SmoothnessOptions,
@@ -11,6 +12,7 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use clap_complete::engine::ArgValueCompleter;
 use forwardstep_check::Id;
 use thiserror::Error;
 
@@ -67,9 +69,10 @@ pub(crate) enum Command {
     /// List the shipped scenarios, or print one
     Scenarios {
         /// Print the text of this one
+        #[arg(add = ArgValueCompleter::new(suggest::shipped))]
         name: Option<String>,
     },
-    /// Print the JSON schema of scenario files, or of what `check --json` or `smoothness --json` prints
+    /// Print the JSON schema of scenario files, of the summary.json of a run, or of what `check --json` or `smoothness --json` prints
     Schema {
         /// Of which documents
         #[arg(value_enum, default_value_t)]
@@ -110,7 +113,7 @@ impl Default for Command {
 #[derive(Debug, Args)]
 pub(crate) struct RunOptions {
     /// A shipped scenario by name, or a file or the folder of a run by its path
-    #[arg(default_value = SIX_ARMS)]
+    #[arg(default_value = SIX_ARMS, add = ArgValueCompleter::new(suggest::scenarios))]
     pub(crate) scenario: String,
     /// The folder to write to [default: forwardstep-runs/ and the scenario's name]
     #[arg(long, value_name = "DIR")]
@@ -133,7 +136,7 @@ pub(crate) struct RunOptions {
 #[derive(Debug, Args)]
 pub(crate) struct CheckOptions {
     /// A shipped scenario by name, or a file or the folder of a run by its path
-    #[arg(default_value = SIX_ARMS)]
+    #[arg(default_value = SIX_ARMS, add = ArgValueCompleter::new(suggest::scenarios))]
     pub(crate) scenario: String,
     /// Waive a hypothesis by its name, which stands in brackets behind it; may be given several times
     #[arg(long, value_name = "NAME", value_parser = hypothesis())]
@@ -155,7 +158,7 @@ pub(crate) struct CheckOptions {
 #[derive(Debug, Args)]
 pub(crate) struct ExplainOptions {
     /// A shipped scenario by name, or a file or the folder of a run by its path
-    #[arg(default_value = SIX_ARMS)]
+    #[arg(default_value = SIX_ARMS, add = ArgValueCompleter::new(suggest::scenarios))]
     pub(crate) scenario: String,
     /// Print the equations as LaTeX, which needs amsmath; the words are comments
     #[arg(long, conflicts_with = "json")]
@@ -178,6 +181,8 @@ pub(crate) enum SchemaChoice {
     Check,
     /// What `smoothness --json` prints
     Smoothness,
+    /// The summary.json of a run
+    Summary,
 }
 
 /// The names of hypotheses, with near matches for slips.
@@ -189,7 +194,7 @@ fn hypothesis() -> impl TypedValueParser<Value = Id> {
 #[derive(Debug, Args)]
 pub(crate) struct UpgradeOptions {
     /// The files; those of the present format stay as they are
-    #[arg(value_name = "FILE", required = true)]
+    #[arg(value_name = "FILE", required = true, add = ArgValueCompleter::new(suggest::scenario_files))]
     pub(crate) files: Vec<PathBuf>,
     /// Write to this file instead; for a single FILE
     #[arg(long, value_name = "NEW", conflicts_with = "stdout")]
@@ -202,7 +207,7 @@ pub(crate) struct UpgradeOptions {
 #[derive(Debug, Args)]
 pub(crate) struct RobotOptions {
     /// A URDF by its path, or a shipped robot by name
-    #[arg(value_name = "FILE.urdf")]
+    #[arg(value_name = "FILE.urdf", add = ArgValueCompleter::new(suggest::robots))]
     pub(crate) robot: String,
     /// Hold a joint at a position, in rad or m; may be given several times
     #[arg(long, value_name = "JOINT=VALUE", value_parser = lock)]
@@ -250,14 +255,14 @@ pub(crate) struct NewOptions {
     #[arg(long)]
     pub(crate) name: Option<String>,
     /// A shipped scenario to copy instead of all that follows: see `forwardstep scenarios`
-    #[arg(long, value_name = "SCENARIO", conflicts_with_all = ["name", "agents", "robot", "dry_friction", "order", "exchange", "leader", "graph", "delay"])]
+    #[arg(long, value_name = "SCENARIO", conflicts_with_all = ["name", "agents", "robot", "dry_friction", "order", "exchange", "leader", "graph", "delay"], add = ArgValueCompleter::new(suggest::shipped))]
     pub(crate) like: Option<String>,
     /// How many agents there are, 1 to 100; two or more where they are to agree [default: 4]
     #[arg(long, value_name = "N", value_parser = count_of_agents)]
     pub(crate) agents: Option<u32>,
     /// Their robot: a kind (planar_arm, point_mass, ship, vehicle, rotorcraft, spacecraft, chain, strict_feedback, pure_feedback), ur5e, panda
     /// or the path of a URDF [default: planar_arm]
-    #[arg(long, value_name = "ROBOT")]
+    #[arg(long, value_name = "ROBOT", add = ArgValueCompleter::new(suggest::kinds_and_robots))]
     pub(crate) robot: Option<String>,
     /// Give every joint dry friction, and keep estimates within bounds
     #[arg(long)]

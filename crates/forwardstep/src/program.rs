@@ -32,6 +32,9 @@ pub fn program(kinds: &Kinds) -> ExitCode {
 /// [`program`] with these arguments, the first of which is its name.
 pub fn program_with(kinds: &Kinds, arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    if let Some(status) = commands::asked(&arguments) {
+        return status.into();
+    }
     let command = match Arguments::try_parse_from(&arguments) {
         Ok(Arguments { command }) => command.unwrap_or_default(),
         Err(error) => {

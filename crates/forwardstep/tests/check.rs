@@ -330,6 +330,26 @@ fn the_document_says_what_the_words_say_and_keeps_to_its_schema() {
 }
 
 #[test]
+fn the_summary_of_a_run_keeps_to_its_schema() {
+    let here = folder();
+    let schema: Value = serde_json::from_str(&stdout(&forwardstep(&here, &["schema", "summary"]).success())).unwrap();
+    assert_eq!(schema["title"], "forwardstep summary.json");
+    assert!(schema["properties"]["agents"]["description"].is_string());
+    for name in ["first-order", "six-arms-over-radio", "theorem-5", "theorem-6", "theorem-8", "rest-to-rest"] {
+        forwardstep(&here, &["run", name, "--out", name]);
+        let text = fs::read_to_string(here.path().join(name).join("summary.json")).unwrap();
+        let document: Value = serde_json::from_str(&text).unwrap();
+        follows(&document, &schema, &schema);
+        assert!(
+            document["agents"].as_array().is_some_and(|agents| agents.iter().all(|agent| agent["name"].is_string()))
+        );
+        let mut wrong = document.clone();
+        wrong["unheard_of"] = Value::Bool(true);
+        assert!(std::panic::catch_unwind(|| follows(&wrong, &schema, &schema)).is_err());
+    }
+}
+
+#[test]
 fn predictions_are_made_where_they_are_asked_for_and_are_said_to_be_for_no_tracking_error() {
     let folder = with(TWO);
     let said =
@@ -379,6 +399,14 @@ fn a_run_predicts_unless_that_takes_longer_than_the_run() {
 fn follows(document: &Value, schema: &Value, root: &Value) {
     if let Some(name) = schema["$ref"].as_str() {
         return follows(document, root.pointer(name.trim_start_matches('#')).unwrap(), root);
+    }
+    if let (Some(choices), Some(text)) = (schema["oneOf"].as_array(), document.as_str()) {
+        // One of some words.
+        let has = |choice: &Value| {
+            choice["const"] == text || choice["enum"].as_array().is_some_and(|all| all.contains(document))
+        };
+        assert!(choices.iter().any(has), "{text}: {schema}");
+        return;
     }
     if let Some(choices) = schema["oneOf"].as_array() {
         let known = |choice: &&Value| {

@@ -25,13 +25,69 @@ fn every_command_has_a_manual_page() {
 }
 
 #[test]
-fn shells_complete_commands() {
+fn shells_have_scripts_that_ask_the_program() {
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let script = forwardstep(&["completions", shell]).success();
         let script = String::from_utf8(script.get_output().stdout.clone()).unwrap();
-        for word in ["forwardstep", "scenarios", "robot", "completions", "ignore-friction"] {
-            assert!(script.contains(word), "{shell}: no {word}");
-        }
+        assert!(script.contains("forwardstep") && script.contains("FORWARDSTEP_COMPLETE"), "{shell}: {script}");
     }
     forwardstep(&["completions", "basic"]).code(2);
+}
+
+/// What fish offers behind these words, in a folder with files; the last is still being typed.
+fn offered(words: &[&str]) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["mine.toml", "robot.urdf", "notes.txt", "evil\u{1b}[2J.toml"] {
+        std::fs::write(folder.path().join(name), "").unwrap();
+    }
+    std::fs::create_dir(folder.path().join("more")).unwrap();
+    let asked = Command::cargo_bin("forwardstep")
+        .unwrap()
+        .current_dir(&folder)
+        .env("FORWARDSTEP_COMPLETE", "fish")
+        .args(["--", "forwardstep"])
+        .args(words)
+        .assert()
+        .success();
+    let said = String::from_utf8(asked.get_output().stdout.clone()).unwrap();
+    let mut names: Vec<String> = said.lines().map(|line| line.split('\t').next().unwrap().to_owned()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn names_of_scenarios_and_files_beside_are_offered() {
+    let found = offered(&["run", ""]);
+    for name in ["six-arms", "theorem-1", "mine.toml", "more/"] {
+        assert!(found.contains(&name.to_owned()), "{name}: {found:?}");
+    }
+    for name in ["robot.urdf", "notes.txt"] {
+        assert!(!found.contains(&name.to_owned()), "{found:?}");
+    }
+    assert!(!found.iter().any(|name| name.contains("evil")), "{found:?}");
+    assert_eq!(offered(&["check", "theorem-3"]), ["theorem-3-24-order-4", "theorem-3-a5-order-3"]);
+    assert_eq!(offered(&["scenarios", "six-arms-w"]), ["six-arms-with-friction"]);
+    assert_eq!(offered(&["robot", "r"]), ["robot.urdf"]);
+    assert!(offered(&["new", "--robot", "p"]).contains(&"planar_arm".to_owned()));
+    assert!(offered(&["fals"]).contains(&"falsify".to_owned()));
+    assert!(offered(&["robot", "--ignore"]).contains(&"--ignore-friction".to_owned()));
+    assert!(offered(&["sampling-limit", "theorem-4"]).contains(&"theorem-4".to_owned()));
+}
+
+#[test]
+fn a_shell_that_is_not_known_gets_a_message() {
+    let mut command = Command::cargo_bin("forwardstep").unwrap();
+    let asked = command.env("FORWARDSTEP_COMPLETE", "basic").args(["--", "forwardstep", ""]).assert().code(2);
+    assert!(String::from_utf8_lossy(&asked.get_output().stderr).contains("unknown shell"));
+}
+
+#[cfg(unix)]
+#[test]
+fn bash_completes_with_the_script() {
+    let program = assert_cmd::cargo::cargo_bin("forwardstep");
+    let path = format!("{}:{}", program.parent().unwrap().display(), std::env::var("PATH").unwrap());
+    let asks = "source <(forwardstep completions bash); COMP_WORDS=(forwardstep run six-arms-o); COMP_CWORD=2; COMP_TYPE=9; \
+                _clap_complete_forwardstep forwardstep six-arms-o run; printf '%s\\n' \"${COMPREPLY[@]}\"";
+    let said = std::process::Command::new("bash").args(["-c", asks]).env("PATH", path).output().unwrap();
+    assert_eq!(String::from_utf8_lossy(&said.stdout).trim(), "six-arms-over-radio", "{said:?}");
 }

@@ -126,6 +126,8 @@ pub struct InputError<P> {
     pub span: Option<Range<usize>>,
     /// What is wrong.
     pub problem: P,
+    /// What else is wrong with the file, as far as it can be told.
+    pub others: Vec<InputError<P>>,
 }
 
 impl<P: Problem> fmt::Display for InputError<P> {
@@ -157,5 +159,12 @@ impl<P: Problem> Diagnostic for InputError<P> {
         let text = self.source.text();
         let end = if span.len() > LONGEST_LINE { boundary(text, span.start + AROUND) } else { span.end };
         Some(Box::new(std::iter::once(LabeledSpan::underline(span.start..end))))
+    }
+
+    fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn Diagnostic> + 'a>> {
+        if self.others.is_empty() {
+            return None;
+        }
+        Some(Box::new(self.others.iter().map(|other| other as &dyn Diagnostic)))
     }
 }

@@ -5,6 +5,7 @@
 pub mod diagnostic;
 mod files;
 mod foreign;
+mod meant;
 #[cfg(feature = "report")]
 pub mod output;
 pub mod robot;
@@ -16,5 +17,6 @@ mod wording;
 pub use diagnostic::{InputError, Problem, SourceText};
 pub use files::{ReadError, Special};
 pub use foreign::Foreign;
+pub use meant::Meant;
 pub use shown::{Shown, breaks_lines, shown, steers_terminals};
 pub use urdf::{UrdfOptions, UrdfRobot, read_urdf};

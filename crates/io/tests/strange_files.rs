@@ -70,6 +70,40 @@ fn of_a_text_that_may_be_anything_only_the_line_of_the_mistake_is_shown() {
     assert!(said(&path)[0].contains("robot.point_mass"));
 }
 
+/// Without the line breaks of a page.
+fn flat(said: &str) -> String {
+    said.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn a_robot_or_a_list_given_as_a_scenario_is_named_and_the_reverse() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine");
+    let robot = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/robots/gantry.urdf")).unwrap();
+    for (text, what, scenario_help, robot_help) in [
+        (&*robot, "a robot (URDF)", "new my-scenario.toml --robot ", None),
+        ("{\"agents\": []}", "JSON", "scenarios are TOML", Some("a robot is a URDF")),
+        ("agents:\n  - name: arm\n", "YAML", "scenarios are TOML", Some("a robot is a URDF")),
+        ("from,to\na,b\n", "a table (CSV)", "edges.csv.file", Some("a robot is a URDF")),
+        ("<sdf version='1.7'/>", "a model for another simulator", "robots are read from URDF", None),
+    ] {
+        fs::write(&path, text).unwrap();
+        let [scenario, robot, _] = said(&path).map(|said| flat(&said));
+        assert!(scenario.contains(&format!("this is {what}")) && scenario.contains(scenario_help), "{scenario}");
+        assert!(
+            robot_help.is_none_or(|help| robot.contains(&format!("this is {what}")) && robot.contains(help)),
+            "{robot}"
+        );
+    }
+    fs::write(&path, WITH_EDGES).unwrap();
+    let [_, robot, _] = said(&path).map(|said| flat(&said));
+    assert!(robot.contains("this is a scenario, and no robot") && robot.contains("forwardstep check "), "{robot}");
+    // A scenario with a mistake is one all the same.
+    fs::write(&path, WITH_EDGES.replace("count = 2", "count = ")).unwrap();
+    let [scenario, ..] = said(&path);
+    assert!(scenario.contains("not valid TOML"), "{scenario}");
+}
+
 #[cfg(unix)]
 #[test]
 fn pipes_devices_and_folders_are_refused_at_once() {

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ValueEnum};
+use clap_complete::engine::ArgValueCompleter;
 use thiserror::Error;
 
-use super::{NotBetween, SIX_ARMS, order};
+use super::{NotBetween, SIX_ARMS, order, suggest};
 use crate::falsify::Target;
 
 #[derive(Debug, Args)]
@@ -32,7 +33,7 @@ pub(crate) struct AttackOptions {
     /// What is attacked: a design (a1, 24, a1-first-roots, 24-complex-roots, 119-weights,
     /// 110-windows, 110-late-turns or 122-turns), or a shipped scenario by its name, or a file by its
     /// path, whose delays and schedules are varied within what it states
-    #[arg(value_name = "DESIGN|SCENARIO")]
+    #[arg(value_name = "DESIGN|SCENARIO", add = ArgValueCompleter::new(suggest::scenarios))]
     pub(crate) what: String,
     /// Pieces of the delay, and phases of the schedule, at most
     #[arg(long, value_name = "N", default_value_t = 6)]
@@ -98,7 +99,7 @@ impl AttackTarget {
 #[derive(Debug, Args)]
 pub(crate) struct SamplingLimitOptions {
     /// Shipped scenarios by name, or files by their paths; those in continuous time are sampled with exact measurements
-    #[arg(value_name = "SCENARIO", default_value = SIX_ARMS)]
+    #[arg(value_name = "SCENARIO", default_value = SIX_ARMS, add = ArgValueCompleter::new(suggest::scenarios))]
     pub(crate) scenarios: Vec<String>,
     /// Let torques come late by this part of the period, from 0 to 1
     #[arg(long, value_name = "PART", value_parser = part)]
@@ -121,7 +122,7 @@ pub(crate) struct SamplingLimitOptions {
 #[derive(Debug, Args)]
 pub(crate) struct ManipulabilityOptions {
     /// Shipped scenarios by name, or files by their paths; agents are pushed at rest in agreement, for as long as the runs last
-    #[arg(value_name = "SCENARIO", default_value = "remark-4")]
+    #[arg(value_name = "SCENARIO", default_value = "remark-4", add = ArgValueCompleter::new(suggest::scenarios))]
     pub(crate) scenarios: Vec<String>,
     /// The manipulability gains of all agents, in 1/s to the power of the order
     #[arg(long, value_name = "GAINS", value_delimiter = ',', default_value = "0,0.5,1,2", value_parser = not_negative)]
@@ -144,7 +145,7 @@ pub(crate) struct ManipulabilityOptions {
 #[command(group(ArgGroup::new("comparison").args(["orders", "filters_s"])))]
 pub(crate) struct SmoothnessOptions {
     /// Shipped scenarios by name, or files by their paths; they are simulated in continuous time
-    #[arg(value_name = "SCENARIO", default_value = SIX_ARMS)]
+    #[arg(value_name = "SCENARIO", default_value = SIX_ARMS, add = ArgValueCompleter::new(suggest::scenarios))]
     pub(crate) scenarios: Vec<String>,
     /// Compare reference dynamics of these orders: agents keep their first roots, and repeat the last where there are too few
     #[arg(long, value_name = "ORDERS", value_delimiter = ',', value_parser = order_of_reference)]

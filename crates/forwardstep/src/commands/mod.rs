@@ -25,7 +25,7 @@ mod upgrade;
 
 pub(crate) use attack::attack;
 pub(crate) use check::check;
-pub(crate) use completions::completions;
+pub(crate) use completions::{asked, completions};
 pub(crate) use explain::explain;
 pub(crate) use falsify::falsify;
 pub(crate) use man::man;

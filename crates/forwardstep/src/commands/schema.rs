@@ -1,6 +1,6 @@
 //! `forwardstep schema`
 
-use forwardstep::io::output::{Findings, SmoothnessDocument};
+use forwardstep::io::output::{Findings, SmoothnessDocument, Summary};
 use forwardstep::io::scenario::kinds::Kinds;
 
 use crate::arguments::SchemaChoice;
@@ -12,6 +12,7 @@ pub(crate) fn schema(of: SchemaChoice, kinds: &Kinds, console: &mut Console) -> 
     let schema = match of {
         SchemaChoice::Scenario => kinds.schema(),
         SchemaChoice::Check => Findings::schema(),
+        SchemaChoice::Summary => Summary::schema(),
         SchemaChoice::Smoothness => SmoothnessDocument::schema(),
     };
     // The alternate form is indented.

@@ -2,6 +2,7 @@
 
 use forwardstep_sim::recording::{Ending, Outcome, Recording, Signal};
 use forwardstep_sim::setup::Setup;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::metrics::{Metrics, Peak};
@@ -11,7 +12,7 @@ use crate::scenario::Goal;
 
 /// A run under digital control against its continuous twin: the same robots, network and pushes, but exact measurements, no
 /// limits, and the law in continuous time. Both are looked at until the earlier of their ends.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DigitalCost {
     /// Samples per second.
     pub sample_hz: f64,
@@ -26,7 +27,7 @@ pub struct DigitalCost {
 }
 
 /// A run in the numbers that digital control changes.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Figures {
     /// Disagreement at the last row, rad or m.
     pub final_disagreement: Option<f64>,
@@ -36,9 +37,11 @@ pub struct Figures {
     pub peak_torque: Option<f64>,
     /// The root of the mean of τ² over time, agents and axes, N m or N.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub rms_torque: f64,
     /// The same of s, rad/s or m/s.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub rms_tracking_error: f64,
 }
 

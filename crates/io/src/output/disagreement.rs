@@ -2,6 +2,7 @@
 
 use forwardstep_sim::recording::{Recording, Signal};
 use forwardstep_sim::setup::Setup;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::number;
@@ -49,19 +50,22 @@ impl Gap {
 
 /// max |q_i − q_j| over agents and axes, less their offsets, or max |error| where agents have targets; rad or m. Or why
 /// there is no such number.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Disagreement {
     /// At the first and last row, and the largest of all rows.
     Measured {
         /// At the first row.
         #[serde(deserialize_with = "number::or_nan")]
+        #[schemars(with = "Option<f64>")]
         initial: f64,
         /// At the last row.
         #[serde(deserialize_with = "number::or_nan")]
+        #[schemars(with = "Option<f64>")]
         last: f64,
         /// The largest of all rows.
         #[serde(deserialize_with = "number::or_nan")]
+        #[schemars(with = "Option<f64>")]
         largest: f64,
     },
     /// There is none.
@@ -92,7 +96,7 @@ impl Disagreement {
 }
 
 /// Why there is no disagreement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Absence {
     /// Nothing was recorded.

@@ -2,21 +2,24 @@
 
 use forwardstep_sim::recording::{Breakdown, BreakdownCause, Column, Ending, GainRates, Recording, Stiffness};
 use forwardstep_sim::setup::Setup;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::ending::ending_sentence;
 use super::{names, number};
 
 /// How a run ended.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct How {
     /// `completed`, `interrupted`, `cut_off` or `broke_down`.
     pub kind: EndingKind,
     /// The simulated time that was reached, s.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub t_s: f64,
     /// The horizon, s.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub end_s: f64,
     /// The ending in one sentence.
     pub sentence: String,
@@ -25,7 +28,7 @@ pub struct How {
 }
 
 /// The four endings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum EndingKind {
     /// The horizon was reached.
@@ -39,7 +42,7 @@ pub enum EndingKind {
 }
 
 /// The signal that broke a run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct BrokenSignal {
     /// The agent.
     pub agent: usize,
@@ -50,10 +53,11 @@ pub struct BrokenSignal {
 }
 
 /// How fast a closed loop was that broke down, 1/s.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Rates {
     /// Its fastest rate.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub fastest_per_s: f64,
     /// K/λ_min(M) of the agent, where it is a robot under (6)–(7).
     pub damping_per_s: Option<f64>,
@@ -84,7 +88,7 @@ impl Rates {
 }
 
 /// Why a run broke down.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
     /// A number was no longer finite.
@@ -93,6 +97,7 @@ pub enum Cause {
     StepUnderFloor {
         /// The step asked for, s.
         #[serde(deserialize_with = "number::or_nan")]
+        #[schemars(with = "Option<f64>")]
         step_s: f64,
         /// How fast the closed loop was.
         #[serde(default)]
@@ -102,9 +107,11 @@ pub enum Cause {
     MemoryFull {
         /// The mean step since the longest delay ago, s.
         #[serde(deserialize_with = "number::or_nan")]
+        #[schemars(with = "Option<f64>")]
         step_s: f64,
         /// The budget that steps like these would need.
         #[serde(deserialize_with = "number::or_nan")]
+        #[schemars(with = "Option<f64>")]
         need_bytes: f64,
         /// How fast the closed loop was.
         stiffness: Option<Rates>,
@@ -120,6 +127,7 @@ pub enum Cause {
     RanAway {
         /// The velocity, rad/s or m/s.
         #[serde(deserialize_with = "number::or_nan")]
+        #[schemars(with = "Option<f64>")]
         value: f64,
         /// Steps since the last sample.
         steps: u64,
@@ -128,18 +136,22 @@ pub enum Cause {
     Vanished {
         /// Its value.
         #[serde(deserialize_with = "number::or_nan")]
+        #[schemars(with = "Option<f64>")]
         value: f64,
         /// How close it may come.
         #[serde(deserialize_with = "number::or_nan")]
+        #[schemars(with = "Option<f64>")]
         floor: f64,
     },
     /// An enforced position limit was left.
     PositionLimit {
         /// The position, rad or m.
         #[serde(deserialize_with = "number::or_nan")]
+        #[schemars(with = "Option<f64>")]
         value: f64,
         /// The limits.
         #[serde(deserialize_with = "number::pair_or_nan")]
+        #[schemars(with = "[Option<f64>; 2]")]
         limits: [f64; 2],
     },
 }

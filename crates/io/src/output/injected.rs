@@ -1,55 +1,67 @@
 //! What changed V along a run under digital control, in `summary.json` and in the report.
 
 use forwardstep_check::{Injection, InjectionBalance};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::number;
 
 /// V of one agent from its first sample to the end, and what each cause put in, in J or the unit of its V: the terms add up to the change of V, but
 /// for the residual. Not from the paper, derived for this software.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Injected {
     /// Index of the agent.
     pub agent: usize,
     /// V after the first sample.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub start_j: f64,
     /// V at the end.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub end_j: f64,
     /// What the proof leaves: −∫ sᵀ(K + D)s under (6)–(7).
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub dissipated_j: f64,
     /// By commands and references that are held between samples, and by commands that come late.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub held_j: f64,
     /// By velocities that are filtered differences of positions.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub reconstructed_j: f64,
     /// By noise and rounding of measurements.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub measured_j: f64,
     /// By limits and rounding of torques.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub limited_j: f64,
     /// By friction that is dry where the law takes it for smooth; of agents by themselves that counts as pushed.
     #[serde(default, deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub rubbed_j: f64,
     /// By external torques.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub pushed_j: f64,
     /// By estimates that are stepped at samples; of agents by themselves that counts as held.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub adaptation_j: f64,
     /// The change of V less all of these.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub residual_j: f64,
     /// The first cause that the proof does not allow and that had put in more than 1 % of the largest V until then; null for none.
     pub first: Option<FirstInjection>,
 }
 
 /// What put energy in first.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FirstInjection {
     /// `held`, `reconstructed`, `measured`, `limited`, `rubbed`, `pushed` or `adaptation`.
     pub cause: String,

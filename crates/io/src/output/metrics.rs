@@ -2,6 +2,7 @@
 
 use forwardstep_sim::recording::{Recording, Signal};
 use forwardstep_sim::{LineValue, Setup};
+use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::disagreement::greater;
@@ -16,7 +17,7 @@ use crate::scenario::Goal;
 pub const BALANCE_FLOOR_J: f64 = 1e-6;
 
 /// What a run comes to. Agents and axes are indices from zero; numbers that are not finite are `null` in JSON.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Metrics {
     /// Rows of the recording.
     pub rows: usize,
@@ -52,7 +53,7 @@ pub struct Metrics {
 }
 
 /// A value, where and when.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Peak {
     /// The agent.
     pub agent: usize,
@@ -60,19 +61,22 @@ pub struct Peak {
     pub axis: usize,
     /// When, s.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub t_s: f64,
     /// The value.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub value: f64,
 }
 
 /// The speeds of a run, rad/s or m/s.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Speed {
     /// The largest |q̇|.
     pub largest: Peak,
     /// The largest |q̇| at the last row.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub last: f64,
 }
 
@@ -115,33 +119,40 @@ impl<'de> Deserialize<'de> for LimitKind {
 }
 
 /// A limit of an axis that was exceeded at some row; for efforts of agents that enforce their limits, that was reached.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LimitReached {
     /// The agent.
     pub agent: usize,
     /// The axis, or the entry of the signal.
     pub axis: usize,
     /// Which limit.
+    #[schemars(with = "String")]
     pub kind: LimitKind,
     /// Whether the simulation kept to it; otherwise it is only reported.
     pub enforced: bool,
     /// The first row at which it was exceeded, s.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub first_t_s: f64,
     /// When it was exceeded most, s.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub worst_t_s: f64,
     /// The value then.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub worst: f64,
     /// The limit on that side.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub limit: f64,
     /// By how much.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub excess: f64,
     /// The share of rows at which it was exceeded, from 0 to 1.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub share: f64,
 }
 
@@ -164,31 +175,36 @@ impl LimitReached {
 }
 
 /// The largest |V + ∫ dissipation − V(0)| relative to V(0), but at least [`BALANCE_FLOOR_J`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct BalanceResidual {
     /// Relative error.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub relative: f64,
     /// Of this agent.
     pub agent: usize,
     /// At this time, s.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub t_s: f64,
 }
 
 /// Predicted and reached value on one axis.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Agreement {
     /// The axis.
     pub axis: usize,
     /// What the agents were predicted to agree on.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub predicted: f64,
     /// The mean of their last positions.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub reached: f64,
     /// The largest distance of a last position from the prediction.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub distance: f64,
 }
 

@@ -5,6 +5,7 @@ use std::io::Write;
 use forwardstep_sim::delay::{Delay, Trace};
 use forwardstep_sim::network::Network;
 use forwardstep_sim::setup::Setup;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::csv::io_error;
@@ -39,7 +40,7 @@ pub(crate) fn write(out: &mut impl Write, setup: &Setup) -> std::io::Result<()> 
 }
 
 /// A link that carried packets, over the whole horizon.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Link {
     /// The sender, by the order of the agents.
     pub from: usize,

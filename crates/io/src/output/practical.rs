@@ -64,7 +64,7 @@ impl From<&Practical> for PracticalVerdicts {
 }
 
 /// What was watched along a run, at rows of its tables.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Watched {
     /// The largest sampling margin σ; absent in continuous time and without agents under (6)–(7).
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -80,7 +80,7 @@ pub struct Watched {
 }
 
 /// How large s was, as power.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WatchedPower {
     /// The mean of Σ sᵀKs over all rows, W.
     pub mean_w: f64,
@@ -90,7 +90,7 @@ pub struct WatchedPower {
 }
 
 /// The largest σ that was reached.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WatchedMargin {
     /// Index of the agent.
     pub agent: usize,
@@ -98,11 +98,12 @@ pub struct WatchedMargin {
     pub t_s: f64,
     /// σ.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub sigma: f64,
 }
 
 /// The static torque that came closest to its limit.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WatchedLoad {
     /// Index of the agent.
     pub agent: usize,

@@ -7,6 +7,7 @@ use std::io::Write;
 use std::time::Duration;
 
 use forwardstep_sim::recording::{ClippedSamples, Drive, Statistics};
+use schemars::{JsonSchema, Schema, schema_for};
 use serde::{Deserialize, Serialize};
 
 use super::digital::DigitalCost;
@@ -27,7 +28,8 @@ use crate::scenario::Goal;
 pub const FORMAT: u32 = 2;
 
 /// The whole document. Numbers that are not finite are `null`, and are NaN when read back.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(title = "forwardstep summary.json")]
 pub struct Summary {
     /// [`FORMAT`].
     pub format: u32,
@@ -75,7 +77,7 @@ pub struct Summary {
 }
 
 /// Which scenario it was.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Scenario {
     /// Its name.
     pub name: String,
@@ -86,7 +88,7 @@ pub struct Scenario {
 }
 
 /// A file that the scenario names. Shipped robots are not among them.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Input {
     /// Its name in the scenario.
     pub name: String,
@@ -97,7 +99,7 @@ pub struct Input {
 }
 
 /// A table of the run.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct TableFile {
     /// Its name in the folder of the run.
     pub file: String,
@@ -106,7 +108,7 @@ pub struct TableFile {
 }
 
 /// What indices of agents and axes refer to.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Agent {
     /// The agent's name.
     pub name: String,
@@ -115,7 +117,7 @@ pub struct Agent {
 }
 
 /// A goal and whether it was met.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct GoalMet {
     /// Bound on the final disagreement.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -131,7 +133,7 @@ pub struct GoalMet {
 }
 
 /// Work of the integrator.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Solver {
     /// Accepted steps.
     pub steps: u64,
@@ -156,7 +158,7 @@ pub struct Solver {
 }
 
 /// How many commands of sampled controllers limits changed, on one axis or more.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Clipped {
     /// Samples of all agents.
     pub samples: u64,
@@ -167,7 +169,7 @@ pub struct Clipped {
 }
 
 /// What drove an agent that leads away from those that follow it, in the unit of γ.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LeaderDrive {
     /// Its largest size on any axis.
     pub peak: f64,
@@ -178,17 +180,24 @@ pub struct LeaderDrive {
 }
 
 /// Times that depend on the machine.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Timings {
     /// Time spent simulating, s; null if it was not measured.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub wall_s: f64,
     /// Simulated time per time spent; null likewise.
     #[serde(deserialize_with = "number::or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub simulated_per_wall: f64,
 }
 
 impl Summary {
+    /// The JSON schema of this document.
+    pub fn schema() -> Schema {
+        schema_for!(Summary)
+    }
+
     /// The summary of a run; `metrics` are those of its recording, `tables` the files that were written from it.
     pub fn of(record: &RunRecord<'_>, metrics: Metrics, tables: Vec<TableFile>) -> Summary {
         let setup = record.setup;

@@ -70,7 +70,7 @@ pub fn read_state(source: &SourceText, joints: &[&str]) -> Result<JointState, In
     }
     if let Some(missing) = given.iter().position(|given| !given) {
         let problem = StateProblem::MissingJoint { joint: joints[missing].to_owned() };
-        return Err(InputError { source: source.clone(), span: None, problem });
+        return Err(InputError { source: source.clone(), span: None, problem, others: Vec::new() });
     }
     let [q, dq, z, dz] = values;
     Ok(JointState { q, dq, z, dz })
@@ -154,7 +154,7 @@ impl<'a> Reader<'a> {
 
     /// An error about a piece of the text.
     fn error(&self, piece: &'a str, problem: StateProblem) -> InputError<StateProblem> {
-        InputError { source: self.source.clone(), span: Some(self.span(piece)), problem }
+        InputError { source: self.source.clone(), span: Some(self.span(piece)), problem, others: Vec::new() }
     }
 
     fn span(&self, piece: &'a str) -> Range<usize> {

@@ -18,7 +18,7 @@ use super::kinds::{AgentReferenceTable, Kinds, LawKind, ReferenceKind, RobotKind
 use super::problem::ScenarioProblem;
 use super::robots::Stop;
 use super::value_problem::ValueProblem;
-use crate::SourceText;
+use crate::{Meant, SourceText};
 
 /// A scenario file as TOML.
 pub(super) struct Document<'i> {
@@ -44,6 +44,10 @@ pub(super) type KeyedLaw = (&'static str, Box<dyn LawKind>);
 impl<'i> Document<'i> {
     pub(super) fn parse(source: &'i SourceText) -> Result<Self, Fault> {
         let unreadable = |error: toml::de::Error| {
+            // A scenario with a mistake stays one.
+            if let Some(meant) = Meant::of(source.text()).filter(|meant| *meant != Meant::Scenario) {
+                return Fault::new(ScenarioProblem::Meant { meant, file: source.name().to_owned() });
+            }
             let fault = Fault::new(ValueProblem::Unreadable { message: error.message().to_owned() });
             match error.span() {
                 Some(span) => fault.at(&span),
@@ -52,6 +56,11 @@ impl<'i> Document<'i> {
         };
         let table = DeTable::parse(source.text()).map_err(unreadable)?;
         Ok(Document { root: Spanned::new(table.span(), DeValue::Table(table.into_inner())) })
+    }
+
+    /// The tree.
+    pub(super) fn root_mut(&mut self) -> &mut DeValue<'i> {
+        self.root.get_mut()
     }
 
     /// The version of its format; what else the file says may depend on it.

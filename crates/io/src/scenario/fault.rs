@@ -21,12 +21,14 @@ pub struct Fault {
     pub(super) span: Option<Range<usize>>,
     /// The file that the span is of, if it is not the scenario.
     pub(super) source: Option<SourceText>,
+    /// What else is wrong with the scenario.
+    pub(super) others: Vec<Fault>,
 }
 
 impl Fault {
     /// A problem without a place.
     pub fn new(problem: impl Into<ScenarioProblem>) -> Self {
-        Fault { problem: Box::new(problem.into()), span: None, source: None }
+        Fault { problem: Box::new(problem.into()), span: None, source: None, others: Vec::new() }
     }
 
     /// Adds the place unless a closer one is known.
@@ -46,6 +48,12 @@ impl Fault {
             }
             _ => self,
         }
+    }
+
+    /// Adds what else is wrong with the scenario.
+    pub(super) fn beside(mut self, others: Vec<Fault>) -> Self {
+        self.others = others;
+        self
     }
 
     /// Says that the problem, and its place, are in another file than the scenario.

@@ -58,6 +58,7 @@ pub mod network_file;
 mod network_problem;
 mod notice;
 mod open;
+mod others;
 mod problem;
 mod push_course;
 pub mod push_file;
@@ -70,6 +71,7 @@ mod robots;
 pub mod roots;
 mod rows;
 pub(crate) mod run_folder;
+mod scope;
 mod shipped;
 mod spread;
 mod start;
@@ -177,13 +179,18 @@ impl Diagnostic for ScenarioError {
     fn labels(&self) -> Option<Box<dyn Iterator<Item = miette::LabeledSpan> + '_>> {
         self.diagnostic().labels()
     }
+
+    fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn Diagnostic> + 'a>> {
+        self.diagnostic().related()
+    }
 }
 
 /// Reads a scenario. Files that it names are looked for in `inputs`: a folder or none, as an `Option`, or [`Inputs`] with files from
 /// memory; robots and tables then among the shipped ones.
 ///
 /// # Errors
-/// The first mistake, at its place in the scenario or in a file that it names. Any text gives a result; none panics.
+/// The first mistake, at its place in the scenario or in a file that it names; with it all others of the form (keys, kinds of values,
+/// choices), as [`InputError::others`]. Any text gives a result; none panics.
 pub fn read_scenario(name: &str, source: &SourceText, inputs: impl Into<Inputs>) -> Result<Scenario, ScenarioError> {
     Kinds::shipped().read_scenario(name, source, inputs)
 }
@@ -206,7 +213,10 @@ impl Kinds {
 fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds) -> Result<Scenario, Stop> {
     let document = Document::parse(source)?;
     Document::readable(&document.format()?, source)?;
-    let file = document.file(kinds)?;
+    let file = document.file(kinds).map_err(|fault| {
+        let others = others::others(&fault, source, kinds);
+        fault.beside(others)
+    })?;
     let mut notices = Vec::new();
     let record_every_s = file.time.record_every_s.as_ref().map_or(RECORD_EVERY_S, |every| every.value);
     let end_s = file.time.end_s.value;

@@ -74,6 +74,13 @@ impl Diagnostic for OpenError {
         }
     }
 
+    fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn Diagnostic> + 'a>> {
+        match self {
+            OpenError::Scenario(error) => error.related(),
+            _ => None,
+        }
+    }
+
     fn labels(&self) -> Option<Box<dyn Iterator<Item = miette::LabeledSpan> + '_>> {
         match self {
             OpenError::Scenario(error) => error.labels(),

@@ -11,9 +11,9 @@ use super::refusal;
 use super::system_problem::SystemProblem;
 use super::table::TableProblem;
 use super::value_problem::ValueProblem;
-use crate::Problem;
 use crate::files::ReadError;
 use crate::wording::{axes, choose, entry_count};
+use crate::{Meant, Problem, shown};
 
 /// Why a scenario has no meaning.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -30,6 +30,14 @@ pub enum ScenarioProblem {
     Format {
         /// The version.
         found: i64,
+        /// The file.
+        file: String,
+    },
+    /// A text that is clearly something else.
+    #[error("this is {meant}, and no scenario")]
+    Meant {
+        /// What it is.
+        meant: Meant,
         /// The file.
         file: String,
     },
@@ -194,6 +202,7 @@ impl Problem for ScenarioProblem {
                 format!("`forwardstep upgrade {file}` converts it and prints what it renames")
             }
             ScenarioProblem::Format { found, .. } if *found > FORMAT => "use a later version of forwardstep".into(),
+            ScenarioProblem::Meant { meant, file } => meant.given_as_scenario(&shown(file).to_string()),
             ScenarioProblem::AgentName { .. } => "use up to 64 letters, digits, `-` and `_`".into(),
             ScenarioProblem::AgentTwice { .. } => {
                 "agents of a counted population are named after it: `arm` with `count = 2` gives `arm-1` and `arm-2`"

@@ -8,6 +8,7 @@ use forwardstep_sim::{Axis, AxisUnit, RobotSetup};
 
 use super::ScenarioError;
 use super::fault::Fault;
+use super::problem::ScenarioProblem;
 use crate::urdf::{self, UrdfProblem};
 use crate::{InputError, SourceText};
 
@@ -31,12 +32,17 @@ impl Stop {
     pub(super) fn in_file(self, source: &SourceText) -> ScenarioError {
         match self {
             Stop::Robot(error) => ScenarioError::Robot(error),
-            Stop::Here(Fault { problem, span, source: other }) => {
-                let source = other.unwrap_or_else(|| source.clone());
-                ScenarioError::Scenario(Box::new(InputError { source, span, problem: *problem }))
-            }
+            Stop::Here(fault) => ScenarioError::Scenario(Box::new(in_file(fault, source))),
         }
     }
+}
+
+/// A mistake with its file, and those beside it.
+fn in_file(fault: Fault, scenario: &SourceText) -> InputError<ScenarioProblem> {
+    let Fault { problem, span, source, others } = fault;
+    let source = source.unwrap_or_else(|| scenario.clone());
+    let others = others.into_iter().map(|other| in_file(other, scenario)).collect();
+    InputError { source, span, problem: *problem, others }
 }
 
 /// A robot, where it can be held, and what its file's reader had to remark.

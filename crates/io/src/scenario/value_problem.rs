@@ -6,7 +6,8 @@ use thiserror::Error;
 
 use super::formula_problem::FormulaProblem;
 use super::refusal::advice_on_quantity;
-use crate::wording::{are, choose, count, entry_count, number};
+use super::scope::beyond;
+use crate::wording::{are, choose, count, entry_count, nearest, number};
 
 /// Why a value has no meaning.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -207,8 +208,8 @@ pub enum ValueProblem {
 impl ValueProblem {
     pub(super) fn help(&self) -> Option<String> {
         let text = match self {
-            ValueProblem::UnknownKey { key, allowed } => choose(key, "allowed here:", allowed),
-            ValueProblem::UnknownChoice { found, allowed } => choose(found, "choose one of", allowed),
+            ValueProblem::UnknownKey { key, allowed } => within_scope(key, "allowed here:", allowed),
+            ValueProblem::UnknownChoice { found, allowed } => within_scope(found, "choose one of", allowed),
             ValueProblem::NoChoice { allowed } => choose("", "choose one of", allowed),
             ValueProblem::NumberTooLarge { .. } => "numbers may be up to 1e30 in size, whole numbers up to 9e18".into(),
             ValueProblem::Text { most, .. } => {
@@ -224,5 +225,14 @@ impl ValueProblem {
             _ => return None,
         };
         Some(text)
+    }
+}
+
+/// What there is instead of a word; of what is not modelled that it is not, unless it is a slip.
+fn within_scope(word: &str, kind: &str, allowed: &[&'static str]) -> String {
+    let listed = choose(word, kind, allowed);
+    match beyond(word).filter(|_| nearest(word, allowed.iter().copied()).is_none()) {
+        Some(beyond) => format!("{beyond}; {listed}"),
+        None => listed,
     }
 }

@@ -5,8 +5,8 @@ use forwardstep_core::robot::tree::TreeError;
 use thiserror::Error;
 
 use super::subject::{AttributeOf, End, Named, NamedLine, Owner, Size};
-use crate::Problem;
 use crate::wording::{did_you_mean, enumerate, number, rounded};
+use crate::{Meant, Problem, shown};
 
 /// Why a URDF file, or what was asked of it, has no meaning here.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -17,6 +17,14 @@ pub enum UrdfProblem {
     Xml {
         /// What the XML parser says.
         error: Box<roxmltree::Error>,
+    },
+    /// A text that is clearly something else.
+    #[error("this is {meant}, and no robot")]
+    Meant {
+        /// What it is.
+        meant: Meant,
+        /// The file.
+        file: String,
     },
     /// A document type declaration, through which entities could be defined.
     #[error("a document type declaration (<!DOCTYPE …>) is not accepted")]
@@ -294,6 +302,7 @@ pub enum UrdfProblem {
 impl Problem for UrdfProblem {
     fn help(&self) -> Option<String> {
         let text = match self {
+            UrdfProblem::Meant { meant, file } => meant.given_as_robot(&shown(file).to_string()),
             UrdfProblem::Doctype => "delete it; a robot needs no entities".to_owned(),
             UrdfProblem::Xacro { .. } => "expand with xacro first: `xacro robot.urdf.xacro > robot.urdf`".to_owned(),
             UrdfProblem::NotARobot { .. } => "only URDF is read; convert SDF, MJCF or COLLADA to URDF first".to_owned(),

@@ -10,7 +10,7 @@ use super::problem::UrdfProblem;
 use super::subject::{AttributeOf, Owner, Size};
 use crate::shown::breaks_lines;
 use crate::wording::nearest;
-use crate::{InputError, SourceText};
+use crate::{InputError, Meant, SourceText};
 
 /// Bytes accepted; the largest robots in use have less than one million.
 const MOST_BYTES: usize = 1 << 26;
@@ -45,12 +45,12 @@ impl<'a> Reading<'a> {
 
     /// An error about the bytes `span`.
     pub(super) fn error(&self, span: Range<usize>, problem: UrdfProblem) -> UrdfError {
-        InputError { source: self.source.clone(), span: Some(span), problem }
+        InputError { source: self.source.clone(), span: Some(span), problem, others: Vec::new() }
     }
 
     /// An error about the file as a whole, or about what was asked of it.
     pub(super) fn error_overall(&self, problem: UrdfProblem) -> UrdfError {
-        InputError { source: self.source.clone(), span: None, problem }
+        InputError { source: self.source.clone(), span: None, problem, others: Vec::new() }
     }
 
     /// Records a notice about the bytes `span`.
@@ -74,6 +74,11 @@ pub(super) fn parse<'a>(reading: &Reading<'a>) -> Result<Document<'a>, UrdfError
     }
     if text.matches("xmlns").take(MOST_NAMESPACES + 1).count() > MOST_NAMESPACES {
         return too_large(Size::Namespaces, MOST_NAMESPACES);
+    }
+    // XML with a mistake stays XML.
+    if let Some(meant @ (Meant::Scenario | Meant::Json | Meant::Yaml | Meant::Csv)) = Meant::of(text) {
+        let file = reading.source.name().to_owned();
+        return Err(reading.error_overall(UrdfProblem::Meant { meant, file }));
     }
     let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
     Document::parse_with_options(text, options).or_else(|error| {

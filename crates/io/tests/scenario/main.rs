@@ -20,6 +20,7 @@ mod quantities;
 mod ranges;
 #[path = "../support/seeds.rs"]
 mod seeds;
+mod several;
 mod shipped;
 mod spacecraft;
 mod spread;

@@ -29,6 +29,8 @@ const CASES: &[Case] = &[
         "test.toml:5:1: unknown key `ends_s`", "did you mean `end_s`?"),
     ("[goal]", "[gaol]",
         "test.toml:37:2: unknown key `gaol`", "did you mean `goal`?"),
+    ("weight = 1.0", "obstacles = []",
+        "test.toml:28:1: unknown key `obstacles`", "not modelled, see Limits in the README; the nearest there is: robots and obstacles pass"),
     ("end_s = 10\n", "",
         "test.toml:4:1: the key `end_s` is missing", ""),
     ("end_s = 10", "end_s = \"ten\"",
