@@ -118,7 +118,7 @@ mod tests {
             let x = Expression::variable(0);
             // a + 2 + b sin x and so on: [2 + a + b sin x, c; d cos x, 2 + e]
             let psi = vec![
-                vec![Expression::number(2.0 + a) + Expression::number(b) * x.sin_of(), Expression::number(c)],
+                vec![Expression::number(2.0 + a) + Expression::number(b) * x.clone().sin_of(), Expression::number(c)],
                 vec![Expression::number(d) * x.cos_of(), Expression::number(2.0 + e)],
             ];
             let least = least_everywhere(&psi);

@@ -1,6 +1,7 @@
 //! `forwardstep schema`
 
-use forwardstep::io::output::{Findings, SmoothnessDocument, Summary};
+use forwardstep::io::output::summary::Summary;
+use forwardstep::io::output::{Findings, SmoothnessDocument};
 use forwardstep::io::scenario::kinds::Kinds;
 
 use crate::arguments::SchemaChoice;

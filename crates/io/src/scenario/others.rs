@@ -91,8 +91,7 @@ fn without_element(list: &mut DeArray<'_>, span: &Range<usize>) -> Option<String
         return cut;
     }
     let at = list.iter().position(|entry| entry.get_ref().is_table() && entry.span() == *span)?;
-    let entries = std::mem::replace(list, DeArray::default());
-    *list = entries.into_iter().enumerate().filter(|(k, _)| *k != at).map(|(_, entry)| entry).collect();
+    *list = list.iter().enumerate().filter(|(k, _)| *k != at).map(|(_, entry)| entry.clone()).collect();
     // Nothing is missed under the name of an entry.
     Some(String::new())
 }

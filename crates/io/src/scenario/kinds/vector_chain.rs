@@ -14,6 +14,9 @@ use super::{
     TaskTemplate, count, fault, filled, length,
 };
 
+/// A matrix of formulas, row by row.
+type Rows = Vec<At<Vec<At<String>>>>;
+
 /// A plant with several axes whose derivative of some order is χ + ψ u, where χ is a vector and ψ a matrix; formulas are in x1, x2, … and their
 /// derivatives dx1, dx2, …, d2x1, ….
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -26,9 +29,9 @@ pub struct VectorChainFile {
     #[schemars(length(min = 1))]
     pub chi: At<Vec<At<String>>>,
     /// ψ row by row, which must keep an inverse. Default: each input drives its own axis, times 1.
-    pub psi: Option<At<Vec<At<Vec<At<String>>>>>>,
+    pub psi: Option<At<Rows>>,
     /// What the parameters are multiplied by in χ: for each axis a formula for each parameter. Default: there are none.
-    pub regressor: Option<At<Vec<At<Vec<At<String>>>>>>,
+    pub regressor: Option<At<Rows>>,
     /// The true parameters.
     #[serde(default)]
     pub parameters: At<Vec<At<f64>>>,
@@ -97,7 +100,7 @@ fn identity(axes: usize) -> Vec<Vec<Expression>> {
 
 fn matrix(
     key: &'static str,
-    rows: &At<Vec<At<Vec<At<String>>>>>,
+    rows: &At<Rows>,
     axes: usize,
     columns: usize,
     names: &[String],
