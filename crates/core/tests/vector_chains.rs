@@ -178,10 +178,10 @@ fn a_matrix_that_nears_one_without_an_inverse_is_told_by_its_smallest_singular_v
     let law = law.unwrap();
     let plant = VectorChain { terms, theta: Vec::new() };
     for (at, vanishes) in [(0.5, false), (0.94, false), (0.96, true), (1.04, true), (-0.97, true), (-1.5, false)] {
-        let found = close(&law, &plant, (&[at, 0.0], &[0.1, 0.2]), &[], &[], 2);
+        let found = close(&law, &plant, (&[at, 0.0], &[0.1, 0.2, 0.0, 0.0]), &[], &[], 2);
         let smallest = (at.abs() - 1.0_f64).abs();
-        assert!((found.shown[4] - smallest).abs() < 1e-12, "{at}: {:?}", found.shown);
-        match law.trouble(&[0.1, 0.2], &found.shown) {
+        assert!((found.shown[6] - smallest).abs() < 1e-12, "{at}: {:?}", found.shown);
+        match law.trouble(&[0.1, 0.2, 0.0, 0.0], &found.shown) {
             Some(Trouble::Vanishes { signal: Signal::Divisor, value, floor, .. }) => {
                 assert!(vanishes && value < floor, "{at}");
             }

@@ -74,7 +74,7 @@ fn every_combination_is_a_scenario_that_runs() {
     }
     let choosing =
         robots.iter().filter(|robot| matches!(robot.task, TaskTemplate::Agree { exchange: None, .. })).count();
-    assert_eq!((robots.len(), choosing, count), (11, 5, 24 * (2 * 5 + 5)));
+    assert_eq!((robots.len(), choosing, count), (12, 5, 24 * (2 * 5 + 6)));
 }
 
 #[test]

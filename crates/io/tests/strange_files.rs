@@ -31,11 +31,12 @@ edges.csv.file = "edges.csv"
 fn said(path: &Path) -> [String; 3] {
     let name = path.to_str().unwrap();
     let scenario = Report::new(open_scenario(name).unwrap_err());
-    let robot = Report::new(open_robot(name, &UrdfOptions::default()).unwrap_err());
+    let robot = open_robot(name, &UrdfOptions::default()).err().map(Report::new);
     let naming = path.with_extension("naming.toml");
     fs::write(&naming, WITH_EDGES.replace("\"edges.csv\"", &format!("\"{name}\""))).unwrap();
     let table = Report::new(open_scenario(naming.to_str().unwrap()).unwrap_err());
-    [scenario, robot, table].map(|report| format!("{report:?}"))
+    // Nothing is said of what is a robot.
+    [Some(scenario), robot, Some(table)].map(|report| report.map_or_else(String::new, |report| format!("{report:?}")))
 }
 
 #[test]

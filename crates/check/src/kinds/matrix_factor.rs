@@ -65,7 +65,8 @@ fn by_determinant(entries: &[Vec<Interval>]) -> f64 {
     let square = |entry: &Interval| Interval::point(entry.size()) * Interval::point(entry.size());
     let norm = entries.iter().flatten().fold(Interval::point(0.0), |sum, entry| sum + square(entry)).high;
     let others = m.saturating_sub(1) as f64;
-    let bound = if m == 1 { least } else { least * (others / norm * (1.0 - ROOM)).powf(others / 2.0) * (1.0 - ROOM) };
+    let bound =
+        if m == 1 { least } else { least * libm::pow(others / norm * (1.0 - ROOM), others / 2.0) * (1.0 - ROOM) };
     if bound > 0.0 && bound.is_finite() { bound } else { 0.0 }
 }
 

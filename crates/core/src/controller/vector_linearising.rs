@@ -60,9 +60,9 @@ use super::Guide;
 /// let terms = VectorFormulas::new(1, vec![-x(1), number(0.0)], vec![vec![number(0.0)], vec![x(0)]], psi)?;
 /// let guide = Guide::Consensus(Consensus::new([(&[1.0][..], 0.0)])?);
 /// let law = VectorLinearising::new(terms.clone(), vec![0.7], Following { guide, gain_per_s: 5.0, floor: 0.1 })?;
-/// let (x, state) = ([0.3, -0.4], [0.5, 0.1]);
+/// let (x, state) = ([0.3, -0.4], [0.5, 0.1, 0.0, 0.2]);
 /// let given = Given { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8, 0.1], 2)?, target: &[] };
-/// let (mut input, mut d_state, mut shown) = ([0.0; 2], [0.0; 2], [0.0; 5]);
+/// let (mut input, mut d_state, mut shown) = ([0.0; 2], [0.0; 4], [0.0; 7]);
 /// let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
 /// law.evaluate(&mut law.scratch(), given, &state, asked)?;
 ///

@@ -232,7 +232,7 @@ const CASCADES_CASES: &[Case] = &[
     ("parameters = [0.5, -0.8]", "params = [0.5, -0.8]",
         "test.toml:6:79: unknown key `params`", "did you mean `parameters`? allowed here: `regressors`, `parameters`"),
     ("robot.strict_feedback", "robot.strict_feedbak",
-        "test.toml:6:7: unknown choice `strict_feedbak`", "did you mean `strict_feedback`? choose one of `urdf`, `planar_arm`, `point_mass`, `ship`, `vehicle`, `rotorcraft`, `spacecraft`, `chain`, `strict_feedback`, `pure_feedback`"),
+        "test.toml:6:7: unknown choice `strict_feedbak`", "did you mean `strict_feedback`? choose one of `urdf`, `planar_arm`, `point_mass`, `ship`, `vehicle`, `rotorcraft`, `spacecraft`, `chain`, `vector_chain`, `strict_feedback`, `pure_feedback`"),
     ("higher_states = [0.2]", "higher_states = [0.2, 0]",
         "test.toml:7:45: `higher_states` has 2 entries, but `strict` needs 1", ""),
     ("higher_states = [0.2]", "velocity_m_s = [0.2]",
@@ -274,7 +274,7 @@ const CASCADES_CASES: &[Case] = &[
     ("floor = 1e-3", "floor = -1e-3",
         "test.toml:21:9: `floor` is -0.001, but must be positive", ""),
     ("[law.adaptive_backstepping]\ngains_per_s = [1, 2]\nadaptation_gain = 1\nestimate_start = \"zero\"\nfloor = 1e-3", "[law.linearising]",
-        "test.toml:17:2: agent `strict`: the law `linearising` is made for `chain`, plants of derivatives", "for this robot there is `adaptive_backstepping`"),
+        "test.toml:17:2: agent `strict`: the law `linearising` is made for `chain` and `vector_chain`, plants of derivatives", "for this robot there is `adaptive_backstepping`"),
     ("[law.adaptive_backstepping]\ngains_per_s = [1, 2]\nadaptation_gain = 1\nestimate_start = \"zero\"\nfloor = 1e-3", "[law.immersion]",
         "test.toml:17:2: agent `strict`: the law `immersion` is made for `chain`, plants of derivatives", "for this robot there is `adaptive_backstepping`"),
 ];

@@ -86,7 +86,7 @@ const CASES: &[Case] = &[
     ("robot.point_mass = { dimension = 2, mass_kg = 4.0 }", "robot = \"point_mass\"",
         "test.toml:16:9: `point_mass` needs a value", "write it with its value"),
     ("robot.point_mass = { dimension = 2, mass_kg = 4.0 }", "robot = 3",
-        "test.toml:16:9: found 3 where a choice of urdf, planar_arm, point_mass, ship, vehicle, rotorcraft, spacecraft, chain, strict_feedback, pure_feedback should stand", ""),
+        "test.toml:16:9: found 3 where a choice of urdf, planar_arm, point_mass, ship, vehicle, rotorcraft, spacecraft, chain, vector_chain, strict_feedback, pure_feedback should stand", ""),
     ("dimension = 2", "dimension = 3",
         "test.toml:16:1: `arm-1` has 2 axes and `cart` has 3, but agents that agree need as many", "agreement is on one vector of axes; `locked` removes joints of a URDF"),
     ("dimension = 2", "dimension = -2",

@@ -48,7 +48,7 @@ const MIXED_CASES: &[Case] = &[
     ("law.position_only = { damping = 20 }", "law.thrust = {}",
         "test.toml:11:1: agent `blind`: the law `thrust` is made for vehicles and rotorcraft", "for this robot there is `adaptive`, `known` and `position_only`"),
     ("law.position_only = { damping = 20 }", "law.linear_adaptive = {}",
-        "test.toml:11:1: agent `blind`: the law `linear_adaptive` is made for `chain`, plants of derivatives", "for this robot there is `adaptive`, `known` and `position_only`"),
+        "test.toml:11:1: agent `blind`: the law `linear_adaptive` is made for `chain` and `vector_chain`, plants of derivatives", "for this robot there is `adaptive`, `known` and `position_only`"),
     ("law.position_only = { damping = 20 }", "law.position_only = { damping = 20 }\ntarget.formulas = [0, 0, \"t\"]",
         "test.toml:12:1: agent `blind`: the law without velocity knows no offsets", "leave its `target` out; only vehicles and rotorcraft agree up to offsets"),
     ("robot.point_mass = { dimension = 3, mass_kg = 3 }", "robot.point_mass = { dimension = 3, mass_kg = 3 }\ntarget.formulas = [0, 0, \"t\"]",

@@ -34,7 +34,7 @@ fn all_mistakes_of_the_form_are_told_at_once() {
         "test.toml:11:1: unknown key `obstacles`",
         "test.toml:17:37: unknown key `mas_kg`",
         "test.toml:21:12: unknown choice `postion`",
-        "test.toml:29:10: found true where a number should stand",
+        "test.toml:29:10: found true where a number or a formula in t in quotes should stand",
         "test.toml:39:22: nan is not a finite number",
     ];
     assert_eq!(found, expected);

@@ -39,7 +39,7 @@ error_below = 1e-3
 #[rustfmt::skip]
 const SPACECRAFT_CASES: &[Case] = &[
     ("[agents.robot.spacecraft]", "[agents.robot.spacecaft]",
-        "test.toml:14:15: unknown choice `spacecaft`", "did you mean `spacecraft`? choose one of `urdf`, `planar_arm`, `point_mass`, `ship`, `vehicle`, `rotorcraft`, `spacecraft`, `chain`, `strict_feedback`, `pure_feedback`"),
+        "test.toml:14:15: unknown choice `spacecaft`", "did you mean `spacecraft`? choose one of `urdf`, `planar_arm`, `point_mass`, `ship`, `vehicle`, `rotorcraft`, `spacecraft`, `chain`, `vector_chain`, `strict_feedback`, `pure_feedback`"),
     ("inertia_kg_m2 = [[10, 0.5, 0], [0.5, 8, 0], [0, 0, 6]]\n", "",
         "test.toml:14:1: the key `inertia_kg_m2` is missing", ""),
     ("[[10, 0.5, 0], [0.5, 8, 0], [0, 0, 6]]", "[10, 0, 6]",

@@ -60,7 +60,7 @@ const VEHICLES_CASES: &[Case] = &[
     ("gravity_m_s2 = 9.8", "gravity_m_s = 9.8",
         "test.toml:7:34: unknown key `gravity_m_s`", "did you mean `gravity_m_s2`? allowed here: `mass_kg`, `gravity_m_s2`"),
     ("robot.vehicle =", "robot.vehicel =",
-        "test.toml:7:7: unknown choice `vehicel`", "did you mean `vehicle`? choose one of `urdf`, `planar_arm`, `point_mass`, `ship`, `vehicle`, `rotorcraft`, `spacecraft`, `chain`, `strict_feedback`, `pure_feedback`"),
+        "test.toml:7:7: unknown choice `vehicel`", "did you mean `vehicle`? choose one of `urdf`, `planar_arm`, `point_mass`, `ship`, `vehicle`, `rotorcraft`, `spacecraft`, `chain`, `vector_chain`, `strict_feedback`, `pure_feedback`"),
     ("[[2, 0, -1], [1, 2, -3]]", "[[2, 0, -1]]",
         "test.toml:8:20: `position_m` has 1 list, but there are 2 agents", ""),
     ("[[2, 0, -1], [1, 2, -3]]", "[[2, 0], [1, 2, -3]]",

@@ -272,7 +272,11 @@ pub struct ImmersionFile {
 
 impl LawKind for ImmersionFile {
     fn table() -> LawTable {
-        LawTable { key: "immersion", description: "The same by immersion and invariance.", made_for: "`chain`" }
+        LawTable {
+            key: "immersion",
+            description: "The same by immersion and invariance.",
+            made_for: "`chain`, plants of derivatives",
+        }
     }
 
     fn suits(robot: &RobotSetup) -> bool {
