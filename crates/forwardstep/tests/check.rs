@@ -180,7 +180,7 @@ fn eq_33_and_eq_43_hold_along_a_run_that_is_disturbed_and_where_s_is_zero() {
             "{words}"
         );
         let text = stdout(&forwardstep(&folder, &["explain", "two.toml", "--along"]).success());
-        assert!(text.contains("= w_i + ψ_i u_i") && text.contains("ṡ_i = w_i − 3 s_i"), "{text}");
+        assert!(text.contains("= w_i + ψ_i u_i") && text.contains("_i = w_i − 3 s_i"), "{text}");
         assert!(!text.contains("NO ROUNDING"), "{text}");
     }
 }
