@@ -1691,11 +1691,11 @@ def gain_is_positive(claim, agent, key, value, matrices, stated):
         entries = [exact(x, key) for x in (value if isinstance(value, list) else [value])]
         require(claim.proof, entries and min(entries) > 0, f"{agent.name} has a gain `{key}` that is not positive")
 
-# How many derivatives of a target a law needs, or the order of what follows it, four at most.
+# How many derivatives of a target a law needs, or the order of what follows it.
 def needed(agent, polynomial):
     order = len(agent.roots) if agent.law in CHAIN_LAWS else max(len(agent.roots), 2)
     known_ = {"position_only": 3, "task_space": 2, "attitude": 2, "thrust": 3 if design_of(agent) == "continuous" else 4}
-    return min(len(polynomial) - 1 if polynomial else known_.get(agent.law, order), 4)
+    return len(polynomial) - 1 if polynomial else known_.get(agent.law, order)
 
 # For each motion of a claim its axes, and the lowest and the highest derivative that has to be bounded.
 def motions_of(claim):

@@ -3,7 +3,7 @@
 
 use forwardstep_core::controller::{
     AdaptiveBackstepping, Asked, BacksteppingGains, Balance, ChainError, Controller, Following, Given, Guide,
-    Immersion, Linearising, PositionOnly, Thrust, ThrustDesign, Truth,
+    Immersion, Jets, Linearising, PositionOnly, Thrust, ThrustDesign, Truth,
 };
 use forwardstep_core::expression::Expression;
 use forwardstep_core::law::{ParameterBounds, Range};
@@ -39,8 +39,11 @@ fn at<C: Controller<Exchange = Position>>(law: &C, plant: &C::Plant, m: usize, x
     let (degree, sums) = (vec![0.8; 1], vec![0.5; m]);
     let mut output = vec![0.0; plant.output_len()];
     output.copy_from_slice(&x[..plant.output_len()]);
-    let given =
-        Given { measured: law.see(&output).unwrap(), heard: Heard::new(&degree, &sums, m).unwrap(), target: &[] };
+    let given = Given {
+        measured: law.see(&output).unwrap(),
+        heard: Heard::new(&degree, &sums, m).unwrap(),
+        target: Jets::NONE,
+    };
     let (mut input, mut d_law) = (vec![0.0; size(&plant.inputs())], vec![0.0; state.len()]);
     let (mut shown, mut d_plant) = (vec![0.0; size(&law.shown())], vec![0.0; x.len()]);
     let mut work = law.scratch();
@@ -167,7 +170,7 @@ fn eq_lyapunov_of_backstepping_keeps_its_rate_between_bounds_in_both_shapes() {
         // It starts where it is asked to, and not at a bound.
         let x = numbers(1, n);
         let given =
-            Given { measured: law.see(&x).unwrap(), heard: Heard::new(&[0.8], &[0.5], 1).unwrap(), target: &[] };
+            Given { measured: law.see(&x).unwrap(), heard: Heard::new(&[0.8], &[0.5], 1).unwrap(), target: Jets::NONE };
         let mut state = vec![0.0; n + 2];
         law.start(&mut law.scratch(), given, &[], &mut state).unwrap();
         let shown = at(&law, &plant, 1, &x, &state).shown;

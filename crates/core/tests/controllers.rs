@@ -8,7 +8,7 @@ use forwardstep_core::Gain;
 use forwardstep_core::agent::{Agent, Inbox, Limiter, StepError};
 use forwardstep_core::controller::{
     AdaptiveBackstepping, Asked, AttitudeTracking, BacksteppingGains, Controller, Floor, Following as ChainFollowing,
-    Given, Guide, Immersion, Jet, Linearising, PositionOnly, Stepped, TaskSpace, Thrust, ThrustDesign, Trouble,
+    Given, Guide, Immersion, Jet, Jets, Linearising, PositionOnly, Stepped, TaskSpace, Thrust, ThrustDesign, Trouble,
 };
 use forwardstep_core::expression::Expression;
 use forwardstep_core::law::{ParameterBounds, SlotineLi};
@@ -99,8 +99,8 @@ fn a_sample_that_does_not_come_later_is_refused_and_changes_nothing() {
     let mut stepped = blind();
     let jets = [[0.1; 5]];
     let inbox = Inbox { degree: 0.0, sums: &[0.0] };
-    stepped.step(1.0, &[0.3, 0.0], inbox, &jets).unwrap();
-    let again = stepped.step(1.0, &[0.3, 0.0], inbox, &jets).unwrap_err();
+    stepped.step(1.0, &[0.3, 0.0], inbox, Jets::from(&jets)).unwrap();
+    let again = stepped.step(1.0, &[0.3, 0.0], inbox, Jets::from(&jets)).unwrap_err();
     assert_eq!(again, StepError::Time { now_s: 1.0, last_s: 1.0 });
 }
 
@@ -132,7 +132,7 @@ fn eq_a9_one_long_step_is_many_short_ones_along_the_target() {
         let mut stepped = blind();
         for k in 0..=parts {
             let t_s = h * f64::from(k) / f64::from(parts);
-            stepped.step(t_s, &output, inbox, &[moved(&derivatives, t_s)]).unwrap();
+            stepped.step(t_s, &output, inbox, Jets::from(&[moved(&derivatives, t_s)])).unwrap();
         }
         stepped.state().to_vec()
     };
@@ -178,8 +178,11 @@ fn immersion_notices_an_antiderivative_that_is_a_little_off() {
     let law = made(1.0 / 3.0).unwrap();
     let mut state = vec![0.0; total(&law.states())];
     let output = [0.8, -1.4];
-    let given =
-        || Given { measured: law.see(&output).unwrap(), heard: Heard::new(&[1.0], &[0.3], 1).unwrap(), target: &[] };
+    let given = || Given {
+        measured: law.see(&output).unwrap(),
+        heard: Heard::new(&[1.0], &[0.3], 1).unwrap(),
+        target: Jets::NONE,
+    };
     law.start(&mut law.scratch(), given(), &[], &mut state).unwrap();
     let (mut input, mut d_state, mut shown) = ([0.0], vec![0.0; state.len()], vec![0.0; total(&law.shown())]);
     let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
@@ -224,7 +227,7 @@ fn thm7_the_filter_starts_such_that_it_stands_still() {
     let given = || Given {
         measured: law.see(&output).unwrap(),
         heard: Heard::new(&[0.0], &[0.0; 4], 4).unwrap(),
-        target: &target,
+        target: Jets::from(&target[..]),
     };
     let mut state = vec![0.0; total(&law.states())];
     law.start(&mut (), given(), &[], &mut state).unwrap();
@@ -259,7 +262,7 @@ fn thm6_an_estimate_beyond_its_margin_stands_and_never_turns_round() {
         let given = Given {
             measured: law.see(&output).unwrap(),
             heard: Heard::new(&[0.0], &[0.0; 2], 2).unwrap(),
-            target: &target,
+            target: Jets::from(&target[..]),
         };
         let mut state = vec![0.0; total(&law.states())];
         law.start(&mut law.scratch(), given, &[], &mut state).unwrap();
@@ -365,7 +368,7 @@ fn thm7_a_sampled_reference_attitude_stays_one() {
     let target = [[0.0; 5], [0.0; 5], [0.0; 5], [1.0, 0.0, 0.0, 0.0, 0.0]];
     for k in 0..5 {
         let inbox = Inbox { degree: 0.0, sums: &[0.0; 4] };
-        stepped.step(0.4 * f64::from(k), &output, inbox, &target).unwrap();
+        stepped.step(0.4 * f64::from(k), &output, inbox, Jets::from(&target)).unwrap();
         let norm: f64 = stepped.state()[3..7].iter().map(|q| q * q).sum();
         assert!((norm - 1.0).abs() < 1e-14, "{norm}");
     }

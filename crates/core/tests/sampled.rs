@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use forwardstep_core::agent::{FilterError, Inbox, LimiterError, StepError, VelocityFilter};
-use forwardstep_core::controller::{Guide, Jet, PositionOnly};
+use forwardstep_core::controller::{Guide, PositionOnly};
 use forwardstep_core::law::SlotineLi;
 use forwardstep_core::plant::{Mechanical, Plant, Rotorcraft, Spacecraft, TaskArm, Vehicle, Wheels, total};
 use forwardstep_core::reference::{Choice, Consensus, Derived, Position, PositionVelocity, Sliding, SmoothFollowing};
@@ -55,8 +55,13 @@ impl Motion for Square {
         1
     }
 
-    fn jet(&self, _: usize, at_s: f64) -> Jet {
-        [at_s * at_s, 2.0 * at_s, 2.0, 0.0, 0.0]
+    fn known_derivatives(&self) -> usize {
+        4
+    }
+
+    fn derivatives(&self, _: usize, at_s: f64, out: &mut [f64]) {
+        out.fill(0.0);
+        out.iter_mut().zip([at_s * at_s, 2.0 * at_s, 2.0]).for_each(|(out, value)| *out = value);
     }
 }
 
@@ -214,8 +219,13 @@ impl Motion for Corner {
         3
     }
 
-    fn jet(&self, axis: usize, at_s: f64) -> Jet {
-        [axis as f64 + at_s, 1.0, 0.0, 0.0, 0.0]
+    fn known_derivatives(&self) -> usize {
+        usize::MAX
+    }
+
+    fn derivatives(&self, axis: usize, at_s: f64, out: &mut [f64]) {
+        out.fill(0.0);
+        out.iter_mut().zip([axis as f64 + at_s, 1.0]).for_each(|(out, value)| *out = value);
     }
 }
 

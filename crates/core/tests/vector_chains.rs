@@ -3,7 +3,7 @@
 
 use forwardstep_core::LengthError;
 use forwardstep_core::controller::{
-    Asked, ChainError, Controller, Following, Given, Guide, Jet, Linearising, Trouble, Truth, VectorLinearising,
+    Asked, ChainError, Controller, Following, Given, Guide, Jet, Jets, Linearising, Trouble, Truth, VectorLinearising,
 };
 use forwardstep_core::expression::Expression;
 use forwardstep_core::law::ParameterBounds;
@@ -66,7 +66,8 @@ where
 {
     let (x, state) = at;
     let sums: Vec<f64> = numbers(99, axes);
-    let given = Given { measured: law.see(x).unwrap(), heard: Heard::new(&[1.2], &sums, axes).unwrap(), target };
+    let given =
+        Given { measured: law.see(x).unwrap(), heard: Heard::new(&[1.2], &sums, axes).unwrap(), target: target.into() };
     let (mut input, mut d_state) = (vec![f64::NAN; axes], vec![f64::NAN; state.len()]);
     let (mut shown, mut d_x) = (vec![f64::NAN; total(&law.shown())], vec![f64::NAN; x.len()]);
     let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
@@ -106,7 +107,7 @@ fn eq_43_v_falls_as_the_proof_says_whatever_pulls_at_the_other_axis() {
             let given = Given {
                 measured: law.see(x).unwrap(),
                 heard: Heard::new(&[1.2], &sums, 2).unwrap(),
-                target: &target[..*targets],
+                target: Jets::from(&target[..*targets]),
             };
             let truth = Truth { plant: &plant, state: x, external: w };
             let balance = law.balance(&mut law.scratch(), truth, given, state, &found.shown).unwrap();
@@ -158,8 +159,11 @@ fn a_start_without_other_wishes_has_no_s_and_wishes_are_granted() {
     let law = VectorLinearising::adaptive(coupled(), following(consensus(&[1.0, 2.0])), vec![1.0; 2], vec![0.3, 0.4]);
     let law = law.unwrap();
     let x = [0.1, 0.2, 0.3, 0.4];
-    let given =
-        || Given { measured: law.see(&x).unwrap(), heard: Heard::new(&[1.2], &[0.0; 2], 2).unwrap(), target: &[] };
+    let given = || Given {
+        measured: law.see(&x).unwrap(),
+        heard: Heard::new(&[1.2], &[0.0; 2], 2).unwrap(),
+        target: Jets::NONE,
+    };
     let mut state = [f64::NAN; 6];
     law.start(&mut law.scratch(), given(), &[], &mut state).unwrap();
     assert_eq!(state, [0.3, 0.4, 0.0, 0.0, 0.3, 0.4]);

@@ -95,7 +95,8 @@ struct PdPlusControl {
 fn errors(given: Given<'_, PdPlusControl>) -> Result<([f64; 2], [f64; 2]), LengthError> {
     LengthError::check("the target", 2, given.target.len())?;
     let (q, dq) = given.measured.split_at(2);
-    Ok(([0, 1].map(|k| q[k] - given.target[k][0]), [0, 1].map(|k| dq[k] - given.target[k][1])))
+    let desired = [0, 1].map(|k| given.target.jet(k));
+    Ok(([0, 1].map(|k| q[k] - desired[k][0]), [0, 1].map(|k| dq[k] - desired[k][1])))
 }
 
 impl Controller for PdPlusControl {
@@ -107,6 +108,10 @@ impl Controller for PdPlusControl {
 
     const MEASURES: &'static [&'static str] = &["position", "velocity"];
     const KNOWS_OFFSETS: bool = false;
+
+    fn target_derivatives(&self) -> usize {
+        2
+    }
 
     fn scratch(&self) {}
 
@@ -136,7 +141,7 @@ impl Controller for PdPlusControl {
         let (e, de) = errors(given)?;
         let (q, dq) = given.measured.split_at(2);
         // Y(q, q̇, q̇_d, q̈_d) ϑ; the other product is not needed.
-        let [dq_d, ddq_d] = [1, 2].map(|order| [0, 1].map(|k| given.target[k][order]));
+        let [dq_d, ddq_d] = [1, 2].map(|order| [0, 1].map(|k| given.target.jet(k)[order]));
         let motion = TwoVelocity { q, dq, z: &dq_d, dz: &ddq_d };
         self.arm.robot.regressor_products(&mut (), motion, &self.arm.theta, &e, asked.input, &mut [0.0; 5])?;
         for k in 0..2 {

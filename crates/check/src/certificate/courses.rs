@@ -69,6 +69,18 @@ impl<'a> Course<'a> {
         }
     }
 
+    /// The same of value and derivatives up to `order`; of a curve nothing is known beyond the fourth.
+    pub(super) fn enclose_derivatives(&self, order: usize, t_s: Interval) -> Vec<Interval> {
+        let mut derivatives = vec![Interval::WHOLE; order + 1];
+        match self {
+            Course::Formula(formula) => formula.enclose_derivatives(t_s, &mut derivatives),
+            Course::Curve(..) => {
+                derivatives.iter_mut().zip(self.enclose_jet(t_s)).for_each(|(out, within)| *out = within);
+            }
+        }
+        derivatives
+    }
+
     /// The stretches to try: a curve stays where it is after its last point.
     pub(super) fn stretches(&self) -> Stretches {
         match self {

@@ -34,7 +34,7 @@ pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
         let desired = setup.reference.downcast::<Desired>().map(|desired| desired.polynomial.order());
         for index in claim.agents {
             let agent = setup.agents.get(*index)?;
-            order = order.max(desired.unwrap_or_else(|| kind_of(agent).target_derivatives(agent)).min(4));
+            order = order.max(desired.unwrap_or_else(|| kind_of(agent).target_derivatives(agent)));
             motions.push((agent.target.as_ref()?, usize::from(!setup.tracks(*index))));
         }
     }
@@ -49,8 +49,8 @@ pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
         // What goes through points is bounded whatever the points are.
         for course in trajectory.paths().iter().map(Course::of).filter(|course| course.formula().is_some()) {
             let size = |t: Interval| {
-                let jet = course.enclose_jet(t);
-                jet.into_iter().take(order + 1).skip(lowest).reduce(Interval::hull).unwrap_or(Interval::point(0.0))
+                let jet = course.enclose_derivatives(order, t);
+                jet.into_iter().skip(lowest).reduce(Interval::hull).unwrap_or(Interval::point(0.0))
             };
             range = wider(range, found(&course.stretches(), size, setup.time.end_s, reach, |_| true)?.range);
         }
@@ -100,7 +100,7 @@ pub(super) fn sign_gain(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
 }
 
 /// A time at which γ is reached clearly.
-fn instant(trajectory: &Trajectory, drive: &[f64; 5], gain: f64, end_s: f64) -> Option<Proof> {
+fn instant(trajectory: &Trajectory, drive: &[f64], gain: f64, end_s: f64) -> Option<Proof> {
     let mut best = (gain, None);
     let on_run = (0..=LOOKS).map(|look| end_s * f64::from(look) / f64::from(LOOKS));
     let later = (1..=LATER).map(|look| (end_s * (1_u64 << look) as f64).round());

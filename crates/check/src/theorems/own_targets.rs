@@ -14,9 +14,6 @@ use crate::laws::{self, kind_of};
 use crate::report::Report;
 use crate::theorem::Theorem;
 
-/// Trajectories have as many derivatives.
-const MOST_DERIVATIVES: usize = 4;
-
 /// What is promised to agents that follow targets of their own. All that is asked is asked of their laws and targets.
 pub(super) fn check(setup: &Setup) -> Report {
     let Claim { theorem, promises } = laws::claim(setup)
@@ -39,7 +36,7 @@ pub(super) fn bounded(setup: &Setup) -> Vec<Hypothesis> {
     for (index, agent) in setup.agents.iter().enumerate() {
         if let Some(target) = &agent.target {
             let desired = setup.reference.downcast::<Desired>().map(|desired| desired.polynomial.order());
-            let needed = desired.unwrap_or_else(|| kind_of(agent).target_derivatives(agent)).min(MOST_DERIVATIVES);
+            let needed = desired.unwrap_or_else(|| kind_of(agent).target_derivatives(agent));
             let tracking = setup.tracks(index);
             // A formation may travel: of an offset only the derivatives count.
             let lowest = if tracking { 0 } else { 1 };

@@ -23,7 +23,7 @@ use crate::common::{edge, kinds, masses, noise, run};
 fn guided(guide: &Guide, k: usize, measured: &[f64], z: &[f64], heard: [f64; 2], target: &[[f64; 5]]) -> f64 {
     let mut rate = vec![0.0; z.len()];
     let sums = [heard[1]];
-    let leads = Leads { measured, state: z, heard: Heard::new(&heard[..1], &sums, 1).unwrap(), target };
+    let leads = Leads { measured, state: z, heard: Heard::new(&heard[..1], &sums, 1).unwrap(), target: target.into() };
     guide.rate(k, 1, leads, &mut guide.work(1), &mut rate).unwrap();
     *rate.last().unwrap()
 }

@@ -9,6 +9,7 @@ use forwardstep_check::derivation::residual::{Missing, Residual, Residuals};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::law::ParameterBounds;
+use forwardstep_core::plant::{Wheel, Wheels};
 use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkSpec, Placement, Tree};
 use forwardstep_core::robot::{Drives, Friction};
 use forwardstep_sim::delay::Delay;
@@ -16,7 +17,7 @@ use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::{Adaptive, Exchange, Setup, simulate, simulate_moments};
+use forwardstep_sim::{Adaptive, Exchange, Setup, SpacecraftModel, simulate, simulate_moments};
 
 use super::families::own_start;
 use crate::common::{arm, edge, kinds, noise, setup};
@@ -225,6 +226,18 @@ fn masses_without_velocity_spacecraft_and_chains_have_identities_of_their_own() 
     let mut slower = craft.clone();
     assert!(slower.agents[0].change_law(|law: &mut forwardstep_sim::AttitudeLaw| law.filter = Gain::Number(1.001)));
     assert_eq!(noticed(&slower, &craft), ["(100)"]);
+
+    // Three wheels whose axes lie in one plane but for a ten-thousandth: what the motors do cancels nearly.
+    let wheel = |axis| Wheel { axis, torque_limit_n_m: None, momentum_limit_n_m_s: None };
+    let flat = Wheels::new(&[[0.745, 0.0, 0.667], [-0.737, 0.675, 0.0], [0.065, -0.742, -0.667]].map(wheel)).unwrap();
+    let with = |inertia_kg_m2| {
+        let mut craft = craft.clone();
+        craft.agents[0].robot.kind = Arc::new(SpacecraftModel { inertia_kg_m2, wheels: flat.clone() });
+        craft
+    };
+    let [flat, lighter] = [10.0, 9.99].map(|first| with([[first, 0.0, 0.0], [0.0, 8.0, 0.0], [0.0, 0.0, 6.0]]));
+    assert_eq!(noticed(&flat, &flat), [""; 0]);
+    assert!(noticed(&lighter, &flat).contains(&"(94)"), "{:?}", noticed(&lighter, &flat));
 
     let mut chain = short(kinds::alone(kinds::chain(&Expression::number(2.0), 1, true)));
     chain.agents[0].start.dq = vec![0.5];

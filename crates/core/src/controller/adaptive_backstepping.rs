@@ -43,7 +43,7 @@ use super::following::{ChainError, ChainMeasured, positive, vanishes};
 use super::guide::{Guide, GuideError, GuideWork, Leads};
 use super::interior::{Interior, Metric};
 use super::recursion::{Recursion, RecursionWork, Stepped};
-use super::{Asked, Balance, Controller, Given, Trouble, Truth};
+use super::{Asked, Balance, Controller, Given, Jets, Trouble, Truth};
 use crate::LengthError;
 use crate::law::{ParameterBounds, Range};
 use crate::plant::{Cascade, CascadeTerms};
@@ -84,7 +84,7 @@ use crate::signal::{Block, Signal};
 ///
 /// // V and its loss, and where plant and law are after a short time.
 /// let after = |x: [f64; 2], state: &[f64], h: f64| -> Result<(Balance, [f64; 2], Vec<f64>), Box<dyn std::error::Error>> {
-///     let given = Given { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8], 1)?, target: &[] };
+///     let given = Given { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8], 1)?, target: Jets::NONE };
 ///     let (mut input, mut d_state, mut shown, mut dx) = ([0.0], vec![0.0; size], vec![0.0; shown_size], [0.0; 2]);
 ///     let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
 ///     law.evaluate(&mut law.scratch(), given, state, asked)?;
@@ -230,6 +230,10 @@ impl Controller for AdaptiveBackstepping {
     const MEASURES: &'static [&'static str] = &["all states of the chain"];
     const KNOWS_OFFSETS: bool = false;
 
+    fn target_derivatives(&self) -> usize {
+        self.guide.target_derivatives()
+    }
+
     fn scratch(&self) -> BacksteppingWork {
         BacksteppingWork { guide: self.guide.work(1), recursion: self.recursion.work() }
     }
@@ -306,7 +310,7 @@ impl Controller for AdaptiveBackstepping {
         for (k, (hat, integrated)) in theta_hat.iter_mut().zip(integrated).enumerate() {
             *hat = self.estimate(k, *integrated);
         }
-        let target = if self.guide.tracks() { given.target } else { &[] };
+        let target = if self.guide.tracks() { given.target } else { Jets::NONE };
         let leads = Leads { measured: &x[..1], state: z, heard: given.heard, target };
         self.guide.rate(1, 1, leads, &mut work.guide, &mut d_state[..vectors])?;
 
@@ -323,7 +327,7 @@ impl Controller for AdaptiveBackstepping {
         shown[..vectors].copy_from_slice(z);
         shown[vectors..][..n].copy_from_slice(errors);
         shown[vectors + n] = divisor;
-        if let (Some(jet), Some(error)) = (target.first(), shown.last_mut()) {
+        if let (Some(jet), Some(error)) = (target.get(0), shown.last_mut()) {
             *error = x[0] - jet[0];
         }
         Ok(())

@@ -91,7 +91,7 @@ pub struct AttitudeMeasured<'a> {
 /// };
 /// let at = |entry: f64| [entry, 0.0, 0.0, 0.0, 0.0];
 /// let target = [at(0.0), at(0.0), at(0.0), at(1.0)];
-/// let given = Given { measured: law.see(&state)?, heard: Heard::new(&[0.0], &[0.0; 4], 4)?, target: &target };
+/// let given = Given { measured: law.see(&state)?, heard: Heard::new(&[0.0], &[0.0; 4], 4)?, target: Jets::from(&target) };
 /// let (mut own, mut d_own, mut input, mut shown) = ([0.0; 11], [0.0; 11], [0.0; 3], [0.0; 17]);
 /// law.start(&mut (), given, &[], &mut own)?;
 /// law.evaluate(&mut (), given, &own, Asked { input: &mut input, d_state: &mut d_own, shown: &mut shown })?;
@@ -163,6 +163,10 @@ impl Controller for AttitudeTracking {
     const MEASURES: &'static [&'static str] = &["attitude"];
     const KNOWS_OFFSETS: bool = false;
 
+    fn target_derivatives(&self) -> usize {
+        2
+    }
+
     fn scratch(&self) {}
 
     fn states(&self) -> Vec<Block> {
@@ -231,7 +235,7 @@ impl Controller for AttitudeTracking {
         LengthError::check("filter gain", 4, self.filter.size())?;
         LengthError::check("damping gain", 4, self.damping.size())?;
         LengthError::check("target", 4, given.target.len())?;
-        let path: [Jet; 4] = core::array::from_fn(|k| given.target[k]);
+        let path: [Jet; 4] = core::array::from_fn(|k| given.target.jet(k));
         let (q, desired) = (normalized(*given.measured.q), Desired::from_path(&path));
         let (z, q_z, y) = (three(state), four(&state[3..]), four(&state[7..]));
 

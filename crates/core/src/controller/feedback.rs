@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::fmt;
 use core::marker::PhantomData;
 
-use super::{Asked, Balance, Controller, Given, Jet, Trouble, Truth};
+use super::{Asked, Balance, Controller, Given, Jet, Jets, Trouble, Truth};
 use crate::LengthError;
 use crate::plant::{Plant, total};
 use crate::reference::{Heard, Position};
@@ -16,7 +16,7 @@ use crate::signal::{Block, Signal};
 /// **Requires** of its closures that they allocate nothing and do not panic when every slice is as long as its blocks say.
 ///
 /// ```
-/// use forwardstep_core::controller::{Asked, Balance, Controller, Feedback, FeedbackInput, Given, Truth};
+/// use forwardstep_core::controller::{Asked, Balance, Controller, Feedback, FeedbackInput, Given, Jets, Truth};
 /// use forwardstep_core::plant::{Plant, VectorField};
 /// use forwardstep_core::reference::Heard;
 /// use forwardstep_core::signal::Signal;
@@ -36,7 +36,7 @@ use crate::signal::{Block, Signal};
 /// let law = Feedback::new(&tank, [(Signal::Error, 1)], law, balance);
 ///
 /// let (x, mut u, mut dx, mut error) = ([3.0], [0.0], [0.0], [0.0]);
-/// let given = Given { measured: law.see(&x)?, heard: Heard::new(&[], &[0.0], 1)?, target: &[[1.0, 0.0, 0.0, 0.0, 0.0]] };
+/// let given = Given { measured: law.see(&x)?, heard: Heard::new(&[], &[0.0], 1)?, target: Jets::from(&[[1.0, 0.0, 0.0, 0.0, 0.0]]) };
 /// law.evaluate(&mut (), given, &[], Asked { input: &mut u, d_state: &mut [], shown: &mut error })?;
 /// tank.rate(&mut (), &x, &u, &[], &mut dx)?;
 /// let truth = Truth { plant: &tank, state: &x, external: &[] };
@@ -51,6 +51,7 @@ pub struct Feedback<P, L, B> {
     states: Vec<Block>,
     start: Vec<f64>,
     shown: Vec<Block>,
+    target_derivatives: usize,
     law: L,
     balance: B,
     plant: PhantomData<fn(&P)>,
@@ -63,7 +64,7 @@ pub struct FeedbackInput<'a> {
     pub output: &'a [f64],
     /// What neighbours transmit.
     pub heard: Heard<'a, Position>,
-    target: &'a [Jet],
+    target: Jets<'a>,
     /// χ.
     pub state: &'a [f64],
 }
@@ -84,6 +85,7 @@ where
             states: Vec::new(),
             start: Vec::new(),
             shown: shown.into(),
+            target_derivatives: Jets::LEAST,
             law,
             balance,
             plant: PhantomData,
@@ -99,12 +101,17 @@ where
         self
     }
 
+    /// The same with a target that has `derivatives`, where the law needs more than four.
+    pub fn with_target_derivatives(self, derivatives: usize) -> Self {
+        Feedback { target_derivatives: derivatives.max(Jets::LEAST), ..self }
+    }
+
     /// What the closures take, every slice as long as it should be.
     fn input<'a>(
         &self,
         output: &'a [f64],
         heard: Heard<'a, Position>,
-        target: &'a [Jet],
+        target: Jets<'a>,
         state: &'a [f64],
     ) -> Result<FeedbackInput<'a>, LengthError> {
         LengthError::check("state", self.start.len(), state.len())?;
@@ -118,7 +125,12 @@ where
 impl FeedbackInput<'_> {
     /// Where the axis should be, with four derivatives; zero where there is no target.
     pub fn target(&self, axis: usize) -> Jet {
-        self.target.get(axis).copied().unwrap_or_default()
+        self.target.jet(axis)
+    }
+
+    /// The same with all derivatives that were asked for; nothing where there is no target.
+    pub fn target_in_full(&self, axis: usize) -> &[f64] {
+        self.target.get(axis).unwrap_or_default()
     }
 }
 
@@ -154,6 +166,10 @@ where
 
     const MEASURES: &'static [&'static str] = &["the output"];
     const KNOWS_OFFSETS: bool = false;
+
+    fn target_derivatives(&self) -> usize {
+        self.target_derivatives
+    }
 
     fn scratch(&self) {}
 
@@ -240,7 +256,7 @@ mod tests {
         let law = with_integrator();
         let heard = Heard::new(&[], &[0.0], 1).unwrap();
         let mut state = [0.0];
-        let given = |target| Given { measured: law.see(&[3.0]).unwrap(), heard, target };
+        let given = |target: &'static [Jet]| Given { measured: law.see(&[3.0]).unwrap(), heard, target: target.into() };
         law.start(&mut (), given(&[]), &[], &mut state).unwrap();
         assert_eq!(state, [0.25]);
         let (mut input, mut d_state, mut shown) = ([0.0], [0.0], [0.0]);
@@ -262,7 +278,7 @@ mod tests {
             let (mut input, mut d_state, mut told) = (vec![0.0; input], vec![0.0; rate], vec![0.0; shown]);
             let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut told };
             let heard = Heard::new(&[], &[0.0], 1).unwrap();
-            let given = Given { measured: law.see(&[1.0]).unwrap(), heard, target: &target };
+            let given = Given { measured: law.see(&[1.0]).unwrap(), heard, target: Jets::from(&target[..]) };
             assert!(law.evaluate(&mut (), given, &vec![0.0; state], asked).is_err());
         }
     }

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use thiserror::Error;
 
 use super::guide::{Guide, GuideError, GuideWork, Leads};
-use super::{Controller, Given, Trouble};
+use super::{Controller, Given, Jets, Trouble};
 use crate::LengthError;
 use crate::error::GainError;
 use crate::expression::ExpressionError;
@@ -176,14 +176,14 @@ impl Following {
         let vectors = self.guide.vectors(k);
         LengthError::check("x", k, x.len())?;
         let z = &state[..vectors];
-        let target = if self.guide.tracks() { given.target } else { &[] };
+        let target = if self.guide.tracks() { given.target } else { Jets::NONE };
         let leads = Leads { measured: x, state: z, heard: given.heard, target };
         self.guide.rate(k, 1, leads, &mut work.guide, &mut d_state[..vectors])?;
         let (chi, psi) = terms.terms(&mut work.terms, x, &mut work.phi)?;
         let s = x.last().zip(z.first()).map_or(f64::NAN, |(x, z)| x - z);
         shown[..vectors].copy_from_slice(z);
         (shown[vectors], shown[vectors + 1]) = (s, psi);
-        if let (Some(jet), Some(error)) = (target.first(), shown.last_mut()) {
+        if let (Some(jet), Some(error)) = (target.get(0), shown.last_mut()) {
             *error = x[0] - jet[0];
         }
         Ok(Found { s, dz: d_state[0], chi, psi })

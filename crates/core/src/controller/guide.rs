@@ -37,7 +37,7 @@ use alloc::vec::Vec;
 
 use thiserror::Error;
 
-use super::Jet;
+use super::Jets;
 use crate::LengthError;
 use crate::reference::{
     Consensus, DesiredDynamics, Exchange, Heard, Measured, Place, Position, ProtocolWork, Reference, ReferenceOut,
@@ -70,23 +70,12 @@ pub enum GuideError {
         /// How many there are.
         got: usize,
     },
-    /// A trajectory has no more than four derivatives.
-    #[error("roots of the reference dynamics: {got}, but a trajectory is known with {most} derivatives only")]
-    TooMany {
-        /// How many roots there may be.
-        most: usize,
-        /// How many there are.
-        got: usize,
-    },
     /// A law that uses derivatives of z, which are no states there.
     #[error(
         "the desired dynamics are written in x, so that derivatives of z are integrated and no states, but the law uses them: write the dynamics          in what is measured or in z"
     )]
     NoDerivatives,
 }
-
-/// Derivatives in a [`Jet`].
-const DERIVATIVES: usize = 4;
 
 impl Guide {
     /// How many roots it was made from: N for tracking and for desired dynamics, N − 1 for consensus.
@@ -116,15 +105,17 @@ impl Guide {
         }
     }
 
+    /// Up to which derivative it reads a trajectory: the order N of what follows it.
+    pub fn target_derivatives(&self) -> usize {
+        if self.tracks() { self.roots() } else { 0 }
+    }
+
     /// ℓ for a plant of order `k`, if it is at least `least`.
     ///
     /// # Errors
-    /// [`GuideError`] when there are too few roots, or more than a trajectory has derivatives.
+    /// [`GuideError`] when there are too few roots.
     pub fn check(&self, k: usize, least: usize) -> Result<usize, GuideError> {
         let got = self.roots();
-        if self.tracks() && got > DERIVATIVES {
-            return Err(GuideError::TooMany { most: DERIVATIVES, got });
-        }
         let least = match self {
             Guide::Tracking { .. } | Guide::Desired(_) => (least + k).saturating_sub(1),
             Guide::Consensus(_) => (least + k).saturating_sub(2),
@@ -149,7 +140,7 @@ impl Guide {
 
     /// d/dt of z, ż, …, z^(ℓ−1) for a plant of order `k` with `axes` axes.
     ///
-    /// `measured` holds x, ẋ, …, as many blocks as are measured, k or k − 1; the target is a [`Jet`] per axis.
+    /// `measured` holds x, ẋ, …, as many blocks as are measured, k or k − 1; the target has [`Guide::target_derivatives`].
     ///
     /// # Errors
     /// [`LengthError`] when a slice has the wrong length.
@@ -209,7 +200,7 @@ impl Guide {
                 for entry in 0..axes {
                     let x = |r: usize| measured[r * axes + entry];
                     let (place, given) = (Place { block: axes, entry }, (own, heard.degree[0], heard));
-                    let target = target.get(entry).map(|jet| &jet[..]);
+                    let target = target.get(entry);
                     desired.rate::<Position>(k, place, x, given, target, (&mut work.protocol, d_state))?;
                 }
             }
@@ -251,8 +242,8 @@ pub struct Leads<'a, 'h> {
     pub state: &'a [f64],
     /// What is heard.
     pub heard: Heard<'h, Position>,
-    /// The trajectory, a jet per axis.
-    pub target: &'a [Jet],
+    /// The trajectory.
+    pub target: Jets<'a>,
 }
 
 /// Room for one call of (24), which is written for robots.

@@ -83,7 +83,7 @@ const CLOSE: f64 = 1e-9;
 /// let law = Immersion::new(terms.clone(), &[antiderivative], following, vec![3.0], vec![theta + zeta])?;
 ///
 /// let x = [0.3, -0.4];
-/// let given = Given { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8], 1)?, target: &[] };
+/// let given = Given { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8], 1)?, target: Jets::NONE };
 /// let (mut state, mut d_state) = ([0.0; 3], [0.0; 3]);
 /// law.start(&mut law.scratch(), given, &[vec![0.5], vec![0.1]], &mut state)?;
 /// let (mut input, mut shown) = ([0.0], [0.0; 5]);
@@ -212,6 +212,10 @@ impl Controller for Immersion {
 
     const MEASURES: &'static [&'static str] = &["position", "its derivatives below the order of the plant"];
     const KNOWS_OFFSETS: bool = false;
+
+    fn target_derivatives(&self) -> usize {
+        self.following.guide.target_derivatives()
+    }
 
     fn scratch(&self) -> ImmersionWork {
         ImmersionWork {

@@ -22,7 +22,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{Asked, Balance, Controller, Given, Jet, Trouble, Truth};
+use super::{Asked, Balance, Controller, Given, Jets, Trouble, Truth};
 use crate::law::{SlotineLi, SlotineLiOutput};
 use crate::plant::{Mechanical, Plant};
 use crate::reference::Position;
@@ -45,7 +45,7 @@ pub struct MotionMeasured<'a> {
 /// Tracking in joint space, with ϑ adapted or known.
 ///
 /// State: z, ż, …, z^(ℓ−1), then ϑ̂ if it is adapted. Shown: z, ż, … as far as they are states, but both in any case; s, ϑ̂ if it is
-/// adapted, q − q_d. The target is a [`Jet`] for every axis.
+/// adapted, q − q_d. The target has N derivatives for every axis, two at least.
 ///
 /// **Source**: (5)–(7) after Slotine and Li, with the reference dynamics of [`Guide`] for k = 2. **Measures**: q, q̇.
 /// **Transmits**: nothing.
@@ -57,7 +57,7 @@ pub struct MotionMeasured<'a> {
 ///
 /// ```
 /// use forwardstep_core::ResolvedGain;
-/// use forwardstep_core::controller::{Asked, Controller, Given, JointTracking, Truth};
+/// use forwardstep_core::controller::{Asked, Controller, Given, Jets, JointTracking, Truth};
 /// use forwardstep_core::law::SlotineLi;
 /// use forwardstep_core::plant::{Mechanical, Plant};
 /// use forwardstep_core::reference::Heard;
@@ -70,7 +70,7 @@ pub struct MotionMeasured<'a> {
 /// let plant = Mechanical { robot, theta: vec![4.0] };
 ///
 /// let (state, mut tau, mut rate, mut shown) = ([1.0, 0.5], [0.0], [0.0; 2], [0.0; 4]);
-/// let given = Given { measured: law.see(&state)?, heard: Heard::new(&[], &[0.0], 1)?, target: &[[0.0; 5]] };
+/// let given = Given { measured: law.see(&state)?, heard: Heard::new(&[], &[0.0], 1)?, target: Jets::from(&[[0.0; 5]]) };
 /// let mut work = law.scratch();
 /// law.evaluate(&mut work, given, &[], Asked { input: &mut tau, d_state: &mut [], shown: &mut shown })?;
 /// plant.rate(&mut plant.scratch(), &state, &tau, &[], &mut rate)?;
@@ -139,7 +139,7 @@ where
         &self,
         work: &mut JointTrackingWork<R::Scratch>,
         MotionMeasured { q, dq }: MotionMeasured<'_>,
-        target: &[Jet],
+        target: Jets<'_>,
         state: &[f64],
         d_state: &mut [f64],
     ) -> Result<(), LengthError> {
@@ -186,6 +186,11 @@ where
 
     const MEASURES: &'static [&'static str] = &["position", "velocity"];
     const KNOWS_OFFSETS: bool = false;
+
+    fn target_derivatives(&self) -> usize {
+        // ż holds the second one even where one root asks for the first only.
+        self.alpha.len().max(2)
+    }
 
     fn scratch(&self) -> Self::Scratch {
         let (m, p) = (self.robot.dof(), self.robot.parameter_count());

@@ -64,7 +64,7 @@ use super::Guide;
 /// let guide = Guide::Consensus(Consensus::new([(&[1.0, 2.0][..], 0.0)])?);
 /// let law = Linearising::new(terms, vec![0.7], Following { guide, gain_per_s: 5.0, floor: 0.1 })?;
 /// let x = [0.3, -0.4];
-/// let given = Given { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8], 1)?, target: &[] };
+/// let given = Given { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8], 1)?, target: Jets::NONE };
 /// let state = [0.5, 0.1];
 /// let (mut input, mut d_state, mut shown) = ([0.0], [0.0; 2], [0.0; 4]);
 /// let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
@@ -147,6 +147,10 @@ impl<T: Terms> Controller for Linearising<T> {
 
     const MEASURES: &'static [&'static str] = &["position", "its derivatives below the order of the plant"];
     const KNOWS_OFFSETS: bool = false;
+
+    fn target_derivatives(&self) -> usize {
+        self.following.guide.target_derivatives()
+    }
 
     fn scratch(&self) -> Self::Scratch {
         self.following.work(&self.terms)

@@ -24,6 +24,7 @@ mod following;
 mod guide;
 mod immersion;
 mod interior;
+mod jets;
 mod joint_tracking;
 mod linearising;
 mod position_only;
@@ -41,6 +42,7 @@ pub use feedback::{Feedback, FeedbackInput};
 pub use following::{ChainError, ChainMeasured, Following, FollowingWork};
 pub use guide::{Guide, GuideError, GuideWork, Leads};
 pub use immersion::{Immersion, ImmersionWork};
+pub use jets::{Jet, Jets, JetsBuffer};
 pub use joint_tracking::{JointTracking, JointTrackingWork, MotionMeasured};
 pub use linearising::Linearising;
 pub use position_only::{PositionMeasured, PositionOnly};
@@ -57,18 +59,15 @@ use crate::plant::Plant;
 use crate::reference::{Exchange, Heard};
 use crate::signal::{Block, Signal};
 
-/// A number that changes with time, and its first four derivatives.
-pub type Jet = [f64; 5];
-
 /// What a controller has to go by at one instant.
 pub struct Given<'a, C: Controller> {
     /// What it may see of its own plant.
     pub measured: C::Measured<'a>,
     /// What it hears of its neighbours.
     pub heard: Heard<'a, C::Exchange>,
-    /// Where it should be: a [`Jet`] per axis of a desired trajectory, or of an offset from where the others agree. Empty
-    /// where there is none.
-    pub target: &'a [Jet],
+    /// Where it should be, axis by axis: a desired trajectory, or an offset from where the others agree. Empty where there is
+    /// none.
+    pub target: Jets<'a>,
 }
 
 impl<C: Controller> Clone for Given<'_, C> {
@@ -149,6 +148,9 @@ pub trait Controller: Clone + Send + Sync + 'static {
     fn target_len(&self, axes: usize) -> usize {
         axes
     }
+
+    /// Up to which derivative it reads its target. It is given so many at least, and [`Jets::LEAST`].
+    fn target_derivatives(&self) -> usize;
 
     /// Allocates working memory.
     fn scratch(&self) -> Self::Scratch;

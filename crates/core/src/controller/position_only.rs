@@ -36,7 +36,7 @@
 use alloc::vec::Vec;
 
 use super::guide::{Guide, GuideWork, Leads};
-use super::{Asked, Balance, Controller, Given, Trouble, Truth};
+use super::{Asked, Balance, Controller, Given, Jets, Trouble, Truth};
 use crate::LengthError;
 use crate::law::Range;
 use crate::plant::Mechanical;
@@ -72,7 +72,7 @@ pub struct PositionMeasured<'a> {
 /// let guide = Guide::Tracking { alpha: alpha.clone() };
 /// let law = PositionOnly { axes: 1, guide, damping: 8.0, filter_per_s: 20.0, adaptation: 3.0, estimate_start: 1.5, bounds: None };
 /// let target = [[0.2, 0.1, -0.3, 0.4, 0.0]];
-/// let given = Given { measured: law.see(&[0.5, 9.9])?, heard: Heard::new(&[0.0], &[0.0], 1)?, target: &target };
+/// let given = Given { measured: law.see(&[0.5, 9.9])?, heard: Heard::new(&[0.0], &[0.0], 1)?, target: Jets::from(&target) };
 /// let mut scratch = law.scratch();
 /// let (mut state, mut d_state) = (vec![0.0; 4], vec![0.0; 4]);
 /// law.start(&mut scratch, given, &[vec![0.7], vec![-0.6]], &mut state)?;
@@ -137,6 +137,10 @@ impl Controller for PositionOnly {
 
     const MEASURES: &'static [&'static str] = &["position"];
     const KNOWS_OFFSETS: bool = false;
+
+    fn target_derivatives(&self) -> usize {
+        self.guide.target_derivatives()
+    }
 
     fn scratch(&self) -> GuideWork {
         self.guide.work(self.axes)
@@ -207,7 +211,7 @@ impl Controller for PositionOnly {
         let x = given.measured.x;
         LengthError::check("x", m, x.len())?;
         let (z, dz) = (&state[..m], &state[m..2 * m]);
-        let target = if self.guide.tracks() { given.target } else { &[] };
+        let target = if self.guide.tracks() { given.target } else { Jets::NONE };
         let leads = Leads { measured: x, state: &state[..p], heard: given.heard, target };
         self.guide.rate(2, m, leads, work, &mut asked.d_state[..p])?;
         let mu = self.found(state[i], x, z, dz);

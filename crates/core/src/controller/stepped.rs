@@ -7,7 +7,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{Asked, Controller, Given, Jet, Trouble};
+use super::{Asked, Controller, Given, Jets, JetsBuffer, Trouble};
 use crate::LengthError;
 use crate::agent::{Inbox, StepError, finite};
 use crate::plant::{Plant, total};
@@ -21,7 +21,7 @@ use crate::reference::{Exchange, Heard};
 ///
 /// ```
 /// use forwardstep_core::agent::Inbox;
-/// use forwardstep_core::controller::{Guide, PositionOnly, Stepped};
+/// use forwardstep_core::controller::{Guide, Jets, PositionOnly, Stepped};
 /// use forwardstep_core::plant::Mechanical;
 /// use forwardstep_core::reference::Consensus;
 /// use forwardstep_core::robot::PointMass;
@@ -32,7 +32,7 @@ use crate::reference::{Exchange, Heard};
 /// // z, ż, p, I of a mass that is held at 1 m and has no neighbours: z̈ = −(κ₀ + κ₁) ż − κ₀ κ₁ z, and p follows.
 /// let mut stepped = Stepped::new(law, &plant, 0, &[1.0, -1.0, 1.0, 0.0])?;
 /// for k in 0..=1000 {
-///     stepped.step(1e-3 * f64::from(k), &[1.0, 0.0], Inbox { degree: 0.0, sums: &[0.0] }, &[])?;
+///     stepped.step(1e-3 * f64::from(k), &[1.0, 0.0], Inbox { degree: 0.0, sums: &[0.0] }, Jets::NONE)?;
 /// }
 /// // The root that this start leaves in is κ₀ = 1.
 /// assert!((stepped.state()[0] - (-1.0_f64).exp()).abs() < 1e-9);
@@ -60,7 +60,7 @@ struct Held {
     output: Vec<f64>,
     degree: [f64; 1],
     sums: Vec<f64>,
-    target: Vec<Jet>,
+    target: JetsBuffer,
     time_s: f64,
 }
 
@@ -69,7 +69,7 @@ impl Held {
     fn given<'a, C: Controller>(
         &'a self,
         controller: &C,
-        target: &'a [Jet],
+        target: Jets<'a>,
         later_s: f64,
     ) -> Result<Given<'a, C>, LengthError> {
         let heard = Heard::new(&self.degree, &self.sums, self.sums.len() / C::Exchange::CHANNELS)?;
@@ -92,7 +92,7 @@ struct Work {
     stage: Vec<f64>,
     k: Vec<f64>,
     sum: Vec<f64>,
-    target: Vec<Jet>,
+    target: JetsBuffer,
 }
 
 impl<C: Controller> Stepped<C> {
@@ -111,6 +111,7 @@ impl<C: Controller> Stepped<C> {
     /// The same, but the first sample sets the state, with z(0), ż(0), … as far as `wanted`.
     pub(crate) fn started_by(controller: C, lengths: Lengths, targets: usize, wanted: Vec<Vec<f64>>) -> Self {
         let n = total(&controller.states());
+        let target = JetsBuffer::new(targets, controller.target_derivatives());
         Stepped {
             scratch: controller.scratch(),
             last_s: None,
@@ -121,10 +122,10 @@ impl<C: Controller> Stepped<C> {
                 output: vec![0.0; lengths.output],
                 degree: [0.0],
                 sums: vec![0.0; C::Exchange::CHANNELS * lengths.axes],
-                target: vec![[0.0; 5]; targets],
+                target: target.clone(),
                 time_s: 0.0,
             },
-            work: Work { stage: vec![0.0; n], k: vec![0.0; n], sum: vec![0.0; n], target: vec![[0.0; 5]; targets] },
+            work: Work { stage: vec![0.0; n], k: vec![0.0; n], sum: vec![0.0; n], target },
             input: vec![0.0; lengths.input],
             shown: vec![0.0; total(&controller.shown())],
             controller,
@@ -142,12 +143,13 @@ impl<C: Controller> Stepped<C> {
     /// Checks all lengths by starting and evaluating once with zeros.
     pub(crate) fn check(&mut self) -> Result<(), LengthError> {
         let Stepped { controller, scratch, started, wanted, state, held, work, input, shown, .. } = self;
+        let target = work.target.jets();
         let mut first = state.clone();
         if !*started {
-            controller.start(scratch, held.given(controller, &work.target, 0.0)?, wanted, &mut first)?;
+            controller.start(scratch, held.given(controller, target, 0.0)?, wanted, &mut first)?;
         }
         let asked = Asked { input, d_state: &mut work.k, shown };
-        controller.evaluate(scratch, held.given(controller, &work.target, 0.0)?, &first, asked)?;
+        controller.evaluate(scratch, held.given(controller, target, 0.0)?, &first, asked)?;
         input.fill(0.0);
         shown.fill(0.0);
         Ok(())
@@ -175,15 +177,28 @@ impl<C: Controller> Stepped<C> {
 
     /// Takes the sample of time `now_s` and gives the input to hold until the next one.
     ///
+    /// The target has at least as many derivatives as [`Controller::target_derivatives`] says.
+    ///
     /// The state is moved from the last sample to this one with the inputs of the last, over the time that really passed;
     /// then the new inputs give the command.
     ///
     /// # Errors
     /// [`StepError`], before anything has changed.
-    pub fn step(&mut self, now_s: f64, output: &[f64], inbox: Inbox<'_>, target: &[Jet]) -> Result<&[f64], StepError> {
+    pub fn step(
+        &mut self,
+        now_s: f64,
+        output: &[f64],
+        inbox: Inbox<'_>,
+        target: Jets<'_>,
+    ) -> Result<&[f64], StepError> {
         LengthError::check("output", self.held.output.len(), output.len())?;
         LengthError::check("sums heard", self.held.sums.len(), inbox.sums.len())?;
-        LengthError::check("target", self.held.target.len(), target.len())?;
+        let need = self.held.target.jets();
+        LengthError::check("target", need.len(), target.len())?;
+        if !target.is_empty() {
+            let got = target.derivatives().min(need.derivatives());
+            LengthError::check("derivatives of the target", need.derivatives(), got)?;
+        }
         finite("time", &[now_s])?;
         finite("what is measured", output)?;
         finite("what is heard", &[inbox.degree])?;
@@ -196,15 +211,18 @@ impl<C: Controller> Stepped<C> {
         self.held.output.copy_from_slice(output);
         self.held.degree = [inbox.degree];
         self.held.sums.copy_from_slice(inbox.sums);
-        self.held.target.copy_from_slice(target);
+        for ((held, first), given) in self.held.target.iter_mut().zip(self.work.target.iter_mut()).zip(target) {
+            held.copy_from_slice(&given[..held.len()]);
+            first.copy_from_slice(held);
+        }
         self.held.time_s = now_s;
-        self.work.target.copy_from_slice(target);
         let Stepped { controller, scratch, started, wanted, state, held, work, input, shown, .. } = self;
+        let target = work.target.jets();
         if !*started {
-            controller.start(scratch, held.given(controller, &work.target, 0.0)?, wanted, state)?;
+            controller.start(scratch, held.given(controller, target, 0.0)?, wanted, state)?;
         }
         let asked = Asked { input, d_state: &mut work.k, shown };
-        controller.evaluate(scratch, held.given(controller, &work.target, 0.0)?, state, asked)?;
+        controller.evaluate(scratch, held.given(controller, target, 0.0)?, state, asked)?;
         self.started = true;
         self.last_s = Some(now_s);
         Ok(&self.input)
@@ -217,10 +235,10 @@ impl<C: Controller> Stepped<C> {
         sum.fill(0.0);
         stage.copy_from_slice(state);
         for (when, weight, next) in [(0.0, 1.0, 0.5), (0.5, 2.0, 0.5), (0.5, 2.0, 1.0), (1.0, 1.0, 0.0)] {
-            for (moved, jet) in target.iter_mut().zip(&held.target) {
-                *moved = shifted(jet, when * h);
+            for (moved, jet) in target.iter_mut().zip(held.target.jets()) {
+                shift(jet, when * h, moved);
             }
-            let given = held.given(controller, target, when * h)?;
+            let given = held.given(controller, target.jets(), when * h)?;
             controller.evaluate(scratch, given, stage, Asked { input, d_state: k, shown })?;
             for i in 0..state.len() {
                 sum[i] += weight * k[i];
@@ -235,10 +253,9 @@ impl<C: Controller> Stepped<C> {
     }
 }
 
-/// The jet a time `h` later, by its Taylor polynomial.
-fn shifted(jet: &Jet, h: f64) -> Jet {
-    let mut out = *jet;
-    for (k, value) in out.iter_mut().enumerate() {
+/// A value and its derivatives a time `h` later, by their Taylor polynomial.
+fn shift(jet: &[f64], h: f64, later: &mut [f64]) {
+    for (k, value) in later.iter_mut().enumerate() {
         let mut term = 1.0;
         *value = 0.0;
         for (j, derivative) in jet[k..].iter().enumerate() {
@@ -246,5 +263,4 @@ fn shifted(jet: &Jet, h: f64) -> Jet {
             term *= h / (j + 1) as f64;
         }
     }
-    out
 }

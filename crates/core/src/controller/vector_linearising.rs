@@ -27,7 +27,7 @@ use alloc::vec::Vec;
 
 use super::following::{ChainError, ChainMeasured, Following, positive, vanishes};
 use super::guide::{GuideWork, Leads};
-use super::{Asked, Balance, Controller, Given, Trouble, Truth};
+use super::{Asked, Balance, Controller, Given, Jets, Trouble, Truth};
 use crate::LengthError;
 use crate::law::ParameterBounds;
 use crate::linear::{invert, singular_values};
@@ -61,7 +61,7 @@ use super::Guide;
 /// let guide = Guide::Consensus(Consensus::new([(&[1.0][..], 0.0)])?);
 /// let law = VectorLinearising::new(terms.clone(), vec![0.7], Following { guide, gain_per_s: 5.0, floor: 0.1 })?;
 /// let (x, state) = ([0.3, -0.4], [0.5, 0.1, 0.0, 0.2]);
-/// let given = Given { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8, 0.1], 2)?, target: &[] };
+/// let given = Given { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8, 0.1], 2)?, target: Jets::NONE };
 /// let (mut input, mut d_state, mut shown) = ([0.0; 2], [0.0; 4], [0.0; 7]);
 /// let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
 /// law.evaluate(&mut law.scratch(), given, &state, asked)?;
@@ -171,6 +171,10 @@ impl Controller for VectorLinearising {
     const MEASURES: &'static [&'static str] = &["position", "its derivatives below the order of the plant"];
     const KNOWS_OFFSETS: bool = false;
 
+    fn target_derivatives(&self) -> usize {
+        self.following.guide.target_derivatives()
+    }
+
     fn scratch(&self) -> VectorLinearisingWork {
         let m = self.terms.axes();
         let (terms, guide) = (self.terms.work(), self.following.guide.work(m));
@@ -245,7 +249,7 @@ impl Controller for VectorLinearising {
         LengthError::check("x", k * m, x.len())?;
         let VectorLinearisingWork { terms, guide, psi, inverse, wanted } = work;
 
-        let target = if self.following.guide.tracks() { given.target } else { &[] };
+        let target = if self.following.guide.tracks() { given.target } else { Jets::NONE };
         let leads = Leads { measured: x, state: &state[..at], heard: given.heard, target };
         self.following.guide.rate(k, m, leads, guide, &mut d_state[..at])?;
         self.terms.terms(terms, x)?;

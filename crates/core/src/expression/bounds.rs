@@ -5,8 +5,8 @@ use alloc::collections::BinaryHeap;
 use super::exact::Exact;
 use super::float::Floats;
 use super::interval::{Interval, Intervals};
-use super::jet::{FACTORIALS, Jets};
-use super::{Algebra, Binary, Expression, Switch};
+use super::jet::{MOST_DERIVATIVES, Taylor, times_factorial};
+use super::{Algebra, Binary, Branching, Expression, Switch};
 
 /// Evaluations that one search for bounds may cost.
 const SEARCH: usize = 2000;
@@ -26,19 +26,42 @@ impl Expression {
 
     /// The value and the first four derivatives at x; not-a-number or infinite where there are none.
     pub fn jet(&self, x: f64) -> [f64; 5] {
-        self.derivatives(Floats::new(&[x]))
+        let mut jet = [0.0; 5];
+        self.derivatives(x, &mut jet);
+        jet
+    }
+
+    /// The value and as many derivatives at x as `out` has room for; not-a-number or infinite where there are none, and beyond
+    /// [`MOST_DERIVATIVES`]. Allocates nothing.
+    pub fn derivatives(&self, x: f64, out: &mut [f64]) {
+        self.derivatives_over(Floats::new(&[x]), out);
     }
 
     /// The same by the branches of |a|, min and max that are active right after `since`: one-sided derivatives where a piece
     /// begins or ends. `switches` is what [`switches`](Self::switches) found.
-    pub fn jet_on(&self, switches: &[Switch], since: f64, x: f64) -> [f64; 5] {
-        self.derivatives(Floats::on_piece(&[x], switches, since))
+    pub fn derivatives_on(&self, switches: &[Switch], since: f64, x: f64, out: &mut [f64]) {
+        self.derivatives_over(Floats::on_piece(&[x], switches, since), out);
     }
 
-    fn derivatives(&self, floats: Floats<'_>) -> [f64; 5] {
-        let mut jet = self.fold(&mut Jets(floats));
-        jet.iter_mut().zip(FACTORIALS).for_each(|(c, factorial)| *c *= factorial);
-        jet
+    /// By the shortest list of coefficients that is long enough.
+    fn derivatives_over<A: Branching>(&self, algebra: A, out: &mut [A::Value]) {
+        match out.len() {
+            0..=5 => self.put::<A, 5>(algebra, out),
+            6..=9 => self.put::<A, 9>(algebra, out),
+            10..=17 => self.put::<A, 17>(algebra, out),
+            18..=33 => self.put::<A, 33>(algebra, out),
+            34..=65 => self.put::<A, 65>(algebra, out),
+            _ => self.put::<A, { MOST_DERIVATIVES + 1 }>(algebra, out),
+        }
+    }
+
+    fn put<A: Branching, const N: usize>(&self, algebra: A, out: &mut [A::Value]) {
+        let mut taylor = Taylor::<A, N>(algebra);
+        let jet = self.fold(&mut taylor);
+        out.fill(taylor.0.unknown());
+        for (k, (out, c)) in out.iter_mut().zip(jet).enumerate() {
+            *out = times_factorial(&mut taylor.0, c, k);
+        }
     }
 
     /// An interval that holds the value at every x in `x`, in one pass; everything where there may be no value.
@@ -46,18 +69,23 @@ impl Expression {
         self.fold(&mut Intervals(&[x])).or_whole()
     }
 
-    /// Intervals that hold the value and the first four derivatives at every x in `x`, in one pass; everything where nothing
-    /// better could be shown, so also where a derivative may not exist.
+    /// Intervals that hold the value and the first four derivatives, as [`enclose_derivatives`](Self::enclose_derivatives) has them.
     pub fn enclose_jet(&self, x: Interval) -> [Interval; 5] {
-        let mut jet = self.fold(&mut Jets(Intervals(&[x])));
-        let mut exists = true;
-        for (c, factorial) in jet.iter_mut().zip(FACTORIALS) {
-            // Without a value there is no derivative either, though the rules may give one.
-            exists &= c.low <= c.high;
-            *c = Intervals(&[]).binary(Binary::Multiply, *c, Interval::point(factorial));
-            *c = if exists { c.or_whole() } else { Interval::WHOLE };
-        }
+        let mut jet = [Interval::WHOLE; 5];
+        self.enclose_derivatives(x, &mut jet);
         jet
+    }
+
+    /// Intervals that hold the value and as many derivatives as `out` has room for at every x in `x`, in one pass; everything where
+    /// nothing better could be shown, so also where a derivative may not exist.
+    pub fn enclose_derivatives(&self, x: Interval, out: &mut [Interval]) {
+        self.derivatives_over(Intervals(&[x]), out);
+        let mut exists = true;
+        for within in out {
+            // Without a value there is no derivative either, though the rules may give one.
+            exists &= within.low <= within.high;
+            *within = if exists { within.or_whole() } else { Interval::WHOLE };
+        }
     }
 
     /// An interval that holds every value from `from` to `to`, which may be infinite; everything where nothing better could be
@@ -84,22 +112,38 @@ impl Expression {
 
     /// An interval that holds Σₖ `weights[k]` · (k-th derivative) from `from` to `to`, which may be infinite; as
     /// [`bounds`](Self::bounds) is for the value.
-    pub fn bounds_of_derivatives(&self, weights: &[f64; 5], from: f64, to: f64) -> Interval {
-        let enclose = |from: f64, to: f64| weighted_interval(weights, &self.enclose_jet(Interval::new(from, to)));
+    pub fn bounds_of_derivatives(&self, weights: &[f64], from: f64, to: f64) -> Interval {
+        let enclose = |from: f64, to: f64| self.enclose_weighted(weights, Interval::new(from, to));
         if !(to - from).is_finite() {
             return enclose(from, to);
         }
-        search(from, to, CLOSE, enclose, |x| weighted(weights, &self.jet(x)))
+        search(from, to, CLOSE, enclose, |x| self.weighted(weights, x))
+    }
+
+    /// Σₖ `weights[k]` · (k-th derivative) at x; not-a-number with more weights than [`MOST_DERIVATIVES`] and one.
+    pub fn weighted(&self, weights: &[f64], x: f64) -> f64 {
+        let mut room = [0.0; MOST_DERIVATIVES + 1];
+        let Some(jet) = room.get_mut(..weights.len()) else { return f64::NAN };
+        self.derivatives(x, jet);
+        weighted(weights, jet)
+    }
+
+    /// The same, enclosed.
+    pub(super) fn enclose_weighted(&self, weights: &[f64], x: Interval) -> Interval {
+        let mut room = [Interval::WHOLE; MOST_DERIVATIVES + 1];
+        let Some(jet) = room.get_mut(..weights.len()) else { return Interval::WHOLE };
+        self.enclose_derivatives(x, jet);
+        weighted_interval(weights, jet)
     }
 }
 
 /// Σₖ wₖ · (k-th derivative).
-pub fn weighted(weights: &[f64; 5], jet: &[f64; 5]) -> f64 {
+pub fn weighted(weights: &[f64], jet: &[f64]) -> f64 {
     let used = weights.iter().zip(jet).filter(|(weight, _)| **weight != 0.0);
     used.fold(0.0, |sum, (weight, c)| sum + weight * c)
 }
 
-pub(super) fn weighted_interval(weights: &[f64; 5], jet: &[Interval; 5]) -> Interval {
+pub(super) fn weighted_interval(weights: &[f64], jet: &[Interval]) -> Interval {
     let used = weights.iter().zip(jet).filter(|(weight, _)| **weight != 0.0);
     let mut intervals = Intervals(&[]);
     let sum = used.fold(Interval::point(0.0), |sum, (weight, c)| {

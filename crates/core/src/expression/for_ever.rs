@@ -4,9 +4,9 @@
 
 use super::bounds::weighted_interval;
 use super::interval::Interval;
-use super::jet::{FACTORIALS, Jets};
+use super::jet::{Taylor, times_factorial};
 use super::tail::{Series, Tails};
-use super::{Algebra, Binary, Expression};
+use super::{Algebra, Binary, Branching, Expression};
 
 /// Times from which on tails are looked at, and until which stretches are cut.
 const STARTS: [f64; 3] = [16.0, 1024.0, 1_048_576.0];
@@ -43,8 +43,8 @@ impl Expression {
     }
 
     /// The same of Σₖ `weights[k]` · (k-th derivative); nothing is claimed about its continuity.
-    pub fn combination_for_ever(&self, weights: &[f64; 5]) -> ForEver {
-        let value_alone = weights[0] == 1.0 && weights.iter().skip(1).all(|weight| *weight == 0.0);
+    pub fn combination_for_ever(&self, weights: &[f64]) -> ForEver {
+        let value_alone = weights.first() == Some(&1.0) && has_value_only(weights);
         let bounds = |to: f64| match value_alone {
             true => self.bounds(0.0, to),
             false => self.bounds_of_derivatives(weights, 0.0, to),
@@ -80,29 +80,42 @@ impl Expression {
         })
     }
 
-    fn tail(&self, weights: &[f64; 5], from: f64) -> Series {
+    fn tail(&self, weights: &[f64], from: f64) -> Series {
         let mut tails = Tails { from };
-        if weights[1..].iter().all(|weight| *weight == 0.0) {
+        if has_value_only(weights) {
             let value = self.fold(&mut tails);
-            let weight = tails.number(&weights[0].into());
-            return if weights[0] == 1.0 { value } else { tails.binary(Binary::Multiply, weight, value) };
+            let factor = weights.first().copied().unwrap_or(0.0);
+            let weight = tails.number(&factor.into());
+            return if factor == 1.0 { value } else { tails.binary(Binary::Multiply, weight, value) };
         }
-        let jet = self.fold(&mut Jets(Tails { from }));
+        match weights.len() {
+            0..=5 => self.tail_of_derivatives::<5>(weights, tails),
+            6..=17 => self.tail_of_derivatives::<17>(weights, tails),
+            18..=33 => self.tail_of_derivatives::<33>(weights, tails),
+            // The lists of series would fill a stack.
+            _ => tails.unknown(),
+        }
+    }
+
+    fn tail_of_derivatives<const N: usize>(&self, weights: &[f64], tails: Tails) -> Series {
+        let mut taylor = Taylor::<Tails, N>(tails);
+        let jet = self.fold(&mut taylor);
+        let mut tails = taylor.0;
         if !jet[0].is_known() {
             // Without a value there is no derivative either.
             return jet[0];
         }
-        let used = weights.iter().zip(jet).zip(FACTORIALS).filter(|((weight, _), _)| **weight != 0.0);
-        used.fold(tails.number(&0.0.into()), |sum, ((weight, c), factorial)| {
-            let (weight, factorial) = (tails.number(&(*weight).into()), tails.number(&factorial.into()));
-            let weight = tails.binary(Binary::Multiply, weight, factorial);
+        let used = weights.iter().zip(jet).enumerate().filter(|(_, (weight, _))| **weight != 0.0);
+        used.fold(tails.number(&0.0.into()), |sum, (k, (weight, c))| {
+            let weight = tails.number(&(*weight).into());
+            let weight = times_factorial(&mut tails, weight, k);
             let term = tails.binary(Binary::Multiply, weight, c);
             tails.binary(Binary::Add, sum, term)
         })
     }
 
     /// Between which values it is seen, by enclosures at single points.
-    fn seen(&self, weights: &[f64; 5]) -> Interval {
+    fn seen(&self, weights: &[f64]) -> Interval {
         let last = STARTS[STARTS.len() - 1];
         let even = (0..=LOOKS).map(|k| f64::from(k) * STARTS[0] / f64::from(LOOKS));
         let far = (1..=LOOKS).map(|k| STARTS[0] * libm::pow(last / STARTS[0], f64::from(k) / f64::from(LOOKS)));
@@ -117,13 +130,18 @@ impl Expression {
     }
 
     /// An interval that holds Σₖ `weights[k]` · (k-th derivative) at one point; everything where it may have no value.
-    pub fn enclose_combination(&self, weights: &[f64; 5], at: f64) -> Interval {
+    pub fn enclose_combination(&self, weights: &[f64], at: f64) -> Interval {
         let point = Interval::point(at);
-        match weights[1..].iter().all(|weight| *weight == 0.0) {
-            true => weighted_interval(weights, &[self.enclose(point); 5]),
-            false => weighted_interval(weights, &self.enclose_jet(point)),
+        match has_value_only(weights) {
+            true => weighted_interval(weights, &[self.enclose(point)]),
+            false => self.enclose_weighted(weights, point),
         }
     }
+}
+
+/// Whether no derivative has a weight.
+fn has_value_only(weights: &[f64]) -> bool {
+    weights.iter().skip(1).all(|weight| *weight == 0.0)
 }
 
 impl ForEver {

@@ -1,24 +1,41 @@
-//! An expression in one variable with its first four derivatives, over any algebra that can tell branches apart: at a point in
-//! `f64`, or enclosed on an interval.
+//! An expression in one variable with its first derivatives, over any algebra that can tell branches apart: at a point in `f64`,
+//! or enclosed on an interval.
 //!
-//! A value is a list of Taylor coefficients c₀ … c₄ about the point at hand, so that the k-th derivative is k! cₖ. Sums and
-//! products follow at once, and a quotient from c b = a. A function f of a = a₀ + δ is composed,
+//! A value is a list of `N` Taylor coefficients c₀ … about the point at hand, five at least, so that the k-th derivative is
+//! k! cₖ. Sums and products follow at once, and a quotient from c b = a. A function f of a = a₀ + δ is composed,
 //!
 //! ```text
-//! f(a) = g₀ + g₁ δ + g₂ δ² + g₃ δ³ + g₄ δ⁴,     gⱼ = f⁽ʲ⁾(a₀)/j!,     δ = a₁ τ + a₂ τ² + …
+//! f(a) = g₀ + g₁ δ + g₂ δ² + …,     gⱼ = f⁽ʲ⁾(a₀)/j!,     δ = a₁ τ + a₂ τ² + …
 //! ```
 //!
-//! where each gⱼ is written such that its enclosure is finite wherever f⁽ʲ⁾ is bounded.
+//! where each gⱼ is written such that its enclosure is finite wherever f⁽ʲ⁾ is bounded. Up to g₄ they are written out, which
+//! encloses them more tightly; from there on
+//!
+//! ```text
+//! sin, cos   gⱼ = −gⱼ₋₂ / (j (j−1))            exp   gⱼ = gⱼ₋₁ / j
+//! tanh       gⱼ = −(g₀ gⱼ₋₁ + … + gⱼ₋₁ g₀) / j          from u' = 1 − u²
+//! arctan     gⱼ = cosʲφ sin(j (φ + π/2)) / j            φ = arctan a₀
+//! ```
 //!
 //! |a|, min and max have the derivatives of the branch that is active. On an interval where the branch may change the first
 //! derivative jumps between those of the branches, and of higher ones nothing is claimed.
 
 use super::{Algebra, Binary, Number, Unary};
 
-/// Coefficients that are kept.
-pub(super) const ORDERS: usize = 5;
-/// k!.
-pub(super) const FACTORIALS: [f64; ORDERS] = [1.0, 1.0, 2.0, 6.0, 24.0];
+/// The derivatives that an expression gives at most: up to there k! and 1/k! are numbers with all their digits.
+pub const MOST_DERIVATIVES: usize = 128;
+
+/// k! times a value.
+pub(super) fn times_factorial<A: Algebra>(algebra: &mut A, value: A::Value, k: usize) -> A::Value {
+    // The last that is an `f64`.
+    const EXACT: usize = 22;
+    let product: f64 = (2..=k.min(EXACT)).map(|j| j as f64).product();
+    let product = algebra.number(&product.into());
+    (EXACT + 1..=k).fold(algebra.binary(Binary::Multiply, value, product), |value, j| {
+        let j = algebra.number(&(j as f64).into());
+        algebra.binary(Binary::Multiply, value, j)
+    })
+}
 
 /// Which operand |a| = max(a, −a), min and max give.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,13 +60,15 @@ pub trait Branching: Algebra<Value: Copy> {
     fn is_zero(&self, a: Self::Value) -> bool;
 }
 
-/// The algebra of jets over another one.
+/// The algebra of jets of `N` coefficients over another one, where `N` is five at least.
 #[derive(Debug)]
-pub struct Jets<A>(pub A);
+pub struct Taylor<A, const N: usize>(pub A);
 
-type Jet<A> = [<A as Algebra>::Value; ORDERS];
+type Jet<A, const N: usize> = [<A as Algebra>::Value; N];
 
-impl<A: Branching> Jets<A> {
+impl<A: Branching, const N: usize> Taylor<A, N> {
+    const ENOUGH: () = assert!(N >= 5, "g₀ … g₄ are written out");
+
     fn of(&mut self, value: f64) -> A::Value {
         self.0.number(&value.into())
     }
@@ -80,13 +99,13 @@ impl<A: Branching> Jets<A> {
         self.0.power(a, &n.into())
     }
 
-    fn each(&mut self, function: Unary, mut a: Jet<A>) -> Jet<A> {
+    fn each(&mut self, function: Unary, mut a: Jet<A, N>) -> Jet<A, N> {
         a.iter_mut().for_each(|c| *c = self.0.unary(function, *c));
         a
     }
 
-    fn multiplied(&mut self, a: &Jet<A>, b: &Jet<A>) -> Jet<A> {
-        let mut c = [self.of(0.0); ORDERS];
+    fn multiplied(&mut self, a: &Jet<A, N>, b: &Jet<A, N>) -> Jet<A, N> {
+        let mut c = [self.of(0.0); N];
         for (k, c) in c.iter_mut().enumerate() {
             // One product less than a sum from zero, so that c₀ is a₀ b₀ to the bit.
             *c = self.times(a[0], b[k]);
@@ -98,9 +117,9 @@ impl<A: Branching> Jets<A> {
         c
     }
 
-    fn divided(&mut self, a: &Jet<A>, b: &Jet<A>) -> Jet<A> {
-        let mut c = [self.of(0.0); ORDERS];
-        for k in 0..ORDERS {
+    fn divided(&mut self, a: &Jet<A, N>, b: &Jet<A, N>) -> Jet<A, N> {
+        let mut c = [self.of(0.0); N];
+        for k in 0..N {
             let mut left = a[k];
             for i in 1..=k {
                 let term = self.times(b[i], c[k - i]);
@@ -112,17 +131,17 @@ impl<A: Branching> Jets<A> {
     }
 
     /// g(a) by Horner's rule in δ.
-    fn composed(&mut self, g: Jet<A>, mut delta: Jet<A>) -> Jet<A> {
+    fn composed(&mut self, g: Jet<A, N>, mut delta: Jet<A, N>) -> Jet<A, N> {
         let zero = self.of(0.0);
         delta[0] = zero;
-        let mut c = [zero; ORDERS];
+        let mut c = [zero; N];
         // A constant stays one even where f has no slope, as √0.
         if delta.iter().all(|d| self.0.is_zero(*d)) {
             c[0] = g[0];
             return c;
         }
-        c[0] = g[ORDERS - 1];
-        for j in (0..ORDERS - 1).rev() {
+        c[0] = g[N - 1];
+        for j in (0..N - 1).rev() {
             c = self.shifted(&delta, &c);
             c[0] = g[j];
         }
@@ -131,9 +150,9 @@ impl<A: Branching> Jets<A> {
 
     /// δ c for a δ without a constant term, which no product is taken with: gⱼ enters no order below j, so that a derivative
     /// that does not exist leaves those below it alone. The constant term is left to be set.
-    fn shifted(&mut self, delta: &Jet<A>, c: &Jet<A>) -> Jet<A> {
-        let mut product = [delta[0]; ORDERS];
-        for k in 1..ORDERS {
+    fn shifted(&mut self, delta: &Jet<A, N>, c: &Jet<A, N>) -> Jet<A, N> {
+        let mut product = [delta[0]; N];
+        for k in 1..N {
             product[k] = self.times(delta[1], c[k - 1]);
             for i in 2..=k {
                 let term = self.times(delta[i], c[k - i]);
@@ -144,8 +163,8 @@ impl<A: Branching> Jets<A> {
     }
 
     /// gⱼ of aᶜ: c (c−1) … / j! · a^(c−j).
-    fn binomial(&mut self, a: A::Value, exponent: &Number) -> Jet<A> {
-        let mut g = [self.of(0.0); ORDERS];
+    fn binomial(&mut self, a: A::Value, exponent: &Number) -> Jet<A, N> {
+        let mut g = [self.of(0.0); N];
         let mut factor = self.of(1.0);
         for (j, g) in g.iter_mut().enumerate() {
             let left = exponent.minus(j as f64);
@@ -162,13 +181,29 @@ impl<A: Branching> Jets<A> {
     }
 
     /// gⱼ of sine or cosine with the derivative `d`.
-    fn wave(&mut self, f: A::Value, d: A::Value) -> Jet<A> {
-        [f, d, self.scaled(f, -0.5), self.part(d, -1.0, 6.0), self.part(f, 1.0, 24.0)]
+    fn wave(&mut self, f: A::Value, d: A::Value) -> Jet<A, N> {
+        let mut g = [f; N];
+        (g[1], g[2], g[3], g[4]) = (d, self.scaled(f, -0.5), self.part(d, -1.0, 6.0), self.part(f, 1.0, 24.0));
+        for j in 5..N {
+            g[j] = self.part(g[j - 2], -1.0, (j * (j - 1)) as f64);
+        }
+        g
+    }
+
+    /// gⱼ of the exponential function.
+    fn exponential(&mut self, a: A::Value) -> Jet<A, N> {
+        let f = self.0.unary(Unary::Exp, a);
+        let mut g = [f; N];
+        (g[2], g[3], g[4]) = (self.scaled(f, 0.5), self.part(f, 1.0, 6.0), self.part(f, 1.0, 24.0));
+        for j in 5..N {
+            g[j] = self.part(g[j - 1], 1.0, j as f64);
+        }
+        g
     }
 
     /// gⱼ of the logarithm.
-    fn logarithm(&mut self, a: A::Value) -> Jet<A> {
-        let mut g = [self.0.unary(Unary::Log, a); ORDERS];
+    fn logarithm(&mut self, a: A::Value) -> Jet<A, N> {
+        let mut g = [self.0.unary(Unary::Log, a); N];
         for (k, g) in g.iter_mut().enumerate().skip(1) {
             let (one, power) = (self.of(1.0), self.raised(a, k as f64));
             let below = self.scaled(power, k as f64);
@@ -179,7 +214,7 @@ impl<A: Branching> Jets<A> {
     }
 
     /// gⱼ of the hyperbolic tangent: u' = 1 − u², and so on.
-    fn tangent(&mut self, a: A::Value) -> Jet<A> {
+    fn tangent(&mut self, a: A::Value) -> Jet<A, N> {
         let u = self.0.unary(Unary::Tanh, a);
         let (one, two, sixteen, square) = (self.of(1.0), self.of(2.0), self.of(16.0), self.raised(u, 2.0));
         let d = self.minus(one, square);
@@ -191,11 +226,22 @@ impl<A: Branching> Jets<A> {
         let fourth = self.minus(sixteen, fourth);
         let fourth = self.times(u, fourth);
         let fourth = self.times(d, fourth);
-        [u, d, self.scaled(second, -1.0), self.part(third, 1.0, 6.0), self.part(fourth, 1.0, 24.0)]
+        let mut g = [u; N];
+        (g[1], g[2], g[3]) = (d, self.scaled(second, -1.0), self.part(third, 1.0, 6.0));
+        g[4] = self.part(fourth, 1.0, 24.0);
+        for j in 5..N {
+            let first = self.times(g[0], g[j - 1]);
+            let sum = (1..j).fold(first, |sum, i| {
+                let term = self.times(g[i], g[j - 1 - i]);
+                self.0.binary(Binary::Add, sum, term)
+            });
+            g[j] = self.part(sum, -1.0, j as f64);
+        }
+        g
     }
 
     /// gⱼ of arctan: with φ = arctan a, 1/(1 + a²) = cos²φ and a/√(1 + a²) = sin φ.
-    fn arc_tangent(&mut self, a: A::Value) -> Jet<A> {
+    fn arc_tangent(&mut self, a: A::Value) -> Jet<A, N> {
         let angle = self.0.unary(Unary::Atan, a);
         let (sin, cos) = (self.0.unary(Unary::Sin, angle), self.0.unary(Unary::Cos, angle));
         let [c2, c3, c4, c5] = [2.0, 3.0, 4.0, 5.0].map(|n| self.raised(cos, n));
@@ -205,16 +251,26 @@ impl<A: Branching> Jets<A> {
         let third = self.minus(third, c2);
         let third = self.times(c4, third);
         let (fourth, rest) = (self.times(sin, c5), self.minus(c2, s2));
-        [angle, c2, self.scaled(second, -1.0), self.part(third, 1.0, 3.0), self.times(fourth, rest)]
+        let mut g = [angle; N];
+        (g[1], g[2], g[3]) = (c2, self.scaled(second, -1.0), self.part(third, 1.0, 3.0));
+        g[4] = self.times(fourth, rest);
+        for (j, g) in g.iter_mut().enumerate().skip(5) {
+            let turned = self.scaled(angle, j as f64);
+            let wave = self.0.unary(if j % 2 == 0 { Unary::Sin } else { Unary::Cos }, turned);
+            let power = self.raised(cos, j as f64);
+            let product = self.times(power, wave);
+            *g = self.part(product, if j % 4 < 2 { 1.0 } else { -1.0 }, j as f64);
+        }
+        g
     }
 
     /// The value of |a|, min or max, with the derivatives of the branch that is active.
-    fn chosen(&mut self, value: A::Value, branch: Branch, a: Jet<A>, b: Jet<A>) -> Jet<A> {
+    fn chosen(&mut self, value: A::Value, branch: Branch, a: Jet<A, N>, b: Jet<A, N>) -> Jet<A, N> {
         let mut jet = match branch {
             Branch::First => a,
             Branch::Second => b,
             Branch::Either => {
-                let mut jet = [self.0.unknown(); ORDERS];
+                let mut jet = [self.0.unknown(); N];
                 jet[1] = self.0.either(a[1], b[1]);
                 jet
             }
@@ -224,22 +280,23 @@ impl<A: Branching> Jets<A> {
     }
 }
 
-impl<A: Branching> Algebra for Jets<A> {
-    type Value = Jet<A>;
+impl<A: Branching, const N: usize> Algebra for Taylor<A, N> {
+    type Value = Jet<A, N>;
 
-    fn number(&mut self, number: &Number) -> Jet<A> {
-        let mut jet = [self.of(0.0); ORDERS];
+    fn number(&mut self, number: &Number) -> Jet<A, N> {
+        let () = Self::ENOUGH;
+        let mut jet = [self.of(0.0); N];
         jet[0] = self.0.number(number);
         jet
     }
 
-    fn variable(&mut self, index: usize) -> Jet<A> {
-        let mut jet = [self.of(0.0); ORDERS];
+    fn variable(&mut self, index: usize) -> Jet<A, N> {
+        let mut jet = [self.of(0.0); N];
         (jet[0], jet[1]) = (self.0.variable(index), self.of(1.0));
         jet
     }
 
-    fn unary(&mut self, function: Unary, a: Jet<A>) -> Jet<A> {
+    fn unary(&mut self, function: Unary, a: Jet<A, N>) -> Jet<A, N> {
         let value = a[0];
         let g = match function {
             Unary::Negate => return self.each(Unary::Negate, a),
@@ -253,10 +310,7 @@ impl<A: Branching> Algebra for Jets<A> {
                 let minus = self.scaled(sin, -1.0);
                 if function == Unary::Sin { self.wave(sin, cos) } else { self.wave(cos, minus) }
             }
-            Unary::Exp => {
-                let f = self.0.unary(Unary::Exp, value);
-                [f, f, self.scaled(f, 0.5), self.part(f, 1.0, 6.0), self.part(f, 1.0, 24.0)]
-            }
+            Unary::Exp => self.exponential(value),
             Unary::Log => self.logarithm(value),
             Unary::Sqrt => {
                 let mut g = self.binomial(value, &0.5.into());
@@ -269,7 +323,7 @@ impl<A: Branching> Algebra for Jets<A> {
         self.composed(g, a)
     }
 
-    fn binary(&mut self, function: Binary, a: Jet<A>, b: Jet<A>) -> Jet<A> {
+    fn binary(&mut self, function: Binary, a: Jet<A, N>, b: Jet<A, N>) -> Jet<A, N> {
         match function {
             Binary::Add | Binary::Subtract => {
                 let mut c = a;
@@ -286,7 +340,7 @@ impl<A: Branching> Algebra for Jets<A> {
         }
     }
 
-    fn power(&mut self, a: Jet<A>, exponent: &Number) -> Jet<A> {
+    fn power(&mut self, a: Jet<A, N>, exponent: &Number) -> Jet<A, N> {
         let g = self.binomial(a[0], exponent);
         self.composed(g, a)
     }

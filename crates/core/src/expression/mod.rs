@@ -5,7 +5,7 @@
 //! - `float`: a value in `f64`;
 //! - `interval`: what it keeps within, rounded outwards;
 //! - `exact`: the same with rational ends, so that 0.1 + 0.2 − 0.3 is zero;
-//! - `jet`: four derivatives over either of the first two;
+//! - `jet`: derivatives over either of the first two;
 //! - `graph`: a graph without repetitions, differentiated as often as needed, and compiled to a `tape`;
 //! - `series`: truncated power series in several variables, laid out in advance as a list of multiplications;
 //! - `uniform`: which way it goes, and whether it is uniformly continuous;
@@ -48,7 +48,7 @@ pub use float::Floats;
 pub use for_ever::ForEver;
 pub use graph::{Graph, Node};
 pub use interval::{Interval, Intervals};
-pub use jet::{Branch, Branching, Jets};
+pub use jet::{Branch, Branching, MOST_DERIVATIVES, Taylor};
 pub use kinks::{KinkError, MOST_KINKS, Switch, bisect};
 pub use number::{MOST_DIGITS, Number};
 use series::MOST_PRODUCTS;

@@ -11,7 +11,7 @@ use super::safe::Standing;
 use super::sensing::Sensing;
 use crate::LengthError;
 use crate::agent::{Clipped, Inbox, Limiter, StepError, finite, later};
-use crate::controller::{Controller, Jet, Lengths, Stepped, Trouble};
+use crate::controller::{Controller, Jet, JetsBuffer, Lengths, Stepped, Trouble};
 use crate::plant::total;
 use crate::reference::Exchange;
 use crate::signal::{Block, Signal};
@@ -32,6 +32,10 @@ impl<C: Controller> Assemble for Feedback<C> {
             Some(target) => {
                 let entries = self.controller.target_len(self.axes);
                 LengthError::check("the target", entries, target.motion().axes())?;
+                let (needed, known) = (self.controller.target_derivatives(), target.motion().known_derivatives());
+                if known < needed {
+                    return Err(RecipeError::Derivatives { needed, known });
+                }
                 entries
             }
         };
@@ -58,7 +62,7 @@ impl<C: Controller> Assemble for Feedback<C> {
             inputs: self.inputs.clone(),
             shown: self.controller.shown(),
             target: recipe.target.clone(),
-            jets: vec![[0.0; 5]; targets],
+            jets: JetsBuffer::new(targets, self.controller.target_derivatives()),
             limiter: recipe.limiter(input, torque.start, torque.len())?,
             torque,
             last_s: None,
@@ -79,7 +83,7 @@ struct SampledFeedback<C: Controller> {
     inputs: Vec<Block>,
     shown: Vec<Block>,
     target: Option<Target>,
-    jets: Vec<Jet>,
+    jets: JetsBuffer,
     limiter: Limiter,
     /// Where the torques stand among the inputs.
     torque: Range<usize>,
@@ -94,13 +98,13 @@ impl<C: Controller> SampledFeedback<C> {
         self.sensing.look(now_s, measured)?;
         if let Some(target) = &self.target {
             for (axis, jet) in self.jets.iter_mut().enumerate() {
-                *jet = target.motion().jet(axis, now_s);
+                target.motion().derivatives(axis, now_s, jet);
             }
         }
         // Others may be told more than this law hears.
         let heard = (C::Exchange::CHANNELS * self.axes).min(inbox.sums.len());
         let inbox = Inbox { sums: &inbox.sums[..heard], ..inbox };
-        self.asked.copy_from_slice(self.stepped.step(now_s, self.sensing.output(), inbox, &self.jets)?);
+        self.asked.copy_from_slice(self.stepped.step(now_s, self.sensing.output(), inbox, self.jets.jets())?);
         self.sensing.accept(now_s)?;
         if let Some(Trouble::Vanishes { signal, axis, value, floor }) = self.stepped.trouble() {
             return Err(StepError::Singular { signal, axis, value, floor });
@@ -132,7 +136,8 @@ impl<C: Controller> Sampled for SampledFeedback<C> {
         self.sensing.head(now_s, measured, out)?;
         if let Some(Target::Offset(offset)) = &self.target {
             for axis in 0..self.axes {
-                let jet = offset.jet(axis, now_s);
+                let mut jet = Jet::default();
+                offset.derivatives(axis, now_s, &mut jet);
                 for (sent, offset) in out[axis..].iter_mut().step_by(self.axes).zip(jet) {
                     *sent -= offset;
                 }

@@ -11,7 +11,7 @@ use super::feedback::Feedback;
 use super::lagrangian::TrackingLaw;
 use crate::LengthError;
 use crate::agent::{FilterError, Limiter, LimiterError};
-use crate::controller::{Controller, Jet};
+use crate::controller::Controller;
 use crate::law::SlotineLi;
 use crate::plant::Plant;
 use crate::reference::Reference;
@@ -97,7 +97,6 @@ pub struct EncoderFilter {
 /// Something that moves: a function of time.
 ///
 /// ```
-/// use forwardstep_core::controller::Jet;
 /// use forwardstep_core::sampled::Motion;
 ///
 /// /// 0.5 t on every axis.
@@ -106,18 +105,27 @@ pub struct EncoderFilter {
 ///     fn axes(&self) -> usize {
 ///         2
 ///     }
-///     fn jet(&self, _: usize, at_s: f64) -> Jet {
-///         [0.5 * at_s, 0.5, 0.0, 0.0, 0.0]
+///     fn known_derivatives(&self) -> usize {
+///         usize::MAX
+///     }
+///     fn derivatives(&self, _: usize, at_s: f64, out: &mut [f64]) {
+///         out.fill(0.0);
+///         out.iter_mut().zip([0.5 * at_s, 0.5]).for_each(|(out, value)| *out = value);
 ///     }
 /// }
-/// assert_eq!(Ramp.jet(0, 4.0)[0], 2.0);
+/// let mut jet = [0.0; 3];
+/// Ramp.derivatives(0, 4.0, &mut jet);
+/// assert_eq!(jet, [2.0, 0.5, 0.0]);
 /// ```
 pub trait Motion: Send + Sync {
     /// Its axes.
     fn axes(&self) -> usize;
 
-    /// The value of one axis at `at_s` and its first four derivatives, without allocation.
-    fn jet(&self, axis: usize, at_s: f64) -> Jet;
+    /// How many derivatives it has, four at least.
+    fn known_derivatives(&self) -> usize;
+
+    /// The value of one axis at `at_s` and its first derivatives, as many as `out` has room for, without allocation.
+    fn derivatives(&self, axis: usize, at_s: f64, out: &mut [f64]);
 }
 
 /// Where an agent should be.
@@ -222,6 +230,14 @@ pub enum RecipeError {
     /// A target for a law that has no use for it.
     #[error("this law follows no target of its own")]
     NoTarget,
+    /// A target with fewer derivatives than the law reads.
+    #[error("this law reads {needed} derivatives of its target, which has {known}")]
+    Derivatives {
+        /// How many it reads.
+        needed: usize,
+        /// How many there are.
+        known: usize,
+    },
     /// An offset for a law that knows none.
     #[error("this law knows no offsets from where all agree")]
     NoOffsets,

@@ -130,3 +130,100 @@ proptest! {
         }
     }
 }
+
+/// The value and `count` − 1 derivatives.
+fn long(expression: &Expression, count: usize, at: f64) -> Vec<f64> {
+    let mut jet = vec![0.0; count];
+    expression.derivatives(at, &mut jet);
+    jet
+}
+
+#[test]
+fn derivatives_of_any_order_are_those_of_the_closed_forms() {
+    let alternating = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let factorial = |k: usize| (1..=k).map(|j| j as f64).product::<f64>();
+    for count in [6, 9, 10, 17, 18, 33, 34, 65, 66, 120] {
+        let at = 0.7_f64;
+        let (waves, rises) = (long(&(x() * 2.0).sin_of(), count, at), long(&(x() * -0.5).exp_of(), count, at));
+        let (parts, logs) = (long(&(Expression::number(1.0) / x()), count, at), long(&x().log_of(), count, at));
+        let roots = long(&x().sqrt_of(), count, at);
+        let mut root = at.sqrt();
+        for k in 0..count {
+            let wave = 2.0_f64.powi(k as i32) * (1.4 + k as f64 * std::f64::consts::FRAC_PI_2).sin();
+            assert!((waves[k] - wave).abs() < 1e-12 * 2.0_f64.powi(k as i32), "{k}: {} {wave}", waves[k]);
+            assert!(close(rises[k], (-0.5_f64).powi(k as i32) * (-0.35_f64).exp(), 1e-12), "{k}");
+            let part = alternating(k) * factorial(k) / at.powi(k as i32 + 1);
+            assert!(close(parts[k] / part, 1.0, 1e-11), "{k}: {} {part}", parts[k]);
+            if k > 0 {
+                let log = alternating(k - 1) * factorial(k - 1) / at.powi(k as i32);
+                assert!(close(logs[k] / log, 1.0, 1e-11), "{k}: {} {log}", logs[k]);
+            }
+            assert!(close(roots[k] / root, 1.0, 1e-11), "{k}: {} {root}", roots[k]);
+            root *= (0.5 - k as f64) / at;
+        }
+    }
+}
+
+#[test]
+fn derivatives_of_any_order_of_tangents_at_zero_are_known_integers() {
+    let tangents = [0.0, 1.0, 0.0, -2.0, 0.0, 16.0, 0.0, -272.0, 0.0, 7936.0, 0.0, -353_792.0, 0.0, 22_368_256.0];
+    let found = long(&x().tanh_of(), tangents.len(), 0.0);
+    found.iter().zip(tangents).for_each(|(found, known)| assert!(close(*found, known, 1e-12), "{found} {known}"));
+    // (2k)! (−1)ᵏ of every odd one.
+    let found = long(&x().atan_of(), 20, 0.0);
+    for (k, found) in found.iter().enumerate() {
+        let sign = if k % 4 == 1 { 1.0 } else { -1.0 };
+        let known = if k.is_multiple_of(2) { 0.0 } else { sign * (1..k).map(|j| j as f64).product::<f64>() };
+        assert!((found - known).abs() <= 1e-9 * known.abs().max(1.0), "{k}: {found} {known}");
+    }
+}
+
+#[test]
+fn no_derivative_is_given_where_there_are_none_and_a_kink_has_only_the_first() {
+    assert!(long(&x(), 140, 1.0)[129..].iter().all(|value| value.is_nan()));
+    let mut within = [Interval::point(0.0); 8];
+    x().abs_of().enclose_derivatives(Interval { low: -1.0, high: 1.0 }, &mut within);
+    assert_eq!((within[1], within[5]), (Interval { low: -1.0, high: 1.0 }, Interval::WHOLE));
+}
+
+proptest! {
+    #[test]
+    fn prop_more_derivatives_leave_the_first_five_as_they_are(expression in any_expression(), at in -3.0..3.0_f64) {
+        let bits = |jet: &[f64]| jet[..5].iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+        let five = bits(&expression.jet(at));
+        for count in [9, 17, 33] {
+            let more = bits(&long(&expression, count, at));
+            let same = |a: &u64, b: &u64| a == b || f64::from_bits(*a).is_nan() && f64::from_bits(*b).is_nan();
+            prop_assert!(more.iter().zip(&five).all(|(a, b)| same(a, b)), "{:?}", expression);
+        }
+    }
+
+    #[test]
+    fn prop_derivatives_up_to_the_ninth_are_those_of_the_graph_and_enclosed(expression in any_smooth(), at in 0.2..2.0_f64) {
+        let mut graph = Graph::new(1);
+        let mut nodes = vec![graph.import(&expression).unwrap()];
+        for k in 0..9 {
+            match graph.derivative(nodes[k], 0) {
+                Ok(node) => nodes.push(node),
+                Err(_) => return Ok(()),
+            }
+        }
+        let Ok(tape) = Tape::new(&graph, &nodes) else { return Ok(()) };
+        let mut out = vec![0.0; 10];
+        tape.evaluate(&[at], &mut tape.workspace(), &mut out).unwrap();
+        let found = long(&expression, 10, at);
+        let mut within = [Interval::WHOLE; 10];
+        expression.enclose_derivatives(Interval::point(at), &mut within);
+        for k in 0..10 {
+            let size = out[..=k].iter().fold(1.0_f64, |size, value| size.max(value.abs()));
+            // The graph drops what is multiplied by zero, even where that has no value.
+            if out[k].is_finite() && found[..2].iter().all(|value| value.is_finite()) && size < 1e8 {
+                prop_assert!((found[k] - out[k]).abs() < 1e-6 * size, "{:?} {}: {} {}", expression, k, found[k], out[k]);
+            }
+            if found[k].is_finite() && within[k].is_finite() {
+                let room = 1e-9 * found[..=k].iter().fold(1.0_f64, |size, value| size.max(value.abs()));
+                prop_assert!(within[k].low - room <= found[k] && found[k] <= within[k].high + room, "{:?} {}", expression, k);
+            }
+        }
+    }
+}

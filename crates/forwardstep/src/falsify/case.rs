@@ -119,8 +119,6 @@ const DELAYS: [&str; 9] = [
 const MOST_AGENTS: usize = 6;
 /// Roots at most.
 const MOST_ROOTS: usize = 5;
-/// Derivatives that targets have.
-const MOST_DERIVATIVES: usize = 4;
 
 impl Case {
     /// Case `number` of a seed.
@@ -131,8 +129,7 @@ impl Case {
         let (system, course) = if alone { (robot(rng), agree(rng)) } else { any(rng) };
         let order = least_order(system, course);
         let more = if exact_order(system, course) { 0 } else { rng.random_range(0..3) };
-        let tracks = matches!(course, Course::Track { .. });
-        let order = (order + more).min(if tracks { MOST_DERIVATIVES } else { MOST_ROOTS });
+        let order = (order + more).min(MOST_ROOTS);
         let agents = match course {
             Course::Track { .. } => 1,
             Course::Agree { .. } | Course::Integral { .. } | Course::Follow { .. } => rng.random_range(2..=MOST_AGENTS),

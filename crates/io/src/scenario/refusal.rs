@@ -1,6 +1,7 @@
 //! What the layers below refuse: where in the scenario it stands, and what to do.
 
 use forwardstep_core::controller::ChainError;
+use forwardstep_core::expression::MOST_DERIVATIVES;
 use forwardstep_core::reference::RootsError;
 use forwardstep_sim::quantity::{QuantityError, Requirement, Sign, about};
 use forwardstep_sim::{Setup, SetupError};
@@ -88,6 +89,11 @@ pub(super) fn advice(error: &SetupError) -> Option<String> {
         SetupError::TorqueLimitCount { .. } => {
             "leave it out: this robot has another number of torques than of axes".to_owned()
         }
+        SetupError::TargetDerivatives { known, .. } if *known < MOST_DERIVATIVES => format!(
+            "give at most {known} roots, or the target as a formula: a curve through points has {known} derivatives, a formula as many \
+             as are asked for"
+        ),
+        SetupError::TargetDerivatives { known, .. } => format!("give at most {known} roots"),
         SetupError::Chain { error: ChainError::Guide(_), .. } => {
             "an agent may have `reference` with roots of its own".to_owned()
         }

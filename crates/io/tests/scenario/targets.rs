@@ -5,7 +5,7 @@ use std::path::Path;
 
 use forwardstep_io::SourceText;
 use forwardstep_io::scenario::{Scenario, ScenarioError, read_scenario};
-use forwardstep_sim::{Outcome, simulate};
+use forwardstep_sim::{Ending, Method, Outcome, Signal, simulate};
 
 use super::spacecraft::SPACECRAFT;
 use super::tips::TIP;
@@ -140,4 +140,120 @@ fn attitudes_are_read_in_both_ways_by_vehicles_and_spacecraft() {
     let start = &read(&both).unwrap().setup.agents[0].start;
     near(&start.q);
     assert_eq!((&start.dq[..], &start.rest[..]), (&[0.05, -0.03, 0.04][..], &[0.3, -0.2, 0.1][..]));
+}
+
+/// With small errors of integration.
+fn exactly(mut scenario: Scenario) -> Outcome {
+    scenario.setup.solver.method = Method::Adaptive { rtol: 1e-11, atol: 1e-13 };
+    let outcome = run(&scenario);
+    assert_eq!(outcome.ending, Ending::Completed);
+    outcome
+}
+
+/// Roots of what follows a target, from the fastest: as many as are asked for.
+fn roots(count: usize) -> Vec<f64> {
+    (0..count).map(|k| 3.0 - 2.2 * k as f64 / count as f64).collect()
+}
+
+/// The r-th derivative at zero of a sin(ω t + φ) and of an error c e^(−ρ t), with ρ the slowest of `count` roots.
+fn begun([a, omega, phase]: [f64; 3], error: f64, count: usize, r: usize) -> f64 {
+    let slowest = roots(count)[count - 1];
+    let turn = phase + r as f64 * std::f64::consts::FRAC_PI_2;
+    a * omega.powi(r as i32) * turn.sin() + error * (-slowest).powi(r as i32)
+}
+
+const WAVE: [f64; 3] = [0.8, 0.7, 0.3];
+
+/// An agent of order `order` that is to follow the wave by `count` roots, and starts where its error is c e^(−ρ t) for ever, s being zero.
+fn on_one_root(robot: &str, law: &str, order: usize, count: usize, axes: usize) -> String {
+    let at = |r: usize| format!("{:?}", vec![begun(WAVE, 0.4, count, r); axes]);
+    let names = ["position_m", "velocity_m_s"];
+    let mut start: Vec<String> = (0..order.min(2)).map(|r| format!("start.{} = [{}]", names[r], at(r))).collect();
+    if order > 2 {
+        let all = (2..order).map(|r| begun(WAVE, 0.4, count, r)).collect::<Vec<_>>();
+        start.push(format!("start.higher_states = [{all:?}]"));
+    }
+    let derivatives = (order..count).map(|r| format!("[{}]", at(r))).collect::<Vec<_>>().join(", ");
+    // z is x^(order − 1).
+    start.push(format!("start.reference = {{ z = [{}], derivatives = [{derivatives}] }}", at(order - 1)));
+    let [a, omega, phase] = WAVE;
+    let target = vec![format!("\"{a}*sin({omega}*t + {phase})\""); axes].join(", ");
+    format!(
+        "format = 2\ntime = {{ end_s = 12, record_every_s = 0.5 }}\n\
+         [[agents]]\nname = \"one\"\nrobot.{robot}\n{}\ntarget.formulas = [{target}]\n\
+         [reference.tracking]\nroots_per_s = {:?}\n{law}",
+        start.join("\n"),
+        roots(count)
+    )
+}
+
+#[test]
+fn eq_43_a_target_is_followed_by_as_many_derivatives_as_are_asked_for() {
+    let chain = |order: usize| format!("chain = {{ order = {order}, chi = \"-x^3\", psi = \"2 + sin(x)\" }}");
+    let vector = "vector_chain = { order = 2, chi = [\"-x1*x2\", \"sin(dx1)\"], psi = [[\"2\", \"sin(x1)\"], [\"-0.5\", \"2\"]] }";
+    let linearising = "[law.linearising]\ngain_per_s = 2\n";
+    let known = "[law.known]\ndamping.gain = 8\n";
+    let cases = [
+        (chain(1), linearising, 1, 6, 1),
+        (chain(2), linearising, 2, 5, 1),
+        (chain(3), linearising, 3, 7, 1),
+        (chain(4), linearising, 4, 12, 1),
+        (chain(6), linearising, 6, 9, 1),
+        (vector.to_owned(), linearising, 2, 6, 2),
+        ("point_mass = { dimension = 2, mass_kg = 3.0 }".to_owned(), known, 2, 6, 2),
+    ];
+    for (robot, law, order, count, axes) in cases {
+        let text = on_one_root(&robot, law, order, count, axes);
+        let scenario = read(&text).unwrap_or_else(|error| panic!("{text}\n{:?}", miette::Report::new(error)));
+        let outcome = exactly(scenario);
+        let slowest = roots(count)[count - 1];
+        for axis in 0..axes {
+            let of = |signal: Signal| {
+                let found = outcome.recording.columns.iter().find(|c| (c.signal, c.axis) == (signal, axis));
+                &found.unwrap_or_else(|| panic!("{signal:?}")).values
+            };
+            for ((t_s, x), error) in outcome.recording.t_s.iter().zip(of(Signal::Position)).zip(of(Signal::Error)) {
+                let expected = 0.4 * (-slowest * t_s).exp();
+                let desired = WAVE[0] * (WAVE[1] * t_s + WAVE[2]).sin();
+                assert!((x - desired - expected).abs() < 1e-7, "{robot} {count} roots, {t_s}: {x}");
+                assert!((error - expected).abs() < 1e-7, "{robot} {count} roots, {t_s}: {error}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_curve_through_points_is_followed_by_four_derivatives_and_by_more_it_is_refused() {
+    let text = on_one_root("point_mass = { dimension = 1, mass_kg = 3.0 }", "[law.known]\ndamping.gain = 8\n", 2, 5, 1);
+    let curve = text.replace(
+        text.lines().find(|line| line.starts_with("target")).unwrap(),
+        "target.points = { times_s = [0, 3, 6], positions = [[0.0], [1.0], [0.5]] }",
+    );
+    let error = read(&curve).unwrap_err();
+    let said = format!("{:?}", miette::Report::new(error));
+    assert!(said.contains("5 derivatives") && said.contains("at most 4 roots"), "{said}");
+    let four = curve.replace(&format!("{:?}", roots(5)), &format!("{:?}", roots(4)));
+    let four = four.lines().filter(|line| !line.starts_with("start.reference")).collect::<Vec<_>>().join("\n");
+    assert!(read(&four).is_ok());
+}
+
+#[test]
+fn more_derivatives_are_followed_at_samples_too() {
+    let text = on_one_root(
+        "chain = { order = 2, chi = \"-x^3\", psi = \"2\" }",
+        "[law.linearising]\ngain_per_s = 2\n",
+        2,
+        6,
+        1,
+    );
+    let errors = [100, 400].map(|rate| {
+        let scenario = read(&format!("{text}\n[control]\nsample_hz = {rate}\n")).unwrap();
+        let outcome = exactly(scenario);
+        let column = outcome.recording.columns.iter().find(|c| c.signal == Signal::Error).unwrap();
+        let slowest = roots(6)[5];
+        let off = outcome.recording.t_s.iter().zip(&column.values);
+        off.map(|(t_s, error)| (error - 0.4 * (-slowest * t_s).exp()).abs()).fold(0.0, f64::max)
+    });
+    // The hold is of the first order.
+    assert!(errors[0] < 0.02 && errors[1] < 0.3 * errors[0], "{errors:?}");
 }

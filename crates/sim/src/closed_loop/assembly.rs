@@ -221,7 +221,7 @@ impl<'a> Assembly<'a> {
     pub fn tracking<M: RobotModel>(&self, model: &M) -> Result<Block, SetupError> {
         let (own, robot) = (self.agent(), model.kernel());
         let Member { law, theta, .. } = members::member(&robot, self)?;
-        // One root at least, and no more than a trajectory has derivatives.
+        // One root at least.
         let wrong = |error| SetupError::Chain { agent: own.name.clone(), error: ChainError::Guide(error) };
         let suits = |order: usize| Guide::Tracking { alpha: vec![1.0; order] }.check(1, 1).map_err(wrong);
         let alpha = if let Some(desired) = self.reference().downcast::<Desired>() {
@@ -275,6 +275,10 @@ impl<'a> Assembly<'a> {
             Some(trajectory) => {
                 let entries = controller.target_len(plant.axes());
                 self.length(self.of_agent(), "target", entries, trajectory.axes())?;
+                let (need, known) = (controller.target_derivatives(), trajectory.known_derivatives());
+                if need > known {
+                    return Err(SetupError::TargetDerivatives { agent: own.name.clone(), need, known });
+                }
                 let wrong = |error| SetupError::Trajectory { agent: own.name.clone(), error };
                 let trajectory = Pieces::new(trajectory.clone(), setup.time.end_s).map_err(wrong)?;
                 Some(Target { trajectory, is_offset })

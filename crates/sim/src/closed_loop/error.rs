@@ -154,6 +154,18 @@ pub enum SetupError {
     /// A nonlinear coupling of what it does not suit.
     #[error("a nonlinear coupling goes with consensus by positions only")]
     Coupling,
+    /// A target with fewer derivatives than what follows it reads.
+    #[error(
+        "`{agent}` follows its target by {need} derivatives, one for every root of its reference dynamics, but its target has {known}"
+    )]
+    TargetDerivatives {
+        /// The agent.
+        agent: String,
+        /// How many it reads.
+        need: usize,
+        /// How many there are.
+        known: usize,
+    },
     /// A law for a chain.
     #[error("agent `{agent}`: {error}")]
     Chain {

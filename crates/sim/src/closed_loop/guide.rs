@@ -6,8 +6,7 @@
 use std::ops::Range;
 
 use forwardstep_core::LengthError;
-use forwardstep_core::controller::Jet;
-use forwardstep_core::controller::Trouble;
+use forwardstep_core::controller::{JetsBuffer, Trouble};
 use forwardstep_core::sampled::{Recipe, Sampled};
 
 use super::columns::{Columns, Inputs};
@@ -24,37 +23,37 @@ pub(crate) struct Guide {
     pieces: Pieces,
     /// Its vertex.
     vertex: usize,
-    jets: Vec<Jet>,
+    jets: JetsBuffer,
 }
 
 impl Guide {
     pub(crate) fn new(leader: &Leader, vertex: usize, end_s: f64) -> Result<Self, SetupError> {
         let wrong = |error| SetupError::Trajectory { agent: leader.name.clone(), error };
         let pieces = Pieces::new(leader.trajectory.clone(), end_s).map_err(wrong)?;
-        let jets = vec![[0.0; 5]; pieces.axes()];
+        let jets = JetsBuffer::new(pieces.axes(), 0);
         Ok(Guide { pieces, vertex, jets })
     }
 
     /// Puts the k-th derivatives of every axis at `t_s` into `out`, from k = `first` on.
     fn put(&mut self, t_s: f64, first: usize, out: &mut [f64]) {
         self.pieces.jets(t_s, &mut self.jets);
-        let m = self.jets.len();
+        let jets = self.jets.jets();
         for (k, out) in out.iter_mut().enumerate() {
-            *out = self.jets[k % m].get(first + k / m).copied().unwrap_or(0.0);
+            *out = jets.get(k % jets.len()).and_then(|jet| jet.get(first + k / jets.len())).copied().unwrap_or(0.0);
         }
     }
 }
 
 impl Columns for Guide {
     fn state_len(&self) -> usize {
-        2 * self.jets.len()
+        2 * self.pieces.axes()
     }
 
     fn append_start(&self, _: &[AgentSetup], x: &mut Vec<f64>) {
         let mut jets = self.jets.clone();
         self.pieces.jets(0.0, &mut jets);
-        x.extend(jets.iter().map(|jet| jet[0]));
-        x.extend(jets.iter().map(|jet| jet[1]));
+        x.extend(jets.jets().iter().map(|jet| jet[0]));
+        x.extend(jets.jets().iter().map(|jet| jet[1]));
     }
 
     fn start(&mut self, _: &[AgentSetup], _: &mut [f64], _: &[f64], _: &[f64]) -> Result<(), LengthError> {
@@ -136,7 +135,7 @@ impl Columns for Guide {
     }
 
     fn locate(&self, state: usize) -> (usize, Signal, usize) {
-        let m = self.jets.len();
+        let m = self.pieces.axes();
         (self.vertex, if state < m { Signal::Position } else { Signal::Velocity }, state % m)
     }
 

@@ -19,7 +19,7 @@
 
 use forwardstep_core::LengthError;
 use forwardstep_core::agent::VelocityFilter;
-use forwardstep_core::controller::{Asked, Balance, Controller, Given, Jet, Truth};
+use forwardstep_core::controller::{Asked, Balance, Controller, Given, Jets, Truth};
 use forwardstep_core::plant::Plant;
 use forwardstep_core::reference::{Exchange, Heard};
 
@@ -67,7 +67,7 @@ pub(super) struct Tracing {
 pub(super) struct Outside<'a> {
     pub(super) degree: &'a [f64],
     pub(super) sums: &'a [f64],
-    pub(super) jets: &'a [Jet],
+    pub(super) jets: Jets<'a>,
     pub(super) time_s: f64,
 }
 

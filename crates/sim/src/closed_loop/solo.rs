@@ -15,7 +15,7 @@
 mod block;
 
 use forwardstep_core::LengthError;
-use forwardstep_core::controller::{Asked, Controller, Given, Jet, Truth};
+use forwardstep_core::controller::{Asked, Controller, Given, JetsBuffer, Truth};
 use forwardstep_core::plant::{Plant, total};
 use forwardstep_core::reference::Heard;
 use forwardstep_core::signal::Block;
@@ -76,7 +76,7 @@ impl Layout {
 /// Everything about the instant at hand.
 struct Now {
     t_s: f64,
-    jets: Vec<Jet>,
+    jets: JetsBuffer,
     state: Vec<f64>,
     output: Vec<f64>,
     input: Vec<f64>,
@@ -109,7 +109,10 @@ impl<C: Controller> Solo<C> {
         let input = total(&inputs);
         let now = Now {
             t_s: 0.0,
-            jets: vec![[0.0; 5]; target.as_ref().map_or(0, |target| target.trajectory.axes())],
+            jets: JetsBuffer::new(
+                target.as_ref().map_or(0, |target| target.trajectory.axes()),
+                controller.target_derivatives(),
+            ),
             state: vec![0.0; layout.plant],
             output: vec![0.0; plant.output_len()],
             input: vec![0.0; input],
@@ -146,7 +149,7 @@ impl<C: Controller> Solo<C> {
         }
         self.now.state.copy_from_slice(&x[..plant]);
         if self.is_offset() {
-            for (k, jet) in self.now.jets.iter().enumerate().take(m) {
+            for (k, jet) in self.now.jets.jets().iter().enumerate().take(m) {
                 self.now.state[k] += jet[0];
                 if velocities == m {
                     self.now.state[m + k] += jet[1];
@@ -166,7 +169,7 @@ impl<C: Controller> Solo<C> {
         } else {
             let own = &x[plant..self.layout.controller_end()];
             let heard = Heard::new(inputs.degree, inputs.sums, m)?.at(*t_s);
-            let given = Given { measured: self.controller.see(output)?, heard, target: jets };
+            let given = Given { measured: self.controller.see(output)?, heard, target: jets.jets() };
             self.controller.evaluate(&mut self.scratch, given, own, Asked { input, d_state: d_controller, shown })?;
         }
         let (first, count) = self.layout.torque;
@@ -185,7 +188,7 @@ impl<C: Controller> Solo<C> {
         let external = inputs.external.unwrap_or_default();
         self.plant.rate(&mut self.plant_scratch, &self.now.state, &self.now.input, external, &mut dx[..plant])?;
         if self.is_offset() {
-            for (k, jet) in self.now.jets.iter().enumerate().take(m) {
+            for (k, jet) in self.now.jets.jets().iter().enumerate().take(m) {
                 dx[k] -= jet[1];
                 if velocities == m {
                     dx[m + k] -= jet[2];
@@ -204,7 +207,7 @@ impl<C: Controller> Solo<C> {
         let Layout { m, plant, .. } = self.layout;
         let own = &x[plant..self.layout.controller_end()];
         let heard = Heard::new(inputs.degree, inputs.sums, m)?.at(self.now.t_s);
-        let given = Given { measured: self.controller.see(&self.now.output)?, heard, target: &self.now.jets };
+        let given = Given { measured: self.controller.see(&self.now.output)?, heard, target: self.now.jets.jets() };
         let truth = Truth { plant: &self.plant, state: &self.now.state, external: inputs.external.unwrap_or_default() };
         let balance = self.controller.balance(&mut self.scratch, truth, given, own, &self.now.shown)?;
         Ok((balance.value, balance.dissipation))
@@ -220,7 +223,7 @@ impl<C: Controller> Solo<C> {
         self.row.extend_from_slice(&self.now.input);
         self.row.extend_from_slice(&self.now.shown);
         if self.is_offset() {
-            self.row.extend(self.now.jets.iter().map(|jet| jet[0]));
+            self.row.extend(self.now.jets.jets().iter().map(|jet| jet[0]));
         }
         self.row.push(value);
         if self.layout.balance {
@@ -234,9 +237,9 @@ impl<C: Controller> Solo<C> {
         let (Some(tracing), Some(digital)) = (&mut self.tracing, &self.digital) else { return Ok(()) };
         let mut jets = self.now.jets.clone();
         if let Some(target) = &self.target {
-            target.trajectory.trajectory().jets(now_s, &mut jets);
+            target.trajectory.trajectory().jets_into(now_s, &mut jets);
         }
-        let outside = Outside { degree: inputs.degree, sums: inputs.sums, jets: &jets, time_s: now_s };
+        let outside = Outside { degree: inputs.degree, sums: inputs.sums, jets: jets.jets(), time_s: now_s };
         let mut pair = Pair {
             plant: &self.plant,
             controller: &self.controller,
@@ -255,7 +258,7 @@ impl<C: Controller> Solo<C> {
         self.control(x, inputs)?;
         let Some(tracing) = &self.tracing else { return Ok(None) };
         let own = &x[self.layout.plant..self.layout.controller_end()];
-        let outside = Outside { degree: inputs.degree, sums: inputs.sums, jets: &self.now.jets, time_s: t_s };
+        let outside = Outside { degree: inputs.degree, sums: inputs.sums, jets: self.now.jets.jets(), time_s: t_s };
         let mut pair = Pair {
             plant: &self.plant,
             controller: &self.controller,

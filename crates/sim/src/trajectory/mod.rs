@@ -1,18 +1,19 @@
 //! Where something should be at every time: a leader's motion, a desired trajectory, an offset.
 //!
-//! A [`Trajectory`] has one [`Path`] per axis. Its value and four derivatives are closed forms, with the same bits on every
+//! A [`Trajectory`] has one [`Path`] per axis. Its value and its derivatives are closed forms, with the same bits on every
 //! machine, and can be bounded on a horizon or for ever: Theorems 8 and 9 ask for a gain above such a bound.
 //!
 //! - a formula in t: derivatives by Taylor coefficients, bounds by interval arithmetic;
 //! - sums of sinusoids: the bounds for ever are exact sums of amplitudes;
-//! - points of a table, joined by the smoothest curve through them: bounds of polynomials, which are exact for ever.
+//! - points of a table, joined by the smoothest curve through them: bounds of polynomials, which are exact for ever. It has four
+//!   derivatives, the others as many as are asked for.
 
 mod pieces;
 mod spline;
 
 use forwardstep_core::Scalar;
-use forwardstep_core::controller::Jet;
-use forwardstep_core::expression::{Expression, Interval, KinkError, search, weighted};
+use forwardstep_core::controller::{Jet, JetsBuffer};
+use forwardstep_core::expression::{Expression, Interval, KinkError, MOST_DERIVATIVES, search, weighted};
 use forwardstep_core::sampled::Motion;
 use thiserror::Error;
 
@@ -108,29 +109,59 @@ pub enum TrajectoryError {
 }
 
 impl Path {
+    /// How many derivatives it has.
+    pub fn known_derivatives(&self) -> usize {
+        match self {
+            Path::Formula(_) | Path::Sinusoids { .. } => MOST_DERIVATIVES,
+            Path::Spline(_) => Spline::DERIVATIVES,
+        }
+    }
+
     /// Value and four derivatives.
     pub fn jet(&self, t_s: f64) -> Jet {
+        let mut jet = Jet::default();
+        self.derivatives(t_s, &mut jet);
+        jet
+    }
+
+    /// The value and as many derivatives as `out` has room for; not-a-number beyond those that it has.
+    pub fn derivatives(&self, t_s: f64, out: &mut [f64]) {
         match self {
-            Path::Formula(formula) => formula.jet(t_s),
+            Path::Formula(formula) => formula.derivatives(t_s, out),
             Path::Sinusoids { offset, waves } => {
-                let mut jet = [*offset, 0.0, 0.0, 0.0, 0.0];
+                out.fill(0.0);
+                out.iter_mut().take(1).for_each(|value| *value = *offset);
                 for wave in waves {
                     let (sin, cos) = Scalar::sin_cos(wave.angle(t_s));
                     let mut size = wave.amplitude;
-                    for (value, turn) in jet.iter_mut().zip([sin, cos, -sin, -cos, sin]) {
+                    for (value, turn) in out.iter_mut().zip([sin, cos, -sin, -cos].into_iter().cycle()) {
                         *value += size * turn;
                         size *= wave.rad_per_s;
                     }
                 }
-                jet
             }
-            Path::Spline(spline) => spline.jet(t_s),
+            Path::Spline(spline) => {
+                out.fill(f64::NAN);
+                out.iter_mut().zip(spline.jet(t_s)).for_each(|(value, known)| *value = known);
+            }
+        }
+    }
+
+    /// Σₖ `weights[k]` · (k-th derivative).
+    fn weighted(&self, weights: &[f64], t_s: f64) -> f64 {
+        match self {
+            Path::Formula(formula) => formula.weighted(weights, t_s),
+            Path::Sinusoids { .. } | Path::Spline(_) => {
+                let mut jet = vec![0.0; weights.len()];
+                self.derivatives(t_s, &mut jet);
+                weighted(weights, &jet)
+            }
         }
     }
 
     /// An interval that holds Σₖ `weights[k]` · (k-th derivative) at every time from 0 to `end_s`, or for ever; unbounded
     /// where nothing could be shown.
-    pub fn bounds(&self, weights: &[f64; 5], end_s: Option<f64>) -> Interval {
+    pub fn bounds(&self, weights: &[f64], end_s: Option<f64>) -> Interval {
         match self {
             Path::Formula(formula) => match end_s {
                 Some(end_s) => formula.bounds_of_derivatives(weights, 0.0, end_s),
@@ -146,14 +177,16 @@ impl Path {
     /// When |Σₖ `weights[k]` · (k-th derivative)| is seen to reach `size`, and its value then: at the first of many times looked
     /// at, also far beyond `end_s`, at which that is certain. Of formulas it is enclosed; otherwise it exceeds what rounding
     /// does.
-    fn seen_to_reach(&self, weights: &[f64; 5], size: f64, end_s: f64) -> Option<Witness> {
+    fn seen_to_reach(&self, weights: &[f64], size: f64, end_s: f64) -> Option<Witness> {
         let range = Interval { low: -size, high: size };
         let value = |t_s: f64| match self {
             Path::Formula(formula) => formula.enclose_combination(weights, t_s),
             Path::Sinusoids { .. } | Path::Spline(_) => {
-                let parts = weights.iter().zip(self.jet(t_s)).map(|(weight, c)| (weight * c).abs());
+                let mut jet = vec![0.0; weights.len()];
+                self.derivatives(t_s, &mut jet);
+                let parts = weights.iter().zip(&jet).map(|(weight, c)| (weight * c).abs());
                 let room = ROUNDING * parts.sum::<f64>();
-                let value = weighted(weights, &self.jet(t_s));
+                let value = weighted(weights, &jet);
                 Interval { low: value - room, high: value + room }
             }
         };
@@ -177,7 +210,7 @@ impl Path {
     }
 
     /// Whether |Σₖ `weights[k]` · (k-th derivative)| is bounded for ever; `None` where neither is shown.
-    fn is_bounded(&self, weights: &[f64; 5]) -> Option<bool> {
+    fn is_bounded(&self, weights: &[f64]) -> Option<bool> {
         match self {
             // One look tells most.
             Path::Formula(formula) if formula.bounds_of_derivatives(weights, 0.0, f64::INFINITY).is_finite() => {
@@ -211,8 +244,15 @@ impl Motion for Trajectory {
         self.paths.len()
     }
 
-    fn jet(&self, axis: usize, at_s: f64) -> Jet {
-        self.paths.get(axis).map_or([f64::NAN; 5], |path| path.jet(at_s))
+    fn known_derivatives(&self) -> usize {
+        self.known_derivatives()
+    }
+
+    fn derivatives(&self, axis: usize, at_s: f64, out: &mut [f64]) {
+        match self.paths.get(axis) {
+            Some(path) => path.derivatives(at_s, out),
+            None => out.fill(f64::NAN),
+        }
     }
 }
 
@@ -223,22 +263,24 @@ impl Sinusoid {
 }
 
 /// The weights that single out one derivative.
-fn unit(derivative: usize) -> Option<[f64; 5]> {
-    let mut weights = [0.0; 5];
-    *weights.get_mut(derivative)? = 1.0;
-    Some(weights)
+fn unit(derivative: usize) -> Vec<f64> {
+    let mut weights = vec![0.0; derivative + 1];
+    weights[derivative] = 1.0;
+    weights
 }
 
 /// A combination of derivatives of a sinusoid is a sinusoid: Σ wₖ (d/dt)ᵏ a sin θ = p a sin θ + q a cos θ.
-fn sinusoids(offset: f64, waves: &[Sinusoid], weights: &[f64; 5], end_s: Option<f64>) -> Interval {
+fn sinusoids(offset: f64, waves: &[Sinusoid], weights: &[f64], end_s: Option<f64>) -> Interval {
     let parts = |wave: &Sinusoid| {
         let w = wave.rad_per_s;
-        let p = weights[0] - w * w * (weights[2] - w * w * weights[4]);
-        let q = w * (weights[1] - w * w * weights[3]);
+        let square = w * w;
+        let horner =
+            |first: usize| weights.iter().skip(first).step_by(2).rev().fold(0.0, |sum, weight| weight - square * sum);
+        let (p, q) = (horner(0), w * horner(1));
         let size = wave.amplitude * libm::hypot(p, q);
         (size, wave.phase_rad + libm::atan2(q, p))
     };
-    let middle = weights[0] * offset;
+    let middle = weights.first().map_or(0.0, |weight| weight * offset);
     let size: f64 = waves.iter().map(|wave| parts(wave).0.abs()).sum();
     let for_ever = Interval { low: middle - size, high: middle + size }.with_room(ROUNDING * (middle.abs() + size));
     let Some(end_s) = end_s else { return for_ever };
@@ -344,9 +386,21 @@ impl Trajectory {
         self.paths.len()
     }
 
+    /// How many derivatives every axis has.
+    pub fn known_derivatives(&self) -> usize {
+        self.paths.iter().map(Path::known_derivatives).min().unwrap_or(MOST_DERIVATIVES)
+    }
+
     /// The path of every axis.
     pub fn paths(&self) -> &[Path] {
         &self.paths
+    }
+
+    /// Value and derivatives of every axis, as far as `out` has room for them.
+    pub fn jets_into(&self, t_s: f64, out: &mut JetsBuffer) {
+        for (jet, path) in out.iter_mut().zip(&self.paths) {
+            path.derivatives(t_s, jet);
+        }
     }
 
     /// Value and four derivatives of every axis, as many as `out` has room for. A formula that has no value gives
@@ -357,37 +411,37 @@ impl Trajectory {
         }
     }
 
-    /// An interval that holds the k-th derivative, k ≤ 4, of one axis from 0 to `end_s`, or for ever; unbounded where nothing
+    /// An interval that holds the k-th derivative of one axis from 0 to `end_s`, or for ever; unbounded where nothing
     /// could be shown.
     pub fn hull(&self, axis: usize, derivative: usize, end_s: Option<f64>) -> Interval {
-        unit(derivative).map_or(Interval::WHOLE, |weights| self.bounds(axis, &weights, end_s))
+        self.bounds(axis, &unit(derivative), end_s)
     }
 
     /// An interval that holds Σₖ `weights[k]` · (k-th derivative) of one axis from 0 to `end_s`, or for ever; tighter than
     /// what the parts would give.
-    pub fn bounds(&self, axis: usize, weights: &[f64; 5], end_s: Option<f64>) -> Interval {
+    pub fn bounds(&self, axis: usize, weights: &[f64], end_s: Option<f64>) -> Interval {
         self.paths.get(axis).map_or(Interval::WHOLE, |path| path.bounds(weights, end_s))
     }
 
     /// When |Σₖ `weights[k]` · (k-th derivative)| of any axis is seen to reach `size`, and its value then; also far beyond
     /// `end_s`.
-    pub fn seen_to_reach(&self, weights: &[f64; 5], size: f64, end_s: f64) -> Option<Witness> {
+    pub fn seen_to_reach(&self, weights: &[f64], size: f64, end_s: f64) -> Option<Witness> {
         self.paths.iter().find_map(|path| path.seen_to_reach(weights, size, end_s))
     }
 
-    /// Whether the k-th derivative of an axis, k ≤ 4, is bounded for ever; `None` where neither is shown.
+    /// Whether the k-th derivative of an axis is bounded for ever; `None` where neither is shown.
     pub fn is_bounded(&self, axis: usize, derivative: usize) -> Option<bool> {
-        self.paths.get(axis)?.is_bounded(&unit(derivative)?)
+        self.paths.get(axis)?.is_bounded(&unit(derivative))
     }
 
     /// Whether Σₖ `weights[k]` · (k-th derivative) of some axis is shown to exceed every bound.
-    pub fn exceeds_every_bound(&self, weights: &[f64; 5]) -> bool {
+    pub fn exceeds_every_bound(&self, weights: &[f64]) -> bool {
         self.paths.iter().any(|path| path.is_bounded(weights) == Some(false))
     }
 
-    /// When the k-th derivative of an axis, k ≤ 4, is seen to be twice as large as it ever is until `end_s`, and its value then.
+    /// When the k-th derivative of an axis is seen to be twice as large as it ever is until `end_s`, and its value then.
     pub fn seen_to_grow(&self, axis: usize, derivative: usize, end_s: f64) -> Option<Witness> {
-        let (path, weights) = (self.paths.get(axis)?, unit(derivative)?);
+        let (path, weights) = (self.paths.get(axis)?, unit(derivative));
         let size = path.bounds(&weights, Some(end_s)).size();
         path.seen_to_reach(&weights, 2.0 * if size.is_finite() { size.max(0.5) } else { 0.5 }, end_s)
     }
@@ -400,12 +454,12 @@ impl Trajectory {
 
     /// The largest |Σₖ `weights[k]` · (k-th derivative)| of any axis at `samples` + 1 times from 0 to `end_s`: no bound, but
     /// what is left where none could be shown.
-    pub fn sampled_peak(&self, weights: &[f64; 5], end_s: f64, samples: u32) -> f64 {
+    pub fn sampled_peak(&self, weights: &[f64], end_s: f64, samples: u32) -> f64 {
         let mut peak = 0.0_f64;
         for k in 0..=samples {
             let t_s = end_s * f64::from(k) / f64::from(samples.max(1));
             for path in &self.paths {
-                peak = peak.max(weighted(weights, &path.jet(t_s)).abs());
+                peak = peak.max(path.weighted(weights, t_s).abs());
             }
         }
         peak

@@ -3,7 +3,7 @@
 //! A step of the integrator never sees both sides: it ends at the kink, and evaluates until then by the piece before and from
 //! then on by the piece after.
 
-use forwardstep_core::controller::Jet;
+use forwardstep_core::controller::JetsBuffer;
 use forwardstep_core::expression::Switch;
 
 use super::{Path, Trajectory, TrajectoryError};
@@ -41,14 +41,16 @@ impl Pieces {
         self.trajectory.axes()
     }
 
-    /// Value and four derivatives of every axis by the piece in force, as many as `out` has room for.
-    pub(crate) fn jets(&self, t_s: f64, out: &mut [Jet]) {
+    /// Value and derivatives of every axis by the piece in force, as far as `out` has room for them.
+    pub(crate) fn jets(&self, t_s: f64, out: &mut JetsBuffer) {
         let paths = self.trajectory.paths().iter().zip(&self.switches);
         for (jet, (path, switches)) in out.iter_mut().zip(paths) {
-            *jet = match path {
-                Path::Formula(formula) if !switches.is_empty() => formula.jet_on(switches, self.since_s, t_s),
-                smooth => smooth.jet(t_s),
-            };
+            match path {
+                Path::Formula(formula) if !switches.is_empty() => {
+                    formula.derivatives_on(switches, self.since_s, t_s, jet);
+                }
+                smooth => smooth.derivatives(t_s, jet),
+            }
         }
     }
 
@@ -56,7 +58,7 @@ impl Pieces {
         self.switches.iter().flatten().flat_map(|switch| switch.at().iter().copied())
     }
 
-    /// The first time after `after_s` at which a derivative up to the fourth may jump: a kink of a formula, or where a table
+    /// The first time after `after_s` at which a derivative may jump that is used: a kink of a formula, or where a table
     /// begins or ends. Infinite when there is none.
     pub(crate) fn next_kink_s(&self, after_s: f64) -> f64 {
         let ends_s = self.trajectory.paths().iter().filter_map(|path| match path {

@@ -71,6 +71,9 @@ pub enum SplineError {
 }
 
 impl Spline {
+    /// How many derivatives it has: the fourth has corners at the points, where the fifth jumps.
+    pub const DERIVATIVES: usize = 4;
+
     /// The curve through (`t_s`, `values`).
     ///
     /// # Errors
@@ -160,16 +163,17 @@ impl Spline {
     }
 
     /// See [`super::Path::bounds`].
-    pub fn bounds(&self, weights: &[f64; 5], end_s: Option<f64>) -> Interval {
+    pub fn bounds(&self, weights: &[f64], end_s: Option<f64>) -> Interval {
         let end_s = end_s.unwrap_or(f64::INFINITY);
         let [first_s, last_s] = self.ends_s();
         let mut hull = Hull::new();
+        let value = weights.first().copied().unwrap_or(0.0);
         if let (Some(first), Some(last)) = (self.values.first(), self.values.last()) {
             if first_s > 0.0 || end_s <= first_s {
-                hull.take(weights[0] * first);
+                hull.take(value * first);
             }
             if end_s >= last_s {
-                hull.take(weights[0] * last);
+                hull.take(value * last);
             }
         }
         let inside = || self.t_s.windows(2).zip(&self.pieces).filter(|(t, _)| t[1] > 0.0 && t[0] <= end_s);
@@ -340,7 +344,7 @@ fn evaluate(piece: &Quintic, x: f64) -> Jet {
 }
 
 /// The polynomial Σₖ weights[k] · (k-th derivative).
-fn combined(piece: &Quintic, weights: &[f64; 5]) -> Quintic {
+fn combined(piece: &Quintic, weights: &[f64]) -> Quintic {
     let mut sum = [0.0; 6];
     let mut derivative = *piece;
     for weight in weights {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use forwardstep_core::controller::Jet;
+use forwardstep_core::controller::{Jet, JetsBuffer};
 use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{Column, Moment, Signal, StateRate};
 
@@ -131,14 +131,16 @@ impl<'c, 'a> At<'c, 'a> {
         }
     }
 
-    /// The same with the third derivative of the position of a vehicle, whose thrust and weight cancel when it hovers.
-    pub(super) fn moved(&self, k: usize) -> Result<Vector, Missing> {
+    /// The same with the third derivative of the position of a vehicle, whose thrust and weight cancel when it hovers, as do the
+    /// torques of a spacecraft's wheels that turn about nearly the same plane.
+    pub(super) fn moved(&mut self, k: usize) -> Result<Vector, Missing> {
         match self.case.step {
             Step::Thrust(..) if k == 3 => self.jerk(),
             Step::Thrust(..) if k == 2 => {
                 let weighed = self.position(2)?.into_iter().zip(self.weight().unwrap_or_default());
                 Ok(weighed.map(|(ddx, weight)| [ddx, ddx.abs() + weight]).collect())
             }
+            Step::Attitude(_) if k == 1 => self.turned_by_wheels(),
             _ => self.position(k).map(exact),
         }
     }
@@ -195,12 +197,17 @@ impl<'c, 'a> At<'c, 'a> {
     pub(super) fn jet(&self, trajectory: Option<&Trajectory>, k: usize) -> Result<Vector, Missing> {
         let (trajectory, t_s) = (trajectory.ok_or(Missing::Neighbour)?, self.moment.t_s);
         let near_s = KINK * t_s.abs().max(1.0);
-        let [now, before, after] = [t_s, t_s - near_s, t_s + near_s].map(|t_s| jets(trajectory, t_s));
+        if k > trajectory.known_derivatives() {
+            return Err(Missing::Derivative);
+        }
+        let at = |t_s: f64| -> Vec<f64> {
+            let mut jets = JetsBuffer::new(trajectory.axes(), k);
+            trajectory.jets_into(t_s, &mut jets);
+            jets.jets().iter().map(|jet| jet[k]).collect()
+        };
+        let [now, before, after] = [t_s, t_s - near_s, t_s + near_s].map(at);
         let mut found = Vec::new();
         for ((now, before), after) in now.iter().zip(&before).zip(&after) {
-            let (Some(now), Some(before), Some(after)) = (now.get(k), before.get(k), after.get(k)) else {
-                return Err(Missing::Derivative);
-            };
             if (after - before).abs() > KINK.sqrt() * now.abs().max(1.0) {
                 return Err(Missing::Kink);
             }

@@ -143,6 +143,19 @@ impl At<'_, '_> {
         }
     }
 
+    /// ω̇ with the sizes of what each motor contributes.
+    pub(super) fn turned_by_wheels(&mut self) -> Result<Vector, Missing> {
+        let mut rate = exact(self.position(1)?);
+        let motors = self.recorded(Signal::WheelTorque).unwrap_or_default();
+        let Craft { plant, inertia, .. } = self.craft()?;
+        let pulls = plant.wheels().list().iter().zip(motors).map(|(wheel, motor)| wheel.axis.map(|axis| axis * motor));
+        // Sizes need no more than their order of magnitude.
+        let least = (0..3).map(|k| inertia[k][k]).fold(f64::INFINITY, f64::min);
+        let size = pulls.flatten().map(f64::abs).sum::<f64>() / least;
+        rate.iter_mut().for_each(|[_, entry]| *entry += size);
+        Ok(rate)
+    }
+
     pub(super) fn spacecraft_under(&mut self, operator: Operator, vector: &Vector) -> Result<Vector, Missing> {
         let Attitude { q, desired, apart } = self.attitude().ok_or(Missing::Term)?;
         match operator {

@@ -37,9 +37,25 @@ pub(super) fn because(evidence: &Evidence) -> String {
     }
 }
 
+/// `first`, …, `ninth`, `10th`.
+fn ordinal(number: usize) -> String {
+    const WORDS: [&str; 10] =
+        ["zeroth", "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth"];
+    WORDS.get(number).map_or_else(|| format!("{number}{}", suffix(number)), |word| (*word).to_owned())
+}
+
+fn suffix(number: usize) -> &'static str {
+    match (number % 10, number % 100) {
+        (_, 11..=13) => "th",
+        (1, _) => "st",
+        (2, _) => "nd",
+        (3, _) => "rd",
+        _ => "th",
+    }
+}
+
 /// What stands for `…` in what is required.
 fn of(subject: &Subject) -> String {
-    let ordinal = |derivatives: usize| ["zeroth", "first", "second", "third", "fourth"][derivatives.min(4)];
     match subject {
         Subject::Setup => String::new(),
         Subject::Reference => "the reference dynamics".into(),

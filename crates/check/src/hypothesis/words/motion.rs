@@ -3,6 +3,7 @@
 use forwardstep_sim::formula::Witness;
 
 use super::numbers::{rounded, rounded_down, rounded_up, seconds};
+use super::ordinal;
 use crate::hypothesis::{Bounded, MotionEvidence};
 
 pub(super) fn words(evidence: &MotionEvidence) -> String {
@@ -41,7 +42,7 @@ fn unbounded(derivative: usize, witness: Option<Witness>) -> String {
         1 => "the velocity",
         2 => "the acceleration",
         3 => "the jerk",
-        _ => "the fourth derivative",
+        _ => &format!("the {} derivative", ordinal(derivative)),
     };
     let at = witness.map_or(String::new(), |Witness { t_s, value }| {
         let value = if value < 0.0 { rounded_up(value) } else { rounded_down(value) };

@@ -66,7 +66,7 @@ pub struct TaskMeasured<'a> {
 
 /// Task-space adaptive control of a robot whose tip is seen.
 ///
-/// State: z, ϑ̂, θ̂, det Ĵ(0). Shown: z, ż, s, ϑ̂, θ̂, det Ĵ, x, Δx. The target is a [`Jet`](super::Jet) for each coordinate of x_d.
+/// State: z, ϑ̂, θ̂, det Ĵ(0). Shown: z, ż, s, ϑ̂, θ̂, det Ĵ, x, Δx. The target has two derivatives for each coordinate of x_d.
 ///
 /// Of poses and redundant joints the smallest singular value of Ĵ stands in the place of det Ĵ. A pose has one state more, the
 /// sign that Δq has throughout; what is shown goes on with Δq_v after Δp, Δq_o, the angle, and the quaternion of the tip; and its
@@ -116,7 +116,7 @@ pub struct TaskMeasured<'a> {
 /// let after = |motion: &[f64], state: &[f64], h: f64| -> Result<(Balance, Vec<f64>, Vec<f64>), Box<dyn std::error::Error>> {
 ///     let mut output = [0.0; 6];
 ///     plant.output(&mut plant.scratch(), motion, &mut output)?;
-///     let given = Given { measured: law.see(&output)?, heard: Heard::new(&[0.0], &[0.0; 2], 2)?, target: &target };
+///     let given = Given { measured: law.see(&output)?, heard: Heard::new(&[0.0], &[0.0; 2], 2)?, target: Jets::from(&target) };
 ///     let mut state = state.to_vec();
 ///     if state.is_empty() {
 ///         state.resize(size, 0.0);
@@ -182,6 +182,10 @@ where
 
     fn target_len(&self, _: usize) -> usize {
         self.followed()
+    }
+
+    fn target_derivatives(&self) -> usize {
+        2
     }
 
     fn scratch(&self) -> Self::Scratch {

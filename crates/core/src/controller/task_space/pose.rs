@@ -51,7 +51,7 @@ use super::tip::TaskWork;
 use super::{TaskMeasured, TaskSpace};
 use crate::LengthError;
 use crate::attitude::{Desired, angle, product};
-use crate::controller::Jet;
+use crate::controller::{Jet, Jets};
 use crate::robot::{Lagrangian, TipKinematics};
 
 impl<R, T> TaskSpace<R, T>
@@ -69,21 +69,19 @@ where
         &self,
         work: &mut TaskWork<R::Scratch>,
         measured: TaskMeasured<'_>,
-        target: &[Jet],
+        target: Jets<'_>,
         sign: Option<f64>,
     ) -> Result<(), LengthError> {
         let axes = self.tip.axes();
         LengthError::check("target", self.followed(), target.len())?;
-        for k in 0..axes {
-            work.error[k] = measured.x[k] - target[k][0];
-            work.d_target[k] = target[k][1];
-            work.dd_target[k] = target[k][2];
+        for (k, jet) in target.iter().enumerate().take(axes) {
+            work.error[k] = measured.x[k] - jet[0];
+            (work.d_target[k], work.dd_target[k]) = (jet[1], jet[2]);
         }
         self.task_gain.apply(&work.error[..axes], &mut work.weighted[..axes]);
-        if let (Some(attitude), Some(path), Some(sign)) =
-            (self.tip.attitude(measured.q), target[axes..].first_chunk::<4>(), sign)
-        {
-            let Desired { q: [x, y, z, o], omega, d_omega } = Desired::from_path(path);
+        if let (Some(attitude), Some(sign)) = (self.tip.attitude(measured.q), sign) {
+            let path: [Jet; 4] = core::array::from_fn(|k| target.jet(axes + k));
+            let Desired { q: [x, y, z, o], omega, d_omega } = Desired::from_path(&path);
             let error = product(attitude, [-x, -y, -z, o]).map(|entry| sign * entry);
             for k in 0..3 {
                 work.error[axes + k] = error[k];

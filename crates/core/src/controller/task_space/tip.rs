@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use super::null_space::Free;
 use super::{TaskMeasured, TaskSpace};
 use crate::attitude::{IDENTITY, Quaternion};
-use crate::controller::Jet;
+use crate::controller::Jets;
 use crate::law::ParameterBounds;
 use crate::linear::{invert, singular_values};
 use crate::robot::{Lagrangian, Posture, TipKinematics};
@@ -122,7 +122,7 @@ where
         &self,
         work: &mut TaskWork<R::Scratch>,
         measured: TaskMeasured<'_>,
-        target: &[Jet],
+        target: Jets<'_>,
         state: &[f64],
     ) -> Result<f64, LengthError> {
         let (n, m, l) = (self.tip.joints(), self.tip.rows(), self.layout());

@@ -67,7 +67,7 @@ pub struct RotorcraftMeasured<'a> {
 /// outer.yaw.gain = 0.0;
 /// let law = ThrustCascade { outer, rates: RateLoop { inertia: *plant.inertia(), bandwidth_per_s: 30.0 } };
 /// let turning = [0.5, 1.0, -2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.7];
-/// let given = Given { measured: law.see(&turning)?, heard: Heard::new(&[1.0], &turning[..3], 3)?, target: &[] };
+/// let given = Given { measured: law.see(&turning)?, heard: Heard::new(&[1.0], &turning[..3], 3)?, target: Jets::NONE };
 /// let size = |blocks: Vec<(_, usize)>| blocks.iter().map(|(_, n)| n).sum::<usize>();
 /// let (mut state, mut d_state) = (vec![0.0; size(law.states())], vec![0.0; size(law.states())]);
 /// law.start(&mut (), given, &[], &mut state)?;
@@ -93,6 +93,10 @@ impl Controller for ThrustCascade {
 
     const MEASURES: &'static [&'static str] = &["position", "velocity", "attitude", "angular velocity"];
     const KNOWS_OFFSETS: bool = true;
+
+    fn target_derivatives(&self) -> usize {
+        self.outer.target_derivatives_read()
+    }
 
     fn scratch(&self) {}
 

@@ -75,7 +75,7 @@ pub use design::{Floor, ThrustDesign, Yaw};
 
 use alloc::vec::Vec;
 
-use super::{Balance, Jet};
+use super::{Balance, Jets};
 use crate::attitude::{cross, dot, rotate, rotate_back};
 use crate::law::Range;
 use crate::plant::{Vehicle, VehicleState};
@@ -120,7 +120,7 @@ use crate::{LengthError, Scalar};
 /// for shift in [0.0, 0.1] {
 ///     let w = 0.8;
 ///     let (degree, sums) = ([w], [w * (0.5 + shift), w * 1.0, w * -2.0]);
-///     let given = Given { measured: law.see(&at_rest)?, heard: Heard::new(&degree, &sums, 3)?, target: &[] };
+///     let given = Given { measured: law.see(&at_rest)?, heard: Heard::new(&degree, &sums, 3)?, target: Jets::NONE };
 ///     let size = |blocks: Vec<(_, usize)>| blocks.iter().map(|(_, n)| n).sum::<usize>();
 ///     let (mut state, mut d_state) = (vec![0.0; size(law.states())], vec![0.0; size(law.states())]);
 ///     law.start(&mut (), given, &[], &mut state)?;
@@ -165,11 +165,16 @@ struct Flight {
 }
 
 /// An offset has three axes.
-fn check_target(target: &[Jet]) -> Result<(), LengthError> {
+fn check_target(target: Jets<'_>) -> Result<(), LengthError> {
     if target.is_empty() { Ok(()) } else { LengthError::check("target", 3, target.len()) }
 }
 
 impl Thrust {
+    /// Those that the reference dynamics are differentiated into.
+    fn target_derivatives_read(&self) -> usize {
+        self.design.order() + 1
+    }
+
     /// A vehicle of mass `mass` (what is known of it) that keeps heading zero and stops where σ falls to a tenth of m g. The roots
     /// −α, −β and, where there is one, −γ are in 1/s.
     ///
@@ -238,7 +243,7 @@ impl Thrust {
     }
 
     /// s and w of z, ż, z̈.
-    fn error_and_push(&self, dx: &[f64; 3], reference: &[f64], target: &[Jet]) -> ([f64; 3], [f64; 3]) {
+    fn error_and_push(&self, dx: &[f64; 3], reference: &[f64], target: Jets<'_>) -> ([f64; 3], [f64; 3]) {
         let [alpha_star, ..] = self.design.gains();
         let d = |k: usize, r: usize| target.get(k).map_or(0.0, |jet| jet[r]);
         let s = core::array::from_fn(|k| dx[k] - reference[k] - d(k, 1));
@@ -251,7 +256,7 @@ impl Thrust {
     fn begin(
         &self,
         measured: VehicleState<'_>,
-        target: &[Jet],
+        target: Jets<'_>,
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
@@ -281,7 +286,7 @@ impl Thrust {
         &self,
         measured: VehicleState<'_>,
         heard: Heard<'_, Position>,
-        target: &[Jet],
+        target: Jets<'_>,
         state: &[f64],
         [d_state, shown]: [&mut [f64]; 2],
     ) -> Result<Flight, LengthError> {
@@ -369,7 +374,7 @@ impl Thrust {
         &self,
         vehicle: &Vehicle,
         moving: VehicleState<'_>,
-        target: &[Jet],
+        target: Jets<'_>,
         state: &[f64],
         [slip, external]: [&[f64]; 2],
     ) -> Result<Balance, LengthError> {

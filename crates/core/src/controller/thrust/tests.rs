@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::*;
 use crate::Gain;
-use crate::controller::{Asked, Controller, Given, Trouble, Truth};
+use crate::controller::{Asked, Controller, Given, Jet, Trouble, Truth};
 use crate::plant::{Plant, Rotorcraft, total};
 
 const MASS: f64 = 1.3;
@@ -65,7 +65,7 @@ impl<C: Controller<Exchange = Position>> Closed<C> {
 
     fn at(&self, t: f64, y: &[f64]) -> Instant {
         let jets = offset(t);
-        let target = if self.moves { &jets[..] } else { &[] };
+        let target = if self.moves { Jets::from(&jets) } else { Jets::NONE };
         let (state, own) = y.split_at(self.plant_len());
         let mut output = vec![0.0; self.plant.output_len()];
         self.plant.output(&mut self.plant.scratch(), state, &mut output).unwrap();
@@ -86,7 +86,7 @@ impl<C: Controller<Exchange = Position>> Closed<C> {
 
     fn started(&self, state: &[f64]) -> Vec<f64> {
         let jets = offset(0.0);
-        let target = if self.moves { &jets[..] } else { &[] };
+        let target = if self.moves { Jets::from(&jets) } else { Jets::NONE };
         let heard = Heard::new(&[DEGREE], &SUMS, 3).unwrap();
         let given = Given { measured: self.law.see(state).unwrap(), heard, target };
         let mut own = vec![0.0; total(&self.law.states())];
@@ -377,12 +377,14 @@ fn wrong_lengths_are_errors() {
     assert!(cascade.see(&[0.0; 12]).is_err() && cascade.see(&[0.0; 14]).is_err());
     let output = [0.0; 10];
     let heard = Heard::new(&[0.0], &[0.0; 3], 3).unwrap();
-    let given = Given { measured: law.see(&output).unwrap(), heard, target: &offset(0.0)[..2] };
+    let [first, second, _] = offset(0.0);
+    let two = [first, second];
+    let given = Given { measured: law.see(&output).unwrap(), heard, target: Jets::from(&two) };
     let mut state = vec![0.0; 12];
     let need = LengthError { what: "target", need: 3, got: 2 };
     assert_eq!(law.start(&mut (), given, &[], &mut state), Err(need));
     let jets = offset(0.0);
-    let given = Given { target: &jets, ..given };
+    let given = Given { target: Jets::from(&jets), ..given };
     assert!(law.start(&mut (), given, &[vec![0.0; 2]], &mut state).is_err());
     assert!(law.start(&mut (), given, &[vec![0.5; 3]], &mut state).is_ok());
     let asked = Asked { input: &mut [0.0; 3], d_state: &mut [0.0; 12], shown: &mut [0.0; 16] };

@@ -33,6 +33,10 @@ impl Controller for Thrust {
     const MEASURES: &'static [&'static str] = &["position", "velocity", "attitude"];
     const KNOWS_OFFSETS: bool = true;
 
+    fn target_derivatives(&self) -> usize {
+        self.target_derivatives_read()
+    }
+
     fn scratch(&self) {}
 
     fn states(&self) -> Vec<Block> {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use forwardstep_core::LengthError;
 use forwardstep_core::agent::VelocityFilter;
-use forwardstep_core::controller::{Controller, Given, Trouble};
+use forwardstep_core::controller::{Controller, Given, JetsBuffer, Trouble};
 use forwardstep_core::plant::Plant;
 use forwardstep_core::reference::Heard;
 use forwardstep_core::sampled::{self, Recipe, Sampled, StartState};
@@ -33,9 +33,9 @@ impl<C: Controller> Columns for Solo<C> {
         x.resize(first + self.state_len(), 0.0);
         if let Some(target) = self.target.as_ref().filter(|target| target.is_offset) {
             let Layout { m, velocities, .. } = self.layout;
-            let mut jets = vec![[0.0; 5]; m];
+            let mut jets = JetsBuffer::new(m, 0);
             target.trajectory.jets(0.0, &mut jets);
-            for (k, jet) in jets.iter().enumerate() {
+            for (k, jet) in jets.jets().iter().enumerate() {
                 x[first + k] -= jet[0];
                 if velocities == m {
                     x[first + m + k] -= jet[1];
@@ -49,7 +49,7 @@ impl<C: Controller> Columns for Solo<C> {
         self.plant.settle(&mut x[..plant]);
         self.look(0.0, x)?;
         let heard = Heard::new(degree, sums, m)?;
-        let given = Given { measured: self.controller.see(&self.now.output)?, heard, target: &self.now.jets };
+        let given = Given { measured: self.controller.see(&self.now.output)?, heard, target: self.now.jets.jets() };
         let own = &mut x[plant..plant + self.layout.controller];
         self.controller.start(&mut self.scratch, given, &agents[self.agent].start.reference, own)
     }
@@ -189,7 +189,7 @@ impl<C: Controller> Columns for Solo<C> {
         let mut add = |pieces: &Pieces, sign: f64| {
             if let Some(jump_s) = jump_s {
                 pieces.jets(jump_s, jets);
-                x[m..].iter_mut().zip(jets.iter()).for_each(|(velocity, jet)| *velocity += sign * jet[1]);
+                x[m..].iter_mut().zip(jets.jets()).for_each(|(velocity, jet)| *velocity += sign * jet[1]);
             }
         };
         add(&target.trajectory, 1.0);
