@@ -84,9 +84,15 @@ fn every_chapter_is_listed_and_every_picture_is_used() {
 #[test]
 fn the_gallery_misses_no_scenario() {
     let gallery = fs::read_to_string(book().join("gallery.md")).unwrap();
-    let listed: Vec<&str> = gallery.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next()).collect();
+    let listed: Vec<&str> = gallery.lines().filter_map(|line| line.strip_prefix("## `")?.split('`').next()).collect();
     let shipped: Vec<&str> = SHIPPED_SCENARIOS.iter().map(|scenario| scenario.name).collect();
     assert_eq!(listed, shipped);
+    for scenario in SHIPPED_SCENARIOS {
+        let picture = format!("pictures/{}.svg", scenario.name);
+        assert!(gallery.contains(&format!("]({picture})")), "{picture}");
+        let drawn = fs::read_to_string(book().join(&picture)).unwrap_or_else(|error| panic!("{picture}: {error}"));
+        assert!(drawn.starts_with("<svg ") && drawn.contains("<polyline "), "{picture}");
+    }
 }
 
 #[test]
