@@ -542,7 +542,8 @@ def derivative(tree, kinks=False):
     if kind == "/":
         return ("/", plus(times(da, b), negated(times(a, db))), ("^", b, Fraction(2))) if has_variable(b) else ("/", da, b)
     if kind == "^":
-        return times(da, times(("number", tree[2]), ("^", a, tree[2] - 1)))
+        # No power below the first is made, whose slope would divide by what may be zero.
+        return times(da, ONE if tree[2] == 1 else times(("number", tree[2]), a if tree[2] == 2 else ("^", a, tree[2] - 1)))
     if kind in ("min", "max") and kinks:
         return "hull", da, db
     outer = {
