@@ -51,6 +51,9 @@ pub(crate) enum Command {
         /// Write everything about the run into this folder instead, which is made, and leave DIR as it is
         #[arg(long, value_name = "ELSEWHERE")]
         out: Option<PathBuf>,
+        /// Write the page anew, about once per second, while a run writes into DIR, and once more when it has ended
+        #[arg(long)]
+        follow: bool,
     },
     /// Say which theorem speaks about a scenario, and whether its hypotheses hold
     Check(CheckOptions),

@@ -11,6 +11,8 @@ use anstream::AutoStream;
 use anstyle::{AnsiColor, Style};
 use forwardstep::io::{breaks_lines, shown, steers_terminals};
 use miette::{Diagnostic, MietteHandlerOpts, ReportHandler};
+use terminal_size::{Width, terminal_size_of};
+use textwrap::{WordSeparator, WordSplitter};
 
 use crate::status::Status;
 
@@ -20,6 +22,8 @@ pub(crate) const GOOD: Style = AnsiColor::Green.on_default();
 pub(crate) const FAIR: Style = AnsiColor::Yellow.on_default();
 /// Red, for what does not hold.
 pub(crate) const BAD: Style = AnsiColor::Red.on_default();
+/// Narrower than this is no terminal that somebody reads.
+const NARROWEST: usize = 40;
 /// For headings.
 pub(crate) const BOLD: Style = Style::new().bold();
 /// For what matters less.
@@ -71,16 +75,40 @@ impl Console {
 
 /// Explains a mistake on standard error.
 pub(crate) fn complain(mistake: &dyn Diagnostic) -> Status {
-    // Whole lines: programs read them, and terminals wrap them without taking names apart.
-    let mut options = MietteHandlerOpts::new().wrap_lines(false);
-    if !io::stderr().is_terminal() {
-        options = options.color(false);
-    }
-    let handler = options.build();
-    let said = Shown { handler: &handler, mistake }.to_string();
+    let said = explained(mistake, width(), io::stderr().is_terminal());
     // A closed standard error leaves only the exit status to tell.
     let _ = writeln!(io::stderr(), "{}", harmless(&said, |c| c.escape_debug().to_string()));
     Status::BadInput
+}
+
+/// Columns of the terminal on standard error; nothing where there is none: programs read whole lines.
+fn width() -> Option<usize> {
+    terminal_size_of(io::stderr()).map(|(Width(columns), _)| usize::from(columns).max(NARROWEST))
+}
+
+/// A mistake in the words of its file; wrapped at this width, if there is one, between words only: names are not taken apart, and
+/// lines of a file stay whole.
+fn explained(mistake: &dyn Diagnostic, width: Option<usize>, colour: bool) -> String {
+    let mut options = MietteHandlerOpts::new().wrap_lines(width.is_some()).break_words(false);
+    if let Some(width) = width {
+        options =
+            options.width(width).word_separator(WordSeparator::AsciiSpace).word_splitter(WordSplitter::NoHyphenation);
+    }
+    if !colour {
+        options = options.color(false);
+    }
+    let handler = options.build();
+    Shown { handler: &handler, mistake }.to_string()
+}
+
+/// The same text in lines of this width, if there is one.
+fn wrapped(text: &str, width: Option<usize>) -> String {
+    let Some(width) = width else { return text.to_owned() };
+    let options = textwrap::Options::new(width)
+        .break_words(false)
+        .word_separator(WordSeparator::AsciiSpace)
+        .word_splitter(WordSplitter::NoHyphenation);
+    textwrap::fill(text, options)
 }
 
 /// Explains a mistake in the arguments on standard error, or shows the help that they ask for on standard output.
@@ -101,7 +129,7 @@ pub(crate) fn show_usage(answer: &clap::Error, arguments: &[OsString]) {
 /// Says one sentence on standard error.
 pub(crate) fn remark(sentence: impl fmt::Display) {
     let sentence = harmless(&sentence.to_string(), |c| c.escape_debug().to_string());
-    let _ = writeln!(AutoStream::auto(io::stderr()), "{sentence}");
+    let _ = writeln!(AutoStream::auto(io::stderr()), "{}", wrapped(&sentence, width()));
 }
 
 /// The same text with all `escaped` that a terminal would obey, but for colours.
@@ -193,5 +221,36 @@ mod tests {
         }
         let json = harmless("\"\u{202e}\u{9b}\"", |c| format!("\\u{:04x}", u32::from(c)));
         assert_eq!(json, "\"\\u202e\\u009b\"");
+    }
+
+    #[derive(Debug, thiserror::Error)]
+    #[error("`six-arms-over-radioo` is no scenario, and there is no such file: choose one of those that are listed")]
+    struct Unknown;
+
+    impl Diagnostic for Unknown {
+        fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+            let names = (0..60).map(|k| format!("`scenario-of-some-length-{k}`")).collect::<Vec<_>>();
+            Some(Box::new(format!("did you mean `six-arms-over-radio`? {}", names.join(", "))))
+        }
+    }
+
+    #[test]
+    fn messages_are_as_wide_as_a_terminal_and_whole_in_pipes() {
+        let plain = explained(&Unknown, None, false);
+        assert_eq!(plain.lines().filter(|line| line.len() > 200).count(), 1, "{plain}");
+        let words =
+            |text: &str| text.split_whitespace().filter(|word| *word != "│").map(str::to_owned).collect::<Vec<_>>();
+        for width in [40, 60, 80, 133] {
+            let said = explained(&Unknown, Some(width), false);
+            assert!(said.lines().all(|line| line.chars().count() <= width), "{width}:\n{said}");
+            // No name is taken apart, and none is left out.
+            assert_eq!(words(&said), words(&plain), "{said}");
+            let sentence =
+                "Interrupted at t = 3.25 s of 100 s; everything until then is kept, as is what stands beside it.";
+            let lines = wrapped(sentence, Some(width));
+            assert!(lines.lines().all(|line| line.chars().count() <= width), "{lines}");
+            assert_eq!(words(&lines), words(sentence));
+        }
+        assert_eq!(wrapped(&"word ".repeat(50), None), "word ".repeat(50));
     }
 }

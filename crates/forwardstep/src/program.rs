@@ -45,7 +45,10 @@ pub fn program_with(kinds: &Kinds, arguments: impl IntoIterator<Item = impl Into
     let mut console = Console::new();
     let status = match command {
         Command::Run(options) => commands::run(&options, kinds, &mut console),
-        Command::Report { folder, out } => commands::report(&folder, out.as_deref(), kinds, &mut console),
+        Command::Report { folder, out, follow: false } => {
+            commands::report(&folder, out.as_deref(), kinds, &mut console)
+        }
+        Command::Report { folder, out, follow: true } => commands::follow(&folder, out.as_deref(), kinds, &mut console),
         Command::Check(options) => commands::check(&options, kinds, &mut console),
         Command::Explain(options) => commands::explain(&options, kinds, &mut console),
         Command::SamplingLimit(options) => commands::sampling_limit(&options, kinds, &mut console),

@@ -163,3 +163,82 @@ fn a_run_whose_files_may_not_grow_keeps_what_it_could() {
     kept.columns.iter_mut().for_each(|column| column.values.truncate(common));
     assert_eq!(first_rows(&kept, &whole), common);
 }
+
+/// Follows the run in `out`.
+fn follow(folder: &TempDir, out: &str, more: &[&str]) -> Child {
+    Process::new(assert_cmd::cargo::cargo_bin("forwardstep"))
+        .current_dir(folder)
+        .args(["report", out, "--follow"])
+        .args(more)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+/// Until when a page says that it shows a run that goes on; nothing of another page.
+fn shown_until(page: &Path) -> Option<f64> {
+    let page = fs::read_to_string(page).ok()?;
+    assert!(page.ends_with("</html>"), "a page is there whole or not at all");
+    let (_, rest) = page.split_once("The run goes on; this is what it has until t = ")?;
+    rest.split_once(" s")?.0.parse().ok()
+}
+
+/// The different times that a page shows, one after the other, until they are `many`.
+fn times_shown(page: &Path, many: usize) -> Vec<f64> {
+    let (started, mut times) = (Instant::now(), Vec::new());
+    while times.len() < many {
+        times.extend(shown_until(page).filter(|t_s| times.last() != Some(t_s)));
+        assert!(started.elapsed() < Duration::from_secs(120), "{times:?}");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    times
+}
+
+#[test]
+fn the_page_of_a_run_grows_until_it_has_ended() {
+    let folder = scenario();
+    let path = |out: &str| folder.path().join(out);
+    fs::write(path("mine/long.toml"), LONG.replace("end_s = 20", "end_s = 2000")).unwrap();
+    for (out, shown_in, more) in [("here", "here", &[][..]), ("there", "elsewhere", &["--out", "elsewhere"])] {
+        let mut run = start(&folder, out);
+        // Nothing is there to be shown yet, and whoever follows waits for it.
+        while !path(out).exists() {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let follower = follow(&folder, out, more);
+        let times = times_shown(&path(shown_in).join("report.html"), 3);
+        assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{times:?}");
+        assert!(!path(out).join("summary.json").exists() && !path(shown_in).join("summary.json").exists());
+        run.kill().unwrap();
+        run.wait().unwrap();
+        let ended = follower.wait_with_output().unwrap();
+        let said = String::from_utf8(ended.stderr).unwrap();
+        assert!(ended.status.success() && said.contains("Was cut off at t = "), "{said}");
+        let page = fs::read_to_string(path(shown_in).join("report.html")).unwrap();
+        assert!(page.contains("Cut off") && !page.contains("The run goes on"), "{shown_in}");
+        assert!(!names(&path(shown_in)).iter().any(|name| name.contains("partial")), "{shown_in}");
+        assert!(recording(&path(shown_in)).t_s.last() >= times.last());
+        // What was followed from elsewhere stays as it was.
+        assert_eq!(path(out).join("rows.journal").exists(), out != shown_in);
+    }
+}
+
+#[test]
+fn who_follows_a_run_to_its_end_has_the_page_that_it_wrote() {
+    let folder = scenario();
+    let path = |out: &str| folder.path().join(out);
+    let mut run = start(&folder, "whole");
+    assert!(has_journal(&mut run, &path("whole")));
+    let ended = follow(&folder, "whole", &[]).wait_with_output().unwrap();
+    assert!(run.wait().unwrap().success());
+    assert!(ended.status.success(), "{ended:?}");
+    let page = fs::read(path("whole/report.html")).unwrap();
+    assert!(String::from_utf8_lossy(&page).contains("Reached the horizon of 20 s."));
+    // So does who follows one that is over.
+    fs::remove_file(path("whole/report.html")).unwrap();
+    forwardstep(&folder, &["report", "whole", "--follow"]).success();
+    assert_eq!(fs::read(path("whole/report.html")).unwrap(), page);
+    let error = stderr(&forwardstep(&folder, &["report", "nowhere", "--follow"]).code(2));
+    assert!(error.contains("nowhere"), "{error}");
+}

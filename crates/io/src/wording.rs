@@ -64,11 +64,14 @@ pub(crate) fn did_you_mean(nearest: Option<&str>) -> Option<String> {
 
 /// "did you mean `x`? `kind` are `a`, `b`, `c`": the near match, if any, and what there is.
 pub(crate) fn choose(word: &str, kind: &str, candidates: &[impl AsRef<str>]) -> String {
-    // All that ships fits; of a folder with many files the first are named.
+    // All that ships fits; of a folder with many files the first are named, and how many there are besides.
     const MOST: usize = 100;
     let names = || candidates.iter().map(AsRef::as_ref);
     let listed: Vec<_> = names().take(MOST).map(|name| format!("`{}`", shown(name))).collect();
-    let more = if candidates.len() > MOST { ", …" } else { "" };
+    let more = match candidates.len().saturating_sub(MOST) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
     let listed = format!("{kind} {}{more}", listed.join(", "));
     match did_you_mean(nearest(word, names()).as_deref()) {
         Some(question) => format!("{question} {listed}"),

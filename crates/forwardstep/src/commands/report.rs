@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use forwardstep::io::output::{RunFolder, SavedRun, ending_sentence};
+use forwardstep::io::output::{OutputError, RunFolder, SavedRun, ending_sentence};
 use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::io::shown;
 
@@ -13,16 +13,23 @@ use crate::status::Status;
 
 /// Builds the report and the plots of a run anew from its tables, or all of it elsewhere.
 pub(crate) fn report(folder: &Path, out: Option<&Path>, kinds: &Kinds, console: &mut Console) -> Status {
-    finish(folder, out, kinds, console).unwrap_or_else(|status| status)
+    let into = out.map(|out| move || RunFolder::create(out, false));
+    finish(folder, into, kinds, console).unwrap_or_else(|status| status)
 }
 
-fn finish(folder: &Path, out: Option<&Path>, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
-    let run = match out {
+/// The same into the folder that `into` prepares, if there is one, when the run was read.
+pub(super) fn finish(
+    folder: &Path,
+    into: Option<impl FnOnce() -> Result<RunFolder, OutputError>>,
+    kinds: &Kinds,
+    console: &mut Console,
+) -> Result<Status, Status> {
+    let run = match into {
         Some(_) => SavedRun::look_with(folder, kinds),
         None => SavedRun::open_with(folder, kinds),
     }
     .map_err(|error| complain(&error))?;
-    if let Some(ending) = run.unfinished() {
+    if let Some(ending) = run.unfinished().filter(|_| !run.goes_on()) {
         remark(ending_sentence(run.setup(), ending));
     }
     let promise = promise(run.setup());
@@ -31,8 +38,8 @@ fn finish(folder: &Path, out: Option<&Path>, kinds: &Kinds, console: &mut Consol
         remark(format_args!("note: {sentence}"));
     }
     let record = run.record(&promise.report, promise.value().map(<[f64]>::to_vec), &remarks);
-    let files = match out {
-        Some(out) => RunFolder::create(out, false).and_then(|elsewhere| run.write_into(&elsewhere, &record)),
+    let files = match into {
+        Some(into) => into().and_then(|elsewhere| run.write_into(&elsewhere, &record)),
         None => run.write_report(&record),
     }
     .map_err(refused)?;

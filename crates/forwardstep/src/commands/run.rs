@@ -11,6 +11,7 @@ use forwardstep::io::output::{
 };
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
+use forwardstep::io::shown;
 use forwardstep::sim::{
     Ending, Outcome, Progress, Recording, Statistics, Watch, recorded_columns, simulate, simulate_into,
 };
@@ -69,15 +70,17 @@ fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<
     let mut record = record(&scenario, &promise, &outcome, goal);
     record.prediction = prediction;
     record.injected = balances.iter().flat_map(InjectionWatch::balances).map(|own| Injected::from(&own)).collect();
-    let lost = journal.failure().map(ToString::to_string);
-    if let Some(error) = &lost {
+    let lost = journal.failure().is_some();
+    if let Some(error) = journal.failure() {
         remark(format_args!("{error}; the run was stopped, since its rows could no longer be kept"));
+        error.help().into_iter().for_each(remark);
     }
     journal.end(&record, metrics.clone());
     if setup.control.is_some() && !matches!(outcome.ending, Ending::Interrupted { .. }) {
         record.digital = digital_cost(&scenario, &outcome, &stop);
     }
-    let files = output::write_run(&folder, &record, output::Options { csv: options.csv }).map_err(refused)?;
+    let files = output::write_run(&folder, &record, output::Options { csv: options.csv })
+        .map_err(|error| kept_if_journaled(refused(error), &path))?;
     if outcome.ending != Ending::Completed {
         remark(ending_sentence(setup, &outcome.ending));
     }
@@ -89,7 +92,7 @@ fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<
     Ok(match outcome.ending {
         Ending::BrokeDown(_) => Status::BrokeDown,
         _ if cut_short.is_some() => cut_short.unwrap_or(Status::Interrupted),
-        _ if lost.is_some() => Status::BadInput,
+        _ if lost => Status::BadInput,
         Ending::Interrupted { .. } | Ending::CutOff { .. } => stop.asked().unwrap_or(Status::Interrupted),
         Ending::Completed if goal.is_some_and(|goal| !goal.met) => Status::Missed,
         Ending::Completed => Status::Fine,
@@ -141,6 +144,18 @@ fn digital_cost(scenario: &Scenario, outcome: &Outcome, stop: &Stop) -> Option<D
     let twin = simulate(&continuous_twin(&scenario.setup, until_s), &mut |progress| watch(&mut bar, stop, progress));
     bar.clear();
     DigitalCost::of(&scenario.setup, outcome, &twin.ok()?, scenario.goal)
+}
+
+/// Says where the rows are of a run whose files could not be written.
+fn kept_if_journaled(status: Status, path: &Path) -> Status {
+    if path.join("rows.journal").is_file() {
+        remark(format_args!(
+            "What was computed until about a second before is in {folder}/rows.journal: `forwardstep report {folder}` writes the files \
+             from it when it can, and `--out` writes them elsewhere.",
+            folder = shown(path)
+        ));
+    }
+    status
 }
 
 pub(super) fn refused(error: OutputError) -> Status {

@@ -108,6 +108,7 @@ impl std::fmt::Display for Action {
 impl OutputError {
     /// What the user can do about it.
     pub fn help(&self) -> Option<&'static str> {
+        const AMID: [Action; 4] = [Action::CreateFile, Action::WriteFile, Action::RenameFile, Action::RemoveFile];
         match self {
             OutputError::FolderNotEmpty { .. } => {
                 Some("choose another folder, or replace the files of the earlier run with --force")
@@ -120,13 +121,22 @@ impl OutputError {
             }
             OutputError::NotAFolder { .. } => Some("choose another folder"),
             OutputError::FolderInUse { .. } => Some("wait until it has ended, or choose another folder with --out"),
-            OutputError::Io { source, .. } => match source.kind() {
+            OutputError::Io { action, source, .. } => match source.kind() {
                 io::ErrorKind::PermissionDenied => Some("choose a folder you may write to"),
-                io::ErrorKind::StorageFull => Some("free some space on the disk, or choose a folder on another one"),
+                io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+                    Some("free some space on the disk, or choose a folder on another one")
+                }
                 io::ErrorKind::FileTooLarge => {
                     Some("raise the limit on the size of files (`ulimit -f`), or record fewer rows")
                 }
                 io::ErrorKind::ReadOnlyFilesystem => Some("choose a folder on a disk that can be written to"),
+                // The folder could be written to before.
+                _ if AMID.contains(action) => {
+                    Some("look whether the disk is sound and still there, or choose a folder on another one")
+                }
+                _ if *action == Action::CreateFolder => {
+                    Some("choose another folder, or look whether the disk is sound and still there")
+                }
                 _ => None,
             },
             OutputError::Encode { .. } => None,

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::disk::{Disk, DiskFile, SystemDisk};
 use super::error::{Action, EncodeError, OutputError};
 use super::journal::JOURNAL;
-use super::{earlier, inputs};
+use super::{earlier, growing, inputs};
 use crate::scenario::inputs::INPUTS;
 use crate::scenario::run_folder::MANIFEST;
 
@@ -119,9 +119,12 @@ impl RunFolder {
         &*self.disk
     }
 
-    /// Whether a run writes into `path` now, as far as can be told.
-    pub(super) fn is_in_use(path: &Path) -> bool {
-        matches!(lock(path), Err(OutputError::FolderInUse { .. }))
+    /// Whether a run writes into `path` now; nothing where the system cannot tell.
+    pub fn is_in_use(path: &Path) -> Option<bool> {
+        match lock(path) {
+            Ok(lock) => lock.map(|_| false),
+            Err(_) => Some(true),
+        }
     }
 
     /// Starts to write files into it.
@@ -183,6 +186,7 @@ fn is_empty(path: &Path, among_inputs: bool) -> Result<bool, OutputError> {
         }
         let is_leftover = name == ".forwardstep.partial"
             || name == format!(".{JOURNAL}.partial")
+            || growing::is_partial(&name)
             || FILES.iter().filter_map(|f| f.rsplit('/').next()).any(|f| name == format!(".{f}.partial"))
             || among_inputs && name.starts_with('.') && name.ends_with(".partial");
         if !is_leftover {

@@ -38,6 +38,7 @@ mod explanation;
 mod findings;
 mod folder;
 mod formula;
+mod growing;
 mod guarantee;
 mod how;
 mod injected;
@@ -187,7 +188,7 @@ fn metrics(record: &RunRecord<'_>) -> Metrics {
 }
 
 fn write_pictures(staging: &mut Staging<'_>, record: &RunRecord<'_>, metrics: &Metrics) -> Result<(), OutputError> {
-    staging.write_text("report.html", &report::page(record, metrics))?;
+    staging.write_text("report.html", &report::page(record, metrics, false))?;
     let plots = plots::Plots::of(record);
     let mut plot = |name, svg: Result<String, EncodeError>| {
         staging.write(name, |out| Ok(std::io::Write::write_all(out, svg?.as_bytes())?))

@@ -83,9 +83,13 @@ impl SavedRun {
     /// # Errors
     /// As of [`SavedRun::open`].
     pub fn look_with(path: &Path, kinds: &Kinds) -> Result<SavedRun, RestoreError> {
+        // Who has claimed the folder themselves knows that nobody else has. A run that ends meanwhile was going on.
+        let in_use = RunFolder::is_in_use(path) == Some(true);
         let (mut saved, folder) = Saved::read(path, kinds, &mut |_| Ok(None))?;
-        // Who has claimed the folder themselves knows that nobody else has.
-        if saved.left_out.is_some() && RunFolder::is_in_use(path) {
+        if in_use && matches!(saved.outcome.ending, Ending::CutOff { .. }) && saved.left_out.is_some() {
+            // It is not cut off, and what it is about to write is not damaged.
+            let is_of_its_end = |r: &Remark| matches!(r, Remark::FromJournal { .. } | Remark::JournalDamaged { .. });
+            saved.remarks.retain(|remark| !is_of_its_end(remark));
             saved.remarks.push(Remark::StillRunning);
         }
         Ok(SavedRun { path: path.to_owned(), folder, saved })
@@ -141,6 +145,11 @@ impl SavedRun {
     /// How the run ended, if it was not finished: if its rows come from its journal.
     pub fn unfinished(&self) -> Option<&Ending> {
         self.saved.left_out.is_some().then_some(&self.saved.outcome.ending)
+    }
+
+    /// Whether a run was writing it when it was looked at, so that more will come.
+    pub fn goes_on(&self) -> bool {
+        self.saved.remarks.contains(&Remark::StillRunning)
     }
 
     /// Writes everything about the run into another folder; the files written.

@@ -27,7 +27,7 @@ use super::value_problem::ValueProblem;
 use crate::SourceText;
 
 /// Agents that are accepted.
-const MOST_AGENTS: u32 = 200_000;
+pub(super) const MOST_AGENTS: u32 = 200_000;
 /// Letters that a name may have, without the number that a population adds.
 const LONGEST_NAME: usize = 64;
 

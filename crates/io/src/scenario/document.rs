@@ -21,6 +21,7 @@ use super::value_problem::ValueProblem;
 use crate::{Meant, SourceText};
 
 /// A scenario file as TOML.
+#[derive(Clone)]
 pub(super) struct Document<'i> {
     root: Spanned<DeValue<'i>>,
 }

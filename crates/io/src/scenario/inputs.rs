@@ -163,6 +163,11 @@ impl InputFolder {
         names
     }
 
+    /// How much was read.
+    pub(super) fn bytes(&self) -> usize {
+        self.read.iter().map(|file| file.source.text().len()).sum()
+    }
+
     /// Everything that was read.
     pub(super) fn into_read(self) -> Vec<InputFile> {
         self.read

@@ -48,6 +48,7 @@ pub mod formula;
 mod formula_problem;
 mod gains;
 mod goal;
+mod impossible;
 pub(crate) mod inputs;
 pub mod kinds;
 pub mod leader_file;
@@ -114,7 +115,8 @@ use agents::Leading;
 use at::At;
 use document::Document;
 use fault::{Fault, fault, positive_count};
-use file::{AdaptiveMethodFile, MethodFile, ScenarioFile, SolverFile};
+use file::{AdaptiveMethodFile, AgentFile, MethodFile, ScenarioFile, SolverFile};
+use impossible::Reading;
 use inputs::InputFolder;
 use kinds::{Kinds, ReferenceReader};
 use robots::Stop;
@@ -189,8 +191,9 @@ impl Diagnostic for ScenarioError {
 /// memory; robots and tables then among the shipped ones.
 ///
 /// # Errors
-/// The first mistake, at its place in the scenario or in a file that it names; with it all others of the form (keys, kinds of values,
-/// choices), as [`InputError::others`]. Any text gives a result; none panics.
+/// The first mistake, at its place in the scenario or in a file that it names, with others as [`InputError::others`]: all of the form (keys,
+/// kinds of values, choices), or where that is sound all impossible values as far as they do not depend on each other. Any text gives a
+/// result; none panics.
 pub fn read_scenario(name: &str, source: &SourceText, inputs: impl Into<Inputs>) -> Result<Scenario, ScenarioError> {
     Kinds::shipped().read_scenario(name, source, inputs)
 }
@@ -217,19 +220,62 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
         let others = others::others(&fault, source, kinds);
         fault.beside(others)
     })?;
+    let mut scenario = meaning(name, source, &document, file, &mut folder, kinds).map_err(|stop| match stop {
+        Stop::Here(fault) => {
+            let reads = affordable(source, &document, &folder, kinds);
+            let others = impossible::others(&fault, &document, reads, &mut |document| {
+                let Ok(file) = document.file(kinds) else { return Reading::Unreadable };
+                match meaning(name, source, document, file, &mut folder, kinds) {
+                    Ok(_) => Reading::Sound,
+                    Err(Stop::Here(fault)) => Reading::Fault(fault),
+                    Err(Stop::Robot(_)) => Reading::Unreadable,
+                }
+            });
+            Stop::Here(fault.beside(others))
+        }
+        robot @ Stop::Robot(_) => robot,
+    })?;
+    scenario.inputs = folder.into_read();
+    Ok(scenario)
+}
+
+/// How often a scenario that has no meaning may be read again to find out what else is wrong.
+fn affordable(source: &SourceText, document: &Document<'_>, folder: &InputFolder, kinds: &Kinds) -> usize {
+    const MOST: usize = 240;
+    // About what a hundred readings of six arms from a file take.
+    const WORK: usize = 20_000_000;
+    let agents = document.file(kinds).map_or(0, |file| {
+        // A number that is not possible is replaced by a small one.
+        let possible = |count: &&At<i64>| (1..=i64::from(agents::MOST_AGENTS)).contains(&count.value);
+        let count = |entry: &At<AgentFile>| entry.value.count.as_ref().filter(possible).map_or(1, |count| count.value);
+        file.agents.value.iter().map(count).sum::<i64>()
+    });
+    let work = source.text().len() + folder.bytes() + 1000 * usize::try_from(agents).unwrap_or(usize::MAX / 2000);
+    (WORK / work.max(1)).min(MOST)
+}
+
+/// What the tables of a scenario mean.
+fn meaning(
+    name: &str,
+    source: &SourceText,
+    document: &Document<'_>,
+    file: ScenarioFile,
+    folder: &mut InputFolder,
+    kinds: &Kinds,
+) -> Result<Scenario, Stop> {
     let mut notices = Vec::new();
     let record_every_s = file.time.record_every_s.as_ref().map_or(RECORD_EVERY_S, |every| every.value);
     let end_s = file.time.end_s.value;
     let mut time = TimeSpan { end_s, record_every_s, record_at: RecordAt::Intervals };
     document.checked(time.check())?;
-    time.record_at = rows::record_at(&file.time, file.control.as_ref(), &mut folder)?;
-    let from = agents::Source { file: &file, document: &document, kinds, text: source, end_s };
-    let populations = agents::populations(&from, &mut folder)?;
+    time.record_at = rows::record_at(&file.time, file.control.as_ref(), folder)?;
+    let from = agents::Source { file: &file, document, kinds, text: source, end_s };
+    let populations = agents::populations(&from, folder)?;
     let axes = populations.first().map_or_else(Vec::new, |population| population.axis_names());
     let names: Vec<String> = populations.iter().flat_map(|population| population.names()).cloned().collect();
-    let leading = reference(&file, (&document, kinds), [&names, &axes], &mut folder)?;
-    let mut read = agents::agents(&from, &populations, &leading, &mut folder, &mut notices)?;
-    pushes::pushes(&file.external_wrenches, &mut read, end_s, source, &mut folder, &mut notices)?;
+    let leading = reference(&file, (document, kinds), [&names, &axes], folder)?;
+    let mut read = agents::agents(&from, &populations, &leading, folder, &mut notices)?;
+    pushes::pushes(&file.external_wrenches, &mut read, end_s, source, folder, &mut notices)?;
     let agents = read.agents;
     let mut names = names;
     let dynamics = leading.read.dynamics;
@@ -245,7 +291,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
     let vertices = (&names[..], agents.len());
     let network = match &file.network {
         Some(network) => {
-            network::network(&network.value, (&document, kinds), vertices, end_s, source, &mut folder, &mut notices)
+            network::network(&network.value, (document, kinds), vertices, end_s, source, folder, &mut notices)
                 .map_err(|fault| fault.at(&network.span))?
         }
         None if dynamics.interface().family.has_targets() => Network::silent(names.len()),
@@ -268,7 +314,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
         setup,
         goal,
         notices,
-        inputs: folder.into_read(),
+        inputs: Vec::new(),
     })
 }
 

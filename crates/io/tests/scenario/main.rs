@@ -99,7 +99,7 @@ fn refused(sound: &str, cases: &[Case]) {
 }
 
 /// The same of what was read in other ways: what it was, the first line of the error, without the folder of a table, and a
-/// part of the help, which is empty where there is none.
+/// part of the help, which is empty where there is none. Nothing else is said: each has one mistake.
 fn as_stated<'a>(cases: impl Iterator<Item = (String, Result<Scenario, ScenarioError>, &'a str, &'a str)>) {
     let (mut wrong, mut all) = (Vec::new(), 0);
     for (what, result, line, help) in cases {
@@ -116,6 +116,10 @@ fn as_stated<'a>(cases: impl Iterator<Item = (String, Result<Scenario, ScenarioE
         let found_help = error.help().map(|help| help.to_string()).unwrap_or_default();
         if found != line || !found_help.contains(help) || found_help.is_empty() != help.is_empty() {
             wrong.push(format!("{what}\n    {found:?}\n    {found_help:?}"));
+        }
+        // Of a log that lacks packets every link is told.
+        for other in error.related().into_iter().flatten().filter(|_| !what.contains("log.file")) {
+            wrong.push(format!("{what}\n    {found:?}\n    and {:?}", other.to_string()));
         }
     }
     assert!(wrong.is_empty(), "{} of {all}:\n{}", wrong.len(), wrong.join("\n"));

@@ -5,7 +5,7 @@ use miette::Diagnostic;
 use super::{Case, SOUND, changed, read, refused};
 
 #[rustfmt::skip]
-const CASES: &[Case] = &[
+pub(super) const CASES: &[Case] = &[
     // The text.
     ("[time]", "[time",
         "test.toml:4:6: not valid TOML: unclosed table, expected `]`", ""),

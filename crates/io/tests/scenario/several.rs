@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use miette::Diagnostic;
 
-use super::{SOUND, read};
+use super::{SOUND, malformed, read};
 
 /// The first lines of all that is said of [`SOUND`] with these passages replaced.
 fn all(changes: &[(&str, &str)]) -> Vec<String> {
@@ -54,4 +54,83 @@ fn not_more_are_told_than_can_be_read() {
     let mut keys = String::from("title = \"test\"\n");
     (0..100).for_each(|k| writeln!(keys, "key_{k} = {k}").unwrap());
     assert_eq!(all(&[("title = \"test\"\n", &keys)]).len(), 21);
+}
+
+#[test]
+fn all_impossible_values_are_told_at_once() {
+    let found = all(&[
+        ("record_every_s = 0.1", "record_every_s = -0.1"),
+        ("mass_kg = [2.0, 1.5]", "mass_kg = [2.0, -1.5]"),
+        ("start.position_rad = [[0.1, 0.2], [0.3, 0.4]]", "start.position_rad = [0.1, 0.2, 0.3]"),
+        ("roots_per_s = [1.0, 2.0]", "roots_per_s = [0.0, -2.0]"),
+        ("damping.gain = 8", "damping.gain = [8, 8, 8]"),
+        ("weight = 1.0", "weight = 0"),
+        ("[\"arm-2\", \"cart\"], [\"cart\", \"arm-1\"]", "[\"arm-2\", \"card\"], [\"cart\", \"arm-3\"]"),
+        ("disagreement_below = 1e-3", "disagreement_below = -1"),
+    ]);
+    let expected = [
+        "test.toml:6:18: `record_every_s` is -0.1, but must be positive",
+        "test.toml:11:38: `mass_kg` is -1.5, but must be positive",
+        "test.toml:12:22: `position_rad` has 3 entries, but `arm-1` needs 2",
+        "test.toml:19:16: `roots_per_s` is 0, but must be positive",
+        "test.toml:19:21: `roots_per_s` is -2, but must be positive",
+        "test.toml:23:16: `damping.gain` has 3 entries, but `arm-1` needs 2",
+        "test.toml:28:10: `weight` is 0, but must be positive",
+        "test.toml:35:20: there is no agent `card`",
+        "test.toml:35:38: there is no agent `arm-3`",
+        "test.toml:38:22: `disagreement_below` is -1, but must be positive",
+    ];
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn what_follows_from_an_impossible_value_is_not_told() {
+    let push = "[[external_wrenches]]\non = [\"arm-1\"]\nfrom_s = 8\nfor_s = 1\nby.torque_n_m = [1, 0]\n[goal]";
+    let alone = all(&[("[goal]", push), ("end_s = 10", "end_s = -10")]);
+    assert_eq!(alone, ["test.toml:5:9: `end_s` is -10, but must be positive"]);
+    // Edges that name its agents follow from a name, and so does an agent that is not there for a number of agents.
+    assert_eq!(all(&[("name = \"cart\"", "name = \"ca rt\"")]).len(), 1);
+    assert_eq!(all(&[("count = 2", "count = 0")]).len(), 1);
+    let found = all(&[("name = \"cart\"", "name = \"arm-2\""), ("weight = 1.0", "weight = -1")]);
+    assert_eq!(found.len(), 2, "{found:?}");
+}
+
+#[test]
+fn of_any_two_mistakes_both_are_told_and_nothing_else() {
+    let said = |text: &str| -> Option<Vec<String>> {
+        let error = read(text).err()?;
+        // Lines and columns are those of the other mistake's text too.
+        let message = |line: String| {
+            let message = line.splitn(4, ':').last().unwrap_or_default().trim().to_owned();
+            message.split("; the first is on line").next().unwrap_or_default().to_owned()
+        };
+        let others = error.related().into_iter().flatten().map(|other| message(other.to_string()));
+        Some(std::iter::once(message(error.to_string())).chain(others).collect())
+    };
+    let cases = malformed::CASES.iter().step_by(3);
+    let cases: Vec<_> = cases.map(|case| (case, said(&SOUND.replace(case.0, case.1)).unwrap())).collect();
+    // Those of values, beside those of the form, after which values cannot be told.
+    let is_of_a_value = |said: &[String]| [" must ", "entries, but", "no agent"].iter().any(|of| said[0].contains(of));
+    let (mut pairs, mut both, mut wrong, mut one_only) = (0, 0, Vec::new(), Vec::new());
+    for (k, (one, first)) in cases.iter().enumerate() {
+        for (other, second) in &cases[k + 1..] {
+            let text = SOUND.replace(one.0, one.1);
+            if text.matches(other.0).count() != 1 || first == second {
+                continue;
+            }
+            let found = said(&text.replace(other.0, other.1)).unwrap_or_default();
+            if is_of_a_value(first) && is_of_a_value(second) {
+                pairs += 1;
+                match found.contains(&first[0]) && found.contains(&second[0]) {
+                    true => both += 1,
+                    false => one_only.push(format!("{:?} and {:?}: {found:?}", one.1, other.1)),
+                }
+            }
+            if found.iter().skip(1).any(|line| *line != first[0] && *line != second[0]) {
+                wrong.push(format!("{:?} and {:?}: {found:?}", one.1, other.1));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(pairs > 100 && 10 * both > 9 * pairs, "{both} of {pairs}; not\n{}", one_only.join("\n"));
 }

@@ -14,6 +14,28 @@ use super::tests::{carts, journaled, nothing, record, same_rows, whole};
 use crate::scenario::Scenario;
 use crate::scenario::kinds::Kinds;
 
+/// How an operation fails.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fault {
+    /// Once, and the disk is as it was: there is no space.
+    Full,
+    /// This operation and all after it: there is no space any more.
+    FullForGood,
+    /// Once, by a reason that nobody can do anything about from here.
+    Broken,
+    /// A write takes a part and says so; other operations are interrupted, or done. Nothing is lost by it.
+    Short,
+}
+
+impl Fault {
+    fn error(self) -> io::Error {
+        match self {
+            Fault::Full | Fault::FullForGood => io::ErrorKind::StorageFull.into(),
+            Fault::Broken | Fault::Short => io::Error::from_raw_os_error(5),
+        }
+    }
+}
+
 /// A disk that fails once or for good.
 #[derive(Debug)]
 struct Faulty(Arc<Mutex<Faults>>);
@@ -22,22 +44,26 @@ struct Faulty(Arc<Mutex<Faults>>);
 struct Faults {
     /// So many operations succeed before one fails.
     left: usize,
-    /// Whether all others fail after it.
-    for_good: bool,
+    fault: Fault,
     fired: bool,
 }
 
 impl Faults {
     fn next(&mut self) -> io::Result<()> {
-        if self.fired && self.for_good {
-            return Err(io::ErrorKind::StorageFull.into());
+        match self.turn() && self.fault != Fault::Short {
+            true => Err(self.fault.error()),
+            false => Ok(()),
         }
-        if self.fired || self.left > 0 {
-            self.left = self.left.saturating_sub(1);
-            return Ok(());
+    }
+
+    /// Whether it is the turn of this operation.
+    fn turn(&mut self) -> bool {
+        if self.fired {
+            return self.fault == Fault::FullForGood;
         }
-        self.fired = true;
-        Err(io::ErrorKind::StorageFull.into())
+        self.fired = self.left == 0;
+        self.left = self.left.saturating_sub(1);
+        self.fired
     }
 }
 
@@ -88,12 +114,17 @@ struct FaultyFile {
 impl Write for FaultyFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         assert!(!(self.spoilt && self.is_journal), "nothing is written behind what failed");
-        let result = self.faults.lock().unwrap().next();
-        let part = if result.is_ok() { bytes } else { &bytes[..bytes.len() / 2] };
+        let mut faults = self.faults.lock().unwrap();
+        let (turn, fault) = (faults.turn(), faults.fault);
+        let part = if turn { &bytes[..bytes.len() / 2] } else { bytes };
         self.file.write_all(part)?;
         self.length += part.len() as u64;
-        self.spoilt = result.is_err();
-        result.map(|()| part.len())
+        self.spoilt = turn && fault != Fault::Short;
+        match (self.spoilt, turn && part.is_empty()) {
+            (true, _) => Err(fault.error()),
+            (false, true) => Err(io::ErrorKind::Interrupted.into()),
+            (false, false) => Ok(part.len()),
+        }
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -117,14 +148,18 @@ impl DiskFile for FaultyFile {
 }
 
 /// Runs the carts in `path` on a disk whose operation number `left` fails. Whether it did, and the rows that must be there.
-fn run_on_faulty(carts: &(Scenario, Report), path: PathBuf, left: usize, for_good: bool) -> (bool, usize) {
-    let faults = Arc::new(Mutex::new(Faults { left, for_good, fired: false }));
+fn run_on_faulty(carts: &(Scenario, Report), path: PathBuf, left: usize, fault: Fault) -> (bool, usize) {
+    let faults = Arc::new(Mutex::new(Faults { left, fault, fired: false }));
     let Ok(folder) = RunFolder::create_on(Arc::new(Faulty(faults.clone())), path, true) else { return (true, 0) };
     let (outcome, kept, journal_failed) = journaled(carts, &folder, true);
     let written = write_run(&folder, &record(carts, &outcome), Options::default());
     let fired = faults.lock().unwrap().fired;
     let rows = outcome.recording.t_s.len();
     assert!(written.is_ok() || fired);
+    if let Err(error) = &written {
+        assert!(error.help().is_some(), "{error}: nothing says what to do");
+    }
+    assert!(fault != Fault::Short || written.is_ok() && !journal_failed, "{left}: nothing was lost");
     (fired, if written.is_ok() || !journal_failed { rows } else { kept })
 }
 
@@ -132,7 +167,7 @@ fn run_on_faulty(carts: &(Scenario, Report), path: PathBuf, left: usize, for_goo
 fn whatever_fails_the_rows_that_were_kept_are_found() {
     let carts = carts();
     let outcome = whole(&carts);
-    for for_good in [false, true] {
+    for fault in [Fault::Full, Fault::FullForGood, Fault::Broken, Fault::Short] {
         for earlier in [false, true] {
             let mut left = 0;
             loop {
@@ -143,11 +178,11 @@ fn whatever_fails_the_rows_that_were_kept_are_found() {
                     let before = RunFolder::create(&path, false).unwrap();
                     write_run(&before, &record(&carts, &nothing(&carts)), Options::default()).unwrap();
                 }
-                let (fired, kept) = run_on_faulty(&carts, path.clone(), left, for_good);
+                let (fired, kept) = run_on_faulty(&carts, path.clone(), left, fault);
                 match SavedRun::look_with(&path, &Kinds::shipped()) {
                     Ok(run) => {
                         let rows = same_rows(&run, &outcome, &carts);
-                        assert!(rows >= kept, "operation {left}: {rows} of {kept} rows");
+                        assert!(rows >= kept, "{fault:?} at operation {left}: {rows} of {kept} rows");
                         // Somebody looks at it again on a disk that works, and then once more.
                         let record = run.record(&carts.1, None, &[]);
                         run.write_report(&record).unwrap();
@@ -155,7 +190,7 @@ fn whatever_fails_the_rows_that_were_kept_are_found() {
                         assert_eq!(same_rows(&again, &outcome, &carts), rows);
                         assert!(again.unfinished().is_none());
                     }
-                    Err(error) => assert_eq!(kept, 0, "operation {left}: {error}"),
+                    Err(error) => assert_eq!(kept, 0, "{fault:?} at operation {left}: {error}"),
                 }
                 if !fired {
                     break;

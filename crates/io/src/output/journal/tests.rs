@@ -98,6 +98,7 @@ pub(super) fn journaled(carts: &(Scenario, Report), folder: &RunFolder, ends: bo
         sink.journal.end(&record, metrics(&record));
     }
     let failed = sink.journal.failure().is_some();
+    assert!(sink.journal.failure().is_none_or(|error| error.help().is_some()), "nothing says what to do");
     (outcome, sink.kept, failed)
 }
 
@@ -276,7 +277,15 @@ fn what_was_cut_off_is_said_and_becomes_a_whole_folder() {
     let run = RunFolder::create(&path, false).unwrap();
     let (outcome, ..) = journaled(&carts, &run, false);
     let saved = SavedRun::look_with(&path, &Kinds::shipped()).unwrap();
-    assert!(saved.remarks(&carts.1, "0.1.0").contains(&Remark::StillRunning));
+    assert_eq!(saved.remarks(&carts.1, "0.1.0"), [Remark::StillRunning]);
+    assert!(saved.goes_on());
+    // Its page says so, stands beside what the run writes, and is in nobody's way.
+    fs::write(path.join(".report.html.1.partial"), "a writer that was killed").unwrap();
+    let page = saved.write_growing_page(&path, &saved.record(&carts.1, None, &[])).unwrap();
+    let page = fs::read_to_string(page).unwrap();
+    assert!(page.contains("The run goes on; this is what it has until t = 0.5 s of 0.5 s."), "{page}");
+    assert!(page.contains("http-equiv=\"refresh\"") && !page.contains("Cut off"));
+    fs::remove_file(path.join("report.html")).unwrap();
     drop(run);
     let saved = SavedRun::open(&path).unwrap();
     assert_eq!(saved.unfinished(), Some(&Ending::CutOff { t_s: 0.5 }));

@@ -39,8 +39,8 @@ const PAGE_JS: [&str; 4] = [
 /// Nothing is fetched, whatever the page says.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:";
 
-/// The whole page.
-pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
+/// The whole page; of a run that `goes_on` one that a browser loads again and again.
+pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> String {
     let table = Table::new(record.setup, &record.outcome.recording);
     let reached_s = match &record.outcome.ending {
         Ending::Completed => record.setup.time.end_s,
@@ -61,6 +61,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
+                @if goes_on { meta http-equiv="refresh" content="3"; }
                 meta name="generator" content={ "forwardstep " (record.version) };
                 meta http-equiv="Content-Security-Policy" content=(POLICY);
                 title { (record.title) " – forwardstep" }
@@ -70,11 +71,11 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
             body {
                 div #error-banner role="alert" {}
                 main {
-                    (sections::header(record, metrics))
+                    (sections::header(record, metrics, goes_on))
                     @if !record.notices.is_empty() {
                         section.notices aria-label="Notices" { ul { @for notice in &record.notices { li { (notice) } } } }
                     }
-                    (sections::verdicts(record, metrics))
+                    (sections::verdicts(record, metrics, goes_on))
                     (practical::practical(record, metrics))
                     (predicted::section(record, metrics))
                     (signals(absence, record))
@@ -87,13 +88,14 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics) -> String {
                     (sections::provenance(record))
                     footer {
                         @for note in &payload.notes { p { (note) } }
-                        p {
+                        @if goes_on { p { "The tables are written when the run has ended." } }
+                        @if !goes_on { p {
                             "Beside this page: " code { "trajectory.parquet" } " with every recorded number, " code { "summary.json" }
                             " for programs, " code { "plots/" } " for print, and " code { "scenario.toml" } " to run it again"
                             @if !record.inputs.is_empty() { ", with the files that it names in " code { "inputs/" } }
                             @if !super::packets::links(&record.setup.network).is_empty() { "; " code { "packets.csv" } " has every packet" }
                             "."
-                        }
+                        } }
                     }
                 }
                 script #index type="application/json" { (PreEscaped(payload.json)) }

@@ -19,9 +19,10 @@ const MOST_LIMIT_ROWS: usize = 24;
 const MOST_TORQUE_ROWS: usize = 64;
 
 /// Title, how it ended, and the few numbers one looks for first.
-pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
+pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup {
     let setup = record.setup;
     let (class, word) = match record.outcome.ending {
+        _ if goes_on => ("warn", "Goes on"),
         Ending::Completed => ("good", "Completed"),
         Ending::Interrupted { .. } => ("warn", "Interrupted"),
         Ending::CutOff { .. } => ("warn", "Cut off"),
@@ -33,15 +34,15 @@ pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
             h1 { (record.title) }
             p.ending {
                 span.badge.(class) { (word) }
-                @if let Some(outcome) = record.goal {
+                @if let Some(outcome) = record.goal.filter(|_| !goes_on) {
                     @let (class, word) = if outcome.met { ("good", "Goal met") } else { ("bad", "Goal missed") };
                     span.badge.(class) { (word) }
                 }
-                span { (ending_sentence(setup, &record.outcome.ending)) }
+                span { (ending(record, goes_on)) }
             }
             @if let Some(Conclusion { reached, sentence, advice }) = Conclusion::of(record, metrics) {
-                p.conclusion { strong.good[reached].bad[!reached] { (sentence) } }
-                @if !advice.is_empty() { ul.advice { @for line in advice { li { (line) } } } }
+                p.conclusion { @if goes_on { "so far " } strong.good[reached].bad[!reached && !goes_on] { (sentence) } }
+                @if !goes_on && !advice.is_empty() { ul.advice { @for line in advice { li { (line) } } } }
             }
             dl.figures {
                 @match metrics.disagreement {
@@ -65,6 +66,15 @@ pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
     }
 }
 
+/// How the run ended, or how far it is.
+fn ending(record: &RunRecord<'_>, goes_on: bool) -> String {
+    if !goes_on {
+        return ending_sentence(record.setup, &record.outcome.ending);
+    }
+    let until_s = record.outcome.recording.t_s.last().copied().unwrap_or(0.0);
+    format!("The run goes on; this is what it has until t = {until_s} s of {} s.", record.setup.time.end_s)
+}
+
 /// A number with its unit; without, when it is none.
 fn quantity(x: f64, unit: &str) -> String {
     if x.is_finite() { format!("{} {unit}", number(x)) } else { number(x) }
@@ -79,7 +89,7 @@ fn unit_at(setup: &Setup, signal: Signal, agent: usize, axis: usize) -> String {
 }
 
 /// What was promised beside what happened.
-pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
+pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup {
     let report = record.verdicts;
     let unit = names::gap_unit(record.setup);
     html! {
@@ -117,7 +127,7 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                 }
                 div.card {
                     h3 { "Happened" }
-                    table.facts { tbody { (happened(record, metrics)) } }
+                    table.facts { tbody { (happened(record, metrics, goes_on)) } }
                     @if let Some(agreement) = &metrics.agreement {
                         div.scroll {
                             table.numbers {
@@ -151,12 +161,12 @@ fn answer_style(answer: Answer) -> (&'static str, &'static str) {
     }
 }
 
-fn happened(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
+fn happened(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup {
     let setup = record.setup;
     let unit = names::gap_unit(setup);
     html! {
-        (fact("Ending", html! { (ending_sentence(setup, &record.outcome.ending)) }))
-        @if let Some(outcome) = record.goal {
+        (fact("Ending", html! { (ending(record, goes_on)) }))
+        @if let Some(outcome) = record.goal.filter(|_| !goes_on) {
             (fact("Goal", html! {
                 (outcome.goal.words()) ": "
                 @if outcome.met { strong.good { "met" } } @else { strong.bad { "missed" } }

@@ -1,0 +1,39 @@
+//! The page of a run that goes on, written while another process writes the rest of its folder.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::error::{Action, OutputError};
+use super::folder::io_error;
+use super::record::RunRecord;
+use super::restore::SavedRun;
+use super::{metrics, report};
+
+const PAGE: &str = "report.html";
+
+/// Whether a file is what is left of a page whose writer was killed.
+pub(super) fn is_partial(name: &str) -> bool {
+    name.strip_prefix(".report.html.").and_then(|rest| rest.strip_suffix(".partial")).is_some()
+}
+
+impl SavedRun {
+    /// Writes `report.html` into `folder`, which may be that of the run, as the page of a run that goes on: it says until when it shows
+    /// the run, and a browser loads it again as it is. Nothing else is written, and no claim is needed: the page appears when it is
+    /// whole, and the run writes its own over it when it has ended.
+    ///
+    /// # Errors
+    /// [`OutputError`] with the file and what was tried.
+    pub fn write_growing_page(&self, folder: &Path, record: &RunRecord<'_>) -> Result<PathBuf, OutputError> {
+        let page = report::page(record, &metrics(record), true);
+        let path = folder.join(PAGE);
+        // The run has the usual temporary name, and several may follow it.
+        let partial = folder.join(format!(".{PAGE}.{}.partial", std::process::id()));
+        let written = fs::write(&partial, page)
+            .map_err(io_error(Action::WriteFile, &path))
+            .and_then(|()| fs::rename(&partial, &path).map_err(io_error(Action::RenameFile, &path)));
+        if written.is_err() {
+            let _ = fs::remove_file(&partial);
+        }
+        written.map(|()| path)
+    }
+}
