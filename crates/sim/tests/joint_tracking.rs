@@ -253,7 +253,11 @@ fn what_makes_no_sense_is_refused() {
     };
     assert!(simulate(&alone(vec![sound()], 0.1), &mut |_| ControlFlow::Continue(())).is_ok());
     assert!(refused(AgentSetup { roots_per_s: Vec::new().into(), ..sound() }).contains("at least 1"));
-    assert!(refused(sound().roots([1.0; 5])).contains("4 derivatives"));
+    assert!(simulate(&alone(vec![sound().roots([1.0; 5])], 0.1), &mut |_| ControlFlow::Continue(())).is_ok());
+    let points = || Path::Spline(Spline::new(vec![0.0, 1.0], vec![0.1, 0.3]).unwrap());
+    let curve = || Trajectory::new(vec![points(), points()]).unwrap();
+    assert!(simulate(&alone(vec![sound().roots([1.0; 4]).following(curve())], 0.1), &mut |_| ControlFlow::Continue(())).is_ok());
+    assert!(refused(sound().roots([1.0; 5]).following(curve())).contains("its target has 4"));
     assert!(refused(sound().roots([1.0, -1.0])).contains("positive"));
     assert!(refused(AgentSetup { target: None, ..sound() }).contains("none"));
     assert!(refused(sound().following(swing(3))).contains("needs 2"));
