@@ -270,6 +270,11 @@ fn a_recipe_that_does_not_fit_is_refused_with_what_is_wrong() {
         recipe.target = Some(Target::Offset(square()));
     };
     assert_eq!(refused(&offset), RecipeError::NoOffsets);
+    let five = |recipe: &mut Recipe| {
+        *recipe = blind(Guide::Tracking { alpha: vec![1.0, 5.0, 10.0, 10.0, 5.0] });
+        recipe.target = Some(Target::Follow(square()));
+    };
+    assert_eq!(refused(&five), RecipeError::Derivatives { needed: 5, known: 4 });
     let limits = |torque: Vec<f64>, rate| Some(Limits { torque, rate });
     let length = RecipeError::Length(LengthError { what: "torque limits", need: 1, got: 2 });
     assert_eq!(refused(&|recipe| recipe.limits = limits(vec![1.0; 2], vec![1.0; 2])), length);

@@ -256,7 +256,10 @@ fn what_makes_no_sense_is_refused() {
     assert!(simulate(&alone(vec![sound().roots([1.0; 5])], 0.1), &mut |_| ControlFlow::Continue(())).is_ok());
     let points = || Path::Spline(Spline::new(vec![0.0, 1.0], vec![0.1, 0.3]).unwrap());
     let curve = || Trajectory::new(vec![points(), points()]).unwrap();
-    assert!(simulate(&alone(vec![sound().roots([1.0; 4]).following(curve())], 0.1), &mut |_| ControlFlow::Continue(())).is_ok());
+    assert!(
+        simulate(&alone(vec![sound().roots([1.0; 4]).following(curve())], 0.1), &mut |_| ControlFlow::Continue(()))
+            .is_ok()
+    );
     assert!(refused(sound().roots([1.0; 5]).following(curve())).contains("its target has 4"));
     assert!(refused(sound().roots([1.0, -1.0])).contains("positive"));
     assert!(refused(AgentSetup { target: None, ..sound() }).contains("none"));

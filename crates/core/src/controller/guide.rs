@@ -72,7 +72,8 @@ pub enum GuideError {
     },
     /// A law that uses derivatives of z, which are no states there.
     #[error(
-        "the desired dynamics are written in x, so that derivatives of z are integrated and no states, but the law uses them: write the dynamics          in what is measured or in z"
+        "the desired dynamics are written in x, so that derivatives of z are integrated and no states, but the law uses them: \
+         write the dynamics in what is measured or in z"
     )]
     NoDerivatives,
 }

@@ -16,7 +16,8 @@ pub enum TargetFile {
     Formulas(At<Vec<At<FunctionFile>>>),
     /// A constant and sinusoids for every axis, whose bounds are known for ever.
     Sinusoids(At<Vec<SwingFile>>),
-    /// The smoothest curve through points, at rest before the first and after the last.
+    /// The smoothest curve through points, at rest before the first and after the last. It has four derivatives, so that no more
+    /// roots can follow it; the others have as many as are asked for.
     Points(PointsFile),
     /// The same through points of a table.
     Csv(TargetCsvFile),
