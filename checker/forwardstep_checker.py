@@ -25,19 +25,7 @@
 # What has not to be trusted: forwardstep, floating point (decimals are rational numbers here, functions are enclosed by rational
 # Taylor sums that are rounded outwards), and digests (they only say which files were meant).
 
-import argparse
-import ast
-import collections
-import csv
-import functools
-import hashlib
-import io
-import itertools
-import json
-import math
-import re
-import sys
-import tomllib
+import argparse, ast, collections, csv, functools, hashlib, io, itertools, json, math, re, sys, tomllib
 import xml.etree.ElementTree as ElementTree
 from fractions import Fraction
 from pathlib import Path
@@ -49,7 +37,7 @@ UNCLAIMED = ("watched during the run", "not shown", "not covered by the paper")
 
 # What is larger is refused, so that nothing takes all memory.
 MOST_BYTES, MOST_DIGITS, MOST_NESTED = 64 << 20, 4000, 256
-MOST_AGENTS, MOST_EDGES, MOST_CELLS, MOST_ROWS, MOST_DEGREE, MOST_POINTS = 200_000, 1_000_000, 100_000, 64, 16, 300
+MOST_AGENTS, MOST_EDGES, MOST_CELLS, MOST_ROWS, MOST_DEGREE, MOST_POINTS, MOST_EXPANDED = 200_000, 1_000_000, 100_000, 64, 16, 300, 6
 
 # A claim that is not shown; `place` is where in the certificate.
 class Rejected(Exception):
@@ -166,15 +154,11 @@ def name_of(value, where): return such(isinstance(value, str), f"{where} must be
 
 # A word, or a table with one key: (key, what stands under it).
 def choice(value, where):
-    if isinstance(value, str):
-        return value, {}
-    if isinstance(value, dict) and len(value) == 1:
-        return next(iter(value.items()))
-    raise Meaningless(f"{where} must be a word, or a table with one key")
+    such(isinstance(value, str) or isinstance(value, dict) and len(value) == 1, f"{where} must be a word, or a table with one key")
+    return (value, {}) if isinstance(value, str) else next(iter(value.items()))
 
 # Scenarios may have kinds and keys from outside.
-def known(kind, kinds, what):
-    decided(kind in kinds, f"{what} of the kind `{kind}` are not known")
+def known(kind, kinds, what): decided(kind in kinds, f"{what} of the kind `{kind}` are not known")
 
 # The same, of those that are known.
 def chosen(value, where, kinds, what):
@@ -196,8 +180,7 @@ def rounded(x, upwards):
     if infinite(x) or x.numerator.bit_length() + x.denominator.bit_length() <= 600:
         return x
     scale = Fraction(2) ** (160 - x.numerator.bit_length() + x.denominator.bit_length())
-    scaled = x * scale
-    return (math.ceil(scaled) if upwards else math.floor(scaled)) / scale
+    return (math.ceil if upwards else math.floor)(x * scale) / scale
 
 def span(low, high): return rounded(low, False), rounded(high, True)
 
@@ -235,16 +218,10 @@ def taylor(term, ratio):
         low, high, k = low - Fraction(1, 1 << 380), high + Fraction(1, 1 << 380), k + 1
     return span(low - Fraction(1, 1 << 198), high + Fraction(1, 1 << 198))
 
-# |x| ≤ 1/2: x + s x³/3 + s² x⁵/5 + …, arctan for s = −1 and artanh for s = 1, whose rest is at most twice the next term. The cut of
-# x moves it by less than 2^-238.
+# |x| ≤ 1/2: x + s x³/3 + s² x⁵/5 + …, arctan for s = −1 and artanh for s = 1. The cut of x moves it by less than 2^-238.
 def odd_series(x, sign):
     x = Fraction(math.floor(x * (1 << 240)), 1 << 240)
-    total_, power_, k = Fraction(0), x, 0
-    while abs(power_) > Fraction(1, 1 << 200):
-        total_ += power_ / (2 * k + 1)
-        power_, k = Fraction(math.floor(sign * power_ * x * x * (1 << 600)), 1 << 600), k + 1
-    room = Fraction(1, 1 << 180)
-    return span(total_ - room, total_ + room)
+    return taylor(x, lambda k: sign * x * x * (2 * k - 1) / (2 * k + 1))
 
 # By Machin's formula.
 PI = add(multiply((16, 16), odd_series(Fraction(1, 5), -1)), multiply((-4, -4), odd_series(Fraction(1, 239), -1)))
@@ -262,6 +239,8 @@ def sine_at(x, turned):
 def sine(a, turned):
     if infinite(a[0]) or infinite(a[1]) or a[1] - a[0] >= 7:
         return Fraction(-1), Fraction(1)
+    if a == (0, 0):
+        return (Fraction(turned),) * 2
     low, high = hull(sine_at(a[0], turned), sine_at(a[1], turned))
     # Crests of cos are at 2kπ, of sin at 2kπ + π/2; troughs are π further.
     for crest, shift in ((True, 0), (False, 1)):
@@ -445,8 +424,7 @@ def quotient(tree):
     (a, b), (c, d) = parts[0], parts[-1]
     if kind == "^":
         a, b = (convolved(b, b), convolved(a, b)) if tree[2] < 0 else (a, b)
-        repeated = range(abs(int(tree[2])))
-        found = functools.reduce(lambda x, _: (convolved(x[0], a), convolved(x[1], b)), repeated, ([Fraction(1)], [Fraction(1)]))
+        found = [functools.reduce(convolved, [x] * abs(int(tree[2])), [Fraction(1)]) for x in (a, b)]
     elif kind in "+-":
         c = c if kind == "+" else [-x for x in c]
         found = [sum(pair_) for pair_ in itertools.zip_longest(convolved(a, d), convolved(c, b), fillvalue=Fraction(0))], convolved(b, d)
@@ -626,6 +604,8 @@ GAINS = {
     "adaptive_backstepping": ("gains_per_s", "adaptation_gain")}
 OTHER_SETTINGS = (" estimate_start estimate_start_kg floor design yaw thrust_start_n rate_bandwidth_per_s end_effector kinematic_start "
                   "bounds determinant_floor antiderivatives null_space")
+REFERENCE = "roots_per_s exchange manipulability_gain filter_s acceleration_limit design coupling gain sign sign_period_s alpha beta"
+DESIRED = "polynomial coupling_polynomial heard follows_target written_in nonlinear stable_because input_to_state_stable_because"
 AGENT = "name count robot parameter_variation start reference law target enforce_limits"
 CONTROL = "sample_hz computation_delay_s velocity noise quantisation torque_limit torque_rate_limit_per_s safe_command message_timeout_s"
 
@@ -680,7 +660,7 @@ def routh(coefficients):
     return column
 
 # Desired dynamics as the design of the paper that they are: p K(p) beside weights of K(p), or K(p) with a target, K by its roots; and
-# before it whether they are one, and the polynomial of what is no such K but follows a target.
+# before it whether they are one, and the polynomial of those that are none.
 def designed(key, body):
     if key != "desired":
         return False, None, (key, body)
@@ -690,11 +670,12 @@ def designed(key, body):
     product = polynomial({"roots_per_s": own["roots_per_s"]})[0] if roots else None
     agrees = zeros == 1 and coupled == {"roots_per_s": own.get("roots_per_s")} and body.get("written_in", "measured") == "measured"
     agrees = agrees and heard[:1] in ([], [product]) and all(b == 0 and v * a == product for v in heard[1:] for a, b in roots[:1])
-    alone = tracks and not (heard or "coupling_polynomial" in body)
-    decided("nonlinear" not in body and (alone if tracks else roots and agrees), "dynamics of no known design")
-    if alone and (zeros or not roots):
-        return False, polynomial(body["polynomial"]), ("tracking", {})
+    if not (roots and (alone(body) and not zeros if tracks else agrees and "nonlinear" not in body)):
+        return False, polynomial(body["polynomial"]), (key, body)
     return True, None, ("tracking" if tracks else "consensus", {"roots_per_s": own["roots_per_s"], "exchange": told})
+
+# Whether nothing but its polynomial and a target enters such dynamics.
+def alone(body): return body.get("follows_target", False) and not (body.get("heard") or {"coupling_polynomial", "nonlinear"} & set(body))
 
 class Scenario:
     def __init__(self, text, folder):
@@ -704,9 +685,8 @@ class Scenario:
         such(file.get("format") == 2, "`format` must be 2")
         self.end_s = positive(table(file.get("time"), "time").get("end_s"), "time.end_s")
         self.desired, self.polynomial, (self.reference, body) = designed(*choice(file.get("reference"), "reference"))
-        self.body = table(body, "reference", "roots_per_s exchange manipulability_gain filter_s acceleration_limit design coupling "
-                          "gain sign sign_period_s alpha beta")
-        known(self.reference, ("consensus", "pure_integral", "backstepping", "leader", "tracking"), "reference dynamics")
+        self.body = table(body, "reference", DESIRED if self.reference == "desired" else REFERENCE)
+        known(self.reference, ("consensus", "pure_integral", "backstepping", "leader", "tracking", "desired"), "reference dynamics")
         self.agents = []
         for number, entry in enumerate(listed(file.get("agents"), "agents")):
             self.populate(table(entry, "agents", AGENT), f"agents[{number}]")
@@ -719,6 +699,8 @@ class Scenario:
             self.design(agent)
         self.control = table(file["control"], "control", CONTROL) if "control" in file else None
         self.read_network()
+        if self.body.get("follows_target") and not self.used():
+            self.reference = "tracking"
         self.pairs = [{(edge.source, edge.to) for edge in graph} for graph in self.graphs]
         self.read_pushes()
 
@@ -750,14 +732,13 @@ class Scenario:
         such(key in (None, "tracking" if leads else self.reference), f"{agent.name} states reference dynamics of another kind")
         own = ({} if leads or self.reference == "leader" else self.body) | table(own, "reference")
         agent.roots, agent.manipulability = roots_of(own), not_negative(own.get("manipulability_gain", 0), "manipulability_gain")
-        agent.tracks = leads or self.reference == "tracking"
+        agent.tracks = leads or self.reference == "tracking" or self.body.get("follows_target", False)
         if "target" in agent.entry:
             agent.target = self.trajectory(agent.entry["target"], f"target of {agent.name}")
 
     def exchange(self):
-        if self.reference in ("consensus", "pure_integral"):
-            return such((told := self.body.get("exchange")) in ("position", "position_velocity"), "`exchange` has another value", told)
-        return "position_velocity" if self.reference == "leader" else "position"
+        told = {"leader": "position_velocity", "backstepping": "position"}.get(self.reference, self.body.get("exchange"))
+        return such(told in ("position", "position_velocity"), "`exchange` has another value", told)
 
     # Motions: for each axis a formula, or a curve through points
 
@@ -808,7 +789,7 @@ class Scenario:
         self.graphs, self.dwell, self.switching, self.coupling = [[]], [], "once", None
         network = self.file.get("network")
         if network is None:
-            such(self.reference == "tracking", "`network` is missing")
+            such(self.reference == "tracking" or self.body.get("follows_target", False), "`network` is missing")
             return
         network = table(network, "network", "weight delay link_delays coupling edges switching phases")
         self.weight, self.delay = self.read_weight(network.get("weight", 1)), self.read_delay(network.get("delay", {"constant_s": 0}))
@@ -817,24 +798,20 @@ class Scenario:
             form, scale = chosen(network["coupling"], "coupling", ("saturated", "tanh", "rational"), "couplings")
             self.coupling = form, positive(scale, "coupling")
         such(("edges" in network) != ("phases" in network), "the network must have either `edges` or `phases`")
-        if "edges" in network:
-            self.graphs = [self.edges(network["edges"])]
-            return
-        phases = [table(phase, "phases", "dwell_s edges") for phase in listed(network["phases"], "phases")]
-        self.graphs = [self.edges(phase.get("edges")) for phase in phases]
-        self.switching, body = choice(network.get("switching", "repeat"), "switching")
+        phases = listed(network["phases"], "phases") if "phases" in network else [{"edges": network["edges"]}]
+        self.graphs = [self.edges(table(phase, "phases", "dwell_s edges").get("edges")) for phase in phases]
+        if "phases" in network:
+            self.switching, body = chosen(network.get("switching", "repeat"), "switching", ("repeat", "once", "log", "random"), "switching")
         if self.switching == "random":
             self.dwell = [positive(x, "dwell_s") for x in pair(table(body, "switching").get("dwell_s"))]
             such(self.dwell[0] <= self.dwell[1], "`dwell_s` must rise")
-            return
-        known(self.switching, ("repeat", "once", "log"), "switching")
-        if self.switching == "log":
+        elif self.switching == "log":
             self.logged = self.log(self.csv(table(body, "switching", "file").get("file")), "phase")
             such(all(phase in range(1, len(phases) + 1) for phase, *_ in self.logged), "a log has a phase that is none")
             # The last may be cut short by the end of the table.
             self.dwell = [end - start for _, start, end in self.logged[:-1] or self.logged]
-            return
-        self.dwell = [positive(phase.get("dwell_s"), "dwell_s") for phase in (phases if self.switching == "repeat" else phases[:-1])]
+        else:
+            self.dwell = [positive(phase.get("dwell_s"), "dwell_s") for phase in (phases if self.switching == "repeat" else phases[:-1])]
 
     # (entry, from when, until when) of the rows of a log; the last of them is the end.
     def log(self, rows, key):
@@ -883,14 +860,10 @@ class Scenario:
         known(rule, DIRECTIONS, "edges")
         members = [self.vertex(name) for name in listed(body["among"], "among")] if "among" in body else list(range(len(self.agents)))
         direction, n = body.get("direction"), len(members)
-        if rule in ("ring", "path"):
-            pairs = list(zip(members, members[1:])) + ([(members[-1], members[0])] if rule == "ring" and n > 1 else [])
-        elif rule == "star":
-            centre = self.vertex(body.get("centre"))
-            pairs = [(centre, member) for member in members if member != centre]
-        else:
-            such(n * n <= MOST_EDGES, "there are too many edges")
-            pairs = [(a, b) for a in members for b in members if a != b]
+        such(rule != "complete" or n * n <= MOST_EDGES, "there are too many edges")
+        after = members[1:] + members[:1] * (rule == "ring" and n > 1)
+        sources = [self.vertex(body.get("centre"))] if rule == "star" else members
+        pairs = list(zip(members, after)) if rule in ("ring", "path") else [(a, b) for a in sources for b in members if a != b]
         such(direction in (None, *DIRECTIONS[rule]), "`direction` is not one of the rule")
         back = [(b, a) for a, b in pairs]
         return [Edge(a, b, *self.terms(body)) for a, b in dict.fromkeys({"both": pairs + back, "in": back}.get(direction, pairs))]
@@ -994,6 +967,8 @@ def extension(agent):
 
 def theorem(scenario):
     tracking, agents = scenario.reference == "tracking", scenario.agents
+    if scenario.reference == "desired":
+        return "desired-dynamics"
     if scenario.reference == "leader":
         return dict(zip(DESIGNS, ("theorem-8" + scenario.over(), *LED))).get(scenario.body.get("design"), "no design")
     kinds = {treated(agent) for agent in agents}
@@ -1024,7 +999,8 @@ def requirements(scenario):
         ("task_space",), ("thrust",), CHAIN_LAWS, ("adaptive", "known"), ("linear_adaptive", "adaptive_backstepping")))
     designs = [{design_of(agent) for agent in flying if agent.robot == robot} for robot in ("vehicle", "rotorcraft")]
     asked = [
-        (agreeing, "spanning-tree dwell-time bounded-delays"), (reference in ("consensus", "pure_integral"), "real-roots"),
+        (agreeing, "spanning-tree"), (agreeing or reference == "desired", "dwell-time bounded-delays"),
+        (reference in ("consensus", "pure_integral"), "real-roots"),
         (reference == "consensus", "common-order" if len({len(agent.roots) for agent in agents}) == 1 else "own-orders"),
         (reference == "pure_integral" or leading and not turns, "fixed-graph"), (reference == "backstepping", "measured-derivative"),
         (agreeing and scenario.coupling is not None, "coupling-sector"),
@@ -1035,7 +1011,7 @@ def requirements(scenario):
         (leading and (late or design in DESIGNS[1:3]), "constant-weights"), (rooted(scenario) or leading and design != "swarm", "hurwitz"),
         (leading and design == "swarm", "printed-design mutual-weights swarm-coupling"),
         (reference != "tracking" and scenario.varying(), "bounded-weights"), (any(agent.pushes for agent in agents), "pushes-end"),
-        (len(kinds) > 1 and reference != "tracking", "one-kind"),
+        (len(kinds) > 1 and not all(agent.tracks for agent in agents), "one-kind"),
         (True, " ".join(f"{a.law.replace('_', '-')}-gains" for a in agents if a.law in ("position_only", "task_space", "attitude"))),
         ({"continuous"} in designs, "known-masses"), (any(each - {"continuous"} for each in designs), "thrust-gains"),
         (flying, "nonzero-thrust"), (any(agent.robot == "rotorcraft" for agent in agents), "angular-velocity"),
@@ -1069,20 +1045,17 @@ def inexact(control):
     return velocity != "measured" or any(exact(part.get(entry, 0), entry) > 0 for part, entry in parts)
 
 # What may be spoken about robot by robot.
-SEVERAL = ("uniform-inertia", "hurwitz")
+SEVERAL = ("uniform-inertia", "hurwitz", "desired-dynamics")
 # Hypotheses that only a run can show, or that the paper does not cover whenever they are asked for: no claim is right.
 NEVER = ("one-kind", "measured-derivative", "printed-design", "nonzero-thrust", "angular-velocity", "every-wrench",
-         "bounded-regressors", "regular-jacobian", "start-attitude", "continuous-time", "exact-measurements")
-# --- Rules: each shows one kind of proof of some hypotheses. Their parameters are the fields of the proof. A rule gives words,
+         "bounded-regressors", "regular-jacobian", "continuous-time", "exact-measurements")
+# --- Rules: each shows some kinds of proof of some hypotheses. Their parameters are the fields of the proof. A rule may give words,
 # --- and whether what is shown holds for all time where that is not plain. `WITNESSES` show that a hypothesis is violated.
 RULES = {}
-WITNESSES = ("cut", "unheard", "instant", "factor", "below", "limit", "loses-all", "diverges", "no-value", "out-of-reach", "no-routh")
+WITNESSES = ("cut", "unheard", "instant", "factor", "null-vector", "below", "limit", "loses-all", "diverges", "no-value", "out-of-reach",
+             "no-routh", "half-turn", "outside", "singular")
 
-def rule(ids, kind):
-    def note(check):
-        RULES.update({(each, kind): check for each in ids.split()})
-        return check
-    return note
+def rule(ids, kinds): return lambda check: RULES.update(dict.fromkeys(itertools.product(ids.split(), kinds.split()), check)) or check
 
 # One entry of the certificate.
 class Claim:
@@ -1092,6 +1065,7 @@ class Claim:
         self.id, self.answer = entry.field("id").text(), entry.field("answer").text()
         self.agents = [name.text() for name in entry.field("agents").each()]
         require(entry.field("agents"), all(name in scenario.index for name in self.agents), "names somebody unknown")
+        self.own = [scenario.agents[scenario.index[name]] for name in self.agents if scenario.index[name] < len(scenario.agents)]
         require(entry.field("answer"), self.answer in (HOLDS, ON_RUN, VIOLATED, *UNCLAIMED), "is no answer")
 
     # (outcome, words).
@@ -1099,7 +1073,7 @@ class Claim:
         if self.answer in UNCLAIMED:
             require(self.entry, self.proof is None, "has a proof, and claims nothing")
             return UNCHECKED, f"nothing is claimed: {self.answer}"
-        require(self.entry.field("answer"), self.id not in NEVER, "is a claim that nothing before a run shows")
+        require(self.entry.field("answer"), self.id not in NEVER or self.answer == VIOLATED, "is a claim that nothing before a run shows")
         if self.proof is None or self.id not in {each for each, _ in RULES}:
             return UNCHECKED, "there is no proof" if self.proof is None else "no proof of it is known here"
         kind = self.proof.field("kind").text()
@@ -1112,7 +1086,7 @@ class Claim:
             found = check(self, *map(self.proof.field, fields[:needed_]), *map(self.proof.optional, fields[needed_:]))
         except Undecided as reason:
             return UNCHECKED, str(reason)
-        words, always = found if isinstance(found, tuple) else (found, True)
+        words, always = found if isinstance(found, tuple) else (found or kind, True)
         shown = (VIOLATED,) if kind in WITNESSES else (HOLDS, ON_RUN) if always else (ON_RUN,)
         require(self.entry.field("answer"), self.answer in shown, f"is more than the proof shows: {' or '.join(shown)}")
         return ACCEPTED, words
@@ -1157,7 +1131,6 @@ def tiling(claim, windows):
 def every_phase(claim, windows):
     phases = claim.scenario.for_ever()
     require(windows, tiled(claim, windows, phases) == list(range(len(phases) + 1)), "must be one for each phase")
-    return f"each of {len(phases)} graphs has a spanning tree"
 
 # (phase, from when, until when) of a drawn sequence that is given.
 def drawn(scenario, given):
@@ -1172,8 +1145,7 @@ def drawn(scenario, given):
     return found
 
 # Such a sequence, or that of a log, tiled by windows up to the end of the run but for a rest that is no longer than is stated.
-@rule("spanning-tree leader-reaches-all", "drawn")
-@rule("spanning-tree leader-reaches-all", "logged")
+@rule("spanning-tree leader-reaches-all", "drawn logged")
 def along(claim, windows, longest_s, given=None):
     scenario, kind = claim.scenario, claim.proof.field("kind").text()
     require(claim.proof, (scenario.switching, given is None) == (("random", False) if kind == "drawn" else ("log", True)), f"is not {kind}")
@@ -1191,11 +1163,9 @@ def cut(claim, groups):
     led, apart = claim.id == "leader-reaches-all", sum(map(len, sets)) == len(set().union(*sets))
     fits = len(sets) == 1 and scenario.leader not in sets[0] if led else len(sets) >= 2 and apart
     require(groups, fits, f"must be {'one group without the leader' if led else 'two or more that are disjoint'}")
-    for phase in scenario.for_ever():
-        for source, to in scenario.pairs[phase]:
-            heard = any(to in group and source not in group for group in sets)
-            require(groups, not heard, f"are not closed: {scenario.names[to]} hears {scenario.names[source]} in phase {phase + 1}")
-    return f"{len(sets)} closed groups"
+    for phase, (source, to) in ((phase, ends) for phase in scenario.for_ever() for ends in scenario.pairs[phase]):
+        heard = any(to in group and source not in group for group in sets)
+        require(groups, not heard, f"are not closed: {scenario.names[to]} hears {scenario.names[source]} in phase {phase + 1}")
 
 # In this phase, which recurs, a group without the leader hears no agent outside itself.
 @rule("leader-in-every-graph", "unheard")
@@ -1204,20 +1174,16 @@ def unheard(claim, phase, group):
     require(phase, at in scenario.for_ever(), "does not recur")
     require(group, found and not found & {None, scenario.leader}, "must name agents, and not the leader")
     require(group, not any(to in found and source not in found for source, to in scenario.pairs[at]), "hear somebody else")
-    return f"{len(found)} agents hear nothing of the leader in phase {at + 1}"
 
-@rule("dwell-time", "never-switches")
-@rule("fixed-graph", "one-graph")
+@rule("dwell-time fixed-graph", "never-switches one-graph")
 def fixed_graph(claim):
     require(claim.proof, claim.scenario.fixed(), "is not so: the graphs differ")
     steady = claim.scenario.reference != "pure_integral" or not claim.scenario.varying()
     require(claim.proof, steady or claim.id == "dwell-time", "is not so: a weight varies")
-    return "one graph for ever"
 
 @rule("dwell-time", "shortest-phase")
 def shortest_phase(claim, shortest_s):
-    dwell = claim.scenario.dwell
-    require(shortest_s, dwell and 0 < shortest_s.number() <= min(dwell), "is not below the shortest phase")
+    require(shortest_s, 0 < shortest_s.number() <= min(claim.scenario.dwell, default=0), "is not below the shortest phase")
     return f"phases last {said(shortest_s.number())} s at least", claim.scenario.switching != "log"
 
 # Those whose M, C and g the proofs use.
@@ -1229,8 +1195,8 @@ MOVING = ("revolute", "continuous", "prismatic")
 def of_urdf(reader):
     def guarded(scenario, agent):
         try:
-            root = ElementTree.fromstring(scenario.text_of(agent.body.get("file")))
-            return reader(agent, root, table(agent.body.get("locked", {}), "locked"))
+            locked = table(agent.body.get("locked", {}), "locked")
+            return reader(agent, ElementTree.fromstring(scenario.text_of(agent.body.get("file"))), locked)
         except (ElementTree.ParseError, AttributeError, TypeError, LookupError, RecursionError, ValueError):
             raise Undecided("a URDF cannot be read here") from None
     return guarded
@@ -1244,9 +1210,8 @@ def links(agent, root, locked):
     def body(link):
         if (inertial := link.find("inertial")) is None:
             return 0, [0] * 3
-        of = [decimal(inertial.find("inertia").get(key, "0")) for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")]
-        matrix = [[of[0], of[1], of[2]], [of[1], of[3], of[4]], [of[2], of[4], of[5]]]
-        return decimal(inertial.find("mass").get("value")), pivots(matrix) if any(of) else [0] * 3
+        rows = [[decimal(inertial.find("inertia").get(f"i{k}", "0")) for k in row.split()] for row in ("xx xy xz", "xy yy yz", "xz yz zz")]
+        return decimal(inertial.find("mass").get("value")), pivots(rows) if any(map(any, rows)) else [0] * 3
 
     def visit(name, own, turned):
         own.append(bodies[name])
@@ -1265,31 +1230,62 @@ def links(agent, root, locked):
         visit(name, [], False)
     return found
 
-# From tip to base along a URDF: where the first joint that moves is, and the square of all lengths behind it, which no posture exceeds.
+# The joints of a URDF from the tip to the base: (kind, whether it moves, the angle at which it is locked, axis, rpy, xyz).
 @of_urdf
-def outstretched(agent, root, locked):
-    def numbers(element, key): return [decimal(x) for x in ("0 0 0" if element is None else element.get(key, "0 0 0")).split()]
+def path(agent, root, locked):
+    def numbers(element, key):
+        x, y, z = (decimal(x) for x in ("0 0 0" if element is None else element.get(key, "0 0 0")).split())
+        return [x, y, z]
 
-    def turn(k, angle):
-        (i, j), sin, cos = ((k + 1) % 3, (k + 2) % 3), sine((angle,) * 2, False), sine((angle,) * 2, True)
-        at[i], at[j] = (add(multiply(cos, at[i]), minus(multiply(sin, at[j]))), add(multiply(sin, at[i]), multiply(cos, at[j])))
-
-    tip, joints = agent.gains["end_effector"], {joint.find("child").get("link"): joint for joint in root.findall("joint")}
-    link, length, at = tip["link"], (Fraction(0),) * 2, [(exact(x, "at_m"),) * 2 for x in tip.get("at_m", [0] * 3)]
+    joints, link = {joint.find("child").get("link"): joint for joint in root.findall("joint")}, agent.gains["end_effector"]["link"]
+    found = []
     while link in joints:
         joint = joints.pop(link)
-        link, origin = joint.find("parent").get("link"), joint.find("origin")
-        decided(joint.get("type") != "prismatic", "a joint that slides carries the tip")
-        if joint.get("name") in locked:
-            axis = numbers(joint.find("axis"), "xyz")
-            decided(sorted(axis) == [0, 0, 1], "a joint is locked about an oblique axis")
-            turn(axis.index(1), exact(locked[joint.get("name")], "locked"))
-        elif joint.get("type") in MOVING:
+        origin, link, angle = joint.find("origin"), joint.find("parent").get("link"), locked.get(joint.get("name"))
+        found.append((joint.get("type"), joint.get("type") in MOVING and angle is None, exact(angle or 0, "locked"),
+                      numbers(joint.find("axis"), "xyz"), numbers(origin, "rpy"), numbers(origin, "xyz")))
+    return found
+
+# A vector, turned about axis k.
+def turned(at, k, angle):
+    (i, j), sin, cos, at = ((k + 1) % 3, (k + 2) % 3), sine((angle,) * 2, False), sine((angle,) * 2, True), list(at)
+    at[i], at[j] = add(multiply(cos, at[i]), minus(multiply(sin, at[j]))), add(multiply(sin, at[i]), multiply(cos, at[j]))
+    return at
+
+# A vector of a link as the one that carries it sees it: turned about the axis of the joint, then by roll, pitch and yaw.
+def carried(at, angle, axis, rpy):
+    if angle != 0:
+        decided(sorted(map(abs, axis)) == [0, 0, 1], "a joint turns about an oblique axis")
+        at = turned(at, [abs(x) for x in axis].index(1), angle * sum(axis))
+    return functools.reduce(lambda at, turn: turned(at, *turn), enumerate(rpy), at)
+
+# Where the first joint that moves is, and the square of all lengths from it to the tip, which no posture exceeds.
+def outstretched(scenario, agent):
+    tip = agent.gains["end_effector"]
+    length, at = (Fraction(0),) * 2, [(exact(x, "at_m"),) * 2 for x in tip.get("at_m", [0] * 3)]
+    for kind, moves, angle, axis, rpy, xyz in path(scenario, agent):
+        decided(kind != "prismatic", "a joint that slides carries the tip")
+        if moves:
             length, at = add(length, function("sqrt", functools.reduce(add, (power(x, Fraction(2)) for x in at)))), [(Fraction(0),) * 2] * 3
-        for k, angle in enumerate(numbers(origin, "rpy")):
-            turn(k, angle)
-        at = [add(own, (x, x)) for own, x in zip(at, numbers(origin, "xyz"), strict=True)]
+        at = [add(own, (x, x)) for own, x in zip(carried(at, angle, axis, rpy), xyz)]
     return [at["xyz".index(axis)] for axis in tip.get("coordinates", "xyz")], multiply(length, length)
+
+# q at the start, where the text has it as numbers: one list for each of those that share a table, or one for all.
+def posture(scenario, agent):
+    for file, sharing in ((agent.entry, [one for one in scenario.agents if one.entry is agent.entry]), (scenario.file, scenario.agents)):
+        for value in (file["start"][key] for key in ("position_rad", "position_m", "position") if key in file.get("start", {})):
+            decided(isinstance(value, list), "a start is drawn")
+            return [exact(x, "start") for x in (value[sharing.index(agent)] if isinstance(value[0], list) else value)]
+    raise Undecided("a start is not stated")
+
+# Columns of the rotation matrix of a tip at the start.
+def rotation(scenario, agent):
+    columns, angles = [[(Fraction(i == k),) * 2 for i in range(3)] for k in range(3)], posture(scenario, agent)
+    for kind, moves, angle, axis, rpy, _ in path(scenario, agent):
+        angle = angles.pop() if moves else angle
+        columns = [carried(at, angle if kind != "prismatic" else 0, axis, rpy) for at in columns]
+    decided(not angles, "not every joint carries the tip")
+    return columns
 
 # The kinds of friction at the joints of robots where there is some.
 def frictions(scenario):
@@ -1340,7 +1336,8 @@ def lengths_hold(agent):
     decided("parameter_variation" not in agent.entry and tip.get("uncertain", "tool") == "tool", "these lengths are not read here")
     true = agent.body["length_m"] if agent.robot == "planar_arm" else tip.get("at_m", [0] * 3)
     of = [[exact(x, "bounds") for x in listed(entries, "bounds")] for entries in (bounds["lower_m"], true, bounds["upper_m"])]
-    return len({len(entries) for entries in of}) == 1 and all(low <= x <= high for low, x, high in zip(*of))
+    such(len({len(entries) for entries in of}) == 1, "bounds of lengths are too few or too many")
+    return all(low <= x <= high for low, x, high in zip(*of))
 
 # M is positive definite at all q, by a bound that does not depend on q: a mass is positive; the minors of a ship's are, in its
 # body; of a planar arm with a = I₁ + m₁c₁² and b = I₂ + m₂c₂² det M = (a + m₂l₁²) b − (m₂l₁c₂ cos q₂)² ≥ ab + m₂l₁²I₂. Rotors A ⪰ 0
@@ -1381,14 +1378,19 @@ def coefficients(scenario):
     (a, b), (c, d) = roots[0], roots[-1]
     return (a, Fraction(1)) if design == "continuous" else (a * c - b * d, a + c)
 
-# In this state, x1, x2, … or x, dx, d2x, …, a term of the agent has no value.
+# The chain that is named.
+def find(claim, agent):
+    of = [one for one in claim.scenario.agents if one.name == agent.text() and one.law in CHAIN_LAWS]
+    require(agent, of, "is no chain")
+    return of[0]
+
+# In this state, x1, x2, … or x, dx, d2x, … or x1, x2, dx1, dx2, …, a term of the agent has no value.
 @rule("defined-terms", "no-value")
 def no_value(claim, agent, state):
-    at = [(entry.number(),) * 2 for entry in state.each()]
-    found = dict(zip(STATES[:255], at)) | dict(zip(STATES[255:], at))
-    of = [one for one in claim.scenario.agents if one.name == agent.text() and one.law in CHAIN_LAWS and one.robot != "vector_chain"]
-    require(agent, of, "is no chain")
-    for term in terms(of[0].body):
+    at, of = [(entry.number(),) * 2 for entry in state.each()], find(claim, agent)
+    letters = [f"{d}x{k + 1}" for d in RATES for k in range(len(of.body["psi"]))] if of.robot == "vector_chain" else STATES
+    found = dict(zip(letters, at)) | dict(zip((f"{d}x" for d in RATES), at))
+    for term in terms(of.body):
         try:
             enclose(term, found)
         except Undecided as reason:
@@ -1396,41 +1398,39 @@ def no_value(claim, agent, state):
                 return f"{agent.text()} has a term without a value there"
     raise Undecided("whether a term has a value in this state is not decided here")
 
-STATES = [f"x{k}" for k in range(1, 256)] + ["x", "dx"] + [f"d{k}x" for k in range(2, 256)] + [
-    f"d{order}x{k}" for order in ("", *range(2, 16)) for k in range(1, 33)]
+RATES = ["", "d"] + [f"d{k}" for k in range(2, 256)]
+STATES = [f"x{k}" for k in range(1, 256)] + [f"{d}x" for d in RATES] + [f"{d}x{k}" for d in RATES[1:16] for k in range(1, 33)]
 TEXT = {
     "uniform-inertia": lambda scenario, _: all([definite_inertia(scenario, agent) for agent in robots(scenario)]),
     "bounded-dynamics": lambda scenario, _: robots(scenario) and all(unturned(scenario, agent) for agent in robots(scenario)),
-    "defined-terms": lambda scenario, _: all(everywhere(term) for agent in scenario.agents if agent.law in CHAIN_LAWS
-                                             for term in terms(agent.body)),
+    "defined-terms": lambda scenario, _: all(everywhere(term) for a in scenario.agents if a.law in CHAIN_LAWS for term in terms(a.body)),
     # (30) has a vertex for every derivative of every agent: no order of one meets that of another.
     "own-orders": lambda scenario, _: all(agent.roots for agent in scenario.agents),
     "mutual-weights": lambda scenario, _: all(scenario.mutual(graph) for graph in scenario.graphs),
-    "constant-weights": lambda scenario, _: not scenario.varying(),
+    "constant-weights": lambda scenario, _: not scenario.varying(), "applied-torque": lambda scenario, _: not scenario.limited(),
     "no-delay": lambda scenario, _: all(rule_bound(edge.delay) == 0 for edge in scenario.used()),
-    "applied-torque": lambda scenario, _: not scenario.limited(),
     # α, β and γ stand once; a continuous design has the mass of its plant; without torques from outside h_I is that of the start.
     "shared-design": lambda scenario, _: scenario.reference == "leader", "desired-design": lambda scenario, _: scenario.desired,
     "known-masses": lambda scenario, _: all(design_of(a) == "continuous" for a in scenario.agents if a.law == "thrust"),
-    "known-momentum": lambda scenario, names: not any(a.pushes for a in scenario.agents if a.name in names),
-    "set-valued-sign": lambda scenario, _: set_valued(scenario),
+    "known-momentum": lambda scenario, own: not any(a.pushes for a in own), "set-valued-sign": lambda scenario, _: set_valued(scenario),
     "smooth-friction": lambda scenario, _: frictions(scenario) <= {"smooth"},
     "parameters-within-bounds": lambda scenario, _: all(bounds_hold(a) for a in scenario.agents if a.law != "task_space"),
-    "lengths-within-bounds": lambda scenario, names: all(lengths_hold(a) for a in scenario.agents if a.name in names),
+    "lengths-within-bounds": lambda scenario, own: all(map(lengths_hold, own)),
     # Nothing sits on a tool: its place enters the Jacobian of the tip, and neither M nor C nor g.
-    "certain-regressor": lambda scenario, names: all(a.gains["end_effector"].get("uncertain", "tool") == "tool"
-                                                     for a in scenario.agents if a.name in names),
+    "certain-regressor": lambda scenario, own: all(a.gains["end_effector"].get("uncertain", "tool") == "tool" for a in own),
 }
 
 @rule(" ".join(TEXT), "text")
+@rule("parameters-within-bounds lengths-within-bounds", "outside")
 def by_text(claim):
-    require(claim.proof, TEXT[claim.id](claim.scenario, claim.agents), "is not so by the text")
-    return "as the text says"
+    so, stated = bool(TEXT[claim.id](claim.scenario, claim.own)), claim.proof.field("kind").text() == "text"
+    require(claim.proof, so == stated, "is not so by the text")
 
 # The pieces of time that `range` and `cells` name: [0, ∞), or as many of a period of the formula, of the run, or until a time
 # from which on one more takes all that is left.
 def pieces(node, tree, end_s):
     kind, unit, length = node.field("range").text(), (Fraction(1),) * 2, end_s
+    require(node.field("range"), kind in ("for-ever", "period", "tail", "run"), "must be `for-ever`, `period`, `tail` or `run`")
     if kind == "for-ever":
         return [(Fraction(0), INF)]
     if kind == "period":
@@ -1438,8 +1438,6 @@ def pieces(node, tree, end_s):
     elif kind == "tail":
         length = node.field("until_s").number()
         require(node.field("until_s"), length > 0, "must be positive")
-    else:
-        require(node.field("range"), kind == "run", "must be `for-ever`, `period`, `tail` or `run`")
     cells = node.field("cells").count()
     require(node.field("cells"), 0 < cells <= MOST_CELLS, "must be some")
     return [multiply(unit, (length * k / cells, length * (k + 1) / cells)) for k in range(cells)] + [(length, INF)] * (kind == "tail")
@@ -1542,7 +1540,6 @@ def in_time(claim, bound_s):
     late = max(ends, default=0) + 1 / positive(claim.scenario.control.get("sample_hz"), "sample_hz")
     least = exact(claim.scenario.control["message_timeout_s"], "message_timeout_s")
     require(bound_s, late <= bound_s.number() <= least, f"must lie between {said(late)} and {said(least)}")
-    return f"no message is older than {said(bound_s.number())} s"
 
 @rule("bounded-weights", "weights")
 def weights(claim, enclosures):
@@ -1579,13 +1576,11 @@ def loses_all(claim, edge):
     found = claim.scenario.edge_at(edge)
     rule_, loss = choice(found.delay[1].get("loss", "never"), "loss") if found.delay[0] == "packets" else (None, {})
     require(edge, rule_ == "random" and loss.get("probability") == 1 and rule_bound(found.delay) is None, "does not lose every packet")
-    return "every packet is lost"
 
 # v within ± a else ± a, a tanh(v/a), v/(1 + |v|/a): odd, continuous, never falling, between 0 and v, for any a > 0.
 @rule("coupling-sector", "form")
 def coupling(claim, form, size):
     require(form, (form.text(), size.number()) == claim.scenario.coupling, "is not that of the scenario")
-    return f"{form.text()} with {said(size.number())}"
 
 # Agents that agree need real roots; those that follow a target or a leader need roots to the left of the axis.
 @rule("real-roots hurwitz manipulability common-order pushes-end", "number")
@@ -1605,9 +1600,9 @@ def number(claim, value):
         require(value, all(end <= stated for agent in agents for end in agent.pushes), "comes before the end of a push")
     return said(stated)
 
-@rule("desired-dynamics", "routh")
-@rule("desired-dynamics", "no-routh")
+@rule("desired-dynamics", "routh no-routh")
 def hurwitz(claim, column):
+    require(claim.proof, claim.scenario.polynomial and alone(claim.scenario.body), "is not all of these dynamics")
     found = routh(claim.scenario.polynomial)
     require(column, [entry.number() for entry in column.each()] == found, "is not the first column of the array")
     require(column, (found[-1] > 0) == (claim.proof.field("kind").text() == "routh"), "shows the opposite")
@@ -1618,7 +1613,6 @@ def all_constant(claim):
     scenario, edges = claim.scenario, [edge for phase in claim.scenario.recurring() for edge in claim.scenario.graphs[phase]]
     varies = any(isinstance(edge.weight, str) or edge.delay[0] != "constant_s" for edge in edges)
     require(claim.proof, scenario.fixed(scenario.recurring()) and not varies, "is not so by the text")
-    return "graph, weights and delays are constant from the last switch on"
 
 # κ₀ is the same within each class, and all edges that recur lead within a class or to a later one: cycles stay within classes.
 @rule("common-first-root", "classes")
@@ -1633,7 +1627,6 @@ def common_first_root(claim, classes):
     require(classes, len(place) == len(scenario.names), "must hold every agent")
     at, edges = [place[name] for name in scenario.names], [edge for phase in scenario.recurring() for edge in scenario.pairs[phase]]
     require(classes, all(at[source] <= at[to] for source, to in edges), "are not in order: an edge leads back")
-    return f"{len(classes.each())} classes in order"
 
 # The pivots of A = L D Lᵀ, in rational numbers, up to the first that is not positive.
 def pivots(rows):
@@ -1644,8 +1637,7 @@ def pivots(rows):
             break
         for i in range(k + 1, len(a)):
             factor = a[i][k] / a[k][k]
-            for j in range(k, len(a)):
-                a[i][j] -= factor * a[k][j]
+            a[i] = [x - factor * y for x, y in zip(a[i], a[k])]
     return found
 
 # A symmetric matrix is positive definite if and only if all pivots are positive.
@@ -1670,7 +1662,6 @@ def gains(claim, matrices):
     keys = [(agent, key) for agent in claim.scenario.agents if agent.law in ASKED_OF[claim.id] for key in GAINS[agent.law]]
     for agent, key in keys:
         gain_is_positive(claim, agent, key, agent.settings().get(key), matrices, stated)
-    return f"{len(keys)} gains"
 
 # One gain of one agent: a number, a diagonal, a matrix, or a bandwidth times scales that are positive.
 def gain_is_positive(claim, agent, key, value, matrices, stated):
@@ -1703,8 +1694,7 @@ def motions_of(claim):
     if claim.id == "bounded-leader":
         require(claim.proof, claim.scenario.motion is not None, "is of no motion")
         return [(claim.scenario.motion, 1, 3)]
-    agents = [claim.scenario.agents[claim.scenario.index[name]] for name in claim.agents]
-    return [(agent.target or [], 0 if agent.tracks else 1, needed(agent, claim.scenario.polynomial)) for agent in agents]
+    return [(agent.target or [], 0 if agent.tracks else 1, needed(agent, claim.scenario.polynomial)) for agent in claim.own]
 
 # Curves through points are polynomials on finitely many pieces and constant elsewhere; derivatives of formulas are enclosed, on
 # [0, ∞) at once or on the stretch that is stated.
@@ -1752,13 +1742,13 @@ def drive(claim):
 def squares(trees): return functools.reduce(plus, [("^", tree, Fraction(2)) for tree in trees])
 
 def quaternion(claim):
-    paths = [tree for name in claim.agents for tree in claim.scenario.agents[claim.scenario.index[name]].target or []]
+    paths = [tree for agent in claim.own for tree in agent.target or []]
     decided(len(paths) in (4, 7), "is of no quaternion")
     return paths[-4:]
 
 # The square of how far a target is from where the reach of a tip is counted.
 def reached(claim):
-    agent = claim.scenario.agents[claim.scenario.index[claim.agents[0]]]
+    agent = claim.own[0]
     if agent.robot == "planar_arm":
         first, second = planar(agent.body)[1]
         return [(squares(agent.target), ((first - second) ** 2,) * 2, ((first + second) ** 2,) * 2)]
@@ -1771,9 +1761,7 @@ def reached(claim):
 LIMITS = {"sign-gain": drive, "target-within-reach": reached, "nonzero-quaternion": lambda claim: [
     (squares(quaternion(claim)), (Fraction(0),) * 2, (INF, INF))]}
 
-@rule("sign-gain", "bounds")
-@rule("target-within-reach", "distance")
-@rule("nonzero-quaternion", "norm")
+@rule("sign-gain target-within-reach nonzero-quaternion", "bounds distance norm")
 def kept(claim, bounds=None, bound=None):
     limits, entries = LIMITS[claim.id](claim), bounds.each() if bounds else [bound] if bound else []
     require(claim.proof, len(entries) == len(limits), "must have one bound for each axis")
@@ -1782,8 +1770,7 @@ def kept(claim, bounds=None, bound=None):
         require(entry.field("within"), least[1] < low and high < most[0], f"leaves ({said(least[1])}, {said(most[0])})")
     return f"within ({said(limits[0][1][1])}, {said(limits[0][2][0])})", all(lasts(entry) for entry in entries)
 
-@rule("sign-gain", "instant")
-@rule("target-within-reach", "out-of-reach")
+@rule("sign-gain target-within-reach", "instant out-of-reach")
 def left(claim, t_s, axis=None):
     limits, k = LIMITS[claim.id](claim), axis.count() if axis else 1
     require(t_s, 1 <= k <= len(limits) and t_s.number() >= 0, "comes before the start, or is of no axis")
@@ -1791,6 +1778,25 @@ def left(claim, t_s, axis=None):
     low, high = enclose(tree, (t_s.number(),) * 2)
     require(t_s, high <= least[0] or low >= most[1], f"is no time outside: [{said(low)}, {said(high)}]")
     return f"{said(low)} at t = {said(t_s.number())} s"
+
+# The square of the scalar part Δq_o of the error of an attitude at the start. With R of the tip, p = (v, o) of the target, and
+# a = (R₃₂ − R₂₃, R₁₃ − R₃₁, R₂₁ − R₁₂), 4 Δq_o² = 1 + tr R_dᵀR says 4 pᵀp Δq_o² = pᵀp + (o² − vᵀv) tr R + 2 vᵀR v + 2 o vᵀa.
+def scalar_part(claim):
+    r = [[("hull", *(("number", end) for end in entry)) for entry in column] for column in rotation(claim.scenario, *claim.own)]
+    (*v, o), sums = quaternion(claim), functools.partial(functools.reduce, plus)
+    crossed = sums([times(times(x, y), r[j][i]) for i, x in enumerate(v) for j, y in enumerate(v)])
+    apart = sums([times(v[k], ("-", r[k - 2][k - 1], r[k - 1][k - 2])) for k in range(3)])
+    whole = sums([squares(v), squares([o]), times(("-", squares([o]), squares(v)), sums([r[k][k] for k in range(3)])),
+                  times(("number", Fraction(2)), plus(crossed, times(o, apart)))])
+    return enclose(("/", whole, times(("number", Fraction(4)), plus(squares(v), squares([o])))), (Fraction(0),) * 2)
+
+@rule("start-attitude", "apart")
+def start_apart(claim, least):
+    require(least, 0 < least.number() and least.number() ** 2 <= scalar_part(claim)[0], "is not shown: the scalar part may be smaller")
+
+@rule("start-attitude", "half-turn")
+def half_turn(claim):
+    require(claim.proof, scalar_part(claim)[1] <= 0, "is not shown: the scalar part may differ from zero")
 
 # One entry keeps away from zero.
 @rule("nonzero-quaternion", "entry-away")
@@ -1817,33 +1823,48 @@ def swarm(claim, pivots):
         if edge.source in at:
             rows[at[edge.to]][at[edge.source]] -= edge.weight
     definite(claim.proof, rows, pivots)
-    return f"k λ exceeds {said(least)}"
 
 # For every chain what encloses the factor of its input in every state, and the floor. Of a matrix its smallest singular value: once rows
 # have the sign of the diagonal, that is at least the smallest eigenvalue of the symmetric part, which Gershgorin's discs bound.
 def factors(scenario):
     for agent in (one for one in scenario.agents if one.law in CHAIN_LAWS):
         psi = {"strict_feedback": "1", "pure_feedback": "x1"}.get(agent.robot, agent.body.get("psi", "1"))
-        within = dominance(psi) if isinstance(psi, list) else enclose(formula(psi, STATES), WHOLE)
+        within = regular(psi) if isinstance(psi, list) else enclose(formula(psi, STATES), WHOLE)
         yield agent.name, within, positive(agent.gains.get("floor", Fraction(1, 1000)), "floor")
 
-def dominance(psi):
+# Or by the determinant: the product of the m − 1 other singular values is at most the power m − 1 of their quadratic mean.
+def regular(psi):
     such(all(len(row) == len(psi) for row in psi), "ψ is not square")
-    a = [[enclose(formula(entry, STATES), WHOLE) for entry in row] for row in psi]
-    others = [sum(size(a[i][j]) + size(a[j][i]) for j in range(len(a)) if j != i) for i in range(len(a))]
-    return min(max(row[i][0], -row[i][1]) - others[i] / 2 for i, row in enumerate(a)), INF
+    a, m = [[enclose(formula(entry, STATES), WHOLE) for entry in row] for row in psi], len(psi)
+    others = [sum(size(a[i][j]) + size(a[j][i]) for j in range(m) if j != i) for i in range(m)]
+    least, norm = min(max(row[i][0], -row[i][1]) - others[i] / 2 for i, row in enumerate(a)), sum(size(x) ** 2 for row in a for x in row)
+    if m <= MOST_EXPANDED and norm > 0 and not infinite(norm):
+        low, high = determinant(a)
+        least = max(least, sqrt_at(max(low, -high, Fraction(0)) ** 2 * (Fraction(m - 1) / norm) ** (m - 1))[0])
+    return least, INF
+
+def determinant(rows):
+    minors = [determinant([row[:k] + row[k + 1:] for row in rows[1:]]) for k in range(len(rows))]
+    parts = [multiply(entry, minus(minor) if k % 2 else minor) for k, (entry, minor) in enumerate(zip(rows[0] if rows else [], minors))]
+    return functools.reduce(add, parts) if rows else (Fraction(1),) * 2
 
 @rule("input-factor", "factor-away")
 def input_factor(claim):
     for name, within, floor in factors(claim.scenario):
         require(claim.proof, max(within[0], -within[1]) >= floor, f"is not so for {name}")
-    return "every factor keeps away from zero"
 
 @rule("input-factor", "factor")
 def small_factor(claim, agent):
     found = {name: size(within) < floor for name, within, floor in factors(claim.scenario)}
     require(agent, found.get(agent.text(), False), "has no constant factor below its floor")
-    return f"ψ of {agent.text()} is too small"
+
+# A vector that a constant ψ takes to zero.
+@rule("input-factor", "null-vector")
+def null_vector(claim, agent, vector):
+    psi, x = find(claim, agent).body.get("psi"), [entry.number() for entry in vector.each()]
+    require(agent, isinstance(psi, list) and all(len(row) == len(psi) for row in psi), "has no matrix ψ")
+    zero = [sum(constant(formula(entry, STATES)) * own for entry, own in zip(row, x, strict=True)) == 0 for row in psi]
+    require(vector, any(x) and all(zero), "is not taken to zero")
 
 # --- The whole certificate
 

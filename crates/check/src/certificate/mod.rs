@@ -27,6 +27,7 @@ use forwardstep_sim::Setup;
 use num_rational::BigRational;
 
 pub use exact::decimal;
+pub(crate) use motions::at_start;
 pub use proof::{DrawnPhase, Enclosure, GivenAge, Matrix, Proof, Range, TreeWindow};
 
 use crate::hypothesis::Subject;

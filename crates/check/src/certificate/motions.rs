@@ -12,6 +12,7 @@ use super::numbers::sum;
 use super::producers::Claim;
 use super::proof::{Enclosure, Proof, Range};
 use super::ratio::Ratio;
+use crate::kinds::start_attitude::scalar_squared;
 use crate::laws::kind_of;
 use crate::reach::reach;
 use crate::{Answer, Id};
@@ -113,6 +114,28 @@ fn instant(trajectory: &Trajectory, drive: &[f64], gain: f64, end_s: f64) -> Opt
         }
     }
     best.1.map(|(t_s, axis)| Proof::Reached(Number::written(t_s), axis))
+}
+
+/// What the axes of a trajectory are at t = 0.
+pub(crate) fn at_start(trajectory: &Trajectory) -> Vec<Interval> {
+    trajectory.paths().iter().map(|path| Course::of(path).enclose(Interval::point(0.0))).collect()
+}
+
+/// Room, as a part, for what is rounded outwards here and exact elsewhere.
+const NARROWER: f64 = 1e-6;
+
+/// That a tip does not start half a turn from its target, by the least size of the scalar part; or that it does.
+pub(super) fn start_attitude(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    let agent = setup.agents.get(*claim.agents.first()?)?;
+    let within = scalar_squared(agent, agent.law.downcast()?)?;
+    match claim.answer {
+        Answer::Holds => {
+            let least = within.low.sqrt() * (1.0 - NARROWER);
+            (least > 0.0).then(|| Proof::Apart(Number::written(least)))
+        }
+        Answer::Violated => Some(Proof::HalfTurn),
+        Answer::HoldsOnHorizon | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
+    }
 }
 
 /// One entry that keeps away from zero for ever, else the norm, for ever or on the run.

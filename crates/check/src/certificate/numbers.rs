@@ -9,7 +9,7 @@ use super::producers::Claim;
 use super::proof::Proof;
 use crate::Answer;
 use crate::kinds::chain::undefined_state;
-use crate::kinds::matrix_factor::least_by_dominance;
+use crate::kinds::matrix_factor::null_vector;
 use crate::surroundings::acts;
 use crate::theorems::slowest_per_s;
 
@@ -97,9 +97,14 @@ fn sorted(vertices: usize, edges: &[(usize, usize)]) -> Vec<usize> {
 
 pub(super) fn input_factor(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     match claim.answer {
-        Answer::Holds => setup.agents.iter().all(is_dominant).then_some(Proof::FactorAway),
+        Answer::Holds => Some(Proof::FactorAway),
         Answer::Violated => {
-            setup.agents.iter().position(|agent| small_factor(agent) == Some(true)).map(Proof::SmallFactor)
+            let small = setup.agents.iter().position(|agent| small_factor(agent) == Some(true));
+            let null = || {
+                let mut agents = setup.agents.iter().enumerate();
+                agents.find_map(|(index, agent)| Some(Proof::NullVector(index, null_vector(matrix_of(agent)?)?)))
+            };
+            small.map(Proof::SmallFactor).or_else(null)
         }
         Answer::HoldsOnHorizon | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
     }
@@ -111,23 +116,17 @@ pub(super) fn defined_terms(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
         Answer::Holds => Some(Proof::Text),
         Answer::Violated => {
             let (agent, state) = undefined_state(setup)?;
-            // The letters of a plant with several axes have two numbers, which a state in a certificate has not.
-            if let Some(ChainModel::Vector(_)) = setup.agents[agent].robot.kind.downcast() {
-                return None;
-            }
             Some(Proof::NoValue(agent, state.into_iter().map(Number::written).collect()))
         }
         Answer::HoldsOnHorizon | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
     }
 }
 
-/// Whether the factor of the input of a plant with several axes, where it is one, keeps its inverse because its diagonal outweighs the rest; what
-/// its determinant shows has no certificate.
-fn is_dominant(agent: &AgentSetup) -> bool {
-    let (law, model): (Option<&ChainLaw>, Option<&ChainModel>) = (agent.law.downcast(), agent.robot.kind.downcast());
-    match (law, model) {
-        (Some(law), Some(ChainModel::Vector(terms))) => least_by_dominance(terms.input()) >= law.floor,
-        _ => true,
+/// The factor of the input of a plant with several axes.
+fn matrix_of(agent: &AgentSetup) -> Option<&[Vec<Expression>]> {
+    match agent.robot.kind.downcast()? {
+        ChainModel::Vector(terms) => Some(terms.input()),
+        ChainModel::Derivatives(_) | ChainModel::Cascade(_) => None,
     }
 }
 
@@ -136,7 +135,6 @@ fn small_factor(agent: &AgentSetup) -> Option<bool> {
     let (law, model): (&ChainLaw, &ChainModel) = (agent.law.downcast()?, agent.robot.kind.downcast()?);
     let factor = match model {
         ChainModel::Derivatives(terms) => terms.input(),
-        // That a matrix has no inverse is not replayed.
         ChainModel::Vector(_) => return None,
         ChainModel::Cascade(terms) => terms.input(),
     };

@@ -56,13 +56,14 @@ const PRODUCERS: &[(Id, Producer)] = &[
     (Id::BoundedLeader, motions::bounded),
     (Id::SignGain, motions::sign_gain),
     (Id::NonzeroQuaternion, motions::nonzero_quaternion),
+    (Id::StartAttitude, motions::start_attitude),
     (Id::UniformInertia, text),
     (Id::BoundedDynamics, text),
     (Id::DefinedTerms, numbers::defined_terms),
     (Id::TargetWithinReach, motions::within_reach),
     (Id::OwnOrders, text),
     (Id::CertainRegressor, of_no_chain),
-    (Id::LengthsWithinBounds, of_no_chain),
+    (Id::LengthsWithinBounds, lengths),
     (Id::ConstantWeights, text),
     (Id::MutualWeights, text),
     (Id::NoDelay, text),
@@ -72,7 +73,7 @@ const PRODUCERS: &[(Id, Producer)] = &[
     (Id::KnownMasses, text),
     (Id::KnownMomentum, text),
     (Id::SmoothFriction, text),
-    (Id::ParametersWithinBounds, text),
+    (Id::ParametersWithinBounds, bounds),
 ];
 
 /// A proof of `answer`, which is a claim, if there is a producer and it finds one.
@@ -86,9 +87,22 @@ fn text(_: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     (claim.answer == Answer::Holds).then_some(Proof::Text)
 }
 
+/// What the text says about bounds, either way.
+fn bounds(_: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    match claim.answer {
+        Answer::Holds => Some(Proof::Text),
+        Answer::Violated => Some(Proof::Outside),
+        Answer::HoldsOnHorizon | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
+    }
+}
+
+fn lengths(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    of_text(setup, claim).then(|| bounds(setup, claim))?
+}
+
 /// Of an uncertain tool, and of the lengths of a planar arm, the text says it; which lengths of a chain there are, and which of them a
 /// regressor holds, takes the kinematics of the tree.
-fn of_no_chain(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+fn of_text(setup: &Setup, claim: &Claim<'_>) -> bool {
     let stated = |agent: &usize| {
         let law: Option<&TaskSpaceLaw> = setup.agents.get(*agent).and_then(|agent| agent.law.downcast());
         law.is_some_and(|law| match law.tip {
@@ -96,5 +110,9 @@ fn of_no_chain(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
             TipSetup::Point { uncertain, .. } => uncertain == Uncertain::Tool,
         })
     };
-    claim.agents.iter().all(stated).then(|| text(setup, claim))?
+    claim.agents.iter().all(stated)
+}
+
+fn of_no_chain(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    of_text(setup, claim).then(|| text(setup, claim))?
 }

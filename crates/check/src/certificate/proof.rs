@@ -77,10 +77,18 @@ pub enum Proof {
     Drive(Vec<Enclosure>),
     /// Witness: at this time, s, what drives the leader reaches γ on this axis, from zero.
     Reached(BigRational, usize),
-    /// One pass over all states shows that the factor of the input keeps away from zero.
+    /// One pass over all states shows that the factor of the input keeps away from zero, or its smallest singular value where it is a matrix.
     FactorAway,
     /// Witness: the factor of the input of this agent is a constant below its floor.
     SmallFactor(usize),
+    /// Witness: the factor of the input of this agent is a constant matrix that takes this vector to zero.
+    NullVector(usize, Vec<BigRational>),
+    /// The scalar part of the error of an attitude starts with this size at least.
+    Apart(BigRational),
+    /// Witness: it starts at zero.
+    HalfTurn,
+    /// Witness: a parameter, or a length, lies outside of the bounds of its estimate, by the text of the scenario.
+    Outside,
     /// Witness: at this time, s, what this edge (from, to, phase) follows is not positive, or a delay is negative.
     Below(BigRational, (usize, usize, usize)),
     /// Witness: what this edge follows goes where it must not go as t → ∞: a weight to zero or without bound, a delay without bound.

@@ -145,7 +145,7 @@ fn input_factor(setup: &Setup, agents: &[usize]) -> Hypothesis {
                 Some(KindEvidence::FactorBelowFloor { agent, value, floor })
             }
             Factor::Matrix(input) => {
-                matrix_factor::is_singular(input).then_some(KindEvidence::FactorSingular { agent })
+                matrix_factor::null_vector(input).map(|_| KindEvidence::FactorSingular { agent })
             }
             Factor::More => None,
         }

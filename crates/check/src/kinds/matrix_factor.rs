@@ -13,6 +13,8 @@
 //! more than they are.
 
 use forwardstep_core::expression::{Expression, Interval};
+use num_rational::BigRational;
+use num_traits::{One, Zero};
 
 /// Matrices with more rows have too many terms in their determinant.
 const MOST_EXPANDED: usize = 6;
@@ -25,22 +27,40 @@ pub(super) fn least_everywhere(psi: &[Vec<Expression>]) -> f64 {
     dominance(&entries).max(by_determinant(&entries))
 }
 
-/// The same, by dominance alone.
-pub(crate) fn least_by_dominance(psi: &[Vec<Expression>]) -> f64 {
-    dominance(&enclosed(psi))
-}
-
 fn enclosed(psi: &[Vec<Expression>]) -> Vec<Vec<Interval>> {
     psi.iter().map(|row| row.iter().map(|entry| entry.everywhere().0).collect()).collect()
 }
 
-/// Whether it is constant and, by exact arithmetic, has no inverse.
-pub(super) fn is_singular(psi: &[Vec<Expression>]) -> bool {
-    psi.len() <= MOST_EXPANDED
-        && psi.iter().flatten().all(|entry| entry.variables() == 0)
-        && determinant(psi, &(0..psi.len()).collect::<Vec<_>>(), &Expression::number(0.0))
-            .constant()
-            .is_some_and(|exact| exact.value() == 0.0)
+/// A vector that a constant matrix of rational numbers takes to zero, which shows that it has no inverse; `None` for any other matrix.
+pub(crate) fn null_vector(psi: &[Vec<Expression>]) -> Option<Vec<BigRational>> {
+    let exact = |entry: &Expression| entry.constant()?.exact();
+    let mut rows: Vec<Vec<BigRational>> =
+        psi.iter().map(|row| row.iter().map(exact).collect()).collect::<Option<_>>()?;
+    // Of each column that has one, the row whose first entry that is not zero stands there; the others are zero in it.
+    let mut leads: Vec<usize> = Vec::new();
+    for column in 0..rows.len() {
+        let done = leads.len();
+        let Some(at) = (done..rows.len()).find(|at| !rows[*at][column].is_zero()) else {
+            let mut vector = vec![BigRational::zero(); rows.len()];
+            vector[column] = BigRational::one();
+            for (row, lead) in rows.iter().zip(leads) {
+                vector[lead] = -row[column].clone();
+            }
+            return Some(vector);
+        };
+        rows.swap(done, at);
+        let lead = rows[done][column].clone();
+        let row: Vec<BigRational> = rows[done].iter().map(|entry| entry / &lead).collect();
+        for other in rows.iter_mut() {
+            let share = other[column].clone();
+            for (entry, own) in other.iter_mut().zip(&row) {
+                *entry -= &share * own;
+            }
+        }
+        rows[done] = row;
+        leads.push(column);
+    }
+    None
 }
 
 fn dominance(entries: &[Vec<Interval>]) -> f64 {
@@ -90,6 +110,8 @@ where
 
 #[cfg(test)]
 mod tests {
+    use forwardstep_core::expression::Number;
+
     use super::*;
 
     fn numbers(rows: &[&[f64]]) -> Vec<Vec<Expression>> {
@@ -108,6 +130,31 @@ mod tests {
         for singular in [&[&[1.0, 2.0][..], &[2.0, 4.0]][..], &[&[0.0, 0.0], &[0.0, 1.0]]] {
             assert_eq!(least_everywhere(&numbers(singular)), 0.0);
         }
+    }
+
+    #[test]
+    fn prop_a_null_vector_is_taken_to_zero_and_others_have_none() {
+        let singular: [&[&[f64]]; 4] = [
+            &[&[1.0, 2.0], &[2.0, 4.0]],
+            &[&[0.0, 0.0, 1.0], &[0.0, 3.0, 0.0], &[0.0, 1.0, 1.0]],
+            &[&[1.0, 2.0, 3.0], &[4.0, 5.0, 6.0], &[7.0, 8.0, 9.0]],
+            &[&[0.0]],
+        ];
+        for rows in singular {
+            let vector = null_vector(&numbers(rows)).unwrap_or_default();
+            assert!(vector.iter().any(|entry| !entry.is_zero()), "{rows:?}");
+            for row in rows {
+                let parts = row.iter().zip(&vector).map(|(entry, x)| Number::written(*entry) * x);
+                assert!(parts.sum::<BigRational>().is_zero(), "{rows:?}: {vector:?}");
+            }
+        }
+        // So small a determinant is no number of floating point.
+        let regular: [&[&[f64]]; 3] =
+            [&[&[1e-200, 0.0], &[0.0, 1e-200]], &[&[0.0, 1.0], &[1.0, 0.0]], &[&[1.0, 2.0], &[2.0, 4.0000000001]]];
+        for rows in regular {
+            assert_eq!(null_vector(&numbers(rows)), None, "{rows:?}");
+        }
+        assert_eq!(null_vector(&[vec![Expression::variable(0)]]), None);
     }
 
     #[test]

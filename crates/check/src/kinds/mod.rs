@@ -8,6 +8,7 @@ pub(crate) mod matrix_factor;
 mod point_mass;
 mod rotorcraft;
 mod spacecraft;
+pub(crate) mod start_attitude;
 mod task_space;
 mod vehicle;
 

@@ -2,15 +2,14 @@
 
 use std::sync::Arc;
 
-use forwardstep_core::attitude::{difference, normalized};
 use forwardstep_core::robot::tree::{Follows, Tree};
 use forwardstep_core::robot::{Posture, TipKinematics};
-use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{AgentSetup, Law, Setup, TaskSpaceLaw, TipSetup};
+use forwardstep_sim::{AgentSetup, Setup, TaskSpaceLaw, TipSetup};
 use nalgebra::DMatrix;
 
 use super::bounds::within_bounds;
 use super::spacecraft::never_zero;
+use super::start_attitude::{desired, scalar_squared};
 use super::{Claim, KindCheck};
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, Named, Subject};
 use crate::inertia::{bounded_dynamics, uniform_inertia};
@@ -126,22 +125,14 @@ fn start(tip: &dyn TipKinematics, agent: &AgentSetup, law: &TaskSpaceLaw) -> Opt
     Some(DMatrix::from_row_slice(m, n, &j))
 }
 
-/// The quaternion of the target of a pose.
-fn desired(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<Trajectory> {
-    let first = law.interface(&agent.robot)?.coordinates?.quaternion?;
-    agent.target.as_ref()?.quaternion(first)
-}
-
-/// Scalar parts below this are those of half a turn, as far as floating-point numbers tell.
-const HALF_TURN: f64 = 1e-6;
-
 /// |Δq_o| at the start of a pose, of which the law takes the sign.
 fn attitude(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<KindEvidence> {
-    let mut jets = [[0.0; 5]; 4];
-    desired(agent, law)?.jets(0.0, &mut jets);
-    let own = with_tip(agent, law, |tip| tip.attitude(&agent.start.q)).flatten()?;
-    let scalar = difference(own, normalized(jets.map(|jet| jet[0])))[3].abs();
-    Some(if scalar > HALF_TURN { KindEvidence::AttitudeApart { scalar } } else { KindEvidence::HalfTurn { scalar } })
+    let within = scalar_squared(agent, law)?;
+    Some(match () {
+        () if within.low > 0.0 => KindEvidence::AttitudeApart { scalar: within.low.sqrt().next_down() },
+        () if within.high <= 0.0 => KindEvidence::HalfTurn,
+        () => KindEvidence::AttitudeNotShown { most: within.high.sqrt().next_up().min(1.0) },
+    })
 }
 
 /// Y(q, q̇, z, ż) has to be known but for ϑ. That of a tree is stated with all its translations, as they are in the file, and the

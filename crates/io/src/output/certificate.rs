@@ -120,6 +120,12 @@ impl Names<'_> {
             Proof::Drive(bounds) => json!({ "kind": "bounds", "bounds": self.enclosures(bounds) }),
             Proof::Reached(t_s, axis) => json!({ "kind": "instant", "t_s": decimal(t_s), "axis": axis + 1 }),
             Proof::SmallFactor(agent) => json!({ "kind": "factor", "agent": self.of(*agent) }),
+            Proof::NullVector(agent, vector) => {
+                json!({ "kind": "null-vector", "agent": self.of(*agent), "vector": numbers(vector) })
+            }
+            Proof::Apart(least) => json!({ "kind": "apart", "least": decimal(least) }),
+            Proof::HalfTurn => json!({ "kind": "half-turn" }),
+            Proof::Outside => json!({ "kind": "outside" }),
             Proof::FactorAway => json!({ "kind": "factor-away" }),
             Proof::Below(t_s, edge) => json!({ "kind": "below", "t_s": decimal(t_s), "edge": self.edge(*edge) }),
             Proof::Limit(edge) => json!({ "kind": "limit", "edge": self.edge(*edge) }),

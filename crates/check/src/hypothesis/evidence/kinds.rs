@@ -152,16 +152,18 @@ pub enum KindEvidence {
         /// The largest.
         largest: f64,
     },
-    /// |Δq_o| at the start.
+    /// |Δq_o| at the start is positive.
     AttitudeApart {
-        /// Its value.
+        /// It is not smaller.
         scalar: f64,
     },
-    /// Δq_o is zero at the start.
-    HalfTurn {
-        /// Its magnitude.
-        scalar: f64,
+    /// Whether Δq_o is zero at the start could not be told from what rounding leaves.
+    AttitudeNotShown {
+        /// Its magnitude is not larger.
+        most: f64,
     },
+    /// Δq_o is zero at the start, exactly.
+    HalfTurn,
     /// The law is for another robot.
     NoTip,
     /// None of the lengths that are uncertain enters the dynamics.
@@ -246,6 +248,7 @@ impl KindEvidence {
             | KindEvidence::LengthsKnown
             | KindEvidence::PositiveMatricesTrueLengths
             | KindEvidence::ParametersInside
+            | KindEvidence::AttitudeApart { .. }
             | KindEvidence::Matched
             | KindEvidence::Momentum(_) => Answer::Holds,
             KindEvidence::ThrustFloor { .. }
@@ -254,7 +257,7 @@ impl KindEvidence {
             | KindEvidence::SingularValue { .. }
             | KindEvidence::Determinant { .. } => Answer::Watched,
             KindEvidence::Declared { .. }
-            | KindEvidence::AttitudeApart { .. }
+            | KindEvidence::AttitudeNotShown { .. }
             | KindEvidence::TermNotShown { .. }
             | KindEvidence::Probed { probe: Probe { found: None, .. }, .. } => Answer::NotShown,
             KindEvidence::Mixture(_)
@@ -273,7 +276,7 @@ impl KindEvidence {
             | KindEvidence::TermFails { .. }
             | KindEvidence::Singular { .. }
             | KindEvidence::RankDeficient { .. }
-            | KindEvidence::HalfTurn { .. }
+            | KindEvidence::HalfTurn
             | KindEvidence::FactorBelowFloor { .. }
             | KindEvidence::FactorSingular { .. }
             | KindEvidence::Probed { probe: Probe { found: Some(_), .. }, .. } => Answer::Violated,
@@ -314,11 +317,12 @@ impl KindEvidence {
             KindEvidence::FactorAway { .. }
             | KindEvidence::TermsDefined
             | KindEvidence::TermFails { .. }
+            | KindEvidence::AttitudeApart { .. }
+            | KindEvidence::AttitudeNotShown { .. }
+            | KindEvidence::HalfTurn
             | KindEvidence::TermNotShown { .. } => Rigour::Enclosed,
             KindEvidence::Singular { .. }
             | KindEvidence::RankDeficient { .. }
-            | KindEvidence::AttitudeApart { .. }
-            | KindEvidence::HalfTurn { .. }
             | KindEvidence::Momentum(_) => Rigour::Computed,
             KindEvidence::ThrustFloor { .. }
             | KindEvidence::FactorFloor { .. }

@@ -95,12 +95,15 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
             format!("its singular values start from {smallest:.3e} to {largest:.3}")
         }
         KindEvidence::AttitudeApart { scalar } => format!(
-            "the scalar part of the error starts at {scalar:.3}, with the sign for the shorter way, which is kept: −q and q are one \
-             attitude; computed without a certificate"
+            "the scalar part of the error starts at {} at least, with the sign for the shorter way, which is kept: −q and q are one attitude",
+            rounded_down(*scalar)
         ),
-        KindEvidence::HalfTurn { scalar } => format!(
-            "the scalar part of the error starts at {scalar:.1e}: both ways are equally long, and rounding chooses between them"
+        KindEvidence::AttitudeNotShown { most } => format!(
+            "the scalar part of the error starts at {most:.1e} at most, and may be zero but for rounding, which then chooses the way"
         ),
+        KindEvidence::HalfTurn => {
+            "the scalar part of the error starts at zero: both ways are equally long, and rounding chooses between them".into()
+        }
         KindEvidence::NoTip => "the law has no tip of this robot".into(),
         KindEvidence::LengthsOutsideRegressor(Uncertain::Tool) => {
             "only the tool is uncertain, which the dynamics do not contain".into()

@@ -98,6 +98,6 @@ impl Placement {
 }
 
 /// A matrix row by row.
-pub(super) fn rows(e: &Mat3<f64>) -> [[f64; 3]; 3] {
+pub(super) fn rows<S: Copy>(e: &Mat3<S>) -> [[S; 3]; 3] {
     [[e.x.x, e.y.x, e.z.x], [e.x.y, e.y.y, e.z.y], [e.x.z, e.y.z, e.z.z]]
 }

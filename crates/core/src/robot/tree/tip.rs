@@ -171,6 +171,15 @@ impl TreeTip {
         turning.then_some((first.translation, sum.high))
     }
 
+    /// Of a pose the rotation matrix of the tip in the base, row by row, by intervals that hold it for the angles as they are written.
+    ///
+    /// # Errors
+    /// [`LengthError`] when `q` has the wrong length.
+    pub fn enclosed_rotation(&self, q: &[f64]) -> Result<Option<[[Interval; 3]; 3]>, LengthError> {
+        LengthError::check("q", self.joints(), q.len())?;
+        Ok(self.turned.as_ref().map(|turned| turned.enclosed(&self.tree, q)))
+    }
+
     /// Where the numbers of translation c stand in θ, if they are there.
     fn place(&self, c: usize) -> Option<usize> {
         match self.uncertain {

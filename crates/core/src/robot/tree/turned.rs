@@ -8,9 +8,14 @@ use alloc::vec::Vec;
 
 use super::JointKind;
 use super::model::Tree;
-use super::spatial::Vec3;
+use super::placement::rows;
+use super::spatial::{Mat3, Vec3};
 use crate::attitude::{Quaternion, from_matrix, normalized, product};
-use crate::trig;
+use crate::expression::Interval;
+use crate::{Scalar, trig};
+
+/// Rotations that do not depend on the joints are products of a few rotations by angles of a file; no entry is rounded by more.
+const ROOM: f64 = 1e-12;
 
 /// The turns of a chain that do not depend on the joints.
 #[derive(Clone, Debug)]
@@ -19,6 +24,8 @@ pub(super) struct Turned {
     seats: Vec<Quaternion>,
     /// From the link to the last inner frame.
     tool: Quaternion,
+    /// The same as a matrix, row by row.
+    tool_rows: [[f64; 3]; 3],
 }
 
 impl Turned {
@@ -30,10 +37,31 @@ impl Turned {
             let held = tree.bodies.last().map_or(column, |body| body.inner_vector(column));
             [held.x, held.y, held.z]
         });
+        let tool_rows = core::array::from_fn(|row| inner.map(|column| column[row]));
         Turned {
             seats: tree.bodies.iter().map(|body| from_matrix(&body.rotation)).collect(),
-            tool: from_matrix(&core::array::from_fn(|row| inner.map(|column| column[row]))),
+            tool: from_matrix(&tool_rows),
+            tool_rows,
         }
+    }
+
+    /// The rotation matrix of the link in the base, row by row, by intervals that hold that of the angles as they are written.
+    pub(super) fn enclosed(&self, tree: &Tree, q: &[f64]) -> [[Interval; 3]; 3] {
+        let one = Interval::point(1.0);
+        let none = Interval::point(0.0);
+        let mut whole = Mat3::<Interval>::splat(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+        for (body, q) in tree.bodies.iter().zip(q) {
+            whole = whole.product(&with_room(&body.rotation));
+            if body.kind == JointKind::Revolute {
+                let (sin, cos) = Scalar::sin_cos(Interval::point(body.sign * q));
+                whole = whole.product(&Mat3 {
+                    x: Vec3 { x: cos, y: sin, z: none },
+                    y: Vec3 { x: -sin, y: cos, z: none },
+                    z: Vec3 { x: none, y: none, z: one },
+                });
+            }
+        }
+        rows(&whole.product(&with_room(&self.tool_rows)))
     }
 
     /// The quaternion of the link in the base.
@@ -50,4 +78,14 @@ impl Turned {
         // What is not a number stays so: it must not pass for no turn at all.
         if attitude.iter().all(|x| x.is_finite()) { normalized(attitude) } else { attitude }
     }
+}
+
+/// A rotation as computed, with room for what was rounded; ones and zeros that are exact stay so, where all entries are.
+fn with_room(rotation: &[[f64; 3]; 3]) -> Mat3<Interval> {
+    let e = Mat3::<Interval>::splat(rotation);
+    if rotation.iter().flatten().all(|entry| *entry == 0.0 || *entry == 1.0 || *entry == -1.0) {
+        return e;
+    }
+    let wide = |v: Vec3<Interval>| Vec3 { x: v.x.with_room(ROOM), y: v.y.with_room(ROOM), z: v.z.with_room(ROOM) };
+    Mat3 { x: wide(e.x), y: wide(e.y), z: wide(e.z) }
 }

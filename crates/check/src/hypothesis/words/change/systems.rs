@@ -45,10 +45,9 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
         | KindEvidence::BoundedStates { .. }
         | KindEvidence::SingularValue { .. }
         | KindEvidence::Determinant { .. } => RUN.into(),
-        KindEvidence::AttitudeApart { .. } => {
-            "nothing in a scenario: it is computed from the start, without proof".into()
+        KindEvidence::AttitudeNotShown { .. } | KindEvidence::HalfTurn => {
+            "a start, or an attitude of the target, that is not half a turn away".into()
         }
-        KindEvidence::HalfTurn { .. } => "a start, or an attitude of the target, that is not half a turn away".into(),
         KindEvidence::ThrustKept { .. } | KindEvidence::Rotors { .. } => {
             "thrusts without ends: these belong to the vehicle, so compare the run with one in which they do not act"
                 .into()
@@ -116,6 +115,7 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
         | KindEvidence::LengthsKnown
         | KindEvidence::PositiveMatricesTrueLengths
         | KindEvidence::ParametersInside
+        | KindEvidence::AttitudeApart { .. }
         | KindEvidence::Matched
         | KindEvidence::Momentum(_) => return None,
     })
