@@ -1053,7 +1053,7 @@ NEVER = ("one-kind", "measured-derivative", "printed-design", "nonzero-thrust", 
 # --- and whether what is shown holds for all time where that is not plain. `WITNESSES` show that a hypothesis is violated.
 RULES = {}
 WITNESSES = ("cut", "unheard", "instant", "factor", "null-vector", "below", "limit", "loses-all", "diverges", "no-value", "out-of-reach",
-             "no-routh", "half-turn", "outside", "singular")
+             "no-routh", "half-turn", "outside")
 
 def rule(ids, kinds): return lambda check: RULES.update(dict.fromkeys(itertools.product(ids.split(), kinds.split()), check)) or check
 
@@ -1263,6 +1263,7 @@ def carried(at, angle, axis, rpy):
 def outstretched(scenario, agent):
     tip = agent.gains["end_effector"]
     length, at = (Fraction(0),) * 2, [(exact(x, "at_m"),) * 2 for x in tip.get("at_m", [0] * 3)]
+    decided(len(at) == 3, "the place of a tool has no three coordinates")
     for kind, moves, angle, axis, rpy, xyz in path(scenario, agent):
         decided(kind != "prismatic", "a joint that slides carries the tip")
         if moves:
@@ -1336,8 +1337,7 @@ def lengths_hold(agent):
     decided("parameter_variation" not in agent.entry and tip.get("uncertain", "tool") == "tool", "these lengths are not read here")
     true = agent.body["length_m"] if agent.robot == "planar_arm" else tip.get("at_m", [0] * 3)
     of = [[exact(x, "bounds") for x in listed(entries, "bounds")] for entries in (bounds["lower_m"], true, bounds["upper_m"])]
-    such(len({len(entries) for entries in of}) == 1, "bounds of lengths are too few or too many")
-    return all(low <= x <= high for low, x, high in zip(*of))
+    return len({len(entries) for entries in of}) == 1 and all(low <= x <= high for low, x, high in zip(*of))
 
 # M is positive definite at all q, by a bound that does not depend on q: a mass is positive; the minors of a ship's are, in its
 # body; of a planar arm with a = I₁ + m₁c₁² and b = I₂ + m₂c₂² det M = (a + m₂l₁²) b − (m₂l₁c₂ cos q₂)² ≥ ab + m₂l₁²I₂. Rotors A ⪰ 0
@@ -1602,7 +1602,7 @@ def number(claim, value):
 
 @rule("desired-dynamics", "routh no-routh")
 def hurwitz(claim, column):
-    require(claim.proof, claim.scenario.polynomial and alone(claim.scenario.body), "is not all of these dynamics")
+    decided(claim.scenario.polynomial and alone(claim.scenario.body), "the polynomial is not all of these dynamics")
     found = routh(claim.scenario.polynomial)
     require(column, [entry.number() for entry in column.each()] == found, "is not the first column of the array")
     require(column, (found[-1] > 0) == (claim.proof.field("kind").text() == "routh"), "shows the opposite")

@@ -1106,6 +1106,18 @@ class FalseProofs(unittest.TestCase):
             judged, found = self.judged(name, each, lambda entry: None, unknown)
             self.assertEqual([outcome for outcome, _ in judged], [checker.UNCHECKED], found)
 
+    def test_half_turns_at_the_start(self):
+        name, each = "pose-ur5e", "start-attitude"
+        self.accepted(name, each)
+        self.accepted(name, each, lambda entry: entry["proof"].update(least="0.67"))
+        self.rejected(name, each, "may be smaller", lambda entry: entry["proof"].update(least="0.672"))
+        self.rejected(name, each, "may be smaller", lambda entry: entry["proof"].update(least="0"))
+        self.rejected(name, each, "may differ from zero", lambda entry: entry.update(answer="violated", proof={"kind": "half-turn"}))
+        # Turned further by its last joint, and by its first.
+        for further in ("0.4, -1.2, 1.6, -1.9, -1.5, 2.9", "2.4, -1.2, 1.6, -1.9, -1.5, 0.3"):
+            mutated = ("0.4, -1.2, 1.6, -1.9, -1.5, 0.3", further)
+            self.rejected(name, each, "may be smaller", lambda entry: entry["proof"].update(least="0.999"), mutated)
+
     def test_trees_of_every_phase(self):
         name, each = "theorem-3-24-order-4", "spanning-tree"
         path = [["arm-1", "arm-2"], ["arm-2", "arm-3"], ["arm-3", "own-roots"]]

@@ -32,8 +32,6 @@ fn shows_what_it_says(name: &str) {
         | "mixed-network"
         | "swarm-tracking"
         | "desired-in-x" => &[Answer::NotCovered],
-        // That the attitude starts less than half a turn away has no certificate.
-        "pose-ur5e" => &[Answer::NotShown],
         // What its author says of a nonlinear protocol is declared.
         "desired-nonlinear" | "desired-together" => &[Answer::NotShown],
         _ => &[Answer::Holds, Answer::HoldsOnHorizon, Answer::Watched],

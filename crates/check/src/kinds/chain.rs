@@ -144,9 +144,7 @@ fn input_factor(setup: &Setup, agents: &[usize]) -> Hypothesis {
                 let value = constant(input).filter(|value| value.is_nan() || value.abs() < floor)?;
                 Some(KindEvidence::FactorBelowFloor { agent, value, floor })
             }
-            Factor::Matrix(input) => {
-                matrix_factor::null_vector(input).map(|_| KindEvidence::FactorSingular { agent })
-            }
+            Factor::Matrix(input) => matrix_factor::null_vector(input).map(|_| KindEvidence::FactorSingular { agent }),
             Factor::More => None,
         }
     });

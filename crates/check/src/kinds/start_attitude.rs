@@ -62,7 +62,11 @@ fn squared(r: &[[Interval; 3]; 3], p: &[Interval]) -> Interval {
     let whole = norm + (scalar - vector) * trace + two * quadratic + two * *o * apart;
     let found = whole / (Interval::point(4.0) * norm);
     // The root of a part of one.
-    if found.low <= found.high { Interval { low: found.low.max(0.0), high: found.high.min(1.0) } } else { Interval::WHOLE }
+    if found.low <= found.high {
+        Interval { low: found.low.max(0.0), high: found.high.min(1.0) }
+    } else {
+        Interval::WHOLE
+    }
 }
 
 #[cfg(test)]

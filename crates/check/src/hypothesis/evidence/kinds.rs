@@ -321,9 +321,9 @@ impl KindEvidence {
             | KindEvidence::AttitudeNotShown { .. }
             | KindEvidence::HalfTurn
             | KindEvidence::TermNotShown { .. } => Rigour::Enclosed,
-            KindEvidence::Singular { .. }
-            | KindEvidence::RankDeficient { .. }
-            | KindEvidence::Momentum(_) => Rigour::Computed,
+            KindEvidence::Singular { .. } | KindEvidence::RankDeficient { .. } | KindEvidence::Momentum(_) => {
+                Rigour::Computed
+            }
             KindEvidence::ThrustFloor { .. }
             | KindEvidence::FactorFloor { .. }
             | KindEvidence::BoundedStates { .. }

@@ -102,7 +102,8 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
             "the scalar part of the error starts at {most:.1e} at most, and may be zero but for rounding, which then chooses the way"
         ),
         KindEvidence::HalfTurn => {
-            "the scalar part of the error starts at zero: both ways are equally long, and rounding chooses between them".into()
+            "the scalar part of the error starts at zero: both ways are equally long, and rounding chooses between them"
+                .into()
         }
         KindEvidence::NoTip => "the law has no tip of this robot".into(),
         KindEvidence::LengthsOutsideRegressor(Uncertain::Tool) => {
