@@ -66,7 +66,7 @@ use crate::signal::{Block, Signal};
 ///
 /// ```
 /// use forwardstep_core::controller::{
-///     AdaptiveBackstepping, Asked, BacksteppingGains, Balance, Controller, Given, Guide, Truth,
+///     AdaptiveBackstepping, Asked, BacksteppingGains, Balance, Controller, Given, Jets, Guide, Truth,
 /// };
 /// use forwardstep_core::expression::Expression;
 /// use forwardstep_core::plant::{Cascade, CascadeTerms, Plant};

@@ -73,7 +73,7 @@ pub struct AttitudeMeasured<'a> {
 ///
 /// ```
 /// use forwardstep_core::Gain;
-/// use forwardstep_core::controller::{Asked, AttitudeTracking, Controller, Given, Truth};
+/// use forwardstep_core::controller::{Asked, AttitudeTracking, Controller, Given, Jets, Truth};
 /// use forwardstep_core::plant::{Spacecraft, Wheels};
 /// use forwardstep_core::reference::Heard;
 ///

@@ -67,7 +67,7 @@ const CLOSE: f64 = 1e-9;
 /// Off the manifold the loop is ṡ = −k s − φᵀζ:
 ///
 /// ```
-/// use forwardstep_core::controller::{Asked, Controller, Following, Given, Guide, Immersion};
+/// use forwardstep_core::controller::{Asked, Controller, Following, Given, Jets, Guide, Immersion};
 /// use forwardstep_core::expression::Expression;
 /// use forwardstep_core::plant::{Chain, Formulas, Plant};
 /// use forwardstep_core::reference::{Consensus, Heard};

@@ -49,7 +49,7 @@ use super::Guide;
 /// With θ known the loop is ṡ = −k s, whatever the plant is:
 ///
 /// ```
-/// use forwardstep_core::controller::{Asked, Controller, Following, Given, Guide, Linearising};
+/// use forwardstep_core::controller::{Asked, Controller, Following, Given, Jets, Guide, Linearising};
 /// use forwardstep_core::plant::{Chain, Closures, Plant};
 /// use forwardstep_core::reference::{Consensus, Heard};
 ///

@@ -64,7 +64,7 @@ pub struct PositionMeasured<'a> {
 /// file; consensus is our own derivation.
 ///
 /// ```
-/// use forwardstep_core::controller::{Asked, Controller, Given, Guide, PositionOnly};
+/// use forwardstep_core::controller::{Asked, Controller, Given, Jets, Guide, PositionOnly};
 /// use forwardstep_core::reference::{Heard, polynomial};
 ///
 /// let mut alpha = polynomial([1.0, 2.0, 3.0])?;

@@ -49,7 +49,7 @@ use super::Guide;
 /// **Deviates from the paper**: its plants have one axis, and it prints no adaptive design for (33).
 ///
 /// ```
-/// use forwardstep_core::controller::{Asked, Controller, Following, Given, Guide, VectorLinearising};
+/// use forwardstep_core::controller::{Asked, Controller, Following, Given, Jets, Guide, VectorLinearising};
 /// use forwardstep_core::expression::Expression;
 /// use forwardstep_core::plant::{Plant, VectorChain, VectorFormulas};
 /// use forwardstep_core::reference::{Consensus, Heard};

@@ -83,7 +83,7 @@ pub struct TaskMeasured<'a> {
 ///
 /// ```
 /// use forwardstep_core::Gain;
-/// use forwardstep_core::controller::{Asked, Balance, Controller, Given, TaskSpace, Truth};
+/// use forwardstep_core::controller::{Asked, Balance, Controller, Given, Jets, TaskSpace, Truth};
 /// use forwardstep_core::law::SlotineLi;
 /// use forwardstep_core::plant::{Mechanical, Plant, TaskArm};
 /// use forwardstep_core::reference::Heard;

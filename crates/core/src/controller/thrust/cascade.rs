@@ -56,7 +56,7 @@ pub struct RotorcraftMeasured<'a> {
 ///
 /// ```
 /// use forwardstep_core::Gain;
-/// use forwardstep_core::controller::{Asked, Controller, Given, RateLoop, Thrust, ThrustCascade, ThrustDesign};
+/// use forwardstep_core::controller::{Asked, Controller, Given, Jets, RateLoop, Thrust, ThrustCascade, ThrustDesign};
 /// use forwardstep_core::plant::{Plant, Rotorcraft, Vehicle};
 /// use forwardstep_core::reference::Heard;
 ///

@@ -109,7 +109,7 @@ use crate::{LengthError, Scalar};
 /// Where all agree at rest σ carries the weight and nothing moves; a neighbour elsewhere moves z⃛ first, by (49):
 ///
 /// ```
-/// use forwardstep_core::controller::{Asked, Controller, Given, Thrust, ThrustDesign};
+/// use forwardstep_core::controller::{Asked, Controller, Given, Jets, Thrust, ThrustDesign};
 /// use forwardstep_core::plant::{Plant, Vehicle};
 /// use forwardstep_core::reference::Heard;
 ///
