@@ -180,7 +180,7 @@ fn mistakes_are_status_two_and_nothing_is_overwritten() {
         (&["new.toml", "--robot", "ur5"], "did you mean `ur5e`?"),
         (&["new.toml", "--robot", "none.urdf"], "cannot read `none.urdf`"),
         (&["new.toml", "--agents", "0"], "must be a whole number from 1 to 100"),
-        (&["new.toml", "--agents", "1"], "nobody to agree with"),
+        (&["new.toml", "--agents", "1"], "no other to agree with"),
         (&["new.toml", "--robot", "vehicle", "--order", "2"], "dynamics of order 3, not 2"),
         (&["new.toml", "--robot", "chain", "--exchange", "position_velocity"], "positions of others only"),
         (&["new.toml", "--robot", "rotorcraft", "--leader"], "vehicles-behind-a-leader"),

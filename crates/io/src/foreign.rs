@@ -51,7 +51,7 @@ const BINARY: [&[u8]; 12] = [
 const KEYS: [&str; 6] =
     ["-----BEGIN ", "---- BEGIN ", "PuTTY-User-Key-File-", "AGE-SECRET-KEY-", "ssh-rsa AAAA", "ssh-ed25519 AAAA"];
 
-/// Parts of names under which nobody keeps anything but secrets.
+/// Parts of names under which secrets are kept and nothing else.
 const SECRETS: [&str; 6] = ["PASSWORD", "PASSWD", "SECRET", "TOKEN", "API_KEY", "CREDENTIAL"];
 
 /// What these bytes are, if they are clearly something else.

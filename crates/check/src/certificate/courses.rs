@@ -53,19 +53,7 @@ impl<'a> Course<'a> {
     pub(super) fn enclose(&self, t_s: Interval) -> Interval {
         match self {
             Course::Formula(formula) => late_or_whole(formula, t_s),
-            Course::Curve(..) => self.enclose_jet(t_s)[0],
-        }
-    }
-
-    /// The same of value and four derivatives.
-    pub(super) fn enclose_jet(&self, t_s: Interval) -> [Interval; 5] {
-        match self {
-            Course::Formula(formula) => formula.enclose_jet(t_s),
-            Course::Curve(spline, added) => {
-                let mut jet = spline.enclose_jet(t_s).map(|within| within.with_room(ROOM * within.size()));
-                jet[0] = jet[0] + Interval::point(*added);
-                jet
-            }
+            Course::Curve(..) => self.enclose_derivatives(0, t_s)[0],
         }
     }
 
@@ -74,8 +62,10 @@ impl<'a> Course<'a> {
         let mut derivatives = vec![Interval::WHOLE; order + 1];
         match self {
             Course::Formula(formula) => formula.enclose_derivatives(t_s, &mut derivatives),
-            Course::Curve(..) => {
-                derivatives.iter_mut().zip(self.enclose_jet(t_s)).for_each(|(out, within)| *out = within);
+            Course::Curve(spline, added) => {
+                let mut jet = spline.enclose_jet(t_s).map(|within| within.with_room(ROOM * within.size()));
+                jet[0] = jet[0] + Interval::point(*added);
+                derivatives.iter_mut().zip(jet).for_each(|(out, within)| *out = within);
             }
         }
         derivatives

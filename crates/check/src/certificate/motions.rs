@@ -90,7 +90,11 @@ pub(super) fn sign_gain(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
         let course = Course::of(path);
         // As a checker adds them: each derivative by itself.
         let weighted = |t: Interval| {
-            let parts = course.enclose_jet(t).into_iter().zip(drive).filter(|(_, weight)| *weight != 0.0);
+            let parts = course
+                .enclose_derivatives(drive.len() - 1, t)
+                .into_iter()
+                .zip(drive)
+                .filter(|(_, weight)| *weight != 0.0);
             let scaled = parts.map(|(part, weight)| (part.low * weight, part.high * weight));
             let (low, high) = scaled.fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
             Interval { low, high }.with_room(1e-9 * low.abs().max(high.abs()))

@@ -1,7 +1,7 @@
 //! Estimates strictly between their bounds, for designs that differentiate the estimate's rate.
 //!
 //! Tuning functions put θ̂' = Γ τ_n into the steps before it is known, as Γ τ_i, and make up for the difference later. Where a projection
-//! takes something off Γ τ_n, what was put in and what happens differ by ∂e_i/∂θ̂ times that, which has no sign and which nobody makes up
+//! takes something off Γ τ_n, what was put in and what happens differ by ∂e_i/∂θ̂ times that, which has no sign and which nothing makes up
 //! for; and a projection has no derivatives, which later steps ask for. So c_k of `law::bounds` is not admissible here. What is: a gain that
 //! depends on θ̂. With c and h the middle and half the width of the bounds of a parameter, let
 //!

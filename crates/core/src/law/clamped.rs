@@ -1,7 +1,7 @@
 //! Estimates that are used no farther than their bounds, where the rate that a law asks for is not known.
 //!
 //! The laws without velocity or acceleration find their estimates by parts, and immersion and invariance adds a function of the state, so
-//! that what is integrated is not the estimate and nobody can slow the estimate down, as `bounds` does. Let μ be what they find, and r the
+//! that what is integrated is not the estimate and nothing can slow the estimate down, as `bounds` does. Let μ be what they find, and r the
 //! rate that the proof gives it. The law uses Π(μ), the nearest number within the bounds, in the place of μ, and
 //!
 //! ```text

@@ -83,7 +83,7 @@ impl SavedRun {
     /// # Errors
     /// As of [`SavedRun::open`].
     pub fn look_with(path: &Path, kinds: &Kinds) -> Result<SavedRun, RestoreError> {
-        // Who has claimed the folder themselves knows that nobody else has. A run that ends meanwhile was going on.
+        // Who has claimed the folder themselves knows that no other has. A run that ends meanwhile was going on.
         let in_use = RunFolder::is_in_use(path) == Some(true);
         let (mut saved, folder) = Saved::read(path, kinds, &mut |_| Ok(None))?;
         if in_use && matches!(saved.outcome.ending, Ending::CutOff { .. }) && saved.left_out.is_some() {

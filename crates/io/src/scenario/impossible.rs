@@ -1,4 +1,4 @@
-//! What else is wrong with the values of a scenario whose form is sound: out of range, too many or too few, names of nobody.
+//! What else is wrong with the values of a scenario whose form is sound: out of range, too many or too few, names of unknown agents.
 //!
 //! A reader stops at the first of them. So what stands there is replaced by something possible and the scenario read again, until
 //! nothing more is found. That is done twice, with small numbers and the first names, then with large ones and the last: what is

@@ -95,7 +95,8 @@ impl Controller for ThrustCascade {
     const KNOWS_OFFSETS: bool = true;
 
     fn target_derivatives(&self) -> usize {
-        self.outer.target_derivatives_read()
+        // Those that the reference dynamics are differentiated into.
+        self.outer.design.order() + 1
     }
 
     fn scratch(&self) {}

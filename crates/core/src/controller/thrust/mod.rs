@@ -170,11 +170,6 @@ fn check_target(target: Jets<'_>) -> Result<(), LengthError> {
 }
 
 impl Thrust {
-    /// Those that the reference dynamics are differentiated into.
-    fn target_derivatives_read(&self) -> usize {
-        self.design.order() + 1
-    }
-
     /// A vehicle of mass `mass` (what is known of it) that keeps heading zero and stops where σ falls to a tenth of m g. The roots
     /// −α, −β and, where there is one, −γ are in 1/s.
     ///

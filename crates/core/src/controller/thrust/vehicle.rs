@@ -34,7 +34,8 @@ impl Controller for Thrust {
     const KNOWS_OFFSETS: bool = true;
 
     fn target_derivatives(&self) -> usize {
-        self.target_derivatives_read()
+        // Those that the reference dynamics are differentiated into.
+        self.design.order() + 1
     }
 
     fn scratch(&self) {}

@@ -37,7 +37,7 @@ enum NewError {
     NotText(PathBuf),
     #[error("`{}` has no joints that could rub", shown(.0))]
     NoJoints(String),
-    #[error("one agent alone has nobody to agree with")]
+    #[error("one agent alone has no other to agree with")]
     Alone,
     #[error("the law of `{}` needs reference dynamics of {}, not {order}", shown(robot), orders(*.needs))]
     Order { robot: String, needs: [u32; 2], order: u32 },
@@ -47,8 +47,8 @@ enum NewError {
     Leads(String),
     #[error("(122) follows a leader over a fixed graph without delays")]
     LedOver,
-    #[error("each `{}` follows a target of its own, and hears nobody", shown(.0))]
-    HearsNobody(String),
+    #[error("each `{}` follows a target of its own, and has no neighbours", shown(.0))]
+    NoNeighbours(String),
 }
 
 impl NewError {
@@ -66,7 +66,7 @@ impl NewError {
             NewError::LedOver => {
                 Some("see `forwardstep new --like leader-over-turns`, or `leader-over-late-links`, for (110)")
             }
-            NewError::HearsNobody(_) => Some("leave the network and the reference out"),
+            NewError::NoNeighbours(_) => Some("leave the network and the reference out"),
         }
     }
 }
@@ -162,7 +162,7 @@ fn template(options: &NewOptions, kinds: &Kinds) -> Result<Template, Status> {
         TaskTemplate::Track { .. } => {
             let NewOptions { order, exchange, leader, graph, delay, .. } = options;
             let networked = order.is_some() || exchange.is_some() || *leader || graph.is_some() || delay.is_some();
-            return if networked { Err(refused(NewError::HearsNobody(given))) } else { Ok(template) };
+            return if networked { Err(refused(NewError::NoNeighbours(given))) } else { Ok(template) };
         }
     };
     template.leader = options.leader;

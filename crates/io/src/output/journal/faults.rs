@@ -21,7 +21,7 @@ enum Fault {
     Full,
     /// This operation and all after it: there is no space any more.
     FullForGood,
-    /// Once, by a reason that nobody can do anything about from here.
+    /// Once, by a reason that cannot be removed from here.
     Broken,
     /// A write takes a part and says so; other operations are interrupted, or done. Nothing is lost by it.
     Short,

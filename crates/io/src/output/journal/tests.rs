@@ -279,7 +279,7 @@ fn what_was_cut_off_is_said_and_becomes_a_whole_folder() {
     let saved = SavedRun::look_with(&path, &Kinds::shipped()).unwrap();
     assert_eq!(saved.remarks(&carts.1, "0.1.0"), [Remark::StillRunning]);
     assert!(saved.goes_on());
-    // Its page says so, stands beside what the run writes, and is in nobody's way.
+    // Its page says so, stands beside what the run writes, and is in no other's way.
     fs::write(path.join(".report.html.1.partial"), "a writer that was killed").unwrap();
     let page = saved.write_growing_page(&path, &saved.record(&carts.1, None, &[])).unwrap();
     let page = fs::read_to_string(page).unwrap();

@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn what_nobody_asks_for_is_passed_over() {
+    fn what_is_not_asked_for_is_passed_over() {
         // 1: map {1: "ab"}, 2: double, 3: true, 4: list of two structures, 9: integer 5, which is asked for.
         let bytes = [
             0x1b, 1, 0x58, 2, 2, b'a', b'b', 0x17, 0, 0, 0, 0, 0, 0, 0, 0, 0x11, 0x19, 0x2c, 0, 0x15, 2, 0, 0x55, 10, 0,
