@@ -33,7 +33,7 @@ fn shows_what_it_says(name: &str) {
         | "swarm-tracking"
         | "desired-in-x" => &[Answer::NotCovered],
         // What its author says of a nonlinear protocol is declared.
-        "desired-nonlinear" | "desired-together" => &[Answer::NotShown],
+        "desired-nonlinear" | "desired-nonlinear-arms" | "desired-together" => &[Answer::NotShown],
         _ => &[Answer::Holds, Answer::HoldsOnHorizon, Answer::Watched],
     };
     assert!(expected.contains(&worst), "{name}: {}", worst.words());
@@ -248,6 +248,7 @@ shipped! {
     desired_in_z: "desired-in-z",
     desired_in_x: "desired-in-x",
     desired_nonlinear: "desired-nonlinear",
+    desired_nonlinear_arms: "desired-nonlinear-arms",
     desired_together: "desired-together",
     strict_feedback: "strict-feedback",
     strict_feedback_order_10: "strict-feedback-order-10",

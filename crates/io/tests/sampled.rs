@@ -53,7 +53,7 @@ fn way(outcome: &Outcome) -> f64 {
 }
 
 /// Scenario, and the lower of two sample rates, in Hz.
-const RATES: [(&str, f64); 26] = [
+const RATES: [(&str, f64); 27] = [
     ("without-velocity", 500.0),
     ("double-integrators", 500.0),
     ("thrust-continuous", 500.0),
@@ -75,6 +75,7 @@ const RATES: [(&str, f64); 26] = [
     ("desired-in-z", 500.0),
     ("desired-in-x", 500.0),
     ("desired-nonlinear", 500.0),
+    ("desired-nonlinear-arms", 500.0),
     ("desired-together", 500.0),
     ("strict-feedback", 500.0),
     ("pure-feedback", 500.0),

@@ -4,6 +4,8 @@
 mod common;
 #[path = "chains/desired.rs"]
 mod desired;
+#[path = "chains/protocols.rs"]
+mod protocols;
 
 use std::ops::ControlFlow;
 

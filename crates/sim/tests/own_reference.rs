@@ -34,6 +34,8 @@ enum Way {
     Plain,
     /// It is not affine in ż.
     Saturated,
+    /// Neither, and it says so.
+    SaturatedAndSaysSo,
     /// What multiplies z depends on q.
     Bilinear,
     /// Axes have different coefficients.
@@ -101,7 +103,7 @@ impl ReferenceDynamics for Own {
             heard: [-1.0, velocity],
         };
         match self.way {
-            Way::SaysNothing => return None,
+            Way::SaysNothing | Way::SaturatedAndSaysSo => return None,
             Way::SaysOtherOwn => linear.own.z[1] = -2.000_1,
             Way::SaysOtherCoupled => linear.coupled.z = vec![1e-4],
             Way::SaysOtherHeard => linear.heard[1] += 1e-4,
@@ -148,7 +150,7 @@ fn step<X: forwardstep_core::reference::Exchange>(
     let (z, dz) = (given.state(0), given.state(1));
     let ddz = -2.0 * dz - given.dq() - given.degree() * given.q() + heard + 0.3;
     let ddz = match way {
-        Way::Saturated => ddz.tanh(),
+        Way::Saturated | Way::SaturatedAndSaysSo => ddz.tanh(),
         Way::Bilinear => ddz - 0.5 * given.q() * z,
         Way::Uneven => ddz - given.axis() as f64 * z,
         Way::NotANumber => f64::NAN,
@@ -190,6 +192,10 @@ impl<R: Reference> Reference for Spoilt<R> {
 
     fn sliding(&self) -> Option<&Sliding> {
         (self.way == Way::Sign).then_some(&self.sliding)
+    }
+
+    fn is_affine(&self) -> bool {
+        self.way != Way::SaturatedAndSaysSo
     }
 
     fn evaluate(
@@ -267,6 +273,7 @@ fn what_they_say_of_themselves_is_found_out() {
             (Way::SaysOtherOrder, Some(Identity::LinearOrder)),
             (Way::SaysNextOrder, Some(Identity::LinearForm)),
             (Way::Saturated, Some(Identity::Affine)),
+            (Way::SaturatedAndSaysSo, None),
             (Way::Bilinear, Some(Identity::Affine)),
             (Way::Uneven, Some(Identity::Axes)),
             (Way::NotARate, Some(Identity::Derivatives)),
@@ -317,14 +324,16 @@ fn what_is_not_a_number_breaks_the_run_down() {
 fn their_state_is_recorded_and_sampling_tends_to_continuous_time() {
     for exchange in EXCHANGES {
         let run = |setup: &Setup| simulate(setup, &mut |_| ControlFlow::Continue(())).unwrap().recording;
-        let continuous = run(&setup(Way::Plain, exchange));
-        let of = |signal| continuous.columns.iter().filter(|column| column.signal == signal).count();
-        assert_eq!([of(Signal::Reference(0)), of(Signal::Reference(1)), of(Signal::Reference(2))], [4, 4, 0]);
-        let apart = |hz| {
-            let sampled = run(&setup(Way::Plain, exchange).sampled(hz));
-            (sampled.last(0, Signal::Position, 0) - continuous.last(0, Signal::Position, 0)).abs()
-        };
-        let [coarse, fine] = [apart(50.0), apart(400.0)];
-        assert!(fine < 0.2 * coarse && coarse < 0.05, "{coarse} {fine}");
+        for way in [Way::Plain, Way::SaturatedAndSaysSo] {
+            let continuous = run(&setup(way, exchange));
+            let of = |signal| continuous.columns.iter().filter(|column| column.signal == signal).count();
+            assert_eq!([of(Signal::Reference(0)), of(Signal::Reference(1)), of(Signal::Reference(2))], [4, 4, 0]);
+            let apart = |hz| {
+                let sampled = run(&setup(way, exchange).sampled(hz));
+                (sampled.last(0, Signal::Position, 0) - continuous.last(0, Signal::Position, 0)).abs()
+            };
+            let [coarse, fine] = [apart(50.0), apart(400.0)];
+            assert!(fine < 0.2 * coarse && coarse < 0.05, "{coarse} {fine}");
+        }
     }
 }

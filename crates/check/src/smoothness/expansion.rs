@@ -38,8 +38,8 @@ impl Expansion {
         let Some(((robot, gains), dynamics)) = parts else { return Ok(None) };
         let reference = Affine { dynamics, axes: own.robot.axes.len() };
         let derivatives = reference.determined()?;
-        // A value alone is computed, whatever they are.
-        if derivatives > 1 && !reference.is_affine()? {
+        // A value alone is computed, whatever they are, unless they say that they are not.
+        if !reference.says_affine() || derivatives > 1 && !reference.is_affine()? {
             return Ok(None);
         }
         let limits = own.robot.axes.iter().map(|axis| axis.effort_limit.map(Series::splat)).collect();
@@ -179,6 +179,13 @@ impl Affine {
         match &self.dynamics {
             Dynamics::Position(reference) => (reference.vectors(), 1),
             Dynamics::PositionVelocity(reference) => (reference.vectors(), 2),
+        }
+    }
+
+    fn says_affine(&self) -> bool {
+        match &self.dynamics {
+            Dynamics::Position(reference) => reference.is_affine(),
+            Dynamics::PositionVelocity(reference) => reference.is_affine(),
         }
     }
 

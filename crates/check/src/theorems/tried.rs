@@ -1,6 +1,7 @@
 //! A nonlinear protocol, tried: the desired dynamics alone, from states that are drawn.
 //!
-//! Every plant is replaced by the chain of integrators of its order, under feedback linearisation. With z(0) = x^(k−1)(0) that leaves s ≡ 0;
+//! Every plant is replaced by the chain of integrators of its order, under feedback linearisation; every robot by a mass whose number is
+//! known, under (5) with M = 1. With z(0) = x^(k−1)(0) that leaves s ≡ 0;
 //! with another z(0) s falls exponentially, which is bounded and vanishes. Runs cannot show that all of them converge, so nothing holds
 //! by them. One that ends farther from what it is for than it began, or breaks down, refutes what is declared.
 
@@ -10,7 +11,8 @@ use std::sync::Arc;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::VectorFormulas;
 use forwardstep_sim::{
-    AgentSetup, ChainLaw, ChainModel, ChainStep, Ending, Outcome, RobotSetup, Setup, Signal, Solver, Start, simulate,
+    AgentSetup, ChainLaw, ChainModel, ChainStep, Ending, Known, Outcome, RobotSetup, Setup, Signal, Solver, Start,
+    simulate,
 };
 
 use crate::hypothesis::{ReferenceEvidence, TriedRun};
@@ -63,14 +65,41 @@ fn drawn(index: usize) -> f64 {
 
 /// The desired dynamics alone; `None` for a plant without an order.
 fn alone(setup: &Setup, run: usize) -> Option<Setup> {
-    let agents = setup.agents.iter().enumerate();
-    let agents =
-        agents.map(|(index, own)| integrators(own, run * setup.agents.len() + index, run)).collect::<Option<_>>();
+    let integrators = |(index, own): (usize, &AgentSetup)| {
+        let drawn_as = run * setup.agents.len() + index;
+        if own.law.is::<ChainLaw>() { chain(own, drawn_as, run) } else { Some(mass(own, drawn_as, run)) }
+    };
+    let agents = setup.agents.iter().enumerate().map(integrators).collect::<Option<_>>();
     let solver = Solver { balance: false, ..setup.solver };
     Some(Setup { agents: agents?, solver, control: None, ..setup.clone() })
 }
 
-fn integrators(own: &AgentSetup, drawn_as: usize, run: usize) -> Option<AgentSetup> {
+/// In place of a robot.
+fn mass(own: &AgentSetup, drawn_as: usize, run: usize) -> AgentSetup {
+    let axes = own.robot.axes.len();
+    AgentSetup {
+        robot: RobotSetup::point_mass(axes, 1.0),
+        law: Arc::new(Known::gain(GAIN_PER_S)),
+        start: start(2, axes, drawn_as, run),
+        enforce_limits: false,
+        pushes: Vec::new(),
+        ..own.clone()
+    }
+}
+
+/// x, ẋ, … of a plant of order `order`, and z where there is an s.
+fn start(order: usize, axes: usize, drawn_as: usize, run: usize) -> Start {
+    let state: Vec<f64> = (0..order * axes).map(|r| drawn(drawn_as * 8 + r)).collect();
+    let top = &state[state.len() - axes..];
+    let (q, above) = state.split_at(axes);
+    let (dq, rest) = above.split_at(above.len().min(axes));
+    let beside = || top.iter().map(|top| top + drawn(drawn_as + 7)).collect();
+    let reference = if is_disturbed(run) { vec![beside()] } else { Vec::new() };
+    Start { q: q.to_vec(), dq: dq.to_vec(), rest: rest.to_vec(), reference }
+}
+
+/// In place of a chain.
+fn chain(own: &AgentSetup, drawn_as: usize, run: usize) -> Option<AgentSetup> {
     let law: &ChainLaw = own.law.downcast()?;
     let (order, axes) = match (&law.step, own.robot.kind.downcast::<ChainModel>()?) {
         (ChainStep::Backstepping { .. }, _) => (1, 1),
@@ -79,12 +108,6 @@ fn integrators(own: &AgentSetup, drawn_as: usize, run: usize) -> Option<AgentSet
     let unit = |row| (0..axes).map(|column| Expression::number(f64::from(u8::from(row == column)))).collect();
     let (drift, factor) = (vec![Expression::number(0.0); axes], (0..axes).map(unit).collect());
     let terms = VectorFormulas::new(order, drift, vec![Vec::new(); axes], factor).ok()?;
-    let state: Vec<f64> = (0..order * axes).map(|r| drawn(drawn_as * 8 + r)).collect();
-    let top = &state[state.len() - axes..];
-    let (q, above) = state.split_at(axes);
-    let (dq, rest) = above.split_at(above.len().min(axes));
-    let beside = || top.iter().map(|top| top + drawn(drawn_as + 7)).collect();
-    let reference = if is_disturbed(run) { vec![beside()] } else { Vec::new() };
     Some(AgentSetup {
         robot: RobotSetup {
             kind: Arc::new(ChainModel::Vector(Arc::new(terms))),
@@ -93,7 +116,7 @@ fn integrators(own: &AgentSetup, drawn_as: usize, run: usize) -> Option<AgentSet
             axes: own.robot.axes.clone(),
         },
         law: Arc::new(ChainLaw { step: ChainStep::Linearising { gain_per_s: GAIN_PER_S }, floor: law.floor.min(0.5) }),
-        start: Start { q: q.to_vec(), dq: dq.to_vec(), rest: rest.to_vec(), reference },
+        start: start(order, axes, drawn_as, run),
         enforce_limits: false,
         pushes: Vec::new(),
         ..own.clone()

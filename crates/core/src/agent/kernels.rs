@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::hold::Hold;
+use super::hold::{Hold, Since};
 use super::{Applied, Held, Inbox, Out};
 use crate::law::{SlotineLi, SlotineLiOutput};
 use crate::reference::{Derived, Heard, Measured, Reference, ReferenceOut, SlidingInputs};
@@ -16,6 +16,7 @@ pub(super) struct Refer<'a, F> {
     /// At the first sample, what z(0), ż(0), … shall be.
     pub(super) wanted: Option<&'a [Vec<f64>]>,
     pub(super) passed_s: Option<f64>,
+    pub(super) now_s: f64,
     pub(super) measured: Measured<'a>,
     pub(super) inbox: Inbox<'a>,
     pub(super) state: &'a mut [f64],
@@ -28,10 +29,12 @@ impl<F: Reference> Kernel for Refer<'_, F> {
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        let Refer { reference, hold, wanted, passed_s, measured, inbox, state, held, out } = self;
+        let Refer { reference, hold, wanted, passed_s, now_s, measured, inbox, state, held, out } = self;
         let m = held.q.len();
         if let Some(h) = passed_s {
-            hold.advance(reference, &held.degree, h, state, &out.d_state)?;
+            let heard = Heard::new(&held.degree, &held.sums, m)?.at(held.time_s);
+            let since = Since { measured: Measured { q: &held.q, dq: &held.dq }, heard, rate: &out.d_state };
+            hold.advance(reference, since, h, state)?;
         }
         // With ṡ held q̈ is ż + ṡ, and over the last period ṡ was what the velocity gained less what ż asked for.
         let accelerates = reference.sliding().is_some_and(|sliding| sliding.derived == Derived::Acceleration);
@@ -45,8 +48,9 @@ impl<F: Reference> Kernel for Refer<'_, F> {
         held.dq.copy_from_slice(measured.dq);
         held.degree = [inbox.degree];
         held.sums.copy_from_slice(inbox.sums);
+        held.time_s = now_s;
         let measured = Measured { q: &held.q, dq: &held.dq };
-        let heard = Heard::new(&held.degree, &held.sums, m)?;
+        let heard = Heard::new(&held.degree, &held.sums, m)?.at(now_s);
         if let Some(wanted) = wanted {
             out.d_state.fill(0.0);
             out.d_state[..m].copy_from_slice(&held.dq);

@@ -3,7 +3,7 @@
 //! Between two samples nothing is measured and nothing is heard, so the inputs are held. Over such a period of length h
 //!
 //! ```text
-//! reference state      ẋ = A x + b with b held: stepped exactly            (`hold`)
+//! reference state      ẋ = A x + b with b held: stepped exactly; one that is not affine by Runge–Kutta    (`hold`)
 //! estimate             ϑ̂ ← Π(ϑ̂ − h Γ Yᵀs), Y of the sample before, s of this one, Π onto bounds if there are some
 //! torque               computed once from the sample, then held
 //! sign                 a value that suits the end of the period, with the neighbours held (`reference::sliding`)
@@ -87,8 +87,8 @@ pub struct Command<'a> {
 ///
 /// **Source**: (5), (6), (7) with any [`Reference`] for one agent.
 /// **Measures**: q, q̇ (see [`VelocityFilter`] when there are only encoders). **Transmits**: what the reference says.
-/// **Requires**: dynamics that are affine in their own state, the same for each axis, as all of the paper's are; a period h with
-/// h · λ_max(M⁻¹(K + ½ h Y Γ Yᵀ)) well below 2, beyond which the held damping itself is unstable, see the head of the file.
+/// **Requires**: dynamics that are affine in their own state, the same for each axis, as all of the paper's are, or a period that is
+/// short beside what they do; a period h with h · λ_max(M⁻¹(K + ½ h Y Γ Yᵀ)) well below 2, beyond which the held damping itself is unstable, see the head of the file.
 /// **Guarantees**: no allocation and no panic in [`Agent::step`]; the continuous law in the limit of short periods.
 /// Nothing that the paper states for a fixed period. Numbers beyond 1e308 on the way give a torque that is not finite.
 ///
@@ -153,6 +153,7 @@ struct Held {
     dq: Vec<f64>,
     degree: [f64; 1],
     sums: Vec<f64>,
+    time_s: f64,
 }
 
 /// What followed from them.
@@ -211,6 +212,7 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
                 dq: vector(),
                 degree: [0.0],
                 sums: vec![0.0; <F::Exchange as Exchange>::CHANNELS * m + told],
+                time_s: 0.0,
             },
             out: Out {
                 z: vector(),
@@ -318,7 +320,7 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
         };
         let Agent { robot, scratch, reference, law, limiter, state, theta_hat, held, out, applied, hold, .. } = self;
         let wanted = (!self.started).then_some(&self.wanted[..]);
-        dispatch(Refer { reference, hold, wanted, passed_s, measured, inbox, state, held, out })?;
+        dispatch(Refer { reference, hold, wanted, passed_s, now_s, measured, inbox, state, held, out })?;
         self.started = true;
         if let (Some(h), Some(_)) = (passed_s, &law.adaptation) {
             dispatch(Learn { robot, scratch, law, h, applied, theta_hat, held, out })?;

@@ -40,8 +40,7 @@ use thiserror::Error;
 use super::Jets;
 use crate::LengthError;
 use crate::reference::{
-    Consensus, DesiredDynamics, Exchange, Heard, Measured, Place, Position, ProtocolWork, Reference, ReferenceOut,
-    WrittenIn,
+    Consensus, DesiredDynamics, Exchange, Heard, Measured, Place, Position, Reference, ReferenceOut, WrittenIn,
 };
 use crate::signal::Signal;
 
@@ -132,10 +131,8 @@ impl Guide {
         let blocks = if let Guide::Consensus(consensus) = self { consensus.order() } else { 0 };
         let axis = || vec![0.0; axes];
         let all = || vec![0.0; blocks * axes];
-        let protocol = match self {
-            Guide::Desired(desired) => desired.work(),
-            Guide::Tracking { .. } | Guide::Consensus(_) => ProtocolWork::default(),
-        };
+        let steps = if let Guide::Desired(desired) = self { desired.steps() } else { 0 };
+        let protocol = vec![0.0; steps];
         GuideWork { q: axis(), dq: axis(), z: axis(), dz: axis(), state: all(), rate: all(), protocol }
     }
 
@@ -256,5 +253,5 @@ pub struct GuideWork {
     dz: Vec<f64>,
     state: Vec<f64>,
     rate: Vec<f64>,
-    protocol: ProtocolWork,
+    protocol: Vec<f64>,
 }

@@ -46,6 +46,11 @@ impl Tape {
         self.outputs.len()
     }
 
+    /// How many numbers of working memory one evaluation takes.
+    pub fn steps(&self) -> usize {
+        self.ops.len()
+    }
+
     /// Working memory for one evaluation.
     pub fn workspace(&self) -> Vec<f64> {
         vec![0.0; self.ops.len()]
@@ -57,12 +62,26 @@ impl Tape {
     /// [`LengthError`] when a slice has the wrong length.
     pub fn evaluate(&self, variables: &[f64], workspace: &mut [f64], out: &mut [f64]) -> Result<(), LengthError> {
         LengthError::check("variables", self.variables, variables.len())?;
+        self.evaluate_at(|variable| variables[variable], workspace, out)
+    }
+
+    /// The same where variable `v` is `variables(v)`.
+    ///
+    /// # Errors
+    /// [`LengthError`] when a slice has the wrong length.
+    #[inline(always)]
+    pub fn evaluate_at(
+        &self,
+        variables: impl Fn(usize) -> f64,
+        workspace: &mut [f64],
+        out: &mut [f64],
+    ) -> Result<(), LengthError> {
         LengthError::check("workspace", self.ops.len(), workspace.len())?;
         LengthError::check("values", self.outputs.len(), out.len())?;
         for (index, op) in self.ops.iter().enumerate() {
             workspace[index] = match *op {
                 Op::Number(bits) => f64::from_bits(bits),
-                Op::Variable(variable) => variables[variable],
+                Op::Variable(variable) => variables(variable),
                 Op::Unary(function, a) => apply(function, workspace[a.0]),
                 Op::Binary(function, a, b) => combine(function, workspace[a.0], workspace[b.0]),
                 Op::Power(a, exponent) => power(workspace[a.0], f64::from_bits(exponent)),

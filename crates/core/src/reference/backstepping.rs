@@ -118,6 +118,10 @@ impl Reference for Backstepping {
         None
     }
 
+    fn is_affine(&self) -> bool {
+        true
+    }
+
     #[inline(always)]
     fn evaluate(
         &self,

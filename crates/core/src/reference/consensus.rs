@@ -95,6 +95,10 @@ impl<X: Exchange> Reference for Consensus<X> {
         None
     }
 
+    fn is_affine(&self) -> bool {
+        true
+    }
+
     #[inline(always)]
     fn evaluate(
         &self,

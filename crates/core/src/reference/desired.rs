@@ -30,13 +30,12 @@
 //!
 //! (24) of order ℓ is γ_r = α_{r−1}, b_r = α_r, c₀ = α₀; (a5) has c₁ = α₀/κ₀ besides; (a9) is γ_r = α_r with a target.
 
-use alloc::vec;
 use alloc::vec::Vec;
 
 use thiserror::Error;
 
 use super::{Exchange, Heard, Measured, Reference, ReferenceOut, Sliding, begin, check};
-use crate::expression::{Expression, ExpressionError, Graph, Tape};
+use crate::expression::{Expression, ExpressionError, Graph, MOST_STEPS, Tape};
 use crate::{LengthError, Scalar};
 
 /// In which variables 𝒵 is written: Remark 6.
@@ -144,13 +143,9 @@ impl DesiredDynamics {
         self.protocol.is_none()
     }
 
-    /// Room for one evaluation.
-    pub(crate) fn work(&self) -> ProtocolWork {
-        self.protocol.as_ref().map_or_else(ProtocolWork::default, |tape| ProtocolWork {
-            variables: vec![0.0; tape.variables()],
-            workspace: tape.workspace(),
-            value: [0.0],
-        })
+    /// How many numbers of working memory f takes.
+    pub(crate) fn steps(&self) -> usize {
+        self.protocol.as_ref().map_or(0, Tape::steps)
     }
 
     /// N.
@@ -208,7 +203,7 @@ impl DesiredDynamics {
         x: impl Fn(usize) -> f64,
         (state, degree, Heard { sums, time_s, .. }): (&[f64], f64, Heard<'_, X>),
         target: Option<&[f64]>,
-        (work, d_state): (&mut ProtocolWork, &mut [f64]),
+        (workspace, d_state): (&mut [f64], &mut [f64]),
     ) -> Result<(), LengthError> {
         let (order, vectors) = (self.order(), self.vectors(plant));
         let Place { block, entry } = place;
@@ -242,12 +237,16 @@ impl DesiredDynamics {
             }
         };
         let Some(tape) = &self.protocol else { return Ok(()) };
-        let ProtocolWork { variables, workspace, value } = work;
-        let network = [X::position(sums, entry), degree];
-        let desired = target.into_iter().flatten().copied().take(order + 1);
-        let all = (0..order).map(written).chain(network).chain(desired).chain([time_s]);
-        variables.iter_mut().zip(all).for_each(|(variable, value)| *variable = value);
-        tape.evaluate(variables, workspace, value)?;
+        let last = tape.variables() - 1;
+        let variable = |v: usize| match v {
+            _ if v < order => written(v),
+            _ if v == order => X::position(sums, entry),
+            _ if v == order + 1 => degree,
+            _ if v == last => time_s,
+            _ => target.and_then(|target| target.get(v - order - 2)).copied().unwrap_or(f64::NAN),
+        };
+        let mut value = [0.0];
+        tape.evaluate_at(variable, workspace, &mut value)?;
         d_state[top * block + entry] += value[0];
         Ok(())
     }
@@ -267,14 +266,6 @@ impl DesiredDynamics {
             }
         }
     }
-}
-
-/// Working memory of f.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct ProtocolWork {
-    variables: Vec<f64>,
-    workspace: Vec<f64>,
-    value: [f64; 1],
 }
 
 /// Where the entry of an axis stands in a block, and how long a block is.
@@ -323,9 +314,10 @@ pub struct Desired<X> {
 }
 
 impl<X: Exchange> Desired<X> {
-    /// For so many agents. `None` when N is below two, there is an f, or a target is followed, which a population has not.
+    /// For so many agents. `None` when N is below two, f has more than [`MOST_STEPS`] steps, or a target is followed, which a population
+    /// has not.
     pub fn new(agents: usize, dynamics: DesiredDynamics) -> Option<Self> {
-        let suits = dynamics.order() >= ROBOT && !dynamics.tracks && dynamics.is_linear();
+        let suits = dynamics.order() >= ROBOT && !dynamics.tracks && dynamics.steps() <= MOST_STEPS;
         suits.then_some(Desired { exchange: core::marker::PhantomData, agents, dynamics })
     }
 }
@@ -352,6 +344,10 @@ impl<X: Exchange> Reference for Desired<X> {
         None
     }
 
+    fn is_affine(&self) -> bool {
+        self.dynamics.is_linear()
+    }
+
     #[inline(always)]
     fn evaluate(
         &self,
@@ -363,13 +359,20 @@ impl<X: Exchange> Reference for Desired<X> {
     ) -> Result<(), LengthError> {
         let n = self.agents;
         check([axes, n, self.vectors()], measured, state, heard, &out)?;
-        let block = axes * n;
-        let mut none = ProtocolWork::default();
-        for entry in 0..block {
-            let x = |r: usize| if r == 0 { measured.q[entry] } else { measured.dq[entry] };
-            let given = (state, heard.degree[entry % n], heard);
-            self.dynamics.rate::<X>(ROBOT, Place { block, entry }, x, given, None, (&mut none, out.d_state))?;
+        let mut rates = |workspace: &mut [f64]| {
+            let block = axes * n;
+            (0..block).try_for_each(|entry| {
+                let x = |r: usize| if r == 0 { measured.q[entry] } else { measured.dq[entry] };
+                let given = (state, heard.degree[entry % n], heard);
+                self.dynamics.rate::<X>(ROBOT, Place { block, entry }, x, given, None, (workspace, out.d_state))
+            })
+        };
+        match self.dynamics.steps() {
+            0 => rates(&mut [])?,
+            // A population has no working memory of its own.
+            steps => rates([0.0; MOST_STEPS].get_mut(..steps).unwrap_or_default())?,
         }
+        let block = axes * n;
         out.z.copy_from_slice(&state[..block]);
         out.dz.copy_from_slice(&out.d_state[..block]);
         Ok(())

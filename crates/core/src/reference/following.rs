@@ -205,6 +205,10 @@ impl Reference for Following {
         Some(&self.sliding)
     }
 
+    fn is_affine(&self) -> bool {
+        true
+    }
+
     #[inline(always)]
     fn evaluate(
         &self,
@@ -262,6 +266,10 @@ impl Reference for SmoothFollowing {
 
     fn sliding(&self) -> Option<&Sliding> {
         Some(&self.sliding)
+    }
+
+    fn is_affine(&self) -> bool {
+        true
     }
 
     #[inline(always)]

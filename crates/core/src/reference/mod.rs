@@ -22,8 +22,8 @@ mod sliding;
 
 pub use backstepping::{Backstepping, BacksteppingError};
 pub use consensus::Consensus;
+pub(crate) use desired::Place;
 pub use desired::{Desired, DesiredDynamics, DesiredError, WrittenIn};
-pub(crate) use desired::{Place, ProtocolWork};
 pub use exchange::{Exchange, Heard, Position, PositionSums, PositionVelocity, PositionVelocitySums};
 pub use following::{Following, SmoothFollowing};
 pub use per_axis::{AxisInput, AxisOutput, PerAxis};
@@ -78,8 +78,11 @@ pub trait Reference: Send + Sync + 'static {
     /// is set by who makes time pass.
     fn sliding(&self) -> Option<&Sliding>;
 
-    /// z, ż and the rate of the state, which is affine in the state and the same function for each axis: what sampled agents
-    /// step exactly depends on it.
+    /// Whether the rate of the state is affine in the state, by a matrix that depends on Σ_j w_ij alone and is the same for each axis.
+    /// Sampled agents then step it exactly, else by the classical Runge–Kutta method.
+    fn is_affine(&self) -> bool;
+
+    /// z, ż and the rate of the state.
     ///
     /// # Errors
     /// [`LengthError`] when a slice has the wrong length.
@@ -127,6 +130,10 @@ macro_rules! behind {
 
             fn sliding(&self) -> Option<&Sliding> {
                 (**self).sliding()
+            }
+
+            fn is_affine(&self) -> bool {
+                (**self).is_affine()
             }
 
             fn evaluate(

@@ -9,8 +9,8 @@ use crate::LengthError;
 ///
 /// State: as many numbers per axis as `vectors` says, of which the first `derivatives` are z, ż, ….
 ///
-/// **Requires**: rates ẋ = A x + b with an A that depends on Σ_j w_ij alone and is the same for each axis, else sampled agents do
-/// not step them exactly.
+/// **Requires**: rates ẋ = A x + b with an A that depends on Σ_j w_ij alone and is the same for each axis, unless
+/// [`PerAxis::nonlinear`] says otherwise.
 /// **Guarantees**: what is heard is what `X` says; nothing about the long run.
 ///
 /// z̈ = −3 ż − 2 q̇ − Σ_j w_ij (q − q_j(t−T_ij)), in a way of its own:
@@ -38,6 +38,7 @@ pub struct PerAxis<X, F> {
     agents: usize,
     vectors: usize,
     derivatives: usize,
+    affine: bool,
     function: F,
 }
 
@@ -48,7 +49,12 @@ where
 {
     /// For so many agents, with so many numbers of state per axis, of which so many are z, ż, ….
     pub fn new([agents, vectors, derivatives]: [usize; 3], function: F) -> Self {
-        PerAxis { exchange: PhantomData, agents, vectors, derivatives, function }
+        PerAxis { exchange: PhantomData, agents, vectors, derivatives, affine: true, function }
+    }
+
+    /// The same for any rates: sampled agents step them by the classical Runge–Kutta method, with what they measured and heard held.
+    pub fn nonlinear(self) -> Self {
+        PerAxis { affine: false, ..self }
     }
 }
 
@@ -90,6 +96,11 @@ impl<X: Exchange> AxisInput<'_, '_, X> {
     pub fn state(&self, vector: usize) -> f64 {
         let entry = vector.checked_mul(self.block).and_then(|first| first.checked_add(self.entry));
         entry.and_then(|entry| self.state.get(entry)).copied().unwrap_or(f64::NAN)
+    }
+
+    /// The time, s.
+    pub fn time_s(&self) -> f64 {
+        self.heard.time_s
     }
 
     /// Σ_j w_ij.
@@ -154,6 +165,10 @@ where
 
     fn sliding(&self) -> Option<&Sliding> {
         None
+    }
+
+    fn is_affine(&self) -> bool {
+        self.affine
     }
 
     #[inline(always)]

@@ -87,6 +87,10 @@ impl<X: Exchange> Reference for PureIntegral<X> {
         None
     }
 
+    fn is_affine(&self) -> bool {
+        true
+    }
+
     #[inline(always)]
     fn evaluate(
         &self,

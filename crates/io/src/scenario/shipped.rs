@@ -66,6 +66,7 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "desired-in-z",
     "desired-in-x",
     "desired-nonlinear",
+    "desired-nonlinear-arms",
     "desired-together",
     "strict-feedback",
     "strict-feedback-order-10",

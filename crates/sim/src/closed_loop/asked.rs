@@ -58,11 +58,11 @@ pub(super) fn add_sign_terms_now<X: Transmits>(
 pub(super) fn evaluate<X: Transmits>(
     reference: &AnyReference<X>,
     l: Layout,
-    x: &[f64],
+    (t_s, x): (f64, &[f64]),
     inputs: Inputs<'_>,
     out: ReferenceOut<'_>,
 ) -> Result<(), LengthError> {
     let measured = Measured { q: &x[..l.dq], dq: &x[l.dq..l.reference] };
-    let heard = Heard::new(inputs.degree, inputs.sums, l.block())?;
+    let heard = Heard::new(inputs.degree, inputs.sums, l.block())?.at(t_s);
     reference.evaluate(l.m, measured, &x[l.reference..l.theta_hat], heard, out)
 }

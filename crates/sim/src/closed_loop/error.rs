@@ -104,10 +104,10 @@ pub enum SetupError {
         /// k.
         least: usize,
     },
-    /// A nonlinear protocol for a robot that is no chain.
+    /// A nonlinear protocol by which a robot that is no chain follows a target.
     #[error(
-        "a nonlinear protocol leads chains, which step any reference dynamics, and agent `{agent}` is another robot, which is sampled by the exact \
-         solution of linear ones: leave `nonlinear` out, or write the robot as a `chain`"
+        "agent `{agent}`: a robot that is no chain follows its target by linear desired dynamics, without a nonlinear protocol: leave \
+         `nonlinear` out, leave out the target, or write the robot as a `chain`"
     )]
     ProtocolOfChains {
         /// The agent.

@@ -104,7 +104,7 @@ where
     }
 
     /// The reference of everybody, then everything else pack by pack.
-    fn try_rates(&mut self, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) -> Result<(), LengthError> {
+    fn try_rates(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) -> Result<(), LengthError> {
         let l = self.robots.layout;
         LengthError::check("state", l.len, x.len())?;
         LengthError::check("rate", l.len, dx.len())?;
@@ -117,7 +117,7 @@ where
             None => {
                 let Output { z, dz } = &mut self.output;
                 let d_state = &mut dx[l.reference..l.theta_hat];
-                evaluate(&self.reference, l, x, inputs, ReferenceOut { z, dz, d_state: &mut *d_state })?;
+                evaluate(&self.reference, l, (t_s, x), inputs, ReferenceOut { z, dz, d_state: &mut *d_state })?;
                 add_sign_terms_now(&self.reference, &mut self.layer, l, x, inputs, dz, d_state)?;
                 Drive { z, dz, held: None, external: inputs.external }
             }
@@ -127,6 +127,7 @@ where
 
     fn try_record(
         &mut self,
+        t_s: f64,
         x: &[f64],
         inputs: Inputs<'_>,
         write: &mut dyn FnMut(usize, &[f64]),
@@ -139,7 +140,7 @@ where
                     let Output { z, dz } = &mut self.output;
                     if pack == 0 {
                         let d_state = &mut self.record.d_reference[..];
-                        evaluate(&self.reference, l, x, inputs, ReferenceOut { z, dz, d_state: &mut *d_state })?;
+                        evaluate(&self.reference, l, (t_s, x), inputs, ReferenceOut { z, dz, d_state: &mut *d_state })?;
                         add_sign_terms_now(&self.reference, &mut self.layer, l, x, inputs, dz, d_state)?;
                     }
                     Drive { z, dz, held: None, external: inputs.external }
@@ -244,16 +245,16 @@ where
         self.reference.start(l.m, measured, &given, Heard::new(degree, sums, l.block())?, state)
     }
 
-    fn rates(&mut self, _: f64, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) {
-        let checked = self.try_rates(x, inputs, dx);
+    fn rates(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) {
+        let checked = self.try_rates(t_s, x, inputs, dx);
         debug_assert_eq!(checked, Ok(()), "lengths are fixed when the population is built");
         if checked.is_err() {
             dx.fill(f64::NAN);
         }
     }
 
-    fn record(&mut self, _: f64, x: &[f64], inputs: Inputs<'_>, write: &mut dyn FnMut(usize, &[f64])) {
-        let checked = self.try_record(x, inputs, write);
+    fn record(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, write: &mut dyn FnMut(usize, &[f64])) {
+        let checked = self.try_record(t_s, x, inputs, write);
         debug_assert_eq!(checked, Ok(()), "lengths are fixed when the population is built");
     }
 

@@ -91,6 +91,10 @@ impl<F: Reference> Reference for Dispatched<F> {
         self.0.sliding()
     }
 
+    fn is_affine(&self) -> bool {
+        self.0.is_affine()
+    }
+
     fn evaluate(
         &self,
         axes: usize,

@@ -196,7 +196,7 @@ impl ReferenceDynamics for Desired {
         }
         for agent in &setup.agents {
             let (order, least) = (dynamics.order(), plant_order(agent));
-            if self.protocol.is_some() && !agent.robot.kind.is::<ChainModel>() {
+            if !linear && self.follows_target && !agent.robot.kind.is::<ChainModel>() {
                 return Err(SetupError::ProtocolOfChains { agent: agent.name.clone() });
             }
             if order < least {

@@ -4,23 +4,21 @@
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
-use forwardstep_core::expression::Expression;
 use forwardstep_core::reference::{RootPair, RootSet, WrittenIn};
-use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::{Edge, Weight};
-use forwardstep_sim::reference::{Desired, DesiredPolynomial, Protocol, PureIntegral, Tracking};
+use forwardstep_sim::reference::{Desired, DesiredPolynomial, PureIntegral, Tracking};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{ChainStep, Exchange, Known, Network, Outcome, Setup, SetupError, Signal, simulate};
 
-use crate::common::chains::{estimate, of_all_orders, tracking, x};
+use crate::common::chains::{estimate, of_all_orders, tracking};
 use crate::common::{assert_first_order, balance_residual, column, columns, consensus_of_masses, run, switching};
 
-fn by_roots(integrators: usize, roots: impl Into<RootSet>) -> DesiredPolynomial {
+pub(super) fn by_roots(integrators: usize, roots: impl Into<RootSet>) -> DesiredPolynomial {
     DesiredPolynomial::Roots { integrators, roots: roots.into() }
 }
 
 /// p A(p) x = −Σ_j w_ij [A(p) x − what is heard] for the roots of A.
-fn agreeing(roots: &[f64], heard: &[f64], written: WrittenIn) -> Desired {
+pub(super) fn agreeing(roots: &[f64], heard: &[f64], written: WrittenIn) -> Desired {
     Desired {
         polynomial: by_roots(1, roots),
         coupling: Some(by_roots(0, roots)),
@@ -31,12 +29,12 @@ fn agreeing(roots: &[f64], heard: &[f64], written: WrittenIn) -> Desired {
     }
 }
 
-fn following(polynomial: DesiredPolynomial, written: WrittenIn) -> Desired {
+pub(super) fn following(polynomial: DesiredPolynomial, written: WrittenIn) -> Desired {
     Desired { polynomial, coupling: None, heard: Vec::new(), follows_target: true, written, protocol: None }
 }
 
 /// `setup` under these desired dynamics.
-fn under(mut setup: Setup, desired: Desired) -> Setup {
+pub(super) fn under(mut setup: Setup, desired: Desired) -> Setup {
     setup.exchange = desired.exchange();
     setup.reference = Arc::new(desired);
     for agent in &mut setup.agents {
@@ -53,18 +51,18 @@ fn assert_same_bits(one: &Outcome, other: &Outcome) {
 }
 
 /// The largest distance of positions at any time.
-fn apart(one: &Outcome, other: &Outcome) -> f64 {
+pub(super) fn apart(one: &Outcome, other: &Outcome) -> f64 {
     let (one, other) = (columns(one, Signal::Position), columns(other, Signal::Position));
     let each = |(a, b): (&&[f64], &&[f64])| a.iter().zip(*b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     one.iter().zip(&other).map(each).fold(0.0, f64::max)
 }
 
-fn steps() -> [ChainStep; 2] {
+pub(super) fn steps() -> [ChainStep; 2] {
     let adaptive = ChainStep::Adaptive { gain_per_s: 2.0, estimate: estimate(&[2.0, 2.0]) };
     [ChainStep::Linearising { gain_per_s: 2.0 }, adaptive]
 }
 
-const ROOTS: [f64; 4] = [1.0, 2.0, 1.5, 1.2];
+pub(super) const ROOTS: [f64; 4] = [1.0, 2.0, 1.5, 1.2];
 
 /// The chains have orders 2, 3 and 4, so N = 4 and 5 are order invariance and increment.
 #[test]
@@ -269,120 +267,4 @@ fn desired_dynamics_without_meaning_are_refused() {
     // Thrust and velocity-free masses have reference dynamics of their own.
     let masses = crate::common::masses::consensus(3);
     assert!(matches!(refused(masses, agreeing(&ROOTS[..3], &[], measured)), SetupError::ReferenceOfLaw { .. }));
-}
-
-/// f alone, without any linear part.
-fn nonlinear(order: usize, term: Expression) -> Desired {
-    let said = || Some("a test".to_owned());
-    Desired {
-        polynomial: DesiredPolynomial::Coefficients(vec![0.0; order]),
-        coupling: None,
-        heard: Vec::new(),
-        follows_target: false,
-        written: WrittenIn::Measured,
-        protocol: Some(Protocol { term, stable_because: said(), input_to_state_stable_because: said() }),
-    }
-}
-
-/// (24) with roots 1, 2 and 1.5 as one formula: f has x, …, x^(3), what is heard and the weights where they belong.
-#[test]
-fn eq_43_a_linear_protocol_as_a_formula_is_the_linear_one() {
-    let [a0, a1, a2] = [3.0, 6.5, 4.5];
-    let own = x(1) * a0 + x(2) * a1 + x(3) * a2;
-    let all = x(0) * a0 + x(1) * a1 + x(2) * a2 + x(3);
-    let term = -own - x(5) * all + x(4) * a0;
-    for written in [WrittenIn::Measured, WrittenIn::Z] {
-        let mut setup = of_all_orders(&steps()[1], [3; 3]);
-        setup.time.end_s = 10.0;
-        let linear = run(&under(setup.clone(), agreeing(&ROOTS[..3], &[], written)));
-        let formula = run(&under(setup, Desired { written, ..nonlinear(4, term.clone()) }));
-        let gap = apart(&linear, &formula);
-        assert!(gap < 1e-9, "{written:?}: {gap:e}");
-    }
-}
-
-/// (a9) in the same way: x_d and its derivatives stand behind the weights. Its highest one is there without f.
-#[test]
-fn eq_43_tracking_as_a_formula_is_tracking() {
-    let alpha = forwardstep_core::reference::polynomial([1.0, 2.0, 1.5]).unwrap();
-    let error = |r: usize| x(r) - x(5 + r);
-    let term = -(error(0) * alpha[0]) - error(1) * alpha[1] - error(2) * alpha[2];
-    let mut setup = tracking();
-    setup.time.end_s = 10.0;
-    let linear = following(by_roots(0, [1.0, 2.0, 1.5]), WrittenIn::Measured);
-    let formula = Desired { follows_target: true, ..nonlinear(3, term) };
-    let gap = apart(&run(&under(setup.clone(), linear)), &run(&under(setup, formula)));
-    assert!(gap < 1e-9, "{gap:e}");
-}
-
-/// ẍ_i = −ẋ_i − ẋ_i³ + tanh(2 Σ_j w_ij (x_j − x_i)): agents that start ten metres apart agree, in continuous time and sampled, and the
-/// balance of the second step holds.
-#[test]
-fn eq_43_a_nonlinear_protocol_leads_plants_of_orders_one_and_two() {
-    let term = -x(1) - x(1).power(3.0) + ((x(2) - x(3) * x(0)) * 2.0).tanh_of();
-    let mut setup = of_all_orders(&steps()[0], [3; 3]);
-    let (mut slow, second) = (setup.agents[0].clone(), setup.agents[0].clone());
-    slow.name = "second".into();
-    slow.start.q = vec![-9.0];
-    setup.agents = vec![second, slow];
-    setup.network = Network { schedule: Schedule::fixed(two_way()), ..Network { agents: 2, ..switching() } };
-    setup.time.end_s = 40.0;
-    let setup = under(setup, nonlinear(2, term));
-    let outcome = run(&setup);
-    let positions = columns(&outcome, Signal::Position);
-    let gap = |row: usize| (positions[0][row] - positions[1][row]).abs();
-    let last = positions[0].len() - 1;
-    assert!(gap(0) > 9.0 && gap(last) < 1e-3, "{} {}", gap(0), gap(last));
-    for agent in 0..2 {
-        assert!(balance_residual(&outcome, agent, 1.0) < 1e-7);
-    }
-    let mut short = setup;
-    short.time.end_s = 3.0;
-    assert_first_order(&short, 250.0);
-}
-
-/// ẍ_i = ẍ_d − a₁ė_i − a₀e_i − (1 + 4 exp(−t/10)) Σ_j w_ij (x_i − x_j), with e_i = x_i − x_d and one target: differences of e obey what
-/// stands there, and their mean the rest, whatever the coupling. In x alone as in z, in continuous time and sampled.
-#[test]
-fn eq_43_time_a_target_and_neighbours_stand_in_one_protocol() {
-    let share = Expression::number(1.0) + (x(7) * -0.1).exp_of() * 4.0;
-    let term = share * (x(2) - x(3) * x(0));
-    let polynomial = DesiredPolynomial::Coefficients(vec![0.3, 1.1]);
-    let mut setup = tracking();
-    let agent = setup.agents[2].clone();
-    let mut other = agent.clone();
-    (other.name, other.start.q) = ("other".into(), vec![agent.start.q[0] - 2.0]);
-    setup.agents = vec![agent, other];
-    setup.network =
-        Network { schedule: Schedule::fixed(two_way()), delays: vec![Delay::constant(0.0)], ..Network::silent(2) };
-    setup.time.end_s = 6.0;
-    let with = |term| Desired { polynomial: polynomial.clone(), follows_target: true, ..nonlinear(2, term) };
-    let (coupled, alone) = (under(setup.clone(), with(term)), under(setup, with(x(0) * 0.0)));
-    let (near, far) = (run(&coupled), run(&alone));
-    let last = |outcome: &Outcome, agent| *column(outcome, agent, Signal::Error, 0).last().unwrap();
-    let gap = |outcome: &Outcome| (last(outcome, 0) - last(outcome, 1)).abs();
-    assert!(gap(&near) < 0.2 * gap(&far), "{} {}", gap(&near), gap(&far));
-    let mean = |outcome: &Outcome| last(outcome, 0) + last(outcome, 1);
-    assert!((mean(&near) - mean(&far)).abs() < 1e-5, "{} {}", mean(&near), mean(&far));
-    let mut short = coupled;
-    short.time.end_s = 3.0;
-    assert_first_order(&short, 250.0);
-}
-
-fn two_way() -> Vec<Edge> {
-    let edge = |from, to| Edge { from, to, weight: Weight::Constant(0.8), delay: 0 };
-    vec![edge(0, 1), edge(1, 0)]
-}
-
-#[test]
-fn nonlinear_protocols_without_meaning_are_refused() {
-    let refused = |setup: Setup, desired: Desired| {
-        simulate(&under(setup, desired), &mut |_| std::ops::ControlFlow::Continue(())).unwrap_err()
-    };
-    let chains = || of_all_orders(&steps()[0], [3; 3]);
-    let in_x = Desired { written: WrittenIn::X, ..nonlinear(4, -x(0)) };
-    assert!(matches!(refused(chains(), in_x), SetupError::Desired { .. }));
-    // Without a target there is no variable beyond the weights but t.
-    assert!(matches!(refused(chains(), nonlinear(4, x(7))), SetupError::Desired { .. }));
-    assert!(matches!(refused(consensus_of_masses(1.0), nonlinear(3, -x(0))), SetupError::ProtocolOfChains { .. }));
 }

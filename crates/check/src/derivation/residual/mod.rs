@@ -11,6 +11,7 @@
 mod identities;
 mod moment;
 mod plants;
+mod protocol;
 mod robot;
 mod spacecraft;
 mod task_space;

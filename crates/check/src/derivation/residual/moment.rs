@@ -339,6 +339,7 @@ impl<'c, 'a> At<'c, 'a> {
         match (term, k) {
             (Term::Constant, 0) => self.constant.clone().map(exact).ok_or(Missing::Term),
             (Term::Sign, 0) => recorded(Signal::Selection),
+            (Term::Protocol, 0) => self.protocol(),
             (Term::Torque, 0) => recorded(Signal::Torque),
             (Term::Input, 0) if matches!(self.case.step, Step::PositionOnly(_)) => recorded(Signal::Torque),
             (Term::External | Term::Disturbance, 0) => match (recorded(self.acting()), self.is_pushed()) {

@@ -40,7 +40,7 @@ pub struct DesiredFile {
     pub follows_target: Option<bool>,
     /// In which variables the reference dynamics are written; it makes a difference only where x does not follow them. Default: `measured`.
     pub written_in: Option<WrittenInFile>,
-    /// A nonlinear protocol: a formula that is added to the right side, for chains. Its variables are x, dx, d2x, … below the order,
+    /// A nonlinear protocol: a formula that is added to the right side, for chains, and for robots without targets. Its variables are x, dx, d2x, … below the order,
     /// `heard` and `weights`, the sums over the neighbours of weight times position and of weights, xd, dxd, d2xd, … of a target, and t in
     /// s. With it agents may follow targets and hear neighbours. Default: none.
     pub nonlinear: Option<At<String>>,
@@ -55,7 +55,7 @@ pub struct DesiredFile {
 #[schemars(untagged)]
 pub enum PolynomialFile {
     /// Its coefficients, from the lowest on.
-    Coefficients(#[schemars(length(min = 1, max = 32))] Vec<At<f64>>),
+    Coefficients(#[schemars(length(min = 1))] Vec<At<f64>>),
     /// Its roots.
     Roots(FactorsFile),
 }
@@ -68,7 +68,7 @@ pub struct FactorsFile {
     #[schemars(range(min = 0, max = 32))]
     pub integrators: Option<At<i64>>,
     /// The others, as the positive numbers κ of the roots −κ and pairs of complex roots.
-    #[schemars(with = "Option<Vec<RootFile>>", length(min = 1, max = 32))]
+    #[schemars(with = "Option<Vec<RootFile>>", length(min = 1))]
     pub roots_per_s: Option<RootsFile>,
 }
 
