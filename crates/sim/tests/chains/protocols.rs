@@ -16,6 +16,7 @@ use forwardstep_sim::{
 use super::desired::{ROOTS, agreeing, apart, by_roots, following, steps, under};
 use crate::common::chains::{agent, of_all_orders, tracking, x};
 use crate::common::following::arm;
+use crate::common::truth;
 use crate::common::{
     assert_first_order, balance_residual, column, columns, consensus_of_masses, run, sampled, setup as common_setup,
     switching,
@@ -199,4 +200,21 @@ fn eq_43_a_linear_protocol_of_arms_is_the_linear_one_sampled_too() {
     let agents = (0..3).map(|k| arm(k, [0.4 * k as f64, 0.3 - 0.2 * k as f64], 0.7)).collect();
     let setup = common_setup(agents, Arc::new(saturated.clone()), switching(), 2.0);
     assert_first_order(&under(setup, saturated), 250.0);
+}
+
+/// Against `validation/protocols`: arms that estimate, with time in the protocol, in what is measured and in z.
+#[test]
+fn val_arms_under_a_nonlinear_protocol_agree_with_an_independent_solver() {
+    let swell = Expression::number(2.0) + (x(5) * 3.0).sin_of();
+    let term = -x(2) * 3.0 - x(1) * 2.0 + swell * (x(3) - x(4) * x(0)).tanh_of() - x(2).power(3.0) * 0.3;
+    let truths = truth::read(include_str!("../../../../validation/protocols/protocols.json"));
+    assert_eq!(truths.len(), 2);
+    for (truth, written) in truths.iter().zip([WrittenIn::Measured, WrittenIn::Z]) {
+        let mut agents: Vec<_> = (0..3).map(|k| arm(k, [0.4 * k as f64, 0.3 - 0.2 * k as f64], 0.7)).collect();
+        agents[1].start.dq = vec![0.2, -0.1];
+        let desired = Desired { written, ..nonlinear(3, term.clone()) };
+        let setup = common_setup(agents, Arc::new(desired.clone()), switching(), 1.0);
+        let worst = truth.largest_difference(under(setup, desired));
+        assert!(worst < 1e-7, "{}: {worst:e}", truth.name);
+    }
 }
