@@ -29,7 +29,7 @@ const fill = (card, height) => {
   if (built.series.every((s) => s.values.every((v) => v === null))) return empty("no value can be drawn: all are zero or not finite");
   mine.series = built.series;
   const far = built.log ? null : outliers(built.series);
-  mine.plot = drawPlot(canvas, { ...built, times, height, within: far?.usual });
+  mine.plot = drawPlot(canvas, { ...built, times, height: height ?? (card.closest("#stage") && innerWidth > 1000 ? 176 : undefined), within: far?.usual });
   if (far) canvas.append(element("p", { className: "note", textContent: `Some values leave this axis; the largest is ${number(far.largest)}.` }));
   if (built.key) card.append(key(built.series, mine.plot));
 };
@@ -111,6 +111,7 @@ const chips = agents.map((agent, i) => {
 const everyone = element("button", { type: "button", className: "all", textContent: "all", onclick: () => (agents.forEach((_, i) => shownAgents.add(i)), showAgents()) });
 legend.append(...chips, ...(agents.length > 1 ? [everyone] : []));
 const showAgents = () => {
+  stageAsk();
   chips.forEach((chip, i) => chip.setAttribute("aria-pressed", String(shownAgents.has(i))));
   everyone.hidden = shownAgents.size === agents.length;
   for (const { plot, series } of state.values()) {
