@@ -27,7 +27,7 @@ const graphWords = ({ edges }) => {
   const everyone = [...bodies.keys()];
   const silent = everyone.filter((v) => !speak.has(v)).map(name);
   const deaf = everyone.filter((v) => !hear.has(v) && !bodies[v].leads).map(name);
-  const late = edges.reduce((most, e) => (e.age !== null && e.age > (most?.age ?? 0) ? e : most), null);
+  const late = edges.reduce((most, e) => (e.age !== null && e.age > (most?.age ?? 1e-6) ? e : most), null);
   const count = edges.length === 1 ? "1 edge" : `${edges.length} edges`;
   if (!scene.graphs.some((g) => g.length > 0)) return vertices > 1 ? "No agent hears another." : "One agent alone.";
   return [

@@ -11,6 +11,7 @@ const fill = (card, height) => {
   mine.plot = null;
   canvas.replaceChildren();
   card.querySelector(".key")?.remove();
+  card.querySelector(".exports")?.remove();
   const empty = (why) => canvas.replaceChildren(element("p", { className: "none", textContent: why || "nothing was recorded" }));
 
   if (kind === "gantt") {
@@ -32,6 +33,7 @@ const fill = (card, height) => {
   mine.plot = drawPlot(canvas, { ...built, times, height: height ?? (card.closest("#stage") && innerWidth > 1000 ? 176 : undefined), within: far?.usual });
   if (far) canvas.append(element("p", { className: "note", textContent: `Some values leave this axis; the largest is ${number(far.largest)}.` }));
   if (built.key) card.append(key(built.series, mine.plot));
+  offer(card, mine.plot);
 };
 
 // Names of series that are not agents.

@@ -6,7 +6,11 @@ const RAIL = 10; // how long the longest way on a rail is drawn
 
 // Everybody, and a leader that is no agent, which looks like those that follow it.
 const bodies = (() => {
-  const own = scene.agents.map((agent, i) => ({ ...agent, name: agents[i].name, vertex: i, leads: scene.leader?.vertex === i }));
+  const own = scene.agents.map((agent, i) => {
+    // A gantry has no turns: what it holds is a point in the space of all.
+    const slides = agent.kind === "arm" && scene.arms[agent.arm].joints.every((joint) => !joint.turns);
+    return { ...agent, ...(slides ? { kind: "point" } : {}), name: agents[i].name, vertex: i, leads: scene.leader?.vertex === i };
+  });
   if (scene.leader && scene.leader.vertex >= own.length && own.length > 0) {
     const like = own[0];
     const { name, vertex, q } = scene.leader;
@@ -50,9 +54,10 @@ const placeOf = (body, q) => {
   if (body.kind === "ship") return add(base, [q[0], q[1], 0]);
   return add(base, up([q[0] ?? 0, q[1] ?? 0, q[2] ?? 0]));
 };
-// What of a body draws a path.
+// What of a body draws a path; of a spacecraft, which stays where it is, the end of its first axis.
 const trailPoint = (body, place) => {
   const q = read(body.q, place);
+  if (body.kind === "spacecraft") return add(placeOf(body, q), turned(quaternionTurn(q), [1, 0, 0]));
   if (body.kind !== "arm") return placeOf(body, q);
   const arm = scene.arms[body.arm];
   return add(placeOf(body, q), armTip(arm, armFrames(arm, q)));

@@ -59,12 +59,22 @@ const stage = (() => {
     ask();
   };
 
+  // Without a graphics card light and depth are slow: then the picture is projected.
+  let usual = 16;
+  const noticeSlowness = (interval) => {
+    usual += 0.1 * (Math.min(100, interval) - usual);
+    if (now.flat || usual < 40) return;
+    now.flat = true;
+    lighting.canvas.hidden = true;
+    tip.textContent += "; projected, since light and depth are slow here";
+  };
   // Whoever asked for less motion sees a picture every half second.
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   const later = () => (calm.matches ? setTimeout(() => requestAnimationFrame(step), 480) : requestAnimationFrame(step));
   const step = (stamp) => {
     if (!now.playing) return;
     // A frame that took long does not make time jump by more than a tenth of a second.
+    if (!calm.matches) noticeSlowness(stamp - now.since);
     const passed = Math.min(calm.matches ? 1 : 0.1, Math.max(0, (stamp - now.since) / 1000));
     now.since = stamp;
     now.t = Math.min(end, now.t + passed * Number(rate.value));
@@ -175,15 +185,16 @@ const stage = (() => {
   const describe = () => {
     const kinds = [...new Set(bodies.map((b) => b.kind))].join(", ");
     view.setAttribute("aria-label", `${bodies.length} in space (${kinds})${scene.leader ? `, led by ${scene.leader.name}` : ""}; turn and time by keys`);
-    const unit = bodies.every((b) => b.kind !== "point") ? " m" : ` ${[...new Set(agents.flatMap((a) => a.axes.map((x) => x.units.q)))].join(" or ")}`;
+    const unit = bodies.some((b) => b.kind !== "point") ? " m" : ` ${[...new Set(agents.flatMap((a) => a.axes.map((x) => x.units.q)))].join(" or ")}`;
     const symbolic = bodies.some((b) => b.kind === "ship" || b.kind === "vehicle") ? "; bodies not to scale" : "";
     tip.textContent = railed ? "each on a line of its own" : floorGrid.step ? `squares of ${number(floorGrid.step, 2)}${unit}${symbolic}` : "";
   };
   describe();
   const themed = () => ((colours = sceneColours()), ask());
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", themed);
-  addEventListener("beforeprint", () => ((now.flat = true), lighting && (lighting.canvas.hidden = true), (colours = sceneColours()), draw()));
-  addEventListener("afterprint", () => ((now.flat = lighting === null), lighting && (lighting.canvas.hidden = false), themed()));
+  let flatBefore = now.flat;
+  addEventListener("beforeprint", () => ((flatBefore = now.flat), (now.flat = true), lighting && (lighting.canvas.hidden = true), (colours = sceneColours()), draw()));
+  addEventListener("afterprint", () => ((now.flat = flatBefore), lighting && (lighting.canvas.hidden = flatBefore), themed()));
   lighting?.canvas.addEventListener("webglcontextlost", () => ((now.flat = true), (lighting.canvas.hidden = true), ask()));
   new ResizeObserver(ask).observe(view);
   draw();
