@@ -3,9 +3,12 @@
 const lighting = (() => {
   const canvas = element("canvas");
   if (typeof THREE === "undefined" || new URLSearchParams(location.search).has("flat")) return null;
+  // Asked for here, where a browser without it says nothing.
+  const context = canvas.getContext("webgl2", { alpha: true, antialias: true });
+  if (context === null) return null;
   let renderer;
   try {
-    renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
+    renderer = new THREE.WebGLRenderer({ canvas, context, alpha: true });
   } catch {
     return null; // The picture is projected instead.
   }
