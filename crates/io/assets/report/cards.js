@@ -29,14 +29,21 @@ const both = (v) => (v == null ? [] : [v, -v]);
 
 const jointPick = { id: "joint", options: joints.map((j) => [String(j.axis), j.name]) };
 
-const perJoint = (columns, unit, lines = () => []) => ({
+// A leader that is no agent, beside those that follow it.
+const ofLeader = (columns, axis) => {
+  const k = columns?.[axis];
+  if (k == null) return [];
+  return [{ label: leading(index.leader.name, true), colour: colour("--ink"), width: 2.2, dash: [8, 3], values: data.values("main", k) }];
+};
+
+const perJoint = (columns, unit, lines = () => [], leader = null) => ({
   picks: [jointPick],
-  build: ([joint]) => ({ unit: unitOf(+joint, unit), series: ofAgents(columns, +joint), lines: lines(+joint) }),
+  build: ([joint]) => ({ unit: unitOf(+joint, unit), series: [...ofAgents(columns, +joint), ...ofLeader(leader, +joint)], lines: lines(+joint) }),
 });
 
 const dots = ["z", "ż", "z̈", "z⃛"];
 const referenceName = (k) => dots[k] ?? `z${raise(`${k}`)}`;
-const velocity = perJoint(signals.dq, (u) => u.dq, (axis) => limitLines(axis, (a) => both(a.velocity_limit), "limit"));
+const velocity = perJoint(signals.dq, (u) => u.dq, (axis) => limitLines(axis, (a) => both(a.velocity_limit), "limit"), index.leader?.dq);
 
 const groupOf = (name) => (name.includes(".") ? name.slice(0, name.lastIndexOf(".")) : null);
 const withEstimates = [...agents.keys()].filter((i) => agents[i].parameters.some((p) => p.series != null));
@@ -121,7 +128,7 @@ const cards = {
   position: perJoint(signals.q, (u) => u.q, (axis) => [
     ...limitLines(axis, (a) => a.position_limits ?? [], "limit"),
     ...(index.predicted?.[axis] == null ? [] : [{ value: index.predicted[axis], label: "predicted agreement" }]),
-  ]),
+  ], index.leader?.q),
   velocity: {
     ...velocity,
     build: (picks) => {

@@ -6,19 +6,26 @@ window.addEventListener("error", (event) => {
 
 const index = JSON.parse(document.getElementById("index").textContent);
 
-// The block: times of the three grids as f64, then the series of the same grids as f32.
+// The name of an agent; of a leader that it leads, unless the name says so.
+function leading(name, leads) {
+  return leads && name !== "leader" ? `${name}, leads` : name;
+}
+
+// The block: times of the four grids as f64, then the series of the same grids as f32.
 const data = (() => {
   const text = atob(document.getElementById("block").textContent);
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
   const g = index.grids;
-  const times = new Float64Array(bytes.buffer, 0, g.main + g.estimates + g.delays);
+  const times = new Float64Array(bytes.buffer, 0, g.main + g.estimates + g.delays + g.scene);
   const numbers = new Float32Array(bytes.buffer, times.byteLength);
   const estimateStart = g.main * g.main_series;
+  const delayStart = estimateStart + g.estimates * g.estimate_series;
   const grids = {
     main: { t: times.subarray(0, g.main), start: 0 },
     estimates: { t: times.subarray(g.main, g.main + g.estimates), start: estimateStart },
-    delays: { t: times.subarray(g.main + g.estimates), start: estimateStart + g.estimates * g.estimate_series },
+    delays: { t: times.subarray(g.main + g.estimates, g.main + g.estimates + g.delays), start: delayStart },
+    scene: { t: times.subarray(g.main + g.estimates + g.delays), start: delayStart + g.delays * g.delay_series },
   };
   // A gap where a number is missing, or cannot stand on a logarithmic axis.
   const values = (grid, k, log) => {
@@ -26,7 +33,26 @@ const data = (() => {
     const from = start + k * t.length;
     return Array.from(numbers.subarray(from, from + t.length), (v) => (Number.isFinite(v) && (!log || v > 0) ? v : null));
   };
-  return { t: (grid) => Array.from(grids[grid].t), values };
+  // The value at any time, on the straight line between two rows.
+  const at = (grid, k, { row, part }) => {
+    const { t, start } = grids[grid];
+    const here = numbers[start + k * t.length + row];
+    return part === 0 ? here : here + part * (numbers[start + k * t.length + row + 1] - here);
+  };
+  // The row before a time, and how far it is to the next.
+  const place = (grid, time) => {
+    const { t } = grids[grid];
+    let [low, high] = [0, t.length - 1];
+    if (high <= 0 || time <= t[0]) return { row: 0, part: 0 };
+    if (time >= t[high]) return { row: high, part: 0 };
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      if (t[middle] <= time) low = middle;
+      else high = middle;
+    }
+    return { row: low, part: t[high] > t[low] ? (time - t[low]) / (t[high] - t[low]) : 0 };
+  };
+  return { t: (grid) => Array.from(grids[grid].t), values, at, place };
 })();
 
 const element = (tag, properties = {}, ...children) => {

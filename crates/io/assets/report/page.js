@@ -11,6 +11,7 @@ const fill = (card, height) => {
   mine.plot = null;
   canvas.replaceChildren();
   card.querySelector(".key")?.remove();
+  card.querySelector(".exports")?.remove();
   const empty = (why) => canvas.replaceChildren(element("p", { className: "none", textContent: why || "nothing was recorded" }));
 
   if (kind === "gantt") {
@@ -29,9 +30,10 @@ const fill = (card, height) => {
   if (built.series.every((s) => s.values.every((v) => v === null))) return empty("no value can be drawn: all are zero or not finite");
   mine.series = built.series;
   const far = built.log ? null : outliers(built.series);
-  mine.plot = drawPlot(canvas, { ...built, times, height, within: far?.usual });
+  mine.plot = drawPlot(canvas, { ...built, times, height: height ?? (card.closest("#stage") && innerWidth > 1000 ? 176 : undefined), within: far?.usual });
   if (far) canvas.append(element("p", { className: "note", textContent: `Some values leave this axis; the largest is ${number(far.largest)}.` }));
   if (built.key) card.append(key(built.series, mine.plot));
+  offer(card, mine.plot);
 };
 
 // Names of series that are not agents.
@@ -111,6 +113,7 @@ const chips = agents.map((agent, i) => {
 const everyone = element("button", { type: "button", className: "all", textContent: "all", onclick: () => (agents.forEach((_, i) => shownAgents.add(i)), showAgents()) });
 legend.append(...chips, ...(agents.length > 1 ? [everyone] : []));
 const showAgents = () => {
+  stageAsk();
   chips.forEach((chip, i) => chip.setAttribute("aria-pressed", String(shownAgents.has(i))));
   everyone.hidden = shownAgents.size === agents.length;
   for (const { plot, series } of state.values()) {

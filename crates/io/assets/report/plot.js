@@ -154,6 +154,30 @@ const readout = (log) => {
   return { hooks: { init: [(u) => u.over.append(box)], setCursor: [update] } };
 };
 
+// A line at the time of the clock; whoever points at a plot sets the clock.
+let stageGo = () => {};
+let stageAsk = () => {};
+const clockLine = () => {
+  const line = element("div", { className: "clock-line", hidden: true });
+  return {
+    hooks: {
+      init: [
+        (u) => {
+          u.over.append(line);
+          u.clock = (t) => {
+            const { min, max } = u.scales.x;
+            line.hidden = !(t >= min && t <= max);
+            if (!line.hidden) line.style.transform = `translateX(${u.valToPos(t, "x").toFixed(1)}px)`;
+          };
+          u.over.addEventListener("mousemove", () => u.cursor.left >= 0 && stageGo(u.posToVal(u.cursor.left, "x")));
+        },
+      ],
+      ready: [() => stageAsk()],
+      setScale: [() => stageAsk()],
+    },
+  };
+};
+
 // Draws `series` = [{label, colour, dash, width, values}] over `times` into `target`.
 const drawPlot = (target, { times, series, log = false, lines = [], height, y = {}, draw = [], cursor = true, within = null }) => {
   const axis = { stroke: colour("--muted"), font: axisFont, ticks: { show: false }, grid: { stroke: colour("--grid"), width: 1 } };
@@ -211,7 +235,7 @@ const drawPlot = (target, { times, series, log = false, lines = [], height, y = 
         },
       ],
     },
-    plugins: cursor ? [readout(log)] : [],
+    plugins: [...(cursor ? [readout(log)] : []), clockLine()],
   };
   const plot = new uPlot(options, [times, ...series.map((s) => s.values)], target);
   plots.add(plot);

@@ -2,6 +2,7 @@
 
 use base64::Engine;
 use forwardstep_sim::recording::Signal;
+use forwardstep_sim::trajectory::Path;
 use serde::Serialize;
 
 use super::super::decimate::Grid;
@@ -12,6 +13,7 @@ use super::super::table::Table;
 use super::super::timeline::{self, Timeline};
 use super::families::{Family, FamilyIndex};
 use super::network::{self, Gantt};
+use super::scene::Scene;
 use super::text;
 
 /// Points of a signal on the page, as far as space allows.
@@ -21,9 +23,9 @@ const MOST_ESTIMATE_POINTS: usize = 500;
 /// Fewer would not show anything.
 const FEWEST_POINTS: usize = 64;
 /// Numbers of all signals together, four bytes each before encoding.
-const ROOM: usize = 650_000;
+const ROOM: usize = 450_000;
 /// Numbers of all estimates together.
-const ESTIMATE_ROOM: usize = 300_000;
+const ESTIMATE_ROOM: usize = 200_000;
 /// More vertical lines would hide the plots.
 const MOST_LINES: usize = 400;
 
@@ -31,8 +33,10 @@ const MOST_LINES: usize = 400;
 pub(crate) struct Payload {
     /// The index, safe inside a script element.
     pub(crate) json: String,
-    /// Little-endian numbers in base64: first the times of all grids as f64, then all series as f32.
+    /// Little-endian numbers in base64: first the times of all grids as f64, then all series as f32, those in space last.
     pub(crate) block: String,
+    /// Whether bodies are drawn, and not points alone.
+    pub(crate) solid: bool,
     /// What was left out, for the reader.
     pub(crate) notes: Vec<String>,
 }
@@ -50,6 +54,16 @@ struct Index {
     break_points: Vec<f64>,
     gantt: Gantt,
     delays: Vec<DelayIndex>,
+    scene: Scene,
+    leader: Option<LeaderIndex>,
+}
+
+/// What leads and is no agent: its motion beside those of the agents.
+#[derive(Serialize)]
+struct LeaderIndex {
+    name: String,
+    q: Vec<usize>,
+    dq: Vec<usize>,
 }
 
 #[derive(Serialize)]
@@ -93,9 +107,11 @@ struct Grids {
     main: usize,
     estimates: usize,
     delays: usize,
+    scene: usize,
     /// Series on the main grid, which come first; then estimates, then delays.
     main_series: usize,
     estimate_series: usize,
+    delay_series: usize,
 }
 
 /// Indices of series by agent and axis.
@@ -212,6 +228,16 @@ impl Payload {
             families.iter().map(|family| family.index(table, &mut |values, may_jump| main.add(values, may_jump)));
         let families = families.collect();
 
+        let leader = record.setup.following().and_then(|following| following.motion()).map(|leader| {
+            let mut derivative = |k: usize| -> Vec<usize> {
+                let axis = |path: &Path| table.t_s.iter().map(|t_s| path.jet(*t_s)[k]).collect::<Vec<f64>>();
+                leader.trajectory.paths().iter().map(|path| main.add(&axis(path), false)).collect()
+            };
+            LeaderIndex { name: leader.name.clone(), q: derivative(0), dq: derivative(1) }
+        });
+        let (scene, space) = Scene::of(record.setup, table, timeline);
+        let solid = scene.is_solid();
+
         let (agents, estimates) = agents(record, table, references, &mut notes);
         let (delay_t_s, delay_values) =
             timeline::sample_delays(&record.setup.network.delays, &timeline.delay_jumps, until_s);
@@ -227,8 +253,10 @@ impl Payload {
                 main: main.grid.t_s.len(),
                 estimates: estimates.grid.t_s.len(),
                 delays: delay_t_s.len(),
+                scene: space.t_s.len(),
                 main_series: main.count,
                 estimate_series: estimates.count,
+                delay_series: shown_delays.len(),
             },
             signals: index,
             families,
@@ -238,16 +266,19 @@ impl Payload {
             break_points: if break_points.len() <= MOST_LINES { break_points } else { Vec::new() },
             gantt: Gantt::of(record.setup, timeline, &mut notes),
             delays,
+            scene,
+            leader,
         };
-        let times = [&main.grid.t_s, &estimates.grid.t_s, &delay_t_s];
+        let times = [&main.grid.t_s, &estimates.grid.t_s, &delay_t_s, &space.t_s];
         let delays = shown_delays.iter().filter_map(|(k, _)| delay_values.get(*k));
         let mut bytes: Vec<u8> = times.into_iter().flatten().flat_map(|t| t.to_le_bytes()).collect();
-        let series = [&main.values, &estimates.values].into_iter().chain(delays);
+        let series = [&main.values, &estimates.values].into_iter().chain(delays).chain([&space.values]);
         bytes.extend(series.flatten().flat_map(|v| v.to_le_bytes()));
         Payload {
             // "<" never stands in the index as itself, so no name can end the script element.
             json: serde_json::to_string(&index).unwrap_or_else(|_| "null".into()).replace('<', "\\u003c"),
             block: base64::engine::general_purpose::STANDARD.encode(bytes),
+            solid,
             notes,
         }
     }

@@ -10,17 +10,20 @@ mod interfaces;
 mod network;
 mod practical;
 mod predicted;
+mod scene;
 pub(crate) mod sections;
+mod stage;
 pub(crate) mod text;
 
 use forwardstep_check::derivation::explain;
+use forwardstep_sim::Setup;
 use forwardstep_sim::recording::{Ending, Signal};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use self::families::Family;
 use self::interfaces::interfaces;
 use super::explanation::explanation_markup;
-use super::metrics::{Absence, Disagreement, Gap, Metrics};
+use super::metrics::{Disagreement, Gap, Metrics};
 use super::palette::{self, Ground};
 use super::record::RunRecord;
 use super::table::Table;
@@ -29,12 +32,22 @@ use super::timeline::Timeline;
 const UPLOT_JS: &str = include_str!("../../../assets/uplot/uPlot.iife.min.js");
 const UPLOT_CSS: &str = include_str!("../../../assets/uplot/uPlot.min.css");
 const PAGE_CSS: &str = include_str!("../../../assets/report/page.css");
+const STAGE_CSS: &str = include_str!("../../../assets/report/stage.css");
+/// Draws bodies; only on pages that have some.
+const THREE_JS: &str = include_str!("../../../assets/three/three.iife.min.js");
 /// In the order in which they build on each other.
-const PAGE_JS: [&str; 4] = [
+const PAGE_JS: [&str; 11] = [
     include_str!("../../../assets/report/data.js"),
     include_str!("../../../assets/report/plot.js"),
     include_str!("../../../assets/report/cards.js"),
+    include_str!("../../../assets/report/vectors.js"),
+    include_str!("../../../assets/report/scene.js"),
+    include_str!("../../../assets/report/painter.js"),
+    include_str!("../../../assets/report/solids.js"),
+    include_str!("../../../assets/report/graph.js"),
+    include_str!("../../../assets/report/export.js"),
     include_str!("../../../assets/report/page.js"),
+    include_str!("../../../assets/report/stage.js"),
 ];
 /// Nothing is fetched, whatever the page says.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:";
@@ -66,19 +79,20 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> 
                 meta http-equiv="Content-Security-Policy" content=(POLICY);
                 title { (record.title) " – forwardstep" }
                 style { (PreEscaped(UPLOT_CSS)) }
-                style { (PreEscaped(PAGE_CSS)) (PreEscaped(colours(record.setup.agents.len()))) }
+                style { (PreEscaped(PAGE_CSS)) (PreEscaped(STAGE_CSS)) (PreEscaped(colours(record.setup))) }
             }
             body {
                 div #error-banner role="alert" {}
                 main {
                     (sections::header(record, metrics, goes_on))
+                    (stage::stage(record, metrics, absence, goes_on))
                     @if !record.notices.is_empty() {
                         section.notices aria-label="Notices" { ul { @for notice in &record.notices { li { (notice) } } } }
                     }
                     (sections::verdicts(record, metrics, goes_on))
                     (practical::practical(record, metrics))
                     (predicted::section(record, metrics))
-                    (signals(absence, record))
+                    (signals(record))
                     @if has_network(record) { (network(record, &timeline)) }
                     (interfaces(record.setup))
                     (explanation_markup(record.setup, &explain(record.setup)))
@@ -101,6 +115,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> 
                 script #index type="application/json" { (PreEscaped(payload.json)) }
                 script #block type="text/plain" { (payload.block) }
                 script { (PreEscaped(UPLOT_JS)) }
+                @if payload.solid { script { (PreEscaped(THREE_JS)) } }
                 script { (PreEscaped("(() => {\n\"use strict\";\n")) @for part in PAGE_JS { (PreEscaped(part)) } "})();" }
             }
         }
@@ -109,19 +124,11 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> 
 }
 
 /// The plots; the script fills their cards.
-fn signals(absence: Option<Absence>, record: &RunRecord<'_>) -> Markup {
-    let (gap, agents) = (Gap::of(record.setup), &record.setup.agents);
+fn signals(record: &RunRecord<'_>) -> Markup {
+    let agents = &record.setup.agents;
     let adaptive = agents.iter().any(|agent| agent.estimates());
     let columns = &record.outcome.recording.columns;
     let recorded = |signal| columns.iter().any(|column| column.signal == signal);
-    let card = |id: &str, title: &str, what: &str, empty: &str| {
-        html! {
-            article.card.plot data-plot=(id) data-empty=(empty) {
-                div.head { h3 { (title) span.by { (what) } } div.pick {} }
-                div.canvas {}
-            }
-        }
-    };
     html! {
         section #signals {
             h2 { "Signals" }
@@ -135,7 +142,6 @@ fn signals(absence: Option<Absence>, record: &RunRecord<'_>) -> Markup {
             }
             noscript { p.note { "The plots need JavaScript; the same plots lie in " code { "plots/" } " as SVG." } }
             div.grid {
-                (card("disagreement", gap.name(), gap.formula(), absence.map_or("", Absence::words)))
                 (card("position", "Positions", "q", ""))
                 @if recorded(Signal::Torque) { (card("torque", "Torques", "τ, after any limit", "")) }
                 @if recorded(Signal::External) {
@@ -147,10 +153,20 @@ fn signals(absence: Option<Absence>, record: &RunRecord<'_>) -> Markup {
                 @for family in Family::of(&record.outcome.recording) {
                     (card(&family.id(), &family.title, &family.letters, ""))
                 }
-                (card("estimate", "Parameter estimates", "ϑ̂, the truth dashed", if adaptive { "" } else { "no agent estimates parameters" }))
-                (card("balance", "Lyapunov balance", "V + ∫ dissipation = V(0)", ""))
+                @if adaptive { (card("estimate", "Parameter estimates", "ϑ̂, the truth dashed", "no estimate was recorded")) }
+                @if recorded(Signal::Lyapunov) { (card("balance", "Lyapunov balance", "V + ∫ dissipation = V(0)", "")) }
             }
             p.note.hint { "Drag across a plot to zoom all of them; double-click to see everything again." }
+        }
+    }
+}
+
+/// An empty card of a plot, which the script fills.
+fn card(id: &str, title: &str, what: &str, empty: &str) -> Markup {
+    html! {
+        article.card.plot data-plot=(id) data-empty=(empty) {
+            div.head { h3 { (title) span.by { (what) } } div.pick {} }
+            div.canvas {}
         }
     }
 }
@@ -183,13 +199,16 @@ fn network(record: &RunRecord<'_>, timeline: &Timeline<'_>) -> Markup {
 }
 
 /// The agents' colours as CSS variables and classes, for both grounds.
-fn colours(agents: usize) -> String {
+fn colours(setup: &Setup) -> String {
+    let (agents, vertices) = (setup.agents.len(), network::vertices(setup));
     let variables = |ground| -> String {
         let agent = (0..agents).map(|k| format!("--a{k}:{};", palette::css(palette::agent(k, agents, ground))));
         let ramp = (0..RAMP).map(|k| format!("--r{k}:{};", palette::css(palette::ramp(k, RAMP, ground))));
-        agent.chain(ramp).collect()
+        // A leader that is no agent has the colour of the text.
+        let leader = (agents..vertices).map(|k| format!("--a{k}:var(--ink);"));
+        agent.chain(leader).chain(ramp).collect()
     };
-    let classes: String = (0..agents).map(|k| format!(".a{k}{{--c:var(--a{k})}}")).collect();
+    let classes: String = (0..vertices).map(|k| format!(".a{k}{{--c:var(--a{k})}}")).collect();
     format!(
         ":root{{{}}}@media screen and (prefers-color-scheme:dark){{:root:not(.printing){{{}}}}}{classes}",
         variables(Ground::Light),

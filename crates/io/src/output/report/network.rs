@@ -7,7 +7,6 @@ use forwardstep_sim::setup::Setup;
 use maud::{Markup, html};
 use serde::Serialize;
 
-use super::super::names::agent_name;
 use super::super::packets::Link;
 use super::super::timeline::Timeline;
 use super::text;
@@ -44,9 +43,10 @@ impl Gantt {
         edges.dedup();
         let by_receiver = edges.len() > MOST_EDGE_ROWS;
         let rows: Vec<(String, usize)> = if by_receiver {
-            (0..setup.agents.len()).map(|i| (agent_name(setup, i), i)).collect()
+            (0..setup.agents.len()).map(|i| (vertex_name(setup, i), i)).collect()
         } else {
-            let label = |&(j, i): &(usize, usize)| (format!("{} → {}", agent_name(setup, j), agent_name(setup, i)), j);
+            let label =
+                |&(j, i): &(usize, usize)| (format!("{} → {}", vertex_name(setup, j), vertex_name(setup, i)), j);
             edges.iter().map(label).collect()
         };
         let row_of = |edge: &Edge| {
@@ -96,7 +96,7 @@ pub(crate) fn shown_delays(setup: &Setup, timeline: &Timeline<'_>) -> Vec<(usize
         let mine: Vec<_> = edges.iter().filter(|e| e.0 == k).collect();
         match mine.as_slice() {
             _ if used.len() == 1 => "all edges".to_owned(),
-            [(_, from, to)] => format!("{} → {}", agent_name(setup, *from), agent_name(setup, *to)),
+            [(_, from, to)] => format!("{} → {}", vertex_name(setup, *from), vertex_name(setup, *to)),
             more => format!("delay {}, {}", k + 1, text::count(more.len(), "edge")),
         }
     };
@@ -124,7 +124,7 @@ pub(crate) fn links(setup: &Setup) -> Markup {
                         tbody {
                             @for link in &links {
                                 tr {
-                                    td { (agent_name(setup, link.from)) " → " (agent_name(setup, link.to)) }
+                                    td { (vertex_name(setup, link.from)) " → " (vertex_name(setup, link.to)) }
                                     td { (link.sent) }
                                     td { (link.lost) " (" (share(link.lost, link)) " %)" }
                                     td { (link.late) " (" (share(link.late, link)) " %)" }
@@ -172,14 +172,14 @@ pub(crate) fn graphs(setup: &Setup, timeline: &Timeline<'_>) -> Markup {
         @if timeline.graphs.len() > MOST_GRAPHS {
             p.note { "The first " (MOST_GRAPHS) " of " (timeline.graphs.len()) " graphs." }
         }
-        @if agents > 0 { p.note { "An arrow from j to i: i hears j." } }
+        @if agents > 0 { p.note { "An arrow from j to i: i hears j." @if setup.leader().is_some() { " L leads." } } }
     }
 }
 
 /// Agents on a circle, an arrow for every edge from the sender to the receiver.
 fn circle(setup: &Setup, edges: &[Edge]) -> Markup {
     const RADIUS: f64 = 62.0;
-    let count = setup.agents.len();
+    let count = vertices(setup);
     let dot = if count <= 12 { 9.0 } else { (0.3 * RADIUS * TAU / count as f64).min(5.0) };
     let place = |agent: usize| {
         let angle = TAU * (agent as f64 / count.max(1) as f64 - 0.25);
@@ -212,16 +212,28 @@ fn circle(setup: &Setup, edges: &[Edge]) -> Markup {
     html! {
         svg.graph viewBox="-80 -80 160 160" role="img" aria-label="graph" {
             @for edge in edges.iter().filter(|e| e.from < count && e.to < count).take(2000) { (arrow(edge)) }
-            @for (agent, this) in setup.agents.iter().enumerate() {
+            @for agent in 0..count {
                 @let (x, y) = place(agent);
+                @let leads = setup.leader() == Some(agent);
                 g class={ "node a" (agent) } {
-                    title { (this.name) }
+                    title { (vertex_name(setup, agent)) @if leads { ", which leads" } }
                     circle cx=(short(x)) cy=(short(y)) r=(dot) {}
-                    @if count <= 12 { text x=(short(x)) y=(short(y + 3.4)) { (agent + 1) } }
+                    @if leads { circle.lead cx=(short(x)) cy=(short(y)) r=(dot + 2.5) {} }
+                    @if count <= 12 { text x=(short(x)) y=(short(y + 3.4)) { @if leads { "L" } @else { (agent + 1) } } }
                 }
             }
         }
     }
+}
+
+/// The name of a vertex: of an agent, or of a leader that is none.
+fn vertex_name(setup: &Setup, vertex: usize) -> String {
+    setup.vertex_name(vertex).to_owned()
+}
+
+/// Agents, and a leader that is none.
+pub(super) fn vertices(setup: &Setup) -> usize {
+    setup.agents.len() + usize::from(setup.leader() == Some(setup.agents.len()))
 }
 
 fn short(x: f64) -> String {

@@ -20,7 +20,6 @@ const MOST_TORQUE_ROWS: usize = 64;
 
 /// Title, how it ended, and the few numbers one looks for first.
 pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup {
-    let setup = record.setup;
     let (class, word) = match record.outcome.ending {
         _ if goes_on => ("warn", "Goes on"),
         Ending::Completed => ("good", "Completed"),
@@ -44,6 +43,14 @@ pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -
                 p.conclusion { @if goes_on { "so far " } strong.good[reached].bad[!reached && !goes_on] { (sentence) } }
                 @if !goes_on && !advice.is_empty() { ul.advice { @for line in advice { li { (line) } } } }
             }
+        }
+    }
+}
+
+/// The few numbers that one looks for first.
+pub(crate) fn figures(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
+    let setup = record.setup;
+    html! {
             dl.figures {
                 @match metrics.disagreement {
                     Disagreement::Measured { last, .. } => {
@@ -61,6 +68,28 @@ pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -
                 }
                 @if let Some(balance) = metrics.balance_residual { (figure("Balance residual", &number(balance.relative), "")) }
                 (figure("Agents", &setup.agents.len().to_string(), ""))
+            }
+    }
+}
+
+/// What was promised, in a line, and how many hypotheses have which answer.
+pub(crate) fn promised(record: &RunRecord<'_>) -> Markup {
+    let report = record.verdicts;
+    let mut counts: Vec<(Answer, usize)> = Vec::new();
+    for answer in report.hypotheses.iter().map(|hypothesis| hypothesis.answer()) {
+        match counts.iter_mut().find(|(known, _)| *known == answer) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((answer, 1)),
+        }
+    }
+    html! {
+        p.promised {
+            a href="#promises" { (report.theorem) } ": "
+            @if counts.is_empty() { "no hypotheses were checked" }
+            @for (k, (answer, count)) in counts.iter().enumerate() {
+                @let (class, sign) = answer_style(*answer);
+                @if k > 0 { ", " }
+                span.(class) { (sign) " " (answer.words()) ": " (count) }
             }
         }
     }

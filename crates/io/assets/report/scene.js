@@ -1,0 +1,227 @@
+// What stands where: the bodies of all agents at one instant, from their joint values, in one world whose z points up.
+
+const scene = index.scene;
+const sceneTimes = data.t("scene");
+const RAIL = 10; // how long the longest way on a rail is drawn
+
+// Everybody, and a leader that is no agent, which looks like those that follow it.
+const bodies = (() => {
+  const own = scene.agents.map((agent, i) => {
+    // A gantry has no turns: what it holds is a point in the space of all.
+    const slides = agent.kind === "arm" && scene.arms[agent.arm].joints.every((joint) => !joint.turns);
+    return { ...agent, ...(slides ? { kind: "point" } : {}), name: agents[i].name, vertex: i, leads: scene.leader?.vertex === i };
+  });
+  if (scene.leader && scene.leader.vertex >= own.length && own.length > 0) {
+    const like = own[0];
+    const { name, vertex, q } = scene.leader;
+    own.push({ ...like, attitude: [], wheels: [], wheel_axes: [], tip: [], target: [], thrust: null, name, vertex, q, leads: true, motion: true });
+  }
+  return own;
+})();
+const read = (columns, place) => columns.map((k) => data.at("scene", k, place));
+
+// Where those stand that have a base of their own, and how much is drawn of those that have no size.
+const layout = (() => {
+  const points = bodies.filter((b) => b.kind === "point");
+  const based = bodies.filter((b) => b.kind === "arm" || b.kind === "spacecraft");
+  // Angles of arms and metres of masses have no common place: each has its own.
+  const cells = based.length > 0 && based.length < bodies.length ? bodies : based;
+  const reach = Math.max(0, ...scene.arms.map((arm) => arm.reach)) || 1;
+  const planar = scene.arms.length > 0 && scene.arms.every((arm) => arm.planar);
+  const apart = based.some((b) => b.kind === "arm") ? (planar ? 2.1 : 1.3) * reach : 3.2;
+  const columns = cells.length <= 3 ? cells.length : Math.ceil(Math.sqrt(cells.length));
+  const bases = new Map(cells.map((b, k) => [b, [apart * (k % columns), -apart * Math.floor(k / columns), 0]]));
+  const rails = points.filter((b) => b.q.length === 1 && !bases.has(b));
+  let [low, high] = [Infinity, -Infinity];
+  for (const b of rails) {
+    for (const k of [...b.q, ...b.target]) {
+      for (const v of data.values("scene", k)) if (v !== null) [low, high] = [Math.min(low, v), Math.max(high, v)];
+    }
+  }
+  if (!(high > low)) [low, high] = [Number.isFinite(low) ? low - 1 : -1, Number.isFinite(low) ? low + 1 : 1];
+  const gap = Math.min(0.7, 5.5 / Math.max(1, rails.length));
+  rails.forEach((b, k) => bases.set(b, [0, -gap * k, 0]));
+  return { bases, rails: new Set(rails), low, high, gap, reach, cells: new Set(cells) };
+})();
+const onRail = (value) => (RAIL * (value - layout.low)) / (layout.high - layout.low);
+const up = scene.down ? ([x, y, z]) => [x, -y, -z] : (p) => p;
+
+// Where a body is whose coordinates are q.
+const placeOf = (body, q) => {
+  const base = layout.bases.get(body) ?? ORIGIN;
+  if (body.kind === "arm" || body.kind === "spacecraft") return base;
+  if (layout.rails.has(body)) return [onRail(q[0]), base[1], 0];
+  if (body.kind === "ship") return add(base, [q[0], q[1], 0]);
+  return add(base, up([q[0] ?? 0, q[1] ?? 0, q[2] ?? 0]));
+};
+// What of a body draws a path; of a spacecraft, which stays where it is, the end of its first axis.
+const trailPoint = (body, place) => {
+  const q = read(body.q, place);
+  if (body.kind === "spacecraft") return add(placeOf(body, q), turned(quaternionTurn(q), [1, 0, 0]));
+  if (body.kind !== "arm") return placeOf(body, q);
+  const arm = scene.arms[body.arm];
+  return add(placeOf(body, q), armTip(arm, armFrames(arm, q)));
+};
+// Where its target is; nothing without one, and for postures and attitudes.
+const targetPoint = (body, place) => {
+  if (body.target.length === 0 || body.kind === "spacecraft") return null;
+  const wanted = read(body.target, place);
+  if (body.kind !== "arm") return placeOf(body, wanted);
+  if (body.coordinates.length === 0) {
+    const arm = scene.arms[body.arm];
+    return add(placeOf(body, wanted), armTip(arm, armFrames(arm, wanted)));
+  }
+  const p = minusVector(trailPoint(body, place), placeOf(body));
+  body.coordinates.forEach((axis, k) => (p[axis] = wanted[k]));
+  return add(placeOf(body), p);
+};
+
+// Paths of all, at so many rows that they can be drawn again and again.
+const TRAIL_ROWS = Math.max(2, Math.min(sceneTimes.length, bodies.length > 40 ? 24 : 240));
+const trailRow = (k) => (TRAIL_ROWS < 2 ? 0 : Math.round((k * (sceneTimes.length - 1)) / (TRAIL_ROWS - 1)));
+const paths = (of) => {
+  const kept = new Map();
+  return (body) => {
+    if (!kept.has(body)) {
+      const points = [];
+      for (let k = 0; k < TRAIL_ROWS && sceneTimes.length > 0; k++) points.push(of(body, { row: trailRow(k), part: 0 }));
+      kept.set(body, points);
+    }
+    return kept.get(body);
+  };
+};
+const trailOf = paths(trailPoint);
+const targetPath = paths(targetPoint);
+
+// How large the world is, and so what has no size of its own.
+const world = (() => {
+  const points = bodies.flatMap((body) => [...trailOf(body), ...(body.target.length && body.kind !== "spacecraft" ? targetPath(body) : [])]);
+  for (const body of bodies) {
+    const base = layout.bases.get(body);
+    if (body.kind === "arm") for (const k of [0, 2]) points.push(add(base, [0, 0, k * 0.2 * scene.arms[body.arm].reach]), ...[-0.5, 0.5].map((x) => add(base, [x * scene.arms[body.arm].reach, 0, 0])));
+    if (body.kind === "spacecraft") for (const x of [-1, 1]) points.push(add(base, [x, x, x]));
+    if (layout.rails.has(body)) points.push([0, base[1] - layout.gap / 2, 0], [RAIL, base[1] + layout.gap / 2, 0]);
+  }
+  const shown = points.filter((p) => p && finite(p));
+  const { low, high } = boxOf(shown);
+  const extent = Math.max(1e-9, ...[0, 1, 2].map((k) => high[k] - low[k]));
+  // Those that travel together, far from where they began, are followed.
+  let spread = 0;
+  for (let k = 0; k < TRAIL_ROWS && layout.bases.size === 0; k++) {
+    const here = boxOf(bodies.map((body) => trailOf(body)[k]).filter(Boolean));
+    spread = Math.max(spread, ...[0, 1, 2].map((i) => here.high[i] - here.low[i]));
+  }
+  const follows = bodies.length > 1 && spread > 1e-9 * extent && spread < 0.4 * extent;
+  return { points: shown, low, high, extent, spread, follows, symbol: follows ? 0.14 * spread : 0.045 * extent };
+})();
+
+const HULL = [[-0.5, -0.2], [0.15, -0.2], [0.5, 0], [0.15, 0.2], [-0.5, 0.2]];
+const hull = (at, heading, length) => {
+  const [s, c] = [Math.sin(heading), Math.cos(heading)];
+  return HULL.map(([x, y]) => add(at, [length * (c * x - s * y), length * (s * x + c * y), 0]));
+};
+const ring = (centre, axis, radius) => {
+  const side = unitVector(cross(axis, Math.abs(axis[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0]));
+  const other = cross(axis, side);
+  return Array.from({ length: 25 }, (_, k) => add(centre, add(scaled(side, radius * Math.cos((k * Math.PI) / 12)), scaled(other, radius * Math.sin((k * Math.PI) / 12)))));
+};
+
+// The links of an arm, thinner from joint to joint.
+const armSolids = (arm, frames, base, put) => {
+  const thick = 0.036 * arm.reach;
+  const depth = [];
+  arm.joints.forEach((joint, k) => {
+    depth[k] = joint.parent === null ? 0 : depth[joint.parent] + 1;
+    const r = thick * Math.max(0.42, 1 - 0.11 * depth[k]);
+    put(add(base, frames[k].before), add(base, frames[k].place), r);
+    if (!joint.turns) put(add(base, frames[k].place), add(base, frames[k].at), 0.5 * r);
+  });
+  for (const [k, end] of arm.ends) put(add(base, frames[k].at), add(base, pointOf(frames[k], end)), thick * Math.max(0.36, 0.9 - 0.11 * depth[k]));
+};
+
+// Everything to draw of one body at a time.
+const drawBody = (body, place, into) => {
+  const colour = body.vertex;
+  const q = read(body.q, place);
+  if (!finite(q)) return;
+  const at = placeOf(body, q);
+  const solid = (a, b, r) => into.solids.push({ a, b, r, colour, faint: body.motion });
+  const line = (points, more) => into.lines.push({ points, colour, width: 1.4, ...more });
+  let label = at;
+  if (body.kind === "arm") {
+    const arm = scene.arms[body.arm];
+    armSolids(arm, armFrames(arm, q), at, solid);
+    if (body.target.length && body.coordinates.length === 0) {
+      const ghost = (a, b) => line([a, b], { alpha: 0.55, dash: [4, 3] });
+      armSolids(arm, armFrames(arm, read(body.target, place)), at, ghost);
+    }
+    label = add(at, [0, 0, arm.planar ? -0.1 * arm.reach : 0]);
+  } else if (body.kind === "ship") {
+    into.faces.push({ points: hull(at, q[2] ?? 0, 1.7 * world.symbol), colour, hollow: body.motion });
+    if (body.target.length) {
+      const wanted = read(body.target, place);
+      line([...hull(placeOf(body, wanted), wanted[2] ?? 0, 1.7 * world.symbol), placeOf(body, wanted)].slice(0, -1), { closed: true, dash: [3, 3] });
+    }
+  } else if (body.kind === "vehicle" && body.attitude.length === 4) {
+    const turn = quaternionTurn(read(body.attitude, place));
+    const arm = (v) => add(at, scaled(up(turned(turn, v)), world.symbol));
+    for (const [x, y] of [[1, 1], [-1, 1]]) solid(arm([0.7 * x, 0.7 * y, 0]), arm([-0.7 * x, -0.7 * y, 0]), 0.07 * world.symbol);
+    const normal = unitVector(up(turned(turn, [0, 0, -1])));
+    for (const [x, y] of [[1, 1], [-1, 1], [1, -1], [-1, -1]]) line(ring(arm([0.7 * x, 0.7 * y, -0.06]), normal, 0.42 * world.symbol), { width: 1.2 });
+    solid(arm([0, 0, 0]), arm([0.35, 0, 0]), 0.13 * world.symbol);
+    if (body.thrust !== null) {
+      const share = data.at("scene", body.thrust, place) / (mostOf(body.thrust) || 1);
+      into.arrows.push({ from: at, to: add(at, scaled(normal, 2.4 * share * world.symbol)), colour, width: 2 });
+    }
+  } else if (body.kind === "spacecraft") {
+    drawSpacecraft(body, q, place, at, solid, line, into);
+  } else {
+    into.dots.push({ at, colour, leads: body.leads });
+    if (layout.rails.has(body)) line([[0, at[1], 0], [RAIL, at[1], 0]], { alpha: 0.25, width: 1 });
+  }
+  const target = body.kind === "arm" && body.coordinates.length === 0 ? null : targetPoint(body, place);
+  if (target && finite(target)) into.crosses.push({ at: target, colour });
+  into.nodes.push({ body, at, label: body.kind === "point" && layout.rails.has(body) ? [0, at[1], 0] : label });
+};
+
+const mosts = new Map();
+const mostOf = (k) => {
+  if (!mosts.has(k)) mosts.set(k, data.values("scene", k).reduce((most, v) => Math.max(most, Math.abs(v ?? 0)), 0));
+  return mosts.get(k);
+};
+
+const drawSpacecraft = (body, q, place, at, solid, line, into) => {
+  const turn = quaternionTurn(q);
+  const p = (x, y, z) => add(at, turned(turn, [x, y, z]));
+  const [a, b, c] = [0.34, 0.26, 0.26];
+  for (const y of [-b, b]) for (const z of [-c, c]) solid(p(-a, y, z), p(a, y, z), 0.012);
+  for (const x of [-a, a]) for (const z of [-c, c]) solid(p(x, -b, z), p(x, b, z), 0.012);
+  for (const x of [-a, a]) for (const y of [-b, b]) solid(p(x, y, -c), p(x, y, c), 0.012);
+  // Panels along y.
+  for (const s of [-1, 1]) into.faces.push({ points: [p(-0.2, s * b, 0), p(0.2, s * b, 0), p(0.2, s * 0.95, 0), p(-0.2, s * 0.95, 0)], colour: body.vertex });
+  const wanted = body.target.length === 4 ? quaternionTurn(read(body.target, place)) : null;
+  ["x", "y", "z"].forEach((name, k) => {
+    const axis = [0, 1, 2].map((i) => (i === k ? 1 : 0));
+    solid(at, p(...axis), 0.022);
+    into.words.push({ at: p(...scaled(axis, 1.1)), text: name });
+    if (wanted) line([at, add(at, turned(wanted, scaled(axis, 1.2)))], { dash: [4, 3], width: 1.6, ink: true });
+  });
+  const most = Math.max(1e-12, ...body.wheels.map(mostOf));
+  body.wheel_axes.forEach((axis, k) => {
+    const out = turned(turn, axis);
+    const centre = add(at, scaled(out, 0.5));
+    line(ring(centre, out, 0.13), { width: 1.6, ink: true });
+    if (body.wheels[k] === undefined) return;
+    const share = data.at("scene", body.wheels[k], place) / most;
+    into.arrows.push({ from: centre, to: add(centre, scaled(out, 0.6 * share)), ink: true, width: 2 });
+  });
+};
+
+// Everything at a time; `hidden` says of which agents nothing is drawn.
+const frameAt = (time, hidden = () => false) => {
+  const place = data.place("scene", time);
+  const into = { solids: [], lines: [], faces: [], dots: [], arrows: [], crosses: [], nodes: [], words: [], place };
+  if (sceneTimes.length === 0) return into;
+  for (const body of bodies) if (!hidden(body)) drawBody(body, place, into);
+  return into;
+};

@@ -1,0 +1,84 @@
+// Bodies with light and depth, where the browser has WebGL: one drawn cylinder and one sphere, as often as needed.
+
+const lighting = (() => {
+  const canvas = element("canvas");
+  if (typeof THREE === "undefined" || new URLSearchParams(location.search).has("flat")) return null;
+  // Asked for here, where a browser without it says nothing.
+  const context = canvas.getContext("webgl2", { alpha: true, antialias: true });
+  if (context === null) return null;
+  let renderer;
+  try {
+    renderer = new THREE.WebGLRenderer({ canvas, context, alpha: true });
+  } catch {
+    return null; // The picture is projected instead.
+  }
+  const world3 = new THREE.Scene();
+  const sun = new THREE.DirectionalLight(0xffffff, 2.1);
+  world3.add(new THREE.HemisphereLight(0xffffff, 0x8a8f99, 1.5), sun);
+  const eye = new THREE.PerspectiveCamera((FIELD * 180) / Math.PI, 1, 0.1, 1000);
+  const round = { cylinder: new THREE.CylinderGeometry(1, 1, 1, 16, 1, true), sphere: new THREE.SphereGeometry(1, 16, 10) };
+  const material = new THREE.MeshLambertMaterial({ color: 0xffffff });
+  const floor = new THREE.BufferGeometry();
+  floor.setAttribute("position", new THREE.BufferAttribute(new Float32Array(floorGrid.lines.flat(2)), 3));
+  const pencil = new THREE.LineBasicMaterial({ color: 0xcccccc });
+  world3.add(new THREE.LineSegments(floor, pencil));
+  let meshes = null;
+  const room = (count) => {
+    if (meshes && meshes.size >= count) return meshes;
+    if (meshes) world3.remove(meshes.tubes, meshes.balls);
+    const size = Math.max(64, 2 * count);
+    const tubes = new THREE.InstancedMesh(round.cylinder, material, size);
+    const balls = new THREE.InstancedMesh(round.sphere, material, 2 * size);
+    tubes.frustumCulled = balls.frustumCulled = false;
+    world3.add(tubes, balls);
+    meshes = { tubes, balls, size };
+    return meshes;
+  };
+  const matrix = new THREE.Matrix4();
+  const paints = new Map();
+  const paint = (text, faint) => {
+    const name = `${text}${faint}`;
+    if (!paints.has(name)) paints.set(name, new THREE.Color(text).lerp(new THREE.Color(0x999999), faint ? 0.45 : 0));
+    return paints.get(name);
+  };
+  const draw = (see, frame, colours) => {
+    const scale = Math.min(2, devicePixelRatio || 1);
+    if (renderer.getPixelRatio() !== scale) renderer.setPixelRatio(scale);
+    renderer.setSize(see.width, see.height, false);
+    eye.aspect = see.width / see.height;
+    eye.near = 0.01 * see.distance;
+    eye.far = 20 * (see.distance + world.extent);
+    eye.up.set(...see.upward);
+    eye.position.set(...see.eye);
+    eye.lookAt(...see.middle);
+    eye.updateProjectionMatrix();
+    sun.position.set(...add(add(see.back, scaled(see.upward, 0.8)), scaled(see.right, -0.6)));
+    pencil.color.set(colours.grid);
+    const { tubes, balls } = room(frame.solids.length);
+    frame.solids.forEach(({ a, b, r, faint, ...item }, k) => {
+      const along = minusVector(b, a);
+      const length = size(along);
+      const y = length > 0 ? scaled(along, 1 / length) : [0, 0, 1];
+      const x = unitVector(cross(y, Math.abs(y[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0]));
+      const z = cross(x, y);
+      const m = scaled(add(a, b), 0.5);
+      matrix.set(r * x[0], length * y[0], r * z[0], m[0], r * x[1], length * y[1], r * z[1], m[1], r * x[2], length * y[2], r * z[2], m[2], 0, 0, 0, 1);
+      tubes.setMatrixAt(k, matrix);
+      const tint = paint(inkOf(colours, item), faint);
+      tubes.setColorAt(k, tint);
+      [a, b].forEach((p, end) => {
+        matrix.set(r, 0, 0, p[0], 0, r, 0, p[1], 0, 0, r, p[2], 0, 0, 0, 1);
+        balls.setMatrixAt(2 * k + end, matrix);
+        balls.setColorAt(2 * k + end, tint);
+      });
+    });
+    tubes.count = frame.solids.length;
+    balls.count = 2 * frame.solids.length;
+    for (const mesh of [tubes, balls]) {
+      mesh.instanceMatrix.needsUpdate = true;
+      if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
+    }
+    renderer.render(world3, eye);
+  };
+  return { canvas, draw };
+})();

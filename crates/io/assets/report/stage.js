@@ -1,0 +1,214 @@
+// The clock: one time for the picture, the graph and all plots, whoever moves it.
+
+const stage = (() => {
+  const part = (id) => document.getElementById(id);
+  const [view, slider, play, timeWords, rate, chosen] = ["view", "slider", "play", "time", "rate", "chosen"].map(part);
+  const overlay = element("canvas", { className: "over" });
+  const tip = element("p", { className: "where" });
+  view.append(...(lighting ? [lighting.canvas] : []), overlay, tip);
+  const ctx = overlay.getContext("2d");
+  const end = whole[1];
+  const now = { t: part("stage").dataset.goesOn === "true" ? end : 0, playing: false, since: 0, hovered: null, alone: null, flat: lighting === null };
+  let colours = sceneColours();
+  let asked = 0;
+  let seen = null;
+  let frames = 0;
+
+  slider.max = String(end);
+  slider.step = String(end / 2000);
+  bodies.forEach((body) => chosen.append(element("option", { value: String(body.vertex), textContent: body.name })));
+  part("choice").hidden = bodies.length < 2;
+  const hidden = (body) => body.vertex < agents.length && !shownAgents.has(body.vertex);
+
+  const draw = () => {
+    asked = 0;
+    const [width, height, scale] = [view.clientWidth, view.clientHeight, Math.min(2, devicePixelRatio || 1)];
+    if (width === 0 || height === 0) return;
+    if (overlay.width !== Math.round(width * scale)) overlay.width = Math.round(width * scale);
+    if (overlay.height !== Math.round(height * scale)) overlay.height = Math.round(height * scale);
+    ctx.setTransform(scale, 0, 0, scale, 0, 0);
+    ctx.clearRect(0, 0, width, height);
+    const frame = frameAt(now.t, hidden);
+    const see = looking(width, height, frame.nodes);
+    const heard = heardAt(now.t);
+    if (now.flat) {
+      drawUnder(ctx, see, colours);
+      drawSolids(ctx, see, frame, colours);
+    } else lighting.draw(see, frame, colours);
+    drawTrails(ctx, see, frame, colours, hidden, now.alone);
+    drawMarks(ctx, see, frame, colours, now.hovered ?? now.alone);
+    drawEdges(ctx, see, frame, colours, heard);
+    drawWords(ctx, see, frame, colours, now);
+    seen = { see, frame };
+    frames += 1;
+    timeWords.textContent = `t = ${now.t.toFixed(end >= 100 ? 1 : 2)} s of ${number(end, 5)} s`;
+    slider.value = String(now.t);
+    slider.setAttribute("aria-valuetext", `${number(now.t, 4)} seconds`);
+    graphPicture(heard);
+    const text = graphWords(heard);
+    if (part("graph-words").textContent !== text) part("graph-words").textContent = text;
+    const graphs = scene.graphs.length;
+    part("graph-when").textContent = `${graphs > 1 ? `graph ${heard.graph + 1} of ${graphs}, ` : ""}at t = ${number(now.t, 3)} s`;
+    for (const plot of plots) plot.clock?.(now.t);
+  };
+  const ask = () => {
+    if (!asked) asked = requestAnimationFrame(draw);
+  };
+  const go = (t) => {
+    now.t = Math.min(end, Math.max(0, t));
+    ask();
+  };
+
+  // Without a graphics card light and depth are slow: then the picture is projected.
+  let usual = 16;
+  const noticeSlowness = (interval) => {
+    usual += 0.1 * (Math.min(100, interval) - usual);
+    if (now.flat || usual < 40) return;
+    now.flat = true;
+    lighting.canvas.hidden = true;
+    tip.textContent += "; projected, since light and depth are slow here";
+  };
+  // Whoever asked for less motion sees a picture every half second.
+  const calm = matchMedia("(prefers-reduced-motion: reduce)");
+  const later = () => (calm.matches ? setTimeout(() => requestAnimationFrame(step), 480) : requestAnimationFrame(step));
+  const step = (stamp) => {
+    if (!now.playing) return;
+    // A frame that took long does not make time jump by more than a tenth of a second.
+    if (!calm.matches) noticeSlowness(stamp - now.since);
+    const passed = Math.min(calm.matches ? 1 : 0.1, Math.max(0, (stamp - now.since) / 1000));
+    now.since = stamp;
+    now.t = Math.min(end, now.t + passed * Number(rate.value));
+    if (asked) cancelAnimationFrame(asked);
+    draw();
+    if (now.t >= end) setPlaying(false);
+    else later();
+  };
+  const setPlaying = (on) => {
+    if (on === now.playing) return;
+    now.playing = on;
+    play.textContent = on ? "Pause" : "Play";
+    play.setAttribute("aria-pressed", String(on));
+    if (!on) return;
+    if (now.t >= end) now.t = 0;
+    now.since = performance.now();
+    later();
+  };
+  play.onclick = () => setPlaying(!now.playing);
+  slider.oninput = () => (setPlaying(false), go(Number(slider.value)));
+  chosen.onchange = () => ((now.alone = chosen.value === "" ? null : Number(chosen.value)), ask());
+  part("view-reset").onclick = () => (Object.assign(camera, FIRST_VIEW, { zoom: 1 }), ask());
+  const follow = part("follow");
+  follow.parentElement.hidden = !world.follows;
+  follow.onchange = () => ((camera.follow = follow.checked), ask());
+  part("graph-now").hidden = !scene.graphs.some((graph) => graph.length > 0);
+  // A long run plays in about half a minute, whoever does not choose.
+  rate.value = ["1", "2", "5", "20"].find((r) => end / Number(r) <= 30) ?? "20";
+
+  const zoom = (by) => ((camera.zoom = Math.min(30, Math.max(0.3, camera.zoom * by))), ask());
+  const turn = (az, el) => {
+    camera.az += az;
+    camera.el = Math.min(90, Math.max(-20, camera.el + el));
+    ask();
+  };
+  view.addEventListener("keydown", (event) => {
+    const fine = event.shiftKey ? 10 : 1;
+    const does = {
+      " ": () => setPlaying(!now.playing),
+      ArrowRight: () => go(now.t + (fine * end) / 200), ArrowLeft: () => go(now.t - (fine * end) / 200),
+      Home: () => go(0), End: () => go(end),
+      a: () => turn(-6, 0), d: () => turn(6, 0), w: () => turn(0, 6), s: () => turn(0, -6),
+      "+": () => zoom(1.2), "=": () => zoom(1.2), "-": () => zoom(1 / 1.2),
+    }[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (!does || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    does();
+  });
+  slider.addEventListener("keydown", (event) => {
+    if (event.key !== " ") return;
+    event.preventDefault();
+    setPlaying(!now.playing);
+  });
+
+  // One finger or the mouse turns, two fingers zoom; the page scrolls as ever where the picture lies flat.
+  const held = new Map();
+  let moved = false;
+  const apart = () => {
+    const [a, b] = [...held.values()];
+    return Math.hypot(a.x - b.x, a.y - b.y);
+  };
+  const nearest = (x, y) => {
+    let best = { far: 16, vertex: null };
+    for (const { body, at } of seen?.frame.nodes ?? []) {
+      const s = seen.see.project(body.kind === "arm" ? add(at, [0, 0, 0.1 * layout.reach]) : at);
+      const far = s ? Math.hypot(s.x - x, s.y - y) : Infinity;
+      if (far < best.far) best = { far, vertex: body.vertex };
+    }
+    return best.vertex;
+  };
+  overlay.addEventListener("pointerdown", (event) => {
+    held.set(event.pointerId, { x: event.clientX, y: event.clientY });
+    moved = false;
+    overlay.setPointerCapture(event.pointerId);
+  });
+  overlay.addEventListener("pointermove", (event) => {
+    const before = held.get(event.pointerId);
+    const here = { x: event.clientX, y: event.clientY };
+    if (!before) {
+      const box = overlay.getBoundingClientRect();
+      const vertex = nearest(here.x - box.left, here.y - box.top);
+      if (vertex !== now.hovered) (now.hovered = vertex), ask();
+      return;
+    }
+    const wide = held.size === 2 ? apart() : 0;
+    held.set(event.pointerId, here);
+    if (Math.hypot(here.x - before.x, here.y - before.y) > 1) moved = true;
+    if (held.size === 2) zoom(apart() / Math.max(1, wide));
+    else turn(-0.4 * (here.x - before.x), 0.4 * (here.y - before.y));
+  });
+  const release = (event) => {
+    if (!held.delete(event.pointerId) || moved || event.type !== "pointerup") return;
+    const box = overlay.getBoundingClientRect();
+    const vertex = nearest(event.clientX - box.left, event.clientY - box.top);
+    now.alone = vertex === now.alone ? null : vertex;
+    chosen.value = now.alone === null ? "" : String(now.alone);
+    ask();
+  };
+  overlay.addEventListener("pointerup", release);
+  overlay.addEventListener("pointercancel", release);
+  overlay.addEventListener("pointerleave", () => ((now.hovered = null), ask()));
+  overlay.addEventListener("wheel", (event) => {
+    if (!event.ctrlKey) return;
+    event.preventDefault();
+    zoom(Math.exp(-0.004 * event.deltaY));
+  }, { passive: false });
+
+  const describe = () => {
+    const kinds = [...new Set(bodies.map((b) => b.kind))].join(", ");
+    view.setAttribute("aria-label", `${bodies.length} in space (${kinds})${scene.leader ? `, led by ${scene.leader.name}` : ""}; turn and time by keys`);
+    const unit = bodies.some((b) => b.kind !== "point") ? " m" : ` ${[...new Set(agents.flatMap((a) => a.axes.map((x) => x.units.q)))].join(" or ")}`;
+    const symbolic = bodies.some((b) => b.kind === "ship" || b.kind === "vehicle") ? "; bodies not to scale" : "";
+    tip.textContent = railed ? "each on a line of its own" : floorGrid.step ? `squares of ${number(floorGrid.step, 2)}${unit}${symbolic}` : "";
+  };
+  describe();
+  const themed = () => ((colours = sceneColours()), ask());
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", themed);
+  let flatBefore = now.flat;
+  addEventListener("beforeprint", () => ((flatBefore = now.flat), (now.flat = true), lighting && (lighting.canvas.hidden = true), (colours = sceneColours()), draw()));
+  addEventListener("afterprint", () => ((now.flat = flatBefore), lighting && (lighting.canvas.hidden = flatBefore), themed()));
+  lighting?.canvas.addEventListener("webglcontextlost", () => ((now.flat = true), (lighting.canvas.hidden = true), ask()));
+  new ResizeObserver(ask).observe(view);
+  draw();
+  return { go, ask, now, end, frames: () => frames, playing: () => now.playing };
+})();
+stageGo = (t) => !stage.playing() && stage.go(t);
+stageAsk = stage.ask;
+// For tests: where bodies are, as they are drawn.
+Object.assign(document.getElementById("stage"), {
+  frames: stage.frames,
+  go: stage.go,
+  time: () => stage.now.t,
+  flat: () => stage.now.flat,
+  tips: (t) => bodies.map((body) => trailPoint(body, data.place("scene", t))),
+  recorded: (row) => bodies.map((body) => ({ coordinates: body.coordinates, base: layout.bases.get(body) ?? null, tip: read(body.tip, { row, part: 0 }) })),
+  times: () => sceneTimes,
+});

@@ -1,0 +1,54 @@
+//! The top of the page: the network in space with its clock, the verdict, the graph at that instant, and what is to vanish.
+
+use maud::{Markup, html};
+
+use super::super::metrics::{Absence, Gap, Metrics};
+use super::super::record::RunRecord;
+use super::{card, sections};
+
+/// How fast time may pass, by its share of real time.
+const RATES: [(&str, &str); 6] = [("0.1", "⅒"), ("0.5", "½"), ("1", "1"), ("2", "2"), ("5", "5"), ("20", "20")];
+
+/// Space and clock on one side; verdict, plot and graph on the other. The script fills what is empty.
+pub(super) fn stage(record: &RunRecord<'_>, metrics: &Metrics, absence: Option<Absence>, goes_on: bool) -> Markup {
+    let gap = Gap::of(record.setup);
+    html! {
+        section #stage aria-label="The network in space and time" data-goes-on=(goes_on) {
+            div.card.space {
+                div #view tabindex="0" role="application" aria-roledescription="picture in space" aria-describedby="view-help" {
+                    div.corner {
+                        label { input #follow type="checkbox" checked; " follow" }
+                        button #view-reset type="button" { "Reset view" }
+                    }
+                }
+                div.clock {
+                    button #play type="button" aria-pressed="false" { "Play" }
+                    input #slider type="range" min="0" max="1000" value="0" step="any" aria-label="Simulated time" aria-describedby="view-help";
+                    output #time for="slider" { "t = 0 s" }
+                    label { "rate " select #rate {
+                        @for (value, words) in RATES { option value=(value) selected[value == "1"] { (words) " ×" } }
+                    } }
+                    label #choice { "agent " select #chosen { option value="" { "all" } } }
+                }
+                details { summary { "Keys and gestures" } p.note #view-help {
+                    "Space plays and pauses; ← and → move in time, with Shift faster; Home and End go to the start and the end. "
+                    "Drag or W, A, S, D turn the picture, the wheel with Ctrl, two fingers, + and − zoom. Plots follow the same clock: \
+                     point at one to go to that time."
+                } }
+                noscript { p.note { "The picture needs JavaScript." } }
+            }
+            div.beside-space {
+                div.card.verdict {
+                    (sections::promised(record))
+                    (sections::figures(record, metrics))
+                }
+                (card("disagreement", gap.name(), gap.formula(), absence.map_or("", Absence::words)))
+                div.card #graph-now {
+                    div.head { h3 { "Who hears whom" span.by #graph-when {} } }
+                    div #graph-picture {}
+                    p.note #graph-words {}
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,201 @@
+#!/usr/bin/env python3
+"""Runs scenarios and drives the top of their reports in a headless chromium: the picture in space, its clock, and the plots.
+
+    validation/browser/stage.py target/release/forwardstep [SECONDS_OF_PLAY]
+
+Status 77 where chromium or chromedriver is not there. Needs nothing but Python.
+"""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+import webdriver
+
+# What the browser computes from joint values of single precision, beside what the run recorded of the tip.
+TOLERANCE_M = 1e-6
+FRAMES_PER_S = 30
+
+POINTS = """format = 2
+title = "</script><img src=x onerror=alert(1)> {count} & more"
+time = {{ end_s = 4, record_every_s = 0.1 }}
+[[agents]]
+name = "point"
+count = {count}
+robot.point_mass = {{ mass_kg = 1.0, dimension = 2 }}
+start.position_m = {{ random = {{ seed = 1, within = [-1.0, 1.0] }} }}
+[reference.consensus]
+roots_per_s = [1.0, 2.0]
+exchange = "position_velocity"
+[law.known]
+[network]
+delay.constant_s = 0.1
+edges.ring = {{}}
+"""
+
+problems = []
+checked = 0
+
+
+def expect(holds, what):
+    global checked
+    checked += 1
+    if not holds:
+        problems.append(what)
+        print(f"FAILED {what}")
+
+
+def value(browser, expression):
+    return browser.run(f'const s = document.getElementById("stage"); return {expression}')
+
+
+def settled(browser, t):
+    browser.run('document.getElementById("stage").go(arguments[0])', t)
+    time.sleep(0.15)
+
+
+def quiet(browser, name):
+    complaints = browser.complaints()
+    expect(not complaints, f"{name}: the console says {complaints[:2]}")
+    expect(value(browser, 'document.getElementById("error-banner").textContent') == "", f"{name}: an error banner")
+
+
+def fits(browser, name, width):
+    expect(value(browser, "document.documentElement.scrollWidth") <= width, f"{name}: wider than {width} px")
+
+
+def clock(browser, name):
+    """Slider, keys, play, and cursor: one clock."""
+    end = float(value(browser, 'document.getElementById("slider").max'))
+    before = value(browser, "s.tips(0)")
+    browser.run('const r = document.getElementById("slider"); r.value = r.max / 2; r.dispatchEvent(new Event("input"))')
+    time.sleep(0.15)
+    expect(abs(value(browser, "s.time()") - end / 2) < end / 100, f"{name}: the slider sets no time")
+    expect(value(browser, f"s.tips({end / 2})") != before, f"{name}: nothing moves")
+    shift = value(browser, '[...document.querySelectorAll(".clock-line")].map((l) => l.style.transform).join()')
+    settled(browser, end / 4)
+    expect(shift != value(browser, '[...document.querySelectorAll(".clock-line")].map((l) => l.style.transform).join()'), f"{name}: plots do not follow")
+    browser.run('document.getElementById("view").focus()')
+    browser.press("End")
+    time.sleep(0.15)
+    expect(value(browser, "s.time()") == end, f"{name}: the key End")
+    browser.press("ArrowLeft")
+    time.sleep(0.15)
+    expect(value(browser, "s.time()") < end, f"{name}: the left arrow")
+    over = 'document.querySelector("[data-plot=disagreement] .u-over")'
+    if value(browser, f"{over} !== null"):
+        x, y, wide = value(browser, f"(({{x, y, width, height}}) => [x, y + height / 2, width])({over}.getBoundingClientRect())")
+        browser.point(x + 0.7 * wide, y)
+        time.sleep(0.2)
+        expect(abs(value(browser, "s.time()") - 0.7 * end) < 0.02 * end, f"{name}: the cursor of a plot is not the clock")
+        browser.point(1, 1)
+    settled(browser, 0)
+    browser.run('document.getElementById("view").focus()')
+    browser.press("Space")
+    time.sleep(0.6)
+    browser.press("Space")
+    stopped = value(browser, "s.time()")
+    expect(stopped > 0, f"{name}: play does not play")
+    time.sleep(0.3)
+    expect(value(browser, "s.time()") == stopped, f"{name}: pause does not pause")
+
+
+def tips(browser, name):
+    """What is drawn beside what the run recorded of the tip, at every row."""
+    rows, worst = int(value(browser, "s.times().length")), 0.0
+    for row in range(0, rows, max(1, rows // 60)):
+        drawn, recorded = value(browser, f"[s.tips(s.times()[{row}]), s.recorded({row})]")
+        for tip, own in zip(drawn, recorded):
+            for axis, x in zip(own["coordinates"], own["tip"]):
+                worst = max(worst, abs(tip[axis] - own["base"][axis] - x))
+    expect(0.0 < worst < TOLERANCE_M, f"{name}: tips are drawn {worst} m from where they are")
+    print(f"ok     {name}: tips within {worst:.1e} m of the library's")
+
+
+def speed(browser, name, seconds):
+    settled(browser, 0)
+    # What is too slow with light and depth is projected within the first pictures.
+    browser.run('document.getElementById("play").click()')
+    time.sleep(1)
+    browser.run('document.getElementById("play").click()')
+    before, begun = value(browser, "s.frames()"), time.monotonic()
+    browser.run('document.getElementById("play").click()')
+    time.sleep(seconds)
+    rate = (value(browser, "s.frames()") - before) / (time.monotonic() - begun)
+    browser.run('document.getElementById("play").click()')
+    drawn = "projected" if value(browser, "s.flat()") else "with WebGL"
+    print(f"{'ok    ' if rate >= FRAMES_PER_S else 'slow  '} {name}: {rate:.0f} frames per second, {drawn}")
+    return rate
+
+
+def main():
+    tools = webdriver.found()
+    if tools is None:
+        print("skipped: no browser (chromium and chromedriver)")
+        return 77
+    program = pathlib.Path(sys.argv[1]).resolve()
+    seconds = float(sys.argv[2]) if len(sys.argv) > 2 else 3.0
+    with tempfile.TemporaryDirectory() as folder, webdriver.Browser(*tools) as browser:
+        folder = pathlib.Path(folder)
+
+        def run(name, scenario=None):
+            done = subprocess.run([program, "run", scenario or name, "--out", folder / name], capture_output=True, text=True, check=False)
+            page = folder / name / "report.html"
+            if not page.exists():
+                sys.exit(f"{name}: {done.stderr}")
+            return page
+
+        for name in ["six-arms", "formation", "theorem-7", "theorem-8", "five-ships", "strict-feedback", "task-space-ur5e"]:
+            page = run(name)
+            for query in ["", "?flat"]:
+                for dark in [False, True]:
+                    browser.screen(1400, 900, dark=dark)
+                    browser.open(page, query)
+                    about = f"{name}{query}{' dark' if dark else ''}"
+                    flat = query or name in ["five-ships", "strict-feedback"]
+                    expect(value(browser, "s.flat()") == bool(flat), f"{about}: drawn in the other way")
+                    for part in ["view", "slider", "graph-now"] + ([] if dark else ["time"]):
+                        bottom = value(browser, f'document.getElementById("{part}").getBoundingClientRect().bottom')
+                        expect(bottom <= 990, f"{about}: {part} ends at {bottom} px")
+                    if not dark:
+                        clock(browser, about)
+                    quiet(browser, about)
+                    fits(browser, about, 1400)
+            browser.screen(390, 844, touch=True, calm=True)
+            browser.open(page)
+            fits(browser, f"{name} on a phone", 390)
+            quiet(browser, f"{name} on a phone")
+            print(f"ok     {name}: opened" if not problems else f"       {name}: opened")
+        browser.screen(1400, 900)
+        for name in ["theorem-6", "task-space-ur5e", "pose-ur5e", "redundant-panda"]:
+            browser.open(run(name))
+            tips(browser, name)
+        browser.open(folder / "theorem-8" / "report.html")
+        expect(value(browser, '[...document.querySelectorAll(".now text")].some((e) => e.textContent.includes("leads"))'), "no leader in the graph")
+        ten = folder / "ten.toml"
+        text = subprocess.run([program, "scenarios", "six-arms"], capture_output=True, text=True, check=True).stdout
+        ten.write_text(text.replace("count = 6 ", "count = 10 "))
+        page = run("ten", ten)
+        size = page.stat().st_size
+        expect(size <= 5_000_000, f"ten arms for 60 s take {size} bytes")
+        for query in ["", "?flat"]:
+            browser.open(page, query)
+            expect(value(browser, "s.tips(0).length") == 10, "ten arms: not all are there")
+            rate = speed(browser, f"ten arms{query}", seconds)
+            # Of a machine that does other things at the same time less is asked.
+            expect(rate >= FRAMES_PER_S / 2, f"ten arms{query}: {rate:.0f} frames per second")
+        for count in [12, 1000]:
+            scenario = folder / f"points-{count}.toml"
+            scenario.write_text(POINTS.format(count=count))
+            browser.open(run(f"points-{count}", scenario))
+            expect(value(browser, "s.tips(0).length") == count, f"{count} points: not all are there")
+            quiet(browser, f"{count} points, with a hostile title")
+            speed(browser, f"{count} points", seconds)
+    print(f"{checked} checks, {len(problems)} failed")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
