@@ -53,7 +53,7 @@ fn check(chapter: &str, folder: &Path, lines: &[&str]) {
         assert_eq!(status, wanted.unwrap_or(0), "{chapter}: {command}\n{text}");
         let mut rest = text.as_str();
         for line in expected.lines().filter(|line| *line != "..." && !line.starts_with("(exit status ")) {
-            let part = line.trim_start_matches("...").trim_end();
+            let part = line.trim_start_matches("...").trim_end_matches("...").trim_end();
             let Some(at) = rest.find(part) else {
                 panic!("{chapter}: `{command}` does not print\n{part}\nafter what came before, but\n{text}");
             };

@@ -8,6 +8,7 @@
 //! - points of a table, joined by the smoothest curve through them: bounds of polynomials, which are exact for ever. It has four
 //!   derivatives, the others as many as are asked for.
 
+mod norm;
 mod pieces;
 mod spline;
 
@@ -19,14 +20,13 @@ use thiserror::Error;
 
 use crate::formula::{Witness, times_s};
 
+pub use norm::LeastNorm;
 pub(crate) use pieces::Pieces;
 pub use spline::{Spline, SplineError};
 
 /// Bounds this close to values that are taken are close enough, as a part of the range: the fine end of what a gain is
 /// compared with.
 const CLOSE: f64 = 1e-6;
-/// So many times as long as a run it is looked for a norm that vanishes.
-const MOST_LATER: f64 = 1e3;
 /// Room for the roundings of a few operations.
 const ROUNDING: f64 = 1e-12;
 
@@ -61,27 +61,6 @@ pub enum Path {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {
     paths: Vec<Path>,
-}
-
-/// Where a motion was seen nearest to zero.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LeastNorm {
-    /// When, s.
-    pub t_s: f64,
-    /// Its norm there.
-    pub norm: f64,
-    /// The largest norm that was seen.
-    pub largest: f64,
-    /// How far apart the looks are, s.
-    pub every_s: f64,
-}
-
-impl LeastNorm {
-    /// Whether this is zero, as far as a direction can be told: less than a millionth of the largest, where a direction that turns
-    /// with the motion turns a million times as fast.
-    pub fn vanishes(&self) -> bool {
-        self.norm <= 1e-6 * self.largest
-    }
 }
 
 /// Why paths make no trajectory.
@@ -340,45 +319,6 @@ impl Trajectory {
     /// Four axes from this one on, as the quaternion of a pose; nothing where there are fewer.
     pub fn quaternion(&self, first: usize) -> Option<Trajectory> {
         Some(Trajectory { paths: self.paths.get(first..first.checked_add(4)?)?.to_vec() })
-    }
-
-    /// Looks at the norm of all axes together, 2001 times from 0 to `end_s`.
-    pub fn least_norm(&self, end_s: f64) -> LeastNorm {
-        const PARTS: u32 = 2000;
-        let every_s = end_s / f64::from(PARTS);
-        let mut seen = LeastNorm { t_s: 0.0, norm: f64::INFINITY, largest: 0.0, every_s };
-        let mut jets = vec![[0.0; 5]; self.axes()];
-        for k in 0..=PARTS {
-            let t_s = end_s * f64::from(k) / f64::from(PARTS);
-            self.jets(t_s, &mut jets);
-            let norm = jets.iter().map(|jet| jet[0] * jet[0]).sum::<f64>().sqrt();
-            seen.largest = seen.largest.max(norm);
-            if norm < seen.norm {
-                (seen.norm, seen.t_s) = (norm, t_s);
-            }
-        }
-        seen
-    }
-
-    /// Where the norm vanishes after `end_s`, as far as it is found by looking for its minima, without proof.
-    pub fn vanishes_later(&self, end_s: f64) -> Option<LeastNorm> {
-        let square = |value: f64| value * value;
-        let norm = |t_s: f64| self.paths.iter().map(|path| square(path.jet(t_s)[0])).sum::<f64>().sqrt();
-        let times_s: Vec<f64> = times_s(end_s).filter(|t_s| *t_s >= end_s && *t_s <= MOST_LATER * end_s).collect();
-        let largest = times_s.iter().map(|t_s| norm(*t_s)).fold(0.0, f64::max);
-        times_s.windows(3).find_map(|around| {
-            let [left, middle, right] = [around[0], around[1], around[2]];
-            if norm(middle) > norm(left) || norm(middle) > norm(right) {
-                return None;
-            }
-            let (mut left, mut right) = (left, right);
-            for _ in 0..100 {
-                let third = (right - left) / 3.0;
-                if norm(left + third) < norm(right - third) { right -= third } else { left += third }
-            }
-            let found = LeastNorm { t_s: left, norm: norm(left), largest, every_s: right - left };
-            found.vanishes().then_some(found)
-        })
     }
 
     /// m.

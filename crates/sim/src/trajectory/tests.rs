@@ -202,3 +202,23 @@ proptest! {
         prop_assert!(part.high - high <= 0.05 * (part.high - part.low) + 1e-9 + 0.05 * part.size(), "{:?} {} {}", part, low, high);
     }
 }
+
+/// cos t passes zero between looks, |cos t| + 0.01 does not reach it, and a wave that grows is nearest to zero at the start.
+#[test]
+fn a_norm_that_passes_zero_between_two_looks_vanishes() {
+    let t = || Expression::variable(0);
+    let of = |value: Expression| {
+        let zero = || Path::Formula(Expression::number(0.0));
+        Trajectory::new(vec![zero(), zero(), zero(), Path::Formula(value)]).unwrap()
+    };
+    for (rate, end_s) in [(1.0, 60.0), (7.3, 10.0), (0.03, 60.0)] {
+        let crossing = of((t() * rate).cos_of()).least_norm(end_s);
+        assert!(crossing.vanishes(), "{crossing:?}");
+        let turns = crossing.t_s * rate / std::f64::consts::FRAC_PI_2;
+        assert!((turns - 1.0).abs() < 1e-6, "the first crossing: {crossing:?}");
+    }
+    let above = of((t().cos_of() * t().cos_of() + 1e-4).sqrt_of()).least_norm(60.0);
+    assert!(!above.vanishes() && (above.norm - 0.01).abs() < 1e-3, "{above:?}");
+    let growing = of(t() + 0.5).least_norm(60.0);
+    assert_eq!((growing.t_s, growing.norm), (0.0, 0.5));
+}

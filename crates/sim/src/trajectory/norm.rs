@@ -1,0 +1,94 @@
+//! Where the norm of a motion is least: a quaternion of any length is an attitude unless that is zero.
+
+use super::{Path, Trajectory};
+use crate::formula::times_s;
+
+/// Looks at a run.
+const PARTS: u32 = 2000;
+/// So many times as long as a run it is looked for a norm that vanishes.
+const MOST_LATER: f64 = 1e3;
+
+/// Where a motion was seen nearest to zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeastNorm {
+    /// When, s.
+    pub t_s: f64,
+    /// Its norm there.
+    pub norm: f64,
+    /// The largest norm that was seen.
+    pub largest: f64,
+    /// How far apart the looks are, s.
+    pub every_s: f64,
+}
+
+impl LeastNorm {
+    /// Whether this is zero, as far as a direction can be told: less than a millionth of the largest, where a direction that turns
+    /// with the motion turns a million times as fast.
+    pub fn vanishes(&self) -> bool {
+        self.norm <= 1e-6 * self.largest
+    }
+}
+
+impl Trajectory {
+    /// The norm of all axes together.
+    fn norm(&self, t_s: f64) -> f64 {
+        let square = |path: &Path| {
+            let value = path.jet(t_s)[0];
+            value * value
+        };
+        self.paths.iter().map(square).sum::<f64>().sqrt()
+    }
+
+    /// Looks at the norm of all axes together, 2001 times from 0 to `end_s`, and closer where it may pass zero between two looks: the
+    /// first such time is what is found, where there is one.
+    pub fn least_norm(&self, end_s: f64) -> LeastNorm {
+        let every_s = end_s / f64::from(PARTS);
+        let looks: Vec<[f64; 2]> =
+            (0..=PARTS).map(|k| end_s * f64::from(k) / f64::from(PARTS)).map(|t_s| [t_s, self.norm(t_s)]).collect();
+        let mut seen = LeastNorm { t_s: 0.0, norm: f64::INFINITY, largest: 0.0, every_s };
+        for &[t_s, norm] in &looks {
+            seen.largest = seen.largest.max(norm);
+            if norm < seen.norm {
+                seen = LeastNorm { t_s, norm, ..seen };
+            }
+        }
+        for around in looks.windows(3) {
+            let [[left, before], [_, here], [right, after]] = [around[0], around[1], around[2]];
+            // It falls on no further than it fell, or than it will rise: less would be a corner.
+            let reaches = here - (before - here).max(after - here);
+            if here <= before && here <= after && reaches <= 0.0 {
+                let t_s = self.least_between(left, right);
+                let closer = LeastNorm { t_s, norm: self.norm(t_s), ..seen };
+                if closer.vanishes() {
+                    return closer;
+                }
+                seen = if closer.norm < seen.norm { closer } else { seen };
+            }
+        }
+        seen
+    }
+
+    /// Where the norm vanishes after `end_s`, as far as it is found by looking for its minima, without proof.
+    pub fn vanishes_later(&self, end_s: f64) -> Option<LeastNorm> {
+        let times_s: Vec<f64> = times_s(end_s).filter(|t_s| *t_s >= end_s && *t_s <= MOST_LATER * end_s).collect();
+        let largest = times_s.iter().map(|t_s| self.norm(*t_s)).fold(0.0, f64::max);
+        times_s.windows(3).find_map(|around| {
+            let [left, middle, right] = [around[0], around[1], around[2]];
+            if self.norm(middle) > self.norm(left) || self.norm(middle) > self.norm(right) {
+                return None;
+            }
+            let t_s = self.least_between(left, right);
+            let found = LeastNorm { t_s, norm: self.norm(t_s), largest, every_s: right - left };
+            found.vanishes().then_some(found)
+        })
+    }
+
+    /// Where the norm is least between two times, if it has one minimum there.
+    fn least_between(&self, mut left: f64, mut right: f64) -> f64 {
+        for _ in 0..100 {
+            let third = (right - left) / 3.0;
+            if self.norm(left + third) < self.norm(right - third) { right -= third } else { left += third }
+        }
+        left
+    }
+}
