@@ -54,6 +54,9 @@ impl Trajectory {
         }
         for around in looks.windows(3) {
             let [[left, before], [_, here], [right, after]] = [around[0], around[1], around[2]];
+            if seen.vanishes() && seen.t_s <= right {
+                break;
+            }
             // It falls on no further than it fell, or than it will rise: less would be a corner.
             let reaches = here - (before - here).max(after - here);
             if here <= before && here <= after && reaches <= 0.0 {

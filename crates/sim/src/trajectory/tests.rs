@@ -219,6 +219,8 @@ fn a_norm_that_passes_zero_between_two_looks_vanishes() {
     }
     let above = of((t().cos_of() * t().cos_of() + 1e-4).sqrt_of()).least_norm(60.0);
     assert!(!above.vanishes() && (above.norm - 0.01).abs() < 1e-3, "{above:?}");
+    let nothing = of(Expression::number(0.0)).least_norm(60.0);
+    assert_eq!((nothing.t_s, nothing.vanishes()), (0.0, true));
     let growing = of(t() + 0.5).least_norm(60.0);
     assert_eq!((growing.t_s, growing.norm), (0.0, 0.5));
 }
