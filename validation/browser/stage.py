@@ -173,7 +173,7 @@ def main():
             browser.open(run(name))
             tips(browser, name)
         browser.open(folder / "theorem-8" / "report.html")
-        expect(value(browser, '[...document.querySelectorAll(".now text")].some((e) => e.textContent.includes("leads"))'), "no leader in the graph")
+        expect(value(browser, '[...document.querySelectorAll(".now text")].some((e) => e.textContent.includes("leader"))'), "no leader in the graph")
         ten = folder / "ten.toml"
         text = subprocess.run([program, "scenarios", "six-arms"], capture_output=True, text=True, check=True).stdout
         ten.write_text(text.replace("count = 6 ", "count = 10 "))
