@@ -38,7 +38,7 @@ impl Expansion {
         let Some(((robot, gains), dynamics)) = parts else { return Ok(None) };
         let reference = Affine { dynamics, axes: own.robot.axes.len() };
         let derivatives = reference.determined()?;
-        // A value alone is computed, whatever they are, unless they say that they are not.
+        // A value alone is computed, whatever they are; those that say they are not affine may hold the time, which is not known here.
         if !reference.says_affine() || derivatives > 1 && !reference.is_affine()? {
             return Ok(None);
         }

@@ -3,9 +3,11 @@
 use std::sync::Arc;
 
 use forwardstep_check::smoothness::Covered;
-use forwardstep_core::reference::{AxisInput, AxisOutput, PerAxis, Position};
+use forwardstep_core::expression::Expression;
+use forwardstep_core::reference::{AxisInput, AxisOutput, PerAxis, Position, WrittenIn};
 use forwardstep_sim::reference::{
-    Backstepping, Dynamics, LinearReference, ReferenceDynamics, ReferenceFamily, ReferenceInterface, ReferenceWords,
+    Backstepping, Desired, DesiredPolynomial, Dynamics, LinearReference, Protocol, ReferenceDynamics, ReferenceFamily,
+    ReferenceInterface, ReferenceWords,
 };
 use forwardstep_sim::system::{Declaration, Known as Knowledge};
 use forwardstep_sim::{AgentSetup, Assembly, Exchange, Setup, SetupError, Signal};
@@ -71,5 +73,39 @@ fn own_reference_dynamics_show_themselves_how_many_derivatives_stay() {
         assert!(smoothness.largest(kind, 1).unwrap().size > 0.1);
         let sides = smoothness.jumps.iter().flat_map(|jump| &jump.derivatives).flatten().map(|change| change.sides);
         assert!({ sides }.all(|sides| sides.is_none() == bent));
+    }
+}
+
+/// A nonlinear protocol with the time in it jumps as the run does; it is not expanded, and the first variation tells.
+#[test]
+fn eq_43_the_torque_of_a_nonlinear_protocol_jumps_as_along_the_run() {
+    let x = Expression::variable;
+    for order in [2, 3] {
+        let (heard, weights, t) = (x(order), x(order + 1), x(order + 2));
+        let swell = Expression::number(2.0) + (t * 3.0).sin_of();
+        let desired = Desired {
+            polynomial: DesiredPolynomial::Coefficients([0.0, 2.0, 3.0][..order].to_vec()),
+            coupling: None,
+            heard: Vec::new(),
+            follows_target: false,
+            written: WrittenIn::Measured,
+            protocol: Some(Protocol {
+                term: swell * ((heard - weights * x(0)) * 2.0).tanh_of(),
+                stable_because: None,
+                input_to_state_stable_because: None,
+            }),
+        };
+        let mut setup = arms(Exchange::Position, 2);
+        setup.agents.iter_mut().for_each(|agent| agent.roots_per_s.clear());
+        setup.reference = Arc::new(desired);
+        let smoothness = compare(&setup, 2, false);
+        let sizes = |r: usize| {
+            let jumps = smoothness.jumps.iter().filter_map(|jump| jump.derivatives.get(r)).flatten();
+            jumps.map(|change| change.jump.abs()).fold(0.0, f64::max)
+        };
+        assert!(sizes(order - 2) > 0.1, "{order}: {}", sizes(order - 2));
+        assert!((0..order - 2).all(|r| sizes(r) == 0.0), "{order}");
+        let mut sides = smoothness.jumps.iter().flat_map(|jump| &jump.derivatives).flatten().map(|change| change.sides);
+        assert!(sides.all(|sides| sides.is_none()));
     }
 }

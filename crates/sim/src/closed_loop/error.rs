@@ -109,7 +109,7 @@ pub enum SetupError {
         "agent `{agent}`: a robot that is no chain follows its target by linear desired dynamics, without a nonlinear protocol: leave \
          `nonlinear` out, leave out the target, or write the robot as a `chain`"
     )]
-    ProtocolOfChains {
+    ProtocolBesideTarget {
         /// The agent.
         agent: String,
     },

@@ -197,7 +197,7 @@ impl ReferenceDynamics for Desired {
         for agent in &setup.agents {
             let (order, least) = (dynamics.order(), plant_order(agent));
             if !linear && self.follows_target && !agent.robot.kind.is::<ChainModel>() {
-                return Err(SetupError::ProtocolOfChains { agent: agent.name.clone() });
+                return Err(SetupError::ProtocolBesideTarget { agent: agent.name.clone() });
             }
             if order < least {
                 return Err(SetupError::DesiredOrder { agent: agent.name.clone(), order, least });

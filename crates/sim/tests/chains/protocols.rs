@@ -136,7 +136,7 @@ fn nonlinear_protocols_without_meaning_are_refused() {
     // Without a target there is no variable beyond the weights but t.
     assert!(matches!(refused(chains(), nonlinear(4, x(7))), SetupError::Desired { .. }));
     let beside = Desired { follows_target: true, ..nonlinear(3, -x(0)) };
-    assert!(matches!(refused(consensus_of_masses(1.0), beside), SetupError::ProtocolOfChains { .. }));
+    assert!(matches!(refused(consensus_of_masses(1.0), beside), SetupError::ProtocolBesideTarget { .. }));
 }
 
 /// With m = 1 a robot has ṡ = −K s, as a chain of integrators has under feedback linearisation: both take the same protocol the same way,

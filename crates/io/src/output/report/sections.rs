@@ -51,24 +51,24 @@ pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -
 pub(crate) fn figures(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
     let setup = record.setup;
     html! {
-            dl.figures {
-                @match metrics.disagreement {
-                    Disagreement::Measured { last, .. } => {
-                        (figure(&final_gap(setup), &number(last), &names::gap_unit(setup)))
-                    }
-                    Disagreement::Absent(_) => (figure(&final_gap(setup), "–", "")),
+        dl.figures {
+            @match metrics.disagreement {
+                Disagreement::Measured { last, .. } => {
+                    (figure(&final_gap(setup), &number(last), &names::gap_unit(setup)))
                 }
-                @if let Some(t_s) = metrics.settled_s { (figure("Settled after", &number(t_s), "s")) }
-                @if let Some(speed) = metrics.speed {
-                    (figure("Largest speed", &number(speed.largest.value), &unit_at(setup, Signal::Velocity, speed.largest.agent, speed.largest.axis)))
-                }
-                @let peaks = metrics.peak_torques.iter();
-                @if let Some(peak) = peaks.reduce(|a, b| if b.value.abs() > a.value.abs() { b } else { a }) {
-                    (figure("Peak torque", &number(peak.value.abs()), &unit_at(setup, Signal::Torque, peak.agent, peak.axis)))
-                }
-                @if let Some(balance) = metrics.balance_residual { (figure("Balance residual", &number(balance.relative), "")) }
-                (figure("Agents", &setup.agents.len().to_string(), ""))
+                Disagreement::Absent(_) => (figure(&final_gap(setup), "–", "")),
             }
+            @if let Some(t_s) = metrics.settled_s { (figure("Settled after", &number(t_s), "s")) }
+            @if let Some(speed) = metrics.speed {
+                (figure("Largest speed", &number(speed.largest.value), &unit_at(setup, Signal::Velocity, speed.largest.agent, speed.largest.axis)))
+            }
+            @let peaks = metrics.peak_torques.iter();
+            @if let Some(peak) = peaks.reduce(|a, b| if b.value.abs() > a.value.abs() { b } else { a }) {
+                (figure("Peak torque", &number(peak.value.abs()), &unit_at(setup, Signal::Torque, peak.agent, peak.axis)))
+            }
+            @if let Some(balance) = metrics.balance_residual { (figure("Balance residual", &number(balance.relative), "")) }
+            (figure("Agents", &setup.agents.len().to_string(), ""))
+        }
     }
 }
 
