@@ -25,11 +25,12 @@
 # What has not to be trusted: forwardstep, floating point (decimals are rational numbers here, functions are enclosed by rational
 # Taylor sums that are rounded outwards), and digests (they only say which files were meant).
 
-import argparse, ast, collections, csv, functools, hashlib, io, itertools, json, math, re, sys, tomllib
+import argparse, ast, collections, csv, functools, hashlib, io, itertools, json, math, re, signal, sys, tomllib
 import xml.etree.ElementTree as ElementTree
 from fractions import Fraction
 from pathlib import Path
 
+sys.setrecursionlimit(5_000)
 FORMAT, SHIPPED_ROBOTS = 1, Path(__file__).resolve().parent.parent / "crates" / "io" / "robots"
 ACCEPTED, REJECTED, UNCHECKED = "accepted", "rejected", "could not check"
 HOLDS, ON_RUN, VIOLATED = "holds", "holds on [0, end]", "violated"
@@ -47,8 +48,7 @@ class Rejected(Exception):
         self.place = place
 
 def require(node, condition, words):
-    if not condition:
-        raise Rejected(words, node.place)
+    if not condition: raise Rejected(words, node.place)
 
 # Something that cannot be checked here.
 class Undecided(Exception): outcome = UNCHECKED
@@ -84,8 +84,7 @@ class Node(collections.namedtuple("Node", "value place")):
 
     # Refuses fields that nothing reads: what stands in a certificate counts.
     def only(self, *keys):
-        for key in self.typed(dict, "an object"):
-            require(self, key in keys, f"has `{key}`, which means nothing here")
+        for key in self.typed(dict, "an object"): require(self, key in keys, f"has `{key}`, which means nothing here")
 
     def each(self): return [Node(value, f"{self.place}[{k}]") for k, value in enumerate(self.typed(list, "a list"))]
 
@@ -102,8 +101,7 @@ class Node(collections.namedtuple("Node", "value place")):
 
 # The document as a node. Numbers in it are whole or stand in quotes, so that none is rounded on the way.
 def read_certificate(text):
-    def no(words):
-        raise Rejected(words, "certificate")
+    def no(words): raise Rejected(words, "certificate")
 
     try:
         return Node(json.loads(
@@ -115,20 +113,17 @@ def read_certificate(text):
         no(f"is not JSON, or nested too deeply: {error}")
 
 def read_toml(text):
-    try:
-        return tomllib.loads(text, parse_float=decimal)
+    try: return tomllib.loads(text, parse_float=decimal)
     except (RecursionError, ValueError) as error:
         raise Meaningless(f"is not TOML, or nested too deeply: {error}") from None
 
 # `value`, which has a meaning under this condition.
 def such(condition, words, value=None):
-    if not condition:
-        raise Meaningless(words)
+    if not condition: raise Meaningless(words)
     return value
 
 def decided(condition, words):
-    if not condition:
-        raise Undecided(words)
+    if not condition: raise Undecided(words)
 
 # A number of a scenario.
 def exact(value, where):
@@ -142,8 +137,7 @@ def not_negative(value, where): return such((x := exact(value, where)) >= 0, f"{
 # A table; one with keys that are not known here may mean something that is not known here.
 def table(value, where, keys=None):
     such(isinstance(value, dict), f"{where} must be a table")
-    for key in value if keys is not None else ():
-        known(key, keys.split(), f"entries of {where}")
+    for key in value if keys is not None else (): known(key, keys.split(), f"entries of {where}")
     return value
 
 def listed(value, where): return such(isinstance(value, list) and value, f"{where} must be a list that is not empty", value)
@@ -177,8 +171,7 @@ def infinite(x): return isinstance(x, float)
 
 # x, or a shorter number on the stated side of it, by less than one part in 2^150.
 def rounded(x, upwards):
-    if infinite(x) or x.numerator.bit_length() + x.denominator.bit_length() <= 600:
-        return x
+    if infinite(x) or x.numerator.bit_length() + x.denominator.bit_length() <= 600: return x
     scale = Fraction(2) ** (160 - x.numerator.bit_length() + x.denominator.bit_length())
     return (math.ceil if upwards else math.floor)(x * scale) / scale
 
@@ -199,8 +192,7 @@ def multiply(a, b):
     return span(min(ends), max(ends))
 
 def inverse(a):
-    if a[0] <= 0 <= a[1]:
-        raise (Undefined if a[0] == a[1] else Undecided)("a divisor may be zero")
+    if a[0] <= 0 <= a[1]: raise (Undefined if a[0] == a[1] else Undecided)("a divisor may be zero")
     ends = [Fraction(0) if infinite(x) else 1 / x for x in a]
     return span(min(ends), max(ends))
 
@@ -237,28 +229,23 @@ def sine_at(x, turned):
 
 # sin of an interval, or cos: its ends, and 1 or −1 where a crest or a trough may lie inside.
 def sine(a, turned):
-    if infinite(a[0]) or infinite(a[1]) or a[1] - a[0] >= 7:
-        return Fraction(-1), Fraction(1)
-    if a == (0, 0):
-        return (Fraction(turned),) * 2
+    if infinite(a[0]) or infinite(a[1]) or a[1] - a[0] >= 7: return Fraction(-1), Fraction(1)
+    if a == (0, 0): return (Fraction(turned),) * 2
     low, high = hull(sine_at(a[0], turned), sine_at(a[1], turned))
     # Crests of cos are at 2kπ, of sin at 2kπ + π/2; troughs are π further.
     for crest, shift in ((True, 0), (False, 1)):
         at = Fraction(shift) + (0 if turned else Fraction(1, 2))
         turns = [(end / pi - at) / 2 for end in a for pi in PI]
-        if math.floor(max(turns)) >= math.ceil(min(turns)):
-            low, high = (low, Fraction(1)) if crest else (Fraction(-1), high)
+        if math.floor(max(turns)) >= math.ceil(min(turns)): low, high = (low, Fraction(1)) if crest else (Fraction(-1), high)
     return max(low, Fraction(-1)), min(high, Fraction(1))
 
 def exp_at(x):
-    if abs(x) > 1500:
-        return (Fraction(2) ** 2000, INF) if x > 0 else (Fraction(0), Fraction(1, 1 << 2000))
+    if abs(x) > 1500: return (Fraction(2) ** 2000, INF) if x > 0 else (Fraction(0), Fraction(1, 1 << 2000))
     halvings = max(0, math.ceil(abs(x)).bit_length() + 1)
     small = Fraction(math.floor(x / (1 << halvings) * (1 << 240)), 1 << 240)
     # The cut of `small` moves exp by less than 2^-239.
     value = add(taylor(Fraction(1), lambda k: small / k), (Fraction(-1, 1 << 238), Fraction(1, 1 << 238)))
-    for _ in range(halvings):
-        value = multiply(value, value)
+    for _ in range(halvings): value = multiply(value, value)
     return value
 
 # x = m 2^k with 1 ≤ m < 2; log m = 2 artanh((m − 1)/(m + 1)).
@@ -277,10 +264,8 @@ def tanh_at(x): return add((1, 1), multiply((-2, -2), inverse(add((1, 1), exp_at
 
 # By odd symmetry, π/2 − atan 1/x beyond one, and atan x = 2 atan(x/(1 + √(1 + x²))).
 def atan_at(x):
-    if x < 0:
-        return minus(atan_at(-x))
-    if x > 1:
-        return add(multiply(PI, (Fraction(1, 2),) * 2), minus(atan_at(1 / x)))
+    if x < 0: return minus(atan_at(-x))
+    if x > 1: return add(multiply(PI, (Fraction(1, 2),) * 2), minus(atan_at(1 / x)))
     root = sqrt_at(1 + x * x)
     ends = [rounded(x / (1 + end), side) for end, side in zip(root, (True, False))]
     return multiply((2, 2), (odd_series(ends[1], -1)[0], odd_series(ends[0], -1)[1]))
@@ -294,8 +279,7 @@ def power(a, exponent):
         value = span(a[0] ** n, a[1] ** n)
         return inverse(value) if exponent < 0 else value
     decided(a[0] > 0 or (a[0] == 0 and exponent > 0), "a base may be negative, or zero, under a broken exponent")
-    if exponent == Fraction(1, 2):
-        return function("sqrt", a)
+    if exponent == Fraction(1, 2): return function("sqrt", a)
     # What has no logarithm, or none that is finite.
     ends = [Fraction(0) if (x == 0) == (exponent > 0) else INF for x in a]
     by_logarithm = lambda x: function("exp", multiply((exponent,) * 2, function("log", (x, x))))
@@ -307,10 +291,8 @@ def function(name, a):
     if (name == "sqrt" and a[0] < 0) or (name == "log" and a[0] <= 0):
         nowhere = a[1] < 0 or (name == "log" and a[1] == 0)
         raise (Undefined if nowhere else Undecided)(f"`{name}` may be of what it has no value for")
-    if name in ("neg", "abs"):
-        return minus(a) if name == "neg" else magnitude(a)
-    if name in ("sin", "cos"):
-        return sine(a, name == "cos")
+    if name in ("neg", "abs"): return minus(a) if name == "neg" else magnitude(a)
+    if name in ("sin", "cos"): return sine(a, name == "cos")
     right, zero, one = multiply(PI, (Fraction(1, 2),) * 2), (Fraction(0),) * 2, (Fraction(1),) * 2
     at, low, high, known_ = {
         "exp": (exp_at, zero, (INF, INF), {0: one}), "log": (log_at, None, (INF, INF), {1: zero}), "sqrt": (sqrt_at, None, (INF, INF), {}),
@@ -370,8 +352,7 @@ def formula(text, names=("t",)):
     legible = len(plain) <= MOST_DIGITS and re.fullmatch(r"[\w\s.+*/^(),-]*", plain) and "**" not in plain and "//" not in plain
     such(legible, "a formula is too long, or has a character that no formula has")
     quoted = NUMBER.sub(lambda match: f"_('{match.group()}')", " ".join(plain.split()))
-    try:
-        return shaped(ast.parse(quoted.replace("^", "**"), mode="eval").body, names, 0)
+    try: return shaped(ast.parse(quoted.replace("^", "**"), mode="eval").body, names, 0)
     except (SyntaxError, RecursionError, MemoryError, ValueError):
         raise Meaningless(f"`{plain[:60]}` is no formula") from None
 
@@ -384,8 +365,7 @@ def shaped(node, names, depth):
         return (node.id,) if node.id in ("t", "pi", "e") else ("state", node.id)
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.UAdd, ast.USub)):
         return inner(node.operand) if isinstance(node.op, ast.UAdd) else ("f", "neg", inner(node.operand))
-    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow):
-        return "^", inner(node.left), constant(inner(node.right))
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow): return "^", inner(node.left), constant(inner(node.right))
     if isinstance(node, ast.BinOp) and type(node.op) in OPERATORS:
         return OPERATORS[type(node.op)], inner(node.left), inner(node.right)
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
@@ -393,15 +373,25 @@ def shaped(node, names, depth):
         if name == "_" and len(node.args) == 1 and isinstance(node.args[0], ast.Constant):
             return "number", decimal(str(node.args[0].value))
         arguments = [inner(argument) for argument in node.args]
-        if name in FUNCTIONS and len(arguments) == 1:
-            return "f", name, arguments[0]
-        if name in ("min", "max") and len(arguments) > 1:
-            return functools.reduce(lambda a, b: (name, a, b), arguments)
+        if name in FUNCTIONS and len(arguments) == 1: return "f", name, arguments[0]
+        if name in ("min", "max") and len(arguments) > 1: return functools.reduce(lambda a, b: (name, a, b), arguments)
     raise Meaningless("a formula has something that no formula has")
 
 # The formulas that a formula is made of.
 def parts_of(tree): return [part for part in tree[1:] if isinstance(part, tuple)] if tree[0] != "points" else []
 
+# What was found of a tree is kept with it, so that a part that stands in many places is looked at once.
+KEPT = {}
+
+def once(of):
+    def kept_(tree, *about):
+        if len(KEPT) > MOST_CELLS: KEPT.clear()
+        key = of, id(tree), *map(id, about)
+        if key not in KEPT: KEPT[key] = of(tree, *about), tree, about
+        return KEPT[key][0]
+    return kept_
+
+@once
 def has_variable(tree): return tree[0] in ("t", "state", "points") or any(map(has_variable, parts_of(tree)))
 
 COMBINED = {
@@ -412,12 +402,11 @@ def convolved(p, q):
     return [sum((p[i] * q[k - i] for i in range(len(p)) if 0 <= k - i < len(q)), Fraction(0)) for k in range(len(p) + len(q) - 1)]
 
 # (P, Q) of a formula that is a quotient of polynomials in t, by coefficients from t⁰ on, with all its poles; else None.
+@once
 def quotient(tree):
     kind = tree[0]
-    if kind in ("number", "t"):
-        return ([tree[1]] if kind == "number" else [Fraction(0), Fraction(1)]), [Fraction(1)]
-    if tree[:2] == ("f", "neg"):
-        return quotient(("-", ZERO, tree[2]))
+    if kind in ("number", "t"): return ([tree[1]] if kind == "number" else [Fraction(0), Fraction(1)]), [Fraction(1)]
+    if tree[:2] == ("f", "neg"): return quotient(("-", ZERO, tree[2]))
     parts = list(map(quotient, parts_of(tree)))
     if None in parts or kind not in ("+", "-", "*", "/", "^") or kind == "^" and (tree[2].denominator > 1 or abs(tree[2]) > 8):
         return None
@@ -444,17 +433,17 @@ def far(p, q, u):
 
 # What a formula keeps within while t keeps within the interval `t`, or states within those of a table. Intervals alone make ∞/∞ of
 # t/(1 + t) for large t.
+@once
 def enclose(tree, t):
+    if t == (0, INF): return hull(enclose(tree, (Fraction(0), Fraction(1))), enclose(tree, (Fraction(1), INF)))
     ratio = quotient(tree) if isinstance(t, tuple) and t[1] == INF and t[0] > 0 and tree[0] in ("+", "-", "*", "/", "^") else None
-    if ratio is None or len(trimmed(ratio[0])) > len(trimmed(ratio[1])):
-        return in_one_pass(tree, t)
+    if ratio is None or len(trimmed(ratio[0])) > len(trimmed(ratio[1])): return in_one_pass(tree, t)
     ways = attempt(far, *map(trimmed, ratio), (Fraction(0), 1 / t[0])), attempt(in_one_pass, tree, t)
     decided(any(ways), "a divisor may be zero")
     return max(way[0] for way in ways if way), min(way[1] for way in ways if way)
 
 def attempt(of, *arguments):
-    try:
-        return of(*arguments)
+    try: return of(*arguments)
     except Undecided:
         return None
 
@@ -462,8 +451,7 @@ def in_one_pass(tree, t):
     kind = tree[0]
     if kind in ("number", "t", "pi", "e"):
         return {"t": t, "pi": PI}.get(kind) or ((tree[1],) * 2 if kind == "number" else exp_at(Fraction(1)))
-    if kind in ("f", "^"):
-        return function(tree[1], enclose(tree[2], t)) if kind == "f" else power(enclose(tree[1], t), tree[2])
+    if kind in ("f", "^"): return function(tree[1], enclose(tree[2], t)) if kind == "f" else power(enclose(tree[1], t), tree[2])
     if kind in ("state", "points"):
         return along_points(*tree[1:], t) if kind == "points" else t.get(tree[1], WHOLE) if isinstance(t, dict) else WHOLE
     return COMBINED[kind](enclose(tree[1], t), enclose(tree[2], t))
@@ -476,20 +464,18 @@ def constant(tree):
 
 # The number that a formula is for all t ≥ 0, where one pass shows it.
 def constant_for_ever(tree):
-    if not has_variable(tree):
-        return constant(tree)
+    if not has_variable(tree): return constant(tree)
     low, high = attempt(enclose, tree, (Fraction(0), INF)) or WHOLE
     return low if low == high else None
 
 def plus(a, b): return b if a == ZERO else a if b == ZERO else ("+", a, b)
 
 # Nothing is dropped that may lack a value.
-def times(a, b):
-    return ZERO if ZERO in (a, b) and not partial(a) and not partial(b) else b if a == ONE else a if b == ONE else ("*", a, b)
+def times(a, b): return ZERO if ZERO in (a, b) and not partial(a) and not partial(b) else b if a == ONE else a if b == ONE else ("*", a, b)
 
 # Whether a formula may lack a value somewhere.
-def partial(tree):
-    return tree[0] in ("/", "^") or tree[:2] in (("f", "log"), ("f", "sqrt")) or any(map(partial, parts_of(tree)))
+@once
+def partial(tree): return tree[0] in ("/", "^") or tree[:2] in (("f", "log"), ("f", "sqrt")) or any(map(partial, parts_of(tree)))
 
 ZERO, ONE = ("number", Fraction(0)), ("number", Fraction(1))
 
@@ -498,32 +484,28 @@ def everywhere(tree):
     broken = tree[0] == "^" and tree[2].denominator > 1
     partly = broken or tree[:2] in (("f", "log"), ("f", "sqrt"))
     decided(not partly or enclose(tree[1] if broken else tree[2], WHOLE)[0] > 0, "a root or a logarithm may be of what is not positive")
-    if tree[0] in ("/", "^"):
-        enclose(tree, WHOLE)
+    if tree[0] in ("/", "^"): enclose(tree, WHOLE)
     return all(map(everywhere, parts_of(tree)))
 
 def negated(tree): return tree if tree == ZERO else ("f", "neg", tree)
 
-# By t, where there are no kinks; with `kinks` what encloses the slopes on both sides of them.
+# By t, where there are no kinks; with `kinks` what encloses the slopes on both sides of them. A quotient is a product with a power: its
+# divisor is not squared again with every derivative.
+@once
 def derivative(tree, kinks=False):
     kind = tree[0]
-    if kind == "t" or not has_variable(tree):
-        return ONE if kind == "t" else ZERO
-    if kind == "points":
-        return *tree[:3], tree[3] + 1
+    if kind == "t" or not has_variable(tree): return ONE if kind == "t" else ZERO
+    if kind == "points": return *tree[:3], tree[3] + 1
     a, *_, b = parts_of(tree) * 2
     da, db = derivative(a, kinks), derivative(b, kinks)
-    if kind in "+-":
-        return plus(da, db if kind == "+" else negated(db))
-    if kind == "*":
-        return plus(times(da, b), times(a, db))
+    if kind in "+-": return plus(da, db if kind == "+" else negated(db))
+    if kind == "*": return plus(times(da, b), times(a, db))
     if kind == "/":
-        return ("/", plus(times(da, b), negated(times(a, db))), ("^", b, Fraction(2))) if has_variable(b) else ("/", da, b)
+        return plus(("/", da, b), negated(times(a, times(db, ("^", b, Fraction(-2)))))) if has_variable(b) else ("/", da, b)
     if kind == "^":
         # No power below the first is made, whose slope would divide by what may be zero.
         return times(da, ONE if tree[2] == 1 else times(("number", tree[2]), a if tree[2] == 2 else ("^", a, tree[2] - 1)))
-    if kind in ("min", "max") and kinks:
-        return "hull", da, db
+    if kind in ("min", "max") and kinks: return "hull", da, db
     outer = {
         "neg": ("number", Fraction(-1)), "sin": ("f", "cos", a), "cos": ("f", "neg", ("f", "sin", a)), "exp": tree, "log": ("/", ONE, a),
         "sqrt": ("/", ("number", Fraction(1, 2)), tree), "tanh": ("-", ONE, ("^", tree, Fraction(2))),
@@ -537,29 +519,23 @@ def limit(tree):
     if ratio is not None and any(ratio[1]):
         p, q = map(trimmed, ratio)
         return ((INF if p[-1] / q[-1] > 0 else -INF),) * 2 if len(p) > len(q) else far(p, q, (Fraction(0),) * 2)
-    if not has_variable(tree):
-        return enclose(tree, WHOLE)
+    if not has_variable(tree): return enclose(tree, WHOLE)
     parts = list(map(limit, parts_of(tree)))
-    if kind in ("f", "^"):
-        return function(tree[1], parts[0]) if kind == "f" else power(parts[0], tree[2])
-    if kind == "-":
-        parts[1] = minus(parts[1])
+    if kind in ("f", "^"): return function(tree[1], parts[0]) if kind == "f" else power(parts[0], tree[2])
+    if kind == "-": parts[1] = minus(parts[1])
     decided(kind not in "+-" or not {INF, -INF} <= {low for low, _ in parts}, "∞ − ∞")
-    if kind == "/":
-        parts[1] = inverse(parts[1])
+    if kind == "/": parts[1] = inverse(parts[1])
     vanishing, growing = any(low <= 0 <= high for low, high in parts), any(infinite(low) for low, _ in parts)
     decided(kind not in "*/" or not (vanishing and growing), "0 · ∞")
     return {"-": add, "/": multiply}.get(kind, COMBINED.get(kind))(*parts)
 
 # (q, n) of a constant q πⁿ.
 def multiple(tree):
-    if tree[0] == "pi":
-        return Fraction(1), 1
+    if tree[0] == "pi": return Fraction(1), 1
     if tree[0] in ("*", "/"):
         (a, n), (b, m) = multiple(tree[1]), multiple(tree[2])
         return (a * b, n + m) if tree[0] == "*" else (a / b, n - m)
-    if tree[:2] == ("f", "neg"):
-        return multiple(("*", ("number", Fraction(-1)), tree[2]))
+    if tree[:2] == ("f", "neg"): return multiple(("*", ("number", Fraction(-1)), tree[2]))
     value = constant(tree)
     decided(value != 0, "an angle does not change")
     return value, 0
@@ -643,8 +619,7 @@ Edge = collections.namedtuple("Edge", "source to weight delay")
 
 # A polynomial in p by its coefficients from p⁰ on: these without the leading one, which is 1, or its roots.
 def polynomial(file):
-    if isinstance(file, list):
-        return [exact(c, "polynomial") for c in file] + [Fraction(1)]
+    if isinstance(file, list): return [exact(c, "polynomial") for c in file] + [Fraction(1)]
     factors = [[a * a + b * b, 2 * a, 1] if b else [a, 1] for a, b in roots_of(file) if b >= 0]
     return functools.reduce(convolved, [[0, 1]] * int(exact(file.get("integrators", 0), "integrators")) + factors, [Fraction(1)])
 
@@ -662,8 +637,7 @@ def routh(coefficients):
 # Desired dynamics as the design of the paper that they are: p K(p) beside weights of K(p), or K(p) with a target, K by its roots; and
 # before it whether they are one, and the polynomial of those that are none.
 def designed(key, body):
-    if key != "desired":
-        return False, None, (key, body)
+    if key != "desired": return False, None, (key, body)
     own, coupled = (body[part] if isinstance(body.get(part), dict) else {} for part in ("polynomial", "coupling_polynomial"))
     roots, heard, tracks = roots_of(own), [exact(number, "heard") for number in body.get("heard", [])], body.get("follows_target", False)
     zeros, told = own.get("integrators", 0), "position_velocity" if heard[1:] else "position"
@@ -691,16 +665,13 @@ class Scenario:
         for number, entry in enumerate(listed(file.get("agents"), "agents")):
             self.populate(table(entry, "agents", AGENT), f"agents[{number}]")
         self.leader, self.motion, self.names = None, None, [agent.name for agent in self.agents]
-        if self.reference == "leader":
-            self.lead(table(file.get("leader"), "leader", "name motion agent"))
+        if self.reference == "leader": self.lead(table(file.get("leader"), "leader", "name motion agent"))
         self.index = {name: k for k, name in enumerate(self.names)}
         such(len(self.index) == len(self.names), "two agents have the same name")
-        for agent in self.agents:
-            self.design(agent)
+        for agent in self.agents: self.design(agent)
         self.control = table(file["control"], "control", CONTROL) if "control" in file else None
         self.read_network()
-        if self.body.get("follows_target") and not self.used():
-            self.reference = "tracking"
+        if self.body.get("follows_target") and not self.used(): self.reference = "tracking"
         self.pairs = [{(edge.source, edge.to) for edge in graph} for graph in self.graphs]
         self.read_pushes()
 
@@ -733,8 +704,7 @@ class Scenario:
         own = ({} if leads or self.reference == "leader" else self.body) | table(own, "reference")
         agent.roots, agent.manipulability = roots_of(own), not_negative(own.get("manipulability_gain", 0), "manipulability_gain")
         agent.tracks = leads or self.reference == "tracking" or self.body.get("follows_target", False)
-        if "target" in agent.entry:
-            agent.target = self.trajectory(agent.entry["target"], f"target of {agent.name}")
+        if "target" in agent.entry: agent.target = self.trajectory(agent.entry["target"], f"target of {agent.name}")
 
     def exchange(self):
         told = {"leader": "position_velocity", "backstepping": "position"}.get(self.reference, self.body.get("exchange"))
@@ -746,8 +716,7 @@ class Scenario:
         kind, body = choice(file, where)
         if kind == "formulas":
             return [formula(entry) if isinstance(entry, str) else ("number", exact(entry, where)) for entry in listed(body, where)]
-        if kind == "sinusoids":
-            return [self.waves(table(entry, where), where) for entry in listed(body, where)]
+        if kind == "sinusoids": return [self.waves(table(entry, where), where) for entry in listed(body, where)]
         if kind == "points":
             times = [exact(t, f"{where}.times_s") for t in listed(table(body, where).get("times_s"), where)]
             rows = [[exact(x, f"{where}.positions") for x in listed(row, where)] for row in listed(body.get("positions"), where)]
@@ -967,26 +936,21 @@ def extension(agent):
 
 def theorem(scenario):
     tracking, agents = scenario.reference == "tracking", scenario.agents
-    if scenario.reference == "desired":
-        return "desired-dynamics"
+    if scenario.reference == "desired": return "desired-dynamics"
     if scenario.reference == "leader":
         return dict(zip(DESIGNS, ("theorem-8" + scenario.over(), *LED))).get(scenario.body.get("design"), "no design")
     kinds = {treated(agent) for agent in agents}
-    if len(kinds) > 1:
-        return "targets" if tracking else "mixture"
+    if len(kinds) > 1: return "targets" if tracking else "mixture"
     named = {"thrust continuous": "continuous-thrust", "thrust differentiable": "theorem-4", "thrust adaptive": "theorem-5",
              "task space": "theorem-6" + max(map(extension, agents)), "attitude": "theorem-7",
              "chain": f"chains-{'track' if tracking else 'agree'}", "position only": "position-only-tracks" if tracking else "remark-7"}
     kind = kinds.pop()
-    if kind in named or tracking:
-        return named.get(kind, "robots-track")
+    if kind in named or tracking: return named.get(kind, "robots-track")
     velocities, order = scenario.exchange() == "position_velocity", max(len(agent.roots) for agent in agents)
-    if scenario.reference == "consensus" and len({len(agent.roots) for agent in agents}) > 1:
-        return "theorem-3-own-orders"
+    if scenario.reference == "consensus" and len({len(agent.roots) for agent in agents}) > 1: return "theorem-3-own-orders"
     if scenario.reference != "consensus":
         return "backstepping" if scenario.reference == "backstepping" else "theorem-1" if velocities else "remark-3"
-    if not velocities or order == 1:
-        return "theorem-3-first-order" if velocities else "theorem-3-positions"
+    if not velocities or order == 1: return "theorem-3-first-order" if velocities else "theorem-3-positions"
     return "theorem-2" if order == 2 and all(agent.roots == agents[0].roots for agent in agents) else "theorem-3-velocities"
 
 # The hypotheses that a certificate must speak about: (id, name of an agent, or "" for the whole).
@@ -1053,7 +1017,7 @@ NEVER = ("one-kind", "measured-derivative", "printed-design", "nonzero-thrust", 
 # --- and whether what is shown holds for all time where that is not plain. `WITNESSES` show that a hypothesis is violated.
 RULES = {}
 WITNESSES = ("cut", "unheard", "instant", "factor", "null-vector", "below", "limit", "loses-all", "diverges", "no-value", "out-of-reach",
-             "no-routh", "half-turn", "outside")
+             "no-routh", "half-turn", "outside", "left-null", "fades", "changes-sign")
 
 def rule(ids, kinds): return lambda check: RULES.update(dict.fromkeys(itertools.product(ids.split(), kinds.split()), check)) or check
 
@@ -1208,8 +1172,7 @@ def links(agent, root, locked):
     found = []
 
     def body(link):
-        if (inertial := link.find("inertial")) is None:
-            return 0, [0] * 3
+        if (inertial := link.find("inertial")) is None: return 0, [0] * 3
         rows = [[decimal(inertial.find("inertia").get(f"i{k}", "0")) for k in row.split()] for row in ("xx xy xz", "xy yy yz", "xz yz zz")]
         return decimal(inertial.find("mass").get("value")), pivots(rows) if any(map(any, rows)) else [0] * 3
 
@@ -1226,8 +1189,7 @@ def links(agent, root, locked):
                 visit(child, found[-1][-1], turned or kind != "prismatic")
 
     bodies, joints = {link.get("name"): body(link) for link in root.findall("link")}, root.findall("joint")
-    for name in set(bodies) - {joint.find("child").get("link") for joint in joints}:
-        visit(name, [], False)
+    for name in set(bodies) - {joint.find("child").get("link") for joint in joints}: visit(name, [], False)
     return found
 
 # The joints of a URDF from the tip to the base: (kind, whether it moves, the angle at which it is locked, axis, rpy, xyz).
@@ -1288,6 +1250,32 @@ def rotation(scenario, agent):
     decided(not angles, "not every joint carries the tip")
     return columns
 
+# The lengths that a law starts from, by the true ones.
+def estimated(agent, true):
+    kind, body = choice(agent.gains.get("kinematic_start", {"scaled": Fraction(6, 5)}), "kinematic_start")
+    factor = {"zero": Fraction(0), "true": Fraction(1)}.get(kind) if kind != "scaled" else exact(body, "scaled")
+    return [multiply((factor,) * 2, x) for x in true] if factor is not None else [(exact(x, kind),) * 2 for x in listed(body, kind)]
+
+# Columns of the estimated Jacobian of a tip at the start: its place in the base, and of a pose how the link turns.
+def jacobian(scenario, agent):
+    angles, columns, tip = posture(scenario, agent), [], table(agent.gains.get("end_effector", {}), "end_effector")
+    if agent.robot == "planar_arm":
+        along = lambda angle, x: [multiply(x, minus(sine((angle,) * 2, False))), multiply(x, sine((angle,) * 2, True))]
+        first, second = map(along, (angles[0], sum(angles)), estimated(agent, [(x, x) for x in planar(agent.body)[1]]))
+        return [list(map(add, first, second)), second]
+    decided(tip.get("uncertain", "tool") == "tool", "these lengths are not read here")
+    at = [(exact(x, "at_m"),) * 2 for x in tip.get("at_m", [0] * 3)]
+    for kind, moves, angle, axis, rpy, xyz in path(scenario, agent):
+        decided(kind != "prismatic" and (kind == "fixed" or sorted(map(abs, axis)) == [0, 0, 1]), "a joint slides, or its axis is oblique")
+        if moves:
+            at, angle, a = at if columns else estimated(agent, at), angles.pop(), [(x, x) for x in axis]
+            columns.append(([add(multiply(a[k - 2], at[k - 1]), minus(multiply(a[k - 1], at[k - 2]))) for k in range(3)], a))
+        columns = [[carried(part, angle, axis, rpy) for part in column] for column in columns]
+        at = [add(own, (x, x)) for own, x in zip(carried(at, angle, axis, rpy), xyz)]
+    decided(not angles, "not every joint carries the tip")
+    rows = ["xyz".index(name) for name in tip.get("coordinates", "xyz")]
+    return [[place[k] for k in rows] + (turn if tip.get("follows") == "pose" else []) for place, turn in columns[::-1]]
+
 # The kinds of friction at the joints of robots where there is some.
 def frictions(scenario):
     found = set()
@@ -1304,8 +1292,7 @@ def solid(scenario, agent):
     possible = all(mass >= 0 and min(found) >= 0 and len(found) == 3 for bodies in groups for mass, found in bodies)
     whole = [any(mass > 0 and min(found) > 0 for mass, found in bodies) for bodies in groups]
     # A link at an end that weighs nothing moves without effort.
-    if not any(whole) or not possible or not any(mass for mass, _ in groups[-1]):
-        return False
+    if not any(whole) or not possible or not any(mass for mass, _ in groups[-1]): return False
     decided(all(whole), "a link of a URDF may have no inertia of its own")
     return True
 
@@ -1324,8 +1311,7 @@ def planar(body):
 # A share on either side of a parameter, or all from zero to twice a friction, holds it; bounds that are given have to.
 def bounds_hold(agent):
     kind, body = chosen(agent.gains.get("bounds", {"within": 1}), "bounds", ("within", "given"), "bounds")
-    if kind == "within":
-        return exact(body, "within") > 0
+    if kind == "within": return exact(body, "within") > 0
     plain = agent.robot == "point_mass" and "parameter_variation" not in agent.entry and not {"damping", "friction"} & set(agent.body)
     decided(plain, "the parameters of this robot are not computed here")
     (lower,), (upper,) = body["lower"], body["upper"]
@@ -1391,11 +1377,9 @@ def no_value(claim, agent, state):
     letters = [f"{d}x{k + 1}" for d in RATES for k in range(len(of.body["psi"]))] if of.robot == "vector_chain" else STATES
     found = dict(zip(letters, at)) | dict(zip((f"{d}x" for d in RATES), at))
     for term in terms(of.body):
-        try:
-            enclose(term, found)
+        try: enclose(term, found)
         except Undecided as reason:
-            if isinstance(reason, Undefined):
-                return f"{agent.text()} has a term without a value there"
+            if isinstance(reason, Undefined): return f"{agent.text()} has a term without a value there"
     raise Undecided("whether a term has a value in this state is not decided here")
 
 RATES = ["", "d"] + [f"d{k}" for k in range(2, 256)]
@@ -1431,10 +1415,8 @@ def by_text(claim):
 def pieces(node, tree, end_s):
     kind, unit, length = node.field("range").text(), (Fraction(1),) * 2, end_s
     require(node.field("range"), kind in ("for-ever", "period", "tail", "run"), "must be `for-ever`, `period`, `tail` or `run`")
-    if kind == "for-ever":
-        return [(Fraction(0), INF)]
-    if kind == "period":
-        unit, length = period(tree)
+    if kind == "for-ever": return [(Fraction(0), INF)]
+    if kind == "period": unit, length = period(tree)
     elif kind == "tail":
         length = node.field("until_s").number()
         require(node.field("until_s"), length > 0, "must be positive")
@@ -1460,13 +1442,12 @@ def formulas(claim, node, text_of):
     found = {}
     for entry in node.each():
         text = text_of(claim.scenario.edge_at(entry.field("edge")))
-        if text is None:
-            continue  # What is constant, though by a formula, needs no enclosure.
+        if text is None: continue  # What is constant, though by a formula, needs no enclosure.
         tree = formula(text)
         within = enclosed(entry, tree, claim.scenario.end_s)
         # A formula that repeats, and has a value everywhere, is uniformly continuous; so is one whose slope is bounded from a time on.
         repeats, last = entry.field("range").text() == "period", pieces(entry, tree, claim.scenario.end_s)[-1:]
-        found[text] = *within, lasts(entry) and (repeats or finite(derivative(tree, kinks=True), last))
+        found[text] = *within, lasts(entry) and (repeats or finite(derivative(tree, True), last))
     return found
 
 # The formula that the delay of an edge follows, as a text.
@@ -1475,10 +1456,8 @@ def formula_of(edge): return edge.delay[1] if edge.delay[0] == "formula_s" else 
 # What no value of a delay exceeds by the parameters of its rule; None where the rule does not say.
 def rule_bound(delay):
     kind, body, _ = delay
-    if kind == "constant_s":
-        return not_negative(body, kind)
-    if kind in ("formula_s", "log", "hold_log"):
-        return None
+    if kind == "constant_s": return not_negative(body, kind)
+    if kind in ("formula_s", "log", "hold_log"): return None
     if kind in ("piecewise_constant", "random_hold"):
         values = table(body, kind).get("values_s" if kind == "piecewise_constant" else "value_s")
         return max(not_negative(value, kind) for value in listed(values, kind))
@@ -1505,8 +1484,7 @@ def logged(scenario, edge):
         return max(not_negative(value, "delay_s") for value, *_ in held)
     packets = [(decimal(row["send_s"]), decimal(row["delay_s"])) for row in rows if row.get("delay_s")]
     for arrives, sent in sorted((sent + delay, sent) for sent, delay in packets):
-        if arrives <= scenario.end_s and sent > newest:
-            worst, newest = max(worst, arrives - newest), sent
+        if arrives <= scenario.end_s and sent > newest: worst, newest = max(worst, arrives - newest), sent
     return max(worst, scenario.end_s - newest)
 
 # A rule bounds its delay for ever, an enclosure a formula; logs and drawn packets do up to the end of the run.
@@ -1633,8 +1611,7 @@ def pivots(rows):
     a, found = [list(row) for row in rows], []
     for k in range(len(a)):
         found.append(a[k][k])
-        if found[-1] <= 0:
-            break
+        if found[-1] <= 0: break
         for i in range(k + 1, len(a)):
             factor = a[i][k] / a[k][k]
             a[i] = [x - factor * y for x, y in zip(a[i], a[k])]
@@ -1660,8 +1637,7 @@ def gains(claim, matrices):
         entry.only("agent", "gain", "pivots")
         stated[entry.field("agent").text(), entry.field("gain").text()] = entry
     keys = [(agent, key) for agent in claim.scenario.agents if agent.law in ASKED_OF[claim.id] for key in GAINS[agent.law]]
-    for agent, key in keys:
-        gain_is_positive(claim, agent, key, agent.settings().get(key), matrices, stated)
+    for agent, key in keys: gain_is_positive(claim, agent, key, agent.settings().get(key), matrices, stated)
 
 # One gain of one agent: a number, a diagonal, a matrix, or a bandwidth times scales that are positive.
 def gain_is_positive(claim, agent, key, value, matrices, stated):
@@ -1713,6 +1689,26 @@ def bounded(claim, order, stretch):
             tree = derivative(tree)
     return f"up to derivative {order.count()}", always
 
+# The terms of a sum, each as what it repeats and what is beside that: (P, S) of P S. Signs do not matter to what follows.
+def summands(tree):
+    parts = list(map(summands, parts_of(tree))) if tree[0] in ("+", "-", "*") or tree[:2] == ("f", "neg") else []
+    if tree[0] == "*":
+        decided(len(parts[0]) * len(parts[1]) <= 1000, "a formula has too many terms")
+        return [(times(p, q), times(r, s)) for (p, r), (q, s) in itertools.product(*parts)]
+    repeats = has_variable(tree) and attempt(period, tree) is not None
+    return sum(parts, []) or [(ONE, tree) if repeats else (tree, ONE)]
+
+# Whether a formula exceeds every bound: the P of one term does, its S is not always zero, and beside it all others vanish.
+def grows(tree):
+    beside = lambda p, others: all(attempt(limit, ("/", q, p)) == (0, 0) and finite(s, [(Fraction(0), INF)]) for q, s in others)
+    endless, found = lambda p: infinite((attempt(limit, p) or (0, 0))[0]), summands(tree)
+    return endless(tree) or any(endless(p) and swings(s) and beside(p, found[:k] + found[k + 1:]) for k, (p, s) in enumerate(found))
+
+# Whether a formula repeats, or stays, and differs from zero at one of some times.
+def swings(tree):
+    values = (attempt(enclose, tree, (Fraction(3 * k, 7),) * 2) or WHOLE for k in range(8))
+    return (not has_variable(tree) or attempt(period, tree) is not None) and any(low > 0 or high < 0 for low, high in values)
+
 # A derivative, or the motion itself of who tracks it, goes beyond every bound as t → ∞.
 @rule("bounded-target bounded-leader", "diverges")
 def diverges(claim, motion, axis, order):
@@ -1722,8 +1718,8 @@ def diverges(claim, motion, axis, order):
     require(axis, 1 <= axis.count() <= len(paths) and paths[axis.count() - 1][0] != "points", "is no axis with a formula")
     require(order, lowest <= order.count() <= most, "is of no derivative that a law uses")
     tree = functools.reduce(lambda tree, _: derivative(tree), range(order.count()), paths[axis.count() - 1])
-    require(order, infinite(limit(tree)[0]), "stays bounded, or swings")
-    return f"derivative {order.count()} of axis {axis.count()} goes to {said(limit(tree)[0])}"
+    require(order, grows(tree), "stays bounded, or swings")
+    return f"derivative {order.count()} of axis {axis.count()} exceeds every bound"
 
 # Whether a formula is shown to be bounded on each of some stretches.
 def finite(tree, stretches): return not any(infinite(end) for stretch in stretches for end in attempt(enclose, tree, stretch) or WHOLE)
@@ -1756,6 +1752,16 @@ def reached(claim):
     away = [plus(tree, ("f", "neg", ("hull", *(("number", end) for end in at)))) for tree, at in zip(agent.target, base)]
     # Not all that is nearer can be reached.
     return [(squares(away), (Fraction(-1),) * 2, most)]
+
+# The law takes a smallest singular value of 10^-6 of the largest for zero, and the largest is at most the root of the sum of all squares.
+@rule("regular-jacobian", "left-null")
+def singular(claim, vector):
+    u, columns = [entry.number() for entry in vector.each()], jacobian(claim.scenario, *claim.own)
+    require(vector, any(u) and len(u) == len(columns[0]), "is zero, or has another length")
+    of = lambda entries: functools.reduce(add, (power(x, Fraction(2)) for x in entries))
+    taken = of([functools.reduce(add, (multiply((x, x), y) for x, y in zip(u, column))) for column in columns])
+    whole = of(itertools.chain(*columns))[0]
+    require(vector, 10**12 * taken[1] <= whole * sum(x * x for x in u), "is not taken to zero")
 
 # What has to stay strictly between two numbers: (formula, what holds the lower one, what holds the upper one).
 LIMITS = {"sign-gain": drive, "target-within-reach": reached, "nonzero-quaternion": lambda claim: [
@@ -1795,8 +1801,21 @@ def start_apart(claim, least):
     require(least, 0 < least.number() and least.number() ** 2 <= scalar_part(claim)[0], "is not shown: the scalar part may be smaller")
 
 @rule("start-attitude", "half-turn")
-def half_turn(claim):
-    require(claim.proof, scalar_part(claim)[1] <= 0, "is not shown: the scalar part may differ from zero")
+def half_turn(claim): require(claim.proof, scalar_part(claim)[1] <= 0, "is not shown: the scalar part may differ from zero")
+
+# Every entry comes to zero as t grows, and the norm with it.
+@rule("nonzero-quaternion", "fades")
+def fades(claim): require(claim.proof, all(limit(tree) == (0, 0) for tree in quaternion(claim)), "is not shown: an entry may stay")
+
+# One entry has both signs within a stretch on which it is continuous, having values throughout; the others are zero for ever.
+@rule("nonzero-quaternion", "changes-sign")
+def changes_sign(claim, entry, from_s, to_s):
+    k, start, end, trees = entry.count() - 1, from_s.number(), to_s.number(), quaternion(claim)
+    require(entry, k in range(4) and all(constant_for_ever(tree) == 0 for i, tree in enumerate(trees) if i != k), "is not the only one")
+    require(to_s, 0 <= start < end and finite(trees[k], [(start, end)]), "ends no stretch on which it has a value")
+    (a, b), (c, d) = (enclose(trees[k], (t, t)) for t in (start, end))
+    require(entry, b < 0 < c or d < 0 < a, "has one sign")
+    return f"entry {k + 1} passes zero between t = {said(start)} s and {said(end)} s"
 
 # One entry keeps away from zero.
 @rule("nonzero-quaternion", "entry-away")
@@ -1820,8 +1839,7 @@ def swarm(claim, pivots):
     at = {vertex: k for k, vertex in enumerate(followers)}
     for edge in scenario.graphs[0]:
         rows[at[edge.to]][at[edge.to]] += edge.weight
-        if edge.source in at:
-            rows[at[edge.to]][at[edge.source]] -= edge.weight
+        if edge.source in at: rows[at[edge.to]][at[edge.source]] -= edge.weight
     definite(claim.proof, rows, pivots)
 
 # For every chain what encloses the factor of its input in every state, and the floor. Of a matrix its smallest singular value: once rows
@@ -1886,8 +1904,7 @@ def check(certificate_text, scenario_text, folder, digests=True):
             require(agreement, unique, "is of a network whose spanning tree is not shown")
             agreed(scenario, agreement)
             found.append(("agreement", [], HOLDS, ACCEPTED, "uᵀL = 0 and Σu = 1", ""))
-        if digests:
-            same(document.field("scenario"), scenario_text, scenario.inputs)
+        if digests: same(document.field("scenario"), scenario_text, scenario.inputs)
         return found
     except (Rejected, Meaningless, Undecided) as error:
         failure = error.outcome, str(error), getattr(error, "place", "")
@@ -1903,8 +1920,7 @@ def outcome(scenario, entry, asked, spoken):
         # What is known of the reach of a URDF depends on where its tip is.
         require(entry, key in asked or claim.id == "target-within-reach", "is not asked for by this scenario")
         spoken.add(key)
-    try:
-        return claim.id, claim.agents, claim.answer, *claim.judge(), ""
+    try: return claim.id, claim.agents, claim.answer, *claim.judge(), ""
     except Rejected as error:
         return claim.id, claim.agents, claim.answer, REJECTED, str(error), error.place
 
@@ -1956,4 +1972,5 @@ def main(arguments=None):
     return (ACCEPTED, REJECTED, UNCHECKED).index(whole)
 
 if __name__ == "__main__":
+    if hasattr(signal, "SIGPIPE"): signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # Who reads may close before the end.
     sys.exit(main())

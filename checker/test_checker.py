@@ -1118,6 +1118,68 @@ class FalseProofs(unittest.TestCase):
             mutated = ("0.4, -1.2, 1.6, -1.9, -1.5, 0.3", further)
             self.rejected(name, each, "may be smaller", lambda entry: entry["proof"].update(least="0.999"), mutated)
 
+    def test_jacobians_that_are_singular_at_the_start(self):
+        def taken(*vector):
+            return lambda entry: entry.update(answer="violated", proof={"kind": "left-null", "vector": list(vector)})
+
+        def bent(by):
+            return "start.position_rad = [0.2, 1.4]", f"start.position_rad = [0.2, {by}]"
+        each = "regular-jacobian"
+        # Along the arm, which moves its tip only across.
+        along = "0.98006657784", "0.19866933080"
+        self.accepted("theorem-6", each, taken(*along), bent("0"))
+        self.accepted("theorem-6", each, taken(*along), bent("3.14159265359"))
+        self.accepted("theorem-6", each, taken(*along), bent("1e-6"))
+        self.rejected("theorem-6", each, "not taken to zero", taken(*along), bent("1e-4"))
+        self.rejected("theorem-6", each, "not taken to zero", taken(*along))
+        self.rejected("theorem-6", each, "not taken to zero", taken("1", "0"), bent("0"))
+        self.rejected("theorem-6", each, "is zero", taken("0", "0"), bent("0"))
+        self.rejected("theorem-6", each, "another length", taken(*along, "0"), bent("0"))
+        # No length is known: nothing moves the tip that the law knows.
+        scaled = "kinematic_start.scaled = 1.2", "kinematic_start = \"zero\""
+        self.accepted("theorem-6", each, taken("1", "0"), scaled)
+        self.rejected("pose-ur5e", each, "not taken to zero", taken("1", "0", "0", "0", "0", "0"))
+
+    def test_attitudes_that_vanish(self):
+        name, each, old = "theorem-7", "nonzero-quaternion", "target.formulas = [0, 0, 0, 1] "
+
+        def target(*entries):
+            return old, f"target.formulas = {json.dumps(entries)} "
+
+        def fades(entry):
+            entry.update(answer="violated", proof={"kind": "fades"})
+
+        def turns(number, from_s, to_s):
+            proof = {"kind": "changes-sign", "entry": number, "from_s": from_s, "to_s": to_s}
+            return lambda entry: entry.update(answer="violated", proof=proof)
+        self.accepted(name, each, fades, target("exp(-t)", "1/(1+t)", 0, "exp(-t)*sin(t)"))
+        self.rejected(name, each, "may stay", fades, target("exp(-t)", 0, 0, "1e-9"))
+        self.rejected(name, each, "may stay", fades)
+        over = target(0, 0, 0, "1 - t/90")
+        self.accepted(name, each, turns(4, "89", "91"), over)
+        self.rejected(name, each, "one sign", turns(4, "91", "92"), over)
+        self.rejected(name, each, "one sign", turns(4, "80", "90"), over)
+        self.rejected(name, each, "ends no stretch", turns(4, "91", "89"), over)
+        self.rejected(name, each, "ends no stretch", turns(4, "-1", "91"), over)
+        self.rejected(name, each, "not the only one", turns(3, "89", "91"), over)
+        self.rejected(name, each, "not the only one", turns(5, "89", "91"), over)
+        self.rejected(name, each, "not the only one", turns(4, "89", "91"), target(0, 0, "1e-9", "1 - t/90"))
+        # A pole has two signs beside it and passes no zero.
+        pole = target(0, 0, 0, "1/(t - 90)")
+        _, found = self.judged(name, each, turns(4, "89", "91"), pole)
+        self.assertNotIn(checker.ACCEPTED, [entry[3] for entry in found if entry[0] == each], found)
+
+    def test_motions_that_swing_ever_wider(self):
+        name, each, old = "formation", "bounded-target", "0.2*t + cos(0.3*t)"
+
+        def diverges(order):
+            return lambda entry: entry.update(answer="violated", proof={"kind": "diverges", "motion": 1, "axis": 1, "order": order})
+        for target in ("t*sin(t)", "t*t*sin(2*t) + t*cos(t)", "1 - cos(t)*t*(t + 1)", "t^3 - 2*t^2"):
+            self.accepted(name, each, diverges(2), (old, target))
+        # Zero times t is bounded, two swings may cancel, and what is small enough fades.
+        for target in ("t*(0*sin(t))", "t*sin(t) - t*sin(t)", "sin(t)/(1 + t)", "t*sin(t)*exp(-t)"):
+            self.rejected(name, each, "stays bounded", diverges(2), (old, target))
+
     def test_trees_of_every_phase(self):
         name, each = "theorem-3-24-order-4", "spanning-tree"
         path = [["arm-1", "arm-2"], ["arm-2", "arm-3"], ["arm-3", "own-roots"]]
@@ -1249,7 +1311,7 @@ class Enclosures(unittest.TestCase):
         for text, expected in (("sin(t)*cos(t)", True), ("0.2*t + 1", True), ("exp(-abs(sin(t)))", True), ("t*sin(t)", False),
                                ("sin(t^2)", False), ("exp(t)", False), ("t^3", False), ("t/(1 + t)", True), ("max(1, min(t, 3))", True),
                                ("2 - exp(-t)", True), ("t^2/(1 + t)", True), ("t^3/(1 + t)", False), ("sqrt(t)*sin(t)", False)):
-            slope = checker.derivative(checker.formula(text), kinks=True)
+            slope = checker.derivative(checker.formula(text), True)
             self.assertEqual(checker.finite(slope, [(checker.Fraction(1), checker.INF)]), expected, text)
 
     def test_limits_are_those_of_calculus(self):

@@ -7,6 +7,8 @@ mod cases;
 #[path = "certificates/robots.rs"]
 mod robots;
 mod support;
+#[path = "certificates/witnesses.rs"]
+mod witnesses;
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -233,6 +233,13 @@ edges = [["cart-1", "cart-2"], ["cart-2", "cart-1"]]
     assert_eq!(of(&both), ("desired-dynamics", vec![declared, declared, (Answer::NotShown, Rigour::Sampled)]));
     let flee = both.replace("(1 + exp(-t))", "-(2 + exp(-t))");
     assert_eq!(of(&flee), ("desired-dynamics", violated));
+    // A run that is too short to come closer shows nothing, and one that flees is found out however short it is.
+    let short = |text: &str| of(&text.replace("end_s = 40", "end_s = 0.01"));
+    assert_eq!(short(text), ("desired-dynamics", vec![declared, declared, (Answer::NotShown, Rigour::Sampled)]));
+    assert_eq!(short(&text.replace("tanh(2*(heard - weights*x))", "x^3")).1[2].0, Answer::Violated);
+    // They swing for ever about 0, and do not agree: nothing grows.
+    let swing = text.replace("tanh(2*(heard - weights*x))", "-x + dx*(1 - x^2)").replace("[0, 1]", "[0, 0]");
+    assert_eq!(of(&swing).1[2].0, Answer::NotShown);
 }
 
 #[test]

@@ -8,6 +8,7 @@ use forwardstep_sim::trajectory::{Path, Trajectory};
 use super::courses::Course;
 use super::enclosure::{Reach, enclosed, found};
 use super::late::late;
+use super::limit::{Limit, limit};
 use super::numbers::sum;
 use super::producers::Claim;
 use super::proof::{Enclosure, Proof, Range};
@@ -20,6 +21,9 @@ use crate::{Answer, Id};
 /// Times of the run at which a leader is looked at for a witness, and doublings of the run after it.
 const LOOKS: u32 = 20_000;
 const LATER: u32 = 30;
+/// Halvings of the stretch around a zero.
+const HALVINGS: i32 = 30;
+const FOR_EVER: Interval = Interval { low: 0.0, high: f64::INFINITY };
 /// Room, as a part, for sums that are rounded here and exact elsewhere.
 const ROOM: f64 = 1e-9;
 
@@ -59,8 +63,16 @@ pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     Some(Proof::Derivatives(order, range))
 }
 
-/// An axis and a derivative that goes beyond every bound, of what is a quotient of polynomials.
+/// An axis and a derivative that goes beyond every bound: of what is a quotient of polynomials, else by how it swings.
 fn diverging(trajectory: &Trajectory, lowest: usize, highest: usize) -> Option<(usize, usize)> {
+    let axes = 0..trajectory.axes();
+    let mut each = axes.flat_map(|axis| (lowest..=highest).map(move |order| (axis, order)));
+    let grows = |(axis, order): &(usize, usize)| trajectory.is_bounded(*axis, *order) == Some(false);
+    by_limit(trajectory, lowest, highest).or_else(|| each.find(grows))
+}
+
+/// The same where it has an infinite limit.
+fn by_limit(trajectory: &Trajectory, lowest: usize, highest: usize) -> Option<(usize, usize)> {
     trajectory.paths().iter().enumerate().find_map(|(axis, path)| {
         let quotient = late(Course::of(path).formula()?, 1.0).ratio;
         let derivatives = std::iter::successors(quotient, Ratio::derivative).take(highest + 1);
@@ -158,8 +170,32 @@ pub(super) fn nonzero_quaternion(setup: &Setup, claim: &Claim<'_>) -> Option<Pro
     match claim.answer {
         Answer::Holds => entries.iter().enumerate().find_map(for_ever).or_else(norm),
         Answer::HoldsOnHorizon => norm(),
-        Answer::Violated | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
+        Answer::Violated => vanishes(target, &entries, setup.time.end_s),
+        Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
     }
+}
+
+/// That all entries of a quaternion go to zero, or that the only one that is not zero for ever changes its sign.
+fn vanishes(target: &Trajectory, entries: &[Course<'_>], end_s: f64) -> Option<Proof> {
+    let zero = Interval::point(0.0);
+    if entries.iter().all(|entry| entry.formula().is_some_and(|formula| limit(formula) == Limit::Near(zero))) {
+        return Some(Proof::Fades);
+    }
+    let mut others = entries.iter().enumerate().filter(|(_, entry)| entry.enclose(FOR_EVER) != zero);
+    let (Some((entry, course)), None) = (others.next(), others.next()) else { return None };
+    let quaternion = target.quaternion(target.axes().saturating_sub(4))?;
+    let found = quaternion.vanishes_later(end_s)?;
+    let sign = |t_s: f64| {
+        let within = course.enclose(Interval::point(t_s));
+        (!within.holds(0.0)).then_some(within.low > 0.0)
+    };
+    let around = |k: i32| [-1.0, 1.0].map(|side| (found.t_s + side * found.every_s * libm::exp2(-f64::from(k))).max(0.0));
+    let [from_s, to_s] = (1..HALVINGS).map(around).find(|[from_s, to_s]| {
+        let [before, after] = [*from_s, *to_s].map(sign);
+        before.zip(after).is_some_and(|(before, after)| before != after)
+            && course.enclose(Interval { low: *from_s, high: *to_s }).is_finite()
+    })?;
+    Some(Proof::ChangesSign { entry, from_s: Number::written(from_s), to_s: Number::written(to_s) })
 }
 
 /// The first stretch on which the sum of squares keeps within something that is `good`.

@@ -1,11 +1,13 @@
 //! The list of producers: which hypotheses have one.
 
+use forwardstep_core::expression::Number;
 use forwardstep_core::robot::tree::Uncertain;
 use forwardstep_sim::{Setup, TaskSpaceLaw, TipSetup};
 
 use super::enclosure::Reach;
 use super::proof::Proof;
 use super::{delays, gains, motions, numbers, routh, windows};
+use crate::kinds::task_space::left_null;
 use crate::{Answer, Id};
 
 /// Looks for a proof of an answer about a hypothesis of some agents.
@@ -57,6 +59,7 @@ const PRODUCERS: &[(Id, Producer)] = &[
     (Id::SignGain, motions::sign_gain),
     (Id::NonzeroQuaternion, motions::nonzero_quaternion),
     (Id::StartAttitude, motions::start_attitude),
+    (Id::RegularJacobian, regular_jacobian),
     (Id::UniformInertia, text),
     (Id::BoundedDynamics, text),
     (Id::DefinedTerms, numbers::defined_terms),
@@ -111,6 +114,16 @@ fn of_text(setup: &Setup, claim: &Claim<'_>) -> bool {
         })
     };
     claim.agents.iter().all(stated)
+}
+
+/// That Ĵ is singular at the start. That it stays regular, a run watches.
+fn regular_jacobian(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    if claim.answer != Answer::Violated || !of_text(setup, claim) {
+        return None;
+    }
+    let agent = setup.agents.get(*claim.agents.first()?)?;
+    let vector = left_null(agent, agent.law.downcast()?)?;
+    Some(Proof::LeftNull(vector.into_iter().map(Number::written).collect()))
 }
 
 fn of_no_chain(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {

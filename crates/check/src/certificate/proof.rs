@@ -87,6 +87,20 @@ pub enum Proof {
     Apart(BigRational),
     /// Witness: it starts at zero.
     HalfTurn,
+    /// Witness: the vector that the transpose of the estimated Jacobian takes to zero at the start, or so close that the law takes it
+    /// for zero.
+    LeftNull(Vec<BigRational>),
+    /// Witness: every entry of a quaternion goes to zero as t → ∞.
+    Fades,
+    /// Witness: between two times, s, this entry of a quaternion, from zero, changes its sign; the others are always zero.
+    ChangesSign {
+        /// Which.
+        entry: usize,
+        /// Before.
+        from_s: BigRational,
+        /// After.
+        to_s: BigRational,
+    },
     /// Witness: a parameter, or a length, lies outside of the bounds of its estimate, by the text of the scenario.
     Outside,
     /// Witness: at this time, s, what this edge (from, to, phase) follows is not positive, or a delay is negative.

@@ -9,7 +9,7 @@ mod point_mass;
 mod rotorcraft;
 mod spacecraft;
 pub(crate) mod start_attitude;
-mod task_space;
+pub(crate) mod task_space;
 mod vehicle;
 
 use forwardstep_sim::{AgentSetup, Setup};

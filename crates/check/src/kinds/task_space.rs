@@ -91,21 +91,21 @@ const ROUNDING: f64 = 1e-6;
 /// Ĵ must stay away from singularity along the run, which is not known before.
 fn jacobian(agent: &AgentSetup, law: &TaskSpaceLaw) -> KindEvidence {
     let Some(j) = with_tip(agent, law, |tip| start(tip, agent, law)).flatten() else { return KindEvidence::NoTip };
-    let floor = law.determinant_floor;
-    if law.tip.follows() != Follows::Position {
-        let values = j.singular_values();
-        let (smallest, largest) = (values.min(), values.max());
-        let regular = smallest.is_finite() && smallest > ROUNDING * largest;
-        return if regular {
-            KindEvidence::SingularValue { start: smallest, floor }
-        } else {
-            KindEvidence::RankDeficient { smallest, largest }
-        };
+    let (floor, values) = (law.determinant_floor, j.singular_values());
+    let (smallest, largest) = (values.min(), values.max());
+    if !(smallest.is_finite() && smallest > ROUNDING * largest) {
+        KindEvidence::RankDeficient { smallest, largest }
+    } else if law.tip.follows() == Follows::Position {
+        KindEvidence::Determinant { start: j.determinant(), floor }
+    } else {
+        KindEvidence::SingularValue { start: smallest, floor }
     }
-    match j.determinant() {
-        start if start != 0.0 && start.is_finite() => KindEvidence::Determinant { start, floor },
-        start => KindEvidence::Singular { start },
-    }
+}
+
+/// The u of length one for which |uᵀĴ| is smallest at the start.
+pub(crate) fn left_null(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<Vec<f64>> {
+    let svd = with_tip(agent, law, |tip| start(tip, agent, law)).flatten()?.try_svd(true, false, f64::EPSILON, 0)?;
+    Some(svd.u?.column(svd.singular_values.imin()).iter().copied().collect())
 }
 
 /// Something of the tip of an agent; nothing for a robot that has no such tip.

@@ -3,7 +3,8 @@
 //! Every plant is replaced by the chain of integrators of its order, under feedback linearisation; every robot by a mass whose number is
 //! known, under (5) with M = 1. With z(0) = x^(k−1)(0) that leaves s ≡ 0;
 //! with another z(0) s falls exponentially, which is bounded and vanishes. Runs cannot show that all of them converge, so nothing holds
-//! by them. One that ends farther from what it is for than it began, or breaks down, refutes what is declared.
+//! by them. One that ends farther from what it is for than it began is made longer: where it breaks down, or comes to be a thousand
+//! times farther, it refutes what is declared. To end farther is not enough: a run may be too short, and what swings comes back.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -11,8 +12,8 @@ use std::sync::Arc;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::VectorFormulas;
 use forwardstep_sim::{
-    AgentSetup, ChainLaw, ChainModel, ChainStep, Ending, Known, Outcome, RobotSetup, Setup, Signal, Solver, Start,
-    simulate,
+    AgentSetup, ChainLaw, ChainModel, ChainStep, Ending, Known, Outcome, RecordAt, RobotSetup, Setup, Signal, Solver,
+    Start, TimeSpan, simulate,
 };
 
 use crate::hypothesis::{ReferenceEvidence, TriedRun};
@@ -23,34 +24,78 @@ const RUNS: usize = 8;
 const REACH: f64 = 2.0;
 /// How fast s vanishes, 1/s.
 const GAIN_PER_S: f64 = 1.0;
+/// How many times longer a run is made that ends farther than it began, one after the other.
+const LONGER: [f64; 4] = [4.0, 16.0, 64.0, 256.0];
 /// Steps after which a run is given up: it is too stiff to tell anything in time.
 const MOST_STEPS: usize = 20_000;
 
 /// What runs from drawn states show.
 pub(super) fn tried(setup: &Setup) -> ReferenceEvidence {
-    let mut runs = 0;
+    let (mut runs, mut farther) = (0, None);
     for run in 0..RUNS {
-        let Some(alone) = alone(setup, run) else { break };
-        let mut steps = 0;
-        let mut observer = |_| {
-            steps += 1;
-            if steps > MOST_STEPS { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        };
-        // A setup that cannot be built is refused before anybody asks what follows from it.
-        let Ok(outcome) = simulate(&alone, &mut observer) else { break };
-        let (from, to) = match outcome.ending {
-            Ending::Interrupted { .. } | Ending::CutOff { .. } => continue,
-            Ending::Completed => distances(setup, &outcome),
-            Ending::BrokeDown(_) => (distances(setup, &outcome).0, f64::INFINITY),
+        let first = match ended(setup, run, 1.0) {
+            Tried::Ended(found) => found,
+            Tried::GivenUp => continue,
+            Tried::NotBuilt => break,
         };
         runs += 1;
-        if to.is_nan() || to > from {
-            let start = alone.agents.iter().flat_map(|agent| agent.start.q.iter().copied()).collect();
-            let found = TriedRun { start, disturbed: is_disturbed(run), from, to };
-            return ReferenceEvidence::Tried { runs, found: Some(found) };
+        if first.to <= first.from {
+            continue;
+        }
+        let last = made_longer(setup, run, first);
+        if last.refutes() {
+            return ReferenceEvidence::Tried { runs, found: Some(last) };
+        }
+        farther = farther.or(Some(last));
+    }
+    ReferenceEvidence::Tried { runs, found: farther }
+}
+
+/// What becomes of a run that ends farther than it began, for as long as it goes on doing so.
+fn made_longer(setup: &Setup, run: usize, mut last: TriedRun) -> TriedRun {
+    for longer in LONGER {
+        if last.refutes() {
+            break;
+        }
+        match ended(setup, run, longer) {
+            Tried::Ended(next) if next.to > last.to || next.to.is_nan() => last = TriedRun { from: last.from, ..next },
+            Tried::Ended(_) | Tried::GivenUp | Tried::NotBuilt => break,
         }
     }
-    ReferenceEvidence::Tried { runs, found: None }
+    last
+}
+
+/// What becomes of a run.
+enum Tried {
+    Ended(TriedRun),
+    /// It took too long.
+    GivenUp,
+    /// The plant has no order, or what is from outside ends before the run.
+    NotBuilt,
+}
+
+/// A run of `longer` times the length that the scenario states.
+fn ended(setup: &Setup, run: usize, longer: f64) -> Tried {
+    let Some(mut alone) = alone(setup, run) else { return Tried::NotBuilt };
+    alone.time = TimeSpan {
+        end_s: longer * setup.time.end_s,
+        record_every_s: longer * setup.time.record_every_s,
+        record_at: if longer > 1.0 { RecordAt::Intervals } else { setup.time.record_at.clone() },
+    };
+    let mut steps = 0;
+    let mut observer = |_| {
+        steps += 1;
+        if steps > MOST_STEPS { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    // A setup that cannot be built is refused before anybody asks what follows from it.
+    let Ok(outcome) = simulate(&alone, &mut observer) else { return Tried::NotBuilt };
+    let (from, to) = match outcome.ending {
+        Ending::Interrupted { .. } | Ending::CutOff { .. } => return Tried::GivenUp,
+        Ending::Completed => distances(setup, &outcome),
+        Ending::BrokeDown(_) => (distances(setup, &outcome).0, f64::INFINITY),
+    };
+    let start = alone.agents.iter().flat_map(|agent| agent.start.q.iter().copied()).collect();
+    Tried::Ended(TriedRun { start, disturbed: is_disturbed(run), from, to, until_s: alone.time.end_s })
 }
 
 fn is_disturbed(run: usize) -> bool {

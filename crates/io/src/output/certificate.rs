@@ -125,6 +125,11 @@ impl Names<'_> {
             }
             Proof::Apart(least) => json!({ "kind": "apart", "least": decimal(least) }),
             Proof::HalfTurn => json!({ "kind": "half-turn" }),
+            Proof::LeftNull(vector) => json!({ "kind": "left-null", "vector": numbers(vector) }),
+            Proof::Fades => json!({ "kind": "fades" }),
+            Proof::ChangesSign { entry, from_s, to_s } => {
+                json!({ "kind": "changes-sign", "entry": entry + 1, "from_s": decimal(from_s), "to_s": decimal(to_s) })
+            }
             Proof::Outside => json!({ "kind": "outside" }),
             Proof::FactorAway => json!({ "kind": "factor-away" }),
             Proof::Below(t_s, edge) => json!({ "kind": "below", "t_s": decimal(t_s), "edge": self.edge(*edge) }),

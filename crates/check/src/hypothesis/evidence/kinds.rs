@@ -133,11 +133,6 @@ pub enum KindEvidence {
         /// The part.
         floor: f64,
     },
-    /// det Ĵ is zero, or no number, at the start.
-    Singular {
-        /// Its value.
-        start: f64,
-    },
     /// The smallest singular value of Ĵ at the start; a run ends where it falls below a part of that.
     SingularValue {
         /// Its value.
@@ -274,7 +269,6 @@ impl KindEvidence {
             | KindEvidence::NoSpacecraft => Answer::NotCovered,
             KindEvidence::ParameterOutside { .. }
             | KindEvidence::TermFails { .. }
-            | KindEvidence::Singular { .. }
             | KindEvidence::RankDeficient { .. }
             | KindEvidence::HalfTurn
             | KindEvidence::FactorBelowFloor { .. }
@@ -321,7 +315,7 @@ impl KindEvidence {
             | KindEvidence::AttitudeNotShown { .. }
             | KindEvidence::HalfTurn
             | KindEvidence::TermNotShown { .. } => Rigour::Enclosed,
-            KindEvidence::Singular { .. } | KindEvidence::RankDeficient { .. } | KindEvidence::Momentum(_) => {
+            KindEvidence::RankDeficient { .. } | KindEvidence::Momentum(_) => {
                 Rigour::Computed
             }
             KindEvidence::ThrustFloor { .. }

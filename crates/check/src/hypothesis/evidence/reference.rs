@@ -71,7 +71,7 @@ pub enum ReferenceEvidence {
     Tried {
         /// How many were made.
         runs: usize,
-        /// One that refutes what is declared.
+        /// One that ends farther from what it is for than it began.
         found: Option<TriedRun>,
     },
 }
@@ -87,6 +87,18 @@ pub struct TriedRun {
     pub from: f64,
     /// The distance at the end; infinite where the run breaks down.
     pub to: f64,
+    /// When it was to end, s.
+    pub until_s: f64,
+}
+
+/// A run that comes to be so many times farther refutes what is declared.
+const GROWN: f64 = 1e3;
+
+impl TriedRun {
+    /// Whether it refutes what is declared: it broke down, or grew beyond what a short run, or one that swings, explains.
+    pub fn refutes(&self) -> bool {
+        self.to.is_nan() || self.to >= GROWN * self.from
+    }
 }
 
 impl ReferenceEvidence {
@@ -110,6 +122,7 @@ impl ReferenceEvidence {
             | ReferenceEvidence::NoDesign
             | ReferenceEvidence::NoDesignInThese
             | ReferenceEvidence::Tried { found: None, .. } => Answer::NotShown,
+            ReferenceEvidence::Tried { found: Some(run), .. } if !run.refutes() => Answer::NotShown,
             ReferenceEvidence::Unstable { .. } | ReferenceEvidence::Tried { found: Some(_), .. } => Answer::Violated,
             ReferenceEvidence::FirstRoots(_) | ReferenceEvidence::FilteredDerivative { .. } => Answer::NotCovered,
         }

@@ -85,14 +85,13 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
             format!("a run that is completed keeps the states of {} bounded, and with them its regressors", agent.name)
         }
         KindEvidence::Determinant { start, floor } => {
-            format!("its determinant starts at {start:.3}; a run ends where it falls below {floor} of that")
+            format!("its determinant starts at {}; a run ends where it falls below {floor} of that", rounded(*start))
         }
-        KindEvidence::Singular { start } => format!("its determinant starts at {start}"),
         KindEvidence::SingularValue { start, floor } => {
-            format!("its smallest singular value starts at {start:.3}; a run ends where it falls below {floor} of that")
+            format!("its smallest singular value starts at {}; a run ends where it falls below {floor} of that", rounded(*start))
         }
         KindEvidence::RankDeficient { smallest, largest } => {
-            format!("its singular values start from {smallest:.3e} to {largest:.3}")
+            format!("its singular values start from {} to {}", rounded(*smallest), rounded(*largest))
         }
         KindEvidence::AttitudeApart { scalar } => format!(
             "the scalar part of the error starts at {} at least, with the sign for the shorter way, which is kept: −q and q are one attitude",

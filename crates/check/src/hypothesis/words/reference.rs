@@ -63,11 +63,17 @@ pub(super) fn words(evidence: &ReferenceEvidence) -> String {
             "{runs} runs of these dynamics alone, from states that were drawn, half of them with an s that vanishes, came closer to what they are for; \
              that shows nothing of others"
         ),
-        ReferenceEvidence::Tried { found: Some(TriedRun { start, disturbed, from, to }), .. } => {
+        ReferenceEvidence::Tried { found: Some(run), .. } => {
+            let TriedRun { start, disturbed, from, to, until_s } = run;
+            let but = if run.refutes() { "" } else { "; that shows neither" };
             let with = if *disturbed { "with an s that vanishes" } else { "without s" };
-            let end = if to.is_finite() { format!("ends at {to:.3e}") } else { "breaks down".into() };
+            let end = if to.is_finite() {
+                format!("is at {to:.3e} from it at {until_s} s")
+            } else {
+                "breaks down".into()
+            };
             format!(
-                "a run of these dynamics alone, {with}, from x = {}, is at most {from:.3e} from what they are for when it begins, and {end}",
+                "a run of these dynamics alone, {with}, from x = {}, is at most {from:.3e} from what they are for while it begins, and {end}{but}",
                 list(start)
             )
         }

@@ -87,7 +87,7 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
                 format!("a factor for {} that keeps away from zero in every state, such as 2 + cos(x)", agent.name)
             }
         },
-        KindEvidence::Singular { .. } | KindEvidence::RankDeficient { .. } => {
+        KindEvidence::RankDeficient { .. } => {
             "a start at which the Jacobian is not singular".into()
         }
         KindEvidence::NoTip => "an `end_effector` that the robot has".into(),

@@ -1,0 +1,58 @@
+//! Witnesses: what is violated, shown by numbers that the checker replays.
+
+use super::{changed, judged, proof};
+
+fn violated(text: &str, id: &str, kind: &str) {
+    assert_eq!(judged(text, id), ("violated".to_owned(), "accepted".to_owned()), "{id}: {text}");
+    assert_eq!(proof(text, id)["kind"], kind, "{id}");
+}
+
+fn watched(text: &str, id: &str) {
+    assert_eq!(judged(text, id), ("watched during the run".to_owned(), "could not check".to_owned()), "{id}: {text}");
+}
+
+#[test]
+fn a_start_at_which_the_jacobian_is_singular_comes_with_the_vector_that_it_takes_to_zero() {
+    let arm = |q: &str| changed("theorem-6", "start.position_rad = [0.2, 1.4]", &format!("start.position_rad = {q}"));
+    violated(&arm("[0.2, 0.0]"), "regular-jacobian", "left-null");
+    // Folded back; no binary number is π.
+    violated(&arm("[0.2, 3.141592653589793]"), "regular-jacobian", "left-null");
+    violated(&arm("[0.2, 1e-7]"), "regular-jacobian", "left-null");
+    watched(&arm("[0.2, 1e-4]"), "regular-jacobian");
+    // The elbow of a UR5e is straight.
+    let straight = changed("pose-ur5e", "0.4, -1.2, 1.6, -1.9", "0.4, -1.2, 0.0, -1.9");
+    violated(&straight, "regular-jacobian", "left-null");
+    // Its wrist is.
+    let wrist = changed("pose-ur5e", "-1.9, -1.5, 0.3", "-1.9, 0.0, 0.3");
+    violated(&wrist, "regular-jacobian", "left-null");
+}
+
+#[test]
+fn an_attitude_that_fades_or_turns_over_is_refuted_by_its_limit_or_by_a_change_of_sign() {
+    let craft = |target: &str| changed("theorem-7", "target.formulas = [0, 0, 0, 1]", &format!("target.formulas = {target}"));
+    violated(&craft(r#"["0.5*exp(-t)", "exp(-2*t)", 0, "1/(1+t)"]"#), "nonzero-quaternion", "fades");
+    // After the run, which ends at 60 s.
+    violated(&craft(r#"[0, 0, 0, "1 - t/90"]"#), "nonzero-quaternion", "changes-sign");
+    violated(&craft(r#"[0, 0, "cos(0.02*t)", "0*t"]"#), "nonzero-quaternion", "changes-sign");
+    // It stays, or two entries vanish at two times.
+    for apart in [r#"[0, 0, 0, "1 + 1/(1+t)"]"#, r#"[0, 0, "sin(0.02*t)", "cos(0.02*t)"]"#] {
+        assert_eq!(judged(&craft(apart), "nonzero-quaternion").0, "holds", "{apart}");
+    }
+}
+
+#[test]
+fn a_target_that_swings_ever_wider_is_refuted() {
+    let masses = |target: &str| {
+        format!(
+            "format = 2\ntime.end_s = 5\n[[agents]]\nname = \"m\"\ncount = 2\nrobot.point_mass = {{ mass_kg = 2, dimension = 1 }}\n\
+             start.position_m = [[0.0], [1.0]]\ntarget.formulas = [\"{target}\"]\n\
+             [reference.tracking]\nroots_per_s = [1.0, 2.0]\n"
+        )
+    };
+    for target in ["t*sin(t)", "3 - sqrt(t)*cos(2*t)*t^2", "t*sin(t) + 1/(1+t)", "-(t^2*cos(t))"] {
+        violated(&masses(target), "bounded-target", "diverges");
+    }
+    for target in ["sin(t)", "sin(t)/(1+t)", "t*sin(t)*exp(-t)"] {
+        assert_ne!(judged(&masses(target), "bounded-target").0, "violated", "{target}");
+    }
+}
