@@ -4,7 +4,8 @@ mod experiments;
 mod suggest;
 
 pub(crate) use experiments::{
-    AttackOptions, AttackTarget, FalsifyOptions, ManipulabilityOptions, SamplingLimitOptions, SmoothnessOptions,
+    AttackOptions, AttackTarget, CompareOptions, FalsifyOptions, ManipulabilityOptions, SamplingLimitOptions,
+    SmoothnessOptions,
 };
 
 use std::path::PathBuf;
@@ -55,6 +56,8 @@ pub(crate) enum Command {
         #[arg(long)]
         follow: bool,
     },
+    /// Put runs side by side: what was promised, predicted and observed of each, as a table and as a page
+    Compare(CompareOptions),
     /// Say which theorem speaks about a scenario, and whether its hypotheses hold
     Check(CheckOptions),
     /// Derive why a scenario converges: the virtual control, the differential cascade, and how its degree is reduced
@@ -75,7 +78,7 @@ pub(crate) enum Command {
         #[arg(add = ArgValueCompleter::new(suggest::shipped))]
         name: Option<String>,
     },
-    /// Print the JSON schema of scenario files, of the summary.json of a run, or of what `check --json` or `smoothness --json` prints
+    /// Print the JSON schema of scenario files, of the summary.json of a run, or of what `check --json`, `compare --json` or `smoothness --json` prints
     Schema {
         /// Of which documents
         #[arg(value_enum, default_value_t)]
@@ -182,6 +185,8 @@ pub(crate) enum SchemaChoice {
     Scenario,
     /// What `check --json` prints
     Check,
+    /// What `compare --json` prints
+    Compare,
     /// What `smoothness --json` prints
     Smoothness,
     /// The summary.json of a run

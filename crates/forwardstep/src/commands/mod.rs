@@ -3,6 +3,8 @@
 mod ask;
 mod attack;
 mod check;
+mod compare;
+mod compare_table;
 mod completions;
 mod dynamics;
 mod explain;
@@ -26,6 +28,7 @@ mod upgrade;
 
 pub(crate) use attack::attack;
 pub(crate) use check::check;
+pub(crate) use compare::compare;
 pub(crate) use completions::{asked, completions};
 pub(crate) use explain::explain;
 pub(crate) use falsify::falsify;

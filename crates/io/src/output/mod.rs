@@ -24,6 +24,7 @@
 //! `timings` object of `summary.json` is the same for the same run, bit for bit.
 
 mod certificate;
+mod comparison;
 mod conclusion;
 mod csv;
 mod decimate;
@@ -72,6 +73,7 @@ use std::collections::HashSet;
 use std::path::PathBuf;
 
 pub use certificate::{CERTIFICATE_FORMAT, certificate_document};
+pub use comparison::{COMPARISON_FORMAT, Compared, ComparedCell, ComparedRow, ComparedRun, Comparison, RowGroup};
 pub use conclusion::Conclusion;
 pub use digital::{DigitalCost, Figures, continuous_twin};
 pub use disk::{Disk, DiskFile};
