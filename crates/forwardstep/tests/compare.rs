@@ -112,7 +112,7 @@ fn scenarios_are_run_and_laid_side_by_side() {
     write(&here, "points.toml", POINTS);
     write(&here, "slow.toml", &POINTS.replace("[2.0, 3.0]", "[1.0]").replace("Two points", "Two slow points"));
     let found = document(&here, &["points.toml", "slow.toml"], "both");
-    assert_eq!(names(&here.path().join("both")), ["compare.json", "points", "slow"]);
+    assert_eq!(names(&here.path().join("both")), ["compare.html", "compare.json", "points", "slow"]);
     assert_eq!(names(here.path()), ["both", "points.toml", "slow.toml"]);
     assert_eq!((&found["runs"][0]["name"], &found["runs"][1]["title"]), (&"points".into(), &"Two slow points".into()));
     // What is the same is marked, and what is not.
@@ -158,13 +158,13 @@ fn a_folder_of_a_run_beside_a_scenario_is_read_and_left_as_it_is() {
     let page = fs::metadata(here.path().join("early/report.html")).unwrap().modified().unwrap();
     let found = document(&here, &["early", "points.toml", "early"], "both");
     assert_eq!(fs::metadata(here.path().join("early/report.html")).unwrap().modified().unwrap(), page);
-    assert_eq!(names(&here.path().join("both")), ["compare.json", "points"]);
+    assert_eq!(names(&here.path().join("both")), ["compare.html", "compare.json", "points"]);
     let called: Vec<_> = found["runs"].as_array().unwrap().iter().map(|run| run["name"].as_str().unwrap()).collect();
     assert_eq!(called, ["early", "points", "early-2"]);
     assert!(found["rows"].as_array().unwrap().iter().all(|row| row["same"] == true), "{found}");
     let said = stdout(&forwardstep(&here, &["compare", "early", "early", "--out", "same"]).success());
     assert!(said.contains("The runs are the same in all that is compared") && !said.contains("Different"), "{said}");
-    assert_eq!(names(&here.path().join("same")), ["compare.json"]);
+    assert_eq!(names(&here.path().join("same")), ["compare.html", "compare.json"]);
 }
 
 #[test]

@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 use super::error::OutputError;
 use super::folder::RunFolder;
 use super::record::RunRecord;
+use super::report::side_by_side;
 use rows::Subject;
 
 /// The format of this document; it grows when fields change their meaning or vanish, not when some are added.
@@ -172,8 +173,9 @@ impl Comparison {
     ///
     /// # Errors
     /// [`OutputError`] with the file and what was tried. A failure harms no file that was there.
-    pub fn write(&self, folder: &RunFolder, _runs: &[Compared<'_>]) -> Result<Vec<PathBuf>, OutputError> {
+    pub fn write(&self, folder: &RunFolder, runs: &[Compared<'_>]) -> Result<Vec<PathBuf>, OutputError> {
         let mut staging = folder.stage();
+        staging.write_text(PAGE, &side_by_side(self, runs))?;
         staging.write(DOCUMENT, |out| Ok(std::io::Write::write_all(out, (self.to_json()? + "\n").as_bytes())?))?;
         staging.replace()
     }

@@ -12,6 +12,8 @@ mod practical;
 mod predicted;
 mod scene;
 pub(crate) mod sections;
+mod side_by_side;
+mod side_data;
 mod stage;
 pub(crate) mod text;
 
@@ -28,6 +30,7 @@ use super::palette::{self, Ground};
 use super::record::RunRecord;
 use super::table::Table;
 use super::timeline::Timeline;
+pub(crate) use side_by_side::side_by_side;
 
 const UPLOT_JS: &str = include_str!("../../../assets/uplot/uPlot.iife.min.js");
 const UPLOT_CSS: &str = include_str!("../../../assets/uplot/uPlot.min.css");
@@ -200,7 +203,11 @@ fn network(record: &RunRecord<'_>, timeline: &Timeline<'_>) -> Markup {
 
 /// The agents' colours as CSS variables and classes, for both grounds.
 fn colours(setup: &Setup) -> String {
-    let (agents, vertices) = (setup.agents.len(), network::vertices(setup));
+    colours_of(setup.agents.len(), network::vertices(setup))
+}
+
+/// The same of so many agents; vertices beyond them are leaders.
+fn colours_of(agents: usize, vertices: usize) -> String {
     let variables = |ground| -> String {
         let agent = (0..agents).map(|k| format!("--a{k}:{};", palette::css(palette::agent(k, agents, ground))));
         let ramp = (0..RAMP).map(|k| format!("--r{k}:{};", palette::css(palette::ramp(k, RAMP, ground))));
