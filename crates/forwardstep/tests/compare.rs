@@ -237,3 +237,60 @@ fn the_document_keeps_to_its_schema() {
         }
     }
 }
+
+#[test]
+fn ships_under_every_order_are_the_same_but_for_what_leads_them() {
+    let here = folder();
+    let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/book/src/ships");
+    let all = ["backstepping", "order-1", "order-2", "order-3", "order-4"];
+    let files: Vec<String> = all.iter().map(|name| book.join(format!("{name}.toml")).display().to_string()).collect();
+    let found = document(&here, &files.iter().map(String::as_str).collect::<Vec<_>>(), "ships");
+    for key in ["robots", "law", "network", "start", "control", "horizon_s", "ended", "goal"] {
+        assert_eq!(row(&found, key)["same"], true, "{key}");
+    }
+    // And they are those of the shipped scenario.
+    let beside = [files[2].as_str(), "five-ships"];
+    let shipped = document(&here, &[&["--no-jumps"], &beside[..]].concat(), "beside");
+    for key in ["robots", "law", "network", "start", "control", "horizon_s"] {
+        assert_eq!(row(&shipped, key)["same"], true, "{key}");
+    }
+    assert!(row(&shipped, "input_jump")["cells"][0]["because"].as_str().unwrap().contains("--no-jumps"));
+    // Backstepping jumps far, order 1 by what is heard, and from order 2 on the torque is continuous.
+    let jumps = numbers(&found, "input_jump");
+    assert!(jumps[0] > 100.0 * jumps[1] && jumps[1] > 1.0 && jumps[2..].iter().all(|jump| *jump == 0.0), "{jumps:?}");
+    let first = words(&found, "first_jump");
+    for (said, begins) in first.iter().zip(["τ, by", "τ, by", "dτ/dt, by", "d²τ/dt², by", "d³τ/dt³, by"]) {
+        assert!(said.starts_with(begins), "{first:?}");
+    }
+    let peaks = numbers(&found, "peak_torque");
+    assert!(peaks.windows(2).all(|pair| pair[0] > pair[1]), "{peaks:?}");
+}
+
+#[test]
+fn networks_with_other_numbers_are_not_the_same() {
+    let here = folder();
+    write(&here, "points.toml", POINTS);
+    write(
+        &here,
+        "other.toml",
+        &POINTS.replace("dwell_s = 0.25", "dwell_s = 0.3").replace("[1.0]]", "[0.9]]").replace("-1.0]", "-1.1]"),
+    );
+    let found = document(&here, &["points.toml", "other.toml"], "both");
+    for key in ["network", "start"] {
+        assert_eq!(row(&found, key)["same"], false, "{key}");
+        let said = words(&found, key);
+        assert!(!said[0].contains("other") && said[1].ends_with(", with other numbers"), "{said:?}");
+    }
+    assert_eq!(row(&found, "robots")["same"], true);
+}
+
+#[test]
+fn a_hostile_title_is_text_on_the_page() {
+    let here = folder();
+    let title = "</script><img src=x onerror=alert(1)> & more";
+    write(&here, "hostile.toml", &POINTS.replace("Two points", title));
+    forwardstep(&here, &["compare", "hostile.toml", "hostile.toml", "--out", "both"]).success();
+    let page = fs::read_to_string(here.path().join("both/compare.html")).unwrap();
+    assert!(!page.contains("<img") && page.contains("&lt;img src=x"), "escaped");
+    assert!(!page.contains("http://") || page.matches("http://").count() == page.matches("http://www.w3.org").count());
+}

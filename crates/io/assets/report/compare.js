@@ -58,7 +58,8 @@ const fillCard = (mine) => {
   const entry = element("select", { onchange: () => ((mine.chosen = entry.value), fillCard(mine)) });
   entry.setAttribute("aria-label", "what is drawn");
   for (const name of mine.common) entry.append(element("option", { value: name, textContent: name, selected: name === mine.chosen }));
-  mine.pick.replaceChildren(...(mine.common.length > 1 ? [entry] : []), scale);
+  // What has both signs has no logarithm.
+  mine.pick.replaceChildren(...(mine.common.length > 1 ? [entry] : []), ...(mine.id === "position" ? [] : [scale]));
   const found = mine.all.flatMap(({ run, quantity }) => quantity.entries.filter((e) => e.name === mine.chosen).map((e) => ({ run, entry: e })));
   const units = [...new Set(found.map(({ entry: { unit } }) => unit))];
   mine.unit.textContent = units.join("") ? ` ${units.join(" beside ")}` : "";
@@ -105,15 +106,17 @@ const side = (() => {
   let asked = 0;
   slider.max = String(end);
   slider.step = String(end / 2000);
+  // What is measured where bodies stand, as the page of one run says it.
+  const lengthOf = ({ picture, agents }) => (picture.bodies.some((b) => b.kind !== "point") ? " m" : ` ${[...new Set(agents.flatMap((a) => a.axes.map((x) => x.units.q)))].join(" or ")}`);
   const views = [...document.querySelectorAll(".scene")].map((card, k) => {
     const canvas = element("canvas");
     canvas.setAttribute("role", "img");
     card.querySelector(".view").append(canvas);
-    return { run: runs[k], canvas, ctx: canvas.getContext("2d"), words: card.querySelector(".words"), colours: runs[k].picture.sceneColours() };
+    return { run: runs[k], canvas, ctx: canvas.getContext("2d"), words: card.querySelector(".words"), unit: lengthOf(runs[k]), colours: runs[k].picture.sceneColours() };
   });
   const nothing = () => false;
 
-  const drawOne = ({ run, canvas, ctx, words, colours }) => {
+  const drawOne = ({ run, canvas, ctx, words, colours, unit }) => {
     const picture = run.picture;
     const [width, height, scale] = [canvas.clientWidth, canvas.clientHeight, Math.min(2, devicePixelRatio || 1)];
     if (width === 0 || height === 0) return;
@@ -132,7 +135,7 @@ const side = (() => {
     picture.drawEdges(ctx, see, frame, colours, heard);
     picture.drawWords(ctx, see, frame, colours, { hovered: null, alone: null });
     const over = now.t > run.until_s ? `Ended at ${number(run.until_s, 4)} s. ` : "";
-    const size = picture.railed ? "Each on a line of its own. " : picture.floorGrid.step ? `Squares of ${number(picture.floorGrid.step, 2)}. ` : "";
+    const size = picture.railed ? "Each on a line of its own. " : picture.floorGrid.step ? `Squares of ${number(picture.floorGrid.step, 2)}${unit}. ` : "";
     const text = over + size + picture.graphWords(heard);
     if (words.textContent !== text) words.textContent = text;
     canvas.setAttribute("aria-label", `${run.name} at ${number(t, 4)} s: ${picture.bodies.length} in space`);
