@@ -52,7 +52,7 @@ pub(crate) enum Command {
         /// Write everything about the run into this folder instead, which is made, and leave DIR as it is
         #[arg(long, value_name = "ELSEWHERE")]
         out: Option<PathBuf>,
-        /// Write the page anew, about once per second, while a run writes into DIR, and once more when it has ended
+        /// Write the page anew, about once per second, while a run writes into DIR (one without a --follow of its own), and once more when it has ended
         #[arg(long)]
         follow: bool,
     },
@@ -112,6 +112,7 @@ impl Default for Command {
             csv: false,
             balance: false,
             predict: false,
+            follow: false,
         })
     }
 }
@@ -137,6 +138,9 @@ pub(crate) struct RunOptions {
     /// Predict the course of agreement whatever that takes; otherwise large networks over long times are run without
     #[arg(long)]
     pub(crate) predict: bool,
+    /// Write the page while the run goes on too, from its first second on and for a few percent of its time; a browser loads it again by itself
+    #[arg(long)]
+    pub(crate) follow: bool,
 }
 
 #[derive(Debug, Args)]

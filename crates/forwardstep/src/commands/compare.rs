@@ -68,7 +68,7 @@ fn finish(options: &CompareOptions, kinds: &Kinds, console: &mut Console) -> Res
             Given::Scenario(scenario) => {
                 let path = out.join(name);
                 remark(format_args!("running {}", shown(name)));
-                match run_first(scenario, &path, options, &stop)? {
+                match run_first(scenario, &path, options, kinds, &stop)? {
                     Status::Fine | Status::Missed => {}
                     Status::BrokeDown => status = Status::BrokeDown,
                     other => {
@@ -159,7 +159,13 @@ fn joined(names: &[String]) -> String {
 }
 
 /// Simulates a scenario, as `run` does, without its words.
-fn run_first(scenario: &Scenario, path: &Path, options: &CompareOptions, stop: &Stop) -> Result<Status, Status> {
+fn run_first(
+    scenario: &Scenario,
+    path: &Path,
+    options: &CompareOptions,
+    kinds: &Kinds,
+    stop: &Stop,
+) -> Result<Status, Status> {
     let options = RunOptions {
         scenario: scenario.name.clone(),
         out: None,
@@ -167,9 +173,10 @@ fn run_first(scenario: &Scenario, path: &Path, options: &CompareOptions, stop: &
         csv: false,
         balance: false,
         predict: options.predict,
+        follow: false,
     };
     let promise = promise(&scenario.setup);
-    execute(scenario, &promise, path, &options, stop, &mut Console::muted())
+    execute(scenario, &promise, path, &options, kinds, stop, &mut Console::muted())
 }
 
 /// Reads a run back, and looks at its jumps.

@@ -10,6 +10,7 @@ mod dynamics;
 mod explain;
 mod falsify;
 mod follow;
+mod growing;
 mod man;
 mod manipulability;
 mod new;

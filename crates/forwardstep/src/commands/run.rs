@@ -16,6 +16,7 @@ use forwardstep::sim::{
     Ending, Outcome, Progress, Recording, Statistics, Watch, recorded_columns, simulate, simulate_into,
 };
 
+use super::growing::followed;
 use super::progress::Bar;
 use super::promise::{Promise, predictions, predicts_quickly, promise, show, show_predictions};
 use super::stop::Stop;
@@ -35,7 +36,7 @@ fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<
     let path = options.out.clone().unwrap_or_else(|| Path::new("forwardstep-runs").join(&scenario.name));
     // Only now: until there is something to keep, Ctrl-C just ends the program.
     let stop = Stop::listen();
-    execute(&scenario, &promise, &path, options, &stop, console)
+    execute(&scenario, &promise, &path, options, kinds, &stop, console)
 }
 
 /// Simulates a scenario that was read, into the folder `path`, and says so.
@@ -44,6 +45,7 @@ pub(super) fn execute(
     promise: &Promise,
     path: &Path,
     options: &RunOptions,
+    kinds: &Kinds,
     stop: &Stop,
     console: &mut Console,
 ) -> Result<Status, Status> {
@@ -72,7 +74,13 @@ pub(super) fn execute(
     start.prediction = prediction.clone();
     let mut journal = Journal::new(&folder, start, || started.elapsed());
     let balance = balances.as_mut().map(|balances| balances as &mut dyn Watch);
-    let outcome = simulate_into(setup, &mut observer, balance, &mut journal);
+    if options.follow {
+        let page = path.join("report.html");
+        remark(format_args!("The page grows while the run goes on, from its first second on: {}", shown(&page)));
+    }
+    let outcome = followed(options.follow, &folder, kinds, promise, || {
+        simulate_into(setup, &mut observer, balance, &mut journal)
+    });
     bar.clear();
     let mut outcome = outcome.map_err(|error| complain(&Plain::new(error)))?;
     outcome.statistics.wall = Some(started.elapsed());

@@ -190,7 +190,7 @@ fn metrics(record: &RunRecord<'_>) -> Metrics {
 }
 
 fn write_pictures(staging: &mut Staging<'_>, record: &RunRecord<'_>, metrics: &Metrics) -> Result<(), OutputError> {
-    staging.write_text("report.html", &report::page(record, metrics, false))?;
+    staging.write_text("report.html", &report::page(record, metrics, None))?;
     let plots = plots::Plots::of(record);
     let mut plot = |name, svg: Result<String, EncodeError>| {
         staging.write(name, |out| Ok(std::io::Write::write_all(out, svg?.as_bytes())?))
