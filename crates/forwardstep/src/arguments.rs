@@ -4,7 +4,8 @@ mod experiments;
 mod suggest;
 
 pub(crate) use experiments::{
-    AttackOptions, AttackTarget, FalsifyOptions, ManipulabilityOptions, SamplingLimitOptions, SmoothnessOptions,
+    AttackOptions, AttackTarget, CompareOptions, FalsifyOptions, ManipulabilityOptions, SamplingLimitOptions,
+    SmoothnessOptions,
 };
 
 use std::path::PathBuf;
@@ -51,10 +52,12 @@ pub(crate) enum Command {
         /// Write everything about the run into this folder instead, which is made, and leave DIR as it is
         #[arg(long, value_name = "ELSEWHERE")]
         out: Option<PathBuf>,
-        /// Write the page anew, about once per second, while a run writes into DIR, and once more when it has ended
+        /// Write the page anew, about once per second, while a run writes into DIR (one without a --follow of its own), and once more when it has ended
         #[arg(long)]
         follow: bool,
     },
+    /// Put runs side by side: what was promised, predicted and observed of each, as a table and as a page
+    Compare(CompareOptions),
     /// Say which theorem speaks about a scenario, and whether its hypotheses hold
     Check(CheckOptions),
     /// Derive why a scenario converges: the virtual control, the differential cascade, and how its degree is reduced
@@ -75,7 +78,7 @@ pub(crate) enum Command {
         #[arg(add = ArgValueCompleter::new(suggest::shipped))]
         name: Option<String>,
     },
-    /// Print the JSON schema of scenario files, of the summary.json of a run, or of what `check --json` or `smoothness --json` prints
+    /// Print the JSON schema of scenario files, of the summary.json of a run, or of what `check --json`, `compare --json` or `smoothness --json` prints
     Schema {
         /// Of which documents
         #[arg(value_enum, default_value_t)]
@@ -109,6 +112,7 @@ impl Default for Command {
             csv: false,
             balance: false,
             predict: false,
+            follow: false,
         })
     }
 }
@@ -134,6 +138,9 @@ pub(crate) struct RunOptions {
     /// Predict the course of agreement whatever that takes; otherwise large networks over long times are run without
     #[arg(long)]
     pub(crate) predict: bool,
+    /// Write the page while the run goes on too, from its first second on and for a few percent of its time; a browser loads it again by itself
+    #[arg(long)]
+    pub(crate) follow: bool,
 }
 
 #[derive(Debug, Args)]
@@ -182,6 +189,8 @@ pub(crate) enum SchemaChoice {
     Scenario,
     /// What `check --json` prints
     Check,
+    /// What `compare --json` prints
+    Compare,
     /// What `smoothness --json` prints
     Smoothness,
     /// The summary.json of a run

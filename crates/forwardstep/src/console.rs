@@ -32,12 +32,18 @@ pub(crate) const DIM: Style = Style::new().dimmed();
 /// Standard output. Colours are left out unless it is a terminal, and when `NO_COLOR` is set.
 pub(crate) struct Console {
     out: AutoStream<Stdout>,
+    muted: bool,
     failure: Option<io::Error>,
 }
 
 impl Console {
     pub(crate) fn new() -> Self {
-        Console { out: AutoStream::auto(io::stdout()), failure: None }
+        Console { out: AutoStream::auto(io::stdout()), muted: false, failure: None }
+    }
+
+    /// One that says nothing, for a command that is a part of another.
+    pub(crate) fn muted() -> Self {
+        Console { muted: true, ..Console::new() }
     }
 
     /// Writes a line. After a failure nothing more is written: a run goes on although its words are not read.
@@ -57,7 +63,8 @@ impl Console {
 
     /// Writes the text of a file as it is, which a reader will ask for again.
     pub(crate) fn verbatim(&mut self, text: impl fmt::Display) {
-        if self.failure.is_none()
+        if !self.muted
+            && self.failure.is_none()
             && let Err(error) = write!(self.out, "{text}").and_then(|()| self.out.flush())
         {
             self.failure = Some(error);

@@ -49,6 +49,7 @@ pub fn program_with(kinds: &Kinds, arguments: impl IntoIterator<Item = impl Into
             commands::report(&folder, out.as_deref(), kinds, &mut console)
         }
         Command::Report { folder, out, follow: true } => commands::follow(&folder, out.as_deref(), kinds, &mut console),
+        Command::Compare(options) => commands::compare(&options, kinds, &mut console),
         Command::Check(options) => commands::check(&options, kinds, &mut console),
         Command::Explain(options) => commands::explain(&options, kinds, &mut console),
         Command::SamplingLimit(options) => commands::sampling_limit(&options, kinds, &mut console),

@@ -180,8 +180,9 @@ fn follow(folder: &TempDir, out: &str, more: &[&str]) -> Child {
 fn shown_until(page: &Path) -> Option<f64> {
     let page = fs::read_to_string(page).ok()?;
     assert!(page.ends_with("</html>"), "a page is there whole or not at all");
-    let (_, rest) = page.split_once("The run goes on; this is what it has until t = ")?;
-    rest.split_once(" s")?.0.parse().ok()
+    assert_eq!(page.contains("running: "), page.contains("location.reload"));
+    let (_, rest) = page.split_once("running: ")?;
+    rest.split_once(" s of ")?.0.parse().ok()
 }
 
 /// The different times that a page shows, one after the other, until they are `many`.
@@ -216,7 +217,7 @@ fn the_page_of_a_run_grows_until_it_has_ended() {
         let said = String::from_utf8(ended.stderr).unwrap();
         assert!(ended.status.success() && said.contains("Was cut off at t = "), "{said}");
         let page = fs::read_to_string(path(shown_in).join("report.html")).unwrap();
-        assert!(page.contains("Cut off") && !page.contains("The run goes on"), "{shown_in}");
+        assert!(page.contains("Cut off") && !page.contains("running: "), "{shown_in}");
         assert!(!names(&path(shown_in)).iter().any(|name| name.contains("partial")), "{shown_in}");
         assert!(recording(&path(shown_in)).t_s.last() >= times.last());
         // What was followed from elsewhere stays as it was.
@@ -241,4 +242,48 @@ fn who_follows_a_run_to_its_end_has_the_page_that_it_wrote() {
     assert_eq!(fs::read(path("whole/report.html")).unwrap(), page);
     let error = stderr(&forwardstep(&folder, &["report", "nowhere", "--follow"]).code(2));
     assert!(error.contains("nowhere"), "{error}");
+}
+
+/// A run that follows itself.
+fn start_followed(folder: &TempDir, out: &str) -> Child {
+    Process::new(assert_cmd::cargo::cargo_bin("forwardstep"))
+        .current_dir(folder)
+        .args(["run", "mine/long.toml", "--csv", "--follow", "--out", out])
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+#[test]
+fn a_run_that_follows_itself_writes_the_same() {
+    let folder = scenario();
+    let path = |out: &str| folder.path().join(out);
+    fs::write(path("mine/long.toml"), LONG.replace("end_s = 20", "end_s = 2000")).unwrap();
+    let mut run = start_followed(&folder, "killed");
+    let page = path("killed/report.html");
+    let times = times_shown(&page, 2);
+    run.kill().unwrap();
+    let said = String::from_utf8(run.wait_with_output().unwrap().stderr).unwrap();
+    assert!(said.contains("grows while the run goes on") && said.contains("killed/report.html"), "{said}");
+    // What it wrote last stays, and `report` finishes it, also where it was killed while it wrote another.
+    assert!(shown_until(&page) >= times.last().copied());
+    fs::write(path("killed/.report.html.partial"), "half of a page").unwrap();
+    forwardstep(&folder, &["report", "killed"]).success();
+    assert!(fs::read_to_string(&page).unwrap().contains("Cut off") && shown_until(&page).is_none());
+    assert!(!names(&path("killed")).iter().any(|name| name.contains("partial")));
+
+    fs::write(path("mine/long.toml"), LONG).unwrap();
+    let mut run = start_followed(&folder, "followed");
+    assert!(has_journal(&mut run, &path("followed")));
+    assert!(!times_shown(&path("followed/report.html"), 1).is_empty());
+    assert!(run.wait().unwrap().success());
+    forwardstep(&folder, &["run", "mine/long.toml", "--csv", "--out", "alone"]).success();
+    assert_eq!(names(&path("followed")), names(&path("alone")));
+    for file in ["trajectory.parquet", "trajectory.csv", "report.html", "plots/positions.svg"] {
+        assert!(
+            fs::read(path("followed").join(file)).unwrap() == fs::read(path("alone").join(file)).unwrap(),
+            "{file}"
+        );
+    }
 }

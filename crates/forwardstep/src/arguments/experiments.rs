@@ -10,6 +10,28 @@ use super::{NotBetween, SIX_ARMS, order, suggest};
 use crate::falsify::Target;
 
 #[derive(Debug, Args)]
+pub(crate) struct CompareOptions {
+    /// Two or more: shipped scenarios by name, scenario files, or folders of runs; scenarios are run first
+    #[arg(value_name = "RUN|SCENARIO", required = true, num_args = 2.., add = ArgValueCompleter::new(suggest::scenarios))]
+    pub(crate) runs: Vec<String>,
+    /// The folder to write to, with a folder in it for each scenario that is run [default: forwardstep-runs/ and all names]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Replace the files of an earlier comparison, and of its runs
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Do not look by how much inputs and their derivatives jump, which simulates every run in continuous time once more
+    #[arg(long)]
+    pub(crate) no_jumps: bool,
+    /// Predict the course of agreement of every scenario that is run, whatever that takes
+    #[arg(long)]
+    pub(crate) predict: bool,
+    /// Print one JSON object; `forwardstep schema compare` describes it
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct FalsifyOptions {
     /// How many scenarios
     #[arg(long, value_name = "N", default_value_t = 10_000)]

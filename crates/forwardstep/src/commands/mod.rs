@@ -3,11 +3,14 @@
 mod ask;
 mod attack;
 mod check;
+mod compare;
+mod compare_table;
 mod completions;
 mod dynamics;
 mod explain;
 mod falsify;
 mod follow;
+mod growing;
 mod man;
 mod manipulability;
 mod new;
@@ -26,6 +29,7 @@ mod upgrade;
 
 pub(crate) use attack::attack;
 pub(crate) use check::check;
+pub(crate) use compare::compare;
 pub(crate) use completions::{asked, completions};
 pub(crate) use explain::explain;
 pub(crate) use falsify::falsify;

@@ -16,6 +16,7 @@ use forwardstep::sim::{
     Ending, Outcome, Progress, Recording, Statistics, Watch, recorded_columns, simulate, simulate_into,
 };
 
+use super::growing::followed;
 use super::progress::Bar;
 use super::promise::{Promise, predictions, predicts_quickly, promise, show, show_predictions};
 use super::stop::Stop;
@@ -35,12 +36,25 @@ fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<
     let path = options.out.clone().unwrap_or_else(|| Path::new("forwardstep-runs").join(&scenario.name));
     // Only now: until there is something to keep, Ctrl-C just ends the program.
     let stop = Stop::listen();
+    execute(&scenario, &promise, &path, options, kinds, &stop, console)
+}
+
+/// Simulates a scenario that was read, into the folder `path`, and says so.
+pub(super) fn execute(
+    scenario: &Scenario,
+    promise: &Promise,
+    path: &Path,
+    options: &RunOptions,
+    kinds: &Kinds,
+    stop: &Stop,
+    console: &mut Console,
+) -> Result<Status, Status> {
     // Before the run, so that no work is lost to a folder that cannot be written to.
-    let folder = RunFolder::create(&path, options.force).map_err(refused)?;
-    show(&scenario, &promise, console);
+    let folder = RunFolder::create(path, options.force).map_err(refused)?;
+    show(scenario, promise, console);
     let (setup, mut bar) = (&scenario.setup, Bar::new());
     let predicts = options.predict || predicts_quickly(setup);
-    let prediction = if predicts { predictions(setup, &mut |progress| watch(&mut bar, &stop, progress)) } else { None };
+    let prediction = if predicts { predictions(setup, &mut |progress| watch(&mut bar, stop, progress)) } else { None };
     bar.clear();
     match &prediction {
         Some(prediction) => show_predictions(setup, prediction, console),
@@ -54,20 +68,26 @@ fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<
     let mut bar = Bar::new();
     let started = Instant::now();
     let mut balances = if options.balance { InjectionWatch::of(setup) } else { None };
-    let mut observer = |progress| watch(&mut bar, &stop, progress);
-    let nothing = nothing_yet(&scenario)?;
-    let mut start = record(&scenario, &promise, &nothing, None);
+    let mut observer = |progress| watch(&mut bar, stop, progress);
+    let nothing = nothing_yet(scenario)?;
+    let mut start = record(scenario, promise, &nothing, None);
     start.prediction = prediction.clone();
     let mut journal = Journal::new(&folder, start, || started.elapsed());
     let balance = balances.as_mut().map(|balances| balances as &mut dyn Watch);
-    let outcome = simulate_into(setup, &mut observer, balance, &mut journal);
+    if options.follow {
+        let page = path.join("report.html");
+        remark(format_args!("The page grows while the run goes on, from its first second on: {}", shown(&page)));
+    }
+    let outcome = followed(options.follow, &folder, kinds, promise, || {
+        simulate_into(setup, &mut observer, balance, &mut journal)
+    });
     bar.clear();
     let mut outcome = outcome.map_err(|error| complain(&Plain::new(error)))?;
     outcome.statistics.wall = Some(started.elapsed());
 
     let metrics = Metrics::of(setup, &outcome.recording, promise.value(), scenario.goal);
     let goal = scenario.goal.map(|goal| GoalOutcome { goal, met: goal.is_met(setup, &outcome, &metrics) });
-    let mut record = record(&scenario, &promise, &outcome, goal);
+    let mut record = record(scenario, promise, &outcome, goal);
     record.prediction = prediction;
     record.injected = balances.iter().flat_map(InjectionWatch::balances).map(|own| Injected::from(&own)).collect();
     let lost = journal.failure().is_some();
@@ -77,10 +97,10 @@ fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<
     }
     journal.end(&record, metrics.clone());
     if setup.control.is_some() && !matches!(outcome.ending, Ending::Interrupted { .. }) {
-        record.digital = digital_cost(&scenario, &outcome, &stop);
+        record.digital = digital_cost(scenario, &outcome, stop);
     }
     let files = output::write_run(&folder, &record, output::Options { csv: options.csv })
-        .map_err(|error| kept_if_journaled(refused(error), &path))?;
+        .map_err(|error| kept_if_journaled(refused(error), path))?;
     if outcome.ending != Ending::Completed {
         remark(ending_sentence(setup, &outcome.ending));
     }
@@ -88,7 +108,7 @@ fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<
     if cut_short.is_some() {
         remark("Interrupted while comparing with continuous time; the run itself is complete.");
     }
-    console.text(summary(&record, &metrics, &path, &files));
+    console.text(summary(&record, &metrics, path, &files));
     Ok(match outcome.ending {
         Ending::BrokeDown(_) => Status::BrokeDown,
         _ if cut_short.is_some() => cut_short.unwrap_or(Status::Interrupted),

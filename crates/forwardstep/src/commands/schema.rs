@@ -1,7 +1,7 @@
 //! `forwardstep schema`
 
 use forwardstep::io::output::summary::Summary;
-use forwardstep::io::output::{Findings, SmoothnessDocument};
+use forwardstep::io::output::{Comparison, Findings, SmoothnessDocument};
 use forwardstep::io::scenario::kinds::Kinds;
 
 use crate::arguments::SchemaChoice;
@@ -13,6 +13,7 @@ pub(crate) fn schema(of: SchemaChoice, kinds: &Kinds, console: &mut Console) -> 
     let schema = match of {
         SchemaChoice::Scenario => kinds.schema(),
         SchemaChoice::Check => Findings::schema(),
+        SchemaChoice::Compare => Comparison::schema(),
         SchemaChoice::Summary => Summary::schema(),
         SchemaChoice::Smoothness => SmoothnessDocument::schema(),
     };

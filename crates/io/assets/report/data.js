@@ -12,8 +12,8 @@ function leading(name, leads) {
 }
 
 // The block: times of the four grids as f64, then the series of the same grids as f32.
-const data = (() => {
-  const text = atob(document.getElementById("block").textContent);
+const dataOf = (index, block) => {
+  const text = atob(block);
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
   const g = index.grids;
@@ -53,7 +53,9 @@ const data = (() => {
     return { row: low, part: t[high] > t[low] ? (time - t[low]) / (t[high] - t[low]) : 0 };
   };
   return { t: (grid) => Array.from(grids[grid].t), values, at, place };
-})();
+};
+// A page of several runs has a block for each.
+const data = index.runs ? null : dataOf(index, document.getElementById("block").textContent);
 
 const element = (tag, properties = {}, ...children) => {
   const e = Object.assign(document.createElement(tag), properties);

@@ -51,8 +51,7 @@ const graphPlaces = bodies.map((_, v) => {
   const [rx, ry] = vertices === 1 ? [0, 0] : vertices > 24 ? [84, 84] : [118, 68];
   return { x: 200 + rx * Math.cos(angle), y: 95 + ry * Math.sin(angle), side: Math.cos(angle), top: Math.sin(angle) };
 });
-const graphPicture = (() => {
-  const place = document.getElementById("graph-picture");
+const graphIn = (place) => {
   const picture = svg("svg", { viewBox: `0 0 ${GRAPH.width} ${GRAPH.height}`, role: "img", class: "now" });
   const arrows = svg("g", {});
   const r = vertices > 24 ? 2.5 : 7;
@@ -90,4 +89,4 @@ const graphPicture = (() => {
     }
     if (edges.length <= 200) edges.forEach(({ share }, k) => arrows.children[k]?.setAttribute("opacity", (1 - 0.6 * share).toFixed(2)));
   };
-})();
+};

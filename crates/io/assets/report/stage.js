@@ -3,6 +3,7 @@
 const stage = (() => {
   const part = (id) => document.getElementById(id);
   const [view, slider, play, timeWords, rate, chosen] = ["view", "slider", "play", "time", "rate", "chosen"].map(part);
+  const graphPicture = graphIn(part("graph-picture"));
   const overlay = element("canvas", { className: "over" });
   const tip = element("p", { className: "where" });
   view.append(...(lighting ? [lighting.canvas] : []), overlay, tip);

@@ -7,6 +7,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
+use super::comparison::DOCUMENT;
 use super::error::OutputError;
 use super::folder::SEAL;
 use super::inputs::file_digest;
@@ -31,6 +32,23 @@ struct Earlier {
 #[derive(Deserialize)]
 struct Scenario {
     digest_blake3: String,
+}
+
+/// Refuses a folder that no comparison wrote.
+pub(super) fn is_comparison(folder: &Path) -> Result<(), OutputError> {
+    /// The part of the document that matters here, whatever its format.
+    #[derive(Deserialize)]
+    struct Document {
+        #[serde(rename = "format")]
+        _format: u32,
+        #[serde(rename = "rows")]
+        _rows: Vec<serde::de::IgnoredAny>,
+    }
+    let document = read_text(&folder.join(DOCUMENT)).ok();
+    match document.and_then(|text| serde_json::from_str::<Document>(&text).ok()) {
+        Some(_) => Ok(()),
+        None => Err(OutputError::NotOfAComparison { path: folder.to_owned() }),
+    }
 }
 
 /// Refuses a folder that must be kept.

@@ -19,6 +19,12 @@ pub enum OutputError {
         /// The folder.
         path: PathBuf,
     },
+    /// The folder was to be replaced, and no comparison wrote it.
+    #[error("{} was not written by `compare`, and stays as it is", shown(path))]
+    NotOfAComparison {
+        /// The folder.
+        path: PathBuf,
+    },
     /// The folder was to be replaced, and holds what no run can write again.
     #[error("{} is not as the run in that folder wrote it, and stays as it is", shown(path))]
     Changed {
@@ -115,6 +121,9 @@ impl OutputError {
             }
             OutputError::NotOfARun { .. } => {
                 Some("choose another folder: --force replaces only what an earlier run wrote")
+            }
+            OutputError::NotOfAComparison { .. } => {
+                Some("choose another folder with --out: --force replaces only what an earlier comparison wrote")
             }
             OutputError::Changed { .. } => {
                 Some("move it elsewhere if you need it, or remove it, or choose another folder")

@@ -5,6 +5,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::comparison::{DOCUMENT, PAGE};
 use super::disk::{Disk, DiskFile, SystemDisk};
 use super::error::{Action, EncodeError, OutputError};
 use super::journal::JOURNAL;
@@ -65,7 +66,24 @@ impl RunFolder {
     /// # Errors
     /// As of [`RunFolder::create`].
     pub fn create_on(disk: Arc<dyn Disk>, path: impl Into<PathBuf>, force: bool) -> Result<RunFolder, OutputError> {
-        let mut folder = RunFolder { path: path.into(), made: Vec::new(), _lock: None, disk };
+        RunFolder::create_unless(disk, path.into(), force, earlier::may_be_replaced)
+    }
+
+    /// The same for a comparison of runs, whose own folders may lie in it; with `force` one of an earlier comparison is taken.
+    ///
+    /// # Errors
+    /// As of [`RunFolder::create`].
+    pub fn create_for_comparison(path: impl Into<PathBuf>, force: bool) -> Result<RunFolder, OutputError> {
+        RunFolder::create_unless(Arc::new(SystemDisk), path.into(), force, earlier::is_comparison)
+    }
+
+    fn create_unless(
+        disk: Arc<dyn Disk>,
+        path: PathBuf,
+        force: bool,
+        may_be_replaced: fn(&Path) -> Result<(), OutputError>,
+    ) -> Result<RunFolder, OutputError> {
+        let mut folder = RunFolder { path, made: Vec::new(), _lock: None, disk };
         let path = &folder.path;
         match fs::metadata(path) {
             Ok(meta) if !meta.is_dir() => return Err(OutputError::NotAFolder { path: path.clone() }),
@@ -82,7 +100,7 @@ impl RunFolder {
             if !force {
                 return Err(OutputError::FolderNotEmpty { path: path.clone() });
             }
-            earlier::may_be_replaced(path)?;
+            may_be_replaced(path)?;
         }
         folder.probe()?;
         Ok(folder)
@@ -187,6 +205,7 @@ fn is_empty(path: &Path, among_inputs: bool) -> Result<bool, OutputError> {
         let is_leftover = name == ".forwardstep.partial"
             || name == format!(".{JOURNAL}.partial")
             || growing::is_partial(&name)
+            || [PAGE, DOCUMENT].iter().any(|file| name == format!(".{file}.partial"))
             || FILES.iter().filter_map(|f| f.rsplit('/').next()).any(|f| name == format!(".{f}.partial"))
             || among_inputs && name.starts_with('.') && name.ends_with(".partial");
         if !is_leftover {

@@ -24,6 +24,7 @@
 //! `timings` object of `summary.json` is the same for the same run, bit for bit.
 
 mod certificate;
+mod comparison;
 mod conclusion;
 mod csv;
 mod decimate;
@@ -72,6 +73,7 @@ use std::collections::HashSet;
 use std::path::PathBuf;
 
 pub use certificate::{CERTIFICATE_FORMAT, certificate_document};
+pub use comparison::{COMPARISON_FORMAT, Compared, ComparedCell, ComparedRow, ComparedRun, Comparison, RowGroup};
 pub use conclusion::Conclusion;
 pub use digital::{DigitalCost, Figures, continuous_twin};
 pub use disk::{Disk, DiskFile};
@@ -188,7 +190,7 @@ fn metrics(record: &RunRecord<'_>) -> Metrics {
 }
 
 fn write_pictures(staging: &mut Staging<'_>, record: &RunRecord<'_>, metrics: &Metrics) -> Result<(), OutputError> {
-    staging.write_text("report.html", &report::page(record, metrics, false))?;
+    staging.write_text("report.html", &report::page(record, metrics, None))?;
     let plots = plots::Plots::of(record);
     let mut plot = |name, svg: Result<String, EncodeError>| {
         staging.write(name, |out| Ok(std::io::Write::write_all(out, svg?.as_bytes())?))

@@ -75,6 +75,10 @@ impl Diagnostic for OpenRobotError {
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         self.inner()?.labels()
     }
+
+    fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn Diagnostic> + 'a>> {
+        self.inner()?.related()
+    }
 }
 
 /// Opens the URDF at this path, else the shipped robot of this name.

@@ -8,7 +8,7 @@ use forwardstep_sim::topology::{Along, Spokes, Topology};
 
 use super::at::At;
 use super::edges_file::{AlongDirection, AlongFile, CsvFile, EdgeFile, EdgesFile, RuleFile, StarDirection, StarFile};
-use super::fault::{Fault, fault, filled, positive_count, seed};
+use super::fault::{Fault, Faults, fault, filled, positive_count, seed};
 use super::kinds::delays::DelayPlan;
 use super::links::cell_weight;
 use super::links_file::WeightFile;
@@ -65,6 +65,17 @@ impl NetworkReader<'_> {
         let table = table_text(&csv.file, self.folder)?;
         let edges = edges_of(table.text()).map_err(|fault| fault.within(&table))?;
         self.few_edges(edges.len() as u64, span)?;
+        let mut faults = Faults::default();
+        for edge in &edges {
+            let (from, to) = (&edge.value.from, &edge.value.to);
+            match [from, to].into_iter().find(|name| !self.index.contains_key(name.value.as_str())) {
+                Some(nobody) => faults.add(|| self.nobody(nobody)),
+                None => {
+                    faults.noted(self.ends((from, to), edge));
+                }
+            }
+        }
+        faults.end().map_err(|fault| fault.within(&table))?;
         self.listed(&edges, &table).map_err(|fault| fault.within(&table))
     }
 
@@ -182,10 +193,11 @@ impl NetworkReader<'_> {
     }
 
     fn agent(&self, name: &At<String>) -> Result<usize, Fault> {
-        self.index.get(name.value.as_str()).copied().ok_or_else(|| {
-            let problem = ScenarioProblem::NoSuchAgent { name: name.value.clone(), agents: self.names.to_vec() };
-            fault(name, problem)
-        })
+        self.index.get(name.value.as_str()).copied().ok_or_else(|| self.nobody(name))
+    }
+
+    fn nobody(&self, name: &At<String>) -> Fault {
+        fault(name, ScenarioProblem::NoSuchAgent { name: name.value.clone(), agents: self.names.to_vec() })
     }
 }
 
@@ -193,18 +205,21 @@ impl NetworkReader<'_> {
 fn edges_of(text: &str) -> Result<Vec<At<EdgeFile>>, Fault> {
     let columns = [("from", true), ("to", true), ("weight", false), ("delay_s", false)]
         .map(|(name, required)| Column { name, required });
-    let rows = read_table(text, columns)?;
+    let mut faults = Faults::default();
+    let rows = read_table(text, columns, &mut faults)?;
     let mut edges = Vec::with_capacity(rows.len());
     for At { value: [from, to, weight, delay_s], span } in rows {
-        let delay =
-            cell_number(&delay_s)?.map(|delay_s| At { value: DelayFile::Constant(delay_s.value), span: delay_s.span });
+        let (weight, delay_s) = (faults.noted(cell_weight(&weight)), faults.noted(cell_number(&delay_s)));
+        let (Some(weight), Some(delay_s)) = (weight, delay_s) else { continue };
+        let delay = delay_s.map(|delay_s| At { value: DelayFile::Constant(delay_s.value), span: delay_s.span });
         let edge = EdgeFile {
             from: At { value: from.value.into_owned(), span: from.span },
             to: At { value: to.value.into_owned(), span: to.span },
-            weight: cell_weight(&weight)?,
+            weight,
             delay,
         };
         edges.push(At { value: edge, span });
     }
+    faults.end()?;
     Ok(edges)
 }

@@ -11,8 +11,12 @@ use toml::de::DeValue;
 use super::at::At;
 use super::document::deepest;
 use super::problem::ScenarioProblem;
+use super::table::TableProblem;
 use super::value_problem::ValueProblem;
 use crate::SourceText;
+
+/// So many mistakes of a table are told beside the first; the rest is counted.
+const MOST_OTHERS: usize = 23;
 
 /// A problem, and where once that is known.
 #[derive(Debug)]
@@ -52,14 +56,55 @@ impl Fault {
 
     /// Adds what else is wrong with the scenario.
     pub(super) fn beside(mut self, others: Vec<Fault>) -> Self {
-        self.others = others;
+        self.others.extend(others);
         self
     }
 
     /// Says that the problem, and its place, are in another file than the scenario.
     pub(super) fn within(mut self, source: &SourceText) -> Self {
         self.source.get_or_insert_with(|| source.clone());
+        self.others = self.others.into_iter().map(|other| other.within(source)).collect();
         self
+    }
+}
+
+/// The mistakes of one table, which are told together.
+#[derive(Default)]
+pub(super) struct Faults {
+    found: Vec<Fault>,
+    untold: usize,
+}
+
+impl Faults {
+    /// What was read; a mistake is noted.
+    pub(super) fn noted<T>(&mut self, read: Result<T, Fault>) -> Option<T> {
+        match read {
+            Ok(read) => return Some(read),
+            Err(fault) if self.found.len() <= MOST_OTHERS => self.found.push(fault),
+            Err(_) => self.untold += 1,
+        }
+        None
+    }
+
+    /// Notes a mistake, which is put into words only if it is told.
+    pub(super) fn add(&mut self, fault: impl FnOnce() -> Fault) {
+        if self.found.len() <= MOST_OTHERS {
+            self.found.push(fault());
+        } else {
+            self.untold += 1;
+        }
+    }
+
+    /// All of them as one, the first that was met in front and the others in the order of the file.
+    pub(super) fn end(self) -> Result<(), Fault> {
+        let mut found = self.found.into_iter();
+        let Some(first) = found.next() else { return Ok(()) };
+        let mut others: Vec<Fault> = found.collect();
+        others.sort_by_key(|fault| fault.span.as_ref().map_or(0, |span| span.start));
+        if self.untold > 0 {
+            others.push(Fault::new(TableProblem::Further { count: self.untold }));
+        }
+        Err(first.beside(others))
     }
 }
 

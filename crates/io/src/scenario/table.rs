@@ -11,14 +11,14 @@ use thiserror::Error;
 
 use super::at::At;
 use super::de::quoted;
-use super::fault::{Fault, fault, values};
+use super::fault::{Fault, Faults, fault, values};
 use super::inputs::InputFolder;
 use super::push_problem::PushProblem;
 use super::shipped::shipped_table;
 use super::value_problem::ValueProblem;
-use crate::SourceText;
 use crate::files::ReadError;
-use crate::wording::{choose, entry_count};
+use crate::wording::{choose, entry_count, more_mistakes};
+use crate::{Meant, SourceText};
 
 /// Why a table has no meaning.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -38,6 +38,14 @@ pub enum TableProblem {
     #[error("the table is empty")]
     NoHeader {
         /// The columns that are known.
+        columns: Vec<String>,
+    },
+    /// A text that is clearly something else.
+    #[error("this is {meant}, and no table")]
+    Meant {
+        /// What it is.
+        meant: Meant,
+        /// The columns that a table would have.
         columns: Vec<String>,
     },
     /// A column that means nothing here.
@@ -85,6 +93,12 @@ pub enum TableProblem {
         /// What was found.
         found: String,
     },
+    /// So many mistakes that only their number is told.
+    #[error("{}", more_mistakes(*.count))]
+    Further {
+        /// How many more there are.
+        count: usize,
+    },
 }
 
 impl TableProblem {
@@ -92,15 +106,18 @@ impl TableProblem {
         const HEADER: &str = "the first line names the columns;";
         match self {
             TableProblem::File { file, known, .. } if !known.is_empty() => Some(choose(file, "there are", known)),
-            TableProblem::NoHeader { columns } | TableProblem::MissingColumn { columns, .. } => {
-                Some(choose("", &format!("{HEADER} they are"), columns))
-            }
+            TableProblem::NoHeader { columns }
+            | TableProblem::Meant { columns, .. }
+            | TableProblem::MissingColumn { columns, .. } => Some(choose("", &format!("{HEADER} they are"), columns)),
             TableProblem::UnknownColumn { name, columns } => Some(choose(name, &format!("{HEADER} they are"), columns)),
             TableProblem::OpenQuote => Some("a quotation mark inside a quoted cell is written twice: \"\"".into()),
             _ => None,
         }
     }
 }
+
+/// Of a name that no column has, so many characters are shown.
+const LONGEST_NAME: usize = 40;
 
 /// A column that a table may have.
 #[derive(Clone, Copy)]
@@ -125,9 +142,13 @@ pub(super) fn table_text(file: &At<String>, folder: &mut InputFolder) -> Result<
 }
 
 /// The lines of a table below its header, each with one cell per column of `columns`, in their order. A cell is empty where
-/// its column is not there, or nothing stands in it; a required one never is.
-pub(super) fn read_table<const N: usize>(text: &str, columns: [Column; N]) -> Result<Vec<At<[Cell<'_>; N]>>, Fault> {
-    let rows = read_rows(text, &columns.map(|Column { name, required }| (name, required)))?;
+/// its column is not there, or nothing stands in it; a required one never is, where no mistake is noted. Lines with a mistake are left out.
+pub(super) fn read_table<'a, const N: usize>(
+    text: &'a str,
+    columns: [Column; N],
+    faults: &mut Faults,
+) -> Result<Vec<At<[Cell<'a>; N]>>, Fault> {
+    let rows = read_rows(text, &columns.map(|Column { name, required }| (name, required)), faults)?;
     Ok(rows.into_iter().map(in_order).collect())
 }
 
@@ -139,19 +160,19 @@ fn in_order<const N: usize>(row: At<Vec<Cell<'_>>>) -> At<[Cell<'_>; N]> {
 }
 
 /// The same for columns that are known only now, all of them required.
-fn read_columns<'a>(text: &'a str, names: &[&str]) -> Result<Vec<At<Vec<Cell<'a>>>>, Fault> {
-    read_rows(text, &names.iter().map(|name| (*name, true)).collect::<Vec<_>>())
+fn read_columns<'a>(text: &'a str, names: &[&str], faults: &mut Faults) -> Result<Vec<At<Vec<Cell<'a>>>>, Fault> {
+    read_rows(text, &names.iter().map(|name| (*name, true)).collect::<Vec<_>>(), faults)
 }
 
 /// A table over time: its column `t_s`, which rises, and the numbers in the columns `names`, row after row.
 pub(super) fn over_time(source: &SourceText, names: &[&str]) -> Result<(Vec<At<f64>>, Vec<f64>), Fault> {
     let columns: Vec<&str> = std::iter::once("t_s").chain(names.iter().copied()).collect();
     let numbers = || {
-        let (mut times, mut numbers) = (Vec::new(), Vec::new());
-        for row in read_columns(source.text(), &columns)? {
+        let (mut times, mut numbers, mut faults) = (Vec::new(), Vec::new(), Faults::default());
+        for row in read_columns(source.text(), &columns, &mut faults)? {
             for (k, cell) in row.value.iter().enumerate() {
-                // The columns are required, so that no cell is empty.
-                let Some(number) = cell_number(cell)? else { continue };
+                // The columns are required, so that no cell is empty where nothing is wrong.
+                let Some(number) = faults.noted(cell_number(cell)).flatten() else { continue };
                 if k == 0 {
                     times.push(number);
                 } else {
@@ -159,7 +180,8 @@ pub(super) fn over_time(source: &SourceText, names: &[&str]) -> Result<(Vec<At<f
                 }
             }
         }
-        rising("t_s", &times)?;
+        all_rising("t_s", &times, &mut faults);
+        faults.end()?;
         Ok((times, numbers))
     };
     numbers().map_err(|fault: Fault| fault.within(source))
@@ -167,58 +189,95 @@ pub(super) fn over_time(source: &SourceText, names: &[&str]) -> Result<(Vec<At<f
 
 /// Times that rise.
 pub(super) fn rising(key: &'static str, times: &[At<f64>]) -> Result<Vec<f64>, Fault> {
-    for pair in times.windows(2) {
-        if let [At { value: before_s, .. }, after] = pair
-            && *before_s >= after.value
-        {
-            let problem = PushProblem::TimesRise { key, before_s: *before_s, after_s: after.value };
-            return Err(fault(after, problem));
-        }
-    }
-    Ok(values(times))
+    falls(key, times).next().map_or_else(|| Ok(values(times)), Err)
 }
 
-/// Columns by name, with whether they are required.
-fn read_rows<'a>(text: &'a str, columns: &[(&str, bool)]) -> Result<Vec<At<Vec<Cell<'a>>>>, Fault> {
+/// Notes every time that does not come after the one before it.
+pub(super) fn all_rising(key: &'static str, times: &[At<f64>], faults: &mut Faults) {
+    falls(key, times).for_each(|fault| faults.add(|| fault));
+}
+
+fn falls(key: &'static str, times: &[At<f64>]) -> impl Iterator<Item = Fault> {
+    times.windows(2).filter_map(move |pair| match pair {
+        [At { value: before_s, .. }, after] if *before_s >= after.value => {
+            let problem = PushProblem::TimesRise { key, before_s: *before_s, after_s: after.value };
+            Some(fault(after, problem))
+        }
+        _ => None,
+    })
+}
+
+/// Columns by name, with whether they are required. What has no column of these is no such table: then one mistake is told.
+fn read_rows<'a>(
+    text: &'a str,
+    columns: &[(&str, bool)],
+    faults: &mut Faults,
+) -> Result<Vec<At<Vec<Cell<'a>>>>, Fault> {
     let mut lines = lines(text);
     let names = || columns.iter().map(|(name, _)| (*name).to_owned()).collect::<Vec<_>>();
     let Some(header) = lines.next().transpose()? else {
         return Err(Fault::new(TableProblem::NoHeader { columns: names() }));
     };
     let mut place: Vec<Option<usize>> = vec![None; columns.len()];
+    let mut unknown = Vec::new();
     for (k, cell) in header.value.iter().enumerate() {
         let Some(column) = columns.iter().position(|(name, _)| *name == cell.value) else {
-            let problem = TableProblem::UnknownColumn { name: cell.value.to_string(), columns: names() };
-            return Err(fault(cell, problem));
+            unknown.push(cell);
+            continue;
         };
-        if place[column].replace(k).is_some() {
-            return Err(fault(cell, TableProblem::ColumnTwice { name: cell.value.to_string() }));
+        match place[column] {
+            Some(_) => faults.add(|| fault(cell, TableProblem::ColumnTwice { name: cell.value.to_string() })),
+            None => place[column] = Some(k),
         }
     }
-    let missing = columns.iter().zip(&place).find(|((_, required), place)| *required && place.is_none());
-    if let Some(((name, _), _)) = missing {
-        let problem = TableProblem::MissingColumn { name: (*name).to_owned(), columns: names() };
-        return Err(fault(&header, problem));
+    if place.iter().all(Option::is_none) {
+        return Err(match (Meant::of(text), unknown.first()) {
+            (Some(meant), _) if meant != Meant::Csv => Fault::new(TableProblem::Meant { meant, columns: names() }),
+            (_, Some(cell)) => fault(cell, unknown_column(cell, names())),
+            (_, None) => Fault::new(TableProblem::NoHeader { columns: names() }),
+        });
+    }
+    for cell in &unknown {
+        faults.add(|| fault(cell, unknown_column(cell, names())));
+    }
+    // What is missing may stand there under a name that is not known.
+    let missing = columns.iter().zip(&place).filter(|((_, required), place)| *required && place.is_none());
+    for ((name, _), _) in missing.filter(|_| unknown.is_empty()) {
+        faults.add(|| {
+            let problem = TableProblem::MissingColumn { name: (*name).to_owned(), columns: names() };
+            fault(&header, problem)
+        });
     }
     let mut rows = Vec::new();
     for line in lines {
-        let line = line?;
+        let Some(line) = faults.noted(line) else { continue };
         if line.value.len() != header.value.len() {
             let problem = TableProblem::LineLength { found: line.value.len(), columns: header.value.len() };
-            return Err(fault(&line, problem));
+            faults.add(|| fault(&line, problem));
+            continue;
         }
         let cell = |k: &Option<usize>| {
             let found = k.and_then(|k| line.value.get(k));
             found.cloned().unwrap_or_else(|| At { value: Cow::Borrowed(""), span: line.span.clone() })
         };
         let row: Vec<Cell<'_>> = place.iter().map(cell).collect();
-        let empty = columns.iter().zip(&row).find(|((_, required), cell)| *required && cell.value.is_empty());
-        if let Some(((name, _), cell)) = empty {
-            return Err(fault(cell, TableProblem::EmptyCell { name: (*name).to_owned() }));
+        // What stands in a column that is missing is missed there.
+        let cells = columns.iter().zip(&place).zip(&row);
+        let empty =
+            cells.filter(|(((_, required), place), cell)| *required && place.is_some() && cell.value.is_empty());
+        for (((name, _), _), cell) in empty {
+            faults.add(|| fault(cell, TableProblem::EmptyCell { name: (*name).to_owned() }));
         }
         rows.push(At { value: row, span: line.span.clone() });
     }
     Ok(rows)
+}
+
+fn unknown_column(cell: &Cell<'_>, columns: Vec<String>) -> TableProblem {
+    let short = |end| format!("{}…", &cell.value[..end]);
+    let name =
+        cell.value.char_indices().nth(LONGEST_NAME).map_or_else(|| cell.value.to_string(), |(end, _)| short(end));
+    TableProblem::UnknownColumn { name, columns }
 }
 
 /// The number in a cell; none in an empty one.
@@ -323,8 +382,14 @@ mod tests {
         [("a", true), ("b", true), ("c", false)].map(|(name, required)| Column { name, required })
     }
 
+    fn whole(text: &str) -> Result<Vec<At<[Cell<'_>; 3]>>, Fault> {
+        let mut faults = Faults::default();
+        let rows = read_table(text, columns(), &mut faults)?;
+        faults.end().map(|()| rows)
+    }
+
     fn read(text: &str) -> Read {
-        let rows = read_table(text, columns()).map_err(|fault| (fault.to_string(), fault.span))?;
+        let rows = whole(text).map_err(|fault| (fault.to_string(), fault.span))?;
         Ok(rows.into_iter().map(|row| row.value.map(|cell| cell.value.into_owned())).collect())
     }
 
@@ -344,7 +409,7 @@ mod tests {
     #[test]
     fn cells_know_their_places() {
         let text = "a,b,c\n é , \"2\",3\n";
-        let rows = read_table(text, columns()).unwrap();
+        let rows = whole(text).unwrap();
         let places: Vec<_> = rows[0].value.iter().map(|cell| &text[cell.span.clone()]).collect();
         assert_eq!(places, ["é", "\"2\"", "3"]);
         assert_eq!(&text[rows[0].span.clone()], "é , \"2\",3");
@@ -376,7 +441,7 @@ mod tests {
         ) {
             let text = format!("{header}{}", pieces.concat());
             let shown = |span: Range<usize>| text.get(span).is_some();
-            match read_table(&text, columns()) {
+            match whole(&text) {
                 Ok(rows) => {
                     for row in rows {
                         prop_assert!(shown(row.span) && row.value.iter().all(|cell| shown(cell.span.clone())));
@@ -386,7 +451,7 @@ mod tests {
                         }
                     }
                 }
-                Err(fault) => prop_assert!(fault.span.is_none_or(shown)),
+                Err(fault) => prop_assert!(fault.others.iter().chain([&fault]).all(|f| f.span.clone().is_none_or(shown))),
             }
         }
     }

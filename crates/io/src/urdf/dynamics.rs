@@ -14,7 +14,7 @@ use super::notice::NoticeKind;
 use super::problem::UrdfProblem;
 use super::subject::Size;
 use super::tree::Held;
-use super::xml::{Reading, UrdfError};
+use super::xml::{Located, Reading, UrdfError};
 use super::{FrictionPolicy, UrdfOptions};
 
 /// Moving joints accepted: the test of the mass matrix takes the third power of their number.
@@ -196,17 +196,17 @@ fn look_at_joints(
     locks: &[Option<f64>],
     policy: FrictionPolicy,
 ) -> Result<(), UrdfError> {
+    if policy == FrictionPolicy::Refuse {
+        let free = joints.iter().zip(locks).filter(|(_, lock)| lock.is_none());
+        refuse_friction(reading, free.map(|(joint, _)| joint));
+        reading.end()?;
+    }
     let mut left_out = Vec::new();
     let mut first = None;
     for (joint, _) in joints.iter().zip(locks).filter(|(_, lock)| lock.is_none()) {
         let Some(motion) = &joint.motion else { continue };
         if let Some(friction) = &motion.friction {
             let (name, value) = (joint.name.clone(), friction.value);
-            if policy == FrictionPolicy::Refuse {
-                return Err(
-                    reading.error(friction.span.clone(), UrdfProblem::Friction { joint: name, friction: value })
-                );
-            }
             if policy == FrictionPolicy::Ignore {
                 left_out.push((name, value));
                 first.get_or_insert_with(|| friction.span.clone());
@@ -221,6 +221,16 @@ fn look_at_joints(
         reading.notice(&span, NoticeKind::FrictionIgnored { joints: left_out });
     }
     Ok(())
+}
+
+/// Notes all friction of these joints as mistakes.
+pub(super) fn refuse_friction<'j>(reading: &mut Reading<'_>, joints: impl Iterator<Item = &'j Joint>) {
+    for joint in joints {
+        if let Some(Located { value, span }) = joint.motion.as_ref().and_then(|motion| motion.friction.clone()) {
+            let problem = UrdfProblem::Friction { joint: joint.name.clone(), friction: value };
+            reading.noted::<()>(Err(reading.error(span, problem)));
+        }
+    }
 }
 
 /// The arranged links as the kernels want them: locked joints are fixed joints elsewhere.

@@ -58,26 +58,21 @@ pub(super) fn read_joint(
     element: Element<'_>,
     is_locked: impl Fn(&str) -> bool,
 ) -> Result<Joint, UrdfError> {
-    let name = element.required_text(reading, "name", "joint")?;
-    let (span, name) = (name.span, name.value.to_owned());
+    let Located { value: name, span } = element.own_name(reading, "joint");
     let element = element.owned_by(Owner::Joint(name.clone()));
-    let given = element.required_text(reading, "type", "joint")?;
+    let given = element.required_text(reading, "type", "joint");
     element.only_attributes(reading, &["name", "type"]);
-    let kind = match given.value {
-        "revolute" => Some(MotionKind::Revolute),
-        "continuous" => Some(MotionKind::Continuous),
-        "prismatic" => Some(MotionKind::Prismatic),
-        "fixed" => None,
-        other => {
-            let given_type = other.chars().take(40).collect();
-            let problem = match other {
-                "floating" | "planar" | "spherical" | "ball" => {
-                    UrdfProblem::UnsupportedJointType { joint: name, given: given_type }
-                }
-                _ => UrdfProblem::UnknownJointType { joint: name, given: given_type, nearest: nearest(other, TYPES) },
-            };
-            return Err(reading.error(given.span, problem));
-        }
+    let kind = match reading.noted(given) {
+        Some(given) => match kind_of(reading, &given, &name) {
+            Ok(kind) => kind,
+            Err(error) => {
+                // A slip: what it has of a joint that moves is read.
+                let is_slip = matches!(error.problem, UrdfProblem::UnknownJointType { .. });
+                reading.noted::<()>(Err(error));
+                is_slip.then_some(MotionKind::Revolute)
+            }
+        },
+        None => None,
     };
 
     let [parent, child, origin, axis, limit, dynamics, mimic] = element.children_once(
@@ -90,15 +85,23 @@ pub(super) fn read_joint(
             _ => None,
         },
     )?;
-    let parent = read_end(reading, &element, parent, "parent")?;
-    let child = read_end(reading, &element, child, "child")?;
+    let [parent, child] = [(parent, "parent"), (child, "child")].map(|(end, which)| {
+        let end = read_end(reading, &element, end, which);
+        reading.noted(end).unwrap_or_else(|| {
+            reading.has_gaps = true;
+            Located { value: String::new(), span: element.span() }
+        })
+    });
     let origin = read_origin(reading, origin)?;
     let motion = match kind {
         Some(kind) => {
             let notices_before = reading.notices.len();
             let mut motion = Motion {
                 kind,
-                axis: read_axis(reading, axis, &name, &span)?,
+                axis: {
+                    let axis = read_axis(reading, axis, &name, &span);
+                    reading.noted(axis).unwrap_or([1.0, 0.0, 0.0])
+                },
                 position_limits: None,
                 velocity_limit: None,
                 effort_limit: None,
@@ -106,14 +109,19 @@ pub(super) fn read_joint(
                 friction: None,
                 mimic: None,
             };
-            read_limit(reading, limit, &name, &span, &mut motion)?;
+            read_limit(reading, limit, &name, &span, &mut motion);
             if let Some(dynamics) = dynamics {
                 dynamics.only_attributes(reading, &["damping", "friction"]);
-                motion.damping = dynamics.non_negative(reading, "damping", "dynamics")?.map_or(0.0, |d| d.value);
-                motion.friction = dynamics.non_negative(reading, "friction", "dynamics")?.filter(|f| f.value != 0.0);
+                let [damping, friction] = ["damping", "friction"].map(|name| {
+                    let read = dynamics.non_negative(reading, name, "dynamics");
+                    reading.noted(read).flatten()
+                });
+                motion.damping = damping.map_or(0.0, |damping| damping.value);
+                motion.friction = friction.filter(|friction| friction.value != 0.0);
             }
             if let Some(mimic) = mimic {
-                let leader = mimic.text(reading, "joint")?.map(|located| located.value.to_owned());
+                let leader = mimic.text(reading, "joint");
+                let leader = reading.noted(leader).flatten().map(|located| located.value.to_owned());
                 motion.mimic = Some(Located { value: leader, span: mimic.span() });
             }
             if is_locked(&name) {
@@ -129,6 +137,26 @@ pub(super) fn read_joint(
         }
     };
     Ok(Joint { name, span, parent, child, origin, motion })
+}
+
+/// What a joint of this type may do; nothing when it is fixed.
+fn kind_of(reading: &Reading<'_>, given: &Located<&str>, name: &str) -> Result<Option<MotionKind>, UrdfError> {
+    match given.value {
+        "revolute" => Ok(Some(MotionKind::Revolute)),
+        "continuous" => Ok(Some(MotionKind::Continuous)),
+        "prismatic" => Ok(Some(MotionKind::Prismatic)),
+        "fixed" => Ok(None),
+        other => {
+            let (joint, given_type) = (name.to_owned(), other.chars().take(40).collect());
+            let problem = match other {
+                "floating" | "planar" | "spherical" | "ball" => {
+                    UrdfProblem::UnsupportedJointType { joint, given: given_type }
+                }
+                _ => UrdfProblem::UnknownJointType { joint, given: given_type, nearest: nearest(other, TYPES) },
+            };
+            Err(reading.error(given.span.clone(), problem))
+        }
+    }
 }
 
 fn read_end(
@@ -183,50 +211,56 @@ fn read_limit(
     name: &str,
     joint_span: &Range<usize>,
     motion: &mut Motion,
-) -> Result<(), UrdfError> {
+) {
     let joint = || name.to_owned();
     let Some(limit) = limit else {
         if motion.kind != MotionKind::Continuous {
             reading.notice(joint_span, NoticeKind::LimitMissing { joint: joint() });
         }
-        return Ok(());
+        return;
     };
     let span = limit.span();
     limit.only_attributes(reading, &["lower", "upper", "effort", "velocity"]);
     for (quantity, slot) in [("effort", &mut motion.effort_limit), ("velocity", &mut motion.velocity_limit)] {
-        match limit.non_negative(reading, quantity, "limit")? {
-            Some(Located { value, span }) => {
+        let read = limit.non_negative(reading, quantity, "limit");
+        match reading.noted(read) {
+            Some(Some(Located { value, span })) => {
                 *slot = Some(value);
                 if value == 0.0 {
                     reading.notice(&span, NoticeKind::LimitZero { joint: joint(), quantity });
                 }
             }
-            None => {
+            Some(None) => {
                 reading.notice(&span, NoticeKind::LimitIncomplete { joint: joint(), missing: quantity, assumed: None });
             }
+            None => {}
         }
     }
     if motion.kind == MotionKind::Continuous {
         limit.ignore_attribute(reading, "lower", IgnoreReason::ContinuousJoint);
         limit.ignore_attribute(reading, "upper", IgnoreReason::ContinuousJoint);
-        return Ok(());
+        return;
     }
-    let lower = limit.number(reading, "lower", "limit")?;
-    let upper = limit.number(reading, "upper", "limit")?;
+    let [lower, upper] = ["lower", "upper"].map(|name| {
+        let read = limit.number(reading, name, "limit");
+        reading.noted(read)
+    });
+    // Where one has no meaning, nothing is said of both.
+    let (Some(lower), Some(upper)) = (lower, upper) else { return };
     if lower.is_none() && upper.is_none() {
         reading.notice(&span, NoticeKind::RangeMissing { joint: joint() });
-        return Ok(());
+        return;
     }
     for (missing, _) in [("lower", &lower), ("upper", &upper)].into_iter().filter(|(_, given)| given.is_none()) {
         reading.notice(&span, NoticeKind::LimitIncomplete { joint: joint(), missing, assumed: Some(0.0) });
     }
     let [lower, upper] = [lower, upper].map(|limit| limit.map_or(0.0, |located| located.value));
     if lower > upper {
-        return Err(reading.error(span, UrdfProblem::InvertedLimits { joint: joint(), lower, upper }));
+        reading.noted::<()>(Err(reading.error(span, UrdfProblem::InvertedLimits { joint: joint(), lower, upper })));
+        return;
     }
     if lower == upper {
         reading.notice(&span, NoticeKind::RangeEmpty { joint: joint(), at: lower });
     }
     motion.position_limits = Some([lower, upper]);
-    Ok(())
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::ignored::IgnoreReason;
 use super::problem::UrdfProblem;
 use super::subject::Owner;
-use super::xml::{Element, Reading, UrdfError};
+use super::xml::{Element, Located, Reading, UrdfError};
 
 /// A link as the file states it.
 #[derive(Clone, Debug)]
@@ -36,9 +36,9 @@ pub(super) struct Origin {
 
 /// Reads a `<link>`.
 pub(super) fn read_link(reading: &mut Reading<'_>, element: Element<'_>) -> Result<Link, UrdfError> {
-    let name = element.required_text(reading, "name", "link")?;
+    let Located { value: name, span } = element.own_name(reading, "link");
     element.only_attributes(reading, &["name"]);
-    let element = element.owned_by(Owner::Link(name.value.to_owned()));
+    let element = element.owned_by(Owner::Link(name.clone()));
     let [inertial] = element.children_once(reading, ["inertial"], |name| match name {
         "visual" | "collision" | "material" | "geometry" => Some(IgnoreReason::Shape),
         "sensor" => Some(IgnoreReason::Sensor),
@@ -46,7 +46,7 @@ pub(super) fn read_link(reading: &mut Reading<'_>, element: Element<'_>) -> Resu
         _ => None,
     })?;
     let inertial = inertial.map(|inertial| read_inertial(reading, &inertial)).transpose()?;
-    Ok(Link { name: name.value.to_owned(), span: name.span, inertial })
+    Ok(Link { name, span, inertial })
 }
 
 fn read_inertial(reading: &mut Reading<'_>, element: &Element<'_>) -> Result<Inertial, UrdfError> {
@@ -58,17 +58,32 @@ fn read_inertial(reading: &mut Reading<'_>, element: &Element<'_>) -> Result<Ine
         reading.error(element.span(), UrdfProblem::MissingElement { owner, parent: Some("inertial"), element: what })
     };
 
-    let Some(mass) = mass else { return Err(missing(reading, "mass")) };
-    mass.only_attributes(reading, &["value"]);
-    mass.required_number(reading, "value", "mass")?;
-    let value = mass.non_negative(reading, "value", "mass")?.map_or(0.0, |located| located.value);
-
-    let Some(inertia) = inertia else { return Err(missing(reading, "inertia")) };
-    let names = ["ixx", "ixy", "iyy", "ixz", "iyz", "izz"];
-    inertia.only_attributes(reading, &names);
+    let mut value = 0.0;
+    match mass {
+        None => {
+            reading.noted::<()>(Err(missing(reading, "mass")));
+        }
+        Some(mass) => {
+            mass.only_attributes(reading, &["value"]);
+            if reading.noted(mass.required_number(reading, "value", "mass")).is_some() {
+                let read = mass.non_negative(reading, "value", "mass");
+                value = reading.noted(read).flatten().map_or(0.0, |located| located.value);
+            }
+        }
+    }
     let mut entries = [0.0; 6];
-    for (entry, name) in entries.iter_mut().zip(names) {
-        *entry = inertia.required_number(reading, name, "inertia")?.value;
+    match inertia {
+        None => {
+            reading.noted::<()>(Err(missing(reading, "inertia")));
+        }
+        Some(inertia) => {
+            let names = ["ixx", "ixy", "iyy", "ixz", "iyz", "izz"];
+            inertia.only_attributes(reading, &names);
+            for (entry, name) in entries.iter_mut().zip(names) {
+                let read = inertia.required_number(reading, name, "inertia");
+                *entry = reading.noted(read).map_or(0.0, |located| located.value);
+            }
+        }
     }
     Ok(Inertial { span: element.span(), origin, mass: value, inertia: entries })
 }
@@ -76,12 +91,16 @@ fn read_inertial(reading: &mut Reading<'_>, element: &Element<'_>) -> Result<Ine
 /// Reads an `<origin>`; none, or a missing attribute, means zeros.
 pub(super) fn read_origin(reading: &mut Reading<'_>, element: Option<Element<'_>>) -> Result<Origin, UrdfError> {
     let Some(element) = element else { return Ok(Origin::default()) };
-    if let Some(quaternion) = element.text(reading, "quat_xyzw")? {
+    let quaternion = element.text(reading, "quat_xyzw");
+    if let Some(quaternion) = reading.noted(quaternion).flatten() {
         let owner = element.owner.clone().unwrap_or(Owner::Robot);
-        return Err(reading.error(quaternion.span, UrdfProblem::Quaternion { owner }));
+        reading.noted::<()>(Err(reading.error(quaternion.span, UrdfProblem::Quaternion { owner })));
+    } else {
+        element.only_attributes(reading, &["xyz", "rpy"]);
     }
-    element.only_attributes(reading, &["xyz", "rpy"]);
-    let xyz = element.numbers::<3>(reading, "xyz", "origin")?.map_or([0.0; 3], |located| located.value);
-    let rpy = element.numbers::<3>(reading, "rpy", "origin")?.map_or([0.0; 3], |located| located.value);
+    let [xyz, rpy] = ["xyz", "rpy"].map(|name| {
+        let read = element.numbers::<3>(reading, name, "origin");
+        reading.noted(read).flatten().map_or([0.0; 3], |located| located.value)
+    });
     Ok(Origin { xyz, rpy })
 }

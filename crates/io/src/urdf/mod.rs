@@ -108,14 +108,29 @@ pub struct UrdfRobot {
 /// ```
 ///
 /// # Errors
-/// The first problem met, at its place in the file: see [`UrdfProblem`]. Any text gives a result; none panics.
+/// The first problem met, at its place in the file, with all others that do not follow from it as [`InputError::others`]: see
+/// [`UrdfProblem`]. Any text gives a result; none panics.
 pub fn read_urdf(source: &SourceText, options: &UrdfOptions) -> Result<UrdfRobot, InputError<UrdfProblem>> {
     let mut reading = Reading::new(source);
     let document = xml::parse(&reading)?;
     let root = Element::new(document.root_element(), Some(Owner::Robot));
-    let (name, links, joints) = read_robot(&mut reading, &root, options)?;
+    let (name, links, joints) = match read_robot(&mut reading, &root, options) {
+        Ok(read) => read,
+        Err(error) => {
+            // Of a template the first place is told.
+            reading.noted::<()>(Err(error.clone()));
+            return Err(reading.end().err().unwrap_or(error));
+        }
+    };
 
-    let arranged = tree::arrange(&reading, &links, &joints)?;
+    // Who holds whom is known only where everybody has a name.
+    let arranged = if reading.has_gaps { Ok(Vec::new()) } else { tree::arrange(&mut reading, &links, &joints) };
+    let arranged = reading.noted(arranged).unwrap_or_default();
+    if reading.is_mistaken() && options.friction == FrictionPolicy::Refuse {
+        let is_locked = |joint: &joint::Joint| options.locked.iter().any(|(name, _)| *name == joint.name);
+        dynamics::refuse_friction(&mut reading, joints.iter().filter(|joint| !is_locked(joint)));
+    }
+    reading.end()?;
     let locks = lock::locks(&mut reading, &joints, &options.locked)?;
     let moving = dynamics::build(&mut reading, &links, &joints, &arranged, &locks, options)?;
 
@@ -141,7 +156,8 @@ fn read_robot(
     if root.name() != "robot" {
         return Err(reading.error(root.span(), UrdfProblem::NotARobot { found: root.name().to_owned() }));
     }
-    let name = root.required_text(reading, "name", "robot")?.value.to_owned();
+    let name = root.required_text(reading, "name", "robot");
+    let name = reading.noted(name).map_or_else(String::new, |name| name.value.to_owned());
     root.only_attributes(reading, &["name", "version"]);
     let (mut links, mut joints) = (Vec::new(), Vec::new());
     for element in root.children(reading)? {

@@ -5,7 +5,7 @@ use forwardstep_core::robot::tree::TreeError;
 use thiserror::Error;
 
 use super::subject::{AttributeOf, End, Named, NamedLine, Owner, Size};
-use crate::wording::{did_you_mean, enumerate, number, rounded};
+use crate::wording::{did_you_mean, enumerate, more_mistakes, number, rounded};
 use crate::{Meant, Problem, shown};
 
 /// Why a URDF file, or what was asked of it, has no meaning here.
@@ -293,6 +293,12 @@ pub enum UrdfProblem {
         link: Option<String>,
         /// What the kernels say; they number the links depth first from the base, which is 0.
         error: TreeError,
+    },
+    /// So many mistakes that only their number is told.
+    #[error("{}", more_mistakes(*.count))]
+    Further {
+        /// How many more there are.
+        count: usize,
     },
     /// Sizes that do not fit together: a defect of this reader.
     #[error(transparent)]

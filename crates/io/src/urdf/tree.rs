@@ -25,15 +25,17 @@ pub(super) struct Held {
 }
 
 /// Arranges links and joints from the base outwards.
-pub(super) fn arrange(reading: &Reading<'_>, links: &[Link], joints: &[Joint]) -> Result<Vec<Held>, UrdfError> {
-    let link_index = index_by_name(reading, Named::Link, links.iter().map(|link| (link.name.as_str(), &link.span)))?;
-    index_by_name(reading, Named::Joint, joints.iter().map(|joint| (joint.name.as_str(), &joint.span)))?;
+pub(super) fn arrange(reading: &mut Reading<'_>, links: &[Link], joints: &[Joint]) -> Result<Vec<Held>, UrdfError> {
+    let names = links.iter().map(|link| (link.name.as_str(), &link.span));
+    let (link_index, mut is_sound) = index_by_name(reading, Named::Link, names);
+    let names = joints.iter().map(|joint| (joint.name.as_str(), &joint.span));
+    is_sound &= index_by_name(reading, Named::Joint, names).1;
 
     let mut holder: Vec<Option<usize>> = vec![None; links.len()];
     let mut held_by: Vec<Vec<usize>> = vec![Vec::new(); links.len()];
     for (j, joint) in joints.iter().enumerate() {
-        let find = |end, name: &Located<String>| {
-            link_index.get(name.value.as_str()).copied().ok_or_else(|| {
+        let mut find = |end, name: &Located<String>| {
+            let found = link_index.get(name.value.as_str()).copied().ok_or_else(|| {
                 let problem = UrdfProblem::UnknownLink {
                     joint: joint.name.clone(),
                     end,
@@ -41,38 +43,51 @@ pub(super) fn arrange(reading: &Reading<'_>, links: &[Link], joints: &[Joint]) -
                     nearest: nearest(&name.value, links.iter().map(|link| link.name.as_str())),
                 };
                 reading.error(name.span.clone(), problem)
-            })
+            });
+            reading.noted(found)
         };
-        let (parent, child) = (find(End::Parent, &joint.parent)?, find(End::Child, &joint.child)?);
+        let (Some(parent), Some(child)) = (find(End::Parent, &joint.parent), find(End::Child, &joint.child)) else {
+            is_sound = false;
+            continue;
+        };
         if let Some(first) = holder[child] {
             let problem = UrdfProblem::TwoParents {
                 link: links[child].name.clone(),
                 joint: joint.name.clone(),
                 first: named_line(reading, &joints[first].name, &joints[first].child.span),
             };
-            return Err(reading.error(joint.child.span.clone(), problem));
+            reading.noted::<()>(Err(reading.error(joint.child.span.clone(), problem)));
+            is_sound = false;
+            continue;
         }
         holder[child] = Some(j);
         held_by[parent].push(j);
+    }
+    // Links that nobody holds, and loops, may only follow from what was found.
+    if !is_sound {
+        return Ok(Vec::new());
     }
     for joints_of_link in &mut held_by {
         joints_of_link.sort_by(|a, b| joints[*a].name.cmp(&joints[*b].name));
     }
 
     let mut bases = (0..links.len()).filter(|link| holder[*link].is_none());
-    let (base, another) = (bases.next(), bases.next());
-    let Some(base) = base else {
+    let Some(base) = bases.next() else {
         return Err(match links.first() {
             Some(_) => loop_error(reading, links, joints, &holder, 0, &link_index),
             None => reading.error_overall(UrdfProblem::NoLinks),
         });
     };
-    if let Some(another) = another {
+    for another in bases {
         let problem = UrdfProblem::SeveralBases {
             link: links[another].name.clone(),
             first: named_line(reading, &links[base].name, &links[base].span),
         };
-        return Err(reading.error(links[another].span.clone(), problem));
+        reading.noted::<()>(Err(reading.error(links[another].span.clone(), problem)));
+        is_sound = false;
+    }
+    if !is_sound {
+        return Ok(Vec::new());
     }
 
     let mut arranged = Vec::with_capacity(links.len());
@@ -95,23 +110,28 @@ pub(super) fn arrange(reading: &Reading<'_>, links: &[Link], joints: &[Joint]) -
     }
 }
 
-/// Numbers by name, which must not occur twice.
+/// Numbers by name, which must not occur twice; whether none does.
 fn index_by_name<'n>(
-    reading: &Reading<'_>,
+    reading: &mut Reading<'_>,
     what: Named,
     names: impl Iterator<Item = (&'n str, &'n Range<usize>)>,
-) -> Result<HashMap<&'n str, usize>, UrdfError> {
-    let mut index = HashMap::new();
-    let mut spans = Vec::new();
+) -> (HashMap<&'n str, usize>, bool) {
+    let mut index: HashMap<&str, (usize, usize)> = HashMap::new();
+    let mut is_sound = true;
     for (k, (name, span)) in names.enumerate() {
-        if let Some(first) = index.insert(name, k) {
-            let first_line = reading.line(spans[first]);
-            let problem = UrdfProblem::DuplicateName { what, name: name.to_owned(), first_line };
-            return Err(reading.error(span.clone(), problem));
+        match index.get(name) {
+            Some((_, first)) => {
+                let first_line = reading.line(*first);
+                let problem = UrdfProblem::DuplicateName { what, name: name.to_owned(), first_line };
+                reading.noted::<()>(Err(reading.error(span.clone(), problem)));
+                is_sound = false;
+            }
+            None => {
+                index.insert(name, (k, span.start));
+            }
         }
-        spans.push(span.start);
     }
-    Ok(index)
+    (index.into_iter().map(|(name, (k, _))| (name, k)).collect(), is_sound)
 }
 
 /// The loop that is met when going from `link` towards the base without ever reaching one.

@@ -20,6 +20,8 @@ const MOST_NODES: u32 = 1 << 21;
 const MOST_NAMESPACES: usize = 1000;
 /// Bytes that a name may have.
 const LONGEST_NAME: usize = 200;
+/// So many mistakes are told beside the first; the rest is counted.
+const MOST_OTHERS: usize = 23;
 
 /// A value and the bytes it was read from.
 #[derive(Clone, Debug)]
@@ -36,11 +38,60 @@ pub(super) struct Reading<'a> {
     pub(super) source: &'a SourceText,
     pub(super) notices: Vec<Notice>,
     pub(super) ignored: Tally,
+    /// The mistakes that were met, as many as are told.
+    mistakes: Vec<UrdfError>,
+    /// How many more there are.
+    untold: usize,
+    /// The first place that shows that the file is a template; all else follows from that.
+    template: Option<UrdfError>,
+    /// Whether some link or joint has no name, or a joint not both of its links: then who holds whom is not known.
+    pub(super) has_gaps: bool,
 }
 
 impl<'a> Reading<'a> {
     pub(super) fn new(source: &'a SourceText) -> Self {
-        Reading { source, notices: Vec::new(), ignored: Tally::default() }
+        Reading {
+            source,
+            notices: Vec::new(),
+            ignored: Tally::default(),
+            mistakes: Vec::new(),
+            untold: 0,
+            template: None,
+            has_gaps: false,
+        }
+    }
+
+    /// What was read; a mistake is noted, and told with all others at the [`end`](Self::end).
+    pub(super) fn noted<T>(&mut self, read: Result<T, UrdfError>) -> Option<T> {
+        match read {
+            Ok(read) => return Some(read),
+            Err(error) if matches!(error.problem, UrdfProblem::Xacro { .. }) => {
+                self.template.get_or_insert(error);
+            }
+            Err(error) if self.mistakes.len() <= MOST_OTHERS => self.mistakes.push(error),
+            Err(_) => self.untold += 1,
+        }
+        None
+    }
+
+    /// Whether a mistake was noted.
+    pub(super) fn is_mistaken(&self) -> bool {
+        !self.mistakes.is_empty() || self.template.is_some()
+    }
+
+    /// All mistakes that were noted as one, the first that was met in front and the others in the order of the file.
+    pub(super) fn end(&mut self) -> Result<(), UrdfError> {
+        if let Some(template) = self.template.take() {
+            return Err(template);
+        }
+        let mut mistakes = std::mem::take(&mut self.mistakes).into_iter();
+        let Some(mut first) = mistakes.next() else { return Ok(()) };
+        first.others = mistakes.collect();
+        first.others.sort_by_key(|other| other.span.as_ref().map_or(0, |span| span.start));
+        if self.untold > 0 {
+            first.others.push(self.error_overall(UrdfProblem::Further { count: self.untold }));
+        }
+        Err(first)
     }
 
     /// An error about the bytes `span`.
@@ -165,7 +216,7 @@ impl<'a> Element<'a> {
                             element: once[k],
                             first_line: reading.line(first.span().start),
                         };
-                        return Err(reading.error(child.span(), problem));
+                        reading.noted::<()>(Err(reading.error(child.span(), problem)));
                     }
                     None => found[k] = Some(child),
                 },
@@ -277,6 +328,18 @@ impl<'a> Element<'a> {
                 Err(reading.error(located.span, UrdfProblem::Name { attribute, found, most: LONGEST_NAME }))
             }
             Some(located) => Ok(located),
+        }
+    }
+
+    /// The name of a link or joint; where it has none that can be used, that is noted.
+    pub(super) fn own_name(&self, reading: &mut Reading<'_>, element: &'static str) -> Located<String> {
+        let name = self.required_text(reading, "name", element);
+        match reading.noted(name) {
+            Some(Located { value, span }) => Located { value: value.to_owned(), span },
+            None => {
+                reading.has_gaps = true;
+                Located { value: "(without a name)".into(), span: self.span() }
+            }
         }
     }
 

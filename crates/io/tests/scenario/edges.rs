@@ -216,7 +216,7 @@ fn regress_a_long_cell_is_not_quoted_whole() {
     for table in [format!("{}\n", "x".repeat(10_000)), format!("from,to\n{},cart\n", "é".repeat(10_000))] {
         let (_folder, scenario) = tabled(&table);
         let message = scenario.unwrap_err().to_string();
-        assert!(message.len() < 2200 && message.ends_with('…'), "{message}");
+        assert!(message.len() < 2200 && message.contains('…'), "{message}");
     }
 }
 

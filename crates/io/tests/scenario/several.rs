@@ -134,3 +134,83 @@ fn of_any_two_mistakes_both_are_told_and_nothing_else() {
     assert!(wrong.is_empty(), "{}:\n{}", wrong.len(), wrong.join("\n"));
     assert!(pairs > 100 && 10 * both > 9 * pairs, "{both} of {pairs}; not\n{}", one_only.join("\n"));
 }
+
+/// All that is said of [`SOUND`] with edges from this table, without its folder.
+fn of_table(table: &str) -> Vec<String> {
+    super::seeds::keep("csv", table);
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("edges.csv"), table).unwrap();
+    let text = SOUND.replace("edges = [[\"arm-1\", \"arm-2\"]]", "edges.csv.file = \"edges.csv\"");
+    let source = forwardstep_io::SourceText::new("test.toml", text);
+    let error = forwardstep_io::scenario::read_scenario("test", &source, Some(folder.path())).unwrap_err();
+    let others = error.related().into_iter().flatten().map(ToString::to_string);
+    let all = std::iter::once(error.to_string()).chain(others);
+    all.map(|said| said.rsplit_once('/').map_or(said.clone(), |(_, rest)| rest.to_owned())).collect()
+}
+
+#[test]
+fn all_mistakes_of_a_table_are_told_at_once() {
+    let form = "from,form,weight,weight,delay_s\narm-1,arm-2,1,1\narm-1,x,1,1,\"0\n,arm-2,1,1,inf\n";
+    assert_eq!(
+        of_table(form),
+        [
+            "edges.csv:1:18: a second column is named `weight`",
+            "edges.csv:1:6: unknown column `form`",
+            "edges.csv:2:1: this line has 4 entries, but there are 5 columns",
+            "edges.csv:3:13: this quotation mark is not closed on its line",
+            "edges.csv:4:1: `from` is empty",
+            "edges.csv:4:12: inf is not a finite number",
+        ]
+    );
+    assert_eq!(
+        of_table("weight,delay_s\n"),
+        ["edges.csv:1:1: the column `from` is missing", "edges.csv:1:1: the column `to` is missing"]
+    );
+    // What names mean is asked where the form is sound.
+    let names = "from,to,delay_s\narm-1,amr-2,0\ncart,cart,0\narm-2,arm-1,0\nx\u{1b}[2J,cart,0\n";
+    assert_eq!(
+        of_table(names),
+        [
+            "edges.csv:2:7: there is no agent `amr-2`",
+            "edges.csv:3:1: `cart` cannot hear itself",
+            "edges.csv:5:1: there is no agent `x\\u{1b}[2J`",
+        ]
+    );
+    // Many are counted.
+    let said = of_table(&format!("from,to\n{}", "arm-1\n".repeat(1000)));
+    assert_eq!(said.len(), 25);
+    assert_eq!(said[24], "edges.csv: 976 more mistakes are told when these are mended");
+    assert_eq!(said[23], "edges.csv:25:1: this line has 1 entry, but there are 2 columns");
+    let said = of_table(&format!("from,to\n{}", "arm-1,nobody\n".repeat(25)));
+    assert_eq!(said[24], "edges.csv: 1 more mistake is told when these are mended");
+}
+
+#[test]
+fn nothing_is_quoted_of_a_table_that_is_something_else() {
+    for (text, what) in [
+        ("<?xml version=\"1.0\"?>\n<robot name=\"secret\"/>", "a robot (URDF)"),
+        ("{\"secret\": 1,\n\"b\": 2}", "JSON"),
+        ("secret:\n  b: 2\n", "YAML"),
+        ("format = 2\ntitle = \"secret\"\n", "a scenario"),
+    ] {
+        assert_eq!(of_table(text), [format!("edges.csv: this is {what}, and no table")]);
+    }
+    // Of a table with other columns the first is told.
+    assert_eq!(of_table("a,b,c\n1,2\n"), ["edges.csv:1:1: unknown column `a`"]);
+    let said = of_table(&"word ".repeat(100_000));
+    assert!(said.len() == 1 && said[0].len() < 500, "{said:?}");
+}
+
+#[test]
+fn all_mistakes_of_times_and_numbers_are_told_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("rows.csv"), "t_s\n0\none\n2\n1\n3\n1e99\n3\n").unwrap();
+    let text = SOUND.replace("record_every_s = 0.1", "record_at.csv.file = \"rows.csv\"");
+    let source = forwardstep_io::SourceText::new("test.toml", text);
+    let error = forwardstep_io::scenario::read_scenario("test", &source, Some(folder.path())).unwrap_err();
+    let others = error.related().into_iter().flatten().map(ToString::to_string);
+    let all: Vec<String> = std::iter::once(error.to_string()).chain(others).collect();
+    let places = ["rows.csv:3:1:", "rows.csv:5:1:", "rows.csv:7:1:", "rows.csv:8:1:"];
+    assert_eq!(all.len(), places.len(), "{all:?}");
+    assert!(all.iter().zip(places).all(|(said, place)| said.contains(place)), "{all:?}");
+}

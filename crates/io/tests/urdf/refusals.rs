@@ -1,6 +1,6 @@
 //! Every refusal, with its place and its help.
 
-use forwardstep_io::UrdfOptions;
+use forwardstep_io::{InputError, SourceText, UrdfOptions, read_urdf};
 
 use super::{ARM, BASE, LIMIT, inertial, joint, locked, read_with, robot};
 
@@ -313,4 +313,74 @@ fn refused_with_place_and_help() {
         let said = read_with(&text, &options).map(|_| ()).expect_err(&text);
         assert_eq!(said, expected, "{text}");
     }
+}
+
+/// All that is said of a robot.
+fn all(text: &str) -> Vec<String> {
+    let error = read_urdf(&SourceText::new("r.urdf", text), &UrdfOptions::default()).expect_err(text);
+    let said = |error: &InputError<_>| error.to_string().trim_start_matches("r.urdf:").to_owned();
+    std::iter::once(said(&error)).chain(error.others.iter().map(said)).collect()
+}
+
+#[test]
+fn all_mistakes_are_told_at_once() {
+    let bad_arm = r#"<link name="arm"><inertial><mass value="-1"/><inertia ixx="1" iyy="x" izz="1" ixy="0" ixz="0" iyz="nan"/></inertial></link>"#;
+    let bad_turn = r#"<axis xyz="0 0 0"/><limit lower="2" upper="1" effort="-3" velocity="2"/><dynamics damping="y" friction="4"/>"#;
+    let elbow = r#"<joint name="elbow" type="revolut"><parent link="arn"/><child link="hand"/><origin xyz="1 2" rpy="z 0 0"/></joint>"#;
+    assert_eq!(
+        all(&robot(&[BASE, bad_arm, &joint("revolute", bad_turn), elbow])),
+        [
+            "3:41: `value` of <mass> of link `arm` is -1, but must not be negative",
+            "3:68: `iyy` of <inertia> of link `arm` is `x`, which is not a number",
+            "3:100: `iyz` of <inertia> of link `arm` is `nan`, which is not finite",
+            "4:87: the axis of joint `turn` is zero",
+            "4:95: joint `turn` has its lower limit 2 above its upper limit 1",
+            "4:130: `effort` of <limit> of joint `turn` is -3, but must not be negative",
+            "4:167: `damping` of <dynamics> of joint `turn` is `y`, which is not a number",
+            "4:180: joint `turn` has Coulomb friction 4, and nothing says how to model it",
+            "5:27: joint `elbow` has the unknown type `revolut`",
+            "5:50: joint `elbow` names the parent link `arn`, which does not exist",
+            "5:69: joint `elbow` names the child link `hand`, which does not exist",
+            "5:89: `xyz` of <origin> of joint `elbow` has 2 numbers where 3 are needed",
+            "5:99: `rpy` of <origin> of joint `elbow` is `z`, which is not a number",
+        ]
+    );
+    // Who has no name cannot be missed, and of a joint without its links nothing follows.
+    let nameless = r#"<link><inertial><mass value="1"/></inertial></link>"#;
+    let loose = r#"<joint name="loose" type="fixed"><parent link="nowhere"/></joint>"#;
+    assert_eq!(
+        all(&robot(&[
+            BASE,
+            nameless,
+            loose,
+            r#"<joint name="bent" type="fixed"><parent link="base"/><child link="no"/></joint>"#
+        ])),
+        [
+            "3:1: `name` of <link> is missing",
+            "3:7: <inertial> of link `(without a name)` has no <inertia>",
+            "4:1: joint `loose` has no <child>",
+        ]
+    );
+    // Two of a name, and two that hold a link; that others are held by nobody may follow from that.
+    let twice = [BASE, BASE, ARM, &joint("fixed", ""), &joint("fixed", ""), r#"<link name="far"/>"#];
+    assert_eq!(
+        all(&robot(&twice)),
+        [
+            "3:13: a second link is named `base`; the first is on line 2",
+            "6:14: a second joint is named `turn`; the first is on line 5",
+            "6:72: link `arm` is the child of joint `turn` and of joint `turn` (line 5)",
+        ]
+    );
+    let apart = [BASE, r#"<link name="a"/>"#, r#"<link name="b"/>"#];
+    assert_eq!(all(&robot(&apart)).len(), 2);
+}
+
+#[test]
+fn many_mistakes_are_counted_and_of_a_template_one_is_told() {
+    let bad = r#"<link name="arm"><inertial><mass value="x"/><inertia/></inertial></link>"#;
+    let said = all(&robot(&[bad; 10]));
+    assert_eq!(said.len(), 25, "{said:?}");
+    assert_eq!(said[24], "r.urdf: 55 more mistakes are told when these are mended".trim_start_matches("r.urdf:"));
+    let template = robot(&[bad, r#"<link name="${prefix}base"/>"#, bad]);
+    assert_eq!(all(&template), ["3:13: `${prefix}base` is xacro, not URDF"]);
 }

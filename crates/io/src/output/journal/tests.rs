@@ -281,10 +281,18 @@ fn what_was_cut_off_is_said_and_becomes_a_whole_folder() {
     assert!(saved.goes_on());
     // Its page says so, stands beside what the run writes, and is in no other's way.
     fs::write(path.join(".report.html.1.partial"), "a writer that was killed").unwrap();
-    let page = saved.write_growing_page(&path, &saved.record(&carts.1, None, &[])).unwrap();
+    let (record, again) = (saved.record(&carts.1, None, &[]), Duration::from_millis(6500));
+    let page = saved.write_growing_page(&path, &record, again).unwrap();
     let page = fs::read_to_string(page).unwrap();
-    assert!(page.contains("The run goes on; this is what it has until t = 0.5 s of 0.5 s."), "{page}");
-    assert!(page.contains("http-equiv=\"refresh\"") && !page.contains("Cut off"));
+    assert!(page.contains("running: 0.500 s of 0.5 s"), "{page}");
+    assert!(
+        page.contains("http-equiv=\"refresh\"") && page.contains("data-again-s=\"7\"") && !page.contains("Cut off")
+    );
+    assert!(page.contains("location.reload"));
+    // The run writes the same.
+    fs::remove_file(path.join("report.html")).unwrap();
+    let own = saved.write_own_growing_page(&run, &record, again).unwrap();
+    assert_eq!(fs::read_to_string(own).unwrap(), page);
     fs::remove_file(path.join("report.html")).unwrap();
     drop(run);
     let saved = SavedRun::open(&path).unwrap();

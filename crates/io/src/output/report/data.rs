@@ -103,15 +103,15 @@ struct ParameterIndex {
 
 /// Numbers of points.
 #[derive(Serialize)]
-struct Grids {
-    main: usize,
-    estimates: usize,
-    delays: usize,
-    scene: usize,
+pub(super) struct Grids {
+    pub(super) main: usize,
+    pub(super) estimates: usize,
+    pub(super) delays: usize,
+    pub(super) scene: usize,
     /// Series on the main grid, which come first; then estimates, then delays.
-    main_series: usize,
-    estimate_series: usize,
-    delay_series: usize,
+    pub(super) main_series: usize,
+    pub(super) estimate_series: usize,
+    pub(super) delay_series: usize,
 }
 
 /// Indices of series by agent and axis.
@@ -141,25 +141,25 @@ struct DisagreementIndex {
 }
 
 #[derive(Serialize)]
-struct DelayIndex {
-    label: String,
-    series: usize,
+pub(super) struct DelayIndex {
+    pub(super) label: String,
+    pub(super) series: usize,
 }
 
 /// Series on one grid.
-struct Series<'a> {
-    grid: Grid,
+pub(super) struct Series<'a> {
+    pub(super) grid: Grid,
     rows_t_s: &'a [f64],
-    values: Vec<f32>,
-    count: usize,
+    pub(super) values: Vec<f32>,
+    pub(super) count: usize,
 }
 
 impl<'a> Series<'a> {
-    fn new(grid: Grid, rows_t_s: &'a [f64]) -> Self {
+    pub(super) fn new(grid: Grid, rows_t_s: &'a [f64]) -> Self {
         Series { grid, rows_t_s, values: Vec::new(), count: 0 }
     }
 
-    fn add(&mut self, values: &[f64], may_jump: bool) -> usize {
+    pub(super) fn add(&mut self, values: &[f64], may_jump: bool) -> usize {
         self.values.extend(self.grid.sample(self.rows_t_s, values, may_jump));
         self.count += 1;
         self.count - 1
@@ -271,17 +271,21 @@ impl Payload {
         };
         let times = [&main.grid.t_s, &estimates.grid.t_s, &delay_t_s, &space.t_s];
         let delays = shown_delays.iter().filter_map(|(k, _)| delay_values.get(*k));
-        let mut bytes: Vec<u8> = times.into_iter().flatten().flat_map(|t| t.to_le_bytes()).collect();
         let series = [&main.values, &estimates.values].into_iter().chain(delays).chain([&space.values]);
-        bytes.extend(series.flatten().flat_map(|v| v.to_le_bytes()));
-        Payload {
-            // "<" never stands in the index as itself, so no name can end the script element.
-            json: serde_json::to_string(&index).unwrap_or_else(|_| "null".into()).replace('<', "\\u003c"),
-            block: base64::engine::general_purpose::STANDARD.encode(bytes),
-            solid,
-            notes,
-        }
+        Payload { json: harmless_json(&index), block: block(times, series), solid, notes }
     }
+}
+
+/// "<" never stands in it as itself, so no name can end the script element.
+pub(super) fn harmless_json(index: &impl Serialize) -> String {
+    serde_json::to_string(index).unwrap_or_else(|_| "null".into()).replace('<', "\\u003c")
+}
+
+/// The times of all grids and then all series, in base64.
+pub(super) fn block<'v>(times: [&Vec<f64>; 4], series: impl Iterator<Item = &'v Vec<f32>>) -> String {
+    let mut bytes: Vec<u8> = times.into_iter().flatten().flat_map(|t| t.to_le_bytes()).collect();
+    bytes.extend(series.flatten().flat_map(|v| v.to_le_bytes()));
+    base64::engine::general_purpose::STANDARD.encode(bytes)
 }
 
 /// Names, limits and parameters of all agents, and the series of those estimates that there is room for.

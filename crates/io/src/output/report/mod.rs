@@ -12,8 +12,12 @@ mod practical;
 mod predicted;
 mod scene;
 pub(crate) mod sections;
+mod side_by_side;
+mod side_data;
 mod stage;
 pub(crate) mod text;
+
+use std::time::Duration;
 
 use forwardstep_check::derivation::explain;
 use forwardstep_sim::Setup;
@@ -28,6 +32,7 @@ use super::palette::{self, Ground};
 use super::record::RunRecord;
 use super::table::Table;
 use super::timeline::Timeline;
+pub(crate) use side_by_side::side_by_side;
 
 const UPLOT_JS: &str = include_str!("../../../assets/uplot/uPlot.iife.min.js");
 const UPLOT_CSS: &str = include_str!("../../../assets/uplot/uPlot.min.css");
@@ -49,11 +54,16 @@ const PAGE_JS: [&str; 11] = [
     include_str!("../../../assets/report/page.js"),
     include_str!("../../../assets/report/stage.js"),
 ];
+/// Keeps what a reader chose from one page of a run to the next.
+const CHOICES_JS: &str = include_str!("../../../assets/report/choices.js");
+/// Loads the page again; only on pages of a run that goes on.
+const FOLLOW_JS: &str = include_str!("../../../assets/report/follow.js");
 /// Nothing is fetched, whatever the page says.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:";
 
-/// The whole page; of a run that `goes_on` one that a browser loads again and again.
-pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> String {
+/// The whole page; of a run that goes on one that a browser loads `again` after so long, and again.
+pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, again: Option<Duration>) -> String {
+    let goes_on = again.is_some();
     let table = Table::new(record.setup, &record.outcome.recording);
     let reached_s = match &record.outcome.ending {
         Ending::Completed => record.setup.time.end_s,
@@ -69,15 +79,15 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> 
     };
     html! {
         (DOCTYPE)
-        html lang="en" {
+        html lang="en" data-again-s=[again.map(|again| again.as_secs_f64().ceil())] {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
-                @if goes_on { meta http-equiv="refresh" content="3"; }
+                @if goes_on { noscript { meta http-equiv="refresh" content="5"; } }
                 meta name="generator" content={ "forwardstep " (record.version) };
                 meta http-equiv="Content-Security-Policy" content=(POLICY);
-                title { (record.title) " – forwardstep" }
+                title { @if goes_on { (sections::so_far(record)) ": " } (record.title) " – forwardstep" }
                 style { (PreEscaped(UPLOT_CSS)) }
                 style { (PreEscaped(PAGE_CSS)) (PreEscaped(STAGE_CSS)) (PreEscaped(colours(record.setup))) }
             }
@@ -116,7 +126,8 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> 
                 script #block type="text/plain" { (payload.block) }
                 script { (PreEscaped(UPLOT_JS)) }
                 @if payload.solid { script { (PreEscaped(THREE_JS)) } }
-                script { (PreEscaped("(() => {\n\"use strict\";\n")) @for part in PAGE_JS { (PreEscaped(part)) } "})();" }
+                script { (PreEscaped("(() => {\n\"use strict\";\n")) @for part in PAGE_JS { (PreEscaped(part)) } (PreEscaped(CHOICES_JS)) "choices();\n})();" }
+                @if goes_on { script { (PreEscaped(FOLLOW_JS)) } }
             }
         }
     }
@@ -200,7 +211,11 @@ fn network(record: &RunRecord<'_>, timeline: &Timeline<'_>) -> Markup {
 
 /// The agents' colours as CSS variables and classes, for both grounds.
 fn colours(setup: &Setup) -> String {
-    let (agents, vertices) = (setup.agents.len(), network::vertices(setup));
+    colours_of(setup.agents.len(), network::vertices(setup))
+}
+
+/// The same of so many agents; vertices beyond them are leaders.
+fn colours_of(agents: usize, vertices: usize) -> String {
     let variables = |ground| -> String {
         let agent = (0..agents).map(|k| format!("--a{k}:{};", palette::css(palette::agent(k, agents, ground))));
         let ramp = (0..RAMP).map(|k| format!("--r{k}:{};", palette::css(palette::ramp(k, RAMP, ground))));

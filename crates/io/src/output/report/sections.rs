@@ -21,7 +21,6 @@ const MOST_TORQUE_ROWS: usize = 64;
 /// Title, how it ended, and the few numbers one looks for first.
 pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup {
     let (class, word) = match record.outcome.ending {
-        _ if goes_on => ("warn", "Goes on"),
         Ending::Completed => ("good", "Completed"),
         Ending::Interrupted { .. } => ("warn", "Interrupted"),
         Ending::CutOff { .. } => ("warn", "Cut off"),
@@ -31,14 +30,19 @@ pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -
         header.top {
             p.eyebrow { "forwardstep run" span.sep { "/" } (record.scenario_name) }
             h1 { (record.title) }
-            p.ending {
+            @if goes_on { p.ending {
+                span #running .badge.warn { "running: " (so_far(record)) }
+                span #running-note {}
+                label { input #reload type="checkbox" checked; " reload" }
+            } }
+            @else { p.ending {
                 span.badge.(class) { (word) }
-                @if let Some(outcome) = record.goal.filter(|_| !goes_on) {
+                @if let Some(outcome) = record.goal {
                     @let (class, word) = if outcome.met { ("good", "Goal met") } else { ("bad", "Goal missed") };
                     span.badge.(class) { (word) }
                 }
                 span { (ending(record, goes_on)) }
-            }
+            } }
             @if let Some(Conclusion { reached, sentence, advice }) = Conclusion::of(record, metrics) {
                 p.conclusion { @if goes_on { "so far " } strong.good[reached].bad[!reached && !goes_on] { (sentence) } }
                 @if !goes_on && !advice.is_empty() { ul.advice { @for line in advice { li { (line) } } } }
@@ -100,8 +104,15 @@ fn ending(record: &RunRecord<'_>, goes_on: bool) -> String {
     if !goes_on {
         return ending_sentence(record.setup, &record.outcome.ending);
     }
+    format!("running: {}", so_far(record))
+}
+
+/// How far a run is that goes on, to about a thousandth of its horizon.
+pub(crate) fn so_far(record: &RunRecord<'_>) -> String {
     let until_s = record.outcome.recording.t_s.last().copied().unwrap_or(0.0);
-    format!("The run goes on; this is what it has until t = {until_s} s of {} s.", record.setup.time.end_s)
+    let end_s = record.setup.time.end_s;
+    let places = (3.0 - end_s.log10().ceil()).clamp(0.0, 9.0) as usize;
+    format!("{until_s:.places$} s of {end_s} s")
 }
 
 /// A number with its unit; without, when it is none.

@@ -9,6 +9,11 @@ use super::{card, sections};
 /// How fast time may pass, by its share of real time.
 const RATES: [(&str, &str); 6] = [("0.1", "⅒"), ("0.5", "½"), ("1", "1"), ("2", "2"), ("5", "5"), ("20", "20")];
 
+/// How fast time passes, to be chosen.
+pub(super) fn rates() -> Markup {
+    html! { select #rate { @for (value, words) in RATES { option value=(value) selected[value == "1"] { (words) " ×" } } } }
+}
+
 /// Space and clock on one side; verdict, plot and graph on the other. The script fills what is empty.
 pub(super) fn stage(record: &RunRecord<'_>, metrics: &Metrics, absence: Option<Absence>, goes_on: bool) -> Markup {
     let gap = Gap::of(record.setup);
@@ -25,9 +30,7 @@ pub(super) fn stage(record: &RunRecord<'_>, metrics: &Metrics, absence: Option<A
                     button #play type="button" aria-pressed="false" { "Play" }
                     input #slider type="range" min="0" max="1000" value="0" step="any" aria-label="Simulated time" aria-describedby="view-help";
                     output #time for="slider" { "t = 0 s" }
-                    label { "rate " select #rate {
-                        @for (value, words) in RATES { option value=(value) selected[value == "1"] { (words) " ×" } }
-                    } }
+                    label { "rate " (rates()) }
                     label #choice { "agent " select #chosen { option value="" { "all" } } }
                 }
                 details { summary { "Keys and gestures" } p.note #view-help {

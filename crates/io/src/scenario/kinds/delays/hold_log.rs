@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::super::super::at::At;
-use super::super::super::fault::{Fault, count, fault, not_negative};
+use super::super::super::fault::{Fault, Faults, count, fault, not_negative};
 use super::super::super::network::NetworkReader;
 use super::super::super::network_problem::NetworkProblem;
 use super::super::super::table::{Column, TableProblem, cell_number, read_table, rising, table_text};
@@ -86,21 +86,33 @@ fn table_of(text: &str, end_s: f64) -> Result<Holds, Fault> {
     let columns = [("from", true), ("to", true), ("hold", true), ("t_s", true), ("delay_s", false)]
         .map(|(name, required)| Column { name, required });
     let mut rows: BTreeMap<(String, String, usize), Vec<Row>> = BTreeMap::new();
-    for At { value: [from, to, hold, t_s, delay], span } in read_table(text, columns)? {
+    let mut faults = Faults::default();
+    for At { value: [from, to, hold, t_s, delay], span } in read_table(text, columns, &mut faults)? {
         if delay.span == span {
             let columns = columns.map(|column| column.name.to_owned()).to_vec();
             return Err(Fault::new(TableProblem::MissingColumn { name: "delay_s".into(), columns }));
         }
-        let (Some(hold), Some(t_s)) = (cell_number(&hold)?, cell_number(&t_s)?) else { continue };
-        let whole = At { value: hold.value as i64, span: hold.span.clone() };
-        let number = count("hold", &whole, MOST_HOLDS)?;
-        if whole.value as f64 != hold.value {
-            return Err(fault(&hold, NetworkProblem::NotANumber { found: hold.value }));
-        }
-        let delay_s = cell_number(&delay)?.map(|delay| not_negative("delay_s", &delay)).transpose()?;
+        let number = cell_number(&hold).and_then(|hold| hold.as_ref().map(number_of).transpose());
+        let delay_s = cell_number(&delay).and_then(|delay| delay.map(|it| not_negative("delay_s", &it)).transpose());
+        let read = (faults.noted(number), faults.noted(cell_number(&t_s)), faults.noted(delay_s));
+        let (Some(Some(number)), Some(Some(t_s)), Some(delay_s)) = read else { continue };
         rows.entry((from.value.into_owned(), to.value.into_owned(), number)).or_default().push((t_s, delay_s));
     }
-    rows.into_iter().map(|(link, rows)| Ok((link, hold_of(rows, end_s)?))).collect()
+    // Whether times rise and a hold ends is asked of rows that are all there.
+    faults.end()?;
+    let mut faults = Faults::default();
+    let holds = rows.into_iter().filter_map(|(link, rows)| Some((link, faults.noted(hold_of(rows, end_s))?))).collect();
+    faults.end().map(|()| holds)
+}
+
+/// The number of a hold.
+fn number_of(hold: &At<f64>) -> Result<usize, Fault> {
+    let whole = At { value: hold.value as i64, span: hold.span.clone() };
+    let number = count("hold", &whole, MOST_HOLDS)?;
+    if whole.value as f64 != hold.value {
+        return Err(fault(hold, NetworkProblem::NotANumber { found: hold.value }));
+    }
+    Ok(number)
 }
 
 /// One hold; the last of its rows is its end.

@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::super::super::at::At;
-use super::super::super::fault::{Fault, not_negative};
+use super::super::super::fault::{Fault, Faults, not_negative};
 use super::super::super::network::NetworkReader;
 use super::super::super::network_problem::NetworkProblem;
 use super::super::super::table::{Cell, Column, TableProblem, cell_number, read_table, table_text};
@@ -82,7 +82,8 @@ fn log_of(file: &str, text: &str, line_of: impl Fn(usize) -> usize) -> Result<Lo
     let columns = [("from", true), ("to", true), ("send_s", true), ("delay_s", false)]
         .map(|(name, required)| Column { name, required });
     let mut rows: BTreeMap<(String, String), Rows> = BTreeMap::new();
-    for At { value: [from, to, send, delay], span } in read_table(text, columns)? {
+    let mut faults = Faults::default();
+    for At { value: [from, to, send, delay], span } in read_table(text, columns, &mut faults)? {
         // The cell of a column that is not there is the line.
         if delay.span == span {
             let columns = columns.map(|column| column.name.to_owned()).to_vec();
@@ -92,19 +93,23 @@ fn log_of(file: &str, text: &str, line_of: impl Fn(usize) -> usize) -> Result<Lo
             // Adding zero takes the sign from a zero.
             cell_number(cell)?.map(|number| not_negative(key, &number).map(|time_s| time_s + 0.0)).transpose()
         };
-        let Some(send_s) = time("send_s", &send)? else { continue };
-        let packet = Packet { send_s, delay_s: time("delay_s", &delay)? };
+        let (send_s, delay_s) = (faults.noted(time("send_s", &send)), faults.noted(time("delay_s", &delay)));
+        let (Some(Some(send_s)), Some(delay_s)) = (send_s, delay_s) else { continue };
+        let packet = Packet { send_s, delay_s };
         rows.entry((from.value.into_owned(), to.value.into_owned())).or_default().push((packet, send.span));
     }
     let mut links = BTreeMap::new();
     for (names, mut packets) in rows {
         packets.sort_by(|a, b| a.0.send_s.total_cmp(&b.0.send_s).then(a.1.start.cmp(&b.1.start)));
-        if let Some(pair) = packets.windows(2).find(|pair| pair[0].0.send_s == pair[1].0.send_s) {
-            let (from, to) = names;
-            let (send_s, first_line) = (pair[0].0.send_s, line_of(pair[0].1.start));
-            return Err(Fault::new(NetworkProblem::PacketTwice { from, to, send_s, first_line }).at(&pair[1].1));
+        for pair in packets.windows(2).filter(|pair| pair[0].0.send_s == pair[1].0.send_s) {
+            faults.add(|| {
+                let ((from, to), send_s) = (names.clone(), pair[0].0.send_s);
+                let first_line = line_of(pair[0].1.start);
+                Fault::new(NetworkProblem::PacketTwice { from, to, send_s, first_line }).at(&pair[1].1)
+            });
         }
         links.insert(names, packets.into_iter().map(|(packet, _)| packet).collect());
     }
+    faults.end()?;
     Ok(Log { file: file.to_owned(), links })
 }

@@ -6,10 +6,10 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::super::super::at::At;
-use super::super::super::fault::{Fault, between, fault};
+use super::super::super::fault::{Fault, Faults, between, fault};
 use super::super::super::network::PhaseReader;
 use super::super::super::network_problem::NetworkProblem;
-use super::super::super::table::{Column, TableProblem, cell_number, read_table, rising, table_text};
+use super::super::super::table::{Column, TableProblem, all_rising, cell_number, read_table, table_text};
 use super::super::KindTable;
 use super::ScheduleKind;
 
@@ -41,22 +41,26 @@ impl ScheduleKind for SwitchingLogFile {
 fn log_of(text: &str, phases: usize, end_s: f64) -> Result<Logged, Fault> {
     let columns = ["t_s", "phase"].map(|name| Column { name, required: name == "t_s" });
     let (mut times, mut graphs, mut ended) = (Vec::new(), Vec::new(), false);
-    for At { value: [t_s, phase], span } in read_table(text, columns)? {
+    let mut faults = Faults::default();
+    for At { value: [t_s, phase], span } in read_table(text, columns, &mut faults)? {
         if phase.span == span {
             let columns = columns.map(|column| column.name.to_owned()).to_vec();
             return Err(Fault::new(TableProblem::MissingColumn { name: "phase".into(), columns }));
         }
-        let Some(t_s) = cell_number(&t_s)? else { continue };
+        let (t_s, phase) = (faults.noted(cell_number(&t_s)), faults.noted(cell_number(&phase)));
+        let (Some(Some(t_s)), Some(phase)) = (t_s, phase) else { continue };
         if ended {
-            return Err(fault(&t_s, NetworkProblem::AfterTheEnd));
+            faults.add(|| fault(&t_s, NetworkProblem::AfterTheEnd));
+            continue;
         }
         times.push(t_s);
-        match cell_number(&phase)? {
+        match phase {
             None => ended = true,
-            Some(phase) => graphs.push(numbered(&phase, phases)?),
+            Some(phase) => graphs.extend(faults.noted(numbered(&phase, phases))),
         }
     }
-    rising("t_s", &times)?;
+    all_rising("t_s", &times, &mut faults);
+    faults.end()?;
     let Some(last) = times.pop_if(|_| ended) else { return Err(Fault::new(NetworkProblem::NoEnd)) };
     if last.value < end_s {
         return Err(fault(&last, NetworkProblem::LogEndsEarly { until_s: last.value, end_s }));

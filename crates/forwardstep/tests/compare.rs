@@ -1,0 +1,296 @@
+//! `forwardstep compare`: runs side by side.
+#![cfg(feature = "program")]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod support;
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+use support::{folder, forwardstep, names, stderr, stdout};
+use tempfile::TempDir;
+
+/// Two point masses that agree over a link that switches.
+const POINTS: &str = r#"
+format = 2
+title = "Two points"
+time = { end_s = 4, record_every_s = 0.05 }
+[[agents]]
+name = "point"
+count = 2
+robot.point_mass = { mass_kg = 1.0, dimension = 1 }
+start.position_m = [[-1.0], [1.0]]
+[reference.consensus]
+roots_per_s = [2.0, 3.0]
+exchange = "position_velocity"
+[law.known]
+[network]
+delay.constant_s = 0.1
+[[network.phases]]
+dwell_s = 0.5
+edges = [["point-1", "point-2"], ["point-2", "point-1"]]
+[[network.phases]]
+dwell_s = 0.25
+edges = [["point-2", "point-1"]]
+[goal]
+disagreement_below = 0.1
+"#;
+
+/// A joint that starts near its limit, and runs into it.
+const INTO_A_LIMIT: &str = r#"
+format = 2
+title = "An arm that leaves its limits"
+time = { end_s = 3, record_every_s = 0.1 }
+[[agents]]
+name = "here"
+robot.urdf.file = "pendulum.urdf"
+enforce_limits = true
+start.position_rad = [0.9]
+[[agents]]
+name = "there"
+robot.urdf.file = "pendulum.urdf"
+start.position_rad = [1.9]
+[reference.consensus]
+roots_per_s = [1.0, 2.0]
+exchange = "position_velocity"
+[law.known]
+[network]
+edges = [["there", "here"]]
+"#;
+
+const PENDULUM: &str = r#"<robot name="pendulum">
+  <link name="base"/>
+  <link name="rod">
+    <inertial>
+      <origin xyz="0 0 -0.5"/><mass value="2"/>
+      <inertia ixx="0.2" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.01"/>
+    </inertial>
+  </link>
+  <joint name="hinge" type="revolute">
+    <parent link="base"/><child link="rod"/><axis xyz="0 1 0"/>
+    <limit lower="-1" upper="1" effort="50" velocity="5"/>
+  </joint>
+</robot>
+"#;
+
+fn write(here: &TempDir, name: &str, text: &str) {
+    fs::write(here.path().join(name), text).unwrap();
+}
+
+/// What `compare --json` prints, which is what it writes.
+fn document(here: &TempDir, arguments: &[&str], out: &str) -> Value {
+    let arguments = [&["compare", "--json", "--out", out], arguments].concat();
+    let printed: Value = serde_json::from_str(&stdout(&forwardstep(here, &arguments))).unwrap();
+    let written = fs::read_to_string(here.path().join(out).join("compare.json")).unwrap();
+    assert_eq!(printed, serde_json::from_str::<Value>(&written).unwrap());
+    printed
+}
+
+fn row<'a>(document: &'a Value, key: &str) -> &'a Value {
+    let rows = document["rows"].as_array().unwrap();
+    rows.iter().find(|row| row["key"] == key).unwrap_or_else(|| panic!("no row {key}"))
+}
+
+fn words(document: &Value, key: &str) -> Vec<String> {
+    let cells = row(document, key)["cells"].as_array().unwrap();
+    cells.iter().map(|cell| cell["words"].as_str().unwrap().to_owned()).collect()
+}
+
+fn numbers(document: &Value, key: &str) -> Vec<f64> {
+    let cells = row(document, key)["cells"].as_array().unwrap();
+    cells.iter().map(|cell| cell["value"].as_f64().unwrap()).collect()
+}
+
+fn summary(folder: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn scenarios_are_run_and_laid_side_by_side() {
+    let here = folder();
+    write(&here, "points.toml", POINTS);
+    write(&here, "slow.toml", &POINTS.replace("[2.0, 3.0]", "[1.0]").replace("Two points", "Two slow points"));
+    let found = document(&here, &["points.toml", "slow.toml"], "both");
+    assert_eq!(names(&here.path().join("both")), ["compare.html", "compare.json", "points", "slow"]);
+    assert_eq!(names(here.path()), ["both", "points.toml", "slow.toml"]);
+    assert_eq!((&found["runs"][0]["name"], &found["runs"][1]["title"]), (&"points".into(), &"Two slow points".into()));
+    // What is the same is marked, and what is not.
+    for (key, same) in
+        [("robots", true), ("law", true), ("network", true), ("start", true), ("order", false), ("final_gap", false)]
+    {
+        assert_eq!(row(&found, key)["same"], same, "{key}");
+    }
+    assert_eq!(words(&found, "robots")[0], "2 × point_mass");
+    assert_eq!(numbers(&found, "order"), [2.0, 1.0]);
+    // The numbers are those of the runs.
+    for (k, name) in ["points", "slow"].into_iter().enumerate() {
+        let run = summary(&here.path().join("both").join(name));
+        assert_eq!(run["metrics"]["disagreement"]["measured"]["last"].as_f64(), Some(numbers(&found, "final_gap")[k]));
+        let peak = |all: &Value| {
+            all.as_array().unwrap().iter().map(|peak| peak["value"].as_f64().unwrap().abs()).fold(0.0, f64::max)
+        };
+        assert_eq!(peak(&run["metrics"]["peak_torques"]), numbers(&found, "peak_torque")[k]);
+    }
+    // The order is that of the first derivative that jumps, plus one.
+    let jump = words(&found, "first_jump");
+    assert!(jump[0].starts_with("dτ/dt, by ") && jump[1].starts_with("τ, by "), "{jump:?}");
+    assert_eq!(numbers(&found, "input_jump")[0], 0.0);
+    assert!(numbers(&found, "input_jump")[1] > 0.01);
+
+    // In words, at 80 columns, with what is the same said once; the folder is refused a second time, and taken with --force.
+    let again = forwardstep(&here, &["compare", "points.toml", "slow.toml", "--out", "both"]).failure().code(2);
+    assert!(stderr(&again).contains("not empty") && stderr(&again).contains("--force"), "{}", stderr(&again));
+    let said = stdout(
+        &forwardstep(&here, &["compare", "points.toml", "slow.toml", "both/slow", "both/points", "--out", "four"])
+            .success(),
+    );
+    assert!(said.lines().all(|line| line.chars().count() <= 80), "{said}");
+    assert_eq!(said.matches("2 × point_mass").count(), 1, "{said}");
+    forwardstep(&here, &["compare", "--force", "points.toml", "slow.toml", "--out", "both"]).success();
+}
+
+#[test]
+fn a_folder_of_a_run_beside_a_scenario_is_read_and_left_as_it_is() {
+    let here = folder();
+    write(&here, "points.toml", POINTS);
+    forwardstep(&here, &["run", "points.toml", "--out", "early"]).success();
+    let page = fs::metadata(here.path().join("early/report.html")).unwrap().modified().unwrap();
+    let found = document(&here, &["early", "points.toml", "early"], "both");
+    assert_eq!(fs::metadata(here.path().join("early/report.html")).unwrap().modified().unwrap(), page);
+    assert_eq!(names(&here.path().join("both")), ["compare.html", "compare.json", "points"]);
+    let called: Vec<_> = found["runs"].as_array().unwrap().iter().map(|run| run["name"].as_str().unwrap()).collect();
+    assert_eq!(called, ["early", "points", "early-2"]);
+    assert!(found["rows"].as_array().unwrap().iter().all(|row| row["same"] == true), "{found}");
+    let said = stdout(&forwardstep(&here, &["compare", "early", "early", "--out", "same"]).success());
+    assert!(said.contains("The runs are the same in all that is compared") && !said.contains("Different"), "{said}");
+    assert_eq!(names(&here.path().join("same")), ["compare.html", "compare.json"]);
+}
+
+#[test]
+fn a_run_that_breaks_down_is_compared_and_told_by_the_status() {
+    let here = folder();
+    write(&here, "points.toml", POINTS);
+    write(&here, "limit.toml", INTO_A_LIMIT);
+    write(&here, "pendulum.urdf", PENDULUM);
+    let assert = forwardstep(&here, &["compare", "points.toml", "limit.toml", "--out", "both"]).failure().code(3);
+    let said = stdout(&assert);
+    assert!(said.contains("completed") && said.contains("broke down at"), "{said}");
+    // Other kinds, with other units, which are said.
+    let found: Value =
+        serde_json::from_str(&fs::read_to_string(here.path().join("both/compare.json")).unwrap()).unwrap();
+    assert_eq!(row(&found, "peak_torque")["note"], "units differ: N, N m");
+    assert_eq!(row(&found, "robots")["same"], false);
+    // A reason stands where there is nothing to compare.
+    assert_eq!(words(&found, "value")[1], "—");
+    assert!(row(&found, "value")["cells"][1]["because"].is_string());
+    assert!(row(&found, "input_jump")["cells"][1]["because"].is_string());
+}
+
+#[test]
+fn mistakes_are_told_before_anything_is_run_and_nothing_is_left() {
+    let here = folder();
+    write(&here, "points.toml", POINTS);
+    forwardstep(&here, &["run", "points.toml", "--out", "run"]).success();
+    fs::create_dir(here.path().join("empty")).unwrap();
+    fs::create_dir(here.path().join("forged")).unwrap();
+    fs::copy(here.path().join("run/scenario.toml"), here.path().join("forged/scenario.toml")).unwrap();
+    write(&here, "forged/summary.json", "{\"format\": 2, \"rows\": \"<script>\"}");
+    write(&here, "wrong.toml", &POINTS.replace("2.0, 3.0", "2.0, -3.0"));
+    let before = names(here.path());
+    for (arguments, told) in [
+        (&["points.toml", "nothing-like-it"][..], "nothing-like-it"),
+        (&["points.toml", "no/such/file.toml"], "no/such/file.toml"),
+        (&["points.toml", "empty"], "holds no whole run"),
+        (&["points.toml", "forged"], "summary.json"),
+        (&["points.toml", "wrong.toml"], "roots_per_s"),
+        (&["points.toml"], "2 values"),
+        (&[], "required"),
+    ] {
+        let assert = forwardstep(&here, &[&["compare"], arguments].concat()).failure().code(2);
+        assert!(stderr(&assert).contains(told), "{arguments:?}: {}", stderr(&assert));
+        assert_eq!(names(here.path()), before, "{arguments:?}");
+    }
+    // A folder that no comparison wrote is never replaced.
+    let assert = forwardstep(&here, &["compare", "--force", "run", "run", "--out", "run"]).failure().code(2);
+    assert!(stderr(&assert).contains("not written by `compare`"), "{}", stderr(&assert));
+    assert!(!here.path().join("run/compare.json").exists());
+}
+
+#[test]
+fn the_document_keeps_to_its_schema() {
+    let here = folder();
+    let schema: Value = serde_json::from_str(&stdout(&forwardstep(&here, &["schema", "compare"]).success())).unwrap();
+    assert_eq!(schema["title"], "forwardstep compare");
+    write(&here, "points.toml", POINTS);
+    let found = document(&here, &["points.toml", "points.toml"], "both");
+    for (value, own) in [
+        (&found, &schema),
+        (&found["rows"][0], &schema["$defs"]["ComparedRow"]),
+        (&found["runs"][0], &schema["$defs"]["ComparedRun"]),
+    ] {
+        for key in value.as_object().unwrap().keys() {
+            assert!(own["properties"][key]["description"].is_string(), "{key}");
+        }
+        for key in own["required"].as_array().unwrap() {
+            assert!(value.get(key.as_str().unwrap()).is_some(), "{key}");
+        }
+    }
+}
+
+#[test]
+fn ships_under_every_order_are_the_same_but_for_what_leads_them() {
+    let here = folder();
+    let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/book/src/ships");
+    let all = ["backstepping", "order-1", "order-2", "order-3", "order-4"];
+    let files: Vec<String> = all.iter().map(|name| book.join(format!("{name}.toml")).display().to_string()).collect();
+    let found = document(&here, &files.iter().map(String::as_str).collect::<Vec<_>>(), "ships");
+    for key in ["robots", "law", "network", "start", "control", "horizon_s", "ended", "goal"] {
+        assert_eq!(row(&found, key)["same"], true, "{key}");
+    }
+    // And they are those of the shipped scenario.
+    let beside = [files[2].as_str(), "five-ships"];
+    let shipped = document(&here, &[&["--no-jumps"], &beside[..]].concat(), "beside");
+    for key in ["robots", "law", "network", "start", "control", "horizon_s"] {
+        assert_eq!(row(&shipped, key)["same"], true, "{key}");
+    }
+    assert!(row(&shipped, "input_jump")["cells"][0]["because"].as_str().unwrap().contains("--no-jumps"));
+    // Backstepping jumps far, order 1 by what is heard, and from order 2 on the torque is continuous.
+    let jumps = numbers(&found, "input_jump");
+    assert!(jumps[0] > 100.0 * jumps[1] && jumps[1] > 1.0 && jumps[2..].iter().all(|jump| *jump == 0.0), "{jumps:?}");
+    let first = words(&found, "first_jump");
+    for (said, begins) in first.iter().zip(["τ, by", "τ, by", "dτ/dt, by", "d²τ/dt², by", "d³τ/dt³, by"]) {
+        assert!(said.starts_with(begins), "{first:?}");
+    }
+    let peaks = numbers(&found, "peak_torque");
+    assert!(peaks.windows(2).all(|pair| pair[0] > pair[1]), "{peaks:?}");
+}
+
+#[test]
+fn networks_with_other_numbers_are_not_the_same() {
+    let here = folder();
+    write(&here, "points.toml", POINTS);
+    write(
+        &here,
+        "other.toml",
+        &POINTS.replace("dwell_s = 0.25", "dwell_s = 0.3").replace("[1.0]]", "[0.9]]").replace("-1.0]", "-1.1]"),
+    );
+    let found = document(&here, &["points.toml", "other.toml"], "both");
+    for key in ["network", "start"] {
+        assert_eq!(row(&found, key)["same"], false, "{key}");
+        let said = words(&found, key);
+        assert!(!said[0].contains("other") && said[1].ends_with(", with other numbers"), "{said:?}");
+    }
+    assert_eq!(row(&found, "robots")["same"], true);
+}
+
+#[test]
+fn a_hostile_title_is_text_on_the_page() {
+    let here = folder();
+    let title = "</script><img src=x onerror=alert(1)> & more";
+    write(&here, "hostile.toml", &POINTS.replace("Two points", title));
+    forwardstep(&here, &["compare", "hostile.toml", "hostile.toml", "--out", "both"]).success();
+    let page = fs::read_to_string(here.path().join("both/compare.html")).unwrap();
+    assert!(!page.contains("<img") && page.contains("&lt;img src=x"), "escaped");
+    assert!(!page.contains("http://") || page.matches("http://").count() == page.matches("http://www.w3.org").count());
+}
