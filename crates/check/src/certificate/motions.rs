@@ -189,7 +189,8 @@ fn vanishes(target: &Trajectory, entries: &[Course<'_>], end_s: f64) -> Option<P
         let within = course.enclose(Interval::point(t_s));
         (!within.holds(0.0)).then_some(within.low > 0.0)
     };
-    let around = |k: i32| [-1.0, 1.0].map(|side| (found.t_s + side * found.every_s * libm::exp2(-f64::from(k))).max(0.0));
+    let around =
+        |k: i32| [-1.0, 1.0].map(|side| (found.t_s + side * found.every_s * libm::exp2(-f64::from(k))).max(0.0));
     let [from_s, to_s] = (1..HALVINGS).map(around).find(|[from_s, to_s]| {
         let [before, after] = [*from_s, *to_s].map(sign);
         before.zip(after).is_some_and(|(before, after)| before != after)

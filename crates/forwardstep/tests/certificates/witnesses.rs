@@ -29,7 +29,8 @@ fn a_start_at_which_the_jacobian_is_singular_comes_with_the_vector_that_it_takes
 
 #[test]
 fn an_attitude_that_fades_or_turns_over_is_refuted_by_its_limit_or_by_a_change_of_sign() {
-    let craft = |target: &str| changed("theorem-7", "target.formulas = [0, 0, 0, 1]", &format!("target.formulas = {target}"));
+    let craft =
+        |target: &str| changed("theorem-7", "target.formulas = [0, 0, 0, 1]", &format!("target.formulas = {target}"));
     violated(&craft(r#"["0.5*exp(-t)", "exp(-2*t)", 0, "1/(1+t)"]"#), "nonzero-quaternion", "fades");
     // After the run, which ends at 60 s.
     violated(&craft(r#"[0, 0, 0, "1 - t/90"]"#), "nonzero-quaternion", "changes-sign");

@@ -317,7 +317,7 @@ fn refused_with_place_and_help() {
 
 /// All that is said of a robot.
 fn all(text: &str) -> Vec<String> {
-    let error = read_urdf(&SourceText::new("r.urdf", text), &UrdfOptions::default()).expect_err(text);
+    let error = read_urdf(&SourceText::new("r.urdf", text), &UrdfOptions::default()).unwrap_err();
     let said = |error: &InputError<_>| error.to_string().trim_start_matches("r.urdf:").to_owned();
     std::iter::once(said(&error)).chain(error.others.iter().map(said)).collect()
 }

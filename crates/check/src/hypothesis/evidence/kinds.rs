@@ -315,9 +315,7 @@ impl KindEvidence {
             | KindEvidence::AttitudeNotShown { .. }
             | KindEvidence::HalfTurn
             | KindEvidence::TermNotShown { .. } => Rigour::Enclosed,
-            KindEvidence::RankDeficient { .. } | KindEvidence::Momentum(_) => {
-                Rigour::Computed
-            }
+            KindEvidence::RankDeficient { .. } | KindEvidence::Momentum(_) => Rigour::Computed,
             KindEvidence::ThrustFloor { .. }
             | KindEvidence::FactorFloor { .. }
             | KindEvidence::BoundedStates { .. }

@@ -88,7 +88,10 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
             format!("its determinant starts at {}; a run ends where it falls below {floor} of that", rounded(*start))
         }
         KindEvidence::SingularValue { start, floor } => {
-            format!("its smallest singular value starts at {}; a run ends where it falls below {floor} of that", rounded(*start))
+            format!(
+                "its smallest singular value starts at {}; a run ends where it falls below {floor} of that",
+                rounded(*start)
+            )
         }
         KindEvidence::RankDeficient { smallest, largest } => {
             format!("its singular values start from {} to {}", rounded(*smallest), rounded(*largest))

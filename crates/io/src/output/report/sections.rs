@@ -107,12 +107,9 @@ fn ending(record: &RunRecord<'_>, goes_on: bool) -> String {
     format!("running: {}", so_far(record))
 }
 
-/// How far a run is that goes on, to about a thousandth of its horizon.
+/// How far a run is that goes on.
 pub(crate) fn so_far(record: &RunRecord<'_>) -> String {
-    let until_s = record.outcome.recording.t_s.last().copied().unwrap_or(0.0);
-    let end_s = record.setup.time.end_s;
-    let places = (3.0 - end_s.log10().ceil()).clamp(0.0, 9.0) as usize;
-    format!("{until_s:.places$} s of {end_s} s")
+    text::time_reached(record.outcome.recording.t_s.last().copied().unwrap_or(0.0), record.setup.time.end_s)
 }
 
 /// A number with its unit; without, when it is none.

@@ -66,6 +66,15 @@ pub(crate) fn count(n: usize, what: &str) -> String {
     if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
 }
 
+/// A time of a run to about a thousandth of its horizon, and not later than it is.
+pub(crate) fn time_reached(until_s: f64, end_s: f64) -> String {
+    let places = (3.0 - end_s.log10().ceil()).clamp(0.0, 9.0) as usize;
+    let part = 10_f64.powi(-(places as i32));
+    // 0.29 stays 0.29.
+    let shown_s = (until_s / part * (1.0 + 1e-12)).floor() * part;
+    format!("{shown_s:.places$} s of {end_s} s")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -97,5 +106,19 @@ mod tests {
         let all = ["rad", "m", "rad", "m"].map(String::from).into_iter();
         assert_eq!(units(all), "rad or m");
         assert_eq!(units(["rad/s^2".to_owned()].into_iter()), "rad/s²");
+    }
+
+    #[test]
+    fn a_run_is_never_said_to_be_farther_than_it_is() {
+        for (until_s, end_s, said) in [
+            (0.6, 2000.0, "0 s of 2000 s"),
+            (1999.99, 2000.0, "1999 s of 2000 s"),
+            (12.39, 60.0, "12.3 s of 60 s"),
+            (0.29, 1.0, "0.290 s of 1 s"),
+            (0.5, 0.5, "0.500 s of 0.5 s"),
+            (60.0, 60.0, "60.0 s of 60 s"),
+        ] {
+            assert_eq!(time_reached(until_s, end_s), said);
+        }
     }
 }

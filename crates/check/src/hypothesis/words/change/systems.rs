@@ -87,9 +87,7 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
                 format!("a factor for {} that keeps away from zero in every state, such as 2 + cos(x)", agent.name)
             }
         },
-        KindEvidence::RankDeficient { .. } => {
-            "a start at which the Jacobian is not singular".into()
-        }
+        KindEvidence::RankDeficient { .. } => "a start at which the Jacobian is not singular".into(),
         KindEvidence::NoTip => "an `end_effector` that the robot has".into(),
         KindEvidence::LengthsInRegressor(lengths) => {
             format!("{} known, or only the tool unknown", lengths.join(", "))
