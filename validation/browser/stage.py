@@ -102,6 +102,27 @@ def clock(browser, name):
     expect(value(browser, "s.time()") == stopped, f"{name}: pause does not pause")
 
 
+DRAWN = """
+const seen = (svg) => {
+  const found = new DOMParser().parseFromString(svg, "image/svg+xml");
+  const values = [...found.querySelectorAll("*")].flatMap((part) => [...part.attributes].map((a) => a.value));
+  return [found.querySelectorAll("path.curve").length, found.querySelectorAll("path").length, found.querySelectorAll("text").length,
+    found.querySelector("parsererror") !== null || values.some((v) => /NaN|undefined|Infinity/.test(v)), found.querySelector("title")?.textContent ?? ""];
+};
+const stage = document.getElementById("stage");
+return [document.title, seen(stage.drawing()), stage.drawings().map(({ curves, svg }) => [curves, ...seen(svg)])];
+"""
+
+
+def drawings(browser, name):
+    """The picture and every plot as SVG: documents of their own, with all curves, and with texts that are nothing but text."""
+    title, picture, plots = browser.run(DRAWN)
+    expect(picture[1] > 5 and not picture[3] and picture[4].startswith(title), f"{name}: the picture as SVG is {picture}")
+    expect(plots, f"{name}: no plot is drawn as SVG")
+    for curves, drawn, _, texts, broken, said in plots:
+        expect(drawn == curves > 0 and texts > 4 and not broken and said == title, f"{name}: a plot of {curves} curves as SVG has {drawn}: {said}")
+
+
 def tips(browser, name):
     """What is drawn beside what the run recorded of the tip, at every row."""
     rows, worst = int(value(browser, "s.times().length")), 0.0
@@ -161,6 +182,7 @@ def main():
                         expect(bottom <= 990, f"{about}: {part} ends at {bottom} px")
                     if not dark:
                         clock(browser, about)
+                        drawings(browser, about)
                     quiet(browser, about)
                     fits(browser, about, 1400)
             browser.screen(390, 844, touch=True, calm=True)
@@ -190,6 +212,7 @@ def main():
             scenario.write_text(POINTS.format(count=count))
             browser.open(run(f"points-{count}", scenario))
             expect(value(browser, "s.tips(0).length") == count, f"{count} points: not all are there")
+            drawings(browser, f"{count} points, with a hostile title")
             quiet(browser, f"{count} points, with a hostile title")
             speed(browser, f"{count} points", seconds)
     print(f"{checked} checks, {len(problems)} failed")

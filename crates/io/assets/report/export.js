@@ -64,6 +64,7 @@ const offer = (card, plot) => {
       { className: "exports" },
       table,
       button("PNG", `Save ${title} as a picture`, () => pictureOf(plot, (blob) => blob && save(`${name}.png`, blob))),
+      button("SVG", `Save ${title} as a drawing`, () => save(`${name}.svg`, new Blob([svgOf(plot, title)], { type: "image/svg+xml" }))),
       button("CSV", `Save ${title} as a table`, () => save(`${name}.csv`, new Blob([csvOf(plot)], { type: "text/csv" }))),
     ),
   );

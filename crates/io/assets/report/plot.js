@@ -69,7 +69,7 @@ const clipped = (u, draw) => {
   u.ctx.beginPath();
   u.ctx.rect(left, top, width, height);
   u.ctx.clip();
-  draw(u.ctx, devicePixelRatio);
+  draw(u.ctx, u.density ?? devicePixelRatio);
   u.ctx.restore();
 };
 
@@ -180,6 +180,7 @@ const clockLine = () => {
 
 // Draws `series` = [{label, colour, dash, width, values}] over `times` into `target`.
 const drawPlot = (target, { times, series, log = false, lines = [], height, y = {}, draw = [], cursor = true, within = null }) => {
+  const besides = [(u) => drawLines(u, lines), ...draw];
   const axis = { stroke: colour("--muted"), font: axisFont, ticks: { show: false }, grid: { stroke: colour("--grid"), width: 1 } };
   const options = {
     width: Math.max(120, target.clientWidth),
@@ -224,7 +225,7 @@ const drawPlot = (target, { times, series, log = false, lines = [], height, y = 
     ],
     hooks: {
       drawAxes: [drawBreakPoints],
-      draw: [(u) => drawLines(u, lines), ...draw],
+      draw: besides,
       setSelect: [
         (u) => {
           if (u.select.width < 4) return;
@@ -238,6 +239,7 @@ const drawPlot = (target, { times, series, log = false, lines = [], height, y = 
     plugins: [...(cursor ? [readout(log)] : []), clockLine()],
   };
   const plot = new uPlot(options, [times, ...series.map((s) => s.values)], target);
+  plot.besides = besides;
   plots.add(plot);
   return plot;
 };

@@ -21,6 +21,28 @@ const stage = (() => {
   part("choice").hidden = bodies.length < 2;
   const hidden = (body) => body.vertex < agents.length && !shownAgents.has(body.vertex);
 
+  const paint = (pen, see, frame, heard, flat) => {
+    if (flat) {
+      drawUnder(pen, see, colours);
+      drawSolids(pen, see, frame, colours);
+    }
+    drawTrails(pen, see, frame, colours, hidden, now.alone);
+    drawMarks(pen, see, frame, colours, now.hovered ?? now.alone);
+    drawEdges(pen, see, frame, colours, heard);
+    drawWords(pen, see, frame, colours, now);
+  };
+  // The picture in vectors, projected.
+  const drawing = () => {
+    const [width, height] = [view.clientWidth, view.clientHeight];
+    const frame = frameAt(now.t, hidden);
+    const pen = svgPen(width, height, measuring());
+    pen.fillStyle = colour("--surface");
+    pen.fillRect(0, 0, width, height);
+    paint(pen, looking(width, height, frame.nodes), frame, heardAt(now.t), true);
+    return pen.document(`${document.title}, t = ${number(now.t, 4)} s`);
+  };
+  part("view-svg").onclick = () => save("view.svg", new Blob([drawing()], { type: "image/svg+xml" }));
+
   const draw = () => {
     asked = 0;
     const [width, height, scale] = [view.clientWidth, view.clientHeight, Math.min(2, devicePixelRatio || 1)];
@@ -32,14 +54,8 @@ const stage = (() => {
     const frame = frameAt(now.t, hidden);
     const see = looking(width, height, frame.nodes);
     const heard = heardAt(now.t);
-    if (now.flat) {
-      drawUnder(ctx, see, colours);
-      drawSolids(ctx, see, frame, colours);
-    } else lighting.draw(see, frame, colours);
-    drawTrails(ctx, see, frame, colours, hidden, now.alone);
-    drawMarks(ctx, see, frame, colours, now.hovered ?? now.alone);
-    drawEdges(ctx, see, frame, colours, heard);
-    drawWords(ctx, see, frame, colours, now);
+    if (!now.flat) lighting.draw(see, frame, colours);
+    paint(ctx, see, frame, heard, now.flat);
     seen = { see, frame };
     frames += 1;
     timeWords.textContent = `t = ${now.t.toFixed(end >= 100 ? 1 : 2)} s of ${number(end, 5)} s`;
@@ -199,7 +215,7 @@ const stage = (() => {
   lighting?.canvas.addEventListener("webglcontextlost", () => ((now.flat = true), (lighting.canvas.hidden = true), ask()));
   new ResizeObserver(ask).observe(view);
   draw();
-  return { go, ask, now, end, frames: () => frames, playing: () => now.playing };
+  return { go, ask, now, end, drawing, frames: () => frames, playing: () => now.playing };
 })();
 stageGo = (t) => !stage.playing() && stage.go(t);
 stageAsk = stage.ask;
@@ -212,4 +228,6 @@ Object.assign(document.getElementById("stage"), {
   tips: (t) => bodies.map((body) => trailPoint(body, data.place("scene", t))),
   recorded: (row) => bodies.map((body) => ({ coordinates: body.coordinates, base: layout.bases.get(body) ?? null, tip: read(body.tip, { row, part: 0 }) })),
   times: () => sceneTimes,
+  drawing: stage.drawing,
+  drawings: () => [...plots].filter((plot) => plot.besides && shownSeries(plot).length).map((plot) => ({ curves: shownSeries(plot).length, svg: svgOf(plot, document.title) })),
 });

@@ -41,7 +41,7 @@ const STAGE_CSS: &str = include_str!("../../../assets/report/stage.css");
 /// Draws bodies; only on pages that have some.
 const THREE_JS: &str = include_str!("../../../assets/three/three.iife.min.js");
 /// In the order in which they build on each other.
-const PAGE_JS: [&str; 11] = [
+const PAGE_JS: [&str; 12] = [
     include_str!("../../../assets/report/data.js"),
     include_str!("../../../assets/report/plot.js"),
     include_str!("../../../assets/report/cards.js"),
@@ -50,6 +50,7 @@ const PAGE_JS: [&str; 11] = [
     include_str!("../../../assets/report/painter.js"),
     include_str!("../../../assets/report/solids.js"),
     include_str!("../../../assets/report/graph.js"),
+    include_str!("../../../assets/report/svg.js"),
     include_str!("../../../assets/report/export.js"),
     include_str!("../../../assets/report/page.js"),
     include_str!("../../../assets/report/stage.js"),

@@ -29,8 +29,11 @@ const BEGIN_PICTURE: &str = "const pictureIn = (index, data, agents) => {\n";
 const END_PICTURE: &str = "return { bodies, scene, world, railed, floorGrid, camera, frameAt, looking, heardAt, graphWords, trailPoint, sceneColours, \
                            drawUnder, drawSolids, drawTrails, drawMarks, drawEdges, drawWords };\n};\n";
 /// What leaves the page, and the page itself.
-const LAST_JS: [&str; 2] =
-    [include_str!("../../../assets/report/export.js"), include_str!("../../../assets/report/compare.js")];
+const LAST_JS: [&str; 3] = [
+    include_str!("../../../assets/report/svg.js"),
+    include_str!("../../../assets/report/export.js"),
+    include_str!("../../../assets/report/compare.js"),
+];
 
 #[derive(Serialize)]
 struct Index {

@@ -24,6 +24,7 @@ pub(super) fn stage(record: &RunRecord<'_>, metrics: &Metrics, absence: Option<A
                     div.corner {
                         label { input #follow type="checkbox" checked; " follow" }
                         button #view-reset type="button" { "Reset view" }
+                        button #view-svg type="button" aria-label="Save the picture as a drawing" { "SVG" }
                     }
                 }
                 div.clock {
