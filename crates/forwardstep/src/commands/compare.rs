@@ -101,7 +101,7 @@ fn finish(options: &CompareOptions, kinds: &Kinds, console: &mut Console) -> Res
         console.text(compare_table::table(&comparison));
         console.line("");
         for file in files {
-            console.line(shown(&file));
+            console.whole(shown(&file));
         }
     }
     Ok(status)
