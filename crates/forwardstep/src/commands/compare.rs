@@ -193,7 +193,8 @@ fn open(name: String, folder: PathBuf, kinds: &Kinds, options: &CompareOptions, 
     } else {
         jumps_of(run.setup(), stop)?
     };
-    Ok(Ready { name, folder, run, promise, notices, jumps })
+    // As it is shown: names of files may hold anything.
+    Ok(Ready { name: shown(&name).to_string(), folder, run, promise, notices, jumps })
 }
 
 fn jumps_of(setup: &Setup, stop: &Stop) -> Result<Result<Smoothness, String>, Status> {

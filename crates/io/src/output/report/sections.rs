@@ -112,7 +112,10 @@ pub(crate) fn so_far(record: &RunRecord<'_>) -> String {
     let until_s = record.outcome.recording.t_s.last().copied().unwrap_or(0.0);
     let end_s = record.setup.time.end_s;
     let places = (3.0 - end_s.log10().ceil()).clamp(0.0, 9.0) as usize;
-    format!("{until_s:.places$} s of {end_s} s")
+    // Never later than the last row; what is a decimal but for rounding stays one.
+    let steps = 10.0_f64.powi(places as i32);
+    let shown_s = (until_s * steps * (1.0 + 1e-12)).floor() / steps;
+    format!("{shown_s:.places$} s of {end_s} s")
 }
 
 /// A number with its unit; without, when it is none.
