@@ -47,12 +47,13 @@ CHOSEN = """
 CHOOSE = """
   const part = (id) => document.getElementById(id);
   const pick = (id, value) => { part(id).value = value; part(id).dispatchEvent(new Event("change")); };
+  part("reload").checked = false; // while this is looked at
   pick("rate", "5"); pick("chosen", "1"); pick("joint", "1");
   part("break-points").click();
   document.querySelector("#legend button").click();
   document.querySelector("[data-plot=torque] details").open = true;
   part("stage").go(0.4);
-  part("joint").focus();
+  part("joint").focus({ preventScroll: true });
 """
 SCROLLED = 'document.querySelector("[data-plot=torque]").getBoundingClientRect().top'
 
@@ -122,8 +123,9 @@ def main():
         time.sleep(0.3)
         chosen, at = browser.run(CHOSEN), browser.run(f"return {SCROLLED}")
         expect(chosen["t"] == 0.4 and chosen["zoomed"] and chosen["rows"] and "false" in chosen["hidden"], f"nothing was chosen: {chosen}")
+        browser.run('document.getElementById("reload").checked = true')
         for k in range(2):
-            before = shown(browser)
+            before = until("a page", lambda: shown(browser))
             until("a later page", lambda: shown(browser) not in [before, None])
             time.sleep(0.3)
             kept, now = browser.run(CHOSEN), browser.run(f"return {SCROLLED}")
@@ -156,7 +158,7 @@ def main():
         process.kill()
         process.wait()
         browser.open(page)
-        expect(shown(browser).startswith("running: "), "the page of a run that was killed")
+        expect(until("a page", lambda: shown(browser)).startswith("running: "), "the page of a run that was killed")
         expect(browser.run('return document.querySelectorAll("canvas").length') > 3, "it has no plots")
         subprocess.run([program, "report", folder / "killed"], check=True, capture_output=True)
         browser.open(page)
