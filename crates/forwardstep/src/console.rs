@@ -3,6 +3,7 @@
 //! All that the program says leaves here. What others wrote and it repeats, names of files above all, is escaped where it is named
 //! ([`forwardstep::io::shown`]); what slips through is escaped here.
 
+use std::borrow::Cow;
 use std::ffi::OsString;
 use std::fmt;
 use std::io::{self, ErrorKind, IsTerminal, Stdout, Write};
@@ -11,8 +12,8 @@ use anstream::AutoStream;
 use anstyle::{AnsiColor, Style};
 use forwardstep::io::{breaks_lines, shown, steers_terminals};
 use miette::{Diagnostic, MietteHandlerOpts, ReportHandler};
-use terminal_size::{Width, terminal_size_of};
-use textwrap::{WordSeparator, WordSplitter};
+use textwrap::core::display_width;
+use textwrap::{Options, WordSeparator, WordSplitter};
 
 use crate::status::Status;
 
@@ -51,9 +52,18 @@ impl Console {
         self.text(format_args!("{text}\n"));
     }
 
-    /// Writes text.
+    /// Writes text, on a terminal in lines of its width.
     pub(crate) fn text(&mut self, text: impl fmt::Display) {
-        self.verbatim(harmless(&text.to_string(), |c| c.escape_debug().to_string()));
+        let text = harmless(&text.to_string(), |c| c.escape_debug().to_string());
+        match width_of(&io::stdout()) {
+            Some(width) => self.verbatim(in_lines(&text, width)),
+            None => self.verbatim(text),
+        }
+    }
+
+    /// Writes a line that stays one, such as the path of a file, which somebody may copy.
+    pub(crate) fn whole(&mut self, line: impl fmt::Display) {
+        self.verbatim(harmless(&format!("{line}\n"), |c| c.escape_debug().to_string()));
     }
 
     /// Writes a JSON document, whose strings have escapes of their own.
@@ -82,15 +92,42 @@ impl Console {
 
 /// Explains a mistake on standard error.
 pub(crate) fn complain(mistake: &dyn Diagnostic) -> Status {
-    let said = explained(mistake, width(), io::stderr().is_terminal());
+    let said = explained(mistake, width_of(&io::stderr()), io::stderr().is_terminal());
     // A closed standard error leaves only the exit status to tell.
     let _ = writeln!(io::stderr(), "{}", harmless(&said, |c| c.escape_debug().to_string()));
     Status::BadInput
 }
 
-/// Columns of the terminal on standard error; nothing where there is none: programs read whole lines.
-fn width() -> Option<usize> {
-    terminal_size_of(io::stderr()).map(|(Width(columns), _)| usize::from(columns).max(NARROWEST))
+/// Columns of the terminal on a stream, and what `COLUMNS` says where that does not know its size; nothing where there is none: programs
+/// read whole lines.
+pub(crate) fn width_of<S: Terminal>(stream: &S) -> Option<usize> {
+    if !stream.is_terminal() {
+        return None;
+    }
+    let stated = || std::env::var("COLUMNS").ok()?.parse().ok();
+    let columns = stream.columns().or_else(stated).filter(|columns| *columns > 0)?;
+    Some(columns.max(NARROWEST))
+}
+
+/// What may be a terminal.
+pub(crate) trait Terminal: IsTerminal {
+    /// How many columns it has, if it knows.
+    fn columns(&self) -> Option<usize>;
+}
+
+#[cfg(unix)]
+impl<S: IsTerminal + std::os::fd::AsFd> Terminal for S {
+    // One that knows no height, as under `script`, may still know its width.
+    fn columns(&self) -> Option<usize> {
+        rustix::termios::tcgetwinsize(self).ok().map(|size| size.ws_col.into()).filter(|columns| *columns > 0)
+    }
+}
+
+#[cfg(windows)]
+impl<S: IsTerminal + std::os::windows::io::AsHandle> Terminal for S {
+    fn columns(&self) -> Option<usize> {
+        terminal_size::terminal_size_of(self).map(|(width, _)| width.0.into())
+    }
 }
 
 /// A mistake in the words of its file; wrapped at this width, if there is one, between words only: names are not taken apart, and
@@ -110,12 +147,42 @@ fn explained(mistake: &dyn Diagnostic, width: Option<usize>, colour: bool) -> St
 
 /// The same text in lines of this width, if there is one.
 fn wrapped(text: &str, width: Option<usize>) -> String {
-    let Some(width) = width else { return text.to_owned() };
-    let options = textwrap::Options::new(width)
+    width.map_or_else(|| text.to_owned(), |width| textwrap::fill(text, between_words(width)))
+}
+
+/// Lines of this width, broken between words only.
+fn between_words<'a>(width: usize) -> Options<'a> {
+    Options::new(width)
         .break_words(false)
         .word_separator(WordSeparator::AsciiSpace)
-        .word_splitter(WordSplitter::NoHyphenation);
-    textwrap::fill(text, options)
+        .word_splitter(WordSplitter::NoHyphenation)
+}
+
+/// The same text with lines that are wider broken between words. They go on two columns further in, or below the value of
+/// `name   value`; rows of tables, which have more gaps than that one, stay as they are.
+fn in_lines(text: &str, width: usize) -> String {
+    let lines = text.split('\n').map(|line| {
+        if display_width(line) <= width { Cow::Borrowed(line) } else { Cow::Owned(continued(line, width)) }
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+fn continued(line: &str, width: usize) -> String {
+    let content = line.trim_start_matches(' ');
+    let indent = line.len() - content.len();
+    // Where a run of two blanks or more ends.
+    let bytes = content.as_bytes();
+    let ends = (2..bytes.len()).filter(|k| bytes[*k] != b' ' && bytes[k - 2..*k] == *b"  ");
+    let gaps: Vec<usize> = ends.map(|end| end + behind_colours(&content[end..])).collect();
+    let further = indent + if indent == 0 { 0 } else { 2 };
+    let hang = match gaps.as_slice() {
+        _ if content.starts_with('|') => return line.to_owned(),
+        [] => further,
+        [end] => Some(indent + display_width(&content[..*end])).filter(|hang| 2 * hang <= width).unwrap_or(further),
+        _ => return line.to_owned(),
+    };
+    let (first, rest) = (" ".repeat(indent), " ".repeat(hang));
+    textwrap::fill(content, between_words(width).initial_indent(&first).subsequent_indent(&rest))
 }
 
 /// Explains a mistake in the arguments on standard error, or shows the help that they ask for on standard output.
@@ -136,7 +203,7 @@ pub(crate) fn show_usage(answer: &clap::Error, arguments: &[OsString]) {
 /// Says one sentence on standard error.
 pub(crate) fn remark(sentence: impl fmt::Display) {
     let sentence = harmless(&sentence.to_string(), |c| c.escape_debug().to_string());
-    let _ = writeln!(AutoStream::auto(io::stderr()), "{}", wrapped(&sentence, width()));
+    let _ = writeln!(AutoStream::auto(io::stderr()), "{}", wrapped(&sentence, width_of(&io::stderr())));
 }
 
 /// The same text with all `escaped` that a terminal would obey, but for colours.
@@ -160,6 +227,15 @@ fn colour(text: &str) -> Option<usize> {
     const BEGINS: &str = "\u{1b}[";
     let end = text.strip_prefix(BEGINS)?.find(|c: char| !c.is_ascii_digit() && c != ';')? + BEGINS.len();
     text[end..].starts_with('m').then_some(end + 1)
+}
+
+/// Where blanks and colours end with which a text begins.
+fn behind_colours(text: &str) -> usize {
+    let mut end = 0;
+    while let Some(more) = colour(&text[end..]).or_else(|| text[end..].starts_with(' ').then_some(1)) {
+        end += more;
+    }
+    end
 }
 
 struct Shown<'a> {
@@ -259,5 +335,33 @@ mod tests {
             assert_eq!(words(&lines), words(sentence));
         }
         assert_eq!(wrapped(&"word ".repeat(50), None), "word ".repeat(50));
+    }
+
+    #[test]
+    fn what_is_printed_is_as_wide_as_a_terminal_but_for_tables() {
+        let sentence = "the union of the graphs over uniformly bounded windows contains a directed spanning tree";
+        let hypothesis = format!("  {GOOD}holds{GOOD:#}: {sentence} {DIM}[spanning-tree]{DIM:#}");
+        let named = format!("{BOLD}{:22}{BOLD:#} {sentence}", "six-arms");
+        let row = format!(" verdict               Theorem 2: {sentence}");
+        let table = format!("arm-1    2.0    {sentence}\n| a | {sentence} |");
+        let path = "forwardstep-runs/a-folder-with-a-rather-long-name/that-cannot-be-broken/report.html";
+        let text = format!("{sentence}\n\n{hypothesis}\n{row}\n{named}\n{path}\n");
+        for width in [60, 80] {
+            let shown = in_lines(&text, width);
+            let lines: Vec<&str> = shown.lines().collect();
+            assert!(lines.iter().all(|line| display_width(line) <= width || *line == path), "{shown}");
+            let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+            assert_eq!(words(&shown), words(&text));
+            assert!(
+                shown.ends_with('\n') && lines[0].starts_with("the union") && !lines[1].starts_with(' '),
+                "{shown}"
+            );
+            let after = |begin: &str| lines[lines.iter().position(|line| line.contains(begin)).unwrap() + 1];
+            assert!(after("holds").starts_with("    ") && !after("holds").starts_with("     "), "{shown}");
+            assert!(after("verdict").starts_with(&" ".repeat(23)), "{shown}");
+            assert!(after("six-arms").starts_with(&" ".repeat(23)) && !after("six-arms").starts_with(&" ".repeat(24)));
+            assert_eq!(in_lines(&table, width), table);
+        }
+        assert_eq!(in_lines(&text, 500), text);
     }
 }

@@ -444,3 +444,21 @@ fn thm6_a_start_without_an_inverse_ends_the_run_with_the_value_that_vanishes() {
         assert!(ended.contains("Broke down at t = 0 s") && ended.contains(signal), "{name}: {ended}");
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn a_terminal_gets_lines_of_its_width_and_a_pipe_whole_ones() {
+    let folder = folder();
+    let program = assert_cmd::cargo::cargo_bin("forwardstep");
+    let widest = |text: &[u8]| {
+        let text = String::from_utf8_lossy(text).replace('\r', "");
+        text.lines().map(textwrap::core::display_width).max().unwrap_or(0)
+    };
+    let piped = Process::new(&program).current_dir(&folder).args(["check", "first-order"]).output().unwrap();
+    assert!(widest(&piped.stdout) > 150);
+    let command = format!("stty cols 60; '{}' check first-order", program.display());
+    // A system without `script` has no terminal for tests.
+    let shown = Process::new("script").current_dir(&folder).args(["-qec", &command, "/dev/null"]).output();
+    let Ok(shown) = shown else { return };
+    assert!(shown.status.success() && (40..=60).contains(&widest(&shown.stdout)), "{shown:?}");
+}

@@ -294,3 +294,17 @@ fn a_hostile_title_is_text_on_the_page() {
     assert!(!page.contains("<img") && page.contains("&lt;img src=x"), "escaped");
     assert!(!page.contains("http://") || page.matches("http://").count() == page.matches("http://www.w3.org").count());
 }
+
+#[cfg(unix)]
+#[test]
+fn regress_names_of_files_stay_in_their_lines() {
+    let here = folder();
+    let name = "a\nb\u{1b}[31mc\u{202e}";
+    write(&here, &format!("{name}.toml"), POINTS);
+    write(&here, "points.toml", POINTS);
+    let ran = forwardstep(&here, &["compare", &format!("{name}.toml"), "points.toml", "--no-jumps", "--out", "both"]);
+    let said = stdout(&ran.success());
+    assert!(said.contains("a\\nb\\u{1b}[31mc\\u{202e}:"), "{said}");
+    let page = fs::read_to_string(here.path().join("both/compare.html")).unwrap();
+    assert!(!page.contains(['\u{1b}', '\u{202e}']));
+}

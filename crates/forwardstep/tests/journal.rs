@@ -287,3 +287,42 @@ fn a_run_that_follows_itself_writes_the_same() {
         );
     }
 }
+
+#[test]
+fn who_follows_a_folder_that_vanishes_is_told_and_the_run_writes_it_again() {
+    let folder = scenario();
+    let path = |out: &str| folder.path().join(out);
+    fs::write(path("mine/long.toml"), LONG.replace("end_s = 20", "end_s = 2000")).unwrap();
+    let mut run = start_followed(&folder, "gone");
+    let _ = times_shown(&path("gone/report.html"), 1);
+    let follower = follow(&folder, "gone", &[]);
+    std::thread::sleep(Duration::from_millis(300));
+    fs::remove_dir_all(path("gone")).unwrap();
+    let ended = follower.wait_with_output().unwrap();
+    let said = String::from_utf8(ended.stderr).unwrap();
+    assert!(ended.status.code() == Some(2) && said.contains("there is no folder `gone`"), "{said}");
+    assert!(run.try_wait().unwrap().is_none(), "the run goes on");
+    // The run still has its rows, and is asked to end.
+    let interrupt = Process::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap();
+    assert!(interrupt.success());
+    assert_eq!(run.wait().unwrap().code(), Some(130));
+    assert!(recording(&path("gone")).t_s.len() > 10);
+    assert!(fs::read_to_string(path("gone/report.html")).unwrap().contains("Interrupted"));
+}
+
+#[test]
+fn a_page_that_cannot_be_written_ends_no_run() {
+    let folder = scenario();
+    // Half a megabyte, less than a page: the rows of some seconds fit.
+    let limited = Process::new("sh")
+        .current_dir(&folder)
+        .args(["-c", "ulimit -f 1000; exec \"$0\" run mine/long.toml --follow --out limited"])
+        .arg(assert_cmd::cargo::cargo_bin("forwardstep"))
+        .output()
+        .unwrap();
+    let said = String::from_utf8(limited.stderr).unwrap();
+    assert!(said.contains("The page did not grow any more") && said.contains("limited/report.html"), "{said}");
+    assert!(!folder.path().join("limited/.report.html.partial").exists());
+    forwardstep(&folder, &["report", "limited", "--out", "elsewhere"]).success();
+    assert!(recording(&folder.path().join("elsewhere")).t_s.len() > 100);
+}

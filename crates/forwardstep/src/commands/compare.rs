@@ -101,7 +101,7 @@ fn finish(options: &CompareOptions, kinds: &Kinds, console: &mut Console) -> Res
         console.text(compare_table::table(&comparison));
         console.line("");
         for file in files {
-            console.line(shown(&file));
+            console.whole(shown(&file));
         }
     }
     Ok(status)
@@ -193,7 +193,8 @@ fn open(name: String, folder: PathBuf, kinds: &Kinds, options: &CompareOptions, 
     } else {
         jumps_of(run.setup(), stop)?
     };
-    Ok(Ready { name, folder, run, promise, notices, jumps })
+    // As it is shown: names of files may hold anything.
+    Ok(Ready { name: shown(&name).to_string(), folder, run, promise, notices, jumps })
 }
 
 fn jumps_of(setup: &Setup, stop: &Stop) -> Result<Result<Smoothness, String>, Status> {

@@ -6,8 +6,9 @@
 use std::io;
 
 use forwardstep::io::output::{ComparedRow, Comparison, RowGroup};
-use terminal_size::{Width, terminal_size_of};
 use textwrap::{Options, WordSeparator, WordSplitter};
+
+use crate::console::width_of;
 
 /// In pipes, and of terminals that say nothing of themselves.
 const USUAL: usize = 80;
@@ -20,7 +21,7 @@ const GAP: usize = 2;
 
 /// The table in lines.
 pub(crate) fn table(comparison: &Comparison) -> String {
-    let width = terminal_size_of(io::stdout()).map_or(USUAL, |(Width(columns), _)| usize::from(columns));
+    let width = width_of(&io::stdout()).unwrap_or(USUAL);
     in_width(comparison, width)
 }
 

@@ -39,7 +39,7 @@ fn watch(folder: &Path, out: Option<&Path>, kinds: &Kinds, console: &mut Console
             Failure::Unwritten(error) => refused(error),
         })?;
         if let Some(page) = page.filter(|_| !told) {
-            console.line(shown(&page));
+            console.whole(shown(&page));
             remark("The run goes on, and this page grows until it has ended; Ctrl-C leaves it as it is.");
             told = true;
         }

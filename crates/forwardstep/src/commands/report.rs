@@ -44,7 +44,7 @@ pub(super) fn finish(
     }
     .map_err(refused)?;
     for file in files {
-        console.line(shown(&file));
+        console.whole(shown(&file));
     }
     Ok(Status::Fine)
 }

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use super::error::{Action, OutputError};
 use super::folder::{RunFolder, io_error};
+use super::journal::JOURNAL;
 use super::record::RunRecord;
 use super::restore::SavedRun;
 use super::{metrics, report};
@@ -34,12 +35,13 @@ impl SavedRun {
         let path = folder.join(PAGE);
         // The run has the usual temporary name, and several may follow it.
         let partial = folder.join(format!(".{PAGE}.{}.partial", std::process::id()));
-        let written = fs::write(&partial, page)
-            .map_err(io_error(Action::WriteFile, &path))
-            .and_then(|()| fs::rename(&partial, &path).map_err(io_error(Action::RenameFile, &path)));
-        if written.is_err() {
-            let _ = fs::remove_file(&partial);
-        }
+        let written = fs::write(&partial, page).map_err(io_error(Action::WriteFile, &path)).and_then(|()| {
+            // A run that has ended since wrote its own.
+            let is_over = self.is_in(folder) && !folder.join(JOURNAL).exists();
+            if is_over { Ok(()) } else { fs::rename(&partial, &path).map_err(io_error(Action::RenameFile, &path)) }
+        });
+        // Where it has its name, nothing is there any more.
+        let _ = fs::remove_file(&partial);
         written.map(|()| path)
     }
 

@@ -147,6 +147,11 @@ impl SavedRun {
         self.saved.left_out.is_some().then_some(&self.saved.outcome.ending)
     }
 
+    /// Whether it was read from this folder.
+    pub(super) fn is_in(&self, folder: &Path) -> bool {
+        self.path == folder
+    }
+
     /// Whether a run was writing it when it was looked at, so that more will come.
     pub fn goes_on(&self) -> bool {
         self.saved.remarks.contains(&Remark::StillRunning)

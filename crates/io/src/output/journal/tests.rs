@@ -289,6 +289,13 @@ fn what_was_cut_off_is_said_and_becomes_a_whole_folder() {
         page.contains("http-equiv=\"refresh\"") && page.contains("data-again-s=\"7\"") && !page.contains("Cut off")
     );
     assert!(page.contains("location.reload"));
+    // What ended meanwhile wrote its own, and that stays.
+    fs::rename(path.join(JOURNAL), path.join("away")).unwrap();
+    fs::write(path.join("report.html"), "the whole page").unwrap();
+    saved.write_growing_page(&path, &record, again).unwrap();
+    assert_eq!(fs::read_to_string(path.join("report.html")).unwrap(), "the whole page");
+    assert!(!path.join(format!(".report.html.{}.partial", std::process::id())).exists());
+    fs::rename(path.join("away"), path.join(JOURNAL)).unwrap();
     // The run writes the same.
     fs::remove_file(path.join("report.html")).unwrap();
     let own = saved.write_own_growing_page(&run, &record, again).unwrap();

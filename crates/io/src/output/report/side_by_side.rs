@@ -11,6 +11,7 @@ use super::data::harmless_json;
 use super::side_data::{SideIndex, side_data};
 use super::stage::rates;
 use super::{PAGE_CSS, POLICY, STAGE_CSS, UPLOT_CSS, UPLOT_JS, colours_of, network};
+use crate::shown;
 
 const SIDE_CSS: &str = include_str!("../../../assets/report/compare.css");
 /// Before the pictures.
@@ -87,7 +88,7 @@ pub(crate) fn side_by_side(comparison: &Comparison, runs: &[Compared<'_>]) -> St
                     }
                     footer { p {
                         "Beside this page: " code { "compare.json" } " with the table for programs. The runs: "
-                        @for (k, run) in comparison.runs.iter().enumerate() { @if k > 0 { ", " } code { (run.folder) } }
+                        @for (k, run) in comparison.runs.iter().enumerate() { @if k > 0 { ", " } code { (shown(&run.folder).to_string()) } }
                         "."
                     } }
                 }
