@@ -123,6 +123,37 @@ def drawings(browser, name):
         expect(drawn == curves > 0 and texts > 4 and not broken and said == title, f"{name}: a plot of {curves} curves as SVG has {drawn}: {said}")
 
 
+POINTED = """
+const stage = document.getElementById("stage"), over = document.querySelector("[data-plot=plane] .over");
+if (!over) return null;
+stage.go(0);
+const { left, top, width, height } = over.getBoundingClientRect();
+for (let x = 70; x < width; x += 9) for (let y = 20; y < height; y += 9) {
+  over.dispatchEvent(new MouseEvent("mousemove", { clientX: left + x, clientY: top + y }));
+  if (stage.time() > 0) return true;
+}
+return false;
+"""
+
+
+HIDDEN = """
+const drawn = () => document.getElementById("stage").drawings().length;
+const chips = document.querySelectorAll("#legend button:not(.all)");
+const all = drawn();
+chips.forEach((chip) => chip.click());
+const few = drawn();
+chips.forEach((chip) => chip.click());
+return [all, few, drawn()];
+"""
+
+
+def plane(browser, name):
+    """Paths and phase planes: whoever points at a curve moves the clock, and who is hidden is not drawn."""
+    expect(browser.run(POINTED) is True, f"{name}: pointing at a path moves no clock")
+    before = browser.run(HIDDEN)
+    expect(before[0] == before[2] > before[1], f"{name}: hidden agents are drawn: {before}")
+
+
 def tips(browser, name):
     """What is drawn beside what the run recorded of the tip, at every row."""
     rows, worst = int(value(browser, "s.times().length")), 0.0
@@ -183,6 +214,7 @@ def main():
                     if not dark:
                         clock(browser, about)
                         drawings(browser, about)
+                        plane(browser, about)
                     quiet(browser, about)
                     fits(browser, about, 1400)
             browser.screen(390, 844, touch=True, calm=True)

@@ -69,36 +69,44 @@ fn in_width(comparison: &Comparison, width: usize) -> String {
     text
 }
 
-/// Why cells are empty, and which are not to be compared as numbers; each reason once.
+/// Why a run, or all of them, has nothing to say in some rows, or why numbers of those are not to be compared.
+struct Note {
+    of: Option<String>,
+    reason: String,
+    rows: Vec<(RowGroup, String)>,
+}
+
+/// Why cells are empty, and which are not to be compared as numbers; each reason once for a run.
 fn notes(comparison: &Comparison, width: usize) -> String {
-    let mut reasons: Vec<(String, Vec<String>)> = Vec::new();
-    let mut add = |reason: String, what: String| match reasons.iter_mut().find(|(known, _)| *known == reason) {
-        Some((_, of)) => of.push(what),
-        None => reasons.push((reason, vec![what])),
-    };
+    let mut notes: Vec<Note> = Vec::new();
     for row in &comparison.rows {
-        let name = format!("{} {}", row.group.words().to_lowercase(), row.name);
+        let mut add = |of: Option<&str>, reason: &str| {
+            let this = (row.group, row.name.clone());
+            match notes.iter_mut().find(|note| note.of.as_deref() == of && note.reason == reason) {
+                Some(note) => note.rows.push(this),
+                None => notes.push(Note { of: of.map(Into::into), reason: reason.into(), rows: vec![this] }),
+            }
+        };
         if let Some(note) = &row.note {
-            add(note.clone(), name.clone());
+            add(None, note);
         }
-        let empty =
-            row.cells.iter().zip(&comparison.runs).filter_map(|(cell, run)| Some((cell.because.as_ref()?, run)));
-        let empty: Vec<_> = empty.collect();
-        if empty.len() == comparison.runs.len() && row.same {
-            add(empty.first().map_or_else(String::new, |(reason, _)| (*reason).clone()), name);
-            continue;
-        }
-        for (reason, run) in empty {
-            add(reason.clone(), format!("{name} of {}", run.name));
+        let empty = row.cells.iter().zip(&comparison.runs);
+        let empty: Vec<_> = empty.filter_map(|(cell, run)| Some((run, cell.because.as_deref()?))).collect();
+        match empty.first() {
+            Some((_, reason)) if row.same => add(None, reason),
+            _ => empty.into_iter().for_each(|(run, reason)| add(Some(&run.name), reason)),
         }
     }
-    let mut text = String::new();
-    if !reasons.is_empty() {
-        text += "\nNotes\n";
-    }
-    for (reason, of) in reasons {
-        let options = wrapping(width.max(USUAL / 2)).initial_indent("— ").subsequent_indent("  ");
-        text += &(textwrap::fill(&format!("{}: {reason}", of.join(", ")), options) + "\n");
+    let options = wrapping(width.max(USUAL / 2)).initial_indent("— ").subsequent_indent("  ");
+    let mut text = String::from(if notes.is_empty() { "" } else { "\nNotes\n" });
+    for Note { of, reason, rows } in notes {
+        let in_group = |group: RowGroup| {
+            let names: Vec<&str> = rows.iter().filter(|(of, _)| *of == group).map(|(_, name)| name.as_str()).collect();
+            (!names.is_empty()).then(|| format!("{}: {}", group.words().to_lowercase(), names.join(", ")))
+        };
+        let about: Vec<String> = RowGroup::ALL.into_iter().filter_map(in_group).collect();
+        let of = of.unwrap_or_else(|| "all".into());
+        text += &(textwrap::fill(&format!("{of} ({}): {reason}", about.join("; ")), &options) + "\n");
     }
     text
 }

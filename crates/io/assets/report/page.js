@@ -20,6 +20,13 @@ const fill = (card, height) => {
     mine.plot = drawPlot(canvas, ganttCard());
     return;
   }
+  if (kind === "plane") {
+    if (quantities.length < 2 || data.t("main").length === 0) return empty();
+    mine.picks = drawPicks(card, planeSpec, mine.picks);
+    mine.plot = drawPlane(canvas, mine.picks, height ?? (innerWidth < 640 ? 220 : 240));
+    offer(card, mine.plot);
+    return;
+  }
   const spec = cards[kind];
   mine.picks = drawPicks(card, spec, mine.picks);
   const built = spec.build(mine.picks);
@@ -117,6 +124,7 @@ const showAgents = () => {
   chips.forEach((chip, i) => chip.setAttribute("aria-pressed", String(shownAgents.has(i))));
   everyone.hidden = shownAgents.size === agents.length;
   for (const { plot, series } of state.values()) {
+    if (plot?.curves) plot.redraw();
     if (!plot || !series) continue;
     series.forEach((s, k) => {
       if (s.agent == null || plot.series[k + 1].show === shownAgents.has(s.agent)) return;

@@ -229,5 +229,5 @@ Object.assign(document.getElementById("stage"), {
   recorded: (row) => bodies.map((body) => ({ coordinates: body.coordinates, base: layout.bases.get(body) ?? null, tip: read(body.tip, { row, part: 0 }) })),
   times: () => sceneTimes,
   drawing: stage.drawing,
-  drawings: () => [...plots].filter((plot) => plot.besides && shownSeries(plot).length).map((plot) => ({ curves: shownSeries(plot).length, svg: svgOf(plot, document.title) })),
+  drawings: () => [...plots].map((plot) => ({ curves: plot.curves?.() ?? shownSeries(plot).length, svg: svgOf(plot, document.title) })).filter(({ curves }) => curves > 0),
 });

@@ -8,7 +8,7 @@ const xml = (text) =>
 
 const ANCHORS = { center: "middle", right: "end", end: "end" };
 const BASELINES = { middle: "central", top: "hanging" };
-const PEN = { strokeStyle: "#000", fillStyle: "#000", lineWidth: 1, lineCap: "butt", lineJoin: "miter", font: "10px sans-serif", globalAlpha: 1, textAlign: "start", textBaseline: "alphabetic" };
+const PEN = { strokeStyle: "#000", fillStyle: "#000", lineWidth: 1, lineCap: "butt", lineJoin: "miter", font: "10px sans-serif", globalAlpha: 1, textAlign: "start", textBaseline: "alphabetic", mark: "" };
 
 // Draws in units of its own, `width` by `height` of them; `measure` is a context that knows how wide texts are.
 const svgPen = (width, height, measure) => {
@@ -45,7 +45,8 @@ const svgPen = (width, height, measure) => {
     rect: (x, y, w, h) => void path.push(`M${short(x)} ${short(y)}h${short(w)}v${short(h)}h${short(-w)}Z`),
     // Whole circles alone, which is what the page draws; a path of two halves.
     arc: (x, y, r) => void path.push(`M${short(x - r)} ${short(y)}a${short(r)} ${short(r)} 0 1 0 ${short(2 * r)} 0a${short(r)} ${short(r)} 0 1 0 ${short(-2 * r)} 0Z`),
-    stroke: (more = "") => shape(`fill="none" ${line()}${more}`),
+    // `mark` is an attribute of lines, by which they are found again.
+    stroke: () => shape(`fill="none" ${line()}${pen.mark}`),
     fill: () => shape(`fill="${xml(pen.fillStyle)}"`),
     fillRect: (x, y, w, h) => {
       pen.beginPath();
@@ -111,15 +112,15 @@ const paperOf = (plot, pen, head) => {
 };
 
 // One line through points; where a coordinate is no number it is interrupted.
-const stroked = (pen, points, more) => {
+const stroked = (pen, points) => {
   let drawing = false;
   pen.beginPath();
   for (const [x, y] of points) {
     const there = Number.isFinite(x) && Number.isFinite(y);
-    if (there) (drawing ? pen.lineTo : pen.moveTo)(x, y);
+    if (there) pen[drawing ? "lineTo" : "moveTo"](x, y);
     drawing = there;
   }
-  pen.stroke(more);
+  pen.stroke();
 };
 
 const drawGrid = (plot, paper, pen) => {
@@ -139,34 +140,44 @@ const drawGrid = (plot, paper, pen) => {
   Object.assign(pen, { textAlign: "start", textBaseline: "alphabetic" });
 };
 
+const CURVE = ' class="curve"';
 const MOST_NAMED = 40;
 const HEAD = 30;
-// A plot as it stands: the range, the curves and the lines that it shows, with its title above and its legend below.
-const svgOf = (plot, title) => {
-  const shown = shownSeries(plot);
-  const named = shown.slice(0, MOST_NAMED).map(({ s }) => ({ label: s.label, colour: s._colour, dash: s.dash }));
-  if (shown.length > named.length) named.push({ label: `and ${shown.length - named.length} more`, colour: "none" });
-  const under = HEAD + plot.height + 18;
-  const height = namesBelow(svgPen(0, 0, measuring()), named, plot.width, under) + 12;
-  const pen = svgPen(plot.width, height, measuring());
+// What `draw` draws between the title and the names of all curves, which begin `under` the top.
+const svgPage = (width, under, title, all, draw) => {
+  const named = all.slice(0, MOST_NAMED);
+  if (all.length > named.length) named.push({ label: `and ${all.length - named.length} more`, colour: "none" });
+  const height = namesBelow(svgPen(0, 0, measuring()), named, width, under) + 12;
+  const pen = svgPen(width, height, measuring());
   pen.fillStyle = colour("--surface");
-  pen.fillRect(0, 0, plot.width, height);
+  pen.fillRect(0, 0, width, height);
   Object.assign(pen, { font: `600 13px ${FONT}`, fillStyle: colour("--ink") });
   pen.fillText(title, 14, 20);
+  draw(pen);
+  Object.assign(pen, { textAlign: "start", textBaseline: "alphabetic" });
+  namesBelow(pen, named, width, under);
+  return pen.document(title);
+};
+
+// A plot as it stands: the range, the curves and the lines that it shows, with its title above and its legend below.
+const svgOf = (plot, title) => {
+  if (plot.svg) return plot.svg(title);
+  const named = shownSeries(plot).map(({ s }) => ({ label: s.label, colour: s._colour, dash: s.dash }));
+  return svgPage(plot.width, HEAD + plot.height + 18, title, named, (pen) => drawAgain(plot, pen));
+};
+const drawAgain = (plot, pen) => {
   const paper = paperOf(plot, pen, HEAD);
   drawGrid(plot, paper, pen);
   drawBreakPoints(paper);
   clipped(paper, () => {
     const [first, last] = plot.series[0].idxs ?? [0, plot.data[0].length - 1];
-    for (const { s, k } of shown) {
+    for (const { s, k } of shownSeries(plot)) {
       const points = [];
       for (let i = first; i <= last; i++) points.push([paper.valToPos(plot.data[0][i], "x"), plot.data[k][i] == null ? NaN : paper.valToPos(plot.data[k][i], "y")]);
-      Object.assign(pen, { strokeStyle: s._colour, lineWidth: s.width, lineJoin: "round" });
+      Object.assign(pen, { strokeStyle: s._colour, lineWidth: s.width, lineJoin: "round", mark: CURVE });
       pen.setLineDash(s.dash ?? []);
-      stroked(pen, points, ' class="curve"');
+      stroked(pen, points);
     }
   });
   for (const draw of plot.besides) draw(paper);
-  namesBelow(pen, named, plot.width, under);
-  return pen.document(title);
 };

@@ -66,7 +66,7 @@ pub(super) fn all(subjects: &[Subject<'_>]) -> Vec<Row> {
     let row = |group, key, name, cell: fn(&Subject<'_>) -> Result<Cell, Cell>| {
         Row::of(group, key, name, subjects.iter().map(|subject| cell(subject).unwrap_or_else(|none| none)).collect())
     };
-    let first = &subjects[0];
+    let Some(first) = subjects.first() else { return Vec::new() };
     let alike = |same: fn(&Subject<'_>, &Subject<'_>) -> bool| move |k: usize| same(first, &subjects[k]);
     use RowGroup::{Observed, Predicted, Promised, Simulated};
     vec![

@@ -41,7 +41,7 @@ const STAGE_CSS: &str = include_str!("../../../assets/report/stage.css");
 /// Draws bodies; only on pages that have some.
 const THREE_JS: &str = include_str!("../../../assets/three/three.iife.min.js");
 /// In the order in which they build on each other.
-const PAGE_JS: [&str; 12] = [
+const PAGE_JS: [&str; 13] = [
     include_str!("../../../assets/report/data.js"),
     include_str!("../../../assets/report/plot.js"),
     include_str!("../../../assets/report/cards.js"),
@@ -52,6 +52,7 @@ const PAGE_JS: [&str; 12] = [
     include_str!("../../../assets/report/graph.js"),
     include_str!("../../../assets/report/svg.js"),
     include_str!("../../../assets/report/export.js"),
+    include_str!("../../../assets/report/plane.js"),
     include_str!("../../../assets/report/page.js"),
     include_str!("../../../assets/report/stage.js"),
 ];
@@ -160,6 +161,7 @@ fn signals(record: &RunRecord<'_>) -> Markup {
                     (card("external", "External torques and forces", "τ_ext, by pushes", ""))
                 }
                 (card("velocity", "Speed and reference", "q̇, and z dashed", ""))
+                (card("plane", "One over another", "paths and phase planes", ""))
                 @if recorded(Signal::TrackingError) { (card("error", "Tracking error", "s = q̇ − z", "")) }
                 (card("reference", "Reference derivatives", "ż and higher", ""))
                 @for family in Family::of(&record.outcome.recording) {
