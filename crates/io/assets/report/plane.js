@@ -2,25 +2,26 @@
 
 // Whatever all agents have on the grid of the plots, by name: coordinates, their rates, and what only some systems have.
 const quantities = (() => {
+  const plain = (unit) => (unit === "1" ? "" : unit);
   const perAxis = (columns, leader, name, unit) =>
-    joints.map((j) => ({ name: name(j.name), unit: unitOf(j.axis, unit), of: agents.map((_, i) => columns[i]?.[j.axis]), wanted: [], leader: leader?.[j.axis] }));
+    joints.map((j) => ({ name: name(j.name), unit: plain(unitOf(j.axis, unit)), of: agents.map((_, i) => columns[i]?.[j.axis]), wanted: [], leader: leader?.[j.axis] }));
   const families = index.families.flatMap(({ id, entries }) => {
     const title = document.querySelector(`[data-plot="${id}"] h3`)?.firstChild?.textContent ?? id;
-    return entries.map((e) => ({ name: `${title}: ${e.name}`, unit: e.unit === "1" ? "" : e.unit, of: e.series, wanted: e.wanted, family: id }));
+    return entries.map((e) => ({ name: `${title}: ${e.name}`, unit: plain(e.unit), of: e.series, wanted: e.wanted, family: id }));
   });
-  return [...perAxis(signals.q, index.leader?.q, (name) => name, (u) => u.q), ...perAxis(signals.dq, index.leader?.dq, (name) => `rate of ${name}`, (u) => u.dq), ...families]
+  return [...perAxis(signals.q, index.leader?.q, (name) => name, (u) => u.q), ...perAxis(signals.dq, index.leader?.dq, (name) => `velocity, ${name}`, (u) => u.dq), ...families]
     .filter(({ of }) => of.some((k) => k != null));
 })();
 
 // A path where lengths are, of agents, or of tips with where they are wanted; else the first coordinate and its rate.
 const usualPlane = (() => {
-  const length = quantities.filter((q) => q.unit === "m" && !q.name.startsWith("rate of "));
+  const length = quantities.filter((q) => q.unit === "m" && !q.name.startsWith("velocity, "));
   const rank = (q) => (q.family === undefined ? 0 : q.wanted.some((k) => k != null) ? 1 : 2);
   for (const one of [0, 1, 2].flatMap((r) => length.filter((q) => rank(q) === r))) {
     const other = length.find((q) => q !== one && q.family === one.family);
     if (other) return [one, other];
   }
-  return [quantities[0], quantities.find((q) => q.name === `rate of ${quantities[0]?.name}`) ?? quantities[1]];
+  return [quantities[0], quantities.find((q) => q.name === `velocity, ${quantities[0]?.name}`) ?? quantities[1]];
 })();
 
 const planeOptions = quantities.map((q, k) => [String(k), q.unit ? `${q.name} in ${q.unit}` : q.name]);
