@@ -368,7 +368,7 @@ fn all_mistakes_are_told_at_once() {
         [
             "3:13: a second link is named `base`; the first is on line 2",
             "6:14: a second joint is named `turn`; the first is on line 5",
-            "6:72: link `arm` is the child of joint `turn` and of joint `turn` (line 5)",
+            "6:67: link `arm` is the child of joint `turn` and of joint `turn` (line 5)",
         ]
     );
     let apart = [BASE, r#"<link name="a"/>"#, r#"<link name="b"/>"#];
